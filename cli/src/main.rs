@@ -1,0 +1,2 @@
+//! The `posicast` command.
+fn main() {}

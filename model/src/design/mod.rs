@@ -1,0 +1,3 @@
+//! Shaper design: from modes and a kind to impulses.
+
+pub mod kind;

@@ -1,0 +1,20 @@
+//! Everything posicast computes, free of RTL and of input and output: the machine file, shaper design, analysis,
+//! digitising, the simulated plant, and one bit-exact, cycle-accurate model per hardware block.
+//!
+//! A number flows left to right once:
+//!
+//! ```text
+//! spec ─► design ─► impulses ─► digitise ─► taps ─► rtl::shaper
+//!                       └────────────┴────────────► analysis, plant
+//! ```
+
+pub mod analysis;
+pub mod design;
+pub mod digitise;
+pub mod impulse;
+pub mod mode;
+pub mod motion;
+pub mod plant;
+pub mod rtl;
+pub mod spec;
+pub mod taps;

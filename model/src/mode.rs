@@ -1,0 +1,34 @@
+//! A vibration mode of the machine.
+
+use std::f64::consts::TAU;
+
+/// One lightly damped mode: `ω² / (s² + 2ζωs + ω²)`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Mode {
+    /// Undamped natural frequency `f` in Hz, positive and finite.
+    pub frequency_hz: f64,
+    /// Damping ratio `ζ`, in [0, 1).
+    pub damping: f64,
+}
+
+impl Mode {
+    /// Undamped natural frequency `ω = 2πf` in rad/s.
+    pub fn omega(&self) -> f64 {
+        TAU * self.frequency_hz
+    }
+
+    /// Damped frequency `ω_d = ω√(1−ζ²)` in rad/s: the frequency of the ringing that one sees.
+    pub fn omega_damped(&self) -> f64 {
+        self.omega() * (1.0 - self.damping * self.damping).sqrt()
+    }
+
+    /// Decay rate `σ = ζω` in 1/s.
+    pub fn decay(&self) -> f64 {
+        self.damping * self.omega()
+    }
+
+    /// Damped period `T_d = 2π/ω_d` in seconds.
+    pub fn damped_period_s(&self) -> f64 {
+        TAU / self.omega_damped()
+    }
+}

@@ -1,0 +1,48 @@
+//! Bit-exact, cycle-accurate models of the hardware blocks, one file per block, under the block's name.
+//!
+//! A model, RustHDL's simulation and a Verilated module all look the same from outside: a [`ClockedBlock`]. That is what
+//! lock step compares.
+
+pub mod shaper;
+
+/// Direction of a port, seen from the block.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Direction {
+    /// Driven from outside.
+    Input,
+    /// Driven by the block.
+    Output,
+}
+
+/// A port of a block. `clk` is not listed: every block has it, and a step is one of its cycles.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Port {
+    /// Name, as in the Verilog.
+    pub name: String,
+    /// Direction.
+    pub direction: Direction,
+    /// Width in bits, 1..=64.
+    pub width: u32,
+    /// Two's complement?
+    pub signed: bool,
+}
+
+/// Why a block could not be stepped: RustHDL's simulator did not settle, for example.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{0}")]
+pub struct StepError(pub String);
+
+/// Anything with one clock and ports of at most 64 bits that can be stepped.
+///
+/// Values are raw bit patterns, right-aligned; bits above a port's width are zero.
+pub trait ClockedBlock {
+    /// The ports, inputs and outputs mixed, in the order of the Verilog's port list.
+    fn ports(&self) -> &[Port];
+
+    /// One clock cycle: applies `inputs` (one value per input port, in port order), puts what the outputs then show,
+    /// just *before* the rising edge, into `outputs` (one value per output port, in port order), then clocks.
+    ///
+    /// # Errors
+    /// [`StepError`] where a simulator fails; a model never does.
+    fn step(&mut self, inputs: &[u64], outputs: &mut [u64]) -> Result<(), StepError>;
+}

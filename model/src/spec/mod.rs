@@ -1,0 +1,159 @@
+//! The machine file: what an engineer knows of a machine, parsed and validated.
+//!
+//! The types here hold only values that passed validation; [`parse`] is the one way to make them from text.
+
+use crate::design::kind::Kind;
+use crate::mode::Mode;
+
+/// A whole machine file.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Machine {
+    /// Verilog names derive from it: `[a-z][a-z0-9_]*`, no keyword.
+    pub name: String,
+    /// Clock and sample tick.
+    pub clock: Clock,
+    /// Number formats and digitising.
+    pub fixed_point: FixedPoint,
+    /// Device, for synthesis.
+    pub target: Option<Target>,
+    /// One to four axes, names unique.
+    pub axes: Vec<Axis>,
+    /// What concerns all axes.
+    pub stage: Option<Stage>,
+}
+
+/// `[clock]`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Clock {
+    /// Fabric clock in Hz.
+    pub frequency_hz: f64,
+    /// Sample tick in Hz; divides `frequency_hz`.
+    pub sample_hz: f64,
+}
+
+impl Clock {
+    /// Fabric clocks per sample: exact, validation made sure.
+    pub fn clocks_per_sample(&self) -> u32 {
+        (self.frequency_hz / self.sample_hz).round() as u32
+    }
+
+    /// Sample period in seconds.
+    pub fn sample_period_s(&self) -> f64 {
+        1.0 / self.sample_hz
+    }
+}
+
+/// How impulses between two samples become taps.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Digitise {
+    /// Two taps per impulse, exact at the mode's pole.
+    #[default]
+    Modal,
+    /// Two taps per impulse, weighted by distance.
+    Linear,
+    /// One tap per impulse at the nearest sample.
+    Nearest,
+}
+
+/// `[fixed_point]`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct FixedPoint {
+    /// Width of a command word: 16, 24 or 32.
+    pub command_bits: u32,
+    /// Fraction bits of position, in encoder counts.
+    pub command_fraction: u32,
+    /// Fraction bits of velocity, in counts per sample.
+    pub velocity_fraction: u32,
+    /// Fraction bits of acceleration, in counts per sample².
+    pub acceleration_fraction: u32,
+    /// Fraction bits of the coefficients, where the file fixes them; else the largest that fits.
+    pub coefficient_fraction: Option<u32>,
+    /// Digitising.
+    pub digitise: Digitise,
+}
+
+/// `[target]`.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Target {
+    /// Device family: cyclone2, cyclone4e, cyclone10lp, cyclone5, max10.
+    pub family: String,
+    /// Board, such as `de1`.
+    pub board: Option<String>,
+}
+
+/// `[[axis]]`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Axis {
+    /// Name, unique in the machine; Verilog names derive from it.
+    pub name: String,
+    /// Encoder counts per metre (or radian).
+    pub counts_per_unit: f64,
+    /// `[axis.shaper]`; absent only if every mode names its own.
+    pub shaper: Option<ShaperChoice>,
+    /// Modes in the order of the file; empty only for `custom` and `none`.
+    pub modes: Vec<AxisMode>,
+    /// `[axis.limits]`.
+    pub limits: Option<Limits>,
+}
+
+/// `[axis.shaper]`: the kind, and the parameters that the file gives for it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ShaperChoice {
+    /// Kind.
+    pub kind: Kind,
+    /// Residual that an EI kind tolerates at the mode, in (0, 1); default 0.05.
+    pub tolerance: Option<f64>,
+    /// Zero pairs of `chebyshev-ei`, frequencies per mode of `vibrationless`: 1..=5.
+    pub order: Option<u32>,
+    /// Residual bound of `vibrationless`.
+    pub epsilon: Option<f64>,
+    /// Base shaper of `periodic`.
+    pub base: Option<Kind>,
+    /// Search limit of `periodic` in Hz.
+    pub lowest_frequency_hz: Option<f64>,
+    /// Amplitudes of `simultaneous`: `ps` or `um`.
+    pub amplitude: Option<String>,
+    /// Method of `antisymmetric`: `exact`, `two-impulse`, `three-impulse`.
+    pub method: Option<String>,
+    /// Tolerance of the frequency ratios of `antisymmetric`.
+    pub ratio_tolerance: Option<f64>,
+    /// Impulses of `custom`, as `(time_s, amplitude)`.
+    pub impulses: Vec<(f64, f64)>,
+}
+
+/// `[[axis.mode]]`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct AxisMode {
+    /// Frequency and damping.
+    pub mode: Mode,
+    /// The mode's own kind, instead of the axis's.
+    pub shaper: Option<Kind>,
+    /// The mode's own tolerance, instead of the axis's.
+    pub tolerance: Option<f64>,
+    /// The mode's own order, instead of the axis's.
+    pub order: Option<u32>,
+    /// Share of the mode in the axis's response; only ratios count. Default 1.
+    pub participation: f64,
+}
+
+/// `[axis.limits]`, in the units of the file: metres (or radians) and seconds.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Limits {
+    /// Largest velocity, m/s.
+    pub velocity: Option<f64>,
+    /// Largest acceleration, m/s².
+    pub acceleration: Option<f64>,
+    /// Largest jerk, m/s³.
+    pub jerk: Option<f64>,
+    /// Soft limits of the position, m.
+    pub travel: Option<[f64; 2]>,
+}
+
+/// `[stage]`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stage {
+    /// Delay added to every axis, s.
+    pub extra_delay_s: f64,
+    /// Speed at which the mismatch of the axes is reported, m/s.
+    pub contour_speed: Option<f64>,
+}
