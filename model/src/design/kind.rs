@@ -78,6 +78,14 @@ impl Kind {
         Self::ALL.iter().find(|(_, n)| *n == name).map(|(kind, _)| *kind)
     }
 
+    /// Whether this version designs the kind; the others parse and end in `not built in this version`.
+    pub fn is_built(self) -> bool {
+        matches!(
+            self,
+            Kind::Zv | Kind::Zvd | Kind::Zvdd | Kind::Zvddd | Kind::Ei | Kind::Custom | Kind::None
+        )
+    }
+
     /// Whether one shaper serves all modes of an axis, instead of one per mode and their convolution.
     pub fn treats_modes_together(self) -> bool {
         matches!(

@@ -96,6 +96,66 @@ pub struct Axis {
     pub limits: Option<Limits>,
 }
 
+/// Residual that an EI kind tolerates where the file gives no tolerance.
+pub const DEFAULT_TOLERANCE: f64 = 0.05;
+/// Zero pairs of `chebyshev-ei` where the file gives no order.
+const DEFAULT_CHEBYSHEV_ORDER: u32 = 3;
+/// Frequencies per mode of `vibrationless` where the file gives no order.
+const DEFAULT_VIBRATIONLESS_ORDER: u32 = 2;
+
+impl Axis {
+    /// The kind that treats all modes of this axis together, or `None` where each mode has a shaper of its own and the
+    /// axis gets their convolution.
+    pub fn joint_kind(&self) -> Option<Kind> {
+        let kind = self.shaper.as_ref()?.kind;
+        kind.treats_modes_together().then_some(kind)
+    }
+
+    /// Kind of a mode's shaper: the mode's own, else, under `simultaneous`, `zv`, else the axis's.
+    pub fn kind_of(&self, mode: &AxisMode) -> Kind {
+        let axis_kind = self.shaper.as_ref().map_or(Kind::None, |s| s.kind);
+        let inherited = if axis_kind == Kind::Simultaneous {
+            Kind::Zv
+        } else {
+            axis_kind
+        };
+        mode.shaper.unwrap_or(inherited)
+    }
+
+    /// Tolerance at a mode, for the EI kinds and for every insensitivity: the mode's, else the axis's, else
+    /// [`DEFAULT_TOLERANCE`].
+    pub fn tolerance_of(&self, mode: &AxisMode) -> f64 {
+        let of_axis = self.shaper.as_ref().and_then(|s| s.tolerance);
+        mode.tolerance.or(of_axis).unwrap_or(DEFAULT_TOLERANCE)
+    }
+
+    /// Order at a mode: the mode's, else the axis's, else the default of the mode's kind; 1 for a kind without order.
+    pub fn order_of(&self, mode: &AxisMode) -> u32 {
+        let of_axis = self.shaper.as_ref().and_then(|s| s.order);
+        mode.order.or(of_axis).unwrap_or(match self.kind_of(mode) {
+            Kind::ChebyshevEi => DEFAULT_CHEBYSHEV_ORDER,
+            Kind::Vibrationless => DEFAULT_VIBRATIONLESS_ORDER,
+            _ => 1,
+        })
+    }
+
+    /// The kind as reports and JSON name it: the axis's where every mode follows it, else those of the modes joined by
+    /// `+`, in the order of the file.
+    pub fn kind_name(&self) -> String {
+        match &self.shaper {
+            Some(shaper)
+                if self.joint_kind().is_some() || self.modes.iter().all(|m| self.kind_of(m) == shaper.kind) =>
+            {
+                shaper.kind.to_string()
+            }
+            _ => {
+                let kinds: Vec<&str> = self.modes.iter().map(|m| self.kind_of(m).name()).collect();
+                kinds.join("+")
+            }
+        }
+    }
+}
+
 /// `[axis.shaper]`: the kind, and the parameters that the file gives for it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ShaperChoice {
