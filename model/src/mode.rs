@@ -31,4 +31,12 @@ impl Mode {
     pub fn damped_period_s(&self) -> f64 {
         TAU / self.omega_damped()
     }
+
+    /// The same mode with its frequency multiplied by `ratio`, damping as it is: a machine that is off from its model.
+    pub fn scaled(&self, ratio: f64) -> Self {
+        Self {
+            frequency_hz: self.frequency_hz * ratio,
+            damping: self.damping,
+        }
+    }
 }

@@ -1,3 +1,168 @@
-//! Shaper design: from modes and a kind to impulses.
+//! Shaper design: from the modes and the kind of an axis to impulses, from there to the tap tables of the machine.
+//!
+//! ```text
+//! Axis ─► design_axis ─► AxisDesign (float, exact) ─► digitise ─► quantise ─► TapTable     design_machine does all axes
+//! ```
+//!
+//! One file per family: [`zv`], [`ei`], [`custom`]. Every design is checked by its own residual before it is returned: what
+//! leaves this module does at the mode what its kind promises, or is an error that says where the kind ends.
 
+pub mod custom;
+pub mod ei;
+mod error;
 pub mod kind;
+mod machine;
+mod newton;
+pub mod zv;
+
+pub use error::DesignError;
+pub use machine::{AxisTables, MachineDesign, design_machine};
+
+use crate::analysis::residual_vibration;
+use crate::impulse::ImpulseSequence;
+use crate::mode::Mode;
+use crate::spec::{Axis, AxisMode};
+use kind::Kind;
+
+/// Most impulses that a convolution may grow to: a tap table holds 256, so more is a slip in the machine file.
+pub const IMPULSES_MAX: usize = 4096;
+
+/// Largest deviation of a design's residual from what its kind promises.
+const RESIDUAL_TOLERANCE: f64 = 1e-9;
+
+/// The shaper of one axis in continuous time.
+#[derive(Debug, Clone, PartialEq)]
+pub struct AxisDesign {
+    /// The axis's name.
+    pub name: String,
+    /// Kind as reports name it: several, joined by `+`, where the modes have their own.
+    pub kind: String,
+    /// The impulses of the whole axis.
+    pub impulses: ImpulseSequence,
+    /// What the impulses are made of: digitising needs it.
+    pub parts: Parts,
+}
+
+/// What an axis's impulses are made of.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Parts {
+    /// One shaper per mode, in the order of the file; the axis has their convolution.
+    PerMode(Vec<Part>),
+    /// One shaper for all modes.
+    Joint {
+        /// The first mode of the file, if there is one: at its pole the impulses are digitised.
+        reference: Option<Mode>,
+    },
+}
+
+/// The shaper of one mode.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Part {
+    /// The mode that it is designed for.
+    pub mode: Mode,
+    /// Its kind.
+    pub kind: Kind,
+    /// Its impulses.
+    pub impulses: ImpulseSequence,
+}
+
+/// Designs the shaper of one axis.
+///
+/// # Errors
+/// [`DesignError`] where a kind is not built, does not exist for a mode, or is given what it cannot take.
+pub fn design_axis(axis: &Axis) -> Result<AxisDesign, DesignError> {
+    let (impulses, parts) = match axis.joint_kind() {
+        Some(kind) => {
+            let reference = axis.modes.first().map(|m| m.mode);
+            (joint_impulses(axis, kind)?, Parts::Joint { reference })
+        }
+        None => per_mode(axis)?,
+    };
+    Ok(AxisDesign {
+        name: axis.name.clone(),
+        kind: axis.kind_name(),
+        impulses,
+        parts,
+    })
+}
+
+/// The impulses of a kind that treats all modes together.
+fn joint_impulses(axis: &Axis, kind: Kind) -> Result<ImpulseSequence, DesignError> {
+    match kind {
+        Kind::None => Ok(ImpulseSequence::unity()),
+        Kind::Custom => {
+            let given = axis.shaper.as_ref().map_or(&[][..], |s| &s.impulses);
+            custom::design(&axis.name, given)
+        }
+        _ => Err(DesignError::NotBuilt { kind }),
+    }
+}
+
+/// One shaper per mode, and their convolution.
+fn per_mode(axis: &Axis) -> Result<(ImpulseSequence, Parts), DesignError> {
+    if axis.modes.is_empty() {
+        return Err(DesignError::NoModes {
+            axis: axis.name.clone(),
+            kind: axis.kind_name(),
+        });
+    }
+    let mut whole = ImpulseSequence::unity();
+    let mut parts = Vec::with_capacity(axis.modes.len());
+    for axis_mode in &axis.modes {
+        let impulses = mode_impulses(axis, axis_mode)?;
+        let count = whole.impulses().len() * impulses.impulses().len();
+        if count > IMPULSES_MAX {
+            return Err(DesignError::TooManyImpulses {
+                axis: axis.name.clone(),
+                found: count,
+            });
+        }
+        whole = whole.convolve(&impulses).map_err(|cause| DesignError::NoSequence {
+            what: format!("axis {}: the convolution of its modes' shapers", axis.name),
+            cause,
+        })?;
+        parts.push(Part {
+            mode: axis_mode.mode,
+            kind: axis.kind_of(axis_mode),
+            impulses,
+        });
+    }
+    Ok((whole, Parts::PerMode(parts)))
+}
+
+/// The impulses of one mode's shaper, checked at its mode.
+fn mode_impulses(axis: &Axis, axis_mode: &AxisMode) -> Result<ImpulseSequence, DesignError> {
+    let kind = axis.kind_of(axis_mode);
+    let mode = axis_mode.mode;
+    let (impulses, promised) = match kind {
+        Kind::None => return Ok(ImpulseSequence::unity()),
+        Kind::Zv => (zv::design(kind, &mode, 1)?, 0.0),
+        Kind::Zvd => (zv::design(kind, &mode, 2)?, 0.0),
+        Kind::Zvdd => (zv::design(kind, &mode, 3)?, 0.0),
+        Kind::Zvddd => (zv::design(kind, &mode, 4)?, 0.0),
+        Kind::Ei => {
+            let tolerance = axis.tolerance_of(axis_mode);
+            (ei::design(&mode, tolerance)?.impulses, tolerance)
+        }
+        // What serves all modes of an axis cannot be one mode's share of a convolution.
+        _ if kind.treats_modes_together() => {
+            return Err(DesignError::JointKindOfOneMode {
+                axis: axis.name.clone(),
+                kind,
+                mode,
+            });
+        }
+        _ => return Err(DesignError::NotBuilt { kind }),
+    };
+    let found = residual_vibration(impulses.impulses(), &mode);
+    let deviation = (found - promised).abs();
+    if deviation.is_nan() || deviation > RESIDUAL_TOLERANCE {
+        return Err(DesignError::Unverified {
+            kind,
+            mode,
+            found,
+            promised,
+        });
+    }
+    Ok(impulses)
+}

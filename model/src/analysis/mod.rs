@@ -1,0 +1,11 @@
+//! What a shaper does at a mode: residual vibration, insensitivity, sensitivity curves.
+//!
+//! Everything here takes plain impulses, so that the same code judges a design ([`crate::impulse`]), its digitised taps
+//! and the integer table that the hardware computes with ([`tap_impulses`]). The figure that is guaranteed is that of the
+//! integer table; the others explain it.
+
+mod insensitivity;
+mod residual;
+
+pub use insensitivity::{INSENSITIVITY_LIMIT, Insensitivity, insensitivity};
+pub use residual::{pole_sum, residual_vibration, residual_vibration_at, sensitivity_curve, tap_impulses};

@@ -1,0 +1,145 @@
+//! Why a shaper cannot be designed.
+
+use thiserror::Error;
+
+use super::IMPULSES_MAX;
+use super::kind::Kind;
+use crate::digitise::TableError;
+use crate::impulse::ImpulseError;
+use crate::mode::Mode;
+
+/// Why a machine has no shapers. Every message names the axis or the mode, what is allowed, and what to do.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum DesignError {
+    /// A kind that this version parses and does not design.
+    #[error("not built in this version: {kind}")]
+    NotBuilt {
+        /// The kind.
+        kind: Kind,
+    },
+    /// A kind per mode, and no mode.
+    #[error(
+        "axis {axis}: shaper {kind:?} needs at least one [[axis.mode]]; without modes use kind \"none\" or \"custom\""
+    )]
+    NoModes {
+        /// The axis.
+        axis: String,
+        /// Its kind.
+        kind: String,
+    },
+    /// A mode whose own shaper is one that serves whole axes.
+    #[error(
+        "axis {axis}, mode {hz} Hz: shaper \"{kind}\" treats all modes of an axis together; name it in [axis.shaper], \
+         or give this mode one of zv, zvd, zvdd, zvddd, ei",
+        hz = mode.frequency_hz
+    )]
+    JointKindOfOneMode {
+        /// The axis.
+        axis: String,
+        /// The kind.
+        kind: Kind,
+        /// The mode.
+        mode: Mode,
+    },
+    /// A frequency or damping that no mode has.
+    #[error(
+        "mode {hz} Hz with damping {damping}: the frequency must be positive and finite, the damping in [0, 1)",
+        hz = mode.frequency_hz, damping = mode.damping
+    )]
+    Mode {
+        /// The mode.
+        mode: Mode,
+    },
+    /// A tolerance that no EI shaper has.
+    #[error("shaper \"{kind}\" at mode {hz} Hz: tolerance {tolerance} must lie between {least:e} and {most}",
+        hz = mode.frequency_hz)]
+    Tolerance {
+        /// The kind.
+        kind: Kind,
+        /// The mode.
+        mode: Mode,
+        /// The tolerance found.
+        tolerance: f64,
+        /// Smallest that is solved.
+        least: f64,
+        /// Largest that is solved.
+        most: f64,
+    },
+    /// The equations of the kind have no solution with positive amplitudes in order of time.
+    #[error(
+        "shaper \"{kind}\" with tolerance {tolerance} has positive amplitudes in order of time up to damping \
+         {largest_damping:.4}; the mode at {hz} Hz has {damping}: use \"zv\" or \"zvd\" for it, or a smaller tolerance",
+        hz = mode.frequency_hz, damping = mode.damping
+    )]
+    NoSolution {
+        /// The kind.
+        kind: Kind,
+        /// The mode.
+        mode: Mode,
+        /// The tolerance.
+        tolerance: f64,
+        /// Damping up to which the kind exists for this tolerance.
+        largest_damping: f64,
+    },
+    /// A design that does not do what its kind promises: numbers beyond what `f64` resolves.
+    #[error(
+        "shaper \"{kind}\" at mode {hz} Hz, damping {damping}: its residual is {found:e} instead of {promised}; \
+         the mode is too extreme to compute with",
+        hz = mode.frequency_hz, damping = mode.damping
+    )]
+    Unverified {
+        /// The kind.
+        kind: Kind,
+        /// The mode.
+        mode: Mode,
+        /// Residual of the design.
+        found: f64,
+        /// Residual that the kind promises.
+        promised: f64,
+    },
+    /// Impulses that are no shaper.
+    #[error("{what}: {cause}")]
+    NoSequence {
+        /// Which shaper.
+        what: String,
+        /// The rule that they break.
+        cause: ImpulseError,
+    },
+    /// A convolution beyond all tables.
+    #[error(
+        "axis {axis}: the shapers of its modes give {found} impulses, more than {IMPULSES_MAX}; \
+         use fewer modes or shorter kinds"
+    )]
+    TooManyImpulses {
+        /// The axis.
+        axis: String,
+        /// Impulses before coincident ones merge.
+        found: usize,
+    },
+    /// A shaper without a tap table.
+    #[error(transparent)]
+    Table(#[from] TableError),
+}
+
+impl DesignError {
+    /// Impulses of a kind at a mode that are no shaper.
+    pub(super) fn no_sequence(kind: Kind, mode: &Mode, cause: ImpulseError) -> Self {
+        DesignError::NoSequence {
+            what: format!(
+                "shaper \"{kind}\" at mode {} Hz, damping {}",
+                mode.frequency_hz, mode.damping
+            ),
+            cause,
+        }
+    }
+
+    /// A mode that can be designed for, or the error.
+    pub(super) fn check_mode(mode: &Mode) -> Result<(), Self> {
+        let frequency = mode.frequency_hz.is_finite() && mode.frequency_hz > 0.0;
+        if frequency && (0.0..1.0).contains(&mode.damping) {
+            Ok(())
+        } else {
+            Err(DesignError::Mode { mode: *mode })
+        }
+    }
+}

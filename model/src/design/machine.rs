@@ -1,0 +1,109 @@
+//! All axes of a machine, from the machine file to tap tables with one `F`.
+
+use super::{AxisDesign, DesignError, design_axis};
+use crate::analysis::{Insensitivity, insensitivity, residual_vibration, tap_impulses};
+use crate::digitise::{Digitised, digitise, quantise, quantising_error};
+use crate::mode::Mode;
+use crate::spec::{Axis, Machine};
+use crate::taps::TapTable;
+
+/// The shapers of a machine.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MachineDesign {
+    /// Sample rate that the tables are for, in Hz.
+    pub sample_hz: f64,
+    /// `F` of all tables.
+    pub coefficient_fraction: u32,
+    /// One entry per axis, in the order of the file.
+    pub axes: Vec<AxisTables>,
+}
+
+/// The shaper of one axis at its three stages: float, on the grid, integers.
+#[derive(Debug, Clone, PartialEq)]
+pub struct AxisTables {
+    /// Impulses in continuous time.
+    pub design: AxisDesign,
+    /// Real taps: what the float design computes with.
+    pub digitised: Digitised,
+    /// Integer taps: what the hardware computes with.
+    pub table: TapTable,
+}
+
+/// What an axis's shaper leaves at one of its modes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ModeFigures {
+    /// The mode.
+    pub mode: Mode,
+    /// Tolerance that `insensitivity` is for.
+    pub tolerance: f64,
+    /// Residual vibration of the impulses.
+    pub residual: f64,
+    /// Insensitivity of the impulses; `None` if `residual` exceeds the tolerance.
+    pub insensitivity: Option<Insensitivity>,
+    /// Residual vibration of the real taps.
+    pub residual_digitised: f64,
+    /// Residual vibration of the integer taps: the guaranteed one.
+    pub residual_quantised: f64,
+}
+
+/// Designs, digitises and quantises the shapers of all axes.
+///
+/// # Errors
+/// [`DesignError`] names the axis, what was found, what is allowed and what to do. Nothing large is allocated for a shaper
+/// that no hardware holds.
+pub fn design_machine(machine: &Machine) -> Result<MachineDesign, DesignError> {
+    let sample_hz = machine.clock.sample_hz;
+    let designs = machine
+        .axes
+        .iter()
+        .map(|axis| {
+            let design = design_axis(axis)?;
+            let digitised = digitise(&design, machine.fixed_point.digitise, sample_hz)?;
+            Ok((design, digitised))
+        })
+        .collect::<Result<Vec<_>, DesignError>>()?;
+    let named: Vec<_> = designs.iter().map(|(d, taps)| (d.name.as_str(), taps)).collect();
+    let tables = quantise(&named, machine.fixed_point.coefficient_fraction)?;
+    let coefficient_fraction = tables.first().map_or(0, TapTable::coefficient_fraction);
+    let axes = designs.into_iter().zip(tables);
+    Ok(MachineDesign {
+        sample_hz,
+        coefficient_fraction,
+        axes: axes
+            .map(|((design, digitised), table)| AxisTables {
+                design,
+                digitised,
+                table,
+            })
+            .collect(),
+    })
+}
+
+impl AxisTables {
+    /// `Σ |c_i/2^F − a_i|`.
+    pub fn quantising_error(&self) -> f64 {
+        quantising_error(&self.digitised, &self.table)
+    }
+
+    /// The figures at every mode of the axis that was designed, in the order of the file.
+    pub fn mode_figures(&self, axis: &Axis, sample_hz: f64) -> Vec<ModeFigures> {
+        let continuous = self.design.impulses.impulses();
+        let real = self.digitised.impulses(sample_hz);
+        let integer = tap_impulses(&self.table, sample_hz);
+        let modes = axis.modes.iter();
+        modes
+            .map(|axis_mode| {
+                let mode = axis_mode.mode;
+                let tolerance = axis.tolerance_of(axis_mode);
+                ModeFigures {
+                    mode,
+                    tolerance,
+                    residual: residual_vibration(continuous, &mode),
+                    insensitivity: insensitivity(continuous, &mode, tolerance),
+                    residual_digitised: residual_vibration(&real, &mode),
+                    residual_quantised: residual_vibration(&integer, &mode),
+                }
+            })
+            .collect()
+    }
+}

@@ -1,0 +1,92 @@
+//! Zero vibration: `zv`, and its powers `zvd`, `zvdd`, `zvddd`.
+//!
+//! ```text
+//! K = e^{−ζπ/√(1−ζ²)}        one factor: amplitudes [1, K]/(1 + K) at 0, T_d/2
+//! m factors:                 A_k = C(m, k)·K^k / (1 + K)^m at k·T_d/2,  k = 0…m
+//! ```
+//!
+//! The second impulse starts the mode a half swing late, with what damping has left of it: they cancel (Smith's posicast,
+//! 1957; Singer and Seering 1990). Each further factor makes one more derivative of the residual zero at the mode, costs
+//! another half period of delay, and forgives a larger error of the frequency. Exists for every damping in [0, 1).
+
+use std::f64::consts::PI;
+
+use super::DesignError;
+use super::kind::Kind;
+use crate::impulse::{Impulse, ImpulseSequence};
+use crate::mode::Mode;
+
+/// Designs `factors` ZV factors in series, 1 (`zv`) to 4 (`zvddd`); `kind` is for messages.
+///
+/// # Errors
+/// [`DesignError::Mode`] for a mode that is none, [`DesignError::NoSequence`] where times leave the range of `f64`.
+pub fn design(kind: Kind, mode: &Mode, factors: u32) -> Result<ImpulseSequence, DesignError> {
+    DesignError::check_mode(mode)?;
+    let ratio = (-PI * mode.damping / (1.0 - mode.damping * mode.damping).sqrt()).exp();
+    let half_period_s = mode.damped_period_s() / 2.0;
+    let weights = binomial_weights(factors, ratio);
+    let sum: f64 = weights.iter().sum();
+    let impulses = weights.iter().enumerate().map(|(index, weight)| Impulse {
+        time_s: index as f64 * half_period_s,
+        amplitude: weight / sum,
+    });
+    ImpulseSequence::new(impulses.collect()).map_err(|cause| DesignError::no_sequence(kind, mode, cause))
+}
+
+/// Coefficients of `(1 + ratio·x)^factors`.
+fn binomial_weights(factors: u32, ratio: f64) -> Vec<f64> {
+    let mut weights = vec![1.0];
+    for _ in 0..factors {
+        let mut next = vec![0.0; weights.len() + 1];
+        for (index, weight) in weights.iter().enumerate() {
+            next[index] += weight;
+            next[index + 1] += weight * ratio;
+        }
+        weights = next;
+    }
+    weights
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn unit_undamped_amplitudes_are_binomial() {
+        let mode = Mode {
+            frequency_hz: 2.0,
+            damping: 0.0,
+        };
+        let zvddd = design(Kind::Zvddd, &mode, 4).unwrap();
+        let amplitudes: Vec<f64> = zvddd.impulses().iter().map(|i| i.amplitude * 16.0).collect();
+        assert_eq!(amplitudes, [1.0, 4.0, 6.0, 4.0, 1.0]);
+        assert_eq!(zvddd.duration_s(), 1.0);
+    }
+
+    #[test]
+    fn unit_modes_that_are_none_are_errors() {
+        for (frequency_hz, damping) in [
+            (0.0, 0.1),
+            (-1.0, 0.1),
+            (f64::NAN, 0.1),
+            (f64::INFINITY, 0.1),
+            (1.0, 1.0),
+            (1.0, -0.1),
+            (1.0, f64::NAN),
+        ] {
+            let mode = Mode { frequency_hz, damping };
+            assert!(matches!(design(Kind::Zv, &mode, 1), Err(DesignError::Mode { .. })));
+        }
+        // Legal numbers whose period has no place in f64.
+        for frequency_hz in [f64::MAX, f64::MIN_POSITIVE / 1e10] {
+            let mode = Mode {
+                frequency_hz,
+                damping: 0.0,
+            };
+            assert!(matches!(
+                design(Kind::Zv, &mode, 1),
+                Err(DesignError::NoSequence { .. })
+            ));
+        }
+    }
+}

@@ -1,0 +1,267 @@
+//! Digitising: impulses at any time become taps at whole samples, and those become integers.
+//!
+//! ```text
+//! impulses ─► grid (two taps per impulse, real) ─► parts convolved ─► real taps a_i ─► quantise ─► TapTable, Σ c_i = 2^F
+//! ```
+//!
+//! Each part (one mode's shaper) is put on the grid by itself and divided by its own sum; the parts' real sequences are
+//! then convolved, taps on equal samples added. So each mode keeps its own zeros. Rounding to integers comes once, at the
+//! end ([`quantise`]). The methods are in [`grid`]; the real taps stay beside the integers, because the float design that
+//! the hardware is compared with uses them.
+
+mod error;
+pub mod grid;
+mod quantise;
+
+use std::collections::BTreeMap;
+use std::fmt;
+
+pub use error::{DELAY_MAX_SAMPLES, TAPS_MAX, TableError};
+pub use quantise::{quantise, quantising_error};
+
+use crate::design::kind::Kind;
+use crate::design::{AxisDesign, Parts};
+use crate::impulse::{Impulse, ImpulseSequence};
+use crate::mode::Mode;
+use crate::spec::Digitise;
+
+/// A tap before rounding: `weight · x[n − delay_samples]`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RealTap {
+    /// Delay in samples.
+    pub delay_samples: u32,
+    /// Weight `a_i`.
+    pub weight: f64,
+}
+
+/// How the impulses of an axis came onto the sample grid.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Method {
+    /// Two taps per impulse, exact at the pole of the mode that the impulse belongs to.
+    Modal,
+    /// Two taps per impulse, exact at the pole of the axis's first mode: the impulses serve all modes together.
+    ModalAtFirstMode,
+    /// Two taps per impulse, weighted by distance.
+    Linear,
+    /// One tap per impulse, at the nearest sample.
+    Nearest,
+}
+
+impl fmt::Display for Method {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Method::Modal => "modal",
+            Method::ModalAtFirstMode => "modal at the first mode",
+            Method::Linear => "linear",
+            Method::Nearest => "nearest",
+        })
+    }
+}
+
+/// A shaper on the sample grid, before rounding.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Digitised {
+    /// The method that was used; not always the one asked for ([`digitise`]).
+    pub method_used: Method,
+    /// The taps, delays strictly increasing, weights not zero and with sum 1.
+    pub taps: Vec<RealTap>,
+}
+
+impl Digitised {
+    /// The impulses that the taps stand for.
+    pub fn impulses(&self, sample_hz: f64) -> Vec<Impulse> {
+        let taps = self.taps.iter();
+        taps.map(|tap| Impulse {
+            time_s: f64::from(tap.delay_samples) / sample_hz,
+            amplitude: tap.weight,
+        })
+        .collect()
+    }
+}
+
+/// Puts an axis's shaper on the sample grid.
+///
+/// `modal` for impulses that serve all modes together (`custom`, joint kinds) is exact at the first mode of the file only,
+/// and without a mode becomes `linear`: [`Digitised::method_used`] says so.
+///
+/// # Errors
+/// [`TableError::Delay`] for a shaper longer than the largest ring buffer, before anything is allocated;
+/// [`TableError::Nyquist`] for a mode that the sample rate cannot carry; [`TableError::NoUnitSum`] where the taps of a part
+/// cancel.
+pub fn digitise(design: &AxisDesign, how: Digitise, sample_hz: f64) -> Result<Digitised, TableError> {
+    let (method_used, sequences) = match &design.parts {
+        Parts::PerMode(parts) => {
+            // Without a shaper, a mode has no say in the grid.
+            let shaped = parts.iter().filter(|p| p.kind != Kind::None);
+            let sequences: Vec<_> = shaped.map(|p| (&p.impulses, Some(p.mode))).collect();
+            (Method::Modal, sequences)
+        }
+        Parts::Joint { reference: Some(mode) } => (Method::ModalAtFirstMode, vec![(&design.impulses, Some(*mode))]),
+        Parts::Joint { reference: None } => (Method::Linear, vec![(&design.impulses, None)]),
+    };
+    let method_used = match how {
+        Digitise::Modal => method_used,
+        Digitise::Linear => Method::Linear,
+        Digitise::Nearest => Method::Nearest,
+    };
+    check_delay(design, sequences.iter().map(|(impulses, _)| *impulses), sample_hz)?;
+    let mut whole = BTreeMap::from([(0, 1.0)]);
+    for (impulses, mode) in sequences {
+        whole = convolve(&whole, &part(&design.name, impulses, mode, method_used, sample_hz)?);
+    }
+    let taps = whole.into_iter().filter(|(_, weight)| *weight != 0.0);
+    Ok(Digitised {
+        method_used,
+        taps: taps
+            .map(|(delay_samples, weight)| RealTap { delay_samples, weight })
+            .collect(),
+    })
+}
+
+/// Refuses what no ring buffer holds; each sequence ends at most one sample after its last impulse.
+fn check_delay<'a>(
+    design: &AxisDesign,
+    sequences: impl Iterator<Item = &'a ImpulseSequence>,
+    sample_hz: f64,
+) -> Result<(), TableError> {
+    let samples: f64 = sequences.map(|s| grid::last_sample(s, sample_hz)).sum();
+    if samples <= f64::from(DELAY_MAX_SAMPLES) {
+        return Ok(());
+    }
+    Err(TableError::Delay {
+        axis: design.name.clone(),
+        found: samples,
+        duration_s: design.impulses.duration_s(),
+        sample_hz,
+    })
+}
+
+/// One sequence on the grid, divided by its sum.
+fn part(
+    axis: &str,
+    impulses: &ImpulseSequence,
+    mode: Option<Mode>,
+    method: Method,
+    sample_hz: f64,
+) -> Result<BTreeMap<u32, f64>, TableError> {
+    let mut taps: BTreeMap<u32, f64> = BTreeMap::new();
+    for impulse in impulses.impulses() {
+        let placed = match (method, mode) {
+            (Method::Nearest, _) => grid::nearest(impulse, sample_hz),
+            (Method::Modal | Method::ModalAtFirstMode, Some(mode)) => {
+                if mode.omega_damped() >= std::f64::consts::PI * sample_hz {
+                    return Err(TableError::Nyquist {
+                        axis: axis.to_owned(),
+                        frequency_hz: mode.frequency_hz,
+                        sample_hz,
+                    });
+                }
+                grid::modal(impulse, &mode, sample_hz)
+            }
+            _ => grid::linear(impulse, sample_hz),
+        };
+        for tap in placed.into_iter().flatten() {
+            *taps.entry(tap.delay_samples).or_default() += tap.weight;
+        }
+    }
+    let sum: f64 = taps.values().sum();
+    let size: f64 = taps.values().map(|w| w.abs()).sum();
+    if size.is_finite() && sum.abs() > 1e-6 * size {
+        taps.values_mut().for_each(|weight| *weight /= sum);
+        Ok(taps)
+    } else {
+        Err(TableError::NoUnitSum {
+            axis: axis.to_owned(),
+            sum,
+        })
+    }
+}
+
+/// One tap sequence after the other.
+fn convolve(a: &BTreeMap<u32, f64>, b: &BTreeMap<u32, f64>) -> BTreeMap<u32, f64> {
+    let mut product: BTreeMap<u32, f64> = BTreeMap::new();
+    for (delay_a, weight_a) in a {
+        for (delay_b, weight_b) in b {
+            *product.entry(delay_a + delay_b).or_default() += weight_a * weight_b;
+        }
+    }
+    product
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::design::Part;
+
+    fn custom(pairs: &[(f64, f64)], reference: Option<Mode>) -> AxisDesign {
+        let impulses = pairs.iter().map(|&(time_s, amplitude)| Impulse { time_s, amplitude });
+        AxisDesign {
+            name: "x".into(),
+            kind: "custom".into(),
+            impulses: ImpulseSequence::new(impulses.collect()).unwrap(),
+            parts: Parts::Joint { reference },
+        }
+    }
+
+    #[test]
+    fn unit_custom_says_which_method_it_took() {
+        let mode = Mode {
+            frequency_hz: 10.0,
+            damping: 0.1,
+        };
+        let pairs = [(0.0, 0.5), (0.0104, 0.5)];
+        let method = |reference, how| digitise(&custom(&pairs, reference), how, 1000.0).unwrap().method_used;
+        assert_eq!(method(None, Digitise::Modal), Method::Linear);
+        assert_eq!(method(Some(mode), Digitise::Modal), Method::ModalAtFirstMode);
+        assert_eq!(method(Some(mode), Digitise::Linear), Method::Linear);
+        assert_eq!(method(Some(mode), Digitise::Nearest), Method::Nearest);
+        let linear = digitise(&custom(&pairs, None), Digitise::Modal, 1000.0).unwrap();
+        let taps: Vec<_> = linear.taps.iter().map(|t| t.delay_samples).collect();
+        assert_eq!(taps, [0, 10, 11]);
+        assert!((linear.taps[1].weight - 0.3).abs() < 1e-12 && (linear.taps[2].weight - 0.2).abs() < 1e-12);
+    }
+
+    #[test]
+    fn unit_a_shaper_longer_than_any_ring_is_refused_before_it_is_built() {
+        for last_s in [1e300, 1e9, 16.383] {
+            let error = digitise(&custom(&[(0.0, 0.5), (last_s, 0.5)], None), Digitise::Linear, 1000.0).unwrap_err();
+            assert!(matches!(error, TableError::Delay { .. }), "{error}");
+        }
+        let longest = digitise(&custom(&[(0.0, 0.5), (16.382, 0.5)], None), Digitise::Linear, 1000.0).unwrap();
+        assert_eq!(longest.taps.last().unwrap().delay_samples, DELAY_MAX_SAMPLES);
+    }
+
+    #[test]
+    fn unit_a_mode_beyond_half_the_sample_rate_has_no_modal_taps() {
+        let mode = Mode {
+            frequency_hz: 500.0,
+            damping: 0.0,
+        };
+        let design = custom(&[(0.0, 0.5), (0.0015, 0.5)], Some(mode));
+        let error = digitise(&design, Digitise::Modal, 1000.0).unwrap_err();
+        assert!(matches!(error, TableError::Nyquist { .. }), "{error}");
+        assert!(digitise(&design, Digitise::Linear, 1000.0).is_ok());
+    }
+
+    #[test]
+    fn unit_taps_that_cancel_are_an_error() {
+        // Both impulses of opposite sign fall on one sample; what is left is rounding.
+        let design = custom(&[(0.0, 1e8 + 1.0), (1e-6, -1e8)], None);
+        let error = digitise(&design, Digitise::Nearest, 1000.0).unwrap();
+        assert_eq!(error.taps.len(), 1);
+        let bad = AxisDesign {
+            parts: Parts::PerMode(vec![Part {
+                mode: Mode {
+                    frequency_hz: 499.999_999_999,
+                    damping: 0.0,
+                },
+                kind: Kind::Zv,
+                impulses: custom(&[(0.0, -1.0), (0.0005, 2.0)], None).impulses,
+            }]),
+            ..design
+        };
+        // Legal, but sin(ω_d T) is all but zero and the two taps with it: enormous, and refused when rounded.
+        let wild = digitise(&bad, Digitise::Modal, 1000.0).unwrap();
+        assert!(quantise(&[("x", &wild)], None).is_err() || wild.taps.iter().all(|t| t.weight.abs() < 4.0));
+    }
+}
