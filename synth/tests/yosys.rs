@@ -103,6 +103,15 @@ fn netlist_a_memory_without_clocked_read_is_logic() {
 }
 
 #[test]
+fn netlist_what_yosys_optimises_late_is_mapped_too() {
+    let yosys = Yosys::installed().unwrap();
+    for family in Family::ALL {
+        let total = yosys.estimate(&rtl(&["counter"]), "counter", family).unwrap().total;
+        assert_eq!(total.registers, 16, "{family}");
+    }
+}
+
+#[test]
 fn netlist_what_does_not_fit_is_named() {
     let mut estimate = stage(Family::Cyclone2);
     estimate.device.memory_bits = 1024;

@@ -190,7 +190,9 @@ impl Yosys {
     /// [`YosysError::Failed`] with Yosys's reason, and whatever else kept it from answering.
     pub fn check(&self, files: &[PathBuf], top: &str) -> Result<(), YosysError> {
         let top = module_name(top)?;
-        let script = format!("hierarchy -check -top {top}; proc; check -assert; select -assert-none t:$dlatch");
+        let script = format!(
+            "hierarchy -check -top {top}; proc; check -assert; select -assert-none t:$dlatch t:$adlatch t:$dlatchsr"
+        );
         self.run(top, files, &["-p".as_ref(), script.as_ref()]).map(drop)
     }
 
@@ -248,9 +250,14 @@ impl Yosys {
 /// multipliers become black boxes before the family's own mapping sees them.
 fn script(top: &str, family: Family) -> String {
     let map = match family.device().cell {
-        Cell::LogicElement => format!("synth_intel -family cycloneive -nobram -top {top}"),
+        // Its last optimisation before the LUTs can leave a multiplexer behind, which `techmap` takes care of.
+        Cell::LogicElement => {
+            let synth = format!("synth_intel -family cycloneive -noflatten -nobram -top {top}");
+            format!("{synth} -run begin:map_luts; techmap; {synth} -run map_luts:vqm")
+        }
         Cell::AdaptiveLogicModule => {
-            format!("synth_intel_alm -family cyclonev -nobram -nolutram -nodsp -noiopad -noclkbuf -top {top}")
+            let without = "-noflatten -nobram -nolutram -nodsp -noiopad -noclkbuf";
+            format!("synth_intel_alm -family cyclonev {without} -top {top}")
         }
     };
     [
@@ -259,7 +266,8 @@ fn script(top: &str, family: Family) -> String {
         "proc",
         &format!("setattr -set keep_hierarchy 1 {top}/c:*"),
         "flatten",
-        "opt; wreduce; peepopt; opt_clean", // a product's operands shrink to what they carry
+        &format!("setattr -unset keep_hierarchy {top}/c:*"), // on a gate it would keep the mapping away
+        "opt; wreduce; peepopt; opt_clean",                  // a product's operands shrink to what they carry
         "memory -nomap; opt_clean",
         "techmap -map map.v",
         &map,
