@@ -1,0 +1,195 @@
+//! `posicast.json`: which files posicast wrote, and what they were.
+//!
+//! ```json
+//! {
+//!   "version": "0.1.0",
+//!   "machine": "xy_stage",
+//!   "files": { "machine.toml": "sha256:9f86d0…", "rtl/xy_stage.v": "sha256:60303a…" }
+//! }
+//! ```
+//!
+//! While files are being replaced, `replaces` lists for each path what may also be found there.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs::{self, File};
+use std::io::{ErrorKind, Read};
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+
+use super::error::at;
+use super::{MANIFEST, PackageError, names, read::read_text};
+
+/// The file's contents.
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub(super) struct Manifest {
+    /// Version of posicast that wrote the folder.
+    pub(super) version: String,
+    /// Name of the machine.
+    pub(super) machine: String,
+    files: BTreeMap<String, String>,
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    replaces: BTreeMap<String, BTreeSet<String>>,
+}
+
+impl Manifest {
+    /// A finished package of these files, path to hash.
+    pub(super) fn new(machine: &str, files: BTreeMap<String, String>) -> Self {
+        Self {
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            machine: machine.to_owned(),
+            files,
+            replaces: BTreeMap::new(),
+        }
+    }
+
+    /// The same, while files of `previous` may still be in place.
+    pub(super) fn replacing(&self, previous: &Self) -> Self {
+        let mut replaces = previous.replaces.clone();
+        for (path, hash) in &previous.files {
+            replaces.entry(path.clone()).or_default().insert(hash.clone());
+        }
+        // A first run has nothing to replace, and still is unfinished.
+        for path in self.files.keys() {
+            replaces.entry(path.clone()).or_default();
+        }
+        Self {
+            replaces,
+            ..self.clone()
+        }
+    }
+
+    /// Was the run that wrote it interrupted?
+    pub(super) fn unfinished(&self) -> bool {
+        !self.replaces.is_empty()
+    }
+
+    /// Every path that posicast may have written.
+    pub(super) fn paths(&self) -> impl Iterator<Item = &str> {
+        let paths: BTreeSet<&str> = self
+            .files
+            .keys()
+            .chain(self.replaces.keys())
+            .map(String::as_str)
+            .collect();
+        paths.into_iter()
+    }
+
+    /// May posicast have written this path?
+    pub(super) fn names(&self, path: &str) -> bool {
+        self.files.contains_key(path) || self.replaces.contains_key(path)
+    }
+
+    /// The paths whose files are not what posicast wrote. A file that is gone is not edited.
+    pub(super) fn edited(&self, root: &Path) -> Result<Vec<String>, PackageError> {
+        let mut edited = Vec::new();
+        for path in self.paths() {
+            let Some(hash) = hash_in(root, path)? else { continue };
+            let current = self.files.get(path) == Some(&hash);
+            if !current && !self.replaces.get(path).is_some_and(|hashes| hashes.contains(&hash)) {
+                edited.push(path.to_owned());
+            }
+        }
+        Ok(edited)
+    }
+
+    /// Reads the manifest of a folder; `None` without one.
+    pub(super) fn of(root: &Path) -> Result<Option<Self>, PackageError> {
+        let path = root.join(MANIFEST);
+        let reject = |reason| {
+            Err(PackageError::Manifest {
+                folder: root.to_owned(),
+                reason,
+            })
+        };
+        let text = match read_text(&path) {
+            Ok(text) => text,
+            Err(PackageError::Missing(_)) => return Ok(None),
+            Err(PackageError::Io { source, .. }) if source.kind() == ErrorKind::InvalidData => {
+                return reject("is no text".to_owned());
+            }
+            Err(error) => return Err(error),
+        };
+        let manifest: Self = match serde_json::from_str(&text) {
+            Ok(manifest) => manifest,
+            Err(error) => return reject(format!("is no manifest of posicast ({error})")),
+        };
+        // Paths in it are removed and compared: one that leads out of the folder must not be followed.
+        let outside = manifest.paths().find_map(|p| names::check(p).err());
+        outside.map_or(Ok(Some(manifest)), |error| reject(error.to_string()))
+    }
+
+    /// The text of the file: the same for the same files.
+    pub(super) fn to_json(&self) -> Result<String, PackageError> {
+        let text = serde_json::to_string_pretty(self).map_err(|e| at("write", Path::new(MANIFEST))(e.into()))?;
+        Ok(text + "\n")
+    }
+}
+
+/// Hash of a file of the folder, `sha256:` and 64 hexadecimal digits; `None` if it does not exist.
+///
+/// # Errors
+/// Anything but folders on the way and a plain file at the end: a link could lead out of the folder.
+pub(super) fn hash_in(root: &Path, relative: &str) -> Result<Option<String>, PackageError> {
+    let mut path = root.to_owned();
+    let mut parts = relative.split('/').peekable();
+    while let Some(part) = parts.next() {
+        path.push(part);
+        let is_last = parts.peek().is_none();
+        let kind = match fs::symlink_metadata(&path) {
+            Ok(metadata) => metadata.file_type(),
+            Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
+            Err(error) => return Err(at("read", &path)(error)),
+        };
+        let expected = if is_last { kind.is_file() } else { kind.is_dir() };
+        if !expected {
+            let found = match (kind.is_symlink(), kind.is_dir(), kind.is_file()) {
+                (true, ..) => "a link",
+                (_, true, _) => "a folder",
+                (.., true) => "a file",
+                _ => "a device",
+            };
+            let wanted = if is_last { "a file" } else { "a folder" };
+            return Err(PackageError::WrongType { path, found, wanted });
+        }
+    }
+    hash(&path).map(Some)
+}
+
+fn hash(path: &Path) -> Result<String, PackageError> {
+    let mut file = File::open(path).map_err(at("read", path))?;
+    let mut sha = Sha256::new();
+    let mut buffer = vec![0; 1 << 16];
+    loop {
+        match file.read(&mut buffer).map_err(at("read", path))? {
+            0 => break,
+            count => sha.update(&buffer[..count]),
+        }
+    }
+    let digits: String = sha.finalize().iter().map(|byte| format!("{byte:02x}")).collect();
+    Ok(format!("sha256:{digits}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn unit_the_hash_is_sha256() {
+        let folder = tempfile::tempdir().unwrap();
+        fs::write(folder.path().join("a"), "abc").unwrap();
+        // FIPS 180-2, appendix B.1
+        let abc = "sha256:ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad";
+        assert_eq!(hash_in(folder.path(), "a").unwrap().unwrap(), abc);
+        assert_eq!(hash_in(folder.path(), "b").unwrap(), None);
+    }
+
+    #[test]
+    fn unit_an_unfinished_manifest_accepts_every_generation() {
+        let generation = |hash: &str| Manifest::new("m", BTreeMap::from([("a".to_owned(), hash.to_owned())]));
+        let twice = generation("3").replacing(&generation("2").replacing(&generation("1")));
+        assert!(twice.unfinished());
+        assert_eq!(twice.replaces["a"], BTreeSet::from(["1".to_owned(), "2".to_owned()]));
+    }
+}

@@ -1,0 +1,223 @@
+//! The output folder: what posicast writes there, and what of it is posicast's to replace.
+//!
+//! ```text
+//! DIR/machine.toml  rtl/*.v  wave/*.vcd  sopc/  report.json      what the caller adds
+//! DIR/posicast.json                                              version, machine, sha256 of every file written
+//! DIR/.posicast-staging/                                         while a run is at work
+//! ```
+//!
+//! - A folder is **ours** if it does not exist, is empty, or holds `posicast.json`. Any other is refused.
+//! - Files go to the staging folder first. [`Package::commit`] checks everything, then renames; `posicast.json` comes
+//!   last. A run that fails or is dropped before that leaves the folder as it was.
+//! - A file is replaced or removed only if it is what posicast wrote: its hash is in `posicast.json`. One that was edited
+//!   since is an error that names it, before anything is touched. Files that posicast never wrote stay where they are.
+//! - A run that is killed between two renames leaves a `posicast.json` that knows both generations, so that the next run
+//!   can finish the work; [`read()`] refuses the folder until then.
+//! - Two runs on one folder exclude each other by a lock on the folder.
+//!
+//! ```
+//! # let scratch = tempfile::tempdir()?;
+//! # let folder = scratch.path().join("xy_stage");
+//! use posicast_synth::package::{self, Package};
+//!
+//! let mut package = Package::open(&folder, "xy_stage")?;
+//! package.add("machine.toml", b"name = \"xy_stage\"\n")?;
+//! package.add("rtl/xy_stage.v", b"module xy_stage;\nendmodule\n")?;
+//! std::fs::write(package.stage("wave/rtl.vcd")?, "$enddefinitions $end\n")?; // large files: written in place
+//! package.commit()?;
+//!
+//! let contents = package::read(&folder)?;
+//! assert_eq!(contents.machine, "xy_stage");
+//! assert_eq!(contents.rtl, [folder.join("rtl/xy_stage.v")]);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod error;
+mod manifest;
+mod names;
+mod read;
+mod staging;
+
+pub use error::PackageError;
+pub use read::{Contents, read};
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use error::at;
+use manifest::Manifest;
+use staging::Staging;
+
+/// Name of the file that marks a folder as posicast's.
+pub const MANIFEST: &str = "posicast.json";
+
+/// An output folder that is being written. Nothing shows in it before [`commit`](Package::commit).
+#[derive(Debug)]
+pub struct Package {
+    root: PathBuf,
+    machine: String,
+    previous: Manifest,
+    staging: Staging,
+    files: BTreeSet<String>,
+}
+
+impl Package {
+    /// Claims `root` for a run, creating it where it is missing. `machine` is the machine's name.
+    ///
+    /// # Errors
+    /// The folder is not ours, holds files edited since posicast wrote them, is in use by another run, or cannot be
+    /// written. The folder is then as it was.
+    pub fn open(root: &Path, machine: &str) -> Result<Self, PackageError> {
+        let previous = inspect(root)?;
+        let edited = previous.edited(root)?;
+        if !edited.is_empty() {
+            return Err(PackageError::Edited {
+                folder: root.to_owned(),
+                files: edited,
+            });
+        }
+        Ok(Self {
+            root: root.to_owned(),
+            machine: machine.to_owned(),
+            previous,
+            staging: Staging::claim(root)?,
+            files: BTreeSet::new(),
+        })
+    }
+
+    /// The folder.
+    pub fn root(&self) -> &Path {
+        &self.root
+    }
+
+    /// Adds a file. `relative` is its path in the folder, with `/` between the parts.
+    ///
+    /// # Errors
+    /// A path that leaves the folder or was added before; a file that cannot be written.
+    pub fn add(&mut self, relative: &str, bytes: &[u8]) -> Result<(), PackageError> {
+        let path = self.stage(relative)?;
+        fs::write(&path, bytes).map_err(at("write", &path))
+    }
+
+    /// Announces a file that the caller writes itself, and returns where: for files too large to hold in memory. The
+    /// folders on the way exist.
+    ///
+    /// # Errors
+    /// As [`add`](Package::add).
+    pub fn stage(&mut self, relative: &str) -> Result<PathBuf, PackageError> {
+        names::check(relative)?;
+        let path = self.staging.path().join(relative);
+        if let Some(parent) = path.parent() {
+            fs::create_dir_all(parent).map_err(at("create", parent))?;
+        }
+        if !self.files.insert(relative.to_owned()) {
+            return Err(PackageError::Twice(relative.to_owned()));
+        }
+        Ok(path)
+    }
+
+    /// Puts the files in place, removes those of the earlier run that are no longer produced, and writes the manifest.
+    /// Returns the paths of all files of the package, sorted, the manifest last.
+    ///
+    /// # Errors
+    /// A staged file that was never written; a file in the way that posicast did not write or that was edited: the folder
+    /// is then as it was. A rename that fails midway leaves a folder that the next run completes.
+    pub fn commit(mut self) -> Result<Vec<PathBuf>, PackageError> {
+        let hashes = self.hash_staged()?;
+        let mut changed = Vec::new();
+        let mut edited = self.previous.edited(&self.root)?;
+        let mut foreign = Vec::new();
+        for (relative, hash) in &hashes {
+            match manifest::hash_in(&self.root, relative)? {
+                Some(found) if found == *hash => edited.retain(|e| e != relative),
+                Some(_) if !self.previous.names(relative) => foreign.push(relative.clone()),
+                _ => changed.push(relative.as_str()),
+            }
+        }
+        let folder = self.root.clone();
+        if !edited.is_empty() {
+            return Err(PackageError::Edited { folder, files: edited });
+        }
+        if !foreign.is_empty() {
+            return Err(PackageError::InTheWay { folder, files: foreign });
+        }
+        let obsolete: Vec<&str> = self.previous.paths().filter(|p| !hashes.contains_key(*p)).collect();
+
+        let last = Manifest::new(&self.machine, hashes.clone());
+        if !changed.is_empty() || !obsolete.is_empty() {
+            self.write_manifest(&last.replacing(&self.previous))?;
+        }
+        for relative in changed {
+            self.put(relative)?;
+        }
+        for relative in obsolete {
+            self.remove(relative)?;
+        }
+        self.write_manifest(&last)?;
+        self.staging.keep_folder();
+        let names = hashes.keys().map(String::as_str).chain([MANIFEST]);
+        Ok(names.map(|name| self.root.join(name)).collect())
+    }
+
+    fn hash_staged(&self) -> Result<BTreeMap<String, String>, PackageError> {
+        let hash = |relative: &String| match manifest::hash_in(self.staging.path(), relative)? {
+            Some(hash) => Ok((relative.clone(), hash)),
+            None => Err(PackageError::NotWritten(relative.clone())),
+        };
+        self.files.iter().map(hash).collect()
+    }
+
+    fn put(&self, relative: &str) -> Result<(), PackageError> {
+        let target = self.root.join(relative);
+        if let Some(parent) = target.parent() {
+            fs::create_dir_all(parent).map_err(at("create", parent))?;
+        }
+        fs::rename(self.staging.path().join(relative), &target).map_err(at("write", &target))
+    }
+
+    /// Removes a file of the earlier run, and the folders that it leaves empty.
+    fn remove(&self, relative: &str) -> Result<(), PackageError> {
+        let path = self.root.join(relative);
+        match fs::remove_file(&path) {
+            Err(error) if error.kind() != std::io::ErrorKind::NotFound => return Err(at("remove", &path)(error)),
+            _ => {}
+        }
+        let folders = path.ancestors().skip(1).take_while(|folder| *folder != self.root);
+        for folder in folders {
+            if fs::remove_dir(folder).is_err() {
+                break; // not empty: it is still in use
+            }
+        }
+        Ok(())
+    }
+
+    fn write_manifest(&self, manifest: &Manifest) -> Result<(), PackageError> {
+        let staged = self.staging.path().join(MANIFEST);
+        let target = self.root.join(MANIFEST);
+        fs::write(&staged, manifest.to_json()?).map_err(at("write", &staged))?;
+        fs::rename(&staged, &target).map_err(at("write", &target))
+    }
+}
+
+/// The manifest of the run before; an empty one for a folder that is missing or empty.
+fn inspect(root: &Path) -> Result<Manifest, PackageError> {
+    let entries = match fs::read_dir(root) {
+        Ok(entries) => entries,
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(Manifest::default()),
+        Err(error) if error.kind() == std::io::ErrorKind::NotADirectory => {
+            return Err(PackageError::NotAFolder(root.to_owned()));
+        }
+        Err(error) => return Err(at("read", root)(error)),
+    };
+    if let Some(manifest) = Manifest::of(root)? {
+        return Ok(manifest);
+    }
+    for entry in entries {
+        let entry = entry.map_err(at("read", root))?;
+        if entry.file_name() != staging::FOLDER {
+            return Err(PackageError::NotOurs(root.to_owned()));
+        }
+    }
+    Ok(Manifest::default())
+}

@@ -1,0 +1,102 @@
+//! Reading an output folder back: `verify DIR` and `synth DIR` work on the Verilog as it lies there.
+
+use std::fs::{self, File};
+use std::io::{ErrorKind, Read};
+use std::path::{Path, PathBuf};
+
+use super::error::at;
+use super::manifest::Manifest;
+use super::{PackageError, inspect};
+
+/// Largest text file that is read, in bytes: far above any machine file, far below what hurts.
+const TEXT_LIMIT_BYTES: u64 = 16 << 20;
+
+/// What lies in an output folder.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Contents {
+    /// Version of posicast that wrote it.
+    pub version: String,
+    /// Name of the machine; also of the top module.
+    pub machine: String,
+    /// Path of `machine.toml`.
+    pub machine_path: PathBuf,
+    /// Text of `machine.toml`.
+    pub machine_toml: String,
+    /// `rtl/*.v` as they are now, sorted: at least one.
+    pub rtl: Vec<PathBuf>,
+}
+
+/// Reads an output folder. Files may have been edited since posicast wrote them; that is what one verifies.
+///
+/// # Errors
+/// A path that is no folder, was not written by posicast or not completely, or lacks `machine.toml` or `rtl/*.v`.
+pub fn read(root: &Path) -> Result<Contents, PackageError> {
+    if !root.exists() {
+        return Err(PackageError::Missing(root.to_owned()));
+    }
+    let manifest = match inspect(root) {
+        Ok(manifest) if manifest != Manifest::default() => manifest,
+        Ok(_) | Err(PackageError::NotOurs(_)) => return Err(PackageError::NotAPackage(root.to_owned())),
+        Err(error) => return Err(error),
+    };
+    if manifest.unfinished() {
+        return Err(PackageError::Unfinished(root.to_owned()));
+    }
+    let machine_path = root.join("machine.toml");
+    Ok(Contents {
+        version: manifest.version,
+        machine: manifest.machine,
+        machine_toml: read_text(&machine_path)?,
+        machine_path,
+        rtl: verilog_in(&root.join("rtl"))?,
+    })
+}
+
+fn verilog_in(folder: &Path) -> Result<Vec<PathBuf>, PackageError> {
+    let entries = match fs::read_dir(folder) {
+        Ok(entries) => entries,
+        Err(error) if error.kind() == ErrorKind::NotFound => return Err(PackageError::Missing(folder.to_owned())),
+        Err(error) => return Err(at("read", folder)(error)),
+    };
+    let mut files = Vec::new();
+    for entry in entries {
+        let path = entry.map_err(at("read", folder))?.path();
+        if path.extension().is_some_and(|e| e == "v") && path.is_file() {
+            files.push(path);
+        }
+    }
+    if files.is_empty() {
+        return Err(PackageError::Missing(folder.join("*.v")));
+    }
+    files.sort();
+    Ok(files)
+}
+
+/// Text of a file of bounded size.
+pub(super) fn read_text(path: &Path) -> Result<String, PackageError> {
+    match fs::metadata(path) {
+        Ok(metadata) if metadata.is_file() => {}
+        Ok(metadata) => {
+            return Err(PackageError::WrongType {
+                path: path.to_owned(),
+                found: if metadata.is_dir() { "a folder" } else { "a device" },
+                wanted: "a file",
+            });
+        }
+        Err(error) if error.kind() == ErrorKind::NotFound => return Err(PackageError::Missing(path.to_owned())),
+        Err(error) => return Err(at("read", path)(error)),
+    }
+    let file = File::open(path).map_err(at("read", path))?;
+    let mut text = String::new();
+    let length = file
+        .take(TEXT_LIMIT_BYTES + 1)
+        .read_to_string(&mut text)
+        .map_err(at("read", path))?;
+    if length as u64 > TEXT_LIMIT_BYTES {
+        return Err(PackageError::TooLarge {
+            path: path.to_owned(),
+            limit_bytes: TEXT_LIMIT_BYTES,
+        });
+    }
+    Ok(text)
+}

@@ -1,0 +1,89 @@
+//! The staging folder of a run, inside the output folder: the same file system, so that a rename is all it takes to put
+//! a file in place.
+
+use std::fs::{self, File, TryLockError};
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+
+use super::PackageError;
+use super::error::at;
+
+/// Name of the staging folder.
+pub(super) const FOLDER: &str = ".posicast-staging";
+
+/// The claim on an output folder. Dropped, it removes the staging folder, and every folder that it had to create, unless
+/// [`keep_folder`](Staging::keep_folder) was called.
+#[derive(Debug)]
+pub(super) struct Staging {
+    path: PathBuf,
+    created: Vec<PathBuf>,
+    /// Open on the output folder and locked; the system unlocks it even if the process is killed.
+    _lock: File,
+}
+
+impl Staging {
+    /// Creates `root` if need be, locks it, and makes a fresh staging folder in it.
+    pub(super) fn claim(root: &Path) -> Result<Self, PackageError> {
+        let missing = root
+            .ancestors()
+            .take_while(|p| !p.as_os_str().is_empty() && !p.exists());
+        let created: Vec<PathBuf> = missing.map(Path::to_owned).collect();
+        let made = fs::create_dir_all(root)
+            .map_err(at("create", root))
+            .and_then(|()| lock(root));
+        let lock = match made {
+            Ok(lock) => lock,
+            Err(error) => {
+                remove_empty(&created);
+                return Err(error);
+            }
+        };
+        let staging = Self {
+            path: root.join(FOLDER),
+            created,
+            _lock: lock,
+        };
+        // The lock is ours, so a staging folder that exists was left behind by a run that was killed.
+        match fs::remove_dir_all(&staging.path) {
+            Err(error) if error.kind() != ErrorKind::NotFound => return Err(at("remove", &staging.path)(error)),
+            _ => fs::create_dir(&staging.path).map_err(at("create", &staging.path))?,
+        }
+        Ok(staging)
+    }
+
+    /// The staging folder.
+    pub(super) fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Keeps the output folder: it now holds a package.
+    pub(super) fn keep_folder(&mut self) {
+        self.created.clear();
+    }
+}
+
+impl Drop for Staging {
+    fn drop(&mut self) {
+        // A failure here cannot be reported; the next run removes what stays.
+        let _ = fs::remove_dir_all(&self.path);
+        remove_empty(&self.created);
+    }
+}
+
+fn lock(root: &Path) -> Result<File, PackageError> {
+    let folder = File::open(root).map_err(at("open", root))?;
+    match folder.try_lock() {
+        Ok(()) => Ok(folder),
+        Err(TryLockError::WouldBlock) => Err(PackageError::Busy(root.to_owned())),
+        // Some network file systems have no locks: then the user keeps two runs apart.
+        Err(TryLockError::Error(error)) if error.kind() == ErrorKind::Unsupported => Ok(folder),
+        Err(TryLockError::Error(error)) => Err(at("lock", root)(error)),
+    }
+}
+
+/// Removes folders that are empty, the innermost first.
+fn remove_empty(folders: &[PathBuf]) {
+    for folder in folders {
+        let _ = fs::remove_dir(folder);
+    }
+}

@@ -1,0 +1,167 @@
+//! The device families that an estimate knows, and one device of each to measure against.
+
+use std::fmt;
+use std::str::FromStr;
+
+use serde::{Serialize, Serializer};
+
+/// A device family, under its name in the machine file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Family {
+    /// Cyclone II. Yosys has no such target; Cyclone IV E has the same logic element, so it stands in.
+    Cyclone2,
+    /// Cyclone IV E.
+    Cyclone4e,
+    /// Cyclone 10 LP: the logic element of Cyclone IV E.
+    Cyclone10lp,
+    /// Cyclone V: the family that Yosys maps best, so the default where a machine file names none.
+    #[default]
+    Cyclone5,
+    /// MAX 10: the logic element of Cyclone IV E.
+    Max10,
+}
+
+/// The unit that a family's logic is counted in.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub enum Cell {
+    /// Logic element: a 4-input LUT and a flip-flop.
+    #[serde(rename = "LE")]
+    LogicElement,
+    /// Adaptive logic module: two LUTs of up to 5 inputs or one of 6, and four flip-flops.
+    #[serde(rename = "ALM")]
+    AdaptiveLogicModule,
+}
+
+/// What a device holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub struct Device {
+    /// Order code.
+    pub name: &'static str,
+    /// Unit of `cells`.
+    pub cell: Cell,
+    /// Logic cells.
+    pub cells: u64,
+    /// Flip-flops of those cells.
+    pub registers: u64,
+    /// Bits of block memory.
+    pub memory_bits: u64,
+    /// Multipliers of 18 × 18 bits.
+    pub multipliers: u64,
+}
+
+/// A family that nobody knows.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("unknown device family {0:?}: cyclone2, cyclone4e, cyclone10lp, cyclone5 or max10")]
+pub struct UnknownFamily(pub String);
+
+impl Family {
+    /// All families.
+    pub const ALL: [Self; 5] = [
+        Self::Cyclone2,
+        Self::Cyclone4e,
+        Self::Cyclone10lp,
+        Self::Cyclone5,
+        Self::Max10,
+    ];
+
+    /// The name in the machine file.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Cyclone2 => "cyclone2",
+            Self::Cyclone4e => "cyclone4e",
+            Self::Cyclone10lp => "cyclone10lp",
+            Self::Cyclone5 => "cyclone5",
+            Self::Max10 => "max10",
+        }
+    }
+
+    /// The device that an estimate is measured against: that of the family's most used board. Capacities as in the
+    /// device handbooks and in Quartus's fitter reports.
+    pub fn device(self) -> Device {
+        match self {
+            // DE1. 52 M4K blocks of 4,608 bits.
+            Self::Cyclone2 => logic_elements("EP2C20F484C7", 18_752, 239_616, 26),
+            // DE0-Nano. 66 M9K blocks of 9,216 bits.
+            Self::Cyclone4e => logic_elements("EP4CE22F17C6", 22_320, 608_256, 66),
+            // Cyclone 10 LP evaluation kit. 66 M9K blocks.
+            Self::Cyclone10lp => logic_elements("10CL025YU256I7G", 24_624, 608_256, 66),
+            // DE10-Lite. 182 M9K blocks.
+            Self::Max10 => logic_elements("10M50DAF484C7G", 49_760, 1_677_312, 144),
+            // DE1-SoC. 397 M10K blocks of 10,240 bits; 87 DSP blocks of two 18-bit multipliers each.
+            Self::Cyclone5 => Device {
+                name: "5CSEMA5F31C6",
+                cell: Cell::AdaptiveLogicModule,
+                cells: 32_070,
+                registers: 4 * 32_070,
+                memory_bits: 4_065_280,
+                multipliers: 174,
+            },
+        }
+    }
+
+    /// Yosys's name of the target that the family is mapped to.
+    pub fn mapped_as(self) -> &'static str {
+        match self.device().cell {
+            Cell::LogicElement => "cycloneive",
+            Cell::AdaptiveLogicModule => "cyclonev",
+        }
+    }
+}
+
+fn logic_elements(name: &'static str, cells: u64, memory_bits: u64, multipliers: u64) -> Device {
+    Device {
+        name,
+        cell: Cell::LogicElement,
+        cells,
+        registers: cells,
+        memory_bits,
+        multipliers,
+    }
+}
+
+impl FromStr for Family {
+    type Err = UnknownFamily;
+
+    fn from_str(name: &str) -> Result<Self, UnknownFamily> {
+        let found = Self::ALL.into_iter().find(|family| family.name() == name);
+        found.ok_or_else(|| UnknownFamily(name.to_owned()))
+    }
+}
+
+impl fmt::Display for Family {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+impl Serialize for Family {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(self.name())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn unit_names_are_read_back() {
+        for family in Family::ALL {
+            assert_eq!(family.name().parse(), Ok(family));
+        }
+        let error = "stratix".parse::<Family>().unwrap_err();
+        assert!(error.to_string().contains("cyclone10lp"), "{error}");
+    }
+
+    #[test]
+    fn unit_memory_is_whole_blocks() {
+        let block_bits = |family| match family {
+            Family::Cyclone2 => 4_608,
+            Family::Cyclone5 => 10_240,
+            _ => 9_216,
+        };
+        for family in Family::ALL {
+            assert_eq!(family.device().memory_bits % block_bits(family), 0, "{family}");
+        }
+    }
+}

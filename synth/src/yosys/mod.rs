@@ -1,0 +1,286 @@
+//! What Verilog costs in a device, and whether a synthesiser accepts it, through [Yosys](https://yosyshq.net/yosys).
+//!
+//! It is an **estimate**: Yosys is not the vendor's tool, and nothing is placed or routed, so no clock frequency comes out
+//! of it (`clock_mhz_estimate` is `None`). How the figures come about:
+//!
+//! - Logic and flip-flops: mapped by Yosys to Cyclone V for [`Family::Cyclone5`], and to Cyclone IV E for all others, whose
+//!   logic element it shares; then counted as [`netlist`] says. Quartus packs better or worse by some ten per cent.
+//! - Memory and multipliers: counted from their sizes and left out of the mapping, since Yosys 0.23 maps neither for all
+//!   families. The registers of a multiplier count as flip-flops although a device can absorb them.
+//!
+//! Blocks are the instances in the top module, each flattened; what lies between them is a row under the top's name.
+
+mod family;
+mod netlist;
+mod process;
+
+pub use family::{Cell, Device, Family, UnknownFamily};
+pub use netlist::{Block, Resources};
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use serde::Serialize;
+
+/// What a design costs.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Estimate {
+    /// The family that was asked for.
+    pub family: Family,
+    /// One row per block.
+    pub blocks: Vec<Block>,
+    /// Their sum.
+    pub total: Resources,
+    /// What a device of the family holds.
+    pub device: Device,
+    /// Highest clock in MHz, where a tool tells it.
+    pub clock_mhz_estimate: Option<f64>,
+    /// Where the figures come from.
+    pub method: Method,
+}
+
+/// Where an estimate's figures come from.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Method {
+    /// Name and version of the tool.
+    pub tool: String,
+    /// The tool's target: another family where it has none of its own.
+    pub mapped_as: &'static str,
+    /// In words.
+    pub note: String,
+}
+
+/// A resource of which a design needs more than the device has.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Excess<'a> {
+    /// `cells`, `registers`, `memory_bits` or `multipliers`.
+    pub resource: &'static str,
+    /// How much the design needs.
+    pub needed: u64,
+    /// How much the device has.
+    pub available: u64,
+    /// The block that needs most of it.
+    pub block: &'a str,
+}
+
+impl Estimate {
+    /// The resources that do not suffice; none if the design fits.
+    pub fn excesses(&self) -> Vec<Excess<'_>> {
+        type Amount = fn(&Resources) -> u64;
+        let device = self.device;
+        let rows: [(&'static str, u64, Amount); 4] = [
+            ("cells", device.cells, |r| r.cells),
+            ("registers", device.registers, |r| r.registers),
+            ("memory_bits", device.memory_bits, |r| r.memory_bits),
+            ("multipliers", device.multipliers, |r| r.multipliers),
+        ];
+        let exceeded = rows
+            .into_iter()
+            .filter(|(_, available, amount)| amount(&self.total) > *available);
+        let excess = |(resource, available, amount): (&'static str, u64, Amount)| Excess {
+            resource,
+            needed: amount(&self.total),
+            available,
+            block: self
+                .blocks
+                .iter()
+                .max_by_key(|b| amount(&b.resources))
+                .map_or("", |b| &b.name),
+        };
+        exceeded.map(excess).collect()
+    }
+}
+
+/// Why Yosys gave no answer.
+#[derive(Debug, thiserror::Error)]
+pub enum YosysError {
+    /// Not installed.
+    #[error(
+        "{}: not found; an estimate needs Yosys: `apt-get install --no-install-recommends yosys`, or scripts/install-tools",
+        .0.display()
+    )]
+    Missing(PathBuf),
+    /// A module name that is none.
+    #[error("{0:?} is no module name: letters, digits, `_`, not starting with a digit")]
+    Top(String),
+    /// It refused the design, or failed.
+    #[error("Yosys refused {top}:\n{last_lines}")]
+    Failed {
+        /// The top module.
+        top: String,
+        /// The end of what it printed.
+        last_lines: String,
+    },
+    /// It did not come to an end.
+    #[error("Yosys did not finish {top} within {} s: a large memory without clocked read is the usual reason", .limit.as_secs())]
+    TimeOut {
+        /// The top module.
+        top: String,
+        /// How long it was given.
+        limit: Duration,
+    },
+    /// A netlist that cannot be counted.
+    #[error("the netlist of {top} cannot be counted: {reason}")]
+    Netlist {
+        /// The top module.
+        top: String,
+        /// What stands in the way.
+        reason: String,
+    },
+    /// The operating system refused.
+    #[error("{}: {source}", .path.display())]
+    Io {
+        /// File or program.
+        path: PathBuf,
+        /// Its reason.
+        source: std::io::Error,
+    },
+}
+
+/// An installed Yosys, 0.23 (Debian 12) or newer.
+#[derive(Debug, Clone)]
+pub struct Yosys {
+    program: PathBuf,
+    version: String,
+    time_limit: Duration,
+}
+
+impl Yosys {
+    /// The `yosys` of the search path.
+    ///
+    /// # Errors
+    /// [`YosysError::Missing`], or what its start failed with.
+    pub fn installed() -> Result<Self, YosysError> {
+        Self::at(Path::new("yosys"))
+    }
+
+    /// The Yosys of this path.
+    ///
+    /// # Errors
+    /// As [`installed`](Yosys::installed).
+    pub fn at(program: &Path) -> Result<Self, YosysError> {
+        let mut yosys = Self {
+            program: program.to_owned(),
+            version: String::new(),
+            time_limit: Duration::from_secs(600),
+        };
+        let printed = yosys.run("yosys -V", &[], &["-V".as_ref()])?;
+        // "Yosys 0.23 (git sha1 …)"
+        let words: Vec<&str> = printed.split_whitespace().take(2).collect();
+        yosys.version = words.join(" ");
+        Ok(yosys)
+    }
+
+    /// Limits every later run, instead of ten minutes.
+    #[must_use]
+    pub fn with_time_limit(self, time_limit: Duration) -> Self {
+        Self { time_limit, ..self }
+    }
+
+    /// Name and version, such as `Yosys 0.23`.
+    pub fn version(&self) -> &str {
+        &self.version
+    }
+
+    /// Checks that the design is complete and sound for a synthesiser: every module present, no latch, no net with two
+    /// drivers or none, no loop.
+    ///
+    /// # Errors
+    /// [`YosysError::Failed`] with Yosys's reason, and whatever else kept it from answering.
+    pub fn check(&self, files: &[PathBuf], top: &str) -> Result<(), YosysError> {
+        let top = module_name(top)?;
+        let script = format!(
+            "hierarchy -check -top {top}; proc; check -assert; select -assert-none t:$dlatch t:$adlatch t:$dlatchsr"
+        );
+        self.run(top, files, &["-p".as_ref(), script.as_ref()]).map(drop)
+    }
+
+    /// Estimates what the design costs in a device of `family`.
+    ///
+    /// # Errors
+    /// As [`check`](Yosys::check); also a netlist with cells that cannot be counted.
+    pub fn estimate(&self, files: &[PathBuf], top: &str, family: Family) -> Result<Estimate, YosysError> {
+        let top = module_name(top)?;
+        let scratch = process::scratch()?;
+        for (name, text) in [("cells.v", include_str!("cells.v")), ("map.v", include_str!("map.v"))] {
+            let path = scratch.path().join(name);
+            fs::write(&path, text).map_err(process::at(&path))?;
+        }
+        let script = script(top, family);
+        self.run_in(scratch.path(), top, files, &["-p".as_ref(), script.as_ref()])?;
+
+        let path = scratch.path().join("netlist.json");
+        let text = fs::read(&path).map_err(process::at(&path))?;
+        let uncountable = |reason| YosysError::Netlist {
+            top: top.to_owned(),
+            reason,
+        };
+        let netlist = serde_json::from_slice(&text).map_err(|e| uncountable(e.to_string()))?;
+        let blocks = netlist::blocks(&netlist, top, family).map_err(uncountable)?;
+        let mut total = Resources::default();
+        for block in &blocks {
+            total += block.resources;
+        }
+        Ok(Estimate {
+            family,
+            blocks,
+            total,
+            device: family.device(),
+            clock_mhz_estimate: None,
+            method: self.method(family),
+        })
+    }
+
+    fn method(&self, family: Family) -> Method {
+        let mapped_as = family.mapped_as();
+        let stand_in = match family {
+            Family::Cyclone4e | Family::Cyclone5 => String::new(),
+            _ => format!(", {family} estimated as {mapped_as}"),
+        };
+        Method {
+            tool: self.version.clone(),
+            mapped_as,
+            note: format!("estimate before place and route{stand_in}; memory bits and multipliers counted from sizes"),
+        }
+    }
+}
+
+/// Yosys's commands for an estimate. Instances in the top stay apart, so that each can be counted; memories and
+/// multipliers become black boxes before the family's own mapping sees them.
+fn script(top: &str, family: Family) -> String {
+    let map = match family.device().cell {
+        // Its last optimisation before the LUTs can leave a multiplexer behind, which `techmap` takes care of.
+        Cell::LogicElement => {
+            let synth = format!("synth_intel -family cycloneive -noflatten -nobram -top {top}");
+            format!("{synth} -run begin:map_luts; techmap; {synth} -run map_luts:vqm")
+        }
+        Cell::AdaptiveLogicModule => {
+            let without = "-noflatten -nobram -nolutram -nodsp -noiopad -noclkbuf";
+            format!("synth_intel_alm -family cyclonev {without} -top {top}")
+        }
+    };
+    [
+        "read_verilog -lib cells.v",
+        &format!("hierarchy -check -top {top}"),
+        "proc",
+        &format!("setattr -set keep_hierarchy 1 {top}/c:*"),
+        "flatten",
+        &format!("setattr -unset keep_hierarchy {top}/c:*"), // on a gate it would keep the mapping away
+        "opt; wreduce; peepopt; opt_clean",                  // a product's operands shrink to what they carry
+        "memory -nomap; opt_clean",
+        "techmap -map map.v",
+        &map,
+        "write_json netlist.json",
+    ]
+    .join("; ")
+}
+
+fn module_name(top: &str) -> Result<&str, YosysError> {
+    let legal = |c: char| c.is_ascii_alphanumeric() || c == '_';
+    let starts_well = top.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_');
+    match starts_well && top.chars().all(legal) {
+        true => Ok(top),
+        false => Err(YosysError::Top(top.to_owned())),
+    }
+}

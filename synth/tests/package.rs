@@ -1,0 +1,318 @@
+//! Who owns what in an output folder, and that nothing is half written.
+
+#![allow(clippy::unwrap_used, reason = "a helper that fails is a failed test")]
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use posicast_synth::package::{self, Package, PackageError};
+use tempfile::TempDir;
+
+/// Every file under a folder, path to contents.
+fn snapshot(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
+    let mut files = BTreeMap::new();
+    let mut folders = vec![folder.to_owned()];
+    while let Some(next) = folders.pop() {
+        for entry in fs::read_dir(next).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                folders.push(path);
+            } else {
+                files.insert(path.strip_prefix(folder).unwrap().to_owned(), fs::read(&path).unwrap());
+            }
+        }
+    }
+    files
+}
+
+/// Writes a package of these files.
+fn write(folder: &Path, files: &[(&str, &str)]) -> Result<Vec<PathBuf>, PackageError> {
+    let mut package = Package::open(folder, "xy_stage")?;
+    for (path, text) in files {
+        package.add(path, text.as_bytes())?;
+    }
+    package.commit()
+}
+
+const FILES: [(&str, &str); 3] = [
+    ("machine.toml", "name = \"xy_stage\"\n"),
+    ("rtl/xy_stage.v", "module xy_stage; endmodule\n"),
+    ("rtl/shaper_x.v", "module shaper_x; endmodule\n"),
+];
+
+/// A folder that holds a package of [`FILES`].
+fn written() -> (TempDir, PathBuf) {
+    let scratch = tempfile::tempdir().unwrap();
+    let folder = scratch.path().join("out");
+    write(&folder, &FILES).unwrap();
+    (scratch, folder)
+}
+
+#[test]
+fn unit_a_new_folder_is_made_and_read_back() {
+    let scratch = tempfile::tempdir().unwrap();
+    let folder = scratch.path().join("a/b/out");
+    let paths = write(&folder, &FILES).unwrap();
+    let names = ["machine.toml", "rtl/shaper_x.v", "rtl/xy_stage.v", "posicast.json"];
+    assert_eq!(paths, names.map(|name| folder.join(name)));
+    assert_eq!(snapshot(&folder).len(), 4, "nothing else, no staging folder");
+
+    let contents = package::read(&folder).unwrap();
+    assert_eq!(
+        (contents.machine.as_str(), contents.machine_toml.as_str()),
+        ("xy_stage", FILES[0].1)
+    );
+    assert_eq!(contents.version, env!("CARGO_PKG_VERSION"));
+    assert_eq!(
+        contents.rtl,
+        [folder.join("rtl/shaper_x.v"), folder.join("rtl/xy_stage.v")]
+    );
+}
+
+#[test]
+fn unit_an_empty_folder_is_ours() {
+    let folder = tempfile::tempdir().unwrap();
+    write(folder.path(), &FILES).unwrap();
+    assert!(package::read(folder.path()).is_ok());
+}
+
+#[test]
+fn unit_the_same_files_give_the_same_bytes() {
+    let (_a, first) = written();
+    let scratch = tempfile::tempdir().unwrap();
+    let mut reversed = FILES;
+    reversed.reverse();
+    write(scratch.path(), &reversed).unwrap();
+    assert_eq!(snapshot(&first), snapshot(scratch.path()));
+    write(&first, &FILES).unwrap();
+    assert_eq!(snapshot(&first), snapshot(scratch.path()), "written twice");
+}
+
+#[test]
+fn unit_a_folder_of_somebody_else_is_refused_untouched() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("thesis.tex"), "years of work").unwrap();
+    let before = snapshot(folder.path());
+    let error = write(folder.path(), &FILES).unwrap_err();
+    assert!(matches!(error, PackageError::NotOurs(_)), "{error}");
+    assert!(matches!(
+        package::read(folder.path()),
+        Err(PackageError::NotAPackage(_))
+    ));
+    assert_eq!(snapshot(folder.path()), before);
+}
+
+#[test]
+fn unit_a_file_is_no_folder() {
+    let scratch = tempfile::tempdir().unwrap();
+    let file = scratch.path().join("out");
+    fs::write(&file, "text").unwrap();
+    assert!(matches!(Package::open(&file, "m"), Err(PackageError::NotAFolder(_))));
+    assert!(matches!(package::read(&file), Err(PackageError::NotAFolder(_))));
+}
+
+#[test]
+fn unit_somebody_elses_manifest_is_refused() {
+    for text in [
+        "",
+        "{}",
+        "[1, 2]",
+        "{\"files\": {}}",
+        "\u{0}",
+        "{\"version\":\"1\",\"machine\":\"m\",\"files\":[]}",
+    ] {
+        let folder = tempfile::tempdir().unwrap();
+        fs::write(folder.path().join("posicast.json"), text).unwrap();
+        let error = write(folder.path(), &FILES).unwrap_err();
+        assert!(matches!(error, PackageError::Manifest { .. }), "{text:?}: {error}");
+    }
+}
+
+#[test]
+fn unit_a_manifest_cannot_point_outside() {
+    let scratch = tempfile::tempdir().unwrap();
+    fs::write(scratch.path().join("victim"), "").unwrap();
+    let folder = scratch.path().join("out");
+    fs::create_dir(&folder).unwrap();
+    let empty = "sha256:e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855";
+    let text = format!("{{\"version\":\"0\",\"machine\":\"m\",\"files\":{{\"../victim\":\"{empty}\"}}}}");
+    fs::write(folder.join("posicast.json"), text).unwrap();
+    assert!(matches!(write(&folder, &FILES), Err(PackageError::Manifest { .. })));
+    assert!(scratch.path().join("victim").exists());
+}
+
+#[test]
+fn unit_an_edited_file_stops_the_next_run_before_anything_is_written() {
+    let (_scratch, folder) = written();
+    fs::write(
+        folder.join("rtl/shaper_x.v"),
+        "module shaper_x; /* my fix */ endmodule\n",
+    )
+    .unwrap();
+    let before = snapshot(&folder);
+    for files in [&FILES[..], &FILES[..2]] {
+        let error = write(&folder, files).unwrap_err();
+        assert!(
+            matches!(&error, PackageError::Edited { files, .. } if files == &["rtl/shaper_x.v"]),
+            "{error}"
+        );
+        assert!(error.to_string().contains("move it away or delete it"), "{error}");
+        assert_eq!(snapshot(&folder), before);
+    }
+    assert!(package::read(&folder).is_ok(), "what was edited can still be verified");
+    fs::remove_file(folder.join("rtl/shaper_x.v")).unwrap();
+    write(&folder, &FILES).unwrap();
+}
+
+#[test]
+fn unit_an_edit_during_the_run_is_seen_at_the_end() {
+    let (_scratch, folder) = written();
+    let mut package = Package::open(&folder, "xy_stage").unwrap();
+    package.add("machine.toml", b"new").unwrap();
+    fs::write(folder.join("machine.toml"), "edited").unwrap();
+    assert!(matches!(package.commit(), Err(PackageError::Edited { .. })));
+    assert_eq!(fs::read_to_string(folder.join("machine.toml")).unwrap(), "edited");
+}
+
+#[test]
+fn unit_an_edit_that_equals_the_new_file_is_no_conflict() {
+    let (_scratch, folder) = written();
+    let mut package = Package::open(&folder, "xy_stage").unwrap();
+    package.add("machine.toml", b"new").unwrap();
+    fs::write(folder.join("machine.toml"), "new").unwrap();
+    package.commit().unwrap();
+}
+
+#[test]
+fn unit_files_no_longer_produced_go_and_extra_files_stay() {
+    let (_scratch, folder) = written();
+    fs::write(folder.join("notes.txt"), "mine").unwrap();
+    write(&folder, &[("machine.toml", "x"), ("sopc/driver.h", "y")]).unwrap();
+    let left: Vec<_> = snapshot(&folder).into_keys().collect();
+    assert_eq!(
+        left,
+        ["machine.toml", "notes.txt", "posicast.json", "sopc/driver.h"].map(PathBuf::from)
+    );
+    assert!(!folder.join("rtl").exists(), "folders that became empty go too");
+}
+
+#[test]
+fn unit_a_file_in_the_way_is_never_overwritten() {
+    let (_scratch, folder) = written();
+    fs::write(folder.join("report.json"), "mine").unwrap();
+    let before = snapshot(&folder);
+    let error = write(&folder, &[("report.json", "{}")]).unwrap_err();
+    assert!(
+        matches!(&error, PackageError::InTheWay { files, .. } if files == &["report.json"]),
+        "{error}"
+    );
+    assert_eq!(snapshot(&folder), before);
+}
+
+#[cfg(unix)]
+#[test]
+fn unit_links_are_not_followed_out_of_the_folder() {
+    let (scratch, folder) = written();
+    let outside = scratch.path().join("outside");
+    fs::rename(folder.join("rtl"), &outside).unwrap();
+    std::os::unix::fs::symlink(&outside, folder.join("rtl")).unwrap();
+    let before = snapshot(&outside);
+    let error = write(&folder, &FILES[..1]).unwrap_err();
+    assert!(
+        matches!(error, PackageError::WrongType { found: "a link", .. }),
+        "{error}"
+    );
+    assert_eq!(snapshot(&outside), before);
+}
+
+#[test]
+fn unit_a_dropped_package_leaves_nothing() {
+    let scratch = tempfile::tempdir().unwrap();
+    let folder = scratch.path().join("a/out");
+    let mut package = Package::open(&folder, "xy_stage").unwrap();
+    package.add("rtl/a.v", b"module a; endmodule").unwrap();
+    assert!(!folder.join("rtl").exists(), "nothing shows before commit");
+    drop(package);
+    assert!(!scratch.path().join("a").exists());
+}
+
+#[test]
+fn unit_an_announced_file_that_nobody_wrote_is_an_error() {
+    let (_scratch, folder) = written();
+    let before = snapshot(&folder);
+    let mut package = Package::open(&folder, "xy_stage").unwrap();
+    package.add("machine.toml", b"new").unwrap();
+    package.stage("wave/rtl.vcd").unwrap();
+    assert!(matches!(package.commit(), Err(PackageError::NotWritten(path)) if path == "wave/rtl.vcd"));
+    assert_eq!(snapshot(&folder), before);
+}
+
+#[test]
+fn unit_paths_are_checked_and_taken_once() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut package = Package::open(folder.path(), "m").unwrap();
+    assert!(matches!(package.add("../evil", b""), Err(PackageError::Path { .. })));
+    package.add("a", b"1").unwrap();
+    assert!(matches!(package.add("a", b"2"), Err(PackageError::Twice(_))));
+}
+
+#[test]
+fn unit_two_runs_on_one_folder_exclude_each_other() {
+    let scratch = tempfile::tempdir().unwrap();
+    let first = Package::open(scratch.path(), "m").unwrap();
+    assert!(matches!(Package::open(scratch.path(), "m"), Err(PackageError::Busy(_))));
+    drop(first);
+    assert!(Package::open(scratch.path(), "m").is_ok());
+}
+
+#[test]
+fn unit_a_killed_run_is_repaired_by_the_next() {
+    // The state between two renames: the manifest knows both generations, one file is new, one still old.
+    let (_scratch, folder) = written();
+    let old: serde_json::Value =
+        serde_json::from_str(&fs::read_to_string(folder.join("posicast.json")).unwrap()).unwrap();
+    let newer = [("machine.toml", "new"), ("rtl/xy_stage.v", "new")];
+    write(&folder, &newer).unwrap();
+    let mut state: serde_json::Value =
+        serde_json::from_str(&fs::read_to_string(folder.join("posicast.json")).unwrap()).unwrap();
+    let replaced = old["files"].as_object().unwrap();
+    state["replaces"] = replaced
+        .iter()
+        .map(|(path, hash)| (path.clone(), serde_json::json!([hash])))
+        .collect();
+    fs::write(folder.join("posicast.json"), state.to_string()).unwrap();
+    fs::write(folder.join("rtl/xy_stage.v"), FILES[1].1).unwrap();
+    fs::create_dir_all(folder.join(".posicast-staging/rtl")).unwrap();
+
+    assert!(matches!(package::read(&folder), Err(PackageError::Unfinished(_))));
+    write(&folder, &FILES).unwrap();
+    let (_other, fresh) = written();
+    assert_eq!(snapshot(&folder), snapshot(&fresh));
+}
+
+#[test]
+fn unit_a_file_where_a_folder_belongs_is_refused_untouched() {
+    let (_scratch, folder) = written();
+    fs::write(folder.join("wave"), "mine").unwrap();
+    let before = snapshot(&folder);
+    let error = write(&folder, &[("machine.toml", "new"), ("wave/rtl.vcd", "new")]).unwrap_err();
+    assert!(
+        matches!(error, PackageError::WrongType { found: "a file", .. }),
+        "{error}"
+    );
+    assert_eq!(snapshot(&folder), before);
+}
+
+#[test]
+fn unit_what_is_missing_is_named() {
+    let (_scratch, folder) = written();
+    fs::remove_file(folder.join("machine.toml")).unwrap();
+    assert!(matches!(package::read(&folder), Err(PackageError::Missing(path)) if path.ends_with("machine.toml")));
+    write(&folder, &FILES[..1]).unwrap();
+    assert!(matches!(package::read(&folder), Err(PackageError::Missing(path)) if path.ends_with("rtl")));
+    assert!(matches!(
+        package::read(&folder.join("nowhere")),
+        Err(PackageError::Missing(_))
+    ));
+}
