@@ -1,9 +1,81 @@
 //! The machine file: what an engineer knows of a machine, parsed and validated.
 //!
-//! The types here hold only values that passed validation; [`parse`] is the one way to make them from text.
+//! The types here hold only values that passed validation; [`parse`] is the one way to make them from text. It reads the
+//! whole schema of `docs/machine-file.md`, checks every value, and shows all problems of a file at once. A block or a
+//! kind of shaper that is known and that no part of this version builds is checked as the others are, and then refused
+//! with `not built in this version: NAME`: a machine never lacks silently what its file asks for.
+//!
+//! ```
+//! let text = r#"
+//! name = "slide"
+//! [clock]
+//! frequency_hz = 50_000_000
+//! sample_hz = 10_000
+//! [[axis]]
+//! name = "x"
+//! counts_per_unit = 1_000_000
+//! [axis.shaper]
+//! kind = "zvd"
+//! [[axis.mode]]
+//! frequency_hz = 40.0
+//! damping = 1.3
+//! "#;
+//! let error = posicast_model::spec::parse("slide.toml", text).unwrap_err();
+//! assert_eq!(
+//!     error.to_string(),
+//!     "slide.toml:13: axis.mode.damping of axis x, mode 1: found 1.3; allowed: at least 0, below 1"
+//! );
+//! ```
+//!
+//! Whether tables and delays fit the hardware's sizes is checked where they are made, by [`crate::digitise`] and
+//! [`crate::rtl::shaper`].
+
+mod axis;
+mod error;
+mod machine;
+mod names;
+mod not_built;
+mod range;
+mod reader;
+mod shaper;
+mod table;
+
+pub use error::{Cause, MAX_PROBLEMS, Problem, SpecError};
+
+use toml::de::DeTable;
 
 use crate::design::kind::Kind;
 use crate::mode::Mode;
+use reader::Reader;
+use table::Table;
+
+/// Parses and validates a machine file. `file_name` is for messages only: nothing is read from disk.
+///
+/// # Errors
+/// [`SpecError`] lists every problem, up to [`MAX_PROBLEMS`], with file, line, key, what was found, what is allowed and
+/// what to do. What is not built in this version is an error only in a file that has no other.
+pub fn parse(file_name: &str, text: &str) -> Result<Machine, SpecError> {
+    let reader = Reader::new(file_name, text);
+    let whole_file = |span: std::ops::Range<usize>, cause, remedy: &str| {
+        let span = span.start.min(text.len())..span.end.min(text.len());
+        reader.report(reader.problem(span, String::new(), "", cause, remedy.to_owned()));
+        None
+    };
+    let machine = match DeTable::parse(text) {
+        Err(error) => {
+            let span = error.span().unwrap_or(text.len()..text.len());
+            let cause = Cause::Syntax(error.message().to_owned());
+            whole_file(span, cause, "correct the syntax at the mark")
+        }
+        Ok(document) if document.get_ref().is_empty() => {
+            let allowed = "the keys name, [clock] and [[axis]]".to_owned();
+            let cause = Cause::Empty { allowed };
+            whole_file(0..0, cause, "start from one of the files in examples/")
+        }
+        Ok(document) => machine::read(&Table::root(&reader, document.get_ref())),
+    };
+    reader.finish(machine)
+}
 
 /// A whole machine file.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,0 +1,222 @@
+//! `[[axis]]`, `[[axis.mode]]` and `[axis.limits]`.
+
+use super::range::NumberRange;
+use super::table::Table;
+use super::{Axis, AxisMode, Clock, FixedPoint, Limits, not_built, shaper};
+use crate::mode::Mode;
+use crate::rtl::shaper::WORD_BITS;
+
+/// Modes of an axis: with four impulses each their convolution has 65536 impulses, far more than any table holds.
+const MAX_MODES: usize = 8;
+/// Encoder counts per metre or radian: up to a picometre per count.
+const COUNTS_PER_UNIT: NumberRange = NumberRange::positive(1e12);
+/// A frequency before it is compared with the sample rate; below this a shaper would last for hours.
+const FREQUENCY_HZ: NumberRange = NumberRange::closed(1e-3, 1e9).unit("Hz");
+/// Damping ratio of a mode that rings.
+const DAMPING: NumberRange = NumberRange::closed(0.0, 1.0).open_above();
+/// Weights of the modes.
+const PARTICIPATION: NumberRange = NumberRange::closed(0.0, 1e9);
+/// Positions.
+const POSITION: NumberRange = NumberRange::closed(-1e9, 1e9).unit("m or rad");
+/// Velocity, acceleration and jerk: far above any machine, finite when multiplied with each other.
+const MOTION: NumberRange = NumberRange::positive(1e9);
+
+/// Reads one axis. Without a valid clock or number format the checks that need them are left out.
+pub(super) fn read(table: &Table<'_, '_>, clock: Option<Clock>, fixed_point: Option<FixedPoint>) -> Option<Axis> {
+    table.allow(&[
+        "name",
+        "counts_per_unit",
+        "modulo",
+        "shaper",
+        "mode",
+        "encoder",
+        "scale",
+        "pwm",
+        "drive",
+        "controller",
+        "limits",
+        "trace",
+    ]);
+    let counts_per_unit = table.required_number("counts_per_unit", COUNTS_PER_UNIT);
+    let choice = table
+        .table("shaper")
+        .map(|t| shaper::read(&t, clock).map(|choice| (t, choice)));
+    let modes = read_modes(table, clock);
+    // A shaper that was refused is not compared with the modes: what it lacks would be reported twice.
+    if let Some(modes) = modes.as_ref().filter(|_| !matches!(choice, Some(None))) {
+        shaper::check(table, choice.as_ref().and_then(Option::as_ref), modes);
+    }
+    let limits = table
+        .table("limits")
+        .map(|t| read_limits(&t, counts_per_unit.zip(fixed_point)));
+    not_built::read_axis_blocks(table, clock);
+    let shaper = match choice {
+        Some(choice) => Some(choice?.1),
+        None => None,
+    };
+    Some(Axis {
+        name: table.text("name", "")?.to_owned(),
+        counts_per_unit: counts_per_unit?,
+        shaper,
+        modes: modes?.into_iter().map(|(_, mode)| mode).collect(),
+        limits,
+    })
+}
+
+/// Reads the modes, each with its table; `None` where one of them is refused.
+fn read_modes<'r, 't>(axis: &Table<'r, 't>, clock: Option<Clock>) -> Option<Vec<(Table<'r, 't>, AxisMode)>> {
+    let tables = axis.tables("mode", MAX_MODES);
+    // All are read before the first refusal ends it: every mode's problems are to be shown.
+    let modes: Vec<Option<(Table, AxisMode)>> = tables
+        .into_iter()
+        .enumerate()
+        .map(|(index, table)| {
+            let table = table.at(format!("{}, mode {}", axis.place(), index + 1));
+            read_mode(&table, clock).map(|mode| (table, mode))
+        })
+        .collect();
+    let modes: Vec<(Table, AxisMode)> = modes.into_iter().collect::<Option<_>>()?;
+    if !modes.is_empty() && modes.iter().all(|(_, mode)| mode.participation == 0.0) {
+        let found = "participation 0 in every mode";
+        let remedy = "give the mode that is seen most a participation of 1";
+        axis.contradiction("mode", found, "at least one mode with a participation above 0", remedy);
+    }
+    Some(modes)
+}
+
+fn read_mode(table: &Table<'_, '_>, clock: Option<Clock>) -> Option<AxisMode> {
+    let keys = [
+        "frequency_hz",
+        "damped_frequency_hz",
+        "damping",
+        "shaper",
+        "tolerance",
+        "order",
+        "participation",
+    ];
+    table.allow(&keys);
+    let damping = table.required_number("damping", DAMPING);
+    let frequency = read_frequency(table, damping, clock);
+    let kind = shaper::kind(table, "shaper");
+    let tolerance = table.number("tolerance", shaper::TOLERANCE);
+    let order = shaper::order(table);
+    let participation = table.number("participation", PARTICIPATION).unwrap_or(1.0);
+    Some(AxisMode {
+        mode: Mode {
+            frequency_hz: frequency?,
+            damping: damping?,
+        },
+        shaper: kind,
+        tolerance,
+        order,
+        participation,
+    })
+}
+
+/// The undamped natural frequency in Hz, from the one of the two keys that the file gives.
+///
+/// It must lie below half the sample rate: then so does the damped frequency, where the ringing and the pole are, and
+/// `ω_d·T_s < π`, without which two taps cannot place an impulse between two samples.
+fn read_frequency(table: &Table<'_, '_>, damping: Option<f64>, clock: Option<Clock>) -> Option<f64> {
+    let (undamped, damped) = ("frequency_hz", "damped_frequency_hz");
+    let key = match (table.has(undamped), table.has(damped)) {
+        (true, true) => {
+            let found = "both frequency_hz and damped_frequency_hz";
+            table.contradiction(damped, found, "one of the two", "remove one of them");
+            return None;
+        }
+        (false, false) => {
+            table.require(
+                undamped,
+                format_args!("{FREQUENCY_HZ}, or damped_frequency_hz in its place"),
+            );
+            return None;
+        }
+        (true, false) => undamped,
+        (false, true) => damped,
+    };
+    let given = table.number(key, FREQUENCY_HZ)?;
+    let frequency_hz = if key == damped {
+        given / (1.0 - damping? * damping?).sqrt()
+    } else {
+        given
+    };
+    let half = clock?.sample_hz / 2.0;
+    if frequency_hz >= half {
+        let converted = if key == damped {
+            format!(", an undamped frequency of {frequency_hz} Hz")
+        } else {
+            String::new()
+        };
+        let found = format!("{}{converted}", table.quote(key));
+        let allowed = format!("below {half} Hz, half of clock.sample_hz");
+        table.contradiction(
+            key,
+            found,
+            allowed,
+            "raise clock.sample_hz above twice the mode's frequency, or leave the mode out",
+        );
+        return None;
+    }
+    Some(frequency_hz)
+}
+
+/// Reads the limits; `scale` is counts per unit and the format that the travel must fit, where both are valid.
+fn read_limits(table: &Table<'_, '_>, scale: Option<(f64, FixedPoint)>) -> Limits {
+    const SECONDS: NumberRange = NumberRange::closed(0.0, 60.0).unit("s");
+    let watched = ["following_error", "brake_release_s", "brake_apply_s"];
+    let [following_error, release, apply] = watched;
+    table.allow(&[
+        "velocity",
+        "acceleration",
+        "jerk",
+        "travel",
+        following_error,
+        release,
+        apply,
+    ]);
+    table.number(following_error, MOTION);
+    table.number(release, SECONDS);
+    table.number(apply, SECONDS);
+    for key in watched.into_iter().filter(|key| table.has(key)) {
+        table.not_built(key, key, None, "leave the key out: nothing would act on it");
+    }
+    let travel = table.numbers::<2>("travel", POSITION);
+    if travel.is_some_and(|[low, high]| low >= high) {
+        table.refuse("travel", "[low, high] with low below high", "exchange the two limits");
+    } else if let Some((travel, (counts_per_unit, format))) = travel.zip(scale) {
+        check_travel(table, travel, counts_per_unit, format);
+    }
+    Limits {
+        velocity: table.number("velocity", MOTION),
+        acceleration: table.number("acceleration", MOTION),
+        jerk: table.number("jerk", MOTION),
+        travel,
+    }
+}
+
+/// Checks that the whole travel fits the position word, and names the next size that holds it.
+fn check_travel(limits: &Table<'_, '_>, travel: [f64; 2], counts_per_unit: f64, format: FixedPoint) {
+    let counts = travel.iter().fold(0.0, |most: f64, position| most.max(position.abs())) * counts_per_unit;
+    let fits = |bits: u32, fraction: u32| counts <= largest_position(bits, fraction);
+    let (bits, fraction) = (format.command_bits, format.command_fraction);
+    if fits(bits, fraction) {
+        return;
+    }
+    let next_bits = WORD_BITS.into_iter().find(|b| *b > bits && fits(*b, fraction));
+    let next_fraction = (0..fraction).rev().find(|f| fits(bits, *f));
+    let remedy = match (next_bits, next_fraction) {
+        (Some(bits), _) => format!("set fixed_point.command_bits = {bits}"),
+        (None, Some(fraction)) => format!("set fixed_point.command_fraction = {fraction}"),
+        (None, None) => "lower counts_per_unit, or shorten the travel".to_owned(),
+    };
+    let found = format!("a travel of up to {counts} counts");
+    let most = largest_position(bits, fraction);
+    let allowed = format!("at most {most} counts in {bits} bits with {fraction} fraction bits; {remedy}");
+    limits.contradiction("travel", found, allowed, remedy);
+}
+
+/// Largest position in counts that a word holds.
+fn largest_position(command_bits: u32, command_fraction: u32) -> f64 {
+    (f64::from(command_bits - 1).exp2() - 1.0) / f64::from(command_fraction).exp2()
+}

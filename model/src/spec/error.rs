@@ -1,0 +1,193 @@
+//! What is wrong with a machine file: every problem with its place, what was found, what is allowed and the remedy.
+//!
+//! The plain text of a [`SpecError`] is complete without colours or graphics, one line per problem:
+//!
+//! ```text
+//! stage.toml:23: axis.mode.damping of axis x, mode 1: found 1.2; allowed: at least 0, below 1
+//! ```
+//!
+//! As a [`miette::Diagnostic`] it adds the source with a label at each place, and the remedies as help.
+
+use std::fmt;
+use std::ops::Range;
+
+use miette::{Diagnostic, LabeledSpan, NamedSource, SourceCode};
+
+/// Problems that one error keeps; a file that is wrong in more places is not better understood by a longer list.
+pub const MAX_PROBLEMS: usize = 20;
+
+/// Why a machine file was refused: at least one [`Problem`], in the order of the file.
+#[derive(Debug, thiserror::Error)]
+#[error("{}", Listing(self))]
+pub struct SpecError {
+    source_code: NamedSource<String>,
+    problems: Vec<Problem>,
+    unlisted: usize,
+}
+
+/// One thing that is wrong.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Problem {
+    /// Line in the file, from 1. Of a missing key: the line of its table's header.
+    pub line: usize,
+    /// Bytes of the file that the problem is about.
+    pub span: Range<usize>,
+    /// Dotted key, such as `axis.mode.damping`; empty where the file as a whole is meant.
+    pub key: String,
+    /// Which of several tables, such as `axis x, mode 2`; empty where there is only one.
+    pub place: String,
+    /// What was found and what is allowed.
+    pub cause: Cause,
+    /// What to do.
+    pub remedy: String,
+}
+
+/// What is wrong, with what was found and what is allowed instead.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum Cause {
+    /// The text is no TOML.
+    #[error("found a TOML syntax error: {0}; allowed: TOML as of https://toml.io")]
+    Syntax(String),
+    /// The file holds no key at all.
+    #[error("found an empty file; allowed: a machine with {allowed}")]
+    Empty {
+        /// The keys that every machine file has.
+        allowed: String,
+    },
+    /// A key that no table of this kind has.
+    #[error("found the unknown key {found}; allowed: {allowed}")]
+    UnknownKey {
+        /// The key as it stands in the file.
+        found: String,
+        /// The keys of this table.
+        allowed: String,
+    },
+    /// A key that must be there.
+    #[error("found no such key; allowed: {allowed}")]
+    MissingKey {
+        /// The values it may take.
+        allowed: String,
+    },
+    /// A value of another type.
+    #[error("found the {found_type} {found}; allowed: {allowed}")]
+    WrongType {
+        /// Type of the value in the file.
+        found_type: &'static str,
+        /// The value as it stands in the file.
+        found: String,
+        /// The type or range expected.
+        allowed: String,
+    },
+    /// A number outside its range.
+    #[error("found {found}; allowed: {allowed}")]
+    OutOfRange {
+        /// The value as it stands in the file.
+        found: String,
+        /// The range.
+        allowed: String,
+    },
+    /// A word that is not in the list.
+    #[error("found {found}; allowed: {allowed}")]
+    NotAChoice {
+        /// The value as it stands in the file.
+        found: String,
+        /// The list.
+        allowed: String,
+    },
+    /// A name that must be unique and is not.
+    #[error("found {found}, which line {first_line} already has; allowed: {allowed}")]
+    Duplicate {
+        /// The value as it stands in the file.
+        found: String,
+        /// Line of the first use.
+        first_line: usize,
+        /// The rule.
+        allowed: String,
+    },
+    /// Keys that are right alone and wrong together.
+    #[error("found {found}; allowed: {allowed}")]
+    Inconsistent {
+        /// The combination.
+        found: String,
+        /// The combinations that are right.
+        allowed: String,
+    },
+    /// Right, and known, but no part of this version builds it.
+    #[error("not built in this version: {name}{}", allowed.as_ref().map(|a| format!("; allowed: {a}")).unwrap_or_default())]
+    NotBuilt {
+        /// The block, key or kind.
+        name: String,
+        /// What is built instead, where there is a choice.
+        allowed: Option<String>,
+    },
+}
+
+impl SpecError {
+    /// Takes problems in any order. `unlisted` further ones were found and not kept.
+    pub(super) fn new(file_name: &str, text: &str, mut problems: Vec<Problem>, unlisted: usize) -> Self {
+        problems.sort_by_key(|p| p.span.start);
+        Self {
+            source_code: NamedSource::new(file_name, text.to_owned()).with_language("TOML"),
+            problems,
+            unlisted,
+        }
+    }
+
+    /// The problems, in the order of the file.
+    pub fn problems(&self) -> &[Problem] {
+        &self.problems
+    }
+}
+
+/// The lines of an error's plain text.
+struct Listing<'e>(&'e SpecError);
+
+impl fmt::Display for Listing<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let file = self.0.source_code.name();
+        for (index, problem) in self.0.problems.iter().enumerate() {
+            if index > 0 {
+                writeln!(f)?;
+            }
+            write!(f, "{file}:{}: {problem}", problem.line)?;
+        }
+        match self.0.unlisted {
+            0 => Ok(()),
+            n => write!(f, "\n{file}: and {n} more"),
+        }
+    }
+}
+
+impl fmt::Display for Problem {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.key)?;
+        if !self.place.is_empty() {
+            write!(f, " of {}", self.place)?;
+        }
+        if !self.key.is_empty() {
+            f.write_str(": ")?;
+        }
+        write!(f, "{}", self.cause)
+    }
+}
+
+impl Diagnostic for SpecError {
+    fn source_code(&self) -> Option<&dyn SourceCode> {
+        Some(&self.source_code)
+    }
+
+    fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
+        let label = |p: &Problem| LabeledSpan::new_with_span(Some(p.cause.to_string()), p.span.clone());
+        Some(Box::new(self.problems.iter().map(label)))
+    }
+
+    fn help<'e>(&'e self) -> Option<Box<dyn fmt::Display + 'e>> {
+        let mut remedies: Vec<&str> = Vec::new();
+        for problem in &self.problems {
+            if !remedies.contains(&problem.remedy.as_str()) {
+                remedies.push(&problem.remedy);
+            }
+        }
+        Some(Box::new(remedies.join("\n")))
+    }
+}

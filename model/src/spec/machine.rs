@@ -1,0 +1,197 @@
+//! The tables that a machine has once: its name, `[clock]`, `[fixed_point]`, `[target]`, and the list of its axes.
+
+use super::range::NumberRange;
+use super::table::Table;
+use super::{Clock, Digitise, FixedPoint, Machine, Target, axis, not_built};
+use crate::rtl::shaper::WORD_BITS;
+use crate::taps::COEFFICIENT_FRACTION_MAX;
+
+/// Axes that one stage drives.
+const MAX_AXES: usize = 4;
+/// Fabric clock and sample tick: up to what any device of the families reaches.
+const CLOCK_HZ: NumberRange = NumberRange::positive(1e9).unit("Hz");
+/// Longest sample period in clocks: 100 Hz from 100 MHz. Simulators step through every one of them.
+const MAX_CLOCKS_PER_SAMPLE: f64 = 1e6;
+/// Relative difference from a whole number that the decimals of a frequency may leave.
+pub(super) const RATIO_ROUNDING: f64 = 1e-9;
+
+/// Reads the whole file.
+pub(super) fn read(root: &Table<'_, '_>) -> Option<Machine> {
+    root.allow(&["name", "clock", "fixed_point", "target", "axis", "stage"]);
+    let name = root.required_name("name");
+    root.require("clock", "a table [clock] with frequency_hz and sample_hz");
+    let clock = root.table("clock").and_then(|table| read_clock(&table));
+    let fixed_point = match root.table("fixed_point") {
+        Some(table) => read_fixed_point(&table),
+        None => Some(default_fixed_point(DEFAULT_COMMAND_BITS)),
+    };
+    let target = root.table("target").and_then(|table| read_target(&table));
+    root.require("axis", format_args!("1 to {MAX_AXES} tables [[axis]]"));
+    let axes = read_axes(root, clock, fixed_point);
+    let stage = root
+        .table("stage")
+        .and_then(|table| not_built::read_stage(root, &table));
+    Some(Machine {
+        name: name?,
+        clock: clock?,
+        fixed_point: fixed_point?,
+        target,
+        axes: axes?,
+        stage,
+    })
+}
+
+fn read_axes(root: &Table<'_, '_>, clock: Option<Clock>, fixed_point: Option<FixedPoint>) -> Option<Vec<super::Axis>> {
+    let mut lines: Vec<(String, usize)> = Vec::new();
+    let mut axes = Some(Vec::new());
+    for (index, table) in root.tables("axis", MAX_AXES).into_iter().enumerate() {
+        let name = table.required_name("name");
+        let place = name.clone().unwrap_or((index + 1).to_string());
+        let table = table.at(format!("axis {place}"));
+        if let Some(name) = name {
+            match lines.iter().find(|(other, _)| *other == name) {
+                Some((_, line)) => table.duplicate("name", *line, "every axis has a name of its own"),
+                None => lines.push((name, table.line_of("name"))),
+            }
+        }
+        axes = axes
+            .zip(axis::read(&table, clock, fixed_point))
+            .map(|(mut axes, axis)| {
+                axes.push(axis);
+                axes
+            });
+    }
+    axes
+}
+
+fn read_clock(table: &Table<'_, '_>) -> Option<Clock> {
+    table.allow(&["frequency_hz", "sample_hz"]);
+    let frequency_hz = table.required_number("frequency_hz", CLOCK_HZ);
+    let sample_hz = table.required_number("sample_hz", CLOCK_HZ);
+    let (frequency_hz, sample_hz) = (frequency_hz?, sample_hz?);
+    let ratio = frequency_hz / sample_hz;
+    if ratio > MAX_CLOCKS_PER_SAMPLE * (1.0 + RATIO_ROUNDING) {
+        let least = frequency_hz / MAX_CLOCKS_PER_SAMPLE;
+        let allowed = format!("at least {least} Hz, a sample of at most {MAX_CLOCKS_PER_SAMPLE} clocks");
+        table.refuse("sample_hz", allowed, "raise sample_hz, or lower the clock");
+        return None;
+    }
+    let whole = ratio.round();
+    if whole < 1.0 || (ratio - whole).abs() > RATIO_ROUNDING * ratio {
+        let nearest = nearest_divisor(frequency_hz, sample_hz);
+        let whole = nearest_whole_divisor(frequency_hz, sample_hz).filter(|hz| *hz != nearest);
+        let also = whole.map(|hz| format!(", in whole hertz {hz}")).unwrap_or_default();
+        let allowed = format!(
+            "what divides clock.frequency_hz = {frequency_hz} Hz a whole number of times; the nearest is {nearest}{also}"
+        );
+        let choice = whole.unwrap_or(nearest);
+        table.refuse(
+            "sample_hz",
+            allowed,
+            format!("write `sample_hz = {choice}`, or change clock.frequency_hz"),
+        );
+        return None;
+    }
+    Some(Clock {
+        frequency_hz,
+        sample_hz,
+    })
+}
+
+/// The frequency nearest to `wanted_hz` that goes into `frequency_hz` a whole number of times.
+fn nearest_divisor(frequency_hz: f64, wanted_hz: f64) -> f64 {
+    let ratio = frequency_hz / wanted_hz;
+    let faster_hz = frequency_hz / ratio.floor().max(1.0);
+    let slower_hz = frequency_hz / ratio.ceil().max(1.0);
+    if (faster_hz - wanted_hz).abs() <= (wanted_hz - slower_hz).abs() {
+        faster_hz
+    } else {
+        slower_hz
+    }
+}
+
+/// The same among the frequencies that are whole numbers of hertz; `None` where the fabric clock itself is none.
+fn nearest_whole_divisor(frequency_hz: f64, wanted_hz: f64) -> Option<f64> {
+    let clocks = (1..=MAX_CLOCKS_PER_SAMPLE as u32).map(f64::from);
+    let divisors = clocks
+        .filter(|clocks| frequency_hz % clocks == 0.0)
+        .map(|clocks| frequency_hz / clocks);
+    divisors.min_by(|a, b| (a - wanted_hz).abs().total_cmp(&(b - wanted_hz).abs()))
+}
+
+const DEFAULT_COMMAND_BITS: u32 = 32;
+const DEFAULT_POSITION_FRACTION: u32 = 8;
+const DEFAULT_VELOCITY_FRACTION: u32 = 16;
+const DEFAULT_ACCELERATION_FRACTION: u32 = 24;
+
+/// The number formats where the file gives none. A word too narrow for a default takes the most fraction bits it has.
+fn default_fixed_point(command_bits: u32) -> FixedPoint {
+    let most = command_bits - 1;
+    FixedPoint {
+        command_bits,
+        command_fraction: DEFAULT_POSITION_FRACTION.min(most),
+        velocity_fraction: DEFAULT_VELOCITY_FRACTION.min(most),
+        acceleration_fraction: DEFAULT_ACCELERATION_FRACTION.min(most),
+        coefficient_fraction: None,
+        digitise: Digitise::default(),
+    }
+}
+
+fn read_fixed_point(table: &Table<'_, '_>) -> Option<FixedPoint> {
+    table.allow(&[
+        "command_bits",
+        "command_fraction",
+        "velocity_fraction",
+        "acceleration_fraction",
+        "coefficient_fraction",
+        "digitise",
+    ]);
+    let command_bits = match table.integer("command_bits", 1, u32::MAX) {
+        Some(bits) if WORD_BITS.contains(&bits) => Some(bits),
+        Some(_) => {
+            let list: Vec<String> = WORD_BITS.iter().map(u32::to_string).collect();
+            table.refuse("command_bits", list.join(", "), "choose one of the list");
+            None
+        }
+        None => None,
+    };
+    let default = default_fixed_point(command_bits.unwrap_or(DEFAULT_COMMAND_BITS));
+    let fraction = |key, default| {
+        table
+            .integer(key, 0, command_bits.unwrap_or(DEFAULT_COMMAND_BITS) - 1)
+            .unwrap_or(default)
+    };
+    let digitise = match table.choice("digitise", &["modal", "linear", "nearest"]) {
+        Some("linear") => Digitise::Linear,
+        Some("nearest") => Digitise::Nearest,
+        _ => Digitise::Modal,
+    };
+    Some(FixedPoint {
+        command_fraction: fraction("command_fraction", default.command_fraction),
+        velocity_fraction: fraction("velocity_fraction", default.velocity_fraction),
+        acceleration_fraction: fraction("acceleration_fraction", default.acceleration_fraction),
+        coefficient_fraction: table.integer("coefficient_fraction", 1, COEFFICIENT_FRACTION_MAX),
+        digitise,
+        ..default
+    })
+}
+
+fn read_target(table: &Table<'_, '_>) -> Option<Target> {
+    const BOARD: &str = "1 to 32 of the characters a-z, 0-9, _ and -";
+    table.allow(&["family", "board"]);
+    let families = ["cyclone2", "cyclone4e", "cyclone10lp", "cyclone5", "max10"];
+    let family = table.required_choice("family", &families);
+    let board = table.text("board", BOARD);
+    let plain = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_' || c == '-';
+    if board.is_some_and(|b| b.is_empty() || b.len() > 32 || !b.chars().all(plain)) {
+        table.refuse(
+            "board",
+            BOARD,
+            "write the board's name in small letters, such as \"de1\"",
+        );
+    }
+    Some(Target {
+        family: family?.to_owned(),
+        board: board.map(str::to_owned),
+    })
+}

@@ -1,0 +1,90 @@
+//! Ranges of numbers, as data: one value serves the check, the message and the help.
+
+use std::fmt;
+
+/// An interval of finite numbers with its unit.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct NumberRange {
+    low: f64,
+    low_included: bool,
+    high: f64,
+    high_included: bool,
+    unit: &'static str,
+}
+
+impl NumberRange {
+    /// From `low` to `high`, both allowed.
+    pub(super) const fn closed(low: f64, high: f64) -> Self {
+        Self {
+            low,
+            low_included: true,
+            high,
+            high_included: true,
+            unit: "",
+        }
+    }
+
+    /// From 0 to `high`; `high` is allowed, 0 is not.
+    pub(super) const fn positive(high: f64) -> Self {
+        Self {
+            low_included: false,
+            ..Self::closed(0.0, high)
+        }
+    }
+
+    /// The same without its upper end.
+    pub(super) const fn open_above(self) -> Self {
+        Self {
+            high_included: false,
+            ..self
+        }
+    }
+
+    /// The same in a unit.
+    pub(super) const fn unit(self, unit: &'static str) -> Self {
+        Self { unit, ..self }
+    }
+
+    /// Whether the number lies inside; NaN and the infinities never do.
+    pub(super) fn contains(&self, value: f64) -> bool {
+        let above = if self.low_included {
+            value >= self.low
+        } else {
+            value > self.low
+        };
+        let below = if self.high_included {
+            value <= self.high
+        } else {
+            value < self.high
+        };
+        value.is_finite() && above && below
+    }
+}
+
+impl fmt::Display for NumberRange {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let low = if self.low_included { "at least" } else { "above" };
+        let high = if self.high_included { "at most" } else { "below" };
+        write!(f, "{low} {}, {high} {}", self.low, self.high)?;
+        match self.unit {
+            "" => Ok(()),
+            unit => write!(f, " {unit}"),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn unit_ends_belong_to_the_range_as_its_text_says() {
+        let damping = NumberRange::closed(0.0, 1.0).open_above();
+        assert_eq!(damping.to_string(), "at least 0, below 1");
+        assert!(damping.contains(0.0) && !damping.contains(1.0));
+        let frequency = NumberRange::positive(10.0).unit("Hz");
+        assert_eq!(frequency.to_string(), "above 0, at most 10 Hz");
+        assert!(!frequency.contains(0.0) && frequency.contains(10.0));
+        assert!(!frequency.contains(f64::NAN) && !frequency.contains(f64::INFINITY));
+    }
+}

@@ -1,0 +1,116 @@
+//! The text of a machine file and the problems found in it: places become lines, problems become the error.
+//!
+//! Reading never stops at a problem, so that one run shows all that is wrong.
+
+use std::cell::{Cell, RefCell};
+use std::ops::Range;
+
+use super::error::{Cause, MAX_PROBLEMS, Problem, SpecError};
+
+/// Longest piece of the file that a message repeats, in characters.
+const MAX_QUOTE: usize = 48;
+
+/// The problems of one file, as they are found.
+pub(super) struct Reader<'t> {
+    file_name: &'t str,
+    text: &'t str,
+    line_ends: Vec<usize>,
+    problems: Problems,
+    not_built: Problems,
+}
+
+/// A list that keeps its first [`MAX_PROBLEMS`] entries and counts the others.
+#[derive(Default)]
+struct Problems {
+    kept: RefCell<Vec<Problem>>,
+    unlisted: Cell<usize>,
+}
+
+impl Problems {
+    fn push(&self, problem: Problem) {
+        let mut kept = self.kept.borrow_mut();
+        if kept.len() < MAX_PROBLEMS {
+            kept.push(problem);
+        } else {
+            self.unlisted.set(self.unlisted.get() + 1);
+        }
+    }
+}
+
+impl<'t> Reader<'t> {
+    /// A reader that has found nothing wrong yet.
+    pub(super) fn new(file_name: &'t str, text: &'t str) -> Self {
+        Self {
+            file_name,
+            text,
+            line_ends: text.match_indices('\n').map(|(offset, _)| offset).collect(),
+            problems: Problems::default(),
+            not_built: Problems::default(),
+        }
+    }
+
+    /// Line of a byte of the file, from 1.
+    pub(super) fn line(&self, offset: usize) -> usize {
+        1 + self.line_ends.partition_point(|end| *end < offset)
+    }
+
+    /// A problem at a place of the file.
+    pub(super) fn problem(
+        &self,
+        span: Range<usize>,
+        key: String,
+        place: &str,
+        cause: Cause,
+        remedy: String,
+    ) -> Problem {
+        Problem {
+            line: self.line(span.start),
+            span,
+            key,
+            place: place.to_owned(),
+            cause,
+            remedy,
+        }
+    }
+
+    /// Records a problem.
+    pub(super) fn report(&self, problem: Problem) {
+        self.problems.push(problem);
+    }
+
+    /// Records what this version does not build: an error where [`Reader::report`] has none.
+    pub(super) fn report_not_built(&self, problem: Problem) {
+        self.not_built.push(problem);
+    }
+
+    /// The piece of the file at a place, on one line and without control characters.
+    pub(super) fn quote(&self, span: Range<usize>) -> String {
+        let text = self.text.get(span).unwrap_or_default();
+        let mut quote: String = text.chars().take(MAX_QUOTE).flat_map(printable).collect();
+        if text.chars().nth(MAX_QUOTE).is_some() {
+            quote.push('…');
+        }
+        quote
+    }
+
+    /// The value, if nothing was wrong and everything that the file asks for is built.
+    pub(super) fn finish<T>(self, value: Option<T>) -> Result<T, SpecError> {
+        let list = if self.problems.kept.borrow().is_empty() {
+            self.not_built
+        } else {
+            self.problems
+        };
+        let problems = list.kept.into_inner();
+        match value {
+            Some(value) if problems.is_empty() => Ok(value),
+            _ => Err(SpecError::new(self.file_name, self.text, problems, list.unlisted.get())),
+        }
+    }
+}
+
+/// A character as a message may show it: a machine file must not steer the terminal.
+fn printable(c: char) -> impl Iterator<Item = char> {
+    let escaped = if c.is_control() { Some(c.escape_debug()) } else { None };
+    let plain = if c.is_control() { None } else { Some(c) };
+    escaped.into_iter().flatten().chain(plain)
+}

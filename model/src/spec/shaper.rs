@@ -1,0 +1,235 @@
+//! `[axis.shaper]`, and what it and the modes' own `shaper` keys must agree on.
+
+use super::range::NumberRange;
+use super::table::Table;
+use super::{AxisMode, Clock, ShaperChoice};
+use crate::design::kind::Kind;
+
+/// Residual that a shaper tolerates.
+pub(super) const TOLERANCE: NumberRange = NumberRange::positive(1.0).open_above();
+/// Relative error of a ratio of frequencies.
+const RATIO_TOLERANCE: NumberRange = NumberRange::closed(0.0, 1.0).open_above();
+/// Times of the impulses of `custom` in seconds, and their amplitudes: what 18 bits hold.
+const IMPULSE: NumberRange = NumberRange::closed(-65_535.0, 65_535.0);
+/// Impulses of `custom`: each becomes a tap at least, and the largest table holds 256.
+const MAX_IMPULSES: usize = 256;
+/// Distance from 1 that the decimals of amplitudes may leave in their sum.
+const SUM_ROUNDING: f64 = 1e-9;
+/// Zero pairs, or frequencies per mode.
+const MAX_ORDER: u32 = 5;
+
+/// The kinds that have an order.
+const ORDER_KINDS: &[Kind] = &[Kind::ChebyshevEi, Kind::Vibrationless];
+/// The keys that serve some kinds only, with those kinds.
+const KEYS_OF_KINDS: [(&str, &[Kind]); 7] = [
+    ("order", ORDER_KINDS),
+    ("epsilon", &[Kind::Vibrationless]),
+    ("base", &[Kind::Periodic]),
+    ("lowest_frequency_hz", &[Kind::Periodic]),
+    ("amplitude", &[Kind::Simultaneous]),
+    ("method", &[Kind::Antisymmetric]),
+    ("ratio_tolerance", &[Kind::Antisymmetric]),
+];
+
+/// Reads a kind of shaper by name. A kind that is known and not built counts as read.
+pub(super) fn kind(table: &Table<'_, '_>, key: &str) -> Option<Kind> {
+    let built = names(Kind::is_built);
+    let name = table.text(key, built.join(", "))?;
+    let Some(kind) = Kind::from_name(name) else {
+        return table.choice(key, &built).and_then(Kind::from_name);
+    };
+    if !kind.is_built() {
+        table.not_built(key, kind.name(), Some(built.join(", ")), "choose a kind of the list");
+    }
+    Some(kind)
+}
+
+fn names(wanted: impl Fn(Kind) -> bool) -> Vec<&'static str> {
+    Kind::ALL
+        .iter()
+        .filter(|(kind, _)| wanted(*kind))
+        .map(|(_, name)| *name)
+        .collect()
+}
+
+/// Reads `order`.
+pub(super) fn order(table: &Table<'_, '_>) -> Option<u32> {
+    table.integer("order", 1, MAX_ORDER)
+}
+
+/// Reads `[axis.shaper]`.
+pub(super) fn read(table: &Table<'_, '_>, clock: Option<Clock>) -> Option<ShaperChoice> {
+    table.allow(&[
+        "kind",
+        "tolerance",
+        "order",
+        "epsilon",
+        "base",
+        "lowest_frequency_hz",
+        "amplitude",
+        "method",
+        "ratio_tolerance",
+        "impulses",
+    ]);
+    table.require("kind", names(Kind::is_built).join(", "));
+    let kind = kind(table, "kind");
+    let bases = [Kind::ZvEi, Kind::MultiEi, Kind::ChebyshevEi].map(Kind::name);
+    let half_sample_hz = clock.map_or(1e9, |c| c.sample_hz / 2.0);
+    let lowest = NumberRange::positive(half_sample_hz).open_above().unit("Hz");
+    let (tolerance, order) = (table.number("tolerance", TOLERANCE), order(table));
+    let epsilon = table.number("epsilon", TOLERANCE);
+    let base = table.choice("base", &bases).and_then(Kind::from_name);
+    let lowest_frequency_hz = table.number("lowest_frequency_hz", lowest);
+    let amplitude = table.choice("amplitude", &["ps", "um"]).map(str::to_owned);
+    let method = table
+        .choice("method", &["exact", "two-impulse", "three-impulse"])
+        .map(str::to_owned);
+    let ratio_tolerance = table.number("ratio_tolerance", RATIO_TOLERANCE);
+    let kind = kind?;
+    Some(ShaperChoice {
+        kind,
+        tolerance,
+        order,
+        epsilon,
+        base,
+        lowest_frequency_hz,
+        amplitude,
+        method,
+        ratio_tolerance,
+        impulses: read_impulses(table, kind).unwrap_or_default(),
+    })
+}
+
+fn read_impulses(table: &Table<'_, '_>, kind: Kind) -> Option<Vec<(f64, f64)>> {
+    let key = "impulses";
+    if kind != Kind::Custom {
+        if table.has(key) {
+            let found = format!("impulses with kind = \"{kind}\"");
+            table.contradiction(
+                key,
+                found,
+                "impulses with kind = \"custom\" only",
+                "remove impulses, or set kind = \"custom\"",
+            );
+        }
+        return None;
+    }
+    table.require(
+        key,
+        format_args!("a list of 1 to {MAX_IMPULSES} pairs [time_s, amplitude]"),
+    );
+    let rows = table.rows::<2>(key, IMPULSE, "time_s, amplitude", MAX_IMPULSES)?;
+    let impulses: Vec<(f64, f64)> = rows
+        .into_iter()
+        .map(|[time_s, amplitude]| (time_s, amplitude))
+        .collect();
+    let first_s = impulses.first()?.0;
+    if first_s != 0.0 {
+        let found = format!("a first impulse at {first_s} s");
+        table.contradiction(
+            key,
+            found,
+            "a first impulse at 0 s",
+            format!("subtract {first_s} from all times"),
+        );
+    }
+    if let Some(pair) = impulses.windows(2).find(|p| p[1].0 <= p[0].0) {
+        let found = format!("an impulse at {} s after one at {} s", pair[1].0, pair[0].0);
+        table.contradiction(
+            key,
+            found,
+            "times that increase from impulse to impulse",
+            "sort the impulses, add those at equal times",
+        );
+    }
+    let sum: f64 = impulses.iter().map(|i| i.1).sum();
+    if (sum - 1.0).abs() > SUM_ROUNDING {
+        let found = format!("amplitudes with the sum {sum}");
+        let allowed = format!("amplitudes with the sum 1, within {SUM_ROUNDING:e}");
+        table.contradiction(key, found, allowed, format!("divide all amplitudes by {sum}"));
+    }
+    Some(impulses)
+}
+
+/// Checks an axis's shaper against its modes. Both come with their tables, for the place of a problem.
+pub(super) fn check(
+    axis: &Table<'_, '_>,
+    shaper: Option<&(Table<'_, '_>, ShaperChoice)>,
+    modes: &[(Table<'_, '_>, AxisMode)],
+) {
+    let kind = shaper.map(|(_, choice)| choice.kind);
+    if !axis.has("mode") && !matches!(kind, Some(Kind::Custom | Kind::None)) {
+        let allowed = "at least one [[axis.mode]], except with kind custom or none";
+        let remedy = "add [[axis.mode]] with frequency_hz and damping, or choose kind \"custom\" or \"none\"";
+        axis.contradiction("mode", "an axis without modes", allowed, remedy);
+    } else if kind.is_none() && modes.iter().any(|(_, mode)| mode.shaper.is_none()) {
+        let found = "no [axis.shaper], and a mode without `shaper`";
+        let allowed = "[axis.shaper], or `shaper` in every [[axis.mode]]";
+        axis.contradiction(
+            "shaper",
+            found,
+            allowed,
+            "add [axis.shaper] with `kind`, or give every mode a `shaper`",
+        );
+    }
+    for (table, mode) in modes {
+        check_own_shaper(table, kind, mode);
+        let effective = mode.shaper.or(kind);
+        if mode.order.is_some() {
+            check_key(table, "order", ORDER_KINDS, effective.as_slice());
+        }
+    }
+    if let Some((table, choice)) = shaper {
+        let own_kinds = modes.iter().filter_map(|(_, mode)| mode.shaper);
+        let used: Vec<Kind> = own_kinds.chain([choice.kind]).collect();
+        for (key, kinds) in KEYS_OF_KINDS {
+            check_key(table, key, kinds, &used);
+        }
+    }
+}
+
+/// Checks a mode's own kind: it must serve one mode, and the axis's kind must leave room for it.
+fn check_own_shaper(table: &Table<'_, '_>, axis_kind: Option<Kind>, mode: &AxisMode) {
+    let Some(own) = mode.shaper else {
+        return;
+    };
+    if own.treats_modes_together() {
+        let found = format!("shaper = \"{own}\", which serves an axis and not one mode");
+        let allowed = names(|k| k.is_built() && !k.treats_modes_together()).join(", ");
+        table.contradiction(
+            "shaper",
+            found,
+            allowed,
+            "set it as `kind` in [axis.shaper], or choose one of the list",
+        );
+        return;
+    }
+    match axis_kind.filter(|kind| kind.treats_modes_together()) {
+        Some(Kind::Simultaneous) if !matches!(own, Kind::Zv | Kind::Zvd) => {
+            let found = format!("shaper = \"{own}\" under kind = \"simultaneous\"");
+            table.contradiction("shaper", found, "zv, zvd", "choose one of the list");
+        }
+        Some(Kind::Simultaneous) | None => {}
+        Some(joint) => {
+            let found = format!("shaper = \"{own}\" under kind = \"{joint}\", which would ignore it");
+            let allowed = format!("no `shaper` in a mode under kind = \"{joint}\"");
+            table.contradiction(
+                "shaper",
+                found,
+                allowed,
+                "remove `shaper` here, or remove [axis.shaper]",
+            );
+        }
+    }
+}
+
+/// Checks that one of the kinds in use takes a key, if the key is there.
+fn check_key(table: &Table<'_, '_>, key: &str, takers: &[Kind], used: &[Kind]) {
+    if table.has(key) && !used.iter().any(|kind| takers.contains(kind)) {
+        let used: Vec<&str> = used.iter().map(|kind| kind.name()).collect();
+        let takers: Vec<&str> = takers.iter().map(|kind| kind.name()).collect();
+        let found = format!("{key} with kind {}", used.join(", "));
+        let allowed = format!("{key} with kind {}", takers.join(", "));
+        table.contradiction(key, found, allowed, format!("remove `{key}`: nothing would use it"));
+    }
+}

@@ -1,0 +1,364 @@
+//! One TOML table with its place in the file: every value that is asked for is checked on the way.
+//!
+//! A getter returns `None` where the key is absent and where its value is refused; the refusal is recorded in the
+//! [`Reader`], which then ends in an error whatever became of the value.
+
+use std::fmt::Display;
+use std::ops::Range;
+
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+use super::error::Cause;
+use super::names::{NAME_RULE, is_name, nearest};
+use super::range::NumberRange;
+use super::reader::Reader;
+
+/// One table of the file.
+pub(super) struct Table<'r, 't> {
+    reader: &'r Reader<'t>,
+    entries: &'r DeTable<'t>,
+    header: Range<usize>,
+    path: String,
+    place: String,
+}
+
+impl<'r, 't> Table<'r, 't> {
+    /// The file's outermost table.
+    pub(super) fn root(reader: &'r Reader<'t>, entries: &'r DeTable<'t>) -> Self {
+        Self {
+            reader,
+            entries,
+            header: 0..0,
+            path: String::new(),
+            place: String::new(),
+        }
+    }
+
+    /// The same table, told apart from others of its kind in messages.
+    pub(super) fn at(self, place: String) -> Self {
+        Self { place, ..self }
+    }
+
+    /// How messages tell this table from others of its kind.
+    pub(super) fn place(&self) -> &str {
+        &self.place
+    }
+
+    fn dotted(&self, key: &str) -> String {
+        match self.path.as_str() {
+            "" => key.to_owned(),
+            path => format!("{path}.{key}"),
+        }
+    }
+
+    fn value(&self, key: &str) -> Option<&'r Spanned<DeValue<'t>>> {
+        self.entries.get(key)
+    }
+
+    /// Whether the key is there, right or wrong.
+    pub(super) fn has(&self, key: &str) -> bool {
+        self.value(key).is_some()
+    }
+
+    /// Line of a key's value, or of the header where the key is absent.
+    pub(super) fn line_of(&self, key: &str) -> usize {
+        self.reader.line(self.span_of(key).start)
+    }
+
+    fn span_of(&self, key: &str) -> Range<usize> {
+        self.value(key).map_or(self.header.clone(), Spanned::span)
+    }
+
+    /// The value as it stands in the file.
+    pub(super) fn quote(&self, key: &str) -> String {
+        self.reader.quote(self.span_of(key))
+    }
+
+    /// Records a problem at a key's value, or at the header where the key is absent.
+    pub(super) fn report(&self, key: &str, cause: Cause, remedy: impl Into<String>) {
+        let reader = self.reader;
+        let problem = reader.problem(self.span_of(key), self.dotted(key), &self.place, cause, remedy.into());
+        reader.report(problem);
+    }
+
+    /// Records a value that is of the right type and refused.
+    pub(super) fn refuse(&self, key: &str, allowed: impl Display, remedy: impl Into<String>) {
+        let found = self.quote(key);
+        let allowed = allowed.to_string();
+        self.report(key, Cause::OutOfRange { found, allowed }, remedy);
+    }
+
+    /// Records keys that contradict each other.
+    pub(super) fn contradiction(
+        &self,
+        key: &str,
+        found: impl Into<String>,
+        allowed: impl Into<String>,
+        remedy: impl Into<String>,
+    ) {
+        let (found, allowed) = (found.into(), allowed.into());
+        self.report(key, Cause::Inconsistent { found, allowed }, remedy);
+    }
+
+    /// Records a value that an earlier table already has.
+    pub(super) fn duplicate(&self, key: &str, first_line: usize, allowed: &str) {
+        let (found, allowed) = (self.quote(key), allowed.to_owned());
+        self.report(
+            key,
+            Cause::Duplicate {
+                found,
+                first_line,
+                allowed,
+            },
+            "choose another name",
+        );
+    }
+
+    /// Records something that the file asks for and that this version does not build: an error once all else is right.
+    pub(super) fn not_built(&self, key: &str, name: &str, allowed: Option<String>, remedy: &str) {
+        let name = name.to_owned();
+        let cause = Cause::NotBuilt { name, allowed };
+        let reader = self.reader;
+        let problem = reader.problem(
+            self.span_of(key),
+            self.dotted(key),
+            &self.place,
+            cause,
+            remedy.to_owned(),
+        );
+        reader.report_not_built(problem);
+    }
+
+    /// Refuses every key that is not in the list.
+    pub(super) fn allow(&self, keys: &[&str]) {
+        let unknown = self
+            .entries
+            .keys()
+            .filter(|key| !keys.contains(&key.get_ref().as_ref()));
+        for key in unknown {
+            let remedy = match nearest(key.get_ref(), keys) {
+                Some(near) => format!("did you mean `{near}`? Else remove the key"),
+                None => "remove the key, or move it to the table that it belongs to".to_owned(),
+            };
+            let found = self.reader.quote(key.span());
+            let allowed = keys.join(", ");
+            let cause = Cause::UnknownKey {
+                found: found.clone(),
+                allowed,
+            };
+            let dotted = self.dotted(&found);
+            let problem = self.reader.problem(key.span(), dotted, &self.place, cause, remedy);
+            self.reader.report(problem);
+        }
+    }
+
+    /// Records that a key is missing, if it is.
+    pub(super) fn require(&self, key: &str, allowed: impl Display) {
+        if !self.has(key) {
+            let allowed = allowed.to_string();
+            let remedy = format!("add `{key}`");
+            self.report(key, Cause::MissingKey { allowed }, remedy);
+        }
+    }
+
+    fn wrong_type(&self, key: &str, value: &Spanned<DeValue<'_>>, allowed: impl Display) {
+        let cause = Cause::WrongType {
+            found_type: value.get_ref().type_str(),
+            found: self.reader.quote(value.span()),
+            allowed: allowed.to_string(),
+        };
+        self.report(key, cause, format!("write `{key}` as the type that is allowed"));
+    }
+
+    /// A number in a range; integers count as numbers.
+    pub(super) fn number(&self, key: &str, range: NumberRange) -> Option<f64> {
+        let value = self.value(key)?;
+        let Some(number) = as_number(value.get_ref()) else {
+            self.wrong_type(key, value, format_args!("a number, {range}"));
+            return None;
+        };
+        if !range.contains(number) {
+            self.refuse(key, range, format!("give `{key}` a value in this range"));
+            return None;
+        }
+        Some(number)
+    }
+
+    /// A number that must be there.
+    pub(super) fn required_number(&self, key: &str, range: NumberRange) -> Option<f64> {
+        self.require(key, range);
+        self.number(key, range)
+    }
+
+    /// A whole number from `low` to `high`.
+    pub(super) fn integer(&self, key: &str, low: u32, high: u32) -> Option<u32> {
+        let value = self.value(key)?;
+        let allowed = format!("a whole number, {low} to {high}");
+        let DeValue::Integer(integer) = value.get_ref() else {
+            self.wrong_type(key, value, allowed);
+            return None;
+        };
+        let parsed = u32::from_str_radix(integer.as_str(), integer.radix()).ok();
+        let inside = parsed.filter(|n| (low..=high).contains(n));
+        if inside.is_none() {
+            self.refuse(key, allowed, format!("give `{key}` a value in this range"));
+        }
+        inside
+    }
+
+    /// True or false.
+    pub(super) fn boolean(&self, key: &str) -> Option<bool> {
+        let value = self.value(key)?;
+        let boolean = value.get_ref().as_bool();
+        if boolean.is_none() {
+            self.wrong_type(key, value, "true or false");
+        }
+        boolean
+    }
+
+    /// A text; `allowed` says which, for the message where it is none.
+    pub(super) fn text(&self, key: &str, allowed: impl Display) -> Option<&'r str> {
+        let value = self.value(key)?;
+        let text = value.get_ref().as_str();
+        if text.is_none() {
+            self.wrong_type(key, value, format_args!("a text: {allowed}"));
+        }
+        text
+    }
+
+    /// A name that can stand in Verilog and in C; it must be there.
+    pub(super) fn required_name(&self, key: &str) -> Option<String> {
+        self.require(key, NAME_RULE);
+        let name = self.text(key, NAME_RULE)?;
+        if !is_name(name) {
+            self.refuse(key, NAME_RULE, "choose another name");
+            return None;
+        }
+        Some(name.to_owned())
+    }
+
+    /// One of a list of words.
+    pub(super) fn choice<'w>(&self, key: &str, words: &[&'w str]) -> Option<&'w str> {
+        let list = words.join(", ");
+        let text = self.text(key, &list)?;
+        let word = words.iter().find(|word| **word == text).copied();
+        if word.is_none() {
+            let remedy = match nearest(text, words) {
+                Some(near) => format!("did you mean \"{near}\"?"),
+                None => "choose one of the list".to_owned(),
+            };
+            let found = self.quote(key);
+            self.report(key, Cause::NotAChoice { found, allowed: list }, remedy);
+        }
+        word
+    }
+
+    /// One of a list of words that must be there.
+    pub(super) fn required_choice<'w>(&self, key: &str, words: &[&'w str]) -> Option<&'w str> {
+        self.require(key, words.join(", "));
+        self.choice(key, words)
+    }
+
+    /// A list of `N` numbers in a range.
+    pub(super) fn numbers<const N: usize>(&self, key: &str, range: NumberRange) -> Option<[f64; N]> {
+        let value = self.value(key)?;
+        let numbers = numbers_of(value.get_ref(), range);
+        if numbers.is_none() {
+            self.wrong_type(key, value, format_args!("a list of {N} numbers, each {range}"));
+        }
+        numbers
+    }
+
+    /// A list of lists of `N` numbers in a range each; `names` names the numbers.
+    pub(super) fn rows<const N: usize>(
+        &self,
+        key: &str,
+        range: NumberRange,
+        names: &str,
+        most: usize,
+    ) -> Option<Vec<[f64; N]>> {
+        let value = self.value(key)?;
+        let allowed = format!("a list of 1 to {most} pairs [{names}], each number {range}");
+        let Some(array) = value
+            .get_ref()
+            .as_array()
+            .filter(|rows| (1..=most).contains(&rows.len()))
+        else {
+            self.wrong_type(key, value, allowed);
+            return None;
+        };
+        let mut rows = Vec::with_capacity(array.len());
+        for row in array {
+            let Some(numbers) = numbers_of(row.get_ref(), range) else {
+                self.wrong_type(key, row, allowed);
+                return None;
+            };
+            rows.push(numbers);
+        }
+        Some(rows)
+    }
+
+    /// A table inside this one.
+    pub(super) fn table(&self, key: &str) -> Option<Table<'r, 't>> {
+        let value = self.value(key)?;
+        let Some(entries) = value.get_ref().as_table() else {
+            self.wrong_type(key, value, format_args!("a table, [{}]", self.dotted(key)));
+            return None;
+        };
+        Some(self.inner(key, value.span(), entries))
+    }
+
+    /// The tables of an array of 1 to `most` tables; none where the key is absent.
+    pub(super) fn tables(&self, key: &str, most: usize) -> Vec<Table<'r, 't>> {
+        let Some(value) = self.value(key) else {
+            return Vec::new();
+        };
+        let header = self.dotted(key);
+        let allowed = format!("1 to {most} tables [[{header}]]");
+        let Some(array) = value.get_ref().as_array() else {
+            self.wrong_type(key, value, allowed);
+            return Vec::new();
+        };
+        if !(1..=most).contains(&array.len()) {
+            let found = format!("{} tables", array.len());
+            self.contradiction(key, found, allowed, format!("give 1 to {most} tables [[{header}]]"));
+            return Vec::new();
+        }
+        let mut tables = Vec::with_capacity(array.len());
+        for element in array {
+            match element.get_ref().as_table() {
+                Some(entries) => tables.push(self.inner(key, element.span(), entries)),
+                None => self.wrong_type(key, element, &allowed),
+            }
+        }
+        tables
+    }
+
+    fn inner(&self, key: &str, header: Range<usize>, entries: &'r DeTable<'t>) -> Table<'r, 't> {
+        Table {
+            reader: self.reader,
+            entries,
+            header,
+            path: self.dotted(key),
+            place: self.place.clone(),
+        }
+    }
+}
+
+/// The number that a value stands for; one beyond `f64` counts as infinite, which no range contains.
+fn as_number(value: &DeValue<'_>) -> Option<f64> {
+    match value {
+        DeValue::Integer(i) if i.radix() == 10 => i.as_str().parse().ok(),
+        DeValue::Integer(i) => Some(u64::from_str_radix(i.as_str(), i.radix()).map_or(f64::INFINITY, |n| n as f64)),
+        DeValue::Float(float) => float.as_str().parse().ok(),
+        _ => None,
+    }
+}
+
+fn numbers_of<const N: usize>(value: &DeValue<'_>, range: NumberRange) -> Option<[f64; N]> {
+    let array = value.as_array()?;
+    let numbers: Option<Vec<f64>> = array.iter().take(N + 1).map(|v| as_number(v.get_ref())).collect();
+    let numbers: [f64; N] = numbers?.try_into().ok()?;
+    numbers.iter().all(|n| range.contains(*n)).then_some(numbers)
+}
