@@ -125,7 +125,7 @@ mod tests {
 
     #[test]
     fn unit_modal_taps_have_the_pole_sum_of_the_impulse() {
-        for (time_s, sample_hz) in [(0.00386, 1e4), (0.0005, 1300.0), (0.01234, 50e3)] {
+        for (time_s, sample_hz) in [(0.00386, 1e4), (0.0005, 1300.0), (0.012_345, 50e3)] {
             let impulse = Impulse { time_s, amplitude: 0.7 };
             let placed: Vec<Impulse> = taps(modal(&impulse, &MODE, sample_hz))
                 .into_iter()

@@ -1,0 +1,13 @@
+//! Motion commands: a jerk-limited move, its samples, and the integer words that the hardware gets.
+//!
+//! - [`Profile`]: a point-to-point move in up to seven segments, as fast as the limits allow;
+//! - [`default_move`]: the 5 mm move that `run` and `simulate` use where no command file is given;
+//! - [`command_words`]: positions to Q`command_fraction` counts, half away from zero; what does not fit is an error.
+//!
+//! Positions are in the unit of the machine file (metres, or radians), times in seconds.
+
+mod profile;
+mod words;
+
+pub use profile::{Profile, ProfileError, SAMPLES_MAX, default_move};
+pub use words::{CommandError, command_words};

@@ -1,0 +1,261 @@
+//! The simulated machine: modes side by side, driven by a command that is constant between its steps.
+//!
+//! ```text
+//!            ┌─ share_1 · ω₁²/(s² + 2ζ₁ω₁s + ω₁²) ─┐
+//! command u ─┼─ …                                  ┼─► Σ ─► position y         Σ share_k = 1
+//!            └─ share_m · ω_m²/(…)                 ┘
+//! ```
+//!
+//! Command and position have one unit, whichever; times are in seconds. A mode's state is its distance `d` from the command
+//! and its velocity `v`. While the command is constant both follow the closed form of a free oscillation, so that every
+//! instant is exact, however far away ([`free_motion`]): the discretisation for a zero-order hold without approximation.
+//! Without modes the plant is rigid: the position is the command.
+//!
+//! The figures in [`response`] are measured on these states, by another way than the pole sums of [`crate::analysis`]: two
+//! witnesses for one shaper.
+
+pub mod response;
+
+use nalgebra::{Matrix2, Vector2};
+use thiserror::Error;
+
+use crate::mode::Mode;
+use crate::spec::Axis;
+
+/// A mode and its share in the position.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PlantMode {
+    /// Frequency and damping.
+    pub mode: Mode,
+    /// Share in the static response; those of a plant sum to one.
+    pub share: f64,
+}
+
+/// Modes side by side.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Plant {
+    modes: Vec<PlantMode>,
+}
+
+/// Why modes are no plant.
+#[derive(Debug, Clone, Copy, PartialEq, Error)]
+pub enum PlantError {
+    /// Shares that cannot be scaled to one.
+    #[error("the participations of the modes sum to {0}: they must be finite and sum to more than 0")]
+    Participation(f64),
+}
+
+impl Plant {
+    /// Modes with their participations, of which only the ratios count.
+    ///
+    /// # Errors
+    /// [`PlantError::Participation`] if the participations do not have a positive, finite sum.
+    pub fn new(modes: &[(Mode, f64)]) -> Result<Self, PlantError> {
+        let sum: f64 = modes.iter().map(|(_, participation)| participation).sum();
+        let scalable = sum > 0.0 && sum.is_finite();
+        if !(scalable || modes.is_empty()) {
+            return Err(PlantError::Participation(sum));
+        }
+        let modes = modes.iter().map(|&(mode, participation)| PlantMode {
+            mode,
+            share: participation / sum,
+        });
+        Ok(Self { modes: modes.collect() })
+    }
+
+    /// The plant that an axis of the machine file describes.
+    ///
+    /// # Errors
+    /// As [`Plant::new`].
+    pub fn of_axis(axis: &Axis) -> Result<Self, PlantError> {
+        let modes: Vec<_> = axis.modes.iter().map(|m| (m.mode, m.participation)).collect();
+        Self::new(&modes)
+    }
+
+    /// The modes, shares scaled to sum one.
+    pub fn modes(&self) -> &[PlantMode] {
+        &self.modes
+    }
+
+    /// The same machine with all frequencies multiplied by `ratio`: 0.9 is 10 % slower than the model.
+    pub fn scaled(&self, ratio: f64) -> Self {
+        let modes = self.modes.iter().map(|m| PlantMode {
+            mode: m.mode.scaled(ratio),
+            share: m.share,
+        });
+        Self { modes: modes.collect() }
+    }
+}
+
+/// How the state `(d, v)` of a mode moves in `time_s` seconds of constant command:
+///
+/// ```text
+///                  ⎡ cos ω_d t + (σ/ω_d) sin ω_d t     (1/ω_d) sin ω_d t             ⎤
+/// Φ(t) = e^{−σt} · ⎢                                                                 ⎥      σ = ζω
+///                  ⎣ −(ω²/ω_d) sin ω_d t               cos ω_d t − (σ/ω_d) sin ω_d t ⎦
+/// ```
+pub fn free_motion(mode: &Mode, time_s: f64) -> Matrix2<f64> {
+    let (omega, omega_damped, decay) = (mode.omega(), mode.omega_damped(), mode.decay());
+    let (sin, cos) = (omega_damped * time_s).sin_cos();
+    let slant = decay / omega_damped * sin;
+    let motion = Matrix2::new(
+        cos + slant,
+        sin / omega_damped,
+        -omega * omega / omega_damped * sin,
+        cos - slant,
+    );
+    motion * (-decay * time_s).exp()
+}
+
+/// Amplitude of the free oscillation that starts in the state `(d, v)`, as of that instant.
+fn free_amplitude(mode: &Mode, state: &Vector2<f64>) -> f64 {
+    let quadrature = (state.y + mode.decay() * state.x) / mode.omega_damped();
+    state.x.hypot(quadrature)
+}
+
+/// A plant in motion.
+#[derive(Debug, Clone, PartialEq)]
+struct Motion<'a> {
+    plant: &'a Plant,
+    command: f64,
+    states: Vec<Vector2<f64>>,
+}
+
+impl<'a> Motion<'a> {
+    /// At rest where the command is.
+    fn at_rest(plant: &'a Plant, command: f64) -> Self {
+        Self {
+            plant,
+            command,
+            states: vec![Vector2::zeros(); plant.modes.len()],
+        }
+    }
+
+    /// The command jumps; the machine stays where it is for the moment.
+    fn step_to(&mut self, command: f64) {
+        for state in &mut self.states {
+            state.x += self.command - command;
+        }
+        self.command = command;
+    }
+
+    /// Position and velocity `time_s` seconds from now.
+    fn ahead(&self, time_s: f64) -> (f64, f64) {
+        let modes = self.plant.modes.iter().zip(&self.states);
+        let moved = modes.map(|(m, state)| free_motion(&m.mode, time_s) * state * m.share);
+        let sum: Vector2<f64> = moved.sum();
+        (self.command + sum.x, sum.y)
+    }
+
+    /// Lets `time_s` seconds pass.
+    fn advance(&mut self, time_s: f64) {
+        for (m, state) in self.plant.modes.iter().zip(&mut self.states) {
+            *state = free_motion(&m.mode, time_s) * *state;
+        }
+    }
+}
+
+/// A plant at the pace of the samples: one matrix per mode, one multiplication per sample.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SampledPlant {
+    modes: Vec<PlantMode>,
+    per_sample: Vec<Matrix2<f64>>,
+    command: f64,
+    states: Vec<Vector2<f64>>,
+}
+
+impl SampledPlant {
+    /// A plant with `sample_period_s` seconds per sample, at rest at `position`.
+    pub fn new(plant: &Plant, sample_period_s: f64, position: f64) -> Self {
+        let per_sample = plant.modes.iter().map(|m| free_motion(&m.mode, sample_period_s));
+        Self {
+            modes: plant.modes.clone(),
+            per_sample: per_sample.collect(),
+            command: position,
+            states: vec![Vector2::zeros(); plant.modes.len()],
+        }
+    }
+
+    /// Holds `command` for one sample; returns the position at the end of it.
+    pub fn step(&mut self, command: f64) -> f64 {
+        let jump = self.command - command;
+        self.command = command;
+        let mut position = command;
+        for ((m, motion), state) in self.modes.iter().zip(&self.per_sample).zip(&mut self.states) {
+            state.x += jump;
+            *state = motion * *state;
+            position += m.share * state.x;
+        }
+        position
+    }
+
+    /// Sum of the amplitudes with which the modes ring now: no position from here on is farther from the command, in the
+    /// unit of the command.
+    pub fn vibration(&self) -> f64 {
+        let modes = self.modes.iter().zip(&self.states);
+        modes
+            .map(|(m, state)| m.share.abs() * free_amplitude(&m.mode, state))
+            .sum()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SLOW: Mode = Mode {
+        frequency_hz: 3.0,
+        damping: 0.1,
+    };
+    const FAST: Mode = Mode {
+        frequency_hz: 11.0,
+        damping: 0.0,
+    };
+
+    #[test]
+    fn unit_free_motion_solves_its_differential_equation() {
+        let (omega, decay) = (SLOW.omega(), SLOW.decay());
+        let generator = Matrix2::new(0.0, 1.0, -omega * omega, -2.0 * decay);
+        assert!((free_motion(&SLOW, 0.0) - Matrix2::identity()).amax() < 1e-15);
+        for time_s in [0.01, 0.1, 1.0] {
+            let step = 1e-6;
+            let slope = (free_motion(&SLOW, time_s + step) - free_motion(&SLOW, time_s - step)) / (2.0 * step);
+            let error = slope - generator * free_motion(&SLOW, time_s);
+            assert!(error.amax() < 1e-5 * slope.amax().max(1.0), "{error}");
+        }
+        let twice = free_motion(&FAST, 0.7) - free_motion(&FAST, 0.3) * free_motion(&FAST, 0.4);
+        assert!(twice.amax() < 1e-12);
+    }
+
+    #[test]
+    fn unit_sampled_plant_is_the_step_response_at_the_samples() {
+        let plant = Plant::new(&[(SLOW, 3.0), (FAST, 1.0)]).unwrap();
+        let mut sampled = SampledPlant::new(&plant, 1e-3, 0.0);
+        let (mut y, mut time_s) = (0.0, 0.0);
+        for _ in 0..777 {
+            y = sampled.step(2.0);
+            time_s += 1e-3;
+        }
+        let (sin, cos) = (SLOW.omega_damped() * time_s).sin_cos();
+        let slow = 1.0 - (-SLOW.decay() * time_s).exp() * (cos + SLOW.decay() / SLOW.omega_damped() * sin);
+        let fast = 1.0 - (FAST.omega() * time_s).cos();
+        assert!((y - 2.0 * (0.75 * slow + 0.25 * fast)).abs() < 1e-11);
+        let vibration = 0.75 * (-SLOW.decay() * time_s).exp() / (1.0 - 0.01f64).sqrt() + 0.25;
+        assert!((sampled.vibration() - 2.0 * vibration).abs() < 1e-11);
+    }
+
+    #[test]
+    fn unit_a_plant_without_modes_is_rigid() {
+        let plant = Plant::new(&[]).unwrap();
+        let mut sampled = SampledPlant::new(&plant, 1e-3, 0.0);
+        assert_eq!((sampled.step(1.5), sampled.vibration()), (1.5, 0.0));
+    }
+
+    #[test]
+    fn unit_participations_need_a_positive_sum() {
+        for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+            assert!(Plant::new(&[(SLOW, bad)]).is_err());
+        }
+        assert_eq!(Plant::new(&[(SLOW, 5.0)]).unwrap().modes()[0].share, 1.0);
+    }
+}
