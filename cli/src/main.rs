@@ -1,2 +1,78 @@
-//! The `posicast` command.
-fn main() {}
+//! The `posicast` command: from a machine's modes to verified input-shaper hardware.
+//!
+//! One file per subcommand. This crate reads arguments, calls the other crates in order and prints; it computes nothing
+//! itself. Exit status: 0 all checks hold, 1 a check failed, 2 bad usage or input, 3 a tool that was asked for is missing.
+
+mod design;
+mod diff;
+mod failure;
+mod generate;
+mod machine;
+mod output;
+mod plot;
+mod progress;
+mod run;
+mod simulate;
+mod synth;
+mod verify;
+
+use clap::{Parser, Subcommand};
+use failure::Failure;
+use std::process::ExitCode;
+
+const EXAMPLES: &str = "\
+Examples:
+  posicast run examples/xy-stage.toml -o xy_stage     the whole way, with a verdict
+  posicast design examples/xy-stage.toml --plot x.svg impulses, residuals and the tap table
+  posicast verify examples/xy-stage.toml --cycles 10000000
+  posicast diff xy_stage/wave/model.vcd xy_stage/wave/rtl.vcd
+
+Exit status: 0 all checks hold, 1 a check failed, 2 bad usage or input, 3 a needed tool is missing.";
+
+/// From a machine's modes to verified input-shaper hardware
+#[derive(Parser)]
+#[command(name = "posicast", version, after_help = EXAMPLES)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    Run(run::Args),
+    Design(design::Args),
+    Generate(generate::Args),
+    Simulate(simulate::Args),
+    Verify(verify::Args),
+    Diff(diff::Args),
+    Synth(synth::Args),
+    #[command(hide = true)]
+    Identify(NotBuilt),
+    #[command(hide = true)]
+    Reproduce(NotBuilt),
+}
+
+/// Arguments of a command that this version does not build: anything.
+#[derive(clap::Args)]
+struct NotBuilt {
+    #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
+    _rest: Vec<String>,
+}
+
+fn main() -> ExitCode {
+    let result = match Cli::parse().command {
+        Command::Run(args) => run::run(&args),
+        Command::Design(args) => design::run(&args),
+        Command::Generate(args) => generate::run(&args),
+        Command::Simulate(args) => simulate::run(&args),
+        Command::Verify(args) => verify::run(&args),
+        Command::Diff(args) => diff::run(&args),
+        Command::Synth(args) => synth::run(&args),
+        Command::Identify(_) => Err(Failure::not_built("identify")),
+        Command::Reproduce(_) => Err(Failure::not_built("reproduce")),
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => failure.report(),
+    }
+}

@@ -10,6 +10,7 @@
 //! the hardware is compared with uses them.
 
 mod error;
+mod float_output;
 pub mod grid;
 mod quantise;
 
@@ -17,6 +18,7 @@ use std::collections::BTreeMap;
 use std::fmt;
 
 pub use error::{DELAY_MAX_SAMPLES, TAPS_MAX, TableError};
+pub use float_output::float_bound_lsb;
 pub use quantise::{quantise, quantising_error};
 
 use crate::design::kind::Kind;

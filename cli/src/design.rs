@@ -1,0 +1,294 @@
+//! `posicast design`: impulses, residuals, insensitivity and the tap table of every axis.
+
+use crate::failure::Failure;
+use crate::machine;
+use crate::output::{self, Table, percent};
+use crate::plot::{self, Curve, Panel};
+use posicast_model::analysis::{INSENSITIVITY_LIMIT, sensitivity_curve, tap_impulses};
+use posicast_model::design::{AxisTables, MachineDesign, ModeFigures, design_machine};
+use posicast_model::rtl::shaper::ShaperConfig;
+use posicast_model::spec::{Axis, Machine};
+use serde::Serialize;
+use std::fmt::Write;
+use std::path::PathBuf;
+
+/// Impulses, residuals, insensitivity and tap table of every axis
+#[derive(clap::Args)]
+#[command(after_help = "Example:\n  posicast design examples/xy-stage.toml --plot sensitivity.svg")]
+pub(crate) struct Args {
+    /// Machine file
+    machine: PathBuf,
+    /// Print one JSON document on standard output
+    #[arg(long)]
+    json: bool,
+    /// Draw the sensitivity curves into this SVG file
+    #[arg(long, value_name = "FILE.svg")]
+    plot: Option<PathBuf>,
+}
+
+pub(crate) fn run(args: &Args) -> Result<(), Failure> {
+    let machine = machine::read(&args.machine)?.machine;
+    let report = Report::new(&machine)?;
+    if let Some(path) = &args.plot {
+        output::write_file(path, plot::svg(&sensitivity_panels(&machine, &report.design))?.as_bytes())?;
+    }
+    if args.json { output::print_json(&report.json()) } else { output::print(&report.text()) }
+}
+
+/// The design of a machine together with its figures at every mode.
+pub(crate) struct Report<'a> {
+    machine: &'a Machine,
+    pub(crate) design: MachineDesign,
+}
+
+impl<'a> Report<'a> {
+    /// Designs the shapers of `machine`.
+    pub(crate) fn new(machine: &'a Machine) -> Result<Self, Failure> {
+        let design = design_machine(machine).map_err(Failure::because)?;
+        Ok(Self { machine, design })
+    }
+
+    fn axes(&self) -> impl Iterator<Item = AxisReport<'_>> {
+        self.machine.axes.iter().zip(&self.design.axes).map(|(axis, tables)| AxisReport {
+            axis,
+            tables,
+            modes: tables.mode_figures(axis, self.design.sample_hz),
+            fits: fits(self.machine, tables),
+        })
+    }
+
+    /// The JSON document of the command line's contract.
+    pub(crate) fn json(&self) -> Document {
+        let fraction = self.design.coefficient_fraction;
+        let axes = self.axes().map(|a| a.json(self.design.sample_hz, fraction)).collect();
+        Document { name: self.machine.name.clone(), axes }
+    }
+
+    fn text(&self) -> String {
+        let clock = &self.machine.clock;
+        let mut text = format!(
+            "{}: {} axes, {} MHz clock, {} Hz samples, coefficients with {} fraction bits\n",
+            self.machine.name,
+            self.machine.axes.len(),
+            clock.frequency_hz / 1e6,
+            clock.sample_hz,
+            self.design.coefficient_fraction,
+        );
+        for axis in self.axes() {
+            text.push('\n');
+            text += &axis.text(self.design.sample_hz);
+        }
+        text
+    }
+}
+
+fn fits(machine: &Machine, tables: &AxisTables) -> Result<(), String> {
+    let config =
+        ShaperConfig::new(machine.fixed_point.command_bits, tables.table.clone()).map_err(|e| e.to_string())?;
+    config.fits(u64::from(machine.clock.clocks_per_sample())).map_err(|e| e.to_string())
+}
+
+struct AxisReport<'a> {
+    axis: &'a Axis,
+    tables: &'a AxisTables,
+    modes: Vec<ModeFigures>,
+    fits: Result<(), String>,
+}
+
+impl AxisReport<'_> {
+    fn json(&self, sample_hz: f64, coefficient_fraction: u32) -> AxisDocument {
+        let impulses = &self.tables.design.impulses;
+        let sums = impulses.partial_sums();
+        AxisDocument {
+            name: self.axis.name.clone(),
+            kind: self.tables.design.kind.clone(),
+            impulses: impulses
+                .impulses()
+                .iter()
+                .map(|i| ImpulseDocument { time_s: i.time_s, amplitude: i.amplitude })
+                .collect(),
+            duration_s: impulses.duration_s(),
+            delay_s: impulses.delay_s(),
+            partial_sum_min: sums.min,
+            partial_sum_max: sums.max,
+            modes: self
+                .modes
+                .iter()
+                .map(|m| ModeDocument {
+                    frequency_hz: m.mode.frequency_hz,
+                    damping: m.mode.damping,
+                    residual: m.residual,
+                    insensitivity: m.insensitivity.map(|i| (i.low, i.high)),
+                })
+                .collect(),
+            quantised: QuantisedDocument {
+                sample_hz,
+                coefficient_fraction,
+                digitise: self.tables.digitised.method_used.to_string(),
+                fits: self.fits.is_ok(),
+                taps: self
+                    .tables
+                    .table
+                    .taps()
+                    .iter()
+                    .map(|t| TapDocument { delay_samples: t.delay_samples, coefficient: t.coefficient })
+                    .collect(),
+                modes: self.modes.iter().map(|m| ResidualDocument { residual: m.residual_quantised }).collect(),
+            },
+        }
+    }
+
+    fn text(&self, sample_hz: f64) -> String {
+        let mut text = String::new();
+        let impulses = &self.tables.design.impulses;
+        let sums = impulses.partial_sums();
+        let _ = writeln!(
+            text,
+            "axis {}: {}, {} impulses, duration {:.4} ms, delay {:.4} ms, partial sums {:.4} … {:.4}",
+            self.axis.name,
+            self.tables.design.kind,
+            impulses.impulses().len(),
+            impulses.duration_s() * 1e3,
+            impulses.delay_s() * 1e3,
+            sums.min,
+            sums.max,
+        );
+        let mut table = Table::new(&["", ">time ms", ">amplitude"]);
+        for impulse in impulses.impulses() {
+            table.row([String::new(), format!("{:.6}", impulse.time_s * 1e3), format!("{:.6}", impulse.amplitude)]);
+        }
+        text += &table.text("  ");
+        text += &self.modes_text();
+        let taps = self.tables.table.taps();
+        let _ = writeln!(
+            text,
+            "\n  {} taps at {sample_hz} Hz, digitised {}, sum {}",
+            taps.len(),
+            self.tables.digitised.method_used,
+            taps.iter().map(|t| i64::from(t.coefficient)).sum::<i64>(),
+        );
+        let mut table = Table::new(&["", ">delay", ">coefficient"]);
+        for tap in taps {
+            table.row([String::new(), tap.delay_samples.to_string(), tap.coefficient.to_string()]);
+        }
+        text += &table.text("  ");
+        if let Err(reason) = &self.fits {
+            let _ = writeln!(text, "  does not fit: {reason}");
+        }
+        text
+    }
+
+    fn modes_text(&self) -> String {
+        if self.modes.is_empty() {
+            return "\n  no modes given: no residual to state\n".to_owned();
+        }
+        let headings = ["mode Hz", ">damping", ">residual %", ">quantised %", ">tolerance %", "insensitivity f/f0"];
+        let mut table = Table::new(&headings);
+        for m in &self.modes {
+            let range = match m.insensitivity {
+                None => "none: the residual exceeds the tolerance".to_owned(),
+                Some(i) => match i.high {
+                    Some(high) => format!("{:.4} … {high:.4}", i.low),
+                    None => format!("{:.4} … above {INSENSITIVITY_LIMIT}", i.low),
+                },
+            };
+            table.row([
+                format!("{:.3}", m.mode.frequency_hz),
+                format!("{:.4}", m.mode.damping),
+                percent(m.residual),
+                percent(m.residual_quantised),
+                percent(m.tolerance),
+                range,
+            ]);
+        }
+        format!("\n{}", table.text("  "))
+    }
+}
+
+/// Frequency ratios that the sensitivity curves show.
+const CURVE_RATIOS: (f64, f64) = (0.4, 1.6);
+const CURVE_POINTS: usize = 601;
+
+/// Sensitivity curves, one panel per axis: residual over the mode's true frequency, float and quantised.
+pub(crate) fn sensitivity_panels(machine: &Machine, design: &MachineDesign) -> Vec<Panel> {
+    let panels = machine.axes.iter().zip(&design.axes).filter(|(axis, _)| !axis.modes.is_empty());
+    panels.map(|(axis, tables)| sensitivity_panel(axis, tables, design.sample_hz)).collect()
+}
+
+fn sensitivity_panel(axis: &Axis, tables: &AxisTables, sample_hz: f64) -> Panel {
+    let integer = tap_impulses(&tables.table, sample_hz);
+    let mut curves = Vec::new();
+    for mode in &axis.modes {
+        let curve = |impulses: &[_]| {
+            let points = sensitivity_curve(impulses, &mode.mode, CURVE_RATIOS.0, CURVE_RATIOS.1, CURVE_POINTS);
+            points.into_iter().map(|(ratio, residual)| (ratio, 100.0 * residual)).collect::<Vec<_>>()
+        };
+        let name = format!("{:.1} Hz", mode.mode.frequency_hz);
+        curves.push(Curve::new(format!("{name}, quantised"), curve(&integer)));
+        curves.push(Curve::reference(format!("{name}, impulses"), curve(tables.design.impulses.impulses())));
+        let tolerance = 100.0 * axis.tolerance_of(mode);
+        let line = vec![(CURVE_RATIOS.0, tolerance), (CURVE_RATIOS.1, tolerance)];
+        curves.push(Curve::reference(format!("{name}, tolerance"), line));
+    }
+    Panel {
+        title: format!("axis {}: residual vibration of {}", axis.name, tables.design.kind),
+        x_label: "frequency of the mode / design frequency".into(),
+        y_label: "residual vibration, %".into(),
+        curves,
+    }
+}
+
+/// `design --json`: the command line's contract.
+#[derive(Serialize)]
+pub(crate) struct Document {
+    name: String,
+    axes: Vec<AxisDocument>,
+}
+
+#[derive(Serialize)]
+struct AxisDocument {
+    name: String,
+    kind: String,
+    impulses: Vec<ImpulseDocument>,
+    duration_s: f64,
+    delay_s: f64,
+    partial_sum_min: f64,
+    partial_sum_max: f64,
+    modes: Vec<ModeDocument>,
+    quantised: QuantisedDocument,
+}
+
+#[derive(Serialize)]
+struct ImpulseDocument {
+    time_s: f64,
+    amplitude: f64,
+}
+
+#[derive(Serialize)]
+struct ModeDocument {
+    frequency_hz: f64,
+    damping: f64,
+    residual: f64,
+    insensitivity: Option<(f64, Option<f64>)>,
+}
+
+#[derive(Serialize)]
+struct QuantisedDocument {
+    sample_hz: f64,
+    coefficient_fraction: u32,
+    digitise: String,
+    fits: bool,
+    taps: Vec<TapDocument>,
+    modes: Vec<ResidualDocument>,
+}
+
+#[derive(Serialize)]
+struct TapDocument {
+    delay_samples: u32,
+    coefficient: i32,
+}
+
+#[derive(Serialize)]
+struct ResidualDocument {
+    residual: f64,
+}

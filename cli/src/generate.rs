@@ -1,0 +1,57 @@
+//! `posicast generate`: the Verilog of a machine, in a folder of its own.
+
+use crate::design::Report;
+use crate::failure::Failure;
+use crate::machine::{self, MachineFile};
+use crate::output;
+use posicast_hdl::emit::Module;
+use posicast_hdl::machine::{AxisShaper, emit_machine};
+use posicast_synth::package::Package;
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+
+/// Write the machine's Verilog into a folder
+#[derive(clap::Args)]
+#[command(after_help = "Example:\n  posicast generate examples/xy-stage.toml -o xy_stage")]
+pub(crate) struct Args {
+    /// Machine file
+    machine: PathBuf,
+    /// Output folder: new, empty, or written by posicast before [default: ./NAME]
+    #[arg(short, long, value_name = "DIR")]
+    output: Option<PathBuf>,
+}
+
+pub(crate) fn run(args: &Args) -> Result<(), Failure> {
+    let file = machine::read(&args.machine)?;
+    let report = Report::new(&file.machine)?;
+    let shapers = machine::shapers(&file.machine, &report.design)?;
+    let modules = modules(&file.machine.name, &shapers)?;
+    let mut package = open(args.output.as_deref(), &file)?;
+    add_sources(&mut package, &file, &modules)?;
+    package.add("report.json", output::json_text(&report.json())?.as_bytes()).map_err(Failure::because)?;
+    let mut text = String::new();
+    for path in package.commit().map_err(Failure::because)? {
+        let _ = writeln!(text, "{}", path.display());
+    }
+    output::print(&text)
+}
+
+/// The Verilog modules of a machine.
+pub(crate) fn modules(name: &str, shapers: &[AxisShaper]) -> Result<Vec<Module>, Failure> {
+    emit_machine(name, shapers).map_err(Failure::because)
+}
+
+/// The output folder, by default named after the machine.
+pub(crate) fn open(output: Option<&Path>, file: &MachineFile) -> Result<Package, Failure> {
+    let name = &file.machine.name;
+    Package::open(output.unwrap_or(Path::new(name)), name).map_err(Failure::because)
+}
+
+/// Adds the machine file and its Verilog to the folder.
+pub(crate) fn add_sources(package: &mut Package, file: &MachineFile, modules: &[Module]) -> Result<(), Failure> {
+    package.add("machine.toml", file.text.as_bytes()).map_err(Failure::because)?;
+    for module in modules {
+        package.add(&format!("rtl/{}.v", module.name), module.text.as_bytes()).map_err(Failure::because)?;
+    }
+    Ok(())
+}

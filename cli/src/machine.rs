@@ -1,0 +1,55 @@
+//! Reading the machine file and what is decided from it once: the design.
+
+use crate::failure::Failure;
+use posicast_hdl::machine::AxisShaper;
+use posicast_model::design::MachineDesign;
+use posicast_model::rtl::shaper::ShaperConfig;
+use posicast_model::spec::{self, Machine};
+use std::path::Path;
+
+/// A machine file is a page of text; anything far beyond is some other file named by mistake.
+const LARGEST_FILE_BYTES: u64 = 1 << 20;
+
+/// A machine file, read and validated.
+pub(crate) struct MachineFile {
+    /// The text as it stands in the file.
+    pub(crate) text: String,
+    /// What it says.
+    pub(crate) machine: Machine,
+}
+
+/// Reads and validates the machine file at `path`.
+pub(crate) fn read(path: &Path) -> Result<MachineFile, Failure> {
+    let name = path.display().to_string();
+    let unreadable = |found: &dyn std::fmt::Display| {
+        Failure::from(miette::miette!(
+            help = "name a machine file, such as examples/xy-stage.toml",
+            "cannot read the machine file `{name}`: {found}"
+        ))
+    };
+    let metadata = std::fs::metadata(path).map_err(|e| unreadable(&e))?;
+    if metadata.is_dir() {
+        return Err(unreadable(&"it is a folder"));
+    }
+    if metadata.len() > LARGEST_FILE_BYTES {
+        return Err(unreadable(&format!("{} bytes found, at most {LARGEST_FILE_BYTES} allowed", metadata.len())));
+    }
+    let bytes = std::fs::read(path).map_err(|e| unreadable(&e))?;
+    let text = String::from_utf8(bytes).map_err(|e| unreadable(&format!("it is not UTF-8 text: {e}")))?;
+    let machine = spec::parse(&name, &text).map_err(Failure::input)?;
+    Ok(MachineFile { text, machine })
+}
+
+/// What is built for every axis of a machine.
+pub(crate) fn shapers(machine: &Machine, design: &MachineDesign) -> Result<Vec<AxisShaper>, Failure> {
+    let clocks = u64::from(machine.clock.clocks_per_sample());
+    let axes = machine.axes.iter().zip(&design.axes);
+    axes.map(|(axis, tables)| {
+        let refused = |reason: String| Failure::from(miette::miette!("axis `{}`: {reason}", axis.name));
+        let config = ShaperConfig::new(machine.fixed_point.command_bits, tables.table.clone())
+            .map_err(|e| refused(e.to_string()))?;
+        config.fits(clocks).map_err(|e| refused(e.to_string()))?;
+        Ok(AxisShaper { axis: axis.name.clone(), config })
+    })
+    .collect()
+}

@@ -1,0 +1,102 @@
+//! Standard output and the files that commands write.
+
+use crate::failure::Failure;
+use serde::Serialize;
+use std::io::{ErrorKind, Write};
+use std::path::Path;
+
+/// Prints text on standard output. A reader that has gone (`| head`) is no error.
+pub(crate) fn print(text: &str) -> Result<(), Failure> {
+    let mut out = std::io::stdout().lock();
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(Failure::because(error)),
+        _ => Ok(()),
+    }
+}
+
+/// Prints one JSON document on standard output.
+pub(crate) fn print_json(document: &impl Serialize) -> Result<(), Failure> {
+    print(&json_text(document)?)
+}
+
+/// A JSON document as text with a final newline.
+pub(crate) fn json_text(document: &impl Serialize) -> Result<String, Failure> {
+    serde_json::to_string_pretty(document).map(|text| text + "\n").map_err(Failure::because)
+}
+
+/// Says something beside the result on standard error.
+pub(crate) fn say(line: &str) {
+    // A message that cannot be shown must not stop the work.
+    let _ = writeln!(std::io::stderr(), "{line}");
+}
+
+/// Writes a file under a temporary name beside it and renames it, so that no half-written file is ever seen.
+pub(crate) fn write_file(path: &Path, contents: &[u8]) -> Result<(), Failure> {
+    let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let written = tempfile::NamedTempFile::new_in(folder).and_then(|mut file| {
+        file.write_all(contents)?;
+        file.persist(path).map_err(|e| e.error)
+    });
+    written.map(drop).map_err(|error| {
+        Failure::from(miette::miette!(
+            help = "name a file in a folder that exists and that you may write to",
+            "cannot write `{}`: {error}",
+            path.display()
+        ))
+    })
+}
+
+/// A fraction as percent, with as many digits as tell it from zero.
+pub(crate) fn percent(fraction: f64) -> String {
+    let percent = 100.0 * fraction;
+    if percent == 0.0 || percent.abs() >= 0.01 { format!("{percent:.3}") } else { format!("{percent:.1e}") }
+}
+
+/// A table for people: columns as wide as their widest cell, numbers right-aligned by the caller's choice.
+pub(crate) struct Table {
+    right: Vec<bool>,
+    rows: Vec<Vec<String>>,
+}
+
+impl Table {
+    /// A table with these headings; a heading that starts with `>` makes its column right-aligned.
+    pub(crate) fn new(headings: &[&str]) -> Self {
+        let right = headings.iter().map(|h| h.starts_with('>')).collect();
+        let first = headings.iter().map(|h| h.trim_start_matches('>').to_owned()).collect();
+        Self { right, rows: vec![first] }
+    }
+
+    /// Adds a row.
+    pub(crate) fn row(&mut self, cells: impl IntoIterator<Item = String>) {
+        self.rows.push(cells.into_iter().collect());
+    }
+
+    /// The text, each line indented.
+    pub(crate) fn text(&self, indent: &str) -> String {
+        let width = |column: usize| self.rows.iter().filter_map(|r| r.get(column)).map(|c| c.chars().count()).max();
+        let widths: Vec<usize> = (0..self.right.len()).map(|c| width(c).unwrap_or(0)).collect();
+        let mut text = String::new();
+        for row in &self.rows {
+            let mut line = indent.to_owned();
+            for ((cell, width), right) in row.iter().zip(&widths).zip(&self.right) {
+                let padding = " ".repeat(width.saturating_sub(cell.chars().count()));
+                line += &if *right { format!("{padding}{cell}  ") } else { format!("{cell}{padding}  ") };
+            }
+            text += line.trim_end();
+            text.push('\n');
+        }
+        text
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_table_aligns_its_columns_by_characters() {
+        let mut table = Table::new(&["axis", ">ζ"]);
+        table.row(["x".into(), "0.1578".into()]);
+        assert_eq!(table.text("  "), "  axis       ζ\n  x     0.1578\n");
+    }
+}

@@ -1,0 +1,48 @@
+//! A machine's top module: one shaper per axis, side by side.
+//!
+//! The top is named after the machine and has `clk`, `rst` and `strobe` (the sample tick) for all axes; every other port is
+//! `<axis>_<port>`. RustHDL's sizes are types, so a machine of any sizes cannot be one RustHDL block: the top is composed
+//! from the emitted modules' port lists ([`compose`]).
+
+use crate::emit::{EmitError, Header, Instance, Module, Parameter, compose};
+use crate::shaper;
+use posicast_model::rtl::shaper::ShaperConfig;
+
+/// Inputs of the top that all axes share, beside `clk`.
+pub const SHARED_INPUTS: [&str; 2] = ["rst", "strobe"];
+
+/// The shaper of one axis.
+#[derive(Debug, Clone)]
+pub struct AxisShaper {
+    /// The axis's name.
+    pub axis: String,
+    /// What its shaper is built with.
+    pub config: ShaperConfig,
+}
+
+/// All Verilog modules of a machine, sub-modules first, the top last.
+///
+/// # Errors
+/// [`EmitError`] for what cannot be expressed exactly, and for names of machine and axes that collide.
+pub fn emit_machine(name: &str, shapers: &[AxisShaper]) -> Result<Vec<Module>, EmitError> {
+    let mut modules = Vec::new();
+    let mut tops = Vec::new();
+    for shaper in shapers {
+        let mut of_axis = shaper::emit(&shaper.config, &format!("{name}_{}", shaper.axis))?;
+        tops.extend(of_axis.last().cloned());
+        modules.append(&mut of_axis);
+    }
+    let instances: Vec<_> =
+        shapers.iter().zip(&tops).map(|(shaper, module)| Instance { name: &shaper.axis, module }).collect();
+    let parameters = shapers.iter().map(|shaper| Parameter {
+        name: format!("{} taps", shaper.axis),
+        value: shaper.config.table().taps().len().to_string(),
+        meaning: format!("longest delay {} samples", shaper.config.table().longest_delay_samples()),
+    });
+    let header = Header {
+        about: format!("Input shapers of {name}. `strobe` is high for one clock per sample."),
+        parameters: parameters.collect(),
+    };
+    modules.push(compose(name, &header, &SHARED_INPUTS, &instances)?);
+    Ok(modules)
+}
