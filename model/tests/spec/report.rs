@@ -25,7 +25,9 @@ fn unit_the_diagnostic_marks_the_place_and_says_what_to_do() {
         error.help().unwrap().to_string(),
         "give `damping` a value in this range"
     );
-    let picture = format!("{:?}", miette::Report::new(error));
+    let mut picture = String::new();
+    let handler = miette::GraphicalReportHandler::new().with_wrap_lines(false);
+    handler.render_report(&mut picture, &error).unwrap();
     for part in ["m.toml", "damping = 7", "at least 0, below 1", "give `damping` a value"] {
         assert!(picture.contains(part), "{part} in {picture}");
     }
