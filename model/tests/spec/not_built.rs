@@ -1,6 +1,6 @@
 //! Blocks and kinds that this version knows and does not build.
 
-use crate::files::{EVERYTHING, breaks, wrong};
+use crate::files::{EVERYTHING, SMALL, breaks, right, wrong};
 use posicast_model::design::kind::Kind;
 
 #[test]
@@ -81,4 +81,29 @@ fn unit_blocks_that_are_not_built_are_checked_all_the_same() {
     let expected = "m.toml:70: axis.limits.following_error of axis x: found the boolean true; allowed: a number, above 0, at \
                     most 1000000000";
     case("following_error = 0.001", "following_error = true", expected);
+}
+
+#[test]
+fn unit_a_key_that_asks_for_hardware_is_refused_only_where_it_asks() {
+    let to = |value| format!("1_000_000\nmodulo = {value}");
+    right(&SMALL.replace("1_000_000", &to("false")));
+    let expected = "m.toml:10: axis.modulo of axis x: not built in this version: modulo";
+    breaks("1_000_000", &to("true"), expected);
+}
+
+#[test]
+fn unit_simultaneous_leaves_its_modes_zv_or_zvd() {
+    let text = |own: &str| {
+        SMALL
+            .replace("\"zvd\"", "\"simultaneous\"")
+            .replace("damping = 0.1", &format!("damping = 0.1\nshaper = \"{own}\""))
+    };
+    let expected = "m.toml:15: axis.mode.shaper of axis x, mode 1: found shaper = \"ei\" under kind = \"simultaneous\"; \
+                    allowed: zv, zvd";
+    assert_eq!(wrong(&text("ei")).to_string(), expected);
+    assert!(
+        wrong(&text("zvd"))
+            .to_string()
+            .contains("not built in this version: simultaneous")
+    );
 }
