@@ -154,6 +154,8 @@ fn unit_names_that_verilog_cannot_hold_are_refused() {
         "\"reg\"",
         &format!("m.toml:8: axis.name: found \"reg\"; allowed: {rule}"),
     );
+    let expected = format!("m.toml:8: axis.name: found the integer 5; allowed: a text: {rule}");
+    breaks("\"x\"", "5", &expected);
     let long = "a".repeat(65);
     let expected = format!("m.toml:1: name: found \"{}…; allowed: {rule}", &long[..47]);
     breaks("\"slide\"", &format!("\"{long}\""), &expected);
