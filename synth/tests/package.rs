@@ -267,28 +267,12 @@ fn unit_two_runs_on_one_folder_exclude_each_other() {
 }
 
 #[test]
-fn unit_a_killed_run_is_repaired_by_the_next() {
-    // The state between two renames: the manifest knows both generations, one file is new, one still old.
-    let (_scratch, folder) = written();
-    let old: serde_json::Value =
-        serde_json::from_str(&fs::read_to_string(folder.join("posicast.json")).unwrap()).unwrap();
-    let newer = [("machine.toml", "new"), ("rtl/xy_stage.v", "new")];
-    write(&folder, &newer).unwrap();
-    let mut state: serde_json::Value =
-        serde_json::from_str(&fs::read_to_string(folder.join("posicast.json")).unwrap()).unwrap();
-    let replaced = old["files"].as_object().unwrap();
-    state["replaces"] = replaced
-        .iter()
-        .map(|(path, hash)| (path.clone(), serde_json::json!([hash])))
-        .collect();
-    fs::write(folder.join("posicast.json"), state.to_string()).unwrap();
-    fs::write(folder.join("rtl/xy_stage.v"), FILES[1].1).unwrap();
-    fs::create_dir_all(folder.join(".posicast-staging/rtl")).unwrap();
-
-    assert!(matches!(package::read(&folder), Err(PackageError::Unfinished(_))));
-    write(&folder, &FILES).unwrap();
-    let (_other, fresh) = written();
-    assert_eq!(snapshot(&folder), snapshot(&fresh));
+fn unit_what_a_killed_run_left_staged_goes() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::create_dir_all(folder.path().join(".posicast-staging/rtl")).unwrap();
+    write(folder.path(), &FILES).unwrap();
+    assert_eq!(snapshot(folder.path()).len(), 4);
+    assert!(!folder.path().join(".posicast-staging").exists());
 }
 
 #[test]

@@ -124,6 +124,15 @@ impl Package {
     /// A staged file that was never written; a file in the way that posicast did not write or that was edited: the folder
     /// is then as it was. A rename that fails midway leaves a folder that the next run completes.
     pub fn commit(mut self) -> Result<Vec<PathBuf>, PackageError> {
+        let plan = self.plan()?;
+        self.carry_out(&plan)?;
+        self.staging.keep_folder();
+        let names = plan.hashes.keys().map(String::as_str).chain([MANIFEST]);
+        Ok(names.map(|name| self.root.join(name)).collect())
+    }
+
+    /// Decides what happens to every file, and refuses to touch what is not posicast's.
+    fn plan(&self) -> Result<Plan, PackageError> {
         let hashes = self.hash_staged()?;
         let mut changed = Vec::new();
         let mut edited = self.previous.edited(&self.root)?;
@@ -132,7 +141,7 @@ impl Package {
             match manifest::hash_in(&self.root, relative)? {
                 Some(found) if found == *hash => edited.retain(|e| e != relative),
                 Some(_) if !self.previous.names(relative) => foreign.push(relative.clone()),
-                _ => changed.push(relative.as_str()),
+                _ => changed.push(relative.clone()),
             }
         }
         let folder = self.root.clone();
@@ -142,22 +151,32 @@ impl Package {
         if !foreign.is_empty() {
             return Err(PackageError::InTheWay { folder, files: foreign });
         }
-        let obsolete: Vec<&str> = self.previous.paths().filter(|p| !hashes.contains_key(*p)).collect();
+        let obsolete = self
+            .previous
+            .paths()
+            .filter(|p| !hashes.contains_key(*p))
+            .map(str::to_owned)
+            .collect();
+        Ok(Plan {
+            hashes,
+            changed,
+            obsolete,
+        })
+    }
 
-        let last = Manifest::new(&self.machine, hashes.clone());
-        if !changed.is_empty() || !obsolete.is_empty() {
+    /// From the first rename to the last, the manifest names both generations.
+    fn carry_out(&self, plan: &Plan) -> Result<(), PackageError> {
+        let last = Manifest::new(&self.machine, plan.hashes.clone());
+        if !plan.changed.is_empty() || !plan.obsolete.is_empty() {
             self.write_manifest(&last.replacing(&self.previous))?;
         }
-        for relative in changed {
+        for relative in &plan.changed {
             self.put(relative)?;
         }
-        for relative in obsolete {
+        for relative in &plan.obsolete {
             self.remove(relative)?;
         }
-        self.write_manifest(&last)?;
-        self.staging.keep_folder();
-        let names = hashes.keys().map(String::as_str).chain([MANIFEST]);
-        Ok(names.map(|name| self.root.join(name)).collect())
+        self.write_manifest(&last)
     }
 
     fn hash_staged(&self) -> Result<BTreeMap<String, String>, PackageError> {
@@ -200,6 +219,16 @@ impl Package {
     }
 }
 
+/// What a commit does, all paths relative to the folder.
+struct Plan {
+    /// Every file of the package, with its hash.
+    hashes: BTreeMap<String, String>,
+    /// Those that are not in place yet.
+    changed: Vec<String>,
+    /// Files of the earlier run that are no longer produced.
+    obsolete: Vec<String>,
+}
+
 /// The manifest of the run before; an empty one for a folder that is missing or empty.
 fn inspect(root: &Path) -> Result<Manifest, PackageError> {
     let entries = match fs::read_dir(root) {
@@ -220,4 +249,39 @@ fn inspect(root: &Path) -> Result<Manifest, PackageError> {
         }
     }
     Ok(Manifest::default())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn staged(root: &Path, text: &str) -> Package {
+        let mut package = Package::open(root, "m").unwrap();
+        package.add("machine.toml", text.as_bytes()).unwrap();
+        package.add("rtl/m.v", text.as_bytes()).unwrap();
+        package
+    }
+
+    #[test]
+    fn unit_a_run_that_fails_between_two_renames_is_completed_by_the_next() {
+        for first_run in [true, false] {
+            let folder = tempfile::tempdir().unwrap();
+            let root = folder.path();
+            if !first_run {
+                staged(root, "old").commit().unwrap();
+            }
+            let package = staged(root, "new");
+            let plan = package.plan().unwrap();
+            fs::remove_file(package.staging.path().join("rtl/m.v")).unwrap();
+            assert!(package.carry_out(&plan).is_err());
+            drop(package);
+
+            assert_eq!(fs::read_to_string(root.join("machine.toml")).unwrap(), "new");
+            assert!(matches!(read(root), Err(PackageError::Unfinished(_))));
+            staged(root, "newest").commit().unwrap();
+            let contents = read(root).unwrap();
+            assert_eq!(contents.machine_toml, "newest");
+            assert_eq!(fs::read_to_string(&contents.rtl[0]).unwrap(), "newest");
+        }
+    }
 }

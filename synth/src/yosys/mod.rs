@@ -4,7 +4,7 @@
 //! of it (`clock_mhz_estimate` is `None`). How the figures come about:
 //!
 //! - Logic and flip-flops: mapped by Yosys to Cyclone V for [`Family::Cyclone5`], and to Cyclone IV E for all others, whose
-//!   logic element it shares; then counted as [`netlist`] says. Quartus packs better or worse by some ten per cent.
+//!   logic element it shares; then counted as `netlist` says. Quartus packs differently; its figures decide.
 //! - Memory and multipliers: counted from their sizes and left out of the mapping, since Yosys 0.23 maps neither for all
 //!   families. The registers of a multiplier count as flip-flops although a device can absorb them.
 //!
