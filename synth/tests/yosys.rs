@@ -103,6 +103,16 @@ fn netlist_a_memory_without_clocked_read_is_logic() {
 }
 
 #[test]
+fn netlist_a_multiplier_is_as_wide_as_what_its_operands_carry() {
+    let yosys = Yosys::installed().unwrap();
+    let total = yosys
+        .estimate(&rtl(&["product"]), "product", Family::Cyclone2)
+        .unwrap()
+        .total;
+    assert_eq!(total.multipliers, 1);
+}
+
+#[test]
 fn netlist_what_yosys_optimises_late_is_mapped_too() {
     let yosys = Yosys::installed().unwrap();
     for family in Family::ALL {
