@@ -55,3 +55,16 @@ pub(crate) fn add_sources(package: &mut Package, file: &MachineFile, modules: &[
     }
     Ok(())
 }
+
+/// Writes the modules into a temporary folder, for tools that read files. The folder goes when the guard is dropped.
+pub(crate) fn write_scratch(modules: &[Module]) -> Result<(Vec<PathBuf>, tempfile::TempDir), Failure> {
+    let folder = tempfile::tempdir().map_err(Failure::because)?;
+    let files: Result<Vec<_>, _> = modules
+        .iter()
+        .map(|module| {
+            let path = folder.path().join(format!("{}.v", module.name));
+            std::fs::write(&path, &module.text).map(|()| path)
+        })
+        .collect();
+    Ok((files.map_err(Failure::because)?, folder))
+}

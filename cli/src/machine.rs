@@ -36,8 +36,13 @@ pub(crate) fn read(path: &Path) -> Result<MachineFile, Failure> {
     }
     let bytes = std::fs::read(path).map_err(|e| unreadable(&e))?;
     let text = String::from_utf8(bytes).map_err(|e| unreadable(&format!("it is not UTF-8 text: {e}")))?;
-    let machine = spec::parse(&name, &text).map_err(Failure::input)?;
+    let machine = parse(path, &text)?;
     Ok(MachineFile { text, machine })
+}
+
+/// Validates the text of the machine file at `path`.
+pub(crate) fn parse(path: &Path, text: &str) -> Result<Machine, Failure> {
+    spec::parse(&path.display().to_string(), text).map_err(Failure::input)
 }
 
 /// What is built for every axis of a machine.

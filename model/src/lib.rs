@@ -16,5 +16,6 @@ pub mod mode;
 pub mod motion;
 pub mod plant;
 pub mod rtl;
+pub mod simulation;
 pub mod spec;
 pub mod taps;

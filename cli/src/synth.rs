@@ -1,0 +1,101 @@
+//! `posicast synth`: what a machine's Verilog takes of a device.
+
+use crate::design::Report;
+use crate::failure::Failure;
+use crate::output::{self, Table};
+use crate::{generate, machine, progress};
+use posicast_model::spec::Machine;
+use posicast_synth::package;
+use posicast_synth::yosys::{Estimate, Family, Resources, Yosys, YosysError};
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+
+/// Logic cells, registers, memory and multipliers of the machine's Verilog
+#[derive(clap::Args)]
+#[command(after_help = "Example:\n  posicast synth examples/xy-stage.toml --family cyclone5")]
+pub(crate) struct Args {
+    /// Machine file, or a folder that `generate` or `run` wrote
+    source: PathBuf,
+    /// Device family: cyclone2, cyclone4e, cyclone10lp, cyclone5, max10 [default: the machine file's, else cyclone5]
+    #[arg(long)]
+    family: Option<Family>,
+    /// Print one JSON document on standard output
+    #[arg(long)]
+    json: bool,
+}
+
+pub(crate) fn run(args: &Args) -> Result<(), Failure> {
+    let (machine, files, _scratch) = sources(&args.source)?;
+    let family = match args.family {
+        Some(family) => family,
+        None => family_of(&machine)?,
+    };
+    let yosys = Yosys::installed().map_err(failure)?;
+    let spinner = progress::spinner("Yosys maps the design");
+    let estimate = yosys.estimate(&files, &machine.name, family).map_err(failure)?;
+    spinner.finish_and_clear();
+    if args.json { output::print_json(&estimate)? } else { output::print(&text(&estimate))? }
+    let excesses = estimate.excesses();
+    if excesses.is_empty() {
+        return Ok(());
+    }
+    let list: Vec<_> = excesses
+        .iter()
+        .map(|e| format!("{} {} needed, {} available, most of it in {}", e.needed, e.resource, e.available, e.block))
+        .collect();
+    Err(Failure::Check(format!("does not fit the device: {}", list.join("; "))))
+}
+
+/// The machine, its Verilog files, and the folder that keeps them alive where they are temporary.
+fn sources(source: &Path) -> Result<(Machine, Vec<PathBuf>, Option<tempfile::TempDir>), Failure> {
+    if source.is_dir() {
+        let contents = package::read(source).map_err(Failure::because)?;
+        let machine = machine::parse(&contents.machine_path, &contents.machine_toml)?;
+        return Ok((machine, contents.rtl, None));
+    }
+    let machine = machine::read(source)?.machine;
+    let design = Report::new(&machine)?.design;
+    let modules = generate::modules(&machine.name, &machine::shapers(&machine, &design)?)?;
+    let (files, scratch) = generate::write_scratch(&modules)?;
+    Ok((machine, files, Some(scratch)))
+}
+
+/// The family of the machine file's target.
+pub(crate) fn family_of(machine: &Machine) -> Result<Family, Failure> {
+    match &machine.target {
+        Some(target) => target.family.parse().map_err(Failure::because),
+        None => Ok(Family::default()),
+    }
+}
+
+/// A table of blocks with the device's capacity, and where the figures come from.
+pub(crate) fn text(estimate: &Estimate) -> String {
+    let mut table = Table::new(&["block", ">cells", ">registers", ">memory bits", ">multipliers"]);
+    let mut row = |name: &str, r: &Resources| {
+        let cells = [r.cells, r.registers, r.memory_bits, r.multipliers].map(|n| n.to_string());
+        table.row(std::iter::once(name.to_owned()).chain(cells));
+    };
+    for block in &estimate.blocks {
+        row(&block.name, &block.resources);
+    }
+    row("total", &estimate.total);
+    let device = &estimate.device;
+    let capacity = Resources {
+        cells: device.cells,
+        registers: device.registers,
+        memory_bits: device.memory_bits,
+        multipliers: device.multipliers,
+    };
+    row(device.name, &capacity);
+    let mut text = table.text("");
+    let _ = writeln!(text, "Estimate by {}: {}", estimate.method.tool, estimate.method.note);
+    text
+}
+
+/// How a failure of Yosys ends a command.
+fn failure(error: YosysError) -> Failure {
+    match error {
+        YosysError::Missing(_) => Failure::missing_tool(error),
+        other => Failure::because(other),
+    }
+}
