@@ -246,24 +246,35 @@ mod tests {
     }
 
     #[test]
-    fn unit_taps_that_cancel_are_an_error() {
-        // Both impulses of opposite sign fall on one sample; what is left is rounding.
-        let design = custom(&[(0.0, 1e8 + 1.0), (1e-6, -1e8)], None);
-        let error = digitise(&design, Digitise::Nearest, 1000.0).unwrap();
-        assert_eq!(error.taps.len(), 1);
-        let bad = AxisDesign {
-            parts: Parts::PerMode(vec![Part {
-                mode: Mode {
-                    frequency_hz: 499.999_999_999,
-                    damping: 0.0,
-                },
-                kind: Kind::Zv,
-                impulses: custom(&[(0.0, -1.0), (0.0005, 2.0)], None).impulses,
-            }]),
-            ..design
+    fn unit_amplitudes_out_of_all_proportion_are_an_error() {
+        let design = custom(&[(0.0, 1e8 + 1.0), (0.0015, -1e8)], None);
+        let error = digitise(&design, Digitise::Linear, 1000.0).unwrap_err();
+        assert!(matches!(error, TableError::NoUnitSum { .. }), "{error}");
+    }
+
+    #[test]
+    fn unit_each_mode_keeps_its_own_pole() {
+        let mode = |frequency_hz| Mode {
+            frequency_hz,
+            damping: 0.05,
         };
-        // Legal, but sin(ω_d T) is all but zero and the two taps with it: enormous, and refused when rounded.
-        let wild = digitise(&bad, Digitise::Modal, 1000.0).unwrap();
-        assert!(quantise(&[("x", &wild)], None).is_err() || wild.taps.iter().all(|t| t.weight.abs() < 4.0));
+        let part = |frequency_hz| Part {
+            mode: mode(frequency_hz),
+            kind: Kind::Zv,
+            impulses: crate::design::zv::design(Kind::Zv, &mode(frequency_hz), 1).unwrap(),
+        };
+        let (first, second) = (part(77.0), part(231.0));
+        let design = AxisDesign {
+            name: "x".into(),
+            kind: "zv".into(),
+            impulses: first.impulses.convolve(&second.impulses).unwrap(),
+            parts: Parts::PerMode(vec![first, second]),
+        };
+        let taps = digitise(&design, Digitise::Modal, 2000.0).unwrap();
+        assert_eq!(taps.method_used, Method::Modal);
+        for frequency_hz in [77.0, 231.0] {
+            let residual = crate::analysis::residual_vibration(&taps.impulses(2000.0), &mode(frequency_hz));
+            assert!(residual < 1e-14, "{residual}");
+        }
     }
 }

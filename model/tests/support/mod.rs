@@ -1,0 +1,27 @@
+//! Machines for the tests of the mathematics, written as machine files.
+#![cfg(test)]
+
+use posicast_model::spec::{Machine, parse};
+
+/// One axis `x` at `sample_hz`: `shaper` are the lines under `[axis.shaper]`, each mode frequency, damping, further lines.
+pub(crate) fn machine(sample_hz: u32, digitise: &str, shaper: &str, modes: &[(f64, f64, &str)]) -> Machine {
+    let clock_hz = sample_hz * 1000;
+    let mut text = format!(
+        "name = \"test\"\n[clock]\nfrequency_hz = {clock_hz}\nsample_hz = {sample_hz}\n[fixed_point]\n\
+         digitise = \"{digitise}\"\n[[axis]]\nname = \"x\"\ncounts_per_unit = 1_000_000\n[axis.shaper]\n{shaper}\n"
+    );
+    for (frequency_hz, damping, more) in modes {
+        text += &format!("[[axis.mode]]\nfrequency_hz = {frequency_hz:?}\ndamping = {damping:?}\n{more}\n");
+    }
+    parse("test.toml", &text).unwrap_or_else(|error| panic!("{error}\n{text}"))
+}
+
+/// `kind = "…"` with the tolerance that EI kinds take.
+pub(crate) fn shaper(kind: &str, tolerance: f64) -> String {
+    let tolerance = if kind.ends_with("ei") {
+        format!("tolerance = {tolerance:?}")
+    } else {
+        String::new()
+    };
+    format!("kind = \"{kind}\"\n{tolerance}")
+}
