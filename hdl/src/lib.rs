@@ -1,1 +1,3 @@
 //! Posicast: hdl.
+
+pub mod emit;
