@@ -2,14 +2,18 @@
 //!
 //! A block's kernel is written once, in Rust. RustHDL's own simulator runs it (`simulate` of each block), and our typed
 //! emitter writes its Verilog. Both are compared clock by clock with the bit-exact model of the same name in
-//! `posicast_model::rtl`. No RustHDL type leaves this crate.
+//! `posicast_model::rtl`. No RustHDL type leaves this crate, except where [`emit`] takes a block.
 //!
 //! | module | what it is |
 //! |---|---|
 //! | `prelude` | what a kernel sees: RustHDL with its traps closed, and our leaves |
 //! | `prim` | the leaves: blocks with Verilog of their own |
 //! | [`shaper`] | the input shaper |
+//! | [`machine`] | a machine's top module: the blocks of its axes, side by side |
+//! | [`emit`](mod@emit) | the typed emitter: RustHDL's syntax tree as Verilog |
 
+pub mod emit;
+pub mod machine;
 pub(crate) mod prelude;
 pub(crate) mod prim;
 pub mod shaper;
