@@ -5,10 +5,12 @@
 //! One kernel serves all sizes. A size is a type in RustHDL, so [`sized_shaper!`] lists the types and picks the one that
 //! a [`ShaperConfig`] names.
 
+mod history;
 mod kernel;
 mod tap_banks;
+mod weighted_sum;
 
-use crate::simulation::{Simulated, SimulationError};
+use crate::simulation::{Pins, Simulated, SimulationError};
 use kernel::Shaper;
 use posicast_model::rtl::ClockedBlock;
 use posicast_model::rtl::shaper::{ShaperConfig, ports};
@@ -38,7 +40,6 @@ macro_rules! sized_shaper {
     };
     (@index $config:expr, $action:ident, $w:literal, $a:literal) => {
         match $config.tap_index_bits() {
-            4 => $action!(Shaper<$w, { $w + 18 }, { $w + 18 + 4 }, $a, 4, 5, { 18 + 4 }, { 18 + $a }>),
             6 => $action!(Shaper<$w, { $w + 18 }, { $w + 18 + 6 }, $a, 6, 7, { 18 + 6 }, { 18 + $a }>),
             _ => $action!(Shaper<$w, { $w + 18 }, { $w + 18 + 8 }, $a, 8, 9, { 18 + 8 }, { 18 + $a }>),
         }
@@ -50,11 +51,11 @@ macro_rules! sized_shaper {
 /// # Errors
 /// [`SimulationError`] where RustHDL finds a fault in the block.
 pub fn simulate(config: &ShaperConfig) -> Result<Box<dyn ClockedBlock>, SimulationError> {
-    macro_rules! simulated {
-        ($shaper:ty) => {{
-            let block = Box::new(<$shaper>::new(config));
-            Ok(Box::new(Simulated::new("shaper", block, ports(config))?))
-        }};
+    macro_rules! boxed {
+        ($shaper:ty) => {
+            Box::new(<$shaper>::new(config))
+        };
     }
-    sized_shaper!(config, simulated)
+    let block: Box<dyn Pins> = sized_shaper!(config, boxed);
+    Ok(Box::new(Simulated::new("shaper", block, ports(config))?))
 }
