@@ -8,8 +8,10 @@
 //! |---|---|
 //! | `prelude` | what a kernel sees: RustHDL with its traps closed, and our leaves |
 //! | `prim` | the leaves: blocks with Verilog of their own |
+//! | [`emit`] | Verilog from a block |
 //! | [`shaper`] | the input shaper |
 
+pub mod emit;
 pub(crate) mod prelude;
 pub(crate) mod prim;
 pub mod shaper;
