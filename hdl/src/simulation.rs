@@ -1,6 +1,7 @@
 //! RustHDL's simulator behind the interface that every block has.
 //!
-//! `rust_hdl_core::simulate` is called directly: its threaded `Simulation` is a hundred times slower.
+//! What RustHDL's `simulate` does, done here for any block behind one type; its threaded `Simulation` is a hundred times
+//! slower.
 
 use crate::prelude::*;
 use posicast_model::rtl::{ClockedBlock, Port, StepError};
@@ -32,15 +33,15 @@ pub(crate) trait Pins: Block {
 }
 
 /// A block in RustHDL's simulator.
-pub(crate) struct Simulated<B: Pins> {
-    block: Box<B>,
+pub(crate) struct Simulated {
+    block: Box<dyn Pins>,
     ports: Vec<Port>,
     inputs: usize,
 }
 
-impl<B: Pins> Simulated<B> {
+impl Simulated {
     /// Connects and checks `block`.
-    pub(crate) fn new(name: &'static str, mut block: Box<B>, ports: Vec<Port>) -> Result<Self, SimulationError> {
+    pub(crate) fn new(name: &'static str, mut block: Box<dyn Pins>, ports: Vec<Port>) -> Result<Self, SimulationError> {
         block.connect_all();
         check_all(block.as_ref()).map_err(|error| SimulationError::Refused {
             block: name,
@@ -54,17 +55,19 @@ impl<B: Pins> Simulated<B> {
     }
 
     fn settle(&mut self) -> Result<(), StepError> {
-        if simulate(self.block.as_mut(), MOST_UPDATES) {
-            Ok(())
-        } else {
-            Err(StepError(format!(
-                "the block did not settle within {MOST_UPDATES} updates: it has a loop"
-            )))
+        for _ in 0..MOST_UPDATES {
+            self.block.update_all();
+            if !self.block.has_changed() {
+                return Ok(());
+            }
         }
+        Err(StepError(format!(
+            "the block did not settle within {MOST_UPDATES} updates: it has a loop"
+        )))
     }
 }
 
-impl<B: Pins> ClockedBlock for Simulated<B> {
+impl ClockedBlock for Simulated {
     fn ports(&self) -> &[Port] {
         &self.ports
     }

@@ -1,12 +1,17 @@
-//! The pass over the taps: ring, multiplier, accumulator, output.
+//! The pass over the taps, one per clock.
 //!
 //! ```text
-//! clock       1..N      +1          +2            +3, +4      +5            then      then
-//!             tap ─► table word ─► ring word ─► multiplier ─► accumulator ─► done ─► y, valid
-//!             running  stages[0]   stages[1]    [2]    [3]
+//! tap ─► tap_banks ─► delay ─────► history ─► sample ──────► weighted_sum ─────────────────► y
+//!                  └► coefficient ──────────────────────────►
+//! running            stages[0]                stages[1]     stages[2] stages[3] done      valid
 //! ```
+//!
+//! A tap takes a clock in each place, so that the last product is added, and `done` set, in clock N + 4 after the
+//! strobe; `y` changes in the next but one.
 
+use super::history::History;
 use super::tap_banks::TapBanks;
+use super::weighted_sum::WeightedSum;
 use crate::prelude::*;
 use crate::simulation::Pins;
 use posicast_model::rtl::shaper::ShaperConfig;
@@ -47,45 +52,25 @@ pub(super) struct Shaper<
     pub(super) refused: Signal<Out, Bit>,
 
     banks: TapBanks<A, T, COUNT, SUM, WORD>,
-    ring: Ram<W, A>,
-    multiplier: SMul<W, 18, P>,
+    history: History<W, A>,
+    sum: WeightedSum<W, P, ACC>,
 
-    head: Dff<Bits<A>>,
-    age: Dff<Bits<A>>,
-    start_value: Dff<Signed<W>>,
     tap: Dff<Bits<T>>,
     running: Dff<Bit>,
     stages: Dff<Bits<4>>,
     done: Dff<Bit>,
-    coefficient: Dff<Signed<18>>,
-    before_start: Dff<Bit>,
-    accumulator: Dff<Signed<ACC>>,
-    y_q: Dff<Signed<W>>,
     valid_q: Dff<Bit>,
-    saturated_q: Dff<Bit>,
     busy_q: Dff<Bit>,
     overrun_q: Dff<Bit>,
 
-    next_head: Signal<Local, Bits<A>>,
-    age_before: Signal<Local, Bits<A>>,
     tap_number: Signal<Local, Bits<COUNT>>,
-    sample: Signal<Local, Signed<W>>,
-    product: Signal<Local, Signed<ACC>>,
+    finish: Signal<Local, Bit>,
 
-    one_sample: Constant<Bits<A>>,
-    zero_age: Constant<Bits<A>>,
-    full_age: Constant<Bits<A>>,
     first_tap: Constant<Bits<T>>,
     one_tap: Constant<Bits<T>>,
     one_more: Constant<Bits<COUNT>>,
     no_stage: Constant<Bits<4>>,
     first_stage: Constant<Bits<4>>,
-    half: Constant<Signed<ACC>>,
-    too_large: Constant<Signed<ACC>>,
-    smallest: Constant<Signed<ACC>>,
-    y_max: Constant<Signed<W>>,
-    y_min: Constant<Signed<W>>,
-    fraction: Constant<Bits<5>>,
 }
 
 impl<
@@ -102,7 +87,6 @@ impl<
     /// A shaper for `config`, whose sizes must be these.
     pub(super) fn new(config: &ShaperConfig) -> Self {
         const { assert!(P == W + 18 && ACC == P + T) };
-        let fraction = config.coefficient_fraction();
         Self {
             clk: Signal::default(),
             rst: Signal::default(),
@@ -126,42 +110,22 @@ impl<
             bank: Signal::default(),
             refused: Signal::default(),
             banks: TapBanks::new(config),
-            ring: Ram::default(),
-            multiplier: SMul::default(),
-            head: Dff::default(),
-            age: Dff::default(),
-            start_value: Dff::default(),
+            history: History::default(),
+            sum: WeightedSum::new(config),
             tap: Dff::default(),
             running: Dff::default(),
             stages: Dff::default(),
             done: Dff::default(),
-            coefficient: Dff::default(),
-            before_start: Dff::default(),
-            accumulator: Dff::default(),
-            y_q: Dff::default(),
             valid_q: Dff::default(),
-            saturated_q: Dff::default(),
             busy_q: Dff::default(),
             overrun_q: Dff::default(),
-            next_head: Signal::default(),
-            age_before: Signal::default(),
             tap_number: Signal::default(),
-            sample: Signal::default(),
-            product: Signal::default(),
-            one_sample: Constant::new(from_u64(1)),
-            zero_age: Constant::new(from_u64(0)),
-            full_age: Constant::new(from_u64(u64::MAX)),
+            finish: Signal::default(),
             first_tap: Constant::new(from_u64(0)),
             one_tap: Constant::new(from_u64(1)),
             one_more: Constant::new(from_u64(1)),
             no_stage: Constant::new(from_u64(0)),
             first_stage: Constant::new(from_u64(1)),
-            half: Constant::new(from_i64(1 << (fraction - 1))),
-            too_large: Constant::new(from_i64((config.word_max() + 1) << fraction)),
-            smallest: Constant::new(from_i64(config.word_min() << fraction)),
-            y_max: Constant::new(from_i64(config.word_max())),
-            y_min: Constant::new(from_i64(config.word_min())),
-            fraction: Constant::new(from_u64(u64::from(fraction))),
         }
     }
 }
@@ -180,25 +144,9 @@ impl<
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module shaper");
-        dff_setup!(
-            self,
-            clk,
-            head,
-            age,
-            start_value,
-            tap,
-            running,
-            stages,
-            done,
-            coefficient,
-            before_start,
-            accumulator,
-            y_q,
-            valid_q,
-            saturated_q,
-            busy_q,
-            overrun_q
-        );
+        dff_setup!(self, clk, tap, running, stages, done, valid_q, busy_q, overrun_q);
+
+        comment!("The tables: the word of tap, a clock later");
         self.banks.clk.next = self.clk.val();
         self.banks.rst.next = self.rst.val();
         self.banks.strobe.next = self.strobe.val();
@@ -211,12 +159,31 @@ impl<
         self.banks.swap.next = self.swap.val();
         self.banks.swap_bank.next = self.swap_bank.val();
         self.banks.tap.next = self.tap.q.val();
-        self.ring.clk.next = self.clk.val();
-        self.multiplier.clk.next = self.clk.val();
 
-        comment!("One tap per clock, to the last of the table");
-        self.stages.d.next = self.stages.q.val() << 1;
+        comment!("The samples: the one at delay, a clock later");
+        self.history.clk.next = self.clk.val();
+        self.history.rst.next = self.rst.val();
+        self.history.strobe.next = self.strobe.val();
+        self.history.start.next = self.start.val();
+        self.history.x.next = self.x.val();
+        self.history.delay.next = self.banks.delay.val();
+
+        comment!("The sum: a pass that is cut off leaves y");
+        self.finish.next = self.done.q.val() & !self.start.val() & !self.strobe.val();
+        self.sum.clk.next = self.clk.val();
+        self.sum.rst.next = self.rst.val();
+        self.sum.begin_pass.next = self.strobe.val();
+        self.sum.coefficient.next = self.banks.coefficient.val();
+        self.sum.sample.next = self.history.sample.val();
+        self.sum.add.next = self.stages.q.val().get_bit(3);
+        self.sum.finish.next = self.finish.val();
+        self.sum.start.next = self.start.val();
+        self.sum.x.next = self.x.val();
+        self.sum.clear_flags.next = self.clear_flags.val();
+
+        comment!("One tap per clock, up to the last of the table");
         self.tap_number.next = bit_cast::<COUNT, T>(self.tap.q.val()) + self.one_more.val();
+        self.stages.d.next = self.stages.q.val() << 1;
         if self.running.q.val() {
             self.stages.d.next = (self.stages.q.val() << 1) | self.first_stage.val();
             if self.tap_number.val() == self.banks.taps.val() {
@@ -225,83 +192,34 @@ impl<
                 self.tap.d.next = self.tap.q.val() + self.one_tap.val();
             }
         }
-
-        comment!("Ring: the newest sample is at head");
-        self.next_head.next = self.head.q.val() + self.one_sample.val();
-        self.ring.write_enable.next = self.strobe.val();
-        self.ring.write_address.next = self.next_head.val();
-        self.ring.write_data.next = unsigned_cast(self.x.val());
-        self.ring.read_address.next = self.head.q.val() - self.banks.delay.val();
-        self.before_start.d.next = self.banks.delay.val() >= self.age.q.val();
-        self.coefficient.d.next = self.banks.coefficient.val();
-
-        comment!("Multiply and accumulate, exactly");
-        self.sample.next = signed_cast(self.ring.read_data.val());
-        if self.before_start.q.val() {
-            self.sample.next = self.start_value.q.val();
-        }
-        self.multiplier.a.next = self.sample.val();
-        self.multiplier.b.next = self.coefficient.q.val();
-        self.product.next = signed_bit_cast::<ACC, P>(self.multiplier.product.val());
-        if self.stages.q.val().get_bit(3) {
-            self.accumulator.d.next = self.accumulator.q.val() + self.product.val();
-        }
         self.done.d.next = self.stages.q.val().get_bit(3) & !self.stages.q.val().get_bit(2);
-
-        if self.clear_flags.val() {
-            self.saturated_q.d.next = false;
-            self.overrun_q.d.next = false;
+        self.valid_q.d.next = self.finish.val();
+        if self.finish.val() {
+            self.busy_q.d.next = false;
         }
 
-        comment!("Half was added at the start: shift, saturate");
-        self.valid_q.d.next = false;
-        if self.done.q.val() & !self.start.val() & !self.strobe.val() {
-            self.busy_q.d.next = false;
-            self.valid_q.d.next = true;
-            self.y_q.d.next = self.accumulator.q.val().get_bits::<W>(self.fraction.val().index());
-            if self.accumulator.q.val() >= self.too_large.val() {
-                self.y_q.d.next = self.y_max.val();
-                self.saturated_q.d.next = true;
-            }
-            if self.accumulator.q.val() < self.smallest.val() {
-                self.y_q.d.next = self.y_min.val();
-                self.saturated_q.d.next = true;
-            }
-        }
-
-        comment!("Start: history is x, the output too");
-        self.age_before.next = self.age.q.val();
-        if self.start.val() {
-            self.age_before.next = self.zero_age.val();
-            self.age.d.next = self.zero_age.val();
-            self.start_value.d.next = self.x.val();
-            self.y_q.d.next = self.x.val();
-            self.busy_q.d.next = false;
+        comment!("A start or a strobe cuts off what runs");
+        if self.start.val() | self.strobe.val() {
             self.running.d.next = false;
             self.stages.d.next = self.no_stage.val();
             self.done.d.next = false;
+            self.busy_q.d.next = false;
         }
-
-        comment!("Strobe: a sample, and a pass from the first tap");
+        if self.clear_flags.val() {
+            self.overrun_q.d.next = false;
+        }
         if self.strobe.val() {
-            self.head.d.next = self.next_head.val();
-            if self.age_before.val() != self.full_age.val() {
-                self.age.d.next = self.age_before.val() + self.one_sample.val();
-            }
+            self.running.d.next = true;
+            self.tap.d.next = self.first_tap.val();
+            self.busy_q.d.next = true;
             if self.busy_q.q.val() & !self.start.val() {
                 self.overrun_q.d.next = true;
             }
-            self.busy_q.d.next = true;
-            self.tap.d.next = self.first_tap.val();
-            self.running.d.next = true;
-            self.stages.d.next = self.no_stage.val();
-            self.done.d.next = false;
-            self.accumulator.d.next = self.half.val();
         }
 
-        self.y.next = self.y_q.q.val();
+        self.y.next = self.sum.y.val();
         self.valid.next = self.valid_q.q.val();
-        self.saturated.next = self.saturated_q.q.val();
+        self.saturated.next = self.sum.saturated.val();
         self.busy.next = self.busy_q.q.val();
         self.overrun.next = self.overrun_q.q.val();
         self.swap_pending.next = self.banks.swap_pending.val();

@@ -29,7 +29,9 @@ impl Random {
 
 /// `taps` taps at delays up to `longest`, coefficients of either sign that sum to 2^fraction; `gain` is about Σ|c|/2^F.
 pub fn table(random: &mut Random, fraction: u32, taps: usize, longest: u32, gain: u32) -> TapTable {
-    let mut delays: Vec<u32> = (0..taps - 1).map(|_| random.below(u64::from(longest.max(1))) as u32).collect();
+    let mut delays: Vec<u32> = (0..taps - 1)
+        .map(|_| random.below(u64::from(longest.max(1))) as u32)
+        .collect();
     delays.push(longest);
     delays.sort_unstable();
     delays.dedup();

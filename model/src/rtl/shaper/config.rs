@@ -6,8 +6,8 @@ use crate::taps::{Tap, TapTable};
 pub const WORD_BITS: [u32; 3] = [16, 24, 32];
 /// Ring sizes that the shaper is built for, as bits of address: 2^6 … 2^12 and 2^14 samples.
 pub const RING_ADDRESS_BITS: [u32; 8] = [6, 7, 8, 9, 10, 11, 12, 14];
-/// Table sizes that the shaper is built for, as bits of index: 16, 64 and 256 taps.
-pub const TAP_INDEX_BITS: [u32; 3] = [4, 6, 8];
+/// Table sizes that the shaper is built for, as bits of index: 64 and 256 taps. (16 would take the same memory blocks.)
+pub const TAP_INDEX_BITS: [u32; 2] = [6, 8];
 /// Clocks of a pass beyond one per tap: table, ring, multiplier (two), accumulator, rounding.
 pub const PASS_OVERHEAD_CLOCKS: u32 = 6;
 
@@ -221,7 +221,7 @@ mod tests {
             let config = ShaperConfig::new(32, table(1, delay)).unwrap();
             assert_eq!(config.ring_address_bits(), bits, "delay {delay}");
         }
-        for (taps, bits) in [(1, 4), (16, 4), (17, 6), (64, 6), (65, 8), (256, 8)] {
+        for (taps, bits) in [(1, 6), (64, 6), (65, 8), (256, 8)] {
             let config = ShaperConfig::new(32, table(taps, 300)).unwrap();
             assert_eq!(config.tap_index_bits(), bits, "{taps} taps");
         }
