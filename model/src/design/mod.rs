@@ -16,7 +16,7 @@ mod newton;
 pub mod zv;
 
 pub use error::DesignError;
-pub use machine::{AxisTables, MachineDesign, design_machine};
+pub use machine::{AxisTables, MachineDesign, ModeFigures, design_machine};
 
 use crate::analysis::residual_vibration;
 use crate::impulse::ImpulseSequence;
