@@ -3,14 +3,20 @@
 //! One file per subcommand. This crate reads arguments, calls the other crates in order and prints; it computes nothing
 //! itself. Exit status: 0 all checks hold, 1 a check failed, 2 bad usage or input, 3 a tool that was asked for is missing.
 
+mod bench;
+mod command;
 mod design;
+mod diff;
 mod failure;
 mod generate;
 mod machine;
 mod output;
 mod plot;
 mod progress;
+mod run;
+mod simulate;
 mod synth;
+mod verify;
 
 use clap::{Parser, Subcommand};
 use failure::Failure;
@@ -35,8 +41,12 @@ struct Cli {
 
 #[derive(Subcommand)]
 enum Command {
+    Run(run::Args),
     Design(design::Args),
     Generate(generate::Args),
+    Simulate(simulate::Args),
+    Verify(verify::Args),
+    Diff(diff::Args),
     Synth(synth::Args),
     #[command(hide = true)]
     Identify(NotBuilt),
@@ -53,8 +63,12 @@ struct NotBuilt {
 
 fn main() -> ExitCode {
     let result = match Cli::parse().command {
+        Command::Run(args) => run::run(&args),
         Command::Design(args) => design::run(&args),
         Command::Generate(args) => generate::run(&args),
+        Command::Simulate(args) => simulate::run(&args),
+        Command::Verify(args) => verify::run(&args),
+        Command::Diff(args) => diff::run(&args),
         Command::Synth(args) => synth::run(&args),
         Command::Identify(_) => Err(Failure::not_built("identify")),
         Command::Reproduce(_) => Err(Failure::not_built("reproduce")),

@@ -1,20 +1,13 @@
 //! `posicast verify`: RTL against the bit-exact model, clock by clock.
 
+use crate::bench::{Bench, Simulator};
 use crate::design::Report as DesignReport;
 use crate::failure::Failure;
 use crate::output::{self, Table};
-use crate::{generate, machine, progress};
-use clap::ValueEnum;
-use posicast_hdl::machine::{AxisShaper, machine_ports};
-use posicast_hdl::shaper;
-use posicast_model::rtl::{ClockedBlock, Port};
-use posicast_model::spec::Machine;
+use crate::{command, generate, machine};
+use posicast_model::design::MachineDesign;
 use posicast_synth::package;
-use posicast_testbench::campaign::Campaign;
-use posicast_testbench::icarus::Icarus;
 use posicast_testbench::lockstep::report::{Report, Verdict};
-use posicast_testbench::lockstep::{self, Device, Instance, TwoValued};
-use posicast_testbench::verilator::{self, Source, Verilated};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
@@ -46,42 +39,6 @@ pub(crate) struct Args {
 /// Seed where none is given: the same run every time.
 pub(crate) const DEFAULT_SEED: u64 = 1;
 
-/// What runs the hardware.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub(crate) enum Simulator {
-    /// The emitted Verilog, compiled
-    Verilator,
-    /// The emitted Verilog, in a second, event-driven simulator
-    Icarus,
-    /// The RustHDL description itself, not the Verilog: needs no tool, the weaker check
-    Rusthdl,
-}
-
-impl Simulator {
-    /// The simulator that was asked for, else the best that is installed.
-    pub(crate) fn choose(asked: Option<Self>) -> Self {
-        match asked {
-            Some(simulator) => simulator,
-            None if verilator::version().is_ok() => Self::Verilator,
-            None => {
-                output::say(
-                    "warning: Verilator is not installed: RustHDL's own simulator runs instead, on fewer clocks. It is the \
-                     weaker check: the emitted Verilog itself is not simulated.",
-                );
-                Self::Rusthdl
-            }
-        }
-    }
-
-    fn default_cycles(self) -> u64 {
-        match self {
-            Self::Verilator => 1_000_000,
-            Self::Icarus | Self::Rusthdl => 20_000,
-        }
-    }
-}
-
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let job = Job::new(&args.source)?;
     if job.from_folder && args.simulator == Some(Simulator::Rusthdl) {
@@ -107,10 +64,10 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
 }
 
 /// A machine whose Verilog is to be compared with its model.
-pub(crate) struct Job {
-    pub(crate) machine: Machine,
-    pub(crate) shapers: Vec<AxisShaper>,
-    pub(crate) files: Vec<PathBuf>,
+struct Job {
+    design: MachineDesign,
+    bench: Bench,
+    files: Vec<PathBuf>,
     from_folder: bool,
     _scratch: Option<tempfile::TempDir>,
 }
@@ -124,15 +81,53 @@ impl Job {
             (machine::read(source)?.machine, None)
         };
         let design = DesignReport::new(&machine)?.design;
-        let shapers = machine::shapers(&machine, &design)?;
+        let bench = Bench::new(&machine, machine::shapers(&machine, &design)?)?;
         let from_folder = folder.is_some();
         let (files, scratch) = match folder {
             Some(files) => (files, None),
             None => {
-                let (files, scratch) = generate::write_scratch(&generate::modules(&machine.name, &shapers)?)?;
+                let (files, scratch) = generate::write_scratch(&generate::modules(&machine.name, &bench.shapers)?)?;
                 (files, Some(scratch))
             }
         };
-        Ok(Self { machine, shapers, files, from_folder, _scratch: scratch })
+        Ok(Self { design, bench, files, from_folder, _scratch: scratch })
+    }
+
+    fn lockstep(&self, simulator: Simulator, cycles: u64, seed: u64) -> Result<Report, Failure> {
+        let mut device = self.bench.device(simulator, &self.files, seed)?;
+        // A move that does not fit the words is an error of `run`; a lock step has its other stimuli.
+        let words = command::words(&self.bench.machine, &self.design, None).unwrap_or_default();
+        self.bench.lockstep(device.as_mut(), &command::widened(&words), cycles, seed)
+    }
+}
+
+/// `verify --json`.
+#[derive(Serialize)]
+struct Document<'a> {
+    #[serde(flatten)]
+    report: &'a Report,
+    simulator: Simulator,
+    seed: u64,
+}
+
+impl Document<'_> {
+    fn text(&self) -> String {
+        let mut table = Table::new(&["block", "instance", ">clocks", ">mismatches"]);
+        for block in &self.report.blocks {
+            let counts = [block.cycles.to_string(), block.mismatches.to_string()];
+            table.row([block.name.clone(), block.instance.clone()].into_iter().chain(counts));
+        }
+        let mut text = table.text("");
+        for first in self.report.blocks.iter().filter_map(|b| b.first.as_ref()) {
+            text += &format!("\n{first}\n");
+        }
+        let verdict = match self.report.result {
+            Verdict::Match => "match: every output of every clock is equal to the model's",
+            Verdict::Mismatch => "MISMATCH",
+        };
+        text + &format!(
+            "{verdict}; {} clocks, {} samples, simulator {}, seed {}\n",
+            self.report.cycles, self.report.samples, self.simulator, self.seed
+        )
     }
 }

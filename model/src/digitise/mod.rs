@@ -10,7 +10,6 @@
 //! the hardware is compared with uses them.
 
 mod error;
-mod float_output;
 pub mod grid;
 mod quantise;
 
@@ -18,7 +17,6 @@ use std::collections::BTreeMap;
 use std::fmt;
 
 pub use error::{DELAY_MAX_SAMPLES, TAPS_MAX, TableError};
-pub use float_output::float_bound_lsb;
 pub use quantise::{quantise, quantising_error};
 
 use crate::design::kind::Kind;

@@ -1,0 +1,87 @@
+//! The command that a machine is given: from a CSV file, or the default move.
+
+use crate::failure::Failure;
+use posicast_model::design::MachineDesign;
+use posicast_model::motion::{command_words, default_move, resample, settle_s};
+use posicast_model::spec::{Axis, Machine};
+use std::path::Path;
+
+/// Command words per axis, all of one length.
+pub(crate) type Words = Vec<Vec<i32>>;
+
+/// The words of the command in the CSV file `path`, or of the default move.
+pub(crate) fn words(machine: &Machine, design: &MachineDesign, path: Option<&Path>) -> Result<Words, Failure> {
+    let points = path.map(|path| read(machine, path)).transpose()?;
+    let sample_hz = machine.clock.sample_hz;
+    let mut words = Words::new();
+    for (index, (axis, tables)) in machine.axes.iter().zip(&design.axes).enumerate() {
+        let settle = settle_s(tables.design.impulses.duration_s(), axis.modes.iter().map(|m| m.mode));
+        let positions = match &points {
+            Some(points) => resample(&points[index], sample_hz, settle).map_err(|e| of_axis(axis, e))?,
+            None => {
+                let profile = default_move(axis.limits.as_ref()).map_err(|e| of_axis(axis, e))?;
+                profile.samples(sample_hz, settle).map_err(|e| of_axis(axis, e))?
+            }
+        };
+        let fixed = &machine.fixed_point;
+        words.push(
+            command_words(&positions, axis.counts_per_unit, fixed.command_bits, fixed.command_fraction)
+                .map_err(|e| of_axis(axis, e))?,
+        );
+    }
+    let longest = words.iter().map(Vec::len).max().unwrap_or(0);
+    for of_axis in &mut words {
+        let last = of_axis.last().copied().unwrap_or(0);
+        of_axis.resize(longest, last);
+    }
+    Ok(words)
+}
+
+/// The words as the test bench takes them: words of any width.
+pub(crate) fn widened(words: &Words) -> Vec<Vec<i64>> {
+    words.iter().map(|axis| axis.iter().map(|word| i64::from(*word)).collect()).collect()
+}
+
+fn of_axis(axis: &Axis, error: impl std::fmt::Display) -> Failure {
+    Failure::from(miette::miette!("command of axis `{}`: {error}", axis.name))
+}
+
+/// The points `(time_s, position)` of every axis: columns `time_s` and either `position` for all axes or one per axis.
+fn read(machine: &Machine, path: &Path) -> Result<Vec<Vec<(f64, f64)>>, Failure> {
+    let refused = |found: String| {
+        Failure::from(miette::miette!(
+            help = "give a CSV file with the heading `time_s,position`, or `time_s` and one column per axis",
+            "command file `{}`: {found}",
+            path.display()
+        ))
+    };
+    let mut reader =
+        csv::ReaderBuilder::new().trim(csv::Trim::All).from_path(path).map_err(|e| refused(e.to_string()))?;
+    let headings = reader.headers().map_err(|e| refused(e.to_string()))?.clone();
+    let column = |name: &str| headings.iter().position(|h| h == name);
+    let time = column("time_s").ok_or_else(|| refused("line 1: there is no column `time_s`".to_owned()))?;
+    let columns: Vec<usize> = machine
+        .axes
+        .iter()
+        .map(|axis| {
+            let own = column(&axis.name).or_else(|| column("position"));
+            own.ok_or_else(|| refused(format!("line 1: there is neither a column `position` nor `{}`", axis.name)))
+        })
+        .collect::<Result<_, _>>()?;
+    let mut points = vec![Vec::new(); machine.axes.len()];
+    for record in reader.records() {
+        let record = record.map_err(|e| refused(e.to_string()))?;
+        let line = record.position().map_or(0, csv::Position::line);
+        let value = |column: usize| {
+            let text = record.get(column).unwrap_or("");
+            text.parse::<f64>().map_err(|_| {
+                refused(format!("line {line}: `{}` is `{text}`, not a number", headings.get(column).unwrap_or("?")))
+            })
+        };
+        let time_s = value(time)?;
+        for (points, column) in points.iter_mut().zip(&columns) {
+            points.push((time_s, value(*column)?));
+        }
+    }
+    Ok(points)
+}

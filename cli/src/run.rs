@@ -1,0 +1,230 @@
+//! `posicast run`: the whole way, from machine file to verdict.
+//!
+//! design → quantise → generate → lock step → waveforms compared → plant measured → estimated → reported. What a step has
+//! decided the later ones use: the tap table is made once. The folder appears when everything is done, also after a failed
+//! check: then it is the evidence.
+
+mod checks;
+mod report;
+
+use crate::bench::{self, Bench, Simulator};
+use crate::command::{self, Words};
+use crate::design::{self, Report as DesignReport};
+use crate::failure::Failure;
+use crate::machine::{self, MachineFile};
+use crate::plot;
+use crate::simulate::simulate;
+use crate::verify::DEFAULT_SEED;
+use crate::{generate, output, progress, synth};
+use posicast_model::design::MachineDesign;
+use posicast_model::simulation::{AxisSimulation, largest_difference};
+use posicast_model::spec::Machine;
+use posicast_synth::package::Package;
+use posicast_synth::yosys::{Estimate, Yosys, YosysError};
+use posicast_testbench::diff::{self, Comparison, Options};
+use posicast_testbench::lockstep::TwoValued;
+use posicast_testbench::lockstep::report::Report as LockstepReport;
+use posicast_testbench::recording::{Move, wave_clocks_per_sample};
+use posicast_testbench::wave::{Difference, Part, merge};
+use posicast_testbench::verilator;
+use report::Report;
+use std::path::PathBuf;
+
+/// The whole way: design, Verilog, simulation, comparison, estimate, verdict
+#[derive(clap::Args)]
+#[command(after_help = "\
+Example:
+  posicast run examples/xy-stage.toml -o xy_stage
+
+Exit status: 0 all checks hold, 1 a check failed (the folder holds the evidence), 2 bad input, 3 a named tool is missing.")]
+pub(crate) struct Args {
+    /// Machine file
+    machine: PathBuf,
+    /// Output folder: new, empty, or written by posicast before [default: ./NAME]
+    #[arg(short, long, value_name = "DIR")]
+    output: Option<PathBuf>,
+    /// Command: a CSV file with columns time_s,position [default: a jerk-limited 5 mm move]
+    #[arg(long, value_name = "FILE.csv")]
+    command: Option<PathBuf>,
+    /// Simulator [default: verilator; rusthdl, the weaker check, where Verilator is missing]
+    #[arg(long)]
+    simulator: Option<Simulator>,
+    /// Clocks of the lock step [default: 1000000 with verilator, 20000 with icarus and rusthdl]
+    #[arg(long, value_parser = clap::value_parser!(u64).range(1..))]
+    cycles: Option<u64>,
+    /// Seed of the random stimuli
+    #[arg(long, default_value_t = DEFAULT_SEED)]
+    seed: u64,
+    /// Print one JSON document on standard output
+    #[arg(long)]
+    json: bool,
+}
+
+pub(crate) fn run(args: &Args) -> Result<(), Failure> {
+    let file = machine::read(&args.machine)?;
+    let machine = &file.machine;
+    let design = DesignReport::new(machine)?;
+    let shapers = machine::shapers(machine, &design.design)?;
+    let words = command::words(machine, &design.design, args.command.as_deref())?;
+    let simulator = Simulator::choose(args.simulator);
+    let yosys = installed_yosys()?;
+    let axes = simulate(machine, &design.design, &shapers, &words)?;
+    let bench = Bench::new(machine, shapers)?;
+
+    let mut package = generate::open(args.output.as_deref(), &file)?;
+    let files = write_sources(&mut package, &file, &bench)?;
+    let cycles = args.cycles.unwrap_or(simulator.default_cycles());
+    let mut job = Job { bench: &bench, files: &files, words: &words, simulator, seed: args.seed };
+    let lockstep = job.lockstep(cycles)?;
+    let waves = job.waves(&mut package, &design.design, &axes)?;
+    let estimate = yosys.map(|yosys| estimate(&yosys, machine, &files)).transpose()?;
+
+    let mut checks = Vec::from_iter(checks::lint(simulator, &files, &machine.name)?);
+    checks.extend(checks::all(&bench, &design.design, &lockstep, &waves));
+    checks.extend(estimate.as_ref().and_then(|e| checks::fits(machine, e)));
+    package
+        .add("plots/sensitivity.svg", plot::svg(&design::sensitivity_panels(machine, &design.design))?.as_bytes())
+        .map_err(Failure::because)?;
+    package
+        .add("plots/response.svg", plot::svg(&report::response_panels(machine, &design.design, &axes)?)?.as_bytes())
+        .map_err(Failure::because)?;
+    let report = Report {
+        machine,
+        design: &design,
+        axes: &axes,
+        simulator,
+        seed: args.seed,
+        lockstep: &lockstep,
+        waves: &waves,
+        estimate: estimate.as_ref(),
+        checks: &checks,
+    };
+    let document = report.json()?;
+    package.add("report.json", output::json_text(&document)?.as_bytes()).map_err(Failure::because)?;
+    let root = package.root().to_owned();
+    let written = package.commit().map_err(Failure::because)?;
+    if args.json { output::print_json(&document)? } else { output::print(&report.text(&root, written.len())?)? }
+    let failed: Vec<_> = checks.iter().filter(|c| !c.passed).map(|c| c.name).collect();
+    if failed.is_empty() { Ok(()) } else { Err(Failure::Check(format!("failed: {}", failed.join(", ")))) }
+}
+
+/// Yosys, or a word on standard error that there will be no estimate.
+fn installed_yosys() -> Result<Option<Yosys>, Failure> {
+    match Yosys::installed() {
+        Ok(yosys) => Ok(Some(yosys)),
+        Err(YosysError::Missing(_)) => {
+            output::say("warning: Yosys is not installed: no estimate of area. Install it with scripts/install-tools.");
+            Ok(None)
+        }
+        Err(error) => Err(Failure::because(error)),
+    }
+}
+
+fn estimate(yosys: &Yosys, machine: &Machine, files: &[PathBuf]) -> Result<Estimate, Failure> {
+    let spinner = progress::spinner("Yosys maps the design");
+    let estimate = yosys.estimate(files, &machine.name, synth::family_of(machine)?).map_err(Failure::because)?;
+    spinner.finish_and_clear();
+    Ok(estimate)
+}
+
+/// Writes machine file and Verilog, and returns where the Verilog stands until the folder is complete.
+fn write_sources(package: &mut Package, file: &MachineFile, bench: &Bench) -> Result<Vec<PathBuf>, Failure> {
+    package.add("machine.toml", file.text.as_bytes()).map_err(Failure::because)?;
+    let modules = generate::modules(&file.machine.name, &bench.shapers)?;
+    let write = |module: &posicast_hdl::emit::Module| {
+        let path = package.stage(&format!("rtl/{}.v", module.name)).map_err(Failure::because)?;
+        std::fs::write(&path, &module.text).map_err(Failure::because)?;
+        Ok(path)
+    };
+    modules.iter().map(write).collect()
+}
+
+/// The waveforms of the move and what their comparison says.
+pub(crate) struct Waves {
+    /// Output samples of each axis.
+    pub(crate) samples: Vec<usize>,
+    /// RTL against model, exact.
+    pub(crate) model: Comparison,
+    /// RTL against float design, within the bound.
+    pub(crate) float: Comparison,
+    /// Largest difference of RTL and float design per axis, in LSB.
+    pub(crate) largest_difference_lsb: Vec<f64>,
+}
+
+struct Job<'a> {
+    bench: &'a Bench,
+    files: &'a [PathBuf],
+    words: &'a Words,
+    simulator: Simulator,
+    seed: u64,
+}
+
+impl Job<'_> {
+    fn lockstep(&mut self, cycles: u64) -> Result<LockstepReport, Failure> {
+        let mut device = self.bench.device(self.simulator, self.files, self.seed)?;
+        self.bench.lockstep(device.as_mut(), &command::widened(self.words), cycles, self.seed)
+    }
+
+    fn waves(
+        &self,
+        package: &mut Package,
+        design: &MachineDesign,
+        axes: &[AxisSimulation],
+    ) -> Result<Waves, Failure> {
+        let words = command::widened(self.words);
+        let command = Move {
+            layout: &self.bench.layout,
+            words: &words,
+            clocks_per_sample: wave_clocks_per_sample(self.bench.pass_clocks),
+            sample_hz: design.sample_hz,
+        };
+        let mut stage = |name: &str| package.stage(&format!("wave/{name}")).map_err(Failure::because);
+        let (model_vcd, rtl_vcd, float_vcd) = (stage("model.vcd")?, stage("rtl.vcd")?, stage("float.vcd")?);
+        let merged = stage("merged.vcd")?;
+        for view in ["merged.gtkw", "merged.sucl"] {
+            stage(view)?;
+        }
+        let spinner = progress::spinner("waveforms");
+        let scope = self.bench.machine.name.as_str();
+        let mut model = TwoValued(self.bench.model(self.seed));
+        command.record(&mut model, &model_vcd, scope).map_err(bench::failure)?;
+        let mut device = self.bench.device(self.simulator, self.files, self.seed)?;
+        let trace = command.record(device.as_mut(), &rtl_vcd, scope).map_err(bench::failure)?;
+        let float: Vec<Vec<f64>> = axes.iter().map(|axis| axis.float.clone()).collect();
+        command.record_float(&float, &trace, &float_vcd, scope).map_err(bench::failure)?;
+
+        let exact = Options::default();
+        let mut within = Options { common_only: true, ..Options::default() };
+        let mut differences = Vec::new();
+        let names: Vec<String> = self.bench.shapers.iter().map(|s| format!("{}_y", s.axis)).collect();
+        for (name, axis) in names.iter().zip(axes) {
+            within.add_tolerance(&format!("{name}={}", axis.bound_lsb)).map_err(bench::failure)?;
+            differences.push(Difference { name, minuend: (1, name), subtrahend: (2, name) });
+        }
+        let compare = |a, b, options: &Options| diff::compare(a, b, options, &mut |_| {}).map_err(bench::failure);
+        let waves = Waves {
+            samples: trace.shaped.iter().map(Vec::len).collect(),
+            model: compare(&model_vcd, &rtl_vcd, &exact)?,
+            float: compare(&rtl_vcd, &float_vcd, &within)?,
+            largest_difference_lsb: trace
+                .shaped
+                .iter()
+                .zip(&float)
+                .map(|(shaped, float)| {
+                    let words: Vec<i32> = shaped.iter().map(|word| *word as i32).collect();
+                    largest_difference(&words, float)
+                })
+                .collect(),
+        };
+        let parts = [("model", &model_vcd), ("rtl", &rtl_vcd), ("float", &float_vcd)];
+        let parts = parts.map(|(scope, path)| Part { scope, path });
+        merge(&merged, &parts, &differences).map_err(bench::failure)?;
+        spinner.finish_and_clear();
+        Ok(waves)
+    }
+}
+
+/// Version of the Verilator in use, where it is installed.
+pub(crate) fn verilator_version() -> Option<String> {
+    verilator::version().ok()
+}

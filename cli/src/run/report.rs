@@ -1,0 +1,320 @@
+//! What `run` reports: a table for people, a document for programs, a picture for both.
+
+use super::checks::Check;
+use super::{Waves, verilator_version};
+use crate::bench::Simulator;
+use crate::design::{self, Report as DesignReport};
+use crate::failure::Failure;
+use crate::output::{Table, percent};
+use crate::plot::{Curve, Panel};
+use crate::simulate::micro_units_per_lsb;
+use crate::synth;
+use posicast_model::analysis::tap_impulses;
+use posicast_model::design::{AxisTables, MachineDesign};
+use posicast_model::impulse::ImpulseSequence;
+use posicast_model::plant::Plant;
+use posicast_model::plant::response::{PlantFigures, StepFigures, plant_figures, step_response};
+use posicast_model::simulation::AxisSimulation;
+use posicast_model::spec::{Axis, Machine};
+use posicast_synth::yosys::Estimate;
+use posicast_testbench::diff::Comparison;
+use posicast_testbench::lockstep::report::Report as LockstepReport;
+use serde::Serialize;
+use std::fmt::Write;
+use std::path::Path;
+
+/// Everything that a run found out.
+pub(crate) struct Report<'a> {
+    pub(crate) machine: &'a Machine,
+    pub(crate) design: &'a DesignReport<'a>,
+    pub(crate) axes: &'a [AxisSimulation],
+    pub(crate) simulator: Simulator,
+    pub(crate) seed: u64,
+    pub(crate) lockstep: &'a LockstepReport,
+    pub(crate) waves: &'a Waves,
+    pub(crate) estimate: Option<&'a Estimate>,
+    pub(crate) checks: &'a [Check],
+}
+
+/// One axis's figures on the simulated machine.
+struct OnPlant {
+    shaped: PlantFigures,
+    unshaped: PlantFigures,
+}
+
+impl OnPlant {
+    fn new(axis: &Axis, tables: &AxisTables, sample_hz: f64) -> Result<Self, Failure> {
+        let plant = Plant::of_axis(axis).map_err(Failure::because)?;
+        Ok(Self {
+            shaped: plant_figures(&plant, &tap_impulses(&tables.table, sample_hz)),
+            unshaped: plant_figures(&plant, ImpulseSequence::unity().impulses()),
+        })
+    }
+}
+
+/// The largest residual of all modes; none without a mode.
+fn worst(figures: &StepFigures) -> Option<f64> {
+    figures.residual.iter().copied().reduce(f64::max)
+}
+
+fn percent_or_dash(fraction: Option<f64>) -> String {
+    fraction.map_or_else(|| "-".to_owned(), percent)
+}
+
+impl Report<'_> {
+    fn rows(&self) -> impl Iterator<Item = (usize, &Axis, &AxisTables)> {
+        let axes = self.machine.axes.iter().zip(&self.design.design.axes).enumerate();
+        axes.map(|(index, (axis, tables))| (index, axis, tables))
+    }
+
+    fn sample_hz(&self) -> f64 {
+        self.design.design.sample_hz
+    }
+
+    /// The text for people, with the verdict last.
+    pub(crate) fn text(&self, root: &Path, files: usize) -> Result<String, Failure> {
+        let clock = &self.machine.clock;
+        let tool = match self.simulator {
+            Simulator::Verilator => verilator_version().unwrap_or_else(|| self.simulator.to_string()),
+            Simulator::Icarus => "Icarus Verilog".to_owned(),
+            Simulator::Rusthdl => "RustHDL's simulator: the weaker check, the Verilog itself was not simulated".to_owned(),
+        };
+        let mut text = format!(
+            "{}: {} MHz clock, {} Hz samples, coefficients with {} fraction bits\nsimulator: {tool}; seed {}\n\n",
+            self.machine.name,
+            clock.frequency_hz / 1e6,
+            clock.sample_hz,
+            self.design.design.coefficient_fraction,
+            self.seed,
+        );
+        text += &self.shapers_text()?;
+        text.push('\n');
+        text += &self.comparison_text();
+        if let Some(estimate) = self.estimate {
+            text.push('\n');
+            text += &synth::text(estimate);
+        }
+        text.push('\n');
+        for check in self.checks {
+            let verdict = if check.passed { "ok    " } else { "FAILED" };
+            let _ = writeln!(text, "{verdict}  {}: {}", check.name, check.detail);
+        }
+        let _ = writeln!(text, "\n{files} files written to {}: machine.toml, rtl/, wave/, plots/, report.json", root.display());
+        text += if self.checks.iter().all(|c| c.passed) {
+            "PASS: the Verilog computes what was designed.\n"
+        } else {
+            "FAIL: do not put this Verilog into a machine.\n"
+        };
+        Ok(text)
+    }
+
+    fn shapers_text(&self) -> Result<String, Failure> {
+        let mut residuals = Table::new(&[
+            "axis", "shaper", ">impulses", ">taps", ">float", ">quantised", ">on plant", ">plant -10 %", ">plant +10 %",
+        ]);
+        let mut overshoots =
+            Table::new(&["axis", ">unshaped", ">on plant", ">plant -10 %", ">plant +10 %", ">ringing unshaped", ">ringing shaped"]);
+        for (index, axis, tables) in self.rows() {
+            let plant = OnPlant::new(axis, tables, self.sample_hz())?;
+            let figures = tables.mode_figures(axis, self.sample_hz());
+            let largest = |pick: fn(&posicast_model::design::ModeFigures) -> f64| figures.iter().map(pick).reduce(f64::max);
+            residuals.row([
+                axis.name.clone(),
+                tables.design.kind.clone(),
+                tables.design.impulses.impulses().len().to_string(),
+                tables.table.taps().len().to_string(),
+                percent_or_dash(largest(|m| m.residual)),
+                percent_or_dash(largest(|m| m.residual_quantised)),
+                percent_or_dash(worst(&plant.shaped.nominal)),
+                percent_or_dash(worst(&plant.shaped.minus_10_percent)),
+                percent_or_dash(worst(&plant.shaped.plus_10_percent)),
+            ]);
+            let micro = micro_units_per_lsb(self.machine, axis);
+            overshoots.row([
+                axis.name.clone(),
+                percent(plant.unshaped.nominal.overshoot),
+                percent(plant.shaped.nominal.overshoot),
+                percent(plant.shaped.minus_10_percent.overshoot),
+                percent(plant.shaped.plus_10_percent.overshoot),
+                format!("{:.4}", self.axes[index].vibration_unshaped * micro),
+                format!("{:.4}", self.axes[index].vibration * micro),
+            ]);
+        }
+        Ok(format!(
+            "Residual vibration of a step, worst mode, % of unshaped\n{}\n\
+             Overshoot of a step, %; ringing after the move, millionths of the unit\n{}",
+            residuals.text("  "),
+            overshoots.text("  ")
+        ))
+    }
+
+    fn comparison_text(&self) -> String {
+        let mut table = Table::new(&[
+            "axis", ">clocks", ">mismatches", ">samples of the move", ">largest difference from float, LSB", ">bound, LSB",
+        ]);
+        for (index, axis, _) in self.rows() {
+            let block = self.lockstep.blocks.iter().find(|b| b.instance == axis.name);
+            table.row([
+                axis.name.clone(),
+                block.map_or_else(String::new, |b| b.cycles.to_string()),
+                block.map_or_else(String::new, |b| b.mismatches.to_string()),
+                self.waves.samples[index].to_string(),
+                format!("{:.3}", self.waves.largest_difference_lsb[index]),
+                format!("{:.3}", self.axes[index].bound_lsb),
+            ]);
+        }
+        format!("RTL against model and float design\n{}", table.text("  "))
+    }
+
+    /// The document for programs: also `report.json`.
+    pub(crate) fn json(&self) -> Result<Document<'_>, Failure> {
+        let axes = self.rows().map(|(index, axis, tables)| {
+            let plant = OnPlant::new(axis, tables, self.sample_hz())?;
+            let micro = 1e-6 * micro_units_per_lsb(self.machine, axis);
+            Ok(AxisDocument {
+                name: axis.name.clone(),
+                plant: PlantDocument::new(&plant),
+                residual_displacement_unshaped: self.axes[index].vibration_unshaped * micro,
+                residual_displacement: self.axes[index].vibration * micro,
+                samples: self.waves.samples[index],
+                largest_difference_lsb: self.waves.largest_difference_lsb[index],
+                bound_lsb: self.axes[index].bound_lsb,
+            })
+        });
+        Ok(Document {
+            name: self.machine.name.clone(),
+            result: if self.checks.iter().all(|c| c.passed) { "pass" } else { "fail" },
+            simulator: self.simulator,
+            seed: self.seed,
+            design: self.design.json(),
+            axes: axes.collect::<Result<_, Failure>>()?,
+            verify: self.lockstep,
+            model_against_rtl: &self.waves.model,
+            rtl_against_float: &self.waves.float,
+            synth: self.estimate,
+            checks: self.checks,
+        })
+    }
+}
+
+/// Duration that a step response shows, in shaper durations.
+const SHOWN_DURATIONS: f64 = 4.0;
+const RESPONSE_POINTS: usize = 1200;
+
+/// Step responses and the end of the move, two panels per axis.
+pub(crate) fn response_panels(
+    machine: &Machine,
+    design: &MachineDesign,
+    axes: &[AxisSimulation],
+) -> Result<Vec<Panel>, Failure> {
+    let mut panels = Vec::new();
+    for ((axis, tables), run) in machine.axes.iter().zip(&design.axes).zip(axes) {
+        if axis.modes.is_empty() {
+            continue;
+        }
+        panels.push(step_panel(axis, tables, design.sample_hz)?);
+        panels.push(move_panel(machine, axis, run));
+    }
+    Ok(panels)
+}
+
+fn step_panel(axis: &Axis, tables: &AxisTables, sample_hz: f64) -> Result<Panel, Failure> {
+    let plant = Plant::of_axis(axis).map_err(Failure::because)?;
+    let taps = tap_impulses(&tables.table, sample_hz);
+    let slowest_s = axis.modes.iter().map(|m| m.mode.damped_period_s()).fold(0.0, f64::max);
+    let duration_s = SHOWN_DURATIONS * tables.design.impulses.duration_s().max(slowest_s);
+    let curve = |plant: &Plant, impulses: &[_]| {
+        let points = step_response(plant, impulses, duration_s, RESPONSE_POINTS);
+        points.into_iter().map(|(time_s, position)| (1e3 * time_s, position)).collect::<Vec<_>>()
+    };
+    Ok(Panel {
+        title: format!("axis {}: step response with {}", axis.name, tables.design.kind),
+        x_label: "time, ms".into(),
+        y_label: "position / step".into(),
+        curves: vec![
+            Curve::reference("unshaped", curve(&plant, ImpulseSequence::unity().impulses())),
+            Curve::new("shaped", curve(&plant, &taps)),
+            Curve::new("shaped, machine 10 % slower", curve(&plant.scaled(0.9), &taps)),
+            Curve::new("shaped, machine 10 % faster", curve(&plant.scaled(1.1), &taps)),
+        ],
+    })
+}
+
+/// The machine round its target, from shortly before the move arrives to the end.
+fn move_panel(machine: &Machine, axis: &Axis, run: &AxisSimulation) -> Panel {
+    let target = run.shaped.last().copied().map_or(0.0, f64::from);
+    let micro = micro_units_per_lsb(machine, axis);
+    let moving = run.shaped.iter().rposition(|word| f64::from(*word) != target).unwrap_or(0);
+    let from = moving.saturating_sub((run.shaped.len() - moving) / 8);
+    let deviation = |positions: &[f64]| {
+        let points = positions.iter().enumerate().skip(from);
+        points
+            .map(|(n, position)| (1e3 * n as f64 / machine.clock.sample_hz, (position - target) * micro))
+            .collect::<Vec<_>>()
+    };
+    Panel {
+        title: format!("axis {}: arrival of the move", axis.name),
+        x_label: "time, ms".into(),
+        y_label: "deviation from target, µ".into(),
+        curves: vec![
+            Curve::reference("unshaped", deviation(&run.position_unshaped)),
+            Curve::new("shaped", deviation(&run.position)),
+        ],
+    }
+}
+
+/// `run --json` and `report.json`.
+#[derive(Serialize)]
+pub(crate) struct Document<'a> {
+    name: String,
+    result: &'static str,
+    simulator: Simulator,
+    seed: u64,
+    design: design::Document,
+    axes: Vec<AxisDocument>,
+    verify: &'a LockstepReport,
+    model_against_rtl: &'a Comparison,
+    rtl_against_float: &'a Comparison,
+    synth: Option<&'a Estimate>,
+    checks: &'a [Check],
+}
+
+#[derive(Serialize)]
+struct AxisDocument {
+    name: String,
+    plant: PlantDocument,
+    residual_displacement_unshaped: f64,
+    residual_displacement: f64,
+    samples: usize,
+    largest_difference_lsb: f64,
+    bound_lsb: f64,
+}
+
+#[derive(Serialize)]
+struct PlantDocument {
+    unshaped: StepDocument,
+    nominal: StepDocument,
+    minus_10_percent: StepDocument,
+    plus_10_percent: StepDocument,
+}
+
+#[derive(Serialize)]
+struct StepDocument {
+    residual: Vec<f64>,
+    overshoot: f64,
+}
+
+impl PlantDocument {
+    fn new(plant: &OnPlant) -> Self {
+        let step = |figures: &StepFigures| StepDocument {
+            residual: figures.residual.clone(),
+            overshoot: figures.overshoot,
+        };
+        Self {
+            unshaped: step(&plant.unshaped.nominal),
+            nominal: step(&plant.shaped.nominal),
+            minus_10_percent: step(&plant.shaped.minus_10_percent),
+            plus_10_percent: step(&plant.shaped.plus_10_percent),
+        }
+    }
+}

@@ -1,0 +1,170 @@
+//! `posicast simulate`: a command through the bit-exact model and the float design, and on to the simulated machine.
+
+use crate::command::{self, Words};
+use crate::design::Report;
+use crate::failure::Failure;
+use crate::machine;
+use crate::output::{self, Table};
+use posicast_hdl::machine::AxisShaper;
+use posicast_model::design::MachineDesign;
+use posicast_model::plant::Plant;
+use posicast_model::simulation::{AxisSimulation, simulate_axis};
+use posicast_model::spec::{Axis, Machine};
+use posicast_testbench::wave::{Recorder, Signal};
+use serde::Serialize;
+use std::path::{Path, PathBuf};
+
+/// Run a command through the bit-exact model and the float design, on the simulated machine
+#[derive(clap::Args)]
+#[command(after_help = "\
+Examples:
+  posicast simulate examples/xy-stage.toml -o move.vcd
+  posicast simulate examples/xy-stage.toml --command moves.csv
+
+The waveform holds, per axis and in LSB of the command word: command x, shaped y, float design y_float, and the
+machine's position with and without shaping.")]
+pub(crate) struct Args {
+    /// Machine file
+    machine: PathBuf,
+    /// Waveform to write [default: ./NAME.vcd]
+    #[arg(short, long, value_name = "FILE.vcd")]
+    output: Option<PathBuf>,
+    /// Command: a CSV file with columns time_s,position [default: a jerk-limited 5 mm move]
+    #[arg(long, value_name = "FILE.csv")]
+    command: Option<PathBuf>,
+    /// Print one JSON document on standard output
+    #[arg(long)]
+    json: bool,
+}
+
+pub(crate) fn run(args: &Args) -> Result<(), Failure> {
+    let machine = machine::read(&args.machine)?.machine;
+    let design = Report::new(&machine)?.design;
+    let shapers = machine::shapers(&machine, &design)?;
+    let words = command::words(&machine, &design, args.command.as_deref())?;
+    let axes = simulate(&machine, &design, &shapers, &words)?;
+    let path = args.output.clone().unwrap_or_else(|| PathBuf::from(format!("{}.vcd", machine.name)));
+    write_wave(&machine, &words, &axes, &path)?;
+    let document = Document::new(&machine, &axes, &path);
+    if args.json { output::print_json(&document)? } else { output::print(&document.text())? }
+    match document.axes.iter().find(|a| a.largest_difference_lsb > a.bound_lsb) {
+        None => Ok(()),
+        Some(axis) => Err(Failure::Check(format!("axis {}: the model leaves the float design's bound", axis.name))),
+    }
+}
+
+/// All axes of a machine under their words.
+pub(crate) fn simulate(
+    machine: &Machine,
+    design: &MachineDesign,
+    shapers: &[AxisShaper],
+    words: &Words,
+) -> Result<Vec<AxisSimulation>, Failure> {
+    let axes = machine.axes.iter().zip(&design.axes).zip(shapers).zip(words);
+    axes.map(|(((axis, tables), shaper), words)| {
+        let plant = Plant::of_axis(axis).map_err(Failure::because)?;
+        Ok(simulate_axis(&shaper.config, tables, &plant, machine.clock.sample_period_s(), words))
+    })
+    .collect()
+}
+
+/// Micrometres (or microradians) per LSB of an axis's command word.
+pub(crate) fn micro_units_per_lsb(machine: &Machine, axis: &Axis) -> f64 {
+    1e6 / (axis.counts_per_unit * f64::from(machine.fixed_point.command_fraction).exp2())
+}
+
+fn write_wave(machine: &Machine, words: &Words, axes: &[AxisSimulation], path: &Path) -> Result<(), Failure> {
+    let bits = machine.fixed_point.command_bits;
+    let signals: Vec<Signal> = machine
+        .axes
+        .iter()
+        .flat_map(|axis| {
+            let name = |signal: &str| format!("{}_{signal}", axis.name);
+            [
+                Signal::bits(&name("x"), bits),
+                Signal::bits(&name("y"), bits),
+                Signal::real(&name("y_float")),
+                Signal::real(&name("position")),
+                Signal::real(&name("position_unshaped")),
+            ]
+        })
+        .collect();
+    let mut recorder =
+        Recorder::create(path, machine.clock.sample_hz, &[&machine.name], &signals).map_err(Failure::because)?;
+    let mask = u64::MAX >> (64 - bits);
+    let raw = |word: i32| i64::from(word) as u64 & mask;
+    for sample in 0..words.first().map_or(0, Vec::len) {
+        let row: Vec<u64> = axes
+            .iter()
+            .zip(words)
+            .flat_map(|(axis, words)| {
+                let reals = [axis.float[sample], axis.position[sample], axis.position_unshaped[sample]];
+                let integers = [raw(words[sample]), raw(axis.shaped[sample])];
+                integers.into_iter().chain(reals.map(f64::to_bits))
+            })
+            .collect();
+        recorder.clock(&[&row]).map_err(Failure::because)?;
+    }
+    recorder.finish().map_err(Failure::because)
+}
+
+/// `simulate --json`.
+#[derive(Serialize)]
+struct Document {
+    name: String,
+    samples: usize,
+    axes: Vec<AxisDocument>,
+    wave: String,
+}
+
+#[derive(Serialize)]
+struct AxisDocument {
+    name: String,
+    largest_difference_lsb: f64,
+    bound_lsb: f64,
+    residual_displacement_unshaped: f64,
+    residual_displacement: f64,
+}
+
+impl Document {
+    fn new(machine: &Machine, axes: &[AxisSimulation], path: &Path) -> Self {
+        let document = |(axis, run): (&Axis, &AxisSimulation)| {
+            let scale = 1e-6 * micro_units_per_lsb(machine, axis);
+            AxisDocument {
+                name: axis.name.clone(),
+                largest_difference_lsb: run.largest_difference_lsb(),
+                bound_lsb: run.bound_lsb,
+                residual_displacement_unshaped: run.vibration_unshaped * scale,
+                residual_displacement: run.vibration * scale,
+            }
+        };
+        Self {
+            name: machine.name.clone(),
+            samples: axes.first().map_or(0, |a| a.shaped.len()),
+            axes: machine.axes.iter().zip(axes).map(document).collect(),
+            wave: path.display().to_string(),
+        }
+    }
+
+    fn text(&self) -> String {
+        let headings =
+            ["axis", ">ringing unshaped", ">ringing shaped", ">largest difference from float", ">bound"];
+        let mut table = Table::new(&headings);
+        for axis in &self.axes {
+            table.row([
+                axis.name.clone(),
+                format!("{:.4} µ", axis.residual_displacement_unshaped * 1e6),
+                format!("{:.4} µ", axis.residual_displacement * 1e6),
+                format!("{:.3} LSB", axis.largest_difference_lsb),
+                format!("{:.3} LSB", axis.bound_lsb),
+            ]);
+        }
+        format!(
+            "{}: {} samples; ringing after the command's end, in millionths of the machine file's unit\n{}{}\n",
+            self.name,
+            self.samples,
+            table.text(""),
+            self.wave
+        )
+    }
+}

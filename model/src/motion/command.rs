@@ -1,0 +1,111 @@
+//! A command given as points in time, on the sample grid.
+
+use super::profile::{ProfileError, SAMPLES_MAX};
+use crate::mode::Mode;
+
+/// Periods of the slowest mode that a command stands still at its end, so that what rings is seen.
+const SETTLE_PERIODS: f64 = 3.0;
+
+/// Why points are no command.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum PointsError {
+    /// Fewer than one point.
+    #[error("there is no point: give at least one line `time_s,position`")]
+    Empty,
+    /// A time or position that is NaN or infinite.
+    #[error("point {point}: {value} is no finite number")]
+    NotFinite {
+        /// Index of the point, from 0.
+        point: usize,
+        /// The value found.
+        value: f64,
+    },
+    /// A time that does not lie after the one before.
+    #[error("point {point}: time {time_s} s does not lie after {before_s} s: times must increase")]
+    Order {
+        /// Index of the point, from 0.
+        point: usize,
+        /// The time found.
+        time_s: f64,
+        /// The time before it.
+        before_s: f64,
+    },
+    /// More samples than a run holds.
+    #[error(transparent)]
+    TooLong(#[from] ProfileError),
+}
+
+/// How long a command stands still at its end in seconds: the shaper's duration and some periods of the slowest mode.
+pub fn settle_s(shaper_duration_s: f64, modes: impl IntoIterator<Item = Mode>) -> f64 {
+    let slowest_s = modes.into_iter().map(|m| m.damped_period_s()).fold(0.0, f64::max);
+    shaper_duration_s + SETTLE_PERIODS * slowest_s
+}
+
+/// Positions at the samples between the first point and `settle_s` after the last: straight lines between the points,
+/// the last position from then on.
+///
+/// # Errors
+/// [`PointsError`] names the point that is wrong.
+pub fn resample(points: &[(f64, f64)], sample_hz: f64, settle_s: f64) -> Result<Vec<f64>, PointsError> {
+    let (Some(first), Some(last)) = (points.first(), points.last()) else {
+        return Err(PointsError::Empty);
+    };
+    for (point, (time_s, position)) in points.iter().enumerate() {
+        if let Some(value) = [*time_s, *position].into_iter().find(|v| !v.is_finite()) {
+            return Err(PointsError::NotFinite { point, value });
+        }
+    }
+    if let Some(at) = points.windows(2).position(|pair| pair[1].0 <= pair[0].0) {
+        let (before_s, time_s) = (points[at].0, points[at + 1].0);
+        return Err(PointsError::Order {
+            point: at + 1,
+            time_s,
+            before_s,
+        });
+    }
+    let duration_s = last.0 - first.0 + settle_s;
+    let samples = (duration_s * sample_hz).ceil() + 1.0;
+    if samples.is_nan() || samples > SAMPLES_MAX as f64 {
+        return Err(PointsError::TooLong(ProfileError::TooLong {
+            duration_s,
+            samples,
+            sample_hz,
+        }));
+    }
+    let mut segment = 0;
+    let sample = |index: u32| {
+        let time_s = first.0 + f64::from(index) / sample_hz;
+        while points.get(segment + 1).is_some_and(|next| next.0 <= time_s) {
+            segment += 1;
+        }
+        let from = points[segment];
+        points.get(segment + 1).map_or(from.1, |to| {
+            from.1 + (to.1 - from.1) * ((time_s - from.0) / (to.0 - from.0))
+        })
+    };
+    Ok((0..samples as u32).map(sample).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn points_are_joined_by_straight_lines_and_the_last_is_held() {
+        let positions = resample(&[(1.0, 0.0), (1.2, 2.0), (1.3, 2.0)], 10.0, 0.2).unwrap();
+        let expected = [0.0, 1.0, 2.0, 2.0, 2.0, 2.0];
+        assert_eq!(positions.len(), expected.len());
+        assert!(positions.iter().zip(expected).all(|(p, e)| (p - e).abs() < 1e-9), "{positions:?}");
+    }
+
+    #[test]
+    fn wrong_points_are_named() {
+        assert_eq!(resample(&[], 10.0, 0.0), Err(PointsError::Empty));
+        let error = resample(&[(0.0, 0.0), (0.0, 1.0)], 10.0, 0.0).unwrap_err();
+        assert!(matches!(error, PointsError::Order { point: 1, .. }));
+        let error = resample(&[(0.0, f64::NAN)], 10.0, 0.0).unwrap_err();
+        assert!(matches!(error, PointsError::NotFinite { point: 0, .. }));
+        let error = resample(&[(0.0, 0.0), (1e300, 1.0)], 10.0, 0.0).unwrap_err();
+        assert!(matches!(error, PointsError::TooLong(_)));
+    }
+}
