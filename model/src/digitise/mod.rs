@@ -77,6 +77,17 @@ impl Digitised {
         })
         .collect()
     }
+
+    /// The float design's output for these command words, in the same unit: what the hardware's output is compared with.
+    /// Before the first word the command was at the first word.
+    pub fn shape(&self, command: &[i32]) -> Vec<f64> {
+        let word = |sample: usize, delay_samples: u32| {
+            let delayed = sample.saturating_sub(delay_samples as usize);
+            f64::from(command[delayed])
+        };
+        let output = |sample| self.taps.iter().map(|t| t.weight * word(sample, t.delay_samples)).sum();
+        (0..command.len()).map(output).collect()
+    }
 }
 
 /// Puts an axis's shaper on the sample grid.
@@ -241,6 +252,13 @@ mod tests {
         let error = digitise(&design, Digitise::Modal, 1000.0).unwrap_err();
         assert!(matches!(error, TableError::Nyquist { .. }), "{error}");
         assert!(digitise(&design, Digitise::Linear, 1000.0).is_ok());
+    }
+
+    #[test]
+    fn unit_shaping_starts_at_rest_on_the_first_word() {
+        let digitised = digitise(&custom(&[(0.0, 0.25), (0.002, 0.75)], None), Digitise::Modal, 1000.0).unwrap();
+        assert_eq!(digitised.shape(&[8, 8, 12, 12, 16]), [8.0, 8.0, 9.0, 9.0, 13.0]);
+        assert!(digitised.shape(&[]).is_empty());
     }
 
     #[test]

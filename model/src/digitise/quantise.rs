@@ -156,8 +156,11 @@ mod tests {
 
     #[test]
     fn unit_negative_weights_floor_downwards() {
-        // Times 2: -1.5 and 3.5; floors -2 and 3, one is missing, a tie.
-        assert_eq!(coefficients(&table(&[-0.75, 1.75], Some(1)).unwrap()), [-1, 3]);
+        // Times 4: -1.7, 1.3, 4.4; floors -2 1 4, one is missing.
+        assert_eq!(
+            coefficients(&table(&[-0.425, 0.325, 1.1], Some(2)).unwrap()),
+            [-2, 1, 5]
+        );
     }
 
     #[test]
