@@ -233,6 +233,16 @@ mod tests {
     }
 
     #[test]
+    fn unit_impulses_that_share_a_sample_add_up() {
+        let design = custom(&[(0.0, 0.5), (0.0102, 0.25), (0.0105, 0.25)], None);
+        let taps = digitise(&design, Digitise::Linear, 1000.0).unwrap().taps;
+        for (tap, expected) in taps.iter().zip([(0, 0.5), (10, 0.325), (11, 0.175)]) {
+            assert_eq!(tap.delay_samples, expected.0);
+            assert!((tap.weight - expected.1).abs() < 1e-12);
+        }
+    }
+
+    #[test]
     fn unit_a_shaper_longer_than_any_ring_is_refused_before_it_is_built() {
         for last_s in [1e300, 1e9, 16.383] {
             let error = digitise(&custom(&[(0.0, 0.5), (last_s, 0.5)], None), Digitise::Linear, 1000.0).unwrap_err();

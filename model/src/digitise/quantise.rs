@@ -218,6 +218,12 @@ mod tests {
     }
 
     #[test]
+    fn unit_quantising_error_counts_taps_of_the_table_alone() {
+        let other = table(&[0.25, 0.25, 0.5], None).unwrap();
+        assert_eq!(quantising_error(&digitised(&[0.5, 0.5]), &other), 1.0);
+    }
+
+    #[test]
     fn unit_quantising_error_counts_dropped_taps() {
         let weights = [0.5, 1e-7, 0.5 - 1e-7];
         let error = quantising_error(&digitised(&weights), &table(&weights, None).unwrap());
