@@ -6,7 +6,7 @@ use super::{Axis, AxisMode, Clock, FixedPoint, Limits, not_built, shaper};
 use crate::mode::Mode;
 use crate::rtl::shaper::WORD_BITS;
 
-/// Modes of an axis: with four impulses each their convolution has 65536 impulses, far more than any table holds.
+/// Modes of an axis: with five impulses each their convolution has 390,625, far more than any table holds.
 const MAX_MODES: usize = 8;
 /// Encoder counts per metre or radian: up to a picometre per count.
 const COUNTS_PER_UNIT: NumberRange = NumberRange::positive(1e12);
@@ -21,8 +21,14 @@ const POSITION: NumberRange = NumberRange::closed(-1e9, 1e9).unit("m or rad");
 /// Velocity, acceleration and jerk: far above any machine, finite when multiplied with each other.
 const MOTION: NumberRange = NumberRange::positive(1e9);
 
-/// Reads one axis. Without a valid clock or number format the checks that need them are left out.
-pub(super) fn read(table: &Table<'_, '_>, clock: Option<Clock>, fixed_point: Option<FixedPoint>) -> Option<Axis> {
+/// Reads one axis under a name that was read before. Without a valid clock or number format the checks that need them
+/// are left out.
+pub(super) fn read(
+    table: &Table<'_, '_>,
+    name: Option<String>,
+    clock: Option<Clock>,
+    fixed_point: Option<FixedPoint>,
+) -> Option<Axis> {
     table.allow(&[
         "name",
         "counts_per_unit",
@@ -55,7 +61,7 @@ pub(super) fn read(table: &Table<'_, '_>, clock: Option<Clock>, fixed_point: Opt
         None => None,
     };
     Some(Axis {
-        name: table.text("name", "")?.to_owned(),
+        name: name?,
         counts_per_unit: counts_per_unit?,
         shaper,
         modes: modes?.into_iter().map(|(_, mode)| mode).collect(),

@@ -6,7 +6,8 @@
 //! stage.toml:23: axis.mode.damping of axis x, mode 1: found 1.2; allowed: at least 0, below 1
 //! ```
 //!
-//! As a [`miette::Diagnostic`] it adds the source with a label at each place, and the remedies as help.
+//! As a [`miette::Diagnostic`] it adds the source with a mark at each place, and the remedies as help. A handler should
+//! not wrap lines: the plain text is meant to be searched.
 
 use std::fmt;
 use std::ops::Range;
@@ -122,6 +123,24 @@ pub enum Cause {
     },
 }
 
+impl Cause {
+    /// The cause in two or three words, for the mark in a listing of the source.
+    fn label(&self) -> &'static str {
+        match self {
+            Cause::Syntax(_) => "no TOML",
+            Cause::Empty { .. } => "empty",
+            Cause::UnknownKey { .. } => "unknown key",
+            Cause::MissingKey { .. } => "key missing here",
+            Cause::WrongType { .. } => "wrong type",
+            Cause::OutOfRange { .. } => "out of range",
+            Cause::NotAChoice { .. } => "not in the list",
+            Cause::Duplicate { .. } => "not unique",
+            Cause::Inconsistent { .. } => "contradiction",
+            Cause::NotBuilt { .. } => "not built",
+        }
+    }
+}
+
 impl SpecError {
     /// Takes problems in any order. `unlisted` further ones were found and not kept.
     pub(super) fn new(file_name: &str, text: &str, mut problems: Vec<Problem>, unlisted: usize) -> Self {
@@ -177,7 +196,7 @@ impl Diagnostic for SpecError {
     }
 
     fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
-        let label = |p: &Problem| LabeledSpan::new_with_span(Some(p.cause.to_string()), p.span.clone());
+        let label = |p: &Problem| LabeledSpan::new_with_span(Some(p.cause.label().to_owned()), p.span.clone());
         Some(Box::new(self.problems.iter().map(label)))
     }
 

@@ -48,14 +48,14 @@ fn read_axes(root: &Table<'_, '_>, clock: Option<Clock>, fixed_point: Option<Fix
         let name = table.required_name("name");
         let place = name.clone().unwrap_or((index + 1).to_string());
         let table = table.at(format!("axis {place}"));
-        if let Some(name) = name {
-            match lines.iter().find(|(other, _)| *other == name) {
+        if let Some(name) = &name {
+            match lines.iter().find(|(other, _)| other == name) {
                 Some((_, line)) => table.duplicate("name", *line, "every axis has a name of its own"),
-                None => lines.push((name, table.line_of("name"))),
+                None => lines.push((name.clone(), table.line_of("name"))),
             }
         }
         axes = axes
-            .zip(axis::read(&table, clock, fixed_point))
+            .zip(axis::read(&table, name, clock, fixed_point))
             .map(|(mut axes, axis)| {
                 axes.push(axis);
                 axes
@@ -77,7 +77,7 @@ fn read_clock(table: &Table<'_, '_>) -> Option<Clock> {
         return None;
     }
     let whole = ratio.round();
-    if whole < 1.0 || (ratio - whole).abs() > RATIO_ROUNDING * ratio {
+    if (ratio - whole).abs() > RATIO_ROUNDING * ratio {
         let nearest = nearest_divisor(frequency_hz, sample_hz);
         let whole = nearest_whole_divisor(frequency_hz, sample_hz).filter(|hz| *hz != nearest);
         let also = whole.map(|hz| format!(", in whole hertz {hz}")).unwrap_or_default();

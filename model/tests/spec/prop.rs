@@ -3,13 +3,9 @@
 use posicast_model::spec;
 use proptest::prelude::*;
 
-const FILES: [&str; 5] = [
-    include_str!("../../examples/xy-stage.toml"),
-    include_str!("../../examples/gantry.toml"),
-    include_str!("../../examples/robot-joint.toml"),
-    include_str!("../../examples/custom-shaper.toml"),
-    include_str!("spec_files/everything.toml"),
-];
+use crate::files::{CUSTOM_SHAPER, EVERYTHING, GANTRY, ROBOT_JOINT, XY_STAGE};
+
+const FILES: [&str; 5] = [XY_STAGE, GANTRY, ROBOT_JOINT, CUSTOM_SHAPER, EVERYTHING];
 
 /// Values that break things: the ends of every number type, nothing at all, and every other type.
 const VALUES: [&str; 24] = [
@@ -70,8 +66,6 @@ fn check(text: &str) -> Result<(), TestCaseError> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 512, ..ProptestConfig::default() })]
-
     #[test]
     fn prop_arbitrary_text_is_parsed_or_refused(text in any::<String>()) {
         check(&text)?;

@@ -1,0 +1,9 @@
+//! The machine file as its users meet it.
+
+mod errors;
+mod files;
+mod not_built;
+mod prop;
+mod report;
+mod rules;
+mod values;
