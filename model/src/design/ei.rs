@@ -235,6 +235,15 @@ mod tests {
     }
 
     #[test]
+    fn unit_largest_damping_by_tolerance_is_as_documented() {
+        let documented = [(0.01, 0.80), (0.05, 0.65), (0.1, 0.56), (0.2, 0.43), (0.3, 0.33)];
+        for (tolerance, largest) in documented {
+            assert!(solve(largest, tolerance).is_ok(), "{tolerance}");
+            assert!(solve(largest + 0.01, tolerance).is_err(), "{tolerance}");
+        }
+    }
+
+    #[test]
     fn unit_tolerances_outside_the_range_are_errors() {
         let mode = Mode {
             frequency_hz: 1.0,

@@ -85,6 +85,14 @@ impl AxisTables {
         quantising_error(&self.digitised, &self.table)
     }
 
+    /// How far the hardware's output can be from [`Digitised::shape`] for these command words, in LSB, saturation excluded:
+    /// `(max x − min x) · Σ |c_i/2^F − a_i| + ½`.
+    pub fn output_bound_lsb(&self, command: &[i32]) -> f64 {
+        let highest = command.iter().max().copied().map_or(0.0, f64::from);
+        let lowest = command.iter().min().copied().map_or(0.0, f64::from);
+        (highest - lowest) * self.quantising_error() + 0.5
+    }
+
     /// The figures at every mode of the axis that was designed, in the order of the file.
     pub fn mode_figures(&self, axis: &Axis, sample_hz: f64) -> Vec<ModeFigures> {
         let continuous = self.design.impulses.impulses();

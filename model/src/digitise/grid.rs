@@ -14,8 +14,8 @@ use crate::mode::Mode;
 /// samples (a thousandth of this at the longest delay), and too little to matter for a residual.
 const ON_SAMPLE: f64 = 1e-11;
 
-/// One or two taps.
-pub(super) type Placed = [Option<RealTap>; 2];
+/// One or two taps: what one impulse becomes.
+pub type Placed = [Option<RealTap>; 2];
 
 /// Whole samples and the fraction beyond them.
 fn split(impulse: &Impulse, sample_hz: f64) -> (u32, f64) {
@@ -48,14 +48,14 @@ fn pair(delay_samples: u32, first: f64, second: Option<f64>) -> Placed {
 }
 
 /// One tap at the nearest sample, halves up.
-pub(super) fn nearest(impulse: &Impulse, sample_hz: f64) -> Placed {
+pub fn nearest(impulse: &Impulse, sample_hz: f64) -> Placed {
     let (sample, fraction) = split(impulse, sample_hz);
     let sample = if fraction >= 0.5 { sample + 1 } else { sample };
     pair(sample, impulse.amplitude, None)
 }
 
 /// Two taps weighted by distance: keeps the sum and the delay.
-pub(super) fn linear(impulse: &Impulse, sample_hz: f64) -> Placed {
+pub fn linear(impulse: &Impulse, sample_hz: f64) -> Placed {
     let (sample, fraction) = split(impulse, sample_hz);
     let second = (fraction > 0.0).then_some(impulse.amplitude * fraction);
     pair(sample, impulse.amplitude * (1.0 - fraction), second)
@@ -67,7 +67,7 @@ pub(super) fn linear(impulse: &Impulse, sample_hz: f64) -> Placed {
 /// a_n     = A·e^{ ζω f T_s}     · sin(ω_d (1−f) T_s) / sin(ω_d T_s)
 /// a_(n+1) = A·e^{−ζω (1−f) T_s} · sin(ω_d f T_s)     / sin(ω_d T_s)
 /// ```
-pub(super) fn modal(impulse: &Impulse, mode: &Mode, sample_hz: f64) -> Placed {
+pub fn modal(impulse: &Impulse, mode: &Mode, sample_hz: f64) -> Placed {
     let (sample, fraction) = split(impulse, sample_hz);
     if fraction == 0.0 {
         return pair(sample, impulse.amplitude, None);

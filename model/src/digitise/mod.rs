@@ -77,6 +77,17 @@ impl Digitised {
         })
         .collect()
     }
+
+    /// The float design's output for these command words, in the same unit: what the hardware's output is compared with.
+    /// Before the first word the command was at the first word.
+    pub fn shape(&self, command: &[i32]) -> Vec<f64> {
+        let word = |sample: usize, delay_samples: u32| {
+            let delayed = sample.saturating_sub(delay_samples as usize);
+            f64::from(command[delayed])
+        };
+        let output = |sample| self.taps.iter().map(|t| t.weight * word(sample, t.delay_samples)).sum();
+        (0..command.len()).map(output).collect()
+    }
 }
 
 /// Puts an axis's shaper on the sample grid.
@@ -222,6 +233,16 @@ mod tests {
     }
 
     #[test]
+    fn unit_impulses_that_share_a_sample_add_up() {
+        let design = custom(&[(0.0, 0.5), (0.0102, 0.25), (0.0105, 0.25)], None);
+        let taps = digitise(&design, Digitise::Linear, 1000.0).unwrap().taps;
+        for (tap, expected) in taps.iter().zip([(0, 0.5), (10, 0.325), (11, 0.175)]) {
+            assert_eq!(tap.delay_samples, expected.0);
+            assert!((tap.weight - expected.1).abs() < 1e-12);
+        }
+    }
+
+    #[test]
     fn unit_a_shaper_longer_than_any_ring_is_refused_before_it_is_built() {
         for last_s in [1e300, 1e9, 16.383] {
             let error = digitise(&custom(&[(0.0, 0.5), (last_s, 0.5)], None), Digitise::Linear, 1000.0).unwrap_err();
@@ -241,6 +262,13 @@ mod tests {
         let error = digitise(&design, Digitise::Modal, 1000.0).unwrap_err();
         assert!(matches!(error, TableError::Nyquist { .. }), "{error}");
         assert!(digitise(&design, Digitise::Linear, 1000.0).is_ok());
+    }
+
+    #[test]
+    fn unit_shaping_starts_at_rest_on_the_first_word() {
+        let digitised = digitise(&custom(&[(0.0, 0.25), (0.002, 0.75)], None), Digitise::Modal, 1000.0).unwrap();
+        assert_eq!(digitised.shape(&[8, 8, 12, 12, 16]), [8.0, 8.0, 9.0, 9.0, 13.0]);
+        assert!(digitised.shape(&[]).is_empty());
     }
 
     #[test]

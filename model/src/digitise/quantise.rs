@@ -156,8 +156,11 @@ mod tests {
 
     #[test]
     fn unit_negative_weights_floor_downwards() {
-        // Times 2: -1.5 and 3.5; floors -2 and 3, one is missing, a tie.
-        assert_eq!(coefficients(&table(&[-0.75, 1.75], Some(1)).unwrap()), [-1, 3]);
+        // Times 4: -1.7, 1.3, 4.4; floors -2 1 4, one is missing.
+        assert_eq!(
+            coefficients(&table(&[-0.425, 0.325, 1.1], Some(2)).unwrap()),
+            [-2, 1, 5]
+        );
     }
 
     #[test]
@@ -212,6 +215,12 @@ mod tests {
             table(&weights, None),
             Err(TableError::Taps { found: 257, .. })
         ));
+    }
+
+    #[test]
+    fn unit_quantising_error_counts_taps_of_the_table_alone() {
+        let other = table(&[0.25, 0.25, 0.5], None).unwrap();
+        assert_eq!(quantising_error(&digitised(&[0.5, 0.5]), &other), 1.0);
     }
 
     #[test]

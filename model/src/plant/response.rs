@@ -9,7 +9,7 @@ use crate::impulse::Impulse;
 
 /// Fraction of the shortest period between two looks at the velocity: two peaks of the sum lie farther apart.
 const LOOKS_PER_PERIOD: f64 = 48.0;
-/// Looks at one response; beyond it (periods of a thousandth and of a thousand seconds in one plant) they are spread out.
+/// Looks at one response, times modes; beyond it (periods of a millisecond and of minutes in one plant) they are spread out.
 const LOOKS_MAX: f64 = 2e5;
 /// After the last impulse the peak is looked for in this many periods of the slowest mode; of one mode alone the first
 /// period has it.
@@ -61,7 +61,8 @@ pub fn step_figures(plant: &Plant, impulses: &[Impulse]) -> StepFigures {
     });
     let shortest_s = plant.modes().iter().map(|m| 1.0 / m.mode.frequency_hz);
     let duration_s: f64 = stretches.iter().map(|s| s.length_s).sum();
-    let look_s = (shortest_s.fold(f64::INFINITY, f64::min) / LOOKS_PER_PERIOD).max(duration_s / LOOKS_MAX);
+    let looks_max = LOOKS_MAX / plant.modes().len().max(1) as f64;
+    let look_s = (shortest_s.fold(f64::INFINITY, f64::min) / LOOKS_PER_PERIOD).max(duration_s / looks_max);
     let peaks = stretches.iter().map(|s| s.peak(look_s));
     StepFigures {
         residual,
