@@ -1,5 +1,7 @@
 //! Lock step of the shaper in RustHDL's simulator with its model: every output, every clock.
 
+#![allow(clippy::unwrap_used, reason = "a helper that fails fails its test")]
+
 mod stimulus;
 
 use posicast_model::rtl::ClockedBlock;
