@@ -23,7 +23,7 @@ impl EmitError {
         Self {
             block: block.to_owned(),
             signal: signal.to_owned(),
-            cause,
+            cause: Box::new(cause),
         }
     }
 }
