@@ -52,7 +52,7 @@ impl Node {
 }
 
 /// Walks `block`, which becomes the node `name`.
-pub(super) fn collect<B: Block>(block: &B, name: &str) -> Result<Node, EmitError> {
+pub(super) fn collect<B: Block + ?Sized>(block: &B, name: &str) -> Result<Node, EmitError> {
     let mut collector = Collector::default();
     block.accept(name, &mut collector);
     if let Some(error) = collector.error {

@@ -106,7 +106,7 @@ pub struct Parameter {
 ///
 /// # Errors
 /// [`EmitError`] for the first thing that cannot be expressed exactly, or that breaks a rule of the kernels.
-pub fn emit<B: Block>(block: &B, options: &EmitOptions) -> Result<Vec<Module>, EmitError> {
+pub fn emit<B: Block + ?Sized>(block: &B, options: &EmitOptions) -> Result<Vec<Module>, EmitError> {
     let wrong_name = |cause| EmitError::new(&options.top, "", cause);
     names::check_name(&options.top).map_err(wrong_name)?;
     if !options.prefix.is_empty() {
