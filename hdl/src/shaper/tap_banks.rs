@@ -161,10 +161,10 @@ impl<const A: usize, const T: usize, const COUNT: usize, const SUM: usize, const
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module tap_banks");
-        comment!("@about The tap tables: 0 is ROM, 1 and 2 are loadable.");
-        comment!("@about A write of index 0 begins a table, then in order.");
-        comment!("@about A swap waits for the next strobe. It is refused if");
-        comment!("@about the bank's coefficients do not sum to 2^F.");
+        comment!("@about Tap tables: bank 0 is ROM, 1 and 2 load.");
+        comment!("@about Index 0 begins a table, the rest in order.");
+        comment!("@about A swap waits for the next strobe; refused");
+        comment!("@about unless the coefficients sum to 2^F.");
         dff_setup!(
             self, clk, taps_1, taps_2, sum_1, sum_2, active, upcoming, pending, refused_q
         );

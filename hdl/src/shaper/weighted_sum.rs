@@ -78,9 +78,9 @@ impl<const W: usize, const P: usize, const ACC: usize> Logic for WeightedSum<W, 
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module weighted_sum");
-        comment!("@about y = the rounded, saturated sum of the products.");
-        comment!("@about A coefficient comes a clock before its sample,");
-        comment!("@about its product is there two clocks after that.");
+        comment!("@about y = rounded, saturated sum of products.");
+        comment!("@about A coefficient comes a clock before its");
+        comment!("@about sample, the product two clocks after that.");
         dff_setup!(self, clk, coefficient_q, accumulator, y_q, saturated_q);
 
         comment!("Multiply and accumulate, exactly");
