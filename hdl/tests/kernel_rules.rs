@@ -28,7 +28,7 @@ fn broken_rules(source: &str) -> Vec<String> {
     let code = without_comments(source);
     let mut broken = Vec::new();
     for (word, instead) in REPLACED {
-        if words(&code).any(|found| found == word) {
+        if uses(&code, word) {
             broken.push(format!("uses {word}: use {instead}"));
         }
     }
@@ -47,6 +47,9 @@ fn check_kernel(code: &str, body: &str, broken: &mut Vec<String>) {
     }
     if !body.trim_start().starts_with("comment!(\"@module ") {
         broken.push("does not begin with the name of its module: comment!(\"@module name\")".to_owned());
+    }
+    if uses(body, "println") {
+        broken.push("uses println, which prints on every update: use comment!".to_owned());
     }
     for text in body
         .split("comment!(\"")
@@ -154,8 +157,13 @@ fn without_comments(source: &str) -> String {
     source.lines().map(code).collect()
 }
 
-fn words(code: &str) -> impl Iterator<Item = &str> {
-    code.split(|c: char| !c.is_alphanumeric() && c != '_')
+/// Whether the item `word` is used: as a type with parameters, in a path, or as a macro.
+fn uses(code: &str, word: &str) -> bool {
+    let in_name = |c: char| c.is_alphanumeric() || c == '_';
+    code.match_indices(word).any(|(place, _)| {
+        let (before, after) = (&code[..place], &code[place + word.len()..]);
+        !before.ends_with(in_name) && after.starts_with(['<', ':', '!'])
+    })
 }
 
 fn before(flat: &str, place: usize) -> &str {
