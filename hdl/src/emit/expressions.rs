@@ -355,7 +355,7 @@ impl Writer<'_> {
     fn check_range(&mut self, value: &Value, low: i128, width: usize) -> Result<u32, Cause> {
         let available = value.ty().width;
         let high = low.saturating_add(width as i128) - 1;
-        if low < 0 || width == 0 || high >= available.into() {
+        if low < 0 || width == 0 || high >= i128::from(available) {
             return Err(Cause::OutOfRange {
                 found: self.text(value),
                 low,

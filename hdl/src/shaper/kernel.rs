@@ -217,6 +217,7 @@ impl<
             }
         }
 
+        comment!("Outputs");
         self.y.next = self.sum.y.val();
         self.valid.next = self.valid_q.q.val();
         self.saturated.next = self.sum.saturated.val();

@@ -54,12 +54,12 @@ pub(super) struct TapBanks<const A: usize, const T: usize, const COUNT: usize, c
     index: Signal<Local, Bits<COUNT>>,
     begins: Signal<Local, Bit>,
     loadable: Signal<Local, Bit>,
+    at_rest: Signal<Local, Bit>,
+    in_reach: Signal<Local, Bit>,
     write_taken: Signal<Local, Bit>,
     new_taps: Signal<Local, Bits<COUNT>>,
     new_sum: Signal<Local, Signed<SUM>>,
     addend: Signal<Local, Signed<SUM>>,
-    swap_sum: Signal<Local, Signed<SUM>>,
-    complete: Signal<Local, Bit>,
     swap_taken: Signal<Local, Bit>,
     write_address: Signal<Local, Bits<COUNT>>,
     read_address: Signal<Local, Bits<COUNT>>,
@@ -115,12 +115,12 @@ impl<const A: usize, const T: usize, const COUNT: usize, const SUM: usize, const
             index: Signal::default(),
             begins: Signal::default(),
             loadable: Signal::default(),
+            at_rest: Signal::default(),
+            in_reach: Signal::default(),
             write_taken: Signal::default(),
             new_taps: Signal::default(),
             new_sum: Signal::default(),
             addend: Signal::default(),
-            swap_sum: Signal::default(),
-            complete: Signal::default(),
             swap_taken: Signal::default(),
             write_address: Signal::default(),
             read_address: Signal::default(),
@@ -161,34 +161,37 @@ impl<const A: usize, const T: usize, const COUNT: usize, const SUM: usize, const
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module tap_banks");
+        comment!("@about Tap tables: bank 0 is ROM, 1 and 2 load.");
+        comment!("@about Index 0 begins a table, the rest in order.");
+        comment!("@about A swap waits for the next strobe; refused");
+        comment!("@about unless the coefficients sum to 2^F.");
         dff_setup!(
             self, clk, taps_1, taps_2, sum_1, sum_2, active, upcoming, pending, refused_q
         );
         self.machine_taps.clk.next = self.clk.val();
         self.loaded_taps.clk.next = self.clk.val();
 
-        comment!("Writing: the bank addressed, as far as loaded");
+        comment!("Writing: how far the bank addressed is loaded");
         self.taps_so_far.next = self.taps_1.q.val();
         self.sum_so_far.next = self.sum_1.q.val();
         self.write_address.next = bit_cast::<COUNT, T>(self.tap_index.val());
-        self.loadable.next = self.tap_bank.val() == self.bank_1.val();
         if self.tap_bank.val() == self.bank_2.val() {
             self.taps_so_far.next = self.taps_2.q.val();
             self.sum_so_far.next = self.sum_2.q.val();
             self.write_address.next = bit_cast::<COUNT, T>(self.tap_index.val()) | self.upper_half.val();
-            self.loadable.next = true;
         }
 
-        comment!("taken: in sequence, into a bank at rest");
+        comment!("Taken in sequence, into a bank at rest");
+        self.loadable.next = (self.tap_bank.val() == self.bank_1.val()) | (self.tap_bank.val() == self.bank_2.val());
+        self.at_rest.next = (self.tap_bank.val() != self.active.q.val()) & !(self.pending.q.val() | self.swap.val());
+        self.in_reach.next = self.tap_delay.val() != self.forbidden_delay.val();
         self.index.next = bit_cast::<COUNT, T>(self.tap_index.val());
         self.begins.next = !self.tap_index.val().any();
-        self.write_taken.next = self.tap_write.val()
-            & self.loadable.val()
-            & (self.tap_bank.val() != self.active.q.val())
-            & (self.begins.val() | (self.index.val() == self.taps_so_far.val()))
-            & (self.tap_delay.val() != self.forbidden_delay.val())
-            & !self.pending.q.val()
-            & !self.swap.val();
+        self.write_taken.next = false;
+        if self.begins.val() | (self.index.val() == self.taps_so_far.val()) {
+            self.write_taken.next =
+                self.tap_write.val() & self.loadable.val() & self.at_rest.val() & self.in_reach.val();
+        }
         self.addend.next = signed_bit_cast::<SUM, 18>(self.tap_coefficient.val());
         self.new_taps.next = self.taps_so_far.val() + self.one_tap.val();
         self.new_sum.next = self.sum_so_far.val() + self.addend.val();
@@ -212,15 +215,16 @@ impl<const A: usize, const T: usize, const COUNT: usize, const SUM: usize, const
             (bit_cast::<WORD, A>(self.tap_delay.val()) << 18) | bit_cast::<WORD, 18>(self.coefficient_bits.val());
 
         comment!("Swapping: only to a table that sums to one");
-        self.swap_sum.next = self.sum_1.q.val();
-        if self.swap_bank.val() == self.bank_2.val() {
-            self.swap_sum.next = self.sum_2.q.val();
+        self.swap_taken.next = false;
+        if self.swap_bank.val() == self.bank_rom.val() {
+            self.swap_taken.next = self.swap.val() & !self.pending.q.val();
         }
-        self.complete.next = self.swap_bank.val() == self.bank_rom.val();
-        if (self.swap_bank.val() == self.bank_1.val()) | (self.swap_bank.val() == self.bank_2.val()) {
-            self.complete.next = self.swap_sum.val() == self.unity.val();
+        if (self.swap_bank.val() == self.bank_1.val()) & (self.sum_1.q.val() == self.unity.val()) {
+            self.swap_taken.next = self.swap.val() & !self.pending.q.val();
         }
-        self.swap_taken.next = self.swap.val() & self.complete.val() & !self.pending.q.val();
+        if (self.swap_bank.val() == self.bank_2.val()) & (self.sum_2.q.val() == self.unity.val()) {
+            self.swap_taken.next = self.swap.val() & !self.pending.q.val();
+        }
         if self.strobe.val() & self.pending.q.val() {
             self.active.d.next = self.upcoming.q.val();
             self.pending.d.next = false;
@@ -257,6 +261,7 @@ impl<const A: usize, const T: usize, const COUNT: usize, const SUM: usize, const
         self.coefficient.next = signed_cast(self.word.val().get_bits::<18>(0));
         self.delay.next = self.word.val().get_bits::<A>(18);
 
+        comment!("Outputs");
         self.swap_pending.next = self.pending.q.val();
         self.bank.next = self.active.q.val();
         self.refused.next = self.refused_q.q.val();

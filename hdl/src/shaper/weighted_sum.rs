@@ -78,6 +78,9 @@ impl<const W: usize, const P: usize, const ACC: usize> Logic for WeightedSum<W, 
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module weighted_sum");
+        comment!("@about y = rounded, saturated sum of products.");
+        comment!("@about A coefficient comes a clock before its");
+        comment!("@about sample, the product two clocks after that.");
         dff_setup!(self, clk, coefficient_q, accumulator, y_q, saturated_q);
 
         comment!("Multiply and accumulate, exactly");
@@ -112,6 +115,7 @@ impl<const W: usize, const P: usize, const ACC: usize> Logic for WeightedSum<W, 
             self.y_q.d.next = self.x.val();
         }
 
+        comment!("Outputs");
         self.y.next = self.y_q.q.val();
         self.saturated.next = self.saturated_q.q.val();
     }
