@@ -1,1 +1,20 @@
-//! Posicast: hdl.
+//! The posicast hardware blocks in RustHDL.
+//!
+//! A block's kernel is written once, in Rust. RustHDL's own simulator runs it (`simulate` of each block), and our typed
+//! emitter writes its Verilog. Both are compared clock by clock with the bit-exact model of the same name in
+//! `posicast_model::rtl`. No RustHDL type leaves this crate.
+//!
+//! | module | what it is |
+//! |---|---|
+//! | `prelude` | what a kernel sees: RustHDL with its traps closed, and our leaves |
+//! | `prim` | the leaves: blocks with Verilog of their own |
+//! | [`emit`] | Verilog from a block |
+//! | [`shaper`] | the input shaper |
+
+pub mod emit;
+pub(crate) mod prelude;
+pub(crate) mod prim;
+pub mod shaper;
+mod simulation;
+
+pub use simulation::SimulationError;

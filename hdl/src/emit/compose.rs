@@ -1,0 +1,162 @@
+//! A structural module: instances side by side, common inputs shared, every other port lifted under its instance's name.
+
+use super::error::{Cause, EmitError};
+use super::names::{self, Taken};
+use super::print::{self, Lines};
+use super::types::{BIT, Type};
+use super::{Header, Module};
+use posicast_model::rtl::{Direction, Port};
+
+/// One instance in a composed module.
+#[derive(Debug, Clone, Copy)]
+pub struct Instance<'a> {
+    /// Name of the instance, for example of the axis; its ports become `<name>_<port>`.
+    pub name: &'a str,
+    /// What is instantiated.
+    pub module: &'a Module,
+}
+
+/// Writes the module `top` with `instances` side by side.
+///
+/// `clk` goes to all that have it. The inputs named in `shared_inputs`, for example `rst` and `strobe`, go to every
+/// instance that has them; every other port `p` of the instance `i` becomes the port `i_p`.
+///
+/// # Errors
+/// Names that are reserved, malformed or taken twice; a shared input that no instance has, that differs between instances,
+/// or that is an output of one.
+pub fn compose(
+    top: &str,
+    header: &Header,
+    shared_inputs: &[&str],
+    instances: &[Instance<'_>],
+) -> Result<Module, EmitError> {
+    let at = |signal: &str| {
+        let signal = signal.to_owned();
+        move |cause| EmitError::new(top, &signal, cause)
+    };
+    names::check_name(top).map_err(at(""))?;
+    let mut taken = Taken::default();
+    let clocked = instances.iter().any(|instance| instance.module.clocked);
+    if clocked {
+        taken.take("clk", "the clock").map_err(at("clk"))?;
+    }
+    let mut ports = Vec::new();
+    for &name in shared_inputs.iter().filter(|name| **name != "clk") {
+        ports.push(shared_input(name, instances).map_err(at(name))?);
+        taken.take(name, "a shared input").map_err(at(name))?;
+    }
+    for instance in instances {
+        names::check_name(instance.name).map_err(at(instance.name))?;
+        taken
+            .take(&instance_name(instance), "an instance")
+            .map_err(at(instance.name))?;
+        if instance.module.name == top {
+            let cause = Cause::NameCollision {
+                name: top.to_owned(),
+                other: format!("instance {}", instance.name),
+            };
+            return Err(at(instance.name)(cause));
+        }
+        for port in instance
+            .module
+            .ports
+            .iter()
+            .filter(|port| !shared_inputs.contains(&port.name.as_str()))
+        {
+            let name = lifted(instance, port);
+            names::check_name(&name).map_err(at(&name))?;
+            taken
+                .take(&name, &format!("{}.{}", instance.name, port.name))
+                .map_err(at(&name))?;
+            ports.push(Port { name, ..port.clone() });
+        }
+    }
+    let text = print::file(
+        top,
+        &print::top_header(top, &[], header),
+        &body(&ports, clocked, shared_inputs, instances),
+    );
+    Ok(Module {
+        name: top.to_owned(),
+        text,
+        ports,
+        clocked,
+    })
+}
+
+fn instance_name(instance: &Instance<'_>) -> String {
+    format!("u_{}", instance.name)
+}
+
+fn lifted(instance: &Instance<'_>, port: &Port) -> String {
+    format!("{}_{}", instance.name, port.name)
+}
+
+fn port_type(port: &Port) -> Type {
+    Type {
+        width: port.width,
+        signed: port.signed,
+    }
+}
+
+/// The input `name`, equal in all instances that have it.
+fn shared_input(name: &str, instances: &[Instance<'_>]) -> Result<Port, Cause> {
+    names::check_name(name)?;
+    let mut shared: Option<&Port> = None;
+    for instance in instances {
+        let Some(port) = instance.module.ports.iter().find(|port| port.name == name) else {
+            continue;
+        };
+        if port.direction == Direction::Output {
+            return Err(Cause::SharedOutput(name.to_owned()));
+        }
+        match shared {
+            Some(first) if port_type(first) != port_type(port) => {
+                return Err(Cause::SharedType {
+                    name: name.to_owned(),
+                    first: port_type(first),
+                    instance: instance.name.to_owned(),
+                    second: port_type(port),
+                });
+            }
+            _ => shared = Some(port),
+        }
+    }
+    shared.cloned().ok_or_else(|| Cause::NoSuchInput(name.to_owned()))
+}
+
+fn body(ports: &[Port], clocked: bool, shared_inputs: &[&str], instances: &[Instance<'_>]) -> String {
+    let clock = clocked.then(|| ("input  wire", BIT, "clk".to_owned()));
+    let listed = ports.iter().map(|port| {
+        let keyword = if port.direction == Direction::Input {
+            "input  wire"
+        } else {
+            "output wire"
+        };
+        (keyword, port_type(port), port.name.clone())
+    });
+    let list = print::port_list(&clock.into_iter().chain(listed).collect::<Vec<_>>());
+    let mut lines = Lines::default();
+    lines.nest(list.trim_end(), "endmodule", |lines| {
+        for (index, instance) in instances.iter().enumerate() {
+            if index > 0 {
+                lines.line("");
+            }
+            let clock = instance.module.clocked.then(|| ("clk".to_owned(), "clk".to_owned()));
+            let pins = instance.module.ports.iter().map(|port| {
+                let is_shared = shared_inputs.contains(&port.name.as_str());
+                (
+                    port.name.clone(),
+                    if is_shared {
+                        port.name.clone()
+                    } else {
+                        lifted(instance, port)
+                    },
+                )
+            });
+            let pins: Vec<_> = clock.into_iter().chain(pins).collect();
+            print::instance(lines, &instance.module.name, &instance_name(instance), &pins);
+        }
+    });
+    lines.text
+}

@@ -1,0 +1,184 @@
+//! Which construct drives each net: a wire straight to its source, a continuous `assign`, or the `always @(*)` block.
+//!
+//! What is assigned once and unconditionally needs no `always`. That reads better, and it has a value from the start: a
+//! block of constants alone has nothing that would ever trigger it, and would stay X in an event simulator.
+
+use super::error::{Cause, EmitError};
+use super::ir::{Statement, each};
+use super::scope::{NetId, Role, Scope};
+use super::types::mask;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// A kernel, sorted by construct; comments go with the statements that follow them.
+#[derive(Debug, Default)]
+pub(super) struct Drivers {
+    /// Inputs of registers and sub-blocks that are just another net.
+    pub(super) direct: BTreeMap<NetId, NetId>,
+    /// Comments and assignments.
+    pub(super) continuous: Vec<Statement>,
+    pub(super) procedural: Vec<Statement>,
+}
+
+impl Drivers {
+    /// Sorts `kernel`, which has passed the [`flow`](super::flow) check.
+    pub(super) fn new(kernel: Vec<Statement>, path: &str, scope: &Scope) -> Result<Self, EmitError> {
+        let kernel = drop_overridden(kernel);
+        let mut writes: BTreeMap<NetId, usize> = BTreeMap::new();
+        each(&kernel, &mut |statement| {
+            if let Statement::Assign { target, .. } = statement {
+                *writes.entry(*target).or_default() += 1;
+            }
+        });
+        let mut drivers = Self::default();
+        let mut comments = Comments::default();
+        for statement in kernel {
+            match statement {
+                Statement::Comment(text) => comments.push(text),
+                Statement::Assign { target, ref value } if writes.get(&target) == Some(&1) => {
+                    let is_input = matches!(scope.net(target).role, Role::Next | Role::PinIn);
+                    match value.plain.filter(|_| is_input) {
+                        Some(source) => {
+                            drivers.direct.insert(target, source);
+                        }
+                        None => {
+                            drivers.continuous.append(&mut comments.continuous);
+                            drivers.continuous.push(statement);
+                        }
+                    }
+                    comments.closed = true;
+                }
+                _ => {
+                    drivers.procedural.append(&mut comments.procedural);
+                    drivers.procedural.push(statement);
+                    comments.closed = true;
+                }
+            }
+        }
+        drivers.check_trigger(path, scope)?;
+        Ok(drivers)
+    }
+
+    /// The bits of each net that are read, by the kernel and by the wires.
+    pub(super) fn bits_read(&self) -> BTreeMap<NetId, u64> {
+        let mut bits: BTreeMap<NetId, u64> = BTreeMap::new();
+        let mut collect = |statement: &Statement| {
+            for (id, mask) in statement.own_reads() {
+                *bits.entry(*id).or_default() |= mask;
+            }
+        };
+        each(&self.continuous, &mut collect);
+        each(&self.procedural, &mut collect);
+        for source in self.direct.values() {
+            bits.insert(*source, u64::MAX);
+        }
+        bits
+    }
+
+    /// The nets that the `always` block drives.
+    pub(super) fn procedural_targets(&self) -> BTreeSet<NetId> {
+        let mut targets = BTreeSet::new();
+        each(&self.procedural, &mut |statement| {
+            if let Statement::Assign { target, .. } = statement {
+                targets.insert(*target);
+            }
+        });
+        targets
+    }
+
+    fn check_trigger(&self, path: &str, scope: &Scope) -> Result<(), EmitError> {
+        let Some(target) = self.procedural_targets().first().copied() else {
+            return Ok(());
+        };
+        let mut triggers = false;
+        each(&self.procedural, &mut |statement| {
+            triggers |= statement
+                .own_reads()
+                .any(|(id, _)| !matches!(scope.net(*id).role, Role::Constant(_)));
+        });
+        let signal = scope.net(target).raw.replace('$', ".");
+        if triggers {
+            Ok(())
+        } else {
+            Err(EmitError::new(path, &signal, Cause::ConstantCondition))
+        }
+    }
+}
+
+/// Bits of each net that nothing reads, as contiguous ranges `(low, width)`.
+///
+/// # Errors
+/// [`Cause::NeverRead`] for a Local or a register of which no bit is read.
+pub(super) fn unread(
+    bits_read: &BTreeMap<NetId, u64>,
+    path: &str,
+    scope: &Scope,
+) -> Result<Vec<(NetId, u32, u32)>, EmitError> {
+    let mut ranges = Vec::new();
+    for (id, net) in scope.iter() {
+        if !matches!(net.role, Role::Input | Role::Local | Role::Register | Role::PinOut) {
+            continue;
+        }
+        let read = bits_read.get(&id).copied().unwrap_or(0) & net.ty.mask();
+        if read == 0 && matches!(net.role, Role::Local | Role::Register) {
+            return Err(EmitError::new(path, &net.raw.replace('$', "."), Cause::NeverRead));
+        }
+        let is_unread = |bit: u32| bit < net.ty.width && read & mask(bit, 1) == 0;
+        let mut bit = 0;
+        while bit < net.ty.width {
+            let low = bit;
+            while is_unread(bit) {
+                bit += 1;
+            }
+            if bit > low {
+                ranges.push((id, low, bit - low));
+            }
+            bit += 1;
+        }
+    }
+    Ok(ranges)
+}
+
+/// Drops each assignment that a later, unconditional one of the same block makes void. The flow check has made sure that
+/// nothing reads in between.
+fn drop_overridden(block: Vec<Statement>) -> Vec<Statement> {
+    let mut later = BTreeSet::new();
+    let mut kept = Vec::new();
+    for statement in block.into_iter().rev() {
+        kept.push(match statement {
+            Statement::Assign { target, .. } if !later.insert(target) => continue,
+            Statement::If { test, then, otherwise } => Statement::If {
+                test,
+                then: drop_overridden(then),
+                otherwise: drop_overridden(otherwise),
+            },
+            Statement::Case { subject, mut arms } => {
+                for arm in &mut arms {
+                    arm.block = drop_overridden(std::mem::take(&mut arm.block));
+                }
+                Statement::Case { subject, arms }
+            }
+            other => other,
+        });
+    }
+    kept.reverse();
+    kept
+}
+
+/// Comments that wait for the next statement of each construct; a new comment ends the reach of the one before.
+#[derive(Debug, Default)]
+struct Comments {
+    continuous: Vec<Statement>,
+    procedural: Vec<Statement>,
+    /// A statement has followed, so that the next comment starts anew.
+    closed: bool,
+}
+
+impl Comments {
+    fn push(&mut self, text: String) {
+        if self.closed {
+            *self = Self::default();
+        }
+        self.continuous.push(Statement::Comment(text.clone()));
+        self.procedural.push(Statement::Comment(text));
+    }
+}

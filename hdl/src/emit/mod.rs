@@ -1,0 +1,117 @@
+//! Verilog from RustHDL: a typed emitter that writes exactly what the simulation does, or nothing.
+//!
+//! RustHDL's own generator drops widths and signs on the way, so that its Verilog can compute something else than its
+//! simulation. This one carries the type of every expression to the text. What has no exact, plain translation is refused
+//! with an [`EmitError`] that names the block, the signal and the remedy.
+//!
+//! - In: a RustHDL [`Block`], whose leaves carry tags (below), and names: top, prefix, header.
+//! - Out: one [`Module`] per Verilog file, sub-modules before those that use them, the top last; byte for byte the same in
+//!   each run. Verilog-2001, clean under `verilator --lint-only -Wall` without waivers, accepted by Icarus and Yosys.
+//! - Clock and reset: all registers of a module are clocked by its input `clk` and reset, synchronously, by its input
+//!   `rst`; the reset value is also the power-up value.
+//! - Sharing: sub-blocks that come out equal, under the same `@module` tag, are one module.
+//!
+//! A kernel names its module and describes it with comments, a leaf with the first lines of its text:
+//!
+//! ```text
+//! comment!("@module tap_sequencer");   base name of the module; without it, the field path
+//! comment!("@about Walks the table."); header of the file
+//!
+//! // @dff 8'h05                        a register, inlined
+//! // @leaf ram_64x16 reg: read_data    any other leaf, with its outputs that are `reg`
+//! // @about 64 x 16 bit block RAM.
+//! ```
+//!
+//! # Passes
+//!
+//! ```text
+//! Block ─► collect ─► scope ─► statements, expressions ─► flow ─► drivers ─► print
+//!          nodes      nets     typed                     order    assign or   text
+//!                     names    statements                checked  always
+//! ```
+//!
+//! # Limits
+//!
+//! Signals of 1 to 64 bits; no struct signals, no bidirectional ports, no black boxes, no interface `join` and `link`. An
+//! `always @(*)` block whose inputs are all tied to constants *by the parent* has no trigger in an event simulator.
+
+mod collect;
+mod compose;
+mod drivers;
+mod error;
+mod expressions;
+mod flow;
+mod ir;
+mod leaf;
+mod modules;
+mod names;
+mod paths;
+mod print;
+mod scope;
+mod statements;
+mod types;
+
+pub use compose::{Instance, compose};
+pub use error::{Cause, EmitError};
+pub use types::Type;
+
+use posicast_model::rtl::Port;
+use rust_hdl_core::prelude::Block;
+
+/// One Verilog module, one file `NAME.v`.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Module {
+    /// Name of the module, and of the file without `.v`.
+    pub name: String,
+    /// The whole text of the file.
+    pub text: String,
+    /// All ports except `clk`, in the order of the port list.
+    pub ports: Vec<Port>,
+    /// Has it an input `clk`?
+    pub clocked: bool,
+}
+
+/// What [`emit`] needs to know beside the block.
+#[derive(Debug, Clone, Default)]
+pub struct EmitOptions {
+    /// Base name of the top module.
+    pub top: String,
+    /// What stands before every module's name, joined by `_`; for example the machine's and axis's names. May be empty.
+    pub prefix: String,
+    /// What the top's file says first.
+    pub header: Header,
+}
+
+/// The comment at the head of a top module's file; version and name are added.
+#[derive(Debug, Clone, Default)]
+pub struct Header {
+    /// What the module is, in a sentence or some lines.
+    pub about: String,
+    /// What it was built with.
+    pub parameters: Vec<Parameter>,
+}
+
+/// A row of the header's table.
+#[derive(Debug, Clone)]
+pub struct Parameter {
+    /// Name, as elsewhere in the project.
+    pub name: String,
+    /// Value, with its unit where it has one.
+    pub value: String,
+    /// Meaning in a few words.
+    pub meaning: String,
+}
+
+/// Writes `block` as Verilog: sub-modules first, the top last.
+///
+/// # Errors
+/// [`EmitError`] for the first thing that cannot be expressed exactly, or that breaks a rule of the kernels.
+pub fn emit<B: Block + ?Sized>(block: &B, options: &EmitOptions) -> Result<Vec<Module>, EmitError> {
+    let wrong_name = |cause| EmitError::new(&options.top, "", cause);
+    names::check_name(&options.top).map_err(wrong_name)?;
+    if !options.prefix.is_empty() {
+        names::check_name(&options.prefix).map_err(wrong_name)?;
+    }
+    let top = collect::collect(block, &options.top)?;
+    modules::modules(&top, options)
+}

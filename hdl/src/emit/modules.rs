@@ -1,0 +1,328 @@
+//! One module per block: leaves from their text, composites from their kernels; equal modules are written once.
+
+use super::collect::{Kind, Node, Signal};
+use super::drivers::{Drivers, unread};
+use super::error::{Cause, EmitError};
+use super::leaf;
+use super::names;
+use super::print::{self, Lines};
+use super::scope::{NetId, Role, Scope};
+use super::statements::{comment_text, statements};
+use super::{EmitOptions, Module, flow};
+use posicast_model::rtl::{Direction, Port};
+use rust_hdl_core::ast::VerilogStatement;
+use rust_hdl_core::prelude::Verilog;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// The modules written so far, leaves first.
+pub(super) struct Modules<'a> {
+    options: &'a EmitOptions,
+    written: Vec<Module>,
+    /// Name of the module for a tagged name, a header and a body.
+    by_body: BTreeMap<(Option<String>, Vec<String>, String), String>,
+    taken: BTreeSet<String>,
+}
+
+/// A module before it has its final name.
+struct Draft {
+    /// Base name from the kernel's or the leaf's tag.
+    tagged: Option<String>,
+    about: Vec<String>,
+    /// From the port list to `endmodule`.
+    body: String,
+}
+
+/// Writes `top` and all that is in it.
+pub(super) fn modules(top: &Node, options: &EmitOptions) -> Result<Vec<Module>, EmitError> {
+    let top_name = full_name(options, &options.top);
+    let mut modules = Modules {
+        options,
+        written: Vec::new(),
+        by_body: BTreeMap::new(),
+        taken: BTreeSet::new(),
+    };
+    modules.taken.insert(top_name.clone());
+    let draft = modules.draft(top)?;
+    let about: Vec<_> = draft.about.iter().map(String::as_str).collect();
+    let header = print::top_header(&top_name, &about, &options.header);
+    modules.push(top, top_name, &header, &draft.body);
+    Ok(modules.written)
+}
+
+fn full_name(options: &EmitOptions, base: &str) -> String {
+    if options.prefix.is_empty() {
+        base.to_owned()
+    } else {
+        format!("{}_{base}", options.prefix)
+    }
+}
+
+impl Modules<'_> {
+    fn draft(&mut self, node: &Node) -> Result<Draft, EmitError> {
+        match &node.code {
+            Verilog::Combinatorial(kernel) => self.composite(node, kernel),
+            Verilog::Custom(text) => self.leaf(node, text),
+            Verilog::Empty | Verilog::Blackbox(_) | Verilog::Wrapper(_) => {
+                let found = "a block without kernel, a black box or a wrapper".to_owned();
+                let remedy = "write it as a leaf with `Verilog::Custom`";
+                Err(EmitError::new(&node.path, "", Cause::Unsupported { found, remedy }))
+            }
+        }
+    }
+
+    fn leaf(&self, node: &Node, text: &str) -> Result<Draft, EmitError> {
+        let leaf = leaf::parse(text, node).map_err(|cause| EmitError::new(&node.path, "", cause))?;
+        for port in node.ports() {
+            let checked = names::check_name(&names::flatten(&port.raw));
+            checked.map_err(|cause| EmitError::new(&node.path, &port.raw, cause))?;
+        }
+        let mut lines = Lines::default();
+        let ports = print::ports(node, &|port| leaf.regs.contains(&port.raw.as_str()));
+        lines.nest(ports.trim_end(), "endmodule", |lines| {
+            leaf.body.iter().for_each(|line| lines.line(line))
+        });
+        Ok(Draft {
+            tagged: Some(leaf.base_name.to_owned()),
+            about: leaf.about.iter().map(|&line| line.to_owned()).collect(),
+            body: lines.text,
+        })
+    }
+
+    fn composite(&mut self, node: &Node, kernel: &[VerilogStatement]) -> Result<Draft, EmitError> {
+        let scope = Scope::new(node)?;
+        let typed = statements(kernel, &node.path, &scope)?;
+        flow::check(&typed, &node.path, &scope)?;
+        let drivers = Drivers::new(typed, &node.path, &scope)?;
+        let clocking = Clocking::find(node, &scope)?;
+        let mut bits_read = drivers.bits_read();
+        clocking.iter().for_each(|clocking| clocking.mark_read(&mut bits_read));
+        let unread = unread(&bits_read, &node.path, &scope)?;
+
+        let mut children = Vec::new();
+        for pins in &scope.pins {
+            children.push(self.child(&node.children[pins.child])?);
+        }
+        let writer = Composite {
+            node,
+            scope: &scope,
+            drivers: &drivers,
+            clocking: clocking.as_ref(),
+        };
+        let body = writer.body(&bits_read, &children, &unread);
+        let tags = Tags::read(kernel, node)?;
+        Ok(Draft {
+            tagged: tags.module,
+            about: tags.about,
+            body,
+        })
+    }
+
+    /// Writes the module of a sub-block, or finds the equal one, and gives its name.
+    fn child(&mut self, node: &Node) -> Result<String, EmitError> {
+        let draft = self.draft(node)?;
+        let key = (draft.tagged.clone(), draft.about.clone(), draft.body.clone());
+        if let Some(name) = self.by_body.get(&key) {
+            return Ok(name.clone());
+        }
+        let from_path = || node.path.split('.').skip(1).collect::<Vec<_>>().join("_");
+        let wanted = full_name(self.options, &draft.tagged.unwrap_or_else(from_path));
+        let numbered = (2..).map(|number| format!("{wanted}_{number}"));
+        let free = std::iter::once(wanted.clone())
+            .chain(numbered)
+            .find(|name| !self.taken.contains(name));
+        let name = free.unwrap_or(wanted);
+        self.taken.insert(name.clone());
+        let about: Vec<_> = draft.about.iter().map(String::as_str).collect();
+        let header = print::part_header(&name, &about, &full_name(self.options, &self.options.top));
+        self.push(node, name.clone(), &header, &draft.body);
+        self.by_body.insert(key, name.clone());
+        Ok(name)
+    }
+
+    fn push(&mut self, node: &Node, name: String, header: &str, body: &str) {
+        let ports = node.ports().filter(|port| port.raw != "clk").map(|port| Port {
+            name: names::flatten(&port.raw),
+            direction: if port.kind == Kind::Input {
+                Direction::Input
+            } else {
+                Direction::Output
+            },
+            width: port.ty.width,
+            signed: port.ty.signed,
+        });
+        let ports = ports.collect();
+        let clocked = node.ports().any(|port| port.raw == "clk");
+        let text = print::file(&name, header, body);
+        self.written.push(Module {
+            name,
+            text,
+            ports,
+            clocked,
+        });
+    }
+}
+
+/// `comment!("@module name")` and `comment!("@about text")` at the top level of a kernel.
+#[derive(Default)]
+struct Tags {
+    module: Option<String>,
+    about: Vec<String>,
+}
+
+impl Tags {
+    fn read(kernel: &[VerilogStatement], node: &Node) -> Result<Self, EmitError> {
+        let mut tags = Self::default();
+        for statement in kernel {
+            let VerilogStatement::Comment(raw) = statement else {
+                continue;
+            };
+            let text = comment_text(raw).unwrap_or_default();
+            if let Some(name) = text.strip_prefix("@module ") {
+                names::check_name(name).map_err(|cause| EmitError::new(&node.path, "", cause))?;
+                tags.module = Some(name.to_owned());
+            } else if let Some(about) = text.strip_prefix("@about ") {
+                tags.about.push(about.to_owned());
+            }
+        }
+        Ok(tags)
+    }
+}
+
+/// Clock and reset of the registers.
+struct Clocking {
+    clk: NetId,
+    rst: NetId,
+}
+
+impl Clocking {
+    /// Nothing if there are no registers.
+    fn find(node: &Node, scope: &Scope) -> Result<Option<Self>, EmitError> {
+        let Some(register) = scope.registers.first() else {
+            return Ok(None);
+        };
+        let input = |name: &'static str| {
+            let found = scope
+                .find(name)
+                .filter(|id| scope.net(*id).role == Role::Input && scope.net(*id).ty.width == 1);
+            let register = &scope.net(register.now).name;
+            found.ok_or_else(|| EmitError::new(&node.path, register, Cause::MissingInput(name)))
+        };
+        Ok(Some(Self {
+            clk: input("clk")?,
+            rst: input("rst")?,
+        }))
+    }
+
+    fn mark_read(&self, bits_read: &mut BTreeMap<NetId, u64>) {
+        bits_read.insert(self.clk, u64::MAX);
+        bits_read.insert(self.rst, u64::MAX);
+    }
+}
+
+/// A composite, ready to be written.
+struct Composite<'a> {
+    node: &'a Node,
+    scope: &'a Scope,
+    drivers: &'a Drivers,
+    clocking: Option<&'a Clocking>,
+}
+
+impl Composite<'_> {
+    fn body(&self, bits_read: &BTreeMap<NetId, u64>, children: &[String], unread: &[(NetId, u32, u32)]) -> String {
+        let (scope, drivers) = (self.scope, self.drivers);
+        let variables = drivers.procedural_targets();
+        let is_variable = |port: &Signal| scope.find(&port.raw).is_some_and(|id| variables.contains(&id));
+        let mut lines = Lines::default();
+        let ports = print::ports(self.node, &is_variable);
+        lines.nest(ports.trim_end(), "endmodule", |lines| {
+            let start = lines.text.len();
+            lines.section(|lines| self.constants(lines, bits_read));
+            lines.section(|lines| self.nets(lines, &variables));
+            for (pins, module) in scope.pins.iter().zip(children) {
+                lines.section(|lines| {
+                    let child = &self.node.children[pins.child];
+                    let names = child.ports().map(|port| names::flatten(&port.raw));
+                    let nets = pins.nets.iter().map(|id| self.source(*id).to_owned());
+                    let name = format!("u_{}", names::flatten(&child.raw));
+                    print::instance(lines, module, &name, &names.zip(nets).collect::<Vec<_>>());
+                });
+            }
+            lines.section(|lines| print::assigns(lines, &drivers.continuous, scope));
+            if !drivers.procedural.is_empty() {
+                lines.section(|lines| {
+                    lines.nest("always @(*) begin", "end", |lines| {
+                        print::block(lines, &drivers.procedural, scope)
+                    });
+                });
+            }
+            self.registers(lines);
+            lines.section(|lines| print::unused(lines, unread, scope));
+            // The first section needs no blank line above it.
+            if lines.text[start..].starts_with('\n') {
+                lines.text.remove(start);
+            }
+        });
+        lines.text
+    }
+
+    /// The net that a sub-block's or a register's input is connected to.
+    fn source(&self, id: NetId) -> &str {
+        &self.scope.net(*self.drivers.direct.get(&id).unwrap_or(&id)).name
+    }
+
+    fn constants(&self, lines: &mut Lines, bits_read: &BTreeMap<NetId, u64>) {
+        for (id, net) in self.scope.iter() {
+            if let (Role::Constant(pattern), true) = (net.role, bits_read.contains_key(&id)) {
+                let declaration = format!("localparam {}", net.ty.declaration());
+                lines.line(&format!(
+                    "{} {} = {};",
+                    declaration.trim_end(),
+                    net.name,
+                    net.ty.literal(pattern)
+                ));
+            }
+        }
+    }
+
+    fn nets(&self, lines: &mut Lines, variables: &BTreeSet<NetId>) {
+        let declared = self.scope.iter().filter_map(|(id, net)| {
+            let keyword = match net.role {
+                Role::Register => "reg",
+                Role::PinOut => "wire",
+                Role::Local | Role::Next | Role::PinIn if variables.contains(&id) => "reg",
+                Role::Local => "wire",
+                Role::Next | Role::PinIn if !self.drivers.direct.contains_key(&id) => "wire",
+                _ => return None,
+            };
+            Some((keyword, net.ty, net.name.clone()))
+        });
+        print::declarations(lines, &declared.collect::<Vec<_>>());
+    }
+
+    fn registers(&self, lines: &mut Lines) {
+        let Some(clocking) = self.clocking else { return };
+        let scope = self.scope;
+        let initial = |lines: &mut Lines, assign: &str| {
+            for register in &scope.registers {
+                let net = scope.net(register.now);
+                lines.line(&format!("{} {assign} {};", net.name, net.ty.literal(register.initial)));
+            }
+        };
+        let (clk, rst) = (&scope.net(clocking.clk).name, &scope.net(clocking.rst).name);
+        lines.section(|lines| {
+            lines.nest(&format!("always @(posedge {clk}) begin"), "end", |lines| {
+                lines.nest(&format!("if ({rst}) begin"), "end else begin", |lines| {
+                    initial(lines, "<=")
+                });
+                lines.nest_rest("end", |lines| {
+                    for register in &scope.registers {
+                        let next = self.source(register.next);
+                        lines.line(&format!("{} <= {next};", scope.net(register.now).name));
+                    }
+                });
+            });
+        });
+        // Below `always @(*)`, which an event simulator must have waiting when these values arrive.
+        lines.section(|lines| lines.nest("initial begin", "end", |lines| initial(lines, "=")));
+    }
+}

@@ -1,0 +1,344 @@
+//! Which names may appear in the Verilog: lower-case snake case that no tool reserves.
+
+use super::error::Cause;
+use std::collections::BTreeMap;
+
+/// Keywords of Verilog (IEEE 1364-2001 and -2005) and SystemVerilog (IEEE 1800-2017), annex B of each, sorted.
+const RESERVED: &[&str] = &[
+    "accept_on",
+    "alias",
+    "always",
+    "always_comb",
+    "always_ff",
+    "always_latch",
+    "and",
+    "assert",
+    "assign",
+    "assume",
+    "automatic",
+    "before",
+    "begin",
+    "bind",
+    "bins",
+    "binsof",
+    "bit",
+    "break",
+    "buf",
+    "bufif0",
+    "bufif1",
+    "byte",
+    "case",
+    "casex",
+    "casez",
+    "cell",
+    "chandle",
+    "checker",
+    "class",
+    "clocking",
+    "cmos",
+    "config",
+    "const",
+    "constraint",
+    "context",
+    "continue",
+    "cover",
+    "covergroup",
+    "coverpoint",
+    "cross",
+    "deassign",
+    "default",
+    "defparam",
+    "design",
+    "disable",
+    "dist",
+    "do",
+    "edge",
+    "else",
+    "end",
+    "endcase",
+    "endchecker",
+    "endclass",
+    "endclocking",
+    "endconfig",
+    "endfunction",
+    "endgenerate",
+    "endgroup",
+    "endinterface",
+    "endmodule",
+    "endpackage",
+    "endprimitive",
+    "endprogram",
+    "endproperty",
+    "endsequence",
+    "endspecify",
+    "endtable",
+    "endtask",
+    "enum",
+    "event",
+    "eventually",
+    "expect",
+    "export",
+    "extends",
+    "extern",
+    "final",
+    "first_match",
+    "for",
+    "force",
+    "foreach",
+    "forever",
+    "fork",
+    "forkjoin",
+    "function",
+    "generate",
+    "genvar",
+    "global",
+    "highz0",
+    "highz1",
+    "if",
+    "iff",
+    "ifnone",
+    "ignore_bins",
+    "illegal_bins",
+    "implements",
+    "implies",
+    "import",
+    "incdir",
+    "include",
+    "initial",
+    "inout",
+    "input",
+    "inside",
+    "instance",
+    "int",
+    "integer",
+    "interconnect",
+    "interface",
+    "intersect",
+    "join",
+    "join_any",
+    "join_none",
+    "large",
+    "let",
+    "liblist",
+    "library",
+    "local",
+    "localparam",
+    "logic",
+    "longint",
+    "macromodule",
+    "matches",
+    "medium",
+    "modport",
+    "module",
+    "nand",
+    "negedge",
+    "nettype",
+    "new",
+    "nexttime",
+    "nmos",
+    "nor",
+    "noshowcancelled",
+    "not",
+    "notif0",
+    "notif1",
+    "null",
+    "or",
+    "output",
+    "package",
+    "packed",
+    "parameter",
+    "pmos",
+    "posedge",
+    "primitive",
+    "priority",
+    "program",
+    "property",
+    "protected",
+    "pull0",
+    "pull1",
+    "pulldown",
+    "pullup",
+    "pulsestyle_ondetect",
+    "pulsestyle_onevent",
+    "pure",
+    "rand",
+    "randc",
+    "randcase",
+    "randsequence",
+    "rcmos",
+    "real",
+    "realtime",
+    "ref",
+    "reg",
+    "reject_on",
+    "release",
+    "repeat",
+    "restrict",
+    "return",
+    "rnmos",
+    "rpmos",
+    "rtran",
+    "rtranif0",
+    "rtranif1",
+    "s_always",
+    "s_eventually",
+    "s_nexttime",
+    "s_until",
+    "s_until_with",
+    "scalared",
+    "sequence",
+    "shortint",
+    "shortreal",
+    "showcancelled",
+    "signed",
+    "small",
+    "soft",
+    "solve",
+    "specify",
+    "specparam",
+    "static",
+    "string",
+    "strong",
+    "strong0",
+    "strong1",
+    "struct",
+    "super",
+    "supply0",
+    "supply1",
+    "sync_accept_on",
+    "sync_reject_on",
+    "table",
+    "tagged",
+    "task",
+    "this",
+    "throughout",
+    "time",
+    "timeprecision",
+    "timeunit",
+    "tran",
+    "tranif0",
+    "tranif1",
+    "tri",
+    "tri0",
+    "tri1",
+    "triand",
+    "trior",
+    "trireg",
+    "type",
+    "typedef",
+    "union",
+    "unique",
+    "unique0",
+    "unsigned",
+    "until",
+    "until_with",
+    "untyped",
+    "use",
+    "uwire",
+    "var",
+    "vectored",
+    "virtual",
+    "void",
+    "wait",
+    "wait_order",
+    "wand",
+    "weak",
+    "weak0",
+    "weak1",
+    "while",
+    "wildcard",
+    "wire",
+    "with",
+    "within",
+    "wor",
+    "xnor",
+    "xor",
+];
+
+/// Checks a name that a kernel or a caller chose.
+pub(super) fn check_name(name: &str) -> Result<(), Cause> {
+    let mut characters = name.chars();
+    let plain = characters.next().is_some_and(|first| first.is_ascii_lowercase())
+        && characters.all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_');
+    if !plain {
+        return Err(Cause::BadName(name.to_owned()));
+    }
+    if RESERVED.binary_search(&name).is_ok() {
+        return Err(Cause::ReservedWord(name.to_owned()));
+    }
+    Ok(())
+}
+
+/// RustHDL's path of a signal (`bus$value$0`, `State$Idle`) as part of a Verilog name (`bus_value_0`).
+pub(super) fn flatten(raw: &str) -> String {
+    raw.replace('$', "_")
+}
+
+/// `State$HoldOff` as a constant's name: `STATE_HOLD_OFF`.
+pub(super) fn constant_name(raw: &str) -> String {
+    let mut name = String::new();
+    let mut after_small = false;
+    for c in raw.chars() {
+        if after_small && c.is_ascii_uppercase() {
+            name.push('_');
+        }
+        after_small = c.is_ascii_lowercase() || c.is_ascii_digit();
+        name.push(if c == '$' { '_' } else { c.to_ascii_uppercase() });
+    }
+    name
+}
+
+/// The names of one Verilog scope, each with what it names.
+#[derive(Debug, Default)]
+pub(super) struct Taken(BTreeMap<String, String>);
+
+impl Taken {
+    /// Takes `name` for `owner`.
+    pub(super) fn take(&mut self, name: &str, owner: &str) -> Result<(), Cause> {
+        match self.0.insert(name.to_owned(), owner.to_owned()) {
+            None => Ok(()),
+            Some(other) => Err(Cause::NameCollision {
+                name: name.to_owned(),
+                other,
+            }),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn unit_reserved_words_are_sorted_and_found() {
+        assert!(RESERVED.is_sorted());
+        for word in [
+            "always",
+            "bit",
+            "initial",
+            "logic",
+            "signed",
+            "output",
+            "xor",
+            "within",
+            "accept_on",
+        ] {
+            assert_eq!(check_name(word), Err(Cause::ReservedWord(word.to_owned())));
+        }
+    }
+
+    #[test]
+    fn unit_names_are_lower_snake_case() {
+        assert_eq!(check_name("tap_3"), Ok(()));
+        for bad in ["", "Tap", "3d", "_x", "a$b", "a-b", "größe"] {
+            assert_eq!(check_name(bad), Err(Cause::BadName(bad.to_owned())));
+        }
+    }
+
+    #[test]
+    fn unit_constants_are_upper_snake_case() {
+        assert_eq!(constant_name("State$HoldOff"), "STATE_HOLD_OFF");
+        assert_eq!(constant_name("one_a"), "ONE_A");
+        assert_eq!(constant_name("limit$0"), "LIMIT_0");
+    }
+}

@@ -1,0 +1,235 @@
+//! Statements: a kernel's tree to the typed form of [`ir`](super::ir), loops unrolled, registers' wiring checked and dropped.
+
+use super::collect::literal_value;
+use super::error::{Cause, EmitError};
+use super::expressions::{expression, free_expression};
+use super::ir::{Arm, Expression, Statement};
+use super::paths;
+use super::scope::{NetId, Role, Scope};
+use super::types::{BIT, Type};
+use rust_hdl_core::ast::{
+    VerilogBlockOrConditional, VerilogConditional, VerilogExpression as Tree, VerilogLoop, VerilogMatch,
+    VerilogStatement,
+};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Turns of a loop that are unrolled at most.
+const MAXIMUM_TURNS: i128 = 1024;
+
+/// The kernel of the block at `path`, typed.
+pub(super) fn statements(kernel: &[VerilogStatement], path: &str, scope: &Scope) -> Result<Vec<Statement>, EmitError> {
+    let mut reader = Reader {
+        path,
+        scope,
+        loops: Vec::new(),
+        clocked: BTreeSet::new(),
+    };
+    let block = reader.block(kernel)?;
+    for register in &scope.registers {
+        if !reader.clocked.contains(&register.clock) {
+            let cause = Cause::RegisterWiring {
+                port: "clock",
+                expected: "clk",
+            };
+            return Err(reader.error(&scope.net(register.now).name, cause));
+        }
+    }
+    Ok(block)
+}
+
+/// The text of a `comment!`, however the compiler printed its tokens; nothing for other macros that end up as comments.
+pub(super) fn comment_text(raw: &str) -> Option<String> {
+    let is_other = ["assert", "println"]
+        .iter()
+        .any(|name| raw.trim_start().starts_with(name));
+    if is_other {
+        return None;
+    }
+    let text = raw.split_once('"').map_or(raw, |(_, rest)| rest);
+    let text = text.trim_end().trim_end_matches([';', ')']).trim_end_matches('"');
+    let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    (!text.is_empty()).then_some(text)
+}
+
+struct Reader<'a> {
+    path: &'a str,
+    scope: &'a Scope,
+    loops: Vec<(String, i128)>,
+    /// Clock inputs of the registers that are wired.
+    clocked: BTreeSet<NetId>,
+}
+
+impl Reader<'_> {
+    fn error(&self, signal: &str, cause: Cause) -> EmitError {
+        EmitError::new(self.path, &signal.replace('$', "."), cause)
+    }
+
+    fn block(&mut self, statements: &[VerilogStatement]) -> Result<Vec<Statement>, EmitError> {
+        let mut block = Vec::new();
+        for statement in statements {
+            self.statement(statement, &mut block)?;
+        }
+        Ok(block)
+    }
+
+    fn statement(&mut self, statement: &VerilogStatement, block: &mut Vec<Statement>) -> Result<(), EmitError> {
+        match statement {
+            VerilogStatement::Assignment(target, value) => block.extend(self.assignment(target, value)?),
+            VerilogStatement::If(conditional) => block.push(self.conditional(conditional)?),
+            VerilogStatement::Match(arms) => block.push(self.case(arms)?),
+            VerilogStatement::Loop(turns) => self.unroll(turns, block)?,
+            VerilogStatement::Macro(inner) => block.extend(self.block(inner)?),
+            VerilogStatement::Comment(raw) => {
+                // Tags such as `@module` are for the emitter.
+                let text = comment_text(raw).filter(|text| !text.starts_with('@'));
+                block.extend(text.map(Statement::Comment));
+            }
+            VerilogStatement::SliceAssignment { base, .. } => {
+                return Err(self.unsupported(base, "an assignment to a part of a signal", "assign the whole signal"));
+            }
+            VerilogStatement::Link(_) => {
+                let none = Tree::Signal(String::new());
+                return Err(self.unsupported(&none, "an interface `join` or `link`", "wire each signal"));
+            }
+        }
+        Ok(())
+    }
+
+    fn unsupported(&self, signal: &Tree, found: &str, remedy: &'static str) -> EmitError {
+        let name = if let Tree::Signal(name) = signal { name } else { "" };
+        self.error(
+            name,
+            Cause::Unsupported {
+                found: found.to_owned(),
+                remedy,
+            },
+        )
+    }
+
+    fn assignment(&mut self, target: &Tree, value: &Tree) -> Result<Option<Statement>, EmitError> {
+        let Tree::Signal(text) = target else {
+            return Err(self.unsupported(target, "an assignment to an expression", "assign to a signal's `next`"));
+        };
+        let raw = paths::resolve(text, &self.loops).map_err(|cause| self.error(text, cause))?;
+        let unknown = || self.error(&raw, Cause::UnknownSignal(text.clone()));
+        let target = self.scope.find(&raw).ok_or_else(unknown)?;
+        let net = self.scope.net(target);
+        match net.role {
+            Role::RegisterClock => {
+                self.wire_register(&raw, value, "clock", "clk")?;
+                self.clocked.insert(target);
+                Ok(None)
+            }
+            Role::RegisterReset => self.wire_register(&raw, value, "rst", "rst").map(|()| None),
+            role if role.is_driven() => {
+                let value =
+                    expression(value, net.ty, self.scope, &self.loops).map_err(|cause| self.error(&raw, cause))?;
+                Ok(Some(Statement::Assign { target, value }))
+            }
+            role => Err(self.error(&raw, Cause::NotDrivable(role.describe()))),
+        }
+    }
+
+    /// A register's `clock` and `rst` are this block's, whatever the kernel writes, so it may write nothing else.
+    fn wire_register(
+        &self,
+        raw: &str,
+        value: &Tree,
+        port: &'static str,
+        expected: &'static str,
+    ) -> Result<(), EmitError> {
+        match value {
+            Tree::Signal(name) if name == expected => Ok(()),
+            _ => Err(self.error(raw, Cause::RegisterWiring { port, expected })),
+        }
+    }
+
+    fn conditional(&mut self, conditional: &VerilogConditional) -> Result<Statement, EmitError> {
+        let test = self.test(&conditional.test)?;
+        let then = self.block(&conditional.then)?;
+        let otherwise = match &conditional.otherwise {
+            VerilogBlockOrConditional::None => Vec::new(),
+            VerilogBlockOrConditional::Block(block) => self.block(block)?,
+            VerilogBlockOrConditional::Conditional(inner) => self.block(std::slice::from_ref(&**inner))?,
+        };
+        Ok(Statement::If { test, then, otherwise })
+    }
+
+    fn test(&self, tree: &Tree) -> Result<Expression, EmitError> {
+        expression(tree, BIT, self.scope, &self.loops).map_err(|cause| self.error("", cause))
+    }
+
+    fn case(&mut self, tree: &VerilogMatch) -> Result<Statement, EmitError> {
+        let located = free_expression(&tree.test, self.scope, &self.loops);
+        let (subject, ty) = located.map_err(|cause| self.error("", cause))?;
+        let mut labels = BTreeMap::new();
+        let mut arms = Vec::new();
+        for case in &tree.cases {
+            if case.condition == "default" {
+                arms.push(Arm {
+                    label: None,
+                    block: self.block(&case.block)?,
+                });
+                return Ok(Statement::Case { subject, arms });
+            }
+            let label = self.label(&case.condition, ty)?;
+            labels.insert(label.text.clone(), ());
+            arms.push(Arm {
+                label: Some(label),
+                block: self.block(&case.block)?,
+            });
+        }
+        let values = match tree.cases.first().and_then(|case| case.condition.split_once('$')) {
+            Some((type_name, _)) => self.scope.enum_sizes.get(type_name).copied(),
+            None => (ty == BIT).then_some(2),
+        };
+        if Some(labels.len()) != values {
+            return Err(self.error("", Cause::MatchNotExhaustive(subject.text)));
+        }
+        // Rust knows that there are no further values; Verilog does not, and would keep the old value for them.
+        if let Some(last) = arms.last_mut() {
+            last.label = None;
+        }
+        Ok(Statement::Case { subject, arms })
+    }
+
+    fn label(&self, condition: &str, ty: Type) -> Result<Expression, EmitError> {
+        let tree = match condition {
+            "true" => Tree::Literal(true.into()),
+            "false" => Tree::Literal(false.into()),
+            _ => Tree::Signal(condition.to_owned()),
+        };
+        expression(&tree, ty, self.scope, &self.loops).map_err(|cause| self.error("", cause))
+    }
+
+    fn unroll(&mut self, turns: &VerilogLoop, block: &mut Vec<Statement>) -> Result<(), EmitError> {
+        if self.scope.find(&turns.index).is_some() {
+            return Err(self.error(&turns.index, Cause::LoopVariable(turns.index.clone())));
+        }
+        let bound = |literal| literal_value(literal).map_or(i128::MAX, |(_, value)| value);
+        let (from, to) = (bound(&turns.from), bound(&turns.to));
+        if to.saturating_sub(from) > MAXIMUM_TURNS {
+            return Err(self.error("", Cause::Loop { from, to }));
+        }
+        for value in from..to {
+            self.loops.push((turns.index.clone(), value));
+            block.extend(self.block(&turns.block)?);
+            self.loops.pop();
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn unit_comments_lose_their_macro() {
+        assert_eq!(comment_text("comment! (\"tap table").as_deref(), Some("tap table"));
+        assert_eq!(comment_text("comment!(\"a\n   b\")").as_deref(), Some("a b"));
+        assert_eq!(comment_text("@module mac").as_deref(), Some("@module mac"));
+        assert_eq!(comment_text("assert! (x)"), None);
+        assert_eq!(comment_text("comment! (\""), None);
+    }
+}

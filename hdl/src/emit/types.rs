@@ -1,0 +1,121 @@
+//! Width and sign of a signal, and sized literals that mean exactly one bit pattern.
+
+use super::error::Cause;
+use std::fmt;
+
+/// Type of a signal or expression: 1 to 64 bits, plain bits or two's complement.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Type {
+    /// Width in bits, 1..=64.
+    pub width: u32,
+    /// Two's complement?
+    pub signed: bool,
+}
+
+/// The type of conditions.
+pub(super) const BIT: Type = Type {
+    width: 1,
+    signed: false,
+};
+
+impl fmt::Display for Type {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}<{}>", if self.signed { "Signed" } else { "Bits" }, self.width)
+    }
+}
+
+impl Type {
+    pub(super) fn bits(width: u32) -> Self {
+        Self { width, signed: false }
+    }
+
+    /// A mask of all bits of the type.
+    pub(super) fn mask(self) -> u64 {
+        mask(0, self.width)
+    }
+
+    /// `value` as a bit pattern of this type.
+    pub(super) fn pattern(self, value: i128) -> Result<u64, Cause> {
+        let (low, high) = if self.signed {
+            (-(1i128 << (self.width - 1)), (1i128 << (self.width - 1)) - 1)
+        } else {
+            (0, (1i128 << self.width) - 1)
+        };
+        if (low..=high).contains(&value) {
+            Ok((value as u64) & self.mask())
+        } else {
+            Err(Cause::Literal { value, place: self })
+        }
+    }
+
+    /// `signed [7:0]`, or nothing for a single unsigned bit.
+    pub(super) fn declaration(self) -> String {
+        let sign = if self.signed { "signed " } else { "" };
+        let range = if self.width == 1 {
+            String::new()
+        } else {
+            format!("[{}:0]", self.width - 1)
+        };
+        format!("{sign}{range}").trim_end().to_owned()
+    }
+
+    /// `pattern` as a sized literal: decimal, except the most negative value, whose magnitude has no decimal literal.
+    pub(super) fn literal(self, pattern: u64) -> String {
+        let width = self.width;
+        let sign_bit = 1u64 << (width - 1);
+        match (self.signed, pattern & sign_bit != 0) {
+            (false, _) => format!("{width}'d{pattern}"),
+            (true, false) => format!("{width}'sd{pattern}"),
+            (true, true) if pattern == sign_bit => format!("{width}'sh{pattern:x}"),
+            (true, true) => format!("-{width}'sd{}", (pattern ^ self.mask()).wrapping_add(1)),
+        }
+    }
+}
+
+/// `width` ones from bit `low` on.
+pub(super) fn mask(low: u32, width: u32) -> u64 {
+    let ones = if width >= 64 { u64::MAX } else { (1u64 << width) - 1 };
+    ones.checked_shl(low).unwrap_or(0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn unit_literals_are_sized_and_signed() {
+        let signed = Type {
+            width: 16,
+            signed: true,
+        };
+        assert_eq!(Type::bits(8).literal(240), "8'd240");
+        assert_eq!(signed.literal(5), "16'sd5");
+        assert_eq!(signed.literal(0xfffb), "-16'sd5");
+        assert_eq!(signed.literal(0x8000), "16'sh8000");
+        assert_eq!(
+            Type {
+                width: 64,
+                signed: true
+            }
+            .literal(u64::MAX),
+            "-64'sd1"
+        );
+        assert_eq!(Type { width: 1, signed: true }.literal(1), "1'sh1");
+    }
+
+    #[test]
+    fn unit_values_must_fit() {
+        assert_eq!(Type::bits(64).pattern(u64::MAX.into()), Ok(u64::MAX));
+        assert_eq!(Type { width: 8, signed: true }.pattern(-128), Ok(0x80));
+        assert!(Type { width: 8, signed: true }.pattern(128).is_err());
+        assert!(Type::bits(8).pattern(256).is_err());
+        assert!(Type::bits(8).pattern(-1).is_err());
+    }
+
+    #[test]
+    fn unit_masks_never_overflow() {
+        assert_eq!(mask(0, 64), u64::MAX);
+        assert_eq!(mask(4, 4), 0xf0);
+        assert_eq!(mask(64, 1), 0);
+    }
+}

@@ -1,0 +1,90 @@
+//! What a kernel sees: RustHDL, with the parts replaced that do not do what they say, and our leaves.
+//!
+//! An explicit re-export shadows the one of the glob, so every kernel that says `use crate::prelude::*` gets ours:
+//!
+//! | ours | instead of |
+//! |---|---|
+//! | [`signed_bit_cast`] | RustHDL's, which overflows the stack on the most negative value |
+//! | [`Dff`], `dff_setup!` | RustHDL's `DFF` without reset; the macro of the same name also wires `rst` |
+//! | [`Ram`], [`Rom`] | RustHDL's `RAM` and `ROM` with two clocks, and without arbitrary contents |
+//! | `comment!` | nothing: `#[hdl_gen]` knows the macro, RustHDL has none |
+
+pub(crate) use crate::prim::{Dff, Ram, Rom, RomWord, SMul};
+pub(crate) use crate::{comment, dff_setup};
+pub(crate) use rust_hdl_core::prelude::*;
+pub(crate) use rust_hdl_macros::{LogicBlock, hdl_gen};
+
+/// A comment in the Verilog, nothing in the simulation. Below 50 characters: RustHDL wraps longer text.
+#[macro_export]
+#[doc(hidden)]
+macro_rules! comment {
+    ($($text:tt)*) => {};
+}
+
+/// Wires `clock` and `rst` of every flip-flop named and lets it keep its value: the first statement of a kernel.
+///
+/// `#[hdl_gen]` reads the invocation, not this definition: in the Verilog the reset is the emitter's work.
+#[macro_export]
+#[doc(hidden)]
+macro_rules! dff_setup {
+    ($self:ident, $clk:ident, $($dff:ident),+ $(,)?) => {
+        $(
+            $self.$dff.clock.next = $self.$clk.val();
+            $self.$dff.rst.next = $self.rst.val();
+            $self.$dff.d.next = $self.$dff.q.val();
+        )+
+    };
+}
+
+/// Sign-extends or truncates.
+///
+/// `#[hdl_gen]` knows a callee by its name alone, so that shadowing RustHDL's function is enough.
+pub(crate) fn signed_bit_cast<const TO: usize, const FROM: usize>(value: Signed<FROM>) -> Signed<TO> {
+    let pattern = unsigned_cast(value);
+    if value.sign_bit() {
+        signed_cast(!bit_cast::<TO, FROM>(!pattern))
+    } else {
+        signed_cast(bit_cast::<TO, FROM>(pattern))
+    }
+}
+
+/// The number that at most 64 bits stand for.
+pub(crate) fn to_i64<const N: usize>(value: Signed<N>) -> i64 {
+    let pattern: u64 = unsigned_cast(value).into();
+    let unused = 64 - N;
+    ((pattern << unused) as i64) >> unused
+}
+
+/// The low `N` ≤ 64 bits of a number.
+pub(crate) fn from_i64<const N: usize>(value: i64) -> Signed<N> {
+    signed_cast(from_u64(value as u64))
+}
+
+/// The low `N` ≤ 64 bits.
+pub(crate) fn from_u64<const N: usize>(value: u64) -> Bits<N> {
+    Bits::from(value & (u64::MAX >> (64 - N)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn unit_sign_extension_and_truncation_take_every_value() {
+        for value in -128..128 {
+            let short: Signed<8> = from_i64(value);
+            assert_eq!(to_i64(short), value);
+            assert_eq!(to_i64(signed_bit_cast::<16, 8>(short)), value);
+            assert_eq!(to_i64(signed_bit_cast::<58, 8>(short)), value);
+            assert_eq!(to_i64(signed_bit_cast::<4, 8>(short)), (value << 60) >> 60);
+        }
+    }
+
+    #[test]
+    fn unit_the_ends_of_64_bits() {
+        for value in [i64::MIN, -1, 0, i64::MAX] {
+            assert_eq!(to_i64(from_i64::<64>(value)), value);
+        }
+        assert_eq!(to_i64(from_i64::<50>(-(1 << 49))), -(1 << 49));
+    }
+}

@@ -1,0 +1,81 @@
+//! Block ROM: data one clock after the address.
+//!
+//! Words above the last one given are undefined: a block must not use them.
+
+use rust_hdl_core::prelude::*;
+use rust_hdl_macros::LogicBlock;
+use std::fmt::Write as _;
+
+/// A word of a [`Rom`], and what the Verilog says about it.
+#[derive(Clone, Debug)]
+pub(crate) struct RomWord {
+    pub(crate) pattern: u64,
+    pub(crate) meaning: String,
+}
+
+/// ROM of up to 2^N words.
+#[derive(LogicBlock)]
+pub(crate) struct Rom<const D: usize, const N: usize> {
+    pub(crate) clk: Signal<In, Clock>,
+    pub(crate) address: Signal<In, Bits<N>>,
+    pub(crate) data: Signal<Out, Bits<D>>,
+    _base_name: String,
+    _words: Vec<RomWord>,
+}
+
+impl<const D: usize, const N: usize> Rom<D, N> {
+    /// `base_name` names the module: two ROMs of one design need two names.
+    pub(crate) fn new(base_name: &str, words: Vec<RomWord>) -> Self {
+        Self {
+            clk: Signal::default(),
+            address: Signal::default(),
+            data: Signal::default(),
+            _base_name: base_name.to_owned(),
+            _words: words,
+        }
+    }
+}
+
+impl<const D: usize, const N: usize> Logic for Rom<D, N> {
+    fn update(&mut self) {
+        if self.clk.pos_edge() {
+            let pattern = self
+                ._words
+                .get(self.address.val().index())
+                .map_or(u64::MAX, |w| w.pattern);
+            self.data.next = Bits::from(pattern & (u64::MAX >> (64 - D)));
+        }
+    }
+
+    fn connect(&mut self) {
+        self.data.connect();
+    }
+
+    fn hdl(&self) -> Verilog {
+        let (size, last_word, last_bit) = (1u64 << N, (1u64 << N) - 1, D - 1);
+        let (name, used) = (&self._base_name, self._words.len());
+        let mut contents = String::new();
+        for (address, word) in self._words.iter().enumerate() {
+            // Writing to a String cannot fail.
+            let _ = writeln!(
+                contents,
+                "    words[{address}] = {D}'h{:0digits$x}; // {}",
+                word.pattern,
+                word.meaning,
+                digits = D.div_ceil(4),
+            );
+        }
+        Verilog::Custom(format!(
+            "\
+// @leaf {name} reg: data
+// @about Block ROM, {used} of {size} words of {D} bits are used: data one clock after the address.
+reg [{last_bit}:0] words [0:{last_word}];
+initial begin
+{contents}end
+always @(posedge clk) begin
+    data <= words[address];
+end
+"
+        ))
+    }
+}

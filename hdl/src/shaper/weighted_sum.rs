@@ -1,0 +1,122 @@
+//! `y = saturate( (Σ coefficient · sample + 2^(F−1)) >> F )`, exact up to the one rounding.
+//!
+//! `begin` puts the half that rounds into the accumulator. A coefficient comes one clock before its sample, its product
+//! stands two clocks after the sample; `add` marks the products that count. `finish` comes in the clock after the last
+//! `add` and moves the result to `y`, which holds it. `start` sets `y` to `x`.
+//!
+//! 2^T products of W + 18 bits fit in ACC = W + 18 + T bits, the half included: the accumulator never overflows.
+
+use crate::prelude::*;
+use posicast_model::rtl::shaper::ShaperConfig;
+
+/// W word, P = W + 18 product, ACC = P + T accumulator bits.
+#[derive(LogicBlock)]
+pub(super) struct WeightedSum<const W: usize, const P: usize, const ACC: usize> {
+    pub(super) clk: Signal<In, Clock>,
+    pub(super) rst: Signal<In, Bit>,
+    pub(super) begin_pass: Signal<In, Bit>,
+    pub(super) coefficient: Signal<In, Signed<18>>,
+    pub(super) sample: Signal<In, Signed<W>>,
+    pub(super) add: Signal<In, Bit>,
+    pub(super) finish: Signal<In, Bit>,
+    pub(super) start: Signal<In, Bit>,
+    pub(super) x: Signal<In, Signed<W>>,
+    pub(super) clear_flags: Signal<In, Bit>,
+    pub(super) y: Signal<Out, Signed<W>>,
+    pub(super) saturated: Signal<Out, Bit>,
+
+    multiplier: SMul<W, 18, P>,
+
+    coefficient_q: Dff<Signed<18>>,
+    accumulator: Dff<Signed<ACC>>,
+    y_q: Dff<Signed<W>>,
+    saturated_q: Dff<Bit>,
+
+    product: Signal<Local, Signed<ACC>>,
+
+    half: Constant<Signed<ACC>>,
+    too_large: Constant<Signed<ACC>>,
+    smallest: Constant<Signed<ACC>>,
+    y_max: Constant<Signed<W>>,
+    y_min: Constant<Signed<W>>,
+    fraction: Constant<Bits<5>>,
+}
+
+impl<const W: usize, const P: usize, const ACC: usize> WeightedSum<W, P, ACC> {
+    pub(super) fn new(config: &ShaperConfig) -> Self {
+        let fraction = config.coefficient_fraction();
+        Self {
+            clk: Signal::default(),
+            rst: Signal::default(),
+            begin_pass: Signal::default(),
+            coefficient: Signal::default(),
+            sample: Signal::default(),
+            add: Signal::default(),
+            finish: Signal::default(),
+            start: Signal::default(),
+            x: Signal::default(),
+            clear_flags: Signal::default(),
+            y: Signal::default(),
+            saturated: Signal::default(),
+            multiplier: SMul::default(),
+            coefficient_q: Dff::default(),
+            accumulator: Dff::default(),
+            y_q: Dff::default(),
+            saturated_q: Dff::default(),
+            product: Signal::default(),
+            half: Constant::new(from_i64(1 << (fraction - 1))),
+            too_large: Constant::new(from_i64((config.word_max() + 1) << fraction)),
+            smallest: Constant::new(from_i64(config.word_min() << fraction)),
+            y_max: Constant::new(from_i64(config.word_max())),
+            y_min: Constant::new(from_i64(config.word_min())),
+            fraction: Constant::new(from_u64(u64::from(fraction))),
+        }
+    }
+}
+
+impl<const W: usize, const P: usize, const ACC: usize> Logic for WeightedSum<W, P, ACC> {
+    #[hdl_gen]
+    fn update(&mut self) {
+        comment!("@module weighted_sum");
+        comment!("@about y = the rounded, saturated sum of the products.");
+        comment!("@about A coefficient comes a clock before its sample,");
+        comment!("@about its product is there two clocks after that.");
+        dff_setup!(self, clk, coefficient_q, accumulator, y_q, saturated_q);
+
+        comment!("Multiply and accumulate, exactly");
+        self.coefficient_q.d.next = self.coefficient.val();
+        self.multiplier.clk.next = self.clk.val();
+        self.multiplier.a.next = self.sample.val();
+        self.multiplier.b.next = self.coefficient_q.q.val();
+        self.product.next = signed_bit_cast::<ACC, P>(self.multiplier.product.val());
+        if self.add.val() {
+            self.accumulator.d.next = self.accumulator.q.val() + self.product.val();
+        }
+        if self.begin_pass.val() {
+            self.accumulator.d.next = self.half.val();
+        }
+
+        comment!("Shift by F bits and saturate");
+        if self.clear_flags.val() {
+            self.saturated_q.d.next = false;
+        }
+        if self.finish.val() {
+            self.y_q.d.next = self.accumulator.q.val().get_bits::<W>(self.fraction.val().index());
+            if self.accumulator.q.val() >= self.too_large.val() {
+                self.y_q.d.next = self.y_max.val();
+                self.saturated_q.d.next = true;
+            }
+            if self.accumulator.q.val() < self.smallest.val() {
+                self.y_q.d.next = self.y_min.val();
+                self.saturated_q.d.next = true;
+            }
+        }
+        if self.start.val() {
+            self.y_q.d.next = self.x.val();
+        }
+
+        comment!("Outputs");
+        self.y.next = self.y_q.q.val();
+        self.saturated.next = self.saturated_q.q.val();
+    }
+}

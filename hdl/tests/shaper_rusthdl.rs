@@ -1,0 +1,199 @@
+//! Lock step of the shaper in RustHDL's simulator with its model: every output, every clock.
+
+mod stimulus;
+
+use posicast_model::rtl::ClockedBlock;
+use posicast_model::rtl::shaper::{
+    Inputs, Outputs, RING_ADDRESS_BITS, Shaper, ShaperConfig, TAP_INDEX_BITS, WORD_BITS, pass_clocks,
+};
+use posicast_model::taps::{Tap, TapTable};
+use stimulus::{Anything, Random, load, table};
+
+/// The two side by side.
+struct LockStep {
+    config: ShaperConfig,
+    model: Shaper,
+    rusthdl: Box<dyn ClockedBlock>,
+    clock: u64,
+}
+
+impl LockStep {
+    fn new(config: &ShaperConfig) -> Self {
+        let rusthdl = posicast_hdl::shaper::simulate(config).unwrap();
+        let model = Shaper::new(config, 7);
+        assert_eq!(rusthdl.ports(), model.ports());
+        Self {
+            config: config.clone(),
+            model,
+            rusthdl,
+            clock: 0,
+        }
+    }
+
+    fn step(&mut self, inputs: &Inputs) -> Outputs {
+        let mut shown = [0; 8];
+        self.rusthdl.step(&inputs.to_raw(&self.config), &mut shown).unwrap();
+        let expected = self.model.step(inputs);
+        let actual = Outputs::from_raw(&shown, &self.config);
+        assert_eq!(
+            actual, expected,
+            "clock {}, inputs {inputs:?}, {:?}",
+            self.clock, self.config
+        );
+        self.clock += 1;
+        expected
+    }
+
+    fn idle(&mut self, clocks: u32) -> Outputs {
+        (0..clocks).map(|_| self.step(&Inputs::default())).last().unwrap()
+    }
+
+    fn strobe(&mut self, x: i64) {
+        self.step(&Inputs {
+            strobe: true,
+            x,
+            ..Inputs::default()
+        });
+    }
+}
+
+fn config(word_bits: u32, fraction: u32, taps: &[(u32, i32)]) -> ShaperConfig {
+    let list = taps
+        .iter()
+        .map(|&(delay_samples, coefficient)| Tap {
+            delay_samples,
+            coefficient,
+        })
+        .collect();
+    ShaperConfig::new(word_bits, TapTable::new(fraction, list).unwrap()).unwrap()
+}
+
+#[test]
+fn lockstep_everything_at_random() {
+    let mut random = Random(1);
+    for (word_bits, taps, longest, fraction, gain) in [
+        (16, 3, 20, 16, 1),
+        (24, 9, 62, 15, 3),
+        (32, 16, 40, 16, 2),
+        (32, 40, 80, 9, 4),
+        (16, 5, 62, 1, 1),
+    ] {
+        let machine = table(&mut random, fraction, taps, longest, gain);
+        let config = ShaperConfig::new(word_bits, machine).unwrap();
+        let mut both = LockStep::new(&config);
+        let mut seen = Outputs::default();
+        let mut passes = [0; 3];
+        for inputs in Anything::new(&config, random.word()).take(12_000) {
+            let shown = both.step(&inputs);
+            seen.saturated |= shown.saturated;
+            seen.overrun |= shown.overrun;
+            seen.refused |= shown.refused;
+            passes[usize::from(shown.bank)] += u32::from(shown.valid);
+        }
+        assert!(seen.overrun && seen.refused, "{config:?}");
+        assert!(seen.saturated || gain == 1, "{config:?}");
+        assert!(passes.iter().all(|&n| n > 10), "passes per bank {passes:?}, {config:?}");
+    }
+}
+
+#[test]
+fn lockstep_a_result_stands_pass_clocks_after_its_strobe() {
+    for taps in [1, 2, 16] {
+        let machine = table(&mut Random(3), 16, taps, 30, 1);
+        let config = ShaperConfig::new(32, machine).unwrap();
+        let pass = pass_clocks(config.table().taps().len() as u32);
+        let mut both = LockStep::new(&config);
+        for sample in 0..50 {
+            both.strobe(sample * 1000);
+            // The strobe's own clock is clock 0; the next strobe comes at the first clock that is not an overrun.
+            let last = both.idle(pass - 1);
+            assert!(!last.valid && last.busy);
+        }
+        assert!(both.step(&Inputs::default()).valid);
+        assert!(!both.idle(1).overrun);
+    }
+}
+
+#[test]
+fn lockstep_full_scale_saturates_at_both_ends() {
+    // Σ|c|/2^F = 3, and the worst history for it: −, +, − against +, −, +.
+    let config = config(32, 16, &[(0, 65536), (1, -65536), (2, 65536)]);
+    let (low, high) = (config.word_min(), config.word_max());
+    let mut both = LockStep::new(&config);
+    let mut outputs = Vec::new();
+    for x in [high, low, high, high, low, high, low, low, 0] {
+        both.strobe(x);
+        both.idle(9);
+        outputs.push(both.outputs_y());
+    }
+    assert!(outputs.contains(&high) && outputs.contains(&low), "{outputs:?}");
+    assert!(both.idle(1).saturated);
+}
+
+#[test]
+fn lockstep_the_whole_ring_is_reached() {
+    let config = config(16, 4, &[(0, -16), (62, 32)]);
+    let mut both = LockStep::new(&config);
+    for sample in 0..300 {
+        both.strobe(sample % 97);
+        both.idle(8);
+    }
+}
+
+#[test]
+fn lockstep_a_swap_takes_effect_at_its_strobe() {
+    let config = config(24, 16, &[(0, 32768), (3, 32768)]);
+    let bypass = TapTable::bypass(16).unwrap();
+    let mut both = LockStep::new(&config);
+    both.step(&Inputs {
+        start: true,
+        x: 100,
+        ..Inputs::default()
+    });
+    for inputs in load(&bypass, 2) {
+        both.step(&inputs);
+    }
+    let waiting = both.idle(1);
+    assert!(waiting.swap_pending && waiting.bank == 0 && !waiting.refused);
+    both.strobe(500);
+    assert_eq!(both.idle(pass_clocks(1)).y, 500);
+    let after = both.idle(1);
+    assert!(!after.swap_pending && after.bank == 2);
+}
+
+#[test]
+fn lockstep_every_size_that_is_listed() {
+    for word_bits in WORD_BITS {
+        for ring in RING_ADDRESS_BITS {
+            for index in TAP_INDEX_BITS {
+                let machine = table(&mut Random(5), 16, 4, 9, 2);
+                let config = ShaperConfig::new(word_bits, machine)
+                    .and_then(|c| c.with_room_for((1 << ring) - 2, 1 << index))
+                    .unwrap();
+                let mut both = LockStep::new(&config);
+                for inputs in Anything::new(&config, u64::from(word_bits * ring * index)).take(300) {
+                    both.step(&inputs);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn lockstep_a_table_of_256_taps_and_the_longest_ring() {
+    let machine = table(&mut Random(11), 14, 256, 16_382, 4);
+    let config = ShaperConfig::new(32, machine).unwrap();
+    let pass = pass_clocks(config.table().taps().len() as u32);
+    let mut both = LockStep::new(&config);
+    let mut random = Random(12);
+    for _ in 0..20 {
+        both.strobe(random.word() as i64);
+        both.idle(pass + 2);
+    }
+}
+
+impl LockStep {
+    fn outputs_y(&self) -> i64 {
+        self.model.outputs().y
+    }
+}

@@ -1,0 +1,178 @@
+//! Stimuli for the shaper: random strobes, starts and resets, and a host that loads tables, mostly correctly.
+
+use posicast_model::rtl::shaper::{Inputs, ShaperConfig, pass_clocks};
+use posicast_model::taps::{COEFFICIENT_MAX, COEFFICIENT_MIN, Tap, TapTable};
+use std::collections::VecDeque;
+
+/// A reproducible source of numbers (splitmix64).
+pub struct Random(pub u64);
+
+impl Random {
+    pub fn word(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut word = self.0;
+        word = (word ^ (word >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        word = (word ^ (word >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        word ^ (word >> 31)
+    }
+
+    /// 0..bound.
+    pub fn below(&mut self, bound: u64) -> u64 {
+        self.word() % bound
+    }
+
+    /// True once in `n` calls.
+    pub fn once_in(&mut self, n: u64) -> bool {
+        self.below(n) == 0
+    }
+}
+
+/// `taps` taps at delays up to `longest`, coefficients of either sign that sum to 2^fraction; `gain` is about Σ|c|/2^F.
+pub fn table(random: &mut Random, fraction: u32, taps: usize, longest: u32, gain: u32) -> TapTable {
+    let mut delays: Vec<u32> = (0..taps - 1)
+        .map(|_| random.below(u64::from(longest.max(1))) as u32)
+        .collect();
+    delays.push(longest);
+    delays.sort_unstable();
+    delays.dedup();
+    let size = (u64::from(gain) << fraction) / delays.len() as u64 + 1;
+    let mut rest = 1i64 << fraction;
+    let mut list: Vec<Tap> = Vec::new();
+    for (place, &delay_samples) in delays.iter().enumerate() {
+        let left = (delays.len() - place) as i64;
+        let jitter = random.below(2 * size + 1) as i64 - size as i64;
+        let wanted = if left == 1 { rest } else { rest / left + jitter };
+        let wanted = if wanted == 0 { 1 } else { wanted };
+        let coefficient = wanted.clamp(i64::from(COEFFICIENT_MIN), i64::from(COEFFICIENT_MAX)) as i32;
+        rest -= i64::from(coefficient);
+        list.push(Tap {
+            delay_samples,
+            coefficient,
+        });
+    }
+    match TapTable::new(fraction, list) {
+        Ok(table) => table,
+        // The last coefficient was zero or did not fit: the next draw is another.
+        Err(_) => table_of_fewer(random, fraction, taps, longest, gain),
+    }
+}
+
+fn table_of_fewer(random: &mut Random, fraction: u32, taps: usize, longest: u32, gain: u32) -> TapTable {
+    if taps <= 1 {
+        return TapTable::new(
+            fraction,
+            vec![Tap {
+                delay_samples: longest,
+                coefficient: 1 << fraction,
+            }],
+        )
+        .unwrap();
+    }
+    table(random, fraction, taps - 1, longest, gain)
+}
+
+/// The writes that load `table` into `bank`, and the swap to it.
+pub fn load(table: &TapTable, bank: u8) -> Vec<Inputs> {
+    let write = |(index, tap): (usize, &Tap)| Inputs {
+        tap_write: true,
+        tap_bank: bank,
+        tap_index: index as u16,
+        tap_coefficient: tap.coefficient,
+        tap_delay: tap.delay_samples as u16,
+        ..Inputs::default()
+    };
+    let swap = Inputs {
+        swap: true,
+        swap_bank: bank,
+        ..Inputs::default()
+    };
+    table.taps().iter().enumerate().map(write).chain([swap]).collect()
+}
+
+/// Inputs clock by clock, for ever: everything at any time, often enough in an order that makes sense.
+pub struct Anything {
+    config: ShaperConfig,
+    random: Random,
+    until_strobe: u32,
+    host: VecDeque<Inputs>,
+}
+
+impl Anything {
+    pub fn new(config: &ShaperConfig, seed: u64) -> Self {
+        Self {
+            config: config.clone(),
+            random: Random(seed),
+            until_strobe: 0,
+            host: VecDeque::new(),
+        }
+    }
+
+    fn sample(&mut self) -> i64 {
+        match self.random.below(4) {
+            0 => self.config.word_max(),
+            1 => self.config.word_min(),
+            2 => self.random.below(100) as i64 - 50,
+            _ => self.random.word() as i64 >> (64 - self.config.word_bits()),
+        }
+    }
+
+    /// What the host does next: a load (good, or with one clock of it spoiled), or something at random.
+    fn plan(&mut self) {
+        let random = &mut self.random;
+        let taps = 1 + random.below(u64::from(self.config.most_taps().min(24))) as usize;
+        let longest = random.below(u64::from(self.config.longest_delay_samples().min(80)) + 1) as u32;
+        let gain = 1 + random.below(4) as u32;
+        let new = table(random, self.config.coefficient_fraction(), taps, longest, gain);
+        let mut plan = load(&new, 1 + random.below(2) as u8);
+        if random.once_in(3) {
+            let spoiled = random.below(plan.len() as u64) as usize;
+            let clock = &mut plan[spoiled];
+            match random.below(6) {
+                0 => clock.tap_index = random.word() as u16,
+                1 => clock.tap_delay = u16::MAX,
+                2 => clock.tap_coefficient ^= 1,
+                3 => clock.tap_bank = random.below(4) as u8,
+                4 => clock.swap = true,
+                _ => clock.swap_bank = random.below(4) as u8,
+            }
+        }
+        if random.once_in(4) {
+            plan.push(Inputs {
+                swap: true,
+                swap_bank: random.below(4) as u8,
+                ..Inputs::default()
+            });
+        }
+        let pause = random.below(200) as usize;
+        self.host.extend(plan);
+        self.host.extend(std::iter::repeat_n(Inputs::default(), pause));
+    }
+}
+
+impl Iterator for Anything {
+    type Item = Inputs;
+
+    fn next(&mut self) -> Option<Inputs> {
+        if self.host.is_empty() {
+            self.plan();
+        }
+        let mut inputs = self.host.pop_front()?;
+        inputs.x = self.sample();
+        inputs.rst = self.random.once_in(3000);
+        inputs.start = self.random.once_in(400);
+        inputs.clear_flags = self.random.once_in(60);
+        inputs.strobe = self.until_strobe == 0;
+        if inputs.strobe {
+            let pass = pass_clocks(self.config.table().taps().len() as u32);
+            self.until_strobe = match self.random.below(8) {
+                0 => 0,
+                1 => self.random.below(u64::from(pass)) as u32,
+                2 => pass - 1,
+                _ => pass + self.random.below(30) as u32,
+            };
+        } else {
+            self.until_strobe -= 1;
+        }
+        Some(inputs)
+    }
+}

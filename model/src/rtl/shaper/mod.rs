@@ -1,0 +1,100 @@
+//! The input shaper: `y[n] = saturate( (Σ c_i · x[n − d_i] + 2^(F−1)) >> F )`, one tap per clock through one multiplier.
+//!
+//! The datasheet is `docs/shaper.md`; this is the reference that the hardware is compared with.
+//!
+//! | type | what it is |
+//! |---|---|
+//! | [`ShaperConfig`] | what is fixed when a shaper is built: word width, sizes of its memories, the table in its ROM |
+//! | [`Shaper`] | cycle accurate at the ports, one [`Shaper::step`] per clock, from typed [`Inputs`] to typed [`Outputs`] |
+//! | [`SampleShaper`] | the same samples without the clocks: one [`SampleShaper::push`] per sample |
+//!
+//! ```text
+//!            0    1    2    3         N+5  N+6  N+7        clocks; N taps
+//! strobe  ___/‾‾‾\_______________________________________
+//! x       ---< x >---------------------------------------
+//! busy    _______/‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾\________________   N+5 clocks
+//! valid   ______________________________/‾‾‾‾\___________
+//! y       ======== before ===============< y[n] ==========
+//! ```
+//!
+//! History before the first sample since a start is the start value, so a constant command gives a constant output.
+//! A running sum never overflows: 2^T products of W + 18 bits, and half, fit in W + 18 + T ≤ 58 bits.
+//!
+//! ```
+//! use posicast_model::rtl::shaper::{Inputs, SampleShaper, Shaper, ShaperConfig, pass_clocks};
+//! use posicast_model::taps::{Tap, TapTable};
+//!
+//! let half = |delay_samples| Tap { delay_samples, coefficient: 1 << 15 };
+//! let config = ShaperConfig::new(32, TapTable::new(16, vec![half(0), half(2)])?)?;
+//!
+//! // A step of 1000 comes out as two halves, two samples apart.
+//! let mut fast = SampleShaper::new(&config);
+//! assert_eq!([1000; 4].map(|x| fast.push(x)), [500, 500, 1000, 1000]);
+//!
+//! // The same at the ports: the first result stands there `pass_clocks` after its strobe.
+//! let mut shaper = Shaper::new(&config, 1);
+//! shaper.step(&Inputs { strobe: true, x: 1000, ..Inputs::default() });
+//! let waited = (1..100).find(|_| shaper.step(&Inputs::default()).valid);
+//! assert_eq!(waited, Some(pass_clocks(2)));
+//! assert_eq!(shaper.outputs().y, 500);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod banks;
+mod clocked;
+mod config;
+mod memory;
+mod sample;
+
+pub use clocked::{Inputs, Outputs, Shaper, ports};
+pub use config::{
+    PASS_OVERHEAD_CLOCKS, PassError, RING_ADDRESS_BITS, ShaperConfig, ShaperConfigError, TAP_INDEX_BITS, WORD_BITS,
+    pass_clocks,
+};
+pub use sample::{SampleShaper, TableError};
+
+/// Half is added, `fraction` bits are dropped (an arithmetic shift), the rest is clamped to `word_bits`.
+///
+/// `sum` is `Σ c_i · x_i`, at most 2^57 in size. The second value says whether it was clamped.
+pub(crate) fn round_and_saturate(sum: i64, fraction: u32, word_bits: u32) -> (i64, bool) {
+    let rounded = (sum + (1 << (fraction - 1))) >> fraction;
+    let largest = (1i64 << (word_bits - 1)) - 1;
+    let clamped = rounded.clamp(-largest - 1, largest);
+    (clamped, clamped != rounded)
+}
+
+/// The low `bits` (1..=64) of `value` as a two's complement number: what a port of that width makes of it.
+pub(crate) fn wrap(value: i64, bits: u32) -> i64 {
+    let unused = 64 - bits;
+    (value << unused) >> unused
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn unit_rounding_is_half_up_on_both_sides_of_zero() {
+        let rounded = |sum| round_and_saturate(sum, 2, 16).0;
+        assert_eq!(
+            [-7, -6, -5, -3, -2, -1, 0, 1, 2, 3, 5, 6].map(rounded),
+            [-2, -1, -1, -1, 0, 0, 0, 0, 1, 1, 1, 2]
+        );
+    }
+
+    #[test]
+    fn unit_saturation_reaches_both_ends_exactly() {
+        assert_eq!(round_and_saturate(32767 << 4, 4, 16), (32767, false));
+        assert_eq!(round_and_saturate((32767 << 4) + 8, 4, 16), (32767, true));
+        assert_eq!(round_and_saturate(-(32768 << 4) - 8, 4, 16), (-32768, false));
+        assert_eq!(round_and_saturate(-(32768 << 4) - 9, 4, 16), (-32768, true));
+    }
+
+    #[test]
+    fn unit_wrap_takes_the_low_bits() {
+        assert_eq!(wrap(0x8000, 16), -0x8000);
+        assert_eq!(wrap(-1, 16), -1);
+        assert_eq!(wrap(0x1_0001, 16), 1);
+        assert_eq!(wrap(i64::MIN, 64), i64::MIN);
+    }
+}

@@ -1,0 +1,91 @@
+//! The same samples without the clocks.
+
+use super::config::{ShaperConfig, ShaperConfigError};
+use super::{round_and_saturate, wrap};
+use crate::taps::TapTable;
+
+/// Why a table cannot be loaded into a shaper.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+pub enum TableError {
+    /// A table of another `F`.
+    #[error("the table has {found} fraction bits, the shaper is built for {allowed}: digitise it with that many")]
+    Fraction {
+        /// `F` of the table.
+        found: u32,
+        /// `F` of the shaper.
+        allowed: u32,
+    },
+    /// A table that the shaper's memories do not hold.
+    #[error("the shaper that was built does not hold the table: {0}")]
+    Size(ShaperConfigError),
+}
+
+/// The shaper sample by sample: what [`super::Shaper`] gives if its strobes come slowly enough.
+///
+/// Unlike it, this one fills its ring at a start instead of knowing its age, and so needs no test per tap.
+#[derive(Debug, Clone)]
+pub struct SampleShaper {
+    config: ShaperConfig,
+    ring: Vec<i64>,
+    head: usize,
+    taps: Vec<(usize, i64)>,
+    saturated: bool,
+}
+
+impl SampleShaper {
+    /// A shaper after reset: start value 0, the machine's table active.
+    pub fn new(config: &ShaperConfig) -> Self {
+        Self {
+            ring: vec![0; 1 << config.ring_address_bits()],
+            head: 0,
+            taps: offsets(config.table()),
+            saturated: false,
+            config: config.clone(),
+        }
+    }
+
+    /// Begins anew: all samples before now count as `x` (wrapped to the word width), which is what the output then is.
+    pub fn start(&mut self, x: i64) -> i64 {
+        let x = wrap(x, self.config.word_bits());
+        self.ring.fill(x);
+        x
+    }
+
+    /// One sample in, one sample out. `x` is wrapped to the word width, as a port of that width would.
+    pub fn push(&mut self, x: i64) -> i64 {
+        let mask = self.ring.len() - 1;
+        self.head = (self.head + 1) & mask;
+        self.ring[self.head] = wrap(x, self.config.word_bits());
+        let product =
+            |&(delay, coefficient): &(usize, i64)| coefficient * self.ring[self.head.wrapping_sub(delay) & mask];
+        let sum = self.taps.iter().map(product).sum();
+        let (y, clamped) = round_and_saturate(sum, self.config.coefficient_fraction(), self.config.word_bits());
+        self.saturated |= clamped;
+        y
+    }
+
+    /// Makes another table active from the next sample on; the history stays.
+    ///
+    /// # Errors
+    /// [`TableError`] where the shaper that was built cannot hold it; the table stays as it was.
+    pub fn swap(&mut self, table: &TapTable) -> Result<(), TableError> {
+        let allowed = self.config.coefficient_fraction();
+        let found = table.coefficient_fraction();
+        if found != allowed {
+            return Err(TableError::Fraction { found, allowed });
+        }
+        self.config.holds(table.taps()).map_err(TableError::Size)?;
+        self.taps = offsets(table);
+        Ok(())
+    }
+
+    /// Whether any sample since [`Self::new`] was clamped.
+    pub fn saturated(&self) -> bool {
+        self.saturated
+    }
+}
+
+fn offsets(table: &TapTable) -> Vec<(usize, i64)> {
+    let offset = |tap: &crate::taps::Tap| (tap.delay_samples as usize, i64::from(tap.coefficient));
+    table.taps().iter().map(offset).collect()
+}
