@@ -1,1 +1,26 @@
-//! Posicast: testbench.
+//! Compares RTL with the bit-exact models: stimuli, simulators, lock step, waveforms.
+//!
+//! ```text
+//!  stimuli ──┬──► model  (posicast_model::rtl::ClockedBlock) ─┐
+//!            │                                                ├─► lockstep ─► report, first mismatch with its clocks
+//!            └──► device (verilator, icarus, RustHDL)  ───────┘       │
+//!                                                                     └─► wave ─► *.vcd ─► diff ─► verdict
+//! ```
+//!
+//! - [`verilator`] builds Verilog into a shared object, once per content, and drives it: the fast way.
+//! - [`icarus`] runs the same Verilog in a second, independent simulator that knows `x`.
+//! - [`stimuli`] makes inputs: directed cases, seeded random mixtures, real motion; and counts what they reached.
+//! - [`lockstep`] steps model and device side by side and compares every output in every clock.
+//! - [`wave`] writes waveforms; [`diff`] compares two of them.
+
+pub mod diff;
+mod error;
+pub mod icarus;
+pub mod lockstep;
+mod reader;
+pub mod stimuli;
+mod tool;
+pub mod verilator;
+pub mod wave;
+
+pub use error::Error;

@@ -1,0 +1,95 @@
+//! Everything that can go wrong here, by cause.
+
+use std::path::{Path, PathBuf};
+
+use posicast_model::rtl::StepError;
+
+/// Why a comparison could not be made. That something *differs* is a result, never an error.
+#[derive(Debug, thiserror::Error)]
+pub enum Error {
+    /// An external program is not installed: exit status 3.
+    #[error("{tool}: not found ({purpose}). {remedy}")]
+    ToolMissing {
+        /// The program that was looked for.
+        tool: String,
+        /// What it is needed for.
+        purpose: &'static str,
+        /// How to get it.
+        remedy: &'static str,
+    },
+    /// An external program ran and failed.
+    #[error("{tool} failed while {doing} ({status}):\n{output}")]
+    ToolFailed {
+        /// The program.
+        tool: String,
+        /// What it was doing.
+        doing: &'static str,
+        /// Its exit status in words.
+        status: String,
+        /// The last lines of its output.
+        output: String,
+    },
+    /// The Verilog's ports are not those of the model.
+    #[error("module `{top}` does not have the expected ports:\n{}\nThe Verilog was edited, or belongs to another \
+             machine file: generate it again, or verify the folder it came from", .problems.join("\n"))]
+    Ports {
+        /// The module.
+        top: String,
+        /// One line per port that differs.
+        problems: Vec<String>,
+    },
+    /// Model and device under test have different ports.
+    #[error("model and device under test cannot be compared: {0}")]
+    Unlike(String),
+    /// A source file, cache folder or output file cannot be read or written.
+    #[error("{}: cannot {doing}: {source}", .path.display())]
+    File {
+        /// The file or folder.
+        path: PathBuf,
+        /// What was tried.
+        doing: &'static str,
+        /// What the system says.
+        source: std::io::Error,
+    },
+    /// The shared object that Verilator built cannot be used.
+    #[error("{}: the built simulation cannot be loaded ({reason}); delete that file and try again", .path.display())]
+    Load {
+        /// The shared object.
+        path: PathBuf,
+        /// What the loader says.
+        reason: String,
+    },
+    /// A simulator stopped.
+    #[error("clock {clock}: {source}")]
+    Step {
+        /// Clocks since the start of the run.
+        clock: u64,
+        /// What it says.
+        source: StepError,
+    },
+    /// A waveform file that is damaged, or beyond what can be compared in bounded memory.
+    #[error("{}: {place}: {problem}", .path.display())]
+    Vcd {
+        /// The file.
+        path: PathBuf,
+        /// `line N`, or `byte N` at the end of a truncated file.
+        place: String,
+        /// What was found, what is allowed, what to do.
+        problem: String,
+    },
+    /// An option that does not fit the files it is used with.
+    #[error("{0}")]
+    Option(String),
+}
+
+impl Error {
+    pub(crate) fn file(path: &Path, doing: &'static str) -> impl FnOnce(std::io::Error) -> Self {
+        let path = path.to_owned();
+        move |source| Self::File { path, doing, source }
+    }
+
+    /// Whether the cause is a program that is not installed.
+    pub fn is_missing_tool(&self) -> bool {
+        matches!(self, Self::ToolMissing { .. })
+    }
+}

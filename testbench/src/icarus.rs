@@ -1,0 +1,250 @@
+//! The second simulator: Icarus Verilog. Slow, independent, and it knows `x`.
+//!
+//! A generated testbench reads one line of inputs from its standard input, settles, writes one line of outputs, and gives
+//! one clock; `vvp` runs beside us and is talked to through two pipes. No VPI, no files that grow with the length.
+//!
+//! An output that is `x` or `z` is a mismatch where the device is a [`Device`], and a [`StepError`] where it is stepped as
+//! a [`ClockedBlock`], which has no word for it.
+
+use std::fmt::Write as _;
+use std::io::{BufRead, BufReader, Read, Write};
+use std::process::{Child, ChildStdin, ChildStdout, Stdio};
+
+use posicast_model::rtl::{ClockedBlock, Direction, Port, StepError};
+use tempfile::TempDir;
+
+use crate::Error;
+use crate::lockstep::Device;
+use crate::tool::Tool;
+use crate::verilator::Source;
+
+const ICARUS: Tool = Tool {
+    name: "iverilog",
+    variable: "IVERILOG",
+    purpose: "it simulates the Verilog as second opinion",
+    remedy: "Install it (Debian: apt-get install iverilog), or choose another simulator with --simulator",
+};
+const VVP: Tool = Tool {
+    name: "vvp",
+    variable: "VVP",
+    purpose: "it runs what iverilog compiled",
+    remedy: "It comes with Icarus Verilog (Debian: apt-get install iverilog)",
+};
+/// Bytes that a line of outputs may have: 64 per port and more than enough for any top module.
+const LINE_BYTES: u64 = 1 << 20;
+
+/// A Verilog module that runs under Icarus.
+#[derive(Debug)]
+pub struct Icarus {
+    ports: Vec<Port>,
+    outputs: Vec<Port>,
+    process: Child,
+    to: Option<ChildStdin>,
+    from: BufReader<ChildStdout>,
+    line: String,
+    unknown: Vec<u64>,
+    _folder: TempDir,
+}
+
+impl Icarus {
+    /// Compiles the module with its testbench and starts it.
+    ///
+    /// # Errors
+    /// [`Error::ToolMissing`] without Icarus; [`Error::ToolFailed`] where it refuses the Verilog, which includes ports
+    /// that are missing or have another width.
+    pub fn build(source: &Source<'_>) -> Result<Self, Error> {
+        let temporary = std::env::temp_dir();
+        let folder = tempfile::Builder::new().prefix("posicast-").tempdir();
+        let folder = folder.map_err(Error::file(&temporary, "create a folder in"))?;
+        let bench = folder.path().join("bench.v");
+        std::fs::write(&bench, testbench(source)).map_err(Error::file(&bench, "write"))?;
+        let program = folder.path().join("bench.vvp");
+
+        let mut compile = ICARUS.command();
+        // A port of another width is only a warning to Icarus, in words that only it uses: made an error below.
+        compile
+            .args(["-g2005", "-Wall", "-s", "posicast_bench", "-o"])
+            .arg(&program)
+            .arg(&bench)
+            .args(source.files);
+        let output = ICARUS.run(&mut compile, "compiling the Verilog")?;
+        let said = String::from_utf8_lossy(&output.stderr);
+        let bad: Vec<String> = said
+            .lines()
+            .filter(|line| line.contains("bench.v") && line.to_ascii_lowercase().contains("port "))
+            .map(|line| format!("  {line}"))
+            .collect();
+        if !bad.is_empty() {
+            return Err(Error::Ports {
+                top: source.top.to_owned(),
+                problems: bad,
+            });
+        }
+
+        let mut run = VVP.command();
+        run.arg("-n")
+            .arg(&program)
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::null());
+        let mut process = run.spawn().map_err(|cause| VVP.not_started("simulating", &cause))?;
+        let (to, from) = (process.stdin.take(), process.stdout.take());
+        let Some(from) = from else {
+            return Err(VVP.failed("simulating", "no output".to_owned(), ""));
+        };
+        let outputs = source
+            .ports
+            .iter()
+            .filter(|p| p.direction == Direction::Output)
+            .cloned();
+        Ok(Self {
+            ports: source.ports.to_vec(),
+            outputs: outputs.collect(),
+            process,
+            to,
+            from: BufReader::new(from),
+            line: String::new(),
+            unknown: Vec::new(),
+            _folder: folder,
+        })
+    }
+
+    fn exchange(&mut self, inputs: &[u64], outputs: &mut [u64], unknown: &mut [u64]) -> Result<(), StepError> {
+        let widths = self
+            .ports
+            .iter()
+            .filter(|p| p.direction == Direction::Input)
+            .map(|p| p.width);
+        self.line.clear();
+        for (value, width) in inputs.iter().zip(widths) {
+            // Writing to a `String` cannot fail.
+            let _ = write!(self.line, "{:x} ", value & u64::MAX >> (64 - width.clamp(1, 64)));
+        }
+        self.line.push('\n');
+        let stopped = |cause: std::io::Error| StepError(format!("Icarus stopped: {cause}"));
+        if let Some(to) = &mut self.to {
+            to.write_all(self.line.as_bytes()).map_err(stopped)?;
+        }
+        // What the Verilog itself prints comes before our line, which has a mark.
+        loop {
+            self.line.clear();
+            let count = self
+                .from
+                .by_ref()
+                .take(LINE_BYTES)
+                .read_line(&mut self.line)
+                .map_err(stopped)?;
+            if count == 0 {
+                return Err(StepError(
+                    "Icarus stopped: the Verilog called $finish, or failed".to_owned(),
+                ));
+            }
+            if let Some(values) = self.line.strip_prefix(MARK) {
+                return parse(values, &self.outputs, outputs, unknown);
+            }
+        }
+    }
+}
+
+/// Begins a line of outputs.
+const MARK: &str = "posicast-outputs";
+
+fn parse(line: &str, ports: &[Port], outputs: &mut [u64], unknown: &mut [u64]) -> Result<(), StepError> {
+    let mut values = line.split_whitespace();
+    for (at, port) in ports.iter().enumerate() {
+        let digits = values.next().unwrap_or_default();
+        if digits.len() != port.width as usize {
+            return Err(StepError(format!(
+                "Icarus: `{digits}` is no value of output `{}`",
+                port.name
+            )));
+        }
+        (outputs[at], unknown[at]) = (0, 0);
+        for digit in digits.bytes() {
+            outputs[at] = outputs[at] << 1 | u64::from(digit == b'1');
+            unknown[at] = unknown[at] << 1 | u64::from(!matches!(digit, b'0' | b'1'));
+        }
+    }
+    Ok(())
+}
+
+impl Device for Icarus {
+    fn ports(&self) -> &[Port] {
+        &self.ports
+    }
+
+    fn step(&mut self, inputs: &[u64], outputs: &mut [u64], unknown: &mut [u64]) -> Result<(), StepError> {
+        self.exchange(inputs, outputs, unknown)
+    }
+}
+
+impl ClockedBlock for Icarus {
+    fn ports(&self) -> &[Port] {
+        &self.ports
+    }
+
+    fn step(&mut self, inputs: &[u64], outputs: &mut [u64]) -> Result<(), StepError> {
+        let mut unknown = std::mem::take(&mut self.unknown);
+        unknown.resize(outputs.len(), 0);
+        let result = self.exchange(inputs, outputs, &mut unknown);
+        let first = unknown.iter().position(|bits| *bits != 0);
+        self.unknown = unknown;
+        result?;
+        match first {
+            Some(at) => Err(StepError(format!(
+                "Icarus: output `{}` is x or z",
+                self.outputs[at].name
+            ))),
+            None => Ok(()),
+        }
+    }
+}
+
+impl Drop for Icarus {
+    fn drop(&mut self) {
+        // Without input the testbench ends; one that hangs is ended.
+        self.to = None;
+        let _ = self.process.kill();
+        let _ = self.process.wait();
+    }
+}
+
+fn testbench(source: &Source<'_>) -> String {
+    let inputs: Vec<&Port> = source
+        .ports
+        .iter()
+        .filter(|p| p.direction == Direction::Input)
+        .collect();
+    let outputs: Vec<&Port> = source
+        .ports
+        .iter()
+        .filter(|p| p.direction == Direction::Output)
+        .collect();
+    let mut declarations = String::new();
+    for port in source.ports {
+        let kind = if port.direction == Direction::Input {
+            "reg"
+        } else {
+            "wire"
+        };
+        declarations.push_str(&format!("    {kind} [{}:0] {};\n", port.width.max(1) - 1, port.name));
+    }
+    let names = |ports: &[&Port]| ports.iter().map(|p| format!(", {}", p.name)).collect::<String>();
+    let connections: String = source.ports.iter().map(|p| format!(", .{0}({0})", p.name)).collect();
+    format!(
+        "`timescale 1ns/1ns\nmodule posicast_bench;\n    reg clk = 0;\n    integer posicast_read;\n{declarations}\
+         {top} posicast_device(.clk(clk){connections});\n    \
+         initial begin\n        posicast_read = {count};\n        while (posicast_read == {count}) begin\n            \
+         posicast_read = $fscanf(32'h8000_0000, \"{in_format}\"{in_names});\n            \
+         if (posicast_read == {count}) begin\n                #1;\n                \
+         $display(\"{MARK}{out_format}\"{out_names});\n                $fflush(32'h8000_0001);\n                \
+         clk = 1;\n                #1;\n                clk = 0;\n            end\n        end\n        \
+         $finish(0);\n    end\nendmodule\n",
+        top = source.top,
+        count = inputs.len(),
+        in_format = " %h".repeat(inputs.len()),
+        in_names = names(&inputs),
+        out_format = " %b".repeat(outputs.len()),
+        out_names = names(&outputs),
+    )
+}

@@ -1,0 +1,317 @@
+//! Model and device under test side by side: same inputs, every output compared in every clock.
+//!
+//! ```text
+//! for every clock:  inputs  := stimuli(what the model showed in the clock before)
+//!                   expected := model.step(inputs);  actual, unknown := device.step(inputs)
+//!                   for every output:  actual ≠ expected or unknown bits → mismatch
+//! ```
+//!
+//! - A block is a set of outputs with a name ([`Instance`]): the report has one entry for each, `axis` by axis.
+//! - Ports are matched by name; model and device must have the same ones, their order may differ.
+//! - The run goes on after a mismatch, so that the report says how much is wrong, and ends early only after
+//!   [`Options::mismatch_limit`] wrong values: after that nothing new is learnt.
+//! - The first mismatch of each block keeps the clocks around it with all ports, ready to be printed
+//!   ([`report::Mismatch`]).
+//! - `time` counts clocks since the start of the run, which begins with a reset.
+
+mod joined;
+pub mod report;
+mod window;
+
+use posicast_model::rtl::{ClockedBlock, Direction, Port, StepError};
+
+pub use self::joined::Joined;
+use self::report::{Block, Mismatch, Report};
+use self::window::Window;
+use crate::Error;
+use crate::stimuli::Stimuli;
+use crate::verilator::Verilated;
+
+/// Clocks between two calls of the progress function.
+const PROGRESS_CLOCKS: u64 = 1 << 16;
+
+/// What is compared with the model: like [`ClockedBlock`], but it may show `x` and `z`.
+pub trait Device {
+    /// The ports, as in [`ClockedBlock::ports`].
+    fn ports(&self) -> &[Port];
+
+    /// One clock, as in [`ClockedBlock::step`]; `unknown` gets, for every output, a one for each bit that is `x` or `z`.
+    ///
+    /// # Errors
+    /// [`StepError`] where the simulator stops.
+    fn step(&mut self, inputs: &[u64], outputs: &mut [u64], unknown: &mut [u64]) -> Result<(), StepError>;
+}
+
+/// A device that knows only zeros and ones: RustHDL's simulator, another model.
+pub struct TwoValued<B>(pub B);
+
+impl<B: ClockedBlock> Device for TwoValued<B> {
+    fn ports(&self) -> &[Port] {
+        self.0.ports()
+    }
+
+    fn step(&mut self, inputs: &[u64], outputs: &mut [u64], unknown: &mut [u64]) -> Result<(), StepError> {
+        unknown.fill(0);
+        self.0.step(inputs, outputs)
+    }
+}
+
+impl Device for Verilated {
+    fn ports(&self) -> &[Port] {
+        ClockedBlock::ports(self)
+    }
+
+    fn step(&mut self, inputs: &[u64], outputs: &mut [u64], unknown: &mut [u64]) -> Result<(), StepError> {
+        unknown.fill(0);
+        ClockedBlock::step(self, inputs, outputs)
+    }
+}
+
+/// The outputs that make one entry of the report.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Instance {
+    /// The block's name: `shaper`.
+    pub block: String,
+    /// What tells it from others of its kind: the axis, or a size.
+    pub name: String,
+    /// Names of its outputs.
+    pub outputs: Vec<String>,
+}
+
+impl Instance {
+    /// All outputs of a block that stands alone.
+    pub fn whole(block: &str, name: &str, ports: &[Port]) -> Self {
+        Self {
+            block: block.to_owned(),
+            name: name.to_owned(),
+            outputs: outputs_of(ports).map(|p| p.name.clone()).collect(),
+        }
+    }
+}
+
+/// How long, and how much to keep.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Options {
+    /// Clocks to compare.
+    pub cycles: u64,
+    /// Clocks to keep before and after the first mismatch.
+    pub window_clocks: usize,
+    /// Wrong values, over all blocks, after which the run ends early.
+    pub mismatch_limit: u64,
+}
+
+impl Options {
+    /// So many clocks, with a window of 6 clocks each side and at most a million wrong values.
+    pub fn cycles(cycles: u64) -> Self {
+        Self {
+            cycles,
+            window_clocks: 6,
+            mismatch_limit: 1_000_000,
+        }
+    }
+}
+
+/// What happened in one clock, for whoever watches: coverage, waveforms.
+#[derive(Debug, Clone, Copy)]
+pub struct Clock<'a> {
+    /// Clocks since the start of the run.
+    pub time: u64,
+    /// The inputs, in the order of the model's input ports.
+    pub inputs: &'a [u64],
+    /// The model's outputs, in the order of its output ports.
+    pub expected: &'a [u64],
+    /// The device's outputs, in the same order.
+    pub actual: &'a [u64],
+}
+
+/// Runs model and device and compares.
+///
+/// `watch` sees every clock; `progress` is called with the clocks done every 65,536 clocks and at the end.
+///
+/// # Errors
+/// [`Error::Unlike`] if the ports differ or an instance names no output; [`Error::Step`] where a simulator stops.
+pub fn run(
+    model: &mut dyn ClockedBlock,
+    device: &mut dyn Device,
+    stimuli: &mut dyn Stimuli,
+    instances: &[Instance],
+    options: &Options,
+    watch: &mut dyn FnMut(&Clock<'_>),
+    progress: &mut dyn FnMut(u64),
+) -> Result<Report, Error> {
+    let ports = model.ports().to_vec();
+    let wiring = Wiring::new(&ports, device.ports())?;
+    let mut comparison = Comparison::new(&ports, instances, options)?;
+
+    let mut inputs = vec![0; wiring.inputs.len()];
+    let mut device_inputs = inputs.clone();
+    let mut expected = vec![0; wiring.outputs.len()];
+    let (mut actual, mut unknown) = (expected.clone(), expected.clone());
+    let (mut raw_actual, mut raw_unknown) = (expected.clone(), expected.clone());
+    let mut time = 0;
+    while time < options.cycles && comparison.wrong_values < options.mismatch_limit {
+        stimuli.fill(&expected, &mut inputs);
+        for (input, port) in inputs.iter_mut().zip(&wiring.inputs) {
+            *input &= port.mask;
+        }
+        let failed = |source| Error::Step { clock: time, source };
+        model.step(&inputs, &mut expected).map_err(failed)?;
+        for (value, port) in inputs.iter().zip(&wiring.inputs) {
+            device_inputs[port.device] = *value;
+        }
+        device
+            .step(&device_inputs, &mut raw_actual, &mut raw_unknown)
+            .map_err(failed)?;
+        for (at, port) in wiring.outputs.iter().enumerate() {
+            actual[at] = raw_actual[port.device];
+            unknown[at] = raw_unknown[port.device];
+        }
+        comparison.clock(time, &inputs, &expected, &actual, &unknown);
+        watch(&Clock {
+            time,
+            inputs: &inputs,
+            expected: &expected,
+            actual: &actual,
+        });
+        time += 1;
+        if time.is_multiple_of(PROGRESS_CLOCKS) {
+            progress(time);
+        }
+    }
+    progress(time);
+    Ok(comparison.report(time))
+}
+
+fn outputs_of(ports: &[Port]) -> impl Iterator<Item = &Port> {
+    ports.iter().filter(|p| p.direction == Direction::Output)
+}
+
+/// Where a port of the model sits in the device, and which bits it has.
+struct Wire {
+    device: usize,
+    mask: u64,
+}
+
+/// The model's ports in the device.
+struct Wiring {
+    inputs: Vec<Wire>,
+    outputs: Vec<Wire>,
+}
+
+impl Wiring {
+    fn new(model: &[Port], device: &[Port]) -> Result<Self, Error> {
+        let wires = |direction| {
+            let theirs: Vec<&Port> = device.iter().filter(|p| p.direction == direction).collect();
+            let ours = model.iter().filter(|p| p.direction == direction);
+            let wires = ours.map(|port| {
+                let found = theirs.iter().position(|p| p.name == port.name && p.width == port.width);
+                let missing = || Error::Unlike(format!("the device has no {} `{}`", words(port), port.name));
+                Ok(Wire {
+                    device: found.ok_or_else(missing)?,
+                    mask: u64::MAX >> (64 - port.width.clamp(1, 64)),
+                })
+            });
+            wires.collect::<Result<Vec<_>, Error>>()
+        };
+        if let Some(extra) = device.iter().find(|p| model.iter().all(|m| m.name != p.name)) {
+            return Err(Error::Unlike(format!(
+                "the model has no {} `{}`",
+                words(extra),
+                extra.name
+            )));
+        }
+        Ok(Self {
+            inputs: wires(Direction::Input)?,
+            outputs: wires(Direction::Output)?,
+        })
+    }
+}
+
+fn words(port: &Port) -> String {
+    let direction = match port.direction {
+        Direction::Input => "input",
+        Direction::Output => "output",
+    };
+    format!("{}-bit {direction}", port.width)
+}
+
+/// One instance while it is compared.
+struct Watched {
+    instance: Instance,
+    outputs: Vec<usize>,
+    valid: Option<usize>,
+    samples: u64,
+    mismatches: u64,
+    first: Option<Window>,
+}
+
+struct Comparison {
+    ports: Vec<Port>,
+    watched: Vec<Watched>,
+    recent: Window,
+    wrong_values: u64,
+}
+
+impl Comparison {
+    fn new(ports: &[Port], instances: &[Instance], options: &Options) -> Result<Self, Error> {
+        let outputs: Vec<&Port> = outputs_of(ports).collect();
+        let find = |name: &String| {
+            let at = outputs.iter().position(|p| p.name == *name);
+            at.ok_or_else(|| Error::Unlike(format!("there is no output `{name}`")))
+        };
+        let watched = instances.iter().map(|instance| {
+            let at = instance.outputs.iter().map(find).collect::<Result<Vec<_>, Error>>()?;
+            let is_valid = |at: &&usize| outputs[**at].name == "valid" || outputs[**at].name.ends_with("_valid");
+            Ok(Watched {
+                valid: at.iter().find(is_valid).copied(),
+                outputs: at,
+                instance: instance.clone(),
+                samples: 0,
+                mismatches: 0,
+                first: None,
+            })
+        });
+        Ok(Self {
+            watched: watched.collect::<Result<Vec<_>, Error>>()?,
+            recent: Window::new(ports, options.window_clocks),
+            ports: ports.to_vec(),
+            wrong_values: 0,
+        })
+    }
+
+    fn clock(&mut self, time: u64, inputs: &[u64], expected: &[u64], actual: &[u64], unknown: &[u64]) {
+        self.recent.push(time, inputs, expected, actual, unknown);
+        for watched in &mut self.watched {
+            watched.samples += u64::from(watched.valid.is_some_and(|at| expected[at] == 1));
+            if let Some(first) = &mut watched.first {
+                first.extend(time, inputs, expected, actual, unknown);
+            }
+            let wrong = |at: &&usize| expected[**at] != actual[**at] || unknown[**at] != 0;
+            let mismatches = watched.outputs.iter().filter(wrong).count() as u64;
+            if mismatches == 0 {
+                continue;
+            }
+            watched.mismatches += mismatches;
+            self.wrong_values += mismatches;
+            if watched.first.is_none() {
+                let output = watched.outputs.iter().find(wrong).copied();
+                watched.first = Some(self.recent.opened_at(time, output.unwrap_or(0)));
+            }
+        }
+    }
+
+    fn report(self, cycles: u64) -> Report {
+        let ports = self.ports;
+        let blocks = self.watched.into_iter().map(|watched| Block {
+            name: watched.instance.block,
+            first: watched
+                .first
+                .map(|window| Mismatch::new(&ports, &watched.instance.outputs, &window)),
+            instance: watched.instance.name,
+            cycles,
+            samples: watched.samples,
+            mismatches: watched.mismatches,
+        });
+        Report::new(cycles, blocks.collect())
+    }
+}

@@ -1,0 +1,199 @@
+//! The result of a lock step, as data (the contract's `verify --json`) and as text for an engineer.
+
+use std::fmt::{self, Write as _};
+
+use posicast_model::rtl::{Direction, Port};
+use serde::Serialize;
+
+use super::window::{Row, Window};
+
+/// Match or mismatch.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Verdict {
+    /// Every value of every clock was equal.
+    Match,
+    /// At least one was not.
+    Mismatch,
+}
+
+/// A whole run. Serialises to `verify --json`.
+#[derive(Debug, Clone, Serialize)]
+pub struct Report {
+    /// The verdict over all blocks. A run of no clocks is a mismatch: it shows nothing.
+    pub result: Verdict,
+    /// Clocks compared.
+    pub cycles: u64,
+    /// Output samples compared, over all blocks: clocks in which the model's `valid` was high.
+    pub samples: u64,
+    /// One entry per instance.
+    pub blocks: Vec<Block>,
+}
+
+impl Report {
+    /// From the blocks of one run.
+    pub fn new(cycles: u64, blocks: Vec<Block>) -> Self {
+        let equal = cycles > 0 && !blocks.is_empty() && blocks.iter().all(|b| b.mismatches == 0);
+        Self {
+            result: if equal { Verdict::Match } else { Verdict::Mismatch },
+            cycles,
+            samples: blocks.iter().map(|b| b.samples).sum(),
+            blocks,
+        }
+    }
+
+    /// Several runs as one: their blocks after one another, clocks and samples added.
+    pub fn joined(reports: Vec<Report>) -> Self {
+        let cycles = reports.iter().map(|r| r.cycles).fold(0, u64::saturating_add);
+        let equal = !reports.is_empty() && reports.iter().all(|r| r.result == Verdict::Match);
+        let mut all = Self::new(cycles, reports.into_iter().flat_map(|r| r.blocks).collect());
+        if !equal {
+            all.result = Verdict::Mismatch;
+        }
+        all
+    }
+
+    /// Wrong values over all blocks.
+    pub fn mismatches(&self) -> u64 {
+        self.blocks.iter().map(|b| b.mismatches).sum()
+    }
+}
+
+/// One instance of a block.
+#[derive(Debug, Clone, Serialize)]
+pub struct Block {
+    /// The block's name.
+    pub name: String,
+    /// The axis, or the size.
+    pub instance: String,
+    /// Clocks compared.
+    pub cycles: u64,
+    /// Output samples compared.
+    #[serde(skip)]
+    pub samples: u64,
+    /// Wrong values: outputs times clocks.
+    pub mismatches: u64,
+    /// The first of them.
+    pub first: Option<Mismatch>,
+}
+
+/// The first wrong value of a block, with the clocks around it. `Display` draws the table.
+#[derive(Debug, Clone, Serialize)]
+pub struct Mismatch {
+    /// Clocks since the start of the run.
+    pub time: u64,
+    /// The output.
+    pub signal: String,
+    /// What the model says, as a binary string, most significant bit first.
+    pub expected: String,
+    /// What the device shows; may hold `x`.
+    pub actual: String,
+    /// The clocks around it: a row per port.
+    #[serde(skip)]
+    table: Table,
+}
+
+#[derive(Debug, Clone)]
+struct Table {
+    times: Vec<u64>,
+    /// Name and cells; the block's own outputs twice, model above device, where they differ.
+    rows: Vec<(String, Vec<String>)>,
+}
+
+impl Mismatch {
+    pub(super) fn new(ports: &[Port], own: &[String], window: &Window) -> Self {
+        let (time, output) = window.mismatch;
+        let outputs: Vec<&Port> = super::outputs_of(ports).collect();
+        let port = outputs[output];
+        let at = window.rows().iter().find(|row| row.time == time);
+        let (expected, actual, unknown) = at.map_or((0, 0, 0), |row| {
+            (row.expected[output], row.actual[output], row.unknown[output])
+        });
+        Self {
+            time,
+            signal: port.name.clone(),
+            expected: binary(port.width, expected, 0),
+            actual: binary(port.width, actual, unknown),
+            table: Table::new(ports, own, window.rows()),
+        }
+    }
+}
+
+impl Table {
+    fn new(ports: &[Port], own: &[String], rows: &[Row]) -> Self {
+        let mut table = Self {
+            times: rows.iter().map(|row| row.time).collect(),
+            rows: Vec::new(),
+        };
+        let inputs = ports.iter().filter(|p| p.direction == Direction::Input);
+        for (at, port) in inputs.enumerate() {
+            let cells = rows.iter().map(|row| number(port, row.inputs[at], 0));
+            table.rows.push((port.name.clone(), cells.collect()));
+        }
+        for (at, port) in super::outputs_of(ports).enumerate() {
+            if !own.contains(&port.name) {
+                continue;
+            }
+            let expected: Vec<String> = rows.iter().map(|row| number(port, row.expected[at], 0)).collect();
+            let actual = rows.iter().map(|row| number(port, row.actual[at], row.unknown[at]));
+            let actual: Vec<String> = actual.collect();
+            if expected == actual {
+                table.rows.push((port.name.clone(), expected));
+            } else {
+                let marked = actual.into_iter().zip(&expected);
+                let marked = marked.map(|(a, e)| if a == *e { a } else { format!("*{a}") }).collect();
+                table.rows.push((format!("{} (model)", port.name), expected));
+                table.rows.push((format!("{} (device)", port.name), marked));
+            }
+        }
+        table
+    }
+}
+
+/// Binary, most significant bit first, unknown bits as `x`.
+fn binary(width: u32, value: u64, unknown: u64) -> String {
+    let bit = |at: u32| match (unknown >> at & 1, value >> at & 1) {
+        (1, _) => 'x',
+        (_, 1) => '1',
+        _ => '0',
+    };
+    (0..width.min(64)).rev().map(bit).collect()
+}
+
+/// As an engineer reads it: decimal, with sign where the port has one; binary where bits are unknown.
+fn number(port: &Port, value: u64, unknown: u64) -> String {
+    if unknown != 0 {
+        return binary(port.width, value, unknown);
+    }
+    let shift = 64 - port.width.clamp(1, 64);
+    if port.signed {
+        (((value << shift) as i64) >> shift).to_string()
+    } else {
+        value.to_string()
+    }
+}
+
+impl fmt::Display for Mismatch {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(
+            f,
+            "first mismatch in clock {}: `{}` is {}, the model says {}",
+            self.time, self.signal, self.actual, self.expected
+        )?;
+        let names = self.table.rows.iter().map(|(name, _)| name.chars().count());
+        let name_width = names.max().unwrap_or(0).max("clock".len());
+        let mut lines = vec![format!("{:name_width$}", "clock")];
+        lines.extend(self.table.rows.iter().map(|(name, _)| format!("{name:name_width$}")));
+        for (column, time) in self.table.times.iter().enumerate() {
+            let cells = self.table.rows.iter().map(|(_, cells)| cells[column].as_str());
+            let width = cells.clone().map(str::len).max().unwrap_or(0);
+            let head = time.to_string();
+            let width = width.max(head.len());
+            for (line, cell) in lines.iter_mut().zip(std::iter::once(head.as_str()).chain(cells)) {
+                // Writing to a `String` cannot fail.
+                let _ = write!(line, "  {cell:>width$}");
+            }
+        }
+        f.write_str(&lines.join("\n"))
+    }
+}

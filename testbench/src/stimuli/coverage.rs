@@ -1,0 +1,102 @@
+//! Counts what a run reached.
+
+use std::fmt;
+
+use super::Layout;
+use crate::lockstep::Clock;
+
+/// How often things happened, over all shapers of a [`Layout`].
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Coverage {
+    /// Clocks.
+    pub clocks: u64,
+    /// Clocks with `rst`.
+    pub resets: u64,
+    /// Clocks with `strobe`.
+    pub strobes: u64,
+    /// Strobes with `start`.
+    pub starts: u64,
+    /// Taps written.
+    pub tap_writes: u64,
+    /// Clocks with `valid`.
+    pub valid: u64,
+    /// Times that `saturated` rose.
+    pub saturated: u64,
+    /// Times that `overrun` rose.
+    pub overrun: u64,
+    /// Times that `refused` rose.
+    pub refused: u64,
+    /// Times that a swap became pending.
+    pub swaps_requested: u64,
+    /// Times that `bank` became another bank than 0, or changed from one to the other.
+    pub swaps: u64,
+    /// Times that a sticky flag fell.
+    pub flags_cleared: u64,
+    seen: Vec<[u64; 5]>,
+}
+
+impl Coverage {
+    /// Adds a clock.
+    pub fn observe(&mut self, layout: &Layout, clock: &Clock<'_>) {
+        self.seen.resize(layout.axes.len(), [0; 5]);
+        let strobe = clock.inputs[layout.strobe] & 1;
+        self.clocks += 1;
+        self.resets += clock.inputs[layout.rst] & 1;
+        self.strobes += strobe;
+        for (axis, seen) in layout.axes.iter().zip(&mut self.seen) {
+            let out = clock.expected;
+            self.starts += strobe & clock.inputs[axis.start];
+            self.tap_writes += clock.inputs[axis.tap_write] & 1;
+            self.valid += out[axis.valid];
+            let now = [
+                out[axis.saturated],
+                out[axis.overrun],
+                out[axis.refused],
+                out[axis.swap_pending],
+                out[axis.bank],
+            ];
+            let rose = |flag: usize| u64::from(now[flag] > seen[flag]);
+            self.saturated += rose(0);
+            self.overrun += rose(1);
+            self.refused += rose(2);
+            self.swaps_requested += rose(3);
+            self.swaps += u64::from(now[4] != seen[4] && now[4] != 0);
+            self.flags_cleared += (0..3).map(|flag| u64::from(now[flag] < seen[flag])).sum::<u64>();
+            *seen = now;
+        }
+    }
+
+    /// What was never reached: the names of the counters that are zero.
+    pub fn missing(&self) -> Vec<&'static str> {
+        let all = self.named();
+        all.iter()
+            .filter(|(_, count)| *count == 0)
+            .map(|(name, _)| *name)
+            .collect()
+    }
+
+    fn named(&self) -> [(&'static str, u64); 11] {
+        [
+            ("resets", self.resets),
+            ("strobes", self.strobes),
+            ("starts", self.starts),
+            ("tap writes", self.tap_writes),
+            ("valid", self.valid),
+            ("saturated", self.saturated),
+            ("overrun", self.overrun),
+            ("refused", self.refused),
+            ("swaps requested", self.swaps_requested),
+            ("swaps", self.swaps),
+            ("flags cleared", self.flags_cleared),
+        ]
+    }
+}
+
+impl fmt::Display for Coverage {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} clocks", self.clocks)?;
+        self.named()
+            .iter()
+            .try_for_each(|(name, count)| write!(f, ", {name} {count}"))
+    }
+}

@@ -1,0 +1,292 @@
+//! Scripts: the cases that one thinks of, by name.
+
+use super::{Axis, Layout, Stimuli};
+
+/// One step of a script. All axes do the same, each at its own full scale.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Action {
+    /// `rst` for so many clocks.
+    Reset(u32),
+    /// `strobe` for one clock with `x` = so many 256ths of full scale; 256 is the largest word, −256 the smallest.
+    Strobe(i32),
+    /// The same together with `start`.
+    Start(i32),
+    /// `start` without `strobe`.
+    StartAlone,
+    /// So many clocks of nothing.
+    Wait(u32),
+    /// Until no axis is busy, at least one clock and at most 4096.
+    WaitIdle,
+    /// Writes a tap: bank, index, coefficient in 256ths of one, delay. Negative delays count from the largest, −1.
+    Tap(u64, u64, i32, i64),
+    /// Asks for a bank.
+    Swap(u64),
+    /// `swap` and `strobe` in one clock, with that `x`.
+    SwapAndStrobe(u64, i32),
+    /// `clear_flags` for one clock.
+    Clear,
+    /// `clear_flags` together with a strobe of that `x`.
+    ClearAndStrobe(i32),
+}
+
+/// The directed cases, each with its name.
+pub fn cases() -> Vec<(&'static str, Vec<Action>)> {
+    use Action::{Clear, ClearAndStrobe, Reset, Start, StartAlone, Strobe, Swap, SwapAndStrobe, Tap, Wait, WaitIdle};
+    let samples = |values: &[i32]| values.iter().flat_map(|x| [Strobe(*x), WaitIdle]).collect::<Vec<_>>();
+    let held = |x: i32, count: usize| samples(&vec![x; count]);
+    let started = |x: i32| vec![Reset(2), Start(x), WaitIdle];
+    // 1.5 − 0.5 swings beyond full scale; loaded into bank 1, half and half into bank 2.
+    let load = |bank: u64, taps: [(i32, i64); 2]| {
+        let tap = |(index, (coefficient, delay)): (u64, (i32, i64))| Tap(bank, index, coefficient, delay);
+        (0..).zip(taps).map(tap).collect::<Vec<_>>()
+    };
+    let overshooting = load(1, [(384, 0), (-128, 3)]);
+    let halves = load(2, [(128, 0), (128, 5)]);
+    vec![
+        ("step_to_full_scale", [started(0), held(256, 40)].concat()),
+        ("step_to_negative_full_scale", [started(0), held(-256, 40)].concat()),
+        (
+            "reversal",
+            [started(0), held(256, 20), held(-256, 20), held(256, 20)].concat(),
+        ),
+        ("constant", [started(100), held(100, 40)].concat()),
+        (
+            "strobes_back_to_back",
+            [started(0), vec![Strobe(10); 30], vec![WaitIdle, Clear], held(5, 3)].concat(),
+        ),
+        (
+            "start_at_any_time",
+            [
+                started(50),
+                held(-50, 5),
+                vec![
+                    StartAlone,
+                    Wait(3),
+                    Start(200),
+                    Start(-200),
+                    Wait(1),
+                    StartAlone,
+                    WaitIdle,
+                ],
+                held(10, 5),
+            ]
+            .concat(),
+        ),
+        (
+            "reset_at_any_time",
+            (0..24)
+                .flat_map(|clocks| [Strobe(77), Wait(clocks), Reset(1), Wait(1), Strobe(-33), WaitIdle])
+                .collect(),
+        ),
+        (
+            "swap_in_flight",
+            [
+                started(0),
+                overshooting.clone(),
+                halves.clone(),
+                held(256, 3),
+                vec![Strobe(-256), Wait(1), Swap(1), WaitIdle],
+                held(-256, 6),
+                held(256, 6),
+                vec![SwapAndStrobe(2, 9), WaitIdle],
+                held(-256, 6),
+                vec![Swap(0), Wait(2), Strobe(256), WaitIdle],
+                held(256, 6),
+            ]
+            .concat(),
+        ),
+        (
+            "saturation",
+            [
+                started(0),
+                overshooting.clone(),
+                vec![Swap(1)],
+                held(-256, 8),
+                held(256, 8),
+                vec![Clear],
+                held(-256, 8),
+            ]
+            .concat(),
+        ),
+        (
+            "flag_clear_races",
+            [
+                started(0),
+                overshooting.clone(),
+                vec![Swap(1)],
+                held(-256, 4),
+                vec![Strobe(256)],
+                vec![Clear; 40],
+                vec![
+                    ClearAndStrobe(1),
+                    ClearAndStrobe(2),
+                    Clear,
+                    Wait(1),
+                    Clear,
+                    WaitIdle,
+                    Clear,
+                ],
+            ]
+            .concat(),
+        ),
+        (
+            "illegal_writes",
+            [
+                started(0),
+                vec![
+                    Tap(0, 0, 256, 0),
+                    Clear,
+                    Tap(3, 0, 256, 0),
+                    Clear,
+                    Tap(1, 1, 256, 0),
+                    Clear,
+                ],
+                vec![
+                    Tap(1, 0, 256, -1),
+                    Clear,
+                    Swap(1),
+                    Clear,
+                    Tap(1, 0, 255, 0),
+                    Swap(1),
+                    Clear,
+                ],
+                vec![Swap(3), Clear, Swap(2), Clear],
+                overshooting.clone(),
+                vec![Swap(1), Tap(1, 0, 256, 0), Swap(1), Tap(2, 0, 256, 0), Wait(2), Clear],
+                held(3, 4),
+                vec![Tap(1, 0, 256, 0), Tap(1, 2, 1, 9), Swap(1), Clear],
+                held(4, 4),
+            ]
+            .concat(),
+        ),
+        (
+            "reload_after_reset",
+            [
+                started(0),
+                overshooting.clone(),
+                vec![Swap(1), Reset(1), Swap(1), Wait(2)],
+                held(7, 3),
+                vec![Tap(1, 0, 256, 0), Reset(1), Tap(1, 1, 1, 1), Swap(1), Wait(1)],
+                held(7, 3),
+                halves,
+                vec![Swap(2), Reset(3)],
+                held(9, 3),
+            ]
+            .concat(),
+        ),
+    ]
+}
+
+/// Longest wait for an axis that stays busy.
+const IDLE_LIMIT_CLOCKS: u32 = 4096;
+
+/// Plays a script once; then nothing happens any more.
+#[derive(Debug, Clone)]
+pub struct Directed {
+    layout: Layout,
+    script: Vec<Action>,
+    at: usize,
+    /// Clocks already spent in the current action.
+    spent: u32,
+}
+
+impl Directed {
+    /// Plays `script` on all axes of the layout.
+    pub fn new(layout: &Layout, script: Vec<Action>) -> Self {
+        Self {
+            layout: layout.clone(),
+            script,
+            at: 0,
+            spent: 0,
+        }
+    }
+
+    /// More clocks than the script needs with passes of at most `pass_clocks`.
+    pub fn clocks(&self, pass_clocks: u32) -> u64 {
+        let clocks = |action: &Action| match action {
+            Action::Reset(clocks) | Action::Wait(clocks) => *clocks,
+            Action::WaitIdle => pass_clocks.min(IDLE_LIMIT_CLOCKS).saturating_add(2),
+            _ => 1,
+        };
+        self.script.iter().map(|action| u64::from(clocks(action))).sum()
+    }
+
+    /// Whether the current action is over, given what the outputs showed.
+    fn over(&self, action: Action, seen: &[u64]) -> bool {
+        match action {
+            Action::Reset(clocks) | Action::Wait(clocks) => self.spent >= clocks,
+            Action::WaitIdle => {
+                let busy = self.layout.axes.iter().any(|axis| seen[axis.busy] != 0);
+                self.spent > 1 && !busy || self.spent >= IDLE_LIMIT_CLOCKS
+            }
+            _ => self.spent >= 1,
+        }
+    }
+}
+
+impl Stimuli for Directed {
+    fn fill(&mut self, seen: &[u64], inputs: &mut [u64]) {
+        inputs.fill(0);
+        while let Some(action) = self.script.get(self.at).copied() {
+            if !self.over(action, seen) {
+                break;
+            }
+            self.at += 1;
+            self.spent = 0;
+        }
+        let Some(action) = self.script.get(self.at).copied() else {
+            return;
+        };
+        self.spent += 1;
+        match action {
+            Action::Reset(_) => inputs[self.layout.rst] = 1,
+            Action::Strobe(_) | Action::Start(_) | Action::SwapAndStrobe(..) | Action::ClearAndStrobe(_) => {
+                inputs[self.layout.strobe] = 1;
+            }
+            _ => {}
+        }
+        for axis in &self.layout.axes {
+            drive(axis, action, inputs);
+        }
+    }
+}
+
+fn drive(axis: &Axis, action: Action, inputs: &mut [u64]) {
+    let word = |x: i32| {
+        let word = i128::from(axis.largest_word()) * i128::from(x) / 256;
+        word.clamp(-i128::from(axis.largest_word()) - 1, i128::from(axis.largest_word())) as i64 as u64
+    };
+    // −256/256 of full scale is the smallest word, one below the negative of the largest.
+    let word = |x: i32| if x == -256 { word(x).wrapping_sub(1) } else { word(x) };
+    match action {
+        Action::Strobe(x) => inputs[axis.x] = word(x),
+        Action::Start(x) => {
+            inputs[axis.x] = word(x);
+            inputs[axis.start] = 1;
+        }
+        Action::StartAlone => inputs[axis.start] = 1,
+        Action::Tap(bank, index, coefficient, delay) => {
+            let one = 1i64 << axis.coefficient_fraction;
+            inputs[axis.tap_write] = 1;
+            inputs[axis.tap_bank] = bank;
+            inputs[axis.tap_index] = index;
+            inputs[axis.tap_coefficient] = (i64::from(coefficient) * one / 256) as u64;
+            inputs[axis.tap_delay] = delay as u64;
+        }
+        Action::Swap(bank) => {
+            inputs[axis.swap] = 1;
+            inputs[axis.swap_bank] = bank;
+        }
+        Action::SwapAndStrobe(bank, x) => {
+            inputs[axis.swap] = 1;
+            inputs[axis.swap_bank] = bank;
+            inputs[axis.x] = word(x);
+        }
+        Action::Clear => inputs[axis.clear_flags] = 1,
+        Action::ClearAndStrobe(x) => {
+            inputs[axis.clear_flags] = 1;
+            inputs[axis.x] = word(x);
+        }
+        Action::Reset(_) | Action::Wait(_) | Action::WaitIdle => {}
+    }
+}

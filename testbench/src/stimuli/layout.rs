@@ -1,0 +1,115 @@
+//! Where a shaper's ports sit among the ports of what is simulated.
+
+use posicast_model::rtl::{Direction, Port};
+
+use crate::Error;
+
+/// The ports of one shaper: places among the inputs and the outputs, and the widths that stimuli depend on.
+#[derive(Debug, Clone, PartialEq, Eq)]
+#[allow(missing_docs)] // places, named after the ports
+pub struct Axis {
+    /// The axis; empty for a shaper that stands alone.
+    pub name: String,
+    /// `F` of the tables that are loaded.
+    pub coefficient_fraction: u32,
+    pub start: usize,
+    pub x: usize,
+    pub clear_flags: usize,
+    pub tap_write: usize,
+    pub tap_bank: usize,
+    pub tap_index: usize,
+    pub tap_coefficient: usize,
+    pub tap_delay: usize,
+    pub swap: usize,
+    pub swap_bank: usize,
+    /// Bits of a command word.
+    pub word_bits: u32,
+    /// Bits of a tap's index.
+    pub tap_index_bits: u32,
+    /// Bits of a tap's delay.
+    pub ring_address_bits: u32,
+    pub valid: usize,
+    pub saturated: usize,
+    pub busy: usize,
+    pub overrun: usize,
+    pub swap_pending: usize,
+    pub bank: usize,
+    pub refused: usize,
+}
+
+impl Axis {
+    /// Largest command word; the smallest is `-largest - 1`.
+    pub fn largest_word(&self) -> i64 {
+        (1 << (self.word_bits.clamp(2, 63) - 1)) - 1
+    }
+}
+
+/// All shapers of a block or a top module.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Layout {
+    /// Place of `rst` among the inputs.
+    pub rst: usize,
+    /// Place of `strobe` among the inputs.
+    pub strobe: usize,
+    /// The shapers, in the order of the ports.
+    pub axes: Vec<Axis>,
+    /// Number of inputs.
+    pub inputs: usize,
+}
+
+impl Layout {
+    /// Finds the shapers. `coefficient_fraction` is the machine's `F`, 1..=16.
+    ///
+    /// # Errors
+    /// [`Error::Unlike`] names the port that a shaper lacks.
+    pub fn new(ports: &[Port], coefficient_fraction: u32) -> Result<Self, Error> {
+        let inputs: Vec<&Port> = ports.iter().filter(|p| p.direction == Direction::Input).collect();
+        let outputs: Vec<&Port> = ports.iter().filter(|p| p.direction == Direction::Output).collect();
+        let place = |list: &[&Port], name: String| {
+            let at = list.iter().position(|p| p.name == name);
+            at.ok_or_else(|| Error::Unlike(format!("no shaper: the port `{name}` is missing")))
+        };
+        let prefixes = inputs.iter().filter_map(|p| p.name.strip_suffix("tap_coefficient"));
+        let axes = prefixes.map(|prefix| {
+            let input = |name: &str| place(&inputs, format!("{prefix}{name}"));
+            let output = |name: &str| place(&outputs, format!("{prefix}{name}"));
+            let (x, tap_index, tap_delay) = (input("x")?, input("tap_index")?, input("tap_delay")?);
+            Ok(Axis {
+                name: prefix.trim_end_matches('_').to_owned(),
+                coefficient_fraction: coefficient_fraction.clamp(1, 16),
+                start: input("start")?,
+                x,
+                clear_flags: input("clear_flags")?,
+                tap_write: input("tap_write")?,
+                tap_bank: input("tap_bank")?,
+                tap_index,
+                tap_coefficient: input("tap_coefficient")?,
+                tap_delay,
+                swap: input("swap")?,
+                swap_bank: input("swap_bank")?,
+                word_bits: inputs[x].width,
+                tap_index_bits: inputs[tap_index].width,
+                ring_address_bits: inputs[tap_delay].width,
+                valid: output("valid")?,
+                saturated: output("saturated")?,
+                busy: output("busy")?,
+                overrun: output("overrun")?,
+                swap_pending: output("swap_pending")?,
+                bank: output("bank")?,
+                refused: output("refused")?,
+            })
+        });
+        let axes = axes.collect::<Result<Vec<_>, Error>>()?;
+        if axes.is_empty() {
+            return Err(Error::Unlike(
+                "no shaper: there is no port `tap_coefficient`".to_owned(),
+            ));
+        }
+        Ok(Self {
+            rst: place(&inputs, "rst".to_owned())?,
+            strobe: place(&inputs, "strobe".to_owned())?,
+            axes,
+            inputs: inputs.len(),
+        })
+    }
+}

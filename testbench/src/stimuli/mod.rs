@@ -1,0 +1,36 @@
+//! Inputs for shapers, one row of values per clock, without allocation in the clock.
+//!
+//! - [`Directed`] plays scripts: the cases that one thinks of.
+//! - [`Random`] mixes everything, seeded: the cases that one does not think of.
+//! - [`Motion`] strobes real command words at a steady rate.
+//! - [`Coverage`] counts what a run reached, so that a test can insist on it.
+//!
+//! All work on one shaper (`x`, `valid`, …) and on a machine's top module (`<axis>_x`, …; `rst` and `strobe` shared):
+//! [`Layout`] finds the axes by their port names.
+
+mod coverage;
+mod directed;
+mod layout;
+mod motion;
+mod random;
+mod table;
+
+pub use self::coverage::Coverage;
+pub use self::directed::{Action, Directed, cases};
+pub use self::layout::{Axis, Layout};
+pub use self::motion::Motion;
+pub use self::random::Random;
+
+/// Makes the inputs of the next clock.
+pub trait Stimuli {
+    /// Fills `inputs`, in the order of the input ports, knowing what the outputs showed in the clock before (zeros in the
+    /// first). Bits above a port's width are ignored.
+    fn fill(&mut self, seen: &[u64], inputs: &mut [u64]);
+}
+
+/// Any function is a stimulus.
+impl<F: FnMut(&[u64], &mut [u64])> Stimuli for F {
+    fn fill(&mut self, seen: &[u64], inputs: &mut [u64]) {
+        self(seen, inputs);
+    }
+}

@@ -1,0 +1,55 @@
+//! Real motion: command words, one per sample, at a steady rate.
+
+use super::{Layout, Stimuli};
+
+/// A reset, then one strobe every `clocks_per_sample` clocks; `start` with the first. After the last word it is repeated.
+#[derive(Debug, Clone)]
+pub struct Motion<'a> {
+    layout: Layout,
+    words: &'a [Vec<i64>],
+    clocks_per_sample: u64,
+    clock: u64,
+}
+
+/// Clocks of reset before the first strobe.
+const RESET_CLOCKS: u64 = 2;
+
+impl<'a> Motion<'a> {
+    /// `words` holds one sequence of command words per axis of the layout; a missing or empty one stands still at 0.
+    pub fn new(layout: &Layout, words: &'a [Vec<i64>], clocks_per_sample: u64) -> Self {
+        Self {
+            layout: layout.clone(),
+            words,
+            clocks_per_sample: clocks_per_sample.max(1),
+            clock: 0,
+        }
+    }
+
+    /// Clocks until the pass of the last word has had its full sample period.
+    pub fn clocks(&self) -> u64 {
+        let samples = self.words.iter().map(Vec::len).max().unwrap_or(0) as u64;
+        RESET_CLOCKS.saturating_add(samples.saturating_mul(self.clocks_per_sample))
+    }
+}
+
+impl Stimuli for Motion<'_> {
+    fn fill(&mut self, _seen: &[u64], inputs: &mut [u64]) {
+        inputs.fill(0);
+        let clock = self.clock;
+        self.clock += 1;
+        let Some(moving) = clock.checked_sub(RESET_CLOCKS) else {
+            inputs[self.layout.rst] = 1;
+            return;
+        };
+        if !moving.is_multiple_of(self.clocks_per_sample) {
+            return;
+        }
+        inputs[self.layout.strobe] = 1;
+        let sample = usize::try_from(moving / self.clocks_per_sample).unwrap_or(usize::MAX);
+        for (axis, words) in self.layout.axes.iter().zip(self.words) {
+            let word = words.get(sample).or_else(|| words.last());
+            inputs[axis.x] = word.copied().unwrap_or(0) as u64;
+            inputs[axis.start] = u64::from(sample == 0);
+        }
+    }
+}

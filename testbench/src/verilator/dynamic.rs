@@ -1,0 +1,112 @@
+//! The one file with `unsafe`: loads the shared object that Verilator and the C++ compiler built, and calls it.
+//!
+//! Why it is sound: the object is built from our own harness (`harness.rs`), whose four functions have exactly the types
+//! below; its content hash is its name, so an object of another harness is never loaded. C++ exceptions do not leave the
+//! harness. The buffers' lengths are checked here before every call against the numbers of ports for which the harness
+//! was made. The simulation is freed before the library that holds its code is unloaded.
+#![allow(unsafe_code)] // dlopen and calls through the C interface have no safe form
+
+use std::ffi::{CStr, c_char, c_int, c_void};
+use std::path::Path;
+use std::ptr::NonNull;
+
+use libloading::Library;
+use posicast_model::rtl::StepError;
+
+use crate::Error;
+
+type New = unsafe extern "C" fn(u32) -> *mut c_void;
+type Free = unsafe extern "C" fn(*mut c_void);
+type Message = unsafe extern "C" fn(*mut c_void) -> *const c_char;
+type Run = unsafe extern "C" fn(*mut c_void, *const u64, *mut u64, u64) -> c_int;
+
+/// A simulation in a loaded shared object.
+#[derive(Debug)]
+pub(super) struct Simulation {
+    state: NonNull<c_void>,
+    run: Run,
+    free: Free,
+    message: Message,
+    inputs: usize,
+    outputs: usize,
+    // Last, so that the code outlives the state.
+    _library: Library,
+}
+
+impl Simulation {
+    /// Loads `object`, which was built for so many inputs and outputs, and starts it at random by `seed`.
+    pub(super) fn load(object: &Path, seed: u64, inputs: usize, outputs: usize) -> Result<Self, Error> {
+        let refuse = |reason: String| Error::Load {
+            path: object.to_owned(),
+            reason,
+        };
+        // Verilator takes 31 bits, and 0 as "choose one yourself".
+        let seed = ((seed ^ (seed >> 32)) as u32 & 0x7fff_fffe) | 1;
+        // SAFETY: the object's initialisers are those of Verilator's runtime library; types as the module doc says.
+        let (library, new, free, message, run) = unsafe {
+            let library = Library::new(object).map_err(|cause| refuse(cause.to_string()))?;
+            let missing = |cause: libloading::Error| refuse(cause.to_string());
+            let new: New = *library.get(b"posicast_new\0").map_err(missing)?;
+            let free: Free = *library.get(b"posicast_free\0").map_err(missing)?;
+            let message: Message = *library.get(b"posicast_message\0").map_err(missing)?;
+            let run: Run = *library.get(b"posicast_run\0").map_err(missing)?;
+            (library, new, free, message, run)
+        };
+        // SAFETY: `new` takes any seed and returns a simulation or null.
+        let state = NonNull::new(unsafe { new(seed) });
+        let state = state.ok_or_else(|| refuse("it does not start".to_owned()))?;
+        Ok(Self {
+            state,
+            run,
+            free,
+            message,
+            inputs,
+            outputs,
+            _library: library,
+        })
+    }
+
+    /// As many clocks as there are rows.
+    pub(super) fn run(&mut self, inputs: &[u64], outputs: &mut [u64]) -> Result<(), StepError> {
+        let clocks = match (
+            inputs.len().checked_div(self.inputs),
+            outputs.len().checked_div(self.outputs),
+        ) {
+            (_, Some(rows)) => rows,
+            (Some(rows), None) => rows,
+            (None, None) => return Ok(()),
+        };
+        if inputs.len() != clocks * self.inputs || outputs.len() != clocks * self.outputs {
+            return Err(StepError(format!(
+                "{} input and {} output values are not {clocks} clocks of {} inputs and {} outputs",
+                inputs.len(),
+                outputs.len(),
+                self.inputs,
+                self.outputs
+            )));
+        }
+        // SAFETY: `state` came from this library's `posicast_new` and is not shared; the harness reads `clocks` rows of
+        // inputs and writes `clocks` rows of outputs, which is what the slices hold.
+        let failed = unsafe {
+            (self.run)(
+                self.state.as_ptr(),
+                inputs.as_ptr(),
+                outputs.as_mut_ptr(),
+                clocks as u64,
+            )
+        };
+        if failed == 0 {
+            return Ok(());
+        }
+        // SAFETY: a string that ends in 0 and lives until the next call.
+        let message = unsafe { CStr::from_ptr((self.message)(self.state.as_ptr())) };
+        Err(StepError(format!("Verilator: {}", message.to_string_lossy())))
+    }
+}
+
+impl Drop for Simulation {
+    fn drop(&mut self) {
+        // SAFETY: made by this library's `posicast_new`, freed once.
+        unsafe { (self.free)(self.state.as_ptr()) }
+    }
+}

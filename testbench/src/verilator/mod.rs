@@ -1,0 +1,235 @@
+//! Verilog into a running simulation: Verilator, a generated C++ harness, a shared object, `dlopen`.
+//!
+//! ```text
+//!  files, top, ports ─► sha256 ─► in the cache? ──yes──────────────────────────┐
+//!                                   └─no─► verilator --cc ─► ports compared ─► make ─► rename into the cache ─► load
+//! ```
+//!
+//! - **Cache.** One shared object per content of the sources, ports, harness, Verilator version and flags, in
+//!   `$POSICAST_CACHE`, else `$XDG_CACHE_HOME/posicast`, else `~/.cache/posicast`, else the temporary folder. It is built
+//!   in a folder of its own and renamed when complete, so that parallel builds never see half a file.
+//! - **Random start.** Registers without a reset value and memories start at random, by the seed: what works only
+//!   because a simulator zeroes its memory does not work here.
+//! - **Versions.** Debian's Verilator 5.006 and later. `$VERILATOR` names another executable.
+//! - **Time.** A step sets `clk` low, applies the inputs, settles, reads the outputs, and sets `clk` high.
+//! - `$display` goes to standard error; `$finish`, `$stop` and a loop that does not settle are a [`StepError`].
+
+mod dynamic;
+mod harness;
+
+use std::path::{Path, PathBuf};
+
+use posicast_model::rtl::{ClockedBlock, Direction, Port, StepError};
+use sha2::{Digest, Sha256};
+
+use crate::Error;
+use crate::tool::{Tool, text};
+
+const VERILATOR: Tool = Tool {
+    name: "verilator",
+    variable: "VERILATOR",
+    purpose: "it simulates the Verilog",
+    remedy: "Install it (Debian: apt-get install verilator), or choose another simulator with --simulator",
+};
+const MAKE: Tool = Tool {
+    name: "make",
+    variable: "MAKE",
+    purpose: "it compiles what Verilator writes",
+    remedy: "Install it together with a C++ compiler (Debian: apt-get install make g++)",
+};
+/// `-O2` is 1.6 times as fast as Verilator's default `-Os`, for the same build time.
+const MAKE_FLAGS: [&str; 3] = ["OPT_FAST=-O2", "OPT_SLOW=-O1", "OPT_GLOBAL=-O2"];
+/// Arguments of `verilator --cc`. `--no-gnu-unique` keeps the statics of two loaded simulations apart.
+const FLAGS: [&str; 12] = [
+    "--cc",
+    "--exe",
+    "-Wno-fatal",
+    "-Wno-lint",
+    "--x-initial",
+    "unique",
+    "--prefix",
+    harness::CLASS,
+    "-CFLAGS",
+    "-fPIC -fno-gnu-unique -include harness_print.h",
+    "-LDFLAGS",
+    "-shared -Wl,-Bsymbolic",
+];
+
+/// What is to be simulated.
+#[derive(Debug, Clone)]
+pub struct Source<'a> {
+    /// The Verilog files, in any order.
+    pub files: &'a [PathBuf],
+    /// Name of the top module; it has a port `clk`.
+    pub top: &'a str,
+    /// All other ports. The Verilog must have exactly these.
+    pub ports: &'a [Port],
+}
+
+/// A Verilog module that runs.
+#[derive(Debug)]
+pub struct Verilated {
+    ports: Vec<Port>,
+    simulation: dynamic::Simulation,
+}
+
+impl Verilated {
+    /// Builds the module, or takes it from the cache, and starts it. Equal seeds give equal runs.
+    ///
+    /// # Errors
+    /// [`Error::ToolMissing`] without Verilator, make or a compiler; [`Error::ToolFailed`] where one of them refuses the
+    /// Verilog; [`Error::Ports`] where the ports are not the expected ones; [`Error::File`] for files and cache.
+    pub fn build(source: &Source<'_>, seed: u64) -> Result<Self, Error> {
+        Self::build_in(&cache_folder(), source, seed)
+    }
+
+    /// The same with a cache folder of the caller's choice.
+    ///
+    /// # Errors
+    /// As [`Verilated::build`].
+    pub fn build_in(cache: &Path, source: &Source<'_>, seed: u64) -> Result<Self, Error> {
+        if let Some(port) = source.ports.iter().find(|p| !(1..=64).contains(&p.width)) {
+            return Err(Error::Unlike(format!(
+                "port `{}` has {} bits; a port has 1 to 64",
+                port.name, port.width
+            )));
+        }
+        let object = compile(cache, source)?;
+        let count = |direction| source.ports.iter().filter(|p| p.direction == direction).count();
+        let simulation = dynamic::Simulation::load(&object, seed, count(Direction::Input), count(Direction::Output))?;
+        Ok(Self {
+            ports: source.ports.to_vec(),
+            simulation,
+        })
+    }
+
+    /// Many clocks at once: `inputs` and `outputs` hold one row per clock, one after the other.
+    ///
+    /// # Errors
+    /// [`StepError`] where the Verilog stops the simulation, or if the lengths are not whole, equal numbers of rows.
+    pub fn run(&mut self, inputs: &[u64], outputs: &mut [u64]) -> Result<(), StepError> {
+        self.simulation.run(inputs, outputs)
+    }
+}
+
+impl ClockedBlock for Verilated {
+    fn ports(&self) -> &[Port] {
+        &self.ports
+    }
+
+    fn step(&mut self, inputs: &[u64], outputs: &mut [u64]) -> Result<(), StepError> {
+        self.simulation.run(inputs, outputs)
+    }
+}
+
+/// What Verilator's `--lint-only -Wall` has to say about the files: nothing, where the list is empty.
+///
+/// # Errors
+/// [`Error::ToolMissing`] without Verilator.
+pub fn lint(files: &[PathBuf], top: &str) -> Result<Vec<String>, Error> {
+    let mut command = VERILATOR.command();
+    command.args(["--lint-only", "-Wall", "--top-module", top]).args(files);
+    let output = VERILATOR.output(&mut command, "checking the Verilog")?;
+    let said: Vec<String> = text(&output).lines().map(str::to_owned).collect();
+    if said.is_empty() && !output.status.success() {
+        return Err(VERILATOR.failed("checking the Verilog", output.status.to_string(), ""));
+    }
+    Ok(said)
+}
+
+/// Version line of the Verilator in use.
+///
+/// # Errors
+/// [`Error::ToolMissing`] without Verilator: the cheap way to know before a long job.
+pub fn version() -> Result<String, Error> {
+    let output = VERILATOR.run(VERILATOR.command().arg("--version"), "telling its version")?;
+    Ok(text(&output).trim().to_owned())
+}
+
+/// Where built simulations are kept.
+pub fn cache_folder() -> PathBuf {
+    let variable = |name| std::env::var_os(name).filter(|v| !v.is_empty()).map(PathBuf::from);
+    variable("POSICAST_CACHE")
+        .or_else(|| variable("XDG_CACHE_HOME").map(|folder| folder.join("posicast")))
+        .or_else(|| variable("HOME").map(|folder| folder.join(".cache").join("posicast")))
+        .unwrap_or_else(|| std::env::temp_dir().join("posicast"))
+}
+
+fn compile(cache: &Path, source: &Source<'_>) -> Result<PathBuf, Error> {
+    let mut contents = Vec::with_capacity(source.files.len());
+    for file in source.files {
+        let text = std::fs::read(file).map_err(Error::file(file, "read the Verilog"))?;
+        let path = std::path::absolute(file).map_err(Error::file(file, "find"))?;
+        contents.push((path, text));
+    }
+    let object = cache.join(format!("verilator-{}.so", content_hash(source, &contents, &version()?)));
+    if object.is_file() {
+        return Ok(object);
+    }
+    std::fs::create_dir_all(cache).map_err(Error::file(cache, "create the cache folder"))?;
+    let work = tempfile::Builder::new()
+        .prefix("build-")
+        .tempdir_in(cache)
+        .map_err(Error::file(cache, "create a folder to build in"))?;
+
+    let write = |name: &str, text: &str| {
+        let path = work.path().join(name);
+        std::fs::write(&path, text).map_err(Error::file(&path, "write"))
+    };
+    write("harness.cpp", "")?;
+    write("harness_print.h", harness::PRINT)?;
+    let mut verilate = VERILATOR.command();
+    verilate
+        .current_dir(work.path())
+        .args(FLAGS)
+        .args(["-o", "simulation.so", "--Mdir", ".", "--top-module", source.top])
+        .args(contents.iter().map(|(path, _)| path))
+        .arg("harness.cpp");
+    VERILATOR.run(&mut verilate, "translating the Verilog")?;
+
+    let header = work.path().join(format!("{}.h", harness::CLASS));
+    let header = std::fs::read_to_string(&header).map_err(Error::file(&header, "read what Verilator wrote"))?;
+    let members = harness::members(source, &harness::declared_ports(&header))?;
+    write("harness.cpp", &harness::source_text(source.ports, &members))?;
+    let mut make = MAKE.command();
+    make.current_dir(work.path())
+        .args(["-s", "-f", &format!("{}.mk", harness::CLASS)])
+        .args(MAKE_FLAGS);
+    // Inherited from a make that runs us: would change flags, or claim job slots that are not ours.
+    make.env_remove("MAKEFLAGS")
+        .env_remove("MAKELEVEL")
+        .env_remove("MFLAGS");
+    MAKE.run(&mut make, "compiling the simulation")?;
+
+    let built = work.path().join("simulation.so");
+    std::fs::rename(&built, &object).map_err(Error::file(&object, "put the simulation into the cache"))?;
+    Ok(object)
+}
+
+/// Hash of all that the shared object depends on. Lengths go in, so that no two inputs run into each other.
+fn content_hash(source: &Source<'_>, contents: &[(PathBuf, Vec<u8>)], version: &str) -> String {
+    let mut hash = Sha256::new();
+    let mut add = |bytes: &[u8]| {
+        hash.update((bytes.len() as u64).to_le_bytes());
+        hash.update(bytes);
+    };
+    add(version.as_bytes());
+    add(harness::TEMPLATE.as_bytes());
+    add(harness::PRINT.as_bytes());
+    for flag in FLAGS.iter().chain(&MAKE_FLAGS) {
+        add(flag.as_bytes());
+    }
+    add(source.top.as_bytes());
+    for port in source.ports {
+        add(port.name.as_bytes());
+        add(&[u8::from(port.direction == Direction::Input), port.width as u8]);
+    }
+    for (_, text) in contents {
+        add(text);
+    }
+    hash.finalize()
+        .iter()
+        .take(16)
+        .map(|byte| format!("{byte:02x}"))
+        .collect()
+}

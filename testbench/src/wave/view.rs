@@ -1,0 +1,278 @@
+//! Several waveforms side by side in one file, with their differences, and the files that open it in a viewer.
+//!
+//! ```text
+//!  model.vcd ─┐            merged.vcd:  model.…  rtl.…  float.…  difference.…
+//!  rtl.vcd   ─┼─► merge ─► merged.gtkw: opens it in GTKWave   (gtkwave merged.gtkw)
+//!  float.vcd ─┘            merged.sucl: opens it in Surfer    (surfer -c merged.sucl)
+//! ```
+//!
+//! Each part keeps its signals under a scope of its name, below the scopes that they do not all share. All are on one time
+//! axis, in the finest of their timescales.
+
+use std::io::Write as _;
+use std::path::Path;
+
+use vcd::{IdCode, TimescaleUnit, VarType};
+
+use super::output::{self, Output};
+use crate::Error;
+use crate::reader::{Kind, Reader, Value};
+
+/// One of the waveforms.
+#[derive(Debug, Clone, Copy)]
+pub struct Part<'a> {
+    /// Scope in the merged file: `model`, `rtl`, `float`.
+    pub scope: &'a str,
+    /// The VCD.
+    pub path: &'a Path,
+}
+
+/// A signal `difference.<name>` = value of one signal minus that of another, as a real number; both signed.
+#[derive(Debug, Clone, Copy)]
+pub struct Difference<'a> {
+    /// Name of the new signal.
+    pub name: &'a str,
+    /// Part (its place in the list) and signal, full or without the scopes that all signals of its file share.
+    pub minuend: (usize, &'a str),
+    /// The same for what is subtracted.
+    pub subtrahend: (usize, &'a str),
+}
+
+/// Scope of the differences.
+const DIFFERENCE: &str = "difference";
+
+struct Open {
+    scope: String,
+    reader: Reader,
+    /// Name below the shared scopes, and slot.
+    signals: Vec<(String, u32)>,
+    /// Id in the merged file, by slot.
+    ids: Vec<Option<IdCode>>,
+    next_fs: Option<u128>,
+}
+
+impl Open {
+    fn new(part: &Part<'_>) -> Result<Self, Error> {
+        let reader = Reader::open(part.path)?;
+        let names = reader.names();
+        let shared = names.first().map_or(0, |first| {
+            let shares = |top: &str| names.iter().all(|named| named.path.starts_with(top));
+            let ends = first.path.match_indices('.').map(|(at, _)| at + 1);
+            ends.take_while(|end| shares(&first.path[..*end])).last().unwrap_or(0)
+        });
+        let mut signals: Vec<(String, u32)> = names
+            .iter()
+            .filter(|named| reader.kind(named.slot) != Kind::Other)
+            .map(|named| (named.path[shared..].to_owned(), named.slot))
+            .collect();
+        // By scope, so that each scope is opened once; within a scope in the order of the file.
+        signals.sort_by(|(a, _), (b, _)| scope_of(a).cmp(scope_of(b)));
+        Ok(Self {
+            scope: part.scope.to_owned(),
+            ids: vec![None; reader.slot_count()],
+            signals,
+            reader,
+            next_fs: None,
+        })
+    }
+
+    fn advance(&mut self) -> Result<(), Error> {
+        let unit_fs = u128::from(self.reader.unit_fs());
+        self.next_fs = self.reader.read_step()?.map(|time| u128::from(time) * unit_fs);
+        Ok(())
+    }
+
+    fn find(&self, name: &str) -> Option<u32> {
+        let full = self.reader.names().iter().find(|named| named.path == name);
+        let short = self.signals.iter().find(|(short, _)| short == name);
+        full.map(|named| named.slot).or(short.map(|(_, slot)| *slot))
+    }
+}
+
+fn scope_of(name: &str) -> &str {
+    name.rsplit_once('.').map_or("", |(scope, _)| scope)
+}
+
+struct Subtraction {
+    id: IdCode,
+    minuend: (usize, u32),
+    subtrahend: (usize, u32),
+    last: Option<u64>,
+}
+
+/// Writes `path` (a `.vcd`) and beside it the `.gtkw` and `.sucl` of the same name.
+///
+/// # Errors
+/// [`Error::File`] and [`Error::Vcd`] as for reading each part; [`Error::Option`] where a difference names no signal.
+pub fn merge(path: &Path, parts: &[Part<'_>], differences: &[Difference<'_>]) -> Result<(), Error> {
+    let mut parts = parts.iter().map(Open::new).collect::<Result<Vec<_>, Error>>()?;
+    let unit_fs = parts.iter().map(|p| p.reader.unit_fs()).min().unwrap_or(1_000_000);
+    let mut output = Output::create(path)?;
+    output.write(|vcd| vcd.timescale(timescale(unit_fs).0, timescale(unit_fs).1))?;
+    for part in &mut parts {
+        declare(&mut output, part)?;
+    }
+    let mut subtractions = subtractions(&mut output, &parts, differences)?;
+    output.write(|vcd| vcd.enddefinitions())?;
+
+    for part in &mut parts {
+        part.advance()?;
+    }
+    while let Some(time_fs) = parts.iter().filter_map(|p| p.next_fs).min() {
+        let time = u64::try_from(time_fs / u128::from(unit_fs));
+        let time = time.map_err(|_| Error::Option(format!("{time_fs} fs do not fit the merged file's timescale")))?;
+        output.write(|vcd| vcd.timestamp(time))?;
+        for part in &mut parts {
+            if part.next_fs == Some(time_fs) {
+                let mut changed = Vec::new();
+                part.reader.commit(|slot| changed.push(slot));
+                for slot in changed {
+                    write_value(&mut output, part.ids[slot as usize], part.reader.now(slot))?;
+                }
+                part.advance()?;
+            }
+        }
+        for subtraction in &mut subtractions {
+            let value = |(part, slot): (usize, u32)| number(parts[part].reader.now(slot));
+            let (Some(a), Some(b)) = (value(subtraction.minuend), value(subtraction.subtrahend)) else {
+                continue;
+            };
+            let difference = a - b;
+            if subtraction.last.replace(difference.to_bits()) != Some(difference.to_bits()) {
+                output.write(|vcd| output::real(vcd, subtraction.id, difference))?;
+            }
+        }
+    }
+    output.finish()?;
+    write_views(path, &parts, differences)
+}
+
+fn number(value: Value<'_>) -> Option<f64> {
+    match value {
+        Value::Real(real) => real,
+        bits => bits.signed().map(|n| n as f64),
+    }
+}
+
+fn timescale(unit_fs: u64) -> (u32, TimescaleUnit) {
+    let units = [
+        (TimescaleUnit::S, 1_000_000_000_000_000),
+        (TimescaleUnit::MS, 1_000_000_000_000),
+        (TimescaleUnit::US, 1_000_000_000),
+        (TimescaleUnit::NS, 1_000_000),
+        (TimescaleUnit::PS, 1_000),
+        (TimescaleUnit::FS, 1),
+    ];
+    let fitting = units.into_iter().find(|(_, fs)| unit_fs >= *fs);
+    fitting.map_or((1, TimescaleUnit::FS), |(unit, fs)| ((unit_fs / fs) as u32, unit))
+}
+
+/// The part's scopes and signals.
+fn declare(output: &mut Output, part: &mut Open) -> Result<(), Error> {
+    let (reader, ids) = (&part.reader, &mut part.ids);
+    output.write(|vcd| {
+        vcd.add_module(&part.scope)?;
+        let mut open: Vec<&str> = Vec::new();
+        for (name, slot) in &part.signals {
+            let scope: Vec<&str> = scope_of(name).split('.').filter(|s| !s.is_empty()).collect();
+            let common = open.iter().zip(&scope).take_while(|(a, b)| a == b).count();
+            for _ in common..open.len() {
+                vcd.upscope()?;
+            }
+            open.truncate(common);
+            for inner in &scope[common..] {
+                vcd.add_module(inner)?;
+                open.push(inner);
+            }
+            let (var_type, width) = match reader.kind(*slot) {
+                Kind::Bits(width) => (VarType::Wire, width),
+                Kind::Real | Kind::Other => (VarType::Real, 64),
+            };
+            let reference = name.rsplit('.').next().unwrap_or(name);
+            let id = &mut ids[*slot as usize];
+            match *id {
+                Some(id) => vcd.var_def(var_type, width, id, reference, None)?,
+                None => *id = Some(vcd.add_var(var_type, width, reference, None)?),
+            }
+        }
+        for _ in 0..=open.len() {
+            vcd.upscope()?;
+        }
+        Ok(())
+    })
+}
+
+fn subtractions(
+    output: &mut Output,
+    parts: &[Open],
+    differences: &[Difference<'_>],
+) -> Result<Vec<Subtraction>, Error> {
+    if differences.is_empty() {
+        return Ok(Vec::new());
+    }
+    output.write(|vcd| vcd.add_module(DIFFERENCE))?;
+    let find = |(part, name): (usize, &str)| {
+        let slot = parts.get(part).and_then(|open| open.find(name));
+        slot.map(|slot| (part, slot))
+            .ok_or_else(|| Error::Option(format!("difference: part {part} has no signal `{name}`")))
+    };
+    let made = differences.iter().map(|difference| {
+        Ok(Subtraction {
+            minuend: find(difference.minuend)?,
+            subtrahend: find(difference.subtrahend)?,
+            id: output.write(|vcd| vcd.add_var(VarType::Real, 64, difference.name, None))?,
+            last: None,
+        })
+    });
+    let made = made.collect::<Result<Vec<_>, Error>>()?;
+    output.write(|vcd| vcd.upscope())?;
+    Ok(made)
+}
+
+fn write_value(output: &mut Output, id: Option<IdCode>, value: Value<'_>) -> Result<(), Error> {
+    let Some(id) = id else { return Ok(()) };
+    output.write(|vcd| match value {
+        Value::Bits { width: 1, .. } => writeln!(vcd.writer(), "{}{id}", value.digits(1, false)),
+        Value::Bits { width, .. } => writeln!(vcd.writer(), "b{} {id}", value.digits(width, false)),
+        Value::Real(Some(real)) => output::real(vcd, id, real),
+        Value::Real(None) | Value::Other => Ok(()),
+    })
+}
+
+/// GTKWave's formats: right-aligned binary, signed decimal, and that as a step curve.
+const GTKWAVE_BIT: &str = "@28";
+const GTKWAVE_SIGNED: &str = "@420";
+const GTKWAVE_CURVE: &str = "@8420";
+
+fn write_views(path: &Path, parts: &[Open], differences: &[Difference<'_>]) -> Result<(), Error> {
+    let file = path
+        .file_name()
+        .map(|name| name.to_string_lossy().into_owned())
+        .unwrap_or_default();
+    let mut gtkwave = format!("[dumpfile] \"{file}\"\n");
+    let mut surfer = format!("load_file {file}\n");
+    let mut heading = |gtkwave: &mut String, scope: &str| {
+        gtkwave.push_str(&format!("@200\n-{scope}\n"));
+        surfer.push_str(&format!("divider_add {scope}\nscope_add {scope}\n"));
+    };
+    for part in parts {
+        heading(&mut gtkwave, &part.scope);
+        for (name, slot) in &part.signals {
+            let line = match part.reader.kind(*slot) {
+                Kind::Bits(1) => format!("{GTKWAVE_BIT}\n{}.{name}\n", part.scope),
+                Kind::Bits(width) => format!("{GTKWAVE_SIGNED}\n{}.{name}[{}:0]\n", part.scope, width - 1),
+                Kind::Real | Kind::Other => format!("{GTKWAVE_CURVE}\n{}.{name}\n", part.scope),
+            };
+            gtkwave.push_str(&line);
+        }
+    }
+    if !differences.is_empty() {
+        heading(&mut gtkwave, DIFFERENCE);
+    }
+    for difference in differences {
+        gtkwave.push_str(&format!("{GTKWAVE_CURVE}\n{DIFFERENCE}.{}\n", difference.name));
+    }
+    surfer.push_str("zoom_fit\n");
+    output::write_text(&path.with_extension("gtkw"), &gtkwave)?;
+    output::write_text(&path.with_extension("sucl"), &surfer)
+}
