@@ -55,7 +55,6 @@ impl Simulator {
     }
 }
 
-
 impl fmt::Display for Simulator {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
@@ -82,8 +81,18 @@ impl Bench {
         let ports = model(&shapers, 0).ports().to_vec();
         let fraction = shapers.first().map_or(1, |s| s.config.coefficient_fraction());
         let layout = Layout::new(&ports, fraction).map_err(failure)?;
-        let taps = shapers.iter().map(|s| s.config.table().taps().len() as u32).max().unwrap_or(0);
-        Ok(Self { machine: machine.clone(), shapers, layout, pass_clocks: pass_clocks(taps), ports })
+        let taps = shapers
+            .iter()
+            .map(|s| s.config.table().taps().len() as u32)
+            .max()
+            .unwrap_or(0);
+        Ok(Self {
+            machine: machine.clone(),
+            shapers,
+            layout,
+            pass_clocks: pass_clocks(taps),
+            ports,
+        })
     }
 
     /// The bit-exact model of the machine's top module.
@@ -92,8 +101,17 @@ impl Bench {
     }
 
     /// The hardware in a simulator. `files` is the Verilog; RustHDL's simulator runs its own description instead.
-    pub(crate) fn device(&self, simulator: Simulator, files: &[PathBuf], seed: u64) -> Result<Box<dyn Device>, Failure> {
-        let source = Source { files, top: &self.machine.name, ports: &self.ports };
+    pub(crate) fn device(
+        &self,
+        simulator: Simulator,
+        files: &[PathBuf],
+        seed: u64,
+    ) -> Result<Box<dyn Device>, Failure> {
+        let source = Source {
+            files,
+            top: &self.machine.name,
+            ports: &self.ports,
+        };
         match simulator {
             Simulator::Verilator => {
                 let spinner = progress::spinner("Verilator builds the Verilog");
@@ -107,7 +125,9 @@ impl Bench {
                     let block = posicast_hdl::shaper::simulate(&s.config).map_err(Failure::because)?;
                     Ok((s.axis.clone(), block))
                 });
-                Ok(Box::new(TwoValued(Joined::new(blocks.collect::<Result<_, Failure>>()?))))
+                Ok(Box::new(TwoValued(Joined::new(
+                    blocks.collect::<Result<_, Failure>>()?,
+                ))))
             }
         }
     }
@@ -150,5 +170,9 @@ fn model(shapers: &[AxisShaper], seed: u64) -> Joined {
 
 /// How an error of the test bench ends a command.
 pub(crate) fn failure(error: Error) -> Failure {
-    if error.is_missing_tool() { Failure::missing_tool(error) } else { Failure::because(error) }
+    if error.is_missing_tool() {
+        Failure::missing_tool(error)
+    } else {
+        Failure::because(error)
+    }
 }

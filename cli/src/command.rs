@@ -25,8 +25,13 @@ pub(crate) fn words(machine: &Machine, design: &MachineDesign, path: Option<&Pat
         };
         let fixed = &machine.fixed_point;
         words.push(
-            command_words(&positions, axis.counts_per_unit, fixed.command_bits, fixed.command_fraction)
-                .map_err(|e| of_axis(axis, e))?,
+            command_words(
+                &positions,
+                axis.counts_per_unit,
+                fixed.command_bits,
+                fixed.command_fraction,
+            )
+            .map_err(|e| of_axis(axis, e))?,
         );
     }
     let longest = words.iter().map(Vec::len).max().unwrap_or(0);
@@ -39,7 +44,10 @@ pub(crate) fn words(machine: &Machine, design: &MachineDesign, path: Option<&Pat
 
 /// The words as the test bench takes them: words of any width.
 pub(crate) fn widened(words: &Words) -> Vec<Vec<i64>> {
-    words.iter().map(|axis| axis.iter().map(|word| i64::from(*word)).collect()).collect()
+    words
+        .iter()
+        .map(|axis| axis.iter().map(|word| i64::from(*word)).collect())
+        .collect()
 }
 
 fn of_axis(axis: &Axis, error: impl std::fmt::Display) -> Failure {
@@ -55,8 +63,10 @@ fn read(machine: &Machine, path: &Path) -> Result<Vec<Vec<(f64, f64)>>, Failure>
             path.display()
         ))
     };
-    let mut reader =
-        csv::ReaderBuilder::new().trim(csv::Trim::All).from_path(path).map_err(|e| refused(e.to_string()))?;
+    let mut reader = csv::ReaderBuilder::new()
+        .trim(csv::Trim::All)
+        .from_path(path)
+        .map_err(|e| refused(e.to_string()))?;
     let headings = reader.headers().map_err(|e| refused(e.to_string()))?.clone();
     let column = |name: &str| headings.iter().position(|h| h == name);
     let time = column("time_s").ok_or_else(|| refused("line 1: there is no column `time_s`".to_owned()))?;
@@ -65,7 +75,12 @@ fn read(machine: &Machine, path: &Path) -> Result<Vec<Vec<(f64, f64)>>, Failure>
         .iter()
         .map(|axis| {
             let own = column(&axis.name).or_else(|| column("position"));
-            own.ok_or_else(|| refused(format!("line 1: there is neither a column `position` nor `{}`", axis.name)))
+            own.ok_or_else(|| {
+                refused(format!(
+                    "line 1: there is neither a column `position` nor `{}`",
+                    axis.name
+                ))
+            })
         })
         .collect::<Result<_, _>>()?;
     let mut points = vec![Vec::new(); machine.axes.len()];
@@ -75,7 +90,10 @@ fn read(machine: &Machine, path: &Path) -> Result<Vec<Vec<(f64, f64)>>, Failure>
         let value = |column: usize| {
             let text = record.get(column).unwrap_or("");
             text.parse::<f64>().map_err(|_| {
-                refused(format!("line {line}: `{}` is `{text}`, not a number", headings.get(column).unwrap_or("?")))
+                refused(format!(
+                    "line {line}: `{}` is `{text}`, not a number",
+                    headings.get(column).unwrap_or("?")
+                ))
             })
         };
         let time_s = value(time)?;

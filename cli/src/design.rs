@@ -30,9 +30,16 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let machine = machine::read(&args.machine)?.machine;
     let report = Report::new(&machine)?;
     if let Some(path) = &args.plot {
-        output::write_file(path, plot::svg(&sensitivity_panels(&machine, &report.design))?.as_bytes())?;
+        output::write_file(
+            path,
+            plot::svg(&sensitivity_panels(&machine, &report.design))?.as_bytes(),
+        )?;
     }
-    if args.json { output::print_json(&report.json()) } else { output::print(&report.text()) }
+    if args.json {
+        output::print_json(&report.json())
+    } else {
+        output::print(&report.text())
+    }
 }
 
 /// The design of a machine together with its figures at every mode.
@@ -49,19 +56,26 @@ impl<'a> Report<'a> {
     }
 
     fn axes(&self) -> impl Iterator<Item = AxisReport<'_>> {
-        self.machine.axes.iter().zip(&self.design.axes).map(|(axis, tables)| AxisReport {
-            axis,
-            tables,
-            modes: tables.mode_figures(axis, self.design.sample_hz),
-            fits: fits(self.machine, tables),
-        })
+        self.machine
+            .axes
+            .iter()
+            .zip(&self.design.axes)
+            .map(|(axis, tables)| AxisReport {
+                axis,
+                tables,
+                modes: tables.mode_figures(axis, self.design.sample_hz),
+                fits: fits(self.machine, tables),
+            })
     }
 
     /// The JSON document of the command line's contract.
     pub(crate) fn json(&self) -> Document {
         let fraction = self.design.coefficient_fraction;
         let axes = self.axes().map(|a| a.json(self.design.sample_hz, fraction)).collect();
-        Document { name: self.machine.name.clone(), axes }
+        Document {
+            name: self.machine.name.clone(),
+            axes,
+        }
     }
 
     fn text(&self) -> String {
@@ -85,7 +99,9 @@ impl<'a> Report<'a> {
 fn fits(machine: &Machine, tables: &AxisTables) -> Result<(), String> {
     let config =
         ShaperConfig::new(machine.fixed_point.command_bits, tables.table.clone()).map_err(|e| e.to_string())?;
-    config.fits(u64::from(machine.clock.clocks_per_sample())).map_err(|e| e.to_string())
+    config
+        .fits(u64::from(machine.clock.clocks_per_sample()))
+        .map_err(|e| e.to_string())
 }
 
 struct AxisReport<'a> {
@@ -105,7 +121,10 @@ impl AxisReport<'_> {
             impulses: impulses
                 .impulses()
                 .iter()
-                .map(|i| ImpulseDocument { time_s: i.time_s, amplitude: i.amplitude })
+                .map(|i| ImpulseDocument {
+                    time_s: i.time_s,
+                    amplitude: i.amplitude,
+                })
                 .collect(),
             duration_s: impulses.duration_s(),
             delay_s: impulses.delay_s(),
@@ -131,9 +150,18 @@ impl AxisReport<'_> {
                     .table
                     .taps()
                     .iter()
-                    .map(|t| TapDocument { delay_samples: t.delay_samples, coefficient: t.coefficient })
+                    .map(|t| TapDocument {
+                        delay_samples: t.delay_samples,
+                        coefficient: t.coefficient,
+                    })
                     .collect(),
-                modes: self.modes.iter().map(|m| ResidualDocument { residual: m.residual_quantised }).collect(),
+                modes: self
+                    .modes
+                    .iter()
+                    .map(|m| ResidualDocument {
+                        residual: m.residual_quantised,
+                    })
+                    .collect(),
             },
         }
     }
@@ -155,7 +183,11 @@ impl AxisReport<'_> {
         );
         let mut table = Table::new(&["", ">time ms", ">amplitude"]);
         for impulse in impulses.impulses() {
-            table.row([String::new(), format!("{:.6}", impulse.time_s * 1e3), format!("{:.6}", impulse.amplitude)]);
+            table.row([
+                String::new(),
+                format!("{:.6}", impulse.time_s * 1e3),
+                format!("{:.6}", impulse.amplitude),
+            ]);
         }
         text += &table.text("  ");
         text += &self.modes_text();
@@ -169,7 +201,11 @@ impl AxisReport<'_> {
         );
         let mut table = Table::new(&["", ">delay", ">coefficient"]);
         for tap in taps {
-            table.row([String::new(), tap.delay_samples.to_string(), tap.coefficient.to_string()]);
+            table.row([
+                String::new(),
+                tap.delay_samples.to_string(),
+                tap.coefficient.to_string(),
+            ]);
         }
         text += &table.text("  ");
         if let Err(reason) = &self.fits {
@@ -182,7 +218,14 @@ impl AxisReport<'_> {
         if self.modes.is_empty() {
             return "\n  no modes given: no residual to state\n".to_owned();
         }
-        let headings = ["mode Hz", ">damping", ">residual %", ">quantised %", ">tolerance %", "insensitivity f/f0"];
+        let headings = [
+            "mode Hz",
+            ">damping",
+            ">residual %",
+            ">quantised %",
+            ">tolerance %",
+            "insensitivity f/f0",
+        ];
         let mut table = Table::new(&headings);
         for m in &self.modes {
             let range = match m.insensitivity {
@@ -211,8 +254,14 @@ const CURVE_POINTS: usize = 601;
 
 /// Sensitivity curves, one panel per axis: residual over the mode's true frequency, float and quantised.
 pub(crate) fn sensitivity_panels(machine: &Machine, design: &MachineDesign) -> Vec<Panel> {
-    let panels = machine.axes.iter().zip(&design.axes).filter(|(axis, _)| !axis.modes.is_empty());
-    panels.map(|(axis, tables)| sensitivity_panel(axis, tables, design.sample_hz)).collect()
+    let panels = machine
+        .axes
+        .iter()
+        .zip(&design.axes)
+        .filter(|(axis, _)| !axis.modes.is_empty());
+    panels
+        .map(|(axis, tables)| sensitivity_panel(axis, tables, design.sample_hz))
+        .collect()
 }
 
 fn sensitivity_panel(axis: &Axis, tables: &AxisTables, sample_hz: f64) -> Panel {
@@ -221,11 +270,17 @@ fn sensitivity_panel(axis: &Axis, tables: &AxisTables, sample_hz: f64) -> Panel 
     for mode in &axis.modes {
         let curve = |impulses: &[_]| {
             let points = sensitivity_curve(impulses, &mode.mode, CURVE_RATIOS.0, CURVE_RATIOS.1, CURVE_POINTS);
-            points.into_iter().map(|(ratio, residual)| (ratio, 100.0 * residual)).collect::<Vec<_>>()
+            points
+                .into_iter()
+                .map(|(ratio, residual)| (ratio, 100.0 * residual))
+                .collect::<Vec<_>>()
         };
         let name = format!("{:.1} Hz", mode.mode.frequency_hz);
         curves.push(Curve::new(format!("{name}, quantised"), curve(&integer)));
-        curves.push(Curve::reference(format!("{name}, impulses"), curve(tables.design.impulses.impulses())));
+        curves.push(Curve::reference(
+            format!("{name}, impulses"),
+            curve(tables.design.impulses.impulses()),
+        ));
         let tolerance = 100.0 * axis.tolerance_of(mode);
         let line = vec![(CURVE_RATIOS.0, tolerance), (CURVE_RATIOS.1, tolerance)];
         curves.push(Curve::reference(format!("{name}, tolerance"), line));

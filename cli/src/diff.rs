@@ -37,7 +37,11 @@ pub(crate) struct Args {
 }
 
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
-    let mut options = Options { clock: args.clock.clone(), common_only: args.common, ..Options::default() };
+    let mut options = Options {
+        clock: args.clock.clone(),
+        common_only: args.common,
+        ..Options::default()
+    };
     for map in &args.map {
         options.add_map(map).map_err(Failure::because)?;
     }
@@ -45,17 +49,24 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         options.add_tolerance(tolerance).map_err(Failure::because)?;
     }
     let spinner = progress::spinner("comparing");
-    let comparison =
-        diff::compare(&args.a, &args.b, &options, &mut |samples| spinner.set_position(samples)).map_err(Failure::because)?;
+    let comparison = diff::compare(&args.a, &args.b, &options, &mut |samples| spinner.set_position(samples))
+        .map_err(Failure::because)?;
     spinner.finish_and_clear();
-    if args.json { output::print_json(&comparison)? } else { output::print(&comparison.to_string())? }
+    if args.json {
+        output::print_json(&comparison)?
+    } else {
+        output::print(&comparison.to_string())?
+    }
     verdict(&comparison)
 }
 
 fn verdict(comparison: &Comparison) -> Result<(), Failure> {
     match comparison.result {
         Verdict::Equal => Ok(()),
-        Verdict::Different => Err(Failure::Check(format!("{} signals differ", comparison.differences.len()))),
+        Verdict::Different => Err(Failure::Check(format!(
+            "{} signals differ",
+            comparison.differences.len()
+        ))),
         Verdict::Incomparable => Err(Failure::from(miette::miette!(
             help = "name the clock with --clock, or say with --map A=B which scope or signal is which",
             "the files have nothing in common that can be compared"

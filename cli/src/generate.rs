@@ -28,7 +28,9 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let modules = modules(&file.machine.name, &shapers)?;
     let mut package = open(args.output.as_deref(), &file)?;
     add_sources(&mut package, &file, &modules)?;
-    package.add("report.json", output::json_text(&report.json())?.as_bytes()).map_err(Failure::because)?;
+    package
+        .add("report.json", output::json_text(&report.json())?.as_bytes())
+        .map_err(Failure::because)?;
     let mut text = String::new();
     for path in package.commit().map_err(Failure::because)? {
         let _ = writeln!(text, "{}", path.display());
@@ -49,9 +51,13 @@ pub(crate) fn open(output: Option<&Path>, file: &MachineFile) -> Result<Package,
 
 /// Adds the machine file and its Verilog to the folder.
 pub(crate) fn add_sources(package: &mut Package, file: &MachineFile, modules: &[Module]) -> Result<(), Failure> {
-    package.add("machine.toml", file.text.as_bytes()).map_err(Failure::because)?;
+    package
+        .add("machine.toml", file.text.as_bytes())
+        .map_err(Failure::because)?;
     for module in modules {
-        package.add(&format!("rtl/{}.v", module.name), module.text.as_bytes()).map_err(Failure::because)?;
+        package
+            .add(&format!("rtl/{}.v", module.name), module.text.as_bytes())
+            .map_err(Failure::because)?;
     }
     Ok(())
 }

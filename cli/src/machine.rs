@@ -32,7 +32,10 @@ pub(crate) fn read(path: &Path) -> Result<MachineFile, Failure> {
         return Err(unreadable(&"it is a folder"));
     }
     if metadata.len() > LARGEST_FILE_BYTES {
-        return Err(unreadable(&format!("{} bytes found, at most {LARGEST_FILE_BYTES} allowed", metadata.len())));
+        return Err(unreadable(&format!(
+            "{} bytes found, at most {LARGEST_FILE_BYTES} allowed",
+            metadata.len()
+        )));
     }
     let bytes = std::fs::read(path).map_err(|e| unreadable(&e))?;
     let text = String::from_utf8(bytes).map_err(|e| unreadable(&format!("it is not UTF-8 text: {e}")))?;
@@ -54,7 +57,10 @@ pub(crate) fn shapers(machine: &Machine, design: &MachineDesign) -> Result<Vec<A
         let config = ShaperConfig::new(machine.fixed_point.command_bits, tables.table.clone())
             .map_err(|e| refused(e.to_string()))?;
         config.fits(clocks).map_err(|e| refused(e.to_string()))?;
-        Ok(AxisShaper { axis: axis.name.clone(), config })
+        Ok(AxisShaper {
+            axis: axis.name.clone(),
+            config,
+        })
     })
     .collect()
 }

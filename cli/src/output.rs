@@ -21,7 +21,9 @@ pub(crate) fn print_json(document: &impl Serialize) -> Result<(), Failure> {
 
 /// A JSON document as text with a final newline.
 pub(crate) fn json_text(document: &impl Serialize) -> Result<String, Failure> {
-    serde_json::to_string_pretty(document).map(|text| text + "\n").map_err(Failure::because)
+    serde_json::to_string_pretty(document)
+        .map(|text| text + "\n")
+        .map_err(Failure::because)
 }
 
 /// Says something beside the result on standard error.
@@ -32,7 +34,10 @@ pub(crate) fn say(line: &str) {
 
 /// Writes a file under a temporary name beside it and renames it, so that no half-written file is ever seen.
 pub(crate) fn write_file(path: &Path, contents: &[u8]) -> Result<(), Failure> {
-    let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let folder = path
+        .parent()
+        .filter(|p| !p.as_os_str().is_empty())
+        .unwrap_or(Path::new("."));
     let written = tempfile::NamedTempFile::new_in(folder).and_then(|mut file| {
         file.write_all(contents)?;
         file.persist(path).map_err(|e| e.error)
@@ -49,7 +54,11 @@ pub(crate) fn write_file(path: &Path, contents: &[u8]) -> Result<(), Failure> {
 /// A fraction as percent, with as many digits as tell it from zero.
 pub(crate) fn percent(fraction: f64) -> String {
     let percent = 100.0 * fraction;
-    if percent == 0.0 || percent.abs() >= 0.01 { format!("{percent:.3}") } else { format!("{percent:.1e}") }
+    if percent == 0.0 || percent.abs() >= 0.01 {
+        format!("{percent:.3}")
+    } else {
+        format!("{percent:.1e}")
+    }
 }
 
 /// A table for people: columns as wide as their widest cell, numbers right-aligned by the caller's choice.
@@ -63,7 +72,10 @@ impl Table {
     pub(crate) fn new(headings: &[&str]) -> Self {
         let right = headings.iter().map(|h| h.starts_with('>')).collect();
         let first = headings.iter().map(|h| h.trim_start_matches('>').to_owned()).collect();
-        Self { right, rows: vec![first] }
+        Self {
+            right,
+            rows: vec![first],
+        }
     }
 
     /// Adds a row.
@@ -73,14 +85,24 @@ impl Table {
 
     /// The text, each line indented.
     pub(crate) fn text(&self, indent: &str) -> String {
-        let width = |column: usize| self.rows.iter().filter_map(|r| r.get(column)).map(|c| c.chars().count()).max();
+        let width = |column: usize| {
+            self.rows
+                .iter()
+                .filter_map(|r| r.get(column))
+                .map(|c| c.chars().count())
+                .max()
+        };
         let widths: Vec<usize> = (0..self.right.len()).map(|c| width(c).unwrap_or(0)).collect();
         let mut text = String::new();
         for row in &self.rows {
             let mut line = indent.to_owned();
             for ((cell, width), right) in row.iter().zip(&widths).zip(&self.right) {
                 let padding = " ".repeat(width.saturating_sub(cell.chars().count()));
-                line += &if *right { format!("{padding}{cell}  ") } else { format!("{cell}{padding}  ") };
+                line += &if *right {
+                    format!("{padding}{cell}  ")
+                } else {
+                    format!("{cell}{padding}  ")
+                };
             }
             text += line.trim_end();
             text.push('\n');

@@ -16,12 +16,20 @@ pub(crate) struct Curve {
 impl Curve {
     /// A curve.
     pub(crate) fn new(name: impl Into<String>, points: Vec<(f64, f64)>) -> Self {
-        Self { name: name.into(), points, reference: false }
+        Self {
+            name: name.into(),
+            points,
+            reference: false,
+        }
     }
 
     /// A curve to compare with.
     pub(crate) fn reference(name: impl Into<String>, points: Vec<(f64, f64)>) -> Self {
-        Self { name: name.into(), points, reference: true }
+        Self {
+            name: name.into(),
+            points,
+            reference: true,
+        }
     }
 }
 
@@ -80,7 +88,12 @@ fn draw_panel(
         .x_label_area_size(42)
         .y_label_area_size(64)
         .build_cartesian_2d(x_low..x_high, (y_low - margin)..(y_high + margin))?;
-    chart.configure_mesh().x_desc(&panel.x_label).y_desc(&panel.y_label).light_line_style(WHITE).draw()?;
+    chart
+        .configure_mesh()
+        .x_desc(&panel.x_label)
+        .y_desc(&panel.y_label)
+        .light_line_style(WHITE)
+        .draw()?;
     for (index, curve) in panel.curves.iter().enumerate() {
         let style = curve_style(curve, index);
         chart
@@ -109,7 +122,9 @@ fn curve_style(curve: &Curve, index: usize) -> ShapeStyle {
 fn span(values: impl Iterator<Item = f64>) -> (f64, f64) {
     let (low, high) = values
         .filter(|v| v.is_finite())
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)));
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| {
+            (low.min(v), high.max(v))
+        });
     match (low <= high, low < high) {
         (false, _) => (0.0, 1.0),
         (true, false) => (low - 0.5, high + 0.5),

@@ -25,8 +25,8 @@ use posicast_testbench::diff::{self, Comparison, Options};
 use posicast_testbench::lockstep::TwoValued;
 use posicast_testbench::lockstep::report::Report as LockstepReport;
 use posicast_testbench::recording::{Move, wave_clocks_per_sample};
-use posicast_testbench::wave::{Difference, Part, merge};
 use posicast_testbench::verilator;
+use posicast_testbench::wave::{Difference, Part, merge};
 use report::Report;
 use std::path::PathBuf;
 
@@ -74,7 +74,13 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let mut package = generate::open(args.output.as_deref(), &file)?;
     let files = write_sources(&mut package, &file, &bench)?;
     let cycles = args.cycles.unwrap_or(simulator.default_cycles());
-    let mut job = Job { bench: &bench, files: &files, words: &words, simulator, seed: args.seed };
+    let mut job = Job {
+        bench: &bench,
+        files: &files,
+        words: &words,
+        simulator,
+        seed: args.seed,
+    };
     let lockstep = job.lockstep(cycles)?;
     let waves = job.waves(&mut package, &design.design, &axes)?;
     let estimate = yosys.map(|yosys| estimate(&yosys, machine, &files)).transpose()?;
@@ -83,10 +89,16 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     checks.extend(checks::all(&bench, &design.design, &lockstep, &waves));
     checks.extend(estimate.as_ref().and_then(|e| checks::fits(machine, e)));
     package
-        .add("plots/sensitivity.svg", plot::svg(&design::sensitivity_panels(machine, &design.design))?.as_bytes())
+        .add(
+            "plots/sensitivity.svg",
+            plot::svg(&design::sensitivity_panels(machine, &design.design))?.as_bytes(),
+        )
         .map_err(Failure::because)?;
     package
-        .add("plots/response.svg", plot::svg(&report::response_panels(machine, &design.design, &axes)?)?.as_bytes())
+        .add(
+            "plots/response.svg",
+            plot::svg(&report::response_panels(machine, &design.design, &axes)?)?.as_bytes(),
+        )
         .map_err(Failure::because)?;
     let report = Report {
         machine,
@@ -100,12 +112,22 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         checks: &checks,
     };
     let document = report.json()?;
-    package.add("report.json", output::json_text(&document)?.as_bytes()).map_err(Failure::because)?;
+    package
+        .add("report.json", output::json_text(&document)?.as_bytes())
+        .map_err(Failure::because)?;
     let root = package.root().to_owned();
     let written = package.commit().map_err(Failure::because)?;
-    if args.json { output::print_json(&document)? } else { output::print(&report.text(&root, written.len())?)? }
+    if args.json {
+        output::print_json(&document)?
+    } else {
+        output::print(&report.text(&root, written.len())?)?
+    }
     let failed: Vec<_> = checks.iter().filter(|c| !c.passed).map(|c| c.name).collect();
-    if failed.is_empty() { Ok(()) } else { Err(Failure::Check(format!("failed: {}", failed.join(", ")))) }
+    if failed.is_empty() {
+        Ok(())
+    } else {
+        Err(Failure::Check(format!("failed: {}", failed.join(", "))))
+    }
 }
 
 /// Yosys, or a word on standard error that there will be no estimate.
@@ -122,17 +144,23 @@ fn installed_yosys() -> Result<Option<Yosys>, Failure> {
 
 fn estimate(yosys: &Yosys, machine: &Machine, files: &[PathBuf]) -> Result<Estimate, Failure> {
     let spinner = progress::spinner("Yosys maps the design");
-    let estimate = yosys.estimate(files, &machine.name, synth::family_of(machine)?).map_err(Failure::because)?;
+    let estimate = yosys
+        .estimate(files, &machine.name, synth::family_of(machine)?)
+        .map_err(Failure::because)?;
     spinner.finish_and_clear();
     Ok(estimate)
 }
 
 /// Writes machine file and Verilog, and returns where the Verilog stands until the folder is complete.
 fn write_sources(package: &mut Package, file: &MachineFile, bench: &Bench) -> Result<Vec<PathBuf>, Failure> {
-    package.add("machine.toml", file.text.as_bytes()).map_err(Failure::because)?;
+    package
+        .add("machine.toml", file.text.as_bytes())
+        .map_err(Failure::because)?;
     let modules = generate::modules(&file.machine.name, &bench.shapers)?;
     let write = |module: &posicast_hdl::emit::Module| {
-        let path = package.stage(&format!("rtl/{}.v", module.name)).map_err(Failure::because)?;
+        let path = package
+            .stage(&format!("rtl/{}.v", module.name))
+            .map_err(Failure::because)?;
         std::fs::write(&path, &module.text).map_err(Failure::because)?;
         Ok(path)
     };
@@ -162,15 +190,11 @@ struct Job<'a> {
 impl Job<'_> {
     fn lockstep(&mut self, cycles: u64) -> Result<LockstepReport, Failure> {
         let mut device = self.bench.device(self.simulator, self.files, self.seed)?;
-        self.bench.lockstep(device.as_mut(), &command::widened(self.words), cycles, self.seed)
+        self.bench
+            .lockstep(device.as_mut(), &command::widened(self.words), cycles, self.seed)
     }
 
-    fn waves(
-        &self,
-        package: &mut Package,
-        design: &MachineDesign,
-        axes: &[AxisSimulation],
-    ) -> Result<Waves, Failure> {
+    fn waves(&self, package: &mut Package, design: &MachineDesign, axes: &[AxisSimulation]) -> Result<Waves, Failure> {
         let words = command::widened(self.words);
         let command = Move {
             layout: &self.bench.layout,
@@ -189,17 +213,30 @@ impl Job<'_> {
         let mut model = TwoValued(self.bench.model(self.seed));
         command.record(&mut model, &model_vcd, scope).map_err(bench::failure)?;
         let mut device = self.bench.device(self.simulator, self.files, self.seed)?;
-        let trace = command.record(device.as_mut(), &rtl_vcd, scope).map_err(bench::failure)?;
+        let trace = command
+            .record(device.as_mut(), &rtl_vcd, scope)
+            .map_err(bench::failure)?;
         let float: Vec<Vec<f64>> = axes.iter().map(|axis| axis.float.clone()).collect();
-        command.record_float(&float, &trace, &float_vcd, scope).map_err(bench::failure)?;
+        command
+            .record_float(&float, &trace, &float_vcd, scope)
+            .map_err(bench::failure)?;
 
         let exact = Options::default();
-        let mut within = Options { common_only: true, ..Options::default() };
+        let mut within = Options {
+            common_only: true,
+            ..Options::default()
+        };
         let mut differences = Vec::new();
         let names: Vec<String> = self.bench.shapers.iter().map(|s| format!("{}_y", s.axis)).collect();
         for (name, axis) in names.iter().zip(axes) {
-            within.add_tolerance(&format!("{name}={}", axis.bound_lsb)).map_err(bench::failure)?;
-            differences.push(Difference { name, minuend: (1, name), subtrahend: (2, name) });
+            within
+                .add_tolerance(&format!("{name}={}", axis.bound_lsb))
+                .map_err(bench::failure)?;
+            differences.push(Difference {
+                name,
+                minuend: (1, name),
+                subtrahend: (2, name),
+            });
         }
         let compare = |a, b, options: &Options| diff::compare(a, b, options, &mut |_| {}).map_err(bench::failure);
         let waves = Waves {

@@ -43,13 +43,23 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let shapers = machine::shapers(&machine, &design)?;
     let words = command::words(&machine, &design, args.command.as_deref())?;
     let axes = simulate(&machine, &design, &shapers, &words)?;
-    let path = args.output.clone().unwrap_or_else(|| PathBuf::from(format!("{}.vcd", machine.name)));
+    let path = args
+        .output
+        .clone()
+        .unwrap_or_else(|| PathBuf::from(format!("{}.vcd", machine.name)));
     write_wave(&machine, &words, &axes, &path)?;
     let document = Document::new(&machine, &axes, &path);
-    if args.json { output::print_json(&document)? } else { output::print(&document.text())? }
+    if args.json {
+        output::print_json(&document)?
+    } else {
+        output::print(&document.text())?
+    }
     match document.axes.iter().find(|a| a.largest_difference_lsb > a.bound_lsb) {
         None => Ok(()),
-        Some(axis) => Err(Failure::Check(format!("axis {}: the model leaves the float design's bound", axis.name))),
+        Some(axis) => Err(Failure::Check(format!(
+            "axis {}: the model leaves the float design's bound",
+            axis.name
+        ))),
     }
 }
 
@@ -63,7 +73,13 @@ pub(crate) fn simulate(
     let axes = machine.axes.iter().zip(&design.axes).zip(shapers).zip(words);
     axes.map(|(((axis, tables), shaper), words)| {
         let plant = Plant::of_axis(axis).map_err(Failure::because)?;
-        Ok(simulate_axis(&shaper.config, tables, &plant, machine.clock.sample_period_s(), words))
+        Ok(simulate_axis(
+            &shaper.config,
+            tables,
+            &plant,
+            machine.clock.sample_period_s(),
+            words,
+        ))
     })
     .collect()
 }
@@ -98,7 +114,11 @@ fn write_wave(machine: &Machine, words: &Words, axes: &[AxisSimulation], path: &
             .iter()
             .zip(words)
             .flat_map(|(axis, words)| {
-                let reals = [axis.float[sample], axis.position[sample], axis.position_unshaped[sample]];
+                let reals = [
+                    axis.float[sample],
+                    axis.position[sample],
+                    axis.position_unshaped[sample],
+                ];
                 let integers = [raw(words[sample]), raw(axis.shaped[sample])];
                 integers.into_iter().chain(reals.map(f64::to_bits))
             })
@@ -147,8 +167,13 @@ impl Document {
     }
 
     fn text(&self) -> String {
-        let headings =
-            ["axis", ">ringing unshaped", ">ringing shaped", ">largest difference from float", ">bound"];
+        let headings = [
+            "axis",
+            ">ringing unshaped",
+            ">ringing shaped",
+            ">largest difference from float",
+            ">bound",
+        ];
         let mut table = Table::new(&headings);
         for axis in &self.axes {
             table.row([

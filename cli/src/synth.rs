@@ -34,14 +34,23 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let spinner = progress::spinner("Yosys maps the design");
     let estimate = yosys.estimate(&files, &machine.name, family).map_err(failure)?;
     spinner.finish_and_clear();
-    if args.json { output::print_json(&estimate)? } else { output::print(&text(&estimate))? }
+    if args.json {
+        output::print_json(&estimate)?
+    } else {
+        output::print(&text(&estimate))?
+    }
     let excesses = estimate.excesses();
     if excesses.is_empty() {
         return Ok(());
     }
     let list: Vec<_> = excesses
         .iter()
-        .map(|e| format!("{} {} needed, {} available, most of it in {}", e.needed, e.resource, e.available, e.block))
+        .map(|e| {
+            format!(
+                "{} {} needed, {} available, most of it in {}",
+                e.needed, e.resource, e.available, e.block
+            )
+        })
         .collect();
     Err(Failure::Check(format!("does not fit the device: {}", list.join("; "))))
 }

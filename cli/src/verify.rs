@@ -55,8 +55,16 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     };
     let cycles = args.cycles.unwrap_or(simulator.default_cycles());
     let report = job.lockstep(simulator, cycles, args.seed)?;
-    let document = Document { simulator, seed: args.seed, report: &report };
-    if args.json { output::print_json(&document)? } else { output::print(&document.text())? }
+    let document = Document {
+        simulator,
+        seed: args.seed,
+        report: &report,
+    };
+    if args.json {
+        output::print_json(&document)?
+    } else {
+        output::print(&document.text())?
+    }
     match report.result {
         Verdict::Match => Ok(()),
         Verdict::Mismatch => Err(Failure::Check("the RTL does not match the model".to_owned())),
@@ -76,7 +84,10 @@ impl Job {
     fn new(source: &Path) -> Result<Self, Failure> {
         let (machine, folder) = if source.is_dir() {
             let contents = package::read(source).map_err(Failure::because)?;
-            (machine::parse(&contents.machine_path, &contents.machine_toml)?, Some(contents.rtl))
+            (
+                machine::parse(&contents.machine_path, &contents.machine_toml)?,
+                Some(contents.rtl),
+            )
         } else {
             (machine::read(source)?.machine, None)
         };
@@ -90,14 +101,21 @@ impl Job {
                 (files, Some(scratch))
             }
         };
-        Ok(Self { design, bench, files, from_folder, _scratch: scratch })
+        Ok(Self {
+            design,
+            bench,
+            files,
+            from_folder,
+            _scratch: scratch,
+        })
     }
 
     fn lockstep(&self, simulator: Simulator, cycles: u64, seed: u64) -> Result<Report, Failure> {
         let mut device = self.bench.device(simulator, &self.files, seed)?;
         // A move that does not fit the words is an error of `run`; a lock step has its other stimuli.
         let words = command::words(&self.bench.machine, &self.design, None).unwrap_or_default();
-        self.bench.lockstep(device.as_mut(), &command::widened(&words), cycles, seed)
+        self.bench
+            .lockstep(device.as_mut(), &command::widened(&words), cycles, seed)
     }
 }
 

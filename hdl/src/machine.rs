@@ -32,12 +32,21 @@ pub fn emit_machine(name: &str, shapers: &[AxisShaper]) -> Result<Vec<Module>, E
         tops.extend(of_axis.last().cloned());
         modules.append(&mut of_axis);
     }
-    let instances: Vec<_> =
-        shapers.iter().zip(&tops).map(|(shaper, module)| Instance { name: &shaper.axis, module }).collect();
+    let instances: Vec<_> = shapers
+        .iter()
+        .zip(&tops)
+        .map(|(shaper, module)| Instance {
+            name: &shaper.axis,
+            module,
+        })
+        .collect();
     let parameters = shapers.iter().map(|shaper| Parameter {
         name: format!("{} taps", shaper.axis),
         value: shaper.config.table().taps().len().to_string(),
-        meaning: format!("longest delay {} samples", shaper.config.table().longest_delay_samples()),
+        meaning: format!(
+            "longest delay {} samples",
+            shaper.config.table().longest_delay_samples()
+        ),
     });
     let header = Header {
         about: format!("Input shapers of {name}. `strobe` is high for one clock per sample."),

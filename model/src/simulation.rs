@@ -9,7 +9,6 @@
 //! All words and positions are in LSB of the command word. The command starts at rest at its first value.
 
 use crate::design::AxisTables;
-use crate::digitise::float_bound_lsb;
 use crate::plant::{Plant, SampledPlant};
 use crate::rtl::shaper::{SampleShaper, ShaperConfig};
 
@@ -41,7 +40,11 @@ impl AxisSimulation {
 
 /// Largest difference of integer and float words of the same samples.
 pub fn largest_difference(words: &[i32], float: &[f64]) -> f64 {
-    words.iter().zip(float).map(|(y, f)| (f64::from(*y) - f).abs()).fold(0.0, f64::max)
+    words
+        .iter()
+        .zip(float)
+        .map(|(y, f)| (f64::from(*y) - f).abs())
+        .fold(0.0, f64::max)
 }
 
 /// Runs `words` through the shaper that `config` describes, its float design `tables`, and `plant`.
@@ -58,7 +61,7 @@ pub fn simulate_axis(
     // A word has at most 32 bits, so what the shaper gives fits.
     let shaped: Vec<i32> = words.iter().map(|x| shaper.push(i64::from(*x)) as i32).collect();
     let (least, most) = (config.word_min() as f64, config.word_max() as f64);
-    let float = tables.digitised.float_output(words);
+    let float = tables.digitised.shape(words);
     let follow = |words: &[i32]| follow(plant, sample_period_s, start, words);
     let (position, vibration) = follow(&shaped);
     let (position_unshaped, vibration_unshaped) = follow(words);
@@ -69,7 +72,7 @@ pub fn simulate_axis(
         position_unshaped,
         vibration,
         vibration_unshaped,
-        bound_lsb: float_bound_lsb(words, tables.quantising_error()),
+        bound_lsb: tables.output_bound_lsb(words),
     }
 }
 
@@ -116,7 +119,9 @@ mod tests {
 
     #[test]
     fn a_shaped_step_leaves_no_more_than_the_quantised_residual() {
-        let step: Vec<i32> = std::iter::once(1000).chain(std::iter::repeat_n(1_001_000, 400)).collect();
+        let step: Vec<i32> = std::iter::once(1000)
+            .chain(std::iter::repeat_n(1_001_000, 400))
+            .collect();
         let run = simulate(&step);
         assert_eq!(run.shaped.last(), Some(&1_001_000));
         assert!(run.vibration < 1e-4 * 1e6, "{}", run.vibration);

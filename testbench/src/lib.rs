@@ -11,13 +11,16 @@
 //! - [`icarus`] runs the same Verilog in a second, independent simulator that knows `x`.
 //! - [`stimuli`] makes inputs: directed cases, seeded random mixtures, real motion; and counts what they reached.
 //! - [`lockstep`] steps model and device side by side and compares every output in every clock.
+//! - [`campaign`] is the order of stimuli that a machine goes through; [`recording`] runs a real move into waveforms.
 //! - [`wave`] writes waveforms; [`diff`] compares two of them.
 
+pub mod campaign;
 pub mod diff;
 mod error;
 pub mod icarus;
 pub mod lockstep;
 mod reader;
+pub mod recording;
 pub mod stimuli;
 mod tool;
 pub mod verilator;

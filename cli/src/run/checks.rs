@@ -34,12 +34,19 @@ pub(crate) fn all(bench: &Bench, design: &MachineDesign, lockstep: &Report, wave
 }
 
 fn rtl_equals_model(lockstep: &Report) -> Check {
-    let first = lockstep.blocks.iter().find_map(|b| b.first.as_ref().map(|first| (b, first)));
+    let first = lockstep
+        .blocks
+        .iter()
+        .find_map(|b| b.first.as_ref().map(|first| (b, first)));
     let detail = match first {
         None => format!("{} clocks, {} samples, no mismatch", lockstep.cycles, lockstep.samples),
         Some((block, first)) => format!("{} {}:\n{first}", block.name, block.instance),
     };
-    Check { name: "RTL equals the bit-exact model in every clock", passed: lockstep.result == LockstepVerdict::Match, detail }
+    Check {
+        name: "RTL equals the bit-exact model in every clock",
+        passed: lockstep.result == LockstepVerdict::Match,
+        detail,
+    }
 }
 
 fn move_equals_model(waves: &Waves) -> Check {
@@ -97,7 +104,10 @@ pub(crate) fn lint(simulator: Simulator, files: &[PathBuf], top: &str) -> Result
     Ok(Some(Check {
         name: "Verilog is clean under verilator --lint-only -Wall",
         passed: warnings.is_empty(),
-        detail: warnings.first().cloned().unwrap_or_else(|| format!("{} files", files.len())),
+        detail: warnings
+            .first()
+            .cloned()
+            .unwrap_or_else(|| format!("{} files", files.len())),
     }))
 }
 
@@ -105,7 +115,10 @@ pub(crate) fn lint(simulator: Simulator, files: &[PathBuf], top: &str) -> Result
 pub(crate) fn fits(machine: &Machine, estimate: &Estimate) -> Option<Check> {
     machine.target.as_ref()?;
     let excess = estimate.excesses().first().map(|e| {
-        format!("{} {} needed, {} available, most of it in {}", e.needed, e.resource, e.available, e.block)
+        format!(
+            "{} {} needed, {} available, most of it in {}",
+            e.needed, e.resource, e.available, e.block
+        )
     });
     Some(Check {
         name: "the design fits the target device",

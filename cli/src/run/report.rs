@@ -77,7 +77,9 @@ impl Report<'_> {
         let tool = match self.simulator {
             Simulator::Verilator => verilator_version().unwrap_or_else(|| self.simulator.to_string()),
             Simulator::Icarus => "Icarus Verilog".to_owned(),
-            Simulator::Rusthdl => "RustHDL's simulator: the weaker check, the Verilog itself was not simulated".to_owned(),
+            Simulator::Rusthdl => {
+                "RustHDL's simulator: the weaker check, the Verilog itself was not simulated".to_owned()
+            }
         };
         let mut text = format!(
             "{}: {} MHz clock, {} Hz samples, coefficients with {} fraction bits\nsimulator: {tool}; seed {}\n\n",
@@ -99,7 +101,11 @@ impl Report<'_> {
             let verdict = if check.passed { "ok    " } else { "FAILED" };
             let _ = writeln!(text, "{verdict}  {}: {}", check.name, check.detail);
         }
-        let _ = writeln!(text, "\n{files} files written to {}: machine.toml, rtl/, wave/, plots/, report.json", root.display());
+        let _ = writeln!(
+            text,
+            "\n{files} files written to {}: machine.toml, rtl/, wave/, plots/, report.json",
+            root.display()
+        );
         text += if self.checks.iter().all(|c| c.passed) {
             "PASS: the Verilog computes what was designed.\n"
         } else {
@@ -110,14 +116,30 @@ impl Report<'_> {
 
     fn shapers_text(&self) -> Result<String, Failure> {
         let mut residuals = Table::new(&[
-            "axis", "shaper", ">impulses", ">taps", ">float", ">quantised", ">on plant", ">plant -10 %", ">plant +10 %",
+            "axis",
+            "shaper",
+            ">impulses",
+            ">taps",
+            ">float",
+            ">quantised",
+            ">on plant",
+            ">plant -10 %",
+            ">plant +10 %",
         ]);
-        let mut overshoots =
-            Table::new(&["axis", ">unshaped", ">on plant", ">plant -10 %", ">plant +10 %", ">ringing unshaped", ">ringing shaped"]);
+        let mut overshoots = Table::new(&[
+            "axis",
+            ">unshaped",
+            ">on plant",
+            ">plant -10 %",
+            ">plant +10 %",
+            ">ringing unshaped",
+            ">ringing shaped",
+        ]);
         for (index, axis, tables) in self.rows() {
             let plant = OnPlant::new(axis, tables, self.sample_hz())?;
             let figures = tables.mode_figures(axis, self.sample_hz());
-            let largest = |pick: fn(&posicast_model::design::ModeFigures) -> f64| figures.iter().map(pick).reduce(f64::max);
+            let largest =
+                |pick: fn(&posicast_model::design::ModeFigures) -> f64| figures.iter().map(pick).reduce(f64::max);
             residuals.row([
                 axis.name.clone(),
                 tables.design.kind.clone(),
@@ -150,7 +172,12 @@ impl Report<'_> {
 
     fn comparison_text(&self) -> String {
         let mut table = Table::new(&[
-            "axis", ">clocks", ">mismatches", ">samples of the move", ">largest difference from float, LSB", ">bound, LSB",
+            "axis",
+            ">clocks",
+            ">mismatches",
+            ">samples of the move",
+            ">largest difference from float, LSB",
+            ">bound, LSB",
         ]);
         for (index, axis, _) in self.rows() {
             let block = self.lockstep.blocks.iter().find(|b| b.instance == axis.name);
@@ -183,7 +210,11 @@ impl Report<'_> {
         });
         Ok(Document {
             name: self.machine.name.clone(),
-            result: if self.checks.iter().all(|c| c.passed) { "pass" } else { "fail" },
+            result: if self.checks.iter().all(|c| c.passed) {
+                "pass"
+            } else {
+                "fail"
+            },
             simulator: self.simulator,
             seed: self.seed,
             design: self.design.json(),
@@ -225,7 +256,10 @@ fn step_panel(axis: &Axis, tables: &AxisTables, sample_hz: f64) -> Result<Panel,
     let duration_s = SHOWN_DURATIONS * tables.design.impulses.duration_s().max(slowest_s);
     let curve = |plant: &Plant, impulses: &[_]| {
         let points = step_response(plant, impulses, duration_s, RESPONSE_POINTS);
-        points.into_iter().map(|(time_s, position)| (1e3 * time_s, position)).collect::<Vec<_>>()
+        points
+            .into_iter()
+            .map(|(time_s, position)| (1e3 * time_s, position))
+            .collect::<Vec<_>>()
     };
     Ok(Panel {
         title: format!("axis {}: step response with {}", axis.name, tables.design.kind),
@@ -244,7 +278,11 @@ fn step_panel(axis: &Axis, tables: &AxisTables, sample_hz: f64) -> Result<Panel,
 fn move_panel(machine: &Machine, axis: &Axis, run: &AxisSimulation) -> Panel {
     let target = run.shaped.last().copied().map_or(0.0, f64::from);
     let micro = micro_units_per_lsb(machine, axis);
-    let moving = run.shaped.iter().rposition(|word| f64::from(*word) != target).unwrap_or(0);
+    let moving = run
+        .shaped
+        .iter()
+        .rposition(|word| f64::from(*word) != target)
+        .unwrap_or(0);
     let from = moving.saturating_sub((run.shaped.len() - moving) / 8);
     let deviation = |positions: &[f64]| {
         let points = positions.iter().enumerate().skip(from);

@@ -1,7 +1,7 @@
 //! All axes of a machine, from the machine file to tap tables with one `F`.
 
 use super::{AxisDesign, DesignError, design_axis};
-use crate::analysis::{Insensitivity, insensitivity, residual_vibration, tap_impulses};
+use crate::analysis::{Insensitivity, insensitivity, residual_vibration, residual_vibration_at, tap_impulses};
 use crate::digitise::{Digitised, digitise, quantise, quantising_error};
 use crate::mode::Mode;
 use crate::spec::{Axis, Machine};
@@ -40,7 +40,8 @@ pub struct ModeFigures {
     pub residual: f64,
     /// Insensitivity of the impulses; `None` if `residual` exceeds the tolerance.
     pub insensitivity: Option<Insensitivity>,
-    /// Residual vibration of the real taps.
+    /// Residual vibration of the real taps, as of the last integer tap: where the last real tap rounds to zero, the two
+    /// could not be compared otherwise.
     pub residual_digitised: f64,
     /// Residual vibration of the integer taps: the guaranteed one.
     pub residual_quantised: f64,
@@ -98,6 +99,7 @@ impl AxisTables {
         let continuous = self.design.impulses.impulses();
         let real = self.digitised.impulses(sample_hz);
         let integer = tap_impulses(&self.table, sample_hz);
+        let last_s = f64::from(self.table.longest_delay_samples()) / sample_hz;
         let modes = axis.modes.iter();
         modes
             .map(|axis_mode| {
@@ -108,7 +110,7 @@ impl AxisTables {
                     tolerance,
                     residual: residual_vibration(continuous, &mode),
                     insensitivity: insensitivity(continuous, &mode, tolerance),
-                    residual_digitised: residual_vibration(&real, &mode),
+                    residual_digitised: residual_vibration_at(&real, &mode, last_s),
                     residual_quantised: residual_vibration(&integer, &mode),
                 }
             })

@@ -95,7 +95,10 @@ mod tests {
         let positions = resample(&[(1.0, 0.0), (1.2, 2.0), (1.3, 2.0)], 10.0, 0.2).unwrap();
         let expected = [0.0, 1.0, 2.0, 2.0, 2.0, 2.0];
         assert_eq!(positions.len(), expected.len());
-        assert!(positions.iter().zip(expected).all(|(p, e)| (p - e).abs() < 1e-9), "{positions:?}");
+        assert!(
+            positions.iter().zip(expected).all(|(p, e)| (p - e).abs() < 1e-9),
+            "{positions:?}"
+        );
     }
 
     #[test]

@@ -25,6 +25,11 @@ impl<'a> Motion<'a> {
         }
     }
 
+    /// The clock of the first strobe, which comes with `start`.
+    pub fn first_strobe(&self) -> u64 {
+        RESET_CLOCKS
+    }
+
     /// Clocks until the pass of the last word has had its full sample period.
     pub fn clocks(&self) -> u64 {
         let samples = self.words.iter().map(Vec::len).max().unwrap_or(0) as u64;
