@@ -9,7 +9,7 @@ pub(crate) struct Curve {
     pub(crate) name: String,
     /// Points `(x, y)` in order of x.
     pub(crate) points: Vec<(f64, f64)>,
-    /// Drawn thin and dashed: a reference beside the curves that matter.
+    /// Drawn thin and grey: a reference beside the curves that matter.
     pub(crate) reference: bool,
 }
 
@@ -92,6 +92,8 @@ fn draw_panel(
         .configure_mesh()
         .x_desc(&panel.x_label)
         .y_desc(&panel.y_label)
+        .x_label_formatter(&|value| axis_label(*value))
+        .y_label_formatter(&|value| axis_label(*value))
         .light_line_style(WHITE)
         .draw()?;
     for (index, curve) in panel.curves.iter().enumerate() {
@@ -116,6 +118,12 @@ fn curve_style(curve: &Curve, index: usize) -> ShapeStyle {
     } else {
         COLOURS[index % COLOURS.len()].stroke_width(2)
     }
+}
+
+/// A number on an axis: without the digits that only binary fractions have, and never "-0".
+fn axis_label(value: f64) -> String {
+    let rounded = (value * 1e6).round() / 1e6;
+    format!("{}", if rounded == 0.0 { 0.0 } else { rounded })
 }
 
 /// Least and largest finite value, never an empty span.
@@ -151,6 +159,12 @@ mod tests {
         for text in ["Residual", "shaped", "flat", "f / f0"] {
             assert!(svg.contains(text), "{text}");
         }
+    }
+
+    #[test]
+    fn an_axis_label_is_short_and_zero_has_no_sign() {
+        let labels = [-0.0, 0.1 + 0.2, -1.5, 12000.0].map(axis_label);
+        assert_eq!(labels, ["0", "0.3", "-1.5", "12000"]);
     }
 
     #[test]

@@ -293,7 +293,7 @@ fn move_panel(machine: &Machine, axis: &Axis, run: &AxisSimulation) -> Panel {
     Panel {
         title: format!("axis {}: arrival of the move", axis.name),
         x_label: "time, ms".into(),
-        y_label: "deviation from target, µ".into(),
+        y_label: "deviation from target, µm or µrad".into(),
         curves: vec![
             Curve::reference("unshaped", deviation(&run.position_unshaped)),
             Curve::new("shaped", deviation(&run.position)),

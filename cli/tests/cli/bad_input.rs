@@ -1,0 +1,185 @@
+//! Bad input: exit status 2, nothing on standard output, a message that names place and remedy, nothing written.
+
+use crate::support::{example, one_axis, posicast, scratch};
+use predicates::prelude::*;
+
+const MODE: &str = "frequency_hz = 100.0\ndamping = 0.1";
+
+/// Runs `command` on a machine file with this text and checks that it is refused with these words.
+fn refused(command: &[&str], machine: &str, words: &[&str]) {
+    let (folder, file) = scratch(machine);
+    let mut run = posicast();
+    run.arg(command[0])
+        .arg(&file)
+        .args(&command[1..])
+        .current_dir(folder.path());
+    let mut assert = run.assert().code(2).stdout("");
+    for word in words {
+        assert = assert.stderr(predicate::str::contains(*word));
+    }
+    let left: Vec<_> = std::fs::read_dir(folder.path())
+        .unwrap()
+        .map(|e| e.unwrap().file_name())
+        .collect();
+    assert_eq!(left, ["machine.toml"], "something was left behind");
+}
+
+#[test]
+fn cli_an_empty_file_is_refused() {
+    refused(&["design", "--json"], "", &["machine.toml", "name"]);
+}
+
+#[test]
+fn cli_an_unknown_kind_is_refused_with_the_list() {
+    refused(
+        &["run"],
+        &one_axis("kind = \"zvx\"", MODE),
+        &["machine.toml:9", "zvx", "zvd"],
+    );
+}
+
+#[test]
+fn cli_a_negative_frequency_is_refused() {
+    let machine = one_axis("kind = \"zvd\"", "frequency_hz = -3.0\ndamping = 0.1");
+    refused(&["design"], &machine, &["machine.toml:11", "frequency_hz", "-3"]);
+}
+
+#[test]
+fn cli_a_damping_of_one_is_refused() {
+    let machine = one_axis("kind = \"zvd\"", "frequency_hz = 3.0\ndamping = 1.0");
+    refused(&["generate"], &machine, &["machine.toml:12", "damping"]);
+}
+
+#[test]
+fn cli_a_mode_above_half_the_sample_rate_is_refused() {
+    let machine = one_axis("kind = \"zvd\"", "frequency_hz = 5000.0\ndamping = 0.1");
+    refused(&["simulate"], &machine, &["machine.toml:11", "frequency_hz", "5000"]);
+}
+
+#[test]
+fn cli_a_delay_longer_than_the_ring_is_refused() {
+    let machine = one_axis("kind = \"zvd\"", "frequency_hz = 0.1\ndamping = 0.1");
+    refused(&["generate"], &machine, &["16382", "lower"]);
+}
+
+#[test]
+fn cli_more_taps_than_a_table_holds_are_refused() {
+    let impulses: Vec<String> = (0..150)
+        .map(|k| format!("[{}, {}]", f64::from(k) * 1.03e-3, 1.0 / 150.0))
+        .collect();
+    let machine = one_axis(
+        &format!("kind = \"custom\"\nimpulses = [{}]", impulses.join(", ")),
+        MODE,
+    );
+    refused(&["verify"], &machine, &["285 taps", "256"]);
+}
+
+#[test]
+fn cli_a_pass_longer_than_a_sample_is_printed_by_design_and_refused_by_generate() {
+    let machine = one_axis("kind = \"zvd\"", MODE).replace("50_000_000", "100_000");
+    refused(&["generate"], &machine, &["axis `x`", "11 clocks", "10"]);
+    let (_folder, file) = scratch(&machine);
+    let output = posicast().arg("design").arg(&file).arg("--json").assert().success();
+    assert_eq!(
+        crate::support::json(&output.get_output().stdout)["axes"][0]["quantised"]["fits"],
+        false
+    );
+}
+
+#[test]
+fn cli_what_is_not_built_yet_says_so() {
+    refused(
+        &["design"],
+        &one_axis("kind = \"optimal\"", MODE),
+        &["not built in this version: optimal"],
+    );
+    posicast()
+        .args(["identify", "log.csv"])
+        .assert()
+        .code(2)
+        .stderr(predicate::str::contains("not built in this version: identify"));
+}
+
+#[test]
+fn cli_a_file_that_is_no_text_or_not_there_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("binary.toml");
+    std::fs::write(&file, [0xff, 0xfe, 0]).unwrap();
+    posicast()
+        .arg("design")
+        .arg(&file)
+        .assert()
+        .code(2)
+        .stdout("")
+        .stderr(predicate::str::contains("UTF-8"));
+    posicast()
+        .arg("design")
+        .arg(folder.path())
+        .assert()
+        .code(2)
+        .stderr(predicate::str::contains("folder"));
+    posicast()
+        .arg("design")
+        .arg("nowhere.toml")
+        .assert()
+        .code(2)
+        .stderr(predicate::str::contains("nowhere.toml"));
+}
+
+#[test]
+fn cli_a_folder_that_is_not_ours_is_refused_and_left_alone() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("thesis.txt"), "years of work").unwrap();
+    for command in ["generate", "run"] {
+        posicast()
+            .arg(command)
+            .arg(example("xy-stage.toml"))
+            .arg("-o")
+            .arg(folder.path())
+            .assert()
+            .code(2)
+            .stdout("")
+            .stderr(predicate::str::contains("posicast.json"));
+    }
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+}
+
+#[test]
+fn cli_a_command_file_names_its_bad_line() {
+    let (folder, file) = scratch(&one_axis("kind = \"zvd\"", MODE));
+    let command = folder.path().join("moves.csv");
+    for (text, words) in [
+        ("time,position\n0,0\n", "time_s"),
+        ("time_s,position\n0,0\n0.1,abc\n", "line 3"),
+        ("time_s,position\n0.1,0\n0.0,1\n", "must increase"),
+        ("time_s,position\n", "no point"),
+        ("time_s,position\n0,0\n1,1e9\n", "beyond a word"),
+    ] {
+        std::fs::write(&command, text).unwrap();
+        posicast()
+            .arg("simulate")
+            .arg(&file)
+            .arg("--command")
+            .arg(&command)
+            .current_dir(folder.path())
+            .assert()
+            .code(2)
+            .stdout("")
+            .stderr(predicate::str::contains(words));
+    }
+}
+
+#[test]
+fn cli_a_named_simulator_that_is_missing_is_exit_status_3() {
+    for simulator in ["verilator", "icarus"] {
+        posicast()
+            .arg("verify")
+            .arg(example("xy-stage.toml"))
+            .args(["--simulator", simulator])
+            .env("PATH", "")
+            .assert()
+            .code(3)
+            .stdout("")
+            .stderr(predicate::str::contains("not found"));
+    }
+}

@@ -1,0 +1,55 @@
+//! `posicast design`: the published figures of the XY stage, in the contract's document.
+
+use crate::support::{example, json, one_axis, posicast, scratch};
+
+#[test]
+fn cli_design_gives_the_published_shaper_of_the_xy_stage() {
+    let output = posicast()
+        .arg("design")
+        .arg(example("xy-stage.toml"))
+        .arg("--json")
+        .assert()
+        .success();
+    let document = json(&output.get_output().stdout);
+    assert_eq!(document["name"], "xy_stage");
+    let x = &document["axes"][0];
+    assert_eq!((x["name"].as_str(), x["kind"].as_str()), (Some("x"), Some("zvd")));
+    // The source paper's Gx, sections 4 and 5: amplitudes to six digits, times to a nanosecond.
+    let published = [(0.0, 0.388050), (3.861771e-3, 0.469773), (7.723542e-3, 0.142177)];
+    for (impulse, (time_s, amplitude)) in x["impulses"].as_array().unwrap().iter().zip(published) {
+        assert!((impulse["time_s"].as_f64().unwrap() - time_s).abs() < 0.5e-9);
+        assert!((impulse["amplitude"].as_f64().unwrap() - amplitude).abs() < 0.5e-6);
+    }
+    let range = x["modes"][0]["insensitivity"].as_array().unwrap();
+    assert!((range[0].as_f64().unwrap() - 0.8195).abs() < 5e-5 && (range[1].as_f64().unwrap() - 1.1991).abs() < 5e-5);
+    let taps = x["quantised"]["taps"].as_array().unwrap();
+    let sum: i64 = taps.iter().map(|t| t["coefficient"].as_i64().unwrap()).sum();
+    assert_eq!(sum, 1 << x["quantised"]["coefficient_fraction"].as_u64().unwrap());
+    assert!(x["quantised"]["modes"][0]["residual"].as_f64().unwrap() < 1e-5);
+}
+
+#[test]
+fn cli_design_says_null_where_the_residual_exceeds_the_tolerance() {
+    let (_folder, file) = scratch(&one_axis("kind = \"none\"", "frequency_hz = 20.0\ndamping = 0.0"));
+    let output = posicast().arg("design").arg(&file).arg("--json").assert().success();
+    let mode = &json(&output.get_output().stdout)["axes"][0]["modes"][0];
+    assert_eq!(
+        (mode["residual"].as_f64(), mode["insensitivity"].is_null()),
+        (Some(1.0), true)
+    );
+}
+
+#[test]
+fn cli_design_draws_the_sensitivity_of_every_axis() {
+    let folder = tempfile::tempdir().unwrap();
+    let plot = folder.path().join("sensitivity.svg");
+    posicast()
+        .arg("design")
+        .arg(example("xy-stage.toml"))
+        .arg("--plot")
+        .arg(&plot)
+        .assert()
+        .success();
+    let svg = std::fs::read_to_string(&plot).unwrap();
+    assert!(svg.starts_with("<svg") && svg.contains("axis x") && svg.contains("axis y"));
+}

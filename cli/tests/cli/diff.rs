@@ -1,0 +1,70 @@
+//! `posicast diff`: exit status and document.
+
+use crate::support::{json, posicast};
+use std::path::Path;
+
+fn vcd(folder: &Path, name: &str, values: &[u8]) -> std::path::PathBuf {
+    let mut text = "$timescale 1ns $end\n$scope module top $end\n$var wire 1 ! clk $end\n$var wire 4 \" y $end\n\
+                    $upscope $end\n$enddefinitions $end\n"
+        .to_owned();
+    for (clock, value) in values.iter().enumerate() {
+        text += &format!("#{}\n0!\nb{value:04b} \"\n#{}\n1!\n", 10 * clock, 10 * clock + 5);
+    }
+    let path = folder.join(name);
+    std::fs::write(&path, text).unwrap();
+    path
+}
+
+#[test]
+fn cli_diff_tells_equal_from_different_and_from_incomparable() {
+    let folder = tempfile::tempdir().unwrap();
+    let a = vcd(folder.path(), "a.vcd", &[1, 2, 3, 4]);
+    let b = vcd(folder.path(), "b.vcd", &[1, 2, 7, 4]);
+    let diff = |other: &Path, arguments: &[&str]| {
+        let output = posicast()
+            .arg("diff")
+            .arg(&a)
+            .arg(other)
+            .arg("--json")
+            .args(arguments)
+            .output()
+            .unwrap();
+        (output.status.code(), json(&output.stdout))
+    };
+    let (code, document) = diff(&a, &[]);
+    assert_eq!((code, document["result"].as_str()), (Some(0), Some("equal")));
+    let (code, document) = diff(&b, &[]);
+    assert_eq!((code, document["result"].as_str()), (Some(1), Some("different")));
+    let first = &document["differences"][0];
+    assert!(first["signal"].as_str().unwrap().ends_with('y'));
+    assert_eq!(
+        (first["a"].as_str(), first["b"].as_str(), first["count"].as_u64()),
+        (Some("0011"), Some("0111"), Some(1))
+    );
+    assert!((document["first_time"].as_f64().unwrap() - 25e-9).abs() < 1e-15);
+    assert_eq!(diff(&b, &["--tolerance", "4"]).0, Some(0));
+    let c = vcd(folder.path(), "c.vcd", &[1]);
+    let other = std::fs::read_to_string(&c).unwrap().replace(" y ", " z ");
+    std::fs::write(&c, other).unwrap();
+    let (code, document) = diff(&c, &["--common"]);
+    assert_eq!((code, document["result"].as_str()), (Some(2), Some("incomparable")));
+    posicast()
+        .arg("diff")
+        .args([&a, &b])
+        .args(["--clock", "nonesuch"])
+        .assert()
+        .code(2)
+        .stdout("");
+}
+
+#[test]
+fn cli_diff_refuses_a_truncated_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let a = vcd(folder.path(), "a.vcd", &[1, 2, 3, 4]);
+    let text = std::fs::read_to_string(&a).unwrap();
+    let cut = folder.path().join("cut.vcd");
+    std::fs::write(&cut, &text[..60]).unwrap();
+    let output = posicast().arg("diff").arg(&a).arg(&cut).output().unwrap();
+    assert_eq!((output.status.code(), output.stdout.is_empty()), (Some(2), true));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("cut.vcd"));
+}

@@ -1,0 +1,178 @@
+//! `run`, `generate` and `verify`: the Verilog, its simulation, and what happens when it is broken.
+
+use crate::support::{example, json, posicast};
+use std::path::{Path, PathBuf};
+
+/// Clocks that reach every directed case of the example and some random ones.
+const CYCLES: &str = "60000";
+
+#[test]
+fn cli_run_goes_the_whole_way_on_the_xy_stage() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = folder.path().join("xy_stage");
+    let run = || {
+        let mut run = posicast();
+        run.arg("run")
+            .arg(example("xy-stage.toml"))
+            .arg("-o")
+            .arg(&output)
+            .args(["--json", "--cycles", CYCLES]);
+        json(&run.assert().success().get_output().stdout)
+    };
+    let document = run();
+    assert_eq!(document["result"], "pass");
+    assert_eq!(document["verify"]["result"], "match");
+    let x = &document["axes"][0]["plant"];
+    let overshoot = |case: &str| x[case]["overshoot"].as_f64().unwrap();
+    // Measured on the simulated machine; published: 60.53 % unshaped, 1.50 % at -10 %.
+    assert!((overshoot("unshaped") - 0.6053).abs() < 5e-5);
+    assert!((overshoot("minus_10_percent") - 0.0150).abs() < 5e-5);
+    for file in [
+        "machine.toml",
+        "posicast.json",
+        "report.json",
+        "rtl/xy_stage.v",
+        "wave/model.vcd",
+        "wave/rtl.vcd",
+        "wave/float.vcd",
+    ] {
+        assert!(output.join(file).is_file(), "{file}");
+    }
+    assert_eq!(
+        run(),
+        document,
+        "a second run into the same folder gives the same report"
+    );
+}
+
+#[test]
+fn cli_run_of_the_zv_shaper_gives_its_published_overshoot() {
+    let text = std::fs::read_to_string(example("xy-stage.toml"))
+        .unwrap()
+        .replace("\"zvd\"", "\"zv\"");
+    let (folder, file) = crate::support::scratch(&text);
+    let mut run = posicast();
+    run.arg("run")
+        .arg(&file)
+        .arg("-o")
+        .arg(folder.path().join("out"))
+        .args(["--json", "--cycles", CYCLES]);
+    let document = json(&run.assert().success().get_output().stdout);
+    let overshoot = document["axes"][0]["plant"]["minus_10_percent"]["overshoot"]
+        .as_f64()
+        .unwrap();
+    assert!((overshoot - 0.0953).abs() < 5e-5, "{overshoot}");
+}
+
+#[test]
+fn cli_verify_without_any_tool_still_gives_a_verdict_and_names_it_the_weaker_check() {
+    let mut verify = posicast();
+    verify
+        .arg("verify")
+        .arg(example("xy-stage.toml"))
+        .args(["--json", "--cycles", "2000"])
+        .env("PATH", "");
+    let assert = verify.assert().success().stderr(predicates::str::contains("weaker"));
+    assert_eq!(json(&assert.get_output().stdout)["simulator"], "rusthdl");
+}
+
+fn generated(folder: &Path) -> PathBuf {
+    let output = folder.join("xy_stage");
+    posicast()
+        .arg("generate")
+        .arg(example("xy-stage.toml"))
+        .arg("-o")
+        .arg(&output)
+        .assert()
+        .success();
+    output
+}
+
+/// Replaces text in one of the generated files, which must hold it.
+fn break_file(file: &Path, from: &str, to: &str) {
+    let text = std::fs::read_to_string(file).unwrap();
+    assert!(text.contains(from), "{} does not hold `{from}`", file.display());
+    std::fs::write(file, text.replacen(from, to, 1)).unwrap();
+}
+
+#[test]
+fn cli_verify_reports_a_broken_bit_of_the_multiplier_and_of_the_address() {
+    for (file, from, to) in [
+        ("rtl/xy_stage_x_smul_32x18.v", "a_q * b_q", "(a_q ^ 32'sd1) * b_q"),
+        ("rtl/xy_stage_y_history.v", "head - delay;", "head - delay - 7'd1;"),
+    ] {
+        let folder = tempfile::tempdir().unwrap();
+        let output = generated(folder.path());
+        break_file(&output.join(file), from, to);
+        let verify = posicast()
+            .arg("verify")
+            .arg(&output)
+            .args(["--json", "--cycles", CYCLES])
+            .output()
+            .unwrap();
+        assert_eq!(
+            verify.status.code(),
+            Some(1),
+            "{}",
+            String::from_utf8_lossy(&verify.stderr)
+        );
+        let document = json(&verify.stdout);
+        assert_eq!(document["result"], "mismatch");
+        let axis = &file[13..14];
+        let block = document["blocks"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .find(|b| b["instance"] == axis)
+            .unwrap()
+            .clone();
+        assert!(
+            block["first"]["signal"]
+                .as_str()
+                .unwrap()
+                .starts_with(&format!("{axis}_y")),
+            "{block}"
+        );
+        assert_ne!(block["first"]["expected"], block["first"]["actual"]);
+    }
+}
+
+#[test]
+fn cli_generate_refuses_to_overwrite_an_edited_file_and_verify_takes_no_rusthdl_for_a_folder() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = generated(folder.path());
+    let rusthdl = posicast()
+        .arg("verify")
+        .arg(&output)
+        .args(["--simulator", "rusthdl"])
+        .output()
+        .unwrap();
+    assert_eq!((rusthdl.status.code(), rusthdl.stdout.is_empty()), (Some(2), true));
+    let top = output.join("rtl/xy_stage.v");
+    break_file(&top, "endmodule", "// mine\nendmodule");
+    let again = posicast()
+        .arg("generate")
+        .arg(example("xy-stage.toml"))
+        .arg("-o")
+        .arg(&output)
+        .output()
+        .unwrap();
+    assert_eq!(again.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&again.stderr).contains("xy_stage.v"));
+    assert!(std::fs::read_to_string(&top).unwrap().contains("// mine"));
+}
+
+#[test]
+fn cli_verilog_that_verilator_refuses_is_bad_input() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = generated(folder.path());
+    break_file(&output.join("rtl/xy_stage.v"), "endmodule", "endmodul");
+    let verify = posicast()
+        .arg("verify")
+        .arg(&output)
+        .args(["--cycles", "100"])
+        .output()
+        .unwrap();
+    assert_eq!((verify.status.code(), verify.stdout.is_empty()), (Some(2), true));
+    assert!(String::from_utf8_lossy(&verify.stderr).contains("verilator"));
+}

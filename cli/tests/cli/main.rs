@@ -1,0 +1,8 @@
+//! The command line from outside: exit status, standard output, standard error, files.
+
+mod support;
+
+mod bad_input;
+mod design;
+mod diff;
+mod hardware;
