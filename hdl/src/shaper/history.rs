@@ -61,9 +61,9 @@ impl<const W: usize, const A: usize> Logic for History<W, A> {
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module history");
-        comment!("@about The samples since the last start, in a ring;");
-        comment!("@about for all before, the value at the start.");
-        comment!("@about sample is that of the delay one clock before.");
+        comment!("@about The samples since the last start, in a");
+        comment!("@about ring, and for all before, its value.");
+        comment!("@about sample: that of delay one clock before.");
         dff_setup!(self, clk, head, age, start_value, before_start);
         self.ring.clk.next = self.clk.val();
 

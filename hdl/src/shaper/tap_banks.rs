@@ -55,6 +55,7 @@ pub(super) struct TapBanks<const A: usize, const T: usize, const COUNT: usize, c
     begins: Signal<Local, Bit>,
     loadable: Signal<Local, Bit>,
     at_rest: Signal<Local, Bit>,
+    in_reach: Signal<Local, Bit>,
     write_taken: Signal<Local, Bit>,
     new_taps: Signal<Local, Bits<COUNT>>,
     new_sum: Signal<Local, Signed<SUM>>,
@@ -115,6 +116,7 @@ impl<const A: usize, const T: usize, const COUNT: usize, const SUM: usize, const
             begins: Signal::default(),
             loadable: Signal::default(),
             at_rest: Signal::default(),
+            in_reach: Signal::default(),
             write_taken: Signal::default(),
             new_taps: Signal::default(),
             new_sum: Signal::default(),
@@ -159,10 +161,10 @@ impl<const A: usize, const T: usize, const COUNT: usize, const SUM: usize, const
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module tap_banks");
-        comment!("@about The tap tables: 0 is ROM, 1 and 2 are loadable.");
-        comment!("@about A write of index 0 begins a table, then in order.");
-        comment!("@about A swap waits for the next strobe. It is refused if");
-        comment!("@about the bank's coefficients do not sum to 2^F.");
+        comment!("@about Tap tables: bank 0 is ROM, 1 and 2 load.");
+        comment!("@about Index 0 begins a table, the rest in order.");
+        comment!("@about A swap waits for the next strobe; refused");
+        comment!("@about unless the coefficients sum to 2^F.");
         dff_setup!(
             self, clk, taps_1, taps_2, sum_1, sum_2, active, upcoming, pending, refused_q
         );
@@ -182,15 +184,13 @@ impl<const A: usize, const T: usize, const COUNT: usize, const SUM: usize, const
         comment!("Taken in sequence, into a bank at rest");
         self.loadable.next = (self.tap_bank.val() == self.bank_1.val()) | (self.tap_bank.val() == self.bank_2.val());
         self.at_rest.next = (self.tap_bank.val() != self.active.q.val()) & !(self.pending.q.val() | self.swap.val());
+        self.in_reach.next = self.tap_delay.val() != self.forbidden_delay.val();
         self.index.next = bit_cast::<COUNT, T>(self.tap_index.val());
         self.begins.next = !self.tap_index.val().any();
         self.write_taken.next = false;
         if self.begins.val() | (self.index.val() == self.taps_so_far.val()) {
-            if self.loadable.val() & self.at_rest.val() {
-                if self.tap_delay.val() != self.forbidden_delay.val() {
-                    self.write_taken.next = self.tap_write.val();
-                }
-            }
+            self.write_taken.next =
+                self.tap_write.val() & self.loadable.val() & self.at_rest.val() & self.in_reach.val();
         }
         self.addend.next = signed_bit_cast::<SUM, 18>(self.tap_coefficient.val());
         self.new_taps.next = self.taps_so_far.val() + self.one_tap.val();

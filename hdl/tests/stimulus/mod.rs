@@ -5,10 +5,10 @@ use posicast_model::taps::{COEFFICIENT_MAX, COEFFICIENT_MIN, Tap, TapTable};
 use std::collections::VecDeque;
 
 /// A reproducible source of numbers (splitmix64).
-pub struct Random(pub u64);
+pub(crate) struct Random(pub(crate) u64);
 
 impl Random {
-    pub fn word(&mut self) -> u64 {
+    pub(crate) fn word(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut word = self.0;
         word = (word ^ (word >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -17,18 +17,18 @@ impl Random {
     }
 
     /// 0..bound.
-    pub fn below(&mut self, bound: u64) -> u64 {
+    pub(crate) fn below(&mut self, bound: u64) -> u64 {
         self.word() % bound
     }
 
     /// True once in `n` calls.
-    pub fn once_in(&mut self, n: u64) -> bool {
+    pub(crate) fn once_in(&mut self, n: u64) -> bool {
         self.below(n) == 0
     }
 }
 
 /// `taps` taps at delays up to `longest`, coefficients of either sign that sum to 2^fraction; `gain` is about Σ|c|/2^F.
-pub fn table(random: &mut Random, fraction: u32, taps: usize, longest: u32, gain: u32) -> TapTable {
+pub(crate) fn table(random: &mut Random, fraction: u32, taps: usize, longest: u32, gain: u32) -> TapTable {
     let mut delays: Vec<u32> = (0..taps - 1)
         .map(|_| random.below(u64::from(longest.max(1))) as u32)
         .collect();
@@ -72,7 +72,7 @@ fn table_of_fewer(random: &mut Random, fraction: u32, taps: usize, longest: u32,
 }
 
 /// The writes that load `table` into `bank`, and the swap to it.
-pub fn load(table: &TapTable, bank: u8) -> Vec<Inputs> {
+pub(crate) fn load(table: &TapTable, bank: u8) -> Vec<Inputs> {
     let write = |(index, tap): (usize, &Tap)| Inputs {
         tap_write: true,
         tap_bank: bank,
@@ -90,7 +90,7 @@ pub fn load(table: &TapTable, bank: u8) -> Vec<Inputs> {
 }
 
 /// Inputs clock by clock, for ever: everything at any time, often enough in an order that makes sense.
-pub struct Anything {
+pub(crate) struct Anything {
     config: ShaperConfig,
     random: Random,
     until_strobe: u32,
@@ -98,7 +98,7 @@ pub struct Anything {
 }
 
 impl Anything {
-    pub fn new(config: &ShaperConfig, seed: u64) -> Self {
+    pub(crate) fn new(config: &ShaperConfig, seed: u64) -> Self {
         Self {
             config: config.clone(),
             random: Random(seed),

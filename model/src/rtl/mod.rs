@@ -4,6 +4,7 @@
 //! lock step compares.
 
 pub mod shaper;
+pub mod word;
 
 /// Direction of a port, seen from the block.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,0 +1,290 @@
+//! The rules of the kernels, read from their source: what RustHDL lets pass and simulates differently from its Verilog.
+//!
+//! The emitter refuses most of it too, but only in what is emitted, and says it later.
+
+use posicast_hdl::emit::{Header, compose};
+use std::fs;
+use std::path::Path;
+
+/// Parts of RustHDL that do something else than their Verilog, and their replacements.
+const REPLACED: [(&str, &str); 7] = [
+    ("DFF", "Dff, which has a reset"),
+    ("DFFWithInit", "Dff::new"),
+    ("RAM", "Ram, which has arbitrary contents"),
+    ("ROM", "Rom, whose data is registered"),
+    ("SyncROM", "Rom"),
+    ("rust_hdl_widgets", "crate::prelude"),
+    (
+        "MultiplyAccumulateSymmetricFiniteImpulseResponseFilter",
+        "SMul and an accumulator",
+    ),
+];
+
+/// Longest comment that RustHDL hands over in one line.
+const LONGEST_COMMENT: usize = 49;
+
+/// Every rule that the source of a file breaks, in words.
+fn broken_rules(source: &str) -> Vec<String> {
+    let code = without_comments(source);
+    let mut broken = Vec::new();
+    for (word, instead) in REPLACED {
+        if uses(&code, word) {
+            broken.push(format!("uses {word}: use {instead}"));
+        }
+    }
+    let kernels: Vec<&str> = code.split("#[hdl_gen]").skip(1).collect();
+    match kernels[..] {
+        [] => {}
+        [kernel] => check_kernel(&code, body(kernel), &mut broken),
+        _ => broken.push("has several kernels: one per file".to_owned()),
+    }
+    broken
+}
+
+fn check_kernel(code: &str, body: &str, broken: &mut Vec<String>) {
+    if !code.contains("use crate::prelude::*;") || code.contains("use rust_hdl_core") {
+        broken.push("does not take RustHDL from crate::prelude, and so gets the wrong signed_bit_cast".to_owned());
+    }
+    if !body.trim_start().starts_with("comment!(\"@module ") {
+        broken.push("does not begin with the name of its module: comment!(\"@module name\")".to_owned());
+    }
+    if uses(body, "println") {
+        broken.push("uses println, which prints on every update: use comment!".to_owned());
+    }
+    for text in body
+        .split("comment!(\"")
+        .skip(1)
+        .filter_map(|rest| rest.split('"').next())
+    {
+        if text.len() > LONGEST_COMMENT {
+            broken.push(format!(
+                "comment of {} characters, at most {LONGEST_COMMENT}: {text}",
+                text.len()
+            ));
+        }
+    }
+    let flat: String = body.split_whitespace().collect();
+    for (place, _) in flat.match_indices(".d.val()") {
+        broken.push(format!("reads what goes into a register: {}", before(&flat, place)));
+    }
+    for (place, _) in flat.match_indices(".get_bits") {
+        if !flat[..place].ends_with(".val()") {
+            broken.push(format!("slices an expression, not a signal: {}", before(&flat, place)));
+        }
+    }
+    for (place, _) in flat.match_indices("signed_bit_cast::") {
+        if !flat[..place].ends_with(".next=") {
+            broken.push(format!(
+                "casts inside an expression, not to a Local: {}",
+                before(&flat, place)
+            ));
+        }
+    }
+    for (name, kind) in fields(code) {
+        if compose(&name, &Header::default(), &[], &[]).is_err() {
+            broken.push(format!("`{name}` is no Verilog name"));
+        }
+        match kind.as_str() {
+            "Local" | "Out" => match first_assignment(&flat, &name) {
+                None => broken.push(format!("`{name}` is never assigned")),
+                Some(0) => {}
+                Some(_) => broken.push(format!(
+                    "`{name}` is assigned in a branch, and has no default before it"
+                )),
+            },
+            "Dff" if !registers(&flat).contains(&name.as_str()) => {
+                broken.push(format!("the register `{name}` is not in dff_setup!"));
+            }
+            _ => {}
+        }
+    }
+}
+
+/// Name and kind (`In`, `Out`, `Local`, or the type's name) of every field that is hardware.
+fn fields(code: &str) -> Vec<(String, String)> {
+    let declaration = code.split("#[derive(LogicBlock").nth(1).unwrap_or_default();
+    let declaration = declaration.split("\n}").next().unwrap_or_default();
+    let mut fields = Vec::new();
+    for line in declaration.lines() {
+        let line = line
+            .trim()
+            .trim_start_matches("pub(super) ")
+            .trim_start_matches("pub(crate) ");
+        let Some((name, kind)) = line.split_once(": ") else {
+            continue;
+        };
+        if !name.starts_with(|c: char| c.is_ascii_lowercase()) || name.contains(' ') {
+            continue;
+        }
+        let kind = kind.strip_prefix("Signal<").unwrap_or(kind);
+        let kind: String = kind.chars().take_while(|c| c.is_alphanumeric()).collect();
+        fields.push((name.to_owned(), kind));
+    }
+    fields
+}
+
+/// How many branches deep `name` is assigned first.
+fn first_assignment(flat: &str, name: &str) -> Option<usize> {
+    let place = flat.find(&format!("self.{name}.next="))?;
+    let opened = flat[..place].matches('{').count();
+    Some(opened - flat[..place].matches('}').count())
+}
+
+fn registers(flat: &str) -> Vec<&str> {
+    let list = flat.split("dff_setup!(self,clk,").nth(1).unwrap_or_default();
+    list.split(')').next().unwrap_or_default().split(',').collect()
+}
+
+/// The statements of the function that `kernel` begins with.
+fn body(kernel: &str) -> &str {
+    let begin = kernel.find('{').map_or(0, |place| place + 1);
+    let mut depth = 1;
+    for (place, found) in kernel[begin..].char_indices() {
+        match found {
+            '{' => depth += 1,
+            '}' => depth -= 1,
+            _ => {}
+        }
+        if depth == 0 {
+            return &kernel[begin..begin + place];
+        }
+    }
+    &kernel[begin..]
+}
+
+fn without_comments(source: &str) -> String {
+    let code = |line: &str| line.split("//").next().unwrap_or_default().to_owned() + "\n";
+    source.lines().map(code).collect()
+}
+
+/// Whether the item `word` is used: as a type with parameters, in a path, or as a macro.
+fn uses(code: &str, word: &str) -> bool {
+    let in_name = |c: char| c.is_alphanumeric() || c == '_';
+    code.match_indices(word).any(|(place, _)| {
+        let (before, after) = (&code[..place], &code[place + word.len()..]);
+        !before.ends_with(in_name) && after.starts_with(['<', ':', '!'])
+    })
+}
+
+fn before(flat: &str, place: usize) -> &str {
+    let from = flat[..place].rfind(';').map_or(0, |end| end + 1);
+    &flat[from..place]
+}
+
+/// Every Rust file below `folder`.
+fn sources(folder: &Path) -> Vec<std::path::PathBuf> {
+    let entries = fs::read_dir(folder)
+        .into_iter()
+        .flatten()
+        .flatten()
+        .map(|entry| entry.path());
+    let (folders, files): (Vec<_>, Vec<_>) = entries.partition(|path| path.is_dir());
+    let rust = files
+        .into_iter()
+        .filter(|path| path.extension().is_some_and(|e| e == "rs"));
+    rust.chain(folders.iter().flat_map(|folder| sources(folder))).collect()
+}
+
+#[test]
+fn unit_our_kernels_keep_the_rules() {
+    let files = sources(&Path::new(env!("CARGO_MANIFEST_DIR")).join("src"));
+    let mut kernels = 0;
+    for file in files {
+        let source = fs::read_to_string(&file).unwrap();
+        kernels += usize::from(without_comments(&source).contains("#[hdl_gen]\n"));
+        assert_eq!(broken_rules(&source), [""; 0], "{}", file.display());
+    }
+    assert!(kernels >= 4, "{kernels} kernels found");
+}
+
+/// A kernel that keeps the rules.
+const GOOD: &str = r#"
+use crate::prelude::*;
+
+#[derive(LogicBlock)]
+pub(super) struct Doubler {
+    pub(super) clk: Signal<In, Clock>,
+    pub(super) rst: Signal<In, Bit>,
+    pub(super) number: Signal<In, Signed<8>>,
+    pub(super) twice: Signal<Out, Signed<16>>,
+    held: Dff<Signed<8>>,
+    wide: Signal<Local, Signed<16>>,
+}
+
+impl Logic for Doubler {
+    #[hdl_gen]
+    fn update(&mut self) {
+        comment!("@module doubler");
+        dff_setup!(self, clk, held);
+        if self.number.val().get_bits::<1>(0) == self.number.val().get_bits::<1>(1) {
+            self.held.d.next = self.number.val();
+        }
+        self.wide.next = signed_bit_cast::<16, 8>(self.held.q.val());
+        self.twice.next = self.wide.val() + self.wide.val();
+    }
+}
+"#;
+
+#[test]
+fn unit_a_good_kernel_is_let_through() {
+    assert_eq!(broken_rules(GOOD), [""; 0]);
+}
+
+#[test]
+fn unit_each_rule_that_is_broken_is_found() {
+    let cases = [
+        ("Dff<Signed<8>>", "DFF<Signed<8>>", "uses DFF"),
+        (
+            "use crate::prelude::*;",
+            "use rust_hdl_core::prelude::*;",
+            "wrong signed_bit_cast",
+        ),
+        ("comment!(\"@module doubler\");", "", "name of its module"),
+        (
+            "comment!(\"@module doubler\");",
+            "comment!(\"@module doubler\"); println!(\"x\");",
+            "prints on every update",
+        ),
+        (
+            "@module doubler\");",
+            "@module doubler\"); comment!(\"far too long for RustHDL to hand it over in one line\");",
+            "52 characters",
+        ),
+        ("self.held.q.val()", "self.held.d.val()", "goes into a register"),
+        (
+            "self.number.val().get_bits",
+            "(self.number.val() + self.number.val()).get_bits",
+            "slices an expression",
+        ),
+        (
+            "self.wide.val() + self.wide.val()",
+            "self.wide.val() + signed_bit_cast::<16, 8>(self.held.q.val())",
+            "casts inside",
+        ),
+        ("number", "initial", "`initial` is no Verilog name"),
+        (
+            "self.wide.next = ",
+            "if self.rst.val() { } self.twice.next = ",
+            "`wide` is never assigned",
+        ),
+        (
+            "self.twice.next = self.wide.val() + self.wide.val();",
+            "if self.rst.val() { self.twice.next = self.wide.val(); }",
+            "`twice` is assigned in a branch",
+        ),
+        ("dff_setup!(self, clk, held);", "", "`held` is not in dff_setup!"),
+        (
+            "fn update",
+            "#[hdl_gen] fn other(&mut self) { } fn update",
+            "several kernels",
+        ),
+    ];
+    for (good, bad, finding) in cases {
+        assert!(GOOD.contains(good), "{good}");
+        let broken = broken_rules(&GOOD.replace(good, bad));
+        assert!(
+            broken.iter().any(|rule| rule.contains(finding)),
+            "{finding}: {broken:?}"
+        );
+    }
+}

@@ -1,0 +1,132 @@
+//! Command words: what a number of encoder counts is in the hardware's two's complement fixed point.
+//!
+//! ```
+//! use posicast_model::rtl::word::WordFormat;
+//!
+//! let position = WordFormat::new(32, 8)?;
+//! assert_eq!(position.to_word(2.5)?, 640);
+//! assert_eq!(position.to_counts(-640), -2.5);
+//! assert!(position.to_word(1e9).is_err());
+//! # Ok::<(), posicast_model::rtl::word::WordError>(())
+//! ```
+
+use fixed::types::I64F64;
+
+/// Signed, `bits` wide, the lowest `fraction` of them behind the point.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct WordFormat {
+    bits: u32,
+    fraction: u32,
+}
+
+/// Why there is no such word.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum WordError {
+    /// A format that no command has.
+    #[error("words of {bits} bits with {fraction} fraction bits: 2 to 32 bits, fewer fraction bits than bits")]
+    Format {
+        /// Width found.
+        bits: u32,
+        /// Fraction bits found.
+        fraction: u32,
+    },
+    /// A number that the word does not hold.
+    #[error(
+        "{found} counts do not fit: words of {bits} bits with {fraction} fraction bits hold {smallest} to {largest}; \
+         choose more bits or fewer fraction bits"
+    )]
+    Range {
+        /// The number.
+        found: f64,
+        /// Width.
+        bits: u32,
+        /// Fraction bits.
+        fraction: u32,
+        /// Smallest number that fits.
+        smallest: f64,
+        /// Largest number that fits.
+        largest: f64,
+    },
+}
+
+impl WordFormat {
+    /// A format of 2 to 32 bits with 0 to `bits − 1` fraction bits.
+    ///
+    /// # Errors
+    /// [`WordError::Format`] for any other.
+    pub fn new(bits: u32, fraction: u32) -> Result<Self, WordError> {
+        if !(2..=32).contains(&bits) || fraction >= bits {
+            return Err(WordError::Format { bits, fraction });
+        }
+        Ok(Self { bits, fraction })
+    }
+
+    /// The word nearest to `counts`; halfway, the larger one.
+    ///
+    /// # Errors
+    /// [`WordError::Range`] where no word is near: too large, or not a number.
+    pub fn to_word(self, counts: f64) -> Result<i64, WordError> {
+        let (smallest, largest) = self.ends();
+        I64F64::checked_from_num(counts)
+            .and_then(|exact| exact.checked_mul_int(1 << self.fraction))
+            .and_then(|scaled| scaled.checked_add(I64F64::ONE / 2))
+            .map(|rounded| rounded.floor().to_num::<i64>())
+            .filter(|word| (smallest..=largest).contains(word))
+            .ok_or(WordError::Range {
+                found: counts,
+                bits: self.bits,
+                fraction: self.fraction,
+                smallest: self.to_counts(smallest),
+                largest: self.to_counts(largest),
+            })
+    }
+
+    /// What a word stands for, exactly.
+    pub fn to_counts(self, word: i64) -> f64 {
+        I64F64::from_bits(i128::from(word) << (I64F64::FRAC_NBITS - self.fraction)).to_num()
+    }
+
+    fn ends(self) -> (i64, i64) {
+        let half = 1 << (self.bits - 1);
+        (-half, half - 1)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn unit_rounds_half_up() {
+        let format = WordFormat::new(16, 2).unwrap();
+        let words = [-0.375, -0.25, -0.125, 0.0, 0.1249, 0.125, 0.375].map(|counts| format.to_word(counts).unwrap());
+        assert_eq!(words, [-1, -1, 0, 0, 0, 1, 2]);
+    }
+
+    #[test]
+    fn unit_every_word_of_16_bits_comes_back() {
+        let format = WordFormat::new(16, 8).unwrap();
+        for word in -32768..=32767 {
+            assert_eq!(format.to_word(format.to_counts(word)).unwrap(), word);
+        }
+    }
+
+    #[test]
+    fn unit_the_ends_and_what_lies_beyond() {
+        let format = WordFormat::new(32, 31).unwrap();
+        assert_eq!(format.to_word(-1.0).unwrap(), -(1 << 31));
+        for beyond in [
+            1.0,
+            -1.1,
+            f64::NAN,
+            f64::INFINITY,
+            f64::NEG_INFINITY,
+            f64::MAX,
+            f64::MIN,
+        ] {
+            assert!(format.to_word(beyond).is_err(), "{beyond}");
+        }
+        assert!(WordFormat::new(33, 0).is_err());
+        assert!(WordFormat::new(8, 8).is_err());
+    }
+}
