@@ -10,13 +10,10 @@
 //! | `comment!` | nothing: `#[hdl_gen]` knows the macro, RustHDL has none |
 
 pub(crate) use crate::prim::{Dff, Ram, Rom, RomWord, SMul};
-pub(crate) use crate::{comment, dff_setup};
 pub(crate) use rust_hdl_core::prelude::*;
 pub(crate) use rust_hdl_macros::{LogicBlock, hdl_gen};
 
 /// A comment in the Verilog, nothing in the simulation. Below 50 characters: RustHDL wraps longer text.
-#[macro_export]
-#[doc(hidden)]
 macro_rules! comment {
     ($($text:tt)*) => {};
 }
@@ -24,8 +21,6 @@ macro_rules! comment {
 /// Wires `clock` and `rst` of every flip-flop named and lets it keep its value: the first statement of a kernel.
 ///
 /// `#[hdl_gen]` reads the invocation, not this definition: in the Verilog the reset is the emitter's work.
-#[macro_export]
-#[doc(hidden)]
 macro_rules! dff_setup {
     ($self:ident, $clk:ident, $($dff:ident),+ $(,)?) => {
         $(
@@ -35,6 +30,8 @@ macro_rules! dff_setup {
         )+
     };
 }
+
+pub(crate) use {comment, dff_setup};
 
 /// Sign-extends or truncates.
 ///

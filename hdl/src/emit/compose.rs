@@ -46,7 +46,7 @@ pub fn compose(
         taken.take(name, "a shared input").map_err(at(name))?;
     }
     for instance in instances {
-        names::check_name(instance.name).map_err(at(instance.name))?;
+        names::check_form(instance.name).map_err(at(instance.name))?;
         taken
             .take(&instance_name(instance), "an instance")
             .map_err(at(instance.name))?;

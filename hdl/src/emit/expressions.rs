@@ -330,6 +330,7 @@ impl Writer<'_> {
     fn slice(&mut self, inner: &Tree, width: usize, offset: &Tree) -> Result<Value, Cause> {
         let value = self.value(inner, None)?;
         let Some(low) = self.constant_index(offset) else {
+            self.index(offset)?;
             let found = "a slice at an offset that is a signal".to_owned();
             return Err(Cause::Unsupported {
                 found,
@@ -371,6 +372,7 @@ impl Writer<'_> {
         let (ty, bit) = (value.ty(), self.value(bit, Some(BIT))?);
         self.expect(&bit, BIT)?;
         let Some(index) = self.constant_index(index) else {
+            self.index(index)?;
             let found = "`replace_bit` at an index that is a signal".to_owned();
             return Err(Cause::Unsupported {
                 found,

@@ -108,9 +108,12 @@ pub struct Parameter {
 /// [`EmitError`] for the first thing that cannot be expressed exactly, or that breaks a rule of the kernels.
 pub fn emit<B: Block + ?Sized>(block: &B, options: &EmitOptions) -> Result<Vec<Module>, EmitError> {
     let wrong_name = |cause| EmitError::new(&options.top, "", cause);
-    names::check_name(&options.top).map_err(wrong_name)?;
-    if !options.prefix.is_empty() {
-        names::check_name(&options.prefix).map_err(wrong_name)?;
+    if options.prefix.is_empty() {
+        names::check_name(&options.top).map_err(wrong_name)?;
+    } else {
+        names::check_form(&options.prefix)
+            .and_then(|()| names::check_form(&options.top))
+            .map_err(wrong_name)?;
     }
     let top = collect::collect(block, &options.top)?;
     modules::modules(&top, options)

@@ -255,18 +255,25 @@ const RESERVED: &[&str] = &[
     "xor",
 ];
 
-/// Checks a name that a kernel or a caller chose.
+/// Checks a name that stands alone in the Verilog.
 pub(super) fn check_name(name: &str) -> Result<(), Cause> {
+    check_form(name)?;
+    match RESERVED.binary_search(&name) {
+        Ok(_) => Err(Cause::ReservedWord(name.to_owned())),
+        Err(_) => Ok(()),
+    }
+}
+
+/// Checks a name that only ever is a part of one, and may be a keyword.
+pub(super) fn check_form(name: &str) -> Result<(), Cause> {
     let mut characters = name.chars();
     let plain = characters.next().is_some_and(|first| first.is_ascii_lowercase())
         && characters.all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_');
-    if !plain {
-        return Err(Cause::BadName(name.to_owned()));
+    if plain {
+        Ok(())
+    } else {
+        Err(Cause::BadName(name.to_owned()))
     }
-    if RESERVED.binary_search(&name).is_ok() {
-        return Err(Cause::ReservedWord(name.to_owned()));
-    }
-    Ok(())
 }
 
 /// RustHDL's path of a signal (`bus$value$0`, `State$Idle`) as part of a Verilog name (`bus_value_0`).
@@ -330,6 +337,7 @@ mod tests {
     #[test]
     fn unit_names_are_lower_snake_case() {
         assert_eq!(check_name("tap_3"), Ok(()));
+        assert_eq!(check_form("small"), Ok(()));
         for bad in ["", "Tap", "3d", "_x", "a$b", "a-b", "größe"] {
             assert_eq!(check_name(bad), Err(Cause::BadName(bad.to_owned())));
         }

@@ -6,8 +6,8 @@
 //! running            stages[0]                stages[1]     stages[2] stages[3] done      valid
 //! ```
 //!
-//! A tap takes a clock in each place, so that the last product is added, and `done` set, in clock N + 4 after the
-//! strobe; `y` changes in the next but one.
+//! A tap is in each place for one clock. So of N taps the last product is added in clock N + 4 after the strobe, `done`
+//! shows in clock N + 5, and `y` in clock N + 6.
 
 use super::history::History;
 use super::tap_banks::TapBanks;

@@ -4,6 +4,8 @@
 //! stands two clocks after the sample; `add` marks the products that count. `finish` comes in the clock after the last
 //! `add` and moves the result to `y`, which holds it. `start` sets `y` to `x`.
 //!
+//! The result fits its word if the bits of the accumulator from the word's sign bit up are equal.
+//!
 //! 2^T products of W + 18 bits fit in ACC = W + 18 + T bits, the half included: the accumulator never overflows.
 
 use crate::prelude::*;
@@ -33,10 +35,12 @@ pub(super) struct WeightedSum<const W: usize, const P: usize, const ACC: usize> 
     saturated_q: Dff<Bit>,
 
     product: Signal<Local, Signed<ACC>>,
+    sign_bits: Signal<Local, Bits<ACC>>,
 
     half: Constant<Signed<ACC>>,
-    too_large: Constant<Signed<ACC>>,
-    smallest: Constant<Signed<ACC>>,
+    sign_mask: Constant<Bits<ACC>>,
+    all_clear: Constant<Bits<ACC>>,
+    top_bit: Constant<Bits<6>>,
     y_max: Constant<Signed<W>>,
     y_min: Constant<Signed<W>>,
     fraction: Constant<Bits<5>>,
@@ -64,9 +68,11 @@ impl<const W: usize, const P: usize, const ACC: usize> WeightedSum<W, P, ACC> {
             y_q: Dff::default(),
             saturated_q: Dff::default(),
             product: Signal::default(),
+            sign_bits: Signal::default(),
             half: Constant::new(from_i64(1 << (fraction - 1))),
-            too_large: Constant::new(from_i64((config.word_max() + 1) << fraction)),
-            smallest: Constant::new(from_i64(config.word_min() << fraction)),
+            sign_mask: Constant::new(from_u64(u64::MAX << (fraction + config.word_bits() - 1))),
+            all_clear: Constant::new(from_u64(0)),
+            top_bit: Constant::new(from_u64(ACC as u64 - 1)),
             y_max: Constant::new(from_i64(config.word_max())),
             y_min: Constant::new(from_i64(config.word_min())),
             fraction: Constant::new(from_u64(u64::from(fraction))),
@@ -100,15 +106,15 @@ impl<const W: usize, const P: usize, const ACC: usize> Logic for WeightedSum<W, 
         if self.clear_flags.val() {
             self.saturated_q.d.next = false;
         }
+        self.sign_bits.next = unsigned_cast(self.accumulator.q.val()) & self.sign_mask.val();
         if self.finish.val() {
             self.y_q.d.next = self.accumulator.q.val().get_bits::<W>(self.fraction.val().index());
-            if self.accumulator.q.val() >= self.too_large.val() {
+            if (self.sign_bits.val() != self.all_clear.val()) & (self.sign_bits.val() != self.sign_mask.val()) {
+                self.saturated_q.d.next = true;
                 self.y_q.d.next = self.y_max.val();
-                self.saturated_q.d.next = true;
-            }
-            if self.accumulator.q.val() < self.smallest.val() {
-                self.y_q.d.next = self.y_min.val();
-                self.saturated_q.d.next = true;
+                if self.accumulator.q.val().get_bit(self.top_bit.val().index()) {
+                    self.y_q.d.next = self.y_min.val();
+                }
             }
         }
         if self.start.val() {

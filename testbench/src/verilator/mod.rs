@@ -7,13 +7,15 @@
 //!
 //! - **Cache.** One shared object per content of the sources, ports, harness, Verilator version and flags, in
 //!   `$POSICAST_CACHE`, else `$XDG_CACHE_HOME/posicast`, else `~/.cache/posicast`, else the temporary folder. It is built
-//!   in a folder of its own and renamed when complete, so that parallel builds never see half a file.
+//!   in a folder of its own and renamed when complete, so that parallel builds never see half a file. What was not used
+//!   for 30 days is removed.
 //! - **Random start.** Registers without a reset value and memories start at random, by the seed: what works only
 //!   because a simulator zeroes its memory does not work here.
 //! - **Versions.** Debian's Verilator 5.006 and later. `$VERILATOR` names another executable.
 //! - **Time.** A step sets `clk` low, applies the inputs, settles, reads the outputs, and sets `clk` high.
 //! - `$display` goes to standard error; `$finish`, `$stop` and a loop that does not settle are a [`StepError`].
 
+mod cache;
 mod dynamic;
 mod harness;
 
@@ -80,7 +82,7 @@ impl Verilated {
     /// [`Error::ToolMissing`] without Verilator, make or a compiler; [`Error::ToolFailed`] where one of them refuses the
     /// Verilog; [`Error::Ports`] where the ports are not the expected ones; [`Error::File`] for files and cache.
     pub fn build(source: &Source<'_>, seed: u64) -> Result<Self, Error> {
-        Self::build_in(&cache_folder(), source, seed)
+        Self::build_in(&cache::folder(), source, seed)
     }
 
     /// The same with a cache folder of the caller's choice.
@@ -146,31 +148,23 @@ pub fn version() -> Result<String, Error> {
     Ok(text(&output).trim().to_owned())
 }
 
-/// Where built simulations are kept.
-pub fn cache_folder() -> PathBuf {
-    let variable = |name| std::env::var_os(name).filter(|v| !v.is_empty()).map(PathBuf::from);
-    variable("POSICAST_CACHE")
-        .or_else(|| variable("XDG_CACHE_HOME").map(|folder| folder.join("posicast")))
-        .or_else(|| variable("HOME").map(|folder| folder.join(".cache").join("posicast")))
-        .unwrap_or_else(|| std::env::temp_dir().join("posicast"))
-}
-
-fn compile(cache: &Path, source: &Source<'_>) -> Result<PathBuf, Error> {
+fn compile(folder: &Path, source: &Source<'_>) -> Result<PathBuf, Error> {
     let mut contents = Vec::with_capacity(source.files.len());
     for file in source.files {
         let text = std::fs::read(file).map_err(Error::file(file, "read the Verilog"))?;
         let path = std::path::absolute(file).map_err(Error::file(file, "find"))?;
         contents.push((path, text));
     }
-    let object = cache.join(format!("verilator-{}.so", content_hash(source, &contents, &version()?)));
-    if object.is_file() {
+    let object = folder.join(format!("verilator-{}.so", content_hash(source, &contents, &version()?)));
+    if cache::holds(&object) {
         return Ok(object);
     }
-    std::fs::create_dir_all(cache).map_err(Error::file(cache, "create the cache folder"))?;
+    std::fs::create_dir_all(folder).map_err(Error::file(folder, "create the cache folder"))?;
+    cache::tidy(folder);
     let work = tempfile::Builder::new()
-        .prefix("build-")
-        .tempdir_in(cache)
-        .map_err(Error::file(cache, "create a folder to build in"))?;
+        .prefix(cache::BUILD_PREFIX)
+        .tempdir_in(folder)
+        .map_err(Error::file(folder, "create a folder to build in"))?;
 
     let write = |name: &str, text: &str| {
         let path = work.path().join(name);

@@ -136,13 +136,13 @@ fn lockstep_other_ports_are_refused() {
             &mut |_| {},
         )
     };
-    assert!(matches!(run(&mut TwoValued(other)), Err(Error::Unlike(_))));
+    assert!(matches!(run(&mut TwoValued(Box::new(other))), Err(Error::Unlike(_))));
     let mut more = Counter::new();
     more.ports.push(Port {
         name: "more".to_owned(),
         ..counter_ports()[3].clone()
     });
-    assert!(matches!(run(&mut TwoValued(more)), Err(Error::Unlike(_))));
+    assert!(matches!(run(&mut TwoValued(Box::new(more))), Err(Error::Unlike(_))));
 }
 
 #[test]

@@ -9,12 +9,12 @@
 //! | [`SampleShaper`] | the same samples without the clocks: one [`SampleShaper::push`] per sample |
 //!
 //! ```text
-//!            0    1    2    3         N+5  N+6  N+7        clocks; N taps
-//! strobe  ___/‾‾‾\_______________________________________
-//! x       ---< x >---------------------------------------
-//! busy    _______/‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾\________________   N+5 clocks
-//! valid   ______________________________/‾‾‾‾\___________
-//! y       ======== before ===============< y[n] ==========
+//! clock     0   1   2   3         N+5 N+6 N+7
+//! strobe   ‾‾‾\__________________________________
+//! x        < x>----------------------------------
+//! busy     ___/‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾\____________
+//! valid    _________________________/‾‾‾\________
+//! y        ------- as before -------< y[n] ------
 //! ```
 //!
 //! History before the first sample since a start is the start value, so a constant command gives a constant output.

@@ -1,6 +1,6 @@
 //! Icarus, Verilator and Yosys on emitted modules. A tool that is missing fails the test and says so.
 
-use super::Row;
+use crate::support::Row;
 use posicast_hdl::emit::{Header, Instance, Module, compose};
 use posicast_model::rtl::Direction;
 use std::fmt::Write as _;
@@ -104,7 +104,7 @@ pub(crate) fn replay(rows: &[Row]) -> Vec<String> {
     yosys(&rtl, "pitfalls", "flatten; opt; write_verilog -noattr ../netlist.v");
     std::fs::write(folder.path().join("bench.v"), bench(rows, &instances, &top)).unwrap();
     for row in rows {
-        std::fs::write(folder.path().join(format!("{}.hex", row.name)), hex(row, &instances)).unwrap();
+        std::fs::write(folder.path().join(format!("{}.bits", row.name)), bits(row, &instances)).unwrap();
     }
 
     let folder = folder.path();
@@ -150,25 +150,20 @@ fn widths(instance: &Instance<'_>, direction: Direction) -> u32 {
 }
 
 /// One word per vector: inputs, then outputs, most significant first.
-fn hex(row: &Row, instances: &[Instance<'_>]) -> String {
+fn bits(row: &Row, instances: &[Instance<'_>]) -> String {
     let instance = instances.iter().find(|instance| instance.name == row.name).unwrap();
     let mut text = String::new();
     for vector in &row.vectors {
-        let bits = instance
-            .module
-            .ports
-            .iter()
-            .zip(vector)
-            .fold(0u128, |word, (port, value)| {
-                assert!(
-                    port.width == 64 || *value >> port.width == 0,
-                    "{}.{}",
-                    row.name,
-                    port.name
-                );
-                word << port.width | u128::from(*value)
-            });
-        writeln!(text, "{bits:x}").unwrap();
+        for (port, value) in instance.module.ports.iter().zip(vector) {
+            assert!(
+                port.width == 64 || *value >> port.width == 0,
+                "{}.{}",
+                row.name,
+                port.name
+            );
+            write!(text, "{value:0width$b}", width = port.width as usize).unwrap();
+        }
+        text.push('\n');
     }
     text
 }
@@ -237,7 +232,7 @@ fn task(row: &Row, instance: &Instance<'_>) -> String {
     };
     format!(
         "task play_{name}; begin
-  $readmemh(\"{name}.hex\", {name}_vectors); bad = 0;
+  $readmemb(\"{name}.bits\", {name}_vectors); bad = 0;
   for (n = 0; n < {count}; n = n + 1) begin
     {{{inputs}}} = {name}_vectors[n][{high}:{output_width}]; #1 ;
     if ({{{outputs}}} !== {name}_vectors[n][{output_high}:0]) begin

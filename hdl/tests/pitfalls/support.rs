@@ -1,7 +1,5 @@
 //! What the emitter's tests share: a short way to write a kernel, its simulation over vectors, and small leaves.
 
-pub(crate) mod tools;
-
 use posicast_hdl::emit::{EmitError, EmitOptions, Header, Module, emit};
 pub(crate) use rust_hdl_core::prelude::*;
 
@@ -52,7 +50,6 @@ pub(crate) fn signed_bit_cast<const M: usize, const N: usize>(x: Signed<N>) -> S
 }
 
 /// `kernel!(Name { in a: T, .. out y: T, .. more { field: T = value, .. } update })`
-#[macro_export]
 macro_rules! kernel {
     ($name:ident { $($in:ident: $in_type:ty),* => $($out:ident: $out_type:ty),* }
      $({ $($field:ident: $type:ty = $value:expr),* })? $(@ $clk:ident)? ; $($update:tt)*) => {
@@ -76,13 +73,13 @@ macro_rules! kernel {
         impl Logic for $name {
             $($update)*
         }
-        impl $crate::pitfalls_support::Kernel for $name {
+        impl $crate::support::Kernel for $name {
             fn set(&mut self, inputs: &[u64]) {
                 let mut inputs = inputs.iter();
-                $(self.$in.next = <$in_type as $crate::pitfalls_support::FromPattern>::from_pattern(*inputs.next().unwrap());)*
+                $(self.$in.next = <$in_type as $crate::support::FromPattern>::from_pattern(*inputs.next().unwrap());)*
             }
             fn get(&self) -> Vec<u64> {
-                vec![$($crate::pitfalls_support::pattern(self.$out.val())),*]
+                vec![$($crate::support::pattern(self.$out.val())),*]
             }
             #[allow(unused_variables)]
             fn clock(&mut self, level: bool) {
@@ -220,7 +217,6 @@ impl<T: Synth> Logic for Dff<T> {
 }
 
 /// Wires clock, reset and the default of registers; the emitter knows the meaning from the name.
-#[macro_export]
 macro_rules! dff_setup {
     ($self:ident, $clk:ident, $($dff:ident),+) => {
         $($self.$dff.clock.next = $self.$clk.val();
@@ -230,7 +226,6 @@ macro_rules! dff_setup {
 }
 
 /// RustHDL turns `comment!` into a comment, but ships no macro of that name.
-#[macro_export]
 macro_rules! comment {
     ($($text:tt)*) => {};
 }

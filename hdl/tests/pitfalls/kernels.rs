@@ -3,9 +3,8 @@
 //!
 //! P1 … P11 are the classes of docs/emitter.md.
 
-mod pitfalls_support;
-
-use pitfalls_support::{Dff, Kernel, Ram16x8, Row, emit_as, local, pairs, row, signed_bit_cast, tools};
+use crate::support::{Dff, Kernel, Ram16x8, Row, emit_as, local, pairs, row, signed_bit_cast};
+use crate::tools;
 use posicast_hdl::emit::Cause;
 use rust_hdl_core::prelude::*;
 

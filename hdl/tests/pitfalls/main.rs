@@ -1,0 +1,21 @@
+//! The emitter, held to what RustHDL's own generator gets wrong, and to its own rules.
+//!
+//! | file | what it shows |
+//! |---|---|
+//! | `kernels` | every pitfall as a kernel: equal in RustHDL, Icarus, Verilator and after Yosys, or refused |
+//! | `refused` | the refusals: block, signal, remedy |
+//! | `modules` | names, files, sharing, headers, composition |
+//! | `shaper` | the shaper's Verilog against its model |
+
+#![cfg(test)]
+
+#[macro_use]
+mod support;
+
+mod kernels;
+mod modules;
+mod refused;
+mod shaper;
+#[path = "../stimulus/mod.rs"]
+mod stimulus;
+mod tools;

@@ -1,0 +1,49 @@
+//! The shaper's Verilog: lint, Yosys, and its model's answers to random stimuli in Icarus, Verilator and after Yosys.
+
+use crate::stimulus::{Anything, Random, table};
+use crate::support::Row;
+use crate::tools;
+use posicast_model::rtl::ClockedBlock;
+use posicast_model::rtl::shaper::{Inputs, Shaper, ShaperConfig};
+
+fn config(word_bits: u32, taps: usize, longest: u32) -> ShaperConfig {
+    ShaperConfig::new(word_bits, table(&mut Random(5), 16, taps, longest, 2)).unwrap()
+}
+
+#[test]
+fn crosssim_shaper_equals_its_model() {
+    let rows = [
+        ("small", config(16, 3, 20)),
+        ("middle", config(24, 40, 200)),
+        ("large", config(32, 77, 900)),
+    ];
+    let rows = rows.map(|(name, config)| {
+        let mut model = Shaper::new(&config, 7);
+        let modules = posicast_hdl::shaper::emit(&config, name);
+        assert_eq!(modules.as_ref().unwrap().last().unwrap().ports, model.ports());
+        let step = |inputs: Inputs| {
+            let raw = inputs.to_raw(&config);
+            let mut shown = [0; 8];
+            ClockedBlock::step(&mut model, &raw, &mut shown).unwrap();
+            [&raw[..], &shown[..]].concat()
+        };
+        Row {
+            name: name.to_owned(),
+            modules,
+            vectors: Anything::new(&config, 11).take(4000).map(step).collect(),
+        }
+    });
+    assert_eq!(tools::replay(&rows), Vec::<String>::new());
+}
+
+#[test]
+fn unit_shaper_comes_out_the_same_twice() {
+    let config = config(32, 9, 62);
+    let emitted = || posicast_hdl::shaper::emit(&config, "xy_stage_x").unwrap();
+    assert_eq!(emitted(), emitted());
+    assert!(
+        emitted()
+            .iter()
+            .all(|module| module.name.starts_with("xy_stage_x_") && !module.text.contains("__"))
+    );
+}

@@ -1,0 +1,77 @@
+//! Where built simulations are kept, and how old ones go.
+
+use std::fs::{self, File};
+use std::path::{Path, PathBuf};
+use std::time::{Duration, SystemTime};
+
+const DAY: Duration = Duration::from_secs(24 * 60 * 60);
+/// A simulation that was not used for so long is removed: it is built again when it is needed.
+const KEPT: Duration = DAY.saturating_mul(30);
+/// A folder in which nobody has built for so long was left by a process that was killed.
+const ABANDONED: Duration = DAY;
+
+/// Prefix of the folders in which simulations are built.
+pub(super) const BUILD_PREFIX: &str = "build-";
+
+/// The folder: `$POSICAST_CACHE`, else the user's cache folder, else the temporary one.
+pub(super) fn folder() -> PathBuf {
+    let variable = |name| std::env::var_os(name).filter(|v| !v.is_empty()).map(PathBuf::from);
+    variable("POSICAST_CACHE")
+        .or_else(|| variable("XDG_CACHE_HOME").map(|folder| folder.join("posicast")))
+        .or_else(|| variable("HOME").map(|folder| folder.join(".cache").join("posicast")))
+        .unwrap_or_else(|| std::env::temp_dir().join("posicast"))
+}
+
+/// Whether the simulation is there; if so, it counts as used now.
+pub(super) fn holds(object: &Path) -> bool {
+    if !object.is_file() {
+        return false;
+    }
+    // Where this fails, the file only counts as older than it is.
+    let _ = File::options()
+        .append(true)
+        .open(object)
+        .and_then(|file| file.set_modified(SystemTime::now()));
+    true
+}
+
+/// Removes what is old. Failures do not matter: another process may be doing the same.
+pub(super) fn tidy(folder: &Path) {
+    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
+        let name = entry.file_name();
+        let name = name.to_string_lossy();
+        let modified = entry.metadata().and_then(|data| data.modified());
+        let age = modified.ok().and_then(|time| time.elapsed().ok()).unwrap_or_default();
+        if name.starts_with("verilator-") && name.ends_with(".so") && age > KEPT {
+            let _ = fs::remove_file(entry.path());
+        } else if name.starts_with(BUILD_PREFIX) && age > ABANDONED {
+            let _ = fs::remove_dir_all(entry.path());
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn unit_only_what_is_old_and_ours_is_removed() {
+        let folder = tempfile::tempdir().unwrap();
+        let make = |name: &str, days: u64| {
+            let path = folder.path().join(name);
+            let file = File::create(&path).unwrap();
+            file.set_modified(SystemTime::now() - DAY * days as u32).unwrap();
+            path
+        };
+        let old = make("verilator-1.so", 31);
+        let used = make("verilator-2.so", 31);
+        let recent = make("verilator-3.so", 29);
+        let foreign = make("thesis.tex", 1000);
+        assert!(holds(&used) && !holds(&folder.path().join("absent.so")));
+        tidy(folder.path());
+        assert_eq!(
+            [old, used, recent, foreign].map(|path| path.exists()),
+            [false, true, true, true]
+        );
+    }
+}
