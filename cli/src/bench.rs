@@ -125,9 +125,8 @@ impl Bench {
                     let block = posicast_hdl::shaper::simulate(&s.config).map_err(Failure::because)?;
                     Ok((s.axis.clone(), block))
                 });
-                Ok(Box::new(TwoValued(Joined::new(
-                    blocks.collect::<Result<_, Failure>>()?,
-                ))))
+                let joined = Joined::new(blocks.collect::<Result<_, Failure>>()?);
+                Ok(Box::new(TwoValued(Box::new(joined))))
             }
         }
     }

@@ -210,7 +210,7 @@ impl Job<'_> {
         }
         let spinner = progress::spinner("waveforms");
         let scope = self.bench.machine.name.as_str();
-        let mut model = TwoValued(self.bench.model(self.seed));
+        let mut model = TwoValued(Box::new(self.bench.model(self.seed)));
         command.record(&mut model, &model_vcd, scope).map_err(bench::failure)?;
         let mut device = self.bench.device(self.simulator, self.files, self.seed)?;
         let trace = command
