@@ -35,7 +35,7 @@ impl Drivers {
             match statement {
                 Statement::Comment(text) => comments.push(text),
                 Statement::Assign { target, ref value } if writes.get(&target) == Some(&1) => {
-                    let is_input = matches!(scope.net(target).role, Role::Next | Role::PinIn);
+                    let is_input = scope.net(target).role.is_input_below();
                     match value.plain.filter(|_| is_input) {
                         Some(source) => {
                             drivers.direct.insert(target, source);

@@ -152,6 +152,9 @@ pub enum Cause {
         /// The only allowed source.
         expected: &'static str,
     },
+    /// Clock of a submodule from elsewhere: there is one clock (kernel rule 5).
+    #[error("the clock of a submodule must be this block's `clk`; assign `self.clk.val()` to it")]
+    ClockWiring,
     /// Latch.
     #[error("it is not assigned on every path, which makes a latch; give it a default before the first `if`")]
     Latch,

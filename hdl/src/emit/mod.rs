@@ -50,6 +50,7 @@ mod print;
 mod scope;
 mod statements;
 mod types;
+mod values;
 
 pub use compose::{Instance, compose};
 pub use error::{Cause, EmitError};

@@ -289,9 +289,9 @@ impl Composite<'_> {
             let keyword = match net.role {
                 Role::Register => "reg",
                 Role::PinOut => "wire",
-                Role::Local | Role::Next | Role::PinIn if variables.contains(&id) => "reg",
-                Role::Local => "wire",
-                Role::Next | Role::PinIn if !self.drivers.direct.contains_key(&id) => "wire",
+                Role::Output => return None,
+                role if role.is_driven() && variables.contains(&id) => "reg",
+                role if role.is_driven() && !self.drivers.direct.contains_key(&id) => "wire",
                 _ => return None,
             };
             Some((keyword, net.ty, net.name.clone()))

@@ -226,14 +226,9 @@ pub(super) fn unused(lines: &mut Lines, ranges: &[(NetId, u32, u32)], scope: &Sc
     if ranges.is_empty() {
         return;
     }
-    let bits = ranges.iter().map(|(id, low, width)| {
-        let net = scope.net(*id);
-        match width {
-            _ if *width == net.ty.width => net.name.clone(),
-            1 => format!("{}[{low}]", net.name),
-            _ => format!("{}[{}:{low}]", net.name, low + width - 1),
-        }
-    });
+    let bits = ranges
+        .iter()
+        .map(|(id, low, width)| scope.net(*id).select(*low, *width));
     lines.line("// Bits that nothing reads.");
     lines.line(&format!(
         "wire {} = &{{1'b0, {}}};",

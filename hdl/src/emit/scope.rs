@@ -4,7 +4,7 @@ use super::collect::{Kind, Node};
 use super::error::{Cause, EmitError};
 use super::leaf;
 use super::names::{self, Taken};
-use super::types::Type;
+use super::types::{BIT, Type};
 use std::collections::BTreeMap;
 
 /// Index of a net in its [`Scope`].
@@ -29,6 +29,8 @@ pub(super) enum Role {
     RegisterReset,
     /// Input of a sub-block, driven here.
     PinIn,
+    /// Clock input of a sub-block, driven here.
+    ClockPin,
     /// Output of a sub-block, read here.
     PinOut,
 }
@@ -36,7 +38,12 @@ pub(super) enum Role {
 impl Role {
     /// Assigned by the kernel?
     pub(super) fn is_driven(self) -> bool {
-        matches!(self, Self::Output | Self::Local | Self::Next | Self::PinIn)
+        self.is_input_below() || matches!(self, Self::Output | Self::Local)
+    }
+
+    /// Input of a register or of a sub-block, assigned by the kernel?
+    pub(super) fn is_input_below(self) -> bool {
+        matches!(self, Self::Next | Self::PinIn | Self::ClockPin)
     }
 
     /// In plain words, for a net that the kernel may not assign.
@@ -59,6 +66,17 @@ pub(super) struct Net {
     pub(super) name: String,
     pub(super) ty: Type,
     pub(super) role: Role,
+}
+
+impl Net {
+    /// The net, or `width` bits of it from `low` on, without regard to sign.
+    pub(super) fn select(&self, low: u32, width: u32) -> String {
+        match width {
+            _ if width == self.ty.width => self.name.clone(),
+            1 => format!("{}[{low}]", self.name),
+            _ => format!("{}[{}:{low}]", self.name, low + width - 1),
+        }
+    }
 }
 
 /// A register that the module contains.
@@ -98,8 +116,8 @@ impl Scope {
     pub(super) fn new(node: &Node) -> Result<Self, EmitError> {
         let mut scope = Self::default();
         let at = |signal: &str| {
-            let (path, signal) = (node.path.clone(), signal.to_owned());
-            move |cause| EmitError::new(&path, &signal, cause)
+            let (path, signal) = (&node.path, signal.to_owned());
+            move |cause| EmitError::new(path, &signal, cause)
         };
         scope
             .taken
@@ -160,15 +178,12 @@ impl Scope {
 
     fn add_register(&mut self, child: &Node, initial: u64) -> Result<(), Cause> {
         let name = names::flatten(&child.raw);
-        let ty = child
-            .ports()
-            .find(|port| port.raw == "q")
-            .map_or(super::types::BIT, |port| port.ty);
+        let ty = child.ports().find(|port| port.raw == "q").map_or(BIT, |port| port.ty);
         let raw = |port: &str| format!("{}${port}", child.raw);
         let now = self.add(raw("q"), name.clone(), ty, Role::Register)?;
         let next = self.add(raw("d"), format!("{name}_next"), ty, Role::Next)?;
-        let clock = self.add_unnamed(raw("clock"), String::new(), super::types::BIT, Role::RegisterClock);
-        self.add_unnamed(raw("rst"), String::new(), super::types::BIT, Role::RegisterReset);
+        let clock = self.add_unnamed(raw("clock"), String::new(), BIT, Role::RegisterClock);
+        self.add_unnamed(raw("rst"), String::new(), BIT, Role::RegisterReset);
         self.registers.push(Register {
             now,
             next,
@@ -183,10 +198,10 @@ impl Scope {
         self.taken.take(&format!("u_{name}"), &child.raw)?;
         let mut nets = Vec::new();
         for port in child.ports() {
-            let role = if port.kind == Kind::Input {
-                Role::PinIn
-            } else {
-                Role::PinOut
+            let role = match port.kind {
+                Kind::Input if port.is_clock => Role::ClockPin,
+                Kind::Input => Role::PinIn,
+                _ => Role::PinOut,
             };
             let raw = format!("{}${}", child.raw, port.raw);
             nets.push(self.add(raw, format!("{name}_{}", names::flatten(&port.raw)), port.ty, role)?);

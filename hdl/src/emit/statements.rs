@@ -121,6 +121,7 @@ impl Reader<'_> {
                 Ok(None)
             }
             Role::RegisterReset => self.wire_register(&raw, value, "rst", "rst").map(|()| None),
+            Role::ClockPin if !is_signal(value, "clk") => Err(self.error(&raw, Cause::ClockWiring)),
             role if role.is_driven() => {
                 let value =
                     expression(value, net.ty, self.scope, &self.loops).map_err(|cause| self.error(&raw, cause))?;
@@ -138,10 +139,10 @@ impl Reader<'_> {
         port: &'static str,
         expected: &'static str,
     ) -> Result<(), EmitError> {
-        match value {
-            Tree::Signal(name) if name == expected => Ok(()),
-            _ => Err(self.error(raw, Cause::RegisterWiring { port, expected })),
+        if is_signal(value, expected) {
+            return Ok(());
         }
+        Err(self.error(raw, Cause::RegisterWiring { port, expected }))
     }
 
     fn conditional(&mut self, conditional: &VerilogConditional) -> Result<Statement, EmitError> {
@@ -218,6 +219,10 @@ impl Reader<'_> {
         }
         Ok(())
     }
+}
+
+fn is_signal(tree: &Tree, name: &str) -> bool {
+    matches!(tree, Tree::Signal(found) if found == name)
 }
 
 #[cfg(test)]

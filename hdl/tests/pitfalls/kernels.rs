@@ -143,6 +143,18 @@ kernel!(SmallestValue { a: Signed<16>, b: Signed<16> => y: Bit, z: Signed<32> } 
     self.z.next = signed_bit_cast::<32, 16>(self.k.val()) - signed_bit_cast::<32, 16>(self.b.val());
 });
 
+kernel!(LongWords { a: Bits<64>, b: Signed<64> => shifted: Bits<64>, less: Bit, sum: Signed<64>, high: Signed<40>, wide: Signed<64> } {
+    top: Signal<Local, Signed<40>> = local(), k: Constant<Signed<64>> = Constant::new(signed_cast(Bits::from(0x8000_0000_0000_0001)))
+};
+#[hdl_gen] fn update(&mut self) {
+    self.shifted.next = (self.a.val() << self.a.val().get_bits::<7>(3)) ^ (self.a.val() >> 33);
+    self.less.next = (self.b.val() < signed_cast(self.a.val())) ^ (self.b.val() >= self.k.val());
+    self.sum.next = self.b.val() + self.k.val() - (-1).into();
+    self.top.next = self.b.val().get_bits::<40>(24);
+    self.high.next = -self.top.val();
+    self.wide.next = signed_bit_cast::<64, 40>(self.top.val());
+});
+
 // P11 and state.
 #[derive(Copy, Clone, PartialEq, Debug, LogicState)]
 enum Phase {
@@ -260,6 +272,7 @@ fn simulated() -> Vec<Row> {
         of::<LoopSelect>("loop_select", 8, 8),
         of::<ConstantsOnly>("constants_only", 8, 8),
         of::<SmallestValue>("smallest_value", 16, 16),
+        of::<LongWords>("long_words", 64, 64),
         row::<ReadsNextLocal>("reads_next_local", clocked(1)),
         row::<OwnStateOnly>("own_state_only", clocked(1)),
         row::<States>("states", clocked(1)),

@@ -1,6 +1,6 @@
 //! What the emitter refuses: each kernel is legal RustHDL, and each error names block, signal and remedy.
 
-use crate::support::{Dff, emit_as, emit_block, local, signed_bit_cast};
+use crate::support::{Dff, Ram16x8, emit_as, emit_block, local, signed_bit_cast};
 use posicast_hdl::emit::{Cause, EmitOptions, Type, emit};
 use rust_hdl_core::prelude::*;
 
@@ -49,6 +49,13 @@ kernel!(DrivesInput { a: Bits<8> => y: Bits<8> };
 kernel!(ConstantTest { a: Bits<8> => y: Bits<8> } { k: Constant<Bit> = Constant::new(true) };
     #[hdl_gen] fn update(&mut self) { self.y.next = 1.into(); if self.k.val() { self.y.next = 2.into(); } });
 
+kernel!(WriteAfterReadInElse { a: Bits<8> => y: Bits<8> } { t: Signal<Local, Bits<8>> = local() };
+#[hdl_gen] fn update(&mut self) {
+    self.t.next = 0.into();
+    if self.a.val().any() { self.y.next = 0.into(); } else { self.y.next = self.t.val(); }
+    self.t.next = self.a.val();
+});
+
 #[test]
 fn unit_order_and_completeness() {
     refused::<LatchLocal>("t", Cause::Latch);
@@ -56,6 +63,7 @@ fn unit_order_and_completeness() {
     refused::<ReadFirst>("t", Cause::ReadBeforeAssigned("t".into()));
     refused::<WriteAgain>("t", Cause::AssignedAfterRead);
     refused::<WriteAfterReadInBranch>("t", Cause::AssignedAfterRead);
+    refused::<WriteAfterReadInElse>("t", Cause::AssignedAfterRead);
     refused::<NoDriver>("z", Cause::NeverAssigned);
     refused::<NoReader>("t", Cause::NeverRead);
     refused::<DrivesInput>("a", Cause::NotDrivable("an input"));
@@ -74,8 +82,20 @@ kernel!(ClockOfOtherName { a: Bits<8> => y: Bits<8> } @ clock;
 kernel!(WritesQ { rst: Bit => y: Bits<8> } { r: Dff<Bits<8>> = Dff::new(0.into()) } @ clk;
     #[hdl_gen] fn update(&mut self) { dff_setup!(self, clk, r); self.r.q.next = 0.into(); self.y.next = self.r.q.val(); });
 
+kernel!(GatedClock { rst: Bit, a: Bits<4> => y: Bits<8> } { ram: Ram16x8 = Ram16x8::default(), other: Signal<Local, Clock> = local() } @ clk;
+#[hdl_gen] fn update(&mut self) {
+    self.other.next = self.clk.val();
+    self.ram.clk.next = self.other.val();
+    self.ram.write_enable.next = self.rst.val();
+    self.ram.write_address.next = self.a.val();
+    self.ram.write_data.next = 0.into();
+    self.ram.read_address.next = self.a.val();
+    self.y.next = self.ram.read_data.val();
+});
+
 #[test]
 fn unit_registers() {
+    refused::<GatedClock>("ram.clk", Cause::ClockWiring);
     refused::<NoClock>(
         "r",
         Cause::RegisterWiring {
@@ -155,8 +175,15 @@ kernel!(LoopHidesSignal { i: Bits<8> => y: Bits<8> };
 kernel!(LongLoop { a: Bits<16> => y: Bits<16> };
     #[hdl_gen] fn update(&mut self) { self.y.next = self.a.val(); for i in 0..2000usize { if self.a.val() == i.to_bits() { self.y.next = 0.into(); } } });
 
+kernel!(ProductUnderCast { a: Signed<16>, b: Signed<16> => y: Bits<32> };
+    #[hdl_gen] fn update(&mut self) { self.y.next = unsigned_cast(self.a.val() * self.b.val()); });
+kernel!(ConstantArithmeticIndex { a: Bits<16> => y: Bit } { k: Constant<Bits<4>> = Constant::new(15.into()) };
+    #[hdl_gen] fn update(&mut self) { self.y.next = self.a.val().get_bits::<1>((self.k.val() + 1).index()).any(); });
+
 #[test]
 fn unit_expressions() {
+    refused::<ProductUnderCast>("y", Cause::NeedsLocal("a * b".into()));
+    unsupported::<ConstantArithmeticIndex>("a slice at an offset that is a signal");
     let index = |text: &str| Cause::ArrayIndex(text.to_owned());
     refused::<ConstGenericValue>("y", Cause::UnknownSignal("OFFSET".into()));
     refused::<SignalIndex>("y", index("v[sel$val()$index()]"));

@@ -176,6 +176,20 @@ fn corners(width: u32) -> &'static [u64] {
             0xffff_fff0,
             0xffff_ffff,
         ],
+        64 => &[
+            0,
+            1,
+            0x3ff,
+            0x7fff_ffff,
+            0x1_0000_0000,
+            0x7fff_ffff_ffff_ffff,
+            0x8000_0000_0000_0000,
+            0x8000_0000_0000_0001,
+            0xffff_ffff_0000_0000,
+            0x0123_4567_89ab_cdef,
+            0xffff_ffff_ffff_fffe,
+            u64::MAX,
+        ],
         _ => panic!("no corner values for {width} bits"),
     }
 }
@@ -231,7 +245,7 @@ macro_rules! comment {
 }
 
 /// 16 x 8 bit block RAM.
-#[derive(LogicBlock, Clone, Debug)]
+#[derive(LogicBlock, Clone, Debug, Default)]
 pub(crate) struct Ram16x8 {
     pub(crate) clk: Signal<In, Clock>,
     pub(crate) write_enable: Signal<In, Bit>,
@@ -240,20 +254,6 @@ pub(crate) struct Ram16x8 {
     pub(crate) read_address: Signal<In, Bits<4>>,
     pub(crate) read_data: Signal<Out, Bits<8>>,
     _memory: [u64; 16],
-}
-
-impl Default for Ram16x8 {
-    fn default() -> Self {
-        Self {
-            clk: Default::default(),
-            write_enable: Default::default(),
-            write_address: Default::default(),
-            write_data: Default::default(),
-            read_address: Default::default(),
-            read_data: Default::default(),
-            _memory: [0; 16],
-        }
-    }
 }
 
 impl Logic for Ram16x8 {
