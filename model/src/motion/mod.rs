@@ -3,7 +3,7 @@
 //! - [`Profile`]: a point-to-point move in up to seven segments, as fast as the limits allow;
 //! - [`default_move`]: the 5 mm move that `run` and `simulate` use where no command file is given;
 //! - [`resample`]: a command given as points in time, on the sample grid;
-//! - [`command_words`]: positions to Q`command_fraction` counts, half away from zero; what does not fit is an error.
+//! - [`command_words`]: positions to Q`command_fraction` counts, half up; what does not fit is an error.
 //!
 //! Positions are in the unit of the machine file (metres, or radians), times in seconds.
 

@@ -2,12 +2,15 @@
 
 use thiserror::Error;
 
-/// Widths of a command word, in the order in which a message recommends them.
-const WIDTHS: [u32; 3] = [16, 24, 32];
+use crate::rtl::shaper::WORD_BITS;
+use crate::rtl::word::{WordError, WordFormat};
 
 /// Why positions are no command words.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum CommandError {
+    /// A format that no command has.
+    #[error(transparent)]
+    Format(#[from] WordError),
     /// A position that is NaN or infinite.
     #[error("sample {sample}: position {position} is no finite number")]
     NotFinite {
@@ -40,7 +43,7 @@ pub enum CommandError {
 }
 
 /// Converts positions (in units of the machine file) to words of `command_bits` bits with `command_fraction` fraction bits,
-/// rounding half away from zero.
+/// rounded half up as the hardware rounds.
 ///
 /// # Errors
 /// [`CommandError`] names the first sample that is no number or does not fit, and the next size that is enough.
@@ -50,41 +53,34 @@ pub fn command_words(
     command_bits: u32,
     command_fraction: u32,
 ) -> Result<Vec<i32>, CommandError> {
-    let scale = counts_per_unit * 2f64.powi(command_fraction.min(64) as i32);
-    let largest = largest_word(command_bits);
-    positions
-        .iter()
-        .enumerate()
-        .map(|(sample, &position)| {
-            let word = (position * scale).round();
-            if !word.is_finite() {
-                Err(CommandError::NotFinite { sample, position })
-            } else if (-largest - 1.0..=largest).contains(&word) {
-                Ok(word as i32)
-            } else {
-                Err(CommandError::DoesNotFit {
-                    sample,
-                    position,
-                    counts: position * counts_per_unit,
-                    command_bits,
-                    command_fraction,
-                    largest_counts: largest / 2f64.powi(command_fraction.min(64) as i32),
-                    remedy: remedy(word, command_bits),
-                })
-            }
+    let format = WordFormat::new(command_bits, command_fraction)?;
+    let word = |(sample, &position): (usize, &f64)| {
+        let counts = position * counts_per_unit;
+        if !counts.is_finite() {
+            return Err(CommandError::NotFinite { sample, position });
+        }
+        // A word has at most 32 bits.
+        let word = format.to_word(counts).map(|word| word as i32);
+        word.map_err(|_| CommandError::DoesNotFit {
+            sample,
+            position,
+            counts,
+            command_bits,
+            command_fraction,
+            largest_counts: format.largest_counts(),
+            remedy: remedy(counts, command_bits, command_fraction),
         })
-        .collect()
-}
-
-/// Largest word of a width, which is at most 32.
-fn largest_word(command_bits: u32) -> f64 {
-    2f64.powi(command_bits.clamp(1, 32) as i32 - 1) - 1.0
+    };
+    positions.iter().enumerate().map(word).collect()
 }
 
 /// What makes a word fit.
-fn remedy(word: f64, command_bits: u32) -> String {
-    let enough = |width: &&u32| **width > command_bits && word.abs() <= largest_word(**width);
-    match WIDTHS.iter().find(enough) {
+fn remedy(counts: f64, command_bits: u32, command_fraction: u32) -> String {
+    let enough = |width: &&u32| {
+        let format = WordFormat::new(**width, command_fraction);
+        **width > command_bits && format.is_ok_and(|format| format.to_word(counts).is_ok())
+    };
+    match WORD_BITS.iter().find(enough) {
         Some(width) => format!("set command_bits = {width}, lower command_fraction, or move less far"),
         None => "lower command_fraction, or move less far".to_owned(),
     }
@@ -95,10 +91,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn unit_counts_with_fraction_rounded_half_away_from_zero() {
+    fn unit_counts_with_fraction_rounded_half_up() {
         // 1000 counts per unit, 8 fraction bits: 256000 per unit.
         let words = command_words(&[0.0, 0.001, -0.001, 2.5 / 256_000.0, -2.5 / 256_000.0], 1000.0, 32, 8).unwrap();
-        assert_eq!(words, [0, 256, -256, 3, -3]);
+        assert_eq!(words, [0, 256, -256, 3, -2]);
     }
 
     #[test]

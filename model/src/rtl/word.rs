@@ -86,6 +86,11 @@ impl WordFormat {
         I64F64::from_bits(i128::from(word) << (I64F64::FRAC_NBITS - self.fraction)).to_num()
     }
 
+    /// The largest number that a word holds, in counts.
+    pub fn largest_counts(self) -> f64 {
+        self.to_counts(self.ends().1)
+    }
+
     fn ends(self) -> (i64, i64) {
         let half = 1 << (self.bits - 1);
         (-half, half - 1)
