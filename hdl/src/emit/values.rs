@@ -1,364 +1,221 @@
-//! Expressions: RustHDL's untyped tree to Verilog text whose width and sign are those of the Rust types.
+//! Typed values on their way to text: widths and signs change here, and only here.
 //!
-//! Every value carries its [`Type`]. Operands of an operator have equal types, as in Rust, so no operand is ever extended by
-//! its context and no carry survives that Rust drops. A change of width is written out, and only of a net, a part of a net or
-//! a constant; of a larger expression it needs a Local (kernel rule 3).
-//!
-//! Two constructs of the tree do not say their width: a literal and `signed_bit_cast`. They take it from the other operand
-//! or the target; where there is none, they are refused.
+//! A part of a net stays a part of a net until it is written, so that a slice of a slice of a cast needs no temporary. What
+//! is text already cannot change its width any more: Verilog has no part select of an expression.
 
-use super::collect::literal_value;
 use super::error::Cause;
-use super::ir::Expression;
-use super::paths::{self, Loops};
-use super::scope::{Role, Scope};
-use super::types::{BIT, Type};
-use super::values::{Value, Values};
-use rust_hdl_core::ast::{VerilogExpression as Tree, VerilogLiteral, VerilogOp, VerilogOpUnary};
+use super::ir::{Expression, Reads};
+use super::scope::{NetId, Role, Scope};
+use super::types::{BIT, Type, mask};
 
-/// Writes `tree` as an expression of type `ty`.
-pub(super) fn expression(tree: &Tree, ty: Type, scope: &Scope, loops: &Loops) -> Result<Expression, Cause> {
-    let mut writer = Writer::new(scope, loops);
-    let value = writer.value(tree, Some(ty))?;
-    writer.values.expect(&value, ty)?;
-    Ok(writer.values.finish(&value))
+/// A typed value.
+#[derive(Debug, Clone)]
+pub(super) enum Value {
+    /// Bits `low ..` of a net, seen as `ty`.
+    Part { net: NetId, low: u32, ty: Type },
+    /// A bit pattern.
+    Literal { pattern: u64, ty: Type },
+    /// Text that needs parentheses as an operand unless `closed`.
+    Text { text: String, ty: Type, closed: bool },
 }
 
-/// Writes `tree`, whose type nothing else determines, and tells its type.
-pub(super) fn free_expression(tree: &Tree, scope: &Scope, loops: &Loops) -> Result<(Expression, Type), Cause> {
-    let mut writer = Writer::new(scope, loops);
-    let value = writer.value(tree, None)?;
-    Ok((writer.values.finish(&value), value.ty()))
-}
-
-struct Writer<'a> {
-    values: Values<'a>,
-    loops: &'a Loops,
-}
-
-impl<'a> Writer<'a> {
-    fn new(scope: &'a Scope, loops: &'a Loops) -> Self {
-        let values = Values::new(scope);
-        Self { values, loops }
+impl Value {
+    /// Text with an operator outside all parentheses.
+    pub(super) fn open(text: String, ty: Type) -> Self {
+        Self::Text {
+            text,
+            ty,
+            closed: false,
+        }
     }
 
-    /// `want` is the type that the surroundings need, where they say.
-    fn value(&mut self, tree: &Tree, want: Option<Type>) -> Result<Value, Cause> {
-        if let Some(value) = self.number(tree) {
-            let ty = want.ok_or(Cause::WidthUnknown("a literal"))?;
-            let pattern = ty.pattern(value)?;
+    /// Text that is an operand as it is.
+    pub(super) fn closed(text: String, ty: Type) -> Self {
+        Self::Text { text, ty, closed: true }
+    }
+
+    pub(super) fn ty(&self) -> Type {
+        match self {
+            Self::Part { ty, .. } | Self::Literal { ty, .. } | Self::Text { ty, .. } => *ty,
+        }
+    }
+}
+
+/// Turns values into text, and notes what they read.
+pub(super) struct Values<'a> {
+    pub(super) scope: &'a Scope,
+    reads: Reads,
+}
+
+impl<'a> Values<'a> {
+    pub(super) fn new(scope: &'a Scope) -> Self {
+        let reads = Reads::new();
+        Self { scope, reads }
+    }
+
+    pub(super) fn finish(mut self, value: &Value) -> Expression {
+        let plain = match value {
+            Value::Part { net, low: 0, ty } if self.scope.net(*net).ty == *ty => Some(*net),
+            _ => None,
+        };
+        let text = self.text(value);
+        let reads = self.reads;
+        Expression { text, reads, plain }
+    }
+
+    // Changes of width and sign.
+
+    /// The same bits under the other sign.
+    pub(super) fn reinterpret(&self, value: Value, ty: Type) -> Value {
+        match value {
+            Value::Part { net, low, .. } => Value::Part { net, low, ty },
+            Value::Literal { pattern, .. } => Value::Literal { pattern, ty },
+            Value::Text { text, .. } if ty.signed => Value::closed(format!("$signed({text})"), ty),
+            Value::Text { text, .. } => Value::closed(format!("$unsigned({text})"), ty),
+        }
+    }
+
+    /// Truncates, or extends by the sign of the value's type.
+    pub(super) fn resize(&mut self, value: Value, ty: Type) -> Result<Value, Cause> {
+        let from = value.ty();
+        if ty.width == from.width {
+            return Ok(value);
+        }
+        if ty.width < from.width {
+            return self.part(value, 0, ty);
+        }
+        let extra = ty.width - from.width;
+        if let Some(pattern) = self.constant(&value) {
+            let negative = from.signed && pattern >> (from.width - 1) & 1 == 1;
+            let extension = if negative { mask(from.width, extra) } else { 0 };
+            let pattern = pattern | extension;
             return Ok(Value::Literal { pattern, ty });
         }
-        match tree {
-            Tree::Paren(inner) => self.value(inner, want),
-            Tree::Signal(name) => self.signal(name),
-            Tree::Literal(literal) => literal_bit(literal),
-            Tree::Cast(inner, bits) => self.cast(inner, *bits),
-            Tree::Signed(inner) => self.signed(inner, want),
-            Tree::Unsigned(inner) => self.unsigned(inner, want),
-            Tree::Unary(op, inner) => self.unary(op, inner, want),
-            Tree::Binary(a, op, b) => match op {
-                VerilogOp::Shl | VerilogOp::Shr => self.shift(a, op, b, want),
-                VerilogOp::Mul => self.product(a, b, want),
-                _ => self.binary(a, op, b, want),
-            },
-            Tree::Index(inner, index) => self.bit(inner, index),
-            Tree::Slice(inner, width, offset) => self.slice(inner, *width, offset),
-            Tree::IndexReplace(inner, index, bit) => self.replace_bit(inner, index, bit),
-        }
-    }
-
-    fn signal(&mut self, name: &str) -> Result<Value, Cause> {
-        let raw = paths::resolve(name, self.loops)?;
-        let found = self.values.scope.find(&raw);
-        let id = found.ok_or_else(|| Cause::UnknownSignal(name.to_owned()))?;
-        let net = self.values.scope.net(id);
-        match net.role {
-            Role::RegisterClock | Role::RegisterReset => Err(Cause::ReadsSubmoduleInput(net.raw.replace('$', "."))),
-            role if role.is_input_below() => Err(Cause::ReadsSubmoduleInput(net.raw.replace('$', "."))),
-            _ => Ok(Value::Part {
-                net: id,
-                low: 0,
-                ty: net.ty,
-            }),
-        }
-    }
-
-    // Numbers that have no width of their own.
-
-    /// The value of arithmetic on integer literals and loop variables, which is Rust's arithmetic on integers.
-    fn number(&self, tree: &Tree) -> Option<i128> {
-        match tree {
-            Tree::Paren(inner) => self.number(inner),
-            Tree::Literal(literal) => {
-                let (width, value) = literal_value(literal)?;
-                (width != 1).then_some(value)
-            }
-            Tree::Signal(name) => paths::loop_value(name, self.loops),
-            Tree::Unary(VerilogOpUnary::Neg, inner) => self.number(inner)?.checked_neg(),
-            Tree::Binary(a, op, b) => {
-                let (a, b) = (self.number(a)?, self.number(b)?);
-                match op {
-                    VerilogOp::Add => a.checked_add(b),
-                    VerilogOp::Sub => a.checked_sub(b),
-                    VerilogOp::Mul => a.checked_mul(b),
-                    _ => None,
-                }
-            }
-            _ => None,
-        }
-    }
-
-    /// The value of an index that is a number or an unsigned constant. Not of arithmetic on constants: the tree does not
-    /// tell whether it wraps at the constant's width.
-    fn constant_index(&self, tree: &Tree) -> Option<i128> {
-        match tree {
-            _ if self.number(tree).is_some() => self.number(tree),
-            Tree::Paren(inner) => self.constant_index(inner),
-            Tree::Signal(name) => {
-                let scope = self.values.scope;
-                let net = scope.net(scope.find(&paths::resolve(name, self.loops).ok()?)?);
-                match net.role {
-                    Role::Constant(pattern) if !net.ty.signed => Some(pattern.into()),
-                    _ => None,
-                }
-            }
-            _ => None,
-        }
-    }
-
-    /// Is its width what the surroundings say?
-    fn takes_width(&self, tree: &Tree) -> bool {
-        match tree {
-            _ if self.number(tree).is_some() => true,
-            Tree::Signed(_) => true,
-            Tree::Paren(inner) | Tree::Unary(VerilogOpUnary::Not | VerilogOpUnary::Neg, inner) => {
-                self.takes_width(inner)
-            }
-            Tree::Binary(a, op, b) => {
-                let keeps_type = !compares(op) && !matches!(op, VerilogOp::Shl | VerilogOp::Shr | VerilogOp::Mul);
-                keeps_type && self.takes_width(a) && self.takes_width(b)
-            }
-            _ => false,
-        }
-    }
-
-    // Casts.
-
-    /// `bit_cast::<M, N>(x)` and `bits::<M>(5)`.
-    fn cast(&mut self, inner: &Tree, bits: usize) -> Result<Value, Cause> {
-        let width = u32::try_from(bits).ok().filter(|width| (1..=64).contains(width));
-        let ty = Type::bits(width.ok_or(Cause::Width(bits))?);
-        if self.takes_width(inner) {
-            return self.value(inner, Some(ty));
-        }
-        let value = self.value(inner, None)?;
-        self.values.expect(&value, Type::bits(value.ty().width))?;
-        self.values.resize(value, ty)
-    }
-
-    /// `signed_cast(bits)`, same width; or `signed_bit_cast::<M, N>(signed)`, whose M the tree does not tell.
-    fn signed(&mut self, inner: &Tree, want: Option<Type>) -> Result<Value, Cause> {
-        let value = self.value(inner, None)?;
-        let from = value.ty();
-        if !from.signed {
-            return Ok(self.values.reinterpret(value, Type { signed: true, ..from }));
-        }
-        let width = want.ok_or(Cause::WidthUnknown("`signed_bit_cast`"))?.width;
-        self.values.resize(value, Type { width, signed: true })
-    }
-
-    /// `unsigned_cast(signed)`, same width. What it casts is computed at its own width, so that a product is refused.
-    fn unsigned(&mut self, inner: &Tree, want: Option<Type>) -> Result<Value, Cause> {
-        let want = want.filter(|_| self.takes_width(inner));
-        let value = self.value(inner, want.map(|ty| Type { signed: true, ..ty }))?;
-        let ty = Type::bits(value.ty().width);
-        Ok(self.values.reinterpret(value, ty))
-    }
-
-    // Bits and slices.
-
-    fn bit(&mut self, inner: &Tree, index: &Tree) -> Result<Value, Cause> {
-        let value = self.value(inner, None)?;
-        if let Some(index) = self.constant_index(index) {
-            let low = self.values.check_range(&value, index, 1)?;
-            return self.values.part(value, low, BIT);
-        }
-        let (index, index_bits) = self.index(index)?;
-        let width = value.ty().width;
-        if 1u64.checked_shl(index_bits) != Some(width.into()) {
-            return Err(Cause::IndexRange { index_bits, width });
-        }
-        self.values.bit(&value, &index)
-    }
-
-    fn slice(&mut self, inner: &Tree, width: usize, offset: &Tree) -> Result<Value, Cause> {
-        let value = self.value(inner, None)?;
-        let Some(low) = self.constant_index(offset) else {
-            self.index(offset)?;
-            let found = "a slice at an offset that is a signal".to_owned();
-            let remedy = "shift by the signal into a Local, then slice that at 0";
-            return Err(Cause::Unsupported { found, remedy });
+        let Value::Part { net, low, .. } = value else {
+            return Err(self.needs_local(&value));
         };
-        let low = self.values.check_range(&value, low, width)?;
-        let signed = value.ty().signed;
-        self.values.part(
-            value,
-            low,
-            Type {
-                width: width as u32,
-                signed,
-            },
-        )
-    }
-
-    fn replace_bit(&mut self, inner: &Tree, index: &Tree, bit: &Tree) -> Result<Value, Cause> {
-        let value = self.value(inner, None)?;
-        let (ty, bit) = (value.ty(), self.value(bit, Some(BIT))?);
-        self.values.expect(&bit, BIT)?;
-        let Some(index) = self.constant_index(index) else {
-            self.index(index)?;
-            let found = "`replace_bit` at an index that is a signal".to_owned();
-            return Err(Cause::Unsupported {
-                found,
-                remedy: "compare with each index in a loop",
-            });
-        };
-        let low = self.values.check_range(&value, index, 1)?;
-        let mut pieces = Vec::new();
-        if low + 1 < ty.width {
-            let above = Type::bits(ty.width - low - 1);
-            pieces.push(self.values.part(value.clone(), low + 1, above)?);
-        }
-        pieces.push(bit);
-        if low > 0 {
-            pieces.push(self.values.part(value, 0, Type::bits(low))?);
-        }
-        let pieces: Vec<_> = pieces.iter().map(|piece| self.values.text(piece)).collect();
-        let whole = Value::closed(format!("{{{}}}", pieces.join(", ")), Type::bits(ty.width));
-        Ok(if ty.signed {
-            self.values.reinterpret(whole, ty)
+        let bits = self.select(net, low, from.width);
+        let text = if from.signed {
+            let sign = self.select(net, low + from.width - 1, 1);
+            format!("$signed({{{{{extra}{{{sign}}}}}, {bits}}})")
         } else {
-            whole
+            format!("{{{extra}'d0, {bits}}}")
+        };
+        Ok(Value::closed(text, ty))
+    }
+
+    /// Bits `low ..` of `value` as `ty`; they must exist.
+    pub(super) fn part(&mut self, value: Value, low: u32, ty: Type) -> Result<Value, Cause> {
+        if let Some(pattern) = self.constant(&value) {
+            let pattern = pattern >> low & ty.mask();
+            return Ok(Value::Literal { pattern, ty });
+        }
+        match value {
+            Value::Part { net, low: base, .. } => {
+                let low = base + low;
+                Ok(Value::Part { net, low, ty })
+            }
+            _ => Err(self.needs_local(&value)),
+        }
+    }
+
+    /// The bit of `value` that the signal `index` selects. Verilog-2001 selects from nets only, not from constants.
+    pub(super) fn bit(&mut self, value: &Value, index: &str) -> Result<Value, Cause> {
+        match *value {
+            Value::Part { net, low: 0, ty } if ty.width == self.scope.net(net).ty.width && !self.is_constant(net) => {
+                let name = self.select(net, 0, ty.width);
+                Ok(Value::closed(format!("{name}[{index}]"), BIT))
+            }
+            _ => Err(self.needs_local(value)),
+        }
+    }
+
+    /// Bits `low ..`, `width` of them, exist in `value`?
+    pub(super) fn check_range(&mut self, value: &Value, low: i128, width: usize) -> Result<u32, Cause> {
+        let available = value.ty().width;
+        let high = low.saturating_add(width as i128) - 1;
+        if low < 0 || width == 0 || high >= i128::from(available) {
+            let found = self.text(value);
+            return Err(Cause::OutOfRange {
+                found,
+                low,
+                high,
+                width: available,
+            });
+        }
+        Ok(low as u32)
+    }
+
+    fn is_constant(&self, id: NetId) -> bool {
+        matches!(self.scope.net(id).role, Role::Constant(_))
+    }
+
+    /// The pattern of a literal or of (a part of) a constant.
+    fn constant(&self, value: &Value) -> Option<u64> {
+        match value {
+            Value::Literal { pattern, .. } => Some(*pattern),
+            Value::Part { net, low, ty } => match self.scope.net(*net).role {
+                Role::Constant(pattern) => Some(pattern >> low & ty.mask()),
+                _ => None,
+            },
+            Value::Text { .. } => None,
+        }
+    }
+
+    // Text.
+
+    /// Text of `value`; its bits count as read.
+    pub(super) fn text(&mut self, value: &Value) -> String {
+        match value {
+            Value::Text { text, .. } => text.clone(),
+            Value::Literal { pattern, ty } => ty.literal(*pattern),
+            Value::Part { net: id, low, ty } => {
+                let net = self.scope.net(*id);
+                if let (Role::Constant(pattern), true) = (net.role, *ty != net.ty) {
+                    return ty.literal(pattern >> low & ty.mask());
+                }
+                let bits = self.select(*id, *low, ty.width);
+                // A part select is unsigned, whatever the net is.
+                match (ty.signed, ty.width == net.ty.width && net.ty.signed) {
+                    (true, false) => format!("$signed({bits})"),
+                    (false, true) => format!("$unsigned({bits})"),
+                    _ => bits,
+                }
+            }
+        }
+    }
+
+    /// Text of `value`, in parentheses where an operator beside it could take it apart.
+    pub(super) fn operand(&mut self, value: &Value) -> String {
+        let text = self.text(value);
+        match value {
+            Value::Text { closed: false, .. } => format!("({text})"),
+            Value::Literal { .. } if text.starts_with('-') => format!("({text})"),
+            _ => text,
+        }
+    }
+
+    /// A net, or bits of it, without regard to sign; they count as read.
+    fn select(&mut self, id: NetId, low: u32, width: u32) -> String {
+        self.reads.push((id, mask(low, width)));
+        self.scope.net(id).select(low, width)
+    }
+
+    // Errors that quote the value.
+
+    pub(super) fn expect(&mut self, value: &Value, expected: Type) -> Result<(), Cause> {
+        if value.ty() == expected {
+            return Ok(());
+        }
+        let found = self.text(value);
+        Err(Cause::TypeMismatch {
+            found,
+            found_type: value.ty(),
+            expected,
         })
     }
 
-    /// A signal as index or shift amount: its text as an operand, and its width.
-    fn index(&mut self, tree: &Tree) -> Result<(String, u32), Cause> {
-        let value = self.value(tree, None)?;
-        let width = value.ty().width;
-        self.values.expect(&value, Type::bits(width))?;
-        Ok((self.values.operand(&value), width))
+    pub(super) fn needs_local(&mut self, value: &Value) -> Cause {
+        Cause::NeedsLocal(self.text(value))
     }
-
-    // Operators.
-
-    fn unary(&mut self, op: &VerilogOpUnary, inner: &Tree, want: Option<Type>) -> Result<Value, Cause> {
-        let keeps_type = matches!(op, VerilogOpUnary::Not | VerilogOpUnary::Neg);
-        let value = self.value(inner, want.filter(|_| keeps_type))?;
-        let ty = value.ty();
-        let operand = self.values.operand(&value);
-        Ok(match op {
-            VerilogOpUnary::Not if ty == BIT => Value::closed(format!("!{operand}"), BIT),
-            VerilogOpUnary::Not => Value::closed(format!("~{operand}"), ty),
-            VerilogOpUnary::Neg => Value::open(format!("-{operand}"), ty),
-            VerilogOpUnary::All => Value::closed(format!("(&{operand})"), BIT),
-            VerilogOpUnary::Any => Value::closed(format!("(|{operand})"), BIT),
-            VerilogOpUnary::Xor => Value::closed(format!("(^{operand})"), BIT),
-        })
-    }
-
-    fn binary(&mut self, a: &Tree, op: &VerilogOp, b: &Tree, want: Option<Type>) -> Result<Value, Cause> {
-        let context = want.filter(|_| !compares(op));
-        let (left, right) = if self.takes_width(a) && !self.takes_width(b) {
-            let right = self.value(b, context)?;
-            (self.value(a, Some(right.ty()))?, right)
-        } else {
-            let left = self.value(a, context)?;
-            let ty = left.ty();
-            (left, self.value(b, Some(ty))?)
-        };
-        self.values.expect(&right, left.ty())?;
-        let ty = if compares(op) { BIT } else { left.ty() };
-        Ok(self.operator(&left, op, &right, ty))
-    }
-
-    /// Verilog computes a product at the width of its target, which must therefore be the full product, and its operands
-    /// must be nets, which the target's width extends by their own sign.
-    fn product(&mut self, a: &Tree, b: &Tree, want: Option<Type>) -> Result<Value, Cause> {
-        let (left, right) = (self.value(a, None)?, self.value(b, None)?);
-        for operand in [&left, &right] {
-            if matches!(operand, Value::Text { .. }) {
-                return Err(self.values.needs_local(operand));
-            }
-        }
-        let from = left.ty();
-        self.values.expect(&right, from)?;
-        let ty = Type {
-            width: 2 * from.width,
-            ..from
-        };
-        let value = self.operator(&left, &VerilogOp::Mul, &right, ty);
-        if want == Some(ty) {
-            Ok(value)
-        } else {
-            Err(self.values.needs_local(&value))
-        }
-    }
-
-    fn shift(&mut self, a: &Tree, op: &VerilogOp, b: &Tree, want: Option<Type>) -> Result<Value, Cause> {
-        let value = self.value(a, want)?;
-        let ty = value.ty();
-        if ty.signed || self.takes_width(a) {
-            let found = "a shift of a signed value or of a literal".to_owned();
-            return Err(Cause::Unsupported {
-                found,
-                remedy: "slice a Local, or use a `Constant`",
-            });
-        }
-        let amount = match self.constant_index(b) {
-            Some(amount) => self.values.check_range(&value, amount, 1)?.to_string(),
-            None => self.index(b)?.0,
-        };
-        let operand = self.values.operand(&value);
-        Ok(Value::open(format!("{operand} {} {amount}", symbol(op)), ty))
-    }
-
-    fn operator(&mut self, left: &Value, op: &VerilogOp, right: &Value, ty: Type) -> Value {
-        let (left, right) = (self.values.operand(left), self.values.operand(right));
-        Value::open(format!("{left} {} {right}", symbol(op)), ty)
-    }
-}
-
-fn compares(op: &VerilogOp) -> bool {
-    use VerilogOp::{Eq, Ge, Gt, Le, Lt, Ne};
-    matches!(op, Eq | Lt | Le | Ne | Ge | Gt)
-}
-
-fn symbol(op: &VerilogOp) -> &'static str {
-    match op {
-        VerilogOp::Add => "+",
-        VerilogOp::Sub => "-",
-        VerilogOp::Mul => "*",
-        VerilogOp::LogicalAnd => "&&",
-        VerilogOp::LogicalOr => "||",
-        VerilogOp::BitXor => "^",
-        VerilogOp::BitAnd => "&",
-        VerilogOp::BitOr => "|",
-        VerilogOp::Shl => "<<",
-        VerilogOp::Shr => ">>",
-        VerilogOp::Eq => "==",
-        VerilogOp::Lt => "<",
-        VerilogOp::Le => "<=",
-        VerilogOp::Ne => "!=",
-        VerilogOp::Ge => ">=",
-        VerilogOp::Gt => ">",
-    }
-}
-
-/// `true` or `false`: RustHDL gives them one bit, and integers the width of some Rust integer, which means nothing.
-fn literal_bit(literal: &VerilogLiteral) -> Result<Value, Cause> {
-    let (_, value) = literal_value(literal).ok_or(Cause::WidthUnknown("a literal"))?;
-    let pattern = BIT.pattern(value)?;
-    Ok(Value::Literal { pattern, ty: BIT })
 }
