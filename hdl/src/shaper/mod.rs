@@ -2,7 +2,7 @@
 //!
 //! The datasheet is `docs/shaper.md`, the reference `posicast_model::rtl::shaper`.
 //!
-//! One kernel serves all sizes. A size is a type in RustHDL, so [`sized_shaper!`] lists the types and picks the one that
+//! One kernel serves all sizes. A size is a type in RustHDL, so `sized_shaper!` lists the types and picks the one that
 //! a [`ShaperConfig`] names.
 
 mod history;
