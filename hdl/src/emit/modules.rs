@@ -271,17 +271,15 @@ impl Composite<'_> {
     }
 
     fn constants(&self, lines: &mut Lines, bits_read: &BTreeMap<NetId, u64>) {
-        for (id, net) in self.scope.iter() {
-            if let (Role::Constant(pattern), true) = (net.role, bits_read.contains_key(&id)) {
-                let declaration = format!("localparam {}", net.ty.declaration());
-                lines.line(&format!(
-                    "{} {} = {};",
-                    declaration.trim_end(),
-                    net.name,
-                    net.ty.literal(pattern)
-                ));
+        let read = self.scope.iter().filter(|(id, _)| bits_read.contains_key(id));
+        let declared = read.filter_map(|(_, net)| match net.role {
+            Role::Constant(pattern) => {
+                let definition = format!("{} = {}", net.name, net.ty.literal(pattern));
+                Some(("localparam", net.ty, definition))
             }
-        }
+            _ => None,
+        });
+        print::declarations(lines, &declared.collect::<Vec<_>>());
     }
 
     fn nets(&self, lines: &mut Lines, variables: &BTreeSet<NetId>) {

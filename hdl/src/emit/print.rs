@@ -136,14 +136,12 @@ pub(super) fn port_list(ports: &[(&str, Type, String)]) -> String {
 
 /// Declarations `keyword type name;`, names in one column.
 pub(super) fn declarations(lines: &mut Lines, declarations: &[(&str, Type, String)]) {
-    let width = declarations
-        .iter()
-        .map(|(_, ty, _)| ty.declaration().len())
-        .max()
-        .unwrap_or(0);
+    let widths = declarations.iter().map(|(_, ty, _)| ty.declaration().len());
+    let width = widths.max().unwrap_or(0);
     for (keyword, ty, name) in declarations {
         let declaration = ty.declaration();
-        lines.line(&format!("{keyword:4} {declaration:width$} {name};"));
+        let space = if width == 0 { "" } else { " " };
+        lines.line(&format!("{keyword:4} {declaration:width$}{space}{name};"));
     }
 }
 

@@ -75,6 +75,12 @@ kernel!(Unread { a: Bits<8>, spare: Bit => y: Bits<3> } { r: Dff<Bits<8>> = Dff:
     self.y.next = self.a.val().get_bits::<3>(2);
 });
 
+kernel!(LongComment { a: Bits<8> => y: Bits<8> };
+#[hdl_gen] fn update(&mut self) {
+    comment!("The first of the counters, whose value is inverted before it is added to the other, which is inverted too");
+    self.y.next = !self.a.val();
+});
+
 fn options(top: &str, prefix: &str) -> EmitOptions {
     let parameter = |name: &str, value: &str, meaning: &str| Parameter {
         name: name.into(),
@@ -164,6 +170,15 @@ module xy_stage_pair ("
             .iter()
             .all(|module| module.text.ends_with("endmodule\n\n`default_nettype wire\n"))
     );
+}
+
+/// RustHDL wraps the text of long comments, which its own generator then breaks on.
+#[test]
+fn unit_long_comments_stay_one_line() {
+    let text = text_of::<LongComment>();
+    let comment =
+        "// The first of the counters, whose value is inverted before it is added to the other, which is inverted too";
+    assert!(text.lines().any(|line| line.trim() == comment), "{text}");
 }
 
 #[test]
