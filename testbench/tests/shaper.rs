@@ -139,7 +139,6 @@ fn million_random_clocks(config: ShaperConfig, seed: u64) {
     let mut random = Random::new(&bench.layout, seed);
     let (report, coverage) = bench.run(&mut bench.verilated(seed), &mut random, 1_000_000);
     assert_match(&report, &format!("seed {seed}"));
-    println!("{coverage}");
     assert_eq!(coverage.missing(), Vec::<&str>::new(), "{coverage}");
     assert!(
         report.samples > 3_000 && coverage.swaps > 20 && coverage.saturated > 20,
@@ -301,7 +300,6 @@ fn caught(from: &str, to: &str) {
     assert_eq!(first.expected.len(), first.actual.len());
     assert_ne!(first.expected, first.actual);
     let text = first.to_string();
-    println!("{to}:\n{text}");
     assert!(
         text.contains(&first.time.to_string()) && text.contains("(device)"),
         "{text}"

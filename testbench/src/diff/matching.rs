@@ -21,8 +21,6 @@ pub(super) struct Matched {
     pub(super) pairs: Vec<Pair>,
     /// Names of text and events, which have no value to compare.
     pub(super) not_compared: Vec<String>,
-    /// What was stripped: from the first file's names.
-    top_a: String,
 }
 
 pub(super) struct FoundClock {
@@ -100,7 +98,6 @@ impl Matched {
         Ok(Self {
             pairs: of_a.chain(of_b).collect(),
             not_compared: Vec::new(),
-            top_a,
         })
     }
 
@@ -111,15 +108,20 @@ impl Matched {
         self.pairs.retain(|p| !other(p));
     }
 
-    /// Whether `name` means this pair: its full name, or that without the top scopes, or without all scopes.
-    fn means(&self, pair: &Pair, name: &str) -> bool {
-        let short = pair.name.strip_prefix(&self.top_a).unwrap_or(&pair.name);
-        pair.name == name || short == name || last_part(&pair.name) == name
+    /// The pairs that `name` means: that of this full name, else all whose name ends with it.
+    fn meant<'a>(&'a self, name: &'a str) -> impl Fn(&Pair) -> bool + 'a {
+        let full = self.pairs.iter().any(|pair| pair.name == name);
+        move |pair| match pair.name.strip_suffix(name) {
+            Some("") => true,
+            Some(scopes) => !full && scopes.ends_with('.'),
+            None => false,
+        }
     }
 
     pub(super) fn clock(&self, name: Option<&str>, fits: impl Fn(&Pair) -> bool) -> Result<FoundClock, Error> {
-        let candidates = self.pairs.iter().filter(|pair| match name {
-            Some(name) => self.means(pair, name),
+        let meant = name.map(|name| self.meant(name));
+        let candidates = self.pairs.iter().filter(|pair| match &meant {
+            Some(meant) => meant(pair),
             None => fits(pair) && ["clk", "clock"].contains(&last_part(&pair.name).to_ascii_lowercase().as_str()),
         });
         let candidates: Vec<&Pair> = candidates.collect();
@@ -167,9 +169,10 @@ impl Matched {
         let mut tolerances: Vec<Option<f64>> = self.pairs.iter().map(for_all).collect();
         for (signal, lsb) in wanted {
             let Some(signal) = signal else { continue };
+            let meant = self.meant(signal);
             let mut found = false;
             for (tolerance, pair) in tolerances.iter_mut().zip(&self.pairs) {
-                if !self.means(pair, signal) {
+                if !meant(pair) {
                     continue;
                 }
                 found = true;

@@ -39,7 +39,7 @@ use crate::reader::{Kind, Reader};
 /// What to compare, and how strictly.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Options {
-    /// Name of the clock in the first file: full, or without its scopes where that is unique.
+    /// Name of the clock in the first file: full, or its end where that is unique.
     pub clock: Option<String>,
     /// `(A, B)`: scope or signal `A` of the first file is `B` of the second.
     pub maps: Vec<(String, String)>,

@@ -28,7 +28,8 @@ pub(crate) use self::values::Value;
 use self::values::Values;
 use crate::Error;
 
-type Source = Parser<Guard<BufReader<File>>>;
+/// The guard lies below the buffer, where it costs nothing per byte.
+type Source = Parser<BufReader<Guard<File>>>;
 
 /// A VCD that is being read.
 pub(crate) struct Reader {
@@ -54,10 +55,10 @@ impl Reader {
             let folder = io::Error::from(io::ErrorKind::IsADirectory);
             return Err(Error::file(path, "read")(folder));
         }
-        let guard = Guard::new(BufReader::with_capacity(1 << 16, file));
+        let buffered = BufReader::with_capacity(1 << 16, Guard::new(file));
         let mut reader = Self {
             path: path.to_owned(),
-            source: Parser::new(guard),
+            source: Parser::new(buffered),
             names: Vec::new(),
             slots: HashMap::new(),
             values: Values::default(),
@@ -182,7 +183,7 @@ impl Reader {
 
     /// The next command, or `None` where the file ends as it should.
     fn command(&mut self) -> Result<Option<Command>, Error> {
-        self.source.reader().refill();
+        self.source.reader().get_mut().refill();
         self.source.next().transpose().map_err(|cause| self.damaged(&cause))
     }
 
@@ -197,7 +198,7 @@ impl Reader {
     fn truncated(&mut self, inside: &str) -> Error {
         Error::Vcd {
             path: self.path.clone(),
-            place: format!("byte {}", self.source.reader().bytes()),
+            place: format!("byte {}", self.source.reader().get_ref().bytes()),
             problem: format!(
                 "the file ends {inside}: it was cut off, or its writer is still running; write it again \
                  (a complete file ends with a line break)"

@@ -96,6 +96,17 @@ fn unit_the_first_difference_and_the_count_are_reported() {
 }
 
 #[test]
+fn unit_unknown_bits_equal_only_themselves() {
+    let with = |digit: char| clocked("t", &format!("#0 0c b1{digit} y #5 1c"));
+    for a in ['0', '1', 'x', 'z'] {
+        for b in ['0', '1', 'x', 'z'] {
+            let result = Two::new(&with(a), &with(b)).compare(&Options::default()).unwrap();
+            assert_eq!(result.result == Verdict::Equal, a == b, "{a} {b}");
+        }
+    }
+}
+
+#[test]
 fn unit_missing_edges_are_a_difference_of_the_clock() {
     let a = clocked("t", "#0 0c b1 y #5 1c #10 0c #15 1c #20 0c #25 1c");
     let b = clocked("t", "#0 0c b1 y #5 1c #10 0c");
@@ -197,6 +208,8 @@ fn unit_widths_extend_with_zeros_or_with_a_tolerance_by_sign() {
     assert_eq!(verdict(&signed, &Options::default()), Verdict::Different);
     assert_eq!(verdict(&unsigned, &options(&[], &["y=0"])), Verdict::Different);
     assert_eq!(verdict(&signed, &options(&[], &["0"])), Verdict::Equal);
+    let far_bit = wide(&format!("1{}11111111", "0".repeat(61)));
+    assert_eq!(verdict(&far_bit, &Options::default()), Verdict::Different);
     let shown = Two::new(&narrow, &signed).compare(&Options::default()).unwrap();
     assert_eq!(
         shown.differences[0].a,
@@ -220,6 +233,7 @@ fn unit_clock_options() {
     };
     assert_eq!(with("t.clock").unwrap().samples, 1);
     assert_eq!(with("clk").unwrap().samples, 1);
+    assert!(with("lk").is_err());
     assert!(with("y").unwrap_err().to_string().contains("one bit"));
     assert!(with("nothing").unwrap_err().to_string().contains("no such signal"));
 }

@@ -64,17 +64,15 @@ fn lockstep_catches_one_wrong_bit_and_shows_the_clocks_around_it() {
     assert_eq!(first.actual, "00000000000000000000001000000010");
     let text = first.to_string();
     let expected = "\
-first mismatch in clock 10: `count` is 00000000000000000000000111111110, the model says 11111111111111111111111111111110
-clock             4   5   6   7   8   9    10    11    12    13    14   15   16
-rst               0   0   0   0   0   0     0     0     0     0     0    0    0
-strobe            0   0   1   0   0   1     0     0     1     0     0    1    0
-a__step           1   2   3  -3  -2  -1     0     1     2     3    -3   -2   -1
-count (model)     0   0   0   3   3   3     2     2     2     4     4    4    2
-count (device)    0   0   0   3   3   3  *514  *514  *514  *516  *516  516  514
-moving            0   0   1   0   0   1     0     0     1     0     0    1    0";
-    println!("{text}");
-    assert_eq!(text.lines().count(), expected.lines().count());
-    assert!(text.contains("count (device)") && text.contains('*'), "{text}");
+first mismatch in clock 10: `count` is 00000000000000000000001000000010, the model says 00000000000000000000000000000010
+clock           4  5  6   7   8   9    10    11    12    13    14    15     16
+rst             0  0  0   0   0   0     0     0     0     0     0     0      0
+strobe          0  0  1   0   0   1     0     0     1     0     0     1      0
+a__step         1  2  3  -3  -2  -1     0     1     2     3    -3    -2     -1
+count (model)   0  0  0   3   3   3     2     2     2     4     4     4      2
+count (device)  0  0  0   3   3   3  *514  *514  *514  *516  *516  *516  *1026
+moving          0  0  1   0   0   1     0     0     1     0     0     1      0";
+    assert_eq!(text, expected);
     assert!(report.blocks[0].mismatches > 500);
 }
 
@@ -116,6 +114,7 @@ fn lockstep_an_undriven_output_is_a_mismatch_under_icarus() {
         (first.time, first.signal.as_str(), first.actual.as_str()),
         (0, "moving", "x")
     );
+    assert_eq!(report.mismatches(), 20, "also where the model's value is 0");
 }
 
 #[test]
