@@ -29,13 +29,13 @@ module xy_stage_y_tap_banks (
     output wire [1:0]         bank,
     output wire               refused
 );
-    localparam [1:0] BANK_ROM = 2'd0;
-    localparam [1:0] BANK_1 = 2'd1;
-    localparam [1:0] BANK_2 = 2'd2;
-    localparam [6:0] UPPER_HALF = 7'd64;
-    localparam [6:0] ONE_TAP = 7'd1;
-    localparam [6:0] MACHINE_COUNT = 7'd5;
-    localparam [6:0] FORBIDDEN_DELAY = 7'd127;
+    localparam [1:0]         BANK_ROM = 2'd0;
+    localparam [1:0]         BANK_1 = 2'd1;
+    localparam [1:0]         BANK_2 = 2'd2;
+    localparam [6:0]         UPPER_HALF = 7'd64;
+    localparam [6:0]         ONE_TAP = 7'd1;
+    localparam [6:0]         MACHINE_COUNT = 7'd5;
+    localparam [6:0]         FORBIDDEN_DELAY = 7'd127;
     localparam signed [23:0] UNITY = 24'sd65536;
 
     reg  [6:0]         taps_so_far;
