@@ -10,7 +10,7 @@ use std::path::PathBuf;
 #[command(after_help = "\
 Examples:
   posicast diff model.vcd rtl.vcd                        exact, at the rising edges of the only clock
-  posicast diff rtl.vcd float.vcd --common --tolerance x_y=1.5
+  posicast diff rtl.vcd float.vcd --tolerance x_y=1.5
   posicast diff a.vcd b.vcd --map top.dut=tb.u_dut --clock clk
 
 Exit status: 0 equal, 1 different, 2 nothing in common or unreadable.")]
@@ -28,9 +28,9 @@ pub(crate) struct Args {
     /// Largest difference that counts as equal, in LSB, of one signal or of all (repeatable)
     #[arg(long, value_name = "[SIGNAL=]LSB")]
     tolerance: Vec<String>,
-    /// Compare only the signals that both files have; without it a missing signal is a difference
+    /// A signal that only one file has is a difference; without it such signals are only listed
     #[arg(long)]
-    common: bool,
+    require_all: bool,
     /// Print one JSON document on standard output
     #[arg(long)]
     json: bool,
@@ -39,7 +39,7 @@ pub(crate) struct Args {
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let mut options = Options {
         clock: args.clock.clone(),
-        common_only: args.common,
+        require_all: args.require_all,
         ..Options::default()
     };
     for map in &args.map {

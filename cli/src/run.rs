@@ -221,11 +221,11 @@ impl Job<'_> {
             .record_float(&float, &trace, &float_vcd, scope)
             .map_err(bench::failure)?;
 
-        let exact = Options::default();
-        let mut within = Options {
-            common_only: true,
+        let exact = Options {
+            require_all: true,
             ..Options::default()
         };
+        let mut within = Options::default();
         let mut differences = Vec::new();
         let names: Vec<String> = self.bench.shapers.iter().map(|s| format!("{}_y", s.axis)).collect();
         for (name, axis) in names.iter().zip(axes) {
@@ -263,5 +263,5 @@ impl Job<'_> {
 
 /// Version of the Verilator in use, where it is installed.
 pub(crate) fn verilator_version() -> Option<String> {
-    verilator::version().ok()
+    verilator::version().ok().map(str::to_owned)
 }

@@ -1,5 +1,7 @@
 //! Bad input: exit status 2, nothing on standard output, a message that names place and remedy, nothing written.
 
+#![cfg(test)] // lets clippy see that this is test code
+
 use crate::support::{example, one_axis, posicast, scratch};
 use predicates::prelude::*;
 

@@ -1,5 +1,7 @@
 //! `run`, `generate` and `verify`: the Verilog, its simulation, and what happens when it is broken.
 
+#![cfg(test)] // lets clippy see that this is test code
+
 use crate::support::{example, json, posicast};
 use std::path::{Path, PathBuf};
 

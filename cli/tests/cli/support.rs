@@ -1,20 +1,22 @@
 //! What the tests of the command line share.
 
+#![cfg(test)] // lets clippy see that this is test code
+
 use assert_cmd::Command;
 use std::path::PathBuf;
 
 /// The program, in a folder of its own.
-pub fn posicast() -> Command {
+pub(crate) fn posicast() -> Command {
     Command::new(env!("CARGO_BIN_EXE_posicast"))
 }
 
 /// A machine file of the examples.
-pub fn example(name: &str) -> PathBuf {
+pub(crate) fn example(name: &str) -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../examples").join(name)
 }
 
 /// A scratch folder with `machine.toml` in it.
-pub fn scratch(machine: &str) -> (tempfile::TempDir, PathBuf) {
+pub(crate) fn scratch(machine: &str) -> (tempfile::TempDir, PathBuf) {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("machine.toml");
     std::fs::write(&file, machine).unwrap();
@@ -22,7 +24,7 @@ pub fn scratch(machine: &str) -> (tempfile::TempDir, PathBuf) {
 }
 
 /// A one-axis machine with this shaper and this mode.
-pub fn one_axis(shaper: &str, mode: &str) -> String {
+pub(crate) fn one_axis(shaper: &str, mode: &str) -> String {
     format!(
         "name = \"one\"\n[clock]\nfrequency_hz = 50_000_000\nsample_hz = 10_000\n\
          [[axis]]\nname = \"x\"\ncounts_per_unit = 1_000_000\n[axis.shaper]\n{shaper}\n[[axis.mode]]\n{mode}\n"
@@ -30,6 +32,6 @@ pub fn one_axis(shaper: &str, mode: &str) -> String {
 }
 
 /// The JSON document on standard output.
-pub fn json(output: &[u8]) -> serde_json::Value {
+pub(crate) fn json(output: &[u8]) -> serde_json::Value {
     serde_json::from_slice(output).unwrap()
 }

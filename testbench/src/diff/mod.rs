@@ -10,8 +10,8 @@
 //! # Rules
 //! - **Names.** Full names first. If nothing has the same full name, the scopes that all signals of a file share are
 //!   stripped, as few as give the most pairs. [`Options::maps`] come before both.
-//! - **Partners.** A signal without a partner is a *difference*: a comparison that silently leaves signals out is
-//!   dangerous. With [`Options::common_only`] it is listed only.
+//! - **Partners.** A signal without a partner is listed, never silently left out; with [`Options::require_all`] it is a
+//!   difference.
 //! - **Clock.** With a clock, values are those just before its rising edge (0 to 1), so that registers of both sides
 //!   compare the same whether their file shows changes at the edge or after it. Edges are paired by their number, not by
 //!   their time; that the times differ is a note, that the numbers differ is a difference of the clock.
@@ -45,8 +45,8 @@ pub struct Options {
     pub maps: Vec<(String, String)>,
     /// Tolerances in LSB: of one signal of the first file, or of all. The signal's own comes first.
     pub tolerances: Vec<(Option<String>, f64)>,
-    /// Compare what both files have and only list the rest.
-    pub common_only: bool,
+    /// A signal that only one file has is a difference, instead of being listed.
+    pub require_all: bool,
 }
 
 impl Options {
@@ -116,7 +116,7 @@ pub fn compare(a: &Path, b: &Path, options: &Options, progress: &mut dyn FnMut(u
         comparison.incomparable("the files have no signal in common; say with --map A=B which belong together");
         return Ok(comparison);
     }
-    let wanted = |pair: &Pair| !options.common_only || (pair.a.is_some() && pair.b.is_some());
+    let wanted = |pair: &Pair| options.require_all || (pair.a.is_some() && pair.b.is_some());
     let pairs = matched.pairs.into_iter().zip(tolerances);
     let mut engine = Engine::new(a, b, pairs.filter(|(pair, _)| wanted(pair)));
     match clock.pair {

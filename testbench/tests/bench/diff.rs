@@ -120,12 +120,16 @@ fn unit_missing_edges_are_a_difference_of_the_clock() {
 }
 
 #[test]
-fn unit_signals_without_partner_differ_unless_left_out_on_demand() {
+fn unit_signals_without_partner_are_listed_or_differ_on_demand() {
     let a = clocked("t", "#0 0c b1 y #5 1c");
     let b = a
         .replace("$upscope", "$var wire 2 z z $end $upscope")
         .replace("b1 y", "b1 y b10 z");
-    let result = Two::new(&a, &b).compare(&Options::default()).unwrap();
+    let all = Options {
+        require_all: true,
+        ..Options::default()
+    };
+    let result = Two::new(&a, &b).compare(&all).unwrap();
     assert_eq!((result.result, result.signals), (Verdict::Different, 2));
     let alone = &result.differences[0];
     assert_eq!(
@@ -133,11 +137,7 @@ fn unit_signals_without_partner_differ_unless_left_out_on_demand() {
         ("t.z", &Shown::Missing, &Shown::Bits("10".to_owned()))
     );
     assert_eq!(result.only_in_b, ["t.z"]);
-    let common = Options {
-        common_only: true,
-        ..Options::default()
-    };
-    let result = Two::new(&a, &b).compare(&common).unwrap();
+    let result = Two::new(&a, &b).compare(&Options::default()).unwrap();
     assert_eq!((result.result, result.only_in_b.len()), (Verdict::Equal, 1));
 }
 

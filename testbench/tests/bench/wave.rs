@@ -96,7 +96,6 @@ fn unit_the_merged_view_holds_all_parts_and_their_difference() {
     );
     let options = Options {
         maps: vec![("stage".to_owned(), "rtl".to_owned())],
-        common_only: true,
         clock: Some("stage.clk".to_owned()),
         ..Options::default()
     };
