@@ -2,7 +2,8 @@
 
 use super::{Layout, Stimuli};
 
-/// A reset, then one strobe every `clocks_per_sample` clocks; `start` with the first. After the last word it is repeated.
+/// A reset, then one strobe every `clocks_per_sample` clocks; `start` with the first. Each word stands until the next, the
+/// last one for ever.
 #[derive(Debug, Clone)]
 pub struct Motion<'a> {
     layout: Layout,
@@ -46,15 +47,13 @@ impl Stimuli for Motion<'_> {
             inputs[self.layout.rst] = 1;
             return;
         };
-        if !moving.is_multiple_of(self.clocks_per_sample) {
-            return;
-        }
-        inputs[self.layout.strobe] = 1;
+        let strobe = moving.is_multiple_of(self.clocks_per_sample);
+        inputs[self.layout.strobe] = u64::from(strobe);
         let sample = usize::try_from(moving / self.clocks_per_sample).unwrap_or(usize::MAX);
         for (axis, words) in self.layout.axes.iter().zip(self.words) {
             let word = words.get(sample).or_else(|| words.last());
             inputs[axis.x] = word.copied().unwrap_or(0) as u64;
-            inputs[axis.start] = u64::from(sample == 0);
+            inputs[axis.start] = u64::from(strobe && sample == 0);
         }
     }
 }

@@ -48,6 +48,8 @@ struct Open {
     signals: Vec<(String, u32)>,
     /// Id in the merged file, by slot.
     ids: Vec<Option<IdCode>>,
+    /// How often each slot was given a value.
+    values: Vec<u64>,
     next_fs: Option<u128>,
 }
 
@@ -70,6 +72,7 @@ impl Open {
         Ok(Self {
             scope: part.scope.to_owned(),
             ids: vec![None; reader.slot_count()],
+            values: vec![0; reader.slot_count()],
             signals,
             reader,
             next_fs: None,
@@ -118,15 +121,18 @@ pub fn merge(path: &Path, parts: &[Part<'_>], differences: &[Difference<'_>]) ->
     for part in &mut parts {
         part.advance()?;
     }
+    let mut end = 0;
     while let Some(time_fs) = parts.iter().filter_map(|p| p.next_fs).min() {
         let time = u64::try_from(time_fs / u128::from(unit_fs));
         let time = time.map_err(|_| Error::Option(format!("{time_fs} fs do not fit the merged file's timescale")))?;
         output.write(|vcd| vcd.timestamp(time))?;
+        end = time;
         for part in &mut parts {
             if part.next_fs == Some(time_fs) {
                 let mut changed = Vec::new();
                 part.reader.commit(|slot| changed.push(slot));
                 for slot in changed {
+                    part.values[slot as usize] += 1;
                     write_value(&mut output, part.ids[slot as usize], part.reader.now(slot))?;
                 }
                 part.advance()?;
@@ -144,7 +150,7 @@ pub fn merge(path: &Path, parts: &[Part<'_>], differences: &[Difference<'_>]) ->
         }
     }
     output.finish()?;
-    write_views(path, &parts, differences)
+    write_views(path, &parts, differences, end)
 }
 
 fn number(value: Value<'_>) -> Option<f64> {
@@ -239,17 +245,24 @@ fn write_value(output: &mut Output, id: Option<IdCode>, value: Value<'_>) -> Res
     })
 }
 
-/// GTKWave's formats: right-aligned binary, signed decimal, and that as a step curve.
+/// GTKWave's formats: right-aligned binary, signed decimal, that as a step curve, and a row more for the curve above.
 const GTKWAVE_BIT: &str = "@28";
 const GTKWAVE_SIGNED: &str = "@420";
 const GTKWAVE_CURVE: &str = "@8420";
+const GTKWAVE_ROOM: &str = "@20000\n-\n@20000\n-\n";
+/// Vectors from this width on are numbers that one looks at as a curve.
+const CURVE_BITS: u32 = 16;
+/// Width of GTKWave's waves, in units of the 200 pixels that its zoom counts in, so that all of the time is in view.
+const GTKWAVE_WIDTH: f64 = 4.6;
 
-fn write_views(path: &Path, parts: &[Open], differences: &[Difference<'_>]) -> Result<(), Error> {
+/// The views show what moves: a signal that never changes is found in the viewer's tree.
+fn write_views(path: &Path, parts: &[Open], differences: &[Difference<'_>], end: u64) -> Result<(), Error> {
     let file = path
         .file_name()
         .map(|name| name.to_string_lossy().into_owned())
         .unwrap_or_default();
-    let mut gtkwave = format!("[dumpfile] \"{file}\"\n");
+    let zoom = (GTKWAVE_WIDTH / end.max(1) as f64).log2();
+    let mut gtkwave = format!("[dumpfile] \"{file}\"\n[size] 1400 900\n*{zoom:.6} -1\n");
     let mut surfer = format!("load_file {file}\n");
     let mut heading = |gtkwave: &mut String, scope: &str| {
         gtkwave.push_str(&format!("@200\n-{scope}\n"));
@@ -257,11 +270,19 @@ fn write_views(path: &Path, parts: &[Open], differences: &[Difference<'_>]) -> R
     };
     for part in parts {
         heading(&mut gtkwave, &part.scope);
-        for (name, slot) in &part.signals {
+        let moves = |slot: &u32| part.values[*slot as usize] > 1;
+        for (name, slot) in part.signals.iter().filter(|(_, slot)| moves(slot)) {
             let line = match part.reader.kind(*slot) {
                 Kind::Bits(1) => format!("{GTKWAVE_BIT}\n{}.{name}\n", part.scope),
+                Kind::Bits(width) if width >= CURVE_BITS => {
+                    format!(
+                        "{GTKWAVE_CURVE}\n{}.{name}[{}:0]\n{GTKWAVE_ROOM}",
+                        part.scope,
+                        width - 1
+                    )
+                }
                 Kind::Bits(width) => format!("{GTKWAVE_SIGNED}\n{}.{name}[{}:0]\n", part.scope, width - 1),
-                Kind::Real | Kind::Other => format!("{GTKWAVE_CURVE}\n{}.{name}\n", part.scope),
+                Kind::Real | Kind::Other => format!("{GTKWAVE_CURVE}\n{}.{name}\n{GTKWAVE_ROOM}", part.scope),
             };
             gtkwave.push_str(&line);
         }
@@ -270,7 +291,10 @@ fn write_views(path: &Path, parts: &[Open], differences: &[Difference<'_>]) -> R
         heading(&mut gtkwave, DIFFERENCE);
     }
     for difference in differences {
-        gtkwave.push_str(&format!("{GTKWAVE_CURVE}\n{DIFFERENCE}.{}\n", difference.name));
+        gtkwave.push_str(&format!(
+            "{GTKWAVE_CURVE}\n{DIFFERENCE}.{}\n{GTKWAVE_ROOM}",
+            difference.name
+        ));
     }
     surfer.push_str("zoom_fit\n");
     output::write_text(&path.with_extension("gtkw"), &gtkwave)?;
