@@ -1,7 +1,7 @@
 //! The stimuli that a machine's lock step goes through: every directed case, a real move, then random to the end.
 //!
 //! ```text
-//! | directed case 1 | … | directed case n | real move, strobes one pass apart and more | random, seeded …        |
+//! | directed case 1 | … | corner case n   | real move, strobes one pass apart and more | random, seeded …        |
 //! ```
 //!
 //! One run, so that each phase begins in whatever state the one before has left: every directed case and the move begin
@@ -9,7 +9,7 @@
 
 use std::collections::VecDeque;
 
-use crate::stimuli::{Directed, Layout, Motion, Random, Stimuli, cases};
+use crate::stimuli::{Directed, Layout, Motion, Random, Stimuli, cases, corners};
 
 /// Clocks between the strobes of the move beyond a pass: idle clocks, a handful.
 const IDLE_CLOCKS: u64 = 5;
@@ -31,7 +31,9 @@ impl<'a> Campaign<'a> {
     /// does not crowd out the random stimuli.
     pub fn new(layout: &Layout, pass_clocks: u32, words: &'a [Vec<i64>], cycles: u64, seed: u64) -> Self {
         let mut phases = VecDeque::new();
-        for (_, script) in cases() {
+        // A corner belongs to one axis's sizes; on the others it is one more script.
+        let corner_cases = layout.axes.iter().flat_map(corners);
+        for (_, script) in cases().into_iter().chain(corner_cases) {
             let directed = Directed::new(layout, script);
             let clocks = directed.clocks(pass_clocks);
             phases.push_back(Phase {

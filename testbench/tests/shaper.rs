@@ -11,7 +11,7 @@ use posicast_model::taps::{Tap, TapTable};
 use posicast_testbench::icarus::Icarus;
 use posicast_testbench::lockstep::report::{Report, Verdict};
 use posicast_testbench::lockstep::{self, Device, Instance, Joined, Options, TwoValued};
-use posicast_testbench::stimuli::{Coverage, Directed, Layout, Motion, Random, Stimuli, cases};
+use posicast_testbench::stimuli::{Coverage, Directed, Layout, Motion, Random, Stimuli, cases, corners};
 use posicast_testbench::verilator::{Source, Verilated};
 use tempfile::TempDir;
 
@@ -170,7 +170,7 @@ fn lockstep_a_million_random_clocks_with_the_longest_ring() {
 fn lockstep_every_directed_case() {
     for config in [standard(), config(16, negative(15), 0, 0)] {
         let bench = Bench::new(config);
-        for (name, script) in cases() {
+        for (name, script) in cases().into_iter().chain(corners(&bench.layout.axes[0])) {
             let mut directed = Directed::new(&bench.layout, script);
             let clocks = directed.clocks(pass_clocks(bench.config.most_taps()));
             let (report, _) = bench.run(&mut bench.verilated(5), &mut directed, clocks);
@@ -322,4 +322,37 @@ fn lockstep_catches_a_broken_address_bit() {
 #[test]
 fn lockstep_catches_a_history_that_ages_a_sample_late() {
     caught("delay >= age", "delay > age");
+}
+
+/// Faults that ten million random clocks did not show, each with the corner that shows it.
+#[test]
+fn crosssim_corners_catch_what_random_stimuli_miss() {
+    for (corner, from, to) in [
+        ("rounding", "HALF = 56'sd32768", "HALF = 56'sd32769"),
+        ("rounding", "HALF = 56'sd32768", "HALF = 56'sd32767"),
+        ("longest_delay", "FULL_AGE = 7'd127", "FULL_AGE = 7'd126"),
+        (
+            "largest_products",
+            "{6{multiplier_product[49]}}",
+            "{6{multiplier_product[48]}}",
+        ),
+        ("sums_beside_one", "sum_2 == UNITY", "sum_2[18:0] == UNITY[18:0]"),
+        ("sums_beside_one", "sum_1 == UNITY", "sum_1[22:0] == UNITY[22:0]"),
+        ("reset_empties_both_banks", "taps_2 <= 7'd0;", ""),
+        (
+            "start_and_strobe_across_a_pass",
+            "(done & !start) & !strobe",
+            "done & !strobe",
+        ),
+    ] {
+        let bench = Bench::broken(standard(), from, to);
+        let (_, script) = corners(&bench.layout.axes[0])
+            .into_iter()
+            .find(|(name, _)| *name == corner)
+            .unwrap();
+        let mut directed = Directed::new(&bench.layout, script);
+        let clocks = directed.clocks(pass_clocks(bench.config.most_taps()));
+        let (report, _) = bench.run(&mut bench.icarus(), &mut directed, clocks);
+        assert_eq!(report.result, Verdict::Mismatch, "{corner} does not find `{to}`");
+    }
 }

@@ -9,7 +9,9 @@ pub enum Action {
     Reset(u32),
     /// `strobe` for one clock with `x` = so many 256ths of full scale; 256 is the largest word, −256 the smallest.
     Strobe(i32),
-    /// The same together with `start`.
+    /// `strobe` for one clock with this very word.
+    StrobeExact(i64),
+    /// The same as [`Action::Strobe`] together with `start`.
     Start(i32),
     /// `start` without `strobe`.
     StartAlone,
@@ -19,6 +21,8 @@ pub enum Action {
     WaitIdle,
     /// Writes a tap: bank, index, coefficient in 256ths of one, delay. Negative delays count from the largest, −1.
     Tap(u64, u64, i32, i64),
+    /// Writes a tap with this very coefficient: bank, index, coefficient, delay as before.
+    TapExact(u64, u64, i32, i64),
     /// Asks for a bank.
     Swap(u64),
     /// `swap` and `strobe` in one clock, with that `x`.
@@ -240,7 +244,11 @@ impl Stimuli for Directed {
         self.spent += 1;
         match action {
             Action::Reset(_) => inputs[self.layout.rst] = 1,
-            Action::Strobe(_) | Action::Start(_) | Action::SwapAndStrobe(..) | Action::ClearAndStrobe(_) => {
+            Action::Strobe(_)
+            | Action::StrobeExact(_)
+            | Action::Start(_)
+            | Action::SwapAndStrobe(..)
+            | Action::ClearAndStrobe(_) => {
                 inputs[self.layout.strobe] = 1;
             }
             _ => {}
@@ -260,6 +268,7 @@ fn drive(axis: &Axis, action: Action, inputs: &mut [u64]) {
     let word = |x: i32| if x == -256 { word(x).wrapping_sub(1) } else { word(x) };
     match action {
         Action::Strobe(x) => inputs[axis.x] = word(x),
+        Action::StrobeExact(word) => inputs[axis.x] = word as u64,
         Action::Start(x) => {
             inputs[axis.x] = word(x);
             inputs[axis.start] = 1;
@@ -267,11 +276,10 @@ fn drive(axis: &Axis, action: Action, inputs: &mut [u64]) {
         Action::StartAlone => inputs[axis.start] = 1,
         Action::Tap(bank, index, coefficient, delay) => {
             let one = 1i64 << axis.coefficient_fraction;
-            inputs[axis.tap_write] = 1;
-            inputs[axis.tap_bank] = bank;
-            inputs[axis.tap_index] = index;
-            inputs[axis.tap_coefficient] = (i64::from(coefficient) * one / 256) as u64;
-            inputs[axis.tap_delay] = delay as u64;
+            write_tap(axis, bank, index, i64::from(coefficient) * one / 256, delay, inputs);
+        }
+        Action::TapExact(bank, index, coefficient, delay) => {
+            write_tap(axis, bank, index, i64::from(coefficient), delay, inputs);
         }
         Action::Swap(bank) => {
             inputs[axis.swap] = 1;
@@ -289,4 +297,12 @@ fn drive(axis: &Axis, action: Action, inputs: &mut [u64]) {
         }
         Action::Reset(_) | Action::Wait(_) | Action::WaitIdle => {}
     }
+}
+
+fn write_tap(axis: &Axis, bank: u64, index: u64, coefficient: i64, delay: i64, inputs: &mut [u64]) {
+    inputs[axis.tap_write] = 1;
+    inputs[axis.tap_bank] = bank;
+    inputs[axis.tap_index] = index;
+    inputs[axis.tap_coefficient] = coefficient as u64;
+    inputs[axis.tap_delay] = delay as u64;
 }

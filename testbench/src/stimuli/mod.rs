@@ -1,6 +1,6 @@
 //! Inputs for shapers, one row of values per clock, without allocation in the clock.
 //!
-//! - [`Directed`] plays scripts: the cases that one thinks of.
+//! - [`Directed`] plays scripts: the cases that one thinks of ([`cases`]), and the corners of each size ([`corners`]).
 //! - [`Random`] mixes everything, seeded: the cases that one does not think of.
 //! - [`Motion`] strobes real command words at a steady rate.
 //! - [`Coverage`] counts what a run reached, so that a test can insist on it.
@@ -8,6 +8,7 @@
 //! All work on one shaper (`x`, `valid`, …) and on a machine's top module (`<axis>_x`, …; `rst` and `strobe` shared):
 //! [`Layout`] finds the axes by their port names.
 
+mod corners;
 mod coverage;
 mod directed;
 mod layout;
@@ -15,6 +16,7 @@ mod motion;
 mod random;
 mod table;
 
+pub use self::corners::corners;
 pub use self::coverage::Coverage;
 pub use self::directed::{Action, Directed, cases};
 pub use self::layout::{Axis, Layout};
