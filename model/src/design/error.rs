@@ -30,7 +30,7 @@ pub enum DesignError {
     /// A mode whose own shaper is one that serves whole axes.
     #[error(
         "axis {axis}, mode {hz} Hz: shaper \"{kind}\" treats all modes of an axis together; name it in [axis.shaper], \
-         or give this mode one of zv, zvd, zvdd, zvddd, ei",
+         or give this mode a kind for one mode, such as zv, zvd or ei",
         hz = mode.frequency_hz
     )]
     JointKindOfOneMode {
@@ -65,10 +65,53 @@ pub enum DesignError {
         /// Largest that is solved.
         most: f64,
     },
-    /// The equations of the kind have no solution with positive amplitudes in order of time.
+    /// A bias-point shaper that is none.
     #[error(
-        "shaper \"{kind}\" with tolerance {tolerance} has positive amplitudes in order of time up to damping \
-         {largest_damping:.4}; the mode at {hz} Hz has {damping}: use \"zv\" or \"zvd\" for it, or a smaller tolerance",
+        "shaper \"{kind}\" with tolerance {tolerance} and order {order}: zv-ei, zv-ei-2, zvd-ei, multi-ei and chebyshev-ei \
+         take a tolerance between 0 and 1, both excluded, chebyshev-ei an order of 1 to 5"
+    )]
+    BiasPoint {
+        /// The kind.
+        kind: Kind,
+        /// Its order.
+        order: u32,
+        /// The tolerance.
+        tolerance: f64,
+    },
+    /// A damping beyond those that the kind is solved for.
+    #[error(
+        "shaper \"{kind}\" takes a damping of 0 to {most}; the mode at {hz} Hz has {damping}: use \"{instead}\" for this mode",
+        hz = mode.frequency_hz, damping = mode.damping
+    )]
+    Damping {
+        /// The kind.
+        kind: Kind,
+        /// The mode.
+        mode: Mode,
+        /// Largest damping of the kind.
+        most: f64,
+        /// A kind that takes this damping.
+        instead: Kind,
+    },
+    /// Newton's method lost the solution on the way to the damping and tolerance.
+    #[error(
+        "shaper \"{kind}\" at mode {hz} Hz, damping {damping}: no solution found beyond {percent:.0} % of the way from the \
+         undamped shaper; use \"zv\" or \"zvd\" for this mode",
+        hz = mode.frequency_hz, damping = mode.damping, percent = 100.0 * reached
+    )]
+    NotSolved {
+        /// The kind.
+        kind: Kind,
+        /// The mode.
+        mode: Mode,
+        /// Share of the way, 0 to 1.
+        reached: f64,
+    },
+    /// No shaper of the kind leaves this tolerance at this damping.
+    #[error(
+        "shaper \"{kind}\" with tolerance {tolerance} exists up to damping {}; the mode at {hz} Hz has \
+         {damping}{}: lower the tolerance, or use \"zv\" or \"zvd\" for this mode",
+        rounded_down(*largest_damping), tolerance_limit(*largest_tolerance),
         hz = mode.frequency_hz, damping = mode.damping
     )]
     NoSolution {
@@ -80,6 +123,8 @@ pub enum DesignError {
         tolerance: f64,
         /// Damping up to which the kind exists for this tolerance.
         largest_damping: f64,
+        /// Tolerance up to which the kind exists at this damping; `None` if it exists at none that is solved for.
+        largest_tolerance: Option<f64>,
     },
     /// A design that does not do what its kind promises: numbers beyond what `f64` resolves.
     #[error(
@@ -133,6 +178,20 @@ impl DesignError {
         }
     }
 
+    /// What a design leaves, against what its kind promises.
+    pub(super) fn verify(kind: Kind, mode: &Mode, found: f64, promised: f64, accuracy: f64) -> Result<(), Self> {
+        if (found - promised).abs() <= accuracy {
+            Ok(())
+        } else {
+            Err(DesignError::Unverified {
+                kind,
+                mode: *mode,
+                found,
+                promised,
+            })
+        }
+    }
+
     /// A mode that can be designed for, or the error.
     pub(super) fn check_mode(mode: &Mode) -> Result<(), Self> {
         let frequency = mode.frequency_hz.is_finite() && mode.frequency_hz > 0.0;
@@ -141,5 +200,21 @@ impl DesignError {
         } else {
             Err(DesignError::Mode { mode: *mode })
         }
+    }
+}
+
+fn tolerance_limit(largest: Option<f64>) -> String {
+    largest.map_or_else(
+        || ", with which it exists for no tolerance".to_owned(),
+        |tolerance| format!(", with which it exists up to tolerance {}", rounded_down(tolerance)),
+    )
+}
+
+/// A limit to four decimals, or as many digits if it is small, that still lies within it.
+fn rounded_down(limit: f64) -> String {
+    if limit >= 0.01 {
+        format!("{}", (limit * 1e4).floor() / 1e4)
+    } else {
+        format!("{:.3e}", limit * (1.0 - 5e-4))
     }
 }
