@@ -4,8 +4,9 @@
 //! impulses ─► grid (two taps per impulse, real) ─► parts convolved ─► real taps a_i ─► quantise ─► TapTable, Σ c_i = 2^F
 //! ```
 //!
-//! Each part (one mode's shaper) is put on the grid by itself and divided by its own sum; the parts' real sequences are
-//! then convolved, taps on equal samples added. So each mode keeps its own zeros. Rounding to integers comes once, at the
+//! `modal`: each part (one mode's shaper) is put on the grid by itself and divided by its own sum; the parts' real sequences
+//! are then convolved, taps on equal samples added. So each mode keeps its own zeros. `linear` and `nearest` place the
+//! impulses of the whole axis. Rounding to integers comes once, at the
 //! end ([`quantise`]). The methods are in [`grid`]; the real taps stay beside the integers, because the float design that
 //! the hardware is compared with uses them.
 
@@ -100,20 +101,20 @@ impl Digitised {
 /// [`TableError::Nyquist`] for a mode that the sample rate cannot carry; [`TableError::NoUnitSum`] where the taps of a part
 /// cancel.
 pub fn digitise(design: &AxisDesign, how: Digitise, sample_hz: f64) -> Result<Digitised, TableError> {
-    let (method_used, sequences) = match &design.parts {
-        Parts::PerMode(parts) => {
+    let whole = || vec![(&design.impulses, None)];
+    let (method_used, sequences) = match (how, &design.parts) {
+        (Digitise::Linear, _) => (Method::Linear, whole()),
+        (Digitise::Nearest, _) => (Method::Nearest, whole()),
+        (Digitise::Modal, Parts::PerMode(parts)) => {
             // Without a shaper, a mode has no say in the grid.
             let shaped = parts.iter().filter(|p| p.kind != Kind::None);
             let sequences: Vec<_> = shaped.map(|p| (&p.impulses, Some(p.mode))).collect();
             (Method::Modal, sequences)
         }
-        Parts::Joint { reference: Some(mode) } => (Method::ModalAtFirstMode, vec![(&design.impulses, Some(*mode))]),
-        Parts::Joint { reference: None } => (Method::Linear, vec![(&design.impulses, None)]),
-    };
-    let method_used = match how {
-        Digitise::Modal => method_used,
-        Digitise::Linear => Method::Linear,
-        Digitise::Nearest => Method::Nearest,
+        (Digitise::Modal, Parts::Joint { reference: Some(mode) }) => {
+            (Method::ModalAtFirstMode, vec![(&design.impulses, Some(*mode))])
+        }
+        (Digitise::Modal, Parts::Joint { reference: None }) => (Method::Linear, whole()),
     };
     check_delay(design, sequences.iter().map(|(impulses, _)| *impulses), sample_hz)?;
     let mut whole = BTreeMap::from([(0, 1.0)]);
