@@ -6,6 +6,8 @@
 
 mod insensitivity;
 mod residual;
+mod start_control;
 
 pub use insensitivity::{INSENSITIVITY_LIMIT, Insensitivity, insensitivity};
 pub use residual::{pole_sum, residual_vibration, residual_vibration_at, sensitivity_curve, tap_impulses};
+pub use start_control::{StartControl, StartFigures};
