@@ -14,6 +14,7 @@ pub mod digitise;
 pub mod impulse;
 pub mod mode;
 pub mod motion;
+pub mod papers;
 pub mod plant;
 pub mod rtl;
 pub mod simulation;

@@ -65,6 +65,11 @@ impl Plant {
         Ok(Self { modes: modes.collect() })
     }
 
+    /// Modes with known shares, which must sum to one.
+    pub fn of_shares(modes: Vec<PlantMode>) -> Self {
+        Self { modes }
+    }
+
     /// The plant that an axis of the machine file describes.
     ///
     /// # Errors
