@@ -1,6 +1,6 @@
 //! A vibration mode of the machine.
 
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 /// One lightly damped mode: `ω² / (s² + 2ζωs + ω²)`.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -30,6 +30,11 @@ impl Mode {
     /// Damped period `T_d = 2π/ω_d` in seconds.
     pub fn damped_period_s(&self) -> f64 {
         TAU / self.omega_damped()
+    }
+
+    /// What damping leaves of a swing after half a period: `K = e^{−ζπ/√(1−ζ²)}`, 1 without damping.
+    pub fn half_swing_ratio(&self) -> f64 {
+        (-PI * self.damping / (1.0 - self.damping * self.damping).sqrt()).exp()
     }
 
     /// The same mode with its frequency multiplied by `ratio`, damping as it is: a machine that is off from its model.

@@ -66,6 +66,7 @@ pub fn design(mode: &Mode, tolerance: f64) -> Result<Ei, DesignError> {
         mode: *mode,
         tolerance,
         largest_damping,
+        largest_tolerance: None,
     })?;
     let period_s = 1.0 / mode.frequency_hz;
     let impulses = (0..3).map(|i| Impulse {

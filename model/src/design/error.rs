@@ -30,7 +30,7 @@ pub enum DesignError {
     /// A mode whose own shaper is one that serves whole axes.
     #[error(
         "axis {axis}, mode {hz} Hz: shaper \"{kind}\" treats all modes of an axis together; name it in [axis.shaper], \
-         or give this mode one of zv, zvd, zvdd, zvddd, ei",
+         or give this mode a kind for one mode, such as zv, zvd or ei",
         hz = mode.frequency_hz
     )]
     JointKindOfOneMode {
@@ -65,10 +65,24 @@ pub enum DesignError {
         /// Largest that is solved.
         most: f64,
     },
-    /// The equations of the kind have no solution with positive amplitudes in order of time.
+    /// A bias-point shaper that is none.
     #[error(
-        "shaper \"{kind}\" with tolerance {tolerance} has positive amplitudes in order of time up to damping \
-         {largest_damping:.4}; the mode at {hz} Hz has {damping}: use \"zv\" or \"zvd\" for it, or a smaller tolerance",
+        "shaper \"{kind}\" with tolerance {tolerance} and order {order}: zv-ei, zv-ei-2, zvd-ei, multi-ei and chebyshev-ei \
+         take a tolerance between 0 and 1, both excluded, chebyshev-ei an order of 1 to 5"
+    )]
+    BiasPoint {
+        /// The kind.
+        kind: Kind,
+        /// Its order.
+        order: u32,
+        /// The tolerance.
+        tolerance: f64,
+    },
+    /// No shaper of the kind leaves this tolerance at this damping.
+    #[error(
+        "shaper \"{kind}\" with tolerance {tolerance} exists up to damping {largest_damping:.4}; the mode at {hz} Hz has \
+         {damping}{}: lower the tolerance, or use \"zv\" or \"zvd\" for this mode",
+        tolerance_limit(*largest_tolerance),
         hz = mode.frequency_hz, damping = mode.damping
     )]
     NoSolution {
@@ -80,6 +94,8 @@ pub enum DesignError {
         tolerance: f64,
         /// Damping up to which the kind exists for this tolerance.
         largest_damping: f64,
+        /// Tolerance up to which the kind exists at this damping; `None` if it exists at none that is solved for.
+        largest_tolerance: Option<f64>,
     },
     /// A design that does not do what its kind promises: numbers beyond what `f64` resolves.
     #[error(
@@ -142,4 +158,11 @@ impl DesignError {
             Err(DesignError::Mode { mode: *mode })
         }
     }
+}
+
+fn tolerance_limit(largest: Option<f64>) -> String {
+    largest.map_or_else(
+        || ", with which it exists for no tolerance".to_owned(),
+        |tolerance| format!(", with which it exists up to tolerance {tolerance:.4e}"),
+    )
 }

@@ -82,7 +82,18 @@ impl Kind {
     pub fn is_built(self) -> bool {
         matches!(
             self,
-            Kind::Zv | Kind::Zvd | Kind::Zvdd | Kind::Zvddd | Kind::Ei | Kind::Custom | Kind::None
+            Kind::Zv
+                | Kind::Zvd
+                | Kind::Zvdd
+                | Kind::Zvddd
+                | Kind::Ei
+                | Kind::ZvEi
+                | Kind::ZvEi2
+                | Kind::ZvdEi
+                | Kind::MultiEi
+                | Kind::ChebyshevEi
+                | Kind::Custom
+                | Kind::None
         )
     }
 

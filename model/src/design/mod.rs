@@ -4,9 +4,10 @@
 //! Axis ─► design_axis ─► AxisDesign (float, exact) ─► digitise ─► quantise ─► TapTable     design_machine does all axes
 //! ```
 //!
-//! One file per family: [`zv`], [`ei`], [`custom`]. Every design is checked by its own residual before it is returned: what
+//! One file per family: [`zv`], [`ei`], [`bias_point`], [`custom`]. Every design is checked by its own residual before it is returned: what
 //! leaves this module does at the mode what its kind promises, or is an error that says where the kind ends.
 
+pub mod bias_point;
 pub mod custom;
 pub mod ei;
 mod error;
@@ -143,6 +144,11 @@ fn mode_impulses(axis: &Axis, axis_mode: &AxisMode) -> Result<ImpulseSequence, D
         Kind::Ei => {
             let tolerance = axis.tolerance_of(axis_mode);
             (ei::design(&mode, tolerance)?.impulses, tolerance)
+        }
+        Kind::ZvEi | Kind::ZvEi2 | Kind::ZvdEi | Kind::MultiEi | Kind::ChebyshevEi => {
+            let tolerance = axis.tolerance_of(axis_mode);
+            let order = axis.order_of(axis_mode);
+            (bias_point::design(kind, order, &mode, tolerance)?, tolerance)
         }
         // What serves all modes of an axis cannot be one mode's share of a convolution.
         _ if kind.treats_modes_together() => {

@@ -9,8 +9,6 @@
 //! 1957; Singer and Seering 1990). Each further factor makes one more derivative of the residual zero at the mode, costs
 //! another half period of delay, and forgives a larger error of the frequency. Exists for every damping in [0, 1).
 
-use std::f64::consts::PI;
-
 use super::DesignError;
 use super::kind::Kind;
 use crate::impulse::{Impulse, ImpulseSequence};
@@ -22,9 +20,8 @@ use crate::mode::Mode;
 /// [`DesignError::Mode`] for a mode that is none, [`DesignError::NoSequence`] where times leave the range of `f64`.
 pub fn design(kind: Kind, mode: &Mode, factors: u32) -> Result<ImpulseSequence, DesignError> {
     DesignError::check_mode(mode)?;
-    let ratio = (-PI * mode.damping / (1.0 - mode.damping * mode.damping).sqrt()).exp();
     let half_period_s = mode.damped_period_s() / 2.0;
-    let weights = binomial_weights(factors, ratio);
+    let weights = binomial_weights(factors, mode.half_swing_ratio());
     let sum: f64 = weights.iter().sum();
     let impulses = weights.iter().enumerate().map(|(index, weight)| Impulse {
         time_s: index as f64 * half_period_s,

@@ -1,6 +1,7 @@
 //! The files that the tests read and break.
 #![cfg(test)]
 
+use posicast_model::design::kind::Kind;
 use posicast_model::spec::{self, Machine, SpecError};
 
 pub(crate) const XY_STAGE: &str = include_str!("../../../examples/xy-stage.toml");
@@ -26,6 +27,12 @@ kind = "zvd"
 frequency_hz = 40.0
 damping = 0.1
 "#;
+
+/// The names of the kinds that this version builds, as messages list them.
+pub(crate) fn built_kinds(wanted: impl Fn(Kind) -> bool) -> String {
+    let built = Kind::ALL.iter().filter(|(kind, _)| kind.is_built() && wanted(*kind));
+    built.map(|(_, name)| *name).collect::<Vec<_>>().join(", ")
+}
 
 /// The machine of a right file.
 pub(crate) fn right(text: &str) -> Machine {
