@@ -9,6 +9,7 @@
 //! ```
 
 pub mod analysis;
+pub mod compare;
 pub mod design;
 pub mod digitise;
 pub mod impulse;

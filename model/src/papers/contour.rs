@@ -10,7 +10,7 @@ use crate::plant::free_motion;
 use nalgebra::{Complex, Vector2};
 
 /// Radius in mm (assumed).
-pub(super) const RADIUS_MM: f64 = 10.0;
+const RADIUS_MM: f64 = 10.0;
 /// Contour speed in mm/s (assumed).
 const SPEED_MM_S: f64 = 100.0;
 /// Time between two looks, in seconds: a few hundred in each period of either axis.
@@ -51,7 +51,7 @@ impl Follower {
 }
 
 /// Position on the way round a circle of radius 1, `(x, y)` over time, for plants `ratio` times as fast as their models.
-pub(super) fn path(shapers: &[ImpulseSequence; 2], ratio: f64, duration_s: f64) -> Vec<(f64, f64)> {
+fn path(shapers: &[ImpulseSequence; 2], ratio: f64, duration_s: f64) -> Vec<(f64, f64)> {
     let speed = SPEED_MM_S / RADIUS_MM;
     let phases = [0.0, std::f64::consts::FRAC_PI_2];
     let followers = [0, 1].map(|axis| Follower::new(PLANTS[axis].mode().scaled(ratio), speed, phases[axis]));
@@ -75,6 +75,14 @@ pub(super) fn excursion(shapers: &[ImpulseSequence; 2], ratio: f64) -> f64 {
     let longest_s = shapers.iter().map(ImpulseSequence::duration_s).fold(0.0, f64::max);
     let radii = path(shapers, ratio, longest_s + LOOKED_AT_S).into_iter();
     radii.map(|(x, y)| x.hypot(y) - 1.0).fold(0.0, f64::max)
+}
+
+/// How far the stage is outside the circle over time, `(seconds, mm)`, once it is on its way: from where it is at 90 % of
+/// the radius.
+pub(super) fn radius_errors_mm(shapers: &[ImpulseSequence; 2], ratio: f64, duration_s: f64) -> Vec<(f64, f64)> {
+    let radii = path(shapers, ratio, duration_s).into_iter().enumerate();
+    let errors = radii.map(|(look, (x, y))| (look as f64 * LOOK_S, RADIUS_MM * (x.hypot(y) - 1.0)));
+    errors.skip_while(|(_, error_mm)| *error_mm < -0.1 * RADIUS_MM).collect()
 }
 
 #[cfg(test)]

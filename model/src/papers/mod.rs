@@ -9,16 +9,24 @@
 //! | `xy-stage` | a thesis on an XY stage: drive, identification, ZV and ZVD |
 //!
 //! Every row holds the paper's own number, which is the only thing that is typed in, and ours, which the library computes
-//! as the row is made. [`sheet`] says how the two become a verdict.
+//! as the row is made. [`Verdict`] and [`Rule`] say how the two become a verdict.
 
+mod antisymmetry;
+mod chain;
 mod contour;
 mod designs;
 mod drive;
+mod figures;
+mod hybrid_ei;
 mod identification;
+mod minors;
 mod negative_hybrid;
 mod sheet;
+mod sliding_mode_law;
+mod vibrationless;
 mod xy_stage;
 
+pub use figures::{Figure, FigureCurve};
 pub use sheet::{Row, Rule, Value, Verdict};
 
 use crate::design::DesignError;
@@ -27,21 +35,47 @@ use sheet::Sheet;
 /// One of the source papers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Paper {
+    /// Bias-point hybrids of ZV and EI, and one shaper for many modes.
+    HybridEi,
     /// Negative-impulse shapers, a different one per mode.
     NegativeHybrid,
+    /// Half-sum cascades.
+    Vibrationless,
+    /// One shaper for many modes by antisymmetry.
+    Antisymmetry,
     /// The XY stage.
     XyStage,
 }
 
 impl Paper {
     /// All papers, in the order in which they are shown.
-    pub const ALL: [Paper; 2] = [Paper::NegativeHybrid, Paper::XyStage];
+    pub const ALL: [Paper; 5] = [
+        Paper::HybridEi,
+        Paper::NegativeHybrid,
+        Paper::Vibrationless,
+        Paper::Antisymmetry,
+        Paper::XyStage,
+    ];
 
     /// The name on the command line.
     pub fn name(self) -> &'static str {
         match self {
+            Paper::HybridEi => "hybrid-ei",
             Paper::NegativeHybrid => "negative-hybrid",
+            Paper::Vibrationless => "vibrationless",
+            Paper::Antisymmetry => "antisymmetry",
             Paper::XyStage => "xy-stage",
+        }
+    }
+
+    /// What the paper is about.
+    pub fn title(self) -> &'static str {
+        match self {
+            Paper::HybridEi => "hybrid EI shapers, and one of them for many modes (Zhang and Li 2010)",
+            Paper::NegativeHybrid => "negative-impulse shapers, a different one for each of two modes",
+            Paper::Vibrationless => "robust vibrationless control by half-sum cascades (Prourzin and Shevlyakov)",
+            Paper::Antisymmetry => "one shaper for many modes by antisymmetry (Singh and Heppler 1993)",
+            Paper::XyStage => "a thesis on an XY stage: its drive, its identified plants, ZV and ZVD",
         }
     }
 
@@ -57,9 +91,26 @@ impl Paper {
     pub fn reproduce(self) -> Result<Vec<Row>, DesignError> {
         let mut sheet = Sheet::default();
         match self {
+            Paper::HybridEi => hybrid_ei::rows(&mut sheet)?,
             Paper::NegativeHybrid => negative_hybrid::rows(&mut sheet)?,
+            Paper::Vibrationless => vibrationless::rows(&mut sheet)?,
+            Paper::Antisymmetry => antisymmetry::rows(&mut sheet)?,
             Paper::XyStage => xy_stage::rows(&mut sheet)?,
         }
         Ok(sheet.into_rows())
+    }
+
+    /// The paper's figures, redrawn.
+    ///
+    /// # Errors
+    /// As [`Self::reproduce`].
+    pub fn figures(self) -> Result<Vec<Figure>, DesignError> {
+        match self {
+            Paper::HybridEi => figures::hybrid_ei(),
+            Paper::NegativeHybrid => figures::negative_hybrid(),
+            Paper::Vibrationless => figures::vibrationless(),
+            Paper::Antisymmetry => figures::antisymmetry(),
+            Paper::XyStage => figures::xy_stage(),
+        }
     }
 }

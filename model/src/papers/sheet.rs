@@ -292,7 +292,7 @@ impl Sheet {
         } else {
             Verdict::NotReproduced
         };
-        self.statement(item, paper, ours, verdict, "");
+        self.statement(item, paper, Some(ours), verdict, "");
     }
 
     /// A statement of the paper that our figures refute, unless it `holds` after all.
@@ -302,15 +302,27 @@ impl Sheet {
         } else {
             Verdict::Erratum
         };
-        self.statement(item, paper, ours, verdict, reason);
+        self.statement(item, paper, Some(ours), verdict, reason);
     }
 
-    fn statement(&mut self, item: impl Into<String>, paper: &str, ours: String, verdict: Verdict, reason: &str) {
+    /// A statement of the paper that nothing can be held against.
+    pub(super) fn unjudged(&mut self, item: impl Into<String>, paper: &str, reason: &str) {
+        self.statement(item, paper, None, Verdict::NotComparable, reason);
+    }
+
+    fn statement(
+        &mut self,
+        item: impl Into<String>,
+        paper: &str,
+        ours: Option<String>,
+        verdict: Verdict,
+        reason: &str,
+    ) {
         self.rows.push(Row {
             item: item.into(),
             paper: Value::Text(paper.into()),
             printed: paper.into(),
-            ours: Some(Value::Text(ours)),
+            ours: ours.map(Value::Text),
             verdict,
             reason: reason.into(),
         });
