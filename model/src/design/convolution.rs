@@ -145,7 +145,7 @@ impl fmt::Display for ConvolutionWarning {
             } => write!(
                 f,
                 "axis {axis}, mode {} Hz: the other modes' shapers multiply what {kind} leaves by {gain:.4}, to {:.4} %, above \
-                 its tolerance of {:.4} %: give this mode tolerance = {:.6}, or use kind \"simultaneous\"",
+                 its tolerance of {:.4} %: design it with tolerance = {:.6} to leave that much, or use kind \"simultaneous\"",
                 mode.frequency_hz,
                 100.0 * residual,
                 100.0 * tolerance,

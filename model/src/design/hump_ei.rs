@@ -34,7 +34,7 @@ pub const TOLERANCE_MAX: f64 = 0.9;
 /// Longest step along the damping.
 const LONGEST_STEP: f64 = 0.1;
 /// Relative accuracy of the largest tolerance that an error names.
-const LIMIT_ACCURACY: f64 = 1e-4;
+const LIMIT_ACCURACY: f64 = 5e-4;
 /// Largest deviation of the finished shaper from its zeros and humps.
 const VERIFIED: f64 = 1e-9;
 
@@ -72,18 +72,15 @@ pub fn design(kind: Kind, mode: &Mode, tolerance: f64) -> Result<HumpEi, DesignE
             most: TOLERANCE_MAX,
         });
     }
-    let family = Humps {
-        zeros,
-        damping: mode.damping,
-        tolerance,
-    };
-    let shape = family.solve().map_err(|reached| DesignError::NoSolution {
+    let path = Path::new(zeros, mode.damping, tolerance);
+    let unknowns = path.follow(path.undamped()).map_err(|s| DesignError::NoSolution {
         kind,
         mode: *mode,
         tolerance,
-        largest_damping: reached,
-        largest_tolerance: family.largest_tolerance(),
+        largest_damping: s * mode.damping,
+        largest_tolerance: largest_tolerance(zeros, mode.damping, tolerance),
     })?;
+    let shape = path.shape(&unknowns);
     let impulses = shape
         .times
         .iter()
@@ -115,38 +112,49 @@ struct Shape {
     ratios: Vec<f64>,
 }
 
-/// The family at one number of zeros, and where its path along the damping leads.
+/// Largest tolerance below `tolerance` for which the branch reaches a damping, found by halving: the damping at which it ends
+/// falls with the tolerance. `None` if it does not even for the smallest.
+fn largest_tolerance(zeros: usize, damping: f64, tolerance: f64) -> Option<f64> {
+    let exists = |tolerance| {
+        let path = Path::new(zeros, damping, tolerance);
+        path.follow(path.undamped()).is_ok()
+    };
+    if !exists(TOLERANCE_MIN) {
+        return None;
+    }
+    let (mut known, mut beyond) = (TOLERANCE_MIN, tolerance);
+    while beyond > known * (1.0 + LIMIT_ACCURACY) {
+        let between = (known * beyond).sqrt();
+        if exists(between) {
+            known = between;
+        } else {
+            beyond = between;
+        }
+    }
+    Some(known)
+}
+
+/// The way from no damping to the wanted one, for the kind with `zeros` zeros. The tolerance stays: along another way round
+/// the folds of the solution one would reach other sheets of it, with the same tolerance and damping.
 #[derive(Debug, Clone, Copy)]
-struct Humps {
+struct Path {
     zeros: usize,
     damping: f64,
     tolerance: f64,
 }
 
-impl Humps {
-    /// The solution; the error is the damping up to which it exists.
-    fn solve(&self) -> Result<Shape, f64> {
-        let longest = LONGEST_STEP / self.damping.max(LONGEST_STEP);
-        let unknowns = follow(self, self.undamped(), longest).map_err(|s| s * self.damping)?;
-        Ok(self.shape(&unknowns))
+impl Path {
+    fn new(zeros: usize, damping: f64, tolerance: f64) -> Self {
+        Self {
+            zeros,
+            damping,
+            tolerance,
+        }
     }
 
-    /// Largest tolerance that has a solution at this damping, found by halving; `None` if not even the smallest has.
-    fn largest_tolerance(&self) -> Option<f64> {
-        let exists = |tolerance| Self { tolerance, ..*self }.solve().is_ok();
-        if !exists(TOLERANCE_MIN) {
-            return None;
-        }
-        let (mut known, mut beyond) = (TOLERANCE_MIN, self.tolerance);
-        while beyond > known * (1.0 + LIMIT_ACCURACY) {
-            let between = (known * beyond).sqrt();
-            if exists(between) {
-                known = between;
-            } else {
-                beyond = between;
-            }
-        }
-        Some(known)
+    /// Follows the solution from a start near that at the beginning; the error is how far it exists, 0 to 1.
+    fn follow(&self, start: DVector<f64>) -> Result<DVector<f64>, f64> {
+        follow(self, start, LONGEST_STEP / self.damping.max(LONGEST_STEP))
     }
 
     /// The equal ripple without damping.
@@ -191,7 +199,7 @@ impl Humps {
     }
 }
 
-impl Branch for Humps {
+impl Branch for Path {
     fn linearised(&self, unknowns: &DVector<f64>, s: f64) -> Linearised {
         let Shape {
             amplitudes,
@@ -219,6 +227,15 @@ impl Branch for Humps {
             };
         }
         equations.finish()
+    }
+
+    /// As the tolerance goes to 0, so do the differences from the power of `zv`: with its `m`-th root those of the ratios.
+    fn units(&self, _: f64) -> DVector<f64> {
+        let spread = self.tolerance.powf((self.zeros as f64).recip());
+        let ratios_from = 2 * self.zeros + 1;
+        DVector::from_fn(4 * self.zeros - 1, |row, _| {
+            if row < ratios_from { self.tolerance } else { spread }
+        })
     }
 
     fn is_valid(&self, unknowns: &DVector<f64>) -> bool {
@@ -337,12 +354,8 @@ mod tests {
             (Kind::ThreeHumpEi, 4, [0.1, 0.27]),
         ] {
             for damping in dampings {
-                let family = Humps {
-                    zeros,
-                    damping,
-                    tolerance: 0.05,
-                };
-                let along = |longest| follow(&family, family.undamped(), longest).unwrap();
+                let path = Path::new(zeros, damping, 0.05);
+                let along = |longest| follow(&path, path.undamped(), longest).unwrap();
                 assert!((along(0.5) - along(0.004)).amax() < 1e-9, "{kind} {damping}");
             }
         }

@@ -202,6 +202,17 @@ impl Branch for Path<'_> {
         equations.finish()
     }
 
+    /// As the tolerance goes to 0, so do the differences from `-zvd`: with its root those of the zeros.
+    fn units(&self, s: f64) -> DVector<f64> {
+        let root = START_TOLERANCE.sqrt() + s * self.root_change;
+        let times = self.family.amplitudes.len() - 1;
+        DVector::from_fn(self.family.undamped.len(), |row, _| match self.family.condition {
+            Condition::Hump if row < times => root * root,
+            Condition::Hump => root,
+            Condition::Zero | Condition::StationaryZero => 1.0,
+        })
+    }
+
     fn is_valid(&self, unknowns: &DVector<f64>) -> bool {
         let times = self.family.times(unknowns.as_slice());
         let ordered = times.windows(2).all(|pair| pair[0] < pair[1]);
