@@ -15,8 +15,10 @@ use std::path::PathBuf;
 
 /// Impulses, residuals, insensitivity and tap table of every axis
 #[derive(clap::Args)]
-#[command(after_help = "Example:\n  posicast design examples/xy-stage.toml --plot sensitivity.svg\n  \
-                         posicast design examples/xy-stage.toml --compare --band 15")]
+#[command(
+    after_help = "Example:\n  posicast design examples/xy-stage.toml --plot sensitivity.svg\n  \
+                         posicast design examples/xy-stage.toml --compare --band 15"
+)]
 pub(crate) struct Args {
     /// Machine file
     machine: PathBuf,

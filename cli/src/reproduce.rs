@@ -60,13 +60,18 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
 
 /// A shaper of a paper that cannot be designed: nothing the user gave is wrong.
 fn fault(paper: Paper, error: &dyn std::error::Error) -> Failure {
-    Failure::Check(format!("{}: a shaper of the paper cannot be designed: {error}", paper.name()))
+    Failure::Check(format!(
+        "{}: a shaper of the paper cannot be designed: {error}",
+        paper.name()
+    ))
 }
 
 type Tables = Vec<(Paper, Vec<Row>)>;
 
 fn first_not_reproduced(tables: &Tables) -> String {
-    let mut rows = tables.iter().flat_map(|(paper, rows)| rows.iter().map(move |row| (paper, row)));
+    let mut rows = tables
+        .iter()
+        .flat_map(|(paper, rows)| rows.iter().map(move |row| (paper, row)));
     let first = rows.find(|(_, row)| row.verdict == Verdict::NotReproduced);
     first.map_or_else(String::new, |(paper, row)| format!("{}, {}", paper.name(), row.item))
 }
@@ -136,7 +141,11 @@ fn value_text(value: &Value) -> String {
 fn number_text(number: f64) -> String {
     let size = number.abs();
     if size == 0.0 || !(1e-4..1e7).contains(&size) {
-        return if size < 1e-12 { "0".into() } else { format!("{number:.5e}") };
+        return if size < 1e-12 {
+            "0".into()
+        } else {
+            format!("{number:.5e}")
+        };
     }
     let decimals = (5 - size.log10().floor() as i32).max(0) as usize;
     let text = format!("{number:.decimals$}");

@@ -5,7 +5,13 @@ use assert_cmd::Command;
 use predicates::str::contains;
 use serde_json::Value;
 
-const PAPERS: [&str; 5] = ["hybrid-ei", "negative-hybrid", "vibrationless", "antisymmetry", "xy-stage"];
+const PAPERS: [&str; 5] = [
+    "hybrid-ei",
+    "negative-hybrid",
+    "vibrationless",
+    "antisymmetry",
+    "xy-stage",
+];
 
 fn posicast(arguments: &[&str]) -> assert_cmd::assert::Assert {
     Command::cargo_bin("posicast").unwrap().args(arguments).assert()
@@ -42,7 +48,10 @@ fn cli_json_has_every_paper_and_counts_that_add_up() {
         let (paper, ours) = (&row["paper"], &row["ours"]);
         let same_shape = (paper.is_number() && ours.is_number())
             || (paper.is_string() && ours.is_string())
-            || paper.as_array().zip(ours.as_array()).is_some_and(|(a, b)| a.len() == b.len());
+            || paper
+                .as_array()
+                .zip(ours.as_array())
+                .is_some_and(|(a, b)| a.len() == b.len());
         assert!(same_shape || ours.is_null(), "{row}");
     }
     assert_eq!(document["reproduced"], reproduced);
@@ -63,7 +72,9 @@ fn cli_text_ends_with_the_counts() {
 #[test]
 fn cli_an_unknown_paper_is_refused_with_the_five() {
     let assert = posicast(&["reproduce", "hybrid", "--json"]).code(2).stdout("");
-    PAPERS.iter().fold(assert, |assert, name| assert.stderr(contains(*name)));
+    PAPERS
+        .iter()
+        .fold(assert, |assert, name| assert.stderr(contains(*name)));
 }
 
 #[test]
@@ -107,6 +118,12 @@ fn cli_compare_lists_kinds_by_duration_and_marks_the_best() {
 
 #[test]
 fn cli_compare_refuses_a_senseless_band() {
-    posicast(&["design", MACHINE, "--compare", "--band", "nan"]).code(2).stdout("").stderr(contains("0 to 90"));
-    posicast(&["design", MACHINE, "--band", "5"]).code(2).stdout("").stderr(contains("--compare"));
+    posicast(&["design", MACHINE, "--compare", "--band", "nan"])
+        .code(2)
+        .stdout("")
+        .stderr(contains("0 to 90"));
+    posicast(&["design", MACHINE, "--band", "5"])
+        .code(2)
+        .stdout("")
+        .stderr(contains("--compare"));
 }

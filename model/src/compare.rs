@@ -71,7 +71,11 @@ enum CandidateError {
 /// Compares every kind on each axis of a machine; `band` is the relative frequency error that each mode may have, such as
 /// [`DEFAULT_BAND`].
 pub fn compare(machine: &Machine, band: f64) -> Vec<Comparison> {
-    machine.axes.iter().map(|axis| compare_axis(machine, axis, band)).collect()
+    machine
+        .axes
+        .iter()
+        .map(|axis| compare_axis(machine, axis, band))
+        .collect()
 }
 
 fn compare_axis(machine: &Machine, axis: &Axis, band: f64) -> Comparison {
@@ -184,7 +188,9 @@ mod tests {
         let found = compare(&machine, 0.1).remove(0);
         let mut names: Vec<&str> = found.candidates.iter().map(|c| c.kind.as_str()).collect();
         names.extend(found.missing.iter().map(|m| m.kind.as_str()));
-        let built = Kind::ALL.iter().filter(|(kind, _)| kind.is_built() && *kind != Kind::Custom);
+        let built = Kind::ALL
+            .iter()
+            .filter(|(kind, _)| kind.is_built() && *kind != Kind::Custom);
         assert_eq!(names.len(), built.count());
         assert!(found.candidates.iter().all(|c| c.in_file == (c.kind == "zvd")));
         assert!(found.candidates.is_sorted_by(|a, b| a.duration_s <= b.duration_s));
@@ -219,7 +225,10 @@ mod tests {
     #[test]
     fn unit_a_kind_that_does_not_exist_has_its_reason() {
         // No tolerance of 5 % at this damping.
-        let machine = machine("[axis.shaper]\nkind = \"zv\"", "[[axis.mode]]\nfrequency_hz = 40\ndamping = 0.9\n");
+        let machine = machine(
+            "[axis.shaper]\nkind = \"zv\"",
+            "[[axis.mode]]\nfrequency_hz = 40\ndamping = 0.9\n",
+        );
         let found = compare(&machine, 0.1).remove(0);
         let ei = found.missing.iter().find(|m| m.kind == "ei").unwrap();
         assert!(ei.reason.contains("damping"), "{}", ei.reason);
@@ -227,7 +236,8 @@ mod tests {
 
     #[test]
     fn unit_shapers_per_mode_and_axes_without_modes() {
-        let modes = format!("{MODE}shaper = \"zv\"\n[[axis.mode]]\nfrequency_hz = 90\ndamping = 0.01\nshaper = \"zvd\"\n");
+        let modes =
+            format!("{MODE}shaper = \"zv\"\n[[axis.mode]]\nfrequency_hz = 90\ndamping = 0.01\nshaper = \"zvd\"\n");
         let found = compare(&machine("", &modes), 0.1).remove(0);
         assert!(find(&found, "zv+zvd").in_file && !find(&found, "zv").in_file);
         let found = compare(&machine("[axis.shaper]\nkind = \"none\"", ""), 0.1).remove(0);

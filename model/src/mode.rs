@@ -22,6 +22,11 @@ impl Mode {
         self.omega() * (1.0 - self.damping * self.damping).sqrt()
     }
 
+    /// Damped frequency `f√(1−ζ²)` in Hz.
+    pub fn damped_frequency_hz(&self) -> f64 {
+        self.frequency_hz * (1.0 - self.damping * self.damping).sqrt()
+    }
+
     /// Decay rate `σ = ζω` in 1/s.
     pub fn decay(&self) -> f64 {
         self.damping * self.omega()

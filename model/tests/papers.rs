@@ -9,7 +9,10 @@ use posicast_model::papers::{Paper, Value, Verdict};
 /// Reproduced, errata, not comparable.
 fn counts(paper: Paper) -> [usize; 3] {
     let rows = paper.reproduce().unwrap();
-    let faults: Vec<_> = rows.iter().filter(|row| row.verdict == Verdict::NotReproduced).collect();
+    let faults: Vec<_> = rows
+        .iter()
+        .filter(|row| row.verdict == Verdict::NotReproduced)
+        .collect();
     assert!(faults.is_empty(), "{faults:#?}");
     [Verdict::Reproduced, Verdict::Erratum, Verdict::NotComparable]
         .map(|verdict| rows.iter().filter(|row| row.verdict == verdict).count())
@@ -48,7 +51,12 @@ fn unit_every_row_is_told_from_the_others_and_every_departure_has_its_reason() {
             assert!(rows[..index].iter().all(|other| other.item != row.item), "{}", row.item);
             let needs_reason = matches!(row.verdict, Verdict::Erratum | Verdict::NotComparable);
             assert!(!needs_reason || !row.reason.is_empty(), "{}", row.item);
-            assert_eq!(row.ours.is_none(), row.verdict == Verdict::NotComparable, "{}", row.item);
+            assert_eq!(
+                row.ours.is_none(),
+                row.verdict == Verdict::NotComparable,
+                "{}",
+                row.item
+            );
             if let Value::Number(printed) = row.paper {
                 assert!(printed.is_finite(), "{}: {}", row.item, row.printed);
             }
@@ -63,7 +71,11 @@ fn unit_the_figures_have_finite_points() {
         assert!(!figures.is_empty());
         for curve in figures.iter().flat_map(|figure| &figure.curves) {
             assert!(curve.points.len() > 1, "{}", curve.name);
-            assert!(curve.points.iter().all(|(x, y)| x.is_finite() && y.is_finite()), "{}", curve.name);
+            assert!(
+                curve.points.iter().all(|(x, y)| x.is_finite() && y.is_finite()),
+                "{}",
+                curve.name
+            );
         }
     }
 }

@@ -3,6 +3,7 @@
 use thiserror::Error;
 
 use super::IMPULSES_MAX;
+use super::joint_error::JointError;
 use super::kind::Kind;
 use crate::digitise::TableError;
 use crate::impulse::ImpulseError;
@@ -160,6 +161,19 @@ pub enum DesignError {
         axis: String,
         /// Impulses before coincident ones merge.
         found: usize,
+    },
+    /// Modes without a shaper in common.
+    #[error("{0}")]
+    Joint(#[from] JointError),
+    /// The same, with the axis whose modes they are.
+    #[error("axis {axis}: shaper \"{kind}\": {cause}")]
+    JointOfAxis {
+        /// The axis.
+        axis: String,
+        /// Its kind.
+        kind: Kind,
+        /// What is wrong.
+        cause: Box<DesignError>,
     },
     /// A shaper without a tap table.
     #[error(transparent)]

@@ -101,6 +101,10 @@ impl Kind {
                 | Kind::ZvdEi
                 | Kind::MultiEi
                 | Kind::ChebyshevEi
+                | Kind::Vibrationless
+                | Kind::Antisymmetric
+                | Kind::Simultaneous
+                | Kind::Periodic
                 | Kind::Custom
                 | Kind::None
         )

@@ -7,21 +7,31 @@
 //! One file per family: [`zv`], [`hump_ei`], [`negative`], [`bias_point`], [`custom`]. Every design is checked by its own residual before it is returned: what
 //! leaves this module does at the mode what its kind promises, or is an error that says where the kind ends.
 
+pub mod antisymmetric;
 pub mod bias_point;
 mod convolution;
 pub mod custom;
 mod equations;
 mod error;
 pub mod hump_ei;
+mod joint;
+mod joint_error;
 pub mod kind;
 mod machine;
 pub mod negative;
 mod newton;
 mod path;
+pub mod periodic;
+pub mod ratios;
+pub mod simultaneous;
+mod time_optimal;
+pub mod vibrationless;
 pub mod zv;
 
 pub use convolution::{ConvolutionFigures, ConvolutionWarning, CrossGain, convolution_figures};
 pub use error::DesignError;
+pub use joint::Findings;
+pub use joint_error::JointError;
 pub use machine::{AxisTables, MachineDesign, ModeFigures, design_machine};
 
 use crate::analysis::residual_vibration;
@@ -47,6 +57,8 @@ pub struct AxisDesign {
     pub impulses: ImpulseSequence,
     /// What the impulses are made of: digitising needs it.
     pub parts: Parts,
+    /// What else the design found out.
+    pub findings: Findings,
 }
 
 /// What an axis's impulses are made of.
@@ -77,31 +89,24 @@ pub struct Part {
 /// # Errors
 /// [`DesignError`] where a kind is not built, does not exist for a mode, or is given what it cannot take.
 pub fn design_axis(axis: &Axis) -> Result<AxisDesign, DesignError> {
-    let (impulses, parts) = match axis.joint_kind() {
+    let (impulses, parts, findings) = match axis.joint_kind() {
         Some(kind) => {
             let reference = axis.modes.first().map(|m| m.mode);
-            (joint_impulses(axis, kind)?, Parts::Joint { reference })
+            let (impulses, findings) = joint::design(axis, kind)?;
+            (impulses, Parts::Joint { reference }, findings)
         }
-        None => per_mode(axis)?,
+        None => {
+            let (impulses, parts) = per_mode(axis)?;
+            (impulses, parts, Findings::None)
+        }
     };
     Ok(AxisDesign {
         name: axis.name.clone(),
         kind: axis.kind_name(),
         impulses,
         parts,
+        findings,
     })
-}
-
-/// The impulses of a kind that treats all modes together.
-fn joint_impulses(axis: &Axis, kind: Kind) -> Result<ImpulseSequence, DesignError> {
-    match kind {
-        Kind::None => Ok(ImpulseSequence::unity()),
-        Kind::Custom => {
-            let given = axis.shaper.as_ref().map_or(&[][..], |s| &s.impulses);
-            custom::design(&axis.name, given)
-        }
-        _ => Err(DesignError::NotBuilt { kind }),
-    }
 }
 
 /// One shaper per mode, and their convolution.
@@ -164,6 +169,8 @@ fn mode_impulses(axis: &Axis, axis_mode: &AxisMode) -> Result<ImpulseSequence, D
             let order = axis.order_of(axis_mode);
             (bias_point::design(kind, order, &mode, tolerance)?, tolerance)
         }
+        // The cascade promises a band, not a residual: damping is left out of its design, and reported.
+        Kind::Vibrationless => return vibrationless::design(&mode, axis.order_of(axis_mode), axis.epsilon()),
         // What serves all modes of an axis cannot be one mode's share of a convolution.
         _ if kind.treats_modes_together() => {
             return Err(DesignError::JointKindOfOneMode {

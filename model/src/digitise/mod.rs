@@ -202,7 +202,7 @@ fn convolve(a: &BTreeMap<u32, f64>, b: &BTreeMap<u32, f64>) -> BTreeMap<u32, f64
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::design::Part;
+    use crate::design::{Findings, Part};
 
     fn custom(pairs: &[(f64, f64)], reference: Option<Mode>) -> AxisDesign {
         let impulses = pairs.iter().map(|&(time_s, amplitude)| Impulse { time_s, amplitude });
@@ -211,6 +211,7 @@ mod tests {
             kind: "custom".into(),
             impulses: ImpulseSequence::new(impulses.collect()).unwrap(),
             parts: Parts::Joint { reference },
+            findings: Findings::None,
         }
     }
 
@@ -295,6 +296,7 @@ mod tests {
             kind: "zv".into(),
             impulses: first.impulses.convolve(&second.impulses).unwrap(),
             parts: Parts::PerMode(vec![first, second]),
+            findings: Findings::None,
         };
         let taps = digitise(&design, Digitise::Modal, 2000.0).unwrap();
         assert_eq!(taps.method_used, Method::Modal);

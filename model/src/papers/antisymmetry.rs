@@ -55,16 +55,30 @@ fn test(sheet: &mut Sheet) -> Result<(), DesignError> {
     sheet.formula("section 4: T_a of 2, 14 rad/s in s: π/2", half(2.0), half(pair.divisor));
     let three = common_divisor(&[30.0, 105.0, 385.0])?;
     sheet.equal("section 3: ω_c of 30, 105, 385 rad/s", "5", three.divisor);
-    sheet.equal("section 3: m of 30, 105, 385 rad/s", ["6", "21", "77"], numbers(&three.multiples));
+    sheet.equal(
+        "section 3: m of 30, 105, 385 rad/s",
+        ["6", "21", "77"],
+        numbers(&three.multiples),
+    );
     let verdict = |antisymmetric: bool| if antisymmetric { "has one" } else { "none" };
     let found = verdict(three.is_antisymmetric());
-    sheet.claim("section 3: antiperiod of 30, 105, 385 rad/s", "none", found.into(), found == "none");
+    sheet.claim(
+        "section 3: antiperiod of 30, 105, 385 rad/s",
+        "none",
+        found.into(),
+        found == "none",
+    );
     minors(sheet, &three.multiples);
 
     let classes = partition(&[30.0, 105.0, 385.0])?;
     let last = classes.iter().find(|class| class.members == [1, 2]);
     let shared = last.is_some_and(|class| class.multiples.is_antisymmetric());
-    sheet.claim("section 3: modes 2 and 3 alone", "has one", verdict(shared).into(), shared);
+    sheet.claim(
+        "section 3: modes 2 and 3 alone",
+        "has one",
+        verdict(shared).into(),
+        shared,
+    );
     let (divisor, multiples) = last.map_or((f64::NAN, Vec::new()), |class| {
         (class.multiples.divisor, numbers(&class.multiples.multiples))
     });
@@ -129,7 +143,11 @@ fn minors(sheet: &mut Sheet, multiples: &[u64]) {
         let equations: Vec<Equation> = rows.iter().map(|row| pairs[*row]).collect();
         [false, true].map(|augmented| minors_divisor(&equations, augmented) as f64)
     };
-    sheet.equal("section 3: gcd of minors, rows 1, 2, without and with right side", ["24", "12"], divisors(&[0, 1]));
+    sheet.equal(
+        "section 3: gcd of minors, rows 1, 2, without and with right side",
+        ["24", "12"],
+        divisors(&[0, 1]),
+    );
     for (rows, name) in [(&[0, 2][..], "1, 3"), (&[1, 2], "2, 3"), (&[0, 1, 2], "1, 2, 3")] {
         let [plain, augmented] = divisors(rows);
         sheet.by_rule(
@@ -146,10 +164,23 @@ fn minors(sheet: &mut Sheet, multiples: &[u64]) {
 fn undamped(sheet: &mut Sheet) -> Result<(), DesignError> {
     let modes = example_modes(0.0);
     let sizes = |impulses: &[Impulse]| impulses.iter().map(|i| i.amplitude).collect::<Vec<_>>();
-    sheet.equal("Table 1: two impulses", [".5", ".5"], sizes(&antisymmetric("two-impulse", &modes)?));
-    sheet.equal("Table 1: three impulses", [".25", ".5", ".25"], sizes(&antisymmetric("three-impulse", &modes)?));
+    sheet.equal(
+        "Table 1: two impulses",
+        [".5", ".5"],
+        sizes(&antisymmetric("two-impulse", &modes)?),
+    );
+    sheet.equal(
+        "Table 1: three impulses",
+        [".25", ".5", ".25"],
+        sizes(&antisymmetric("three-impulse", &modes)?),
+    );
     let lowest_period_s = modes[0].damped_period_s();
-    sheet.erratum("section 4.1: T of 2 rad/s in s, printed as 2π/3", "2.0944", lowest_period_s, "2π/2 = π");
+    sheet.erratum(
+        "section 4.1: T of 2 rad/s in s, printed as 2π/3",
+        "2.0944",
+        lowest_period_s,
+        "2π/2 = π",
+    );
     let two = antisymmetric("two-impulse", &modes)?;
     sheet.erratum(
         "text: time needed is at least the period of the lowest frequency, s",
@@ -167,8 +198,17 @@ fn damped(sheet: &mut Sheet) -> Result<(), DesignError> {
     let three = antisymmetric("three-impulse", &modes)?;
     let sizes = |impulses: &[Impulse]| impulses.iter().map(|i| i.amplitude).collect::<Vec<_>>();
     let of_two = sizes(&two);
-    let first = of_two.first().zip(of_two.last()).map_or(f64::NAN, |(first, last)| first / last);
-    sheet.by_rule("section 4.2: I1", "1.2144", first, Rule::Truncated, "truncated in print; 1.2145 rounded");
+    let first = of_two
+        .first()
+        .zip(of_two.last())
+        .map_or(f64::NAN, |(first, last)| first / last);
+    sheet.by_rule(
+        "section 4.2: I1",
+        "1.2144",
+        first,
+        Rule::Truncated,
+        "truncated in print; 1.2145 rounded",
+    );
     sheet.equal("Table 2: two impulses", [".5484", ".4516"], of_two);
     let times: Vec<f64> = three.iter().skip(1).map(|i| i.time_s).collect();
     sheet.equal("Table 2: times of three impulses in s", ["1.57", "3.14"], times);
@@ -192,7 +232,11 @@ fn damped(sheet: &mut Sheet) -> Result<(), DesignError> {
 fn effectiveness(sheet: &mut Sheet) -> Result<(), DesignError> {
     let modes = example_modes(DAMPING);
     let classical = shaper(Kind::Zvd, &modes)?;
-    sheet.equal("section 4.3: impulses of the classical method", "9", amplitudes(&classical).len() as f64);
+    sheet.equal(
+        "section 4.3: impulses of the classical method",
+        "9",
+        amplitudes(&classical).len() as f64,
+    );
     let nine: Vec<Impulse> = on_grid(amplitudes(&classical), &times_s(&classical));
     let three = on_grid(THREE_PRINTED.to_vec(), &[PI / 2.0, PI]);
     let nominal = [&three, &nine].map(|shaper| peak_ratio(shaper, &modes));
@@ -224,7 +268,10 @@ fn with_times(amplitudes: Vec<f64>, later_s: &[f64]) -> Vec<Impulse> {
 
 /// Times at the nearest sample of the paper's simulations.
 fn on_grid(amplitudes: Vec<f64>, later_s: &[f64]) -> Vec<Impulse> {
-    let rounded: Vec<f64> = later_s.iter().map(|time_s| (time_s / GRID_S).round() * GRID_S).collect();
+    let rounded: Vec<f64> = later_s
+        .iter()
+        .map(|time_s| (time_s / GRID_S).round() * GRID_S)
+        .collect();
     with_times(amplitudes, &rounded)
 }
 

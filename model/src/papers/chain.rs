@@ -34,7 +34,9 @@ impl Chain {
     /// Position less the step, as a fraction of the step, at a time after the last impulse.
     pub(super) fn vibration(&self, impulses: &[Impulse], time_s: f64) -> f64 {
         let modes = self.modes.iter().map(|(pole, residue)| {
-            let terms = impulses.iter().map(|i| (pole * (time_s - i.time_s)).exp() * i.amplitude);
+            let terms = impulses
+                .iter()
+                .map(|i| (pole * (time_s - i.time_s)).exp() * i.amplitude);
             2.0 * (residue * terms.sum::<Complex<f64>>()).re
         });
         modes.sum()

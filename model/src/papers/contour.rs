@@ -82,7 +82,9 @@ pub(super) fn excursion(shapers: &[ImpulseSequence; 2], ratio: f64) -> f64 {
 pub(super) fn radius_errors_mm(shapers: &[ImpulseSequence; 2], ratio: f64, duration_s: f64) -> Vec<(f64, f64)> {
     let radii = path(shapers, ratio, duration_s).into_iter().enumerate();
     let errors = radii.map(|(look, (x, y))| (look as f64 * LOOK_S, RADIUS_MM * (x.hypot(y) - 1.0)));
-    errors.skip_while(|(_, error_mm)| *error_mm < -0.1 * RADIUS_MM).collect()
+    errors
+        .skip_while(|(_, error_mm)| *error_mm < -0.1 * RADIUS_MM)
+        .collect()
 }
 
 #[cfg(test)]

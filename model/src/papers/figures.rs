@@ -63,7 +63,10 @@ pub(super) fn hybrid_ei() -> Result<Vec<Figure>, DesignError> {
     let sensitivity = |kind: Kind, high: f64| -> Result<Vec<(f64, f64)>, DesignError> {
         let designed = shaper(kind, &[mode])?;
         let points = sensitivity_curve(designed.impulses(), &mode, 0.0, high, POINTS);
-        Ok(points.into_iter().map(|(ratio, residual)| (ratio, 100.0 * residual)).collect())
+        Ok(points
+            .into_iter()
+            .map(|(ratio, residual)| (ratio, 100.0 * residual))
+            .collect())
     };
     let mut near = vec![level("5 %", 0.0, 2.0, 5.0)];
     for (name, kind) in hybrid_ei::TABLE_1 {
@@ -107,7 +110,11 @@ pub(super) fn negative_hybrid() -> Result<Vec<Figure>, DesignError> {
     Ok(vec![
         figure("Positive hybrids", &negative_hybrid::PAIRS, negative_hybrid::positive)?,
         figure("Negative hybrids", &negative_hybrid::PAIRS, negative_hybrid::negative)?,
-        figure("One negative kind for both modes", &negative_hybrid::PLAIN, negative_hybrid::negative)?,
+        figure(
+            "One negative kind for both modes",
+            &negative_hybrid::PLAIN,
+            negative_hybrid::negative,
+        )?,
     ])
 }
 
@@ -119,7 +126,9 @@ fn in_milliseconds(points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
 pub(super) fn vibrationless() -> Result<Vec<Figure>, DesignError> {
     const EPSILON: f64 = 0.05;
     let spectrum = |ratios: &[f64], high: f64| -> Vec<(f64, f64)> {
-        spaced(2.0 - high, high).map(|omega| (omega, 2.0 * gain(ratios, omega))).collect()
+        spaced(2.0 - high, high)
+            .map(|omega| (omega, 2.0 * gain(ratios, omega)))
+            .collect()
     };
     let (mut whole, mut near) = (
         vec![level("ε = 0.05", 0.2, 1.8, EPSILON)],
@@ -161,9 +170,9 @@ pub(super) fn antisymmetry() -> Result<Vec<Figure>, DesignError> {
                 let passed = impulses.iter().filter(|i| i.time_s <= time_s);
                 let terms = passed.flat_map(|i| {
                     let passed_s = time_s - i.time_s;
-                    modes.iter().map(move |m| {
-                        i.amplitude * (-m.decay() * passed_s).exp() * (m.omega_damped() * passed_s).sin()
-                    })
+                    modes
+                        .iter()
+                        .map(move |m| i.amplitude * (-m.decay() * passed_s).exp() * (m.omega_damped() * passed_s).sin())
                 });
                 terms.sum()
             };
@@ -178,8 +187,14 @@ pub(super) fn antisymmetry() -> Result<Vec<Figure>, DesignError> {
                     reference: true,
                     ..curve("unshaped", response(ImpulseSequence::unity().impulses()))
                 },
-                curve("two impulses", response(&antisymmetry::antisymmetric("two-impulse", &modes)?)),
-                curve("three impulses", response(&antisymmetry::antisymmetric("three-impulse", &modes)?)),
+                curve(
+                    "two impulses",
+                    response(&antisymmetry::antisymmetric("two-impulse", &modes)?),
+                ),
+                curve(
+                    "three impulses",
+                    response(&antisymmetry::antisymmetric("three-impulse", &modes)?),
+                ),
                 curve("classical, four", response(shaper(Kind::Zv, &modes)?.impulses())),
             ],
         })
@@ -195,7 +210,11 @@ pub(super) fn xy_stage() -> Result<Vec<Figure>, DesignError> {
     const KINDS: [(&str, Kind); 3] = [("unshaped", Kind::None), ("ZV", Kind::Zv), ("ZVD", Kind::Zvd)];
     let x = &xy_stage::PLANTS[0];
     let mut figures = Vec::new();
-    for (ratio, name) in [(0.9, "10 % slower than modelled"), (1.0, "as modelled"), (1.1, "10 % faster than modelled")] {
+    for (ratio, name) in [
+        (0.9, "10 % slower than modelled"),
+        (1.0, "as modelled"),
+        (1.1, "10 % faster than modelled"),
+    ] {
         let mut curves = vec![level("target", 0.0, 40.0, 1.0)];
         for (kind_name, kind) in KINDS {
             let designed = shaper(kind, &[x.mode()])?;
@@ -212,7 +231,10 @@ pub(super) fn xy_stage() -> Result<Vec<Figure>, DesignError> {
     for (ratio, name) in [(1.0, "plants as modelled"), (0.9, "plants 10 % slower")] {
         let mut curves = vec![level("the circle", 0.0, 60.0, 0.0)];
         for (kind_name, kind) in KINDS {
-            let shapers = [shaper(kind, &[xy_stage::PLANTS[0].mode()])?, shaper(kind, &[xy_stage::PLANTS[1].mode()])?];
+            let shapers = [
+                shaper(kind, &[xy_stage::PLANTS[0].mode()])?,
+                shaper(kind, &[xy_stage::PLANTS[1].mode()])?,
+            ];
             let points = contour::radius_errors_mm(&shapers, ratio, 0.06);
             curves.push(curve(kind_name, in_milliseconds(points)));
         }

@@ -54,7 +54,11 @@ pub(super) fn rows(sheet: &mut Sheet) -> Result<(), DesignError> {
 /// Equations (6) to (20).
 fn single_hybrids(sheet: &mut Sheet) -> Result<(), DesignError> {
     let ei = base(Kind::ZvEi)?;
-    sheet.equal("eqs (6), (7): amplitudes of ZV-EI", [".2625", ".475", ".2625"], ei.amplitudes.clone());
+    sheet.equal(
+        "eqs (6), (7): amplitudes of ZV-EI",
+        [".2625", ".475", ".2625"],
+        ei.amplitudes.clone(),
+    );
     constant_for_impulse(sheet, "eq (7): first term of H(t)", "0.2625", ei.amplitudes.first());
     sheet.equal("eq (8): λ of ZV-EI", ".1997", ei.lambda);
     let root = TOLERANCE.sqrt();
@@ -123,11 +127,25 @@ fn widths(sheet: &mut Sheet) -> Result<(), DesignError> {
     for ((name, kind), printed) in TABLE_1.into_iter().zip(PRINTED) {
         let lambda = lambda(kind)?;
         widest = widest.max(2.0 * lambda);
-        sheet.equal(format!("Table 1: one-sided width of {name}, %"), printed, 100.0 * lambda);
+        sheet.equal(
+            format!("Table 1: one-sided width of {name}, %"),
+            printed,
+            100.0 * lambda,
+        );
     }
     let of_multi = 100.0 * lambda(Kind::MultiEi)?;
-    sheet.erratum("text: one-sided width of Multi-EI, %", "48.4", of_multi, "contradicts Table 1 and λ = .4819");
-    sheet.exceeded("text: no 2λ exceeds", "1", widest, "ZVD-EI, in Table 1 itself, has 1.183");
+    sheet.erratum(
+        "text: one-sided width of Multi-EI, %",
+        "48.4",
+        of_multi,
+        "contradicts Table 1 and λ = .4819",
+    );
+    sheet.exceeded(
+        "text: no 2λ exceeds",
+        "1",
+        widest,
+        "ZVD-EI, in Table 1 itself, has 1.183",
+    );
     Ok(())
 }
 
@@ -159,10 +177,20 @@ fn sensitivities(sheet: &mut Sheet) -> Result<(), DesignError> {
     }
     let multi = base(Kind::MultiEi)?;
     let zero = multi.zeros_theta.iter().fold(0.0, |most: f64, theta| most.max(*theta)) / PI * SYSTEM;
-    sheet.erratum("Table 2: label of row 3 in rad/s", "16.624", zero, "the zero of Multi-EI; its printed mirror agrees");
+    sheet.erratum(
+        "Table 2: label of row 3 in rad/s",
+        "16.624",
+        zero,
+        "the zero of Multi-EI; its printed mirror agrees",
+    );
     sheet.equal("Table 2: mirror of row 3 in rad/s", "23.386", 2.0 * SYSTEM - zero);
     let mirror = 2.0 * SYSTEM - 17.2;
-    sheet.erratum("Table 2: mirror of row 4, 17.2 rad/s", "20.28", mirror, "residuals repeat at 2·20 − ω");
+    sheet.erratum(
+        "Table 2: mirror of row 4, 17.2 rad/s",
+        "20.28",
+        mirror,
+        "residuals repeat at 2·20 − ω",
+    );
     Ok(())
 }
 
@@ -182,7 +210,11 @@ fn intersections(sheet: &mut Sheet) -> Result<(), DesignError> {
         ["13.0775", "13.8994"],
         [first.low_hz, first.high_hz],
     );
-    sheet.equal("section 3.2: n of the first interval", ["0", "1", "2", "4"], multiples(first));
+    sheet.equal(
+        "section 3.2: n of the first interval",
+        ["0", "1", "2", "4"],
+        multiples(first),
+    );
     sheet.equal(
         "section 3.2: second interval of ω_sys in rad/s",
         ["7.1716", "7.5069"],
@@ -198,7 +230,11 @@ fn intersections(sheet: &mut Sheet) -> Result<(), DesignError> {
     sheet.equal("section 3.2: solutions with n1 = 0", "2", with_zero as f64);
     let of_ei = search(0.1997)?;
     let small = of_ei.iter().filter(|s| s.n.first().is_some_and(|n| *n <= 1)).count();
-    sheet.equal("section 3.2: solutions of EI (λ = .1997) with n1 = 0 or 1", "0", small as f64);
+    sheet.equal(
+        "section 3.2: solutions of EI (λ = .1997) with n1 = 0 or 1",
+        "0",
+        small as f64,
+    );
     sheet.erratum(
         "text: solutions for a smaller tolerance (EI) above 1 rad/s",
         "0",
@@ -223,7 +259,10 @@ fn four_modes(sheet: &mut Sheet) -> Result<(), DesignError> {
     sheet.equal("text: impulses of the EI cascade and of Multi-EI", ["81", "5"], counts);
     for (damping, note) in [
         (0.0, "largest deviation in 60 s after the last impulse"),
-        (0.01, "holds for the sum; alone, modes 3 and 4 exceed 5 %, but they are 1 % of the motion"),
+        (
+            0.01,
+            "holds for the sum; alone, modes 3 and 4 exceed 5 %, but they are 1 % of the motion",
+        ),
     ] {
         sheet.by_rule(
             format!("section 4: vibration after the last impulse, δ = {damping}, % of the step"),

@@ -204,8 +204,7 @@ const TABLE_5: [[&str; 4]; 6] = [
 ];
 
 fn durations(sheet: &mut Sheet) -> Result<(), DesignError> {
-    const READ_OFF: &str =
-        "not the shaper's duration; it contradicts Tables 3 and 4, too: probably read off a plot";
+    const READ_OFF: &str = "not the shaper's duration; it contradicts Tables 3 and 4, too: probably read off a plot";
     const FROM_COLUMNS: &str = "from the two columns of the table, which themselves are wrong";
     let mut savings = Vec::new();
     let mut longest = (String::new(), 0.0);

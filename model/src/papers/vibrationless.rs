@@ -28,7 +28,8 @@ pub(super) fn rows(sheet: &mut Sheet) -> Result<(), DesignError> {
 
 /// Table 1: frequencies of greatest robustness.
 fn table(sheet: &mut Sheet) -> Result<(), DesignError> {
-    const R_FORGOTTEN: &str = "with 0.176 only K keeps its bound; R does not, though rows 1 and 3 of the table apply it";
+    const R_FORGOTTEN: &str =
+        "with 0.176 only K keeps its bound; R does not, though rows 1 and 3 of the table apply it";
     let best = [1, 2, 3].map(|order| optimum(order, EPSILON));
     let [one, two, three] = best;
     let (one, two, three) = (one?, two?, three?);
@@ -56,7 +57,11 @@ fn table(sheet: &mut Sheet) -> Result<(), DesignError> {
 /// What the paper's own frequencies do.
 fn own_frequencies(sheet: &mut Sheet) {
     let [one, two, three] = PAPER_RATIOS;
-    sheet.equal("Table 1: Δ of the printed frequencies, n = 1", ".016", robustness_index(one, EPSILON));
+    sheet.equal(
+        "Table 1: Δ of the printed frequencies, n = 1",
+        ".016",
+        robustness_index(one, EPSILON),
+    );
     sheet.erratum(
         "Table 1: Δ of the printed frequencies, n = 2",
         ".176",
@@ -78,7 +83,10 @@ fn own_frequencies(sheet: &mut Sheet) {
     );
     // A band of 17.6 % round each of the frequencies 1 and 2.7, a cascade of two for each.
     const MODES: [f64; 2] = [1.0, 2.7];
-    let ratios: Vec<f64> = MODES.iter().flat_map(|mode| two.iter().map(move |r| mode * r)).collect();
+    let ratios: Vec<f64> = MODES
+        .iter()
+        .flat_map(|mode| two.iter().map(move |r| mode * r))
+        .collect();
     for mode in MODES {
         const LOOKS: u32 = 4000;
         let looks = (0..=LOOKS).map(|look| 0.824 + 0.352 * f64::from(look) / f64::from(LOOKS));
@@ -121,7 +129,11 @@ fn theorem(sheet: &mut Sheet) -> Result<(), DesignError> {
     let long = Trajectory::pulse(1.0, 5.0 * PI).shaped(one.impulses());
     let short = Trajectory::pulse(1.0, 0.5 * PI).shaped(one.impulses());
     sheet.equal("eq (3): K at ω_0, n = 1, T = 5π", "1.00", dynamic(&long));
-    sheet.equal("eq (3): R at ω_0, n = 1, T = 5π", "0.00", response(1.0, &long).residual_displacement.iter().sum::<f64>());
+    sheet.equal(
+        "eq (3): R at ω_0, n = 1, T = 5π",
+        "0.00",
+        response(1.0, &long).residual_displacement.iter().sum::<f64>(),
+    );
     const LONG_ENOUGH: &str = "the theorem needs T > Σ τ, which it does not say: T = π/2 is shorter than τ = π";
     sheet.erratum("eq (3): K at ω_0, n = 1, T = π/2", "1.00", dynamic(&short), LONG_ENOUGH);
     sheet.erratum(

@@ -211,6 +211,10 @@ fn controller(sheet: &mut Sheet) {
         "150",
         "the thesis gives no unit, and either reading is no controller: 15 g, or less than the friction",
     );
-    sheet.unjudged("chapter 4: sliding mode follows better than PID under friction", "it does", LATER);
+    sheet.unjudged(
+        "chapter 4: sliding mode follows better than PID under friction",
+        "it does",
+        LATER,
+    );
     sheet.unjudged("chapter 4: sliding mode removes the error", "it does", LATER);
 }

@@ -170,8 +170,10 @@ pub struct Axis {
 
 /// Residual that an EI kind tolerates where the file gives no tolerance.
 pub const DEFAULT_TOLERANCE: f64 = 0.05;
+/// Residual bound of `vibrationless` where the file gives no epsilon.
+const DEFAULT_EPSILON: f64 = 0.05;
 /// Zero pairs of `chebyshev-ei` where the file gives no order.
-const DEFAULT_CHEBYSHEV_ORDER: u32 = 3;
+pub(crate) const DEFAULT_CHEBYSHEV_ORDER: u32 = 3;
 /// Frequencies per mode of `vibrationless` where the file gives no order.
 const DEFAULT_VIBRATIONLESS_ORDER: u32 = 2;
 
@@ -209,6 +211,18 @@ impl Axis {
             Kind::Vibrationless => DEFAULT_VIBRATIONLESS_ORDER,
             _ => 1,
         })
+    }
+
+    /// Residual bound of `vibrationless`, default 0.05.
+    pub fn epsilon(&self) -> f64 {
+        self.shaper.as_ref().and_then(|s| s.epsilon).unwrap_or(DEFAULT_EPSILON)
+    }
+
+    /// Search limit of `periodic` in Hz: the file's, else a tenth of the lowest mode's frequency.
+    pub fn lowest_frequency_hz(&self) -> f64 {
+        let given = self.shaper.as_ref().and_then(|s| s.lowest_frequency_hz);
+        let modes = self.modes.iter().map(|m| m.mode.frequency_hz);
+        given.unwrap_or_else(|| modes.fold(f64::INFINITY, f64::min) / 10.0)
     }
 
     /// The kind as reports and JSON name it: the axis's where every mode follows it, else those of the modes joined by

@@ -182,6 +182,8 @@ pub(super) fn check(
     if let Some((table, choice)) = shaper {
         let own_kinds = modes.iter().filter_map(|(_, mode)| mode.shaper);
         let used: Vec<Kind> = own_kinds.chain([choice.kind]).collect();
+        // The base of `periodic` has the order of its own kind.
+        let used: Vec<Kind> = used.into_iter().chain(choice.base).collect();
         for (key, kinds) in KEYS_OF_KINDS {
             check_key(table, key, kinds, &used);
         }

@@ -92,6 +92,11 @@ fn unit_keys_of_other_kinds_are_refused() {
     let expected = "m.toml:15: axis.mode.order of axis x, mode 1: found order with kind zvd; allowed: order with kind \
                     chebyshev-ei, vibrationless";
     breaks("damping = 0.1", "damping = 0.1\norder = 2", expected);
+    let periodic = |base: &str| SMALL.replace("\"zvd\"", &format!("\"periodic\"\nbase = \"{base}\"\norder = 2"));
+    right(&periodic("chebyshev-ei"));
+    let expected = "m.toml:13: axis.shaper.order of axis x: found order with kind periodic, multi-ei; allowed: order with \
+                    kind chebyshev-ei, vibrationless";
+    assert_eq!(wrong(&periodic("multi-ei")).to_string(), expected);
     let expected = "m.toml:12: axis.shaper.impulses of axis x: found impulses with kind = \"zvd\"; allowed: impulses with \
                     kind = \"custom\" only";
     breaks("\"zvd\"", "\"zvd\"\nimpulses = [[0, 1]]", expected);

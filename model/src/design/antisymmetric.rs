@@ -1,0 +1,252 @@
+//! `antisymmetric`: one shaper for all modes that stand mirrored at the same instant.
+//!
+//! Modes whose damped frequencies are odd multiples `m_i` of one `f_c` have the antiperiod `T_a = 1/(2 f_c)` in common
+//! (Singh and Heppler 1993; [`ratios`] finds it). Two impulses then do for all of them what otherwise takes two per mode,
+//! multiplied. Modes without a common antiperiod are split into the fewest sets with one each; the sets' shapers are
+//! convolved. With the decay rates `σ_i = ζ_i ω_i`:
+//!
+//! ```text
+//! exact           Π_j [1, K_j]/(1 + K_j) at 0, T_a,  K_j = e^{−σ_j T_a}, over the distinct decay rates: no residual
+//! two-impulse     [I_1, 1]/(I_1 + 1) at 0, T_a,      I_1 = Σ A_i m_i / Σ A_i m_i e^{−σ_i T_a}
+//! three-impulse   displacement, velocity, and their derivatives for a common error of the frequencies are zero after the
+//!                 third impulse (the paper's equations 35 to 38), solved for two amplitudes and two times
+//! ```
+//!
+//! `A_i` is the participation. Undamped, two impulses are `[½, ½]` and three `[¼, ½, ¼]` at multiples of `T_a`. The two
+//! damped solutions of the paper bring the *sum* of the modes to rest, not each mode: with unequal decay rates they leave
+//! a residual, which is reported. `exact` is this project's replacement and the default.
+//!
+//! Limits: a relative error `e` of the frequencies acts on mode `i` as `m_i·e`; high multiples are fragile.
+
+use std::f64::consts::PI;
+
+use nalgebra::{Complex, DVector};
+
+use super::joint_error::{JointError, check_distinct, list};
+use super::kind::Kind;
+use super::ratios::{self, Class, MULTIPLE_MAX};
+use super::{DesignError, newton};
+use crate::impulse::{Impulse, ImpulseSequence};
+use crate::mode::Mode;
+
+/// How the impulses of a set of modes are found.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Method {
+    /// Product over the distinct decay rates: no residual at any mode.
+    #[default]
+    Exact,
+    /// The paper's two impulses.
+    TwoImpulse,
+    /// The paper's three impulses.
+    ThreeImpulse,
+}
+
+impl Method {
+    /// The method of that name in the machine file.
+    pub fn from_name(name: &str) -> Option<Self> {
+        match name {
+            "exact" => Some(Method::Exact),
+            "two-impulse" => Some(Method::TwoImpulse),
+            "three-impulse" => Some(Method::ThreeImpulse),
+            _ => None,
+        }
+    }
+}
+
+/// A mode with its share in the response.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Participant {
+    /// The mode.
+    pub mode: Mode,
+    /// `A_i`; only ratios count.
+    pub participation: f64,
+}
+
+/// An antisymmetric shaper.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Antisymmetric {
+    /// Impulses of the whole.
+    pub impulses: ImpulseSequence,
+    /// The sets of modes that share an antiperiod, by position; frequencies in Hz.
+    pub classes: Vec<Class>,
+}
+
+/// Designs a shaper for all modes; `ratio_tolerance` is the relative error at which a frequency counts as an odd multiple,
+/// 0 for the frequencies as they are.
+///
+/// With a tolerance all modes form one set; without, as few sets as there can be.
+///
+/// # Errors
+/// [`JointError::NoCommonDivisor`] without a usable antiperiod, [`JointError::NoAntisymmetry`] where no two of several
+/// modes share one, [`JointError::ThreeImpulse`] where the paper's equations have no solution; [`DesignError`] for a mode
+/// that is none.
+pub fn design(
+    participants: &[Participant],
+    method: Method,
+    ratio_tolerance: f64,
+) -> Result<Antisymmetric, DesignError> {
+    let modes: Vec<Mode> = participants.iter().map(|p| p.mode).collect();
+    modes.iter().try_for_each(DesignError::check_mode)?;
+    check_distinct(&modes)?;
+    let damped_hz: Vec<f64> = modes.iter().map(Mode::damped_frequency_hz).collect();
+    let classes = if ratio_tolerance > 0.0 {
+        vec![Class {
+            members: (0..modes.len()).collect(),
+            multiples: ratios::nearest_odd(&damped_hz, ratio_tolerance)?,
+        }]
+    } else {
+        antisymmetric_classes(&damped_hz)?
+    };
+    let no_sequence = |cause| DesignError::NoSequence {
+        what: format!("shaper \"{}\"", Kind::Antisymmetric),
+        cause,
+    };
+    let mut impulses = ImpulseSequence::unity();
+    for class in &classes {
+        let members: Vec<Participant> = class.members.iter().map(|&index| participants[index]).collect();
+        let own = class_impulses(&members, class, method)?;
+        let own = ImpulseSequence::new(own).map_err(no_sequence)?;
+        impulses = impulses.convolve(&own).map_err(no_sequence)?;
+    }
+    Ok(Antisymmetric { impulses, classes })
+}
+
+/// The smallest partition, if it is worth one: some set of several modes must have two at least.
+fn antisymmetric_classes(damped_hz: &[f64]) -> Result<Vec<Class>, JointError> {
+    let classes = ratios::partition(damped_hz)?;
+    if classes.len() > 1 && classes.len() == damped_hz.len() {
+        let all = ratios::common_divisor(damped_hz)?;
+        let multiples: Vec<String> = all.multiples.iter().map(u64::to_string).collect();
+        return Err(JointError::NoAntisymmetry {
+            frequencies_hz: list(damped_hz),
+            multiples: multiples.join(", "),
+            divisor_hz: all.divisor,
+        });
+    }
+    Ok(classes)
+}
+
+fn class_impulses(members: &[Participant], class: &Class, method: Method) -> Result<Vec<Impulse>, JointError> {
+    let antiperiod_s = class.multiples.antiperiod().ok_or(JointError::NoCommonDivisor {
+        frequencies_hz: list(&members.iter().map(|p| p.mode.damped_frequency_hz()).collect::<Vec<_>>()),
+        most: MULTIPLE_MAX,
+    })?;
+    let decays: Vec<f64> = members.iter().map(|p| p.mode.decay()).collect();
+    // Modes that all participate with 0 count alike: they still must come to rest.
+    let none = members.iter().all(|p| p.participation == 0.0);
+    let swings = members
+        .iter()
+        .zip(&class.multiples.multiples)
+        .map(|(p, &multiple)| Swing {
+            amplitude: if none { 1.0 } else { p.participation },
+            multiple: multiple as f64,
+            decay: p.mode.decay() * antiperiod_s,
+        });
+    let swings: Vec<Swing> = swings.collect();
+    match method {
+        Method::Exact => Ok(exact(antiperiod_s, &decays)),
+        Method::TwoImpulse => Ok(two_impulse(antiperiod_s, &swings)),
+        Method::ThreeImpulse => three_impulse(antiperiod_s, &swings),
+    }
+}
+
+/// The product form: zero residual at every mode with one of these decay rates (in 1/s) and the antiperiod.
+///
+/// Rates that differ by rounding only are one. One impulse more than there are distinct rates.
+pub fn exact(antiperiod_s: f64, decays: &[f64]) -> Vec<Impulse> {
+    const SAME: f64 = 1e-12;
+    let mut sorted = decays.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    sorted.dedup_by(|b, a| *b - *a <= SAME * *b);
+    let mut amplitudes = vec![1.0];
+    for decay in sorted {
+        let ratio = (-decay * antiperiod_s).exp();
+        let share = |amplitude: f64| amplitude / (1.0 + ratio);
+        let mut next: Vec<f64> = amplitudes.iter().map(|a| share(*a)).chain([0.0]).collect();
+        for (index, amplitude) in amplitudes.iter().enumerate() {
+            next[index + 1] += share(*amplitude) * ratio;
+        }
+        amplitudes = next;
+    }
+    let impulses = amplitudes.iter().enumerate();
+    impulses
+        .map(|(index, &amplitude)| Impulse {
+            time_s: index as f64 * antiperiod_s,
+            amplitude,
+        })
+        .collect()
+}
+
+/// A mode in the units of the antiperiod.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Swing {
+    /// Participation `A_i`.
+    pub amplitude: f64,
+    /// Odd multiple `m_i`.
+    pub multiple: f64,
+    /// Decay `σ_i T_a` in one antiperiod.
+    pub decay: f64,
+}
+
+/// The paper's two impulses: the sum of the modes has no velocity after the second.
+pub fn two_impulse(antiperiod_s: f64, swings: &[Swing]) -> Vec<Impulse> {
+    let now: f64 = swings.iter().map(|s| s.amplitude * s.multiple).sum();
+    let later: f64 = swings.iter().map(|s| s.amplitude * s.multiple * (-s.decay).exp()).sum();
+    let first = now / later;
+    [(0.0, first / (1.0 + first)), (antiperiod_s, 1.0 / (1.0 + first))]
+        .map(|(time_s, amplitude)| Impulse { time_s, amplitude })
+        .to_vec()
+}
+
+/// The paper's three impulses, by Newton's method from the closed form at `T_a`, `2T_a`.
+///
+/// # Errors
+/// [`JointError::ThreeImpulse`] where there is no solution with positive amplitudes in order of time near there.
+pub fn three_impulse(antiperiod_s: f64, swings: &[Swing]) -> Result<Vec<Impulse>, JointError> {
+    let none = || JointError::ThreeImpulse { antiperiod_s };
+    let response = Response(swings);
+    // With both times at multiples of the antiperiod, equations 35 and 37 alone: I1 E2 − I2 E1 + E0 = 0, I2 E1 = 2 I1 E2.
+    let [rest, once, twice] = [0.0, 1.0, 2.0].map(|time| response.at(time)[1]);
+    let first = rest / twice;
+    let start = DVector::from_row_slice(&[first, -2.0 * first * twice / once, 1.0, 2.0]);
+    let scale: f64 = swings.iter().map(|s| s.amplitude * s.multiple).sum();
+    let equations = |x: &DVector<f64>| {
+        let (since_first, since_second) = (x[3], x[3] - x[2]);
+        let (a, b) = (response.at(since_first), response.at(since_second));
+        let sum = |order: usize| x[0] * a[order] + x[1] * b[order];
+        let weighted = |order: usize| x[0] * since_first * a[order] + x[1] * since_second * b[order];
+        DVector::from_row_slice(&[sum(1) + rest, sum(0), weighted(1), weighted(2)]) / scale
+    };
+    let found = newton::solve(equations, start, 1e-11).ok_or_else(none)?;
+    let amplitudes = [found[0], found[1], 1.0];
+    let times = [0.0, found[2], found[3]];
+    let ordered = times.windows(2).all(|pair| pair[0] < pair[1]);
+    if !(ordered && amplitudes.iter().all(|a| *a > 0.0)) {
+        return Err(none());
+    }
+    let total: f64 = amplitudes.iter().sum();
+    let impulses = times.iter().zip(amplitudes).map(|(time, amplitude)| Impulse {
+        time_s: time * antiperiod_s,
+        amplitude: amplitude / total,
+    });
+    Ok(impulses.collect())
+}
+
+/// Response of the sum of the modes to one impulse.
+struct Response<'a>(&'a [Swing]);
+
+impl Response<'_> {
+    /// Displacement, velocity and acceleration, `time` antiperiods after the impulse, in units of the antiperiod over π.
+    fn at(&self, time: f64) -> [f64; 3] {
+        let mut sums = [0.0; 3];
+        for swing in self.0 {
+            let pole = Complex::new(-swing.decay / PI, swing.multiple);
+            let mut value = (pole * (PI * time)).exp() * swing.amplitude;
+            for sum in &mut sums {
+                *sum += value.im;
+                value *= pole;
+            }
+        }
+        sums
+    }
+}

@@ -1,0 +1,121 @@
+//! Kinds that treat all modes of an axis together: from the keys of the machine file to their designs.
+
+use super::antisymmetric::{self, Antisymmetric, Method, Participant};
+use super::joint_error::JointError;
+use super::kind::Kind;
+use super::periodic::{self, Base, Periodic};
+use super::simultaneous::{self, Amplitudes, Constraint, Simultaneous};
+use super::{DesignError, RESIDUAL_TOLERANCE, custom};
+use crate::analysis::residual_vibration;
+use crate::impulse::ImpulseSequence;
+use crate::mode::Mode;
+use crate::spec::{Axis, DEFAULT_CHEBYSHEV_ORDER, DEFAULT_TOLERANCE};
+
+/// What a design found out beside its impulses.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub enum Findings {
+    /// Nothing.
+    #[default]
+    None,
+    /// All solutions of `periodic`.
+    Periodic(Periodic),
+    /// The sets of modes of `antisymmetric`, their multiples and errors.
+    Antisymmetric(Antisymmetric),
+    /// Whether the impulses of `simultaneous` are proven to be the shortest.
+    Simultaneous(Simultaneous),
+}
+
+/// Designs the shaper of an axis whose kind serves all modes, and checks it at every mode where the kind promises a zero.
+///
+/// # Errors
+/// [`DesignError::JointOfAxis`] with the axis and the cause; [`DesignError::NoModes`] without modes to design for.
+pub(super) fn design(axis: &Axis, kind: Kind) -> Result<(ImpulseSequence, Findings), DesignError> {
+    let given = axis.shaper.as_ref();
+    match kind {
+        Kind::None => return Ok((ImpulseSequence::unity(), Findings::None)),
+        Kind::Custom => {
+            let impulses = given.map_or(&[][..], |s| &s.impulses);
+            return Ok((custom::design(&axis.name, impulses)?, Findings::None));
+        }
+        _ => {}
+    }
+    if axis.modes.is_empty() {
+        return Err(DesignError::NoModes {
+            axis: axis.name.clone(),
+            kind: kind.to_string(),
+        });
+    }
+    let found = match kind {
+        Kind::Periodic => design_periodic(axis),
+        Kind::Antisymmetric => design_antisymmetric(axis),
+        Kind::Simultaneous => design_simultaneous(axis),
+        _ => return Err(DesignError::NotBuilt { kind }),
+    };
+    found.map_err(|cause| DesignError::JointOfAxis {
+        axis: axis.name.clone(),
+        kind,
+        cause: Box::new(cause),
+    })
+}
+
+fn design_periodic(axis: &Axis) -> Result<(ImpulseSequence, Findings), DesignError> {
+    let given = axis.shaper.as_ref();
+    let base = Base {
+        kind: given.and_then(|s| s.base).unwrap_or(Kind::MultiEi),
+        order: given.and_then(|s| s.order).unwrap_or(DEFAULT_CHEBYSHEV_ORDER),
+        tolerance: given.and_then(|s| s.tolerance).unwrap_or(DEFAULT_TOLERANCE),
+    };
+    let modes: Vec<(Mode, f64)> = axis.modes.iter().map(|m| (m.mode, axis.tolerance_of(m))).collect();
+    let found = periodic::design(&modes, base, axis.lowest_frequency_hz())?;
+    Ok((found.impulses.clone(), Findings::Periodic(found)))
+}
+
+fn design_antisymmetric(axis: &Axis) -> Result<(ImpulseSequence, Findings), DesignError> {
+    let given = axis.shaper.as_ref();
+    let method = given.and_then(|s| s.method.as_deref()).and_then(Method::from_name);
+    let method = method.unwrap_or_default();
+    let ratio_tolerance = given.and_then(|s| s.ratio_tolerance).unwrap_or(0.0);
+    let participants = axis.modes.iter().map(|m| Participant {
+        mode: m.mode,
+        participation: m.participation,
+    });
+    let participants: Vec<Participant> = participants.collect();
+    let found = antisymmetric::design(&participants, method, ratio_tolerance)?;
+    // The paper's damped impulses and ratios with a tolerance leave what they leave.
+    if method == Method::Exact && ratio_tolerance == 0.0 {
+        check_zeros(Kind::Antisymmetric, &found.impulses, axis)?;
+    }
+    Ok((found.impulses.clone(), Findings::Antisymmetric(found)))
+}
+
+fn design_simultaneous(axis: &Axis) -> Result<(ImpulseSequence, Findings), DesignError> {
+    let given = axis.shaper.as_ref();
+    let amplitudes = match given.and_then(|s| s.amplitude.as_deref()) {
+        Some("um") => Amplitudes::UnitMagnitude,
+        _ => Amplitudes::PartialSum,
+    };
+    let constraints = axis.modes.iter().map(|m| match axis.kind_of(m) {
+        Kind::Zv => Ok((m.mode, Constraint::Zv)),
+        Kind::Zvd => Ok((m.mode, Constraint::Zvd)),
+        other => Err(JointError::Constraint(other)),
+    });
+    let constraints: Vec<(Mode, Constraint)> = constraints.collect::<Result<_, _>>()?;
+    let found = simultaneous::design(&constraints, amplitudes)?;
+    check_zeros(Kind::Simultaneous, &found.impulses, axis)?;
+    Ok((found.impulses.clone(), Findings::Simultaneous(found)))
+}
+
+fn check_zeros(kind: Kind, impulses: &ImpulseSequence, axis: &Axis) -> Result<(), DesignError> {
+    for mode in axis.modes.iter().map(|m| m.mode) {
+        let found = residual_vibration(impulses.impulses(), &mode);
+        if found.is_nan() || found > RESIDUAL_TOLERANCE {
+            return Err(DesignError::Unverified {
+                kind,
+                mode,
+                found,
+                promised: 0.0,
+            });
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,175 @@
+//! Why a kind that treats all modes of an axis together has no shaper for them.
+
+use thiserror::Error;
+
+use super::kind::Kind;
+use crate::mode::Mode;
+
+/// Why the modes of an axis have no common shaper. Modes are counted from 1, in the order of the file.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum JointError {
+    /// Two modes that are one.
+    #[error("modes {first} and {second} coincide at {hz} Hz: leave one of them out", hz = mode.frequency_hz)]
+    Coincident {
+        /// Position of the first.
+        first: usize,
+        /// Position of the second.
+        second: usize,
+        /// The mode.
+        mode: Mode,
+    },
+    /// A base that does not repeat over the modes.
+    #[error("no base \"{0}\": choose zv-ei, multi-ei or chebyshev-ei")]
+    Base(Kind),
+    /// A search limit that is none.
+    #[error(
+        "lowest_frequency_hz {lowest_hz} with these modes means more than {most} periods to search; \
+         raise lowest_frequency_hz to {least_hz} or above"
+    )]
+    SearchRange {
+        /// The limit found.
+        lowest_hz: f64,
+        /// Most odd multiples per mode that are searched.
+        most: u32,
+        /// Smallest limit that is searched.
+        least_hz: f64,
+    },
+    /// No frequency whose odd multiples come near enough to every mode.
+    #[error(
+        "no periodic solution above lowest_frequency_hz {lowest_hz}: no frequency has odd multiples within {lambda:.4} of it \
+         of every mode; use a wider base (\"chebyshev-ei\" with order 5), a larger tolerance, a smaller \
+         lowest_frequency_hz, or a kind for each mode such as \"zv\""
+    )]
+    NoPeriodicSolution {
+        /// The search limit.
+        lowest_hz: f64,
+        /// One-sided relative width of the base.
+        lambda: f64,
+    },
+    /// Damping moves a mode above the tolerance.
+    #[error(
+        "the mode at {hz} Hz, damping {damping}, keeps a residual of {found:.6}, above its tolerance {tolerance}: the \
+         amplitudes are those of undamped modes; raise the tolerance, or use a kind for each mode such as \"zvd\"",
+        hz = mode.frequency_hz, damping = mode.damping
+    )]
+    AboveTolerance {
+        /// The mode.
+        mode: Mode,
+        /// Its residual.
+        found: f64,
+        /// Its tolerance.
+        tolerance: f64,
+    },
+    /// Frequencies without a usable common divisor.
+    #[error(
+        "the damped frequencies {frequencies_hz} Hz have no common divisor whose multiples stay below {most}, so no \
+         antiperiod that a shaper could wait for; set ratio_tolerance to the accuracy of the frequencies, or use a kind \
+         for each mode such as \"zv\""
+    )]
+    NoCommonDivisor {
+        /// The frequencies, as text.
+        frequencies_hz: String,
+        /// Largest multiple of the lowest mode.
+        most: u64,
+    },
+    /// No two modes share an antiperiod.
+    #[error(
+        "no antisymmetry: the damped frequencies {frequencies_hz} Hz are {multiples} times {divisor_hz} Hz, and no two of \
+         these multiples hold the same power of two; use a kind for each mode such as \"zv\", or set ratio_tolerance so \
+         that nearby odd multiples count"
+    )]
+    NoAntisymmetry {
+        /// The frequencies, as text.
+        frequencies_hz: String,
+        /// The multiples of the common divisor, as text.
+        multiples: String,
+        /// Common divisor.
+        divisor_hz: f64,
+    },
+    /// Newton's method found no three impulses.
+    #[error(
+        "the equations of method \"three-impulse\" have no solution with ordered impulses near the antiperiod {antiperiod_s} s: \
+         use method \"exact\""
+    )]
+    ThreeImpulse {
+        /// Antiperiod.
+        antiperiod_s: f64,
+    },
+    /// A constraint that is none.
+    #[error("a mode with shaper \"{0}\": under \"simultaneous\" a mode takes zv or zvd")]
+    Constraint(Kind),
+    /// More than is solved for.
+    #[error("{found} modes: 1 to {most} are solved together; use a kind for each mode such as \"ps-zv\"")]
+    TooManyModes {
+        /// Modes found.
+        found: usize,
+        /// Most that are solved.
+        most: usize,
+    },
+    /// No sequence of bounded impulses was found.
+    #[error(
+        "no {impulses} impulses of amplitudes {amplitudes} were found that meet all constraints of these modes: frequencies \
+         far apart need more impulses than constraints; use a kind for each mode such as \"ps-zv\" or \"zv\""
+    )]
+    NoSimultaneous {
+        /// Number of impulses.
+        impulses: usize,
+        /// Their amplitudes, as text.
+        amplitudes: &'static str,
+    },
+    /// A bound or an order of `vibrationless` that is not solved.
+    #[error(
+        "no {order} frequencies keep a residual of {epsilon} round the mode: the orders 1 to {most} are solved, for epsilon \
+         from {least:e} to {largest}"
+    )]
+    Vibrationless {
+        /// Order asked for.
+        order: u32,
+        /// Bound asked for.
+        epsilon: f64,
+        /// Largest order.
+        most: u32,
+        /// Smallest bound that is solved.
+        least: f64,
+        /// Largest bound that is solved.
+        largest: f64,
+    },
+    /// A start control without a length.
+    #[error("a start of {0} s: its length must be a positive, finite number")]
+    StartLength(f64),
+    /// The start of a command is not longer than its filter.
+    #[error(
+        "a start of {start_s} s is not longer than the {filter_s} s of its half sums: the peak falls below that of the \
+         start, and R and K no longer describe it; use a longer start, or fewer frequencies"
+    )]
+    ShortStart {
+        /// Length of the start control.
+        start_s: f64,
+        /// Sum of the delays.
+        filter_s: f64,
+    },
+}
+
+/// Finds two modes that are one, to the rounding of decimals.
+pub(super) fn check_distinct(modes: &[Mode]) -> Result<(), JointError> {
+    const SAME: f64 = 1e-9;
+    for (second, mode) in modes.iter().enumerate() {
+        let same = |other: &Mode| {
+            (other.frequency_hz / mode.frequency_hz - 1.0).abs() < SAME && (other.damping - mode.damping).abs() < SAME
+        };
+        if let Some(first) = modes[..second].iter().position(same) {
+            return Err(JointError::Coincident {
+                first: first + 1,
+                second: second + 1,
+                mode: *mode,
+            });
+        }
+    }
+    Ok(())
+}
+
+/// Frequencies as messages list them.
+pub(super) fn list(values: &[f64]) -> String {
+    let texts: Vec<String> = values.iter().map(f64::to_string).collect();
+    texts.join(", ")
+}

@@ -1,0 +1,288 @@
+//! `simultaneous`: all modes at once, with impulses of alternating sign and bounded partial sums.
+//!
+//! ```text
+//! ps: amplitudes 1, −2, 2, …, 2: partial sums −1 … 1        um: 1, −1, 1, …, 1: partial sums 0 … 1
+//! zv:  S(p) = Σ A_i e^{p t_i} = 0                           zvd: also Σ A_i t_i e^{p t_i} = 0,   p = ζω + jω_d
+//! ```
+//!
+//! Two real equations for a `zv` mode, four for a `zvd` mode, and as many unknown times: with two modes half the impulses
+//! of the convolution of two `ps-zv`, shorter, and within bounds that a convolution leaves. The price is robustness: other
+//! frequencies than the modes' are amplified.
+//!
+//! The shortest command within the bounds is found first ([`super::time_optimal`]); if it has as many jumps as there are
+//! equations it is this shaper, and no bounded command is shorter ([`Simultaneous::is_time_optimal`]). Otherwise, as with
+//! frequencies far apart, Newton's method starts from several thousand deterministic pseudo-random sequences; the shortest
+//! that it finds is returned and *not* proven to be the shortest there is.
+//!
+//! Limits: 1 to [`MODES_MAX`] modes.
+
+use nalgebra::{Complex, DMatrix, DVector};
+
+use super::DesignError;
+use super::joint_error::{JointError, check_distinct};
+use super::kind::Kind;
+use super::time_optimal::Problem;
+use crate::impulse::{Impulse, ImpulseSequence};
+use crate::mode::Mode;
+
+/// Most modes that are solved together.
+pub const MODES_MAX: usize = 4;
+
+/// Amplitudes of the impulses.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Amplitudes {
+    /// 1, −2, 2, …: partial sums −1 and 1.
+    PartialSum,
+    /// 1, −1, 1, …: partial sums 0 and 1.
+    UnitMagnitude,
+}
+
+impl Amplitudes {
+    /// Amplitude of impulse `index`, from 0.
+    fn at(self, index: usize) -> f64 {
+        let sign = if index % 2 == 0 { 1.0 } else { -1.0 };
+        match self {
+            Amplitudes::PartialSum if index > 0 => 2.0 * sign,
+            _ => sign,
+        }
+    }
+
+    fn text(self) -> &'static str {
+        match self {
+            Amplitudes::PartialSum => "1, -2, 2, ...",
+            Amplitudes::UnitMagnitude => "1, -1, 1, ...",
+        }
+    }
+}
+
+/// What must be zero at a mode.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Constraint {
+    /// The residual.
+    Zv,
+    /// The residual and its derivatives for frequency and damping.
+    Zvd,
+}
+
+impl Constraint {
+    fn equations(self) -> usize {
+        match self {
+            Constraint::Zv => 2,
+            Constraint::Zvd => 4,
+        }
+    }
+}
+
+/// A simultaneous shaper.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Simultaneous {
+    /// The impulses.
+    pub impulses: ImpulseSequence,
+    /// Whether no command within the bounds is shorter, with any number of jumps.
+    pub is_time_optimal: bool,
+}
+
+/// Designs a shaper that meets every mode's constraint.
+///
+/// # Errors
+/// [`JointError::TooManyModes`], [`JointError::Coincident`]; [`JointError::NoSimultaneous`] where no sequence was found;
+/// [`DesignError`] for a mode that is none or times beyond `f64`.
+pub fn design(modes: &[(Mode, Constraint)], amplitudes: Amplitudes) -> Result<Simultaneous, DesignError> {
+    let plain: Vec<Mode> = modes.iter().map(|(mode, _)| *mode).collect();
+    plain.iter().try_for_each(DesignError::check_mode)?;
+    check_distinct(&plain)?;
+    if modes.is_empty() || modes.len() > MODES_MAX {
+        return Err(JointError::TooManyModes {
+            found: modes.len(),
+            most: MODES_MAX,
+        }
+        .into());
+    }
+    // Times in radians of the fastest mode: of order one, whatever the frequencies.
+    let fastest = plain.iter().map(Mode::omega_damped).fold(0.0, f64::max);
+    let poles = modes.iter().map(|(mode, constraint)| {
+        let pole = Complex::new(mode.decay(), mode.omega_damped()) / fastest;
+        (pole, *constraint)
+    });
+    let system = System {
+        poles: poles.collect(),
+        amplitudes,
+    };
+    let (times, is_time_optimal) = system.solve().ok_or(JointError::NoSimultaneous {
+        impulses: system.unknowns() + 1,
+        amplitudes: amplitudes.text(),
+    })?;
+    let later = times.iter().enumerate().map(|(index, time)| Impulse {
+        time_s: time / fastest,
+        amplitude: amplitudes.at(index + 1),
+    });
+    let first = Impulse {
+        time_s: 0.0,
+        amplitude: 1.0,
+    };
+    let impulses = ImpulseSequence::new([first].into_iter().chain(later).collect());
+    Ok(Simultaneous {
+        impulses: impulses.map_err(|cause| DesignError::NoSequence {
+            what: format!("shaper \"{}\"", Kind::Simultaneous),
+            cause,
+        })?,
+        is_time_optimal,
+    })
+}
+
+/// The constraints on the times after the first, which is 0.
+struct System {
+    poles: Vec<(Complex<f64>, Constraint)>,
+    amplitudes: Amplitudes,
+}
+
+/// Largest value of an equation that counts as zero; each is of order one.
+const ACCURACY: f64 = 1e-12;
+const NEWTON_ROUNDS: usize = 60;
+/// Newton steps of all starts together, in units of the cube of the unknowns: some tenths of a second.
+const BUDGET: usize = 8_000_000;
+
+impl System {
+    fn unknowns(&self) -> usize {
+        self.poles.iter().map(|(_, constraint)| constraint.equations()).sum()
+    }
+
+    /// The times, and whether they are the time-optimal ones.
+    fn solve(&self) -> Option<(DVector<f64>, bool)> {
+        let problem = Problem {
+            poles: &self.poles,
+            amplitudes: self.amplitudes,
+        };
+        let optimal = problem
+            .solve()
+            .filter(|o| o.starts_high && o.times.len() == self.unknowns());
+        if let Some(start) = optimal.map(|o| DVector::from_vec(o.times)) {
+            let near = |times: &DVector<f64>| (times - &start).amax() < 1e-2 * start.amax();
+            let found = self.refine(start.clone(), &mut NEWTON_ROUNDS.clone());
+            if let Some(times) = found.filter(near) {
+                return Some((times, true));
+            }
+        }
+        self.search().map(|times| (times, false))
+    }
+
+    /// Shortest solution from pseudo-random starts.
+    fn search(&self) -> Option<DVector<f64>> {
+        let unknowns = self.unknowns();
+        let periods = self
+            .poles
+            .iter()
+            .map(|(pole, constraint)| constraint.equations() as f64 / 4.0 / pole.im);
+        let longest = 1.2 * std::f64::consts::TAU * periods.sum::<f64>();
+        let mut random = Random(0x9E37_79B9_7F4A_7C15);
+        let mut steps = BUDGET / (unknowns * unknowns * unknowns);
+        let mut shortest: Option<DVector<f64>> = None;
+        while steps > 0 {
+            // Never longer than the shortest so far: only better ones are of interest.
+            let end = shortest.as_ref().map_or(longest, |times| times[unknowns - 1]) * random.next().sqrt();
+            let mut times: Vec<f64> = (1..unknowns).map(|_| end * random.next()).chain([end]).collect();
+            times.sort_by(f64::total_cmp);
+            if let Some(found) = self.refine(DVector::from_vec(times), &mut steps) {
+                if shortest
+                    .as_ref()
+                    .is_none_or(|times| found[unknowns - 1] < times[unknowns - 1])
+                {
+                    shortest = Some(found);
+                }
+            }
+        }
+        shortest
+    }
+
+    /// Damped Newton's method; a solution whose times increase, or nothing. Counts its steps down from `steps`.
+    fn refine(&self, start: DVector<f64>, steps: &mut usize) -> Option<DVector<f64>> {
+        let mut times = start;
+        let (mut values, mut jacobian) = self.equations(&times);
+        for _ in 0..NEWTON_ROUNDS {
+            *steps = steps.saturating_sub(1);
+            let step = jacobian.lu().solve(&values)?;
+            let error = values.norm();
+            let mut share = 1.0;
+            loop {
+                let next = &times - &step * share;
+                let (next_values, next_jacobian) = self.equations(&next);
+                let next_error = next_values.norm();
+                // Rounding ends the descent; before that every step must gain.
+                if next_error < error * (1.0 - 0.1 * share) || (share == 1.0 && next_error < ACCURACY) {
+                    (times, values, jacobian) = (next, next_values, next_jacobian);
+                    break;
+                }
+                share /= 2.0;
+                if share < 0.05 {
+                    return None;
+                }
+            }
+            if values.amax() < ACCURACY && (step.amax() * share < 1e-13 * times.amax() || values.amax() < 1e-15) {
+                break;
+            }
+        }
+        let increasing = times[0] > 0.0 && times.as_slice().windows(2).all(|pair| pair[0] < pair[1]);
+        (increasing && values.amax() < ACCURACY).then_some(times)
+    }
+
+    /// The constraints, referred to the last impulse so that nothing grows, and their derivatives.
+    fn equations(&self, times: &DVector<f64>) -> (DVector<f64>, DMatrix<f64>) {
+        let unknowns = times.len();
+        let end = times[unknowns - 1];
+        let mut values = DVector::zeros(unknowns);
+        let mut jacobian = DMatrix::zeros(unknowns, unknowns);
+        let mut row = 0;
+        for &(pole, constraint) in &self.poles {
+            // e^{p(t − end)} and p(t − end)·e^{p(t − end)}: the second moment about the end is zero where that about 0 is.
+            let first = (-pole * end).exp();
+            let mut sum = first;
+            let mut moment = -pole * end * first;
+            for (index, time) in times.iter().enumerate() {
+                let phase = pole * (time - end);
+                let term = phase.exp() * self.amplitudes.at(index + 1);
+                sum += term;
+                moment += phase * term;
+                let (slope, moment_slope) = (pole * term, pole * (1.0 + phase) * term);
+                set_column(&mut jacobian, row, index, slope);
+                if constraint == Constraint::Zvd {
+                    set_column(&mut jacobian, row + 2, index, moment_slope);
+                }
+            }
+            // The end is the reference of all terms too.
+            let last = unknowns - 1;
+            add_column(&mut jacobian, row, last, -pole * sum);
+            values[row] = sum.re;
+            values[row + 1] = sum.im;
+            if constraint == Constraint::Zvd {
+                add_column(&mut jacobian, row + 2, last, -pole * (sum + moment));
+                values[row + 2] = moment.re;
+                values[row + 3] = moment.im;
+            }
+            row += constraint.equations();
+        }
+        (values, jacobian)
+    }
+}
+
+fn set_column(matrix: &mut DMatrix<f64>, row: usize, column: usize, value: Complex<f64>) {
+    matrix[(row, column)] = value.re;
+    matrix[(row + 1, column)] = value.im;
+}
+
+fn add_column(matrix: &mut DMatrix<f64>, row: usize, column: usize, value: Complex<f64>) {
+    matrix[(row, column)] += value.re;
+    matrix[(row + 1, column)] += value.im;
+}
+
+/// Marsaglia's xorshift: starts that are the same in every run.
+struct Random(u64);
+
+impl Random {
+    /// Next number in (0, 1).
+    fn next(&mut self) -> f64 {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        ((self.0 >> 11) as f64 + 0.5) / (1u64 << 53) as f64
+    }
+}

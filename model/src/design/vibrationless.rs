@@ -1,0 +1,290 @@
+//! `vibrationless`: half sums of the command with itself, half a period later, for several frequencies round each mode.
+//!
+//! ```text
+//! F_k(t) = (F_{k−1}(t) + F_{k−1}(t − τ_k))/2,   τ_k = π/(r_k ω_d),  k = 1…n          2^n impulses of weight 2^−n
+//! P(ω) = Π cos(πω / (2 r_k ω_d))                                                       the gain at a frequency
+//! ```
+//!
+//! (Prourzin and Shevlyakov.) The ratios `r_k` make the robustness index `Δ` as large as it gets: `2|P| ≤ ε` on
+//! `(1 ± Δ)·ω_d`; the 2 is the largest that a start of full height can leave. At the optimum `n + 1` of the peaks of `|P|`
+//! are equal: the two ends of the band and those between zeros. They are `n + 1` equations for `r_1 … r_n` and `Δ`, solved
+//! by Newton's method to the last digits.
+//!
+//! A zero repeats at its odd multiples, so in a wide band one frequency may serve twice: there are several *families* of
+//! optima, told apart by how many such repetitions lie in the band. Each is followed from a known member to the wanted
+//! `ε`, kept if no other peak exceeds the bound, and the widest band wins. Which of the families exist was found by
+//! multistart minimax search over Δ = 0.1 … 0.8; the index of a design is certain, that no family is wider is not proven.
+//!
+//! Damping is ignored here, and included in the residual that is reported.
+
+use std::f64::consts::PI;
+
+use nalgebra::DVector;
+
+use super::joint_error::JointError;
+use super::kind::Kind;
+use super::{DesignError, newton};
+use crate::impulse::{Impulse, ImpulseSequence};
+use crate::mode::Mode;
+
+/// Largest number of frequencies per mode.
+pub const ORDER_MAX: u32 = 5;
+/// Smallest `ε`: below, the frequencies coincide to half of the digits.
+pub const EPSILON_MIN: f64 = 1e-6;
+
+/// Frequencies of a half-sum cascade, as ratios to the mode's.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Cascade {
+    /// `r_1 < … < r_n`.
+    pub ratios: Vec<f64>,
+    /// Robustness index: `2|P| ≤ ε` on `1 ± Δ`.
+    pub index: f64,
+}
+
+/// Largest `ε`: a quarter of the vibration stays.
+pub const EPSILON_MAX: f64 = 0.5;
+
+/// A member of a family: `(ε, Δ, r)`, to the digits from which Newton's method converges.
+type Seed = (f64, f64, &'static [f64]);
+
+/// Families without repetitions first. Beyond order 1, which is a closed form.
+const SEEDS: [&[Seed]; 4] = [
+    &[(0.097339, 0.2, &[0.8591, 1.1394])],
+    &[
+        (0.049571, 0.3, &[0.741, 0.9921, 1.2544]),
+        (0.177737, 0.5, &[0.481, 0.7741, 1.136]),
+        (0.288704, 0.6, &[0.4663, 0.8253, 1.3929]),
+        (0.374804, 0.7, &[0.2886, 0.5387, 1.0797]),
+    ],
+    &[
+        (0.011466, 0.3, &[0.7234, 0.8826, 1.1035, 1.2738]),
+        (0.060868, 0.5, &[0.487, 0.684, 0.9567, 1.2378]),
+        (0.111486, 0.6, &[0.4368, 0.661, 0.9638, 1.5086]),
+        (0.125877, 0.7, &[0.33, 0.5038, 0.7371, 1.2463]),
+        (0.212555, 0.78, &[0.2498, 0.4426, 0.5263, 0.9839]),
+        (0.319898, 0.82, &[0.1854, 0.3365, 0.6431, 1.2962]),
+    ],
+    &[
+        (0.002653, 0.3, &[0.7151, 0.8234, 0.9921, 1.1655, 1.283]),
+        (0.021172, 0.5, &[0.4901, 0.6298, 0.839, 1.0708, 1.2969]),
+        (0.039897, 0.6, &[0.4231, 0.5678, 0.7847, 1.0241, 1.5065]),
+        (0.05, 0.64209, &[0.380458, 0.5325671, 0.7169933, 0.9746735, 1.3941908]),
+        (0.064748, 0.7, &[0.3259, 0.4635, 0.5451, 0.7839, 1.1867]),
+        (0.063816, 0.68, &[0.3263, 0.4812, 0.6089, 0.8746, 1.2312]),
+        (0.073494, 0.72, &[0.2974, 0.366, 0.5507, 0.7496, 1.2918]),
+        (0.087453, 0.76, &[0.2707, 0.3318, 0.5175, 0.6309, 1.1741]),
+    ],
+];
+
+/// Designs the cascade of one mode: `order` frequencies for the bound `epsilon`.
+///
+/// # Errors
+/// [`JointError::Vibrationless`] outside of what is solved; [`DesignError`] for a mode that is none, or times beyond `f64`.
+pub fn design(mode: &Mode, order: u32, epsilon: f64) -> Result<ImpulseSequence, DesignError> {
+    DesignError::check_mode(mode)?;
+    let cascade = optimum(order, epsilon)?;
+    let half_sums = cascade
+        .ratios
+        .iter()
+        .map(|ratio| 0.5 / (ratio * mode.damped_frequency_hz()));
+    half_sum_cascade(&half_sums.collect::<Vec<_>>())
+        .map_err(|cause| DesignError::no_sequence(Kind::Vibrationless, mode, cause))
+}
+
+/// Impulses of half sums with these delays in seconds: `2^n` of weight `2^−n`, coincident ones merged.
+///
+/// # Errors
+/// [`crate::impulse::ImpulseError`] for a delay that is not above 0, or sums beyond `f64`.
+pub fn half_sum_cascade(delays_s: &[f64]) -> Result<ImpulseSequence, crate::impulse::ImpulseError> {
+    delays_s.iter().try_fold(ImpulseSequence::unity(), |whole, &delay_s| {
+        let half = |time_s| Impulse { time_s, amplitude: 0.5 };
+        whole.convolve(&ImpulseSequence::new(vec![half(0.0), half(delay_s)])?)
+    })
+}
+
+/// The cascade with the largest robustness index.
+///
+/// # Errors
+/// [`JointError::Vibrationless`] for an order outside 1..=[`ORDER_MAX`] or an `ε` that no family reaches.
+pub fn optimum(order: u32, epsilon: f64) -> Result<Cascade, JointError> {
+    let refused = || JointError::Vibrationless {
+        order,
+        epsilon,
+        most: ORDER_MAX,
+        least: EPSILON_MIN,
+        largest: EPSILON_MAX,
+    };
+    if !(EPSILON_MIN..=EPSILON_MAX).contains(&epsilon) {
+        return Err(refused());
+    }
+    if order == 1 {
+        let index = 2.0 / PI * (epsilon / 2.0).asin();
+        return Ok(Cascade {
+            ratios: vec![1.0],
+            index,
+        });
+    }
+    let seeds = SEEDS.get((order as usize).wrapping_sub(2)).ok_or_else(refused)?;
+    let found = seeds.iter().filter_map(|seed| Family::of(seed).follow(seed, epsilon));
+    let widest = found.max_by(|a, b| a.index.total_cmp(&b.index));
+    widest.ok_or_else(refused)
+}
+
+/// The gain `|P|` at a frequency, both as ratios to the mode's.
+pub fn gain(ratios: &[f64], frequency: f64) -> f64 {
+    let factors = ratios.iter().map(|ratio| (PI * frequency / (2.0 * ratio)).cos());
+    factors.product::<f64>().abs()
+}
+
+/// The robustness index of any frequencies: the largest `Δ < 1` with `2|P| ≤ epsilon` on `1 ± Δ`, to the last digit; 0 if
+/// the bound is not even met at 1, or for ratios outside 0.001 to 1000.
+pub fn robustness_index(ratios: &[f64], epsilon: f64) -> f64 {
+    let bound = epsilon / 2.0;
+    if gain(ratios, 1.0) > bound || !are_solvable(ratios) {
+        return 0.0;
+    }
+    let within = |index: f64| {
+        let ends = [1.0 - index, 1.0 + index];
+        let ends_hold = ends.iter().all(|end| gain(ratios, *end) <= bound);
+        ends_hold && peaks(ratios, index).all(|(_, peak)| gain(ratios, peak) <= bound)
+    };
+    let (mut low, mut high) = (0.0, 1.0);
+    while high - low > 4.0 * f64::EPSILON {
+        let middle = f64::midpoint(low, high);
+        if within(middle) { low = middle } else { high = middle }
+    }
+    low
+}
+
+/// Whether the zeros of a band are few: a smaller ratio has thousands of them, which nobody designs.
+fn are_solvable(ratios: &[f64]) -> bool {
+    ratios.iter().all(|ratio| (1e-3..=1e3).contains(ratio))
+}
+
+/// Zeros of the gain in order, the ratios and their odd multiples, up to the first few above `high`.
+fn zeros(ratios: &[f64], high: f64) -> Vec<f64> {
+    if !are_solvable(ratios) {
+        return Vec::new();
+    }
+    let largest = ratios.iter().fold(0.0, |most: f64, ratio| most.max(*ratio));
+    let limit = high + 2.0 * largest;
+    let repeated = |ratio: &f64| {
+        let ratio = *ratio;
+        (0..)
+            .map(move |k| ratio * f64::from(2 * k + 1))
+            .take_while(move |zero| *zero <= limit)
+    };
+    let mut zeros: Vec<f64> = ratios.iter().flat_map(repeated).collect();
+    zeros.sort_by(f64::total_cmp);
+    zeros
+}
+
+/// Frequencies in the band `1 ± index` at which the gain is largest between two neighbouring zeros, with the position of
+/// the zero before them. Below the first zero the gain only falls.
+fn peaks(ratios: &[f64], index: f64) -> impl Iterator<Item = (usize, f64)> + use<'_> {
+    let zeros = zeros(ratios, 1.0 + index);
+    let all = (1..zeros.len()).map(move |right| (right - 1, peak_between(ratios, zeros[right - 1], zeros[right])));
+    all.filter(move |(_, peak)| (1.0 - index..=1.0 + index).contains(peak))
+}
+
+/// The one stationary point of `ln|P|` between two neighbouring zeros.
+fn peak_between(ratios: &[f64], left: f64, right: f64) -> f64 {
+    let falls = |frequency: f64| {
+        let slope = ratios
+            .iter()
+            .map(|ratio| (PI * frequency / (2.0 * ratio)).tan() / ratio);
+        slope.sum::<f64>() > 0.0
+    };
+    let (mut low, mut high) = (left, right);
+    // 60 halvings: to the last digit.
+    for _ in 0..60 {
+        let middle = f64::midpoint(low, high);
+        if falls(middle) { high = middle } else { low = middle }
+    }
+    f64::midpoint(low, high)
+}
+
+/// A place at which the gain may be largest.
+#[derive(Debug, Clone, Copy)]
+enum Peak {
+    /// The lower end of the band.
+    Low,
+    /// Between two zeros, by the position of the first.
+    After(usize),
+    /// The upper end of the band.
+    High,
+}
+
+/// A family of optima: which `n + 1` peaks are equal.
+struct Family(Vec<Peak>);
+
+impl Family {
+    /// The `n + 1` highest peaks of a seed.
+    fn of(seed: &Seed) -> Self {
+        let (_, index, ratios) = *seed;
+        let ends = [(Peak::Low, 1.0 - index), (Peak::High, 1.0 + index)];
+        let between = peaks(ratios, index).map(|(left, peak)| (Peak::After(left), peak));
+        let mut heights: Vec<(f64, Peak)> = between.chain(ends).map(|(peak, at)| (gain(ratios, at), peak)).collect();
+        heights.sort_by(|a, b| b.0.total_cmp(&a.0));
+        Self(
+            heights
+                .into_iter()
+                .take(ratios.len() + 1)
+                .map(|(_, peak)| peak)
+                .collect(),
+        )
+    }
+
+    /// Follows the family from a seed to `epsilon`, in steps of its logarithm that halve where Newton's method fails.
+    fn follow(&self, seed: &Seed, epsilon: f64) -> Option<Cascade> {
+        const FIRST_STEP: f64 = 0.5;
+        const LAST_STEP: f64 = 1e-3;
+        let (start, index, ratios) = *seed;
+        let unknowns: Vec<f64> = ratios.iter().copied().chain([index]).collect();
+        let mut reached = start.ln();
+        let target = epsilon.ln();
+        let mut solution = self.refine(&DVector::from_vec(unknowns), reached)?;
+        let mut step: f64 = FIRST_STEP;
+        while reached != target {
+            let next = reached + (target - reached).clamp(-step, step);
+            match self.refine(&solution, next) {
+                Some(refined) => (solution, reached) = (refined, next),
+                None if step > LAST_STEP => step /= 2.0,
+                None => return None,
+            }
+        }
+        let mut ratios: Vec<f64> = solution.iter().copied().collect();
+        let index = ratios.pop()?;
+        let bound = epsilon / 2.0 * (1.0 + 1e-9);
+        let kept = peaks(&ratios, index).all(|(_, peak)| gain(&ratios, peak) <= bound)
+            && [1.0 - index, 1.0 + index]
+                .iter()
+                .all(|end| gain(&ratios, *end) <= bound);
+        kept.then_some(Cascade { ratios, index })
+    }
+
+    fn refine(&self, start: &DVector<f64>, log_epsilon: f64) -> Option<DVector<f64>> {
+        let found = newton::solve(|x| self.equations(x, log_epsilon), start.clone(), 1e-11)?;
+        let ratios = &found.as_slice()[..found.len() - 1];
+        let index = found[found.len() - 1];
+        let ordered = ratios.windows(2).all(|pair| pair[0] < pair[1]);
+        (ordered && ratios[0] > 1.0 - index && index < 1.0).then_some(found)
+    }
+
+    /// Distance of the peaks' heights from `ε/2`, as logarithms; NaN where the family has no such peak.
+    fn equations(&self, unknowns: &DVector<f64>, log_epsilon: f64) -> DVector<f64> {
+        let (ratios, index) = unknowns.as_slice().split_at(unknowns.len() - 1);
+        let index = index[0];
+        let zeros = zeros(ratios, 1.0 + index);
+        let height = |frequency: f64| (2.0 * gain(ratios, frequency)).ln() - log_epsilon;
+        let heights = self.0.iter().map(|peak| match *peak {
+            Peak::Low => height(1.0 - index),
+            Peak::High => height(1.0 + index),
+            Peak::After(left) => match zeros.get(left..left + 2) {
+                Some(&[left, right]) => height(peak_between(ratios, left, right)),
+                _ => f64::NAN,
+            },
+        });
+        DVector::from_vec(heights.collect())
+    }
+}
