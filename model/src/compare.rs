@@ -13,6 +13,9 @@ use crate::digitise::{TableError, digitise, quantise};
 use crate::impulse::PartialSums;
 use crate::spec::{Axis, AxisMode, Machine, ShaperChoice};
 
+/// Relative difference below which two costs are equal: kinds that are one shaper for one mode differ by rounding.
+const EQUAL: f64 = 1e-6;
+
 /// Frequency error of the modes that is compared where none is asked for: ±10 %.
 pub const DEFAULT_BAND: f64 = 0.1;
 
@@ -157,7 +160,8 @@ fn mark_pareto(candidates: &mut [Candidate]) {
     for (candidate, own) in candidates.iter_mut().zip(&costs) {
         let beaten = costs.iter().any(|other| {
             let pairs = || other.iter().zip(own);
-            pairs().all(|(other, own)| other <= own) && pairs().any(|(other, own)| other < own)
+            pairs().all(|(other, own)| *other <= own * (1.0 + EQUAL))
+                && pairs().any(|(other, own)| *other < own * (1.0 - EQUAL))
         });
         candidate.pareto = !beaten;
     }

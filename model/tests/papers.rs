@@ -20,7 +20,7 @@ fn counts(paper: Paper) -> [usize; 3] {
 
 #[test]
 fn golden_verdicts_of_hybrid_ei() {
-    assert_eq!(counts(Paper::HybridEi), [0, 0, 0]);
+    assert_eq!(counts(Paper::HybridEi), [36, 13, 0]);
 }
 
 #[test]
@@ -30,12 +30,12 @@ fn golden_verdicts_of_negative_hybrid() {
 
 #[test]
 fn golden_verdicts_of_vibrationless() {
-    assert_eq!(counts(Paper::Vibrationless), [0, 0, 0]);
+    assert_eq!(counts(Paper::Vibrationless), [8, 11, 0]);
 }
 
 #[test]
 fn golden_verdicts_of_antisymmetry() {
-    assert_eq!(counts(Paper::Antisymmetry), [0, 0, 0]);
+    assert_eq!(counts(Paper::Antisymmetry), [22, 6, 0]);
 }
 
 #[test]

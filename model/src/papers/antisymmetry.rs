@@ -220,8 +220,8 @@ fn damped(sheet: &mut Sheet) -> Result<(), DesignError> {
     );
     let left = peak_ratio(&two, &modes);
     sheet.erratum(
-        "text: vibration after two impulses, but for the sampling",
-        "0",
+        "text: vibration after two impulses, but for the sampling, of the unshaped",
+        "0.00",
         left,
         "it is systematic: two impulses cannot serve two modes that decay differently",
     );

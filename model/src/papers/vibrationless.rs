@@ -18,7 +18,7 @@ use std::f64::consts::{PI, TAU};
 const EPSILON: f64 = 0.05;
 
 /// The paper's own frequencies for n = 1, 2, 3.
-pub(super) const PAPER_RATIOS: [&[f64]; 3] = [&[1.0], &[0.899, 1.0998], &[0.745, 0.984, 1.2523]];
+const PAPER_RATIOS: [&[f64]; 3] = [&[1.0], &[0.899, 1.0998], &[0.745, 0.984, 1.2523]];
 
 pub(super) fn rows(sheet: &mut Sheet) -> Result<(), DesignError> {
     table(sheet)?;
@@ -110,7 +110,7 @@ fn response(omega: f64, force: &Trajectory) -> ResponseFigures {
 }
 
 /// The cascade of these frequencies.
-pub(super) fn cascade(ratios: &[f64]) -> Result<ImpulseSequence, DesignError> {
+fn cascade(ratios: &[f64]) -> Result<ImpulseSequence, DesignError> {
     let delays_s: Vec<f64> = ratios.iter().map(|ratio| PI / ratio).collect();
     half_sum_cascade(&delays_s).map_err(|cause| DesignError::NoSequence {
         what: "the paper's cascade".into(),
