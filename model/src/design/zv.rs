@@ -9,8 +9,8 @@
 //! 1957; Singer and Seering 1990). Each further factor makes one more derivative of the residual zero at the mode, costs
 //! another half period of delay, and forgives a larger error of the frequency. Exists for every damping in [0, 1).
 //!
-//! `mzv`, known from 3D printers, has three impulses 3/8 of a period apart instead of 1/2: as insensitive as that allows,
-//! three quarters as long as `zvd`. With `k = e^{−0.75ζπ/√(1−ζ²)}` what damping leaves of a swing in that time,
+//! `mzv`, known from 3D printers, has three impulses 3/8 of a period apart instead of 1/2: between `zv` and `zvd` in length and
+//! in insensitivity. With `k = e^{−0.75ζπ/√(1−ζ²)}` what damping leaves of a swing in that time,
 //!
 //! ```text
 //! mzv:  amplitudes ∝ [1 − 1/√2, (√2 − 1)·k, (1 − 1/√2)·k²] at 0, ⅜T_d, ¾T_d
