@@ -1,5 +1,6 @@
 //! `posicast design`: impulses, residuals, insensitivity and the tap table of every axis.
 
+use crate::compare;
 use crate::failure::Failure;
 use crate::machine;
 use crate::output::{self, Table, percent};
@@ -18,7 +19,10 @@ use std::path::PathBuf;
 
 /// Impulses, residuals, insensitivity and tap table of every axis
 #[derive(clap::Args)]
-#[command(after_help = "Example:\n  posicast design examples/xy-stage.toml --plot sensitivity.svg")]
+#[command(
+    after_help = "Example:\n  posicast design examples/xy-stage.toml --plot sensitivity.svg\n  \
+                         posicast design examples/xy-stage.toml --compare --band 15"
+)]
 pub(crate) struct Args {
     /// Machine file
     machine: PathBuf,
@@ -28,10 +32,19 @@ pub(crate) struct Args {
     /// Draw the sensitivity curves into this SVG file
     #[arg(long, value_name = "FILE.svg")]
     plot: Option<PathBuf>,
+    /// Compare every kind of shaper on each axis instead: duration, worst residual, taps
+    #[arg(long, conflicts_with = "plot")]
+    compare: bool,
+    /// With --compare: frequency error that each mode may have, in percent
+    #[arg(long, value_name = "PERCENT", default_value = "10", value_parser = compare::band, requires = "compare")]
+    band: f64,
 }
 
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let machine = machine::read(&args.machine)?.machine;
+    if args.compare {
+        return compare::run(&machine, args.band, args.json);
+    }
     let report = Report::new(&machine)?;
     if let Some(path) = &args.plot {
         output::write_file(

@@ -5,6 +5,7 @@
 
 mod bench;
 mod command;
+mod compare;
 mod design;
 mod diff;
 mod failure;
@@ -13,6 +14,7 @@ mod machine;
 mod output;
 mod plot;
 mod progress;
+mod reproduce;
 mod run;
 mod simulate;
 mod synth;
@@ -50,8 +52,7 @@ enum Command {
     Synth(synth::Args),
     #[command(hide = true)]
     Identify(NotBuilt),
-    #[command(hide = true)]
-    Reproduce(NotBuilt),
+    Reproduce(reproduce::Args),
 }
 
 /// Arguments of a command that this version does not build: anything.
@@ -71,7 +72,7 @@ fn main() -> ExitCode {
         Command::Diff(args) => diff::run(&args),
         Command::Synth(args) => synth::run(&args),
         Command::Identify(_) => Err(Failure::not_built("identify")),
-        Command::Reproduce(_) => Err(Failure::not_built("reproduce")),
+        Command::Reproduce(args) => reproduce::run(&args),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

@@ -9,11 +9,13 @@
 //! ```
 
 pub mod analysis;
+pub mod compare;
 pub mod design;
 pub mod digitise;
 pub mod impulse;
 pub mod mode;
 pub mod motion;
+pub mod papers;
 pub mod plant;
 pub mod rtl;
 pub mod simulation;

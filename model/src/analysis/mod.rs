@@ -1,13 +1,18 @@
-//! What a shaper does at a mode: residual vibration, insensitivity, sensitivity curves.
+//! What a shaper does at a mode (residual vibration, insensitivity, sensitivity curves and maps) and to a command (peak,
+//! rms).
 //!
 //! Everything here takes plain impulses, so that the same code judges a design ([`crate::impulse`]), its digitised taps
 //! and the integer table that the hardware computes with ([`tap_impulses`]). The figure that is guaranteed is that of the
 //! integer table; the others explain it.
 
+mod band;
+mod command;
 mod insensitivity;
 mod residual;
 mod start_control;
 
+pub use band::{SensitivityGrid, sensitivity_grid, worst_residual};
+pub use command::{CommandFigures, Quantity, command_figures};
 pub use insensitivity::{INSENSITIVITY_LIMIT, Insensitivity, insensitivity};
 pub use residual::{pole_sum, residual_vibration, residual_vibration_at, sensitivity_curve, tap_impulses};
 pub use start_control::{StartControl, StartFigures};

@@ -2,6 +2,7 @@
 //!
 //! - [`Profile`]: a point-to-point move in up to seven segments, as fast as the limits allow;
 //! - [`default_move`]: the 5 mm move that `run` and `simulate` use where no command file is given;
+//! - [`Trajectory`]: steps, ramps, trapezoids and such moves as cubics of time, which a shaper keeps exact;
 //! - [`resample`]: a command given as points in time, on the sample grid;
 //! - [`command_words`]: positions to Q`command_fraction` counts, half up; what does not fit is an error.
 //!
@@ -9,8 +10,10 @@
 
 mod command;
 mod profile;
+mod trajectory;
 mod words;
 
 pub use command::{PointsError, resample, settle_s};
 pub use profile::{Profile, ProfileError, SAMPLES_MAX, default_move};
+pub use trajectory::{Cubic, Jump, Piece, Trajectory};
 pub use words::{CommandError, command_words};

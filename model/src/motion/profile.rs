@@ -117,6 +117,27 @@ impl Profile {
         4.0 * self.jerk_s + 2.0 * self.constant_acceleration_s + self.constant_velocity_s
     }
 
+    /// The eight instants at which the jerk changes, each with its change; some fall together where a segment is empty.
+    pub(super) fn jerk_changes(&self) -> [(f64, f64); 8] {
+        let jerk = self.jerk.copysign(self.distance);
+        let signs = [1.0, -1.0, -1.0, 1.0, -1.0, 1.0, 1.0, -1.0];
+        let lengths_s = [
+            0.0,
+            self.jerk_s,
+            self.constant_acceleration_s,
+            self.jerk_s,
+            self.constant_velocity_s,
+            self.jerk_s,
+            self.constant_acceleration_s,
+            self.jerk_s,
+        ];
+        let mut time_s = 0.0;
+        [0, 1, 2, 3, 4, 5, 6, 7].map(|k: usize| {
+            time_s += lengths_s[k];
+            (time_s, signs[k] * jerk)
+        })
+    }
+
     /// Position at `time_s` seconds after the start; before it the start, after the end the end.
     pub fn position(&self, time_s: f64) -> f64 {
         let left_s = self.duration_s() - time_s;

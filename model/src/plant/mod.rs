@@ -1,4 +1,4 @@
-//! The simulated machine: modes side by side, driven by a command that is constant between its steps.
+//! The simulated machine: modes side by side, driven by a command that is a cubic of time between its jumps.
 //!
 //! ```text
 //!            ┌─ share_1 · ω₁²/(s² + 2ζ₁ω₁s + ω₁²) ─┐
@@ -9,6 +9,7 @@
 //! Command and position have one unit, whichever; times are in seconds. A mode's state is its distance `d` from the command
 //! and its velocity `v`. While the command is constant both follow the closed form of a free oscillation, so that every
 //! instant is exact, however far away ([`free_motion`]): the discretisation for a zero-order hold without approximation.
+//! Under a ramp, a parabola or a cubic the same oscillation runs about a polynomial in closed form.
 //! Without modes the plant is rigid: the position is the command.
 //!
 //! The figures in [`response`] are measured on these states, by another way than the pole sums of [`crate::analysis`]: two
@@ -20,6 +21,7 @@ use nalgebra::{Matrix2, Vector2};
 use thiserror::Error;
 
 use crate::mode::Mode;
+use crate::motion::Cubic;
 use crate::spec::Axis;
 
 /// A mode and its share in the position.
@@ -61,6 +63,11 @@ impl Plant {
             share: participation / sum,
         });
         Ok(Self { modes: modes.collect() })
+    }
+
+    /// Modes with known shares, which must sum to one.
+    pub fn of_shares(modes: Vec<PlantMode>) -> Self {
+        Self { modes }
     }
 
     /// The plant that an axis of the machine file describes.
@@ -113,28 +120,29 @@ fn free_amplitude(mode: &Mode, state: &Vector2<f64>) -> f64 {
     state.x.hypot(quadrature)
 }
 
-/// A plant in motion.
+/// A plant in motion under a command that is a cubic of time.
 #[derive(Debug, Clone, PartialEq)]
 struct Motion<'a> {
     plant: &'a Plant,
-    command: f64,
+    command: Cubic,
+    /// Per mode: its distance from the command, and the velocity of that.
     states: Vec<Vector2<f64>>,
 }
 
 impl<'a> Motion<'a> {
-    /// At rest where the command is.
-    fn at_rest(plant: &'a Plant, command: f64) -> Self {
+    /// At rest at position 0, as the command is.
+    fn at_rest(plant: &'a Plant) -> Self {
         Self {
             plant,
-            command,
+            command: Cubic::default(),
             states: vec![Vector2::zeros(); plant.modes.len()],
         }
     }
 
-    /// The command jumps; the machine stays where it is for the moment.
-    fn step_to(&mut self, command: f64) {
+    /// The command jumps by `jump` and goes on as `command`; the machine stays as it is for the moment.
+    fn jump(&mut self, jump: &Cubic, command: Cubic) {
         for state in &mut self.states {
-            state.x += self.command - command;
+            *state -= Vector2::new(jump.position, jump.velocity);
         }
         self.command = command;
     }
@@ -142,16 +150,58 @@ impl<'a> Motion<'a> {
     /// Position and velocity `time_s` seconds from now.
     fn ahead(&self, time_s: f64) -> (f64, f64) {
         let modes = self.plant.modes.iter().zip(&self.states);
-        let moved = modes.map(|(m, state)| free_motion(&m.mode, time_s) * state * m.share);
+        let moved = modes.map(|(m, state)| self.moved(&m.mode, state, time_s) * m.share);
         let sum: Vector2<f64> = moved.sum();
-        (self.command + sum.x, sum.y)
+        let command = self.command.after(time_s);
+        // Without modes the sum is 0: a rigid plant is where its command is.
+        (command.position + sum.x, command.velocity + sum.y)
     }
 
     /// Lets `time_s` seconds pass.
     fn advance(&mut self, time_s: f64) {
-        for (m, state) in self.plant.modes.iter().zip(&mut self.states) {
-            *state = free_motion(&m.mode, time_s) * *state;
+        let modes = self.plant.modes.iter().zip(&self.states);
+        let states = modes.map(|(m, state)| self.moved(&m.mode, state, time_s));
+        self.states = states.collect();
+        self.command = self.command.after(time_s);
+    }
+
+    /// State of a mode `time_s` seconds from now: what it trails by, and the free oscillation about that.
+    fn moved(&self, mode: &Mode, state: &Vector2<f64>, time_s: f64) -> Vector2<f64> {
+        let lag = Lag::new(mode, &self.command);
+        lag.after(time_s) + free_motion(mode, time_s) * (state - lag.after(0.0))
+    }
+
+    /// Amplitude with which a mode oscillates now about what it trails by.
+    fn amplitude(&self, mode: &Mode, state: &Vector2<f64>) -> f64 {
+        free_amplitude(mode, &(state - Lag::new(mode, &self.command).after(0.0)))
+    }
+}
+
+/// How a mode trails a cubic command `u` without oscillating: the polynomial `e(t) = c_0 + c_1·t + c_2·t²` that solves
+/// `e″ + 2σe′ + ω²e = −u″ − 2σu′` for the distance `e` from the command.
+struct Lag {
+    coefficients: [f64; 3],
+}
+
+impl Lag {
+    fn new(mode: &Mode, command: &Cubic) -> Self {
+        let stiffness = mode.omega() * mode.omega();
+        let twice_decay = 2.0 * mode.decay();
+        let square = -twice_decay * command.jerk / 2.0 / stiffness;
+        let linear = -(command.jerk + twice_decay * command.acceleration + 2.0 * twice_decay * square) / stiffness;
+        let constant =
+            -(command.acceleration + twice_decay * command.velocity + twice_decay * linear + 2.0 * square) / stiffness;
+        Self {
+            coefficients: [constant, linear, square],
         }
+    }
+
+    fn after(&self, time_s: f64) -> Vector2<f64> {
+        let [constant, linear, square] = self.coefficients;
+        Vector2::new(
+            constant + time_s * (linear + time_s * square),
+            linear + 2.0 * time_s * square,
+        )
     }
 }
 

@@ -1,11 +1,14 @@
-//! What a shaped unit step does on the simulated plant: vibration that is left, overshoot, the curve itself.
+//! What a command does on the simulated plant: vibration that is left, overshoot, the curve itself.
 //!
-//! The shaped step rises by `A_i` at `t_i`. Between those times the plant moves freely, in closed form, so peaks between
-//! samples are found where they are: a sign change of the velocity is located on a grid of 1/48 of the shortest period and
-//! narrowed to rounding.
+//! Any [`Trajectory`]: a step, a ramp, a trapezoid, a jerk-limited move, shaped or not. Between the jumps of the command the
+//! plant moves in closed form, so peaks between samples are found where they are: a sign change of the velocity is located
+//! on a grid of 1/48 of the shortest period and narrowed to rounding.
+
+use nalgebra::Vector2;
 
 use super::{Motion, Plant, free_amplitude};
 use crate::impulse::Impulse;
+use crate::motion::Trajectory;
 
 /// Fraction of the shortest period between two looks at the velocity: two peaks of the sum lie farther apart.
 const LOOKS_PER_PERIOD: f64 = 48.0;
@@ -47,23 +50,56 @@ pub fn plant_figures(plant: &Plant, impulses: &[Impulse]) -> PlantFigures {
     }
 }
 
+/// What a plant does under one command. Lengths are in the unit of the command.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ResponseFigures {
+    /// Per mode: residual displacement, the amplitude of its share of the vibration as of the last jump of the command.
+    pub residual_displacement: Vec<f64>,
+    /// Highest position, at least the start's 0.
+    pub highest: f64,
+    /// Lowest position, at most the start's 0.
+    pub lowest: f64,
+    /// Largest distance from the command's end after its last jump. Meaningless for a ramp without end.
+    pub deviation_after: f64,
+}
+
+/// Measures the response to a command.
+pub fn response_figures(plant: &Plant, command: &Trajectory) -> ResponseFigures {
+    let stretches = stretches(plant, command);
+    let look_s = look_s(plant, &stretches);
+    let none = Extremes {
+        lowest: 0.0,
+        highest: 0.0,
+    };
+    let all = stretches.iter().map(|s| s.extremes(look_s)).fold(none, Extremes::with);
+    let last = stretches.last();
+    ResponseFigures {
+        residual_displacement: last.map_or_else(Vec::new, |last| {
+            let modes = plant.modes().iter().zip(&last.motion.states);
+            modes
+                .map(|(m, state)| m.share.abs() * last.motion.amplitude(&m.mode, state))
+                .collect()
+        }),
+        highest: all.highest,
+        lowest: all.lowest,
+        deviation_after: last.map_or(0.0, |last| {
+            let (tail, end) = (last.extremes(look_s), last.motion.command.position);
+            (tail.highest - end).max(end - tail.lowest)
+        }),
+    }
+}
+
 /// Measures a unit step that is shaped by `impulses` (in order of time, the first at 0).
 pub fn step_figures(plant: &Plant, impulses: &[Impulse]) -> StepFigures {
-    let stretches = stretches(plant, impulses);
+    let stretches = stretches(plant, &Trajectory::step(1.0).shaped(impulses));
     let residual = stretches.last().map_or_else(Vec::new, |last| {
         let modes = plant.modes().iter().zip(&last.motion.states);
         modes
-            .map(|(m, state)| {
-                let unshaped = free_amplitude(&m.mode, &nalgebra::Vector2::new(1.0, 0.0));
-                free_amplitude(&m.mode, state) / unshaped
-            })
+            .map(|(m, state)| last.motion.amplitude(&m.mode, state) / free_amplitude(&m.mode, &Vector2::new(1.0, 0.0)))
             .collect()
     });
-    let shortest_s = plant.modes().iter().map(|m| 1.0 / m.mode.frequency_hz);
-    let duration_s: f64 = stretches.iter().map(|s| s.length_s).sum();
-    let looks_max = LOOKS_MAX / plant.modes().len().max(1) as f64;
-    let look_s = (shortest_s.fold(f64::INFINITY, f64::min) / LOOKS_PER_PERIOD).max(duration_s / looks_max);
-    let peaks = stretches.iter().map(|s| s.peak(look_s));
+    let look_s = look_s(plant, &stretches);
+    let peaks = stretches.iter().map(|s| s.extremes(look_s).highest);
     StepFigures {
         residual,
         overshoot: peaks.fold(1.0, f64::max) - 1.0,
@@ -72,7 +108,12 @@ pub fn step_figures(plant: &Plant, impulses: &[Impulse]) -> StepFigures {
 
 /// Response to a shaped unit step, for plotting: `(seconds, position)` at `points` equally spaced times from 0.
 pub fn step_response(plant: &Plant, impulses: &[Impulse], duration_s: f64, points: usize) -> Vec<(f64, f64)> {
-    let stretches = stretches(plant, impulses);
+    response_curve(plant, &Trajectory::step(1.0).shaped(impulses), duration_s, points)
+}
+
+/// Response to a command, for plotting: `(seconds, position)` at `points` equally spaced times from 0.
+pub fn response_curve(plant: &Plant, command: &Trajectory, duration_s: f64, points: usize) -> Vec<(f64, f64)> {
+    let stretches = stretches(plant, command);
     let intervals = points.saturating_sub(1).max(1) as f64;
     (0..points)
         .map(|point| {
@@ -92,26 +133,57 @@ struct Stretch<'a> {
     motion: Motion<'a>,
 }
 
-/// The response in stretches: from each impulse to the next, and a tail after the last.
-fn stretches<'a>(plant: &'a Plant, impulses: &[Impulse]) -> Vec<Stretch<'a>> {
-    let mut motion = Motion::at_rest(plant, 0.0);
-    let ends = impulses.iter().skip(1).map(|i| i.time_s);
-    let last_s = impulses.last().map_or(0.0, |i| i.time_s);
-    let ends = ends.chain([last_s + tail_s(plant)]);
-    impulses
+/// Between which positions the plant moves.
+#[derive(Debug, Clone, Copy)]
+struct Extremes {
+    lowest: f64,
+    highest: f64,
+}
+
+impl Extremes {
+    fn with(self, other: Self) -> Self {
+        Self {
+            lowest: self.lowest.min(other.lowest),
+            highest: self.highest.max(other.highest),
+        }
+    }
+
+    fn at(position: f64) -> Self {
+        Self {
+            lowest: position,
+            highest: position,
+        }
+    }
+}
+
+/// The response in stretches: from each jump to the next, and a tail after the last.
+fn stretches<'a>(plant: &'a Plant, command: &Trajectory) -> Vec<Stretch<'a>> {
+    let mut motion = Motion::at_rest(plant);
+    let pieces = command.pieces();
+    let ends_s = pieces.iter().skip(1).map(|p| p.start_s);
+    let ends_s = ends_s.chain([command.end_s() + tail_s(plant)]);
+    pieces
         .iter()
-        .zip(ends)
-        .map(|(impulse, end_s)| {
-            motion.step_to(motion.command + impulse.amplitude);
+        .zip(ends_s)
+        .map(|(piece, end_s)| {
+            motion.jump(&piece.jump, piece.cubic);
             let stretch = Stretch {
-                start_s: impulse.time_s,
-                length_s: end_s - impulse.time_s,
+                start_s: piece.start_s,
+                length_s: end_s - piece.start_s,
                 motion: motion.clone(),
             };
             motion.advance(stretch.length_s);
             stretch
         })
         .collect()
+}
+
+/// Time between two looks at the velocity.
+fn look_s(plant: &Plant, stretches: &[Stretch<'_>]) -> f64 {
+    let periods_s = plant.modes().iter().map(|m| 1.0 / m.mode.frequency_hz);
+    let duration_s: f64 = stretches.iter().map(|s| s.length_s).sum();
+    let looks_max = LOOKS_MAX / plant.modes().len().max(1) as f64;
+    (periods_s.fold(f64::INFINITY, f64::min) / LOOKS_PER_PERIOD).max(duration_s / looks_max)
 }
 
 /// How long after the last impulse a peak is looked for.
@@ -125,35 +197,37 @@ fn tail_s(plant: &Plant) -> f64 {
 }
 
 impl Stretch<'_> {
-    /// Highest position in the stretch, its ends included.
-    fn peak(&self, look_s: f64) -> f64 {
+    /// Lowest and highest position in the stretch, its ends included.
+    fn extremes(&self, look_s: f64) -> Extremes {
         let looks = (self.length_s / look_s).ceil().clamp(1.0, LOOKS_MAX) as u32;
-        let mut highest = self.motion.ahead(0.0).0;
-        let (mut before_s, mut rising) = (0.0, self.motion.ahead(0.0).1 > 0.0);
+        let (start, velocity) = self.motion.ahead(0.0);
+        let mut extremes = Extremes::at(start);
+        let (mut before_s, mut rising) = (0.0, velocity > 0.0);
         for look in 1..=looks {
             let time_s = self.length_s * f64::from(look) / f64::from(looks);
             let (position, velocity) = self.motion.ahead(time_s);
-            highest = highest.max(position);
-            if rising && velocity <= 0.0 {
-                highest = highest.max(self.turning_point(before_s, time_s));
+            extremes = extremes.with(Extremes::at(position));
+            if rising != (velocity > 0.0) {
+                extremes = extremes.with(Extremes::at(self.turning_point(before_s, time_s, rising)));
+                rising = !rising;
             }
-            (before_s, rising) = (time_s, velocity > 0.0);
+            before_s = time_s;
         }
-        highest
+        extremes
     }
 
-    /// Position where the velocity falls through 0, between a time at which it is positive and one at which it is not.
-    fn turning_point(&self, mut rising_s: f64, mut falling_s: f64) -> f64 {
+    /// Position where the velocity changes its sign, between a time before and one after that.
+    fn turning_point(&self, mut before_s: f64, mut after_s: f64, rising: bool) -> f64 {
         // Each round halves the interval: 60 exhaust the digits of a time.
         for _ in 0..60 {
-            let middle_s = f64::midpoint(rising_s, falling_s);
-            if self.motion.ahead(middle_s).1 > 0.0 {
-                rising_s = middle_s;
+            let middle_s = f64::midpoint(before_s, after_s);
+            if (self.motion.ahead(middle_s).1 > 0.0) == rising {
+                before_s = middle_s;
             } else {
-                falling_s = middle_s;
+                after_s = middle_s;
             }
         }
-        self.motion.ahead(rising_s).0
+        self.motion.ahead(before_s).0
     }
 }
 
@@ -215,6 +289,70 @@ mod tests {
         let rigid = step_response(&Plant::new(&[]).unwrap(), &UNSHAPED, 1.0, 2);
         assert_eq!(rigid, [(0.0, 1.0), (1.0, 1.0)]);
         assert!(step_response(&plant, &[], 1.0, 3).iter().all(|p| p.1 == 0.0));
+    }
+
+    #[test]
+    fn unit_ramp_and_move_solve_the_differential_equation() {
+        // y″ + 2σy′ + ω²y = ω²u, checked by central differences on the curve itself.
+        let mode = Mode {
+            frequency_hz: 5.0,
+            damping: 0.2,
+        };
+        let plant = plant(&[(5.0, 0.2, 1.0)]);
+        let profile = crate::motion::Profile::new(0.0, 0.05, 0.3, 4.0, 90.0).unwrap();
+        let commands = [
+            Trajectory::ramp(0.7),
+            Trajectory::trapezoid(0.05, 0.3, 4.0).unwrap(),
+            Trajectory::of_profile(&profile),
+        ];
+        for command in commands {
+            let points = 40_001;
+            let curve = response_curve(&plant, &command, 0.4, points);
+            let step_s = 0.4 / (points - 1) as f64;
+            for at in (100..points - 100).step_by(997) {
+                let [before, here, after] = [at - 1, at, at + 1].map(|k| curve[k].1);
+                let acceleration = (after - 2.0 * here + before) / (step_s * step_s);
+                let velocity = (after - before) / (2.0 * step_s);
+                let stiffness = mode.omega() * mode.omega();
+                let force = stiffness * (command.position(curve[at].0) - here) - 2.0 * mode.decay() * velocity;
+                assert!(
+                    (acceleration - force).abs() < 2e-3 * stiffness * 0.05,
+                    "{at}: {acceleration} {force}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn unit_an_undamped_mode_trails_a_ramp_by_its_oscillation() {
+        // y = vt − (v/ω) sin ωt
+        let figures = response_figures(&plant(&[(2.0, 0.0, 1.0)]), &Trajectory::ramp(3.0));
+        let amplitude = 3.0 / (2.0 * std::f64::consts::TAU);
+        assert!((figures.residual_displacement[0] - amplitude).abs() < 1e-13);
+    }
+
+    #[test]
+    fn unit_residual_displacement_of_a_shaped_move_is_the_unshaped_one_times_the_residual() {
+        // At an undamped mode: |S| · |amplitude of the unshaped move|, whatever the move.
+        let plant = plant(&[(7.0, 0.0, 1.0), (12.0, 0.0, 3.0)]);
+        let impulses: Vec<Impulse> = [(0.0, 0.3), (0.06, 0.7)]
+            .map(|(time_s, amplitude)| Impulse { time_s, amplitude })
+            .to_vec();
+        let profile = crate::motion::Profile::new(0.0, 0.05, 0.3, 4.0, 90.0).unwrap();
+        for command in [
+            Trajectory::step(1.0),
+            Trajectory::trapezoid(-0.05, 0.3, 4.0).unwrap(),
+            Trajectory::of_profile(&profile),
+        ] {
+            let plain = response_figures(&plant, &command);
+            let shaped = response_figures(&plant, &command.shaped(&impulses));
+            for (k, m) in plant.modes().iter().enumerate() {
+                let expected = plain.residual_displacement[k] * residual_vibration(&impulses, &m.mode);
+                assert!((shaped.residual_displacement[k] - expected).abs() < 1e-13);
+            }
+            let sum: f64 = shaped.residual_displacement.iter().sum();
+            assert!(shaped.deviation_after <= sum + 1e-13 && shaped.deviation_after > 0.9 * sum);
+        }
     }
 
     #[test]

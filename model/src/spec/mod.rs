@@ -267,6 +267,24 @@ pub struct ShaperChoice {
     pub impulses: Vec<(f64, f64)>,
 }
 
+impl ShaperChoice {
+    /// A kind with every other key left out.
+    pub fn of_kind(kind: Kind) -> Self {
+        Self {
+            kind,
+            tolerance: None,
+            order: None,
+            epsilon: None,
+            base: None,
+            lowest_frequency_hz: None,
+            amplitude: None,
+            method: None,
+            ratio_tolerance: None,
+            impulses: Vec::new(),
+        }
+    }
+}
+
 /// `[[axis.mode]]`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AxisMode {

@@ -1,0 +1,142 @@
+//! `posicast design --compare`: every kind of shaper on the axes of one machine.
+
+use crate::failure::Failure;
+use crate::output::{self, Table, percent};
+use posicast_model::compare::{Comparison, compare};
+use posicast_model::spec::Machine;
+use serde::Serialize;
+use std::fmt::Write;
+
+/// Compares the kinds for modes whose frequencies are off by up to `band_percent`, and prints the table or the JSON document.
+pub(crate) fn run(machine: &Machine, band_percent: f64, json: bool) -> Result<(), Failure> {
+    let comparisons = compare(machine, band_percent / 100.0);
+    if json {
+        output::print_json(&Document::new(machine, band_percent, &comparisons))
+    } else {
+        output::print(&text(machine, band_percent, &comparisons))
+    }
+}
+
+/// Reads the percentage of `--band`.
+pub(crate) fn band(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(percent) if (0.0..=90.0).contains(&percent) => Ok(percent),
+        _ => Err("the modes' frequency error in percent, 0 to 90".into()),
+    }
+}
+
+fn text(machine: &Machine, band_percent: f64, comparisons: &[Comparison]) -> String {
+    let mut text = format!("{}: shapers for modes off by up to ±{band_percent} %\n", machine.name);
+    for comparison in comparisons {
+        let _ = writeln!(text, "\naxis {}", comparison.axis);
+        let mut table = Table::new(&[
+            "",
+            "kind",
+            ">duration ms",
+            ">worst residual %",
+            ">taps",
+            ">partial sums",
+            ">delay ms",
+            "",
+        ]);
+        for c in &comparison.candidates {
+            table.row([
+                if c.pareto { "*" } else { "" }.into(),
+                c.kind.clone(),
+                format!("{:.4}", 1e3 * c.duration_s),
+                percent(c.worst_residual),
+                c.taps.to_string(),
+                format!("{:.3} … {:.3}", c.partial_sums.min, c.partial_sums.max),
+                format!("{:.4}", 1e3 * c.delay_s),
+                if c.in_file { "as in the file" } else { "" }.into(),
+            ]);
+        }
+        text += &table.text("  ");
+        for missing in &comparison.missing {
+            let _ = writeln!(text, "  no {}: {}", missing.kind, missing.reason);
+        }
+    }
+    text + "\n* no other kind is as good in duration, worst residual and taps, and better in one of them\n"
+}
+
+#[derive(Serialize)]
+struct Document<'a> {
+    name: &'a str,
+    band_percent: f64,
+    axes: Vec<AxisDocument<'a>>,
+}
+
+#[derive(Serialize)]
+struct AxisDocument<'a> {
+    name: &'a str,
+    kinds: Vec<KindDocument<'a>>,
+    missing: Vec<MissingDocument<'a>>,
+}
+
+#[derive(Serialize)]
+struct KindDocument<'a> {
+    kind: &'a str,
+    in_file: bool,
+    pareto: bool,
+    duration_s: f64,
+    worst_residual: f64,
+    taps: usize,
+    partial_sum_min: f64,
+    partial_sum_max: f64,
+    delay_s: f64,
+}
+
+#[derive(Serialize)]
+struct MissingDocument<'a> {
+    kind: &'a str,
+    reason: &'a str,
+}
+
+impl<'a> Document<'a> {
+    fn new(machine: &'a Machine, band_percent: f64, comparisons: &'a [Comparison]) -> Self {
+        let axes = comparisons.iter().map(|comparison| AxisDocument {
+            name: &comparison.axis,
+            kinds: comparison
+                .candidates
+                .iter()
+                .map(|c| KindDocument {
+                    kind: &c.kind,
+                    in_file: c.in_file,
+                    pareto: c.pareto,
+                    duration_s: c.duration_s,
+                    worst_residual: c.worst_residual,
+                    taps: c.taps,
+                    partial_sum_min: c.partial_sums.min,
+                    partial_sum_max: c.partial_sums.max,
+                    delay_s: c.delay_s,
+                })
+                .collect(),
+            missing: comparison
+                .missing
+                .iter()
+                .map(|m| MissingDocument {
+                    kind: &m.kind,
+                    reason: &m.reason,
+                })
+                .collect(),
+        });
+        Self {
+            name: &machine.name,
+            band_percent,
+            axes: axes.collect(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_band_is_a_percentage() {
+        assert_eq!(band("7.5"), Ok(7.5));
+        for wrong in ["-1", "91", "nan", "inf", "wide", ""] {
+            assert!(band(wrong).is_err(), "{wrong}");
+        }
+    }
+}

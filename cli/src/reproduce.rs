@@ -1,0 +1,280 @@
+//! `posicast reproduce`: the source papers' tables, printed beside ours.
+
+use crate::failure::Failure;
+use crate::output::{self, Table};
+use crate::plot::{self, Curve, Panel};
+use crate::progress;
+use clap::builder::PossibleValuesParser;
+use posicast_model::papers::{Figure, Paper, Row, Value, Verdict};
+use serde::Serialize;
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+
+/// The source papers' tables beside ours, with a verdict per row
+#[derive(clap::Args)]
+#[command(
+    after_help = "Examples:\n  posicast reproduce vibrationless\n  posicast reproduce --plot figures\n\n\
+                  Exit status 1: a row that is agreed on as reproduced, or as an erratum, is not that any more."
+)]
+pub(crate) struct Args {
+    /// Paper; without it all of them
+    #[arg(value_parser = PossibleValuesParser::new(Paper::ALL.map(Paper::name)))]
+    paper: Option<String>,
+    /// Print one JSON document on standard output
+    #[arg(long)]
+    json: bool,
+    /// Draw the papers' figures into this folder, one SVG file per paper
+    #[arg(long, value_name = "DIR")]
+    plot: Option<PathBuf>,
+}
+
+pub(crate) fn run(args: &Args) -> Result<(), Failure> {
+    let named = args.paper.as_deref().and_then(Paper::from_name);
+    let papers = named.map_or_else(|| Paper::ALL.to_vec(), |paper| vec![paper]);
+    let progress = progress::bar("reproducing", papers.len() as u64);
+    let mut tables = Vec::with_capacity(papers.len());
+    for paper in papers {
+        progress.set_message(paper.name());
+        tables.push((paper, paper.reproduce().map_err(|e| fault(paper, &e))?));
+        if let Some(folder) = &args.plot {
+            let figures = paper.figures().map_err(|e| fault(paper, &e))?;
+            draw(folder, paper, figures)?;
+        }
+        progress.inc(1);
+    }
+    progress.finish_and_clear();
+    let counts = Counts::of(&tables);
+    if args.json {
+        output::print_json(&Document::new(&tables, counts))?;
+    } else {
+        output::print(&text(&tables, counts))?;
+    }
+    match counts.not_reproduced {
+        0 => Ok(()),
+        count => Err(Failure::Check(format!(
+            "{count} rows are not what was agreed on; first: {}",
+            first_not_reproduced(&tables)
+        ))),
+    }
+}
+
+/// A shaper of a paper that cannot be designed: nothing the user gave is wrong.
+fn fault(paper: Paper, error: &dyn std::error::Error) -> Failure {
+    Failure::Check(format!(
+        "{}: a shaper of the paper cannot be designed: {error}",
+        paper.name()
+    ))
+}
+
+type Tables = Vec<(Paper, Vec<Row>)>;
+
+fn first_not_reproduced(tables: &Tables) -> String {
+    let mut rows = tables
+        .iter()
+        .flat_map(|(paper, rows)| rows.iter().map(move |row| (paper, row)));
+    let first = rows.find(|(_, row)| row.verdict == Verdict::NotReproduced);
+    first.map_or_else(String::new, |(paper, row)| format!("{}, {}", paper.name(), row.item))
+}
+
+#[derive(Clone, Copy)]
+struct Counts {
+    reproduced: usize,
+    errata: usize,
+    not_comparable: usize,
+    not_reproduced: usize,
+}
+
+impl Counts {
+    fn of(tables: &Tables) -> Self {
+        let count = |verdict| {
+            let rows = tables.iter().flat_map(|(_, rows)| rows);
+            rows.filter(|row| row.verdict == verdict).count()
+        };
+        Self {
+            reproduced: count(Verdict::Reproduced),
+            errata: count(Verdict::Erratum),
+            not_comparable: count(Verdict::NotComparable),
+            not_reproduced: count(Verdict::NotReproduced),
+        }
+    }
+}
+
+fn text(tables: &Tables, counts: Counts) -> String {
+    let mut text = String::new();
+    for (paper, rows) in tables {
+        let _ = writeln!(text, "{}: {}", paper.name(), paper.title());
+        let mut table = Table::new(&["item", ">paper", ">ours", ">difference", "verdict", "reason"]);
+        for row in rows {
+            table.row([
+                row.item.clone(),
+                row.printed.clone(),
+                row.ours.as_ref().map_or_else(|| "–".into(), value_text),
+                row.difference().map_or_else(String::new, difference_text),
+                row.verdict.to_string(),
+                row.reason.clone(),
+            ]);
+        }
+        text += &table.text("  ");
+        text.push('\n');
+    }
+    let _ = write!(
+        text,
+        "{} reproduced, {} errata, {} not comparable",
+        counts.reproduced, counts.errata, counts.not_comparable
+    );
+    if counts.not_reproduced > 0 {
+        let _ = write!(text, ", {} NOT REPRODUCED", counts.not_reproduced);
+    }
+    text.push('\n');
+    text
+}
+
+fn value_text(value: &Value) -> String {
+    match value {
+        Value::Number(number) => number_text(*number),
+        Value::Numbers(numbers) => numbers.iter().map(|n| number_text(*n)).collect::<Vec<_>>().join(", "),
+        Value::Text(text) => text.clone(),
+    }
+}
+
+/// A number with six significant digits.
+fn number_text(number: f64) -> String {
+    let size = number.abs();
+    if size == 0.0 || !(1e-4..1e7).contains(&size) {
+        return if size < 1e-12 {
+            "0".into()
+        } else {
+            format!("{number:.5e}")
+        };
+    }
+    let decimals = (5 - size.log10().floor() as i32).max(0) as usize;
+    let text = format!("{number:.decimals$}");
+    match text.contains('.') {
+        true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
+        false => text,
+    }
+}
+
+fn difference_text(difference: f64) -> String {
+    if difference.abs() < 1e-12 {
+        "0".into()
+    } else {
+        format!("{difference:+.1e}")
+    }
+}
+
+/// `reproduce --json`: the command line's contract.
+#[derive(Serialize)]
+struct Document<'a> {
+    papers: Vec<PaperDocument<'a>>,
+    reproduced: usize,
+    errata: usize,
+    not_comparable: usize,
+    not_reproduced: usize,
+}
+
+#[derive(Serialize)]
+struct PaperDocument<'a> {
+    name: &'static str,
+    rows: Vec<RowDocument<'a>>,
+}
+
+#[derive(Serialize)]
+struct RowDocument<'a> {
+    item: &'a str,
+    paper: ValueDocument<'a>,
+    ours: Option<ValueDocument<'a>>,
+    verdict: String,
+    reason: &'a str,
+}
+
+#[derive(Serialize)]
+#[serde(untagged)]
+enum ValueDocument<'a> {
+    Number(f64),
+    Numbers(&'a [f64]),
+    Text(&'a str),
+}
+
+impl<'a> From<&'a Value> for ValueDocument<'a> {
+    fn from(value: &'a Value) -> Self {
+        match value {
+            Value::Number(number) => Self::Number(*number),
+            Value::Numbers(numbers) => Self::Numbers(numbers),
+            Value::Text(text) => Self::Text(text),
+        }
+    }
+}
+
+impl<'a> Document<'a> {
+    fn new(tables: &'a Tables, counts: Counts) -> Self {
+        let row = |row: &'a Row| RowDocument {
+            item: &row.item,
+            paper: (&row.paper).into(),
+            ours: row.ours.as_ref().map(ValueDocument::from),
+            verdict: row.verdict.to_string(),
+            reason: &row.reason,
+        };
+        let papers = tables.iter().map(|(paper, rows)| PaperDocument {
+            name: paper.name(),
+            rows: rows.iter().map(row).collect(),
+        });
+        Self {
+            papers: papers.collect(),
+            reproduced: counts.reproduced,
+            errata: counts.errata,
+            not_comparable: counts.not_comparable,
+            not_reproduced: counts.not_reproduced,
+        }
+    }
+}
+
+fn draw(folder: &Path, paper: Paper, figures: Vec<Figure>) -> Result<(), Failure> {
+    std::fs::create_dir_all(folder).map_err(|error| {
+        Failure::from(miette::miette!(
+            help = "name a folder that you may write to",
+            "cannot make the folder `{}`: {error}",
+            folder.display()
+        ))
+    })?;
+    let panels: Vec<Panel> = figures
+        .into_iter()
+        .map(|figure| Panel {
+            title: figure.title,
+            x_label: figure.x_label.into(),
+            y_label: figure.y_label.into(),
+            curves: figure
+                .curves
+                .into_iter()
+                .map(|curve| match curve.reference {
+                    true => Curve::reference(curve.name, curve.points),
+                    false => Curve::new(curve.name, curve.points),
+                })
+                .collect(),
+        })
+        .collect();
+    let path = folder.join(format!("{}.svg", paper.name()));
+    output::write_file(&path, plot::svg(&panels)?.as_bytes())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_keep_six_digits() {
+        let cases = [
+            (0.0, "0"),
+            (1e-16, "0"),
+            (0.199_725_38, "0.199725"),
+            (-47.174_07, "-47.1741"),
+            (81.0, "81"),
+            (1_302_881.3, "1302881"),
+            (66_888_995.6, "6.68890e7"),
+            (2e-5, "2.00000e-5"),
+        ];
+        for (number, text) in cases {
+            assert_eq!(number_text(number), text);
+        }
+    }
+}

@@ -1,0 +1,251 @@
+//! One axis, every kind of shaper: what each costs and what it holds.
+//!
+//! Each kind that this version builds is designed for the axis's modes and tolerances, digitised and rounded as the machine
+//! file says, and judged by its integer taps: that is what the hardware computes with. A kind is *Pareto-optimal* if no other
+//! is at least as good in duration, worst residual and taps, and better in one of them.
+
+use thiserror::Error;
+
+use crate::analysis::{tap_impulses, worst_residual};
+use crate::design::kind::Kind;
+use crate::design::{DesignError, design_axis};
+use crate::digitise::{TableError, digitise, quantise};
+use crate::impulse::PartialSums;
+use crate::spec::{Axis, AxisMode, Machine, ShaperChoice};
+
+/// Relative difference below which two costs are equal: kinds that are one shaper for one mode differ by rounding.
+const EQUAL: f64 = 1e-6;
+
+/// Frequency error of the modes that is compared where none is asked for: ±10 %.
+pub const DEFAULT_BAND: f64 = 0.1;
+
+/// A kind of shaper on one axis.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Candidate {
+    /// The kind, or several joined by `+` where the file has one per mode.
+    pub kind: String,
+    /// Whether this is the shaper of the machine file.
+    pub in_file: bool,
+    /// Time of the last impulse in seconds.
+    pub duration_s: f64,
+    /// Delay of a ramp in seconds.
+    pub delay_s: f64,
+    /// Largest residual vibration of any mode whose frequency is off by no more than the band, by the integer taps.
+    pub worst_residual: f64,
+    /// Taps of the integer table.
+    pub taps: usize,
+    /// Between which factors of a step the shaped step moves.
+    pub partial_sums: PartialSums,
+    /// Whether no other kind is as good in everything and better in something.
+    pub pareto: bool,
+}
+
+/// A kind that this axis cannot have.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Missing {
+    /// The kind.
+    pub kind: String,
+    /// Why.
+    pub reason: String,
+}
+
+/// The kinds on one axis.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Comparison {
+    /// The axis's name.
+    pub axis: String,
+    /// The kinds that exist, shortest first.
+    pub candidates: Vec<Candidate>,
+    /// Those that do not.
+    pub missing: Vec<Missing>,
+}
+
+/// Why a kind has no table.
+#[derive(Debug, Error)]
+enum CandidateError {
+    #[error(transparent)]
+    Design(#[from] DesignError),
+    #[error(transparent)]
+    Table(#[from] TableError),
+    #[error("it has no tap table")]
+    NoTable,
+}
+
+/// Compares every kind on each axis of a machine; `band` is the relative frequency error that each mode may have, such as
+/// [`DEFAULT_BAND`].
+pub fn compare(machine: &Machine, band: f64) -> Vec<Comparison> {
+    machine
+        .axes
+        .iter()
+        .map(|axis| compare_axis(machine, axis, band))
+        .collect()
+}
+
+fn compare_axis(machine: &Machine, axis: &Axis, band: f64) -> Comparison {
+    let own = axis.kind_name();
+    let others = kinds_for(axis)
+        .map(|kind| with_kind(axis, kind))
+        .filter(|other| other.kind_name() != own);
+    let (mut candidates, mut missing) = (Vec::new(), Vec::new());
+    for (axis, in_file) in std::iter::once((axis.clone(), true)).chain(others.map(|other| (other, false))) {
+        match candidate(machine, &axis, in_file, band) {
+            Ok(candidate) => candidates.push(candidate),
+            Err(error) => missing.push(Missing {
+                kind: axis.kind_name(),
+                reason: error.to_string(),
+            }),
+        }
+    }
+    mark_pareto(&mut candidates);
+    candidates.sort_by(|a, b| a.duration_s.total_cmp(&b.duration_s));
+    Comparison {
+        axis: axis.name.clone(),
+        candidates,
+        missing,
+    }
+}
+
+/// The kinds that can be tried without further data: without modes there is nothing but the command as it is.
+fn kinds_for(axis: &Axis) -> impl Iterator<Item = Kind> {
+    let modes = !axis.modes.is_empty();
+    Kind::ALL
+        .into_iter()
+        .map(|(kind, _)| kind)
+        .filter(move |kind| kind.is_built() && *kind != Kind::Custom && (modes || *kind == Kind::None))
+}
+
+/// The same axis with another kind: its tolerances stay, what belongs to the kind of the file does not.
+fn with_kind(axis: &Axis, kind: Kind) -> Axis {
+    let modes = axis.modes.iter().map(|mode| AxisMode {
+        shaper: None,
+        order: None,
+        ..mode.clone()
+    });
+    Axis {
+        shaper: Some(ShaperChoice {
+            tolerance: axis.shaper.as_ref().and_then(|s| s.tolerance),
+            ..ShaperChoice::of_kind(kind)
+        }),
+        modes: modes.collect(),
+        ..axis.clone()
+    }
+}
+
+fn candidate(machine: &Machine, axis: &Axis, in_file: bool, band: f64) -> Result<Candidate, CandidateError> {
+    let sample_hz = machine.clock.sample_hz;
+    let design = design_axis(axis)?;
+    let digitised = digitise(&design, machine.fixed_point.digitise, sample_hz)?;
+    let named = [(axis.name.as_str(), &digitised)];
+    let tables = quantise(&named, machine.fixed_point.coefficient_fraction)?;
+    let table = tables.first().ok_or(CandidateError::NoTable)?;
+    let taps = tap_impulses(table, sample_hz);
+    let residuals = axis.modes.iter().map(|mode| worst_residual(&taps, &mode.mode, band));
+    Ok(Candidate {
+        kind: axis.kind_name(),
+        in_file,
+        duration_s: design.impulses.duration_s(),
+        delay_s: design.impulses.delay_s(),
+        worst_residual: residuals.fold(0.0, f64::max),
+        taps: taps.len(),
+        partial_sums: design.impulses.partial_sums(),
+        pareto: false,
+    })
+}
+
+fn mark_pareto(candidates: &mut [Candidate]) {
+    let costs: Vec<[f64; 3]> = candidates
+        .iter()
+        .map(|c| [c.duration_s, c.worst_residual, c.taps as f64])
+        .collect();
+    for (candidate, own) in candidates.iter_mut().zip(&costs) {
+        let beaten = costs.iter().any(|other| {
+            let pairs = || other.iter().zip(own);
+            pairs().all(|(other, own)| *other <= own * (1.0 + EQUAL))
+                && pairs().any(|(other, own)| *other < own * (1.0 - EQUAL))
+        });
+        candidate.pareto = !beaten;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::spec;
+
+    fn machine(shaper: &str, modes: &str) -> Machine {
+        let text = format!(
+            "name = \"m\"\n[clock]\nfrequency_hz = 50_000_000\nsample_hz = 10_000\n\
+             [[axis]]\nname = \"x\"\ncounts_per_unit = 1e6\n{shaper}\n{modes}"
+        );
+        spec::parse("m.toml", &text).unwrap()
+    }
+
+    const MODE: &str = "[[axis.mode]]\nfrequency_hz = 40\ndamping = 0.02\n";
+
+    fn find<'a>(comparison: &'a Comparison, kind: &str) -> &'a Candidate {
+        comparison.candidates.iter().find(|c| c.kind == kind).unwrap()
+    }
+
+    #[test]
+    fn unit_every_built_kind_is_tried_once_and_the_files_own_is_marked() {
+        let machine = machine("[axis.shaper]\nkind = \"zvd\"", MODE);
+        let found = compare(&machine, 0.1).remove(0);
+        let mut names: Vec<&str> = found.candidates.iter().map(|c| c.kind.as_str()).collect();
+        names.extend(found.missing.iter().map(|m| m.kind.as_str()));
+        let built = Kind::ALL
+            .iter()
+            .filter(|(kind, _)| kind.is_built() && *kind != Kind::Custom);
+        assert_eq!(names.len(), built.count());
+        assert!(found.candidates.iter().all(|c| c.in_file == (c.kind == "zvd")));
+        assert!(found.candidates.is_sorted_by(|a, b| a.duration_s <= b.duration_s));
+    }
+
+    #[test]
+    fn unit_pareto_means_beaten_by_none() {
+        let machine = machine("[axis.shaper]\nkind = \"zvd\"", MODE);
+        let found = compare(&machine, 0.1).remove(0);
+        // Nothing is shorter than none, and nothing without negative impulses holds less taps than zv and more than none.
+        assert!(find(&found, "none").pareto && find(&found, "zv").pareto && find(&found, "zvd").pareto);
+        for candidate in found.candidates.iter().filter(|c| !c.pareto) {
+            let better = found.candidates.iter().any(|c| {
+                c.pareto
+                    && c.duration_s <= candidate.duration_s
+                    && c.worst_residual <= candidate.worst_residual
+                    && c.taps <= candidate.taps
+            });
+            assert!(better, "{}", candidate.kind);
+        }
+        let (zv, zvd) = (find(&found, "zv"), find(&found, "zvd"));
+        assert!(zv.duration_s < zvd.duration_s && zv.worst_residual > 5.0 * zvd.worst_residual);
+    }
+
+    #[test]
+    fn unit_a_wider_band_is_worse() {
+        let machine = machine("[axis.shaper]\nkind = \"ei\"\ntolerance = 0.02", MODE);
+        let worst = |band| find(&compare(&machine, band)[0], "ei").worst_residual;
+        assert!(worst(0.01) < 0.021 && worst(0.1) < worst(0.2) && worst(0.2) < worst(0.5));
+    }
+
+    #[test]
+    fn unit_a_kind_that_does_not_exist_has_its_reason() {
+        // No tolerance of 5 % at this damping.
+        let machine = machine(
+            "[axis.shaper]\nkind = \"zv\"",
+            "[[axis.mode]]\nfrequency_hz = 40\ndamping = 0.9\n",
+        );
+        let found = compare(&machine, 0.1).remove(0);
+        let ei = found.missing.iter().find(|m| m.kind == "ei").unwrap();
+        assert!(ei.reason.contains("damping"), "{}", ei.reason);
+    }
+
+    #[test]
+    fn unit_shapers_per_mode_and_axes_without_modes() {
+        let modes =
+            format!("{MODE}shaper = \"zv\"\n[[axis.mode]]\nfrequency_hz = 90\ndamping = 0.01\nshaper = \"zvd\"\n");
+        let found = compare(&machine("", &modes), 0.1).remove(0);
+        assert!(find(&found, "zv+zvd").in_file && !find(&found, "zv").in_file);
+        let found = compare(&machine("[axis.shaper]\nkind = \"none\"", ""), 0.1).remove(0);
+        assert_eq!((found.candidates.len(), found.missing.len()), (1, 0));
+        assert_eq!(found.candidates[0].worst_residual, 0.0);
+    }
+}

@@ -1,0 +1,67 @@
+//! Shapers for the papers' examples, through the same door as those of a machine file.
+
+use crate::design::kind::Kind;
+use crate::design::{DesignError, design_axis};
+use crate::impulse::ImpulseSequence;
+use crate::mode::Mode;
+use crate::spec::{Axis, AxisMode, ShaperChoice};
+use std::f64::consts::TAU;
+
+/// An axis with these modes, all shaped as `shaper` says.
+pub(super) fn axis(shaper: ShaperChoice, modes: &[Mode]) -> Axis {
+    Axis {
+        name: "paper".into(),
+        counts_per_unit: 1.0,
+        shaper: Some(shaper),
+        modes: modes.iter().map(|mode| axis_mode(*mode, None)).collect(),
+        limits: None,
+    }
+}
+
+fn axis_mode(mode: Mode, shaper: Option<Kind>) -> AxisMode {
+    AxisMode {
+        mode,
+        shaper,
+        tolerance: None,
+        order: None,
+        participation: 1.0,
+    }
+}
+
+/// A mode by its undamped frequency in rad/s.
+pub(super) fn mode_of_omega(omega: f64, damping: f64) -> Mode {
+    Mode {
+        frequency_hz: omega / TAU,
+        damping,
+    }
+}
+
+/// The shaper of one kind for these modes; the tolerance is the default, 5 %.
+pub(super) fn shaper(kind: Kind, modes: &[Mode]) -> Result<ImpulseSequence, DesignError> {
+    chosen(ShaperChoice::of_kind(kind), modes)
+}
+
+/// The shaper that a choice gives for these modes.
+pub(super) fn chosen(shaper: ShaperChoice, modes: &[Mode]) -> Result<ImpulseSequence, DesignError> {
+    design_axis(&axis(shaper, modes)).map(|design| design.impulses)
+}
+
+/// The convolution of one shaper per mode.
+pub(super) fn hybrid(parts: &[(Kind, Mode)]) -> Result<ImpulseSequence, DesignError> {
+    let axis = Axis {
+        shaper: None,
+        modes: parts.iter().map(|(kind, mode)| axis_mode(*mode, Some(*kind))).collect(),
+        ..axis(ShaperChoice::of_kind(Kind::None), &[])
+    };
+    design_axis(&axis).map(|design| design.impulses)
+}
+
+/// Amplitudes of a shaper in order of time.
+pub(super) fn amplitudes(shaper: &ImpulseSequence) -> Vec<f64> {
+    shaper.impulses().iter().map(|i| i.amplitude).collect()
+}
+
+/// Times of a shaper in seconds, after the first.
+pub(super) fn times_s(shaper: &ImpulseSequence) -> Vec<f64> {
+    shaper.impulses().iter().skip(1).map(|i| i.time_s).collect()
+}

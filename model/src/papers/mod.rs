@@ -1,0 +1,116 @@
+//! The source papers' tables beside ours.
+//!
+//! | paper | about |
+//! |---|---|
+//! | `hybrid-ei` | bias-point hybrids of ZV and EI shapers, and one shaper for many modes (2010) |
+//! | `negative-hybrid` | negative impulses, a different shaper per mode |
+//! | `vibrationless` | half-sum cascades, robust over a band |
+//! | `antisymmetry` | one shaper for many modes whose frequencies are odd multiples (1993) |
+//! | `xy-stage` | a thesis on an XY stage: drive, identification, ZV and ZVD |
+//!
+//! Every row holds the paper's own number, which is the only thing that is typed in, and ours, which the library computes
+//! as the row is made. [`Verdict`] and [`Rule`] say how the two become a verdict.
+
+mod antisymmetry;
+mod chain;
+mod contour;
+mod designs;
+mod drive;
+mod figures;
+mod hybrid_ei;
+mod identification;
+mod minors;
+mod negative_hybrid;
+mod sheet;
+mod sliding_mode_law;
+mod vibrationless;
+mod xy_stage;
+
+pub use figures::{Figure, FigureCurve};
+pub use sheet::{Row, Rule, Value, Verdict};
+
+use crate::design::DesignError;
+use sheet::Sheet;
+
+/// One of the source papers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Paper {
+    /// Bias-point hybrids of ZV and EI, and one shaper for many modes.
+    HybridEi,
+    /// Negative-impulse shapers, a different one per mode.
+    NegativeHybrid,
+    /// Half-sum cascades.
+    Vibrationless,
+    /// One shaper for many modes by antisymmetry.
+    Antisymmetry,
+    /// The XY stage.
+    XyStage,
+}
+
+impl Paper {
+    /// All papers, in the order in which they are shown.
+    pub const ALL: [Paper; 5] = [
+        Paper::HybridEi,
+        Paper::NegativeHybrid,
+        Paper::Vibrationless,
+        Paper::Antisymmetry,
+        Paper::XyStage,
+    ];
+
+    /// The name on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Paper::HybridEi => "hybrid-ei",
+            Paper::NegativeHybrid => "negative-hybrid",
+            Paper::Vibrationless => "vibrationless",
+            Paper::Antisymmetry => "antisymmetry",
+            Paper::XyStage => "xy-stage",
+        }
+    }
+
+    /// What the paper is about.
+    pub fn title(self) -> &'static str {
+        match self {
+            Paper::HybridEi => "hybrid EI shapers, and one of them for many modes (Zhang and Li 2010)",
+            Paper::NegativeHybrid => "negative-impulse shapers, a different one for each of two modes",
+            Paper::Vibrationless => "robust vibrationless control by half-sum cascades (Prourzin and Shevlyakov)",
+            Paper::Antisymmetry => "one shaper for many modes by antisymmetry (Singh and Heppler 1993)",
+            Paper::XyStage => "a thesis on an XY stage: its drive, its identified plants, ZV and ZVD",
+        }
+    }
+
+    /// The paper of that name, if there is one.
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|paper| paper.name() == name)
+    }
+
+    /// Computes every row of the paper.
+    ///
+    /// # Errors
+    /// [`DesignError`] if a shaper of the paper cannot be designed: a fault of posicast.
+    pub fn reproduce(self) -> Result<Vec<Row>, DesignError> {
+        let mut sheet = Sheet::default();
+        match self {
+            Paper::HybridEi => hybrid_ei::rows(&mut sheet)?,
+            Paper::NegativeHybrid => negative_hybrid::rows(&mut sheet)?,
+            Paper::Vibrationless => vibrationless::rows(&mut sheet)?,
+            Paper::Antisymmetry => antisymmetry::rows(&mut sheet)?,
+            Paper::XyStage => xy_stage::rows(&mut sheet)?,
+        }
+        Ok(sheet.into_rows())
+    }
+
+    /// The paper's figures, redrawn.
+    ///
+    /// # Errors
+    /// As [`Self::reproduce`].
+    pub fn figures(self) -> Result<Vec<Figure>, DesignError> {
+        match self {
+            Paper::HybridEi => figures::hybrid_ei(),
+            Paper::NegativeHybrid => figures::negative_hybrid(),
+            Paper::Vibrationless => figures::vibrationless(),
+            Paper::Antisymmetry => figures::antisymmetry(),
+            Paper::XyStage => figures::xy_stage(),
+        }
+    }
+}

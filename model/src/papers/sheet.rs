@@ -1,0 +1,414 @@
+//! Rows of a paper's table: the printed number beside ours, and the verdict.
+//!
+//! Only the paper's own number is typed in, as it is printed: its digits decide what counts as equal.
+//!
+//! | rule | the printed number is ours … |
+//! |---|---|
+//! | [`Rule::Rounded`] | rounded to the printed digits |
+//! | [`Rule::Truncated`] | cut off after them |
+//! | [`Rule::RoundedUp`] | rounded away from zero to them |
+//! | [`Rule::Within`] | up to an absolute difference that the row states |
+//! | [`Rule::AtMost`] | or more: it is a bound |
+//!
+//! A row is entered as one that agrees, or as an erratum with its reason. What is entered as agreeing and does not, and an
+//! erratum that agrees after all, are [`Verdict::NotReproduced`]: then posicast has changed, not the paper.
+
+use std::fmt;
+
+/// How a row ends.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Verdict {
+    /// The paper's number is ours, to its printed digits.
+    Reproduced,
+    /// The paper's number is wrong; the reason says why.
+    Erratum,
+    /// There is nothing to hold against the paper's number; the reason says why.
+    NotComparable,
+    /// A fault of posicast: the row was agreed on as another, and is not that any more.
+    NotReproduced,
+}
+
+impl fmt::Display for Verdict {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(match self {
+            Verdict::Reproduced => "reproduced",
+            Verdict::Erratum => "erratum",
+            Verdict::NotComparable => "not comparable",
+            Verdict::NotReproduced => "not reproduced",
+        })
+    }
+}
+
+/// One or more numbers, or a statement.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Value {
+    /// A number.
+    Number(f64),
+    /// Numbers that belong together.
+    Numbers(Vec<f64>),
+    /// A statement.
+    Text(String),
+}
+
+impl From<f64> for Value {
+    fn from(number: f64) -> Self {
+        Value::Number(number)
+    }
+}
+
+impl From<Vec<f64>> for Value {
+    fn from(numbers: Vec<f64>) -> Self {
+        Value::Numbers(numbers)
+    }
+}
+
+impl<const N: usize> From<[f64; N]> for Value {
+    fn from(numbers: [f64; N]) -> Self {
+        Value::Numbers(numbers.to_vec())
+    }
+}
+
+/// One line of a paper's table.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Row {
+    /// Where in the paper, and what.
+    pub item: String,
+    /// The paper's numbers.
+    pub paper: Value,
+    /// The paper's numbers as they are printed.
+    pub printed: String,
+    /// Ours; `None` if there is nothing to compare with.
+    pub ours: Option<Value>,
+    /// The verdict.
+    pub verdict: Verdict,
+    /// Why it is an erratum or not comparable, or what the agreement rests on; empty where there is nothing to say.
+    pub reason: String,
+}
+
+impl Row {
+    /// Largest difference, ours minus the paper's; `None` for statements.
+    pub fn difference(&self) -> Option<f64> {
+        let (paper, ours) = (numbers(&self.paper), numbers(self.ours.as_ref()?));
+        let differences = ours.iter().zip(&paper).map(|(ours, paper)| ours - paper);
+        differences.reduce(|a, b| if a.abs() >= b.abs() { a } else { b })
+    }
+}
+
+fn numbers(value: &Value) -> Vec<f64> {
+    match value {
+        Value::Number(number) => vec![*number],
+        Value::Numbers(numbers) => numbers.clone(),
+        Value::Text(_) => Vec::new(),
+    }
+}
+
+/// What counts as equal.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Rule {
+    /// Ours rounds to the printed digits.
+    Rounded,
+    /// Ours, cut off, is the printed digits.
+    Truncated,
+    /// Ours, rounded away from zero, is the printed digits.
+    RoundedUp,
+    /// Ours differs by no more than this.
+    Within(f64),
+    /// Ours is no more than the printed bound.
+    AtMost,
+}
+
+impl Rule {
+    fn holds(self, printed: &PrintedNumber, ours: f64) -> bool {
+        let unit = 10f64.powi(-printed.decimals);
+        // A tie, and the rounding of decimals to binary, must not decide.
+        let slack = 1e-9 * unit + 4.0 * f64::EPSILON * ours.abs();
+        let beyond = (ours - printed.value) * if ours < 0.0 { -1.0 } else { 1.0 };
+        match self {
+            Rule::Rounded => (ours - printed.value).abs() <= unit / 2.0 + slack,
+            Rule::Truncated => beyond >= -slack && beyond < unit,
+            Rule::RoundedUp => beyond <= slack && beyond > -unit,
+            Rule::Within(difference) => (ours - printed.value).abs() <= difference,
+            Rule::AtMost => ours <= printed.value,
+        }
+    }
+}
+
+struct PrintedNumber {
+    value: f64,
+    /// Digits after the decimal point, less the exponent.
+    decimals: i32,
+}
+
+impl PrintedNumber {
+    /// NaN, which equals nothing, for what is no number.
+    fn parse(text: &str) -> Self {
+        let (mantissa, exponent) = text.split_once('e').unwrap_or((text, "0"));
+        let digits = mantissa.split_once('.').map_or(0, |(_, digits)| digits.len() as i32);
+        Self {
+            value: text.parse().unwrap_or(f64::NAN),
+            decimals: digits - exponent.parse::<i32>().unwrap_or(0),
+        }
+    }
+}
+
+/// Numbers as they are printed in the paper.
+pub(super) struct Printed(Vec<&'static str>);
+
+impl From<&'static str> for Printed {
+    fn from(number: &'static str) -> Self {
+        Printed(vec![number])
+    }
+}
+
+impl<const N: usize> From<[&'static str; N]> for Printed {
+    fn from(numbers: [&'static str; N]) -> Self {
+        Printed(numbers.to_vec())
+    }
+}
+
+impl Printed {
+    fn value(&self) -> Value {
+        let values = self.0.iter().map(|n| PrintedNumber::parse(n).value);
+        match self.0.len() {
+            1 => values.sum::<f64>().into(),
+            _ => values.collect::<Vec<_>>().into(),
+        }
+    }
+
+    fn text(&self) -> String {
+        self.0.join(", ")
+    }
+
+    fn equals(&self, ours: &Value, rule: Rule) -> bool {
+        let ours = numbers(ours);
+        let mut pairs = self.0.iter().zip(&ours);
+        self.0.len() == ours.len() && pairs.all(|(n, ours)| rule.holds(&PrintedNumber::parse(n), *ours))
+    }
+}
+
+/// The rows of one paper as they are entered.
+#[derive(Default)]
+pub(super) struct Sheet {
+    rows: Vec<Row>,
+}
+
+impl Sheet {
+    /// The rows.
+    pub(super) fn into_rows(self) -> Vec<Row> {
+        self.rows
+    }
+
+    /// A number that is ours, rounded.
+    pub(super) fn equal(&mut self, item: impl Into<String>, printed: impl Into<Printed>, ours: impl Into<Value>) {
+        self.by_rule(item, printed, ours, Rule::Rounded, "");
+    }
+
+    /// A number that is ours by a rule, and what is to be said about it.
+    pub(super) fn by_rule(
+        &mut self,
+        item: impl Into<String>,
+        printed: impl Into<Printed>,
+        ours: impl Into<Value>,
+        rule: Rule,
+        note: &str,
+    ) {
+        let (printed, ours) = (printed.into(), ours.into());
+        let verdict = if printed.equals(&ours, rule) {
+            Verdict::Reproduced
+        } else {
+            Verdict::NotReproduced
+        };
+        self.enter(item, &printed, Some(ours), verdict, note);
+    }
+
+    /// A number that the paper has wrong.
+    pub(super) fn erratum(
+        &mut self,
+        item: impl Into<String>,
+        printed: impl Into<Printed>,
+        ours: impl Into<Value>,
+        reason: &str,
+    ) {
+        let (printed, ours) = (printed.into(), ours.into());
+        let finite = numbers(&ours).iter().all(|n| n.is_finite());
+        let verdict = if finite && !printed.equals(&ours, Rule::Rounded) {
+            Verdict::Erratum
+        } else {
+            Verdict::NotReproduced
+        };
+        self.enter(item, &printed, Some(ours), verdict, reason);
+    }
+
+    /// A bound of the paper that is exceeded.
+    pub(super) fn exceeded(
+        &mut self,
+        item: impl Into<String>,
+        printed: impl Into<Printed>,
+        ours: impl Into<Value>,
+        reason: &str,
+    ) {
+        let (printed, ours) = (printed.into(), ours.into());
+        let verdict = if printed.equals(&ours, Rule::AtMost) {
+            Verdict::NotReproduced
+        } else {
+            Verdict::Erratum
+        };
+        self.enter(item, &printed, Some(ours), verdict, reason);
+    }
+
+    /// A number of the paper that nothing can be held against.
+    pub(super) fn not_comparable(&mut self, item: impl Into<String>, printed: impl Into<Printed>, reason: &str) {
+        self.enter(item, &printed.into(), None, Verdict::NotComparable, reason);
+    }
+
+    /// Numbers for which the paper has a formula, evaluated as it stands there: equal to rounding.
+    pub(super) fn formula(&mut self, item: impl Into<String>, paper: impl Into<Value>, ours: impl Into<Value>) {
+        const ROUNDING: f64 = 1e-9;
+        let (paper, ours) = (paper.into(), ours.into());
+        let (theirs, found) = (numbers(&paper), numbers(&ours));
+        let equal = theirs.len() == found.len()
+            && theirs
+                .iter()
+                .zip(&found)
+                .all(|(a, b)| (a - b).abs() <= ROUNDING * a.abs().max(1.0));
+        self.rows.push(Row {
+            item: item.into(),
+            printed: "its formula".into(),
+            paper,
+            ours: Some(ours),
+            verdict: if equal {
+                Verdict::Reproduced
+            } else {
+                Verdict::NotReproduced
+            },
+            reason: "the paper gives a formula; evaluated".into(),
+        });
+    }
+
+    /// A statement of the paper that our figures bear out, if `holds`.
+    pub(super) fn claim(&mut self, item: impl Into<String>, paper: &str, ours: String, holds: bool) {
+        let verdict = if holds {
+            Verdict::Reproduced
+        } else {
+            Verdict::NotReproduced
+        };
+        self.statement(item, paper, Some(ours), verdict, "");
+    }
+
+    /// A statement of the paper that our figures refute, unless it `holds` after all.
+    pub(super) fn refuted(&mut self, item: impl Into<String>, paper: &str, ours: String, holds: bool, reason: &str) {
+        let verdict = if holds {
+            Verdict::NotReproduced
+        } else {
+            Verdict::Erratum
+        };
+        self.statement(item, paper, Some(ours), verdict, reason);
+    }
+
+    /// A statement of the paper that nothing can be held against.
+    pub(super) fn unjudged(&mut self, item: impl Into<String>, paper: &str, reason: &str) {
+        self.statement(item, paper, None, Verdict::NotComparable, reason);
+    }
+
+    fn statement(
+        &mut self,
+        item: impl Into<String>,
+        paper: &str,
+        ours: Option<String>,
+        verdict: Verdict,
+        reason: &str,
+    ) {
+        self.rows.push(Row {
+            item: item.into(),
+            paper: Value::Text(paper.into()),
+            printed: paper.into(),
+            ours: ours.map(Value::Text),
+            verdict,
+            reason: reason.into(),
+        });
+    }
+
+    fn enter(
+        &mut self,
+        item: impl Into<String>,
+        printed: &Printed,
+        ours: Option<Value>,
+        verdict: Verdict,
+        reason: &str,
+    ) {
+        self.rows.push(Row {
+            item: item.into(),
+            paper: printed.value(),
+            printed: printed.text(),
+            ours,
+            verdict,
+            reason: reason.into(),
+        });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn holds(rule: Rule, printed: &'static str, ours: f64) -> bool {
+        rule.holds(&PrintedNumber::parse(printed), ours)
+    }
+
+    #[test]
+    fn unit_printed_digits_decide_what_is_equal() {
+        assert!(holds(Rule::Rounded, "0.1997", 0.199_749_9) && !holds(Rule::Rounded, "0.1997", 0.199_75 + 1e-9));
+        assert!(holds(Rule::Rounded, "39.05", 39.045) && holds(Rule::Rounded, "-1.5", -1.549));
+        assert!(holds(Rule::Rounded, "1.3029e6", 1.302_88e6) && !holds(Rule::Rounded, "1.3029e6", 1.302_98e6));
+        assert!(holds(Rule::Rounded, "100", 99.9) && !holds(Rule::Rounded, "100", 100.6));
+        assert!(holds(Rule::Truncated, "39.04", 39.0476) && !holds(Rule::Truncated, "39.05", 39.0476));
+        assert!(holds(Rule::Truncated, "-39.04", -39.0476));
+        assert!(holds(Rule::RoundedUp, "13.22", 13.215) && !holds(Rule::RoundedUp, "13.21", 13.215));
+        assert!(holds(Rule::Within(0.5), "10", 9.53) && !holds(Rule::Within(0.4), "10", 9.53));
+        assert!(holds(Rule::AtMost, "5", 4.7) && !holds(Rule::AtMost, "5", 5.1));
+        for rule in [
+            Rule::Rounded,
+            Rule::Truncated,
+            Rule::RoundedUp,
+            Rule::Within(1.0),
+            Rule::AtMost,
+        ] {
+            assert!(!holds(rule, "1", f64::NAN) && !holds(rule, "one", 1.0));
+        }
+    }
+
+    #[test]
+    fn unit_a_changed_number_flips_its_row() {
+        let verdicts = |computed: f64| {
+            let mut sheet = Sheet::default();
+            sheet.equal("agrees", "0.1997", computed);
+            sheet.erratum("is wrong", "0.2124", computed, "misprint");
+            sheet.exceeded("is a bound", "0.15", computed, "forgotten case");
+            sheet.equal("array", ["0.1997", "1"], [computed, 1.0]);
+            sheet.formula("formula", 0.19972, computed);
+            sheet.into_rows().iter().map(|row| row.verdict).collect::<Vec<_>>()
+        };
+        let as_agreed = [
+            Verdict::Reproduced,
+            Verdict::Erratum,
+            Verdict::Erratum,
+            Verdict::Reproduced,
+            Verdict::Reproduced,
+        ];
+        assert_eq!(verdicts(0.19972), as_agreed);
+        for changed in [0.2124, 0.1, f64::NAN] {
+            let found = verdicts(changed);
+            assert!(found.contains(&Verdict::NotReproduced), "{changed}: {found:?}");
+            assert!(!found.contains(&Verdict::Reproduced), "{changed}: {found:?}");
+        }
+        assert_eq!(verdicts(0.2124)[1], Verdict::NotReproduced, "an erratum that agrees");
+    }
+
+    #[test]
+    fn unit_the_difference_is_the_largest_of_the_row() {
+        let mut sheet = Sheet::default();
+        sheet.equal("two", ["1.0", "2.0"], [1.01, 1.98]);
+        let difference = sheet.into_rows()[0].difference().unwrap();
+        assert!((difference + 0.02).abs() < 1e-12);
+    }
+}

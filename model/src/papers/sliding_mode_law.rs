@@ -1,0 +1,95 @@
+//! Equation (4-11) of the XY stage: the control law that follows from the thesis's own model of the drive.
+//!
+//! ```text
+//! m v′ = K (P′θ − x) − B v              table; P′: lead per radian
+//! 0    = K_t i − P′ K (P′θ − x)         motor, its inertia left out as in eq. (4-7)
+//! L i′ = K_cp u − K_e ω − R i           winding, eq. (4-2)
+//! ```
+//!
+//! Asked for an acceleration `v′`, the model says which `u` it takes: `u = (m R P′/(K_cp K_t)) · [v′ + c_3 x + c_4 v + …]`.
+//! Its coefficients are found by eliminating `θ`, `i` and `i′` with numbers, not by trusting anyone's algebra.
+
+use super::sheet::Sheet;
+use std::f64::consts::TAU;
+
+/// Lead per radian in m.
+const LEAD: f64 = 0.005 / TAU;
+/// Inductance in H and resistance in Ω of the winding.
+const WINDING: (f64, f64) = (0.05, 1.0);
+const MASS: f64 = 50.0;
+const STIFFNESS: f64 = 33.9357e6;
+const DAMPING: f64 = 1.3e4;
+const BACK_EMF: f64 = 0.18;
+const TORQUE: f64 = 0.378;
+
+/// What the model is asked for, and its state.
+#[derive(Default)]
+struct State {
+    acceleration: f64,
+    motor_speed: f64,
+    position: f64,
+    velocity: f64,
+}
+
+/// `K_cp u · K_t/(m R P′)`: the bracket of the law.
+fn bracket(state: &State) -> f64 {
+    let stretch = (MASS * state.acceleration + DAMPING * state.velocity) / STIFFNESS;
+    let angle = (stretch + state.position) / LEAD;
+    let current = LEAD * STIFFNESS * (LEAD * angle - state.position) / TORQUE;
+    let current_rate = LEAD * STIFFNESS * (LEAD * state.motor_speed - state.velocity) / TORQUE;
+    let (inductance, resistance) = WINDING;
+    let voltage = inductance * current_rate + resistance * current + BACK_EMF * state.motor_speed;
+    voltage * TORQUE / (MASS * resistance * LEAD)
+}
+
+/// The coefficients of eq. (4-11) that are wrong.
+pub(super) fn rows(sheet: &mut Sheet) {
+    let position = bracket(&State {
+        position: 1.0,
+        ..State::default()
+    });
+    let velocity = bracket(&State {
+        velocity: 1.0,
+        ..State::default()
+    });
+    sheet.erratum(
+        "eq (4-11): coefficient of x3 in 1/s², printed as 2K/m",
+        "1357428",
+        position,
+        "a slip of sign: the two terms cancel",
+    );
+    sheet.erratum(
+        "eq (4-11): coefficient of x4 in 1/s, printed as (LK + mR)/(mR)",
+        "33936.7",
+        velocity,
+        "it must be (BR − LK)/(mR)",
+    );
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn unit_the_elimination_is_the_algebra() {
+        let (inductance, resistance) = WINDING;
+        let one = |state: State| bracket(&state);
+        let of_acceleration = one(State {
+            acceleration: 1.0,
+            ..State::default()
+        });
+        let of_velocity = one(State {
+            velocity: 1.0,
+            ..State::default()
+        });
+        let of_speed = one(State {
+            motor_speed: 1.0,
+            ..State::default()
+        });
+        assert!((of_acceleration - 1.0).abs() < 1e-12);
+        let expected = (DAMPING * resistance - inductance * STIFFNESS) / (MASS * resistance);
+        assert!((of_velocity / expected - 1.0).abs() < 1e-12);
+        let expected = (TORQUE * BACK_EMF + LEAD * inductance * STIFFNESS * LEAD) / (MASS * resistance * LEAD);
+        assert!((of_speed / expected - 1.0).abs() < 1e-12);
+    }
+}

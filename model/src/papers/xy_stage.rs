@@ -1,0 +1,220 @@
+//! "xy-stage": a thesis on an XY stage: its drive chain, its identified plants, their shapers, and the circle they draw.
+//!
+//! ```text
+//! Gx = 6.787 / (1e-5 s² + 0.0026 s + 6.787)       Gy = 3.4358 / (1e-5 s² + 0.0018 s + 3.4358)
+//! ```
+//!
+//! are taken as exact, though 1e-5 has one digit. The sliding-mode controller of its chapter 4 is not compared.
+
+use super::designs::{amplitudes, mode_of_omega, shaper, times_s};
+use super::identification::identify;
+use super::sheet::{Rule, Sheet};
+use super::{contour, drive, sliding_mode_law};
+use crate::design::DesignError;
+use crate::design::kind::Kind;
+use crate::impulse::ImpulseSequence;
+use crate::mode::Mode;
+use crate::plant::response::step_figures;
+use crate::plant::{Plant, PlantMode};
+use std::f64::consts::{PI, TAU};
+
+/// A plant of the thesis: `b / (a_2 s² + a_1 s + b)`.
+pub(super) struct Identified {
+    /// Name of the axis.
+    pub(super) name: &'static str,
+    second: f64,
+    first: f64,
+    zeroth: f64,
+}
+
+/// Gx and Gy.
+pub(super) const PLANTS: [Identified; 2] = [
+    Identified {
+        name: "X",
+        second: 1e-5,
+        first: 0.0026,
+        zeroth: 6.787,
+    },
+    Identified {
+        name: "Y",
+        second: 1e-5,
+        first: 0.0018,
+        zeroth: 3.4358,
+    },
+];
+
+impl Identified {
+    /// The mode of the plant.
+    pub(super) fn mode(&self) -> Mode {
+        let omega = (self.zeroth / self.second).sqrt();
+        mode_of_omega(omega, self.first / (2.0 * self.second * omega))
+    }
+
+    /// The plant on the simulated machine.
+    pub(super) fn plant(&self) -> Plant {
+        let mode = self.mode();
+        Plant::of_shares(vec![PlantMode { mode, share: 1.0 }])
+    }
+}
+
+/// Overshoot of a shaped step in percent where the plant's frequency is `ratio` times the modelled one.
+fn overshoot(plant: &Plant, shaper: &ImpulseSequence, ratio: f64) -> f64 {
+    100.0 * step_figures(&plant.scaled(ratio), shaper.impulses()).overshoot
+}
+
+pub(super) fn rows(sheet: &mut Sheet) -> Result<(), DesignError> {
+    drive::rows(sheet);
+    for plant in &PLANTS {
+        shapers(sheet, plant)?;
+    }
+    example(sheet)?;
+    circle(sheet)?;
+    drive::loop_rows(sheet, &PLANTS[0].mode());
+    for plant in &PLANTS {
+        identified(sheet, plant);
+    }
+    sliding_mode_law::rows(sheet);
+    controller(sheet);
+    Ok(())
+}
+
+/// Chapter 3: ZV and ZVD for the identified plants.
+fn shapers(sheet: &mut Sheet, identified: &Identified) -> Result<(), DesignError> {
+    const ROUNDING: &str = "the shaper leaves nothing on the exact plant; the figure is the rounding of its times";
+    let (name, mode, plant) = (identified.name, identified.mode(), identified.plant());
+    let unshaped = overshoot(&plant, &ImpulseSequence::unity(), 1.0);
+    let approximate = "printed as approximate";
+    sheet.by_rule(
+        format!("chapter 3: overshoot of G{} unshaped, %", name.to_lowercase()),
+        "60",
+        unshaped,
+        Rule::Within(1.5),
+        approximate,
+    );
+    let (zv, zvd) = (shaper(Kind::Zv, &[mode])?, shaper(Kind::Zvd, &[mode])?);
+    let k = (-mode.damping * PI / (1.0 - mode.damping * mode.damping).sqrt()).exp();
+    let sum = (1.0 + k) * (1.0 + k);
+    sheet.formula(
+        format!("eqs (3-29) to (3-33): amplitudes of ZVD, {name}"),
+        vec![1.0 / sum, 2.0 * k / sum, k * k / sum],
+        amplitudes(&zvd),
+    );
+    let half_s = PI / mode.omega_damped();
+    sheet.formula(
+        format!("eqs (3-29) to (3-33): times of ZVD in s, {name}"),
+        vec![half_s, 2.0 * half_s],
+        times_s(&zvd),
+    );
+    sheet.erratum(
+        format!("chapter 3: overshoot with ZV, {name}, %"),
+        "0.02",
+        overshoot(&plant, &zv, 1.0),
+        ROUNDING,
+    );
+    sheet.erratum(
+        format!("chapter 3: overshoot with ZVD, {name}, %"),
+        "0.01",
+        overshoot(&plant, &zvd, 1.0),
+        ROUNDING,
+    );
+    sheet.by_rule(
+        format!("chapter 3: overshoot with ZV, plant −10 %, {name}, %"),
+        "10",
+        overshoot(&plant, &zv, 0.9),
+        Rule::Within(0.5),
+        approximate,
+    );
+    sheet.erratum(
+        format!("chapter 3: overshoot with ZVD, plant −10 %, {name}, %"),
+        "0.01",
+        overshoot(&plant, &zvd, 0.9),
+        "the figure of the exact plant stands where that of the slower one belongs: wrong by a factor of 150",
+    );
+    Ok(())
+}
+
+/// Section 3.2.3: 0.05 mm split into 0.03 and 0.02 mm half a period of 1 s apart.
+fn example(sheet: &mut Sheet) -> Result<(), DesignError> {
+    // The damping at which half a period leaves 0.02/0.03 of a swing.
+    let logarithm = (0.03f64 / 0.02).ln();
+    let damping = logarithm / PI.hypot(logarithm);
+    let mode = mode_of_omega(TAU / (1.0 - damping * damping).sqrt(), damping);
+    let zv = shaper(Kind::Zv, &[mode])?;
+    let steps_mm: Vec<f64> = amplitudes(&zv).iter().map(|a| 0.05 * a).collect();
+    sheet.equal("section 3.2.3: steps of the example in mm", ["0.03", "0.02"], steps_mm);
+    sheet.equal("section 3.2.3: time between them in s", "0.5", zv.duration_s());
+    Ok(())
+}
+
+/// Figure 3-10: a circle of 10 mm at 100 mm/s (assumed: the thesis gives neither), from a standing start.
+fn circle(sheet: &mut Sheet) -> Result<(), DesignError> {
+    let kinds = [Kind::None, Kind::Zv, Kind::Zvd];
+    let mut outside = Vec::new();
+    for kind in kinds {
+        let shapers = [shaper(kind, &[PLANTS[0].mode()])?, shaper(kind, &[PLANTS[1].mode()])?];
+        outside.push([0.8, 0.9, 1.0, 1.1, 1.2].map(|ratio| 100.0 * contour::excursion(&shapers, ratio)));
+    }
+    let text = |values: &[f64]| values.iter().map(|v| format!("{v:.2}")).collect::<Vec<_>>().join(", ");
+    let [unshaped, zv, zvd] = [outside[0], outside[1], outside[2]];
+    sheet.claim(
+        "Figure 3-10: unshaped, the circle starts",
+        "violently",
+        format!("{} % of the radius outside", text(&unshaped[2..3])),
+        unshaped[2] > 50.0,
+    );
+    sheet.claim(
+        "Figure 3-10: ZV holds the circle while the plant is off by up to 10 %",
+        "it does",
+        format!(
+            "{} % outside at −10, 0, +10 %; unshaped {}",
+            text(&zv[1..4]),
+            text(&unshaped[1..4])
+        ),
+        zv[1..4]
+            .iter()
+            .zip(&unshaped[1..4])
+            .all(|(shaped, unshaped)| shaped < &(unshaped / 6.0)),
+    );
+    sheet.claim(
+        "Figure 3-10: beyond, ZVD is better",
+        "it is",
+        format!(
+            "{} % with ZVD at ±20 %, {} with ZV",
+            text(&[zvd[0], zvd[4]]),
+            text(&[zv[0], zv[4]])
+        ),
+        zvd[0] < zv[0] && zvd[4] < zv[4],
+    );
+    Ok(())
+}
+
+/// Equations (2-1) to (2-4): least squares on samples of Gx and Gy, without noise.
+fn identified(sheet: &mut Sheet, plant: &Identified) {
+    let (printed, found) = (plant.mode(), identify(&plant.plant()));
+    sheet.formula(
+        format!(
+            "eqs (2-1) to (2-4): ω_n in rad/s and ζ of G{}, identified",
+            plant.name.to_lowercase()
+        ),
+        [printed.omega(), printed.damping],
+        [found.omega(), found.damping],
+    );
+}
+
+/// Chapter 4.
+fn controller(sheet: &mut Sheet) {
+    const LATER: &str = "the controller comes with the motion blocks";
+    sheet.not_comparable("chapter 4: surface slope c of the sliding mode", "150", LATER);
+    sheet.not_comparable("chapter 4: reaching rate k of the sliding mode", "50", LATER);
+    sheet.not_comparable(
+        "chapter 4: reaching gain ε of the sliding mode",
+        "150",
+        "the thesis gives no unit, and either reading is no controller: 15 g, or less than the friction",
+    );
+    sheet.unjudged(
+        "chapter 4: sliding mode follows better than PID under friction",
+        "it does",
+        LATER,
+    );
+    sheet.unjudged("chapter 4: sliding mode removes the error", "it does", LATER);
+}
