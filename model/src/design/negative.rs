@@ -23,7 +23,7 @@ use super::DesignError;
 use super::equations::{Equations, Linearised, Point, Ratio};
 use super::hump_ei::TOLERANCE_MIN;
 use super::kind::Kind;
-use super::path::{Branch, follow};
+use super::path::{Branch, PRECISE, follow};
 use crate::analysis::residual_vibration;
 use crate::impulse::{Impulse, ImpulseSequence};
 use crate::mode::Mode;
@@ -79,7 +79,7 @@ pub fn design(kind: Kind, mode: &Mode, tolerance: f64) -> Result<ImpulseSequence
     };
     let longest = LONGEST_STEP / mode.damping.max(path.root_change.abs()).max(LONGEST_STEP);
     let start = DVector::from_column_slice(family.undamped);
-    let unknowns = follow(&path, start, longest).map_err(|reached| DesignError::NotSolved {
+    let unknowns = follow(&path, start, longest, PRECISE).map_err(|reached| DesignError::NotSolved {
         kind,
         mode: *mode,
         reached,
@@ -279,7 +279,8 @@ mod tests {
                     damping: 0.4,
                     root_change: tolerance.sqrt() - START_TOLERANCE.sqrt(),
                 };
-                let along = |longest| follow(&path, DVector::from_column_slice(family.undamped), longest).unwrap();
+                let along =
+                    |longest| follow(&path, DVector::from_column_slice(family.undamped), longest, PRECISE).unwrap();
                 assert!((along(0.25) - along(0.002)).amax() < 1e-11, "{kind} {tolerance}");
             }
         }
