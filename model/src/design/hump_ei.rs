@@ -10,7 +10,7 @@
 //! undamped:  equal ripple. cos(π w_k/2) = cos(kπ/2m) / cosh(acosh(1/V)/m),  t_i = i·T/2
 //! ```
 //!
-//! (`R`: [`super::equations`].) The undamped solution is followed along the damping ([`super::path`]) for as long as its
+//! (`R`: `equations.rs`.) The undamped solution is followed along the damping (`path.rs`) for as long as its
 //! amplitudes are positive and its impulses and frequencies in order. The published fits are not used: theirs is a residual
 //! of 4.88 to 5.04 % where 5 % is asked for.
 

@@ -13,8 +13,8 @@
 //! -ei    5 impulses   R(w_lo) = R(w_hi) = 0, |R(1)| = V, d|R|/dw(1) = 0           t_2 … t_5, w_lo, w_hi
 //! ```
 //!
-//! (`R`: [`super::equations`].) There are many solutions; these are the shortest known, followed from the undamped one along
-//! damping and tolerance ([`super::path`]). The published cubic fits in the damping, off by 1e-4 to 4e-4 of a period, are
+//! (`R`: `equations.rs`.) There are many solutions; these are the shortest known, followed from the undamped one along
+//! damping and tolerance (`path.rs`). The published cubic fits in the damping, off by 1e-4 to 4e-4 of a period, are
 //! not used: at sums of amplitudes of 5 to 9, a shaper needs its times to the last digit.
 
 use nalgebra::DVector;
