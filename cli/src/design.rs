@@ -7,7 +7,9 @@ use crate::plot::{self, Curve, Panel};
 use posicast_model::analysis::{INSENSITIVITY_LIMIT, sensitivity_curve, tap_impulses};
 use posicast_model::design::periodic::Solution;
 use posicast_model::design::ratios::Class;
-use posicast_model::design::{AxisTables, Findings, MachineDesign, ModeFigures, design_machine};
+use posicast_model::design::{
+    AxisTables, ConvolutionFigures, Findings, MachineDesign, ModeFigures, convolution_figures, design_machine,
+};
 use posicast_model::rtl::shaper::ShaperConfig;
 use posicast_model::spec::{Axis, Machine};
 use serde::Serialize;
@@ -66,6 +68,7 @@ impl<'a> Report<'a> {
                 axis,
                 tables,
                 modes: tables.mode_figures(axis, self.design.sample_hz),
+                convolution: convolution_figures(axis, &tables.design),
                 fits: fits(self.machine, tables),
             })
     }
@@ -110,6 +113,7 @@ struct AxisReport<'a> {
     axis: &'a Axis,
     tables: &'a AxisTables,
     modes: Vec<ModeFigures>,
+    convolution: ConvolutionFigures,
     fits: Result<(), String>,
 }
 
@@ -145,6 +149,19 @@ impl AxisReport<'_> {
             delay_s: impulses.delay_s(),
             partial_sum_min: sums.min,
             partial_sum_max: sums.max,
+            peak_command: self.convolution.peak_command,
+            cross_gains: self
+                .convolution
+                .cross_gains
+                .iter()
+                .map(|g| CrossGainDocument {
+                    kind: g.kind.name(),
+                    shaper_hz: self.modes[g.shaper].mode.frequency_hz,
+                    at_hz: self.modes[g.at].mode.frequency_hz,
+                    gain: g.gain,
+                })
+                .collect(),
+            warnings: self.convolution.warnings.iter().map(ToString::to_string).collect(),
             modes: self
                 .modes
                 .iter()
@@ -207,6 +224,7 @@ impl AxisReport<'_> {
         text += &table.text("  ");
         text += &findings_text(&self.tables.design.findings);
         text += &self.modes_text();
+        text += &self.convolution_text();
         let taps = self.tables.table.taps();
         let _ = writeln!(
             text,
@@ -226,6 +244,32 @@ impl AxisReport<'_> {
         text += &table.text("  ");
         if let Err(reason) = &self.fits {
             let _ = writeln!(text, "  does not fit: {reason}");
+        }
+        text
+    }
+
+    /// What the modes' shapers do to each other, where there are several.
+    fn convolution_text(&self) -> String {
+        let mut text = String::new();
+        if !self.convolution.cross_gains.is_empty() {
+            let mut table = Table::new(&["shaper", ">for mode Hz", ">at mode Hz", ">gain"]);
+            for g in &self.convolution.cross_gains {
+                table.row([
+                    g.kind.to_string(),
+                    format!("{:.3}", self.modes[g.shaper].mode.frequency_hz),
+                    format!("{:.3}", self.modes[g.at].mode.frequency_hz),
+                    format!("{:.4}", g.gain),
+                ]);
+            }
+            let _ = write!(
+                text,
+                "\n  peak command {:.4} of a step; gain of each shaper at the other modes\n{}",
+                self.convolution.peak_command,
+                table.text("  ")
+            );
+        }
+        for warning in &self.convolution.warnings {
+            let _ = writeln!(text, "\n  warning: {warning}");
         }
         text
     }
@@ -375,6 +419,9 @@ struct AxisDocument {
     delay_s: f64,
     partial_sum_min: f64,
     partial_sum_max: f64,
+    peak_command: f64,
+    cross_gains: Vec<CrossGainDocument>,
+    warnings: Vec<String>,
     modes: Vec<ModeDocument>,
     quantised: QuantisedDocument,
 }
@@ -421,6 +468,15 @@ impl ClassDocument {
 struct ImpulseDocument {
     time_s: f64,
     amplitude: f64,
+}
+
+/// Residual of the shaper for one mode at another mode.
+#[derive(Serialize)]
+struct CrossGainDocument {
+    kind: &'static str,
+    shaper_hz: f64,
+    at_hz: f64,
+    gain: f64,
 }
 
 #[derive(Serialize)]

@@ -5,7 +5,7 @@ mod support;
 
 use posicast_model::analysis::{insensitivity, residual_vibration, sensitivity_curve, tap_impulses};
 use posicast_model::design::kind::Kind;
-use posicast_model::design::{MachineDesign, design_axis, design_machine, ei, zv};
+use posicast_model::design::{MachineDesign, design_axis, design_machine, hump_ei, zv};
 use posicast_model::digitise::{TableError, digitise};
 use posicast_model::impulse::{Impulse, ImpulseSequence};
 use posicast_model::mode::Mode;
@@ -60,7 +60,7 @@ proptest! {
         mode in mode(0.0..0.4),
         tolerance in 0.01..0.2,
     ) {
-        let ei::Ei { impulses, zeros } = ei::design(&mode, tolerance).unwrap();
+        let hump_ei::HumpEi { impulses, zeros, .. } = hump_ei::design(Kind::Ei, &mode, tolerance).unwrap();
         let at = |ratio: f64| residual_vibration(impulses.impulses(), &mode.scaled(ratio));
         prop_assert!((sum(impulses.impulses()) - 1.0).abs() < 1e-14);
         prop_assert!(impulses.impulses().iter().all(|i| i.amplitude > 0.0));

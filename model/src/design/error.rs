@@ -79,11 +79,40 @@ pub enum DesignError {
         /// The tolerance.
         tolerance: f64,
     },
+    /// A damping beyond those that the kind is solved for.
+    #[error(
+        "shaper \"{kind}\" takes a damping of 0 to {most}; the mode at {hz} Hz has {damping}: use \"{instead}\" for this mode",
+        hz = mode.frequency_hz, damping = mode.damping
+    )]
+    Damping {
+        /// The kind.
+        kind: Kind,
+        /// The mode.
+        mode: Mode,
+        /// Largest damping of the kind.
+        most: f64,
+        /// A kind that takes this damping.
+        instead: Kind,
+    },
+    /// Newton's method lost the solution on the way to the damping and tolerance.
+    #[error(
+        "shaper \"{kind}\" at mode {hz} Hz, damping {damping}: no solution found beyond {percent:.0} % of the way from the \
+         undamped shaper; use \"zv\" or \"zvd\" for this mode",
+        hz = mode.frequency_hz, damping = mode.damping, percent = 100.0 * reached
+    )]
+    NotSolved {
+        /// The kind.
+        kind: Kind,
+        /// The mode.
+        mode: Mode,
+        /// Share of the way, 0 to 1.
+        reached: f64,
+    },
     /// No shaper of the kind leaves this tolerance at this damping.
     #[error(
-        "shaper \"{kind}\" with tolerance {tolerance} exists up to damping {largest_damping:.4}; the mode at {hz} Hz has \
+        "shaper \"{kind}\" with tolerance {tolerance} exists up to damping {}; the mode at {hz} Hz has \
          {damping}{}: lower the tolerance, or use \"zv\" or \"zvd\" for this mode",
-        tolerance_limit(*largest_tolerance),
+        rounded_down(*largest_damping), tolerance_limit(*largest_tolerance),
         hz = mode.frequency_hz, damping = mode.damping
     )]
     NoSolution {
@@ -163,6 +192,20 @@ impl DesignError {
         }
     }
 
+    /// What a design leaves, against what its kind promises.
+    pub(super) fn verify(kind: Kind, mode: &Mode, found: f64, promised: f64, accuracy: f64) -> Result<(), Self> {
+        if (found - promised).abs() <= accuracy {
+            Ok(())
+        } else {
+            Err(DesignError::Unverified {
+                kind,
+                mode: *mode,
+                found,
+                promised,
+            })
+        }
+    }
+
     /// A mode that can be designed for, or the error.
     pub(super) fn check_mode(mode: &Mode) -> Result<(), Self> {
         let frequency = mode.frequency_hz.is_finite() && mode.frequency_hz > 0.0;
@@ -177,6 +220,15 @@ impl DesignError {
 fn tolerance_limit(largest: Option<f64>) -> String {
     largest.map_or_else(
         || ", with which it exists for no tolerance".to_owned(),
-        |tolerance| format!(", with which it exists up to tolerance {tolerance:.4e}"),
+        |tolerance| format!(", with which it exists up to tolerance {}", rounded_down(tolerance)),
     )
+}
+
+/// A limit to four decimals, or as many digits if it is small, that still lies within it.
+fn rounded_down(limit: f64) -> String {
+    if limit >= 0.01 {
+        format!("{}", (limit * 1e4).floor() / 1e4)
+    } else {
+        format!("{:.3e}", limit * (1.0 - 5e-4))
+    }
 }

@@ -86,7 +86,16 @@ impl Kind {
                 | Kind::Zvd
                 | Kind::Zvdd
                 | Kind::Zvddd
+                | Kind::Mzv
                 | Kind::Ei
+                | Kind::TwoHumpEi
+                | Kind::ThreeHumpEi
+                | Kind::UmZv
+                | Kind::UmZvd
+                | Kind::UmEi
+                | Kind::PsZv
+                | Kind::PsZvd
+                | Kind::PsEi
                 | Kind::ZvEi
                 | Kind::ZvEi2
                 | Kind::ZvdEi

@@ -1,0 +1,136 @@
+//! Following a solution from where it is known to where it is wanted.
+//!
+//! The equations depend on a position `s` on a path, 0 to 1, along which damping and tolerance go from those of a known
+//! solution to those asked for. From a solution at `s`, the next start is its tangent; Newton's method takes it to the
+//! solution there. A step counts only if Newton's corrections shrink from the first on: then the solution found is the
+//! continuation of the last one, and not another that happens to be near. Otherwise half the step is tried, until steps are
+//! so short that the branch itself ends.
+
+use nalgebra::DVector;
+
+use super::equations::Linearised;
+
+/// Corrections must shrink by this factor at least, each time.
+const CONTRACTION: f64 = 0.25;
+/// A correction of this size, in units of the unknowns, leaves an error of its square: enough to go on from. At the end of
+/// the path one more follows, which leaves rounding, and which may be no smaller for that reason.
+const SETTLED: f64 = 1e-5;
+/// Newton doubles its digits each time; more rounds mean that it does not.
+const ROUNDS: usize = 12;
+/// Shortest step, at which the end of the branch counts as found.
+const SHORTEST: f64 = 1e-6;
+
+/// A system of equations along a path.
+pub(super) trait Branch {
+    /// Values and derivatives at position `s` for these unknowns.
+    fn linearised(&self, unknowns: &DVector<f64>, s: f64) -> Linearised;
+
+    /// How far each unknown lies from the next solution, or from where the equations degenerate, at position `s`: a
+    /// correction is small if it is small in these units.
+    fn units(&self, s: f64) -> DVector<f64>;
+
+    /// Whether a solution is one of the kind: in order, positive where it has to be.
+    fn is_valid(&self, unknowns: &DVector<f64>) -> bool;
+}
+
+/// Follows `branch` from a start near its solution at 0 up to 1, in steps of at most `longest`.
+///
+/// # Errors
+/// The position up to which the branch was followed, where it does not reach 1; 0 if there is none at 0.
+pub(super) fn follow(branch: &impl Branch, start: DVector<f64>, longest: f64) -> Result<DVector<f64>, f64> {
+    let mut here = solve(branch, start, 0.0).ok_or(0.0)?;
+    let (mut s, mut step) = (0.0, longest.min(1.0));
+    // Not at once after a failure: towards the end of a branch every longer step fails again.
+    let mut may_grow = false;
+    while s < 1.0 {
+        let next = if s + step >= 1.0 { 1.0 } else { s + step };
+        let predicted = &here.unknowns + &here.tangent * (next - s);
+        match solve(branch, predicted, next) {
+            Some(solution) => {
+                (here, s) = (solution, next);
+                step = if may_grow { (2.0 * step).min(longest) } else { step };
+                may_grow = true;
+            }
+            None if step > SHORTEST => {
+                step /= 2.0;
+                may_grow = false;
+            }
+            None => return Err(s),
+        }
+    }
+    Ok(here.unknowns)
+}
+
+/// A solution and how it moves along the path.
+struct Solution {
+    unknowns: DVector<f64>,
+    tangent: DVector<f64>,
+}
+
+/// Newton's method at one position: the valid solution that the corrections from `start` shrink towards.
+fn solve(branch: &impl Branch, start: DVector<f64>, s: f64) -> Option<Solution> {
+    let units = branch.units(s);
+    let mut unknowns = start;
+    let mut before = f64::INFINITY;
+    for _ in 0..ROUNDS {
+        let Linearised { values, jacobian, path } = branch.linearised(&unknowns, s);
+        let factors = jacobian.lu();
+        let correction = factors.solve(&values)?;
+        let size = correction.component_div(&units).amax();
+        let was_settled = before <= SETTLED;
+        if !(size <= CONTRACTION * before || was_settled) {
+            return None;
+        }
+        if size <= before {
+            unknowns -= correction;
+        }
+        if was_settled || (size <= SETTLED && s < 1.0) {
+            let tangent = -factors.solve(&path)?;
+            return branch.is_valid(&unknowns).then_some(Solution { unknowns, tangent });
+        }
+        before = size;
+    }
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::DMatrix;
+
+    /// `x² = 1 − s/limit`: ends in a fold at `limit`.
+    struct Fold(f64);
+
+    impl Branch for Fold {
+        fn linearised(&self, x: &DVector<f64>, s: f64) -> Linearised {
+            Linearised {
+                values: DVector::from_element(1, x[0] * x[0] - 1.0 + s / self.0),
+                jacobian: DMatrix::from_element(1, 1, 2.0 * x[0]),
+                path: DVector::from_element(1, 1.0 / self.0),
+            }
+        }
+
+        fn units(&self, _: f64) -> DVector<f64> {
+            DVector::from_element(1, 1.0)
+        }
+
+        fn is_valid(&self, x: &DVector<f64>) -> bool {
+            x[0].is_finite()
+        }
+    }
+
+    #[test]
+    fn unit_follows_the_branch_that_it_starts_on() {
+        for sign in [1.0, -1.0] {
+            let start = DVector::from_element(1, 1.1 * sign);
+            let found = follow(&Fold(1.25), start, 1.0).unwrap();
+            assert!((found[0] - sign * 0.2f64.sqrt()).abs() < 1e-15);
+        }
+    }
+
+    #[test]
+    fn unit_says_where_a_branch_ends() {
+        let ended = follow(&Fold(0.4), DVector::from_element(1, 1.0), 1.0).unwrap_err();
+        assert!((ended - 0.4).abs() < 1e-5, "{ended}");
+    }
+}
