@@ -6,8 +6,10 @@ use crate::machine;
 use crate::output::{self, Table, percent};
 use crate::plot::{self, Curve, Panel};
 use posicast_model::analysis::{INSENSITIVITY_LIMIT, sensitivity_curve, tap_impulses};
+use posicast_model::design::periodic::Solution;
+use posicast_model::design::ratios::Class;
 use posicast_model::design::{
-    AxisTables, ConvolutionFigures, MachineDesign, ModeFigures, convolution_figures, design_machine,
+    AxisTables, ConvolutionFigures, Findings, MachineDesign, ModeFigures, convolution_figures, design_machine,
 };
 use posicast_model::rtl::shaper::ShaperConfig;
 use posicast_model::spec::{Axis, Machine};
@@ -132,9 +134,22 @@ impl AxisReport<'_> {
     fn json(&self, sample_hz: f64, coefficient_fraction: u32) -> AxisDocument {
         let impulses = &self.tables.design.impulses;
         let sums = impulses.partial_sums();
+        let findings = &self.tables.design.findings;
         AxisDocument {
             name: self.axis.name.clone(),
             kind: self.tables.design.kind.clone(),
+            solutions: match findings {
+                Findings::Periodic(found) => Some(found.solutions.iter().map(SolutionDocument::new).collect()),
+                _ => None,
+            },
+            classes: match findings {
+                Findings::Antisymmetric(found) => Some(found.classes.iter().map(ClassDocument::new).collect()),
+                _ => None,
+            },
+            time_optimal: match findings {
+                Findings::Simultaneous(found) => Some(found.is_time_optimal),
+                _ => None,
+            },
             impulses: impulses
                 .impulses()
                 .iter()
@@ -220,6 +235,7 @@ impl AxisReport<'_> {
             ]);
         }
         text += &table.text("  ");
+        text += &findings_text(&self.tables.design.findings);
         text += &self.modes_text();
         text += &self.convolution_text();
         let taps = self.tables.table.taps();
@@ -305,6 +321,50 @@ impl AxisReport<'_> {
     }
 }
 
+/// What a kind that treats all modes together found out beside its impulses.
+fn findings_text(findings: &Findings) -> String {
+    let mut text = String::new();
+    match findings {
+        Findings::None => {}
+        Findings::Periodic(found) => {
+            let _ = writeln!(text, "\n  periodic at {:.6} Hz; all solutions:", found.system_hz);
+            let mut table = Table::new(&["", ">from Hz", ">to Hz", "odd multiples"]);
+            for solution in &found.solutions {
+                let multiples = solution.n.iter().map(|n| (2 * n + 1).to_string());
+                table.row([
+                    String::new(),
+                    format!("{:.6}", solution.low_hz),
+                    format!("{:.6}", solution.high_hz),
+                    multiples.collect::<Vec<_>>().join(", "),
+                ]);
+            }
+            text += &table.text("  ");
+        }
+        Findings::Antisymmetric(found) => {
+            for Class { members, multiples } in &found.classes {
+                let modes: Vec<String> = members.iter().map(|index| (index + 1).to_string()).collect();
+                let odd: Vec<String> = multiples.multiples.iter().map(u64::to_string).collect();
+                let _ = writeln!(
+                    text,
+                    "\n  antisymmetric modes {}: {} times {:.6} Hz, within {:.2e} of each",
+                    modes.join(", "),
+                    odd.join(", "),
+                    multiples.divisor,
+                    multiples.error,
+                );
+            }
+        }
+        Findings::Simultaneous(found) => {
+            text += if found.is_time_optimal {
+                "\n  no command within the same bounds is shorter\n"
+            } else {
+                "\n  the shortest found, not proven to be the shortest\n"
+            };
+        }
+    }
+    text
+}
+
 /// Frequency ratios that the sensitivity curves show.
 const CURVE_RATIOS: (f64, f64) = (0.4, 1.6);
 const CURVE_POINTS: usize = 601;
@@ -361,6 +421,12 @@ pub(crate) struct Document {
 struct AxisDocument {
     name: String,
     kind: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    solutions: Option<Vec<SolutionDocument>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    classes: Option<Vec<ClassDocument>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    time_optimal: Option<bool>,
     impulses: Vec<ImpulseDocument>,
     duration_s: f64,
     delay_s: f64,
@@ -371,6 +437,44 @@ struct AxisDocument {
     warnings: Vec<String>,
     modes: Vec<ModeDocument>,
     quantised: QuantisedDocument,
+}
+
+/// An interval of frequencies that `periodic` may take.
+#[derive(Serialize)]
+struct SolutionDocument {
+    low_hz: f64,
+    high_hz: f64,
+    n: Vec<u32>,
+}
+
+impl SolutionDocument {
+    fn new(solution: &Solution) -> Self {
+        Self {
+            low_hz: solution.low_hz,
+            high_hz: solution.high_hz,
+            n: solution.n.clone(),
+        }
+    }
+}
+
+/// Modes of `antisymmetric` that share an antiperiod; modes are counted from 1.
+#[derive(Serialize)]
+struct ClassDocument {
+    modes: Vec<usize>,
+    divisor_hz: f64,
+    multiples: Vec<u64>,
+    ratio_error: f64,
+}
+
+impl ClassDocument {
+    fn new(class: &Class) -> Self {
+        Self {
+            modes: class.members.iter().map(|index| index + 1).collect(),
+            divisor_hz: class.multiples.divisor,
+            multiples: class.multiples.multiples.clone(),
+            ratio_error: class.multiples.error,
+        }
+    }
 }
 
 #[derive(Serialize)]
