@@ -32,16 +32,21 @@ pub(crate) enum Simulator {
 
 impl Simulator {
     /// The simulator that was asked for, else the best that is installed.
-    pub(crate) fn choose(asked: Option<Self>) -> Self {
-        match asked {
-            Some(simulator) => simulator,
-            None if verilator::version().is_ok() => Self::Verilator,
-            None => {
+    ///
+    /// A Verilator that `$VERILATOR` names, or that fails, is no Verilator that is not installed: that is an error.
+    pub(crate) fn choose(asked: Option<Self>) -> Result<Self, Failure> {
+        if let Some(simulator) = asked {
+            return Ok(simulator);
+        }
+        match verilator::version() {
+            Ok(_) => Ok(Self::Verilator),
+            Err(error) if !error.is_missing_tool() || std::env::var_os("VERILATOR").is_some() => Err(failure(error)),
+            Err(_) => {
                 output::say(
                     "warning: Verilator is not installed: RustHDL's own simulator runs instead, on fewer clocks. It is the \
                      weaker check: the emitted Verilog itself is not simulated.",
                 );
-                Self::Rusthdl
+                Ok(Self::Rusthdl)
             }
         }
     }

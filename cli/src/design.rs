@@ -13,9 +13,10 @@ use posicast_model::design::{
 };
 use posicast_model::rtl::shaper::ShaperConfig;
 use posicast_model::spec::{Axis, Machine};
+use posicast_testbench::wave::write_text;
 use serde::Serialize;
 use std::fmt::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Impulses, residuals, insensitivity and tap table of every axis
 #[derive(clap::Args)]
@@ -45,12 +46,9 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     if args.compare {
         return compare::run(&machine, args.band, args.json);
     }
-    let report = Report::new(&machine)?;
+    let report = Report::new(&machine, &args.machine)?;
     if let Some(path) = &args.plot {
-        output::write_file(
-            path,
-            plot::svg(&sensitivity_panels(&machine, &report.design))?.as_bytes(),
-        )?;
+        write_text(path, &plot::svg(&sensitivity_panels(&machine, &report.design))?).map_err(Failure::because)?;
     }
     if args.json {
         output::print_json(&report.json())
@@ -66,9 +64,9 @@ pub(crate) struct Report<'a> {
 }
 
 impl<'a> Report<'a> {
-    /// Designs the shapers of `machine`.
-    pub(crate) fn new(machine: &'a Machine) -> Result<Self, Failure> {
-        let design = design_machine(machine).map_err(Failure::because)?;
+    /// Designs the shapers of `machine`, which the file at `path` describes.
+    pub(crate) fn new(machine: &'a Machine, path: &Path) -> Result<Self, Failure> {
+        let design = design_machine(machine).map_err(|e| Failure::because(e).in_file(path))?;
         Ok(Self { machine, design })
     }
 

@@ -3,6 +3,7 @@
 use miette::Diagnostic;
 use std::fmt;
 use std::io::{IsTerminal, Write};
+use std::path::Path;
 use std::process::ExitCode;
 
 /// What stopped a command; its kind is its exit status.
@@ -24,6 +25,21 @@ impl Failure {
     /// Bad input, described by a library's error that carries no diagnostics of its own.
     pub(crate) fn because(error: impl std::error::Error + Send + Sync + 'static) -> Self {
         Self::Input(miette::Report::from_err(error))
+    }
+
+    /// The same failure, its message led by the file that it is about.
+    pub(crate) fn in_file(self, path: &Path) -> Self {
+        match self {
+            Self::Input(report) => {
+                let help = report.help().map(|help| help.to_string());
+                let message = format!("{}: {report}", path.display());
+                Self::Input(match help {
+                    Some(help) => miette::miette!(help = help, "{message}"),
+                    None => miette::miette!("{message}"),
+                })
+            }
+            other => other,
+        }
     }
 
     /// A missing tool.

@@ -23,8 +23,8 @@ pub(crate) struct Args {
 
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let file = machine::read(&args.machine)?;
-    let report = Report::new(&file.machine)?;
-    let shapers = machine::shapers(&file.machine, &report.design)?;
+    let report = Report::new(&file.machine, &args.machine)?;
+    let shapers = machine::shapers(&file.machine, &report.design, &args.machine)?;
     let modules = modules(&file.machine.name, &shapers)?;
     let mut package = open(args.output.as_deref(), &file)?;
     add_sources(&mut package, &file, &modules)?;

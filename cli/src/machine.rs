@@ -48,12 +48,12 @@ pub(crate) fn parse(path: &Path, text: &str) -> Result<Machine, Failure> {
     spec::parse(&path.display().to_string(), text).map_err(Failure::input)
 }
 
-/// What is built for every axis of a machine.
-pub(crate) fn shapers(machine: &Machine, design: &MachineDesign) -> Result<Vec<AxisShaper>, Failure> {
+/// What is built for every axis of a machine, which the file at `path` describes.
+pub(crate) fn shapers(machine: &Machine, design: &MachineDesign, path: &Path) -> Result<Vec<AxisShaper>, Failure> {
     let clocks = u64::from(machine.clock.clocks_per_sample());
     let axes = machine.axes.iter().zip(&design.axes);
     axes.map(|(axis, tables)| {
-        let refused = |reason: String| Failure::from(miette::miette!("axis `{}`: {reason}", axis.name));
+        let refused = |reason: String| Failure::from(miette::miette!("axis `{}`: {reason}", axis.name)).in_file(path);
         let config = ShaperConfig::new(machine.fixed_point.command_bits, tables.table.clone())
             .map_err(|e| refused(e.to_string()))?;
         config.fits(clocks).map_err(|e| refused(e.to_string()))?;

@@ -3,7 +3,6 @@
 use crate::failure::Failure;
 use serde::Serialize;
 use std::io::{ErrorKind, Write};
-use std::path::Path;
 
 /// Prints text on standard output. A reader that has gone (`| head`) is no error.
 pub(crate) fn print(text: &str) -> Result<(), Failure> {
@@ -30,25 +29,6 @@ pub(crate) fn json_text(document: &impl Serialize) -> Result<String, Failure> {
 pub(crate) fn say(line: &str) {
     // A message that cannot be shown must not stop the work.
     let _ = writeln!(std::io::stderr(), "{line}");
-}
-
-/// Writes a file under a temporary name beside it and renames it, so that no half-written file is ever seen.
-pub(crate) fn write_file(path: &Path, contents: &[u8]) -> Result<(), Failure> {
-    let folder = path
-        .parent()
-        .filter(|p| !p.as_os_str().is_empty())
-        .unwrap_or(Path::new("."));
-    let written = tempfile::NamedTempFile::new_in(folder).and_then(|mut file| {
-        file.write_all(contents)?;
-        file.persist(path).map_err(|e| e.error)
-    });
-    written.map(drop).map_err(|error| {
-        Failure::from(miette::miette!(
-            help = "name a file in a folder that exists and that you may write to",
-            "cannot write `{}`: {error}",
-            path.display()
-        ))
-    })
 }
 
 /// A fraction as percent, with as many digits as tell it from zero.

@@ -6,6 +6,7 @@ use crate::plot::{self, Curve, Panel};
 use crate::progress;
 use clap::builder::PossibleValuesParser;
 use posicast_model::papers::{Figure, Paper, Row, Value, Verdict};
+use posicast_testbench::wave::write_text;
 use serde::Serialize;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -254,7 +255,7 @@ fn draw(folder: &Path, paper: Paper, figures: Vec<Figure>) -> Result<(), Failure
         })
         .collect();
     let path = folder.join(format!("{}.svg", paper.name()));
-    output::write_file(&path, plot::svg(&panels)?.as_bytes())
+    write_text(&path, &plot::svg(&panels)?).map_err(Failure::because)
 }
 
 #[cfg(test)]

@@ -63,10 +63,10 @@ pub(crate) struct Args {
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let file = machine::read(&args.machine)?;
     let machine = &file.machine;
-    let design = DesignReport::new(machine)?;
-    let shapers = machine::shapers(machine, &design.design)?;
+    let design = DesignReport::new(machine, &args.machine)?;
+    let shapers = machine::shapers(machine, &design.design, &args.machine)?;
     let words = command::words(machine, &design.design, args.command.as_deref())?;
-    let simulator = Simulator::choose(args.simulator);
+    let simulator = Simulator::choose(args.simulator)?;
     let yosys = installed_yosys()?;
     let axes = simulate(machine, &design.design, &shapers, &words)?;
     let bench = Bench::new(machine, shapers)?;
@@ -86,7 +86,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let estimate = yosys.map(|yosys| estimate(&yosys, machine, &files)).transpose()?;
 
     let mut checks = Vec::from_iter(checks::lint(simulator, &files, &machine.name)?);
-    checks.extend(checks::all(&bench, &design.design, &lockstep, &waves));
+    checks.extend(checks::all(simulator, &bench, &design.design, &lockstep, &waves));
     checks.extend(estimate.as_ref().and_then(|e| checks::fits(machine, e)));
     package
         .add(

@@ -39,8 +39,8 @@ pub(crate) struct Args {
 
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let machine = machine::read(&args.machine)?.machine;
-    let design = Report::new(&machine)?.design;
-    let shapers = machine::shapers(&machine, &design)?;
+    let design = Report::new(&machine, &args.machine)?.design;
+    let shapers = machine::shapers(&machine, &design, &args.machine)?;
     let words = command::words(&machine, &design, args.command.as_deref())?;
     let axes = simulate(&machine, &design, &shapers, &words)?;
     let path = args

@@ -63,8 +63,8 @@ fn sources(source: &Path) -> Result<(Machine, Vec<PathBuf>, Option<tempfile::Tem
         return Ok((machine, contents.rtl, None));
     }
     let machine = machine::read(source)?.machine;
-    let design = Report::new(&machine)?.design;
-    let modules = generate::modules(&machine.name, &machine::shapers(&machine, &design)?)?;
+    let design = Report::new(&machine, source)?.design;
+    let modules = generate::modules(&machine.name, &machine::shapers(&machine, &design, source)?)?;
     let (files, scratch) = generate::write_scratch(&modules)?;
     Ok((machine, files, Some(scratch)))
 }

@@ -51,10 +51,13 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let simulator = if job.from_folder {
         args.simulator.unwrap_or(Simulator::Verilator)
     } else {
-        Simulator::choose(args.simulator)
+        Simulator::choose(args.simulator)?
     };
     let cycles = args.cycles.unwrap_or(simulator.default_cycles());
     let report = job.lockstep(simulator, cycles, args.seed)?;
+    if report.samples == 0 {
+        output::say("warning: no output sample was among these clocks: compare more with --cycles");
+    }
     let document = Document {
         simulator,
         seed: args.seed,
@@ -91,8 +94,8 @@ impl Job {
         } else {
             (machine::read(source)?.machine, None)
         };
-        let design = DesignReport::new(&machine)?.design;
-        let bench = Bench::new(&machine, machine::shapers(&machine, &design)?)?;
+        let design = DesignReport::new(&machine, source)?.design;
+        let bench = Bench::new(&machine, machine::shapers(&machine, &design, source)?)?;
         let from_folder = folder.is_some();
         let (files, scratch) = match folder {
             Some(files) => (files, None),

@@ -24,16 +24,22 @@ pub(crate) struct Check {
 }
 
 /// The checks of the comparisons.
-pub(crate) fn all(bench: &Bench, design: &MachineDesign, lockstep: &Report, waves: &Waves) -> Vec<Check> {
+pub(crate) fn all(
+    simulator: Simulator,
+    bench: &Bench,
+    design: &MachineDesign,
+    lockstep: &Report,
+    waves: &Waves,
+) -> Vec<Check> {
     vec![
-        rtl_equals_model(lockstep),
+        rtl_equals_model(simulator, lockstep),
         move_equals_model(waves),
         within_float_bound(waves),
         residual_within_rounding(bench, design),
     ]
 }
 
-fn rtl_equals_model(lockstep: &Report) -> Check {
+fn rtl_equals_model(simulator: Simulator, lockstep: &Report) -> Check {
     let first = lockstep
         .blocks
         .iter()
@@ -43,7 +49,10 @@ fn rtl_equals_model(lockstep: &Report) -> Check {
         Some((block, first)) => format!("{} {}:\n{first}", block.name, block.instance),
     };
     Check {
-        name: "RTL equals the bit-exact model in every clock",
+        name: match simulator {
+            Simulator::Rusthdl => "RustHDL description equals the bit-exact model in every clock",
+            Simulator::Verilator | Simulator::Icarus => "RTL equals the bit-exact model in every clock",
+        },
         passed: lockstep.result == LockstepVerdict::Match,
         detail,
     }

@@ -36,6 +36,8 @@ pub fn compose(
     };
     names::check_name(top).map_err(at(""))?;
     let mut taken = Taken::default();
+    // Verilator's C++ has no room for a port of the module's own name.
+    taken.take(top, "the module").map_err(at(top))?;
     let clocked = instances.iter().any(|instance| instance.module.clocked);
     if clocked {
         taken.take("clk", "the clock").map_err(at("clk"))?;

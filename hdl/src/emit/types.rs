@@ -64,6 +64,8 @@ impl Type {
         let width = self.width;
         let sign_bit = 1u64 << (width - 1);
         match (self.signed, pattern & sign_bit != 0) {
+            // From here on a number is a mask rather than a count.
+            (false, _) if pattern > 0xffff_ffff => format!("{width}'h{pattern:x}"),
             (false, _) => format!("{width}'d{pattern}"),
             (true, false) => format!("{width}'sd{pattern}"),
             (true, true) if pattern == sign_bit => format!("{width}'sh{pattern:x}"),

@@ -245,7 +245,8 @@ impl SampledPlant {
         let modes = self.modes.iter().zip(&self.states);
         modes
             .map(|(m, state)| m.share.abs() * free_amplitude(&m.mode, state))
-            .sum()
+            // Not `sum`, which is -0 without a mode.
+            .fold(0.0, |sum, amplitude| sum + amplitude)
     }
 }
 

@@ -110,8 +110,14 @@ impl Engine {
                     self.compare(a, progress);
                 }
                 (None, None) => return Ok(()),
-                (Some(time), None) => return self.count_surplus(clock, time, true),
-                (None, Some(time)) => return self.count_surplus(clock, time, false),
+                (Some(time), None) => {
+                    self.b.cut_off()?;
+                    return self.count_surplus(clock, time, true);
+                }
+                (None, Some(time)) => {
+                    self.a.cut_off()?;
+                    return self.count_surplus(clock, time, false);
+                }
             }
         }
     }
@@ -158,6 +164,11 @@ impl Engine {
                 next_b = next_step(&mut self.b)?;
             }
             self.compare(time, progress);
+            match (next_a, next_b) {
+                (Some(_), None) => self.b.cut_off()?,
+                (None, Some(_)) => self.a.cut_off()?,
+                _ => {}
+            }
         }
         Ok(())
     }

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
 use super::matching::{Matched, Pair};
 
@@ -24,10 +24,18 @@ pub enum Verdict {
 pub enum Shown {
     /// Binary digits, most significant first, `x` and `z` included.
     Bits(String),
-    /// A real number.
-    Real(f64),
+    /// A real number; as JSON, which has no other word for it, `"NaN"` where it is none.
+    Real(#[serde(serialize_with = "number_or_text")] f64),
     /// There is no value: the signal or the clock edge is missing, or nothing was written yet.
     Missing,
+}
+
+fn number_or_text<S: Serializer>(real: &f64, serializer: S) -> Result<S::Ok, S::Error> {
+    if real.is_finite() {
+        serializer.serialize_f64(*real)
+    } else {
+        serializer.serialize_str(&real.to_string())
+    }
 }
 
 impl fmt::Display for Shown {

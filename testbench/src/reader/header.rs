@@ -111,7 +111,9 @@ impl Reader {
                 slot
             }
         };
-        let path = header.path(name, index).map_err(|what| self.problem(what))?;
+        let Some(path) = header.path(name, index, slot).map_err(|what| self.problem(what))? else {
+            return Ok(());
+        };
         if self.names.len() == SIGNALS {
             return Err(self.problem(format!("more than {SIGNALS} signals: dump fewer scopes")));
         }
@@ -127,8 +129,8 @@ struct Header {
     scope_ends: Vec<usize>,
     name_bytes: usize,
     bits: u64,
-    /// How often a path was declared.
-    seen: HashMap<String, u32>,
+    /// How often a path was declared, and its slot at first.
+    seen: HashMap<String, (u32, u32)>,
 }
 
 impl Header {
@@ -142,7 +144,10 @@ impl Header {
         Ok(())
     }
 
-    fn path(&mut self, name: &str, index: Option<ReferenceIndex>) -> Result<String, String> {
+    /// The full name of a signal; `None` if it was declared before, for the same value.
+    fn path(&mut self, name: &str, index: Option<ReferenceIndex>, slot: u32) -> Result<Option<String>, String> {
+        // An escaped name that needs no escape is the plain one.
+        let name = name.strip_prefix('\\').unwrap_or(name);
         // Some writers join the range to the name.
         let name = match name.rfind('[') {
             Some(at) if at > 0 && name.ends_with(']') && name[at..].contains(':') => &name[..at],
@@ -156,12 +161,15 @@ impl Header {
         if let Some(ReferenceIndex::BitSelect(bit)) = index {
             path.push_str(&format!("[{bit}]"));
         }
-        let count = self.seen.entry(path.clone()).or_insert(0);
+        let (count, first) = self.seen.entry(path.clone()).or_insert((0, slot));
         *count += 1;
+        if *count > 1 && *first == slot {
+            return Ok(None);
+        }
         if *count > 1 {
             // Twice the same name: kept apart by their order, so that neither is lost.
             path.push_str(&format!("#{count}"));
         }
-        Ok(path)
+        Ok(Some(path))
     }
 }

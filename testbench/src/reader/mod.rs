@@ -17,7 +17,7 @@ mod values;
 
 use std::collections::HashMap;
 use std::fs::File;
-use std::io::{self, BufReader};
+use std::io::{self, BufRead, BufReader, Chain, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
 use vcd::{Command, IdCode, ParseError, Parser};
@@ -29,7 +29,7 @@ use self::values::Values;
 use crate::Error;
 
 /// The guard lies below the buffer, where it costs nothing per byte.
-type Source = Parser<BufReader<Guard<File>>>;
+type Source = Parser<BufReader<Guard<Chain<File, &'static [u8]>>>>;
 
 /// A VCD that is being read.
 pub(crate) struct Reader {
@@ -45,17 +45,28 @@ pub(crate) struct Reader {
     /// A change was read that lies before the first time stamp or after the last one read.
     in_dump: bool,
     ended: bool,
+    /// The file ends without a line break: it may have been cut off.
+    unterminated: bool,
 }
 
 impl Reader {
     /// Opens a file and reads its header.
     pub(crate) fn open(path: &Path) -> Result<Self, Error> {
-        let file = File::open(path).map_err(Error::file(path, "open"))?;
+        let mut file = File::open(path).map_err(Error::file(path, "open"))?;
         if file.metadata().is_ok_and(|data| data.is_dir()) {
             let folder = io::Error::from(io::ErrorKind::IsADirectory);
             return Err(Error::file(path, "read")(folder));
         }
-        let buffered = BufReader::with_capacity(1 << 16, Guard::new(file));
+        let unterminated = ends_without_line_break(&mut file).map_err(Error::file(path, "read"))?;
+        // A last line that is complete but for its line break counts.
+        let mut buffered = BufReader::with_capacity(1 << 16, Guard::new(file.chain(&b"\n"[..])));
+        let first = buffered.fill_buf().map_err(Error::file(path, "read"))?;
+        let mark = if first.starts_with(BYTE_ORDER_MARK) {
+            BYTE_ORDER_MARK.len()
+        } else {
+            0
+        };
+        buffered.consume(mark);
         let mut reader = Self {
             path: path.to_owned(),
             source: Parser::new(buffered),
@@ -66,6 +77,7 @@ impl Reader {
             time: 0,
             in_dump: false,
             ended: false,
+            unterminated,
         };
         reader.read_header()?;
         Ok(reader)
@@ -158,6 +170,14 @@ impl Reader {
         Ok(None)
     }
 
+    /// What is wrong with a file that has nothing more to say while another goes on: nothing, unless its last line is cut.
+    pub(crate) fn cut_off(&mut self) -> Result<(), Error> {
+        if self.unterminated {
+            return Err(self.truncated("before the other, in a line without line break"));
+        }
+        Ok(())
+    }
+
     fn slot(&self, id: IdCode) -> Result<u32, Error> {
         let slot = self.slots.get(&id).copied();
         slot.ok_or_else(|| {
@@ -198,7 +218,8 @@ impl Reader {
     fn truncated(&mut self, inside: &str) -> Error {
         Error::Vcd {
             path: self.path.clone(),
-            place: format!("byte {}", self.source.reader().get_ref().bytes()),
+            // The line break that was put behind the file is not the file's.
+            place: format!("byte {}", self.source.reader().get_ref().bytes().saturating_sub(1)),
             problem: format!(
                 "the file ends {inside}: it was cut off, or its writer is still running; write it again \
                  (a complete file ends with a line break)"
@@ -216,4 +237,17 @@ impl Reader {
             None => self.problem(cause.to_string()),
         }
     }
+}
+
+/// Some writers begin a text file with it.
+const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
+
+fn ends_without_line_break(file: &mut File) -> io::Result<bool> {
+    let mut last = [b'\n'];
+    // A pipe cannot be looked at from behind: it counts as complete.
+    if file.metadata()?.len() > 0 && file.seek(SeekFrom::End(-1)).is_ok() {
+        file.read_exact(&mut last)?;
+        file.seek(SeekFrom::Start(0))?;
+    }
+    Ok(last != *b"\n")
 }

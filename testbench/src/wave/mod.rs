@@ -21,6 +21,7 @@ use vcd::{IdCode, VarType};
 
 use self::clocking::Clocking;
 use self::output::Output;
+pub use self::output::write_text;
 pub use self::view::{Difference, Part, merge};
 use crate::Error;
 

@@ -19,6 +19,7 @@ pub(super) struct Output {
 
 impl Output {
     pub(super) fn create(path: &Path) -> Result<Self, Error> {
+        let path = &target(path)?;
         let file = temporary(path)?;
         let mut vcd = Writer::new(BufWriter::with_capacity(1 << 16, file));
         vcd.version(concat!("posicast ", env!("CARGO_PKG_VERSION")))
@@ -43,11 +44,28 @@ impl Output {
     }
 }
 
-/// Writes a small text file, complete or not at all.
-pub(super) fn write_text(path: &Path, text: &str) -> Result<(), Error> {
+/// Writes a text file, complete or not at all.
+///
+/// # Errors
+/// [`Error::File`] if it cannot be written, or if something else than a file stands in its place.
+pub fn write_text(path: &Path, text: &str) -> Result<(), Error> {
+    let path = &target(path)?;
     let mut file = temporary(path)?;
     file.write_all(text.as_bytes()).map_err(Error::file(path, "write"))?;
     put(file, path)
+}
+
+/// What is to be replaced: behind a link the file that it names. A device or a pipe is refused: renaming over it would
+/// destroy it.
+fn target(path: &Path) -> Result<PathBuf, Error> {
+    match std::fs::metadata(path) {
+        Err(_) => Ok(path.to_owned()),
+        Ok(found) if found.is_file() => path.canonicalize().map_err(Error::file(path, "follow")),
+        Ok(_) => {
+            let problem = std::io::Error::other("it is no regular file; name a new file or one to replace");
+            Err(Error::file(path, "replace")(problem))
+        }
+    }
 }
 
 fn temporary(path: &Path) -> Result<NamedTempFile, Error> {

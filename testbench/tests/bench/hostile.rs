@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use posicast_testbench::Error;
-use posicast_testbench::diff::{self, Options};
+use posicast_testbench::diff::{self, Options, Verdict};
 use proptest::prelude::*;
 
 const GOOD: &str = "$date today $end\n$timescale 1 ns $end\n$scope module t $end\n$var wire 1 c clk $end\n\
@@ -25,20 +25,47 @@ fn error(content: &[u8]) -> String {
 }
 
 #[test]
-fn unit_a_file_cut_in_the_middle_of_a_line_is_an_error_with_the_place() {
+fn unit_a_file_cut_in_the_middle_of_a_line_is_never_equal_to_the_whole() {
+    let folder = tempfile::tempdir().unwrap();
+    let (whole, part) = (folder.path().join("whole.vcd"), folder.path().join("part.vcd"));
+    std::fs::write(&whole, GOOD).unwrap();
     for end in 0..GOOD.len() {
         let cut = &GOOD[..end];
-        // Cut between two commands of the body, outside of the $dumpvars block, a VCD is whole.
-        let in_dump = cut.contains("$dumpvars") && !cut.contains("1.5 r\n$end\n");
-        if cut.contains("$enddefinitions $end\n") && cut.ends_with('\n') && !in_dump {
-            continue;
+        std::fs::write(&part, cut).unwrap();
+        let result = diff::compare(&whole, &part, &Options::default(), &mut |_| {});
+        let in_header = !cut.contains("$enddefinitions $end");
+        let in_dump = cut.contains("$dumpvars") && !cut.contains("1.5 r\n$end");
+        match result {
+            Err(error) => assert!(!error.to_string().is_empty()),
+            Ok(_) if in_header || in_dump => panic!("{end}: no error"),
+            Ok(result) => assert_eq!(
+                result.result == Verdict::Equal,
+                end + 1 == GOOD.len(),
+                "{end}: {result}"
+            ),
         }
-        let message = error(cut.as_bytes());
-        assert!(
-            message.contains("cut off") && message.contains(&format!("byte {end}")),
-            "{end}: {message}"
-        );
     }
+}
+
+#[test]
+fn unit_the_last_line_needs_no_line_break_but_a_file_that_ends_early_without_one_is_cut_off() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = |name: &str, text: &str| {
+        let path = folder.path().join(name);
+        std::fs::write(&path, text).unwrap();
+        path
+    };
+    let whole = file("whole.vcd", GOOD);
+    let compared = |other: std::path::PathBuf| diff::compare(&whole, &other, &Options::default(), &mut |_| {});
+    assert_eq!(
+        compared(file("same.vcd", GOOD.trim_end())).unwrap().result,
+        Verdict::Equal
+    );
+    let early = GOOD.find("#15").unwrap();
+    let message = compared(file("early.vcd", GOOD[..early].trim_end()))
+        .unwrap_err()
+        .to_string();
+    assert!(message.contains("cut off"), "{message}");
 }
 
 #[test]
