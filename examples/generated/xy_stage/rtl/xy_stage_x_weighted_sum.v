@@ -23,7 +23,7 @@ module xy_stage_x_weighted_sum (
     output wire               saturated
 );
     localparam signed [55:0] HALF = 56'sd32768;
-    localparam [55:0]        SIGN_MASK = 56'd71916856549572608;
+    localparam [55:0]        SIGN_MASK = 56'hff800000000000;
     localparam [55:0]        ALL_CLEAR = 56'd0;
     localparam signed [31:0] Y_MAX = 32'sd2147483647;
     localparam signed [31:0] Y_MIN = 32'sh80000000;
