@@ -11,7 +11,7 @@ use posicast_model::impulse::{Impulse, ImpulseSequence};
 use posicast_model::mode::Mode;
 use serde_json::Value;
 use std::f64::consts::{PI, TAU};
-use support::machine;
+use support::{machine, shaper};
 
 fn golden(key: &str) -> Value {
     let document: Value = serde_json::from_str(include_str!("golden/joint.json")).unwrap();
@@ -253,7 +253,7 @@ fn golden_antisymmetric_machine_takes_two_impulses_per_class() {
     };
     // The paper's 30, 105, 385: {105, 385} at 35, {30} alone; four impulses in place of eight.
     let modes = [(30.0, 0.0, ""), (105.0, 0.0, ""), (385.0, 0.0, "")];
-    let found = design("kind = \"antisymmetric\"", &modes);
+    let found = design(&shaper("antisymmetric", 0.05), &modes);
     let (a, b) = (0.5 / 35.0, 0.5 / 30.0);
     all_close(&times(found.impulses()), &[0.0, a, b, a + b], 1e-15, "times");
     assert_eq!(amplitudes(found.impulses()), [0.25; 4]);
@@ -261,7 +261,7 @@ fn golden_antisymmetric_machine_takes_two_impulses_per_class() {
     let scale = (1.0f64 - 1e-4).sqrt();
     let modes = [(2.0 / scale, 0.01, ""), (14.0 / scale, 0.01, "")];
     let expected = golden("damped")["paper"]["common_spacing_exact"]["amplitudes"].clone();
-    let found = design("kind = \"antisymmetric\"", &modes);
+    let found = design(&shaper("antisymmetric", 0.05), &modes);
     all_close(&amplitudes(found.impulses()), &numbers(&expected), 1e-12, "amplitudes");
     all_close(&times(found.impulses()), &[0.0, 0.25, 0.5], 1e-12, "times");
     for (frequency_hz, damping, _) in modes {

@@ -4,8 +4,10 @@
 //! Axis ─► design_axis ─► AxisDesign (float, exact) ─► digitise ─► quantise ─► TapTable     design_machine does all axes
 //! ```
 //!
-//! One file per family: [`zv`], [`hump_ei`], [`negative`], [`bias_point`], [`custom`]. Every design is checked by its own residual before it is returned: what
-//! leaves this module does at the mode what its kind promises, or is an error that says where the kind ends.
+//! One file per family. For one mode: [`zv`], [`hump_ei`], [`negative`], [`bias_point`], [`vibrationless`]; for all modes of
+//! an axis together: [`periodic`], [`simultaneous`], [`antisymmetric`], [`custom`]. Every design is checked by its own
+//! residual before it is returned: what leaves this module does at the mode what its kind promises, or is an error that
+//! says where the kind ends.
 
 pub mod antisymmetric;
 pub mod bias_point;

@@ -185,7 +185,7 @@ fn fraction(ratio: f64) -> Option<(u64, u64)> {
     loop {
         let whole = rest.floor();
         // The numerators are what grows first; past 2^53 they have no place in f64 either.
-        if !(whole < 9e15) {
+        if whole.is_nan() || whole >= 9e15 {
             return None;
         }
         let next = |n: u64, b: u64| (whole as u64).checked_mul(n)?.checked_add(b);

@@ -40,7 +40,7 @@ pub enum Amplitudes {
 impl Amplitudes {
     /// Amplitude of impulse `index`, from 0.
     fn at(self, index: usize) -> f64 {
-        let sign = if index % 2 == 0 { 1.0 } else { -1.0 };
+        let sign = if index.is_multiple_of(2) { 1.0 } else { -1.0 };
         match self {
             Amplitudes::PartialSum if index > 0 => 2.0 * sign,
             _ => sign,
@@ -158,7 +158,8 @@ impl System {
             .filter(|o| o.starts_high && o.times.len() == self.unknowns());
         if let Some(start) = optimal.map(|o| DVector::from_vec(o.times)) {
             let near = |times: &DVector<f64>| (times - &start).amax() < 1e-2 * start.amax();
-            let found = self.refine(start.clone(), &mut NEWTON_ROUNDS.clone());
+            let mut steps = NEWTON_ROUNDS;
+            let found = self.refine(start.clone(), &mut steps);
             if let Some(times) = found.filter(near) {
                 return Some((times, true));
             }
@@ -182,13 +183,13 @@ impl System {
             let end = shortest.as_ref().map_or(longest, |times| times[unknowns - 1]) * random.next().sqrt();
             let mut times: Vec<f64> = (1..unknowns).map(|_| end * random.next()).chain([end]).collect();
             times.sort_by(f64::total_cmp);
-            if let Some(found) = self.refine(DVector::from_vec(times), &mut steps) {
-                if shortest
-                    .as_ref()
-                    .is_none_or(|times| found[unknowns - 1] < times[unknowns - 1])
-                {
-                    shortest = Some(found);
-                }
+            let found = self.refine(DVector::from_vec(times), &mut steps);
+            let is_shorter = |found: &DVector<f64>| match &shortest {
+                Some(times) => found[unknowns - 1] < times[unknowns - 1],
+                None => true,
+            };
+            if let Some(found) = found.filter(is_shorter) {
+                shortest = Some(found);
             }
         }
         shortest
