@@ -6,7 +6,7 @@ mod support;
 use posicast_model::analysis::{StartControl, residual_vibration};
 use posicast_model::design::antisymmetric::{Swing, exact, three_impulse, two_impulse};
 use posicast_model::design::vibrationless::{gain, half_sum_cascade, optimum, robustness_index};
-use posicast_model::design::{bias_point, design_axis, kind::Kind, periodic, ratios};
+use posicast_model::design::{AxisDesign, Findings, JointError, bias_point, design_axis, kind::Kind, periodic, ratios};
 use posicast_model::impulse::{Impulse, ImpulseSequence};
 use posicast_model::mode::Mode;
 use serde_json::Value;
@@ -38,6 +38,10 @@ fn all_close(found: &[f64], expected: &[f64], tolerance: f64, what: &str) {
     for (found, expected) in found.iter().zip(expected) {
         close(*found, *expected, tolerance, what);
     }
+}
+
+fn is_time_optimal(design: &AxisDesign) -> bool {
+    matches!(&design.findings, Findings::Simultaneous(found) if found.is_time_optimal)
 }
 
 fn times(impulses: &[Impulse]) -> Vec<f64> {
@@ -104,6 +108,7 @@ fn golden_simultaneous_solutions_of_the_robot_are_reached_and_optimal() {
         let design = design_axis(&machine(10_000, "modal", &shaper, &rows).axes[0]).unwrap();
         let impulses = design.impulses.impulses();
         assert_eq!(amplitudes(impulses), numbers(&row["A"]), "{name}");
+        assert!(is_time_optimal(&design), "{name}");
         for (found, expected) in times(impulses).iter().zip(numbers(&row["t"])) {
             close(*found, expected, 1e-9 * expected, &name);
         }
@@ -124,6 +129,7 @@ fn golden_simultaneous_unit_magnitude_lasts_as_long_as_published() {
         let shaper = "kind = \"simultaneous\"\namplitude = \"um\"";
         let design = design_axis(&machine(10_000, "modal", shaper, &rows).axes[0]).unwrap();
         close(design.impulses.duration_s(), expected_s, 0.5e-6, first);
+        assert!(is_time_optimal(&design), "{first}, {second}");
         let sums = design.impulses.partial_sums();
         assert_eq!((sums.min, sums.max), (0.0, 1.0));
     }
@@ -186,6 +192,25 @@ fn golden_half_sums_gain_residual_and_dynamic_coefficient() {
             all_close(&found, &numbers(expected), 1e-9, key);
         }
     }
+}
+
+#[test]
+fn unit_a_start_shorter_than_its_filter_is_named_and_swings_most_after_its_end() {
+    let short = StartControl::new(0.1, &[]).unwrap().figures(1.0);
+    close(short.dynamic_coefficient, 2.0 * 0.05f64.sin(), 1e-15, "a push");
+    let start = |length: f64| StartControl::new(length, &[1.0, 2.0]).unwrap().check_length();
+    assert!(start(3.1).is_ok());
+    assert_eq!(
+        start(3.0),
+        Err(JointError::ShortStart {
+            start_s: 3.0,
+            filter_s: 3.0
+        })
+    );
+    for length in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        assert!(StartControl::new(length, &[1.0]).is_err());
+    }
+    assert!(StartControl::new(1.0, &[0.0]).is_err() && StartControl::new(1.0, &[f64::NAN]).is_err());
 }
 
 #[test]
