@@ -220,6 +220,30 @@ mod tests {
     }
 
     #[test]
+    fn unit_what_is_beaten_in_one_cost_and_better_in_none_is_not_marked() {
+        let with = |duration_s, worst_residual, taps| Candidate {
+            kind: String::new(),
+            in_file: false,
+            duration_s,
+            delay_s: 0.0,
+            worst_residual,
+            taps,
+            partial_sums: PartialSums { min: 0.0, max: 1.0 },
+            pareto: false,
+        };
+        // Beaten in duration; beaten in taps; equal to rounding; worse in duration, better in residual.
+        let mut candidates = [
+            with(1.0, 0.1, 3),
+            with(1.1, 0.1, 3),
+            with(1.0, 0.1, 4),
+            with(1.0 + 1e-12, 0.1, 3),
+            with(2.0, 0.05, 3),
+        ];
+        mark_pareto(&mut candidates);
+        assert_eq!(candidates.map(|c| c.pareto), [true, false, false, true, true]);
+    }
+
+    #[test]
     fn unit_a_wider_band_is_worse() {
         let machine = machine("[axis.shaper]\nkind = \"ei\"\ntolerance = 0.02", MODE);
         let worst = |band| find(&compare(&machine, band)[0], "ei").worst_residual;

@@ -79,3 +79,74 @@ fn unit_the_figures_have_finite_points() {
         }
     }
 }
+
+/// What is right in place of the errata, recomputed elsewhere, to the digits given there.
+#[test]
+fn golden_our_numbers_of_the_errata() {
+    let cases: [(Paper, &str, &[f64], f64); 17] = [
+        (Paper::HybridEi, "Table 2: residual of EI at 10.36", &[44.53], 5e-3),
+        (Paper::HybridEi, "Table 2: residual of ZVD at 16.614", &[6.907], 5e-4),
+        (Paper::HybridEi, "Table 2: residual of ZVD at 17.2", &[4.759], 5e-4),
+        (Paper::HybridEi, "Table 2: residual of Multi-EI at 17.2", &[1.371], 5e-4),
+        (Paper::HybridEi, "text: no 2λ exceeds", &[1.183], 5e-4),
+        (Paper::NegativeHybrid, "Table 5: ZV-ZVD in ms", &[10.864], 5e-4),
+        (Paper::NegativeHybrid, "Table 5: NZVD-NEI in ms", &[11.991], 5e-4),
+        (Paper::NegativeHybrid, "text: smallest saving", &[30.75], 5e-3),
+        (Paper::NegativeHybrid, "text: vibration of NEI-NEI", &[16.91], 5e-3),
+        (Paper::Vibrationless, "Table 1: Δ, n = 2", &[0.142_838_8], 5e-8),
+        (
+            Paper::Vibrationless,
+            "Table 1: frequencies, n = 3",
+            &[0.740_223_7, 0.992_028_4, 1.255_081_2],
+            5e-8,
+        ),
+        (
+            Paper::Vibrationless,
+            "Table 1: Δ of the printed frequencies, n = 3",
+            &[0.1146],
+            5e-5,
+        ),
+        (
+            Paper::Antisymmetry,
+            "Table 2: three impulses",
+            &[0.299_839_8, 0.495_972_9, 0.204_187_3],
+            5e-8,
+        ),
+        (
+            Paper::Antisymmetry,
+            "text: vibration after two impulses",
+            &[0.0553],
+            5e-5,
+        ),
+        (
+            Paper::XyStage,
+            "chapter 3: overshoot with ZVD, plant −10 %, X",
+            &[1.501],
+            5e-4,
+        ),
+        (
+            Paper::XyStage,
+            "Table 2-1: K_S of Y in N/µm, with its own",
+            &[53.21],
+            5e-3,
+        ),
+        (Paper::XyStage, "Table 2-2: K_t", &[0.3495], 5e-5),
+    ];
+    for (paper, item, expected, tolerance) in cases {
+        let rows = paper.reproduce().unwrap();
+        let row = rows.iter().find(|row| row.item.starts_with(item)).unwrap();
+        assert_eq!(row.verdict, Verdict::Erratum, "{item}");
+        let ours = match row.ours.clone().unwrap() {
+            Value::Number(number) => vec![number],
+            Value::Numbers(numbers) => numbers,
+            Value::Text(text) => panic!("{item}: {text}"),
+        };
+        assert_eq!(ours.len(), expected.len(), "{item}");
+        for (ours, expected) in ours.iter().zip(expected) {
+            assert!(
+                (ours - expected).abs() <= tolerance,
+                "{item}: {ours} instead of {expected}"
+            );
+        }
+    }
+}

@@ -21,13 +21,16 @@ mod hybrid_ei;
 mod identification;
 mod minors;
 mod negative_hybrid;
+mod negative_statements;
+mod row;
 mod sheet;
 mod sliding_mode_law;
 mod vibrationless;
 mod xy_stage;
 
 pub use figures::{Figure, FigureCurve};
-pub use sheet::{Row, Rule, Value, Verdict};
+pub use row::{Row, Value, Verdict};
+pub use sheet::Rule;
 
 use crate::design::DesignError;
 use sheet::Sheet;
