@@ -9,9 +9,11 @@
 //! | `prelude` | what a kernel sees: RustHDL with its traps closed, and our leaves |
 //! | `prim` | the leaves: blocks with Verilog of their own |
 //! | [`shaper`] | the input shaper |
+//! | [`cascade`] | the cascade of half sums |
 //! | [`machine`] | a machine's top module: the blocks of its axes, side by side |
 //! | [`emit`](mod@emit) | the typed emitter: RustHDL's syntax tree as Verilog |
 
+pub mod cascade;
 pub mod emit;
 pub mod machine;
 pub(crate) mod prelude;

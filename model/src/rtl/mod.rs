@@ -3,6 +3,7 @@
 //! A model, RustHDL's simulation and a Verilated module all look the same from outside: a [`ClockedBlock`]. That is what
 //! lock step compares.
 
+pub mod cascade;
 pub mod shaper;
 pub mod word;
 

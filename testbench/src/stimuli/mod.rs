@@ -6,8 +6,10 @@
 //! - [`Coverage`] counts what a run reached, so that a test can insist on it.
 //!
 //! All work on one shaper (`x`, `valid`, …) and on a machine's top module (`<axis>_x`, …; `rst` and `strobe` shared):
-//! [`Layout`] finds the axes by their port names.
+//! [`Layout`] finds the axes by their port names. Other blocks have random stimuli and a coverage of their own, under
+//! their name.
 
+mod cascade;
 mod coverage;
 mod directed;
 mod layout;
@@ -15,6 +17,7 @@ mod motion;
 mod random;
 mod table;
 
+pub use self::cascade::{CascadeCoverage, CascadeRandom};
 pub use self::coverage::Coverage;
 pub use self::directed::{Action, Directed, cases};
 pub use self::layout::{Axis, Layout};
