@@ -4,6 +4,8 @@
 //! lock step compares.
 
 pub mod cascade;
+pub mod divider;
+pub mod pulse_counter;
 pub mod shaper;
 pub mod word;
 

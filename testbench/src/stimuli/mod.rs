@@ -12,16 +12,20 @@
 mod cascade;
 mod coverage;
 mod directed;
+mod divider;
 mod layout;
 mod motion;
+mod pulse_counter;
 mod random;
 mod table;
 
 pub use self::cascade::{CascadeCoverage, CascadeRandom};
 pub use self::coverage::Coverage;
 pub use self::directed::{Action, Directed, cases};
+pub use self::divider::DividerRandom;
 pub use self::layout::{Axis, Layout};
 pub use self::motion::Motion;
+pub use self::pulse_counter::{PulseCounterCoverage, PulseCounterRandom};
 pub use self::random::Random;
 
 /// Makes the inputs of the next clock.
