@@ -9,13 +9,19 @@
 //! | `prelude` | what a kernel sees: RustHDL with its traps closed, and our leaves |
 //! | `prim` | the leaves: blocks with Verilog of their own |
 //! | [`shaper`] | the input shaper |
+//! | [`cascade`] | the cascade of half sums |
+//! | [`divider`] | counts and clocks to velocity, one bit per clock |
+//! | [`pulse_counter`] | encoder signals to position, index and velocity |
 //! | [`machine`] | a machine's top module: the blocks of its axes, side by side |
 //! | [`emit`](mod@emit) | the typed emitter: RustHDL's syntax tree as Verilog |
 
+pub mod cascade;
+pub mod divider;
 pub mod emit;
 pub mod machine;
 pub(crate) mod prelude;
 pub(crate) mod prim;
+pub mod pulse_counter;
 pub mod shaper;
 mod simulation;
 

@@ -7,11 +7,13 @@ mod dff;
 mod ram;
 mod rom;
 mod smul;
+mod synchroniser;
 
 pub(crate) use dff::Dff;
 pub(crate) use ram::Ram;
 pub(crate) use rom::{Rom, RomWord};
 pub(crate) use smul::SMul;
+pub(crate) use synchroniser::Synchroniser;
 
 use rust_hdl_core::prelude::*;
 

@@ -3,6 +3,9 @@
 //! A model, RustHDL's simulation and a Verilated module all look the same from outside: a [`ClockedBlock`]. That is what
 //! lock step compares.
 
+pub mod cascade;
+pub mod divider;
+pub mod pulse_counter;
 pub mod shaper;
 pub mod word;
 

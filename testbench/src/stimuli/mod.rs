@@ -6,21 +6,28 @@
 //! - [`Coverage`] counts what a run reached, so that a test can insist on it.
 //!
 //! All work on one shaper (`x`, `valid`, …) and on a machine's top module (`<axis>_x`, …; `rst` and `strobe` shared):
-//! [`Layout`] finds the axes by their port names.
+//! [`Layout`] finds the axes by their port names. Other blocks have random stimuli and a coverage of their own, under
+//! their name.
 
+mod cascade;
 mod corners;
 mod coverage;
 mod directed;
+mod divider;
 mod layout;
 mod motion;
+mod pulse_counter;
 mod random;
 mod table;
 
+pub use self::cascade::{CascadeCoverage, CascadeRandom};
 pub use self::corners::corners;
 pub use self::coverage::Coverage;
 pub use self::directed::{Action, Directed, cases};
+pub use self::divider::DividerRandom;
 pub use self::layout::{Axis, Layout};
 pub use self::motion::Motion;
+pub use self::pulse_counter::{PulseCounterCoverage, PulseCounterRandom};
 pub use self::random::Random;
 
 /// Makes the inputs of the next clock.

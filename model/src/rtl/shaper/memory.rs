@@ -1,10 +1,10 @@
 //! Memory whose contents nobody knows: block RAM after power-up and after reset.
 
 /// An endless sequence of arbitrary words, the same for the same seed (splitmix64, Steele, Lea, Flood 2014).
-pub(super) struct Arbitrary(u64);
+pub(crate) struct Arbitrary(u64);
 
 impl Arbitrary {
-    pub(super) fn new(seed: u64) -> Self {
+    pub(crate) fn new(seed: u64) -> Self {
         Self(seed)
     }
 }

@@ -51,6 +51,7 @@ pub use config::{
     PASS_OVERHEAD_CLOCKS, PassError, RING_ADDRESS_BITS, ShaperConfig, ShaperConfigError, TAP_INDEX_BITS, WORD_BITS,
     pass_clocks,
 };
+pub(crate) use memory::Arbitrary;
 pub use sample::{SampleShaper, TableError};
 
 /// Half is added, `fraction` bits are dropped (an arithmetic shift), the rest is clamped to `word_bits`.

@@ -1,0 +1,48 @@
+//! The sequential divider in hardware: `quotient = steps · T · 2^16 / elapsed`, truncated toward zero.
+//!
+//! The datasheet is `docs/divider.md`, the reference `posicast_model::rtl::divider`.
+
+mod kernel;
+
+use crate::emit::{self, EmitError, EmitOptions, Header, Module, Parameter};
+use crate::simulation::{Simulated, SimulationError};
+use kernel::Divider;
+use posicast_model::rtl::ClockedBlock;
+use posicast_model::rtl::divider::{DIVISION_CLOCKS, DividerConfig, ports};
+
+/// The divider in RustHDL's own simulator.
+///
+/// # Errors
+/// [`SimulationError`] where RustHDL finds a fault in the block.
+pub fn simulate(config: &DividerConfig) -> Result<Box<dyn ClockedBlock>, SimulationError> {
+    let block = Box::new(Divider::new(config));
+    Ok(Box::new(Simulated::new("divider", block, ports())?))
+}
+
+/// The divider's Verilog.
+///
+/// The module is called `PREFIX_divider`, or `divider` where `prefix` is empty.
+///
+/// # Errors
+/// [`EmitError`] where `prefix` makes no Verilog name.
+pub fn emit(config: &DividerConfig, prefix: &str) -> Result<Vec<Module>, EmitError> {
+    let parameter = |name: &str, value: u32, meaning: &str| Parameter {
+        name: name.to_owned(),
+        value: value.to_string(),
+        meaning: meaning.to_owned(),
+    };
+    let options = EmitOptions {
+        top: "divider".to_owned(),
+        prefix: prefix.to_owned(),
+        header: Header {
+            about: "Velocity: quotient = steps * tick_clocks * 2^16 / elapsed, toward zero, in Q16.16\n\
+                    elapsed = 0 stands for one tick. One division at a time, always as long."
+                .to_owned(),
+            parameters: vec![
+                parameter("tick_clocks", config.tick_clocks(), "clocks per tick"),
+                parameter("division_clocks", DIVISION_CLOCKS, "from start to done"),
+            ],
+        },
+    };
+    emit::emit(&Divider::new(config), &options)
+}

@@ -1,0 +1,61 @@
+//! Synchroniser: two flip-flops that bring an asynchronous input into the clock's domain.
+//!
+//! The first may go metastable; its output feeds the second alone. Attributes tell synthesisers to keep the two, to leave
+//! them out of shift registers and to place them side by side. A timing constraint belongs to the first only:
+//! `set_false_path -to [get_registers *|synchroniser_first]`. In simulation it is two clocks of delay.
+
+use rust_hdl_core::prelude::*;
+use rust_hdl_macros::LogicBlock;
+
+/// One line, two clocks late; low in reset and at power-up.
+#[derive(LogicBlock, Default)]
+pub(crate) struct Synchroniser {
+    pub(crate) clk: Signal<In, Clock>,
+    pub(crate) rst: Signal<In, Bit>,
+    pub(crate) pin: Signal<In, Bit>,
+    pub(crate) level: Signal<Out, Bit>,
+    _first: bool,
+}
+
+impl Logic for Synchroniser {
+    fn update(&mut self) {
+        if self.clk.pos_edge() {
+            let reset = self.rst.val();
+            self.level.next = self._first && !reset;
+            self._first = self.pin.val() && !reset;
+        }
+    }
+
+    fn connect(&mut self) {
+        self.level.connect();
+    }
+
+    fn hdl(&self) -> Verilog {
+        Verilog::Custom(
+            "\
+// @leaf synchroniser
+// @about Two flip-flops for an asynchronous input. Constrain the first, and nothing else:
+// @about set_false_path -to [get_registers *|synchroniser_first]
+(* preserve, keep, async_reg = \"true\", altera_attribute = \"-name SYNCHRONIZER_IDENTIFICATION FORCED\" *)
+reg synchroniser_first;
+(* preserve, keep, async_reg = \"true\" *)
+reg synchroniser_second;
+assign level = synchroniser_second;
+initial begin
+    synchroniser_first = 1'h0;
+    synchroniser_second = 1'h0;
+end
+always @(posedge clk) begin
+    if (rst) begin
+        synchroniser_first <= 1'h0;
+        synchroniser_second <= 1'h0;
+    end else begin
+        synchroniser_first <= pin;
+        synchroniser_second <= synchroniser_first;
+    end
+end
+"
+            .to_owned(),
+        )
+    }
+}

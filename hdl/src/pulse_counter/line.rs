@@ -1,0 +1,52 @@
+//! One line: pin and complement through a synchroniser each, then the filter. A pair whose two lines are equal says
+//! nothing, and the level stays.
+
+use super::glitch_filter::GlitchFilter;
+use crate::prelude::*;
+
+#[derive(LogicBlock, Default)]
+pub(super) struct Line {
+    pub(super) clk: Signal<In, Clock>,
+    pub(super) rst: Signal<In, Bit>,
+    pub(super) pin: Signal<In, Bit>,
+    pub(super) complement: Signal<In, Bit>,
+    pub(super) differential: Signal<In, Bit>,
+    pub(super) ready: Signal<In, Bit>,
+    pub(super) filter_clocks: Signal<In, Bits<6>>,
+    pub(super) level: Signal<Out, Bit>,
+    pub(super) disagrees: Signal<Out, Bit>,
+
+    pin_synchroniser: Synchroniser,
+    complement_synchroniser: Synchroniser,
+    filter: GlitchFilter,
+
+    equal: Signal<Local, Bit>,
+    says: Signal<Local, Bit>,
+}
+
+impl Logic for Line {
+    #[hdl_gen]
+    fn update(&mut self) {
+        comment!("@module line_receiver");
+        comment!("@about Synchroniser, pair, filter of one line.");
+        self.pin_synchroniser.clk.next = self.clk.val();
+        self.pin_synchroniser.rst.next = self.rst.val();
+        self.pin_synchroniser.pin.next = self.pin.val();
+        self.complement_synchroniser.clk.next = self.clk.val();
+        self.complement_synchroniser.rst.next = self.rst.val();
+        self.complement_synchroniser.pin.next = self.complement.val();
+        self.equal.next =
+            self.differential.val() & (self.pin_synchroniser.level.val() == self.complement_synchroniser.level.val());
+        self.says.next = self.pin_synchroniser.level.val();
+        if self.equal.val() {
+            self.says.next = self.filter.level.val();
+        }
+        self.filter.clk.next = self.clk.val();
+        self.filter.rst.next = self.rst.val();
+        self.filter.input_level.next = self.says.val();
+        self.filter.ready.next = self.ready.val();
+        self.filter.filter_clocks.next = self.filter_clocks.val();
+        self.level.next = self.filter.level.val();
+        self.disagrees.next = self.equal.val();
+    }
+}

@@ -1,0 +1,45 @@
+//! The pulse counter in hardware: encoder or scale signals to position, index and velocity.
+//!
+//! The datasheet is `docs/pulse_counter.md`, the reference `posicast_model::rtl::pulse_counter`.
+
+mod decoder;
+mod glitch_filter;
+mod kernel;
+mod line;
+mod pins;
+mod velocity;
+
+use crate::emit::{self, EmitError, EmitOptions, Header, Module};
+use crate::simulation::{Simulated, SimulationError};
+use kernel::PulseCounter;
+use posicast_model::rtl::ClockedBlock;
+use posicast_model::rtl::pulse_counter::ports;
+
+/// The pulse counter in RustHDL's own simulator.
+///
+/// # Errors
+/// [`SimulationError`] where RustHDL finds a fault in the block.
+pub fn simulate() -> Result<Box<dyn ClockedBlock>, SimulationError> {
+    let block = Box::new(PulseCounter::default());
+    Ok(Box::new(Simulated::new("pulse_counter", block, ports())?))
+}
+
+/// The pulse counter's Verilog, one module per file, the top last.
+///
+/// The top is called `PREFIX_pulse_counter`, or `pulse_counter` where `prefix` is empty.
+///
+/// # Errors
+/// [`EmitError`] where `prefix` makes no Verilog name.
+pub fn emit(prefix: &str) -> Result<Vec<Module>, EmitError> {
+    let options = EmitOptions {
+        top: "pulse_counter".to_owned(),
+        prefix: prefix.to_owned(),
+        header: Header {
+            about: "Pulse counter: encoder or scale signals to position, index and velocity.\n\
+                    The count never jumps: a preset moves the origin, position = count - origin."
+                .to_owned(),
+            parameters: Vec::new(),
+        },
+    };
+    emit::emit(&PulseCounter::default(), &options)
+}

@@ -1,0 +1,289 @@
+//! M/T: the steps of a tick over the time between the last edges before successive ticks.
+//!
+//! ```text
+//! edges     |     |     |      |      |
+//! ticks        T              T              T
+//!           ├───────────┤      at the second tick: 2 steps in this time, from the last edge before the first tick
+//! ```
+//!
+//! At a tick, `steps` and `elapsed` go out for the divider and stay until the next tick; the quotient comes back at any clock
+//! between. What it is, `bound` and `halt` tell: a tick without edge gives the velocity of one count since the last edge,
+//! which the velocity cannot exceed; without anything to measure, the velocity is 0.
+//!
+//! `smoothed` is Q16.19 and 3/8 LSB of Q16.16, so that cutting the extra bits rounds. The sum in `resolved` has one bit more
+//! at the bottom, whose one makes the shift round half up.
+
+use crate::prelude::*;
+
+#[derive(LogicBlock)]
+pub(super) struct Velocity {
+    pub(super) clk: Signal<In, Clock>,
+    pub(super) rst: Signal<In, Bit>,
+    pub(super) step: Signal<In, Bit>,
+    pub(super) up: Signal<In, Bit>,
+    pub(super) tick: Signal<In, Bit>,
+    pub(super) velocity_m: Signal<In, Bit>,
+    pub(super) quotient_valid: Signal<In, Bit>,
+    pub(super) clear_flags: Signal<In, Bit>,
+    pub(super) count: Signal<In, Bits<18>>,
+    pub(super) time_stamp: Signal<In, Bits<24>>,
+    pub(super) smoothing: Signal<In, Bits<2>>,
+    pub(super) timeout: Signal<In, Bits<8>>,
+    pub(super) quotient: Signal<In, Signed<32>>,
+    pub(super) steps: Signal<Out, Signed<18>>,
+    pub(super) elapsed: Signal<Out, Bits<24>>,
+    pub(super) velocity_pending: Signal<Out, Bit>,
+    pub(super) velocity_valid: Signal<Out, Bit>,
+    pub(super) velocity_missed: Signal<Out, Bit>,
+    pub(super) velocity: Signal<Out, Signed<32>>,
+
+    last_stamp: Dff<Bits<24>>,
+    last_up: Dff<Bit>,
+    reference_stamp: Dff<Bits<24>>,
+    known: Dff<Bit>,
+    moved: Dff<Bit>,
+    turned: Dff<Bit>,
+    captured: Dff<Bits<18>>,
+    bound: Dff<Bit>,
+    halt: Dff<Bit>,
+    steps_q: Dff<Bits<18>>,
+    elapsed_q: Dff<Bits<24>>,
+    pending: Dff<Bit>,
+    smoothed: Dff<Signed<35>>,
+    valid_q: Dff<Bit>,
+    missed_q: Dff<Bit>,
+
+    end_stamp: Signal<Local, Bits<24>>,
+    interval: Signal<Local, Bits<24>>,
+    counted: Signal<Local, Bits<18>>,
+    one_back: Signal<Local, Bits<18>>,
+    stale_time: Signal<Local, Bit>,
+    stale: Signal<Local, Bit>,
+    fresh: Signal<Local, Bit>,
+    take: Signal<Local, Bit>,
+    within_bound: Signal<Local, Bit>,
+    target: Signal<Local, Signed<36>>,
+    wide_smoothed: Signal<Local, Signed<36>>,
+    difference: Signal<Local, Signed<36>>,
+    halved: Signal<Local, Signed<36>>,
+    quartered: Signal<Local, Signed<36>>,
+    target_bits: Signal<Local, Bits<36>>,
+    scaled: Signal<Local, Bits<36>>,
+    resolved: Signal<Local, Bits<36>>,
+    half: Signal<Local, Signed<35>>,
+    quarter: Signal<Local, Signed<34>>,
+    shrunk: Signal<Local, Bits<35>>,
+
+    no_elapsed: Constant<Bits<24>>,
+    one_up: Constant<Bits<18>>,
+    one_down: Constant<Bits<18>>,
+    no_steps: Constant<Bits<18>>,
+    rounding: Constant<Bits<36>>,
+    rest: Constant<Signed<35>>,
+    one: Constant<Bits<36>>,
+    shift_1: Constant<Bits<2>>,
+    shift_2: Constant<Bits<2>>,
+    shift_3: Constant<Bits<2>>,
+}
+
+impl Default for Velocity {
+    fn default() -> Self {
+        Self {
+            clk: Signal::default(),
+            rst: Signal::default(),
+            step: Signal::default(),
+            up: Signal::default(),
+            tick: Signal::default(),
+            velocity_m: Signal::default(),
+            quotient_valid: Signal::default(),
+            clear_flags: Signal::default(),
+            count: Signal::default(),
+            time_stamp: Signal::default(),
+            smoothing: Signal::default(),
+            timeout: Signal::default(),
+            quotient: Signal::default(),
+            steps: Signal::default(),
+            elapsed: Signal::default(),
+            velocity_pending: Signal::default(),
+            velocity_valid: Signal::default(),
+            velocity_missed: Signal::default(),
+            velocity: Signal::default(),
+            last_stamp: Dff::default(),
+            last_up: Dff::default(),
+            reference_stamp: Dff::default(),
+            known: Dff::default(),
+            moved: Dff::default(),
+            turned: Dff::default(),
+            captured: Dff::default(),
+            bound: Dff::default(),
+            halt: Dff::default(),
+            steps_q: Dff::default(),
+            elapsed_q: Dff::default(),
+            pending: Dff::default(),
+            smoothed: Dff::new(from_i64(3)),
+            valid_q: Dff::default(),
+            missed_q: Dff::default(),
+            end_stamp: Signal::default(),
+            interval: Signal::default(),
+            counted: Signal::default(),
+            one_back: Signal::default(),
+            stale_time: Signal::default(),
+            stale: Signal::default(),
+            fresh: Signal::default(),
+            take: Signal::default(),
+            within_bound: Signal::default(),
+            target: Signal::default(),
+            wide_smoothed: Signal::default(),
+            difference: Signal::default(),
+            halved: Signal::default(),
+            quartered: Signal::default(),
+            target_bits: Signal::default(),
+            scaled: Signal::default(),
+            resolved: Signal::default(),
+            half: Signal::default(),
+            quarter: Signal::default(),
+            shrunk: Signal::default(),
+            no_elapsed: Constant::new(from_u64(0)),
+            one_up: Constant::new(from_u64(1)),
+            one_down: Constant::new(from_u64(u64::MAX)),
+            no_steps: Constant::new(from_u64(0)),
+            rounding: Constant::new(from_u64(3)),
+            rest: Constant::new(from_i64(3)),
+            one: Constant::new(from_u64(1)),
+            shift_1: Constant::new(from_u64(1)),
+            shift_2: Constant::new(from_u64(2)),
+            shift_3: Constant::new(from_u64(3)),
+        }
+    }
+}
+
+impl Logic for Velocity {
+    #[hdl_gen]
+    fn update(&mut self) {
+        comment!("@module velocity");
+        comment!("@about What the divider gets at a tick, and what");
+        comment!("@about becomes of its quotient.");
+        dff_setup!(
+            self,
+            clk,
+            last_stamp,
+            last_up,
+            reference_stamp,
+            known,
+            moved,
+            turned,
+            captured,
+            bound,
+            halt,
+            steps_q,
+            elapsed_q,
+            pending,
+            smoothed,
+            valid_q,
+            missed_q
+        );
+
+        comment!("The quotient: its distance from the velocity");
+        self.take.next = self.pending.q.val() & self.quotient_valid.val();
+        self.target.next = signed_bit_cast::<36, 32>(self.quotient.val());
+        self.target_bits.next = (unsigned_cast(self.target.val()) << 3) | self.rounding.val();
+        self.wide_smoothed.next = signed_bit_cast::<36, 35>(self.smoothed.q.val());
+        self.difference.next = signed_cast(self.target_bits.val() - unsigned_cast(self.wide_smoothed.val()));
+        self.half.next = self.difference.val().get_bits::<35>(1);
+        self.quarter.next = self.difference.val().get_bits::<34>(2);
+        self.halved.next = signed_bit_cast::<36, 35>(self.half.val());
+        self.quartered.next = signed_bit_cast::<36, 34>(self.quarter.val());
+
+        comment!("Twice the distance, times 2^-k");
+        self.scaled.next = unsigned_cast(self.difference.val()) << 1;
+        if self.smoothing.val() == self.shift_1.val() {
+            self.scaled.next = unsigned_cast(self.difference.val());
+        }
+        if self.smoothing.val() == self.shift_2.val() {
+            self.scaled.next = unsigned_cast(self.halved.val());
+        }
+        if self.smoothing.val() == self.shift_3.val() {
+            self.scaled.next = unsigned_cast(self.quartered.val());
+        }
+        self.resolved.next = ((unsigned_cast(self.wide_smoothed.val()) << 1) | self.one.val()) + self.scaled.val();
+        self.shrunk.next = self.resolved.val().get_bits::<35>(1);
+        self.within_bound.next =
+            self.bound.q.val() & (self.difference.val().get_bit(35) == self.smoothed.q.val().get_bit(34));
+        self.valid_q.d.next = self.take.val();
+        if self.take.val() {
+            self.pending.d.next = false;
+            if !self.within_bound.val() {
+                self.smoothed.d.next = signed_cast(self.shrunk.val());
+            }
+            if self.halt.q.val() {
+                self.smoothed.d.next = self.rest.val();
+            }
+        }
+
+        comment!("The time from the reference to the last edge");
+        comment!("or, without one in this tick, to now");
+        self.end_stamp.next = self.time_stamp.val();
+        if self.moved.q.val() {
+            self.end_stamp.next = self.last_stamp.q.val();
+        }
+        self.interval.next = self.end_stamp.val() - self.reference_stamp.q.val();
+        self.counted.next = self.count.val() - self.captured.q.val();
+        self.one_back.next = self.one_up.val();
+        if self.smoothed.q.val().get_bit(34) {
+            self.one_back.next = self.one_down.val();
+        }
+        self.stale_time.next = self.interval.val().get_bits::<8>(16) >= self.timeout.val();
+        self.stale.next = self.stale_time.val() & !self.moved.q.val();
+        self.fresh.next = self.known.q.val() & !self.stale.val();
+
+        comment!("A tick");
+        if self.clear_flags.val() {
+            self.missed_q.d.next = false;
+        }
+        if self.tick.val() {
+            if self.pending.q.val() & !self.take.val() {
+                self.missed_q.d.next = true;
+            }
+            self.pending.d.next = true;
+            self.reference_stamp.d.next = self.last_stamp.q.val();
+            self.captured.d.next = self.count.val();
+            self.known.d.next = self.moved.q.val() | self.fresh.val();
+            self.moved.d.next = false;
+            self.turned.d.next = false;
+            self.elapsed_q.d.next = self.interval.val();
+            self.steps_q.d.next = self.counted.val();
+            self.bound.d.next = !self.moved.q.val() & !self.velocity_m.val();
+            self.halt.d.next = false;
+            if !self.moved.q.val() {
+                self.steps_q.d.next = self.one_back.val();
+            }
+            if !self.fresh.val() | self.turned.q.val() {
+                self.steps_q.d.next = self.no_steps.val();
+                self.halt.d.next = true;
+            }
+            if self.velocity_m.val() {
+                self.elapsed_q.d.next = self.no_elapsed.val();
+                self.steps_q.d.next = self.counted.val();
+                self.halt.d.next = false;
+            }
+        }
+
+        comment!("An edge; in the clock of a tick, of the next");
+        if self.step.val() {
+            self.last_stamp.d.next = self.time_stamp.val();
+            self.last_up.d.next = self.up.val();
+            self.moved.d.next = true;
+            if self.up.val() != self.last_up.q.val() {
+                self.turned.d.next = true;
+            }
+        }
+
+        comment!("Outputs");
+        self.steps.next = signed_cast(self.steps_q.q.val());
+        self.elapsed.next = self.elapsed_q.q.val();
+        self.velocity_pending.next = self.pending.q.val();
+        self.velocity.next = self.smoothed.q.val().get_bits::<32>(3);
+        self.velocity_valid.next = self.valid_q.q.val();
+        self.velocity_missed.next = self.missed_q.q.val();
+    }
+}

@@ -1,0 +1,94 @@
+//! The cascade in RustHDL's simulator against its model, and its Verilog as text.
+
+#![allow(clippy::unwrap_used, reason = "a helper that fails fails its test")]
+
+mod random;
+
+use posicast_hdl::cascade::{emit, simulate};
+use posicast_model::rtl::cascade::{
+    Cascade, CascadeConfig, Inputs, Outputs, RING_ADDRESS_BITS, STAGE_INDEX_BITS, WORD_BITS, pass_clocks, ports,
+};
+use random::Random;
+
+/// Every size that is listed, with delays at both ends of what its ring holds.
+fn sizes() -> impl Iterator<Item = CascadeConfig> {
+    let size = |word, ring: u32, index: u32| {
+        let delays = (0..1 << index).map(|stage| if stage == 1 { (1 << ring) - 2 } else { 1 + stage });
+        CascadeConfig::new(word, delays.collect()).unwrap()
+    };
+    WORD_BITS.into_iter().flat_map(move |word| {
+        RING_ADDRESS_BITS
+            .into_iter()
+            .flat_map(move |ring| STAGE_INDEX_BITS.into_iter().map(move |index| size(word, ring, index)))
+    })
+}
+
+/// Random inputs, every output compared in every clock; strobes at the pace of a pass, around it, and at random.
+fn lockstep(config: &CascadeConfig, seed: u64, clocks: u32) {
+    let mut model = Cascade::new(config, seed);
+    let mut rusthdl = simulate(config).unwrap();
+    assert_eq!(rusthdl.ports(), ports(config));
+    let mut random = Random(seed);
+    let mut until_strobe = 0;
+    let pass = u64::from(pass_clocks(config.stages()));
+    for clock in 0..clocks {
+        let strobe = until_strobe == 0;
+        until_strobe = match (strobe, random.below(4)) {
+            (false, _) => until_strobe - 1,
+            (true, 0) => random.below(2 * pass),
+            (true, _) => pass - 1,
+        };
+        let inputs = Inputs {
+            rst: random.once_in(1000),
+            strobe,
+            start: random.once_in(200),
+            x: match random.below(3) {
+                0 => config.word_max(),
+                1 => config.word_min(),
+                _ => random.word() as i64,
+            },
+            clear_flags: random.once_in(20),
+        };
+        let mut shown = [0; 4];
+        rusthdl.step(&inputs.to_raw(config), &mut shown).unwrap();
+        let actual = Outputs::from_raw(&shown, config);
+        assert_eq!(actual, model.step(&inputs), "clock {clock}, {inputs:?}, {config:?}");
+    }
+}
+
+#[test]
+fn lockstep_everything_at_random() {
+    for (seed, word, delays) in [
+        (1, 16, vec![1]),
+        (2, 32, vec![3, 5, 7]),
+        (3, 24, vec![62, 61, 1, 2, 9]),
+        (4, 32, vec![4; 16]),
+    ] {
+        lockstep(&CascadeConfig::new(word, delays).unwrap(), seed, 6000);
+    }
+}
+
+#[test]
+fn lockstep_every_size_that_is_listed() {
+    for (seed, config) in sizes().enumerate() {
+        lockstep(&config, seed as u64, 250);
+    }
+}
+
+#[test]
+fn unit_every_size_has_the_ports_of_its_model() {
+    for config in sizes() {
+        let modules = emit(&config, "stage_x").unwrap();
+        let top = modules.last().unwrap();
+        assert_eq!(top.name, "stage_x_cascade");
+        assert_eq!(top.ports, ports(&config));
+        assert!(top.clocked && modules.iter().all(|module| module.name.starts_with("stage_x_")));
+    }
+}
+
+#[test]
+fn unit_the_delays_stand_in_the_rom() {
+    let modules = emit(&CascadeConfig::new(32, vec![5, 33]).unwrap(), "").unwrap();
+    let rom = modules.iter().find(|module| module.name == "stage_delays").unwrap();
+    assert!(rom.text.contains("words[1] = 6'h21; // 33 samples"), "{}", rom.text);
+}

@@ -1,0 +1,41 @@
+//! The divider in RustHDL's simulator against its model.
+
+#![allow(clippy::unwrap_used, reason = "a helper that fails fails its test")]
+
+mod random;
+
+use posicast_hdl::divider::{emit, simulate};
+use posicast_model::rtl::ClockedBlock;
+use posicast_model::rtl::divider::{Divider, DividerConfig, ports};
+use random::Random;
+
+#[test]
+fn lockstep_everything_at_random() {
+    for tick_clocks in [1, 5000, 131_071] {
+        let config = DividerConfig::new(tick_clocks).unwrap();
+        let mut model = Divider::new(&config);
+        let mut rusthdl = simulate(&config).unwrap();
+        let mut random = Random(tick_clocks);
+        let (mut expected, mut actual) = ([0; 5], [0; 5]);
+        for clock in 0..20_000 {
+            let size = random.below(24);
+            let inputs = [
+                u64::from(random.once_in(2000)),
+                u64::from(random.once_in(30)),
+                (random.word() >> size) & 0x3_ffff,
+                (random.word() & 0xff_ffff) >> random.below(25),
+                u64::from(random.once_in(50)),
+            ];
+            ClockedBlock::step(&mut model, &inputs, &mut expected).unwrap();
+            rusthdl.step(&inputs, &mut actual).unwrap();
+            assert_eq!(actual, expected, "clock {clock}, {inputs:?}, {config:?}");
+        }
+    }
+}
+
+#[test]
+fn unit_the_verilog_has_the_ports_of_the_model() {
+    let modules = emit(&DividerConfig::new(5000).unwrap(), "stage").unwrap();
+    assert_eq!((modules.len(), modules[0].name.as_str()), (1, "stage_divider"));
+    assert_eq!(modules[0].ports, ports());
+}

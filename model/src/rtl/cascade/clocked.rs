@@ -1,0 +1,242 @@
+//! The cascade at its ports, clock by clock.
+
+use super::config::{CascadeConfig, pass_clocks};
+use super::rounded;
+use crate::rtl::shaper::{Arbitrary, wrap};
+use crate::rtl::{ClockedBlock, Direction, Port, StepError};
+
+/// The input ports. Bits above a port's width are ignored.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Inputs {
+    /// Synchronous reset.
+    pub rst: bool,
+    /// One clock: `x` is a new sample; ignored while a pass runs.
+    pub strobe: bool,
+    /// One clock: begin anew, all samples before now count as `x`.
+    pub start: bool,
+    /// Command word, W bits.
+    pub x: i64,
+    /// Clears `overrun`.
+    pub clear_flags: bool,
+}
+
+/// The output ports, all of them registers.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Outputs {
+    /// Shaped command, W bits; holds between samples.
+    pub y: i64,
+    /// One clock: `y` is new.
+    pub valid: bool,
+    /// A pass runs.
+    pub busy: bool,
+    /// Sticky: a strobe came while a pass ran, and its sample was lost.
+    pub overrun: bool,
+}
+
+/// The ports of a cascade in the order of the Verilog's port list, without `clk`.
+pub fn ports(config: &CascadeConfig) -> Vec<Port> {
+    use Direction::{Input, Output};
+    let port = |name: &str, direction, width, signed| Port {
+        name: name.to_owned(),
+        direction,
+        width,
+        signed,
+    };
+    let word = config.word_bits();
+    vec![
+        port("rst", Input, 1, false),
+        port("strobe", Input, 1, false),
+        port("start", Input, 1, false),
+        port("x", Input, word, true),
+        port("clear_flags", Input, 1, false),
+        port("y", Output, word, true),
+        port("valid", Output, 1, false),
+        port("busy", Output, 1, false),
+        port("overrun", Output, 1, false),
+    ]
+}
+
+impl Inputs {
+    /// From raw bit patterns, one per input port in port order.
+    pub fn from_raw(raw: &[u64; 5]) -> Self {
+        let [rst, strobe, start, x, clear_flags] = *raw;
+        Self {
+            rst: rst & 1 != 0,
+            strobe: strobe & 1 != 0,
+            start: start & 1 != 0,
+            x: x as i64,
+            clear_flags: clear_flags & 1 != 0,
+        }
+    }
+
+    /// As raw bit patterns, one per input port in port order, each cut to its port's width.
+    pub fn to_raw(&self, config: &CascadeConfig) -> [u64; 5] {
+        [
+            u64::from(self.rst),
+            u64::from(self.strobe),
+            u64::from(self.start),
+            self.x as u64 & ((1 << config.word_bits()) - 1),
+            u64::from(self.clear_flags),
+        ]
+    }
+}
+
+impl Outputs {
+    /// From raw bit patterns, one per output port in port order.
+    pub fn from_raw(raw: &[u64; 4], config: &CascadeConfig) -> Self {
+        Self {
+            y: wrap(raw[0] as i64, config.word_bits()),
+            valid: raw[1] & 1 != 0,
+            busy: raw[2] & 1 != 0,
+            overrun: raw[3] & 1 != 0,
+        }
+    }
+
+    /// As raw bit patterns, one per output port in port order.
+    pub fn to_raw(&self, config: &CascadeConfig) -> [u64; 4] {
+        [
+            self.y as u64 & ((1 << config.word_bits()) - 1),
+            u64::from(self.valid),
+            u64::from(self.busy),
+            u64::from(self.overrun),
+        ]
+    }
+}
+
+/// The cascade, cycle accurate at its ports.
+///
+/// A pass is computed when its strobe comes, and shown when its clocks are over: no other strobe gets in between.
+pub struct Cascade {
+    config: CascadeConfig,
+    ports: Vec<Port>,
+    /// One ring per stage, of what went into it.
+    rings: Vec<Vec<i64>>,
+    head: usize,
+    /// Samples since the start, at most 2^A − 1.
+    age: u32,
+    start_value: i64,
+    /// Clocks until the pass has its result; 0 while none runs.
+    clocks_left: u32,
+    result: i64,
+    y: i64,
+    valid: bool,
+    overrun: bool,
+}
+
+impl Cascade {
+    /// A cascade after reset. `seed` gives the arbitrary contents of its memory, which no output ever shows.
+    pub fn new(config: &CascadeConfig, seed: u64) -> Self {
+        let mut contents = Arbitrary::new(seed);
+        let ring_samples = 1 << config.ring_address_bits();
+        let sample = |word: u64| wrap(word as i64, config.sum_bits());
+        let mut ring = |_| contents.by_ref().take(ring_samples).map(sample).collect();
+        Self {
+            ports: ports(config),
+            rings: (0..config.stages()).map(&mut ring).collect(),
+            head: 0,
+            age: 0,
+            start_value: 0,
+            clocks_left: 0,
+            result: 0,
+            y: 0,
+            valid: false,
+            overrun: false,
+            config: config.clone(),
+        }
+    }
+
+    /// What it was built from.
+    pub fn config(&self) -> &CascadeConfig {
+        &self.config
+    }
+
+    /// What the outputs show now.
+    pub fn outputs(&self) -> Outputs {
+        Outputs {
+            y: self.y,
+            valid: self.valid,
+            busy: self.clocks_left > 0,
+            overrun: self.overrun,
+        }
+    }
+
+    /// One clock: what the outputs show before the rising edge, then the edge.
+    #[inline]
+    pub fn step(&mut self, inputs: &Inputs) -> Outputs {
+        let outputs = self.outputs();
+        if inputs.rst {
+            self.start(0);
+            self.head = 0;
+            self.valid = false;
+            self.overrun = false;
+            return outputs;
+        }
+        if inputs.clear_flags {
+            self.overrun = false;
+        }
+        let word = wrap(inputs.x, self.config.word_bits());
+        if inputs.start {
+            self.start(word);
+        }
+        let free = self.clocks_left == 0;
+        self.count_down();
+        if inputs.strobe && free {
+            self.take_sample(word);
+        }
+        self.overrun |= inputs.strobe && !free;
+        outputs
+    }
+
+    fn start(&mut self, word: i64) {
+        self.age = 0;
+        self.start_value = word;
+        self.y = word;
+        self.clocks_left = 0;
+    }
+
+    fn count_down(&mut self) {
+        self.valid = self.clocks_left == 1;
+        if self.valid {
+            self.y = self.result;
+        }
+        self.clocks_left = self.clocks_left.saturating_sub(1);
+    }
+
+    /// The sample goes through all stages, each of which keeps what went into it.
+    fn take_sample(&mut self, word: i64) {
+        let mask = (1 << self.config.ring_address_bits()) - 1;
+        self.head = (self.head + 1) & mask;
+        self.age = (self.age + 1).min(mask as u32);
+        let mut sum = word;
+        for (stage, (ring, &delay)) in self.rings.iter_mut().zip(self.config.delays_samples()).enumerate() {
+            ring[self.head] = sum;
+            sum += if delay >= self.age {
+                self.start_value << stage
+            } else {
+                ring[self.head.wrapping_sub(delay as usize) & mask]
+            };
+        }
+        let stages = self.config.stages();
+        self.result = rounded(sum, stages);
+        self.clocks_left = pass_clocks(stages) - 1;
+    }
+}
+
+impl ClockedBlock for Cascade {
+    fn ports(&self) -> &[Port] {
+        &self.ports
+    }
+
+    fn step(&mut self, inputs: &[u64], outputs: &mut [u64]) -> Result<(), StepError> {
+        let (Ok(raw), 4) = (<&[u64; 5]>::try_from(inputs), outputs.len()) else {
+            return Err(StepError(format!(
+                "{} inputs and {} outputs: the cascade has 5 and 4",
+                inputs.len(),
+                outputs.len()
+            )));
+        };
+        let shown = Cascade::step(self, &Inputs::from_raw(raw));
+        outputs.copy_from_slice(&shown.to_raw(&self.config));
+        Ok(())
+    }
+}

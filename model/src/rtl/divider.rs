@@ -1,0 +1,283 @@
+//! The sequential divider that turns counts and clocks into velocities: `quotient = steps · T · 2^16 / elapsed`.
+//!
+//! The datasheet is `docs/divider.md`; this is the reference that the hardware is compared with.
+//!
+//! - `steps`: counts, 18 bits, two's complement; `elapsed`: clocks that they took, 24 bits; `T`: clocks per tick, fixed when
+//!   the divider is built; `quotient`: Q16.16 counts per tick, truncated toward zero, clamped to ±(2^31 − 1) LSB.
+//! - `elapsed` = 0 stands for one tick: the quotient is `steps · 2^16`, exactly.
+//! - A division takes [`DIVISION_CLOCKS`], whatever the numbers are. One divider serves all channels of a stage in turn.
+//!
+//! ```text
+//! clock     0   1   2            69  70  71
+//! start    ‾‾‾\______________________________
+//! steps    < n >-----------------------------
+//! busy     ___/‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾\_______
+//! done     __________________________/‾‾‾\___
+//! quotient ------- as before --------< q ----
+//! ```
+//!
+//! ```
+//! use posicast_model::rtl::divider::{DIVISION_CLOCKS, Divider, DividerConfig, Inputs};
+//!
+//! // 3 counts in 7500 clocks of 5000 per tick: 2 counts per tick.
+//! let config = DividerConfig::new(5000)?;
+//! assert_eq!(config.divide(3, 7500), (2 << 16, false));
+//!
+//! let mut divider = Divider::new(&config);
+//! divider.step(&Inputs { start: true, steps: 3, elapsed: 7500, ..Inputs::default() });
+//! let waited = (1..100).find(|_| divider.step(&Inputs::default()).done);
+//! assert_eq!((waited, divider.outputs().quotient), (Some(DIVISION_CLOCKS), 2 << 16));
+//! # Ok::<(), posicast_model::rtl::divider::DividerConfigError>(())
+//! ```
+
+use super::shaper::wrap;
+use super::{ClockedBlock, Direction, Port, StepError};
+
+/// Width of `steps`.
+pub const STEP_BITS: u32 = 18;
+/// Width of `elapsed`.
+pub const ELAPSED_BITS: u32 = 24;
+/// Width of the clocks per tick.
+pub const TICK_BITS: u32 = 17;
+/// Largest quotient in size: it has 32 bits.
+pub const QUOTIENT_MAX: i64 = (1 << 31) - 1;
+/// Clocks from `start` to `done`: 18 to multiply, 51 to divide, and the ends.
+pub const DIVISION_CLOCKS: u32 = 71;
+
+/// What is fixed when a divider is built.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct DividerConfig {
+    tick_clocks: u32,
+}
+
+/// Why no divider can be built.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+pub enum DividerConfigError {
+    /// Too many clocks per tick, or none.
+    #[error("{0} clocks per tick: the divider is built for 1 to 131071; choose a higher sample rate or a slower clock")]
+    TickClocks(u64),
+}
+
+impl DividerConfig {
+    /// A divider for ticks of so many clocks.
+    ///
+    /// # Errors
+    /// [`DividerConfigError`] unless that is 1 to 2^17 − 1.
+    pub fn new(tick_clocks: u64) -> Result<Self, DividerConfigError> {
+        match u32::try_from(tick_clocks) {
+            Ok(fits) if (1..1 << TICK_BITS).contains(&fits) => Ok(Self { tick_clocks: fits }),
+            _ => Err(DividerConfigError::TickClocks(tick_clocks)),
+        }
+    }
+
+    /// T: clocks per tick.
+    pub fn tick_clocks(&self) -> u32 {
+        self.tick_clocks
+    }
+
+    /// The quotient, and whether it was clamped: the fast path, without the clocks. Operands are cut to their widths.
+    pub fn divide(&self, steps: i32, elapsed: u32) -> (i64, bool) {
+        let steps = wrap(i64::from(steps), STEP_BITS);
+        let tick = u64::from(self.tick_clocks);
+        let divisor = match u64::from(elapsed) & ((1 << ELAPSED_BITS) - 1) {
+            0 => tick,
+            clocks => clocks,
+        };
+        // 18 + 17 + 16 bits: no overflow.
+        let quotient = ((steps.unsigned_abs() * tick) << 16) / divisor;
+        let clamped = quotient.min(QUOTIENT_MAX as u64);
+        (clamped as i64 * steps.signum(), clamped != quotient)
+    }
+}
+
+/// The input ports. Bits above a port's width are ignored.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Inputs {
+    /// Synchronous reset.
+    pub rst: bool,
+    /// One clock: divide; ignored while a division runs.
+    pub start: bool,
+    /// Counts, 18 bits.
+    pub steps: i32,
+    /// Clocks that they took, 24 bits; 0: one tick.
+    pub elapsed: u32,
+    /// Clears `overrun`.
+    pub clear_flags: bool,
+}
+
+/// The output ports, all of them registers.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Outputs {
+    /// Q16.16 counts per tick; holds until the next `done`.
+    pub quotient: i64,
+    /// One clock: `quotient` is new.
+    pub done: bool,
+    /// A division runs.
+    pub busy: bool,
+    /// `quotient` was clamped.
+    pub saturated: bool,
+    /// Sticky: a start came while a division ran, and was ignored.
+    pub overrun: bool,
+}
+
+/// The ports of a divider in the order of the Verilog's port list, without `clk`.
+pub fn ports() -> Vec<Port> {
+    use Direction::{Input, Output};
+    let port = |name: &str, direction, width, signed| Port {
+        name: name.to_owned(),
+        direction,
+        width,
+        signed,
+    };
+    vec![
+        port("rst", Input, 1, false),
+        port("start", Input, 1, false),
+        port("steps", Input, STEP_BITS, true),
+        port("elapsed", Input, ELAPSED_BITS, false),
+        port("clear_flags", Input, 1, false),
+        port("quotient", Output, 32, true),
+        port("done", Output, 1, false),
+        port("busy", Output, 1, false),
+        port("saturated", Output, 1, false),
+        port("overrun", Output, 1, false),
+    ]
+}
+
+impl Inputs {
+    /// From raw bit patterns, one per input port in port order.
+    pub fn from_raw(raw: &[u64; 5]) -> Self {
+        let [rst, start, steps, elapsed, clear_flags] = *raw;
+        Self {
+            rst: rst & 1 != 0,
+            start: start & 1 != 0,
+            steps: steps as i32,
+            elapsed: elapsed as u32,
+            clear_flags: clear_flags & 1 != 0,
+        }
+    }
+}
+
+impl Outputs {
+    /// As raw bit patterns, one per output port in port order.
+    pub fn to_raw(&self) -> [u64; 5] {
+        [
+            self.quotient as u64 & 0xffff_ffff,
+            u64::from(self.done),
+            u64::from(self.busy),
+            u64::from(self.saturated),
+            u64::from(self.overrun),
+        ]
+    }
+}
+
+/// The divider, cycle accurate at its ports.
+pub struct Divider {
+    config: DividerConfig,
+    ports: Vec<Port>,
+    /// Clocks until the division has its result; 0 while none runs.
+    clocks_left: u32,
+    result: (i64, bool),
+    shown: Outputs,
+}
+
+impl Divider {
+    /// A divider after reset.
+    pub fn new(config: &DividerConfig) -> Self {
+        Self {
+            config: *config,
+            ports: ports(),
+            clocks_left: 0,
+            result: (0, false),
+            shown: Outputs::default(),
+        }
+    }
+
+    /// What the outputs show now.
+    pub fn outputs(&self) -> Outputs {
+        self.shown
+    }
+
+    /// One clock: what the outputs show before the rising edge, then the edge.
+    #[inline]
+    pub fn step(&mut self, inputs: &Inputs) -> Outputs {
+        let shown = self.shown;
+        if inputs.rst {
+            self.clocks_left = 0;
+            self.shown = Outputs::default();
+            return shown;
+        }
+        if inputs.clear_flags {
+            self.shown.overrun = false;
+        }
+        self.shown.done = self.clocks_left == 1;
+        if self.shown.done {
+            (self.shown.quotient, self.shown.saturated) = self.result;
+        }
+        self.clocks_left = self.clocks_left.saturating_sub(1);
+        if inputs.start && !shown.busy {
+            self.result = self.config.divide(inputs.steps, inputs.elapsed);
+            self.clocks_left = DIVISION_CLOCKS - 1;
+        }
+        self.shown.overrun |= inputs.start && shown.busy;
+        self.shown.busy = self.clocks_left > 0;
+        shown
+    }
+}
+
+impl ClockedBlock for Divider {
+    fn ports(&self) -> &[Port] {
+        &self.ports
+    }
+
+    fn step(&mut self, inputs: &[u64], outputs: &mut [u64]) -> Result<(), StepError> {
+        let (Ok(raw), 5) = (<&[u64; 5]>::try_from(inputs), outputs.len()) else {
+            return Err(StepError(format!(
+                "{} inputs and {} outputs: the divider has 5 and 5",
+                inputs.len(),
+                outputs.len()
+            )));
+        };
+        let shown = Divider::step(self, &Inputs::from_raw(raw));
+        outputs.copy_from_slice(&shown.to_raw());
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn unit_truncation_is_toward_zero_on_both_sides() {
+        let config = DividerConfig::new(3).unwrap();
+        // 3 · 2^16 / 7 = 28086.857…
+        assert_eq!(config.divide(1, 7), (28086, false));
+        assert_eq!(config.divide(-1, 7), (-28086, false));
+        assert_eq!(config.divide(0, 7), (0, false));
+    }
+
+    #[test]
+    fn unit_no_time_is_one_tick() {
+        for tick in [1, 5000, 131_071] {
+            let config = DividerConfig::new(tick).unwrap();
+            assert_eq!(config.divide(-7, 0), (-7 << 16, false));
+            assert_eq!(config.divide(32767, 0), (32767 << 16, false));
+            assert_eq!(config.divide(-32768, 0), (-QUOTIENT_MAX, true));
+        }
+    }
+
+    #[test]
+    fn unit_the_ends_saturate() {
+        let config = DividerConfig::new(131_071).unwrap();
+        assert_eq!(config.divide(-131_072, 1), (-QUOTIENT_MAX, true));
+        assert_eq!(config.divide(131_071, 1), (QUOTIENT_MAX, true));
+        assert_eq!(config.divide(1, 0xff_ffff), (511, false));
+    }
+
+    #[test]
+    fn unit_ticks_that_do_not_fit_are_named() {
+        for found in [0, 131_072, u64::MAX] {
+            assert_eq!(DividerConfig::new(found), Err(DividerConfigError::TickClocks(found)));
+        }
+    }
+}

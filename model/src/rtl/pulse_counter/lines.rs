@@ -1,0 +1,60 @@
+//! A line from its pins to a clean level.
+
+use super::Inputs;
+
+/// Takes a new level once it has stood for more than `filter_clocks` clocks.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub(super) struct GlitchFilter {
+    level: bool,
+    /// Clocks that the input has differed from the level.
+    differs: u8,
+}
+
+impl GlitchFilter {
+    pub(super) fn level(&self) -> bool {
+        self.level
+    }
+
+    /// One clock. Until `ready`, the level follows the input.
+    pub(super) fn clock(&mut self, input: bool, filter_clocks: u8, ready: bool) {
+        let passes = !ready || self.differs >= filter_clocks & 63;
+        if input == self.level {
+            self.differs = 0;
+        } else if passes {
+            self.level = input;
+            self.differs = 0;
+        } else {
+            self.differs += 1;
+        }
+    }
+}
+
+/// One line: pin and complement through two flip-flops each, then the filter.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub(super) struct Line {
+    pin: [bool; 2],
+    complement: [bool; 2],
+    filter: GlitchFilter,
+}
+
+impl Line {
+    pub(super) fn level(&self) -> bool {
+        self.filter.level()
+    }
+
+    /// A pair whose two lines are equal says nothing.
+    pub(super) fn disagrees(&self, differential: bool) -> bool {
+        differential && self.pin[1] == self.complement[1]
+    }
+
+    pub(super) fn clock(&mut self, pin: bool, complement: bool, inputs: &Inputs, ready: bool) {
+        let says = if self.disagrees(inputs.differential) {
+            self.level()
+        } else {
+            self.pin[1]
+        };
+        self.filter.clock(says, inputs.filter_clocks, ready);
+        self.pin = [pin, self.pin[0]];
+        self.complement = [complement, self.complement[0]];
+    }
+}

@@ -1,0 +1,199 @@
+//! The pulse counter: encoder or scale signals to position, index and velocity.
+//!
+//! The datasheet is `docs/pulse_counter.md`; this is the reference that the hardware is compared with.
+//!
+//! | part | what it does |
+//! |---|---|
+//! | `lines` | synchronises and filters A, B and Z; compares differential pairs |
+//! | `decode` | levels to steps: quadrature ×4 ×2 ×1, step and direction, up and down |
+//! | [`PulseCounter`] | the count, which never jumps; `origin`; the index latch |
+//! | `velocity` | M/T: which steps in which time, for the divider; its quotient, bounded and smoothed |
+//!
+//! [`PulseCounter::step`] is one clock; [`PulseCounter::hold`] is many with the same inputs, and skips those that change
+//! nothing.
+//!
+//! ```
+//! use posicast_model::rtl::pulse_counter::{Inputs, PulseCounter};
+//!
+//! let mut counter = PulseCounter::new();
+//! counter.hold(&Inputs::default(), 10);
+//! // A leads B: up. One clock more than `filter_clocks` lets a level pass.
+//! for (a, b) in [(true, false), (true, true), (false, true), (false, false)] {
+//!     counter.hold(&Inputs { a, b, filter_clocks: 3, ..Inputs::default() }, 20);
+//! }
+//! assert_eq!((counter.outputs().count, counter.outputs().illegal), (4, false));
+//! ```
+
+mod decode;
+mod lines;
+mod ports;
+mod velocity;
+
+pub use ports::{Inputs, Outputs, ports};
+pub use velocity::SMOOTHING_BITS;
+
+use self::decode::decode;
+use self::lines::{GlitchFilter, Line};
+use self::velocity::Velocity;
+use super::{ClockedBlock, Port, StepError};
+
+/// Clocks after a reset until levels count as known: two of the synchroniser, the filter's, the decoder's.
+pub const PRIMING_CLOCKS: u32 = 4;
+
+/// Everything that is a register.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+struct State {
+    lines: [Line; 3],
+    disagreement_filter: GlitchFilter,
+    /// Clocks since the reset, at most [`PRIMING_CLOCKS`].
+    primed: u32,
+    before: [bool; 2],
+    index_before: bool,
+    count: i32,
+    origin: i32,
+    index_count: i32,
+    index_seen: bool,
+    index_armed: bool,
+    illegal_count: u8,
+    illegal: bool,
+    disagreement: bool,
+    velocity: Velocity,
+}
+
+/// The pulse counter, cycle accurate at its ports.
+pub struct PulseCounter {
+    ports: Vec<Port>,
+    state: State,
+}
+
+impl Default for PulseCounter {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl PulseCounter {
+    /// A counter after reset.
+    pub fn new() -> Self {
+        Self {
+            ports: ports(),
+            state: State::default(),
+        }
+    }
+
+    /// What the outputs show now.
+    pub fn outputs(&self) -> Outputs {
+        let state = &self.state;
+        let [level_a, level_b, level_z] = [0, 1, 2].map(|line: usize| state.lines[line].level());
+        Outputs {
+            count: state.count,
+            origin: state.origin,
+            position: state.count.wrapping_sub(state.origin),
+            index_count: state.index_count,
+            index_seen: state.index_seen,
+            index_armed: state.index_armed,
+            illegal_count: state.illegal_count,
+            illegal: state.illegal,
+            disagreement: state.disagreement,
+            level_a,
+            level_b,
+            level_z,
+            steps: state.velocity.steps(),
+            elapsed: state.velocity.elapsed(),
+            velocity_pending: state.velocity.pending(),
+            velocity: state.velocity.velocity(),
+            velocity_valid: state.velocity.valid(),
+            velocity_missed: state.velocity.missed(),
+        }
+    }
+
+    /// One clock: what the outputs show before the rising edge, then the edge.
+    pub fn step(&mut self, inputs: &Inputs) -> Outputs {
+        let outputs = self.outputs();
+        self.clock(inputs);
+        outputs
+    }
+
+    /// So many clocks with the same inputs. Ends early once a clock changes nothing, since no later one would.
+    pub fn hold(&mut self, inputs: &Inputs, clocks: u64) {
+        for _ in 0..clocks {
+            let before = self.state.clone();
+            self.clock(inputs);
+            if self.state == before {
+                return;
+            }
+        }
+    }
+
+    fn clock(&mut self, inputs: &Inputs) {
+        if inputs.rst {
+            self.state = State::default();
+            return;
+        }
+        let state = &mut self.state;
+        let levels = [state.lines[0].level(), state.lines[1].level()];
+        let index_level = state.lines[2].level();
+        let ready = state.primed == PRIMING_CLOCKS;
+
+        let event = decode(inputs, levels, state.before);
+        let step = event.step && ready;
+        let count_before = state.count;
+        if step {
+            state.count = state.count.wrapping_add(if event.up { 1 } else { -1 });
+        }
+
+        if inputs.clear_flags {
+            state.index_seen = false;
+            state.illegal = false;
+            state.illegal_count = 0;
+            state.disagreement = false;
+        }
+        if event.illegal && ready {
+            state.illegal = true;
+            state.illegal_count = state.illegal_count.saturating_add(1);
+        }
+        state.disagreement |= state.disagreement_filter.level();
+
+        let gated = ready && index_level && inputs.index_gate_open(levels);
+        let index = gated && !state.index_before && (state.index_armed || inputs.index_always);
+        if index {
+            state.index_count = state.count;
+            state.index_seen = true;
+            state.index_armed = false;
+        }
+        state.index_armed |= inputs.index_arm;
+        if inputs.preset || (index && inputs.index_presets) {
+            state.origin = state.count.wrapping_sub(inputs.preset_value);
+        }
+        state.index_before = gated;
+
+        state.velocity.clock(inputs, step.then_some(event.up), count_before);
+
+        state.before = levels;
+        let disagree = state.lines.iter().any(|line| line.disagrees(inputs.differential));
+        state.disagreement_filter.clock(disagree, inputs.filter_clocks, ready);
+        for (line, (pin, complement)) in state.lines.iter_mut().zip(inputs.pins()) {
+            line.clock(pin, complement, inputs, ready);
+        }
+        state.primed = (state.primed + 1).min(PRIMING_CLOCKS);
+    }
+}
+
+impl ClockedBlock for PulseCounter {
+    fn ports(&self) -> &[Port] {
+        &self.ports
+    }
+
+    fn step(&mut self, inputs: &[u64], outputs: &mut [u64]) -> Result<(), StepError> {
+        let (Some(typed), 18) = (Inputs::from_raw(inputs), outputs.len()) else {
+            return Err(StepError(format!(
+                "{} inputs and {} outputs: the pulse counter has 26 and 18",
+                inputs.len(),
+                outputs.len()
+            )));
+        };
+        let shown = PulseCounter::step(self, &typed);
+        outputs.copy_from_slice(&shown.to_raw());
+        Ok(())
+    }
+}

@@ -1,0 +1,157 @@
+//! Velocity by M/T: the steps of a tick over the time between the last edges before successive ticks.
+
+use super::Inputs;
+use crate::rtl::divider::{ELAPSED_BITS, STEP_BITS};
+use crate::rtl::shaper::wrap;
+
+/// Fraction bits of the smoothed velocity beyond those of Q16.16.
+pub const SMOOTHING_BITS: u32 = 3;
+/// What the smoothed velocity has more, so that cutting its extra bits rounds: it then settles on its input exactly.
+const ROUNDING: i64 = (1 << (SMOOTHING_BITS - 1)) - 1;
+
+/// What the quotient is.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+enum Job {
+    /// A measured velocity.
+    #[default]
+    Measured,
+    /// One count in the time since the last edge: the velocity is no larger.
+    Bound,
+    /// Nothing: the velocity is 0.
+    Halt,
+}
+
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Velocity {
+    /// Of the last edge.
+    last_stamp: u32,
+    last_up: bool,
+    /// Of the last edge before the last tick, if `known`.
+    reference_stamp: u32,
+    known: bool,
+    /// An edge since the last tick, or one against the edge before it.
+    moved: bool,
+    turned: bool,
+    /// The count at the last tick.
+    captured: i32,
+    job: Job,
+    steps: i32,
+    elapsed: u32,
+    pending: bool,
+    /// Q16.19 and [`ROUNDING`].
+    smoothed: i64,
+    valid: bool,
+    missed: bool,
+}
+
+impl Default for Velocity {
+    fn default() -> Self {
+        Self {
+            last_stamp: 0,
+            last_up: false,
+            reference_stamp: 0,
+            known: false,
+            moved: false,
+            turned: false,
+            captured: 0,
+            job: Job::Measured,
+            steps: 0,
+            elapsed: 0,
+            pending: false,
+            smoothed: ROUNDING,
+            valid: false,
+            missed: false,
+        }
+    }
+}
+
+impl Velocity {
+    pub(super) fn steps(&self) -> i32 {
+        self.steps
+    }
+
+    pub(super) fn elapsed(&self) -> u32 {
+        self.elapsed
+    }
+
+    pub(super) fn pending(&self) -> bool {
+        self.pending
+    }
+
+    pub(super) fn velocity(&self) -> i32 {
+        (self.smoothed >> SMOOTHING_BITS) as i32
+    }
+
+    pub(super) fn valid(&self) -> bool {
+        self.valid
+    }
+
+    pub(super) fn missed(&self) -> bool {
+        self.missed
+    }
+
+    /// One clock with a step up or down or none. `count` is that before the step: a step belongs to the tick after it, or,
+    /// in the clock of a tick, to the next.
+    pub(super) fn clock(&mut self, inputs: &Inputs, step: Option<bool>, count: i32) {
+        let resolved = self.pending && inputs.quotient_valid;
+        self.valid = resolved;
+        if inputs.clear_flags {
+            self.missed = false;
+        }
+        if inputs.tick && self.pending && !resolved {
+            self.missed = true;
+        }
+        let negative = self.smoothed < 0;
+        if resolved {
+            self.resolve(inputs);
+            self.pending = false;
+        }
+        if inputs.tick {
+            self.tick(inputs, count, negative);
+        }
+        if let Some(up) = step {
+            self.turned |= up != self.last_up;
+            self.last_up = up;
+            self.last_stamp = inputs.time_stamp & ((1 << ELAPSED_BITS) - 1);
+            self.moved = true;
+        }
+    }
+
+    fn tick(&mut self, inputs: &Inputs, count: i32, negative: bool) {
+        let end = if self.moved { self.last_stamp } else { inputs.time_stamp };
+        let elapsed = end.wrapping_sub(self.reference_stamp) & ((1 << ELAPSED_BITS) - 1);
+        let counted = wrap(i64::from(count.wrapping_sub(self.captured)), STEP_BITS) as i32;
+        let stale = !self.moved && elapsed >> 16 >= u32::from(inputs.timeout);
+        let one_back = if negative { -1 } else { 1 };
+        (self.job, self.steps, self.elapsed) = if inputs.velocity_m {
+            (Job::Measured, counted, 0)
+        } else if !self.known || stale || self.turned {
+            (Job::Halt, 0, elapsed)
+        } else if self.moved {
+            (Job::Measured, counted, elapsed)
+        } else {
+            (Job::Bound, one_back, elapsed)
+        };
+        self.known = self.moved || (self.known && !stale);
+        self.reference_stamp = self.last_stamp;
+        self.captured = count;
+        self.moved = false;
+        self.turned = false;
+        self.pending = true;
+    }
+
+    /// Takes the quotient: `smoothed += (quotient − smoothed) · 2^−k`, halves up.
+    fn resolve(&mut self, inputs: &Inputs) {
+        let target = (i64::from(inputs.quotient) << SMOOTHING_BITS) + ROUNDING;
+        let difference = target - self.smoothed;
+        let within_bound = (difference < 0) == (self.smoothed < 0);
+        match self.job {
+            Job::Halt => self.smoothed = ROUNDING,
+            Job::Bound if within_bound => {}
+            Job::Measured | Job::Bound => {
+                let shift = u32::from(inputs.smoothing & 3);
+                self.smoothed += (((2 * difference) >> shift) + 1) >> 1;
+            }
+        }
+    }
+}

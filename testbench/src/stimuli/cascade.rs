@@ -1,0 +1,140 @@
+//! Inputs for the cascade, seeded: strobes as fast as a pass allows, one clock earlier, in every clock, after long
+//! pauses; commands that swing from end to end, ramp, rest or are noise; starts, clears and resets in any clock.
+
+use posicast_model::rtl::cascade::{CascadeConfig, pass_clocks};
+use rand::{Rng, RngExt, SeedableRng};
+use rand_xoshiro::Xoshiro256PlusPlus;
+
+use super::Stimuli;
+use super::table::pick;
+use crate::lockstep::Clock;
+
+/// A mixture of everything, without end.
+#[derive(Debug, Clone)]
+pub struct CascadeRandom {
+    rng: Xoshiro256PlusPlus,
+    clock: u64,
+    pass_clocks: i64,
+    word_max: i64,
+    word: i64,
+    /// Distance of the strobes, and how many more of them at that distance.
+    pace: (i64, u32),
+    until_strobe: i64,
+}
+
+impl CascadeRandom {
+    /// Equal seeds give equal inputs.
+    pub fn new(config: &CascadeConfig, seed: u64) -> Self {
+        Self {
+            rng: Xoshiro256PlusPlus::seed_from_u64(seed),
+            clock: 0,
+            pass_clocks: i64::from(pass_clocks(config.stages())),
+            word_max: config.word_max(),
+            word: 0,
+            pace: (1, 0),
+            until_strobe: 3,
+        }
+    }
+
+    fn strobe_now(&mut self) -> bool {
+        self.until_strobe -= 1;
+        if self.until_strobe > 0 {
+            return false;
+        }
+        if self.pace.1 == 0 {
+            let pass = self.pass_clocks;
+            let paces = [pass, pass, pass, pass, pass - 1, pass + 1, 2 * pass, 1, 10 * pass];
+            self.pace = (*pick(&mut self.rng, &paces), self.rng.random_range(1..60));
+        }
+        self.pace.1 -= 1;
+        self.until_strobe = self.pace.0;
+        true
+    }
+
+    fn advance_word(&mut self) {
+        let most = self.word_max;
+        self.word = match self.rng.random_range(0..8) {
+            0 => most,
+            1 => -most - 1,
+            2 => self.rng.random_range(-most - 1..=most),
+            3 | 4 => self.word.saturating_add(most / 40).min(most),
+            5 => self.rng.random_range(-3..=3),
+            _ => self.word,
+        };
+    }
+}
+
+impl Stimuli for CascadeRandom {
+    fn fill(&mut self, _seen: &[u64], inputs: &mut [u64]) {
+        let [rst, strobe, start, x, clear_flags] = inputs else {
+            return;
+        };
+        let strobes = self.strobe_now();
+        *rst = u64::from(self.clock < 2 || self.rng.random_range(0..5000) == 0);
+        *strobe = u64::from(strobes);
+        *start = u64::from(self.rng.random_range(0..600) == 0);
+        // Noise where no strobe is, so that a block that looks at it is found out.
+        *x = self.rng.next_u64();
+        if strobes {
+            self.advance_word();
+            *x = self.word as u64;
+        }
+        *clear_flags = u64::from(self.rng.random_range(0..50) == 0);
+        self.clock += 1;
+    }
+}
+
+/// How often things happened in a lock step of the cascade.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct CascadeCoverage {
+    /// Clocks with `rst`.
+    pub resets: u64,
+    /// Clocks with `start` and no `strobe`.
+    pub starts: u64,
+    /// Clocks with `start` and `strobe`.
+    pub starts_with_sample: u64,
+    /// Starts while `busy`.
+    pub cut_off: u64,
+    /// Clocks with `valid`.
+    pub valid: u64,
+    /// Strobes while `busy`, without `start`.
+    pub overrun: u64,
+    /// `overrun` set and cleared in one clock: set wins.
+    pub set_over_clear: u64,
+    /// Clocks with `valid` and `y` at an end of the word.
+    pub ends: u64,
+}
+
+impl CascadeCoverage {
+    /// Adds a clock of a cascade with this configuration.
+    pub fn observe(&mut self, config: &CascadeConfig, clock: &Clock<'_>) {
+        let (&[rst, strobe, start, _, clear_flags], &[y, valid, busy, _]) = (clock.inputs, clock.expected) else {
+            return;
+        };
+        let lost = strobe & busy & (start ^ 1);
+        let most = config.word_max() as u64;
+        self.resets += rst;
+        self.starts += start & (strobe ^ 1);
+        self.starts_with_sample += start & strobe;
+        self.cut_off += start & busy;
+        self.valid += valid;
+        self.overrun += lost;
+        self.set_over_clear += lost & clear_flags;
+        self.ends += valid & u64::from(y == most || y == most + 1);
+    }
+
+    /// The least of all counts.
+    pub fn least(&self) -> u64 {
+        let all = [
+            self.resets,
+            self.starts,
+            self.starts_with_sample,
+            self.cut_off,
+            self.valid,
+            self.overrun,
+            self.set_over_clear,
+            self.ends,
+        ];
+        all.into_iter().min().unwrap_or(0)
+    }
+}
