@@ -76,7 +76,7 @@ fn golden_single_mode_designs_and_figures() {
 #[test]
 fn golden_digitised_taps_and_their_residual() {
     let rows = rows(include_str!("golden/digitised.json"), "rows");
-    assert_eq!(rows.len(), 45);
+    assert_eq!(rows.len(), 135);
     for row in rows {
         let (frequency_hz, damping) = match row["case"].as_str().unwrap() {
             "001 mode1" => (76.6, 0.057),

@@ -34,7 +34,7 @@ fn sum(impulses: &[Impulse]) -> f64 {
 
 /// A machine with one or two modes of these kinds, at 10 kHz.
 fn some_machine() -> impl Strategy<Value = Machine> {
-    let kinds = prop::sample::select(vec!["zv", "zvd", "zvdd", "zvddd", "ei"]);
+    let kinds = prop::sample::select(vec!["zv", "zvd", "zvdd", "zvddd", "mzv", "ei", "zv-ei"]);
     let methods = prop::sample::select(vec!["modal", "linear", "nearest"]);
     let modes = prop::collection::vec((10.0..2000.0, 0.0..0.35), 1..3);
     (kinds, methods, modes, 0.01..0.2).prop_map(|(kind, method, modes, tolerance)| {

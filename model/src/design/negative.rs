@@ -13,8 +13,8 @@
 //! -ei    5 impulses   R(w_lo) = R(w_hi) = 0, |R(1)| = V, d|R|/dw(1) = 0           t_2 … t_5, w_lo, w_hi
 //! ```
 //!
-//! (`R`: [`super::equations`].) There are many solutions; these are the shortest known, followed from the undamped one along
-//! damping and tolerance ([`super::path`]). The published cubic fits in the damping, off by 1e-4 to 4e-4 of a period, are
+//! (`R`: `equations.rs`.) There are many solutions; these are the shortest known, followed from the undamped one along
+//! damping and tolerance (`path.rs`). The published cubic fits in the damping, off by 1e-4 to 4e-4 of a period, are
 //! not used: at sums of amplitudes of 5 to 9, a shaper needs its times to the last digit.
 
 use nalgebra::DVector;
@@ -23,7 +23,7 @@ use super::DesignError;
 use super::equations::{Equations, Linearised, Point, Ratio};
 use super::hump_ei::TOLERANCE_MIN;
 use super::kind::Kind;
-use super::path::{Branch, follow};
+use super::path::{Branch, PRECISE, follow};
 use crate::analysis::residual_vibration;
 use crate::impulse::{Impulse, ImpulseSequence};
 use crate::mode::Mode;
@@ -79,7 +79,7 @@ pub fn design(kind: Kind, mode: &Mode, tolerance: f64) -> Result<ImpulseSequence
     };
     let longest = LONGEST_STEP / mode.damping.max(path.root_change.abs()).max(LONGEST_STEP);
     let start = DVector::from_column_slice(family.undamped);
-    let unknowns = follow(&path, start, longest).map_err(|reached| DesignError::NotSolved {
+    let unknowns = follow(&path, start, longest, PRECISE).map_err(|reached| DesignError::NotSolved {
         kind,
         mode: *mode,
         reached,
@@ -279,7 +279,8 @@ mod tests {
                     damping: 0.4,
                     root_change: tolerance.sqrt() - START_TOLERANCE.sqrt(),
                 };
-                let along = |longest| follow(&path, DVector::from_column_slice(family.undamped), longest).unwrap();
+                let along =
+                    |longest| follow(&path, DVector::from_column_slice(family.undamped), longest, PRECISE).unwrap();
                 assert!((along(0.25) - along(0.002)).amax() < 1e-11, "{kind} {tolerance}");
             }
         }

@@ -17,8 +17,10 @@ const CONTRACTION: f64 = 0.25;
 const SETTLED: f64 = 1e-5;
 /// Newton doubles its digits each time; more rounds mean that it does not.
 const ROUNDS: usize = 12;
-/// Shortest step, at which the end of the branch counts as found.
-const SHORTEST: f64 = 1e-6;
+/// Shortest step for which the end of a branch counts as found, to six digits.
+pub(super) const PRECISE: f64 = 1e-6;
+/// The same where it only matters roughly where a branch ends, or that it does.
+pub(super) const ROUGH: f64 = 1e-4;
 
 /// A system of equations along a path.
 pub(super) trait Branch {
@@ -33,11 +35,17 @@ pub(super) trait Branch {
     fn is_valid(&self, unknowns: &DVector<f64>) -> bool;
 }
 
-/// Follows `branch` from a start near its solution at 0 up to 1, in steps of at most `longest`.
+/// Follows `branch` from a start near its solution at 0 up to 1, in steps of at most `longest` and, before it is given up, at
+/// least `shortest`.
 ///
 /// # Errors
 /// The position up to which the branch was followed, where it does not reach 1; 0 if there is none at 0.
-pub(super) fn follow(branch: &impl Branch, start: DVector<f64>, longest: f64) -> Result<DVector<f64>, f64> {
+pub(super) fn follow(
+    branch: &impl Branch,
+    start: DVector<f64>,
+    longest: f64,
+    shortest: f64,
+) -> Result<DVector<f64>, f64> {
     let mut here = solve(branch, start, 0.0).ok_or(0.0)?;
     let (mut s, mut step) = (0.0, longest.min(1.0));
     // Not at once after a failure: towards the end of a branch every longer step fails again.
@@ -51,7 +59,7 @@ pub(super) fn follow(branch: &impl Branch, start: DVector<f64>, longest: f64) ->
                 step = if may_grow { (2.0 * step).min(longest) } else { step };
                 may_grow = true;
             }
-            None if step > SHORTEST => {
+            None if step > shortest => {
                 step /= 2.0;
                 may_grow = false;
             }
@@ -123,14 +131,14 @@ mod tests {
     fn unit_follows_the_branch_that_it_starts_on() {
         for sign in [1.0, -1.0] {
             let start = DVector::from_element(1, 1.1 * sign);
-            let found = follow(&Fold(1.25), start, 1.0).unwrap();
+            let found = follow(&Fold(1.25), start, 1.0, PRECISE).unwrap();
             assert!((found[0] - sign * 0.2f64.sqrt()).abs() < 1e-15);
         }
     }
 
     #[test]
     fn unit_says_where_a_branch_ends() {
-        let ended = follow(&Fold(0.4), DVector::from_element(1, 1.0), 1.0).unwrap_err();
+        let ended = follow(&Fold(0.4), DVector::from_element(1, 1.0), 1.0, PRECISE).unwrap_err();
         assert!((ended - 0.4).abs() < 1e-5, "{ended}");
     }
 }
