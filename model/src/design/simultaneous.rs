@@ -9,7 +9,7 @@
 //! of the convolution of two `ps-zv`, shorter, and within bounds that a convolution leaves. The price is robustness: other
 //! frequencies than the modes' are amplified.
 //!
-//! The shortest command within the bounds is found first ([`super::time_optimal`]); if it has as many jumps as there are
+//! The shortest command within the bounds is found first (`time_optimal`); if it has as many jumps as there are
 //! equations it is this shaper, and no bounded command is shorter ([`Simultaneous::is_time_optimal`]). Otherwise, as with
 //! frequencies far apart, Newton's method starts from several thousand deterministic pseudo-random sequences; the shortest
 //! that it finds is returned and *not* proven to be the shortest there is.

@@ -261,19 +261,23 @@ impl Family {
 
     /// Follows the family from a seed to `epsilon`, in steps of its logarithm that halve where there is no way on.
     fn follow(mut self, seed: &Seed, epsilon: f64, above: Above) -> Option<Cascade> {
-        const FIRST_STEP: f64 = 0.1;
-        const LAST_STEP: f64 = 1e-3;
+        // An exchange must not be missed; without one, the way is smooth.
+        let first_step: f64 = match above {
+            Above::Exchanged => 0.1,
+            Above::Crossed => 0.5,
+        };
+        let last_step = first_step / 8.0;
         let (start, index, ratios) = *seed;
         let unknowns: Vec<f64> = ratios.iter().copied().chain([index]).collect();
         let mut reached = start.ln();
         let target = epsilon.ln();
         let mut solution = self.refine(&DVector::from_vec(unknowns), reached)?;
-        let mut step: f64 = FIRST_STEP;
+        let mut step = first_step;
         loop {
             let next = reached + (target - reached).clamp(-step, step);
             match self.step(&solution, next, above) {
                 Some((family, refined)) => (self, solution, reached) = (family, refined, next),
-                None if step > LAST_STEP => step /= 2.0,
+                None if step > last_step => step /= 2.0,
                 None => return None,
             }
             if reached == target {
