@@ -56,7 +56,9 @@ pub(super) struct Velocity {
     end_stamp: Signal<Local, Bits<24>>,
     interval: Signal<Local, Bits<24>>,
     counted: Signal<Local, Bits<18>>,
-    one_back: Signal<Local, Bits<18>>,
+    one_count: Signal<Local, Bits<18>>,
+    rests: Signal<Local, Bit>,
+    measures: Signal<Local, Bit>,
     stale_time: Signal<Local, Bit>,
     stale: Signal<Local, Bit>,
     fresh: Signal<Local, Bit>,
@@ -65,13 +67,12 @@ pub(super) struct Velocity {
     target: Signal<Local, Signed<36>>,
     wide_smoothed: Signal<Local, Signed<36>>,
     difference: Signal<Local, Signed<36>>,
-    halved: Signal<Local, Signed<36>>,
-    quartered: Signal<Local, Signed<36>>,
+    coarse: Signal<Local, Signed<37>>,
     target_bits: Signal<Local, Bits<36>>,
     scaled: Signal<Local, Bits<36>>,
     resolved: Signal<Local, Bits<36>>,
     half: Signal<Local, Signed<35>>,
-    quarter: Signal<Local, Signed<34>>,
+    wide_difference: Signal<Local, Signed<37>>,
     shrunk: Signal<Local, Bits<35>>,
 
     no_elapsed: Constant<Bits<24>>,
@@ -81,9 +82,6 @@ pub(super) struct Velocity {
     rounding: Constant<Bits<36>>,
     rest: Constant<Signed<35>>,
     one: Constant<Bits<36>>,
-    shift_1: Constant<Bits<2>>,
-    shift_2: Constant<Bits<2>>,
-    shift_3: Constant<Bits<2>>,
 }
 
 impl Default for Velocity {
@@ -126,7 +124,9 @@ impl Default for Velocity {
             end_stamp: Signal::default(),
             interval: Signal::default(),
             counted: Signal::default(),
-            one_back: Signal::default(),
+            one_count: Signal::default(),
+            rests: Signal::default(),
+            measures: Signal::default(),
             stale_time: Signal::default(),
             stale: Signal::default(),
             fresh: Signal::default(),
@@ -135,13 +135,12 @@ impl Default for Velocity {
             target: Signal::default(),
             wide_smoothed: Signal::default(),
             difference: Signal::default(),
-            halved: Signal::default(),
-            quartered: Signal::default(),
+            coarse: Signal::default(),
             target_bits: Signal::default(),
             scaled: Signal::default(),
             resolved: Signal::default(),
             half: Signal::default(),
-            quarter: Signal::default(),
+            wide_difference: Signal::default(),
             shrunk: Signal::default(),
             no_elapsed: Constant::new(from_u64(0)),
             one_up: Constant::new(from_u64(1)),
@@ -150,9 +149,6 @@ impl Default for Velocity {
             rounding: Constant::new(from_u64(3)),
             rest: Constant::new(from_i64(3)),
             one: Constant::new(from_u64(1)),
-            shift_1: Constant::new(from_u64(1)),
-            shift_2: Constant::new(from_u64(2)),
-            shift_3: Constant::new(from_u64(3)),
         }
     }
 }
@@ -190,20 +186,16 @@ impl Logic for Velocity {
         self.wide_smoothed.next = signed_bit_cast::<36, 35>(self.smoothed.q.val());
         self.difference.next = signed_cast(self.target_bits.val() - unsigned_cast(self.wide_smoothed.val()));
         self.half.next = self.difference.val().get_bits::<35>(1);
-        self.quarter.next = self.difference.val().get_bits::<34>(2);
-        self.halved.next = signed_bit_cast::<36, 35>(self.half.val());
-        self.quartered.next = signed_bit_cast::<36, 34>(self.quarter.val());
 
         comment!("Twice the distance, times 2^-k");
-        self.scaled.next = unsigned_cast(self.difference.val()) << 1;
-        if self.smoothing.val() == self.shift_1.val() {
-            self.scaled.next = unsigned_cast(self.difference.val());
+        self.wide_difference.next = signed_bit_cast::<37, 36>(self.difference.val());
+        self.coarse.next = signed_cast(unsigned_cast(self.wide_difference.val()) << 1);
+        if self.smoothing.val().get_bit(1) {
+            self.coarse.next = signed_bit_cast::<37, 35>(self.half.val());
         }
-        if self.smoothing.val() == self.shift_2.val() {
-            self.scaled.next = unsigned_cast(self.halved.val());
-        }
-        if self.smoothing.val() == self.shift_3.val() {
-            self.scaled.next = unsigned_cast(self.quartered.val());
+        self.scaled.next = unsigned_cast(self.coarse.val().get_bits::<36>(0));
+        if self.smoothing.val().get_bit(0) {
+            self.scaled.next = unsigned_cast(self.coarse.val().get_bits::<36>(1));
         }
         self.resolved.next = ((unsigned_cast(self.wide_smoothed.val()) << 1) | self.one.val()) + self.scaled.val();
         self.shrunk.next = self.resolved.val().get_bits::<35>(1);
@@ -228,13 +220,19 @@ impl Logic for Velocity {
         }
         self.interval.next = self.end_stamp.val() - self.reference_stamp.q.val();
         self.counted.next = self.count.val() - self.captured.q.val();
-        self.one_back.next = self.one_up.val();
-        if self.smoothed.q.val().get_bit(34) {
-            self.one_back.next = self.one_down.val();
-        }
         self.stale_time.next = self.interval.val().get_bits::<8>(16) >= self.timeout.val();
         self.stale.next = self.stale_time.val() & !self.moved.q.val();
         self.fresh.next = self.known.q.val() & !self.stale.val();
+
+        self.rests.next = !self.fresh.val() | self.turned.q.val();
+        self.measures.next = self.velocity_m.val() | (self.moved.q.val() & !self.rests.val());
+        self.one_count.next = self.no_steps.val();
+        if !self.rests.val() {
+            self.one_count.next = self.one_up.val();
+            if self.smoothed.q.val().get_bit(34) {
+                self.one_count.next = self.one_down.val();
+            }
+        }
 
         comment!("A tick");
         if self.clear_flags.val() {
@@ -251,20 +249,14 @@ impl Logic for Velocity {
             self.moved.d.next = false;
             self.turned.d.next = false;
             self.elapsed_q.d.next = self.interval.val();
-            self.steps_q.d.next = self.counted.val();
+            self.steps_q.d.next = self.one_count.val();
             self.bound.d.next = !self.moved.q.val() & !self.velocity_m.val();
-            self.halt.d.next = false;
-            if !self.moved.q.val() {
-                self.steps_q.d.next = self.one_back.val();
-            }
-            if !self.fresh.val() | self.turned.q.val() {
-                self.steps_q.d.next = self.no_steps.val();
-                self.halt.d.next = true;
+            self.halt.d.next = self.rests.val() & !self.velocity_m.val();
+            if self.measures.val() {
+                self.steps_q.d.next = self.counted.val();
             }
             if self.velocity_m.val() {
                 self.elapsed_q.d.next = self.no_elapsed.val();
-                self.steps_q.d.next = self.counted.val();
-                self.halt.d.next = false;
             }
         }
 
