@@ -16,7 +16,7 @@ mod random;
 mod table;
 
 pub use self::coverage::Coverage;
-pub use self::directed::{Action, Directed, cases};
+pub use self::directed::{Action, Directed, cases, motion_cases};
 pub use self::layout::{Axis, Layout};
 pub use self::motion::Motion;
 pub use self::random::Random;
