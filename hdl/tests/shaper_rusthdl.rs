@@ -4,10 +4,11 @@
 
 mod stimulus;
 
-use posicast_model::rtl::ClockedBlock;
 use posicast_model::rtl::shaper::{
-    Inputs, Outputs, RING_ADDRESS_BITS, Shaper, ShaperConfig, TAP_INDEX_BITS, WORD_BITS, pass_clocks,
+    Inputs, MOTION_WORD_BITS, Motion, Outputs, RING_ADDRESS_BITS, Shaper, ShaperConfig, TAP_INDEX_BITS, WORD_BITS,
+    pass_clocks, swap_how,
 };
+use posicast_model::rtl::{ClockedBlock, Direction};
 use posicast_model::taps::{Tap, TapTable};
 use stimulus::{Anything, Random, load, table};
 
@@ -33,7 +34,8 @@ impl LockStep {
     }
 
     fn step(&mut self, inputs: &Inputs) -> Outputs {
-        let mut shown = [0; 8];
+        let outputs = self.model.ports().iter().filter(|p| p.direction == Direction::Output);
+        let mut shown = vec![0; outputs.count()];
         self.rusthdl.step(&inputs.to_raw(&self.config), &mut shown).unwrap();
         let expected = self.model.step(inputs);
         let actual = Outputs::from_raw(&shown, &self.config);
@@ -95,6 +97,104 @@ fn lockstep_everything_at_random() {
         assert!(seen.overrun && seen.refused, "{config:?}");
         assert!(seen.saturated || gain == 1, "{config:?}");
         assert!(passes.iter().all(|&n| n > 5), "passes per bank {passes:?}, {config:?}");
+    }
+}
+
+#[test]
+fn lockstep_motion_with_any_channels_at_random() {
+    let mut random = Random(21);
+    for (word_bits, channels, modulo, taps, longest) in [
+        (24, 1, false, 4, 9),
+        (32, 2, false, 3, 5),
+        (32, 3, true, 5, 12),
+        (24, 1, true, 9, 40),
+    ] {
+        let machine = table(&mut random, 15, taps, longest, 2);
+        let config = ShaperConfig::new(word_bits, machine)
+            .and_then(|c| c.for_motion(Motion { channels, modulo }))
+            .unwrap();
+        let mut both = LockStep::new(&config);
+        let mut seen = Outputs::default();
+        let mut handovers = [0; 2];
+        for inputs in Anything::new(&config, random.word()).take(12_000) {
+            let shown = both.step(&inputs);
+            handovers[0] += u32::from(shown.swap_pending && shown.bank != seen.bank);
+            handovers[1] += u32::from(seen.swap_pending && !shown.swap_pending && shown.bank == seen.bank);
+            seen.bank = shown.bank;
+            seen.swap_pending = shown.swap_pending;
+            seen.saturated |= shown.saturated;
+            seen.overrun |= shown.overrun;
+            seen.refused |= shown.refused;
+        }
+        assert!(seen.overrun && seen.refused && (seen.saturated || modulo), "{config:?}");
+        assert!(handovers[0] > 0 && handovers[1] > 0, "{handovers:?}, {config:?}");
+    }
+}
+
+#[test]
+fn lockstep_motion_hands_over_sample_by_sample() {
+    let config = config(32, 16, &[(0, 20_000), (7, 45_536)]);
+    let config = config
+        .for_motion(Motion {
+            channels: 3,
+            modulo: false,
+        })
+        .unwrap();
+    let next = TapTable::new(
+        16,
+        [(0, 30_000), (3, -4000), (12, 39_536)]
+            .map(|(delay_samples, coefficient)| Tap {
+                delay_samples,
+                coefficient,
+            })
+            .to_vec(),
+    )
+    .unwrap();
+    let mut both = LockStep::new(&config);
+    for mut inputs in load(&next, 2) {
+        inputs.swap_how = swap_how::HANDOVER;
+        both.step(&inputs);
+    }
+    // 3 channels of 2 + 3 taps and the correction, for samples 1 to 12 of the new table; then 3 of 3.
+    for sample in 0..16 {
+        let products = if sample < 12 { 3 * (2 + 3) + 1 } else { 3 * 3 };
+        both.step(&Inputs {
+            strobe: true,
+            x: 1000 * sample,
+            x_rates: [1000, 7],
+            ..Inputs::default()
+        });
+        let last = both.idle(config.pass_clocks(products) - 1);
+        assert!(
+            last.busy && !last.valid && last.swap_pending == (sample < 12),
+            "sample {sample}"
+        );
+        assert!(both.step(&Inputs::default()).valid, "sample {sample}");
+    }
+}
+
+#[test]
+fn lockstep_every_size_for_motion_that_is_listed() {
+    for word_bits in MOTION_WORD_BITS {
+        for channels in 1..=3 {
+            for ring in RING_ADDRESS_BITS
+                .into_iter()
+                .filter(|&ring| ring <= 12 || channels == 1)
+            {
+                for index in TAP_INDEX_BITS {
+                    let machine = table(&mut Random(5), 16, 4, 9, 2);
+                    let modulo = ring % 2 == 0;
+                    let config = ShaperConfig::new(word_bits, machine)
+                        .and_then(|c| c.with_room_for((1 << ring) - 2, 1 << index))
+                        .and_then(|c| c.for_motion(Motion { channels, modulo }))
+                        .unwrap();
+                    let mut both = LockStep::new(&config);
+                    for inputs in Anything::new(&config, u64::from(word_bits * ring * index)).take(200) {
+                        both.step(&inputs);
+                    }
+                }
+            }
+        }
     }
 }
 

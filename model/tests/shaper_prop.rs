@@ -206,6 +206,7 @@ proptest! {
                 tap_delay: (word >> 33) as u16,
                 swap: bit(50),
                 swap_bank: (word >> 51) as u8,
+                ..Inputs::default()
             })?;
         }
     }

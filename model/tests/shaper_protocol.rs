@@ -346,10 +346,12 @@ fn unit_raw_ports_are_the_typed_ones() {
     let mut shown = [0; 8];
     for inputs in [start(-3), strobe(-4), write(1, 0, -9, 5), swap(2), Inputs::default()] {
         let bits = inputs.to_raw(&config);
-        assert_eq!(Inputs::from_raw(&bits).to_raw(&config), bits);
+        assert_eq!(Inputs::from_raw(&bits, &config).to_raw(&config), bits);
         ClockedBlock::step(&mut raw, &bits, &mut shown).unwrap();
         let expected = typed.step(&inputs);
-        assert_eq!(shown, expected.to_raw(&config));
+        let mut raw_outputs = [0; 8];
+        expected.write_raw(&config, &mut raw_outputs);
+        assert_eq!(shown, raw_outputs);
         assert_eq!(Outputs::from_raw(&shown, &config), expected);
     }
     let error = ClockedBlock::step(&mut raw, &[0; 3], &mut shown).unwrap_err();

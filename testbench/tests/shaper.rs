@@ -6,12 +6,12 @@ use std::path::{Path, PathBuf};
 use posicast_hdl::emit::{Header, Instance as Placed, Module, compose};
 use posicast_hdl::shaper::{emit, simulate};
 use posicast_model::rtl::ClockedBlock;
-use posicast_model::rtl::shaper::{Shaper, ShaperConfig, pass_clocks};
+use posicast_model::rtl::shaper::{Motion as ForMotion, Shaper, ShaperConfig, pass_clocks};
 use posicast_model::taps::{Tap, TapTable};
 use posicast_testbench::icarus::Icarus;
 use posicast_testbench::lockstep::report::{Report, Verdict};
 use posicast_testbench::lockstep::{self, Device, Instance, Joined, Options, TwoValued};
-use posicast_testbench::stimuli::{Coverage, Directed, Layout, Motion, Random, Stimuli, cases, corners};
+use posicast_testbench::stimuli::{Coverage, Directed, Layout, Motion, Random, Stimuli, cases, corners, motion_cases};
 use posicast_testbench::verilator::{Source, Verilated};
 use tempfile::TempDir;
 
@@ -132,6 +132,69 @@ fn assert_match(report: &Report, what: &str) {
         }
     }
     assert_eq!(report.result, Verdict::Match, "{what}");
+}
+
+fn for_motion(config: ShaperConfig, channels: u32, modulo: bool) -> ShaperConfig {
+    config.for_motion(ForMotion { channels, modulo }).unwrap()
+}
+
+/// As for the plain shaper; with `modulo` and one channel nothing saturates.
+fn million_random_clocks_of_motion(config: ShaperConfig, seed: u64) {
+    let bench = Bench::new(config.clone());
+    let mut random = Random::new(&bench.layout, seed);
+    let (report, coverage) = bench.run(&mut bench.verilated(seed), &mut random, 1_000_000);
+    assert_match(&report, &format!("seed {seed}"));
+    let never_saturates = matches!(
+        config.motion(),
+        Some(ForMotion {
+            channels: 1,
+            modulo: true
+        })
+    );
+    assert_eq!(coverage.missing().len(), usize::from(never_saturates), "{coverage}");
+    assert!(coverage.handovers > 20 && coverage.handovers_over > 20, "{coverage:?}");
+}
+
+#[test]
+fn lockstep_a_million_random_clocks_of_motion_with_one_channel() {
+    million_random_clocks_of_motion(for_motion(config(24, negative(15), 0, 0), 1, false), 11);
+}
+
+#[test]
+fn lockstep_a_million_random_clocks_of_motion_with_three_channels() {
+    million_random_clocks_of_motion(for_motion(config(32, zvd(16), 0, 0), 3, false), 12);
+}
+
+#[test]
+fn lockstep_a_million_random_clocks_of_a_rotary_axis() {
+    million_random_clocks_of_motion(for_motion(config(32, negative(15), 0, 0), 1, true), 13);
+}
+
+#[test]
+fn lockstep_a_million_random_clocks_of_a_rotary_axis_with_velocity() {
+    million_random_clocks_of_motion(for_motion(config(24, negative(14), 0, 0), 2, true), 14);
+}
+
+#[test]
+fn lockstep_every_directed_case_of_motion() {
+    for config in [
+        for_motion(standard(), 3, false),
+        for_motion(config(24, negative(15), 0, 0), 1, true),
+    ] {
+        let bench = Bench::new(config);
+        for (name, script) in cases().into_iter().chain(motion_cases()) {
+            let mut directed = Directed::new(&bench.layout, script);
+            let clocks = directed.clocks(bench.config.pass_clocks(6 * bench.config.most_taps()));
+            let (report, coverage) = bench.run(&mut bench.verilated(5), &mut directed, clocks);
+            assert_match(&report, name);
+            match name {
+                "handover_while_moving" => assert_eq!((coverage.handovers, coverage.handovers_over), (2, 2)),
+                "handover_refuses_what_comes_in_it" => assert_eq!(coverage.refused, 3, "{coverage}"),
+                "swap_when_settled" => assert_eq!((coverage.swaps, coverage.handovers), (2, 0), "{coverage}"),
+                _ => {}
+            }
+        }
+    }
 }
 
 fn million_random_clocks(config: ShaperConfig, seed: u64) {
@@ -293,7 +356,11 @@ fn crosssim_icarus_and_rusthdl_agree_with_the_model() {
 
 /// Breaks the Verilog and insists on a mismatch with all its particulars.
 fn caught(from: &str, to: &str) {
-    let bench = Bench::broken(standard(), from, to);
+    caught_in(standard(), from, to);
+}
+
+fn caught_in(config: ShaperConfig, from: &str, to: &str) {
+    let bench = Bench::broken(config, from, to);
     let (report, _) = bench.run(&mut bench.verilated(1), &mut Random::new(&bench.layout, 1), 100_000);
     assert_eq!(report.result, Verdict::Mismatch, "`{to}` is not found");
     let first = report.blocks[0].first.as_ref().unwrap();
@@ -309,6 +376,14 @@ fn caught(from: &str, to: &str) {
 #[test]
 fn lockstep_catches_a_broken_multiplier_bit() {
     caught("product <= a_q * b_q;", "product <= (a_q * b_q) ^ 50'sd1048576;");
+}
+
+#[test]
+fn lockstep_catches_a_handover_that_goes_wrong() {
+    let motion = || for_motion(standard(), 3, false);
+    caught_in(motion(), "tap_delay < since_q", "tap_delay <= since_q");
+    caught_in(motion(), "next_since > reach", "next_since >= reach");
+    caught_in(motion(), "still >= reach", "still > reach");
 }
 
 #[test]

@@ -160,6 +160,12 @@ impl<
         self.banks.swap_bank.next = self.swap_bank.val();
         self.banks.tap.next = self.tap.q.val();
 
+        comment!("A swap has one way: all at the next strobe");
+        self.banks.known.next = true;
+        self.banks.take.next = true;
+        self.banks.locked.next = false;
+        self.banks.old.next = false;
+
         comment!("The samples: the one at delay, a clock later");
         self.history.clk.next = self.clk.val();
         self.history.rst.next = self.rst.val();

@@ -4,10 +4,14 @@ use crate::stimulus::{Anything, Random, table};
 use crate::support::Row;
 use crate::tools;
 use posicast_model::rtl::ClockedBlock;
-use posicast_model::rtl::shaper::{Inputs, Shaper, ShaperConfig};
+use posicast_model::rtl::shaper::{Inputs, Motion, Shaper, ShaperConfig};
 
 fn config(word_bits: u32, taps: usize, longest: u32) -> ShaperConfig {
     ShaperConfig::new(word_bits, table(&mut Random(5), 16, taps, longest, 2)).unwrap()
+}
+
+fn for_motion(config: ShaperConfig, channels: u32, modulo: bool) -> ShaperConfig {
+    config.for_motion(Motion { channels, modulo }).unwrap()
 }
 
 #[test]
@@ -16,6 +20,8 @@ fn crosssim_shaper_equals_its_model() {
         ("small", config(16, 3, 20)),
         ("middle", config(24, 40, 200)),
         ("large", config(32, 77, 900)),
+        ("motion", for_motion(config(32, 5, 11), 3, false)),
+        ("rotary", for_motion(config(24, 3, 9), 1, true)),
     ];
     let rows = rows.map(|(name, config)| {
         let mut model = Shaper::new(&config, 7);
@@ -23,7 +29,7 @@ fn crosssim_shaper_equals_its_model() {
         assert_eq!(modules.as_ref().unwrap().last().unwrap().ports, model.ports());
         let step = |inputs: Inputs| {
             let raw = inputs.to_raw(&config);
-            let mut shown = [0; 8];
+            let mut shown = vec![0; model.ports().len() - raw.len()];
             ClockedBlock::step(&mut model, &raw, &mut shown).unwrap();
             [&raw[..], &shown[..]].concat()
         };

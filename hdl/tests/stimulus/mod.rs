@@ -1,6 +1,6 @@
 //! Stimuli for the shaper: random strobes, starts and resets, and a host that loads tables, mostly correctly.
 
-use posicast_model::rtl::shaper::{Inputs, ShaperConfig, pass_clocks};
+use posicast_model::rtl::shaper::{Inputs, ShaperConfig};
 use posicast_model::taps::{COEFFICIENT_MAX, COEFFICIENT_MIN, Tap, TapTable};
 use std::collections::VecDeque;
 
@@ -159,11 +159,16 @@ impl Iterator for Anything {
         let mut inputs = self.host.pop_front()?;
         inputs.x = self.sample();
         inputs.rst = self.random.once_in(3000);
-        inputs.start = self.random.once_in(400);
+        // A handover goes on for as many samples as a table is long: it is to end by itself more often than by a start.
+        inputs.start = self
+            .random
+            .once_in(if self.config.motion().is_some() { 4000 } else { 400 });
+        inputs.x_rates = [self.sample(), self.sample()];
+        inputs.swap_how = self.random.word() as u8;
         inputs.clear_flags = self.random.once_in(60);
         inputs.strobe = self.until_strobe == 0;
         if inputs.strobe {
-            let pass = pass_clocks(self.config.table().taps().len() as u32);
+            let pass = self.config.pass_clocks(self.config.most_products());
             self.until_strobe = match self.random.below(8) {
                 0 => 0,
                 1 => self.random.below(u64::from(pass)) as u32,

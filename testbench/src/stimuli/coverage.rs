@@ -30,6 +30,10 @@ pub struct Coverage {
     pub swaps_requested: u64,
     /// Times that `bank` became another bank than 0, or changed from one to the other.
     pub swaps: u64,
+    /// Times that a swap took effect and was not over: a handover began. Only a shaper for motion has them.
+    pub handovers: u64,
+    /// Times that one was over: by itself, by a start, by a reset.
+    pub handovers_over: u64,
     /// Times that a sticky flag fell.
     pub flags_cleared: u64,
     seen: Vec<[u64; 5]>,
@@ -61,6 +65,8 @@ impl Coverage {
             self.refused += rose(2);
             self.swaps_requested += rose(3);
             self.swaps += u64::from(now[4] != seen[4] && now[4] != 0);
+            self.handovers += u64::from(now[3] != 0 && now[4] != seen[4]);
+            self.handovers_over += u64::from(now[3] < seen[3] && now[4] == seen[4]);
             self.flags_cleared += (0..3).map(|flag| u64::from(now[flag] < seen[flag])).sum::<u64>();
             *seen = now;
         }

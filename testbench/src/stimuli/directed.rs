@@ -27,6 +27,8 @@ pub enum Action {
     Swap(u64),
     /// `swap` and `strobe` in one clock, with that `x`.
     SwapAndStrobe(u64, i32),
+    /// Asks for a bank with a `swap_how`; a shaper that has none swaps at once.
+    SwapHow(u64, u64),
     /// `clear_flags` for one clock.
     Clear,
     /// `clear_flags` together with a strobe of that `x`.
@@ -181,6 +183,95 @@ pub fn cases() -> Vec<(&'static str, Vec<Action>)> {
     ]
 }
 
+/// The directed cases of a shaper for motion, beside those of [`cases`].
+pub fn motion_cases() -> Vec<(&'static str, Vec<Action>)> {
+    use Action::{Clear, Reset, Start, StartAlone, Strobe, Swap, SwapHow, Tap, Wait, WaitIdle};
+    let ramp = |from: i32, step: i32, count: i32| {
+        let samples = (0..count).flat_map(|n| [Strobe(from + step * n), WaitIdle]);
+        samples.collect::<Vec<_>>()
+    };
+    let (hand_over, when_settled) = (1, 2);
+    let begin = vec![
+        Reset(2),
+        Start(0),
+        WaitIdle,
+        Tap(1, 0, 100, 0),
+        Tap(1, 1, -44, 4),
+        Tap(1, 2, 200, 9),
+        Tap(2, 0, 256, 0),
+    ];
+    let refused = vec![
+        Swap(0),
+        Tap(2, 1, 1, 1),
+        SwapHow(2, hand_over),
+        SwapHow(2, when_settled),
+        Clear,
+    ];
+    vec![
+        (
+            "handover_while_moving",
+            [
+                begin.clone(),
+                ramp(0, 2, 12),
+                vec![SwapHow(1, hand_over)],
+                ramp(24, 2, 90),
+                vec![SwapHow(2, hand_over)],
+                ramp(200, -3, 30),
+            ]
+            .concat(),
+        ),
+        (
+            "handover_refuses_what_comes_in_it",
+            [
+                begin.clone(),
+                ramp(0, 5, 3),
+                vec![SwapHow(1, hand_over), Clear],
+                refused.clone(),
+                ramp(20, 5, 5),
+                refused.clone(),
+                ramp(50, 5, 5),
+                vec![SwapHow(2, 3), Clear],
+            ]
+            .concat(),
+        ),
+        (
+            "handover_cut_off_by_start_and_reset",
+            [
+                begin.clone(),
+                ramp(0, 4, 5),
+                vec![SwapHow(1, hand_over)],
+                ramp(20, 4, 3),
+                vec![StartAlone, Wait(2)],
+                ramp(9, 4, 5),
+                vec![SwapHow(2, hand_over), Start(70), WaitIdle],
+                ramp(70, 1, 5),
+                vec![SwapHow(0, hand_over)],
+                ramp(90, -2, 4),
+                vec![Strobe(5), Strobe(6), Strobe(7), Wait(3), Strobe(8), WaitIdle],
+                vec![Reset(1)],
+                ramp(0, 1, 3),
+            ]
+            .concat(),
+        ),
+        (
+            "swap_when_settled",
+            [
+                begin,
+                ramp(0, 4, 5),
+                vec![SwapHow(1, when_settled)],
+                ramp(20, 1, 4),
+                ramp(24, 0, 140),
+                vec![SwapHow(2, when_settled)],
+                ramp(25, 1, 3),
+                refused,
+                vec![Start(-40), WaitIdle],
+                ramp(-40, 9, 10),
+            ]
+            .concat(),
+        ),
+    ]
+}
+
 /// Longest wait for an axis that stays busy.
 const IDLE_LIMIT_CLOCKS: u32 = 4096;
 
@@ -259,18 +350,25 @@ impl Stimuli for Directed {
     }
 }
 
-fn drive(axis: &Axis, action: Action, inputs: &mut [u64]) {
+/// The words of all channels: a different part of `x` 256ths of full scale each.
+fn command(axis: &Axis, x: i32, inputs: &mut [u64]) {
     let word = |x: i32| {
         let word = i128::from(axis.largest_word()) * i128::from(x) / 256;
         word.clamp(-i128::from(axis.largest_word()) - 1, i128::from(axis.largest_word())) as i64 as u64
     };
-    // −256/256 of full scale is the smallest word, one below the negative of the largest.
-    let word = |x: i32| if x == -256 { word(x).wrapping_sub(1) } else { word(x) };
+    for channel in 0..axis.channels {
+        let x = x / (1 + channel as i32);
+        // −256/256 of full scale is the smallest word, one below the negative of the largest.
+        inputs[axis.x + channel] = if x == -256 { word(x).wrapping_sub(1) } else { word(x) };
+    }
+}
+
+fn drive(axis: &Axis, action: Action, inputs: &mut [u64]) {
     match action {
-        Action::Strobe(x) => inputs[axis.x] = word(x),
-        Action::StrobeExact(word) => inputs[axis.x] = word as u64,
+        Action::Strobe(x) => command(axis, x, inputs),
+        Action::StrobeExact(word) => inputs[axis.x..axis.x + axis.channels].fill(word as u64),
         Action::Start(x) => {
-            inputs[axis.x] = word(x);
+            command(axis, x, inputs);
             inputs[axis.start] = 1;
         }
         Action::StartAlone => inputs[axis.start] = 1,
@@ -285,15 +383,22 @@ fn drive(axis: &Axis, action: Action, inputs: &mut [u64]) {
             inputs[axis.swap] = 1;
             inputs[axis.swap_bank] = bank;
         }
+        Action::SwapHow(bank, how) => {
+            inputs[axis.swap] = 1;
+            inputs[axis.swap_bank] = bank;
+            if let Some(swap_how) = axis.swap_how {
+                inputs[swap_how] = how;
+            }
+        }
         Action::SwapAndStrobe(bank, x) => {
             inputs[axis.swap] = 1;
             inputs[axis.swap_bank] = bank;
-            inputs[axis.x] = word(x);
+            command(axis, x, inputs);
         }
         Action::Clear => inputs[axis.clear_flags] = 1,
         Action::ClearAndStrobe(x) => {
             inputs[axis.clear_flags] = 1;
-            inputs[axis.x] = word(x);
+            command(axis, x, inputs);
         }
         Action::Reset(_) | Action::Wait(_) | Action::WaitIdle => {}
     }

@@ -13,7 +13,10 @@ pub struct Axis {
     /// `F` of the tables that are loaded.
     pub coefficient_fraction: u32,
     pub start: usize,
+    /// The command word; of a shaper for motion that of channel 0, and those of the others follow.
     pub x: usize,
+    /// Channels, each with a word of its own.
+    pub channels: usize,
     pub clear_flags: usize,
     pub tap_write: usize,
     pub tap_bank: usize,
@@ -22,6 +25,8 @@ pub struct Axis {
     pub tap_delay: usize,
     pub swap: usize,
     pub swap_bank: usize,
+    /// Only of a shaper for motion.
+    pub swap_how: Option<usize>,
     /// Bits of a command word.
     pub word_bits: u32,
     /// Bits of a tap's index.
@@ -73,12 +78,18 @@ impl Layout {
         let axes = prefixes.map(|prefix| {
             let input = |name: &str| place(&inputs, format!("{prefix}{name}"));
             let output = |name: &str| place(&outputs, format!("{prefix}{name}"));
-            let (x, tap_index, tap_delay) = (input("x")?, input("tap_index")?, input("tap_delay")?);
+            let (x, tap_index, tap_delay) = (
+                input("x").or_else(|_| input("x_0"))?,
+                input("tap_index")?,
+                input("tap_delay")?,
+            );
+            let channels = (1..3).take_while(|channel| input(&format!("x_{channel}")).is_ok());
             Ok(Axis {
                 name: prefix.trim_end_matches('_').to_owned(),
                 coefficient_fraction: coefficient_fraction.clamp(1, 16),
                 start: input("start")?,
                 x,
+                channels: 1 + channels.count(),
                 clear_flags: input("clear_flags")?,
                 tap_write: input("tap_write")?,
                 tap_bank: input("tap_bank")?,
@@ -87,6 +98,7 @@ impl Layout {
                 tap_delay,
                 swap: input("swap")?,
                 swap_bank: input("swap_bank")?,
+                swap_how: input("swap_how").ok(),
                 word_bits: inputs[x].width,
                 tap_index_bits: inputs[tap_index].width,
                 ring_address_bits: inputs[tap_delay].width,

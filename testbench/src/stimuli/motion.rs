@@ -52,7 +52,7 @@ impl Stimuli for Motion<'_> {
         let sample = usize::try_from(moving / self.clocks_per_sample).unwrap_or(usize::MAX);
         for (axis, words) in self.layout.axes.iter().zip(self.words) {
             let word = words.get(sample).or_else(|| words.last());
-            inputs[axis.x] = word.copied().unwrap_or(0) as u64;
+            inputs[axis.x..axis.x + axis.channels].fill(word.copied().unwrap_or(0) as u64);
             inputs[axis.start] = u64::from(strobe && sample == 0);
         }
     }

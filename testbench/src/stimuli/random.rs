@@ -212,8 +212,10 @@ impl AxisState {
                 let size = 1usize << axis.tap_index_bits.min(8);
                 let few = rng.random_range(1..=size.min(6));
                 let count = *pick(rng, &[few, few, few, few, few, few, few, size / 4, size / 2 + 1, size]);
-                self.table
-                    .draw(rng, count, axis.coefficient_fraction, axis.ring_address_bits);
+                // A handover lasts for the longest delay: short tables let it end before something else ends it.
+                let short = axis.swap_how.is_some() && !one_in(rng, 4);
+                let reach_bits = if short { 3 } else { axis.ring_address_bits };
+                self.table.draw(rng, count, axis.coefficient_fraction, reach_bits);
                 let active = seen[axis.bank];
                 // Mostly the loadable bank that is not in use.
                 let bank = if one_in(rng, 8) {

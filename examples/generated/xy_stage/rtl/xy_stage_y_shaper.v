@@ -45,9 +45,15 @@ module xy_stage_y_shaper (
 
     wire [6:0]         tap_number;
     wire               finish;
+    wire               banks_known;
+    wire               banks_take;
+    wire               banks_locked;
+    wire               banks_old;
     wire signed [17:0] banks_coefficient;
     wire [6:0]         banks_delay;
     wire [6:0]         banks_taps;
+    wire               banks_accepted;
+    wire [6:0]         banks_reach;
     wire               banks_swap_pending;
     wire [1:0]         banks_bank;
     wire               banks_refused;
@@ -81,10 +87,16 @@ module xy_stage_y_shaper (
         .tap_delay       (tap_delay),
         .swap            (swap),
         .swap_bank       (swap_bank),
+        .known           (banks_known),
+        .take            (banks_take),
+        .locked          (banks_locked),
+        .old             (banks_old),
         .tap             (tap),
         .coefficient     (banks_coefficient),
         .delay           (banks_delay),
         .taps            (banks_taps),
+        .accepted        (banks_accepted),
+        .reach           (banks_reach),
         .swap_pending    (banks_swap_pending),
         .bank            (banks_bank),
         .refused         (banks_refused)
@@ -114,6 +126,12 @@ module xy_stage_y_shaper (
         .y           (sum_y),
         .saturated   (sum_saturated)
     );
+
+    // A swap has one way: all at the next strobe
+    assign banks_known = 1'd1;
+    assign banks_take = 1'd1;
+    assign banks_locked = 1'd0;
+    assign banks_old = 1'd0;
 
     // The sum: a pass that is cut off leaves y
     assign finish = (done & !start) & !strobe;
@@ -202,6 +220,9 @@ module xy_stage_y_shaper (
         busy_q = 1'd0;
         overrun_q = 1'd0;
     end
+
+    // Bits that nothing reads.
+    wire unused = &{1'b0, banks_accepted, banks_reach};
 endmodule
 
 `default_nettype wire

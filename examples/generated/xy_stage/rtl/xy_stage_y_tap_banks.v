@@ -21,10 +21,16 @@ module xy_stage_y_tap_banks (
     input  wire [6:0]         tap_delay,
     input  wire               swap,
     input  wire [1:0]         swap_bank,
+    input  wire               known,
+    input  wire               take,
+    input  wire               locked,
+    input  wire               old,
     input  wire [5:0]         tap,
     output wire signed [17:0] coefficient,
     output wire [6:0]         delay,
     output reg  [6:0]         taps,
+    output wire               accepted,
+    output wire [6:0]         reach,
     output wire               swap_pending,
     output wire [1:0]         bank,
     output wire               refused
@@ -35,21 +41,29 @@ module xy_stage_y_tap_banks (
     localparam [6:0]         UPPER_HALF = 7'd64;
     localparam [6:0]         ONE_TAP = 7'd1;
     localparam [6:0]         MACHINE_COUNT = 7'd5;
+    localparam [6:0]         MACHINE_LONGEST = 7'd109;
     localparam [6:0]         FORBIDDEN_DELAY = 7'd127;
     localparam signed [23:0] UNITY = 24'sd65536;
 
     reg  [6:0]         taps_so_far;
     reg  signed [23:0] sum_so_far;
+    reg  [6:0]         longest_so_far;
     wire [6:0]         index;
     wire               begins;
     wire               loadable;
+    wire               free;
     wire               at_rest;
     wire               in_reach;
     reg                write_taken;
     reg  [6:0]         new_taps;
     reg  signed [23:0] new_sum;
+    reg  [6:0]         new_longest;
     wire signed [23:0] addend;
     reg                swap_taken;
+    reg  [6:0]         active_longest;
+    reg  [6:0]         swap_longest;
+    reg  [1:0]         read_bank;
+    reg  [1:0]         word_bank;
     reg  [6:0]         write_address;
     reg  [6:0]         read_address;
     wire [17:0]        coefficient_bits;
@@ -65,12 +79,21 @@ module xy_stage_y_tap_banks (
     reg  signed [23:0] sum_1_next;
     reg  signed [23:0] sum_2;
     reg  signed [23:0] sum_2_next;
+    reg  [6:0]         longest_1;
+    reg  [6:0]         longest_1_next;
+    reg  [6:0]         longest_2;
+    reg  [6:0]         longest_2_next;
     reg  [1:0]         active;
     reg  [1:0]         active_next;
+    reg  [1:0]         previous;
+    reg  [1:0]         previous_next;
     reg  [1:0]         upcoming;
     reg  [1:0]         upcoming_next;
     reg                pending;
     reg                pending_next;
+    reg  [6:0]         reach_q;
+    reg  [6:0]         reach_q_next;
+    reg                old_q;
     reg                refused_q;
     reg                refused_q_next;
 
@@ -91,7 +114,8 @@ module xy_stage_y_tap_banks (
 
     // Taken in sequence, into a bank at rest
     assign loadable = (tap_bank == BANK_1) | (tap_bank == BANK_2);
-    assign at_rest = (tap_bank != active) & !(pending | swap);
+    assign free = !(pending | locked);
+    assign at_rest = ((tap_bank != active) & free) & !swap;
     assign in_reach = tap_delay != FORBIDDEN_DELAY;
     assign index = {1'd0, tap_index};
     assign begins = !(|tap_index);
@@ -99,11 +123,13 @@ module xy_stage_y_tap_banks (
     assign coefficient_bits = $unsigned(tap_coefficient);
     assign loaded_taps_write_data = ({18'd0, tap_delay} << 18) | {7'd0, coefficient_bits};
 
-    // Reading: the word of the active table
+    // Reading: the active table, or the old one
     assign coefficient = $signed(word[17:0]);
     assign delay = word[24:18];
 
     // Outputs
+    assign accepted = swap_taken;
+    assign reach = reach_q;
     assign swap_pending = pending;
     assign bank = active;
     assign refused = refused_q;
@@ -113,18 +139,24 @@ module xy_stage_y_tap_banks (
         taps_2_next = taps_2;
         sum_1_next = sum_1;
         sum_2_next = sum_2;
+        longest_1_next = longest_1;
+        longest_2_next = longest_2;
         active_next = active;
+        previous_next = previous;
         upcoming_next = upcoming;
         pending_next = pending;
+        reach_q_next = reach_q;
         refused_q_next = refused_q;
 
         // Writing: how far the bank addressed is loaded
         taps_so_far = taps_1;
         sum_so_far = sum_1;
+        longest_so_far = longest_1;
         write_address = {1'd0, tap_index};
         if (tap_bank == BANK_2) begin
             taps_so_far = taps_2;
             sum_so_far = sum_2;
+            longest_so_far = longest_2;
             write_address = {1'd0, tap_index} | UPPER_HALF;
         end
 
@@ -135,6 +167,10 @@ module xy_stage_y_tap_banks (
         end
         new_taps = taps_so_far + ONE_TAP;
         new_sum = sum_so_far + addend;
+        new_longest = longest_so_far;
+        if (begins | (tap_delay > longest_so_far)) begin
+            new_longest = tap_delay;
+        end
         if (begins) begin
             new_taps = ONE_TAP;
             new_sum = addend;
@@ -143,30 +179,55 @@ module xy_stage_y_tap_banks (
             if (tap_bank == BANK_2) begin
                 taps_2_next = new_taps;
                 sum_2_next = new_sum;
+                longest_2_next = new_longest;
             end else begin
                 taps_1_next = new_taps;
                 sum_1_next = new_sum;
+                longest_1_next = new_longest;
             end
         end
 
         // Swapping: only to a table that sums to one
         swap_taken = 1'd0;
         if (swap_bank == BANK_ROM) begin
-            swap_taken = swap & !pending;
+            swap_taken = (swap & free) & known;
         end
         if ((swap_bank == BANK_1) & (sum_1 == UNITY)) begin
-            swap_taken = swap & !pending;
+            swap_taken = (swap & free) & known;
         end
         if ((swap_bank == BANK_2) & (sum_2 == UNITY)) begin
-            swap_taken = swap & !pending;
+            swap_taken = (swap & free) & known;
         end
-        if (strobe & pending) begin
+        if ((strobe & pending) & take) begin
             active_next = upcoming;
+            previous_next = active;
             pending_next = 1'd0;
         end
         if (swap_taken) begin
             upcoming_next = swap_bank;
             pending_next = 1'd1;
+        end
+
+        // How far back the tables of a swap reach
+        active_longest = longest_1;
+        if (active == BANK_2) begin
+            active_longest = longest_2;
+        end
+        if (active == BANK_ROM) begin
+            active_longest = MACHINE_LONGEST;
+        end
+        swap_longest = longest_1;
+        if (swap_bank == BANK_2) begin
+            swap_longest = longest_2;
+        end
+        if (swap_bank == BANK_ROM) begin
+            swap_longest = MACHINE_LONGEST;
+        end
+        if (swap_taken) begin
+            reach_q_next = active_longest;
+            if (swap_longest > active_longest) begin
+                reach_q_next = swap_longest;
+            end
         end
 
         // Refusals, set over clear
@@ -177,19 +238,27 @@ module xy_stage_y_tap_banks (
             refused_q_next = 1'd1;
         end
 
-        // Reading: the word of the active table
+        // Reading: the active table, or the old one
+        read_bank = active;
+        if (old) begin
+            read_bank = previous;
+        end
+        taps = taps_1;
         read_address = {1'd0, tap};
-        if (active == BANK_2) begin
+        if (read_bank == BANK_2) begin
+            taps = taps_2;
             read_address = {1'd0, tap} | UPPER_HALF;
         end
-        word = loaded_taps_read_data;
-        taps = taps_1;
-        if (active == BANK_2) begin
-            taps = taps_2;
-        end
-        if (active == BANK_ROM) begin
-            word = machine_taps_data;
+        if (read_bank == BANK_ROM) begin
             taps = MACHINE_COUNT;
+        end
+        word_bank = active;
+        if (old_q) begin
+            word_bank = previous;
+        end
+        word = loaded_taps_read_data;
+        if (word_bank == BANK_ROM) begin
+            word = machine_taps_data;
         end
     end
 
@@ -199,18 +268,28 @@ module xy_stage_y_tap_banks (
             taps_2 <= 7'd0;
             sum_1 <= 24'sd0;
             sum_2 <= 24'sd0;
+            longest_1 <= 7'd0;
+            longest_2 <= 7'd0;
             active <= 2'd0;
+            previous <= 2'd0;
             upcoming <= 2'd0;
             pending <= 1'd0;
+            reach_q <= 7'd0;
+            old_q <= 1'd0;
             refused_q <= 1'd0;
         end else begin
             taps_1 <= taps_1_next;
             taps_2 <= taps_2_next;
             sum_1 <= sum_1_next;
             sum_2 <= sum_2_next;
+            longest_1 <= longest_1_next;
+            longest_2 <= longest_2_next;
             active <= active_next;
+            previous <= previous_next;
             upcoming <= upcoming_next;
             pending <= pending_next;
+            reach_q <= reach_q_next;
+            old_q <= old;
             refused_q <= refused_q_next;
         end
     end
@@ -220,9 +299,14 @@ module xy_stage_y_tap_banks (
         taps_2 = 7'd0;
         sum_1 = 24'sd0;
         sum_2 = 24'sd0;
+        longest_1 = 7'd0;
+        longest_2 = 7'd0;
         active = 2'd0;
+        previous = 2'd0;
         upcoming = 2'd0;
         pending = 1'd0;
+        reach_q = 7'd0;
+        old_q = 1'd0;
         refused_q = 1'd0;
     end
 endmodule

@@ -1,8 +1,9 @@
 //! The three tap tables, how one is loaded, and when one becomes active: what the hardware's `tap_banks` does.
 
-use super::Inputs;
 use super::config::ShaperConfig;
 use super::memory::Arbitrary;
+use super::ports::{Inputs, swap_how};
+use super::tables::Tables;
 use super::wrap;
 use crate::taps::{COEFFICIENT_BITS, Tap};
 
@@ -18,6 +19,24 @@ struct LoadableBank {
     sum: i64,
 }
 
+/// A swap that was taken: it waits, and then may hand over.
+#[derive(Clone, Copy)]
+struct Change {
+    bank: u8,
+    how: u8,
+    /// Longest delay of both tables, in samples.
+    reach: u32,
+    state: State,
+}
+
+#[derive(Clone, Copy)]
+enum State {
+    /// For a strobe that lets it take effect.
+    Waits,
+    /// From the table of `before`, of which the last sample lies `samples` back.
+    HandsOver { before: u8, samples: u32 },
+}
+
 /// Bank 0 (the machine's table, ROM) and banks 1 and 2 (RAM); which is active, which comes next.
 pub(super) struct Banks {
     rom: Vec<Tap>,
@@ -25,8 +44,9 @@ pub(super) struct Banks {
     unity: i64,
     forbidden_delay: u32,
     active: u8,
-    pending: Option<u8>,
+    change: Option<Change>,
     refused: bool,
+    has_swap_how: bool,
 }
 
 impl Banks {
@@ -48,14 +68,27 @@ impl Banks {
             unity: 1 << config.coefficient_fraction(),
             forbidden_delay,
             active: 0,
-            pending: None,
+            change: None,
             refused: false,
+            has_swap_how: config.motion().is_some(),
         }
     }
 
-    /// The taps of the active table.
-    pub(super) fn active_taps(&self) -> &[Tap] {
-        match self.index_of(self.active) {
+    /// What shapes the last sample.
+    pub(super) fn tables(&self) -> Tables<'_> {
+        let handover = match self.change.map(|change| change.state) {
+            Some(State::HandsOver { before, samples }) => Some((self.taps(before), samples)),
+            _ => None,
+        };
+        Tables {
+            active: self.taps(self.active),
+            handover,
+            unity: self.unity,
+        }
+    }
+
+    fn taps(&self, bank: u8) -> &[Tap] {
+        match self.index_of(bank) {
             Some(bank) => &self.loadable[bank].taps[..self.loadable[bank].loaded],
             None => &self.rom,
         }
@@ -65,8 +98,9 @@ impl Banks {
         self.active
     }
 
+    /// Whether a swap waits or hands over.
     pub(super) fn pending(&self) -> bool {
-        self.pending.is_some()
+        self.change.is_some()
     }
 
     pub(super) fn refused(&self) -> bool {
@@ -80,22 +114,32 @@ impl Banks {
             bank.sum = 0;
         }
         self.active = 0;
-        self.pending = None;
+        self.change = None;
         self.refused = false;
     }
 
     /// One clock. A write and a swap are judged by the state before the clock.
-    pub(super) fn step(&mut self, inputs: &Inputs) {
+    ///
+    /// `still` are the samples since the position command changed, a start of this clock included, its strobe not.
+    pub(super) fn step(&mut self, inputs: &Inputs, still: u32) {
         let swap_bank = inputs.swap_bank & 3;
-        let swap_taken = inputs.swap && self.takes_swap(swap_bank);
+        let how = if self.has_swap_how {
+            inputs.swap_how & 3
+        } else {
+            swap_how::AT_ONCE
+        };
+        let swap_taken = inputs.swap && how <= swap_how::WHEN_SETTLED && self.takes_swap(swap_bank);
         let write_taken = inputs.tap_write && self.take_tap(inputs);
-        if inputs.strobe
-            && let Some(bank) = self.pending.take()
-        {
-            self.active = bank;
+        if let Some(change) = self.change {
+            self.change = self.advance(change, inputs, still);
         }
         if swap_taken {
-            self.pending = Some(swap_bank);
+            self.change = Some(Change {
+                bank: swap_bank,
+                how,
+                reach: self.longest_delay(self.active).max(self.longest_delay(swap_bank)),
+                state: State::Waits,
+            });
         }
         if inputs.clear_flags {
             self.refused = false;
@@ -105,18 +149,41 @@ impl Banks {
         }
     }
 
+    /// What becomes of a change in a clock; nothing once it is over.
+    fn advance(&mut self, change: Change, inputs: &Inputs, still: u32) -> Option<Change> {
+        let hands_over = |before, samples| {
+            // After a start the history is constant, and shaped by either table the same.
+            (samples <= change.reach && !inputs.start).then_some(Change {
+                state: State::HandsOver { before, samples },
+                ..change
+            })
+        };
+        match change.state {
+            State::HandsOver { before, samples } => hands_over(before, samples + u32::from(inputs.strobe)),
+            State::Waits if inputs.strobe && (change.how != swap_how::WHEN_SETTLED || still >= change.reach) => {
+                let before = std::mem::replace(&mut self.active, change.bank);
+                hands_over(before, 1).filter(|_| change.how == swap_how::HANDOVER)
+            }
+            State::Waits => Some(change),
+        }
+    }
+
+    fn longest_delay(&self, bank: u8) -> u32 {
+        self.taps(bank).iter().map(|tap| tap.delay_samples).max().unwrap_or(0)
+    }
+
     /// Only a table that sums to one is ever made active: constant in, constant out.
     fn takes_swap(&self, bank: u8) -> bool {
         let complete = match self.index_of(bank) {
             Some(loadable) => self.loadable[loadable].sum == self.unity,
             None => bank == 0,
         };
-        complete && self.pending.is_none()
+        complete && self.change.is_none()
     }
 
     fn take_tap(&mut self, inputs: &Inputs) -> bool {
         let delay_samples = u32::from(inputs.tap_delay) & self.forbidden_delay;
-        let idle = self.pending.is_none() && !inputs.swap && inputs.tap_bank & 3 != self.active;
+        let idle = self.change.is_none() && !inputs.swap && inputs.tap_bank & 3 != self.active;
         let Some(bank) = self.index_of(inputs.tap_bank & 3) else {
             return false;
         };

@@ -8,12 +8,30 @@ pub const WORD_BITS: [u32; 3] = [16, 24, 32];
 pub const RING_ADDRESS_BITS: [u32; 8] = [6, 7, 8, 9, 10, 11, 12, 14];
 /// Table sizes that the shaper is built for, as bits of index: 64 and 256 taps. (16 would take the same memory blocks.)
 pub const TAP_INDEX_BITS: [u32; 2] = [6, 8];
+/// Word widths that a shaper for motion is built for.
+pub const MOTION_WORD_BITS: [u32; 2] = [24, 32];
+/// Most channels of a shaper: position, velocity, acceleration.
+pub const CHANNELS_MAX: usize = 3;
+/// Largest ring of more than one channel, as bits of address.
+const SHARED_RING_ADDRESS_BITS_MAX: u32 = 12;
 /// Clocks of a pass beyond one per tap: table, ring, multiplier (two), accumulator, rounding.
 pub const PASS_OVERHEAD_CLOCKS: u32 = 6;
 
 /// Clocks from a strobe to its `valid`, and the smallest distance of two strobes without `overrun`.
-pub fn pass_clocks(taps: u32) -> u32 {
-    taps.saturating_add(PASS_OVERHEAD_CLOCKS)
+///
+/// `products` are the taps of the table; for [`Motion`] see [`ShaperConfig::pass_clocks`].
+pub fn pass_clocks(products: u32) -> u32 {
+    products.saturating_add(PASS_OVERHEAD_CLOCKS)
+}
+
+/// What a shaper for commands in motion has beyond the plain one: channels that share the table and the multiplier, a
+/// `swap_how` that can hand over while moving, and positions that wrap.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Motion {
+    /// 1 to 3: position, velocity, acceleration.
+    pub channels: u32,
+    /// A rotary axis: the position is counted modulo 2^W and never saturates.
+    pub modulo: bool,
 }
 
 /// What is fixed when a shaper is built: sizes from the lists above, and the table in its ROM (bank 0).
@@ -23,6 +41,9 @@ pub struct ShaperConfig {
     ring_address_bits: u32,
     tap_index_bits: u32,
     table: TapTable,
+    /// Of the machine's table, and of those to load as far as they were announced.
+    largest_taps: u32,
+    motion: Option<Motion>,
 }
 
 /// Why no shaper can be built.
@@ -50,6 +71,25 @@ pub enum ShaperConfigError {
         /// Taps possible.
         allowed: u32,
     },
+    /// No such number of channels.
+    #[error("{0} channels: a shaper for motion has 1 (position), 2 (and velocity) or 3 (and acceleration)")]
+    Channels(u32),
+    /// A word width that is not in [`MOTION_WORD_BITS`].
+    #[error("command words of {0} bits: a shaper for motion is built for 24 or 32")]
+    MotionWordBits(u32),
+    /// A ring that only one channel can have.
+    #[error(
+        "a delay of {found} samples with {channels} channels: more than one reach back {allowed}; \
+         choose one channel, a lower sample rate or a shorter shaper"
+    )]
+    SharedDelay {
+        /// Longest delay that the ring was sized for.
+        found: u32,
+        /// Channels.
+        channels: u32,
+        /// Longest delay possible with so many.
+        allowed: u32,
+    },
 }
 
 /// A pass over the table takes longer than a sample lasts.
@@ -59,7 +99,7 @@ pub enum ShaperConfigError {
      choose a lower sample rate, a faster clock or fewer taps"
 )]
 pub struct PassError {
-    /// Taps of the table.
+    /// Taps of the table, times channels, and in a handover those of two tables.
     pub taps: u32,
     /// Clocks that a pass takes.
     pub needed: u32,
@@ -83,8 +123,27 @@ impl ShaperConfig {
             word_bits,
             ring_address_bits,
             tap_index_bits,
+            largest_taps: table.taps().len() as u32,
             table,
+            motion: None,
         })
+    }
+
+    /// The same shaper for commands in motion.
+    ///
+    /// # Errors
+    /// [`ShaperConfigError`] for other than 1 to 3 channels, a width that is not in [`MOTION_WORD_BITS`], and a ring above
+    /// 2^12 samples with more than one channel.
+    pub fn for_motion(mut self, motion: Motion) -> Result<Self, ShaperConfigError> {
+        if !(1..=CHANNELS_MAX as u32).contains(&motion.channels) {
+            return Err(ShaperConfigError::Channels(motion.channels));
+        }
+        if !MOTION_WORD_BITS.contains(&self.word_bits) {
+            return Err(ShaperConfigError::MotionWordBits(self.word_bits));
+        }
+        self.motion = Some(motion);
+        self.check_shared_ring(self.table.longest_delay_samples())?;
+        Ok(self)
     }
 
     /// The same shaper with room for tables that are loaded later: delays up to `delay_samples`, up to `taps` taps.
@@ -94,7 +153,42 @@ impl ShaperConfig {
     pub fn with_room_for(mut self, delay_samples: u32, taps: usize) -> Result<Self, ShaperConfigError> {
         self.ring_address_bits = self.ring_address_bits.max(ring_for(delay_samples)?);
         self.tap_index_bits = self.tap_index_bits.max(index_for(taps)?);
+        self.largest_taps = self.largest_taps.max(taps as u32);
+        self.check_shared_ring(delay_samples)?;
         Ok(self)
+    }
+
+    fn check_shared_ring(&self, delay_samples: u32) -> Result<(), ShaperConfigError> {
+        let allowed = (1 << SHARED_RING_ADDRESS_BITS_MAX) - 2;
+        match self.channels() as u32 {
+            2.. if self.ring_address_bits > SHARED_RING_ADDRESS_BITS_MAX => Err(ShaperConfigError::SharedDelay {
+                found: delay_samples.max(allowed + 1),
+                channels: self.channels() as u32,
+                allowed,
+            }),
+            _ => Ok(()),
+        }
+    }
+
+    /// What it has for commands in motion; nothing in the plain shaper.
+    pub fn motion(&self) -> Option<Motion> {
+        self.motion
+    }
+
+    /// Channels, 1 to 3.
+    pub fn channels(&self) -> usize {
+        self.motion.map_or(1, |motion| motion.channels as usize)
+    }
+
+    /// Whether the arithmetic of `channel` is modulo 2^W: that of the position of a modulo axis.
+    pub(crate) fn wraps(&self, channel: usize) -> bool {
+        channel == 0 && self.motion.is_some_and(|motion| motion.modulo)
+    }
+
+    /// Input and output ports.
+    pub(crate) fn port_counts(&self) -> (usize, usize) {
+        let how = usize::from(self.motion.is_some());
+        (11 + how + self.channels(), 7 + self.channels())
     }
 
     /// W: width of a command word in bits.
@@ -142,13 +236,28 @@ impl ShaperConfig {
         -self.word_min() - 1
     }
 
-    /// Whether a pass over the machine's table ends before the next sample.
+    /// Products of the longest pass: over the machine's table; for motion over all channels of a handover between two
+    /// tables, each as long as the longest that is in the ROM or for which [`Self::with_room_for`] made room.
+    pub fn most_products(&self) -> u32 {
+        match self.motion {
+            None => self.table.taps().len() as u32,
+            Some(motion) => 2 * motion.channels * self.largest_taps + 1,
+        }
+    }
+
+    /// Clocks from a strobe to its `valid`, and the smallest distance of two strobes without `overrun`, where a pass has so
+    /// many products: for motion one more than [`pass_clocks`], because the channels wait for each other.
+    pub fn pass_clocks(&self, products: u32) -> u32 {
+        pass_clocks(products).saturating_add(u32::from(self.motion.is_some()))
+    }
+
+    /// Whether the longest pass, that over [`Self::most_products`], ends before the next sample.
     ///
     /// # Errors
     /// [`PassError`] with both clock counts.
     pub fn fits(&self, clocks_per_sample: u64) -> Result<(), PassError> {
-        let taps = self.table.taps().len() as u32;
-        let needed = pass_clocks(taps);
+        let taps = self.most_products();
+        let needed = self.pass_clocks(taps);
         if u64::from(needed) > clocks_per_sample {
             return Err(PassError {
                 taps,

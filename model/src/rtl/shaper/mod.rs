@@ -7,6 +7,8 @@
 //! | [`ShaperConfig`] | what is fixed when a shaper is built: word width, sizes of its memories, the table in its ROM |
 //! | [`Shaper`] | cycle accurate at the ports, one [`Shaper::step`] per clock, from typed [`Inputs`] to typed [`Outputs`] |
 //! | [`SampleShaper`] | the same samples without the clocks: one [`SampleShaper::push`] per sample |
+//! | [`Motion`] | what a shaper for commands in motion has more: channels that share a table, handover, modulo axes |
+//! | [`MotionShaper`] | its samples without the clocks |
 //!
 //! ```text
 //! clock     0   1   2   3         N+5 N+6 N+7
@@ -18,7 +20,8 @@
 //! ```
 //!
 //! History before the first sample since a start is the start value, so a constant command gives a constant output.
-//! A running sum never overflows: 2^T products of W + 18 bits, and half, fit in W + 18 + T ≤ 58 bits.
+//! A running sum never overflows: 2^T products of W + 18 bits, and half, fit in W + 18 + T ≤ 58 bits; those of two
+//! tables in a handover in one bit more.
 //!
 //! ```
 //! use posicast_model::rtl::shaper::{Inputs, SampleShaper, Shaper, ShaperConfig, pass_clocks};
@@ -44,19 +47,41 @@ mod banks;
 mod clocked;
 mod config;
 mod memory;
+mod motion;
+mod ports;
 mod sample;
+mod tables;
 
-pub use clocked::{Inputs, Outputs, Shaper, ports};
+pub use clocked::Shaper;
 pub use config::{
-    PASS_OVERHEAD_CLOCKS, PassError, RING_ADDRESS_BITS, ShaperConfig, ShaperConfigError, TAP_INDEX_BITS, WORD_BITS,
-    pass_clocks,
+    CHANNELS_MAX, MOTION_WORD_BITS, Motion, PASS_OVERHEAD_CLOCKS, PassError, RING_ADDRESS_BITS, ShaperConfig,
+    ShaperConfigError, TAP_INDEX_BITS, WORD_BITS, pass_clocks,
 };
 pub(crate) use memory::Arbitrary;
+pub use motion::MotionShaper;
+pub use ports::{Inputs, Outputs, ports, swap_how};
 pub use sample::{SampleShaper, TableError};
+
+use tables::Tables;
+
+/// The output of a channel, and whether it was clamped; `sample(d)` is the sample that lies `d` samples back.
+///
+/// On a modulo axis the position goes through the table as differences to the newest sample, each wrapped to the word:
+/// the coefficients sum to one, so that `Σ c_i · x_i = Σ c_i · (x_i − x) + 2^F · x`.
+fn finish(config: &ShaperConfig, channel: usize, tables: &Tables<'_>, sample: impl Fn(u32) -> i64) -> (i64, bool) {
+    let (fraction, word_bits) = (config.coefficient_fraction(), config.word_bits());
+    if !config.wraps(channel) {
+        return round_and_saturate(tables.sum(channel, sample), fraction, word_bits);
+    }
+    let newest = sample(0);
+    let sum = tables.sum(channel, |delay| wrap(sample(delay) - newest, word_bits));
+    let rounded = (sum + (newest << fraction) + (1 << (fraction - 1))) >> fraction;
+    (wrap(rounded, word_bits), false)
+}
 
 /// Half is added, `fraction` bits are dropped (an arithmetic shift), the rest is clamped to `word_bits`.
 ///
-/// `sum` is `Σ c_i · x_i`, at most 2^57 in size. The second value says whether it was clamped.
+/// `sum` is `Σ c_i · x_i`, at most 2^59 in size. The second value says whether it was clamped.
 pub(crate) fn round_and_saturate(sum: i64, fraction: u32, word_bits: u32) -> (i64, bool) {
     let rounded = (sum + (1 << (fraction - 1))) >> fraction;
     let largest = (1i64 << (word_bits - 1)) - 1;

@@ -22,7 +22,7 @@ pub enum TableError {
 
 /// The shaper sample by sample: what [`super::Shaper`] gives if its strobes come slowly enough.
 ///
-/// Unlike it, this one fills its ring at a start instead of knowing its age, and so needs no test per tap.
+/// For the plain shaper; [`super::MotionShaper`] has channels and the rest. Unlike the clocked model, this one fills its ring at a start instead of knowing its age, and so needs no test per tap.
 #[derive(Debug, Clone)]
 pub struct SampleShaper {
     config: ShaperConfig,
@@ -69,12 +69,7 @@ impl SampleShaper {
     /// # Errors
     /// [`TableError`] where the shaper that was built cannot hold it; the table stays as it was.
     pub fn swap(&mut self, table: &TapTable) -> Result<(), TableError> {
-        let allowed = self.config.coefficient_fraction();
-        let found = table.coefficient_fraction();
-        if found != allowed {
-            return Err(TableError::Fraction { found, allowed });
-        }
-        self.config.holds(table.taps()).map_err(TableError::Size)?;
+        loadable(&self.config, table)?;
         self.taps = offsets(table);
         Ok(())
     }
@@ -83,6 +78,16 @@ impl SampleShaper {
     pub fn saturated(&self) -> bool {
         self.saturated
     }
+}
+
+/// Whether a shaper of `config` can load `table`.
+pub(super) fn loadable(config: &ShaperConfig, table: &TapTable) -> Result<(), TableError> {
+    let allowed = config.coefficient_fraction();
+    let found = table.coefficient_fraction();
+    if found != allowed {
+        return Err(TableError::Fraction { found, allowed });
+    }
+    config.holds(table.taps()).map_err(TableError::Size)
 }
 
 fn offsets(table: &TapTable) -> Vec<(usize, i64)> {

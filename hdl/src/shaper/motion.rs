@@ -1,0 +1,328 @@
+//! The pass of a shaper for commands in motion: over every channel, and in a handover over both tables.
+//!
+//! ```text
+//! for channel in 0 .. C                          one multiplier, one product per clock
+//!     in a handover: taps of the old table
+//!     taps of the active table
+//!     in a handover, channel 0: −2^F · x[n0]
+//! ```
+//!
+//! A product takes the places of [`super::kernel`]; between the table and the ring stands [`super::handover`]. `since`
+//! is m; a tap of the old table belongs to the increments of delay d ≥ m, one of the new table to those of d < m. Of the
+//! position, any other tap sees `x[n − m]`; of velocity and acceleration it counts as zero.
+//!
+//! So of N products `y` stands N + 7 clocks after the strobe: one more than in the plain shaper, because the channels wait
+//! for each other.
+
+use super::channel_sums::ChannelSums;
+use super::handover::Handover;
+use super::history::History;
+use super::tap_banks::TapBanks;
+use crate::prelude::*;
+use posicast_model::rtl::shaper::ShaperConfig;
+
+/// W word, P = W + 18 product, ACC = P + T + 1 accumulator, A ring address, T index, COUNT = T + 1, SUM = 18 + T and
+/// WORD = 18 + A bits, C channels.
+#[derive(LogicBlock)]
+pub(super) struct MotionShaper<
+    const W: usize,
+    const P: usize,
+    const ACC: usize,
+    const A: usize,
+    const T: usize,
+    const COUNT: usize,
+    const SUM: usize,
+    const WORD: usize,
+    const C: usize,
+> {
+    pub(super) clk: Signal<In, Clock>,
+    pub(super) rst: Signal<In, Bit>,
+    pub(super) strobe: Signal<In, Bit>,
+    pub(super) start: Signal<In, Bit>,
+    pub(super) x: [Signal<In, Signed<W>>; C],
+    pub(super) clear_flags: Signal<In, Bit>,
+    pub(super) tap_write: Signal<In, Bit>,
+    pub(super) tap_bank: Signal<In, Bits<2>>,
+    pub(super) tap_index: Signal<In, Bits<T>>,
+    pub(super) tap_coefficient: Signal<In, Signed<18>>,
+    pub(super) tap_delay: Signal<In, Bits<A>>,
+    pub(super) swap: Signal<In, Bit>,
+    pub(super) swap_bank: Signal<In, Bits<2>>,
+    pub(super) swap_how: Signal<In, Bits<2>>,
+    pub(super) y: [Signal<Out, Signed<W>>; C],
+    pub(super) valid: Signal<Out, Bit>,
+    pub(super) saturated: Signal<Out, Bit>,
+    pub(super) busy: Signal<Out, Bit>,
+    pub(super) overrun: Signal<Out, Bit>,
+    pub(super) swap_pending: Signal<Out, Bit>,
+    pub(super) bank: Signal<Out, Bits<2>>,
+    pub(super) refused: Signal<Out, Bit>,
+
+    banks: TapBanks<A, T, COUNT, SUM, WORD>,
+    handover: Handover<W, A>,
+    history: [History<W, A>; C],
+    sums: ChannelSums<W, P, ACC, C>,
+
+    tap: Dff<Bits<T>>,
+    running: Dff<Bit>,
+    channel: Dff<Bits<2>>,
+    second: Dff<Bit>,
+    correcting: Dff<Bit>,
+    stages: Dff<Bits<4>>,
+    lasts: Dff<Bits<4>>,
+    done: Dff<Bit>,
+    tap_channel: Dff<Bits<2>>,
+    sample_channel: Dff<Bits<2>>,
+    overrun_q: Dff<Bit>,
+
+    tap_number: Signal<Local, Bits<COUNT>>,
+    old: Signal<Local, Bit>,
+    of_position: Signal<Local, Bit>,
+    table_ends: Signal<Local, Bit>,
+    ends: Signal<Local, Bit>,
+    finish: Signal<Local, Bit>,
+
+    first_tap: Constant<Bits<T>>,
+    one_tap: Constant<Bits<T>>,
+    one_more: Constant<Bits<COUNT>>,
+    first_channel: Constant<Bits<2>>,
+    one_channel: Constant<Bits<2>>,
+    last_channel: Constant<Bits<2>>,
+    no_stage: Constant<Bits<4>>,
+    first_stage: Constant<Bits<4>>,
+    unknown_how: Constant<Bits<2>>,
+}
+
+impl<
+    const W: usize,
+    const P: usize,
+    const ACC: usize,
+    const A: usize,
+    const T: usize,
+    const COUNT: usize,
+    const SUM: usize,
+    const WORD: usize,
+    const C: usize,
+> MotionShaper<W, P, ACC, A, T, COUNT, SUM, WORD, C>
+{
+    /// A shaper for `config`, whose sizes must be these.
+    pub(super) fn new(config: &ShaperConfig) -> Self {
+        const { assert!(P == W + 18 && ACC == P + T + 1 && C <= 3) };
+        Self {
+            clk: Signal::default(),
+            rst: Signal::default(),
+            strobe: Signal::default(),
+            start: Signal::default(),
+            x: std::array::from_fn(|_| Signal::default()),
+            clear_flags: Signal::default(),
+            tap_write: Signal::default(),
+            tap_bank: Signal::default(),
+            tap_index: Signal::default(),
+            tap_coefficient: Signal::default(),
+            tap_delay: Signal::default(),
+            swap: Signal::default(),
+            swap_bank: Signal::default(),
+            swap_how: Signal::default(),
+            y: std::array::from_fn(|_| Signal::default()),
+            valid: Signal::default(),
+            saturated: Signal::default(),
+            busy: Signal::default(),
+            overrun: Signal::default(),
+            swap_pending: Signal::default(),
+            bank: Signal::default(),
+            refused: Signal::default(),
+            banks: TapBanks::new(config),
+            handover: Handover::new(config),
+            history: std::array::from_fn(|_| History::default()),
+            sums: ChannelSums::new(config),
+            tap: Dff::default(),
+            running: Dff::default(),
+            channel: Dff::default(),
+            second: Dff::default(),
+            correcting: Dff::default(),
+            stages: Dff::default(),
+            lasts: Dff::default(),
+            done: Dff::default(),
+            tap_channel: Dff::default(),
+            sample_channel: Dff::default(),
+            overrun_q: Dff::default(),
+            tap_number: Signal::default(),
+            old: Signal::default(),
+            of_position: Signal::default(),
+            table_ends: Signal::default(),
+            ends: Signal::default(),
+            finish: Signal::default(),
+            first_tap: Constant::new(from_u64(0)),
+            one_tap: Constant::new(from_u64(1)),
+            one_more: Constant::new(from_u64(1)),
+            first_channel: Constant::new(from_u64(0)),
+            one_channel: Constant::new(from_u64(1)),
+            last_channel: Constant::new(from_u64(C as u64 - 1)),
+            no_stage: Constant::new(from_u64(0)),
+            first_stage: Constant::new(from_u64(1)),
+            unknown_how: Constant::new(from_u64(3)),
+        }
+    }
+}
+
+impl<
+    const W: usize,
+    const P: usize,
+    const ACC: usize,
+    const A: usize,
+    const T: usize,
+    const COUNT: usize,
+    const SUM: usize,
+    const WORD: usize,
+    const C: usize,
+> Logic for MotionShaper<W, P, ACC, A, T, COUNT, SUM, WORD, C>
+{
+    #[hdl_gen]
+    fn update(&mut self) {
+        comment!("@module shaper");
+        dff_setup!(
+            self,
+            clk,
+            tap,
+            running,
+            channel,
+            second,
+            correcting,
+            stages,
+            lasts,
+            done,
+            tap_channel,
+            sample_channel,
+            overrun_q
+        );
+
+        comment!("The tables: the word of tap, a clock later");
+        self.of_position.next = self.channel.q.val() == self.first_channel.val();
+        self.old.next = self.handover.active.val() & !self.second.q.val();
+        self.banks.clk.next = self.clk.val();
+        self.banks.rst.next = self.rst.val();
+        self.banks.strobe.next = self.strobe.val();
+        self.banks.clear_flags.next = self.clear_flags.val();
+        self.banks.tap_write.next = self.tap_write.val();
+        self.banks.tap_bank.next = self.tap_bank.val();
+        self.banks.tap_index.next = self.tap_index.val();
+        self.banks.tap_coefficient.next = self.tap_coefficient.val();
+        self.banks.tap_delay.next = self.tap_delay.val();
+        self.banks.swap.next = self.swap.val();
+        self.banks.swap_bank.next = self.swap_bank.val();
+        self.banks.known.next = self.swap_how.val() != self.unknown_how.val();
+        self.banks.take.next = self.handover.take.val();
+        self.banks.locked.next = self.handover.active.val();
+        self.banks.old.next = self.old.val();
+        self.banks.tap.next = self.tap.q.val();
+
+        comment!("When a swap takes effect");
+        self.handover.clk.next = self.clk.val();
+        self.handover.rst.next = self.rst.val();
+        self.handover.strobe.next = self.strobe.val();
+        self.handover.start.next = self.start.val();
+        self.handover.position.next = self.x[0].val();
+        self.handover.accepted.next = self.banks.accepted.val();
+        self.handover.swap_how.next = self.swap_how.val();
+        self.handover.swap_pending.next = self.banks.swap_pending.val();
+        self.handover.reach.next = self.banks.reach.val();
+
+        comment!("What a handover makes of a tap");
+        self.handover.old.next = self.old.val();
+        self.handover.correcting.next = self.correcting.q.val();
+        self.handover.of_position.next = self.of_position.val();
+        self.handover.tap_coefficient.next = self.banks.coefficient.val();
+        self.handover.tap_delay.next = self.banks.delay.val();
+        self.tap_channel.d.next = self.channel.q.val();
+        self.sample_channel.d.next = self.tap_channel.q.val();
+
+        comment!("The samples: those at delay, a clock later");
+        for i in 0..C {
+            self.history[i].clk.next = self.clk.val();
+            self.history[i].rst.next = self.rst.val();
+            self.history[i].strobe.next = self.strobe.val();
+            self.history[i].start.next = self.start.val();
+            self.history[i].x.next = self.x[i].val();
+            self.history[i].delay.next = self.handover.delay.val();
+            self.sums.sample[i].next = self.history[i].sample.val();
+            self.sums.x[i].next = self.x[i].val();
+        }
+
+        comment!("The sums: a pass that is cut off leaves y");
+        self.finish.next = self.done.q.val() & !self.start.val() & !self.strobe.val();
+        self.sums.clk.next = self.clk.val();
+        self.sums.rst.next = self.rst.val();
+        self.sums.begin_pass.next = self.strobe.val();
+        self.sums.coefficient.next = self.handover.coefficient.val();
+        self.sums.sample_channel.next = self.sample_channel.q.val();
+        self.sums.newest.next = self.handover.newest.val();
+        self.sums.add.next = self.stages.q.val().get_bit(3);
+        self.sums.finish.next = self.finish.val();
+        self.sums.start.next = self.start.val();
+        self.sums.clear_flags.next = self.clear_flags.val();
+
+        comment!("One product per clock, channel by channel");
+        self.tap_number.next = bit_cast::<COUNT, T>(self.tap.q.val()) + self.one_more.val();
+        self.table_ends.next = self.tap_number.val() == self.banks.taps.val();
+        self.ends.next = false;
+        self.stages.d.next = self.stages.q.val() << 1;
+        self.lasts.d.next = self.lasts.q.val() << 1;
+        if self.running.q.val() {
+            self.stages.d.next = (self.stages.q.val() << 1) | self.first_stage.val();
+            self.tap.d.next = self.tap.q.val() + self.one_tap.val();
+            if self.correcting.q.val() {
+                self.ends.next = true;
+            } else if self.table_ends.val() {
+                if self.old.val() {
+                    self.second.d.next = true;
+                    self.tap.d.next = self.first_tap.val();
+                } else if self.handover.active.val() & self.of_position.val() {
+                    self.correcting.d.next = true;
+                } else {
+                    self.ends.next = true;
+                }
+            }
+        }
+        if self.ends.val() {
+            self.lasts.d.next = (self.lasts.q.val() << 1) | self.first_stage.val();
+            self.tap.d.next = self.first_tap.val();
+            self.second.d.next = false;
+            self.correcting.d.next = false;
+            self.channel.d.next = self.channel.q.val() + self.one_channel.val();
+            if self.channel.q.val() == self.last_channel.val() {
+                self.running.d.next = false;
+            }
+        }
+        self.done.d.next = self.lasts.q.val().get_bit(3);
+
+        comment!("A start or a strobe cuts off what runs");
+        if self.start.val() | self.strobe.val() {
+            self.running.d.next = self.strobe.val();
+            self.tap.d.next = self.first_tap.val();
+            self.channel.d.next = self.first_channel.val();
+            self.second.d.next = false;
+            self.correcting.d.next = false;
+            self.stages.d.next = self.no_stage.val();
+            self.lasts.d.next = self.no_stage.val();
+            self.done.d.next = false;
+        }
+        if self.clear_flags.val() {
+            self.overrun_q.d.next = false;
+        }
+        if self.strobe.val() & self.sums.busy.val() & !self.start.val() {
+            self.overrun_q.d.next = true;
+        }
+
+        comment!("Outputs");
+        for i in 0..C {
+            self.y[i].next = self.sums.y[i].val();
+        }
+        self.valid.next = self.sums.valid.val();
+        self.saturated.next = self.sums.saturated.val();
+        self.busy.next = self.sums.busy.val();
+        self.overrun.next = self.overrun_q.q.val();
+        self.swap_pending.next = self.banks.swap_pending.val() | self.handover.active.val();
+        self.bank.next = self.banks.bank.val();
+        self.refused.next = self.banks.refused.val();
+    }
+}

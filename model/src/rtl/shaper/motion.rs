@@ -1,0 +1,131 @@
+//! The samples of a shaper for commands in motion, without the clocks.
+
+use super::config::{CHANNELS_MAX, ShaperConfig};
+use super::finish;
+use super::ports::swap_how;
+use super::sample::{TableError, loadable};
+use super::tables::Tables;
+use super::wrap;
+use crate::taps::TapTable;
+
+/// A swap on its way.
+#[derive(Debug, Clone)]
+struct Change {
+    table: TapTable,
+    how: u8,
+}
+
+/// The shaper sample by sample, with its channels, handover and modulo axis: what [`super::Shaper`] gives if its strobes
+/// come slowly enough.
+///
+/// Unlike it, this one fills its rings at a start instead of knowing their age, and never ends a handover: it keeps the old
+/// table for as long as one of its taps still reaches behind the change.
+#[derive(Debug, Clone)]
+pub struct MotionShaper {
+    config: ShaperConfig,
+    rings: Vec<Vec<i64>>,
+    head: usize,
+    active: TapTable,
+    before: Option<(TapTable, u32)>,
+    change: Option<Change>,
+    saturated: bool,
+}
+
+impl MotionShaper {
+    /// A shaper after reset: start values 0, the machine's table active.
+    pub fn new(config: &ShaperConfig) -> Self {
+        Self {
+            rings: vec![vec![0; 1 << config.ring_address_bits()]; config.channels()],
+            head: 0,
+            active: config.table().clone(),
+            before: None,
+            change: None,
+            saturated: false,
+            config: config.clone(),
+        }
+    }
+
+    /// Begins anew: all samples before now count as `words` (wrapped to the word width). Gives what the outputs then are.
+    pub fn start(&mut self, words: [i64; CHANNELS_MAX]) -> [i64; CHANNELS_MAX] {
+        let mut outputs = [0; CHANNELS_MAX];
+        for ((ring, word), output) in self.rings.iter_mut().zip(words).zip(&mut outputs) {
+            *output = wrap(word, self.config.word_bits());
+            ring.fill(*output);
+        }
+        self.before = None;
+        outputs
+    }
+
+    /// One sample of every channel in, one out: position, velocity, acceleration; those that there are not are 0.
+    pub fn push(&mut self, words: [i64; CHANNELS_MAX]) -> [i64; CHANNELS_MAX] {
+        self.change_table();
+        let mask = (1usize << self.config.ring_address_bits()) - 1;
+        self.head = (self.head + 1) & mask;
+        let mut outputs = [0; CHANNELS_MAX];
+        let tables = Tables {
+            active: self.active.taps(),
+            handover: self.before.as_ref().map(|(table, since)| (table.taps(), *since)),
+            unity: 1 << self.config.coefficient_fraction(),
+        };
+        for (channel, ring) in self.rings.iter_mut().enumerate() {
+            ring[self.head] = wrap(words[channel], self.config.word_bits());
+            let sample = |delay: u32| ring[self.head.wrapping_sub(delay as usize) & mask];
+            let (y, clamped) = finish(&self.config, channel, &tables, sample);
+            outputs[channel] = y;
+            self.saturated |= clamped;
+        }
+        outputs
+    }
+
+    /// Makes another table active, as `how` (one of [`swap_how`], others count as at once) says. One that was still on its
+    /// way is forgotten, a handover cut short: the hardware refuses that, see [`Self::changes`].
+    ///
+    /// # Errors
+    /// [`TableError`] where the shaper that was built cannot hold it; the table stays as it was.
+    pub fn swap(&mut self, table: &TapTable, how: u8) -> Result<(), TableError> {
+        loadable(&self.config, table)?;
+        self.change = Some(Change {
+            table: table.clone(),
+            how,
+        });
+        Ok(())
+    }
+
+    /// Whether a swap waits or hands over: while it does, the hardware refuses the next.
+    pub fn changes(&self) -> bool {
+        self.change.is_some() || self.before.is_some()
+    }
+
+    /// Whether any sample since [`Self::new`] was clamped.
+    pub fn saturated(&self) -> bool {
+        self.saturated
+    }
+
+    fn change_table(&mut self) {
+        if let Some((before, since)) = self.before.take() {
+            let reach = before.longest_delay_samples().max(self.active.longest_delay_samples());
+            self.before = (since < reach).then_some((before, since + 1));
+        }
+        let Some(change) = self.change.take() else {
+            return;
+        };
+        let reach = self
+            .active
+            .longest_delay_samples()
+            .max(change.table.longest_delay_samples());
+        if change.how == swap_how::WHEN_SETTLED && !self.still_for(reach) {
+            self.change = Some(change);
+            return;
+        }
+        let before = std::mem::replace(&mut self.active, change.table);
+        self.before = (change.how == swap_how::HANDOVER && reach > 0).then_some((before, 1));
+    }
+
+    /// Whether the last sample of the position and the `samples` before it are equal.
+    fn still_for(&self, samples: u32) -> bool {
+        let ring = &self.rings[0];
+        let mask = ring.len() - 1;
+        let back = |delay: u32| ring[self.head.wrapping_sub(delay as usize) & mask];
+        (1..=samples).all(|delay| back(delay) == back(0))
+    }
+}

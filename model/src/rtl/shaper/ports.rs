@@ -1,0 +1,227 @@
+//! The shaper's ports: typed, and as the raw bit patterns of lock step.
+
+use super::config::ShaperConfig;
+use super::wrap;
+use crate::rtl::{Direction, Port};
+use crate::taps::COEFFICIENT_BITS;
+
+/// `swap_how`: when a swap takes effect. 3 is refused.
+pub mod swap_how {
+    /// From the next sample on, for the whole history: a jump if the command moves.
+    pub const AT_ONCE: u8 = 0;
+    /// From the next sample on, each increment of the command through exactly one of the tables: no jump.
+    pub const HANDOVER: u8 = 1;
+    /// At the first sample before which the position command stood still for the longest delay of both tables: no jump.
+    pub const WHEN_SETTLED: u8 = 2;
+}
+
+/// The input ports. Bits above a port's width are ignored, and so are ports that the configuration does not have.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Inputs {
+    /// Synchronous reset.
+    pub rst: bool,
+    /// One clock: `x` is a new sample.
+    pub strobe: bool,
+    /// One clock: begin anew, all samples before now count as `x`.
+    pub start: bool,
+    /// Command word of channel 0, W bits: the position.
+    pub x: i64,
+    /// Command words of channels 1 and 2, W bits: velocity and acceleration.
+    pub x_rates: [i64; 2],
+    /// Clears `saturated`, `overrun`, `refused`.
+    pub clear_flags: bool,
+    /// One clock: a tap for a loadable bank.
+    pub tap_write: bool,
+    /// The bank it is for, 1 or 2.
+    pub tap_bank: u8,
+    /// Its index, T bits: 0 begins a table, then one after the other.
+    pub tap_index: u16,
+    /// Its coefficient, 18 bits.
+    pub tap_coefficient: i32,
+    /// Its delay in samples, A bits, not all ones.
+    pub tap_delay: u16,
+    /// One clock: make `swap_bank` active, at the next strobe or as `swap_how` says.
+    pub swap: bool,
+    /// The bank to make active, 0..=2.
+    pub swap_bank: u8,
+    /// When the swap takes effect: see [`swap_how`].
+    pub swap_how: u8,
+}
+
+/// The output ports, all of them registers.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Outputs {
+    /// Shaped command of channel 0, W bits; holds between samples.
+    pub y: i64,
+    /// Shaped commands of channels 1 and 2, new in the same clock; 0 where there is no such channel.
+    pub y_rates: [i64; 2],
+    /// One clock: the outputs of all channels are new.
+    pub valid: bool,
+    /// Sticky: some output was clamped.
+    pub saturated: bool,
+    /// A pass runs.
+    pub busy: bool,
+    /// Sticky: a strobe came while a pass ran.
+    pub overrun: bool,
+    /// A swap waits, or hands over.
+    pub swap_pending: bool,
+    /// The active bank.
+    pub bank: u8,
+    /// Sticky: a write or a swap was refused.
+    pub refused: bool,
+}
+
+/// The ports of a shaper in the order of the Verilog's port list, without `clk`.
+///
+/// The plain shaper's words are `x` and `y`; those of a shaper for [motion](super::Motion) are `x_0`, `y_0` and so on, one
+/// per channel, and it has `swap_how`.
+pub fn ports(config: &ShaperConfig) -> Vec<Port> {
+    use Direction::{Input, Output};
+    let port = |name: &str, direction, width, signed| Port {
+        name: name.to_owned(),
+        direction,
+        width,
+        signed,
+    };
+    let word = config.word_bits();
+    let words = |name: &str, direction| match config.motion() {
+        None => vec![port(name, direction, word, true)],
+        Some(motion) => (0..motion.channels)
+            .map(|channel| port(&format!("{name}_{channel}"), direction, word, true))
+            .collect(),
+    };
+    let how = config.motion().map(|_| port("swap_how", Input, 2, false));
+    [
+        vec![
+            port("rst", Input, 1, false),
+            port("strobe", Input, 1, false),
+            port("start", Input, 1, false),
+        ],
+        words("x", Input),
+        vec![
+            port("clear_flags", Input, 1, false),
+            port("tap_write", Input, 1, false),
+            port("tap_bank", Input, 2, false),
+            port("tap_index", Input, config.tap_index_bits(), false),
+            port("tap_coefficient", Input, COEFFICIENT_BITS, true),
+            port("tap_delay", Input, config.ring_address_bits(), false),
+            port("swap", Input, 1, false),
+            port("swap_bank", Input, 2, false),
+        ],
+        how.into_iter().collect(),
+        words("y", Output),
+        vec![
+            port("valid", Output, 1, false),
+            port("saturated", Output, 1, false),
+            port("busy", Output, 1, false),
+            port("overrun", Output, 1, false),
+            port("swap_pending", Output, 1, false),
+            port("bank", Output, 2, false),
+            port("refused", Output, 1, false),
+        ],
+    ]
+    .concat()
+}
+
+impl Inputs {
+    /// From raw bit patterns, one per input port in port order.
+    pub fn from_raw(raw: &[u64], config: &ShaperConfig) -> Self {
+        let mut values = raw.iter().copied();
+        let mut next = || values.next().unwrap_or_default();
+        let mut inputs = Self {
+            rst: next() & 1 != 0,
+            strobe: next() & 1 != 0,
+            start: next() & 1 != 0,
+            x: next() as i64,
+            ..Self::default()
+        };
+        for word in inputs.x_rates.iter_mut().take(config.channels() - 1) {
+            *word = next() as i64;
+        }
+        Self {
+            clear_flags: next() & 1 != 0,
+            tap_write: next() & 1 != 0,
+            tap_bank: next() as u8,
+            tap_index: next() as u16,
+            tap_coefficient: next() as i32,
+            tap_delay: next() as u16,
+            swap: next() & 1 != 0,
+            swap_bank: next() as u8,
+            swap_how: config.motion().map_or(0, |_| next() as u8),
+            ..inputs
+        }
+    }
+
+    /// As raw bit patterns, one per input port in port order, each cut to its port's width.
+    pub fn to_raw(&self, config: &ShaperConfig) -> Vec<u64> {
+        let cut = |value: i64, bits: u32| value as u64 & ((1 << bits) - 1);
+        let mut raw = vec![
+            u64::from(self.rst),
+            u64::from(self.strobe),
+            u64::from(self.start),
+            cut(self.x, config.word_bits()),
+        ];
+        let rates = self.x_rates.iter().take(config.channels() - 1);
+        raw.extend(rates.map(|word| cut(*word, config.word_bits())));
+        raw.extend([
+            u64::from(self.clear_flags),
+            u64::from(self.tap_write),
+            cut(i64::from(self.tap_bank), 2),
+            cut(i64::from(self.tap_index), config.tap_index_bits()),
+            cut(i64::from(self.tap_coefficient), COEFFICIENT_BITS),
+            cut(i64::from(self.tap_delay), config.ring_address_bits()),
+            u64::from(self.swap),
+            cut(i64::from(self.swap_bank), 2),
+        ]);
+        raw.extend(config.motion().map(|_| cut(i64::from(self.swap_how), 2)));
+        raw
+    }
+}
+
+impl Outputs {
+    /// From raw bit patterns, one per output port in port order.
+    pub fn from_raw(raw: &[u64], config: &ShaperConfig) -> Self {
+        let mut values = raw.iter().copied();
+        let mut next = || values.next().unwrap_or_default();
+        let word = |raw: u64| wrap(raw as i64, config.word_bits());
+        let mut outputs = Self {
+            y: word(next()),
+            ..Self::default()
+        };
+        for rate in outputs.y_rates.iter_mut().take(config.channels() - 1) {
+            *rate = word(next());
+        }
+        Self {
+            valid: next() & 1 != 0,
+            saturated: next() & 1 != 0,
+            busy: next() & 1 != 0,
+            overrun: next() & 1 != 0,
+            swap_pending: next() & 1 != 0,
+            bank: next() as u8 & 3,
+            refused: next() & 1 != 0,
+            ..outputs
+        }
+    }
+
+    /// Writes them as raw bit patterns, one per output port in port order, as far as `raw` goes.
+    pub fn write_raw(&self, config: &ShaperConfig, raw: &mut [u64]) {
+        let mask = (1 << config.word_bits()) - 1;
+        let rates = self.y_rates.iter().take(config.channels() - 1);
+        let words = [self.y]
+            .into_iter()
+            .chain(rates.copied())
+            .map(|word| word as u64 & mask);
+        let flags = [
+            u64::from(self.valid),
+            u64::from(self.saturated),
+            u64::from(self.busy),
+            u64::from(self.overrun),
+            u64::from(self.swap_pending),
+            u64::from(self.bank),
+            u64::from(self.refused),
+        ];
+        for (place, value) in raw.iter_mut().zip(words.chain(flags)) {
+            *place = value;
+        }
+    }
+}
