@@ -163,7 +163,7 @@ impl OddSearch<'_> {
         let (low, high) = interval;
         let first = (frequency * (1.0 - self.tolerance) / high).max(1.0).ceil() as u64 | 1;
         let last = frequency * (1.0 + self.tolerance) / low;
-        for multiple in (first..).step_by(2).take_while(|m| *m as f64 <= last) {
+        for multiple in (first..=last as u64).step_by(2) {
             self.left = self.left.checked_sub(1)?;
             let own = self.within(frequency, multiple);
             let both = (low.max(own.0), high.min(own.1));
