@@ -1,12 +1,14 @@
 //! `posicast design`: impulses, residuals, insensitivity and the tap table of every axis.
 
+mod document;
+mod sensitivity;
+
 use crate::compare;
 use crate::failure::Failure;
 use crate::machine;
 use crate::output::{self, Table, percent};
-use crate::plot::{self, Curve, Panel};
-use posicast_model::analysis::{INSENSITIVITY_LIMIT, sensitivity_curve, tap_impulses};
-use posicast_model::design::periodic::Solution;
+use crate::plot;
+use posicast_model::analysis::INSENSITIVITY_LIMIT;
 use posicast_model::design::ratios::Class;
 use posicast_model::design::{
     AxisTables, ConvolutionFigures, Findings, MachineDesign, ModeFigures, convolution_figures, design_machine,
@@ -14,9 +16,15 @@ use posicast_model::design::{
 use posicast_model::rtl::shaper::ShaperConfig;
 use posicast_model::spec::{Axis, Machine};
 use posicast_testbench::wave::write_text;
-use serde::Serialize;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
+
+pub(crate) use document::Document;
+use document::{
+    AxisDocument, ClassDocument, CrossGainDocument, ImpulseDocument, ModeDocument, QuantisedDocument, ResidualDocument,
+    SolutionDocument, TapDocument,
+};
+pub(crate) use sensitivity::sensitivity_panels;
 
 /// Impulses, residuals, insensitivity and tap table of every axis
 #[derive(clap::Args)]
@@ -361,160 +369,4 @@ fn findings_text(findings: &Findings) -> String {
         }
     }
     text
-}
-
-/// Frequency ratios that the sensitivity curves show.
-const CURVE_RATIOS: (f64, f64) = (0.4, 1.6);
-const CURVE_POINTS: usize = 601;
-
-/// Sensitivity curves, one panel per axis: residual over the mode's true frequency, float and quantised.
-pub(crate) fn sensitivity_panels(machine: &Machine, design: &MachineDesign) -> Vec<Panel> {
-    let panels = machine
-        .axes
-        .iter()
-        .zip(&design.axes)
-        .filter(|(axis, _)| !axis.modes.is_empty());
-    panels
-        .map(|(axis, tables)| sensitivity_panel(axis, tables, design.sample_hz))
-        .collect()
-}
-
-fn sensitivity_panel(axis: &Axis, tables: &AxisTables, sample_hz: f64) -> Panel {
-    let integer = tap_impulses(&tables.table, sample_hz);
-    let mut curves = Vec::new();
-    for mode in &axis.modes {
-        let curve = |impulses: &[_]| {
-            let points = sensitivity_curve(impulses, &mode.mode, CURVE_RATIOS.0, CURVE_RATIOS.1, CURVE_POINTS);
-            points
-                .into_iter()
-                .map(|(ratio, residual)| (ratio, 100.0 * residual))
-                .collect::<Vec<_>>()
-        };
-        let name = format!("{:.1} Hz", mode.mode.frequency_hz);
-        curves.push(Curve::new(format!("{name}, quantised"), curve(&integer)));
-        curves.push(Curve::reference(
-            format!("{name}, impulses"),
-            curve(tables.design.impulses.impulses()),
-        ));
-        let tolerance = 100.0 * axis.tolerance_of(mode);
-        let line = vec![(CURVE_RATIOS.0, tolerance), (CURVE_RATIOS.1, tolerance)];
-        curves.push(Curve::reference(format!("{name}, tolerance"), line));
-    }
-    Panel {
-        title: format!("axis {}: residual vibration of {}", axis.name, tables.design.kind),
-        x_label: "frequency of the mode / design frequency".into(),
-        y_label: "residual vibration, %".into(),
-        curves,
-    }
-}
-
-/// `design --json`: the command line's contract.
-#[derive(Serialize)]
-pub(crate) struct Document {
-    name: String,
-    axes: Vec<AxisDocument>,
-}
-
-#[derive(Serialize)]
-struct AxisDocument {
-    name: String,
-    kind: String,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    solutions: Option<Vec<SolutionDocument>>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    classes: Option<Vec<ClassDocument>>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    time_optimal: Option<bool>,
-    impulses: Vec<ImpulseDocument>,
-    duration_s: f64,
-    delay_s: f64,
-    partial_sum_min: f64,
-    partial_sum_max: f64,
-    peak_command: f64,
-    cross_gains: Vec<CrossGainDocument>,
-    warnings: Vec<String>,
-    modes: Vec<ModeDocument>,
-    quantised: QuantisedDocument,
-}
-
-/// An interval of frequencies that `periodic` may take.
-#[derive(Serialize)]
-struct SolutionDocument {
-    low_hz: f64,
-    high_hz: f64,
-    n: Vec<u32>,
-}
-
-impl SolutionDocument {
-    fn new(solution: &Solution) -> Self {
-        Self {
-            low_hz: solution.low_hz,
-            high_hz: solution.high_hz,
-            n: solution.n.clone(),
-        }
-    }
-}
-
-/// Modes of `antisymmetric` that share an antiperiod; modes are counted from 1.
-#[derive(Serialize)]
-struct ClassDocument {
-    modes: Vec<usize>,
-    divisor_hz: f64,
-    multiples: Vec<u64>,
-    ratio_error: f64,
-}
-
-impl ClassDocument {
-    fn new(class: &Class) -> Self {
-        Self {
-            modes: class.members.iter().map(|index| index + 1).collect(),
-            divisor_hz: class.multiples.divisor,
-            multiples: class.multiples.multiples.clone(),
-            ratio_error: class.multiples.error,
-        }
-    }
-}
-
-#[derive(Serialize)]
-struct ImpulseDocument {
-    time_s: f64,
-    amplitude: f64,
-}
-
-/// Residual of the shaper for one mode at another mode.
-#[derive(Serialize)]
-struct CrossGainDocument {
-    kind: &'static str,
-    shaper_hz: f64,
-    at_hz: f64,
-    gain: f64,
-}
-
-#[derive(Serialize)]
-struct ModeDocument {
-    frequency_hz: f64,
-    damping: f64,
-    residual: f64,
-    insensitivity: Option<(f64, Option<f64>)>,
-}
-
-#[derive(Serialize)]
-struct QuantisedDocument {
-    sample_hz: f64,
-    coefficient_fraction: u32,
-    digitise: String,
-    fits: bool,
-    taps: Vec<TapDocument>,
-    modes: Vec<ResidualDocument>,
-}
-
-#[derive(Serialize)]
-struct TapDocument {
-    delay_samples: u32,
-    coefficient: i32,
-}
-
-#[derive(Serialize)]
-struct ResidualDocument {
-    residual: f64,
 }

@@ -1,0 +1,116 @@
+//! `design --json`: the document of the command line's contract.
+
+use posicast_model::design::periodic::Solution;
+use posicast_model::design::ratios::Class;
+use serde::Serialize;
+
+/// `design --json`: the command line's contract.
+#[derive(Serialize)]
+pub(crate) struct Document {
+    pub(super) name: String,
+    pub(super) axes: Vec<AxisDocument>,
+}
+
+#[derive(Serialize)]
+pub(super) struct AxisDocument {
+    pub(super) name: String,
+    pub(super) kind: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) solutions: Option<Vec<SolutionDocument>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) classes: Option<Vec<ClassDocument>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) time_optimal: Option<bool>,
+    pub(super) impulses: Vec<ImpulseDocument>,
+    pub(super) duration_s: f64,
+    pub(super) delay_s: f64,
+    pub(super) partial_sum_min: f64,
+    pub(super) partial_sum_max: f64,
+    pub(super) peak_command: f64,
+    pub(super) cross_gains: Vec<CrossGainDocument>,
+    pub(super) warnings: Vec<String>,
+    pub(super) modes: Vec<ModeDocument>,
+    pub(super) quantised: QuantisedDocument,
+}
+
+/// An interval of frequencies that `periodic` may take.
+#[derive(Serialize)]
+pub(super) struct SolutionDocument {
+    pub(super) low_hz: f64,
+    pub(super) high_hz: f64,
+    pub(super) n: Vec<u32>,
+}
+
+impl SolutionDocument {
+    pub(super) fn new(solution: &Solution) -> Self {
+        Self {
+            low_hz: solution.low_hz,
+            high_hz: solution.high_hz,
+            n: solution.n.clone(),
+        }
+    }
+}
+
+/// Modes of `antisymmetric` that share an antiperiod; modes are counted from 1.
+#[derive(Serialize)]
+pub(super) struct ClassDocument {
+    pub(super) modes: Vec<usize>,
+    pub(super) divisor_hz: f64,
+    pub(super) multiples: Vec<u64>,
+    pub(super) ratio_error: f64,
+}
+
+impl ClassDocument {
+    pub(super) fn new(class: &Class) -> Self {
+        Self {
+            modes: class.members.iter().map(|index| index + 1).collect(),
+            divisor_hz: class.multiples.divisor,
+            multiples: class.multiples.multiples.clone(),
+            ratio_error: class.multiples.error,
+        }
+    }
+}
+
+#[derive(Serialize)]
+pub(super) struct ImpulseDocument {
+    pub(super) time_s: f64,
+    pub(super) amplitude: f64,
+}
+
+/// Residual of the shaper for one mode at another mode.
+#[derive(Serialize)]
+pub(super) struct CrossGainDocument {
+    pub(super) kind: &'static str,
+    pub(super) shaper_hz: f64,
+    pub(super) at_hz: f64,
+    pub(super) gain: f64,
+}
+
+#[derive(Serialize)]
+pub(super) struct ModeDocument {
+    pub(super) frequency_hz: f64,
+    pub(super) damping: f64,
+    pub(super) residual: f64,
+    pub(super) insensitivity: Option<(f64, Option<f64>)>,
+}
+
+#[derive(Serialize)]
+pub(super) struct QuantisedDocument {
+    pub(super) sample_hz: f64,
+    pub(super) coefficient_fraction: u32,
+    pub(super) digitise: String,
+    pub(super) fits: bool,
+    pub(super) taps: Vec<TapDocument>,
+    pub(super) modes: Vec<ResidualDocument>,
+}
+
+#[derive(Serialize)]
+pub(super) struct TapDocument {
+    pub(super) delay_samples: u32,
+    pub(super) coefficient: i32,
+}
+
+#[derive(Serialize)]
+pub(super) struct ResidualDocument {
+    pub(super) residual: f64,
+}

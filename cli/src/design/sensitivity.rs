@@ -1,0 +1,51 @@
+//! Sensitivity curves: the residual over the mode's true frequency.
+
+use crate::plot::{Curve, Panel};
+use posicast_model::analysis::{sensitivity_curve, tap_impulses};
+use posicast_model::design::{AxisTables, MachineDesign};
+use posicast_model::spec::{Axis, Machine};
+
+/// Frequency ratios that the sensitivity curves show.
+const CURVE_RATIOS: (f64, f64) = (0.4, 1.6);
+const CURVE_POINTS: usize = 601;
+
+/// Sensitivity curves, one panel per axis: residual over the mode's true frequency, float and quantised.
+pub(crate) fn sensitivity_panels(machine: &Machine, design: &MachineDesign) -> Vec<Panel> {
+    let panels = machine
+        .axes
+        .iter()
+        .zip(&design.axes)
+        .filter(|(axis, _)| !axis.modes.is_empty());
+    panels
+        .map(|(axis, tables)| sensitivity_panel(axis, tables, design.sample_hz))
+        .collect()
+}
+
+fn sensitivity_panel(axis: &Axis, tables: &AxisTables, sample_hz: f64) -> Panel {
+    let integer = tap_impulses(&tables.table, sample_hz);
+    let mut curves = Vec::new();
+    for mode in &axis.modes {
+        let curve = |impulses: &[_]| {
+            let points = sensitivity_curve(impulses, &mode.mode, CURVE_RATIOS.0, CURVE_RATIOS.1, CURVE_POINTS);
+            points
+                .into_iter()
+                .map(|(ratio, residual)| (ratio, 100.0 * residual))
+                .collect::<Vec<_>>()
+        };
+        let name = format!("{:.1} Hz", mode.mode.frequency_hz);
+        curves.push(Curve::new(format!("{name}, quantised"), curve(&integer)));
+        curves.push(Curve::reference(
+            format!("{name}, impulses"),
+            curve(tables.design.impulses.impulses()),
+        ));
+        let tolerance = 100.0 * axis.tolerance_of(mode);
+        let line = vec![(CURVE_RATIOS.0, tolerance), (CURVE_RATIOS.1, tolerance)];
+        curves.push(Curve::reference(format!("{name}, tolerance"), line));
+    }
+    Panel {
+        title: format!("axis {}: residual vibration of {}", axis.name, tables.design.kind),
+        x_label: "frequency of the mode / design frequency".into(),
+        y_label: "residual vibration, %".into(),
+        curves,
+    }
+}
