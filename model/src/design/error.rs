@@ -52,7 +52,8 @@ pub enum DesignError {
         mode: Mode,
     },
     /// A tolerance that no EI shaper has.
-    #[error("shaper \"{kind}\" at mode {hz} Hz: tolerance {tolerance} must lie between {least:e} and {most}",
+    #[error("shaper \"{kind}\" at mode {hz} Hz: tolerance {tolerance} is none that it is solved for: take one above {least:e} and below {most}, \
+         or \"zv\" or \"zvd\", which need none",
         hz = mode.frequency_hz)]
     Tolerance {
         /// The kind.
@@ -111,7 +112,7 @@ pub enum DesignError {
     /// No shaper of the kind leaves this tolerance at this damping.
     #[error(
         "shaper \"{kind}\" with tolerance {tolerance} exists up to damping {}; the mode at {hz} Hz has \
-         {damping}{}: lower the tolerance, or use \"zv\" or \"zvd\" for this mode",
+         {damping}{}use \"zv\" or \"zvd\" for this mode",
         rounded_down(*largest_damping), tolerance_limit(*largest_tolerance),
         hz = mode.frequency_hz, damping = mode.damping
     )]
@@ -219,8 +220,13 @@ impl DesignError {
 
 fn tolerance_limit(largest: Option<f64>) -> String {
     largest.map_or_else(
-        || ", with which it exists for no tolerance".to_owned(),
-        |tolerance| format!(", with which it exists up to tolerance {}", rounded_down(tolerance)),
+        || ", with which it exists for no tolerance: ".to_owned(),
+        |tolerance| {
+            format!(
+                ", with which it exists up to tolerance {}: lower the tolerance, or ",
+                rounded_down(tolerance)
+            )
+        },
     )
 }
 

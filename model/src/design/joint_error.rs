@@ -119,8 +119,8 @@ pub enum JointError {
     },
     /// A bound or an order of `vibrationless` that is not solved.
     #[error(
-        "no {order} frequencies keep a residual of {epsilon} round the mode: the orders 1 to {most} are solved, for epsilon \
-         from {least:e} to {largest}"
+        "shaper \"vibrationless\" with order {order} and epsilon {epsilon}: the orders 1 to {most} are solved, this one for \
+         epsilon from {least:e} to {largest}; take an epsilon there, a lower order, or \"zvdd\""
     )]
     Vibrationless {
         /// Order asked for.
