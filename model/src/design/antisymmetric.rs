@@ -8,8 +8,9 @@
 //! ```text
 //! exact           Π_j [1, K_j]/(1 + K_j) at 0, T_a,  K_j = e^{−σ_j T_a}, over the distinct decay rates: no residual
 //! two-impulse     [I_1, 1]/(I_1 + 1) at 0, T_a,      I_1 = Σ A_i m_i / Σ A_i m_i e^{−σ_i T_a}
-//! three-impulse   displacement, velocity, and their derivatives for a common error of the frequencies are zero after the
-//!                 third impulse (the paper's equations 35 to 38), solved for two amplitudes and two times
+//! three-impulse   sine and cosine part of the sum of the modes, seen as one oscillation at f_c, and their derivatives for a
+//!                 common error of the frequencies are zero at the third impulse (the paper's equations 35 to 38, written
+//!                 out at [`three_impulse`]), solved for two amplitudes and two times
 //! ```
 //!
 //! `A_i` is the participation. Undamped, two impulses are `[½, ½]` and three `[¼, ½, ¼]` at multiples of `T_a`. The two
@@ -200,22 +201,35 @@ pub fn two_impulse(antiperiod_s: f64, swings: &[Swing]) -> Vec<Impulse> {
 
 /// The paper's three impulses, by Newton's method from the closed form at `T_a`, `2T_a`.
 ///
+/// With `m_i` odd, `sin(m_i x) = U_i(x) sin x`, `U_i(x) = 1 + 2 Σ_j cos(2 j x)`, `j = 1 … (m_i − 1)/2`: all modes together are
+/// one oscillation at the common divisor. With `x_k = π(t_3 − t_k)/T_a`, `f_i = σ_i T_a/(π m_i)` and `I_3 = 1` the equations are
+///
+/// ```text
+/// R(x) = Σ_i A_i e^{−f_i m_i x} U_i(x) e^{i x}
+/// 35, 36   Re, Im of Σ_k I_k R(x_k) = 0
+/// 38, 37   Re, Im of Σ_k I_k x_k R'(x_k) = 0       (a common error of the frequencies)
+/// ```
+///
+/// 36 is the displacement of the sum and 37 its derivative; 35 is *not* the velocity, which it equals only at multiples of
+/// `T_a`, where `U_i = m_i`. The form is inferred from solutions known to 16 digits, which satisfy all four to rounding, not
+/// read from the paper.
+///
 /// # Errors
 /// [`JointError::ThreeImpulse`] where there is no solution with positive amplitudes in order of time near there.
 pub fn three_impulse(antiperiod_s: f64, swings: &[Swing]) -> Result<Vec<Impulse>, JointError> {
     let none = || JointError::ThreeImpulse { antiperiod_s };
     let response = Response(swings);
     // With both times at multiples of the antiperiod, equations 35 and 37 alone: I1 E2 − I2 E1 + E0 = 0, I2 E1 = 2 I1 E2.
-    let [rest, once, twice] = [0.0, 1.0, 2.0].map(|time| response.at(time)[1]);
+    let [rest, once, twice] = [0.0, 1.0, 2.0].map(|time| response.at(time)[0].re);
     let first = rest / twice;
     let start = DVector::from_row_slice(&[first, -2.0 * first * twice / once, 1.0, 2.0]);
     let scale: f64 = swings.iter().map(|s| s.amplitude * s.multiple).sum();
     let equations = |x: &DVector<f64>| {
         let (since_first, since_second) = (x[3], x[3] - x[2]);
-        let (a, b) = (response.at(since_first), response.at(since_second));
-        let sum = |order: usize| x[0] * a[order] + x[1] * b[order];
-        let weighted = |order: usize| x[0] * since_first * a[order] + x[1] * since_second * b[order];
-        DVector::from_row_slice(&[sum(1) + rest, sum(0), weighted(1), weighted(2)]) / scale
+        let ([a, a_slope], [b, b_slope]) = (response.at(since_first), response.at(since_second));
+        let sum = a * x[0] + b * x[1] + rest;
+        let weighted = a_slope * (x[0] * since_first) + b_slope * (x[1] * since_second);
+        DVector::from_row_slice(&[sum.re, sum.im, weighted.im, weighted.re]) / scale
     };
     let found = newton::solve(equations, start, 1e-11).ok_or_else(none)?;
     let amplitudes = [found[0], found[1], 1.0];
@@ -232,21 +246,29 @@ pub fn three_impulse(antiperiod_s: f64, swings: &[Swing]) -> Result<Vec<Impulse>
     Ok(impulses.collect())
 }
 
-/// Response of the sum of the modes to one impulse.
+/// The sum of the modes after one impulse, as an oscillation at the common divisor whose amplitude varies.
 struct Response<'a>(&'a [Swing]);
 
 impl Response<'_> {
-    /// Displacement, velocity and acceleration, `time` antiperiods after the impulse, in units of the antiperiod over π.
-    fn at(&self, time: f64) -> [f64; 3] {
-        let mut sums = [0.0; 3];
+    /// `R(τ)` of [`three_impulse`], `time` antiperiods after the impulse, and its derivative with respect to `π·time`.
+    fn at(&self, time: f64) -> [Complex<f64>; 2] {
+        let angle = PI * time;
+        let carrier = Complex::cis(angle);
+        let (mut value, mut slope) = (0.0, 0.0);
         for swing in self.0 {
-            let pole = Complex::new(-swing.decay / PI, swing.multiple);
-            let mut value = (pole * (PI * time)).exp() * swing.amplitude;
-            for sum in &mut sums {
-                *sum += value.im;
-                value *= pole;
+            // sin(m x)/sin(x) = 1 + 2 Σ cos(2 j x), j = 1 … (m − 1)/2: no division where x is a multiple of π.
+            let (mut ratio, mut ratio_slope) = (1.0, 0.0);
+            let mut even = 2.0;
+            while even < swing.multiple {
+                let (sin, cos) = (even * angle).sin_cos();
+                ratio += 2.0 * cos;
+                ratio_slope -= 2.0 * even * sin;
+                even += 2.0;
             }
+            let share = swing.amplitude * (-swing.decay * time).exp();
+            value += share * ratio;
+            slope += share * (ratio_slope - swing.decay / PI * ratio);
         }
-        sums
+        [carrier * value, carrier * Complex::new(slope, value)]
     }
 }
