@@ -21,7 +21,7 @@ use nalgebra::DVector;
 use super::DesignError;
 use super::equations::{Equations, Linearised, Point, Ratio};
 use super::kind::Kind;
-use super::path::{Branch, PRECISE, ROUGH, follow};
+use super::path::{Branch, follow};
 use crate::analysis::residual_vibration;
 use crate::impulse::{Impulse, ImpulseSequence};
 use crate::mode::Mode;
@@ -33,8 +33,10 @@ pub const TOLERANCE_MAX: f64 = 0.9;
 
 /// Longest step along the damping.
 const LONGEST_STEP: f64 = 0.1;
+/// Shortest step, at which the branch counts as ended: where zeros and humps close up, it ends within some hundred of these.
+const SHORTEST_STEP: f64 = 1e-7;
 /// Relative accuracy of the largest tolerance that an error names.
-const LIMIT_ACCURACY: f64 = 5e-4;
+const LIMIT_ACCURACY: f64 = 1e-3;
 /// Largest deviation of the finished shaper from its zeros and humps.
 const VERIFIED: f64 = 1e-9;
 
@@ -73,12 +75,12 @@ pub fn design(kind: Kind, mode: &Mode, tolerance: f64) -> Result<HumpEi, DesignE
         });
     }
     let path = Path::new(zeros, mode.damping, tolerance);
-    let unknowns = path.follow(PRECISE).map_err(|s| DesignError::NoSolution {
+    let unknowns = path.follow().map_err(|s| DesignError::NoSolution {
         kind,
         mode: *mode,
         tolerance,
         largest_damping: s * mode.damping,
-        largest_tolerance: largest_tolerance(zeros, mode.damping, tolerance),
+        largest_tolerance: largest_tolerance(zeros, mode.damping),
     })?;
     let shape = path.shape(&unknowns);
     let impulses = shape
@@ -112,17 +114,14 @@ struct Shape {
     ratios: Vec<f64>,
 }
 
-/// Largest tolerance below `tolerance` for which the branch reaches a damping, found by halving: the damping at which it ends
-/// falls with the tolerance. `None` if it does not even for the smallest.
-fn largest_tolerance(zeros: usize, damping: f64, tolerance: f64) -> Option<f64> {
-    let exists = |tolerance| {
-        let path = Path::new(zeros, damping, tolerance);
-        path.follow(ROUGH).is_ok()
-    };
+/// Largest tolerance for which the branch reaches a damping, found by halving: the damping at which it ends falls with the
+/// tolerance. `None` if it does not even for the smallest.
+fn largest_tolerance(zeros: usize, damping: f64) -> Option<f64> {
+    let exists = |tolerance| Path::new(zeros, damping, tolerance).follow().is_ok();
     if !exists(TOLERANCE_MIN) {
         return None;
     }
-    let (mut known, mut beyond) = (TOLERANCE_MIN, tolerance);
+    let (mut known, mut beyond) = (TOLERANCE_MIN, TOLERANCE_MAX);
     while beyond > known * (1.0 + LIMIT_ACCURACY) {
         let between = (known * beyond).sqrt();
         if exists(between) {
@@ -153,8 +152,9 @@ impl Path {
     }
 
     /// Follows the solution to the end; the error is how far it exists, 0 to 1.
-    fn follow(&self, shortest: f64) -> Result<DVector<f64>, f64> {
-        let longest = LONGEST_STEP / self.damping.max(LONGEST_STEP);
+    fn follow(&self) -> Result<DVector<f64>, f64> {
+        // The same steps in damping whatever damping is wanted, so that all see the branch end at the same one.
+        let [longest, shortest] = [LONGEST_STEP, SHORTEST_STEP].map(|step| step / self.damping.max(LONGEST_STEP));
         follow(self, self.undamped(), longest, shortest)
     }
 
@@ -340,7 +340,7 @@ mod tests {
                     "{kind} {tolerance}"
                 );
                 assert!(
-                    design(kind, &mode(damping), 1.001 * largest_tolerance).is_err(),
+                    design(kind, &mode(damping), 1.0011 * largest_tolerance).is_err(),
                     "{kind} {tolerance}"
                 );
             }
@@ -356,7 +356,7 @@ mod tests {
         ] {
             for damping in dampings {
                 let path = Path::new(zeros, damping, 0.05);
-                let along = |longest| follow(&path, path.undamped(), longest, PRECISE).unwrap();
+                let along = |longest| follow(&path, path.undamped(), longest, SHORTEST_STEP).unwrap();
                 assert!((along(0.5) - along(0.004)).amax() < 1e-9, "{kind} {damping}");
             }
         }

@@ -1,10 +1,11 @@
 //! Following a solution from where it is known to where it is wanted.
 //!
 //! The equations depend on a position `s` on a path, 0 to 1, along which damping and tolerance go from those of a known
-//! solution to those asked for. From a solution at `s`, the next start is its tangent; Newton's method takes it to the
-//! solution there. A step counts only if Newton's corrections shrink from the first on: then the solution found is the
-//! continuation of the last one, and not another that happens to be near. Otherwise half the step is tried, until steps are
-//! so short that the branch itself ends.
+//! solution to those asked for. From a solution at `s`, the next start is on its tangent, bent as over the last step; Newton's
+//! method takes it to the solution there. A step counts only if Newton's corrections shrink from the first on, and if the
+//! tangents at both its ends lead from one to the other. Then the solution found is the continuation of the last one, and not
+//! another that happens to be near: next to a fold, across which another sheet of solutions begins, the tangents are steep
+//! and do not lead there. Otherwise half the step is tried, until steps are so short that the branch itself ends.
 
 use nalgebra::DVector;
 
@@ -12,6 +13,9 @@ use super::equations::Linearised;
 
 /// Corrections must shrink by this factor at least, each time.
 const CONTRACTION: f64 = 0.25;
+/// Where a step leads may differ by this share of its length from where the tangents at its ends do: on the way into a fold by
+/// 0.03 when the step is half of what is left, beyond it by 0.3 and more.
+const SAME_SHEET: f64 = 0.1;
 /// A correction of this size, in units of the unknowns, leaves an error of its square: enough to go on from. At the end of
 /// the path one more follows, which leaves rounding, and which may be no smaller for that reason.
 const SETTLED: f64 = 1e-5;
@@ -19,8 +23,6 @@ const SETTLED: f64 = 1e-5;
 const ROUNDS: usize = 12;
 /// Shortest step for which the end of a branch counts as found, to six digits.
 pub(super) const PRECISE: f64 = 1e-6;
-/// The same where it only matters roughly where a branch ends, or that it does.
-pub(super) const ROUGH: f64 = 1e-4;
 
 /// A system of equations along a path.
 pub(super) trait Branch {
@@ -48,13 +50,17 @@ pub(super) fn follow(
 ) -> Result<DVector<f64>, f64> {
     let mut here = solve(branch, start, 0.0).ok_or(0.0)?;
     let (mut s, mut step) = (0.0, longest.min(1.0));
+    // Change of the tangent, from the last step.
+    let mut bend = DVector::zeros(here.unknowns.len());
     // Not at once after a failure: towards the end of a branch every longer step fails again.
     let mut may_grow = false;
     while s < 1.0 {
         let next = if s + step >= 1.0 { 1.0 } else { s + step };
-        let predicted = &here.unknowns + &here.tangent * (next - s);
-        match solve(branch, predicted, next) {
+        let ahead = next - s;
+        let predicted = &here.unknowns + (&here.tangent + &bend * (ahead / 2.0)) * ahead;
+        match solve(branch, predicted, next).filter(|found| same_sheet(&here, found, ahead, &branch.units(next))) {
             Some(solution) => {
+                bend = (&solution.tangent - &here.tangent) / ahead;
                 (here, s) = (solution, next);
                 step = if may_grow { (2.0 * step).min(longest) } else { step };
                 may_grow = true;
@@ -73,6 +79,15 @@ pub(super) fn follow(
 struct Solution {
     unknowns: DVector<f64>,
     tangent: DVector<f64>,
+}
+
+/// Whether two solutions lie on one sheet: whether the mean of their tangents leads from one to the other, `step` further on.
+fn same_sheet(here: &Solution, there: &Solution, step: f64, units: &DVector<f64>) -> bool {
+    let size = |vector: DVector<f64>| vector.component_div(units).norm();
+    let way = &there.unknowns - &here.unknowns;
+    let deviation = size(&way - (&here.tangent + &there.tangent) * (step / 2.0));
+    // What Newton's method leaves is no deviation.
+    deviation <= SAME_SHEET * size(way) || deviation <= SETTLED
 }
 
 /// Newton's method at one position: the valid solution that the corrections from `start` shrink towards.
@@ -133,6 +148,36 @@ mod tests {
             let start = DVector::from_element(1, 1.1 * sign);
             let found = follow(&Fold(1.25), start, 1.0, PRECISE).unwrap();
             assert!((found[0] - sign * 0.2f64.sqrt()).abs() < 1e-15);
+        }
+    }
+
+    /// `x³ − x/4 = s − 1/2`, an S lying down: the sheet from `s = 0` ends below 0.55, where another has long begun.
+    struct Cubic;
+
+    impl Branch for Cubic {
+        fn linearised(&self, x: &DVector<f64>, s: f64) -> Linearised {
+            Linearised {
+                values: DVector::from_element(1, x[0].powi(3) - x[0] / 4.0 - s + 0.5),
+                jacobian: DMatrix::from_element(1, 1, 3.0 * x[0] * x[0] - 0.25),
+                path: DVector::from_element(1, -1.0),
+            }
+        }
+
+        fn units(&self, _: f64) -> DVector<f64> {
+            DVector::from_element(1, 1.0)
+        }
+
+        fn is_valid(&self, x: &DVector<f64>) -> bool {
+            x[0].is_finite()
+        }
+    }
+
+    #[test]
+    fn unit_does_not_leap_over_a_fold() {
+        let fold = 0.5 + 1.0 / (6.0 * 12f64.sqrt());
+        for longest in [1.0, 0.7, 0.5, 0.3, 0.1, 0.03] {
+            let ended = follow(&Cubic, DVector::from_element(1, -0.9), longest, PRECISE).unwrap_err();
+            assert!((ended - fold).abs() < 1e-5, "{longest}: {ended}");
         }
     }
 
