@@ -49,17 +49,23 @@ pub(crate) fn open(output: Option<&Path>, file: &MachineFile) -> Result<Package,
     Package::open(output.unwrap_or(Path::new(name)), name).map_err(Failure::because)
 }
 
-/// Adds the machine file and its Verilog to the folder.
-pub(crate) fn add_sources(package: &mut Package, file: &MachineFile, modules: &[Module]) -> Result<(), Failure> {
+/// Adds the machine file and its Verilog to the folder, and returns where the Verilog stands until the folder is complete.
+pub(crate) fn add_sources(
+    package: &mut Package,
+    file: &MachineFile,
+    modules: &[Module],
+) -> Result<Vec<PathBuf>, Failure> {
     package
         .add("machine.toml", file.text.as_bytes())
         .map_err(Failure::because)?;
-    for module in modules {
-        package
-            .add(&format!("rtl/{}.v", module.name), module.text.as_bytes())
+    let write = |module: &Module| {
+        let path = package
+            .stage(&format!("rtl/{}.v", module.name))
             .map_err(Failure::because)?;
-    }
-    Ok(())
+        std::fs::write(&path, &module.text).map_err(Failure::because)?;
+        Ok(path)
+    };
+    modules.iter().map(write).collect()
 }
 
 /// Writes the modules into a temporary folder, for tools that read files. The folder goes when the guard is dropped.

@@ -11,7 +11,7 @@ use crate::bench::{self, Bench, Simulator};
 use crate::command::{self, Words};
 use crate::design::{self, Report as DesignReport};
 use crate::failure::Failure;
-use crate::machine::{self, MachineFile};
+use crate::machine;
 use crate::plot;
 use crate::simulate::simulate;
 use crate::verify::DEFAULT_SEED;
@@ -25,7 +25,6 @@ use posicast_testbench::diff::{self, Comparison, Options};
 use posicast_testbench::lockstep::TwoValued;
 use posicast_testbench::lockstep::report::Report as LockstepReport;
 use posicast_testbench::recording::{Move, wave_clocks_per_sample};
-use posicast_testbench::verilator;
 use posicast_testbench::wave::{Difference, Part, merge};
 use report::Report;
 use std::path::PathBuf;
@@ -72,7 +71,8 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let bench = Bench::new(machine, shapers)?;
 
     let mut package = generate::open(args.output.as_deref(), &file)?;
-    let files = write_sources(&mut package, &file, &bench)?;
+    let modules = generate::modules(&machine.name, &bench.shapers)?;
+    let files = generate::add_sources(&mut package, &file, &modules)?;
     let cycles = args.cycles.unwrap_or(simulator.default_cycles());
     let mut job = Job {
         bench: &bench,
@@ -104,6 +104,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         machine,
         design: &design,
         axes: &axes,
+        plants: report::on_plants(machine, &design.design)?,
         simulator,
         seed: args.seed,
         lockstep: &lockstep,
@@ -111,7 +112,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         estimate: estimate.as_ref(),
         checks: &checks,
     };
-    let document = report.json()?;
+    let document = report.json();
     package
         .add("report.json", output::json_text(&document)?.as_bytes())
         .map_err(Failure::because)?;
@@ -120,7 +121,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     if args.json {
         output::print_json(&document)?
     } else {
-        output::print(&report.text(&root, written.len())?)?
+        output::print(&report.text(&root, written.len()))?
     }
     let failed: Vec<_> = checks.iter().filter(|c| !c.passed).map(|c| c.name).collect();
     if failed.is_empty() {
@@ -149,22 +150,6 @@ fn estimate(yosys: &Yosys, machine: &Machine, files: &[PathBuf]) -> Result<Estim
         .map_err(Failure::because)?;
     spinner.finish_and_clear();
     Ok(estimate)
-}
-
-/// Writes machine file and Verilog, and returns where the Verilog stands until the folder is complete.
-fn write_sources(package: &mut Package, file: &MachineFile, bench: &Bench) -> Result<Vec<PathBuf>, Failure> {
-    package
-        .add("machine.toml", file.text.as_bytes())
-        .map_err(Failure::because)?;
-    let modules = generate::modules(&file.machine.name, &bench.shapers)?;
-    let write = |module: &posicast_hdl::emit::Module| {
-        let path = package
-            .stage(&format!("rtl/{}.v", module.name))
-            .map_err(Failure::because)?;
-        std::fs::write(&path, &module.text).map_err(Failure::because)?;
-        Ok(path)
-    };
-    modules.iter().map(write).collect()
 }
 
 /// The waveforms of the move and what their comparison says.
@@ -259,9 +244,4 @@ impl Job<'_> {
         spinner.finish_and_clear();
         Ok(waves)
     }
-}
-
-/// Version of the Verilator in use, where it is installed.
-pub(crate) fn verilator_version() -> Option<String> {
-    verilator::version().ok().map(str::to_owned)
 }

@@ -1,7 +1,7 @@
 //! What `run` reports: a table for people, a document for programs, a picture for both.
 
+use super::Waves;
 use super::checks::Check;
-use super::{Waves, verilator_version};
 use crate::bench::Simulator;
 use crate::design::{self, Report as DesignReport};
 use crate::failure::Failure;
@@ -19,6 +19,7 @@ use posicast_model::spec::{Axis, Machine};
 use posicast_synth::yosys::Estimate;
 use posicast_testbench::diff::Comparison;
 use posicast_testbench::lockstep::report::Report as LockstepReport;
+use posicast_testbench::verilator;
 use serde::Serialize;
 use std::fmt::Write;
 use std::path::Path;
@@ -28,6 +29,7 @@ pub(crate) struct Report<'a> {
     pub(crate) machine: &'a Machine,
     pub(crate) design: &'a DesignReport<'a>,
     pub(crate) axes: &'a [AxisSimulation],
+    pub(crate) plants: Vec<OnPlant>,
     pub(crate) simulator: Simulator,
     pub(crate) seed: u64,
     pub(crate) lockstep: &'a LockstepReport,
@@ -37,7 +39,7 @@ pub(crate) struct Report<'a> {
 }
 
 /// One axis's figures on the simulated machine.
-struct OnPlant {
+pub(crate) struct OnPlant {
     shaped: PlantFigures,
     unshaped: PlantFigures,
 }
@@ -50,6 +52,13 @@ impl OnPlant {
             unshaped: plant_figures(&plant, ImpulseSequence::unity().impulses()),
         })
     }
+}
+
+/// The figures of every axis of a machine.
+pub(crate) fn on_plants(machine: &Machine, design: &MachineDesign) -> Result<Vec<OnPlant>, Failure> {
+    let axes = machine.axes.iter().zip(&design.axes);
+    axes.map(|(axis, tables)| OnPlant::new(axis, tables, design.sample_hz))
+        .collect()
 }
 
 /// The largest residual of all modes; none without a mode.
@@ -72,10 +81,10 @@ impl Report<'_> {
     }
 
     /// The text for people, with the verdict last.
-    pub(crate) fn text(&self, root: &Path, files: usize) -> Result<String, Failure> {
+    pub(crate) fn text(&self, root: &Path, files: usize) -> String {
         let clock = &self.machine.clock;
         let tool = match self.simulator {
-            Simulator::Verilator => verilator_version().unwrap_or_else(|| self.simulator.to_string()),
+            Simulator::Verilator => verilator::version().map_or_else(|_| self.simulator.to_string(), str::to_owned),
             Simulator::Icarus => "Icarus Verilog".to_owned(),
             Simulator::Rusthdl => {
                 "RustHDL's simulator: the weaker check, the Verilog itself was not simulated".to_owned()
@@ -89,7 +98,7 @@ impl Report<'_> {
             self.design.design.coefficient_fraction,
             self.seed,
         );
-        text += &self.shapers_text()?;
+        text += &self.shapers_text();
         text.push('\n');
         text += &self.comparison_text();
         if let Some(estimate) = self.estimate {
@@ -113,10 +122,10 @@ impl Report<'_> {
             }
             (true, _) => "PASS: the Verilog computes what was designed.\n",
         };
-        Ok(text)
+        text
     }
 
-    fn shapers_text(&self) -> Result<String, Failure> {
+    fn shapers_text(&self) -> String {
         let mut residuals = Table::new(&[
             "axis",
             "shaper",
@@ -138,7 +147,7 @@ impl Report<'_> {
             ">ringing shaped",
         ]);
         for (index, axis, tables) in self.rows() {
-            let plant = OnPlant::new(axis, tables, self.sample_hz())?;
+            let plant = &self.plants[index];
             let figures = tables.mode_figures(axis, self.sample_hz());
             let largest =
                 |pick: fn(&posicast_model::design::ModeFigures) -> f64| figures.iter().map(pick).reduce(f64::max);
@@ -164,12 +173,12 @@ impl Report<'_> {
                 format!("{:.4}", self.axes[index].vibration * micro),
             ]);
         }
-        Ok(format!(
+        format!(
             "Residual vibration of a step, worst mode, % of unshaped\n{}\n\
              Overshoot of a step, %; ringing after the move, millionths of the unit\n{}",
             residuals.text("  "),
             overshoots.text("  ")
-        ))
+        )
     }
 
     fn comparison_text(&self) -> String {
@@ -196,21 +205,21 @@ impl Report<'_> {
     }
 
     /// The document for programs: also `report.json`.
-    pub(crate) fn json(&self) -> Result<Document<'_>, Failure> {
-        let axes = self.rows().map(|(index, axis, tables)| {
-            let plant = OnPlant::new(axis, tables, self.sample_hz())?;
+    pub(crate) fn json(&self) -> Document<'_> {
+        let axes = self.rows().map(|(index, axis, _)| {
+            let plant = &self.plants[index];
             let micro = 1e-6 * micro_units_per_lsb(self.machine, axis);
-            Ok(AxisDocument {
+            AxisDocument {
                 name: axis.name.clone(),
-                plant: PlantDocument::new(&plant),
+                plant: PlantDocument::new(plant),
                 residual_displacement_unshaped: self.axes[index].vibration_unshaped * micro,
                 residual_displacement: self.axes[index].vibration * micro,
                 samples: self.waves.samples[index],
                 largest_difference_lsb: self.waves.largest_difference_lsb[index],
                 bound_lsb: self.axes[index].bound_lsb,
-            })
+            }
         });
-        Ok(Document {
+        Document {
             name: self.machine.name.clone(),
             result: if self.checks.iter().all(|c| c.passed) {
                 "pass"
@@ -220,13 +229,13 @@ impl Report<'_> {
             simulator: self.simulator,
             seed: self.seed,
             design: self.design.json(),
-            axes: axes.collect::<Result<_, Failure>>()?,
+            axes: axes.collect(),
             verify: self.lockstep,
             model_against_rtl: &self.waves.model,
             rtl_against_float: &self.waves.float,
             synth: self.estimate,
             checks: self.checks,
-        })
+        }
     }
 }
 

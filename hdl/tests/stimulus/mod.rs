@@ -4,28 +4,10 @@ use posicast_model::rtl::shaper::{Inputs, ShaperConfig};
 use posicast_model::taps::{COEFFICIENT_MAX, COEFFICIENT_MIN, Tap, TapTable};
 use std::collections::VecDeque;
 
-/// A reproducible source of numbers (splitmix64).
-pub(crate) struct Random(pub(crate) u64);
+#[path = "../random/mod.rs"]
+mod random;
 
-impl Random {
-    pub(crate) fn word(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut word = self.0;
-        word = (word ^ (word >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        word = (word ^ (word >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        word ^ (word >> 31)
-    }
-
-    /// 0..bound.
-    pub(crate) fn below(&mut self, bound: u64) -> u64 {
-        self.word() % bound
-    }
-
-    /// True once in `n` calls.
-    pub(crate) fn once_in(&mut self, n: u64) -> bool {
-        self.below(n) == 0
-    }
-}
+pub(crate) use random::Random;
 
 /// `taps` taps at delays up to `longest`, coefficients of either sign that sum to 2^fraction; `gain` is about Σ|c|/2^F.
 pub(crate) fn table(random: &mut Random, fraction: u32, taps: usize, longest: u32, gain: u32) -> TapTable {
