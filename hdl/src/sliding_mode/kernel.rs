@@ -30,9 +30,9 @@ pub(super) struct SlidingMode {
     pub(super) start: Signal<In, Bit>,
     pub(super) law: Signal<In, Bits<2>>,
     pub(super) modulo: Signal<In, Bit>,
-    pub(super) reference: Signal<In, Signed<32>>,
-    pub(super) reference_velocity: Signal<In, Signed<32>>,
-    pub(super) reference_acceleration: Signal<In, Signed<32>>,
+    pub(super) position_reference: Signal<In, Signed<32>>,
+    pub(super) velocity_reference: Signal<In, Signed<32>>,
+    pub(super) acceleration_reference: Signal<In, Signed<32>>,
     pub(super) position: Signal<In, Signed<32>>,
     pub(super) velocity: Signal<In, Signed<32>>,
     pub(super) setting: Signal<In, Bits<32>>,
@@ -108,9 +108,9 @@ impl Default for SlidingMode {
             start: Signal::default(),
             law: Signal::default(),
             modulo: Signal::default(),
-            reference: Signal::default(),
-            reference_velocity: Signal::default(),
-            reference_acceleration: Signal::default(),
+            position_reference: Signal::default(),
+            velocity_reference: Signal::default(),
+            acceleration_reference: Signal::default(),
             position: Signal::default(),
             velocity: Signal::default(),
             setting: Signal::default(),
@@ -200,8 +200,8 @@ impl Logic for SlidingMode {
         self.tracking.rst.next = self.rst.val();
         self.tracking.capture.next = self.sequencer.begins.val();
         self.tracking.modulo.next = self.modulo.val();
-        self.tracking.reference.next = self.reference.val();
-        self.tracking.reference_velocity.next = self.reference_velocity.val();
+        self.tracking.position_reference.next = self.position_reference.val();
+        self.tracking.velocity_reference.next = self.velocity_reference.val();
         self.tracking.position.next = self.position.val();
         self.tracking.velocity.next = self.velocity.val();
         self.error_bits.next = unsigned_cast(self.tracking.tracking_error.val());
@@ -235,13 +235,13 @@ impl Logic for SlidingMode {
             }
         }
         if (self.sequencer.step.val() == self.fade.val()) | (self.sequencer.step.val() == self.on_reference.val()) {
-            self.operand.next = self.reference_velocity.val();
+            self.operand.next = self.velocity_reference.val();
         }
         if self.sequencer.step.val() == self.on_feedback.val() {
             self.operand.next = self.feedback.q.val();
         }
         if self.sequencer.step.val() == self.on_acceleration.val() {
-            self.operand.next = self.reference_acceleration.val();
+            self.operand.next = self.acceleration_reference.val();
         }
         if self.sequencer.step.val() == self.on_velocity.val() {
             self.operand.next = self.velocity.val();

@@ -15,9 +15,9 @@ impl Pins for SlidingMode {
             start,
             law,
             modulo,
-            reference,
-            reference_velocity,
-            reference_acceleration,
+            position_reference,
+            velocity_reference,
+            acceleration_reference,
             position,
             velocity,
             setting,
@@ -31,9 +31,9 @@ impl Pins for SlidingMode {
         self.start.next = start & 1 != 0;
         self.law.next = from_u64(law);
         self.modulo.next = modulo & 1 != 0;
-        self.reference.next = from_i64(reference as i64);
-        self.reference_velocity.next = from_i64(reference_velocity as i64);
-        self.reference_acceleration.next = from_i64(reference_acceleration as i64);
+        self.position_reference.next = from_i64(position_reference as i64);
+        self.velocity_reference.next = from_i64(velocity_reference as i64);
+        self.acceleration_reference.next = from_i64(acceleration_reference as i64);
         self.position.next = from_i64(position as i64);
         self.velocity.next = from_i64(velocity as i64);
         self.setting.next = from_u64(setting);

@@ -11,8 +11,8 @@ pub(super) struct Tracking {
     pub(super) rst: Signal<In, Bit>,
     pub(super) capture: Signal<In, Bit>,
     pub(super) modulo: Signal<In, Bit>,
-    pub(super) reference: Signal<In, Signed<32>>,
-    pub(super) reference_velocity: Signal<In, Signed<32>>,
+    pub(super) position_reference: Signal<In, Signed<32>>,
+    pub(super) velocity_reference: Signal<In, Signed<32>>,
     pub(super) position: Signal<In, Signed<32>>,
     pub(super) velocity: Signal<In, Signed<32>>,
     pub(super) tracking_error: Signal<Out, Signed<24>>,
@@ -28,10 +28,10 @@ pub(super) struct Tracking {
     wide_reference: Signal<Local, Signed<40>>,
     counts: Signal<Local, Bits<32>>,
     difference: Signal<Local, Bits<40>>,
-    wrapped: Signal<Local, Signed<32>>,
-    wide_wrapped: Signal<Local, Signed<40>>,
-    nearest: Signal<Local, Bits<40>>,
-    excess: Signal<Local, Bits<17>>,
+    linear_excess: Signal<Local, Bits<17>>,
+    linear_fits: Signal<Local, Bit>,
+    rotary_excess: Signal<Local, Bits<9>>,
+    rotary_fits: Signal<Local, Bit>,
     error_fits: Signal<Local, Bit>,
     wide_target: Signal<Local, Signed<33>>,
     wide_velocity: Signal<Local, Signed<33>>,
@@ -54,8 +54,8 @@ impl Default for Tracking {
             rst: Signal::default(),
             capture: Signal::default(),
             modulo: Signal::default(),
-            reference: Signal::default(),
-            reference_velocity: Signal::default(),
+            position_reference: Signal::default(),
+            velocity_reference: Signal::default(),
             position: Signal::default(),
             velocity: Signal::default(),
             tracking_error: Signal::default(),
@@ -69,10 +69,10 @@ impl Default for Tracking {
             wide_reference: Signal::default(),
             counts: Signal::default(),
             difference: Signal::default(),
-            wrapped: Signal::default(),
-            wide_wrapped: Signal::default(),
-            nearest: Signal::default(),
-            excess: Signal::default(),
+            linear_excess: Signal::default(),
+            linear_fits: Signal::default(),
+            rotary_excess: Signal::default(),
+            rotary_fits: Signal::default(),
             error_fits: Signal::default(),
             wide_target: Signal::default(),
             wide_velocity: Signal::default(),
@@ -97,21 +97,20 @@ impl Logic for Tracking {
         dff_setup!(self, clk, error_q, error_rate_q);
 
         comment!("e: exact modulo 2^40 LSB, or 2^32 if rotary");
-        self.wide_reference.next = signed_bit_cast::<40, 32>(self.reference.val());
+        self.wide_reference.next = signed_bit_cast::<40, 32>(self.position_reference.val());
         self.counts.next = unsigned_cast(self.position.val());
         self.difference.next = unsigned_cast(self.wide_reference.val()) - (bit_cast::<40, 32>(self.counts.val()) << 8);
-        self.wrapped.next = signed_cast(self.difference.val().get_bits::<32>(0));
-        self.wide_wrapped.next = signed_bit_cast::<40, 32>(self.wrapped.val());
-        self.nearest.next = self.difference.val();
-        if self.modulo.val() {
-            self.nearest.next = unsigned_cast(self.wide_wrapped.val());
-        }
-        self.excess.next = self.nearest.val().get_bits::<17>(23);
-        self.error_fits.next = self.excess.val().all() | !self.excess.val().any();
-        self.error_negative.next = self.nearest.val().get_bit(39);
+        self.linear_excess.next = self.difference.val().get_bits::<17>(23);
+        self.linear_fits.next = self.linear_excess.val().all() | !self.linear_excess.val().any();
+        self.rotary_excess.next = self.difference.val().get_bits::<9>(23);
+        self.rotary_fits.next = self.rotary_excess.val().all() | !self.rotary_excess.val().any();
+        self.error_fits.next =
+            (self.linear_fits.val() & !self.modulo.val()) | (self.rotary_fits.val() & self.modulo.val());
+        self.error_negative.next = (self.difference.val().get_bit(39) & !self.modulo.val())
+            | (self.difference.val().get_bit(31) & self.modulo.val());
 
         comment!("de");
-        self.wide_target.next = signed_bit_cast::<33, 32>(self.reference_velocity.val());
+        self.wide_target.next = signed_bit_cast::<33, 32>(self.velocity_reference.val());
         self.wide_velocity.next = signed_bit_cast::<33, 32>(self.velocity.val());
         self.rate.next = unsigned_cast(self.wide_target.val()) - unsigned_cast(self.wide_velocity.val());
         self.rate_bits.next = self.rate.val().get_bits::<32>(0);
@@ -124,7 +123,7 @@ impl Logic for Tracking {
         self.rate_high.next = self.capture.val() & !self.rate_fits.val() & !self.rate_negative.val();
         self.rate_low.next = self.capture.val() & !self.rate_fits.val() & self.rate_negative.val();
         if self.capture.val() {
-            self.error_q.d.next = signed_cast(self.nearest.val().get_bits::<24>(0));
+            self.error_q.d.next = signed_cast(self.difference.val().get_bits::<24>(0));
             self.error_rate_q.d.next = signed_cast(self.rate_bits.val());
             if !self.error_fits.val() {
                 self.error_q.d.next = self.largest_error.val();

@@ -82,12 +82,12 @@ impl Datapath {
     pub(super) fn capture(&mut self, law: Law, modulo: bool, motion: &Motion) {
         self.law = law;
         let position = i64::from(motion.position) << 8;
-        let difference = i64::from(motion.reference) - position;
+        let difference = i64::from(motion.position_reference) - position;
         // Positions count modulo 2^32 counts, references of a rotary axis modulo 2^24.
         let unused = if modulo { 32 } else { 24 };
         let nearest = (difference << unused) >> unused;
         self.error = self.flag(Saturation::Error, saturate(nearest, ERROR_BITS));
-        let rate = i64::from(motion.reference_velocity) - i64::from(motion.velocity);
+        let rate = i64::from(motion.velocity_reference) - i64::from(motion.velocity);
         self.error_rate = self.flag(Saturation::ErrorRate, saturate(rate, WORD_BITS));
     }
 
@@ -103,9 +103,9 @@ impl Datapath {
             4 if self.law == Law::Pid => self.integral,
             4 if self.law == Law::Pd => 0,
             4 | 10 => self.fraction,
-            5 | 8 => motion.reference_velocity,
+            5 | 8 => motion.velocity_reference,
             6 => self.feedback,
-            7 => motion.reference_acceleration,
+            7 => motion.acceleration_reference,
             9 => motion.velocity,
             _ => self.command,
         }

@@ -27,7 +27,7 @@
 //! settings.set_gain(Row::Feedback, Gain::nearest(1.0, Row::Feedback)?);
 //! settings.set_limit(1000 << 12);
 //! let mut controller = TickController::default();
-//! let motion = Motion { reference: 7 << 8, position: 3, ..Motion::default() };
+//! let motion = Motion { position_reference: 7 << 8, position: 3, ..Motion::default() };
 //! assert_eq!(controller.control(Law::Pd, false, &motion, &settings).command, 2 << 12);
 //! # Ok::<(), posicast_model::rtl::sliding_mode::GainError>(())
 //! ```

@@ -29,11 +29,11 @@ impl Law {
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Motion {
     /// r: Q24.8 counts.
-    pub reference: i32,
+    pub position_reference: i32,
     /// dr: Q16.16 counts/T.
-    pub reference_velocity: i32,
+    pub velocity_reference: i32,
     /// ddr: Q8.24 counts/T².
-    pub reference_acceleration: i32,
+    pub acceleration_reference: i32,
     /// Measured, counts.
     pub position: i32,
     /// Measured, Q16.16 counts/T.
@@ -137,9 +137,9 @@ pub fn ports() -> Vec<Port> {
         port("start", Input, 1, false),
         port("law", Input, 2, false),
         port("modulo", Input, 1, false),
-        port("reference", Input, 32, true),
-        port("reference_velocity", Input, 32, true),
-        port("reference_acceleration", Input, 32, true),
+        port("position_reference", Input, 32, true),
+        port("velocity_reference", Input, 32, true),
+        port("acceleration_reference", Input, 32, true),
         port("position", Input, 32, true),
         port("velocity", Input, 32, true),
         port("setting", Input, 32, false),
@@ -169,9 +169,9 @@ impl Inputs {
             start,
             law,
             modulo,
-            reference,
-            reference_velocity,
-            reference_acceleration,
+            position_reference,
+            velocity_reference,
+            acceleration_reference,
             position,
             velocity,
             setting,
@@ -187,9 +187,9 @@ impl Inputs {
             law: law as u8 & 3,
             modulo: modulo & 1 != 0,
             motion: Motion {
-                reference: reference as i32,
-                reference_velocity: reference_velocity as i32,
-                reference_acceleration: reference_acceleration as i32,
+                position_reference: position_reference as i32,
+                velocity_reference: velocity_reference as i32,
+                acceleration_reference: acceleration_reference as i32,
                 position: position as i32,
                 velocity: velocity as i32,
             },
@@ -206,9 +206,9 @@ impl Inputs {
             u64::from(self.start),
             u64::from(self.law & 3),
             u64::from(self.modulo),
-            u64::from(self.motion.reference as u32),
-            u64::from(self.motion.reference_velocity as u32),
-            u64::from(self.motion.reference_acceleration as u32),
+            u64::from(self.motion.position_reference as u32),
+            u64::from(self.motion.velocity_reference as u32),
+            u64::from(self.motion.acceleration_reference as u32),
             u64::from(self.motion.position as u32),
             u64::from(self.motion.velocity as u32),
             u64::from(self.setting),
