@@ -100,7 +100,7 @@ fn million_random_clocks(tick_clocks: u64) {
         negative,
         overrun,
     } = coverage;
-    assert!(done > 8_000 && clamped.min(negative).min(overrun) > 100, "{coverage:?}");
+    assert!(done > 6_000 && clamped.min(negative).min(overrun) > 100, "{coverage:?}");
     assert!(done - clamped > 1_000, "{coverage:?}");
 }
 
@@ -134,7 +134,7 @@ fn crosssim_icarus_agrees_with_the_model() {
 
 #[test]
 fn lockstep_catches_a_quotient_that_is_clamped_a_bit_too_late() {
-    let bench = Bench::new(5000, "FITS_PHASE = 7'd38", "FITS_PHASE = 7'd37");
+    let bench = Bench::new(5000, "FITS_PHASE = 7'd65", "FITS_PHASE = 7'd64");
     let (report, _) = bench.run(&mut bench.verilated(), 1, 200_000);
     assert_eq!(report.result, Verdict::Mismatch);
 }
