@@ -41,8 +41,8 @@ pub const ELAPSED_BITS: u32 = 24;
 pub const TICK_BITS: u32 = 17;
 /// Largest quotient in size: it has 32 bits.
 pub const QUOTIENT_MAX: i64 = (1 << 31) - 1;
-/// Clocks from `start` to `done`: 18 to multiply, 51 to divide, and the ends.
-pub const DIVISION_CLOCKS: u32 = 71;
+/// Clocks from `start` to `done`: 18 to multiply, 51 to divide, 32 for the sign, and the start.
+pub const DIVISION_CLOCKS: u32 = 102;
 
 /// What is fixed when a divider is built.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
