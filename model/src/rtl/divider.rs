@@ -8,7 +8,7 @@
 //! - A division takes [`DIVISION_CLOCKS`], whatever the numbers are. One divider serves all channels of a stage in turn.
 //!
 //! ```text
-//! clock     0   1   2            69  70  71
+//! clock     0   1   2            100 101 102
 //! start    ‾‾‾\______________________________
 //! steps    < n >-----------------------------
 //! busy     ___/‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾\_______
@@ -25,7 +25,7 @@
 //!
 //! let mut divider = Divider::new(&config);
 //! divider.step(&Inputs { start: true, steps: 3, elapsed: 7500, ..Inputs::default() });
-//! let waited = (1..100).find(|_| divider.step(&Inputs::default()).done);
+//! let waited = (1..200).find(|_| divider.step(&Inputs::default()).done);
 //! assert_eq!((waited, divider.outputs().quotient), (Some(DIVISION_CLOCKS), 2 << 16));
 //! # Ok::<(), posicast_model::rtl::divider::DividerConfigError>(())
 //! ```
