@@ -12,6 +12,7 @@
 //! | [`cascade`] | the cascade of half sums |
 //! | [`divider`] | counts and clocks to velocity, one bit per clock |
 //! | [`pulse_counter`] | encoder signals to position, index and velocity |
+//! | [`sliding_mode`] | the controller: sliding mode, PD, PID |
 //! | [`machine`] | a machine's top module: the blocks of its axes, side by side |
 //! | [`emit`](mod@emit) | the typed emitter: RustHDL's syntax tree as Verilog |
 
@@ -24,5 +25,6 @@ pub(crate) mod prim;
 pub mod pulse_counter;
 pub mod shaper;
 mod simulation;
+pub mod sliding_mode;
 
 pub use simulation::SimulationError;

@@ -7,6 +7,7 @@ pub mod cascade;
 pub mod divider;
 pub mod pulse_counter;
 pub mod shaper;
+pub mod sliding_mode;
 pub mod word;
 
 /// Direction of a port, seen from the block.
