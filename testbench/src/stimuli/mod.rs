@@ -26,7 +26,7 @@ pub use self::cascade::{CascadeCoverage, CascadeRandom};
 pub use self::corners::corners;
 pub use self::coverage::Coverage;
 pub use self::directed::{Action, Directed, cases, motion_cases};
-pub use self::divider::DividerRandom;
+pub use self::divider::{DividerCoverage, DividerRandom};
 pub use self::layout::{Axis, Layout};
 pub use self::motion::Motion;
 pub use self::pulse_counter::{PulseCounterCoverage, PulseCounterRandom};
