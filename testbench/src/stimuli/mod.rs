@@ -18,6 +18,8 @@ mod layout;
 mod motion;
 mod pulse_counter;
 mod random;
+mod registers;
+mod sliding_mode;
 mod table;
 
 pub use self::cascade::{CascadeCoverage, CascadeRandom};
@@ -29,6 +31,8 @@ pub use self::layout::{Axis, Layout};
 pub use self::motion::Motion;
 pub use self::pulse_counter::{PulseCounterCoverage, PulseCounterRandom};
 pub use self::random::Random;
+pub use self::registers::{ComponentRandom, RegistersCoverage, RegistersRandom};
+pub use self::sliding_mode::{SlidingModeCoverage, SlidingModeRandom};
 
 /// Makes the inputs of the next clock.
 pub trait Stimuli {
