@@ -18,6 +18,7 @@ mod layout;
 mod motion;
 mod pulse_counter;
 mod random;
+mod segments;
 mod table;
 
 pub use self::cascade::{CascadeCoverage, CascadeRandom};
@@ -29,6 +30,7 @@ pub use self::layout::{Axis, Layout};
 pub use self::motion::Motion;
 pub use self::pulse_counter::{PulseCounterCoverage, PulseCounterRandom};
 pub use self::random::Random;
+pub use self::segments::{SegmentsCoverage, SegmentsRandom};
 
 /// Makes the inputs of the next clock.
 pub trait Stimuli {
