@@ -17,9 +17,11 @@
 //! | [`time_base`], [`sample_select`] | what stand-alone components have beside |
 //! | [`component`] | the blocks that stand alone, each with its registers on a bus |
 //! | [`segments`] | the command FIFO: segments of constant jerk to position, velocity and acceleration |
+//! | [`axis`] | the supervisor of an axis: states, limits, brake, faults |
 //! | [`machine`] | a machine's top module: the blocks of its axes, side by side |
 //! | [`emit`](mod@emit) | the typed emitter: RustHDL's syntax tree as Verilog |
 
+pub mod axis;
 pub mod cascade;
 pub mod component;
 pub mod divider;

@@ -17,12 +17,14 @@
 //!
 //! A new block adds a file here that implements [`Block`]; nothing else has to know it.
 
+mod axis;
 mod cascade;
 mod divider;
 mod pulse_counter;
 mod shaper;
 mod sources;
 
+pub use self::axis::AxisBlock;
 pub use self::cascade::CascadeBlock;
 pub use self::divider::DividerBlock;
 pub use self::pulse_counter::PulseCounterBlock;
