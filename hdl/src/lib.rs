@@ -12,6 +12,7 @@
 //! | [`cascade`] | the cascade of half sums |
 //! | [`divider`] | counts and clocks to velocity, one bit per clock |
 //! | [`pulse_counter`] | encoder signals to position, index and velocity |
+//! | [`pwm`] | duty to the gates of a bridge, with dead time and fault path |
 //! | [`machine`] | a machine's top module: the blocks of its axes, side by side |
 //! | [`emit`](mod@emit) | the typed emitter: RustHDL's syntax tree as Verilog |
 
@@ -22,6 +23,7 @@ pub mod machine;
 pub(crate) mod prelude;
 pub(crate) mod prim;
 pub mod pulse_counter;
+pub mod pwm;
 pub mod shaper;
 mod simulation;
 

@@ -6,6 +6,7 @@
 pub mod cascade;
 pub mod divider;
 pub mod pulse_counter;
+pub mod pwm;
 pub mod shaper;
 pub mod word;
 

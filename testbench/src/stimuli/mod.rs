@@ -17,6 +17,7 @@ mod divider;
 mod layout;
 mod motion;
 mod pulse_counter;
+mod pwm;
 mod random;
 mod table;
 
@@ -28,6 +29,7 @@ pub use self::divider::DividerRandom;
 pub use self::layout::{Axis, Layout};
 pub use self::motion::Motion;
 pub use self::pulse_counter::{PulseCounterCoverage, PulseCounterRandom};
+pub use self::pwm::{GateSafety, PwmCoverage, PwmRandom};
 pub use self::random::Random;
 
 /// Makes the inputs of the next clock.
