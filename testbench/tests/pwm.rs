@@ -124,3 +124,35 @@ fn crosssim_icarus_agrees_with_the_model() {
     let mut icarus = Icarus::build(&source(&bench.files, &ports)).unwrap();
     assert_holds(&bench.run(&mut icarus, 4, 20_000));
 }
+
+/// Breaks the Verilog and insists on a mismatch.
+fn caught(from: &str, to: &str) -> Outcome {
+    let bench = Bench::new(plain(), from, to);
+    let outcome = bench.run(&mut bench.verilated(1), 1, 200_000);
+    assert_eq!(outcome.report.result, Verdict::Mismatch, "`{to}` is not found");
+    outcome
+}
+
+#[test]
+fn lockstep_catches_a_watchdog_that_a_feed_does_not_reset() {
+    caught("waits = running & !feed", "waits = running");
+}
+
+#[test]
+fn lockstep_catches_a_clear_while_the_fault_stands() {
+    caught(
+        "((clear_trip & !running) & latched) & over",
+        "(clear_trip & !running) & latched",
+    );
+}
+
+#[test]
+fn lockstep_catches_an_unlimited_duty() {
+    caught("magnitude_next = max_duty", "magnitude_next = size[15:0]");
+}
+
+#[test]
+fn lockstep_watches_the_gates_of_a_leg_without_dead_time() {
+    let outcome = caught("pause = dead_time;", "pause = 10'd1;");
+    assert!(outcome.violation.is_some(), "the gates are not watched");
+}
