@@ -17,6 +17,7 @@
 //! | [`time_base`], [`sample_select`] | what stand-alone components have beside |
 //! | [`component`] | the blocks that stand alone, each with its registers on a bus |
 //! | [`segments`] | the command FIFO: segments of constant jerk to position, velocity and acceleration |
+//! | [`pwm`] | duty to the gates of a bridge, with dead time and fault path |
 //! | [`machine`] | a machine's top module: the blocks of its axes, side by side |
 //! | [`emit`](mod@emit) | the typed emitter: RustHDL's syntax tree as Verilog |
 
@@ -28,6 +29,7 @@ pub mod machine;
 pub(crate) mod prelude;
 pub(crate) mod prim;
 pub mod pulse_counter;
+pub mod pwm;
 pub mod registers;
 pub mod sample_select;
 pub mod segments;
