@@ -11,9 +11,11 @@
 //! - [`icarus`] runs the same Verilog in a second, independent simulator that knows `x`.
 //! - [`stimuli`] makes inputs: directed cases, seeded random mixtures, real motion; and counts what they reached.
 //! - [`lockstep`] steps model and device side by side and compares every output in every clock.
+//! - [`blocks`] is the list of hardware blocks, each with its Verilog, model, stimuli and coverage.
 //! - [`campaign`] is the order of stimuli that a machine goes through; [`recording`] runs a real move into waveforms.
 //! - [`wave`] writes waveforms; [`diff`] compares two of them.
 
+pub mod blocks;
 pub mod campaign;
 pub mod diff;
 mod error;
@@ -26,4 +28,4 @@ mod tool;
 pub mod verilator;
 pub mod wave;
 
-pub use error::Error;
+pub use error::{BlockError, Error};

@@ -8,7 +8,7 @@
 //! - A division takes [`DIVISION_CLOCKS`], whatever the numbers are. One divider serves all channels of a stage in turn.
 //!
 //! ```text
-//! clock     0   1   2            69  70  71
+//! clock     0   1   2            100 101 102
 //! start    ‾‾‾\______________________________
 //! steps    < n >-----------------------------
 //! busy     ___/‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾\_______
@@ -25,13 +25,13 @@
 //!
 //! let mut divider = Divider::new(&config);
 //! divider.step(&Inputs { start: true, steps: 3, elapsed: 7500, ..Inputs::default() });
-//! let waited = (1..100).find(|_| divider.step(&Inputs::default()).done);
+//! let waited = (1..200).find(|_| divider.step(&Inputs::default()).done);
 //! assert_eq!((waited, divider.outputs().quotient), (Some(DIVISION_CLOCKS), 2 << 16));
 //! # Ok::<(), posicast_model::rtl::divider::DividerConfigError>(())
 //! ```
 
 use super::shaper::wrap;
-use super::{ClockedBlock, Direction, Port, StepError};
+use super::{ClockedBlock, Direction, Moore, Port, StepError};
 
 /// Width of `steps`.
 pub const STEP_BITS: u32 = 18;
@@ -240,6 +240,14 @@ impl ClockedBlock for Divider {
         let shown = Divider::step(self, &Inputs::from_raw(raw));
         outputs.copy_from_slice(&shown.to_raw());
         Ok(())
+    }
+}
+
+impl Moore for Divider {
+    fn show(&self, outputs: &mut [u64]) {
+        for (output, value) in outputs.iter_mut().zip(self.outputs().to_raw()) {
+            *output = value;
+        }
     }
 }
 
