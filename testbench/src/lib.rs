@@ -12,6 +12,7 @@
 //! - [`stimuli`] makes inputs: directed cases, seeded random mixtures, real motion; and counts what they reached.
 //! - [`lockstep`] steps model and device side by side and compares every output in every clock.
 //! - [`campaign`] is the order of stimuli that a machine goes through; [`recording`] runs a real move into waveforms.
+//! - [`register_tests`] asks registers, through the bus, for what their description promises.
 //! - [`wave`] writes waveforms; [`diff`] compares two of them.
 
 pub mod campaign;
@@ -21,6 +22,7 @@ pub mod icarus;
 pub mod lockstep;
 mod reader;
 pub mod recording;
+pub mod register_tests;
 pub mod stimuli;
 mod tool;
 pub mod verilator;

@@ -9,11 +9,11 @@ use posicast_model::taps::{Tap, TapTable};
 use posicast_testbench::lockstep::report::Verdict;
 use posicast_testbench::stimuli::ComponentRandom;
 
-fn pulse_counter() -> Component {
+pub(crate) fn pulse_counter() -> Component {
     Component::pulse_counter(DividerConfig::new(97).unwrap(), 3).unwrap()
 }
 
-fn shaper(word_bits: u32, channels: Option<u32>) -> Component {
+pub(crate) fn shaper(word_bits: u32, channels: Option<u32>) -> Component {
     let half = |delay_samples| Tap {
         delay_samples,
         coefficient: 1 << 15,

@@ -178,7 +178,7 @@ impl Component {
 
 /// What is not connected by name alone, and the conduit pins.
 struct Wiring {
-    part: Box<dyn Fn(&Block, Part) -> Part>,
+    part: fn(&Block, Part) -> Part,
     inputs: Vec<String>,
     outputs: Vec<String>,
 }
