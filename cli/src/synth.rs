@@ -94,6 +94,7 @@ pub(crate) fn text(estimate: &Estimate) -> String {
         registers: device.registers,
         memory_bits: device.memory_bits,
         multipliers: device.multipliers,
+        ..Resources::default()
     };
     row(device.name, &capacity);
     let mut text = table.text("");

@@ -12,6 +12,7 @@
 //! | [`cascade`] | the cascade of half sums |
 //! | [`divider`] | counts and clocks to velocity, one bit per clock |
 //! | [`pulse_counter`] | encoder signals to position, index and velocity |
+//! | [`sliding_mode`] | the controller: sliding mode, PD, PID |
 //! | [`registers`] | register banks, from their description |
 //! | [`time_base`], [`sample_select`] | what stand-alone components have beside |
 //! | [`component`] | the blocks that stand alone, each with its registers on a bus |
@@ -30,6 +31,7 @@ pub mod registers;
 pub mod sample_select;
 pub mod shaper;
 mod simulation;
+pub mod sliding_mode;
 pub mod time_base;
 
 pub use simulation::SimulationError;

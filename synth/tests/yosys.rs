@@ -5,7 +5,7 @@
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use posicast_synth::yosys::{Block, Estimate, Family, Resources, Yosys, YosysError};
+use posicast_synth::yosys::{Block, Estimate, Family, Mapping, Resources, Yosys, YosysError};
 
 fn rtl(names: &[&str]) -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/rtl");
@@ -56,10 +56,10 @@ fn netlist_memory_multipliers_and_registers_are_those_of_the_source() {
 
 #[test]
 fn netlist_a_counter_takes_about_a_cell_per_bit() {
-    // Each bit needs its LUT. Yosys adds some for the synchronous clear that a device has in its flip-flops.
+    // Each bit needs its LUT; the carry stays in the chain, the clear in the flip-flops.
     let cells = stage(Family::Cyclone2).blocks[2].resources.cells;
     assert!(
-        (10..=20).contains(&cells),
+        (10..=12).contains(&cells),
         "{cells} logic elements for a 10-bit counter"
     );
     let cells = stage(Family::Cyclone5).blocks[2].resources.cells;
@@ -204,4 +204,16 @@ fn unit_a_tool_that_hangs_is_stopped() {
     std::fs::set_permissions(&program, std::os::unix::fs::PermissionsExt::from_mode(0o755)).unwrap();
     let yosys = Yosys::at(&program).unwrap().with_time_limit(Duration::from_millis(50));
     assert!(matches!(yosys.check(&[], "top"), Err(YosysError::TimeOut { .. })));
+}
+
+#[test]
+fn netlist_the_logic_element_has_a_carry_chain_and_a_synchronous_clear() {
+    let cells = |mapping| {
+        let yosys = Yosys::installed().unwrap().with_mapping(mapping);
+        let total = yosys.estimate(&rtl(&["accumulator"]), "accumulator", Family::Cyclone2);
+        total.unwrap().total.cells
+    };
+    // 24 bits of a sum, 24 of a difference; the enable of the register together with its reset.
+    assert_eq!(cells(Mapping::LogicElement), 49);
+    assert!(cells(Mapping::Luts) > 120, "{}", cells(Mapping::Luts));
 }

@@ -1,17 +1,20 @@
-//! Shift and add, then shift and subtract, one bit per clock in one register.
+//! Shift and add, shift and subtract, shift and negate: one bit per clock in one register.
 //!
 //! ```text
-//! phase   0 … 17    product = { partial sum (17), what is left of |steps| (18) }: T is added where its lowest bit is set
-//! phase  18 … 68    |steps| · T leaves at the top into the remainder, then 16 zeros; quotient bits enter at the bottom
-//! phase  69         quotient := product, clamped and signed
+//! phase  27 …  44   product = { partial sum (17), what is left of steps (18) } moves down: T is added where the lowest bit
+//!                   of |steps| is set
+//! phase  45 …  95   product moves up: |steps| · T leaves at the top into the remainder, then 16 zeros; quotient bits enter
+//!                   at the bottom
+//! phase  96 … 127   product moves down once more: the quotient's bits enter at the top, negated or not
 //! ```
 //!
-//! |steps| · T < 2^35 and 16 fraction bits give a quotient of 51 bits. Its upper 20 must be zero, or it is clamped; those
-//! above the register's 35 leave at the top and, from phase 53 on, no longer go into the remainder.
+//! The lowest bit comes first wherever a number is negated, so that takes no adder: after the lowest one, every bit turns
+//! over. |steps| · T < 2^35 and 16 fraction bits give a quotient of 51 bits. Its upper 20 must be zero, or it is clamped:
+//! from there on all bits are ones. The phases are numbered so that they are easily told apart.
 
 use crate::prelude::*;
 use crate::simulation::Pins;
-use posicast_model::rtl::divider::{DividerConfig, QUOTIENT_MAX};
+use posicast_model::rtl::divider::DividerConfig;
 
 #[derive(LogicBlock)]
 pub(super) struct Divider {
@@ -32,6 +35,7 @@ pub(super) struct Divider {
     remainder: Dff<Bits<24>>,
     divisor: Dff<Bits<24>>,
     negative: Dff<Bit>,
+    turns_over: Dff<Bit>,
     too_large: Dff<Bit>,
     busy_q: Dff<Bit>,
     quotient_q: Dff<Signed<32>>,
@@ -39,30 +43,32 @@ pub(super) struct Divider {
     saturated_q: Dff<Bit>,
     overrun_q: Dff<Bit>,
 
-    magnitude: Signal<Local, Bits<18>>,
+    downward: Signal<Local, Bit>,
+    last_pass: Signal<Local, Bit>,
+    magnitude_bit: Signal<Local, Bit>,
+    entering: Signal<Local, Bits<1>>,
     addend: Signal<Local, Bits<18>>,
     partial: Signal<Local, Bits<18>>,
     next_bit: Signal<Local, Bits<1>>,
     shifted: Signal<Local, Bits<26>>,
     difference: Signal<Local, Bits<26>>,
-    quotient_bit: Signal<Local, Bits<1>>,
-    size: Signal<Local, Bits<32>>,
+    subtracts: Signal<Local, Bit>,
+    kept_bit: Signal<Local, Bits<1>>,
+    result: Signal<Local, Bits<32>>,
+    one_tick: Signal<Local, Bits<24>>,
 
     first_phase: Constant<Bits<7>>,
     one_phase: Constant<Bits<7>>,
     divide_phase: Constant<Bits<7>>,
-    result_phase: Constant<Bits<7>>,
-    zeros_phase: Constant<Bits<7>>,
     fits_phase: Constant<Bits<7>>,
+    zeros_phase: Constant<Bits<7>>,
+    sign_phase: Constant<Bits<7>>,
     no_clocks: Constant<Bits<24>>,
     tick_clocks: Constant<Bits<24>>,
     tick_addend: Constant<Bits<18>>,
     no_addend: Constant<Bits<18>>,
-    no_bits: Constant<Bits<18>>,
     no_bit: Constant<Bits<1>>,
     one_bit: Constant<Bits<1>>,
-    largest: Constant<Bits<32>>,
-    no_size: Constant<Bits<32>>,
 }
 
 impl Divider {
@@ -85,35 +91,38 @@ impl Divider {
             remainder: Dff::default(),
             divisor: Dff::default(),
             negative: Dff::default(),
+            turns_over: Dff::default(),
             too_large: Dff::default(),
             busy_q: Dff::default(),
             quotient_q: Dff::default(),
             done_q: Dff::default(),
             saturated_q: Dff::default(),
             overrun_q: Dff::default(),
-            magnitude: Signal::default(),
+            downward: Signal::default(),
+            last_pass: Signal::default(),
+            magnitude_bit: Signal::default(),
+            entering: Signal::default(),
             addend: Signal::default(),
             partial: Signal::default(),
             next_bit: Signal::default(),
             shifted: Signal::default(),
             difference: Signal::default(),
-            quotient_bit: Signal::default(),
-            size: Signal::default(),
-            first_phase: Constant::new(from_u64(0)),
+            subtracts: Signal::default(),
+            kept_bit: Signal::default(),
+            result: Signal::default(),
+            one_tick: Signal::default(),
+            first_phase: Constant::new(from_u64(27)),
             one_phase: Constant::new(from_u64(1)),
-            divide_phase: Constant::new(from_u64(18)),
-            result_phase: Constant::new(from_u64(69)),
-            zeros_phase: Constant::new(from_u64(53)),
-            fits_phase: Constant::new(from_u64(38)),
+            divide_phase: Constant::new(from_u64(45)),
+            fits_phase: Constant::new(from_u64(65)),
+            zeros_phase: Constant::new(from_u64(80)),
+            sign_phase: Constant::new(from_u64(96)),
             no_clocks: Constant::new(from_u64(0)),
             tick_clocks: Constant::new(from_u64(tick_clocks)),
             tick_addend: Constant::new(from_u64(tick_clocks)),
             no_addend: Constant::new(from_u64(0)),
-            no_bits: Constant::new(from_u64(0)),
             no_bit: Constant::new(from_u64(0)),
             one_bit: Constant::new(from_u64(1)),
-            largest: Constant::new(from_u64(QUOTIENT_MAX as u64)),
-            no_size: Constant::new(from_u64(0)),
         }
     }
 }
@@ -130,6 +139,7 @@ impl Logic for Divider {
             remainder,
             divisor,
             negative,
+            turns_over,
             too_large,
             busy_q,
             quotient_q,
@@ -142,78 +152,84 @@ impl Logic for Divider {
             self.overrun_q.d.next = false;
         }
 
-        comment!("Multiply: add T, or not, and shift right");
+        comment!("Lowest bit first: negate what is negative");
+        self.last_pass.next = self.phase.q.val() >= self.sign_phase.val();
+        self.downward.next = self.last_pass.val() | (self.phase.q.val() < self.divide_phase.val());
+        self.magnitude_bit.next = self.product.q.val().get_bit(0) ^ (self.negative.q.val() & self.turns_over.q.val());
+        self.turns_over.d.next = self.downward.val() & (self.turns_over.q.val() | self.product.q.val().get_bit(0));
+
+        comment!("Multiply: add T, or not, and shift down");
         self.addend.next = self.no_addend.val();
-        if self.product.q.val().get_bit(0) {
-            self.addend.next = self.tick_addend.val();
+        self.entering.next = self.no_bit.val();
+        if self.magnitude_bit.val() {
+            if self.last_pass.val() {
+                self.entering.next = self.one_bit.val();
+            } else {
+                self.addend.next = self.tick_addend.val();
+            }
         }
         self.partial.next = bit_cast::<18, 17>(self.product.q.val().get_bits::<17>(18)) + self.addend.val();
+        self.result.next =
+            (bit_cast::<32, 1>(self.entering.val()) << 31) | bit_cast::<32, 31>(self.product.q.val().get_bits::<31>(4));
 
         comment!("Divide: a bit into the remainder; subtract");
         self.next_bit.next = self.no_bit.val();
-        if self.phase.q.val() < self.zeros_phase.val() {
+        if !self.downward.val() & (self.phase.q.val() < self.zeros_phase.val()) {
             self.next_bit.next = self.product.q.val().get_bits::<1>(34);
         }
         self.shifted.next = (bit_cast::<26, 24>(self.remainder.q.val()) << 1) | bit_cast::<26, 1>(self.next_bit.val());
         self.difference.next = self.shifted.val() - bit_cast::<26, 24>(self.divisor.q.val());
-        self.quotient_bit.next = self.one_bit.val();
-        if self.difference.val().get_bit(25) {
-            self.quotient_bit.next = self.no_bit.val();
+        self.subtracts.next = !self.difference.val().get_bit(25);
+
+        comment!("Beyond 31 bits: all ones");
+        self.kept_bit.next = self.no_bit.val();
+        if (self.phase.q.val() >= self.fits_phase.val()) & (self.subtracts.val() | self.too_large.q.val()) {
+            self.kept_bit.next = self.one_bit.val();
         }
 
-        comment!("Clamp and sign");
-        self.size.next = bit_cast::<32, 31>(self.product.q.val().get_bits::<31>(0));
-        if self.too_large.q.val() {
-            self.size.next = self.largest.val();
+        comment!("One phase per clock; between divisions,");
+        comment!("what is in the registers does not matter");
+        if self.downward.val() {
+            self.product.d.next = (bit_cast::<35, 1>(self.entering.val()) << 34)
+                | (bit_cast::<35, 18>(self.partial.val()) << 17)
+                | bit_cast::<35, 17>(self.product.q.val().get_bits::<17>(1));
+        } else {
+            self.product.d.next = (self.product.q.val() << 1) | bit_cast::<35, 1>(self.kept_bit.val());
         }
-
-        comment!("One phase per clock");
+        self.remainder.d.next = self.shifted.val().get_bits::<24>(0);
+        if self.subtracts.val() {
+            self.remainder.d.next = self.difference.val().get_bits::<24>(0);
+        }
         if self.busy_q.q.val() {
             self.phase.d.next = self.phase.q.val() + self.one_phase.val();
-            if self.phase.q.val() < self.divide_phase.val() {
-                self.product.d.next = (bit_cast::<35, 18>(self.partial.val()) << 17)
-                    | bit_cast::<35, 17>(self.product.q.val().get_bits::<17>(1));
-            } else {
-                self.product.d.next = (self.product.q.val() << 1) | bit_cast::<35, 1>(self.quotient_bit.val());
-                self.remainder.d.next = self.shifted.val().get_bits::<24>(0);
-                if self.quotient_bit.val() == self.one_bit.val() {
-                    self.remainder.d.next = self.difference.val().get_bits::<24>(0);
-                    if self.phase.q.val() < self.fits_phase.val() {
-                        self.too_large.d.next = true;
-                    }
-                }
-            }
-            if self.phase.q.val() == self.result_phase.val() {
-                self.quotient_q.d.next = signed_cast(self.size.val());
-                if self.negative.q.val() {
-                    self.quotient_q.d.next = signed_cast(self.no_size.val() - self.size.val());
-                }
-                self.saturated_q.d.next = self.too_large.q.val();
-                self.done_q.d.next = true;
-                self.busy_q.d.next = false;
-            }
+        }
+        if self.subtracts.val() & !self.downward.val() & (self.phase.q.val() < self.fits_phase.val()) {
+            self.too_large.d.next = true;
+        }
+        if self.phase.q.val().all() {
+            self.quotient_q.d.next = signed_cast(self.result.val());
+            self.saturated_q.d.next = self.too_large.q.val();
+            self.done_q.d.next = true;
+            self.busy_q.d.next = false;
         }
 
         comment!("A start, unless a division runs");
-        self.magnitude.next = unsigned_cast(self.steps.val());
-        if self.steps.val().get_bit(17) {
-            self.magnitude.next = self.no_bits.val() - unsigned_cast(self.steps.val());
+        self.one_tick.next = self.no_clocks.val();
+        if !self.elapsed.val().any() {
+            self.one_tick.next = self.tick_clocks.val();
         }
-        if self.start.val() {
-            if self.busy_q.q.val() {
-                self.overrun_q.d.next = true;
-            } else {
-                self.busy_q.d.next = true;
-                self.phase.d.next = self.first_phase.val();
-                self.product.d.next = bit_cast::<35, 18>(self.magnitude.val());
-                self.remainder.d.next = self.no_clocks.val();
-                self.divisor.d.next = self.elapsed.val();
-                if !self.elapsed.val().any() {
-                    self.divisor.d.next = self.tick_clocks.val();
-                }
-                self.negative.d.next = self.steps.val().get_bit(17);
-                self.too_large.d.next = false;
-            }
+        if self.start.val() & self.busy_q.q.val() {
+            self.overrun_q.d.next = true;
+        }
+        if self.start.val() & !self.busy_q.q.val() {
+            self.busy_q.d.next = true;
+            self.phase.d.next = self.first_phase.val();
+            self.product.d.next = bit_cast::<35, 18>(unsigned_cast(self.steps.val()));
+            self.remainder.d.next = self.no_clocks.val();
+            self.divisor.d.next = self.elapsed.val() | self.one_tick.val();
+            self.negative.d.next = self.steps.val().get_bit(17);
+            self.turns_over.d.next = false;
+            self.too_large.d.next = false;
         }
 
         comment!("Outputs");

@@ -1,4 +1,6 @@
 //! Takes a new level once it has stood for more than `filter_clocks` clocks; until `ready`, the level follows the input.
+//!
+//! Counts down from `filter_clocks`, which it takes over in every clock without a difference: a comparison with nothing.
 
 use crate::prelude::*;
 
@@ -12,7 +14,7 @@ pub(super) struct GlitchFilter {
     pub(super) level: Signal<Out, Bit>,
 
     level_q: Dff<Bit>,
-    differs: Dff<Bits<6>>,
+    left: Dff<Bits<6>>,
 
     no_clocks: Constant<Bits<6>>,
     one_clock: Constant<Bits<6>>,
@@ -28,7 +30,7 @@ impl Default for GlitchFilter {
             filter_clocks: Signal::default(),
             level: Signal::default(),
             level_q: Dff::default(),
-            differs: Dff::default(),
+            left: Dff::default(),
             no_clocks: Constant::new(from_u64(0)),
             one_clock: Constant::new(from_u64(1)),
         }
@@ -40,14 +42,14 @@ impl Logic for GlitchFilter {
     fn update(&mut self) {
         comment!("@module glitch_filter");
         comment!("@about A level passes after filter_clocks + 1.");
-        dff_setup!(self, clk, level_q, differs);
-        self.differs.d.next = self.no_clocks.val();
-        if self.input_level.val() != self.level_q.q.val() {
-            self.differs.d.next = self.differs.q.val() + self.one_clock.val();
-            if !self.ready.val() | (self.differs.q.val() >= self.filter_clocks.val()) {
-                self.level_q.d.next = self.input_level.val();
-                self.differs.d.next = self.no_clocks.val();
-            }
+        dff_setup!(self, clk, level_q, left);
+        self.left.d.next = self.left.q.val() - self.one_clock.val();
+        if self.input_level.val() == self.level_q.q.val() {
+            self.left.d.next = self.filter_clocks.val();
+        }
+        if !self.ready.val() | (self.left.q.val() == self.no_clocks.val()) {
+            self.level_q.d.next = self.input_level.val();
+            self.left.d.next = self.filter_clocks.val();
         }
         self.level.next = self.level_q.q.val();
     }

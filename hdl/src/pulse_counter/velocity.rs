@@ -53,12 +53,12 @@ pub(super) struct Velocity {
     valid_q: Dff<Bit>,
     missed_q: Dff<Bit>,
 
-    end_stamp: Signal<Local, Bits<24>>,
     interval: Signal<Local, Bits<24>>,
-    counted: Signal<Local, Bits<18>>,
+    waits: Signal<Local, Bit>,
+    borrow: Signal<Local, Bits<19>>,
+    counted: Signal<Local, Bits<19>>,
     one_count: Signal<Local, Bits<18>>,
     rests: Signal<Local, Bit>,
-    measures: Signal<Local, Bit>,
     stale_time: Signal<Local, Bit>,
     stale: Signal<Local, Bit>,
     fresh: Signal<Local, Bit>,
@@ -77,7 +77,8 @@ pub(super) struct Velocity {
 
     no_elapsed: Constant<Bits<24>>,
     one_up: Constant<Bits<18>>,
-    one_down: Constant<Bits<18>>,
+    no_borrow: Constant<Bits<19>>,
+    one_borrow: Constant<Bits<19>>,
     no_steps: Constant<Bits<18>>,
     rounding: Constant<Bits<36>>,
     rest: Constant<Signed<35>>,
@@ -121,12 +122,12 @@ impl Default for Velocity {
             smoothed: Dff::new(from_i64(3)),
             valid_q: Dff::default(),
             missed_q: Dff::default(),
-            end_stamp: Signal::default(),
             interval: Signal::default(),
+            waits: Signal::default(),
+            borrow: Signal::default(),
             counted: Signal::default(),
             one_count: Signal::default(),
             rests: Signal::default(),
-            measures: Signal::default(),
             stale_time: Signal::default(),
             stale: Signal::default(),
             fresh: Signal::default(),
@@ -144,7 +145,8 @@ impl Default for Velocity {
             shrunk: Signal::default(),
             no_elapsed: Constant::new(from_u64(0)),
             one_up: Constant::new(from_u64(1)),
-            one_down: Constant::new(from_u64(u64::MAX)),
+            no_borrow: Constant::new(from_u64(0)),
+            one_borrow: Constant::new(from_u64(1)),
             no_steps: Constant::new(from_u64(0)),
             rounding: Constant::new(from_u64(3)),
             rest: Constant::new(from_i64(3)),
@@ -207,31 +209,31 @@ impl Logic for Velocity {
             if !self.within_bound.val() {
                 self.smoothed.d.next = signed_cast(self.shrunk.val());
             }
-            if self.halt.q.val() {
-                self.smoothed.d.next = self.rest.val();
-            }
+        }
+        if self.take.val() & self.halt.q.val() {
+            self.smoothed.d.next = self.rest.val();
         }
 
         comment!("The time from the reference to the last edge");
         comment!("or, without one in this tick, to now");
-        self.end_stamp.next = self.time_stamp.val();
-        if self.moved.q.val() {
-            self.end_stamp.next = self.last_stamp.q.val();
-        }
-        self.interval.next = self.end_stamp.val() - self.reference_stamp.q.val();
-        self.counted.next = self.count.val() - self.captured.q.val();
+        self.interval.next = self.last_stamp.q.val() - self.reference_stamp.q.val();
         self.stale_time.next = self.interval.val().get_bits::<8>(16) >= self.timeout.val();
         self.stale.next = self.stale_time.val() & !self.moved.q.val();
         self.fresh.next = self.known.q.val() & !self.stale.val();
+        self.rests.next = !self.velocity_m.val() & (!self.fresh.val() | self.turned.q.val());
 
-        self.rests.next = !self.fresh.val() | self.turned.q.val();
-        self.measures.next = self.velocity_m.val() | (self.moved.q.val() & !self.rests.val());
+        comment!("Steps; without an edge they are 0, and 1 or -1 shall be");
+        comment!("divided: a borrow into the lowest bit makes all bits ones");
+        self.waits.next = !self.moved.q.val() & !self.velocity_m.val();
+        self.borrow.next = self.no_borrow.val();
+        if self.waits.val() & self.smoothed.q.val().get_bit(34) {
+            self.borrow.next = self.one_borrow.val();
+        }
+        self.counted.next = (bit_cast::<19, 18>(self.count.val()) << 1)
+            - ((bit_cast::<19, 18>(self.captured.q.val()) << 1) | self.borrow.val());
         self.one_count.next = self.no_steps.val();
-        if !self.rests.val() {
+        if self.waits.val() {
             self.one_count.next = self.one_up.val();
-            if self.smoothed.q.val().get_bit(34) {
-                self.one_count.next = self.one_down.val();
-            }
         }
 
         comment!("A tick");
@@ -243,26 +245,32 @@ impl Logic for Velocity {
                 self.missed_q.d.next = true;
             }
             self.pending.d.next = true;
-            self.reference_stamp.d.next = self.last_stamp.q.val();
+            if self.moved.q.val() {
+                self.reference_stamp.d.next = self.last_stamp.q.val();
+            }
             self.captured.d.next = self.count.val();
             self.known.d.next = self.moved.q.val() | self.fresh.val();
             self.moved.d.next = false;
             self.turned.d.next = false;
+            self.bound.d.next = self.waits.val();
+            self.halt.d.next = self.rests.val();
+            self.steps_q.d.next = self.counted.val().get_bits::<18>(1) | self.one_count.val();
             self.elapsed_q.d.next = self.interval.val();
-            self.steps_q.d.next = self.one_count.val();
-            self.bound.d.next = !self.moved.q.val() & !self.velocity_m.val();
-            self.halt.d.next = self.rests.val() & !self.velocity_m.val();
-            if self.measures.val() {
-                self.steps_q.d.next = self.counted.val();
-            }
-            if self.velocity_m.val() {
-                self.elapsed_q.d.next = self.no_elapsed.val();
-            }
+        }
+        if self.tick.val() & self.rests.val() {
+            self.steps_q.d.next = self.no_steps.val();
+        }
+        if self.tick.val() & self.velocity_m.val() {
+            self.elapsed_q.d.next = self.no_elapsed.val();
+        }
+
+        comment!("The time of the last edge, or after a tick without, now");
+        if self.step.val() | self.tick.val() | !self.moved.q.val() {
+            self.last_stamp.d.next = self.time_stamp.val();
         }
 
         comment!("An edge; in the clock of a tick, of the next");
         if self.step.val() {
-            self.last_stamp.d.next = self.time_stamp.val();
             self.last_up.d.next = self.up.val();
             self.moved.d.next = true;
             if self.up.val() != self.last_up.q.val() {

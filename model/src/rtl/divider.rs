@@ -8,7 +8,7 @@
 //! - A division takes [`DIVISION_CLOCKS`], whatever the numbers are. One divider serves all channels of a stage in turn.
 //!
 //! ```text
-//! clock     0   1   2            69  70  71
+//! clock     0   1   2            100 101 102
 //! start    ‾‾‾\______________________________
 //! steps    < n >-----------------------------
 //! busy     ___/‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾\_______
@@ -25,7 +25,7 @@
 //!
 //! let mut divider = Divider::new(&config);
 //! divider.step(&Inputs { start: true, steps: 3, elapsed: 7500, ..Inputs::default() });
-//! let waited = (1..100).find(|_| divider.step(&Inputs::default()).done);
+//! let waited = (1..200).find(|_| divider.step(&Inputs::default()).done);
 //! assert_eq!((waited, divider.outputs().quotient), (Some(DIVISION_CLOCKS), 2 << 16));
 //! # Ok::<(), posicast_model::rtl::divider::DividerConfigError>(())
 //! ```
@@ -41,8 +41,8 @@ pub const ELAPSED_BITS: u32 = 24;
 pub const TICK_BITS: u32 = 17;
 /// Largest quotient in size: it has 32 bits.
 pub const QUOTIENT_MAX: i64 = (1 << 31) - 1;
-/// Clocks from `start` to `done`: 18 to multiply, 51 to divide, and the ends.
-pub const DIVISION_CLOCKS: u32 = 71;
+/// Clocks from `start` to `done`: 18 to multiply, 51 to divide, 32 for the sign, and the start.
+pub const DIVISION_CLOCKS: u32 = 102;
 
 /// What is fixed when a divider is built.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

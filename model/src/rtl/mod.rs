@@ -11,6 +11,7 @@ pub mod pulse_counter;
 pub mod registers;
 pub mod sample_select;
 pub mod shaper;
+pub mod sliding_mode;
 pub mod time_base;
 pub mod word;
 

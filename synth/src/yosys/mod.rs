@@ -4,13 +4,15 @@
 //! of it (`clock_mhz_estimate` is `None`). How the figures come about:
 //!
 //! - Logic and flip-flops: mapped by Yosys to Cyclone V for [`Family::Cyclone5`], and to Cyclone IV E for all others, whose
-//!   logic element it shares; then counted as `netlist` says. Quartus packs differently; its figures decide.
+//!   logic element it shares; then counted as `netlist` says. Quartus packs differently; its figures decide. Yosys does not
+//!   know that element's carry chain and synchronous clear; `logic_element.v` adds both ([`Mapping`]).
 //! - Memory and multipliers: counted from their sizes and left out of the mapping, since Yosys 0.23 maps neither for all
 //!   families. The registers of a multiplier count as flip-flops although a device can absorb them.
 //!
 //! Blocks are the instances in the top module, each flattened; what lies between them is a row under the top's name.
 
 mod family;
+mod m4k;
 mod netlist;
 mod process;
 
@@ -138,12 +140,23 @@ pub enum YosysError {
     },
 }
 
+/// How logic gets into logic elements. Cyclone V is mapped by Yosys in either case.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Mapping {
+    /// With the element's carry chain and synchronous clear.
+    #[default]
+    LogicElement,
+    /// As Yosys does it: sums and resets in LUTs.
+    Luts,
+}
+
 /// An installed Yosys, 0.23 (Debian 12) or newer.
 #[derive(Debug, Clone)]
 pub struct Yosys {
     program: PathBuf,
     version: String,
     time_limit: Duration,
+    mapping: Mapping,
 }
 
 impl Yosys {
@@ -164,6 +177,7 @@ impl Yosys {
             program: program.to_owned(),
             version: String::new(),
             time_limit: Duration::from_secs(600),
+            mapping: Mapping::default(),
         };
         let printed = yosys.run("yosys -V", &[], &["-V".as_ref()])?;
         // "Yosys 0.23 (git sha1 …)"
@@ -176,6 +190,12 @@ impl Yosys {
     #[must_use]
     pub fn with_time_limit(self, time_limit: Duration) -> Self {
         Self { time_limit, ..self }
+    }
+
+    /// Maps logic elements in this way, instead of the default.
+    #[must_use]
+    pub fn with_mapping(self, mapping: Mapping) -> Self {
+        Self { mapping, ..self }
     }
 
     /// Name and version, such as `Yosys 0.23`.
@@ -203,11 +223,16 @@ impl Yosys {
     pub fn estimate(&self, files: &[PathBuf], top: &str, family: Family) -> Result<Estimate, YosysError> {
         let top = module_name(top)?;
         let scratch = process::scratch()?;
-        for (name, text) in [("cells.v", include_str!("cells.v")), ("map.v", include_str!("map.v"))] {
+        let sources = [
+            ("cells.v", include_str!("cells.v")),
+            ("map.v", include_str!("map.v")),
+            ("logic_element.v", include_str!("logic_element.v")),
+        ];
+        for (name, text) in sources {
             let path = scratch.path().join(name);
             fs::write(&path, text).map_err(process::at(&path))?;
         }
-        let script = script(top, family);
+        let script = script(top, family, self.mapping);
         self.run_in(scratch.path(), top, files, &["-p".as_ref(), script.as_ref()])?;
 
         let path = scratch.path().join("netlist.json");
@@ -248,12 +273,22 @@ impl Yosys {
 
 /// Yosys's commands for an estimate. Instances in the top stay apart, so that each can be counted; memories and
 /// multipliers become black boxes before the family's own mapping sees them.
-fn script(top: &str, family: Family) -> String {
+fn script(top: &str, family: Family, mapping: Mapping) -> String {
     let map = match family.device().cell {
-        // Its last optimisation before the LUTs can leave a multiplexer behind, which `techmap` takes care of.
         Cell::LogicElement => {
             let synth = format!("synth_intel -family cycloneive -noflatten -nobram -top {top}");
-            format!("{synth} -run begin:map_luts; techmap; {synth} -run map_luts:vqm")
+            let to_luts = match mapping {
+                Mapping::Luts => format!("{synth} -run begin:map_luts"),
+                // A clear serves all flip-flops of a block of 16 elements: not worth it for few. What is left after that
+                // has none, and goes Yosys's way.
+                Mapping::LogicElement => format!(
+                    "{synth} -run begin:map_ffram; techmap -map logic_element.v t:$alu; {synth} -run map_ffram:map_ffs; \
+                     dfflegalize -cell $_SDFFCE_PP0P_ 01 -minsrst 8; opt_merge; techmap -map logic_element.v; \
+                     {synth} -run map_ffs:map_luts"
+                ),
+            };
+            // The last optimisation before the LUTs can leave a multiplexer behind, which `techmap` takes care of.
+            format!("{to_luts}; techmap; {synth} -run map_luts:vqm")
         }
         Cell::AdaptiveLogicModule => {
             let without = "-noflatten -nobram -nolutram -nodsp -noiopad -noclkbuf";

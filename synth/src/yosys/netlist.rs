@@ -1,7 +1,7 @@
 //! Counting a mapped netlist, as Yosys's `write_json` describes it.
 //!
-//! - Logic elements: LUTs, plus the flip-flops that cannot share a LUT's element. A flip-flop shares the element of the
-//!   LUT that drives its data input; a LUT gives room to one.
+//! - Logic elements: LUTs, a bit of a carry chain being one, plus the flip-flops that cannot share a LUT's element. A
+//!   flip-flop shares the element of the LUT that drives its data input; a LUT gives room to one.
 //! - ALMs: a 6-input LUT fills one, two smaller LUTs share one; one for every four flip-flops where those need more.
 //! - Memory bits and multipliers: from the sizes of the black boxes (`cells.v`), the same for every tool version.
 
@@ -11,6 +11,7 @@ use std::ops::AddAssign;
 use serde::{Deserialize, Serialize};
 
 use super::family::{Cell, Family};
+use super::m4k;
 
 /// What a block takes of a device.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
@@ -23,6 +24,12 @@ pub struct Resources {
     pub memory_bits: u64,
     /// Multipliers of 18 × 18 bits.
     pub multipliers: u64,
+    /// The LUTs among `cells`; not counted for Cyclone V, and no part of the document.
+    #[serde(skip)]
+    pub luts: u64,
+    /// Blocks of 4,608 bits that the memory would take in Cyclone II; no part of the document.
+    #[serde(skip)]
+    pub m4k_blocks: u64,
 }
 
 impl AddAssign for Resources {
@@ -31,6 +38,8 @@ impl AddAssign for Resources {
         self.registers = self.registers.saturating_add(other.registers);
         self.memory_bits = self.memory_bits.saturating_add(other.memory_bits);
         self.multipliers = self.multipliers.saturating_add(other.multipliers);
+        self.luts = self.luts.saturating_add(other.luts);
+        self.m4k_blocks = self.m4k_blocks.saturating_add(other.m4k_blocks);
     }
 }
 
@@ -140,7 +149,10 @@ fn count(netlist: &Netlist, module: &Module, family: Family) -> Result<Resources
                 let (reads, writes) = (size(cell, "RD_PORTS")?, size(cell, "WR_PORTS")?);
                 // A block RAM has two ports; more readers than that need a copy each.
                 let copies = if reads.saturating_add(writes) <= 2 { 1 } else { reads };
-                let bits = size(cell, "SIZE")?.saturating_mul(size(cell, "WIDTH")?);
+                let (words, width) = (size(cell, "SIZE")?, size(cell, "WIDTH")?);
+                let bits = words.saturating_mul(width);
+                let blocks = m4k::blocks(words, width).saturating_mul(copies);
+                total.m4k_blocks = total.m4k_blocks.saturating_add(blocks);
                 total.memory_bits = total.memory_bits.saturating_add(bits.saturating_mul(copies));
             }
             "posicast_multiplier" => {
@@ -154,7 +166,10 @@ fn count(netlist: &Netlist, module: &Module, family: Family) -> Result<Resources
         }
     }
     total.cells = match family.device().cell {
-        Cell::LogicElement => half_luts + total.registers - packed(&luts, &flip_flop_data),
+        Cell::LogicElement => {
+            total.luts = half_luts;
+            half_luts + total.registers - packed(&luts, &flip_flop_data)
+        }
         Cell::AdaptiveLogicModule => (wide_luts + half_luts.div_ceil(2)).max(total.registers.div_ceil(4)),
     };
     Ok(total)

@@ -6,8 +6,8 @@ use super::Inputs;
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub(super) struct GlitchFilter {
     level: bool,
-    /// Clocks that the input has differed from the level.
-    differs: u8,
+    /// Clocks that the input must differ from the level until it passes; `filter_clocks` as of the clock before it differed.
+    left: u8,
 }
 
 impl GlitchFilter {
@@ -17,15 +17,13 @@ impl GlitchFilter {
 
     /// One clock. Until `ready`, the level follows the input.
     pub(super) fn clock(&mut self, input: bool, filter_clocks: u8, ready: bool) {
-        let passes = !ready || self.differs >= filter_clocks & 63;
-        if input == self.level {
-            self.differs = 0;
-        } else if passes {
-            self.level = input;
-            self.differs = 0;
-        } else {
-            self.differs += 1;
+        let passes = !ready || self.left == 0;
+        if input != self.level && !passes {
+            self.left -= 1;
+            return;
         }
+        self.level = input;
+        self.left = filter_clocks & 63;
     }
 }
 

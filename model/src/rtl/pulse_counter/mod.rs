@@ -29,7 +29,7 @@ mod lines;
 mod ports;
 mod velocity;
 
-pub use ports::{Inputs, Outputs, ports};
+pub use ports::{FILTER_CLOCKS_MAX, Inputs, Outputs, ports};
 pub use velocity::SMOOTHING_BITS;
 
 use self::decode::decode;

@@ -23,7 +23,7 @@ enum Job {
 
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Velocity {
-    /// Of the last edge.
+    /// Of the last edge; without one since the last tick, of the clock before.
     last_stamp: u32,
     last_up: bool,
     /// Of the last edge before the last tick, if `known`.
@@ -109,17 +109,18 @@ impl Velocity {
         if inputs.tick {
             self.tick(inputs, count, negative);
         }
+        if step.is_some() || !self.moved {
+            self.last_stamp = inputs.time_stamp & ((1 << ELAPSED_BITS) - 1);
+        }
         if let Some(up) = step {
             self.turned |= up != self.last_up;
             self.last_up = up;
-            self.last_stamp = inputs.time_stamp & ((1 << ELAPSED_BITS) - 1);
             self.moved = true;
         }
     }
 
     fn tick(&mut self, inputs: &Inputs, count: i32, negative: bool) {
-        let end = if self.moved { self.last_stamp } else { inputs.time_stamp };
-        let elapsed = end.wrapping_sub(self.reference_stamp) & ((1 << ELAPSED_BITS) - 1);
+        let elapsed = self.last_stamp.wrapping_sub(self.reference_stamp) & ((1 << ELAPSED_BITS) - 1);
         let counted = wrap(i64::from(count.wrapping_sub(self.captured)), STEP_BITS) as i32;
         let stale = !self.moved && elapsed >> 16 >= u32::from(inputs.timeout);
         let one_back = if negative { -1 } else { 1 };
@@ -133,7 +134,9 @@ impl Velocity {
             (Job::Bound, one_back, elapsed)
         };
         self.known = self.moved || (self.known && !stale);
-        self.reference_stamp = self.last_stamp;
+        if self.moved {
+            self.reference_stamp = self.last_stamp;
+        }
         self.captured = count;
         self.moved = false;
         self.turned = false;

@@ -1,0 +1,109 @@
+//! The list of what is measured: a new block is a new row here.
+
+use posicast_hdl::emit::Module;
+use posicast_hdl::{cascade, divider, pulse_counter, shaper};
+use posicast_model::rtl::cascade::CascadeConfig;
+use posicast_model::rtl::divider::DividerConfig;
+use posicast_model::rtl::shaper::{Motion, ShaperConfig};
+use posicast_model::taps::{Tap, TapTable};
+use std::error::Error;
+
+/// What a block may take, by section 12 of the hardware's specification.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Budget {
+    pub(crate) luts: u64,
+    pub(crate) flip_flops: u64,
+}
+
+/// A block in one size.
+pub(crate) struct Row {
+    /// The block's name everywhere.
+    pub(crate) block: &'static str,
+    /// Its size, where it has several.
+    pub(crate) size: &'static str,
+    /// Its Verilog, the top last.
+    pub(crate) modules: Vec<Module>,
+    pub(crate) budget: Option<Budget>,
+    /// How many of it the XY stage has.
+    pub(crate) in_xy_stage: u64,
+    /// Why it takes more than its budget; for one that does not, what takes most.
+    pub(crate) note: &'static str,
+}
+
+/// All blocks, in the order of the table.
+pub(crate) fn rows() -> Result<Vec<Row>, Box<dyn Error>> {
+    Ok(vec![
+        Row {
+            block: "pulse_counter",
+            size: "all features",
+            modules: pulse_counter::emit("")?,
+            budget: Some(Budget {
+                luts: 450,
+                flip_flops: 300,
+            }),
+            in_xy_stage: 2,
+            note: "Flip-flops: 13 are for differential pairs (three more synchronisers, a filter) and go where `differential` \
+                   is tied low. LUT: a third is the one-pole filter.",
+        },
+        Row {
+            block: "divider",
+            size: "5000 clocks per tick",
+            modules: divider::emit(&DividerConfig::new(5000)?, "")?,
+            budget: Some(Budget {
+                luts: 200,
+                flip_flops: 150,
+            }),
+            in_xy_stage: 1,
+            note: "The 35-bit register and the remainder choose between two or three sources.",
+        },
+        Row {
+            block: "shaper",
+            size: "plain, 32 bits, ring 128",
+            modules: shaper::emit(&shaper()?, "")?,
+            budget: None,
+            in_xy_stage: 0,
+            note: "",
+        },
+        Row {
+            block: "shaper",
+            size: "motion, 3 channels, 32 bits, ring 128",
+            modules: shaper::emit(&shaper()?.for_motion(MOTION)?, "")?,
+            budget: None,
+            in_xy_stage: 2,
+            note: "",
+        },
+        cascade(16, 2, 62, "16 bits, 2 stages, ring 64")?,
+        cascade(32, 4, 62, "32 bits, 4 stages, ring 64")?,
+        cascade(32, 10, 62, "32 bits, 10 stages, ring 64")?,
+        cascade(32, 5, 1000, "32 bits, 5 stages, ring 1024")?,
+    ])
+}
+
+fn cascade(word_bits: u32, stages: usize, delay_samples: u32, size: &'static str) -> Result<Row, Box<dyn Error>> {
+    let config = CascadeConfig::new(word_bits, vec![delay_samples; stages])?;
+    Ok(Row {
+        block: "cascade",
+        size,
+        modules: cascade::emit(&config, "")?,
+        budget: None,
+        in_xy_stage: 0,
+        note: "",
+    })
+}
+
+/// Position, velocity and acceleration of an axis.
+const MOTION: Motion = Motion {
+    channels: 3,
+    modulo: false,
+};
+
+/// Six taps: ZVD digitised with two taps per impulse, 79 samples long.
+fn shaper() -> Result<ShaperConfig, Box<dyn Error>> {
+    let taps = [(0, 25431), (38, 12000), (39, 18787), (77, 4000), (78, 5317), (79, 1)];
+    let tap = |(delay_samples, coefficient)| Tap {
+        delay_samples,
+        coefficient,
+    };
+    let table = TapTable::new(16, taps.map(tap).to_vec())?;
+    Ok(ShaperConfig::new(32, table)?)
+}

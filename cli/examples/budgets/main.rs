@@ -1,0 +1,99 @@
+//! What every block takes of a Cyclone II, against the budgets of the hardware's specification.
+//!
+//! ```text
+//! cargo run --release -p posicast --example budgets              measure, compare with docs/area.md
+//! cargo run --release -p posicast --example budgets -- --write   measure, write docs/area.md
+//! ```
+//!
+//! Exit status 1: a figure is larger than the one written down, or a row is not written down. So area cannot grow unseen;
+//! where growth is meant, `--write` makes it part of the change. Smaller figures pass. Needs Yosys; takes some seconds.
+#![allow(clippy::print_stdout, clippy::print_stderr, reason = "its purpose")]
+
+mod blocks;
+mod table;
+
+use blocks::Row;
+use posicast_hdl::emit::Module;
+use posicast_synth::yosys::{Family, Mapping, Resources, Yosys};
+use std::error::Error;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+/// A row's figures.
+struct Measured {
+    row: Row,
+    resources: Resources,
+    /// LUTs where Yosys alone maps: no carry chain, no synchronous clear.
+    luts_by_yosys: u64,
+}
+
+fn main() -> Result<ExitCode, Box<dyn Error>> {
+    let write = match std::env::args().skip(1).collect::<Vec<_>>().as_slice() {
+        [] => false,
+        [option] if option == "--write" => true,
+        _ => return Err("the only option is --write".into()),
+    };
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/area.md");
+    let yosys = Yosys::installed()?;
+    let measured: Result<Vec<_>, _> = blocks::rows()?.into_iter().map(|row| measure(&yosys, row)).collect();
+    let page = table::page(yosys.version(), &measured?);
+    print!("{page}");
+    if write {
+        std::fs::write(&path, page)?;
+        return Ok(ExitCode::SUCCESS);
+    }
+    let grown = table::grown(&std::fs::read_to_string(&path)?, &page);
+    for line in &grown {
+        eprintln!("{line}");
+    }
+    if grown.is_empty() {
+        return Ok(ExitCode::SUCCESS);
+    }
+    eprintln!("If that is meant: cargo run --release -p posicast --example budgets -- --write");
+    Ok(ExitCode::FAILURE)
+}
+
+fn measure(yosys: &Yosys, row: Row) -> Result<Measured, Box<dyn Error>> {
+    let folder = tempfile::tempdir()?;
+    let write = |module: &Module| {
+        let path = folder.path().join(format!("{}.v", module.name));
+        std::fs::write(&path, &module.text).map(|()| path)
+    };
+    let files: Vec<PathBuf> = row.modules.iter().map(write).collect::<Result<_, _>>()?;
+    // The block stands alone in a module without logic, so that it is mapped as one.
+    let top = folder.path().join("budget.v");
+    std::fs::write(&top, around(&row.modules))?;
+    let files: Vec<PathBuf> = files.into_iter().chain([top]).collect();
+    let estimate = |mapping| {
+        let yosys = yosys.clone().with_mapping(mapping);
+        yosys.estimate(&files, "budget", Family::Cyclone2)
+    };
+    Ok(Measured {
+        resources: estimate(Mapping::LogicElement)?.total,
+        luts_by_yosys: estimate(Mapping::Luts)?.total.luts,
+        row,
+    })
+}
+
+/// A module `budget` around the last of `modules`: with one instance, every block is one row of the estimate.
+fn around(modules: &[Module]) -> String {
+    let Some(block) = modules.last() else {
+        return String::new();
+    };
+    let mut ports = vec!["input clk".to_owned()];
+    let mut connections = vec![".clk(clk)".to_owned()];
+    for port in &block.ports {
+        let direction = match port.direction {
+            posicast_model::rtl::Direction::Input => "input",
+            posicast_model::rtl::Direction::Output => "output",
+        };
+        ports.push(format!("{direction} [{}:0] {}", port.width - 1, port.name));
+        connections.push(format!(".{0}({0})", port.name));
+    }
+    format!(
+        "module budget ({});\n    {} block ({});\nendmodule\n",
+        ports.join(", "),
+        block.name,
+        connections.join(", ")
+    )
+}

@@ -1,0 +1,111 @@
+//! The page `docs/area.md`, and what has grown since it was written.
+
+use crate::Measured;
+use posicast_synth::yosys::{Family, Resources};
+use std::collections::BTreeMap;
+use std::fmt::Write;
+
+const HEAD: &str = "| block | size | LUT | flip-flops | LE | M4K | 18×18 | LUT by Yosys alone | budget | note |
+|---|---|---|---|---|---|---|---|---|---|
+";
+
+/// The whole page.
+pub(crate) fn page(tool: &str, measured: &[Measured]) -> String {
+    let device = Family::Cyclone2.device();
+    let mut text = format!(
+        "# Area\n\n\
+         What the blocks take of an {} ({} LE, {} M4K blocks, {} multipliers). **An estimate by {tool}**, before place and\n\
+         route; [synthesis](synthesis.md) tells how it comes about. Written by\n\n\
+         ```\n\
+         cargo run --release -p posicast --example budgets -- --write\n\
+         ```\n\n\
+         Without `--write` the command compares, and fails where a figure has grown.\n\n\
+         - **LUT**: logic, with a logic element's carry chain and synchronous clear. **LUT by Yosys alone** is without both,\n  \
+         which `synth_intel -family cycloneive` does not map: sums and resets are in it as logic.\n\
+         - **LE**: LUT and the flip-flops that no LUT drives.\n\
+         - **M4K**: counted by the shape of the ports. **18×18**: multipliers by the width of their operands.\n\
+         - **budget**: LUT + flip-flops, where there is one. The note tells what is above it (⚠), or what takes most.\n\n\
+         {HEAD}",
+        device.name, device.cells, M4K_BLOCKS, device.multipliers
+    );
+    for one in measured {
+        let Measured { row, resources, .. } = one;
+        let budget = row.budget.map_or("–".to_owned(), |budget| {
+            let above = resources.luts > budget.luts || resources.registers > budget.flip_flops;
+            let mark = if above { "⚠ " } else { "" };
+            format!("{mark}{} + {}", budget.luts, budget.flip_flops)
+        });
+        let _ = writeln!(
+            text,
+            "| {} | {} | {} | {} | {budget} | {} |",
+            row.block,
+            row.size,
+            figures(resources),
+            one.luts_by_yosys,
+            row.note
+        );
+    }
+    let mut stage = Resources::default();
+    let mut parts = Vec::new();
+    for one in measured.iter().filter(|one| one.row.in_xy_stage > 0) {
+        (0..one.row.in_xy_stage).for_each(|_| stage += one.resources);
+        parts.push(format!("{} {}", one.row.in_xy_stage, one.row.block));
+    }
+    let _ = write!(
+        text,
+        "\n## The XY stage so far\n\n\
+         Of its blocks there are: {}. Their sum:\n\n\
+         | | LE | M4K | 18×18 |\n|---|---|---|---|\n\
+         | sum | {} | {} | {} |\n\
+         | budget | {} (55 %) | 18 | 8 |\n",
+        parts.join(", "),
+        stage.cells,
+        stage.m4k_blocks,
+        stage.multipliers,
+        device.cells * 55 / 100
+    );
+    text
+}
+
+/// M4K blocks of the device.
+const M4K_BLOCKS: u64 = 52;
+
+fn figures(resources: &Resources) -> String {
+    let figures = [
+        resources.luts,
+        resources.registers,
+        resources.cells,
+        resources.m4k_blocks,
+        resources.multipliers,
+    ];
+    figures.map(|figure| figure.to_string()).join(" | ")
+}
+
+/// One line for each figure of `new` that is above that of `old`, or that `old` has not.
+pub(crate) fn grown(old: &str, new: &str) -> Vec<String> {
+    const NAMES: [&str; 5] = ["LUT", "flip-flops", "LE", "M4K", "18×18"];
+    let written = rows(old);
+    let mut lines = Vec::new();
+    for (name, now) in rows(new) {
+        let Some(before) = written.get(&name) else {
+            lines.push(format!("{name}: is not in docs/area.md"));
+            continue;
+        };
+        for ((what, now), before) in NAMES.iter().zip(now).zip(before) {
+            if now > *before {
+                lines.push(format!("{name}: {now} {what}, docs/area.md says {before}"));
+            }
+        }
+    }
+    lines
+}
+
+/// The figures of a page by block and size.
+fn rows(page: &str) -> BTreeMap<String, Vec<u64>> {
+    let row = |line: &str| {
+        let cells: Vec<&str> = line.split('|').map(str::trim).collect();
+        let figures: Result<Vec<u64>, _> = cells.get(3..8)?.iter().map(|cell| cell.parse()).collect();
+        Some((format!("{} ({})", cells[1], cells[2]), figures.ok()?))
+    };
+    page.lines().filter_map(row).collect()
+}

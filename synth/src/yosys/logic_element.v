@@ -1,0 +1,69 @@
+// What the logic element of Cyclone II to IV, Cyclone 10 LP and MAX 10 does and Yosys's mapping leaves out: its arithmetic
+// mode and the flip-flop's synchronous clear. (Cyclone II Device Handbook, "Logic Elements", "LE Operating Modes".)
+
+// Arithmetic mode: a bit of a sum or difference per element, of two inputs and the carry. Short ones stay in LUTs, and with
+// them comparisons of short numbers with constants.
+(* techmap_celltype = "$alu" *)
+module posicast_map_carry_chain(A, B, CI, BI, X, Y, CO);
+    parameter A_SIGNED = 0;
+    parameter B_SIGNED = 0;
+    parameter A_WIDTH = 1;
+    parameter B_WIDTH = 1;
+    parameter Y_WIDTH = 1;
+    parameter _TECHMAP_CONSTMSK_CI_ = 0;
+    parameter _TECHMAP_CONSTMSK_BI_ = 0;
+    parameter _TECHMAP_CONSTVAL_BI_ = 0;
+    input [A_WIDTH-1:0] A;
+    input [B_WIDTH-1:0] B;
+    input CI, BI;
+    output [Y_WIDTH-1:0] X, Y, CO;
+
+    wire _TECHMAP_FAIL_ = Y_WIDTH < 8;
+
+    wire [Y_WIDTH-1:0] a, b;
+    \$pos #(.A_SIGNED(A_SIGNED), .A_WIDTH(A_WIDTH), .Y_WIDTH(Y_WIDTH)) extend_a (.A(A), .Y(a));
+    \$pos #(.A_SIGNED(B_SIGNED), .A_WIDTH(B_WIDTH), .Y_WIDTH(Y_WIDTH)) extend_b (.A(B), .Y(b));
+
+    // A fixed difference is another table in the same element. One that is chosen by a signal inverts in LUTs of its own.
+    wire [Y_WIDTH-1:0] added = _TECHMAP_CONSTMSK_BI_ ? b : b ^ {Y_WIDTH{BI}};
+    localparam [15:0] TABLE = _TECHMAP_CONSTMSK_BI_ && _TECHMAP_CONSTVAL_BI_ ? 16'h69b2 : 16'h96e8;
+
+    // So does a carry into the chain that is a signal take an element of its own,
+    wire [Y_WIDTH:0] carry;
+    generate
+        if (_TECHMAP_CONSTMSK_CI_) begin
+            assign carry[0] = CI;
+        end else begin
+            cycloneive_lcell_comb #(.lut_mask(16'haaaa), .sum_lutc_input("cin")) carry_in (
+                .dataa(CI), .datab(1'b1), .datac(1'b1), .datad(1'b1), .cout(carry[0])
+            );
+        end
+    endgenerate
+
+    genvar i;
+    generate
+        for (i = 0; i < Y_WIDTH; i = i + 1) begin : bits
+            cycloneive_lcell_comb #(.lut_mask(TABLE), .sum_lutc_input("cin")) sum (
+                .dataa(a[i]), .datab(added[i]), .datac(1'b1), .datad(1'b1),
+                .cin(carry[i]), .combout(Y[i]), .cout(carry[i+1])
+            );
+            // and one that leaves it for other logic.
+            cycloneive_lcell_comb #(.lut_mask(16'hf0f0), .sum_lutc_input("cin")) carry_out (
+                .dataa(1'b1), .datab(1'b1), .datac(1'b1), .datad(1'b1), .cin(carry[i+1]), .combout(CO[i])
+            );
+        end
+    endgenerate
+    assign X = a ^ b ^ {Y_WIDTH{BI}};
+endmodule
+
+// Synchronous clear, of enabled clocks only.
+(* techmap_celltype = "$_SDFFCE_PP0P_" *)
+module posicast_map_cleared_flip_flop(input D, C, R, E, output Q);
+    parameter _TECHMAP_WIREINIT_Q_ = 1'bx;
+    localparam POWER_UP = _TECHMAP_WIREINIT_Q_ === 1'b1 ? "high" : "low";
+    wire _TECHMAP_REMOVEINIT_Q_ = 1;
+
+    dffeas #(.is_wysiwyg("TRUE"), .power_up(POWER_UP)) _TECHMAP_REPLACE_ (
+        .d(D), .q(Q), .clk(C), .clrn(1'b1), .prn(1'b1), .ena(E), .asdata(1'b0), .aload(1'b0), .sclr(R), .sload(1'b0)
+    );
+endmodule
