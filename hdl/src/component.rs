@@ -4,7 +4,7 @@
 //! around them.
 
 use crate::emit::{EmitError, Header, Module, connect};
-use crate::{divider, pulse_counter, registers, sample_select, shaper, time_base};
+use crate::{divider, pulse_counter, registers, sample_select, setting_banks, shaper, sliding_mode, time_base};
 use posicast_model::rtl::component::{Block, Component};
 
 /// All Verilog modules of a component, sub-modules first, the top last. The top is called `name`, the others begin with it.
@@ -18,7 +18,9 @@ pub fn emit(component: &Component, name: &str) -> Result<Vec<Module>, EmitError>
         let of_block = match block {
             Block::Registers => vec![registers::emit(component.map(), name)?],
             Block::Shaper(config) => shaper::emit(config, name)?,
-            Block::SampleSelect(config) => sample_select::emit(config, name)?,
+            Block::SampleSelect { word_bits, channels } => sample_select::emit(*word_bits, *channels, name)?,
+            Block::SlidingMode => sliding_mode::emit(name)?,
+            Block::SettingBanks(machine) => setting_banks::emit(machine, name)?,
             Block::PulseCounter => pulse_counter::emit(name)?,
             Block::Divider(config) => divider::emit(config, name)?,
             Block::TimeBase(config) => time_base::emit(config, name)?,

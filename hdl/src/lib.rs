@@ -14,7 +14,7 @@
 //! | [`pulse_counter`] | encoder signals to position, index and velocity |
 //! | [`sliding_mode`] | the controller: sliding mode, PD, PID |
 //! | [`registers`] | register banks, from their description |
-//! | [`time_base`], [`sample_select`] | what stand-alone components have beside |
+//! | [`time_base`], [`sample_select`], [`setting_banks`] | what stand-alone components have beside |
 //! | [`component`] | the blocks that stand alone, each with its registers on a bus |
 //! | [`machine`] | a machine's top module: the blocks of its axes, side by side |
 //! | [`emit`](mod@emit) | the typed emitter: RustHDL's syntax tree as Verilog |
@@ -29,6 +29,7 @@ pub(crate) mod prim;
 pub mod pulse_counter;
 pub mod registers;
 pub mod sample_select;
+pub mod setting_banks;
 pub mod shaper;
 mod simulation;
 pub mod sliding_mode;

@@ -1,6 +1,6 @@
 //! The six classic register tests: bank and components, model and Verilog. And each catches a bank that is wrong.
 
-use crate::components::{pulse_counter, shaper};
+use crate::components::{pulse_counter, shaper, sliding_mode};
 use crate::everything::everything;
 use crate::support::Bench;
 use posicast_hdl::component::emit;
@@ -55,6 +55,11 @@ fn lockstep_the_verilog_of_a_bank_keeps_its_promises() {
 #[test]
 fn lockstep_the_pulse_counter_keeps_its_promises() {
     component(&pulse_counter());
+}
+
+#[test]
+fn lockstep_the_sliding_mode_keeps_its_promises() {
+    component(&sliding_mode());
 }
 
 #[test]

@@ -8,7 +8,7 @@ const OUTPUTS: [&str; 4] = ["tick", "position", "velocity", "velocity_valid"];
 
 pub(super) fn wiring() -> Wiring {
     Wiring {
-        part: |block, part| match block {
+        part: Box::new(|block, part| match block {
             Block::PulseCounter => part.on("time_stamp", "edge_stamp"),
             Block::Divider(_) => part
                 .on("start", "divide")
@@ -17,7 +17,7 @@ pub(super) fn wiring() -> Wiring {
                 .on("overrun", "divider_overrun")
                 .tied("clear_flags", 1),
             _ => part,
-        },
+        }),
         inputs: INPUTS.map(str::to_owned).to_vec(),
         outputs: OUTPUTS.map(str::to_owned).to_vec(),
     }

@@ -10,7 +10,7 @@ use super::{Block, Wiring};
 pub(super) fn wiring(config: &ShaperConfig) -> Wiring {
     let strobes = ["strobe", "start"].map(str::to_owned);
     Wiring {
-        part,
+        part: Box::new(rewire(words(config, "x"))),
         inputs: [strobes.to_vec(), words(config, "x")].concat(),
         outputs: [words(config, "y"), vec!["valid".to_owned()]].concat(),
     }
@@ -21,30 +21,30 @@ fn words(config: &ShaperConfig, name: &str) -> Vec<String> {
     channels.map(|channel| word_name(config, name, channel)).collect()
 }
 
-fn part(block: &Block, part: Part) -> Part {
-    match block {
-        Block::SampleSelect(config) => {
-            let part = part
-                .on("pin_strobe", "strobe")
-                .on("pin_start", "start")
-                .on("strobe", "sample_strobe")
-                .on("start", "sample_start");
-            let pins = words(config, "x").into_iter().enumerate();
-            pins.fold(part, |part, (channel, pin)| {
-                part.on(&format!("pin_x_{channel}"), &pin)
-                    .on(&format!("x_{channel}"), &format!("sample_x_{channel}"))
-            })
+/// `xs`: the pins of the words, and the shaper's ports.
+fn rewire(xs: Vec<String>) -> impl Fn(&Block, Part) -> Part {
+    move |block, part| {
+        let words = xs.iter().enumerate();
+        match block {
+            Block::SampleSelect { .. } => {
+                let part = part
+                    .on("pin_strobe", "strobe")
+                    .on("pin_start", "start")
+                    .on("strobe", "sample_strobe")
+                    .on("start", "sample_start");
+                words.fold(part, |part, (channel, x)| {
+                    part.on(&format!("pin_x_{channel}"), x)
+                        .on(&format!("x_{channel}"), &format!("sample_x_{channel}"))
+                })
+            }
+            Block::Shaper(_) => {
+                let part = part
+                    .on("strobe", "sample_strobe")
+                    .on("start", "sample_start")
+                    .tied("clear_flags", 1);
+                words.fold(part, |part, (channel, x)| part.on(x, &format!("sample_x_{channel}")))
+            }
+            _ => part,
         }
-        Block::Shaper(config) => {
-            let part = part
-                .on("strobe", "sample_strobe")
-                .on("start", "sample_start")
-                .tied("clear_flags", 1);
-            let ports = words(config, "x").into_iter().enumerate();
-            ports.fold(part, |part, (channel, port)| {
-                part.on(&port, &format!("sample_x_{channel}"))
-            })
-        }
-        _ => part,
     }
 }
