@@ -14,7 +14,7 @@
 //! | [`pulse_counter`] | encoder signals to position, index and velocity |
 //! | [`sliding_mode`] | the controller: sliding mode, PD, PID |
 //! | [`registers`] | register banks, from their description |
-//! | [`time_base`], [`sample_select`] | what stand-alone components have beside |
+//! | [`time_base`], [`sample_select`], [`setting_banks`] | what stand-alone components have beside |
 //! | [`component`] | the blocks that stand alone, each with its registers on a bus |
 //! | [`segments`] | the command FIFO: segments of constant jerk to position, velocity and acceleration |
 //! | [`pwm`] | duty to the gates of a bridge, with dead time and fault path |
@@ -33,6 +33,7 @@ pub mod pwm;
 pub mod registers;
 pub mod sample_select;
 pub mod segments;
+pub mod setting_banks;
 pub mod shaper;
 mod simulation;
 pub mod sliding_mode;

@@ -12,6 +12,7 @@ pub mod pwm;
 pub mod registers;
 pub mod sample_select;
 pub mod segments;
+pub mod setting_banks;
 pub mod shaper;
 pub mod sliding_mode;
 pub mod time_base;
