@@ -9,7 +9,7 @@
 //! let block = PulseCounterBlock::new("", "all axes");
 //! let sources = Sources::write(&block)?;
 //! let mut device = sources.verilated(&block, 1)?;
-//! let run = blocks::compare(&block, &mut device, 1_000_000, 1, &mut |_| {})?;
+//! let run = blocks::compare_and_count(&block, &mut device, 1_000_000, 1)?;
 //! assert_eq!(run.report.mismatches(), 0);
 //! assert!(run.coverage.iter().all(|(_, count)| *count > 0), "{:?}", run.coverage);
 //! # Ok::<(), posicast_testbench::Error>(())
@@ -18,15 +18,21 @@
 //! A new block adds a file here that implements [`Block`]; nothing else has to know it.
 
 mod cascade;
+mod component;
 mod divider;
 mod pulse_counter;
+mod registers;
 mod shaper;
+mod sliding_mode;
 mod sources;
 
 pub use self::cascade::CascadeBlock;
+pub use self::component::ComponentBlock;
 pub use self::divider::DividerBlock;
 pub use self::pulse_counter::PulseCounterBlock;
+pub use self::registers::RegistersBlock;
 pub use self::shaper::{MachineShapers, ShaperBlock};
+pub use self::sliding_mode::SlidingModeBlock;
 pub use self::sources::{Sources, rusthdl};
 
 use posicast_hdl::SimulationError;
@@ -58,11 +64,11 @@ pub trait Block: Send + Sync {
     /// The bit-exact model. Memories start with contents that depend on the seed.
     fn model(&self, seed: u64) -> Box<dyn ClockedBlock>;
 
-    /// The block in RustHDL's simulator.
+    /// The block in RustHDL's simulator; none where it is not written in RustHDL as a whole.
     ///
     /// # Errors
     /// [`SimulationError`] where RustHDL finds a fault in the block.
-    fn simulate(&self) -> Result<Box<dyn ClockedBlock>, SimulationError>;
+    fn simulate(&self) -> Result<Option<Box<dyn ClockedBlock>>, SimulationError>;
 
     /// Inputs for a run of `cycles` clocks: directed cases where there are any, then random, by the seed.
     fn stimuli(&self, cycles: u64, seed: u64) -> Box<dyn Stimuli + '_>;
@@ -85,7 +91,7 @@ pub trait Bins {
     fn counts(&self) -> Vec<(String, u64)>;
 }
 
-/// A lock step that is over.
+/// A lock step that is over, and what it reached.
 #[derive(Debug, Clone)]
 pub struct Run {
     /// Whether it matched.
@@ -113,45 +119,43 @@ pub fn compare(
     cycles: u64,
     seed: u64,
     progress: &mut dyn FnMut(u64),
-) -> Result<Run, Error> {
-    compare_with(
-        block,
-        device,
-        block.stimuli(cycles, seed).as_mut(),
-        cycles,
-        seed,
-        progress,
-    )
+) -> Result<Report, Error> {
+    lockstep_of(block, device, cycles, seed, &mut |_| {}, progress)
 }
 
-/// The same under other stimuli.
+/// The same, and counts what the run reached.
 ///
 /// # Errors
 /// As [`lockstep::run`].
-pub fn compare_with(
-    block: &dyn Block,
-    device: &mut dyn Device,
-    stimuli: &mut dyn Stimuli,
-    cycles: u64,
-    seed: u64,
-    progress: &mut dyn FnMut(u64),
-) -> Result<Run, Error> {
-    let mut model = block.model(seed);
-    let instances = block.instances(model.ports());
+pub fn compare_and_count(block: &dyn Block, device: &mut dyn Device, cycles: u64, seed: u64) -> Result<Run, Error> {
     let mut coverage = block.coverage();
-    let report = lockstep::run(
-        model.as_mut(),
-        device,
-        stimuli,
-        &instances,
-        &Options::cycles(cycles),
-        &mut |clock| coverage.observe(clock),
-        progress,
-    )?;
+    let mut watch = |clock: &Clock<'_>| coverage.observe(clock);
+    let report = lockstep_of(block, device, cycles, seed, &mut watch, &mut |_| {})?;
     Ok(Run {
         report,
         coverage: coverage.counts(),
     })
+}
+
+fn lockstep_of(
+    block: &dyn Block,
+    device: &mut dyn Device,
+    cycles: u64,
+    seed: u64,
+    watch: &mut dyn FnMut(&Clock<'_>),
+    progress: &mut dyn FnMut(u64),
+) -> Result<Report, Error> {
+    let mut model = block.model(seed);
+    let instances = block.instances(model.ports());
+    lockstep::run(
+        model.as_mut(),
+        device,
+        block.stimuli(cycles, seed).as_mut(),
+        &instances,
+        &Options::cycles(cycles),
+        watch,
+        progress,
+    )
 }
 
 /// Names and counts as a report keeps them.
