@@ -44,10 +44,8 @@ pub(crate) fn others(machine: &Machine, shapers: &[AxisShaper], path: &Path) -> 
     }
     let name = machine.name.as_str();
     let with_encoder = axes(machine, |axis| axis.encoder.is_some());
-    let with_controller = axes(machine, |axis| axis.controller.is_some());
     blocks.push(Box::new(PulseCounterBlock::new(name, &with_encoder)));
     blocks.push(Box::new(DividerBlock::new(divider(machine, path)?, name)));
-    blocks.push(Box::new(SlidingModeBlock::new(name, &with_controller)));
     blocks.push(Box::new(
         ShaperBlock::new(motion_shaper(shapers)?, name, "motion").map_err(bench::failure)?,
     ));

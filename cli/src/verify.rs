@@ -123,15 +123,12 @@ impl Job {
 
     /// Leaves out what RustHDL's simulator cannot run, and says so; where nothing else is left, that is an error.
     fn keep_what_is_rusthdl(&mut self) -> Result<(), Failure> {
-        let mut left_out = Vec::new();
-        let mut kept = Vec::new();
-        for (block, sources) in self.blocks.drain(..) {
-            match block.simulate().map_err(Failure::because)? {
-                Some(_) => kept.push((block, sources)),
-                None => left_out.push(format!("{} {}", block.name(), block.instance())),
-            }
-        }
-        let names = left_out.join("; ");
+        let all = std::mem::take(&mut self.blocks);
+        let (kept, left_out): (Vec<_>, Vec<_>) = all.into_iter().partition(|(block, _)| block.in_rusthdl());
+        let names = left_out
+            .iter()
+            .map(|(block, _)| format!("{} {}", block.name(), block.instance()));
+        let names = names.collect::<Vec<_>>().join("; ");
         if kept.is_empty() {
             return Err(Failure::from(miette::miette!(
                 help = "use --simulator verilator or icarus",

@@ -270,7 +270,7 @@ fn lockstep_real_motion_of_a_machine_with_two_axes() {
 fn crosssim_icarus_and_rusthdl_agree_with_the_model() {
     let bench = Bench::new(standard());
     icarus_agrees(&bench.block);
-    let mut device = TwoValued(bench.block.simulate().unwrap().unwrap());
+    let mut device = TwoValued(bench.block.simulate().unwrap());
     let (report, _) = bench.run(&mut device, &mut bench.random(8), 3_000);
     assert_match(&report, "RustHDL");
 }

@@ -50,8 +50,8 @@ impl Block for CascadeBlock {
         Box::new(Cascade::new(&self.config, seed))
     }
 
-    fn simulate(&self) -> Result<Option<Box<dyn ClockedBlock>>, SimulationError> {
-        simulate(&self.config).map(Some)
+    fn simulate(&self) -> Result<Box<dyn ClockedBlock>, SimulationError> {
+        simulate(&self.config)
     }
 
     fn stimuli(&self, _cycles: u64, seed: u64) -> Box<dyn Stimuli + '_> {

@@ -6,7 +6,7 @@ use posicast_hdl::emit::{EmitError, Module};
 use posicast_model::rtl::component::Component;
 use posicast_model::rtl::{ClockedBlock, Direction, Port};
 
-use super::{Bins, Block};
+use super::{Bins, Block, not_in_rusthdl};
 use crate::lockstep::Clock;
 use crate::stimuli::{ComponentRandom, Stimuli};
 
@@ -55,9 +55,12 @@ impl Block for ComponentBlock {
         Box::new(self.component.model(seed))
     }
 
-    /// None: its registers are written from their map, not in RustHDL.
-    fn simulate(&self) -> Result<Option<Box<dyn ClockedBlock>>, SimulationError> {
-        Ok(None)
+    fn simulate(&self) -> Result<Box<dyn ClockedBlock>, SimulationError> {
+        Err(not_in_rusthdl("component"))
+    }
+
+    fn in_rusthdl(&self) -> bool {
+        false
     }
 
     fn stimuli(&self, _cycles: u64, seed: u64) -> Box<dyn Stimuli + '_> {

@@ -50,8 +50,8 @@ impl Block for DividerBlock {
         Box::new(Divider::new(&self.config))
     }
 
-    fn simulate(&self) -> Result<Option<Box<dyn ClockedBlock>>, SimulationError> {
-        simulate(&self.config).map(Some)
+    fn simulate(&self) -> Result<Box<dyn ClockedBlock>, SimulationError> {
+        simulate(&self.config)
     }
 
     fn stimuli(&self, _cycles: u64, seed: u64) -> Box<dyn Stimuli + '_> {

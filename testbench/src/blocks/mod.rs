@@ -9,7 +9,7 @@
 //! let block = PulseCounterBlock::new("", "all axes");
 //! let sources = Sources::write(&block)?;
 //! let mut device = sources.verilated(&block, 1)?;
-//! let run = blocks::compare_and_count(&block, &mut device, 1_000_000, 1)?;
+//! let run = blocks::compare(&block, &mut device, 1_000_000, 1, &mut |_| {})?;
 //! assert_eq!(run.report.mismatches(), 0);
 //! assert!(run.coverage.iter().all(|(_, count)| *count > 0), "{:?}", run.coverage);
 //! # Ok::<(), posicast_testbench::Error>(())
@@ -23,7 +23,6 @@ mod divider;
 mod pulse_counter;
 mod registers;
 mod shaper;
-mod sliding_mode;
 mod sources;
 
 pub use self::cascade::CascadeBlock;
@@ -32,7 +31,6 @@ pub use self::divider::DividerBlock;
 pub use self::pulse_counter::PulseCounterBlock;
 pub use self::registers::RegistersBlock;
 pub use self::shaper::{MachineShapers, ShaperBlock};
-pub use self::sliding_mode::SlidingModeBlock;
 pub use self::sources::{Sources, rusthdl};
 
 use posicast_hdl::SimulationError;
@@ -64,11 +62,16 @@ pub trait Block: Send + Sync {
     /// The bit-exact model. Memories start with contents that depend on the seed.
     fn model(&self, seed: u64) -> Box<dyn ClockedBlock>;
 
-    /// The block in RustHDL's simulator; none where it is not written in RustHDL as a whole.
+    /// The block in RustHDL's simulator.
     ///
     /// # Errors
-    /// [`SimulationError`] where RustHDL finds a fault in the block.
-    fn simulate(&self) -> Result<Option<Box<dyn ClockedBlock>>, SimulationError>;
+    /// [`SimulationError`] where RustHDL finds a fault in the block, or where it is not [`Self::in_rusthdl`].
+    fn simulate(&self) -> Result<Box<dyn ClockedBlock>, SimulationError>;
+
+    /// Whether the whole block is written in RustHDL. Register banks are not, and so no component is.
+    fn in_rusthdl(&self) -> bool {
+        true
+    }
 
     /// Inputs for a run of `cycles` clocks: directed cases where there are any, then random, by the seed.
     fn stimuli(&self, cycles: u64, seed: u64) -> Box<dyn Stimuli + '_>;
@@ -108,8 +111,8 @@ impl Run {
     }
 }
 
-/// Runs a block's model and a device under the block's stimuli and compares every output in every clock. `progress` gets the
-/// clocks done.
+/// Runs a block's model and a device under the block's stimuli, compares every output in every clock, and counts what the
+/// run reached. `progress` gets the clocks done.
 ///
 /// # Errors
 /// As [`lockstep::run`].
@@ -119,43 +122,67 @@ pub fn compare(
     cycles: u64,
     seed: u64,
     progress: &mut dyn FnMut(u64),
-) -> Result<Report, Error> {
-    lockstep_of(block, device, cycles, seed, &mut |_| {}, progress)
+) -> Result<Run, Error> {
+    let mut stimuli = block.stimuli(cycles, seed);
+    compare_with(block, device, stimuli.as_mut(), cycles, seed, progress)
 }
 
-/// The same, and counts what the run reached.
+/// The same under other stimuli.
 ///
 /// # Errors
 /// As [`lockstep::run`].
-pub fn compare_and_count(block: &dyn Block, device: &mut dyn Device, cycles: u64, seed: u64) -> Result<Run, Error> {
+pub fn compare_with(
+    block: &dyn Block,
+    device: &mut dyn Device,
+    stimuli: &mut dyn Stimuli,
+    cycles: u64,
+    seed: u64,
+    progress: &mut dyn FnMut(u64),
+) -> Result<Run, Error> {
     let mut coverage = block.coverage();
     let mut watch = |clock: &Clock<'_>| coverage.observe(clock);
-    let report = lockstep_of(block, device, cycles, seed, &mut watch, &mut |_| {})?;
+    let report = run(block, device, stimuli, (cycles, seed), &mut watch, progress)?;
     Ok(Run {
         report,
         coverage: coverage.counts(),
     })
 }
 
-fn lockstep_of(
+/// As [`compare`], without the counts: faster.
+///
+/// # Errors
+/// As [`lockstep::run`].
+pub fn check(
     block: &dyn Block,
     device: &mut dyn Device,
     cycles: u64,
     seed: u64,
+    progress: &mut dyn FnMut(u64),
+) -> Result<Report, Error> {
+    let mut stimuli = block.stimuli(cycles, seed);
+    run(block, device, stimuli.as_mut(), (cycles, seed), &mut |_| {}, progress)
+}
+
+fn run(
+    block: &dyn Block,
+    device: &mut dyn Device,
+    stimuli: &mut dyn Stimuli,
+    (cycles, seed): (u64, u64),
     watch: &mut dyn FnMut(&Clock<'_>),
     progress: &mut dyn FnMut(u64),
 ) -> Result<Report, Error> {
     let mut model = block.model(seed);
     let instances = block.instances(model.ports());
-    lockstep::run(
-        model.as_mut(),
-        device,
-        block.stimuli(cycles, seed).as_mut(),
-        &instances,
-        &Options::cycles(cycles),
-        watch,
-        progress,
-    )
+    let options = Options::cycles(cycles);
+    lockstep::run(model.as_mut(), device, stimuli, &instances, &options, watch, progress)
+}
+
+/// Why a block that is written from a register map is not in RustHDL's simulator.
+fn not_in_rusthdl(block: &'static str) -> SimulationError {
+    SimulationError::Refused {
+        block,
+        reason: "its registers are written from their map, not in RustHDL".to_owned(),
+    }
 }
 
 /// Names and counts as a report keeps them.

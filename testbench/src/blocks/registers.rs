@@ -6,7 +6,7 @@ use posicast_hdl::registers::emit;
 use posicast_model::rtl::ClockedBlock;
 use posicast_model::rtl::registers::{RegisterBank, RegisterMap};
 
-use super::{Bins, Block, prefixed};
+use super::{Bins, Block, not_in_rusthdl, prefixed};
 use crate::lockstep::Clock;
 use crate::stimuli::{RegistersCoverage, RegistersRandom, Stimuli};
 
@@ -50,9 +50,12 @@ impl Block for RegistersBlock {
         Box::new(RegisterBank::new(&self.map))
     }
 
-    /// None: a bank is written from its map, not in RustHDL.
-    fn simulate(&self) -> Result<Option<Box<dyn ClockedBlock>>, SimulationError> {
-        Ok(None)
+    fn simulate(&self) -> Result<Box<dyn ClockedBlock>, SimulationError> {
+        Err(not_in_rusthdl("registers"))
+    }
+
+    fn in_rusthdl(&self) -> bool {
+        false
     }
 
     fn stimuli(&self, _cycles: u64, seed: u64) -> Box<dyn Stimuli + '_> {

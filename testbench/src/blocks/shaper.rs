@@ -68,8 +68,8 @@ impl Block for ShaperBlock {
         Box::new(Shaper::new(&self.config, seed))
     }
 
-    fn simulate(&self) -> Result<Option<Box<dyn ClockedBlock>>, SimulationError> {
-        simulate(&self.config).map(Some)
+    fn simulate(&self) -> Result<Box<dyn ClockedBlock>, SimulationError> {
+        simulate(&self.config)
     }
 
     fn stimuli(&self, cycles: u64, seed: u64) -> Box<dyn Stimuli + '_> {
@@ -153,10 +153,10 @@ impl Block for MachineShapers {
         Box::new(joined(&self.shapers, seed))
     }
 
-    fn simulate(&self) -> Result<Option<Box<dyn ClockedBlock>>, SimulationError> {
+    fn simulate(&self) -> Result<Box<dyn ClockedBlock>, SimulationError> {
         let block = |s: &AxisShaper| Ok((s.axis.clone(), simulate(&s.config)?));
         let blocks = self.shapers.iter().map(block).collect::<Result<_, _>>()?;
-        Ok(Some(Box::new(Joined::new(blocks))))
+        Ok(Box::new(Joined::new(blocks)))
     }
 
     fn stimuli(&self, cycles: u64, seed: u64) -> Box<dyn Stimuli + '_> {

@@ -98,11 +98,10 @@ impl Sources {
     }
 }
 
-/// The block in RustHDL's simulator, as a device; none where it is not written in RustHDL as a whole.
+/// The block in RustHDL's simulator, as a device.
 ///
 /// # Errors
 /// [`Error::Block`] where RustHDL finds a fault in it.
-pub fn rusthdl(block: &dyn Block) -> Result<Option<Box<dyn Device>>, Error> {
-    let simulated = block.simulate()?;
-    Ok(simulated.map(|simulated| -> Box<dyn Device> { Box::new(TwoValued(simulated)) }))
+pub fn rusthdl(block: &dyn Block) -> Result<Box<dyn Device>, Error> {
+    Ok(Box::new(TwoValued(block.simulate()?)))
 }

@@ -22,7 +22,7 @@ pub(crate) fn million_random_clocks(block: &dyn Block, seed: u64, least: u64) ->
     let sources = Sources::write(block).unwrap();
     assert_eq!(sources.lint(block).unwrap(), [""; 0]);
     let mut device = sources.verilated(block, seed).unwrap();
-    let run = blocks::compare_and_count(block, &mut device, 1_000_000, seed).unwrap();
+    let run = blocks::compare(block, &mut device, 1_000_000, seed, &mut |_| {}).unwrap();
     assert_match(&run.report, &format!("seed {seed}"));
     assert_eq!(run.rare(least), [""; 0], "{:?}", run.coverage);
     run
@@ -32,7 +32,7 @@ pub(crate) fn million_random_clocks(block: &dyn Block, seed: u64, least: u64) ->
 #[track_caller]
 pub(crate) fn icarus_agrees(block: &dyn Block) {
     let mut device = Sources::write(block).unwrap().icarus(block).unwrap();
-    let report = blocks::compare(block, &mut device, 20_000, 4, &mut |_| {}).unwrap();
+    let report = blocks::check(block, &mut device, 20_000, 4, &mut |_| {}).unwrap();
     assert_match(&report, "Icarus");
 }
 
@@ -41,7 +41,7 @@ pub(crate) fn icarus_agrees(block: &dyn Block) {
 pub(crate) fn caught(block: &dyn Block, from: &str, to: &str, cycles: u64) {
     let sources = Sources::of_modules(&broken(block, from, to)).unwrap();
     let mut device = sources.verilated(block, 1).unwrap();
-    let report = blocks::compare(block, &mut device, cycles, 1, &mut |_| {}).unwrap();
+    let report = blocks::check(block, &mut device, cycles, 1, &mut |_| {}).unwrap();
     assert_eq!(report.result, Verdict::Mismatch, "`{to}` is not found");
     let first = report.blocks[0].first.as_ref().unwrap();
     assert_eq!(first.expected.len(), first.actual.len());
