@@ -16,6 +16,7 @@
 //! | [`registers`] | register banks, from their description |
 //! | [`time_base`], [`sample_select`] | what stand-alone components have beside |
 //! | [`component`] | the blocks that stand alone, each with its registers on a bus |
+//! | [`segments`] | the command FIFO: segments of constant jerk to position, velocity and acceleration |
 //! | [`machine`] | a machine's top module: the blocks of its axes, side by side |
 //! | [`emit`](mod@emit) | the typed emitter: RustHDL's syntax tree as Verilog |
 
@@ -29,6 +30,7 @@ pub(crate) mod prim;
 pub mod pulse_counter;
 pub mod registers;
 pub mod sample_select;
+pub mod segments;
 pub mod shaper;
 mod simulation;
 pub mod sliding_mode;

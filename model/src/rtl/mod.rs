@@ -10,6 +10,7 @@ pub mod divider;
 pub mod pulse_counter;
 pub mod registers;
 pub mod sample_select;
+pub mod segments;
 pub mod shaper;
 pub mod sliding_mode;
 pub mod time_base;

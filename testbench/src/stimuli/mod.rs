@@ -19,6 +19,7 @@ mod motion;
 mod pulse_counter;
 mod random;
 mod registers;
+mod segments;
 mod sliding_mode;
 mod table;
 
@@ -32,6 +33,7 @@ pub use self::motion::Motion;
 pub use self::pulse_counter::{PulseCounterCoverage, PulseCounterRandom};
 pub use self::random::Random;
 pub use self::registers::{ComponentRandom, RegistersCoverage, RegistersRandom};
+pub use self::segments::{SegmentsCoverage, SegmentsRandom};
 pub use self::sliding_mode::{SlidingModeCoverage, SlidingModeRandom};
 
 /// Makes the inputs of the next clock.
