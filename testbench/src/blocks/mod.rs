@@ -22,6 +22,7 @@ mod component;
 mod divider;
 mod pulse_counter;
 mod registers;
+mod segments;
 mod shaper;
 mod sources;
 
@@ -30,6 +31,7 @@ pub use self::component::ComponentBlock;
 pub use self::divider::DividerBlock;
 pub use self::pulse_counter::PulseCounterBlock;
 pub use self::registers::RegistersBlock;
+pub use self::segments::SegmentsBlock;
 pub use self::shaper::{MachineShapers, ShaperBlock};
 pub use self::sources::{Sources, rusthdl};
 
