@@ -249,7 +249,10 @@ fn unit_the_floor_holds_and_running_refuses() {
     (inputs.dead_time, inputs.period) = (0, 40);
     pwm.hold(&inputs, 500);
     let shown = pwm.outputs(&inputs);
-    assert_eq!((shown.dead_time_used, shown.refused, shown.below_floor), (3, true, true));
+    assert_eq!(
+        (shown.dead_time_used, shown.refused, shown.below_floor),
+        (3, true, true)
+    );
     inputs.enable = false;
     pwm.hold(&inputs, 500);
     assert_eq!(pwm.outputs(&inputs).dead_time_used, 1);
