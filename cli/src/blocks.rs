@@ -8,7 +8,9 @@ use posicast_model::rtl::cascade::CascadeConfig;
 use posicast_model::rtl::divider::DividerConfig;
 use posicast_model::rtl::shaper::{MOTION_WORD_BITS, Motion, ShaperConfig};
 use posicast_model::spec::{Axis, Machine};
-use posicast_testbench::blocks::{Block, CascadeBlock, DividerBlock, MachineShapers, PulseCounterBlock, ShaperBlock};
+use posicast_testbench::blocks::{
+    Block, CascadeBlock, DividerBlock, MachineShapers, PulseCounterBlock, ShaperBlock, SlidingModeBlock,
+};
 use std::path::Path;
 
 /// Delays of the cascade that is compared where no machine asks for one, in samples.
@@ -40,6 +42,8 @@ pub(crate) fn others(machine: &Machine, shapers: &[AxisShaper], path: &Path) -> 
     let name = machine.name.as_str();
     let with_encoder = axes(machine, |axis| axis.encoder.is_some());
     blocks.push(Box::new(PulseCounterBlock::new(name, &with_encoder)));
+    let with_controller = axes(machine, |axis| axis.controller.is_some());
+    blocks.push(Box::new(SlidingModeBlock::new(name, &with_controller)));
     blocks.push(Box::new(DividerBlock::new(divider(machine, path)?, name)));
     blocks.push(Box::new(
         ShaperBlock::new(motion_shaper(shapers)?, name, "motion").map_err(bench::failure)?,

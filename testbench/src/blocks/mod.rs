@@ -21,12 +21,14 @@ mod cascade;
 mod divider;
 mod pulse_counter;
 mod shaper;
+mod sliding_mode;
 mod sources;
 
 pub use self::cascade::CascadeBlock;
 pub use self::divider::DividerBlock;
 pub use self::pulse_counter::PulseCounterBlock;
 pub use self::shaper::{MachineShapers, ShaperBlock};
+pub use self::sliding_mode::SlidingModeBlock;
 pub use self::sources::{Sources, rusthdl};
 
 use posicast_hdl::SimulationError;
