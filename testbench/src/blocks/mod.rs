@@ -24,6 +24,7 @@ mod pulse_counter;
 mod registers;
 mod segments;
 mod shaper;
+mod sliding_mode;
 mod sources;
 
 pub use self::cascade::CascadeBlock;
@@ -33,6 +34,7 @@ pub use self::pulse_counter::PulseCounterBlock;
 pub use self::registers::RegistersBlock;
 pub use self::segments::SegmentsBlock;
 pub use self::shaper::{MachineShapers, ShaperBlock};
+pub use self::sliding_mode::SlidingModeBlock;
 pub use self::sources::{Sources, rusthdl};
 
 use posicast_hdl::SimulationError;
