@@ -8,6 +8,7 @@ pub mod component;
 pub mod composition;
 pub mod divider;
 pub mod pulse_counter;
+pub mod pwm;
 pub mod registers;
 pub mod sample_select;
 pub mod setting_banks;
