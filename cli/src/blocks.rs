@@ -12,7 +12,6 @@ use posicast_model::rtl::shaper::{MOTION_WORD_BITS, Motion, ShaperConfig};
 use posicast_model::spec::{Axis, Machine};
 use posicast_testbench::blocks::{
     Block, CascadeBlock, ComponentBlock, DividerBlock, MachineShapers, PulseCounterBlock, RegistersBlock, ShaperBlock,
-    SlidingModeBlock,
 };
 use std::path::Path;
 

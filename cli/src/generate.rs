@@ -27,6 +27,7 @@ pub(crate) struct Args {
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let file = machine::read(&args.machine)?;
     let report = Report::new(&file.machine, &args.machine)?;
+    report.warn();
     let shapers = machine::shapers(&file.machine, &report.design, &args.machine)?;
     let modules = modules(&file.machine, &shapers, &args.machine)?;
     let mut package = open(args.output.as_deref(), &file)?;

@@ -66,6 +66,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let file = machine::read(&args.machine)?;
     let machine = &file.machine;
     let design = DesignReport::new(machine, &args.machine)?;
+    design.warn();
     let shapers = machine::shapers(machine, &design.design, &args.machine)?;
     let words = command::words(machine, &design.design, args.command.as_deref())?;
     let simulator = Simulator::choose(args.simulator)?;
