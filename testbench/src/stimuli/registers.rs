@@ -176,6 +176,7 @@ pub struct ComponentRandom {
 enum Core {
     Shaper(Box<ShaperConfig>, Table),
     PulseCounter(Box<PulseCounterRandom>, Vec<u64>),
+    SlidingMode,
     Other,
 }
 
@@ -184,6 +185,7 @@ impl ComponentRandom {
     pub fn new(component: &Component, seed: u64) -> Self {
         let core = component.blocks().iter().find_map(|block| match block {
             Block::Shaper(config) => Some(Core::Shaper(Box::new(config.clone()), Table::with_capacity(256))),
+            Block::SlidingMode => Some(Core::SlidingMode),
             Block::PulseCounter => Some(Core::PulseCounter(Box::new(PulseCounterRandom::new(seed)), vec![0; 26])),
             _ => None,
         });
@@ -241,6 +243,19 @@ impl ComponentRandom {
                 self.write("velocity_filter", random >> 4 & 0xf013 | 0x0100);
                 self.write("index_arm", 0);
                 self.write("preset", 0);
+            }
+            Core::SlidingMode => {
+                let bank = (random & 1) + 1;
+                for row in 0..16 {
+                    // Mantissas and shifts; the limit is a number of the same kind.
+                    let setting = self.registers.word() as u32;
+                    self.write("setting_address", row | bank << 8);
+                    self.write("setting", setting);
+                }
+                self.write("law", random >> 2 & 3 | bank << 8 | random & 0x10);
+                self.write("commit", 0);
+                self.write("control", u32::from(random >> 12 & 3 != 0));
+                self.write("start", 0);
             }
             Core::Other => {}
         }

@@ -4,7 +4,9 @@ use super::description::{Access, Description, Field, Format, Register, Source, W
 use super::error::MapError;
 
 /// Names that the bank's Verilog has for itself.
-const RESERVED: [&str; 8] = ["clk", "rst", "irq", "mask", "whole", "waits", "applies", "unused"];
+const RESERVED: [&str; 9] = [
+    "clk", "rst", "irq", "mask", "whole", "written", "waits", "applies", "unused",
+];
 /// Beginnings of such names.
 const RESERVED_PREFIXES: [&str; 9] = [
     "avs_",

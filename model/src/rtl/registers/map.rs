@@ -16,7 +16,8 @@ impl RegisterMap {
     ///
     /// # Errors
     /// [`MapError`] for the first thing that does not hold together: names, places, reset values, references.
-    pub fn new(description: Description) -> Result<Self, MapError> {
+    pub fn new(mut description: Description) -> Result<Self, MapError> {
+        description.registers.sort_by_key(|register| register.offset);
         super::check::check(&description)?;
         let ports = ports(&description)?;
         Ok(Self { description, ports })
@@ -32,7 +33,7 @@ impl RegisterMap {
         &self.description.about
     }
 
-    /// The registers, in the order of the description.
+    /// The registers, by offset.
     pub fn registers(&self) -> &[Register] {
         &self.description.registers
     }

@@ -2,10 +2,12 @@
 
 mod pulse_counter;
 mod shaper;
+mod sliding_mode;
 
 pub use pulse_counter::pulse_counter;
 pub use shaper::shaper;
 pub(crate) use shaper::word_name;
+pub use sliding_mode::sliding_mode;
 
 use super::{Field, Source};
 
