@@ -70,7 +70,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
 pub(crate) struct Report<'a> {
     machine: &'a Machine,
     pub(crate) design: MachineDesign,
-    controllers: Vec<Option<AxisControl>>,
+    pub(crate) controllers: Vec<Option<AxisControl>>,
 }
 
 impl<'a> Report<'a> {

@@ -72,7 +72,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let simulator = Simulator::choose(args.simulator)?;
     let yosys = installed_yosys()?;
     let axes = simulate(machine, &design.design, &shapers, &words)?;
-    let modules = generate::modules(machine, &shapers, &args.machine)?;
+    let modules = generate::modules(machine, &shapers, &design.controllers, &args.machine)?;
     let top = blocks::shapers(machine, shapers, &words)?;
 
     let mut package = generate::open(args.output.as_deref(), &file)?;

@@ -1,7 +1,7 @@
 //! The list of what is measured: a new block is a new row here.
 
 use posicast_hdl::emit::Module;
-use posicast_hdl::{cascade, divider, pulse_counter, shaper};
+use posicast_hdl::{cascade, divider, pulse_counter, shaper, sliding_mode};
 use posicast_model::rtl::cascade::CascadeConfig;
 use posicast_model::rtl::divider::DividerConfig;
 use posicast_model::rtl::shaper::{Motion, ShaperConfig};
@@ -68,6 +68,14 @@ pub(crate) fn rows() -> Result<Vec<Row>, Box<dyn Error>> {
             block: "shaper",
             size: "motion, 3 channels, 32 bits, ring 128",
             modules: shaper::emit(&shaper()?.for_motion(MOTION)?, "")?,
+            budget: None,
+            in_xy_stage: 2,
+            note: "",
+        },
+        Row {
+            block: "sliding_mode",
+            size: "all laws",
+            modules: sliding_mode::emit("")?,
             budget: None,
             in_xy_stage: 2,
             note: "",

@@ -28,6 +28,7 @@ fn cli_verify_compares_every_block_of_the_library_for_a_machine_with_a_loop() {
             ("shaper", "y"),
             ("shaper", "motion"),
             ("pulse_counter", "x, y"),
+            ("sliding_mode", "x, y"),
             ("divider", "5000 clocks per tick"),
             ("cascade", "4 stages, 32 bits"),
         ] {

@@ -21,16 +21,20 @@ mod cascade;
 mod component;
 mod divider;
 mod pulse_counter;
+mod pwm;
 mod registers;
 mod shaper;
+mod sliding_mode;
 mod sources;
 
 pub use self::cascade::CascadeBlock;
 pub use self::component::ComponentBlock;
 pub use self::divider::DividerBlock;
 pub use self::pulse_counter::PulseCounterBlock;
+pub use self::pwm::PwmBlock;
 pub use self::registers::RegistersBlock;
 pub use self::shaper::{MachineShapers, ShaperBlock};
+pub use self::sliding_mode::SlidingModeBlock;
 pub use self::sources::{Sources, rusthdl};
 
 use posicast_hdl::SimulationError;
