@@ -1,6 +1,7 @@
 //! `posicast generate`: the Verilog of a machine, in a folder of its own.
 
 use crate::blocks;
+use crate::control::AxisControl;
 use crate::design::Report;
 use crate::failure::Failure;
 use crate::machine::{self, MachineFile};
@@ -27,8 +28,9 @@ pub(crate) struct Args {
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let file = machine::read(&args.machine)?;
     let report = Report::new(&file.machine, &args.machine)?;
+    report.warn();
     let shapers = machine::shapers(&file.machine, &report.design, &args.machine)?;
-    let modules = modules(&file.machine, &shapers, &args.machine)?;
+    let modules = modules(&file.machine, &shapers, &report.controllers, &args.machine)?;
     let mut package = open(args.output.as_deref(), &file)?;
     add_sources(&mut package, &file, &modules)?;
     package
@@ -42,9 +44,14 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
 }
 
 /// The Verilog modules of a machine: those of its top, then those of its components. `path` is the machine file.
-pub(crate) fn modules(machine: &Machine, shapers: &[AxisShaper], path: &Path) -> Result<Vec<Module>, Failure> {
+pub(crate) fn modules(
+    machine: &Machine,
+    shapers: &[AxisShaper],
+    controllers: &[Option<AxisControl>],
+    path: &Path,
+) -> Result<Vec<Module>, Failure> {
     let mut modules = emit_machine(&machine.name, shapers).map_err(Failure::because)?;
-    for component in blocks::components(machine, shapers, path)? {
+    for component in blocks::components(machine, shapers, controllers, path)? {
         modules.extend(component.modules().map_err(Failure::because)?);
     }
     Ok(modules)

@@ -66,12 +66,13 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let file = machine::read(&args.machine)?;
     let machine = &file.machine;
     let design = DesignReport::new(machine, &args.machine)?;
+    design.warn();
     let shapers = machine::shapers(machine, &design.design, &args.machine)?;
     let words = command::words(machine, &design.design, args.command.as_deref())?;
     let simulator = Simulator::choose(args.simulator)?;
     let yosys = installed_yosys()?;
     let axes = simulate(machine, &design.design, &shapers, &words)?;
-    let modules = generate::modules(machine, &shapers, &args.machine)?;
+    let modules = generate::modules(machine, &shapers, &design.controllers, &args.machine)?;
     let top = blocks::shapers(machine, shapers, &words)?;
 
     let mut package = generate::open(args.output.as_deref(), &file)?;

@@ -63,8 +63,9 @@ fn sources(source: &Path) -> Result<(Machine, Vec<PathBuf>, Option<tempfile::Tem
         return Ok((machine, contents.rtl, None));
     }
     let machine = machine::read(source)?.machine;
-    let design = Report::new(&machine, source)?.design;
-    let modules = generate::modules(&machine, &machine::shapers(&machine, &design, source)?, source)?;
+    let report = Report::new(&machine, source)?;
+    let shapers = machine::shapers(&machine, &report.design, source)?;
+    let modules = generate::modules(&machine, &shapers, &report.controllers, source)?;
     let (files, scratch) = generate::write_scratch(&modules)?;
     Ok((machine, files, Some(scratch)))
 }

@@ -97,11 +97,12 @@ impl Job {
         } else {
             (machine::read(source)?.machine, source.to_owned(), None)
         };
-        let design = DesignReport::new(&machine, source)?.design;
-        let shapers = machine::shapers(&machine, &design, source)?;
+        let report = DesignReport::new(&machine, source)?;
+        let design = &report.design;
+        let shapers = machine::shapers(&machine, design, source)?;
         // A move that does not fit the words is an error of `run`; a lock step has its other stimuli.
-        let words = command::words(&machine, &design, None).unwrap_or_default();
-        let others = blocks::others(&machine, &shapers, &path)?;
+        let words = command::words(&machine, design, None).unwrap_or_default();
+        let others = blocks::others(&machine, &shapers, &report.controllers, &path)?;
         let mut list: Vec<Box<dyn Block>> = vec![Box::new(blocks::shapers(&machine, shapers, &words)?)];
         if let Some(files) = &folder {
             let there = Sources::found(files.clone());
