@@ -1,22 +1,22 @@
-//! A machine on the test bench: its models, the device that is compared with them, and the lock step of both.
+//! Blocks on the test bench: what runs them, and the lock step of several of them.
 
 use crate::failure::Failure;
 use crate::{output, progress};
 use clap::ValueEnum;
-use posicast_hdl::machine::AxisShaper;
-use posicast_model::rtl::shaper::{Shaper, pass_clocks};
-use posicast_model::rtl::{ClockedBlock, Port};
-use posicast_model::spec::Machine;
+use indicatif::ProgressBar;
 use posicast_testbench::Error;
-use posicast_testbench::campaign::Campaign;
-use posicast_testbench::icarus::Icarus;
+use posicast_testbench::blocks::{self, Block, Sources};
+use posicast_testbench::lockstep::Device;
 use posicast_testbench::lockstep::report::Report;
-use posicast_testbench::lockstep::{self, Device, Joined, Options, TwoValued};
-use posicast_testbench::stimuli::Layout;
-use posicast_testbench::verilator::{self, Source, Verilated};
+use posicast_testbench::verilator;
 use serde::Serialize;
 use std::fmt;
-use std::path::PathBuf;
+use std::num::NonZero;
+use std::sync::Mutex;
+use std::thread;
+
+/// Blocks that are built and simulated at a time: a build takes a gigabyte at its worst.
+const MOST_AT_ONCE: usize = 2;
 
 /// What runs the hardware.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum, Serialize)]
@@ -58,6 +58,15 @@ impl Simulator {
             Self::Icarus | Self::Rusthdl => 20_000,
         }
     }
+
+    /// The block in this simulator. RustHDL's runs its own description instead of the Verilog.
+    pub(crate) fn device(self, block: &dyn Block, sources: &Sources, seed: u64) -> Result<Box<dyn Device>, Error> {
+        match self {
+            Self::Verilator => Ok(Box::new(sources.verilated(block, seed)?)),
+            Self::Icarus => Ok(Box::new(sources.icarus(block)?)),
+            Self::Rusthdl => blocks::rusthdl(block),
+        }
+    }
 }
 
 impl fmt::Display for Simulator {
@@ -70,106 +79,61 @@ impl fmt::Display for Simulator {
     }
 }
 
-/// A machine on the test bench.
-pub(crate) struct Bench {
-    pub(crate) machine: Machine,
-    pub(crate) shapers: Vec<AxisShaper>,
-    pub(crate) layout: Layout,
-    /// Clocks of the longest pass of all axes.
-    pub(crate) pass_clocks: u32,
-    ports: Vec<Port>,
+/// A block and where its Verilog is.
+pub(crate) struct Bench<'a> {
+    pub(crate) block: &'a dyn Block,
+    pub(crate) sources: &'a Sources,
+    /// Clocks to compare.
+    pub(crate) cycles: u64,
 }
 
-impl Bench {
-    /// The bench for a machine whose axes have these shapers.
-    pub(crate) fn new(machine: &Machine, shapers: Vec<AxisShaper>) -> Result<Self, Failure> {
-        let ports = model(&shapers, 0).ports().to_vec();
-        let fraction = shapers.first().map_or(1, |s| s.config.coefficient_fraction());
-        let layout = Layout::new(&ports, fraction).map_err(failure)?;
-        let taps = shapers
-            .iter()
-            .map(|s| s.config.table().taps().len() as u32)
-            .max()
-            .unwrap_or(0);
-        Ok(Self {
-            machine: machine.clone(),
-            shapers,
-            layout,
-            pass_clocks: pass_clocks(taps),
-            ports,
-        })
-    }
-
-    /// The bit-exact model of the machine's top module.
-    pub(crate) fn model(&self, seed: u64) -> Joined {
-        model(&self.shapers, seed)
-    }
-
-    /// The hardware in a simulator. `files` is the Verilog; RustHDL's simulator runs its own description instead.
-    pub(crate) fn device(
-        &self,
-        simulator: Simulator,
-        files: &[PathBuf],
-        seed: u64,
-    ) -> Result<Box<dyn Device>, Failure> {
-        let source = Source {
-            files,
-            top: &self.machine.name,
-            ports: &self.ports,
-        };
-        match simulator {
-            Simulator::Verilator => {
-                let spinner = progress::spinner("Verilator builds the Verilog");
-                let device = Verilated::build(&source, seed).map_err(failure)?;
-                spinner.finish_and_clear();
-                Ok(Box::new(device))
+/// Compares every block with its model, at most [`MOST_AT_ONCE`] at a time, and reports them in their order.
+pub(crate) fn compare_all(benches: &[Bench<'_>], simulator: Simulator, seed: u64) -> Result<Report, Failure> {
+    let total = benches.iter().map(|bench| bench.cycles).fold(0, u64::saturating_add);
+    let bar = progress::bar("lock step", total);
+    let next = Mutex::new(benches.iter().enumerate());
+    let done = Mutex::new(Vec::new());
+    let worker = || {
+        loop {
+            let Some((row, bench)) = locked(&next).next() else {
+                return;
+            };
+            let result = compare(bench, simulator, seed, &bar);
+            if result.is_err() {
+                // What is left is not begun: the error ends the command.
+                locked(&next).by_ref().for_each(drop);
             }
-            Simulator::Icarus => Ok(Box::new(Icarus::build(&source).map_err(failure)?)),
-            Simulator::Rusthdl => {
-                let blocks = self.shapers.iter().map(|s| {
-                    let block = posicast_hdl::shaper::simulate(&s.config).map_err(Failure::because)?;
-                    Ok((s.axis.clone(), block))
-                });
-                let joined = Joined::new(blocks.collect::<Result<_, Failure>>()?);
-                Ok(Box::new(TwoValued(Box::new(joined))))
-            }
+            locked(&done).push((row, result));
         }
-    }
-
-    /// Compares `device` with the model in every clock: directed cases, the move `words`, random stimuli.
-    pub(crate) fn lockstep(
-        &self,
-        device: &mut dyn Device,
-        words: &[Vec<i64>],
-        cycles: u64,
-        seed: u64,
-    ) -> Result<Report, Failure> {
-        let mut model = self.model(seed);
-        let instances = model.instances("shaper");
-        let mut campaign = Campaign::new(&self.layout, self.pass_clocks, words, cycles, seed);
-        let bar = progress::bar("lock step", cycles);
-        let report = lockstep::run(
-            &mut model,
-            device,
-            &mut campaign,
-            &instances,
-            &Options::cycles(cycles),
-            &mut |_| {},
-            &mut |done| bar.set_position(done),
-        )
-        .map_err(failure)?;
-        bar.finish_and_clear();
-        Ok(report)
-    }
+    };
+    let cores = thread::available_parallelism().map_or(1, NonZero::get);
+    thread::scope(|scope| {
+        for _ in 1..benches.len().min(cores).min(MOST_AT_ONCE) {
+            scope.spawn(worker);
+        }
+        worker();
+    });
+    bar.finish_and_clear();
+    let mut rows = done.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
+    rows.sort_by_key(|(row, _)| *row);
+    let reports: Result<Vec<Report>, Error> = rows.into_iter().map(|(_, result)| result).collect();
+    Ok(Report::joined(reports.map_err(failure)?))
 }
 
-fn model(shapers: &[AxisShaper], seed: u64) -> Joined {
-    let block = |(index, s): (usize, &AxisShaper)| {
-        // Each memory starts with other contents: nothing may depend on them.
-        let block: Box<dyn ClockedBlock> = Box::new(Shaper::new(&s.config, seed.wrapping_add(index as u64)));
-        (s.axis.clone(), block)
-    };
-    Joined::new(shapers.iter().enumerate().map(block).collect())
+fn compare(bench: &Bench<'_>, simulator: Simulator, seed: u64, bar: &ProgressBar) -> Result<Report, Error> {
+    bar.set_message(format!("building {} {}", bench.block.name(), bench.block.instance()));
+    let mut device = simulator.device(bench.block, bench.sources, seed)?;
+    bar.set_message(format!("{} {}", bench.block.name(), bench.block.instance()));
+    let mut shown = 0;
+    blocks::check(bench.block, device.as_mut(), bench.cycles, seed, &mut |done| {
+        bar.inc(done - shown);
+        shown = done;
+    })
+}
+
+/// What a mutex holds; a thread that died over it does not matter here, the panic goes on by itself.
+fn locked<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(std::sync::PoisonError::into_inner)
 }
 
 /// How an error of the test bench ends a command.

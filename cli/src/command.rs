@@ -2,12 +2,13 @@
 
 use crate::failure::Failure;
 use posicast_model::design::MachineDesign;
-use posicast_model::motion::{command_words, default_move, resample, settle_s};
+use posicast_model::motion::{command_words, default_move, modulo_words, resample, settle_s};
+use posicast_model::rtl::shaper::wrap;
 use posicast_model::spec::{Axis, Machine};
 use std::path::Path;
 
-/// Command words per axis, all of one length.
-pub(crate) type Words = Vec<Vec<i32>>;
+/// Command words per axis, all of one length; of a modulo axis with their whole turns.
+pub(crate) type Words = Vec<Vec<i64>>;
 
 /// The words of the command in the CSV file `path`, or of the default move.
 pub(crate) fn words(machine: &Machine, design: &MachineDesign, path: Option<&Path>) -> Result<Words, Failure> {
@@ -23,16 +24,12 @@ pub(crate) fn words(machine: &Machine, design: &MachineDesign, path: Option<&Pat
                 profile.samples(sample_hz, settle).map_err(|e| of_axis(axis, e))?
             }
         };
-        let fixed = &machine.fixed_point;
-        words.push(
-            command_words(
-                &positions,
-                axis.counts_per_unit,
-                fixed.command_bits,
-                fixed.command_fraction,
-            )
-            .map_err(|e| of_axis(axis, e))?,
-        );
+        let (bits, fraction) = (machine.fixed_point.command_bits, machine.fixed_point.command_fraction);
+        let of_positions = match axis.modulo {
+            true => modulo_words(&positions, axis.counts_per_unit, bits, fraction, &tables.table),
+            false => command_words(&positions, axis.counts_per_unit, bits, fraction),
+        };
+        words.push(of_positions.map_err(|e| of_axis(axis, e))?);
     }
     let longest = words.iter().map(Vec::len).max().unwrap_or(0);
     for of_axis in &mut words {
@@ -42,12 +39,11 @@ pub(crate) fn words(machine: &Machine, design: &MachineDesign, path: Option<&Pat
     Ok(words)
 }
 
-/// The words as the test bench takes them: words of any width.
-pub(crate) fn widened(words: &Words) -> Vec<Vec<i64>> {
-    words
-        .iter()
-        .map(|axis| axis.iter().map(|word| i64::from(*word)).collect())
-        .collect()
+/// The words as the hardware gets them: without whole turns.
+pub(crate) fn on_the_ports(machine: &Machine, words: &Words) -> Words {
+    let bits = machine.fixed_point.command_bits;
+    let of_axis = |words: &Vec<i64>| words.iter().map(|word| wrap(*word, bits)).collect();
+    words.iter().map(of_axis).collect()
 }
 
 fn of_axis(axis: &Axis, error: impl std::fmt::Display) -> Failure {

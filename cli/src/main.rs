@@ -4,6 +4,7 @@
 //! itself. Exit status: 0 all checks hold, 1 a check failed, 2 bad usage or input, 3 a tool that was asked for is missing.
 
 mod bench;
+mod blocks;
 mod command;
 mod compare;
 mod design;

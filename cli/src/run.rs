@@ -8,7 +8,8 @@ mod checks;
 mod report;
 
 use crate::bench::{self, Bench, Simulator};
-use crate::command::{self, Words};
+use crate::blocks;
+use crate::command;
 use crate::design::{self, Report as DesignReport};
 use crate::failure::Failure;
 use crate::machine;
@@ -16,11 +17,13 @@ use crate::plot;
 use crate::simulate::simulate;
 use crate::verify::DEFAULT_SEED;
 use crate::{generate, output, progress, synth};
+use posicast_hdl::machine::AxisShaper;
 use posicast_model::design::MachineDesign;
 use posicast_model::simulation::{AxisSimulation, largest_difference};
 use posicast_model::spec::Machine;
 use posicast_synth::package::Package;
 use posicast_synth::yosys::{Estimate, Yosys, YosysError};
+use posicast_testbench::blocks::{Block, MachineShapers, Sources};
 use posicast_testbench::diff::{self, Comparison, Options};
 use posicast_testbench::lockstep::TwoValued;
 use posicast_testbench::lockstep::report::Report as LockstepReport;
@@ -68,16 +71,17 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let simulator = Simulator::choose(args.simulator)?;
     let yosys = installed_yosys()?;
     let axes = simulate(machine, &design.design, &shapers, &words)?;
-    let bench = Bench::new(machine, shapers)?;
+    let modules = generate::modules(machine, &shapers, &args.machine)?;
+    let top = blocks::shapers(machine, shapers, &words)?;
 
     let mut package = generate::open(args.output.as_deref(), &file)?;
-    let modules = generate::modules(&machine.name, &bench.shapers)?;
     let files = generate::add_sources(&mut package, &file, &modules)?;
+    let sources = Sources::found(files.clone());
     let cycles = args.cycles.unwrap_or(simulator.default_cycles());
-    let mut job = Job {
-        bench: &bench,
-        files: &files,
-        words: &words,
+    let job = Job {
+        machine,
+        top: &top,
+        sources: &sources,
         simulator,
         seed: args.seed,
     };
@@ -86,7 +90,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let estimate = yosys.map(|yosys| estimate(&yosys, machine, &files)).transpose()?;
 
     let mut checks = Vec::from_iter(checks::lint(simulator, &files, &machine.name)?);
-    checks.extend(checks::all(simulator, &bench, &design.design, &lockstep, &waves));
+    checks.extend(checks::all(simulator, machine, &design.design, &lockstep, &waves));
     checks.extend(estimate.as_ref().and_then(|e| checks::fits(machine, e)));
     package
         .add(
@@ -165,26 +169,28 @@ pub(crate) struct Waves {
 }
 
 struct Job<'a> {
-    bench: &'a Bench,
-    files: &'a [PathBuf],
-    words: &'a Words,
+    machine: &'a Machine,
+    top: &'a MachineShapers,
+    sources: &'a Sources,
     simulator: Simulator,
     seed: u64,
 }
 
 impl Job<'_> {
-    fn lockstep(&mut self, cycles: u64) -> Result<LockstepReport, Failure> {
-        let mut device = self.bench.device(self.simulator, self.files, self.seed)?;
-        self.bench
-            .lockstep(device.as_mut(), &command::widened(self.words), cycles, self.seed)
+    fn lockstep(&self, cycles: u64) -> Result<LockstepReport, Failure> {
+        let bench = Bench {
+            block: self.top,
+            sources: self.sources,
+            cycles,
+        };
+        bench::compare_all(&[bench], self.simulator, self.seed)
     }
 
     fn waves(&self, package: &mut Package, design: &MachineDesign, axes: &[AxisSimulation]) -> Result<Waves, Failure> {
-        let words = command::widened(self.words);
         let command = Move {
-            layout: &self.bench.layout,
-            words: &words,
-            clocks_per_sample: wave_clocks_per_sample(self.bench.pass_clocks),
+            layout: self.top.layout(),
+            words: self.top.words(),
+            clocks_per_sample: wave_clocks_per_sample(self.top.pass_clocks()),
             sample_hz: design.sample_hz,
         };
         let mut stage = |name: &str| package.stage(&format!("wave/{name}")).map_err(Failure::because);
@@ -194,14 +200,16 @@ impl Job<'_> {
             stage(view)?;
         }
         let spinner = progress::spinner("waveforms");
-        let scope = self.bench.machine.name.as_str();
-        let mut model = TwoValued(Box::new(self.bench.model(self.seed)));
+        let scope = self.machine.name.as_str();
+        let mut model = TwoValued(self.top.model(self.seed));
         command.record(&mut model, &model_vcd, scope).map_err(bench::failure)?;
-        let mut device = self.bench.device(self.simulator, self.files, self.seed)?;
+        let device = self.simulator.device(self.top, self.sources, self.seed);
+        let mut device = device.map_err(bench::failure)?;
         let trace = command
             .record(device.as_mut(), &rtl_vcd, scope)
             .map_err(bench::failure)?;
-        let float: Vec<Vec<f64>> = axes.iter().map(|axis| axis.float.clone()).collect();
+        let word_bits = self.machine.fixed_point.command_bits;
+        let float: Vec<Vec<f64>> = axes.iter().map(|axis| axis.float_words(word_bits)).collect();
         command
             .record_float(&float, &trace, &float_vcd, scope)
             .map_err(bench::failure)?;
@@ -212,7 +220,7 @@ impl Job<'_> {
         };
         let mut within = Options::default();
         let mut differences = Vec::new();
-        let names: Vec<String> = self.bench.shapers.iter().map(|s| format!("{}_y", s.axis)).collect();
+        let names: Vec<String> = self.top.shapers().iter().map(AxisShaper::output).collect();
         for (name, axis) in names.iter().zip(axes) {
             within
                 .add_tolerance(&format!("{name}={}", axis.bound_lsb))
@@ -232,10 +240,7 @@ impl Job<'_> {
                 .shaped
                 .iter()
                 .zip(&float)
-                .map(|(shaped, float)| {
-                    let words: Vec<i32> = shaped.iter().map(|word| *word as i32).collect();
-                    largest_difference(&words, float)
-                })
+                .map(|(shaped, float)| largest_difference(shaped, float))
                 .collect(),
         };
         let parts = [("model", &model_vcd), ("rtl", &rtl_vcd), ("float", &float_vcd)];

@@ -22,7 +22,7 @@ Examples:
   posicast simulate examples/xy-stage.toml --command moves.csv
 
 The waveform holds, per axis and in LSB of the command word: command x, shaped y, float design y_float, and the
-machine's position with and without shaping.")]
+machine's position with and without shaping. The words of a modulo axis wrap; the machine's position counts on.")]
 pub(crate) struct Args {
     /// Machine file
     machine: PathBuf,
@@ -108,17 +108,15 @@ fn write_wave(machine: &Machine, words: &Words, axes: &[AxisSimulation], path: &
     let mut recorder =
         Recorder::create(path, machine.clock.sample_hz, &[&machine.name], &signals).map_err(Failure::because)?;
     let mask = u64::MAX >> (64 - bits);
-    let raw = |word: i32| i64::from(word) as u64 & mask;
+    let raw = |word: i64| word as u64 & mask;
+    let float: Vec<Vec<f64>> = axes.iter().map(|axis| axis.float_words(bits)).collect();
     for sample in 0..words.first().map_or(0, Vec::len) {
         let row: Vec<u64> = axes
             .iter()
             .zip(words)
-            .flat_map(|(axis, words)| {
-                let reals = [
-                    axis.float[sample],
-                    axis.position[sample],
-                    axis.position_unshaped[sample],
-                ];
+            .zip(&float)
+            .flat_map(|((axis, words), float)| {
+                let reals = [float[sample], axis.position[sample], axis.position_unshaped[sample]];
                 let integers = [raw(words[sample]), raw(axis.shaped[sample])];
                 integers.into_iter().chain(reals.map(f64::to_bits))
             })

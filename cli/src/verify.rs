@@ -1,12 +1,12 @@
-//! `posicast verify`: RTL against the bit-exact model, clock by clock.
+//! `posicast verify`: RTL against the bit-exact model, clock by clock, block by block.
 
-use crate::bench::{Bench, Simulator};
+use crate::bench::{self, Bench, Simulator};
 use crate::design::Report as DesignReport;
 use crate::failure::Failure;
 use crate::output::{self, Table};
-use crate::{command, generate, machine};
-use posicast_model::design::MachineDesign;
+use crate::{blocks, command, machine};
 use posicast_synth::package;
+use posicast_testbench::blocks::{Block, Sources};
 use posicast_testbench::lockstep::report::{Report, Verdict};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -16,6 +16,7 @@ use std::path::{Path, PathBuf};
 #[command(after_help = "\
 Examples:
   posicast verify examples/xy-stage.toml --cycles 10000000
+  posicast verify examples/xy-stage.toml --block pulse_counter --block divider
   posicast verify xy_stage                    the Verilog in that folder, as it is
 
 Exit status: 0 no mismatch, 1 a mismatch, 2 bad input, 3 the simulator is missing.")]
@@ -25,7 +26,10 @@ pub(crate) struct Args {
     /// Simulator [default: verilator; rusthdl, the weaker check, where Verilator is missing]
     #[arg(long)]
     simulator: Option<Simulator>,
-    /// Clocks to compare [default: 1000000 with verilator, 20000 with icarus and rusthdl]
+    /// Only the blocks of this name, such as pulse_counter; may be given several times
+    #[arg(long = "block", value_name = "NAME")]
+    blocks: Vec<String>,
+    /// Clocks to compare in every row [default: 1000000 with verilator, 20000 with icarus and rusthdl]
     #[arg(long, value_parser = clap::value_parser!(u64).range(1..))]
     cycles: Option<u64>,
     /// Seed of the random stimuli
@@ -40,7 +44,7 @@ pub(crate) struct Args {
 pub(crate) const DEFAULT_SEED: u64 = 1;
 
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
-    let job = Job::new(&args.source)?;
+    let mut job = Job::new(&args.source, &args.blocks)?;
     if job.from_folder && args.simulator == Some(Simulator::Rusthdl) {
         return Err(Failure::from(miette::miette!(
             help = "use --simulator verilator or icarus, or verify the machine file",
@@ -53,6 +57,9 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     } else {
         Simulator::choose(args.simulator)?
     };
+    if simulator == Simulator::Rusthdl {
+        job.keep_what_is_rusthdl()?;
+    }
     let cycles = args.cycles.unwrap_or(simulator.default_cycles());
     let report = job.lockstep(simulator, cycles, args.seed)?;
     if report.samples == 0 {
@@ -74,52 +81,93 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     }
 }
 
-/// A machine whose Verilog is to be compared with its model.
+/// The blocks that are to be compared with their models.
 struct Job {
-    design: MachineDesign,
-    bench: Bench,
-    files: Vec<PathBuf>,
+    blocks: Vec<(Box<dyn Block>, Sources)>,
     from_folder: bool,
-    _scratch: Option<tempfile::TempDir>,
 }
 
 impl Job {
-    fn new(source: &Path) -> Result<Self, Failure> {
-        let (machine, folder) = if source.is_dir() {
+    /// The blocks of a machine file or of a folder; only those in `names`, if there are any.
+    fn new(source: &Path, names: &[String]) -> Result<Self, Failure> {
+        let (machine, path, folder) = if source.is_dir() {
             let contents = package::read(source).map_err(Failure::because)?;
-            (
-                machine::parse(&contents.machine_path, &contents.machine_toml)?,
-                Some(contents.rtl),
-            )
+            let machine = machine::parse(&contents.machine_path, &contents.machine_toml)?;
+            (machine, contents.machine_path, Some(contents.rtl))
         } else {
-            (machine::read(source)?.machine, None)
+            (machine::read(source)?.machine, source.to_owned(), None)
         };
         let design = DesignReport::new(&machine, source)?.design;
-        let bench = Bench::new(&machine, machine::shapers(&machine, &design, source)?)?;
-        let from_folder = folder.is_some();
-        let (files, scratch) = match folder {
-            Some(files) => (files, None),
-            None => {
-                let (files, scratch) = generate::write_scratch(&generate::modules(&machine.name, &bench.shapers)?)?;
-                (files, Some(scratch))
-            }
+        let shapers = machine::shapers(&machine, &design, source)?;
+        // A move that does not fit the words is an error of `run`; a lock step has its other stimuli.
+        let words = command::words(&machine, &design, None).unwrap_or_default();
+        let others = blocks::others(&machine, &shapers, &path)?;
+        let mut list: Vec<Box<dyn Block>> = vec![Box::new(blocks::shapers(&machine, shapers, &words)?)];
+        if let Some(files) = &folder {
+            let there = Sources::found(files.clone());
+            list.extend(others.into_iter().filter(|block| there.hold(block.as_ref())));
+        } else {
+            list.extend(others);
+        }
+        let sources = |block: &dyn Block| match &folder {
+            Some(files) => Ok(Sources::found(files.clone())),
+            None => Sources::write(block).map_err(bench::failure),
         };
+        let chosen = choose(list, names, source)?.into_iter();
+        let blocks = chosen.map(|block| sources(block.as_ref()).map(|sources| (block, sources)));
         Ok(Self {
-            design,
-            bench,
-            files,
-            from_folder,
-            _scratch: scratch,
+            blocks: blocks.collect::<Result<_, _>>()?,
+            from_folder: folder.is_some(),
         })
     }
 
-    fn lockstep(&self, simulator: Simulator, cycles: u64, seed: u64) -> Result<Report, Failure> {
-        let mut device = self.bench.device(simulator, &self.files, seed)?;
-        // A move that does not fit the words is an error of `run`; a lock step has its other stimuli.
-        let words = command::words(&self.bench.machine, &self.design, None).unwrap_or_default();
-        self.bench
-            .lockstep(device.as_mut(), &command::widened(&words), cycles, seed)
+    /// Leaves out what RustHDL's simulator cannot run, and says so; where nothing else is left, that is an error.
+    fn keep_what_is_rusthdl(&mut self) -> Result<(), Failure> {
+        let all = std::mem::take(&mut self.blocks);
+        let (kept, left_out): (Vec<_>, Vec<_>) = all.into_iter().partition(|(block, _)| block.in_rusthdl());
+        let names = left_out
+            .iter()
+            .map(|(block, _)| format!("{} {}", block.name(), block.instance()));
+        let names = names.collect::<Vec<_>>().join("; ");
+        if kept.is_empty() {
+            return Err(Failure::from(miette::miette!(
+                help = "use --simulator verilator or icarus",
+                "`--simulator rusthdl` runs RustHDL descriptions, and these are written from register maps: {names}"
+            )));
+        }
+        if !left_out.is_empty() {
+            output::say(&format!(
+                "note: left out, because RustHDL's simulator cannot run what is written from register maps: {names}"
+            ));
+        }
+        self.blocks = kept;
+        Ok(())
     }
+
+    fn lockstep(&self, simulator: Simulator, cycles: u64, seed: u64) -> Result<Report, Failure> {
+        let benches = self.blocks.iter().map(|(block, sources)| Bench {
+            block: block.as_ref(),
+            sources,
+            cycles,
+        });
+        bench::compare_all(&benches.collect::<Vec<_>>(), simulator, seed)
+    }
+}
+
+/// The blocks of these names, all of them where there are no names.
+fn choose(blocks: Vec<Box<dyn Block>>, names: &[String], source: &Path) -> Result<Vec<Box<dyn Block>>, Failure> {
+    let mut known: Vec<String> = blocks.iter().map(|block| block.name().to_owned()).collect();
+    known.sort_unstable();
+    known.dedup();
+    if let Some(unknown) = names.iter().find(|name| !known.contains(name)) {
+        return Err(Failure::from(miette::miette!(
+            help = format!("choose from: {}", known.join(", ")),
+            "--block {unknown}: `{}` has no block of this name",
+            source.display()
+        )));
+    }
+    let wanted = |name: &str| names.is_empty() || names.iter().any(|chosen| chosen == name);
+    Ok(blocks.into_iter().filter(|block| wanted(block.name())).collect())
 }
 
 /// `verify --json`.

@@ -20,6 +20,14 @@ pub struct AxisShaper {
     pub config: ShaperConfig,
 }
 
+impl AxisShaper {
+    /// Name of the top's port that shows the shaped position.
+    pub fn output(&self) -> String {
+        let port = if self.config.motion().is_some() { "y_0" } else { "y" };
+        format!("{}_{port}", self.axis)
+    }
+}
+
 /// All Verilog modules of a machine, sub-modules first, the top last.
 ///
 /// # Errors

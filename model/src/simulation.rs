@@ -1,23 +1,24 @@
 //! A command on its way through the shaper to the simulated machine, sample by sample.
 //!
 //! ```text
-//! words x ─┬─► SampleShaper (bit exact) ─► y ─► plant ─► position
+//! words x ─┬─► shaper (bit exact) ─► y ───────► plant ─► position
 //!          ├─► real taps (float design) ─► y_float        |y − y_float| ≤ bound
 //!          └─────────────────────────────────► plant ─► position without shaping
 //! ```
 //!
-//! All words and positions are in LSB of the command word. The command starts at rest at its first value.
+//! All words and positions are in LSB of the command word. The command starts at rest at its first value. Those of a modulo
+//! axis have their whole turns here; the hardware has the lowest bits of each ([`AxisSimulation::float_words`]).
 
 use crate::design::AxisTables;
 use crate::plant::{Plant, SampledPlant};
-use crate::rtl::shaper::{SampleShaper, ShaperConfig};
+use crate::rtl::shaper::{CHANNELS_MAX, MotionShaper, SampleShaper, ShaperConfig, wrap};
 
 /// What became of a command on one axis.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AxisSimulation {
-    /// Shaped words, as the hardware computes them.
-    pub shaped: Vec<i32>,
-    /// Shaped words of the float design, clamped to the word as the hardware's are.
+    /// Shaped words, as the hardware computes them; of a modulo axis with the whole turns that its word leaves out.
+    pub shaped: Vec<i64>,
+    /// Shaped words of the float design, clamped to the word as the hardware's are; of a modulo axis with whole turns.
     pub float: Vec<f64>,
     /// Position of the machine that follows the shaped words, at the end of each sample.
     pub position: Vec<f64>,
@@ -36,15 +37,19 @@ impl AxisSimulation {
     pub fn largest_difference_lsb(&self) -> f64 {
         largest_difference(&self.shaped, &self.float)
     }
+
+    /// The float design beside the words of `word_bits` bits that the hardware shows: without the whole turns that those
+    /// leave out. It may then lie a fraction beyond the word.
+    pub fn float_words(&self, word_bits: u32) -> Vec<f64> {
+        let shown = |(float, shaped): (&f64, &i64)| float - (shaped - wrap(*shaped, word_bits)) as f64;
+        self.float.iter().zip(&self.shaped).map(shown).collect()
+    }
 }
 
 /// Largest difference of integer and float words of the same samples.
-pub fn largest_difference(words: &[i32], float: &[f64]) -> f64 {
-    words
-        .iter()
-        .zip(float)
-        .map(|(y, f)| (f64::from(*y) - f).abs())
-        .fold(0.0, f64::max)
+pub fn largest_difference(words: &[i64], float: &[f64]) -> f64 {
+    let differences = words.iter().zip(float).map(|(y, f)| (*y as f64 - f).abs());
+    differences.fold(0.0, f64::max)
 }
 
 /// Runs `words` through the shaper that `config` describes, its float design `tables`, and `plant`.
@@ -53,21 +58,25 @@ pub fn simulate_axis(
     tables: &AxisTables,
     plant: &Plant,
     sample_period_s: f64,
-    words: &[i32],
+    words: &[i64],
 ) -> AxisSimulation {
     let start = words.first().copied().unwrap_or(0);
-    let mut shaper = SampleShaper::new(config);
-    shaper.start(i64::from(start));
-    // A word has at most 32 bits, so what the shaper gives fits.
-    let shaped: Vec<i32> = words.iter().map(|x| shaper.push(i64::from(*x)) as i32).collect();
-    let (least, most) = (config.word_min() as f64, config.word_max() as f64);
     let float = tables.digitised.shape(words);
-    let follow = |words: &[i32]| follow(plant, sample_period_s, start, words);
+    let (shaped, float) = if config.motion().is_some_and(|motion| motion.modulo) {
+        (turned(config, words, &float), float)
+    } else {
+        let mut shaper = SampleShaper::new(config);
+        shaper.start(start);
+        let shaped = words.iter().map(|x| shaper.push(*x)).collect();
+        let (least, most) = (config.word_min() as f64, config.word_max() as f64);
+        (shaped, float.into_iter().map(|y| y.clamp(least, most)).collect())
+    };
+    let follow = |words: &[i64]| follow(plant, sample_period_s, start, words);
     let (position, vibration) = follow(&shaped);
     let (position_unshaped, vibration_unshaped) = follow(words);
     AxisSimulation {
         shaped,
-        float: float.into_iter().map(|y| y.clamp(least, most)).collect(),
+        float,
         position,
         position_unshaped,
         vibration,
@@ -76,13 +85,29 @@ pub fn simulate_axis(
     }
 }
 
+/// The words of a modulo axis's shaper, each with the whole turns that bring it nearest to the float design's.
+fn turned(config: &ShaperConfig, words: &[i64], float: &[f64]) -> Vec<i64> {
+    let channels = |x: i64| {
+        let mut channels = [0; CHANNELS_MAX];
+        channels[0] = x;
+        channels
+    };
+    let mut shaper = MotionShaper::new(config);
+    shaper.start(channels(words.first().copied().unwrap_or(0)));
+    let word = |(x, float): (&i64, &f64)| {
+        let (y, near) = (shaper.push(channels(*x))[0], float.round() as i64);
+        near + wrap(y - near, config.word_bits())
+    };
+    words.iter().zip(float).map(word).collect()
+}
+
 /// Positions of the machine that follows `words`, and the amplitude with which it rings after the last change of them.
-fn follow(plant: &Plant, sample_period_s: f64, start: i32, words: &[i32]) -> (Vec<f64>, f64) {
-    let mut machine = SampledPlant::new(plant, sample_period_s, f64::from(start));
+fn follow(plant: &Plant, sample_period_s: f64, start: i64, words: &[i64]) -> (Vec<f64>, f64) {
+    let mut machine = SampledPlant::new(plant, sample_period_s, start as f64);
     let mut vibration = 0.0;
     let mut last = start;
     let positions = words.iter().map(|word| {
-        let position = machine.step(f64::from(*word));
+        let position = machine.step(*word as f64);
         if *word != last {
             vibration = machine.vibration();
             last = *word;
@@ -97,6 +122,7 @@ fn follow(plant: &Plant, sample_period_s: f64, start: i32, words: &[i32]) -> (Ve
 mod tests {
     use super::*;
     use crate::design::design_machine;
+    use crate::rtl::shaper::Motion;
     use crate::spec;
 
     const MACHINE: &str = r#"
@@ -109,7 +135,7 @@ mod tests {
         mode = [{ frequency_hz = 131.117015808451, damping = 0.157799065776 }]
     "#;
 
-    fn simulate(words: &[i32]) -> AxisSimulation {
+    fn simulate(words: &[i64]) -> AxisSimulation {
         let machine = spec::parse("one.toml", MACHINE).unwrap();
         let design = design_machine(&machine).unwrap();
         let config = ShaperConfig::new(32, design.axes[0].table.clone()).unwrap();
@@ -119,7 +145,7 @@ mod tests {
 
     #[test]
     fn a_shaped_step_leaves_no_more_than_the_quantised_residual() {
-        let step: Vec<i32> = std::iter::once(1000)
+        let step: Vec<i64> = std::iter::once(1000)
             .chain(std::iter::repeat_n(1_001_000, 400))
             .collect();
         let run = simulate(&step);
@@ -127,6 +153,39 @@ mod tests {
         assert!(run.vibration < 1e-4 * 1e6, "{}", run.vibration);
         assert!(run.vibration_unshaped > 0.8 * 1e6, "{}", run.vibration_unshaped);
         assert!(run.largest_difference_lsb() <= run.bound_lsb);
+    }
+
+    #[test]
+    fn a_modulo_axis_turns_on_where_its_word_wraps() {
+        let machine = spec::parse(
+            "one.toml",
+            &MACHINE.replace("1_000_000\n", "1_000_000\nmodulo = true\n"),
+        )
+        .unwrap();
+        let design = design_machine(&machine).unwrap();
+        let plain = ShaperConfig::new(24, design.axes[0].table.clone()).unwrap();
+        let modulo = Motion {
+            channels: 1,
+            modulo: true,
+        };
+        let config = plain.for_motion(modulo).unwrap();
+        let plant = Plant::of_axis(&machine.axes[0]).unwrap();
+        // Two and a half turns of the word there and a bit back, at 0.002 turns per sample at most.
+        let turn = f64::from(24).exp2();
+        let words: Vec<i64> = (0..5000)
+            .map(|n| (turn * (2.5 - 2.5 * (f64::from(n.min(4000)) * 0.0008).cos())) as i64)
+            .collect();
+        let run = simulate_axis(&config, &design.axes[0], &plant, 1e-4, &words);
+        assert_eq!(run.shaped.last(), words.last());
+        assert!(run.shaped.last().unwrap() > &(4 << 24));
+        assert!(
+            run.largest_difference_lsb() <= run.bound_lsb,
+            "{}",
+            run.largest_difference_lsb()
+        );
+        let wrapped: Vec<i64> = run.shaped.iter().map(|y| wrap(*y, 24)).collect();
+        assert!(largest_difference(&wrapped, &run.float_words(24)) <= run.bound_lsb);
+        assert!(wrapped.iter().all(|y| y.abs() <= 1 << 23));
     }
 
     #[test]

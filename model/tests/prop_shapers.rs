@@ -151,11 +151,11 @@ proptest! {
     #[test]
     fn prop_integer_output_stays_within_its_bound(machine in some_machine(), command in prop::collection::vec(any::<i32>(), 1..60)) {
         // Small words: saturation is excluded from the bound.
-        let command: Vec<i32> = command.into_iter().map(|word| word >> 8).collect();
+        let command: Vec<i64> = command.into_iter().map(|word| i64::from(word >> 8)).collect();
         let axis = &design_machine(&machine).unwrap().axes[0];
         let fraction = axis.table.coefficient_fraction();
         for (sample, float) in axis.digitised.shape(&command).into_iter().enumerate() {
-            let word = |delay: u32| i64::from(command[sample.saturating_sub(delay as usize)]);
+            let word = |delay: u32| command[sample.saturating_sub(delay as usize)];
             let sum: i64 = axis.table.taps().iter().map(|t| i64::from(t.coefficient) * word(t.delay_samples)).sum();
             let integer = (sum + (1 << (fraction - 1))) >> fraction;
             prop_assert!((integer as f64 - float).abs() <= axis.output_bound_lsb(&command) * (1.0 + 1e-12));
@@ -200,7 +200,7 @@ proptest! {
     fn prop_command_words_are_the_nearest(positions in prop::collection::vec(-0.1..0.1, 1..50)) {
         let words = command_words(&positions, 1e6, 32, 8).unwrap();
         for (word, position) in words.into_iter().zip(positions) {
-            prop_assert!((f64::from(word) - position * 256e6).abs() <= 0.5);
+            prop_assert!((word as f64 - position * 256e6).abs() <= 0.5);
         }
     }
 }

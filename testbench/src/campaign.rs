@@ -9,7 +9,7 @@
 
 use std::collections::VecDeque;
 
-use crate::stimuli::{Directed, Layout, Motion, Random, Stimuli, cases, corners};
+use crate::stimuli::{Directed, Layout, Motion, Random, Stimuli, cases, corners, motion_cases};
 
 /// Clocks between the strobes of the move beyond a pass: idle clocks, a handful.
 const IDLE_CLOCKS: u64 = 5;
@@ -33,7 +33,9 @@ impl<'a> Campaign<'a> {
         let mut phases = VecDeque::new();
         // A corner belongs to one axis's sizes; on the others it is one more script.
         let corner_cases = layout.axes.iter().flat_map(corners);
-        for (_, script) in cases().into_iter().chain(corner_cases) {
+        let in_motion = layout.axes.iter().any(|axis| axis.swap_how.is_some());
+        let motion_cases = in_motion.then(motion_cases).into_iter().flatten();
+        for (_, script) in cases().into_iter().chain(motion_cases).chain(corner_cases) {
             let directed = Directed::new(layout, script);
             let clocks = directed.clocks(pass_clocks);
             phases.push_back(Phase {

@@ -2,6 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
+use posicast_hdl::SimulationError;
+use posicast_hdl::emit::EmitError;
 use posicast_model::rtl::StepError;
 
 /// Why a comparison could not be made. That something *differs* is a result, never an error.
@@ -41,6 +43,9 @@ pub enum Error {
     /// Model and device under test have different ports.
     #[error("model and device under test cannot be compared: {0}")]
     Unlike(String),
+    /// A block that cannot be written as Verilog, or that RustHDL refuses.
+    #[error(transparent)]
+    Block(BlockError),
     /// A source file, cache folder or output file cannot be read or written.
     #[error("{}: cannot {doing}: {source}", .path.display())]
     File {
@@ -80,6 +85,29 @@ pub enum Error {
     /// An option that does not fit the files it is used with.
     #[error("{0}")]
     Option(String),
+}
+
+/// Why there is no hardware to compare.
+#[derive(Debug, thiserror::Error)]
+pub enum BlockError {
+    /// The emitter cannot write it.
+    #[error(transparent)]
+    Emit(#[from] EmitError),
+    /// RustHDL found a fault in it.
+    #[error(transparent)]
+    Simulation(#[from] SimulationError),
+}
+
+impl From<EmitError> for Error {
+    fn from(error: EmitError) -> Self {
+        Self::Block(error.into())
+    }
+}
+
+impl From<SimulationError> for Error {
+    fn from(error: SimulationError) -> Self {
+        Self::Block(error.into())
+    }
 }
 
 impl Error {

@@ -10,7 +10,7 @@ use posicast_model::rtl::{Direction, Port};
 
 use crate::Error;
 use crate::lockstep::Device;
-use crate::stimuli::{Layout, Motion, Stimuli};
+use crate::stimuli::{Axis, Layout, Motion, Stimuli};
 use crate::wave::{Recorder, Signal};
 
 /// Idle clocks after a pass, so that each sample's output is seen to stand.
@@ -94,7 +94,7 @@ impl Move<'_> {
     /// # Errors
     /// [`Error::File`] where the file cannot be written.
     pub fn record_float(&self, float: &[Vec<f64>], trace: &Trace, path: &Path, scope: &str) -> Result<(), Error> {
-        let names: Vec<String> = self.layout.axes.iter().map(|axis| port_of(&axis.name, "y")).collect();
+        let names: Vec<String> = self.layout.axes.iter().map(output_of).collect();
         let signals: Vec<Signal> = names.iter().map(|name| Signal::real(name)).collect();
         let mut recorder = Recorder::create(path, self.clock_hz(), &[scope], &signals)?;
         let motion = Motion::new(self.layout, self.words, self.clocks_per_sample);
@@ -130,12 +130,10 @@ struct Places(Vec<Place>);
 
 impl Places {
     fn new(outputs: &[&Port], layout: &Layout) -> Result<Self, Error> {
-        let find = |name: String| {
-            let at = outputs.iter().position(|p| p.name == name);
-            at.ok_or_else(|| Error::Unlike(format!("there is no output `{name}`")))
-        };
+        let position = |name: &str| outputs.iter().position(|p| p.name == name);
+        let find = |name: String| position(&name).ok_or_else(|| Error::Unlike(format!("there is no output `{name}`")));
         let places = layout.axes.iter().map(|axis| {
-            let y = find(port_of(&axis.name, "y"))?;
+            let y = find(output_of(axis))?;
             Ok(Place {
                 y,
                 valid: find(port_of(&axis.name, "valid"))?,
@@ -144,6 +142,11 @@ impl Places {
         });
         places.collect::<Result<_, Error>>().map(Self)
     }
+}
+
+/// The output that shows the shaped position: `y`, or `y_0` of a shaper for motion.
+fn output_of(axis: &Axis) -> String {
+    port_of(&axis.name, if axis.swap_how.is_some() { "y_0" } else { "y" })
 }
 
 fn port_of(axis: &str, port: &str) -> String {

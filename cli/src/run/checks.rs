@@ -1,7 +1,7 @@
 //! What must hold for a run to end with exit status 0.
 
 use super::Waves;
-use crate::bench::{self, Bench, Simulator};
+use crate::bench::{self, Simulator};
 use crate::failure::Failure;
 use posicast_model::design::MachineDesign;
 use posicast_model::spec::Machine;
@@ -26,7 +26,7 @@ pub(crate) struct Check {
 /// The checks of the comparisons.
 pub(crate) fn all(
     simulator: Simulator,
-    bench: &Bench,
+    machine: &Machine,
     design: &MachineDesign,
     lockstep: &Report,
     waves: &Waves,
@@ -35,7 +35,7 @@ pub(crate) fn all(
         rtl_equals_model(simulator, lockstep),
         move_equals_model(waves),
         within_float_bound(waves),
-        residual_within_rounding(bench, design),
+        residual_within_rounding(machine, design),
     ]
 }
 
@@ -82,9 +82,9 @@ fn compared(comparison: &Comparison) -> String {
 }
 
 /// Rounding the taps may raise the residual by no more than `Σ |c_i/2^F − a_i|`.
-fn residual_within_rounding(bench: &Bench, design: &MachineDesign) -> Check {
+fn residual_within_rounding(machine: &Machine, design: &MachineDesign) -> Check {
     let mut worst: Option<String> = None;
-    for (axis, tables) in bench.machine.axes.iter().zip(&design.axes) {
+    for (axis, tables) in machine.axes.iter().zip(&design.axes) {
         let allowed = tables.quantising_error();
         for mode in tables.mode_figures(axis, design.sample_hz) {
             if mode.residual_quantised > mode.residual_digitised + allowed {

@@ -191,7 +191,11 @@ impl Report<'_> {
             ">bound, LSB",
         ]);
         for (index, axis, _) in self.rows() {
-            let block = self.lockstep.blocks.iter().find(|b| b.instance == axis.name);
+            let block = self
+                .lockstep
+                .blocks
+                .iter()
+                .find(|b| b.name == "shaper" && b.instance == axis.name);
             table.row([
                 axis.name.clone(),
                 block.map_or_else(String::new, |b| b.cycles.to_string()),
@@ -287,13 +291,9 @@ fn step_panel(axis: &Axis, tables: &AxisTables, sample_hz: f64) -> Result<Panel,
 
 /// The machine round its target, from shortly before the move arrives to the end.
 fn move_panel(machine: &Machine, axis: &Axis, run: &AxisSimulation) -> Panel {
-    let target = run.shaped.last().copied().map_or(0.0, f64::from);
+    let target = run.shaped.last().map_or(0.0, |word| *word as f64);
     let micro = micro_units_per_lsb(machine, axis);
-    let moving = run
-        .shaped
-        .iter()
-        .rposition(|word| f64::from(*word) != target)
-        .unwrap_or(0);
+    let moving = run.shaped.iter().rposition(|word| *word as f64 != target).unwrap_or(0);
     let from = moving.saturating_sub((run.shaped.len() - moving) / 8);
     let deviation = |positions: &[f64]| {
         let points = positions.iter().enumerate().skip(from);

@@ -67,6 +67,54 @@ fn cli_run_of_the_zv_shaper_gives_its_published_overshoot() {
 }
 
 #[test]
+fn cli_a_modulo_axis_goes_the_whole_way_across_the_end_of_its_word() {
+    // 24 bits with 8 of fraction wrap after 65,536 counts: the table turns round five times and comes back a little.
+    let text = crate::support::one_axis("kind = \"zvd\"", "frequency_hz = 40.0\ndamping = 0.1")
+        .replace("1_000_000", "1_000\nmodulo = true")
+        .replace("[[axis]]", "[fixed_point]\ncommand_bits = 24\n[[axis]]");
+    let (folder, file) = crate::support::scratch(&text);
+    let command = folder.path().join("turns.csv");
+    std::fs::write(&command, "time_s,position\n0,40\n0.4,360\n0.45,350\n").unwrap();
+    let output = folder.path().join("out");
+    let mut run = posicast();
+    run.arg("run")
+        .arg(&file)
+        .arg("-o")
+        .arg(&output)
+        .arg("--command")
+        .arg(&command)
+        .args(["--json", "--cycles", CYCLES]);
+    let document = json(&run.assert().success().get_output().stdout);
+    assert_eq!(document["result"], "pass");
+    let axis = &document["axes"][0];
+    assert!(axis["largest_difference_lsb"].as_f64().unwrap() <= axis["bound_lsb"].as_f64().unwrap());
+    let top = std::fs::read_to_string(output.join("rtl/one.v")).unwrap();
+    assert!(top.contains("x_swap_how") && top.contains("x_y_0"), "{top}");
+    let mut simulate = posicast();
+    simulate
+        .arg("simulate")
+        .arg(&file)
+        .arg("--command")
+        .arg(&command)
+        .arg("-o")
+        .arg(folder.path().join("turns.vcd"))
+        .arg("--json");
+    json(&simulate.assert().success().get_output().stdout);
+
+    // Half a turn of the word within the shaper's delay cannot be told from the other half.
+    std::fs::write(&command, "time_s,position\n0,0\n0.01,200\n").unwrap();
+    let refused = posicast()
+        .arg("simulate")
+        .arg(&file)
+        .arg("--command")
+        .arg(&command)
+        .output()
+        .unwrap();
+    assert_eq!((refused.status.code(), refused.stdout.is_empty()), (Some(2), true));
+    assert!(String::from_utf8_lossy(&refused.stderr).contains("move slower"));
+}
+
+#[test]
 fn cli_verify_without_any_tool_still_gives_a_verdict_and_names_it_the_weaker_check() {
     let mut verify = posicast();
     verify

@@ -1,6 +1,7 @@
 //! The command line from outside: exit status, standard output, standard error, files.
 
 mod support;
+mod verify;
 
 mod bad_input;
 mod design;

@@ -18,7 +18,7 @@ pub struct EmitError {
 }
 
 impl EmitError {
-    pub(super) fn new(block: &str, signal: &str, cause: Cause) -> Self {
+    pub(crate) fn new(block: &str, signal: &str, cause: Cause) -> Self {
         let signal = if signal.is_empty() { "-" } else { signal };
         Self {
             block: block.to_owned(),
@@ -193,6 +193,9 @@ pub enum Cause {
         /// Its type there.
         second: Type,
     },
+    /// A module that is not what the composition's part is: other ports, or one too few.
+    #[error("the part `{0}` has other ports than the module that is to be it; make them from the same configuration")]
+    PartPorts(String),
     /// An output that bears the name of a shared input.
     #[error("`{0}` is an output of an instance and cannot be shared; rename it or do not share it")]
     SharedOutput(String),

@@ -37,6 +37,7 @@
 
 mod collect;
 mod compose;
+mod connect;
 mod drivers;
 mod error;
 mod expressions;
@@ -44,15 +45,16 @@ mod flow;
 mod ir;
 mod leaf;
 mod modules;
-mod names;
+pub(crate) mod names;
 mod paths;
-mod print;
+pub(crate) mod print;
 mod scope;
 mod statements;
 mod types;
 mod values;
 
 pub use compose::{Instance, compose};
+pub use connect::connect;
 pub use error::{Cause, EmitError};
 pub use types::Type;
 

@@ -25,7 +25,7 @@ const RESERVED: &str = "\
     wildcard wire with within wor xnor xor";
 
 /// Checks a name that stands alone in the Verilog.
-pub(super) fn check_name(name: &str) -> Result<(), Cause> {
+pub(crate) fn check_name(name: &str) -> Result<(), Cause> {
     check_form(name)?;
     if RESERVED.split(' ').any(|word| word == name) {
         return Err(Cause::ReservedWord(name.to_owned()));

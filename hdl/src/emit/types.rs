@@ -49,7 +49,7 @@ impl Type {
     }
 
     /// `signed [7:0]`, or nothing for a single unsigned bit.
-    pub(super) fn declaration(self) -> String {
+    pub(crate) fn declaration(self) -> String {
         let sign = if self.signed { "signed " } else { "" };
         let range = if self.width == 1 {
             String::new()
@@ -60,7 +60,7 @@ impl Type {
     }
 
     /// `pattern` as a sized literal: decimal, except the most negative value, whose magnitude has no decimal literal.
-    pub(super) fn literal(self, pattern: u64) -> String {
+    pub(crate) fn literal(self, pattern: u64) -> String {
         let width = self.width;
         let sign_bit = 1u64 << (width - 1);
         match (self.signed, pattern & sign_bit != 0) {

@@ -88,9 +88,9 @@ impl AxisTables {
 
     /// How far the hardware's output can be from [`Digitised::shape`] for these command words, in LSB, saturation excluded:
     /// `(max x − min x) · Σ |c_i/2^F − a_i| + ½`.
-    pub fn output_bound_lsb(&self, command: &[i32]) -> f64 {
-        let highest = command.iter().max().copied().map_or(0.0, f64::from);
-        let lowest = command.iter().min().copied().map_or(0.0, f64::from);
+    pub fn output_bound_lsb(&self, command: &[i64]) -> f64 {
+        let highest = command.iter().max().map_or(0.0, |word| *word as f64);
+        let lowest = command.iter().min().map_or(0.0, |word| *word as f64);
         (highest - lowest) * self.quantising_error() + 0.5
     }
 

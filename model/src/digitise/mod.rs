@@ -81,10 +81,10 @@ impl Digitised {
 
     /// The float design's output for these command words, in the same unit: what the hardware's output is compared with.
     /// Before the first word the command was at the first word.
-    pub fn shape(&self, command: &[i32]) -> Vec<f64> {
+    pub fn shape(&self, command: &[i64]) -> Vec<f64> {
         let word = |sample: usize, delay_samples: u32| {
             let delayed = sample.saturating_sub(delay_samples as usize);
-            f64::from(command[delayed])
+            command[delayed] as f64
         };
         let output = |sample| self.taps.iter().map(|t| t.weight * word(sample, t.delay_samples)).sum();
         (0..command.len()).map(output).collect()

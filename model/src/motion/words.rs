@@ -4,6 +4,10 @@ use thiserror::Error;
 
 use crate::rtl::shaper::WORD_BITS;
 use crate::rtl::word::{WordError, WordFormat};
+use crate::taps::TapTable;
+
+/// Largest word of a modulo axis with its whole turns, as a power of two: positions keep their fraction in an `f64`.
+const TURNED_WORD_BITS: i32 = 50;
 
 /// Why positions are no command words.
 #[derive(Debug, Clone, PartialEq, Error)]
@@ -40,6 +44,22 @@ pub enum CommandError {
         /// The next size that is enough, or what else to do.
         remedy: String,
     },
+    /// A modulo axis that turns farther than its word can tell while a sample goes through the shaper.
+    #[error(
+        "sample {sample}: the position moves by {counts} counts within the shaper's delay of {delay_samples} samples, and the \
+         words of a modulo axis must stay below half a turn of the word ({largest_counts} counts): move slower, or set more \
+         command_bits or a lower command_fraction"
+    )]
+    TurnsTooFast {
+        /// Index of the sample, from 0.
+        sample: usize,
+        /// How far the position moves, in counts.
+        counts: f64,
+        /// The tap's delay.
+        delay_samples: u32,
+        /// Half a turn, in counts.
+        largest_counts: f64,
+    },
 }
 
 /// Converts positions (in units of the machine file) to words of `command_bits` bits with `command_fraction` fraction bits,
@@ -52,16 +72,14 @@ pub fn command_words(
     counts_per_unit: f64,
     command_bits: u32,
     command_fraction: u32,
-) -> Result<Vec<i32>, CommandError> {
+) -> Result<Vec<i64>, CommandError> {
     let format = WordFormat::new(command_bits, command_fraction)?;
     let word = |(sample, &position): (usize, &f64)| {
         let counts = position * counts_per_unit;
         if !counts.is_finite() {
             return Err(CommandError::NotFinite { sample, position });
         }
-        // A word has at most 32 bits.
-        let word = format.to_word(counts).map(|word| word as i32);
-        word.map_err(|_| CommandError::DoesNotFit {
+        format.to_word(counts).map_err(|_| CommandError::DoesNotFit {
             sample,
             position,
             counts,
@@ -72,6 +90,58 @@ pub fn command_words(
         })
     };
     positions.iter().enumerate().map(word).collect()
+}
+
+/// The same for a modulo axis: words with their whole turns, of which the hardware gets the lowest `command_bits`. `table` is
+/// the shaper that they go through.
+///
+/// # Errors
+/// [`CommandError`] names the first sample that is no number, is beyond 2^50, or at which the position has moved by half a
+/// turn of the word or more since a sample that the shaper still uses: the differences that it shapes would be ambiguous.
+pub fn modulo_words(
+    positions: &[f64],
+    counts_per_unit: f64,
+    command_bits: u32,
+    command_fraction: u32,
+    table: &TapTable,
+) -> Result<Vec<i64>, CommandError> {
+    let format = WordFormat::new(command_bits, command_fraction)?;
+    let (lsb_per_count, most) = (f64::from(command_fraction).exp2(), f64::from(TURNED_WORD_BITS).exp2());
+    let word = |(sample, &position): (usize, &f64)| {
+        let counts = position * counts_per_unit;
+        let word = (counts * lsb_per_count + 0.5).floor();
+        if !counts.is_finite() {
+            return Err(CommandError::NotFinite { sample, position });
+        }
+        if word.abs() > most {
+            return Err(CommandError::DoesNotFit {
+                sample,
+                position,
+                counts,
+                command_bits,
+                command_fraction,
+                largest_counts: most / lsb_per_count,
+                remedy: "turn less far".to_owned(),
+            });
+        }
+        Ok(word as i64)
+    };
+    let words: Vec<i64> = positions.iter().enumerate().map(word).collect::<Result<_, _>>()?;
+    let half_turn = 1i64 << (command_bits - 1);
+    for delay_samples in table.taps().iter().map(|tap| tap.delay_samples) {
+        let now = words.iter().enumerate().skip(delay_samples as usize);
+        for ((sample, now), before) in now.zip(&words) {
+            if (now - before).abs() >= half_turn {
+                return Err(CommandError::TurnsTooFast {
+                    sample,
+                    counts: (now - before) as f64 / lsb_per_count,
+                    delay_samples,
+                    largest_counts: format.largest_counts(),
+                });
+            }
+        }
+    }
+    Ok(words)
 }
 
 /// What makes a word fit.
@@ -89,6 +159,7 @@ fn remedy(counts: f64, command_bits: u32, command_fraction: u32) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::taps::Tap;
 
     #[test]
     fn unit_counts_with_fraction_rounded_half_up() {
@@ -102,8 +173,8 @@ mod tests {
         let at = |word: f64, bits| command_words(&[word], 1.0, bits, 0);
         assert_eq!(at(32767.0, 16), Ok(vec![32767]));
         assert_eq!(at(-32768.0, 16), Ok(vec![-32768]));
-        assert_eq!(at(2_147_483_647.0, 32), Ok(vec![i32::MAX]));
-        assert_eq!(at(-2_147_483_648.0, 32), Ok(vec![i32::MIN]));
+        assert_eq!(at(2_147_483_647.0, 32), Ok(vec![i64::from(i32::MAX)]));
+        assert_eq!(at(-2_147_483_648.0, 32), Ok(vec![i64::from(i32::MIN)]));
         let message = |word: f64, bits| at(word, bits).unwrap_err().to_string();
         assert!(message(32768.0, 16).contains("command_bits = 24"));
         assert!(message(-40_000_000.0, 16).contains("command_bits = 32"));
@@ -115,6 +186,41 @@ mod tests {
         for bad in [f64::NAN, f64::INFINITY, f64::MAX] {
             let error = command_words(&[0.0, bad], 1e6, 32, 8).unwrap_err();
             assert!(matches!(error, CommandError::NotFinite { sample: 1, .. }));
+            let error = modulo_words(&[0.0, bad], 1e6, 32, 8, &halves()).unwrap_err();
+            assert!(matches!(error, CommandError::NotFinite { sample: 1, .. }));
         }
+    }
+
+    fn halves() -> TapTable {
+        let half = |delay_samples| Tap {
+            delay_samples,
+            coefficient: 1 << 15,
+        };
+        TapTable::new(16, vec![half(0), half(2)]).unwrap()
+    }
+
+    #[test]
+    fn unit_a_modulo_axis_turns_on_as_long_as_the_shaper_can_tell() {
+        let words = |step: f64| {
+            let positions: Vec<f64> = (0..100).map(|sample| step * f64::from(sample)).collect();
+            modulo_words(&positions, 1.0, 24, 8, &halves())
+        };
+        // Half a turn of 24 bits with 8 of fraction is 32768 counts, and the longest delay 2 samples.
+        assert_eq!(words(16383.0).map(|words| words[99]), Ok(16383 * 256 * 99));
+        let error = words(-16384.0).unwrap_err();
+        assert!(
+            matches!(
+                error,
+                CommandError::TurnsTooFast {
+                    sample: 2,
+                    counts: -32768.0,
+                    delay_samples: 2,
+                    ..
+                }
+            ),
+            "{error}"
+        );
+        let far = modulo_words(&[1e300], 1.0, 24, 8, &halves()).unwrap_err();
+        assert!(far.to_string().contains("turn less far"), "{far}");
     }
 }

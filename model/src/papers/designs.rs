@@ -12,8 +12,13 @@ pub(super) fn axis(shaper: ShaperChoice, modes: &[Mode]) -> Axis {
     Axis {
         name: "paper".into(),
         counts_per_unit: 1.0,
+        modulo: false,
         shaper: Some(shaper),
         modes: modes.iter().map(|mode| axis_mode(*mode, None)).collect(),
+        encoder: None,
+        pwm: None,
+        drive: None,
+        controller: None,
         limits: None,
     }
 }

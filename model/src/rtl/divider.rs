@@ -31,7 +31,7 @@
 //! ```
 
 use super::shaper::wrap;
-use super::{ClockedBlock, Direction, Port, StepError};
+use super::{ClockedBlock, Direction, Moore, Port, StepError};
 
 /// Width of `steps`.
 pub const STEP_BITS: u32 = 18;
@@ -240,6 +240,14 @@ impl ClockedBlock for Divider {
         let shown = Divider::step(self, &Inputs::from_raw(raw));
         outputs.copy_from_slice(&shown.to_raw());
         Ok(())
+    }
+}
+
+impl Moore for Divider {
+    fn show(&self, outputs: &mut [u64]) {
+        for (output, value) in outputs.iter_mut().zip(self.outputs().to_raw()) {
+            *output = value;
+        }
     }
 }
 

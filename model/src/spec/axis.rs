@@ -1,10 +1,10 @@
-//! `[[axis]]`, `[[axis.mode]]` and `[axis.limits]`.
+//! `[[axis]]`, `[[axis.mode]]` and `[axis.limits]`, and which of an axis's blocks need each other.
 
 use super::range::NumberRange;
 use super::table::Table;
-use super::{Axis, AxisMode, Clock, FixedPoint, Limits, not_built, shaper};
+use super::{Axis, AxisMode, Clock, FixedPoint, Limits, controller, drive, encoder, not_built, pwm, shaper};
 use crate::mode::Mode;
-use crate::rtl::shaper::WORD_BITS;
+use crate::rtl::shaper::{MOTION_WORD_BITS, WORD_BITS};
 
 /// Modes of an axis: with five impulses each their convolution has 390,625, far more than any table holds.
 const MAX_MODES: usize = 8;
@@ -52,10 +52,16 @@ pub(super) fn read(
     if let Some(modes) = modes.as_ref().filter(|_| !matches!(choice, Some(None))) {
         shaper::check(table, choice.as_ref().and_then(Option::as_ref), modes);
     }
-    let limits = table
-        .table("limits")
-        .map(|t| read_limits(&t, counts_per_unit.zip(fixed_point)));
-    not_built::read_axis_blocks(table, clock);
+    let modulo = read_modulo(table, fixed_point);
+    // The position of a modulo axis wraps: any travel fits.
+    let scale = counts_per_unit.zip(fixed_point).filter(|_| !modulo);
+    let limits = table.table("limits").map(|t| read_limits(&t, scale));
+    let encoder = table.table("encoder").map(|t| encoder::read(&t));
+    let pwm = table.table("pwm").map(|t| pwm::read(&t, clock));
+    let drive = table.table("drive").map(|t| drive::read(&t));
+    let controller = table.table("controller").map(|t| controller::read(&t));
+    check_needs(table);
+    not_built::read_axis_blocks(table);
     let shaper = match choice {
         Some(choice) => Some(choice?.1),
         None => None,
@@ -63,10 +69,62 @@ pub(super) fn read(
     Some(Axis {
         name: name?,
         counts_per_unit: counts_per_unit?,
+        modulo,
         shaper,
         modes: modes?.into_iter().map(|(_, mode)| mode).collect(),
+        encoder: not_refused(encoder)?,
+        pwm: not_refused(pwm)?,
+        drive: not_refused(drive)?,
+        controller: not_refused(controller)?,
         limits,
     })
+}
+
+/// A table that may be absent; `None` where it is there and refused.
+fn not_refused<T>(read: Option<Option<T>>) -> Option<Option<T>> {
+    match read {
+        Some(value) => value.map(Some),
+        None => Some(None),
+    }
+}
+
+/// Whether the axis is rotary: its shaper is then the one for motion, which not every word width has.
+fn read_modulo(table: &Table<'_, '_>, fixed_point: Option<FixedPoint>) -> bool {
+    let modulo = table.boolean("modulo") == Some(true);
+    let bits = fixed_point.map(|format| format.command_bits);
+    if let Some(bits) = bits.filter(|bits| modulo && !MOTION_WORD_BITS.contains(bits)) {
+        let list: Vec<String> = MOTION_WORD_BITS.iter().map(u32::to_string).collect();
+        let found = format!("modulo = true with command words of {bits} bits");
+        let allowed = format!("modulo = true with fixed_point.command_bits = {}", list.join(" or "));
+        let remedy = format!("set fixed_point.command_bits = {}", list[0]);
+        table.contradiction("modulo", found, allowed, remedy);
+    }
+    modulo
+}
+
+/// Checks that every block finds the others that it cannot work without.
+fn check_needs(axis: &Table<'_, '_>) {
+    let needs: [(&str, &[&str], &str); 2] = [
+        ("drive", &["pwm"], "a drive with its [axis.pwm], which commands it"),
+        (
+            "controller",
+            &["encoder", "pwm", "drive"],
+            "a controller with [axis.encoder], [axis.pwm] and [axis.drive]: the position, the pins, and what they command",
+        ),
+    ];
+    for (block, needed, allowed) in needs {
+        let missing: Vec<String> = needed
+            .iter()
+            .filter(|other| !axis.has(other))
+            .map(|other| format!("[axis.{other}]"))
+            .collect();
+        if axis.has(block) && !missing.is_empty() {
+            let missing = missing.join(" and ");
+            let found = format!("[axis.{block}] without {missing}");
+            let remedy = format!("add {missing}, or remove [axis.{block}]");
+            axis.contradiction(block, found, allowed, remedy);
+        }
+    }
 }
 
 /// Reads the modes, each with its table; `None` where one of them is refused.

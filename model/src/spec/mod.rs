@@ -31,16 +31,24 @@
 //! [`crate::rtl::shaper`].
 
 mod axis;
+mod controller;
+mod drive;
+mod encoder;
 mod error;
 mod machine;
 mod names;
 mod not_built;
+mod pwm;
 mod range;
 mod reader;
 mod shaper;
 mod table;
 
+pub use controller::Controller;
+pub use drive::{Drive, DriveMode};
+pub use encoder::Encoder;
 pub use error::{Cause, MAX_PROBLEMS, Problem, SpecError};
+pub use pwm::{Pwm, PwmMode};
 
 use toml::de::DeTable;
 
@@ -160,10 +168,20 @@ pub struct Axis {
     pub name: String,
     /// Encoder counts per metre (or radian).
     pub counts_per_unit: f64,
+    /// Whether the position counts on across the word's end, modulo `2^command_bits`: a rotary axis.
+    pub modulo: bool,
     /// `[axis.shaper]`; absent only if every mode names its own.
     pub shaper: Option<ShaperChoice>,
     /// Modes in the order of the file; empty only for `custom` and `none`.
     pub modes: Vec<AxisMode>,
+    /// `[axis.encoder]`.
+    pub encoder: Option<Encoder>,
+    /// `[axis.pwm]`.
+    pub pwm: Option<Pwm>,
+    /// `[axis.drive]`; only with `[axis.pwm]`.
+    pub drive: Option<Drive>,
+    /// `[axis.controller]`; only with encoder, PWM and drive.
+    pub controller: Option<Controller>,
     /// `[axis.limits]`.
     pub limits: Option<Limits>,
 }

@@ -1,5 +1,6 @@
 //! The machine file as its users meet it.
 
+mod blocks;
 mod errors;
 mod files;
 mod not_built;

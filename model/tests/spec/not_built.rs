@@ -8,11 +8,7 @@ fn unit_what_is_not_built_is_refused_by_name_once_all_else_is_right() {
     let error = wrong(EVERYTHING);
     let lines: Vec<String> = error.to_string().lines().map(str::to_owned).collect();
     let blocks = [
-        (33, "axis.encoder of axis x", "encoder"),
         (37, "axis.scale of axis x", "scale"),
-        (41, "axis.pwm of axis x", "pwm"),
-        (48, "axis.drive of axis x", "drive"),
-        (58, "axis.controller of axis x", "controller"),
         (70, "axis.limits.following_error of axis x", "following_error"),
         (71, "axis.limits.brake_release_s of axis x", "brake_release_s"),
         (72, "axis.limits.brake_apply_s of axis x", "brake_apply_s"),
@@ -21,7 +17,7 @@ fn unit_what_is_not_built_is_refused_by_name_once_all_else_is_right() {
     ];
     let expected = blocks.map(|(line, key, name)| format!("m.toml:{line}: {key}: not built in this version: {name}"));
     assert_eq!(lines, expected);
-    assert_eq!(error.problems()[0].remedy, "leave the table [axis.encoder] out");
+    assert_eq!(error.problems()[0].remedy, "leave the table [axis.scale] out");
 
     let also_wrong = wrong(&EVERYTHING.replace("damping = 0.157799065776", "damping = 2"));
     let expected = "m.toml:30: axis.mode.damping of axis x, mode 1: found 2; allowed: at least 0, below 1";
@@ -45,29 +41,11 @@ fn unit_blocks_that_are_not_built_are_checked_all_the_same() {
         assert!(EVERYTHING.contains(from), "{from}");
         assert_eq!(wrong(&EVERYTHING.replace(from, to)).to_string(), expected);
     };
-    let expected = "m.toml:34: axis.encoder.filter_clocks of axis x: found 256; allowed: a whole number, 0 to 255";
-    case("filter_clocks = 8", "filter_clocks = 256", expected);
     case(
         "\"monitor\"",
         "\"both\"",
         "m.toml:39: axis.scale.use of axis x: found \"both\"; allowed: monitor, position",
     );
-    let expected = "m.toml:43: axis.pwm.frequency_hz of axis x: found 25_000; allowed: what divides clock.frequency_hz = \
-                    50000000 Hz and is a multiple of clock.sample_hz = 10000 Hz; the nearest is 20000";
-    case("= 20_000", "= 25_000", expected);
-    let expected = "m.toml:44: axis.pwm.dead_time_s of axis x: found a dead time and a minimum pulse of 0.000101 s together; \
-                    allowed: below 0.00005 s, the PWM period";
-    case("500e-9", "100e-6", expected);
-    let expected = "m.toml:52: axis.drive.current_limit_a of axis x: found a current limit of 3.5 A; allowed: at most \
-                    full_scale_a = 3 A";
-    case("2.73", "3.5", expected);
-    let expected = "m.toml:48: axis.drive.full_scale_velocity of axis x: found no such key; allowed: above 0, at most \
-                    1000000000000\nm.toml:53: axis.drive.full_scale_a of axis x: found full_scale_a with mode = \"velocity\"; \
-                    allowed: full_scale_a with mode torque, full_scale_velocity with mode velocity";
-    case("\"torque\"", "\"velocity\"", expected);
-    let expected =
-        "m.toml:58: axis.controller.boundary of axis x: found no such key; allowed: above 0, at most 1000000000000";
-    case("boundary = 0.05", "", expected);
     case(
         "1024",
         "1000",
@@ -78,14 +56,6 @@ fn unit_blocks_that_are_not_built_are_checked_all_the_same() {
     let expected = "m.toml:70: axis.limits.following_error of axis x: found the boolean true; allowed: a number, above 0, at \
                     most 1000000000";
     case("following_error = 0.001", "following_error = true", expected);
-}
-
-#[test]
-fn unit_a_key_that_asks_for_hardware_is_refused_only_where_it_asks() {
-    let to = |value| format!("1_000_000\nmodulo = {value}");
-    right(&SMALL.replace("1_000_000", &to("false")));
-    let expected = "m.toml:10: axis.modulo of axis x: not built in this version: modulo";
-    breaks("1_000_000", &to("true"), expected);
 }
 
 #[test]

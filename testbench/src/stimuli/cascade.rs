@@ -123,18 +123,17 @@ impl CascadeCoverage {
         self.ends += valid & u64::from(y == most || y == most + 1);
     }
 
-    /// The least of all counts.
-    pub fn least(&self) -> u64 {
-        let all = [
-            self.resets,
-            self.starts,
-            self.starts_with_sample,
-            self.cut_off,
-            self.valid,
-            self.overrun,
-            self.set_over_clear,
-            self.ends,
-        ];
-        all.into_iter().min().unwrap_or(0)
+    /// What happened how often.
+    pub fn counts(&self) -> [(&'static str, u64); 8] {
+        [
+            ("resets", self.resets),
+            ("starts", self.starts),
+            ("starts with a sample", self.starts_with_sample),
+            ("passes cut off", self.cut_off),
+            ("valid", self.valid),
+            ("overrun", self.overrun),
+            ("overrun set over clear", self.set_over_clear),
+            ("ends of the word", self.ends),
+        ]
     }
 }

@@ -74,14 +74,15 @@ impl Coverage {
 
     /// What was never reached: the names of the counters that are zero.
     pub fn missing(&self) -> Vec<&'static str> {
-        let all = self.named();
+        let all = self.counts();
         all.iter()
             .filter(|(_, count)| *count == 0)
             .map(|(name, _)| *name)
             .collect()
     }
 
-    fn named(&self) -> [(&'static str, u64); 11] {
+    /// What happened how often, handovers left out: not every shaper has them.
+    pub fn counts(&self) -> [(&'static str, u64); 11] {
         [
             ("resets", self.resets),
             ("strobes", self.strobes),
@@ -101,7 +102,7 @@ impl Coverage {
 impl fmt::Display for Coverage {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{} clocks", self.clocks)?;
-        self.named()
+        self.counts()
             .iter()
             .try_for_each(|(name, count)| write!(f, ", {name} {count}"))
     }

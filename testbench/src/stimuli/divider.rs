@@ -7,6 +7,7 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 
 use super::Stimuli;
 use super::table::pick;
+use crate::lockstep::Clock;
 
 /// A mixture of everything, without end.
 #[derive(Debug, Clone)]
@@ -62,5 +63,40 @@ impl Stimuli for DividerRandom {
             self.until_start = *pick(&mut self.rng, &paces);
         }
         self.clock += 1;
+    }
+}
+
+/// How often things happened in a lock step of the divider.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct DividerCoverage {
+    resets: u64,
+    fitting: u64,
+    clamped: u64,
+    negative: u64,
+    overrun: u64,
+}
+
+impl DividerCoverage {
+    /// Adds a clock.
+    pub fn observe(&mut self, clock: &Clock<'_>) {
+        let (&[rst, ..], &[quotient, done, _, clamped, overrun]) = (clock.inputs, clock.expected) else {
+            return;
+        };
+        self.resets += rst;
+        self.fitting += done & (clamped ^ 1);
+        self.clamped += done & clamped;
+        self.negative += done & (quotient >> 31);
+        self.overrun += overrun;
+    }
+
+    /// What happened how often.
+    pub fn counts(&self) -> [(&'static str, u64); 5] {
+        [
+            ("resets", self.resets),
+            ("quotients that fit", self.fitting),
+            ("quotients clamped", self.clamped),
+            ("negative quotients", self.negative),
+            ("clocks with overrun", self.overrun),
+        ]
     }
 }

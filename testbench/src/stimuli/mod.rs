@@ -17,18 +17,26 @@ mod divider;
 mod layout;
 mod motion;
 mod pulse_counter;
+mod pwm;
 mod random;
+mod registers;
+mod segments;
+mod sliding_mode;
 mod table;
 
 pub use self::cascade::{CascadeCoverage, CascadeRandom};
 pub use self::corners::corners;
 pub use self::coverage::Coverage;
 pub use self::directed::{Action, Directed, cases, motion_cases};
-pub use self::divider::DividerRandom;
+pub use self::divider::{DividerCoverage, DividerRandom};
 pub use self::layout::{Axis, Layout};
 pub use self::motion::Motion;
 pub use self::pulse_counter::{PulseCounterCoverage, PulseCounterRandom};
+pub use self::pwm::{GateSafety, PwmCoverage, PwmRandom};
 pub use self::random::Random;
+pub use self::registers::{ComponentRandom, RegistersCoverage, RegistersRandom};
+pub use self::segments::{SegmentsCoverage, SegmentsRandom};
+pub use self::sliding_mode::{SlidingModeCoverage, SlidingModeRandom};
 
 /// Makes the inputs of the next clock.
 pub trait Stimuli {

@@ -241,9 +241,4 @@ impl PulseCounterCoverage {
         ];
         outputs.chain(more).collect()
     }
-
-    /// The least of all counts.
-    pub fn least(&self) -> u64 {
-        self.counts().into_iter().map(|(_, count)| count).min().unwrap_or(0)
-    }
 }

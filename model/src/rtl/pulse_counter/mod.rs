@@ -29,13 +29,13 @@ mod lines;
 mod ports;
 mod velocity;
 
-pub use ports::{Inputs, Outputs, ports};
+pub use ports::{FILTER_CLOCKS_MAX, Inputs, Outputs, ports};
 pub use velocity::SMOOTHING_BITS;
 
 use self::decode::decode;
 use self::lines::{GlitchFilter, Line};
 use self::velocity::Velocity;
-use super::{ClockedBlock, Port, StepError};
+use super::{ClockedBlock, Moore, Port, StepError};
 
 /// Clocks after a reset until levels count as known: two of the synchroniser, the filter's, the decoder's.
 pub const PRIMING_CLOCKS: u32 = 4;
@@ -219,5 +219,13 @@ impl ClockedBlock for PulseCounter {
         let shown = PulseCounter::step(self, &typed);
         outputs.copy_from_slice(&shown.to_raw());
         Ok(())
+    }
+}
+
+impl Moore for PulseCounter {
+    fn show(&self, outputs: &mut [u64]) {
+        for (output, value) in outputs.iter_mut().zip(self.outputs().to_raw()) {
+            *output = value;
+        }
     }
 }

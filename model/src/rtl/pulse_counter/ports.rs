@@ -2,6 +2,9 @@
 
 use crate::rtl::{Direction, Port};
 
+/// Longest setting of the input filters, in clocks.
+pub const FILTER_CLOCKS_MAX: u32 = 63;
+
 /// The input ports. Bits above a port's width are ignored.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Inputs {
@@ -21,7 +24,7 @@ pub struct Inputs {
     pub z_n: bool,
     /// The lines are pairs.
     pub differential: bool,
-    /// Pulses of up to so many clocks are ignored, 6 bits.
+    /// Pulses of up to so many clocks are ignored, 6 bits: at most [`FILTER_CLOCKS_MAX`].
     pub filter_clocks: u8,
     /// 0 quadrature ×4, 1 ×2, 2 ×1, 3 step and direction, 4 up and down, else none; 3 bits.
     pub mode: u8,

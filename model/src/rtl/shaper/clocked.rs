@@ -5,7 +5,7 @@ use super::config::{CHANNELS_MAX, ShaperConfig};
 use super::memory::Arbitrary;
 use super::ports::{Inputs, Outputs, ports};
 use super::{finish, wrap};
-use crate::rtl::{ClockedBlock, Port, StepError};
+use crate::rtl::{ClockedBlock, Moore, Port, StepError};
 
 /// The shaper, cycle accurate at its ports.
 ///
@@ -209,5 +209,11 @@ impl ClockedBlock for Shaper {
         let shown = Shaper::step(self, &Inputs::from_raw(inputs, &self.config));
         shown.write_raw(&self.config, outputs);
         Ok(())
+    }
+}
+
+impl Moore for Shaper {
+    fn show(&self, outputs: &mut [u64]) {
+        self.outputs().write_raw(&self.config, outputs);
     }
 }

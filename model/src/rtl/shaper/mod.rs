@@ -90,7 +90,7 @@ pub(crate) fn round_and_saturate(sum: i64, fraction: u32, word_bits: u32) -> (i6
 }
 
 /// The low `bits` (1..=64) of `value` as a two's complement number: what a port of that width makes of it.
-pub(crate) fn wrap(value: i64, bits: u32) -> i64 {
+pub fn wrap(value: i64, bits: u32) -> i64 {
     let unused = 64 - bits;
     (value << unused) >> unused
 }

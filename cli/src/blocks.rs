@@ -1,0 +1,127 @@
+//! The hardware blocks that stand for a machine: its own, at its settings, and the rest of the library at a default size.
+
+use crate::bench;
+use crate::command::{self, Words};
+use crate::failure::Failure;
+use posicast_hdl::machine::AxisShaper;
+use posicast_model::rtl::cascade::CascadeConfig;
+use posicast_model::rtl::component::Component;
+use posicast_model::rtl::divider::DividerConfig;
+use posicast_model::rtl::registers::RegisterMap;
+use posicast_model::rtl::shaper::{MOTION_WORD_BITS, Motion, ShaperConfig};
+use posicast_model::spec::{Axis, Machine};
+use posicast_testbench::blocks::{
+    Block, CascadeBlock, ComponentBlock, DividerBlock, MachineShapers, PulseCounterBlock, RegistersBlock, ShaperBlock,
+    SlidingModeBlock,
+};
+use std::path::Path;
+
+/// Delays of the cascade that is compared where no machine asks for one, in samples.
+const CASCADE_DELAYS_SAMPLES: [u32; 4] = [26, 31, 38, 62];
+/// Its word.
+const CASCADE_WORD_BITS: u32 = 32;
+/// The shaper for motion that is compared where no axis has one: position, velocity and acceleration share a table.
+const MOTION: Motion = Motion {
+    channels: 3,
+    modulo: false,
+};
+
+/// The machine's top module with its shapers.
+pub(crate) fn shapers(machine: &Machine, shapers: Vec<AxisShaper>, words: &Words) -> Result<MachineShapers, Failure> {
+    MachineShapers::new(&machine.name, shapers, command::on_the_ports(machine, words)).map_err(bench::failure)
+}
+
+/// Whether an axis has more than a shaper.
+pub(crate) fn has_loop(axis: &Axis) -> bool {
+    axis.encoder.is_some() || axis.pwm.is_some() || axis.controller.is_some()
+}
+
+/// The other blocks: none for a machine of shapers alone, else every block of the library. `path` is the machine file.
+pub(crate) fn others(machine: &Machine, shapers: &[AxisShaper], path: &Path) -> Result<Vec<Box<dyn Block>>, Failure> {
+    let mut blocks: Vec<Box<dyn Block>> = Vec::new();
+    if !machine.axes.iter().any(has_loop) {
+        return Ok(blocks);
+    }
+    let name = machine.name.as_str();
+    let with_encoder = axes(machine, |axis| axis.encoder.is_some());
+    blocks.push(Box::new(PulseCounterBlock::new(name, &with_encoder)));
+    blocks.push(Box::new(DividerBlock::new(divider(machine, path)?, name)));
+    blocks.push(Box::new(
+        ShaperBlock::new(motion_shaper(shapers)?, name, "motion").map_err(bench::failure)?,
+    ));
+    let cascade = CascadeConfig::new(CASCADE_WORD_BITS, CASCADE_DELAYS_SAMPLES.to_vec()).map_err(Failure::because)?;
+    blocks.push(Box::new(CascadeBlock::new(cascade, name)));
+    let components = components(machine, shapers, path)?;
+    let mut maps: Vec<&RegisterMap> = Vec::new();
+    for map in components.iter().map(|component| component.component().map()) {
+        if !maps.iter().any(|other| other.name() == map.name()) {
+            maps.push(map);
+        }
+    }
+    for map in maps {
+        blocks.push(Box::new(RegistersBlock::new(map.clone(), name)));
+    }
+    for component in components {
+        blocks.push(Box::new(component));
+    }
+    Ok(blocks)
+}
+
+/// The blocks of the machine's axes as components, each behind registers of its own on an Avalon-MM agent, ready for a system
+/// with a processor: none for a machine of shapers alone. Their top modules are `<machine>_<axis>_<block>_avalon`.
+pub(crate) fn components(
+    machine: &Machine,
+    shapers: &[AxisShaper],
+    path: &Path,
+) -> Result<Vec<ComponentBlock>, Failure> {
+    let mut components = Vec::new();
+    if !machine.axes.iter().any(has_loop) {
+        return Ok(components);
+    }
+    for (axis, shaper) in machine.axes.iter().zip(shapers) {
+        let refused = |error| Failure::because(error).in_file(path);
+        let mut of_axis = vec![Component::shaper(shaper.config.clone()).map_err(refused)?];
+        if let Some(encoder) = &axis.encoder {
+            let divider = divider(machine, path)?;
+            of_axis.push(Component::pulse_counter(divider, encoder.filter_clocks).map_err(refused)?);
+        }
+        let named = |component: Component| {
+            let top = format!("{}_{}_{}_avalon", machine.name, axis.name, component.name());
+            ComponentBlock::new(component, &top, &format!("{}, Avalon", axis.name))
+        };
+        components.extend(of_axis.into_iter().map(named));
+    }
+    Ok(components)
+}
+
+/// The names of the axes that have something, or `alone` where none has it.
+fn axes(machine: &Machine, has: impl Fn(&Axis) -> bool) -> String {
+    let names: Vec<&str> = machine
+        .axes
+        .iter()
+        .filter(|axis| has(axis))
+        .map(|axis| axis.name.as_str())
+        .collect();
+    match names.as_slice() {
+        [] => "alone".to_owned(),
+        names => names.join(", "),
+    }
+}
+
+/// The divider for the machine's tick.
+fn divider(machine: &Machine, path: &Path) -> Result<DividerConfig, Failure> {
+    DividerConfig::new(u64::from(machine.clock.clocks_per_sample()))
+        .map_err(|error| Failure::because(error).in_file(path))
+}
+
+/// A shaper for motion with the first axis's table, at the first size that holds it.
+fn motion_shaper(shapers: &[AxisShaper]) -> Result<ShaperConfig, Failure> {
+    let Some(first) = shapers.first() else {
+        return Err(Failure::from(miette::miette!("the machine has no axis")));
+    };
+    let bits = first.config.word_bits().max(MOTION_WORD_BITS[0]);
+    let plain = ShaperConfig::new(bits, first.config.table().clone()).map_err(Failure::because)?;
+    let all_channels = plain.clone().for_motion(MOTION);
+    let config = all_channels.or_else(|_| plain.for_motion(Motion { channels: 1, ..MOTION }));
+    config.map_err(Failure::because)
+}

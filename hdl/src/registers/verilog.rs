@@ -1,0 +1,309 @@
+//! The body of a bank: words of the window, what is written, one clocked block per register, what is read.
+
+use super::blocks::{
+    Flop, clocked, declare, flops, guarded, interrupt, register_block, shadow_flops, shadows, sticky_prefix,
+};
+use crate::emit::Type;
+use crate::emit::print::{self, Lines};
+use posicast_model::rtl::Direction;
+use posicast_model::rtl::registers::{Access, Field, Register, RegisterMap, Source};
+
+/// Longest line.
+const COLUMNS: usize = 100;
+
+pub(super) fn body(map: &RegisterMap) -> String {
+    let clock = ("input  wire", bits(1), "clk".to_owned());
+    let ports = map.ports().iter().map(|port| {
+        let keyword = match port.direction {
+            Direction::Input => "input  wire",
+            // All outputs are registers.
+            Direction::Output => "output reg ",
+        };
+        let ty = Type {
+            width: port.width,
+            signed: port.signed,
+        };
+        (keyword, ty, port.name.clone())
+    });
+    let list = print::port_list(&[clock].into_iter().chain(ports).collect::<Vec<_>>());
+    let mut lines = Lines::default();
+    lines.nest(list.trim_end(), "endmodule", |lines| {
+        offsets(lines, map);
+        lines.section(|lines| writes(lines, map));
+        for register in map.registers() {
+            lines.section(|lines| register_block(lines, map, register));
+        }
+        lines.section(|lines| shadows(lines, map));
+        lines.section(|lines| interrupt(lines, map));
+        lines.line("");
+        reads(lines, map);
+        lines.line("");
+        power_up(lines, map);
+        lines.section(|lines| unused(lines, map));
+    });
+    lines.text
+}
+
+pub(super) fn bits(width: u32) -> Type {
+    Type { width, signed: false }
+}
+
+pub(super) fn type_of(field: &Field) -> Type {
+    Type {
+        width: field.width,
+        signed: field.is_signed(),
+    }
+}
+
+/// `name[7:0]` of a word, `name[3]`, or the whole.
+pub(super) fn part(word: &str, field: &Field) -> String {
+    match (field.low, field.width) {
+        (0, 32) => word.to_owned(),
+        (low, 1) => format!("{word}[{low}]"),
+        (low, width) => format!("{word}[{}:{low}]", low + width - 1),
+    }
+}
+
+/// The fields of a register and the gaps between them, from bit 31 down, each field as `name` calls it.
+fn word(fields: &[Field], name: impl Fn(&Field) -> String) -> Vec<String> {
+    let mut sorted: Vec<&Field> = fields.iter().collect();
+    sorted.sort_by_key(|field| std::cmp::Reverse(field.low));
+    let (mut pieces, mut next) = (Vec::new(), 32);
+    let gap = |width: u32| (width > 0).then(|| format!("{width}'d0"));
+    for field in sorted {
+        pieces.extend(gap(next - field.low - field.width));
+        pieces.push(name(field));
+        next = field.low;
+    }
+    pieces.extend(gap(next));
+    pieces
+}
+
+/// `old`, with the bytes that are written taken from the bus.
+pub(super) fn merged(field: &Field, old: &str) -> String {
+    format!("{} | ({old} & ~{})", part("written", field), part("mask", field))
+}
+
+/// `begin`, then the terms with the operator between them, over as many lines as they need. A comma ends a line, an
+/// operator begins one.
+pub(super) fn joined(lines: &mut Lines, begin: &str, terms: &[String], operator: &str, end: &str) {
+    let mut line = begin.to_owned();
+    for (at, term) in terms.iter().enumerate() {
+        let separator = if at == 0 { "" } else { operator };
+        if line.len() + separator.len() + term.len() + end.len() <= COLUMNS {
+            line.push_str(separator);
+        } else if operator == ", " {
+            lines.line(&format!("{line}{}", separator.trim_end()));
+            line = "    ".to_owned();
+        } else {
+            lines.line(line.trim_end());
+            line = format!("    {}", separator.trim_start());
+        }
+        line.push_str(term);
+    }
+    lines.line(&format!("{line}{end}"));
+}
+
+fn offsets(lines: &mut Lines, map: &RegisterMap) {
+    let longest = map
+        .registers()
+        .iter()
+        .map(|register| register.name.len())
+        .max()
+        .unwrap_or(0);
+    lines.line("// Words of the window.");
+    for register in map.registers() {
+        let name = register.name.to_uppercase();
+        lines.line(&format!(
+            "localparam [7:0] {name:longest$} = 8'h{:02x};",
+            register.offset
+        ));
+    }
+}
+
+/// Does a write do anything?
+fn is_writable(register: &Register) -> bool {
+    !matches!(register.access, Access::Constant | Access::Live | Access::Shadow { .. })
+}
+
+fn writables(map: &RegisterMap) -> impl Iterator<Item = &Register> {
+    map.registers().iter().filter(|register| is_writable(register))
+}
+
+/// Does a write go by bytes?
+fn is_masked(register: &Register) -> bool {
+    is_writable(register) && !register.access.whole_words()
+}
+
+fn takes_whole_words(map: &RegisterMap) -> bool {
+    map.registers().iter().any(|register| register.access.whole_words())
+}
+
+fn writes(lines: &mut Lines, map: &RegisterMap) {
+    if map.registers().iter().any(is_masked) {
+        lines.line("// Bits that a write reaches, and what it puts there.");
+        lines.line("wire [31:0] mask = {");
+        lines
+            .line("    {8{avs_byteenable[3]}}, {8{avs_byteenable[2]}}, {8{avs_byteenable[1]}}, {8{avs_byteenable[0]}}");
+        lines.line("};");
+        lines.line("wire [31:0] written = avs_writedata & mask;");
+    }
+    if takes_whole_words(map) {
+        lines.line("wire whole = &avs_byteenable;");
+    }
+    lines.section(|lines| {
+        if writables(map).next().is_some() {
+            lines.line("// What is written in this clock.");
+        }
+        for register in writables(map) {
+            let (name, constant) = (&register.name, register.name.to_uppercase());
+            lines.line(&format!("wire write_{name} = avs_write && avs_address == {constant};"));
+        }
+    });
+    lines.section(|lines| {
+        for register in map.registers() {
+            match &register.access {
+                Access::Guarded { by } => guarded(lines, register, by),
+                Access::Commit { tick } => {
+                    declare(lines, &flops(register), "");
+                    lines.line(&format!("wire applies = waits && {tick};"));
+                }
+                _ => {}
+            }
+        }
+        refusals(lines, map);
+    });
+}
+
+/// Is there a flag that is set by this?
+fn is_flagged(map: &RegisterMap, source: Source) -> bool {
+    let flags = map.registers().iter().filter(|register| register.access.is_sticky());
+    flags
+        .flat_map(|register| &register.fields)
+        .any(|field| field.source == source)
+}
+
+fn refusals(lines: &mut Lines, map: &RegisterMap) {
+    let named = |holds: &dyn Fn(&Access) -> bool, text: &dyn Fn(&str) -> String| -> Vec<String> {
+        let all = map.registers().iter().filter(|register| holds(&register.access));
+        all.map(|register| text(&register.name)).collect()
+    };
+    if is_flagged(map, Source::PartialWrite) {
+        let terms = named(&Access::whole_words, &|name| format!("write_{name}"));
+        match terms.is_empty() {
+            true => lines.line("wire bus_partial = 1'd0;"),
+            false => joined(lines, "wire bus_partial = !whole && (", &terms, " || ", ");"),
+        }
+    }
+    if is_flagged(map, Source::GuardRefused) {
+        let terms = named(&|access| matches!(access, Access::Guarded { .. }), &|name| {
+            format!("(write_{name} && !allow_{name})")
+        });
+        match terms.is_empty() {
+            true => lines.line("wire bus_refused = 1'd0;"),
+            false => joined(lines, "wire bus_refused = ", &terms, " || ", ";"),
+        }
+    }
+    if is_flagged(map, Source::CommitRejected) {
+        let staged = named(&|access| *access == Access::Staged, &|name| format!("write_{name}"));
+        let commit = named(&|access| matches!(access, Access::Commit { .. }), &|name| {
+            format!("(write_{name} && whole)")
+        });
+        let terms = [commit, staged].concat();
+        match terms.is_empty() {
+            true => lines.line("wire bus_rejected = 1'd0;"),
+            false => joined(lines, "wire bus_rejected = waits && (", &terms, " || ", ");"),
+        }
+    }
+}
+
+fn reads(lines: &mut Lines, map: &RegisterMap) {
+    let data = [(bits(32), "avs_readdata".to_owned(), 0)];
+    clocked(lines, &data, "else if (avs_read)", |lines| {
+        lines.nest("case (avs_address)", "endcase", |lines| {
+            for register in map.registers() {
+                let Some(value) = read_value(map, register) else {
+                    continue;
+                };
+                let begin = format!("{}: avs_readdata <= ", register.name.to_uppercase());
+                match value.as_slice() {
+                    [whole] => lines.line(&format!("{begin}{whole};")),
+                    pieces => joined(lines, &format!("{begin}{{"), pieces, ", ", "};"),
+                }
+            }
+            lines.line("default: avs_readdata <= 32'd0;");
+        });
+    });
+}
+
+fn read_value(map: &RegisterMap, register: &Register) -> Option<Vec<String>> {
+    let named = |prefix: &'static str| {
+        let fields = map.fields(register);
+        Some(word(fields, |field| format!("{prefix}{}", field.name)))
+    };
+    match register.access {
+        Access::Constant => Some(vec![format!("32'h{:08x}", register.reset())]),
+        Access::Live | Access::Configuration | Access::Guarded { .. } => named(""),
+        Access::Shadow { .. } => named("shadow_"),
+        Access::Staged => named("staged_"),
+        Access::Sticky | Access::InterruptState => named(sticky_prefix(register)),
+        Access::InterruptEnable => named("irq_enable_"),
+        Access::Commit { .. } => Some(vec!["31'd0".to_owned(), "waits".to_owned()]),
+        Access::Command { .. } | Access::Snapshot | Access::InterruptTest => None,
+    }
+}
+
+fn power_up(lines: &mut Lines, map: &RegisterMap) {
+    let mut all: Vec<Flop> = map.registers().iter().flat_map(flops).collect();
+    all.extend(shadow_flops(map));
+    all.push((bits(32), "avs_readdata".to_owned(), 0));
+    if map.find(|access| *access == Access::InterruptState).is_some() {
+        all.push((bits(1), "irq".to_owned(), 0));
+    }
+    lines.nest("initial begin", "end", |lines| {
+        for (ty, name, reset) in &all {
+            lines.line(&format!("{name} = {};", ty.literal((*reset).into())));
+        }
+    });
+}
+
+/// Reads what nothing else reads, so that lint tools take it as meant.
+fn unused(lines: &mut Lines, map: &RegisterMap) {
+    let fields_of = |holds: &dyn Fn(&Register) -> bool| {
+        let registers = map.registers().iter().filter(|register| holds(register));
+        registers.fold(0, |mask, register| mask | register.mask())
+    };
+    let masked = map.registers().iter().any(is_masked);
+    let takes_data = |register: &Register| is_writable(register) && !matches!(register.access, Access::Commit { .. });
+    let mut terms = Vec::new();
+    if masked {
+        terms.extend(runs("written", !fields_of(&is_masked)));
+    } else {
+        terms.extend(runs("avs_writedata", !fields_of(&takes_data)));
+        if !takes_whole_words(map) {
+            terms.push("avs_byteenable".to_owned());
+        }
+    }
+    if writables(map).next().is_none() {
+        terms.push("avs_write".to_owned());
+    }
+    if !terms.is_empty() {
+        lines.line("// Bits that nothing reads.");
+        joined(lines, "wire unused = &{1'b0, ", &terms, ", ", "};");
+    }
+}
+
+/// Slices of `word` where `mask` has ones.
+fn runs(word: &str, mask: u32) -> Vec<String> {
+    let (mut slices, mut low) = (Vec::new(), 0);
+    while low < 32 {
+        let width = (mask >> low).trailing_ones();
+        if width == 0 {
+            low += 1;
+            continue;
+        }
+        slices.push(part(word, &Field::new("", low, width, "")));
+        low += width;
+    }
+    slices
+}

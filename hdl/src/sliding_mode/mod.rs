@@ -1,0 +1,63 @@
+//! The controller in hardware: reference and measurement to the drive's command, by sliding mode, PD or PID.
+//!
+//! The datasheet is `docs/sliding_mode.md`, the reference `posicast_model::rtl::sliding_mode`.
+//!
+//! | part | what it does |
+//! |---|---|
+//! | `sequencer` | 13 steps of 16 clocks |
+//! | `tracking` | e and de, saturated |
+//! | `scaled_product` | the one multiplier, and the shift after it |
+//! | `accumulator` | sums of products, cut to words |
+//! | `integral` | ∫e, and when it is frozen |
+//! | `limiter` | the command, and for how long it is cut |
+//! | `sticky` | flags of one side |
+//! | `kernel` | what a step multiplies, and what becomes of its sum |
+
+mod accumulator;
+mod integral;
+mod kernel;
+mod limiter;
+mod pins;
+mod scaled_product;
+mod sequencer;
+mod sticky;
+mod tracking;
+
+use crate::emit::{self, EmitError, EmitOptions, Header, Module, Parameter};
+use crate::simulation::{Simulated, SimulationError};
+use kernel::SlidingMode;
+use posicast_model::rtl::ClockedBlock;
+use posicast_model::rtl::sliding_mode::{CONTROL_CLOCKS, ports};
+
+/// The controller in RustHDL's own simulator.
+///
+/// # Errors
+/// [`SimulationError`] where RustHDL finds a fault in the block.
+pub fn simulate() -> Result<Box<dyn ClockedBlock>, SimulationError> {
+    let block = Box::new(SlidingMode::default());
+    Ok(Box::new(Simulated::new("sliding_mode", block, ports())?))
+}
+
+/// The controller's Verilog, one module per file, the top last.
+///
+/// The top is called `PREFIX_sliding_mode`, or `sliding_mode` where `prefix` is empty.
+///
+/// # Errors
+/// [`EmitError`] where `prefix` makes no Verilog name.
+pub fn emit(prefix: &str) -> Result<Vec<Module>, EmitError> {
+    let options = EmitOptions {
+        top: "sliding_mode".to_owned(),
+        prefix: prefix.to_owned(),
+        header: Header {
+            about: "Controller: reference and measurement to the drive's command, by sliding mode, PD or PID.\n\
+                    Each step reads its gain at setting_address: the word comes in the next clock, as from a block RAM."
+                .to_owned(),
+            parameters: vec![Parameter {
+                name: "control_clocks".to_owned(),
+                value: CONTROL_CLOCKS.to_string(),
+                meaning: "from start to valid".to_owned(),
+            }],
+        },
+    };
+    emit::emit(&SlidingMode::default(), &options)
+}

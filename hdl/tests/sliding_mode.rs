@@ -1,0 +1,41 @@
+//! The controller in RustHDL's simulator against its model.
+
+#![allow(clippy::unwrap_used, reason = "a helper that fails fails its test")]
+
+mod random;
+
+use posicast_hdl::sliding_mode::{emit, simulate};
+use posicast_model::rtl::ClockedBlock;
+use posicast_model::rtl::sliding_mode::{INPUTS, OUTPUTS, SlidingMode, ports};
+use random::Random;
+
+#[test]
+fn lockstep_everything_at_random() {
+    let mut model = SlidingMode::new();
+    let mut rusthdl = simulate().unwrap();
+    let mut random = Random(1);
+    let (mut expected, mut actual) = ([0; OUTPUTS], [0; OUTPUTS]);
+    let mut inputs = [0; INPUTS];
+    for clock in 0..12_000 {
+        let mut word = || (random.word() as u32 as i32 >> random.below(32)) as u32;
+        if clock % 40 == 0 {
+            inputs[4..9].fill_with(|| u64::from(word()));
+        }
+        inputs[9] = u64::from(word()) | random.below(32) << 18;
+        inputs[0] = u64::from(random.once_in(5000));
+        inputs[1] = u64::from(random.once_in(100));
+        (inputs[2], inputs[3]) = (random.below(4), random.below(2));
+        (inputs[10], inputs[11]) = (u64::from(random.once_in(900)), u64::from(random.once_in(300)));
+        ClockedBlock::step(&mut model, &inputs, &mut expected).unwrap();
+        rusthdl.step(&inputs, &mut actual).unwrap();
+        assert_eq!(actual, expected, "clock {clock}, {inputs:?}");
+    }
+}
+
+#[test]
+fn unit_the_verilog_has_the_ports_of_the_model() {
+    let modules = emit("stage_x").unwrap();
+    let top = modules.last().unwrap();
+    assert_eq!(top.name, "stage_x_sliding_mode");
+    assert_eq!(top.ports, ports());
+}

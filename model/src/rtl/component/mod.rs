@@ -1,0 +1,250 @@
+//! Blocks that stand alone: each with its registers on an Avalon-MM agent, and what else it needs.
+//!
+//! ```text
+//! avs_* ─► registers ─┬─► configuration, commands ─► block ─► conduit pins
+//!   irq ◄─            └─◄ live words, events ◄──────
+//! ```
+//!
+//! | component | block | beside it |
+//! |---|---|---|
+//! | [`Component::shaper`] | [`shaper`](super::shaper) | [`sample_select`](super::sample_select) |
+//! | [`Component::sliding_mode`] | [`sliding_mode`](super::sliding_mode) | [`sample_select`](super::sample_select), [`setting_banks`](super::setting_banks) |
+//! | [`Component::pulse_counter`] | [`pulse_counter`](super::pulse_counter) | [`divider`](super::divider), [`time_base`](super::time_base) |
+//!
+//! A component is its register map and its [`Composition`]; from these come this crate's model and
+//! `posicast_hdl::component`'s Verilog.
+//!
+//! ```
+//! use posicast_model::rtl::ClockedBlock;
+//! use posicast_model::rtl::component::Component;
+//! use posicast_model::rtl::divider::DividerConfig;
+//!
+//! let counter = Component::pulse_counter(DividerConfig::new(5000)?, 8)?;
+//! let model = counter.model(1);
+//! assert_eq!(model.ports()[1].name, "avs_address");
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod pulse_counter;
+mod shaper;
+mod sliding_mode;
+
+use super::Moore;
+use super::composition::{Composed, Composition, CompositionError, Part};
+use super::divider::{DIVISION_CLOCKS, Divider, DividerConfig};
+use super::pulse_counter::PulseCounter;
+use super::registers::{Description, MapError, RegisterBank, RegisterMap};
+use super::sample_select::SampleSelect;
+use super::setting_banks::SettingBanks;
+use super::shaper::{Shaper, ShaperConfig};
+use super::sliding_mode::{Law, Settings, SlidingMode};
+use super::time_base::TimeBase;
+
+/// Ports of the agent that are inputs, with reset.
+const BUS_INPUTS: [&str; 6] = [
+    "rst",
+    "avs_address",
+    "avs_read",
+    "avs_write",
+    "avs_byteenable",
+    "avs_writedata",
+];
+/// Those that are outputs.
+const BUS_OUTPUTS: [&str; 2] = ["avs_readdata", "irq"];
+
+/// A block in a component, with what it is built from.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Block {
+    /// The register bank.
+    Registers,
+    /// The shaper.
+    Shaper(ShaperConfig),
+    /// Where samples come from: registers or pins.
+    SampleSelect {
+        /// Width of a word.
+        word_bits: u32,
+        /// Words per sample.
+        channels: usize,
+    },
+    /// The pulse counter.
+    PulseCounter,
+    /// Its divider.
+    Divider(DividerConfig),
+    /// Its time base.
+    TimeBase(DividerConfig),
+    /// The controller.
+    SlidingMode,
+    /// Its settings, the machine's in bank 0.
+    SettingBanks(Box<Settings>),
+}
+
+/// A block that stands alone, with its registers.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Component {
+    map: RegisterMap,
+    blocks: Vec<Block>,
+    composition: Composition,
+}
+
+/// Why there is no such component.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum ComponentError {
+    /// Ticks that are shorter than a division.
+    #[error("ticks of {0} clocks: a division takes 72; choose a lower sample rate or a faster clock")]
+    Tick(u32),
+    /// A filter that its register does not hold.
+    #[error("a filter of {0} clocks: the pulse counter has one of 0 to 63")]
+    Filter(u32),
+    /// An error of the component's register map.
+    #[error(transparent)]
+    Map(#[from] MapError),
+    /// An error of the component's composition.
+    #[error(transparent)]
+    Composition(#[from] CompositionError),
+}
+
+impl Component {
+    /// The stand-alone shaper: samples by register or pins, tables loaded through registers.
+    ///
+    /// # Errors
+    /// [`ComponentError`] never, for a `config` that could be made.
+    pub fn shaper(config: ShaperConfig) -> Result<Self, ComponentError> {
+        let blocks = vec![
+            Block::Registers,
+            Block::SampleSelect {
+                word_bits: config.word_bits(),
+                channels: config.channels(),
+            },
+            Block::Shaper(config.clone()),
+        ];
+        let wiring = shaper::wiring(&config);
+        Self::new(super::registers::maps::shaper(&config), blocks, wiring)
+    }
+
+    /// The pulse counter with a divider and a time base of its own. Its filter is `filter_clocks` long after reset.
+    ///
+    /// # Errors
+    /// [`ComponentError`] for ticks shorter than 72 clocks or a filter above 63.
+    pub fn pulse_counter(divider: DividerConfig, filter_clocks: u32) -> Result<Self, ComponentError> {
+        if divider.tick_clocks() <= DIVISION_CLOCKS {
+            return Err(ComponentError::Tick(divider.tick_clocks()));
+        }
+        if filter_clocks > 63 {
+            return Err(ComponentError::Filter(filter_clocks));
+        }
+        let blocks = vec![
+            Block::Registers,
+            Block::TimeBase(divider),
+            Block::PulseCounter,
+            Block::Divider(divider),
+        ];
+        let map = super::registers::maps::pulse_counter(&divider, filter_clocks);
+        Self::new(map, blocks, pulse_counter::wiring())
+    }
+
+    /// The controller with its settings in banks, the machine's in bank 0: reference and measurement by register or pins.
+    ///
+    /// # Errors
+    /// [`ComponentError`] never.
+    pub fn sliding_mode(settings: &Settings, law: Law, modulo: bool) -> Result<Self, ComponentError> {
+        let blocks = vec![
+            Block::Registers,
+            Block::SampleSelect {
+                word_bits: 32,
+                channels: sliding_mode::MOTION.len(),
+            },
+            Block::SettingBanks(Box::new(*settings)),
+            Block::SlidingMode,
+        ];
+        let map = super::registers::maps::sliding_mode(law as u32, modulo);
+        Self::new(map, blocks, sliding_mode::wiring())
+    }
+
+    fn new(description: Description, blocks: Vec<Block>, wiring: Wiring) -> Result<Self, ComponentError> {
+        let map = RegisterMap::new(description)?;
+        let parts = blocks
+            .iter()
+            .map(|block| (wiring.part)(block, Part::new(block.name(), block.model(&map, 0).ports())));
+        let (inputs, outputs): (Vec<&str>, Vec<&str>) = (
+            BUS_INPUTS
+                .into_iter()
+                .chain(wiring.inputs.iter().map(String::as_str))
+                .collect(),
+            BUS_OUTPUTS
+                .into_iter()
+                .chain(wiring.outputs.iter().map(String::as_str))
+                .collect(),
+        );
+        let composition = Composition::new(parts.collect(), &inputs, &outputs)?;
+        Ok(Self {
+            map,
+            blocks,
+            composition,
+        })
+    }
+
+    /// The name of its block: `shaper`, for example.
+    pub fn name(&self) -> &str {
+        self.map.name()
+    }
+
+    /// Its registers.
+    pub fn map(&self) -> &RegisterMap {
+        &self.map
+    }
+
+    /// Its blocks, the bank first.
+    pub fn blocks(&self) -> &[Block] {
+        &self.blocks
+    }
+
+    /// How they are joined: one part per block, in order.
+    pub fn composition(&self) -> &Composition {
+        &self.composition
+    }
+
+    /// The model of the whole, after reset. `seed` gives the arbitrary contents of its memories.
+    pub fn model(&self, seed: u64) -> Composed {
+        let blocks = self.blocks.iter().map(|block| block.model(&self.map, seed));
+        Composed::new(self.composition.clone(), blocks.collect())
+    }
+}
+
+/// Puts the ports of a block on other nets than those of their names.
+type Rewire = Box<dyn Fn(&Block, Part) -> Part>;
+
+/// What is not connected by name alone, and the conduit pins.
+struct Wiring {
+    part: Rewire,
+    inputs: Vec<String>,
+    outputs: Vec<String>,
+}
+
+impl Block {
+    /// Its name, as in the Verilog.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Registers => "registers",
+            Self::Shaper(_) => "shaper",
+            Self::SampleSelect { .. } => "sample_select",
+            Self::SlidingMode => "sliding_mode",
+            Self::SettingBanks(_) => "setting_banks",
+            Self::PulseCounter => "pulse_counter",
+            Self::Divider(_) => "divider",
+            Self::TimeBase(_) => "time_base",
+        }
+    }
+
+    fn model(&self, map: &RegisterMap, seed: u64) -> Box<dyn Moore> {
+        match self {
+            Self::Registers => Box::new(RegisterBank::new(map)),
+            Self::Shaper(config) => Box::new(Shaper::new(config, seed)),
+            Self::SampleSelect { word_bits, channels } => Box::new(SampleSelect::new(*word_bits, *channels)),
+            Self::SlidingMode => Box::new(SlidingMode::new()),
+            Self::SettingBanks(machine) => Box::new(SettingBanks::new(machine)),
+            Self::PulseCounter => Box::new(PulseCounter::new()),
+            Self::Divider(config) => Box::new(Divider::new(config)),
+            Self::TimeBase(config) => Box::new(TimeBase::new(config)),
+        }
+    }
+}

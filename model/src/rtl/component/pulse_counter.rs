@@ -1,0 +1,24 @@
+//! The pulse counter: the time base says when, the divider divides what the counter shows, one clock after each tick.
+
+use super::{Block, Wiring};
+
+/// Conduit pins.
+const INPUTS: [&str; 6] = ["a", "b", "z", "a_n", "b_n", "z_n"];
+const OUTPUTS: [&str; 4] = ["tick", "position", "velocity", "velocity_valid"];
+
+pub(super) fn wiring() -> Wiring {
+    Wiring {
+        part: Box::new(|block, part| match block {
+            Block::PulseCounter => part.on("time_stamp", "edge_stamp"),
+            Block::Divider(_) => part
+                .on("start", "divide")
+                .on("done", "quotient_valid")
+                .on("busy", "divider_busy")
+                .on("overrun", "divider_overrun")
+                .tied("clear_flags", 1),
+            _ => part,
+        }),
+        inputs: INPUTS.map(str::to_owned).to_vec(),
+        outputs: OUTPUTS.map(str::to_owned).to_vec(),
+    }
+}

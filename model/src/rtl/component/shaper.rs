@@ -1,0 +1,50 @@
+//! The shaper: its samples come from registers or from the pins `strobe`, `start` and `x`, one clock later.
+//!
+//! Its `clear_flags` is tied high. A flag is then high for the one clock after what it tells of, and the bank keeps it.
+
+use super::super::composition::Part;
+use super::super::registers::maps::word_name;
+use super::super::shaper::ShaperConfig;
+use super::{Block, Wiring};
+
+pub(super) fn wiring(config: &ShaperConfig) -> Wiring {
+    let strobes = ["strobe", "start"].map(str::to_owned);
+    Wiring {
+        part: Box::new(rewire(words(config, "x"))),
+        inputs: [strobes.to_vec(), words(config, "x")].concat(),
+        outputs: [words(config, "y"), vec!["valid".to_owned()]].concat(),
+    }
+}
+
+fn words(config: &ShaperConfig, name: &str) -> Vec<String> {
+    let channels = 0..config.channels();
+    channels.map(|channel| word_name(config, name, channel)).collect()
+}
+
+/// `xs`: the pins of the words, and the shaper's ports.
+fn rewire(xs: Vec<String>) -> impl Fn(&Block, Part) -> Part {
+    move |block, part| {
+        let words = xs.iter().enumerate();
+        match block {
+            Block::SampleSelect { .. } => {
+                let part = part
+                    .on("pin_strobe", "strobe")
+                    .on("pin_start", "start")
+                    .on("strobe", "sample_strobe")
+                    .on("start", "sample_start");
+                words.fold(part, |part, (channel, x)| {
+                    part.on(&format!("pin_x_{channel}"), x)
+                        .on(&format!("x_{channel}"), &format!("sample_x_{channel}"))
+                })
+            }
+            Block::Shaper(_) => {
+                let part = part
+                    .on("strobe", "sample_strobe")
+                    .on("start", "sample_start")
+                    .tied("clear_flags", 1);
+                words.fold(part, |part, (channel, x)| part.on(x, &format!("sample_x_{channel}")))
+            }
+            _ => part,
+        }
+    }
+}

@@ -1,0 +1,454 @@
+//! Blocks joined to one: which port of which block is on which net. Plain data, checked, and the model that steps it.
+//!
+//! A port is on the net of its own name, unless its part says otherwise; so blocks that call a thing by one name are
+//! connected. A net has one driver: an output of a part, or an input of the whole. Verilog of the same composition is
+//! written by `posicast_hdl::emit::connect`.
+//!
+//! ```
+//! use posicast_model::rtl::composition::{Composed, Composition, Part};
+//! use posicast_model::rtl::divider::{Divider, DividerConfig};
+//! use posicast_model::rtl::ClockedBlock;
+//!
+//! // Two dividers; the second divides when the first is done.
+//! let config = DividerConfig::new(5000)?;
+//! let (first, second) = (Divider::new(&config), Divider::new(&config));
+//! let parts = vec![
+//!     Part::new("first", first.ports()).on("quotient", "velocity").on("busy", "first_busy")
+//!         .on("saturated", "first_saturated").on("overrun", "first_overrun").on("done", "next"),
+//!     Part::new("second", second.ports()).on("start", "next").tied("steps", 1).tied("clear_flags", 1),
+//! ];
+//! let inputs = ["rst", "start", "steps", "elapsed", "clear_flags"];
+//! let composition = Composition::new(parts, &inputs, &["velocity", "quotient"])?;
+//! let mut joined = Composed::new(composition, vec![Box::new(first), Box::new(second)]);
+//! let mut outputs = [0; 2];
+//! joined.step(&[0, 1, 3, 7500, 0], &mut outputs)?;
+//! for _ in 0..142 {
+//!     joined.step(&[0, 0, 0, 10_000, 0], &mut outputs)?;
+//! }
+//! assert_eq!(outputs, [2 << 16, 1 << 15]);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+use super::{ClockedBlock, Direction, Moore, Port, StepError};
+
+/// A block in a composition.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Part {
+    name: String,
+    ports: Vec<Port>,
+    wiring: Vec<(String, Wiring)>,
+}
+
+/// Where a port goes.
+#[derive(Debug, Clone, PartialEq, Eq)]
+enum Wiring {
+    Net(String),
+    Tied(u64),
+}
+
+impl Part {
+    /// A part with every port on the net of its own name.
+    pub fn new(name: &str, ports: &[Port]) -> Self {
+        Self {
+            name: name.to_owned(),
+            ports: ports.to_vec(),
+            wiring: Vec::new(),
+        }
+    }
+
+    /// The same, with `port` on `net`.
+    #[must_use]
+    pub fn on(mut self, port: &str, net: &str) -> Self {
+        self.wiring.push((port.to_owned(), Wiring::Net(net.to_owned())));
+        self
+    }
+
+    /// The same, with the input `port` at `value` for ever.
+    #[must_use]
+    pub fn tied(mut self, port: &str, value: u64) -> Self {
+        self.wiring.push((port.to_owned(), Wiring::Tied(value)));
+        self
+    }
+
+    /// Its name.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Its ports, without `clk`.
+    pub fn ports(&self) -> &[Port] {
+        &self.ports
+    }
+
+    fn wiring_of(&self, port: &Port) -> Wiring {
+        let own = self.wiring.iter().find(|(name, _)| *name == port.name);
+        own.map_or_else(|| Wiring::Net(port.name.clone()), |(_, wiring)| wiring.clone())
+    }
+}
+
+/// What a port of a part is connected to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Connection {
+    /// The net of that place in [`Composition::nets`].
+    Net(usize),
+    /// Always so.
+    Tied(u64),
+}
+
+/// A net: its driver's name, width and sign, and who is on it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Net {
+    /// As the driver: an input of the whole, or an output of a part. The name is the net's.
+    pub port: Port,
+    /// The output that drives it: part, and place among the part's outputs. None: an input of the whole.
+    pub driver: Option<(usize, usize)>,
+    /// Does a part read it?
+    pub is_read: bool,
+    /// Is it an output of the whole?
+    pub is_output: bool,
+}
+
+/// Why parts make no whole. Every one is an error of a composition in this project, never of its user.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum CompositionError {
+    /// A wiring of a port that the part has not, or a second one of the same port.
+    #[error("the part `{part}` has no port `{port}` left to connect: correct the name, or connect it once")]
+    NoSuchPort {
+        /// The part.
+        part: String,
+        /// The port.
+        port: String,
+    },
+    /// Two parts of one name.
+    #[error("two parts are called `{0}`: rename one")]
+    PartTwice(String),
+    /// A constant at an output, or one that the port has no bits for.
+    #[error("`{part}.{port}` cannot be tied to {value}: only an input can, to a value of its width")]
+    Tied {
+        /// The part.
+        part: String,
+        /// The port.
+        port: String,
+        /// The constant.
+        value: u64,
+    },
+    /// Two outputs on one net, or an output on an input of the whole.
+    #[error("the net `{net}` is driven by `{part}.{port}` and by something else: put one of them on another net")]
+    TwoDrivers {
+        /// The net.
+        net: String,
+        /// The second driver's part.
+        part: String,
+        /// The second driver's port.
+        port: String,
+    },
+    /// An input on a net that nothing drives.
+    #[error(
+        "nothing drives the net `{net}` that `{part}.{port}` reads: list it as an input, or name a net that is driven"
+    )]
+    Undriven {
+        /// The net.
+        net: String,
+        /// The part that reads it.
+        part: String,
+        /// The port that reads it.
+        port: String,
+    },
+    /// An input that differs from its net in width or sign.
+    #[error("`{part}.{port}` has other bits than the net `{net}` (width or sign): they must be equal")]
+    Type {
+        /// The net.
+        net: String,
+        /// The part.
+        part: String,
+        /// The port.
+        port: String,
+    },
+    /// An input of the whole that no part reads, or an output that no part drives.
+    #[error(
+        "`{0}` is no net that can be a port of the whole: an input must be read, an output driven by a part; remove it"
+    )]
+    NoSuchNet(String),
+}
+
+/// Parts, and how they are joined.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Composition {
+    parts: Vec<Part>,
+    nets: Vec<Net>,
+    connections: Vec<Vec<Connection>>,
+    ports: Vec<Port>,
+}
+
+impl Composition {
+    /// Joins the parts. `inputs` and `outputs` name the nets that are ports of the whole, in their order; an input has the
+    /// width and sign of the first port that reads it.
+    ///
+    /// # Errors
+    /// [`CompositionError`] for nets with no driver or two, ports of unequal type, and names that there are not.
+    pub fn new(parts: Vec<Part>, inputs: &[&str], outputs: &[&str]) -> Result<Self, CompositionError> {
+        check_wiring(&parts)?;
+        let mut nets = Vec::new();
+        for name in inputs {
+            nets.push(input_net(&parts, name)?);
+        }
+        for (at, part) in parts.iter().enumerate() {
+            let driven = part.ports.iter().filter(|port| port.direction == Direction::Output);
+            for (output, port) in driven.enumerate() {
+                let Wiring::Net(name) = part.wiring_of(port) else {
+                    continue;
+                };
+                if nets.iter().any(|net: &Net| net.port.name == name) {
+                    return Err(CompositionError::TwoDrivers {
+                        net: name,
+                        part: part.name.clone(),
+                        port: port.name.clone(),
+                    });
+                }
+                nets.push(Net {
+                    is_output: outputs.contains(&name.as_str()),
+                    port: Port { name, ..port.clone() },
+                    driver: Some((at, output)),
+                    is_read: false,
+                });
+            }
+        }
+        let mut connections = Vec::new();
+        for part in &parts {
+            let of_part = part.ports.iter().map(|port| connect(part, port, &mut nets));
+            connections.push(of_part.collect::<Result<Vec<_>, _>>()?);
+        }
+        let mut ports: Vec<Port> = nets.iter().take(inputs.len()).map(|net| net.port.clone()).collect();
+        for name in outputs {
+            let net = nets.iter().find(|net| net.port.name == *name && net.driver.is_some());
+            let Some(net) = net.filter(|_| ports.iter().all(|port| port.name != *name)) else {
+                return Err(CompositionError::NoSuchNet((*name).to_owned()));
+            };
+            ports.push(net.port.clone());
+        }
+        Ok(Self {
+            parts,
+            nets,
+            connections,
+            ports,
+        })
+    }
+
+    /// The parts.
+    pub fn parts(&self) -> &[Part] {
+        &self.parts
+    }
+
+    /// The nets: the inputs of the whole first.
+    pub fn nets(&self) -> &[Net] {
+        &self.nets
+    }
+
+    /// What each port of each part is connected to, in the order of the parts and of their ports.
+    pub fn connections(&self) -> &[Vec<Connection>] {
+        &self.connections
+    }
+
+    /// The ports of the whole, without `clk`: inputs, then outputs, as they were named.
+    pub fn ports(&self) -> &[Port] {
+        &self.ports
+    }
+}
+
+fn check_wiring(parts: &[Part]) -> Result<(), CompositionError> {
+    for (at, part) in parts.iter().enumerate() {
+        if parts[..at].iter().any(|other| other.name == part.name) {
+            return Err(CompositionError::PartTwice(part.name.clone()));
+        }
+        for (place, (name, wiring)) in part.wiring.iter().enumerate() {
+            let port = part.ports.iter().find(|port| port.name == *name);
+            let twice = part.wiring[..place].iter().any(|(other, _)| other == name);
+            let Some(port) = port.filter(|_| !twice) else {
+                return Err(CompositionError::NoSuchPort {
+                    part: part.name.clone(),
+                    port: name.clone(),
+                });
+            };
+            if let Wiring::Tied(value) = wiring {
+                let fits = *value <= u64::MAX >> (64 - port.width.clamp(1, 64));
+                if port.direction == Direction::Output || !fits {
+                    return Err(CompositionError::Tied {
+                        part: part.name.clone(),
+                        port: name.clone(),
+                        value: *value,
+                    });
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+/// The input `name` of the whole, like the first port that reads it.
+fn input_net(parts: &[Part], name: &str) -> Result<Net, CompositionError> {
+    let reads = |part: &&Part, port: &&Port| {
+        port.direction == Direction::Input && part.wiring_of(port) == Wiring::Net(name.to_owned())
+    };
+    let mut ports = parts
+        .iter()
+        .flat_map(|part| part.ports.iter().filter(move |port| reads(&part, port)));
+    let first = ports
+        .next()
+        .ok_or_else(|| CompositionError::NoSuchNet(name.to_owned()))?;
+    Ok(Net {
+        port: Port {
+            name: name.to_owned(),
+            ..first.clone()
+        },
+        driver: None,
+        is_read: true,
+        is_output: false,
+    })
+}
+
+fn connect(part: &Part, port: &Port, nets: &mut [Net]) -> Result<Connection, CompositionError> {
+    let name = match part.wiring_of(port) {
+        Wiring::Tied(value) => return Ok(Connection::Tied(value)),
+        Wiring::Net(name) => name,
+    };
+    let Some(at) = nets.iter().position(|net| net.port.name == name) else {
+        return Err(CompositionError::Undriven {
+            net: name,
+            part: part.name.clone(),
+            port: port.name.clone(),
+        });
+    };
+    if (nets[at].port.width, nets[at].port.signed) != (port.width, port.signed) {
+        return Err(CompositionError::Type {
+            net: name,
+            part: part.name.clone(),
+            port: port.name.clone(),
+        });
+    }
+    nets[at].is_read |= port.direction == Direction::Input;
+    Ok(Connection::Net(at))
+}
+
+/// A block while it is stepped.
+struct Member {
+    block: Box<dyn Moore>,
+    /// For each input: net, or the constant that it is tied to.
+    inputs_from: Vec<Connection>,
+    /// For each output: its net.
+    outputs_to: Vec<usize>,
+    inputs: Vec<u64>,
+    outputs: Vec<u64>,
+}
+
+/// The model of a composition: its blocks stepped together.
+///
+/// What a block shows to others must be registers ([`Moore`]): then all nets are known before any block is clocked, in
+/// whatever order. An output that depends on inputs in the same clock may be an output of the whole only.
+pub struct Composed {
+    composition: Composition,
+    members: Vec<Member>,
+    nets: Vec<u64>,
+    input_count: usize,
+    /// Part and output of each output of the whole.
+    outputs_from: Vec<(usize, usize)>,
+}
+
+impl Composed {
+    /// `blocks` are those of the parts, in their order, with the parts' ports.
+    pub fn new(composition: Composition, blocks: Vec<Box<dyn Moore>>) -> Self {
+        let members = blocks.into_iter().zip(&composition.connections).zip(&composition.parts);
+        let members = members.map(|((block, connections), part)| {
+            let on = |direction| {
+                let all = part.ports.iter().zip(connections);
+                all.filter(move |(port, _)| port.direction == direction)
+                    .map(|(_, on)| *on)
+            };
+            let inputs_from: Vec<Connection> = on(Direction::Input).collect();
+            let nets = on(Direction::Output).filter_map(|on| match on {
+                Connection::Net(net) => Some(net),
+                Connection::Tied(_) => None,
+            });
+            let outputs_to: Vec<usize> = nets.collect();
+            Member {
+                block,
+                inputs: vec![0; inputs_from.len()],
+                outputs: vec![0; outputs_to.len()],
+                inputs_from,
+                outputs_to,
+            }
+        });
+        let outputs = composition
+            .ports
+            .iter()
+            .filter(|port| port.direction == Direction::Output);
+        let driver = |port: &Port| {
+            let net = composition.nets.iter().find(|net| net.port.name == port.name);
+            net.and_then(|net| net.driver).unwrap_or_default()
+        };
+        let mut composed = Self {
+            members: members.collect(),
+            nets: vec![0; composition.nets.len()],
+            input_count: composition.nets.iter().filter(|net| net.driver.is_none()).count(),
+            outputs_from: outputs.map(driver).collect(),
+            composition,
+        };
+        composed.settle();
+        composed
+    }
+
+    /// How it is joined.
+    pub fn composition(&self) -> &Composition {
+        &self.composition
+    }
+
+    /// Nets to what the blocks' registers show.
+    fn settle(&mut self) {
+        for member in &mut self.members {
+            member.block.show(&mut member.outputs);
+            for (net, value) in member.outputs_to.iter().zip(&member.outputs) {
+                self.nets[*net] = *value;
+            }
+        }
+    }
+}
+
+impl ClockedBlock for Composed {
+    fn ports(&self) -> &[Port] {
+        &self.composition.ports
+    }
+
+    fn step(&mut self, inputs: &[u64], outputs: &mut [u64]) -> Result<(), StepError> {
+        if (inputs.len(), outputs.len()) != (self.input_count, self.outputs_from.len()) {
+            return Err(StepError(format!(
+                "{} inputs and {} outputs: the composition has {} and {}",
+                inputs.len(),
+                outputs.len(),
+                self.input_count,
+                self.outputs_from.len()
+            )));
+        }
+        self.nets[..inputs.len()].copy_from_slice(inputs);
+        for member in &mut self.members {
+            for (input, from) in member.inputs.iter_mut().zip(&member.inputs_from) {
+                *input = match from {
+                    Connection::Net(net) => self.nets[*net],
+                    Connection::Tied(value) => *value,
+                };
+            }
+            member.block.step(&member.inputs, &mut member.outputs)?;
+        }
+        for (output, (part, at)) in outputs.iter_mut().zip(&self.outputs_from) {
+            *output = self.members[*part].outputs[*at];
+        }
+        self.settle();
+        Ok(())
+    }
+}
+
+impl Moore for Composed {
+    fn show(&self, outputs: &mut [u64]) {
+        for (output, (part, at)) in outputs.iter_mut().zip(&self.outputs_from) {
+            *output = self.members[*part].outputs[*at];
+        }
+    }
+}

@@ -1,0 +1,405 @@
+//! The bank, clock by clock: an interpreter of the register map.
+
+use super::description::{Access, Field, Source, WINDOW_WORDS};
+use super::map::RegisterMap;
+use crate::rtl::{ClockedBlock, Direction, Moore, Port, StepError};
+
+/// Where a field's bits are among the inputs.
+#[derive(Debug, Clone, Copy)]
+struct Wire {
+    input: usize,
+    low: u32,
+    ones: u32,
+}
+
+impl Wire {
+    fn bits(self, inputs: &[u64]) -> u32 {
+        (inputs[self.input] as u32 & self.ones) << self.low
+    }
+}
+
+/// What an output shows.
+#[derive(Debug, Clone, Copy)]
+enum Shown {
+    ReadData,
+    Irq,
+    Strobe(usize),
+    Field { register: usize, low: u32, ones: u32 },
+}
+
+/// A flag that the bank sets by itself.
+#[derive(Debug, Clone, Copy)]
+struct OwnFlag {
+    source: Source,
+    bit: u32,
+}
+
+/// A register as the interpreter wants it.
+#[derive(Debug, Clone)]
+struct Plan {
+    access: Access,
+    /// Bits that a write reaches.
+    mask: u32,
+    reset: u32,
+    /// Inputs that are live, or set flags.
+    wires: Vec<Wire>,
+    own_flags: Vec<OwnFlag>,
+    /// Mask and smallest value, in place, of fields that have one.
+    minima: Vec<(u32, u32)>,
+    /// Input that guards it, or applies a commit.
+    gate: usize,
+    /// Of a shadow: the live register. Of an interrupt test: the state.
+    refers_to: usize,
+}
+
+/// Everything that is a register in hardware.
+#[derive(Debug, Clone, PartialEq, Eq)]
+struct State {
+    /// What the hardware sees, or what a read gives: one word per register.
+    words: Vec<u32>,
+    /// What the host has written to staged registers.
+    staged: Vec<u32>,
+    /// The command whose strobe is high.
+    strobe: Option<usize>,
+    commit_waits: bool,
+    read_data: u32,
+    irq: bool,
+}
+
+/// What a clock's write did wrong.
+#[derive(Debug, Clone, Copy, Default)]
+struct Refusals {
+    partial: bool,
+    guard: bool,
+    commit: bool,
+}
+
+/// Places of the bus among the inputs; the outputs begin with `avs_readdata`.
+const ADDRESS: usize = 1;
+const READ: usize = 2;
+const WRITE: usize = 3;
+const BYTE_ENABLE: usize = 4;
+const WRITE_DATA: usize = 5;
+
+/// A register bank, cycle accurate at its ports.
+#[derive(Debug, Clone)]
+pub struct RegisterBank {
+    ports: Vec<Port>,
+    inputs: usize,
+    plan: Vec<Plan>,
+    /// Register of each word of the window.
+    decode: Vec<Option<usize>>,
+    outputs: Vec<Shown>,
+    /// Registers that take part in every clock.
+    flags: Vec<usize>,
+    staged: Vec<usize>,
+    commit: Option<usize>,
+    interrupts: Option<(usize, usize)>,
+    reset: State,
+    state: State,
+}
+
+impl RegisterBank {
+    /// The bank of `map`, after reset.
+    pub fn new(map: &RegisterMap) -> Self {
+        let registers = map.registers();
+        let plan: Vec<Plan> = (0..registers.len()).map(|at| plan(map, at)).collect();
+        let mut decode = vec![None; WINDOW_WORDS as usize];
+        for (at, register) in registers.iter().enumerate() {
+            decode[register.offset as usize] = Some(at);
+        }
+        let places = |holds: fn(&Access) -> bool| {
+            let all = plan.iter().enumerate();
+            all.filter(move |(_, p)| holds(&p.access)).map(|(at, _)| at)
+        };
+        let words: Vec<u32> = plan.iter().map(|plan| plan.reset).collect();
+        let reset = State {
+            staged: words.clone(),
+            words,
+            strobe: None,
+            commit_waits: false,
+            read_data: 0,
+            irq: false,
+        };
+        let inputs = map
+            .ports()
+            .iter()
+            .filter(|port| port.direction == Direction::Input)
+            .count();
+        Self {
+            ports: map.ports().to_vec(),
+            inputs,
+            outputs: outputs(map),
+            flags: places(Access::is_sticky).collect(),
+            staged: places(|access| *access == Access::Staged).collect(),
+            commit: places(|access| matches!(access, Access::Commit { .. })).next(),
+            interrupts: places(|access| *access == Access::InterruptState)
+                .next()
+                .zip(places(|access| *access == Access::InterruptEnable).next()),
+            decode,
+            state: reset.clone(),
+            reset,
+            plan,
+        }
+    }
+
+    /// So many clocks with the same inputs. Ends early once a clock changes nothing, since no later one would.
+    ///
+    /// # Errors
+    /// [`StepError`] for a wrong number of inputs.
+    pub fn hold(&mut self, inputs: &[u64], clocks: u64) -> Result<(), StepError> {
+        self.check(inputs, self.outputs.len())?;
+        for _ in 0..clocks {
+            let before = self.state.clone();
+            self.clock(inputs);
+            if self.state == before {
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    fn check(&self, inputs: &[u64], outputs: usize) -> Result<(), StepError> {
+        if (inputs.len(), outputs) == (self.inputs, self.outputs.len()) {
+            return Ok(());
+        }
+        Err(StepError(format!(
+            "{} inputs and {} outputs: the bank has {} and {}",
+            inputs.len(),
+            outputs,
+            self.inputs,
+            self.outputs.len()
+        )))
+    }
+
+    fn clock(&mut self, inputs: &[u64]) {
+        if inputs[0] & 1 != 0 {
+            self.state.clone_from(&self.reset);
+            return;
+        }
+        let data = (inputs[READ] & 1 != 0).then(|| self.read(inputs));
+        let irq = self
+            .interrupts
+            .is_some_and(|(state, enable)| self.state.words[state] & self.state.words[enable] != 0);
+        self.state.strobe = None;
+        let applies = self.applies_commit(inputs);
+        if applies {
+            for at in &self.staged {
+                self.state.words[*at] = self.state.staged[*at];
+            }
+        }
+        let refusals = if inputs[WRITE] & 1 != 0 {
+            self.write(inputs)
+        } else {
+            Refusals::default()
+        };
+        if applies {
+            self.state.commit_waits = false;
+        }
+        self.set_flags(inputs, refusals);
+        if let Some(data) = data {
+            self.state.read_data = data;
+        }
+        self.state.irq = irq;
+    }
+
+    fn applies_commit(&self, inputs: &[u64]) -> bool {
+        let tick = self.commit.is_some_and(|at| inputs[self.plan[at].gate] & 1 != 0);
+        tick && self.state.commit_waits
+    }
+
+    fn read(&self, inputs: &[u64]) -> u32 {
+        let Some(at) = self.addressed(inputs) else {
+            return 0;
+        };
+        match self.plan[at].access {
+            Access::Live => self.wired(at, inputs),
+            Access::Staged => self.state.staged[at],
+            Access::Commit { .. } => self.state.commit_waits.into(),
+            Access::Command { .. } | Access::Snapshot | Access::InterruptTest => 0,
+            _ => self.state.words[at],
+        }
+    }
+
+    fn addressed(&self, inputs: &[u64]) -> Option<usize> {
+        self.decode[inputs[ADDRESS] as usize & 0xff]
+    }
+
+    fn wired(&self, at: usize, inputs: &[u64]) -> u32 {
+        let wires = &self.plan[at].wires;
+        wires.iter().fold(0, |word, wire| word | wire.bits(inputs))
+    }
+
+    fn write(&mut self, inputs: &[u64]) -> Refusals {
+        let mut refusals = Refusals::default();
+        let Some(at) = self.addressed(inputs) else {
+            return refusals;
+        };
+        let plan = &self.plan[at];
+        let (enabled, data) = (bytes(inputs[BYTE_ENABLE]), inputs[WRITE_DATA] as u32);
+        if plan.access.whole_words() && enabled != u32::MAX {
+            refusals.partial = true;
+            return refusals;
+        }
+        let merged = |old: u32| (old & !enabled | data & enabled) & plan.mask;
+        let state = &mut self.state;
+        match &plan.access {
+            Access::Configuration | Access::InterruptEnable => state.words[at] = merged(state.words[at]),
+            Access::Guarded { .. } => {
+                let word = merged(state.words[at]);
+                let enough = plan.minima.iter().all(|(mask, minimum)| word & mask >= *minimum);
+                if inputs[plan.gate] & 1 != 0 && enough {
+                    state.words[at] = word;
+                } else {
+                    refusals.guard = true;
+                }
+            }
+            Access::Staged if state.commit_waits => refusals.commit = true,
+            Access::Staged => state.staged[at] = merged(state.staged[at]),
+            Access::Command { .. } => {
+                state.words[at] = data & plan.mask;
+                state.strobe = Some(at);
+            }
+            Access::Sticky | Access::InterruptState => state.words[at] &= !(data & enabled),
+            Access::Commit { .. } if state.commit_waits => refusals.commit = true,
+            Access::Commit { .. } => state.commit_waits = true,
+            Access::Snapshot => self.snapshot(inputs),
+            Access::InterruptTest => state.words[plan.refers_to] |= data & plan.mask,
+            Access::Constant | Access::Live | Access::Shadow { .. } => {}
+        }
+        refusals
+    }
+
+    fn snapshot(&mut self, inputs: &[u64]) {
+        for at in 0..self.plan.len() {
+            if let Access::Shadow { .. } = self.plan[at].access {
+                self.state.words[at] = self.wired(self.plan[at].refers_to, inputs);
+            }
+        }
+    }
+
+    fn set_flags(&mut self, inputs: &[u64], refusals: Refusals) {
+        for at in &self.flags {
+            let plan = &self.plan[*at];
+            let set = plan.wires.iter().fold(0, |word, wire| word | wire.bits(inputs));
+            let own = plan.own_flags.iter().fold(0, |word, flag| {
+                let happened = match flag.source {
+                    Source::PartialWrite => refusals.partial,
+                    Source::GuardRefused => refusals.guard,
+                    Source::CommitRejected => refusals.commit,
+                    Source::Input => false,
+                };
+                word | if happened { flag.bit } else { 0 }
+            });
+            self.state.words[*at] |= set | own;
+        }
+    }
+}
+
+/// Ones in the bytes that are enabled.
+fn bytes(enabled: u64) -> u32 {
+    (0..4).fold(0, |mask, byte| {
+        mask | if enabled >> byte & 1 != 0 {
+            0xff << (8 * byte)
+        } else {
+            0
+        }
+    })
+}
+
+fn plan(map: &RegisterMap, at: usize) -> Plan {
+    let register = &map.registers()[at];
+    let inputs: Vec<&str> = {
+        let ports = map.ports().iter().filter(|port| port.direction == Direction::Input);
+        ports.map(|port| port.name.as_str()).collect()
+    };
+    // A checked map has all the ports that its registers name.
+    let input = |name: &str| inputs.iter().position(|port| *port == name).unwrap_or_default();
+    let wire = |field: &Field| Wire {
+        input: input(&field.name),
+        low: field.low,
+        ones: field.ones(),
+    };
+    let access = &register.access;
+    let wired = access.is_sticky() || *access == Access::Live;
+    let from_input = register.fields.iter().filter(|field| field.source == Source::Input);
+    let own = register.fields.iter().filter(|field| field.source != Source::Input);
+    let minima = register.fields.iter().filter(|field| field.minimum > 0);
+    Plan {
+        mask: register.mask(),
+        reset: register.reset(),
+        wires: from_input.filter(|_| wired).map(wire).collect(),
+        own_flags: own
+            .filter(|_| wired)
+            .map(|field| OwnFlag {
+                source: field.source,
+                bit: field.mask(),
+            })
+            .collect(),
+        minima: minima.map(|field| (field.mask(), field.minimum << field.low)).collect(),
+        gate: match access {
+            Access::Guarded { by } => input(by),
+            Access::Commit { tick } => input(tick),
+            _ => 0,
+        },
+        refers_to: match access {
+            Access::Shadow { of } => map.index_of(of).unwrap_or_default(),
+            Access::InterruptTest => {
+                let state = |r: &super::Register| r.access == Access::InterruptState;
+                map.registers().iter().position(state).unwrap_or_default()
+            }
+            _ => 0,
+        },
+        access: access.clone(),
+    }
+}
+
+/// What each output shows, in port order.
+fn outputs(map: &RegisterMap) -> Vec<Shown> {
+    let shown = |port: &Port| match port.name.as_str() {
+        "avs_readdata" => Some(Shown::ReadData),
+        "irq" => Some(Shown::Irq),
+        name => map.registers().iter().enumerate().find_map(|(at, register)| {
+            let is_strobe = matches!(&register.access, Access::Command { strobe } if strobe == name);
+            let field = register.fields.iter().find(|field| field.name == name);
+            match field.filter(|_| register.access.drives_fields()) {
+                _ if is_strobe => Some(Shown::Strobe(at)),
+                Some(field) => Some(Shown::Field {
+                    register: at,
+                    low: field.low,
+                    ones: field.ones(),
+                }),
+                None => None,
+            }
+        }),
+    };
+    let outputs = map.ports().iter().filter(|port| port.direction == Direction::Output);
+    outputs.filter_map(shown).collect()
+}
+
+impl Moore for RegisterBank {
+    fn show(&self, outputs: &mut [u64]) {
+        let state = &self.state;
+        for (output, shown) in outputs.iter_mut().zip(&self.outputs) {
+            *output = match shown {
+                Shown::ReadData => state.read_data.into(),
+                Shown::Irq => state.irq.into(),
+                Shown::Strobe(at) => (state.strobe == Some(*at)).into(),
+                Shown::Field { register, low, ones } => (state.words[*register] >> low & ones).into(),
+            };
+        }
+    }
+}
+
+impl ClockedBlock for RegisterBank {
+    fn ports(&self) -> &[Port] {
+        &self.ports
+    }
+
+    fn step(&mut self, inputs: &[u64], outputs: &mut [u64]) -> Result<(), StepError> {
+        self.check(inputs, outputs.len())?;
+        self.show(outputs);
+        self.clock(inputs);
+        Ok(())
+    }
+}

@@ -1,0 +1,152 @@
+//! A description that holds together, and the ports of its bank.
+
+use super::description::{Access, Description, Field, Register, Source};
+use super::error::MapError;
+use crate::rtl::{Direction, Port};
+
+/// A checked [`Description`]: what bank, model and documents are made from.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct RegisterMap {
+    description: Description,
+    ports: Vec<Port>,
+}
+
+impl RegisterMap {
+    /// Checks a description.
+    ///
+    /// # Errors
+    /// [`MapError`] for the first thing that does not hold together: names, places, reset values, references.
+    pub fn new(mut description: Description) -> Result<Self, MapError> {
+        description.registers.sort_by_key(|register| register.offset);
+        super::check::check(&description)?;
+        let ports = ports(&description)?;
+        Ok(Self { description, ports })
+    }
+
+    /// The component's name.
+    pub fn name(&self) -> &str {
+        &self.description.name
+    }
+
+    /// What the component is.
+    pub fn about(&self) -> &str {
+        &self.description.about
+    }
+
+    /// The registers, by offset.
+    pub fn registers(&self) -> &[Register] {
+        &self.description.registers
+    }
+
+    /// The place of the register of that name.
+    pub fn index_of(&self, name: &str) -> Option<usize> {
+        self.registers().iter().position(|register| register.name == name)
+    }
+
+    /// The register of that name.
+    pub fn register(&self, name: &str) -> Option<&Register> {
+        self.registers().iter().find(|register| register.name == name)
+    }
+
+    /// The first register for whose access that holds.
+    pub fn find(&self, holds: impl Fn(&Access) -> bool) -> Option<&Register> {
+        self.registers().iter().find(|register| holds(&register.access))
+    }
+
+    /// A register's fields: a shadow has those of the register that it freezes.
+    pub fn fields<'a>(&'a self, register: &'a Register) -> &'a [Field] {
+        match &register.access {
+            Access::Shadow { of } => self.register(of).map_or(&[], |live| &live.fields),
+            _ => &register.fields,
+        }
+    }
+
+    /// The bank's ports without `clk`: reset, the Avalon agent, `irq` if there are interrupts, then those of the registers
+    /// in their order.
+    pub fn ports(&self) -> &[Port] {
+        &self.ports
+    }
+}
+
+/// The ports of every bank, before those of its registers.
+fn bus() -> Vec<Port> {
+    use Direction::{Input, Output};
+    [
+        ("rst", Input, 1),
+        ("avs_address", Input, 8),
+        ("avs_read", Input, 1),
+        ("avs_write", Input, 1),
+        ("avs_byteenable", Input, 4),
+        ("avs_writedata", Input, 32),
+        ("avs_readdata", Output, 32),
+    ]
+    .map(|(name, direction, width)| port(name, direction, width, false))
+    .to_vec()
+}
+
+fn port(name: &str, direction: Direction, width: u32, signed: bool) -> Port {
+    Port {
+        name: name.to_owned(),
+        direction,
+        width,
+        signed,
+    }
+}
+
+fn ports(description: &Description) -> Result<Vec<Port>, MapError> {
+    use Direction::{Input, Output};
+    let mut ports = bus();
+    let registers = &description.registers;
+    if registers
+        .iter()
+        .any(|register| register.access == Access::InterruptState)
+    {
+        ports.push(port("irq", Output, 1, false));
+    }
+    for register in registers {
+        let field_port = |field: &Field, direction| port(&field.name, direction, field.width, field.is_signed());
+        let fields = register.fields.iter();
+        match &register.access {
+            Access::Live => add(&mut ports, register, fields.map(|field| field_port(field, Input)))?,
+            Access::Sticky | Access::InterruptState => {
+                let from_input = fields.filter(|field| field.source == Source::Input);
+                add(&mut ports, register, from_input.map(|field| field_port(field, Input)))?;
+            }
+            Access::Guarded { by } => {
+                add(&mut ports, register, [port(by, Input, 1, false)])?;
+                add(&mut ports, register, fields.map(|field| field_port(field, Output)))?;
+            }
+            Access::Commit { tick } => add(&mut ports, register, [port(tick, Input, 1, false)])?,
+            Access::Command { strobe } => {
+                add(&mut ports, register, [port(strobe, Output, 1, false)])?;
+                add(&mut ports, register, fields.map(|field| field_port(field, Output)))?;
+            }
+            Access::Configuration | Access::Staged => {
+                add(&mut ports, register, fields.map(|field| field_port(field, Output)))?;
+            }
+            Access::Constant
+            | Access::Shadow { .. }
+            | Access::Snapshot
+            | Access::InterruptEnable
+            | Access::InterruptTest => {}
+        }
+    }
+    Ok(ports)
+}
+
+/// Adds ports. An input may feed several registers; then it stands where it was named first.
+fn add(ports: &mut Vec<Port>, register: &Register, more: impl IntoIterator<Item = Port>) -> Result<(), MapError> {
+    for port in more {
+        match ports.iter().find(|other| other.name == port.name) {
+            None => ports.push(port),
+            Some(other) if *other == port && port.direction == Direction::Input => {}
+            Some(_) => {
+                return Err(MapError::Port {
+                    register: register.name.clone(),
+                    port: port.name,
+                });
+            }
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,17 @@
+//! The register maps of the components, one file each.
+
+mod pulse_counter;
+mod shaper;
+mod sliding_mode;
+
+pub use pulse_counter::pulse_counter;
+pub use shaper::shaper;
+pub(crate) use shaper::word_name;
+pub use sliding_mode::sliding_mode;
+
+use super::{Field, Source};
+
+/// The flag that every map with commands has.
+fn partial_write(low: u32) -> Field {
+    Field::flag("partial_write", low, "a write was ignored").set_by(Source::PartialWrite)
+}

@@ -1,0 +1,206 @@
+//! Registers of the pulse counter with its own divider and time base.
+
+use super::super::{Access, Description, Field};
+use crate::rtl::divider::DividerConfig;
+
+/// `timeout` after reset: 5 million clocks.
+const TIMEOUT: u32 = 76;
+
+/// The map of a pulse counter with the ticks of `divider`, whose filter is `filter_clocks` (6 bits) long after reset.
+pub fn pulse_counter(divider: &DividerConfig, filter_clocks: u32) -> Description {
+    use Access::{Configuration, Live, Snapshot, Sticky};
+    let parameters = vec![
+        Field::new("tick_clocks", 0, 17, "from tick to tick")
+            .with_reset(divider.tick_clocks())
+            .with_unit("clocks"),
+    ];
+    let command = |strobe: &str| Access::Command {
+        strobe: strobe.to_owned(),
+    };
+    let about = "Pulse counter: encoder or scale signals to position, index and velocity.";
+    Description::new("pulse_counter", about, *b"PCNT", (1, 0), parameters)
+        .with("snapshot", 0x08, Snapshot, "freezes the words `SNAPSHOT_...`", vec![])
+        .with(
+            "lines",
+            0x10,
+            Configuration,
+            "how A, B and Z are read",
+            lines(filter_clocks),
+        )
+        .with("index", 0x11, Configuration, "what an index does", index())
+        .with(
+            "velocity_filter",
+            0x12,
+            Configuration,
+            "how the velocity is measured",
+            velocity_filter(),
+        )
+        .with(
+            "preset_value",
+            0x13,
+            Configuration,
+            "what a preset makes of the position",
+            vec![counts("preset_value", "position after a preset")],
+        )
+        .with_interrupts(
+            0x14,
+            vec![
+                Field::flag("tick", 0, "a tick has passed"),
+                Field::flag("index_seen", 1, "an index was latched"),
+                Field::flag("illegal", 2, "A and B changed together"),
+                Field::flag("disagreement", 3, "the lines of a pair were equal"),
+                Field::flag("velocity_missed", 4, "a tick had no velocity"),
+            ],
+        )
+        .with(
+            "preset",
+            0x18,
+            command("preset"),
+            "the position becomes `PRESET_VALUE`; 0 clears it",
+            vec![],
+        )
+        .with(
+            "index_arm",
+            0x19,
+            command("index_arm"),
+            "latches the next index",
+            vec![],
+        )
+        .with(
+            "clear_flags",
+            0x1a,
+            command("clear_flags"),
+            "clears the counter's flags in `STATUS`",
+            vec![],
+        )
+        .with(
+            "flags",
+            0x1b,
+            Sticky,
+            "what has happened since the flag was cleared",
+            vec![
+                super::partial_write(0),
+                Field::flag("saturated", 1, "the velocity was clamped"),
+            ],
+        )
+        .with("status", 0x1c, Live, "state of the counter", status())
+        .with_shadowed(
+            "position",
+            0x20,
+            0x30,
+            "where it is",
+            vec![counts("position", "count less origin")],
+        )
+        .with_shadowed(
+            "velocity",
+            0x21,
+            0x31,
+            "how fast it is",
+            vec![
+                Field::new("velocity", 0, 32, "at the last tick")
+                    .fixed(16)
+                    .with_unit("counts/tick"),
+            ],
+        )
+        .with_shadowed(
+            "time_stamp",
+            0x22,
+            0x32,
+            "clocks since reset",
+            vec![Field::new("time_stamp", 0, 32, "modulo 2^32").with_unit("clocks")],
+        )
+        .with_shadowed(
+            "tick_count",
+            0x23,
+            0x33,
+            "ticks since reset",
+            vec![Field::new("tick_count", 0, 32, "modulo 2^32").with_unit("ticks")],
+        )
+        .with_shadowed(
+            "count",
+            0x24,
+            0x34,
+            "steps since reset",
+            vec![counts("count", "modulo 2^32, never jumps")],
+        )
+        .with_shadowed(
+            "index_count",
+            0x25,
+            0x35,
+            "count at the index",
+            vec![counts("index_count", "of the last latch")],
+        )
+        .with(
+            "origin",
+            0x26,
+            Live,
+            "count at which the position is 0",
+            vec![counts("origin", "moved by presets")],
+        )
+}
+
+fn counts(name: &str, meaning: &str) -> Field {
+    Field::new(name, 0, 32, meaning).signed().with_unit("counts")
+}
+
+fn lines(filter_clocks: u32) -> Vec<Field> {
+    let modes = [
+        (0, "quadrature_x4", "every edge of A and B"),
+        (1, "quadrature_x2", "edges of A"),
+        (2, "quadrature_x1", "edges of A while B is low"),
+        (3, "step_direction", "rising A; up while B is high"),
+        (4, "up_down", "rising A up, rising B down"),
+    ];
+    vec![
+        Field::new("filter_clocks", 0, 6, "pulses of up to so many clocks are ignored")
+            .with_reset(filter_clocks)
+            .with_unit("clocks"),
+        Field::choice("mode", 8, 3, "what counts", &modes),
+        Field::flag("swap", 16, "exchanges A and B"),
+        Field::flag("invert", 17, "reverses the direction"),
+        Field::flag("differential", 18, "the lines are pairs"),
+    ]
+}
+
+fn index() -> Vec<Field> {
+    vec![
+        Field::flag("index_always", 0, "latches every index"),
+        Field::flag("index_presets", 1, "a latched index also presets"),
+        Field::new(
+            "index_gate",
+            4,
+            4,
+            "bit 0: only while A is as bit 1; bit 2: only while B is as bit 3",
+        ),
+    ]
+}
+
+fn velocity_filter() -> Vec<Field> {
+    vec![
+        Field::new("smoothing", 0, 2, "k of the one-pole filter with coefficient 2^-k"),
+        Field::flag("velocity_m", 4, "by counts per tick alone"),
+        Field::new(
+            "timeout",
+            8,
+            8,
+            "without an edge for so long, the velocity is 0; at most 253",
+        )
+        .with_reset(TIMEOUT)
+        .with_unit("65536 clocks"),
+    ]
+}
+
+fn status() -> Vec<Field> {
+    vec![
+        Field::flag("index_seen", 0, "an index was latched"),
+        Field::flag("index_armed", 1, "the next index will be latched"),
+        Field::flag("illegal", 2, "A and B changed together"),
+        Field::flag("disagreement", 3, "the lines of a pair were equal"),
+        Field::flag("velocity_missed", 4, "a tick had no velocity"),
+        Field::flag("velocity_pending", 5, "a division runs"),
+        Field::flag("level_a", 8, "filtered A"),
+        Field::flag("level_b", 9, "filtered B"),
+        Field::flag("level_z", 10, "filtered Z"),
+        Field::new("illegal_count", 16, 8, "illegal transitions; stops at 255"),
+    ]
+}

@@ -1,0 +1,131 @@
+//! A register map as Markdown: the generated part of `docs/registers.md`.
+
+use super::description::{Access, Field, Format, Register, Source};
+use super::map::RegisterMap;
+use std::fmt::Write;
+
+/// The tables of a map: one of its registers, one of their fields, one of each enumeration.
+pub fn markdown(map: &RegisterMap) -> String {
+    let mut text = format!("### {}\n\n{}\n\n", map.name(), map.about());
+    text.push_str("| word | register | access | reset | meaning |\n|---|---|---|---|---|\n");
+    for register in map.registers() {
+        // Writing to a String cannot fail.
+        let _ = writeln!(
+            text,
+            "| {:#04x} | `{}` | {} | {} | {} |",
+            register.offset,
+            register.name.to_uppercase(),
+            access(register),
+            reset(register),
+            register.meaning,
+        );
+    }
+    text.push_str("\n| register | bits | field | format | unit | reset | meaning |\n|---|---|---|---|---|---|---|\n");
+    for register in map.registers() {
+        // The same fields once more.
+        if matches!(
+            register.access,
+            Access::Shadow { .. } | Access::InterruptEnable | Access::InterruptTest
+        ) {
+            continue;
+        }
+        for field in &register.fields {
+            let _ = writeln!(
+                text,
+                "| `{}` | {} | `{}` | {} | {} | {} | {} |",
+                register.name.to_uppercase(),
+                bits(field),
+                field.name,
+                format(field),
+                field.unit,
+                field_reset(register, field),
+                meaning(field),
+            );
+        }
+    }
+    for (register, field) in map
+        .registers()
+        .iter()
+        .flat_map(|r| r.fields.iter().map(move |f| (r, f)))
+    {
+        if let Format::Enumeration(choices) = &field.format {
+            let register = register.name.to_uppercase();
+            let _ = writeln!(
+                text,
+                "\n| `{register}.{}` | name | meaning |\n|---|---|---|",
+                field.name
+            );
+            for choice in choices {
+                let _ = writeln!(
+                    text,
+                    "| {} | `{}` | {} |",
+                    choice.value,
+                    choice.name.to_uppercase(),
+                    choice.meaning
+                );
+            }
+        }
+    }
+    text
+}
+
+fn access(register: &Register) -> String {
+    match &register.access {
+        Access::Shadow { of } => format!("shadow of `{}`", of.to_uppercase()),
+        Access::Guarded { by } => format!("guarded by `{by}`"),
+        Access::Command { strobe } => format!("command `{strobe}`"),
+        Access::Commit { tick } => format!("commit at `{tick}`"),
+        other => other.words().to_owned(),
+    }
+}
+
+/// Of registers that have a value of their own.
+fn reset(register: &Register) -> String {
+    match register.access {
+        Access::Live | Access::Command { .. } | Access::Snapshot | Access::InterruptTest => String::new(),
+        _ => format!("{:#x}", register.reset()),
+    }
+}
+
+fn field_reset(register: &Register, field: &Field) -> String {
+    match register.access {
+        Access::Live => String::new(),
+        _ if field.is_signed() => {
+            let unused = 32 - field.width;
+            (((field.reset << unused) as i32) >> unused).to_string()
+        }
+        _ if field.reset > 0xffff => format!("{:#x}", field.reset),
+        _ => field.reset.to_string(),
+    }
+}
+
+fn bits(field: &Field) -> String {
+    match field.width {
+        1 => field.low.to_string(),
+        width => format!("{}:{}", field.low + width - 1, field.low),
+    }
+}
+
+fn format(field: &Field) -> String {
+    match &field.format {
+        Format::Unsigned => "unsigned".to_owned(),
+        Format::Signed => "signed".to_owned(),
+        Format::Fixed { fraction } => format!("signed Q{}.{fraction}", field.width - fraction),
+        Format::Flag => "flag".to_owned(),
+        Format::Enumeration(_) => "one of".to_owned(),
+    }
+}
+
+fn meaning(field: &Field) -> String {
+    let own = match field.source {
+        Source::Input => "",
+        Source::PartialWrite => "; set by a write of a part of a whole word",
+        Source::GuardRefused => "; set by a refused write of a guarded register",
+        Source::CommitRejected => "; set by a commit or staged write while a commit waits",
+    };
+    let least = match field.minimum {
+        0 => String::new(),
+        minimum => format!("; at least {minimum}"),
+    };
+    format!("{}{own}{least}", field.meaning)
+}

@@ -1,0 +1,88 @@
+//! Where the samples of a stand-alone shaper come from: the host's registers, or pins. One clock late.
+//!
+//! ```text
+//! host_strobe, host_start, host_x_0 … ─┐
+//!                                      ├─► register ─► strobe, start, x_0 …
+//!  pin_strobe,  pin_start,  pin_x_0 … ─┘ from_pins
+//! ```
+
+use super::{ClockedBlock, Direction, Moore, Port, StepError};
+
+/// The ports in the order of the Verilog's port list, without `clk`.
+pub fn ports(word_bits: u32, channels: usize) -> Vec<Port> {
+    use Direction::{Input, Output};
+    let port = |name: String, direction, width, signed| Port {
+        name,
+        direction,
+        width,
+        signed,
+    };
+    let mut ports = vec![
+        port("rst".to_owned(), Input, 1, false),
+        port("from_pins".to_owned(), Input, 1, false),
+    ];
+    for (prefix, direction) in [("host_", Input), ("pin_", Input), ("", Output)] {
+        ports.push(port(format!("{prefix}strobe"), direction, 1, false));
+        ports.push(port(format!("{prefix}start"), direction, 1, false));
+        let words = (0..channels).map(|channel| port(format!("{prefix}x_{channel}"), direction, word_bits, true));
+        ports.extend(words);
+    }
+    ports
+}
+
+/// The selection, cycle accurate at its ports.
+#[derive(Debug, Clone)]
+pub struct SampleSelect {
+    ports: Vec<Port>,
+    shown: Vec<u64>,
+}
+
+impl SampleSelect {
+    /// After reset, for words of so many bits and so many channels.
+    pub fn new(word_bits: u32, channels: usize) -> Self {
+        Self {
+            ports: ports(word_bits, channels),
+            shown: vec![0; 2 + channels],
+        }
+    }
+}
+
+impl Moore for SampleSelect {
+    fn show(&self, outputs: &mut [u64]) {
+        for (output, value) in outputs.iter_mut().zip(&self.shown) {
+            *output = *value;
+        }
+    }
+}
+
+impl ClockedBlock for SampleSelect {
+    fn ports(&self) -> &[Port] {
+        &self.ports
+    }
+
+    fn step(&mut self, inputs: &[u64], outputs: &mut [u64]) -> Result<(), StepError> {
+        let values = self.shown.len();
+        let ([reset, from_pins, rest @ ..], true) = (inputs, outputs.len() == values) else {
+            return Err(StepError(format!(
+                "{} inputs and {} outputs: the selection has others",
+                inputs.len(),
+                outputs.len()
+            )));
+        };
+        if rest.len() != 2 * values {
+            return Err(StepError(format!(
+                "{} inputs: the selection has {}",
+                inputs.len(),
+                2 + 2 * values
+            )));
+        }
+        self.show(outputs);
+        let (host, pins) = rest.split_at(values);
+        if reset & 1 != 0 {
+            self.shown.fill(0);
+        } else {
+            self.shown.copy_from_slice(if from_pins & 1 != 0 { pins } else { host });
+        }
+        Ok(())
+    }
+}

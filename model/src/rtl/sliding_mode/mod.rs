@@ -1,0 +1,217 @@
+//! The controller: reference and measurement to the drive's command, by sliding mode, PD or PID.
+//!
+//! The datasheet is `docs/sliding_mode.md`; this is the reference that the hardware is compared with.
+//!
+//! ```text
+//! e  = r − x                       s  = de + c·e                    f = sat(s/φ)
+//! de = dr − v                      a  = c·de + k·s + ε·f                       sliding mode (notes 8.4)
+//!                                  a  = D·de + P·e [+ I·∫e]                    PD [PID]
+//! command = limit( KA·a + KF·ddr + KR·dr + KV·v + KC·sat(dr/fade) )            duty = KD·command
+//! ```
+//!
+//! Everything is in counts and ticks T; unit conversions are in the gains ([`crate::control`]). One multiplier does it in
+//! [`CONTROL_CLOCKS`], whatever the numbers are; each of the 13 steps reads its gain at `setting_address`.
+//!
+//! | type | |
+//! |---|---|
+//! | [`SlidingMode`] | cycle accurate at its ports, one [`SlidingMode::step`] per clock |
+//! | [`TickController`] | the fast path: one [`TickController::control`] per tick |
+//! | [`Settings`], [`Gain`], [`Row`] | gains and limit as the words that the hardware reads |
+//!
+//! ```
+//! use posicast_model::rtl::sliding_mode::{Gain, Law, Motion, Row, Settings, TickController};
+//!
+//! // PD with P = 0.5 and D = 0: half a unit of command per count.
+//! let mut settings = Settings::default();
+//! settings.set_gain(Row::Proportional, Gain::nearest(0.5, Row::Proportional)?);
+//! settings.set_gain(Row::Feedback, Gain::nearest(1.0, Row::Feedback)?);
+//! settings.set_limit(1000 << 12);
+//! let mut controller = TickController::default();
+//! let motion = Motion { position_reference: 7 << 8, position: 3, ..Motion::default() };
+//! assert_eq!(controller.control(Law::Pd, false, &motion, &settings).command, 2 << 12);
+//! # Ok::<(), posicast_model::rtl::sliding_mode::GainError>(())
+//! ```
+
+mod datapath;
+mod ports;
+mod settings;
+
+pub use ports::{INPUTS, Inputs, Law, Motion, OUTPUTS, Outputs, Saturation, ports};
+pub use settings::{Gain, GainError, LIMIT_MAX, MANTISSA_BITS, MANTISSA_MAX, Row, SETTINGS, SHIFT_MAX, Settings};
+
+use self::datapath::{Datapath, STEPS, address};
+use super::{ClockedBlock, Moore, Port, StepError};
+
+/// Clocks of a step.
+const STEP_CLOCKS: u8 = 16;
+/// Clock of a step in which its setting is read.
+const READ_PHASE: u8 = 1;
+/// Clock of a step in which the shifted product is added.
+const ADD_PHASE: u8 = 14;
+/// Clocks from `start` to `valid`, and the smallest distance of two starts without `overrun`.
+pub const CONTROL_CLOCKS: u32 = STEPS as u32 * STEP_CLOCKS as u32 + 1;
+
+/// Everything that is a register.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+struct State {
+    datapath: Datapath,
+    busy: bool,
+    step: u8,
+    phase: u8,
+    valid: bool,
+    overrun: bool,
+}
+
+impl State {
+    #[inline]
+    fn outputs(&self) -> Outputs {
+        let data = &self.datapath;
+        Outputs {
+            setting_address: address(self.step, data.law),
+            error: data.error_q16_16(),
+            sliding: data.sliding,
+            command: data.command,
+            duty: data.duty,
+            valid: self.valid,
+            busy: self.busy,
+            limited_high: data.limited_high,
+            limited_low: data.limited_low,
+            limited_ticks: data.limited_ticks,
+            saturated_high: data.saturated_high,
+            saturated_low: data.saturated_low,
+            overrun: self.overrun,
+        }
+    }
+
+    #[inline]
+    fn clock(&mut self, inputs: &Inputs) {
+        if inputs.rst {
+            *self = Self::default();
+            return;
+        }
+        if inputs.clear_flags {
+            self.datapath.clear_flags();
+            self.overrun = false;
+        }
+        self.valid = false;
+        if self.busy {
+            self.overrun |= inputs.start;
+            match self.phase {
+                READ_PHASE => self.datapath.multiply(self.step, &inputs.motion, inputs.setting),
+                ADD_PHASE => self.datapath.add(self.step),
+                _ if self.phase == STEP_CLOCKS - 1 => self.datapath.settle(self.step),
+                _ => {}
+            }
+            self.phase = (self.phase + 1) % STEP_CLOCKS;
+            if self.phase == 0 {
+                self.step = (self.step + 1) % STEPS;
+                self.valid = self.step == 0;
+                self.busy = !self.valid;
+            }
+        } else if inputs.start {
+            let law = Law::from_bits(inputs.law);
+            self.datapath.capture(law, inputs.modulo, &inputs.motion);
+            self.busy = true;
+        }
+        if inputs.clear_integral {
+            self.datapath.clear_integral();
+        }
+    }
+}
+
+/// The controller, cycle accurate at its ports.
+pub struct SlidingMode {
+    ports: Vec<Port>,
+    state: State,
+}
+
+impl Default for SlidingMode {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl SlidingMode {
+    /// A controller after reset.
+    pub fn new() -> Self {
+        Self {
+            ports: ports(),
+            state: State::default(),
+        }
+    }
+
+    /// What the outputs show now.
+    pub fn outputs(&self) -> Outputs {
+        self.state.outputs()
+    }
+
+    /// One clock: what the outputs show before the rising edge, then the edge.
+    #[inline]
+    pub fn step(&mut self, inputs: &Inputs) -> Outputs {
+        let outputs = self.state.outputs();
+        self.state.clock(inputs);
+        outputs
+    }
+}
+
+impl ClockedBlock for SlidingMode {
+    fn ports(&self) -> &[Port] {
+        &self.ports
+    }
+
+    fn step(&mut self, inputs: &[u64], outputs: &mut [u64]) -> Result<(), StepError> {
+        let (Some(typed), OUTPUTS) = (Inputs::from_raw(inputs), outputs.len()) else {
+            return Err(StepError(format!(
+                "{} inputs and {} outputs: the controller has {INPUTS} and {OUTPUTS}",
+                inputs.len(),
+                outputs.len()
+            )));
+        };
+        let shown = SlidingMode::step(self, &typed);
+        outputs.copy_from_slice(&shown.to_raw());
+        Ok(())
+    }
+}
+
+impl Moore for SlidingMode {
+    fn show(&self, outputs: &mut [u64]) {
+        for (output, value) in outputs.iter_mut().zip(self.state.outputs().to_raw()) {
+            *output = value;
+        }
+    }
+}
+
+/// The fast path: a tick in one call, with what the outputs show at the end of its pass.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct TickController {
+    datapath: Datapath,
+}
+
+impl TickController {
+    /// One tick. The settings are those in the memory during the pass, `motion` holds still meanwhile.
+    pub fn control(&mut self, law: Law, modulo: bool, motion: &Motion, settings: &Settings) -> Outputs {
+        self.datapath.capture(law, modulo, motion);
+        for step in 0..STEPS {
+            let setting = settings.word(usize::from(address(step, law)));
+            self.datapath.multiply(step, motion, setting);
+            self.datapath.add(step);
+            self.datapath.settle(step);
+        }
+        let ended = State {
+            datapath: self.datapath.clone(),
+            valid: true,
+            ..State::default()
+        };
+        ended.outputs()
+    }
+
+    /// Clears the integral, as at the start of motion.
+    pub fn clear_integral(&mut self) {
+        self.datapath.clear_integral();
+    }
+
+    /// Clears the sticky flags.
+    pub fn clear_flags(&mut self) {
+        self.datapath.clear_flags();
+    }
+}

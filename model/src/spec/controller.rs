@@ -1,0 +1,97 @@
+//! `[axis.controller]`: the law that turns the error of the position into the drive's command.
+
+use super::range::NumberRange;
+use super::table::Table;
+
+/// Gains that must be there and pull.
+const POSITIVE: NumberRange = NumberRange::positive(1e12);
+/// Gains of the sliding-mode law that may be absent.
+const NOT_NEGATIVE: NumberRange = NumberRange::closed(0.0, 1e12);
+
+/// `[axis.controller]`, with the error in m (or rad). A velocity drive is commanded in m/s, a torque drive by the
+/// acceleration in m/s² that its force is to give.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Controller {
+    /// Sliding mode with a boundary layer: `s = de + c·e`, reaching law `−ε·sat(s/φ) − k·s`.
+    SlidingMode {
+        /// Slope of the sliding line, 1/s.
+        c: f64,
+        /// Rate at which `s` decays, 1/s.
+        k: f64,
+        /// Strength of the switching term, m/s².
+        epsilon: f64,
+        /// Half width φ of the boundary layer, m/s.
+        boundary: f64,
+    },
+    /// Proportional and derivative with feed-forward; a gain that the file leaves out follows from the drive.
+    Pd {
+        /// Command per error: 1/s of a velocity drive, 1/s² of a torque drive.
+        proportional: Option<f64>,
+        /// Command per rate of the error: a number of a velocity drive, 1/s of a torque drive.
+        derivative: Option<f64>,
+    },
+    /// The same with an integral that is frozen while the command is clamped.
+    Pid {
+        /// As for PD.
+        proportional: Option<f64>,
+        /// As for PD.
+        derivative: Option<f64>,
+        /// Command per integrated error: 1/s² of a velocity drive, 1/s³ of a torque drive.
+        integral: Option<f64>,
+    },
+}
+
+/// Each key of a law, and the kinds that have it.
+const GAINS: [(&str, &[&str]); 7] = [
+    ("c", &["sliding-mode"]),
+    ("k", &["sliding-mode"]),
+    ("epsilon", &["sliding-mode"]),
+    ("boundary", &["sliding-mode"]),
+    ("proportional", &["pd", "pid"]),
+    ("derivative", &["pd", "pid"]),
+    ("integral", &["pid"]),
+];
+
+/// Reads the table; `None` where a value is refused.
+pub(super) fn read(table: &Table<'_, '_>) -> Option<Controller> {
+    let mut keys = vec!["kind"];
+    keys.extend(GAINS.map(|(key, _)| key));
+    table.allow(&keys);
+    let kind = table.required_choice("kind", &["sliding-mode", "pd", "pid"]);
+    let gain = |key| {
+        let range = match key {
+            "k" | "epsilon" => NOT_NEGATIVE,
+            _ => POSITIVE,
+        };
+        table.number(key, range)
+    };
+    let [c, k, epsilon, boundary, proportional, derivative, integral] = GAINS.map(|(key, _)| gain(key));
+    let kind = kind?;
+    for (key, kinds) in GAINS {
+        if kinds == ["sliding-mode"] && kind == "sliding-mode" {
+            table.require(key, POSITIVE);
+        } else if table.has(key) && !kinds.contains(&kind) {
+            let found = format!("{key} with kind = \"{kind}\"");
+            let kinds: Vec<String> = kinds.iter().map(|kind| format!("\"{kind}\"")).collect();
+            let allowed = format!("{key} with kind = {} only", kinds.join(" or "));
+            table.contradiction(key, found, allowed, format!("remove `{key}`"));
+        }
+    }
+    Some(match kind {
+        "sliding-mode" => Controller::SlidingMode {
+            c: c?,
+            k: k?,
+            epsilon: epsilon?,
+            boundary: boundary?,
+        },
+        "pd" => Controller::Pd {
+            proportional,
+            derivative,
+        },
+        _ => Controller::Pid {
+            proportional,
+            derivative,
+            integral,
+        },
+    })
+}

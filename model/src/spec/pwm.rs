@@ -1,0 +1,168 @@
+//! `[axis.pwm]`: the pulse width modulator, in clocks.
+//!
+//! The file has seconds, the hardware counts clocks. The period is a whole number of clocks exactly. Dead time and minimum
+//! pulse are rounded **up**: the pins never show less than the file asks for.
+
+use super::Clock;
+use super::machine::RATIO_ROUNDING;
+use super::range::NumberRange;
+use super::table::Table;
+
+/// Dead time and minimum pulse.
+const SHORT_S: NumberRange = NumberRange::closed(0.0, 1.0).unit("s");
+const FREQUENCY_HZ: NumberRange = NumberRange::positive(1e9).unit("Hz");
+
+/// How the duty drives the pins.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PwmMode {
+    /// A pulse width and a direction.
+    Direction,
+    /// Upper and lower switch of one leg.
+    HalfBridge,
+    /// Four gates, one leg switching at a time.
+    FullBridge,
+    /// Four gates, both legs against each other: zero is 50 %.
+    LockedAntiphase,
+}
+
+/// `[axis.pwm]`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pwm {
+    /// How the duty drives the pins.
+    pub mode: PwmMode,
+    /// PWM frequency in Hz: it divides the clock, and the sample tick divides it.
+    pub frequency_hz: f64,
+    /// Time for which both switches of a leg are off, in s. Default 0.
+    pub dead_time_s: f64,
+    /// Shortest pulse that is not left out, in s. Default 0.
+    pub minimum_pulse_s: f64,
+    /// Whether a pin is on when it is low: fixed when the hardware is built. Default: high is on.
+    pub active_low: bool,
+}
+
+impl PwmMode {
+    /// Every mode with its name in the machine file.
+    pub const ALL: [(Self, &str); 4] = [
+        (Self::Direction, "direction"),
+        (Self::HalfBridge, "half-bridge"),
+        (Self::FullBridge, "full-bridge"),
+        (Self::LockedAntiphase, "locked-antiphase"),
+    ];
+}
+
+impl Pwm {
+    /// Clocks of a PWM period: exact, validation made sure.
+    pub fn period_clocks(&self, clock: &Clock) -> u32 {
+        (clock.frequency_hz / self.frequency_hz).round() as u32
+    }
+
+    /// Dead time in clocks, rounded up.
+    pub fn dead_time_clocks(&self, clock: &Clock) -> u32 {
+        clocks_up(self.dead_time_s, clock)
+    }
+
+    /// Shortest pulse in clocks, rounded up.
+    pub fn minimum_pulse_clocks(&self, clock: &Clock) -> u32 {
+        clocks_up(self.minimum_pulse_s, clock)
+    }
+}
+
+/// The smallest whole number of clocks that lasts at least `seconds`; the last digits of decimals such as `500e-9`, which
+/// binary fractions only come near, add no clock.
+fn clocks_up(seconds: f64, clock: &Clock) -> u32 {
+    let clocks = seconds * clock.frequency_hz;
+    (clocks * (1.0 - RATIO_ROUNDING)).ceil() as u32
+}
+
+/// Reads the table; `None` where a value is refused. Without a valid clock its checks are left out.
+pub(super) fn read(table: &Table<'_, '_>, clock: Option<Clock>) -> Option<Pwm> {
+    table.allow(&["mode", "frequency_hz", "dead_time_s", "minimum_pulse_s", "active_low"]);
+    let mode = table.required_choice("mode", &PwmMode::ALL.map(|(_, name)| name));
+    let mode = PwmMode::ALL.into_iter().find(|(_, name)| Some(*name) == mode);
+    let frequency_hz = table.required_number("frequency_hz", FREQUENCY_HZ);
+    let pwm = Pwm {
+        mode: mode.map_or(PwmMode::Direction, |(mode, _)| mode),
+        frequency_hz: frequency_hz?,
+        dead_time_s: table.number("dead_time_s", SHORT_S).unwrap_or(0.0),
+        minimum_pulse_s: table.number("minimum_pulse_s", SHORT_S).unwrap_or(0.0),
+        active_low: table.boolean("active_low").unwrap_or(false),
+    };
+    if let Some(clock) = clock {
+        check_frequency(table, pwm.frequency_hz, &clock);
+        check_pulse(table, &pwm, &clock);
+    }
+    mode.map(|_| pwm)
+}
+
+/// A PWM period is a whole number of clocks, and a sample a whole number of PWM periods: of the frequencies that are
+/// both, the message names the nearest.
+fn check_frequency(table: &Table<'_, '_>, pwm_hz: f64, clock: &Clock) {
+    let clocks_per_sample = clock.clocks_per_sample();
+    let frequencies = (1..=clocks_per_sample)
+        .filter(|periods| clocks_per_sample.is_multiple_of(*periods))
+        .map(|periods| f64::from(periods) * clock.sample_hz);
+    let Some(nearest) = frequencies.min_by(|a, b| (a - pwm_hz).abs().total_cmp(&(b - pwm_hz).abs())) else {
+        return;
+    };
+    if (nearest - pwm_hz).abs() > RATIO_ROUNDING * pwm_hz {
+        let Clock {
+            frequency_hz,
+            sample_hz,
+        } = clock;
+        let allowed = format!(
+            "what divides clock.frequency_hz = {frequency_hz} Hz and is a multiple of clock.sample_hz = {sample_hz} Hz; \
+             the nearest is {nearest}"
+        );
+        table.refuse("frequency_hz", allowed, format!("write `frequency_hz = {nearest}`"));
+    }
+}
+
+/// Dead time and shortest pulse together leave something of the period, in seconds and in whole clocks.
+fn check_pulse(table: &Table<'_, '_>, pwm: &Pwm, clock: &Clock) {
+    let together_s = pwm.dead_time_s + pwm.minimum_pulse_s;
+    let period_s = 1.0 / pwm.frequency_hz;
+    let clocks = u64::from(pwm.dead_time_clocks(clock)) + u64::from(pwm.minimum_pulse_clocks(clock));
+    let (found, allowed) = if together_s >= period_s {
+        (format!("{together_s} s"), format!("below {period_s} s, the PWM period"))
+    } else if clocks >= u64::from(pwm.period_clocks(clock)) {
+        let period = pwm.period_clocks(clock);
+        (
+            format!("{clocks} clocks"),
+            format!("below {period} clocks, the PWM period"),
+        )
+    } else {
+        return;
+    };
+    let key = if table.has("dead_time_s") {
+        "dead_time_s"
+    } else {
+        "minimum_pulse_s"
+    };
+    let found = format!("a dead time and a minimum pulse of {found} together");
+    table.contradiction(key, found, allowed, "shorten both, or lower the PWM frequency");
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn unit_short_times_are_rounded_up_to_clocks() {
+        let clock = Clock {
+            frequency_hz: 50e6,
+            sample_hz: 10e3,
+        };
+        let cases = [
+            (0.0, 0),
+            (1e-12, 1),
+            (20e-9, 1),
+            (20.1e-9, 2),
+            (500e-9, 25),
+            (1e-6, 50),
+            (1.0, 50_000_000),
+        ];
+        for (seconds, clocks) in cases {
+            assert_eq!(clocks_up(seconds, &clock), clocks, "{seconds} s");
+        }
+    }
+}

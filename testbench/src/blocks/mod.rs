@@ -1,0 +1,199 @@
+//! One bench per hardware block: `posicast verify`, the lock-step tests and the benchmarks all take a block from here.
+//!
+//! A [`Block`] is a hardware block at one size, with all that a comparison of it needs: its Verilog, its bit-exact model, its
+//! RustHDL simulation, its stimuli, and what these are expected to reach. To try one:
+//!
+//! ```no_run
+//! use posicast_testbench::blocks::{self, Block, PulseCounterBlock, Sources};
+//!
+//! let block = PulseCounterBlock::new("", "all axes");
+//! let sources = Sources::write(&block)?;
+//! let mut device = sources.verilated(&block, 1)?;
+//! let run = blocks::compare(&block, &mut device, 1_000_000, 1, &mut |_| {})?;
+//! assert_eq!(run.report.mismatches(), 0);
+//! assert!(run.coverage.iter().all(|(_, count)| *count > 0), "{:?}", run.coverage);
+//! # Ok::<(), posicast_testbench::Error>(())
+//! ```
+//!
+//! A new block adds a file here that implements [`Block`]; nothing else has to know it.
+
+mod cascade;
+mod component;
+mod divider;
+mod pulse_counter;
+mod registers;
+mod shaper;
+mod sources;
+
+pub use self::cascade::CascadeBlock;
+pub use self::component::ComponentBlock;
+pub use self::divider::DividerBlock;
+pub use self::pulse_counter::PulseCounterBlock;
+pub use self::registers::RegistersBlock;
+pub use self::shaper::{MachineShapers, ShaperBlock};
+pub use self::sources::{Sources, rusthdl};
+
+use posicast_hdl::SimulationError;
+use posicast_hdl::emit::{EmitError, Module};
+use posicast_model::rtl::{ClockedBlock, Port};
+
+use crate::Error;
+use crate::lockstep::report::Report;
+use crate::lockstep::{self, Clock, Device, Instance, Options};
+use crate::stimuli::Stimuli;
+
+/// A hardware block at one size. It may be shared between threads; what it makes belongs to one.
+pub trait Block: Send + Sync {
+    /// Its name, as in `model/src/rtl/` and `docs/`.
+    fn name(&self) -> &str;
+
+    /// What tells it from others of its kind: the axes that it serves, or its size.
+    fn instance(&self) -> &str;
+
+    /// Its Verilog modules, the top last.
+    ///
+    /// # Errors
+    /// [`EmitError`] where its prefix makes no Verilog name.
+    fn modules(&self) -> Result<Vec<Module>, EmitError>;
+
+    /// Name of the top module.
+    fn top(&self) -> String;
+
+    /// The bit-exact model. Memories start with contents that depend on the seed.
+    fn model(&self, seed: u64) -> Box<dyn ClockedBlock>;
+
+    /// The block in RustHDL's simulator.
+    ///
+    /// # Errors
+    /// [`SimulationError`] where RustHDL finds a fault in the block, or where it is not [`Self::in_rusthdl`].
+    fn simulate(&self) -> Result<Box<dyn ClockedBlock>, SimulationError>;
+
+    /// Whether the whole block is written in RustHDL. Register banks are not, and so no component is.
+    fn in_rusthdl(&self) -> bool {
+        true
+    }
+
+    /// Inputs for a run of `cycles` clocks: directed cases where there are any, then random, by the seed.
+    fn stimuli(&self, cycles: u64, seed: u64) -> Box<dyn Stimuli + '_>;
+
+    /// Counts what a run reached.
+    fn coverage(&self) -> Box<dyn Bins + '_>;
+
+    /// The entries of the report: one for all outputs, unless several blocks stand side by side in one top.
+    fn instances(&self, ports: &[Port]) -> Vec<Instance> {
+        vec![Instance::whole(self.name(), self.instance(), ports)]
+    }
+}
+
+/// Counts what happens in a run, by name.
+pub trait Bins {
+    /// Adds a clock.
+    fn observe(&mut self, clock: &Clock<'_>);
+
+    /// What happened how often. A bin at 0 after a long run is a hole in the stimuli.
+    fn counts(&self) -> Vec<(String, u64)>;
+}
+
+/// A lock step that is over, and what it reached.
+#[derive(Debug, Clone)]
+pub struct Run {
+    /// Whether it matched.
+    pub report: Report,
+    /// What it reached: names and counts.
+    pub coverage: Vec<(String, u64)>,
+}
+
+impl Run {
+    /// The bins that were hit less than `least` times.
+    pub fn rare(&self, least: u64) -> Vec<&str> {
+        let rare = self.coverage.iter().filter(|(_, count)| *count < least);
+        rare.map(|(name, _)| name.as_str()).collect()
+    }
+}
+
+/// Runs a block's model and a device under the block's stimuli, compares every output in every clock, and counts what the
+/// run reached. `progress` gets the clocks done.
+///
+/// # Errors
+/// As [`lockstep::run`].
+pub fn compare(
+    block: &dyn Block,
+    device: &mut dyn Device,
+    cycles: u64,
+    seed: u64,
+    progress: &mut dyn FnMut(u64),
+) -> Result<Run, Error> {
+    let mut stimuli = block.stimuli(cycles, seed);
+    compare_with(block, device, stimuli.as_mut(), cycles, seed, progress)
+}
+
+/// The same under other stimuli.
+///
+/// # Errors
+/// As [`lockstep::run`].
+pub fn compare_with(
+    block: &dyn Block,
+    device: &mut dyn Device,
+    stimuli: &mut dyn Stimuli,
+    cycles: u64,
+    seed: u64,
+    progress: &mut dyn FnMut(u64),
+) -> Result<Run, Error> {
+    let mut coverage = block.coverage();
+    let mut watch = |clock: &Clock<'_>| coverage.observe(clock);
+    let report = run(block, device, stimuli, (cycles, seed), &mut watch, progress)?;
+    Ok(Run {
+        report,
+        coverage: coverage.counts(),
+    })
+}
+
+/// As [`compare`], without the counts: faster.
+///
+/// # Errors
+/// As [`lockstep::run`].
+pub fn check(
+    block: &dyn Block,
+    device: &mut dyn Device,
+    cycles: u64,
+    seed: u64,
+    progress: &mut dyn FnMut(u64),
+) -> Result<Report, Error> {
+    let mut stimuli = block.stimuli(cycles, seed);
+    run(block, device, stimuli.as_mut(), (cycles, seed), &mut |_| {}, progress)
+}
+
+fn run(
+    block: &dyn Block,
+    device: &mut dyn Device,
+    stimuli: &mut dyn Stimuli,
+    (cycles, seed): (u64, u64),
+    watch: &mut dyn FnMut(&Clock<'_>),
+    progress: &mut dyn FnMut(u64),
+) -> Result<Report, Error> {
+    let mut model = block.model(seed);
+    let instances = block.instances(model.ports());
+    let options = Options::cycles(cycles);
+    lockstep::run(model.as_mut(), device, stimuli, &instances, &options, watch, progress)
+}
+
+/// Why a block that is written from a register map is not in RustHDL's simulator.
+fn not_in_rusthdl(block: &'static str) -> SimulationError {
+    SimulationError::Refused {
+        block,
+        reason: "its registers are written from their map, not in RustHDL".to_owned(),
+    }
+}
+
+/// Names and counts as a report keeps them.
+fn named<const N: usize>(counts: [(&str, u64); N]) -> Vec<(String, u64)> {
+    counts.map(|(name, count)| (name.to_owned(), count)).to_vec()
+}
+
+/// `PREFIX_name`, or the name alone without a prefix: how the emitter names a top.
+fn prefixed(prefix: &str, name: &str) -> String {
+    match prefix {
+        "" => name.to_owned(),
+        prefix => format!("{prefix}_{name}"),
+    }
+}

@@ -1,0 +1,73 @@
+//! The bench of `pulse_counter`.
+
+use posicast_hdl::SimulationError;
+use posicast_hdl::emit::{EmitError, Module};
+use posicast_hdl::pulse_counter::{emit, simulate};
+use posicast_model::rtl::ClockedBlock;
+use posicast_model::rtl::pulse_counter::PulseCounter;
+
+use super::{Bins, Block, prefixed};
+use crate::lockstep::Clock;
+use crate::stimuli::{PulseCounterCoverage, PulseCounterRandom, Stimuli};
+
+/// The pulse counter, which has one size: what it does is in registers.
+#[derive(Debug, Clone)]
+pub struct PulseCounterBlock {
+    prefix: String,
+    instance: String,
+}
+
+impl PulseCounterBlock {
+    /// The pulse counter `PREFIX_pulse_counter`; `instance` says which axes it serves.
+    pub fn new(prefix: &str, instance: &str) -> Self {
+        Self {
+            prefix: prefix.to_owned(),
+            instance: instance.to_owned(),
+        }
+    }
+}
+
+impl Block for PulseCounterBlock {
+    fn name(&self) -> &str {
+        "pulse_counter"
+    }
+
+    fn instance(&self) -> &str {
+        &self.instance
+    }
+
+    fn modules(&self) -> Result<Vec<Module>, EmitError> {
+        emit(&self.prefix)
+    }
+
+    fn top(&self) -> String {
+        prefixed(&self.prefix, "pulse_counter")
+    }
+
+    fn model(&self, _seed: u64) -> Box<dyn ClockedBlock> {
+        Box::new(PulseCounter::new())
+    }
+
+    fn simulate(&self) -> Result<Box<dyn ClockedBlock>, SimulationError> {
+        simulate()
+    }
+
+    fn stimuli(&self, _cycles: u64, seed: u64) -> Box<dyn Stimuli + '_> {
+        Box::new(PulseCounterRandom::new(seed))
+    }
+
+    fn coverage(&self) -> Box<dyn Bins + '_> {
+        Box::new(PulseCounterCoverage::default())
+    }
+}
+
+impl Bins for PulseCounterCoverage {
+    fn observe(&mut self, clock: &Clock<'_>) {
+        self.observe(clock.inputs, clock.expected);
+    }
+
+    fn counts(&self) -> Vec<(String, u64)> {
+        let counts = self.counts().into_iter();
+        counts.map(|(name, count)| (name.to_owned(), count)).collect()
+    }
+}

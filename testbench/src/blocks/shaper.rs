@@ -1,0 +1,226 @@
+//! The bench of `shaper`: one alone, or those of a machine side by side in its top.
+
+use posicast_hdl::SimulationError;
+use posicast_hdl::emit::{EmitError, Module};
+use posicast_hdl::machine::{AxisShaper, emit_machine};
+use posicast_hdl::shaper::{emit, simulate};
+use posicast_model::rtl::shaper::{Motion, Shaper, ShaperConfig, ports};
+use posicast_model::rtl::{ClockedBlock, Port};
+
+use super::{Bins, Block, named, prefixed};
+use crate::Error;
+use crate::campaign::Campaign;
+use crate::lockstep::{Clock, Instance, Joined};
+use crate::stimuli::{Coverage, Layout, Stimuli};
+
+/// A shaper that stands alone.
+#[derive(Debug, Clone)]
+pub struct ShaperBlock {
+    config: ShaperConfig,
+    layout: Layout,
+    prefix: String,
+    instance: String,
+}
+
+impl ShaperBlock {
+    /// The shaper `PREFIX_shaper`.
+    ///
+    /// # Errors
+    /// [`Error::Unlike`] where the shaper lacks a port that the stimuli drive.
+    pub fn new(config: ShaperConfig, prefix: &str, instance: &str) -> Result<Self, Error> {
+        Ok(Self {
+            layout: Layout::new(&ports(&config), config.coefficient_fraction())?,
+            config,
+            prefix: prefix.to_owned(),
+            instance: instance.to_owned(),
+        })
+    }
+
+    /// What it is built with.
+    pub fn config(&self) -> &ShaperConfig {
+        &self.config
+    }
+
+    /// Where its ports are.
+    pub fn layout(&self) -> &Layout {
+        &self.layout
+    }
+}
+
+impl Block for ShaperBlock {
+    fn name(&self) -> &str {
+        "shaper"
+    }
+
+    fn instance(&self) -> &str {
+        &self.instance
+    }
+
+    fn modules(&self) -> Result<Vec<Module>, EmitError> {
+        emit(&self.config, &self.prefix)
+    }
+
+    fn top(&self) -> String {
+        prefixed(&self.prefix, "shaper")
+    }
+
+    fn model(&self, seed: u64) -> Box<dyn ClockedBlock> {
+        Box::new(Shaper::new(&self.config, seed))
+    }
+
+    fn simulate(&self) -> Result<Box<dyn ClockedBlock>, SimulationError> {
+        simulate(&self.config)
+    }
+
+    fn stimuli(&self, cycles: u64, seed: u64) -> Box<dyn Stimuli + '_> {
+        let pass_clocks = self.config.pass_clocks(self.config.most_products());
+        Box::new(Campaign::new(&self.layout, pass_clocks, &[], cycles, seed))
+    }
+
+    fn coverage(&self) -> Box<dyn Bins + '_> {
+        Box::new(OfLayout::new(&self.layout, [&self.config]))
+    }
+}
+
+/// The shapers of a machine in its top module, one per axis.
+#[derive(Debug, Clone)]
+pub struct MachineShapers {
+    machine: String,
+    shapers: Vec<AxisShaper>,
+    layout: Layout,
+    words: Vec<Vec<i64>>,
+}
+
+impl MachineShapers {
+    /// The top module of the machine of this name. `words` is a move, command words per axis, that the stimuli include; none,
+    /// and they do without.
+    ///
+    /// # Errors
+    /// [`Error::Unlike`] where there is no shaper.
+    pub fn new(machine: &str, shapers: Vec<AxisShaper>, words: Vec<Vec<i64>>) -> Result<Self, Error> {
+        let fraction = shapers.first().map_or(1, |s| s.config.coefficient_fraction());
+        Ok(Self {
+            layout: Layout::new(joined(&shapers, 0).ports(), fraction)?,
+            machine: machine.to_owned(),
+            shapers,
+            words,
+        })
+    }
+
+    /// What is built, axis by axis.
+    pub fn shapers(&self) -> &[AxisShaper] {
+        &self.shapers
+    }
+
+    /// Where the ports are.
+    pub fn layout(&self) -> &Layout {
+        &self.layout
+    }
+
+    /// The move that the stimuli include.
+    pub fn words(&self) -> &[Vec<i64>] {
+        &self.words
+    }
+
+    /// Clocks of the longest pass of all axes.
+    pub fn pass_clocks(&self) -> u32 {
+        let passes = self
+            .shapers
+            .iter()
+            .map(|s| s.config.pass_clocks(s.config.most_products()));
+        passes.max().unwrap_or(0)
+    }
+}
+
+impl Block for MachineShapers {
+    fn name(&self) -> &str {
+        "shaper"
+    }
+
+    fn instance(&self) -> &str {
+        &self.machine
+    }
+
+    fn modules(&self) -> Result<Vec<Module>, EmitError> {
+        emit_machine(&self.machine, &self.shapers)
+    }
+
+    fn top(&self) -> String {
+        self.machine.clone()
+    }
+
+    fn model(&self, seed: u64) -> Box<dyn ClockedBlock> {
+        Box::new(joined(&self.shapers, seed))
+    }
+
+    fn simulate(&self) -> Result<Box<dyn ClockedBlock>, SimulationError> {
+        let block = |s: &AxisShaper| Ok((s.axis.clone(), simulate(&s.config)?));
+        let blocks = self.shapers.iter().map(block).collect::<Result<_, _>>()?;
+        Ok(Box::new(Joined::new(blocks)))
+    }
+
+    fn stimuli(&self, cycles: u64, seed: u64) -> Box<dyn Stimuli + '_> {
+        Box::new(Campaign::new(
+            &self.layout,
+            self.pass_clocks(),
+            &self.words,
+            cycles,
+            seed,
+        ))
+    }
+
+    fn coverage(&self) -> Box<dyn Bins + '_> {
+        Box::new(OfLayout::new(&self.layout, self.shapers.iter().map(|s| &s.config)))
+    }
+
+    fn instances(&self, _ports: &[Port]) -> Vec<Instance> {
+        joined(&self.shapers, 0).instances(self.name())
+    }
+}
+
+fn joined(shapers: &[AxisShaper], seed: u64) -> Joined {
+    let block = |(index, s): (usize, &AxisShaper)| {
+        // Each memory starts with other contents: nothing may depend on them.
+        let block: Box<dyn ClockedBlock> = Box::new(Shaper::new(&s.config, seed.wrapping_add(index as u64)));
+        (s.axis.clone(), block)
+    };
+    Joined::new(shapers.iter().enumerate().map(block).collect())
+}
+
+/// The places of the ports are the layout's; what can happen depends on what is built.
+struct OfLayout<'a> {
+    layout: &'a Layout,
+    saturates: bool,
+    hands_over: bool,
+    coverage: Coverage,
+}
+
+impl<'a> OfLayout<'a> {
+    fn new(layout: &'a Layout, configs: impl IntoIterator<Item = &'a ShaperConfig>) -> Self {
+        let motions: Vec<_> = configs.into_iter().map(ShaperConfig::motion).collect();
+        // A position that wraps never saturates.
+        let wraps = |motion: &Option<Motion>| motion.is_some_and(|motion| motion.modulo && motion.channels == 1);
+        Self {
+            layout,
+            saturates: !motions.iter().all(wraps),
+            hands_over: motions.iter().any(Option::is_some),
+            coverage: Coverage::default(),
+        }
+    }
+}
+
+impl Bins for OfLayout<'_> {
+    fn observe(&mut self, clock: &Clock<'_>) {
+        self.coverage.observe(self.layout, clock);
+    }
+
+    fn counts(&self) -> Vec<(String, u64)> {
+        let mut counts = named(self.coverage.counts());
+        counts.retain(|(name, _)| self.saturates || name != "saturated");
+        if self.hands_over {
+            counts.push(("handovers".to_owned(), self.coverage.handovers));
+            counts.push(("handovers over".to_owned(), self.coverage.handovers_over));
+        }
+        counts
+    }
+}

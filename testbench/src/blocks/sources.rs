@@ -1,0 +1,107 @@
+//! A block's Verilog in files, and the simulators that take it from there.
+
+use std::path::{Path, PathBuf};
+
+use posicast_hdl::emit::Module;
+use posicast_model::rtl::Port;
+use tempfile::TempDir;
+
+use super::Block;
+use crate::Error;
+use crate::icarus::Icarus;
+use crate::lockstep::{Device, TwoValued};
+use crate::verilator::{self, Source, Verilated};
+
+/// The Verilog files of a block: written to a folder that goes with this value, or found in one that stays.
+#[derive(Debug)]
+pub struct Sources {
+    files: Vec<PathBuf>,
+    _folder: Option<TempDir>,
+}
+
+impl Sources {
+    /// Writes the block's modules, one file each, into a temporary folder.
+    ///
+    /// # Errors
+    /// [`Error::Block`] where the block cannot be written as Verilog, [`Error::File`] where the files cannot be.
+    pub fn write(block: &dyn Block) -> Result<Self, Error> {
+        Self::of_modules(&block.modules()?)
+    }
+
+    /// Writes these modules instead: a block that was changed on purpose.
+    ///
+    /// # Errors
+    /// [`Error::File`] where the files cannot be written.
+    pub fn of_modules(modules: &[Module]) -> Result<Self, Error> {
+        let temporary = std::env::temp_dir();
+        let folder = tempfile::Builder::new().prefix("posicast-").tempdir();
+        let folder = folder.map_err(Error::file(&temporary, "create a folder in"))?;
+        let file = |module: &Module| {
+            let path = folder.path().join(format!("{}.v", module.name));
+            std::fs::write(&path, &module.text).map_err(Error::file(&path, "write"))?;
+            Ok(path)
+        };
+        Ok(Self {
+            files: modules.iter().map(file).collect::<Result<_, Error>>()?,
+            _folder: Some(folder),
+        })
+    }
+
+    /// Verilog that is there, as it is. It may hold modules of other blocks.
+    pub fn found(files: Vec<PathBuf>) -> Self {
+        Self { files, _folder: None }
+    }
+
+    /// The files.
+    pub fn files(&self) -> &[PathBuf] {
+        &self.files
+    }
+
+    /// Whether a file of the name that the block's top has is among them.
+    pub fn hold(&self, block: &dyn Block) -> bool {
+        let file = format!("{}.v", block.top());
+        let is_top = |path: &PathBuf| path.file_name().is_some_and(|name| name == Path::new(&file));
+        self.files.iter().any(is_top)
+    }
+
+    /// The block, compiled by Verilator.
+    ///
+    /// # Errors
+    /// As [`Verilated::build`].
+    pub fn verilated(&self, block: &dyn Block, seed: u64) -> Result<Verilated, Error> {
+        self.with_source(block, |source| Verilated::build(source, seed))
+    }
+
+    /// The block in Icarus.
+    ///
+    /// # Errors
+    /// As [`Icarus::build`].
+    pub fn icarus(&self, block: &dyn Block) -> Result<Icarus, Error> {
+        self.with_source(block, Icarus::build)
+    }
+
+    /// What Verilator's lint has to say: nothing, where the list is empty.
+    ///
+    /// # Errors
+    /// As [`verilator::lint`].
+    pub fn lint(&self, block: &dyn Block) -> Result<Vec<String>, Error> {
+        verilator::lint(&self.files, &block.top())
+    }
+
+    fn with_source<T>(&self, block: &dyn Block, build: impl Fn(&Source<'_>) -> Result<T, Error>) -> Result<T, Error> {
+        let ports: Vec<Port> = block.model(0).ports().to_vec();
+        build(&Source {
+            files: &self.files,
+            top: &block.top(),
+            ports: &ports,
+        })
+    }
+}
+
+/// The block in RustHDL's simulator, as a device.
+///
+/// # Errors
+/// [`Error::Block`] where RustHDL finds a fault in it.
+pub fn rusthdl(block: &dyn Block) -> Result<Box<dyn Device>, Error> {
+    Ok(Box::new(TwoValued(block.simulate()?)))
+}

@@ -1,0 +1,82 @@
+//! Verilog on disk, perhaps broken on purpose, and a run of it beside a model.
+
+use posicast_hdl::emit::Module;
+use posicast_model::rtl::{ClockedBlock, Port};
+use posicast_testbench::icarus::Icarus;
+use posicast_testbench::lockstep::report::{Report, Verdict};
+use posicast_testbench::lockstep::{self, Clock, Device, Instance, Options};
+use posicast_testbench::stimuli::Stimuli;
+use posicast_testbench::verilator::{Source, Verilated, lint};
+use std::path::PathBuf;
+use tempfile::TempDir;
+
+pub(crate) struct Bench {
+    name: String,
+    top: String,
+    ports: Vec<Port>,
+    files: Vec<PathBuf>,
+    _folder: TempDir,
+}
+
+impl Bench {
+    /// `modules`, the top last, with the first `from` replaced by `to`.
+    pub(crate) fn new(name: &str, mut modules: Vec<Module>, from: &str, to: &str) -> Self {
+        let found = modules.iter_mut().find(|module| module.text.contains(from));
+        let module = found.unwrap_or_else(|| panic!("the Verilog no longer has `{from}`: adapt the test"));
+        module.text = module.text.replacen(from, to, 1);
+        let folder = tempfile::tempdir().unwrap();
+        let file = |module: &Module| {
+            let path = folder.path().join(format!("{}.v", module.name));
+            std::fs::write(&path, &module.text).unwrap();
+            path
+        };
+        let top = modules.last().unwrap();
+        Self {
+            name: name.to_owned(),
+            top: top.name.clone(),
+            ports: top.ports.clone(),
+            files: modules.iter().map(file).collect(),
+            _folder: folder,
+        }
+    }
+
+    fn source(&self) -> Source<'_> {
+        Source {
+            files: &self.files,
+            top: &self.top,
+            ports: &self.ports,
+        }
+    }
+
+    pub(crate) fn verilated(&self) -> Verilated {
+        Verilated::build(&self.source(), 1).unwrap()
+    }
+
+    pub(crate) fn icarus(&self) -> Icarus {
+        Icarus::build(&self.source()).unwrap()
+    }
+
+    pub(crate) fn assert_clean(&self) {
+        assert_eq!(lint(&self.files, &self.top).unwrap(), [""; 0]);
+    }
+
+    pub(crate) fn run(
+        &self,
+        model: &mut dyn ClockedBlock,
+        device: &mut dyn Device,
+        stimuli: &mut dyn Stimuli,
+        cycles: u64,
+        watch: &mut dyn FnMut(&Clock<'_>),
+    ) -> Report {
+        let instances = [Instance::whole(&self.name, "alone", model.ports())];
+        let options = Options::cycles(cycles);
+        lockstep::run(model, device, stimuli, &instances, &options, watch, &mut |_| {}).unwrap()
+    }
+}
+
+pub(crate) fn assert_match(report: &Report) {
+    if let Some(first) = &report.blocks[0].first {
+        panic!("{} mismatches\n{first}", report.blocks[0].mismatches);
+    }
+    assert_eq!(report.result, Verdict::Match);
+}
