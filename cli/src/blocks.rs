@@ -5,10 +5,15 @@ use crate::command::{self, Words};
 use crate::failure::Failure;
 use posicast_hdl::machine::AxisShaper;
 use posicast_model::rtl::cascade::CascadeConfig;
+use posicast_model::rtl::component::Component;
 use posicast_model::rtl::divider::DividerConfig;
+use posicast_model::rtl::registers::RegisterMap;
 use posicast_model::rtl::shaper::{MOTION_WORD_BITS, Motion, ShaperConfig};
 use posicast_model::spec::{Axis, Machine};
-use posicast_testbench::blocks::{Block, CascadeBlock, DividerBlock, MachineShapers, PulseCounterBlock, ShaperBlock};
+use posicast_testbench::blocks::{
+    Block, CascadeBlock, ComponentBlock, DividerBlock, MachineShapers, PulseCounterBlock, RegistersBlock, ShaperBlock,
+    SlidingModeBlock,
+};
 use std::path::Path;
 
 /// Delays of the cascade that is compared where no machine asks for one, in samples.
@@ -46,7 +51,47 @@ pub(crate) fn others(machine: &Machine, shapers: &[AxisShaper], path: &Path) -> 
     ));
     let cascade = CascadeConfig::new(CASCADE_WORD_BITS, CASCADE_DELAYS_SAMPLES.to_vec()).map_err(Failure::because)?;
     blocks.push(Box::new(CascadeBlock::new(cascade, name)));
+    let components = components(machine, shapers, path)?;
+    let mut maps: Vec<&RegisterMap> = Vec::new();
+    for map in components.iter().map(|component| component.component().map()) {
+        if !maps.iter().any(|other| other.name() == map.name()) {
+            maps.push(map);
+        }
+    }
+    for map in maps {
+        blocks.push(Box::new(RegistersBlock::new(map.clone(), name)));
+    }
+    for component in components {
+        blocks.push(Box::new(component));
+    }
     Ok(blocks)
+}
+
+/// The blocks of the machine's axes as components, each behind registers of its own on an Avalon-MM agent, ready for a system
+/// with a processor: none for a machine of shapers alone. Their top modules are `<machine>_<axis>_<block>_avalon`.
+pub(crate) fn components(
+    machine: &Machine,
+    shapers: &[AxisShaper],
+    path: &Path,
+) -> Result<Vec<ComponentBlock>, Failure> {
+    let mut components = Vec::new();
+    if !machine.axes.iter().any(has_loop) {
+        return Ok(components);
+    }
+    for (axis, shaper) in machine.axes.iter().zip(shapers) {
+        let refused = |error| Failure::because(error).in_file(path);
+        let mut of_axis = vec![Component::shaper(shaper.config.clone()).map_err(refused)?];
+        if let Some(encoder) = &axis.encoder {
+            let divider = divider(machine, path)?;
+            of_axis.push(Component::pulse_counter(divider, encoder.filter_clocks).map_err(refused)?);
+        }
+        let named = |component: Component| {
+            let top = format!("{}_{}_{}_avalon", machine.name, axis.name, component.name());
+            ComponentBlock::new(component, &top, &format!("{}, Avalon", axis.name))
+        };
+        components.extend(of_axis.into_iter().map(named));
+    }
+    Ok(components)
 }
 
 /// The names of the axes that have something, or `alone` where none has it.

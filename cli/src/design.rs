@@ -13,7 +13,6 @@ use posicast_model::design::ratios::Class;
 use posicast_model::design::{
     AxisTables, ConvolutionFigures, Findings, MachineDesign, ModeFigures, convolution_figures, design_machine,
 };
-use posicast_model::rtl::shaper::ShaperConfig;
 use posicast_model::spec::{Axis, Machine};
 use posicast_testbench::wave::write_text;
 use std::fmt::Write;
@@ -88,7 +87,7 @@ impl<'a> Report<'a> {
                 tables,
                 modes: tables.mode_figures(axis, self.design.sample_hz),
                 convolution: convolution_figures(axis, &tables.design),
-                fits: fits(self.machine, tables),
+                fits: machine::shaper(self.machine, axis, tables).map(drop),
             })
     }
 
@@ -118,14 +117,6 @@ impl<'a> Report<'a> {
         }
         text
     }
-}
-
-fn fits(machine: &Machine, tables: &AxisTables) -> Result<(), String> {
-    let config =
-        ShaperConfig::new(machine.fixed_point.command_bits, tables.table.clone()).map_err(|e| e.to_string())?;
-    config
-        .fits(u64::from(machine.clock.clocks_per_sample()))
-        .map_err(|e| e.to_string())
 }
 
 struct AxisReport<'a> {

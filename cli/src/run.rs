@@ -71,10 +71,10 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let simulator = Simulator::choose(args.simulator)?;
     let yosys = installed_yosys()?;
     let axes = simulate(machine, &design.design, &shapers, &words)?;
+    let modules = generate::modules(machine, &shapers, &args.machine)?;
     let top = blocks::shapers(machine, shapers, &words)?;
 
     let mut package = generate::open(args.output.as_deref(), &file)?;
-    let modules = top.modules().map_err(Failure::because)?;
     let files = generate::add_sources(&mut package, &file, &modules)?;
     let sources = Sources::found(files.clone());
     let cycles = args.cycles.unwrap_or(simulator.default_cycles());

@@ -64,7 +64,7 @@ fn sources(source: &Path) -> Result<(Machine, Vec<PathBuf>, Option<tempfile::Tem
     }
     let machine = machine::read(source)?.machine;
     let design = Report::new(&machine, source)?.design;
-    let modules = generate::modules(&machine.name, &machine::shapers(&machine, &design, source)?)?;
+    let modules = generate::modules(&machine, &machine::shapers(&machine, &design, source)?, source)?;
     let (files, scratch) = generate::write_scratch(&modules)?;
     Ok((machine, files, Some(scratch)))
 }

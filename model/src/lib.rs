@@ -10,6 +10,7 @@
 
 pub mod analysis;
 pub mod compare;
+pub mod control;
 pub mod design;
 pub mod digitise;
 pub mod impulse;

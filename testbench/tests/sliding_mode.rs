@@ -121,3 +121,71 @@ fn crosssim_icarus_agrees_with_the_model() {
     let (report, _) = bench.run(&mut Icarus::build(&source).unwrap(), &mut stimuli, 20_000);
     assert_match(&report);
 }
+/// Breaks the Verilog and insists on a mismatch.
+fn caught(from: &str, to: &str) {
+    let bench = Bench::new(from, to);
+    let mut stimuli = SlidingModeRandom::without_wind_up(1);
+    let (report, _) = bench.run(&mut bench.verilated(1), &mut stimuli, 300_000);
+    assert_eq!(report.result, Verdict::Mismatch, "`{to}` is not found");
+}
+
+#[test]
+fn lockstep_catches_upper_ends_that_are_an_lsb_too_low() {
+    caught("LARGEST_ERROR = 24'sd8388607", "LARGEST_ERROR = 24'sd8388606");
+    caught("LARGEST_RATE = 32'sd2147483647", "LARGEST_RATE = 32'sd2147483646");
+    caught("LARGEST_WORD = 32'd2147483647", "LARGEST_WORD = 32'd2147483646");
+    caught("LARGEST_FRACTION = 32'd33554431", "LARGEST_FRACTION = 32'd33554430");
+    caught("LARGEST_DUTY = 32'd131071", "LARGEST_DUTY = 32'd131070");
+}
+
+#[test]
+fn lockstep_catches_lower_ends_that_are_an_lsb_too_high() {
+    caught("LEAST_ERROR = 24'sh800000", "LEAST_ERROR = 24'sh800001");
+    caught("LEAST_RATE = 32'sh80000000", "LEAST_RATE = 32'sh80000001");
+    caught("$signed(~largest)", "$signed(~largest + 32'd1)");
+    caught("as_fraction | as_duty", "as_fraction");
+}
+
+#[test]
+fn lockstep_catches_an_integral_that_passes_its_ends() {
+    for (from, to) in [
+        (" LARGEST = 32'sd2147483647", " LARGEST = 32'sd2147483646"),
+        (" LEAST = 32'sh80000000", " LEAST = 32'sh80000001"),
+    ] {
+        let bench = Bench::new(from, to);
+        let mut device = bench.verilated(1);
+        let (report, _) = bench.run(&mut device, &mut SlidingModeRandom::new(1), 200_000);
+        assert_eq!(report.result, Verdict::Mismatch, "`{to}` is not found");
+    }
+}
+
+#[test]
+fn lockstep_catches_an_integral_that_winds_up() {
+    caught("takes = update & !limited_high", "takes = update");
+    caught("takes = update & !limited_low", "takes = update");
+    caught("opposes ^ setting[17]", "opposes");
+}
+
+#[test]
+fn lockstep_catches_flags_that_a_clear_swallows() {
+    caught(
+        "flags_q_next = ((kept | by_error) | by_rate) | by_sum",
+        "flags_q_next = clear_flags ? 7'd0 : ((kept | by_error) | by_rate) | by_sum",
+    );
+}
+
+#[test]
+fn lockstep_catches_products_that_are_cut_instead_of_rounded() {
+    caught("HALF = 53'd1", "HALF = 53'd0");
+}
+
+#[test]
+fn lockstep_catches_a_limit_that_is_passed_by_an_lsb() {
+    caught("({2'd0, limit} << 1) -", "({2'd0, limit} << 1) + 33'd2 -");
+    caught("| borrow)", ")");
+}
+
+#[test]
+fn lockstep_catches_a_rotary_axis_that_does_not_wrap() {
+    caught("difference[31] & modulo", "difference[39] & modulo");
+}

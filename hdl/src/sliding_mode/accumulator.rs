@@ -3,6 +3,8 @@
 //! At `add` the accumulator becomes base + product: the base is 0 with `begin_sum`, de with `begin_rate`, else the sum so far.
 //! A one below the base makes the product's lowest bit, half an LSB, round up: one adder does both.
 //!
+//! The sum is cut to 32 bits; to the 26 of a fraction with `as_fraction`, to the 18 of the duty with `as_duty`.
+//!
 //! Five products of 49 bits and a word fit 52 bits: the accumulator never overflows.
 
 use crate::prelude::*;
@@ -16,13 +18,11 @@ pub(super) struct Accumulator {
     pub(super) begin_rate: Signal<In, Bit>,
     pub(super) error_rate: Signal<In, Signed<32>>,
     pub(super) scaled: Signal<In, Signed<51>>,
+    pub(super) as_fraction: Signal<In, Bit>,
+    pub(super) as_duty: Signal<In, Bit>,
     pub(super) word: Signal<Out, Signed<32>>,
-    pub(super) word_high: Signal<Out, Bit>,
-    pub(super) word_low: Signal<Out, Bit>,
-    pub(super) fraction: Signal<Out, Signed<26>>,
-    pub(super) duty: Signal<Out, Signed<18>>,
-    pub(super) duty_high: Signal<Out, Bit>,
-    pub(super) duty_low: Signal<Out, Bit>,
+    pub(super) high: Signal<Out, Bit>,
+    pub(super) low: Signal<Out, Bit>,
 
     sum_q: Dff<Signed<52>>,
 
@@ -31,22 +31,21 @@ pub(super) struct Accumulator {
     product: Signal<Local, Signed<53>>,
     total: Signal<Local, Bits<53>>,
     negative: Signal<Local, Bit>,
-    above_word: Signal<Local, Bits<21>>,
-    above_fraction: Signal<Local, Bits<27>>,
-    above_duty: Signal<Local, Bits<35>>,
     sum: Signal<Local, Bits<52>>,
-    word_fits: Signal<Local, Bit>,
-    fraction_fits: Signal<Local, Bit>,
-    duty_fits: Signal<Local, Bit>,
+    upper: Signal<Local, Bits<21>>,
+    middle: Signal<Local, Bits<7>>,
+    lower: Signal<Local, Bits<9>>,
+    upper_differs: Signal<Local, Bit>,
+    middle_differs: Signal<Local, Bit>,
+    lower_differs: Signal<Local, Bit>,
+    cut: Signal<Local, Bit>,
+    largest: Signal<Local, Bits<32>>,
 
     nothing: Constant<Bits<52>>,
     half: Constant<Bits<53>>,
-    largest_word: Constant<Signed<32>>,
-    least_word: Constant<Signed<32>>,
-    largest_fraction: Constant<Signed<26>>,
-    least_fraction: Constant<Signed<26>>,
-    largest_duty: Constant<Signed<18>>,
-    least_duty: Constant<Signed<18>>,
+    largest_word: Constant<Bits<32>>,
+    largest_fraction: Constant<Bits<32>>,
+    largest_duty: Constant<Bits<32>>,
 }
 
 impl Default for Accumulator {
@@ -59,34 +58,31 @@ impl Default for Accumulator {
             begin_rate: Signal::default(),
             error_rate: Signal::default(),
             scaled: Signal::default(),
+            as_fraction: Signal::default(),
+            as_duty: Signal::default(),
             word: Signal::default(),
-            word_high: Signal::default(),
-            word_low: Signal::default(),
-            fraction: Signal::default(),
-            duty: Signal::default(),
-            duty_high: Signal::default(),
-            duty_low: Signal::default(),
+            high: Signal::default(),
+            low: Signal::default(),
             sum_q: Dff::default(),
             rate: Signal::default(),
             base: Signal::default(),
             product: Signal::default(),
             total: Signal::default(),
             negative: Signal::default(),
-            above_word: Signal::default(),
-            above_fraction: Signal::default(),
-            above_duty: Signal::default(),
             sum: Signal::default(),
-            word_fits: Signal::default(),
-            fraction_fits: Signal::default(),
-            duty_fits: Signal::default(),
+            upper: Signal::default(),
+            middle: Signal::default(),
+            lower: Signal::default(),
+            upper_differs: Signal::default(),
+            middle_differs: Signal::default(),
+            lower_differs: Signal::default(),
+            cut: Signal::default(),
+            largest: Signal::default(),
             nothing: Constant::new(from_u64(0)),
             half: Constant::new(from_u64(1)),
-            largest_word: Constant::new(from_i64((1 << 31) - 1)),
-            least_word: Constant::new(from_i64(-(1 << 31))),
-            largest_fraction: Constant::new(from_i64((1 << 25) - 1)),
-            least_fraction: Constant::new(from_i64(-(1 << 25))),
-            largest_duty: Constant::new(from_i64((1 << 17) - 1)),
-            least_duty: Constant::new(from_i64(-(1 << 17))),
+            largest_word: Constant::new(from_u64((1 << 31) - 1)),
+            largest_fraction: Constant::new(from_u64((1 << 25) - 1)),
+            largest_duty: Constant::new(from_u64((1 << 17) - 1)),
         }
     }
 }
@@ -114,40 +110,33 @@ impl Logic for Accumulator {
             self.sum_q.d.next = signed_cast(self.total.val().get_bits::<52>(1));
         }
 
-        comment!("Cut: what lies above a word's sign is as that");
+        comment!("Cut: what lies above the sign must be as the sign");
         self.sum.next = unsigned_cast(self.sum_q.q.val());
         self.negative.next = self.sum_q.q.val().get_bit(51);
-        self.above_word.next = self.sum.val().get_bits::<21>(31);
-        self.word_fits.next = self.above_word.val().all() | !self.above_word.val().any();
-        self.above_fraction.next = self.sum.val().get_bits::<27>(25);
-        self.fraction_fits.next = self.above_fraction.val().all() | !self.above_fraction.val().any();
-        self.above_duty.next = self.sum.val().get_bits::<35>(17);
-        self.duty_fits.next = self.above_duty.val().all() | !self.above_duty.val().any();
-
+        self.upper.next = self.sum.val().get_bits::<21>(31);
+        self.middle.next = self.sum.val().get_bits::<7>(25);
+        self.lower.next = self.sum.val().get_bits::<9>(17);
+        self.upper_differs.next = !self.upper.val().all() & self.upper.val().any();
+        self.middle_differs.next = !self.middle.val().all() & self.middle.val().any();
+        self.lower_differs.next = !self.lower.val().all() & self.lower.val().any();
+        self.cut.next = self.upper_differs.val()
+            | (self.middle_differs.val() & (self.as_fraction.val() | self.as_duty.val()))
+            | (self.lower_differs.val() & self.as_duty.val());
+        self.largest.next = self.largest_word.val();
+        if self.as_fraction.val() {
+            self.largest.next = self.largest_fraction.val();
+        }
+        if self.as_duty.val() {
+            self.largest.next = self.largest_duty.val();
+        }
         self.word.next = self.sum_q.q.val().get_bits::<32>(0);
-        if !self.word_fits.val() {
-            self.word.next = self.largest_word.val();
+        if self.cut.val() {
+            self.word.next = signed_cast(self.largest.val());
             if self.negative.val() {
-                self.word.next = self.least_word.val();
+                self.word.next = signed_cast(!self.largest.val());
             }
         }
-        self.fraction.next = self.sum_q.q.val().get_bits::<26>(0);
-        if !self.fraction_fits.val() {
-            self.fraction.next = self.largest_fraction.val();
-            if self.negative.val() {
-                self.fraction.next = self.least_fraction.val();
-            }
-        }
-        self.duty.next = self.sum_q.q.val().get_bits::<18>(0);
-        if !self.duty_fits.val() {
-            self.duty.next = self.largest_duty.val();
-            if self.negative.val() {
-                self.duty.next = self.least_duty.val();
-            }
-        }
-        self.word_high.next = !self.word_fits.val() & !self.negative.val();
-        self.word_low.next = !self.word_fits.val() & self.negative.val();
-        self.duty_high.next = !self.duty_fits.val() & !self.negative.val();
-        self.duty_low.next = !self.duty_fits.val() & self.negative.val();
+        self.high.next = self.cut.val() & !self.negative.val();
+        self.low.next = self.cut.val() & self.negative.val();
     }
 }

@@ -69,6 +69,7 @@ pub(super) struct SlidingMode {
 
     reads: Signal<Local, Bit>,
     settles: Signal<Local, Bit>,
+    takes_fraction: Signal<Local, Bit>,
     at_limit: Signal<Local, Bit>,
     operand: Signal<Local, Signed<32>>,
     error_word: Signal<Local, Signed<32>>,
@@ -144,6 +145,7 @@ impl Default for SlidingMode {
             opposes: Dff::default(),
             reads: Signal::default(),
             settles: Signal::default(),
+            takes_fraction: Signal::default(),
             at_limit: Signal::default(),
             operand: Signal::default(),
             error_word: Signal::default(),
@@ -194,6 +196,8 @@ impl Logic for SlidingMode {
         self.sequencer.clear_flags.next = self.clear_flags.val();
         self.reads.next = self.sequencer.reads.val() & self.sequencer.busy.val();
         self.settles.next = self.sequencer.settles.val();
+        self.takes_fraction.next =
+            (self.sequencer.step.val() == self.boundary.val()) | (self.sequencer.step.val() == self.fade.val());
         self.at_limit.next = self.sequencer.step.val() == self.limit.val();
 
         self.tracking.clk.next = self.clk.val();
@@ -267,6 +271,8 @@ impl Logic for SlidingMode {
             | (self.sequencer.step.val() == self.fade.val())
             | (self.sequencer.step.val() == self.on_feedback.val())
             | (self.sequencer.step.val() == self.to_duty.val());
+        self.accumulator.as_fraction.next = self.takes_fraction.val();
+        self.accumulator.as_duty.next = self.sequencer.step.val() == self.to_duty.val();
         self.accumulator.error_rate.next = self.tracking.error_rate.val();
         self.accumulator.scaled.next = self.scaled_product.scaled.val();
 
@@ -276,8 +282,8 @@ impl Logic for SlidingMode {
         self.limiter.count.next = self.settles.val() & self.at_limit.val();
         self.limiter.limit.next = self.setting.val().get_bits::<31>(0);
         self.limiter.word.next = self.accumulator.word.val();
-        self.limiter.word_high.next = self.accumulator.word_high.val();
-        self.limiter.word_low.next = self.accumulator.word_low.val();
+        self.limiter.word_high.next = self.accumulator.high.val();
+        self.limiter.word_low.next = self.accumulator.low.val();
 
         comment!("The integral works against the feedback's sign");
         if self.reads.val() & (self.sequencer.step.val() == self.on_rest.val()) {
@@ -297,15 +303,15 @@ impl Logic for SlidingMode {
 
         comment!("What becomes of a sum, and the flag of its cut");
         self.what.next = self.no_flags.val();
-        self.high.next = self.accumulator.word_high.val();
-        self.low.next = self.accumulator.word_low.val();
+        self.high.next = self.accumulator.high.val();
+        self.low.next = self.accumulator.low.val();
         if self.settles.val() {
             if self.sequencer.step.val() == self.surface.val() {
                 self.sliding_q.d.next = self.accumulator.word.val();
                 self.what.next = self.of_sliding.val();
             }
-            if (self.sequencer.step.val() == self.boundary.val()) | (self.sequencer.step.val() == self.fade.val()) {
-                self.fraction.d.next = self.accumulator.fraction.val();
+            if self.takes_fraction.val() {
+                self.fraction.d.next = self.accumulator.word.val().get_bits::<26>(0);
             }
             if self.sequencer.step.val() == self.on_rest.val() {
                 self.feedback.d.next = self.accumulator.word.val();
@@ -317,10 +323,8 @@ impl Logic for SlidingMode {
                 self.low.next = self.integral.low.val();
             }
             if self.sequencer.step.val() == self.to_duty.val() {
-                self.duty_q.d.next = self.accumulator.duty.val();
+                self.duty_q.d.next = self.accumulator.word.val().get_bits::<18>(0);
                 self.what.next = self.of_duty.val();
-                self.high.next = self.accumulator.duty_high.val();
-                self.low.next = self.accumulator.duty_low.val();
             }
         }
         if self.reads.val() & self.at_limit.val() {

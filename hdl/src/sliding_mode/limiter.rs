@@ -1,4 +1,6 @@
 //! The command: the sum cut to ±limit at `take`; and, at `count`, for how many ticks in a row it has been cut.
+//!
+//! A negative sum `x` is below −limit if its complement `−x − 1` is not below limit: one comparison serves both sides.
 
 use crate::prelude::*;
 
@@ -24,13 +26,19 @@ pub(super) struct Limiter {
     low_q: Dff<Bit>,
     ticks: Dff<Bits<16>>,
 
-    most: Signal<Local, Signed<33>>,
-    least: Signal<Local, Signed<33>>,
-    sum: Signal<Local, Signed<33>>,
-    cut_high: Signal<Local, Bit>,
-    cut_low: Signal<Local, Bit>,
+    negative: Signal<Local, Bit>,
+    size: Signal<Local, Bits<32>>,
+    sign: Signal<Local, Bits<32>>,
+    borrow: Signal<Local, Bits<33>>,
+    borrow_word: Signal<Local, Bits<32>>,
+    flipped: Signal<Local, Bits<32>>,
+    margin: Signal<Local, Bits<33>>,
+    cut: Signal<Local, Bit>,
+    nearest: Signal<Local, Bits<32>>,
 
-    zero: Constant<Bits<33>>,
+    zero: Constant<Bits<32>>,
+    nothing: Constant<Bits<33>>,
+    one: Constant<Bits<33>>,
     no_ticks: Constant<Bits<16>>,
     one_tick: Constant<Bits<16>>,
 }
@@ -56,12 +64,18 @@ impl Default for Limiter {
             high_q: Dff::default(),
             low_q: Dff::default(),
             ticks: Dff::default(),
-            most: Signal::default(),
-            least: Signal::default(),
-            sum: Signal::default(),
-            cut_high: Signal::default(),
-            cut_low: Signal::default(),
+            negative: Signal::default(),
+            size: Signal::default(),
+            sign: Signal::default(),
+            borrow: Signal::default(),
+            borrow_word: Signal::default(),
+            flipped: Signal::default(),
+            margin: Signal::default(),
+            cut: Signal::default(),
+            nearest: Signal::default(),
             zero: Constant::new(from_u64(0)),
+            nothing: Constant::new(from_u64(0)),
+            one: Constant::new(from_u64(1)),
             no_ticks: Constant::new(from_u64(0)),
             one_tick: Constant::new(from_u64(1)),
         }
@@ -75,21 +89,29 @@ impl Logic for Limiter {
         comment!("@about The command, and for how long it is cut.");
         dff_setup!(self, clk, command_q, high_q, low_q, ticks);
 
-        self.most.next = signed_cast(bit_cast::<33, 31>(self.limit.val()));
-        self.least.next = signed_cast(self.zero.val() - bit_cast::<33, 31>(self.limit.val()));
-        self.sum.next = signed_bit_cast::<33, 32>(self.word.val());
-        self.cut_high.next = self.word_high.val() | (self.sum.val() > self.most.val());
-        self.cut_low.next = self.word_low.val() | (self.sum.val() < self.least.val());
+        comment!("Its size, less an LSB if negative, on the limit");
+        self.negative.next = self.word.val().get_bit(31);
+        self.size.next = unsigned_cast(self.word.val());
+        self.sign.next = self.zero.val();
+        self.borrow.next = self.nothing.val();
+        if self.negative.val() {
+            self.sign.next = !self.zero.val();
+            self.borrow.next = self.one.val();
+        }
+        self.borrow_word.next = self.borrow.val().get_bits::<32>(0);
+        self.flipped.next = self.size.val() ^ self.sign.val();
+        self.margin.next = (bit_cast::<33, 31>(self.limit.val()) << 1)
+            - ((bit_cast::<33, 32>(self.flipped.val()) << 1) | self.borrow.val());
+        self.cut.next = self.word_high.val() | self.word_low.val() | self.margin.val().get_bit(32);
+        self.nearest.next = (bit_cast::<32, 31>(self.limit.val()) ^ self.sign.val()) + self.borrow_word.val();
+
         if self.take.val() {
             self.command_q.d.next = self.word.val();
-            if self.cut_high.val() {
-                self.command_q.d.next = self.most.val().get_bits::<32>(0);
+            if self.cut.val() {
+                self.command_q.d.next = signed_cast(self.nearest.val());
             }
-            if self.cut_low.val() {
-                self.command_q.d.next = self.least.val().get_bits::<32>(0);
-            }
-            self.high_q.d.next = self.cut_high.val();
-            self.low_q.d.next = self.cut_low.val();
+            self.high_q.d.next = self.cut.val() & !self.negative.val();
+            self.low_q.d.next = self.cut.val() & self.negative.val();
         }
         if self.count.val() {
             if self.high_q.q.val() | self.low_q.q.val() {
@@ -105,7 +127,7 @@ impl Logic for Limiter {
         self.limited_high.next = self.high_q.q.val();
         self.limited_low.next = self.low_q.q.val();
         self.limited_ticks.next = self.ticks.q.val();
-        self.high.next = self.cut_high.val();
-        self.low.next = self.cut_low.val();
+        self.high.next = self.cut.val() & !self.negative.val();
+        self.low.next = self.cut.val() & self.negative.val();
     }
 }

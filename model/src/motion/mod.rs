@@ -4,17 +4,21 @@
 //! - [`default_move`]: the 5 mm move that `run` and `simulate` use where no command file is given;
 //! - [`Trajectory`]: steps, ramps, trapezoids and such moves as cubics of time, which a shaper keeps exact;
 //! - [`resample`]: a command given as points in time, on the sample grid;
-//! - [`command_words`]: positions to Q`command_fraction` counts, half up; what does not fit is an error.
-//! - [`modulo_words`]: the same for a modulo axis, with whole turns.
+//! - [`command_words`]: positions to Q`command_fraction` counts, half up; what does not fit is an error;
+//! - [`modulo_words`]: the same for a modulo axis, with whole turns;
+//! - [`plan_move`], [`plan_to_and_fro`], [`plan_circle`]: moves as entries of the command FIFO.
 //!
-//! Positions are in the unit of the machine file (metres, or radians), times in seconds.
+//! The planner works in counts and ticks. All else has positions in the unit of the machine file (metres, or radians) and
+//! times in seconds.
 
 mod command;
+mod planner;
 mod profile;
 mod trajectory;
 mod words;
 
 pub use command::{PointsError, resample, settle_s};
+pub use planner::{POINTS_MAX, PlanError, TickLimits, plan_circle, plan_move, plan_to_and_fro};
 pub use profile::{Profile, ProfileError, SAMPLES_MAX, default_move};
 pub use trajectory::{Cubic, Jump, Piece, Trajectory};
 pub use words::{CommandError, command_words, modulo_words};

@@ -117,6 +117,11 @@ impl Profile {
         4.0 * self.jerk_s + 2.0 * self.constant_acceleration_s + self.constant_velocity_s
     }
 
+    /// How long the jerk, the constant acceleration and the constant velocity stand.
+    pub(super) fn stretches_s(&self) -> [f64; 3] {
+        [self.jerk_s, self.constant_acceleration_s, self.constant_velocity_s]
+    }
+
     /// The eight instants at which the jerk changes, each with its change; some fall together where a segment is empty.
     pub(super) fn jerk_changes(&self) -> [(f64, f64); 8] {
         let jerk = self.jerk.copysign(self.distance);

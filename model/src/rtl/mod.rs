@@ -11,6 +11,7 @@ pub mod pulse_counter;
 pub mod pwm;
 pub mod registers;
 pub mod sample_select;
+pub mod segments;
 pub mod setting_banks;
 pub mod shaper;
 pub mod sliding_mode;

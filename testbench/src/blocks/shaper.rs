@@ -4,7 +4,7 @@ use posicast_hdl::SimulationError;
 use posicast_hdl::emit::{EmitError, Module};
 use posicast_hdl::machine::{AxisShaper, emit_machine};
 use posicast_hdl::shaper::{emit, simulate};
-use posicast_model::rtl::shaper::{Shaper, ShaperConfig, ports};
+use posicast_model::rtl::shaper::{Motion, Shaper, ShaperConfig, ports};
 use posicast_model::rtl::{ClockedBlock, Port};
 
 use super::{Bins, Block, named, prefixed};
@@ -78,10 +78,7 @@ impl Block for ShaperBlock {
     }
 
     fn coverage(&self) -> Box<dyn Bins + '_> {
-        Box::new(OfLayout {
-            layout: &self.layout,
-            coverage: Coverage::default(),
-        })
+        Box::new(OfLayout::new(&self.layout, [&self.config]))
     }
 }
 
@@ -173,10 +170,7 @@ impl Block for MachineShapers {
     }
 
     fn coverage(&self) -> Box<dyn Bins + '_> {
-        Box::new(OfLayout {
-            layout: &self.layout,
-            coverage: Coverage::default(),
-        })
+        Box::new(OfLayout::new(&self.layout, self.shapers.iter().map(|s| &s.config)))
     }
 
     fn instances(&self, _ports: &[Port]) -> Vec<Instance> {
@@ -193,10 +187,26 @@ fn joined(shapers: &[AxisShaper], seed: u64) -> Joined {
     Joined::new(shapers.iter().enumerate().map(block).collect())
 }
 
-/// The places of the ports are the layout's.
+/// The places of the ports are the layout's; what can happen depends on what is built.
 struct OfLayout<'a> {
     layout: &'a Layout,
+    saturates: bool,
+    hands_over: bool,
     coverage: Coverage,
+}
+
+impl<'a> OfLayout<'a> {
+    fn new(layout: &'a Layout, configs: impl IntoIterator<Item = &'a ShaperConfig>) -> Self {
+        let motions: Vec<_> = configs.into_iter().map(ShaperConfig::motion).collect();
+        // A position that wraps never saturates.
+        let wraps = |motion: &Option<Motion>| motion.is_some_and(|motion| motion.modulo && motion.channels == 1);
+        Self {
+            layout,
+            saturates: !motions.iter().all(wraps),
+            hands_over: motions.iter().any(Option::is_some),
+            coverage: Coverage::default(),
+        }
+    }
 }
 
 impl Bins for OfLayout<'_> {
@@ -206,7 +216,8 @@ impl Bins for OfLayout<'_> {
 
     fn counts(&self) -> Vec<(String, u64)> {
         let mut counts = named(self.coverage.counts());
-        if self.layout.axes.iter().any(|axis| axis.swap_how.is_some()) {
+        counts.retain(|(name, _)| self.saturates || name != "saturated");
+        if self.hands_over {
             counts.push(("handovers".to_owned(), self.coverage.handovers));
             counts.push(("handovers over".to_owned(), self.coverage.handovers_over));
         }

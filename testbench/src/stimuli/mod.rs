@@ -20,6 +20,7 @@ mod pulse_counter;
 mod pwm;
 mod random;
 mod registers;
+mod segments;
 mod sliding_mode;
 mod table;
 
@@ -34,6 +35,7 @@ pub use self::pulse_counter::{PulseCounterCoverage, PulseCounterRandom};
 pub use self::pwm::{GateSafety, PwmCoverage, PwmRandom};
 pub use self::random::Random;
 pub use self::registers::{ComponentRandom, RegistersCoverage, RegistersRandom};
+pub use self::segments::{SegmentsCoverage, SegmentsRandom};
 pub use self::sliding_mode::{SlidingModeCoverage, SlidingModeRandom};
 
 /// Makes the inputs of the next clock.

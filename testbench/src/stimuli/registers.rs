@@ -474,8 +474,15 @@ impl RegistersCoverage {
         }
     }
 
-    /// What was never reached. A flag that the bank sets by itself cannot be set in the clock of its own clearing.
-    pub fn missing(&self) -> Vec<&str> {
+    /// What was never reached.
+    pub fn missing(&self) -> Vec<String> {
+        let never = self.counts().into_iter().filter(|(_, count)| *count == 0);
+        never.map(|(name, _)| name).collect()
+    }
+
+    /// What happened how often. A flag that the bank sets by itself cannot be set in the clock of its own clearing: that is
+    /// left out.
+    pub fn counts(&self) -> Vec<(String, u64)> {
         let own = |name: &str| {
             let registers = self.map.registers().iter().filter(|r| r.access.is_sticky());
             registers
@@ -485,9 +492,7 @@ impl RegistersCoverage {
                         && name == format!("{}.{}: set and cleared in one clock", register.name, field.name)
                 })
         };
-        let bins = self.names.iter().zip(&self.counts);
-        bins.filter(|(name, count)| **count == 0 && !own(name))
-            .map(|(name, _)| name.as_str())
-            .collect()
+        let bins = self.names.iter().zip(&self.counts).filter(|(name, _)| !own(name));
+        bins.map(|(name, count)| (name.clone(), *count)).collect()
     }
 }

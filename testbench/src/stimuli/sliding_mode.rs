@@ -2,7 +2,7 @@
 //! every size and at the ends of each word, gains of every size, arbitrary settings, laws that change at any tick, starts at
 //! the pace of a pass and in any clock, inputs that change during a pass, clears and resets.
 
-use posicast_model::rtl::sliding_mode::{Inputs, Motion, SETTINGS, Saturation, ports};
+use posicast_model::rtl::sliding_mode::{Inputs, Motion, Row, SETTINGS, Saturation, ports};
 use posicast_model::rtl::{Direction, Port};
 use rand::{Rng, RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -13,7 +13,7 @@ use super::table::pick;
 /// Ticks of the largest e until the integral is at an end: from 0, and from the other end.
 const WIND_UP_TICKS: [u64; 2] = [260, 520];
 /// The limit's address; the other settings are gains.
-const LIMIT: usize = 11;
+const LIMIT: usize = Row::Limit as usize;
 /// Law that integrates.
 const PID: u8 = 2;
 
@@ -114,11 +114,14 @@ impl SlidingModeRandom {
         }
     }
 
-    /// The largest e on one side, and nothing that cuts the command.
+    /// The largest e on one side, and half the integral as the command: its ends show, and nothing cuts it.
     fn wind_up(&mut self) {
         self.starts += 1;
         let high = self.starts <= WIND_UP_TICKS[0];
         self.settings = [0; SETTINGS];
+        self.settings[Row::Integral as usize] = 1;
+        self.settings[Row::Feedback as usize] = 1 | 1 << 18;
+        self.settings[LIMIT] = u32::MAX;
         self.inputs = Inputs {
             law: PID,
             motion: Motion {

@@ -1,6 +1,7 @@
 //! What the lock-step tests of the blocks share: a bench from `posicast_testbench::blocks`, run and judged.
 #![allow(clippy::unwrap_used, clippy::panic)] // helpers of tests, which clippy.toml exempts only inside of #[test]
 
+use posicast_hdl::emit::Module;
 use posicast_testbench::blocks::{self, Block, Run, Sources};
 use posicast_testbench::lockstep::report::{Report, Verdict};
 
@@ -31,19 +32,33 @@ pub(crate) fn million_random_clocks(block: &dyn Block, seed: u64, least: u64) ->
 #[track_caller]
 pub(crate) fn icarus_agrees(block: &dyn Block) {
     let mut device = Sources::write(block).unwrap().icarus(block).unwrap();
-    let run = blocks::compare(block, &mut device, 20_000, 4, &mut |_| {}).unwrap();
-    assert_match(&run.report, "Icarus");
+    let report = blocks::check(block, &mut device, 20_000, 4, &mut |_| {}).unwrap();
+    assert_match(&report, "Icarus");
 }
 
 /// Replaces the first `from` in the block's Verilog by `to`, and insists on a mismatch within so many clocks.
 #[track_caller]
 pub(crate) fn caught(block: &dyn Block, from: &str, to: &str, cycles: u64) {
+    let sources = Sources::of_modules(&broken(block, from, to)).unwrap();
+    let mut device = sources.verilated(block, 1).unwrap();
+    let report = blocks::check(block, &mut device, cycles, 1, &mut |_| {}).unwrap();
+    assert_eq!(report.result, Verdict::Mismatch, "`{to}` is not found");
+    let first = report.blocks[0].first.as_ref().unwrap();
+    assert_eq!(first.expected.len(), first.actual.len());
+    assert_ne!(first.expected, first.actual);
+    let text = first.to_string();
+    assert!(
+        text.contains(&first.time.to_string()) && text.contains("(device)"),
+        "{text}"
+    );
+}
+
+/// The block's Verilog with the first `from` replaced by `to`.
+#[track_caller]
+pub(crate) fn broken(block: &dyn Block, from: &str, to: &str) -> Vec<Module> {
     let mut modules = block.modules().unwrap();
     let found = modules.iter_mut().find(|module| module.text.contains(from));
     let module = found.unwrap_or_else(|| panic!("the Verilog no longer has `{from}`: adapt the test"));
     module.text = module.text.replacen(from, to, 1);
-    let sources = Sources::of_modules(&modules).unwrap();
-    let mut device = sources.verilated(block, 1).unwrap();
-    let run = blocks::compare(block, &mut device, cycles, 1, &mut |_| {}).unwrap();
-    assert_eq!(run.report.result, Verdict::Mismatch, "`{to}` is not found");
+    modules
 }

@@ -215,7 +215,9 @@ impl Pwm {
         if counts {
             counted.leg.timer = before.leg.timer.wrapping_sub(1);
         }
-        if counted != *state || inputs.sync {
+        // A strobe that is on falls in the next clock.
+        let strobes = state.at_valley || state.at_peak || state.valley || state.peak || state.trigger;
+        if counted != *state || strobes || inputs.sync {
             return 0;
         }
         let events = [

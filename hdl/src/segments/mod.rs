@@ -1,0 +1,52 @@
+//! The command FIFO in hardware: segments of constant jerk, integrated exactly, tick by tick.
+//!
+//! The datasheet is `docs/segments.md`, the reference `posicast_model::rtl::segments`.
+
+mod fifo;
+mod integrator;
+mod kernel;
+mod pins;
+
+use crate::emit::{self, EmitError, EmitOptions, Header, Module, Parameter};
+use crate::simulation::{Simulated, SimulationError};
+use kernel::Segments;
+use posicast_model::rtl::ClockedBlock;
+use posicast_model::rtl::segments::{ENTRIES_MAX, LATENCY_CLOCKS, TICK_CLOCKS, ports};
+
+/// The command FIFO in RustHDL's own simulator.
+///
+/// # Errors
+/// [`SimulationError`] where RustHDL finds a fault in the block.
+pub fn simulate() -> Result<Box<dyn ClockedBlock>, SimulationError> {
+    let block = Box::new(Segments::default());
+    Ok(Box::new(Simulated::new("segments", block, ports())?))
+}
+
+/// The command FIFO's Verilog, one module per file, the top last.
+///
+/// The top is called `PREFIX_segments`, or `segments` where `prefix` is empty.
+///
+/// # Errors
+/// [`EmitError`] where `prefix` makes no Verilog name.
+pub fn emit(prefix: &str) -> Result<Vec<Module>, EmitError> {
+    let parameter = |name: &str, value: u32, meaning: &str| Parameter {
+        name: name.to_owned(),
+        value: value.to_string(),
+        meaning: meaning.to_owned(),
+    };
+    let options = EmitOptions {
+        top: "segments".to_owned(),
+        prefix: prefix.to_owned(),
+        header: Header {
+            about: "Motion commands: a FIFO of segments of constant jerk, integrated exactly at every tick.\n\
+                    Without an entry while moving: a quick stop."
+                .to_owned(),
+            parameters: vec![
+                parameter("entries", u32::from(ENTRIES_MAX), "that can wait"),
+                parameter("latency_clocks", LATENCY_CLOCKS, "from tick to valid"),
+                parameter("tick_clocks", TICK_CLOCKS, "from a tick until the next one is taken"),
+            ],
+        },
+    };
+    emit::emit(&Segments::default(), &options)
+}

@@ -1,0 +1,56 @@
+//! The command FIFO in RustHDL's simulator against its model.
+
+#![allow(clippy::unwrap_used, reason = "a helper that fails fails its test")]
+
+mod random;
+
+use posicast_hdl::segments::{emit, simulate};
+use posicast_model::rtl::ClockedBlock;
+use posicast_model::rtl::segments::{OUTPUT_PORTS, POINT, Segments, ports};
+use random::Random;
+
+#[test]
+fn lockstep_everything_at_random() {
+    let mut model = Segments::new(5);
+    let mut rusthdl = simulate().unwrap();
+    let mut random = Random(9);
+    let (mut expected, mut actual) = ([0; OUTPUT_PORTS], [0; OUTPUT_PORTS]);
+    let mut moved = 0;
+    for clock in 0..20_000 {
+        let word = clock % 4;
+        let data = match word {
+            3 if random.once_in(3) => u64::from(POINT) + 1 + random.below(3),
+            3 => 1 + random.below(5),
+            _ => random.word() >> (32 + random.below(32)),
+        };
+        let inputs = [
+            u64::from(clock < 2 || random.once_in(3000)),
+            u64::from(random.once_in(9)),
+            u64::from(!random.once_in(100)),
+            u64::from(!random.once_in(30)),
+            word,
+            data,
+            u64::from(random.once_in(500)),
+            u64::from(random.once_in(500)),
+            u64::from(random.once_in(40)),
+            u64::from(random.once_in(500)),
+            random.word() & 0xffff_ffff,
+            (random.word() & 0x7fff_ffff) >> random.below(31),
+            random.below(64),
+            u64::from(random.once_in(50)),
+        ];
+        ClockedBlock::step(&mut model, &inputs, &mut expected).unwrap();
+        rusthdl.step(&inputs, &mut actual).unwrap();
+        assert_eq!(actual, expected, "clock {clock}, {inputs:?}");
+        moved += u64::from(expected[4] == 1);
+    }
+    assert!(moved > 3000, "{moved} clocks in a move");
+}
+
+#[test]
+fn unit_the_verilog_has_the_ports_of_the_model() {
+    let modules = emit("stage").unwrap();
+    let top = modules.last().unwrap();
+    assert_eq!((modules.len(), top.name.as_str()), (4, "stage_segments"));
+    assert_eq!(top.ports, ports());
+}

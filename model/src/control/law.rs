@@ -1,0 +1,157 @@
+//! The laws in floating point: what the fixed-point controller approximates.
+//!
+//! Quantities are in counts and ticks, gains as [`Gains`] holds them. Nothing saturates here but the boundary layer, the
+//! Coulomb term and the command: the words of the hardware are wide enough, or it raises a flag.
+
+use crate::rtl::sliding_mode::{Gain, GainError, Law, Row, SETTINGS, Settings};
+
+/// Fraction bits of a command.
+pub const COMMAND_FRACTION: u32 = 12;
+
+/// The gains of all laws by [`Row`], and the largest command: in counts, ticks and command units.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Gains([f64; SETTINGS]);
+
+impl Gains {
+    /// The gain of a row; of [`Row::Limit`] the largest command.
+    pub fn get(&self, row: Row) -> f64 {
+        self.0[row as usize]
+    }
+
+    /// Sets the gain of a row.
+    pub fn set(&mut self, row: Row, value: f64) {
+        self.0[row as usize] = value;
+    }
+
+    /// With other gains of some rows.
+    pub fn with(mut self, gains: &[(Row, f64)]) -> Self {
+        for (row, value) in gains {
+            self.set(*row, *value);
+        }
+        self
+    }
+
+    /// As mantissas and shifts; the limit in its own word, rounded to an LSB.
+    ///
+    /// # Errors
+    /// [`GainError`] for a gain that does not fit its row, or a limit that is no positive number of 31 bits.
+    pub fn quantise(&self) -> Result<Settings, GainError> {
+        let mut settings = Settings::default();
+        for row in Row::ALL {
+            match row {
+                Row::Limit => settings.set_limit(limit_word(self.get(row))?),
+                _ => settings.set_gain(row, Gain::nearest(self.get(row), row)?),
+            }
+        }
+        Ok(settings)
+    }
+
+    /// What settings are worth.
+    pub fn of_settings(settings: &Settings) -> Self {
+        let one = f64::from(1u32 << COMMAND_FRACTION);
+        Self(Row::ALL.map(|row| match row {
+            Row::Limit => f64::from(settings.limit()) / one,
+            _ => settings.gain(row).value(row),
+        }))
+    }
+}
+
+fn limit_word(limit: f64) -> Result<u32, GainError> {
+    let one = f64::from(1u32 << COMMAND_FRACTION);
+    let (row, largest) = (Row::Limit, f64::from(crate::rtl::sliding_mode::LIMIT_MAX) / one);
+    match limit {
+        _ if !limit.is_finite() => Err(GainError::NotFinite { found: limit, row }),
+        _ if !(0.0..=largest).contains(&limit) => Err(GainError::Large {
+            found: limit,
+            row,
+            largest,
+        }),
+        _ => Ok((limit * one).round() as u32),
+    }
+}
+
+/// What a tick is about, in counts and ticks.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Tracking {
+    /// e = r − x.
+    pub error: f64,
+    /// de = dr − v.
+    pub error_rate: f64,
+    /// dr.
+    pub velocity_reference: f64,
+    /// ddr.
+    pub acceleration_reference: f64,
+    /// Measured velocity v.
+    pub velocity: f64,
+}
+
+/// What comes out of a tick.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Response {
+    /// s.
+    pub sliding: f64,
+    /// Command, within ±limit.
+    pub command: f64,
+    /// Duty in clocks of the PWM period.
+    pub duty: f64,
+    /// Whether the command was cut: 1 above, −1 below.
+    pub limited: i8,
+}
+
+/// A controller with its integral.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct FloatController {
+    integral: f64,
+}
+
+impl FloatController {
+    /// One tick.
+    pub fn control(&mut self, law: Law, gains: &Gains, motion: &Tracking) -> Response {
+        let gain = |row| gains.get(row);
+        let Tracking { error, error_rate, .. } = *motion;
+        let sliding = error_rate + gain(Row::Surface) * error;
+        let feedback = match law {
+            Law::SlidingMode => {
+                let fraction = saturation(gain(Row::Boundary) * sliding);
+                gain(Row::Damping) * error_rate + gain(Row::Reaching) * sliding + gain(Row::Switching) * fraction
+            }
+            Law::Pd => gain(Row::Derivative) * error_rate + gain(Row::Proportional) * error,
+            Law::Pid => {
+                let linear = gain(Row::Derivative) * error_rate + gain(Row::Proportional) * error;
+                linear + gain(Row::Integral) * self.integral
+            }
+        };
+        let coulomb = saturation(gain(Row::Fade) * motion.velocity_reference);
+        let wanted = gain(Row::Feedback) * feedback
+            + gain(Row::Acceleration) * motion.acceleration_reference
+            + gain(Row::Velocity) * motion.velocity_reference
+            + gain(Row::Viscous) * motion.velocity
+            + gain(Row::Coulomb) * coulomb;
+        let limit = gain(Row::Limit);
+        let limited = i8::from(wanted > limit) - i8::from(wanted < -limit);
+        // Frozen while clamped in that direction.
+        let opposes = (gain(Row::Integral) < 0.0) != (gain(Row::Feedback) < 0.0);
+        let lowers = (error < 0.0) != opposes;
+        let frozen = if lowers { limited < 0 } else { limited > 0 };
+        if law == Law::Pid && !frozen {
+            self.integral += error;
+        }
+        let command = wanted.clamp(-limit, limit);
+        Response {
+            sliding,
+            command,
+            duty: gain(Row::Duty) * command,
+            limited,
+        }
+    }
+
+    /// Clears the integral.
+    pub fn clear_integral(&mut self) {
+        self.integral = 0.0;
+    }
+}
+
+/// Linear between −1 and 1.
+fn saturation(value: f64) -> f64 {
+    value.clamp(-1.0, 1.0)
+}

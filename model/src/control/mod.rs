@@ -1,0 +1,66 @@
+//! The controller's laws in floating point, and its gains from the machine file.
+//!
+//! ```text
+//! [axis.drive], [axis.controller], counts per unit q, tick T, loop lag
+//!     └─► Gains (counts, ticks, command units) ─► Settings (mantissa and shift, the words of the hardware)
+//!     └─► ControlWarning where a condition of the notes does not hold
+//! ```
+//!
+//! A command unit is a thousandth of the drive's unit: mA of a torque drive, mm/s (mrad/s) of a velocity drive. Unit
+//! conversions are in the gains, so that the hardware counts in counts and ticks.
+//!
+//! | drive | command | law |
+//! |---|---|---|
+//! | torque | `(M·a + b·v + F_c·sat(dr/fade)) / k_f` | a = ddr + feedback, m/s² |
+//! | velocity, PD and PID | u | u = dr + feedback, m/s |
+//! | velocity, sliding mode | `v + a/ω_b` | a = ddr + feedback; the drive is `v' = ω_b (u − v)` |
+//!
+//! [`gains`] does it all for an axis. [`FloatController`] is the law that the fixed-point controller
+//! ([`crate::rtl::sliding_mode`]) approximates.
+
+mod conditions;
+mod derive;
+mod law;
+
+pub use conditions::ControlWarning;
+pub use derive::{Derived, gains, loop_lag_s};
+pub use law::{COMMAND_FRACTION, FloatController, Gains, Response, Tracking};
+
+use crate::rtl::sliding_mode::GainError;
+
+/// Why an axis has no gains.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum ControlError {
+    /// A table is missing.
+    #[error(
+        "axis {axis} has no [axis.{table}]: a controller needs [axis.drive], [axis.controller] and [axis.pwm]; add it"
+    )]
+    Missing {
+        /// The axis.
+        axis: String,
+        /// The table.
+        table: &'static str,
+    },
+    /// A velocity drive whose dynamics the sliding-mode law must know.
+    #[error(
+        "axis {axis}: the sliding-mode law gives an acceleration, and a velocity drive follows it by its bandwidth: \
+         give bandwidth_hz in [axis.drive], or choose kind = \"pd\" or \"pid\""
+    )]
+    Bandwidth {
+        /// The axis.
+        axis: String,
+    },
+    /// A lag that is none.
+    #[error(
+        "a loop lag of {0} s: it must be a finite time above 0, the schedule's delay and the drive's 1/(2π·bandwidth)"
+    )]
+    Lag(f64),
+    /// A gain that the hardware does not hold.
+    #[error("axis {axis}: {source}; choose counts_per_unit, sample_hz or the gains such that it fits")]
+    Gain {
+        /// The axis.
+        axis: String,
+        /// What does not fit.
+        source: GainError,
+    },
+}

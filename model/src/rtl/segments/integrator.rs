@@ -1,0 +1,171 @@
+//! Exact integration of one tick: `a += j; v += a; p += v`.
+//!
+//! Integers in LSB of 2^−32 counts per tick³, tick², tick, and counts, so nothing is ever rounded: whoever adds the same
+//! numbers, in hardware, here or in C, gets the same position.
+
+use super::entry::Point;
+
+/// Fraction bits of jerk, acceleration, velocity and position.
+pub const FRACTION_BITS: u32 = 32;
+/// Width of jerk and acceleration: Q8.32.
+pub const ACCELERATION_BITS: u32 = 40;
+/// Width of the velocity: Q16.32.
+pub const VELOCITY_BITS: u32 = 48;
+
+/// Fraction bits of the rounded position: Q24.8 counts.
+pub const POSITION_FRACTION: u32 = 8;
+/// Fraction bits of the rounded velocity: Q16.16 counts per tick.
+pub const VELOCITY_FRACTION: u32 = 16;
+/// Fraction bits of the rounded acceleration: Q8.24 counts per tick².
+pub const ACCELERATION_FRACTION: u32 = 24;
+
+/// A sum that its word does not hold: the integrator stays as it was, and the move cannot go on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[error("acceleration or velocity does not fit its word: 128 counts per tick² and 32768 counts per tick are the ends")]
+pub struct Overflow;
+
+/// Where a command is: position, velocity and acceleration in LSB of 2^−32.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Integrator {
+    /// Counts, Q32.32, modulo 2^64.
+    pub position: i64,
+    /// Counts per tick, Q16.32.
+    pub velocity: i64,
+    /// Counts per tick², Q8.32.
+    pub acceleration: i64,
+}
+
+impl Integrator {
+    /// At rest at so many counts.
+    pub fn resting_at(counts: i32) -> Self {
+        Self {
+            position: i64::from(counts) << FRACTION_BITS,
+            ..Self::default()
+        }
+    }
+
+    /// Exactly at a point.
+    pub fn at_point(point: &Point) -> Self {
+        Self {
+            position: i64::from(point.position) << (FRACTION_BITS - POSITION_FRACTION),
+            velocity: i64::from(point.velocity) << (FRACTION_BITS - VELOCITY_FRACTION),
+            acceleration: i64::from(point.acceleration) << (FRACTION_BITS - ACCELERATION_FRACTION),
+        }
+    }
+
+    /// One tick with this jerk (Q8.32).
+    ///
+    /// # Errors
+    /// [`Overflow`]; an acceleration that fits is then kept with the velocity that does not change, as in hardware.
+    pub fn jerk(&mut self, jerk: i64) -> Result<(), Overflow> {
+        self.acceleration = fitting(self.acceleration + jerk, ACCELERATION_BITS)?;
+        self.velocity = fitting(self.velocity + self.acceleration, VELOCITY_BITS)?;
+        self.position = self.position.wrapping_add(self.velocity);
+        Ok(())
+    }
+
+    /// One tick of a quick stop: the velocity goes towards 0 by at most `deceleration` (Q8.32, not negative); 0 stands for
+    /// a stop at once.
+    pub fn stop(&mut self, deceleration: i64) {
+        if deceleration == 0 {
+            (self.velocity, self.acceleration) = (0, 0);
+            return;
+        }
+        self.acceleration = (-self.velocity).clamp(-deceleration, deceleration);
+        self.velocity += self.acceleration;
+        self.position = self.position.wrapping_add(self.velocity);
+    }
+
+    /// Neither velocity nor acceleration: only then a position holds.
+    pub fn at_rest(&self) -> bool {
+        self.velocity == 0 && self.acceleration == 0
+    }
+
+    /// Position (Q24.8, modulo 2^32), velocity (Q16.16) and acceleration (Q8.24), each rounded once, half up; the two
+    /// largest of their words stay below the end instead of wrapping.
+    pub fn rounded(&self) -> [i32; 3] {
+        [
+            self.position
+                .wrapping_add(1 << (FRACTION_BITS - POSITION_FRACTION - 1))
+                .wrapping_shr(FRACTION_BITS - POSITION_FRACTION) as i32,
+            half_up(self.velocity, FRACTION_BITS - VELOCITY_FRACTION),
+            half_up(self.acceleration, FRACTION_BITS - ACCELERATION_FRACTION),
+        ]
+    }
+}
+
+fn fitting(sum: i64, bits: u32) -> Result<i64, Overflow> {
+    let half = 1i64 << (bits - 1);
+    if (-half..half).contains(&sum) {
+        Ok(sum)
+    } else {
+        Err(Overflow)
+    }
+}
+
+fn half_up(value: i64, shift: u32) -> i32 {
+    let rounded = (value + (1 << (shift - 1))) >> shift;
+    rounded.min(i64::from(i32::MAX)) as i32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn unit_a_segment_is_its_closed_form() {
+        // n ticks of jerk j from rest: a = n·j, v = j·n(n+1)/2, p = j·n(n+1)(n+2)/6.
+        let mut at = Integrator::default();
+        let (jerk, n) = (-12_345, 1000i64);
+        for _ in 0..n {
+            at.jerk(jerk).unwrap();
+        }
+        assert_eq!(at.acceleration, n * jerk);
+        assert_eq!(at.velocity, jerk * n * (n + 1) / 2);
+        assert_eq!(at.position, jerk * (n * (n + 1) * (n + 2) / 6));
+    }
+
+    #[test]
+    fn unit_what_does_not_fit_changes_nothing_further() {
+        let largest = (1 << (ACCELERATION_BITS - 1)) - 1;
+        let mut at = Integrator {
+            acceleration: largest,
+            ..Integrator::default()
+        };
+        let before = at;
+        assert_eq!(at.jerk(1), Err(Overflow));
+        assert_eq!(at, before);
+        at.velocity = (1 << (VELOCITY_BITS - 1)) - 1;
+        assert_eq!(at.jerk(0), Err(Overflow));
+        assert_eq!(at.velocity, (1 << (VELOCITY_BITS - 1)) - 1);
+    }
+
+    #[test]
+    fn unit_a_stop_ends_at_rest_on_both_sides() {
+        for velocity in [10_000_000_007, -10_000_000_007, 3, 0, -(1 << 47)] {
+            let mut at = Integrator {
+                velocity,
+                acceleration: 99,
+                ..Integrator::default()
+            };
+            let deceleration = 1 << 32;
+            let ticks = (velocity.unsigned_abs().div_ceil(1 << 32)) as usize + 1;
+            for _ in 0..ticks {
+                let before = at.velocity;
+                at.stop(deceleration);
+                assert!((at.velocity - before).abs() <= deceleration && at.velocity.abs() <= before.abs());
+            }
+            assert!(at.at_rest(), "{velocity}: {at:?}");
+        }
+    }
+
+    #[test]
+    fn unit_the_ends_are_rounded_without_wrapping() {
+        let at = Integrator {
+            position: -(1 << 23),
+            velocity: (1 << 47) - 1,
+            acceleration: -(1 << 39),
+        };
+        assert_eq!(at.rounded(), [0, i32::MAX, i32::MIN]);
+    }
+}

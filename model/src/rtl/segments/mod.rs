@@ -1,0 +1,292 @@
+//! The command FIFO: segments of constant jerk, integrated exactly, tick by tick.
+//!
+//! The datasheet is `docs/segments.md`; this is the reference that the hardware is compared with.
+//!
+//! | part | what it is |
+//! |---|---|
+//! | [`Entry`] | what a host writes: a segment `{ticks, jerk}`, or a point held for some ticks |
+//! | [`Integrator`] | `a += j; v += a; p += v`, and the quick stop |
+//! | [`Segments`] | FIFO, states and integrator, cycle accurate at its ports |
+//!
+//! A tick takes [`TICK_CLOCKS`], always the same ones:
+//!
+//! ```text
+//! phase   0            1    2    3    4                        5 6 7 8
+//!         tick taken   a    v    p    rounded, what comes next read an entry, if one is next
+//! ```
+//!
+//! ```
+//! use posicast_model::rtl::segments::{Entry, Inputs, Motion, Segments, State};
+//!
+//! // There and back in 4 ticks of jerk j, −j, −j, j: it ends at rest, 2·j further.
+//! let jerk = 1i64 << 32;
+//! let mut segments = Segments::new(1);
+//! for (ticks, jerk) in [(1, jerk), (2, -jerk), (1, jerk)] {
+//!     let entry = Entry { ticks, motion: Motion::Jerk(jerk), notify: false };
+//!     for (word, data) in (0..).zip(entry.words()) {
+//!         segments.step(&Inputs { write: true, word, data, ..Inputs::default() });
+//!     }
+//! }
+//! for _ in 0..6 {
+//!     segments.step(&Inputs { tick: true, enable: true, ..Inputs::default() });
+//!     segments.hold(&Inputs { enable: true, ..Inputs::default() }, 100);
+//! }
+//! let shown = segments.outputs(0);
+//! assert_eq!((shown.position, shown.velocity, shown.state), (2 << 8, 0, State::Hold));
+//! ```
+
+mod entry;
+mod fifo;
+mod integrator;
+mod ports;
+
+pub use entry::{ENTRY_WORDS, Entry, Motion, NOTIFY, POINT, Point, RESERVED, TICK_BITS};
+pub use fifo::ENTRIES_MAX;
+pub use integrator::{
+    ACCELERATION_BITS, ACCELERATION_FRACTION, FRACTION_BITS, Integrator, Overflow, POSITION_FRACTION, VELOCITY_BITS,
+    VELOCITY_FRACTION,
+};
+pub use ports::{INPUT_PORTS, Inputs, OUTPUT_PORTS, Outputs, State, ports};
+
+use self::fifo::{Fifo, Pointers};
+use super::{ClockedBlock, Port, StepError};
+
+/// Clocks from a tick until the next one is taken.
+pub const TICK_CLOCKS: u32 = 9;
+/// Clocks from a tick to `valid`.
+pub const LATENCY_CLOCKS: u32 = 5;
+
+/// Phase in which a tick is waited for.
+const IDLE: u8 = 0;
+/// Phase in which the integration begins; the hardware takes three clocks for its three sums.
+const INTEGRATE: u8 = 1;
+/// Phase that rounds and decides what comes next.
+const DECIDE: u8 = 4;
+/// Phase that reads the last word of the next entry.
+const READ: u8 = 8;
+
+/// Pulses that wait for the next tick.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+struct Requests {
+    flush: bool,
+    quick_stop: bool,
+    restart: bool,
+    preset: bool,
+}
+
+/// Everything that is a register, but the FIFO.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+struct Registers {
+    phase: u8,
+    requests: Requests,
+    enabled: bool,
+    at: Integrator,
+    overflowed: bool,
+    playing: Option<Entry>,
+    shown: Outputs,
+}
+
+/// The command FIFO, cycle accurate at its ports.
+pub struct Segments {
+    ports: Vec<Port>,
+    fifo: Fifo,
+    registers: Registers,
+}
+
+impl Segments {
+    /// A FIFO after reset. `seed` fills its memory: nothing may depend on what that holds.
+    pub fn new(seed: u64) -> Self {
+        Self {
+            ports: ports(),
+            fifo: Fifo::new(seed),
+            registers: Registers::default(),
+        }
+    }
+
+    /// What the outputs show now, for this `low_water`.
+    pub fn outputs(&self, low_water: u8) -> Outputs {
+        let level = self.fifo.level();
+        Outputs {
+            level,
+            low: level <= low_water,
+            empty: level == 0,
+            ..self.registers.shown
+        }
+    }
+
+    /// The exact command behind the rounded outputs.
+    pub fn command(&self) -> Integrator {
+        self.registers.at
+    }
+
+    /// One clock: what the outputs show before the rising edge, then the edge.
+    #[inline]
+    pub fn step(&mut self, inputs: &Inputs) -> Outputs {
+        let outputs = self.outputs(inputs.low_water);
+        self.clock(inputs);
+        outputs
+    }
+
+    /// So many clocks with the same inputs. Ends early once a clock changes nothing, since no later one would.
+    pub fn hold(&mut self, inputs: &Inputs, clocks: u64) {
+        for _ in 0..clocks {
+            let before: (Registers, Pointers) = (self.registers.clone(), self.fifo.pointers);
+            self.clock(inputs);
+            if self.registers == before.0 && self.fifo.pointers == before.1 {
+                return;
+            }
+        }
+    }
+
+    fn clock(&mut self, inputs: &Inputs) {
+        if inputs.rst {
+            self.registers = Registers::default();
+            self.fifo.reset();
+            return;
+        }
+        let Registers { phase, shown, .. } = self.registers;
+        let level = self.fifo.level();
+        self.begin_clock(inputs);
+        if inputs.write {
+            let closed = matches!(shown.state, State::Stop | State::Stopped);
+            let written = self.fifo.write(inputs.word, inputs.data, closed);
+            self.registers.shown.refused |= written.refused;
+            self.registers.shown.malformed |= written.malformed;
+        }
+        self.registers.phase = match phase {
+            IDLE if !inputs.tick => IDLE,
+            READ => IDLE,
+            _ => phase + 1,
+        };
+        match phase {
+            IDLE if inputs.tick => self.take_tick(inputs),
+            INTEGRATE => self.integrate(i64::from(inputs.stop_deceleration)),
+            DECIDE => self.decide(shown.state, level > 0),
+            READ => self.registers.playing = Some(self.fifo.pop()),
+            _ => {}
+        }
+    }
+
+    /// Pulses end, flags are cleared and set, requests are kept.
+    fn begin_clock(&mut self, inputs: &Inputs) {
+        let Registers {
+            phase, requests, shown, ..
+        } = &mut self.registers;
+        (shown.valid, shown.notify, shown.done) = (false, false, false);
+        if inputs.clear_flags {
+            (shown.underrun, shown.overflow, shown.refused) = (false, false, false);
+            (shown.malformed, shown.tick_missed) = (false, false);
+        }
+        shown.tick_missed |= inputs.tick && *phase != IDLE;
+        requests.flush |= inputs.flush;
+        requests.quick_stop |= inputs.quick_stop;
+        requests.restart |= inputs.restart;
+        requests.preset |= inputs.preset;
+    }
+
+    /// A tick begins with what was asked for since the last one. Preset goes before a quick stop, that before restart.
+    fn take_tick(&mut self, inputs: &Inputs) {
+        let requests = std::mem::take(&mut self.registers.requests);
+        let registers = &mut self.registers;
+        registers.enabled = inputs.enable;
+        let state = &mut registers.shown.state;
+        let mut flush = requests.flush;
+        if requests.preset {
+            registers.at = Integrator::resting_at(inputs.preset_position);
+            (*state, flush) = (State::Hold, true);
+        } else {
+            let stops = requests.quick_stop || (!inputs.enable && *state == State::Move);
+            match *state {
+                State::Move if stops => (*state, flush) = (State::Stop, true),
+                State::Hold if stops => (*state, flush) = (State::Stopped, true),
+                State::Stopped if requests.restart && !stops => *state = State::Hold,
+                _ => {}
+            }
+        }
+        if flush {
+            self.fifo.flush();
+        }
+    }
+
+    fn integrate(&mut self, stop_deceleration: i64) {
+        let Registers {
+            at,
+            playing,
+            shown,
+            overflowed,
+            ..
+        } = &mut self.registers;
+        *overflowed = false;
+        match (shown.state, playing.map(|entry| entry.motion)) {
+            (State::Move, Some(Motion::Jerk(jerk))) => *overflowed = at.jerk(jerk).is_err(),
+            (State::Move, Some(Motion::Point(point))) => *at = Integrator::at_point(&point),
+            (State::Stop, _) => at.stop(stop_deceleration << (FRACTION_BITS - ACCELERATION_FRACTION)),
+            _ => {}
+        }
+    }
+
+    /// The outputs of this tick, and what the next one does.
+    fn decide(&mut self, state: State, entry_waits: bool) {
+        let Registers {
+            phase,
+            at,
+            playing,
+            shown,
+            enabled,
+            overflowed,
+            ..
+        } = &mut self.registers;
+        [shown.position, shown.velocity, shown.acceleration] = at.rounded();
+        shown.valid = true;
+        let mut next_is_read = false;
+        match (state, playing) {
+            (State::Move, Some(entry)) => {
+                entry.ticks -= 1;
+                let ended = entry.ticks == 0;
+                shown.notify = ended && entry.notify && !*overflowed;
+                if *overflowed || (ended && !entry_waits && !at.at_rest()) {
+                    shown.overflow |= *overflowed;
+                    shown.underrun |= !*overflowed;
+                    shown.state = State::Stop;
+                    self.fifo.flush();
+                } else if ended && entry_waits {
+                    next_is_read = true;
+                } else if ended {
+                    shown.state = State::Hold;
+                    shown.done = true;
+                }
+            }
+            (State::Stop, _) if at.at_rest() => {
+                shown.state = State::Stopped;
+                shown.done = true;
+            }
+            (State::Hold, _) if *enabled && entry_waits => {
+                shown.state = State::Move;
+                next_is_read = true;
+            }
+            _ => {}
+        }
+        if !next_is_read {
+            *phase = IDLE;
+        }
+    }
+}
+
+impl ClockedBlock for Segments {
+    fn ports(&self) -> &[Port] {
+        &self.ports
+    }
+
+    fn step(&mut self, inputs: &[u64], outputs: &mut [u64]) -> Result<(), StepError> {
+        let (Ok(raw), OUTPUT_PORTS) = (<&[u64; INPUT_PORTS]>::try_from(inputs), outputs.len()) else {
+            return Err(StepError(format!(
+                "{} inputs and {} outputs: the command FIFO has {INPUT_PORTS} and {OUTPUT_PORTS}",
+                inputs.len(),
+                outputs.len()
+            )));
+        };
+        let shown = Segments::step(self, &Inputs::from_raw(raw));
+        outputs.copy_from_slice(&shown.to_raw());
+        Ok(())
+    }
+}

@@ -1,0 +1,196 @@
+//! The command FIFO's model: what a host sees, and `hold` against `step`.
+
+#![allow(clippy::unwrap_used, reason = "a helper that fails fails its test")]
+
+use posicast_model::motion::{TickLimits, plan_move};
+use posicast_model::rtl::segments::{
+    ENTRIES_MAX, Entry, Inputs, Integrator, LATENCY_CLOCKS, Motion, Outputs, Point, Segments, State, TICK_CLOCKS,
+};
+use proptest::prelude::*;
+
+const QUIET: Inputs = Inputs {
+    rst: false,
+    tick: false,
+    enable: true,
+    write: false,
+    word: 0,
+    data: 0,
+    flush: false,
+    quick_stop: false,
+    restart: false,
+    preset: false,
+    preset_position: 0,
+    stop_deceleration: 1 << 24,
+    low_water: 2,
+    clear_flags: false,
+};
+
+fn write(segments: &mut Segments, entry: &Entry) {
+    for (word, data) in (0..).zip(entry.words()) {
+        segments.step(&Inputs {
+            write: true,
+            word,
+            data,
+            ..QUIET
+        });
+    }
+}
+
+/// One tick; what the outputs show after it.
+fn tick(segments: &mut Segments) -> Outputs {
+    segments.step(&Inputs { tick: true, ..QUIET });
+    segments.hold(&QUIET, 100);
+    segments.outputs(QUIET.low_water)
+}
+
+fn jerk(ticks: u32, jerk: i64) -> Entry {
+    Entry {
+        ticks,
+        motion: Motion::Jerk(jerk),
+        notify: false,
+    }
+}
+
+#[test]
+fn a_planned_move_arrives_with_the_integrator_at_every_tick() {
+    let limits = TickLimits::new(0.25, 8.0, 400.0, 1e6, 1e4);
+    let end = 5_000 << 8;
+    let entries = plan_move(0, end, &limits).unwrap();
+    let mut segments = Segments::new(3);
+    entries.iter().for_each(|entry| write(&mut segments, entry));
+    let mut expected = Integrator::default();
+    let first = tick(&mut segments);
+    assert_eq!(
+        (first.state, first.position),
+        (State::Move, 0),
+        "the first entry is read at the first tick"
+    );
+    for entry in &entries {
+        for _ in 0..entry.ticks {
+            match entry.motion {
+                Motion::Jerk(jerk) => expected.jerk(jerk).unwrap(),
+                Motion::Point(point) => expected = Integrator::at_point(&point),
+            }
+            let shown = tick(&mut segments);
+            assert_eq!([shown.position, shown.velocity, shown.acceleration], expected.rounded());
+            assert_eq!(segments.command(), expected);
+        }
+    }
+    let rest = segments.outputs(2);
+    assert_eq!(
+        (rest.state, rest.position, rest.empty, rest.underrun),
+        (State::Hold, end, true, false)
+    );
+}
+
+#[test]
+fn without_an_entry_while_moving_it_stops_by_itself_and_says_so() {
+    let mut segments = Segments::new(3);
+    write(&mut segments, &jerk(10, 1 << 32));
+    let states: Vec<State> = (0..200).map(|_| tick(&mut segments).state).collect();
+    let shown = segments.outputs(2);
+    assert!(shown.underrun && shown.velocity == 0 && shown.acceleration == 0);
+    assert_eq!(shown.state, State::Stopped);
+    // v = 55 counts per tick after 10 ticks, against 1 count per tick²: 55 ticks, and one to be at rest.
+    assert_eq!(states.iter().filter(|state| **state == State::Stop).count(), 56);
+    // Nothing is taken until the host says so.
+    write(&mut segments, &jerk(1, 0));
+    assert!(segments.outputs(2).refused && segments.outputs(2).level == 0);
+    segments.step(&Inputs { restart: true, ..QUIET });
+    assert_eq!(tick(&mut segments).state, State::Hold);
+    write(&mut segments, &jerk(1, 0));
+    assert_eq!(segments.outputs(2).level, 1);
+}
+
+#[test]
+fn a_full_fifo_refuses_and_keeps_what_it_has() {
+    let mut segments = Segments::new(3);
+    for ticks in 1..=u32::from(ENTRIES_MAX) {
+        write(&mut segments, &jerk(ticks, 0));
+    }
+    assert!(!segments.outputs(2).refused);
+    write(&mut segments, &jerk(99, 0));
+    let shown = segments.outputs(2);
+    assert!(shown.refused && shown.level == ENTRIES_MAX);
+    // 1 + 2 + … + 64 ticks, and the one that reads the first.
+    let ticks = (1..4_000).find(|_| tick(&mut segments).state == State::Hold && segments.outputs(2).empty);
+    assert_eq!(ticks, Some(64 * 65 / 2 + 1));
+}
+
+#[test]
+fn preset_rests_anywhere_at_the_next_tick() {
+    let mut segments = Segments::new(3);
+    write(&mut segments, &jerk(50, 1 << 32));
+    (0..20).for_each(|_| {
+        tick(&mut segments);
+    });
+    segments.step(&Inputs { preset: true, ..QUIET });
+    segments.step(&Inputs {
+        tick: true,
+        preset_position: -77,
+        ..QUIET
+    });
+    segments.hold(&QUIET, 100);
+    assert_eq!(segments.command(), Integrator::resting_at(-77));
+    assert_eq!((segments.outputs(0).state, segments.outputs(0).level), (State::Hold, 0));
+}
+
+#[test]
+fn valid_comes_after_its_latency_and_ticks_fit_their_clocks() {
+    let mut segments = Segments::new(3);
+    write(&mut segments, &jerk(1, 0));
+    segments.step(&Inputs { tick: true, ..QUIET });
+    let valid = (1..100).find(|_| segments.step(&QUIET).valid);
+    assert_eq!(valid, Some(LATENCY_CLOCKS));
+    segments.hold(&QUIET, 100);
+    for _ in 0..3 {
+        segments.step(&Inputs { tick: true, ..QUIET });
+        segments.hold(&QUIET, u64::from(TICK_CLOCKS) - 1);
+        write(&mut segments, &jerk(1, 0));
+    }
+    assert!(!segments.outputs(2).tick_missed);
+}
+
+fn inputs() -> impl Strategy<Value = Inputs> {
+    let entry = (any::<bool>(), 0..4u8, any::<u32>(), 0..20u32);
+    let requests = proptest::collection::vec(proptest::bool::weighted(0.03), 6);
+    (entry, requests, any::<bool>(), any::<i32>(), 0..u32::MAX >> 1).prop_map(
+        |((write, word, data, shift), requests, tick, preset_position, deceleration)| Inputs {
+            rst: requests[0],
+            tick,
+            enable: !requests[1],
+            write,
+            word,
+            data: if word == 3 { data & 7 } else { data >> shift },
+            flush: requests[2],
+            quick_stop: requests[3],
+            restart: requests[4],
+            preset: requests[5],
+            preset_position,
+            stop_deceleration: deceleration >> shift,
+            low_water: 3,
+            clear_flags: false,
+        },
+    )
+}
+
+proptest! {
+    #[test]
+    fn prop_hold_is_as_many_steps(script in proptest::collection::vec((inputs(), 1..40u64), 1..60)) {
+        let (mut stepped, mut held) = (Segments::new(1), Segments::new(1));
+        for (inputs, clocks) in script {
+            for _ in 0..clocks {
+                stepped.step(&inputs);
+            }
+            held.hold(&inputs, clocks);
+            prop_assert_eq!(stepped.outputs(3), held.outputs(3));
+            prop_assert_eq!(stepped.command(), held.command());
+        }
+    }
+
+    #[test]
+    fn prop_what_the_integrator_says_of_a_point_is_the_point(position: i32, velocity: i32, acceleration: i32) {
+        let point = Point { position, velocity, acceleration };
+        prop_assert_eq!(Integrator::at_point(&point).rounded(), [position, velocity, acceleration]);
+    }
+}

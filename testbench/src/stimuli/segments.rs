@@ -1,0 +1,294 @@
+//! Inputs for the command FIFO, seeded: whole entries and single words, well formed and not; moves that end at rest and
+//! such that do not; ticks at every pace; requests, resets, and stops of every size.
+
+use posicast_model::rtl::segments::{Entry, INPUT_PORTS, Motion, POINT, Point, State};
+use rand::{Rng, RngExt, SeedableRng};
+use rand_xoshiro::Xoshiro256PlusPlus;
+use std::collections::VecDeque;
+
+use super::Stimuli;
+use super::table::pick;
+
+/// Clocks between changes of the slow inputs.
+const MOOD_CLOCKS: u64 = 2_000;
+
+/// What holds for a while.
+#[derive(Debug, Clone, Copy, Default)]
+struct Mood {
+    /// One write in so many clocks.
+    write_pace: u32,
+    /// One tick in about so many clocks.
+    tick_pace: u32,
+    /// One request in so many clocks.
+    request_pace: u32,
+    enable: bool,
+    stop_deceleration: u64,
+    low_water: u64,
+}
+
+/// A mixture of everything, without end.
+#[derive(Debug, Clone)]
+pub struct SegmentsRandom {
+    rng: Xoshiro256PlusPlus,
+    clock: u64,
+    mood: Mood,
+    until_tick: u32,
+    /// Words to write, as (word, data).
+    words: VecDeque<(u64, u64)>,
+}
+
+impl SegmentsRandom {
+    /// Equal seeds give equal inputs.
+    pub fn new(seed: u64) -> Self {
+        Self {
+            rng: Xoshiro256PlusPlus::seed_from_u64(seed),
+            clock: 0,
+            mood: Mood::default(),
+            until_tick: 1,
+            words: VecDeque::new(),
+        }
+    }
+
+    fn new_mood(&mut self) {
+        let rng = &mut self.rng;
+        let any: u64 = rng.random_range(0..1 << 31);
+        let shifted = any >> rng.random_range(0..31);
+        self.mood = Mood {
+            write_pace: *pick(rng, &[1, 1, 2, 5, 40]),
+            tick_pace: *pick(rng, &[1, 4, 9, 9, 10, 12, 12, 30]),
+            request_pace: *pick(rng, &[50, 500, 100_000, 100_000]),
+            enable: rng.random_range(0..8) != 0,
+            stop_deceleration: *pick(rng, &[0, 1, any, shifted, shifted, (1 << 31) - 1]),
+            low_water: rng.random_range(0..64),
+        };
+    }
+
+    fn jerk(&mut self) -> i64 {
+        let any = self.rng.random_range(-(1i64 << 39)..1 << 39);
+        any >> self.rng.random_range(0..40)
+    }
+
+    fn ticks(&mut self) -> u32 {
+        let few = self.rng.random_range(1..5);
+        *pick(&mut self.rng, &[few, few, few, 30])
+    }
+
+    /// There and back: jerk j, −2·j, j over n ticks each way ends at rest.
+    fn push_move(&mut self) {
+        let (jerk, ticks) = (self.jerk() >> 6, self.ticks());
+        for (ticks, jerk) in [(ticks, jerk), (2 * ticks, -jerk), (ticks, jerk)] {
+            let notify = self.rng.random_range(0..3) == 0;
+            self.push(&Entry {
+                ticks,
+                motion: Motion::Jerk(jerk),
+                notify,
+            });
+        }
+    }
+
+    fn push_point(&mut self) {
+        let rests = self.rng.random_range(0..2) == 0;
+        let mut word = || {
+            let any = self.rng.next_u64() as i32;
+            *pick(&mut self.rng, &[any, any >> 16, i32::MAX, i32::MIN, 0])
+        };
+        let position = word();
+        let (velocity, acceleration) = if rests { (0, 0) } else { (word(), word()) };
+        let point = Point {
+            position,
+            velocity,
+            acceleration,
+        };
+        let ticks = self.ticks();
+        self.push(&Entry {
+            ticks,
+            motion: Motion::Point(point),
+            notify: rests,
+        });
+    }
+
+    fn push(&mut self, entry: &Entry) {
+        let words = (0..).zip(entry.words()).map(|(word, data)| (word, u64::from(data)));
+        self.words.extend(words);
+        if let (Motion::Jerk(_), 0) = (entry.motion, self.rng.random_range(0..2)) {
+            let unused = self.words.len() - 2;
+            self.words.remove(unused);
+        }
+    }
+
+    /// An entry with one thing wrong.
+    fn push_malformed(&mut self) {
+        let jerk = self.jerk();
+        let good = Entry {
+            ticks: 3,
+            motion: Motion::Jerk(jerk),
+            notify: false,
+        };
+        let mut words = good.words();
+        let missing = self.rng.random_range(0..8);
+        match self.rng.random_range(0..5) {
+            0 => words[1] ^= 1 << self.rng.random_range(7..32),
+            1 => words[3] |= 1 << self.rng.random_range(24..30),
+            2 => words[3] = 0,
+            3 => words[3] |= POINT,
+            _ => {}
+        }
+        for (word, data) in (0..).zip(words) {
+            if word != missing {
+                self.words.push_back((word, u64::from(data)));
+            }
+        }
+    }
+
+    fn refill(&mut self) {
+        match self.rng.random_range(0..16) {
+            0..=8 => self.push_move(),
+            9..=11 => self.push_point(),
+            12..=13 => self.push_malformed(),
+            14 => {
+                let entry = Entry {
+                    ticks: self.ticks(),
+                    motion: Motion::Jerk(self.jerk()),
+                    notify: true,
+                };
+                self.push(&entry);
+            }
+            _ => {
+                let word = self.rng.random_range(0..4);
+                let data = self.rng.next_u64();
+                self.words.push_back((word, data));
+            }
+        }
+    }
+}
+
+impl Stimuli for SegmentsRandom {
+    fn fill(&mut self, _seen: &[u64], inputs: &mut [u64]) {
+        if self.clock.is_multiple_of(MOOD_CLOCKS) {
+            self.new_mood();
+        }
+        let Ok(inputs) = <&mut [u64; INPUT_PORTS]>::try_from(inputs) else {
+            return;
+        };
+        let mood = self.mood;
+        self.until_tick = self.until_tick.saturating_sub(1);
+        let tick = self.until_tick == 0;
+        if tick {
+            self.until_tick = mood.tick_pace + self.rng.random_range(0..2);
+        }
+        let write = self.rng.random_range(0..mood.write_pace) == 0;
+        let (mut word, mut data) = (self.rng.next_u64(), self.rng.next_u64());
+        if write {
+            if self.words.is_empty() {
+                self.refill();
+            }
+            (word, data) = self.words.pop_front().unwrap_or_default();
+        }
+        let mut request = || u64::from(self.rng.random_range(0..mood.request_pace) == 0);
+        let [flush, quick_stop, preset] = [request(), request(), request()];
+        // Without it a stop would be the end of most runs.
+        let restart = u64::from(self.rng.random_range(0..60) == 0);
+        *inputs = [
+            u64::from(self.clock < 2 || self.rng.random_range(0..20_000) == 0),
+            u64::from(tick),
+            u64::from(mood.enable != (self.rng.random_range(0..2_000) == 0)),
+            u64::from(write),
+            word,
+            data,
+            flush,
+            quick_stop,
+            restart,
+            preset,
+            self.rng.next_u64(),
+            mood.stop_deceleration,
+            mood.low_water,
+            u64::from(self.rng.random_range(0..100) == 0),
+        ];
+        self.clock += 1;
+    }
+}
+
+/// What a run reached, in clocks.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct SegmentsCoverage {
+    counts: [u64; NAMES.len()],
+    state: u64,
+}
+
+/// What is counted.
+const NAMES: [&str; 15] = [
+    "hold",
+    "move",
+    "stop",
+    "stopped",
+    "full",
+    "low",
+    "empty",
+    "notify",
+    "done",
+    "underrun",
+    "overflow",
+    "refused",
+    "malformed",
+    "tick_missed",
+    "stop to stopped",
+];
+
+impl SegmentsCoverage {
+    /// One clock's outputs.
+    pub fn observe(&mut self, outputs: &[u64]) {
+        let &[
+            _,
+            _,
+            _,
+            _,
+            state,
+            level,
+            low,
+            empty,
+            notify,
+            done,
+            underrun,
+            overflow,
+            refused,
+            malformed,
+            missed,
+        ] = outputs
+        else {
+            return;
+        };
+        let is = |wanted: State| u64::from(state == wanted as u64);
+        let stopped = u64::from(self.state == State::Stop as u64) & is(State::Stopped);
+        let seen = [
+            is(State::Hold),
+            is(State::Move),
+            is(State::Stop),
+            is(State::Stopped),
+            u64::from(level == 64),
+            low,
+            empty,
+            notify,
+            done,
+            underrun,
+            overflow,
+            refused,
+            malformed,
+            missed,
+            stopped,
+        ];
+        for (count, seen) in self.counts.iter_mut().zip(seen) {
+            *count += seen;
+        }
+        self.state = state;
+    }
+
+    /// The counts, by name.
+    pub fn counts(&self) -> impl Iterator<Item = (&'static str, u64)> {
+        NAMES.into_iter().zip(self.counts)
+    }
+
+    /// What was reached least.
+    pub fn least(&self) -> u64 {
+        self.counts.into_iter().min().unwrap_or(0)
+    }
+}
