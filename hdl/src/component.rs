@@ -4,7 +4,7 @@
 //! around them.
 
 use crate::emit::{EmitError, Header, Module, connect};
-use crate::{divider, pulse_counter, registers, sample_select, setting_banks, shaper, sliding_mode, time_base};
+use crate::{divider, pulse_counter, pwm, registers, sample_select, setting_banks, shaper, sliding_mode, time_base};
 use posicast_model::rtl::component::{Block, Component};
 
 /// All Verilog modules of a component, sub-modules first, the top last. The top is called `name`, the others begin with it.
@@ -19,6 +19,7 @@ pub fn emit(component: &Component, name: &str) -> Result<Vec<Module>, EmitError>
             Block::Registers => vec![registers::emit(component.map(), name)?],
             Block::Shaper(config) => shaper::emit(config, name)?,
             Block::SampleSelect { word_bits, channels } => sample_select::emit(*word_bits, *channels, name)?,
+            Block::Pwm(config) => pwm::emit(config, name)?,
             Block::SlidingMode => sliding_mode::emit(name)?,
             Block::SettingBanks(machine) => setting_banks::emit(machine, name)?,
             Block::PulseCounter => pulse_counter::emit(name)?,

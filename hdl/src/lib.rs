@@ -12,6 +12,7 @@
 //! | [`cascade`] | the cascade of half sums |
 //! | [`divider`] | counts and clocks to velocity, one bit per clock |
 //! | [`pulse_counter`] | encoder signals to position, index and velocity |
+//! | [`pwm`] | duty to the gates of a bridge, with dead time and fault path |
 //! | [`sliding_mode`] | the controller: sliding mode, PD, PID |
 //! | [`registers`] | register banks, from their description |
 //! | [`time_base`], [`sample_select`], [`setting_banks`] | what stand-alone components have beside |

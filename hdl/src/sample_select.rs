@@ -114,9 +114,10 @@ impl<const W: usize, const C: usize> Pins for SampleSelect<W, C> {
     }
 }
 
-/// The sizes that components have: those of shapers, and five words of 32 bits for a controller.
+/// The sizes that components have: those of shapers, a duty, and five words of 32 bits for a controller.
 fn block(word_bits: u32, channels: usize) -> Box<dyn Pins> {
     match (word_bits, channels) {
+        (17, _) => Box::new(SampleSelect::<17, 1>::default()),
         (16, _) => Box::new(SampleSelect::<16, 1>::default()),
         (24, 1) => Box::new(SampleSelect::<24, 1>::default()),
         (24, 2) => Box::new(SampleSelect::<24, 2>::default()),

@@ -11,7 +11,7 @@
 //!
 //! They know the description, and nothing of model or Verilog, so both are held to it. What hardware may change by
 //! itself (live words, flags from outside, and what is guarded by a pin) is left out unless [`Hardware::Still`] says that
-//! the pins are ours: then inputs are 0 and guards are open.
+//! the pins are ours: then inputs are 0, and guards open.
 
 use posicast_model::rtl::registers::{Access, Register, RegisterMap, Source};
 use posicast_model::rtl::{ClockedBlock, Direction};
@@ -63,14 +63,9 @@ impl<'a> Host<'a> {
             ports.map(|port| port.name.clone()).collect()
         };
         let (inputs, outputs) = (names(Direction::Input), names(Direction::Output));
-        let guards = map.registers().iter().filter_map(|register| match &register.access {
-            Access::Guarded { by } => Some(by),
-            _ => None,
-        });
-        let open: Vec<&String> = guards.collect();
         let read_data = outputs.iter().position(|name| name == "avs_readdata");
         let mut host = Self {
-            inputs: inputs.iter().map(|name| open.contains(&name).into()).collect(),
+            inputs: vec![0; inputs.len()],
             outputs: vec![0; outputs.len()],
             read_data: read_data.ok_or("the block has no `avs_readdata`")?,
             expected: map.registers().iter().map(Register::reset).collect(),
@@ -163,23 +158,12 @@ impl<'a> Host<'a> {
         let running = self.hardware == Hardware::Running;
         match &register.access {
             Access::Live | Access::Shadow { .. } | Access::Guarded { .. } if running => 0,
-            // The guards, which are open.
-            Access::Live => !self.guards(register),
             Access::Sticky | Access::InterruptState if running => {
                 let outside = register.fields.iter().filter(|field| field.source == Source::Input);
                 !outside.fold(0, |mask, field| mask | field.mask())
             }
             _ => !0,
         }
-    }
-
-    fn guards(&self, register: &Register) -> u32 {
-        let is_guard = |name: &str| {
-            let mut all = self.map.registers().iter();
-            all.any(|r| matches!(&r.access, Access::Guarded { by } if by == name))
-        };
-        let guards = register.fields.iter().filter(|field| is_guard(&field.name));
-        guards.fold(0, |mask, field| mask | field.mask())
     }
 
     fn check(&mut self, at: usize, when: &str) -> Result<(), String> {

@@ -53,7 +53,7 @@ impl Logic for Carrier {
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module pwm_carrier");
-        comment!("@about Position in the period, and its boundaries.");
+        comment!("@about Position in the period; boundaries.");
         dff_setup!(
             self, clk, position_q, period_q, at_valley, at_peak, valley_q, peak_q, trigger_q
         );

@@ -236,7 +236,7 @@ impl Logic for Pwm {
         self.guard.filtered_fault_n.next = self.filtered_fault_n.val();
         self.guard.clear_trip.next = self.clear_trip.val();
 
-        comment!("Off at once; on at a valley, with settled registers");
+        comment!("Off at once; on at a valley, registers settled");
         self.settled.next = self.timing.settled.val() & (self.carrier.period_used.val() == self.period.val());
         self.may_run.next = self.enable.val() & !self.guard.tripped.val();
         self.goes_on.next = self.running_q.q.val() & self.may_run.val();
@@ -297,8 +297,8 @@ impl Logic for Pwm {
             }
         }
 
-        comment!("The edge of the half that begins: a sum, or by two");
-        comment!("inversions a difference; the odd clock is the carry");
+        comment!("The edge of the half that begins: a sum; by two");
+        comment!("inversions a difference; the odd clock carries");
         self.width_now.next = self.pulse.q.val();
         if self.updates.val() {
             self.width_now.next = self.command.width.val();

@@ -32,7 +32,7 @@ impl Logic for Leg {
     fn update(&mut self) {
         comment!("@module pwm_leg");
         comment!("@about Never both sides; dead time between them;");
-        comment!("@about no pulse below the minimum, unless all goes off.");
+        comment!("@about no pulse below the minimum.");
         dff_setup!(self, clk, awake_q, lit_q, high_q, timer);
 
         self.awake_next.next = self.awake_q.q.val();

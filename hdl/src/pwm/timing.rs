@@ -57,7 +57,7 @@ impl Logic for Timing {
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module pwm_timing");
-        comment!("@about Dead time and minimum pulse, above the floor.");
+        comment!("@about Dead time and minimum pulse, and floors.");
         dff_setup!(self, clk, dead_time_q, minimum_pulse_q);
         self.dead_below.next = self.dead_time.val() < self.dead_time_floor.val();
         self.dead_wanted.next = self.dead_time.val();

@@ -50,7 +50,7 @@ impl Logic for Trip {
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module pwm_trip");
-        comment!("@about Fault latch, filtered faults, PLL, watchdog.");
+        comment!("@about Fault latch, faults, PLL, watchdog.");
         dff_setup!(self, clk, filtered_0, filtered_1, pll, watchdog, unfed);
 
         comment!("Without a clock: the pins, and the latch");

@@ -107,7 +107,7 @@ pub(super) fn register_block(lines: &mut Lines, map: &RegisterMap, register: &Re
     }
 }
 
-pub(super) fn guarded(lines: &mut Lines, register: &Register, by: &str) {
+pub(super) fn guarded(lines: &mut Lines, register: &Register, while_low: &str) {
     for field in &register.fields {
         let declaration = type_of(field).declaration();
         let space = if declaration.is_empty() { "" } else { " " };
@@ -122,7 +122,7 @@ pub(super) fn guarded(lines: &mut Lines, register: &Register, by: &str) {
         };
         format!("{next} >= {}", bits(field.width).literal(field.minimum.into()))
     });
-    let terms: Vec<String> = std::iter::once(by.to_owned()).chain(minima).collect();
+    let terms: Vec<String> = std::iter::once(format!("!{while_low}")).chain(minima).collect();
     joined(lines, &format!("wire allow_{} = ", register.name), &terms, " && ", ";");
 }
 

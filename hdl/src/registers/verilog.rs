@@ -163,7 +163,7 @@ fn writes(lines: &mut Lines, map: &RegisterMap) {
     lines.section(|lines| {
         for register in map.registers() {
             match &register.access {
-                Access::Guarded { by } => guarded(lines, register, by),
+                Access::Guarded { while_low } => guarded(lines, register, while_low),
                 Access::Commit { tick } => {
                     declare(lines, &flops(register), "");
                     lines.line(&format!("wire applies = waits && {tick};"));

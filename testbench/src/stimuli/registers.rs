@@ -177,6 +177,8 @@ enum Core {
     Shaper(Box<ShaperConfig>, Table),
     PulseCounter(Box<PulseCounterRandom>, Vec<u64>),
     SlidingMode,
+    /// Where `fault_n` is among the inputs, with the PLL's and the filtered faults behind it.
+    Pwm(usize),
     Other,
 }
 
@@ -186,6 +188,11 @@ impl ComponentRandom {
         let core = component.blocks().iter().find_map(|block| match block {
             Block::Shaper(config) => Some(Core::Shaper(Box::new(config.clone()), Table::with_capacity(256))),
             Block::SlidingMode => Some(Core::SlidingMode),
+            Block::Pwm(_) => {
+                let ports = component.composition().ports().iter();
+                let mut inputs = ports.filter(|port| port.direction == Direction::Input);
+                inputs.position(|port| port.name == "fault_n").map(Core::Pwm)
+            }
             Block::PulseCounter => Some(Core::PulseCounter(Box::new(PulseCounterRandom::new(seed)), vec![0; 26])),
             _ => None,
         });
@@ -257,6 +264,28 @@ impl ComponentRandom {
                 self.write("control", u32::from(random >> 12 & 3 != 0));
                 self.write("start", 0);
             }
+            Core::Pwm(_) => {
+                // Off, a short period, times near the floors, on.
+                self.write("control", 0);
+                self.write("period", 20 + (random & 0x3f));
+                self.write("times", 4 + (random >> 6 & 3) | (3 + (random >> 8 & 3)) << 16);
+                self.write("max_duty", random >> 10 & 0x7f);
+                self.write("phase", random >> 12 & 0x1f_001f);
+                self.write(
+                    "supervision",
+                    if random >> 17 & 1 == 0 { 0 } else { random >> 18 & 0x703 },
+                );
+                self.write("clear_trip", 0);
+                self.write("control", 1 | random >> 20 & 0x306);
+                for _ in 0..random >> 28 {
+                    let duty = self.registers.rng.next_u32() as i32 >> 24;
+                    self.write("duty", duty as u32);
+                    self.write("feed", 0);
+                    self.writes.extend([(0x40, 0); 20]);
+                    // Refused while it runs.
+                    self.write("times", 0x1f | 0x1f << 16);
+                }
+            }
             Core::Other => {}
         }
     }
@@ -270,6 +299,14 @@ impl Stimuli for ComponentRandom {
             encoder.fill(&[], row);
             // The lines are the same in both, behind `rst` and behind the bus.
             inputs[BUS_INPUTS..BUS_INPUTS + 6].copy_from_slice(&row[1..7]);
+        }
+        if let Core::Pwm(fault_n) = self.core {
+            // Healthy, as a rule.
+            for (input, healthy) in inputs[fault_n..].iter_mut().zip([1, 1, 3]) {
+                if !self.registers.one_in(1000) {
+                    *input = healthy;
+                }
+            }
         }
         if inputs[READ] == 0
             && !self.registers.one_in(4)
@@ -399,8 +436,8 @@ impl RegistersCoverage {
                 self.waits |= !waits;
             }
             Access::Staged => self.bin("staged write while a commit waits".to_owned(), waits.into()),
-            Access::Guarded { by } => {
-                let open = self.input(inputs, by);
+            Access::Guarded { while_low } => {
+                let open = !self.input(inputs, while_low);
                 let which = if open { "open" } else { "closed" };
                 self.bin(format!("{name}: guard {which}"), 1);
             }

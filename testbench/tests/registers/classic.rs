@@ -1,6 +1,6 @@
 //! The six classic register tests: bank and components, model and Verilog. And each catches a bank that is wrong.
 
-use crate::components::{pulse_counter, shaper, sliding_mode};
+use crate::components::{pulse_counter, pwm, shaper, sliding_mode};
 use crate::everything::everything;
 use crate::support::Bench;
 use posicast_hdl::component::emit;
@@ -60,6 +60,11 @@ fn lockstep_the_pulse_counter_keeps_its_promises() {
 #[test]
 fn lockstep_the_sliding_mode_keeps_its_promises() {
     component(&sliding_mode());
+}
+
+#[test]
+fn lockstep_the_pwm_keeps_its_promises() {
+    component(&pwm());
 }
 
 #[test]

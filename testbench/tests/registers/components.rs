@@ -4,6 +4,7 @@ use crate::support::{Bench, assert_match};
 use posicast_hdl::component::emit;
 use posicast_model::rtl::component::Component;
 use posicast_model::rtl::divider::DividerConfig;
+use posicast_model::rtl::pwm::{ActiveLow, Mode, PwmConfig};
 use posicast_model::rtl::shaper::{Motion, ShaperConfig};
 use posicast_model::rtl::sliding_mode::{Gain, Law, Row, Settings};
 use posicast_model::taps::{Tap, TapTable};
@@ -12,6 +13,14 @@ use posicast_testbench::stimuli::ComponentRandom;
 
 pub(crate) fn pulse_counter() -> Component {
     Component::pulse_counter(DividerConfig::new(97).unwrap(), 3).unwrap()
+}
+
+pub(crate) fn pwm() -> Component {
+    let active_low = ActiveLow {
+        a_low: true,
+        ..ActiveLow::default()
+    };
+    Component::pwm(PwmConfig::new(active_low, 4, 3).unwrap(), Mode::HalfBridge, 60).unwrap()
 }
 
 pub(crate) fn sliding_mode() -> Component {
@@ -127,6 +136,21 @@ fn lockstep_shaper_of_two_channels_and_a_modulo_axis() {
 #[test]
 fn lockstep_sliding_mode_a_million_random_clocks() {
     lockstep(&sliding_mode(), 1_000_000);
+}
+
+#[test]
+fn lockstep_pwm_a_million_random_clocks() {
+    lockstep(&pwm(), 1_000_000);
+}
+
+#[test]
+fn crosssim_icarus_agrees_with_the_pwm() {
+    crosssim(&pwm());
+}
+
+#[test]
+fn lockstep_catches_a_dead_time_that_is_writable_while_running() {
+    caught(&pwm(), "allow_times = !running && ", "allow_times = ");
 }
 
 #[test]

@@ -8,6 +8,7 @@
 //! | component | block | beside it |
 //! |---|---|---|
 //! | [`Component::shaper`] | [`shaper`](super::shaper) | [`sample_select`](super::sample_select) |
+//! | [`Component::pwm`] | [`pwm`](super::pwm) | [`sample_select`](super::sample_select) |
 //! | [`Component::sliding_mode`] | [`sliding_mode`](super::sliding_mode) | [`sample_select`](super::sample_select), [`setting_banks`](super::setting_banks) |
 //! | [`Component::pulse_counter`] | [`pulse_counter`](super::pulse_counter) | [`divider`](super::divider), [`time_base`](super::time_base) |
 //!
@@ -26,6 +27,7 @@
 //! ```
 
 mod pulse_counter;
+mod pwm;
 mod shaper;
 mod sliding_mode;
 
@@ -33,6 +35,7 @@ use super::Moore;
 use super::composition::{Composed, Composition, CompositionError, Part};
 use super::divider::{DIVISION_CLOCKS, Divider, DividerConfig};
 use super::pulse_counter::PulseCounter;
+use super::pwm::{Mode, Pwm, PwmConfig};
 use super::registers::{Description, MapError, RegisterBank, RegisterMap};
 use super::sample_select::SampleSelect;
 use super::setting_banks::SettingBanks;
@@ -72,6 +75,8 @@ pub enum Block {
     Divider(DividerConfig),
     /// Its time base.
     TimeBase(DividerConfig),
+    /// The PWM.
+    Pwm(PwmConfig),
     /// The controller.
     SlidingMode,
     /// Its settings, the machine's in bank 0.
@@ -95,6 +100,9 @@ pub enum ComponentError {
     /// A filter that its register does not hold.
     #[error("a filter of {0} clocks: the pulse counter has one of 0 to 63")]
     Filter(u32),
+    /// A period that the carrier does not have.
+    #[error("a PWM period of {0} clocks: 2 to 65536 are possible; choose another PWM frequency")]
+    Period(u32),
     /// An error of the component's register map.
     #[error(transparent)]
     Map(#[from] MapError),
@@ -158,6 +166,26 @@ impl Component {
         ];
         let map = super::registers::maps::sliding_mode(law as u32, modulo);
         Self::new(map, blocks, sliding_mode::wiring())
+    }
+
+    /// The PWM, with this mode and period after reset: its duty by register or pins.
+    ///
+    /// # Errors
+    /// [`ComponentError`] for periods other than 2 to 65,536 clocks.
+    pub fn pwm(config: PwmConfig, mode: Mode, period_clocks: u32) -> Result<Self, ComponentError> {
+        if !(2..=65_536).contains(&period_clocks) {
+            return Err(ComponentError::Period(period_clocks));
+        }
+        let blocks = vec![
+            Block::Registers,
+            Block::SampleSelect {
+                word_bits: pwm::DUTY_BITS,
+                channels: 1,
+            },
+            Block::Pwm(config),
+        ];
+        let map = super::registers::maps::pwm(&config, mode, period_clocks);
+        Self::new(map, blocks, pwm::wiring())
     }
 
     fn new(description: Description, blocks: Vec<Block>, wiring: Wiring) -> Result<Self, ComponentError> {
@@ -227,6 +255,7 @@ impl Block {
             Self::Registers => "registers",
             Self::Shaper(_) => "shaper",
             Self::SampleSelect { .. } => "sample_select",
+            Self::Pwm(_) => "pwm",
             Self::SlidingMode => "sliding_mode",
             Self::SettingBanks(_) => "setting_banks",
             Self::PulseCounter => "pulse_counter",
@@ -240,6 +269,7 @@ impl Block {
             Self::Registers => Box::new(RegisterBank::new(map)),
             Self::Shaper(config) => Box::new(Shaper::new(config, seed)),
             Self::SampleSelect { word_bits, channels } => Box::new(SampleSelect::new(*word_bits, *channels)),
+            Self::Pwm(config) => Box::new(Pwm::new(config)),
             Self::SlidingMode => Box::new(SlidingMode::new()),
             Self::SettingBanks(machine) => Box::new(SettingBanks::new(machine)),
             Self::PulseCounter => Box::new(PulseCounter::new()),

@@ -49,7 +49,7 @@ pub use ports::{Gates, INPUTS, Inputs, Mode, OUTPUTS, Outputs, ports};
 use self::command::{Limited, Width};
 use self::leg::{Leg, Want};
 use self::trip::Trip;
-use super::{ClockedBlock, Port, StepError};
+use super::{ClockedBlock, Moore, Port, StepError};
 
 /// Clocks before a boundary at which duty and mode are read.
 pub const COMMAND_CLOCKS: u32 = 2;
@@ -215,7 +215,9 @@ impl Pwm {
         if counts {
             counted.leg.timer = before.leg.timer.wrapping_sub(1);
         }
-        if counted != *state || inputs.sync {
+        // A strobe that is on falls in the next clock.
+        let strobes = state.at_valley || state.at_peak || state.valley || state.peak || state.trigger;
+        if counted != *state || strobes || inputs.sync {
             return 0;
         }
         let events = [
@@ -354,5 +356,14 @@ impl ClockedBlock for Pwm {
         let shown = Pwm::step(self, &Inputs::from_raw(raw));
         outputs.copy_from_slice(&shown.to_raw());
         Ok(())
+    }
+}
+
+/// The pins of the gates depend on the raw faults of the same clock, and are shown as in a fault.
+impl Moore for Pwm {
+    fn show(&self, outputs: &mut [u64]) {
+        for (output, value) in outputs.iter_mut().zip(self.outputs(&Inputs::default()).to_raw()) {
+            *output = value;
+        }
     }
 }

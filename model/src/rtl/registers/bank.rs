@@ -248,7 +248,7 @@ impl RegisterBank {
             Access::Guarded { .. } => {
                 let word = merged(state.words[at]);
                 let enough = plan.minima.iter().all(|(mask, minimum)| word & mask >= *minimum);
-                if inputs[plan.gate] & 1 != 0 && enough {
+                if inputs[plan.gate] & 1 == 0 && enough {
                     state.words[at] = word;
                 } else {
                     refusals.guard = true;
@@ -338,7 +338,7 @@ fn plan(map: &RegisterMap, at: usize) -> Plan {
             .collect(),
         minima: minima.map(|field| (field.mask(), field.minimum << field.low)).collect(),
         gate: match access {
-            Access::Guarded { by } => input(by),
+            Access::Guarded { while_low } => input(while_low),
             Access::Commit { tick } => input(tick),
             _ => 0,
         },

@@ -174,7 +174,7 @@ fn access(register: &Register, registers: &[Register]) -> Result<(), MapError> {
                 });
             }
         }
-        Access::Guarded { by: input } | Access::Commit { tick: input } | Access::Command { strobe: input } => {
+        Access::Guarded { while_low: input } | Access::Commit { tick: input } | Access::Command { strobe: input } => {
             port_name(input)?;
             let fields = register.fields.len();
             match register.access {

@@ -112,8 +112,8 @@ fn ports(description: &Description) -> Result<Vec<Port>, MapError> {
                 let from_input = fields.filter(|field| field.source == Source::Input);
                 add(&mut ports, register, from_input.map(|field| field_port(field, Input)))?;
             }
-            Access::Guarded { by } => {
-                add(&mut ports, register, [port(by, Input, 1, false)])?;
+            Access::Guarded { while_low } => {
+                add(&mut ports, register, [port(while_low, Input, 1, false)])?;
                 add(&mut ports, register, fields.map(|field| field_port(field, Output)))?;
             }
             Access::Commit { tick } => add(&mut ports, register, [port(tick, Input, 1, false)])?,

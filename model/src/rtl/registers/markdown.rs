@@ -72,7 +72,7 @@ pub fn markdown(map: &RegisterMap) -> String {
 fn access(register: &Register) -> String {
     match &register.access {
         Access::Shadow { of } => format!("shadow of `{}`", of.to_uppercase()),
-        Access::Guarded { by } => format!("guarded by `{by}`"),
+        Access::Guarded { while_low } => format!("guarded: while `{while_low}` is low"),
         Access::Command { strobe } => format!("command `{strobe}`"),
         Access::Commit { tick } => format!("commit at `{tick}`"),
         other => other.words().to_owned(),

@@ -1,0 +1,204 @@
+//! What the blocks do all day in a machine of 50 MHz and 10 kHz: 5000 clocks per tick, 20 ticks.
+
+use crate::Block;
+use posicast_hdl::{cascade, divider, pulse_counter, shaper};
+use posicast_model::rtl::cascade::{self as cascade_model, Cascade, CascadeConfig, SampleCascade};
+use posicast_model::rtl::divider::{DIVISION_CLOCKS, Divider, DividerConfig};
+use posicast_model::rtl::pulse_counter::{Inputs, PulseCounter};
+use posicast_model::rtl::shaper::{self as shaper_model, Motion, MotionShaper, SampleShaper, Shaper, ShaperConfig};
+use posicast_model::taps::{Tap, TapTable};
+use std::hint::black_box;
+
+const TICK_CLOCKS: u64 = 5000;
+const TICKS: u64 = 20;
+
+/// An encoder with an edge every 230 to 370 clocks, glitches of two clocks, and a reversal; a divider that answers.
+pub(crate) fn pulse_counter() -> Block {
+    let events = encoder();
+    let mut inputs = Vec::new();
+    for (held, clocks) in &events {
+        for clock in 0..*clocks {
+            let time_stamp = (held.time_stamp + clock as u32) & 0xff_ffff;
+            inputs.extend(Inputs { time_stamp, ..*held }.to_raw());
+        }
+    }
+    let mut counter = PulseCounter::new();
+    Block {
+        name: "pulse_counter",
+        modules: pulse_counter::emit("").unwrap(),
+        model: Box::new(PulseCounter::new()),
+        inputs,
+        fast: Box::new(move || {
+            let hold = |(inputs, clocks): &(Inputs, u64)| {
+                counter.hold(black_box(inputs), *clocks);
+                i64::from(counter.outputs().velocity)
+            };
+            events.iter().map(hold).sum()
+        }),
+    }
+}
+
+/// Inputs, and for how many clocks.
+fn encoder() -> Vec<(Inputs, u64)> {
+    let config = DividerConfig::new(TICK_CLOCKS).unwrap();
+    let mut counter = PulseCounter::new();
+    let mut inputs = Inputs {
+        filter_clocks: 5,
+        smoothing: 2,
+        timeout: 8,
+        ..Inputs::default()
+    };
+    let mut events = Vec::new();
+    let mut angle = 0usize;
+    let mut edge_at = 300;
+    let mut clock = 0;
+    while clock < TICKS * TICK_CLOCKS {
+        if clock == edge_at {
+            // Up in the first half, down in the second.
+            angle += if clock < TICKS * TICK_CLOCKS / 2 { 1 } else { 3 };
+            (inputs.a, inputs.b) = [(false, false), (true, false), (true, true), (false, true)][angle % 4];
+            edge_at += 230 + clock % 141;
+        }
+        inputs.z = angle % 400 < 2 || clock % TICK_CLOCKS == 700;
+        inputs.tick = clock % TICK_CLOCKS == TICK_CLOCKS - 1;
+        inputs.quotient_valid = clock % TICK_CLOCKS == u64::from(DIVISION_CLOCKS);
+        let shown = counter.outputs();
+        inputs.quotient = config.divide(shown.steps, shown.elapsed).0 as i32;
+        inputs.time_stamp = clock as u32 & 0xff_ffff;
+        counter.step(&inputs);
+        match events.last_mut() {
+            Some((held, clocks)) if same_but_for_time(held, &inputs) => *clocks += 1,
+            _ => events.push((inputs, 1)),
+        }
+        clock += 1;
+    }
+    events
+}
+
+fn same_but_for_time(held: &Inputs, inputs: &Inputs) -> bool {
+    let time_stamp = held.time_stamp;
+    Inputs { time_stamp, ..*inputs } == *held
+}
+
+/// Four channels' divisions after every tick.
+pub(crate) fn divider() -> Block {
+    let config = DividerConfig::new(TICK_CLOCKS).unwrap();
+    let operands = |clock: u64| {
+        let division = clock % TICK_CLOCKS;
+        let starts = division % 110 == 0 && division < 440;
+        starts.then(|| (clock as i32 % 77 - 38, 4000 + clock as u32 % 2000))
+    };
+    let row = |clock| {
+        let (steps, elapsed) = operands(clock).unwrap_or_default();
+        let start = u64::from(operands(clock).is_some());
+        [0, start, steps as u64 & 0x3_ffff, u64::from(elapsed), 0]
+    };
+    let divisions: Vec<(i32, u32)> = (0..TICKS * TICK_CLOCKS).filter_map(operands).collect();
+    Block {
+        name: "divider",
+        modules: divider::emit(&config, "").unwrap(),
+        model: Box::new(Divider::new(&config)),
+        inputs: (0..TICKS * TICK_CLOCKS).flat_map(row).collect(),
+        fast: Box::new(move || {
+            let divide = |&(steps, elapsed): &(i32, u32)| config.divide(black_box(steps), black_box(elapsed)).0;
+            divisions.iter().map(divide).sum()
+        }),
+    }
+}
+
+/// Six taps: ZVD digitised with two taps per impulse.
+fn shaper_config() -> ShaperConfig {
+    let taps = [(0, 25431), (38, 12000), (39, 18787), (77, 4000), (78, 5317), (79, 1)];
+    let tap = |(delay_samples, coefficient)| Tap {
+        delay_samples,
+        coefficient,
+    };
+    ShaperConfig::new(32, TapTable::new(16, taps.map(tap).to_vec()).unwrap()).unwrap()
+}
+
+/// The command of a tick: a ramp.
+fn command(tick: u64) -> i64 {
+    12_345 * tick as i64
+}
+
+/// Strobes are at the first clock of a tick.
+fn strobe(clock: u64) -> bool {
+    clock.is_multiple_of(TICK_CLOCKS)
+}
+
+/// One sample per tick.
+pub(crate) fn shaper() -> Block {
+    let config = shaper_config();
+    let row = |clock| {
+        let inputs = shaper_model::Inputs {
+            strobe: strobe(clock),
+            x: if strobe(clock) { command(clock / TICK_CLOCKS) } else { 0 },
+            ..shaper_model::Inputs::default()
+        };
+        inputs.to_raw(&config)
+    };
+    let mut fast = SampleShaper::new(&config);
+    Block {
+        name: "shaper",
+        modules: shaper::emit(&config, "").unwrap(),
+        model: Box::new(Shaper::new(&config, 1)),
+        inputs: (0..TICKS * TICK_CLOCKS).flat_map(row).collect(),
+        fast: Box::new(move || (0..TICKS).map(|tick| fast.push(black_box(command(tick)))).sum()),
+    }
+}
+
+/// Position, velocity and acceleration, one sample per tick.
+pub(crate) fn shaper_in_motion() -> Block {
+    let motion = Motion {
+        channels: 3,
+        modulo: false,
+    };
+    let config = shaper_config().for_motion(motion).unwrap();
+    let words = |tick| [command(tick), 12_345 << 8, 0];
+    let row = |clock| {
+        let [x, velocity, acceleration] = if strobe(clock) {
+            words(clock / TICK_CLOCKS)
+        } else {
+            [0; 3]
+        };
+        let inputs = shaper_model::Inputs {
+            strobe: strobe(clock),
+            x,
+            x_rates: [velocity, acceleration],
+            ..shaper_model::Inputs::default()
+        };
+        inputs.to_raw(&config)
+    };
+    let mut fast = MotionShaper::new(&config);
+    Block {
+        name: "shaper, 3 channels",
+        modules: shaper::emit(&config, "").unwrap(),
+        model: Box::new(Shaper::new(&config, 1)),
+        inputs: (0..TICKS * TICK_CLOCKS).flat_map(row).collect(),
+        fast: Box::new(move || {
+            let push = |tick| fast.push(black_box(words(tick))).iter().sum::<i64>();
+            (0..TICKS).map(push).sum()
+        }),
+    }
+}
+
+/// Four half sums, one sample per tick.
+pub(crate) fn cascade() -> Block {
+    let config = CascadeConfig::new(32, vec![20, 30, 40, 50]).unwrap();
+    let row = |clock| {
+        let inputs = cascade_model::Inputs {
+            strobe: strobe(clock),
+            x: if strobe(clock) { command(clock / TICK_CLOCKS) } else { 0 },
+            ..cascade_model::Inputs::default()
+        };
+        inputs.to_raw(&config)
+    };
+    let mut fast = SampleCascade::new(&config);
+    Block {
+        name: "cascade",
+        modules: cascade::emit(&config, "").unwrap(),
+        model: Box::new(Cascade::new(&config, 1)),
+        inputs: (0..TICKS * TICK_CLOCKS).flat_map(row).collect(),
+        fast: Box::new(move || (0..TICKS).map(|tick| fast.push(black_box(command(tick)))).sum()),
+    }
+}
