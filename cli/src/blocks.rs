@@ -8,16 +8,18 @@ use posicast_hdl::machine::AxisShaper;
 use posicast_model::rtl::cascade::CascadeConfig;
 use posicast_model::rtl::component::Component;
 use posicast_model::rtl::divider::DividerConfig;
-use posicast_model::rtl::pwm::{ActiveLow, PwmConfig, PwmConfigError};
+use posicast_model::rtl::pwm::{ActiveLow, Mode, PwmConfig, PwmConfigError};
 use posicast_model::rtl::registers::RegisterMap;
 use posicast_model::rtl::shaper::{MOTION_WORD_BITS, Motion, ShaperConfig};
-use posicast_model::spec::{Axis, Machine, Pwm};
+use posicast_model::spec::{Axis, Machine, Pwm, PwmMode};
 use posicast_testbench::blocks::{
     Block, CascadeBlock, ComponentBlock, DividerBlock, MachineShapers, PulseCounterBlock, PwmBlock, RegistersBlock,
-    ShaperBlock, SlidingModeBlock,
+    SegmentsBlock, ShaperBlock, SlidingModeBlock,
 };
 use std::path::Path;
 
+/// What the name of a component's top module ends with.
+pub(crate) const COMPONENT_SUFFIX: &str = "_avalon";
 /// Delays of the cascade that is compared where no machine asks for one, in samples.
 const CASCADE_DELAYS_SAMPLES: [u32; 4] = [26, 31, 38, 62];
 /// Its word.
@@ -65,6 +67,7 @@ pub(crate) fn others(
     ));
     let cascade = CascadeConfig::new(CASCADE_WORD_BITS, CASCADE_DELAYS_SAMPLES.to_vec()).map_err(Failure::because)?;
     blocks.push(Box::new(CascadeBlock::new(cascade, name)));
+    blocks.push(Box::new(SegmentsBlock::new(name, "alone")));
     let components = components(machine, shapers, controllers, path)?;
     let mut maps: Vec<&RegisterMap> = Vec::new();
     for map in components.iter().map(|component| component.component().map()) {
@@ -100,17 +103,32 @@ pub(crate) fn components(
             let divider = divider(machine, path)?;
             of_axis.push(Component::pulse_counter(divider, encoder.filter_clocks).map_err(refused)?);
         }
+        if let Some(pwm) = &axis.pwm {
+            let config = pwm_config(machine, pwm).map_err(|error| Failure::because(error).in_file(path))?;
+            let period_clocks = pwm.period_clocks(&machine.clock);
+            of_axis.push(Component::pwm(config, hardware_mode(pwm.mode), period_clocks).map_err(refused)?);
+        }
         if let Some(control) = control {
             let (settings, law) = (&control.derived.settings, control.derived.law);
             of_axis.push(Component::sliding_mode(settings, law, axis.modulo).map_err(refused)?);
         }
         let named = |component: Component| {
-            let top = format!("{}_{}_{}_avalon", machine.name, axis.name, component.name());
+            let top = format!("{}_{}_{}{COMPONENT_SUFFIX}", machine.name, axis.name, component.name());
             ComponentBlock::new(component, &top, &format!("{}, Avalon", axis.name))
         };
         components.extend(of_axis.into_iter().map(named));
     }
     Ok(components)
+}
+
+/// The mode's register value.
+fn hardware_mode(mode: PwmMode) -> Mode {
+    match mode {
+        PwmMode::Direction => Mode::Direction,
+        PwmMode::HalfBridge => Mode::HalfBridge,
+        PwmMode::FullBridge => Mode::Unipolar,
+        PwmMode::LockedAntiphase => Mode::Locked,
+    }
 }
 
 /// The PWMs of the machine, each with the axes that have one like it; one of its own where no axis has any.
