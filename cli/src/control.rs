@@ -4,7 +4,7 @@ use crate::failure::Failure;
 use crate::output;
 use posicast_model::control::{self, Derived};
 use posicast_model::rtl::sliding_mode::{Law, Row};
-use posicast_model::spec::{Axis, Machine};
+use posicast_model::spec::{Axis, Machine, PwmMode};
 use serde::Serialize;
 use std::path::Path;
 
@@ -13,7 +13,12 @@ pub(crate) struct AxisControl {
     pub(crate) axis: String,
     pub(crate) lag_s: f64,
     pub(crate) derived: Derived,
+    /// Whether the pins have no pattern for a negative command.
+    one_sided: bool,
 }
+
+const ONE_SIDED: &str = "a half bridge shows a negative command as 0: choose direction, full-bridge or locked-antiphase \
+                         for mode in [axis.pwm], unless the axis is pushed back by something else";
 
 /// The controllers of the machine that the file at `path` describes: `None` for an axis without.
 pub(crate) fn of_machine(machine: &Machine, path: &Path) -> Result<Vec<Option<AxisControl>>, Failure> {
@@ -27,6 +32,7 @@ pub(crate) fn of_machine(machine: &Machine, path: &Path) -> Result<Vec<Option<Ax
             axis: axis.name.clone(),
             lag_s,
             derived,
+            one_sided: pwm.mode == PwmMode::HalfBridge,
         }))
     };
     machine.axes.iter().map(of_axis).collect()
@@ -35,9 +41,14 @@ pub(crate) fn of_machine(machine: &Machine, path: &Path) -> Result<Vec<Option<Ax
 impl AxisControl {
     /// Says on standard error what is doubtful.
     pub(crate) fn warn(&self) {
-        for warning in &self.derived.warnings {
+        for warning in self.warnings() {
             output::say(&format!("warning: controller of axis `{}`: {warning}", self.axis));
         }
+    }
+
+    fn warnings(&self) -> Vec<String> {
+        let of_law = self.derived.warnings.iter().map(ToString::to_string);
+        of_law.chain(self.one_sided.then(|| ONE_SIDED.to_owned())).collect()
     }
 
     /// A line for people.
@@ -64,7 +75,7 @@ impl AxisControl {
                     word: self.derived.settings.word(row as usize),
                 })
                 .collect(),
-            warnings: self.derived.warnings.iter().map(ToString::to_string).collect(),
+            warnings: self.warnings(),
         }
     }
 
