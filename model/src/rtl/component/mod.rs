@@ -95,7 +95,10 @@ pub struct Component {
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum ComponentError {
     /// Ticks that are shorter than a division.
-    #[error("ticks of {0} clocks: a division takes 72; choose a lower sample rate or a faster clock")]
+    #[error(
+        "ticks of {0} clocks: a division takes {DIVISION_CLOCKS}; ticks must be longer, so choose a lower sample rate or a \
+         faster clock"
+    )]
     Tick(u32),
     /// A filter that its register does not hold.
     #[error("a filter of {0} clocks: the pulse counter has one of 0 to 63")]
@@ -132,7 +135,7 @@ impl Component {
     /// The pulse counter with a divider and a time base of its own. Its filter is `filter_clocks` long after reset.
     ///
     /// # Errors
-    /// [`ComponentError`] for ticks shorter than 72 clocks or a filter above 63.
+    /// [`ComponentError`] for ticks no longer than a division, or a filter above 63.
     pub fn pulse_counter(divider: DividerConfig, filter_clocks: u32) -> Result<Self, ComponentError> {
         if divider.tick_clocks() <= DIVISION_CLOCKS {
             return Err(ComponentError::Tick(divider.tick_clocks()));
