@@ -1,7 +1,7 @@
 //! The list of what is measured: a new block is a new row here.
 
 use posicast_hdl::emit::Module;
-use posicast_hdl::{cascade, divider, pulse_counter, registers, shaper, sliding_mode};
+use posicast_hdl::{cascade, divider, pulse_counter, pwm, registers, segments, shaper, sliding_mode};
 use posicast_model::rtl::cascade::CascadeConfig;
 use posicast_model::rtl::component::Component;
 use posicast_model::rtl::divider::DividerConfig;
@@ -60,6 +60,34 @@ pub(crate) fn rows() -> Result<Vec<Row>, Box<dyn Error>> {
             note: "The 35-bit register and the remainder choose between two or three sources.",
         },
         Row {
+            block: "pwm",
+            size: "all modes",
+            modules: pwm::emit(&PwmConfig::new(ActiveLow::default(), 25, 50)?, "")?,
+            budget: Some(Budget {
+                luts: 300,
+                flip_flops: 220,
+            }),
+            in_xy_stage: 2,
+            note: "290 LUT are carry chains: sums and comparisons of 16 to 18 bits for duty, dead time, minimum pulse and phase, \
+                   all of them registers. Most of the rest chooses between their results.",
+        },
+        Row {
+            block: "sliding_mode",
+            size: "all laws",
+            modules: sliding_mode::emit("")?,
+            budget: None,
+            in_xy_stage: 2,
+            note: "",
+        },
+        Row {
+            block: "segments",
+            size: "64 entries",
+            modules: segments::emit("")?,
+            budget: None,
+            in_xy_stage: 2,
+            note: "",
+        },
+        Row {
             block: "shaper",
             size: "plain, 32 bits, ring 128",
             modules: shaper::emit(&shaper()?, "")?,
@@ -71,14 +99,6 @@ pub(crate) fn rows() -> Result<Vec<Row>, Box<dyn Error>> {
             block: "shaper",
             size: "motion, 3 channels, 32 bits, ring 128",
             modules: shaper::emit(&shaper()?.for_motion(MOTION)?, "")?,
-            budget: None,
-            in_xy_stage: 2,
-            note: "",
-        },
-        Row {
-            block: "sliding_mode",
-            size: "all laws",
-            modules: sliding_mode::emit("")?,
             budget: None,
             in_xy_stage: 2,
             note: "",

@@ -15,7 +15,9 @@
     reason = "a benchmark of fixed blocks"
 )]
 
-mod streams;
+mod command;
+mod drive;
+mod measurement;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use posicast_hdl::emit::Module;
@@ -25,7 +27,13 @@ use std::hint::black_box;
 use std::path::PathBuf;
 use std::time::Duration;
 
-/// A block with inputs for it. A new block is a function in `streams` and its name in [`blocks`].
+/// Clocks per tick: 10 kHz from 50 MHz.
+const TICK_CLOCKS: u64 = 5000;
+/// Ticks of a run.
+const TICKS: u64 = 20;
+const CLOCKS: u64 = TICKS * TICK_CLOCKS;
+
+/// A block with inputs for it, what it does all day. A new block is one more function and its name in [`blocks`].
 struct Block {
     name: &'static str,
     /// Its Verilog, the top last.
@@ -37,13 +45,28 @@ struct Block {
     fast: Box<dyn FnMut() -> i64>,
 }
 
+/// Inputs, and for how many clocks they stay.
+fn hold<T: PartialEq>(inputs: impl Iterator<Item = T>) -> Vec<(T, u64)> {
+    let mut events: Vec<(T, u64)> = Vec::new();
+    for inputs in inputs {
+        match events.last_mut() {
+            Some((held, clocks)) if *held == inputs => *clocks += 1,
+            _ => events.push((inputs, 1)),
+        }
+    }
+    events
+}
+
 fn blocks(criterion: &mut Criterion) {
     for block in [
-        streams::pulse_counter(),
-        streams::divider(),
-        streams::shaper(),
-        streams::shaper_in_motion(),
-        streams::cascade(),
+        measurement::pulse_counter(),
+        measurement::divider(),
+        command::segments(),
+        command::shaper(),
+        command::shaper_in_motion(),
+        command::cascade(),
+        drive::sliding_mode(),
+        drive::pwm(),
     ] {
         measure(criterion, block);
     }
