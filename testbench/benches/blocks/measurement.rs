@@ -79,7 +79,7 @@ pub(crate) fn divider() -> Block {
     let config = DividerConfig::new(TICK_CLOCKS).unwrap();
     let operands = |clock: u64| {
         let division = clock % TICK_CLOCKS;
-        let starts = division % 110 == 0 && division < 440;
+        let starts = division.is_multiple_of(110) && division < 440;
         starts.then(|| (clock as i32 % 77 - 38, 4000 + clock as u32 % 2000))
     };
     let row = |clock| {
