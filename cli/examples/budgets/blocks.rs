@@ -1,10 +1,13 @@
 //! The list of what is measured: a new block is a new row here.
 
 use posicast_hdl::emit::Module;
-use posicast_hdl::{cascade, divider, pulse_counter, shaper, sliding_mode};
+use posicast_hdl::{cascade, divider, pulse_counter, registers, shaper, sliding_mode};
 use posicast_model::rtl::cascade::CascadeConfig;
+use posicast_model::rtl::component::Component;
 use posicast_model::rtl::divider::DividerConfig;
+use posicast_model::rtl::pwm::{ActiveLow, Mode, PwmConfig};
 use posicast_model::rtl::shaper::{Motion, ShaperConfig};
+use posicast_model::rtl::sliding_mode::{Law, Settings};
 use posicast_model::taps::{Tap, TapTable};
 use std::error::Error;
 
@@ -84,7 +87,34 @@ pub(crate) fn rows() -> Result<Vec<Row>, Box<dyn Error>> {
         cascade(32, 4, 62, "32 bits, 4 stages, ring 64")?,
         cascade(32, 10, 62, "32 bits, 10 stages, ring 64")?,
         cascade(32, 5, 1000, "32 bits, 5 stages, ring 1024")?,
+        bank(
+            "of shaper, 3 channels",
+            &Component::shaper(shaper()?.for_motion(MOTION)?)?,
+        )?,
+        bank(
+            "of pulse_counter",
+            &Component::pulse_counter(DividerConfig::new(5000)?, 8)?,
+        )?,
+        bank(
+            "of pwm",
+            &Component::pwm(PwmConfig::new(ActiveLow::default(), 25, 50)?, Mode::HalfBridge, 2500)?,
+        )?,
+        bank(
+            "of sliding_mode",
+            &Component::sliding_mode(&Settings::default(), Law::SlidingMode, false)?,
+        )?,
     ])
+}
+
+fn bank(size: &'static str, component: &Component) -> Result<Row, Box<dyn Error>> {
+    Ok(Row {
+        block: "registers",
+        size,
+        modules: vec![registers::emit(component.map(), "")?],
+        budget: None,
+        in_xy_stage: 0,
+        note: "",
+    })
 }
 
 fn cascade(word_bits: u32, stages: usize, delay_samples: u32, size: &'static str) -> Result<Row, Box<dyn Error>> {

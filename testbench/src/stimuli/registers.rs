@@ -245,9 +245,12 @@ impl ComponentRandom {
                 }
             }
             Core::PulseCounter(..) => {
-                self.write("lines", random & 0x3 | (random >> 8 & 0x7) % 5 << 8 | random & 0x2_0000);
+                self.write(
+                    "lines",
+                    (random & 0x3) | (((random >> 8) & 0x7) % 5) << 8 | (random & 0x2_0000),
+                );
                 self.write("index", random >> 24 & 0xff);
-                self.write("velocity_filter", random >> 4 & 0xf013 | 0x0100);
+                self.write("velocity_filter", ((random >> 4) & 0xf013) | 0x0100);
                 self.write("index_arm", 0);
                 self.write("preset", 0);
             }
@@ -268,7 +271,7 @@ impl ComponentRandom {
                 // Off, a short period, times near the floors, on.
                 self.write("control", 0);
                 self.write("period", 20 + (random & 0x3f));
-                self.write("times", 4 + (random >> 6 & 3) | (3 + (random >> 8 & 3)) << 16);
+                self.write("times", (4 + ((random >> 6) & 3)) | ((3 + ((random >> 8) & 3)) << 16));
                 self.write("max_duty", random >> 10 & 0x7f);
                 self.write("phase", random >> 12 & 0x1f_001f);
                 self.write(

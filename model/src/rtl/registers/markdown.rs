@@ -6,7 +6,7 @@ use std::fmt::Write;
 
 /// The tables of a map: one of its registers, one of their fields, one of each enumeration.
 pub fn markdown(map: &RegisterMap) -> String {
-    let mut text = format!("### {}\n\n{}\n\n", map.name(), map.about());
+    let mut text = format!("## {}\n\n{}\n\n", map.name(), map.about());
     text.push_str("| word | register | access | reset | meaning |\n|---|---|---|---|---|\n");
     for register in map.registers() {
         // Writing to a String cannot fail.
