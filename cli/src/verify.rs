@@ -111,7 +111,7 @@ impl Job {
             list.extend(others);
         }
         let sources = |block: &dyn Block| match &folder {
-            Some(files) => Ok(Sources::found(files.clone())),
+            Some(files) => Sources::found(files.clone()).reached_by(block).map_err(bench::failure),
             None => Sources::write(block).map_err(bench::failure),
         };
         let chosen = choose(list, names, source)?.into_iter();
