@@ -13,8 +13,8 @@ use posicast_model::rtl::registers::RegisterMap;
 use posicast_model::rtl::shaper::{MOTION_WORD_BITS, Motion, ShaperConfig};
 use posicast_model::spec::{Axis, Machine, Pwm, PwmMode};
 use posicast_testbench::blocks::{
-    Block, CascadeBlock, ComponentBlock, DividerBlock, MachineShapers, PulseCounterBlock, PwmBlock, RegistersBlock,
-    SegmentsBlock, ShaperBlock, SlidingModeBlock,
+    AxisBlock, Block, CascadeBlock, ComponentBlock, DividerBlock, MachineShapers, PulseCounterBlock, PwmBlock,
+    RegistersBlock, SegmentsBlock, ShaperBlock, SlidingModeBlock,
 };
 use std::path::Path;
 
@@ -57,6 +57,7 @@ pub(crate) fn others(
     let with_encoder = axes(machine, |axis| axis.encoder.is_some());
     let with_controller = axes(machine, |axis| axis.controller.is_some());
     blocks.push(Box::new(PulseCounterBlock::new(name, &with_encoder)));
+    blocks.push(Box::new(AxisBlock::new(name, &axes(machine, has_loop))));
     blocks.push(Box::new(DividerBlock::new(divider(machine, path)?, name)));
     for (config, axes) in pwms(machine, path)? {
         blocks.push(Box::new(PwmBlock::new(config, name, &axes)));

@@ -19,9 +19,11 @@
 //! | [`component`] | the blocks that stand alone, each with its registers on a bus |
 //! | [`segments`] | the command FIFO: segments of constant jerk to position, velocity and acceleration |
 //! | [`pwm`] | duty to the gates of a bridge, with dead time and fault path |
+//! | [`axis`] | the supervisor of an axis: states, limits, brake, faults |
 //! | [`machine`] | a machine's top module: the blocks of its axes, side by side |
 //! | [`emit`](mod@emit) | the typed emitter: RustHDL's syntax tree as Verilog |
 
+pub mod axis;
 pub mod cascade;
 pub mod component;
 pub mod divider;

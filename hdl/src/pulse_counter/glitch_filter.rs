@@ -5,13 +5,13 @@
 use crate::prelude::*;
 
 #[derive(LogicBlock)]
-pub(super) struct GlitchFilter {
-    pub(super) clk: Signal<In, Clock>,
-    pub(super) rst: Signal<In, Bit>,
-    pub(super) input_level: Signal<In, Bit>,
-    pub(super) ready: Signal<In, Bit>,
-    pub(super) filter_clocks: Signal<In, Bits<6>>,
-    pub(super) level: Signal<Out, Bit>,
+pub(crate) struct GlitchFilter {
+    pub(crate) clk: Signal<In, Clock>,
+    pub(crate) rst: Signal<In, Bit>,
+    pub(crate) input_level: Signal<In, Bit>,
+    pub(crate) ready: Signal<In, Bit>,
+    pub(crate) filter_clocks: Signal<In, Bits<6>>,
+    pub(crate) level: Signal<Out, Bit>,
 
     level_q: Dff<Bit>,
     left: Dff<Bits<6>>,

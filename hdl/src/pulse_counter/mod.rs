@@ -11,6 +11,7 @@ mod velocity;
 
 use crate::emit::{self, EmitError, EmitOptions, Header, Module};
 use crate::simulation::{Simulated, SimulationError};
+pub(crate) use glitch_filter::GlitchFilter;
 use kernel::PulseCounter;
 use posicast_model::rtl::ClockedBlock;
 use posicast_model::rtl::pulse_counter::ports;

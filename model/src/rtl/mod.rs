@@ -3,6 +3,7 @@
 //! A model, RustHDL's simulation and a Verilated module all look the same from outside: a [`ClockedBlock`]. That is what
 //! lock step compares.
 
+pub mod axis;
 pub mod cascade;
 pub mod component;
 pub mod composition;

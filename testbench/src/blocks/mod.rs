@@ -17,6 +17,7 @@
 //!
 //! A new block adds a file here that implements [`Block`]; nothing else has to know it.
 
+mod axis;
 mod cascade;
 mod component;
 mod divider;
@@ -28,6 +29,7 @@ mod shaper;
 mod sliding_mode;
 mod sources;
 
+pub use self::axis::AxisBlock;
 pub use self::cascade::CascadeBlock;
 pub use self::component::ComponentBlock;
 pub use self::divider::DividerBlock;

@@ -9,6 +9,8 @@
 //! [`Layout`] finds the axes by their port names. Other blocks have random stimuli and a coverage of their own, under
 //! their name.
 
+mod axis;
+mod axis_coverage;
 mod cascade;
 mod corners;
 mod coverage;
@@ -24,6 +26,8 @@ mod segments;
 mod sliding_mode;
 mod table;
 
+pub use self::axis::AxisRandom;
+pub use self::axis_coverage::{AxisCoverage, AxisSafety};
 pub use self::cascade::{CascadeCoverage, CascadeRandom};
 pub use self::corners::corners;
 pub use self::coverage::Coverage;

@@ -4,19 +4,19 @@ use super::Inputs;
 
 /// Takes a new level once it has stood for more than `filter_clocks` clocks.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub(super) struct GlitchFilter {
+pub(in crate::rtl) struct GlitchFilter {
     level: bool,
     /// Clocks that the input must differ from the level until it passes; `filter_clocks` as of the clock before it differed.
     left: u8,
 }
 
 impl GlitchFilter {
-    pub(super) fn level(&self) -> bool {
+    pub(in crate::rtl) fn level(&self) -> bool {
         self.level
     }
 
     /// One clock. Until `ready`, the level follows the input.
-    pub(super) fn clock(&mut self, input: bool, filter_clocks: u8, ready: bool) {
+    pub(in crate::rtl) fn clock(&mut self, input: bool, filter_clocks: u8, ready: bool) {
         let passes = !ready || self.left == 0;
         if input != self.level && !passes {
             self.left -= 1;

@@ -33,7 +33,8 @@ pub use ports::{FILTER_CLOCKS_MAX, Inputs, Outputs, ports};
 pub use velocity::SMOOTHING_BITS;
 
 use self::decode::decode;
-use self::lines::{GlitchFilter, Line};
+pub(super) use self::lines::GlitchFilter;
+use self::lines::Line;
 use self::velocity::Velocity;
 use super::{ClockedBlock, Moore, Port, StepError};
 

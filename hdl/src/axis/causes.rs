@@ -1,0 +1,158 @@
+//! The cause word, and what follows from it in the clock in which a cause becomes active.
+
+use crate::prelude::*;
+use posicast_model::rtl::axis::{ALWAYS_OFF, Cause, HARMLESS};
+
+#[derive(LogicBlock)]
+pub(super) struct Causes {
+    pub(super) clk: Signal<In, Clock>,
+    pub(super) rst: Signal<In, Bit>,
+    pub(super) forget: Signal<In, Bit>,
+    pub(super) emergency: Signal<In, Bit>,
+    pub(super) tripped: Signal<In, Bit>,
+    pub(super) drive_lost: Signal<In, Bit>,
+    pub(super) encoder_error: Signal<In, Bit>,
+    pub(super) segments_failed: Signal<In, Bit>,
+    pub(super) group_stops: Signal<In, Bit>,
+    pub(super) late: Signal<In, Bit>,
+    pub(super) watched: Signal<In, Bits<16>>,
+    pub(super) off_causes: Signal<In, Bits<16>>,
+    pub(super) causes: Signal<Out, Bits<16>>,
+    pub(super) any_cause: Signal<Out, Bit>,
+    pub(super) fault: Signal<Out, Bit>,
+    pub(super) cut: Signal<Out, Bit>,
+    pub(super) had_fault: Signal<Out, Bit>,
+
+    causes_q: Dff<Bits<16>>,
+
+    by_emergency: Signal<Local, Bits<16>>,
+    by_tripped: Signal<Local, Bits<16>>,
+    by_drive_lost: Signal<Local, Bits<16>>,
+    by_encoder_error: Signal<Local, Bits<16>>,
+    by_segments_failed: Signal<Local, Bits<16>>,
+    by_group_stops: Signal<Local, Bits<16>>,
+    by_late: Signal<Local, Bits<16>>,
+    kept: Signal<Local, Bits<16>>,
+    lines: Signal<Local, Bits<16>>,
+    flags: Signal<Local, Bits<16>>,
+    now: Signal<Local, Bits<16>>,
+    harmful: Signal<Local, Bits<16>>,
+    cutting: Signal<Local, Bits<16>>,
+    harmful_before: Signal<Local, Bits<16>>,
+
+    no_causes: Constant<Bits<16>>,
+    of_emergency: Constant<Bits<16>>,
+    of_tripped: Constant<Bits<16>>,
+    of_drive_lost: Constant<Bits<16>>,
+    of_encoder_error: Constant<Bits<16>>,
+    of_segments_failed: Constant<Bits<16>>,
+    of_group_stops: Constant<Bits<16>>,
+    of_late: Constant<Bits<16>>,
+    harmful_causes: Constant<Bits<16>>,
+    always_off: Constant<Bits<16>>,
+}
+
+impl Default for Causes {
+    fn default() -> Self {
+        Self {
+            clk: Signal::default(),
+            rst: Signal::default(),
+            forget: Signal::default(),
+            emergency: Signal::default(),
+            tripped: Signal::default(),
+            drive_lost: Signal::default(),
+            encoder_error: Signal::default(),
+            segments_failed: Signal::default(),
+            group_stops: Signal::default(),
+            late: Signal::default(),
+            watched: Signal::default(),
+            off_causes: Signal::default(),
+            causes: Signal::default(),
+            any_cause: Signal::default(),
+            fault: Signal::default(),
+            cut: Signal::default(),
+            had_fault: Signal::default(),
+            causes_q: Dff::default(),
+            by_emergency: Signal::default(),
+            by_tripped: Signal::default(),
+            by_drive_lost: Signal::default(),
+            by_encoder_error: Signal::default(),
+            by_segments_failed: Signal::default(),
+            by_group_stops: Signal::default(),
+            by_late: Signal::default(),
+            kept: Signal::default(),
+            lines: Signal::default(),
+            flags: Signal::default(),
+            now: Signal::default(),
+            harmful: Signal::default(),
+            cutting: Signal::default(),
+            harmful_before: Signal::default(),
+            no_causes: Constant::new(from_u64(0)),
+            of_emergency: Constant::new(from_u64(u64::from(Cause::EmergencyStop.bit()))),
+            of_tripped: Constant::new(from_u64(u64::from(Cause::PwmTripped.bit()))),
+            of_drive_lost: Constant::new(from_u64(u64::from(Cause::DriveLost.bit()))),
+            of_encoder_error: Constant::new(from_u64(u64::from(Cause::EncoderError.bit()))),
+            of_segments_failed: Constant::new(from_u64(u64::from(Cause::Segments.bit()))),
+            of_group_stops: Constant::new(from_u64(u64::from(Cause::GroupStop.bit()))),
+            of_late: Constant::new(from_u64(u64::from(Cause::Schedule.bit()))),
+            harmful_causes: Constant::new(from_u64(u64::from(!HARMLESS))),
+            always_off: Constant::new(from_u64(u64::from(ALWAYS_OFF))),
+        }
+    }
+}
+
+impl Logic for Causes {
+    #[hdl_gen]
+    fn update(&mut self) {
+        comment!("@module axis_causes");
+        comment!("@about Sticky causes: set wins over forget.");
+        dff_setup!(self, clk, causes_q);
+        self.by_emergency.next = self.no_causes.val();
+        if self.emergency.val() {
+            self.by_emergency.next = self.of_emergency.val();
+        }
+        self.by_tripped.next = self.no_causes.val();
+        if self.tripped.val() {
+            self.by_tripped.next = self.of_tripped.val();
+        }
+        self.by_drive_lost.next = self.no_causes.val();
+        if self.drive_lost.val() {
+            self.by_drive_lost.next = self.of_drive_lost.val();
+        }
+        self.by_encoder_error.next = self.no_causes.val();
+        if self.encoder_error.val() {
+            self.by_encoder_error.next = self.of_encoder_error.val();
+        }
+        self.by_segments_failed.next = self.no_causes.val();
+        if self.segments_failed.val() {
+            self.by_segments_failed.next = self.of_segments_failed.val();
+        }
+        self.by_group_stops.next = self.no_causes.val();
+        if self.group_stops.val() {
+            self.by_group_stops.next = self.of_group_stops.val();
+        }
+        self.by_late.next = self.no_causes.val();
+        if self.late.val() {
+            self.by_late.next = self.of_late.val();
+        }
+        self.lines.next =
+            self.by_emergency.val() | self.by_tripped.val() | self.by_drive_lost.val() | self.by_group_stops.val();
+        self.flags.next = self.by_encoder_error.val() | self.by_segments_failed.val() | self.by_late.val();
+        self.kept.next = self.causes_q.q.val();
+        if self.forget.val() {
+            self.kept.next = self.no_causes.val();
+        }
+        self.now.next = self.kept.val() | self.lines.val() | self.flags.val() | self.watched.val();
+        self.causes_q.d.next = self.now.val();
+
+        comment!("What follows, in this very clock");
+        self.harmful.next = self.now.val() & self.harmful_causes.val();
+        self.cutting.next = self.harmful.val() & (self.off_causes.val() | self.always_off.val());
+        self.any_cause.next = self.now.val().any();
+        self.fault.next = self.harmful.val().any();
+        self.cut.next = self.cutting.val().any();
+        self.harmful_before.next = self.causes_q.q.val() & self.harmful_causes.val();
+        self.had_fault.next = self.harmful_before.val().any();
+        self.causes.next = self.causes_q.q.val();
+    }
+}

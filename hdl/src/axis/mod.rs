@@ -1,0 +1,61 @@
+//! The supervisor of an axis in hardware: outputs on and off, motion and stop, and what happens when something goes wrong.
+//!
+//! The datasheet is `docs/axis.md`, the reference `posicast_model::rtl::axis`.
+
+mod causes;
+mod kernel;
+mod line;
+mod monitors;
+mod pins;
+mod states;
+
+use crate::emit::{self, EmitError, EmitOptions, Header, Module, Parameter};
+use crate::simulation::{Simulated, SimulationError};
+use kernel::Axis;
+use posicast_model::rtl::ClockedBlock;
+use posicast_model::rtl::axis::{CLEAR_CLOCKS, LINE_CLOCKS, ports};
+
+/// The supervisor in RustHDL's own simulator.
+///
+/// # Errors
+/// [`SimulationError`] where RustHDL finds a fault in the block.
+pub fn simulate() -> Result<Box<dyn ClockedBlock>, SimulationError> {
+    let block = Box::new(Axis::default());
+    Ok(Box::new(Simulated::new("axis", block, ports())?))
+}
+
+/// The supervisor's Verilog, one module per file, the top last.
+///
+/// The top is called `PREFIX_axis`, or `axis` where `prefix` is empty.
+///
+/// # Errors
+/// [`EmitError`] where `prefix` makes no Verilog name.
+pub fn emit(prefix: &str) -> Result<Vec<Module>, EmitError> {
+    let parameter = |name: &str, value: u32, meaning: &str| Parameter {
+        name: name.to_owned(),
+        value: value.to_string(),
+        meaning: meaning.to_owned(),
+    };
+    let options = EmitOptions {
+        top: "axis".to_owned(),
+        prefix: prefix.to_owned(),
+        header: Header {
+            about: "Supervisor of an axis: OFF, READY, HOLD, RUN, QUICK_STOP, FAULT.\n\
+                    Every cause ends in a stop: outputs off at once, or a quick stop and then the brake."
+                .to_owned(),
+            parameters: vec![
+                parameter(
+                    "line_clocks",
+                    LINE_CLOCKS,
+                    "from a line to the state, and filter_clocks more",
+                ),
+                parameter(
+                    "clear_clocks",
+                    CLEAR_CLOCKS.into(),
+                    "from clear_faults until causes that are over are forgotten",
+                ),
+            ],
+        },
+    };
+    emit::emit(&Axis::default(), &options)
+}

@@ -1,0 +1,312 @@
+//! What is watched at ticks: limits, soft limits, errors against their limits, and what has lasted too long.
+
+use crate::prelude::*;
+use posicast_model::rtl::axis::Cause;
+
+#[derive(LogicBlock)]
+pub(super) struct Monitors {
+    pub(super) clk: Signal<In, Clock>,
+    pub(super) rst: Signal<In, Bit>,
+    pub(super) tick: Signal<In, Bit>,
+    pub(super) on: Signal<In, Bit>,
+    pub(super) kicked: Signal<In, Bit>,
+    pub(super) on_limit_plus: Signal<In, Bit>,
+    pub(super) on_limit_minus: Signal<In, Bit>,
+    pub(super) soft_limit_plus: Signal<In, Signed<32>>,
+    pub(super) soft_limit_minus: Signal<In, Signed<32>>,
+    pub(super) following_error_limit: Signal<In, Bits<32>>,
+    pub(super) deviation_limit: Signal<In, Bits<32>>,
+    pub(super) saturation_ticks: Signal<In, Bits<16>>,
+    pub(super) lost_command: Signal<In, Bits<32>>,
+    pub(super) lost_ticks: Signal<In, Bits<16>>,
+    pub(super) watchdog_ticks: Signal<In, Bits<16>>,
+    pub(super) position: Signal<In, Signed<32>>,
+    pub(super) deviation: Signal<In, Signed<32>>,
+    pub(super) command_velocity: Signal<In, Signed<32>>,
+    pub(super) reference_position: Signal<In, Signed<32>>,
+    pub(super) reference_velocity: Signal<In, Signed<32>>,
+    pub(super) error: Signal<In, Signed<32>>,
+    pub(super) command: Signal<In, Signed<32>>,
+    pub(super) limited_ticks: Signal<In, Bits<16>>,
+    pub(super) causes: Signal<Out, Bits<16>>,
+    pub(super) captured_position: Signal<Out, Signed<32>>,
+
+    captured: Dff<Signed<32>>,
+    was_on_plus: Dff<Bit>,
+    was_on_minus: Dff<Bit>,
+    was_past_plus: Dff<Bit>,
+    was_past_minus: Dff<Bit>,
+    still_ticks: Dff<Bits<16>>,
+    unkicked_ticks: Dff<Bits<16>>,
+
+    forward: Signal<Local, Bit>,
+    backward: Signal<Local, Bit>,
+    shaped_forward: Signal<Local, Bit>,
+    shaped_backward: Signal<Local, Bit>,
+    has_soft_limits: Signal<Local, Bit>,
+    past_plus: Signal<Local, Bit>,
+    past_minus: Signal<Local, Bit>,
+    error_size: Signal<Local, Bits<32>>,
+    deviation_size: Signal<Local, Bits<32>>,
+    command_size: Signal<Local, Bits<32>>,
+    still: Signal<Local, Bit>,
+    limit_plus: Signal<Local, Bit>,
+    limit_minus: Signal<Local, Bit>,
+    soft_plus: Signal<Local, Bit>,
+    soft_minus: Signal<Local, Bit>,
+    error_trip: Signal<Local, Bit>,
+    deviation_trip: Signal<Local, Bit>,
+    saturation_trip: Signal<Local, Bit>,
+    lost_trip: Signal<Local, Bit>,
+    watchdog_trip: Signal<Local, Bit>,
+    limits: Signal<Local, Bits<16>>,
+    errors: Signal<Local, Bits<16>>,
+    times: Signal<Local, Bits<16>>,
+    found: Signal<Local, Bits<16>>,
+    by_limit_plus: Signal<Local, Bits<16>>,
+    by_limit_minus: Signal<Local, Bits<16>>,
+    by_soft_plus: Signal<Local, Bits<16>>,
+    by_soft_minus: Signal<Local, Bits<16>>,
+    by_error_trip: Signal<Local, Bits<16>>,
+    by_deviation_trip: Signal<Local, Bits<16>>,
+    by_saturation_trip: Signal<Local, Bits<16>>,
+    by_lost_trip: Signal<Local, Bits<16>>,
+    by_watchdog_trip: Signal<Local, Bits<16>>,
+
+    nil: Constant<Signed<32>>,
+    no_ticks: Constant<Bits<16>>,
+    one_tick: Constant<Bits<16>>,
+    no_causes: Constant<Bits<16>>,
+    of_limit_plus: Constant<Bits<16>>,
+    of_limit_minus: Constant<Bits<16>>,
+    of_soft_plus: Constant<Bits<16>>,
+    of_soft_minus: Constant<Bits<16>>,
+    of_error_trip: Constant<Bits<16>>,
+    of_deviation_trip: Constant<Bits<16>>,
+    of_saturation_trip: Constant<Bits<16>>,
+    of_lost_trip: Constant<Bits<16>>,
+    of_watchdog_trip: Constant<Bits<16>>,
+}
+
+impl Default for Monitors {
+    fn default() -> Self {
+        Self {
+            clk: Signal::default(),
+            rst: Signal::default(),
+            tick: Signal::default(),
+            on: Signal::default(),
+            kicked: Signal::default(),
+            on_limit_plus: Signal::default(),
+            on_limit_minus: Signal::default(),
+            soft_limit_plus: Signal::default(),
+            soft_limit_minus: Signal::default(),
+            following_error_limit: Signal::default(),
+            deviation_limit: Signal::default(),
+            saturation_ticks: Signal::default(),
+            lost_command: Signal::default(),
+            lost_ticks: Signal::default(),
+            watchdog_ticks: Signal::default(),
+            position: Signal::default(),
+            deviation: Signal::default(),
+            command_velocity: Signal::default(),
+            reference_position: Signal::default(),
+            reference_velocity: Signal::default(),
+            error: Signal::default(),
+            command: Signal::default(),
+            limited_ticks: Signal::default(),
+            causes: Signal::default(),
+            captured_position: Signal::default(),
+            captured: Dff::default(),
+            was_on_plus: Dff::default(),
+            was_on_minus: Dff::default(),
+            was_past_plus: Dff::default(),
+            was_past_minus: Dff::default(),
+            still_ticks: Dff::default(),
+            unkicked_ticks: Dff::default(),
+            forward: Signal::default(),
+            backward: Signal::default(),
+            shaped_forward: Signal::default(),
+            shaped_backward: Signal::default(),
+            has_soft_limits: Signal::default(),
+            past_plus: Signal::default(),
+            past_minus: Signal::default(),
+            error_size: Signal::default(),
+            deviation_size: Signal::default(),
+            command_size: Signal::default(),
+            still: Signal::default(),
+            limit_plus: Signal::default(),
+            limit_minus: Signal::default(),
+            soft_plus: Signal::default(),
+            soft_minus: Signal::default(),
+            error_trip: Signal::default(),
+            deviation_trip: Signal::default(),
+            saturation_trip: Signal::default(),
+            lost_trip: Signal::default(),
+            watchdog_trip: Signal::default(),
+            limits: Signal::default(),
+            errors: Signal::default(),
+            times: Signal::default(),
+            found: Signal::default(),
+            by_limit_plus: Signal::default(),
+            by_limit_minus: Signal::default(),
+            by_soft_plus: Signal::default(),
+            by_soft_minus: Signal::default(),
+            by_error_trip: Signal::default(),
+            by_deviation_trip: Signal::default(),
+            by_saturation_trip: Signal::default(),
+            by_lost_trip: Signal::default(),
+            by_watchdog_trip: Signal::default(),
+            nil: Constant::new(from_i64(0)),
+            no_ticks: Constant::new(from_u64(0)),
+            one_tick: Constant::new(from_u64(1)),
+            no_causes: Constant::new(from_u64(0)),
+            of_limit_plus: Constant::new(from_u64(u64::from(Cause::LimitPlus.bit()))),
+            of_limit_minus: Constant::new(from_u64(u64::from(Cause::LimitMinus.bit()))),
+            of_soft_plus: Constant::new(from_u64(u64::from(Cause::SoftLimitPlus.bit()))),
+            of_soft_minus: Constant::new(from_u64(u64::from(Cause::SoftLimitMinus.bit()))),
+            of_error_trip: Constant::new(from_u64(u64::from(Cause::FollowingError.bit()))),
+            of_deviation_trip: Constant::new(from_u64(u64::from(Cause::Deviation.bit()))),
+            of_saturation_trip: Constant::new(from_u64(u64::from(Cause::Saturation.bit()))),
+            of_lost_trip: Constant::new(from_u64(u64::from(Cause::EncoderLost.bit()))),
+            of_watchdog_trip: Constant::new(from_u64(u64::from(Cause::Watchdog.bit()))),
+        }
+    }
+}
+
+impl Logic for Monitors {
+    #[hdl_gen]
+    fn update(&mut self) {
+        comment!("@module axis_monitors");
+        comment!("@about Limits, errors and times, at ticks.");
+        dff_setup!(
+            self,
+            clk,
+            captured,
+            was_on_plus,
+            was_on_minus,
+            was_past_plus,
+            was_past_minus,
+            still_ticks,
+            unkicked_ticks
+        );
+
+        comment!("Which way");
+        self.forward.next = self.command_velocity.val() > self.nil.val();
+        self.backward.next = self.command_velocity.val() < self.nil.val();
+        self.shaped_forward.next = self.reference_velocity.val() > self.nil.val();
+        self.shaped_backward.next = self.reference_velocity.val() < self.nil.val();
+
+        comment!("A switch bounces when left: newly needs a way");
+        self.limit_plus.next =
+            self.on_limit_plus.val() & (self.forward.val() | (!self.was_on_plus.q.val() & self.shaped_forward.val()));
+        self.limit_minus.next = self.on_limit_minus.val()
+            & (self.backward.val() | (!self.was_on_minus.q.val() & self.shaped_backward.val()));
+
+        comment!("Soft limits, on the shaped position");
+        self.has_soft_limits.next =
+            (self.soft_limit_plus.val() != self.nil.val()) | (self.soft_limit_minus.val() != self.nil.val());
+        self.past_plus.next = self.has_soft_limits.val() & (self.reference_position.val() > self.soft_limit_plus.val());
+        self.past_minus.next =
+            self.has_soft_limits.val() & (self.reference_position.val() < self.soft_limit_minus.val());
+        self.soft_plus.next = self.past_plus.val() & (self.forward.val() | !self.was_past_plus.q.val());
+        self.soft_minus.next = self.past_minus.val() & (self.backward.val() | !self.was_past_minus.q.val());
+
+        comment!("Sizes against their limits");
+        self.error_size.next = unsigned_cast(self.error.val());
+        if self.error.val() < self.nil.val() {
+            self.error_size.next = unsigned_cast(self.nil.val() - self.error.val());
+        }
+        self.deviation_size.next = unsigned_cast(self.deviation.val());
+        if self.deviation.val() < self.nil.val() {
+            self.deviation_size.next = unsigned_cast(self.nil.val() - self.deviation.val());
+        }
+        self.command_size.next = unsigned_cast(self.command.val());
+        if self.command.val() < self.nil.val() {
+            self.command_size.next = unsigned_cast(self.nil.val() - self.command.val());
+        }
+        self.error_trip.next =
+            self.following_error_limit.val().any() & (self.error_size.val() > self.following_error_limit.val());
+        self.deviation_trip.next =
+            self.deviation_limit.val().any() & (self.deviation_size.val() > self.deviation_limit.val());
+        self.still.next = self.on.val()
+            & (self.command_size.val() > self.lost_command.val())
+            & (self.position.val() == self.captured.q.val());
+
+        comment!("Ticks in a row");
+        self.saturation_trip.next =
+            self.saturation_ticks.val().any() & (self.limited_ticks.val() >= self.saturation_ticks.val());
+        self.lost_trip.next = self.lost_ticks.val().any() & (self.still_ticks.q.val() >= self.lost_ticks.val());
+        self.watchdog_trip.next =
+            self.watchdog_ticks.val().any() & (self.unkicked_ticks.q.val() >= self.watchdog_ticks.val());
+        if self.tick.val() {
+            self.captured.d.next = self.position.val();
+            self.was_on_plus.d.next = self.on_limit_plus.val();
+            self.was_on_minus.d.next = self.on_limit_minus.val();
+            self.was_past_plus.d.next = self.past_plus.val();
+            self.was_past_minus.d.next = self.past_minus.val();
+            if !self.still_ticks.q.val().all() {
+                self.still_ticks.d.next = self.still_ticks.q.val() + self.one_tick.val();
+            }
+            if !self.unkicked_ticks.q.val().all() {
+                self.unkicked_ticks.d.next = self.unkicked_ticks.q.val() + self.one_tick.val();
+            }
+            if !self.still.val() {
+                self.still_ticks.d.next = self.no_ticks.val();
+            }
+            if !self.on.val() {
+                self.unkicked_ticks.d.next = self.no_ticks.val();
+            }
+        }
+        if self.kicked.val() {
+            self.unkicked_ticks.d.next = self.no_ticks.val();
+        }
+
+        comment!("The causes of this tick");
+        self.by_limit_plus.next = self.no_causes.val();
+        if self.limit_plus.val() {
+            self.by_limit_plus.next = self.of_limit_plus.val();
+        }
+        self.by_limit_minus.next = self.no_causes.val();
+        if self.limit_minus.val() {
+            self.by_limit_minus.next = self.of_limit_minus.val();
+        }
+        self.by_soft_plus.next = self.no_causes.val();
+        if self.soft_plus.val() {
+            self.by_soft_plus.next = self.of_soft_plus.val();
+        }
+        self.by_soft_minus.next = self.no_causes.val();
+        if self.soft_minus.val() {
+            self.by_soft_minus.next = self.of_soft_minus.val();
+        }
+        self.by_error_trip.next = self.no_causes.val();
+        if self.error_trip.val() {
+            self.by_error_trip.next = self.of_error_trip.val();
+        }
+        self.by_deviation_trip.next = self.no_causes.val();
+        if self.deviation_trip.val() {
+            self.by_deviation_trip.next = self.of_deviation_trip.val();
+        }
+        self.by_saturation_trip.next = self.no_causes.val();
+        if self.saturation_trip.val() {
+            self.by_saturation_trip.next = self.of_saturation_trip.val();
+        }
+        self.by_lost_trip.next = self.no_causes.val();
+        if self.lost_trip.val() {
+            self.by_lost_trip.next = self.of_lost_trip.val();
+        }
+        self.by_watchdog_trip.next = self.no_causes.val();
+        if self.watchdog_trip.val() {
+            self.by_watchdog_trip.next = self.of_watchdog_trip.val();
+        }
+        self.limits.next =
+            self.by_limit_plus.val() | self.by_limit_minus.val() | self.by_soft_plus.val() | self.by_soft_minus.val();
+        self.errors.next = self.by_error_trip.val() | self.by_deviation_trip.val() | self.by_saturation_trip.val();
+        self.times.next = self.by_lost_trip.val() | self.by_watchdog_trip.val();
+        self.found.next = self.no_causes.val();
+        if self.tick.val() & self.on.val() {
+            self.found.next = self.limits.val() | self.errors.val() | self.times.val();
+        }
+        self.causes.next = self.found.val();
+        self.captured_position.next = self.captured.q.val();
+    }
+}

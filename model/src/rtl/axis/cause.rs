@@ -1,0 +1,90 @@
+//! What can go wrong, and what follows: the cause word, one bit each.
+
+/// A cause: the number of its bit in `causes` and `off_causes`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Cause {
+    /// The emergency stop's line is low, or that of another axis.
+    EmergencyStop = 0,
+    /// The PWM has tripped; after a reset it always has.
+    PwmTripped = 1,
+    /// The drive is no longer ready while on.
+    DriveLost = 2,
+    /// On the limit switch + and moving towards it.
+    LimitPlus = 3,
+    /// On the limit switch − and moving towards it.
+    LimitMinus = 4,
+    /// The shaped position passed the soft limit +, or moves on behind it.
+    SoftLimitPlus = 5,
+    /// The same for the soft limit −.
+    SoftLimitMinus = 6,
+    /// |e| above its limit.
+    FollowingError = 7,
+    /// Motor and scale apart by more than their limit.
+    Deviation = 8,
+    /// The controller's command was cut for too many ticks in a row.
+    Saturation = 9,
+    /// A command above its threshold, and no count for too many ticks.
+    EncoderLost = 10,
+    /// An illegal transition, or a pair that disagrees, of motor encoder or scale.
+    EncoderError = 11,
+    /// The segments stopped by themselves: underrun or overflow.
+    Segments = 12,
+    /// The host did not kick in time.
+    Watchdog = 13,
+    /// Another axis wants all to stop.
+    GroupStop = 14,
+    /// A tick was missed, or a pass was not over in time.
+    Schedule = 15,
+}
+
+impl Cause {
+    /// All, in the order of their bits.
+    pub const ALL: [Self; 16] = [
+        Self::EmergencyStop,
+        Self::PwmTripped,
+        Self::DriveLost,
+        Self::LimitPlus,
+        Self::LimitMinus,
+        Self::SoftLimitPlus,
+        Self::SoftLimitMinus,
+        Self::FollowingError,
+        Self::Deviation,
+        Self::Saturation,
+        Self::EncoderLost,
+        Self::EncoderError,
+        Self::Segments,
+        Self::Watchdog,
+        Self::GroupStop,
+        Self::Schedule,
+    ];
+
+    /// Its bit.
+    pub const fn bit(self) -> u16 {
+        1 << self as u16
+    }
+}
+
+/// Causes that always switch off, whatever `off_causes` says.
+pub const ALWAYS_OFF: u16 = Cause::EmergencyStop.bit() | Cause::PwmTripped.bit();
+
+/// Causes after which an axis is in order: it only waits, in HOLD, for the others.
+pub const HARMLESS: u16 = Cause::GroupStop.bit();
+
+/// Those of `causes` that switch the outputs off at once.
+pub const fn switching_off(causes: u16, off_causes: u16) -> u16 {
+    causes & (off_causes | ALWAYS_OFF) & !HARMLESS
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn unit_all_bits_once_in_their_order() {
+        for (bit, cause) in (0..).zip(Cause::ALL) {
+            assert_eq!(cause.bit(), 1 << bit);
+        }
+        assert_eq!(switching_off(u16::MAX, 0), 3);
+        assert_eq!(switching_off(u16::MAX, u16::MAX), !(1 << 14));
+    }
+}

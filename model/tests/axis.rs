@@ -1,0 +1,531 @@
+//! The supervisor of an axis: what a motion engineer expects of it, and `hold` against `step`.
+
+#![allow(clippy::unwrap_used, reason = "a helper that fails fails its test")]
+
+use posicast_model::rtl::axis::{Axis, CLEAR_CLOCKS, Cause, INPUT_PORTS, Inputs, KICK, LINE_CLOCKS, Outputs, State};
+use posicast_model::rtl::segments::{self, Entry, Motion, Segments};
+use proptest::prelude::*;
+
+/// Clocks per tick of these tests.
+const TICK_CLOCKS: u64 = 40;
+
+/// Everything in order, nothing wanted.
+const GOOD: Inputs = {
+    let mut inputs = ZERO;
+    inputs.emergency_stop_n = true;
+    inputs.limit_plus_n = true;
+    inputs.limit_minus_n = true;
+    inputs.drive_ready = true;
+    inputs.segments_empty = true;
+    inputs.brake_release_ticks = 3;
+    inputs.brake_apply_ticks = 4;
+    inputs.settle_ticks = 5;
+    inputs
+};
+
+const ZERO: Inputs = Inputs {
+    rst: false,
+    tick: false,
+    emergency_stop_n: false,
+    limit_plus_n: false,
+    limit_minus_n: false,
+    drive_ready: false,
+    home: false,
+    filter_clocks: 0,
+    enable: false,
+    start: false,
+    stop: false,
+    clear_faults: false,
+    kick: false,
+    kick_word: 0,
+    group_stop: false,
+    group_emergency_stop: false,
+    off_causes: 0,
+    brake_release_ticks: 0,
+    brake_apply_ticks: 0,
+    settle_ticks: 0,
+    soft_limit_plus: 0,
+    soft_limit_minus: 0,
+    following_error_limit: 0,
+    deviation_limit: 0,
+    saturation_ticks: 0,
+    lost_command: 0,
+    lost_ticks: 0,
+    watchdog_ticks: 0,
+    position: 0,
+    deviation: 0,
+    segments_state: 0,
+    segments_empty: false,
+    segments_valid: false,
+    segments_underrun: false,
+    segments_overflow: false,
+    segments_tick_missed: false,
+    command_velocity: 0,
+    reference_position: 0,
+    reference_velocity: 0,
+    shaper_overrun: false,
+    error: 0,
+    command: 0,
+    limited_ticks: 0,
+    controller_overrun: false,
+    pwm_tripped: false,
+    encoder_illegal: false,
+    encoder_disagreement: false,
+    velocity_missed: false,
+    scale_illegal: false,
+    scale_disagreement: false,
+};
+
+/// A supervisor with its segments, and ticks.
+struct Bench {
+    axis: Axis,
+    segments: Segments,
+    inputs: Inputs,
+    commands: segments::Inputs,
+    clock: u64,
+}
+
+impl Bench {
+    fn new() -> Self {
+        let mut bench = Self {
+            axis: Axis::new(),
+            segments: Segments::new(3),
+            inputs: GOOD,
+            commands: segments::Inputs {
+                stop_deceleration: 1 << 23,
+                ..segments::Inputs::default()
+            },
+            clock: 0,
+        };
+        bench.clocks(10);
+        bench
+    }
+
+    fn clock(&mut self) -> Outputs {
+        let played = self.segments.outputs(0);
+        self.inputs.tick = self.clock % TICK_CLOCKS == TICK_CLOCKS - 1;
+        self.inputs.segments_state = played.state as u8;
+        self.inputs.segments_empty = played.empty;
+        self.inputs.segments_valid = played.valid;
+        self.inputs.segments_underrun = played.underrun;
+        self.inputs.segments_overflow = played.overflow;
+        self.inputs.command_velocity = played.velocity;
+        // Without a shaper.
+        self.inputs.reference_position = played.position;
+        self.inputs.reference_velocity = played.velocity;
+        let shown = self.axis.step(&self.inputs);
+        self.segments.step(&segments::Inputs {
+            tick: self.inputs.tick,
+            enable: shown.segments_enable,
+            quick_stop: shown.segments_quick_stop,
+            restart: shown.segments_restart,
+            preset: shown.segments_preset,
+            preset_position: self.inputs.position,
+            clear_flags: shown.clear_sources,
+            ..self.commands
+        });
+        self.commands.write = false;
+        self.clock += 1;
+        (self.inputs.start, self.inputs.stop) = (false, false);
+        (self.inputs.clear_faults, self.inputs.kick) = (false, false);
+        self.axis.outputs()
+    }
+
+    fn clocks(&mut self, clocks: u64) -> Outputs {
+        (0..clocks).for_each(|_| {
+            self.clock();
+        });
+        self.axis.outputs()
+    }
+
+    fn ticks(&mut self, ticks: u64) -> Outputs {
+        self.clocks(ticks * TICK_CLOCKS)
+    }
+
+    /// Clocks until the state is reached; at most so many.
+    fn until(&mut self, state: State, at_most: u64) -> u64 {
+        for clocks in 0..=at_most {
+            if self.axis.outputs().state == state {
+                return clocks;
+            }
+            self.clock();
+        }
+        panic!("no {state:?} after {at_most} clocks: {:?}", self.axis.outputs());
+    }
+
+    /// Commits a segment of jerk, in 2^-32 counts per tick³.
+    fn segment(&mut self, ticks: u32, jerk: i64) {
+        let entry = Entry {
+            ticks,
+            motion: Motion::Jerk(jerk),
+            notify: false,
+        };
+        for (word, data) in (0..).zip(entry.words()) {
+            self.commands = segments::Inputs {
+                write: true,
+                word,
+                data,
+                ..self.commands
+            };
+            self.clock();
+        }
+    }
+
+    /// To HOLD, with the brake open.
+    fn hold() -> Self {
+        let mut bench = Self::new();
+        bench.until(State::Ready, 20);
+        bench.inputs.enable = true;
+        bench.until(State::Hold, TICK_CLOCKS);
+        bench.ticks(4);
+        assert!(bench.axis.outputs().can_start);
+        bench
+    }
+
+    /// To RUN, in a move of 80 ticks whose velocity is positive.
+    fn run(jerk: i64) -> Self {
+        let mut bench = Self::hold();
+        for (ticks, jerk) in [(20, jerk), (40, -jerk), (20, jerk)] {
+            bench.segment(ticks, jerk);
+        }
+        bench.inputs.start = true;
+        bench.until(State::Run, TICK_CLOCKS);
+        bench.ticks(30);
+        assert_eq!(bench.axis.outputs().state, State::Run);
+        assert_eq!(bench.segments.outputs(0).state, segments::State::Move);
+        bench
+    }
+
+    fn clear(&mut self) -> Outputs {
+        self.inputs.clear_faults = true;
+        self.clocks(u64::from(CLEAR_CLOCKS) + 1)
+    }
+}
+
+const JERK: i64 = 1 << 26;
+
+#[test]
+fn off_to_hold_is_one_tick_and_takes_the_position_that_is_there() {
+    let mut bench = Bench::new();
+    bench.until(State::Ready, 20);
+    for position in [1000, 1003, 1010] {
+        bench.inputs.position = position;
+        bench.ticks(1);
+        assert_eq!(bench.segments.outputs(0).position, position << 8);
+        let shown = bench.axis.outputs();
+        assert!(shown.shaper_start && shown.clear_integral && shown.segments_preset);
+    }
+    bench.inputs.enable = true;
+    bench.inputs.position = 1017;
+    bench.until(State::Hold, TICK_CLOCKS);
+    let shown = bench.axis.outputs();
+    assert!(shown.drive_enable && shown.pwm_enable && shown.brake_release && shown.enabled);
+    assert!(shown.shaper_start && !shown.segments_preset);
+    bench.inputs.position = 2000;
+    let shown = bench.clocks(u64::from(segments::LATENCY_CLOCKS) + 1);
+    assert!(!shown.shaper_start && !shown.clear_integral);
+    assert_eq!(bench.segments.outputs(0).position, 1017 << 8);
+    bench.ticks(3);
+    assert_eq!(bench.segments.outputs(0).position, 1017 << 8);
+}
+
+#[test]
+fn a_start_waits_for_the_brake_and_is_refused_before() {
+    let mut bench = Bench::new();
+    bench.inputs.rst = true;
+    bench.clock();
+    (bench.inputs.rst, bench.inputs.enable) = (false, true);
+    bench.ticks(2);
+    assert_eq!(bench.axis.outputs().state, State::Off, "enable must be low once");
+    bench.inputs.enable = false;
+    bench.until(State::Ready, 2);
+    bench.inputs.enable = true;
+    bench.until(State::Hold, TICK_CLOCKS);
+    bench.segment(1, 0);
+    for _ in 0..3 {
+        bench.inputs.start = true;
+        let shown = bench.ticks(1);
+        assert_eq!(shown.state, State::Hold);
+    }
+    bench.inputs.start = true;
+    assert!(bench.until(State::Run, TICK_CLOCKS) <= TICK_CLOCKS);
+}
+
+#[test]
+fn a_move_plays_and_ends_in_hold() {
+    let mut bench = Bench::run(JERK);
+    bench.until(State::Hold, 60 * TICK_CLOCKS);
+    let shown = bench.clock();
+    assert!(shown.drive_enable && shown.brake_release && shown.causes == 0);
+    assert_eq!(bench.segments.outputs(0).position >> 8, 20 * 20 * 20 / 64 * 2);
+    // The next one does not wait for the shaped command to settle.
+    bench.segment(2, 0);
+    bench.inputs.start = true;
+    bench.until(State::Run, TICK_CLOCKS);
+}
+
+#[test]
+fn a_host_stop_slows_down_settles_and_comes_to_hold_with_segments_that_play_again() {
+    let mut bench = Bench::run(JERK);
+    bench.inputs.stop = true;
+    bench.clock();
+    assert_eq!(bench.axis.outputs().state, State::QuickStop);
+    let mut stopped_ticks = 0;
+    while bench.axis.outputs().state == State::QuickStop {
+        bench.ticks(1);
+        stopped_ticks += u64::from(bench.segments.outputs(0).state == segments::State::Stopped);
+    }
+    assert_eq!(bench.axis.outputs().state, State::Hold);
+    assert!((6..=7).contains(&stopped_ticks), "{stopped_ticks}");
+    bench.ticks(2);
+    assert_eq!(bench.segments.outputs(0).state, segments::State::Hold);
+    bench.segment(2, 0);
+    bench.inputs.start = true;
+    bench.until(State::Run, TICK_CLOCKS);
+}
+
+#[test]
+fn every_line_reaches_the_pins_in_its_stated_clocks() {
+    for filter_clocks in [0, 7, 63] {
+        for line in 0..2 {
+            let mut bench = Bench::run(JERK);
+            bench.inputs.filter_clocks = filter_clocks;
+            bench.inputs.off_causes = Cause::DriveLost.bit();
+            bench.clocks(100);
+            match line {
+                0 => bench.inputs.emergency_stop_n = false,
+                _ => bench.inputs.drive_ready = false,
+            }
+            let clocks = bench.until(State::Fault, 200);
+            assert_eq!(clocks, u64::from(LINE_CLOCKS) + u64::from(filter_clocks));
+            let shown = bench.axis.outputs();
+            assert!(!shown.drive_enable && !shown.pwm_enable && !shown.brake_release);
+            assert_eq!(shown.pwm_trip_n, line != 0);
+            assert!(shown.wants_group_stop && shown.faulted);
+            assert_eq!(shown.emergency_stop, line == 0);
+            // An emergency stop that lasts keeps FAULT, a drive that is not ready keeps OFF.
+            assert_eq!(bench.clear().state, [State::Fault, State::Off][line]);
+            assert_eq!(bench.ticks(2).state, [State::Fault, State::Off][line]);
+        }
+    }
+}
+
+#[test]
+fn a_quick_stop_by_a_cause_closes_the_brake_before_the_outputs_go_off() {
+    let mut bench = Bench::run(JERK);
+    bench.inputs.following_error_limit = 1 << 16;
+    bench.inputs.error = -(1 << 16) - 1;
+    bench.until(State::QuickStop, TICK_CLOCKS);
+    assert_eq!(bench.axis.outputs().causes, Cause::FollowingError.bit());
+    assert!(bench.axis.outputs().wants_group_stop);
+    assert_eq!(bench.clear().state, State::QuickStop, "a clear is too early");
+    bench.until(State::Fault, 100 * TICK_CLOCKS);
+    let mut on_ticks = 0;
+    while bench.axis.outputs().drive_enable {
+        assert!(!bench.axis.outputs().brake_release);
+        bench.ticks(1);
+        on_ticks += 1;
+    }
+    assert_eq!(on_ticks, 5);
+    let stands = bench.segments.outputs(0).position;
+    bench.inputs.position = stands >> 8;
+    bench.inputs.error = 0;
+    assert_eq!(bench.clear().state, State::Off);
+    bench.ticks(1);
+    assert_eq!(bench.axis.outputs().state, State::Off, "enable is still high");
+    bench.inputs.enable = false;
+    bench.until(State::Ready, 2);
+}
+
+#[test]
+fn enable_low_ends_through_quick_stop_and_brake() {
+    let mut bench = Bench::run(JERK);
+    bench.inputs.enable = false;
+    bench.clock();
+    assert_eq!(bench.axis.outputs().state, State::QuickStop);
+    bench.until(State::Hold, 100 * TICK_CLOCKS);
+    let mut braked = 0;
+    while bench.axis.outputs().state == State::Hold {
+        let shown = bench.ticks(1);
+        braked += u64::from(shown.drive_enable && !shown.brake_release);
+    }
+    assert_eq!(braked, 5);
+    bench.until(State::Ready, 1);
+    assert!(!bench.axis.outputs().drive_enable && bench.axis.outputs().causes == 0);
+}
+
+#[test]
+fn a_group_stop_ends_in_hold_and_blocks_the_start_until_it_is_cleared() {
+    let mut bench = Bench::run(JERK);
+    bench.inputs.group_stop = true;
+    bench.clock();
+    let shown = bench.axis.outputs();
+    assert_eq!((shown.state, shown.causes), (State::QuickStop, Cause::GroupStop.bit()));
+    assert!(!shown.wants_group_stop);
+    bench.until(State::Hold, 100 * TICK_CLOCKS);
+    bench.ticks(2);
+    bench.inputs.start = true;
+    assert_eq!(bench.ticks(2).state, State::Hold);
+    bench.inputs.group_stop = false;
+    let shown = bench.clear();
+    assert_eq!((shown.state, shown.causes), (State::Hold, 0));
+    bench.segment(2, 0);
+    bench.inputs.start = true;
+    bench.until(State::Run, TICK_CLOCKS);
+}
+
+#[test]
+fn a_limit_blocks_its_own_direction_only() {
+    for (plus, jerk, trips) in [
+        (true, JERK, true),
+        (true, -JERK, false),
+        (false, -JERK, true),
+        (false, JERK, false),
+    ] {
+        let mut bench = Bench::run(jerk);
+        match plus {
+            true => bench.inputs.limit_plus_n = false,
+            false => bench.inputs.limit_minus_n = false,
+        }
+        let state = bench.ticks(2).state;
+        let cause = if plus { Cause::LimitPlus } else { Cause::LimitMinus };
+        assert_eq!(state, if trips { State::QuickStop } else { State::Run });
+        assert_eq!(bench.axis.outputs().causes, if trips { cause.bit() } else { 0 });
+    }
+}
+
+#[test]
+fn behind_a_soft_limit_the_way_back_is_open() {
+    let mut bench = Bench::run(JERK);
+    (bench.inputs.soft_limit_plus, bench.inputs.soft_limit_minus) = (40 << 8, -1000 << 8);
+    bench.until(State::QuickStop, 30 * TICK_CLOCKS);
+    assert_eq!(bench.axis.outputs().causes, Cause::SoftLimitPlus.bit());
+    bench.until(State::Fault, 100 * TICK_CLOCKS);
+    bench.inputs.position = bench.segments.outputs(0).position >> 8;
+    bench.ticks(6);
+    assert!(bench.inputs.position > 40);
+    bench.inputs.enable = false;
+    bench.clear();
+    bench.until(State::Ready, 1);
+    for (jerk, ends) in [(-JERK, State::Run), (JERK, State::QuickStop)] {
+        bench.inputs.enable = true;
+        bench.until(State::Hold, TICK_CLOCKS);
+        bench.ticks(4);
+        for (ticks, jerk) in [(20, jerk), (40, -jerk), (20, jerk)] {
+            bench.segment(ticks, jerk);
+        }
+        bench.inputs.start = true;
+        bench.until(State::Run, TICK_CLOCKS);
+        bench.ticks(6);
+        assert_eq!(bench.axis.outputs().state, ends, "jerk {jerk}");
+        bench.inputs.position = 50;
+        bench.inputs.enable = false;
+        bench.ticks(100);
+    }
+}
+
+#[test]
+fn what_lasts_too_long_trips_after_its_ticks() {
+    // A command that moves nothing.
+    let mut bench = Bench::hold();
+    (bench.inputs.lost_command, bench.inputs.lost_ticks) = (500, 6);
+    bench.inputs.command = -501;
+    bench.ticks(6);
+    assert_eq!(bench.axis.outputs().causes, 0);
+    bench.ticks(1);
+    assert_eq!(bench.axis.outputs().causes, Cause::EncoderLost.bit());
+    // A command that moves a count now and then.
+    let mut bench = Bench::hold();
+    (bench.inputs.lost_command, bench.inputs.lost_ticks) = (500, 6);
+    bench.inputs.command = 501;
+    for count in 0..20 {
+        bench.inputs.position = count;
+        bench.ticks(5);
+    }
+    assert_eq!(bench.axis.outputs().causes, 0);
+    // A host that stops kicking, and one that kicks with another word.
+    let mut bench = Bench::hold();
+    bench.inputs.watchdog_ticks = 10;
+    bench.inputs.kick_word = KICK;
+    for _ in 0..10 {
+        bench.inputs.kick = true;
+        bench.ticks(9);
+        assert_eq!(bench.axis.outputs().state, State::Hold);
+    }
+    bench.inputs.kick_word = !KICK;
+    for _ in 0..11 {
+        bench.inputs.kick = true;
+        bench.ticks(1);
+    }
+    assert_eq!(bench.axis.outputs().causes, Cause::Watchdog.bit());
+}
+
+#[test]
+fn thresholds_of_zero_watch_nothing() {
+    let mut bench = Bench::hold();
+    bench.inputs.error = i32::MIN;
+    bench.inputs.deviation = i32::MAX;
+    bench.inputs.limited_ticks = u16::MAX;
+    bench.inputs.command = i32::MIN;
+    let shown = bench.ticks(100);
+    assert_eq!((shown.state, shown.causes), (State::Hold, 0));
+    bench.inputs.following_error_limit = i32::MAX as u32;
+    assert_eq!(bench.ticks(1).causes, Cause::FollowingError.bit());
+}
+
+/// Any value for every port, with the lines good more often than not.
+fn any_inputs() -> impl Strategy<Value = Inputs> {
+    (
+        proptest::array::uniform32(any::<u64>()),
+        proptest::array::uniform32(any::<u64>()),
+    )
+        .prop_map(|(first, second)| {
+            let mut raw = [0; INPUT_PORTS];
+            for (at, word) in raw.iter_mut().enumerate() {
+                *word = if at < 32 { first[at] } else { second[at - 32] };
+            }
+            let mut inputs = Inputs::from_raw(&raw);
+            inputs.rst = first[0] % 30 == 0;
+            inputs.emergency_stop_n |= first[2] % 16 != 0;
+            inputs.drive_ready |= first[5] % 16 != 0;
+            for rare in [
+                &mut inputs.group_emergency_stop,
+                &mut inputs.segments_underrun,
+                &mut inputs.segments_overflow,
+                &mut inputs.segments_tick_missed,
+                &mut inputs.shaper_overrun,
+                &mut inputs.controller_overrun,
+                &mut inputs.pwm_tripped,
+                &mut inputs.encoder_illegal,
+                &mut inputs.encoder_disagreement,
+                &mut inputs.velocity_missed,
+                &mut inputs.scale_illegal,
+                &mut inputs.scale_disagreement,
+            ] {
+                *rare &= first[1] % 8 == 0;
+            }
+            (inputs.brake_release_ticks, inputs.brake_apply_ticks) = (first[17] as u16 & 3, first[18] as u16 & 3);
+            inputs.settle_ticks = first[19] as u16 & 3;
+            if first[20] % 4 != 0 {
+                (inputs.soft_limit_plus, inputs.soft_limit_minus) = (0, 0);
+                (inputs.following_error_limit, inputs.deviation_limit) = (0, 0);
+            }
+            inputs
+        })
+}
+
+proptest! {
+    #[test]
+    fn prop_hold_is_many_steps(
+        phases in proptest::collection::vec((any_inputs(), 1u64..90), 1..40)
+    ) {
+        let (mut fast, mut slow) = (Axis::new(), Axis::new());
+        for (inputs, clocks) in phases {
+            fast.hold(&inputs, clocks);
+            for _ in 0..clocks {
+                slow.step(&inputs);
+            }
+            prop_assert_eq!(fast.outputs(), slow.outputs());
+        }
+    }
+}

@@ -1,0 +1,72 @@
+//! The bench of `axis`.
+
+use posicast_hdl::SimulationError;
+use posicast_hdl::axis::{emit, simulate};
+use posicast_hdl::emit::{EmitError, Module};
+use posicast_model::rtl::ClockedBlock;
+use posicast_model::rtl::axis::Axis;
+
+use super::{Bins, Block, prefixed};
+use crate::lockstep::Clock;
+use crate::stimuli::{AxisCoverage, AxisRandom, Stimuli};
+
+/// The supervisor of an axis, which has one size: what it does is in registers.
+#[derive(Debug, Clone)]
+pub struct AxisBlock {
+    prefix: String,
+    instance: String,
+}
+
+impl AxisBlock {
+    /// The supervisor `PREFIX_axis`; `instance` says which axes it serves.
+    pub fn new(prefix: &str, instance: &str) -> Self {
+        Self {
+            prefix: prefix.to_owned(),
+            instance: instance.to_owned(),
+        }
+    }
+}
+
+impl Block for AxisBlock {
+    fn name(&self) -> &str {
+        "axis"
+    }
+
+    fn instance(&self) -> &str {
+        &self.instance
+    }
+
+    fn modules(&self) -> Result<Vec<Module>, EmitError> {
+        emit(&self.prefix)
+    }
+
+    fn top(&self) -> String {
+        prefixed(&self.prefix, "axis")
+    }
+
+    fn model(&self, _seed: u64) -> Box<dyn ClockedBlock> {
+        Box::new(Axis::new())
+    }
+
+    fn simulate(&self) -> Result<Box<dyn ClockedBlock>, SimulationError> {
+        simulate()
+    }
+
+    fn stimuli(&self, _cycles: u64, seed: u64) -> Box<dyn Stimuli + '_> {
+        Box::new(AxisRandom::new(seed))
+    }
+
+    fn coverage(&self) -> Box<dyn Bins + '_> {
+        Box::new(AxisCoverage::default())
+    }
+}
+
+impl Bins for AxisCoverage {
+    fn observe(&mut self, clock: &Clock<'_>) {
+        self.observe(clock.inputs, clock.expected);
+    }
+
+    fn counts(&self) -> Vec<(String, u64)> {
+        self.counts()
+    }
+}

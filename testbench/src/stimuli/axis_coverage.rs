@@ -1,0 +1,215 @@
+//! What a run of the supervisor reached, and what it must never do.
+
+use posicast_model::rtl::Direction;
+use posicast_model::rtl::axis::{
+    Cause, HARMLESS, INPUT_PORTS, Inputs, LINE_CLOCKS, OUTPUT_PORTS, Outputs, State, TRANSITIONS, ports, switching_off,
+};
+
+/// Inputs and outputs of a clock, typed.
+fn typed(inputs: &[u64], outputs: &[u64]) -> Option<(Inputs, Outputs)> {
+    let inputs = <&[u64; INPUT_PORTS]>::try_from(inputs).ok()?;
+    let outputs = <&[u64; OUTPUT_PORTS]>::try_from(outputs).ok()?;
+    Some((Inputs::from_raw(inputs), Outputs::from_raw(outputs)?))
+}
+
+/// What happens rarely, beside states, transitions and causes.
+const SPECIAL: [&str; 6] = [
+    "host stop",
+    "enable low",
+    "group stop",
+    "fault while the brake closes",
+    "quick stop, then the brake",
+    "outputs off after the brake",
+];
+
+/// What a run reached.
+#[derive(Debug, Clone, Default)]
+pub struct AxisCoverage {
+    /// Clocks with a one, per output port of one bit.
+    levels: [u64; OUTPUT_PORTS],
+    /// From a state to another; on the diagonal, clocks in it.
+    changes: [[u64; 6]; 6],
+    /// Causes that became active, and that were forgotten.
+    causes: [[u64; 2]; 16],
+    special: [u64; SPECIAL.len()],
+    before: Option<(Inputs, Outputs)>,
+}
+
+impl AxisCoverage {
+    /// One clock.
+    pub fn observe(&mut self, inputs: &[u64], outputs: &[u64]) {
+        let Some((now, shown)) = typed(inputs, outputs) else {
+            return;
+        };
+        for (count, value) in self.levels.iter_mut().zip(outputs) {
+            *count += value & 1;
+        }
+        if let Some((inputs, before)) = self.before {
+            self.changes(&inputs, &before, &shown);
+        }
+        self.before = (!now.rst).then_some((now, shown));
+    }
+
+    fn changes(&mut self, inputs: &Inputs, before: &Outputs, shown: &Outputs) {
+        self.changes[before.state as usize][shown.state as usize] += 1;
+        for (bit, [came, went]) in self.causes.iter_mut().enumerate() {
+            let is = |causes: u16| u64::from(causes >> bit & 1);
+            *came += is(shown.causes & !before.causes);
+            *went += is(before.causes & !shown.causes);
+        }
+        let harmless = shown.causes & !HARMLESS == 0;
+        let special = match (before.state, shown.state) {
+            (State::Run, State::QuickStop) if harmless && inputs.stop => 0,
+            (State::Run, State::QuickStop) if harmless && !inputs.enable => 1,
+            (State::Run, State::QuickStop) if harmless => 2,
+            (State::Hold, State::Fault) if shown.drive_enable => 3,
+            (State::QuickStop, State::Fault) if shown.drive_enable => 4,
+            (State::Fault, State::Fault) if before.drive_enable && !shown.drive_enable => 5,
+            _ => return,
+        };
+        self.special[special] += 1;
+    }
+
+    /// How often, by name.
+    pub fn counts(&self) -> Vec<(String, u64)> {
+        let ports = ports();
+        let outputs = ports.iter().filter(|port| port.direction == Direction::Output);
+        let one_bit = outputs.zip(self.levels).filter(|(port, _)| port.width == 1);
+        let levels = one_bit.map(|(port, count)| (port.name.clone(), count));
+        let states = State::ALL.map(|state| (state.name().to_owned(), self.changes[state as usize][state as usize]));
+        let mut transitions: Vec<_> = TRANSITIONS.iter().map(|row| (row.from, row.to)).collect();
+        transitions.dedup();
+        let transitions = transitions.into_iter().map(|(from, to)| {
+            let name = format!("{} to {}", from.name(), to.name());
+            (name, self.changes[from as usize][to as usize])
+        });
+        let causes = Cause::ALL
+            .into_iter()
+            .zip(self.causes)
+            .flat_map(|(cause, [came, went])| [(format!("{cause:?}"), came), (format!("{cause:?} forgotten"), went)]);
+        let special = SPECIAL.map(str::to_owned).into_iter().zip(self.special);
+        levels
+            .chain(states)
+            .chain(transitions)
+            .chain(causes)
+            .chain(special)
+            .collect()
+    }
+}
+
+/// What must hold in every clock, whatever the inputs are: pins, brake, transitions.
+#[derive(Debug, Clone, Default)]
+pub struct AxisSafety {
+    clock: u64,
+    before: Option<(Inputs, Outputs)>,
+    /// Ticks with the outputs on and the brake applied, and how many are allowed.
+    braked: Option<(u64, u64)>,
+    /// Clocks since the emergency stop's line went low, and the longest filter meanwhile.
+    low: (u64, u64),
+    filter_before: u64,
+    violations: Vec<String>,
+}
+
+impl AxisSafety {
+    /// One clock: inputs, and the outputs before its edge.
+    pub fn observe(&mut self, inputs: &[u64], outputs: &[u64]) {
+        let Some((inputs, shown)) = typed(inputs, outputs) else {
+            self.violated("a state that there is not");
+            return;
+        };
+        self.pins(&shown);
+        self.brake(&inputs, &shown);
+        self.emergency(&inputs, &shown);
+        if let Some((inputs, before)) = self.before {
+            self.transition(&inputs, &before, &shown);
+        }
+        self.before = (!inputs.rst).then_some((inputs, shown));
+        self.clock += 1;
+    }
+
+    /// What was violated, the first few: clock and rule.
+    pub fn violations(&self) -> &[String] {
+        &self.violations
+    }
+
+    fn violated(&mut self, rule: &str) {
+        if self.violations.len() < 20 {
+            self.violations.push(format!("clock {}: {rule}", self.clock));
+        }
+    }
+
+    fn pins(&mut self, shown: &Outputs) {
+        let Outputs { state, .. } = *shown;
+        let (on, released) = (shown.drive_enable, shown.brake_release);
+        let is_on = matches!(state, State::Hold | State::Run | State::QuickStop);
+        let moves = matches!(state, State::Run | State::QuickStop);
+        let rules = [
+            (on != shown.pwm_enable, "drive and PWM differ"),
+            (
+                on && matches!(state, State::Off | State::Ready),
+                "outputs on in OFF or READY",
+            ),
+            (is_on && !on, "outputs off in HOLD, RUN or QUICK_STOP"),
+            (released && !on, "brake released with the outputs off"),
+            (released && state == State::Fault, "brake released in FAULT"),
+            (moves && !released, "motion against the brake"),
+            (state == State::Run && shown.causes != 0, "RUN with a cause"),
+            (
+                shown.segments_enable != (state == State::Run),
+                "segments play outside of RUN",
+            ),
+            (shown.segments_preset == on, "command and position apart while off"),
+            (!on && !shown.shaper_start, "shaper not held at the position while off"),
+        ];
+        for (broken, rule) in rules {
+            if broken {
+                self.violated(rule);
+            }
+        }
+    }
+
+    fn brake(&mut self, inputs: &Inputs, shown: &Outputs) {
+        if !shown.drive_enable || shown.brake_release {
+            self.braked = None;
+            return;
+        }
+        let at_entry = self.before.map_or(0, |(inputs, _)| u64::from(inputs.brake_apply_ticks));
+        let (ticks, allowed) = self.braked.unwrap_or((0, at_entry + 1));
+        if ticks >= allowed {
+            self.violated("outputs on against the brake for too long");
+        }
+        self.braked = Some((ticks + u64::from(inputs.tick), allowed));
+    }
+
+    fn emergency(&mut self, inputs: &Inputs, shown: &Outputs) {
+        let (clocks, longest) = self.low;
+        if clocks >= longest + u64::from(LINE_CLOCKS) && shown.drive_enable {
+            self.violated("outputs on after an emergency stop");
+        }
+        let filter = u64::from(inputs.filter_clocks);
+        self.low = match clocks {
+            _ if inputs.emergency_stop_n || inputs.rst => (0, 0),
+            0 => (1, filter.max(self.filter_before)),
+            clocks => (clocks + 1, longest.max(filter)),
+        };
+        self.filter_before = filter;
+    }
+
+    /// `inputs` and `before` are those of the clock before `shown`.
+    fn transition(&mut self, inputs: &Inputs, before: &Outputs, shown: &Outputs) {
+        let (from, to) = (before.state, shown.state);
+        if from != to && !TRANSITIONS.iter().any(|row| (row.from, row.to) == (from, to)) {
+            self.violated(&format!("{from:?} to {to:?} is not in the table"));
+        }
+        let cut = switching_off(shown.causes, inputs.off_causes) != 0;
+        let at_once = inputs.pwm_tripped || inputs.group_emergency_stop;
+        let is_off = !shown.drive_enable && matches!(to, State::Fault | State::Off);
+        if (cut || at_once) && !is_off {
+            self.violated("outputs on a clock after a cause that switches off");
+        }
+        let came = shown.causes & !before.causes & !HARMLESS != 0;
+        if came && matches!(to, State::Ready | State::Hold | State::Run) {
+            self.violated("a cause without a stop");
+        }
+    }
+}
