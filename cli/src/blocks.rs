@@ -2,21 +2,30 @@
 
 use crate::bench;
 use crate::command::{self, Words};
+use crate::control::AxisControl;
 use crate::failure::Failure;
 use posicast_hdl::machine::AxisShaper;
 use posicast_model::rtl::cascade::CascadeConfig;
+use posicast_model::rtl::component::Component;
 use posicast_model::rtl::divider::DividerConfig;
+use posicast_model::rtl::pwm::{ActiveLow, Mode, PwmConfig, PwmConfigError};
+use posicast_model::rtl::registers::RegisterMap;
 use posicast_model::rtl::shaper::{MOTION_WORD_BITS, Motion, ShaperConfig};
-use posicast_model::spec::{Axis, Machine};
+use posicast_model::spec::{Axis, Machine, Pwm, PwmMode};
 use posicast_testbench::blocks::{
-    AxisBlock, Block, CascadeBlock, DividerBlock, MachineShapers, PulseCounterBlock, ShaperBlock,
+    AxisBlock, Block, CascadeBlock, ComponentBlock, DividerBlock, MachineShapers, PulseCounterBlock, PwmBlock,
+    RegistersBlock, SegmentsBlock, ShaperBlock, SlidingModeBlock,
 };
 use std::path::Path;
 
+/// What the name of a component's top module ends with.
+pub(crate) const COMPONENT_SUFFIX: &str = "_avalon";
 /// Delays of the cascade that is compared where no machine asks for one, in samples.
 const CASCADE_DELAYS_SAMPLES: [u32; 4] = [26, 31, 38, 62];
 /// Its word.
 const CASCADE_WORD_BITS: u32 = 32;
+/// Dead time and minimum pulse of the PWM that is compared where no axis has one.
+const PWM_FLOORS_CLOCKS: [u64; 2] = [2, 1];
 /// The shaper for motion that is compared where no axis has one: position, velocity and acceleration share a table.
 const MOTION: Motion = Motion {
     channels: 3,
@@ -34,22 +43,135 @@ pub(crate) fn has_loop(axis: &Axis) -> bool {
 }
 
 /// The other blocks: none for a machine of shapers alone, else every block of the library. `path` is the machine file.
-pub(crate) fn others(machine: &Machine, shapers: &[AxisShaper], path: &Path) -> Result<Vec<Box<dyn Block>>, Failure> {
+pub(crate) fn others(
+    machine: &Machine,
+    shapers: &[AxisShaper],
+    controllers: &[Option<AxisControl>],
+    path: &Path,
+) -> Result<Vec<Box<dyn Block>>, Failure> {
     let mut blocks: Vec<Box<dyn Block>> = Vec::new();
     if !machine.axes.iter().any(has_loop) {
         return Ok(blocks);
     }
     let name = machine.name.as_str();
     let with_encoder = axes(machine, |axis| axis.encoder.is_some());
+    let with_controller = axes(machine, |axis| axis.controller.is_some());
     blocks.push(Box::new(PulseCounterBlock::new(name, &with_encoder)));
     blocks.push(Box::new(AxisBlock::new(name, &axes(machine, has_loop))));
     blocks.push(Box::new(DividerBlock::new(divider(machine, path)?, name)));
+    for (config, axes) in pwms(machine, path)? {
+        blocks.push(Box::new(PwmBlock::new(config, name, &axes)));
+    }
+    blocks.push(Box::new(SlidingModeBlock::new(name, &with_controller)));
     blocks.push(Box::new(
         ShaperBlock::new(motion_shaper(shapers)?, name, "motion").map_err(bench::failure)?,
     ));
     let cascade = CascadeConfig::new(CASCADE_WORD_BITS, CASCADE_DELAYS_SAMPLES.to_vec()).map_err(Failure::because)?;
     blocks.push(Box::new(CascadeBlock::new(cascade, name)));
+    blocks.push(Box::new(SegmentsBlock::new(name, "alone")));
+    let components = components(machine, shapers, controllers, path)?;
+    let mut maps: Vec<&RegisterMap> = Vec::new();
+    for map in components.iter().map(|component| component.component().map()) {
+        if !maps.iter().any(|other| other.name() == map.name()) {
+            maps.push(map);
+        }
+    }
+    for map in maps {
+        blocks.push(Box::new(RegistersBlock::new(map.clone(), name)));
+    }
+    for component in components {
+        blocks.push(Box::new(component));
+    }
     Ok(blocks)
+}
+
+/// The blocks of the machine's axes as components, each behind registers of its own on an Avalon-MM agent, ready for a system
+/// with a processor: none for a machine of shapers alone. Their top modules are `<machine>_<axis>_<block>_avalon`.
+pub(crate) fn components(
+    machine: &Machine,
+    shapers: &[AxisShaper],
+    controllers: &[Option<AxisControl>],
+    path: &Path,
+) -> Result<Vec<ComponentBlock>, Failure> {
+    let mut components = Vec::new();
+    if !machine.axes.iter().any(has_loop) {
+        return Ok(components);
+    }
+    let refused = |error| Failure::because(error).in_file(path);
+    for ((axis, shaper), control) in machine.axes.iter().zip(shapers).zip(controllers) {
+        let mut of_axis = vec![Component::shaper(shaper.config.clone()).map_err(refused)?];
+        if let Some(encoder) = &axis.encoder {
+            let divider = divider(machine, path)?;
+            of_axis.push(Component::pulse_counter(divider, encoder.filter_clocks).map_err(refused)?);
+        }
+        if let Some(pwm) = &axis.pwm {
+            let config = pwm_config(machine, pwm).map_err(|error| Failure::because(error).in_file(path))?;
+            let period_clocks = pwm.period_clocks(&machine.clock);
+            of_axis.push(Component::pwm(config, hardware_mode(pwm.mode), period_clocks).map_err(refused)?);
+        }
+        if let Some(control) = control {
+            let (settings, law) = (&control.derived.settings, control.derived.law);
+            of_axis.push(Component::sliding_mode(settings, law, axis.modulo).map_err(refused)?);
+        }
+        let named = |component: Component| {
+            let top = format!("{}_{}_{}{COMPONENT_SUFFIX}", machine.name, axis.name, component.name());
+            ComponentBlock::new(component, &top, &format!("{}, Avalon", axis.name))
+        };
+        components.extend(of_axis.into_iter().map(named));
+    }
+    Ok(components)
+}
+
+/// The mode's register value.
+fn hardware_mode(mode: PwmMode) -> Mode {
+    match mode {
+        PwmMode::Direction => Mode::Direction,
+        PwmMode::HalfBridge => Mode::HalfBridge,
+        PwmMode::FullBridge => Mode::Unipolar,
+        PwmMode::LockedAntiphase => Mode::Locked,
+    }
+}
+
+/// The PWMs of the machine, each with the axes that have one like it; one of its own where no axis has any.
+fn pwms(machine: &Machine, path: &Path) -> Result<Vec<(PwmConfig, String)>, Failure> {
+    let mut found: Vec<(PwmConfig, String)> = Vec::new();
+    for axis in &machine.axes {
+        let Some(pwm) = &axis.pwm else {
+            continue;
+        };
+        let config = pwm_config(machine, pwm).map_err(|error| Failure::because(error).in_file(path))?;
+        match found.iter_mut().find(|(other, _)| *other == config) {
+            Some((_, axes)) => {
+                axes.push_str(", ");
+                axes.push_str(&axis.name);
+            }
+            None => found.push((config, axis.name.clone())),
+        }
+    }
+    if found.is_empty() {
+        let [dead_time, minimum_pulse] = PWM_FLOORS_CLOCKS;
+        let config = PwmConfig::new(ActiveLow::default(), dead_time, minimum_pulse).map_err(Failure::because)?;
+        found.push((config, "alone".to_owned()));
+    }
+    Ok(found)
+}
+
+/// What is fixed in an axis's PWM: all pins have one polarity, and what the file asks for is the least that a register takes.
+fn pwm_config(machine: &Machine, pwm: &Pwm) -> Result<PwmConfig, PwmConfigError> {
+    let low = pwm.active_low;
+    let active_low = ActiveLow {
+        a_high: low,
+        a_low: low,
+        b_high: low,
+        b_low: low,
+    };
+    // The hardware has at least one clock of each.
+    let floor = |clocks: u32| u64::from(clocks.max(1));
+    let (dead_time, minimum_pulse) = (
+        pwm.dead_time_clocks(&machine.clock),
+        pwm.minimum_pulse_clocks(&machine.clock),
+    );
+    PwmConfig::new(active_low, floor(dead_time), floor(minimum_pulse))
 }
 
 /// The names of the axes that have something, or `alone` where none has it.

@@ -4,6 +4,7 @@ mod document;
 mod sensitivity;
 
 use crate::compare;
+use crate::control::{self, AxisControl};
 use crate::failure::Failure;
 use crate::machine;
 use crate::output::{self, Table, percent};
@@ -13,7 +14,6 @@ use posicast_model::design::ratios::Class;
 use posicast_model::design::{
     AxisTables, ConvolutionFigures, Findings, MachineDesign, ModeFigures, convolution_figures, design_machine,
 };
-use posicast_model::rtl::shaper::ShaperConfig;
 use posicast_model::spec::{Axis, Machine};
 use posicast_testbench::wave::write_text;
 use std::fmt::Write;
@@ -55,6 +55,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         return compare::run(&machine, args.band, args.json);
     }
     let report = Report::new(&machine, &args.machine)?;
+    report.warn();
     if let Some(path) = &args.plot {
         write_text(path, &plot::svg(&sensitivity_panels(&machine, &report.design))?).map_err(Failure::because)?;
     }
@@ -69,13 +70,24 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
 pub(crate) struct Report<'a> {
     machine: &'a Machine,
     pub(crate) design: MachineDesign,
+    pub(crate) controllers: Vec<Option<AxisControl>>,
 }
 
 impl<'a> Report<'a> {
     /// Designs the shapers of `machine`, which the file at `path` describes.
     pub(crate) fn new(machine: &'a Machine, path: &Path) -> Result<Self, Failure> {
         let design = design_machine(machine).map_err(|e| Failure::because(e).in_file(path))?;
-        Ok(Self { machine, design })
+        let controllers = control::of_machine(machine, path)?;
+        Ok(Self {
+            machine,
+            design,
+            controllers,
+        })
+    }
+
+    /// Says on standard error what is doubtful about the controllers.
+    pub(crate) fn warn(&self) {
+        self.controllers.iter().flatten().for_each(AxisControl::warn);
     }
 
     fn axes(&self) -> impl Iterator<Item = AxisReport<'_>> {
@@ -83,12 +95,14 @@ impl<'a> Report<'a> {
             .axes
             .iter()
             .zip(&self.design.axes)
-            .map(|(axis, tables)| AxisReport {
+            .zip(&self.controllers)
+            .map(|((axis, tables), control)| AxisReport {
                 axis,
                 tables,
+                control: control.as_ref(),
                 modes: tables.mode_figures(axis, self.design.sample_hz),
                 convolution: convolution_figures(axis, &tables.design),
-                fits: fits(self.machine, tables),
+                fits: machine::shaper(self.machine, axis, tables).map(drop),
             })
     }
 
@@ -120,20 +134,13 @@ impl<'a> Report<'a> {
     }
 }
 
-fn fits(machine: &Machine, tables: &AxisTables) -> Result<(), String> {
-    let config =
-        ShaperConfig::new(machine.fixed_point.command_bits, tables.table.clone()).map_err(|e| e.to_string())?;
-    config
-        .fits(u64::from(machine.clock.clocks_per_sample()))
-        .map_err(|e| e.to_string())
-}
-
 struct AxisReport<'a> {
     axis: &'a Axis,
     tables: &'a AxisTables,
     modes: Vec<ModeFigures>,
     convolution: ConvolutionFigures,
     fits: Result<(), String>,
+    control: Option<&'a AxisControl>,
 }
 
 impl AxisReport<'_> {
@@ -214,6 +221,7 @@ impl AxisReport<'_> {
                     })
                     .collect(),
             },
+            control: self.control.map(AxisControl::json),
         }
     }
 
@@ -263,6 +271,9 @@ impl AxisReport<'_> {
         text += &table.text("  ");
         if let Err(reason) = &self.fits {
             let _ = writeln!(text, "  does not fit: {reason}");
+        }
+        if let Some(control) = self.control {
+            let _ = write!(text, "\n{}", control.text());
         }
         text
     }

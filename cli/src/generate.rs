@@ -1,16 +1,20 @@
 //! `posicast generate`: the Verilog of a machine, in a folder of its own.
 
+use crate::blocks;
+use crate::control::AxisControl;
 use crate::design::Report;
 use crate::failure::Failure;
 use crate::machine::{self, MachineFile};
 use crate::output;
 use posicast_hdl::emit::Module;
 use posicast_hdl::machine::{AxisShaper, emit_machine};
+use posicast_model::spec::Machine;
 use posicast_synth::package::Package;
+use posicast_testbench::blocks::Block;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-/// Write the machine's Verilog into a folder
+/// Write the machine's Verilog and its components into a folder
 #[derive(clap::Args)]
 #[command(after_help = "Example:\n  posicast generate examples/xy-stage.toml -o xy_stage")]
 pub(crate) struct Args {
@@ -24,8 +28,9 @@ pub(crate) struct Args {
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let file = machine::read(&args.machine)?;
     let report = Report::new(&file.machine, &args.machine)?;
+    report.warn();
     let shapers = machine::shapers(&file.machine, &report.design, &args.machine)?;
-    let modules = modules(&file.machine.name, &shapers)?;
+    let modules = modules(&file.machine, &shapers, &report.controllers, &args.machine)?;
     let mut package = open(args.output.as_deref(), &file)?;
     add_sources(&mut package, &file, &modules)?;
     package
@@ -38,9 +43,18 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     output::print(&text)
 }
 
-/// The Verilog modules of a machine.
-pub(crate) fn modules(name: &str, shapers: &[AxisShaper]) -> Result<Vec<Module>, Failure> {
-    emit_machine(name, shapers).map_err(Failure::because)
+/// The Verilog modules of a machine: those of its top, then those of its components. `path` is the machine file.
+pub(crate) fn modules(
+    machine: &Machine,
+    shapers: &[AxisShaper],
+    controllers: &[Option<AxisControl>],
+    path: &Path,
+) -> Result<Vec<Module>, Failure> {
+    let mut modules = emit_machine(&machine.name, shapers).map_err(Failure::because)?;
+    for component in blocks::components(machine, shapers, controllers, path)? {
+        modules.extend(component.modules().map_err(Failure::because)?);
+    }
+    Ok(modules)
 }
 
 /// The output folder, by default named after the machine.

@@ -2,9 +2,9 @@
 
 use crate::failure::Failure;
 use posicast_hdl::machine::AxisShaper;
-use posicast_model::design::MachineDesign;
+use posicast_model::design::{AxisTables, MachineDesign};
 use posicast_model::rtl::shaper::{Motion, ShaperConfig};
-use posicast_model::spec::{self, Machine};
+use posicast_model::spec::{self, Axis, Machine};
 use std::path::Path;
 
 /// A machine file is a page of text; anything far beyond is some other file named by mistake.
@@ -56,21 +56,27 @@ pub(crate) fn parse(path: &Path, text: &str) -> Result<Machine, Failure> {
 
 /// What is built for every axis of a machine, which the file at `path` describes.
 pub(crate) fn shapers(machine: &Machine, design: &MachineDesign, path: &Path) -> Result<Vec<AxisShaper>, Failure> {
-    let clocks = u64::from(machine.clock.clocks_per_sample());
     let axes = machine.axes.iter().zip(&design.axes);
     axes.map(|(axis, tables)| {
         let refused = |reason: String| Failure::from(miette::miette!("axis `{}`: {reason}", axis.name)).in_file(path);
-        let plain = ShaperConfig::new(machine.fixed_point.command_bits, tables.table.clone());
-        let config = match axis.modulo {
-            true => plain.and_then(|config| config.for_motion(MODULO)),
-            false => plain,
-        };
-        let config = config.map_err(|e| refused(e.to_string()))?;
-        config.fits(clocks).map_err(|e| refused(e.to_string()))?;
         Ok(AxisShaper {
             axis: axis.name.clone(),
-            config,
+            config: shaper(machine, axis, tables).map_err(refused)?,
         })
     })
     .collect()
+}
+
+/// The shaper of an axis, or why it cannot be built, or not run at the machine's sample rate.
+pub(crate) fn shaper(machine: &Machine, axis: &Axis, tables: &AxisTables) -> Result<ShaperConfig, String> {
+    let plain = ShaperConfig::new(machine.fixed_point.command_bits, tables.table.clone());
+    let config = match axis.modulo {
+        true => plain.and_then(|config| config.for_motion(MODULO)),
+        false => plain,
+    };
+    let config = config.map_err(|e| e.to_string())?;
+    config
+        .fits(u64::from(machine.clock.clocks_per_sample()))
+        .map_err(|e| e.to_string())?;
+    Ok(config)
 }

@@ -7,6 +7,7 @@ mod bench;
 mod blocks;
 mod command;
 mod compare;
+mod control;
 mod design;
 mod diff;
 mod failure;

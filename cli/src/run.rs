@@ -66,17 +66,22 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let file = machine::read(&args.machine)?;
     let machine = &file.machine;
     let design = DesignReport::new(machine, &args.machine)?;
+    design.warn();
     let shapers = machine::shapers(machine, &design.design, &args.machine)?;
     let words = command::words(machine, &design.design, args.command.as_deref())?;
     let simulator = Simulator::choose(args.simulator)?;
     let yosys = installed_yosys()?;
     let axes = simulate(machine, &design.design, &shapers, &words)?;
+    let modules = generate::modules(machine, &shapers, &design.controllers, &args.machine)?;
+    let components = blocks::components(machine, &shapers, &design.controllers, &args.machine)?;
     let top = blocks::shapers(machine, shapers, &words)?;
+    let components = components.iter().map(|component| component as &dyn Block);
+    let tops: Vec<&dyn Block> = std::iter::once(&top as &dyn Block).chain(components).collect();
 
     let mut package = generate::open(args.output.as_deref(), &file)?;
-    let modules = top.modules().map_err(Failure::because)?;
     let files = generate::add_sources(&mut package, &file, &modules)?;
-    let sources = Sources::found(files.clone());
+    let all = Sources::found(files.clone());
+    let sources = all.reached_by(&top).map_err(bench::failure)?;
     let cycles = args.cycles.unwrap_or(simulator.default_cycles());
     let job = Job {
         machine,
@@ -89,7 +94,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let waves = job.waves(&mut package, &design.design, &axes)?;
     let estimate = yosys.map(|yosys| estimate(&yosys, machine, &files)).transpose()?;
 
-    let mut checks = Vec::from_iter(checks::lint(simulator, &files, &machine.name)?);
+    let mut checks = Vec::from_iter(checks::lint(simulator, &all, &tops)?);
     checks.extend(checks::all(simulator, machine, &design.design, &lockstep, &waves));
     checks.extend(estimate.as_ref().and_then(|e| checks::fits(machine, e)));
     package

@@ -1,12 +1,14 @@
 //! `posicast synth`: what a machine's Verilog takes of a device.
 
+use crate::blocks::COMPONENT_SUFFIX;
 use crate::design::Report;
 use crate::failure::Failure;
 use crate::output::{self, Table};
 use crate::{generate, machine, progress};
 use posicast_model::spec::Machine;
 use posicast_synth::package;
-use posicast_synth::yosys::{Estimate, Family, Resources, Yosys, YosysError};
+use posicast_synth::yosys::{Block, Estimate, Family, Resources, Yosys, YosysError};
+use serde::Serialize;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
@@ -34,10 +36,23 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let spinner = progress::spinner("Yosys maps the design");
     let estimate = yosys.estimate(&files, &machine.name, family).map_err(failure)?;
     spinner.finish_and_clear();
+    let components = components(&files)
+        .into_iter()
+        .map(|name| {
+            let spinner = progress::spinner(&format!("Yosys maps {name}"));
+            let total = yosys.estimate(&files, &name, family).map_err(failure)?.total;
+            spinner.finish_and_clear();
+            Ok(Block { name, resources: total })
+        })
+        .collect::<Result<Vec<_>, Failure>>()?;
+    let document = Document {
+        estimate: &estimate,
+        components: &components,
+    };
     if args.json {
-        output::print_json(&estimate)?
+        output::print_json(&document)?
     } else {
-        output::print(&text(&estimate))?
+        output::print(&(text(&estimate) + &components_text(&components)))?
     }
     let excesses = estimate.excesses();
     if excesses.is_empty() {
@@ -55,6 +70,42 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     Err(Failure::Check(format!("does not fit the device: {}", list.join("; "))))
 }
 
+/// `synth --json`: the estimate of the top, and of each component beside it, which is in no sum.
+#[derive(Serialize)]
+struct Document<'a> {
+    #[serde(flatten)]
+    estimate: &'a Estimate,
+    #[serde(skip_serializing_if = "<[_]>::is_empty")]
+    components: &'a [Block],
+}
+
+/// The top modules of the components among these files.
+fn components(files: &[PathBuf]) -> Vec<String> {
+    let stems = files.iter().filter_map(|file| file.file_stem()?.to_str());
+    let mut names: Vec<String> = stems
+        .filter(|name| name.ends_with(COMPONENT_SUFFIX))
+        .map(str::to_owned)
+        .collect();
+    names.sort_unstable();
+    names
+}
+
+fn components_text(components: &[Block]) -> String {
+    if components.is_empty() {
+        return String::new();
+    }
+    let mut table = Table::new(&["component", ">cells", ">registers", ">memory bits", ">multipliers"]);
+    for component in components {
+        table.row(cells(&component.name, &component.resources));
+    }
+    format!("\nBeside the top, each by itself:\n{}", table.text(""))
+}
+
+fn cells(name: &str, r: &Resources) -> impl Iterator<Item = String> {
+    let numbers = [r.cells, r.registers, r.memory_bits, r.multipliers].map(|n| n.to_string());
+    std::iter::once(name.to_owned()).chain(numbers)
+}
+
 /// The machine, its Verilog files, and the folder that keeps them alive where they are temporary.
 fn sources(source: &Path) -> Result<(Machine, Vec<PathBuf>, Option<tempfile::TempDir>), Failure> {
     if source.is_dir() {
@@ -63,8 +114,9 @@ fn sources(source: &Path) -> Result<(Machine, Vec<PathBuf>, Option<tempfile::Tem
         return Ok((machine, contents.rtl, None));
     }
     let machine = machine::read(source)?.machine;
-    let design = Report::new(&machine, source)?.design;
-    let modules = generate::modules(&machine.name, &machine::shapers(&machine, &design, source)?)?;
+    let report = Report::new(&machine, source)?;
+    let shapers = machine::shapers(&machine, &report.design, source)?;
+    let modules = generate::modules(&machine, &shapers, &report.controllers, source)?;
     let (files, scratch) = generate::write_scratch(&modules)?;
     Ok((machine, files, Some(scratch)))
 }
@@ -80,10 +132,7 @@ pub(crate) fn family_of(machine: &Machine) -> Result<Family, Failure> {
 /// A table of blocks with the device's capacity, and where the figures come from.
 pub(crate) fn text(estimate: &Estimate) -> String {
     let mut table = Table::new(&["block", ">cells", ">registers", ">memory bits", ">multipliers"]);
-    let mut row = |name: &str, r: &Resources| {
-        let cells = [r.cells, r.registers, r.memory_bits, r.multipliers].map(|n| n.to_string());
-        table.row(std::iter::once(name.to_owned()).chain(cells));
-    };
+    let mut row = |name: &str, r: &Resources| table.row(cells(name, r));
     for block in &estimate.blocks {
         row(&block.name, &block.resources);
     }

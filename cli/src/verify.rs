@@ -44,7 +44,7 @@ pub(crate) struct Args {
 pub(crate) const DEFAULT_SEED: u64 = 1;
 
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
-    let job = Job::new(&args.source, &args.blocks)?;
+    let mut job = Job::new(&args.source, &args.blocks)?;
     if job.from_folder && args.simulator == Some(Simulator::Rusthdl) {
         return Err(Failure::from(miette::miette!(
             help = "use --simulator verilator or icarus, or verify the machine file",
@@ -57,6 +57,9 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     } else {
         Simulator::choose(args.simulator)?
     };
+    if simulator == Simulator::Rusthdl {
+        job.keep_what_is_rusthdl()?;
+    }
     let cycles = args.cycles.unwrap_or(simulator.default_cycles());
     let report = job.lockstep(simulator, cycles, args.seed)?;
     if report.samples == 0 {
@@ -94,11 +97,12 @@ impl Job {
         } else {
             (machine::read(source)?.machine, source.to_owned(), None)
         };
-        let design = DesignReport::new(&machine, source)?.design;
-        let shapers = machine::shapers(&machine, &design, source)?;
+        let report = DesignReport::new(&machine, source)?;
+        let design = &report.design;
+        let shapers = machine::shapers(&machine, design, source)?;
         // A move that does not fit the words is an error of `run`; a lock step has its other stimuli.
-        let words = command::words(&machine, &design, None).unwrap_or_default();
-        let others = blocks::others(&machine, &shapers, &path)?;
+        let words = command::words(&machine, design, None).unwrap_or_default();
+        let others = blocks::others(&machine, &shapers, &report.controllers, &path)?;
         let mut list: Vec<Box<dyn Block>> = vec![Box::new(blocks::shapers(&machine, shapers, &words)?)];
         if let Some(files) = &folder {
             let there = Sources::found(files.clone());
@@ -107,7 +111,7 @@ impl Job {
             list.extend(others);
         }
         let sources = |block: &dyn Block| match &folder {
-            Some(files) => Ok(Sources::found(files.clone())),
+            Some(files) => Sources::found(files.clone()).reached_by(block).map_err(bench::failure),
             None => Sources::write(block).map_err(bench::failure),
         };
         let chosen = choose(list, names, source)?.into_iter();
@@ -116,6 +120,29 @@ impl Job {
             blocks: blocks.collect::<Result<_, _>>()?,
             from_folder: folder.is_some(),
         })
+    }
+
+    /// Leaves out what RustHDL's simulator cannot run, and says so; where nothing else is left, that is an error.
+    fn keep_what_is_rusthdl(&mut self) -> Result<(), Failure> {
+        let all = std::mem::take(&mut self.blocks);
+        let (kept, left_out): (Vec<_>, Vec<_>) = all.into_iter().partition(|(block, _)| block.in_rusthdl());
+        let names = left_out
+            .iter()
+            .map(|(block, _)| format!("{} {}", block.name(), block.instance()));
+        let names = names.collect::<Vec<_>>().join("; ");
+        if kept.is_empty() {
+            return Err(Failure::from(miette::miette!(
+                help = "use --simulator verilator or icarus",
+                "`--simulator rusthdl` runs RustHDL descriptions, and these are written from register maps: {names}"
+            )));
+        }
+        if !left_out.is_empty() {
+            output::say(&format!(
+                "note: left out, because RustHDL's simulator cannot run what is written from register maps: {names}"
+            ));
+        }
+        self.blocks = kept;
+        Ok(())
     }
 
     fn lockstep(&self, simulator: Simulator, cycles: u64, seed: u64) -> Result<Report, Failure> {

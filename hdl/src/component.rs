@@ -3,8 +3,8 @@
 //! What is in a component and how it is joined says `posicast_model::rtl::component`; here are the modules and the top
 //! around them.
 
-use crate::emit::{EmitError, Header, Module, Parameter, connect};
-use crate::{divider, pulse_counter, registers, sample_select, shaper, time_base};
+use crate::emit::{EmitError, Header, Module, connect};
+use crate::{divider, pulse_counter, pwm, registers, sample_select, setting_banks, shaper, sliding_mode, time_base};
 use posicast_model::rtl::component::{Block, Component};
 
 /// All Verilog modules of a component, sub-modules first, the top last. The top is called `name`, the others begin with it.
@@ -18,7 +18,10 @@ pub fn emit(component: &Component, name: &str) -> Result<Vec<Module>, EmitError>
         let of_block = match block {
             Block::Registers => vec![registers::emit(component.map(), name)?],
             Block::Shaper(config) => shaper::emit(config, name)?,
-            Block::SampleSelect(config) => sample_select::emit(config, name)?,
+            Block::SampleSelect { word_bits, channels } => sample_select::emit(*word_bits, *channels, name)?,
+            Block::Pwm(config) => pwm::emit(config, name)?,
+            Block::SlidingMode => sliding_mode::emit(name)?,
+            Block::SettingBanks(machine) => setting_banks::emit(machine, name)?,
             Block::PulseCounter => pulse_counter::emit(name)?,
             Block::Divider(config) => divider::emit(config, name)?,
             Block::TimeBase(config) => time_base::emit(config, name)?,
@@ -38,24 +41,8 @@ pub fn emit(component: &Component, name: &str) -> Result<Vec<Module>, EmitError>
 
 fn header(component: &Component) -> Header {
     let map = component.map();
-    let constants = map.registers().iter().filter(|register| register.offset > 1);
-    let parameters =
-        constants.take_while(|register| register.access == posicast_model::rtl::registers::Access::Constant);
-    let row = |register: &posicast_model::rtl::registers::Register| Parameter {
-        name: register.name.clone(),
-        value: register.reset().to_string(),
-        meaning: register
-            .fields
-            .first()
-            .map(|field| field.meaning.clone())
-            .unwrap_or_default(),
-    };
     Header {
-        about: format!(
-            "{}\nAvalon-MM agent avs_*, registers as in {}_registers.",
-            map.about(),
-            map.name()
-        ),
-        parameters: parameters.map(row).collect(),
+        about: format!("{}\nAvalon-MM agent avs_*: see docs/registers.md.", map.about()),
+        parameters: registers::parameters(map),
     }
 }

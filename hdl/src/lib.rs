@@ -12,11 +12,13 @@
 //! | [`cascade`] | the cascade of half sums |
 //! | [`divider`] | counts and clocks to velocity, one bit per clock |
 //! | [`pulse_counter`] | encoder signals to position, index and velocity |
+//! | [`pwm`] | duty to the gates of a bridge, with dead time and fault path |
 //! | [`sliding_mode`] | the controller: sliding mode, PD, PID |
 //! | [`registers`] | register banks, from their description |
-//! | [`time_base`], [`sample_select`] | what stand-alone components have beside |
+//! | [`time_base`], [`sample_select`], [`setting_banks`] | what stand-alone components have beside |
 //! | [`component`] | the blocks that stand alone, each with its registers on a bus |
 //! | [`segments`] | the command FIFO: segments of constant jerk to position, velocity and acceleration |
+//! | [`pwm`] | duty to the gates of a bridge, with dead time and fault path |
 //! | [`axis`] | the supervisor of an axis: states, limits, brake, faults |
 //! | [`machine`] | a machine's top module: the blocks of its axes, side by side |
 //! | [`emit`](mod@emit) | the typed emitter: RustHDL's syntax tree as Verilog |
@@ -30,9 +32,11 @@ pub mod machine;
 pub(crate) mod prelude;
 pub(crate) mod prim;
 pub mod pulse_counter;
+pub mod pwm;
 pub mod registers;
 pub mod sample_select;
 pub mod segments;
+pub mod setting_banks;
 pub mod shaper;
 mod simulation;
 pub mod sliding_mode;

@@ -7,7 +7,6 @@ use crate::prelude::*;
 use crate::simulation::{Pins, Simulated, SimulationError};
 use posicast_model::rtl::ClockedBlock;
 use posicast_model::rtl::sample_select::ports;
-use posicast_model::rtl::shaper::ShaperConfig;
 
 /// W word, C channels.
 #[derive(LogicBlock)]
@@ -115,33 +114,39 @@ impl<const W: usize, const C: usize> Pins for SampleSelect<W, C> {
     }
 }
 
-fn block(config: &ShaperConfig) -> Box<dyn Pins> {
-    // The widths and channels that shapers have.
-    match (config.word_bits(), config.channels()) {
+/// The sizes that components have: those of shapers, a duty, and five words of 32 bits for a controller.
+fn block(word_bits: u32, channels: usize) -> Box<dyn Pins> {
+    match (word_bits, channels) {
+        (17, _) => Box::new(SampleSelect::<17, 1>::default()),
         (16, _) => Box::new(SampleSelect::<16, 1>::default()),
         (24, 1) => Box::new(SampleSelect::<24, 1>::default()),
         (24, 2) => Box::new(SampleSelect::<24, 2>::default()),
         (24, _) => Box::new(SampleSelect::<24, 3>::default()),
         (_, 1) => Box::new(SampleSelect::<32, 1>::default()),
         (_, 2) => Box::new(SampleSelect::<32, 2>::default()),
-        _ => Box::new(SampleSelect::<32, 3>::default()),
+        (_, 3) => Box::new(SampleSelect::<32, 3>::default()),
+        _ => Box::new(SampleSelect::<32, 5>::default()),
     }
 }
 
-/// The selection in RustHDL's own simulator, for the words and channels of `config`.
+/// The selection in RustHDL's own simulator, for words of so many bits and so many channels.
 ///
 /// # Errors
 /// [`SimulationError`] where RustHDL finds a fault in the block.
-pub fn simulate(config: &ShaperConfig) -> Result<Box<dyn ClockedBlock>, SimulationError> {
-    let ports = ports(config.word_bits(), config.channels());
-    Ok(Box::new(Simulated::new("sample_select", block(config), ports)?))
+pub fn simulate(word_bits: u32, channels: usize) -> Result<Box<dyn ClockedBlock>, SimulationError> {
+    let ports = ports(word_bits, channels);
+    Ok(Box::new(Simulated::new(
+        "sample_select",
+        block(word_bits, channels),
+        ports,
+    )?))
 }
 
 /// The selection's Verilog: `PREFIX_sample_select`, or `sample_select` where `prefix` is empty.
 ///
 /// # Errors
 /// [`EmitError`] where `prefix` makes no Verilog name.
-pub fn emit(config: &ShaperConfig, prefix: &str) -> Result<Vec<Module>, EmitError> {
+pub fn emit(word_bits: u32, channels: usize, prefix: &str) -> Result<Vec<Module>, EmitError> {
     let options = EmitOptions {
         top: "sample_select".to_owned(),
         prefix: prefix.to_owned(),
@@ -150,5 +155,5 @@ pub fn emit(config: &ShaperConfig, prefix: &str) -> Result<Vec<Module>, EmitErro
             parameters: Vec::new(),
         },
     };
-    emit::emit(block(config).as_ref(), &options)
+    emit::emit(block(word_bits, channels).as_ref(), &options)
 }

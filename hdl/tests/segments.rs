@@ -19,7 +19,7 @@ fn lockstep_everything_at_random() {
     for clock in 0..20_000 {
         let word = clock % 4;
         let data = match word {
-            3 if random.once_in(3) => u64::from(POINT) | 1 + random.below(3),
+            3 if random.once_in(3) => u64::from(POINT) + 1 + random.below(3),
             3 => 1 + random.below(5),
             _ => random.word() >> (32 + random.below(32)),
         };

@@ -5,7 +5,8 @@
 //!
 //! ```text
 //! spec ─► design ─► impulses ─► digitise ─► taps ─► rtl::shaper
-//!                       └────────────┴────────────► analysis, plant
+//!   │                   └────────────┴────────────► analysis, plant
+//!   └─► control ─► gains ─► rtl::sliding_mode
 //! ```
 
 pub mod analysis;

@@ -314,16 +314,60 @@ proptest! {
 
     #[test]
     fn prop_hold_is_as_many_steps(runs in proptest::collection::vec((any::<[u64; 26]>(), 1u64..200), 1..60)) {
-        let mut fast = PulseCounter::new();
-        let mut slow = PulseCounter::new();
+        let mut both = Both::default();
         for (mut raw, clocks) in runs {
             raw[0] &= raw[1] & raw[2] & raw[3];
-            let inputs = Inputs::from_raw(&raw).unwrap();
-            fast.hold(&inputs, clocks);
-            for _ in 0..clocks {
-                slow.step(&inputs);
-            }
-            prop_assert_eq!(fast.outputs(), slow.outputs());
+            both.hold(&Inputs::from_raw(&raw).unwrap(), clocks)?;
         }
+    }
+
+    #[test]
+    fn prop_hold_is_as_many_steps_of_a_turning_encoder(
+        steps in proptest::collection::vec((0u32..12, any::<bool>(), 1u64..900, any::<i32>()), 1..60),
+        filter_clocks in 0u8..20,
+        velocity_m: bool,
+        smoothing in 0u8..4,
+        timeout in 0u8..3,
+    ) {
+        let mut both = Both::default();
+        let mut inputs = Inputs { filter_clocks, velocity_m, smoothing, timeout, time_stamp: 0xff_ff00, ..Inputs::default() };
+        let mut angle = 0;
+        for (what, up, clocks, quotient) in steps {
+            let (once, pause) = match what {
+                0 | 1 => (Inputs { tick: true, ..inputs }, 0),
+                2 => (Inputs { quotient_valid: true, quotient, ..inputs }, 0),
+                3 => (Inputs { index_arm: true, clear_flags: up, ..inputs }, 0),
+                4 => (inputs, 100 * clocks),
+                _ => {
+                    angle += if up { 1 } else { 3 };
+                    (inputs.a, inputs.b) = STATES[angle % 4];
+                    inputs.z = angle % 10 == 0;
+                    (inputs, 0)
+                }
+            };
+            both.hold(&once, 1)?;
+            inputs.time_stamp = inputs.time_stamp.wrapping_add(1);
+            both.hold(&inputs, clocks + pause)?;
+            inputs.time_stamp = inputs.time_stamp.wrapping_add((clocks + pause) as u32);
+        }
+    }
+}
+
+/// A counter by `hold` and one by `step`.
+#[derive(Default)]
+struct Both {
+    fast: PulseCounter,
+    slow: PulseCounter,
+}
+
+impl Both {
+    fn hold(&mut self, inputs: &Inputs, clocks: u64) -> Result<(), TestCaseError> {
+        self.fast.hold(inputs, clocks);
+        for clock in 0..clocks {
+            let time_stamp = inputs.time_stamp.wrapping_add(clock as u32);
+            self.slow.step(&Inputs { time_stamp, ..*inputs });
+        }
+        prop_assert_eq!(self.fast.outputs(), self.slow.outputs());
+        Ok(())
     }
 }

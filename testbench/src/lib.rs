@@ -13,6 +13,7 @@
 //! - [`lockstep`] steps model and device side by side and compares every output in every clock.
 //! - [`blocks`] is the list of hardware blocks, each with its Verilog, model, stimuli and coverage.
 //! - [`campaign`] is the order of stimuli that a machine goes through; [`recording`] runs a real move into waveforms.
+//! - [`register_tests`] asks registers, through the bus, for what their description promises.
 //! - [`wave`] writes waveforms; [`diff`] compares two of them.
 
 pub mod blocks;
@@ -23,6 +24,7 @@ pub mod icarus;
 pub mod lockstep;
 mod reader;
 pub mod recording;
+pub mod register_tests;
 pub mod stimuli;
 mod tool;
 pub mod verilator;

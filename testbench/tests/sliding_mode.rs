@@ -1,90 +1,36 @@
 //! The controller's Verilog against its bit-exact model, every output in every clock.
-#![allow(clippy::unwrap_used, clippy::panic)] // helpers of tests, which clippy.toml exempts only inside of #[test]
 
-use posicast_hdl::sliding_mode::emit;
-use posicast_model::rtl::ClockedBlock;
-use posicast_model::rtl::sliding_mode::{Inputs, SlidingMode, ports};
-use posicast_testbench::icarus::Icarus;
-use posicast_testbench::lockstep::report::{Report, Verdict};
-use posicast_testbench::lockstep::{self, Device, Instance, Options};
-use posicast_testbench::stimuli::{SlidingModeCoverage, SlidingModeRandom, Stimuli};
-use posicast_testbench::verilator::{Source, Verilated, lint};
-use std::path::PathBuf;
-use tempfile::TempDir;
+mod support;
 
-struct Bench {
-    files: Vec<PathBuf>,
-    _folder: TempDir,
+use posicast_model::rtl::sliding_mode::{Inputs, Motion};
+use posicast_testbench::blocks::{self, SlidingModeBlock, Sources};
+use support::{assert_match, icarus_agrees, million_random_clocks};
+
+fn sliding_mode() -> SlidingModeBlock {
+    SlidingModeBlock::new("", "alone")
 }
 
-impl Bench {
-    /// With the first `from` in the Verilog replaced by `to`.
-    fn new(from: &str, to: &str) -> Self {
-        let mut modules = emit("").unwrap();
-        let found = modules.iter_mut().find(|module| module.text.contains(from));
-        let module = found.unwrap_or_else(|| panic!("the Verilog no longer has `{from}`: adapt the test"));
-        module.text = module.text.replacen(from, to, 1);
-        let folder = tempfile::tempdir().unwrap();
-        let file = |module: &posicast_hdl::emit::Module| {
-            let path = folder.path().join(format!("{}.v", module.name));
-            std::fs::write(&path, &module.text).unwrap();
-            path
-        };
-        Self {
-            files: modules.iter().map(file).collect(),
-            _folder: folder,
-        }
-    }
-
-    fn run(&self, device: &mut dyn Device, stimuli: &mut dyn Stimuli, cycles: u64) -> (Report, SlidingModeCoverage) {
-        let mut model = SlidingMode::new();
-        let instances = [Instance::whole("sliding_mode", "alone", model.ports())];
-        let mut coverage = SlidingModeCoverage::default();
-        let report = lockstep::run(
-            &mut model,
-            device,
-            stimuli,
-            &instances,
-            &Options::cycles(cycles),
-            &mut |clock| coverage.observe(clock.inputs, clock.expected),
-            &mut |_| {},
-        );
-        (report.unwrap(), coverage)
-    }
-
-    fn verilated(&self, seed: u64) -> Verilated {
-        let ports = ports();
-        let source = Source {
-            files: &self.files,
-            top: "sliding_mode",
-            ports: &ports,
-        };
-        Verilated::build(&source, seed).unwrap()
-    }
-}
-
-fn assert_match(report: &Report) {
-    if let Some(first) = &report.blocks[0].first {
-        panic!("{} mismatches\n{first}", report.blocks[0].mismatches);
-    }
-    assert_eq!(report.result, Verdict::Match);
+/// Insists that a break is found within 300,000 clocks.
+#[track_caller]
+fn caught(from: &str, to: &str) {
+    support::caught(&sliding_mode(), from, to, 300_000);
 }
 
 #[test]
 fn lockstep_a_million_random_clocks() {
-    let bench = Bench::new("", "");
-    assert_eq!(lint(&bench.files, "sliding_mode").unwrap(), [""; 0]);
     for seed in 1..=2 {
-        let mut stimuli = SlidingModeRandom::new(seed);
-        let (report, coverage) = bench.run(&mut bench.verilated(seed), &mut stimuli, 1_000_000);
-        assert_match(&report);
-        assert!(coverage.least() > 0, "{:?}", coverage.counts());
+        million_random_clocks(&sliding_mode(), seed, 1);
     }
 }
 
 #[test]
+fn crosssim_icarus_agrees_with_the_model() {
+    icarus_agrees(&sliding_mode());
+}
+
+#[test]
 fn lockstep_a_command_that_is_cut_until_its_count_stops() {
-    let bench = Bench::new("", "");
+    let block = sliding_mode();
     let mut clock = 0;
     let mut stimuli = |seen: &[u64], inputs: &mut [u64]| {
         clock += 1;
@@ -93,40 +39,20 @@ fn lockstep_a_command_that_is_cut_until_its_count_stops() {
         let now = Inputs {
             rst: clock < 3,
             start: seen[6] == 0,
-            motion: posicast_model::rtl::sliding_mode::Motion {
+            motion: Motion {
                 velocity_reference: 1 << 20,
-                ..Default::default()
+                ..Motion::default()
             },
             setting,
             ..Inputs::default()
         };
         inputs.copy_from_slice(&now.to_raw());
     };
-    let (report, coverage) = bench.run(&mut bench.verilated(1), &mut stimuli, 65_545 * 210);
-    assert_match(&report);
-    let ticks = coverage.counts().into_iter().find(|(name, _)| name == "limited_ticks");
+    let mut device = Sources::write(&block).unwrap().verilated(&block, 1).unwrap();
+    let run = blocks::compare_with(&block, &mut device, &mut stimuli, 65_545 * 210, 1, &mut |_| {}).unwrap();
+    assert_match(&run.report, "cut for ever");
+    let ticks = run.coverage.into_iter().find(|(name, _)| name == "limited_ticks");
     assert_eq!(ticks.unwrap().1, 65_535);
-}
-
-#[test]
-fn crosssim_icarus_agrees_with_the_model() {
-    let bench = Bench::new("", "");
-    let ports = ports();
-    let source = Source {
-        files: &bench.files,
-        top: "sliding_mode",
-        ports: &ports,
-    };
-    let mut stimuli = SlidingModeRandom::without_wind_up(4);
-    let (report, _) = bench.run(&mut Icarus::build(&source).unwrap(), &mut stimuli, 20_000);
-    assert_match(&report);
-}
-/// Breaks the Verilog and insists on a mismatch.
-fn caught(from: &str, to: &str) {
-    let bench = Bench::new(from, to);
-    let mut stimuli = SlidingModeRandom::without_wind_up(1);
-    let (report, _) = bench.run(&mut bench.verilated(1), &mut stimuli, 300_000);
-    assert_eq!(report.result, Verdict::Mismatch, "`{to}` is not found");
 }
 
 #[test]
@@ -152,10 +78,7 @@ fn lockstep_catches_an_integral_that_passes_its_ends() {
         (" LARGEST = 32'sd2147483647", " LARGEST = 32'sd2147483646"),
         (" LEAST = 32'sh80000000", " LEAST = 32'sh80000001"),
     ] {
-        let bench = Bench::new(from, to);
-        let mut device = bench.verilated(1);
-        let (report, _) = bench.run(&mut device, &mut SlidingModeRandom::new(1), 200_000);
-        assert_eq!(report.result, Verdict::Mismatch, "`{to}` is not found");
+        support::caught(&sliding_mode(), from, to, 1_000_000);
     }
 }
 

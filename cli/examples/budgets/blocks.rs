@@ -1,10 +1,13 @@
 //! The list of what is measured: a new block is a new row here.
 
 use posicast_hdl::emit::Module;
-use posicast_hdl::{cascade, divider, pulse_counter, shaper};
+use posicast_hdl::{cascade, divider, pulse_counter, pwm, registers, segments, shaper, sliding_mode};
 use posicast_model::rtl::cascade::CascadeConfig;
+use posicast_model::rtl::component::Component;
 use posicast_model::rtl::divider::DividerConfig;
+use posicast_model::rtl::pwm::{ActiveLow, Mode, PwmConfig};
 use posicast_model::rtl::shaper::{Motion, ShaperConfig};
+use posicast_model::rtl::sliding_mode::{Law, Settings};
 use posicast_model::taps::{Tap, TapTable};
 use std::error::Error;
 
@@ -57,6 +60,34 @@ pub(crate) fn rows() -> Result<Vec<Row>, Box<dyn Error>> {
             note: "The 35-bit register and the remainder choose between two or three sources.",
         },
         Row {
+            block: "pwm",
+            size: "all modes",
+            modules: pwm::emit(&PwmConfig::new(ActiveLow::default(), 25, 50)?, "")?,
+            budget: Some(Budget {
+                luts: 300,
+                flip_flops: 220,
+            }),
+            in_xy_stage: 2,
+            note: "290 LUT are carry chains: sums and comparisons of 16 to 18 bits for duty, dead time, minimum pulse and phase, \
+                   all of them registers. Most of the rest chooses between their results.",
+        },
+        Row {
+            block: "sliding_mode",
+            size: "all laws",
+            modules: sliding_mode::emit("")?,
+            budget: None,
+            in_xy_stage: 2,
+            note: "",
+        },
+        Row {
+            block: "segments",
+            size: "64 entries",
+            modules: segments::emit("")?,
+            budget: None,
+            in_xy_stage: 2,
+            note: "",
+        },
+        Row {
             block: "shaper",
             size: "plain, 32 bits, ring 128",
             modules: shaper::emit(&shaper()?, "")?,
@@ -76,7 +107,34 @@ pub(crate) fn rows() -> Result<Vec<Row>, Box<dyn Error>> {
         cascade(32, 4, 62, "32 bits, 4 stages, ring 64")?,
         cascade(32, 10, 62, "32 bits, 10 stages, ring 64")?,
         cascade(32, 5, 1000, "32 bits, 5 stages, ring 1024")?,
+        bank(
+            "of shaper, 3 channels",
+            &Component::shaper(shaper()?.for_motion(MOTION)?)?,
+        )?,
+        bank(
+            "of pulse_counter",
+            &Component::pulse_counter(DividerConfig::new(5000)?, 8)?,
+        )?,
+        bank(
+            "of pwm",
+            &Component::pwm(PwmConfig::new(ActiveLow::default(), 25, 50)?, Mode::HalfBridge, 2500)?,
+        )?,
+        bank(
+            "of sliding_mode",
+            &Component::sliding_mode(&Settings::default(), Law::SlidingMode, false)?,
+        )?,
     ])
+}
+
+fn bank(size: &'static str, component: &Component) -> Result<Row, Box<dyn Error>> {
+    Ok(Row {
+        block: "registers",
+        size,
+        modules: vec![registers::emit(component.map(), "")?],
+        budget: None,
+        in_xy_stage: 0,
+        note: "",
+    })
 }
 
 fn cascade(word_bits: u32, stages: usize, delay_samples: u32, size: &'static str) -> Result<Row, Box<dyn Error>> {

@@ -51,18 +51,20 @@ pub(crate) fn page(tool: &str, measured: &[Measured]) -> String {
         (0..one.row.in_xy_stage).for_each(|_| stage += one.resources);
         parts.push(format!("{} {}", one.row.in_xy_stage, one.row.block));
     }
+    let cells = device.cells * 55 / 100;
+    let mark = if stage.cells > cells { "⚠ " } else { "" };
     let _ = write!(
         text,
         "\n## The XY stage so far\n\n\
-         Of its blocks there are: {}. Their sum:\n\n\
+         Of its blocks there are: {}. Their sum, without registers, time\n\
+         base and what lies between the blocks:\n\n\
          | | LE | M4K | 18×18 |\n|---|---|---|---|\n\
-         | sum | {} | {} | {} |\n\
-         | budget | {} (55 %) | 18 | 8 |\n",
+         | sum | {mark}{} | {} | {} |\n\
+         | budget | {cells} (55 %) | 18 | 8 |\n",
         parts.join(", "),
         stage.cells,
         stage.m4k_blocks,
-        stage.multipliers,
-        device.cells * 55 / 100
+        stage.multipliers
     );
     text
 }

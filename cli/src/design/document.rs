@@ -1,5 +1,6 @@
 //! `design --json`: the document of the command line's contract.
 
+use crate::control::ControlDocument;
 use posicast_model::design::periodic::Solution;
 use posicast_model::design::ratios::Class;
 use serde::Serialize;
@@ -31,6 +32,8 @@ pub(super) struct AxisDocument {
     pub(super) warnings: Vec<String>,
     pub(super) modes: Vec<ModeDocument>,
     pub(super) quantised: QuantisedDocument,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) control: Option<ControlDocument>,
 }
 
 /// An interval of frequencies that `periodic` may take.

@@ -6,11 +6,10 @@ use crate::failure::Failure;
 use posicast_model::design::MachineDesign;
 use posicast_model::spec::Machine;
 use posicast_synth::yosys::Estimate;
+use posicast_testbench::blocks::{Block, Sources};
 use posicast_testbench::diff::{Comparison, Verdict};
 use posicast_testbench::lockstep::report::{Report, Verdict as LockstepVerdict};
-use posicast_testbench::verilator;
 use serde::Serialize;
-use std::path::PathBuf;
 
 /// One check and how it went.
 #[derive(Debug, Clone, Serialize)]
@@ -104,19 +103,23 @@ fn residual_within_rounding(machine: &Machine, design: &MachineDesign) -> Check 
     }
 }
 
-/// Verilator's lint has nothing to say about the Verilog; no check where Verilator does not run it.
-pub(crate) fn lint(simulator: Simulator, files: &[PathBuf], top: &str) -> Result<Option<Check>, Failure> {
+/// Verilator's lint has nothing to say about the Verilog under any of the tops; no check where Verilator does not run it.
+pub(crate) fn lint(simulator: Simulator, sources: &Sources, tops: &[&dyn Block]) -> Result<Option<Check>, Failure> {
     if simulator != Simulator::Verilator {
         return Ok(None);
     }
-    let warnings = verilator::lint(files, top).map_err(bench::failure)?;
+    let mut warnings = Vec::new();
+    for top in tops {
+        let reached = sources.reached_by(*top).map_err(bench::failure)?;
+        warnings.extend(reached.lint(*top).map_err(bench::failure)?);
+    }
     Ok(Some(Check {
         name: "Verilog is clean under verilator --lint-only -Wall",
         passed: warnings.is_empty(),
         detail: warnings
             .first()
             .cloned()
-            .unwrap_or_else(|| format!("{} files", files.len())),
+            .unwrap_or_else(|| format!("{} files", sources.files().len())),
     }))
 }
 

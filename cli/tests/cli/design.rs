@@ -53,3 +53,47 @@ fn cli_design_draws_the_sensitivity_of_every_axis() {
     let svg = std::fs::read_to_string(&plot).unwrap();
     assert!(svg.starts_with("<svg") && svg.contains("axis x") && svg.contains("axis y"));
 }
+
+#[test]
+fn cli_design_and_generate_warn_of_a_controller_that_is_too_fast() {
+    let text = std::fs::read_to_string(example("xy-stage.toml")).unwrap();
+    let gains = "kind = \"pd\"\nproportional = 4000.0\n";
+    let (folder, file) = scratch(&text.replacen("kind = \"pd\"", gains, 1).replacen(
+        "locked-antiphase",
+        "half-bridge",
+        2,
+    ));
+    let design = posicast().arg("design").arg(&file).arg("--json").output().unwrap();
+    assert!(design.status.success());
+    let said = String::from_utf8_lossy(&design.stderr).into_owned();
+    assert!(
+        said.contains("warning: controller of axis `x`: proportional·lag = 0.6"),
+        "{said}"
+    );
+    let axis = &json(&design.stdout)["axes"][0];
+    assert_eq!(axis["control"]["law"], "pd");
+    assert_eq!(axis["control"]["settings"].as_array().unwrap().len(), 16);
+    assert!(
+        axis["control"]["warnings"][1].as_str().unwrap().contains("half bridge"),
+        "{axis}"
+    );
+    let output = folder.path().join("out");
+    let generate = posicast()
+        .arg("generate")
+        .arg(&file)
+        .arg("-o")
+        .arg(&output)
+        .output()
+        .unwrap();
+    assert!(generate.status.success());
+    assert!(String::from_utf8_lossy(&generate.stderr).contains("proportional·lag"));
+    let report = json(&std::fs::read(output.join("report.json")).unwrap());
+    assert_eq!(report["axes"][0]["control"], axis["control"]);
+    for block in ["shaper", "pulse_counter", "pwm", "sliding_mode"] {
+        for axis in ["x", "y"] {
+            let file = output.join(format!("rtl/xy_stage_{axis}_{block}_avalon.v"));
+            let text = std::fs::read_to_string(&file).unwrap();
+            assert_eq!(text.matches("endmodule").count(), 1, "{}", file.display());
+        }
+    }
+}

@@ -19,16 +19,24 @@ fn rows(machine: &Path, arguments: &[&str]) -> (serde_json::Value, Vec<(String, 
 
 #[test]
 fn cli_verify_compares_every_block_of_the_library_for_a_machine_with_a_loop() {
-    for simulator in ["verilator", "rusthdl"] {
+    for simulator in ["icarus", "rusthdl"] {
         let arguments = ["--cycles", "3000", "--simulator", simulator];
         let (document, rows) = rows(&example("xy-stage.toml"), &arguments);
         assert_eq!(document["result"], "match");
+        let component = |block: &str| rows.contains(&(block.to_owned(), "x, Avalon".to_owned()));
+        for block in ["shaper", "pulse_counter", "pwm", "sliding_mode"] {
+            // RustHDL's simulator has no registers.
+            assert_eq!(component(block), simulator == "icarus", "{block}: {rows:?}");
+        }
         for (name, instance) in [
             ("shaper", "x"),
             ("shaper", "y"),
             ("shaper", "motion"),
             ("pulse_counter", "x, y"),
+            ("sliding_mode", "x, y"),
             ("divider", "5000 clocks per tick"),
+            ("pwm", "x, y"),
+            ("sliding_mode", "x, y"),
             ("cascade", "4 stages, 32 bits"),
         ] {
             let row = rows
@@ -78,4 +86,49 @@ fn cli_verify_takes_blocks_by_name_and_says_which_there_are() {
         said.contains("divdier") && said.contains("cascade, divider, pulse_counter"),
         "{said}"
     );
+}
+
+#[test]
+fn cli_verify_of_a_folder_finds_a_broken_component_and_no_other() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = folder.path().join("out");
+    let mut generate = posicast();
+    generate
+        .arg("generate")
+        .arg(example("xy-stage.toml"))
+        .arg("-o")
+        .arg(&output);
+    generate.assert().success();
+    let top = output.join("rtl/xy_stage_y_pulse_counter_avalon.v");
+    let text = std::fs::read_to_string(&top).unwrap();
+    let (from, to) = (".start       (divide)", ".start       (tick)");
+    assert!(text.contains(from), "{text}");
+    std::fs::write(&top, text.replace(from, to)).unwrap();
+    let verify = posicast()
+        .arg("verify")
+        .arg(&output)
+        .args([
+            "--json",
+            "--cycles",
+            "20000",
+            "--simulator",
+            "icarus",
+            "--block",
+            "pulse_counter",
+        ])
+        .output()
+        .unwrap();
+    assert_eq!(
+        verify.status.code(),
+        Some(1),
+        "{}",
+        String::from_utf8_lossy(&verify.stderr)
+    );
+    let document = json(&verify.stdout);
+    let blocks = document["blocks"].as_array().unwrap();
+    let mismatches: Vec<(&str, bool)> = blocks
+        .iter()
+        .map(|row| (row["instance"].as_str().unwrap(), row["mismatches"] != 0))
+        .collect();
+    assert_eq!(mismatches, [("x, Avalon", false), ("y, Avalon", true)]);
 }

@@ -4,12 +4,14 @@
 //! into the module that owns it, or `// @leaf NAME reg: PORTS` for a module of its own.
 
 mod dff;
+mod fault_latch;
 mod ram;
 mod rom;
 mod smul;
 mod synchroniser;
 
 pub(crate) use dff::Dff;
+pub(crate) use fault_latch::FaultLatch;
 pub(crate) use ram::Ram;
 pub(crate) use rom::{Rom, RomWord};
 pub(crate) use smul::SMul;

@@ -222,8 +222,8 @@ impl Logic for Velocity {
         self.fresh.next = self.known.q.val() & !self.stale.val();
         self.rests.next = !self.velocity_m.val() & (!self.fresh.val() | self.turned.q.val());
 
-        comment!("Steps; without an edge they are 0, and 1 or -1 shall be");
-        comment!("divided: a borrow into the lowest bit makes all bits ones");
+        comment!("Steps; 0 without an edge, where 1 or -1 is to be");
+        comment!("divided: a borrow at bit 0 makes all bits ones");
         self.waits.next = !self.moved.q.val() & !self.velocity_m.val();
         self.borrow.next = self.no_borrow.val();
         if self.waits.val() & self.smoothed.q.val().get_bit(34) {
@@ -264,7 +264,7 @@ impl Logic for Velocity {
             self.elapsed_q.d.next = self.no_elapsed.val();
         }
 
-        comment!("The time of the last edge, or after a tick without, now");
+        comment!("Time of the last edge; after a tick without: now");
         if self.step.val() | self.tick.val() | !self.moved.q.val() {
             self.last_stamp.d.next = self.time_stamp.val();
         }

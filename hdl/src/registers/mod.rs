@@ -6,11 +6,12 @@
 //! already, and RustHDL's struct of ports would have to be written once more for every component. So the Verilog is
 //! written from the map, and the interpreter of the same map in the model holds it in lock step.
 
+mod blocks;
 mod verilog;
 
 use crate::emit::names::check_name;
 use crate::emit::{EmitError, Header, Module, Parameter, print};
-use posicast_model::rtl::registers::{Access, Register, RegisterMap};
+use posicast_model::rtl::registers::{Access, Field, Register, RegisterMap};
 
 /// The bank's Verilog: `PREFIX_registers`, or `registers` where `prefix` is empty.
 ///
@@ -25,23 +26,13 @@ pub fn emit(map: &RegisterMap, prefix: &str) -> Result<Module, EmitError> {
     for port in map.ports() {
         check_name(&port.name).map_err(|cause| EmitError::new(&name, &port.name, cause))?;
     }
-    let is_parameter = |register: &&Register| register.access == Access::Constant && register.offset > 1;
-    let parameters = map.registers().iter().filter(is_parameter).map(|register| Parameter {
-        name: register.name.clone(),
-        value: register.reset().to_string(),
-        meaning: register
-            .fields
-            .first()
-            .map(|field| field.meaning.clone())
-            .unwrap_or_default(),
-    });
     let header = Header {
         about: format!(
             "Registers of {}: Avalon-MM agent, 32 bits, word addresses, read latency 1, no waits.\n\
              Commands take whole words only. Reads have no side effect; what is not mapped reads as 0.",
             map.name()
         ),
-        parameters: parameters.collect(),
+        parameters: parameters(map),
     };
     Ok(Module {
         text: print::file(
@@ -53,4 +44,20 @@ pub fn emit(map: &RegisterMap, prefix: &str) -> Result<Module, EmitError> {
         ports: map.ports().to_vec(),
         clocked: true,
     })
+}
+
+/// The build's parameters, as a file's header tells them.
+pub(crate) fn parameters(map: &RegisterMap) -> Vec<Parameter> {
+    let is_parameter = |register: &&Register| register.access == Access::Constant && register.offset > 1;
+    let fields = map
+        .registers()
+        .iter()
+        .filter(is_parameter)
+        .flat_map(|register| &register.fields);
+    let row = |field: &Field| Parameter {
+        name: field.name.clone(),
+        value: field.reset.to_string(),
+        meaning: field.meaning.clone(),
+    };
+    fields.map(row).collect()
 }

@@ -70,8 +70,8 @@ struct Linear {
 /// | velocity | PD | P = 1/(4·lag), D = 0 | `lag·s² + s + P` has a double real pole |
 /// | velocity | PID | P = 1/(3·lag), I = 1/(27·lag²), D = 0 | `lag·s³ + s² + P·s + I` has a triple real pole |
 ///
-/// The law that the file does not choose gets its gains by the same rules, for a change of law at run time; the sliding
-/// mode then is one without switching: c = k = D/2, so that it equals the PD.
+/// The laws that the file does not choose get their gains by the same rules, for a change of law at run time; the sliding
+/// mode of a torque drive then is one without switching, c = k = D/2, which equals the default PD.
 ///
 /// # Errors
 /// [`ControlError`] where a table or the bandwidth is missing, or a gain does not fit.

@@ -21,10 +21,12 @@
 mod conditions;
 mod derive;
 mod law;
+mod schedule;
 
 pub use conditions::ControlWarning;
 pub use derive::{Derived, gains, loop_lag_s};
 pub use law::{COMMAND_FRACTION, FloatController, Gains, Response, Tracking};
+pub use schedule::schedule_delay_s;
 
 use crate::rtl::sliding_mode::GainError;
 

@@ -7,10 +7,16 @@ use super::Clock;
 use super::machine::RATIO_ROUNDING;
 use super::range::NumberRange;
 use super::table::Table;
+use crate::rtl::pwm::TIME_BITS;
 
 /// Dead time and minimum pulse.
 const SHORT_S: NumberRange = NumberRange::closed(0.0, 1.0).unit("s");
 const FREQUENCY_HZ: NumberRange = NumberRange::positive(1e9).unit("Hz");
+/// PWM periods that the hardware counts, in clocks.
+const PERIOD_CLOCKS_MIN: u32 = 2;
+const PERIOD_CLOCKS_MAX: u32 = 1 << 16;
+/// Longest dead time and minimum pulse that it counts, in clocks.
+const TIME_CLOCKS_MAX: u32 = (1 << TIME_BITS) - 1;
 
 /// How the duty drives the pins.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -90,6 +96,7 @@ pub(super) fn read(table: &Table<'_, '_>, clock: Option<Clock>) -> Option<Pwm> {
     if let Some(clock) = clock {
         check_frequency(table, pwm.frequency_hz, &clock);
         check_pulse(table, &pwm, &clock);
+        check_counters(table, &pwm, &clock);
     }
     mode.map(|_| pwm)
 }
@@ -140,6 +147,28 @@ fn check_pulse(table: &Table<'_, '_>, pwm: &Pwm, clock: &Clock) {
     };
     let found = format!("a dead time and a minimum pulse of {found} together");
     table.contradiction(key, found, allowed, "shorten both, or lower the PWM frequency");
+}
+
+/// What the hardware's counters hold: the period, the dead time and the shortest pulse, in clocks.
+fn check_counters(table: &Table<'_, '_>, pwm: &Pwm, clock: &Clock) {
+    let shortest_hz = clock.frequency_hz / f64::from(PERIOD_CLOCKS_MAX);
+    let period = pwm.period_clocks(clock);
+    if !(PERIOD_CLOCKS_MIN..=PERIOD_CLOCKS_MAX).contains(&period) {
+        let found = format!("a period of {period} clocks");
+        let allowed = format!("{PERIOD_CLOCKS_MIN} to {PERIOD_CLOCKS_MAX} clocks: from {shortest_hz} Hz on");
+        table.contradiction("frequency_hz", found, allowed, "choose a frequency in this range");
+    }
+    for (key, clocks) in [
+        ("dead_time_s", pwm.dead_time_clocks(clock)),
+        ("minimum_pulse_s", pwm.minimum_pulse_clocks(clock)),
+    ] {
+        if clocks > TIME_CLOCKS_MAX {
+            let longest_s = f64::from(TIME_CLOCKS_MAX) / clock.frequency_hz;
+            let found = format!("{} s, {clocks} clocks", table.quote(key));
+            let allowed = format!("at most {longest_s} s, the {TIME_CLOCKS_MAX} clocks that the hardware counts to");
+            table.contradiction(key, found, allowed, "shorten it, or lower the clock");
+        }
+    }
 }
 
 #[cfg(test)]

@@ -279,11 +279,11 @@ fn script(top: &str, family: Family, mapping: Mapping) -> String {
             let synth = format!("synth_intel -family cycloneive -noflatten -nobram -top {top}");
             let to_luts = match mapping {
                 Mapping::Luts => format!("{synth} -run begin:map_luts"),
-                // A clear serves all flip-flops of a block of 16 elements: not worth it for few. What is left after that
-                // has none, and goes Yosys's way.
+                // A clear serves all flip-flops of a block of 16 elements: not worth it for few. Flip-flops without
+                // one, or with an asynchronous one, go Yosys's way.
                 Mapping::LogicElement => format!(
                     "{synth} -run begin:map_ffram; techmap -map logic_element.v t:$alu; {synth} -run map_ffram:map_ffs; \
-                     dfflegalize -cell $_SDFFCE_PP0P_ 01 -minsrst 8; opt_merge; techmap -map logic_element.v; \
+                     dfflegalize -cell $_SDFFCE_PP0P_ 01 -cell $_DFFE_PN0P_ 01 -minsrst 8; opt_merge; techmap -map logic_element.v; \
                      {synth} -run map_ffs:map_luts"
                 ),
             };

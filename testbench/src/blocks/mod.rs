@@ -19,16 +19,26 @@
 
 mod axis;
 mod cascade;
+mod component;
 mod divider;
 mod pulse_counter;
+mod pwm;
+mod registers;
+mod segments;
 mod shaper;
+mod sliding_mode;
 mod sources;
 
 pub use self::axis::AxisBlock;
 pub use self::cascade::CascadeBlock;
+pub use self::component::ComponentBlock;
 pub use self::divider::DividerBlock;
 pub use self::pulse_counter::PulseCounterBlock;
+pub use self::pwm::PwmBlock;
+pub use self::registers::RegistersBlock;
+pub use self::segments::SegmentsBlock;
 pub use self::shaper::{MachineShapers, ShaperBlock};
+pub use self::sliding_mode::SlidingModeBlock;
 pub use self::sources::{Sources, rusthdl};
 
 use posicast_hdl::SimulationError;
@@ -63,8 +73,13 @@ pub trait Block: Send + Sync {
     /// The block in RustHDL's simulator.
     ///
     /// # Errors
-    /// [`SimulationError`] where RustHDL finds a fault in the block.
+    /// [`SimulationError`] where RustHDL finds a fault in the block, or where it is not [`Self::in_rusthdl`].
     fn simulate(&self) -> Result<Box<dyn ClockedBlock>, SimulationError>;
+
+    /// Whether the whole block is written in RustHDL. Register banks are not, and so no component is.
+    fn in_rusthdl(&self) -> bool {
+        true
+    }
 
     /// Inputs for a run of `cycles` clocks: directed cases where there are any, then random, by the seed.
     fn stimuli(&self, cycles: u64, seed: u64) -> Box<dyn Stimuli + '_>;
@@ -87,7 +102,7 @@ pub trait Bins {
     fn counts(&self) -> Vec<(String, u64)>;
 }
 
-/// A lock step that is over.
+/// A lock step that is over, and what it reached.
 #[derive(Debug, Clone)]
 pub struct Run {
     /// Whether it matched.
@@ -104,8 +119,8 @@ impl Run {
     }
 }
 
-/// Runs a block's model and a device under the block's stimuli and compares every output in every clock. `progress` gets the
-/// clocks done.
+/// Runs a block's model and a device under the block's stimuli, compares every output in every clock, and counts what the
+/// run reached. `progress` gets the clocks done.
 ///
 /// # Errors
 /// As [`lockstep::run`].
@@ -116,14 +131,8 @@ pub fn compare(
     seed: u64,
     progress: &mut dyn FnMut(u64),
 ) -> Result<Run, Error> {
-    compare_with(
-        block,
-        device,
-        block.stimuli(cycles, seed).as_mut(),
-        cycles,
-        seed,
-        progress,
-    )
+    let mut stimuli = block.stimuli(cycles, seed);
+    compare_with(block, device, stimuli.as_mut(), cycles, seed, progress)
 }
 
 /// The same under other stimuli.
@@ -138,22 +147,50 @@ pub fn compare_with(
     seed: u64,
     progress: &mut dyn FnMut(u64),
 ) -> Result<Run, Error> {
-    let mut model = block.model(seed);
-    let instances = block.instances(model.ports());
     let mut coverage = block.coverage();
-    let report = lockstep::run(
-        model.as_mut(),
-        device,
-        stimuli,
-        &instances,
-        &Options::cycles(cycles),
-        &mut |clock| coverage.observe(clock),
-        progress,
-    )?;
+    let mut watch = |clock: &Clock<'_>| coverage.observe(clock);
+    let report = run(block, device, stimuli, (cycles, seed), &mut watch, progress)?;
     Ok(Run {
         report,
         coverage: coverage.counts(),
     })
+}
+
+/// As [`compare`], without the counts: faster.
+///
+/// # Errors
+/// As [`lockstep::run`].
+pub fn check(
+    block: &dyn Block,
+    device: &mut dyn Device,
+    cycles: u64,
+    seed: u64,
+    progress: &mut dyn FnMut(u64),
+) -> Result<Report, Error> {
+    let mut stimuli = block.stimuli(cycles, seed);
+    run(block, device, stimuli.as_mut(), (cycles, seed), &mut |_| {}, progress)
+}
+
+fn run(
+    block: &dyn Block,
+    device: &mut dyn Device,
+    stimuli: &mut dyn Stimuli,
+    (cycles, seed): (u64, u64),
+    watch: &mut dyn FnMut(&Clock<'_>),
+    progress: &mut dyn FnMut(u64),
+) -> Result<Report, Error> {
+    let mut model = block.model(seed);
+    let instances = block.instances(model.ports());
+    let options = Options::cycles(cycles);
+    lockstep::run(model.as_mut(), device, stimuli, &instances, &options, watch, progress)
+}
+
+/// Why a block that is written from a register map is not in RustHDL's simulator.
+fn not_in_rusthdl(block: &'static str) -> SimulationError {
+    SimulationError::Refused {
+        block,
+        reason: "its registers are written from their map, not in RustHDL".to_owned(),
+    }
 }
 
 /// Names and counts as a report keeps them.

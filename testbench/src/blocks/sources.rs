@@ -1,5 +1,6 @@
 //! A block's Verilog in files, and the simulators that take it from there.
 
+use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
 use posicast_hdl::emit::Module;
@@ -47,9 +48,39 @@ impl Sources {
         })
     }
 
-    /// Verilog that is there, as it is. It may hold modules of other blocks.
+    /// Verilog that is there, as it is, one module per file. It may hold modules of other blocks.
     pub fn found(files: Vec<PathBuf>) -> Self {
         Self { files, _folder: None }
+    }
+
+    /// Of these files those that a block's top reaches, so that a change elsewhere builds nothing anew: the top's, and every
+    /// file whose name stands as a word in one that is reached. All of them where there is no file of the top's name.
+    ///
+    /// # Errors
+    /// [`Error::File`] where a file cannot be read.
+    pub fn reached_by(&self, block: &dyn Block) -> Result<Self, Error> {
+        let stem = |file: &Path| file.file_stem().map(|stem| stem.to_string_lossy().into_owned());
+        let top = block.top();
+        let (mut reached, mut rest): (Vec<PathBuf>, Vec<PathBuf>) = self
+            .files
+            .iter()
+            .cloned()
+            .partition(|file| stem(file).as_ref() == Some(&top));
+        if reached.is_empty() {
+            return Ok(Self::found(self.files.clone()));
+        }
+        let mut next = 0;
+        while let Some(file) = reached.get(next) {
+            let text = std::fs::read(file).map_err(Error::file(file, "read the Verilog"))?;
+            let text = String::from_utf8_lossy(&text);
+            let words: HashSet<&str> = text.split(|c: char| !(c.is_alphanumeric() || c == '_')).collect();
+            let found = |file: &PathBuf| stem(file).is_some_and(|stem| words.contains(stem.as_str()));
+            let (new, others) = rest.into_iter().partition(found);
+            rest = others;
+            reached.extend::<Vec<PathBuf>>(new);
+            next += 1;
+        }
+        Ok(Self::found(reached))
     }
 
     /// The files.

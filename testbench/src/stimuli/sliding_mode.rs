@@ -2,7 +2,7 @@
 //! every size and at the ends of each word, gains of every size, arbitrary settings, laws that change at any tick, starts at
 //! the pace of a pass and in any clock, inputs that change during a pass, clears and resets.
 
-use posicast_model::rtl::sliding_mode::{Inputs, Motion, Row, SETTINGS, Saturation, ports};
+use posicast_model::rtl::sliding_mode::{CONTROL_CLOCKS, Inputs, Motion, Row, SETTINGS, Saturation, ports};
 use posicast_model::rtl::{Direction, Port};
 use rand::{Rng, RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -28,6 +28,9 @@ pub struct SlidingModeRandom {
 }
 
 impl SlidingModeRandom {
+    /// Clocks in which the integral is wound up.
+    pub const WIND_UP_CLOCKS: u64 = (WIND_UP_TICKS[0] + WIND_UP_TICKS[1]) * (CONTROL_CLOCKS as u64 + 1);
+
     /// Equal seeds give equal inputs for equal outputs.
     pub fn new(seed: u64) -> Self {
         let mut rng = Xoshiro256PlusPlus::seed_from_u64(seed);
@@ -242,10 +245,5 @@ impl SlidingModeCoverage {
         let limits = (0..4).map(|case| (format!("PID against its limit, case {case}"), self.against_limit[case]));
         let more = [("modulo".to_owned(), self.modulo), ("resets".to_owned(), self.resets)];
         outputs.chain(rose).chain(laws).chain(limits).chain(more).collect()
-    }
-
-    /// The least of all counts.
-    pub fn least(&self) -> u64 {
-        self.counts().into_iter().map(|(_, count)| count).min().unwrap_or(0)
     }
 }

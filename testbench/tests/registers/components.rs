@@ -4,16 +4,36 @@ use crate::support::{Bench, assert_match};
 use posicast_hdl::component::emit;
 use posicast_model::rtl::component::Component;
 use posicast_model::rtl::divider::DividerConfig;
+use posicast_model::rtl::pwm::{ActiveLow, Mode, PwmConfig};
 use posicast_model::rtl::shaper::{Motion, ShaperConfig};
+use posicast_model::rtl::sliding_mode::{Gain, Law, Row, Settings};
 use posicast_model::taps::{Tap, TapTable};
 use posicast_testbench::lockstep::report::Verdict;
 use posicast_testbench::stimuli::ComponentRandom;
 
-fn pulse_counter() -> Component {
-    Component::pulse_counter(DividerConfig::new(97).unwrap(), 3).unwrap()
+pub(crate) fn pulse_counter() -> Component {
+    Component::pulse_counter(DividerConfig::new(127).unwrap(), 3).unwrap()
 }
 
-fn shaper(word_bits: u32, channels: Option<u32>) -> Component {
+pub(crate) fn pwm() -> Component {
+    let active_low = ActiveLow {
+        a_low: true,
+        ..ActiveLow::default()
+    };
+    Component::pwm(PwmConfig::new(active_low, 4, 3).unwrap(), Mode::HalfBridge, 60).unwrap()
+}
+
+pub(crate) fn sliding_mode() -> Component {
+    let mut settings = Settings::default();
+    for (row, value) in Row::ALL.into_iter().zip([0.1, 0.5, 0.2, 0.3, 0.7, 0.4, 0.9, 0.6, 0.8]) {
+        settings.set_gain(row, Gain::nearest(value, row).unwrap());
+    }
+    settings.set_limit(1000 << 12);
+    settings.set_gain(Row::Duty, Gain::nearest(0.25, Row::Duty).unwrap());
+    Component::sliding_mode(&settings, Law::Pid, true).unwrap()
+}
+
+pub(crate) fn shaper(word_bits: u32, channels: Option<u32>) -> Component {
     let half = |delay_samples| Tap {
         delay_samples,
         coefficient: 1 << 15,
@@ -111,6 +131,40 @@ fn lockstep_shaper_of_three_channels_a_million_random_clocks() {
 #[test]
 fn lockstep_shaper_of_two_channels_and_a_modulo_axis() {
     lockstep(&shaper(24, Some(2)), 300_000);
+}
+
+#[test]
+fn lockstep_sliding_mode_a_million_random_clocks() {
+    lockstep(&sliding_mode(), 1_000_000);
+}
+
+#[test]
+fn lockstep_pwm_a_million_random_clocks() {
+    lockstep(&pwm(), 1_000_000);
+}
+
+#[test]
+fn crosssim_icarus_agrees_with_the_pwm() {
+    crosssim(&pwm());
+}
+
+#[test]
+fn lockstep_catches_a_dead_time_that_is_writable_while_running() {
+    caught(&pwm(), "allow_times = !running && ", "allow_times = ");
+}
+
+#[test]
+fn crosssim_icarus_agrees_with_the_sliding_mode() {
+    crosssim(&sliding_mode());
+}
+
+#[test]
+fn lockstep_catches_settings_of_the_wrong_row() {
+    let (from, to) = (
+        ".row             (setting_address)",
+        ".row             (setting_address ^ 4'd1)",
+    );
+    caught(&sliding_mode(), from, to);
 }
 
 #[test]

@@ -45,7 +45,9 @@ fn description() -> Description {
     .with(
         "dead_time",
         0x12,
-        Access::Guarded { by: named("off") },
+        Access::Guarded {
+            while_low: named("running"),
+        },
         "only when off",
         vec![
             Field::new("dead_clocks", 0, 10, "with a floor")
@@ -59,7 +61,9 @@ fn description() -> Description {
     .with(
         "polarity",
         0x13,
-        Access::Guarded { by: named("off") },
+        Access::Guarded {
+            while_low: named("running"),
+        },
         "only when off",
         vec![Field::flag("polarity", 9, "one bit")],
     )
@@ -125,7 +129,7 @@ fn description() -> Description {
         0x20,
         Live,
         "levels",
-        vec![Field::flag("off", 3, "off"), Field::flag("overrun", 4, "level")],
+        vec![Field::flag("running", 3, "on"), Field::flag("overrun", 4, "level")],
     )
     .with_shadowed(
         "position",

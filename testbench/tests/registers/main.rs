@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::panic)] // helpers of tests, which clippy.toml exempts only inside of #[test]
 
 mod bank;
+mod classic;
 mod components;
 mod everything;
 mod support;

@@ -32,8 +32,8 @@ pub(crate) fn million_random_clocks(block: &dyn Block, seed: u64, least: u64) ->
 #[track_caller]
 pub(crate) fn icarus_agrees(block: &dyn Block) {
     let mut device = Sources::write(block).unwrap().icarus(block).unwrap();
-    let run = blocks::compare(block, &mut device, 20_000, 4, &mut |_| {}).unwrap();
-    assert_match(&run.report, "Icarus");
+    let report = blocks::check(block, &mut device, 20_000, 4, &mut |_| {}).unwrap();
+    assert_match(&report, "Icarus");
 }
 
 /// Replaces the first `from` in the block's Verilog by `to`, and insists on a mismatch within so many clocks.
@@ -41,9 +41,9 @@ pub(crate) fn icarus_agrees(block: &dyn Block) {
 pub(crate) fn caught(block: &dyn Block, from: &str, to: &str, cycles: u64) {
     let sources = Sources::of_modules(&broken(block, from, to)).unwrap();
     let mut device = sources.verilated(block, 1).unwrap();
-    let run = blocks::compare(block, &mut device, cycles, 1, &mut |_| {}).unwrap();
-    assert_eq!(run.report.result, Verdict::Mismatch, "`{to}` is not found");
-    let first = run.report.blocks[0].first.as_ref().unwrap();
+    let report = blocks::check(block, &mut device, cycles, 1, &mut |_| {}).unwrap();
+    assert_eq!(report.result, Verdict::Mismatch, "`{to}` is not found");
+    let first = report.blocks[0].first.as_ref().unwrap();
     assert_eq!(first.expected.len(), first.actual.len());
     assert_ne!(first.expected, first.actual);
     let text = first.to_string();

@@ -8,6 +8,8 @@
 //! | component | block | beside it |
 //! |---|---|---|
 //! | [`Component::shaper`] | [`shaper`](super::shaper) | [`sample_select`](super::sample_select) |
+//! | [`Component::pwm`] | [`pwm`](super::pwm) | [`sample_select`](super::sample_select) |
+//! | [`Component::sliding_mode`] | [`sliding_mode`](super::sliding_mode) | [`sample_select`](super::sample_select), [`setting_banks`](super::setting_banks) |
 //! | [`Component::pulse_counter`] | [`pulse_counter`](super::pulse_counter) | [`divider`](super::divider), [`time_base`](super::time_base) |
 //!
 //! A component is its register map and its [`Composition`]; from these come this crate's model and
@@ -25,15 +27,20 @@
 //! ```
 
 mod pulse_counter;
+mod pwm;
 mod shaper;
+mod sliding_mode;
 
 use super::Moore;
 use super::composition::{Composed, Composition, CompositionError, Part};
 use super::divider::{DIVISION_CLOCKS, Divider, DividerConfig};
 use super::pulse_counter::PulseCounter;
+use super::pwm::{Mode, Pwm, PwmConfig};
 use super::registers::{Description, MapError, RegisterBank, RegisterMap};
 use super::sample_select::SampleSelect;
+use super::setting_banks::SettingBanks;
 use super::shaper::{Shaper, ShaperConfig};
+use super::sliding_mode::{Law, Settings, SlidingMode};
 use super::time_base::TimeBase;
 
 /// Ports of the agent that are inputs, with reset.
@@ -55,14 +62,25 @@ pub enum Block {
     Registers,
     /// The shaper.
     Shaper(ShaperConfig),
-    /// Where its samples come from.
-    SampleSelect(ShaperConfig),
+    /// Where samples come from: registers or pins.
+    SampleSelect {
+        /// Width of a word.
+        word_bits: u32,
+        /// Words per sample.
+        channels: usize,
+    },
     /// The pulse counter.
     PulseCounter,
     /// Its divider.
     Divider(DividerConfig),
     /// Its time base.
     TimeBase(DividerConfig),
+    /// The PWM.
+    Pwm(PwmConfig),
+    /// The controller.
+    SlidingMode,
+    /// Its settings, the machine's in bank 0.
+    SettingBanks(Box<Settings>),
 }
 
 /// A block that stands alone, with its registers.
@@ -77,11 +95,17 @@ pub struct Component {
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum ComponentError {
     /// Ticks that are shorter than a division.
-    #[error("ticks of {0} clocks: a division takes 72; choose a lower sample rate or a faster clock")]
+    #[error(
+        "ticks of {0} clocks: a division takes {DIVISION_CLOCKS}; ticks must be longer, so choose a lower sample rate or a \
+         faster clock"
+    )]
     Tick(u32),
     /// A filter that its register does not hold.
     #[error("a filter of {0} clocks: the pulse counter has one of 0 to 63")]
     Filter(u32),
+    /// A period that the carrier does not have.
+    #[error("a PWM period of {0} clocks: 2 to 65536 are possible; choose another PWM frequency")]
+    Period(u32),
     /// An error of the component's register map.
     #[error(transparent)]
     Map(#[from] MapError),
@@ -98,7 +122,10 @@ impl Component {
     pub fn shaper(config: ShaperConfig) -> Result<Self, ComponentError> {
         let blocks = vec![
             Block::Registers,
-            Block::SampleSelect(config.clone()),
+            Block::SampleSelect {
+                word_bits: config.word_bits(),
+                channels: config.channels(),
+            },
             Block::Shaper(config.clone()),
         ];
         let wiring = shaper::wiring(&config);
@@ -108,7 +135,7 @@ impl Component {
     /// The pulse counter with a divider and a time base of its own. Its filter is `filter_clocks` long after reset.
     ///
     /// # Errors
-    /// [`ComponentError`] for ticks shorter than 72 clocks or a filter above 63.
+    /// [`ComponentError`] for ticks no longer than a division, or a filter above 63.
     pub fn pulse_counter(divider: DividerConfig, filter_clocks: u32) -> Result<Self, ComponentError> {
         if divider.tick_clocks() <= DIVISION_CLOCKS {
             return Err(ComponentError::Tick(divider.tick_clocks()));
@@ -124,6 +151,44 @@ impl Component {
         ];
         let map = super::registers::maps::pulse_counter(&divider, filter_clocks);
         Self::new(map, blocks, pulse_counter::wiring())
+    }
+
+    /// The controller with its settings in banks, the machine's in bank 0: reference and measurement by register or pins.
+    ///
+    /// # Errors
+    /// [`ComponentError`] never.
+    pub fn sliding_mode(settings: &Settings, law: Law, modulo: bool) -> Result<Self, ComponentError> {
+        let blocks = vec![
+            Block::Registers,
+            Block::SampleSelect {
+                word_bits: 32,
+                channels: sliding_mode::MOTION.len(),
+            },
+            Block::SettingBanks(Box::new(*settings)),
+            Block::SlidingMode,
+        ];
+        let map = super::registers::maps::sliding_mode(law as u32, modulo);
+        Self::new(map, blocks, sliding_mode::wiring())
+    }
+
+    /// The PWM, with this mode and period after reset: its duty by register or pins.
+    ///
+    /// # Errors
+    /// [`ComponentError`] for periods other than 2 to 65,536 clocks.
+    pub fn pwm(config: PwmConfig, mode: Mode, period_clocks: u32) -> Result<Self, ComponentError> {
+        if !(2..=65_536).contains(&period_clocks) {
+            return Err(ComponentError::Period(period_clocks));
+        }
+        let blocks = vec![
+            Block::Registers,
+            Block::SampleSelect {
+                word_bits: pwm::DUTY_BITS,
+                channels: 1,
+            },
+            Block::Pwm(config),
+        ];
+        let map = super::registers::maps::pwm(&config, mode, period_clocks);
+        Self::new(map, blocks, pwm::wiring())
     }
 
     fn new(description: Description, blocks: Vec<Block>, wiring: Wiring) -> Result<Self, ComponentError> {
@@ -176,9 +241,12 @@ impl Component {
     }
 }
 
+/// Puts the ports of a block on other nets than those of their names.
+type Rewire = Box<dyn Fn(&Block, Part) -> Part>;
+
 /// What is not connected by name alone, and the conduit pins.
 struct Wiring {
-    part: Box<dyn Fn(&Block, Part) -> Part>,
+    part: Rewire,
     inputs: Vec<String>,
     outputs: Vec<String>,
 }
@@ -189,7 +257,10 @@ impl Block {
         match self {
             Self::Registers => "registers",
             Self::Shaper(_) => "shaper",
-            Self::SampleSelect(_) => "sample_select",
+            Self::SampleSelect { .. } => "sample_select",
+            Self::Pwm(_) => "pwm",
+            Self::SlidingMode => "sliding_mode",
+            Self::SettingBanks(_) => "setting_banks",
             Self::PulseCounter => "pulse_counter",
             Self::Divider(_) => "divider",
             Self::TimeBase(_) => "time_base",
@@ -200,7 +271,10 @@ impl Block {
         match self {
             Self::Registers => Box::new(RegisterBank::new(map)),
             Self::Shaper(config) => Box::new(Shaper::new(config, seed)),
-            Self::SampleSelect(config) => Box::new(SampleSelect::new(config.word_bits(), config.channels())),
+            Self::SampleSelect { word_bits, channels } => Box::new(SampleSelect::new(*word_bits, *channels)),
+            Self::Pwm(config) => Box::new(Pwm::new(config)),
+            Self::SlidingMode => Box::new(SlidingMode::new()),
+            Self::SettingBanks(machine) => Box::new(SettingBanks::new(machine)),
             Self::PulseCounter => Box::new(PulseCounter::new()),
             Self::Divider(config) => Box::new(Divider::new(config)),
             Self::TimeBase(config) => Box::new(TimeBase::new(config)),

@@ -2,28 +2,38 @@
 //!
 //! Its `clear_flags` is tied high. A flag is then high for the one clock after what it tells of, and the bank keeps it.
 
+use super::super::composition::Part;
 use super::super::registers::maps::word_name;
 use super::super::shaper::ShaperConfig;
 use super::{Block, Wiring};
 
 pub(super) fn wiring(config: &ShaperConfig) -> Wiring {
-    let words = |name: &str| -> Vec<String> {
-        (0..config.channels())
-            .map(|channel| word_name(config, name, channel))
-            .collect()
-    };
-    let xs = words("x");
-    let pins = xs.clone();
+    let strobes = ["strobe", "start"].map(str::to_owned);
     Wiring {
-        part: Box::new(move |block, part| match block {
-            Block::SampleSelect(_) => {
+        part: Box::new(rewire(words(config, "x"))),
+        inputs: [strobes.to_vec(), words(config, "x")].concat(),
+        outputs: [words(config, "y"), vec!["valid".to_owned()]].concat(),
+    }
+}
+
+fn words(config: &ShaperConfig, name: &str) -> Vec<String> {
+    let channels = 0..config.channels();
+    channels.map(|channel| word_name(config, name, channel)).collect()
+}
+
+/// `xs`: the pins of the words, and the shaper's ports.
+fn rewire(xs: Vec<String>) -> impl Fn(&Block, Part) -> Part {
+    move |block, part| {
+        let words = xs.iter().enumerate();
+        match block {
+            Block::SampleSelect { .. } => {
                 let part = part
                     .on("pin_strobe", "strobe")
                     .on("pin_start", "start")
                     .on("strobe", "sample_strobe")
                     .on("start", "sample_start");
-                pins.iter().enumerate().fold(part, |part, (channel, pin)| {
-                    part.on(&format!("pin_x_{channel}"), pin)
+                words.fold(part, |part, (channel, x)| {
+                    part.on(&format!("pin_x_{channel}"), x)
                         .on(&format!("x_{channel}"), &format!("sample_x_{channel}"))
                 })
             }
@@ -32,16 +42,9 @@ pub(super) fn wiring(config: &ShaperConfig) -> Wiring {
                     .on("strobe", "sample_strobe")
                     .on("start", "sample_start")
                     .tied("clear_flags", 1);
-                pins.iter().enumerate().fold(part, |part, (channel, port)| {
-                    part.on(port, &format!("sample_x_{channel}"))
-                })
+                words.fold(part, |part, (channel, x)| part.on(x, &format!("sample_x_{channel}")))
             }
             _ => part,
-        }),
-        inputs: ["strobe".to_owned(), "start".to_owned()]
-            .into_iter()
-            .chain(xs)
-            .collect(),
-        outputs: words("y").into_iter().chain(["valid".to_owned()]).collect(),
+        }
     }
 }

@@ -9,8 +9,8 @@
 //! | [`PulseCounter`] | the count, which never jumps; `origin`; the index latch |
 //! | `velocity` | M/T: which steps in which time, for the divider; its quotient, bounded and smoothed |
 //!
-//! [`PulseCounter::step`] is one clock; [`PulseCounter::hold`] is many with the same inputs, and skips those that change
-//! nothing.
+//! [`PulseCounter::step`] is one clock; [`PulseCounter::hold`] is many with the same inputs, and jumps over those that change
+//! nothing but the time.
 //!
 //! ```
 //! use posicast_model::rtl::pulse_counter::{Inputs, PulseCounter};
@@ -59,6 +59,24 @@ struct State {
     illegal: bool,
     disagreement: bool,
     velocity: Velocity,
+}
+
+impl State {
+    /// Whether nothing but the time tells the two apart.
+    fn is_but_for_time(&self, other: &Self) -> bool {
+        // Mostly the lines differ or the velocity: those first.
+        self.lines == other.lines
+            && self.velocity.is_but_for_time(&other.velocity)
+            && Self {
+                velocity: other.velocity.clone(),
+                ..self.clone()
+            } == *other
+    }
+}
+
+/// The time stamp so many clocks after that of `inputs`.
+fn time_after(inputs: &Inputs, clocks: u64) -> u32 {
+    inputs.time_stamp.wrapping_add(clocks as u32)
 }
 
 /// The pulse counter, cycle accurate at its ports.
@@ -115,12 +133,18 @@ impl PulseCounter {
         outputs
     }
 
-    /// So many clocks with the same inputs. Ends early once a clock changes nothing, since no later one would.
+    /// So many clocks with the same inputs, but for the time stamp, which counts on. Once a clock has changed nothing but the
+    /// time, the rest is one jump.
     pub fn hold(&mut self, inputs: &Inputs, clocks: u64) {
-        for _ in 0..clocks {
+        let mut now = *inputs;
+        for clock in 0..clocks {
+            now.time_stamp = time_after(inputs, clock);
             let before = self.state.clone();
-            self.clock(inputs);
-            if self.state == before {
+            self.clock(&now);
+            if !inputs.tick && self.state.is_but_for_time(&before) {
+                if !inputs.rst {
+                    self.state.velocity.pass_time(time_after(inputs, clocks - 1));
+                }
                 return;
             }
         }

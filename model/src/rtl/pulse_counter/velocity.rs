@@ -119,6 +119,22 @@ impl Velocity {
         }
     }
 
+    /// Whether nothing but the time tells the two apart.
+    pub(super) fn is_but_for_time(&self, other: &Self) -> bool {
+        let last_stamp = if self.moved { self.last_stamp } else { other.last_stamp };
+        Self {
+            last_stamp,
+            ..self.clone()
+        } == *other
+    }
+
+    /// Clocks without tick, edge or quotient up to the one of this time stamp.
+    pub(super) fn pass_time(&mut self, time_stamp: u32) {
+        if !self.moved {
+            self.last_stamp = time_stamp & ((1 << ELAPSED_BITS) - 1);
+        }
+    }
+
     fn tick(&mut self, inputs: &Inputs, count: i32, negative: bool) {
         let elapsed = self.last_stamp.wrapping_sub(self.reference_stamp) & ((1 << ELAPSED_BITS) - 1);
         let counted = wrap(i64::from(count.wrapping_sub(self.captured)), STEP_BITS) as i32;

@@ -1,22 +1,11 @@
 //! The bank, clock by clock: an interpreter of the register map.
 
-use super::description::{Access, Field, Source, WINDOW_WORDS};
+mod plan;
+
+use self::plan::{Plan, plan};
+use super::description::{Access, Source, WINDOW_WORDS};
 use super::map::RegisterMap;
 use crate::rtl::{ClockedBlock, Direction, Moore, Port, StepError};
-
-/// Where a field's bits are among the inputs.
-#[derive(Debug, Clone, Copy)]
-struct Wire {
-    input: usize,
-    low: u32,
-    ones: u32,
-}
-
-impl Wire {
-    fn bits(self, inputs: &[u64]) -> u32 {
-        (inputs[self.input] as u32 & self.ones) << self.low
-    }
-}
 
 /// What an output shows.
 #[derive(Debug, Clone, Copy)]
@@ -25,31 +14,6 @@ enum Shown {
     Irq,
     Strobe(usize),
     Field { register: usize, low: u32, ones: u32 },
-}
-
-/// A flag that the bank sets by itself.
-#[derive(Debug, Clone, Copy)]
-struct OwnFlag {
-    source: Source,
-    bit: u32,
-}
-
-/// A register as the interpreter wants it.
-#[derive(Debug, Clone)]
-struct Plan {
-    access: Access,
-    /// Bits that a write reaches.
-    mask: u32,
-    reset: u32,
-    /// Inputs that are live, or set flags.
-    wires: Vec<Wire>,
-    own_flags: Vec<OwnFlag>,
-    /// Mask and smallest value, in place, of fields that have one.
-    minima: Vec<(u32, u32)>,
-    /// Input that guards it, or applies a commit.
-    gate: usize,
-    /// Of a shadow: the live register. Of an interrupt test: the state.
-    refers_to: usize,
 }
 
 /// Everything that is a register in hardware.
@@ -248,7 +212,7 @@ impl RegisterBank {
             Access::Guarded { .. } => {
                 let word = merged(state.words[at]);
                 let enough = plan.minima.iter().all(|(mask, minimum)| word & mask >= *minimum);
-                if inputs[plan.gate] & 1 != 0 && enough {
+                if inputs[plan.gate] & 1 == 0 && enough {
                     state.words[at] = word;
                 } else {
                     refusals.guard = true;
@@ -305,53 +269,6 @@ fn bytes(enabled: u64) -> u32 {
             0
         }
     })
-}
-
-fn plan(map: &RegisterMap, at: usize) -> Plan {
-    let register = &map.registers()[at];
-    let inputs: Vec<&str> = {
-        let ports = map.ports().iter().filter(|port| port.direction == Direction::Input);
-        ports.map(|port| port.name.as_str()).collect()
-    };
-    // A checked map has all the ports that its registers name.
-    let input = |name: &str| inputs.iter().position(|port| *port == name).unwrap_or_default();
-    let wire = |field: &Field| Wire {
-        input: input(&field.name),
-        low: field.low,
-        ones: field.ones(),
-    };
-    let access = &register.access;
-    let wired = access.is_sticky() || *access == Access::Live;
-    let from_input = register.fields.iter().filter(|field| field.source == Source::Input);
-    let own = register.fields.iter().filter(|field| field.source != Source::Input);
-    let minima = register.fields.iter().filter(|field| field.minimum > 0);
-    Plan {
-        mask: register.mask(),
-        reset: register.reset(),
-        wires: from_input.filter(|_| wired).map(wire).collect(),
-        own_flags: own
-            .filter(|_| wired)
-            .map(|field| OwnFlag {
-                source: field.source,
-                bit: field.mask(),
-            })
-            .collect(),
-        minima: minima.map(|field| (field.mask(), field.minimum << field.low)).collect(),
-        gate: match access {
-            Access::Guarded { by } => input(by),
-            Access::Commit { tick } => input(tick),
-            _ => 0,
-        },
-        refers_to: match access {
-            Access::Shadow { of } => map.index_of(of).unwrap_or_default(),
-            Access::InterruptTest => {
-                let state = |r: &super::Register| r.access == Access::InterruptState;
-                map.registers().iter().position(state).unwrap_or_default()
-            }
-            _ => 0,
-        },
-        access: access.clone(),
-    }
 }
 
 /// What each output shows, in port order.

@@ -4,7 +4,9 @@ use super::description::{Access, Description, Field, Format, Register, Source, W
 use super::error::MapError;
 
 /// Names that the bank's Verilog has for itself.
-const RESERVED: [&str; 8] = ["clk", "rst", "irq", "mask", "whole", "waits", "applies", "unused"];
+const RESERVED: [&str; 9] = [
+    "clk", "rst", "irq", "mask", "whole", "written", "waits", "applies", "unused",
+];
 /// Beginnings of such names.
 const RESERVED_PREFIXES: [&str; 9] = [
     "avs_",
@@ -172,7 +174,7 @@ fn access(register: &Register, registers: &[Register]) -> Result<(), MapError> {
                 });
             }
         }
-        Access::Guarded { by: input } | Access::Commit { tick: input } | Access::Command { strobe: input } => {
+        Access::Guarded { while_low: input } | Access::Commit { tick: input } | Access::Command { strobe: input } => {
             port_name(input)?;
             let fields = register.fields.len();
             match register.access {

@@ -48,11 +48,11 @@ pub enum Access {
     },
     /// Read and write, by bytes; fields are outputs.
     Configuration,
-    /// As configuration, while the one-bit input is high; else writes are refused and flagged. So is a write that would
-    /// put a field below its minimum.
+    /// As configuration, while the one-bit input is low; else writes are refused and flagged. So is a write that would put
+    /// a field below its minimum.
     Guarded {
         /// Name of the input.
-        by: String,
+        while_low: String,
     },
     /// Read and write, by bytes; the fields' outputs take it when a commit is applied. Refused while one waits.
     Staged,

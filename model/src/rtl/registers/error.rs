@@ -5,9 +5,9 @@
 pub enum MapError {
     /// A name of the wrong form, or one that the bank needs.
     #[error(
-        "`{0}` cannot be a name: [a-z][a-z0-9_]*; and as a port not `clk`, `rst`, `irq`, `mask`, `whole`, `waits`, `applies`, \
+        "`{0}` cannot be a name: [a-z][a-z0-9_]*; and as a port not `clk`, `rst`, `irq`, `mask`, `written`, `whole`, `waits`, `applies`, \
          `unused`, and not beginning with `avs_`, `bus_`, `write_`, `next_`, `allow_`, `shadow_`, `staged_`, `flag_`, \
-         `interrupt_`"
+         `irq_`"
     )]
     Name(String),
     /// The first two registers are not what every map begins with.

@@ -16,7 +16,8 @@ impl RegisterMap {
     ///
     /// # Errors
     /// [`MapError`] for the first thing that does not hold together: names, places, reset values, references.
-    pub fn new(description: Description) -> Result<Self, MapError> {
+    pub fn new(mut description: Description) -> Result<Self, MapError> {
+        description.registers.sort_by_key(|register| register.offset);
         super::check::check(&description)?;
         let ports = ports(&description)?;
         Ok(Self { description, ports })
@@ -32,7 +33,7 @@ impl RegisterMap {
         &self.description.about
     }
 
-    /// The registers, in the order of the description.
+    /// The registers, by offset.
     pub fn registers(&self) -> &[Register] {
         &self.description.registers
     }
@@ -111,8 +112,8 @@ fn ports(description: &Description) -> Result<Vec<Port>, MapError> {
                 let from_input = fields.filter(|field| field.source == Source::Input);
                 add(&mut ports, register, from_input.map(|field| field_port(field, Input)))?;
             }
-            Access::Guarded { by } => {
-                add(&mut ports, register, [port(by, Input, 1, false)])?;
+            Access::Guarded { while_low } => {
+                add(&mut ports, register, [port(while_low, Input, 1, false)])?;
                 add(&mut ports, register, fields.map(|field| field_port(field, Output)))?;
             }
             Access::Commit { tick } => add(&mut ports, register, [port(tick, Input, 1, false)])?,

@@ -6,7 +6,7 @@ use std::fmt::Write;
 
 /// The tables of a map: one of its registers, one of their fields, one of each enumeration.
 pub fn markdown(map: &RegisterMap) -> String {
-    let mut text = format!("### {}\n\n{}\n\n", map.name(), map.about());
+    let mut text = format!("## {}\n\n{}\n\n", map.name(), map.about());
     text.push_str("| word | register | access | reset | meaning |\n|---|---|---|---|---|\n");
     for register in map.registers() {
         // Writing to a String cannot fail.
@@ -72,7 +72,7 @@ pub fn markdown(map: &RegisterMap) -> String {
 fn access(register: &Register) -> String {
     match &register.access {
         Access::Shadow { of } => format!("shadow of `{}`", of.to_uppercase()),
-        Access::Guarded { by } => format!("guarded by `{by}`"),
+        Access::Guarded { while_low } => format!("guarded: while `{while_low}` is low"),
         Access::Command { strobe } => format!("command `{strobe}`"),
         Access::Commit { tick } => format!("commit at `{tick}`"),
         other => other.words().to_owned(),

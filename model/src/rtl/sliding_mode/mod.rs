@@ -40,7 +40,7 @@ pub use ports::{INPUTS, Inputs, Law, Motion, OUTPUTS, Outputs, Saturation, ports
 pub use settings::{Gain, GainError, LIMIT_MAX, MANTISSA_BITS, MANTISSA_MAX, Row, SETTINGS, SHIFT_MAX, Settings};
 
 use self::datapath::{Datapath, STEPS, address};
-use super::{ClockedBlock, Port, StepError};
+use super::{ClockedBlock, Moore, Port, StepError};
 
 /// Clocks of a step.
 const STEP_CLOCKS: u8 = 16;
@@ -170,6 +170,14 @@ impl ClockedBlock for SlidingMode {
         let shown = SlidingMode::step(self, &typed);
         outputs.copy_from_slice(&shown.to_raw());
         Ok(())
+    }
+}
+
+impl Moore for SlidingMode {
+    fn show(&self, outputs: &mut [u64]) {
+        for (output, value) in outputs.iter_mut().zip(self.state.outputs().to_raw()) {
+            *output = value;
+        }
     }
 }
 

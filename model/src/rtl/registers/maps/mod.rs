@@ -1,11 +1,15 @@
 //! The register maps of the components, one file each.
 
 mod pulse_counter;
+mod pwm;
 mod shaper;
+mod sliding_mode;
 
 pub use pulse_counter::pulse_counter;
+pub use pwm::pwm;
 pub use shaper::shaper;
 pub(crate) use shaper::word_name;
+pub use sliding_mode::sliding_mode;
 
 use super::{Field, Source};
 

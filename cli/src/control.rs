@@ -1,0 +1,110 @@
+//! The controllers of a machine's axes: the gains that follow from its file, and what is doubtful about them.
+
+use crate::failure::Failure;
+use crate::output;
+use posicast_model::control::{self, Derived};
+use posicast_model::rtl::sliding_mode::{Law, Row};
+use posicast_model::spec::{Axis, Machine, PwmMode};
+use serde::Serialize;
+use std::path::Path;
+
+/// The controller of one axis.
+pub(crate) struct AxisControl {
+    pub(crate) axis: String,
+    pub(crate) lag_s: f64,
+    pub(crate) derived: Derived,
+    /// Whether the pins have no pattern for a negative command.
+    one_sided: bool,
+}
+
+const ONE_SIDED: &str = "a half bridge shows a negative command as 0: choose direction, full-bridge or locked-antiphase \
+                         for mode in [axis.pwm], unless the axis is pushed back by something else";
+
+/// The controllers of the machine that the file at `path` describes: `None` for an axis without.
+pub(crate) fn of_machine(machine: &Machine, path: &Path) -> Result<Vec<Option<AxisControl>>, Failure> {
+    let of_axis = |axis: &Axis| {
+        let (Some(drive), Some(pwm), Some(_)) = (&axis.drive, &axis.pwm, &axis.controller) else {
+            return Ok(None);
+        };
+        let lag_s = control::loop_lag_s(drive, control::schedule_delay_s(&machine.clock, pwm));
+        let derived = control::gains(axis, machine.clock, lag_s).map_err(|e| Failure::because(e).in_file(path))?;
+        Ok(Some(AxisControl {
+            axis: axis.name.clone(),
+            lag_s,
+            derived,
+            one_sided: pwm.mode == PwmMode::HalfBridge,
+        }))
+    };
+    machine.axes.iter().map(of_axis).collect()
+}
+
+impl AxisControl {
+    /// Says on standard error what is doubtful.
+    pub(crate) fn warn(&self) {
+        for warning in self.warnings() {
+            output::say(&format!("warning: controller of axis `{}`: {warning}", self.axis));
+        }
+    }
+
+    fn warnings(&self) -> Vec<String> {
+        let of_law = self.derived.warnings.iter().map(ToString::to_string);
+        of_law.chain(self.one_sided.then(|| ONE_SIDED.to_owned())).collect()
+    }
+
+    /// A line for people.
+    pub(crate) fn text(&self) -> String {
+        format!(
+            "  controller {}: loop lag {:.1} µs, friction leaves {:.3} µ of error\n",
+            self.law(),
+            1e6 * self.lag_s,
+            1e6 * self.derived.steady_error
+        )
+    }
+
+    /// For programs.
+    pub(crate) fn json(&self) -> ControlDocument {
+        ControlDocument {
+            law: self.law(),
+            lag_s: self.lag_s,
+            steady_error: self.derived.steady_error,
+            settings: Row::ALL
+                .into_iter()
+                .map(|row| SettingDocument {
+                    row: format!("{row:?}").to_lowercase(),
+                    value: self.derived.gains.get(row),
+                    word: self.derived.settings.word(row as usize),
+                })
+                .collect(),
+            warnings: self.warnings(),
+        }
+    }
+
+    fn law(&self) -> &'static str {
+        match self.derived.law {
+            Law::SlidingMode => "sliding-mode",
+            Law::Pd => "pd",
+            Law::Pid => "pid",
+        }
+    }
+}
+
+/// An axis's `control` in `design --json` and `report.json`.
+#[derive(Serialize)]
+pub(crate) struct ControlDocument {
+    law: &'static str,
+    /// From the position to what the drive does about it.
+    lag_s: f64,
+    /// Error in m or rad that Coulomb friction leaves.
+    steady_error: f64,
+    /// By address: what the controller's memory holds after reset.
+    settings: Vec<SettingDocument>,
+    warnings: Vec<String>,
+}
+
+#[derive(Serialize)]
+struct SettingDocument {
+    row: String,
+    /// In counts, ticks and command units.
+    value: f64,
+    word: u32,
+}

@@ -1,0 +1,101 @@
+//! The gates: the leg on the pins of its mode, a register each, and behind it the fault path without a clock.
+
+use crate::prelude::*;
+use posicast_model::rtl::pwm::PwmConfig;
+
+#[derive(LogicBlock)]
+pub(super) struct Gates {
+    pub(super) clk: Signal<In, Clock>,
+    pub(super) rst: Signal<In, Bit>,
+    pub(super) armed: Signal<In, Bit>,
+    pub(super) mode: Signal<In, Bits<2>>,
+    pub(super) negative: Signal<In, Bit>,
+    pub(super) wanted: Signal<In, Bit>,
+    pub(super) awake: Signal<In, Bit>,
+    pub(super) high_side: Signal<In, Bit>,
+    pub(super) low_side: Signal<In, Bit>,
+    pub(super) a_high: Signal<Out, Bit>,
+    pub(super) a_low: Signal<Out, Bit>,
+    pub(super) b_high: Signal<Out, Bit>,
+    pub(super) b_low: Signal<Out, Bit>,
+
+    a_high_gate: Dff<Bit>,
+    a_low_gate: Dff<Bit>,
+    b_high_gate: Dff<Bit>,
+    b_low_gate: Dff<Bit>,
+
+    a_high_off: Constant<Bit>,
+    a_low_off: Constant<Bit>,
+    b_high_off: Constant<Bit>,
+    b_low_off: Constant<Bit>,
+}
+
+impl Gates {
+    pub(super) fn new(config: &PwmConfig) -> Self {
+        let off = config.active_low();
+        Self {
+            clk: Signal::default(),
+            rst: Signal::default(),
+            armed: Signal::default(),
+            mode: Signal::default(),
+            negative: Signal::default(),
+            wanted: Signal::default(),
+            awake: Signal::default(),
+            high_side: Signal::default(),
+            low_side: Signal::default(),
+            a_high: Signal::default(),
+            a_low: Signal::default(),
+            b_high: Signal::default(),
+            b_low: Signal::default(),
+            a_high_gate: Dff::default(),
+            a_low_gate: Dff::default(),
+            b_high_gate: Dff::default(),
+            b_low_gate: Dff::default(),
+            a_high_off: Constant::new(off.a_high),
+            a_low_off: Constant::new(off.a_low),
+            b_high_off: Constant::new(off.b_high),
+            b_low_off: Constant::new(off.b_low),
+        }
+    }
+}
+
+impl Logic for Gates {
+    #[hdl_gen]
+    fn update(&mut self) {
+        comment!("@module pwm_gates");
+        comment!("@about The leg on its pins: a register each, then");
+        comment!("@about the fault path, then the polarity.");
+        dff_setup!(self, clk, a_high_gate, a_low_gate, b_high_gate, b_low_gate);
+
+        comment!("Half bridge; and the other modes from there");
+        self.a_high_gate.d.next = self.high_side.val();
+        self.a_low_gate.d.next = self.low_side.val();
+        self.b_high_gate.d.next = false;
+        self.b_low_gate.d.next = false;
+        if self.mode.val() == 0 {
+            comment!("PWM and direction");
+            self.a_low_gate.d.next = false;
+            self.b_high_gate.d.next = self.negative.val() & self.wanted.val();
+        }
+        if self.mode.val() == 2 {
+            comment!("Unipolar: the other leg stays low");
+            self.b_low_gate.d.next = self.awake.val();
+            if self.negative.val() {
+                self.a_high_gate.d.next = false;
+                self.a_low_gate.d.next = self.awake.val();
+                self.b_high_gate.d.next = self.high_side.val();
+                self.b_low_gate.d.next = self.low_side.val();
+            }
+        }
+        if self.mode.val() == 3 {
+            comment!("Locked antiphase: the other leg is against it");
+            self.b_high_gate.d.next = self.low_side.val();
+            self.b_low_gate.d.next = self.high_side.val();
+        }
+
+        self.a_high.next = (self.a_high_gate.q.val() & self.armed.val()) ^ self.a_high_off.val();
+        self.a_low.next = (self.a_low_gate.q.val() & self.armed.val()) ^ self.a_low_off.val();
+        self.b_high.next = (self.b_high_gate.q.val() & self.armed.val()) ^ self.b_high_off.val();
+        self.b_low.next = (self.b_low_gate.q.val() & self.armed.val()) ^ self.b_low_off.val();
+    }
+}

@@ -1,0 +1,365 @@
+//! The PWM: what is latched at a boundary, and the edge that follows from it, between carrier and leg.
+
+use super::carrier::Carrier;
+use super::command::Command;
+use super::gates::Gates;
+use super::leg::Leg;
+use super::timing::Timing;
+use super::trip::Trip;
+use crate::prelude::*;
+use posicast_model::rtl::pwm::PwmConfig;
+
+#[derive(LogicBlock)]
+pub(super) struct Pwm {
+    pub(super) clk: Signal<In, Clock>,
+    pub(super) rst: Signal<In, Bit>,
+    pub(super) enable: Signal<In, Bit>,
+    pub(super) mode: Signal<In, Bits<2>>,
+    pub(super) period: Signal<In, Bits<16>>,
+    pub(super) duty: Signal<In, Signed<17>>,
+    pub(super) max_duty: Signal<In, Bits<16>>,
+    pub(super) update_at_peak: Signal<In, Bit>,
+    pub(super) dead_time: Signal<In, Bits<10>>,
+    pub(super) minimum_pulse: Signal<In, Bits<10>>,
+    pub(super) sync: Signal<In, Bit>,
+    pub(super) phase: Signal<In, Bits<16>>,
+    pub(super) trigger_phase: Signal<In, Bits<16>>,
+    pub(super) feed: Signal<In, Bit>,
+    pub(super) watchdog_periods: Signal<In, Bits<8>>,
+    pub(super) filter_clocks: Signal<In, Bits<8>>,
+    pub(super) fault_n: Signal<In, Bit>,
+    pub(super) pll_locked: Signal<In, Bit>,
+    pub(super) filtered_fault_n: Signal<In, Bits<2>>,
+    pub(super) clear_trip: Signal<In, Bit>,
+    pub(super) clear_flags: Signal<In, Bit>,
+    pub(super) a_high: Signal<Out, Bit>,
+    pub(super) a_low: Signal<Out, Bit>,
+    pub(super) b_high: Signal<Out, Bit>,
+    pub(super) b_low: Signal<Out, Bit>,
+    pub(super) running: Signal<Out, Bit>,
+    pub(super) tripped: Signal<Out, Bit>,
+    pub(super) trip_causes: Signal<Out, Bits<5>>,
+    pub(super) negative: Signal<Out, Bit>,
+    pub(super) valley: Signal<Out, Bit>,
+    pub(super) peak: Signal<Out, Bit>,
+    pub(super) trigger: Signal<Out, Bit>,
+    pub(super) saturated: Signal<Out, Bit>,
+    pub(super) refused: Signal<Out, Bit>,
+    pub(super) below_floor: Signal<Out, Bit>,
+    pub(super) unaligned: Signal<Out, Bit>,
+    pub(super) dead_time_used: Signal<Out, Bits<10>>,
+    pub(super) minimum_pulse_used: Signal<Out, Bits<10>>,
+
+    carrier: Carrier,
+    timing: Timing,
+    command: Command,
+    guard: Trip,
+    leg: Leg,
+    gates: Gates,
+
+    running_q: Dff<Bit>,
+    mode_q: Dff<Bits<2>>,
+    negative_q: Dff<Bit>,
+    low_q: Dff<Bit>,
+    high_q: Dff<Bit>,
+    off_q: Dff<Bit>,
+    pulse: Dff<Signed<18>>,
+    edge_at: Dff<Bits<16>>,
+    level: Dff<Bit>,
+    saturated_q: Dff<Bit>,
+    refused_q: Dff<Bit>,
+    below_floor_q: Dff<Bit>,
+    unaligned_q: Dff<Bit>,
+
+    settled: Signal<Local, Bit>,
+    may_run: Signal<Local, Bit>,
+    goes_on: Signal<Local, Bit>,
+    starts: Signal<Local, Bit>,
+    level_now: Signal<Local, Bit>,
+    wanted: Signal<Local, Bit>,
+    wants_high: Signal<Local, Bit>,
+    boundary: Signal<Local, Bit>,
+    updates: Signal<Local, Bit>,
+    dead: Signal<Local, Bits<18>>,
+    minimum: Signal<Local, Bits<18>>,
+    longest: Signal<Local, Signed<18>>,
+    too_short: Signal<Local, Bit>,
+    too_long: Signal<Local, Bit>,
+    may_turn: Signal<Local, Bit>,
+    turns: Signal<Local, Bit>,
+    width_now: Signal<Local, Signed<18>>,
+    pulse_bits: Signal<Local, Bits<18>>,
+    half_period: Signal<Local, Bits<16>>,
+    start: Signal<Local, Bits<16>>,
+    carry: Signal<Local, Bits<17>>,
+    sum: Signal<Local, Bits<17>>,
+    edge_position: Signal<Local, Bits<16>>,
+}
+
+impl Pwm {
+    pub(super) fn new(config: &PwmConfig) -> Self {
+        Self {
+            clk: Signal::default(),
+            rst: Signal::default(),
+            enable: Signal::default(),
+            mode: Signal::default(),
+            period: Signal::default(),
+            duty: Signal::default(),
+            max_duty: Signal::default(),
+            update_at_peak: Signal::default(),
+            dead_time: Signal::default(),
+            minimum_pulse: Signal::default(),
+            sync: Signal::default(),
+            phase: Signal::default(),
+            trigger_phase: Signal::default(),
+            feed: Signal::default(),
+            watchdog_periods: Signal::default(),
+            filter_clocks: Signal::default(),
+            fault_n: Signal::default(),
+            pll_locked: Signal::default(),
+            filtered_fault_n: Signal::default(),
+            clear_trip: Signal::default(),
+            clear_flags: Signal::default(),
+            a_high: Signal::default(),
+            a_low: Signal::default(),
+            b_high: Signal::default(),
+            b_low: Signal::default(),
+            running: Signal::default(),
+            tripped: Signal::default(),
+            trip_causes: Signal::default(),
+            negative: Signal::default(),
+            valley: Signal::default(),
+            peak: Signal::default(),
+            trigger: Signal::default(),
+            saturated: Signal::default(),
+            refused: Signal::default(),
+            below_floor: Signal::default(),
+            unaligned: Signal::default(),
+            dead_time_used: Signal::default(),
+            minimum_pulse_used: Signal::default(),
+            carrier: Carrier::new(),
+            timing: Timing::new(config),
+            command: Command::default(),
+            guard: Trip::default(),
+            leg: Leg::default(),
+            gates: Gates::new(config),
+            running_q: Dff::default(),
+            mode_q: Dff::default(),
+            negative_q: Dff::default(),
+            low_q: Dff::default(),
+            high_q: Dff::default(),
+            off_q: Dff::default(),
+            pulse: Dff::default(),
+            edge_at: Dff::default(),
+            level: Dff::default(),
+            saturated_q: Dff::default(),
+            refused_q: Dff::default(),
+            below_floor_q: Dff::default(),
+            unaligned_q: Dff::default(),
+            settled: Signal::default(),
+            may_run: Signal::default(),
+            goes_on: Signal::default(),
+            starts: Signal::default(),
+            level_now: Signal::default(),
+            wanted: Signal::default(),
+            wants_high: Signal::default(),
+            boundary: Signal::default(),
+            updates: Signal::default(),
+            dead: Signal::default(),
+            minimum: Signal::default(),
+            longest: Signal::default(),
+            too_short: Signal::default(),
+            too_long: Signal::default(),
+            may_turn: Signal::default(),
+            turns: Signal::default(),
+            width_now: Signal::default(),
+            pulse_bits: Signal::default(),
+            half_period: Signal::default(),
+            start: Signal::default(),
+            carry: Signal::default(),
+            sum: Signal::default(),
+            edge_position: Signal::default(),
+        }
+    }
+}
+
+impl Logic for Pwm {
+    #[hdl_gen]
+    fn update(&mut self) {
+        comment!("@module pwm");
+        dff_setup!(
+            self,
+            clk,
+            running_q,
+            mode_q,
+            negative_q,
+            low_q,
+            high_q,
+            off_q,
+            pulse,
+            edge_at,
+            level,
+            saturated_q,
+            refused_q,
+            below_floor_q,
+            unaligned_q
+        );
+
+        self.carrier.clk.next = self.clk.val();
+        self.carrier.rst.next = self.rst.val();
+        self.carrier.running.next = self.running_q.q.val();
+        self.carrier.period.next = self.period.val();
+        self.carrier.sync.next = self.sync.val();
+        self.carrier.phase.next = self.phase.val();
+        self.carrier.trigger_phase.next = self.trigger_phase.val();
+        self.timing.clk.next = self.clk.val();
+        self.timing.rst.next = self.rst.val();
+        self.timing.running.next = self.running_q.q.val();
+        self.timing.dead_time.next = self.dead_time.val();
+        self.timing.minimum_pulse.next = self.minimum_pulse.val();
+        self.command.clk.next = self.clk.val();
+        self.command.rst.next = self.rst.val();
+        self.command.mode.next = self.mode.val();
+        self.command.duty.next = self.duty.val();
+        self.command.max_duty.next = self.max_duty.val();
+        self.command.period.next = self.carrier.period_used.val();
+        self.command.dead_time.next = self.timing.dead_time_used.val();
+        self.guard.clk.next = self.clk.val();
+        self.guard.rst.next = self.rst.val();
+        self.guard.running.next = self.running_q.q.val();
+        self.guard.valley.next = self.carrier.valley_next.val();
+        self.guard.feed.next = self.feed.val();
+        self.guard.watchdog_periods.next = self.watchdog_periods.val();
+        self.guard.filter_clocks.next = self.filter_clocks.val();
+        self.guard.fault_n.next = self.fault_n.val();
+        self.guard.pll_locked.next = self.pll_locked.val();
+        self.guard.filtered_fault_n.next = self.filtered_fault_n.val();
+        self.guard.clear_trip.next = self.clear_trip.val();
+
+        comment!("Off at once; on at a valley, registers settled");
+        self.settled.next = self.timing.settled.val() & (self.carrier.period_used.val() == self.period.val());
+        self.may_run.next = self.enable.val() & !self.guard.tripped.val();
+        self.goes_on.next = self.running_q.q.val() & self.may_run.val();
+        self.starts.next = !self.running_q.q.val()
+            & self.may_run.val()
+            & self.carrier.valley_next.val()
+            & self.settled.val()
+            & !self.carrier.realigns.val();
+        self.running_q.d.next = self.goes_on.val() | self.starts.val();
+
+        comment!("What is wanted of the leg at this position");
+        self.level_now.next = self.level.q.val() ^ (self.carrier.position.val() == self.edge_at.q.val());
+        self.wanted.next = self.goes_on.val() & !self.off_q.q.val();
+        self.wants_high.next = self.high_q.q.val() | (self.level_now.val() & !self.low_q.q.val());
+        self.leg.clk.next = self.clk.val();
+        self.leg.rst.next = self.rst.val();
+        self.leg.wanted.next = self.wanted.val();
+        self.leg.wants_high.next = self.wants_high.val();
+        self.leg.dead_time.next = self.timing.dead_time_used.val();
+        self.leg.minimum_pulse.next = self.timing.minimum_pulse_used.val();
+        self.gates.clk.next = self.clk.val();
+        self.gates.rst.next = self.rst.val();
+        self.gates.armed.next = self.guard.armed.val();
+        self.gates.mode.next = self.mode_q.q.val();
+        self.gates.negative.next = self.negative_q.q.val();
+        self.gates.wanted.next = self.wanted.val();
+        self.gates.awake.next = self.leg.awake.val();
+        self.gates.high_side.next = self.leg.high_side.val();
+        self.gates.low_side.next = self.leg.low_side.val();
+
+        comment!("Shorter than the minimum: none, or full");
+        self.boundary.next = self.carrier.valley_next.val() | self.carrier.peak_next.val();
+        self.updates.next = self.carrier.valley_next.val() | (self.carrier.peak_next.val() & self.update_at_peak.val());
+        self.dead.next = bit_cast::<18, 10>(self.timing.dead_time_used.val());
+        self.minimum.next = bit_cast::<18, 10>(self.timing.minimum_pulse_used.val());
+        self.longest.next = signed_cast(
+            bit_cast::<18, 16>(self.carrier.period_used.val()) - ((self.dead.val() << 1) + self.minimum.val()),
+        );
+        self.too_short.next = self.command.width.val() < signed_cast(self.minimum.val());
+        self.too_long.next = self.command.width.val() > self.longest.val();
+
+        comment!("A direction turns with its first pulse, from low");
+        self.may_turn.next = !self.leg.awake.val() | self.leg.low_side.val();
+        self.turns.next = ((self.command.width_mode.val() == 0) | (self.command.width_mode.val() == 2))
+            & !self.too_short.val()
+            & (self.command.negative.val() != self.negative_q.q.val());
+
+        comment!("A boundary takes the command");
+        if self.updates.val() {
+            self.mode_q.d.next = self.command.width_mode.val();
+            self.off_q.d.next = self.goes_on.val() & (self.command.width_mode.val() != self.mode_q.q.val());
+            self.low_q.d.next = self.too_short.val() | (self.turns.val() & !self.may_turn.val());
+            self.high_q.d.next =
+                self.too_long.val() & !self.too_short.val() & !(self.turns.val() & !self.may_turn.val());
+            self.pulse.d.next = self.command.width.val();
+            if self.turns.val() & self.may_turn.val() {
+                self.negative_q.d.next = self.command.negative.val();
+            }
+        }
+
+        comment!("The edge of the half that begins: a sum; by two");
+        comment!("inversions a difference; the odd clock carries");
+        self.width_now.next = self.pulse.q.val();
+        if self.updates.val() {
+            self.width_now.next = self.command.width.val();
+        }
+        self.pulse_bits.next = unsigned_cast(self.width_now.val());
+        self.half_period.next = self.carrier.period_used.val() >> 1;
+        self.start.next = !(self.half_period.val() - self.dead.val().get_bits::<16>(0));
+        self.carry.next = 0.into();
+        if self.carrier.peak_next.val() {
+            self.start.next = self.half_period.val();
+            self.carry.next = bit_cast::<17, 1>(self.pulse_bits.val().get_bits::<1>(0));
+        }
+        self.sum.next = ((bit_cast::<17, 16>(self.start.val()) << 1) | self.carry.val())
+            + ((bit_cast::<17, 16>(self.pulse_bits.val().get_bits::<16>(1)) << 1) | self.carry.val());
+        self.edge_position.next = self.sum.val().get_bits::<16>(1);
+        self.level.d.next = self.level_now.val();
+        if self.boundary.val() {
+            self.level.d.next = self.carrier.peak_next.val();
+            self.edge_at.d.next = !self.edge_position.val();
+            if self.carrier.peak_next.val() {
+                self.edge_at.d.next = self.edge_position.val();
+            }
+        }
+
+        comment!("Flags, set over clear");
+        if self.clear_flags.val() {
+            self.saturated_q.d.next = false;
+            self.refused_q.d.next = false;
+            self.below_floor_q.d.next = false;
+            self.unaligned_q.d.next = false;
+        }
+        if self.updates.val() & self.goes_on.val() & self.command.saturated.val() {
+            self.saturated_q.d.next = true;
+        }
+        if self.running_q.q.val() & !self.settled.val() {
+            self.refused_q.d.next = true;
+        }
+        if self.enable.val() & self.timing.below.val() {
+            self.below_floor_q.d.next = true;
+        }
+        if self.running_q.q.val() & self.carrier.out_of_step.val() {
+            self.unaligned_q.d.next = true;
+        }
+
+        comment!("Outputs");
+        self.a_high.next = self.gates.a_high.val();
+        self.a_low.next = self.gates.a_low.val();
+        self.b_high.next = self.gates.b_high.val();
+        self.b_low.next = self.gates.b_low.val();
+        self.running.next = self.running_q.q.val();
+        self.tripped.next = self.guard.tripped.val();
+        self.trip_causes.next = self.guard.causes.val();
+        self.negative.next = self.negative_q.q.val();
+        self.valley.next = self.carrier.valley.val();
+        self.peak.next = self.carrier.peak.val();
+        self.trigger.next = self.carrier.trigger.val();
+        self.saturated.next = self.saturated_q.q.val();
+        self.refused.next = self.refused_q.q.val();
+        self.below_floor.next = self.below_floor_q.q.val();
+        self.unaligned.next = self.unaligned_q.q.val();
+        self.dead_time_used.next = self.timing.dead_time_used.val();
+        self.minimum_pulse_used.next = self.timing.minimum_pulse_used.val();
+    }
+}

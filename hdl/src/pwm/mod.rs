@@ -1,0 +1,78 @@
+//! The PWM in hardware: a duty to the gates of a bridge, with dead time, minimum pulse, fault path and watchdog.
+//!
+//! The datasheet is `docs/pwm.md`, the reference `posicast_model::rtl::pwm`.
+
+mod carrier;
+mod command;
+mod filtered_fault;
+mod gates;
+mod kernel;
+mod leg;
+mod pins;
+mod timing;
+mod trip;
+
+use crate::emit::{self, EmitError, EmitOptions, Header, Module, Parameter};
+use crate::simulation::{Simulated, SimulationError};
+use kernel::Pwm;
+use posicast_model::rtl::ClockedBlock;
+use posicast_model::rtl::pwm::{PwmConfig, ports};
+
+/// The PWM in RustHDL's own simulator.
+///
+/// # Errors
+/// [`SimulationError`] where RustHDL finds a fault in the block.
+pub fn simulate(config: &PwmConfig) -> Result<Box<dyn ClockedBlock>, SimulationError> {
+    let block = Box::new(Pwm::new(config));
+    Ok(Box::new(Simulated::new("pwm", block, ports())?))
+}
+
+/// The PWM's Verilog, one module per file, the top last.
+///
+/// The top is called `PREFIX_pwm`, or `pwm` where `prefix` is empty.
+///
+/// # Errors
+/// [`EmitError`] where `prefix` makes no Verilog name.
+pub fn emit(config: &PwmConfig, prefix: &str) -> Result<Vec<Module>, EmitError> {
+    let parameter = |name: &str, value: String, meaning: &str| Parameter {
+        name: name.to_owned(),
+        value,
+        meaning: meaning.to_owned(),
+    };
+    let off = config.active_low();
+    let low = [
+        (off.a_high, "a_high"),
+        (off.a_low, "a_low"),
+        (off.b_high, "b_high"),
+        (off.b_low, "b_low"),
+    ];
+    let low: Vec<&str> = low.into_iter().filter(|(low, _)| *low).map(|(_, name)| name).collect();
+    let low = if low.is_empty() {
+        "none".to_owned()
+    } else {
+        low.join(" ")
+    };
+    let options = EmitOptions {
+        top: "pwm".to_owned(),
+        prefix: prefix.to_owned(),
+        header: Header {
+            about: "PWM: a duty to the gates of a bridge, with dead time, minimum pulse, fault path and watchdog.\n\
+                    fault_n and pll_locked switch the pins off without a clock."
+                .to_owned(),
+            parameters: vec![
+                parameter("active low pins", low, "on at low, off at high"),
+                parameter(
+                    "dead time floor",
+                    config.dead_time_floor_clocks().to_string(),
+                    "clocks, at least 1",
+                ),
+                parameter(
+                    "minimum pulse floor",
+                    config.minimum_pulse_floor_clocks().to_string(),
+                    "clocks, at least 1",
+                ),
+            ],
+        },
+    };
+    emit::emit(&Pwm::new(config), &options)
+}

@@ -1,0 +1,112 @@
+//! All that turns the outputs off: the fault latch, which needs no clock, and the causes that come with one.
+
+use super::filtered_fault::FilteredFault;
+use crate::prelude::*;
+
+#[derive(LogicBlock, Default)]
+pub(super) struct Trip {
+    pub(super) clk: Signal<In, Clock>,
+    pub(super) rst: Signal<In, Bit>,
+    pub(super) running: Signal<In, Bit>,
+    pub(super) valley: Signal<In, Bit>,
+    pub(super) feed: Signal<In, Bit>,
+    pub(super) watchdog_periods: Signal<In, Bits<8>>,
+    pub(super) filter_clocks: Signal<In, Bits<8>>,
+    pub(super) fault_n: Signal<In, Bit>,
+    pub(super) pll_locked: Signal<In, Bit>,
+    pub(super) filtered_fault_n: Signal<In, Bits<2>>,
+    pub(super) clear_trip: Signal<In, Bit>,
+    pub(super) armed: Signal<Out, Bit>,
+    pub(super) tripped: Signal<Out, Bit>,
+    pub(super) causes: Signal<Out, Bits<5>>,
+
+    fault_latch: FaultLatch,
+    armed_synchroniser: Synchroniser,
+    fault_synchroniser: Synchroniser,
+    pll_synchroniser: Synchroniser,
+    fault_0: FilteredFault,
+    fault_1: FilteredFault,
+
+    filtered_0: Dff<Bit>,
+    filtered_1: Dff<Bit>,
+    pll: Dff<Bit>,
+    watchdog: Dff<Bit>,
+    unfed: Dff<Bits<8>>,
+
+    trip_n: Signal<Local, Bit>,
+    over: Signal<Local, Bit>,
+    latched: Signal<Local, Bit>,
+    waits: Signal<Local, Bit>,
+    starved: Signal<Local, Bit>,
+    others: Signal<Local, Bit>,
+    none: Signal<Local, Bits<5>>,
+    with_latch: Signal<Local, Bits<5>>,
+    with_fault_0: Signal<Local, Bits<5>>,
+    with_fault_1: Signal<Local, Bits<5>>,
+    with_pll: Signal<Local, Bits<5>>,
+}
+
+impl Logic for Trip {
+    #[hdl_gen]
+    fn update(&mut self) {
+        comment!("@module pwm_trip");
+        comment!("@about Fault latch, faults, PLL, watchdog.");
+        dff_setup!(self, clk, filtered_0, filtered_1, pll, watchdog, unfed);
+
+        comment!("Without a clock: the pins, and the latch");
+        self.trip_n.next = self.fault_n.val() & self.pll_locked.val();
+        self.fault_latch.clk.next = self.clk.val();
+        self.fault_latch.rst.next = self.rst.val();
+        self.fault_latch.trip_n.next = self.trip_n.val();
+        self.armed.next = self.fault_latch.armed.val() & self.trip_n.val();
+
+        comment!("Cleared once off, and seen to be over");
+        self.armed_synchroniser.clk.next = self.clk.val();
+        self.armed_synchroniser.rst.next = self.rst.val();
+        self.armed_synchroniser.pin.next = self.fault_latch.armed.val();
+        self.fault_synchroniser.clk.next = self.clk.val();
+        self.fault_synchroniser.rst.next = self.rst.val();
+        self.fault_synchroniser.pin.next = self.fault_n.val();
+        self.pll_synchroniser.clk.next = self.clk.val();
+        self.pll_synchroniser.rst.next = self.rst.val();
+        self.pll_synchroniser.pin.next = !self.pll_locked.val();
+        self.latched.next = !self.armed_synchroniser.level.val();
+        self.over.next = self.fault_synchroniser.level.val() & !self.pll_synchroniser.level.val();
+        self.fault_latch.clear.next =
+            self.clear_trip.val() & !self.running.val() & self.latched.val() & self.over.val();
+
+        comment!("Filtered faults and PLL, set over clear");
+        self.fault_0.clk.next = self.clk.val();
+        self.fault_0.rst.next = self.rst.val();
+        self.fault_0.fault_n.next = self.filtered_fault_n.val().get_bit(0);
+        self.fault_0.filter_clocks.next = self.filter_clocks.val();
+        self.fault_1.clk.next = self.clk.val();
+        self.fault_1.rst.next = self.rst.val();
+        self.fault_1.fault_n.next = self.filtered_fault_n.val().get_bit(1);
+        self.fault_1.filter_clocks.next = self.filter_clocks.val();
+        self.filtered_0.d.next = self.fault_0.active.val() | (self.filtered_0.q.val() & !self.clear_trip.val());
+        self.filtered_1.d.next = self.fault_1.active.val() | (self.filtered_1.q.val() & !self.clear_trip.val());
+        self.pll.d.next = self.pll_synchroniser.level.val() | (self.pll.q.val() & !self.clear_trip.val());
+
+        comment!("The watchdog counts valleys without feed");
+        self.waits.next = self.running.val() & !self.feed.val();
+        self.starved.next = self.watchdog_periods.val().any() & (self.unfed.q.val() >= self.watchdog_periods.val());
+        self.watchdog.d.next = (self.waits.val() & self.valley.val() & self.starved.val())
+            | (self.watchdog.q.val() & !self.clear_trip.val());
+        if self.valley.val() & !self.unfed.q.val().all() {
+            self.unfed.d.next = self.unfed.q.val() + 1;
+        }
+        if !self.waits.val() {
+            self.unfed.d.next = 0.into();
+        }
+
+        self.others.next = self.filtered_0.q.val() | self.filtered_1.q.val() | self.pll.q.val() | self.watchdog.q.val();
+        self.tripped.next = self.latched.val() | self.others.val();
+        self.none.next = 0.into();
+        self.with_latch.next = self.none.val().replace_bit(0, self.latched.val());
+        self.with_fault_0.next = self.with_latch.val().replace_bit(1, self.filtered_0.q.val());
+        self.with_fault_1.next = self.with_fault_0.val().replace_bit(2, self.filtered_1.q.val());
+        self.with_pll.next = self.with_fault_1.val().replace_bit(3, self.pll.q.val());
+        self.causes.next = self.with_pll.val().replace_bit(4, self.watchdog.q.val());
+    }
+}

@@ -1,0 +1,231 @@
+//! One clocked block per register, and what it needs around it.
+
+use super::verilog::{bits, joined, merged, part, type_of};
+use crate::emit::Type;
+use crate::emit::print::Lines;
+use posicast_model::rtl::registers::{Access, Field, Register, RegisterMap, Source};
+
+/// A flip-flop of the bank: type, name, reset value.
+pub(super) type Flop = (Type, String, u32);
+
+/// Declarations and the clocked block of one register.
+pub(super) fn register_block(lines: &mut Lines, map: &RegisterMap, register: &Register) {
+    let flops = flops(register);
+    let title = |lines: &mut Lines| {
+        let name = register.name.to_uppercase();
+        lines.line(&format!("// {name}: {}; {}", register.access.words(), register.meaning));
+    };
+    let name = &register.name;
+    let fields = &register.fields;
+    match &register.access {
+        Access::Configuration => {
+            title(lines);
+            clocked(lines, &flops, &format!("else if (write_{name})"), |lines| {
+                for field in fields {
+                    lines.line(&format!("{} <= {};", field.name, merged(field, &field.name)));
+                }
+            });
+        }
+        Access::Guarded { .. } => {
+            title(lines);
+            clocked(
+                lines,
+                &flops,
+                &format!("else if (write_{name} && allow_{name})"),
+                |lines| {
+                    for field in fields {
+                        lines.line(&format!("{0} <= next_{0};", field.name));
+                    }
+                },
+            );
+        }
+        Access::Staged => {
+            title(lines);
+            declare(lines, &flops, "staged_");
+            clocked(lines, &flops, "else", |lines| {
+                lines.nest(&format!("if (write_{name} && !waits) begin"), "end", |lines| {
+                    for field in fields {
+                        let staged = format!("staged_{}", field.name);
+                        lines.line(&format!("{staged} <= {};", merged(field, &staged)));
+                    }
+                });
+                lines.nest("if (applies) begin", "end", |lines| {
+                    for field in fields {
+                        lines.line(&format!("{0} <= staged_{0};", field.name));
+                    }
+                });
+            });
+        }
+        Access::Command { strobe } => {
+            title(lines);
+            clocked(lines, &flops, "else", |lines| {
+                lines.line(&format!("{strobe} <= write_{name} && whole;"));
+                if !fields.is_empty() {
+                    lines.nest(&format!("if (write_{name} && whole) begin"), "end", |lines| {
+                        for field in fields {
+                            lines.line(&format!("{} <= {};", field.name, part("avs_writedata", field)));
+                        }
+                    });
+                }
+            });
+        }
+        Access::Sticky | Access::InterruptState => {
+            title(lines);
+            let prefix = sticky_prefix(register);
+            declare(lines, &flops, "");
+            clocked(lines, &flops, "else", |lines| {
+                for field in fields {
+                    let (flag, bit) = (format!("{prefix}{}", field.name), field.low);
+                    let test = match (&register.access, map.find(|access| *access == Access::InterruptTest)) {
+                        (Access::InterruptState, Some(test)) => {
+                            format!(" || (write_{} && whole && avs_writedata[{bit}])", test.name)
+                        }
+                        _ => String::new(),
+                    };
+                    let kept = format!("({flag} && !(write_{name} && written[{bit}]))");
+                    lines.line(&format!("{flag} <= {}{test} || {kept};", source(field)));
+                }
+            });
+        }
+        Access::InterruptEnable => {
+            title(lines);
+            declare(lines, &flops, "");
+            clocked(lines, &flops, &format!("else if (write_{name})"), |lines| {
+                for field in fields {
+                    let enable = format!("irq_enable_{}", field.name);
+                    lines.line(&format!("{enable} <= {};", merged(field, &enable)));
+                }
+            });
+        }
+        Access::Commit { .. } => {
+            title(lines);
+            clocked(lines, &flops, "else", |lines| {
+                lines.line(&format!("waits <= !applies && (waits || (write_{name} && whole));"));
+            });
+        }
+        Access::Constant | Access::Live | Access::Shadow { .. } | Access::Snapshot | Access::InterruptTest => {}
+    }
+}
+
+pub(super) fn guarded(lines: &mut Lines, register: &Register, while_low: &str) {
+    for field in &register.fields {
+        let declaration = type_of(field).declaration();
+        let space = if declaration.is_empty() { "" } else { " " };
+        let next = merged(field, &field.name);
+        lines.line(&format!("wire {declaration}{space}next_{} = {next};", field.name));
+    }
+    let minima = register.fields.iter().filter(|field| field.minimum > 0).map(|field| {
+        // A concatenation is unsigned, whatever it holds.
+        let next = match field.is_signed() {
+            true => format!("{{next_{}}}", field.name),
+            false => format!("next_{}", field.name),
+        };
+        format!("{next} >= {}", bits(field.width).literal(field.minimum.into()))
+    });
+    let terms: Vec<String> = std::iter::once(format!("!{while_low}")).chain(minima).collect();
+    joined(lines, &format!("wire allow_{} = ", register.name), &terms, " && ", ";");
+}
+
+pub(super) fn sticky_prefix(register: &Register) -> &'static str {
+    match register.access {
+        Access::InterruptState => "irq_state_",
+        _ => "flag_",
+    }
+}
+
+fn source(field: &Field) -> &str {
+    match field.source {
+        Source::Input => &field.name,
+        Source::PartialWrite => "bus_partial",
+        Source::GuardRefused => "bus_refused",
+        Source::CommitRejected => "bus_rejected",
+    }
+}
+
+/// The flip-flops of a register, outputs and others, without those of shadows.
+pub(super) fn flops(register: &Register) -> Vec<Flop> {
+    let fields = |prefix: &str| -> Vec<Flop> {
+        let flop = |field: &Field| (type_of(field), format!("{prefix}{}", field.name), field.reset);
+        register.fields.iter().map(flop).collect()
+    };
+    match &register.access {
+        Access::Configuration | Access::Guarded { .. } => fields(""),
+        Access::Staged => [fields("staged_"), fields("")].concat(),
+        Access::Command { strobe } => [vec![(bits(1), strobe.clone(), 0)], fields("")].concat(),
+        Access::Sticky | Access::InterruptState => fields(sticky_prefix(register)),
+        Access::InterruptEnable => fields("irq_enable_"),
+        Access::Commit { .. } => vec![(bits(1), "waits".to_owned(), 0)],
+        Access::Constant | Access::Live | Access::Shadow { .. } | Access::Snapshot | Access::InterruptTest => {
+            Vec::new()
+        }
+    }
+}
+
+/// Declares the flip-flops whose names begin so: those that are not outputs.
+pub(super) fn declare(lines: &mut Lines, flops: &[Flop], prefix: &str) {
+    for (ty, name, _) in flops.iter().filter(|(_, name, _)| name.starts_with(prefix)) {
+        let declaration = ty.declaration();
+        let space = if declaration.is_empty() { "" } else { " " };
+        lines.line(&format!("reg {declaration}{space}{name};"));
+    }
+}
+
+/// A clocked block that resets `flops`, and else does what `inner` writes under the condition `otherwise`.
+pub(super) fn clocked(lines: &mut Lines, flops: &[Flop], otherwise: &str, inner: impl FnOnce(&mut Lines)) {
+    lines.nest("always @(posedge clk) begin", "end", |lines| {
+        lines.nest("if (rst) begin", &format!("end {otherwise} begin"), |lines| {
+            for (ty, name, reset) in flops {
+                lines.line(&format!("{name} <= {};", ty.literal((*reset).into())));
+            }
+        });
+        lines.nest_rest("end", inner);
+    });
+}
+
+/// The registers that have a shadow, with the shadow.
+fn shadowed(map: &RegisterMap) -> impl Iterator<Item = &Register> {
+    map.registers()
+        .iter()
+        .filter(|register| matches!(register.access, Access::Shadow { .. }))
+}
+
+pub(super) fn shadow_flops(map: &RegisterMap) -> Vec<Flop> {
+    let fields = shadowed(map).flat_map(|register| map.fields(register));
+    fields
+        .map(|field| (type_of(field), format!("shadow_{}", field.name), 0))
+        .collect()
+}
+
+pub(super) fn shadows(lines: &mut Lines, map: &RegisterMap) {
+    let Some(snapshot) = map.find(|access| *access == Access::Snapshot) else {
+        return;
+    };
+    lines.line(&format!("// {}: {}", snapshot.name.to_uppercase(), snapshot.meaning));
+    let flops = shadow_flops(map);
+    declare(lines, &flops, "");
+    clocked(
+        lines,
+        &flops,
+        &format!("else if (write_{} && whole)", snapshot.name),
+        |lines| {
+            for field in shadowed(map).flat_map(|register| map.fields(register)) {
+                lines.line(&format!("shadow_{0} <= {0};", field.name));
+            }
+        },
+    );
+}
+
+pub(super) fn interrupt(lines: &mut Lines, map: &RegisterMap) {
+    let Some(state) = map.find(|access| *access == Access::InterruptState) else {
+        return;
+    };
+    let terms: Vec<String> = state
+        .fields
+        .iter()
+        .map(|field| format!("(irq_state_{0} && irq_enable_{0})", field.name))
+        .collect();
+    let irq = [(bits(1), "irq".to_owned(), 0)];
+    clocked(lines, &irq, "else", |lines| {
+        joined(lines, "irq <= ", &terms, " || ", ";")
+    });
+}

@@ -1,0 +1,81 @@
+//! The small blocks of components in RustHDL's simulator against their models, and compositions that are refused.
+
+#![allow(clippy::unwrap_used, reason = "a helper that fails fails its test")]
+
+mod random;
+
+use posicast_hdl::emit::{Cause, Header, connect};
+use posicast_hdl::{divider, sample_select, setting_banks, time_base};
+use posicast_model::rtl::composition::{Composition, Part};
+use posicast_model::rtl::divider::DividerConfig;
+use posicast_model::rtl::sample_select::SampleSelect;
+use posicast_model::rtl::setting_banks::SettingBanks;
+use posicast_model::rtl::sliding_mode::Settings;
+use posicast_model::rtl::time_base::TimeBase;
+use posicast_model::rtl::{ClockedBlock, Direction};
+use random::Random;
+
+/// Same random inputs to both; resets now and then.
+fn lockstep(model: &mut dyn ClockedBlock, rusthdl: &mut dyn ClockedBlock, clocks: u32) {
+    let widths = |direction| -> Vec<u32> {
+        let ports = model.ports().iter().filter(|port| port.direction == direction);
+        ports.map(|port| port.width).collect()
+    };
+    let (inputs, outputs) = (widths(Direction::Input), widths(Direction::Output).len());
+    let mut random = Random(7);
+    let (mut expected, mut actual) = (vec![0; outputs], vec![0; outputs]);
+    for clock in 0..clocks {
+        let mut row: Vec<u64> = inputs
+            .iter()
+            .map(|width| random.word() & (u64::MAX >> (64 - width)))
+            .collect();
+        row[0] = random.once_in(500).into();
+        model.step(&row, &mut expected).unwrap();
+        rusthdl.step(&row, &mut actual).unwrap();
+        assert_eq!(actual, expected, "clock {clock}, {row:?}");
+    }
+}
+
+#[test]
+fn lockstep_time_base() {
+    for tick_clocks in [1, 2, 97] {
+        let config = DividerConfig::new(tick_clocks).unwrap();
+        let mut rusthdl = time_base::simulate(&config).unwrap();
+        lockstep(&mut TimeBase::new(&config), rusthdl.as_mut(), 3000);
+    }
+}
+
+#[test]
+fn lockstep_sample_select() {
+    for (word_bits, channels) in [(16, 1), (24, 2), (32, 3), (32, 5)] {
+        let mut rusthdl = sample_select::simulate(word_bits, channels).unwrap();
+        lockstep(&mut SampleSelect::new(word_bits, channels), rusthdl.as_mut(), 1000);
+    }
+}
+
+#[test]
+fn lockstep_setting_banks() {
+    let mut settings = Settings::default();
+    settings.set_limit(12345);
+    let mut rusthdl = setting_banks::simulate(&settings).unwrap();
+    lockstep(&mut SettingBanks::new(&settings), rusthdl.as_mut(), 10_000);
+}
+
+#[test]
+fn unit_a_module_that_is_not_the_part_is_refused() {
+    let config = DividerConfig::new(5000).unwrap();
+    let part = Part::new("divider", &posicast_model::rtl::divider::ports());
+    let inputs = ["rst", "start", "steps", "elapsed", "clear_flags"];
+    let composition = Composition::new(vec![part], &inputs, &["quotient"]).unwrap();
+    let top = |name: &str, modules: &[&posicast_hdl::emit::Module]| {
+        let composed = connect(name, &Header::default(), &composition, modules);
+        composed.map_err(|error| *error.cause)
+    };
+    let divider = divider::emit(&config, "a").unwrap();
+    let other = time_base::emit(&config, "a").unwrap();
+    assert!(top("whole", &[&divider[0]]).is_ok());
+    assert_eq!(top("whole", &[&other[0]]), Err(Cause::PartPorts("divider".to_owned())));
+    assert_eq!(top("whole", &[]), Err(Cause::PartPorts("divider".to_owned())));
+    assert!(matches!(top("steps", &[&divider[0]]), Err(Cause::NameCollision { .. })));
+    assert!(matches!(top("module", &[&divider[0]]), Err(Cause::ReservedWord(_))));
+}

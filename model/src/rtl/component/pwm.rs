@@ -1,0 +1,41 @@
+//! The PWM: its duty and the watchdog's feed come from registers or pins, one clock later. The pins of the gates and of the
+//! raw faults are the block's own: no clock lies between them.
+//!
+//! Its `clear_flags` is tied high. A flag is then high as long as what it tells of, and the bank keeps it.
+
+use super::super::composition::Part;
+use super::{Block, Wiring};
+
+/// Conduit pins.
+const INPUTS: [&str; 6] = ["feed", "duty", "sync", "fault_n", "pll_locked", "filtered_fault_n"];
+const OUTPUTS: [&str; 9] = [
+    "a_high", "a_low", "b_high", "b_low", "running", "tripped", "valley", "peak", "trigger",
+];
+/// Bits of a duty.
+pub(super) const DUTY_BITS: u32 = 17;
+
+pub(super) fn wiring() -> Wiring {
+    Wiring {
+        part: Box::new(part),
+        inputs: INPUTS.map(str::to_owned).to_vec(),
+        outputs: OUTPUTS.map(str::to_owned).to_vec(),
+    }
+}
+
+fn part(block: &Block, part: Part) -> Part {
+    match block {
+        Block::SampleSelect { .. } => part
+            .on("pin_strobe", "feed")
+            .on("pin_x_0", "duty")
+            .on("strobe", "selected_feed")
+            .on("x_0", "selected_duty")
+            .tied("host_start", 0)
+            .tied("pin_start", 0)
+            .on("start", "no_start"),
+        Block::Pwm(_) => part
+            .on("feed", "selected_feed")
+            .on("duty", "selected_duty")
+            .tied("clear_flags", 1),
+        _ => part,
+    }
+}

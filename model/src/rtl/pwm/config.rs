@@ -1,0 +1,96 @@
+//! What is fixed when a PWM is built: polarities, and the floors that no register can undercut.
+
+/// Width of the dead time and of the minimum pulse.
+pub const TIME_BITS: u32 = 10;
+
+/// What is fixed when a PWM is built.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct PwmConfig {
+    active_low: ActiveLow,
+    dead_time_floor_clocks: u16,
+    minimum_pulse_floor_clocks: u16,
+}
+
+/// Which pins are on at a low level. Such a pin is off at a high level: the off level follows from the polarity, so that a
+/// gate that is off never conducts.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct ActiveLow {
+    /// High side of leg A; the PWM of mode `direction`.
+    pub a_high: bool,
+    /// Low side of leg A.
+    pub a_low: bool,
+    /// High side of leg B; the direction of mode `direction`.
+    pub b_high: bool,
+    /// Low side of leg B.
+    pub b_low: bool,
+}
+
+/// Why no PWM can be built.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+pub enum PwmConfigError {
+    /// No dead time at all, or one that the register does not hold.
+    #[error(
+        "a dead time of at least {0} clocks: 1 to 1023 are allowed; take the driver's dead time, rounded up to whole clocks"
+    )]
+    DeadTime(u64),
+    /// No minimum pulse at all, or one that the register does not hold.
+    #[error(
+        "a minimum pulse of at least {0} clocks: 1 to 1023 are allowed; take the shortest pulse that the driver passes on, \
+         or 1 if there is none"
+    )]
+    MinimumPulse(u64),
+}
+
+impl PwmConfig {
+    /// A PWM whose dead time and minimum pulse never go below these, in clocks.
+    ///
+    /// # Errors
+    /// [`PwmConfigError`] unless both are 1 to 1023.
+    pub fn new(
+        active_low: ActiveLow,
+        dead_time_floor_clocks: u64,
+        minimum_pulse_floor_clocks: u64,
+    ) -> Result<Self, PwmConfigError> {
+        let fits = |clocks: u64| {
+            u16::try_from(clocks)
+                .ok()
+                .filter(|fits| (1..1 << TIME_BITS).contains(fits))
+        };
+        Ok(Self {
+            active_low,
+            dead_time_floor_clocks: fits(dead_time_floor_clocks)
+                .ok_or(PwmConfigError::DeadTime(dead_time_floor_clocks))?,
+            minimum_pulse_floor_clocks: fits(minimum_pulse_floor_clocks)
+                .ok_or(PwmConfigError::MinimumPulse(minimum_pulse_floor_clocks))?,
+        })
+    }
+
+    /// Which pins are on at a low level.
+    pub fn active_low(&self) -> ActiveLow {
+        self.active_low
+    }
+
+    /// Shortest dead time, in clocks.
+    pub fn dead_time_floor_clocks(&self) -> u16 {
+        self.dead_time_floor_clocks
+    }
+
+    /// Shortest minimum pulse, in clocks.
+    pub fn minimum_pulse_floor_clocks(&self) -> u16 {
+        self.minimum_pulse_floor_clocks
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn unit_floors_that_do_not_fit_are_named() {
+        for found in [0, 1024, u64::MAX] {
+            let built = |dead, pulse| PwmConfig::new(ActiveLow::default(), dead, pulse);
+            assert_eq!(built(found, 1), Err(PwmConfigError::DeadTime(found)));
+            assert_eq!(built(1, found), Err(PwmConfigError::MinimumPulse(found)));
+        }
+    }
+}

@@ -1,0 +1,259 @@
+//! The pin rule: the edges of half a period, as a function of what is latched at its start. No clocks are stepped.
+//!
+//! ```text
+//! leg duty   direction, unipolar: |duty|;  half bridge: duty;  locked: (period + duty) / 2, rounded down
+//!            |duty| at most max_duty
+//! width  W = leg duty − dead time D            low side's pulse  L = period − W − 2 D
+//! pattern    W < minimum pulse: low (none)     L < minimum pulse: high (full)     else: pulse
+//!
+//!            valley                    peak                      valley
+//! low side   ‾‾‾‾‾‾‾‾‾\________________._______________/‾‾‾‾‾‾‾‾‾‾
+//! high side  ___________________/‾‾‾‾‾‾.‾‾‾‾‾\_____________________
+//!            |← h−D−⌊W/2⌋ →|← D →|←⌊W/2⌋ → ← ⌈W/2⌉ →|← D →|          h = ⌊period / 2⌋
+//! ```
+//!
+//! At none and full there are no edges. Where a pattern follows another, the leg obeys in any case: a side stays on for the
+//! minimum pulse; then both are off for the dead time; then the other comes on, and so on until the pattern is reached.
+//!
+//! Two boundaries are special. A new mode keeps all off until the next update. A new direction waits, with pattern low, for a
+//! boundary before which the low side is on: then the legs change over, and no pin moves.
+//!
+//! ```
+//! use posicast_model::rtl::pwm::Mode;
+//! use posicast_model::rtl::pwm::pulses::{Bridge, Half, Latched, Timing};
+//!
+//! let timing = Timing { period: 100, dead_time: 4, minimum_pulse: 6 };
+//! let latched = Latched { mode: Mode::HalfBridge, duty: 41, max_duty: 100 };
+//! let mut bridge = Bridge::default();
+//! let mut edges = |half, latched| -> Vec<i64> {
+//!     bridge.half(&timing, half, latched).iter().map(|edge| edge.clock).collect()
+//! };
+//! edges(Half::Rising, Some(&latched));
+//! edges(Half::Falling, None);
+//! // Low side off, high side on; then high side off, low side on: 18 + 19 clocks high.
+//! assert_eq!(edges(Half::Rising, Some(&latched)), [28, 32]);
+//! assert_eq!(edges(Half::Falling, None), [19, 23]);
+//! ```
+
+use super::ports::{Gates, Mode};
+
+/// What is taken while the outputs are off, in clocks.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Timing {
+    /// Valley to valley, 1 to 65,536.
+    pub period: i64,
+    /// One side's off to the other's on, from 1.
+    pub dead_time: i64,
+    /// Shortest pulse of a side, from 1.
+    pub minimum_pulse: i64,
+}
+
+/// What is latched at a boundary with an update.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Latched {
+    /// What the pins do.
+    pub mode: Mode,
+    /// Clocks, signed.
+    pub duty: i64,
+    /// Largest |duty|.
+    pub max_duty: i64,
+}
+
+/// Half of a period: both begin at a boundary.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Half {
+    /// From the valley to the peak: ⌊period / 2⌋ clocks.
+    Rising,
+    /// From the peak to the valley: the rest.
+    Falling,
+}
+
+/// A change of the gates.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Edge {
+    /// Clocks since the boundary.
+    pub clock: i64,
+    /// The gates from this clock on.
+    pub gates: Gates,
+}
+
+/// What the leg is told for a half, or both halves of a period.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Pattern {
+    /// All off.
+    Off,
+    /// None: the low side is on.
+    Low,
+    /// Full: the high side is on.
+    High,
+    /// The high side is on for so many clocks about the peak.
+    Pulse(i64),
+}
+
+/// What the leg is at a moment; times in clocks since the boundary, before it negative.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+enum Leg {
+    #[default]
+    Off,
+    /// Dead time until a moment. Then comes the high side or the low side; after `Off`, the one that is wanted then.
+    Dead { until: i64, high: Option<bool> },
+    /// A side is on since a moment.
+    On { since: i64, high: bool },
+}
+
+/// A bridge at a boundary: all that one half hands to the next. The default is one that is off.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Bridge {
+    mode: Mode,
+    negative: bool,
+    pattern: Option<Pattern>,
+    leg: Leg,
+    gates: Gates,
+}
+
+impl Timing {
+    /// The pattern of a leg's pulse of so many clocks.
+    pub fn pattern(&self, width: i64) -> Pattern {
+        let low_side_width = self.period - width - 2 * self.dead_time;
+        if width < self.minimum_pulse {
+            Pattern::Low
+        } else if low_side_width < self.minimum_pulse {
+            Pattern::High
+        } else {
+            Pattern::Pulse(width)
+        }
+    }
+
+    /// Width of the high side's pulse, before minimum and full: any sign.
+    pub fn width(&self, latched: &Latched) -> i64 {
+        let duty = latched.duty.clamp(-latched.max_duty, latched.max_duty);
+        let of_leg = match latched.mode {
+            Mode::Direction | Mode::Unipolar => duty.abs(),
+            Mode::HalfBridge => duty.max(0),
+            Mode::Locked => (self.period + duty).div_euclid(2),
+        };
+        of_leg - self.dead_time
+    }
+}
+
+impl Bridge {
+    /// The edges of half a period. `latched`: what is taken at its boundary; none, and the last values hold.
+    pub fn half(&mut self, timing: &Timing, half: Half, latched: Option<&Latched>) -> Vec<Edge> {
+        if let Some(latched) = latched {
+            self.pattern = Some(self.take(timing, latched));
+        }
+        let rising_clocks = timing.period / 2;
+        let (clocks, before, after) = match half {
+            Half::Rising => (rising_clocks, false, true),
+            Half::Falling => (timing.period - rising_clocks, true, false),
+        };
+        let mut edges = Vec::new();
+        match (self.pattern.unwrap_or(Pattern::Off), half) {
+            (Pattern::Off, _) => {
+                self.leg = Leg::Off;
+                self.show(0, false, &mut edges);
+            }
+            (Pattern::Low, _) => self.drive(timing, 0..clocks, false, &mut edges),
+            (Pattern::High, _) => self.drive(timing, 0..clocks, true, &mut edges),
+            (Pattern::Pulse(width), half) => {
+                let changes_over = match half {
+                    Half::Rising => rising_clocks - timing.dead_time - width / 2,
+                    Half::Falling => width - width / 2,
+                };
+                self.drive(timing, 0..changes_over, before, &mut edges);
+                self.drive(timing, changes_over..clocks, after, &mut edges);
+            }
+        }
+        self.leg = match self.leg {
+            Leg::Off => Leg::Off,
+            Leg::Dead { until, high } => Leg::Dead {
+                until: until - clocks,
+                high,
+            },
+            Leg::On { since, high } => Leg::On {
+                since: since - clocks,
+                high,
+            },
+        };
+        edges
+    }
+
+    /// All off, at once: a trip, or the end of `enable`.
+    pub fn switch_off(&mut self) {
+        (self.leg, self.pattern, self.gates) = (Leg::Off, None, Gates::default());
+    }
+
+    /// Whether `negative` applies now.
+    pub fn negative(&self) -> bool {
+        self.negative
+    }
+
+    fn take(&mut self, timing: &Timing, latched: &Latched) -> Pattern {
+        let pattern = timing.pattern(timing.width(latched));
+        let changes_mode = self.pattern.is_some() && latched.mode != self.mode;
+        self.mode = latched.mode;
+        let has_direction = matches!(latched.mode, Mode::Direction | Mode::Unipolar);
+        let turns = has_direction && pattern != Pattern::Low && (latched.duty < 0) != self.negative;
+        let may_turn = match self.leg {
+            Leg::Off | Leg::Dead { high: None, .. } => true,
+            Leg::On { high, .. } => !high,
+            Leg::Dead { .. } => false,
+        };
+        self.negative ^= turns && may_turn;
+        match (changes_mode, turns && !may_turn) {
+            (true, _) => Pattern::Off,
+            (_, true) => Pattern::Low,
+            _ => pattern,
+        }
+    }
+
+    /// Wants a side on in a span of time.
+    fn drive(&mut self, timing: &Timing, span: std::ops::Range<i64>, wants_high: bool, edges: &mut Vec<Edge>) {
+        if span.is_empty() {
+            return;
+        }
+        let mut now = span.start;
+        if self.leg == Leg::Off {
+            self.leg = Leg::Dead {
+                until: now + timing.dead_time,
+                high: None,
+            };
+        }
+        self.show(now, true, edges);
+        loop {
+            let (at, leg) = match self.leg {
+                Leg::Dead { until, high } => {
+                    let high = high.unwrap_or(wants_high);
+                    (until, Leg::On { since: until, high })
+                }
+                Leg::On { since, high } if high != wants_high => {
+                    let at = now.max(since + timing.minimum_pulse);
+                    let until = at + timing.dead_time;
+                    let high = Some(!high);
+                    (at, Leg::Dead { until, high })
+                }
+                Leg::On { .. } | Leg::Off => break,
+            };
+            if at >= span.end {
+                break;
+            }
+            now = at;
+            self.leg = leg;
+            self.show(now, true, edges);
+        }
+    }
+
+    /// Notes the gates from a clock on, if they differ.
+    fn show(&mut self, clock: i64, active: bool, edges: &mut Vec<Edge>) {
+        let (awake, sides) = match self.leg {
+            Leg::Off | Leg::Dead { high: None, .. } => (false, (false, false)),
+            Leg::Dead { .. } => (true, (false, false)),
+            Leg::On { high, .. } => (true, (high, !high)),
+        };
+        let gates = Gates::of(self.mode, self.negative, active, awake, sides);
+        if gates != self.gates {
+            self.gates = gates;
+            edges.push(Edge { clock, gates });
+        }
+    }
+}

@@ -1,0 +1,91 @@
+//! A register as the interpreter wants it: places of inputs instead of names.
+
+use crate::rtl::Direction;
+use crate::rtl::registers::{Access, Field, Register, RegisterMap, Source};
+
+/// Where a field's bits are among the inputs.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Wire {
+    input: usize,
+    low: u32,
+    ones: u32,
+}
+
+impl Wire {
+    pub(super) fn bits(self, inputs: &[u64]) -> u32 {
+        (inputs[self.input] as u32 & self.ones) << self.low
+    }
+}
+
+/// A flag that the bank sets by itself.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct OwnFlag {
+    pub(super) source: Source,
+    pub(super) bit: u32,
+}
+
+/// A register as the interpreter wants it.
+#[derive(Debug, Clone)]
+pub(super) struct Plan {
+    pub(super) access: Access,
+    /// Bits that a write reaches.
+    pub(super) mask: u32,
+    pub(super) reset: u32,
+    /// Inputs that are live, or set flags.
+    pub(super) wires: Vec<Wire>,
+    pub(super) own_flags: Vec<OwnFlag>,
+    /// Mask and smallest value, in place, of fields that have one.
+    pub(super) minima: Vec<(u32, u32)>,
+    /// Input that guards it, or applies a commit.
+    pub(super) gate: usize,
+    /// Of a shadow: the live register. Of an interrupt test: the state.
+    pub(super) refers_to: usize,
+}
+
+/// The plan of the register in that place of the map.
+pub(super) fn plan(map: &RegisterMap, at: usize) -> Plan {
+    let register = &map.registers()[at];
+    let inputs: Vec<&str> = {
+        let ports = map.ports().iter().filter(|port| port.direction == Direction::Input);
+        ports.map(|port| port.name.as_str()).collect()
+    };
+    // A checked map has all the ports that its registers name.
+    let input = |name: &str| inputs.iter().position(|port| *port == name).unwrap_or_default();
+    let wire = |field: &Field| Wire {
+        input: input(&field.name),
+        low: field.low,
+        ones: field.ones(),
+    };
+    let access = &register.access;
+    let wired = access.is_sticky() || *access == Access::Live;
+    let from_input = register.fields.iter().filter(|field| field.source == Source::Input);
+    let own = register.fields.iter().filter(|field| field.source != Source::Input);
+    let minima = register.fields.iter().filter(|field| field.minimum > 0);
+    Plan {
+        mask: register.mask(),
+        reset: register.reset(),
+        wires: from_input.filter(|_| wired).map(wire).collect(),
+        own_flags: own
+            .filter(|_| wired)
+            .map(|field| OwnFlag {
+                source: field.source,
+                bit: field.mask(),
+            })
+            .collect(),
+        minima: minima.map(|field| (field.mask(), field.minimum << field.low)).collect(),
+        gate: match access {
+            Access::Guarded { while_low } => input(while_low),
+            Access::Commit { tick } => input(tick),
+            _ => 0,
+        },
+        refers_to: match access {
+            Access::Shadow { of } => map.index_of(of).unwrap_or_default(),
+            Access::InterruptTest => {
+                let state = |r: &Register| r.access == Access::InterruptState;
+                map.registers().iter().position(state).unwrap_or_default()
+            }
+            _ => 0,
+        },
+        access: access.clone(),
+    }
+}

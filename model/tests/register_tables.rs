@@ -1,0 +1,57 @@
+//! `docs/register-tables.md` is what the register maps say. `scripts/regenerate` writes it anew.
+
+use posicast_model::rtl::component::Component;
+use posicast_model::rtl::divider::DividerConfig;
+use posicast_model::rtl::pwm::{ActiveLow, Mode, PwmConfig};
+use posicast_model::rtl::registers::markdown;
+use posicast_model::rtl::shaper::{Motion, ShaperConfig};
+use posicast_model::rtl::sliding_mode::{Law, Settings};
+use posicast_model::taps::{Tap, TapTable};
+use std::error::Error;
+use std::path::Path;
+
+const HEAD: &str = "\
+# Registers of the components
+
+Written from the register maps by `scripts/regenerate`; [registers.md](registers.md) says what the kinds of access do.
+Parameters and widths are those of an example: a shaper of 32 bits for three channels with a table of two taps, ticks of 5000
+clocks, a PWM of 20 kHz at 50 MHz.
+
+";
+
+fn components() -> Result<Vec<Component>, Box<dyn Error>> {
+    let half = |delay_samples| Tap {
+        delay_samples,
+        coefficient: 1 << 15,
+    };
+    let motion = Motion {
+        channels: 3,
+        modulo: false,
+    };
+    let shaper = ShaperConfig::new(32, TapTable::new(16, vec![half(0), half(40)])?)?.for_motion(motion)?;
+    Ok(vec![
+        Component::shaper(shaper)?,
+        Component::pulse_counter(DividerConfig::new(5000)?, 8)?,
+        Component::pwm(PwmConfig::new(ActiveLow::default(), 25, 50)?, Mode::HalfBridge, 2500)?,
+        Component::sliding_mode(&Settings::default(), Law::SlidingMode, false)?,
+    ])
+}
+
+#[test]
+fn golden_the_committed_tables_are_what_the_maps_say() -> Result<(), Box<dyn Error>> {
+    let tables: Vec<String> = components()?
+        .iter()
+        .map(|component| markdown(component.map()))
+        .collect();
+    let text = format!("{HEAD}{}", tables.join("\n"));
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/register-tables.md");
+    if std::env::var_os("POSICAST_REGENERATE").is_some() {
+        std::fs::write(&file, &text)?;
+    }
+    let committed = std::fs::read_to_string(&file)?;
+    assert!(
+        committed == text,
+        "docs/register-tables.md is not what the maps say; if the change is meant: scripts/regenerate"
+    );
+    Ok(())
+}

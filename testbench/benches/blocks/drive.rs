@@ -1,0 +1,86 @@
+//! What drives: the controller and the bridge.
+
+use crate::{Block, CLOCKS, TICK_CLOCKS, TICKS, hold};
+use posicast_hdl::{pwm, sliding_mode};
+use posicast_model::rtl::pwm::{self as pwm_model, ActiveLow, Pwm, PwmConfig};
+use posicast_model::rtl::sliding_mode::{Gain, Inputs, Law, Motion, Row, Settings, SlidingMode, TickController};
+use std::hint::black_box;
+
+/// Sliding mode, a pass per tick.
+pub(crate) fn sliding_mode() -> Block {
+    let mut settings = Settings::default();
+    for (row, gain) in [(Row::Proportional, 0.5), (Row::Derivative, 3.0), (Row::Feedback, 1.0)] {
+        settings.set_gain(row, Gain::nearest(gain, row).unwrap());
+    }
+    settings.set_limit(1000 << 12);
+    let motion = |tick: u64| Motion {
+        position_reference: (tick as i32 * 300) << 8,
+        velocity_reference: 300 << 16,
+        position: tick as i32 * 299,
+        velocity: 299 << 16,
+        ..Motion::default()
+    };
+    let mut model = SlidingMode::new();
+    let mut setting = 0;
+    let mut inputs = Vec::new();
+    for clock in 0..CLOCKS {
+        let row = Inputs {
+            start: clock % TICK_CLOCKS == 200,
+            law: LAW as u8,
+            motion: motion(clock / TICK_CLOCKS),
+            setting,
+            ..Inputs::default()
+        };
+        // The memory of the settings answers one clock later.
+        setting = settings.word(usize::from(model.step(&row).setting_address));
+        inputs.extend(row.to_raw());
+    }
+    let mut fast = TickController::default();
+    Block {
+        name: "sliding_mode",
+        modules: sliding_mode::emit("").unwrap(),
+        model: Box::new(SlidingMode::new()),
+        inputs,
+        fast: Box::new(move || {
+            let control = |tick| i64::from(fast.control(LAW, false, &black_box(motion(tick)), &settings).command);
+            (0..TICKS).map(control).sum()
+        }),
+    }
+}
+
+const LAW: Law = Law::SlidingMode;
+
+/// A full bridge at 20 kHz; a new duty in every tick.
+pub(crate) fn pwm() -> Block {
+    let config = PwmConfig::new(ActiveLow::default(), 25, 50).unwrap();
+    let input = |clock: u64| pwm_model::Inputs {
+        enable: true,
+        mode: 2,
+        period: 2500,
+        duty: (clock / TICK_CLOCKS) as i32 * 230 - 2300,
+        max_duty: 2500,
+        dead_time: 25,
+        minimum_pulse: 50,
+        feed: clock % TICK_CLOCKS == 300,
+        watchdog_periods: 4,
+        fault_n: true,
+        pll_locked: true,
+        filtered_fault_n: 3,
+        clear_trip: clock < 20,
+        ..pwm_model::Inputs::default()
+    };
+    let events = hold((0..CLOCKS).map(input));
+    let mut fast = Pwm::new(&config);
+    Block {
+        name: "pwm",
+        modules: pwm::emit(&config, "").unwrap(),
+        model: Box::new(Pwm::new(&config)),
+        inputs: (0..CLOCKS).flat_map(|clock| input(clock).to_raw()).collect(),
+        fast: Box::new(move || {
+            for (inputs, clocks) in &events {
+                fast.hold(black_box(inputs), *clocks);
+            }
+            i64::from(fast.outputs(&events[0].0).a_high)
+        }),
+    }
+}

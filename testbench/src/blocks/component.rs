@@ -1,0 +1,105 @@
+//! The bench of a component: a block behind its registers, on an Avalon-MM agent.
+
+use posicast_hdl::SimulationError;
+use posicast_hdl::component::emit;
+use posicast_hdl::emit::{EmitError, Module};
+use posicast_model::rtl::component::Component;
+use posicast_model::rtl::{ClockedBlock, Direction, Port};
+
+use super::{Bins, Block, not_in_rusthdl};
+use crate::lockstep::Clock;
+use crate::stimuli::{ComponentRandom, Stimuli};
+
+/// A component under a name of its own.
+#[derive(Debug, Clone)]
+pub struct ComponentBlock {
+    component: Component,
+    top: String,
+    instance: String,
+}
+
+impl ComponentBlock {
+    /// The component with the top module `top`.
+    pub fn new(component: Component, top: &str, instance: &str) -> Self {
+        Self {
+            component,
+            top: top.to_owned(),
+            instance: instance.to_owned(),
+        }
+    }
+
+    /// What it is.
+    pub fn component(&self) -> &Component {
+        &self.component
+    }
+}
+
+impl Block for ComponentBlock {
+    fn name(&self) -> &str {
+        self.component.name()
+    }
+
+    fn instance(&self) -> &str {
+        &self.instance
+    }
+
+    fn modules(&self) -> Result<Vec<Module>, EmitError> {
+        emit(&self.component, &self.top)
+    }
+
+    fn top(&self) -> String {
+        self.top.clone()
+    }
+
+    fn model(&self, seed: u64) -> Box<dyn ClockedBlock> {
+        Box::new(self.component.model(seed))
+    }
+
+    fn simulate(&self) -> Result<Box<dyn ClockedBlock>, SimulationError> {
+        Err(not_in_rusthdl("component"))
+    }
+
+    fn in_rusthdl(&self) -> bool {
+        false
+    }
+
+    fn stimuli(&self, _cycles: u64, seed: u64) -> Box<dyn Stimuli + '_> {
+        Box::new(ComponentRandom::new(&self.component, seed))
+    }
+
+    fn coverage(&self) -> Box<dyn Bins + '_> {
+        Box::new(Changes::new(self.component.composition().ports()))
+    }
+}
+
+/// How often each output changed.
+pub(super) struct Changes {
+    names: Vec<String>,
+    before: Vec<u64>,
+    counts: Vec<u64>,
+}
+
+impl Changes {
+    pub(super) fn new(ports: &[Port]) -> Self {
+        let outputs = ports.iter().filter(|port| port.direction == Direction::Output);
+        let names: Vec<String> = outputs.map(|port| port.name.clone()).collect();
+        Self {
+            before: vec![0; names.len()],
+            counts: vec![0; names.len()],
+            names,
+        }
+    }
+}
+
+impl Bins for Changes {
+    fn observe(&mut self, clock: &Clock<'_>) {
+        for ((value, before), count) in clock.expected.iter().zip(&mut self.before).zip(&mut self.counts) {
+            *count += u64::from(value != before);
+            *before = *value;
+        }
+    }
+
+    fn counts(&self) -> Vec<(String, u64)> {
+        self.names.iter().cloned().zip(self.counts.iter().copied()).collect()
+    }
+}

@@ -1,0 +1,75 @@
+//! The bench of `pwm`.
+
+use posicast_hdl::SimulationError;
+use posicast_hdl::emit::{EmitError, Module};
+use posicast_hdl::pwm::{emit, simulate};
+use posicast_model::rtl::ClockedBlock;
+use posicast_model::rtl::pwm::{Pwm, PwmConfig};
+
+use super::{Bins, Block, prefixed};
+use crate::lockstep::Clock;
+use crate::stimuli::{PwmCoverage, PwmRandom, Stimuli};
+
+/// The PWM with its polarities and floors.
+#[derive(Debug, Clone)]
+pub struct PwmBlock {
+    config: PwmConfig,
+    prefix: String,
+    instance: String,
+}
+
+impl PwmBlock {
+    /// The PWM `PREFIX_pwm`; `instance` says which axes it serves.
+    pub fn new(config: PwmConfig, prefix: &str, instance: &str) -> Self {
+        Self {
+            config,
+            prefix: prefix.to_owned(),
+            instance: instance.to_owned(),
+        }
+    }
+}
+
+impl Block for PwmBlock {
+    fn name(&self) -> &str {
+        "pwm"
+    }
+
+    fn instance(&self) -> &str {
+        &self.instance
+    }
+
+    fn modules(&self) -> Result<Vec<Module>, EmitError> {
+        emit(&self.config, &self.prefix)
+    }
+
+    fn top(&self) -> String {
+        prefixed(&self.prefix, "pwm")
+    }
+
+    fn model(&self, _seed: u64) -> Box<dyn ClockedBlock> {
+        Box::new(Pwm::new(&self.config))
+    }
+
+    fn simulate(&self) -> Result<Box<dyn ClockedBlock>, SimulationError> {
+        simulate(&self.config)
+    }
+
+    fn stimuli(&self, _cycles: u64, seed: u64) -> Box<dyn Stimuli + '_> {
+        Box::new(PwmRandom::new(seed))
+    }
+
+    fn coverage(&self) -> Box<dyn Bins + '_> {
+        Box::new(PwmCoverage::default())
+    }
+}
+
+impl Bins for PwmCoverage {
+    fn observe(&mut self, clock: &Clock<'_>) {
+        self.observe(clock.inputs, clock.expected);
+    }
+
+    fn counts(&self) -> Vec<(String, u64)> {
+        let counts = self.counts().into_iter();
+        counts.map(|(name, count)| (name.to_owned(), count)).collect()
+    }
+}

@@ -1,0 +1,79 @@
+//! The bench of `sliding_mode`.
+
+use posicast_hdl::SimulationError;
+use posicast_hdl::emit::{EmitError, Module};
+use posicast_hdl::sliding_mode::{emit, simulate};
+use posicast_model::rtl::ClockedBlock;
+use posicast_model::rtl::sliding_mode::SlidingMode;
+
+use super::{Bins, Block, prefixed};
+use crate::lockstep::Clock;
+use crate::stimuli::{SlidingModeCoverage, SlidingModeRandom, Stimuli};
+
+/// A run of so many clocks has room for the ticks that wind the integral up, and three times as many besides.
+const LONG_CLOCKS: u64 = 4 * SlidingModeRandom::WIND_UP_CLOCKS;
+
+/// The controller, which has one size: what it does is in its settings.
+#[derive(Debug, Clone)]
+pub struct SlidingModeBlock {
+    prefix: String,
+    instance: String,
+}
+
+impl SlidingModeBlock {
+    /// The controller `PREFIX_sliding_mode`; `instance` says which axes it serves.
+    pub fn new(prefix: &str, instance: &str) -> Self {
+        Self {
+            prefix: prefix.to_owned(),
+            instance: instance.to_owned(),
+        }
+    }
+}
+
+impl Block for SlidingModeBlock {
+    fn name(&self) -> &str {
+        "sliding_mode"
+    }
+
+    fn instance(&self) -> &str {
+        &self.instance
+    }
+
+    fn modules(&self) -> Result<Vec<Module>, EmitError> {
+        emit(&self.prefix)
+    }
+
+    fn top(&self) -> String {
+        prefixed(&self.prefix, "sliding_mode")
+    }
+
+    fn model(&self, _seed: u64) -> Box<dyn ClockedBlock> {
+        Box::new(SlidingMode::new())
+    }
+
+    fn simulate(&self) -> Result<Box<dyn ClockedBlock>, SimulationError> {
+        simulate()
+    }
+
+    fn stimuli(&self, cycles: u64, seed: u64) -> Box<dyn Stimuli + '_> {
+        Box::new(if cycles < LONG_CLOCKS {
+            SlidingModeRandom::without_wind_up(seed)
+        } else {
+            SlidingModeRandom::new(seed)
+        })
+    }
+
+    fn coverage(&self) -> Box<dyn Bins + '_> {
+        Box::new(SlidingModeCoverage::default())
+    }
+}
+
+impl Bins for SlidingModeCoverage {
+    fn observe(&mut self, clock: &Clock<'_>) {
+        self.observe(clock.inputs, clock.expected);
+    }
+
+    fn counts(&self) -> Vec<(String, u64)> {
+        self.counts()
+    }
+}

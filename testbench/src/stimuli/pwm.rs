@@ -1,0 +1,323 @@
+//! Inputs for the PWM, seeded: duties of every size, and about the ends of every pattern; modes, periods and times that a
+//! host changes in any clock; a time base in step and out of it; faults of every kind and length, and hosts that clear them;
+//! a controller that feeds the watchdog, or forgets. Beside it what every run must hold ([`GateSafety`]).
+
+use posicast_model::rtl::pwm::{ActiveLow, Inputs, ports};
+use posicast_model::rtl::{Direction, Port};
+use rand::{Rng, RngExt, SeedableRng};
+use rand_xoshiro::Xoshiro256PlusPlus;
+
+use super::Stimuli;
+use super::table::pick;
+
+/// A mixture of everything, without end.
+#[derive(Debug, Clone)]
+pub struct PwmRandom {
+    rng: Xoshiro256PlusPlus,
+    inputs: Inputs,
+    clock: u64,
+    until_feed: u32,
+    /// Clocks that a fault still lasts: raw, PLL, filtered 0, filtered 1.
+    faults: [u32; 4],
+    /// Clocks since the time base.
+    since_sync: u32,
+}
+
+impl PwmRandom {
+    /// Equal seeds give equal inputs for equal outputs.
+    pub fn new(seed: u64) -> Self {
+        Self {
+            rng: Xoshiro256PlusPlus::seed_from_u64(seed),
+            inputs: Inputs {
+                enable: true,
+                period: 40,
+                max_duty: 0xffff,
+                ..Inputs::default()
+            },
+            clock: 0,
+            until_feed: 50,
+            faults: [0; 4],
+            since_sync: 0,
+        }
+    }
+
+    fn one_in(&mut self, clocks: u32) -> bool {
+        self.rng.random_range(0..clocks) == 0
+    }
+
+    /// Period, dead time and minimum pulse: mostly while off, as they should be.
+    fn timing(&mut self, running: bool) {
+        if !self.one_in(if running { 4000 } else { 200 }) {
+            return;
+        }
+        let any = self.rng.next_u32() as u16;
+        let short = self.rng.random_range(8..120);
+        self.inputs.period = *pick(
+            &mut self.rng,
+            &[short, short, short, short, 40, 41, 300, 7, 1, 0, any >> 4],
+        );
+        let some = self.rng.random_range(0..12);
+        self.inputs.dead_time = *pick(&mut self.rng, &[0, 1, 2, 3, some, some, 40]);
+        self.inputs.minimum_pulse = *pick(&mut self.rng, &[0, 1, 2, some, some, 30]);
+    }
+
+    fn command(&mut self) {
+        let period = i32::from(self.inputs.period);
+        if self.one_in(30) {
+            let within = self.rng.random_range(-period..=period);
+            let dead = i32::from(self.inputs.dead_time);
+            let pulse = i32::from(self.inputs.minimum_pulse);
+            let about = self.rng.random_range(-3..=3);
+            let ends = [0, dead + pulse, period - dead - pulse, period, period / 2];
+            let end = *pick(&mut self.rng, &ends) + about;
+            let any = self.rng.random_range(-65_536..=65_535);
+            let choices = [within, within, end, -end, period, -period, -self.inputs.duty, any];
+            self.inputs.duty = *pick(&mut self.rng, &choices);
+        }
+        if self.one_in(2500) {
+            self.inputs.max_duty = *pick(
+                &mut self.rng,
+                &[0xffff, 0xffff, self.inputs.period, self.inputs.period / 2, 0],
+            );
+        }
+        if self.one_in(700) {
+            self.inputs.mode = self.rng.random_range(0..4);
+        }
+        if self.one_in(2000) {
+            self.inputs.update_at_peak = self.one_in(2);
+        }
+    }
+
+    fn time_base(&mut self) {
+        if self.one_in(3000) {
+            self.inputs.phase = self.rng.random_range(0..40);
+            self.inputs.trigger_phase = *pick(&mut self.rng, &[0, 5, 20, self.inputs.period.wrapping_sub(1)]);
+        }
+        self.since_sync += 1;
+        // In step for long times: the period times three, or sometimes any moment.
+        self.inputs.sync = self.since_sync >= 3 * u32::from(self.inputs.period.max(1)) || self.one_in(9000);
+        if self.inputs.sync {
+            self.since_sync = 0;
+        }
+        self.until_feed = self.until_feed.saturating_sub(1);
+        self.inputs.feed = self.until_feed == 0;
+        if self.inputs.feed {
+            let forgets = self.one_in(30);
+            self.until_feed = if forgets {
+                3000
+            } else {
+                2 * u32::from(self.inputs.period.max(1))
+            };
+        }
+        if self.one_in(5000) {
+            self.inputs.watchdog_periods = *pick(&mut self.rng, &[0, 2, 3, 3, 5, 255]);
+        }
+    }
+
+    fn faults(&mut self) {
+        for (at, rarity) in [(0, 4000), (1, 9000), (2, 900), (3, 900)] {
+            self.faults[at] = self.faults[at].saturating_sub(1);
+            if self.one_in(rarity) {
+                let filter = u32::from(self.inputs.filter_clocks);
+                let lengths = [1, 2, 30, filter.max(1), filter + 1, filter + 2];
+                self.faults[at] = *pick(&mut self.rng, &lengths);
+            }
+        }
+        if self.one_in(6000) {
+            self.inputs.filter_clocks = *pick(&mut self.rng, &[0, 1, 5, 20, 20, 255]);
+        }
+        let quiet = self.faults.map(|left| left == 0);
+        self.inputs.fault_n = quiet[0];
+        self.inputs.pll_locked = quiet[1];
+        self.inputs.filtered_fault_n = u8::from(quiet[2]) | u8::from(quiet[3]) << 1;
+        self.inputs.clear_trip = self.one_in(60);
+        self.inputs.clear_flags = self.one_in(900);
+    }
+}
+
+impl Stimuli for PwmRandom {
+    fn fill(&mut self, seen: &[u64], inputs: &mut [u64]) {
+        let running = seen.get(4).is_some_and(|running| *running != 0);
+        self.timing(running);
+        self.command();
+        self.time_base();
+        self.faults();
+        self.inputs.rst = self.clock < 2 || self.one_in(20_000);
+        if self.one_in(if self.inputs.enable { 2500 } else { 300 }) {
+            self.inputs.enable = !self.inputs.enable;
+        }
+        self.clock += 1;
+        for (input, value) in inputs.iter_mut().zip(self.inputs.to_raw()) {
+            *input = value;
+        }
+    }
+}
+
+/// What must hold at the pins in every clock, whatever comes: never both sides of a leg on; from one side's off to the
+/// other's on, at least the dead time in use.
+#[derive(Debug, Clone)]
+pub struct GateSafety {
+    active_low: [bool; 4],
+    clock: u64,
+    /// The last clock in which each gate was on, plus one.
+    last_on: [u64; 4],
+    was_on: [bool; 4],
+    /// The first violation, in words.
+    violation: Option<String>,
+}
+
+impl GateSafety {
+    /// For pins of these polarities.
+    pub fn new(active_low: ActiveLow) -> Self {
+        Self {
+            active_low: [active_low.a_high, active_low.a_low, active_low.b_high, active_low.b_low],
+            clock: 0,
+            last_on: [0; 4],
+            was_on: [false; 4],
+            violation: None,
+        }
+    }
+
+    /// Adds a clock: the outputs that the device showed.
+    pub fn observe(&mut self, shown: &[u64]) {
+        let (levels, dead_time) = (&shown[..4], shown[15]);
+        self.clock += 1;
+        let mut on = [false; 4];
+        for (at, level) in levels.iter().enumerate() {
+            on[at] = (*level != 0) != self.active_low[at];
+        }
+        for at in 0..4 {
+            let other = at ^ 1;
+            let rises = on[at] && !self.was_on[at];
+            let pause = self.clock - self.last_on[other] - 1;
+            let close = rises && self.last_on[other] != 0 && pause < dead_time;
+            if ((on[at] && on[other]) || close) && self.violation.is_none() {
+                self.violation = Some(format!(
+                    "clock {}: gate {at} on {pause} clocks after gate {other}, dead time {dead_time}",
+                    self.clock
+                ));
+            }
+        }
+        for (at, on) in on.into_iter().enumerate() {
+            if on {
+                self.last_on[at] = self.clock;
+            }
+        }
+        self.was_on = on;
+    }
+
+    /// The first clock that was not safe, in words.
+    pub fn violation(&self) -> Option<&str> {
+        self.violation.as_deref()
+    }
+}
+
+/// How often things happened in a lock step of the PWM, by name.
+#[derive(Debug, Clone)]
+pub struct PwmCoverage {
+    outputs: Vec<String>,
+    before: Vec<u64>,
+    /// Times that each output changed.
+    changed: Vec<u64>,
+    resets: u64,
+    /// Rising edges of a high side by mode, and starts by mode.
+    pulses: [u64; 4],
+    starts: [u64; 4],
+    /// Trips by cause.
+    trips: [u64; 5],
+    /// Periods with the high side always on, never on.
+    full: u64,
+    none: u64,
+    constant: Option<u64>,
+    mode: u64,
+    peak_updates: u64,
+    off_by_enable: u64,
+}
+
+impl Default for PwmCoverage {
+    fn default() -> Self {
+        let is_output = |port: &Port| port.direction == Direction::Output;
+        let outputs: Vec<String> = ports().into_iter().filter(is_output).map(|port| port.name).collect();
+        Self {
+            before: vec![0; outputs.len()],
+            changed: vec![0; outputs.len()],
+            outputs,
+            resets: 0,
+            pulses: [0; 4],
+            starts: [0; 4],
+            trips: [0; 5],
+            full: 0,
+            none: 0,
+            constant: None,
+            mode: 0,
+            peak_updates: 0,
+            off_by_enable: 0,
+        }
+    }
+}
+
+impl PwmCoverage {
+    /// Adds a clock: its inputs and the outputs that the model showed, of a PWM whose pins are all active high.
+    pub fn observe(&mut self, inputs: &[u64], shown: &[u64]) {
+        let rises = |at: usize| shown[at] != 0 && self.before[at] == 0;
+        let mode = (self.mode & 3) as usize;
+        self.resets += inputs[0];
+        self.pulses[mode] += u64::from(rises(0) || rises(2));
+        self.starts[mode] += u64::from(rises(4));
+        for (at, trips) in self.trips.iter_mut().enumerate() {
+            *trips += (shown[6] & !self.before[6]) >> at & 1;
+        }
+        let running = shown[4] != 0;
+        self.off_by_enable += u64::from(!running && self.before[4] != 0 && shown[5] == 0);
+        self.peak_updates += u64::from(running && shown[9] != 0 && inputs[6] != 0);
+        let high = shown[0] | shown[2];
+        if shown[8] != 0 {
+            self.full += u64::from(self.constant == Some(1));
+            self.none += u64::from(self.constant == Some(0));
+            self.constant = running.then_some(high);
+        } else if self.constant != Some(high) || !running {
+            self.constant = None;
+        }
+        self.mode = inputs[2];
+        for (at, (value, before)) in shown.iter().zip(&mut self.before).enumerate() {
+            self.changed[at] += u64::from(value != before);
+            *before = *value;
+        }
+    }
+
+    /// What happened how often: changes of every output, and some that take more than one.
+    pub fn counts(&self) -> Vec<(&str, u64)> {
+        let outputs = self
+            .outputs
+            .iter()
+            .map(String::as_str)
+            .zip(self.changed.iter().copied());
+        let modes = ["direction", "half bridge", "unipolar", "locked"];
+        let starts = ["start direction", "start half bridge", "start unipolar", "start locked"];
+        let trips = [
+            "latch trips",
+            "filtered 0 trips",
+            "filtered 1 trips",
+            "pll trips",
+            "watchdog trips",
+        ];
+        let more = [
+            ("resets", self.resets),
+            ("full periods", self.full),
+            ("periods without a pulse", self.none),
+            ("updates at the peak", self.peak_updates),
+            ("off by enable", self.off_by_enable),
+        ];
+        outputs
+            .chain(modes.into_iter().zip(self.pulses))
+            .chain(starts.into_iter().zip(self.starts))
+            .chain(trips.into_iter().zip(self.trips))
+            .chain(more)
+            .collect()
+    }
+
+    /// The least of all counts.
+    pub fn least(&self) -> u64 {
+        self.counts().into_iter().map(|(_, count)| count).min().unwrap_or(0)
+    }
+}

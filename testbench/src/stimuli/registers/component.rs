@@ -1,0 +1,171 @@
+//! Traffic for components: what a driver would do, among everything else.
+
+use std::collections::VecDeque;
+
+use posicast_model::rtl::Direction;
+use posicast_model::rtl::component::{Block, Component};
+use posicast_model::rtl::registers::RegisterMap;
+use posicast_model::rtl::shaper::ShaperConfig;
+use rand::Rng;
+
+use super::super::table::Table;
+use super::{ADDRESS, BUS_INPUTS, BYTE_ENABLE, READ, RegistersRandom, WRITE, WRITE_DATA};
+use crate::stimuli::{PulseCounterRandom, Stimuli};
+
+/// Traffic for a component: as [`RegistersRandom`], with pins and transactions such that its block has something to do.
+#[derive(Debug, Clone)]
+pub struct ComponentRandom {
+    registers: RegistersRandom,
+    map: RegisterMap,
+    core: Core,
+    /// Writes to come: word and data.
+    writes: VecDeque<(u32, u32)>,
+}
+
+#[derive(Debug, Clone)]
+enum Core {
+    Shaper(Box<ShaperConfig>, Table),
+    PulseCounter(Box<PulseCounterRandom>, Vec<u64>),
+    SlidingMode,
+    /// Where `fault_n` is among the inputs, with the PLL's and the filtered faults behind it.
+    Pwm(usize),
+    Other,
+}
+
+impl ComponentRandom {
+    /// Equal seeds give equal inputs for equal outputs.
+    pub fn new(component: &Component, seed: u64) -> Self {
+        let core = component.blocks().iter().find_map(|block| match block {
+            Block::Shaper(config) => Some(Core::Shaper(Box::new(config.clone()), Table::with_capacity(256))),
+            Block::SlidingMode => Some(Core::SlidingMode),
+            Block::Pwm(_) => {
+                let ports = component.composition().ports().iter();
+                let mut inputs = ports.filter(|port| port.direction == Direction::Input);
+                inputs.position(|port| port.name == "fault_n").map(Core::Pwm)
+            }
+            Block::PulseCounter => Some(Core::PulseCounter(Box::new(PulseCounterRandom::new(seed)), vec![0; 26])),
+            _ => None,
+        });
+        Self {
+            registers: RegistersRandom::new(component.map(), component.composition().ports(), seed),
+            map: component.map().clone(),
+            core: core.unwrap_or(Core::Other),
+            writes: VecDeque::new(),
+        }
+    }
+
+    fn write(&mut self, register: &str, data: u32) {
+        self.writes
+            .extend(self.map.register(register).map(|register| (register.offset, data)));
+    }
+
+    /// What a driver would do: now and then a whole sequence.
+    fn plan(&mut self) {
+        if !self.writes.is_empty() || !self.registers.one_in(400) {
+            return;
+        }
+        let random = self.registers.rng.next_u32();
+        match &mut self.core {
+            Core::Shaper(config, table) => {
+                let (fraction, address_bits) = (config.coefficient_fraction(), config.ring_address_bits());
+                let reach = if random & 1 == 0 { 3 } else { address_bits };
+                let count = (random >> 1 & 7) as usize + 1;
+                table.draw(&mut self.registers.rng, count, fraction, reach);
+                let bank = (random >> 8 & 1) + 1;
+                let taps: Vec<(u32, u32)> = (0..)
+                    .zip(&table.taps)
+                    .map(|(index, (coefficient, delay))| {
+                        (index, *coefficient as u32 & 0x3_ffff | (*delay as u32) << 18)
+                    })
+                    .collect();
+                let host = random >> 12 & 3 != 0;
+                self.write("control", (!host).into());
+                for (index, tap) in taps {
+                    self.write("tap_address", index | bank << 8);
+                    self.write("tap", tap);
+                }
+                self.write("swap", bank | (random >> 16 & 3) << 4);
+                for sample in 0..random >> 20 & 15 {
+                    let x = self.registers.rng.next_u32();
+                    for word in ["x", "x_0", "x_1", "x_2"] {
+                        self.write(word, x >> (sample & 7));
+                    }
+                    self.write("strobe", 0);
+                    self.writes.extend([(0x40, 0); 30]);
+                }
+            }
+            Core::PulseCounter(..) => {
+                self.write("lines", random & 0x3 | ((random >> 8 & 7) % 5) << 8 | random & 0x2_0000);
+                self.write("index", random >> 24 & 0xff);
+                self.write("velocity_filter", random >> 4 & 0xf013 | 0x0100);
+                self.write("index_arm", 0);
+                self.write("preset", 0);
+            }
+            Core::SlidingMode => {
+                let bank = (random & 1) + 1;
+                for row in 0..16 {
+                    // Mantissas and shifts; the limit is a number of the same kind.
+                    let setting = self.registers.word() as u32;
+                    self.write("setting_address", row | bank << 8);
+                    self.write("setting", setting);
+                }
+                self.write("law", random >> 2 & 3 | bank << 8 | random & 0x10);
+                self.write("commit", 0);
+                self.write("control", u32::from(random >> 12 & 3 != 0));
+                self.write("start", 0);
+            }
+            Core::Pwm(_) => {
+                // Off, a short period, times near the floors, on.
+                self.write("control", 0);
+                self.write("period", 20 + (random & 0x3f));
+                self.write("times", (4 + (random >> 6 & 3)) | ((3 + (random >> 8 & 3)) << 16));
+                self.write("max_duty", random >> 10 & 0x7f);
+                self.write("phase", random >> 12 & 0x1f_001f);
+                self.write(
+                    "supervision",
+                    if random >> 17 & 1 == 0 { 0 } else { random >> 18 & 0x703 },
+                );
+                self.write("clear_trip", 0);
+                self.write("control", 1 | random >> 20 & 0x306);
+                for _ in 0..random >> 28 {
+                    let duty = self.registers.rng.next_u32() as i32 >> 24;
+                    self.write("duty", duty as u32);
+                    self.write("feed", 0);
+                    self.writes.extend([(0x40, 0); 20]);
+                    // Refused while it runs.
+                    self.write("times", 0x1f | 0x1f << 16);
+                }
+            }
+            Core::Other => {}
+        }
+    }
+}
+
+impl Stimuli for ComponentRandom {
+    fn fill(&mut self, seen: &[u64], inputs: &mut [u64]) {
+        self.registers.fill(seen, inputs);
+        self.plan();
+        if let Core::PulseCounter(encoder, row) = &mut self.core {
+            encoder.fill(&[], row);
+            // The lines are the same in both, behind `rst` and behind the bus.
+            inputs[BUS_INPUTS..BUS_INPUTS + 6].copy_from_slice(&row[1..7]);
+        }
+        if let Core::Pwm(fault_n) = self.core {
+            // Healthy, as a rule.
+            for (input, healthy) in inputs[fault_n..].iter_mut().zip([1, 1, 3]) {
+                if !self.registers.one_in(1000) {
+                    *input = healthy;
+                }
+            }
+        }
+        if inputs[READ] == 0
+            && !self.registers.one_in(4)
+            && let Some((offset, data)) = self.writes.pop_front()
+        {
+            inputs[ADDRESS] = offset.into();
+            inputs[WRITE_DATA] = data.into();
+            inputs[BYTE_ENABLE] = 0xf;
+            inputs[WRITE] = 1;
+        }
+    }
+}

@@ -1,0 +1,158 @@
+//! The PWM's Verilog against its bit-exact model, every output in every clock, with the gates watched.
+#![allow(clippy::unwrap_used, clippy::panic)] // helpers of tests, which clippy.toml exempts only inside of #[test]
+
+use posicast_hdl::pwm::emit;
+use posicast_model::rtl::ClockedBlock;
+use posicast_model::rtl::pwm::{ActiveLow, Pwm, PwmConfig, ports};
+use posicast_testbench::icarus::Icarus;
+use posicast_testbench::lockstep::report::{Report, Verdict};
+use posicast_testbench::lockstep::{self, Device, Instance, Options};
+use posicast_testbench::stimuli::{GateSafety, PwmCoverage, PwmRandom};
+use posicast_testbench::verilator::{Source, Verilated, lint};
+use std::path::PathBuf;
+use tempfile::TempDir;
+
+struct Bench {
+    config: PwmConfig,
+    files: Vec<PathBuf>,
+    _folder: TempDir,
+}
+
+struct Outcome {
+    report: Report,
+    coverage: PwmCoverage,
+    violation: Option<String>,
+}
+
+fn plain() -> PwmConfig {
+    PwmConfig::new(ActiveLow::default(), 2, 1).unwrap()
+}
+
+impl Bench {
+    /// With the first `from` in the Verilog replaced by `to`.
+    fn new(config: PwmConfig, from: &str, to: &str) -> Self {
+        let mut modules = emit(&config, "").unwrap();
+        let found = modules.iter_mut().find(|module| module.text.contains(from));
+        let module = found.unwrap_or_else(|| panic!("the Verilog no longer has `{from}`: adapt the test"));
+        module.text = module.text.replacen(from, to, 1);
+        let folder = tempfile::tempdir().unwrap();
+        let file = |module: &posicast_hdl::emit::Module| {
+            let path = folder.path().join(format!("{}.v", module.name));
+            std::fs::write(&path, &module.text).unwrap();
+            path
+        };
+        Self {
+            config,
+            files: modules.iter().map(file).collect(),
+            _folder: folder,
+        }
+    }
+
+    fn run(&self, device: &mut dyn Device, seed: u64, cycles: u64) -> Outcome {
+        let mut model = Pwm::new(&self.config);
+        let instances = [Instance::whole("pwm", "alone", model.ports())];
+        let mut coverage = PwmCoverage::default();
+        let mut safety = GateSafety::new(self.config.active_low());
+        let report = lockstep::run(
+            &mut model,
+            device,
+            &mut PwmRandom::new(seed),
+            &instances,
+            &Options::cycles(cycles),
+            &mut |clock| {
+                coverage.observe(clock.inputs, clock.expected);
+                safety.observe(clock.actual);
+            },
+            &mut |_| {},
+        );
+        Outcome {
+            report: report.unwrap(),
+            coverage,
+            violation: safety.violation().map(str::to_owned),
+        }
+    }
+
+    fn verilated(&self, seed: u64) -> Verilated {
+        let ports = ports();
+        Verilated::build(&source(&self.files, &ports), seed).unwrap()
+    }
+}
+
+fn source<'a>(files: &'a [PathBuf], ports: &'a [posicast_model::rtl::Port]) -> Source<'a> {
+    Source {
+        files,
+        top: "pwm",
+        ports,
+    }
+}
+
+fn assert_holds(outcome: &Outcome) {
+    if let Some(first) = &outcome.report.blocks[0].first {
+        panic!("{} mismatches\n{first}", outcome.report.blocks[0].mismatches);
+    }
+    assert_eq!(outcome.report.result, Verdict::Match);
+    assert_eq!(outcome.violation, None);
+}
+
+#[test]
+fn lockstep_a_million_random_clocks() {
+    let bench = Bench::new(plain(), "", "");
+    assert_eq!(lint(&bench.files, "pwm").unwrap(), [""; 0]);
+    for seed in 1..=2 {
+        let outcome = bench.run(&mut bench.verilated(seed), seed, 1_000_000);
+        assert_holds(&outcome);
+        assert!(outcome.coverage.least() > 10, "{:?}", outcome.coverage.counts());
+    }
+}
+
+#[test]
+fn lockstep_other_polarities_and_floors() {
+    let active_low = ActiveLow {
+        a_high: true,
+        b_low: true,
+        ..ActiveLow::default()
+    };
+    let bench = Bench::new(PwmConfig::new(active_low, 1, 7).unwrap(), "", "");
+    assert_eq!(lint(&bench.files, "pwm").unwrap(), [""; 0]);
+    assert_holds(&bench.run(&mut bench.verilated(3), 3, 1_000_000));
+}
+
+#[test]
+fn crosssim_icarus_agrees_with_the_model() {
+    let bench = Bench::new(plain(), "", "");
+    let ports = ports();
+    let mut icarus = Icarus::build(&source(&bench.files, &ports)).unwrap();
+    assert_holds(&bench.run(&mut icarus, 4, 20_000));
+}
+
+/// Breaks the Verilog and insists on a mismatch.
+fn caught(from: &str, to: &str) -> Outcome {
+    let bench = Bench::new(plain(), from, to);
+    let outcome = bench.run(&mut bench.verilated(1), 1, 200_000);
+    assert_eq!(outcome.report.result, Verdict::Mismatch, "`{to}` is not found");
+    outcome
+}
+
+#[test]
+fn lockstep_catches_a_watchdog_that_a_feed_does_not_reset() {
+    caught("waits = running & !feed", "waits = running");
+}
+
+#[test]
+fn lockstep_catches_a_clear_while_the_fault_stands() {
+    caught(
+        "((clear_trip & !running) & latched) & over",
+        "(clear_trip & !running) & latched",
+    );
+}
+
+#[test]
+fn lockstep_catches_an_unlimited_duty() {
+    caught("magnitude_next = max_duty", "magnitude_next = size[15:0]");
+}
+
+#[test]
+fn lockstep_watches_the_gates_of_a_leg_without_dead_time() {
+    let outcome = caught("pause = dead_time;", "pause = 10'd1;");
+    assert!(outcome.violation.is_some(), "the gates are not watched");
+}

@@ -1,0 +1,247 @@
+//! The PWM's Verilog against the pin rule alone, over a million periods: every edge on the pins is that of
+//! `posicast_model::rtl::pwm::pulses`, a function of what is latched at the boundary. The clocked model is not asked.
+#![allow(clippy::unwrap_used, clippy::panic)] // helpers of tests, which clippy.toml exempts only inside of #[test]
+
+use posicast_hdl::pwm::emit;
+use posicast_model::rtl::pwm::pulses::{Bridge, Half, Latched, Timing};
+use posicast_model::rtl::pwm::{ActiveLow, COMMAND_CLOCKS, Gates, INPUTS, Inputs, Mode, OUTPUTS, PwmConfig, ports};
+use posicast_testbench::stimuli::GateSafety;
+use posicast_testbench::verilator::{Source, Verilated};
+use rand::{Rng, RngExt, SeedableRng};
+use rand_xoshiro::Xoshiro256PlusPlus;
+
+/// Periods from one choice of period, dead time and minimum pulse to the next.
+const STRETCH_PERIODS: u64 = 500;
+/// From the clock of a position to that in which the pins show it.
+const PIN_CLOCKS: usize = 1;
+
+/// The PWM under Verilator, with the first `from` in the Verilog replaced by `to`.
+fn verilated(from: &str, to: &str) -> Verilated {
+    let config = PwmConfig::new(ActiveLow::default(), 1, 1).unwrap();
+    let mut modules = emit(&config, "").unwrap();
+    let found = modules.iter_mut().find(|module| module.text.contains(from));
+    let module = found.unwrap_or_else(|| panic!("the Verilog no longer has `{from}`: adapt the test"));
+    module.text = module.text.replacen(from, to, 1);
+    let folder = tempfile::tempdir().unwrap();
+    let files = modules.iter().map(|module| {
+        let path = folder.path().join(format!("{}.v", module.name));
+        std::fs::write(&path, &module.text).unwrap();
+        path
+    });
+    let files: Vec<_> = files.collect();
+    let ports = ports();
+    let source = Source {
+        files: &files,
+        top: "pwm",
+        ports: &ports,
+    };
+    Verilated::build(&source, 1).unwrap()
+}
+
+/// What one stretch found.
+#[derive(Debug, Default)]
+struct Found {
+    periods: u64,
+    edges: u64,
+    wrong: Option<String>,
+}
+
+struct Bench {
+    device: Verilated,
+    rng: Xoshiro256PlusPlus,
+    safety: GateSafety,
+    rows: Vec<u64>,
+    shown: Vec<u64>,
+    expected: Vec<[bool; 4]>,
+}
+
+impl Bench {
+    fn new(device: Verilated, seed: u64) -> Self {
+        Self {
+            device,
+            rng: Xoshiro256PlusPlus::seed_from_u64(seed),
+            safety: GateSafety::new(ActiveLow::default()),
+            rows: Vec::new(),
+            shown: Vec::new(),
+            expected: Vec::new(),
+        }
+    }
+
+    fn timing(&mut self) -> Timing {
+        let (dead_time, minimum_pulse) = (self.rng.random_range(1..=4), self.rng.random_range(1..=4));
+        Timing {
+            // Down to where no pulse fits any more.
+            period: self.rng.random_range(2 * dead_time + 5..=34),
+            dead_time,
+            minimum_pulse,
+        }
+    }
+
+    /// Mostly the mode before; duties everywhere, often at the ends.
+    fn command(&mut self, timing: &Timing, before: &Latched) -> Latched {
+        let rng = &mut self.rng;
+        let period = timing.period;
+        let within = rng.random_range(-period - 3..=period + 3);
+        let duties = [within, within, within, 0, period, -period, before.duty, -before.duty];
+        let modes = [Mode::Direction, Mode::HalfBridge, Mode::Unipolar, Mode::Locked];
+        let changes = rng.random_range(0..40) == 0;
+        Latched {
+            mode: if changes {
+                modes[rng.random_range(0..4)]
+            } else {
+                before.mode
+            },
+            duty: duties[rng.random_range(0..duties.len())],
+            max_duty: before.max_duty,
+        }
+    }
+
+    /// Reset, start, and so many periods of new values at every boundary.
+    fn stretch(&mut self, periods: u64, found: &mut Found) {
+        let timing = self.timing();
+        let update_at_peak = self.rng.random_range(0..2) == 0;
+        let limited = self.rng.random_range(1..=timing.period);
+        let mut latched = Latched {
+            mode: Mode::HalfBridge,
+            duty: 0,
+            max_duty: if self.rng.random_range(0..3) == 0 {
+                limited
+            } else {
+                0xffff
+            },
+        };
+        let inputs = |latched: &Latched| Inputs {
+            enable: true,
+            mode: latched.mode as u8,
+            period: timing.period as u16,
+            duty: latched.duty as i32,
+            max_duty: latched.max_duty as u16,
+            update_at_peak,
+            dead_time: timing.dead_time as u16,
+            minimum_pulse: timing.minimum_pulse as u16,
+            fault_n: true,
+            pll_locked: true,
+            filtered_fault_n: 3,
+            ..Inputs::default()
+        };
+        self.rows.clear();
+        self.expected.clear();
+        let reset = Inputs {
+            rst: true,
+            ..inputs(&latched)
+        };
+        self.rows.extend(reset.to_raw());
+        // In the first clock after the reset the carrier takes the period. The trip is cleared; the last of four periods
+        // enables, and the next one begins to run.
+        let run_in = 2 + 4 * timing.period;
+        for clock in 1..run_in {
+            let waits = Inputs {
+                clear_trip: true,
+                enable: clock >= run_in - timing.period,
+                ..inputs(&latched)
+            };
+            self.rows.extend(waits.to_raw());
+        }
+        let first = self.rows.len() / INPUTS;
+
+        let mut bridge = Bridge::default();
+        let mut gates = Gates::default();
+        let rising = timing.period / 2;
+        for _ in 0..periods {
+            for (half, clocks) in [(Half::Rising, rising), (Half::Falling, timing.period - rising)] {
+                let updates = half == Half::Rising || update_at_peak;
+                let taken = latched;
+                let edges = bridge.half(&timing, half, updates.then_some(&taken));
+                let next = self.command(&timing, &latched);
+                let mut edges = edges.iter().peekable();
+                for clock in 0..clocks {
+                    while let Some(edge) = edges.next_if(|edge| edge.clock == clock) {
+                        gates = edge.gates;
+                        found.edges += 1;
+                    }
+                    self.expected
+                        .push([gates.a_high, gates.a_low, gates.b_high, gates.b_low]);
+                    // The next boundary reads its command so many clocks before; anything may stand there until then.
+                    let left = clocks - clock;
+                    let row = if left == i64::from(COMMAND_CLOCKS) + 1 {
+                        inputs(&next)
+                    } else {
+                        let noise = self.rng.next_u32();
+                        Inputs {
+                            duty: (noise as i32) >> 20,
+                            mode: (noise & 3) as u8,
+                            ..inputs(&next)
+                        }
+                    };
+                    self.rows.extend(row.to_raw());
+                }
+                if half == Half::Falling || update_at_peak {
+                    latched = next;
+                }
+            }
+        }
+        let clocks = self.rows.len() / INPUTS;
+        self.shown.clear();
+        self.shown.resize(clocks * OUTPUTS, 0);
+        self.device.run(&self.rows, &mut self.shown).unwrap();
+        self.compare(first, found);
+        found.periods += periods;
+    }
+
+    /// `first`: the clock of the first position that runs.
+    fn compare(&mut self, first: usize, found: &mut Found) {
+        for (clock, shown) in self.shown.chunks_exact(OUTPUTS).enumerate() {
+            self.safety.observe(shown);
+            let Some(at) = clock.checked_sub(first + PIN_CLOCKS) else {
+                continue;
+            };
+            let Some(expected) = self.expected.get(at) else {
+                continue;
+            };
+            let actual = [0, 1, 2, 3].map(|gate: usize| shown[gate] != 0);
+            if actual != *expected && found.wrong.is_none() {
+                found.wrong = Some(format!("clock {at}: {actual:?} instead of {expected:?}"));
+            }
+        }
+        if let Some(violation) = self.safety.violation() {
+            found.wrong.get_or_insert(violation.to_owned());
+        }
+    }
+}
+
+fn run(device: Verilated, seed: u64, periods: u64) -> Found {
+    let mut bench = Bench::new(device, seed);
+    let mut found = Found::default();
+    while found.periods < periods && found.wrong.is_none() {
+        bench.stretch(STRETCH_PERIODS, &mut found);
+    }
+    found
+}
+
+#[test]
+fn lockstep_every_edge_of_a_million_periods_is_that_of_the_pin_rule() {
+    let found = run(verilated("", ""), 1, 1_000_000);
+    assert_eq!(found.wrong, None);
+    assert!(found.edges > 2 * found.periods, "{found:?}");
+}
+
+/// Breaks the Verilog and insists on a wrong edge.
+fn caught(from: &str, to: &str) {
+    let found = run(verilated(from, to), 1, 20_000);
+    assert!(found.wrong.is_some(), "`{to}` is not found");
+}
+
+#[test]
+fn lockstep_catches_a_dead_time_a_clock_too_short() {
+    caught("pause = dead_time;", "pause = dead_time - 10'd1;");
+}
+
+#[test]
+fn lockstep_catches_a_minimum_pulse_a_clock_too_short() {
+    caught("too_short = command_width <", "too_short = command_width <=");
+}
+
+#[test]
+fn lockstep_catches_a_direction_that_turns_from_the_high_side() {
+    caught("may_turn = !leg_awake | leg_low_side", "may_turn = 1'd1");
+}
