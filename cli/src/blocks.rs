@@ -57,7 +57,6 @@ pub(crate) fn others(
     let with_encoder = axes(machine, |axis| axis.encoder.is_some());
     let with_controller = axes(machine, |axis| axis.controller.is_some());
     blocks.push(Box::new(PulseCounterBlock::new(name, &with_encoder)));
-    blocks.push(Box::new(AxisBlock::new(name, &axes(machine, has_loop))));
     blocks.push(Box::new(DividerBlock::new(divider(machine, path)?, name)));
     for (config, axes) in pwms(machine, path)? {
         blocks.push(Box::new(PwmBlock::new(config, name, &axes)));
@@ -69,6 +68,7 @@ pub(crate) fn others(
     let cascade = CascadeConfig::new(CASCADE_WORD_BITS, CASCADE_DELAYS_SAMPLES.to_vec()).map_err(Failure::because)?;
     blocks.push(Box::new(CascadeBlock::new(cascade, name)));
     blocks.push(Box::new(SegmentsBlock::new(name, "alone")));
+    blocks.push(Box::new(AxisBlock::new(name, "alone")));
     let components = components(machine, shapers, controllers, path)?;
     let mut maps: Vec<&RegisterMap> = Vec::new();
     for map in components.iter().map(|component| component.component().map()) {

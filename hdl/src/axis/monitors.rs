@@ -39,15 +39,20 @@ pub(super) struct Monitors {
     still_ticks: Dff<Bits<16>>,
     unkicked_ticks: Dff<Bits<16>>,
 
+    command_velocity_bits: Signal<Local, Bits<32>>,
     forward: Signal<Local, Bit>,
     backward: Signal<Local, Bit>,
+    reference_velocity_bits: Signal<Local, Bits<32>>,
     shaped_forward: Signal<Local, Bit>,
     shaped_backward: Signal<Local, Bit>,
     has_soft_limits: Signal<Local, Bit>,
     past_plus: Signal<Local, Bit>,
     past_minus: Signal<Local, Bit>,
+    error_bits: Signal<Local, Bits<32>>,
     error_size: Signal<Local, Bits<32>>,
+    deviation_bits: Signal<Local, Bits<32>>,
     deviation_size: Signal<Local, Bits<32>>,
+    command_bits: Signal<Local, Bits<32>>,
     command_size: Signal<Local, Bits<32>>,
     still: Signal<Local, Bit>,
     limit_plus: Signal<Local, Bit>,
@@ -123,15 +128,20 @@ impl Default for Monitors {
             was_past_minus: Dff::default(),
             still_ticks: Dff::default(),
             unkicked_ticks: Dff::default(),
+            command_velocity_bits: Signal::default(),
             forward: Signal::default(),
             backward: Signal::default(),
+            reference_velocity_bits: Signal::default(),
             shaped_forward: Signal::default(),
             shaped_backward: Signal::default(),
             has_soft_limits: Signal::default(),
             past_plus: Signal::default(),
             past_minus: Signal::default(),
+            error_bits: Signal::default(),
             error_size: Signal::default(),
+            deviation_bits: Signal::default(),
             deviation_size: Signal::default(),
+            command_bits: Signal::default(),
             command_size: Signal::default(),
             still: Signal::default(),
             limit_plus: Signal::default(),
@@ -191,10 +201,13 @@ impl Logic for Monitors {
         );
 
         comment!("Which way");
-        self.forward.next = self.command_velocity.val() > self.nil.val();
-        self.backward.next = self.command_velocity.val() < self.nil.val();
-        self.shaped_forward.next = self.reference_velocity.val() > self.nil.val();
-        self.shaped_backward.next = self.reference_velocity.val() < self.nil.val();
+        self.command_velocity_bits.next = unsigned_cast(self.command_velocity.val());
+        self.forward.next = self.command_velocity_bits.val().any() & !self.command_velocity_bits.val().get_bit(31);
+        self.backward.next = self.command_velocity_bits.val().get_bit(31);
+        self.reference_velocity_bits.next = unsigned_cast(self.reference_velocity.val());
+        self.shaped_forward.next =
+            self.reference_velocity_bits.val().any() & !self.reference_velocity_bits.val().get_bit(31);
+        self.shaped_backward.next = self.reference_velocity_bits.val().get_bit(31);
 
         comment!("A switch bounces when left: newly needs a way");
         self.limit_plus.next =
@@ -211,18 +224,21 @@ impl Logic for Monitors {
         self.soft_plus.next = self.past_plus.val() & (self.forward.val() | !self.was_past_plus.q.val());
         self.soft_minus.next = self.past_minus.val() & (self.backward.val() | !self.was_past_minus.q.val());
 
-        comment!("Sizes against their limits");
-        self.error_size.next = unsigned_cast(self.error.val());
-        if self.error.val() < self.nil.val() {
-            self.error_size.next = unsigned_cast(self.nil.val() - self.error.val());
+        comment!("Sizes, of a negative -x - 1: no carry");
+        self.error_bits.next = unsigned_cast(self.error.val());
+        self.error_size.next = self.error_bits.val();
+        if self.error_bits.val().get_bit(31) {
+            self.error_size.next = !self.error_bits.val();
         }
-        self.deviation_size.next = unsigned_cast(self.deviation.val());
-        if self.deviation.val() < self.nil.val() {
-            self.deviation_size.next = unsigned_cast(self.nil.val() - self.deviation.val());
+        self.deviation_bits.next = unsigned_cast(self.deviation.val());
+        self.deviation_size.next = self.deviation_bits.val();
+        if self.deviation_bits.val().get_bit(31) {
+            self.deviation_size.next = !self.deviation_bits.val();
         }
-        self.command_size.next = unsigned_cast(self.command.val());
-        if self.command.val() < self.nil.val() {
-            self.command_size.next = unsigned_cast(self.nil.val() - self.command.val());
+        self.command_bits.next = unsigned_cast(self.command.val());
+        self.command_size.next = self.command_bits.val();
+        if self.command_bits.val().get_bit(31) {
+            self.command_size.next = !self.command_bits.val();
         }
         self.error_trip.next =
             self.following_error_limit.val().any() & (self.error_size.val() > self.following_error_limit.val());

@@ -115,7 +115,7 @@ impl AxisRandom {
         let rng = &mut self.rng;
         let inputs = &mut self.inputs;
         let near = |rng: &mut Xoshiro256PlusPlus, limit: i32| {
-            let step = rng.random_range(-1..2);
+            let step = rng.random_range(-1..3);
             let size = limit.wrapping_add(step);
             let any = rng.next_u32() as i32 >> rng.random_range(0..32);
             *pick(rng, &[0, 0, 0, 0, size, size.wrapping_neg(), any, i32::MIN, i32::MAX])

@@ -41,7 +41,7 @@ impl Monitors {
             plus || newly(2),
             minus || newly(3),
         ];
-        let exceeds = |value: i32, limit: u32| limit != 0 && value.unsigned_abs() > limit;
+        let exceeds = |value: i32, limit: u32| limit != 0 && size(value) > limit;
         let lasts = |ticks: u16, limit: u16| limit != 0 && ticks >= limit;
         let found = [
             (Cause::LimitPlus, passed[0] && limit_plus),
@@ -64,8 +64,7 @@ impl Monitors {
     /// One clock.
     pub(super) fn clock(&mut self, inputs: &Inputs, on_limits: [bool; 2], on: bool, kicked: bool) {
         if inputs.tick {
-            let still =
-                inputs.command.unsigned_abs() > inputs.lost_command && inputs.position == self.captured_position;
+            let still = size(inputs.command) > inputs.lost_command && inputs.position == self.captured_position;
             self.still_ticks = counted(self.still_ticks, on && still);
             self.unkicked_ticks = counted(self.unkicked_ticks, on);
             self.were_passed = Self::passed(inputs, on_limits);
@@ -80,4 +79,9 @@ impl Monitors {
 /// One more tick, up to the end of the word; or none.
 fn counted(ticks: u16, goes_on: bool) -> u16 {
     if goes_on { ticks.saturating_add(1) } else { 0 }
+}
+
+/// Distance from the middle between −1 and 0, cut: `value`, or −`value` − 1. It needs no carry in hardware.
+fn size(value: i32) -> u32 {
+    (value ^ (value >> 31)) as u32
 }

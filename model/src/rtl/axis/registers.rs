@@ -1,0 +1,369 @@
+//! What the supervisor knows, and what a clock makes of it.
+
+use super::cause::{Cause, HARMLESS, switching_off};
+use super::inputs::Inputs;
+use super::monitors::Monitors;
+use super::transition::{Condition, Conditions, State, next};
+use super::{CLEAR_CLOCKS, KICK, PRIMING_CLOCKS};
+use crate::rtl::pulse_counter::GlitchFilter;
+use crate::rtl::segments;
+
+/// A line: synchroniser, then filter.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+struct Line {
+    synchroniser: [bool; 2],
+    filter: GlitchFilter,
+}
+
+impl Line {
+    fn clock(&mut self, pin: bool, filter_clocks: u8, ready: bool) {
+        self.filter.clock(self.synchroniser[1], filter_clocks, ready);
+        self.synchroniser = [pin, self.synchroniser[0]];
+    }
+}
+
+/// Pulses, and what follows a clock after its reason.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub(super) struct Pulses {
+    pub(super) quick_stop: bool,
+    pub(super) restart: bool,
+    pub(super) clear_sources: bool,
+    pub(super) can_start: bool,
+    pub(super) enabled: bool,
+    pub(super) started: bool,
+    pub(super) stopping: bool,
+    pub(super) halted: bool,
+    pub(super) disabled: bool,
+    pub(super) faulted: bool,
+    pub(super) refused: bool,
+}
+
+/// Everything that is a register.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Registers {
+    /// Emergency stop, limit +, limit −, drive ready, home.
+    lines: [Line; 5],
+    /// Clocks since the reset, at most [`PRIMING_CLOCKS`].
+    primed: u8,
+    pub(super) monitors: Monitors,
+    pub(super) state: State,
+    pub(super) causes: u16,
+    /// Ticks until brake, shaper or brake are done.
+    timer: u16,
+    /// In HOLD after READY: the timer is that of the brake's release.
+    opening: bool,
+    /// In HOLD and FAULT: the brake is applied and the outputs are still on.
+    closing: bool,
+    pub(super) on: bool,
+    pub(super) released: bool,
+    /// The shaper's start is kept until the first sample.
+    pub(super) starting: bool,
+    start_waits: bool,
+    /// Clocks until causes are forgotten.
+    clear_left: u8,
+    pub(super) tripping: bool,
+    pub(super) pulses: Pulses,
+}
+
+impl Default for Registers {
+    fn default() -> Self {
+        Self {
+            lines: Default::default(),
+            primed: 0,
+            monitors: Monitors::default(),
+            state: State::Off,
+            causes: 0,
+            timer: 0,
+            opening: false,
+            closing: false,
+            on: false,
+            released: false,
+            starting: true,
+            start_waits: false,
+            clear_left: 0,
+            tripping: false,
+            pulses: Pulses::default(),
+        }
+    }
+}
+
+/// What a clock is about, from inputs and registers.
+struct Now {
+    causes: u16,
+    cut: bool,
+    group_stop: bool,
+    wants_start: bool,
+    able: bool,
+    stopped: bool,
+    /// A tick with the timer over.
+    timed_out: bool,
+    /// `enable` is low in HOLD, and nothing has to be waited for: the brake is applied.
+    closes: bool,
+    conditions: Conditions,
+}
+
+impl Registers {
+    fn ready(&self) -> bool {
+        self.primed == PRIMING_CLOCKS
+    }
+
+    pub(super) fn level(&self, line: usize) -> bool {
+        self.lines[line].filter.level()
+    }
+
+    fn on_limits(&self) -> [bool; 2] {
+        [!self.level(1), !self.level(2)]
+    }
+
+    pub(super) fn emergency_stop(&self) -> bool {
+        self.ready() && !self.level(0)
+    }
+
+    pub(super) fn wants_group_stop(&self) -> bool {
+        self.state == State::Fault || (self.state == State::QuickStop && self.causes & !HARMLESS != 0)
+    }
+
+    pub(super) fn clock(&mut self, inputs: &Inputs) {
+        if inputs.rst {
+            *self = Self::default();
+            return;
+        }
+        let now = self.look(inputs);
+        let was_on = self.on;
+        let after = next(self.state, now.conditions);
+        self.pulses = self.pulses(inputs, &now, after);
+        self.run_timer(inputs, &now, after);
+        self.switch(&now, after);
+        self.starting = !self.on || (self.starting && !inputs.segments_valid);
+        self.start_waits = now.wants_start && !inputs.tick;
+        self.tripping = self.emergency_stop() || inputs.group_emergency_stop;
+        (self.state, self.causes) = (after, now.causes);
+
+        let kicked = inputs.kick && inputs.kick_word == KICK;
+        let on_limits = self.on_limits();
+        self.monitors.clock(inputs, on_limits, was_on, kicked);
+        let ready = self.ready();
+        let pins = [
+            inputs.emergency_stop_n,
+            inputs.limit_plus_n,
+            inputs.limit_minus_n,
+            inputs.drive_ready,
+            inputs.home,
+        ];
+        for (line, pin) in self.lines.iter_mut().zip(pins) {
+            line.clock(pin, inputs.filter_clocks, ready);
+        }
+        self.primed = (self.primed + 1).min(PRIMING_CLOCKS);
+        self.clear_left = match (inputs.clear_faults, self.clear_left) {
+            (true, _) => CLEAR_CLOCKS,
+            (false, left) => left.saturating_sub(1),
+        };
+    }
+
+    /// The causes of this clock, those of tick and monitors among them.
+    fn active(&self, inputs: &Inputs, group_stop: bool) -> u16 {
+        let encoder = inputs.encoder_illegal || inputs.encoder_disagreement;
+        let scale = inputs.scale_illegal || inputs.scale_disagreement;
+        let missed = inputs.segments_tick_missed || inputs.velocity_missed;
+        let overrun = inputs.shaper_overrun || inputs.controller_overrun;
+        let found = [
+            (
+                Cause::EmergencyStop,
+                self.emergency_stop() || inputs.group_emergency_stop,
+            ),
+            (Cause::PwmTripped, inputs.pwm_tripped),
+            (Cause::DriveLost, self.on && !self.level(3)),
+            (Cause::EncoderError, encoder || scale),
+            (Cause::Segments, inputs.segments_underrun || inputs.segments_overflow),
+            (Cause::GroupStop, self.on && group_stop),
+            (Cause::Schedule, missed || overrun),
+        ];
+        let watched = if self.on && inputs.tick {
+            self.monitors.causes(inputs, self.on_limits())
+        } else {
+            0
+        };
+        let bits = found.map(|(cause, is)| if is { cause.bit() } else { 0 });
+        bits.into_iter().fold(watched, |all, bit| all | bit)
+    }
+
+    /// Causes and conditions of this clock.
+    fn look(&self, inputs: &Inputs) -> Now {
+        let group_stop = inputs.group_stop && !self.wants_group_stop();
+        let may_forget = self.state != State::QuickStop && (self.state != State::Fault || !self.on);
+        let forgets = self.clear_left == 1 && may_forget;
+        let kept = if forgets { 0 } else { self.causes };
+        let causes = kept | self.active(inputs, group_stop);
+        let cut = switching_off(causes, inputs.off_causes) != 0;
+        let fault = causes & !HARMLESS != 0;
+        let segments_hold = inputs.segments_state == segments::State::Hold as u8;
+        let stopped = inputs.segments_state == segments::State::Stopped as u8;
+        let elapsed = self.timer == 0;
+        let opened = !self.opening || elapsed;
+        let able = self.state == State::Hold && opened && !self.closing && segments_hold;
+        let wants_start = (inputs.start || self.start_waits) && !inputs.stop;
+        let conditions = Conditions::default()
+            .with(Condition::Cut, cut)
+            .with(Condition::Fault, fault)
+            .with(Condition::Cause, causes != 0)
+            .with(Condition::DriveReady, self.ready() && self.level(3))
+            .with(Condition::Enable, inputs.enable)
+            .with(Condition::Tick, inputs.tick)
+            .with(Condition::GroupStop, group_stop)
+            .with(Condition::Stop, inputs.stop)
+            .with(Condition::Start, wants_start && able)
+            .with(Condition::Done, segments_hold && inputs.segments_empty)
+            .with(Condition::Stopped, stopped)
+            .with(Condition::Elapsed, elapsed)
+            .with(Condition::Closing, self.closing)
+            .with(Condition::Cleared, forgets && causes == 0);
+        Now {
+            causes,
+            cut,
+            group_stop,
+            wants_start,
+            able,
+            stopped,
+            timed_out: inputs.tick && elapsed,
+            closes: self.state == State::Hold && inputs.tick && elapsed && !inputs.enable && !self.closing,
+            conditions,
+        }
+    }
+
+    fn pulses(&self, inputs: &Inputs, now: &Now, after: State) -> Pulses {
+        use State::{Fault, Hold, Off, QuickStop, Ready, Run};
+        let before = self.state;
+        let plays = inputs.segments_state <= segments::State::Move as u8;
+        let steady = inputs.enable && !now.group_stop && now.causes == 0;
+        Pulses {
+            quick_stop: after == QuickStop && plays,
+            restart: before == Hold && now.stopped,
+            clear_sources: inputs.clear_faults,
+            can_start: now.able && steady,
+            enabled: before == Ready && after == Hold,
+            started: before == Hold && after == Run,
+            stopping: before != QuickStop && after == QuickStop,
+            halted: matches!(before, Run | QuickStop) && after == Hold,
+            disabled: before == Hold && after == Off,
+            faulted: before != Fault && after == Fault,
+            refused: inputs.tick && now.wants_start && !(before == Hold && after == Run),
+        }
+    }
+
+    /// The timer begins with a state, and counts ticks; in QUICK_STOP those after the segments' stop.
+    fn run_timer(&mut self, inputs: &Inputs, now: &Now, after: State) {
+        use State::{Fault, Hold, QuickStop, Ready, Run};
+        let before = self.state;
+        let counts = inputs.tick && (before != QuickStop || now.stopped);
+        self.timer = match (before, after) {
+            (Ready, Hold) => inputs.brake_release_ticks,
+            (Run, Hold) | (Hold | Run, QuickStop) => inputs.settle_ticks,
+            (QuickStop, Fault) => inputs.brake_apply_ticks,
+            (Hold, Hold) if now.closes => inputs.brake_apply_ticks,
+            _ => self.timer.saturating_sub(u16::from(counts)),
+        };
+    }
+
+    /// Outputs and brake.
+    fn switch(&mut self, now: &Now, after: State) {
+        use State::{Fault, Hold, QuickStop, Ready};
+        let before = self.state;
+        (self.on, self.closing) = match (before, after) {
+            _ if now.cut || (self.closing && now.timed_out) => (false, false),
+            (Ready, Hold) => (true, false),
+            (QuickStop, Fault) => (true, true),
+            _ => (self.on, self.closing || (after == Hold && now.closes)),
+        };
+        self.opening = after == Hold && (before == Ready || self.opening);
+        self.released = self.on && !self.closing;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Bit `at` of a case.
+    fn is(case: u32, at: u32) -> bool {
+        case >> at & 1 != 0
+    }
+
+    /// Registers and inputs of a case, and the conditions that they mean.
+    fn situation(state: State, case: u32) -> (Registers, Inputs, Conditions) {
+        let drive_ready = is(case, 0);
+        let (cut, quick, group) = (is(case, 1), is(case, 2), is(case, 3));
+        let (elapsed, opening, closing, on) = (is(case, 4), is(case, 5), is(case, 6), is(case, 7));
+        let (forgotten, segments_state) = (is(case, 8), (case >> 9 & 3) as u8);
+        let mut registers = Registers {
+            primed: PRIMING_CLOCKS,
+            state,
+            timer: u16::from(!elapsed),
+            opening,
+            closing,
+            on,
+            clear_left: u8::from(forgotten),
+            ..Registers::default()
+        };
+        registers.lines[0].clock(true, 0, false);
+        for line in &mut registers.lines {
+            (0..3).for_each(|_| line.clock(true, 0, false));
+        }
+        (0..3).for_each(|_| registers.lines[3].clock(drive_ready, 0, false));
+        let inputs = Inputs {
+            enable: is(case, 11),
+            tick: is(case, 12),
+            stop: is(case, 13),
+            start: is(case, 14),
+            segments_empty: is(case, 15),
+            segments_state,
+            // Flags of other blocks, so that nothing is forgotten while it is active.
+            pwm_tripped: cut,
+            encoder_illegal: quick,
+            group_stop: group,
+            drive_ready,
+            ..Inputs::default()
+        };
+        let seen_group = group && state != State::Fault;
+        let any = cut || quick || (on && seen_group);
+        let hold = segments_state == 0;
+        let brake_open = !closing && (!opening || elapsed);
+        let may_forget = !matches!((state, on), (State::QuickStop, _) | (State::Fault, true));
+        let all = [
+            cut,
+            cut || quick,
+            any,
+            drive_ready,
+            inputs.enable,
+            inputs.tick,
+            seen_group,
+            inputs.stop,
+            inputs.start && !inputs.stop && state == State::Hold && brake_open && hold,
+            hold && inputs.segments_empty,
+            segments_state == 3,
+            elapsed,
+            closing,
+            forgotten && may_forget && !any,
+        ];
+        let pairs = Condition::ALL.into_iter().zip(all);
+        let conditions = pairs.fold(Conditions::default(), |so_far, (condition, holds)| {
+            so_far.with(condition, holds)
+        });
+        (registers, inputs, conditions)
+    }
+
+    #[test]
+    fn unit_the_clocked_model_follows_the_table_in_every_situation() {
+        for state in State::ALL {
+            for case in 0..1 << 16 {
+                let (mut registers, mut inputs, conditions) = situation(state, case);
+                // Drive lost is a cause of its own: here it is one that does not switch off.
+                let lost = registers.on && !is(case, 0);
+                let conditions = conditions.with(Condition::Fault, lost).with(Condition::Cause, lost);
+                inputs.off_causes = 0;
+                registers.clock(&inputs);
+                assert_eq!(registers.state, next(state, conditions), "{state:?} {case:#x}");
+                assert!(registers.on || !registers.released);
+            }
+        }
+    }
+}
