@@ -4,10 +4,32 @@ mod support;
 
 use posicast_model::rtl::axis::Axis;
 use posicast_model::rtl::{ClockedBlock, axis};
-use posicast_testbench::blocks::{AxisBlock, Block, Sources};
+use posicast_testbench::blocks::{AxisBlock, Sources};
 use posicast_testbench::lockstep::{self, Instance, Options};
 use posicast_testbench::stimuli::{AxisRandom, AxisSafety};
 use support::{assert_match, broken, caught, icarus_agrees, million_random_clocks};
+
+/// What makes the Verilog unsafe, and the rule that says so.
+const MUTANTS: [(&str, &str, &str); 6] = [
+    ("if (goes_quiet | cut)", "if (goes_quiet)", "outputs on a clock after"),
+    (
+        "if (goes_quiet | cut)",
+        "if ((goes_quiet & enable) | cut)",
+        "against the brake for too long",
+    ),
+    ("= next_on & !next_closing", "= next_on", "brake released in FAULT"),
+    ("if (fault | asked)", "if (asked)", "RUN with a cause"),
+    (
+        "= ready & !emergency",
+        "= ready & home & !emergency",
+        "after an emergency stop",
+    ),
+    (
+        "if (at_rest) begin\n                next_state = HOLD_STATE",
+        "if (at_rest) begin\n                next_state = RUN_STATE",
+        "is not in the table",
+    ),
+];
 
 fn block() -> AxisBlock {
     AxisBlock::new("", "alone")
@@ -59,4 +81,39 @@ fn lockstep_sees_what_is_not_safe() {
         let found = violations(from, to, 200_000);
         assert!(found.iter().any(|found| found.contains(rule)), "`{to}`: {found:?}");
     }
+}
+
+#[test]
+fn lockstep_catches_a_limit_that_blocks_the_way_back() {
+    caught(
+        &block(),
+        "on_limit_minus & (backward",
+        "on_limit_minus & (forward",
+        200_000,
+    );
+}
+
+#[test]
+fn lockstep_catches_a_clear_that_forgets_what_is_active() {
+    caught(&block(), "(kept | lines)", "(forget ? 16'd0 : (kept | lines))", 200_000);
+}
+
+#[test]
+fn lockstep_catches_a_limit_that_is_passed_by_an_lsb() {
+    caught(
+        &block(),
+        "error_size > following_error_limit",
+        "error_size >= following_error_limit",
+        300_000,
+    );
+}
+
+#[test]
+fn lockstep_catches_a_shaper_that_is_let_go_before_its_first_sample() {
+    caught(
+        &block(),
+        "!next_on | (starting_q & !segments_valid)",
+        "!next_on",
+        100_000,
+    );
 }

@@ -344,10 +344,7 @@ impl Logic for States {
         if self.in_stop.val() & self.to_fault.val() {
             self.next_closing.next = true;
         }
-        if ((self.in_hold.val() & self.to_off.val())
-            | (self.in_fault.val() & self.to_fault.val() & self.goes_quiet.val()))
-            | self.cut.val()
-        {
+        if self.goes_quiet.val() | self.cut.val() {
             self.next_on.next = false;
             self.next_closing.next = false;
         }

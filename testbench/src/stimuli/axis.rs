@@ -65,8 +65,8 @@ impl AxisRandom {
         self.mood = Mood {
             tick_pace: *pick(rng, &[1, 4, 9, 9, 12, 30]),
             request_pace: *pick(rng, &[5, 60, 300, 300]),
-            fault_pace: *pick(rng, &[20, 300, 2_000, 10_000]),
-            glitch_pace: *pick(rng, &[50, 1_000, 10_000]),
+            fault_pace: *pick(rng, &[40, 500, 5_000, 50_000]),
+            glitch_pace: *pick(rng, &[100, 3_000, 30_000]),
             lawless: rng.random_range(0..4) == 0,
         };
         self.registers();
@@ -155,13 +155,13 @@ impl AxisRandom {
 
     fn host(&mut self, state: State) {
         let pace = self.mood.request_pace;
-        let (stop, clear) = (self.one_in(pace * 6), self.one_in(pace));
+        let (stop, clear) = (self.one_in(pace * 6), self.one_in(50));
         let toggles = self.one_in(pace * 4);
         let inputs = &mut self.inputs;
         (inputs.stop, inputs.clear_faults) = (stop, clear);
         // Without it an axis would soon stand in OFF for ever.
         inputs.enable = if toggles { !inputs.enable } else { inputs.enable };
-        let (back, start) = (self.one_in(20), self.one_in(30));
+        let (back, start) = (self.one_in(20), self.one_in(10));
         if back {
             self.inputs.enable = !matches!(state, State::Off | State::Fault);
         }
@@ -173,11 +173,11 @@ impl AxisRandom {
 
     fn faults(&mut self) {
         let pace = self.mood.fault_pace;
-        let mut held = [false; 14];
+        let mut held = [false; 12];
         for is in &mut held {
-            *is = self.rng.random_range(0..pace * 14) == 0;
+            *is = self.rng.random_range(0..pace * 12) == 0;
         }
-        let long = self.rng.random_range(0..10) == 0;
+        let (asks, long) = (self.one_in(300), self.one_in(10));
         let inputs = &mut self.inputs;
         // Flags of other blocks stay until they are cleared.
         for (flag, is) in [
@@ -198,8 +198,8 @@ impl AxisRandom {
         {
             *flag = is || (*flag && !inputs.clear_faults);
         }
-        inputs.group_stop = held[12] || (inputs.group_stop && !long);
-        inputs.group_emergency_stop = held[13];
+        inputs.group_stop = asks || (inputs.group_stop && !long);
+        inputs.group_emergency_stop = held[11];
     }
 
     /// Segments as the supervisor sees them.

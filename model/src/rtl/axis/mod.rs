@@ -389,14 +389,12 @@ impl Registers {
 
     /// Outputs and brake.
     fn switch(&mut self, now: &Now, after: State) {
-        use State::{Fault, Hold, Off, QuickStop, Ready};
+        use State::{Fault, Hold, QuickStop, Ready};
         let before = self.state;
         (self.on, self.closing) = match (before, after) {
-            _ if now.cut => (false, false),
+            _ if now.cut || (self.closing && now.timed_out) => (false, false),
             (Ready, Hold) => (true, false),
-            (Hold, Off) => (false, false),
             (QuickStop, Fault) => (true, true),
-            (Fault, Fault) if self.closing && now.timed_out => (false, false),
             _ => (self.on, self.closing || (after == Hold && now.closes)),
         };
         self.opening = after == Hold && (before == Ready || self.opening);
