@@ -4,18 +4,17 @@
 //! equal or as different as it was, and its count is added up when that ends.
 
 use super::clocking::Slots;
+use super::gather::Gathering;
 use super::matching::Pair;
 use super::options::Options;
-use super::result::{Comparison, Context, ContextRow, Difference, Shown};
+use super::result::{Difference, Shown};
 use super::rule::Rule;
-use super::side::{ClockEdge, Side, Touched, slot_of};
+use super::side::{ClockEdge, Side, slot_of};
+use super::touched::Touched;
 use crate::Error;
 use crate::reader::{Kind, Value, Values};
 
 const PROGRESS_SAMPLES: u64 = 1 << 14;
-/// Signals of which the first divergence shows the samples around it, and samples behind it.
-const CONTEXT_SIGNALS: usize = 8;
-const CONTEXT_SAMPLES: usize = 3;
 
 /// How far a comparison has come.
 #[derive(Debug, Clone, Copy, Default)]
@@ -29,61 +28,54 @@ pub struct Progress {
 }
 
 #[derive(Debug, Clone)]
-struct First {
-    time_fs: u128,
-    a: Shown,
-    b: Shown,
-    a_number: Option<f64>,
-    b_number: Option<f64>,
+pub(super) struct First {
+    pub(super) time_fs: u128,
+    pub(super) a: Shown,
+    pub(super) b: Shown,
+    pub(super) a_number: Option<f64>,
+    pub(super) b_number: Option<f64>,
 }
 
 /// What a comparison of words needs, close together.
 #[derive(Debug, Clone, Copy)]
-struct Hot {
-    a: Option<u32>,
-    b: Option<u32>,
+pub(super) struct Hot {
+    pub(super) a: Option<u32>,
+    pub(super) b: Option<u32>,
     /// Two words on either side, equal if they are.
     plain: bool,
     different: bool,
 }
 
 #[derive(Debug)]
-struct State {
-    name: String,
-    rule: Rule,
+pub(super) struct State {
+    pub(super) name: String,
+    pub(super) rule: Rule,
     /// Sample and time since which it differs, with what it then was.
-    since: Option<(u64, First)>,
-    count: u64,
-    first: Option<First>,
+    pub(super) since: Option<(u64, First)>,
+    pub(super) count: u64,
+    pub(super) first: Option<First>,
 }
 
 pub(super) struct Engine<'a> {
-    a: Side,
-    b: Side,
-    hot: Vec<Hot>,
-    states: Vec<State>,
+    pub(super) a: Side,
+    pub(super) b: Side,
+    pub(super) hot: Vec<Hot>,
+    pub(super) states: Vec<State>,
     touched: Touched,
     options: &'a Options,
-    samples: u64,
+    pub(super) samples: u64,
     total_bytes: Option<u64>,
     /// A value per pair, as it was when the pair was equal last; until the first difference.
-    before: Option<(Values, u128)>,
-    context: Option<Gathering>,
+    pub(super) before: Option<(Values, u128)>,
+    pub(super) context: Option<Gathering>,
     /// Edges of the clock that the other file does not have.
-    surplus: Option<Difference>,
+    pub(super) surplus: Option<Difference>,
     /// First time at which paired edges lie at different times.
-    shifted_fs: Option<u128>,
+    pub(super) shifted_fs: Option<u128>,
     /// Samples that one file does not record.
-    unrecorded: u64,
+    pub(super) unrecorded: u64,
     /// Differences that did not last as long as the time tolerance.
-    forgiven: u64,
-}
-
-/// The context of the first divergence, until it is complete.
-struct Gathering {
-    context: Context,
-    pairs: Vec<usize>,
-    missing: usize,
+    pub(super) forgiven: u64,
 }
 
 impl<'a> Engine<'a> {
@@ -346,7 +338,7 @@ impl<'a> Engine<'a> {
         }
     }
 
-    fn values(&self, at: usize) -> (Option<Value<'_>>, Option<Value<'_>>) {
+    pub(super) fn values(&self, at: usize) -> (Option<Value<'_>>, Option<Value<'_>>) {
         let pair = self.hot[at];
         (
             pair.a.map(|slot| self.a.values.get(slot)),
@@ -382,110 +374,6 @@ impl<'a> Engine<'a> {
         }
         state.count += self.samples - since;
         state.first.get_or_insert(first);
-    }
-
-    /// Notes what stands around the first divergence of all: the last equal sample, itself, and some behind it.
-    fn gather(&mut self, diverged: &[u32], time_fs: u128) {
-        if self.context.is_none() && !diverged.is_empty() {
-            let pairs: Vec<usize> = diverged.iter().map(|at| *at as usize).take(CONTEXT_SIGNALS).collect();
-            let rows = pairs.iter().map(|at| ContextRow {
-                signal: self.states[*at].name.clone(),
-                a: Vec::new(),
-                b: Vec::new(),
-            });
-            let mut context = Context {
-                sample: self.samples,
-                others: diverged.len() - pairs.len(),
-                times: Vec::new(),
-                rows: rows.collect(),
-            };
-            if let (Some((before, before_fs)), 1..) = (self.before.take(), self.samples) {
-                context.times.push(seconds(before_fs));
-                for (row, at) in context.rows.iter_mut().zip(&pairs) {
-                    let value = self.hot[*at].a.and(self.hot[*at].b).map(|_| before.get(*at as u32));
-                    let (a, b) = self.states[*at].rule.shown(value, value);
-                    row.a.push(a);
-                    row.b.push(b);
-                }
-            }
-            let missing = 1 + CONTEXT_SAMPLES;
-            self.context = Some(Gathering {
-                context,
-                pairs,
-                missing,
-            });
-        }
-        if let Some((_, before_fs)) = &mut self.before {
-            *before_fs = time_fs;
-        }
-        let Some(mut gathering) = self.context.take() else {
-            return;
-        };
-        if gathering.missing > 0 {
-            gathering.missing -= 1;
-            gathering.context.times.push(seconds(time_fs));
-            for (row, at) in gathering.context.rows.iter_mut().zip(&gathering.pairs) {
-                let (a, b) = self.values(*at);
-                let (a, b) = self.states[*at].rule.shown(a, b);
-                row.a.push(a);
-                row.b.push(b);
-            }
-        }
-        self.context = Some(gathering);
-    }
-
-    /// Writes what was found into the result.
-    pub(super) fn finish(self, comparison: &mut Comparison) {
-        let mut differences: Vec<(u128, Difference)> = Vec::new();
-        for state in self.states {
-            // What differs at the end of the files has no end that could forgive it.
-            let persistent = state.since.is_some();
-            let since = state.since.as_ref().map_or(0, |(since, _)| self.samples - since);
-            let Some(first) = state.first.or(state.since.map(|(_, first)| first)) else {
-                continue;
-            };
-            let difference = Difference {
-                signal: state.name,
-                time: seconds(first.time_fs),
-                a: first.a,
-                b: first.b,
-                count: state.count + since,
-                persistent,
-                a_number: first.a_number,
-                b_number: first.b_number,
-            };
-            differences.push((first.time_fs, difference));
-        }
-        // Stable: signals that differ first at the same time stay in the order of the file.
-        differences.sort_by_key(|(time_fs, _)| *time_fs);
-        let mut differences: Vec<Difference> = differences.into_iter().map(|(_, difference)| difference).collect();
-        differences.extend(self.surplus);
-        if let Some(time_fs) = self.shifted_fs {
-            comparison.notes.push(format!(
-                "the clock's edges lie at different times from {} s on: compared edge by edge",
-                seconds(time_fs)
-            ));
-        }
-        let [held_a, held_b] = [self.a.held_in_reset, self.b.held_in_reset];
-        if held_a + held_b > 0 {
-            comparison.notes.push(format!(
-                "not compared while in reset: {held_a} edges of the first file, {held_b} of the second"
-            ));
-        }
-        if self.unrecorded > 0 {
-            comparison.notes.push(format!(
-                "{} samples are not recorded in one file ($dumpoff) and were not compared",
-                self.unrecorded
-            ));
-        }
-        if self.forgiven > 0 {
-            comparison.notes.push(format!(
-                "{} differences lasted no longer than the time tolerance and do not count",
-                self.forgiven
-            ));
-        }
-        comparison.context = self.context.map(|gathering| gathering.context);
-        comparison.conclude(self.samples, differences);
     }
 }
 

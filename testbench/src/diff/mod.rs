@@ -27,7 +27,10 @@
 //! length. Only [`show`] reads them again, when it is asked for.
 
 mod clocking;
+mod delay;
 mod engine;
+mod finish;
+mod gather;
 mod junit;
 mod matching;
 mod names;
@@ -39,6 +42,7 @@ mod rule;
 mod side;
 mod svg;
 mod text;
+mod touched;
 
 use std::path::Path;
 

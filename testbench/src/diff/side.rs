@@ -10,7 +10,9 @@
 use std::collections::VecDeque;
 
 use super::clocking::Slots;
+use super::delay::DelayLine;
 use super::names::Group;
+use super::touched::{Lists, Touched};
 use crate::Error;
 use crate::reader::{Feed, Kind, Step, Values};
 
@@ -19,89 +21,12 @@ const DELAYED_WORDS: usize = 1 << 21;
 /// Changes that may be held back until it is known whether they are glitches.
 const HELD_CHANGES: usize = 1 << 20;
 
-/// Pairs to look at again.
-#[derive(Debug, Default)]
-pub(super) struct Touched {
-    flags: Vec<bool>,
-    pub(super) list: Vec<u32>,
-    /// Pairs that wait for a delayed value to arrive.
-    pub(super) waiting: Vec<bool>,
-}
-
-impl Touched {
-    /// So many pairs, all to be looked at.
-    pub(super) fn new(pairs: usize) -> Self {
-        Self {
-            flags: vec![true; pairs],
-            list: (0..pairs as u32).collect(),
-            waiting: vec![false; pairs],
-        }
-    }
-
-    #[inline]
-    fn touch(&mut self, pair: u32) {
-        if !std::mem::replace(&mut self.flags[pair as usize], true) {
-            self.list.push(pair);
-        }
-    }
-
-    /// The pairs touched since, which are then untouched.
-    pub(super) fn drain(&mut self, mut each: impl FnMut(u32)) {
-        for pair in self.list.drain(..) {
-            self.flags[pair as usize] = false;
-            each(pair);
-        }
-    }
-}
-
-/// Lists of numbers, one per slot, in one array.
-#[derive(Debug, Default)]
-struct Lists {
-    starts: Vec<u32>,
-    numbers: Vec<u32>,
-}
-
-impl Lists {
-    fn new(lists: usize, entries: &[(u32, u32)]) -> Self {
-        let mut sorted = entries.to_vec();
-        sorted.sort_unstable();
-        let mut starts = vec![0u32; lists + 1];
-        for (list, _) in &sorted {
-            starts[*list as usize + 1] += 1;
-        }
-        for at in 0..lists {
-            starts[at + 1] += starts[at];
-        }
-        let numbers = sorted.into_iter().map(|(_, number)| number).collect();
-        Self { starts, numbers }
-    }
-
-    #[inline]
-    fn get(&self, list: u32) -> &[u32] {
-        let at = list as usize;
-        &self.numbers[self.starts[at] as usize..self.starts[at + 1] as usize]
-    }
-}
-
 /// Part of a vector: where its bits go.
 #[derive(Debug, Clone, Copy)]
 struct PartOf {
     whole: u32,
     width: u32,
     low: u32,
-}
-
-/// Values that come into effect later. Its unit is what the caller counts in: samples or femtoseconds.
-#[derive(Debug)]
-struct DelayLine {
-    by: u128,
-    /// Slot whose value is delayed, and the slot that shows it.
-    slots: Vec<(u32, u32)>,
-    /// Places in `slots` that changed since the last [`Side::pend`], and for each whether it is among them.
-    changed: Vec<u32>,
-    is_changed: Vec<bool>,
-    queue: VecDeque<(u128, u32)>,
-    words: VecDeque<u64>,
 }
 
 /// Holds values back until they have lasted.
@@ -430,25 +355,6 @@ impl Side {
             }
         }
         happened
-    }
-}
-
-impl DelayLine {
-    fn new(by: u128) -> Self {
-        Self {
-            by,
-            slots: Vec::new(),
-            changed: Vec::new(),
-            is_changed: Vec::new(),
-            queue: VecDeque::new(),
-            words: VecDeque::new(),
-        }
-    }
-
-    fn mark(&mut self, place: u32) {
-        if !std::mem::replace(&mut self.is_changed[place as usize], true) {
-            self.changed.push(place);
-        }
     }
 }
 

@@ -21,6 +21,8 @@ mod digits;
 mod feed;
 mod fst;
 mod header;
+mod ids;
+mod put;
 mod section;
 mod values;
 
@@ -36,7 +38,8 @@ use self::dialect::Dialect;
 pub(crate) use self::feed::Feed;
 use self::fst::FstValues;
 pub(crate) use self::header::{Declarations, Kind, Named};
-use self::section::{Ids, Section, truncated};
+use self::ids::Ids;
+use self::section::{Section, truncated};
 pub(crate) use self::values::{Value, Values};
 use crate::Error;
 

@@ -9,75 +9,21 @@
 //! Nothing is allocated per change: digits go into words eight at a time, id codes are numbers that index a table. The
 //! buffer is refilled when a command is not all in it, and grows only for a command that is longer than it.
 
-use std::collections::HashMap;
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 
 use super::Counted;
 use super::batch::Gatherer;
-use super::digits::{digit, known_word, pack};
+use super::digits::{digit, known_word};
 use super::header::Kind;
-use super::values::pack_text;
+use super::ids::{Ids, id_number};
+use super::put::{put_digits, put_real, put_text, shown};
 use crate::Error;
 
 const BUFFER_BYTES: usize = 1 << 18;
 /// Bytes that one command may have: a vector of 2^24 bits, twice over.
 const COMMAND_BYTES: usize = 1 << 25;
-/// Id codes up to this number are looked up in a table, others by hash.
-const TABLE_IDS: u64 = 1 << 20;
-const NO_SLOT: u32 = u32::MAX;
-
-/// The number of an id code and the place behind it: the first character counts least, as most writers have it, so that
-/// numbers are dense. Ten characters and more do not fit, and give `None`.
-#[inline]
-fn id_number(data: &[u8], mut at: usize) -> (Option<u64>, usize) {
-    let (from, mut number, mut scale) = (at, 0u64, 1u64);
-    while let Some(byte) = data.get(at) {
-        let character = byte.wrapping_sub(b'!');
-        if character > b'~' - b'!' {
-            break;
-        }
-        number = number.wrapping_add(scale.wrapping_mul(u64::from(character) + 1));
-        scale = scale.wrapping_mul(94);
-        at += 1;
-    }
-    (((1..10).contains(&(at - from))).then_some(number), at)
-}
-
-/// Slots by id code.
-#[derive(Debug, Default)]
-pub(super) struct Ids {
-    table: Vec<u32>,
-    others: HashMap<u64, u32>,
-}
-
-impl Ids {
-    pub(super) fn number(id: &str) -> Option<u64> {
-        id_number(id.as_bytes(), 0).0
-    }
-
-    pub(super) fn insert(&mut self, number: u64, slot: u32) {
-        if number >= TABLE_IDS {
-            self.others.insert(number, slot);
-            return;
-        }
-        let at = number as usize;
-        if at >= self.table.len() {
-            self.table.resize(at + 1, NO_SLOT);
-        }
-        self.table[at] = slot;
-    }
-
-    #[inline]
-    pub(super) fn get(&self, number: u64) -> Option<u32> {
-        if number < TABLE_IDS {
-            let slot = self.table.get(number as usize).copied();
-            return slot.filter(|slot| *slot != NO_SLOT);
-        }
-        self.others.get(&number).copied()
-    }
-}
 
 /// What the reading ended with.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -450,65 +396,4 @@ fn slot(ids: &Ids, number: Option<u64>, data: &[u8], at: usize, end: usize) -> R
         };
         Fault { at, what }
     })
-}
-
-fn put_digits(gatherer: &mut Gatherer, slot: u32, digits: &[u8]) -> Result<(), String> {
-    let width = match gatherer.kind(slot) {
-        Kind::Bits(width) => width,
-        Kind::Real => return Err("bits for a signal that is declared as real".to_owned()),
-        Kind::Text | Kind::Event => return Ok(()),
-    };
-    if digits.is_empty() {
-        return Err("a value without digits".to_owned());
-    }
-    let bad = |byte| format!("invalid VCD logic value `{}`: the file is damaged", shown(&[byte]));
-    if digits.len() > width as usize {
-        // Leading digits that say nothing are no damage: some writers dump every vector in 32 digits or 64.
-        let (extra, rest) = digits.split_at(digits.len() - width as usize);
-        if extra.iter().any(|byte| *byte != b'0') {
-            return Err(match digits.iter().find(|byte| digit(**byte).is_none()) {
-                Some(byte) => bad(*byte),
-                None => format!(
-                    "a value of {} bits for a signal that is declared with {width}: the file is damaged",
-                    digits.len()
-                ),
-            });
-        }
-        return put_digits(gatherer, slot, rest);
-    }
-    if width <= 64 {
-        let (mut bits, mut unknown) = ([0], [0]);
-        pack(digits, width, &mut bits, &mut unknown).map_err(bad)?;
-        gatherer.put_word(slot, bits[0], unknown[0]);
-        return Ok(());
-    }
-    let words = gatherer.put_words(slot);
-    let (bits, unknown) = words.split_at_mut(words.len() / 2);
-    pack(digits, width, bits, unknown).map_err(bad)
-}
-
-fn put_real(gatherer: &mut Gatherer, slot: u32, word: &[u8]) -> Result<(), String> {
-    if gatherer.kind(slot) != Kind::Real {
-        return Err("a real value for a signal that is declared as bits".to_owned());
-    }
-    let text = std::str::from_utf8(word).ok();
-    let real: f64 = text
-        .and_then(|text| text.parse().ok())
-        .ok_or_else(|| format!("`{}` is no number", shown(word)))?;
-    gatherer.put_word(slot, real.to_bits(), 0);
-    Ok(())
-}
-
-fn put_text(gatherer: &mut Gatherer, slot: u32, word: &[u8]) -> Result<(), String> {
-    if gatherer.kind(slot) == Kind::Text {
-        pack_text(word, gatherer.put_words(slot));
-    }
-    Ok(())
-}
-
-/// Bytes for a message.
-fn shown(bytes: &[u8]) -> String {
-    String::from_utf8_lossy(&bytes[..bytes.len().min(60)])
-        .escape_debug()
-        .to_string()
 }
