@@ -2,16 +2,24 @@
 
 use crate::failure::Failure;
 use crate::{output, progress};
-use posicast_testbench::diff::{self, Comparison, Options, Verdict};
+use posicast_testbench::Error;
+use posicast_testbench::diff::{
+    self, Comparison, Edge, Options, Progress, Reset, UnknownPolicy, Verdict, parse_time_fs,
+};
+use posicast_testbench::wave::write_text;
 use std::path::PathBuf;
+use std::time::{Duration, Instant};
 
-/// Compare two VCD files, sampled at the clock
+/// Compare two waveforms (VCD or FST), sampled at the clock
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
   posicast diff model.vcd rtl.vcd                        exact, at the rising edges of the only clock
-  posicast diff rtl.vcd float.vcd --tolerance x_y=1.5
-  posicast diff a.vcd b.vcd --map top.dut=tb.u_dut --clock clk
+  posicast diff rtl.vcd float.vcd --tolerance x_y=1.5 --view 'x_*=q15.16'
+  posicast diff a.vcd b.fst --map top.dut=tb.u_dut --clock clk --show first
+  posicast diff pins.vcd pins2.vcd --raw --time-tolerance 2ns --glitch 1ns
+
+A SIGNAL is a full name, its end behind a dot, or a pattern: * within a scope, ** across scopes.
 
 Exit status: 0 equal, 1 different, 2 nothing in common or unreadable.")]
 pub(crate) struct Args {
@@ -19,45 +27,217 @@ pub(crate) struct Args {
     a: PathBuf,
     /// Second file
     b: PathBuf,
-    /// Sample at the rising edge of this 1-bit signal [default: the only clock found, else every change]
-    #[arg(long, value_name = "NAME")]
-    clock: Option<String>,
-    /// Scope or signal A of the first file is B of the second (repeatable)
-    #[arg(long, value_name = "A=B")]
-    map: Vec<String>,
-    /// Largest difference that counts as equal, in LSB, of one signal or of all (repeatable)
-    #[arg(long, value_name = "[SIGNAL=]LSB")]
-    tolerance: Vec<String>,
-    /// A signal that only one file has is a difference; without it such signals are only listed
-    #[arg(long)]
-    require_all: bool,
+    #[command(flatten)]
+    when: When,
+    #[command(flatten)]
+    which: Which,
+    #[command(flatten)]
+    how: How,
+    /// Write the result as JUnit XML
+    #[arg(long, value_name = "FILE", help_heading = "Output")]
+    junit: Option<PathBuf>,
+    /// Where they differ, write NAME.vcd with both sides, NAME.gtkw and NAME.sucl that open it there, and NAME.svg
+    #[arg(long, value_name = "NAME", help_heading = "Output")]
+    show: Option<PathBuf>,
     /// Print one JSON document on standard output
-    #[arg(long)]
+    #[arg(long, help_heading = "Output")]
     json: bool,
 }
 
+#[derive(clap::Args)]
+#[command(next_help_heading = "When to compare")]
+struct When {
+    /// Sample at the edges of this 1-bit signal [default: the only clock found, else every change]
+    #[arg(long, value_name = "NAME")]
+    clock: Option<String>,
+    /// Which edge samples
+    #[arg(long, value_enum, default_value_t = EdgeName::Rising)]
+    edge: EdgeName,
+    /// Compare from where this 1-bit signal is released on each side; `none`: from the start [default: the only reset found]
+    #[arg(long, value_name = "NAME[=0|1]")]
+    reset: Option<String>,
+    /// Compare at every change, whether there is a clock or not
+    #[arg(long, conflicts_with = "clock")]
+    raw: bool,
+    /// First time that is compared, such as 10us, by the first file
+    #[arg(long, value_name = "TIME", value_parser = parse_time_fs)]
+    start: Option<u128>,
+    /// Last time that is compared
+    #[arg(long, value_name = "TIME", value_parser = parse_time_fs)]
+    end: Option<u128>,
+    /// With --raw: a difference that lasts no longer is none
+    #[arg(long, value_name = "TIME", value_parser = parse_time_fs)]
+    time_tolerance: Option<u128>,
+    /// With --raw: leave out values that last shorter, in both files
+    #[arg(long, value_name = "TIME", value_parser = parse_time_fs)]
+    glitch: Option<u128>,
+    /// The signal comes so many samples later in the second file, or with --raw so much time; negative: earlier (repeatable)
+    #[arg(long, value_name = "SIGNAL=SAMPLES|TIME", allow_hyphen_values = true)]
+    latency: Vec<String>,
+}
+
+#[derive(clap::Args)]
+#[command(next_help_heading = "Which signals")]
+struct Which {
+    /// Scope or signal A of the first file is B of the second; with * in both, a pattern (repeatable)
+    #[arg(long, value_name = "A=B")]
+    map: Vec<String>,
+    /// Read such maps from a file, one a line
+    #[arg(long, value_name = "FILE")]
+    map_file: Option<PathBuf>,
+    /// Compare only what is below this scope of the first file
+    #[arg(long, value_name = "SCOPE")]
+    root_a: Option<String>,
+    /// Compare only what is below this scope of the second file
+    #[arg(long, value_name = "SCOPE")]
+    root_b: Option<String>,
+    /// Compare nothing else than these signals or scopes (repeatable)
+    #[arg(long, value_name = "SIGNAL")]
+    only: Vec<String>,
+    /// Leave out these signals or scopes (repeatable)
+    #[arg(long, value_name = "SIGNAL")]
+    ignore: Vec<String>,
+    /// A signal that only one file has is a difference; without it such signals are only listed
+    #[arg(long)]
+    require_all: bool,
+}
+
+#[derive(clap::Args)]
+#[command(next_help_heading = "How to compare")]
+struct How {
+    /// Largest difference that counts as equal, of one signal or of all: 2 LSB, 0.01abs in its unit, or 0.1% (repeatable)
+    #[arg(long, value_name = "[SIGNAL=]AMOUNT")]
+    tolerance: Vec<String>,
+    /// Read the bits of a signal as a number: signed, unsigned, q15.16, uq16 (repeatable)
+    #[arg(long, value_name = "SIGNAL=VIEW")]
+    view: Vec<String>,
+    /// What unknown bits (x, z) equal
+    #[arg(long, value_enum, default_value_t = UnknownName::Strict)]
+    unknown: UnknownName,
+}
+
+#[derive(Clone, Copy, clap::ValueEnum)]
+enum EdgeName {
+    Rising,
+    Falling,
+}
+
+#[derive(Clone, Copy, clap::ValueEnum)]
+enum UnknownName {
+    /// Themselves only
+    Strict,
+    /// Anything
+    Wildcard,
+    /// 0
+    Zero,
+}
+
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
-    let mut options = Options {
-        clock: args.clock.clone(),
-        require_all: args.require_all,
-        ..Options::default()
-    };
-    for map in &args.map {
-        options.add_map(map).map_err(Failure::because)?;
+    let options = options(args)?;
+    let mut bar = LateBar::new();
+    let comparison =
+        diff::compare(&args.a, &args.b, &options, &mut |progress| bar.show(progress)).map_err(Failure::because)?;
+    bar.clear();
+    if let Some(path) = &args.junit {
+        let name = format!("{} {}", args.a.display(), args.b.display());
+        write_text(path, &diff::junit(&comparison, &name)).map_err(Failure::because)?;
     }
-    for tolerance in &args.tolerance {
-        options.add_tolerance(tolerance).map_err(Failure::because)?;
+    if let (Some(base), Verdict::Different) = (&args.show, comparison.result)
+        && diff::show(base, &args.a, &args.b, &comparison).map_err(Failure::because)?
+    {
+        output::say(&format!(
+            "shown in {}",
+            base.with_extension("{vcd,gtkw,sucl,svg}").display()
+        ));
     }
-    let spinner = progress::spinner("comparing");
-    let comparison = diff::compare(&args.a, &args.b, &options, &mut |samples| spinner.set_position(samples))
-        .map_err(Failure::because)?;
-    spinner.finish_and_clear();
     if args.json {
-        output::print_json(&comparison)?
+        output::print_json(&comparison)?;
     } else {
-        output::print(&comparison.to_string())?
+        output::print(&(comparison.to_string() + "\n"))?;
     }
     verdict(&comparison)
+}
+
+fn options(args: &Args) -> Result<Options, Failure> {
+    let Args { when, which, how, .. } = args;
+    let mut options = Options {
+        clock: when.clock.clone(),
+        edge: match when.edge {
+            EdgeName::Rising => Edge::Rising,
+            EdgeName::Falling => Edge::Falling,
+        },
+        raw: when.raw,
+        reset: Reset::Found,
+        start_fs: when.start,
+        end_fs: when.end,
+        time_tolerance_fs: when.time_tolerance.unwrap_or(0),
+        glitch_fs: when.glitch.unwrap_or(0),
+        roots: [which.root_a.clone(), which.root_b.clone()],
+        only: which.only.clone(),
+        ignore: which.ignore.clone(),
+        unknown: match how.unknown {
+            UnknownName::Strict => UnknownPolicy::Strict,
+            UnknownName::Wildcard => UnknownPolicy::Wildcard,
+            UnknownName::Zero => UnknownPolicy::Zero,
+        },
+        require_all: which.require_all,
+        ..Options::default()
+    };
+    if let Some(path) = &which.map_file {
+        let text = std::fs::read_to_string(path);
+        let text = text.map_err(|e| Failure::from(miette::miette!("{}: cannot read: {e}", path.display())))?;
+        options
+            .add_map_file(&text)
+            .map_err(|error| Failure::because(error).in_file(path))?;
+    }
+    let mut add = |texts: &[String], add: fn(&mut Options, &str) -> Result<(), Error>| {
+        texts
+            .iter()
+            .try_for_each(|text| add(&mut options, text).map_err(Failure::because))
+    };
+    add(&which.map, Options::add_map)?;
+    add(&how.tolerance, Options::add_tolerance)?;
+    add(&how.view, Options::add_view)?;
+    add(&when.latency, Options::add_latency)?;
+    if let Some(text) = &when.reset {
+        options.set_reset(text).map_err(Failure::because)?;
+    }
+    Ok(options)
+}
+
+/// A bar over the bytes of both files that shows itself when the work takes long.
+struct LateBar {
+    start: Instant,
+    bar: Option<indicatif::ProgressBar>,
+}
+
+const LATE: Duration = Duration::from_secs(2);
+
+impl LateBar {
+    fn new() -> Self {
+        Self {
+            start: Instant::now(),
+            bar: None,
+        }
+    }
+
+    fn show(&mut self, progress: Progress) {
+        if self.bar.is_none() && self.start.elapsed() >= LATE {
+            self.bar = Some(match progress.total_bytes {
+                Some(total) => progress::bar("comparing", total),
+                None => progress::spinner("comparing"),
+            });
+        }
+        if let Some(bar) = &self.bar {
+            bar.set_position(progress.bytes);
+        }
+    }
+
+    fn clear(&self) {
+        if let Some(bar) = &self.bar {
+            bar.finish_and_clear();
+        }
+    }
 }
 
 fn verdict(comparison: &Comparison) -> Result<(), Failure> {

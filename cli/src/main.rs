@@ -50,7 +50,7 @@ enum Command {
     Generate(generate::Args),
     Simulate(simulate::Args),
     Verify(verify::Args),
-    Diff(diff::Args),
+    Diff(Box<diff::Args>),
     Synth(synth::Args),
     #[command(hide = true)]
     Identify(NotBuilt),

@@ -70,3 +70,80 @@ fn cli_diff_refuses_a_truncated_file() {
     assert_eq!((output.status.code(), output.stdout.is_empty()), (Some(2), true));
     assert!(String::from_utf8_lossy(&output.stderr).contains("cut.vcd"));
 }
+
+#[test]
+fn cli_diff_writes_what_shows_the_difference() {
+    let folder = tempfile::tempdir().unwrap();
+    let a = vcd(folder.path(), "a.vcd", &[1, 2, 3, 4]);
+    let b = vcd(folder.path(), "b.vcd", &[1, 2, 7, 4]);
+    let at = |name: &str| folder.path().join(name);
+    let output = posicast()
+        .arg("diff")
+        .args([&a, &b])
+        .arg("--show")
+        .arg(at("first"))
+        .arg("--junit")
+        .arg(at("junit.xml"))
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(1));
+    let text = String::from_utf8(output.stdout).unwrap();
+    assert!(
+        text.contains("first divergence at sample 2, 2.5e-8 s") && text.ends_with('\n'),
+        "{text}"
+    );
+    for name in ["first.vcd", "first.gtkw", "first.sucl", "first.svg"] {
+        assert!(at(name).is_file(), "{name}");
+    }
+    assert!(
+        std::fs::read_to_string(at("junit.xml"))
+            .unwrap()
+            .contains("failures=\"1\"")
+    );
+}
+
+#[test]
+fn cli_diff_options_that_fit_nothing_are_usage_errors() {
+    let folder = tempfile::tempdir().unwrap();
+    let a = vcd(folder.path(), "a.vcd", &[1, 2, 3, 4]);
+    let maps = folder.path().join("maps");
+    std::fs::write(&maps, "# one\ntop.y=top.y\n").unwrap();
+    let diff = |arguments: &[&str]| posicast().arg("diff").args([&a, &a]).args(arguments).assert();
+    for arguments in [
+        &["--reset", "nothing"][..],
+        &["--only", "nothing"],
+        &["--root-a", "nothing"],
+        &["--view", "y=q999"],
+        &["--latency", "y=5ns"],
+        &["--time-tolerance", "5ns"],
+        &["--glitch", "5 parsecs"],
+        &["--start", "1s"],
+        &["--raw", "--clock", "clk"],
+        &["--map-file", "absent"],
+    ] {
+        diff(arguments).code(2);
+    }
+    let maps = maps.to_str().unwrap();
+    diff(&["--map-file", maps, "--latency", "y=-1", "--ignore", "y"]).code(2);
+    diff(&[
+        "--map-file",
+        maps,
+        "--view",
+        "*=unsigned",
+        "--unknown",
+        "zero",
+        "--start",
+        "5ns",
+    ])
+    .code(0);
+    diff(&[
+        "--raw",
+        "--time-tolerance",
+        "1ns",
+        "--glitch",
+        "1ns",
+        "--edge",
+        "falling",
+    ])
+    .code(0);
+}

@@ -157,7 +157,7 @@ fn cli_verify_reports_a_broken_bit_of_the_multiplier_and_of_the_address() {
         let verify = posicast()
             .arg("verify")
             .arg(&output)
-            .args(["--json", "--cycles", CYCLES])
+            .args(["--json", "--cycles", CYCLES, "--block", "shaper"])
             .output()
             .unwrap();
         assert_eq!(

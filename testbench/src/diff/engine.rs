@@ -1,277 +1,383 @@
-//! Reads both files in step and compares what changed.
+//! Compares what changed, at the samples or at every change.
 //!
 //! The cost of a sample is the number of signals that changed since the last one: a pair that did not change stays as
 //! equal or as different as it was, and its count is added up when that ends.
 
-use super::equality;
+use super::clocking::Slots;
+use super::gather::Gathering;
 use super::matching::Pair;
-use super::result::{Comparison, Difference, Shown};
+use super::options::Options;
+use super::result::{Difference, Shown};
+use super::rule::Rule;
+use super::side::{ClockEdge, Side, slot_of};
+use super::touched::Touched;
 use crate::Error;
-use crate::reader::Reader;
+use crate::reader::{Kind, Value, Values};
 
-const PROGRESS_SAMPLES: u64 = 1 << 16;
+const PROGRESS_SAMPLES: u64 = 1 << 14;
 
-struct First {
-    time_fs: u128,
-    a: Shown,
-    b: Shown,
+/// How far a comparison has come.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Progress {
+    /// Samples compared.
+    pub samples: u64,
+    /// Bytes read, of both files.
+    pub bytes: u64,
+    /// Length of both files; `None` where one is a pipe.
+    pub total_bytes: Option<u64>,
 }
 
-struct State {
-    pair: Pair,
-    tolerance: Option<f64>,
-    /// Sample since which it differs.
-    since: Option<u64>,
-    count: u64,
-    first: Option<First>,
-    touched: bool,
+#[derive(Debug, Clone)]
+pub(super) struct First {
+    pub(super) time_fs: u128,
+    pub(super) a: Shown,
+    pub(super) b: Shown,
+    pub(super) a_number: Option<f64>,
+    pub(super) b_number: Option<f64>,
 }
 
-/// Pairs to look at again.
-struct Touched {
-    /// For each slot: its pairs.
-    of_a: Vec<Vec<u32>>,
-    of_b: Vec<Vec<u32>>,
-    list: Vec<u32>,
+/// What a comparison of words needs, close together.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Hot {
+    pub(super) a: Option<u32>,
+    pub(super) b: Option<u32>,
+    /// Two words on either side, equal if they are.
+    plain: bool,
+    different: bool,
 }
 
-pub(super) struct Engine {
-    a: Reader,
-    b: Reader,
-    states: Vec<State>,
+#[derive(Debug)]
+pub(super) struct State {
+    pub(super) name: String,
+    pub(super) rule: Rule,
+    /// Sample and time since which it differs, with what it then was.
+    pub(super) since: Option<(u64, First)>,
+    pub(super) count: u64,
+    pub(super) first: Option<First>,
+}
+
+pub(super) struct Engine<'a> {
+    pub(super) a: Side,
+    pub(super) b: Side,
+    pub(super) hot: Vec<Hot>,
+    pub(super) states: Vec<State>,
     touched: Touched,
-    samples: u64,
+    options: &'a Options,
+    pub(super) samples: u64,
+    total_bytes: Option<u64>,
+    /// A value per pair, as it was when the pair was equal last; until the first difference.
+    pub(super) before: Option<(Values, u128)>,
+    pub(super) context: Option<Gathering>,
     /// Edges of the clock that the other file does not have.
-    surplus: Option<Difference>,
+    pub(super) surplus: Option<Difference>,
     /// First time at which paired edges lie at different times.
-    shifted_fs: Option<u128>,
+    pub(super) shifted_fs: Option<u128>,
+    /// Samples that one file does not record.
+    pub(super) unrecorded: u64,
+    /// Differences that did not last as long as the time tolerance.
+    pub(super) forgiven: u64,
 }
 
-impl Engine {
-    pub(super) fn new(a: Reader, b: Reader, pairs: impl Iterator<Item = (Pair, Option<f64>)>) -> Self {
-        let mut touched = Touched {
-            of_a: vec![Vec::new(); a.slot_count()],
-            of_b: vec![Vec::new(); b.slot_count()],
-            list: Vec::new(),
-        };
-        let states: Vec<State> = pairs
-            .map(|(pair, tolerance)| State {
-                pair,
-                tolerance,
+impl<'a> Engine<'a> {
+    pub(super) fn new(
+        a: Side,
+        b: Side,
+        pairs: Vec<(Pair, Rule)>,
+        options: &'a Options,
+        total_bytes: Option<u64>,
+    ) -> Self {
+        let mut before = Values::default();
+        let mut hot = Vec::new();
+        let mut states = Vec::new();
+        for (pair, rule) in pairs {
+            let kinds = [
+                pair.a.map(|slot| a.values.kind(slot)),
+                pair.b.map(|slot| b.values.kind(slot)),
+            ];
+            let plain = rule.is_plain()
+                && match kinds {
+                    [Some(Kind::Bits(a)), Some(Kind::Bits(b))] => a == b && a <= 64,
+                    _ => false,
+                };
+            before.add(kinds.into_iter().flatten().next().unwrap_or(Kind::Event));
+            hot.push(Hot {
+                a: pair.a,
+                b: pair.b,
+                plain,
+                different: false,
+            });
+            states.push(State {
+                name: pair.name,
+                rule,
                 since: None,
                 count: 0,
                 first: None,
-                touched: true,
-            })
-            .collect();
-        for (at, state) in (0..).zip(&states) {
-            let put = |lists: &mut Vec<Vec<u32>>, slot: Option<u32>| {
-                if let Some(slot) = slot {
-                    lists[slot as usize].push(at);
-                }
-            };
-            put(&mut touched.of_a, state.pair.a);
-            put(&mut touched.of_b, state.pair.b);
-            touched.list.push(at);
+            });
         }
         Self {
             a,
             b,
+            touched: Touched::new(states.len()),
+            hot,
             states,
-            touched,
+            options,
             samples: 0,
+            total_bytes,
+            before: Some((before, 0)),
+            context: None,
             surplus: None,
             shifted_fs: None,
+            unrecorded: 0,
+            forgiven: 0,
         }
     }
 
-    /// Compares at the rising edges of the clock.
-    pub(super) fn at_edges(&mut self, clock: (u32, u32), progress: &mut dyn FnMut(u64)) -> Result<(), Error> {
+    /// These pairs are not compared before a delayed value has arrived.
+    pub(super) fn wait_for(&mut self, pairs: impl Iterator<Item = u32>) {
+        for pair in pairs {
+            self.touched.waiting[pair as usize] = true;
+        }
+    }
+
+    /// Compares at the edges of the clock.
+    pub(super) fn at_edges(&mut self, clock: Slots, progress: &mut dyn FnMut(Progress)) -> Result<(), Error> {
+        self.a.start()?;
+        self.b.start()?;
+        let mut last: Option<[u128; 2]> = None;
+        let mut period_fs = 0;
         loop {
-            let a = next_edge(
-                &mut self.a,
-                clock.0,
-                &self.touched.of_a,
-                &mut self.touched.list,
-                &mut self.states,
-            )?;
-            let b = next_edge(
-                &mut self.b,
-                clock.1,
-                &self.touched.of_b,
-                &mut self.touched.list,
-                &mut self.states,
-            )?;
-            match (a, b) {
-                (Some(a), Some(b)) => {
-                    if a != b && self.shifted_fs.is_none() {
-                        self.shifted_fs = Some(a);
-                    }
-                    self.compare(a, progress);
-                }
+            let mut a = self.a.next_edge(&mut self.touched)?;
+            let mut b = self.b.next_edge(&mut self.touched)?;
+            if let (Some(edge_a), Some(edge_b)) = (a, b)
+                && edge_a.gap != edge_b.gap
+            {
+                (a, b) = self.meet_again(edge_a, edge_b, last, period_fs)?;
+            }
+            let (a, b) = match (a, b) {
+                (Some(a), Some(b)) => (a, b),
                 (None, None) => return Ok(()),
-                (Some(time), None) => {
+                (Some(edge), None) => {
                     self.b.cut_off()?;
-                    return self.count_surplus(clock, time, true);
+                    return self.count_surplus(clock, edge, true);
                 }
-                (None, Some(time)) => {
+                (None, Some(edge)) => {
                     self.a.cut_off()?;
-                    return self.count_surplus(clock, time, false);
+                    return self.count_surplus(clock, edge, false);
                 }
+            };
+            if a.time_fs != b.time_fs && self.shifted_fs.is_none() {
+                self.shifted_fs = Some(a.time_fs);
+            }
+            if let Some([last_a, _]) = last
+                && !a.gap
+            {
+                period_fs = a.time_fs - last_a;
+            }
+            last = Some([a.time_fs, b.time_fs]);
+            if self.options.end_fs.is_some_and(|end| a.time_fs > end) {
+                return Ok(());
+            }
+            let sample = u128::from(self.samples);
+            for side in [&mut self.a, &mut self.b] {
+                side.pend(sample)?;
+                side.release(sample, &mut self.touched);
+            }
+            if self.options.start_fs.is_none_or(|start| a.time_fs >= start) {
+                self.compare(a.time_fs, progress);
+            }
+        }
+    }
+
+    /// After a stretch that one file does not record, edges meet by their time, as far apart as they were before.
+    fn meet_again(
+        &mut self,
+        mut a: ClockEdge,
+        mut b: ClockEdge,
+        last: Option<[u128; 2]>,
+        period_fs: u128,
+    ) -> Result<(Option<ClockEdge>, Option<ClockEdge>), Error> {
+        // In a common time: each file's own, plus where the other stood at the last common edge.
+        let [last_a, last_b] = last.unwrap_or_default();
+        loop {
+            let (time_a, time_b) = (a.time_fs + last_b, b.time_fs + last_a);
+            if time_a.abs_diff(time_b) <= period_fs / 2 {
+                return Ok((Some(a), Some(b)));
+            }
+            self.unrecorded += 1;
+            let behind = if time_a < time_b {
+                (&mut self.a, &mut a)
+            } else {
+                (&mut self.b, &mut b)
+            };
+            match behind.0.next_edge(&mut self.touched)? {
+                Some(edge) => *behind.1 = edge,
+                // The rest of the other file has no partner that could have been recorded.
+                None => return Ok((None, None)),
             }
         }
     }
 
     /// One file has more edges than the other: a difference of the clock, from the first edge that is alone.
-    fn count_surplus(&mut self, clock: (u32, u32), time_fs: u128, of_a: bool) -> Result<(), Error> {
-        let (reader, slot, lists) = if of_a {
-            (&mut self.a, clock.0, &self.touched.of_a)
-        } else {
-            (&mut self.b, clock.1, &self.touched.of_b)
-        };
+    fn count_surplus(&mut self, clock: Slots, edge: ClockEdge, of_a: bool) -> Result<(), Error> {
+        let within = |edge: ClockEdge| self.options.end_fs.is_none_or(|end| edge.time_fs <= end);
+        if !within(edge) {
+            return Ok(());
+        }
+        let side = if of_a { &mut self.a } else { &mut self.b };
         let mut count = 1;
-        while next_edge(reader, slot, lists, &mut self.touched.list, &mut self.states)?.is_some() {
+        while side.next_edge(&mut self.touched)?.is_some_and(within) {
             count += 1;
         }
-        let edge = Shown::Bits("1".to_owned());
-        let name = self
-            .states
-            .iter()
-            .find(|s| (s.pair.a, s.pair.b) == (Some(clock.0), Some(clock.1)));
+        let digit = if self.options.edge == super::Edge::Rising {
+            "1"
+        } else {
+            "0"
+        };
+        let shown = Shown::Bits(digit.to_owned());
+        let slots = [slot_of(clock, false), slot_of(clock, true)].map(Some);
+        let at = self.hot.iter().position(|hot| [hot.a, hot.b] == slots);
         self.surplus = Some(Difference {
-            signal: name.map_or_else(String::new, |s| s.pair.name.clone()),
-            time: seconds(time_fs),
-            a: if of_a { edge.clone() } else { Shown::Missing },
-            b: if of_a { Shown::Missing } else { edge },
+            signal: at.map_or_else(String::new, |at| self.states[at].name.clone()),
+            time: seconds(edge.time_fs),
+            a: if of_a { shown.clone() } else { Shown::Missing },
+            b: if of_a { Shown::Missing } else { shown },
             count,
+            persistent: true,
+            a_number: None,
+            b_number: None,
         });
         Ok(())
     }
 
     /// Compares at every time at which something changes.
-    pub(super) fn at_changes(&mut self, progress: &mut dyn FnMut(u64)) -> Result<(), Error> {
-        let mut next_a = next_step(&mut self.a)?;
-        let mut next_b = next_step(&mut self.b)?;
-        while let Some(time) = [next_a, next_b].into_iter().flatten().min() {
-            if next_a == Some(time) {
-                self.a
-                    .commit(touch(&self.touched.of_a, &mut self.touched.list, &mut self.states));
-                next_a = next_step(&mut self.a)?;
+    pub(super) fn at_changes(&mut self, progress: &mut dyn FnMut(Progress)) -> Result<(), Error> {
+        self.a.start()?;
+        self.b.start()?;
+        let glitch_fs = self.options.glitch_fs;
+        while let Some(time) = [self.a.next_time(), self.b.next_time()].into_iter().flatten().min() {
+            // With a glitch filter, a value comes into effect when it has lasted; it began before.
+            let began = time.saturating_sub(glitch_fs);
+            if self.options.end_fs.is_some_and(|end| began > end) {
+                return Ok(());
             }
-            if next_b == Some(time) {
-                self.b
-                    .commit(touch(&self.touched.of_b, &mut self.touched.list, &mut self.states));
-                next_b = next_step(&mut self.b)?;
+            let in_a = self.a.next_time() == Some(time) && self.a.advance_to(time, &mut self.touched)?;
+            let in_b = self.b.next_time() == Some(time) && self.b.advance_to(time, &mut self.touched)?;
+            let wanted = self.options.start_fs.is_none_or(|start| began >= start);
+            if (in_a || in_b) && wanted {
+                if self.a.is_off() || self.b.is_off() {
+                    self.unrecorded += 1;
+                } else {
+                    self.compare(began, progress);
+                }
             }
-            self.compare(time, progress);
-            match (next_a, next_b) {
-                (Some(_), None) => self.b.cut_off()?,
-                (None, Some(_)) => self.a.cut_off()?,
-                _ => {}
+            match (self.a.has_ended(), self.b.has_ended()) {
+                (true, true) => {
+                    self.a.forget_delayed();
+                    self.b.forget_delayed();
+                }
+                (false, true) => self.b.cut_off()?,
+                (true, false) => self.a.cut_off()?,
+                (false, false) => {}
             }
         }
         Ok(())
     }
 
-    fn compare(&mut self, time_fs: u128, progress: &mut dyn FnMut(u64)) {
-        let sample = self.samples;
-        for at in self.touched.list.drain(..) {
-            let state = &mut self.states[at as usize];
-            state.touched = false;
-            let a = state.pair.a.map(|slot| self.a.now(slot));
-            let b = state.pair.b.map(|slot| self.b.now(slot));
-            let equal = match (a, b) {
-                (Some(a), Some(b)) => equality::equal(a, b, state.tolerance),
+    fn compare(&mut self, time_fs: u128, progress: &mut dyn FnMut(Progress)) {
+        let Self {
+            a,
+            b,
+            hot,
+            states,
+            touched,
+            before,
+            ..
+        } = self;
+        let mut diverged: Vec<u32> = Vec::new();
+        let mut ended: Vec<u32> = Vec::new();
+        let is_waiting = std::mem::take(&mut touched.waiting);
+        touched.drain(|at| {
+            if is_waiting[at as usize] {
+                return;
+            }
+            let pair = hot[at as usize];
+            let equal = match (pair.a, pair.b) {
+                (Some(slot_a), Some(slot_b)) if pair.plain => {
+                    let (words_a, words_b) = (a.values.words(slot_a), b.values.words(slot_b));
+                    words_a == words_b
+                }
+                (Some(slot_a), Some(slot_b)) => states[at as usize]
+                    .rule
+                    .equal(a.values.get(slot_a), b.values.get(slot_b)),
                 _ => false,
             };
-            match (equal, state.since) {
-                (true, Some(since)) => {
-                    state.count += sample - since;
-                    state.since = None;
-                }
-                (false, None) => {
-                    state.since = Some(sample);
-                    if state.first.is_none() {
-                        let (a, b) = equality::shown(a, b, state.tolerance.is_some());
-                        state.first = Some(First { time_fs, a, b });
-                    }
-                }
-                (true, None) | (false, Some(_)) => {}
+            if equal && let (Some((before, _)), Some(slot)) = (before.as_mut(), pair.a) {
+                before.set(at, a.values.words(slot));
             }
+            if equal == pair.different {
+                if equal { ended.push(at) } else { diverged.push(at) }
+            }
+        });
+        touched.waiting = is_waiting;
+        for at in ended {
+            self.end(at as usize, time_fs);
         }
+        // In the order of the file, so that the report does not depend on the order of the changes.
+        diverged.sort_unstable();
+        for at in &diverged {
+            self.begin(*at as usize, time_fs);
+        }
+        self.gather(&diverged, time_fs);
         self.samples += 1;
         if self.samples.is_multiple_of(PROGRESS_SAMPLES) {
-            progress(self.samples);
+            progress(Progress {
+                samples: self.samples,
+                bytes: self.a.bytes() + self.b.bytes(),
+                total_bytes: self.total_bytes,
+            });
         }
     }
 
-    /// Writes what was found into the result.
-    pub(super) fn finish(self, comparison: &mut Comparison) {
-        let mut differences: Vec<(u128, Difference)> = Vec::new();
-        for state in self.states {
-            let Some(first) = state.first else { continue };
-            let since = state.since.map_or(0, |since| self.samples - since);
-            let difference = Difference {
-                signal: state.pair.name,
-                time: seconds(first.time_fs),
-                a: first.a,
-                b: first.b,
-                count: state.count + since,
-            };
-            differences.push((first.time_fs, difference));
+    pub(super) fn values(&self, at: usize) -> (Option<Value<'_>>, Option<Value<'_>>) {
+        let pair = self.hot[at];
+        (
+            pair.a.map(|slot| self.a.values.get(slot)),
+            pair.b.map(|slot| self.b.values.get(slot)),
+        )
+    }
+
+    fn begin(&mut self, at: usize, time_fs: u128) {
+        let (a, b) = self.values(at);
+        let rule = self.states[at].rule;
+        let (a_number, b_number) = (rule.number(a), rule.number(b));
+        let (a, b) = rule.shown(a, b);
+        let first = First {
+            time_fs,
+            a,
+            b,
+            a_number,
+            b_number,
+        };
+        self.hot[at].different = true;
+        self.states[at].since = Some((self.samples, first));
+    }
+
+    fn end(&mut self, at: usize, time_fs: u128) {
+        self.hot[at].different = false;
+        let state = &mut self.states[at];
+        let Some((since, first)) = state.since.take() else {
+            return;
+        };
+        if time_fs - first.time_fs <= self.options.time_tolerance_fs {
+            self.forgiven += 1;
+            return;
         }
-        // Stable: signals that differ first at the same time stay in the order of the file.
-        differences.sort_by_key(|(time_fs, _)| *time_fs);
-        let mut differences: Vec<Difference> = differences.into_iter().map(|(_, difference)| difference).collect();
-        differences.extend(self.surplus);
-        if let Some(time_fs) = self.shifted_fs {
-            comparison.notes.push(format!(
-                "the clock's edges lie at different times from {} s on: compared edge by edge",
-                seconds(time_fs)
-            ));
-        }
-        comparison.conclude(self.samples, differences);
+        state.count += self.samples - since;
+        state.first.get_or_insert(first);
     }
 }
 
 /// Seconds, correctly rounded.
-fn seconds(time_fs: u128) -> f64 {
+pub(super) fn seconds(time_fs: u128) -> f64 {
     time_fs as f64 / 1e15
-}
-
-fn next_step(reader: &mut Reader) -> Result<Option<u128>, Error> {
-    let unit_fs = u128::from(reader.unit_fs());
-    Ok(reader.read_step()?.map(|time| u128::from(time) * unit_fs))
-}
-
-/// Goes on to the next rising edge; then `now` holds the values just before it.
-fn next_edge(
-    reader: &mut Reader,
-    clock: u32,
-    lists: &[Vec<u32>],
-    list: &mut Vec<u32>,
-    states: &mut [State],
-) -> Result<Option<u128>, Error> {
-    loop {
-        reader.commit(touch(lists, list, states));
-        let Some(time) = next_step(reader)? else {
-            return Ok(None);
-        };
-        if reader.now(clock).is_bit(0) && reader.next(clock).is_bit(1) {
-            return Ok(Some(time));
-        }
-    }
-}
-
-/// Marks the pairs of a slot that changed.
-fn touch(lists: &[Vec<u32>], list: &mut Vec<u32>, states: &mut [State]) -> impl FnMut(u32) {
-    move |slot| {
-        for at in &lists[slot as usize] {
-            let state = &mut states[*at as usize];
-            if !state.touched {
-                state.touched = true;
-                list.push(*at);
-            }
-        }
-    }
 }

@@ -1,10 +1,10 @@
-//! The result of a comparison, as data (the contract's `diff --json`) and as text.
-
-use std::fmt;
+//! The result of a comparison, as data (the contract's `diff --json`).
 
 use serde::{Serialize, Serializer};
 
 use super::matching::{Matched, Pair};
+use super::rule::Rule;
+use super::{UnknownPolicy, View};
 
 /// Equal, different, or nothing to compare.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -26,6 +26,8 @@ pub enum Shown {
     Bits(String),
     /// A real number; as JSON, which has no other word for it, `"NaN"` where it is none.
     Real(#[serde(serialize_with = "number_or_text")] f64),
+    /// Text, its first 64 bytes.
+    Text(String),
     /// There is no value: the signal or the clock edge is missing, or nothing was written yet.
     Missing,
 }
@@ -35,16 +37,6 @@ fn number_or_text<S: Serializer>(real: &f64, serializer: S) -> Result<S::Ok, S::
         serializer.serialize_f64(*real)
     } else {
         serializer.serialize_str(&real.to_string())
-    }
-}
-
-impl fmt::Display for Shown {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Bits(digits) => f.write_str(digits),
-            Self::Real(real) => write!(f, "{real}"),
-            Self::Missing => f.write_str("(none)"),
-        }
     }
 }
 
@@ -61,9 +53,56 @@ pub struct Difference {
     pub b: Shown,
     /// Samples at which they differ.
     pub count: u64,
+    /// Whether they still differ at the end; else it was transient.
+    pub persistent: bool,
+    /// `a` as a number, where it is looked at as one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub a_number: Option<f64>,
+    /// `b` as a number.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub b_number: Option<f64>,
 }
 
-/// The whole result. Serialises to `diff --json`; the rest is for the text.
+/// What stands around the first divergence of all.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Context {
+    /// Number of the diverging sample, from 0.
+    pub sample: u64,
+    /// Signals that diverge there too and are not shown.
+    pub others: usize,
+    /// Times of the samples in seconds: the last equal one if there is any, the diverging one, some more.
+    pub times: Vec<f64>,
+    /// The signals that diverge first.
+    pub rows: Vec<ContextRow>,
+}
+
+/// A signal's values at the times of a [`Context`].
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ContextRow {
+    /// Full name.
+    pub signal: String,
+    /// Values in the first file.
+    pub a: Vec<Shown>,
+    /// Values in the second.
+    pub b: Vec<Shown>,
+}
+
+/// How a signal is compared, where that is not bit by bit.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Leniency {
+    /// Full name.
+    pub signal: String,
+    /// How its bits are read: `signed`, `uq16` …
+    pub view: String,
+    /// What it may be off: `0.5 LSB` …; `None`: nothing.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub tolerance: Option<String>,
+    /// How much later it is in the second file.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub latency: Option<String>,
+}
+
+/// The whole result. Serialises to `diff --json`.
 #[derive(Debug, Clone, Serialize)]
 pub struct Comparison {
     /// The verdict.
@@ -76,42 +115,68 @@ pub struct Comparison {
     pub differences: Vec<Difference>,
     /// Time of the first difference of all.
     pub first_time: Option<f64>,
+    /// Whether nothing was forgiven: no tolerance, no latency, unknown bits equal to themselves only.
+    pub exact: bool,
+    /// Signals that are not compared bit by bit at the same time.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub lenient: Vec<Leniency>,
+    /// What unknown bits equal.
+    pub unknown: UnknownPolicy,
+    /// What stands around the first divergence.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub context: Option<Context>,
     /// Signals that only the first file has.
-    #[serde(skip)]
+    #[serde(skip_serializing_if = "Vec::is_empty")]
     pub only_in_a: Vec<String>,
     /// Signals that only the second file has.
-    #[serde(skip)]
+    #[serde(skip_serializing_if = "Vec::is_empty")]
     pub only_in_b: Vec<String>,
-    /// Text and events: not compared.
-    #[serde(skip)]
+    /// Events: not compared.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
     pub not_compared: Vec<String>,
-    /// Tolerances in use: signal and LSB.
+    /// Names of all signals that were compared, in the first file and in the second.
     #[serde(skip)]
-    pub tolerances: Vec<(String, f64)>,
+    pub compared: Vec<(String, String)>,
+    /// The clock's names, if there is one.
+    #[serde(skip)]
+    pub clock: Option<(String, String)>,
     /// What a reader should know: the clock, edges at different times, why nothing could be compared.
-    #[serde(skip)]
     pub notes: Vec<String>,
 }
 
 impl Comparison {
-    pub(super) fn new(matched: &Matched, clock_note: String, tolerances: &[Option<f64>]) -> Self {
-        let alone = |lacks: fn(&Pair) -> bool| {
-            let alone = matched.pairs.iter().filter(|pair| lacks(pair));
-            alone.map(|pair| pair.name.clone()).collect::<Vec<_>>()
+    pub(super) fn new(matched: &Matched, rules: &[Rule], latencies: &[Option<String>]) -> Self {
+        let names = |wanted: fn(&Pair) -> bool| {
+            let pairs = matched.pairs.iter().filter(|pair| wanted(pair));
+            pairs.map(|pair| pair.name.clone()).collect::<Vec<_>>()
         };
-        let used = matched.pairs.iter().zip(tolerances);
-        let used = used.filter_map(|(pair, lsb)| Some((pair.name.clone(), (*lsb)?)));
+        let rules = matched.pairs.iter().zip(rules).zip(latencies);
+        let lenient: Vec<Leniency> = rules
+            .filter(|((pair, _), _)| pair.a.is_some() && pair.b.is_some())
+            .filter(|((_, rule), latency)| rule.view != View::Bits || rule.tolerance.is_some() || latency.is_some())
+            .map(|((pair, rule), latency)| Leniency {
+                signal: pair.name.clone(),
+                view: rule.view.to_string(),
+                tolerance: rule.tolerance.map(|tolerance| tolerance.to_string()),
+                latency: latency.clone(),
+            })
+            .collect();
         Self {
             result: Verdict::Incomparable,
             signals: 0,
             samples: 0,
             differences: Vec::new(),
             first_time: None,
-            only_in_a: alone(|pair| pair.b.is_none()),
-            only_in_b: alone(|pair| pair.a.is_none()),
+            exact: !lenient.iter().any(|l| l.tolerance.is_some() || l.latency.is_some()),
+            lenient,
+            unknown: UnknownPolicy::Strict,
+            context: None,
+            only_in_a: names(|pair| pair.b.is_none()),
+            only_in_b: names(|pair| pair.a.is_none()),
             not_compared: matched.not_compared.clone(),
-            tolerances: used.collect(),
-            notes: vec![clock_note],
+            compared: matched.pairs.iter().filter_map(Pair::names).collect(),
+            clock: None,
+            notes: Vec::new(),
         }
     }
 
@@ -133,51 +198,5 @@ impl Comparison {
         };
         self.first_time = differences.iter().map(|d| d.time).reduce(f64::min);
         self.differences = differences;
-    }
-}
-
-/// Lines of one kind that the text shows before it counts the rest.
-const SHOWN_LINES: usize = 20;
-
-impl fmt::Display for Comparison {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let verdict = match self.result {
-            Verdict::Equal => "equal",
-            Verdict::Different => "different",
-            Verdict::Incomparable => "incomparable",
-        };
-        write!(f, "{verdict}: {} signals at {} samples", self.signals, self.samples)?;
-        for note in &self.notes {
-            write!(f, "\n  {note}")?;
-        }
-        let width = self
-            .differences
-            .iter()
-            .map(|d| d.signal.len())
-            .max()
-            .unwrap_or(0)
-            .min(60);
-        list(f, &self.differences, |d| {
-            format!(
-                "{:width$}  first at {:e} s: {} | {}  ({} samples)",
-                d.signal, d.time, d.a, d.b, d.count
-            )
-        })?;
-        list(f, &self.only_in_a, |name| format!("only in the first file: {name}"))?;
-        list(f, &self.only_in_b, |name| format!("only in the second file: {name}"))?;
-        list(f, &self.not_compared, |name| format!("text, not compared: {name}"))?;
-        list(f, &self.tolerances, |(name, lsb)| {
-            format!("tolerance {lsb} LSB: {name}")
-        })
-    }
-}
-
-fn list<T>(f: &mut fmt::Formatter<'_>, items: &[T], line: impl Fn(&T) -> String) -> fmt::Result {
-    for item in items.iter().take(SHOWN_LINES) {
-        write!(f, "\n  {}", line(item))?;
-    }
-    match items.len().saturating_sub(SHOWN_LINES) {
-        0 => Ok(()),
-        more => write!(f, "\n  … and {more} more"),
     }
 }

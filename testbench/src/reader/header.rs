@@ -1,11 +1,6 @@
-//! The declarations of a VCD.
+//! What a waveform file declares: signals, their widths and names, the unit of time.
 
 use std::collections::HashMap;
-
-use vcd::{Command, IdCode, ReferenceIndex, VarType};
-
-use super::Reader;
-use crate::Error;
 
 const SIGNALS: usize = 1 << 18;
 const NAME_BYTES: usize = 1 << 25;
@@ -15,12 +10,23 @@ const TOTAL_BITS: u64 = 1 << 24;
 /// How a signal's values are written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Kind {
-    /// So many bits.
+    /// So many bits, at least one.
     Bits(u32),
     /// A real number.
     Real,
-    /// Text or an event: no value that can be compared.
-    Other,
+    /// Text.
+    Text,
+    /// An event: it happens, and has no value that can be compared.
+    Event,
+}
+
+/// The part of a vector that a declaration is about: `[7:0]`, or a single bit `[3]`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Range {
+    /// Index of the first digit.
+    pub(crate) left: i64,
+    /// Index of the last digit.
+    pub(crate) right: i64,
 }
 
 /// A declared signal.
@@ -30,100 +36,19 @@ pub(crate) struct Named {
     pub(crate) path: String,
     /// Its value.
     pub(crate) slot: u32,
+    /// The path without the index, and the bits it stands for, where it is declared as a part of a vector.
+    pub(crate) part: Option<(String, Range)>,
 }
 
-impl Reader {
-    pub(super) fn read_header(&mut self) -> Result<(), Error> {
-        let mut header = Header::default();
-        loop {
-            let Some(command) = self.command()? else {
-                return Err(self.truncated("before $enddefinitions"));
-            };
-            match command {
-                Command::Enddefinitions => break,
-                Command::Timescale(number, unit) => {
-                    let exponent = match unit {
-                        vcd::TimescaleUnit::S => 15,
-                        vcd::TimescaleUnit::MS => 12,
-                        vcd::TimescaleUnit::US => 9,
-                        vcd::TimescaleUnit::NS => 6,
-                        vcd::TimescaleUnit::PS => 3,
-                        vcd::TimescaleUnit::FS => 0,
-                    };
-                    if ![1, 10, 100].contains(&number) {
-                        return Err(self.problem(format!("timescale {number} {unit}: the number is 1, 10 or 100")));
-                    }
-                    self.unit_fs = u64::from(number) * 10u64.pow(exponent);
-                }
-                Command::ScopeDef(_, name) => header.enter(&name).map_err(|what| self.problem(what))?,
-                Command::Upscope => {
-                    if header.scope_ends.pop().is_none() {
-                        return Err(self.problem("$upscope without $scope: the file is damaged".to_owned()));
-                    }
-                    let end = header.scope_ends.last().copied().unwrap_or(0);
-                    header.scope.truncate(end);
-                }
-                Command::VarDef(var_type, width, id, name, index) => {
-                    self.declare(&mut header, var_type, width, id, &name, index)?;
-                }
-                Command::Comment(_) | Command::Date(_) | Command::Version(_) => {}
-                _ => return Err(self.problem("a value before $enddefinitions: the file is damaged".to_owned())),
-            }
-        }
-        if !header.scope_ends.is_empty() {
-            return Err(self.problem("a $scope is still open at $enddefinitions: the file is damaged".to_owned()));
-        }
-        Ok(())
-    }
-
-    fn declare(
-        &mut self,
-        header: &mut Header,
-        var_type: VarType,
-        width: u32,
-        id: IdCode,
-        name: &str,
-        index: Option<ReferenceIndex>,
-    ) -> Result<(), Error> {
-        let kind = match var_type {
-            VarType::Real => Kind::Real,
-            VarType::String | VarType::Event => Kind::Other,
-            _ => Kind::Bits(width),
-        };
-        if kind == Kind::Bits(0) {
-            return Err(self.problem(format!("signal `{name}` has 0 bits: the file is damaged")));
-        }
-        let slot = match self.slots.get(&id).copied() {
-            Some(slot) if self.values.kind(slot) == kind => slot,
-            Some(_) => {
-                return Err(self.problem(format!("`{id}` is declared twice, with different widths or types")));
-            }
-            None => {
-                header.bits += u64::from(width);
-                if header.bits > TOTAL_BITS {
-                    return Err(self.problem(format!(
-                        "the signals have more than {TOTAL_BITS} bits together: leave out memories and wide arrays when \
-                         dumping"
-                    )));
-                }
-                let slot = self.values.add(kind);
-                self.slots.insert(id, slot);
-                slot
-            }
-        };
-        let Some(path) = header.path(name, index, slot).map_err(|what| self.problem(what))? else {
-            return Ok(());
-        };
-        if self.names.len() == SIGNALS {
-            return Err(self.problem(format!("more than {SIGNALS} signals: dump fewer scopes")));
-        }
-        self.names.push(Named { path, slot });
-        Ok(())
-    }
-}
-
-#[derive(Default)]
-struct Header {
+/// The declarations of a file.
+#[derive(Debug, Default)]
+pub(crate) struct Declarations {
+    /// The signals in the order of the file.
+    pub(crate) names: Vec<Named>,
+    /// Of each slot; names may share one.
+    pub(crate) kinds: Vec<Kind>,
+    /// Femtoseconds per unit of the file's time.
+    pub(crate) unit_fs: u64,
     /// The open scopes, each followed by a dot, and where each ends.
     scope: String,
     scope_ends: Vec<usize>,
@@ -133,43 +58,155 @@ struct Header {
     seen: HashMap<String, (u32, u32)>,
 }
 
-impl Header {
-    fn enter(&mut self, name: &str) -> Result<(), String> {
+impl Declarations {
+    /// None yet, with so many femtoseconds per unit of time.
+    pub(super) fn new(unit_fs: u64) -> Self {
+        Self {
+            unit_fs,
+            ..Self::default()
+        }
+    }
+
+    pub(crate) fn enter(&mut self, name: &str) -> Result<(), String> {
         if self.scope_ends.len() == DEPTH || self.scope.len() + name.len() > NAME_BYTES {
             return Err(format!("scopes more than {DEPTH} deep: the file is damaged"));
         }
-        self.scope.push_str(name);
-        self.scope.push('.');
+        // An unnamed scope (FST has them) adds nothing to the path.
+        if !name.is_empty() {
+            self.scope.push_str(plain(name));
+            self.scope.push('.');
+        }
         self.scope_ends.push(self.scope.len());
         Ok(())
     }
 
-    /// The full name of a signal; `None` if it was declared before, for the same value.
-    fn path(&mut self, name: &str, index: Option<ReferenceIndex>, slot: u32) -> Result<Option<String>, String> {
-        // An escaped name that needs no escape is the plain one.
-        let name = name.strip_prefix('\\').unwrap_or(name);
-        // Some writers join the range to the name.
-        let name = match name.rfind('[') {
-            Some(at) if at > 0 && name.ends_with(']') && name[at..].contains(':') => &name[..at],
-            _ => name,
+    pub(super) fn leave(&mut self) -> Result<(), String> {
+        if self.scope_ends.pop().is_none() {
+            return Err("$upscope without $scope: the file is damaged".to_owned());
+        }
+        let end = self.scope_ends.last().copied().unwrap_or(0);
+        self.scope.truncate(end);
+        Ok(())
+    }
+
+    /// All scopes must have been left.
+    pub(super) fn finish(&mut self) -> Result<(), String> {
+        if !self.scope_ends.is_empty() {
+            return Err("a $scope is still open at $enddefinitions: the file is damaged".to_owned());
+        }
+        self.seen = HashMap::new();
+        Ok(())
+    }
+
+    /// A new value of `kind`; its slot.
+    pub(crate) fn add_slot(&mut self, kind: Kind, name: &str) -> Result<u32, String> {
+        let bits = match kind {
+            Kind::Bits(0) => return Err(format!("signal `{name}` has 0 bits: the file is damaged")),
+            Kind::Bits(width) => u64::from(width),
+            Kind::Real | Kind::Text | Kind::Event => 64,
         };
+        self.bits += bits;
+        if self.bits > TOTAL_BITS {
+            return Err(format!(
+                "the signals have more than {TOTAL_BITS} bits together: leave out memories and wide arrays when dumping"
+            ));
+        }
+        self.kinds.push(kind);
+        Ok(self.kinds.len() as u32 - 1)
+    }
+
+    /// A name for a slot, in the open scopes. Nothing happens if it was declared before for the same slot.
+    pub(crate) fn add_name(&mut self, name: &str, slot: u32) -> Result<(), String> {
+        let width = match self.kinds[slot as usize] {
+            Kind::Bits(width) => u64::from(width),
+            Kind::Real | Kind::Text | Kind::Event => 0,
+        };
+        let (name, range) = split_range(plain(name), width);
         self.name_bytes += self.scope.len() + name.len();
         if self.name_bytes > NAME_BYTES {
             return Err(format!("more than {NAME_BYTES} bytes of names: dump fewer scopes"));
         }
-        let mut path = format!("{}{name}", self.scope);
-        if let Some(ReferenceIndex::BitSelect(bit)) = index {
-            path.push_str(&format!("[{bit}]"));
+        if self.names.len() == SIGNALS {
+            return Err(format!("more than {SIGNALS} signals: dump fewer scopes"));
         }
+        let vector = format!("{}{name}", self.scope);
+        let mut path = match range {
+            Some(Range { left, right }) if left == right => format!("{vector}[{left}]"),
+            _ => vector.clone(),
+        };
         let (count, first) = self.seen.entry(path.clone()).or_insert((0, slot));
         *count += 1;
         if *count > 1 && *first == slot {
-            return Ok(None);
+            return Ok(());
         }
         if *count > 1 {
-            // Twice the same name: kept apart by their order, so that neither is lost.
-            path.push_str(&format!("#{count}"));
+            // Twice the same name: kept apart by range, else by their order, so that neither is lost.
+            path = match range {
+                Some(Range { left, right }) if left != right => format!("{vector}[{left}:{right}]"),
+                _ => format!("{path}#{count}"),
+            };
         }
-        Ok(Some(path))
+        let part = range.map(|range| (vector, range));
+        self.names.push(Named { path, slot, part });
+        Ok(())
+    }
+}
+
+/// An escaped name that needs no escape is the plain one.
+fn plain(name: &str) -> &str {
+    name.strip_prefix('\\').unwrap_or(name)
+}
+
+/// Cuts `[7:0]` off the name of a vector, and `[3]` off that of a single bit; a range that is not as wide as the signal
+/// says nothing about its bits.
+fn split_range(name: &str, width: u64) -> (&str, Option<Range>) {
+    let cut = name.rfind('[').filter(|at| *at > 0 && name.ends_with(']'));
+    let Some(at) = cut else { return (name, None) };
+    let inside = &name[at + 1..name.len() - 1];
+    let of_vector = inside.split_once(':');
+    let (left, right) = of_vector.unwrap_or((inside, inside));
+    match (left.parse::<i64>(), right.parse::<i64>()) {
+        (Ok(left), Ok(right)) if left.abs_diff(right).checked_add(1) == Some(width) => {
+            (name[..at].trim_end(), Some(Range { left, right }))
+        }
+        _ if of_vector.is_some() => (&name[..at], None),
+        _ => (name, None),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn unit_ranges_leave_the_name_and_indices_stay() {
+        let mut declarations = Declarations::default();
+        let byte = declarations.add_slot(Kind::Bits(8), "").unwrap();
+        let bit = declarations.add_slot(Kind::Bits(1), "").unwrap();
+        let other = declarations.add_slot(Kind::Bits(8), "").unwrap();
+        declarations.enter("t").unwrap();
+        for (name, slot) in [
+            ("y[7:0]", byte),
+            ("\\y", byte),
+            ("y[3]", bit),
+            ("y[15:8]", other),
+            ("array[3]", other),
+            ("array[3][7:0]", byte),
+            ("odd[x]", byte),
+            ("wrong[9:0]", byte),
+        ] {
+            declarations.add_name(name, slot).unwrap();
+        }
+        let paths: Vec<&str> = declarations.names.iter().map(|n| n.path.as_str()).collect();
+        let expected = [
+            "t.y",
+            "t.y[3]",
+            "t.y[15:8]",
+            "t.array[3]",
+            "t.array[3][7:0]",
+            "t.odd[x]",
+            "t.wrong",
+        ];
+        assert_eq!(paths, expected);
     }
 }

@@ -1,253 +1,224 @@
-//! Reads a VCD in steps of time, in bounded memory, whatever the file holds.
+//! Reads waveforms in steps of time, in bounded memory, whatever the file holds.
 //!
 //! ```text
-//! open ─► header ─► read_step ─► (compare `now` with `next`) ─► commit ─► read_step ─► …
+//!            ┌─ declarations: dialect ─► crate `vcd` ─► header ─┐          a thread per file         the caller's
+//!  x.vcd ────┤                                                  ├─► Wave ─►  section │ fst ─► batches ─► Feed ─► Values
+//!  x.fst ────┴─ declarations: crate `fst-reader` ───────────────┘                                       step by step
 //! ```
 //!
-//! A step is all that happens at one time. Its changes are held back in `next` until [`Reader::commit`], so that whoever
-//! samples at a clock's edge sees the values just before it.
+//! Declarations are read by the crate `vcd`, value changes by [`section`]: the crate makes a string of each, and streams at
+//! a quarter of the speed. Tests hold the two, and `wellen`, against each other on every fixture.
 //!
 //! Limits, so that a hostile file cannot eat the memory: 2^18 signals, 2^24 bits of all signals together, 32 MiB of names,
-//! scopes 256 deep, 32 MiB for one command. Beyond them, and for a file that ends in the middle of something, the answer is
-//! an error with the place.
+//! scopes 256 deep, 1 MiB for a word of the declarations, 32 MiB for one change. Beyond them, and for a file that ends in
+//! the middle of something, the answer is an error with the place.
 
-mod guard;
+#[cfg(test)]
+mod agreement;
+mod batch;
+mod dialect;
+mod digits;
+mod feed;
+mod fst;
 mod header;
+mod ids;
+mod put;
+mod section;
 mod values;
 
-use std::collections::HashMap;
 use std::fs::File;
-use std::io::{self, BufRead, BufReader, Chain, Read, Seek, SeekFrom};
+use std::io::{self, BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 
-use vcd::{Command, IdCode, ParseError, Parser};
+use vcd::{Command, IdCode, ParseError, Parser, VarType};
 
-use self::guard::Guard;
-pub(crate) use self::header::{Kind, Named};
-pub(crate) use self::values::Value;
-use self::values::Values;
+use self::batch::Gatherer;
+pub(crate) use self::batch::{Step, Watch};
+use self::dialect::Dialect;
+pub(crate) use self::feed::Feed;
+use self::fst::FstValues;
+pub(crate) use self::header::{Declarations, Kind, Named};
+use self::ids::Ids;
+use self::section::{Section, truncated};
+pub(crate) use self::values::{Value, Values};
 use crate::Error;
-
-/// The guard lies below the buffer, where it costs nothing per byte.
-type Source = Parser<BufReader<Guard<Chain<File, &'static [u8]>>>>;
-
-/// A VCD that is being read.
-pub(crate) struct Reader {
-    path: PathBuf,
-    source: Source,
-    names: Vec<Named>,
-    slots: HashMap<IdCode, u32>,
-    values: Values,
-    /// Femtoseconds per unit of the file's time.
-    unit_fs: u64,
-    /// Time of the step that is read or to be read next.
-    time: u64,
-    /// A change was read that lies before the first time stamp or after the last one read.
-    in_dump: bool,
-    ended: bool,
-    /// The file ends without a line break: it may have been cut off.
-    unterminated: bool,
-}
-
-impl Reader {
-    /// Opens a file and reads its header.
-    pub(crate) fn open(path: &Path) -> Result<Self, Error> {
-        let mut file = File::open(path).map_err(Error::file(path, "open"))?;
-        if file.metadata().is_ok_and(|data| data.is_dir()) {
-            let folder = io::Error::from(io::ErrorKind::IsADirectory);
-            return Err(Error::file(path, "read")(folder));
-        }
-        let unterminated = ends_without_line_break(&mut file).map_err(Error::file(path, "read"))?;
-        // A last line that is complete but for its line break counts.
-        let mut buffered = BufReader::with_capacity(1 << 16, Guard::new(file.chain(&b"\n"[..])));
-        let first = buffered.fill_buf().map_err(Error::file(path, "read"))?;
-        let mark = if first.starts_with(BYTE_ORDER_MARK) {
-            BYTE_ORDER_MARK.len()
-        } else {
-            0
-        };
-        buffered.consume(mark);
-        let mut reader = Self {
-            path: path.to_owned(),
-            source: Parser::new(buffered),
-            names: Vec::new(),
-            slots: HashMap::new(),
-            values: Values::default(),
-            unit_fs: 1_000_000,
-            time: 0,
-            in_dump: false,
-            ended: false,
-            unterminated,
-        };
-        reader.read_header()?;
-        Ok(reader)
-    }
-
-    /// The signals in the order of the file.
-    pub(crate) fn names(&self) -> &[Named] {
-        &self.names
-    }
-
-    /// Number of different values: names may share one.
-    pub(crate) fn slot_count(&self) -> usize {
-        self.values.len()
-    }
-
-    pub(crate) fn kind(&self, slot: u32) -> Kind {
-        self.values.kind(slot)
-    }
-
-    /// Femtoseconds per unit of the file's time.
-    pub(crate) fn unit_fs(&self) -> u64 {
-        self.unit_fs
-    }
-
-    /// What stood before the step that was read last.
-    pub(crate) fn now(&self, slot: u32) -> Value<'_> {
-        self.values.now(slot)
-    }
-
-    /// What the step that was read last makes of it.
-    pub(crate) fn next(&self, slot: u32) -> Value<'_> {
-        self.values.next(slot)
-    }
-
-    /// Puts the step that was read last into effect; `changed` hears of each slot that has another value.
-    pub(crate) fn commit(&mut self, changed: impl FnMut(u32)) {
-        self.values.commit(changed);
-    }
-
-    /// Reads one step in which at least one value changes, and returns its time in the file's units; `None` at the end.
-    /// The step before must have been committed.
-    pub(crate) fn read_step(&mut self) -> Result<Option<u64>, Error> {
-        while !self.ended {
-            let Some(command) = self.command()? else {
-                self.ended = true;
-                if self.in_dump {
-                    return Err(self.truncated("inside a $dump block"));
-                }
-                return Ok(self.values.has_changes().then_some(self.time));
-            };
-            match command {
-                Command::Timestamp(time) if time < self.time => {
-                    return Err(self.problem(format!(
-                        "time goes back from #{} to #{time}: times must rise; the file is damaged, or two were joined",
-                        self.time
-                    )));
-                }
-                Command::Timestamp(time) => {
-                    let before = std::mem::replace(&mut self.time, time);
-                    if time != before && self.values.has_changes() {
-                        return Ok(Some(before));
-                    }
-                }
-                Command::ChangeScalar(id, value) => {
-                    let slot = self.slot(id)?;
-                    self.bits(slot, 1, std::iter::once(value))?;
-                }
-                Command::ChangeVector(id, vector) => {
-                    let slot = self.slot(id)?;
-                    self.bits(slot, vector.len(), vector.iter())?;
-                }
-                Command::ChangeReal(id, value) => {
-                    let slot = self.slot(id)?;
-                    if self.values.kind(slot) != Kind::Real {
-                        return Err(self.problem(format!("a real value for `{id}`, which is declared as bits")));
-                    }
-                    self.values.set_real(slot, value);
-                }
-                Command::ChangeString(id, _) => {
-                    self.slot(id)?;
-                }
-                Command::Begin(_) => self.in_dump = true,
-                Command::End(_) => self.in_dump = false,
-                Command::Comment(_) => {}
-                _ => {
-                    return Err(self.problem("a declaration after $enddefinitions: the file is damaged".to_owned()));
-                }
-            }
-        }
-        Ok(None)
-    }
-
-    /// What is wrong with a file that has nothing more to say while another goes on: nothing, unless its last line is cut.
-    pub(crate) fn cut_off(&mut self) -> Result<(), Error> {
-        if self.unterminated {
-            return Err(self.truncated("before the other, in a line without line break"));
-        }
-        Ok(())
-    }
-
-    fn slot(&self, id: IdCode) -> Result<u32, Error> {
-        let slot = self.slots.get(&id).copied();
-        slot.ok_or_else(|| {
-            self.problem(format!(
-                "a change of `{id}`, which was never declared: the file is damaged"
-            ))
-        })
-    }
-
-    fn bits(&mut self, slot: u32, length: usize, bits: impl Iterator<Item = vcd::Value>) -> Result<(), Error> {
-        match self.values.kind(slot) {
-            Kind::Bits(width) if length > width as usize => Err(self.problem(format!(
-                "a value of {length} bits for a signal that is declared with {width}: the file is damaged"
-            ))),
-            Kind::Bits(_) => {
-                self.values.set_bits(slot, length, bits);
-                Ok(())
-            }
-            Kind::Real => Err(self.problem("bits for a signal that is declared as real".to_owned())),
-            Kind::Other => Ok(()),
-        }
-    }
-
-    /// The next command, or `None` where the file ends as it should.
-    fn command(&mut self) -> Result<Option<Command>, Error> {
-        self.source.reader().get_mut().refill();
-        self.source.next().transpose().map_err(|cause| self.damaged(&cause))
-    }
-
-    fn problem(&self, problem: String) -> Error {
-        Error::Vcd {
-            path: self.path.clone(),
-            place: format!("line {}", self.source.line()),
-            problem,
-        }
-    }
-
-    fn truncated(&mut self, inside: &str) -> Error {
-        Error::Vcd {
-            path: self.path.clone(),
-            // The line break that was put behind the file is not the file's.
-            place: format!("byte {}", self.source.reader().get_ref().bytes().saturating_sub(1)),
-            problem: format!(
-                "the file ends {inside}: it was cut off, or its writer is still running; write it again \
-                 (a complete file ends with a line break)"
-            ),
-        }
-    }
-
-    fn damaged(&mut self, cause: &io::Error) -> Error {
-        if cause.kind() == io::ErrorKind::UnexpectedEof {
-            return self.truncated("in the middle of a command");
-        }
-        let parse: Option<&ParseError> = cause.get_ref().and_then(|e| e.downcast_ref());
-        match parse {
-            Some(parse) => self.problem(format!("{}: this is no VCD, or it is damaged", parse.kind())),
-            None => self.problem(cause.to_string()),
-        }
-    }
-}
 
 /// Some writers begin a text file with it.
 const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
 
-fn ends_without_line_break(file: &mut File) -> io::Result<bool> {
-    let mut last = [b'\n'];
-    // A pipe cannot be looked at from behind: it counts as complete.
-    if file.metadata()?.len() > 0 && file.seek(SeekFrom::End(-1)).is_ok() {
-        file.read_exact(&mut last)?;
-        file.seek(SeekFrom::Start(0))?;
+enum Rest {
+    Vcd(Box<Section>),
+    Fst(Box<FstValues>),
+}
+
+/// A waveform file whose declarations have been read.
+pub(crate) struct Wave {
+    path: PathBuf,
+    pub(crate) declarations: Declarations,
+    rest: Rest,
+    bytes: Option<u64>,
+}
+
+impl Wave {
+    /// Opens a VCD or an FST, told apart by how it begins, and reads its declarations.
+    pub(crate) fn open(path: &Path) -> Result<Self, Error> {
+        let file = File::open(path).map_err(Error::file(path, "open"))?;
+        let data = file.metadata().map_err(Error::file(path, "read"))?;
+        if data.is_dir() {
+            let folder = io::Error::from(io::ErrorKind::IsADirectory);
+            return Err(Error::file(path, "read")(folder));
+        }
+        let mut input = BufReader::with_capacity(1 << 16, Counted { file, bytes: 0 });
+        let beginning = input.fill_buf().map_err(Error::file(path, "read"))?;
+        let (declarations, rest) = if fst::is_fst(beginning) {
+            let (declarations, values) = fst::open(path)?;
+            (declarations, Rest::Fst(Box::new(values)))
+        } else {
+            let (declarations, ids) = read_declarations(path, &mut input)?;
+            (declarations, Rest::Vcd(Box::new(Section::new(path, input, ids))))
+        };
+        Ok(Self {
+            path: path.to_owned(),
+            declarations,
+            rest,
+            bytes: data.is_file().then_some(data.len()),
+        })
     }
-    Ok(last != *b"\n")
+
+    /// Length of the file; `None` for a pipe.
+    pub(crate) fn bytes(&self) -> Option<u64> {
+        self.bytes
+    }
+
+    /// Starts to read the values in a thread of its own, and marks the edges of a clock.
+    pub(crate) fn play(self, watch: Option<Watch>) -> Result<(Declarations, Feed), Error> {
+        let gatherer = Gatherer::new(self.declarations.kinds.clone(), watch);
+        let feed = match self.rest {
+            Rest::Vcd(mut section) => Feed::start(&self.path, gatherer, move |gatherer, hand_over| {
+                section.read(gatherer, hand_over)
+            }),
+            Rest::Fst(values) => Feed::start(&self.path, gatherer, move |gatherer, hand_over| {
+                values.read(gatherer, hand_over)
+            }),
+        };
+        Ok((self.declarations, feed?))
+    }
+}
+
+/// A file that knows how much of it was read.
+pub(super) struct Counted {
+    file: File,
+    bytes: u64,
+}
+
+impl Read for Counted {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let count = self.file.read(buffer)?;
+        self.bytes += count as u64;
+        Ok(count)
+    }
+}
+
+/// Reads a VCD up to the value changes.
+fn read_declarations(path: &Path, input: &mut BufReader<Counted>) -> Result<(Declarations, Ids), Error> {
+    if input.buffer().starts_with(BYTE_ORDER_MARK) {
+        input.consume(BYTE_ORDER_MARK.len());
+    }
+    let mut parser = Parser::new(Dialect::new(input));
+    let read = declarations(&mut parser);
+    let line = parser.line();
+    read.map_err(|stop| match stop {
+        Stop::Cut(inside) => truncated(path, input.get_ref().bytes, inside),
+        Stop::Wrong(problem) => Error::Vcd {
+            path: path.to_owned(),
+            place: format!("line {line}"),
+            problem,
+        },
+    })
+}
+
+/// Why the declarations could not be read.
+enum Stop {
+    Wrong(String),
+    Cut(&'static str),
+}
+
+impl From<String> for Stop {
+    fn from(what: String) -> Self {
+        Self::Wrong(what)
+    }
+}
+
+fn declarations<R: BufRead>(parser: &mut Parser<R>) -> Result<(Declarations, Ids), Stop> {
+    let mut declarations = Declarations::new(1_000_000);
+    let mut ids = Ids::default();
+    loop {
+        let command = match parser.next() {
+            None => return Err(Stop::Cut("before $enddefinitions")),
+            Some(Ok(command)) => command,
+            Some(Err(cause)) if cause.kind() == io::ErrorKind::UnexpectedEof => {
+                return Err(Stop::Cut("in the middle of a command"));
+            }
+            Some(Err(cause)) => {
+                let parse: Option<&ParseError> = cause.get_ref().and_then(|e| e.downcast_ref());
+                return Err(Stop::Wrong(match parse {
+                    Some(parse) => format!("{}: this is no VCD, or it is damaged", parse.kind()),
+                    None => cause.to_string(),
+                }));
+            }
+        };
+        match command {
+            Command::Enddefinitions => break,
+            Command::Timescale(number, unit) => {
+                let exponent = match unit {
+                    vcd::TimescaleUnit::S => 15,
+                    vcd::TimescaleUnit::MS => 12,
+                    vcd::TimescaleUnit::US => 9,
+                    vcd::TimescaleUnit::NS => 6,
+                    vcd::TimescaleUnit::PS => 3,
+                    vcd::TimescaleUnit::FS => 0,
+                };
+                if ![1, 10, 100].contains(&number) {
+                    return Err(format!("timescale {number} {unit}: the number is 1, 10 or 100").into());
+                }
+                declarations.unit_fs = u64::from(number) * 10u64.pow(exponent);
+            }
+            Command::ScopeDef(_, name) => declarations.enter(&name)?,
+            Command::Upscope => declarations.leave()?,
+            Command::VarDef(var_type, width, id, name, _) => {
+                declare(&mut declarations, &mut ids, var_type, width, id, &name)?;
+            }
+            _ => return Err("a value before $enddefinitions: the file is damaged".to_owned().into()),
+        }
+    }
+    declarations.finish()?;
+    Ok((declarations, ids))
+}
+
+fn declare(
+    declarations: &mut Declarations,
+    ids: &mut Ids,
+    var_type: VarType,
+    width: u32,
+    id: IdCode,
+    name: &str,
+) -> Result<(), String> {
+    let kind = match var_type {
+        VarType::Real => Kind::Real,
+        VarType::String => Kind::Text,
+        VarType::Event => Kind::Event,
+        _ => Kind::Bits(width),
+    };
+    let id = id.to_string();
+    let number = Ids::number(&id).ok_or_else(|| format!("`{id}` is too long for an id code: 9 characters at most"))?;
+    let slot = match ids.get(number) {
+        Some(slot) if declarations.kinds[slot as usize] == kind => slot,
+        Some(_) => return Err(format!("`{id}` is declared twice, with different widths or types")),
+        None => {
+            let slot = declarations.add_slot(kind, name)?;
+            ids.insert(number, slot);
+            slot
+        }
+    };
+    declarations.add_name(name, slot)
 }

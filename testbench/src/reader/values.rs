@@ -1,8 +1,8 @@
-//! Values of all signals, before and after the step at hand, in one array.
+//! Values of all signals in one array.
 
 use super::header::Kind;
 
-/// A value: bits with a mask of the unknown ones, or a real number.
+/// A value: bits with a mask of the unknown ones, a real number, or text.
 ///
 /// In `unknown` bits, a zero of `bits` is `x` and a one is `z`.
 #[derive(Debug, Clone, Copy)]
@@ -15,18 +15,41 @@ pub(crate) enum Value<'a> {
     },
     /// `None` before the first change.
     Real(Option<f64>),
+    /// Length, a hash of all of it, and its beginning; see [`pack_text`].
+    Text(&'a [u64]),
     /// Not comparable.
-    Other,
+    Event,
+}
+
+/// Words of a text: length + 1 (0 before the first change), hash, the first 64 bytes.
+const TEXT_WORDS: usize = 10;
+
+/// Words that a value of this kind takes.
+#[inline]
+pub(super) fn words_of(kind: Kind) -> usize {
+    match kind {
+        Kind::Bits(width) => 2 * width.div_ceil(64) as usize,
+        Kind::Real => 2,
+        Kind::Text => TEXT_WORDS,
+        Kind::Event => 0,
+    }
+}
+
+/// A text as words: equal texts give equal words; different ones differ but for an accident of 1 in 2^64.
+pub(super) fn pack_text(text: &[u8], words: &mut [u64]) {
+    let hash = text.iter().fold(0xcbf2_9ce4_8422_2325, |hash: u64, byte| {
+        (hash ^ u64::from(*byte)).wrapping_mul(0x100_0000_01b3)
+    });
+    words[0] = text.len() as u64 + 1;
+    words[1] = hash;
+    for (at, byte) in text.iter().take(8 * (TEXT_WORDS - 2)).enumerate() {
+        words[2 + at / 8] |= u64::from(*byte) << (8 * (at % 8));
+    }
 }
 
 impl Value<'_> {
-    /// Whether it is a single, known bit of this value.
-    pub(crate) fn is_bit(&self, bit: u64) -> bool {
-        matches!(self, Value::Bits { width: 1, bits, unknown } if bits[0] == bit && unknown[0] == 0)
-    }
-
-    /// As a signed number; `None` with unknown bits, or more than 128 bits.
-    pub(crate) fn signed(&self) -> Option<i128> {
+    /// As a number, the bits signed or not; `None` with unknown bits, or beyond 128 bits.
+    pub(crate) fn integer(&self, signed: bool) -> Option<i128> {
         let Value::Bits { width, bits, unknown } = *self else {
             return None;
         };
@@ -35,6 +58,9 @@ impl Value<'_> {
         }
         let words = bits.iter().rev();
         let raw = words.fold(0u128, |all, word| all << 32 << 32 | u128::from(*word));
+        if !signed {
+            return i128::try_from(raw).ok();
+        }
         let shift = 128 - width;
         Some(((raw << shift) as i128) >> shift)
     }
@@ -57,147 +83,103 @@ impl Value<'_> {
         let extended = std::iter::repeat_n(extension, to_width.saturating_sub(width) as usize);
         extended.chain((0..width).rev().map(digit)).collect()
     }
+
+    /// The text, as much of it as is kept; `None` before the first change.
+    pub(crate) fn text(&self) -> Option<String> {
+        let Value::Text(words) = self else { return None };
+        let length = usize::try_from(words[0].checked_sub(1)?).unwrap_or(usize::MAX);
+        let bytes: Vec<u8> = words[2..].iter().flat_map(|word| word.to_le_bytes()).collect();
+        let mut text = String::from_utf8_lossy(&bytes[..length.min(bytes.len())]).into_owned();
+        if length > bytes.len() {
+            text.push('…');
+        }
+        Some(text)
+    }
 }
 
-struct Slot {
-    kind: Kind,
-    /// Four runs of words: bits and unknown now, bits and unknown next.
-    offset: usize,
-    words: usize,
-    dirty: bool,
-}
-
-/// All values.
-#[derive(Default)]
-pub(super) struct Values {
-    slots: Vec<Slot>,
+/// All values of one file.
+#[derive(Debug, Default)]
+pub(crate) struct Values {
+    kinds: Vec<Kind>,
+    offsets: Vec<usize>,
     words: Vec<u64>,
-    dirty: Vec<u32>,
 }
 
 impl Values {
-    pub(super) fn len(&self) -> usize {
-        self.slots.len()
-    }
-
-    pub(super) fn kind(&self, slot: u32) -> Kind {
-        self.slots[slot as usize].kind
-    }
-
-    /// A new slot, all `x`.
-    pub(super) fn add(&mut self, kind: Kind) -> u32 {
-        let words = match kind {
-            Kind::Bits(width) => width.div_ceil(64) as usize,
-            Kind::Real => 1,
-            Kind::Other => 0,
-        };
-        let offset = self.words.len();
-        for run in 0..4 {
-            let value = if run % 2 == 1 { u64::MAX } else { 0 };
-            self.words.extend(std::iter::repeat_n(value, words));
-            if let (Kind::Bits(width), 1) = (kind, run % 2) {
-                self.trim(width);
-            }
+    /// A slot of each kind, all without a value: `x`.
+    pub(crate) fn new(kinds: &[Kind]) -> Self {
+        let mut values = Self::default();
+        for kind in kinds {
+            values.add(*kind);
         }
-        self.slots.push(Slot {
-            kind,
-            offset,
-            words,
-            dirty: false,
-        });
-        self.slots.len() as u32 - 1
+        values
     }
 
-    /// Clears the bits above the width in the last word.
-    fn trim(&mut self, width: u32) {
-        if let (Some(last), 1..) = (self.words.last_mut(), width % 64) {
-            *last &= u64::MAX >> (64 - width % 64);
-        }
-    }
-
-    pub(super) fn now(&self, slot: u32) -> Value<'_> {
-        self.value(slot, 0)
-    }
-
-    pub(super) fn next(&self, slot: u32) -> Value<'_> {
-        self.value(slot, 2)
-    }
-
-    fn value(&self, slot: u32, run: usize) -> Value<'_> {
-        let Slot {
-            kind, offset, words, ..
-        } = self.slots[slot as usize];
-        let from = offset + run * words;
-        let bits = &self.words[from..from + words];
-        let unknown = &self.words[from + words..from + 2 * words];
+    /// A slot more.
+    pub(crate) fn add(&mut self, kind: Kind) -> u32 {
+        let from = self.words.len();
+        self.offsets.push(from);
+        self.kinds.push(kind);
+        self.words.resize(from + words_of(kind), 0);
         match kind {
-            Kind::Bits(width) => Value::Bits { width, bits, unknown },
-            Kind::Real => Value::Real((unknown[0] == 0).then_some(f64::from_bits(bits[0]))),
-            Kind::Other => Value::Other,
-        }
-    }
-
-    pub(super) fn set_real(&mut self, slot: u32, value: f64) {
-        let from = self.slots[slot as usize].offset + 2;
-        self.words[from] = value.to_bits();
-        self.words[from + 1] = 0;
-        self.touch(slot);
-    }
-
-    /// Sets `length` bits, most significant first; the rest as VCD has it: zeros, or the first bit if it is `x` or `z`.
-    pub(super) fn set_bits(&mut self, slot: u32, length: usize, bits: impl Iterator<Item = vcd::Value>) {
-        let Slot {
-            kind, offset, words, ..
-        } = self.slots[slot as usize];
-        let Kind::Bits(width) = kind else { return };
-        let from = offset + 2 * words;
-        let run = &mut self.words[from..from + 2 * words];
-        run.fill(0);
-        let (low, high) = run.split_at_mut(words);
-        let mut set = |at: usize, value: vcd::Value| {
-            let mask = 1 << (at % 64);
-            if matches!(value, vcd::Value::V1 | vcd::Value::Z) {
-                low[at / 64] |= mask;
+            Kind::Bits(width) => {
+                let words = words_of(kind) / 2;
+                self.words[from + words..].fill(u64::MAX);
+                if let (Some(last), 1..) = (self.words.last_mut(), width % 64) {
+                    *last &= u64::MAX >> (64 - width % 64);
+                }
             }
-            if matches!(value, vcd::Value::X | vcd::Value::Z) {
-                high[at / 64] |= mask;
-            }
-        };
-        let mut first = vcd::Value::X;
-        for (at, value) in bits.enumerate() {
-            if at == 0 {
-                first = value;
-            }
-            set(length - 1 - at, value);
+            Kind::Real => self.words[from + 1] = u64::MAX,
+            Kind::Text | Kind::Event => {}
         }
-        if matches!(first, vcd::Value::X | vcd::Value::Z) {
-            (length..width as usize).for_each(|at| set(at, first));
-        }
-        self.touch(slot);
+        self.kinds.len() as u32 - 1
     }
 
-    fn touch(&mut self, slot: u32) {
-        let state = &mut self.slots[slot as usize];
-        if !state.dirty {
-            state.dirty = true;
-            self.dirty.push(slot);
+    pub(crate) fn kind(&self, slot: u32) -> Kind {
+        self.kinds[slot as usize]
+    }
+
+    /// The words of a slot: the bits, then the mask of the unknown ones.
+    #[inline]
+    pub(crate) fn words(&self, slot: u32) -> &[u64] {
+        let from = self.offsets[slot as usize];
+        &self.words[from..from + words_of(self.kinds[slot as usize])]
+    }
+
+    /// Sets a slot's words; whether that changed them.
+    #[inline]
+    pub(crate) fn set(&mut self, slot: u32, words: &[u64]) -> bool {
+        let from = self.offsets[slot as usize];
+        let own = &mut self.words[from..from + words.len()];
+        if own == words {
+            return false;
+        }
+        own.copy_from_slice(words);
+        true
+    }
+
+    /// Sets one bit of a slot: 0 or 1, known or not.
+    pub(crate) fn set_bit(&mut self, slot: u32, bit: u32, [value, unknown]: [u64; 2]) {
+        let from = self.offsets[slot as usize];
+        let half = words_of(self.kinds[slot as usize]) / 2;
+        let (at, shift) = (from + bit as usize / 64, bit % 64);
+        for (word, value) in [(at, value), (at + half, unknown)] {
+            self.words[word] = self.words[word] & !(1 << shift) | (value & 1) << shift;
         }
     }
 
-    pub(super) fn has_changes(&self) -> bool {
-        !self.dirty.is_empty()
+    pub(crate) fn get(&self, slot: u32) -> Value<'_> {
+        value(self.kinds[slot as usize], self.words(slot))
     }
+}
 
-    pub(super) fn commit(&mut self, mut changed: impl FnMut(u32)) {
-        for slot in self.dirty.drain(..) {
-            let state = &mut self.slots[slot as usize];
-            state.dirty = false;
-            let (now, length) = (state.offset, 2 * state.words);
-            let (before, after) = self.words[now..now + 2 * length].split_at_mut(length);
-            if before != after {
-                before.copy_from_slice(after);
-                changed(slot);
-            }
-        }
+/// The words of a kind as a value.
+fn value(kind: Kind, words: &[u64]) -> Value<'_> {
+    let (bits, unknown) = words.split_at(words.len() / 2);
+    match kind {
+        Kind::Bits(width) => Value::Bits { width, bits, unknown },
+        Kind::Real => Value::Real((unknown[0] == 0).then_some(f64::from_bits(bits[0]))),
+        Kind::Text => Value::Text(words),
+        Kind::Event => Value::Event,
     }
 }

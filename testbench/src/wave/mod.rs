@@ -22,7 +22,7 @@ use vcd::{IdCode, VarType};
 use self::clocking::Clocking;
 use self::output::Output;
 pub use self::output::write_text;
-pub use self::view::{Difference, Part, merge};
+pub use self::view::{Difference, Focus, Part, merge, merge_around};
 use crate::Error;
 
 /// How a signal is written.

@@ -9,6 +9,7 @@
 //! Each part keeps its signals under a scope of its name, below the scopes that they do not all share. All are on one time
 //! axis, in the finest of their timescales.
 
+use std::collections::HashSet;
 use std::io::Write as _;
 use std::path::Path;
 
@@ -16,7 +17,7 @@ use vcd::{IdCode, TimescaleUnit, VarType};
 
 use super::output::{self, Output};
 use crate::Error;
-use crate::reader::{Kind, Reader, Value};
+use crate::reader::{Feed, Kind, Named, Step, Value, Values, Wave};
 
 /// One of the waveforms.
 #[derive(Debug, Clone, Copy)]
@@ -38,25 +39,43 @@ pub struct Difference<'a> {
     pub subtrahend: (usize, &'a str),
 }
 
+/// What a merged file is about: some signals, and a time at which the viewers open it.
+#[derive(Debug, Clone)]
+pub struct Focus {
+    /// Full names, of each part; the others are left out.
+    pub signals: Vec<HashSet<String>>,
+    /// The time.
+    pub time_fs: u128,
+    /// How much of the time around it is in view.
+    pub span_fs: u128,
+}
+
 /// Scope of the differences.
 const DIFFERENCE: &str = "difference";
 
 struct Open {
     scope: String,
-    reader: Reader,
+    names: Vec<Named>,
+    feed: Feed,
+    now: Values,
+    unit_fs: u64,
+    step: Option<Step>,
     /// Name below the shared scopes, and slot.
     signals: Vec<(String, u32)>,
     /// Id in the merged file, by slot.
     ids: Vec<Option<IdCode>>,
     /// How often each slot was given a value.
     values: Vec<u64>,
-    next_fs: Option<u128>,
 }
 
 impl Open {
-    fn new(part: &Part<'_>) -> Result<Self, Error> {
-        let reader = Reader::open(part.path)?;
-        let names = reader.names();
+    fn new(part: &Part<'_>, only: Option<&HashSet<String>>) -> Result<Self, Error> {
+        let (declarations, feed) = Wave::open(part.path)?.play(None)?;
+        let mut names = declarations.names;
+        if let Some(only) = only {
+            names.retain(|named| only.contains(&named.path));
+        }
+        let now = Values::new(&declarations.kinds);
         let shared = names.first().map_or(0, |first| {
             let shares = |top: &str| names.iter().all(|named| named.path.starts_with(top));
             let ends = first.path.match_indices('.').map(|(at, _)| at + 1);
@@ -64,29 +83,30 @@ impl Open {
         });
         let mut signals: Vec<(String, u32)> = names
             .iter()
-            .filter(|named| reader.kind(named.slot) != Kind::Other)
+            .filter(|named| matches!(now.kind(named.slot), Kind::Bits(_) | Kind::Real))
             .map(|named| (named.path[shared..].to_owned(), named.slot))
             .collect();
         // By scope, so that each scope is opened once; within a scope in the order of the file.
         signals.sort_by(|(a, _), (b, _)| scope_of(a).cmp(scope_of(b)));
         Ok(Self {
             scope: part.scope.to_owned(),
-            ids: vec![None; reader.slot_count()],
-            values: vec![0; reader.slot_count()],
+            ids: vec![None; declarations.kinds.len()],
+            values: vec![0; declarations.kinds.len()],
             signals,
-            reader,
-            next_fs: None,
+            names,
+            feed,
+            now,
+            unit_fs: declarations.unit_fs,
+            step: None,
         })
     }
 
-    fn advance(&mut self) -> Result<(), Error> {
-        let unit_fs = u128::from(self.reader.unit_fs());
-        self.next_fs = self.reader.read_step()?.map(|time| u128::from(time) * unit_fs);
-        Ok(())
+    fn next_fs(&self) -> Option<u128> {
+        Some(u128::from(self.step?.time) * u128::from(self.unit_fs))
     }
 
     fn find(&self, name: &str) -> Option<u32> {
-        let full = self.reader.names().iter().find(|named| named.path == name);
+        let full = self.names.iter().find(|named| named.path == name);
         let short = self.signals.iter().find(|(short, _)| short == name);
         full.map(|named| named.slot).or(short.map(|(_, slot)| *slot))
     }
@@ -108,8 +128,23 @@ struct Subtraction {
 /// # Errors
 /// [`Error::File`] and [`Error::Vcd`] as for reading each part; [`Error::Option`] where a difference names no signal.
 pub fn merge(path: &Path, parts: &[Part<'_>], differences: &[Difference<'_>]) -> Result<(), Error> {
-    let mut parts = parts.iter().map(Open::new).collect::<Result<Vec<_>, Error>>()?;
-    let unit_fs = parts.iter().map(|p| p.reader.unit_fs()).min().unwrap_or(1_000_000);
+    merge_around(path, parts, differences, None)
+}
+
+/// As [`merge`], with what `focus` is about.
+///
+/// # Errors
+/// As [`merge`].
+pub fn merge_around(
+    path: &Path,
+    parts: &[Part<'_>],
+    differences: &[Difference<'_>],
+    focus: Option<&Focus>,
+) -> Result<(), Error> {
+    let only = |at: usize| focus.and_then(|focus| focus.signals.get(at));
+    let opened = parts.iter().enumerate().map(|(at, part)| Open::new(part, only(at)));
+    let mut parts = opened.collect::<Result<Vec<_>, Error>>()?;
+    let unit_fs = parts.iter().map(|p| p.unit_fs).min().unwrap_or(1_000_000);
     let mut output = Output::create(path)?;
     output.write(|vcd| vcd.timescale(timescale(unit_fs).0, timescale(unit_fs).1))?;
     for part in &mut parts {
@@ -119,27 +154,28 @@ pub fn merge(path: &Path, parts: &[Part<'_>], differences: &[Difference<'_>]) ->
     output.write(|vcd| vcd.enddefinitions())?;
 
     for part in &mut parts {
-        part.advance()?;
+        part.step = part.feed.next_step()?;
     }
     let mut end = 0;
-    while let Some(time_fs) = parts.iter().filter_map(|p| p.next_fs).min() {
+    while let Some(time_fs) = parts.iter().filter_map(Open::next_fs).min() {
         let time = u64::try_from(time_fs / u128::from(unit_fs));
         let time = time.map_err(|_| Error::Option(format!("{time_fs} fs do not fit the merged file's timescale")))?;
         output.write(|vcd| vcd.timestamp(time))?;
         end = time;
         for part in &mut parts {
-            if part.next_fs == Some(time_fs) {
-                let mut changed = Vec::new();
-                part.reader.commit(|slot| changed.push(slot));
-                for slot in changed {
-                    part.values[slot as usize] += 1;
-                    write_value(&mut output, part.ids[slot as usize], part.reader.now(slot))?;
-                }
-                part.advance()?;
+            if part.next_fs() != Some(time_fs) {
+                continue;
             }
+            for (slot, words) in part.feed.changes() {
+                if part.now.set(slot, words) {
+                    part.values[slot as usize] += 1;
+                    write_value(&mut output, part.ids[slot as usize], part.now.get(slot))?;
+                }
+            }
+            part.step = part.feed.next_step()?;
         }
         for subtraction in &mut subtractions {
-            let value = |(part, slot): (usize, u32)| number(parts[part].reader.now(slot));
+            let value = |(part, slot): (usize, u32)| number(parts[part].now.get(slot));
             let (Some(a), Some(b)) = (value(subtraction.minuend), value(subtraction.subtrahend)) else {
                 continue;
             };
@@ -150,13 +186,14 @@ pub fn merge(path: &Path, parts: &[Part<'_>], differences: &[Difference<'_>]) ->
         }
     }
     output.finish()?;
-    write_views(path, &parts, differences, end)
+    let spot = focus.map(|focus| [focus.time_fs, focus.span_fs].map(|fs| (fs / u128::from(unit_fs)) as u64));
+    write_views(path, &parts, differences, end, spot)
 }
 
 fn number(value: Value<'_>) -> Option<f64> {
     match value {
         Value::Real(real) => real,
-        bits => bits.signed().map(|n| n as f64),
+        bits => bits.integer(true).map(|n| n as f64),
     }
 }
 
@@ -175,7 +212,7 @@ fn timescale(unit_fs: u64) -> (u32, TimescaleUnit) {
 
 /// The part's scopes and signals.
 fn declare(output: &mut Output, part: &mut Open) -> Result<(), Error> {
-    let (reader, ids) = (&part.reader, &mut part.ids);
+    let (now, ids) = (&part.now, &mut part.ids);
     output.write(|vcd| {
         vcd.add_module(&part.scope)?;
         let mut open: Vec<&str> = Vec::new();
@@ -190,9 +227,9 @@ fn declare(output: &mut Output, part: &mut Open) -> Result<(), Error> {
                 vcd.add_module(inner)?;
                 open.push(inner);
             }
-            let (var_type, width) = match reader.kind(*slot) {
+            let (var_type, width) = match now.kind(*slot) {
                 Kind::Bits(width) => (VarType::Wire, width),
-                Kind::Real | Kind::Other => (VarType::Real, 64),
+                Kind::Real | Kind::Text | Kind::Event => (VarType::Real, 64),
             };
             let reference = name.rsplit('.').next().unwrap_or(name);
             let id = &mut ids[*slot as usize];
@@ -241,7 +278,7 @@ fn write_value(output: &mut Output, id: Option<IdCode>, value: Value<'_>) -> Res
         Value::Bits { width: 1, .. } => writeln!(vcd.writer(), "{}{id}", value.digits(1, false)),
         Value::Bits { width, .. } => writeln!(vcd.writer(), "b{} {id}", value.digits(width, false)),
         Value::Real(Some(real)) => output::real(vcd, id, real),
-        Value::Real(None) | Value::Other => Ok(()),
+        Value::Real(None) | Value::Text(_) | Value::Event => Ok(()),
     })
 }
 
@@ -255,14 +292,29 @@ const CURVE_BITS: u32 = 16;
 /// Width of GTKWave's waves, in units of the 200 pixels that its zoom counts in, so that all of the time is in view.
 const GTKWAVE_WIDTH: f64 = 4.6;
 
-/// The views show what moves: a signal that never changes is found in the viewer's tree.
-fn write_views(path: &Path, parts: &[Open], differences: &[Difference<'_>], end: u64) -> Result<(), Error> {
+/// The views show what moves: a signal that never changes is found in the viewer's tree. They open at a spot and the time
+/// around it, or show all.
+fn write_views(
+    path: &Path,
+    parts: &[Open],
+    differences: &[Difference<'_>],
+    end: u64,
+    spot: Option<[u64; 2]>,
+) -> Result<(), Error> {
     let file = path
         .file_name()
         .map(|name| name.to_string_lossy().into_owned())
         .unwrap_or_default();
-    let zoom = (GTKWAVE_WIDTH / end.max(1) as f64).log2();
-    let mut gtkwave = format!("[dumpfile] \"{file}\"\n[size] 1400 900\n*{zoom:.6} -1\n");
+    let shown = spot.map_or(end, |[_, span]| span);
+    let zoom = (GTKWAVE_WIDTH / shown.max(1) as f64).log2();
+    let mut gtkwave = format!("[dumpfile] \"{file}\"\n[size] 1400 900\n");
+    match spot {
+        Some([time, span]) => {
+            let start = time.saturating_sub(span / 2);
+            gtkwave.push_str(&format!("[timestart] {start}\n*{zoom:.6} {time}\n"));
+        }
+        None => gtkwave.push_str(&format!("*{zoom:.6} -1\n")),
+    }
     let mut surfer = format!("load_file {file}\n");
     let mut heading = |gtkwave: &mut String, scope: &str| {
         gtkwave.push_str(&format!("@200\n-{scope}\n"));
@@ -270,9 +322,9 @@ fn write_views(path: &Path, parts: &[Open], differences: &[Difference<'_>], end:
     };
     for part in parts {
         heading(&mut gtkwave, &part.scope);
-        let moves = |slot: &u32| part.values[*slot as usize] > 1;
+        let moves = |slot: &u32| spot.is_some() || part.values[*slot as usize] > 1;
         for (name, slot) in part.signals.iter().filter(|(_, slot)| moves(slot)) {
-            let line = match part.reader.kind(*slot) {
+            let line = match part.now.kind(*slot) {
                 Kind::Bits(1) => format!("{GTKWAVE_BIT}\n{}.{name}\n", part.scope),
                 Kind::Bits(width) if width >= CURVE_BITS => {
                     format!(
@@ -282,7 +334,9 @@ fn write_views(path: &Path, parts: &[Open], differences: &[Difference<'_>], end:
                     )
                 }
                 Kind::Bits(width) => format!("{GTKWAVE_SIGNED}\n{}.{name}[{}:0]\n", part.scope, width - 1),
-                Kind::Real | Kind::Other => format!("{GTKWAVE_CURVE}\n{}.{name}\n{GTKWAVE_ROOM}", part.scope),
+                Kind::Real | Kind::Text | Kind::Event => {
+                    format!("{GTKWAVE_CURVE}\n{}.{name}\n{GTKWAVE_ROOM}", part.scope)
+                }
             };
             gtkwave.push_str(&line);
         }
@@ -296,7 +350,10 @@ fn write_views(path: &Path, parts: &[Open], differences: &[Difference<'_>], end:
             difference.name
         ));
     }
-    surfer.push_str("zoom_fit\n");
+    match spot {
+        Some([time, _]) => surfer.push_str(&format!("zoom_fit\ncursor_set {time}\ngoto_cursor\n")),
+        None => surfer.push_str("zoom_fit\n"),
+    }
     output::write_text(&path.with_extension("gtkw"), &gtkwave)?;
     output::write_text(&path.with_extension("sucl"), &surfer)
 }

@@ -3,7 +3,10 @@
 
 mod common;
 mod diff;
+mod fuzz;
 mod hostile;
 mod lockstep;
+mod options;
+mod producers;
 mod simulators;
 mod wave;

@@ -1,0 +1,35 @@
+//! Holds values back for so many samples, or so much time.
+
+use std::collections::VecDeque;
+
+/// Values that come into effect later. Its unit is what the caller counts in: samples or femtoseconds.
+#[derive(Debug)]
+pub(super) struct DelayLine {
+    pub(super) by: u128,
+    /// Slot whose value is delayed, and the slot that shows it.
+    pub(super) slots: Vec<(u32, u32)>,
+    /// Places in `slots` that changed since the last [`super::side::Side::pend`], and for each whether it is among them.
+    pub(super) changed: Vec<u32>,
+    pub(super) is_changed: Vec<bool>,
+    pub(super) queue: VecDeque<(u128, u32)>,
+    pub(super) words: VecDeque<u64>,
+}
+
+impl DelayLine {
+    pub(super) fn new(by: u128) -> Self {
+        Self {
+            by,
+            slots: Vec::new(),
+            changed: Vec::new(),
+            is_changed: Vec::new(),
+            queue: VecDeque::new(),
+            words: VecDeque::new(),
+        }
+    }
+
+    pub(super) fn mark(&mut self, place: u32) {
+        if !std::mem::replace(&mut self.is_changed[place as usize], true) {
+            self.changed.push(place);
+        }
+    }
+}

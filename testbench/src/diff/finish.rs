@@ -1,0 +1,60 @@
+//! What the engine found, as the result.
+
+use super::engine::{Engine, seconds};
+use super::result::{Comparison, Difference};
+
+impl Engine<'_> {
+    /// Writes what was found into the result.
+    pub(super) fn finish(self, comparison: &mut Comparison) {
+        let mut differences: Vec<(u128, Difference)> = Vec::new();
+        for state in self.states {
+            // What differs at the end of the files has no end that could forgive it.
+            let persistent = state.since.is_some();
+            let since = state.since.as_ref().map_or(0, |(since, _)| self.samples - since);
+            let Some(first) = state.first.or(state.since.map(|(_, first)| first)) else {
+                continue;
+            };
+            let difference = Difference {
+                signal: state.name,
+                time: seconds(first.time_fs),
+                a: first.a,
+                b: first.b,
+                count: state.count + since,
+                persistent,
+                a_number: first.a_number,
+                b_number: first.b_number,
+            };
+            differences.push((first.time_fs, difference));
+        }
+        // Stable: signals that differ first at the same time stay in the order of the file.
+        differences.sort_by_key(|(time_fs, _)| *time_fs);
+        let mut differences: Vec<Difference> = differences.into_iter().map(|(_, difference)| difference).collect();
+        differences.extend(self.surplus);
+        if let Some(time_fs) = self.shifted_fs {
+            comparison.notes.push(format!(
+                "the clock's edges lie at different times from {} s on: compared edge by edge",
+                seconds(time_fs)
+            ));
+        }
+        let [held_a, held_b] = [self.a.held_in_reset, self.b.held_in_reset];
+        if held_a + held_b > 0 {
+            comparison.notes.push(format!(
+                "not compared while in reset: {held_a} edges of the first file, {held_b} of the second"
+            ));
+        }
+        if self.unrecorded > 0 {
+            comparison.notes.push(format!(
+                "{} samples are not recorded in one file ($dumpoff) and were not compared",
+                self.unrecorded
+            ));
+        }
+        if self.forgiven > 0 {
+            comparison.notes.push(format!(
+                "{} differences lasted no longer than the time tolerance and do not count",
+                self.forgiven
+            ));
+        }
+        comparison.context = self.context.map(|gathering| gathering.context);
+        comparison.conclude(self.samples, differences);
+    }
+}

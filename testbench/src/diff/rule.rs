@@ -1,0 +1,333 @@
+//! When two values are equal, and how they are shown.
+
+use std::fmt;
+
+use super::{Shown, UnknownPolicy};
+use crate::reader::Value;
+
+/// How bits are read as a number.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum View {
+    /// No number: bit by bit.
+    #[default]
+    Bits,
+    /// Two's complement, with so many bits behind the binary point.
+    Signed {
+        /// Bits behind the point, 0..=128.
+        fraction: u8,
+    },
+    /// Without sign, with so many bits behind the binary point.
+    Unsigned {
+        /// Bits behind the point, 0..=128.
+        fraction: u8,
+    },
+}
+
+impl View {
+    pub(super) fn parse(text: &str) -> Option<Self> {
+        match text {
+            "bits" => return Some(Self::Bits),
+            "signed" => return Some(Self::Signed { fraction: 0 }),
+            "unsigned" => return Some(Self::Unsigned { fraction: 0 }),
+            _ => {}
+        }
+        let (signed, format) = match text.strip_prefix("uq") {
+            Some(format) => (false, format),
+            None => (true, text.strip_prefix('q')?),
+        };
+        let number = |digits: &str| digits.parse::<u8>().ok().filter(|bits| *bits <= 128);
+        let fraction = match format.split_once('.') {
+            // The bits before the point follow from the width; writing them helps those who read the command.
+            Some((whole, fraction)) => number(whole).and(number(fraction))?,
+            None => number(format)?,
+        };
+        Some(if signed {
+            Self::Signed { fraction }
+        } else {
+            Self::Unsigned { fraction }
+        })
+    }
+
+    fn signed(self) -> bool {
+        !matches!(self, Self::Unsigned { .. })
+    }
+
+    fn fraction(self) -> u8 {
+        match self {
+            Self::Bits => 0,
+            Self::Signed { fraction } | Self::Unsigned { fraction } => fraction,
+        }
+    }
+
+    /// Bits beyond which it cannot be computed with.
+    pub(super) fn widest(self) -> u32 {
+        if self.signed() { 128 } else { 127 }
+    }
+}
+
+impl fmt::Display for View {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Bits => f.write_str("bits"),
+            Self::Signed { fraction: 0 } => f.write_str("signed"),
+            Self::Unsigned { fraction: 0 } => f.write_str("unsigned"),
+            Self::Signed { fraction } => write!(f, "q{fraction}"),
+            Self::Unsigned { fraction } => write!(f, "uq{fraction}"),
+        }
+    }
+}
+
+/// How far apart two numbers may be.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Tolerance {
+    /// In units of the last bit; of reals, in their own unit.
+    Lsb(f64),
+    /// In the number's unit, behind the binary point.
+    Absolute(f64),
+    /// As a fraction of the larger of the two.
+    Relative(f64),
+}
+
+impl Tolerance {
+    pub(super) fn parse(text: &str) -> Option<Self> {
+        let (number, make): (&str, fn(f64) -> Self) = if let Some(number) = text.strip_suffix('%') {
+            (number, |percent| Self::Relative(percent / 100.0))
+        } else if let Some(number) = text.strip_suffix("abs") {
+            (number, Self::Absolute)
+        } else {
+            (text.strip_suffix("lsb").unwrap_or(text), Self::Lsb)
+        };
+        let number: f64 = number.trim_end().parse().ok()?;
+        (number.is_finite() && number >= 0.0).then(|| make(number))
+    }
+
+    fn limit(self, a: f64, b: f64, lsb: f64) -> f64 {
+        match self {
+            Self::Lsb(count) => count * lsb,
+            Self::Absolute(limit) => limit,
+            Self::Relative(part) => part * a.abs().max(b.abs()),
+        }
+    }
+}
+
+impl fmt::Display for Tolerance {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Lsb(count) => write!(f, "{count} LSB"),
+            Self::Absolute(limit) => write!(f, "{limit} absolute"),
+            Self::Relative(part) => write!(f, "{} %", 100.0 * part),
+        }
+    }
+}
+
+/// How the two values of a pair are compared.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(super) struct Rule {
+    pub(super) view: View,
+    pub(super) tolerance: Option<Tolerance>,
+    pub(super) unknown: UnknownPolicy,
+}
+
+impl Rule {
+    /// Whether equal words are all there is to it.
+    pub(super) fn is_plain(&self) -> bool {
+        self.tolerance.is_none() && self.unknown == UnknownPolicy::Strict
+    }
+
+    fn lsb(&self) -> f64 {
+        (-f64::from(self.view.fraction())).exp2()
+    }
+
+    pub(super) fn equal(&self, a: Value<'_>, b: Value<'_>) -> bool {
+        match (a, b) {
+            (Value::Bits { .. }, Value::Bits { .. }) => {
+                if let (Some(tolerance), Some(a), Some(b)) = (self.tolerance, self.whole(a), self.whole(b)) {
+                    let (a, b, lsb) = (a as f64 * self.lsb(), b as f64 * self.lsb(), (a.abs_diff(b)));
+                    return lsb == 0 || lsb as f64 * self.lsb() <= tolerance.limit(a, b, self.lsb());
+                }
+                self.same_bits(a, b)
+            }
+            (Value::Real(None), Value::Real(None)) => true,
+            (Value::Real(Some(a)), Value::Real(Some(b))) => self.near(a, b),
+            (Value::Real(Some(real)), bits) | (bits, Value::Real(Some(real))) => match self.whole(bits) {
+                Some(whole) => self.near(whole as f64 * self.lsb(), real),
+                None => self.unknown == UnknownPolicy::Wildcard,
+            },
+            // Neither has had a value yet.
+            (Value::Real(None), Value::Bits { unknown, .. }) | (Value::Bits { unknown, .. }, Value::Real(None)) => {
+                unknown.iter().any(|word| *word != 0)
+            }
+            (Value::Text(a), Value::Text(b)) => a == b,
+            _ => false,
+        }
+    }
+
+    fn near(&self, a: f64, b: f64) -> bool {
+        let within = || {
+            self.tolerance
+                .is_some_and(|t| (a - b).abs() <= t.limit(a, b, self.lsb()))
+        };
+        a == b || (a.is_nan() && b.is_nan()) || within()
+    }
+
+    /// The bits as a whole number of LSB; `None` with unknown bits that stay so.
+    fn whole(&self, value: Value<'_>) -> Option<i128> {
+        let known = value.integer(self.view.signed());
+        if known.is_some() || self.unknown != UnknownPolicy::Zero {
+            return known;
+        }
+        let Value::Bits { width, bits, unknown } = value else {
+            return None;
+        };
+        let words: Vec<u64> = bits
+            .iter()
+            .zip(unknown)
+            .map(|(bits, unknown)| bits & !unknown)
+            .collect();
+        let zeros = vec![0; words.len()];
+        let cleared = Value::Bits {
+            width,
+            bits: &words,
+            unknown: &zeros,
+        };
+        cleared.integer(self.view.signed())
+    }
+
+    /// Bit by bit, the narrower extended with zeros, or by a signed view with its sign.
+    fn same_bits(&self, a: Value<'_>, b: Value<'_>) -> bool {
+        let extend = matches!(self.view, View::Signed { .. });
+        let words = words(a).max(words(b));
+        (0..words).all(|at| {
+            let ([a, a_unknown], [b, b_unknown]) = (word(a, at, extend), word(b, at, extend));
+            match self.unknown {
+                UnknownPolicy::Strict => a == b && a_unknown == b_unknown,
+                UnknownPolicy::Wildcard => (a ^ b) & !(a_unknown | b_unknown) == 0,
+                UnknownPolicy::Zero => a & !a_unknown == b & !b_unknown,
+            }
+        })
+    }
+
+    /// Both values as the report shows them, vectors in the width of the wider.
+    pub(super) fn shown(&self, a: Option<Value<'_>>, b: Option<Value<'_>>) -> (Shown, Shown) {
+        let width = |value: &Option<Value<'_>>| match value {
+            Some(Value::Bits { width, .. }) => *width,
+            _ => 0,
+        };
+        let wider = width(&a).max(width(&b));
+        let signed = match self.view {
+            View::Signed { .. } => true,
+            View::Bits => self.tolerance.is_some(),
+            View::Unsigned { .. } => false,
+        };
+        let show = |value: Option<Value<'_>>| match value {
+            Some(bits @ Value::Bits { .. }) => Shown::Bits(bits.digits(wider, signed)),
+            Some(Value::Real(Some(real))) => Shown::Real(real),
+            Some(text @ Value::Text(_)) => text.text().map_or(Shown::Missing, Shown::Text),
+            Some(Value::Real(None) | Value::Event) | None => Shown::Missing,
+        };
+        (show(a), show(b))
+    }
+
+    /// The value as a number, if it is looked at as one.
+    pub(super) fn number(&self, value: Option<Value<'_>>) -> Option<f64> {
+        match value? {
+            Value::Real(real) => real,
+            _ if self.view == View::Bits && self.tolerance.is_none() => None,
+            bits => self.whole(bits).map(|whole| whole as f64 * self.lsb()),
+        }
+    }
+}
+
+fn words(value: Value<'_>) -> usize {
+    match value {
+        Value::Bits { bits, .. } => bits.len(),
+        _ => 0,
+    }
+}
+
+/// Word `at` of the bits and of the unknown ones, the missing ones zero or the sign.
+fn word(value: Value<'_>, at: usize, extend: bool) -> [u64; 2] {
+    let Value::Bits { width, bits, unknown } = value else {
+        return [0; 2];
+    };
+    [bits, unknown].map(|words| {
+        let sign = words.last().map_or(0, |last| last >> ((width - 1) % 64) & 1);
+        let fill = if extend && sign == 1 { u64::MAX } else { 0 };
+        match words.get(at) {
+            Some(word) if at + 1 == words.len() && width % 64 != 0 => word | fill << (width % 64),
+            Some(word) => *word,
+            None => fill,
+        }
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn bits(width: u32, words: &[u64]) -> Value<'_> {
+        let (bits, unknown) = words.split_at(words.len() / 2);
+        Value::Bits { width, bits, unknown }
+    }
+
+    #[test]
+    fn unit_views_and_tolerances_are_read() {
+        assert_eq!(View::parse("q3.16"), Some(View::Signed { fraction: 16 }));
+        assert_eq!(View::parse("uq8"), Some(View::Unsigned { fraction: 8 }));
+        assert_eq!(Tolerance::parse("2"), Some(Tolerance::Lsb(2.0)));
+        assert_eq!(Tolerance::parse("2lsb"), Some(Tolerance::Lsb(2.0)));
+        assert_eq!(Tolerance::parse("0.25abs"), Some(Tolerance::Absolute(0.25)));
+        assert_eq!(Tolerance::parse("50 %"), Some(Tolerance::Relative(0.5)));
+    }
+
+    #[test]
+    fn unit_fractions_scale_and_signs_extend() {
+        let rule = |view, tolerance| Rule {
+            view,
+            tolerance,
+            unknown: UnknownPolicy::Strict,
+        };
+        let minus_half = bits(4, &[0b1110, 0]);
+        let q2 = View::Signed { fraction: 2 };
+        assert!(rule(q2, None).equal(minus_half, Value::Real(Some(-0.5))));
+        assert!(rule(q2, None).equal(minus_half, bits(70, &[u64::MAX - 1, 63, 0, 0])));
+        assert!(!rule(View::Bits, None).equal(minus_half, bits(70, &[u64::MAX - 1, 63, 0, 0])));
+        let unsigned = View::Unsigned { fraction: 0 };
+        assert!(rule(unsigned, Some(Tolerance::Lsb(1.0))).equal(minus_half, bits(4, &[0b1111, 0])));
+        assert!(!rule(unsigned, Some(Tolerance::Lsb(1.0))).equal(minus_half, bits(4, &[0b0000, 0])));
+        assert!(rule(q2, Some(Tolerance::Absolute(0.5))).equal(minus_half, bits(4, &[0, 0])));
+        assert!(!rule(q2, Some(Tolerance::Absolute(0.49))).equal(minus_half, bits(4, &[0, 0])));
+        assert!(rule(q2, Some(Tolerance::Relative(0.5))).equal(minus_half, bits(4, &[0b1111, 0])));
+        assert!(!rule(q2, Some(Tolerance::Relative(0.49))).equal(minus_half, bits(4, &[0b1111, 0])));
+    }
+
+    #[test]
+    fn unit_unknown_bits_by_policy() {
+        let [zero, one, x, z] = [[0, 0], [1, 0], [0, 1], [1, 1]];
+        for (policy, equal) in [
+            (UnknownPolicy::Strict, [true, false, false, false]),
+            (UnknownPolicy::Wildcard, [true, false, true, true]),
+            (UnknownPolicy::Zero, [true, false, true, true]),
+        ] {
+            for (other, expected) in [zero, one, x, z].iter().zip(equal) {
+                for tolerance in [None, Some(Tolerance::Lsb(0.0))] {
+                    let rule = Rule {
+                        unknown: policy,
+                        tolerance,
+                        ..Rule::default()
+                    };
+                    assert_eq!(
+                        rule.equal(bits(1, &zero), bits(1, other)),
+                        expected,
+                        "{policy:?} {other:?}"
+                    );
+                    assert_eq!(
+                        rule.equal(bits(1, other), bits(1, &zero)),
+                        expected,
+                        "{policy:?} {other:?}"
+                    );
+                }
+            }
+        }
+    }
+}

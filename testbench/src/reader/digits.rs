@@ -1,0 +1,151 @@
+//! Packs digits into words: a bit each, and a bit each that says whether it is unknown.
+//!
+//! | digit | bit | unknown |
+//! |---|---|---|
+//! | `0`, VHDL's weak `L` | 0 | 0 |
+//! | `1`, `H` | 1 | 0 |
+//! | `x`, and what VHDL has beside it: `U`, `W`, `-` | 0 | 1 |
+//! | `z` | 1 | 1 |
+
+/// What a byte stands for: bit 0 the bit, bit 1 unknown, [`NO_DIGIT`] for any other byte.
+const DIGITS: [u8; 256] = {
+    let mut table = [NO_DIGIT; 256];
+    let digits = [
+        (b"0Ll", 0),
+        (b"1Hh", 1),
+        (b"xX-", 2),
+        (b"uUw", 2),
+        (b"WWW", 2),
+        (b"zZz", 3),
+    ];
+    let mut row = 0;
+    while row < digits.len() {
+        let mut at = 0;
+        while at < 3 {
+            table[digits[row].0[at] as usize] = digits[row].1;
+            at += 1;
+        }
+        row += 1;
+    }
+    table
+};
+const NO_DIGIT: u8 = 0xff;
+
+/// The digit of a byte: bit 0 the bit, bit 1 whether it is unknown.
+pub(super) fn digit(byte: u8) -> Option<u8> {
+    let digit = DIGITS[byte as usize];
+    (digit != NO_DIGIT).then_some(digit)
+}
+
+/// Up to 64 digits, all known, most significant first; `None` if one is anything but `0` or `1`.
+#[inline]
+pub(super) fn known_word(digits: &[u8]) -> Option<u64> {
+    const ZEROS: u64 = u64::from_le_bytes([b'0'; 8]);
+    const ONES: u64 = u64::from_le_bytes([1; 8]);
+    let mut word = 0;
+    let mut eights = digits.chunks_exact(8);
+    for eight in &mut eights {
+        let raw = u64::from_le_bytes(eight.try_into().ok()?) ^ ZEROS;
+        if raw & !ONES != 0 {
+            return None;
+        }
+        // Byte 0 goes to bit 7, byte 7 to bit 0: no two products meet.
+        word = word << 8 | raw.wrapping_mul(0x8040_2010_0804_0201) >> 56;
+    }
+    for byte in eights.remainder() {
+        let bit = byte ^ b'0';
+        if bit > 1 {
+            return None;
+        }
+        word = word << 1 | u64::from(bit);
+    }
+    Some(word)
+}
+
+/// Packs `digits`, most significant first, into `bits` and `unknown`, which hold `width` bits, least significant word
+/// first. What is missing is as VCD has it: zeros, or the first digit if that is unknown. There must not be more digits
+/// than `width`.
+///
+/// # Errors
+/// The byte that is no digit.
+pub(super) fn pack(digits: &[u8], width: u32, bits: &mut [u64], unknown: &mut [u64]) -> Result<(), u8> {
+    let words = bits.iter_mut().zip(unknown.iter_mut());
+    let mut chunks = digits.rchunks(64);
+    for (bits, unknown) in words {
+        let chunk = chunks.next().unwrap_or(&[]);
+        (*bits, *unknown) = match known_word(chunk) {
+            Some(word) => (word, 0),
+            None => mixed_word(chunk)?,
+        };
+        if chunk.len() < 64 {
+            let first = digits.first().and_then(|byte| digit(*byte)).unwrap_or(0);
+            if first >= 2 {
+                let missing = u64::MAX.checked_shl(chunk.len() as u32).unwrap_or(0);
+                *unknown |= missing;
+                *bits |= if first == 3 { missing } else { 0 };
+            }
+        }
+    }
+    trim(width, bits);
+    trim(width, unknown);
+    Ok(())
+}
+
+/// Clears the bits above the width in the last word.
+fn trim(width: u32, words: &mut [u64]) {
+    if let (Some(last), 1..) = (words.last_mut(), width % 64) {
+        *last &= u64::MAX >> (64 - width % 64);
+    }
+}
+
+fn mixed_word(digits: &[u8]) -> Result<(u64, u64), u8> {
+    let (mut bits, mut unknown) = (0, 0);
+    for byte in digits {
+        let digit = digit(*byte).ok_or(*byte)?;
+        bits = bits << 1 | u64::from(digit & 1);
+        unknown = unknown << 1 | u64::from(digit >> 1);
+    }
+    Ok((bits, unknown))
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    proptest! {
+        #[test]
+        fn prop_packing_is_what_a_digit_at_a_time_gives(digits in "[01xzXZULHW-]{1,200}", more in 0u32..100) {
+            let width = digits.len() as u32 + more;
+            let words = width.div_ceil(64) as usize;
+            let (mut bits, mut unknown) = (vec![7; words], vec![7; words]);
+            pack(digits.as_bytes(), width, &mut bits, &mut unknown).unwrap();
+            let first = digit(digits.as_bytes()[0]).unwrap();
+            for at in 0..64 * words {
+                let expected = match digits.bytes().rev().nth(at) {
+                    Some(byte) => digit(byte).unwrap(),
+                    None if at < width as usize && first >= 2 => first,
+                    None => 0,
+                };
+                let got = (unknown[at / 64] >> (at % 64) & 1) << 1 | bits[at / 64] >> (at % 64) & 1;
+                prop_assert_eq!(got, u64::from(expected), "bit {}", at);
+            }
+        }
+
+        #[test]
+        fn prop_known_digits_are_a_binary_number(number: u64, width in 1usize..=64) {
+            let number = number >> (64 - width);
+            prop_assert_eq!(known_word(format!("{number:0width$b}").as_bytes()), Some(number));
+        }
+
+        #[test]
+        fn prop_what_is_no_digit_is_refused(before in "[01]{0,70}", byte in 0u8..=255, after in "[01]{0,70}") {
+            prop_assume!(digit(byte).is_none());
+            let digits = [before.as_bytes(), &[byte], after.as_bytes()].concat();
+            let words = digits.len().div_ceil(64);
+            let packed = pack(&digits, digits.len() as u32, &mut vec![0; words], &mut vec![0; words]);
+            prop_assert_eq!(packed, Err(byte));
+        }
+    }
+}
