@@ -158,10 +158,7 @@ impl Section {
     ) -> Result<Pause, Fault> {
         let data = &self.buffer[..self.to];
         loop {
-            let mut at = self.from;
-            while let Some(b'\t'..=b' ') = data.get(at) {
-                at += 1;
-            }
+            let at = skip_space(data, self.from);
             self.from = at;
             let Some(first) = data.get(at).copied() else {
                 return Ok(Pause::More);
@@ -340,9 +337,10 @@ fn word_end(data: &[u8], at: usize) -> Option<usize> {
     Some(at + length)
 }
 
+/// End of the space at `at`. Control characters are space as in [`word_end`], or a word could be empty for ever.
 #[inline]
 fn skip_space(data: &[u8], mut at: usize) -> usize {
-    while let Some(b'\t'..=b' ') = data.get(at) {
+    while let Some(0..=b' ') = data.get(at) {
         at += 1;
     }
     at

@@ -97,6 +97,14 @@ fn unit_damage_is_named_with_its_line() {
 }
 
 #[test]
+fn unit_control_characters_are_space_and_no_endless_word() {
+    let file = tempfile::NamedTempFile::new().unwrap();
+    let content = GOOD.replacen("#5\n", "$comment \u{1} x\u{b} \0 $end\u{1}\n#5\n", 1);
+    std::fs::write(file.path(), content).unwrap();
+    assert_eq!(compare(file.path()).unwrap().result, Verdict::Equal);
+}
+
+#[test]
 fn unit_what_would_eat_the_memory_is_refused() {
     let wide = GOOD.replace("wire 8 y y", "wire 4294967295 y y");
     assert!(error(wide.as_bytes()).contains("leave out memories"));
