@@ -6,7 +6,7 @@ use crate::control::AxisControl;
 use crate::failure::Failure;
 use posicast_hdl::machine::AxisShaper;
 use posicast_model::rtl::cascade::CascadeConfig;
-use posicast_model::rtl::component::Component;
+use posicast_model::rtl::component::{Component, ComponentError};
 use posicast_model::rtl::divider::DividerConfig;
 use posicast_model::rtl::pwm::{ActiveLow, Mode, PwmConfig, PwmConfigError};
 use posicast_model::rtl::registers::RegisterMap;
@@ -97,9 +97,13 @@ pub(crate) fn components(
     if !machine.axes.iter().any(has_loop) {
         return Ok(components);
     }
-    let refused = |error| Failure::because(error).in_file(path);
-    for ((axis, shaper), control) in machine.axes.iter().zip(shapers).zip(controllers) {
-        let mut of_axis = vec![Component::shaper(shaper.config.clone()).map_err(refused)?];
+    for (index, ((axis, shaper), control)) in machine.axes.iter().zip(shapers).zip(controllers).enumerate() {
+        let refused = |error: ComponentError| match &error {
+            ComponentError::Tick(_) => crate::machine::at_key(path, index, crate::machine::SAMPLE_KEY, &error),
+            _ => Failure::because(error).in_file(path),
+        };
+        let mut of_axis =
+            vec![Component::shaper(crate::machine::component_shaper(axis, &shaper.config)).map_err(refused)?];
         if let Some(encoder) = &axis.encoder {
             let divider = divider(machine, path)?;
             of_axis.push(Component::pulse_counter(divider, encoder.filter_clocks).map_err(refused)?);

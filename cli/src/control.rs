@@ -1,8 +1,10 @@
 //! The controllers of a machine's axes: the gains that follow from its file, and what is doubtful about them.
 
 use crate::failure::Failure;
+use crate::machine;
 use crate::output;
-use posicast_model::control::{self, Derived};
+use posicast_model::control::{self, Derived, Schedule};
+use posicast_model::design::{AxisTables, MachineDesign};
 use posicast_model::rtl::sliding_mode::{Law, Row};
 use posicast_model::spec::{Axis, Machine, PwmMode};
 use serde::Serialize;
@@ -15,27 +17,43 @@ pub(crate) struct AxisControl {
     pub(crate) derived: Derived,
     /// Whether the pins have no pattern for a negative command.
     one_sided: bool,
+    /// Whether velocity and acceleration are not shaped.
+    one_channel: bool,
 }
 
 const ONE_SIDED: &str = "a half bridge shows a negative command as 0: choose direction, full-bridge or locked-antiphase \
                          for mode in [axis.pwm], unless the axis is pushed back by something else";
 
+const ONE_CHANNEL: &str = "the shaper component has the position's channel alone: three take command words of 24 or 32 \
+                           bits and delays of at most 4094 samples; the host must give velocity and acceleration shaped";
+
 /// The controllers of the machine that the file at `path` describes: `None` for an axis without.
-pub(crate) fn of_machine(machine: &Machine, path: &Path) -> Result<Vec<Option<AxisControl>>, Failure> {
-    let of_axis = |axis: &Axis| {
+pub(crate) fn of_machine(
+    machine: &Machine,
+    design: &MachineDesign,
+    path: &Path,
+) -> Result<Vec<Option<AxisControl>>, Failure> {
+    let of_axis = |(index, (axis, tables)): (usize, (&Axis, &AxisTables))| {
         let (Some(drive), Some(pwm), Some(_)) = (&axis.drive, &axis.pwm, &axis.controller) else {
             return Ok(None);
         };
-        let lag_s = control::loop_lag_s(drive, control::schedule_delay_s(&machine.clock, pwm));
-        let derived = control::gains(axis, machine.clock, lag_s).map_err(|e| Failure::because(e).in_file(path))?;
+        let shaper = machine::shaper(machine, axis, tables).ok();
+        // Without a shaper there is no hardware: its pass counts nothing.
+        let component = shaper.map(|top| machine::component_shaper(axis, &top));
+        let shape_clocks = component.as_ref().map_or(0, |c| c.pass_clocks(c.most_products()));
+        let schedule = Schedule::controlling(shape_clocks);
+        let lag_s = control::loop_lag_s(drive, control::schedule_delay_s(&machine.clock, pwm, &schedule));
+        let derived = control::gains(axis, machine.clock, lag_s)
+            .map_err(|error| machine::at_key(path, index, &error.key(), &error))?;
         Ok(Some(AxisControl {
             axis: axis.name.clone(),
             lag_s,
             derived,
             one_sided: pwm.mode == PwmMode::HalfBridge,
+            one_channel: component.is_some_and(|shaper| shaper.channels() == 1),
         }))
     };
-    machine.axes.iter().map(of_axis).collect()
+    machine.axes.iter().zip(&design.axes).enumerate().map(of_axis).collect()
 }
 
 impl AxisControl {
@@ -48,7 +66,9 @@ impl AxisControl {
 
     fn warnings(&self) -> Vec<String> {
         let of_law = self.derived.warnings.iter().map(ToString::to_string);
-        of_law.chain(self.one_sided.then(|| ONE_SIDED.to_owned())).collect()
+        let hardware = [(self.one_sided, ONE_SIDED), (self.one_channel, ONE_CHANNEL)];
+        let hardware = hardware.into_iter().filter(|(holds, _)| *holds);
+        of_law.chain(hardware.map(|(_, text)| text.to_owned())).collect()
     }
 
     /// A line for people.

@@ -6,7 +6,7 @@ mod sensitivity;
 use crate::compare;
 use crate::control::{self, AxisControl};
 use crate::failure::Failure;
-use crate::machine;
+use crate::machine::{self, Unfit};
 use crate::output::{self, Table, percent};
 use crate::plot;
 use posicast_model::analysis::INSENSITIVITY_LIMIT;
@@ -77,7 +77,7 @@ impl<'a> Report<'a> {
     /// Designs the shapers of `machine`, which the file at `path` describes.
     pub(crate) fn new(machine: &'a Machine, path: &Path) -> Result<Self, Failure> {
         let design = design_machine(machine).map_err(|e| Failure::because(e).in_file(path))?;
-        let controllers = control::of_machine(machine, path)?;
+        let controllers = control::of_machine(machine, &design, path)?;
         Ok(Self {
             machine,
             design,
@@ -139,7 +139,7 @@ struct AxisReport<'a> {
     tables: &'a AxisTables,
     modes: Vec<ModeFigures>,
     convolution: ConvolutionFigures,
-    fits: Result<(), String>,
+    fits: Result<(), Unfit>,
     control: Option<&'a AxisControl>,
 }
 

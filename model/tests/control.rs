@@ -142,6 +142,58 @@ fn unit_what_is_missing_is_named() {
     }
 }
 
+#[test]
+fn unit_the_number_to_blame_for_a_gain_is_named() {
+    let key = |drive: &str, controller: &str| derive(drive, controller).unwrap_err().key();
+    let tiny = |text: &str, key: &str| {
+        let line = text.lines().find(|line| line.starts_with(&format!("{key} ="))).unwrap();
+        text.replace(line, &format!("{key} = 1e-300"))
+    };
+    for name in ["c", "boundary"] {
+        assert_eq!(key(TORQUE, &tiny(SLIDING, name)), format!("axis.controller.{name}"));
+    }
+    for name in [
+        "equivalent_mass",
+        "force_constant",
+        "bandwidth_hz",
+        "viscous",
+        "coulomb",
+        "current_limit_a",
+    ] {
+        let controller = if name == "bandwidth_hz" {
+            "kind = \"pd\""
+        } else {
+            SLIDING
+        };
+        assert_eq!(key(&tiny(TORQUE, name), controller), format!("axis.drive.{name}"));
+    }
+    assert_eq!(
+        key(&tiny(VELOCITY, "full_scale_velocity"), "kind = \"pd\""),
+        "axis.drive.full_scale_velocity"
+    );
+    assert_eq!(
+        key(&tiny(VELOCITY, "bandwidth_hz"), "kind = \"pd\""),
+        "axis.drive.bandwidth_hz"
+    );
+    let lost = derive(TORQUE, "kind = \"pd\"\nproportional = 1e-300").unwrap_err();
+    assert!(
+        matches!(
+            lost,
+            ControlError::Lost {
+                row: Row::Proportional,
+                ..
+            }
+        ),
+        "{lost}"
+    );
+    let text = lost.to_string();
+    assert!(
+        text.contains("axis.controller.proportional = 1e-300: raise it"),
+        "{text}"
+    );
+    assert!(text.len() < 250, "{text}");
+}
+
 /// A mass with viscous and Coulomb friction behind a drive of first order.
 struct Mass {
     drive: Drive,

@@ -123,7 +123,7 @@ pub(crate) fn lint(simulator: Simulator, sources: &Sources, tops: &[&dyn Block])
     }))
 }
 
-/// The design fits the device that the machine file names; no check where it names none.
+/// The top module, without the components, fits the device that the machine file names; no check where it names none.
 pub(crate) fn fits(machine: &Machine, estimate: &Estimate) -> Option<Check> {
     machine.target.as_ref()?;
     let excess = estimate.excesses().first().map(|e| {
@@ -133,7 +133,7 @@ pub(crate) fn fits(machine: &Machine, estimate: &Estimate) -> Option<Check> {
         )
     });
     Some(Check {
-        name: "the design fits the target device",
+        name: "the top module, with its shapers alone, fits the target device",
         passed: excess.is_none(),
         detail: excess.unwrap_or_else(|| estimate.device.name.to_owned()),
     })

@@ -88,6 +88,72 @@ fn cli_a_pass_longer_than_a_sample_is_printed_by_design_and_refused_by_generate(
     );
 }
 
+/// The XY stage with another sample rate and PWM frequency.
+fn fast_stage(sample_hz: &str, pwm_hz: &str) -> String {
+    let text = std::fs::read_to_string(example("xy-stage.toml")).unwrap();
+    text.replace("sample_hz = 10_000 ", &format!("sample_hz = {sample_hz} "))
+        .replace("frequency_hz = 20_000", &format!("frequency_hz = {pwm_hz}"))
+        .replace("dead_time_s = 500e-9", "dead_time_s = 0.0")
+        .replace("minimum_pulse_s = 1e-6", "minimum_pulse_s = 0.0")
+}
+
+#[test]
+fn cli_a_tick_too_short_for_the_controller_is_printed_by_design_and_refused_by_the_others() {
+    // 250 clocks, and 400 at the largest rate of whole periods of 50 clocks.
+    let machine = fast_stage("200_000", "1_000_000");
+    let sum = "capture 4 + divide 102 + shape 38 + control 209 = 353 clocks";
+    let words = ["machine.toml:13: clock.sample_hz", sum, "lasts 250", "up to 125000 Hz"];
+    for command in ["generate", "run", "verify"] {
+        refused(&[command], &machine, &words);
+    }
+    let (_folder, file) = scratch(&machine);
+    let design = posicast().arg("design").arg(&file).assert().success();
+    design.stdout(predicate::str::contains("does not fit").and(predicate::str::contains(sum)));
+    // A shaper alone goes on: 250 clocks are enough for its pass.
+    let alone = one_axis("kind = \"zvd\"", MODE).replace("10_000", "200_000");
+    let (folder, file) = scratch(&alone);
+    let mut generate = posicast();
+    generate.arg("generate").arg(&file).current_dir(folder.path());
+    generate.assert().success();
+}
+
+#[test]
+fn cli_a_tick_too_short_for_a_division_names_the_sample_rate() {
+    let machine = one_axis("kind = \"zvd\"", MODE).replace("10_000", "500_000") + "[axis.encoder]\n";
+    let words = ["machine.toml:4: clock.sample_hz", "divide 102", "lasts 100", "up to"];
+    refused(&["generate"], &machine, &words);
+}
+
+#[test]
+fn cli_a_gain_that_the_hardware_does_not_hold_names_its_key_and_line() {
+    let text = std::fs::read_to_string(example("xy-stage.toml")).unwrap();
+    let with = |from: &str, to: &str| text.replacen(from, to, 1);
+    let cases = [
+        (
+            with("full_scale_velocity = 0.5 ", "full_scale_velocity = 1e-300 "),
+            "machine.toml:42: axis.drive.full_scale_velocity: ",
+            "= 1e-300: raise it",
+        ),
+        (
+            with("kind = \"pd\" ", "proportional = 1e-300\nkind = \"pd\" "),
+            "machine.toml:45: axis.controller.proportional: ",
+            "it would be 0",
+        ),
+        (
+            with(
+                "kind = \"pd\" ",
+                "c = 1.0\nk = 1.0\nepsilon = 1.0\nboundary = 1.0\nkind = \"sliding-mode\" ",
+            ),
+            "axis.drive.bandwidth_hz: ",
+            "give bandwidth_hz",
+        ),
+    ];
+    for (machine, place, remedy) in cases {
+        refused(&["design"], &machine, &[place, remedy]);
+        refused(&["generate"], &machine, &[place, remedy]);
+    }
+}
+
 #[test]
 fn cli_what_is_not_built_yet_says_so() {
     refused(

@@ -126,6 +126,43 @@ fn cli_verify_without_any_tool_still_gives_a_verdict_and_names_it_the_weaker_che
     assert_eq!(json(&assert.get_output().stdout)["simulator"], "rusthdl");
 }
 
+#[test]
+fn cli_the_shaper_component_of_a_controlled_axis_has_three_channels_where_it_can() {
+    let text = std::fs::read_to_string(example("xy-stage.toml")).unwrap();
+    let words_of_16 = "[fixed_point]\ncommand_bits = 16\n[[axis]]";
+    // 1 Hz rings for 10,000 samples: a ring of more than one channel does not reach back so far.
+    let slow = text.replacen("131.117015808451", "1.0", 1);
+    let cases = [
+        (text.clone(), ["x_2", "swap_how"].as_slice(), [].as_slice()),
+        (text.replacen("[[axis]]", words_of_16, 1), &["x"], &["x_1", "swap_how"]),
+        (slow, &["x_0", "swap_how"], &["x_1"]),
+    ];
+    for (machine, there, missing) in cases {
+        let (folder, file) = crate::support::scratch(&machine);
+        let output = folder.path().join("out");
+        let mut generate = posicast();
+        let run = generate
+            .arg("generate")
+            .arg(&file)
+            .arg("-o")
+            .arg(&output)
+            .output()
+            .unwrap();
+        let said = String::from_utf8_lossy(&run.stderr);
+        assert!(run.status.success(), "{said}");
+        assert_eq!(said.contains("position's channel alone"), !missing.is_empty(), "{said}");
+        let top = std::fs::read_to_string(output.join("rtl/xy_stage_x_shaper_avalon.v")).unwrap();
+        let has = |name: &&str| {
+            top.split(|c: char| !c.is_alphanumeric() && c != '_')
+                .any(|word| word == *name)
+        };
+        assert!(
+            there.iter().all(has) && !missing.iter().any(has),
+            "{there:?} {missing:?}"
+        );
+    }
+}
+
 fn generated(folder: &Path) -> PathBuf {
     let output = folder.join("xy_stage");
     posicast()

@@ -92,7 +92,7 @@ pub enum ControlWarning {
         largest: f64,
     },
     /// A gain whose mantissa has few bits.
-    #[error("the gain of row {row:?} is {actual} instead of {wanted}: its mantissa has few bits")]
+    #[error("the gain of row {row:?} is {actual:.4e} instead of {wanted:.4e}: its mantissa has few bits")]
     CoarseGain {
         /// The row.
         row: Row,

@@ -4,6 +4,7 @@ use std::f64::consts::TAU;
 
 use super::ControlError;
 use super::conditions::{self, ControlWarning, Loop};
+use super::culprit::Numbers;
 use super::law::Gains;
 use crate::rtl::sliding_mode::{Law, MANTISSA_MAX, Row, Settings};
 use crate::spec::{Axis, Clock, Controller, Drive, DriveMode};
@@ -123,10 +124,21 @@ pub fn gains(axis: &Axis, clock: Clock, lag_s: f64) -> Result<Derived, ControlEr
         f64::from(pwm.period_clocks(&clock)) / full_scale(&drive.mode),
     );
     scale_feedback(&mut gains);
+    let numbers = Numbers { axis, clock };
     let settings = gains.quantise().map_err(|source| ControlError::Gain {
         axis: axis.name.clone(),
+        culprit: numbers.culprit(source.row()),
         source,
     })?;
+    if let Some(row) = lost(&gains, &settings, law) {
+        return Err(ControlError::Lost {
+            axis: axis.name.clone(),
+            row,
+            found: gains.get(row),
+            smallest: row.smallest(),
+            culprit: numbers.culprit(row),
+        });
+    }
     let mut warnings = closed.warnings();
     warnings.extend(conditions::coarse_gains(&gains, &settings));
     Ok(Derived {
@@ -136,6 +148,21 @@ pub fn gains(axis: &Axis, clock: Clock, lag_s: f64) -> Result<Derived, ControlEr
         warnings,
         steady_error: closed.steady_error(&linear.proportional),
     })
+}
+
+/// The first row that the law reads, that is not 0, and that is 0 in mantissa and shift.
+fn lost(gains: &Gains, settings: &Settings, law: Law) -> Option<Row> {
+    let actual = Gains::of_settings(settings);
+    let is_read = |row: &Row| match row {
+        Row::Surface | Row::Boundary | Row::Damping | Row::Reaching | Row::Switching => law == Law::SlidingMode,
+        Row::Derivative | Row::Proportional => law != Law::SlidingMode,
+        Row::Integral => law == Law::Pid,
+        // Nothing fades where there is no friction.
+        Row::Fade => gains.get(Row::Coulomb) != 0.0,
+        _ => true,
+    };
+    let is_lost = |row: &Row| gains.get(*row) != 0.0 && actual.get(*row) == 0.0;
+    Row::ALL.into_iter().find(|row| is_read(row) && is_lost(row))
 }
 
 /// Gains of PD and PID: those of the file, or the defaults.

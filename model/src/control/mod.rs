@@ -19,16 +19,18 @@
 //! ([`crate::rtl::sliding_mode`]) approximates.
 
 mod conditions;
+mod culprit;
 mod derive;
 mod law;
 mod schedule;
 
 pub use conditions::ControlWarning;
+pub use culprit::Culprit;
 pub use derive::{Derived, gains, loop_lag_s};
 pub use law::{COMMAND_FRACTION, FloatController, Gains, Response, Tracking};
-pub use schedule::schedule_delay_s;
+pub use schedule::{CAPTURE_CLOCKS, Schedule, ScheduleError, schedule_delay_s};
 
-use crate::rtl::sliding_mode::GainError;
+use crate::rtl::sliding_mode::{GainError, Row};
 
 /// Why an axis has no gains.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -54,15 +56,45 @@ pub enum ControlError {
     },
     /// A lag that is none.
     #[error(
-        "a loop lag of {0} s: it must be a finite time above 0, the schedule's delay and the drive's 1/(2π·bandwidth)"
+        "a loop lag of {0:e} s: it must be a finite time above 0, the schedule's delay and the drive's 1/(2π·bandwidth)"
     )]
     Lag(f64),
     /// A gain that the hardware does not hold.
-    #[error("axis {axis}: {source}; choose counts_per_unit, sample_hz or the gains such that it fits")]
+    #[error("axis {axis}: {source}; {culprit}")]
     Gain {
         /// The axis.
         axis: String,
         /// What does not fit.
         source: GainError,
+        /// The number of the file that it comes from.
+        culprit: Culprit,
     },
+    /// A gain that is not 0 and would be in the hardware.
+    #[error(
+        "axis {axis}: the gain {row:?} is {found:.3e}, and its smallest in the hardware is {smallest:.3e}: it would be 0; \
+         {culprit}"
+    )]
+    Lost {
+        /// The axis.
+        axis: String,
+        /// The gain.
+        row: Row,
+        /// As derived.
+        found: f64,
+        /// The smallest that is not 0.
+        smallest: f64,
+        /// The number of the file that it comes from.
+        culprit: Culprit,
+    },
+}
+
+impl ControlError {
+    /// The key of the machine file that is to blame, dotted: `axis.drive.bandwidth_hz`, for example.
+    pub fn key(&self) -> String {
+        match self {
+            Self::Missing { .. } => "axis.controller".to_owned(),
+            Self::Bandwidth { .. } | Self::Lag(_) => "axis.drive.bandwidth_hz".to_owned(),
+            Self::Gain { culprit, .. } | Self::Lost { culprit, .. } => culprit.key.to_owned(),
+        }
+    }
 }

@@ -38,6 +38,7 @@ mod error;
 mod machine;
 mod names;
 mod not_built;
+mod place;
 mod pwm;
 mod range;
 mod reader;
@@ -48,6 +49,7 @@ pub use controller::Controller;
 pub use drive::{Drive, DriveMode};
 pub use encoder::Encoder;
 pub use error::{Cause, MAX_PROBLEMS, Problem, SpecError};
+pub use place::line_of;
 pub use pwm::{Pwm, PwmMode};
 
 use toml::de::DeTable;

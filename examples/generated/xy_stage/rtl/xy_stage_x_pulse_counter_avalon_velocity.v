@@ -110,8 +110,8 @@ module xy_stage_x_pulse_counter_avalon_velocity (
     assign fresh = known & !stale;
     assign rests = !velocity_m & (!fresh | turned);
 
-    // Steps; without an edge they are 0, and 1 or -1 shall be
-    // divided: a borrow into the lowest bit makes all bits ones
+    // Steps; 0 without an edge, where 1 or -1 is to be
+    // divided: a borrow at bit 0 makes all bits ones
     assign waits = !moved & !velocity_m;
     assign counted = ({1'd0, count} << 1) - (({1'd0, captured} << 1) | borrow);
 
@@ -158,8 +158,8 @@ module xy_stage_x_pulse_counter_avalon_velocity (
             smoothed_next = REST;
         end
 
-        // Steps; without an edge they are 0, and 1 or -1 shall be
-        // divided: a borrow into the lowest bit makes all bits ones
+        // Steps; 0 without an edge, where 1 or -1 is to be
+        // divided: a borrow at bit 0 makes all bits ones
         borrow = NO_BORROW;
         if (waits & smoothed[34]) begin
             borrow = ONE_BORROW;
@@ -197,7 +197,7 @@ module xy_stage_x_pulse_counter_avalon_velocity (
             elapsed_q_next = NO_ELAPSED;
         end
 
-        // The time of the last edge, or after a tick without, now
+        // Time of the last edge; after a tick without: now
         if ((step | tick) | !moved) begin
             last_stamp_next = time_stamp;
         end

@@ -6,7 +6,7 @@
 //
 // parameter             value  meaning
 // word_bits             32     width of a command word
-// channels              1      words per sample
+// channels              3      words per sample
 // ring_samples          128    delays reach up to this less 2
 // most_taps             64     taps per bank
 // machine_taps          5      taps of bank 0
@@ -25,14 +25,20 @@ module xy_stage_y_shaper_avalon (
     input  wire [31:0]        avs_writedata,
     input  wire               strobe,
     input  wire               start,
-    input  wire signed [31:0] x,
+    input  wire signed [31:0] x_0,
+    input  wire signed [31:0] x_1,
+    input  wire signed [31:0] x_2,
     output wire [31:0]        avs_readdata,
     output wire               irq,
-    output wire signed [31:0] y,
+    output wire signed [31:0] y_0,
+    output wire signed [31:0] y_1,
+    output wire signed [31:0] y_2,
     output wire               valid
 );
     wire               from_pins;
     wire signed [31:0] host_x_0;
+    wire signed [31:0] host_x_1;
+    wire signed [31:0] host_x_2;
     wire               host_strobe;
     wire               host_start;
     wire [5:0]         tap_index;
@@ -42,9 +48,12 @@ module xy_stage_y_shaper_avalon (
     wire [6:0]         tap_delay;
     wire               swap;
     wire [1:0]         swap_bank;
+    wire [1:0]         swap_how;
     wire               sample_strobe;
     wire               sample_start;
     wire signed [31:0] sample_x_0;
+    wire signed [31:0] sample_x_1;
+    wire signed [31:0] sample_x_2;
     wire               saturated;
     wire               busy;
     wire               overrun;
@@ -71,16 +80,21 @@ module xy_stage_y_shaper_avalon (
         .refused         (refused),
         .valid           (valid),
         .host_x_0        (host_x_0),
+        .host_x_1        (host_x_1),
+        .host_x_2        (host_x_2),
         .host_strobe     (host_strobe),
         .host_start      (host_start),
-        .y               (y),
+        .y_0             (y_0),
+        .y_1             (y_1),
+        .y_2             (y_2),
         .tap_index       (tap_index),
         .tap_bank        (tap_bank),
         .tap_write       (tap_write),
         .tap_coefficient (tap_coefficient),
         .tap_delay       (tap_delay),
         .swap            (swap),
-        .swap_bank       (swap_bank)
+        .swap_bank       (swap_bank),
+        .swap_how        (swap_how)
     );
 
     xy_stage_y_shaper_avalon_sample_select u_sample_select (
@@ -90,12 +104,18 @@ module xy_stage_y_shaper_avalon (
         .host_strobe (host_strobe),
         .host_start  (host_start),
         .host_x_0    (host_x_0),
+        .host_x_1    (host_x_1),
+        .host_x_2    (host_x_2),
         .pin_strobe  (strobe),
         .pin_start   (start),
-        .pin_x_0     (x),
+        .pin_x_0     (x_0),
+        .pin_x_1     (x_1),
+        .pin_x_2     (x_2),
         .strobe      (sample_strobe),
         .start       (sample_start),
-        .x_0         (sample_x_0)
+        .x_0         (sample_x_0),
+        .x_1         (sample_x_1),
+        .x_2         (sample_x_2)
     );
 
     xy_stage_y_shaper_avalon_shaper u_shaper (
@@ -103,7 +123,9 @@ module xy_stage_y_shaper_avalon (
         .rst             (rst),
         .strobe          (sample_strobe),
         .start           (sample_start),
-        .x               (sample_x_0),
+        .x_0             (sample_x_0),
+        .x_1             (sample_x_1),
+        .x_2             (sample_x_2),
         .clear_flags     (1'd1),
         .tap_write       (tap_write),
         .tap_bank        (tap_bank),
@@ -112,7 +134,10 @@ module xy_stage_y_shaper_avalon (
         .tap_delay       (tap_delay),
         .swap            (swap),
         .swap_bank       (swap_bank),
-        .y               (y),
+        .swap_how        (swap_how),
+        .y_0             (y_0),
+        .y_1             (y_1),
+        .y_2             (y_2),
         .valid           (valid),
         .saturated       (saturated),
         .busy            (busy),

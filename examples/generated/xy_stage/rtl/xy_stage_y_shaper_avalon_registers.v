@@ -6,7 +6,7 @@
 //
 // parameter             value  meaning
 // word_bits             32     width of a command word
-// channels              1      words per sample
+// channels              3      words per sample
 // ring_samples          128    delays reach up to this less 2
 // most_taps             64     taps per bank
 // machine_taps          5      taps of bank 0
@@ -34,16 +34,21 @@ module xy_stage_y_shaper_avalon_registers (
     input  wire               refused,
     input  wire               valid,
     output reg  signed [31:0] host_x_0,
+    output reg  signed [31:0] host_x_1,
+    output reg  signed [31:0] host_x_2,
     output reg                host_strobe,
     output reg                host_start,
-    input  wire signed [31:0] y,
+    input  wire signed [31:0] y_0,
+    input  wire signed [31:0] y_1,
+    input  wire signed [31:0] y_2,
     output reg  [5:0]         tap_index,
     output reg  [1:0]         tap_bank,
     output reg                tap_write,
     output reg  signed [17:0] tap_coefficient,
     output reg  [6:0]         tap_delay,
     output reg                swap,
-    output reg  [1:0]         swap_bank
+    output reg  [1:0]         swap_bank,
+    output reg  [1:0]         swap_how
 );
     // Words of the window.
     localparam [7:0] MAGIC                = 8'h00;
@@ -61,10 +66,14 @@ module xy_stage_y_shaper_avalon_registers (
     localparam [7:0] INTERRUPT_STATE      = 8'h14;
     localparam [7:0] INTERRUPT_ENABLE     = 8'h15;
     localparam [7:0] INTERRUPT_TEST       = 8'h16;
-    localparam [7:0] X                    = 8'h18;
+    localparam [7:0] X_0                  = 8'h18;
+    localparam [7:0] X_1                  = 8'h19;
+    localparam [7:0] X_2                  = 8'h1a;
     localparam [7:0] STROBE               = 8'h1c;
     localparam [7:0] START                = 8'h1d;
-    localparam [7:0] Y                    = 8'h20;
+    localparam [7:0] Y_0                  = 8'h20;
+    localparam [7:0] Y_1                  = 8'h21;
+    localparam [7:0] Y_2                  = 8'h22;
     localparam [7:0] TAP_ADDRESS          = 8'h28;
     localparam [7:0] TAP                  = 8'h29;
     localparam [7:0] SWAP                 = 8'h2a;
@@ -82,7 +91,9 @@ module xy_stage_y_shaper_avalon_registers (
     wire write_interrupt_state = avs_write && avs_address == INTERRUPT_STATE;
     wire write_interrupt_enable = avs_write && avs_address == INTERRUPT_ENABLE;
     wire write_interrupt_test = avs_write && avs_address == INTERRUPT_TEST;
-    wire write_x = avs_write && avs_address == X;
+    wire write_x_0 = avs_write && avs_address == X_0;
+    wire write_x_1 = avs_write && avs_address == X_1;
+    wire write_x_2 = avs_write && avs_address == X_2;
     wire write_strobe = avs_write && avs_address == STROBE;
     wire write_start = avs_write && avs_address == START;
     wire write_tap_address = avs_write && avs_address == TAP_ADDRESS;
@@ -158,12 +169,30 @@ module xy_stage_y_shaper_avalon_registers (
         end
     end
 
-    // X: configuration; the next sample
+    // X_0: configuration; the next sample
     always @(posedge clk) begin
         if (rst) begin
             host_x_0 <= 32'sd0;
-        end else if (write_x) begin
+        end else if (write_x_0) begin
             host_x_0 <= written | (host_x_0 & ~mask);
+        end
+    end
+
+    // X_1: configuration; the next sample
+    always @(posedge clk) begin
+        if (rst) begin
+            host_x_1 <= 32'sd0;
+        end else if (write_x_1) begin
+            host_x_1 <= written | (host_x_1 & ~mask);
+        end
+    end
+
+    // X_2: configuration; the next sample
+    always @(posedge clk) begin
+        if (rst) begin
+            host_x_2 <= 32'sd0;
+        end else if (write_x_2) begin
+            host_x_2 <= written | (host_x_2 & ~mask);
         end
     end
 
@@ -216,10 +245,12 @@ module xy_stage_y_shaper_avalon_registers (
         if (rst) begin
             swap <= 1'd0;
             swap_bank <= 2'd0;
+            swap_how <= 2'd0;
         end else begin
             swap <= write_swap && whole;
             if (write_swap && whole) begin
                 swap_bank <= avs_writedata[1:0];
+                swap_how <= avs_writedata[5:4];
             end
         end
     end
@@ -241,7 +272,7 @@ module xy_stage_y_shaper_avalon_registers (
                 MAGIC: avs_readdata <= 32'h52504853;
                 VERSION: avs_readdata <= 32'h00010000;
                 WORD_BITS: avs_readdata <= 32'h00000020;
-                CHANNELS: avs_readdata <= 32'h00000001;
+                CHANNELS: avs_readdata <= 32'h00000003;
                 RING_SAMPLES: avs_readdata <= 32'h00000080;
                 MOST_TAPS: avs_readdata <= 32'h00000040;
                 MACHINE_TAPS: avs_readdata <= 32'h00000005;
@@ -254,8 +285,12 @@ module xy_stage_y_shaper_avalon_registers (
                     irq_state_valid};
                 INTERRUPT_ENABLE: avs_readdata <= {28'd0, irq_enable_refused, irq_enable_overrun,
                     irq_enable_saturated, irq_enable_valid};
-                X: avs_readdata <= host_x_0;
-                Y: avs_readdata <= y;
+                X_0: avs_readdata <= host_x_0;
+                X_1: avs_readdata <= host_x_1;
+                X_2: avs_readdata <= host_x_2;
+                Y_0: avs_readdata <= y_0;
+                Y_1: avs_readdata <= y_1;
+                Y_2: avs_readdata <= y_2;
                 TAP_ADDRESS: avs_readdata <= {22'd0, tap_bank, 2'd0, tap_index};
                 default: avs_readdata <= 32'd0;
             endcase
@@ -277,6 +312,8 @@ module xy_stage_y_shaper_avalon_registers (
         irq_enable_overrun = 1'd0;
         irq_enable_refused = 1'd0;
         host_x_0 = 32'sd0;
+        host_x_1 = 32'sd0;
+        host_x_2 = 32'sd0;
         host_strobe = 1'd0;
         host_start = 1'd0;
         tap_index = 6'd0;
@@ -286,6 +323,7 @@ module xy_stage_y_shaper_avalon_registers (
         tap_delay = 7'd0;
         swap = 1'd0;
         swap_bank = 2'd0;
+        swap_how = 2'd0;
         avs_readdata = 32'd0;
         irq = 1'd0;
     end

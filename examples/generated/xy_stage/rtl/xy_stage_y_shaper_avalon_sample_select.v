@@ -12,12 +12,18 @@ module xy_stage_y_shaper_avalon_sample_select (
     input  wire               host_strobe,
     input  wire               host_start,
     input  wire signed [31:0] host_x_0,
+    input  wire signed [31:0] host_x_1,
+    input  wire signed [31:0] host_x_2,
     input  wire               pin_strobe,
     input  wire               pin_start,
     input  wire signed [31:0] pin_x_0,
+    input  wire signed [31:0] pin_x_1,
+    input  wire signed [31:0] pin_x_2,
     output wire               strobe,
     output wire               start,
-    output wire signed [31:0] x_0
+    output wire signed [31:0] x_0,
+    output wire signed [31:0] x_1,
+    output wire signed [31:0] x_2
 );
     reg                strobe_q;
     reg                strobe_q_next;
@@ -25,10 +31,16 @@ module xy_stage_y_shaper_avalon_sample_select (
     reg                start_q_next;
     reg  signed [31:0] x_q_0;
     reg  signed [31:0] x_q_0_next;
+    reg  signed [31:0] x_q_1;
+    reg  signed [31:0] x_q_1_next;
+    reg  signed [31:0] x_q_2;
+    reg  signed [31:0] x_q_2_next;
 
     assign strobe = strobe_q;
     assign start = start_q;
     assign x_0 = x_q_0;
+    assign x_1 = x_q_1;
+    assign x_2 = x_q_2;
 
     always @(*) begin
         strobe_q_next = host_strobe;
@@ -41,6 +53,14 @@ module xy_stage_y_shaper_avalon_sample_select (
         if (from_pins) begin
             x_q_0_next = pin_x_0;
         end
+        x_q_1_next = host_x_1;
+        if (from_pins) begin
+            x_q_1_next = pin_x_1;
+        end
+        x_q_2_next = host_x_2;
+        if (from_pins) begin
+            x_q_2_next = pin_x_2;
+        end
     end
 
     always @(posedge clk) begin
@@ -48,10 +68,14 @@ module xy_stage_y_shaper_avalon_sample_select (
             strobe_q <= 1'd0;
             start_q <= 1'd0;
             x_q_0 <= 32'sd0;
+            x_q_1 <= 32'sd0;
+            x_q_2 <= 32'sd0;
         end else begin
             strobe_q <= strobe_q_next;
             start_q <= start_q_next;
             x_q_0 <= x_q_0_next;
+            x_q_1 <= x_q_1_next;
+            x_q_2 <= x_q_2_next;
         end
     end
 
@@ -59,6 +83,8 @@ module xy_stage_y_shaper_avalon_sample_select (
         strobe_q = 1'd0;
         start_q = 1'd0;
         x_q_0 = 32'sd0;
+        x_q_1 = 32'sd0;
+        x_q_2 = 32'sd0;
     end
 endmodule
 

@@ -86,6 +86,16 @@ impl Row {
     }
 }
 
+impl Row {
+    /// The smallest gain of the row that is not 0; of [`Row::Limit`] an LSB of the command.
+    pub fn smallest(self) -> f64 {
+        match self {
+            Self::Limit => f64::exp2(-12.0),
+            _ => f64::exp2(f64::from(self.exponent() - SHIFT_MAX as i32)),
+        }
+    }
+}
+
 /// A gain: signed mantissa and right shift.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Gain {
@@ -97,7 +107,7 @@ pub struct Gain {
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum GainError {
     /// Beyond the largest mantissa without shift.
-    #[error("a gain of {found} does not fit row {row:?}, which holds up to {largest}")]
+    #[error("the gain {row:?} is {found:.3e}, and its largest in the hardware is {largest:.3e}")]
     Large {
         /// The gain.
         found: f64,
@@ -107,13 +117,22 @@ pub enum GainError {
         largest: f64,
     },
     /// Infinite, or not a number.
-    #[error("a gain of {found} for row {row:?}: it must be a finite number")]
+    #[error("the gain {row:?} is {found}, and must be a finite number")]
     NotFinite {
         /// The gain.
         found: f64,
         /// Its row.
         row: Row,
     },
+}
+
+impl GainError {
+    /// The row that it is about.
+    pub fn row(&self) -> Row {
+        match *self {
+            Self::Large { row, .. } | Self::NotFinite { row, .. } => row,
+        }
+    }
 }
 
 impl Gain {
