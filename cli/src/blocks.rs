@@ -85,6 +85,22 @@ pub(crate) fn others(
     Ok(blocks)
 }
 
+/// What a folder holds beside the machine's top: each component, through its bus and its pins, and the blocks in it, each alone.
+pub(crate) fn of_components(
+    machine: &Machine,
+    shapers: &[AxisShaper],
+    controllers: &[Option<AxisControl>],
+    path: &Path,
+) -> Result<Vec<Box<dyn Block>>, Failure> {
+    let mut blocks: Vec<Box<dyn Block>> = Vec::new();
+    for component in components(machine, shapers, controllers, path)? {
+        let inner = component.inner().map_err(bench::failure)?;
+        blocks.push(Box::new(component));
+        blocks.extend(inner);
+    }
+    Ok(blocks)
+}
+
 /// The blocks of the machine's axes as components, each behind registers of its own on an Avalon-MM agent, ready for a system
 /// with a processor: none for a machine of shapers alone. Their top modules are `<machine>_<axis>_<block>_avalon`.
 pub(crate) fn components(
@@ -119,7 +135,7 @@ pub(crate) fn components(
         }
         let named = |component: Component| {
             let top = format!("{}_{}_{}{COMPONENT_SUFFIX}", machine.name, axis.name, component.name());
-            ComponentBlock::new(component, &top, &format!("{}, Avalon", axis.name))
+            ComponentBlock::new(component, &top, &axis.name)
         };
         components.extend(of_axis.into_iter().map(named));
     }

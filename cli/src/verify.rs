@@ -62,7 +62,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     }
     let cycles = args.cycles.unwrap_or(simulator.default_cycles());
     let report = job.lockstep(simulator, cycles, args.seed)?;
-    if report.samples == 0 {
+    if report.samples == 0 && report.blocks.iter().any(|block| block.samples.is_some()) {
         output::say("warning: no output sample was among these clocks: compare more with --cycles");
     }
     let document = Document {
@@ -102,14 +102,17 @@ impl Job {
         let shapers = machine::shapers(&machine, design, source)?;
         // A move that does not fit the words is an error of `run`; a lock step has its other stimuli.
         let words = command::words(&machine, design, None).unwrap_or_default();
-        let others = blocks::others(&machine, &shapers, &report.controllers, &path)?;
+        let others = match &folder {
+            Some(files) => {
+                let there = Sources::found(files.clone());
+                let mut found = blocks::of_components(&machine, &shapers, &report.controllers, &path)?;
+                found.retain(|block| there.hold(block.as_ref()));
+                found
+            }
+            None => blocks::others(&machine, &shapers, &report.controllers, &path)?,
+        };
         let mut list: Vec<Box<dyn Block>> = vec![Box::new(blocks::shapers(&machine, shapers, &words)?)];
-        if let Some(files) = &folder {
-            let there = Sources::found(files.clone());
-            list.extend(others.into_iter().filter(|block| there.hold(block.as_ref())));
-        } else {
-            list.extend(others);
-        }
+        list.extend(others);
         let sources = |block: &dyn Block| match &folder {
             Some(files) => Sources::found(files.clone()).reached_by(block).map_err(bench::failure),
             None => Sources::write(block).map_err(bench::failure),
@@ -188,8 +191,10 @@ impl Document<'_> {
             table.row([block.name.clone(), block.instance.clone()].into_iter().chain(counts));
         }
         let mut text = table.text("");
-        for first in self.report.blocks.iter().filter_map(|b| b.first.as_ref()) {
-            text += &format!("\n{first}\n");
+        for block in &self.report.blocks {
+            if let Some(first) = &block.first {
+                text += &format!("\n{} {}: {first}\n", block.name, block.instance);
+            }
         }
         let verdict = match self.report.result {
             Verdict::Match => "match: every output of every clock is equal to the model's",

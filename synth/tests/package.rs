@@ -291,6 +291,13 @@ fn unit_a_file_where_a_folder_belongs_is_refused_untouched() {
 #[test]
 fn unit_what_is_missing_is_named() {
     let (_scratch, folder) = written();
+    let files = package::read(&folder).unwrap().rtl;
+    let text = fs::read(&files[0]).unwrap();
+    fs::remove_file(&files[0]).unwrap();
+    fs::write(folder.join("rtl/other.v"), "").unwrap();
+    assert!(matches!(package::read(&folder), Err(PackageError::Missing(path)) if path == files[0]));
+    fs::remove_file(folder.join("rtl/other.v")).unwrap();
+    fs::write(&files[0], text).unwrap();
     fs::remove_file(folder.join("machine.toml")).unwrap();
     assert!(matches!(package::read(&folder), Err(PackageError::Missing(path)) if path.ends_with("machine.toml")));
     write(&folder, &FILES[..1]).unwrap();

@@ -152,6 +152,11 @@ fn lockstep_catches_an_unlimited_duty() {
 }
 
 #[test]
+fn lockstep_catches_a_duty_one_above_its_limit() {
+    caught("size > {1'd0, max_duty}", "size >= {1'd0, max_duty} + 17'd2");
+}
+
+#[test]
 fn lockstep_watches_the_gates_of_a_leg_without_dead_time() {
     let outcome = caught("pause = dead_time;", "pause = 10'd1;");
     assert!(outcome.violation.is_some(), "the gates are not watched");

@@ -3,7 +3,8 @@
 #![cfg(test)] // lets clippy see that this is test code
 
 use crate::support::{example, json, one_axis, posicast, scratch};
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::process::Output;
 
 /// `verify --json` of a machine file, and the rows as name and instance.
 fn rows(machine: &Path, arguments: &[&str]) -> (serde_json::Value, Vec<(String, String)>) {
@@ -131,5 +132,101 @@ fn cli_verify_of_a_folder_finds_a_broken_component_and_no_other() {
         .iter()
         .map(|row| (row["instance"].as_str().unwrap(), row["mismatches"] != 0))
         .collect();
-    assert_eq!(mismatches, [("x, Avalon", false), ("y, Avalon", true)]);
+    assert_eq!(
+        mismatches,
+        [
+            ("x, Avalon", false),
+            ("x, in the pulse_counter component", false),
+            ("y, Avalon", true),
+            ("y, in the pulse_counter component", false),
+        ]
+    );
+}
+
+/// A folder as `generate` writes it for the XY stage.
+fn generated(folder: &Path) -> PathBuf {
+    let output = folder.join("out");
+    let mut generate = posicast();
+    generate.arg("generate").arg(example("xy-stage.toml"));
+    generate.arg("-o").arg(&output).assert().success();
+    output
+}
+
+/// `verify` of a folder in Icarus, which has no build to wait for.
+fn verify(output: &Path, arguments: &[&str]) -> Output {
+    let mut verify = posicast();
+    verify.arg("verify").arg(output).args(["--simulator", "icarus"]);
+    verify.args(arguments).output().unwrap()
+}
+
+#[test]
+fn cli_verify_of_a_folder_compares_the_blocks_in_its_components_and_names_the_broken_row() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = generated(folder.path());
+    for (block, component, file, from, to) in [
+        ("pwm", "pwm", "pwm_leg", "pause = dead_time;", "pause = minimum_pulse;"),
+        ("registers", "pwm", "registers", "!running && ", ""),
+    ] {
+        let file = output.join(format!("rtl/xy_stage_x_{component}_avalon_{file}.v"));
+        let text = std::fs::read_to_string(&file).unwrap();
+        assert!(text.contains(from), "{text}");
+        std::fs::write(&file, text.replacen(from, to, 1)).unwrap();
+        let broken = verify(&output, &["--cycles", "6000", "--block", block]);
+        std::fs::write(&file, text).unwrap();
+        let said = String::from_utf8_lossy(&broken.stdout).into_owned();
+        assert_eq!(broken.status.code(), Some(1), "{said}");
+        let row = format!("{block} x, in the {component} component: first mismatch in clock ");
+        assert!(said.contains(&row), "{said}");
+        assert!(
+            !said.contains(&format!("{block} y, in the {component} component: ")),
+            "{said}"
+        );
+    }
+}
+
+#[test]
+fn cli_verify_gives_each_row_stimuli_of_its_own_that_repeat() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = generated(folder.path());
+    for axis in ["x", "y"] {
+        let file = output.join(format!("rtl/xy_stage_{axis}_pwm_avalon_pwm_leg.v"));
+        let text = std::fs::read_to_string(&file).unwrap();
+        std::fs::write(&file, text.replacen("pause = dead_time;", "pause = minimum_pulse;", 1)).unwrap();
+    }
+    let first = |arguments: &[&str]| {
+        let out = verify(&output, &[&["--json", "--cycles", "6000"], arguments].concat());
+        let document = json(&out.stdout);
+        assert_eq!(document["seed"], 1);
+        let rows = document["blocks"].as_array().unwrap().iter();
+        let inner = rows.filter(|row| row["name"] == "pwm" && row["instance"].as_str().unwrap().contains("in the"));
+        inner.map(|row| row["first"]["time"].as_u64()).collect::<Vec<_>>()
+    };
+    let alone = first(&["--block", "pwm"]);
+    assert_eq!(alone, first(&["--block", "registers", "--block", "pwm"]));
+    assert_ne!(alone[0], alone[1], "x and y have the same stimuli");
+}
+
+#[test]
+fn cli_verify_of_a_folder_misses_a_file_that_is_gone() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = generated(folder.path());
+    std::fs::remove_file(output.join("rtl/xy_stage_y_pwm_avalon.v")).unwrap();
+    let gone = verify(&output, &["--cycles", "100"]);
+    assert_eq!((gone.status.code(), gone.stdout.is_empty()), (Some(2), true));
+    let said = String::from_utf8_lossy(&gone.stderr).replace(['\n', ' '], "");
+    assert!(
+        said.contains("xy_stage_y_pwm_avalon.v") && said.contains("`generate`"),
+        "{said}"
+    );
+}
+
+#[test]
+fn cli_verify_warns_of_no_sample_only_where_a_block_has_samples() {
+    for (block, warns) in [("divider", false), ("shaper", true)] {
+        let mut verify = posicast();
+        verify.arg("verify").arg(example("xy-stage.toml"));
+        verify.args(["--simulator", "rusthdl", "--cycles", "3", "--block", block]);
+        let said = String::from_utf8_lossy(&verify.output().unwrap().stderr).into_owned();
+        assert_eq!(said.contains("no output sample"), warns, "{block}: {said}");
+    }
 }

@@ -29,7 +29,8 @@ pub struct Contents {
 /// Reads an output folder. Files may have been edited since posicast wrote them; that is what one verifies.
 ///
 /// # Errors
-/// A path that is no folder, was not written by posicast or not completely, or lacks `machine.toml` or `rtl/*.v`.
+/// A path that is no folder, was not written by posicast or not completely, or lacks `machine.toml` or one of the files in
+/// `rtl/` that posicast wrote: a component that is gone would go unnoticed.
 pub fn read(root: &Path) -> Result<Contents, PackageError> {
     if !root.exists() {
         return Err(PackageError::Missing(root.to_owned()));
@@ -43,12 +44,18 @@ pub fn read(root: &Path) -> Result<Contents, PackageError> {
         return Err(PackageError::Unfinished(root.to_owned()));
     }
     let machine_path = root.join("machine.toml");
+    let machine_toml = read_text(&machine_path)?;
+    let rtl = verilog_in(&root.join("rtl"))?;
+    let written = manifest.paths().filter(|path| path.starts_with("rtl/"));
+    if let Some(gone) = written.map(|path| root.join(path)).find(|path| !path.is_file()) {
+        return Err(PackageError::Missing(gone));
+    }
     Ok(Contents {
         version: manifest.version,
         machine: manifest.machine,
-        machine_toml: read_text(&machine_path)?,
+        machine_toml,
         machine_path,
-        rtl: verilog_in(&root.join("rtl"))?,
+        rtl,
     })
 }
 

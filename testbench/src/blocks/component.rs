@@ -3,10 +3,14 @@
 use posicast_hdl::SimulationError;
 use posicast_hdl::component::emit;
 use posicast_hdl::emit::{EmitError, Module};
-use posicast_model::rtl::component::Component;
+use posicast_model::rtl::component::{Block as Part, Component};
 use posicast_model::rtl::{ClockedBlock, Direction, Port};
 
-use super::{Bins, Block, not_in_rusthdl};
+use super::{
+    Bins, Block, DividerBlock, PulseCounterBlock, PwmBlock, RegistersBlock, ShaperBlock, SlidingModeBlock,
+    not_in_rusthdl,
+};
+use crate::Error;
 use crate::lockstep::Clock;
 use crate::stimuli::{ComponentRandom, Stimuli};
 
@@ -15,22 +19,49 @@ use crate::stimuli::{ComponentRandom, Stimuli};
 pub struct ComponentBlock {
     component: Component,
     top: String,
+    axis: String,
     instance: String,
 }
 
 impl ComponentBlock {
-    /// The component with the top module `top`.
-    pub fn new(component: Component, top: &str, instance: &str) -> Self {
+    /// The component with the top module `top`, of this axis.
+    pub fn new(component: Component, top: &str, axis: &str) -> Self {
         Self {
             component,
             top: top.to_owned(),
-            instance: instance.to_owned(),
+            axis: axis.to_owned(),
+            instance: format!("{axis}, Avalon"),
         }
     }
 
     /// What it is.
     pub fn component(&self) -> &Component {
         &self.component
+    }
+
+    /// Its blocks, each as it stands in the component, on the bench of its kind: stimuli made for a block get to corners that
+    /// traffic on the bus hardly ever sets up.
+    ///
+    /// What only joins them (sample select, setting banks, time base) has no bench of its own: the component's covers it.
+    ///
+    /// # Errors
+    /// As [`ShaperBlock::new`].
+    pub fn inner(&self) -> Result<Vec<Box<dyn Block>>, Error> {
+        let top = self.top.as_str();
+        let instance = format!("{}, in the {} component", self.axis, self.component.name());
+        let mut blocks: Vec<Box<dyn Block>> = Vec::new();
+        for part in self.component.blocks() {
+            blocks.push(match part {
+                Part::Registers => Box::new(RegistersBlock::new(self.component.map().clone(), top).called(&instance)),
+                Part::Shaper(config) => Box::new(ShaperBlock::new(config.clone(), top, &instance)?),
+                Part::PulseCounter => Box::new(PulseCounterBlock::new(top, &instance)),
+                Part::Divider(config) => Box::new(DividerBlock::new(*config, top).called(&instance)),
+                Part::Pwm(config) => Box::new(PwmBlock::new(*config, top, &instance)),
+                Part::SlidingMode => Box::new(SlidingModeBlock::new(top, &instance)),
+                Part::SampleSelect { .. } | Part::SettingBanks(_) | Part::TimeBase(_) => continue,
+            });
+        }
+        Ok(blocks)
     }
 }
 

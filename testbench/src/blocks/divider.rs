@@ -27,6 +27,14 @@ impl DividerBlock {
             instance: format!("{} clocks per tick", config.tick_clocks()),
         }
     }
+
+    /// The same, called `instance` in the report.
+    pub fn called(self, instance: &str) -> Self {
+        Self {
+            instance: instance.to_owned(),
+            ..self
+        }
+    }
 }
 
 impl Block for DividerBlock {

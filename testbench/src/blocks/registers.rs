@@ -27,6 +27,14 @@ impl RegistersBlock {
             prefix: prefix.to_owned(),
         }
     }
+
+    /// The same, called `instance` in the report.
+    pub fn called(self, instance: &str) -> Self {
+        Self {
+            instance: instance.to_owned(),
+            ..self
+        }
+    }
 }
 
 impl Block for RegistersBlock {

@@ -309,7 +309,7 @@ impl Comparison {
                 .map(|window| Mismatch::new(&ports, &watched.instance.outputs, &window)),
             instance: watched.instance.name,
             cycles,
-            samples: watched.samples,
+            samples: watched.valid.map(|_| watched.samples),
             mismatches: watched.mismatches,
         });
         Report::new(cycles, blocks.collect())

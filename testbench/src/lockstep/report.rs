@@ -37,7 +37,7 @@ impl Report {
         Self {
             result: if equal { Verdict::Match } else { Verdict::Mismatch },
             cycles,
-            samples: blocks.iter().map(|b| b.samples).sum(),
+            samples: blocks.iter().filter_map(|b| b.samples).sum(),
             blocks,
         }
     }
@@ -68,9 +68,9 @@ pub struct Block {
     pub instance: String,
     /// Clocks compared.
     pub cycles: u64,
-    /// Output samples compared.
+    /// Output samples compared; none where the block has no `valid`.
     #[serde(skip)]
-    pub samples: u64,
+    pub samples: Option<u64>,
     /// Wrong values: outputs times clocks.
     pub mismatches: u64,
     /// The first of them.

@@ -31,6 +31,8 @@ pub struct PulseCounterRandom {
     tick_clocks: u32,
     until_tick: u32,
     until_answer: Option<u32>,
+    /// The encoder loses most edges, and the host does not look: the count of illegal steps reaches its end.
+    torn: bool,
 }
 
 impl PulseCounterRandom {
@@ -48,6 +50,7 @@ impl PulseCounterRandom {
             tick_clocks: 100,
             until_tick: 100,
             until_answer: None,
+            torn: false,
         }
     }
 
@@ -78,7 +81,10 @@ impl PulseCounterRandom {
             self.inputs.preset_value = bits as i32;
         }
         self.inputs.rst = self.clock < 3 || self.one_in(20_000);
-        self.inputs.clear_flags = self.one_in(300);
+        if self.one_in(4000) {
+            self.torn = self.one_in(4);
+        }
+        self.inputs.clear_flags = self.one_in(if self.torn { 20_000 } else { 300 });
         self.inputs.index_arm = self.one_in(200);
         self.inputs.preset = self.one_in(1000);
     }
@@ -98,7 +104,11 @@ impl PulseCounterRandom {
                 self.forward = !self.forward;
             }
             // A lost edge: both lines change together.
-            let steps = if self.one_in(40) { 2 } else { 1 };
+            let steps = if self.one_in(if self.torn { 2 } else { 40 }) {
+                2
+            } else {
+                1
+            };
             self.angle += if self.forward { steps } else { -steps };
         }
     }

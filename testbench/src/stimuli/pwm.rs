@@ -68,7 +68,8 @@ impl PwmRandom {
             let dead = i32::from(self.inputs.dead_time);
             let pulse = i32::from(self.inputs.minimum_pulse);
             let about = self.rng.random_range(-3..=3);
-            let ends = [0, dead + pulse, period - dead - pulse, period, period / 2];
+            let limit = i32::from(self.inputs.max_duty);
+            let ends = [0, dead + pulse, period - dead - pulse, period, period / 2, limit];
             let end = *pick(&mut self.rng, &ends) + about;
             let any = self.rng.random_range(-65_536..=65_535);
             let choices = [within, within, end, -end, period, -period, -self.inputs.duty, any];
