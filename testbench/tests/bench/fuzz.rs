@@ -1,6 +1,6 @@
 //! Damaged recordings of every producer: an error or a result, never a panic, and never another result for the same file.
 //!
-//! Deterministic, so that it runs everywhere; `fuzz/` has the same for `cargo fuzz`, without end.
+//! A few hundred on stable in every test run; `fuzz/` has the same for `cargo fuzz`, without end.
 
 use std::path::{Path, PathBuf};
 
