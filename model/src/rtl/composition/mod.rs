@@ -6,7 +6,7 @@
 //!
 //! ```
 //! use posicast_model::rtl::composition::{Composed, Composition, Part};
-//! use posicast_model::rtl::divider::{Divider, DividerConfig};
+//! use posicast_model::rtl::divider::{DIVISION_CLOCKS, Divider, DividerConfig};
 //! use posicast_model::rtl::ClockedBlock;
 //!
 //! // Two dividers; the second divides when the first is done.
@@ -22,7 +22,7 @@
 //! let mut joined = Composed::new(composition, vec![Box::new(first), Box::new(second)]);
 //! let mut outputs = [0; 2];
 //! joined.step(&[0, 1, 3, 7500, 0], &mut outputs)?;
-//! for _ in 0..142 {
+//! for _ in 0..2 * DIVISION_CLOCKS {
 //!     joined.step(&[0, 0, 0, 10_000, 0], &mut outputs)?;
 //! }
 //! assert_eq!(outputs, [2 << 16, 1 << 15]);
