@@ -8,6 +8,7 @@ pub mod cascade;
 pub mod component;
 pub mod composition;
 pub mod divider;
+pub mod drive_command;
 pub mod pulse_counter;
 pub mod pwm;
 pub mod registers;
