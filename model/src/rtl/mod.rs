@@ -10,6 +10,7 @@ pub mod composition;
 pub mod divider;
 pub mod divider_share;
 pub mod group;
+pub mod drive_command;
 pub mod pulse_counter;
 pub mod pwm;
 pub mod registers;
