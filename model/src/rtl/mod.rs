@@ -9,8 +9,9 @@ pub mod component;
 pub mod composition;
 pub mod divider;
 pub mod divider_share;
-pub mod group;
 pub mod drive_command;
+pub mod group;
+mod moore;
 pub mod pulse_counter;
 pub mod pwm;
 pub mod registers;
@@ -22,6 +23,8 @@ pub mod shaper;
 pub mod sliding_mode;
 pub mod time_base;
 pub mod word;
+
+pub use moore::{FOREVER, Moore, OutputKind};
 
 /// Direction of a port, seen from the block.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -63,13 +66,4 @@ pub trait ClockedBlock {
     /// # Errors
     /// [`StepError`] where a simulator fails; a model never does.
     fn step(&mut self, inputs: &[u64], outputs: &mut [u64]) -> Result<(), StepError>;
-}
-
-/// A block whose outputs are registers: they are known before its inputs are.
-///
-/// That is what lets blocks be [composed](composition) without looking for an order. An output that depends on inputs of
-/// the same clock is shown as if these were 0; it must not feed another block.
-pub trait Moore: ClockedBlock {
-    /// Writes what the outputs show now, in port order.
-    fn show(&self, outputs: &mut [u64]);
 }

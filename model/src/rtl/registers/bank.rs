@@ -5,7 +5,7 @@ mod plan;
 use self::plan::{Plan, plan};
 use super::description::{Access, Source};
 use super::map::RegisterMap;
-use crate::rtl::{ClockedBlock, Direction, Moore, Port, StepError};
+use crate::rtl::{ClockedBlock, Direction, FOREVER, Moore, Port, StepError};
 
 /// What an output shows.
 #[derive(Debug, Clone, Copy)]
@@ -153,9 +153,7 @@ impl RegisterBank {
             return;
         }
         let data = (inputs[READ] & 1 != 0).then(|| self.read(inputs));
-        let irq = self
-            .interrupts
-            .is_some_and(|(state, enable)| self.state.words[state] & self.state.words[enable] != 0);
+        let irq = self.raises_irq();
         self.state.strobe = None;
         let applies = self.applies_commit(inputs);
         if applies {
@@ -176,6 +174,12 @@ impl RegisterBank {
             self.state.read_data = data;
         }
         self.state.irq = irq;
+    }
+
+    fn raises_irq(&self) -> bool {
+        let words = &self.state.words;
+        self.interrupts
+            .is_some_and(|(state, enable)| words[state] & words[enable] != 0)
     }
 
     fn applies_commit(&self, inputs: &[u64]) -> bool {
@@ -323,6 +327,29 @@ impl Moore for RegisterBank {
                 Shown::Field { register, low, ones } => (state.words[*register] >> low & ones).into(),
             };
         }
+    }
+
+    fn quiet_clocks(&self, inputs: &[u64]) -> u64 {
+        let bus = (inputs[0] | inputs[READ] | inputs[WRITE]) & 1 != 0;
+        let state = &self.state;
+        let ends = state.strobe.is_some() || state.irq != self.raises_irq() || self.applies_commit(inputs);
+        let sets = |at: &usize| self.wired(*at, inputs) & !state.words[*at] != 0;
+        if bus || ends || self.flags.iter().any(sets) {
+            0
+        } else {
+            FOREVER
+        }
+    }
+
+    /// Between reads and writes, only flags and the tick of a commit matter.
+    fn ignores(&self, input: &str) -> bool {
+        let mut inputs = self.ports.iter().filter(|port| port.direction == Direction::Input);
+        let Some(at) = inputs.position(|port| port.name == input) else {
+            return false;
+        };
+        let flag = |register: &usize| self.plan[*register].wires.iter().any(|wire| wire.is_on(at));
+        let gate = self.commit.is_some_and(|commit| self.plan[commit].gate == at);
+        !([0, READ, WRITE].contains(&at) || gate || self.flags.iter().any(flag))
     }
 }
 

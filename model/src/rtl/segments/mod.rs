@@ -49,7 +49,7 @@ pub use integrator::{
 pub use ports::{INPUT_PORTS, Inputs, OUTPUT_PORTS, Outputs, State, ports};
 
 use self::fifo::{Fifo, Pointers};
-use super::{ClockedBlock, Port, StepError};
+use super::{ClockedBlock, FOREVER, Moore, OutputKind, Port, StepError};
 
 /// Clocks from a tick until the next one is taken.
 pub const TICK_CLOCKS: u32 = 9;
@@ -288,5 +288,59 @@ impl ClockedBlock for Segments {
         let shown = Segments::step(self, &Inputs::from_raw(raw));
         outputs.copy_from_slice(&shown.to_raw());
         Ok(())
+    }
+}
+
+/// `low` depends on `low_water`, which may change with it.
+impl Moore for Segments {
+    fn show(&self, outputs: &mut [u64]) {
+        for (output, value) in outputs.iter_mut().zip(self.outputs(0).to_raw()) {
+            *output = value;
+        }
+    }
+
+    fn output_kind(&self, output: &str) -> OutputKind {
+        match output {
+            "low" => OutputKind::Combinational,
+            _ => OutputKind::Register,
+        }
+    }
+
+    fn show_with(&mut self, inputs: &[u64], outputs: &mut [u64]) {
+        let low_water = <&[u64; INPUT_PORTS]>::try_from(inputs).map_or(0, |raw| Inputs::from_raw(raw).low_water);
+        for (output, value) in outputs.iter_mut().zip(self.outputs(low_water).to_raw()) {
+            *output = value;
+        }
+    }
+
+    /// Only between two ticks.
+    fn quiet_clocks(&self, inputs: &[u64]) -> u64 {
+        let Ok(inputs) = <&[u64; INPUT_PORTS]>::try_from(inputs).map(Inputs::from_raw) else {
+            return 0;
+        };
+        let Registers { phase, shown, .. } = &self.registers;
+        let requests = inputs.flush || inputs.quick_stop || inputs.restart || inputs.preset;
+        let acts = inputs.rst || inputs.tick || inputs.write || requests;
+        let flags = [
+            shown.underrun,
+            shown.overflow,
+            shown.refused,
+            shown.malformed,
+            shown.tick_missed,
+        ];
+        let clears = inputs.clear_flags && flags.contains(&true);
+        let pulses = shown.valid || shown.notify || shown.done;
+        if acts || clears || pulses || *phase != IDLE {
+            0
+        } else {
+            FOREVER
+        }
+    }
+
+    fn ignores(&self, input: &str) -> bool {
+        matches!(
+            input,
+            "enable" | "word" | "data" | "preset_position" | "stop_deceleration"
+        )
     }
 }

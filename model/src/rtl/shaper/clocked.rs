@@ -5,7 +5,7 @@ use super::config::{CHANNELS_MAX, ShaperConfig};
 use super::memory::Arbitrary;
 use super::ports::{Inputs, Outputs, ports};
 use super::{finish, wrap};
-use crate::rtl::{ClockedBlock, Moore, Port, StepError};
+use crate::rtl::{ClockedBlock, FOREVER, Moore, Port, StepError};
 
 /// The shaper, cycle accurate at its ports.
 ///
@@ -215,5 +215,26 @@ impl ClockedBlock for Shaper {
 impl Moore for Shaper {
     fn show(&self, outputs: &mut [u64]) {
         self.outputs().write_raw(&self.config, outputs);
+    }
+
+    fn quiet_clocks(&self, inputs: &[u64]) -> u64 {
+        let inputs = Inputs::from_raw(inputs, &self.config);
+        let acts = inputs.rst || inputs.strobe || inputs.start || inputs.tap_write || inputs.swap;
+        let clears = inputs.clear_flags && (self.saturated || self.overrun || self.banks.refused());
+        match self.clocks_left {
+            _ if acts || clears || self.valid => 0,
+            0 => FOREVER,
+            left => u64::from(left) - 1,
+        }
+    }
+
+    fn pass(&mut self, _inputs: &[u64], clocks: u64) {
+        if self.clocks_left > 0 {
+            self.clocks_left -= clocks as u32;
+        }
+    }
+
+    fn ignores(&self, input: &str) -> bool {
+        !matches!(input, "rst" | "strobe" | "start" | "clear_flags" | "tap_write" | "swap")
     }
 }
