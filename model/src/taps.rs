@@ -98,6 +98,13 @@ impl TapTable {
         &self.taps
     }
 
+    /// Mean delay `Σ c_i d_i / 2^F` in samples: how far a shaped ramp trails.
+    pub fn mean_delay_samples(&self) -> f64 {
+        let product = |tap: &Tap| i64::from(tap.coefficient) * i64::from(tap.delay_samples);
+        let sum: i128 = self.taps.iter().map(|tap| i128::from(product(tap))).sum();
+        sum as f64 / f64::from(1u32 << self.coefficient_fraction)
+    }
+
     /// Longest delay in samples.
     pub fn longest_delay_samples(&self) -> u32 {
         self.taps.last().map_or(0, |t| t.delay_samples)

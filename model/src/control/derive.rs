@@ -273,7 +273,8 @@ fn command(gains: &mut Gains, law: Law, drive: &Drive, units: &Units) {
     }
 }
 
-fn full_scale(mode: &DriveMode) -> f64 {
+/// Full scale of the drive, in command units.
+pub(super) fn full_scale(mode: &DriveMode) -> f64 {
     COMMAND_UNITS
         * match mode {
             DriveMode::Torque { full_scale_a, .. } => full_scale_a,

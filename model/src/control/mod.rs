@@ -15,7 +15,7 @@
 //! | velocity, PD and PID | u | u = dr + feedback, m/s |
 //! | velocity, sliding mode | `v + a/ω_b` | a = ddr + feedback; the drive is `v' = ω_b (u − v)` |
 //!
-//! [`gains`] does it all for an axis. [`FloatController`] is the law that the fixed-point controller
+//! [`gains`] does it all for an axis; [`supervision`] does the same for the words of its supervisor. [`FloatController`] is the law that the fixed-point controller
 //! ([`crate::rtl::sliding_mode`]) approximates.
 
 mod conditions;
@@ -23,12 +23,14 @@ mod culprit;
 mod derive;
 mod law;
 mod schedule;
+mod supervision;
 
 pub use conditions::ControlWarning;
 pub use culprit::Culprit;
 pub use derive::{Derived, gains, loop_lag_s};
 pub use law::{COMMAND_FRACTION, FloatController, Gains, Response, Tracking};
 pub use schedule::{CAPTURE_CLOCKS, Schedule, ScheduleError, schedule_delay_s};
+pub use supervision::{Supervision, SupervisionError, supervision};
 
 use crate::rtl::sliding_mode::{GainError, Row};
 

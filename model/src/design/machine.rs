@@ -1,5 +1,6 @@
 //! All axes of a machine, from the machine file to tap tables with one `F`.
 
+use super::matching::{self, AxisDelay, StageDelay};
 use super::{AxisDesign, DesignError, design_axis};
 use crate::analysis::{Insensitivity, insensitivity, residual_vibration, residual_vibration_at, tap_impulses};
 use crate::digitise::{Digitised, digitise, quantise, quantising_error};
@@ -16,6 +17,8 @@ pub struct MachineDesign {
     pub coefficient_fraction: u32,
     /// One entry per axis, in the order of the file.
     pub axes: Vec<AxisTables>,
+    /// What is left between the axes' delays, where the file has `[stage]`.
+    pub stage: Option<StageDelay>,
 }
 
 /// The shaper of one axis at its three stages: float, on the grid, integers.
@@ -23,10 +26,12 @@ pub struct MachineDesign {
 pub struct AxisTables {
     /// Impulses in continuous time.
     pub design: AxisDesign,
-    /// Real taps: what the float design computes with.
+    /// Real taps: what the float design computes with. Where the file has `[stage]`, as late as the other axes'.
     pub digitised: Digitised,
-    /// Integer taps: what the hardware computes with.
+    /// Integer taps of these: what the hardware computes with.
     pub table: TapTable,
+    /// What the axis's delay is made of.
+    pub delay: AxisDelay,
 }
 
 /// What an axis's shaper leaves at one of its modes.
@@ -47,36 +52,40 @@ pub struct ModeFigures {
     pub residual_quantised: f64,
 }
 
-/// Designs, digitises and quantises the shapers of all axes.
+/// Designs, digitises and quantises the shapers of all axes; with `[stage]` their delays are made equal in between.
 ///
 /// # Errors
 /// [`DesignError`] names the axis, what was found, what is allowed and what to do. Nothing large is allocated for a shaper
 /// that no hardware holds.
 pub fn design_machine(machine: &Machine) -> Result<MachineDesign, DesignError> {
     let sample_hz = machine.clock.sample_hz;
-    let designs = machine
-        .axes
-        .iter()
-        .map(|axis| {
-            let design = design_axis(axis)?;
-            let digitised = digitise(&design, machine.fixed_point.digitise, sample_hz)?;
-            Ok((design, digitised))
-        })
-        .collect::<Result<Vec<_>, DesignError>>()?;
-    let named: Vec<_> = designs.iter().map(|(d, taps)| (d.name.as_str(), taps)).collect();
+    let mut designs = Vec::with_capacity(machine.axes.len());
+    let mut digitised = Vec::with_capacity(machine.axes.len());
+    for axis in &machine.axes {
+        let design = design_axis(axis)?;
+        digitised.push(digitise(&design, machine.fixed_point.digitise, sample_hz)?);
+        designs.push(design);
+    }
+    let matched = matching::matched(machine, &digitised)?;
+    let named = designs.iter().map(|design| design.name.as_str());
+    let named: Vec<_> = named.zip(matched.iter().map(|(taps, _)| taps)).collect();
     let tables = quantise(&named, machine.fixed_point.coefficient_fraction)?;
     let coefficient_fraction = tables.first().map_or(0, TapTable::coefficient_fraction);
-    let axes = designs.into_iter().zip(tables);
+    let axes = designs.into_iter().zip(matched).zip(tables);
+    let axes: Vec<AxisTables> = axes
+        .map(|((design, (digitised, delay)), table)| AxisTables {
+            delay: delay.of_table(&digitised, &table, sample_hz),
+            design,
+            digitised,
+            table,
+        })
+        .collect();
+    let delays: Vec<AxisDelay> = axes.iter().map(|axis| axis.delay).collect();
     Ok(MachineDesign {
         sample_hz,
         coefficient_fraction,
-        axes: axes
-            .map(|((design, digitised), table)| AxisTables {
-                design,
-                digitised,
-                table,
-            })
-            .collect(),
+        stage: StageDelay::of_machine(machine, &delays),
+        axes,
     })
 }
 

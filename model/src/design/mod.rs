@@ -20,6 +20,7 @@ mod joint;
 mod joint_error;
 pub mod kind;
 mod machine;
+pub mod matching;
 pub mod negative;
 mod newton;
 mod path;
@@ -35,6 +36,7 @@ pub use error::DesignError;
 pub use joint::Findings;
 pub use joint_error::JointError;
 pub use machine::{AxisTables, MachineDesign, ModeFigures, design_machine};
+pub use matching::{AxisDelay, StageDelay};
 
 use crate::analysis::residual_vibration;
 use crate::impulse::ImpulseSequence;

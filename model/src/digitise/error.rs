@@ -27,6 +27,24 @@ pub enum TableError {
         /// Sample rate.
         sample_hz: f64,
     },
+    /// Too long once it is as late as the slowest axis.
+    #[error(
+        "axis {axis}: to be as late as axis {slowest} and [stage] extra_delay_s, it needs {added_samples} more samples of delay, \
+         which reach {found} samples back at {sample_hz} Hz; the ring buffer holds at most {DELAY_MAX_SAMPLES}: lower \
+         stage.extra_delay_s, give axis {slowest} a shorter kind, lower sample_hz, or leave the table [stage] out"
+    )]
+    MatchedDelay {
+        /// The axis.
+        axis: String,
+        /// The axis with the largest delay of its own.
+        slowest: String,
+        /// Delay that is missing, in samples.
+        added_samples: f64,
+        /// Longest delay in samples.
+        found: f64,
+        /// Sample rate.
+        sample_hz: f64,
+    },
     /// More taps than the largest table.
     #[error(
         "axis {axis}: {found} taps; a table holds at most {TAPS_MAX}: use shorter kinds, fewer modes, \

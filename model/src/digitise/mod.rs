@@ -7,7 +7,7 @@
 //! `modal`: each part (one mode's shaper) is put on the grid by itself and divided by its own sum; the parts' real sequences
 //! are then convolved, taps on equal samples added. So each mode keeps its own zeros. `linear` and `nearest` place the
 //! impulses of the whole axis. Rounding to integers comes once, at the
-//! end ([`quantise`]). The methods are in [`grid`]; the real taps stay beside the integers, because the float design that
+//! end ([`quantise`]). What the other axes of a stage need of delay is folded in before ([`Digitised::delayed`]). The methods are in [`grid`]; the real taps stay beside the integers, because the float design that
 //! the hardware is compared with uses them.
 
 mod error;
@@ -79,6 +79,37 @@ impl Digitised {
         .collect()
     }
 
+    /// Mean delay `Σ a_i d_i` in samples: how far a shaped ramp trails.
+    pub fn mean_delay_samples(&self) -> f64 {
+        let taps = self.taps.iter();
+        taps.map(|tap| tap.weight * f64::from(tap.delay_samples)).sum()
+    }
+
+    /// The same taps, later by so many samples: the whole ones in every delay, the fraction `f` convolved in as `(1 − f, f)`.
+    /// The sum stays 1. As seen by a mode that is a factor of at most 1: no residual grows.
+    ///
+    /// `None` for a delay that is negative or no number, or longer than the largest ring buffer.
+    pub fn delayed(&self, samples: f64) -> Option<Self> {
+        let (whole, fraction) = split_delay(samples)?;
+        let last = self.taps.last().map_or(0, |tap| tap.delay_samples);
+        let reaches = last.checked_add(whole)?.checked_add(u32::from(fraction > 0.0))?;
+        if reaches > DELAY_MAX_SAMPLES {
+            return None;
+        }
+        let mut later: BTreeMap<u32, f64> = BTreeMap::new();
+        for tap in &self.taps {
+            let delay = tap.delay_samples + whole;
+            *later.entry(delay).or_default() += tap.weight * (1.0 - fraction);
+            if fraction > 0.0 {
+                *later.entry(delay + 1).or_default() += tap.weight * fraction;
+            }
+        }
+        Some(Self {
+            method_used: self.method_used,
+            taps: real_taps(later),
+        })
+    }
+
     /// The float design's output for these command words, in the same unit: what the hardware's output is compared with.
     /// Before the first word the command was at the first word.
     pub fn shape(&self, command: &[i64]) -> Vec<f64> {
@@ -121,13 +152,33 @@ pub fn digitise(design: &AxisDesign, how: Digitise, sample_hz: f64) -> Result<Di
     for (impulses, mode) in sequences {
         whole = convolve(&whole, &part(&design.name, impulses, mode, method_used, sample_hz)?);
     }
-    let taps = whole.into_iter().filter(|(_, weight)| *weight != 0.0);
     Ok(Digitised {
         method_used,
-        taps: taps
-            .map(|(delay_samples, weight)| RealTap { delay_samples, weight })
-            .collect(),
+        taps: real_taps(whole),
     })
+}
+
+/// Weights by delay as taps, without those that are 0.
+fn real_taps(weights: BTreeMap<u32, f64>) -> Vec<RealTap> {
+    let weights = weights.into_iter().filter(|(_, weight)| *weight != 0.0);
+    weights
+        .map(|(delay_samples, weight)| RealTap { delay_samples, weight })
+        .collect()
+}
+
+/// A delay this close to whole samples is one: it spares taps, and is far below what rounding the coefficients moves.
+const WHOLE_DELAY: f64 = 1e-10;
+
+/// Whole samples and the fraction beyond them; `None` for what is no delay of this hardware.
+fn split_delay(samples: f64) -> Option<(u32, f64)> {
+    if !(0.0..=f64::from(DELAY_MAX_SAMPLES)).contains(&samples) {
+        return None;
+    }
+    let nearest = samples.round();
+    if (samples - nearest).abs() <= WHOLE_DELAY {
+        return Some((nearest as u32, 0.0));
+    }
+    Some((samples.floor() as u32, samples - samples.floor()))
 }
 
 /// Refuses what no ring buffer holds; each sequence ends at most one sample after its last impulse.
@@ -271,6 +322,25 @@ mod tests {
         let digitised = digitise(&custom(&[(0.0, 0.25), (0.002, 0.75)], None), Digitise::Modal, 1000.0).unwrap();
         assert_eq!(digitised.shape(&[8, 8, 12, 12, 16]), [8.0, 8.0, 9.0, 9.0, 13.0]);
         assert!(digitised.shape(&[]).is_empty());
+    }
+
+    #[test]
+    fn unit_a_delay_is_folded_in_as_whole_samples_and_a_fraction() {
+        let digitised = digitise(&custom(&[(0.0, 0.25), (0.002, 0.75)], None), Digitise::Modal, 1000.0).unwrap();
+        let taps = |samples: f64| -> Vec<(u32, f64)> {
+            let later = digitised.delayed(samples).unwrap();
+            assert!((later.mean_delay_samples() - 1.5 - samples).abs() < 1e-9, "{samples}");
+            later.taps.iter().map(|t| (t.delay_samples, t.weight)).collect()
+        };
+        assert_eq!(taps(0.0), [(0, 0.25), (2, 0.75)]);
+        assert_eq!(taps(3.0 - 1e-12), [(3, 0.25), (5, 0.75)]);
+        assert_eq!(taps(1.25), [(1, 0.1875), (2, 0.0625), (3, 0.5625), (4, 0.1875)]);
+        // The last tap may reach the end of the ring, and no further.
+        let room = f64::from(DELAY_MAX_SAMPLES - 2);
+        assert_eq!(taps(room).last().unwrap().0, DELAY_MAX_SAMPLES);
+        for bad in [room + 0.5, room + 1.0, 1e300, -1e-9, f64::NAN, f64::INFINITY] {
+            assert_eq!(digitised.delayed(bad), None, "{bad}");
+        }
     }
 
     #[test]

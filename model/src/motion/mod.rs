@@ -6,7 +6,8 @@
 //! - [`resample`]: a command given as points in time, on the sample grid;
 //! - [`command_words`]: positions to Q`command_fraction` counts, half up; what does not fit is an error;
 //! - [`modulo_words`]: the same for a modulo axis, with whole turns;
-//! - [`plan_move`], [`plan_to_and_fro`], [`plan_circle`]: moves as entries of the command FIFO.
+//! - [`plan_move`], [`plan_to_and_fro`], [`plan_circle`]: moves as entries of the command FIFO;
+//! - [`TickLimits`]: what those may ask for.
 //!
 //! The planner works in counts and ticks. All else has positions in the unit of the machine file (metres, or radians) and
 //! times in seconds.
@@ -14,11 +15,13 @@
 mod command;
 mod planner;
 mod profile;
+mod tick_limits;
 mod trajectory;
 mod words;
 
 pub use command::{PointsError, resample, settle_s};
-pub use planner::{POINTS_MAX, PlanError, TickLimits, plan_circle, plan_move, plan_to_and_fro};
+pub use planner::{POINTS_MAX, PlanError, plan_circle, plan_move, plan_to_and_fro};
 pub use profile::{Profile, ProfileError, SAMPLES_MAX, default_move};
+pub use tick_limits::TickLimits;
 pub use trajectory::{Cubic, Jump, Piece, Trajectory};
 pub use words::{CommandError, command_words, modulo_words};

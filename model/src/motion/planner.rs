@@ -12,7 +12,7 @@
 //! (n₂ = 0) are laid over it until what is missing is below half an LSB of the command word. A point of one tick at rest then
 //! says exactly where the target is.
 
-use super::{Profile, ProfileError};
+use super::{Profile, ProfileError, TickLimits};
 use crate::rtl::segments::{ACCELERATION_BITS, Entry, FRACTION_BITS, Motion, POSITION_FRACTION, Point, TICK_BITS};
 use crate::rtl::word::{WordError, WordFormat};
 use std::collections::BTreeMap;
@@ -23,28 +23,6 @@ const TICKS_MAX: f64 = ((1u32 << TICK_BITS) - 1) as f64;
 const HALF_A_WORD: i128 = 1 << (FRACTION_BITS - POSITION_FRACTION - 1);
 /// Most points of a path: 10 minutes at 1.6 kHz.
 pub const POINTS_MAX: usize = 1_000_000;
-
-/// Limits in counts and ticks.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct TickLimits {
-    /// Counts per tick.
-    pub velocity: f64,
-    /// Counts per tick².
-    pub acceleration: f64,
-    /// Counts per tick³.
-    pub jerk: f64,
-}
-
-impl TickLimits {
-    /// From limits per second, second², second³ in units of which there are `counts_per_unit` counts.
-    pub fn new(velocity: f64, acceleration: f64, jerk: f64, counts_per_unit: f64, tick_hz: f64) -> Self {
-        Self {
-            velocity: velocity * counts_per_unit / tick_hz,
-            acceleration: acceleration * counts_per_unit / tick_hz.powi(2),
-            jerk: jerk * counts_per_unit / tick_hz.powi(3),
-        }
-    }
-}
 
 /// Why there is no plan.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

@@ -202,18 +202,22 @@ impl Profile {
 /// # Errors
 /// As [`Profile::new`].
 pub fn default_move(limits: Option<&Limits>) -> Result<Profile, ProfileError> {
-    let of = |limit: fn(&Limits) -> Option<f64>, default| limits.and_then(limit).unwrap_or(default);
     let (start, end) = match limits.and_then(|l| l.travel) {
         None => (0.0, DEFAULT_DISTANCE),
         Some([low, high]) => within(low, high),
     };
-    Profile::new(
-        start,
-        end,
+    let [velocity, acceleration, jerk] = motion_limits(limits);
+    Profile::new(start, end, velocity, acceleration, jerk)
+}
+
+/// Velocity, acceleration and jerk that a move may ask for: the file's, or the defaults.
+pub(super) fn motion_limits(limits: Option<&Limits>) -> [f64; 3] {
+    let of = |limit: fn(&Limits) -> Option<f64>, default| limits.and_then(limit).unwrap_or(default);
+    [
         of(|l| l.velocity, DEFAULT_VELOCITY),
         of(|l| l.acceleration, DEFAULT_ACCELERATION),
         of(|l| l.jerk, DEFAULT_JERK),
-    )
+    ]
 }
 
 /// Start and end of the default move in a travel: towards the side with room for it, or with more room.
@@ -295,10 +299,8 @@ mod tests {
     #[test]
     fn unit_default_move_stays_within_the_travel() {
         let limits = |low, high| Limits {
-            velocity: None,
-            acceleration: None,
-            jerk: None,
             travel: Some([low, high]),
+            ..Limits::default()
         };
         let ends = |l: Option<Limits>| {
             let profile = default_move(l.as_ref()).unwrap();

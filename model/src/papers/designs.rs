@@ -20,6 +20,8 @@ pub(super) fn axis(shaper: ShaperChoice, modes: &[Mode]) -> Axis {
         drive: None,
         controller: None,
         limits: None,
+        scale: None,
+        trace: None,
     }
 }
 

@@ -1,25 +1,21 @@
-//! `[[axis]]`, `[[axis.mode]]` and `[axis.limits]`, and which of an axis's blocks need each other.
+//! `[[axis]]` and `[[axis.mode]]`, and which of an axis's blocks need each other.
 
 use super::range::NumberRange;
 use super::table::Table;
-use super::{Axis, AxisMode, Clock, FixedPoint, Limits, controller, drive, encoder, not_built, pwm, shaper};
+use super::{Axis, AxisMode, Clock, FixedPoint, controller, drive, encoder, limits, pwm, scale, shaper, trace};
 use crate::mode::Mode;
-use crate::rtl::shaper::{MOTION_WORD_BITS, WORD_BITS};
+use crate::rtl::shaper::MOTION_WORD_BITS;
 
 /// Modes of an axis: with five impulses each their convolution has 390,625, far more than any table holds.
 const MAX_MODES: usize = 8;
 /// Encoder counts per metre or radian: up to a picometre per count.
-const COUNTS_PER_UNIT: NumberRange = NumberRange::positive(1e12);
+pub(super) const COUNTS_PER_UNIT: NumberRange = NumberRange::positive(1e12);
 /// A frequency before it is compared with the sample rate; below this a shaper would last for hours.
 const FREQUENCY_HZ: NumberRange = NumberRange::closed(1e-3, 1e9).unit("Hz");
 /// Damping ratio of a mode that rings.
 const DAMPING: NumberRange = NumberRange::closed(0.0, 1.0).open_above();
 /// Weights of the modes.
 const PARTICIPATION: NumberRange = NumberRange::closed(0.0, 1e9);
-/// Positions.
-const POSITION: NumberRange = NumberRange::closed(-1e9, 1e9).unit("m or rad");
-/// Velocity, acceleration and jerk: far above any machine, finite when multiplied with each other.
-const MOTION: NumberRange = NumberRange::positive(1e9);
 
 /// Reads one axis under a name that was read before. Without a valid clock or number format the checks that need them
 /// are left out.
@@ -54,14 +50,15 @@ pub(super) fn read(
     }
     let modulo = read_modulo(table, fixed_point);
     // The position of a modulo axis wraps: any travel fits.
-    let scale = counts_per_unit.zip(fixed_point).filter(|_| !modulo);
-    let limits = table.table("limits").map(|t| read_limits(&t, scale));
+    let word = counts_per_unit.zip(fixed_point).filter(|_| !modulo);
+    let limits = table.table("limits").map(|t| limits::read(table, &t, word));
     let encoder = table.table("encoder").map(|t| encoder::read(&t));
     let pwm = table.table("pwm").map(|t| pwm::read(&t, clock));
     let drive = table.table("drive").map(|t| drive::read(&t));
     let controller = table.table("controller").map(|t| controller::read(&t));
+    let scale = table.table("scale").map(|t| scale::read(table, &t));
+    let trace = table.table("trace").map(|t| trace::read(&t));
     check_needs(table);
-    not_built::read_axis_blocks(table);
     let shaper = match choice {
         Some(choice) => Some(choice?.1),
         None => None,
@@ -77,6 +74,8 @@ pub(super) fn read(
         drive: not_refused(drive)?,
         controller: not_refused(controller)?,
         limits,
+        scale: not_refused(scale)?,
+        trace: not_refused(trace)?,
     })
 }
 
@@ -104,12 +103,22 @@ fn read_modulo(table: &Table<'_, '_>, fixed_point: Option<FixedPoint>) -> bool {
 
 /// Checks that every block finds the others that it cannot work without.
 fn check_needs(axis: &Table<'_, '_>) {
-    let needs: [(&str, &[&str], &str); 2] = [
+    let needs: [(&str, &[&str], &str); 4] = [
+        (
+            "scale",
+            &["encoder"],
+            "a scale with [axis.encoder], the motor's, which it is compared with",
+        ),
         ("drive", &["pwm"], "a drive with its [axis.pwm], which commands it"),
         (
             "controller",
             &["encoder", "pwm", "drive"],
             "a controller with [axis.encoder], [axis.pwm] and [axis.drive]: the position, the pins, and what they command",
+        ),
+        (
+            "trace",
+            &["controller"],
+            "a trace with [axis.controller], whose loop it records",
         ),
     ];
     for (block, needed, allowed) in needs {
@@ -223,64 +232,4 @@ fn read_frequency(table: &Table<'_, '_>, damping: Option<f64>, clock: Option<Clo
         return None;
     }
     Some(frequency_hz)
-}
-
-/// Reads the limits; `scale` is counts per unit and the format that the travel must fit, where both are valid.
-fn read_limits(table: &Table<'_, '_>, scale: Option<(f64, FixedPoint)>) -> Limits {
-    const SECONDS: NumberRange = NumberRange::closed(0.0, 60.0).unit("s");
-    let watched = ["following_error", "brake_release_s", "brake_apply_s"];
-    let [following_error, release, apply] = watched;
-    table.allow(&[
-        "velocity",
-        "acceleration",
-        "jerk",
-        "travel",
-        following_error,
-        release,
-        apply,
-    ]);
-    table.number(following_error, MOTION);
-    table.number(release, SECONDS);
-    table.number(apply, SECONDS);
-    for key in watched.into_iter().filter(|key| table.has(key)) {
-        table.not_built(key, key, None, "leave the key out: nothing would act on it");
-    }
-    let travel = table.numbers::<2>("travel", POSITION);
-    if travel.is_some_and(|[low, high]| low >= high) {
-        table.refuse("travel", "[low, high] with low below high", "exchange the two limits");
-    } else if let Some((travel, (counts_per_unit, format))) = travel.zip(scale) {
-        check_travel(table, travel, counts_per_unit, format);
-    }
-    Limits {
-        velocity: table.number("velocity", MOTION),
-        acceleration: table.number("acceleration", MOTION),
-        jerk: table.number("jerk", MOTION),
-        travel,
-    }
-}
-
-/// Checks that the whole travel fits the position word, and names the next size that holds it.
-fn check_travel(limits: &Table<'_, '_>, travel: [f64; 2], counts_per_unit: f64, format: FixedPoint) {
-    let counts = travel.iter().fold(0.0, |most: f64, position| most.max(position.abs())) * counts_per_unit;
-    let fits = |bits: u32, fraction: u32| counts <= largest_position(bits, fraction);
-    let (bits, fraction) = (format.command_bits, format.command_fraction);
-    if fits(bits, fraction) {
-        return;
-    }
-    let next_bits = WORD_BITS.into_iter().find(|b| *b > bits && fits(*b, fraction));
-    let next_fraction = (0..fraction).rev().find(|f| fits(bits, *f));
-    let remedy = match (next_bits, next_fraction) {
-        (Some(bits), _) => format!("set fixed_point.command_bits = {bits}"),
-        (None, Some(fraction)) => format!("set fixed_point.command_fraction = {fraction}"),
-        (None, None) => "lower counts_per_unit, or shorten the travel".to_owned(),
-    };
-    let found = format!("a travel of up to {counts} counts");
-    let most = largest_position(bits, fraction);
-    let allowed = format!("at most {most} counts in {bits} bits with {fraction} fraction bits; {remedy}");
-    limits.contradiction("travel", found, allowed, remedy);
-}
-
-/// Largest position in counts that a word holds.
-fn largest_position(command_bits: u32, command_fraction: u32) -> f64 {
-    (f64::from(command_bits - 1).exp2() - 1.0) / f64::from(command_fraction).exp2()
 }

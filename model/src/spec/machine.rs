@@ -2,7 +2,7 @@
 
 use super::range::NumberRange;
 use super::table::Table;
-use super::{Clock, Digitise, FixedPoint, Machine, Target, axis, not_built};
+use super::{Clock, Digitise, FixedPoint, Machine, Target, axis, stage};
 use crate::rtl::shaper::WORD_BITS;
 use crate::taps::COEFFICIENT_FRACTION_MAX;
 
@@ -28,9 +28,7 @@ pub(super) fn read(root: &Table<'_, '_>) -> Option<Machine> {
     let target = root.table("target").and_then(|table| read_target(&table));
     root.require("axis", format_args!("1 to {MAX_AXES} tables [[axis]]"));
     let axes = read_axes(root, clock, fixed_point);
-    let stage = root
-        .table("stage")
-        .and_then(|table| not_built::read_stage(root, &table));
+    let stage = root.table("stage").map(|table| stage::read(&table));
     Some(Machine {
         name: name?,
         clock: clock?,

@@ -1,9 +1,9 @@
 //! The machine file: what an engineer knows of a machine, parsed and validated.
 //!
 //! The types here hold only values that passed validation; [`parse`] is the one way to make them from text. It reads the
-//! whole schema of `docs/machine-file.md`, checks every value, and shows all problems of a file at once. A block or a
-//! kind of shaper that is known and that no part of this version builds is checked as the others are, and then refused
-//! with `not built in this version: NAME`: a machine never lacks silently what its file asks for.
+//! whole schema of `docs/machine-file.md`, checks every value, and shows all problems of a file at once. A kind of
+//! shaper that is known and that no part of this version builds is checked as the others are, and then refused with
+//! `not built in this version: NAME`: a machine never lacks silently what its file asks for.
 //!
 //! ```
 //! let text = r#"
@@ -35,22 +35,29 @@ mod controller;
 mod drive;
 mod encoder;
 mod error;
+mod limits;
 mod machine;
 mod names;
-mod not_built;
 mod place;
 mod pwm;
 mod range;
 mod reader;
+mod scale;
 mod shaper;
+mod stage;
 mod table;
+mod trace;
 
 pub use controller::Controller;
 pub use drive::{Drive, DriveMode};
 pub use encoder::Encoder;
 pub use error::{Cause, MAX_PROBLEMS, Problem, SpecError};
+pub use limits::Limits;
 pub use place::line_of;
 pub use pwm::{Pwm, PwmMode};
+pub use scale::{Scale, ScaleUse};
+pub use stage::Stage;
+pub use trace::Trace;
 
 use toml::de::DeTable;
 
@@ -186,6 +193,10 @@ pub struct Axis {
     pub controller: Option<Controller>,
     /// `[axis.limits]`.
     pub limits: Option<Limits>,
+    /// `[axis.scale]`; only with an encoder.
+    pub scale: Option<Scale>,
+    /// `[axis.trace]`; only with a controller.
+    pub trace: Option<Trace>,
 }
 
 /// Residual that an EI kind tolerates where the file gives no tolerance.
@@ -318,26 +329,4 @@ pub struct AxisMode {
     pub order: Option<u32>,
     /// Share of the mode in the axis's response; only ratios count. Default 1.
     pub participation: f64,
-}
-
-/// `[axis.limits]`, in the units of the file: metres (or radians) and seconds.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Limits {
-    /// Largest velocity, m/s.
-    pub velocity: Option<f64>,
-    /// Largest acceleration, m/s².
-    pub acceleration: Option<f64>,
-    /// Largest jerk, m/s³.
-    pub jerk: Option<f64>,
-    /// Soft limits of the position, m.
-    pub travel: Option<[f64; 2]>,
-}
-
-/// `[stage]`.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Stage {
-    /// Delay added to every axis, s.
-    pub extra_delay_s: f64,
-    /// Speed at which the mismatch of the axes is reported, m/s.
-    pub contour_speed: Option<f64>,
 }

@@ -260,6 +260,33 @@ impl<'r, 't> Table<'r, 't> {
         self.choice(key, words)
     }
 
+    /// What the words of a list stand for; the list may be empty.
+    pub(super) fn choices<T: Copy>(&self, key: &str, words: &[(&str, T)]) -> Option<Vec<T>> {
+        let value = self.value(key)?;
+        let names: Vec<&str> = words.iter().map(|(name, _)| *name).collect();
+        let list = names.join(", ");
+        let Some(array) = value.get_ref().as_array() else {
+            self.wrong_type(key, value, format_args!("a list of words, each one of {list}"));
+            return None;
+        };
+        let mut chosen = Vec::new();
+        for element in array {
+            let text = element.get_ref().as_str();
+            let word = words.iter().find(|(name, _)| Some(*name) == text);
+            let Some((_, meaning)) = word else {
+                let remedy = match text.and_then(|text| nearest(text, &names)) {
+                    Some(near) => format!("did you mean \"{near}\"?"),
+                    None => "choose of the list".to_owned(),
+                };
+                let found = self.reader.quote(element.span());
+                self.report(key, Cause::NotAChoice { found, allowed: list }, remedy);
+                return None;
+            };
+            chosen.push(*meaning);
+        }
+        Some(chosen)
+    }
+
     /// A list of `N` numbers in a range.
     pub(super) fn numbers<const N: usize>(&self, key: &str, range: NumberRange) -> Option<[f64; N]> {
         let value = self.value(key)?;

@@ -1,0 +1,386 @@
+//! The words of an axis's supervisor, and of the quick stop, from the machine file.
+//!
+//! | key of `[axis.limits]` | word | unit of its LSB | rounded | left out |
+//! |---|---|---|---|---|
+//! | `travel` | soft limits, i32 | 2^−8 counts | inwards | 0, 0: none |
+//! | `following_error` | u32 | 2^−16 counts | down | 0: not watched |
+//! | `deviation` | u32 | 2^−8 counts | down | 0: not watched |
+//! | `saturation_s`, `encoder_lost_s`, `watchdog_s` | u16 | ticks | down, at least 1 | 0: not watched |
+//! | `encoder_lost_command` | u32 | 2^−12 command units | down | 0.5 of full scale; 0 without `encoder_lost_s` |
+//! | `brake_release_s`, `brake_apply_s` | u16 | ticks | up | 0 |
+//! | `line_filter_s` | 6 bits | clocks | up | 0 |
+//! | `stop_deceleration` | 31 bits | 2^−24 counts per tick² | down, at least 1 | `acceleration`; without it 0: at once |
+//! | `direct_duty` | u16 | clocks of the PWM | down | 0.1 of the period |
+//! | `direct_hold_s` | u16 | ticks | down, at least 1 | 0.2 s, or what fits |
+//! | `excitation` | u32 | 2^−8 counts | down, at least 1 | 4 counts |
+//!
+//! So no limit is looser than the file asks for, no brake gets less time, and no filter lets more through. What a word does
+//! not hold, above or below, is an error: nothing is clamped. "Counts" are those of the axis, `counts_per_unit`.
+
+use crate::control::derive::full_scale;
+use crate::control::law::COMMAND_FRACTION;
+use crate::rtl::segments::{ACCELERATION_FRACTION, POSITION_FRACTION};
+use crate::spec::{Axis, Clock, Drive, DriveMode, Limits, Pwm};
+
+/// Fraction bits of the controller's error e.
+const ERROR_FRACTION: u32 = 16;
+/// Largest limit that a signed word of 32 bits can pass on both sides, whose sizes are x and −x − 1.
+const SIZE_MAX: u32 = (1 << 31) - 2;
+/// Largest deceleration: 31 bits.
+const DECELERATION_MAX: u32 = (1 << 31) - 1;
+/// Longest filter of a line, in clocks.
+const FILTER_CLOCKS_MAX: u32 = 63;
+/// How long a manual duty stands, where the file does not say.
+const DEFAULT_DIRECT_HOLD_S: f64 = 0.2;
+/// Largest amplitude of test signals where the file does not say, in counts.
+const DEFAULT_EXCITATION_COUNTS: u32 = 4;
+/// Relative rounding of decimals such as `0.3`, which binary fractions only come near.
+const DECIMALS: f64 = 1e-9;
+
+/// What the supervisor (`rtl::axis`), the quick stop of `rtl::segments` and the bring-up of an axis start with: register
+/// values, or constants where nothing is to be changed. Names and formats are those of the ports.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Supervision {
+    /// Per cause: 1 outputs off, 0 quick stop.
+    pub off_causes: u16,
+    /// Ticks from HOLD until the brake is open.
+    pub brake_release_ticks: u16,
+    /// Ticks from applying the brake until it holds.
+    pub brake_apply_ticks: u16,
+    /// Ticks from the command's standstill to that of the shaped command.
+    pub settle_ticks: u16,
+    /// Q24.8 counts. Both 0: no soft limits.
+    pub soft_limit_plus: i32,
+    /// Q24.8 counts.
+    pub soft_limit_minus: i32,
+    /// Q16.16 counts; 0: not watched.
+    pub following_error_limit: u32,
+    /// Q24.8 counts of the axis; 0: not watched.
+    pub deviation_limit: u32,
+    /// Ticks in a row; 0: not watched.
+    pub saturation_ticks: u16,
+    /// Q20.12 command units.
+    pub lost_command: u32,
+    /// Ticks without a count; 0: not watched.
+    pub lost_ticks: u16,
+    /// Ticks without a kick; 0: no watchdog.
+    pub watchdog_ticks: u16,
+    /// Pulses of up to so many clocks on a line are ignored, 0 to 63.
+    pub filter_clocks: u8,
+    /// Q7.24 counts per tick²; 0: at once.
+    pub stop_deceleration: u32,
+    /// Largest manual duty, in clocks of the PWM's period.
+    pub direct_limit: u16,
+    /// Ticks that a manual duty stands.
+    pub direct_hold_ticks: u16,
+    /// Largest amplitude of test signals, Q24.8 counts.
+    pub excitation_limit: u32,
+}
+
+/// Why an axis has no words for its supervisor.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum SupervisionError {
+    /// A table is missing.
+    #[error("axis {axis} has no [axis.{table}]: a supervised axis has a controller and what that needs; add it")]
+    Missing {
+        /// The axis.
+        axis: String,
+        /// The table.
+        table: &'static str,
+    },
+    /// A value that its word does not hold.
+    #[error("axis {axis}: found {found} {unit}; allowed: {smallest} to {largest} {unit}, {reason}")]
+    Range {
+        /// The axis.
+        axis: String,
+        /// Dotted key.
+        key: &'static str,
+        /// The value found.
+        found: f64,
+        /// Its unit.
+        unit: &'static str,
+        /// Smallest value that the word holds.
+        smallest: f64,
+        /// Largest value that it holds.
+        largest: f64,
+        /// What sets the range.
+        reason: &'static str,
+    },
+    /// A travel of which rounding inwards leaves nothing, or limits of 0, which mean that there are none.
+    #[error("axis {axis}: found a travel from {low} to {high} m; allowed: one that is wider than a count, {count} m")]
+    Travel {
+        /// The axis.
+        axis: String,
+        /// Lower end.
+        low: f64,
+        /// Upper end.
+        high: f64,
+        /// Metres per count.
+        count: f64,
+    },
+}
+
+impl SupervisionError {
+    /// The key of the machine file that is to blame, dotted: `axis.limits.following_error`, for example.
+    pub fn key(&self) -> &'static str {
+        match self {
+            Self::Missing { .. } => "axis.limits",
+            Self::Range { key, .. } => key,
+            Self::Travel { .. } => "axis.limits.travel",
+        }
+    }
+}
+
+/// The words of the supervisor of an axis with a controller. `longest_delay_samples` is that of its shaper's table.
+///
+/// # Errors
+/// [`SupervisionError`] names the first value that its word does not hold, with the range that it does.
+pub fn supervision(axis: &Axis, clock: &Clock, longest_delay_samples: u32) -> Result<Supervision, SupervisionError> {
+    let missing = |table| SupervisionError::Missing {
+        axis: axis.name.clone(),
+        table,
+    };
+    let words = Words {
+        axis,
+        clock,
+        limits: axis.limits.unwrap_or_default(),
+        pwm: axis.pwm.as_ref().ok_or_else(|| missing("pwm"))?,
+        drive: axis.drive.as_ref().ok_or_else(|| missing("drive"))?,
+    };
+    let limits = &words.limits;
+    let [soft_limit_minus, soft_limit_plus] = words.soft_limits()?;
+    Ok(Supervision {
+        off_causes: limits.off_causes,
+        brake_release_ticks: words.ticks_up("axis.limits.brake_release_s", limits.brake_release_s)?,
+        brake_apply_ticks: words.ticks_up("axis.limits.brake_apply_s", limits.brake_apply_s)?,
+        settle_ticks: words.settle_ticks(longest_delay_samples)?,
+        soft_limit_plus,
+        soft_limit_minus,
+        following_error_limit: words.distance("axis.limits.following_error", limits.following_error, ERROR_FRACTION)?,
+        deviation_limit: words.distance("axis.limits.deviation", limits.deviation, POSITION_FRACTION)?,
+        saturation_ticks: words.ticks_down("axis.limits.saturation_s", limits.saturation_s)?,
+        lost_command: words.lost_command()?,
+        lost_ticks: words.ticks_down("axis.limits.encoder_lost_s", limits.encoder_lost_s)?,
+        watchdog_ticks: words.ticks_down("axis.limits.watchdog_s", limits.watchdog_s)?,
+        filter_clocks: words.filter_clocks()?,
+        stop_deceleration: words.stop_deceleration()?,
+        direct_limit: words.direct_limit(),
+        direct_hold_ticks: words.direct_hold_ticks()?,
+        excitation_limit: words.excitation_limit()?,
+    })
+}
+
+/// What the words are made of.
+struct Words<'a> {
+    axis: &'a Axis,
+    clock: &'a Clock,
+    limits: Limits,
+    pwm: &'a Pwm,
+    drive: &'a Drive,
+}
+
+/// A value of the file on its way into a word.
+struct Value {
+    key: &'static str,
+    found: f64,
+    unit: &'static str,
+    /// LSB per unit.
+    scale: f64,
+}
+
+impl Words<'_> {
+    /// `word` as an integer if it lies in the range, else the error that says so in the file's unit.
+    fn fitting(
+        &self,
+        value: &Value,
+        word: f64,
+        range: [u32; 2],
+        reason: &'static str,
+    ) -> Result<u32, SupervisionError> {
+        let [smallest, largest] = range.map(f64::from);
+        // NaN and the infinities are in no range.
+        if (smallest..=largest).contains(&word) {
+            return Ok(word as u32);
+        }
+        Err(SupervisionError::Range {
+            axis: self.axis.name.clone(),
+            key: value.key,
+            found: value.found,
+            unit: value.unit,
+            smallest: smallest / value.scale,
+            largest: largest / value.scale,
+            reason,
+        })
+    }
+
+    fn ticks(&self, value: &Value, ticks: f64, smallest: u32) -> Result<u16, SupervisionError> {
+        let reason = "which are ticks of 16 bits";
+        self.fitting(value, ticks, [smallest, u32::from(u16::MAX)], reason)
+            .map(|ticks| ticks as u16)
+    }
+
+    fn seconds(&self, key: &'static str, found: f64) -> Value {
+        Value {
+            key,
+            found,
+            unit: "s",
+            scale: self.clock.sample_hz,
+        }
+    }
+
+    /// Ticks that last at least so long.
+    fn ticks_up(&self, key: &'static str, seconds: f64) -> Result<u16, SupervisionError> {
+        let value = self.seconds(key, seconds);
+        self.ticks(&value, up(seconds * value.scale), 0)
+    }
+
+    /// Ticks that last at most so long: one or more, or 0 for 0.
+    fn ticks_down(&self, key: &'static str, seconds: f64) -> Result<u16, SupervisionError> {
+        if seconds == 0.0 {
+            return Ok(0);
+        }
+        let value = self.seconds(key, seconds);
+        self.ticks(&value, down(seconds * value.scale), 1)
+    }
+
+    fn settle_ticks(&self, longest_delay_samples: u32) -> Result<u16, SupervisionError> {
+        let value = Value {
+            key: "axis.shaper",
+            found: f64::from(longest_delay_samples),
+            unit: "samples of delay",
+            scale: 1.0,
+        };
+        self.ticks(&value, value.found, 0)
+    }
+
+    /// Lower and upper, rounded inwards.
+    fn soft_limits(&self) -> Result<[i32; 2], SupervisionError> {
+        let Some([low, high]) = self.limits.travel.filter(|_| !self.axis.modulo) else {
+            return Ok([0, 0]);
+        };
+        let scale = self.axis.counts_per_unit * f64::from(1u32 << POSITION_FRACTION);
+        let largest = f64::from(SIZE_MAX);
+        let words = [up(low * scale), down(high * scale)];
+        for (found, word) in [low, high].into_iter().zip(words) {
+            if word.abs() > largest || !word.is_finite() {
+                return Err(SupervisionError::Range {
+                    axis: self.axis.name.clone(),
+                    key: "axis.limits.travel",
+                    found,
+                    unit: "m",
+                    smallest: -largest / scale,
+                    largest: largest / scale,
+                    reason: "the command's positions of 24 bits of counts",
+                });
+            }
+        }
+        let [minus, plus] = words.map(|word| word as i32);
+        if minus > plus || (minus, plus) == (0, 0) {
+            return Err(SupervisionError::Travel {
+                axis: self.axis.name.clone(),
+                low,
+                high,
+                count: 1.0 / self.axis.counts_per_unit,
+            });
+        }
+        Ok([minus, plus])
+    }
+
+    /// A distance in counts with `fraction` fraction bits; 0 where the file has none.
+    fn distance(&self, key: &'static str, found: Option<f64>, fraction: u32) -> Result<u32, SupervisionError> {
+        let Some(found) = found else {
+            return Ok(0);
+        };
+        let value = Value {
+            key,
+            found,
+            unit: "m",
+            scale: self.axis.counts_per_unit * f64::from(1u32 << fraction),
+        };
+        let reason = "which are counts in a word of 32 bits";
+        self.fitting(&value, down(found * value.scale), [1, SIZE_MAX], reason)
+    }
+
+    fn lost_command(&self) -> Result<u32, SupervisionError> {
+        if self.limits.encoder_lost_s == 0.0 {
+            return Ok(0);
+        }
+        let part_that_is_commanded = match self.drive.mode {
+            DriveMode::Torque {
+                current_limit_a,
+                full_scale_a,
+                ..
+            } => current_limit_a / full_scale_a,
+            DriveMode::Velocity { .. } => 1.0,
+        };
+        let scale = full_scale(&self.drive.mode) * f64::from(1u32 << COMMAND_FRACTION);
+        let largest = (part_that_is_commanded * scale - 2.0).clamp(0.0, f64::from(SIZE_MAX));
+        let value = Value {
+            key: "axis.limits.encoder_lost_command",
+            found: self.limits.encoder_lost_command,
+            unit: "of full scale",
+            scale,
+        };
+        let reason = "what the controller commands at most";
+        self.fitting(&value, down(value.found * scale), [0, largest as u32], reason)
+    }
+
+    fn filter_clocks(&self) -> Result<u8, SupervisionError> {
+        let value = Value {
+            key: "axis.limits.line_filter_s",
+            found: self.limits.line_filter_s,
+            unit: "s",
+            scale: self.clock.frequency_hz,
+        };
+        let reason = "which are up to 63 clocks";
+        self.fitting(&value, up(value.found * value.scale), [0, FILTER_CLOCKS_MAX], reason)
+            .map(|clocks| clocks as u8)
+    }
+
+    fn stop_deceleration(&self) -> Result<u32, SupervisionError> {
+        let (key, found) = match (self.limits.stop_deceleration, self.limits.acceleration) {
+            (Some(found), _) => ("axis.limits.stop_deceleration", found),
+            (None, Some(found)) => ("axis.limits.acceleration", found),
+            (None, None) => return Ok(0),
+        };
+        let per_tick = self.axis.counts_per_unit / self.clock.sample_hz.powi(2);
+        let value = Value {
+            key,
+            found,
+            unit: "m/s²",
+            scale: per_tick * f64::from(1u32 << ACCELERATION_FRACTION),
+        };
+        let reason = "with which a quick stop can slow down, in counts per tick²";
+        self.fitting(&value, down(found * value.scale), [1, DECELERATION_MAX], reason)
+    }
+
+    fn direct_limit(&self) -> u16 {
+        let period = f64::from(self.pwm.period_clocks(self.clock));
+        // At most a whole period of 65536 clocks, of which the word misses one.
+        down(self.limits.direct_duty * period).clamp(0.0, f64::from(u16::MAX)) as u16
+    }
+
+    fn direct_hold_ticks(&self) -> Result<u16, SupervisionError> {
+        match self.limits.direct_hold_s {
+            Some(seconds) => self.ticks_down("axis.limits.direct_hold_s", seconds),
+            None => Ok(down(DEFAULT_DIRECT_HOLD_S * self.clock.sample_hz).clamp(1.0, f64::from(u16::MAX)) as u16),
+        }
+    }
+
+    fn excitation_limit(&self) -> Result<u32, SupervisionError> {
+        match self.limits.excitation {
+            Some(_) => self.distance("axis.limits.excitation", self.limits.excitation, POSITION_FRACTION),
+            None => Ok(DEFAULT_EXCITATION_COUNTS << POSITION_FRACTION),
+        }
+    }
+}
+
+/// The largest whole number up to `value`, but for the rounding of decimals.
+fn down(value: f64) -> f64 {
+    (value + DECIMALS * value.abs()).floor()
+}
+
+/// The smallest whole number from `value` on, but for the rounding of decimals.
+fn up(value: f64) -> f64 {
+    (value - DECIMALS * value.abs()).ceil()
+}

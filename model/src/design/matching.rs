@@ -1,0 +1,143 @@
+//! Equal total delay of the axes of a stage, folded into their tap tables.
+//!
+//! ```text
+//! own   = Σ a_i d_i / f_s          the shaper's mean, of its real taps
+//!       + Σ 2ζ/ω                   what the modes of the loop add to it
+//! total = the largest own + extra_delay_s
+//! added = total − own              whole samples in every delay, the fraction f as (1 − f, f), then rounding
+//! ```
+//!
+//! A ramp comes out of every axis `total` late, so that a straight line at any angle stays one, and a circle keeps its shape
+//! but for what the shapers' different lengths smooth away. `2ζ/ω` is the delay of a mode at low frequencies; modes one behind
+//! the other add it up.
+//!
+//! What rounding the coefficients leaves is the mismatch that is reported: with `e_i = c_i/2^F − a_i`, whose sum is 0, at most
+//! `½·(d_n − d_1)·Σ|e_i|` samples per axis.
+
+use crate::digitise::{Digitised, TableError};
+use crate::spec::{Axis, Machine};
+use crate::taps::TapTable;
+
+/// What the delay of an axis is made of, in seconds, from the command to the load under a ramp.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AxisDelay {
+    /// Mean of the shaper's real taps, before anything is added.
+    pub shaper_s: f64,
+    /// Lag of the axis's modes, `Σ 2ζ/ω`.
+    pub mode_lag_s: f64,
+    /// What was folded into the table, in samples; 0 without `[stage]`.
+    pub added_samples: f64,
+    /// The same in seconds.
+    pub added_s: f64,
+    /// What rounding the coefficients adds or takes.
+    pub rounding_s: f64,
+}
+
+impl AxisDelay {
+    /// Total before the coefficients are rounded.
+    pub fn designed_s(&self) -> f64 {
+        self.shaper_s + self.mode_lag_s + self.added_s
+    }
+
+    /// Total of the integer table.
+    pub fn total_s(&self) -> f64 {
+        self.designed_s() + self.rounding_s
+    }
+
+    /// The same with what rounding to `table` leaves.
+    pub(super) fn of_table(self, digitised: &Digitised, table: &TapTable, sample_hz: f64) -> Self {
+        Self {
+            rounding_s: (table.mean_delay_samples() - digitised.mean_delay_samples()) / sample_hz,
+            ..self
+        }
+    }
+}
+
+/// What is left between the axes of a stage.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StageDelay {
+    /// Total delay of every axis before the coefficients are rounded, in seconds.
+    pub total_s: f64,
+    /// Largest difference of two axes' totals after it, in seconds.
+    pub mismatch_s: f64,
+    /// Speed at which the mismatch counts, in m/s: the file's, else the smallest velocity limit of the axes.
+    pub contour_speed: Option<f64>,
+}
+
+impl StageDelay {
+    /// The figures of a machine with `[stage]`.
+    pub(super) fn of_machine(machine: &Machine, delays: &[AxisDelay]) -> Option<Self> {
+        let stage = machine.stage.as_ref()?;
+        let totals = || delays.iter().map(AxisDelay::total_s);
+        let limits = machine.axes.iter().filter_map(|axis| axis.limits?.velocity);
+        Some(Self {
+            total_s: delays
+                .iter()
+                .map(AxisDelay::designed_s)
+                .fold(f64::NEG_INFINITY, f64::max),
+            mismatch_s: totals().fold(f64::NEG_INFINITY, f64::max) - totals().fold(f64::INFINITY, f64::min),
+            contour_speed: stage.contour_speed.or_else(|| limits.reduce(f64::min)),
+        })
+    }
+
+    /// How far apart two axes are at the contour speed, in µm; nothing where there is no speed.
+    pub fn mismatch_um(&self) -> Option<f64> {
+        self.contour_speed.map(|speed| self.mismatch_s * speed * 1e6)
+    }
+}
+
+/// Lag of the modes of an axis at low frequencies, `Σ 2ζ/ω`, in seconds.
+pub fn mode_lag_s(axis: &Axis) -> f64 {
+    let modes = axis.modes.iter().map(|axis_mode| axis_mode.mode);
+    modes.map(|mode| 2.0 * mode.damping / mode.omega()).sum()
+}
+
+/// The taps of all axes, equally late where the machine has `[stage]`, as they are where it has none.
+///
+/// # Errors
+/// [`TableError::MatchedDelay`] where a ring buffer cannot hold the delay that an axis is missing.
+pub(super) fn matched(machine: &Machine, digitised: &[Digitised]) -> Result<Vec<(Digitised, AxisDelay)>, TableError> {
+    let sample_hz = machine.clock.sample_hz;
+    let own: Vec<AxisDelay> = machine
+        .axes
+        .iter()
+        .zip(digitised)
+        .map(|(axis, taps)| AxisDelay {
+            shaper_s: taps.mean_delay_samples() / sample_hz,
+            mode_lag_s: mode_lag_s(axis),
+            added_samples: 0.0,
+            added_s: 0.0,
+            rounding_s: 0.0,
+        })
+        .collect();
+    let Some(stage) = machine.stage else {
+        return Ok(digitised.iter().cloned().zip(own).collect());
+    };
+    let slowest = own
+        .iter()
+        .zip(&machine.axes)
+        .max_by(|(a, _), (b, _)| a.designed_s().total_cmp(&b.designed_s()));
+    let Some((slowest, slowest_axis)) = slowest else {
+        return Ok(Vec::new());
+    };
+    let total_s = slowest.designed_s() + stage.extra_delay_s;
+    let axes = machine.axes.iter().zip(digitised).zip(&own);
+    axes.map(|((axis, taps), own)| {
+        let added_s = total_s - own.designed_s();
+        let added_samples = added_s * sample_hz;
+        let later = taps.delayed(added_samples).ok_or_else(|| TableError::MatchedDelay {
+            axis: axis.name.clone(),
+            slowest: slowest_axis.name.clone(),
+            added_samples,
+            found: taps.taps.last().map_or(0.0, |tap| f64::from(tap.delay_samples)) + added_samples.ceil(),
+            sample_hz,
+        })?;
+        let delay = AxisDelay {
+            added_samples,
+            added_s,
+            ..*own
+        };
+        Ok((later, delay))
+    })
+    .collect()
+}

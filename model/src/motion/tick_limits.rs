@@ -1,0 +1,32 @@
+//! What a move may ask for, in counts and ticks: the units of the motion commands.
+
+use super::profile::motion_limits;
+use crate::spec::{Axis, Clock};
+
+/// Limits in counts and ticks.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TickLimits {
+    /// Counts per tick.
+    pub velocity: f64,
+    /// Counts per tick².
+    pub acceleration: f64,
+    /// Counts per tick³.
+    pub jerk: f64,
+}
+
+impl TickLimits {
+    /// From limits per second, second², second³ in units of which there are `counts_per_unit` counts.
+    pub fn new(velocity: f64, acceleration: f64, jerk: f64, counts_per_unit: f64, tick_hz: f64) -> Self {
+        Self {
+            velocity: velocity * counts_per_unit / tick_hz,
+            acceleration: acceleration * counts_per_unit / tick_hz.powi(2),
+            jerk: jerk * counts_per_unit / tick_hz.powi(3),
+        }
+    }
+
+    /// Of an axis: those of its file, else 0.25 m/s, 8 m/s², 400 m/s³.
+    pub fn of_axis(axis: &Axis, clock: &Clock) -> Self {
+        let [velocity, acceleration, jerk] = motion_limits(axis.limits.as_ref());
+        Self::new(velocity, acceleration, jerk, axis.counts_per_unit, clock.sample_hz)
+    }
+}

@@ -1,0 +1,238 @@
+//! `[axis.limits]`: what a move may ask for, and what the supervisor of the axis watches and does.
+//!
+//! Values are in the units of the file. [`crate::control::supervision`] turns them into the words of the hardware, and refuses
+//! what those do not hold. `docs/machine-file.md` has every key with its default.
+
+use super::FixedPoint;
+use super::range::NumberRange;
+use super::table::Table;
+use crate::rtl::axis::{ALWAYS_OFF, Cause};
+use crate::rtl::shaper::WORD_BITS;
+
+/// Positions.
+const POSITION: NumberRange = NumberRange::closed(-1e9, 1e9).unit("m or rad");
+/// Velocity, acceleration and jerk, and distances: far above any machine, finite when multiplied with each other.
+const MOTION: NumberRange = NumberRange::positive(1e9);
+/// Times of the brake and of what lasts too long; 0 where there is none.
+const SECONDS: NumberRange = NumberRange::closed(0.0, 60.0).unit("s");
+/// Times that cannot be 0.
+const LASTING: NumberRange = NumberRange::positive(60.0).unit("s");
+/// Parts of full scale.
+const PART: NumberRange = NumberRange::closed(0.0, 1.0);
+/// Commands above a part of full scale, which the whole is not.
+const PART_BELOW: NumberRange = PART.open_above();
+
+/// Causes of which the file chooses the reaction, with their names there.
+const CHOICES: [(&str, Cause); 13] = [
+    ("drive-lost", Cause::DriveLost),
+    ("limit-plus", Cause::LimitPlus),
+    ("limit-minus", Cause::LimitMinus),
+    ("soft-limit-plus", Cause::SoftLimitPlus),
+    ("soft-limit-minus", Cause::SoftLimitMinus),
+    ("following-error", Cause::FollowingError),
+    ("deviation", Cause::Deviation),
+    ("saturation", Cause::Saturation),
+    ("encoder-lost", Cause::EncoderLost),
+    ("encoder-error", Cause::EncoderError),
+    ("segments", Cause::Segments),
+    ("watchdog", Cause::Watchdog),
+    ("schedule", Cause::Schedule),
+];
+
+/// Causes that switch off where the file does not say: those that leave in doubt what a quick stop needs, which is a drive
+/// that obeys, a position that is true, and a controller that is in time.
+const DEFAULT_OFF: [Cause; 6] = [
+    Cause::DriveLost,
+    Cause::FollowingError,
+    Cause::Deviation,
+    Cause::EncoderLost,
+    Cause::EncoderError,
+    Cause::Schedule,
+];
+
+/// Part of full scale above which an encoder must count, where the file does not say: friction and weight take less.
+const DEFAULT_LOST_COMMAND: f64 = 0.5;
+/// Largest manual duty, where the file does not say.
+const DEFAULT_DIRECT_DUTY: f64 = 0.1;
+
+/// `[axis.limits]`, in the units of the file: metres (or radians) and seconds. [`Limits::default`] is an axis without the
+/// table.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Limits {
+    /// Largest velocity, m/s.
+    pub velocity: Option<f64>,
+    /// Largest acceleration, m/s².
+    pub acceleration: Option<f64>,
+    /// Largest jerk, m/s³.
+    pub jerk: Option<f64>,
+    /// Soft limits of the position, m.
+    pub travel: Option<[f64; 2]>,
+    /// Deceleration of a quick stop, m/s²; else `acceleration`.
+    pub stop_deceleration: Option<f64>,
+    /// Largest distance of the position from the shaped command, m.
+    pub following_error: Option<f64>,
+    /// Largest distance of the motor's position from the scale's, m; only with `[axis.scale]`.
+    pub deviation: Option<f64>,
+    /// How long the command may be clamped, s; 0: not watched.
+    pub saturation_s: f64,
+    /// How long the encoder may stand still under a command, s; 0: not watched.
+    pub encoder_lost_s: f64,
+    /// Part of full scale, 0 to below 1, above which a command must move the encoder. Default 0.5.
+    pub encoder_lost_command: f64,
+    /// How long the host may be silent, s; 0: no watchdog.
+    pub watchdog_s: f64,
+    /// Time from releasing the brake until it is open, s. Default 0.
+    pub brake_release_s: f64,
+    /// Time from applying the brake until it holds, s. Default 0.
+    pub brake_apply_s: f64,
+    /// Pulses of up to this long on the axis's lines are ignored, s. Default 0.
+    pub line_filter_s: f64,
+    /// Word of [`Cause`] bits: 1 switches off, 0 leads to a quick stop. What always switches off is in it.
+    pub off_causes: u16,
+    /// Largest manual duty, as a part of full duty. Default 0.1.
+    pub direct_duty: f64,
+    /// How long a manual duty stands without being asked for again, s.
+    pub direct_hold_s: Option<f64>,
+    /// Largest amplitude of test signals, m.
+    pub excitation: Option<f64>,
+}
+
+impl Default for Limits {
+    fn default() -> Self {
+        Self {
+            velocity: None,
+            acceleration: None,
+            jerk: None,
+            travel: None,
+            stop_deceleration: None,
+            following_error: None,
+            deviation: None,
+            saturation_s: 0.0,
+            encoder_lost_s: 0.0,
+            encoder_lost_command: DEFAULT_LOST_COMMAND,
+            watchdog_s: 0.0,
+            brake_release_s: 0.0,
+            brake_apply_s: 0.0,
+            line_filter_s: 0.0,
+            off_causes: word_of(DEFAULT_OFF),
+            direct_duty: DEFAULT_DIRECT_DUTY,
+            direct_hold_s: None,
+            excitation: None,
+        }
+    }
+}
+
+/// The word with the bits of these causes, and of those that always switch off.
+fn word_of(causes: impl IntoIterator<Item = Cause>) -> u16 {
+    causes.into_iter().fold(ALWAYS_OFF, |word, cause| word | cause.bit())
+}
+
+/// Keys of what moves may ask for: the tools use them without a supervisor.
+const OF_MOVES: [&str; 4] = ["velocity", "acceleration", "jerk", "travel"];
+/// Keys of the supervisor.
+const SUPERVISED: [&str; 14] = [
+    "stop_deceleration",
+    "following_error",
+    "deviation",
+    "saturation_s",
+    "encoder_lost_s",
+    "encoder_lost_command",
+    "watchdog_s",
+    "brake_release_s",
+    "brake_apply_s",
+    "line_filter_s",
+    "off",
+    "direct_duty",
+    "direct_hold_s",
+    "excitation",
+];
+
+/// Reads the limits of an axis; `word` is counts per unit and the format that the travel must fit, where both are valid.
+pub(super) fn read(axis: &Table<'_, '_>, table: &Table<'_, '_>, word: Option<(f64, FixedPoint)>) -> Limits {
+    let keys: Vec<&str> = OF_MOVES.into_iter().chain(SUPERVISED).collect();
+    table.allow(&keys);
+    check_needs(axis, table);
+    let default = Limits::default();
+    let seconds = |key| table.number(key, SECONDS).unwrap_or(0.0);
+    Limits {
+        velocity: table.number("velocity", MOTION),
+        acceleration: table.number("acceleration", MOTION),
+        jerk: table.number("jerk", MOTION),
+        travel: read_travel(table, word),
+        stop_deceleration: table.number("stop_deceleration", MOTION),
+        following_error: table.number("following_error", MOTION),
+        deviation: table.number("deviation", MOTION),
+        saturation_s: seconds("saturation_s"),
+        encoder_lost_s: seconds("encoder_lost_s"),
+        encoder_lost_command: table
+            .number("encoder_lost_command", PART_BELOW)
+            .unwrap_or(default.encoder_lost_command),
+        watchdog_s: seconds("watchdog_s"),
+        brake_release_s: seconds("brake_release_s"),
+        brake_apply_s: seconds("brake_apply_s"),
+        line_filter_s: seconds("line_filter_s"),
+        off_causes: table.choices("off", &CHOICES).map_or(default.off_causes, word_of),
+        direct_duty: table.number("direct_duty", PART).unwrap_or(default.direct_duty),
+        direct_hold_s: table.number("direct_hold_s", LASTING),
+        excitation: table.number("excitation", MOTION),
+    }
+}
+
+/// Checks that what is to be supervised is there.
+fn check_needs(axis: &Table<'_, '_>, table: &Table<'_, '_>) {
+    for key in SUPERVISED.into_iter().filter(|key| table.has(key)) {
+        if !axis.has("controller") {
+            let allowed = format!("{key} on an axis with [axis.controller], which has a supervisor");
+            need(table, key, "[axis.controller]", allowed);
+        } else if key == "deviation" && !axis.has("scale") {
+            let allowed = "deviation on an axis with [axis.scale], from which the motor may deviate";
+            need(table, key, "[axis.scale]", allowed.to_owned());
+        } else if key == "encoder_lost_command" && !table.has("encoder_lost_s") {
+            let allowed = "encoder_lost_command with encoder_lost_s, which switches the monitor on";
+            need(table, key, "`encoder_lost_s`", allowed.to_owned());
+        }
+    }
+}
+
+fn need(table: &Table<'_, '_>, key: &str, missing: &str, allowed: String) {
+    let plain = missing.trim_matches('`');
+    let remedy = format!("add {missing}, or remove `{key}`");
+    table.contradiction(key, format!("{key} without {plain}"), allowed, remedy);
+}
+
+/// Reads the travel, and checks that the word holds it.
+fn read_travel(table: &Table<'_, '_>, word: Option<(f64, FixedPoint)>) -> Option<[f64; 2]> {
+    let travel = table.numbers::<2>("travel", POSITION)?;
+    if travel[0] >= travel[1] {
+        table.refuse("travel", "[low, high] with low below high", "exchange the two limits");
+    } else if let Some((counts_per_unit, format)) = word {
+        check_travel(table, travel, counts_per_unit, format);
+    }
+    Some(travel)
+}
+
+/// Checks that the whole travel fits the position word, and names the next size that holds it.
+fn check_travel(limits: &Table<'_, '_>, travel: [f64; 2], counts_per_unit: f64, format: FixedPoint) {
+    let counts = travel.iter().fold(0.0, |most: f64, position| most.max(position.abs())) * counts_per_unit;
+    let fits = |bits: u32, fraction: u32| counts <= largest_position(bits, fraction);
+    let (bits, fraction) = (format.command_bits, format.command_fraction);
+    if fits(bits, fraction) {
+        return;
+    }
+    let next_bits = WORD_BITS.into_iter().find(|b| *b > bits && fits(*b, fraction));
+    let next_fraction = (0..fraction).rev().find(|f| fits(bits, *f));
+    let remedy = match (next_bits, next_fraction) {
+        (Some(bits), _) => format!("set fixed_point.command_bits = {bits}"),
+        (None, Some(fraction)) => format!("set fixed_point.command_fraction = {fraction}"),
+        (None, None) => "lower counts_per_unit, or shorten the travel".to_owned(),
+    };
+    let found = format!("a travel of up to {counts} counts");
+    let most = largest_position(bits, fraction);
+    let allowed = format!("at most {most} counts in {bits} bits with {fraction} fraction bits; {remedy}");
+    limits.contradiction("travel", found, allowed, remedy);
+}
+
+/// Largest position in counts that a word holds.
+fn largest_position(command_bits: u32, command_fraction: u32) -> f64 {
+    (f64::from(command_bits - 1).exp2() - 1.0) / f64::from(command_fraction).exp2()
+}

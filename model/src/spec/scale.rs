@@ -1,0 +1,46 @@
+//! `[axis.scale]`: a linear scale at the load, read by a second pulse counter.
+
+use super::axis::COUNTS_PER_UNIT;
+use super::table::Table;
+
+/// What the scale's position is for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum ScaleUse {
+    /// It is compared with the motor's; the loop is the motor's.
+    #[default]
+    Monitor,
+    /// The loop's position is the scale's, its velocity the motor's.
+    Position,
+}
+
+impl ScaleUse {
+    /// Every use with its name in the machine file.
+    pub const ALL: [(Self, &str); 2] = [(Self::Monitor, "monitor"), (Self::Position, "position")];
+}
+
+/// `[axis.scale]`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Scale {
+    /// Counts per metre (or radian) of the scale; those of the motor's encoder are the axis's.
+    pub counts_per_unit: f64,
+    /// What it is for. Default: to be compared.
+    pub usage: ScaleUse,
+}
+
+/// Reads the table of an axis; `None` where a value is refused.
+pub(super) fn read(axis: &Table<'_, '_>, table: &Table<'_, '_>) -> Option<Scale> {
+    table.allow(&["counts_per_unit", "use"]);
+    let counts_per_unit = table.required_number("counts_per_unit", COUNTS_PER_UNIT);
+    let word = table.choice("use", &ScaleUse::ALL.map(|(_, name)| name));
+    let usage = ScaleUse::ALL.into_iter().find(|(_, name)| Some(*name) == word);
+    let usage = usage.map_or(ScaleUse::default(), |(usage, _)| usage);
+    if usage == ScaleUse::Position && !axis.has("controller") {
+        let found = "use = \"position\" without [axis.controller]";
+        let allowed = "position on an axis with [axis.controller], whose loop it closes; else monitor";
+        table.contradiction("use", found, allowed, "add [axis.controller], or set use = \"monitor\"");
+    }
+    Some(Scale {
+        counts_per_unit: counts_per_unit?,
+        usage,
+    })
+}

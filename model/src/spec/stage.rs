@@ -1,0 +1,27 @@
+//! `[stage]`: what concerns all axes. Where it is there, their delays are made equal ([`crate::design::matching`]).
+
+use super::range::NumberRange;
+use super::table::Table;
+
+/// Delays.
+const SHORT_S: NumberRange = NumberRange::closed(0.0, 1.0).unit("s");
+/// Speeds.
+const SPEED: NumberRange = NumberRange::positive(1e9).unit("m/s");
+
+/// `[stage]`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stage {
+    /// Delay that every axis gets beyond that of the slowest, s. Default 0.
+    pub extra_delay_s: f64,
+    /// Speed at which the mismatch of the axes is reported, m/s.
+    pub contour_speed: Option<f64>,
+}
+
+/// Reads the table.
+pub(super) fn read(table: &Table<'_, '_>) -> Stage {
+    table.allow(&["extra_delay_s", "contour_speed"]);
+    Stage {
+        extra_delay_s: table.number("extra_delay_s", SHORT_S).unwrap_or(0.0),
+        contour_speed: table.number("contour_speed", SPEED),
+    }
+}

@@ -1,0 +1,25 @@
+//! `[axis.trace]`: the memory that records signals of the axis's loop.
+
+use super::table::Table;
+
+/// Depths that the memory has.
+const SAMPLES: [u32; 4] = [256, 512, 1024, 2048];
+
+/// `[axis.trace]`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Trace {
+    /// Samples that it holds of each signal: 256, 512, 1024 or 2048.
+    pub samples: u32,
+}
+
+/// Reads the table; `None` where a value is refused.
+pub(super) fn read(table: &Table<'_, '_>) -> Option<Trace> {
+    let list = SAMPLES.map(|samples| samples.to_string()).join(", ");
+    table.allow(&["samples"]);
+    table.require("samples", &list);
+    let samples = table.integer("samples", 1, u32::MAX)?;
+    if !SAMPLES.contains(&samples) {
+        table.refuse("samples", list, "choose one of the list");
+    }
+    Some(Trace { samples })
+}
