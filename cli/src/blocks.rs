@@ -5,13 +5,14 @@ use crate::command::{self, Words};
 use crate::control::AxisControl;
 use crate::failure::Failure;
 use posicast_hdl::machine::AxisShaper;
+use posicast_model::control;
 use posicast_model::rtl::cascade::CascadeConfig;
 use posicast_model::rtl::component::{Component, ComponentError};
 use posicast_model::rtl::divider::DividerConfig;
-use posicast_model::rtl::pwm::{ActiveLow, Mode, PwmConfig, PwmConfigError};
+use posicast_model::rtl::pwm::{ActiveLow, PwmConfig};
 use posicast_model::rtl::registers::RegisterMap;
 use posicast_model::rtl::shaper::{MOTION_WORD_BITS, Motion, ShaperConfig};
-use posicast_model::spec::{Axis, Machine, Pwm, PwmMode};
+use posicast_model::spec::{Axis, Machine};
 use posicast_testbench::blocks::{
     AxisBlock, Block, CascadeBlock, ComponentBlock, DividerBlock, MachineShapers, PulseCounterBlock, PwmBlock,
     RegistersBlock, SegmentsBlock, ShaperBlock, SlidingModeBlock,
@@ -125,9 +126,10 @@ pub(crate) fn components(
             of_axis.push(Component::pulse_counter(divider, encoder.filter_clocks).map_err(refused)?);
         }
         if let Some(pwm) = &axis.pwm {
-            let config = pwm_config(machine, pwm).map_err(|error| Failure::because(error).in_file(path))?;
+            let config =
+                control::pwm_config(pwm, &machine.clock).map_err(|error| Failure::because(error).in_file(path))?;
             let period_clocks = pwm.period_clocks(&machine.clock);
-            of_axis.push(Component::pwm(config, hardware_mode(pwm.mode), period_clocks).map_err(refused)?);
+            of_axis.push(Component::pwm(config, control::pwm_mode(pwm.mode), period_clocks).map_err(refused)?);
         }
         if let Some(control) = control {
             let (settings, law) = (&control.derived.settings, control.derived.law);
@@ -142,16 +144,6 @@ pub(crate) fn components(
     Ok(components)
 }
 
-/// The mode's register value.
-fn hardware_mode(mode: PwmMode) -> Mode {
-    match mode {
-        PwmMode::Direction => Mode::Direction,
-        PwmMode::HalfBridge => Mode::HalfBridge,
-        PwmMode::FullBridge => Mode::Unipolar,
-        PwmMode::LockedAntiphase => Mode::Locked,
-    }
-}
-
 /// The PWMs of the machine, each with the axes that have one like it; one of its own where no axis has any.
 fn pwms(machine: &Machine, path: &Path) -> Result<Vec<(PwmConfig, String)>, Failure> {
     let mut found: Vec<(PwmConfig, String)> = Vec::new();
@@ -159,7 +151,7 @@ fn pwms(machine: &Machine, path: &Path) -> Result<Vec<(PwmConfig, String)>, Fail
         let Some(pwm) = &axis.pwm else {
             continue;
         };
-        let config = pwm_config(machine, pwm).map_err(|error| Failure::because(error).in_file(path))?;
+        let config = control::pwm_config(pwm, &machine.clock).map_err(|error| Failure::because(error).in_file(path))?;
         match found.iter_mut().find(|(other, _)| *other == config) {
             Some((_, axes)) => {
                 axes.push_str(", ");
@@ -174,24 +166,6 @@ fn pwms(machine: &Machine, path: &Path) -> Result<Vec<(PwmConfig, String)>, Fail
         found.push((config, "alone".to_owned()));
     }
     Ok(found)
-}
-
-/// What is fixed in an axis's PWM: all pins have one polarity, and what the file asks for is the least that a register takes.
-fn pwm_config(machine: &Machine, pwm: &Pwm) -> Result<PwmConfig, PwmConfigError> {
-    let low = pwm.active_low;
-    let active_low = ActiveLow {
-        a_high: low,
-        a_low: low,
-        b_high: low,
-        b_low: low,
-    };
-    // The hardware has at least one clock of each.
-    let floor = |clocks: u32| u64::from(clocks.max(1));
-    let (dead_time, minimum_pulse) = (
-        pwm.dead_time_clocks(&machine.clock),
-        pwm.minimum_pulse_clocks(&machine.clock),
-    );
-    PwmConfig::new(active_low, floor(dead_time), floor(minimum_pulse))
 }
 
 /// The names of the axes that have something, or `alone` where none has it.

@@ -21,6 +21,7 @@ pub mod segments;
 pub mod setting_banks;
 pub mod shaper;
 pub mod sliding_mode;
+pub mod stage;
 pub mod time_base;
 pub mod word;
 
