@@ -236,8 +236,13 @@ impl Component {
 
     /// The model of the whole, after reset. `seed` gives the arbitrary contents of its memories.
     pub fn model(&self, seed: u64) -> Composed {
-        let blocks = self.blocks.iter().map(|block| block.model(&self.map, seed));
-        Composed::new(self.composition.clone(), blocks.collect())
+        Composed::new(self.composition.clone(), self.block_models(seed))
+    }
+
+    /// The models of its blocks, in order, after reset.
+    pub fn block_models(&self, seed: u64) -> Vec<Box<dyn Moore>> {
+        let models = self.blocks.iter().map(|block| block.model(&self.map, seed));
+        models.collect()
     }
 }
 
