@@ -37,8 +37,8 @@ pub enum OutputKind {
 ///
 /// That is what lets blocks be [composed](super::composition) without looking for an order.
 pub trait Moore: ClockedBlock {
-    /// Writes what the outputs show now, in port order; [combinational](OutputKind::Combinational) ones as if all inputs
-    /// were 0.
+    /// Writes what the outputs show now, in port order. What it writes for [combinational](OutputKind::Combinational) ones
+    /// means nothing.
     fn show(&self, outputs: &mut [u64]);
 
     /// How the output of that name gets its value; always the same.
@@ -59,7 +59,7 @@ pub trait Moore: ClockedBlock {
         0
     }
 
-    /// So many quiet clocks at once, at most [`quiet_clocks`](Self::quiet_clocks). `inputs` are those of the last of them:
+    /// So many quiet clocks at once, from 1 to [`quiet_clocks`](Self::quiet_clocks). `inputs` are those of the last of them:
     /// inputs that the block ignores may have changed meanwhile. By default nothing: no register changes.
     fn pass(&mut self, _inputs: &[u64], _clocks: u64) {}
 

@@ -35,6 +35,7 @@ mod sliding_mode;
 pub(crate) use self::joined::Wiring;
 pub use self::joined::{Block, Joined};
 
+use super::Moore;
 use super::composition::{Composed, Composition, CompositionError};
 use super::divider::{DIVISION_CLOCKS, DividerConfig};
 use super::pwm::{Mode, PwmConfig};
@@ -211,5 +212,10 @@ impl Component {
     /// The model of the whole, after reset. `seed` gives the arbitrary contents of its memories.
     pub fn model(&self, seed: u64) -> Composed {
         self.joined.model(seed)
+    }
+
+    /// The models of its blocks, in order, after reset.
+    pub fn block_models(&self, seed: u64) -> Vec<Box<dyn Moore>> {
+        self.blocks().map(|block| block.model(seed)).collect()
     }
 }
