@@ -3,7 +3,7 @@
 //! What is in a component and how it is joined says `posicast_model::rtl::component`; here are the modules and the top
 //! around them.
 
-use crate::emit::{EmitError, Header, Module, connect};
+use crate::emit::{Cause, EmitError, Header, Module, connect, print};
 use crate::{
     axis, divider, divider_share, drive_command, group, pulse_counter, pwm, registers, sample_select, schedule,
     segments, setting_banks, shaper, sliding_mode, time_base,
@@ -32,9 +32,7 @@ fn joined(whole: &Joined, top: &str, stage: &str, header: &Header) -> Result<Vec
         let of_block = self::block(block, if block.is_common() { stage } else { top }, stage)?;
         tops.extend(of_block.last().cloned());
         for module in of_block {
-            if !modules.contains(&module) {
-                modules.push(module);
-            }
+            share(&mut modules, module, top)?;
         }
     }
     modules.push(connect(
@@ -44,6 +42,26 @@ fn joined(whole: &Joined, top: &str, stage: &str, header: &Header) -> Result<Vec
         &tops.iter().collect::<Vec<_>>(),
     )?);
     Ok(modules)
+}
+
+/// Adds a module, unless it is there: parts that several blocks use, and blocks that several axes do, are one module.
+fn share(modules: &mut Vec<Module>, module: Module, top: &str) -> Result<(), EmitError> {
+    let Some(there) = modules.iter_mut().find(|there| there.name == module.name) else {
+        modules.push(module);
+        return Ok(());
+    };
+    if there.text != module.text {
+        let [kept, other] = [&there.text, &module.text].map(|text| print::without_part_of(text));
+        if kept != other {
+            let cause = Cause::NameCollision {
+                name: module.name.clone(),
+                other: "another module".to_owned(),
+            };
+            return Err(EmitError::new(top, &module.name, cause));
+        }
+        there.text = kept;
+    }
+    Ok(())
 }
 
 /// The modules of one block, its top last.

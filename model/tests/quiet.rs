@@ -7,10 +7,13 @@ mod random_inputs;
 
 use posicast_model::rtl::axis::Axis;
 use posicast_model::rtl::divider::{Divider, DividerConfig};
+use posicast_model::rtl::divider_share::DividerShare;
+use posicast_model::rtl::group::Group;
 use posicast_model::rtl::pulse_counter::PulseCounter;
 use posicast_model::rtl::pwm::{ActiveLow, Pwm, PwmConfig};
 use posicast_model::rtl::registers::{RegisterBank, RegisterMap, maps};
 use posicast_model::rtl::sample_select::SampleSelect;
+use posicast_model::rtl::schedule::{Schedule, ScheduleConfig};
 use posicast_model::rtl::segments::Segments;
 use posicast_model::rtl::setting_banks::SettingBanks;
 use posicast_model::rtl::shaper::{Motion, Shaper, ShaperConfig};
@@ -158,6 +161,13 @@ fn blocks() -> Vec<Tried> {
         tried("pwm", PWM, move || Pwm::new(&pwm)),
         tried("sliding_mode", &[], SlidingMode::new),
         tried("axis", AXIS, Axis::new),
+        tried("schedule", &[("tick", RARE), ("rst", RARE)], || {
+            Schedule::new(&ScheduleConfig::new(40).unwrap())
+        }),
+        tried("divider_share", &[("divide", RARE), ("rst", RARE)], || {
+            DividerShare::new(3)
+        }),
+        tried("group", &[("start", RARE), ("rst", RARE)], || Group::new(3)),
     ]
 }
 

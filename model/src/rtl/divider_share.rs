@@ -14,7 +14,7 @@
 //! - A `divide` while divisions run is ignored: the counters then flag a missed velocity.
 
 use super::divider::{DIVISION_CLOCKS, ELAPSED_BITS, STEP_BITS};
-use super::{ClockedBlock, Direction, Moore, Port, StepError};
+use super::{ClockedBlock, Direction, FOREVER, Moore, Port, StepError};
 
 /// Most channels: four axes, each with a scale.
 pub const MOST_CHANNELS: usize = 8;
@@ -100,6 +100,18 @@ impl Moore for DividerShare {
         for (output, value) in outputs.iter_mut().zip(shown) {
             *output = value;
         }
+    }
+
+    fn quiet_clocks(&self, inputs: &[u64]) -> u64 {
+        let called = [0, 1, 2 + 2 * self.channels].iter().any(|at| inputs[*at] & 1 != 0);
+        match called || self.start || self.valid.is_some() {
+            true => 0,
+            false => FOREVER,
+        }
+    }
+
+    fn ignores(&self, input: &str) -> bool {
+        input.starts_with("steps_of") || input.starts_with("elapsed_of")
     }
 }
 

@@ -10,7 +10,7 @@
 //! - `group_stop_k`: another axis wants all to stop. `group_emergency_stop`: any axis has its emergency stop. Both a clock late.
 //! - A start of no axis, or of one that there is not, is refused.
 
-use super::{ClockedBlock, Direction, Moore, Port, StepError};
+use super::{ClockedBlock, Direction, FOREVER, Moore, Port, StepError};
 
 /// Most axes of a stage.
 pub const MOST_AXES: usize = 4;
@@ -86,6 +86,24 @@ impl Moore for Group {
             *output = value;
         }
     }
+
+    fn quiet_clocks(&self, inputs: &[u64]) -> u64 {
+        if (inputs[0] | inputs[1]) & 1 != 0 {
+            return 0;
+        }
+        let mut next = self.clone();
+        next.clock(None, 0, word(inputs, self.axes, 1), word(inputs, self.axes, 2));
+        let shown = |group: &Self| (group.starts, group.stops, group.emergency_stop, group.refused);
+        match shown(&next) == shown(self) {
+            true => FOREVER,
+            false => 0,
+        }
+    }
+}
+
+/// One bit per axis of the inputs in that place of the list.
+fn word(inputs: &[u64], axes: usize, place: usize) -> u64 {
+    (0..axes).fold(0, |word, axis| word | (inputs[3 + place * axes + axis] & 1) << axis)
 }
 
 impl ClockedBlock for Group {
@@ -109,9 +127,13 @@ impl ClockedBlock for Group {
             *self = Self::new(axes);
             return Ok(());
         }
-        let word = |at: usize| (0..axes).fold(0, |word, axis| word | (inputs[3 + at * axes + axis] & 1) << axis);
         let start = (inputs[1] & 1 != 0).then_some(inputs[2] & ((1 << MOST_AXES) - 1));
-        self.clock(start, word(0), word(1), word(2));
+        self.clock(
+            start,
+            word(inputs, axes, 0),
+            word(inputs, axes, 1),
+            word(inputs, axes, 2),
+        );
         Ok(())
     }
 }

@@ -9,7 +9,7 @@
 //! Shapers and divider take different times from tick to tick, depending on tables; the controllers start when the longest
 //! is over, always in the same clock. A tick that comes earlier begins anew.
 
-use super::{ClockedBlock, Direction, Moore, Port, StepError};
+use super::{ClockedBlock, Direction, FOREVER, Moore, Port, StepError};
 
 /// Bits of the counter.
 pub const SCHEDULE_BITS: u32 = 17;
@@ -97,6 +97,21 @@ impl Moore for Schedule {
     fn show(&self, outputs: &mut [u64]) {
         if let [control] = outputs {
             *control = self.control.into();
+        }
+    }
+
+    fn quiet_clocks(&self, inputs: &[u64]) -> u64 {
+        let called = inputs.iter().any(|input| input & 1 != 0);
+        match self.since {
+            _ if called || self.control => 0,
+            0 => FOREVER,
+            since => u64::from(self.control_clocks - since - 1),
+        }
+    }
+
+    fn pass(&mut self, _inputs: &[u64], clocks: u64) {
+        if self.since != 0 {
+            self.since += clocks as u32;
         }
     }
 }

@@ -164,7 +164,9 @@ pub(super) fn join(axis: &StageAxis, tick_clocks: u32) -> Result<Joined, Composi
     let mut inputs = names(&[&SHARED, &FROM_STAGE, INPUT_PINS]);
     inputs.extend(driven);
     let mut outputs = names(&[&TO_STAGE, OUTPUT_PINS]);
-    outputs.extend(read);
+    let more = read.into_iter().filter(|name| !outputs.contains(name));
+    let more: Vec<String> = more.collect();
+    outputs.extend(more);
     let wiring = Wiring {
         part: Box::new(|block, part| wire(axis, tick_clocks, block, part)),
         inputs,
@@ -213,7 +215,6 @@ fn wire(axis: &StageAxis, tick_clocks: u32, block: &Block, part: Part) -> Part {
             .tied("filter_clocks", watched.filter_clocks.into())
             .tied("brake_release_ticks", watched.brake_release_ticks.into())
             .tied("brake_apply_ticks", watched.brake_apply_ticks.into())
-            .tied("settle_ticks", watched.settle_ticks.into())
             .tied("deviation_limit", 0)
             .tied("deviation", 0)
             .tied("saturation_ticks", watched.saturation_ticks.into())
