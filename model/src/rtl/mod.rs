@@ -9,6 +9,7 @@ pub mod component;
 pub mod composition;
 pub mod divider;
 pub mod drive_command;
+pub mod linear_scale;
 pub mod pulse_counter;
 pub mod pwm;
 pub mod registers;
