@@ -20,6 +20,8 @@
 //! | [`segments`] | the command FIFO: segments of constant jerk to position, velocity and acceleration |
 //! | [`pwm`] | duty to the gates of a bridge, with dead time and fault path |
 //! | [`axis`] | the supervisor of an axis: states, limits, brake, faults |
+//! | [`drive_command`] | what the PWM is told: the controller's duty, or a manual one in direct mode |
+//! | [`linear_scale`] | a motor's counts against a linear scale's: deviation, position, velocity |
 //! | [`machine`] | a machine's top module: the blocks of its axes, side by side |
 //! | [`emit`](mod@emit) | the typed emitter: RustHDL's syntax tree as Verilog |
 
@@ -28,8 +30,11 @@ pub mod cascade;
 pub mod component;
 pub mod divider;
 pub mod divider_share;
+pub mod drive_command;
+pub mod emit;
 pub mod emit;
 pub mod group;
+pub mod linear_scale;
 pub mod machine;
 pub(crate) mod prelude;
 pub(crate) mod prim;

@@ -1,7 +1,9 @@
 //! The list of what is measured: a new block is a new row here.
 
 use posicast_hdl::emit::Module;
-use posicast_hdl::{axis, cascade, divider, pulse_counter, pwm, registers, segments, shaper, sliding_mode};
+use posicast_hdl::{
+    axis, cascade, divider, drive_command, pulse_counter, pwm, registers, segments, shaper, sliding_mode,
+};
 use posicast_model::rtl::cascade::CascadeConfig;
 use posicast_model::rtl::component::Component;
 use posicast_model::rtl::divider::DividerConfig;
@@ -94,6 +96,14 @@ pub(crate) fn rows() -> Result<Vec<Row>, Box<dyn Error>> {
             budget: None,
             in_xy_stage: 2,
             note: "Comparisons of 32 bits: two soft limits, three sizes against their limits; each is a carry chain.",
+        },
+        Row {
+            block: "drive_command",
+            size: "",
+            modules: drive_command::emit("")?,
+            budget: None,
+            in_xy_stage: 2,
+            note: "",
         },
         Row {
             block: "shaper",

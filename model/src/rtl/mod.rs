@@ -11,6 +11,7 @@ pub mod divider;
 pub mod divider_share;
 pub mod drive_command;
 pub mod group;
+pub mod linear_scale;
 mod moore;
 pub mod pulse_counter;
 pub mod pwm;
