@@ -8,6 +8,8 @@ pub mod cascade;
 pub mod component;
 pub mod composition;
 pub mod divider;
+pub mod encoder_generator;
+pub mod excitation;
 pub mod pulse_counter;
 pub mod pwm;
 pub mod registers;
