@@ -19,6 +19,8 @@
 //! | [`component`] | the blocks that stand alone, each with its registers on a bus |
 //! | [`segments`] | the command FIFO: segments of constant jerk to position, velocity and acceleration |
 //! | [`pwm`] | duty to the gates of a bridge, with dead time and fault path |
+//! | [`encoder_generator`] | quadrature at a set rate in the place of the encoder's pins |
+//! | [`excitation`] | a test signal on the position reference |
 //! | [`axis`] | the supervisor of an axis: states, limits, brake, faults |
 //! | [`machine`] | a machine's top module: the blocks of its axes, side by side |
 //! | [`emit`](mod@emit) | the typed emitter: RustHDL's syntax tree as Verilog |
@@ -28,6 +30,8 @@ pub mod cascade;
 pub mod component;
 pub mod divider;
 pub mod emit;
+pub mod encoder_generator;
+pub mod excitation;
 pub mod machine;
 pub(crate) mod prelude;
 pub(crate) mod prim;
