@@ -19,6 +19,8 @@
 //! | [`component`] | the blocks that stand alone, each with its registers on a bus |
 //! | [`segments`] | the command FIFO: segments of constant jerk to position, velocity and acceleration |
 //! | [`pwm`] | duty to the gates of a bridge, with dead time and fault path |
+//! | [`encoder_generator`] | quadrature at a set rate in the place of the encoder's pins |
+//! | [`excitation`] | a test signal on the position reference |
 //! | [`axis`] | the supervisor of an axis: states, limits, brake, faults |
 //! | [`drive_command`] | what the PWM is told: the controller's duty, or a manual one in direct mode |
 //! | [`linear_scale`] | a motor's counts against a linear scale's: deviation, position, velocity |
@@ -33,6 +35,8 @@ pub mod divider_share;
 pub mod drive_command;
 pub mod emit;
 pub mod emit;
+pub mod encoder_generator;
+pub mod excitation;
 pub mod group;
 pub mod linear_scale;
 pub mod machine;

@@ -10,6 +10,8 @@ pub mod composition;
 pub mod divider;
 pub mod divider_share;
 pub mod drive_command;
+pub mod encoder_generator;
+pub mod excitation;
 pub mod group;
 pub mod linear_scale;
 mod moore;
