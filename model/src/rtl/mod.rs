@@ -17,6 +17,7 @@ pub mod setting_banks;
 pub mod shaper;
 pub mod sliding_mode;
 pub mod time_base;
+pub mod trace;
 pub mod word;
 
 /// Direction of a port, seen from the block.
