@@ -20,6 +20,7 @@
 //! | [`segments`] | the command FIFO: segments of constant jerk to position, velocity and acceleration |
 //! | [`pwm`] | duty to the gates of a bridge, with dead time and fault path |
 //! | [`axis`] | the supervisor of an axis: states, limits, brake, faults |
+//! | [`trace`] | a memory of what an axis did, tick by tick, around a trigger |
 //! | [`machine`] | a machine's top module: the blocks of its axes, side by side |
 //! | [`emit`](mod@emit) | the typed emitter: RustHDL's syntax tree as Verilog |
 
@@ -41,5 +42,6 @@ pub mod shaper;
 mod simulation;
 pub mod sliding_mode;
 pub mod time_base;
+pub mod trace;
 
 pub use simulation::SimulationError;
