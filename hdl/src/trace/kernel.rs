@@ -56,8 +56,8 @@ pub(super) struct Trace<const A: usize, const R: usize> {
     rows_q: Dff<Bits<R>>,
     missed_q: Dff<Bit>,
     done_q: Dff<Bit>,
+    select: Dff<Bits<4>>,
 
-    select: Signal<Local, Bits<4>>,
     end_rows: Signal<Local, Bits<R>>,
     full: Signal<Local, Bit>,
     waits: Signal<Local, Bit>,
@@ -134,7 +134,7 @@ impl<const A: usize, const R: usize> Default for Trace<A, R> {
             rows_q: Dff::default(),
             missed_q: Dff::default(),
             done_q: Dff::default(),
-            select: Signal::default(),
+            select: Dff::default(),
             end_rows: Signal::default(),
             full: Signal::default(),
             waits: Signal::default(),
@@ -188,7 +188,8 @@ impl<const A: usize, const R: usize> Logic for Trace<A, R> {
             skip,
             rows_q,
             missed_q,
-            done_q
+            done_q,
+            select
         );
         self.selector.clk.next = self.clk.val();
         self.selector.rst.next = self.rst.val();
@@ -242,21 +243,21 @@ impl<const A: usize, const R: usize> Logic for Trace<A, R> {
             }
         }
 
-        comment!("One signal after the other");
-        self.select.next = self.select_3.val();
+        comment!("Which signal the next clock takes");
+        self.select.d.next = self.select_3.val();
+        if self.ready.val() {
+            self.select.d.next = self.trigger_select.val();
+        }
         if self.phase.q.val() == self.trigger_phase.val() {
-            self.select.next = self.trigger_select.val();
+            self.select.d.next = self.select_0.val();
         }
         if self.compares.val() {
-            self.select.next = self.select_0.val();
+            self.select.d.next = self.select_1.val();
         }
         if self.phase.q.val() == self.store_phase.val() {
-            self.select.next = self.select_1.val();
+            self.select.d.next = self.select_2.val();
         }
-        if self.phase.q.val() == self.second_phase.val() {
-            self.select.next = self.select_2.val();
-        }
-        self.selector.select.next = self.select.val();
+        self.selector.select.next = self.select.q.val();
         for i in 0..16 {
             self.selector.signal[i].next = self.signal[i].val();
         }

@@ -84,11 +84,12 @@ impl<const A: usize> Logic for TraceMemory<A> {
             self.oldest.d.next = self.no_address.val();
         }
 
-        comment!("Only words of the trace are shown");
+        comment!("Only words of the trace are shown; full, the");
+        comment!("difference is 0, and the OR is a bit less logic");
         self.between.next = self.pointer.q.val() - self.oldest.q.val();
         self.words.next = bit_cast::<12, A>(self.between.val());
         if self.full.val() {
-            self.words.next = self.all_words.val();
+            self.words.next = bit_cast::<12, A>(self.between.val()) | self.all_words.val();
         }
         self.valid.d.next = !self.hidden.val() & (bit_cast::<12, 11>(self.read_address.val()) < self.words.val());
         self.ram.read_address.next = self.oldest.q.val() + bit_cast::<A, 11>(self.read_address.val());

@@ -20,6 +20,9 @@ pub(super) struct Trigger {
     was_above: Dff<Bit>,
     kept_event: Dff<Bit>,
 
+    wide_value: Signal<Local, Signed<33>>,
+    wide_level: Signal<Local, Signed<33>>,
+    difference: Signal<Local, Signed<33>>,
     above: Signal<Local, Bit>,
 
     rising_mode: Constant<Bits<2>>,
@@ -42,6 +45,9 @@ impl Default for Trigger {
             has_row: Dff::default(),
             was_above: Dff::default(),
             kept_event: Dff::default(),
+            wide_value: Signal::default(),
+            wide_level: Signal::default(),
+            difference: Signal::default(),
             above: Signal::default(),
             rising_mode: Constant::new(from_u64(1)),
             falling_mode: Constant::new(from_u64(2)),
@@ -57,8 +63,13 @@ impl Logic for Trigger {
         comment!("@about Does the trigger come with this row?");
         dff_setup!(self, clk, has_row, was_above, kept_event);
 
+        comment!("At or above: what >= says, in less logic");
+        self.wide_value.next = signed_bit_cast::<33, 32>(self.value.val());
+        self.wide_level.next = signed_bit_cast::<33, 32>(self.level.val());
+        self.difference.next = self.wide_value.val() - self.wide_level.val();
+        self.above.next = !self.difference.val().get_bit(32);
+
         comment!("From row to row; the first has none before it");
-        self.above.next = self.value.val() >= self.level.val();
         self.comes.next = true;
         if self.mode.val() == self.rising_mode.val() {
             self.comes.next = self.has_row.q.val() & self.above.val() & !self.was_above.q.val();

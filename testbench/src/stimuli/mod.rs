@@ -25,6 +25,7 @@ mod registers;
 mod segments;
 mod sliding_mode;
 mod table;
+mod trace;
 
 pub use self::axis::AxisRandom;
 pub use self::axis_coverage::{AxisCoverage, AxisSafety};
@@ -41,6 +42,7 @@ pub use self::random::Random;
 pub use self::registers::{ComponentRandom, RegistersCoverage, RegistersRandom};
 pub use self::segments::{SegmentsCoverage, SegmentsRandom};
 pub use self::sliding_mode::{SlidingModeCoverage, SlidingModeRandom};
+pub use self::trace::{TraceCoverage, TraceRandom};
 
 /// Makes the inputs of the next clock.
 pub trait Stimuli {

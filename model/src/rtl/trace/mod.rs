@@ -85,6 +85,8 @@ struct Registers {
     pre_trigger: u16,
     /// Strobes to leave out.
     skip: u16,
+    /// Which signal the next clock takes.
+    select: u8,
     /// What was taken of the signals in the clock before.
     taken: i32,
     /// Whether the trigger's signal was at or above the level in the row before, if there was one.
@@ -211,7 +213,14 @@ impl Trace {
         registers.halting |= inputs.halt;
         let event = registers.event;
         registers.event |= inputs.trigger_event;
-        let signal = |select: u8| inputs.signal[usize::from(select & 15)];
+        let taken = inputs.signal[usize::from(registers.select & 15)];
+        registers.select = match phase {
+            Phase::Ready => inputs.trigger_select,
+            Phase::TakeTrigger => inputs.select[0],
+            Phase::Compare => inputs.select[1],
+            Phase::Store(0) => inputs.select[2],
+            Phase::Store(_) => inputs.select[3],
+        };
         match phase {
             Phase::Ready if !registers.active => {}
             Phase::Ready if ends => {
@@ -225,13 +234,13 @@ impl Trace {
                 registers.phase = Phase::TakeTrigger;
             }
             Phase::TakeTrigger => {
-                registers.taken = signal(inputs.trigger_select);
+                registers.taken = taken;
                 registers.phase = Phase::Compare;
             }
             Phase::Compare => {
                 registers.event = inputs.trigger_event;
                 self.compare(inputs, event);
-                self.registers.taken = signal(inputs.select[0]);
+                self.registers.taken = taken;
                 self.registers.phase = Phase::Store(0);
             }
             Phase::Store(word) => {
@@ -241,7 +250,7 @@ impl Trace {
                     registers.phase = Phase::Ready;
                     self.add_row();
                 } else {
-                    registers.taken = signal(inputs.select[place + 1]);
+                    registers.taken = taken;
                     registers.phase = Phase::Store(word + 1);
                 }
             }
