@@ -12,10 +12,11 @@ use posicast_model::rtl::divider::DividerConfig;
 use posicast_model::rtl::pwm::{ActiveLow, PwmConfig};
 use posicast_model::rtl::registers::RegisterMap;
 use posicast_model::rtl::shaper::{MOTION_WORD_BITS, Motion, ShaperConfig};
+use posicast_model::rtl::trace::TraceConfig;
 use posicast_model::spec::{Axis, Machine};
 use posicast_testbench::blocks::{
     AxisBlock, Block, CascadeBlock, ComponentBlock, DividerBlock, DriveCommandBlock, MachineShapers, PulseCounterBlock,
-    PwmBlock, RegistersBlock, SegmentsBlock, ShaperBlock, SlidingModeBlock,
+    PwmBlock, RegistersBlock, SegmentsBlock, ShaperBlock, SlidingModeBlock, TraceBlock,
 };
 use std::path::Path;
 
@@ -27,6 +28,8 @@ const CASCADE_DELAYS_SAMPLES: [u32; 4] = [26, 31, 38, 62];
 const CASCADE_WORD_BITS: u32 = 32;
 /// Dead time and minimum pulse of the PWM that is compared where no axis has one.
 const PWM_FLOORS_CLOCKS: [u64; 2] = [2, 1];
+/// Words of the trace memory that is compared.
+const TRACE_SAMPLES: u64 = 1024;
 /// The shaper for motion that is compared where no axis has one: position, velocity and acceleration share a table.
 const MOTION: Motion = Motion {
     channels: 3,
@@ -71,6 +74,8 @@ pub(crate) fn others(
     blocks.push(Box::new(SegmentsBlock::new(name, "alone")));
     blocks.push(Box::new(AxisBlock::new(name, "alone")));
     blocks.push(Box::new(DriveCommandBlock::new(name, "alone")));
+    let trace = TraceConfig::new(TRACE_SAMPLES).map_err(Failure::because)?;
+    blocks.push(Box::new(TraceBlock::new(trace, name)));
     let components = components(machine, shapers, controllers, path)?;
     let mut maps: Vec<&RegisterMap> = Vec::new();
     for map in components.iter().map(|component| component.component().map()) {

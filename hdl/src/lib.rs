@@ -24,6 +24,7 @@
 //! | [`axis`] | the supervisor of an axis: states, limits, brake, faults |
 //! | [`drive_command`] | what the PWM is told: the controller's duty, or a manual one in direct mode |
 //! | [`linear_scale`] | a motor's counts against a linear scale's: deviation, position, velocity |
+//! | [`trace`] | a memory of what an axis did, tick by tick, around a trigger |
 //! | [`machine`] | a machine's top module: the blocks of its axes, side by side |
 //! | [`emit`](mod@emit) | the typed emitter: RustHDL's syntax tree as Verilog |
 
@@ -53,5 +54,6 @@ pub mod shaper;
 mod simulation;
 pub mod sliding_mode;
 pub mod time_base;
+pub mod trace;
 
 pub use simulation::SimulationError;

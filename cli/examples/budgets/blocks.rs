@@ -2,7 +2,7 @@
 
 use posicast_hdl::emit::Module;
 use posicast_hdl::{
-    axis, cascade, divider, drive_command, pulse_counter, pwm, registers, segments, shaper, sliding_mode,
+    axis, cascade, divider, drive_command, pulse_counter, pwm, registers, segments, shaper, sliding_mode, trace,
 };
 use posicast_model::rtl::cascade::CascadeConfig;
 use posicast_model::rtl::component::Component;
@@ -10,6 +10,7 @@ use posicast_model::rtl::divider::DividerConfig;
 use posicast_model::rtl::pwm::{ActiveLow, Mode, PwmConfig};
 use posicast_model::rtl::shaper::{Motion, ShaperConfig};
 use posicast_model::rtl::sliding_mode::{Law, Settings};
+use posicast_model::rtl::trace::TraceConfig;
 use posicast_model::taps::{Tap, TapTable};
 use std::error::Error;
 
@@ -104,6 +105,15 @@ pub(crate) fn rows() -> Result<Vec<Row>, Box<dyn Error>> {
             budget: None,
             in_xy_stage: 2,
             note: "",
+        },
+        Row {
+            block: "trace",
+            size: "1024 samples",
+            modules: trace::emit(&TraceConfig::new(1024)?, "")?,
+            budget: None,
+            in_xy_stage: 0,
+            note: "320 LUT choose one of 16 signals of 32 bits; signals that are tied go. Not in the sum: `[axis.trace]` is an \
+                   option.",
         },
         Row {
             block: "shaper",

@@ -26,6 +26,7 @@ pub mod shaper;
 pub mod sliding_mode;
 pub mod stage;
 pub mod time_base;
+pub mod trace;
 pub mod word;
 
 pub use moore::{FOREVER, Moore, OutputKind};

@@ -29,6 +29,7 @@ mod segments;
 mod shaper;
 mod sliding_mode;
 mod sources;
+mod trace;
 
 pub use self::axis::AxisBlock;
 pub use self::cascade::CascadeBlock;
@@ -42,6 +43,7 @@ pub use self::segments::SegmentsBlock;
 pub use self::shaper::{MachineShapers, ShaperBlock};
 pub use self::sliding_mode::SlidingModeBlock;
 pub use self::sources::{Sources, rusthdl};
+pub use self::trace::TraceBlock;
 
 use posicast_hdl::SimulationError;
 use posicast_hdl::emit::{EmitError, Module};

@@ -26,6 +26,7 @@ mod registers;
 mod segments;
 mod sliding_mode;
 mod table;
+mod trace;
 
 pub use self::axis::AxisRandom;
 pub use self::axis_coverage::{AxisCoverage, AxisSafety};
@@ -43,6 +44,7 @@ pub use self::random::Random;
 pub use self::registers::{ComponentRandom, RegistersCoverage, RegistersRandom};
 pub use self::segments::{SegmentsCoverage, SegmentsRandom};
 pub use self::sliding_mode::{SlidingModeCoverage, SlidingModeRandom};
+pub use self::trace::{TraceCoverage, TraceRandom};
 
 /// Makes the inputs of the next clock.
 pub trait Stimuli {
