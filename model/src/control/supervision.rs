@@ -232,8 +232,8 @@ impl Words<'_> {
             key: value.key,
             found: value.found,
             unit: value.unit,
-            smallest: readable(smallest / value.scale, up),
-            largest: readable(largest / value.scale, down),
+            smallest: readable(smallest / value.scale, f64::ceil),
+            largest: readable(largest / value.scale, f64::floor),
             reason,
         })
     }
@@ -293,8 +293,8 @@ impl Words<'_> {
                     key: "axis.limits.travel",
                     found,
                     unit: "m",
-                    smallest: readable(-largest / scale, up),
-                    largest: readable(largest / scale, down),
+                    smallest: readable(-largest / scale, f64::ceil),
+                    largest: readable(largest / scale, f64::floor),
                     reason: "the command's positions of 24 bits of counts",
                 });
             }
@@ -410,9 +410,11 @@ fn up(value: f64) -> f64 {
     (value - DECIMALS * value.abs()).ceil()
 }
 
-/// Six digits of an end of a range, rounded into the range by `whole`.
+/// Six digits of an end of a range, rounded into the range by `whole`; but for the last digits of a binary fraction.
 fn readable(end: f64, whole: fn(f64) -> f64) -> f64 {
     let digits = 10f64.powf(5.0 - end.abs().log10().floor());
-    let short = whole(end * digits) / digits;
+    let (scaled, nearest) = (end * digits, (end * digits).round());
+    let is_decimal = (scaled - nearest).abs() <= 1e-12 * scaled.abs();
+    let short = if is_decimal { nearest } else { whole(scaled) } / digits;
     if short.is_finite() { short } else { end }
 }
