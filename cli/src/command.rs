@@ -16,7 +16,8 @@ pub(crate) fn words(machine: &Machine, design: &MachineDesign, path: Option<&Pat
     let sample_hz = machine.clock.sample_hz;
     let mut words = Words::new();
     for (index, (axis, tables)) in machine.axes.iter().zip(&design.axes).enumerate() {
-        let settle = settle_s(tables.design.impulses.duration_s(), axis.modes.iter().map(|m| m.mode));
+        let shaper_s = tables.design.impulses.duration_s() + tables.delay.added_s;
+        let settle = settle_s(shaper_s, axis.modes.iter().map(|m| m.mode));
         let positions = match &points {
             Some(points) => resample(&points[index], sample_hz, settle).map_err(|e| of_axis(axis, e))?,
             None => {

@@ -3,11 +3,12 @@
 use crate::failure::Failure;
 use crate::machine;
 use crate::output;
-use posicast_model::control::{self, Derived, Schedule};
+use posicast_model::control::{self, Derived, Schedule, Supervision};
 use posicast_model::design::{AxisTables, MachineDesign};
 use posicast_model::rtl::sliding_mode::{Law, Row};
 use posicast_model::spec::{Axis, Machine, PwmMode};
 use serde::Serialize;
+use std::collections::BTreeMap;
 use std::path::Path;
 
 /// The controller of one axis.
@@ -15,6 +16,8 @@ pub(crate) struct AxisControl {
     pub(crate) axis: String,
     pub(crate) lag_s: f64,
     pub(crate) derived: Derived,
+    /// The words of the axis's supervisor.
+    supervision: Supervision,
     /// Whether the pins have no pattern for a negative command.
     one_sided: bool,
     /// Whether velocity and acceleration are not shaped.
@@ -45,10 +48,13 @@ pub(crate) fn of_machine(
         let lag_s = control::loop_lag_s(drive, control::schedule_delay_s(&machine.clock, pwm, schedule.clocks()));
         let derived = control::gains(axis, machine.clock, lag_s)
             .map_err(|error| machine::at_key(path, index, &error.key(), &error))?;
+        let supervision = control::supervision(axis, &machine.clock, tables.table.longest_delay_samples())
+            .map_err(|error| machine::at_key(path, index, error.key(), &error))?;
         Ok(Some(AxisControl {
             axis: axis.name.clone(),
             lag_s,
             derived,
+            supervision,
             one_sided: pwm.mode == PwmMode::HalfBridge,
             one_channel: component.is_some_and(|shaper| shaper.channels() == 1),
         }))
@@ -95,6 +101,7 @@ impl AxisControl {
                     word: self.derived.settings.word(row as usize),
                 })
                 .collect(),
+            supervision: self.supervision.words().into(),
             warnings: self.warnings(),
         }
     }
@@ -118,6 +125,8 @@ pub(crate) struct ControlDocument {
     steady_error: f64,
     /// By address: what the controller's memory holds after reset.
     settings: Vec<SettingDocument>,
+    /// By name: what the axis's supervisor starts with.
+    supervision: BTreeMap<&'static str, i64>,
     warnings: Vec<String>,
 }
 

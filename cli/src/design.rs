@@ -1,5 +1,6 @@
 //! `posicast design`: impulses, residuals, insensitivity and the tap table of every axis.
 
+mod delay;
 mod document;
 mod sensitivity;
 
@@ -19,6 +20,7 @@ use posicast_testbench::wave::write_text;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
+use delay::{DelayDocument, StageDocument};
 pub(crate) use document::Document;
 use document::{
     AxisDocument, ClassDocument, CrossGainDocument, ImpulseDocument, ModeDocument, QuantisedDocument, ResidualDocument,
@@ -99,6 +101,7 @@ impl<'a> Report<'a> {
             .map(|((axis, tables), control)| AxisReport {
                 axis,
                 tables,
+                in_stage: self.design.stage.is_some(),
                 control: control.as_ref(),
                 modes: tables.mode_figures(axis, self.design.sample_hz),
                 convolution: convolution_figures(axis, &tables.design),
@@ -113,6 +116,7 @@ impl<'a> Report<'a> {
         Document {
             name: self.machine.name.clone(),
             axes,
+            stage: self.design.stage.as_ref().map(StageDocument::new),
         }
     }
 
@@ -130,13 +134,15 @@ impl<'a> Report<'a> {
             text.push('\n');
             text += &axis.text(self.design.sample_hz);
         }
-        text
+        text + &delay::text(&self.design)
     }
 }
 
 struct AxisReport<'a> {
     axis: &'a Axis,
     tables: &'a AxisTables,
+    /// Whether its delay is made equal to that of others.
+    in_stage: bool,
     modes: Vec<ModeFigures>,
     convolution: ConvolutionFigures,
     fits: Result<(), Unfit>,
@@ -221,6 +227,7 @@ impl AxisReport<'_> {
                     })
                     .collect(),
             },
+            delay: self.in_stage.then(|| DelayDocument::new(&self.tables.delay)),
             control: self.control.map(AxisControl::json),
         }
     }

@@ -1,5 +1,6 @@
 //! `design --json`: the document of the command line's contract.
 
+use super::delay::{DelayDocument, StageDocument};
 use crate::control::ControlDocument;
 use posicast_model::design::periodic::Solution;
 use posicast_model::design::ratios::Class;
@@ -10,6 +11,8 @@ use serde::Serialize;
 pub(crate) struct Document {
     pub(super) name: String,
     pub(super) axes: Vec<AxisDocument>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) stage: Option<StageDocument>,
 }
 
 #[derive(Serialize)]
@@ -32,6 +35,8 @@ pub(super) struct AxisDocument {
     pub(super) warnings: Vec<String>,
     pub(super) modes: Vec<ModeDocument>,
     pub(super) quantised: QuantisedDocument,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) delay: Option<DelayDocument>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) control: Option<ControlDocument>,
 }

@@ -97,3 +97,61 @@ fn cli_design_and_generate_warn_of_a_controller_that_is_too_fast() {
         }
     }
 }
+
+#[test]
+fn cli_design_makes_the_axes_of_a_stage_equally_late_and_says_what_is_left() {
+    let file = example("contouring-stage.toml");
+    let output = posicast().arg("design").arg(&file).arg("--json").assert().success();
+    let document = json(&output.get_output().stdout);
+    let number = |value: &serde_json::Value| value.as_f64().unwrap();
+    let stage = &document["stage"];
+    // The slowest axis alone: its shaper's mean and 2ζ/ω.
+    assert!((number(&stage["total_delay_s"]) - 4.65e-3).abs() < 1e-6, "{stage}");
+    assert_eq!(number(&stage["contour_speed"]), 0.1);
+    assert!(
+        number(&stage["mismatch_s"]) < 200e-9 && number(&stage["mismatch_um"]) < 0.02,
+        "{stage}"
+    );
+    let [x, y] = [0, 1].map(|axis: usize| &document["axes"][axis]);
+    assert!(
+        (number(&x["delay"]["added_samples"]) - 13.54).abs() < 0.01,
+        "{}",
+        x["delay"]
+    );
+    assert_eq!(number(&y["delay"]["added_samples"]), 0.0);
+    // What the contract says of the shaper itself stays.
+    assert!((number(&x["delay_s"]) - 2.9122670e-3).abs() < 1e-9);
+    let taps = x["quantised"]["taps"].as_array().unwrap();
+    assert_eq!((taps.len(), taps[0]["delay_samples"].as_u64()), (8, Some(13)));
+    let words = &x["control"]["supervision"];
+    assert_eq!(
+        (words["soft_limit_minus"].as_i64(), words["settle_ticks"].as_i64()),
+        (Some(-25_600_000), Some(92))
+    );
+    let text = posicast().arg("design").arg(&file).assert().success();
+    let text = String::from_utf8_lossy(&text.get_output().stdout).into_owned();
+    assert!(
+        text.contains("stage: every axis 4.65") && text.contains("µm at 0.1 m/s"),
+        "{text}"
+    );
+    let plain = posicast()
+        .arg("design")
+        .arg(example("xy-stage.toml"))
+        .arg("--json")
+        .output()
+        .unwrap();
+    assert!(json(&plain.stdout).get("stage").is_none() && json(&plain.stdout)["axes"][0].get("delay").is_none());
+}
+
+#[test]
+fn cli_design_names_key_and_line_of_a_limit_that_its_word_does_not_hold() {
+    let text = std::fs::read_to_string(example("contouring-stage.toml")).unwrap();
+    let (_folder, file) = scratch(&text.replace("watchdog_s = 0.5 ", "watchdog_s = 6.6 "));
+    let line = 1 + text.lines().position(|line| line.starts_with("watchdog_s")).unwrap();
+    let design = posicast().arg("design").arg(&file).output().unwrap();
+    assert_eq!((design.status.code(), design.stdout.len()), (Some(2), 0));
+    let said = String::from_utf8_lossy(&design.stderr).into_owned();
+    let expected =
+        format!("machine.toml:{line}: axis.limits.watchdog_s: axis x: found 6.6 s; allowed: 0.0001 to 6.5535 s");
+    assert!(said.contains(&expected), "{said}");
+}

@@ -77,6 +77,31 @@ pub struct Supervision {
     pub excitation_limit: u32,
 }
 
+impl Supervision {
+    /// Every word with its name, in the order of the fields.
+    pub fn words(&self) -> [(&'static str, i64); 17] {
+        [
+            ("off_causes", self.off_causes.into()),
+            ("brake_release_ticks", self.brake_release_ticks.into()),
+            ("brake_apply_ticks", self.brake_apply_ticks.into()),
+            ("settle_ticks", self.settle_ticks.into()),
+            ("soft_limit_plus", self.soft_limit_plus.into()),
+            ("soft_limit_minus", self.soft_limit_minus.into()),
+            ("following_error_limit", self.following_error_limit.into()),
+            ("deviation_limit", self.deviation_limit.into()),
+            ("saturation_ticks", self.saturation_ticks.into()),
+            ("lost_command", self.lost_command.into()),
+            ("lost_ticks", self.lost_ticks.into()),
+            ("watchdog_ticks", self.watchdog_ticks.into()),
+            ("filter_clocks", self.filter_clocks.into()),
+            ("stop_deceleration", self.stop_deceleration.into()),
+            ("direct_limit", self.direct_limit.into()),
+            ("direct_hold_ticks", self.direct_hold_ticks.into()),
+            ("excitation_limit", self.excitation_limit.into()),
+        ]
+    }
+}
+
 /// Why an axis has no words for its supervisor.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum SupervisionError {
@@ -207,8 +232,8 @@ impl Words<'_> {
             key: value.key,
             found: value.found,
             unit: value.unit,
-            smallest: smallest / value.scale,
-            largest: largest / value.scale,
+            smallest: readable(smallest / value.scale, f64::ceil),
+            largest: readable(largest / value.scale, f64::floor),
             reason,
         })
     }
@@ -268,8 +293,8 @@ impl Words<'_> {
                     key: "axis.limits.travel",
                     found,
                     unit: "m",
-                    smallest: -largest / scale,
-                    largest: largest / scale,
+                    smallest: readable(-largest / scale, f64::ceil),
+                    largest: readable(largest / scale, f64::floor),
                     reason: "the command's positions of 24 bits of counts",
                 });
             }
@@ -383,4 +408,13 @@ fn down(value: f64) -> f64 {
 /// The smallest whole number from `value` on, but for the rounding of decimals.
 fn up(value: f64) -> f64 {
     (value - DECIMALS * value.abs()).ceil()
+}
+
+/// Six digits of an end of a range, rounded into the range by `whole`; but for the last digits of a binary fraction.
+fn readable(end: f64, whole: fn(f64) -> f64) -> f64 {
+    let digits = 10f64.powf(5.0 - end.abs().log10().floor());
+    let (scaled, nearest) = (end * digits, (end * digits).round());
+    let is_decimal = (scaled - nearest).abs() <= 1e-12 * scaled.abs();
+    let short = if is_decimal { nearest } else { whole(scaled) } / digits;
+    if short.is_finite() { short } else { end }
 }

@@ -8,7 +8,8 @@ pub(crate) const XY_STAGE: &str = include_str!("../../../examples/xy-stage.toml"
 pub(crate) const GANTRY: &str = include_str!("../../../examples/gantry.toml");
 pub(crate) const ROBOT_JOINT: &str = include_str!("../../../examples/robot-joint.toml");
 pub(crate) const CUSTOM_SHAPER: &str = include_str!("../../../examples/custom-shaper.toml");
-/// The whole schema, blocks that are not built included.
+pub(crate) const CONTOURING_STAGE: &str = include_str!("../../../examples/contouring-stage.toml");
+/// The whole schema, every optional key included.
 pub(crate) const EVERYTHING: &str = include_str!("everything.toml");
 
 /// A right file of one axis, a key per line, that the tests break in one place each.

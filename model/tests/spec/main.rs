@@ -3,6 +3,7 @@
 mod blocks;
 mod errors;
 mod files;
+mod limits;
 mod not_built;
 mod prop;
 mod report;

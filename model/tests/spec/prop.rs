@@ -3,9 +3,16 @@
 use posicast_model::spec;
 use proptest::prelude::*;
 
-use crate::files::{CUSTOM_SHAPER, EVERYTHING, GANTRY, ROBOT_JOINT, XY_STAGE};
+use crate::files::{CONTOURING_STAGE, CUSTOM_SHAPER, EVERYTHING, GANTRY, ROBOT_JOINT, XY_STAGE};
 
-const FILES: [&str; 5] = [XY_STAGE, GANTRY, ROBOT_JOINT, CUSTOM_SHAPER, EVERYTHING];
+const FILES: [&str; 6] = [
+    XY_STAGE,
+    CONTOURING_STAGE,
+    GANTRY,
+    ROBOT_JOINT,
+    CUSTOM_SHAPER,
+    EVERYTHING,
+];
 
 /// Values that break things: the ends of every number type, nothing at all, and every other type.
 const VALUES: [&str; 24] = [

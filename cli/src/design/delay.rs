@@ -1,0 +1,93 @@
+//! The delays of the axes of a stage, for people and for programs.
+
+use crate::output::Table;
+use posicast_model::design::{AxisDelay, MachineDesign, StageDelay};
+use serde::Serialize;
+use std::fmt::Write;
+
+/// What the delay of an axis is made of, and what is left between the axes; nothing without `[stage]`.
+pub(super) fn text(design: &MachineDesign) -> String {
+    let Some(stage) = &design.stage else {
+        return String::new();
+    };
+    let headings = [
+        "axis",
+        ">shaper ms",
+        ">mode lag ms",
+        ">added samples",
+        ">total ms",
+        ">rounding ns",
+    ];
+    let mut table = Table::new(&headings);
+    for axis in &design.axes {
+        let delay = &axis.delay;
+        table.row([
+            axis.design.name.clone(),
+            format!("{:.6}", delay.shaper_s * 1e3),
+            format!("{:.6}", delay.mode_lag_s * 1e3),
+            format!("{:.4}", delay.added_samples),
+            format!("{:.6}", delay.total_s() * 1e3),
+            format!("{:.2}", delay.rounding_s * 1e9),
+        ]);
+    }
+    let mut text = format!(
+        "\nstage: every axis {:.6} ms late\n{}",
+        stage.total_s * 1e3,
+        table.text("  ")
+    );
+    let _ = match (stage.mismatch_um(), stage.contour_speed) {
+        (Some(mismatch_um), Some(speed)) => writeln!(
+            text,
+            "  mismatch {:.2} ns, {mismatch_um:.2e} µm at {speed} m/s",
+            stage.mismatch_s * 1e9
+        ),
+        _ => writeln!(text, "  mismatch {:.2} ns", stage.mismatch_s * 1e9),
+    };
+    text
+}
+
+/// `stage` in `design --json` and `report.json`.
+#[derive(Serialize)]
+pub(super) struct StageDocument {
+    /// Of every axis, before the coefficients are rounded.
+    total_delay_s: f64,
+    /// Largest difference of two axes, after it.
+    mismatch_s: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    contour_speed: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    mismatch_um: Option<f64>,
+}
+
+impl StageDocument {
+    pub(super) fn new(stage: &StageDelay) -> Self {
+        Self {
+            total_delay_s: stage.total_s,
+            mismatch_s: stage.mismatch_s,
+            contour_speed: stage.contour_speed,
+            mismatch_um: stage.mismatch_um(),
+        }
+    }
+}
+
+/// An axis's `delay` there: its parts, and their sum.
+#[derive(Serialize)]
+pub(super) struct DelayDocument {
+    shaper_s: f64,
+    mode_lag_s: f64,
+    added_samples: f64,
+    rounding_s: f64,
+    total_s: f64,
+}
+
+impl DelayDocument {
+    pub(super) fn new(delay: &AxisDelay) -> Self {
+        Self {
+            shaper_s: delay.shaper_s,
+            mode_lag_s: delay.mode_lag_s,
+            added_samples: delay.added_samples,
+            rounding_s: delay.rounding_s,
+            total_s: delay.total_s(),
+        }
+    }
+}

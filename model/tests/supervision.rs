@@ -1,0 +1,240 @@
+//! The words of the supervisor: worked out by hand, never looser than the file, and nothing that does not fit.
+#![cfg(test)]
+
+use posicast_model::control::{Supervision, SupervisionError, supervision};
+use posicast_model::motion::TickLimits;
+use posicast_model::spec::{self, Machine};
+use proptest::prelude::*;
+
+const TORQUE: &str = "mode = \"torque\"\nequivalent_mass = 64.274\nforce_constant = 475.01\ncurrent_limit_a = 2.73\n\
+                      full_scale_a = 3.0";
+const VELOCITY: &str = "mode = \"velocity\"\nfull_scale_velocity = 0.5";
+
+/// One controlled axis of a million counts per metre at 10 kHz with these limits.
+fn machine(axis: &str, drive: &str, limits: &str) -> Machine {
+    let text = format!(
+        "name = \"one\"\n[clock]\nfrequency_hz = 50_000_000\nsample_hz = 10_000\n[[axis]]\nname = \"x\"\n\
+         counts_per_unit = 1_000_000\n{axis}\n[[axis.mode]]\nfrequency_hz = 131.1\ndamping = 0.158\n[axis.shaper]\n\
+         kind = \"zvd\"\n[axis.encoder]\n[axis.scale]\ncounts_per_unit = 10_000_000\n[axis.pwm]\nmode = \"locked-antiphase\"\n\
+         frequency_hz = 20_000\n[axis.drive]\n{drive}\n[axis.controller]\nkind = \"pd\"\n[axis.limits]\n{limits}\n"
+    );
+    spec::parse("one.toml", &text).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn of(machine: &Machine) -> Result<Supervision, SupervisionError> {
+    supervision(&machine.axes[0], &machine.clock, 79)
+}
+
+fn with(limits: &str) -> Result<Supervision, SupervisionError> {
+    of(&machine("", TORQUE, limits))
+}
+
+/// Nothing is watched, nothing is waited for.
+const LEFT_OUT: Supervision = Supervision {
+    off_causes: 0b1000_1101_1000_0111,
+    brake_release_ticks: 0,
+    brake_apply_ticks: 0,
+    settle_ticks: 79,
+    soft_limit_plus: 0,
+    soft_limit_minus: 0,
+    following_error_limit: 0,
+    deviation_limit: 0,
+    saturation_ticks: 0,
+    lost_command: 0,
+    lost_ticks: 0,
+    watchdog_ticks: 0,
+    filter_clocks: 0,
+    stop_deceleration: 0,
+    direct_limit: 250,
+    direct_hold_ticks: 2000,
+    excitation_limit: 1024,
+};
+
+#[test]
+fn unit_a_key_left_out_gives_its_documented_word() {
+    assert_eq!(with(""), Ok(LEFT_OUT));
+    let mut without = machine("", TORQUE, "");
+    without.axes[0].limits = None;
+    assert_eq!(of(&without), Ok(LEFT_OUT));
+    // Where 0.2 s are more ticks than the word holds, or less than one.
+    for (sample_hz, ticks) in [(1e6, 65535), (1.0, 1)] {
+        without.clock.sample_hz = sample_hz;
+        assert_eq!(of(&without).unwrap().direct_hold_ticks, ticks);
+    }
+}
+
+#[test]
+fn golden_words_worked_out_by_hand() {
+    let limits = "travel = [-0.1, 0.1]\nfollowing_error = 0.001\nbrake_release_s = 0.05\nbrake_apply_s = 0.03\n\
+                  acceleration = 8.0\ndeviation = 50e-6\nsaturation_s = 0.3\nencoder_lost_s = 0.02\nwatchdog_s = 0.5\n\
+                  line_filter_s = 1e-6\noff = [\"watchdog\"]\ndirect_duty = 0.05\ndirect_hold_s = 0.1\nexcitation = 10e-6";
+    let expected = Supervision {
+        off_causes: 0b0010_0000_0000_0011,
+        brake_release_ticks: 500,
+        brake_apply_ticks: 300,
+        settle_ticks: 79,
+        // 100,000 counts of 256.
+        soft_limit_plus: 25_600_000,
+        soft_limit_minus: -25_600_000,
+        // 1000 counts of 65536.
+        following_error_limit: 65_536_000,
+        // 50 counts of 256.
+        deviation_limit: 12_800,
+        saturation_ticks: 3000,
+        // Half of 3000 mA, times 4096.
+        lost_command: 6_144_000,
+        lost_ticks: 200,
+        watchdog_ticks: 5000,
+        filter_clocks: 50,
+        // 0.08 counts per tick², times 2^24: 1342177.28.
+        stop_deceleration: 1_342_177,
+        direct_limit: 125,
+        direct_hold_ticks: 1000,
+        excitation_limit: 2560,
+    };
+    assert_eq!(with(limits), Ok(expected));
+    let stop = format!("{limits}\nstop_deceleration = 16.0");
+    assert_eq!(with(&stop).unwrap().stop_deceleration, 2_684_354);
+    let names: Vec<&str> = expected.words().iter().map(|(name, _)| *name).collect();
+    let found: Vec<i64> = expected.words().iter().map(|(_, word)| *word).collect();
+    assert_eq!(
+        names[4..7],
+        ["soft_limit_plus", "soft_limit_minus", "following_error_limit"]
+    );
+    assert_eq!(found[4..7], [25_600_000, -25_600_000, 65_536_000]);
+    assert_eq!(found.len(), 17);
+    // A velocity drive: half of 500 mm/s.
+    let velocity = of(&machine("", VELOCITY, limits)).unwrap();
+    assert_eq!(velocity.lost_command, 1_024_000);
+    // Nothing stops at the travel of an axis that turns on.
+    let modulo = of(&machine("modulo = true", TORQUE, limits)).unwrap();
+    assert_eq!((modulo.soft_limit_plus, modulo.soft_limit_minus), (0, 0));
+}
+
+#[test]
+fn unit_what_does_not_fit_names_its_key_and_the_range() {
+    let refused = |limits: &str, key: &str, message: &str| {
+        let error = with(limits).unwrap_err();
+        assert_eq!((error.key(), error.to_string().as_str()), (key, message), "{limits}");
+    };
+    let range = |key: &str, found: &str, allowed: &str| {
+        let dotted = format!("axis.limits.{key}");
+        refused(
+            &format!("{key} = {found}"),
+            &dotted,
+            &format!("axis x: found {found} {allowed}"),
+        );
+    };
+    let counts = "m; allowed: 0.0000000000152588 to 0.0327679 m, which are counts in a word of 32 bits";
+    range("following_error", "0.04", counts);
+    range("following_error", "0.000000000001", counts);
+    let ticks = "s; allowed: 0.0001 to 6.5535 s, which are ticks of 16 bits";
+    for key in ["saturation_s", "encoder_lost_s", "watchdog_s", "direct_hold_s"] {
+        range(key, "6.6", ticks);
+        range(key, "0.00009", ticks);
+    }
+    for key in ["brake_release_s", "brake_apply_s"] {
+        range(key, "6.6", "s; allowed: 0 to 6.5535 s, which are ticks of 16 bits");
+    }
+    range(
+        "line_filter_s",
+        "0.0000013",
+        "s; allowed: 0 to 0.00000126 s, which are up to 63 clocks",
+    );
+    let deceleration = "m/s²; allowed: 0.00000596047 to 12799.9 m/s², with which a quick stop can slow \
+                        down, in counts per tick²";
+    range("stop_deceleration", "12800", deceleration);
+    range("stop_deceleration", "0.000001", deceleration);
+    range("acceleration", "20000", deceleration);
+    let lost = "encoder_lost_s = 1\nencoder_lost_command = 0.92";
+    let error = with(lost).unwrap_err();
+    assert_eq!(error.key(), "axis.limits.encoder_lost_command");
+    assert!(error.to_string().contains("allowed: 0 to 0.909999"), "{error}");
+    let narrow =
+        "axis x: found a travel from 0.0000001 to 0.0000001001 m; allowed: one that is wider than a count, 0.000001 m";
+    refused("travel = [1e-7, 1.001e-7]", "axis.limits.travel", narrow);
+    let around_0 = "travel = [-1e-10, 1e-10]";
+    assert_eq!(with(around_0).unwrap_err().key(), "axis.limits.travel");
+    let long = supervision(&machine("", TORQUE, "").axes[0], &machine("", TORQUE, "").clock, 65_536);
+    assert_eq!(long.unwrap_err().key(), "axis.shaper");
+    let mut bare = machine("", TORQUE, "");
+    bare.axes[0].drive = None;
+    assert!(matches!(
+        of(&bare),
+        Err(SupervisionError::Missing { table: "drive", .. })
+    ));
+}
+
+#[test]
+fn unit_a_travel_beyond_the_command_is_refused_where_the_machine_has_a_wider_word() {
+    let mut wide = machine("", TORQUE, "travel = [0.0, 1.0]");
+    wide.axes[0].limits.as_mut().unwrap().travel = Some([0.0, 8.4]);
+    let error = of(&wide).unwrap_err();
+    assert_eq!(error.key(), "axis.limits.travel");
+    assert!(error.to_string().contains("allowed: -8.3886 to 8.3886 m"), "{error}");
+}
+
+#[test]
+fn unit_limits_of_moves_in_ticks() {
+    let limits = |limits: &str| {
+        let machine = machine("", TORQUE, limits);
+        TickLimits::of_axis(&machine.axes[0], &machine.clock)
+    };
+    assert_eq!(
+        limits("velocity = 0.1\njerk = 100"),
+        TickLimits::new(0.1, 8.0, 100.0, 1e6, 1e4)
+    );
+    assert_eq!(limits(""), TickLimits::new(0.25, 8.0, 400.0, 1e6, 1e4));
+}
+
+proptest! {
+    /// Over the whole range of the file and beyond the words: a limit or an error, and never a looser one.
+    #[test]
+    fn prop_no_word_is_looser_than_its_value(
+        exponent in prop::collection::vec(-14.0..9.0f64, 8),
+        counts in -3.0..12.0f64,
+        sample in 0.0..6.0f64,
+    ) {
+        let mut machine = machine("", TORQUE, "");
+        let value = |at: usize| 10f64.powf(exponent[at]);
+        let (counts_per_unit, sample_hz) = (10f64.powf(counts), 10f64.powf(sample));
+        machine.axes[0].counts_per_unit = counts_per_unit;
+        machine.clock.sample_hz = sample_hz;
+        let limits = machine.axes[0].limits.as_mut().unwrap();
+        // One value at a time, so that each meets its own word.
+        let which = (exponent[7] * 1e3).abs() as usize % 7;
+        match which {
+            0 => limits.following_error = Some(value(0)),
+            1 => limits.deviation = Some(value(1)),
+            2 => limits.saturation_s = value(2).min(60.0),
+            3 => limits.stop_deceleration = Some(value(3)),
+            4 => limits.travel = Some([-value(4), value(5)]),
+            5 => limits.brake_apply_s = value(2).min(60.0),
+            _ => limits.excitation = Some(value(6)),
+        }
+        let limits = *limits;
+        let near = 1.0 + 2e-9;
+        match of(&machine) {
+            Err(error) => prop_assert!(error.key().starts_with("axis.limits."), "{}", error),
+            Ok(words) => {
+                let below = |word: f64, asked: f64| word > 0.0 && word <= asked * near;
+                let [low, high] = limits.travel.unwrap_or([0.0; 2]).map(|m| m * counts_per_unit * 256.0);
+                let holds = match which {
+                    0 => below(words.following_error_limit.into(), value(0) * counts_per_unit * 65536.0),
+                    1 => below(words.deviation_limit.into(), value(1) * counts_per_unit * 256.0),
+                    2 => below(words.saturation_ticks.into(), limits.saturation_s * sample_hz),
+                    3 => below(
+                        words.stop_deceleration.into(),
+                        value(3) * counts_per_unit / sample_hz.powi(2) * f64::from(1 << 24),
+                    ),
+                    4 => f64::from(words.soft_limit_plus) <= high * near
+                        && f64::from(words.soft_limit_minus) >= low * near
+                        && (words.soft_limit_plus, words.soft_limit_minus) != (0, 0),
+                    5 => f64::from(words.brake_apply_ticks) * near >= limits.brake_apply_s * sample_hz,
+                    _ => below(words.excitation_limit.into(), value(6) * counts_per_unit * 256.0),
+                };
+                prop_assert!(holds, "{:?} {:?}", words, limits);
+            }
+        }
+    }
+}
