@@ -35,7 +35,6 @@ pub mod divider;
 pub mod divider_share;
 pub mod drive_command;
 pub mod emit;
-pub mod emit;
 pub mod encoder_generator;
 pub mod excitation;
 pub mod group;

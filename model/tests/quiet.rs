@@ -4,25 +4,32 @@
 
 #[path = "support/random_inputs.rs"]
 mod random_inputs;
+#[path = "support/stage.rs"]
+mod stage;
+#[path = "support/wrong.rs"]
+mod wrong;
 
 use posicast_model::rtl::axis::Axis;
+use posicast_model::rtl::component::Component;
+use posicast_model::rtl::composition::{Composed, Composition};
 use posicast_model::rtl::divider::{Divider, DividerConfig};
 use posicast_model::rtl::divider_share::DividerShare;
 use posicast_model::rtl::group::Group;
 use posicast_model::rtl::pulse_counter::PulseCounter;
-use posicast_model::rtl::pwm::{ActiveLow, Pwm, PwmConfig};
+use posicast_model::rtl::pwm::{ActiveLow, Mode, Pwm, PwmConfig};
 use posicast_model::rtl::registers::{RegisterBank, RegisterMap, maps};
 use posicast_model::rtl::sample_select::SampleSelect;
 use posicast_model::rtl::schedule::{Schedule, ScheduleConfig};
 use posicast_model::rtl::segments::Segments;
 use posicast_model::rtl::setting_banks::SettingBanks;
-use posicast_model::rtl::shaper::{Motion, Shaper, ShaperConfig};
-use posicast_model::rtl::sliding_mode::{Gain, Row, Settings, SlidingMode};
+use posicast_model::rtl::shaper::Shaper;
+use posicast_model::rtl::sliding_mode::SlidingMode;
 use posicast_model::rtl::time_base::TimeBase;
-use posicast_model::rtl::{ClockedBlock, Direction, Moore, OutputKind, Port, StepError};
-use posicast_model::taps::{Tap, TapTable};
+use posicast_model::rtl::{Direction, Moore, OutputKind, Port};
 use proptest::prelude::*;
 use random_inputs::{Hints, Random, RandomInputs};
+use stage::{STAGE, axis, settings, shaper_config, stage};
+use wrong::Wrong;
 
 /// A block to be tried, and values for its inputs.
 struct Tried {
@@ -39,24 +46,8 @@ fn tried<B: Moore + 'static>(name: &'static str, hints: Hints, make: impl Fn() -
     }
 }
 
-fn shaper_config() -> ShaperConfig {
-    let tap = |(delay_samples, coefficient)| Tap {
-        delay_samples,
-        coefficient,
-    };
-    let table = TapTable::new(16, [(0, 40_000), (3, 20_000), (5, 5536)].map(tap).to_vec()).unwrap();
-    let motion = Motion {
-        channels: 2,
-        modulo: false,
-    };
-    ShaperConfig::new(32, table).unwrap().for_motion(motion).unwrap()
-}
-
-fn settings() -> Settings {
-    let mut settings = Settings::default();
-    settings.set_gain(Row::Derivative, Gain::nearest(3.0, Row::Derivative).unwrap());
-    settings.set_limit(1000 << 12);
-    settings
+fn composed((composition, blocks): (Composition, Vec<Box<dyn Moore>>)) -> Composed {
+    Composed::new(composition, blocks)
 }
 
 fn bank() -> RegisterBank {
@@ -168,6 +159,11 @@ fn blocks() -> Vec<Tried> {
             DividerShare::new(3)
         }),
         tried("group", &[("start", RARE), ("rst", RARE)], || Group::new(3)),
+        tried("an axis", STAGE, || composed(axis())),
+        tried("a stage", STAGE, || composed(stage(|axis| Box::new(composed(axis))))),
+        tried("a component", PWM, move || {
+            Component::pwm(pwm, Mode::HalfBridge, 100).unwrap().model(1)
+        }),
     ]
 }
 
@@ -264,7 +260,7 @@ impl Pair {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(12))]
+    #![proptest_config(ProptestConfig::with_cases(4))]
 
     #[test]
     fn prop_quiet_clocks_are_what_they_are_said_to_be(seed: u64) {
@@ -273,59 +269,6 @@ proptest! {
             let share = share.map_err(|error| TestCaseError::fail(format!("{}: {error}", tried.name)))?;
             prop_assert!(share > 0.1, "{}: {share} of the clocks are quiet", tried.name);
         }
-    }
-}
-
-/// A block that says something wrong.
-struct Wrong {
-    block: Box<dyn Moore>,
-    what: &'static str,
-}
-
-impl ClockedBlock for Wrong {
-    fn ports(&self) -> &[Port] {
-        self.block.ports()
-    }
-
-    fn step(&mut self, inputs: &[u64], outputs: &mut [u64]) -> Result<(), StepError> {
-        self.block.step(inputs, outputs)
-    }
-}
-
-impl Moore for Wrong {
-    fn show(&self, outputs: &mut [u64]) {
-        self.block.show(outputs);
-    }
-
-    fn output_kind(&self, output: &str) -> OutputKind {
-        match self.block.output_kind(output) {
-            OutputKind::Counter if self.what == "kind" => OutputKind::Register,
-            kind => kind,
-        }
-    }
-
-    fn show_with(&mut self, inputs: &[u64], outputs: &mut [u64]) {
-        self.block.show_with(inputs, outputs);
-    }
-
-    fn quiet_clocks(&self, inputs: &[u64]) -> u64 {
-        let clocks = self.block.quiet_clocks(inputs);
-        if self.what == "one more" && clocks > 0 {
-            clocks.saturating_add(1)
-        } else {
-            clocks
-        }
-    }
-
-    fn pass(&mut self, inputs: &[u64], clocks: u64) {
-        let clocks = clocks.min(self.block.quiet_clocks(inputs));
-        if self.what != "no pass" {
-            self.block.pass(inputs, clocks);
-        }
-    }
-
-    fn ignores(&self, input: &str) -> bool {
-        self.block.ignores(input) || (self.what == "ignores" && input != "rst")
     }
 }
 

@@ -167,7 +167,7 @@ mod tests {
                 for (channel, found) in found.iter_mut().enumerate() {
                     if outputs[3 + channel] != 0 {
                         assert_eq!(*found, None);
-                        *found = Some((clock, i64::from(divided.quotient)));
+                        *found = Some((clock, divided.quotient));
                     }
                 }
                 divider.step(&Inputs {

@@ -49,7 +49,8 @@ impl RandomInputs {
     pub(crate) fn change(&mut self, random: &mut Random) -> u64 {
         let share = *random.choice(&[2, 8, 40]);
         for at in 0..self.values.len() {
-            if random.below(share) == 0 || (self.ports[at].width == 1 && random.below(3) == 0) {
+            let resets = self.ports[at].name == "rst" && self.values[at] != 0;
+            if resets || random.below(share) == 0 || (self.ports[at].width == 1 && random.below(3) == 0) {
                 self.change_one(at, random);
             }
         }
@@ -61,10 +62,11 @@ impl RandomInputs {
     pub(crate) fn change_one(&mut self, at: usize, random: &mut Random) {
         let port = &self.ports[at];
         let ones = u64::MAX >> (64 - port.width);
-        let hint = self.hints.iter().find(|(name, _)| *name == port.name);
+        let bare = port.name.trim_start_matches("x_").trim_start_matches("y_");
+        let hint = self.hints.iter().find(|(name, _)| *name == bare);
         self.values[at] = match hint {
             Some((_, values)) => *random.choice(values),
-            None if port.name == "rst" => u64::from(random.below(60) == 0),
+            None if port.name == "rst" => u64::from(random.below(40) == 0),
             None if port.width == 1 => u64::from(random.below(5) == 0),
             None => match random.below(4) {
                 0 => 0,

@@ -74,6 +74,18 @@ struct Requests {
     preset: bool,
 }
 
+impl Requests {
+    /// These, and those of a clock.
+    fn with(self, inputs: &Inputs) -> Self {
+        Self {
+            flush: self.flush || inputs.flush,
+            quick_stop: self.quick_stop || inputs.quick_stop,
+            restart: self.restart || inputs.restart,
+            preset: self.preset || inputs.preset,
+        }
+    }
+}
+
 /// Everything that is a register, but the FIFO.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 struct Registers {
@@ -178,10 +190,7 @@ impl Segments {
             (shown.malformed, shown.tick_missed) = (false, false);
         }
         shown.tick_missed |= inputs.tick && *phase != IDLE;
-        requests.flush |= inputs.flush;
-        requests.quick_stop |= inputs.quick_stop;
-        requests.restart |= inputs.restart;
-        requests.preset |= inputs.preset;
+        *requests = requests.with(inputs);
     }
 
     /// A tick begins with what was asked for since the last one. Preset goes before a quick stop, that before restart.
@@ -318,9 +327,10 @@ impl Moore for Segments {
         let Ok(inputs) = <&[u64; INPUT_PORTS]>::try_from(inputs).map(Inputs::from_raw) else {
             return 0;
         };
-        let Registers { phase, shown, .. } = &self.registers;
-        let requests = inputs.flush || inputs.quick_stop || inputs.restart || inputs.preset;
-        let acts = inputs.rst || inputs.tick || inputs.write || requests;
+        let Registers {
+            phase, requests, shown, ..
+        } = &self.registers;
+        let acts = inputs.rst || inputs.tick || inputs.write || requests.with(&inputs) != *requests;
         let flags = [
             shown.underrun,
             shown.overflow,

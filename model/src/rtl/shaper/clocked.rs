@@ -144,6 +144,13 @@ impl Shaper {
         self.clocks_left = 0;
     }
 
+    /// Whether a start with these words changes nothing.
+    fn has_started(&self, words: [i64; CHANNELS_MAX]) -> bool {
+        let values = [self.start_values, self.y] == [words; 2] && self.newest == words[0];
+        let counts = self.age == 0 && self.still == self.full_age() && self.clocks_left == 0;
+        values && counts && !self.banks.hands_over()
+    }
+
     fn full_age(&self) -> u32 {
         (1 << self.config.ring_address_bits()) - 1
     }
@@ -219,7 +226,8 @@ impl Moore for Shaper {
 
     fn quiet_clocks(&self, inputs: &[u64]) -> u64 {
         let inputs = Inputs::from_raw(inputs, &self.config);
-        let acts = inputs.rst || inputs.strobe || inputs.start || inputs.tap_write || inputs.swap;
+        let starts = inputs.start && !self.has_started(self.words(&inputs));
+        let acts = inputs.rst || inputs.strobe || starts || inputs.tap_write || inputs.swap;
         let clears = inputs.clear_flags && (self.saturated || self.overrun || self.banks.refused());
         match self.clocks_left {
             _ if acts || clears || self.valid => 0,
@@ -235,6 +243,9 @@ impl Moore for Shaper {
     }
 
     fn ignores(&self, input: &str) -> bool {
-        !matches!(input, "rst" | "strobe" | "start" | "clear_flags" | "tap_write" | "swap")
+        matches!(
+            input,
+            "tap_bank" | "tap_index" | "tap_coefficient" | "tap_delay" | "swap_bank" | "swap_how"
+        )
     }
 }
