@@ -20,3 +20,38 @@ fn lockstep_a_million_random_clocks() {
 fn crosssim_icarus_agrees_with_the_model() {
     icarus_agrees(&block());
 }
+
+#[test]
+fn lockstep_catches_outputs_that_stay_on_beyond_ready() {
+    caught(
+        &block(),
+        "permitted = (axis_state == READY_STATE) & direct_enable",
+        "permitted = direct_enable",
+        100_000,
+    );
+}
+
+#[test]
+fn lockstep_catches_a_limit_that_is_an_lsb_too_wide() {
+    caught(&block(), "odd = ONE_BIT", "odd = NO_BIT", 300_000);
+}
+
+#[test]
+fn lockstep_catches_a_duty_that_is_cut() {
+    caught(
+        &block(),
+        "saturates = controller_bits[17] ^ controller_bits[16]",
+        "saturates = 1'd0",
+        100_000,
+    );
+}
+
+#[test]
+fn lockstep_catches_limit_switches_that_are_swapped() {
+    caught(&block(), "if (backward) begin", "if (!backward) begin", 100_000);
+}
+
+#[test]
+fn lockstep_catches_a_manual_duty_that_the_supervisor_inherits() {
+    caught(&block(), " | (next_active ^ active)", "", 300_000);
+}

@@ -48,9 +48,15 @@ pub(super) struct LinearScale {
     free: Signal<Local, Bit>,
     asked_now: Signal<Local, Bit>,
     silent: Signal<Local, Bit>,
-    moves_deviation: Signal<Local, Bit>,
-    moves_velocity: Signal<Local, Bit>,
-    limit: Signal<Local, Bits<32>>,
+    for_position: Signal<Local, Bit>,
+    works_on_position: Signal<Local, Bit>,
+    saturates: Signal<Local, Bit>,
+    fills_deviation: Signal<Local, Bit>,
+    low_deviation: Signal<Local, Bit>,
+    deviation_filler: Signal<Local, Bits<32>>,
+    fills_velocity: Signal<Local, Bit>,
+    low_velocity: Signal<Local, Bit>,
+    velocity_filler: Signal<Local, Bits<32>>,
     entering: Signal<Local, Bits<32>>,
     operand_entering: Signal<Local, Bits<32>>,
     other_entering: Signal<Local, Bits<32>>,
@@ -103,9 +109,15 @@ impl Default for LinearScale {
             free: Signal::default(),
             asked_now: Signal::default(),
             silent: Signal::default(),
-            moves_deviation: Signal::default(),
-            moves_velocity: Signal::default(),
-            limit: Signal::default(),
+            for_position: Signal::default(),
+            works_on_position: Signal::default(),
+            saturates: Signal::default(),
+            fills_deviation: Signal::default(),
+            low_deviation: Signal::default(),
+            deviation_filler: Signal::default(),
+            fills_velocity: Signal::default(),
+            low_velocity: Signal::default(),
+            velocity_filler: Signal::default(),
             entering: Signal::default(),
             operand_entering: Signal::default(),
             other_entering: Signal::default(),
@@ -147,31 +159,34 @@ impl Logic for LinearScale {
         }
         self.position_q.d.next = self.other_position.val();
 
-        comment!("The pass, on deviation or velocity");
+        comment!("The pass: without use_scale never on velocity");
+        self.for_position.next = self.of_position.q.val() | !self.use_scale.val();
         self.serial.clk.next = self.clk.val();
         self.serial.rst.next = self.rst.val();
         self.serial.runs.next = self.runs.q.val();
-        self.serial.of_position.next = self.of_position.q.val();
+        self.serial.of_position.next = self.for_position.val();
         self.serial.use_scale.next = self.use_scale.val();
         self.serial.ratio_mantissa.next = self.ratio_mantissa.val();
         self.serial.ratio_shift.next = self.ratio_shift.val();
         self.serial.operand_bit.next = self.velocity_q.q.val().get_bit(0);
-        if self.of_position.q.val() {
+        if self.for_position.val() {
             self.serial.operand_bit.next = self.deviation_q.q.val().get_bit(0);
         }
         self.serial.operand_reference_bit.next = self.operand_reference.q.val().get_bit(0);
         self.serial.other_bit.next = self.other.q.val().get_bit(0);
         self.serial.other_reference_bit.next = self.other_reference.q.val().get_bit(0);
-        self.ends_position.next = self.serial.last.val() & self.of_position.q.val();
-        self.ends_velocity.next = self.serial.last.val() & !self.of_position.q.val();
+        self.works_on_position.next = self.runs.q.val() & self.for_position.val();
+        self.ends_position.next = self.serial.last.val() & self.for_position.val();
+        self.ends_velocity.next = self.serial.last.val() & !self.for_position.val();
 
         comment!("What waits; positions go first");
         self.takes_positions.next = self.tick.val() & !self.positions_wait.q.val();
-        self.takes_velocity.next = self.velocity_valid.val() & !self.velocity_waits.q.val();
+        self.takes_velocity.next = self.velocity_valid.val() & !(self.velocity_waits.q.val() & self.use_scale.val());
         self.positions_next.next =
             (self.positions_wait.q.val() & !self.ends_position.val()) | self.takes_positions.val();
-        self.velocity_next.next = (self.velocity_waits.q.val() & !self.ends_velocity.val())
-            | (self.takes_velocity.val() & self.use_scale.val());
+        self.velocity_next.next = ((self.velocity_waits.q.val() & !self.ends_velocity.val())
+            | self.takes_velocity.val())
+            & self.use_scale.val();
         self.positions_wait.d.next = self.positions_next.val();
         self.velocity_waits.d.next = self.velocity_next.val();
         self.free.next = !self.runs.q.val() | self.serial.last.val();
@@ -186,44 +201,59 @@ impl Logic for LinearScale {
             }
         }
 
-        comment!("Beyond 32 bits");
-        self.limit.next = self.largest.val();
-        if self.serial.negative.val() {
-            self.limit.next = self.smallest.val();
-        }
+        comment!("A result's bit enters at the top");
         self.entering.next = self.nothing.val();
         if self.serial.result_bit.val() {
             self.entering.next = self.smallest.val();
         }
 
-        comment!("The operand leaves, the deviation enters");
-        self.moves_deviation.next = self.runs.q.val() & self.of_position.q.val() & self.serial.moves.val();
+        comment!("Deviation: shifted; low: loaded, or the largest;");
+        comment!("filled: at its end, or 0 by align");
         self.silent.next = self.asked_now.val() | self.aligning.q.val();
-        self.valid_q.d.next = self.ends_position.val();
-        if self.moves_deviation.val() {
+        self.saturates.next = self.ends_position.val() & self.serial.overflows.val() & !self.silent.val();
+        self.fills_deviation.next = self.saturates.val()
+            | (self.ends_position.val() & self.silent.val())
+            | (self.align.val() & !self.positions_wait.q.val() & !self.tick.val());
+        self.low_deviation.next = self.takes_positions.val() | (self.saturates.val() & !self.serial.negative.val());
+        self.deviation_filler.next = self.nothing.val();
+        if self.saturates.val() {
+            self.deviation_filler.next = self.smallest.val();
+        }
+        if self.low_deviation.val() {
+            self.deviation_filler.next = self.largest.val();
+        }
+        if self.low_deviation.val()
+            | self.fills_deviation.val()
+            | (self.works_on_position.val() & self.serial.moves.val())
+        {
             self.deviation_q.d.next = (self.deviation_q.q.val() >> 1) | self.entering.val();
+            if self.low_deviation.val() {
+                self.deviation_q.d.next = self.operand_position.val();
+            }
+            if self.fills_deviation.val() {
+                self.deviation_q.d.next = self.deviation_filler.val();
+            }
         }
-        if self.ends_position.val() & self.serial.overflows.val() {
-            self.deviation_q.d.next = self.limit.val();
-        }
-        if (self.ends_position.val() & self.silent.val()) | (self.align.val() & !self.positions_wait.q.val()) {
-            self.deviation_q.d.next = self.nothing.val();
-        }
-        if self.takes_positions.val() {
-            self.deviation_q.d.next = self.operand_position.val();
-            self.other.d.next = self.other_position.val();
-        }
+        self.valid_q.d.next = self.ends_position.val();
 
         comment!("So with the velocity");
-        self.moves_velocity.next = self.runs.q.val() & !self.of_position.q.val() & self.serial.moves.val();
-        if self.moves_velocity.val() {
+        self.fills_velocity.next = self.ends_velocity.val() & self.serial.overflows.val();
+        self.low_velocity.next = self.takes_velocity.val() | (self.fills_velocity.val() & !self.serial.negative.val());
+        self.velocity_filler.next = self.smallest.val();
+        if self.low_velocity.val() {
+            self.velocity_filler.next = self.largest.val();
+        }
+        if self.low_velocity.val()
+            | self.fills_velocity.val()
+            | (self.runs.q.val() & !self.for_position.val() & self.serial.moves.val())
+        {
             self.velocity_q.d.next = (self.velocity_q.q.val() >> 1) | self.entering.val();
-        }
-        if self.ends_velocity.val() & self.serial.overflows.val() {
-            self.velocity_q.d.next = self.limit.val();
-        }
-        if self.takes_velocity.val() {
-            self.velocity_q.d.next = unsigned_cast(self.motor_velocity.val());
+            if self.low_velocity.val() {
+                self.velocity_q.d.next = unsigned_cast(self.motor_velocity.val());
+            }
+            if self.fills_velocity.val() {
+                self.velocity_q.d.next = self.velocity_filler.val();
+            }
         }
 
         comment!("References turn round, or take what passes");
@@ -233,12 +263,17 @@ impl Logic for LinearScale {
             self.operand_entering.next = self.deviation_q.q.val() << 31;
             self.other_entering.next = self.other.q.val() << 31;
         }
-        if self.runs.q.val() & self.of_position.q.val() & self.serial.takes_operand.val() {
+        if self.works_on_position.val() & self.serial.takes_operand.val() {
             self.operand_reference.d.next = (self.operand_reference.q.val() >> 1) | self.operand_entering.val();
         }
-        if self.runs.q.val() & self.of_position.q.val() & self.serial.takes_other.val() {
-            self.other_reference.d.next = (self.other_reference.q.val() >> 1) | self.other_entering.val();
+        if self.takes_positions.val() | (self.works_on_position.val() & self.serial.takes_other.val()) {
             self.other.d.next = self.other.q.val() >> 1;
+            if self.takes_positions.val() {
+                self.other.d.next = self.other_position.val();
+            }
+        }
+        if self.works_on_position.val() & self.serial.takes_other.val() {
+            self.other_reference.d.next = (self.other_reference.q.val() >> 1) | self.other_entering.val();
         }
 
         comment!("Outputs");

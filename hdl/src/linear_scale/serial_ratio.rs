@@ -135,7 +135,7 @@ impl Logic for SerialRatio {
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module serial_ratio");
-        comment!("@about ratio * operand, rounded, against the other:");
+        comment!("@about ratio * operand, rounded, less the other:");
         comment!("@about a bit per clock, lowest first.");
         dff_setup!(
             self,
