@@ -13,8 +13,8 @@ use posicast_model::rtl::registers::RegisterMap;
 use posicast_model::rtl::shaper::{MOTION_WORD_BITS, Motion, ShaperConfig};
 use posicast_model::spec::{Axis, Machine, Pwm, PwmMode};
 use posicast_testbench::blocks::{
-    AxisBlock, Block, CascadeBlock, ComponentBlock, DividerBlock, MachineShapers, PulseCounterBlock, PwmBlock,
-    RegistersBlock, SegmentsBlock, ShaperBlock, SlidingModeBlock,
+    AxisBlock, Block, CascadeBlock, ComponentBlock, DividerBlock, EncoderGeneratorBlock, ExcitationBlock,
+    MachineShapers, PulseCounterBlock, PwmBlock, RegistersBlock, SegmentsBlock, ShaperBlock, SlidingModeBlock,
 };
 use std::path::Path;
 
@@ -69,6 +69,8 @@ pub(crate) fn others(
     blocks.push(Box::new(CascadeBlock::new(cascade, name)));
     blocks.push(Box::new(SegmentsBlock::new(name, "alone")));
     blocks.push(Box::new(AxisBlock::new(name, "alone")));
+    blocks.push(Box::new(EncoderGeneratorBlock::new(name, "alone")));
+    blocks.push(Box::new(ExcitationBlock::new(name, "alone")));
     let components = components(machine, shapers, controllers, path)?;
     let mut maps: Vec<&RegisterMap> = Vec::new();
     for map in components.iter().map(|component| component.component().map()) {

@@ -1,7 +1,10 @@
 //! The list of what is measured: a new block is a new row here.
 
 use posicast_hdl::emit::Module;
-use posicast_hdl::{axis, cascade, divider, pulse_counter, pwm, registers, segments, shaper, sliding_mode};
+use posicast_hdl::{
+    axis, cascade, divider, encoder_generator, excitation, pulse_counter, pwm, registers, segments, shaper,
+    sliding_mode,
+};
 use posicast_model::rtl::cascade::CascadeConfig;
 use posicast_model::rtl::component::Component;
 use posicast_model::rtl::divider::DividerConfig;
@@ -94,6 +97,23 @@ pub(crate) fn rows() -> Result<Vec<Row>, Box<dyn Error>> {
             budget: None,
             in_xy_stage: 2,
             note: "Comparisons of 32 bits: two soft limits, three sizes against their limits; each is a carry chain.",
+        },
+        Row {
+            block: "encoder_generator",
+            size: "",
+            modules: encoder_generator::emit("")?,
+            budget: None,
+            in_xy_stage: 2,
+            note: "The sum of 64 bits; without `generated_count` a synthesiser keeps 34 of them.",
+        },
+        Row {
+            block: "excitation",
+            size: "",
+            modules: excitation::emit("")?,
+            budget: None,
+            in_xy_stage: 2,
+            note: "The references of velocity and acceleration are 64 registers and nothing else. 32 LUT go where \
+                   `amplitude_limit` is tied.",
         },
         Row {
             block: "shaper",
