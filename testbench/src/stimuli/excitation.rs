@@ -57,7 +57,13 @@ impl ExcitationRandom {
         let amplitude = *pick(rng, &[any, any, small, 0, 1, 0xffff]);
         let other = word >> 16 & 0xffff;
         let limit = *pick(rng, &[0xffff, 0xffff, other, amplitude, amplitude.saturating_sub(1), 0]);
-        let period = *pick(rng, &[1, 2, 3, 3, 5, 8, 20, 100, small, any, 0]);
+        let period = *pick(rng, &[1, 2, 3, 5, 8, 20, 100, small, any, 0]);
+        // The first bits of a PRBS are 15 ones and 14 zeros: it takes fast ones to come beyond.
+        let period = if kind == 1 {
+            *pick(rng, &[1, 1, 1, 2, 3, period])
+        } else {
+            period
+        };
         let sweep = *pick(rng, &[0, small, small, any, 0xffff, 0xffff]);
         let duration = *pick(rng, &[0, 1, 2, 40, 300, 1000, 1000, 1000, word >> 40]);
         let modulo = word >> 32 & 1;
