@@ -15,8 +15,9 @@ use posicast_model::rtl::shaper::{MOTION_WORD_BITS, Motion, ShaperConfig};
 use posicast_model::rtl::trace::TraceConfig;
 use posicast_model::spec::{Axis, Machine};
 use posicast_testbench::blocks::{
-    AxisBlock, Block, CascadeBlock, ComponentBlock, DividerBlock, DriveCommandBlock, LinearScaleBlock, MachineShapers,
-    PulseCounterBlock, PwmBlock, RegistersBlock, SegmentsBlock, ShaperBlock, SlidingModeBlock, TraceBlock,
+    AxisBlock, Block, CascadeBlock, ComponentBlock, DividerBlock, DriveCommandBlock, EncoderGeneratorBlock,
+    ExcitationBlock, LinearScaleBlock, MachineShapers, PulseCounterBlock, PwmBlock, RegistersBlock, SegmentsBlock,
+    ShaperBlock, SlidingModeBlock, TraceBlock,
 };
 use std::path::Path;
 
@@ -77,6 +78,8 @@ pub(crate) fn others(
     let trace = TraceConfig::new(TRACE_SAMPLES).map_err(Failure::because)?;
     blocks.push(Box::new(TraceBlock::new(trace, name)));
     blocks.push(Box::new(LinearScaleBlock::new(name, "alone")));
+    blocks.push(Box::new(EncoderGeneratorBlock::new(name, "alone")));
+    blocks.push(Box::new(ExcitationBlock::new(name, "alone")));
     let components = components(machine, shapers, controllers, path)?;
     let mut maps: Vec<&RegisterMap> = Vec::new();
     for map in components.iter().map(|component| component.component().map()) {

@@ -2,8 +2,8 @@
 
 use posicast_hdl::emit::Module;
 use posicast_hdl::{
-    axis, cascade, divider, drive_command, linear_scale, pulse_counter, pwm, registers, segments, shaper, sliding_mode,
-    trace,
+    axis, cascade, divider, drive_command, encoder_generator, excitation, linear_scale, pulse_counter, pwm, registers,
+    segments, shaper, sliding_mode, trace,
 };
 use posicast_model::rtl::cascade::CascadeConfig;
 use posicast_model::rtl::component::Component;
@@ -123,6 +123,21 @@ pub(crate) fn rows() -> Result<Vec<Row>, Box<dyn Error>> {
             in_xy_stage: 0,
             note: "320 LUT choose one of 16 signals of 32 bits; signals that are tied go. Not in the sum: `[axis.trace]` is an \
                    option.",
+            block: "encoder_generator",
+            size: "",
+            modules: encoder_generator::emit("")?,
+            budget: None,
+            in_xy_stage: 2,
+            note: "The sum of 64 bits; without `generated_count` a synthesiser keeps 34 of them.",
+        },
+        Row {
+            block: "excitation",
+            size: "",
+            modules: excitation::emit("")?,
+            budget: None,
+            in_xy_stage: 2,
+            note: "The references of velocity and acceleration are 64 registers and nothing else. 32 LUT go where \
+                   `amplitude_limit` is tied.",
         },
         Row {
             block: "shaper",

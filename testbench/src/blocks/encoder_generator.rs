@@ -1,0 +1,72 @@
+//! The bench of `encoder_generator`.
+
+use posicast_hdl::SimulationError;
+use posicast_hdl::emit::{EmitError, Module};
+use posicast_hdl::encoder_generator::{emit, simulate};
+use posicast_model::rtl::ClockedBlock;
+use posicast_model::rtl::encoder_generator::EncoderGenerator;
+
+use super::{Bins, Block, named, prefixed};
+use crate::lockstep::Clock;
+use crate::stimuli::{EncoderGeneratorCoverage, EncoderGeneratorRandom, Stimuli};
+
+/// The internal encoder, which has one size.
+#[derive(Debug, Clone)]
+pub struct EncoderGeneratorBlock {
+    prefix: String,
+    instance: String,
+}
+
+impl EncoderGeneratorBlock {
+    /// The internal encoder `PREFIX_encoder_generator`; `instance` says which axes it serves.
+    pub fn new(prefix: &str, instance: &str) -> Self {
+        Self {
+            prefix: prefix.to_owned(),
+            instance: instance.to_owned(),
+        }
+    }
+}
+
+impl Block for EncoderGeneratorBlock {
+    fn name(&self) -> &str {
+        "encoder_generator"
+    }
+
+    fn instance(&self) -> &str {
+        &self.instance
+    }
+
+    fn modules(&self) -> Result<Vec<Module>, EmitError> {
+        emit(&self.prefix)
+    }
+
+    fn top(&self) -> String {
+        prefixed(&self.prefix, "encoder_generator")
+    }
+
+    fn model(&self, _seed: u64) -> Box<dyn ClockedBlock> {
+        Box::new(EncoderGenerator::new())
+    }
+
+    fn simulate(&self) -> Result<Box<dyn ClockedBlock>, SimulationError> {
+        simulate()
+    }
+
+    fn stimuli(&self, _cycles: u64, seed: u64) -> Box<dyn Stimuli + '_> {
+        Box::new(EncoderGeneratorRandom::new(seed))
+    }
+
+    fn coverage(&self) -> Box<dyn Bins + '_> {
+        Box::new(EncoderGeneratorCoverage::default())
+    }
+}
+
+impl Bins for EncoderGeneratorCoverage {
+    fn observe(&mut self, clock: &Clock<'_>) {
+        self.observe(clock);
+    }
+
+    fn counts(&self) -> Vec<(String, u64)> {
+        named(self.counts())
+    }
+}
