@@ -15,7 +15,10 @@ use crate::emit::{self, EmitError, EmitOptions, Header, Module, Parameter};
 use crate::simulation::{Pins, Simulated, SimulationError};
 use kernel::Trace;
 use posicast_model::rtl::ClockedBlock;
-use posicast_model::rtl::trace::{ROW_SIGNALS, TraceConfig, ports, row_clocks};
+use posicast_model::rtl::trace::{TraceConfig, ports, row_clocks};
+
+/// What the port `signals` says for a row of four, the longest.
+const FOUR_SIGNALS: u8 = 2;
 
 /// The trace memory in RustHDL's own simulator.
 ///
@@ -48,7 +51,7 @@ pub fn emit(config: &TraceConfig, prefix: &str) -> Result<Vec<Module>, EmitError
                 parameter("samples", config.samples(), "words; a row has 1, 2 or 4"),
                 parameter(
                     "row_clocks",
-                    row_clocks(ROW_SIGNALS),
+                    row_clocks(FOUR_SIGNALS),
                     "from a strobe to the next, at most",
                 ),
             ],

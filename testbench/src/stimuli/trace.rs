@@ -1,7 +1,7 @@
 //! Inputs for the trace memory, seeded: every mode of the trigger, every number of signals, strobes at every pace, signals
 //! that wander about the level; arms and halts in every state, settings that change meanwhile, all addresses read.
 
-use posicast_model::rtl::trace::{Inputs, ROW_SIGNALS, State, TraceConfig, row_clocks, row_signals};
+use posicast_model::rtl::trace::{Inputs, ROW_SIGNALS, State, TraceConfig, row_clocks};
 use rand::{Rng, RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
@@ -106,7 +106,7 @@ impl TraceRandom {
         if self.until_strobe > 0 {
             return false;
         }
-        let clocks = row_clocks(row_signals(self.now.signals));
+        let clocks = row_clocks(self.now.signals);
         self.until_strobe = match self.pace {
             Pace::Row(more) => clocks + more,
             Pace::TooFast => clocks - 1,

@@ -6,12 +6,6 @@ pub const SAMPLES: [u32; 4] = [256, 512, 1024, 2048];
 pub const SIGNALS: usize = 16;
 /// Signals in a row, at most.
 pub const ROW_SIGNALS: usize = 4;
-/// Clocks from a strobe of which a row of `signals` signals is taken until the next strobe may come: the strobe, the
-/// trigger's signal, its comparison, and a clock per signal.
-pub const fn row_clocks(signals: usize) -> u32 {
-    signals as u32 + 3
-}
-
 /// Signals in a row, by what the port `signals` says: 0 one, 1 two, 2 and 3 four.
 pub const fn row_signals(code: u8) -> usize {
     match code & 3 {
@@ -19,6 +13,12 @@ pub const fn row_signals(code: u8) -> usize {
         1 => 2,
         _ => ROW_SIGNALS,
     }
+}
+
+/// Clocks from a strobe of which a row is taken until the next strobe may come, by what the port `signals` says: the
+/// strobe, the trigger's signal, its comparison, and a clock per signal.
+pub const fn row_clocks(code: u8) -> u32 {
+    row_signals(code) as u32 + 3
 }
 
 /// What is fixed when a trace memory is built: its size.
@@ -81,5 +81,6 @@ mod tests {
     fn unit_rows_share_the_memory() {
         let config = TraceConfig::new(1024).unwrap();
         assert_eq!([0, 1, 2, 3].map(|code| config.rows(code)), [1024, 512, 256, 256]);
+        assert_eq!([0, 1, 2, 3].map(row_clocks), [4, 5, 7, 7]);
     }
 }

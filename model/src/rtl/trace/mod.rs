@@ -21,7 +21,7 @@
 //! ```
 //!
 //! ```
-//! use posicast_model::rtl::trace::{Inputs, State, Trace, TraceConfig, row_clocks};
+//! use posicast_model::rtl::trace::{Inputs, State, Trace, TraceConfig};
 //!
 //! // A ramp on signal 5, taken from 100 rows before it passes 1000.
 //! let mut trace = Trace::new(&TraceConfig::new(256)?);

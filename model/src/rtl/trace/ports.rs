@@ -4,6 +4,7 @@ use super::config::{ROW_SIGNALS, SIGNALS};
 use crate::rtl::{Direction, Port};
 
 /// The input ports. Bits above a port's width are ignored.
+// Lengths as numbers: rustc 1.95 fails with an internal error where a closure captures an array of a named length by field.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Inputs {
     /// Synchronous reset.
@@ -11,9 +12,9 @@ pub struct Inputs {
     /// One clock per tick: the signals are those of this tick, and hold still for the 16 clocks from here.
     pub strobe: bool,
     /// What can be traced.
-    pub signal: [i32; SIGNALS],
+    pub signal: [i32; 16],
     /// Which signals a row has, in its order, 4 bits each.
-    pub select: [u8; ROW_SIGNALS],
+    pub select: [u8; 4],
     /// Signals in a row: 0 one, 1 two, 2 and 3 four. Taken at `arm`.
     pub signals: u8,
     /// A row is taken of the first strobe and then of every (n + 1)th.
