@@ -24,13 +24,15 @@ mod derive;
 mod law;
 mod schedule;
 mod supervision;
+mod supervision_error;
 
 pub use conditions::ControlWarning;
 pub use culprit::Culprit;
 pub use derive::{Derived, gains, loop_lag_s};
 pub use law::{COMMAND_FRACTION, FloatController, Gains, Response, Tracking};
 pub use schedule::{CAPTURE_CLOCKS, Schedule, ScheduleError, schedule_delay_s};
-pub use supervision::{Supervision, SupervisionError, supervision};
+pub use supervision::{Supervision, supervision};
+pub use supervision_error::SupervisionError;
 
 use crate::rtl::sliding_mode::{GainError, Row};
 
