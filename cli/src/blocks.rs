@@ -5,16 +5,18 @@ use crate::command::{self, Words};
 use crate::control::AxisControl;
 use crate::failure::Failure;
 use posicast_hdl::machine::AxisShaper;
+use posicast_model::control;
 use posicast_model::rtl::cascade::CascadeConfig;
 use posicast_model::rtl::component::{Component, ComponentError};
 use posicast_model::rtl::divider::DividerConfig;
-use posicast_model::rtl::pwm::{ActiveLow, Mode, PwmConfig, PwmConfigError};
+use posicast_model::rtl::pwm::{ActiveLow, PwmConfig};
 use posicast_model::rtl::registers::RegisterMap;
 use posicast_model::rtl::shaper::{MOTION_WORD_BITS, Motion, ShaperConfig};
-use posicast_model::spec::{Axis, Machine, Pwm, PwmMode};
+use posicast_model::rtl::trace::TraceConfig;
+use posicast_model::spec::{Axis, Machine};
 use posicast_testbench::blocks::{
-    AxisBlock, Block, CascadeBlock, ComponentBlock, DividerBlock, MachineShapers, PulseCounterBlock, PwmBlock,
-    RegistersBlock, SegmentsBlock, ShaperBlock, SlidingModeBlock,
+    AxisBlock, Block, CascadeBlock, ComponentBlock, DividerBlock, DriveCommandBlock, MachineShapers, PulseCounterBlock,
+    PwmBlock, RegistersBlock, SegmentsBlock, ShaperBlock, SlidingModeBlock, TraceBlock,
 };
 use std::path::Path;
 
@@ -26,6 +28,8 @@ const CASCADE_DELAYS_SAMPLES: [u32; 4] = [26, 31, 38, 62];
 const CASCADE_WORD_BITS: u32 = 32;
 /// Dead time and minimum pulse of the PWM that is compared where no axis has one.
 const PWM_FLOORS_CLOCKS: [u64; 2] = [2, 1];
+/// Words of the trace memory that is compared.
+const TRACE_SAMPLES: u64 = 1024;
 /// The shaper for motion that is compared where no axis has one: position, velocity and acceleration share a table.
 const MOTION: Motion = Motion {
     channels: 3,
@@ -69,6 +73,9 @@ pub(crate) fn others(
     blocks.push(Box::new(CascadeBlock::new(cascade, name)));
     blocks.push(Box::new(SegmentsBlock::new(name, "alone")));
     blocks.push(Box::new(AxisBlock::new(name, "alone")));
+    blocks.push(Box::new(DriveCommandBlock::new(name, "alone")));
+    let trace = TraceConfig::new(TRACE_SAMPLES).map_err(Failure::because)?;
+    blocks.push(Box::new(TraceBlock::new(trace, name)));
     let components = components(machine, shapers, controllers, path)?;
     let mut maps: Vec<&RegisterMap> = Vec::new();
     for map in components.iter().map(|component| component.component().map()) {
@@ -125,9 +132,10 @@ pub(crate) fn components(
             of_axis.push(Component::pulse_counter(divider, encoder.filter_clocks).map_err(refused)?);
         }
         if let Some(pwm) = &axis.pwm {
-            let config = pwm_config(machine, pwm).map_err(|error| Failure::because(error).in_file(path))?;
+            let config =
+                control::pwm_config(pwm, &machine.clock).map_err(|error| Failure::because(error).in_file(path))?;
             let period_clocks = pwm.period_clocks(&machine.clock);
-            of_axis.push(Component::pwm(config, hardware_mode(pwm.mode), period_clocks).map_err(refused)?);
+            of_axis.push(Component::pwm(config, control::pwm_mode(pwm.mode), period_clocks).map_err(refused)?);
         }
         if let Some(control) = control {
             let (settings, law) = (&control.derived.settings, control.derived.law);
@@ -142,16 +150,6 @@ pub(crate) fn components(
     Ok(components)
 }
 
-/// The mode's register value.
-fn hardware_mode(mode: PwmMode) -> Mode {
-    match mode {
-        PwmMode::Direction => Mode::Direction,
-        PwmMode::HalfBridge => Mode::HalfBridge,
-        PwmMode::FullBridge => Mode::Unipolar,
-        PwmMode::LockedAntiphase => Mode::Locked,
-    }
-}
-
 /// The PWMs of the machine, each with the axes that have one like it; one of its own where no axis has any.
 fn pwms(machine: &Machine, path: &Path) -> Result<Vec<(PwmConfig, String)>, Failure> {
     let mut found: Vec<(PwmConfig, String)> = Vec::new();
@@ -159,7 +157,7 @@ fn pwms(machine: &Machine, path: &Path) -> Result<Vec<(PwmConfig, String)>, Fail
         let Some(pwm) = &axis.pwm else {
             continue;
         };
-        let config = pwm_config(machine, pwm).map_err(|error| Failure::because(error).in_file(path))?;
+        let config = control::pwm_config(pwm, &machine.clock).map_err(|error| Failure::because(error).in_file(path))?;
         match found.iter_mut().find(|(other, _)| *other == config) {
             Some((_, axes)) => {
                 axes.push_str(", ");
@@ -174,24 +172,6 @@ fn pwms(machine: &Machine, path: &Path) -> Result<Vec<(PwmConfig, String)>, Fail
         found.push((config, "alone".to_owned()));
     }
     Ok(found)
-}
-
-/// What is fixed in an axis's PWM: all pins have one polarity, and what the file asks for is the least that a register takes.
-fn pwm_config(machine: &Machine, pwm: &Pwm) -> Result<PwmConfig, PwmConfigError> {
-    let low = pwm.active_low;
-    let active_low = ActiveLow {
-        a_high: low,
-        a_low: low,
-        b_high: low,
-        b_low: low,
-    };
-    // The hardware has at least one clock of each.
-    let floor = |clocks: u32| u64::from(clocks.max(1));
-    let (dead_time, minimum_pulse) = (
-        pwm.dead_time_clocks(&machine.clock),
-        pwm.minimum_pulse_clocks(&machine.clock),
-    );
-    PwmConfig::new(active_low, floor(dead_time), floor(minimum_pulse))
 }
 
 /// The names of the axes that have something, or `alone` where none has it.

@@ -45,7 +45,7 @@ pub(crate) fn of_machine(
         let component = shaper.map(|top| machine::component_shaper(axis, &top));
         let shape_clocks = component.as_ref().map_or(0, |c| c.pass_clocks(c.most_products()));
         let schedule = Schedule::controlling(shape_clocks);
-        let lag_s = control::loop_lag_s(drive, control::schedule_delay_s(&machine.clock, pwm, &schedule));
+        let lag_s = control::loop_lag_s(drive, control::schedule_delay_s(&machine.clock, pwm, schedule.clocks()));
         let derived = control::gains(axis, machine.clock, lag_s)
             .map_err(|error| machine::at_key(path, index, &error.key(), &error))?;
         let supervision = control::supervision(axis, &machine.clock, tables.table.longest_delay_samples())

@@ -1,48 +1,93 @@
-//! The blocks that stand alone, each with its registers on an Avalon-MM agent.
+//! Blocks behind registers on an Avalon-MM agent: those that stand alone, and the stage.
 //!
 //! What is in a component and how it is joined says `posicast_model::rtl::component`; here are the modules and the top
 //! around them.
 
-use crate::emit::{EmitError, Header, Module, connect};
-use crate::{divider, pulse_counter, pwm, registers, sample_select, setting_banks, shaper, sliding_mode, time_base};
-use posicast_model::rtl::component::{Block, Component};
+use crate::emit::{Cause, EmitError, Header, Module, connect, print};
+use crate::{
+    axis, divider, divider_share, drive_command, group, pulse_counter, pwm, registers, sample_select, schedule,
+    segments, setting_banks, shaper, sliding_mode, time_base,
+};
+use posicast_model::rtl::component::{Block, Component, Joined};
 
 /// All Verilog modules of a component, sub-modules first, the top last. The top is called `name`, the others begin with it.
 ///
 /// # Errors
 /// [`EmitError`] where `name` makes no Verilog name.
 pub fn emit(component: &Component, name: &str) -> Result<Vec<Module>, EmitError> {
+    let map = component.map();
+    let header = Header {
+        about: format!("{}\nAvalon-MM agent avs_*: see docs/registers.md.", map.about()),
+        parameters: registers::parameters(map),
+    };
+    joined(component.whole(), name, name, &header)
+}
+
+/// The modules of blocks joined to the module `top`. Modules that are the same for all axes begin with `stage`, and are
+/// there once.
+fn joined(whole: &Joined, top: &str, stage: &str, header: &Header) -> Result<Vec<Module>, EmitError> {
     let mut modules: Vec<Module> = Vec::new();
     let mut tops = Vec::new();
-    for block in component.blocks() {
-        let of_block = match block {
-            Block::Registers => vec![registers::emit(component.map(), name)?],
-            Block::Shaper(config) => shaper::emit(config, name)?,
-            Block::SampleSelect { word_bits, channels } => sample_select::emit(*word_bits, *channels, name)?,
-            Block::Pwm(config) => pwm::emit(config, name)?,
-            Block::SlidingMode => sliding_mode::emit(name)?,
-            Block::SettingBanks(machine) => setting_banks::emit(machine, name)?,
-            Block::PulseCounter => pulse_counter::emit(name)?,
-            Block::Divider(config) => divider::emit(config, name)?,
-            Block::TimeBase(config) => time_base::emit(config, name)?,
-        };
+    for block in whole.blocks() {
+        let of_block = self::block(block, if block.is_common() { stage } else { top }, stage)?;
         tops.extend(of_block.last().cloned());
-        modules.extend(of_block);
+        for module in of_block {
+            share(&mut modules, module, top)?;
+        }
     }
-    let top = connect(
-        name,
-        &header(component),
-        component.composition(),
+    modules.push(connect(
+        top,
+        header,
+        whole.composition(),
         &tops.iter().collect::<Vec<_>>(),
-    )?;
-    modules.push(top);
+    )?);
     Ok(modules)
 }
 
-fn header(component: &Component) -> Header {
-    let map = component.map();
-    Header {
-        about: format!("{}\nAvalon-MM agent avs_*: see docs/registers.md.", map.about()),
-        parameters: registers::parameters(map),
+/// Adds a module, unless it is there: parts that several blocks use, and blocks that several axes do, are one module.
+fn share(modules: &mut Vec<Module>, module: Module, top: &str) -> Result<(), EmitError> {
+    let Some(there) = modules.iter_mut().find(|there| there.name == module.name) else {
+        modules.push(module);
+        return Ok(());
+    };
+    if there.text != module.text {
+        let [kept, other] = [&there.text, &module.text].map(|text| print::without_part_of(text));
+        if kept != other {
+            let cause = Cause::NameCollision {
+                name: module.name.clone(),
+                other: "another module".to_owned(),
+            };
+            return Err(EmitError::new(top, &module.name, cause));
+        }
+        there.text = kept;
+    }
+    Ok(())
+}
+
+/// The modules of one block, its top last.
+fn block(block: &Block, prefix: &str, stage: &str) -> Result<Vec<Module>, EmitError> {
+    match block {
+        Block::Registers(map) => Ok(vec![registers::emit(map, prefix)?]),
+        Block::Shaper(config) => shaper::emit(config, prefix),
+        Block::SampleSelect { word_bits, channels } => sample_select::emit(*word_bits, *channels, prefix),
+        Block::Pwm(config) => pwm::emit(config, prefix),
+        Block::SlidingMode => sliding_mode::emit(prefix),
+        Block::SettingBanks(machine) => setting_banks::emit(machine, prefix),
+        Block::PulseCounter => pulse_counter::emit(prefix),
+        Block::Divider(config) => divider::emit(config, prefix),
+        Block::TimeBase(config) => time_base::emit(config, prefix),
+        Block::Segments => segments::emit(prefix),
+        Block::Axis => axis::emit(prefix),
+        Block::DriveCommand => drive_command::emit(prefix),
+        Block::DividerShare(channels) => divider_share::emit(*channels, prefix),
+        Block::Schedule(config) => schedule::emit(config, prefix),
+        Block::Group(axes) => group::emit(*axes, prefix),
+        Block::Joined(whole) => {
+            let header = Header {
+                about: format!("Axis {} of the stage, without its registers.", whole.name()),
+                parameters: Vec::new(),
+            };
+            joined(whole, &format!("{prefix}_{}", whole.name()), stage, &header)
+        }
     }
 }

@@ -19,7 +19,12 @@
 //! | [`component`] | the blocks that stand alone, each with its registers on a bus |
 //! | [`segments`] | the command FIFO: segments of constant jerk to position, velocity and acceleration |
 //! | [`pwm`] | duty to the gates of a bridge, with dead time and fault path |
+//! | [`encoder_generator`] | quadrature at a set rate in the place of the encoder's pins |
+//! | [`excitation`] | a test signal on the position reference |
 //! | [`axis`] | the supervisor of an axis: states, limits, brake, faults |
+//! | [`drive_command`] | what the PWM is told: the controller's duty, or a manual one in direct mode |
+//! | [`linear_scale`] | a motor's counts against a linear scale's: deviation, position, velocity |
+//! | [`trace`] | a memory of what an axis did, tick by tick, around a trigger |
 //! | [`machine`] | a machine's top module: the blocks of its axes, side by side |
 //! | [`emit`](mod@emit) | the typed emitter: RustHDL's syntax tree as Verilog |
 
@@ -27,7 +32,13 @@ pub mod axis;
 pub mod cascade;
 pub mod component;
 pub mod divider;
+pub mod divider_share;
+pub mod drive_command;
 pub mod emit;
+pub mod encoder_generator;
+pub mod excitation;
+pub mod group;
+pub mod linear_scale;
 pub mod machine;
 pub(crate) mod prelude;
 pub(crate) mod prim;
@@ -35,11 +46,13 @@ pub mod pulse_counter;
 pub mod pwm;
 pub mod registers;
 pub mod sample_select;
+pub mod schedule;
 pub mod segments;
 pub mod setting_banks;
 pub mod shaper;
 mod simulation;
 pub mod sliding_mode;
 pub mod time_base;
+pub mod trace;
 
 pub use simulation::SimulationError;

@@ -9,7 +9,7 @@
 //! | [`Ram`], [`Rom`] | RustHDL's `RAM` and `ROM` with two clocks, and without arbitrary contents |
 //! | `comment!` | nothing: `#[hdl_gen]` knows the macro, RustHDL has none |
 
-pub(crate) use crate::prim::{Dff, FaultLatch, Ram, Rom, RomWord, SMul, Synchroniser};
+pub(crate) use crate::prim::{Dff, FaultLatch, PinRegister, Ram, Rom, RomWord, SMul, Synchroniser};
 pub(crate) use rust_hdl_core::prelude::*;
 pub(crate) use rust_hdl_macros::{LogicBlock, hdl_gen};
 

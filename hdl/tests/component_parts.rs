@@ -5,10 +5,13 @@
 mod random;
 
 use posicast_hdl::emit::{Cause, Header, connect};
-use posicast_hdl::{divider, sample_select, setting_banks, time_base};
+use posicast_hdl::{divider, divider_share, group, sample_select, schedule, setting_banks, time_base};
 use posicast_model::rtl::composition::{Composition, Part};
 use posicast_model::rtl::divider::DividerConfig;
+use posicast_model::rtl::divider_share::DividerShare;
+use posicast_model::rtl::group::Group;
 use posicast_model::rtl::sample_select::SampleSelect;
+use posicast_model::rtl::schedule::{Schedule, ScheduleConfig};
 use posicast_model::rtl::setting_banks::SettingBanks;
 use posicast_model::rtl::sliding_mode::Settings;
 use posicast_model::rtl::time_base::TimeBase;
@@ -59,6 +62,31 @@ fn lockstep_setting_banks() {
     settings.set_limit(12345);
     let mut rusthdl = setting_banks::simulate(&settings).unwrap();
     lockstep(&mut SettingBanks::new(&settings), rusthdl.as_mut(), 10_000);
+}
+
+#[test]
+fn lockstep_schedule() {
+    for clocks in [2, 3, 60] {
+        let config = ScheduleConfig::new(clocks).unwrap();
+        let mut rusthdl = schedule::simulate(&config).unwrap();
+        lockstep(&mut Schedule::new(&config), rusthdl.as_mut(), 3000);
+    }
+}
+
+#[test]
+fn lockstep_divider_share() {
+    for channels in [1, 2, 4, 8] {
+        let mut rusthdl = divider_share::simulate(channels).unwrap();
+        lockstep(&mut DividerShare::new(channels), rusthdl.as_mut(), 3000);
+    }
+}
+
+#[test]
+fn lockstep_group() {
+    for axes in 1..=4 {
+        let mut rusthdl = group::simulate(axes).unwrap();
+        lockstep(&mut Group::new(axes), rusthdl.as_mut(), 3000);
+    }
 }
 
 #[test]

@@ -25,6 +25,7 @@ pub mod lockstep;
 mod reader;
 pub mod recording;
 pub mod register_tests;
+pub mod stage_bench;
 pub mod stimuli;
 mod tool;
 pub mod verilator;

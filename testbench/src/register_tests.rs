@@ -108,7 +108,7 @@ impl<'a> Host<'a> {
             .map
             .registers()
             .iter()
-            .position(|register| register.offset == offset)
+            .position(|register| (register.offset..register.offset + register.words()).contains(&offset))
         {
             self.expect(at, data, enabled(bytes));
         }
@@ -263,8 +263,11 @@ pub fn aliasing(host: &mut Host<'_>) -> Result<(), String> {
     for at in host.keepers() {
         host.write(host.offset(at), word(host.offset(at)), 0xf)?;
     }
-    let mapped: Vec<u32> = host.map.registers().iter().map(|register| register.offset).collect();
-    for offset in (0..256).filter(|offset| !mapped.contains(offset)) {
+    let registers = host.map.registers().iter();
+    let mapped: Vec<u32> = registers
+        .flat_map(|register| register.offset..register.offset + register.words())
+        .collect();
+    for offset in (0..1 << host.map.address_bits()).filter(|offset| !mapped.contains(offset)) {
         host.write(offset, !word(offset), 0xf)?;
         let found = host.read(offset)?;
         if found != 0 {

@@ -1,13 +1,16 @@
 //! The list of what is measured: a new block is a new row here.
 
 use posicast_hdl::emit::Module;
-use posicast_hdl::{axis, cascade, divider, pulse_counter, pwm, registers, segments, shaper, sliding_mode};
+use posicast_hdl::{
+    axis, cascade, divider, drive_command, pulse_counter, pwm, registers, segments, shaper, sliding_mode, trace,
+};
 use posicast_model::rtl::cascade::CascadeConfig;
 use posicast_model::rtl::component::Component;
 use posicast_model::rtl::divider::DividerConfig;
 use posicast_model::rtl::pwm::{ActiveLow, Mode, PwmConfig};
 use posicast_model::rtl::shaper::{Motion, ShaperConfig};
 use posicast_model::rtl::sliding_mode::{Law, Settings};
+use posicast_model::rtl::trace::TraceConfig;
 use posicast_model::taps::{Tap, TapTable};
 use std::error::Error;
 
@@ -94,6 +97,23 @@ pub(crate) fn rows() -> Result<Vec<Row>, Box<dyn Error>> {
             budget: None,
             in_xy_stage: 2,
             note: "Comparisons of 32 bits: two soft limits, three sizes against their limits; each is a carry chain.",
+        },
+        Row {
+            block: "drive_command",
+            size: "",
+            modules: drive_command::emit("")?,
+            budget: None,
+            in_xy_stage: 2,
+            note: "",
+        },
+        Row {
+            block: "trace",
+            size: "1024 samples",
+            modules: trace::emit(&TraceConfig::new(1024)?, "")?,
+            budget: None,
+            in_xy_stage: 0,
+            note: "320 LUT choose one of 16 signals of 32 bits; signals that are tied go. Not in the sum: `[axis.trace]` is an \
+                   option.",
         },
         Row {
             block: "shaper",

@@ -5,6 +5,7 @@
 
 mod dff;
 mod fault_latch;
+mod pin_register;
 mod ram;
 mod rom;
 mod smul;
@@ -12,6 +13,7 @@ mod synchroniser;
 
 pub(crate) use dff::Dff;
 pub(crate) use fault_latch::FaultLatch;
+pub(crate) use pin_register::PinRegister;
 pub(crate) use ram::Ram;
 pub(crate) use rom::{Rom, RomWord};
 pub(crate) use smul::SMul;

@@ -69,6 +69,18 @@ pub(super) fn register_block(lines: &mut Lines, map: &RegisterMap, register: &Re
                 }
             });
         }
+        Access::Words { strobe, word, words } => {
+            title(lines);
+            clocked(lines, &flops, "else", |lines| {
+                lines.line(&format!("{strobe} <= write_{name} && whole;"));
+                lines.nest(&format!("if (write_{name} && whole) begin"), "end", |lines| {
+                    lines.line(&format!("{word} <= avs_address[{}:0];", words.trailing_zeros() - 1));
+                    for field in fields {
+                        lines.line(&format!("{} <= {};", field.name, part("avs_writedata", field)));
+                    }
+                });
+            });
+        }
         Access::Sticky | Access::InterruptState => {
             title(lines);
             let prefix = sticky_prefix(register);
@@ -152,6 +164,10 @@ pub(super) fn flops(register: &Register) -> Vec<Flop> {
         Access::Configuration | Access::Guarded { .. } => fields(""),
         Access::Staged => [fields("staged_"), fields("")].concat(),
         Access::Command { strobe } => [vec![(bits(1), strobe.clone(), 0)], fields("")].concat(),
+        Access::Words { strobe, word, words } => {
+            let place = (bits(words.trailing_zeros()), word.clone(), 0);
+            [vec![(bits(1), strobe.clone(), 0), place], fields("")].concat()
+        }
         Access::Sticky | Access::InterruptState => fields(sticky_prefix(register)),
         Access::InterruptEnable => fields("irq_enable_"),
         Access::Commit { .. } => vec![(bits(1), "waits".to_owned(), 0)],

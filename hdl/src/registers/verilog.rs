@@ -111,11 +111,12 @@ fn offsets(lines: &mut Lines, map: &RegisterMap) {
         .map(|register| register.name.len())
         .max()
         .unwrap_or(0);
+    let (width, high) = (map.address_bits(), map.address_bits() - 1);
     lines.line("// Words of the window.");
     for register in map.registers() {
         let name = register.name.to_uppercase();
         lines.line(&format!(
-            "localparam [7:0] {name:longest$} = 8'h{:02x};",
+            "localparam [{high}:0] {name:longest$} = {width}'h{:02x};",
             register.offset
         ));
     }
@@ -157,7 +158,14 @@ fn writes(lines: &mut Lines, map: &RegisterMap) {
         }
         for register in writables(map) {
             let (name, constant) = (&register.name, register.name.to_uppercase());
-            lines.line(&format!("wire write_{name} = avs_write && avs_address == {constant};"));
+            let (address, constant) = match register.words().trailing_zeros() {
+                0 => ("avs_address".to_owned(), constant),
+                low => {
+                    let range = format!("[{}:{low}]", map.address_bits() - 1);
+                    (format!("avs_address{range}"), format!("{constant}{range}"))
+                }
+            };
+            lines.line(&format!("wire write_{name} = avs_write && {address} == {constant};"));
         }
     });
     lines.section(|lines| {
@@ -249,7 +257,7 @@ fn read_value(map: &RegisterMap, register: &Register) -> Option<Vec<String>> {
         Access::Sticky | Access::InterruptState => named(sticky_prefix(register)),
         Access::InterruptEnable => named("irq_enable_"),
         Access::Commit { .. } => Some(vec!["31'd0".to_owned(), "waits".to_owned()]),
-        Access::Command { .. } | Access::Snapshot | Access::InterruptTest => None,
+        Access::Command { .. } | Access::Words { .. } | Access::Snapshot | Access::InterruptTest => None,
     }
 }
 

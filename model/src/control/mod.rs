@@ -23,6 +23,7 @@ mod culprit;
 mod derive;
 mod law;
 mod schedule;
+mod stage;
 mod supervision;
 mod supervision_error;
 
@@ -31,6 +32,7 @@ pub use culprit::Culprit;
 pub use derive::{Derived, gains, loop_lag_s};
 pub use law::{COMMAND_FRACTION, FloatController, Gains, Response, Tracking};
 pub use schedule::{CAPTURE_CLOCKS, Schedule, ScheduleError, schedule_delay_s};
+pub use stage::{MachineStage, MachineStageError, pwm_config, pwm_mode, stage};
 pub use supervision::{Supervision, supervision};
 pub use supervision_error::SupervisionError;
 

@@ -93,7 +93,8 @@ impl fmt::Display for Schedule {
     }
 }
 
-/// Delay in s from the position that is captured at a tick to the duty that it leads to, as the loop feels it.
+/// Delay in s from the position that is captured at a tick to the duty that it leads to, as the loop feels it, if that takes
+/// `schedule_clocks`.
 ///
 /// | part | why |
 /// |---|---|
@@ -113,11 +114,11 @@ impl fmt::Display for Schedule {
 ///     minimum_pulse_s: 0.0,
 ///     active_low: false,
 /// };
-/// let delay_s = schedule_delay_s(&clock, &pwm, &Schedule::controlling(38));
+/// let delay_s = schedule_delay_s(&clock, &pwm, Schedule::controlling(38).clocks());
 /// assert!((delay_s - 150e-6).abs() < 1e-12);
 /// ```
-pub fn schedule_delay_s(clock: &Clock, pwm: &Pwm, schedule: &Schedule) -> f64 {
-    let periods = schedule.clocks() / pwm.period_clocks(clock).max(1) + 1;
+pub fn schedule_delay_s(clock: &Clock, pwm: &Pwm, schedule_clocks: u32) -> f64 {
+    let periods = schedule_clocks / pwm.period_clocks(clock).max(1) + 1;
     f64::from(periods) / pwm.frequency_hz + clock.sample_period_s()
 }
 
@@ -165,7 +166,7 @@ mod tests {
             minimum_pulse_s: 0.0,
             active_low: false,
         };
-        let delay_s = schedule_delay_s(&clock, &pwm, &Schedule::controlling(38));
+        let delay_s = schedule_delay_s(&clock, &pwm, Schedule::controlling(38).clocks());
         assert!((delay_s - 20e-6).abs() < 1e-12, "{delay_s}");
     }
 }

@@ -15,6 +15,7 @@
 //! The figures in [`response`] are measured on these states, by another way than the pole sums of [`crate::analysis`]: two
 //! witnesses for one shaper.
 
+pub mod axis;
 pub mod response;
 
 use nalgebra::{Matrix2, Vector2};

@@ -31,7 +31,7 @@
 //! ```
 
 use super::shaper::wrap;
-use super::{ClockedBlock, Direction, Moore, Port, StepError};
+use super::{ClockedBlock, Direction, FOREVER, Moore, Port, StepError};
 
 /// Width of `steps`.
 pub const STEP_BITS: u32 = 18;
@@ -248,6 +248,30 @@ impl Moore for Divider {
         for (output, value) in outputs.iter_mut().zip(self.outputs().to_raw()) {
             *output = value;
         }
+    }
+
+    fn quiet_clocks(&self, inputs: &[u64]) -> u64 {
+        let &[rst, start, _, _, clear_flags] = inputs else {
+            return 0;
+        };
+        let clears = clear_flags & 1 != 0 && self.shown.overrun;
+        if rst & 1 != 0 || start & 1 != 0 || clears || self.shown.done {
+            return 0;
+        }
+        match self.clocks_left {
+            0 => FOREVER,
+            left => u64::from(left - 1),
+        }
+    }
+
+    fn pass(&mut self, _inputs: &[u64], clocks: u64) {
+        if self.clocks_left > 0 {
+            self.clocks_left -= clocks as u32;
+        }
+    }
+
+    fn ignores(&self, input: &str) -> bool {
+        matches!(input, "steps" | "elapsed")
     }
 }
 

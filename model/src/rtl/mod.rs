@@ -8,16 +8,28 @@ pub mod cascade;
 pub mod component;
 pub mod composition;
 pub mod divider;
+pub mod divider_share;
+pub mod drive_command;
+pub mod encoder_generator;
+pub mod excitation;
+pub mod group;
+pub mod linear_scale;
+mod moore;
 pub mod pulse_counter;
 pub mod pwm;
 pub mod registers;
 pub mod sample_select;
+pub mod schedule;
 pub mod segments;
 pub mod setting_banks;
 pub mod shaper;
 pub mod sliding_mode;
+pub mod stage;
 pub mod time_base;
+pub mod trace;
 pub mod word;
+
+pub use moore::{FOREVER, Moore, OutputKind};
 
 /// Direction of a port, seen from the block.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -59,13 +71,4 @@ pub trait ClockedBlock {
     /// # Errors
     /// [`StepError`] where a simulator fails; a model never does.
     fn step(&mut self, inputs: &[u64], outputs: &mut [u64]) -> Result<(), StepError>;
-}
-
-/// A block whose outputs are registers: they are known before its inputs are.
-///
-/// That is what lets blocks be [composed](composition) without looking for an order. An output that depends on inputs of
-/// the same clock is shown as if these were 0; it must not feed another block.
-pub trait Moore: ClockedBlock {
-    /// Writes what the outputs show now, in port order.
-    fn show(&self, outputs: &mut [u64]);
 }

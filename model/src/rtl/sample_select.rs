@@ -6,7 +6,7 @@
 //!  pin_strobe,  pin_start,  pin_x_0 … ─┘ from_pins
 //! ```
 
-use super::{ClockedBlock, Direction, Moore, Port, StepError};
+use super::{ClockedBlock, Direction, FOREVER, Moore, Port, StepError};
 
 /// The ports in the order of the Verilog's port list, without `clk`.
 pub fn ports(word_bits: u32, channels: usize) -> Vec<Port> {
@@ -52,6 +52,20 @@ impl Moore for SampleSelect {
         for (output, value) in outputs.iter_mut().zip(&self.shown) {
             *output = *value;
         }
+    }
+
+    fn quiet_clocks(&self, inputs: &[u64]) -> u64 {
+        let [reset, from_pins, rest @ ..] = inputs else {
+            return 0;
+        };
+        let (host, pins) = rest.split_at(rest.len() / 2);
+        let selected = if from_pins & 1 != 0 { pins } else { host };
+        let stays = if reset & 1 != 0 {
+            self.shown.iter().all(|value| *value == 0)
+        } else {
+            self.shown == selected
+        };
+        if stays { FOREVER } else { 0 }
     }
 }
 

@@ -11,7 +11,7 @@
 //!   in the clock in which it is written.
 
 use super::sliding_mode::{SETTINGS, Settings};
-use super::{ClockedBlock, Direction, Moore, Port, StepError};
+use super::{ClockedBlock, Direction, FOREVER, Moore, Port, StepError};
 
 /// The ports in the order of the Verilog's port list, without `clk`.
 pub fn ports() -> Vec<Port> {
@@ -72,6 +72,22 @@ impl Moore for SettingBanks {
         for (output, value) in outputs.iter_mut().zip([self.setting.into(), self.refused.into()]) {
             *output = value;
         }
+    }
+
+    fn quiet_clocks(&self, inputs: &[u64]) -> u64 {
+        let &[reset, write, .., bank, row] = inputs else {
+            return 0;
+        };
+        let stays = self.setting == self.word(bank & 3, row as usize & 0xf) && !self.refused;
+        if reset & 1 == 0 && write & 1 == 0 && stays {
+            FOREVER
+        } else {
+            0
+        }
+    }
+
+    fn ignores(&self, input: &str) -> bool {
+        matches!(input, "setting_bank" | "setting_row" | "setting_word")
     }
 }
 

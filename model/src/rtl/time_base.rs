@@ -11,7 +11,7 @@
 //! `edge_stamp` is the lowest 24 bits of `time_stamp`, as the pulse counter wants them. All outputs are registers.
 
 use super::divider::{DividerConfig, ELAPSED_BITS};
-use super::{ClockedBlock, Direction, Moore, Port, StepError};
+use super::{ClockedBlock, Direction, Moore, OutputKind, Port, StepError};
 
 /// The ports in the order of the Verilog's port list, without `clk`.
 pub fn ports() -> Vec<Port> {
@@ -83,6 +83,25 @@ impl Moore for TimeBase {
         for (output, value) in outputs.iter_mut().zip(shown) {
             *output = value;
         }
+    }
+
+    fn output_kind(&self, output: &str) -> OutputKind {
+        match output {
+            "time_stamp" | "edge_stamp" => OutputKind::Counter,
+            _ => OutputKind::Register,
+        }
+    }
+
+    fn quiet_clocks(&self, inputs: &[u64]) -> u64 {
+        if inputs[0] & 1 != 0 || self.tick || self.divide {
+            return 0;
+        }
+        u64::from(self.tick_clocks - 1 - self.phase)
+    }
+
+    fn pass(&mut self, _inputs: &[u64], clocks: u64) {
+        self.phase += clocks as u32;
+        self.time_stamp = self.time_stamp.wrapping_add(clocks as u32);
     }
 }
 

@@ -52,13 +52,13 @@ impl ComponentBlock {
         let mut blocks: Vec<Box<dyn Block>> = Vec::new();
         for part in self.component.blocks() {
             blocks.push(match part {
-                Part::Registers => Box::new(RegistersBlock::new(self.component.map().clone(), top).called(&instance)),
-                Part::Shaper(config) => Box::new(ShaperBlock::new(config.clone(), top, &instance)?),
+                Part::Registers(map) => Box::new(RegistersBlock::new(map.as_ref().clone(), top).called(&instance)),
+                Part::Shaper(config) => Box::new(ShaperBlock::new(config.as_ref().clone(), top, &instance)?),
                 Part::PulseCounter => Box::new(PulseCounterBlock::new(top, &instance)),
                 Part::Divider(config) => Box::new(DividerBlock::new(*config, top).called(&instance)),
                 Part::Pwm(config) => Box::new(PwmBlock::new(*config, top, &instance)),
                 Part::SlidingMode => Box::new(SlidingModeBlock::new(top, &instance)),
-                Part::SampleSelect { .. } | Part::SettingBanks(_) | Part::TimeBase(_) => continue,
+                _ => continue,
             });
         }
         Ok(blocks)

@@ -16,6 +16,7 @@ mod corners;
 mod coverage;
 mod directed;
 mod divider;
+mod drive_command;
 mod layout;
 mod motion;
 mod pulse_counter;
@@ -25,6 +26,7 @@ mod registers;
 mod segments;
 mod sliding_mode;
 mod table;
+mod trace;
 
 pub use self::axis::AxisRandom;
 pub use self::axis_coverage::{AxisCoverage, AxisSafety};
@@ -33,6 +35,7 @@ pub use self::corners::corners;
 pub use self::coverage::Coverage;
 pub use self::directed::{Action, Directed, cases, motion_cases};
 pub use self::divider::{DividerCoverage, DividerRandom};
+pub use self::drive_command::{DriveCommandCoverage, DriveCommandRandom};
 pub use self::layout::{Axis, Layout};
 pub use self::motion::Motion;
 pub use self::pulse_counter::{PulseCounterCoverage, PulseCounterRandom};
@@ -41,6 +44,7 @@ pub use self::random::Random;
 pub use self::registers::{ComponentRandom, RegistersCoverage, RegistersRandom};
 pub use self::segments::{SegmentsCoverage, SegmentsRandom};
 pub use self::sliding_mode::{SlidingModeCoverage, SlidingModeRandom};
+pub use self::trace::{TraceCoverage, TraceRandom};
 
 /// Makes the inputs of the next clock.
 pub trait Stimuli {

@@ -16,6 +16,7 @@ fn description() -> Description {
         (2, 7),
         vec![Field::new("size", 0, 12, "a parameter").with_reset(0xabc)],
     )
+    .with_windows(2)
     .with("snapshot", 0x08, Snapshot, "freezes", vec![])
     .with(
         "commit",
@@ -104,6 +105,17 @@ fn description() -> Description {
         vec![],
     )
     .with(
+        "entry",
+        0x24,
+        Access::Words {
+            strobe: named("entry_write"),
+            word: named("entry_word"),
+            words: 4,
+        },
+        "a strobe with data and the word's place",
+        vec![Field::new("entry", 0, 32, "all bits")],
+    )
+    .with(
         "flags",
         0x1a,
         Sticky,
@@ -141,7 +153,7 @@ fn description() -> Description {
     .with_shadowed(
         "velocity",
         0x22,
-        0xff,
+        0x1ff,
         "how fast",
         vec![
             Field::new("velocity", 8, 20, "signed").signed(),

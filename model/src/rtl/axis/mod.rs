@@ -39,7 +39,7 @@ pub use outputs::{OUTPUT_PORTS, Outputs};
 pub use transition::{Condition, Conditions, State, TRANSITIONS, Transition, next};
 
 use self::registers::Registers;
-use super::{ClockedBlock, Direction, Moore, Port, StepError};
+use super::{ClockedBlock, Direction, FOREVER, Moore, Port, StepError};
 
 /// The word that kicks the watchdog: `KICK`, in ASCII.
 pub const KICK: u32 = 0x4b49_434b;
@@ -171,5 +171,34 @@ impl Moore for Axis {
         for (output, value) in outputs.iter_mut().zip(self.outputs().to_raw()) {
             *output = value;
         }
+    }
+
+    /// Tries a clock: one that changes nothing is followed by others like it.
+    fn quiet_clocks(&self, inputs: &[u64]) -> u64 {
+        let Ok(inputs) = <&[u64; INPUT_PORTS]>::try_from(inputs).map(Inputs::from_raw) else {
+            return 0;
+        };
+        if inputs.rst || inputs.tick || inputs.kick {
+            return 0;
+        }
+        let mut next = self.registers.clone();
+        next.clock(&inputs);
+        if next == self.registers { FOREVER } else { 0 }
+    }
+
+    /// What is watched at ticks only, and the word of a kick.
+    fn ignores(&self, input: &str) -> bool {
+        matches!(
+            input,
+            "position"
+                | "error"
+                | "command"
+                | "deviation"
+                | "limited_ticks"
+                | "command_velocity"
+                | "reference_position"
+                | "reference_velocity"
+                | "kick_word"
+        )
     }
 }

@@ -26,22 +26,22 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod joined;
 mod pulse_counter;
 mod pwm;
 mod shaper;
 mod sliding_mode;
 
+pub(crate) use self::joined::Wiring;
+pub use self::joined::{Block, Joined};
+
 use super::Moore;
-use super::composition::{Composed, Composition, CompositionError, Part};
-use super::divider::{DIVISION_CLOCKS, Divider, DividerConfig};
-use super::pulse_counter::PulseCounter;
-use super::pwm::{Mode, Pwm, PwmConfig};
-use super::registers::{Description, MapError, RegisterBank, RegisterMap};
-use super::sample_select::SampleSelect;
-use super::setting_banks::SettingBanks;
-use super::shaper::{Shaper, ShaperConfig};
-use super::sliding_mode::{Law, Settings, SlidingMode};
-use super::time_base::TimeBase;
+use super::composition::{Composed, Composition, CompositionError};
+use super::divider::{DIVISION_CLOCKS, DividerConfig};
+use super::pwm::{Mode, PwmConfig};
+use super::registers::{Description, MapError, RegisterMap};
+use super::shaper::ShaperConfig;
+use super::sliding_mode::{Law, Settings};
 
 /// Ports of the agent that are inputs, with reset.
 const BUS_INPUTS: [&str; 6] = [
@@ -55,40 +55,11 @@ const BUS_INPUTS: [&str; 6] = [
 /// Those that are outputs.
 const BUS_OUTPUTS: [&str; 2] = ["avs_readdata", "irq"];
 
-/// A block in a component, with what it is built from.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Block {
-    /// The register bank.
-    Registers,
-    /// The shaper.
-    Shaper(ShaperConfig),
-    /// Where samples come from: registers or pins.
-    SampleSelect {
-        /// Width of a word.
-        word_bits: u32,
-        /// Words per sample.
-        channels: usize,
-    },
-    /// The pulse counter.
-    PulseCounter,
-    /// Its divider.
-    Divider(DividerConfig),
-    /// Its time base.
-    TimeBase(DividerConfig),
-    /// The PWM.
-    Pwm(PwmConfig),
-    /// The controller.
-    SlidingMode,
-    /// Its settings, the machine's in bank 0.
-    SettingBanks(Box<Settings>),
-}
-
 /// A block that stands alone, with its registers.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Component {
     map: RegisterMap,
-    blocks: Vec<Block>,
-    composition: Composition,
+    joined: Joined,
 }
 
 /// Why there is no such component.
@@ -121,12 +92,11 @@ impl Component {
     /// [`ComponentError`] never, for a `config` that could be made.
     pub fn shaper(config: ShaperConfig) -> Result<Self, ComponentError> {
         let blocks = vec![
-            Block::Registers,
             Block::SampleSelect {
                 word_bits: config.word_bits(),
                 channels: config.channels(),
             },
-            Block::Shaper(config.clone()),
+            Block::Shaper(Box::new(config.clone())),
         ];
         let wiring = shaper::wiring(&config);
         Self::new(super::registers::maps::shaper(&config), blocks, wiring)
@@ -143,12 +113,7 @@ impl Component {
         if filter_clocks > 63 {
             return Err(ComponentError::Filter(filter_clocks));
         }
-        let blocks = vec![
-            Block::Registers,
-            Block::TimeBase(divider),
-            Block::PulseCounter,
-            Block::Divider(divider),
-        ];
+        let blocks = vec![Block::TimeBase(divider), Block::PulseCounter, Block::Divider(divider)];
         let map = super::registers::maps::pulse_counter(&divider, filter_clocks);
         Self::new(map, blocks, pulse_counter::wiring())
     }
@@ -159,7 +124,6 @@ impl Component {
     /// [`ComponentError`] never.
     pub fn sliding_mode(settings: &Settings, law: Law, modulo: bool) -> Result<Self, ComponentError> {
         let blocks = vec![
-            Block::Registers,
             Block::SampleSelect {
                 word_bits: 32,
                 channels: sliding_mode::MOTION.len(),
@@ -180,7 +144,6 @@ impl Component {
             return Err(ComponentError::Period(period_clocks));
         }
         let blocks = vec![
-            Block::Registers,
             Block::SampleSelect {
                 word_bits: pwm::DUTY_BITS,
                 channels: 1,
@@ -192,25 +155,32 @@ impl Component {
     }
 
     fn new(description: Description, blocks: Vec<Block>, wiring: Wiring) -> Result<Self, ComponentError> {
-        let map = RegisterMap::new(description)?;
-        let parts = blocks
-            .iter()
-            .map(|block| (wiring.part)(block, Part::new(block.name(), block.model(&map, 0).ports())));
-        let (inputs, outputs): (Vec<&str>, Vec<&str>) = (
-            BUS_INPUTS
-                .into_iter()
-                .chain(wiring.inputs.iter().map(String::as_str))
-                .collect(),
-            BUS_OUTPUTS
-                .into_iter()
-                .chain(wiring.outputs.iter().map(String::as_str))
-                .collect(),
-        );
-        let composition = Composition::new(parts.collect(), &inputs, &outputs)?;
+        let name = description.name.clone();
+        let blocks = blocks.into_iter().map(|block| (block.name().to_owned(), block));
+        Self::joined(RegisterMap::new(description)?, &name, blocks.collect(), wiring)
+    }
+
+    /// A bank of `map`, and blocks, each under the name of its part.
+    pub(super) fn joined(
+        map: RegisterMap,
+        name: &str,
+        blocks: Vec<(String, Block)>,
+        wiring: Wiring,
+    ) -> Result<Self, ComponentError> {
+        let bank = ("registers".to_owned(), Block::Registers(Box::new(map.clone())));
+        let blocks = [vec![bank], blocks].concat();
+        let bus = |pins: &[&str], more: Vec<String>| {
+            let pins = pins.iter().map(|pin| (*pin).to_owned());
+            pins.chain(more).collect()
+        };
+        let wiring = Wiring {
+            inputs: bus(&BUS_INPUTS, wiring.inputs),
+            outputs: bus(&BUS_OUTPUTS, wiring.outputs),
+            part: wiring.part,
+        };
         Ok(Self {
             map,
-            blocks,
-            composition,
+            joined: Joined::new(name, blocks, wiring)?,
         })
     }
 
@@ -225,59 +195,27 @@ impl Component {
     }
 
     /// Its blocks, the bank first.
-    pub fn blocks(&self) -> &[Block] {
-        &self.blocks
+    pub fn blocks(&self) -> impl Iterator<Item = &Block> {
+        self.joined.blocks()
     }
 
     /// How they are joined: one part per block, in order.
     pub fn composition(&self) -> &Composition {
-        &self.composition
+        self.joined.composition()
+    }
+
+    /// Its blocks, joined.
+    pub fn whole(&self) -> &Joined {
+        &self.joined
     }
 
     /// The model of the whole, after reset. `seed` gives the arbitrary contents of its memories.
     pub fn model(&self, seed: u64) -> Composed {
-        let blocks = self.blocks.iter().map(|block| block.model(&self.map, seed));
-        Composed::new(self.composition.clone(), blocks.collect())
-    }
-}
-
-/// Puts the ports of a block on other nets than those of their names.
-type Rewire = Box<dyn Fn(&Block, Part) -> Part>;
-
-/// What is not connected by name alone, and the conduit pins.
-struct Wiring {
-    part: Rewire,
-    inputs: Vec<String>,
-    outputs: Vec<String>,
-}
-
-impl Block {
-    /// Its name, as in the Verilog.
-    pub fn name(&self) -> &'static str {
-        match self {
-            Self::Registers => "registers",
-            Self::Shaper(_) => "shaper",
-            Self::SampleSelect { .. } => "sample_select",
-            Self::Pwm(_) => "pwm",
-            Self::SlidingMode => "sliding_mode",
-            Self::SettingBanks(_) => "setting_banks",
-            Self::PulseCounter => "pulse_counter",
-            Self::Divider(_) => "divider",
-            Self::TimeBase(_) => "time_base",
-        }
+        self.joined.model(seed)
     }
 
-    fn model(&self, map: &RegisterMap, seed: u64) -> Box<dyn Moore> {
-        match self {
-            Self::Registers => Box::new(RegisterBank::new(map)),
-            Self::Shaper(config) => Box::new(Shaper::new(config, seed)),
-            Self::SampleSelect { word_bits, channels } => Box::new(SampleSelect::new(*word_bits, *channels)),
-            Self::Pwm(config) => Box::new(Pwm::new(config)),
-            Self::SlidingMode => Box::new(SlidingMode::new()),
-            Self::SettingBanks(machine) => Box::new(SettingBanks::new(machine)),
-            Self::PulseCounter => Box::new(PulseCounter::new()),
-            Self::Divider(config) => Box::new(Divider::new(config)),
-            Self::TimeBase(config) => Box::new(TimeBase::new(config)),
-        }
+    /// The models of its blocks, in order, after reset.
+    pub fn block_models(&self, seed: u64) -> Vec<Box<dyn Moore>> {
+        self.blocks().map(|block| block.model(seed)).collect()
     }
 }

@@ -6,7 +6,7 @@ use super::{Block, Wiring};
 const INPUTS: [&str; 6] = ["a", "b", "z", "a_n", "b_n", "z_n"];
 const OUTPUTS: [&str; 4] = ["tick", "position", "velocity", "velocity_valid"];
 
-pub(super) fn wiring() -> Wiring {
+pub(super) fn wiring() -> Wiring<'static> {
     Wiring {
         part: Box::new(|block, part| match block {
             Block::PulseCounter => part.on("time_stamp", "edge_stamp"),

@@ -14,7 +14,7 @@ const OUTPUTS: [&str; 9] = [
 /// Bits of a duty.
 pub(super) const DUTY_BITS: u32 = 17;
 
-pub(super) fn wiring() -> Wiring {
+pub(super) fn wiring() -> Wiring<'static> {
     Wiring {
         part: Box::new(part),
         inputs: INPUTS.map(str::to_owned).to_vec(),

@@ -7,7 +7,7 @@ use super::super::registers::maps::word_name;
 use super::super::shaper::ShaperConfig;
 use super::{Block, Wiring};
 
-pub(super) fn wiring(config: &ShaperConfig) -> Wiring {
+pub(super) fn wiring(config: &ShaperConfig) -> Wiring<'static> {
     let strobes = ["strobe", "start"].map(str::to_owned);
     Wiring {
         part: Box::new(rewire(words(config, "x"))),

@@ -14,7 +14,7 @@ pub(super) const MOTION: [&str; 5] = [
 /// Conduit pins.
 const OUTPUTS: [&str; 3] = ["command", "duty", "valid"];
 
-pub(super) fn wiring() -> Wiring {
+pub(super) fn wiring() -> Wiring<'static> {
     Wiring {
         part: Box::new(part),
         inputs: ["start"].into_iter().chain(MOTION).map(str::to_owned).collect(),

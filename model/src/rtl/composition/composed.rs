@@ -1,69 +1,66 @@
-//! The blocks of a composition, stepped together.
+//! The blocks of a composition, clocked together: each only when something happens in it.
 
-use super::{Composition, Connection};
-use crate::rtl::{ClockedBlock, Direction, Moore, Port, StepError};
+use super::member::Member;
+use super::wire::Wire;
+use super::{Composition, Net};
+use crate::rtl::{ClockedBlock, Direction, Moore, OutputKind, Port, StepError};
 
-/// A block while it is stepped.
-struct Member {
-    block: Box<dyn Moore>,
-    /// For each input: net, or the constant that it is tied to.
-    inputs_from: Vec<Connection>,
-    /// For each output: its net.
-    outputs_to: Vec<usize>,
-    inputs: Vec<u64>,
-    outputs: Vec<u64>,
-}
-
-/// The model of a composition: its blocks stepped together.
+/// The model of a composition.
 ///
-/// What a block shows to others must be registers ([`Moore`]): then all nets are known before any block is clocked, in
-/// whatever order. An output that depends on inputs in the same clock may be an output of the whole only.
+/// A block sleeps while it is [quiet](Moore::quiet_clocks), and is woken by its time, or by a change of an input that it does
+/// not ignore; then it catches up. So a clock costs what happens in it, and [`hold`](Self::hold) leaves out those in which
+/// nothing does. What the outputs show is what clocking every block in every clock would give.
+///
+/// What one block shows another is registers, known before any block is clocked, in whatever order. An output that depends on
+/// inputs of the same clock ([`OutputKind::Combinational`]) may be an output of the whole, and may feed registers and
+/// combinational outputs of later parts.
+///
+/// It is [`Moore`] itself, so that compositions can be parts of others.
 pub struct Composed {
     composition: Composition,
     members: Vec<Member>,
-    nets: Vec<u64>,
+    wires: Vec<Wire>,
     input_count: usize,
-    /// Part and output of each output of the whole.
-    outputs_from: Vec<(usize, usize)>,
+    /// Net of each output of the whole.
+    output_nets: Vec<usize>,
+    /// Members with combinational outputs, in order.
+    combinational: Vec<usize>,
+    /// The clock that comes next, counted from 1.
+    now: u64,
+    /// Members that were clocked in this clock.
+    clocked: Vec<usize>,
 }
 
 impl Composed {
     /// `blocks` are those of the parts, in their order, with the parts' ports.
     pub fn new(composition: Composition, blocks: Vec<Box<dyn Moore>>) -> Self {
+        let wire = |net: &Net| match kind(&composition, &blocks, net) {
+            OutputKind::Counter => Wire::counter(net.port.width),
+            _ => Wire::default(),
+        };
+        let mut wires: Vec<Wire> = composition.nets.iter().map(wire).collect();
         let members = blocks.into_iter().zip(&composition.connections).zip(&composition.parts);
-        let members = members.map(|((block, connections), part)| {
-            let on = |direction| {
-                let all = part.ports.iter().zip(connections);
-                all.filter(move |(port, _)| port.direction == direction)
-                    .map(|(_, on)| *on)
-            };
-            let inputs_from: Vec<Connection> = on(Direction::Input).collect();
-            let nets = on(Direction::Output).filter_map(|on| match on {
-                Connection::Net(net) => Some(net),
-                Connection::Tied(_) => None,
-            });
-            let outputs_to: Vec<usize> = nets.collect();
-            Member {
-                block,
-                inputs: vec![0; inputs_from.len()],
-                outputs: vec![0; outputs_to.len()],
-                inputs_from,
-                outputs_to,
-            }
-        });
+        let members: Vec<Member> = members
+            .enumerate()
+            .map(|(at, ((block, connections), part))| Member::new(at, block, part, connections, &mut wires))
+            .collect();
         let outputs = composition
             .ports
             .iter()
             .filter(|port| port.direction == Direction::Output);
-        let driver = |port: &Port| {
-            let net = composition.nets.iter().find(|net| net.port.name == port.name);
-            net.and_then(|net| net.driver).unwrap_or_default()
-        };
+        let net = |port: &Port| composition.nets.iter().position(|net| net.port.name == port.name);
+        let combinational = members
+            .iter()
+            .enumerate()
+            .filter(|(_, member)| member.is_combinational());
         let mut composed = Self {
-            members: members.collect(),
-            nets: vec![0; composition.nets.len()],
             input_count: composition.nets.iter().filter(|net| net.driver.is_none()).count(),
-            outputs_from: outputs.map(driver).collect(),
+            output_nets: outputs.filter_map(net).collect(),
+            combinational: combinational.map(|(at, _)| at).collect(),
+            clocked: (0..members.len()).collect(),
+            members,
+            wires,
+            now: 1,
             composition,
         };
         composed.settle();
@@ -75,15 +72,142 @@ impl Composed {
         &self.composition
     }
 
-    /// Nets to what the blocks' registers show.
-    fn settle(&mut self) {
-        for member in &mut self.members {
-            member.block.show(&mut member.outputs);
-            for (net, value) in member.outputs_to.iter().zip(&member.outputs) {
-                self.nets[*net] = *value;
+    /// The place of the net of that name, for [`value`](Self::value).
+    pub fn net(&self, name: &str) -> Option<usize> {
+        self.composition.nets.iter().position(|net| net.port.name == name)
+    }
+
+    /// What a net carries in the clock that comes, as far as registers say.
+    pub fn value(&self, net: usize) -> u64 {
+        self.wires[net].at(self.now)
+    }
+
+    /// Clocks with the same inputs, for as long as the outputs stay as they are, but at most `clocks`. Puts what the outputs
+    /// show in all of them into `outputs`, and returns how many they were: at least 1, unless `clocks` is 0. The same as so
+    /// many calls of [`step`](ClockedBlock::step), in the time of those in which something happens inside.
+    ///
+    /// To run on, call it again; to know what the outputs show in the clock that comes, ask
+    /// [`show_with`](Moore::show_with).
+    ///
+    /// # Errors
+    /// [`StepError`] for a wrong number of inputs or outputs.
+    pub fn hold(&mut self, inputs: &[u64], clocks: u64, outputs: &mut [u64]) -> Result<u64, StepError> {
+        self.check(inputs, outputs)?;
+        self.show_with(inputs, outputs);
+        let counts = self.output_nets.iter().any(|net| self.wires[*net].counts());
+        let (start, most) = (self.now, if counts { clocks.min(1) } else { clocks });
+        let end = start.saturating_add(most);
+        while self.now < end {
+            let wakes = self.next_wake();
+            if wakes > self.now {
+                self.now = wakes.min(end);
+                continue;
+            }
+            self.clock()?;
+            self.combine();
+            if !self.shows(outputs) {
+                break;
+            }
+        }
+        Ok(self.now - start)
+    }
+
+    fn check(&self, inputs: &[u64], outputs: &[u64]) -> Result<(), StepError> {
+        if (inputs.len(), outputs.len()) == (self.input_count, self.output_nets.len()) {
+            return Ok(());
+        }
+        Err(StepError(format!(
+            "{} inputs and {} outputs: the composition has {} and {}",
+            inputs.len(),
+            outputs.len(),
+            self.input_count,
+            self.output_nets.len()
+        )))
+    }
+
+    /// Do the outputs show that?
+    fn shows(&self, outputs: &[u64]) -> bool {
+        let mut pairs = self.output_nets.iter().zip(outputs);
+        pairs.all(|(net, output)| self.wires[*net].at(self.now) == *output)
+    }
+
+    /// The next clock in which a member must be clocked.
+    fn next_wake(&self) -> u64 {
+        let wakes = self.members.iter().map(|member| member.wakes);
+        wakes.fold(u64::MAX, u64::min)
+    }
+
+    /// Gives a net a value from now on, and wakes who watches it.
+    #[inline]
+    fn set(&mut self, net: usize, value: u64) {
+        if self.wires[net].set(value, self.now) {
+            for watcher in &self.wires[net].watchers {
+                self.members[*watcher].wake(self.now);
             }
         }
     }
+
+    /// Combinational outputs of the members that were clocked or have new inputs.
+    fn combine(&mut self) {
+        for place in 0..self.combinational.len() {
+            let at = self.combinational[place];
+            if self.members[at].is_combined {
+                continue;
+            }
+            self.members[at].combine(&self.wires, self.now);
+            for output in 0..self.members[at].combinational_to.len() {
+                let (from, net) = self.members[at].combinational_to[output];
+                self.set(net, self.members[at].outputs[from]);
+            }
+            self.members[at].sleep(self.now);
+        }
+    }
+
+    /// Clocks all members that are awake.
+    fn clock(&mut self) -> Result<(), StepError> {
+        self.clocked.clear();
+        for (at, member) in self.members.iter_mut().enumerate() {
+            if member.wakes <= self.now {
+                member.clock(&self.wires, self.now)?;
+                self.clocked.push(at);
+            }
+        }
+        self.now += 1;
+        self.settle();
+        Ok(())
+    }
+
+    /// Nets to what the registers of the members that were clocked show; then they sleep, if their inputs let them.
+    fn settle(&mut self) {
+        for place in 0..self.clocked.len() {
+            let at = self.clocked[place];
+            let member = &mut self.members[at];
+            member.block.show(&mut member.outputs);
+            for output in 0..self.members[at].registers_to.len() {
+                let (from, net) = self.members[at].registers_to[output];
+                self.set(net, self.members[at].outputs[from]);
+            }
+        }
+        for at in &self.clocked {
+            let member = &mut self.members[*at];
+            if !member.is_combinational() {
+                member.sleep(self.now);
+            }
+        }
+    }
+}
+
+/// How a net gets its value.
+fn kind(composition: &Composition, blocks: &[Box<dyn Moore>], net: &Net) -> OutputKind {
+    let Some((part, output)) = net.driver else {
+        return OutputKind::Register;
+    };
+    let mut outputs = composition.parts[part]
+        .ports
+        .iter()
+        .filter(|port| port.direction == Direction::Output);
+    let port = outputs.nth(output);
+    port.map_or(OutputKind::Register, |port| blocks[part].output_kind(&port.name))
 }
 
 impl ClockedBlock for Composed {
@@ -92,37 +216,54 @@ impl ClockedBlock for Composed {
     }
 
     fn step(&mut self, inputs: &[u64], outputs: &mut [u64]) -> Result<(), StepError> {
-        if (inputs.len(), outputs.len()) != (self.input_count, self.outputs_from.len()) {
-            return Err(StepError(format!(
-                "{} inputs and {} outputs: the composition has {} and {}",
-                inputs.len(),
-                outputs.len(),
-                self.input_count,
-                self.outputs_from.len()
-            )));
-        }
-        self.nets[..inputs.len()].copy_from_slice(inputs);
-        for member in &mut self.members {
-            for (input, from) in member.inputs.iter_mut().zip(&member.inputs_from) {
-                *input = match from {
-                    Connection::Net(net) => self.nets[*net],
-                    Connection::Tied(value) => *value,
-                };
-            }
-            member.block.step(&member.inputs, &mut member.outputs)?;
-        }
-        for (output, (part, at)) in outputs.iter_mut().zip(&self.outputs_from) {
-            *output = self.members[*part].outputs[*at];
-        }
-        self.settle();
-        Ok(())
+        self.check(inputs, outputs)?;
+        self.show_with(inputs, outputs);
+        self.clock()
     }
 }
 
 impl Moore for Composed {
     fn show(&self, outputs: &mut [u64]) {
-        for (output, (part, at)) in outputs.iter_mut().zip(&self.outputs_from) {
-            *output = self.members[*part].outputs[*at];
+        for (output, net) in outputs.iter_mut().zip(&self.output_nets) {
+            *output = self.wires[*net].at(self.now);
         }
+    }
+
+    fn output_kind(&self, output: &str) -> OutputKind {
+        let net = self.composition.nets.iter().find(|net| net.port.name == output);
+        let part = net.and_then(|net| net.driver.map(|(part, at)| (part, at, net)));
+        part.map_or(OutputKind::Register, |(part, at, _)| self.members[part].kind(at))
+    }
+
+    fn show_with(&mut self, inputs: &[u64], outputs: &mut [u64]) {
+        for (net, value) in inputs.iter().enumerate().take(self.input_count) {
+            self.set(net, *value);
+        }
+        self.combine();
+        self.show(outputs);
+    }
+
+    fn quiet_clocks(&self, inputs: &[u64]) -> u64 {
+        let combined = self.combinational.iter().all(|at| self.members[*at].is_combined);
+        let watched = self.wires.iter().zip(inputs).take(self.input_count);
+        let mut watched = watched.filter(|(wire, _)| !wire.watchers.is_empty());
+        if combined && watched.all(|(wire, value)| wire.at(self.now) == *value) {
+            self.next_wake() - self.now
+        } else {
+            0
+        }
+    }
+
+    fn pass(&mut self, inputs: &[u64], clocks: u64) {
+        self.now += clocks;
+        for (wire, value) in self.wires.iter_mut().zip(inputs).take(self.input_count) {
+            wire.set(*value, self.now - 1);
+        }
+    }
+
+    fn ignores(&self, input: &str) -> bool {
+        let inputs = self.composition.nets.iter().zip(&self.wires).take(self.input_count);
+        let mut named = inputs.filter(|(net, _)| net.port.name == input);
+        named.all(|(_, wire)| wire.watchers.is_empty())
     }
 }

@@ -30,6 +30,8 @@
 //! ```
 
 mod composed;
+mod member;
+mod wire;
 
 pub use composed::Composed;
 

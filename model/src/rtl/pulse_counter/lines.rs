@@ -1,6 +1,7 @@
 //! A line from its pins to a clean level.
 
 use super::Inputs;
+use crate::rtl::FOREVER;
 
 /// Takes a new level once it has stood for more than `filter_clocks` clocks.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -25,6 +26,21 @@ impl GlitchFilter {
         self.level = input;
         self.left = filter_clocks & 63;
     }
+
+    /// Clocks with this input that only count, if it is ready.
+    pub(super) fn quiet_clocks(&self, input: bool, filter_clocks: u8) -> u64 {
+        match input == self.level {
+            false => self.left.into(),
+            true if self.left == filter_clocks & 63 => FOREVER,
+            true => 0,
+        }
+    }
+
+    pub(super) fn pass(&mut self, input: bool, clocks: u64) {
+        if input != self.level {
+            self.left -= clocks as u8;
+        }
+    }
 }
 
 /// One line: pin and complement through two flip-flops each, then the filter.
@@ -46,13 +62,30 @@ impl Line {
     }
 
     pub(super) fn clock(&mut self, pin: bool, complement: bool, inputs: &Inputs, ready: bool) {
-        let says = if self.disagrees(inputs.differential) {
-            self.level()
-        } else {
-            self.pin[1]
-        };
+        let says = self.says(inputs.differential);
         self.filter.clock(says, inputs.filter_clocks, ready);
         self.pin = [pin, self.pin[0]];
         self.complement = [complement, self.complement[0]];
+    }
+
+    fn says(&self, differential: bool) -> bool {
+        if self.disagrees(differential) {
+            self.level()
+        } else {
+            self.pin[1]
+        }
+    }
+
+    /// As [`GlitchFilter::quiet_clocks`].
+    pub(super) fn quiet_clocks(&self, pin: bool, complement: bool, inputs: &Inputs) -> u64 {
+        if (self.pin, self.complement) != ([pin; 2], [complement; 2]) {
+            return 0;
+        }
+        self.filter
+            .quiet_clocks(self.says(inputs.differential), inputs.filter_clocks)
+    }
+
+    pub(super) fn pass(&mut self, inputs: &Inputs, clocks: u64) {
+        self.filter.pass(self.says(inputs.differential), clocks);
     }
 }

@@ -72,6 +72,41 @@ impl State {
                 ..self.clone()
             } == *other
     }
+
+    fn disagree(&self, inputs: &Inputs) -> bool {
+        self.lines.iter().any(|line| line.disagrees(inputs.differential))
+    }
+
+    /// Clocks with these inputs in which only filters and the time count.
+    fn quiet_clocks(&self, inputs: &Inputs) -> u64 {
+        let [level_a, level_b, index_level] = [0, 1, 2].map(|line: usize| self.lines[line].level());
+        let levels = [level_a, level_b];
+        let arms = inputs.index_arm && !self.index_armed;
+        let acts = inputs.rst || inputs.tick || inputs.preset || inputs.quotient_valid || arms;
+        let flags = self.index_seen || self.illegal || self.disagreement || self.velocity.missed();
+        let clears = inputs.clear_flags && (flags || self.illegal_count > 0);
+        let steps = self.before != levels || self.index_before != (index_level && inputs.index_gate_open(levels));
+        let disagrees = self.disagreement_filter.level() && !self.disagreement;
+        let starts = self.primed != PRIMING_CLOCKS;
+        if acts || clears || steps || disagrees || starts || self.velocity.valid() {
+            return 0;
+        }
+        let filter = &self.disagreement_filter;
+        let of_filter = filter.quiet_clocks(self.disagree(inputs), inputs.filter_clocks);
+        let lines = self.lines.iter().zip(inputs.pins());
+        let of_lines = lines.map(|(line, (pin, complement))| line.quiet_clocks(pin, complement, inputs));
+        of_lines.fold(of_filter, u64::min)
+    }
+
+    /// So many of them. `inputs` are those of the last.
+    fn pass(&mut self, inputs: &Inputs, clocks: u64) {
+        let disagree = self.disagree(inputs);
+        self.disagreement_filter.pass(disagree, clocks);
+        for line in &mut self.lines {
+            line.pass(inputs, clocks);
+        }
+        self.velocity.pass_time(inputs.time_stamp);
+    }
 }
 
 /// The time stamp so many clocks after that of `inputs`.
@@ -195,7 +230,7 @@ impl PulseCounter {
         state.velocity.clock(inputs, step.then_some(event.up), count_before);
 
         state.before = levels;
-        let disagree = state.lines.iter().any(|line| line.disagrees(inputs.differential));
+        let disagree = state.disagree(inputs);
         state.disagreement_filter.clock(disagree, inputs.filter_clocks, ready);
         for (line, (pin, complement)) in state.lines.iter_mut().zip(inputs.pins()) {
             line.clock(pin, complement, inputs, ready);
@@ -228,5 +263,20 @@ impl Moore for PulseCounter {
         for (output, value) in outputs.iter_mut().zip(self.outputs().to_raw()) {
             *output = value;
         }
+    }
+
+    fn quiet_clocks(&self, inputs: &[u64]) -> u64 {
+        Inputs::from_raw(inputs).map_or(0, |inputs| self.state.quiet_clocks(&inputs))
+    }
+
+    fn pass(&mut self, inputs: &[u64], clocks: u64) {
+        if let Some(inputs) = Inputs::from_raw(inputs) {
+            self.state.pass(&inputs, clocks);
+        }
+    }
+
+    /// The time stamp counts when something happens, and in the clock before: it is among the inputs of the last clock.
+    fn ignores(&self, input: &str) -> bool {
+        matches!(input, "time_stamp" | "quotient" | "preset_value")
     }
 }

@@ -8,6 +8,7 @@
 //! | `command` | duty and mode to the width of a pulse, in the two clocks before a boundary |
 //! | [`Pwm`] | the carrier, what is latched at its boundaries, and the ports |
 //! | `leg` | dead time and minimum pulse, from any state |
+//! | `quiet` | the clocks in which only the carrier and a timer count |
 //! | `trip` | fault latch, filtered faults, PLL, watchdog |
 //! | [`pulses`] | the pin rule as a pure function: the edges of half a period, without clocks |
 //!
@@ -41,6 +42,7 @@ mod config;
 mod leg;
 mod ports;
 pub mod pulses;
+mod quiet;
 mod trip;
 
 pub use config::{ActiveLow, PwmConfig, PwmConfigError, TIME_BITS};
@@ -49,7 +51,7 @@ pub use ports::{Gates, INPUTS, Inputs, Mode, OUTPUTS, Outputs, ports};
 use self::command::{Limited, Width};
 use self::leg::{Leg, Want};
 use self::trip::Trip;
-use super::{ClockedBlock, Moore, Port, StepError};
+use super::{ClockedBlock, Port, StepError};
 
 /// Clocks before a boundary at which duty and mode are read.
 pub const COMMAND_CLOCKS: u32 = 2;
@@ -183,7 +185,7 @@ impl Pwm {
     #[inline]
     pub fn step(&mut self, inputs: &Inputs) -> Outputs {
         let outputs = self.outputs(inputs);
-        self.clock(inputs);
+        self.state.clock(&self.config, inputs);
         outputs
     }
 
@@ -193,9 +195,9 @@ impl Pwm {
         let mut left = clocks;
         while left > 0 {
             let before = self.state;
-            self.clock(inputs);
+            self.state.clock(&self.config, inputs);
             left -= 1;
-            let skipped = self.quiet_clocks(&before, inputs).min(left);
+            let skipped = self.state.more_of(&before, inputs).unwrap_or(0).min(left);
             left -= skipped;
             let state = &mut self.state;
             // At most the distance to a position of 16 bits, and to the end of the timer.
@@ -205,36 +207,13 @@ impl Pwm {
             }
         }
     }
+}
 
-    /// How many more clocks will be like the last, in which `before` became the present state.
-    fn quiet_clocks(&self, before: &State, inputs: &Inputs) -> u64 {
-        let state = &self.state;
-        let mut counted = *before;
-        counted.position = before.position.wrapping_add(1);
-        let counts = state.leg.timer != before.leg.timer;
-        if counts {
-            counted.leg.timer = before.leg.timer.wrapping_sub(1);
-        }
-        // A strobe that is on falls in the next clock.
-        let strobes = state.at_valley || state.at_peak || state.valley || state.peak || state.trigger;
-        if counted != *state || strobes || inputs.sync {
-            return 0;
-        }
-        let events = [
-            state.period.wrapping_sub(1),
-            (state.period >> 1).wrapping_sub(1),
-            state.edge_at,
-            inputs.trigger_phase,
-        ];
-        let distances = events.map(|position| position.wrapping_sub(state.position));
-        let timer = if counts { state.leg.timer } else { u16::MAX };
-        u64::from(distances.into_iter().fold(timer, u16::min))
-    }
-
-    fn clock(&mut self, inputs: &Inputs) {
-        let state = &mut self.state;
+impl State {
+    fn clock(&mut self, config: &PwmConfig, inputs: &Inputs) {
+        let state = self;
         if inputs.rst {
-            *state = State::new(&self.config);
+            *state = State::new(config);
             return;
         }
         let next = state.position.wrapping_add(1);
@@ -244,10 +223,7 @@ impl Pwm {
         let out_of_step = inputs.sync && next != inputs.phase;
         let realigns = out_of_step && !state.running;
 
-        let floors = (
-            self.config.dead_time_floor_clocks(),
-            self.config.minimum_pulse_floor_clocks(),
-        );
+        let floors = (config.dead_time_floor_clocks(), config.minimum_pulse_floor_clocks());
         let (dead_time, minimum_pulse) = (inputs.dead_time & 0x3ff, inputs.minimum_pulse & 0x3ff);
         let low = dead_time < floors.0 || minimum_pulse < floors.1;
         let (dead_time, minimum_pulse) = (dead_time.max(floors.0), minimum_pulse.max(floors.1));
@@ -302,9 +278,7 @@ impl Pwm {
         (state.at_valley, state.at_peak) = (valley && !realigns, peak && !realigns);
         state.position = if realigns { inputs.phase } else { next };
     }
-}
 
-impl State {
     /// Takes duty and mode at a boundary. `goes_on`: the outputs were on and stay on.
     fn latch(&mut self, goes_on: bool) {
         let width = self.width;
@@ -356,14 +330,5 @@ impl ClockedBlock for Pwm {
         let shown = Pwm::step(self, &Inputs::from_raw(raw));
         outputs.copy_from_slice(&shown.to_raw());
         Ok(())
-    }
-}
-
-/// The pins of the gates depend on the raw faults of the same clock, and are shown as in a fault.
-impl Moore for Pwm {
-    fn show(&self, outputs: &mut [u64]) {
-        for (output, value) in outputs.iter_mut().zip(self.outputs(&Inputs::default()).to_raw()) {
-            *output = value;
-        }
     }
 }

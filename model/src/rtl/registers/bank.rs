@@ -3,9 +3,9 @@
 mod plan;
 
 use self::plan::{Plan, plan};
-use super::description::{Access, Source, WINDOW_WORDS};
+use super::description::{Access, Source};
 use super::map::RegisterMap;
-use crate::rtl::{ClockedBlock, Direction, Moore, Port, StepError};
+use crate::rtl::{ClockedBlock, Direction, FOREVER, Moore, Port, StepError};
 
 /// What an output shows.
 #[derive(Debug, Clone, Copy)]
@@ -13,7 +13,13 @@ enum Shown {
     ReadData,
     Irq,
     Strobe(usize),
-    Field { register: usize, low: u32, ones: u32 },
+    /// Which of a register's words was written last.
+    Word(usize),
+    Field {
+        register: usize,
+        low: u32,
+        ones: u32,
+    },
 }
 
 /// Everything that is a register in hardware.
@@ -25,6 +31,8 @@ struct State {
     staged: Vec<u32>,
     /// The command whose strobe is high.
     strobe: Option<usize>,
+    /// Of commands with several words: which was written last, one per register.
+    places: Vec<u32>,
     commit_waits: bool,
     read_data: u32,
     irq: bool,
@@ -51,8 +59,8 @@ pub struct RegisterBank {
     ports: Vec<Port>,
     inputs: usize,
     plan: Vec<Plan>,
-    /// Register of each word of the window.
-    decode: Vec<Option<usize>>,
+    /// Register of each word of the windows, and the word's place in it.
+    decode: Vec<Option<(usize, u32)>>,
     outputs: Vec<Shown>,
     /// Registers that take part in every clock.
     flags: Vec<usize>,
@@ -68,9 +76,11 @@ impl RegisterBank {
     pub fn new(map: &RegisterMap) -> Self {
         let registers = map.registers();
         let plan: Vec<Plan> = (0..registers.len()).map(|at| plan(map, at)).collect();
-        let mut decode = vec![None; WINDOW_WORDS as usize];
+        let mut decode = vec![None; 1 << map.address_bits()];
         for (at, register) in registers.iter().enumerate() {
-            decode[register.offset as usize] = Some(at);
+            for place in 0..register.words() {
+                decode[(register.offset + place) as usize] = Some((at, place));
+            }
         }
         let places = |holds: fn(&Access) -> bool| {
             let all = plan.iter().enumerate();
@@ -81,6 +91,7 @@ impl RegisterBank {
             staged: words.clone(),
             words,
             strobe: None,
+            places: vec![0; plan.len()],
             commit_waits: false,
             read_data: 0,
             irq: false,
@@ -142,9 +153,7 @@ impl RegisterBank {
             return;
         }
         let data = (inputs[READ] & 1 != 0).then(|| self.read(inputs));
-        let irq = self
-            .interrupts
-            .is_some_and(|(state, enable)| self.state.words[state] & self.state.words[enable] != 0);
+        let irq = self.raises_irq();
         self.state.strobe = None;
         let applies = self.applies_commit(inputs);
         if applies {
@@ -167,26 +176,32 @@ impl RegisterBank {
         self.state.irq = irq;
     }
 
+    fn raises_irq(&self) -> bool {
+        let words = &self.state.words;
+        self.interrupts
+            .is_some_and(|(state, enable)| words[state] & words[enable] != 0)
+    }
+
     fn applies_commit(&self, inputs: &[u64]) -> bool {
         let tick = self.commit.is_some_and(|at| inputs[self.plan[at].gate] & 1 != 0);
         tick && self.state.commit_waits
     }
 
     fn read(&self, inputs: &[u64]) -> u32 {
-        let Some(at) = self.addressed(inputs) else {
+        let Some((at, _)) = self.addressed(inputs) else {
             return 0;
         };
         match self.plan[at].access {
             Access::Live => self.wired(at, inputs),
             Access::Staged => self.state.staged[at],
             Access::Commit { .. } => self.state.commit_waits.into(),
-            Access::Command { .. } | Access::Snapshot | Access::InterruptTest => 0,
+            Access::Command { .. } | Access::Words { .. } | Access::Snapshot | Access::InterruptTest => 0,
             _ => self.state.words[at],
         }
     }
 
-    fn addressed(&self, inputs: &[u64]) -> Option<usize> {
-        self.decode[inputs[ADDRESS] as usize & 0xff]
+    fn addressed(&self, inputs: &[u64]) -> Option<(usize, u32)> {
+        self.decode[inputs[ADDRESS] as usize & (self.decode.len() - 1)]
     }
 
     fn wired(&self, at: usize, inputs: &[u64]) -> u32 {
@@ -196,7 +211,7 @@ impl RegisterBank {
 
     fn write(&mut self, inputs: &[u64]) -> Refusals {
         let mut refusals = Refusals::default();
-        let Some(at) = self.addressed(inputs) else {
+        let Some((at, place)) = self.addressed(inputs) else {
             return refusals;
         };
         let plan = &self.plan[at];
@@ -220,8 +235,9 @@ impl RegisterBank {
             }
             Access::Staged if state.commit_waits => refusals.commit = true,
             Access::Staged => state.staged[at] = merged(state.staged[at]),
-            Access::Command { .. } => {
+            Access::Command { .. } | Access::Words { .. } => {
                 state.words[at] = data & plan.mask;
+                state.places[at] = place;
                 state.strobe = Some(at);
             }
             Access::Sticky | Access::InterruptState => state.words[at] &= !(data & enabled),
@@ -277,10 +293,15 @@ fn outputs(map: &RegisterMap) -> Vec<Shown> {
         "avs_readdata" => Some(Shown::ReadData),
         "irq" => Some(Shown::Irq),
         name => map.registers().iter().enumerate().find_map(|(at, register)| {
-            let is_strobe = matches!(&register.access, Access::Command { strobe } if strobe == name);
+            let (is_strobe, is_word) = match &register.access {
+                Access::Command { strobe } => (strobe == name, false),
+                Access::Words { strobe, word, .. } => (strobe == name, word == name),
+                _ => (false, false),
+            };
             let field = register.fields.iter().find(|field| field.name == name);
             match field.filter(|_| register.access.drives_fields()) {
                 _ if is_strobe => Some(Shown::Strobe(at)),
+                _ if is_word => Some(Shown::Word(at)),
                 Some(field) => Some(Shown::Field {
                     register: at,
                     low: field.low,
@@ -302,9 +323,33 @@ impl Moore for RegisterBank {
                 Shown::ReadData => state.read_data.into(),
                 Shown::Irq => state.irq.into(),
                 Shown::Strobe(at) => (state.strobe == Some(*at)).into(),
+                Shown::Word(at) => state.places[*at].into(),
                 Shown::Field { register, low, ones } => (state.words[*register] >> low & ones).into(),
             };
         }
+    }
+
+    fn quiet_clocks(&self, inputs: &[u64]) -> u64 {
+        let bus = (inputs[0] | inputs[READ] | inputs[WRITE]) & 1 != 0;
+        let state = &self.state;
+        let ends = state.strobe.is_some() || state.irq != self.raises_irq() || self.applies_commit(inputs);
+        let sets = |at: &usize| self.wired(*at, inputs) & !state.words[*at] != 0;
+        if bus || ends || self.flags.iter().any(sets) {
+            0
+        } else {
+            FOREVER
+        }
+    }
+
+    /// Between reads and writes, only flags and the tick of a commit matter.
+    fn ignores(&self, input: &str) -> bool {
+        let mut inputs = self.ports.iter().filter(|port| port.direction == Direction::Input);
+        let Some(at) = inputs.position(|port| port.name == input) else {
+            return false;
+        };
+        let flag = |register: &usize| self.plan[*register].wires.iter().any(|wire| wire.is_on(at));
+        let gate = self.commit.is_some_and(|commit| self.plan[commit].gate == at);
+        !([0, READ, WRITE].contains(&at) || gate || self.flags.iter().any(flag))
     }
 }
 

@@ -1,6 +1,6 @@
 //! Does a description hold together?
 
-use super::description::{Access, Description, Field, Format, Register, Source, WINDOW_WORDS, WORD_BITS};
+use super::description::{Access, Description, Field, Format, MOST_WINDOWS, Register, Source, WINDOW_WORDS, WORD_BITS};
 use super::error::MapError;
 
 /// Names that the bank's Verilog has for itself.
@@ -22,6 +22,9 @@ const RESERVED_PREFIXES: [&str; 9] = [
 
 pub(super) fn check(description: &Description) -> Result<(), MapError> {
     form(&description.name)?;
+    if !(1..=MOST_WINDOWS).contains(&description.windows) {
+        return Err(MapError::Windows(description.windows));
+    }
     let registers = &description.registers;
     beginning(registers)?;
     for (at, register) in registers.iter().enumerate() {
@@ -30,8 +33,10 @@ pub(super) fn check(description: &Description) -> Result<(), MapError> {
         if before.iter().any(|other| other.name == register.name) {
             return Err(MapError::RegisterTwice(register.name.clone()));
         }
-        let taken = before.iter().any(|other| other.offset == register.offset);
-        if taken || register.offset >= WINDOW_WORDS {
+        let end = |register: &Register| u64::from(register.offset) + u64::from(register.words());
+        let overlaps =
+            |other: &Register| u64::from(other.offset) < end(register) && u64::from(register.offset) < end(other);
+        if before.iter().any(overlaps) || end(register) > u64::from(description.windows * WINDOW_WORDS) {
             return Err(MapError::Offset {
                 register: register.name.clone(),
                 offset: register.offset,
@@ -172,6 +177,14 @@ fn access(register: &Register, registers: &[Register]) -> Result<(), MapError> {
                     shadow: register.name.clone(),
                     of: of.clone(),
                 });
+            }
+        }
+        Access::Words { strobe, word, words } => {
+            port_name(strobe)?;
+            port_name(word)?;
+            let formed = words.is_power_of_two() && (2..=64).contains(words);
+            if !formed || !register.offset.is_multiple_of(*words) {
+                return wrong("2, 4, … 64 words, the first at a multiple of that");
             }
         }
         Access::Guarded { while_low: input } | Access::Commit { tick: input } | Access::Command { strobe: input } => {

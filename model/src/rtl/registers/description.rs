@@ -3,8 +3,10 @@
 //! A name is one name everywhere: a register `index_gate` is `INDEX_GATE` in Verilog and C, a field `mode` is the bank's port
 //! `mode`, which [composition](crate::rtl::composition) connects to the core's port `mode`.
 
-/// Words of a component's window on the bus.
+/// Words of a window on the bus: a component has one, a stage one of its own and one per axis.
 pub const WINDOW_WORDS: u32 = 256;
+/// Most windows of a map: the stage's and those of four axes.
+pub const MOST_WINDOWS: u32 = 5;
 /// Bits of a word.
 pub const WORD_BITS: u32 = 32;
 
@@ -15,6 +17,8 @@ pub struct Description {
     pub name: String,
     /// What the component is, in a sentence.
     pub about: String,
+    /// Windows of [`WINDOW_WORDS`] words, 1 to [`MOST_WINDOWS`].
+    pub windows: u32,
     /// Its registers. The first are constants: `magic` at 0, `version` at 1, then the build's parameters.
     pub registers: Vec<Register>,
 }
@@ -60,6 +64,16 @@ pub enum Access {
     Command {
         /// Name of the strobe.
         strobe: String,
+    },
+    /// As a command, at so many words in a row, a power of two, the first at a multiple of it. The port `word` says which
+    /// of them was written: the entry of a FIFO, or a row of a memory.
+    Words {
+        /// Name of the strobe.
+        strobe: String,
+        /// Name of the port with the word's place, 0 to `words` − 1.
+        word: String,
+        /// How many words: 2, 4, … 64.
+        words: u32,
     },
     /// Each field is a sticky flag of one bit: set while its [`Source`] is high, cleared by writing one; set wins.
     Sticky,
@@ -187,8 +201,16 @@ impl Description {
         Self {
             name: name.to_owned(),
             about: about.to_owned(),
+            windows: 1,
             registers,
         }
+    }
+
+    /// With so many windows.
+    #[must_use]
+    pub fn with_windows(mut self, windows: u32) -> Self {
+        self.windows = windows;
+        self
     }
 
     /// Adds a register.
@@ -344,6 +366,14 @@ impl Field {
 }
 
 impl Register {
+    /// How many words it takes, from its offset on.
+    pub fn words(&self) -> u32 {
+        match self.access {
+            Access::Words { words, .. } => words,
+            _ => 1,
+        }
+    }
+
     /// Ones where it has fields of its own.
     pub fn mask(&self) -> u32 {
         self.fields.iter().fold(0, |mask, field| mask | field.mask())
@@ -362,7 +392,7 @@ impl Access {
     pub fn whole_words(&self) -> bool {
         matches!(
             self,
-            Self::Command { .. } | Self::Commit { .. } | Self::Snapshot | Self::InterruptTest
+            Self::Command { .. } | Self::Words { .. } | Self::Commit { .. } | Self::Snapshot | Self::InterruptTest
         )
     }
 
@@ -375,7 +405,7 @@ impl Access {
     pub fn drives_fields(&self) -> bool {
         matches!(
             self,
-            Self::Configuration | Self::Guarded { .. } | Self::Staged | Self::Command { .. }
+            Self::Configuration | Self::Guarded { .. } | Self::Staged | Self::Command { .. } | Self::Words { .. }
         )
     }
 
@@ -389,6 +419,7 @@ impl Access {
             Self::Guarded { .. } => "guarded",
             Self::Staged => "staged",
             Self::Command { .. } => "command",
+            Self::Words { .. } => "command words",
             Self::Sticky => "sticky",
             Self::Commit { .. } => "commit",
             Self::Snapshot => "snapshot",

@@ -10,6 +10,9 @@ pub enum MapError {
          `irq_`"
     )]
     Name(String),
+    /// No window, or too many.
+    #[error("{0} windows: a map has 1 to {max}", max = super::MOST_WINDOWS)]
+    Windows(u32),
     /// The first two registers are not what every map begins with.
     #[error("a map begins with the constants `magic` at 0 and `version` at 1: make it by `Description::new`")]
     Beginning,
@@ -17,7 +20,7 @@ pub enum MapError {
     #[error("there are two registers `{0}`: rename one")]
     RegisterTwice(String),
     /// An offset outside of the window, or a second register there.
-    #[error("the register `{register}` is at word {offset}: give it a free one of 0 to 255")]
+    #[error("the register `{register}` is at word {offset}: give it a free place in the windows")]
     Offset {
         /// The register.
         register: String,

@@ -1,6 +1,6 @@
 //! A description that holds together, and the ports of its bank.
 
-use super::description::{Access, Description, Field, Register, Source};
+use super::description::{Access, Description, Field, Register, Source, WINDOW_WORDS};
 use super::error::MapError;
 use crate::rtl::{Direction, Port};
 
@@ -31,6 +31,16 @@ impl RegisterMap {
     /// What the component is.
     pub fn about(&self) -> &str {
         &self.description.about
+    }
+
+    /// Words on the bus: all windows.
+    pub fn words(&self) -> u32 {
+        self.description.windows * WINDOW_WORDS
+    }
+
+    /// Bits of an address.
+    pub fn address_bits(&self) -> u32 {
+        address_bits(&self.description)
     }
 
     /// The registers, by offset.
@@ -68,12 +78,19 @@ impl RegisterMap {
     }
 }
 
+/// So many that every window has its addresses.
+fn address_bits(description: &Description) -> u32 {
+    (description.windows * WINDOW_WORDS)
+        .next_power_of_two()
+        .trailing_zeros()
+}
+
 /// The ports of every bank, before those of its registers.
-fn bus() -> Vec<Port> {
+fn bus(address_bits: u32) -> Vec<Port> {
     use Direction::{Input, Output};
     [
         ("rst", Input, 1),
-        ("avs_address", Input, 8),
+        ("avs_address", Input, address_bits),
         ("avs_read", Input, 1),
         ("avs_write", Input, 1),
         ("avs_byteenable", Input, 4),
@@ -95,7 +112,7 @@ fn port(name: &str, direction: Direction, width: u32, signed: bool) -> Port {
 
 fn ports(description: &Description) -> Result<Vec<Port>, MapError> {
     use Direction::{Input, Output};
-    let mut ports = bus();
+    let mut ports = bus(address_bits(description));
     let registers = &description.registers;
     if registers
         .iter()
@@ -119,6 +136,11 @@ fn ports(description: &Description) -> Result<Vec<Port>, MapError> {
             Access::Commit { tick } => add(&mut ports, register, [port(tick, Input, 1, false)])?,
             Access::Command { strobe } => {
                 add(&mut ports, register, [port(strobe, Output, 1, false)])?;
+                add(&mut ports, register, fields.map(|field| field_port(field, Output)))?;
+            }
+            Access::Words { strobe, word, words } => {
+                let place = port(word, Output, words.trailing_zeros(), false);
+                add(&mut ports, register, [port(strobe, Output, 1, false), place])?;
                 add(&mut ports, register, fields.map(|field| field_port(field, Output)))?;
             }
             Access::Configuration | Access::Staged => {

@@ -12,8 +12,8 @@ pub fn markdown(map: &RegisterMap) -> String {
         // Writing to a String cannot fail.
         let _ = writeln!(
             text,
-            "| {:#04x} | `{}` | {} | {} | {} |",
-            register.offset,
+            "| {} | `{}` | {} | {} | {} |",
+            place(register),
             register.name.to_uppercase(),
             access(register),
             reset(register),
@@ -69,11 +69,20 @@ pub fn markdown(map: &RegisterMap) -> String {
     text
 }
 
+/// The word, or the words.
+fn place(register: &Register) -> String {
+    match register.words() {
+        1 => format!("{:#04x}", register.offset),
+        words => format!("{:#04x} to {:#04x}", register.offset, register.offset + words - 1),
+    }
+}
+
 fn access(register: &Register) -> String {
     match &register.access {
         Access::Shadow { of } => format!("shadow of `{}`", of.to_uppercase()),
         Access::Guarded { while_low } => format!("guarded: while `{while_low}` is low"),
         Access::Command { strobe } => format!("command `{strobe}`"),
+        Access::Words { strobe, word, .. } => format!("command `{strobe}`, the place in `{word}`"),
         Access::Commit { tick } => format!("commit at `{tick}`"),
         other => other.words().to_owned(),
     }
@@ -82,7 +91,9 @@ fn access(register: &Register) -> String {
 /// Of registers that have a value of their own.
 fn reset(register: &Register) -> String {
     match register.access {
-        Access::Live | Access::Command { .. } | Access::Snapshot | Access::InterruptTest => String::new(),
+        Access::Live | Access::Command { .. } | Access::Words { .. } | Access::Snapshot | Access::InterruptTest => {
+            String::new()
+        }
         _ => format!("{:#x}", register.reset()),
     }
 }

@@ -40,7 +40,9 @@ pub mod maps;
 mod markdown;
 
 pub use bank::RegisterBank;
-pub use description::{Access, Choice, Description, Field, Format, Register, Source, WINDOW_WORDS, WORD_BITS};
+pub use description::{
+    Access, Choice, Description, Field, Format, MOST_WINDOWS, Register, Source, WINDOW_WORDS, WORD_BITS,
+};
 pub use error::MapError;
 pub use map::RegisterMap;
 pub use markdown::markdown;

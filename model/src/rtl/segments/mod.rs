@@ -49,7 +49,7 @@ pub use integrator::{
 pub use ports::{INPUT_PORTS, Inputs, OUTPUT_PORTS, Outputs, State, ports};
 
 use self::fifo::{Fifo, Pointers};
-use super::{ClockedBlock, Port, StepError};
+use super::{ClockedBlock, FOREVER, Moore, OutputKind, Port, StepError};
 
 /// Clocks from a tick until the next one is taken.
 pub const TICK_CLOCKS: u32 = 9;
@@ -72,6 +72,18 @@ struct Requests {
     quick_stop: bool,
     restart: bool,
     preset: bool,
+}
+
+impl Requests {
+    /// These, and those of a clock.
+    fn with(self, inputs: &Inputs) -> Self {
+        Self {
+            flush: self.flush || inputs.flush,
+            quick_stop: self.quick_stop || inputs.quick_stop,
+            restart: self.restart || inputs.restart,
+            preset: self.preset || inputs.preset,
+        }
+    }
 }
 
 /// Everything that is a register, but the FIFO.
@@ -178,10 +190,7 @@ impl Segments {
             (shown.malformed, shown.tick_missed) = (false, false);
         }
         shown.tick_missed |= inputs.tick && *phase != IDLE;
-        requests.flush |= inputs.flush;
-        requests.quick_stop |= inputs.quick_stop;
-        requests.restart |= inputs.restart;
-        requests.preset |= inputs.preset;
+        *requests = requests.with(inputs);
     }
 
     /// A tick begins with what was asked for since the last one. Preset goes before a quick stop, that before restart.
@@ -288,5 +297,60 @@ impl ClockedBlock for Segments {
         let shown = Segments::step(self, &Inputs::from_raw(raw));
         outputs.copy_from_slice(&shown.to_raw());
         Ok(())
+    }
+}
+
+/// `low` depends on `low_water`, which may change with it.
+impl Moore for Segments {
+    fn show(&self, outputs: &mut [u64]) {
+        for (output, value) in outputs.iter_mut().zip(self.outputs(0).to_raw()) {
+            *output = value;
+        }
+    }
+
+    fn output_kind(&self, output: &str) -> OutputKind {
+        match output {
+            "low" => OutputKind::Combinational,
+            _ => OutputKind::Register,
+        }
+    }
+
+    fn show_with(&mut self, inputs: &[u64], outputs: &mut [u64]) {
+        let low_water = <&[u64; INPUT_PORTS]>::try_from(inputs).map_or(0, |raw| Inputs::from_raw(raw).low_water);
+        for (output, value) in outputs.iter_mut().zip(self.outputs(low_water).to_raw()) {
+            *output = value;
+        }
+    }
+
+    /// Only between two ticks.
+    fn quiet_clocks(&self, inputs: &[u64]) -> u64 {
+        let Ok(inputs) = <&[u64; INPUT_PORTS]>::try_from(inputs).map(Inputs::from_raw) else {
+            return 0;
+        };
+        let Registers {
+            phase, requests, shown, ..
+        } = &self.registers;
+        let acts = inputs.rst || inputs.tick || inputs.write || requests.with(&inputs) != *requests;
+        let flags = [
+            shown.underrun,
+            shown.overflow,
+            shown.refused,
+            shown.malformed,
+            shown.tick_missed,
+        ];
+        let clears = inputs.clear_flags && flags.contains(&true);
+        let pulses = shown.valid || shown.notify || shown.done;
+        if acts || clears || pulses || *phase != IDLE {
+            0
+        } else {
+            FOREVER
+        }
+    }
+
+    fn ignores(&self, input: &str) -> bool {
+        matches!(
+            input,
+            "enable" | "word" | "data" | "preset_position" | "stop_deceleration"
+        )
     }
 }

@@ -103,6 +103,10 @@ impl Banks {
         self.change.is_some()
     }
 
+    pub(super) fn hands_over(&self) -> bool {
+        matches!(self.change.map(|change| change.state), Some(State::HandsOver { .. }))
+    }
+
     pub(super) fn refused(&self) -> bool {
         self.refused
     }

@@ -5,7 +5,7 @@ use super::config::{CHANNELS_MAX, ShaperConfig};
 use super::memory::Arbitrary;
 use super::ports::{Inputs, Outputs, ports};
 use super::{finish, wrap};
-use crate::rtl::{ClockedBlock, Moore, Port, StepError};
+use crate::rtl::{ClockedBlock, FOREVER, Moore, Port, StepError};
 
 /// The shaper, cycle accurate at its ports.
 ///
@@ -144,6 +144,13 @@ impl Shaper {
         self.clocks_left = 0;
     }
 
+    /// Whether a start with these words changes nothing.
+    fn has_started(&self, words: [i64; CHANNELS_MAX]) -> bool {
+        let values = [self.start_values, self.y] == [words; 2] && self.newest == words[0];
+        let counts = self.age == 0 && self.still == self.full_age() && self.clocks_left == 0;
+        values && counts && !self.banks.hands_over()
+    }
+
     fn full_age(&self) -> u32 {
         (1 << self.config.ring_address_bits()) - 1
     }
@@ -215,5 +222,30 @@ impl ClockedBlock for Shaper {
 impl Moore for Shaper {
     fn show(&self, outputs: &mut [u64]) {
         self.outputs().write_raw(&self.config, outputs);
+    }
+
+    fn quiet_clocks(&self, inputs: &[u64]) -> u64 {
+        let inputs = Inputs::from_raw(inputs, &self.config);
+        let starts = inputs.start && !self.has_started(self.words(&inputs));
+        let acts = inputs.rst || inputs.strobe || starts || inputs.tap_write || inputs.swap;
+        let clears = inputs.clear_flags && (self.saturated || self.overrun || self.banks.refused());
+        match self.clocks_left {
+            _ if acts || clears || self.valid => 0,
+            0 => FOREVER,
+            left => u64::from(left) - 1,
+        }
+    }
+
+    fn pass(&mut self, _inputs: &[u64], clocks: u64) {
+        if self.clocks_left > 0 {
+            self.clocks_left -= clocks as u32;
+        }
+    }
+
+    fn ignores(&self, input: &str) -> bool {
+        matches!(
+            input,
+            "tap_bank" | "tap_index" | "tap_coefficient" | "tap_delay" | "swap_bank" | "swap_how"
+        )
     }
 }

@@ -63,6 +63,10 @@ impl Datapath {
         self.error << 8
     }
 
+    pub(super) fn has_integral(&self) -> bool {
+        self.integral != 0
+    }
+
     pub(super) fn clear_integral(&mut self) {
         self.integral = 0;
     }

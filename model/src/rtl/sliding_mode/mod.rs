@@ -40,7 +40,7 @@ pub use ports::{INPUTS, Inputs, Law, Motion, OUTPUTS, Outputs, Saturation, ports
 pub use settings::{Gain, GainError, LIMIT_MAX, MANTISSA_BITS, MANTISSA_MAX, Row, SETTINGS, SHIFT_MAX, Settings};
 
 use self::datapath::{Datapath, STEPS, address};
-use super::{ClockedBlock, Moore, Port, StepError};
+use super::{ClockedBlock, FOREVER, Moore, Port, StepError};
 
 /// Clocks of a step.
 const STEP_CLOCKS: u8 = 16;
@@ -117,6 +117,33 @@ impl State {
             self.datapath.clear_integral();
         }
     }
+
+    /// In a pass, the clocks from one that reads a setting to the one that keeps the result.
+    fn quiet_clocks(&self, inputs: &Inputs) -> u64 {
+        let data = &self.datapath;
+        let flags = self.overrun || data.saturated_high | data.saturated_low != 0;
+        let clears = (inputs.clear_flags && flags) || (inputs.clear_integral && data.has_integral());
+        if inputs.rst || inputs.start || clears || self.valid {
+            return 0;
+        }
+        let left = match self.phase {
+            _ if !self.busy => return FOREVER,
+            phase @ ..=READ_PHASE => READ_PHASE - phase,
+            phase => STEP_CLOCKS - 1 - phase,
+        };
+        left.into()
+    }
+
+    fn pass(&mut self, clocks: u64) {
+        if !self.busy {
+            return;
+        }
+        let before = self.phase;
+        self.phase += clocks as u8;
+        if before <= ADD_PHASE && self.phase > ADD_PHASE {
+            self.datapath.add(self.step);
+        }
+    }
 }
 
 /// The controller, cycle accurate at its ports.
@@ -178,6 +205,18 @@ impl Moore for SlidingMode {
         for (output, value) in outputs.iter_mut().zip(self.state.outputs().to_raw()) {
             *output = value;
         }
+    }
+
+    fn quiet_clocks(&self, inputs: &[u64]) -> u64 {
+        Inputs::from_raw(inputs).map_or(0, |inputs| self.state.quiet_clocks(&inputs))
+    }
+
+    fn pass(&mut self, _inputs: &[u64], clocks: u64) {
+        self.state.pass(clocks);
+    }
+
+    fn ignores(&self, input: &str) -> bool {
+        !matches!(input, "rst" | "start" | "clear_integral" | "clear_flags")
     }
 }
 

@@ -35,8 +35,8 @@ enum Core {
 impl ComponentRandom {
     /// Equal seeds give equal inputs for equal outputs.
     pub fn new(component: &Component, seed: u64) -> Self {
-        let core = component.blocks().iter().find_map(|block| match block {
-            Block::Shaper(config) => Some(Core::Shaper(Box::new(config.clone()), Table::with_capacity(256))),
+        let core = component.blocks().find_map(|block| match block {
+            Block::Shaper(config) => Some(Core::Shaper(config.clone(), Table::with_capacity(256))),
             Block::SlidingMode => Some(Core::SlidingMode),
             Block::Pwm(_) => {
                 let ports = component.composition().ports().iter();

@@ -9,7 +9,7 @@ mod coverage;
 pub use self::component::ComponentRandom;
 pub use self::coverage::RegistersCoverage;
 
-use posicast_model::rtl::registers::RegisterMap;
+use posicast_model::rtl::registers::{Register, RegisterMap};
 use posicast_model::rtl::{Direction, Port};
 use rand::{Rng, RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -39,6 +39,8 @@ struct Pin {
 pub struct RegistersRandom {
     rng: Xoshiro256PlusPlus,
     offsets: Vec<u64>,
+    /// Ones in the bits of an address.
+    address_ones: u64,
     /// Words at and below the minima of guarded registers, with their offsets.
     floors: Vec<(u64, u64)>,
     pins: Vec<Pin>,
@@ -61,7 +63,8 @@ impl RegistersRandom {
         };
         Self {
             rng: Xoshiro256PlusPlus::seed_from_u64(seed),
-            offsets: map.registers().iter().map(|register| register.offset.into()).collect(),
+            offsets: offsets(map),
+            address_ones: (1 << map.address_bits()) - 1,
             floors: floors(map),
             pins: inputs.enumerate().skip(BUS_INPUTS).map(pin).collect(),
             clock: 0,
@@ -86,7 +89,7 @@ impl RegistersRandom {
 
     fn access(&mut self, inputs: &mut [u64]) {
         let (pace, writes) = self.phase;
-        let anywhere = u64::from(self.rng.next_u32() & 0xff);
+        let anywhere = u64::from(self.rng.next_u32()) & self.address_ones;
         let again = self.last;
         let register = *pick(&mut self.rng, &self.offsets);
         inputs[ADDRESS] = *pick(
@@ -134,6 +137,12 @@ impl RegistersRandom {
             inputs[self.pins[at].at] = self.pins[at].value;
         }
     }
+}
+
+/// Of every word that does something.
+fn offsets(map: &RegisterMap) -> Vec<u64> {
+    let words = |register: &Register| register.offset..register.offset + register.words();
+    map.registers().iter().flat_map(words).map(u64::from).collect()
 }
 
 fn floors(map: &RegisterMap) -> Vec<(u64, u64)> {

@@ -12,6 +12,10 @@ pub(super) struct Wire {
 }
 
 impl Wire {
+    pub(super) fn is_on(self, input: usize) -> bool {
+        self.input == input
+    }
+
     pub(super) fn bits(self, inputs: &[u64]) -> u32 {
         (inputs[self.input] as u32 & self.ones) << self.low
     }

@@ -8,12 +8,12 @@ mod sliding_mode;
 pub use pulse_counter::pulse_counter;
 pub use pwm::pwm;
 pub use shaper::shaper;
-pub(crate) use shaper::word_name;
+pub(crate) use shaper::{swap, tap, tap_address, word_name};
 pub use sliding_mode::sliding_mode;
 
 use super::{Field, Source};
 
 /// The flag that every map with commands has.
-fn partial_write(low: u32) -> Field {
+pub(crate) fn partial_write(low: u32) -> Field {
     Field::flag("partial_write", low, "a write was ignored").set_by(Source::PartialWrite)
 }

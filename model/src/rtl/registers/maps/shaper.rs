@@ -118,7 +118,8 @@ fn parameters(config: &ShaperConfig) -> Vec<Field> {
     ]
 }
 
-fn tap_address(config: &ShaperConfig) -> Vec<Field> {
+/// Fields of the register of that name.
+pub(crate) fn tap_address(config: &ShaperConfig) -> Vec<Field> {
     vec![
         Field::new(
             "tap_index",
@@ -130,7 +131,8 @@ fn tap_address(config: &ShaperConfig) -> Vec<Field> {
     ]
 }
 
-fn tap(config: &ShaperConfig) -> Vec<Field> {
+/// Fields of the register of that name.
+pub(crate) fn tap(config: &ShaperConfig) -> Vec<Field> {
     vec![
         Field::new("tap_coefficient", 0, COEFFICIENT_BITS, "coefficient").fixed(config.coefficient_fraction()),
         Field::new(
@@ -143,7 +145,8 @@ fn tap(config: &ShaperConfig) -> Vec<Field> {
     ]
 }
 
-fn swap(config: &ShaperConfig) -> Vec<Field> {
+/// Fields of the register of that name.
+pub(crate) fn swap(config: &ShaperConfig) -> Vec<Field> {
     let ways = [
         (0, "at_once", "from the next sample on"),
         (1, "handover", "each increment through one table"),

@@ -1,0 +1,262 @@
+//! One multiplexer for both duties, one comparison for both signs of the manual one.
+
+use crate::prelude::*;
+use posicast_model::rtl::axis::State;
+
+#[derive(LogicBlock)]
+pub(super) struct DriveCommand {
+    pub(super) clk: Signal<In, Clock>,
+    pub(super) rst: Signal<In, Bit>,
+    pub(super) tick: Signal<In, Bit>,
+    pub(super) controller_duty: Signal<In, Signed<18>>,
+    pub(super) controller_valid: Signal<In, Bit>,
+    pub(super) axis_state: Signal<In, Bits<3>>,
+    pub(super) axis_pwm_enable: Signal<In, Bit>,
+    pub(super) axis_drive_enable: Signal<In, Bit>,
+    pub(super) axis_brake_release: Signal<In, Bit>,
+    pub(super) axis_pwm_trip_n: Signal<In, Bit>,
+    pub(super) drive_fault_n: Signal<In, Bit>,
+    pub(super) limit_plus_ok: Signal<In, Bit>,
+    pub(super) limit_minus_ok: Signal<In, Bit>,
+    pub(super) direct_enable: Signal<In, Bit>,
+    pub(super) direct_kick: Signal<In, Bit>,
+    pub(super) direct_hold_ticks: Signal<In, Bits<16>>,
+    pub(super) direct_duty: Signal<In, Signed<17>>,
+    pub(super) direct_limit: Signal<In, Bits<16>>,
+    pub(super) duty: Signal<Out, Signed<17>>,
+    pub(super) feed: Signal<Out, Bit>,
+    pub(super) pwm_enable: Signal<Out, Bit>,
+    pub(super) drive_enable: Signal<Out, Bit>,
+    pub(super) brake_release: Signal<Out, Bit>,
+    pub(super) filtered_fault_n: Signal<Out, Bits<2>>,
+    pub(super) direct_active: Signal<Out, Bit>,
+    pub(super) direct_expired: Signal<Out, Bit>,
+
+    duty_q: Dff<Bits<17>>,
+    feed_q: Dff<Bit>,
+    pwm_enable_q: Dff<Bit>,
+    drive_enable_q: Dff<Bit>,
+    brake_release_q: Dff<Bit>,
+    filtered_fault_n_q: Dff<Bits<2>>,
+    active: Dff<Bit>,
+    expired: Dff<Bit>,
+    ticks_left: Dff<Bits<16>>,
+    backward: Dff<Bit>,
+
+    permitted: Signal<Local, Bit>,
+    last_tick: Signal<Local, Bit>,
+    next_active: Signal<Local, Bit>,
+    controller_bits: Signal<Local, Bits<18>>,
+    direct_bits: Signal<Local, Bits<17>>,
+    negative: Signal<Local, Bit>,
+    direct_size: Signal<Local, Bits<16>>,
+    bound: Signal<Local, Bits<17>>,
+    unlimited: Signal<Local, Bits<17>>,
+    saturates: Signal<Local, Bit>,
+    taken: Signal<Local, Bit>,
+    on_switch: Signal<Local, Bit>,
+    turns: Signal<Local, Bit>,
+    silent: Signal<Local, Bit>,
+    odd: Signal<Local, Bits<17>>,
+    twice_size: Signal<Local, Bits<17>>,
+    limit: Signal<Local, Bits<17>>,
+
+    ready_state: Constant<Bits<3>>,
+    one_tick: Constant<Bits<16>>,
+    nothing: Constant<Bits<17>>,
+    most: Constant<Bits<17>>,
+    least: Constant<Bits<17>>,
+    one_bit: Constant<Bits<17>>,
+    no_bit: Constant<Bits<17>>,
+    both_faults: Constant<Bits<2>>,
+    fault_of_drive: Constant<Bits<2>>,
+    fault_of_axis: Constant<Bits<2>>,
+    no_fault: Constant<Bits<2>>,
+}
+
+impl Default for DriveCommand {
+    fn default() -> Self {
+        Self {
+            clk: Signal::default(),
+            rst: Signal::default(),
+            tick: Signal::default(),
+            controller_duty: Signal::default(),
+            controller_valid: Signal::default(),
+            axis_state: Signal::default(),
+            axis_pwm_enable: Signal::default(),
+            axis_drive_enable: Signal::default(),
+            axis_brake_release: Signal::default(),
+            axis_pwm_trip_n: Signal::default(),
+            drive_fault_n: Signal::default(),
+            limit_plus_ok: Signal::default(),
+            limit_minus_ok: Signal::default(),
+            direct_enable: Signal::default(),
+            direct_kick: Signal::default(),
+            direct_hold_ticks: Signal::default(),
+            direct_duty: Signal::default(),
+            direct_limit: Signal::default(),
+            duty: Signal::default(),
+            feed: Signal::default(),
+            pwm_enable: Signal::default(),
+            drive_enable: Signal::default(),
+            brake_release: Signal::default(),
+            filtered_fault_n: Signal::default(),
+            direct_active: Signal::default(),
+            direct_expired: Signal::default(),
+            duty_q: Dff::default(),
+            feed_q: Dff::default(),
+            pwm_enable_q: Dff::default(),
+            drive_enable_q: Dff::default(),
+            brake_release_q: Dff::default(),
+            filtered_fault_n_q: Dff::new(from_u64(3)),
+            active: Dff::default(),
+            expired: Dff::default(),
+            ticks_left: Dff::default(),
+            backward: Dff::default(),
+            permitted: Signal::default(),
+            last_tick: Signal::default(),
+            next_active: Signal::default(),
+            controller_bits: Signal::default(),
+            direct_bits: Signal::default(),
+            negative: Signal::default(),
+            direct_size: Signal::default(),
+            bound: Signal::default(),
+            unlimited: Signal::default(),
+            saturates: Signal::default(),
+            taken: Signal::default(),
+            on_switch: Signal::default(),
+            turns: Signal::default(),
+            silent: Signal::default(),
+            odd: Signal::default(),
+            twice_size: Signal::default(),
+            limit: Signal::default(),
+            ready_state: Constant::new(from_u64(State::Ready as u64)),
+            one_tick: Constant::new(from_u64(1)),
+            nothing: Constant::new(from_u64(0)),
+            most: Constant::new(from_u64(0xffff)),
+            least: Constant::new(from_u64(0x1_0000)),
+            one_bit: Constant::new(from_u64(1)),
+            no_bit: Constant::new(from_u64(0)),
+            both_faults: Constant::new(from_u64(0)),
+            fault_of_drive: Constant::new(from_u64(1)),
+            fault_of_axis: Constant::new(from_u64(2)),
+            no_fault: Constant::new(from_u64(3)),
+        }
+    }
+}
+
+impl Logic for DriveCommand {
+    #[hdl_gen]
+    fn update(&mut self) {
+        comment!("@module drive_command");
+        dff_setup!(
+            self,
+            clk,
+            duty_q,
+            feed_q,
+            pwm_enable_q,
+            drive_enable_q,
+            brake_release_q,
+            filtered_fault_n_q,
+            active,
+            expired,
+            ticks_left,
+            backward
+        );
+
+        comment!("Direct mode: in READY, from a kick, for a time");
+        self.permitted.next = (self.axis_state.val() == self.ready_state.val()) & self.direct_enable.val();
+        self.last_tick.next = self.tick.val() & (self.ticks_left.q.val() == self.one_tick.val());
+        self.next_active.next = self.permitted.val() & self.active.q.val() & !self.last_tick.val();
+        self.expired.d.next = self.permitted.val() & self.active.q.val() & self.last_tick.val();
+        if self.tick.val() {
+            self.ticks_left.d.next = self.ticks_left.q.val() - self.one_tick.val();
+        }
+        if self.direct_kick.val() {
+            self.next_active.next = self.permitted.val() & self.direct_hold_ticks.val().any();
+            self.expired.d.next = false;
+            self.ticks_left.d.next = self.direct_hold_ticks.val();
+        }
+        self.active.d.next = self.next_active.val();
+        self.pwm_enable_q.d.next = self.axis_pwm_enable.val() | self.next_active.val();
+        self.drive_enable_q.d.next = self.axis_drive_enable.val() | self.next_active.val();
+        self.brake_release_q.d.next = self.axis_brake_release.val() | self.next_active.val();
+
+        comment!("The controller's duty, saturated");
+        self.controller_bits.next = unsigned_cast(self.controller_duty.val());
+        self.direct_bits.next = unsigned_cast(self.direct_duty.val());
+        self.taken.next = self.controller_valid.val();
+        self.unlimited.next = self.controller_bits.val().get_bits::<17>(0);
+        self.saturates.next = self.controller_bits.val().get_bit(17) ^ self.controller_bits.val().get_bit(16);
+        self.bound.next = self.most.val();
+        if self.controller_bits.val().get_bit(17) {
+            self.bound.next = self.least.val();
+        }
+
+        comment!("Manual: 2 size + 1 of a negative, no carry");
+        self.negative.next = self.direct_bits.val().get_bit(16);
+        self.direct_size.next = self.direct_bits.val().get_bits::<16>(0);
+        self.odd.next = self.no_bit.val();
+        if self.negative.val() {
+            self.direct_size.next = !self.direct_bits.val().get_bits::<16>(0);
+            self.odd.next = self.one_bit.val();
+        }
+        self.twice_size.next = (bit_cast::<17, 16>(self.direct_size.val()) << 1) | self.odd.val();
+        self.limit.next = bit_cast::<17, 16>(self.direct_limit.val());
+        if self.active.q.val() {
+            self.taken.next = self.tick.val();
+            self.unlimited.next = self.direct_bits.val();
+            self.saturates.next = self.twice_size.val() > (self.limit.val() << 1);
+            self.bound.next = self.limit.val();
+            if self.negative.val() {
+                self.bound.next = self.nothing.val() - self.limit.val();
+            }
+        }
+        self.feed_q.d.next = self.taken.val();
+        if self.taken.val() {
+            self.duty_q.d.next = self.unlimited.val();
+            if self.saturates.val() {
+                self.duty_q.d.next = self.bound.val();
+            }
+        }
+
+        comment!("Zero while off, at a change, for a tick where the");
+        comment!("sign turns, and towards a limit switch");
+        if self.tick.val() {
+            self.backward.d.next = self.negative.val();
+        }
+        self.turns.next = self.tick.val() & (self.negative.val() ^ self.backward.q.val());
+        self.on_switch.next = !self.limit_plus_ok.val();
+        if self.backward.q.val() {
+            self.on_switch.next = !self.limit_minus_ok.val();
+        }
+        self.silent.next = (!self.axis_pwm_enable.val() & !self.next_active.val())
+            | (self.next_active.val() ^ self.active.q.val())
+            | (self.active.q.val() & (self.turns.val() | self.on_switch.val()));
+        if self.silent.val() {
+            self.duty_q.d.next = self.nothing.val();
+        }
+
+        comment!("Faults: bit 0 the supervisor, bit 1 the drive");
+        self.filtered_fault_n_q.d.next = self.both_faults.val();
+        if self.axis_pwm_trip_n.val() {
+            self.filtered_fault_n_q.d.next = self.fault_of_drive.val();
+        }
+        if self.drive_fault_n.val() {
+            self.filtered_fault_n_q.d.next = self.fault_of_axis.val();
+            if self.axis_pwm_trip_n.val() {
+                self.filtered_fault_n_q.d.next = self.no_fault.val();
+            }
+        }
+
+        comment!("Outputs");
+        self.duty.next = signed_cast(self.duty_q.q.val());
+        self.feed.next = self.feed_q.q.val();
+        self.pwm_enable.next = self.pwm_enable_q.q.val();
+        self.drive_enable.next = self.drive_enable_q.q.val();
+        self.brake_release.next = self.brake_release_q.q.val();
+        self.filtered_fault_n.next = self.filtered_fault_n_q.q.val();
+        self.direct_active.next = self.active.q.val();
+        self.direct_expired.next = self.expired.q.val();
+    }
+}

@@ -1,0 +1,41 @@
+//! What the PWM is told, in hardware: the controller's duty, or in direct mode a manual one, or nothing.
+//!
+//! The datasheet is `docs/drive_command.md`, the reference `posicast_model::rtl::drive_command`.
+
+mod kernel;
+mod pins;
+
+use crate::emit::{self, EmitError, EmitOptions, Header, Module};
+use crate::simulation::{Simulated, SimulationError};
+use kernel::DriveCommand;
+use posicast_model::rtl::ClockedBlock;
+use posicast_model::rtl::drive_command::ports;
+
+/// The drive command in RustHDL's own simulator.
+///
+/// # Errors
+/// [`SimulationError`] where RustHDL finds a fault in the block.
+pub fn simulate() -> Result<Box<dyn ClockedBlock>, SimulationError> {
+    let block = Box::new(DriveCommand::default());
+    Ok(Box::new(Simulated::new("drive_command", block, ports())?))
+}
+
+/// The drive command's Verilog.
+///
+/// The module is called `PREFIX_drive_command`, or `drive_command` where `prefix` is empty.
+///
+/// # Errors
+/// [`EmitError`] where `prefix` makes no Verilog name.
+pub fn emit(prefix: &str) -> Result<Vec<Module>, EmitError> {
+    let options = EmitOptions {
+        top: "drive_command".to_owned(),
+        prefix: prefix.to_owned(),
+        header: Header {
+            about: "What the PWM is told: the controller's duty, saturated, while the supervisor wants it;\n\
+                    in direct mode, in READY and while it is kicked, a manual duty with a limit; else nothing."
+                .to_owned(),
+            parameters: Vec::new(),
+        },
+    };
+    emit::emit(&DriveCommand::default(), &options)
+}

@@ -1,0 +1,52 @@
+//! The internal encoder in hardware: quadrature at a set rate, in the place of the pins.
+//!
+//! The datasheet is `docs/encoder_generator.md`, the reference `posicast_model::rtl::encoder_generator`.
+
+mod kernel;
+
+use crate::emit::{self, EmitError, EmitOptions, Header, Module, Parameter};
+use crate::simulation::{Simulated, SimulationError};
+use kernel::EncoderGenerator;
+use posicast_model::rtl::ClockedBlock;
+use posicast_model::rtl::encoder_generator::{LATENCY_CLOCKS, RATE_FRACTION, ports};
+
+/// The internal encoder in RustHDL's own simulator.
+///
+/// # Errors
+/// [`SimulationError`] where RustHDL finds a fault in the block.
+pub fn simulate() -> Result<Box<dyn ClockedBlock>, SimulationError> {
+    let block = Box::new(EncoderGenerator::default());
+    Ok(Box::new(Simulated::new("encoder_generator", block, ports())?))
+}
+
+/// The internal encoder's Verilog, one module per file, the top last.
+///
+/// The top is called `PREFIX_encoder_generator`, or `encoder_generator` where `prefix` is empty.
+///
+/// # Errors
+/// [`EmitError`] where `prefix` makes no Verilog name.
+pub fn emit(prefix: &str) -> Result<Vec<Module>, EmitError> {
+    let parameter = |name: &str, value: u32, meaning: &str| Parameter {
+        name: name.to_owned(),
+        value: value.to_string(),
+        meaning: meaning.to_owned(),
+    };
+    let options = EmitOptions {
+        top: "encoder_generator".to_owned(),
+        prefix: prefix.to_owned(),
+        header: Header {
+            about: "Internal encoder: A, B and Z at a set rate, in the place of the pins while loop_back is high.\n\
+                    The synchronisers of the pulse counter must follow."
+                .to_owned(),
+            parameters: vec![
+                parameter(
+                    "rate_fraction",
+                    RATE_FRACTION,
+                    "fraction bits of rate, in counts per clock",
+                ),
+                parameter("latency_clocks", LATENCY_CLOCKS, "from a pin to its output"),
+            ],
+        },
+    };
+    emit::emit(&EncoderGenerator::default(), &options)
+}

@@ -1,0 +1,54 @@
+//! The excitation in hardware: a test signal on the position reference, behind the shaper.
+//!
+//! The datasheet is `docs/excitation.md`, the reference `posicast_model::rtl::excitation`.
+
+mod kernel;
+mod pins;
+mod wave;
+
+use crate::emit::{self, EmitError, EmitOptions, Header, Module, Parameter};
+use crate::simulation::{Simulated, SimulationError};
+use kernel::Excitation;
+use posicast_model::rtl::ClockedBlock;
+use posicast_model::rtl::excitation::{LATENCY_CLOCKS, TICK_CLOCKS, ports};
+
+/// The excitation in RustHDL's own simulator.
+///
+/// # Errors
+/// [`SimulationError`] where RustHDL finds a fault in the block.
+pub fn simulate() -> Result<Box<dyn ClockedBlock>, SimulationError> {
+    let block = Box::new(Excitation::default());
+    Ok(Box::new(Simulated::new("excitation", block, ports())?))
+}
+
+/// The excitation's Verilog, one module per file, the top last.
+///
+/// The top is called `PREFIX_excitation`, or `excitation` where `prefix` is empty.
+///
+/// # Errors
+/// [`EmitError`] where `prefix` makes no Verilog name.
+pub fn emit(prefix: &str) -> Result<Vec<Module>, EmitError> {
+    let parameter = |name: &str, value: u32, meaning: &str| Parameter {
+        name: name.to_owned(),
+        value: value.to_string(),
+        meaning: meaning.to_owned(),
+    };
+    let options = EmitOptions {
+        top: "excitation".to_owned(),
+        prefix: prefix.to_owned(),
+        header: Header {
+            about: "Excitation: PRBS, chirp or square on the position reference, behind the shaper.\n\
+                    Ends by itself; 0 in the tick after enable or allowed falls."
+                .to_owned(),
+            parameters: vec![
+                parameter("latency_clocks", LATENCY_CLOCKS, "from valid to reference_valid"),
+                parameter(
+                    "tick_clocks",
+                    TICK_CLOCKS,
+                    "from a valid until the next is ready, at most",
+                ),
+            ],
+        },
+    };
+    emit::emit(&Excitation::default(), &options)
+}

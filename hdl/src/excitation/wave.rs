@@ -1,0 +1,277 @@
+//! Angle, frequency and PRBS, and the amplitude times the wave: one sum per clock.
+//!
+//! ```text
+//! valid     ‾‾‾\____________________________________
+//! phase     rest< advance >< turn … turn >< 16 scale >< rest
+//! ahead     ------< + frequency >< − period … >---------
+//! value     ----- as before ---------------< 0 … >< new
+//! ```
+//!
+//! `turn` lasts as long as a period can be taken away. Every clock of `scale` halves the value plus the amplitude, or plus
+//! nothing, away from 0: the bits of the triangle come lowest first, and those of a square are all ones.
+
+use crate::prelude::*;
+
+#[derive(LogicBlock)]
+pub(super) struct Wave {
+    pub(super) clk: Signal<In, Clock>,
+    pub(super) rst: Signal<In, Bit>,
+    pub(super) run: Signal<In, Bit>,
+    pub(super) start: Signal<In, Bit>,
+    pub(super) valid: Signal<In, Bit>,
+    pub(super) chirp: Signal<In, Bit>,
+    pub(super) prbs: Signal<In, Bit>,
+    pub(super) amplitude: Signal<In, Bits<16>>,
+    pub(super) period_ticks: Signal<In, Bits<16>>,
+    pub(super) sweep: Signal<In, Bits<16>>,
+    pub(super) value: Signal<Out, Signed<17>>,
+    pub(super) too_fast: Signal<Out, Bit>,
+
+    phase: Dff<Bits<2>>,
+    clocks: Dff<Bits<4>>,
+    angle: Dff<Bits<8>>,
+    ahead: Dff<Bits<21>>,
+    frequency: Dff<Bits<22>>,
+    turned: Dff<Bit>,
+    noise: Dff<Bits<15>>,
+    value_q: Dff<Signed<17>>,
+
+    advances: Signal<Local, Bit>,
+    turns: Signal<Local, Bit>,
+    scales: Signal<Local, Bit>,
+    not_period: Signal<Local, Bits<16>>,
+    operand: Signal<Local, Bits<23>>,
+    with_carry: Signal<Local, Bits<23>>,
+    ahead_sum: Signal<Local, Bits<22>>,
+    next_frequency: Signal<Local, Bits<23>>,
+    next_angle: Signal<Local, Bits<8>>,
+    whole_turn: Signal<Local, Bit>,
+    feedback: Signal<Local, Bits<1>>,
+    negative: Signal<Local, Bit>,
+    fold: Signal<Local, Bit>,
+    triangle_bit: Signal<Local, Bit>,
+    adds: Signal<Local, Bit>,
+    subtrahend: Signal<Local, Bits<18>>,
+    complement: Signal<Local, Bits<18>>,
+    value_sum: Signal<Local, Bits<18>>,
+    halved: Signal<Local, Bits<17>>,
+    wide_value: Signal<Local, Signed<18>>,
+
+    rest_phase: Constant<Bits<2>>,
+    advance_phase: Constant<Bits<2>>,
+    turn_phase: Constant<Bits<2>>,
+    scale_phase: Constant<Bits<2>>,
+    no_clock: Constant<Bits<4>>,
+    one_clock: Constant<Bits<4>>,
+    no_angle: Constant<Bits<8>>,
+    one_step: Constant<Bits<8>>,
+    not_ahead: Constant<Bits<21>>,
+    carry_in: Constant<Bits<23>>,
+    ones_around: Constant<Bits<23>>,
+    first_frequency: Constant<Bits<22>>,
+    no_bit: Constant<Bits<1>>,
+    one_bit: Constant<Bits<1>>,
+    seed: Constant<Bits<15>>,
+    nothing: Constant<Bits<18>>,
+    no_value: Constant<Signed<17>>,
+}
+
+impl Default for Wave {
+    fn default() -> Self {
+        Self {
+            clk: Signal::default(),
+            rst: Signal::default(),
+            run: Signal::default(),
+            start: Signal::default(),
+            valid: Signal::default(),
+            chirp: Signal::default(),
+            prbs: Signal::default(),
+            amplitude: Signal::default(),
+            period_ticks: Signal::default(),
+            sweep: Signal::default(),
+            value: Signal::default(),
+            too_fast: Signal::default(),
+            phase: Dff::default(),
+            clocks: Dff::default(),
+            angle: Dff::default(),
+            ahead: Dff::default(),
+            frequency: Dff::new(from_u64(1 << 16)),
+            turned: Dff::default(),
+            noise: Dff::default(),
+            value_q: Dff::default(),
+            advances: Signal::default(),
+            turns: Signal::default(),
+            scales: Signal::default(),
+            not_period: Signal::default(),
+            operand: Signal::default(),
+            with_carry: Signal::default(),
+            ahead_sum: Signal::default(),
+            next_frequency: Signal::default(),
+            next_angle: Signal::default(),
+            whole_turn: Signal::default(),
+            feedback: Signal::default(),
+            negative: Signal::default(),
+            fold: Signal::default(),
+            triangle_bit: Signal::default(),
+            adds: Signal::default(),
+            subtrahend: Signal::default(),
+            complement: Signal::default(),
+            value_sum: Signal::default(),
+            halved: Signal::default(),
+            wide_value: Signal::default(),
+            rest_phase: Constant::new(from_u64(0)),
+            advance_phase: Constant::new(from_u64(1)),
+            turn_phase: Constant::new(from_u64(2)),
+            scale_phase: Constant::new(from_u64(3)),
+            no_clock: Constant::new(from_u64(0)),
+            one_clock: Constant::new(from_u64(1)),
+            no_angle: Constant::new(from_u64(0)),
+            one_step: Constant::new(from_u64(1)),
+            not_ahead: Constant::new(from_u64(0)),
+            carry_in: Constant::new(from_u64(1)),
+            ones_around: Constant::new(from_u64(0x60_001f)),
+            first_frequency: Constant::new(from_u64(1 << 16)),
+            no_bit: Constant::new(from_u64(0)),
+            one_bit: Constant::new(from_u64(1)),
+            seed: Constant::new(from_u64(0)),
+            nothing: Constant::new(from_u64(0)),
+            no_value: Constant::new(from_i64(0)),
+        }
+    }
+}
+
+impl Logic for Wave {
+    #[hdl_gen]
+    fn update(&mut self) {
+        comment!("@module excitation_wave");
+        comment!("@about Angle, PRBS, amplitude times wave.");
+        dff_setup!(
+            self, clk, phase, clocks, angle, ahead, frequency, turned, noise, value_q
+        );
+        self.advances.next = self.phase.q.val() == self.advance_phase.val();
+        self.turns.next = self.phase.q.val() == self.turn_phase.val();
+        self.scales.next = self.phase.q.val() == self.scale_phase.val();
+        self.too_fast.next = false;
+
+        comment!("Ahead: plus 256 frequencies, minus periods");
+        self.operand.next = bit_cast::<23, 18>(self.frequency.q.val().get_bits::<18>(4)) << 1;
+        self.not_period.next = !self.period_ticks.val();
+        if self.turns.val() {
+            self.operand.next = (bit_cast::<23, 16>(self.not_period.val()) << 5) | self.ones_around.val();
+        }
+        self.with_carry.next =
+            ((bit_cast::<23, 21>(self.ahead.q.val()) << 1) | self.carry_in.val()) + self.operand.val();
+        self.ahead_sum.next = self.with_carry.val().get_bits::<22>(1);
+
+        comment!("The frequency rises; above its word: an end");
+        self.next_frequency.next = bit_cast::<23, 22>(self.frequency.q.val()) + bit_cast::<23, 16>(self.sweep.val());
+        if self.advances.val() {
+            self.ahead.d.next = self.ahead_sum.val().get_bits::<21>(0);
+            self.turned.d.next = false;
+            self.phase.d.next = self.turn_phase.val();
+            self.frequency.d.next = self.next_frequency.val().get_bits::<22>(0);
+            self.too_fast.next = self.chirp.val() & self.next_frequency.val().get_bit(22);
+        }
+
+        comment!("A step of the angle, or none; a whole turn");
+        self.next_angle.next = self.angle.q.val() + self.one_step.val();
+        self.whole_turn.next = self.turns.val() & !self.ahead_sum.val().get_bit(21) & self.angle.q.val().all();
+        if self.turns.val() {
+            if self.ahead_sum.val().get_bit(21) {
+                self.phase.d.next = self.scale_phase.val();
+            } else {
+                self.ahead.d.next = self.ahead_sum.val().get_bits::<21>(0);
+                self.angle.d.next = self.next_angle.val();
+            }
+        }
+        if self.whole_turn.val() {
+            self.turned.d.next = true;
+            self.too_fast.next = self.turned.q.val();
+        }
+
+        comment!("PRBS x^15 + x^14 + 1, inverted: seed is 0");
+        self.feedback.next = self.one_bit.val();
+        if self.noise.q.val().get_bit(14) ^ self.noise.q.val().get_bit(13) {
+            self.feedback.next = self.no_bit.val();
+        }
+        if self.whole_turn.val() {
+            self.noise.d.next = (self.noise.q.val() << 1) | bit_cast::<15, 1>(self.feedback.val());
+        }
+
+        comment!("Sign and bit of the wave");
+        self.negative.next = self.angle.q.val().get_bit(7);
+        if self.prbs.val() {
+            self.negative.next = self.noise.q.val().get_bit(14);
+        }
+        self.fold.next = self.angle.q.val().get_bit(6);
+        self.triangle_bit.next = false;
+        if self.clocks.q.val() == 9 {
+            self.triangle_bit.next = true;
+        }
+        if self.clocks.q.val() == 10 {
+            self.triangle_bit.next = self.angle.q.val().get_bit(0) ^ self.fold.val();
+        }
+        if self.clocks.q.val() == 11 {
+            self.triangle_bit.next = self.angle.q.val().get_bit(1) ^ self.fold.val();
+        }
+        if self.clocks.q.val() == 12 {
+            self.triangle_bit.next = self.angle.q.val().get_bit(2) ^ self.fold.val();
+        }
+        if self.clocks.q.val() == 13 {
+            self.triangle_bit.next = self.angle.q.val().get_bit(3) ^ self.fold.val();
+        }
+        if self.clocks.q.val() == 14 {
+            self.triangle_bit.next = self.angle.q.val().get_bit(4) ^ self.fold.val();
+        }
+        if self.clocks.q.val().all() {
+            self.triangle_bit.next = self.angle.q.val().get_bit(5) ^ self.fold.val();
+        }
+        self.adds.next = !self.chirp.val() | self.triangle_bit.val();
+
+        comment!("Half of value + 1 + addend, or value - addend");
+        self.subtrahend.next = self.nothing.val();
+        if self.adds.val() {
+            self.subtrahend.next = bit_cast::<18, 16>(self.amplitude.val());
+        }
+        self.complement.next = !self.subtrahend.val();
+        if self.negative.val() {
+            self.complement.next = self.subtrahend.val();
+        }
+        self.wide_value.next = signed_bit_cast::<18, 17>(self.value_q.q.val());
+        self.value_sum.next = unsigned_cast(self.wide_value.val()) - self.complement.val();
+        self.halved.next = self.value_sum.val().get_bits::<17>(1);
+        if self.scales.val() {
+            self.value_q.d.next = signed_cast(self.halved.val());
+            self.clocks.d.next = self.clocks.q.val() + self.one_clock.val();
+            if self.clocks.q.val().all() {
+                self.phase.d.next = self.rest_phase.val();
+            }
+        }
+        if self.turns.val() & self.ahead_sum.val().get_bit(21) {
+            self.value_q.d.next = self.no_value.val();
+            self.clocks.d.next = self.no_clock.val();
+        }
+
+        comment!("A tick; no signal: all as at the start");
+        if self.valid.val() {
+            self.phase.d.next = self.advance_phase.val();
+        }
+        if !self.chirp.val() {
+            self.frequency.d.next = self.first_frequency.val();
+        }
+        if !self.run.val() {
+            self.phase.d.next = self.rest_phase.val();
+            self.clocks.d.next = self.no_clock.val();
+            self.angle.d.next = self.no_angle.val();
+            self.ahead.d.next = self.not_ahead.val();
+            self.frequency.d.next = self.first_frequency.val();
+            self.turned.d.next = false;
+            self.noise.d.next = self.seed.val();
+            self.value_q.d.next = self.no_value.val();
+        }
+        if self.start.val() {
+            self.phase.d.next = self.scale_phase.val();
+        }
+        self.value.next = self.value_q.q.val();
+    }
+}

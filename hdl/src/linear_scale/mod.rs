@@ -1,0 +1,46 @@
+//! The counts of a motor's encoder against those of a linear scale, in hardware.
+//!
+//! The datasheet is `docs/linear_scale.md`, the reference `posicast_model::rtl::linear_scale`.
+
+mod kernel;
+mod pins;
+mod serial_ratio;
+
+use crate::emit::{self, EmitError, EmitOptions, Header, Module, Parameter};
+use crate::simulation::{Simulated, SimulationError};
+use kernel::LinearScale;
+use posicast_model::rtl::ClockedBlock;
+use posicast_model::rtl::linear_scale::{LATENCY_CLOCKS, ports};
+
+/// The linear scale in RustHDL's own simulator.
+///
+/// # Errors
+/// [`SimulationError`] where RustHDL finds a fault in the block.
+pub fn simulate() -> Result<Box<dyn ClockedBlock>, SimulationError> {
+    let block = Box::new(LinearScale::default());
+    Ok(Box::new(Simulated::new("linear_scale", block, ports())?))
+}
+
+/// The linear scale's Verilog, one module per file, the top last.
+///
+/// The top is called `PREFIX_linear_scale`, or `linear_scale` where `prefix` is empty.
+///
+/// # Errors
+/// [`EmitError`] where `prefix` makes no Verilog name.
+pub fn emit(prefix: &str) -> Result<Vec<Module>, EmitError> {
+    let options = EmitOptions {
+        top: "linear_scale".to_owned(),
+        prefix: prefix.to_owned(),
+        header: Header {
+            about: "Motor against linear scale: deviation since align, position and velocity of the loop's counter.\n\
+                    One product of a bit per clock at a time, in the registers of deviation and velocity."
+                .to_owned(),
+            parameters: vec![Parameter {
+                name: "latency_clocks".to_owned(),
+                value: LATENCY_CLOCKS.to_string(),
+                meaning: "from tick to deviation_valid, from velocity_valid to velocity".to_owned(),
+            }],
+        },
+    };
+    emit::emit(&LinearScale::default(), &options)
+}

@@ -1,0 +1,245 @@
+//! The pass: differences, product, rounding and deviation, all lowest bit first, one bit per clock.
+//!
+//! ```text
+//! phase           0 …            31 …                           63
+//! operand bit     difference        its sign
+//! product bit     p0 p1 …
+//! rounded         from phase `ratio_shift` on: p + carry; the first carry is the bit before
+//! register        shifts down until its 32 bits are in           bits above must be like the highest
+//! ```
+//!
+//! With a sign that goes on, the product's 64 lowest bits need no correction for a negative operand: `partial` adds the mantissa
+//! or nothing, gives its lowest bit away and moves down.
+
+use crate::prelude::*;
+
+#[derive(LogicBlock)]
+pub(super) struct SerialRatio {
+    pub(super) clk: Signal<In, Clock>,
+    pub(super) rst: Signal<In, Bit>,
+    pub(super) runs: Signal<In, Bit>,
+    pub(super) of_position: Signal<In, Bit>,
+    pub(super) use_scale: Signal<In, Bit>,
+    pub(super) ratio_mantissa: Signal<In, Signed<18>>,
+    pub(super) ratio_shift: Signal<In, Bits<5>>,
+    pub(super) operand_bit: Signal<In, Bit>,
+    pub(super) operand_reference_bit: Signal<In, Bit>,
+    pub(super) other_bit: Signal<In, Bit>,
+    pub(super) other_reference_bit: Signal<In, Bit>,
+    pub(super) takes_operand: Signal<Out, Bit>,
+    pub(super) takes_other: Signal<Out, Bit>,
+    pub(super) moves: Signal<Out, Bit>,
+    pub(super) result_bit: Signal<Out, Bit>,
+    pub(super) last: Signal<Out, Bit>,
+    pub(super) overflows: Signal<Out, Bit>,
+    pub(super) negative: Signal<Out, Bit>,
+
+    phase: Dff<Bits<6>>,
+    partial: Dff<Signed<18>>,
+    held_operand: Dff<Bit>,
+    operand_borrow: Dff<Bit>,
+    held_other: Dff<Bit>,
+    other_borrow: Dff<Bit>,
+    round_up: Dff<Bit>,
+    borrow: Dff<Bit>,
+    begun_q: Dff<Bit>,
+    ended_q: Dff<Bit>,
+    overflow: Dff<Bit>,
+    highest: Dff<Bit>,
+
+    at_shift: Signal<Local, Bit>,
+    begun: Signal<Local, Bit>,
+    moving: Signal<Local, Bit>,
+    ends: Signal<Local, Bit>,
+    operand_bit_now: Signal<Local, Bit>,
+    operand_less: Signal<Local, Bit>,
+    addend: Signal<Local, Signed<19>>,
+    wide_partial: Signal<Local, Signed<19>>,
+    sum: Signal<Local, Signed<19>>,
+    sum_bits: Signal<Local, Bits<19>>,
+    product_bit: Signal<Local, Bit>,
+    rounded_bit: Signal<Local, Bit>,
+    other_now: Signal<Local, Bit>,
+    other_less: Signal<Local, Bit>,
+    minuend: Signal<Local, Bit>,
+    subtrahend: Signal<Local, Bit>,
+    difference: Signal<Local, Bit>,
+    beyond: Signal<Local, Bit>,
+
+    nil: Constant<Signed<19>>,
+    no_partial: Constant<Signed<18>>,
+    first_phase: Constant<Bits<6>>,
+    one_phase: Constant<Bits<6>>,
+}
+
+impl Default for SerialRatio {
+    fn default() -> Self {
+        Self {
+            clk: Signal::default(),
+            rst: Signal::default(),
+            runs: Signal::default(),
+            of_position: Signal::default(),
+            use_scale: Signal::default(),
+            ratio_mantissa: Signal::default(),
+            ratio_shift: Signal::default(),
+            operand_bit: Signal::default(),
+            operand_reference_bit: Signal::default(),
+            other_bit: Signal::default(),
+            other_reference_bit: Signal::default(),
+            takes_operand: Signal::default(),
+            takes_other: Signal::default(),
+            moves: Signal::default(),
+            result_bit: Signal::default(),
+            last: Signal::default(),
+            overflows: Signal::default(),
+            negative: Signal::default(),
+            phase: Dff::default(),
+            partial: Dff::default(),
+            held_operand: Dff::default(),
+            operand_borrow: Dff::default(),
+            held_other: Dff::default(),
+            other_borrow: Dff::default(),
+            round_up: Dff::default(),
+            borrow: Dff::default(),
+            begun_q: Dff::default(),
+            ended_q: Dff::default(),
+            overflow: Dff::default(),
+            highest: Dff::default(),
+            at_shift: Signal::default(),
+            begun: Signal::default(),
+            moving: Signal::default(),
+            ends: Signal::default(),
+            operand_bit_now: Signal::default(),
+            operand_less: Signal::default(),
+            addend: Signal::default(),
+            wide_partial: Signal::default(),
+            sum: Signal::default(),
+            sum_bits: Signal::default(),
+            product_bit: Signal::default(),
+            rounded_bit: Signal::default(),
+            other_now: Signal::default(),
+            other_less: Signal::default(),
+            minuend: Signal::default(),
+            subtrahend: Signal::default(),
+            difference: Signal::default(),
+            beyond: Signal::default(),
+            nil: Constant::new(from_i64(0)),
+            no_partial: Constant::new(from_i64(0)),
+            first_phase: Constant::new(from_u64(0)),
+            one_phase: Constant::new(from_u64(1)),
+        }
+    }
+}
+
+impl Logic for SerialRatio {
+    #[hdl_gen]
+    fn update(&mut self) {
+        comment!("@module serial_ratio");
+        comment!("@about ratio * operand, rounded, against the other:");
+        comment!("@about a bit per clock, lowest first.");
+        dff_setup!(
+            self,
+            clk,
+            phase,
+            partial,
+            held_operand,
+            operand_borrow,
+            held_other,
+            other_borrow,
+            round_up,
+            borrow,
+            begun_q,
+            ended_q,
+            overflow,
+            highest
+        );
+
+        comment!("32 bits from bit ratio_shift on are the result");
+        self.at_shift.next = self.phase.q.val().get_bits::<5>(0) == self.ratio_shift.val();
+        self.begun.next = self.begun_q.q.val() | self.at_shift.val();
+        self.moving.next = !(self.phase.q.val().get_bit(5) & (self.at_shift.val() | self.ended_q.q.val()));
+        self.ends.next = self.runs.val() & self.phase.q.val().all();
+
+        comment!("Operand less its reference, then its sign");
+        self.operand_less.next = self.operand_reference_bit.val() & self.of_position.val();
+        self.operand_bit_now.next = self.operand_bit.val() ^ self.operand_less.val() ^ self.operand_borrow.q.val();
+        if self.phase.q.val().get_bit(5) {
+            self.operand_bit_now.next = self.held_operand.q.val();
+        }
+
+        comment!("Times the mantissa");
+        self.addend.next = self.nil.val();
+        if self.operand_bit_now.val() {
+            self.addend.next = signed_bit_cast::<19, 18>(self.ratio_mantissa.val());
+        }
+        self.wide_partial.next = signed_bit_cast::<19, 18>(self.partial.q.val());
+        self.sum.next = self.wide_partial.val() + self.addend.val();
+        self.sum_bits.next = unsigned_cast(self.sum.val());
+        self.product_bit.next = self.sum_bits.val().get_bit(0);
+
+        comment!("Half up: plus the bit below the result");
+        self.rounded_bit.next = self.product_bit.val() ^ self.round_up.q.val();
+
+        comment!("The other one less its reference, then its sign");
+        self.other_less.next = self.other_reference_bit.val() & self.of_position.val();
+        self.other_now.next =
+            (self.other_bit.val() & self.of_position.val()) ^ self.other_less.val() ^ self.other_borrow.q.val();
+        if !self.moving.val() {
+            self.other_now.next = self.held_other.q.val();
+        }
+
+        comment!("Motor less scale");
+        self.minuend.next = self.other_now.val();
+        self.subtrahend.next = self.rounded_bit.val();
+        if self.use_scale.val() {
+            self.minuend.next = self.rounded_bit.val();
+            self.subtrahend.next = self.other_now.val();
+        }
+        self.difference.next = self.minuend.val() ^ self.subtrahend.val() ^ self.borrow.q.val();
+
+        comment!("Beyond 32 bits: one above is unlike the highest");
+        self.beyond.next =
+            self.overflow.q.val() | (!self.moving.val() & (self.difference.val() ^ self.highest.q.val()));
+
+        comment!("All from nothing at the start of a pass");
+        self.phase.d.next = self.first_phase.val();
+        self.partial.d.next = self.no_partial.val();
+        self.operand_borrow.d.next = false;
+        self.other_borrow.d.next = false;
+        self.round_up.d.next = false;
+        self.borrow.d.next = false;
+        self.begun_q.d.next = false;
+        self.ended_q.d.next = false;
+        self.overflow.d.next = false;
+        if self.runs.val() & !self.ends.val() {
+            self.phase.d.next = self.phase.q.val() + self.one_phase.val();
+            self.partial.d.next = signed_cast(self.sum_bits.val().get_bits::<18>(1));
+            self.operand_borrow.d.next = (!self.operand_bit.val() & self.operand_less.val())
+                | (!(self.operand_bit.val() ^ self.operand_less.val()) & self.operand_borrow.q.val());
+            self.other_borrow.d.next = self.begun.val()
+                & ((!self.other_bit.val() & self.other_less.val())
+                    | (!(self.other_bit.val() ^ self.other_less.val()) & self.other_borrow.q.val()));
+            self.round_up.d.next = self.product_bit.val() & (self.round_up.q.val() | !self.begun.val());
+            self.borrow.d.next = self.begun.val()
+                & ((!self.minuend.val() & self.subtrahend.val())
+                    | (!(self.minuend.val() ^ self.subtrahend.val()) & self.borrow.q.val()));
+            self.begun_q.d.next = self.begun.val();
+            self.ended_q.d.next = !self.moving.val();
+            self.overflow.d.next = self.beyond.val();
+        }
+        self.held_operand.d.next = self.operand_bit_now.val();
+        self.held_other.d.next = self.other_now.val();
+        if self.moving.val() {
+            self.highest.d.next = self.difference.val();
+        }
+
+        comment!("Outputs");
+        self.takes_operand.next = !self.phase.q.val().get_bit(5);
+        self.takes_other.next = self.begun.val() & self.moving.val();
+        self.moves.next = self.moving.val();
+        self.result_bit.next = self.difference.val() & self.begun.val();
+        self.last.next = self.ends.val();
+        self.overflows.next = self.beyond.val();
+        self.negative.next = self.difference.val();
+    }
+}

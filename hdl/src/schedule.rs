@@ -1,0 +1,110 @@
+//! When the controllers of a stage start: a fixed number of clocks after each tick.
+//!
+//! The reference is `posicast_model::rtl::schedule`.
+
+use crate::emit::{self, EmitError, EmitOptions, Header, Module, Parameter};
+use crate::prelude::*;
+use crate::simulation::{Pins, Simulated, SimulationError};
+use posicast_model::rtl::ClockedBlock;
+use posicast_model::rtl::schedule::{ScheduleConfig, ports};
+
+#[derive(LogicBlock)]
+struct Schedule {
+    clk: Signal<In, Clock>,
+    rst: Signal<In, Bit>,
+    tick: Signal<In, Bit>,
+    control: Signal<Out, Bit>,
+
+    since: Dff<Bits<17>>,
+    control_q: Dff<Bit>,
+
+    idle: Constant<Bits<17>>,
+    one: Constant<Bits<17>>,
+    last: Constant<Bits<17>>,
+}
+
+impl Schedule {
+    fn new(config: &ScheduleConfig) -> Self {
+        Self {
+            clk: Signal::default(),
+            rst: Signal::default(),
+            tick: Signal::default(),
+            control: Signal::default(),
+            since: Dff::default(),
+            control_q: Dff::default(),
+            idle: Constant::new(from_u64(0)),
+            one: Constant::new(from_u64(1)),
+            last: Constant::new(from_u64(u64::from(config.control_clocks()) - 1)),
+        }
+    }
+}
+
+impl Logic for Schedule {
+    #[hdl_gen]
+    fn update(&mut self) {
+        comment!("@module schedule");
+        dff_setup!(self, clk, since, control_q);
+
+        if self.since.q.val() != self.idle.val() {
+            self.since.d.next = self.since.q.val() + self.one.val();
+        }
+        self.control_q.d.next = false;
+        if self.since.q.val() == self.last.val() {
+            self.control_q.d.next = true;
+            self.since.d.next = self.idle.val();
+        }
+        if self.tick.val() {
+            self.since.d.next = self.one.val();
+        }
+
+        self.control.next = self.control_q.q.val();
+    }
+}
+
+impl Pins for Schedule {
+    fn set_clk(&mut self, level: bool) {
+        self.clk.next = level.into();
+    }
+
+    fn drive(&mut self, inputs: &[u64]) {
+        if let [rst, tick] = inputs {
+            self.rst.next = rst & 1 != 0;
+            self.tick.next = tick & 1 != 0;
+        }
+    }
+
+    fn read(&self, outputs: &mut [u64]) {
+        if let [control] = outputs {
+            *control = self.control.val().into();
+        }
+    }
+}
+
+/// The schedule in RustHDL's own simulator.
+///
+/// # Errors
+/// [`SimulationError`] where RustHDL finds a fault in the block.
+pub fn simulate(config: &ScheduleConfig) -> Result<Box<dyn ClockedBlock>, SimulationError> {
+    let block = Box::new(Schedule::new(config));
+    Ok(Box::new(Simulated::new("schedule", block, ports())?))
+}
+
+/// The schedule's Verilog: `PREFIX_schedule`, or `schedule` where `prefix` is empty.
+///
+/// # Errors
+/// [`EmitError`] where `prefix` makes no Verilog name.
+pub fn emit(config: &ScheduleConfig, prefix: &str) -> Result<Vec<Module>, EmitError> {
+    let options = EmitOptions {
+        top: "schedule".to_owned(),
+        prefix: prefix.to_owned(),
+        header: Header {
+            about: "Schedule: the controllers start a fixed number of clocks after each tick.".to_owned(),
+            parameters: vec![Parameter {
+                name: "control_clocks".to_owned(),
+                value: config.control_clocks().to_string(),
+                meaning: "clocks from the tick to control".to_owned(),
+            }],
+        },
+    };
+    emit::emit(&Schedule::new(config), &options)
+}

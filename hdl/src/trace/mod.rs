@@ -1,0 +1,68 @@
+//! The trace memory in hardware: up to four of 16 signals, row by row, around a trigger.
+//!
+//! The datasheet is `docs/trace.md`, the reference `posicast_model::rtl::trace`.
+//!
+//! One kernel serves all sizes. A size is a type in RustHDL, so `block` lists the types and picks the one that a
+//! [`TraceConfig`] names.
+
+mod kernel;
+mod memory;
+mod pins;
+mod signal_select;
+mod trigger;
+
+use crate::emit::{self, EmitError, EmitOptions, Header, Module, Parameter};
+use crate::simulation::{Pins, Simulated, SimulationError};
+use kernel::Trace;
+use posicast_model::rtl::ClockedBlock;
+use posicast_model::rtl::trace::{ROW_SIGNALS, TraceConfig, ports, row_clocks};
+
+/// The trace memory in RustHDL's own simulator.
+///
+/// # Errors
+/// [`SimulationError`] where RustHDL finds a fault in the block.
+pub fn simulate(config: &TraceConfig) -> Result<Box<dyn ClockedBlock>, SimulationError> {
+    Ok(Box::new(Simulated::new("trace", block(config), ports())?))
+}
+
+/// The trace memory's Verilog, one module per file, the top last.
+///
+/// The top is called `PREFIX_trace`, or `trace` where `prefix` is empty.
+///
+/// # Errors
+/// [`EmitError`] where `prefix` makes no Verilog name.
+pub fn emit(config: &TraceConfig, prefix: &str) -> Result<Vec<Module>, EmitError> {
+    let parameter = |name: &str, value: u32, meaning: &str| Parameter {
+        name: name.to_owned(),
+        value: value.to_string(),
+        meaning: meaning.to_owned(),
+    };
+    let options = EmitOptions {
+        top: "trace".to_owned(),
+        prefix: prefix.to_owned(),
+        header: Header {
+            about: "Trace memory: up to four of 16 signals, row by row, around a trigger.\n\
+                    arm begins; the words are read by address, in order of time, when it is over."
+                .to_owned(),
+            parameters: vec![
+                parameter("samples", config.samples(), "words; a row has 1, 2 or 4"),
+                parameter(
+                    "row_clocks",
+                    row_clocks(ROW_SIGNALS),
+                    "from a strobe to the next, at most",
+                ),
+            ],
+        },
+    };
+    emit::emit(block(config).as_ref(), &options)
+}
+
+/// The kernel of this size. The last arm is the largest: [`TraceConfig`] lets no other through.
+fn block(config: &TraceConfig) -> Box<dyn Pins> {
+    match config.address_bits() {
+        8 => Box::<Trace<8, 9>>::default(),
+        9 => Box::<Trace<9, 10>>::default(),
+        10 => Box::<Trace<10, 11>>::default(),
+        _ => Box::<Trace<11, 12>>::default(),
+    }
+}

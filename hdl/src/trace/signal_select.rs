@@ -1,0 +1,80 @@
+//! One of 16 signals, a clock after `select`.
+//!
+//! The only multiplexer of the block, and more than half of its area: the trigger's signal and those of a row go through it
+//! one after the other. First one of each four, by the lower bits of `select`, into registers; behind them one of these
+//! four. So it takes ten LUTs per bit, which an optimiser that sees all 16 at once does not find, and the registers sit in
+//! elements whose LUTs are taken anyway.
+
+use crate::prelude::*;
+
+#[derive(LogicBlock, Default)]
+pub(super) struct SignalSelect {
+    pub(super) clk: Signal<In, Clock>,
+    pub(super) rst: Signal<In, Bit>,
+    pub(super) signal: [Signal<In, Signed<32>>; 16],
+    pub(super) select: Signal<In, Bits<4>>,
+    pub(super) chosen: Signal<Out, Signed<32>>,
+
+    first: Dff<Signed<32>>,
+    second: Dff<Signed<32>>,
+    third: Dff<Signed<32>>,
+    fourth: Dff<Signed<32>>,
+    upper: Dff<Bits<2>>,
+
+    low_pair: [Signal<Local, Signed<32>>; 4],
+    high_pair: [Signal<Local, Signed<32>>; 4],
+    lower_two: Signal<Local, Signed<32>>,
+    upper_two: Signal<Local, Signed<32>>,
+}
+
+impl Logic for SignalSelect {
+    #[hdl_gen]
+    fn update(&mut self) {
+        comment!("@module signal_select");
+        comment!("@about One of 16 signals, a clock after select.");
+        dff_setup!(self, clk, first, second, third, fourth, upper);
+
+        comment!("One of each four");
+        self.low_pair[0].next = self.signal[0].val();
+        self.low_pair[1].next = self.signal[4].val();
+        self.low_pair[2].next = self.signal[8].val();
+        self.low_pair[3].next = self.signal[12].val();
+        self.high_pair[0].next = self.signal[2].val();
+        self.high_pair[1].next = self.signal[6].val();
+        self.high_pair[2].next = self.signal[10].val();
+        self.high_pair[3].next = self.signal[14].val();
+        if self.select.val().get_bit(0) {
+            self.low_pair[0].next = self.signal[1].val();
+            self.low_pair[1].next = self.signal[5].val();
+            self.low_pair[2].next = self.signal[9].val();
+            self.low_pair[3].next = self.signal[13].val();
+            self.high_pair[0].next = self.signal[3].val();
+            self.high_pair[1].next = self.signal[7].val();
+            self.high_pair[2].next = self.signal[11].val();
+            self.high_pair[3].next = self.signal[15].val();
+        }
+        self.first.d.next = self.low_pair[0].val();
+        self.second.d.next = self.low_pair[1].val();
+        self.third.d.next = self.low_pair[2].val();
+        self.fourth.d.next = self.low_pair[3].val();
+        if self.select.val().get_bit(1) {
+            self.first.d.next = self.high_pair[0].val();
+            self.second.d.next = self.high_pair[1].val();
+            self.third.d.next = self.high_pair[2].val();
+            self.fourth.d.next = self.high_pair[3].val();
+        }
+        self.upper.d.next = self.select.val().get_bits::<2>(2);
+
+        comment!("Of these, one");
+        self.lower_two.next = self.first.q.val();
+        self.upper_two.next = self.third.q.val();
+        if self.upper.q.val().get_bit(0) {
+            self.lower_two.next = self.second.q.val();
+            self.upper_two.next = self.fourth.q.val();
+        }
+        self.chosen.next = self.lower_two.val();
+        if self.upper.q.val().get_bit(1) {
+            self.chosen.next = self.upper_two.val();
+        }
+    }
+}

@@ -1,0 +1,60 @@
+//! The drive command in RustHDL's simulator against its model.
+
+#![allow(clippy::unwrap_used, reason = "a helper that fails fails its test")]
+
+mod random;
+
+use posicast_hdl::drive_command::{emit, simulate};
+use posicast_model::rtl::ClockedBlock;
+use posicast_model::rtl::drive_command::{DriveCommand, OUTPUT_PORTS, ports};
+use random::Random;
+
+#[test]
+fn lockstep_everything_at_random() {
+    let mut model = DriveCommand::new();
+    let mut rusthdl = simulate().unwrap();
+    let mut random = Random(3);
+    let (mut expected, mut actual) = ([0; OUTPUT_PORTS], [0; OUTPUT_PORTS]);
+    let mut direct_clocks = 0;
+    for clock in 0..20_000 {
+        let mut seldom = |pace| u64::from(random.once_in(pace));
+        let bits = [seldom(2000), seldom(5), seldom(7), seldom(9), seldom(9), seldom(9)];
+        let [rst, tick, valid, pwm_enable, drive_enable, brake_release] = bits;
+        let lines = [(); 4].map(|()| 1 - seldom(30));
+        let state = if seldom(40) == 1 { random.below(8) } else { 1 };
+        let direct_enable = u64::from(!random.once_in(100));
+        let kick = u64::from(random.once_in(30));
+        let size = random.below(18);
+        let inputs = [
+            rst,
+            tick,
+            random.word() & 0x3_ffff,
+            valid,
+            state,
+            pwm_enable,
+            drive_enable,
+            brake_release,
+            lines[0],
+            lines[1],
+            lines[2],
+            lines[3],
+            direct_enable,
+            kick,
+            random.below(7),
+            (random.word() & 0x1_ffff) >> size,
+            (random.word() & 0xffff) >> random.below(17),
+        ];
+        ClockedBlock::step(&mut model, &inputs, &mut expected).unwrap();
+        rusthdl.step(&inputs, &mut actual).unwrap();
+        assert_eq!(actual, expected, "clock {clock}, {inputs:?}");
+        direct_clocks += expected[6];
+    }
+    assert!(direct_clocks > 5000, "{direct_clocks} clocks in direct mode");
+}
+
+#[test]
+fn unit_the_verilog_has_the_ports_of_the_model() {
+    let modules = emit("stage").unwrap();
+    assert_eq!((modules.len(), modules[0].name.as_str()), (1, "stage_drive_command"));
+    assert_eq!(modules[0].ports, ports());
+}

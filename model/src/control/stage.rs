@@ -1,0 +1,181 @@
+//! The stage of a machine: what its file says of the axes, as the hardware is built from it.
+
+use super::{ControlError, Derived, Supervision, SupervisionError, gains, loop_lag_s, schedule_delay_s, supervision};
+use crate::design::MachineDesign;
+use crate::rtl::divider::{DividerConfig, DividerConfigError};
+use crate::rtl::pwm::{ActiveLow, Mode, PwmConfig, PwmConfigError};
+use crate::rtl::shaper::{Motion, ShaperConfig, ShaperConfigError};
+use crate::rtl::stage::{StageAxis, StageConfig};
+use crate::spec::{Axis, Clock, Machine, Pwm, PwmMode};
+
+/// A stage, and what was derived for its axes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MachineStage {
+    /// What it is built from.
+    pub config: StageConfig,
+    /// Lag of each axis's loop in s, with the stage's schedule.
+    pub lags_s: Vec<f64>,
+    /// Controller of each axis.
+    pub derived: Vec<Derived>,
+}
+
+/// Why a machine has no stage. `axis` counts from 0.
+#[derive(Debug, thiserror::Error)]
+pub enum MachineStageError {
+    /// The tick.
+    #[error(transparent)]
+    Tick(#[from] DividerConfigError),
+    /// A shaper.
+    #[error("axis {axis}: {error}; a stage shapes position, velocity and acceleration")]
+    Shaper {
+        /// Which.
+        axis: usize,
+        /// Why.
+        error: ShaperConfigError,
+    },
+    /// A PWM.
+    #[error("{error}")]
+    Pwm {
+        /// Which.
+        axis: usize,
+        /// Why.
+        error: PwmConfigError,
+    },
+    /// A controller.
+    #[error("{error}")]
+    Control {
+        /// Which.
+        axis: usize,
+        /// Why.
+        error: ControlError,
+    },
+    /// A supervisor.
+    #[error("{error}")]
+    Supervision {
+        /// Which.
+        axis: usize,
+        /// Why.
+        error: SupervisionError,
+    },
+}
+
+impl MachineStageError {
+    /// Axis and key of the machine file that are to blame.
+    pub fn key(&self) -> (usize, String) {
+        match self {
+            Self::Tick(_) => (0, "clock.sample_hz".to_owned()),
+            Self::Shaper { axis, .. } => (*axis, "axis.shaper".to_owned()),
+            Self::Pwm { axis, .. } => (*axis, "axis.pwm".to_owned()),
+            Self::Control { axis, error } => (*axis, error.key()),
+            Self::Supervision { axis, error } => (*axis, error.key().to_owned()),
+        }
+    }
+}
+
+/// The stage of a machine, if every axis of it has encoder, PWM, drive and controller; else none.
+///
+/// # Errors
+/// [`MachineStageError`] with the key to blame.
+pub fn stage(machine: &Machine, design: &MachineDesign) -> Result<Option<MachineStage>, MachineStageError> {
+    let mut axes = Vec::new();
+    for (index, (axis, tables)) in machine.axes.iter().zip(&design.axes).enumerate() {
+        let (Some(encoder), Some(pwm), Some(_), Some(_)) = (&axis.encoder, &axis.pwm, &axis.drive, &axis.controller)
+        else {
+            return Ok(None);
+        };
+        let motion = Motion {
+            channels: 3,
+            modulo: axis.modulo,
+        };
+        let shaper = ShaperConfig::new(machine.fixed_point.command_bits, tables.table.clone());
+        let shaper = shaper.and_then(|plain| plain.for_motion(motion));
+        let watched = supervision(axis, &machine.clock, tables.table.longest_delay_samples());
+        axes.push(Parts {
+            axis,
+            pwm,
+            filter_clocks: encoder.filter_clocks,
+            shaper: shaper.map_err(|error| MachineStageError::Shaper { axis: index, error })?,
+            supervision: watched.map_err(|error| MachineStageError::Supervision { axis: index, error })?,
+            config: pwm_config(pwm, &machine.clock).map_err(|error| MachineStageError::Pwm { axis: index, error })?,
+        });
+    }
+    let tick = DividerConfig::new(u64::from(machine.clock.clocks_per_sample()))?;
+    let shapers: Vec<&ShaperConfig> = axes.iter().map(|parts| &parts.shaper).collect();
+    let used_clocks = crate::rtl::stage::Schedule::of(&shapers, axes.len() as u32).duty_clocks();
+    let (mut lags_s, mut derived, mut built) = (Vec::new(), Vec::new(), Vec::new());
+    for (index, parts) in axes.into_iter().enumerate() {
+        let delay_s = schedule_delay_s(&machine.clock, parts.pwm, used_clocks);
+        let lag_s = parts
+            .axis
+            .drive
+            .as_ref()
+            .map_or(delay_s, |drive| loop_lag_s(drive, delay_s));
+        let gains = gains(parts.axis, machine.clock, lag_s)
+            .map_err(|error| MachineStageError::Control { axis: index, error })?;
+        lags_s.push(lag_s);
+        built.push(parts.build(&gains, &machine.clock));
+        derived.push(gains);
+    }
+    Ok(Some(MachineStage {
+        config: StageConfig { tick, axes: built },
+        lags_s,
+        derived,
+    }))
+}
+
+struct Parts<'a> {
+    axis: &'a Axis,
+    pwm: &'a Pwm,
+    filter_clocks: u32,
+    shaper: ShaperConfig,
+    supervision: Supervision,
+    config: PwmConfig,
+}
+
+impl Parts<'_> {
+    fn build(self, derived: &Derived, clock: &Clock) -> StageAxis {
+        StageAxis {
+            name: self.axis.name.clone(),
+            shaper: self.shaper,
+            settings: derived.settings,
+            law: derived.law,
+            modulo: self.axis.modulo,
+            pwm: self.config,
+            pwm_mode: pwm_mode(self.pwm.mode),
+            pwm_period_clocks: self.pwm.period_clocks(clock),
+            encoder_filter_clocks: self.filter_clocks,
+            supervision: self.supervision,
+        }
+    }
+}
+
+/// The mode's register value.
+pub fn pwm_mode(mode: PwmMode) -> Mode {
+    match mode {
+        PwmMode::Direction => Mode::Direction,
+        PwmMode::HalfBridge => Mode::HalfBridge,
+        PwmMode::FullBridge => Mode::Unipolar,
+        PwmMode::LockedAntiphase => Mode::Locked,
+    }
+}
+
+/// What is fixed in an axis's PWM: all pins have one polarity, and what the file asks for is the least that a register takes.
+///
+/// # Errors
+/// [`PwmConfigError`] for a dead time or minimum pulse of more than 1023 clocks.
+pub fn pwm_config(pwm: &Pwm, clock: &Clock) -> Result<PwmConfig, PwmConfigError> {
+    let low = pwm.active_low;
+    let active_low = ActiveLow {
+        a_high: low,
+        a_low: low,
+        b_high: low,
+        b_low: low,
+    };
+    // The hardware has at least one clock of each.
+    let floor = |clocks: u32| u64::from(clocks.max(1));
+    PwmConfig::new(
+        active_low,
+        floor(pwm.dead_time_clocks(clock)),
+        floor(pwm.minimum_pulse_clocks(clock)),
+    )
+}

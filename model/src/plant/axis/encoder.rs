@@ -1,0 +1,167 @@
+//! A position to the edges of A, B and index.
+//!
+//! A count is 1/counts_per_unit, from half a count below its number to half above. In the cell of the grid after a new
+//! position the encoder moves there in a straight line; an edge comes in the clock in which this line crosses to another
+//! count, and at the earliest a clock after the edge before it. What is faster comes late; nothing is lost.
+//!
+//! ```text
+//! count   …  0   1   2   3   0  …       up: A leads B
+//! a       ___/‾‾‾‾‾‾‾\_______
+//! b       _______/‾‾‾‾‾‾‾\___
+//! ```
+
+/// Levels of an encoder's lines.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct EncoderPins {
+    /// Line A.
+    pub a: bool,
+    /// Line B.
+    pub b: bool,
+    /// Index: high for one count. Always low without an index.
+    pub z: bool,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Encoder {
+    counts_per_unit: f64,
+    cell_clocks: u32,
+    index_at: Option<i64>,
+    /// The count on the lines.
+    shown: i64,
+    /// Ends of the cell's line, counts.
+    from: f64,
+    to: f64,
+    /// Clocks from the start of the cell to the next edge; beyond the cell if none comes in it.
+    next_edge: u32,
+}
+
+impl Encoder {
+    pub(super) fn new(counts_per_unit: f64, cell_clocks: u32, index_at: Option<i64>, position: f64) -> Self {
+        let at = position * counts_per_unit;
+        Self {
+            counts_per_unit,
+            cell_clocks,
+            index_at,
+            shown: nearest(at),
+            from: at,
+            to: at,
+            next_edge: u32::MAX,
+        }
+    }
+
+    pub(super) fn count(&self) -> i64 {
+        self.shown
+    }
+
+    pub(super) fn pins(&self) -> EncoderPins {
+        EncoderPins {
+            a: (self.shown + 1) & 2 != 0,
+            b: self.shown & 2 != 0,
+            z: self.index_at == Some(self.shown),
+        }
+    }
+
+    /// Clocks from the start of the cell up to which the lines stay as they are, as far as it is known.
+    #[inline]
+    pub(super) fn quiet_until(&self) -> u32 {
+        // The first edge of the next cell comes after its first clock.
+        self.next_edge.min(self.cell_clocks + 1)
+    }
+
+    /// A cell begins, which ends at this position.
+    pub(super) fn move_to(&mut self, position: f64) {
+        self.from = self.to;
+        self.to = position * self.counts_per_unit;
+        self.plan(0);
+    }
+
+    /// The cell has lasted so many clocks.
+    #[inline]
+    pub(super) fn pass(&mut self, clocks: u32) {
+        while self.next_edge <= clocks {
+            self.shown += if nearest(self.to) > self.shown { 1 } else { -1 };
+            self.plan(self.next_edge);
+        }
+    }
+
+    /// Finds the next edge, later than so many clocks.
+    fn plan(&mut self, clocks: u32) {
+        let goal = nearest(self.to);
+        if goal == self.shown {
+            self.next_edge = u32::MAX;
+            return;
+        }
+        let border = self.shown as f64 + if goal > self.shown { 0.5 } else { -0.5 };
+        let part = (border - self.from) / (self.to - self.from);
+        // An edge that is late is not on the line: it comes at once.
+        let clock = match part {
+            0.0..=1.0 => (part * f64::from(self.cell_clocks)).ceil() as u32,
+            _ => 0,
+        };
+        self.next_edge = clock.max(clocks + 1);
+    }
+}
+
+fn nearest(counts: f64) -> i64 {
+    (counts + 0.5).floor() as i64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn levels(pins: EncoderPins) -> u8 {
+        u8::from(pins.a) | u8::from(pins.b) << 1
+    }
+
+    /// Clocks (from 0) at whose end an edge comes while it moves to each position, a cell of 10 clocks each.
+    fn edges(encoder: &mut Encoder, positions: &[f64]) -> Vec<(u32, i64)> {
+        let mut found = vec![];
+        for (cell, position) in positions.iter().enumerate() {
+            encoder.move_to(*position);
+            for clock in 1..=10 {
+                let (before, count) = (encoder.pins(), encoder.count());
+                encoder.pass(clock);
+                let changed = levels(before) ^ levels(encoder.pins());
+                assert!(changed != 3, "two lines at once");
+                if changed != 0 {
+                    assert_eq!((encoder.count() - count).abs(), 1);
+                    found.push((cell as u32 * 10 + clock - 1, encoder.count()));
+                }
+            }
+        }
+        found
+    }
+
+    #[test]
+    fn unit_edges_lie_where_the_line_crosses() {
+        let mut encoder = Encoder::new(1.0, 10, Some(2), 0.0);
+        // Crossings of 0.5, 1.5 on the way from 0 to 2, then back from 2 to 1.
+        assert_eq!(edges(&mut encoder, &[2.0]), [(2, 1), (7, 2)]);
+        assert!(encoder.pins().z);
+        assert_eq!(edges(&mut encoder, &[2.4, 1.0]), [(16, 1)]);
+        assert!(!encoder.pins().z);
+        // Exactly on the border it is in the upper count.
+        assert_eq!(edges(&mut encoder, &[0.5, 0.49]), [(10, 0)]);
+    }
+
+    #[test]
+    fn unit_what_is_too_fast_comes_late() {
+        let mut encoder = Encoder::new(1.0, 10, None, 0.0);
+        let found = edges(&mut encoder, &[25.0, 25.0, 25.0, 25.0]);
+        assert_eq!(found.len(), 25);
+        assert!(found.windows(2).all(|pair| pair[1].0 > pair[0].0));
+        assert_eq!(encoder.count(), 25);
+        // Turning before all has come.
+        edges(&mut encoder, &[60.0, 30.0, 30.0]);
+        assert_eq!(encoder.count(), 30);
+    }
+
+    #[test]
+    fn unit_no_number_does_harm() {
+        let mut encoder = Encoder::new(1e12, 10, None, -1e9);
+        for position in [1e300, f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 0.0] {
+            edges(&mut encoder, &[position]);
+        }
+    }
+}

@@ -1,0 +1,370 @@
+//! An axis of the machine as the hardware feels it: PWM pins in, encoder pins out.
+//!
+//! ```text
+//! gates ─► mean over a cell ─► drive (first order) ─┬─ velocity ──────────────┬─► x ─► modes ─► load y
+//! drive_enable, brake_release ──────────────────────┘─ force ─► mass, friction┘   │               │
+//!                                        A, B, index ◄── encoder ◄── velocity drive: x; torque drive: y
+//!                                        A, B        ◄── scale   ◄───────────────────────────── y
+//! ```
+//!
+//! | | velocity drive | torque drive |
+//! |---|---|---|
+//! | `x`, the driven coordinate | the motor; the drive is stiff, so nothing acts back on it | the centre of all that is moved |
+//! | a mode | `y/x = ω²/(s² + 2ζωs + ω²)` | free vibration inside the mass: `d″ + 2ζωd′ + ω²d = −x″`, `y = x + d` |
+//! | the encoder sees | `x`: the loop does not feel the modes that the shaper is for | `y`: the loop has the mode in it |
+//! | friction | none: the drive overcomes it | viscous and Coulomb, on `x` |
+//!
+//! Vibration is measured at the load, always. `docs/plant.md` has the reasons, and what is idealised.
+//!
+//! **Time** is clocks. A grid of [`AxisPlant::cell_clocks`] divides it; the pins are averaged over a cell, which then
+//! is integrated exactly, and the encoder plays its way during the next cell. How a time is cut into calls changes nothing:
+//! 5,000 calls with a clock each and one call with 5,000 give the same edges, bit for bit.
+//!
+//! ```
+//! use posicast_model::plant::axis::{AxisPlant, DrivePins, PlantOptions};
+//!
+//! let text = r#"
+//! name = "slide"
+//! [clock]
+//! frequency_hz = 50_000_000
+//! sample_hz = 10_000
+//! [[axis]]
+//! name = "x"
+//! counts_per_unit = 1_000_000
+//! [axis.shaper]
+//! kind = "none"
+//! [axis.pwm]
+//! mode = "locked-antiphase"
+//! frequency_hz = 20_000
+//! [axis.drive]
+//! mode = "velocity"
+//! full_scale_velocity = 0.5
+//! "#;
+//! let machine = posicast_model::spec::parse("slide.toml", text)?;
+//! let mut plant = AxisPlant::new(&machine.axes[0], &machine.clock, &PlantOptions::default())?;
+//! let forward = DrivePins { a_high: true, b_low: true, drive_enable: true, brake_release: true, ..DrivePins::default() };
+//! plant.clocks(forward, 50_000);
+//! assert!((plant.motion().load - 0.5e-3).abs() < 1e-12);
+//! // The encoder is a cell behind, and a count is a micrometre.
+//! assert_eq!(plant.count(), 499);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod drive;
+mod encoder;
+mod figures;
+mod friction;
+mod modes;
+mod pins;
+
+pub use encoder::EncoderPins;
+pub use figures::{ErrorFigures, contour_error, residual_vibration, tracking_error};
+pub use pins::DrivePins;
+
+use self::drive::Driven;
+use self::encoder::Encoder;
+use self::modes::LoadModes;
+use self::pins::PinMean;
+use super::{Plant, PlantError};
+use crate::spec::{Axis, Clock, Drive, DriveMode};
+
+/// Longest cell of the grid, s: a hundredth of the shortest period that is looked at, and little beside a tick.
+const CELL_S: f64 = 2e-6;
+/// Positions up to here are exact to a small part of a count.
+const COUNTS_MAX: f64 = (1u64 << 40) as f64;
+
+/// What the machine file does not say.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PlantOptions {
+    /// All mode frequencies times this: 0.9 is a machine 10 % slower than its file. More than 0, at most 10.
+    pub frequency_factor: f64,
+    /// Where it stands at first, m or rad.
+    pub position: f64,
+    /// What the encoder sees; `None`: the driven coordinate of a velocity drive, the load of a torque drive.
+    pub encoder_at: Option<Coordinate>,
+    /// Counts per unit of a second encoder at the load, `[axis.scale]`.
+    pub scale_counts_per_unit: Option<f64>,
+    /// The count with the index, if the encoder has one.
+    pub index_at: i64,
+}
+
+impl Default for PlantOptions {
+    fn default() -> Self {
+        Self {
+            frequency_factor: 1.0,
+            position: 0.0,
+            encoder_at: None,
+            scale_counts_per_unit: None,
+            index_at: 0,
+        }
+    }
+}
+
+/// A point of the machine whose position can be measured.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Coordinate {
+    /// What the drive moves, without the modes.
+    Driven,
+    /// The load, on its modes.
+    Load,
+}
+
+/// Why an axis is no plant.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum AxisPlantError {
+    /// A table is missing.
+    #[error("axis {axis} has no [axis.{table}]: a simulated axis needs [axis.pwm] and [axis.drive]; add it")]
+    Missing {
+        /// The axis.
+        axis: String,
+        /// The table.
+        table: &'static str,
+    },
+    /// Modes that are none.
+    #[error("axis {axis}: {source}")]
+    Modes {
+        /// The axis.
+        axis: String,
+        /// What is wrong with them.
+        source: PlantError,
+    },
+    /// A frequency factor that is none.
+    #[error(
+        "a frequency factor of {0}: allowed is more than 0, at most 10; 0.9 is a machine 10 % slower than its file"
+    )]
+    FrequencyFactor(f64),
+    /// A start outside of what can be counted.
+    #[error(
+        "axis {axis}: a start at {position} is {counts:e} counts: at most 2^40 either way can be simulated; start nearer to 0"
+    )]
+    Position {
+        /// The axis.
+        axis: String,
+        /// The start, m or rad.
+        position: f64,
+        /// The same in counts.
+        counts: f64,
+    },
+    /// More than one edge in a clock.
+    #[error(
+        "axis {axis}: {what} is {found:e} counts per clock, and an encoder gives at most 1: use coarser counts per unit, \
+         a faster clock, or a smaller full scale"
+    )]
+    TooFast {
+        /// The axis.
+        axis: String,
+        /// The speed of the velocity drive at full scale, or what a torque drive gains within a tick.
+        what: &'static str,
+        /// Counts per clock.
+        found: f64,
+    },
+}
+
+/// Where an axis is, at the end of the last whole cell. Lengths in m or rad.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct AxisMotion {
+    /// Of the driven coordinate.
+    pub position: f64,
+    /// Of the driven coordinate, per s.
+    pub velocity: f64,
+    /// Position of the load.
+    pub load: f64,
+    /// Sum of the amplitudes with which the modes ring: if the driven coordinate keeps its velocity, the load is never
+    /// farther from where it would be without ringing.
+    pub vibration: f64,
+    /// Mean command of the pins in the cell, part of full scale, −1 to 1.
+    pub command: f64,
+    /// What the drive gives: current in A, or velocity per s.
+    pub drive: f64,
+}
+
+/// An axis in motion.
+#[derive(Debug, Clone, PartialEq)]
+pub struct AxisPlant {
+    cell_clocks: u32,
+    cell_s: f64,
+    /// Clocks of the present cell that are over.
+    passed: u32,
+    pins: PinMean,
+    command: f64,
+    driven: Driven,
+    modes: LoadModes,
+    encoder_at: Coordinate,
+    encoder: Encoder,
+    scale: Option<Encoder>,
+}
+
+impl AxisPlant {
+    /// The axis of the machine file at rest. `[axis.encoder]` says whether there is an index.
+    ///
+    /// # Errors
+    /// [`AxisPlantError`] for an axis without PWM or drive, for options that are none, and for speeds beyond a count per clock.
+    pub fn new(axis: &Axis, clock: &Clock, options: &PlantOptions) -> Result<Self, AxisPlantError> {
+        let name = || axis.name.clone();
+        let missing = |table| AxisPlantError::Missing { axis: name(), table };
+        let pwm = axis.pwm.as_ref().ok_or_else(|| missing("pwm"))?;
+        let drive = axis.drive.as_ref().ok_or_else(|| missing("drive"))?;
+        let factor = options.frequency_factor;
+        if !(factor > 0.0 && factor <= 10.0) {
+            return Err(AxisPlantError::FrequencyFactor(factor));
+        }
+        let scales = [Some(axis.counts_per_unit), options.scale_counts_per_unit];
+        for counts_per_unit in scales.into_iter().flatten() {
+            check(axis, drive, clock, counts_per_unit, options.position)?;
+        }
+        let plant = Plant::of_axis(axis).map_err(|source| AxisPlantError::Modes { axis: name(), source })?;
+        let cell_clocks = (clock.frequency_hz * CELL_S).clamp(1.0, f64::from(u16::MAX)) as u32;
+        let cell_s = f64::from(cell_clocks) / clock.frequency_hz;
+        let stiff = matches!(drive.mode, DriveMode::Velocity { .. });
+        let encoder =
+            |counts_per_unit, index_at| Encoder::new(counts_per_unit, cell_clocks, index_at, options.position);
+        let has_index = axis.encoder.as_ref().is_some_and(|encoder| encoder.index);
+        Ok(Self {
+            cell_clocks,
+            cell_s,
+            passed: 0,
+            pins: PinMean::new(pwm.mode, pwm.active_low),
+            command: 0.0,
+            driven: Driven::new(drive, cell_s, options.position),
+            modes: LoadModes::new(&plant.scaled(factor), cell_s, stiff),
+            encoder_at: options
+                .encoder_at
+                .unwrap_or(if stiff { Coordinate::Driven } else { Coordinate::Load }),
+            encoder: encoder(axis.counts_per_unit, has_index.then_some(options.index_at)),
+            scale: options
+                .scale_counts_per_unit
+                .map(|counts_per_unit| encoder(counts_per_unit, None)),
+        })
+    }
+
+    /// Clocks of a cell: about 2 µs, at least one clock.
+    pub fn cell_clocks(&self) -> u32 {
+        self.cell_clocks
+    }
+
+    /// Lets so many clocks pass with these pins.
+    #[inline]
+    pub fn clocks(&mut self, pins: DrivePins, clocks: u64) {
+        let mut left = clocks;
+        while left > 0 {
+            let now = left.min(u64::from(self.cell_clocks - self.passed)) as u32;
+            left -= u64::from(now);
+            self.pins.add(&pins, now);
+            self.passed += now;
+            self.encoder.pass(self.passed);
+            if let Some(scale) = &mut self.scale {
+                scale.pass(self.passed);
+            }
+            if self.passed == self.cell_clocks {
+                self.end_cell();
+            }
+        }
+    }
+
+    fn end_cell(&mut self) {
+        let command = self.pins.take(self.cell_clocks);
+        let before = self.driven.position;
+        self.driven.cell(&command);
+        self.modes.cell((self.driven.position - before) / self.cell_s);
+        self.command = command.share;
+        self.passed = 0;
+        let load = self.load();
+        self.encoder.move_to(match self.encoder_at {
+            Coordinate::Driven => self.driven.position,
+            Coordinate::Load => load,
+        });
+        if let Some(scale) = &mut self.scale {
+            scale.move_to(load);
+        }
+    }
+
+    fn load(&self) -> f64 {
+        self.driven.position + self.modes.deflection()
+    }
+
+    /// The encoder's lines in the clock to come.
+    #[inline]
+    pub fn encoder(&self) -> EncoderPins {
+        self.encoder.pins()
+    }
+
+    /// The scale's lines in the clock to come; without a scale they are low.
+    #[inline]
+    pub fn scale(&self) -> EncoderPins {
+        self.scale.as_ref().map_or_else(EncoderPins::default, Encoder::pins)
+    }
+
+    /// For so many clocks from now on, at least one, the lines of encoder and scale stay as they are, whatever the pins do.
+    /// At most a cell and a clock: what comes after that is not yet known.
+    #[inline]
+    pub fn quiet_clocks(&self) -> u64 {
+        let scale = self.scale.as_ref().map_or(u32::MAX, Encoder::quiet_until);
+        u64::from(self.encoder.quiet_until().min(scale) - self.passed)
+    }
+
+    /// The encoder's count: what a counter that missed nothing shows, from the start's count on.
+    pub fn count(&self) -> i64 {
+        self.encoder.count()
+    }
+
+    /// The scale's count.
+    pub fn scale_count(&self) -> Option<i64> {
+        self.scale.as_ref().map(Encoder::count)
+    }
+
+    /// Where the axis is, at the end of the last whole cell.
+    pub fn motion(&self) -> AxisMotion {
+        AxisMotion {
+            position: self.driven.position,
+            velocity: self.driven.velocity,
+            load: self.load(),
+            vibration: self.modes.vibration(self.driven.velocity),
+            command: self.command,
+            drive: self.driven.output(),
+        }
+    }
+
+    /// Clocks in which both sides of a leg were on: a short circuit, which a PWM must never make.
+    pub fn shorted_clocks(&self) -> u64 {
+        self.pins.shorted()
+    }
+}
+
+/// Whether an encoder of so many counts per unit can follow.
+fn check(axis: &Axis, drive: &Drive, clock: &Clock, counts_per_unit: f64, position: f64) -> Result<(), AxisPlantError> {
+    let counts = position * counts_per_unit;
+    if counts.is_nan() || counts.abs() > COUNTS_MAX {
+        return Err(AxisPlantError::Position {
+            axis: axis.name.clone(),
+            position,
+            counts,
+        });
+    }
+    let (what, speed) = match drive.mode {
+        DriveMode::Velocity { full_scale_velocity } => ("full scale", full_scale_velocity),
+        DriveMode::Torque {
+            equivalent_mass,
+            force_constant,
+            current_limit_a,
+            ..
+        } => {
+            let acceleration = force_constant / equivalent_mass * current_limit_a;
+            (
+                "the velocity gained within a tick",
+                acceleration * clock.sample_period_s(),
+            )
+        }
+    };
+    let found = speed * counts_per_unit / clock.frequency_hz;
+    if found <= 1.0 {
+        return Ok(());
+    }
+    Err(AxisPlantError::TooFast {
+        axis: axis.name.clone(),
+        what,
+        found,
+    })
+}
+
+#[cfg(test)]
+mod tests;

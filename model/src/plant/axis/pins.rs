@@ -1,0 +1,184 @@
+//! From gate pins to the drive's command: what the levels mean in each mode, and their mean over a cell of the grid.
+
+use crate::spec::PwmMode;
+
+/// Levels of the pins that go to the power stage, the drive and the brake.
+///
+/// The default is all low: without power, and braked.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct DrivePins {
+    /// High side of leg A; the PWM of mode `direction`.
+    pub a_high: bool,
+    /// Low side of leg A.
+    pub a_low: bool,
+    /// High side of leg B; the direction of mode `direction`.
+    pub b_high: bool,
+    /// Low side of leg B.
+    pub b_low: bool,
+    /// The drive may follow its command.
+    pub drive_enable: bool,
+    /// The brake is open.
+    pub brake_release: bool,
+}
+
+impl DrivePins {
+    /// Part of full scale that the gates ask for in a mode: −1, 0 or 1. `active_low`: a gate is on at a low level.
+    #[inline]
+    fn command(&self, mode: PwmMode, active_low: bool) -> i64 {
+        let [a_high, a_low, b_high, b_low] =
+            [self.a_high, self.a_low, self.b_high, self.b_low].map(|level| level != active_low);
+        match mode {
+            PwmMode::Direction if b_high => -i64::from(a_high),
+            PwmMode::Direction | PwmMode::HalfBridge => i64::from(a_high),
+            PwmMode::FullBridge | PwmMode::LockedAntiphase => i64::from(a_high && b_low) - i64::from(b_high && a_low),
+        }
+    }
+
+    /// Whether both sides of a leg are on.
+    #[inline]
+    fn shorts(&self, mode: PwmMode, active_low: bool) -> bool {
+        let both = |high: bool, low: bool| high != active_low && low != active_low;
+        mode != PwmMode::Direction && (both(self.a_high, self.a_low) || both(self.b_high, self.b_low))
+    }
+}
+
+/// What a cell of the grid asks for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Command {
+    /// Mean command, part of full scale, −1 to 1.
+    pub(super) share: f64,
+    /// The drive was enabled in every clock.
+    pub(super) enabled: bool,
+    /// The brake was open in every clock.
+    pub(super) released: bool,
+}
+
+/// Sums of the pins over a cell: integers, so that it does not matter how a time is cut into calls.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct PinMean {
+    mode: PwmMode,
+    active_low: bool,
+    command: i64,
+    enabled: i64,
+    released: i64,
+    shorted: u64,
+}
+
+impl PinMean {
+    pub(super) fn new(mode: PwmMode, active_low: bool) -> Self {
+        Self {
+            mode,
+            active_low,
+            command: 0,
+            enabled: 0,
+            released: 0,
+            shorted: 0,
+        }
+    }
+
+    #[inline]
+    pub(super) fn add(&mut self, pins: &DrivePins, clocks: u32) {
+        let count = i64::from(clocks);
+        self.command += pins.command(self.mode, self.active_low) * count;
+        self.enabled += i64::from(pins.drive_enable) * count;
+        self.released += i64::from(pins.brake_release) * count;
+        if pins.shorts(self.mode, self.active_low) {
+            self.shorted = self.shorted.saturating_add(u64::from(clocks));
+        }
+    }
+
+    /// Ends a cell of so many clocks.
+    pub(super) fn take(&mut self, clocks: u32) -> Command {
+        let all = i64::from(clocks);
+        let command = Command {
+            share: self.command as f64 / all as f64,
+            enabled: self.enabled == all,
+            released: self.released == all,
+        };
+        (self.command, self.enabled, self.released) = (0, 0, 0);
+        command
+    }
+
+    /// Clocks in which both sides of a leg were on.
+    pub(super) fn shorted(&self) -> u64 {
+        self.shorted
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rtl::pwm::{ActiveLow, Inputs, Pwm, PwmConfig};
+
+    /// Mean command of the PWM's own pins over 20 periods, after 20 to settle.
+    fn of_pwm(mode: PwmMode, register: u8, duty: i32, active_low: bool) -> f64 {
+        let all = ActiveLow {
+            a_high: active_low,
+            a_low: active_low,
+            b_high: active_low,
+            b_low: active_low,
+        };
+        let mut pwm = Pwm::new(&PwmConfig::new(all, 10, 20).unwrap());
+        let inputs = Inputs {
+            enable: true,
+            mode: register,
+            period: 1000,
+            duty,
+            max_duty: 1000,
+            fault_n: true,
+            pll_locked: true,
+            filtered_fault_n: 3,
+            clear_trip: true,
+            ..Inputs::default()
+        };
+        pwm.hold(&inputs, 20_000);
+        let mut mean = PinMean::new(mode, active_low);
+        for _ in 0..20_000 {
+            let shown = pwm.step(&inputs);
+            let pins = DrivePins {
+                a_high: shown.a_high,
+                a_low: shown.a_low,
+                b_high: shown.b_high,
+                b_low: shown.b_low,
+                drive_enable: true,
+                brake_release: true,
+            };
+            mean.add(&pins, 1);
+        }
+        assert_eq!(mean.shorted(), 0);
+        let command = mean.take(20_000);
+        assert!(command.enabled && command.released);
+        command.share
+    }
+
+    #[test]
+    fn unit_the_pins_of_the_pwm_mean_its_duty() {
+        for active_low in [false, true] {
+            for duty in [-1000, -600, 0, 400, 1000] {
+                let share = f64::from(duty) / 1000.0;
+                // One side alone loses the dead time, and goes one way only.
+                let less =
+                    |share: f64| share.signum() * (share.abs() - if share.abs() == 1.0 { 0.0 } else { 0.01 }).max(0.0);
+                let of = |mode, register| of_pwm(mode, register, duty, active_low);
+                let near = |found: f64, expected: f64| (found - expected).abs() < 1e-12;
+                assert!(near(of(PwmMode::LockedAntiphase, 3), share), "{duty}");
+                assert!(near(of(PwmMode::FullBridge, 2), less(share)), "{duty}");
+                assert!(near(of(PwmMode::Direction, 0), less(share)), "{duty}");
+                assert!(near(of(PwmMode::HalfBridge, 1), less(share.max(0.0))), "{duty}");
+            }
+        }
+    }
+
+    #[test]
+    fn unit_two_sides_of_a_leg_are_a_short() {
+        let mut mean = PinMean::new(PwmMode::FullBridge, false);
+        let leg = DrivePins {
+            b_high: true,
+            b_low: true,
+            ..DrivePins::default()
+        };
+        mean.add(&leg, 7);
+        mean.add(&DrivePins::default(), 3);
+        assert_eq!((mean.shorted(), mean.take(10).share), (7, 0.0));
+    }
+}

@@ -1,0 +1,169 @@
+//! Blocks of any kind joined to one: what is needed to make the model and the Verilog of the whole.
+
+use crate::rtl::Moore;
+use crate::rtl::axis::Axis;
+use crate::rtl::composition::{Composed, Composition, CompositionError, Part};
+use crate::rtl::divider::{Divider, DividerConfig};
+use crate::rtl::divider_share::DividerShare;
+use crate::rtl::drive_command::DriveCommand;
+use crate::rtl::group::Group;
+use crate::rtl::pulse_counter::PulseCounter;
+use crate::rtl::pwm::{Pwm, PwmConfig};
+use crate::rtl::registers::{RegisterBank, RegisterMap};
+use crate::rtl::sample_select::SampleSelect;
+use crate::rtl::schedule::{Schedule, ScheduleConfig};
+use crate::rtl::segments::Segments;
+use crate::rtl::setting_banks::SettingBanks;
+use crate::rtl::shaper::{Shaper, ShaperConfig};
+use crate::rtl::sliding_mode::{Settings, SlidingMode};
+use crate::rtl::time_base::TimeBase;
+
+/// A block in a component, with what it is built from.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Block {
+    /// The register bank.
+    Registers(Box<RegisterMap>),
+    /// The shaper.
+    Shaper(Box<ShaperConfig>),
+    /// Where samples come from: registers or pins.
+    SampleSelect {
+        /// Width of a word.
+        word_bits: u32,
+        /// Words per sample.
+        channels: usize,
+    },
+    /// The pulse counter.
+    PulseCounter,
+    /// The divider.
+    Divider(DividerConfig),
+    /// The time base.
+    TimeBase(DividerConfig),
+    /// The PWM.
+    Pwm(PwmConfig),
+    /// The controller.
+    SlidingMode,
+    /// Its settings, the machine's in bank 0.
+    SettingBanks(Box<Settings>),
+    /// The segments.
+    Segments,
+    /// The supervisor of an axis.
+    Axis,
+    /// What the PWM is told.
+    DriveCommand,
+    /// One divider for so many pulse counters.
+    DividerShare(usize),
+    /// When the controllers start.
+    Schedule(ScheduleConfig),
+    /// What so many axes have to do with each other.
+    Group(usize),
+    /// Blocks joined to one.
+    Joined(Box<Joined>),
+}
+
+impl Block {
+    /// Its name, as in the Verilog.
+    pub fn name(&self) -> &str {
+        match self {
+            Self::Registers(_) => "registers",
+            Self::Shaper(_) => "shaper",
+            Self::SampleSelect { .. } => "sample_select",
+            Self::Pwm(_) => "pwm",
+            Self::SlidingMode => "sliding_mode",
+            Self::SettingBanks(_) => "setting_banks",
+            Self::PulseCounter => "pulse_counter",
+            Self::Divider(_) => "divider",
+            Self::TimeBase(_) => "time_base",
+            Self::Segments => "segments",
+            Self::Axis => "axis",
+            Self::DriveCommand => "drive_command",
+            Self::DividerShare(_) => "divider_share",
+            Self::Schedule(_) => "schedule",
+            Self::Group(_) => "group",
+            Self::Joined(joined) => joined.name(),
+        }
+    }
+
+    /// The same for every axis of a stage? Then one module serves all.
+    pub fn is_common(&self) -> bool {
+        !matches!(
+            self,
+            Self::Registers(_) | Self::Shaper(_) | Self::SettingBanks(_) | Self::Pwm(_) | Self::Joined(_)
+        )
+    }
+
+    /// Its model, after reset. `seed` gives the arbitrary contents of memories.
+    pub fn model(&self, seed: u64) -> Box<dyn Moore> {
+        match self {
+            Self::Registers(map) => Box::new(RegisterBank::new(map)),
+            Self::Shaper(config) => Box::new(Shaper::new(config, seed)),
+            Self::SampleSelect { word_bits, channels } => Box::new(SampleSelect::new(*word_bits, *channels)),
+            Self::Pwm(config) => Box::new(Pwm::new(config)),
+            Self::SlidingMode => Box::new(SlidingMode::new()),
+            Self::SettingBanks(machine) => Box::new(SettingBanks::new(machine)),
+            Self::PulseCounter => Box::new(PulseCounter::new()),
+            Self::Divider(config) => Box::new(Divider::new(config)),
+            Self::TimeBase(config) => Box::new(TimeBase::new(config)),
+            Self::Segments => Box::new(Segments::new(seed)),
+            Self::Axis => Box::new(Axis::new()),
+            Self::DriveCommand => Box::new(DriveCommand::new()),
+            Self::DividerShare(channels) => Box::new(DividerShare::new(*channels)),
+            Self::Schedule(config) => Box::new(Schedule::new(config)),
+            Self::Group(axes) => Box::new(Group::new(*axes)),
+            Self::Joined(joined) => Box::new(joined.model(seed)),
+        }
+    }
+}
+
+/// Blocks joined to one, each the part of a composition.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Joined {
+    name: String,
+    blocks: Vec<Block>,
+    composition: Composition,
+}
+
+/// Puts the ports of a block on other nets than those of their names.
+type Rewire<'a> = Box<dyn Fn(&Block, Part) -> Part + 'a>;
+
+/// What is not connected by name alone, and the ports of the whole.
+pub(crate) struct Wiring<'a> {
+    pub(crate) part: Rewire<'a>,
+    pub(crate) inputs: Vec<String>,
+    pub(crate) outputs: Vec<String>,
+}
+
+impl Joined {
+    /// Joins the blocks, each under the name of its part.
+    pub(crate) fn new(name: &str, blocks: Vec<(String, Block)>, wiring: Wiring<'_>) -> Result<Self, CompositionError> {
+        let part = |(name, block): &(String, Block)| (wiring.part)(block, Part::new(name, block.model(0).ports()));
+        let parts = blocks.iter().map(part).collect();
+        let inputs: Vec<&str> = wiring.inputs.iter().map(String::as_str).collect();
+        let outputs: Vec<&str> = wiring.outputs.iter().map(String::as_str).collect();
+        Ok(Self {
+            name: name.to_owned(),
+            composition: Composition::new(parts, &inputs, &outputs)?,
+            blocks: blocks.into_iter().map(|(_, block)| block).collect(),
+        })
+    }
+
+    /// Its name.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Its blocks, in the order of the composition's parts.
+    pub fn blocks(&self) -> impl Iterator<Item = &Block> {
+        self.blocks.iter()
+    }
+
+    /// How they are joined.
+    pub fn composition(&self) -> &Composition {
+        &self.composition
+    }
+
+    /// The model of the whole, after reset. `seed` gives the arbitrary contents of its memories.
+    pub fn model(&self, seed: u64) -> Composed {
+        let blocks = self.blocks.iter().map(|block| block.model(seed));
+        Composed::new(self.composition.clone(), blocks.collect())
+    }
+}

@@ -1,0 +1,132 @@
+//! A block in a composition, and up to which clock it has been brought.
+
+use super::wire::Wire;
+use super::{Connection, Part};
+use crate::rtl::{Direction, Moore, OutputKind, StepError};
+
+/// A block while its composition is clocked. Its state is that before the clock `clocked_to`; from there to the clock `wakes`
+/// it is quiet, unless an input changes.
+pub(super) struct Member {
+    pub(super) block: Box<dyn Moore>,
+    /// Places among the inputs, and their nets; the other inputs are tied.
+    inputs_from: Vec<(usize, usize)>,
+    inputs: Vec<u64>,
+    /// Places among the outputs, and their nets.
+    pub(super) registers_to: Vec<(usize, usize)>,
+    pub(super) combinational_to: Vec<(usize, usize)>,
+    pub(super) outputs: Vec<u64>,
+    kinds: Vec<OutputKind>,
+    /// It watches a net that counts, so that it has something to do in every clock.
+    never_sleeps: bool,
+    clocked_to: u64,
+    pub(super) wakes: u64,
+    /// Its combinational outputs are those of its state and inputs.
+    pub(super) is_combined: bool,
+}
+
+impl Member {
+    /// The block at that place of the composition. The wires get to know whether it watches them.
+    pub(super) fn new(
+        at: usize,
+        block: Box<dyn Moore>,
+        part: &Part,
+        connections: &[Connection],
+        wires: &mut [Wire],
+    ) -> Self {
+        let (mut inputs, mut inputs_from, mut never_sleeps) = (Vec::new(), Vec::new(), false);
+        let (mut kinds, mut registers_to, mut combinational_to) = (Vec::new(), Vec::new(), Vec::new());
+        for (port, on) in part.ports.iter().zip(connections) {
+            match (port.direction, *on) {
+                (Direction::Input, Connection::Tied(value)) => inputs.push(value),
+                (Direction::Input, Connection::Net(net)) => {
+                    inputs_from.push((inputs.len(), net));
+                    inputs.push(0);
+                    if !block.ignores(&port.name) {
+                        never_sleeps |= wires[net].counts();
+                        wires[net].watchers.push(at);
+                    }
+                }
+                (Direction::Output, on) => {
+                    let kind = block.output_kind(&port.name);
+                    let nets = match kind {
+                        OutputKind::Combinational => &mut combinational_to,
+                        _ => &mut registers_to,
+                    };
+                    if let Connection::Net(net) = on {
+                        nets.push((kinds.len(), net));
+                    }
+                    kinds.push(kind);
+                }
+            }
+        }
+        Self {
+            block,
+            inputs_from,
+            inputs,
+            registers_to,
+            combinational_to,
+            outputs: vec![0; kinds.len()],
+            kinds,
+            never_sleeps,
+            clocked_to: 1,
+            wakes: 1,
+            is_combined: false,
+        }
+    }
+
+    pub(super) fn kind(&self, output: usize) -> OutputKind {
+        self.kinds.get(output).copied().unwrap_or(OutputKind::Register)
+    }
+
+    pub(super) fn is_combinational(&self) -> bool {
+        !self.combinational_to.is_empty()
+    }
+
+    /// An input has changed in this clock.
+    #[inline]
+    pub(super) fn wake(&mut self, clock: u64) {
+        self.wakes = self.wakes.min(clock);
+        self.is_combined = false;
+    }
+
+    /// After it was clocked, and all nets are known: to its next event, unless an input has changed.
+    pub(super) fn sleep(&mut self, now: u64) {
+        let was_clocked = self.clocked_to == now && self.wakes > now;
+        if was_clocked {
+            let quiet = if self.never_sleeps {
+                0
+            } else {
+                self.block.quiet_clocks(&self.inputs)
+            };
+            self.wakes = now.saturating_add(quiet);
+        }
+    }
+
+    #[inline]
+    fn read(&mut self, wires: &[Wire], clock: u64) {
+        for (input, net) in &self.inputs_from {
+            self.inputs[*input] = wires[*net].at(clock);
+        }
+    }
+
+    /// Its outputs in this clock, of which the combinational ones are new.
+    pub(super) fn combine(&mut self, wires: &[Wire], now: u64) {
+        self.read(wires, now);
+        self.block.show_with(&self.inputs, &mut self.outputs);
+        self.is_combined = true;
+    }
+
+    /// This clock, after those that it has slept through.
+    pub(super) fn clock(&mut self, wires: &[Wire], now: u64) -> Result<(), StepError> {
+        if self.clocked_to < now {
+            self.read(wires, now - 1);
+            self.block.pass(&self.inputs, now - self.clocked_to);
+        }
+        self.read(wires, now);
+        self.block.step(&self.inputs, &mut self.outputs)?;
+        self.clocked_to = now + 1;
+        self.wakes = u64::MAX;
+        self.is_combined = false;
+        Ok(())
+    }
+}

@@ -1,0 +1,198 @@
+//! The wave: an angle that turns once in a period, the bits of the PRBS, and their size.
+
+use super::ports::{Inputs, Kind};
+
+/// Fraction bits of the frequency, in first frequencies.
+pub const FREQUENCY_FRACTION: u32 = 16;
+/// Width of the frequency: below 64 first frequencies.
+pub const FREQUENCY_BITS: u32 = 22;
+/// Steps of a turn of the angle.
+pub const TURN_STEPS: u32 = 256;
+/// Bits of the PRBS's shift register, x^15 + x^14 + 1.
+pub const PRBS_BITS: u32 = 15;
+
+/// The frequency at first, and that of all kinds but the chirp.
+const FIRST_FREQUENCY: u32 = 1 << FREQUENCY_FRACTION;
+/// Fraction bits of what the angle is ahead; a tick adds 256 frequencies to it.
+const AHEAD_FRACTION: u32 = 4;
+/// Width of what the angle is ahead.
+const AHEAD_BITS: u32 = 21;
+/// Clocks to scale a value: the last eight are for the bits of the triangle.
+pub(super) const SCALE_CLOCKS: u8 = 16;
+
+/// The wave's registers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Wave {
+    /// Of a turn, in 256ths.
+    angle: u8,
+    /// Not yet in the angle: periods of 256 steps each, Q17.4.
+    ahead: u32,
+    frequency: u32,
+    /// The angle has passed a whole turn in this tick.
+    turned: bool,
+    /// The PRBS's shift register, every bit inverted: the seed, all ones, is 0 here.
+    noise: u16,
+}
+
+impl Default for Wave {
+    fn default() -> Self {
+        Self {
+            angle: 0,
+            ahead: 0,
+            frequency: FIRST_FREQUENCY,
+            turned: false,
+            noise: 0,
+        }
+    }
+}
+
+/// The wave is too fast to go on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct TooFast;
+
+impl Wave {
+    /// A tick begins.
+    pub(super) fn advance(&mut self, inputs: &Inputs) -> Result<(), TooFast> {
+        self.ahead += self.frequency >> (FREQUENCY_FRACTION - 8 - AHEAD_FRACTION);
+        self.ahead &= (1 << AHEAD_BITS) - 1;
+        self.turned = false;
+        self.frequency += u32::from(inputs.sweep);
+        let overflows = self.frequency >> FREQUENCY_BITS != 0;
+        self.frequency &= (1 << FREQUENCY_BITS) - 1;
+        if inputs.kind == Kind::Chirp && overflows {
+            Err(TooFast)
+        } else {
+            Ok(())
+        }
+    }
+
+    /// In every clock: only a chirp keeps its frequency.
+    pub(super) fn keep_frequency(&mut self, kind: Kind) {
+        if kind != Kind::Chirp {
+            self.frequency = FIRST_FREQUENCY;
+        }
+    }
+
+    /// A step of the angle, if it is ahead by one.
+    pub(super) fn turn(&mut self, period_ticks: u16) -> Result<bool, TooFast> {
+        let Some(rest) = self.ahead.checked_sub(u32::from(period_ticks) << AHEAD_FRACTION) else {
+            return Ok(false);
+        };
+        self.ahead = rest;
+        self.angle = self.angle.wrapping_add(1);
+        if self.angle > 0 {
+            return Ok(true);
+        }
+        let feedback = !(self.noise >> 14 ^ self.noise >> 13) & 1;
+        self.noise = (self.noise << 1 | feedback) & ((1 << PRBS_BITS) - 1);
+        let turned_twice = self.turned;
+        self.turned = true;
+        if turned_twice { Err(TooFast) } else { Ok(true) }
+    }
+
+    fn is_negative(&self, kind: Kind) -> bool {
+        match kind {
+            Kind::Prbs => self.noise >> (PRBS_BITS - 1) & 1 != 0,
+            _ => self.angle & 0x80 != 0,
+        }
+    }
+
+    /// One of the clocks that scale: halves `value` plus or minus the amplitude, or plus nothing, away from 0.
+    ///
+    /// The bits of the fraction come lowest first. A square has ones only, and after 16 clocks is exactly the amplitude.
+    pub(super) fn scale(&self, value: i32, clock: u8, inputs: &Inputs) -> i32 {
+        let quarter = self.angle & 0x3f ^ if self.angle & 0x40 != 0 { 0x3f } else { 0 };
+        // Half a step more, so that the steps around 0 are equal to the others.
+        let bits = u16::from(quarter) << 10 | 1 << 9;
+        let adds = inputs.kind != Kind::Chirp || bits >> clock & 1 != 0;
+        let amplitude = i32::from(inputs.amplitude.min(inputs.amplitude_limit));
+        let addend = if adds { amplitude } else { 0 };
+        if self.is_negative(inputs.kind) {
+            (value - addend) >> 1
+        } else {
+            (value + addend + 1) >> 1
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn value(wave: &Wave, inputs: &Inputs) -> i32 {
+        (0..SCALE_CLOCKS).fold(0, |value, clock| wave.scale(value, clock, inputs))
+    }
+
+    #[test]
+    fn unit_a_square_is_exactly_the_amplitude() {
+        for amplitude in [0, 1, 2, 3, 255, 256, 0x7fff, 0x8000, 0xffff] {
+            let inputs = Inputs {
+                kind: Kind::Square,
+                amplitude,
+                amplitude_limit: u16::MAX,
+                ..Inputs::default()
+            };
+            for (angle, sign) in [(0, 1), (127, 1), (128, -1), (255, -1)] {
+                let wave = Wave {
+                    angle,
+                    ..Wave::default()
+                };
+                assert_eq!(value(&wave, &inputs), sign * i32::from(amplitude));
+            }
+        }
+    }
+
+    #[test]
+    fn unit_the_triangle_is_straight_and_odd() {
+        // 64 · 256: every step is 256, and half of it at the ends.
+        let inputs = Inputs {
+            kind: Kind::Chirp,
+            amplitude: u16::MAX,
+            amplitude_limit: 64 << 8,
+            ..Inputs::default()
+        };
+        let at = |angle| {
+            value(
+                &Wave {
+                    angle,
+                    ..Wave::default()
+                },
+                &inputs,
+            )
+        };
+        for angle in 0..=255u8 {
+            let place = i32::from(angle);
+            let expected = match angle / 64 {
+                0 => 256 * place + 128,
+                1 | 2 => 256 * (127 - place) + 128,
+                _ => 256 * (place - 256) + 128,
+            };
+            assert_eq!(at(angle), expected, "angle {angle}");
+            assert_eq!(at(angle), -at(angle.wrapping_add(128)));
+        }
+    }
+
+    #[test]
+    fn unit_the_prbs_is_that_of_its_polynomial() {
+        // s(n) = s(n − 15) + s(n − 14) modulo 2, from fifteen ones; ITU-T O.150 has this polynomial.
+        let mut reference = vec![true; 15];
+        while reference.len() < 32_767 + 15 {
+            let n = reference.len();
+            reference.push(reference[n - 15] ^ reference[n - 14]);
+        }
+        let mut wave = Wave {
+            angle: 255,
+            ..Wave::default()
+        };
+        for (n, one) in reference.iter().enumerate() {
+            assert_eq!(!wave.is_negative(Kind::Prbs), *one, "bit {n}");
+            wave.turned = false;
+            wave.angle = 255;
+            assert_eq!(wave.turn(0), Ok(true));
+        }
+        assert_eq!(reference[..15], reference[32_767..]);
+        assert_eq!(reference[..32_767].iter().filter(|one| **one).count(), 16_384);
+        // The start of the sequence, by hand: 15 ones, 14 zeros, a one.
+        assert!(reference[15..29].iter().all(|one| !one) && reference[29]);
+    }
+}

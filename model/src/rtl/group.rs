@@ -1,0 +1,175 @@
+//! What the axes of a stage have to do with each other: they start in one clock, and when one stops for a fault, all do.
+//!
+//! ```text
+//! clock            0   1   2
+//! start           ‾‾‾\_________   with the axes in start_axes
+//! axis_start_k    ____/‾‾‾\____   of all of them in one clock, if all show can_start; else
+//! start_refused   ____/‾‾‾\____   and none starts
+//! ```
+//!
+//! - `group_stop_k`: another axis wants all to stop. `group_emergency_stop`: any axis has its emergency stop. Both a clock late.
+//! - A start of no axis, or of one that there is not, is refused.
+
+use super::{ClockedBlock, Direction, FOREVER, Moore, Port, StepError};
+
+/// Most axes of a stage.
+pub const MOST_AXES: usize = 4;
+
+/// The ports in the order of the Verilog's port list, without `clk`, for so many axes.
+pub fn ports(axes: usize) -> Vec<Port> {
+    use Direction::{Input, Output};
+    let port = |name: &str, direction, width| Port {
+        name: name.to_owned(),
+        direction,
+        width,
+        signed: false,
+    };
+    let each = |name: &'static str, direction| (0..axes).map(move |axis| port(&format!("{name}_{axis}"), direction, 1));
+    let mut ports = vec![
+        port("rst", Input, 1),
+        port("start", Input, 1),
+        port("start_axes", Input, MOST_AXES as u32),
+    ];
+    ports.extend(each("can_start", Input));
+    ports.extend(each("wants_group_stop", Input));
+    ports.extend(each("emergency_stop", Input));
+    ports.extend(each("axis_start", Output));
+    ports.extend(each("group_stop", Output));
+    ports.push(port("group_emergency_stop", Output, 1));
+    ports.push(port("start_refused", Output, 1));
+    ports
+}
+
+/// The group, cycle accurate at its ports.
+#[derive(Debug, Clone)]
+pub struct Group {
+    ports: Vec<Port>,
+    axes: usize,
+    /// One bit per axis.
+    starts: u64,
+    stops: u64,
+    emergency_stop: bool,
+    refused: bool,
+}
+
+impl Group {
+    /// Of so many axes, 1 to [`MOST_AXES`], after reset.
+    pub fn new(axes: usize) -> Self {
+        Self {
+            ports: ports(axes),
+            axes,
+            starts: 0,
+            stops: 0,
+            emergency_stop: false,
+            refused: false,
+        }
+    }
+
+    /// `can`, `wants` and `emergency`: one bit per axis.
+    fn clock(&mut self, start: Option<u64>, can: u64, wants: u64, emergency: u64) {
+        let wanted = start.unwrap_or(0);
+        let granted = wanted & !can == 0;
+        self.starts = if granted { wanted } else { 0 };
+        self.refused = start.is_some() && (!granted || wanted == 0);
+        let others = |axis: usize| wants & !(1 << axis) != 0;
+        self.stops = (0..self.axes).fold(0, |stops, axis| stops | u64::from(others(axis)) << axis);
+        self.emergency_stop = emergency != 0;
+    }
+}
+
+impl Moore for Group {
+    fn show(&self, outputs: &mut [u64]) {
+        let bits = |word: u64| (0..self.axes).map(move |axis| word >> axis & 1);
+        let shown = bits(self.starts).chain(bits(self.stops));
+        let shown = shown.chain([self.emergency_stop.into(), self.refused.into()]);
+        for (output, value) in outputs.iter_mut().zip(shown) {
+            *output = value;
+        }
+    }
+
+    fn quiet_clocks(&self, inputs: &[u64]) -> u64 {
+        if (inputs[0] | inputs[1]) & 1 != 0 {
+            return 0;
+        }
+        let mut next = self.clone();
+        next.clock(None, 0, word(inputs, self.axes, 1), word(inputs, self.axes, 2));
+        let shown = |group: &Self| (group.starts, group.stops, group.emergency_stop, group.refused);
+        match shown(&next) == shown(self) {
+            true => FOREVER,
+            false => 0,
+        }
+    }
+}
+
+/// One bit per axis of the inputs in that place of the list.
+fn word(inputs: &[u64], axes: usize, place: usize) -> u64 {
+    (0..axes).fold(0, |word, axis| word | (inputs[3 + place * axes + axis] & 1) << axis)
+}
+
+impl ClockedBlock for Group {
+    fn ports(&self) -> &[Port] {
+        &self.ports
+    }
+
+    fn step(&mut self, inputs: &[u64], outputs: &mut [u64]) -> Result<(), StepError> {
+        let axes = self.axes;
+        if (inputs.len(), outputs.len()) != (3 + 3 * axes, 2 + 2 * axes) {
+            return Err(StepError(format!(
+                "{} inputs and {} outputs: a group of {axes} axes has {} and {}",
+                inputs.len(),
+                outputs.len(),
+                3 + 3 * axes,
+                2 + 2 * axes
+            )));
+        }
+        self.show(outputs);
+        if inputs[0] & 1 != 0 {
+            *self = Self::new(axes);
+            return Ok(());
+        }
+        let start = (inputs[1] & 1 != 0).then_some(inputs[2] & ((1 << MOST_AXES) - 1));
+        self.clock(
+            start,
+            word(inputs, axes, 0),
+            word(inputs, axes, 1),
+            word(inputs, axes, 2),
+        );
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Outputs a clock after these inputs.
+    fn after(axes: usize, inputs: &[u64]) -> Vec<u64> {
+        let mut group = Group::new(axes);
+        let mut outputs = vec![0; 2 + 2 * axes];
+        group.step(inputs, &mut outputs).unwrap();
+        group.show(&mut outputs);
+        outputs
+    }
+
+    #[test]
+    fn unit_all_start_or_none() {
+        for wanted in 0..16u64 {
+            for can in 0..8u64 {
+                let can_start = [can & 1, can >> 1 & 1, can >> 2 & 1];
+                let inputs = [vec![0, 1, wanted], can_start.to_vec(), vec![0; 6]].concat();
+                let granted = wanted != 0 && wanted & !can == 0;
+                let bit = |axis: u64| u64::from(granted) & wanted >> axis & 1;
+                let wanted = [bit(0), bit(1), bit(2), 0, 0, 0, 0, u64::from(!granted)];
+                assert_eq!(after(3, &inputs), wanted);
+            }
+        }
+        assert_eq!(after(1, &[0, 0, 1, 1, 0, 0]), [0, 0, 0, 0]);
+    }
+
+    #[test]
+    fn unit_a_stop_reaches_the_others_and_an_emergency_all() {
+        assert_eq!(after(2, &[0, 0, 0, 0, 0, 1, 0, 0, 0]), [0, 0, 0, 1, 0, 0]);
+        assert_eq!(after(2, &[0, 0, 0, 0, 0, 1, 1, 0, 1]), [0, 0, 1, 1, 1, 0]);
+        assert_eq!(after(1, &[0, 0, 0, 0, 1, 1]), [0, 0, 1, 0]);
+    }
+}

@@ -1,0 +1,72 @@
+//! The clocks in which nothing happens: only the carrier and a timer count.
+
+use super::ports::{INPUTS, Inputs};
+use super::{Pwm, State};
+use crate::rtl::{Moore, OutputKind};
+
+impl State {
+    /// How many more clocks will be like the last, in which `before` became the present state; none if it did more than
+    /// count.
+    pub(super) fn more_of(&self, before: &Self, inputs: &Inputs) -> Option<u64> {
+        let state = self;
+        let mut counted = *before;
+        counted.position = before.position.wrapping_add(1);
+        let counts = state.leg.timer != before.leg.timer;
+        if counts {
+            counted.leg.timer = before.leg.timer.wrapping_sub(1);
+        }
+        // A strobe that is on falls in the next clock.
+        let strobes = state.at_valley || state.at_peak || state.valley || state.peak || state.trigger;
+        if counted != *state || strobes || inputs.sync || inputs.rst {
+            return None;
+        }
+        let events = [
+            state.period.wrapping_sub(1),
+            (state.period >> 1).wrapping_sub(1),
+            state.edge_at,
+            inputs.trigger_phase,
+        ];
+        let distances = events.map(|position| position.wrapping_sub(state.position));
+        let timer = if counts { state.leg.timer } else { u16::MAX };
+        Some(u64::from(distances.into_iter().fold(timer, u16::min)))
+    }
+}
+
+/// The pins of the gates depend on the raw faults of the same clock, and are shown as in a fault.
+impl Moore for Pwm {
+    fn show(&self, outputs: &mut [u64]) {
+        for (output, value) in outputs.iter_mut().zip(self.outputs(&Inputs::default()).to_raw()) {
+            *output = value;
+        }
+    }
+
+    fn output_kind(&self, output: &str) -> OutputKind {
+        match output {
+            "a_high" | "a_low" | "b_high" | "b_low" => OutputKind::Combinational,
+            _ => OutputKind::Register,
+        }
+    }
+
+    fn show_with(&mut self, inputs: &[u64], outputs: &mut [u64]) {
+        let inputs = <&[u64; INPUTS]>::try_from(inputs).map_or_else(|_| Inputs::default(), Inputs::from_raw);
+        for (output, value) in outputs.iter_mut().zip(self.outputs(&inputs).to_raw()) {
+            *output = value;
+        }
+    }
+
+    /// Tries a clock: if it only counts, it and all like it are quiet.
+    fn quiet_clocks(&self, inputs: &[u64]) -> u64 {
+        let Ok(inputs) = <&[u64; INPUTS]>::try_from(inputs).map(Inputs::from_raw) else {
+            return 0;
+        };
+        let mut next = self.state;
+        next.clock(&self.config, &inputs);
+        next.more_of(&self.state, &inputs).map_or(0, |more| 1 + more)
+    }
+
+    fn pass(&mut self, inputs: &[u64], clocks: u64) {
+        if let Ok(raw) = <&[u64; INPUTS]>::try_from(inputs) {
+            self.hold(&Inputs::from_raw(raw), clocks);
+        }
+    }
+}

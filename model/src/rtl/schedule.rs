@@ -1,0 +1,156 @@
+//! When the controllers of a stage start: a fixed number of clocks after each tick.
+//!
+//! ```text
+//! clock    0   1   2         C   C+1
+//! tick    ‾‾‾\__________________________
+//! control ___________________/‾‾‾\______
+//! ```
+//!
+//! Shapers and divider take different times from tick to tick, depending on tables; the controllers start when the longest
+//! is over, always in the same clock. A tick that comes earlier begins anew.
+
+use super::{ClockedBlock, Direction, FOREVER, Moore, Port, StepError};
+
+/// Bits of the counter.
+pub const SCHEDULE_BITS: u32 = 17;
+
+/// What is fixed when it is built.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct ScheduleConfig {
+    control_clocks: u32,
+}
+
+/// Why no schedule can be built.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "the controllers start {0} clocks after the tick: 2 to 131070 are possible; shorten the tables, or slow the clock"
+)]
+pub struct ScheduleConfigError(pub u32);
+
+impl ScheduleConfig {
+    /// `control` comes so many clocks after each tick.
+    ///
+    /// # Errors
+    /// [`ScheduleConfigError`] unless that is 2 to 2^17 − 2.
+    pub fn new(control_clocks: u32) -> Result<Self, ScheduleConfigError> {
+        match control_clocks {
+            2..=131_070 => Ok(Self { control_clocks }),
+            _ => Err(ScheduleConfigError(control_clocks)),
+        }
+    }
+
+    /// Clocks from the tick to `control`.
+    pub fn control_clocks(&self) -> u32 {
+        self.control_clocks
+    }
+}
+
+/// The ports in the order of the Verilog's port list, without `clk`.
+pub fn ports() -> Vec<Port> {
+    let port = |name: &str, direction| Port {
+        name: name.to_owned(),
+        direction,
+        width: 1,
+        signed: false,
+    };
+    vec![
+        port("rst", Direction::Input),
+        port("tick", Direction::Input),
+        port("control", Direction::Output),
+    ]
+}
+
+/// The schedule, cycle accurate at its ports.
+#[derive(Debug, Clone)]
+pub struct Schedule {
+    ports: Vec<Port>,
+    control_clocks: u32,
+    /// Clocks since the tick; 0 before the first, and after `control`.
+    since: u32,
+    control: bool,
+}
+
+impl Schedule {
+    /// After reset.
+    pub fn new(config: &ScheduleConfig) -> Self {
+        Self {
+            ports: ports(),
+            control_clocks: config.control_clocks,
+            since: 0,
+            control: false,
+        }
+    }
+
+    fn clock(&mut self, reset: bool, tick: bool) {
+        let last = self.since + 1 == self.control_clocks;
+        self.control = !reset && last;
+        self.since = match (reset, tick) {
+            (true, _) => 0,
+            (false, true) => 1,
+            (false, false) if self.since == 0 || last => 0,
+            (false, false) => self.since + 1,
+        };
+    }
+}
+
+impl Moore for Schedule {
+    fn show(&self, outputs: &mut [u64]) {
+        if let [control] = outputs {
+            *control = self.control.into();
+        }
+    }
+
+    fn quiet_clocks(&self, inputs: &[u64]) -> u64 {
+        let called = inputs.iter().any(|input| input & 1 != 0);
+        match self.since {
+            _ if called || self.control => 0,
+            0 => FOREVER,
+            since => u64::from(self.control_clocks - since - 1),
+        }
+    }
+
+    fn pass(&mut self, _inputs: &[u64], clocks: u64) {
+        if self.since != 0 {
+            self.since += clocks as u32;
+        }
+    }
+}
+
+impl ClockedBlock for Schedule {
+    fn ports(&self) -> &[Port] {
+        &self.ports
+    }
+
+    fn step(&mut self, inputs: &[u64], outputs: &mut [u64]) -> Result<(), StepError> {
+        let ([reset, tick], 1) = (inputs, outputs.len()) else {
+            return Err(StepError(format!(
+                "{} inputs and {} outputs: the schedule has 2 and 1",
+                inputs.len(),
+                outputs.len()
+            )));
+        };
+        self.show(outputs);
+        self.clock(reset & 1 != 0, tick & 1 != 0);
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn unit_control_comes_so_many_clocks_after_each_tick_and_not_without() {
+        for clocks in [2, 3, 50] {
+            let mut schedule = Schedule::new(&ScheduleConfig::new(clocks).unwrap());
+            for clock in 0..500 {
+                let tick = clock >= 100 && clock % 100 == 0;
+                let mut outputs = [0];
+                schedule.step(&[0, tick.into()], &mut outputs).unwrap();
+                let wanted = clock >= 100 && clock % 100 == u64::from(clocks);
+                assert_eq!(outputs[0], u64::from(wanted), "{clocks} {clock}");
+            }
+        }
+        assert!(ScheduleConfig::new(1).is_err());
+    }
+}

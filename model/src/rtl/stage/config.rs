@@ -1,0 +1,155 @@
+//! What a stage is built from.
+
+use crate::control::Supervision;
+use crate::rtl::component::ComponentError;
+use crate::rtl::composition::CompositionError;
+use crate::rtl::divider::DividerConfig;
+use crate::rtl::group::MOST_AXES;
+use crate::rtl::pwm::{Mode, PwmConfig};
+use crate::rtl::registers::MapError;
+use crate::rtl::schedule::{ScheduleConfig, ScheduleConfigError};
+use crate::rtl::shaper::ShaperConfig;
+use crate::rtl::sliding_mode::{Law, Settings};
+
+use super::Schedule;
+
+/// A stage of one to four axes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StageConfig {
+    /// Clocks per tick, for time base and divider.
+    pub tick: DividerConfig,
+    /// Its axes.
+    pub axes: Vec<StageAxis>,
+}
+
+/// One axis of a stage.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StageAxis {
+    /// Its name: all its ports and registers begin with it.
+    pub name: String,
+    /// Its shaper, of three channels.
+    pub shaper: ShaperConfig,
+    /// The controller's settings after reset.
+    pub settings: Settings,
+    /// The controller's law after reset.
+    pub law: Law,
+    /// A rotary axis: positions wrap.
+    pub modulo: bool,
+    /// What is fixed in its PWM.
+    pub pwm: PwmConfig,
+    /// The PWM's mode.
+    pub pwm_mode: Mode,
+    /// The PWM's period in clocks: 2 to 65,536, and a divisor of the tick.
+    pub pwm_period_clocks: u32,
+    /// Pulses of up to so many clocks on an encoder's line are ignored, 0 to 63.
+    pub encoder_filter_clocks: u32,
+    /// What its supervisor watches.
+    pub supervision: Supervision,
+}
+
+/// Why there is no such stage.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum StageError {
+    /// No axis, or too many.
+    #[error("a stage has 1 to {MOST_AXES} axes, not {0}")]
+    Axes(usize),
+    /// An axis whose shaper does not shape velocity and acceleration.
+    #[error(
+        "the shaper of axis {axis} has {channels} channels of {word_bits} bits: a stage shapes position, velocity and \
+         acceleration in words of 32 bits; use command_bits = 32, and delays of at most 4094 samples"
+    )]
+    Channels {
+        /// The axis.
+        axis: String,
+        /// Channels.
+        channels: usize,
+        /// Width of a word.
+        word_bits: u32,
+    },
+    /// What is done in a tick takes longer than one.
+    #[error("a tick of {available} clocks is too short: {schedule}; choose a lower sample rate or a faster clock")]
+    Schedule {
+        /// What is done, with its clocks.
+        schedule: Schedule,
+        /// Clocks of a tick.
+        available: u32,
+    },
+    /// The PWM's period does not divide the tick.
+    #[error(
+        "the PWM of axis {axis} has {period} clocks per period, which do not divide a tick of {tick}; change one of them"
+    )]
+    Period {
+        /// The axis.
+        axis: String,
+        /// Clocks of its period.
+        period: u32,
+        /// Clocks of a tick.
+        tick: u32,
+    },
+    /// An error of the schedule's block.
+    #[error(transparent)]
+    ScheduleBlock(#[from] ScheduleConfigError),
+    /// An error of the register map: an axis whose name clashes with others.
+    #[error("the registers of the stage clash, rename an axis: {0}")]
+    Map(#[from] MapError),
+    /// An error of the wiring.
+    #[error("the ports of the stage clash, rename an axis: {0}")]
+    Composition(#[from] CompositionError),
+    /// An error of the component.
+    #[error("the stage's component: {0}")]
+    Component(#[from] ComponentError),
+}
+
+impl StageConfig {
+    /// The names of what is divided for, in the order of the divisions: `x_`, `y_`.
+    pub(super) fn divided(&self) -> Vec<String> {
+        self.axes.iter().map(|axis| format!("{}_", axis.name)).collect()
+    }
+
+    /// Pulse counters that share the divider.
+    pub(super) fn channels(&self) -> usize {
+        self.divided().len()
+    }
+
+    /// What is done in a tick.
+    pub fn timing(&self) -> Schedule {
+        let shapers: Vec<&ShaperConfig> = self.axes.iter().map(|axis| &axis.shaper).collect();
+        Schedule::of(&shapers, self.channels() as u32)
+    }
+
+    pub(super) fn schedule(&self) -> Result<ScheduleConfig, StageError> {
+        Ok(ScheduleConfig::new(self.timing().control_clocks())?)
+    }
+
+    pub(super) fn check(&self) -> Result<(), StageError> {
+        if !(1..=MOST_AXES).contains(&self.axes.len()) {
+            return Err(StageError::Axes(self.axes.len()));
+        }
+        let tick = self.tick.tick_clocks();
+        for axis in &self.axes {
+            if axis.shaper.channels() != 3 || axis.shaper.word_bits() != 32 {
+                return Err(StageError::Channels {
+                    axis: axis.name.clone(),
+                    channels: axis.shaper.channels(),
+                    word_bits: axis.shaper.word_bits(),
+                });
+            }
+            let period = axis.pwm_period_clocks;
+            if !(2..=65_536).contains(&period) || !tick.is_multiple_of(period) {
+                return Err(StageError::Period {
+                    axis: axis.name.clone(),
+                    period,
+                    tick,
+                });
+            }
+        }
+        let schedule = self.timing();
+        match schedule.duty_clocks() < tick {
+            true => Ok(()),
+            false => Err(StageError::Schedule {
+                schedule,
+                available: tick,
+            }),
+        }
+    }
+}

@@ -1,0 +1,117 @@
+//! One to four axes behind one Avalon-MM agent: from motion segments to the pins and back, without software.
+//!
+//! ```text
+//!            registers ── window 0: the stage; window 1 …: an axis each
+//!                │
+//! tick ─► time_base, schedule, divider, divider_share, group          one of each
+//!                │
+//!  per axis: segments ─► shaper ─► sliding_mode ─► drive_command ─► pwm ─► gates
+//!                │                  ▲  ▲
+//!            axis (supervisor)      │  pulse_counter ◄─ encoder
+//!                              setting_banks
+//! ```
+//!
+//! A stage is a [`Component`]: blocks joined by names, from which come the model here and the Verilog in
+//! `posicast_hdl::component`. What the machine file fixes is tied to constants; what a host may want to change while the
+//! machine runs are registers, with the machine's values after reset.
+//!
+//! Nothing but wiring is in this folder: [`axis`](mod@axis) joins the blocks of an axis, [`registers`] says what a host sees.
+//! The datasheet is `docs/stage.md`.
+
+mod axis;
+mod config;
+mod registers;
+mod schedule;
+
+pub use self::config::{StageAxis, StageConfig, StageError};
+pub use self::registers::{AXIS_INTERRUPTS, axis_window};
+pub use self::schedule::Schedule;
+
+use self::axis::SHARED;
+use super::component::{Block, Component, Wiring};
+use super::composition::Part;
+use super::registers::RegisterMap;
+
+/// Pins that all axes share.
+const SHARED_PINS: [&str; 2] = ["emergency_stop_n", "pll_locked"];
+
+impl Component {
+    /// The stage.
+    ///
+    /// # Errors
+    /// [`StageError`] for no axis or more than four, ticks that are too short, and names that clash.
+    pub fn stage(config: &StageConfig) -> Result<Self, StageError> {
+        config.check()?;
+        let map = RegisterMap::new(registers::stage(config)?)?;
+        let mut blocks = vec![
+            Block::TimeBase(config.tick),
+            Block::Schedule(config.schedule()?),
+            Block::DividerShare(config.channels()),
+            Block::Divider(config.tick),
+            Block::Group(config.axes.len()),
+        ];
+        for axis in &config.axes {
+            blocks.push(Block::Joined(Box::new(axis::join(axis, config.tick.tick_clocks())?)));
+        }
+        let blocks = blocks.into_iter().map(|block| (block.name().to_owned(), block));
+        let wiring = Wiring {
+            part: Box::new(|block, part| wire(config, block, part)),
+            inputs: pins(config, &SHARED_PINS, axis::INPUT_PINS),
+            outputs: pins(config, &["tick"], axis::OUTPUT_PINS),
+        };
+        Ok(Self::joined(map, "stage", blocks.collect(), wiring)?)
+    }
+}
+
+/// Shared pins, then those of each axis.
+fn pins(config: &StageConfig, shared: &[&str], of_axis: &[&str]) -> Vec<String> {
+    let mut pins: Vec<String> = shared.iter().map(|pin| (*pin).to_owned()).collect();
+    for axis in &config.axes {
+        pins.extend(of_axis.iter().map(|pin| format!("{}_{pin}", axis.name)));
+    }
+    pins
+}
+
+fn wire(config: &StageConfig, block: &Block, part: Part) -> Part {
+    match block {
+        Block::Divider(_) => part
+            .on("busy", "divider_busy")
+            .on("saturated", "divider_saturated")
+            .on("overrun", "divider_overrun")
+            .on("start", "divider_start")
+            .on("done", "divider_done")
+            .tied("clear_flags", 1),
+        Block::DividerShare(_) => {
+            let part = part.on("start", "divider_start").on("done", "divider_done");
+            config
+                .divided()
+                .into_iter()
+                .enumerate()
+                .fold(part, |part, (channel, owner)| {
+                    part.on(&format!("steps_of_{channel}"), &format!("{owner}steps"))
+                        .on(&format!("elapsed_of_{channel}"), &format!("{owner}elapsed"))
+                        .on(&format!("quotient_valid_{channel}"), &format!("{owner}quotient_valid"))
+                })
+        }
+        Block::Group(_) => config.axes.iter().enumerate().fold(part, |part, (index, axis)| {
+            let each = [
+                "can_start",
+                "wants_group_stop",
+                "emergency_stop",
+                "axis_start",
+                "group_stop",
+            ];
+            each.iter().fold(part, |part, port| {
+                part.on(&format!("{port}_{index}"), &format!("{}_{port}", axis.name))
+            })
+        }),
+        Block::Joined(joined) => {
+            let ports = part.ports().to_vec();
+            let own = ports.iter().filter(|port| !SHARED.contains(&port.name.as_str()));
+            own.fold(part, |part, port| {
+                part.on(&port.name, &format!("{}_{}", joined.name(), port.name))
+            })
+        }
+        _ => part,
+    }
+}

@@ -1,0 +1,311 @@
+//! The trace memory: what up to four signals of an axis did, tick by tick, around a trigger.
+//!
+//! The datasheet is `docs/trace.md`; this is the reference that the hardware is compared with.
+//!
+//! ```text
+//! arm ─► filling: pre_trigger rows ─► waiting: the newest pre_trigger rows ─► taking: the trigger's row and the rest ─► idle
+//!                                                                     trigger ┘
+//! ```
+//!
+//! - A row is the selected signals of one strobe. Of the strobes, the first and then every (`decimation` + 1)th gives one.
+//! - The memory has `samples` words, so a trace has `samples`, `samples / 2` or `samples / 4` rows of 1, 2 or 4 signals.
+//! - The words of a trace stand in order of time, row by row; they can be read when it is over.
+//!
+//! A row takes [`row_clocks`]:
+//!
+//! ```text
+//! clock     0    1         2         3    …  2 + signals  3 + signals
+//! strobe   ‾‾\________________________________________________________
+//!               trigger's  compared  first    last        rows is up, a strobe may come
+//!               signal               word     word
+//! ```
+//!
+//! ```
+//! use posicast_model::rtl::trace::{Inputs, State, Trace, TraceConfig, row_clocks};
+//!
+//! // A ramp on signal 5, taken from 100 rows before it passes 1000.
+//! let mut trace = Trace::new(&TraceConfig::new(256)?);
+//! let settings = Inputs {
+//!     select: [5, 0, 0, 0],
+//!     trigger_select: 5,
+//!     trigger_mode: 1,
+//!     trigger_level: 1000,
+//!     pre_trigger: 100,
+//!     ..Inputs::default()
+//! };
+//! trace.step(&Inputs { arm: true, ..settings });
+//! for tick in 0..2000 {
+//!     let now = Inputs { signal: [tick; 16], ..settings };
+//!     trace.step(&Inputs { strobe: true, ..now });
+//!     trace.hold(&now, 20);
+//! }
+//! let shown = trace.outputs();
+//! assert_eq!((shown.state, shown.rows, shown.trigger_row), (State::Idle, 256, 100));
+//! let word = |read_address| Inputs { read_address, ..settings };
+//! trace.step(&word(100));
+//! assert_eq!(trace.step(&word(255)).data, 1000);
+//! assert_eq!(trace.outputs().data, 1155);
+//! # Ok::<(), posicast_model::rtl::trace::TraceConfigError>(())
+//! ```
+
+mod config;
+mod ports;
+
+pub use config::{ROW_SIGNALS, SAMPLES, SIGNALS, TraceConfig, TraceConfigError, row_clocks, row_signals};
+pub use ports::{INPUT_PORTS, Inputs, OUTPUT_PORTS, Outputs, State, ports};
+
+use std::collections::VecDeque;
+
+use super::{ClockedBlock, Moore, Port, StepError};
+
+/// What a row's clock does.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+enum Phase {
+    /// Waits for a strobe.
+    #[default]
+    Ready,
+    /// Takes the signal that the trigger looks at.
+    TakeTrigger,
+    /// Compares it, and takes the row's first signal.
+    Compare,
+    /// Stores this word of the row, and takes the next.
+    Store(u8),
+}
+
+/// Everything that is a register, but the words.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+struct Registers {
+    active: bool,
+    triggered: bool,
+    halting: bool,
+    phase: Phase,
+    /// As the port `signals` was at `arm`.
+    signals: u8,
+    /// Rows before the trigger.
+    pre_trigger: u16,
+    /// Strobes to leave out.
+    skip: u16,
+    /// Which signal the next clock takes.
+    select: u8,
+    /// What was taken of the signals in the clock before.
+    taken: i32,
+    /// Whether the trigger's signal was at or above the level in the row before, if there was one.
+    was_above: Option<bool>,
+    event: bool,
+    data: u32,
+    missed: bool,
+    done: bool,
+}
+
+/// The trace memory, cycle accurate at its ports.
+///
+/// The words are kept in order of time: that the hardware's memory is a ring, and holds anything where nothing was written,
+/// does not show.
+#[derive(Debug, Clone)]
+pub struct Trace {
+    config: TraceConfig,
+    ports: Vec<Port>,
+    registers: Registers,
+    /// Words of whole rows, the oldest first.
+    words: VecDeque<u32>,
+    /// Words of the row that is being taken.
+    row: [u32; ROW_SIGNALS],
+}
+
+impl Trace {
+    /// A trace memory after reset.
+    pub fn new(config: &TraceConfig) -> Self {
+        Self {
+            config: *config,
+            ports: ports(),
+            registers: Registers::default(),
+            words: VecDeque::with_capacity(config.samples() as usize + ROW_SIGNALS),
+            row: [0; ROW_SIGNALS],
+        }
+    }
+
+    /// What it was built from.
+    pub fn config(&self) -> &TraceConfig {
+        &self.config
+    }
+
+    /// What the outputs show now.
+    pub fn outputs(&self) -> Outputs {
+        let registers = &self.registers;
+        let state = match (registers.active, registers.triggered) {
+            (false, _) => State::Idle,
+            (true, true) => State::Taking,
+            (true, false) if self.waits() => State::Waiting,
+            (true, false) => State::Filling,
+        };
+        Outputs {
+            data: registers.data,
+            state,
+            rows: self.rows(),
+            trigger_row: registers.pre_trigger,
+            missed: registers.missed,
+            done: registers.done,
+        }
+    }
+
+    /// One clock: what the outputs show before the rising edge, then the edge.
+    #[inline]
+    pub fn step(&mut self, inputs: &Inputs) -> Outputs {
+        let outputs = self.outputs();
+        self.clock(inputs);
+        outputs
+    }
+
+    /// So many clocks with the same inputs. Ends early once a clock changes nothing, since no later one would.
+    pub fn hold(&mut self, inputs: &Inputs, clocks: u64) {
+        for _ in 0..clocks {
+            let before = self.registers;
+            self.clock(inputs);
+            if self.registers == before {
+                return;
+            }
+        }
+    }
+
+    fn rows(&self) -> u16 {
+        (self.words.len() / row_signals(self.registers.signals)) as u16
+    }
+
+    /// The rows before the trigger are there, and it has not come.
+    fn waits(&self) -> bool {
+        !self.registers.triggered && self.rows() == self.registers.pre_trigger
+    }
+
+    fn clock(&mut self, inputs: &Inputs) {
+        if inputs.rst {
+            self.registers = Registers::default();
+            self.words.clear();
+            return;
+        }
+        let read = self.words.get(usize::from(inputs.read_address & 0x7ff));
+        let data = read.copied().filter(|_| !self.registers.active).unwrap_or(0);
+        if inputs.arm {
+            self.arm(inputs);
+        } else {
+            self.advance(inputs);
+        }
+        self.registers.data = data;
+    }
+
+    fn arm(&mut self, inputs: &Inputs) {
+        let last_row = self.config.rows(inputs.signals) - 1;
+        self.words.clear();
+        self.registers = Registers {
+            active: true,
+            signals: inputs.signals,
+            pre_trigger: (inputs.pre_trigger & 0x7ff).min(last_row as u16),
+            ..Registers::default()
+        };
+    }
+
+    fn advance(&mut self, inputs: &Inputs) {
+        let complete = usize::from(self.rows()) == self.config.rows(self.registers.signals);
+        let registers = &mut self.registers;
+        let ends = complete || registers.halting;
+        let phase = registers.phase;
+        registers.done = false;
+        registers.missed |= inputs.strobe && registers.active && phase != Phase::Ready;
+        registers.halting |= inputs.halt;
+        let event = registers.event;
+        registers.event |= inputs.trigger_event;
+        let taken = inputs.signal[usize::from(registers.select & 15)];
+        registers.select = match phase {
+            Phase::Ready => inputs.trigger_select,
+            Phase::TakeTrigger => inputs.select[0],
+            Phase::Compare => inputs.select[1],
+            Phase::Store(0) => inputs.select[2],
+            Phase::Store(_) => inputs.select[3],
+        };
+        match phase {
+            Phase::Ready if !registers.active => {}
+            Phase::Ready if ends => {
+                registers.active = false;
+                registers.done = complete;
+            }
+            Phase::Ready if !inputs.strobe => {}
+            Phase::Ready if registers.skip > 0 => registers.skip -= 1,
+            Phase::Ready => {
+                registers.skip = inputs.decimation;
+                registers.phase = Phase::TakeTrigger;
+            }
+            Phase::TakeTrigger => {
+                registers.taken = taken;
+                registers.phase = Phase::Compare;
+            }
+            Phase::Compare => {
+                registers.event = inputs.trigger_event;
+                self.compare(inputs, event);
+                self.registers.taken = taken;
+                self.registers.phase = Phase::Store(0);
+            }
+            Phase::Store(word) => {
+                let place = usize::from(word);
+                self.row[place] = registers.taken as u32;
+                if place + 1 == row_signals(registers.signals) {
+                    registers.phase = Phase::Ready;
+                    self.add_row();
+                } else {
+                    registers.taken = taken;
+                    registers.phase = Phase::Store(word + 1);
+                }
+            }
+        }
+    }
+
+    /// Has the trigger come with this row?
+    fn compare(&mut self, inputs: &Inputs, event: bool) {
+        let waits = self.waits();
+        let registers = &mut self.registers;
+        let above = registers.taken >= inputs.trigger_level;
+        let comes = match (inputs.trigger_mode & 3, registers.was_above) {
+            (0, _) => true,
+            (1, was) => was == Some(false) && above,
+            (2, was) => was == Some(true) && !above,
+            _ => event,
+        };
+        registers.was_above = Some(above);
+        registers.triggered |= waits && comes;
+    }
+
+    /// The row is whole; while waiting, the oldest one goes.
+    fn add_row(&mut self) {
+        let waits = self.waits();
+        let signals = row_signals(self.registers.signals);
+        self.words.extend(&self.row[..signals]);
+        if waits {
+            self.words.drain(..signals);
+        }
+    }
+}
+
+impl ClockedBlock for Trace {
+    fn ports(&self) -> &[Port] {
+        &self.ports
+    }
+
+    fn step(&mut self, inputs: &[u64], outputs: &mut [u64]) -> Result<(), StepError> {
+        let (Ok(raw), OUTPUT_PORTS) = (<&[u64; INPUT_PORTS]>::try_from(inputs), outputs.len()) else {
+            return Err(StepError(format!(
+                "{} inputs and {} outputs: the trace memory has {INPUT_PORTS} and {OUTPUT_PORTS}",
+                inputs.len(),
+                outputs.len()
+            )));
+        };
+        let shown = Trace::step(self, &Inputs::from_raw(raw));
+        outputs.copy_from_slice(&shown.to_raw());
+        Ok(())
+    }
+}
+
+impl Moore for Trace {
+    fn show(&self, outputs: &mut [u64]) {
+        for (output, value) in outputs.iter_mut().zip(self.outputs().to_raw()) {
+            *output = value;
+        }
+    }
+}

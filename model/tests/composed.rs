@@ -1,0 +1,210 @@
+//! Compositions, clocked only where something happens, against every block clocked in every clock.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a helper that fails fails its test")]
+
+#[path = "support/plain.rs"]
+mod plain;
+#[path = "support/random_inputs.rs"]
+mod random_inputs;
+#[path = "support/stage.rs"]
+mod stage;
+#[path = "support/wrong.rs"]
+mod wrong;
+
+use plain::Plain;
+use posicast_model::rtl::component::Component;
+use posicast_model::rtl::composition::{Composed, Composition};
+use posicast_model::rtl::divider::DividerConfig;
+use posicast_model::rtl::pwm::{ActiveLow, Mode, PwmConfig};
+use posicast_model::rtl::sliding_mode::Law;
+use posicast_model::rtl::{ClockedBlock, Direction, Moore};
+use proptest::prelude::*;
+use random_inputs::{Hints, Random, RandomInputs};
+use stage::{STAGE, axis, settings, shaper_config, stage};
+use wrong::Wrong;
+
+const BUS: Hints = &[
+    ("avs_read", &[0, 0, 0, 1]),
+    ("avs_write", &[0, 0, 1]),
+    ("avs_byteenable", &[15, 15, 15, 3]),
+    (
+        "avs_address",
+        &[
+            8, 9, 10, 11, 12, 16, 17, 18, 19, 20, 21, 22, 24, 25, 26, 27, 28, 32, 33, 34, 40, 41, 48, 64,
+        ],
+    ),
+    (
+        "avs_writedata",
+        &[0, 1, 2, 3, 1 << 15, 0xffff_ffff, 100, 0x1_0000, 40_000],
+    ),
+    ("fault_n", &[1, 1, 1, 0]),
+    ("pll_locked", &[1]),
+    ("filtered_fault_n", &[3]),
+    ("a", &[0, 1]),
+    ("b", &[0, 1]),
+];
+
+type Whole = (Composition, Vec<Box<dyn Moore>>);
+
+/// Name, inputs, the fast one, and the same block by block.
+fn wholes() -> Vec<(&'static str, Hints, Composed, Plain)> {
+    let pwm = PwmConfig::new(ActiveLow::default(), 2, 3).unwrap();
+    let counter = DividerConfig::new(300).unwrap();
+    let components = [
+        Component::shaper(shaper_config()).unwrap(),
+        Component::pulse_counter(counter, 3).unwrap(),
+        Component::sliding_mode(&settings(), Law::Pid, false).unwrap(),
+        Component::pwm(pwm, Mode::HalfBridge, 100).unwrap(),
+    ];
+    let fast = |(composition, blocks): Whole| Composed::new(composition, blocks);
+    let component = |component: Component| {
+        let name: &'static str = component.blocks().last().unwrap().name();
+        let plain = (component.composition().clone(), component.block_models(1));
+        (name, BUS, component.model(1), Plain::new(plain))
+    };
+    let mut wholes: Vec<_> = components.map(component).into();
+    wholes.push(("axis", STAGE, fast(axis()), Plain::new(axis())));
+    let nested = fast(stage(|axis| Box::new(fast(axis))));
+    wholes.push((
+        "stage",
+        STAGE,
+        nested,
+        Plain::new(stage(|axis| Box::new(Plain::new(axis)))),
+    ));
+    wholes
+}
+
+fn inputs_of(block: &dyn ClockedBlock, hints: Hints) -> (RandomInputs, usize) {
+    let outputs = block.ports().iter().filter(|port| port.direction == Direction::Output);
+    (RandomInputs::new(block.ports(), hints), outputs.count())
+}
+
+/// Random inputs, held; the fast one now by `step`, now by `hold`. Returns clocks per call, or where it differs.
+fn compare(fast: &mut Composed, plain: &mut Plain, hints: Hints, seed: u64) -> Result<f64, String> {
+    let mut random = Random(seed);
+    let (mut inputs, outputs) = inputs_of(fast, hints);
+    let (mut shown, mut expected) = (vec![0; outputs], vec![0; outputs]);
+    let (mut calls, mut all) = (0, 0);
+    for change in 0..200 {
+        let mut left = inputs.change(&mut random).min(500);
+        while left > 0 {
+            let by_step = change % 4 == 0;
+            let ran = if by_step {
+                fast.step(&inputs.values, &mut shown).unwrap();
+                1
+            } else {
+                fast.hold(&inputs.values, left, &mut shown).unwrap()
+            };
+            if !(1..=left).contains(&ran) {
+                return Err(format!("{ran} clocks of {left}"));
+            }
+            for clock in 0..ran {
+                plain.step(&inputs.values, &mut expected).unwrap();
+                if shown != expected {
+                    let at = shown.iter().zip(&expected).position(|(a, b)| a != b).unwrap();
+                    let mut ports = fast.ports().iter().filter(|port| port.direction == Direction::Output);
+                    let name = &ports.nth(at).unwrap().name;
+                    return Err(format!(
+                        "clock {} ({clock} of {ran}): {name} {:#x} {:#x}",
+                        all + clock,
+                        shown[at],
+                        expected[at]
+                    ));
+                }
+            }
+            left -= ran;
+            all += ran;
+            calls += 1;
+        }
+    }
+    Ok(all as f64 / f64::from(calls))
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(4))]
+
+    #[test]
+    fn prop_step_and_hold_are_every_block_in_every_clock(seed: u64) {
+        for (name, hints, mut fast, mut plain) in wholes() {
+            let found = compare(&mut fast, &mut plain, hints, seed);
+            prop_assert!(found.is_ok(), "{name}: {found:?}");
+        }
+    }
+}
+
+#[test]
+fn unit_a_part_that_says_something_wrong_is_found() {
+    let wrong = [
+        (1, "no pass"),
+        (2, "one more"),
+        (2, "ignores"),
+        (3, "no pass"),
+        (4, "one more"),
+        (4, "ignores"),
+        (6, "one more"),
+        (7, "ignores"),
+    ];
+    for (part, what) in wrong {
+        let found = (0..20).any(|seed| {
+            let with_wrong_part = |(composition, mut blocks): Whole| -> Box<dyn Moore> {
+                let block = blocks.remove(part);
+                blocks.insert(part, Box::new(Wrong { block, what }));
+                Box::new(Composed::new(composition, blocks))
+            };
+            let (composition, blocks) = stage(with_wrong_part);
+            let mut plain = Plain::new(stage(|axis| Box::new(Plain::new(axis))));
+            compare(&mut Composed::new(composition, blocks), &mut plain, STAGE, seed).is_err()
+        });
+        assert!(found, "part {part}: {what}");
+    }
+}
+
+#[test]
+fn unit_a_wait_is_one_call() {
+    // Nothing on the bus, and no pin moves: from tick to tick.
+    let counter = Component::pulse_counter(DividerConfig::new(5000).unwrap(), 3).unwrap();
+    let mut fast = counter.model(1);
+    let (inputs, outputs) = inputs_of(&fast, &[]);
+    let mut shown = vec![0; outputs];
+    let calls = (0..10).map(|_| fast.hold(&inputs.values, 1_000_000, &mut shown).unwrap());
+    let calls: Vec<u64> = calls.collect();
+    assert!(calls.iter().any(|clocks| *clocks > 4000), "{calls:?}");
+    assert_eq!(fast.hold(&inputs.values, 0, &mut shown), Ok(0));
+    assert!(fast.hold(&inputs.values[1..], 1, &mut shown).is_err());
+}
+
+#[test]
+fn unit_random_inputs_move_the_axes() {
+    let (composition, blocks) = stage(|(composition, blocks)| Box::new(Composed::new(composition, blocks)));
+    let mut fast = Composed::new(composition, blocks);
+    let (mut inputs, outputs) = inputs_of(&fast, STAGE);
+    let (mut shown, mut before, mut changes) = (vec![0; outputs], vec![0; outputs], vec![0; outputs]);
+    let mut random = Random(1);
+    for _ in 0..3000 {
+        let mut left = inputs.change(&mut random);
+        while left > 0 {
+            left -= fast.hold(&inputs.values, left, &mut shown).unwrap();
+            for ((count, before), value) in changes.iter_mut().zip(&mut before).zip(&shown) {
+                *count += u32::from(before != value);
+                *before = *value;
+            }
+        }
+    }
+    let driven = fast.ports().iter().filter(|port| port.direction == Direction::Output);
+    let moved = [
+        "done",
+        "count",
+        "velocity_valid",
+        "controlled",
+        "a_high",
+        "b_low",
+        "started",
+        "halted",
+        "disabled",
+        "faulted",
+    ];
+    for (port, count) in driven.zip(changes) {
+        let must = port.name.split_once('_').is_some_and(|(_, name)| moved.contains(&name));
+        assert!(!must || count > 0, "{}", port.name);
+    }
+}

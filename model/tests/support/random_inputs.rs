@@ -1,0 +1,79 @@
+//! Random inputs for any block: held for a while, strobes rare, with values that get somewhere.
+
+use posicast_model::rtl::{Direction, Port};
+
+/// splitmix64 (Steele, Lea, Flood 2014).
+pub(crate) struct Random(pub(crate) u64);
+
+impl Random {
+    pub(crate) fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut word = self.0;
+        word = (word ^ (word >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        word = (word ^ (word >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        word ^ (word >> 31)
+    }
+
+    pub(crate) fn below(&mut self, end: u64) -> u64 {
+        self.next() % end.max(1)
+    }
+
+    pub(crate) fn choice<'a, T>(&mut self, from: &'a [T]) -> &'a T {
+        &from[self.below(from.len() as u64) as usize]
+    }
+}
+
+/// Values of an input, by its name: one of them is taken.
+pub(crate) type Hints = &'static [(&'static str, &'static [u64])];
+
+/// The inputs of a block.
+pub(crate) struct RandomInputs {
+    pub(crate) ports: Vec<Port>,
+    hints: Hints,
+    pub(crate) values: Vec<u64>,
+}
+
+impl RandomInputs {
+    /// Of these ports, the inputs.
+    pub(crate) fn new(ports: &[Port], hints: Hints) -> Self {
+        let inputs = ports.iter().filter(|port| port.direction == Direction::Input);
+        let ports: Vec<Port> = inputs.cloned().collect();
+        Self {
+            values: vec![0; ports.len()],
+            ports,
+            hints,
+        }
+    }
+
+    /// Gives some of them new values, and returns for how many clocks they stay.
+    pub(crate) fn change(&mut self, random: &mut Random) -> u64 {
+        let share = *random.choice(&[2, 8, 40]);
+        for at in 0..self.values.len() {
+            let resets = self.ports[at].name == "rst" && self.values[at] != 0;
+            if resets || random.below(share) == 0 || (self.ports[at].width == 1 && random.below(3) == 0) {
+                self.change_one(at, random);
+            }
+        }
+        let longest = *random.choice(&[1, 2, 20, 300, 3000]);
+        1 + random.below(longest)
+    }
+
+    /// Gives one of them a new value.
+    pub(crate) fn change_one(&mut self, at: usize, random: &mut Random) {
+        let port = &self.ports[at];
+        let ones = u64::MAX >> (64 - port.width);
+        let bare = port.name.trim_start_matches("x_").trim_start_matches("y_");
+        let hint = self.hints.iter().find(|(name, _)| *name == bare);
+        self.values[at] = match hint {
+            Some((_, values)) => *random.choice(values),
+            None if port.name == "rst" => u64::from(random.below(40) == 0),
+            None if port.width == 1 => u64::from(random.below(5) == 0),
+            None => match random.below(4) {
+                0 => 0,
+                1 => random.below(8) & ones,
+                2 => ones >> random.below(port.width.into()),
+                _ => random.next() & ones,
+            },
+        };
+    }
+}

@@ -1,0 +1,277 @@
+//! A stage of what there is: a time base and two axes, each a composition of its own.
+
+use posicast_model::rtl::axis::Axis;
+use posicast_model::rtl::composition::{Composition, Part};
+use posicast_model::rtl::divider::{Divider, DividerConfig};
+use posicast_model::rtl::pulse_counter::PulseCounter;
+use posicast_model::rtl::pwm::{ActiveLow, Pwm, PwmConfig};
+use posicast_model::rtl::segments::Segments;
+use posicast_model::rtl::setting_banks::SettingBanks;
+use posicast_model::rtl::shaper::{Motion, Shaper, ShaperConfig};
+use posicast_model::rtl::sliding_mode::{Gain, Row, Settings, SlidingMode};
+use posicast_model::rtl::time_base::TimeBase;
+use posicast_model::rtl::{Direction, Moore, Port};
+use posicast_model::taps::{Tap, TapTable};
+
+use crate::random_inputs::Hints;
+
+/// Clocks per tick: a pass of the controller fits.
+const TICK_CLOCKS: u64 = 300;
+
+/// What random inputs of [`stage`] and [`axis`] are to be, so that axes move and stop.
+pub(crate) const STAGE: Hints = &[
+    ("write", &[0, 1]),
+    ("word", &[0, 1, 2, 3, 3]),
+    ("data", &[0, 0, 3, 1 << 31 | 2, 1 << 30 | 1, 5]),
+    ("flush", RARE),
+    ("stop_deceleration", &[0, 1 << 24]),
+    ("clear_flags", &[1]),
+    ("tap_write", RARE),
+    ("swap", RARE),
+    // One line moves: no step is illegal.
+    ("a", &[0, 1]),
+    ("b", &[0]),
+    ("differential", &[0]),
+    ("filter_clocks", &[0, 3, 9]),
+    ("tick", RARE),
+    ("divide", RARE),
+    ("line_mode", &[0]),
+    ("emergency_stop_n", USUAL),
+    ("limit_plus_n", &[1]),
+    ("limit_minus_n", &[1]),
+    ("drive_ready", USUAL),
+    ("axis_enable", &[0, 1, 1, 1]),
+    ("axis_start", &[0, 1]),
+    ("axis_stop", RARE),
+    ("clear_faults", &[0, 1]),
+    ("group_stop", &[0]),
+    ("group_emergency_stop", &[0]),
+    ("scale_illegal", &[0]),
+    ("scale_disagreement", &[0]),
+    ("off_causes", &[0]),
+    ("brake_release_ticks", &[0, 2]),
+    ("brake_apply_ticks", &[0, 2]),
+    ("settle_ticks", &[0, 2]),
+    ("soft_limit_plus", &[0]),
+    ("soft_limit_minus", &[0]),
+    ("following_error_limit", &[0]),
+    ("deviation_limit", &[0]),
+    ("saturation_ticks", &[0]),
+    ("lost_ticks", &[0]),
+    ("watchdog_ticks", &[0]),
+    ("pwm_mode", &[1, 2]),
+    ("period", &[100]),
+    ("pwm_duty", &[0, 50, 90, 0x1_ffc0]),
+    ("max_duty", &[400]),
+    ("dead_time", &[3]),
+    ("minimum_pulse", &[4]),
+    ("fault_n", USUAL),
+    ("pll_locked", &[1]),
+    ("filtered_fault_n", &[3]),
+    ("watchdog_periods", &[0]),
+    ("clear_trip", &[0, 1]),
+];
+
+const RARE: &[u64] = &{
+    let mut values = [0; 100];
+    values[0] = 1;
+    values
+};
+const USUAL: &[u64] = &{
+    let mut values = [1; 100];
+    values[0] = 0;
+    values
+};
+
+/// A part: its name, its block, and the nets of ports that are not on the net of their own name.
+pub(crate) type Joined = (String, Box<dyn Moore>, Vec<(String, String)>);
+
+/// Joins blocks. What nothing drives is an input of the whole, what nothing reads an output.
+pub(crate) fn join(blocks: Vec<Joined>) -> (Composition, Vec<Box<dyn Moore>>) {
+    let (mut read, mut driven) = (Vec::new(), Vec::new());
+    for (_, block, nets) in &blocks {
+        let net = |port: &Port| {
+            let renamed = nets.iter().find(|(name, _)| *name == port.name);
+            renamed.map_or_else(|| port.name.clone(), |(_, net)| net.clone())
+        };
+        for port in block.ports() {
+            match port.direction {
+                Direction::Input => read.push(net(port)),
+                Direction::Output => driven.push(net(port)),
+            }
+        }
+    }
+    let mut inputs: Vec<&str> = Vec::new();
+    for net in &read {
+        if !driven.contains(net) && !inputs.contains(&net.as_str()) {
+            inputs.push(net);
+        }
+    }
+    let outputs: Vec<&str> = driven
+        .iter()
+        .filter(|net| !read.contains(net))
+        .map(String::as_str)
+        .collect();
+    let part = |(name, block, nets): &Joined| {
+        let part = Part::new(name, block.ports());
+        nets.iter().fold(part, |part, (port, net)| part.on(port, net))
+    };
+    let parts = blocks.iter().map(part).collect();
+    let composition = Composition::new(parts, &inputs, &outputs).unwrap_or_else(|error| panic!("{error}"));
+    (composition, blocks.into_iter().map(|(_, block, _)| block).collect())
+}
+
+fn joined(name: &str, block: impl Moore + 'static, nets: &[(&str, &str)]) -> Joined {
+    let owned = |(port, net): &(&str, &str)| ((*port).to_owned(), (*net).to_owned());
+    (name.to_owned(), Box::new(block), nets.iter().map(owned).collect())
+}
+
+pub(crate) fn shaper_config() -> ShaperConfig {
+    let tap = |(delay_samples, coefficient)| Tap {
+        delay_samples,
+        coefficient,
+    };
+    let taps = [(0, 40_000), (3, 20_000), (5, 5536)].map(tap).to_vec();
+    let motion = Motion {
+        channels: 2,
+        modulo: false,
+    };
+    let table = TapTable::new(16, taps).unwrap();
+    ShaperConfig::new(32, table).unwrap().for_motion(motion).unwrap()
+}
+
+pub(crate) fn settings() -> Settings {
+    let mut settings = Settings::default();
+    settings.set_gain(Row::Derivative, Gain::nearest(3.0, Row::Derivative).unwrap());
+    settings.set_limit(1000 << 12);
+    settings
+}
+
+/// An axis: its composition, and the models of its blocks.
+pub(crate) fn axis() -> (Composition, Vec<Box<dyn Moore>>) {
+    let pwm = PwmConfig::new(ActiveLow::default(), 2, 3).unwrap();
+    join(vec![
+        joined(
+            "segments",
+            Segments::new(1),
+            &[
+                ("position", "command_position"),
+                ("velocity", "command_velocity"),
+                ("acceleration", "acceleration_reference"),
+                ("valid", "segments_valid"),
+                ("enable", "segments_enable"),
+                ("preset", "segments_preset"),
+                ("quick_stop", "segments_quick_stop"),
+                ("restart", "segments_restart"),
+                ("state", "segments_state"),
+                ("empty", "segments_empty"),
+                ("overflow", "segments_overflow"),
+                ("underrun", "segments_underrun"),
+                ("tick_missed", "segments_tick_missed"),
+                ("refused", "segments_refused"),
+            ],
+        ),
+        joined(
+            "shaper",
+            Shaper::new(&shaper_config(), 1),
+            &[
+                ("strobe", "segments_valid"),
+                ("start", "shaper_start"),
+                ("x_0", "command_position"),
+                ("x_1", "command_velocity"),
+                ("y_0", "position_reference"),
+                ("y_1", "velocity_reference"),
+                ("overrun", "shaper_overrun"),
+                ("saturated", "shaper_saturated"),
+                ("busy", "shaper_busy"),
+                ("refused", "shaper_refused"),
+                ("bank", "shaper_bank"),
+            ],
+        ),
+        joined(
+            "counter",
+            PulseCounter::new(),
+            &[
+                ("time_stamp", "edge_stamp"),
+                ("mode", "line_mode"),
+                ("swap", "line_swap"),
+                ("illegal", "encoder_illegal"),
+                ("disagreement", "encoder_disagreement"),
+            ],
+        ),
+        joined(
+            "divider",
+            Divider::new(&DividerConfig::new(TICK_CLOCKS).unwrap()),
+            &[
+                ("start", "divide"),
+                ("done", "quotient_valid"),
+                ("busy", "divider_busy"),
+                ("saturated", "divider_saturated"),
+                ("overrun", "divider_overrun"),
+            ],
+        ),
+        joined(
+            "controller",
+            SlidingMode::new(),
+            &[
+                ("start", "valid"),
+                ("valid", "controlled"),
+                ("overrun", "controller_overrun"),
+            ],
+        ),
+        joined(
+            "settings",
+            SettingBanks::new(&settings()),
+            &[("row", "setting_address")],
+        ),
+        joined(
+            "pwm",
+            Pwm::new(&pwm),
+            &[
+                ("enable", "pwm_enable"),
+                ("duty", "pwm_duty"),
+                // An output that depends on an input: `low` follows `low_water`.
+                ("feed", "low"),
+                ("sync", "tick"),
+                ("mode", "pwm_mode"),
+                ("filter_clocks", "fault_filter_clocks"),
+                ("tripped", "pwm_tripped"),
+                ("saturated", "pwm_saturated"),
+                ("refused", "pwm_refused"),
+            ],
+        ),
+        joined(
+            "supervisor",
+            Axis::new(),
+            &[
+                ("enable", "axis_enable"),
+                ("start", "axis_start"),
+                ("stop", "axis_stop"),
+                ("state", "axis_state"),
+                ("reference_position", "position_reference"),
+                ("reference_velocity", "velocity_reference"),
+            ],
+        ),
+    ])
+}
+
+/// A time base and two axes with pins of their own; `make` makes a block of an axis.
+pub(crate) fn stage(
+    make: impl Fn((Composition, Vec<Box<dyn Moore>>)) -> Box<dyn Moore>,
+) -> (Composition, Vec<Box<dyn Moore>>) {
+    let time_base = TimeBase::new(&DividerConfig::new(TICK_CLOCKS).unwrap());
+    let mut blocks = vec![joined("time_base", time_base, &[])];
+    for name in ["x", "y"] {
+        let axis = make(axis());
+        let own = |port: &Port| {
+            let pins = ["a", "b", "z", "write", "axis_enable", "fault_n"].contains(&port.name.as_str());
+            port.direction == Direction::Output || pins
+        };
+        let nets = axis.ports().iter().filter(|port| own(port));
+        let nets = nets
+            .map(|port| (port.name.clone(), format!("{name}_{}", port.name)))
+            .collect();
+        blocks.push((name.to_owned(), axis, nets));
+    }
+    join(blocks)
+}

@@ -1,0 +1,467 @@
+//! A stage with its machine: a host on the bus, drives and encoders at the pins, and, beside the model, the RTL if wanted.
+//!
+//! ```text
+//!  host: write, read ─► bus ─┐                    ┌─► gates, drive_enable, brake_release ─► plants ─┐
+//!                            ├─► stage (model) ───┤                                                 │
+//!  lines: limits, faults ────┤   stage (device) ──┴─► every output equal, in every clock            │
+//!                            └───────────────────────────────────────── a, b, z ◄───────────────────┘
+//! ```
+//!
+//! With a device every clock is stepped and compared. Without one the model runs event by event, much faster, and exactly
+//! the same. The plants hear the model.
+
+use posicast_model::plant::axis::{AxisPlant, DrivePins};
+use posicast_model::rtl::component::Component;
+use posicast_model::rtl::composition::Composed;
+use posicast_model::rtl::segments::Entry;
+use posicast_model::rtl::stage::StageConfig;
+use posicast_model::rtl::{ClockedBlock, Direction, StepError};
+
+use crate::Error;
+use crate::lockstep::Device;
+
+/// Lines that are high while all is well.
+const HEALTHY: [&str; 5] = [
+    "limit_plus_n",
+    "limit_minus_n",
+    "drive_ready",
+    "drive_fault_n",
+    "fault_n",
+];
+/// The same, of the stage.
+const HEALTHY_SHARED: [&str; 2] = ["emergency_stop_n", "pll_locked"];
+/// What a tick records of each axis: nets of the stage, behind the axis's name.
+const RECORDED: [&str; 4] = ["command_position", "shaped_position", "count", "error"];
+/// States of an axis, as `STATUS.state` has them.
+pub mod state {
+    /// Outputs off.
+    pub const OFF: u32 = 0;
+    /// Outputs off, nothing wrong.
+    pub const READY: u32 = 1;
+    /// Outputs on, the command stands.
+    pub const HOLD: u32 = 2;
+    /// Segments play.
+    pub const RUN: u32 = 3;
+    /// Slowing down.
+    pub const QUICK_STOP: u32 = 4;
+    /// A cause, until it is cleared.
+    pub const FAULT: u32 = 5;
+}
+
+/// An output that differed.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct StageMismatch {
+    /// Clocks since the start.
+    pub clock: u64,
+    /// The output.
+    pub signal: String,
+    /// What the model shows.
+    pub expected: u64,
+    /// What the device shows.
+    pub actual: u64,
+}
+
+/// An axis at a tick.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AxisSample {
+    /// Of the segments, counts.
+    pub command: f64,
+    /// Of the shaper, counts.
+    pub shaped: f64,
+    /// Of the encoder, counts.
+    pub count: f64,
+    /// Of the controller, counts.
+    pub error: f64,
+    /// The motor in m or rad.
+    pub motor: f64,
+    /// The load in m or rad.
+    pub load: f64,
+}
+
+/// Where an axis's pins are among the stage's.
+struct Places {
+    encoder: [usize; 3],
+    drive: [usize; 6],
+    recorded: [usize; 4],
+}
+
+fn stopped(clock: u64) -> impl Fn(StepError) -> Error {
+    move |source| Error::Step { clock, source }
+}
+
+/// A stage, its machine and its host.
+pub struct StageBench {
+    component: Component,
+    axes: Vec<String>,
+    model: Composed,
+    device: Option<Box<dyn Device>>,
+    plants: Vec<AxisPlant>,
+    places: Vec<Places>,
+    input_names: Vec<String>,
+    output_names: Vec<String>,
+    inputs: Vec<u64>,
+    outputs: Vec<u64>,
+    actual: Vec<u64>,
+    unknown: Vec<u64>,
+    tick: usize,
+    read_data: usize,
+    now: u64,
+    mismatches: u64,
+    first: Option<StageMismatch>,
+    samples: Option<Vec<Vec<AxisSample>>>,
+}
+
+impl StageBench {
+    /// A stage after a reset of two clocks, all lines healthy. `plants`: one per axis. `device`: the RTL, to be compared.
+    ///
+    /// # Errors
+    /// [`Error::Unlike`] if there is not a plant per axis, or the device has other ports; [`Error::Step`] where a simulator stops.
+    pub fn new(
+        config: &StageConfig,
+        component: &Component,
+        plants: Vec<AxisPlant>,
+        device: Option<Box<dyn Device>>,
+        seed: u64,
+    ) -> Result<Self, Error> {
+        let axes: Vec<String> = config.axes.iter().map(|axis| axis.name.clone()).collect();
+        if plants.len() != axes.len() {
+            return Err(Error::Unlike(format!(
+                "{} plants for {} axes",
+                plants.len(),
+                axes.len()
+            )));
+        }
+        let ports = component.composition().ports();
+        if let Some(device) = device.as_ref().filter(|device| device.ports() != ports) {
+            let found = device.ports().len();
+            return Err(Error::Unlike(format!(
+                "the stage has {} ports, the device {found}",
+                ports.len()
+            )));
+        }
+        let names = |direction| -> Vec<String> {
+            let ports = ports.iter().filter(|port| port.direction == direction);
+            ports.map(|port| port.name.clone()).collect()
+        };
+        let (input_names, output_names) = (names(Direction::Input), names(Direction::Output));
+        let model = component.model(seed);
+        let place = |names: &[String], name: &str| {
+            let found = names.iter().position(|other| other == name);
+            found.ok_or_else(|| Error::Unlike(format!("the stage has no port `{name}`")))
+        };
+        let mut places = Vec::new();
+        for axis in &axes {
+            let [a, b, z] = ["a", "b", "z"].map(|pin| place(&input_names, &format!("{axis}_{pin}")));
+            let drive = ["a_high", "a_low", "b_high", "b_low", "drive_enable", "brake_release"];
+            let [d0, d1, d2, d3, d4, d5] = drive.map(|pin| place(&output_names, &format!("{axis}_{pin}")));
+            let net = |name: &str| {
+                let found = model.net(&format!("{axis}_{name}"));
+                found.ok_or_else(|| Error::Unlike(format!("the stage has no net `{axis}_{name}`")))
+            };
+            let [n0, n1, n2, n3] = RECORDED.map(net);
+            places.push(Places {
+                encoder: [a?, b?, z?],
+                drive: [d0?, d1?, d2?, d3?, d4?, d5?],
+                recorded: [n0?, n1?, n2?, n3?],
+            });
+        }
+        let mut bench = Self {
+            tick: place(&output_names, "tick")?,
+            read_data: place(&output_names, "avs_readdata")?,
+            inputs: vec![0; input_names.len()],
+            outputs: vec![0; output_names.len()],
+            actual: vec![0; output_names.len()],
+            unknown: vec![0; output_names.len()],
+            component: component.clone(),
+            axes,
+            model,
+            device,
+            plants,
+            places,
+            input_names,
+            output_names,
+            now: 0,
+            mismatches: 0,
+            first: None,
+            samples: None,
+        };
+        for line in HEALTHY_SHARED {
+            bench.set(line, 1)?;
+        }
+        for axis in bench.axes.clone() {
+            for line in HEALTHY {
+                bench.set(&format!("{axis}_{line}"), 1)?;
+            }
+        }
+        bench.set("rst", 1)?;
+        bench.clocks(2)?;
+        bench.set("rst", 0)?;
+        Ok(bench)
+    }
+
+    /// Names of the axes.
+    pub fn axes(&self) -> &[String] {
+        &self.axes
+    }
+
+    /// Clocks since the start.
+    pub fn now(&self) -> u64 {
+        self.now
+    }
+
+    /// The plant of an axis.
+    pub fn plant(&self, axis: usize) -> &AxisPlant {
+        &self.plants[axis]
+    }
+
+    /// Outputs that differed, and the first of them.
+    pub fn mismatches(&self) -> (u64, Option<&StageMismatch>) {
+        (self.mismatches, self.first.as_ref())
+    }
+
+    /// Drives an input that is neither an encoder's nor the bus's: `x_limit_plus_n`, from the next clock on.
+    ///
+    /// # Errors
+    /// [`Error::Unlike`] if there is no such input.
+    pub fn set(&mut self, input: &str, value: u64) -> Result<(), Error> {
+        let place = self.input_names.iter().position(|name| name == input);
+        let place = place.ok_or_else(|| Error::Unlike(format!("the stage has no input `{input}`")))?;
+        self.inputs[place] = value;
+        Ok(())
+    }
+
+    /// What an output showed in the last clock.
+    ///
+    /// # Errors
+    /// [`Error::Unlike`] if there is no such output.
+    pub fn output(&self, output: &str) -> Result<u64, Error> {
+        let place = self.output_names.iter().position(|name| name == output);
+        let place = place.ok_or_else(|| Error::Unlike(format!("the stage has no output `{output}`")))?;
+        Ok(self.outputs[place])
+    }
+
+    /// What a net between registers and axes carries: `x_state`, for example.
+    ///
+    /// # Errors
+    /// [`Error::Unlike`] if there is no such net.
+    pub fn net(&self, net: &str) -> Result<u64, Error> {
+        let place = self.model.net(net);
+        let place = place.ok_or_else(|| Error::Unlike(format!("the stage has no net `{net}`")))?;
+        Ok(self.model.value(place))
+    }
+
+    /// From now on, each tick records all axes.
+    pub fn record(&mut self) {
+        self.samples = Some(vec![Vec::new(); self.axes.len()]);
+    }
+
+    /// What was recorded, one list per axis, and no more from now on.
+    pub fn recorded(&mut self) -> Vec<Vec<AxisSample>> {
+        self.samples.take().unwrap_or_default()
+    }
+
+    /// So many clocks.
+    ///
+    /// # Errors
+    /// [`Error::Step`] where a simulator stops.
+    pub fn clocks(&mut self, clocks: u64) -> Result<(), Error> {
+        let end = self.now + clocks;
+        while self.now < end {
+            for (plant, places) in self.plants.iter().zip(&self.places) {
+                let pins = plant.encoder();
+                for (place, level) in places.encoder.into_iter().zip([pins.a, pins.b, pins.z]) {
+                    self.inputs[place] = level.into();
+                }
+            }
+            let passed = match self.device {
+                Some(_) => self.step()?,
+                None => {
+                    let quiet = self.plants.iter().map(AxisPlant::quiet_clocks);
+                    let most = quiet.min().unwrap_or(1).clamp(1, end - self.now);
+                    self.model
+                        .hold(&self.inputs, most, &mut self.outputs)
+                        .map_err(stopped(self.now))?
+                }
+            };
+            if self.outputs[self.tick] != 0 {
+                self.sample();
+            }
+            for (plant, places) in self.plants.iter_mut().zip(&self.places) {
+                let [a_high, a_low, b_high, b_low, drive_enable, brake_release] =
+                    places.drive.map(|place| self.outputs[place] != 0);
+                let pins = DrivePins {
+                    a_high,
+                    a_low,
+                    b_high,
+                    b_low,
+                    drive_enable,
+                    brake_release,
+                };
+                plant.clocks(pins, passed);
+            }
+            self.now += passed;
+        }
+        Ok(())
+    }
+
+    /// One clock of model and device.
+    fn step(&mut self) -> Result<u64, Error> {
+        let stopped = stopped(self.now);
+        self.model.step(&self.inputs, &mut self.outputs).map_err(&stopped)?;
+        if let Some(device) = &mut self.device {
+            let stepped = device.step(&self.inputs, &mut self.actual, &mut self.unknown);
+            stepped.map_err(&stopped)?;
+        }
+        if self.actual != self.outputs || self.unknown.iter().any(|unknown| *unknown != 0) {
+            self.note_mismatch();
+        }
+        Ok(1)
+    }
+
+    fn note_mismatch(&mut self) {
+        for (at, name) in self.output_names.iter().enumerate() {
+            let (expected, actual) = (self.outputs[at], self.actual[at]);
+            if expected == actual && self.unknown[at] == 0 {
+                continue;
+            }
+            self.mismatches += 1;
+            self.first.get_or_insert_with(|| StageMismatch {
+                clock: self.now,
+                signal: name.clone(),
+                expected,
+                actual,
+            });
+        }
+    }
+
+    fn sample(&mut self) {
+        let Some(samples) = &mut self.samples else {
+            return;
+        };
+        for ((list, places), plant) in samples.iter_mut().zip(&self.places).zip(&self.plants) {
+            let signed = |net: usize| f64::from(self.model.value(net) as u32 as i32);
+            let [command, shaped, count, error] = places.recorded.map(signed);
+            let motion = plant.motion();
+            list.push(AxisSample {
+                command: command / 256.0,
+                shaped: shaped / 256.0,
+                count,
+                error: error / 65_536.0,
+                motor: motion.position,
+                load: motion.load,
+            });
+        }
+    }
+
+    /// The word of a register on the bus.
+    fn address(&self, register: &str) -> Result<u64, Error> {
+        let found = self.component.map().register(register);
+        let found = found.ok_or_else(|| Error::Unlike(format!("the stage has no register `{register}`")))?;
+        Ok(found.offset.into())
+    }
+
+    fn access(&mut self, address: u64, write: Option<u32>) -> Result<(), Error> {
+        let data = u64::from(write.unwrap_or(0));
+        let bus = [address, write.is_none().into(), write.is_some().into(), 0xf, data];
+        self.inputs[1..6].copy_from_slice(&bus);
+        self.clocks(1)?;
+        self.inputs[1..6].fill(0);
+        Ok(())
+    }
+
+    /// Writes a register: one clock.
+    ///
+    /// # Errors
+    /// [`Error::Unlike`] if there is no such register; [`Error::Step`] where a simulator stops.
+    pub fn write(&mut self, register: &str, data: u32) -> Result<(), Error> {
+        let address = self.address(register)?;
+        self.access(address, Some(data))
+    }
+
+    /// Reads a register: two clocks.
+    ///
+    /// # Errors
+    /// As [`write`](Self::write).
+    pub fn read(&mut self, register: &str) -> Result<u32, Error> {
+        let address = self.address(register)?;
+        self.access(address, None)?;
+        self.clocks(1)?;
+        Ok(self.outputs[self.read_data] as u32)
+    }
+
+    /// Reads a field of a register.
+    ///
+    /// # Errors
+    /// As [`write`](Self::write), and if there is no such field. Names are without the axis: `("x", "status", "state")`.
+    pub fn field(&mut self, axis: &str, register: &str, field: &str) -> Result<u32, Error> {
+        let word = self.read(&format!("{axis}_{register}"))?;
+        let found = self.component.map().register(&format!("{axis}_{register}"));
+        let name = format!("{axis}_{field}");
+        let field = found.and_then(|register| register.fields.iter().find(|field| field.name == name));
+        let field = field.ok_or_else(|| Error::Unlike(format!("the register has no field `{name}`")))?;
+        Ok(field.of(word))
+    }
+
+    /// Writes an entry to an axis's FIFO: four clocks.
+    ///
+    /// # Errors
+    /// As [`write`](Self::write).
+    pub fn segment(&mut self, axis: &str, entry: &Entry) -> Result<(), Error> {
+        let address = self.address(&format!("{axis}_segment"))?;
+        for (place, word) in (0..).zip(entry.words()) {
+            self.access(address + place, Some(word))?;
+        }
+        Ok(())
+    }
+
+    /// Clocks until an axis's state is that, at most so many; says whether it came.
+    ///
+    /// # Errors
+    /// [`Error::Step`] where a simulator stops.
+    pub fn wait(&mut self, axis: &str, state: u32, most_clocks: u64) -> Result<bool, Error> {
+        let end = self.now + most_clocks;
+        let net = format!("{axis}_state");
+        while self.net(&net)? != u64::from(state) {
+            if self.now >= end {
+                return Ok(false);
+            }
+            self.clocks((end - self.now).min(1000))?;
+        }
+        Ok(true)
+    }
+
+    /// From reset to HOLD on all axes: clears the PWM's first trip, switches on, and waits for the brake. Says whether all came.
+    ///
+    /// # Errors
+    /// [`Error::Step`] where a simulator stops.
+    pub fn switch_on(&mut self, most_clocks: u64) -> Result<bool, Error> {
+        // Filters and encoders settle.
+        self.clocks(1000)?;
+        for axis in self.axes.clone() {
+            self.write(&format!("{axis}_clear_faults"), 0)?;
+        }
+        for axis in self.axes.clone() {
+            if !self.wait(&axis, state::READY, most_clocks)? {
+                return Ok(false);
+            }
+        }
+        for axis in self.axes.clone() {
+            self.write(&format!("{axis}_control"), 1)?;
+        }
+        for axis in self.axes.clone() {
+            let net = format!("{axis}_can_start");
+            let end = self.now + most_clocks;
+            // An axis can start once there is something to play, so that is not asked for here: the brake's time is.
+            while self.now < end && self.net(&format!("{axis}_state"))? != u64::from(state::HOLD) {
+                self.clocks(100)?;
+            }
+            while self.now < end && self.net(&net)? == 0 {
+                self.clocks(100)?;
+            }
+            if self.now >= end {
+                return Ok(false);
+            }
+        }
+        Ok(true)
+    }
+}

@@ -1,0 +1,210 @@
+//! Inputs for the drive command, seeded: a supervisor that is mostly in READY or beyond it, ticks and controllers at every
+//! pace, kicks in time and too late, duties at and about their limits, limit switches, faults; resets at any clock.
+
+use posicast_model::rtl::axis::State;
+use posicast_model::rtl::drive_command::{DUTY_BITS, INPUT_PORTS, OUTPUT_PORTS};
+use rand::{RngExt, SeedableRng};
+use rand_xoshiro::Xoshiro256PlusPlus;
+
+use super::Stimuli;
+use super::table::pick;
+use crate::lockstep::Clock;
+
+/// Clocks between changes of the slow inputs.
+const MOOD_CLOCKS: u64 = 500;
+
+/// What holds for a while.
+#[derive(Debug, Clone, Copy, Default)]
+struct Mood {
+    state: u64,
+    /// PWM, drive, brake, by the supervisor.
+    outputs: [bool; 3],
+    tick_pace: u32,
+    kick_pace: u32,
+    /// One clock in so many has a line low.
+    line_pace: u32,
+    hold_ticks: u64,
+    limit: i64,
+}
+
+/// A mixture of everything, without end.
+#[derive(Debug, Clone)]
+pub struct DriveCommandRandom {
+    rng: Xoshiro256PlusPlus,
+    clock: u64,
+    mood: Mood,
+    direct_duty: i64,
+}
+
+impl DriveCommandRandom {
+    /// Equal seeds give equal inputs.
+    pub fn new(seed: u64) -> Self {
+        Self {
+            rng: Xoshiro256PlusPlus::seed_from_u64(seed),
+            clock: 0,
+            mood: Mood::default(),
+            direct_duty: 0,
+        }
+    }
+
+    fn new_mood(&mut self) {
+        let rng = &mut self.rng;
+        let states = [State::Ready, State::Ready, State::Ready, State::Hold, State::Run].map(|state| state as u64);
+        let any_state = rng.random_range(0..8);
+        let state = *pick(rng, &[states[0], states[1], states[2], states[3], states[4], any_state]);
+        let on = matches!(
+            State::from_value(state),
+            Some(State::Hold | State::Run | State::QuickStop)
+        );
+        // Now and then what no supervisor says.
+        let outputs = [(); 3].map(|()| on != (rng.random_range(0..12) == 0));
+        let size = rng.random_range(0..=16);
+        let any_limit: i64 = rng.random_range(0..=65_535);
+        self.mood = Mood {
+            state,
+            outputs,
+            tick_pace: *pick(rng, &[1, 2, 7, 20]),
+            kick_pace: *pick(rng, &[3, 10, 30, 100]),
+            line_pace: *pick(rng, &[2, 20, 100_000, 100_000]),
+            hold_ticks: *pick(rng, &[0, 1, 2, 3, 5, 20, 65_535]),
+            limit: *pick(rng, &[0, 65_535, any_limit, any_limit >> size]),
+        };
+    }
+
+    /// Manual duties of all sizes, at the limits and an LSB beyond.
+    fn new_direct_duty(&mut self) {
+        let rng = &mut self.rng;
+        let any: i64 = rng.random_range(-65_536..=65_535);
+        let about = self.mood.limit + rng.random_range(-1..=2);
+        let small = any >> rng.random_range(0..17);
+        self.direct_duty = *pick(rng, &[any, small, small, about, -about, 0, -65_536, 65_535]);
+    }
+}
+
+impl Stimuli for DriveCommandRandom {
+    fn fill(&mut self, _seen: &[u64], inputs: &mut [u64]) {
+        let Ok(inputs) = <&mut [u64; INPUT_PORTS]>::try_from(inputs) else {
+            return;
+        };
+        if self.clock.is_multiple_of(MOOD_CLOCKS) {
+            self.new_mood();
+        }
+        if self.rng.random_range(0..20) == 0 {
+            self.new_direct_duty();
+        }
+        let mood = self.mood;
+        let rng = &mut self.rng;
+        let any: i64 = rng.random_range(-131_072..=131_071);
+        let about_the_end = rng.random_range(65_534..=65_537);
+        let small = any >> rng.random_range(0..18);
+        let controller_duty = *pick(rng, &[any, small, about_the_end, -about_the_end]);
+        let mut once_in = |pace: u32| rng.random_range(0..pace) == 0;
+        let state = if once_in(200) { self.clock % 8 } else { mood.state };
+        let [pwm, drive, brake] = mood.outputs.map(|output| output != once_in(500));
+        let lines = [(); 4].map(|()| u64::from(!once_in(mood.line_pace)));
+        *inputs = [
+            u64::from(self.clock < 2 || once_in(1000)),
+            u64::from(once_in(mood.tick_pace)),
+            controller_duty as u64,
+            u64::from(once_in(6)),
+            state,
+            u64::from(pwm),
+            u64::from(drive),
+            u64::from(brake),
+            lines[0],
+            lines[1],
+            lines[2],
+            lines[3],
+            u64::from(!once_in(300)),
+            u64::from(once_in(mood.kick_pace)),
+            mood.hold_ticks,
+            self.direct_duty as u64,
+            mood.limit as u64,
+        ];
+        self.clock += 1;
+    }
+}
+
+/// What is counted.
+const NAMES: [&str; 16] = [
+    "resets",
+    "clocks off",
+    "duties of the controller",
+    "duties of the controller saturated at the upper end",
+    "duties of the controller saturated at the lower end",
+    "direct mode begun",
+    "manual duties at the limit, positive",
+    "manual duties at the limit, negative",
+    "manual duties below the limit",
+    "manual duties that turn",
+    "limit switch + on the way",
+    "limit switch - on the way",
+    "direct mode expired",
+    "direct mode ended by READY left",
+    "direct mode ended by direct_enable",
+    "direct mode ended, the supervisor on",
+];
+
+/// How often things happened in a lock step of the drive command.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct DriveCommandCoverage {
+    counts: [u64; NAMES.len()],
+    /// The clock before: inputs and outputs.
+    before: Option<([u64; INPUT_PORTS], [u64; OUTPUT_PORTS])>,
+}
+
+impl DriveCommandCoverage {
+    /// Adds a clock.
+    pub fn observe(&mut self, clock: &Clock<'_>) {
+        let (Ok(inputs), Ok(shown)) = (clock.inputs.try_into(), clock.expected.try_into()) else {
+            return;
+        };
+        if let Some((inputs, before)) = self.before.replace((inputs, shown)) {
+            let seen = Self::seen(&inputs, &before, &shown);
+            for (count, seen) in self.counts.iter_mut().zip(seen) {
+                *count += u64::from(seen);
+            }
+        }
+    }
+
+    fn seen(
+        inputs: &[u64; INPUT_PORTS],
+        before: &[u64; OUTPUT_PORTS],
+        shown: &[u64; OUTPUT_PORTS],
+    ) -> [bool; NAMES.len()] {
+        let &[rst, tick, .., plus_ok, minus_ok, enable, _, _, _, limit] = inputs;
+        let [controller_valid, state] = [inputs[3], inputs[4]].map(|value| value & 7);
+        let signed = |duty: u64| (duty << (64 - DUTY_BITS)) as i64 >> (64 - DUTY_BITS);
+        let (duty, duty_before) = (signed(shown[0]), signed(before[0]));
+        let [on, active, was_active] = [shown[2], shown[6], before[6]].map(|value| value == 1);
+        let running = rst == 0;
+        let controlled = running && on && !active && !was_active && controller_valid == 1;
+        let manual = running && active && was_active && tick == 1;
+        let held = running && active && was_active && tick == 0;
+        let limit = limit as i64;
+        let ended = running && was_active && !active;
+        [
+            !running,
+            running && !on,
+            controlled,
+            controlled && duty == 65_535,
+            controlled && duty == -65_536,
+            running && active && !was_active,
+            manual && duty == limit && limit > 0,
+            manual && duty == -limit && limit > 0,
+            manual && duty != 0 && duty.abs() < limit,
+            manual && duty_before != 0 && duty == 0 && plus_ok == 1 && minus_ok == 1 && limit > 0,
+            held && duty_before > 0 && duty == 0 && plus_ok == 0,
+            held && duty_before < 0 && duty == 0 && minus_ok == 0,
+            shown[7] == 1,
+            ended && state != State::Ready as u64,
+            ended && state == State::Ready as u64 && enable == 0,
+            ended && on,
+        ]
+    }
+
+    /// What happened how often.
+    pub fn counts(&self) -> [(&'static str, u64); NAMES.len()] {
+        std::array::from_fn(|bin| (NAMES[bin], self.counts[bin]))
+    }
+}
