@@ -27,8 +27,8 @@ pub(crate) fn words(machine: &Machine, design: &MachineDesign, path: Option<&Pat
         };
         let (bits, fraction) = (machine.fixed_point.command_bits, machine.fixed_point.command_fraction);
         let of_positions = match axis.modulo {
-            true => modulo_words(&positions, axis.counts_per_unit, bits, fraction, &tables.table),
-            false => command_words(&positions, axis.counts_per_unit, bits, fraction),
+            true => modulo_words(&positions, axis.loop_counts_per_unit(), bits, fraction, &tables.table),
+            false => command_words(&positions, axis.loop_counts_per_unit(), bits, fraction),
         };
         words.push(of_positions.map_err(|e| of_axis(axis, e))?);
     }

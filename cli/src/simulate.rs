@@ -86,7 +86,7 @@ pub(crate) fn simulate(
 
 /// Micrometres (or microradians) per LSB of an axis's command word.
 pub(crate) fn micro_units_per_lsb(machine: &Machine, axis: &Axis) -> f64 {
-    1e6 / (axis.counts_per_unit * f64::from(machine.fixed_point.command_fraction).exp2())
+    1e6 / (axis.loop_counts_per_unit() * f64::from(machine.fixed_point.command_fraction).exp2())
 }
 
 fn write_wave(machine: &Machine, words: &Words, axes: &[AxisSimulation], path: &Path) -> Result<(), Failure> {

@@ -3,7 +3,7 @@
 
 use posicast_model::control::{Supervision, SupervisionError, supervision};
 use posicast_model::motion::TickLimits;
-use posicast_model::spec::{self, Machine};
+use posicast_model::spec::{self, Machine, ScaleUse};
 use proptest::prelude::*;
 
 const TORQUE: &str = "mode = \"torque\"\nequivalent_mass = 64.274\nforce_constant = 475.01\ncurrent_limit_a = 2.73\n\
@@ -78,8 +78,7 @@ fn golden_words_worked_out_by_hand() {
         soft_limit_minus: -25_600_000,
         // 1000 counts of 65536.
         following_error_limit: 65_536_000,
-        // 50 counts of 256.
-        deviation_limit: 12_800,
+        deviation_limit: 50,
         saturation_ticks: 3000,
         // Half of 3000 mA, times 4096.
         lost_command: 6_144_000,
@@ -106,6 +105,12 @@ fn golden_words_worked_out_by_hand() {
     // A velocity drive: half of 500 mm/s.
     let velocity = of(&machine("", VELOCITY, limits)).unwrap();
     assert_eq!(velocity.lost_command, 1_024_000);
+    // With the scale's position ten times as many counts; the test signal's word then ends at 25.6 µm.
+    let mut scale = machine("", TORQUE, limits);
+    scale.axes[0].scale.as_mut().unwrap().usage = ScaleUse::Position;
+    let scale = of(&scale).unwrap();
+    assert_eq!((scale.deviation_limit, scale.following_error_limit), (500, 655_360_000));
+    assert_eq!((scale.soft_limit_plus, scale.excitation_limit), (256_000_000, 25_600));
     // Nothing stops at the travel of an axis that turns on.
     let modulo = of(&machine("modulo = true", TORQUE, limits)).unwrap();
     assert_eq!((modulo.soft_limit_plus, modulo.soft_limit_minus), (0, 0));
@@ -128,6 +133,13 @@ fn unit_what_does_not_fit_names_its_key_and_the_range() {
     let counts = "m; allowed: 0.0000000000152588 to 0.0327679 m, which are counts in a word of 32 bits";
     range("following_error", "0.04", counts);
     range("following_error", "0.000000000001", counts);
+    range(
+        "deviation",
+        "0.0000009",
+        "m; allowed: 0.000001 to 2147.48 m, which are counts in a word of 32 bits",
+    );
+    let amplitude = "m; allowed: 0.00000000390625 to 0.000255996 m, which are less than 256 counts";
+    range("excitation", "0.000256", amplitude);
     let ticks = "s; allowed: 0.0001 to 6.5535 s, which are ticks of 16 bits";
     for key in ["saturation_s", "encoder_lost_s", "watchdog_s", "direct_hold_s"] {
         range(key, "6.6", ticks);
@@ -221,7 +233,7 @@ proptest! {
                 let [low, high] = limits.travel.unwrap_or([0.0; 2]).map(|m| m * counts_per_unit * 256.0);
                 let holds = match which {
                     0 => below(words.following_error_limit.into(), value(0) * counts_per_unit * 65536.0),
-                    1 => below(words.deviation_limit.into(), value(1) * counts_per_unit * 256.0),
+                    1 => below(words.deviation_limit.into(), value(1) * counts_per_unit),
                     2 => below(words.saturation_ticks.into(), limits.saturation_s * sample_hz),
                     3 => below(
                         words.stop_deceleration.into(),

@@ -6,7 +6,7 @@
 use std::fmt;
 
 use crate::rtl::sliding_mode::Row;
-use crate::spec::{Axis, Clock, Controller, DriveMode};
+use crate::spec::{Axis, Clock, Controller, DriveMode, ScaleUse};
 
 /// A number of the machine file that makes a gain too large or too small.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -63,7 +63,11 @@ impl Numbers<'_> {
 
     /// Keys, values and usual values that the gain of `row` is made of.
     fn made_of(&self, row: Row) -> Vec<(&'static str, Option<f64>, f64)> {
-        let counts = ("axis.counts_per_unit", Some(self.axis.counts_per_unit), 1e6);
+        let key = match self.axis.scale {
+            Some(scale) if scale.usage == ScaleUse::Position => "axis.scale.counts_per_unit",
+            _ => "axis.counts_per_unit",
+        };
+        let counts = (key, Some(self.axis.loop_counts_per_unit()), 1e6);
         let mut numbers = match row {
             Row::Limit | Row::Duty | Row::Viscous | Row::Coulomb => Vec::new(),
             _ => vec![counts],

@@ -48,7 +48,7 @@ pub fn loop_lag_s(drive: &Drive, schedule_delay_s: f64) -> f64 {
 struct Units {
     /// T in s.
     tick_s: f64,
-    /// q: m per count.
+    /// q: m per count of the loop.
     count: f64,
 }
 
@@ -89,7 +89,7 @@ pub fn gains(axis: &Axis, clock: Clock, lag_s: f64) -> Result<Derived, ControlEr
     let pwm = axis.pwm.as_ref().ok_or_else(|| missing("pwm"))?;
     let units = Units {
         tick_s: clock.sample_period_s(),
-        count: 1.0 / axis.counts_per_unit,
+        count: 1.0 / axis.loop_counts_per_unit(),
     };
     let law = match controller {
         Controller::SlidingMode { .. } => Law::SlidingMode,

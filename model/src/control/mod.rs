@@ -25,6 +25,7 @@ mod law;
 mod schedule;
 mod stage;
 mod supervision;
+mod supervision_error;
 
 pub use conditions::ControlWarning;
 pub use culprit::Culprit;
@@ -32,7 +33,8 @@ pub use derive::{Derived, gains, loop_lag_s};
 pub use law::{COMMAND_FRACTION, FloatController, Gains, Response, Tracking};
 pub use schedule::{CAPTURE_CLOCKS, Schedule, ScheduleError, schedule_delay_s};
 pub use stage::{MachineStage, MachineStageError, pwm_config, pwm_mode, stage};
-pub use supervision::{Supervision, SupervisionError, supervision};
+pub use supervision::{Supervision, supervision};
+pub use supervision_error::SupervisionError;
 
 use crate::rtl::sliding_mode::{GainError, Row};
 

@@ -3,8 +3,8 @@
 //! | key of `[axis.limits]` | word | unit of its LSB | rounded | left out |
 //! |---|---|---|---|---|
 //! | `travel` | soft limits, i32 | 2^−8 counts | inwards | 0, 0: none |
-//! | `following_error` | u32 | 2^−16 counts | down | 0: not watched |
-//! | `deviation` | u32 | 2^−8 counts | down | 0: not watched |
+//! | `following_error` | u32 | 2^−16 counts | down, at least 1 | 0: not watched |
+//! | `deviation` | u32 | counts | down, at least 1 | 0: not watched |
 //! | `saturation_s`, `encoder_lost_s`, `watchdog_s` | u16 | ticks | down, at least 1 | 0: not watched |
 //! | `encoder_lost_command` | u32 | 2^−12 command units | down | 0.5 of full scale; 0 without `encoder_lost_s` |
 //! | `brake_release_s`, `brake_apply_s` | u16 | ticks | up | 0 |
@@ -12,11 +12,13 @@
 //! | `stop_deceleration` | 31 bits | 2^−24 counts per tick² | down, at least 1 | `acceleration`; without it 0: at once |
 //! | `direct_duty` | u16 | clocks of the PWM | down | 0.1 of the period |
 //! | `direct_hold_s` | u16 | ticks | down, at least 1 | 0.2 s, or what fits |
-//! | `excitation` | u32 | 2^−8 counts | down, at least 1 | 4 counts |
+//! | `excitation` | u16 | 2^−8 counts | down, at least 1 | 4 counts |
 //!
 //! So no limit is looser than the file asks for, no brake gets less time, and no filter lets more through. What a word does
-//! not hold, above or below, is an error: nothing is clamped. "Counts" are those of the axis, `counts_per_unit`.
+//! not hold, above or below, is an error: nothing is clamped. "Counts" are those
+//! that the loop runs on, [`Axis::loop_counts_per_unit`].
 
+use super::supervision_error::SupervisionError;
 use crate::control::derive::full_scale;
 use crate::control::law::COMMAND_FRACTION;
 use crate::rtl::segments::{ACCELERATION_FRACTION, POSITION_FRACTION};
@@ -33,7 +35,7 @@ const FILTER_CLOCKS_MAX: u32 = 63;
 /// How long a manual duty stands, where the file does not say.
 const DEFAULT_DIRECT_HOLD_S: f64 = 0.2;
 /// Largest amplitude of test signals where the file does not say, in counts.
-const DEFAULT_EXCITATION_COUNTS: u32 = 4;
+const DEFAULT_EXCITATION_COUNTS: u16 = 4;
 /// Relative rounding of decimals such as `0.3`, which binary fractions only come near.
 const DECIMALS: f64 = 1e-9;
 
@@ -55,7 +57,7 @@ pub struct Supervision {
     pub soft_limit_minus: i32,
     /// Q16.16 counts; 0: not watched.
     pub following_error_limit: u32,
-    /// Q24.8 counts of the axis; 0: not watched.
+    /// Counts of the loop; 0: not watched.
     pub deviation_limit: u32,
     /// Ticks in a row; 0: not watched.
     pub saturation_ticks: u16,
@@ -73,8 +75,8 @@ pub struct Supervision {
     pub direct_limit: u16,
     /// Ticks that a manual duty stands.
     pub direct_hold_ticks: u16,
-    /// Largest amplitude of test signals, Q24.8 counts.
-    pub excitation_limit: u32,
+    /// Largest amplitude of test signals, Q8.8 counts.
+    pub excitation_limit: u16,
 }
 
 impl Supervision {
@@ -99,60 +101,6 @@ impl Supervision {
             ("direct_hold_ticks", self.direct_hold_ticks.into()),
             ("excitation_limit", self.excitation_limit.into()),
         ]
-    }
-}
-
-/// Why an axis has no words for its supervisor.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum SupervisionError {
-    /// A table is missing.
-    #[error("axis {axis} has no [axis.{table}]: a supervised axis has a controller and what that needs; add it")]
-    Missing {
-        /// The axis.
-        axis: String,
-        /// The table.
-        table: &'static str,
-    },
-    /// A value that its word does not hold.
-    #[error("axis {axis}: found {found} {unit}; allowed: {smallest} to {largest} {unit}, {reason}")]
-    Range {
-        /// The axis.
-        axis: String,
-        /// Dotted key.
-        key: &'static str,
-        /// The value found.
-        found: f64,
-        /// Its unit.
-        unit: &'static str,
-        /// Smallest value that the word holds.
-        smallest: f64,
-        /// Largest value that it holds.
-        largest: f64,
-        /// What sets the range.
-        reason: &'static str,
-    },
-    /// A travel of which rounding inwards leaves nothing, or limits of 0, which mean that there are none.
-    #[error("axis {axis}: found a travel from {low} to {high} m; allowed: one that is wider than a count, {count} m")]
-    Travel {
-        /// The axis.
-        axis: String,
-        /// Lower end.
-        low: f64,
-        /// Upper end.
-        high: f64,
-        /// Metres per count.
-        count: f64,
-    },
-}
-
-impl SupervisionError {
-    /// The key of the machine file that is to blame, dotted: `axis.limits.following_error`, for example.
-    pub fn key(&self) -> &'static str {
-        match self {
-            Self::Missing { .. } => "axis.limits",
-            Self::Range { key, .. } => key,
-            Self::Travel { .. } => "axis.limits.travel",
-        }
     }
 }
 
@@ -181,8 +129,12 @@ pub fn supervision(axis: &Axis, clock: &Clock, longest_delay_samples: u32) -> Re
         settle_ticks: words.settle_ticks(longest_delay_samples)?,
         soft_limit_plus,
         soft_limit_minus,
-        following_error_limit: words.distance("axis.limits.following_error", limits.following_error, ERROR_FRACTION)?,
-        deviation_limit: words.distance("axis.limits.deviation", limits.deviation, POSITION_FRACTION)?,
+        following_error_limit: words.error_limit(
+            "axis.limits.following_error",
+            limits.following_error,
+            ERROR_FRACTION,
+        )?,
+        deviation_limit: words.error_limit("axis.limits.deviation", limits.deviation, 0)?,
         saturation_ticks: words.ticks_down("axis.limits.saturation_s", limits.saturation_s)?,
         lost_command: words.lost_command()?,
         lost_ticks: words.ticks_down("axis.limits.encoder_lost_s", limits.encoder_lost_s)?,
@@ -283,7 +235,7 @@ impl Words<'_> {
         let Some([low, high]) = self.limits.travel.filter(|_| !self.axis.modulo) else {
             return Ok([0, 0]);
         };
-        let scale = self.axis.counts_per_unit * f64::from(1u32 << POSITION_FRACTION);
+        let scale = self.axis.loop_counts_per_unit() * f64::from(1u32 << POSITION_FRACTION);
         let largest = f64::from(SIZE_MAX);
         let words = [up(low * scale), down(high * scale)];
         for (found, word) in [low, high].into_iter().zip(words) {
@@ -305,25 +257,34 @@ impl Words<'_> {
                 axis: self.axis.name.clone(),
                 low,
                 high,
-                count: 1.0 / self.axis.counts_per_unit,
+                count: 1.0 / self.axis.loop_counts_per_unit(),
             });
         }
         Ok([minus, plus])
     }
 
-    /// A distance in counts with `fraction` fraction bits; 0 where the file has none.
-    fn distance(&self, key: &'static str, found: Option<f64>, fraction: u32) -> Result<u32, SupervisionError> {
-        let Some(found) = found else {
-            return Ok(0);
-        };
+    /// A limit in counts with `fraction` fraction bits; 0 where the file has none.
+    fn error_limit(&self, key: &'static str, found: Option<f64>, fraction: u32) -> Result<u32, SupervisionError> {
+        let reason = "which are counts in a word of 32 bits";
+        found.map_or(Ok(0), |found| self.distance(key, found, fraction, SIZE_MAX, reason))
+    }
+
+    /// A distance in counts with `fraction` fraction bits, at least one LSB.
+    fn distance(
+        &self,
+        key: &'static str,
+        found: f64,
+        fraction: u32,
+        largest: u32,
+        reason: &'static str,
+    ) -> Result<u32, SupervisionError> {
         let value = Value {
             key,
             found,
             unit: "m",
-            scale: self.axis.counts_per_unit * f64::from(1u32 << fraction),
+            scale: self.axis.loop_counts_per_unit() * f64::from(1u32 << fraction),
         };
-        let reason = "which are counts in a word of 32 bits";
-        self.fitting(&value, down(found * value.scale), [1, SIZE_MAX], reason)
+        self.fitting(&value, down(found * value.scale), [1, largest], reason)
     }
 
     fn lost_command(&self) -> Result<u32, SupervisionError> {
@@ -368,7 +329,7 @@ impl Words<'_> {
             (None, Some(found)) => ("axis.limits.acceleration", found),
             (None, None) => return Ok(0),
         };
-        let per_tick = self.axis.counts_per_unit / self.clock.sample_hz.powi(2);
+        let per_tick = self.axis.loop_counts_per_unit() / self.clock.sample_hz.powi(2);
         let value = Value {
             key,
             found,
@@ -392,11 +353,13 @@ impl Words<'_> {
         }
     }
 
-    fn excitation_limit(&self) -> Result<u32, SupervisionError> {
-        match self.limits.excitation {
-            Some(_) => self.distance("axis.limits.excitation", self.limits.excitation, POSITION_FRACTION),
-            None => Ok(DEFAULT_EXCITATION_COUNTS << POSITION_FRACTION),
-        }
+    fn excitation_limit(&self) -> Result<u16, SupervisionError> {
+        let Some(found) = self.limits.excitation else {
+            return Ok(DEFAULT_EXCITATION_COUNTS << POSITION_FRACTION);
+        };
+        let (key, reason) = ("axis.limits.excitation", "which are less than 256 counts");
+        self.distance(key, found, POSITION_FRACTION, u16::MAX.into(), reason)
+            .map(|word| word as u16)
     }
 }
 

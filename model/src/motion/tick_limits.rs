@@ -27,6 +27,12 @@ impl TickLimits {
     /// Of an axis: those of its file, else 0.25 m/s, 8 m/s², 400 m/s³.
     pub fn of_axis(axis: &Axis, clock: &Clock) -> Self {
         let [velocity, acceleration, jerk] = motion_limits(axis.limits.as_ref());
-        Self::new(velocity, acceleration, jerk, axis.counts_per_unit, clock.sample_hz)
+        Self::new(
+            velocity,
+            acceleration,
+            jerk,
+            axis.loop_counts_per_unit(),
+            clock.sample_hz,
+        )
     }
 }

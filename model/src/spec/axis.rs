@@ -2,7 +2,9 @@
 
 use super::range::NumberRange;
 use super::table::Table;
-use super::{Axis, AxisMode, Clock, FixedPoint, controller, drive, encoder, limits, pwm, scale, shaper, trace};
+use super::{
+    Axis, AxisMode, Clock, FixedPoint, ScaleUse, controller, drive, encoder, limits, pwm, scale, shaper, trace,
+};
 use crate::mode::Mode;
 use crate::rtl::shaper::MOTION_WORD_BITS;
 
@@ -49,15 +51,19 @@ pub(super) fn read(
         shaper::check(table, choice.as_ref().and_then(Option::as_ref), modes);
     }
     let modulo = read_modulo(table, fixed_point);
-    // The position of a modulo axis wraps: any travel fits.
-    let word = counts_per_unit.zip(fixed_point).filter(|_| !modulo);
-    let limits = table.table("limits").map(|t| limits::read(table, &t, word));
     let encoder = table.table("encoder").map(|t| encoder::read(&t));
     let pwm = table.table("pwm").map(|t| pwm::read(&t, clock));
     let drive = table.table("drive").map(|t| drive::read(&t));
     let controller = table.table("controller").map(|t| controller::read(&t));
     let scale = table.table("scale").map(|t| scale::read(table, &t));
     let trace = table.table("trace").map(|t| trace::read(&t));
+    let loop_counts_per_unit = match scale {
+        Some(Some(scale)) if scale.usage == ScaleUse::Position => Some(scale.counts_per_unit),
+        _ => counts_per_unit,
+    };
+    // The position of a modulo axis wraps: any travel fits.
+    let word = loop_counts_per_unit.zip(fixed_point).filter(|_| !modulo);
+    let limits = table.table("limits").map(|t| limits::read(table, &t, word));
     check_needs(table);
     let shaper = match choice {
         Some(choice) => Some(choice?.1),

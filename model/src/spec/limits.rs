@@ -147,7 +147,7 @@ const SUPERVISED: [&str; 14] = [
     "excitation",
 ];
 
-/// Reads the limits of an axis; `word` is counts per unit and the format that the travel must fit, where both are valid.
+/// Reads the limits of an axis; `word` is counts per unit of the loop and the format that the travel must fit, where both are valid.
 pub(super) fn read(axis: &Table<'_, '_>, table: &Table<'_, '_>, word: Option<(f64, FixedPoint)>) -> Limits {
     let keys: Vec<&str> = OF_MOVES.into_iter().chain(SUPERVISED).collect();
     table.allow(&keys);

@@ -209,6 +209,15 @@ pub(crate) const DEFAULT_CHEBYSHEV_ORDER: u32 = 3;
 const DEFAULT_VIBRATIONLESS_ORDER: u32 = 2;
 
 impl Axis {
+    /// Counts per metre (or radian) of the counter that the position loop runs on: commands, errors and distances of the
+    /// hardware are in its counts. The encoder's, or the scale's where that is the position.
+    pub fn loop_counts_per_unit(&self) -> f64 {
+        match self.scale {
+            Some(scale) if scale.usage == ScaleUse::Position => scale.counts_per_unit,
+            _ => self.counts_per_unit,
+        }
+    }
+
     /// The kind that treats all modes of this axis together, or `None` where each mode has a shaper of its own and the
     /// axis gets their convolution.
     pub fn joint_kind(&self) -> Option<Kind> {

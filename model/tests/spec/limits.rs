@@ -117,6 +117,21 @@ fn unit_causes_that_switch_off_are_words_of_a_list() {
 }
 
 #[test]
+fn unit_the_loop_counts_with_the_counter_that_it_runs_on() {
+    let counts = |text: &str| right(text).axes[0].loop_counts_per_unit();
+    assert_eq!(counts(EVERYTHING), 1e6);
+    let position = EVERYTHING.replace("\"monitor\"", "\"position\"");
+    assert_eq!(counts(&position), 10e6);
+    // ±0.1 m are a million counts of the scale, ±1 m too many.
+    let error = wrong(&position.replace("[-0.1, 0.1]", "[-1.0, 1.0]"));
+    assert!(
+        error.to_string().contains("a travel of up to 10000000 counts"),
+        "{error}"
+    );
+    right(&EVERYTHING.replace("[-0.1, 0.1]", "[-1.0, 1.0]"));
+}
+
+#[test]
 fn unit_what_needs_another_block_says_which() {
     let limits = |key: &str| wrong(&format!("{SMALL}[axis.limits]\n{key}\n"));
     let keys = [
