@@ -1,8 +1,8 @@
 //! An axis of the machine as the hardware feels it: PWM pins in, encoder pins out.
 //!
 //! ```text
-//! gates ─► mean over a cell ─► drive (first order) ─┬─ velocity ──────────────┬─► x ─► modes ─► load y
-//! drive_enable, brake_release ──────────────────────┘─ force ─► mass, friction┘   │               │
+//! gates ─► mean of a PWM period ─► drive (first order) ─┬─ velocity ───────────────┬─► x ─► modes ─► load y
+//! drive_enable, brake_release ───────────────────────── └─ force ─► mass, friction ┘   │               │
 //!                                        A, B, index ◄── encoder ◄── velocity drive: x; torque drive: y
 //!                                        A, B        ◄── scale   ◄───────────────────────────── y
 //! ```
@@ -16,8 +16,9 @@
 //!
 //! Vibration is measured at the load, always. `docs/plant.md` has the reasons, and what is idealised.
 //!
-//! **Time** is clocks. A grid of [`AxisPlant::cell_clocks`] divides it; the pins are averaged over a cell, which then
-//! is integrated exactly, and the encoder plays its way during the next cell. How a time is cut into calls changes nothing:
+//! **Time** is clocks. A grid of [`AxisPlant::cell_clocks`] divides it; at the end of a cell the drive gets the mean of the pins
+//! over the last period of the PWM, the cell is integrated exactly, and the encoder plays its way during the next cell. How a
+//! time is cut into calls changes nothing:
 //! 5,000 calls with a clock each and one call with 5,000 give the same edges, bit for bit.
 //!
 //! ```
@@ -44,9 +45,10 @@
 //! let mut plant = AxisPlant::new(&machine.axes[0], &machine.clock, &PlantOptions::default())?;
 //! let forward = DrivePins { a_high: true, b_low: true, drive_enable: true, brake_release: true, ..DrivePins::default() };
 //! plant.clocks(forward, 50_000);
-//! assert!((plant.motion().load - 0.5e-3).abs() < 1e-12);
+//! // A millisecond at 0.5 m/s, less half a period of 50 µs in which the mean grows.
+//! assert!((plant.motion().load - 0.5 * (1e-3 - 24e-6)).abs() < 1e-12);
 //! // The encoder is a cell behind, and a count is a micrometre.
-//! assert_eq!(plant.count(), 499);
+//! assert_eq!(plant.count(), 487);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
@@ -68,7 +70,7 @@ use self::pins::PinMean;
 use super::{Plant, PlantError};
 use crate::spec::{Axis, Clock, Drive, DriveMode};
 
-/// Longest cell of the grid, s: a hundredth of the shortest period that is looked at, and little beside a tick.
+/// Longest cell of the grid, s: little beside a tick and beside the period of any mode.
 const CELL_S: f64 = 2e-6;
 /// Positions up to here are exact to a small part of a count.
 const COUNTS_MAX: f64 = (1u64 << 40) as f64;
@@ -172,7 +174,7 @@ pub struct AxisMotion {
     /// Sum of the amplitudes with which the modes ring: if the driven coordinate keeps its velocity, the load is never
     /// farther from where it would be without ringing.
     pub vibration: f64,
-    /// Mean command of the pins in the cell, part of full scale, −1 to 1.
+    /// Mean command of the pins in the last period of the PWM, part of full scale, −1 to 1.
     pub command: f64,
     /// What the drive gives: current in A, or velocity per s.
     pub drive: f64,
@@ -213,7 +215,8 @@ impl AxisPlant {
             check(axis, drive, clock, counts_per_unit, options.position)?;
         }
         let plant = Plant::of_axis(axis).map_err(|source| AxisPlantError::Modes { axis: name(), source })?;
-        let cell_clocks = (clock.frequency_hz * CELL_S).clamp(1.0, f64::from(u16::MAX)) as u32;
+        let period_clocks = pwm.period_clocks(clock).max(1);
+        let cell_clocks = cell_clocks(clock, period_clocks);
         let cell_s = f64::from(cell_clocks) / clock.frequency_hz;
         let stiff = matches!(drive.mode, DriveMode::Velocity { .. });
         let encoder =
@@ -223,7 +226,7 @@ impl AxisPlant {
             cell_clocks,
             cell_s,
             passed: 0,
-            pins: PinMean::new(pwm.mode, pwm.active_low),
+            pins: PinMean::new(pwm.mode, pwm.active_low, cell_clocks, period_clocks / cell_clocks),
             command: 0.0,
             driven: Driven::new(drive, cell_s, options.position),
             modes: LoadModes::new(&plant.scaled(factor), cell_s, stiff),
@@ -237,7 +240,7 @@ impl AxisPlant {
         })
     }
 
-    /// Clocks of a cell: about 2 µs, at least one clock.
+    /// Clocks of a cell: the largest part of a PWM period that divides it and lasts at most 2 µs.
     pub fn cell_clocks(&self) -> u32 {
         self.cell_clocks
     }
@@ -262,7 +265,7 @@ impl AxisPlant {
     }
 
     fn end_cell(&mut self) {
-        let command = self.pins.take(self.cell_clocks);
+        let command = self.pins.take();
         let before = self.driven.position;
         self.driven.cell(&command);
         self.modes.cell((self.driven.position - before) / self.cell_s);
@@ -328,6 +331,13 @@ impl AxisPlant {
     pub fn shorted_clocks(&self) -> u64 {
         self.pins.shorted()
     }
+}
+
+/// The longest cell that divides a period of the PWM.
+fn cell_clocks(clock: &Clock, period_clocks: u32) -> u32 {
+    let longest = ((clock.frequency_hz * CELL_S) as u32).clamp(1, period_clocks);
+    let divides = |cell: &u32| period_clocks.is_multiple_of(*cell);
+    (1..=longest).rev().find(divides).unwrap_or(1)
 }
 
 /// Whether an encoder of so many counts per unit can follow.

@@ -1,4 +1,7 @@
-//! From gate pins to the drive's command: what the levels mean in each mode, and their mean over a cell of the grid.
+//! From gate pins to the drive's command: what the levels mean in each mode, and their mean over a period of the PWM.
+//!
+//! A drive smooths its command, or its answer would move by micrometres in each pulse. It is taken as the mean of the last
+//! period, which has no ripple whatever the duty and the phase are, and is half a period late.
 
 use crate::spec::PwmMode;
 
@@ -45,7 +48,7 @@ impl DrivePins {
 /// What a cell of the grid asks for.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Command {
-    /// Mean command, part of full scale, −1 to 1.
+    /// Mean command of the last period, part of full scale, −1 to 1.
     pub(super) share: f64,
     /// The drive was enabled in every clock.
     pub(super) enabled: bool,
@@ -53,11 +56,17 @@ pub(super) struct Command {
     pub(super) released: bool,
 }
 
-/// Sums of the pins over a cell: integers, so that it does not matter how a time is cut into calls.
+/// Sums of the pins over the cells of a period: integers, so that it does not matter how a time is cut into calls.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct PinMean {
     mode: PwmMode,
     active_low: bool,
+    cell_clocks: u32,
+    /// Of the cells before this one, the oldest at `oldest`; all of a period together.
+    cells: Vec<i64>,
+    oldest: usize,
+    period: i64,
+    /// Of this cell.
     command: i64,
     enabled: i64,
     released: i64,
@@ -65,10 +74,15 @@ pub(super) struct PinMean {
 }
 
 impl PinMean {
-    pub(super) fn new(mode: PwmMode, active_low: bool) -> Self {
+    /// Nothing was asked for before now. A period is `cells` cells of so many clocks.
+    pub(super) fn new(mode: PwmMode, active_low: bool, cell_clocks: u32, cells: u32) -> Self {
         Self {
             mode,
             active_low,
+            cell_clocks,
+            cells: vec![0; cells as usize],
+            oldest: 0,
+            period: 0,
             command: 0,
             enabled: 0,
             released: 0,
@@ -87,11 +101,13 @@ impl PinMean {
         }
     }
 
-    /// Ends a cell of so many clocks.
-    pub(super) fn take(&mut self, clocks: u32) -> Command {
-        let all = i64::from(clocks);
+    /// Ends a cell.
+    pub(super) fn take(&mut self) -> Command {
+        let all = i64::from(self.cell_clocks);
+        self.period += self.command - std::mem::replace(&mut self.cells[self.oldest], self.command);
+        self.oldest = (self.oldest + 1) % self.cells.len();
         let command = Command {
-            share: self.command as f64 / all as f64,
+            share: self.period as f64 / (all * self.cells.len() as i64) as f64,
             enabled: self.enabled == all,
             released: self.released == all,
         };
@@ -110,7 +126,7 @@ mod tests {
     use super::*;
     use crate::rtl::pwm::{ActiveLow, Inputs, Pwm, PwmConfig};
 
-    /// Mean command of the PWM's own pins over 20 periods, after 20 to settle.
+    /// Mean command of the PWM's own pins, cell by cell over 20 periods, after 20 to settle.
     fn of_pwm(mode: PwmMode, register: u8, duty: i32, active_low: bool) -> f64 {
         let all = ActiveLow {
             a_high: active_low,
@@ -132,8 +148,9 @@ mod tests {
             ..Inputs::default()
         };
         pwm.hold(&inputs, 20_000);
-        let mut mean = PinMean::new(mode, active_low);
-        for _ in 0..20_000 {
+        let mut mean = PinMean::new(mode, active_low, 100, 10);
+        let mut shares = vec![];
+        for clock in 1..=20_000 {
             let shown = pwm.step(&inputs);
             let pins = DrivePins {
                 a_high: shown.a_high,
@@ -144,11 +161,16 @@ mod tests {
                 brake_release: true,
             };
             mean.add(&pins, 1);
+            if clock % 100 == 0 {
+                let command = mean.take();
+                assert!(command.enabled && command.released);
+                shares.push(command.share);
+            }
         }
         assert_eq!(mean.shorted(), 0);
-        let command = mean.take(20_000);
-        assert!(command.enabled && command.released);
-        command.share
+        // Once a period is over there is no ripple.
+        assert!(shares[10..].iter().all(|share| *share == shares[10]));
+        shares[10]
     }
 
     #[test]
@@ -171,7 +193,7 @@ mod tests {
 
     #[test]
     fn unit_two_sides_of_a_leg_are_a_short() {
-        let mut mean = PinMean::new(PwmMode::FullBridge, false);
+        let mut mean = PinMean::new(PwmMode::FullBridge, false, 10, 1);
         let leg = DrivePins {
             b_high: true,
             b_low: true,
@@ -179,6 +201,6 @@ mod tests {
         };
         mean.add(&leg, 7);
         mean.add(&DrivePins::default(), 3);
-        assert_eq!((mean.shorted(), mean.take(10).share), (7, 0.0));
+        assert_eq!((mean.shorted(), mean.take().share), (7, 0.0));
     }
 }

@@ -61,6 +61,17 @@ fn golden_a_short_move_overshoots_as_a_step_does() {
     assert!((highest / 5e-6 - 1.0 - 0.60530).abs() < 1e-4, "{highest}");
 }
 
+/// A change of the velocity as the mean of a period makes it, in 25 cells.
+fn staircase((start_s, velocity): (f64, f64)) -> impl Iterator<Item = Jump> {
+    (0..25).map(move |cell| Jump {
+        time_s: start_s + f64::from(cell) * 2e-6,
+        change: Cubic {
+            velocity: velocity / 25.0,
+            ..Cubic::default()
+        },
+    })
+}
+
 #[test]
 fn unit_the_load_is_that_of_the_plant_in_closed_form() {
     // 1.5 ms at full speed: a ramp and a stop, for any frequency factor.
@@ -72,7 +83,7 @@ fn unit_the_load_is_that_of_the_plant_in_closed_form() {
         let mut axis = plant(VELOCITY, GX, options);
         axis.clocks(full(true), 75_000);
         let ringing = axis.motion().vibration;
-        axis.clocks(stop(), 100);
+        axis.clocks(stop(), 2_500);
         let mut highest = axis.motion().load;
         let amplitude = axis.motion().vibration;
         assert!(ringing > 0.0);
@@ -80,14 +91,7 @@ fn unit_the_load_is_that_of_the_plant_in_closed_form() {
             axis.clocks(stop(), 100);
             highest = highest.max(axis.motion().load);
         }
-        let jump = |time_s, velocity| Jump {
-            time_s,
-            change: Cubic {
-                velocity,
-                ..Cubic::default()
-            },
-        };
-        let command = Trajectory::new(vec![jump(0.0, 0.5), jump(1.5e-3, -0.5)]);
+        let command = Trajectory::new([(0.0, 0.5), (1.5e-3, -0.5)].into_iter().flat_map(staircase).collect());
         let machine = machine(VELOCITY, GX);
         let closed = Plant::of_axis(&machine.axes[0]).unwrap().scaled(factor);
         let expected = response_figures(&closed, &command);
@@ -95,7 +99,7 @@ fn unit_the_load_is_that_of_the_plant_in_closed_form() {
             (highest / expected.highest - 1.0).abs() < 1e-6,
             "{factor}: {highest} {expected:?}"
         );
-        // Of the stop's instant, and 2 µs later.
+        // Of the last step's instant, and 2 µs later.
         let residual = expected.residual_displacement[0];
         assert!(
             (amplitude / residual - 1.0).abs() < 2e-3,
@@ -131,7 +135,12 @@ fn unit_a_torque_axis_with_a_mode_is_two_masses_on_a_spring() {
         axis.motion()
     };
     let found = reach(mode);
-    let force = |time_s: f64| 475.01 * if time_s < 2e-3 { 2.73 } else { -2.73 };
+    // The mean of the last 25 cells, of which the last ones turn.
+    let force = |time_s: f64| {
+        let cells = (time_s / 2e-6).floor() + 1.0;
+        let turned = (cells - 1000.0).clamp(0.0, 25.0);
+        475.01 * (3.0 * (cells.min(25.0) - 2.0 * turned) / 25.0).clamp(-2.73, 2.73)
+    };
     let expected = two_masses(force, 3e-3);
     assert!(
         (found.load - expected).abs() < 1e-4 * (found.load - found.position).abs(),

@@ -1,0 +1,232 @@
+//! An axis of an example, from entries of the command FIFO to the machine and back.
+
+use posicast_model::control::{Derived, Schedule, gains, loop_lag_s, schedule_delay_s};
+use posicast_model::design::design_machine;
+use posicast_model::design::kind::Kind;
+use posicast_model::plant::axis::{AxisMotion, AxisPlant, DrivePins, PlantOptions};
+use posicast_model::rtl::divider::{DIVISION_CLOCKS, DividerConfig};
+use posicast_model::rtl::pulse_counter::{self, PulseCounter};
+use posicast_model::rtl::pwm::{self, ActiveLow, Pwm, PwmConfig};
+use posicast_model::rtl::segments::{Entry, Integrator, Motion as Segment};
+use posicast_model::rtl::shaper::{Motion, MotionShaper, ShaperConfig};
+use posicast_model::rtl::sliding_mode::{self, TickController};
+use posicast_model::spec::{self, Machine, ShaperChoice};
+
+pub(crate) const VELOCITY: &str = include_str!("../../../examples/xy-stage.toml");
+pub(crate) const TORQUE: &str = include_str!("../../../examples/xy-stage-torque.toml");
+const TICK_CLOCKS: u32 = 5_000;
+const PERIOD_CLOCKS: i32 = 2_500;
+
+/// The machine of an example, with its shapers or without.
+pub(crate) fn machine(text: &str, shaped: bool) -> Machine {
+    let mut machine = spec::parse("example.toml", text).unwrap_or_else(|error| panic!("{error:?}"));
+    if !shaped {
+        for axis in &mut machine.axes {
+            axis.shaper = Some(ShaperChoice::of_kind(Kind::None));
+        }
+    }
+    machine
+}
+
+/// How closely the hardware is simulated.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Pace {
+    /// PWM and pulse counter clock by clock.
+    Clocks,
+    /// Ideal pulses, the plant's own count, and velocities by counts per tick.
+    Ticks,
+}
+
+/// What is written down at a tick.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Sample {
+    /// Shaped reference, counts.
+    pub(crate) reference: f64,
+    /// The unshaped command has ended.
+    pub(crate) ended: bool,
+    pub(crate) machine: AxisMotion,
+}
+
+/// The loop of an axis.
+pub(crate) struct Chain {
+    pace: Pace,
+    shaper: MotionShaper,
+    pub(crate) derived: Derived,
+    divider: DividerConfig,
+    control_clocks: u32,
+    controller: TickController,
+    pwm: Pwm,
+    pub(crate) pwm_inputs: pwm::Inputs,
+    pub(crate) counter: PulseCounter,
+    counter_inputs: pulse_counter::Inputs,
+    pub(crate) plant: AxisPlant,
+    /// Drive enabled, brake open.
+    pub(crate) powered: bool,
+    count_before: i64,
+    duty: i32,
+}
+
+impl Chain {
+    pub(crate) fn new(machine: &Machine, axis: usize, frequency_factor: f64, pace: Pace) -> Self {
+        let table = design_machine(machine).unwrap().axes[axis].table.clone();
+        let channels = Motion {
+            channels: 3,
+            modulo: false,
+        };
+        let shaper = ShaperConfig::new(32, table).unwrap().for_motion(channels).unwrap();
+        let (axis, clock) = (&machine.axes[axis], machine.clock);
+        let (pwm, drive) = (axis.pwm.unwrap(), axis.drive.unwrap());
+        let periods = (clock.clocks_per_sample(), pwm.period_clocks(&clock) as i32);
+        assert_eq!(periods, (TICK_CLOCKS, PERIOD_CLOCKS));
+        let schedule = Schedule::controlling(shaper.pass_clocks(shaper.most_products()));
+        let lag_s = loop_lag_s(&drive, schedule_delay_s(&clock, &pwm, &schedule));
+        let derived = gains(axis, clock, lag_s).unwrap();
+        assert_eq!(derived.warnings, []);
+        let (dead_time, minimum_pulse) = (pwm.dead_time_clocks(&clock), pwm.minimum_pulse_clocks(&clock));
+        let pins = PwmConfig::new(ActiveLow::default(), dead_time.into(), minimum_pulse.into()).unwrap();
+        let options = PlantOptions {
+            frequency_factor,
+            ..PlantOptions::default()
+        };
+        Self {
+            pace,
+            shaper: MotionShaper::new(&shaper),
+            derived,
+            divider: DividerConfig::new(TICK_CLOCKS.into()).unwrap(),
+            control_clocks: schedule.clocks(),
+            controller: TickController::default(),
+            pwm: Pwm::new(&pins),
+            pwm_inputs: pwm::Inputs {
+                mode: 3,
+                period: PERIOD_CLOCKS as u16,
+                max_duty: PERIOD_CLOCKS as u16,
+                dead_time: dead_time as u16,
+                minimum_pulse: minimum_pulse as u16,
+                fault_n: true,
+                pll_locked: true,
+                filtered_fault_n: 3,
+                clear_trip: true,
+                ..pwm::Inputs::default()
+            },
+            counter: PulseCounter::new(),
+            counter_inputs: pulse_counter::Inputs {
+                filter_clocks: axis.encoder.unwrap().filter_clocks as u8,
+                timeout: 4,
+                index_always: true,
+                ..pulse_counter::Inputs::default()
+            },
+            plant: AxisPlant::new(axis, &clock, &options).unwrap(),
+            powered: true,
+            count_before: 0,
+            duty: 0,
+        }
+    }
+
+    /// Plays entries from rest at 0, and so many ticks at their end.
+    pub(crate) fn play(&mut self, entries: &[Entry], settle_ticks: u32) -> Vec<Sample> {
+        let mut at = Integrator::default();
+        let ticks = entries
+            .iter()
+            .flat_map(|entry| (0..entry.ticks).map(|_| Some(entry.motion)));
+        let ticks = ticks.chain((0..settle_ticks).map(|_| None));
+        let samples = ticks.map(|segment| {
+            match segment {
+                Some(Segment::Jerk(jerk)) => at.jerk(jerk).unwrap(),
+                Some(Segment::Point(point)) => at = Integrator::at_point(&point),
+                None => {}
+            }
+            let shaped = self.shaper.push(at.rounded().map(i64::from)).map(|word| word as i32);
+            let machine = self.plant.motion();
+            match self.pace {
+                Pace::Clocks => self.tick_by_clocks(shaped),
+                Pace::Ticks => self.tick_at_once(shaped),
+            }
+            Sample {
+                reference: f64::from(shaped[0]) / 256.0,
+                ended: segment.is_none(),
+                machine,
+            }
+        });
+        samples.collect()
+    }
+
+    /// A clock of the hardware and of the machine.
+    pub(crate) fn clock(&mut self) {
+        let lines = self.plant.encoder();
+        (self.counter_inputs.a, self.counter_inputs.b, self.counter_inputs.z) = (lines.a, lines.b, lines.z);
+        let gates = self.pwm.step(&self.pwm_inputs);
+        self.counter.step(&self.counter_inputs);
+        self.counter_inputs.time_stamp = (self.counter_inputs.time_stamp + 1) & 0xff_ffff;
+        let pins = DrivePins {
+            a_high: gates.a_high,
+            a_low: gates.a_low,
+            b_high: gates.b_high,
+            b_low: gates.b_low,
+            drive_enable: self.powered,
+            brake_release: self.powered,
+        };
+        self.plant.clocks(pins, 1);
+    }
+
+    /// From the tick on: capture, divide, control, and the new duty at the PWM's next boundary.
+    fn tick_by_clocks(&mut self, shaped: [i32; 3]) {
+        let position = self.counter.outputs().position;
+        (self.counter_inputs.tick, self.pwm_inputs.sync) = (true, true);
+        self.clock();
+        (self.counter_inputs.tick, self.pwm_inputs.sync) = (false, false);
+        for clock in 1..TICK_CLOCKS {
+            self.counter_inputs.quotient_valid = clock == DIVISION_CLOCKS + 2;
+            if self.counter_inputs.quotient_valid {
+                let shown = self.counter.outputs();
+                self.counter_inputs.quotient = self.divider.divide(shown.steps, shown.elapsed).0 as i32;
+            }
+            if clock == self.control_clocks {
+                let velocity = self.counter.outputs().velocity;
+                self.control(shaped, position, velocity);
+            }
+            self.clock();
+        }
+        self.pwm_inputs.enable = true;
+        self.pwm_inputs.clear_trip = false;
+    }
+
+    fn tick_at_once(&mut self, shaped: [i32; 3]) {
+        let count = self.plant.count();
+        let velocity = (count - self.count_before) << 16;
+        self.count_before = count;
+        self.pulse();
+        self.control(shaped, count as i32, velocity as i32);
+        self.pulse();
+    }
+
+    /// A period of the PWM with its duty: on one way in the middle, on the other way before and after.
+    fn pulse(&mut self) {
+        let on = ((PERIOD_CLOCKS + self.duty) / 2).clamp(0, PERIOD_CLOCKS) as u64;
+        let rest = PERIOD_CLOCKS as u64 - on;
+        for (forward, clocks) in [(false, rest / 2), (true, on), (false, rest - rest / 2)] {
+            let pins = DrivePins {
+                a_high: forward,
+                a_low: !forward,
+                b_high: !forward,
+                b_low: forward,
+                drive_enable: true,
+                brake_release: true,
+            };
+            self.plant.clocks(pins, clocks);
+        }
+    }
+
+    fn control(&mut self, shaped: [i32; 3], position: i32, velocity: i32) {
+        let [position_reference, velocity_reference, acceleration_reference] = shaped;
+        let motion = sliding_mode::Motion {
+            position_reference,
+            velocity_reference,
+            acceleration_reference,
+            position,
+            velocity,
+        };
+        let Derived { law, settings, .. } = &self.derived;
+        self.duty = self.controller.control(*law, false, &motion, settings).duty;
+        self.pwm_inputs.duty = self.duty;
+    }
+}
