@@ -16,7 +16,7 @@ use posicast_model::rtl::divider::{Divider, DividerConfig};
 use posicast_model::rtl::divider_share::DividerShare;
 use posicast_model::rtl::group::Group;
 use posicast_model::rtl::pulse_counter::PulseCounter;
-use posicast_model::rtl::pwm::{ActiveLow, Mode, Pwm, PwmConfig};
+use posicast_model::rtl::pwm::{Mode, Pwm};
 use posicast_model::rtl::registers::{RegisterBank, RegisterMap, maps};
 use posicast_model::rtl::sample_select::SampleSelect;
 use posicast_model::rtl::schedule::{Schedule, ScheduleConfig};
@@ -27,8 +27,8 @@ use posicast_model::rtl::sliding_mode::SlidingMode;
 use posicast_model::rtl::time_base::TimeBase;
 use posicast_model::rtl::{Direction, Moore, OutputKind, Port};
 use proptest::prelude::*;
-use random_inputs::{Hints, Random, RandomInputs};
-use stage::{STAGE, axis, settings, shaper_config, stage};
+use random_inputs::{Hints, Random, RandomInputs, STAGE, TICK_CLOCKS};
+use stage::{axis, pwm_config, settings, shaper_config, stage};
 use wrong::Wrong;
 
 /// A block to be tried, and values for its inputs.
@@ -138,7 +138,7 @@ const AXIS: Hints = &[
 
 fn blocks() -> Vec<Tried> {
     let divider = DividerConfig::new(300).unwrap();
-    let pwm = PwmConfig::new(ActiveLow::default(), 2, 3).unwrap();
+    let pwm = pwm_config();
     vec![
         tried("divider", &[], move || Divider::new(&divider)),
         tried("time_base", &[], move || TimeBase::new(&divider)),
@@ -152,6 +152,7 @@ fn blocks() -> Vec<Tried> {
         tried("pwm", PWM, move || Pwm::new(&pwm)),
         tried("sliding_mode", &[], SlidingMode::new),
         tried("axis", AXIS, Axis::new),
+<<<<<<< HEAD
         tried("schedule", &[("tick", RARE), ("rst", RARE)], || {
             Schedule::new(&ScheduleConfig::new(40).unwrap())
         }),
@@ -161,6 +162,12 @@ fn blocks() -> Vec<Tried> {
         tried("group", &[("start", RARE), ("rst", RARE)], || Group::new(3)),
         tried("an axis", STAGE, || composed(axis())),
         tried("a stage", STAGE, || composed(stage(|axis| Box::new(composed(axis))))),
+=======
+        tried("an axis", STAGE, || composed(axis(TICK_CLOCKS))),
+        tried("a stage", STAGE, || {
+            composed(stage(TICK_CLOCKS, |axis| Box::new(composed(axis))))
+        }),
+>>>>>>> fast
         tried("a component", PWM, move || {
             Component::pwm(pwm, Mode::HalfBridge, 100).unwrap().model(1)
         }),

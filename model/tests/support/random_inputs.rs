@@ -26,6 +26,74 @@ impl Random {
 /// Values of an input, by its name: one of them is taken.
 pub(crate) type Hints = &'static [(&'static str, &'static [u64])];
 
+/// Clocks per tick: a pass of the controller fits.
+pub(crate) const TICK_CLOCKS: u64 = 300;
+
+/// What random inputs of a stage and its axes are to be, so that axes move and stop.
+pub(crate) const STAGE: Hints = &[
+    ("write", &[0, 1]),
+    ("word", &[0, 1, 2, 3, 3]),
+    ("data", &[0, 0, 3, 1 << 31 | 2, 1 << 30 | 1, 5]),
+    ("flush", RARE),
+    ("stop_deceleration", &[0, 1 << 24]),
+    ("clear_flags", &[1]),
+    ("tap_write", RARE),
+    ("swap", RARE),
+    // One line moves: no step is illegal.
+    ("a", &[0, 1]),
+    ("b", &[0]),
+    ("differential", &[0]),
+    ("filter_clocks", &[0, 3, 9]),
+    ("tick", RARE),
+    ("divide", RARE),
+    ("line_mode", &[0]),
+    ("emergency_stop_n", USUAL),
+    ("limit_plus_n", &[1]),
+    ("limit_minus_n", &[1]),
+    ("drive_ready", USUAL),
+    ("axis_enable", &[0, 1, 1, 1]),
+    ("axis_start", &[0, 1]),
+    ("axis_stop", RARE),
+    ("clear_faults", &[0, 1]),
+    ("group_stop", &[0]),
+    ("group_emergency_stop", &[0]),
+    ("scale_illegal", &[0]),
+    ("scale_disagreement", &[0]),
+    ("off_causes", &[0]),
+    ("brake_release_ticks", &[0, 2]),
+    ("brake_apply_ticks", &[0, 2]),
+    ("settle_ticks", &[0, 2]),
+    ("soft_limit_plus", &[0]),
+    ("soft_limit_minus", &[0]),
+    ("following_error_limit", &[0]),
+    ("deviation_limit", &[0]),
+    ("saturation_ticks", &[0]),
+    ("lost_ticks", &[0]),
+    ("watchdog_ticks", &[0]),
+    ("pwm_mode", &[1, 2]),
+    ("period", &[100]),
+    ("pwm_duty", &[0, 50, 90, 0x1_ffc0]),
+    ("max_duty", &[400]),
+    ("dead_time", &[3]),
+    ("minimum_pulse", &[4]),
+    ("fault_n", USUAL),
+    ("pll_locked", &[1]),
+    ("filtered_fault_n", &[3]),
+    ("watchdog_periods", &[0]),
+    ("clear_trip", &[0, 1]),
+];
+
+const RARE: &[u64] = &{
+    let mut values = [0; 100];
+    values[0] = 1;
+    values
+};
+const USUAL: &[u64] = &{
+    let mut values = [1; 100];
+    values[0] = 0;
+    values
+};
+
 /// The inputs of a block.
 pub(crate) struct RandomInputs {
     pub(crate) ports: Vec<Port>,

@@ -13,76 +13,6 @@ use posicast_model::rtl::time_base::TimeBase;
 use posicast_model::rtl::{Direction, Moore, Port};
 use posicast_model::taps::{Tap, TapTable};
 
-use crate::random_inputs::Hints;
-
-/// Clocks per tick: a pass of the controller fits.
-const TICK_CLOCKS: u64 = 300;
-
-/// What random inputs of [`stage`] and [`axis`] are to be, so that axes move and stop.
-pub(crate) const STAGE: Hints = &[
-    ("write", &[0, 1]),
-    ("word", &[0, 1, 2, 3, 3]),
-    ("data", &[0, 0, 3, 1 << 31 | 2, 1 << 30 | 1, 5]),
-    ("flush", RARE),
-    ("stop_deceleration", &[0, 1 << 24]),
-    ("clear_flags", &[1]),
-    ("tap_write", RARE),
-    ("swap", RARE),
-    // One line moves: no step is illegal.
-    ("a", &[0, 1]),
-    ("b", &[0]),
-    ("differential", &[0]),
-    ("filter_clocks", &[0, 3, 9]),
-    ("tick", RARE),
-    ("divide", RARE),
-    ("line_mode", &[0]),
-    ("emergency_stop_n", USUAL),
-    ("limit_plus_n", &[1]),
-    ("limit_minus_n", &[1]),
-    ("drive_ready", USUAL),
-    ("axis_enable", &[0, 1, 1, 1]),
-    ("axis_start", &[0, 1]),
-    ("axis_stop", RARE),
-    ("clear_faults", &[0, 1]),
-    ("group_stop", &[0]),
-    ("group_emergency_stop", &[0]),
-    ("scale_illegal", &[0]),
-    ("scale_disagreement", &[0]),
-    ("off_causes", &[0]),
-    ("brake_release_ticks", &[0, 2]),
-    ("brake_apply_ticks", &[0, 2]),
-    ("settle_ticks", &[0, 2]),
-    ("soft_limit_plus", &[0]),
-    ("soft_limit_minus", &[0]),
-    ("following_error_limit", &[0]),
-    ("deviation_limit", &[0]),
-    ("saturation_ticks", &[0]),
-    ("lost_ticks", &[0]),
-    ("watchdog_ticks", &[0]),
-    ("pwm_mode", &[1, 2]),
-    ("period", &[100]),
-    ("pwm_duty", &[0, 50, 90, 0x1_ffc0]),
-    ("max_duty", &[400]),
-    ("dead_time", &[3]),
-    ("minimum_pulse", &[4]),
-    ("fault_n", USUAL),
-    ("pll_locked", &[1]),
-    ("filtered_fault_n", &[3]),
-    ("watchdog_periods", &[0]),
-    ("clear_trip", &[0, 1]),
-];
-
-const RARE: &[u64] = &{
-    let mut values = [0; 100];
-    values[0] = 1;
-    values
-};
-const USUAL: &[u64] = &{
-    let mut values = [1; 100];
-    values[0] = 0;
-    values
-};
-
 /// A part: its name, its block, and the nets of ports that are not on the net of their own name.
 pub(crate) type Joined = (String, Box<dyn Moore>, Vec<(String, String)>);
 
@@ -147,9 +77,12 @@ pub(crate) fn settings() -> Settings {
     settings
 }
 
-/// An axis: its composition, and the models of its blocks.
-pub(crate) fn axis() -> (Composition, Vec<Box<dyn Moore>>) {
-    let pwm = PwmConfig::new(ActiveLow::default(), 2, 3).unwrap();
+pub(crate) fn pwm_config() -> PwmConfig {
+    PwmConfig::new(ActiveLow::default(), 2, 3).unwrap()
+}
+
+/// An axis with ticks of so many clocks: its composition, and the models of its blocks.
+pub(crate) fn axis(tick_clocks: u64) -> (Composition, Vec<Box<dyn Moore>>) {
     join(vec![
         joined(
             "segments",
@@ -201,7 +134,7 @@ pub(crate) fn axis() -> (Composition, Vec<Box<dyn Moore>>) {
         ),
         joined(
             "divider",
-            Divider::new(&DividerConfig::new(TICK_CLOCKS).unwrap()),
+            Divider::new(&DividerConfig::new(tick_clocks).unwrap()),
             &[
                 ("start", "divide"),
                 ("done", "quotient_valid"),
@@ -226,7 +159,7 @@ pub(crate) fn axis() -> (Composition, Vec<Box<dyn Moore>>) {
         ),
         joined(
             "pwm",
-            Pwm::new(&pwm),
+            Pwm::new(&pwm_config()),
             &[
                 ("enable", "pwm_enable"),
                 ("duty", "pwm_duty"),
@@ -257,12 +190,13 @@ pub(crate) fn axis() -> (Composition, Vec<Box<dyn Moore>>) {
 
 /// A time base and two axes with pins of their own; `make` makes a block of an axis.
 pub(crate) fn stage(
+    tick_clocks: u64,
     make: impl Fn((Composition, Vec<Box<dyn Moore>>)) -> Box<dyn Moore>,
 ) -> (Composition, Vec<Box<dyn Moore>>) {
-    let time_base = TimeBase::new(&DividerConfig::new(TICK_CLOCKS).unwrap());
+    let time_base = TimeBase::new(&DividerConfig::new(tick_clocks).unwrap());
     let mut blocks = vec![joined("time_base", time_base, &[])];
     for name in ["x", "y"] {
-        let axis = make(axis());
+        let axis = make(axis(tick_clocks));
         let own = |port: &Port| {
             let pins = ["a", "b", "z", "write", "axis_enable", "fault_n"].contains(&port.name.as_str());
             port.direction == Direction::Output || pins

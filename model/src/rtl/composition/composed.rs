@@ -83,8 +83,9 @@ impl Composed {
     }
 
     /// Clocks with the same inputs, for as long as the outputs stay as they are, but at most `clocks`. Puts what the outputs
-    /// show in all of them into `outputs`, and returns how many they were: at least 1, unless `clocks` is 0. The same as so
-    /// many calls of [`step`](ClockedBlock::step), in the time of those in which something happens inside.
+    /// show in all of them into `outputs`, and returns how many they were: at least 1, unless `clocks` is 0. Outputs that are
+    /// [counters](OutputKind::Counter) go up by one per clock instead. The same as so many calls of
+    /// [`step`](ClockedBlock::step), in the time of those in which something happens inside.
     ///
     /// To run on, call it again; to know what the outputs show in the clock that comes, ask
     /// [`show_with`](Moore::show_with).
@@ -94,9 +95,8 @@ impl Composed {
     pub fn hold(&mut self, inputs: &[u64], clocks: u64, outputs: &mut [u64]) -> Result<u64, StepError> {
         self.check(inputs, outputs)?;
         self.show_with(inputs, outputs);
-        let counts = self.output_nets.iter().any(|net| self.wires[*net].counts());
-        let (start, most) = (self.now, if counts { clocks.min(1) } else { clocks });
-        let end = start.saturating_add(most);
+        let start = self.now;
+        let end = start.saturating_add(clocks);
         while self.now < end {
             let wakes = self.next_wake();
             if wakes > self.now {
@@ -105,7 +105,7 @@ impl Composed {
             }
             self.clock()?;
             self.combine();
-            if !self.shows(outputs) {
+            if !self.shows(outputs, self.now - start) {
                 break;
             }
         }
@@ -125,10 +125,11 @@ impl Composed {
         )))
     }
 
-    /// Do the outputs show that?
-    fn shows(&self, outputs: &[u64]) -> bool {
-        let mut pairs = self.output_nets.iter().zip(outputs);
-        pairs.all(|(net, output)| self.wires[*net].at(self.now) == *output)
+    /// Do the outputs still show what they showed so many clocks ago?
+    fn shows(&self, outputs: &[u64], clocks: u64) -> bool {
+        let wires = self.output_nets.iter().map(|net| &self.wires[*net]);
+        let mut pairs = wires.zip(outputs);
+        pairs.all(|(wire, output)| wire.at(self.now) == wire.later(*output, clocks))
     }
 
     /// The next clock in which a member must be clocked.

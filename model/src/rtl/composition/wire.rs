@@ -27,13 +27,22 @@ impl Wire {
         self.counts.is_some()
     }
 
+    /// What it shows so many clocks after it showed `value`, if nothing happens.
+    #[inline]
+    pub(super) fn later(&self, value: u64, clocks: u64) -> u64 {
+        match self.counts {
+            None => value,
+            Some(ones) => value.wrapping_add(clocks) & ones,
+        }
+    }
+
     /// Its value in a clock: from the one before its last change on.
     #[inline]
     pub(super) fn at(&self, clock: u64) -> u64 {
-        match self.counts {
-            _ if clock < self.since => self.before,
-            None => self.value,
-            Some(ones) => self.value.wrapping_add(clock - self.since) & ones,
+        if clock < self.since {
+            self.before
+        } else {
+            self.later(self.value, clock - self.since)
         }
     }
 
