@@ -47,7 +47,7 @@ const BUS: Hints = &[
 type Whole = (Composition, Vec<Box<dyn Moore>>);
 
 /// Name, inputs, the fast one, and the same block by block.
-fn wholes() -> Vec<(&'static str, Hints, Composed, Plain)> {
+fn wholes() -> Vec<(String, Hints, Composed, Plain)> {
     let pwm = pwm_config();
     let counter = DividerConfig::new(300).unwrap();
     let components = [
@@ -58,15 +58,20 @@ fn wholes() -> Vec<(&'static str, Hints, Composed, Plain)> {
     ];
     let fast = |(composition, blocks): Whole| Composed::new(composition, blocks);
     let component = |component: Component| {
-        let name: &'static str = component.blocks().last().unwrap().name();
+        let name = component.blocks().last().unwrap().name().to_owned();
         let plain = (component.composition().clone(), component.block_models(1));
         (name, BUS, component.model(1), Plain::new(plain))
     };
     let mut wholes: Vec<_> = components.map(component).into();
-    wholes.push(("axis", STAGE, fast(axis(TICK_CLOCKS)), Plain::new(axis(TICK_CLOCKS))));
+    wholes.push((
+        "axis".to_owned(),
+        STAGE,
+        fast(axis(TICK_CLOCKS)),
+        Plain::new(axis(TICK_CLOCKS)),
+    ));
     let nested = fast(stage(TICK_CLOCKS, |axis| Box::new(fast(axis))));
     wholes.push((
-        "stage",
+        "stage".to_owned(),
         STAGE,
         nested,
         Plain::new(stage(TICK_CLOCKS, |axis| Box::new(Plain::new(axis)))),

@@ -152,7 +152,6 @@ fn blocks() -> Vec<Tried> {
         tried("pwm", PWM, move || Pwm::new(&pwm)),
         tried("sliding_mode", &[], SlidingMode::new),
         tried("axis", AXIS, Axis::new),
-<<<<<<< HEAD
         tried("schedule", &[("tick", RARE), ("rst", RARE)], || {
             Schedule::new(&ScheduleConfig::new(40).unwrap())
         }),
@@ -160,14 +159,10 @@ fn blocks() -> Vec<Tried> {
             DividerShare::new(3)
         }),
         tried("group", &[("start", RARE), ("rst", RARE)], || Group::new(3)),
-        tried("an axis", STAGE, || composed(axis())),
-        tried("a stage", STAGE, || composed(stage(|axis| Box::new(composed(axis))))),
-=======
         tried("an axis", STAGE, || composed(axis(TICK_CLOCKS))),
         tried("a stage", STAGE, || {
             composed(stage(TICK_CLOCKS, |axis| Box::new(composed(axis))))
         }),
->>>>>>> fast
         tried("a component", PWM, move || {
             Component::pwm(pwm, Mode::HalfBridge, 100).unwrap().model(1)
         }),

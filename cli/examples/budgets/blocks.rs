@@ -123,6 +123,8 @@ pub(crate) fn rows() -> Result<Vec<Row>, Box<dyn Error>> {
             in_xy_stage: 0,
             note: "320 LUT choose one of 16 signals of 32 bits; signals that are tied go. Not in the sum: `[axis.trace]` is an \
                    option.",
+        },
+        Row {
             block: "encoder_generator",
             size: "",
             modules: encoder_generator::emit("")?,
