@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! gates ─► mean of a PWM period ─► drive (first order) ─┬─ velocity ───────────────┬─► x ─► modes ─► load y
-//! drive_enable, brake_release ───────────────────────── └─ force ─► mass, friction ┘   │               │
+//! drive_enable, brake_release ──────────────────────────┴─ force ─► mass, friction ┘   │               │
 //!                                        A, B, index ◄── encoder ◄── velocity drive: x; torque drive: y
 //!                                        A, B        ◄── scale   ◄───────────────────────────── y
 //! ```
