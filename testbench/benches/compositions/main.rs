@@ -35,6 +35,9 @@ use std::time::Duration;
 const TICK_CLOCKS: u64 = 5000;
 const CLOCKS: u64 = 20 * TICK_CLOCKS;
 
+/// The value of an input in a clock.
+type Input = Box<dyn Fn(&str, u64) -> u64>;
+
 /// A composition with inputs for it, what it does all day.
 struct Whole {
     name: &'static str,
@@ -42,7 +45,7 @@ struct Whole {
     modules: Vec<Module>,
     model: Composed,
     /// The value of the input of that name in that clock.
-    input: Box<dyn Fn(&str, u64) -> u64>,
+    input: Input,
 }
 
 /// Inputs, and for how many clocks they stay.
@@ -87,14 +90,8 @@ fn measure(criterion: &mut Criterion, mut whole: Whole) {
                 assert_eq!(shown, *expected, "{}, hold", whole.name);
             }
             left -= ran;
-            calls += 1;
         }
     }
-    eprintln!(
-        "{}: {:.1} clocks per call of hold",
-        whole.name,
-        CLOCKS as f64 / f64::from(calls)
-    );
 
     let mut group = criterion.benchmark_group(whole.name);
     group.throughput(Throughput::Elements(CLOCKS));

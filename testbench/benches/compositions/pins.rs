@@ -3,6 +3,10 @@
 /// A and B of an encoder with an edge every 300 clocks, up, and down in every other hundred edges.
 pub(crate) fn encoder(clock: u64) -> [u64; 2] {
     let edge = clock / 300;
-    let angle = if edge / 100 % 2 == 0 { edge % 4 } else { 3 - edge % 4 };
+    let angle = if (edge / 100).is_multiple_of(2) {
+        edge % 4
+    } else {
+        3 - edge % 4
+    };
     [[0, 0], [1, 0], [1, 1], [0, 1]][angle as usize]
 }
