@@ -78,7 +78,7 @@ fn measure(criterion: &mut Criterion, mut whole: Whole) {
     }
     // Again, by `hold`, from a reset on.
     whole.model.step(&events[0].0, &mut shown).unwrap();
-    let (mut expected, mut calls) = (expected.iter(), 0);
+    let mut expected = expected.iter();
     for (row, clocks) in &events {
         let mut left = *clocks;
         while left > 0 {
