@@ -138,8 +138,8 @@ pub(crate) fn rows() -> Result<Vec<Row>, Box<dyn Error>> {
             modules: excitation::emit("")?,
             budget: None,
             in_xy_stage: 2,
-            note: "The references of velocity and acceleration are 64 registers and nothing else. 32 LUT go where \
-                   `amplitude_limit` is tied.",
+            note: "The references of velocity and acceleration are 64 registers and nothing else. Without these, and with \
+                   `amplitude_limit` and `modulo` tied, 333 LE are left.",
         },
         Row {
             block: "shaper",

@@ -87,7 +87,7 @@ fn cli_verify_takes_blocks_by_name_and_says_which_there_are() {
     assert_eq!((unknown.status.code(), unknown.stdout.is_empty()), (Some(2), true));
     let said = String::from_utf8_lossy(&unknown.stderr).into_owned();
     assert!(
-        said.contains("divdier") && said.contains("cascade, divider, pulse_counter"),
+        said.contains("divdier") && said.contains("cascade, divider, encoder_generator, excitation, pulse_counter"),
         "{said}"
     );
 }
