@@ -57,7 +57,7 @@ impl Component {
         let blocks = blocks.into_iter().map(|block| (block.name().to_owned(), block));
         let wiring = Wiring {
             part: Box::new(|block, part| wire(config, block, part)),
-            inputs: pins(config, &SHARED_PINS, |axis| axis::input_pins(axis)),
+            inputs: pins(config, &SHARED_PINS, axis::input_pins),
             outputs: pins(config, &["tick"], |_| axis::OUTPUT_PINS.to_vec()),
         };
         Ok(Self::joined(map, "stage", blocks.collect(), wiring)?)
