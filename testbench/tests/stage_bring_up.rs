@@ -19,11 +19,7 @@ fn machine() -> Machine {
     let text = include_str!("../../examples/xy-stage.toml");
     let text = text.replacen("[axis.pwm]", &bring_up("position"), 1);
     // Its mode is inside of the loop on the scale, and allows a gain of 130/s.
-    let text = text.replacen(
-        "kind = \"pd\"",
-        "kind = \"pd\"\nproportional = 60.0",
-        1,
-    );
+    let text = text.replacen("kind = \"pd\"", "kind = \"pd\"\nproportional = 60.0", 1);
     let second = text.rfind("[axis.pwm]").unwrap();
     let text = format!(
         "{}{}{}",
