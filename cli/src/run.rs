@@ -16,7 +16,7 @@ use crate::machine;
 use crate::plot;
 use crate::simulate::simulate;
 use crate::verify::DEFAULT_SEED;
-use crate::{generate, output, progress, synth};
+use crate::{generate, output, progress, stage, synth};
 use posicast_hdl::machine::AxisShaper;
 use posicast_model::design::MachineDesign;
 use posicast_model::simulation::{AxisSimulation, largest_difference};
@@ -72,10 +72,12 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let simulator = Simulator::choose(args.simulator)?;
     let yosys = installed_yosys()?;
     let axes = simulate(machine, &design.design, &shapers, &words)?;
-    let modules = generate::modules(machine, &shapers, &design.controllers, &args.machine)?;
+    let stage = stage::of_machine(machine, &design.design, &args.machine)?;
+    let modules = generate::modules(machine, &shapers, &design.controllers, stage.as_ref(), &args.machine)?;
     let components = blocks::components(machine, &shapers, &design.controllers, &args.machine)?;
     let top = blocks::shapers(machine, shapers, &words)?;
-    let components = components.iter().map(|component| component as &dyn Block);
+    let components = components.iter().chain(stage.as_ref().map(|stage| &stage.block));
+    let components = components.map(|component| component as &dyn Block);
     let tops: Vec<&dyn Block> = std::iter::once(&top as &dyn Block).chain(components).collect();
 
     let mut package = generate::open(args.output.as_deref(), &file)?;
