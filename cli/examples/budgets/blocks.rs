@@ -164,11 +164,7 @@ pub(crate) fn rows() -> Result<Vec<Row>, Box<dyn Error>> {
             "of sliding_mode",
             &Component::sliding_mode(&Settings::default(), Law::SlidingMode, false)?,
         )?,
-        stage("XY, whole", "")?,
-        stage(
-            "XY, whole, with trace memories of 256 samples",
-            "[axis.trace]\nsamples = 256\n",
-        )?,
+        stage()?,
     ])
 }
 
