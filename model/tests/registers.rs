@@ -64,7 +64,16 @@ fn fields<'a>(description: &'a mut Description, register: &str) -> &'a mut Vec<F
 #[test]
 fn unit_descriptions_that_do_not_hold_together_are_refused() {
     assert!(RegisterMap::new(description()).is_ok());
-    let cases: [(MapError, &str); 12] = [
+    let words = |words| Access::Words {
+        strobe: "entry_write".to_owned(),
+        word: "entry_word".to_owned(),
+        words,
+    };
+    let cases: [(MapError, &str); 16] = [
+        (refused(|d| d.windows = 0), "1 to 5"),
+        (refused(|d| d.windows = 6), "1 to 5"),
+        (refused(|d| d.registers[4].access = words(3)), "2, 4"),
+        (refused(|d| d.registers[4].access = words(4)), "free one of 0 to 255"),
         (refused(|d| d.registers[0].offset = 77), "begins with the constants"),
         (refused(|d| d.registers[4].offset = 5), "free one of 0 to 255"),
         (refused(|d| d.registers[4].offset = 256), "free one of 0 to 255"),

@@ -40,6 +40,7 @@ pub(super) fn check(description: &Description) -> Result<(), MapError> {
             return Err(MapError::Offset {
                 register: register.name.clone(),
                 offset: register.offset,
+                last: description.windows * WINDOW_WORDS - 1,
             });
         }
         fields(register)?;

@@ -20,12 +20,14 @@ pub enum MapError {
     #[error("there are two registers `{0}`: rename one")]
     RegisterTwice(String),
     /// An offset outside of the window, or a second register there.
-    #[error("the register `{register}` is at word {offset}: give it a free place in the windows")]
+    #[error("the register `{register}` is at word {offset}: give it a free one of 0 to {last}")]
     Offset {
         /// The register.
         register: String,
         /// Its offset.
         offset: u32,
+        /// The last word of the windows.
+        last: u32,
     },
     /// A field that does not fit its register, or overlaps another.
     #[error("the field `{field}` of `{register}` has bits {low} to {high}: give it free ones of 0 to 31")]
