@@ -100,3 +100,80 @@ fn cli_a_loop_that_is_not_complete_or_has_short_words_gives_no_stage() {
         assert!(!output.join("rtl/xy_stage_stage.v").exists());
     }
 }
+
+/// The XY stage, quick to simulate: a slower clock, and limits at which the move is short.
+fn quick() -> String {
+    let text = std::fs::read_to_string(example("xy-stage.toml")).unwrap();
+    text.replace("frequency_hz = 50_000_000", "frequency_hz = 10_000_000")
+        .replace("velocity = 0.25", "following_error = 0.0005\nvelocity = 0.4")
+        .replace("acceleration = 8.0", "acceleration = 40.0")
+        .replace("jerk = 400.0", "jerk = 8000.0")
+}
+
+/// `run --json` of a machine: exit status, document and what was said.
+fn run(text: &str, arguments: &[&str]) -> (Option<i32>, serde_json::Value, String, tempfile::TempDir) {
+    let (folder, file) = scratch(text);
+    let output = folder.path().join("out");
+    let mut run = posicast();
+    run.arg("run").arg(&file).arg("-o").arg(&output);
+    let out = run
+        .args(["--json", "--cycles", "2000"])
+        .args(arguments)
+        .output()
+        .unwrap();
+    let said = String::from_utf8_lossy(&out.stderr).into_owned();
+    (out.status.code(), json(&out.stdout), said, folder)
+}
+
+#[test]
+fn cli_run_closes_the_loop_in_verilog_and_model() {
+    let (status, document, said, folder) = run(&quick(), &[]);
+    assert_eq!(status, Some(0), "{said} {document}");
+    let stage = &document["stage"];
+    let side_by_side = &stage["side_by_side"];
+    assert_eq!(
+        (&side_by_side["mismatches"], &side_by_side["whole"]),
+        (&0.into(), &true.into())
+    );
+    let number = |value: &serde_json::Value| value.as_f64().unwrap_or_else(|| panic!("{value} in {stage}"));
+    for axis in stage["axes"].as_array().unwrap() {
+        assert!(number(&axis["tracking"]["peak"]) < 10e-6);
+        assert!(number(&axis["offset"]).abs() < 2e-6);
+        let unshaped = number(&axis["residual_unshaped"]);
+        assert!(number(&axis["residual"]) < 0.1 * unshaped);
+        for off in ["residual_minus_10_percent", "residual_plus_10_percent"] {
+            assert!(number(&axis[off]) < 0.2 * unshaped);
+        }
+    }
+    let circle = &stage["circle"];
+    assert!(number(&circle["equal_delays"]["peak"]) < 0.5 * number(&circle["own_delays"]["peak"]));
+    assert_eq!(stage["schedule"]["tick_clocks"], 1000);
+    let checks = document["checks"].as_array().unwrap();
+    let of_stage = checks.iter().filter(|check| {
+        let name = check["name"].as_str().unwrap();
+        ["the stage", "the shapers take", "the axes follow"]
+            .iter()
+            .any(|begin| name.starts_with(begin))
+    });
+    assert_eq!(of_stage.count(), 4);
+    for picture in ["move", "vibration", "circle"] {
+        assert!(folder.path().join(format!("out/plots/stage-{picture}.svg")).is_file());
+    }
+}
+
+#[test]
+fn cli_run_without_verilator_runs_the_loop_in_the_model_and_a_fault_is_exit_status_1() {
+    // Nothing follows so closely: the first move is a fault.
+    let text = quick().replace("following_error = 0.0005", "following_error = 1e-6");
+    let (status, document, said, _folder) = run(&text, &["--simulator", "rusthdl"]);
+    assert_eq!((status, &document["result"]), (Some(1), &"fail".into()), "{said}");
+    assert!(said.contains("the closed loop runs in the bit-exact model"), "{said}");
+    assert!(document["stage"]["side_by_side"].is_null());
+    let checks = document["checks"].as_array().unwrap();
+    let failed = checks.iter().filter(|check| check["passed"] == false);
+    let details: Vec<&str> = failed.map(|check| check["detail"].as_str().unwrap()).collect();
+    assert!(
+        details[0].contains("FAULT") && details[0].contains("FollowingError"),
+        "{details:?}"
+    );
+}

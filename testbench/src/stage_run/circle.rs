@@ -6,14 +6,17 @@ use posicast_model::rtl::segments::{Entry, Motion};
 use posicast_model::spec::{Axis, Machine};
 
 use super::host::{Host, Trouble};
-use super::{Shaping, StageRun, StageRunError};
+use super::{StageRun, StageRunError};
+use crate::stage_bench::{AxisSample, state};
 
 /// Speed of the circle as a part of the slower axis's limit, where `[stage]` has no `contour_speed`.
 const PART_OF_VELOCITY: f64 = 0.4;
-/// The same of acceleration: for the way along the path, and towards its centre.
+/// The same of acceleration, towards the centre.
 const PART_OF_ACCELERATION: f64 = 0.125;
-/// The same of jerk.
-const PART_OF_JERK: f64 = 0.25;
+/// The same along the path: together they stay below the limit.
+const PART_ALONG_PATH: f64 = 0.5;
+/// Part of the speed from which on a place counts: what happens at rest, and on the way from and to it, is a move's business.
+const PART_OF_SPEED: f64 = 0.5;
 /// The same of the room in the travel.
 const PART_OF_TRAVEL: f64 = 0.9;
 /// Least radius in counts, below which steps of the encoders are all that is seen.
@@ -47,7 +50,8 @@ pub struct Circle {
 pub struct Circled {
     /// The load's distance from the circle, along its radius, in m.
     pub error: ErrorFigures,
-    /// The load's places `(x, y)` from the circle's centre, at every tick, in m.
+    /// The load's places `(x, y)` from the circle's centre, in m, at every tick in which the command goes at half the speed or
+    /// faster.
     pub points: Vec<(f64, f64)>,
     /// What the stage did not do.
     pub trouble: Option<Trouble>,
@@ -77,19 +81,19 @@ impl Circle {
         let [velocity, acceleration, jerk] = std::array::from_fn(|limit| f64::min(of_x[limit], of_y[limit]));
         let wanted = machine.stage.and_then(|stage| stage.contour_speed);
         let speed = wanted.unwrap_or(PART_OF_VELOCITY * velocity).min(velocity);
-        let acceleration = PART_OF_ACCELERATION * acceleration;
+        let towards_centre = PART_OF_ACCELERATION * acceleration;
         let travel = |axis: &Axis| {
             let travel = axis.limits.and_then(|limits| limits.travel);
             travel.map_or([f64::INFINITY; 2], |[low, high]| [-low, high].map(|room| room.max(0.0)))
         };
         let ([left, right], [below, above]) = (travel(x), travel(y));
         let room = PART_OF_TRAVEL * (left.max(right) / 2.0).min(below.min(above));
-        let radius = (speed * speed / acceleration).min(room);
+        let radius = (speed * speed / towards_centre).min(room);
         let circle = Self {
             radius,
-            speed: speed.min((acceleration * radius).sqrt()),
-            acceleration,
-            jerk: PART_OF_JERK * jerk,
+            speed: speed.min((towards_centre * radius).sqrt()),
+            acceleration: PART_ALONG_PATH * acceleration,
+            jerk,
             side: if right > left { -1.0 } else { 1.0 },
         };
         let counts = radius * x.loop_counts_per_unit().min(y.loop_counts_per_unit());
@@ -183,7 +187,7 @@ fn stream(host: &mut Host<'_>, paths: &[Vec<Entry>; 2]) -> Result<Option<Trouble
     while written[0] < paths[0].len() || written[1] < paths[1].len() {
         host.pass(LOOK_TICKS * host.tick_clocks())?;
         for axis in 0..2 {
-            if host.state(axis)? != crate::stage_bench::state::RUN {
+            if host.state(axis)? != state::RUN {
                 return Ok(Some(host.trouble(axis, "play the circle")?));
             }
             let name = host.config.axes[axis].name.clone();
@@ -196,28 +200,15 @@ fn stream(host: &mut Host<'_>, paths: &[Vec<Entry>; 2]) -> Result<Option<Trouble
 }
 
 /// The circle in the model.
-pub(super) fn measure(
-    run: &StageRun<'_>,
-    mut host: Host<'_>,
-    circle: &Circle,
-    shaping: Shaping,
-) -> Result<Circled, StageRunError> {
+pub(super) fn measure(run: &StageRun<'_>, mut host: Host<'_>, circle: &Circle) -> Result<Circled, StageRunError> {
     let mut trouble = host.switch_on()?;
-    if trouble.is_none() {
-        trouble = host.shape(shaping)?;
-    }
     if trouble.is_none() {
         let paths = circle.plan(run, &mut host)?;
         trouble = stream(&mut host, &paths)?;
     }
     let samples = host.bench.recorded();
-    let points: Vec<(f64, f64)> = match samples.as_slice() {
-        [x, y, ..] => {
-            let places = x.iter().zip(y);
-            places
-                .map(|(x, y)| (circle.side * x.load + circle.radius, y.load))
-                .collect()
-        }
+    let points = match samples.as_slice() {
+        [x, y, ..] => places(run, circle, x, y),
         _ => Vec::new(),
     };
     Ok(Circled {
@@ -226,4 +217,40 @@ pub(super) fn measure(
         trouble,
         radius: circle.radius,
     })
+}
+
+/// Where the load is from the centre while it goes round.
+fn places(run: &StageRun<'_>, circle: &Circle, x: &[AxisSample], y: &[AxisSample]) -> Vec<(f64, f64)> {
+    let units = [0, 1].map(|axis| run.machine.axes[axis].loop_counts_per_unit());
+    let slowest = PART_OF_SPEED * circle.speed / run.machine.clock.sample_hz;
+    let ticks = x.windows(2).zip(y.windows(2));
+    let moving = ticks.filter_map(|(x, y)| {
+        let step = |of: &[AxisSample], unit: f64| (of[1].command - of[0].command) / unit;
+        let moves = step(x, units[0]).hypot(step(y, units[1])) >= slowest;
+        moves.then_some((circle.side * x[1].load + circle.radius, y[1].load))
+    });
+    moving.collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn unit_directions_go_on_and_distances_are_along_the_radius() {
+        let quarter = |turn: f64| {
+            let (y, x) = (turn * std::f64::consts::FRAC_PI_2).sin_cos();
+            (2.1 * x, 2.1 * y)
+        };
+        let circled = Circled {
+            error: ErrorFigures::default(),
+            points: (0..6).map(|turn| quarter(f64::from(turn))).collect(),
+            trouble: None,
+            radius: 2.0,
+        };
+        for (turn, (degrees, distance)) in circled.distances().into_iter().enumerate() {
+            assert!((degrees - 90.0 * turn as f64).abs() < 1e-9, "{degrees}");
+            assert!((distance - 0.1).abs() < 1e-9, "{distance}");
+        }
+    }
 }

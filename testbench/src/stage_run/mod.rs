@@ -165,8 +165,8 @@ impl<'a> StageRun<'a> {
     ///
     /// # Errors
     /// [`StageRunError`] where that cannot be run.
-    pub fn circle(&self, circle: &Circle, shaping: Shaping) -> Result<Circled, StageRunError> {
-        circle::measure(self, self.host(1.0, None)?, circle, shaping)
+    pub fn circle(&self, circle: &Circle) -> Result<Circled, StageRunError> {
+        circle::measure(self, self.host(1.0, None)?, circle)
     }
 
     fn host(&self, frequency_factor: f64, device: Option<Box<dyn Device>>) -> Result<Host<'_>, StageRunError> {

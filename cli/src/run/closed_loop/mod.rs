@@ -40,7 +40,6 @@ pub(crate) struct ClosedLoop<'a> {
 /// The circle of the first two axes.
 struct Circles {
     circle: Circle,
-    unshaped: Circled,
     /// Each shaper with its own delay.
     apart: Circled,
     /// All shapers with the same delay; the reason where there are no such tables.
@@ -52,7 +51,7 @@ struct Circles {
 enum Task<'a> {
     Compare,
     Move(Shaping, f64),
-    Circle(&'a StageRun<'a>, Shaping),
+    Circle(&'a StageRun<'a>),
 }
 
 /// What came of it.
@@ -88,12 +87,10 @@ impl<'a> Job<'a> {
         if self.simulator == Simulator::Verilator {
             tasks.push(Task::Compare);
         }
-        if let Ok(Some(apart)) = &apart {
-            tasks.extend([Shaping::Unshaped, Shaping::Shaped].map(|shaping| Task::Circle(apart, shaping)));
-        }
-        if let Ok(Some(matched)) = &matched {
-            tasks.push(Task::Circle(matched, Shaping::Shaped));
-        }
+        let rounds = [&apart, &matched]
+            .into_iter()
+            .flat_map(|run| run.as_ref().ok()?.as_ref());
+        tasks.extend(rounds.map(Task::Circle));
         let moves = [
             (Shaping::Shaped, 1.0),
             (Shaping::Unshaped, 1.0),
@@ -114,10 +111,9 @@ impl<'a> Job<'a> {
         let lost = || Failure::from(miette::miette!("a run of the closed loop is missing"));
         let [shaped, unshaped, slower, faster] = moves.try_into().map_err(|_| lost())?;
         let mut circles = circles.into_iter();
-        let circles = match (circle, circles.next(), circles.next()) {
-            (Some(circle), Some(unshaped), Some(apart)) => Some(Circles {
+        let circles = match (circle, circles.next()) {
+            (Some(circle), Some(apart)) => Some(Circles {
                 circle,
-                unshaped,
                 apart,
                 matched: match (circles.next(), matched) {
                     (Some(circled), _) => Ok(circled),
@@ -178,8 +174,8 @@ impl<'a> Job<'a> {
                 Some(Done::Compared(own.side_by_side(device)?))
             }
             Task::Move(shaping, factor) => Some(Done::Moved(own.moved(shaping, factor)?)),
-            Task::Circle(run, shaping) => match circle {
-                Some(circle) => Some(Done::Circled(run.circle(&circle, shaping)?)),
+            Task::Circle(run) => match circle {
+                Some(circle) => Some(Done::Circled(run.circle(&circle)?)),
                 None => None,
             },
         })
@@ -223,9 +219,7 @@ impl ClosedLoop<'_> {
     fn without_trouble(&self) -> Check {
         let circles = self.circles.iter().flat_map(|circles| {
             let matched = circles.matched.as_ref().ok();
-            [Some(&circles.unshaped), Some(&circles.apart), matched]
-                .into_iter()
-                .flatten()
+            std::iter::once(&circles.apart).chain(matched)
         });
         let of_moves = self.moves().map(|moved| moved.trouble.as_ref());
         let mut of_runs = of_moves

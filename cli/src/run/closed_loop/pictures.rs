@@ -26,15 +26,13 @@ impl ClosedLoop<'_> {
                 let micro = |(degrees, distance): (f64, f64)| (degrees, 1e6 * distance);
                 (name.to_owned(), circled.distances().into_iter().map(micro).collect())
             };
-            let (name, points) = curve("unshaped", &circles.unshaped);
-            let mut curves = vec![Curve::reference(name, points)];
             let matched = circles.matched.as_ref().ok();
-            let matched = matched.map(|circled| curve("shaped, delays made equal", circled));
-            let apart = curve("shaped, each with its own delay", &circles.apart);
+            let matched = matched.map(|circled| curve("delays made equal", circled));
+            let apart = curve("each shaper with its own delay", &circles.apart);
             let shaped = std::iter::once(apart).chain(matched);
-            curves.extend(shaped.map(|(name, points)| Curve::new(name, points)));
+            let curves = shaped.map(|(name, points)| Curve::new(name, points)).collect();
             let panel = Panel {
-                title: "Circle: how far the load is outside of it".into(),
+                title: "circle: how far the load is outside of it".into(),
                 x_label: "direction from the centre, degrees".into(),
                 y_label: "distance, millionths of the unit".into(),
                 curves,

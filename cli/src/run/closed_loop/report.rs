@@ -59,10 +59,9 @@ impl ClosedLoop<'_> {
         let mut row = |name: &str, circled: &Circled| {
             table.row([name.to_owned(), micro(circled.error.peak), micro(circled.error.rms)]);
         };
-        row("unshaped", &circles.unshaped);
-        row("shaped, each with its own delay", &circles.apart);
+        row("each with its own delay", &circles.apart);
         if let Ok(matched) = &circles.matched {
-            row("shaped, delays made equal", matched);
+            row("delays made equal", matched);
         }
         let names: Vec<&str> = self
             .machine
@@ -109,7 +108,6 @@ impl ClosedLoop<'_> {
                 axes: self.machine.axes.iter().take(2).map(|axis| axis.name.clone()).collect(),
                 radius: circles.circle.radius,
                 speed: circles.circle.speed,
-                unshaped: circles.unshaped.error.into(),
                 own_delays: circles.apart.error.into(),
                 equal_delays: circles.matched.as_ref().ok().map(|circled| circled.error.into()),
             }),
@@ -184,7 +182,6 @@ struct CircleDocument {
     axes: Vec<String>,
     radius: f64,
     speed: f64,
-    unshaped: ErrorDocument,
     own_delays: ErrorDocument,
     equal_delays: Option<ErrorDocument>,
 }
