@@ -144,7 +144,7 @@ fn row_seed(block: &dyn Block, seed: u64) -> u64 {
 }
 
 /// What a mutex holds; a thread that died over it does not matter here, the panic goes on by itself.
-fn locked<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
+pub(crate) fn locked<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(std::sync::PoisonError::into_inner)
 }
 

@@ -6,6 +6,7 @@ use crate::design::Report;
 use crate::failure::Failure;
 use crate::machine::{self, MachineFile};
 use crate::output;
+use crate::stage::{self, Stage};
 use posicast_hdl::emit::Module;
 use posicast_hdl::machine::{AxisShaper, emit_machine};
 use posicast_model::spec::Machine;
@@ -30,7 +31,14 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let report = Report::new(&file.machine, &args.machine)?;
     report.warn();
     let shapers = machine::shapers(&file.machine, &report.design, &args.machine)?;
-    let modules = modules(&file.machine, &shapers, &report.controllers, &args.machine)?;
+    let stage = stage::of_machine(&file.machine, &report.design, &args.machine)?;
+    let modules = modules(
+        &file.machine,
+        &shapers,
+        &report.controllers,
+        stage.as_ref(),
+        &args.machine,
+    )?;
     let mut package = open(args.output.as_deref(), &file)?;
     add_sources(&mut package, &file, &modules)?;
     package
@@ -43,16 +51,21 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     output::print(&text)
 }
 
-/// The Verilog modules of a machine: those of its top, then those of its components. `path` is the machine file.
+/// The Verilog modules of a machine: those of its top, then those of its components, then those of its stage. `path` is the machine
+/// file.
 pub(crate) fn modules(
     machine: &Machine,
     shapers: &[AxisShaper],
     controllers: &[Option<AxisControl>],
+    stage: Option<&Stage>,
     path: &Path,
 ) -> Result<Vec<Module>, Failure> {
     let mut modules = emit_machine(&machine.name, shapers).map_err(Failure::because)?;
     for component in blocks::components(machine, shapers, controllers, path)? {
         modules.extend(component.modules().map_err(Failure::because)?);
+    }
+    if let Some(stage) = stage {
+        modules.extend(stage.modules(path)?);
     }
     Ok(modules)
 }

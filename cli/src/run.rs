@@ -5,6 +5,7 @@
 //! check: then it is the evidence.
 
 mod checks;
+mod closed_loop;
 mod report;
 
 use crate::bench::{self, Bench, Simulator};
@@ -16,7 +17,8 @@ use crate::machine;
 use crate::plot;
 use crate::simulate::simulate;
 use crate::verify::DEFAULT_SEED;
-use crate::{generate, output, progress, synth};
+use crate::{generate, output, progress, stage, synth};
+use closed_loop::ClosedLoop;
 use posicast_hdl::machine::AxisShaper;
 use posicast_model::design::MachineDesign;
 use posicast_model::simulation::{AxisSimulation, largest_difference};
@@ -70,12 +72,17 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let shapers = machine::shapers(machine, &design.design, &args.machine)?;
     let words = command::words(machine, &design.design, args.command.as_deref())?;
     let simulator = Simulator::choose(args.simulator)?;
+    let stage = stage::of_machine(machine, &design.design, &args.machine)?;
+    if stage.is_some() {
+        closed_loop::announce(simulator, args.command.is_some());
+    }
     let yosys = installed_yosys()?;
     let axes = simulate(machine, &design.design, &shapers, &words)?;
-    let modules = generate::modules(machine, &shapers, &design.controllers, &args.machine)?;
+    let modules = generate::modules(machine, &shapers, &design.controllers, stage.as_ref(), &args.machine)?;
     let components = blocks::components(machine, &shapers, &design.controllers, &args.machine)?;
     let top = blocks::shapers(machine, shapers, &words)?;
-    let components = components.iter().map(|component| component as &dyn Block);
+    let components = components.iter().chain(stage.as_ref().map(|stage| &stage.block));
+    let components = components.map(|component| component as &dyn Block);
     let tops: Vec<&dyn Block> = std::iter::once(&top as &dyn Block).chain(components).collect();
 
     let mut package = generate::open(args.output.as_deref(), &file)?;
@@ -94,9 +101,27 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let waves = job.waves(&mut package, &design.design, &axes)?;
     let estimate = yosys.map(|yosys| estimate(&yosys, machine, &files)).transpose()?;
 
+    let closed_loop = stage.as_ref().map(|stage| {
+        let job = closed_loop::Job {
+            machine,
+            path: &args.machine,
+            stage,
+            sources: &all,
+            simulator,
+            seed: args.seed,
+        };
+        job.run()
+    });
+    let closed_loop = closed_loop.transpose()?;
+
     let mut checks = Vec::from_iter(checks::lint(simulator, &all, &tops)?);
     checks.extend(checks::all(simulator, machine, &design.design, &lockstep, &waves));
     checks.extend(estimate.as_ref().and_then(|e| checks::fits(machine, e)));
+    checks.extend(closed_loop.iter().flat_map(ClosedLoop::checks));
+    for (name, panels) in closed_loop.iter().flat_map(ClosedLoop::pictures) {
+        let picture = plot::svg(&panels)?;
+        package.add(name, picture.as_bytes()).map_err(Failure::because)?;
+    }
     package
         .add(
             "plots/sensitivity.svg",
@@ -119,6 +144,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         lockstep: &lockstep,
         waves: &waves,
         estimate: estimate.as_ref(),
+        closed_loop: closed_loop.as_ref(),
         checks: &checks,
     };
     let document = report.json();

@@ -4,7 +4,7 @@ use crate::blocks::COMPONENT_SUFFIX;
 use crate::design::Report;
 use crate::failure::Failure;
 use crate::output::{self, Table};
-use crate::{generate, machine, progress};
+use crate::{generate, machine, progress, stage};
 use posicast_model::spec::Machine;
 use posicast_synth::package;
 use posicast_synth::yosys::{Block, Estimate, Family, Resources, Yosys, YosysError};
@@ -116,7 +116,8 @@ fn sources(source: &Path) -> Result<(Machine, Vec<PathBuf>, Option<tempfile::Tem
     let machine = machine::read(source)?.machine;
     let report = Report::new(&machine, source)?;
     let shapers = machine::shapers(&machine, &report.design, source)?;
-    let modules = generate::modules(&machine, &shapers, &report.controllers, source)?;
+    let stage = stage::of_machine(&machine, &report.design, source)?;
+    let modules = generate::modules(&machine, &shapers, &report.controllers, stage.as_ref(), source)?;
     let (files, scratch) = generate::write_scratch(&modules)?;
     Ok((machine, files, Some(scratch)))
 }

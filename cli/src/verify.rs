@@ -4,7 +4,7 @@ use crate::bench::{self, Bench, Simulator};
 use crate::design::Report as DesignReport;
 use crate::failure::Failure;
 use crate::output::{self, Table};
-use crate::{blocks, command, machine};
+use crate::{blocks, command, machine, stage};
 use posicast_synth::package;
 use posicast_testbench::blocks::{Block, Sources};
 use posicast_testbench::lockstep::report::{Report, Verdict};
@@ -102,15 +102,16 @@ impl Job {
         let shapers = machine::shapers(&machine, design, source)?;
         // A move that does not fit the words is an error of `run`; a lock step has its other stimuli.
         let words = command::words(&machine, design, None).unwrap_or_default();
-        let others = match &folder {
-            Some(files) => {
-                let there = Sources::found(files.clone());
-                let mut found = blocks::of_components(&machine, &shapers, &report.controllers, &path)?;
-                found.retain(|block| there.hold(block.as_ref()));
-                found
-            }
+        let stage = stage::of_machine(&machine, design, source)?;
+        let mut others = match &folder {
+            Some(_) => blocks::of_components(&machine, &shapers, &report.controllers, &path)?,
             None => blocks::others(&machine, &shapers, &report.controllers, &path)?,
         };
+        others.extend(stage.map(|stage| Box::new(stage.block) as Box<dyn Block>));
+        if let Some(files) = &folder {
+            let there = Sources::found(files.clone());
+            others.retain(|block| there.hold(block.as_ref()));
+        }
         let mut list: Vec<Box<dyn Block>> = vec![Box::new(blocks::shapers(&machine, shapers, &words)?)];
         list.extend(others);
         let sources = |block: &dyn Block| match &folder {

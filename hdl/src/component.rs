@@ -5,8 +5,8 @@
 
 use crate::emit::{Cause, EmitError, Header, Module, connect, print};
 use crate::{
-    axis, divider, divider_share, drive_command, group, pulse_counter, pwm, registers, sample_select, schedule,
-    segments, setting_banks, shaper, sliding_mode, time_base,
+    axis, divider, divider_share, drive_command, encoder_generator, excitation, group, linear_scale, pulse_counter,
+    pwm, registers, sample_select, schedule, segments, setting_banks, shaper, sliding_mode, time_base, trace,
 };
 use posicast_model::rtl::component::{Block, Component, Joined};
 
@@ -79,6 +79,10 @@ fn block(block: &Block, prefix: &str, stage: &str) -> Result<Vec<Module>, EmitEr
         Block::Segments => segments::emit(prefix),
         Block::Axis => axis::emit(prefix),
         Block::DriveCommand => drive_command::emit(prefix),
+        Block::LinearScale => linear_scale::emit(prefix),
+        Block::EncoderGenerator => encoder_generator::emit(prefix),
+        Block::Excitation => excitation::emit(prefix),
+        Block::Trace(config) => trace::emit(config, prefix),
         Block::DividerShare(channels) => divider_share::emit(*channels, prefix),
         Block::Schedule(config) => schedule::emit(config, prefix),
         Block::Group(axes) => group::emit(*axes, prefix),

@@ -14,7 +14,11 @@ use posicast_model::rtl::component::Component;
 use posicast_model::rtl::composition::{Composed, Composition};
 use posicast_model::rtl::divider::{Divider, DividerConfig};
 use posicast_model::rtl::divider_share::DividerShare;
+use posicast_model::rtl::drive_command::DriveCommand;
+use posicast_model::rtl::encoder_generator::EncoderGenerator;
+use posicast_model::rtl::excitation::Excitation;
 use posicast_model::rtl::group::Group;
+use posicast_model::rtl::linear_scale::LinearScale;
 use posicast_model::rtl::pulse_counter::PulseCounter;
 use posicast_model::rtl::pwm::{Mode, Pwm};
 use posicast_model::rtl::registers::{RegisterBank, RegisterMap, maps};
@@ -25,6 +29,7 @@ use posicast_model::rtl::setting_banks::SettingBanks;
 use posicast_model::rtl::shaper::Shaper;
 use posicast_model::rtl::sliding_mode::SlidingMode;
 use posicast_model::rtl::time_base::TimeBase;
+use posicast_model::rtl::trace::{Trace, TraceConfig};
 use posicast_model::rtl::{Direction, Moore, OutputKind, Port};
 use proptest::prelude::*;
 use random_inputs::{Hints, Random, RandomInputs, STAGE, TICK_CLOCKS};
@@ -158,6 +163,23 @@ fn blocks() -> Vec<Tried> {
         tried("divider_share", &[("divide", RARE), ("rst", RARE)], || {
             DividerShare::new(3)
         }),
+        tried("drive_command", &[("tick", RARE), ("rst", RARE)], DriveCommand::new),
+        tried(
+            "encoder_generator",
+            &[("rate", &[0, 0, 0, 1 << 20])],
+            EncoderGenerator::new,
+        ),
+        tried(
+            "linear_scale",
+            &[("tick", RARE), ("velocity_valid", RARE), ("align", RARE), ("rst", RARE)],
+            LinearScale::new,
+        ),
+        tried("excitation", &[("valid", RARE), ("rst", RARE)], Excitation::new),
+        tried(
+            "trace",
+            &[("strobe", RARE), ("arm", RARE), ("halt", RARE), ("rst", RARE)],
+            || Trace::new(&TraceConfig::new(256).unwrap()),
+        ),
         tried("group", &[("start", RARE), ("rst", RARE)], || Group::new(3)),
         tried("an axis", STAGE, || composed(axis(TICK_CLOCKS))),
         tried("a stage", STAGE, || {

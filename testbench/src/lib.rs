@@ -14,6 +14,7 @@
 //! - [`blocks`] is the list of hardware blocks, each with its Verilog, model, stimuli and coverage.
 //! - [`campaign`] is the order of stimuli that a machine goes through; [`recording`] runs a real move into waveforms.
 //! - [`register_tests`] asks registers, through the bus, for what their description promises.
+//! - [`stage_bench`] joins a stage with its simulated machine; [`stage_run`] moves it and measures.
 //! - [`wave`] writes waveforms; [`diff`] compares two of them.
 
 pub mod blocks;
@@ -26,6 +27,7 @@ mod reader;
 pub mod recording;
 pub mod register_tests;
 pub mod stage_bench;
+pub mod stage_run;
 pub mod stimuli;
 mod tool;
 pub mod verilator;

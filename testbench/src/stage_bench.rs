@@ -81,6 +81,8 @@ pub struct AxisSample {
 /// Where an axis's pins are among the stage's.
 struct Places {
     encoder: [usize; 3],
+    /// A and B of the scale.
+    scale: Option<[usize; 2]>,
     drive: [usize; 6],
     recorded: [usize; 4],
 }
@@ -152,6 +154,7 @@ impl StageBench {
         let mut places = Vec::new();
         for axis in &axes {
             let [a, b, z] = ["a", "b", "z"].map(|pin| place(&input_names, &format!("{axis}_{pin}")));
+            let scale = ["scale_a", "scale_b"].map(|pin| place(&input_names, &format!("{axis}_{pin}")).ok());
             let drive = ["a_high", "a_low", "b_high", "b_low", "drive_enable", "brake_release"];
             let [d0, d1, d2, d3, d4, d5] = drive.map(|pin| place(&output_names, &format!("{axis}_{pin}")));
             let net = |name: &str| {
@@ -161,6 +164,7 @@ impl StageBench {
             let [n0, n1, n2, n3] = RECORDED.map(net);
             places.push(Places {
                 encoder: [a?, b?, z?],
+                scale: scale[0].zip(scale[1]).map(<[usize; 2]>::from),
                 drive: [d0?, d1?, d2?, d3?, d4?, d5?],
                 recorded: [n0?, n1?, n2?, n3?],
             });
@@ -271,6 +275,10 @@ impl StageBench {
                 let pins = plant.encoder();
                 for (place, level) in places.encoder.into_iter().zip([pins.a, pins.b, pins.z]) {
                     self.inputs[place] = level.into();
+                }
+                if let Some([a, b]) = places.scale {
+                    let pins = plant.scale();
+                    (self.inputs[a], self.inputs[b]) = (pins.a.into(), pins.b.into());
                 }
             }
             let passed = match self.device {

@@ -1,6 +1,6 @@
 //! The page `docs/area.md`, and what has grown since it was written.
 
-use crate::Measured;
+use crate::{Measured, blocks};
 use posicast_synth::yosys::{Family, Resources};
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -41,31 +41,33 @@ pub(crate) fn page(tool: &str, measured: &[Measured]) -> String {
             row.block,
             row.size,
             figures(resources),
-            one.luts_by_yosys,
+            one.luts_by_yosys.map_or("–".to_owned(), |luts| luts.to_string()),
             row.note
         );
     }
-    let mut stage = Resources::default();
-    let mut parts = Vec::new();
-    for one in measured.iter().filter(|one| one.row.in_xy_stage > 0) {
-        (0..one.row.in_xy_stage).for_each(|_| stage += one.resources);
-        parts.push(format!("{} {}", one.row.in_xy_stage, one.row.block));
-    }
     let cells = device.cells * 55 / 100;
-    let mark = if stage.cells > cells { "⚠ " } else { "" };
     let _ = write!(
         text,
-        "\n## The XY stage so far\n\n\
-         Of its blocks there are: {}. Their sum, without registers, time\n\
-         base and what lies between the blocks:\n\n\
-         | | LE | M4K | 18×18 |\n|---|---|---|---|\n\
-         | sum | {mark}{} | {} | {} |\n\
-         | budget | {cells} (55 %) | 18 | 8 |\n",
-        parts.join(", "),
-        stage.cells,
-        stage.m4k_blocks,
-        stage.multipliers
+        "\n## The XY stage\n\n\
+         Against the budget of {cells} LE (55 %), 18 M4K and 8 multipliers. `whole` is everything, with registers, flattened: what\n\
+         is tied to the machine file is folded away, so it takes less than its blocks do alone.\n\n\
+         | | LE | of the device | M4K | 18×18 |\n|---|---|---|---|---|\n"
     );
+    for one in measured.iter().filter(|one| one.row.block == blocks::STAGE) {
+        let Resources {
+            cells: taken,
+            m4k_blocks,
+            multipliers,
+            ..
+        } = one.resources;
+        let mark = if taken > cells { "⚠ " } else { "" };
+        let share = 100 * taken / device.cells;
+        let _ = writeln!(
+            text,
+            "| {} | {mark}{taken} | {share} % | {m4k_blocks} | {multipliers} |",
+            one.row.size
+        );
+    }
     text
 }
 

@@ -2,6 +2,7 @@
 
 use super::Waves;
 use super::checks::Check;
+use super::closed_loop::{ClosedLoop, StageDocument};
 use crate::bench::Simulator;
 use crate::design::{self, Report as DesignReport};
 use crate::failure::Failure;
@@ -35,6 +36,7 @@ pub(crate) struct Report<'a> {
     pub(crate) lockstep: &'a LockstepReport,
     pub(crate) waves: &'a Waves,
     pub(crate) estimate: Option<&'a Estimate>,
+    pub(crate) closed_loop: Option<&'a ClosedLoop<'a>>,
     pub(crate) checks: &'a [Check],
 }
 
@@ -101,6 +103,10 @@ impl Report<'_> {
         text += &self.shapers_text();
         text.push('\n');
         text += &self.comparison_text();
+        if let Some(closed_loop) = self.closed_loop {
+            text.push('\n');
+            text += &closed_loop.text();
+        }
         if let Some(estimate) = self.estimate {
             text.push('\n');
             text += &synth::text(estimate);
@@ -238,6 +244,7 @@ impl Report<'_> {
             model_against_rtl: &self.waves.model,
             rtl_against_float: &self.waves.float,
             synth: self.estimate,
+            stage: self.closed_loop.map(ClosedLoop::json),
             checks: self.checks,
         }
     }
@@ -325,6 +332,8 @@ pub(crate) struct Document<'a> {
     model_against_rtl: &'a Comparison,
     rtl_against_float: &'a Comparison,
     synth: Option<&'a Estimate>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    stage: Option<StageDocument>,
     checks: &'a [Check],
 }
 

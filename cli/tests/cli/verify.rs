@@ -42,6 +42,8 @@ fn cli_verify_compares_every_block_of_the_library_for_a_machine_with_a_loop() {
             ("axis", "alone"),
             ("encoder_generator", "alone"),
             ("excitation", "alone"),
+            ("drive_command", "alone"),
+            ("linear_scale", "alone"),
         ] {
             let row = rows
                 .iter()
@@ -87,7 +89,7 @@ fn cli_verify_takes_blocks_by_name_and_says_which_there_are() {
     assert_eq!((unknown.status.code(), unknown.stdout.is_empty()), (Some(2), true));
     let said = String::from_utf8_lossy(&unknown.stderr).into_owned();
     assert!(
-        said.contains("divdier") && said.contains("cascade, divider, pulse_counter"),
+        said.contains("divdier") && said.contains("cascade, divider, drive_command"),
         "{said}"
     );
 }

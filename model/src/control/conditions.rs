@@ -57,6 +57,17 @@ pub enum ControlWarning {
         "proportional, derivative and integral make an unstable loop: lower integral (velocity drive: derivative below 1)"
     )]
     Unstable,
+    /// A loop on the scale has the flexibility between motor and load inside, which only its damping keeps quiet.
+    #[error(
+        "the loop on the scale has the axis's modes in it: proportional is {found}/s, and must not exceed {allowed}/s, half of \
+         2·damping·ω of the mode that allows least; lower proportional"
+    )]
+    ModesInLoop {
+        /// The proportional gain in 1/s.
+        found: f64,
+        /// Largest gain in 1/s.
+        allowed: f64,
+    },
     /// The acceleration limit asks for more than the drive gives.
     #[error(
         "an acceleration of {acceleration} m/s² takes {needed_a} A of {limit_a} A: lower the limit of the acceleration"

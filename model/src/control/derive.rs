@@ -7,7 +7,7 @@ use super::conditions::{self, ControlWarning, Loop};
 use super::culprit::Numbers;
 use super::law::Gains;
 use crate::rtl::sliding_mode::{Law, MANTISSA_MAX, Row, Settings};
-use crate::spec::{Axis, Clock, Controller, Drive, DriveMode};
+use crate::spec::{Axis, Clock, Controller, Drive, DriveMode, ScaleUse};
 
 /// Command units per unit of the drive: mA per A, mm/s per m/s.
 const COMMAND_UNITS: f64 = 1000.0;
@@ -140,6 +140,7 @@ pub fn gains(axis: &Axis, clock: Clock, lag_s: f64) -> Result<Derived, ControlEr
         });
     }
     let mut warnings = closed.warnings();
+    warnings.extend(modes_in_loop(axis, &drive.mode, linear.proportional));
     warnings.extend(conditions::coarse_gains(&gains, &settings));
     Ok(Derived {
         law,
@@ -147,6 +148,20 @@ pub fn gains(axis: &Axis, clock: Clock, lag_s: f64) -> Result<Derived, ControlEr
         settings,
         warnings,
         steady_error: closed.steady_error(&linear.proportional),
+    })
+}
+
+/// A velocity drive's loop on a scale at the load: `K·ω²/(s·(s² + 2ζω·s + ω²))` is stable for K below 2ζω.
+fn modes_in_loop(axis: &Axis, drive: &DriveMode, proportional: f64) -> Option<ControlWarning> {
+    let on_scale = axis.scale.is_some_and(|scale| scale.usage == ScaleUse::Position);
+    if !on_scale || !matches!(drive, DriveMode::Velocity { .. }) {
+        return None;
+    }
+    let modes = axis.modes.iter().map(|spec| spec.mode.decay());
+    let allowed = modes.fold(f64::INFINITY, f64::min);
+    (proportional > allowed).then_some(ControlWarning::ModesInLoop {
+        found: proportional,
+        allowed,
     })
 }
 

@@ -3,10 +3,12 @@
 use super::{ControlError, Derived, Supervision, SupervisionError, gains, loop_lag_s, schedule_delay_s, supervision};
 use crate::design::MachineDesign;
 use crate::rtl::divider::{DividerConfig, DividerConfigError};
+use crate::rtl::linear_scale::{ScaleRatio, ScaleRatioError};
 use crate::rtl::pwm::{ActiveLow, Mode, PwmConfig, PwmConfigError};
 use crate::rtl::shaper::{Motion, ShaperConfig, ShaperConfigError};
-use crate::rtl::stage::{StageAxis, StageConfig};
-use crate::spec::{Axis, Clock, Machine, Pwm, PwmMode};
+use crate::rtl::stage::{Schedule, StageAxis, StageConfig, StageScale};
+use crate::rtl::trace::{TraceConfig, TraceConfigError};
+use crate::spec::{Axis, Clock, Machine, Pwm, PwmMode, ScaleUse};
 
 /// A stage, and what was derived for its axes.
 #[derive(Debug, Clone, PartialEq)]
@@ -41,6 +43,22 @@ pub enum MachineStageError {
         /// Why.
         error: PwmConfigError,
     },
+    /// A scale.
+    #[error("axis {axis}: {error}")]
+    Scale {
+        /// Which.
+        axis: usize,
+        /// Why.
+        error: ScaleRatioError,
+    },
+    /// A trace memory.
+    #[error("axis {axis}: {error}")]
+    Trace {
+        /// Which.
+        axis: usize,
+        /// Why.
+        error: TraceConfigError,
+    },
     /// A controller.
     #[error("{error}")]
     Control {
@@ -66,6 +84,8 @@ impl MachineStageError {
             Self::Tick(_) => (0, "clock.sample_hz".to_owned()),
             Self::Shaper { axis, .. } => (*axis, "axis.shaper".to_owned()),
             Self::Pwm { axis, .. } => (*axis, "axis.pwm".to_owned()),
+            Self::Scale { axis, .. } => (*axis, "axis.scale.counts_per_unit".to_owned()),
+            Self::Trace { axis, .. } => (*axis, "axis.trace.samples".to_owned()),
             Self::Control { axis, error } => (*axis, error.key()),
             Self::Supervision { axis, error } => (*axis, error.key().to_owned()),
         }
@@ -95,13 +115,18 @@ pub fn stage(machine: &Machine, design: &MachineDesign) -> Result<Option<Machine
             pwm,
             filter_clocks: encoder.filter_clocks,
             shaper: shaper.map_err(|error| MachineStageError::Shaper { axis: index, error })?,
+            scale: scale(axis).map_err(|error| MachineStageError::Scale { axis: index, error })?,
+            bring_up: trace(axis).map_err(|error| MachineStageError::Trace { axis: index, error })?,
             supervision: watched.map_err(|error| MachineStageError::Supervision { axis: index, error })?,
             config: pwm_config(pwm, &machine.clock).map_err(|error| MachineStageError::Pwm { axis: index, error })?,
         });
     }
     let tick = DividerConfig::new(u64::from(machine.clock.clocks_per_sample()))?;
     let shapers: Vec<&ShaperConfig> = axes.iter().map(|parts| &parts.shaper).collect();
-    let used_clocks = crate::rtl::stage::Schedule::of(&shapers, axes.len() as u32).duty_clocks();
+    let on_scale = axes
+        .iter()
+        .any(|parts| parts.scale.is_some_and(|scale| scale.closes_loop));
+    let used_clocks = Schedule::of(&shapers, on_scale).duty_clocks();
     let (mut lags_s, mut derived, mut built) = (Vec::new(), Vec::new(), Vec::new());
     for (index, parts) in axes.into_iter().enumerate() {
         let delay_s = schedule_delay_s(&machine.clock, parts.pwm, used_clocks);
@@ -129,7 +154,27 @@ struct Parts<'a> {
     filter_clocks: u32,
     shaper: ShaperConfig,
     supervision: Supervision,
+    scale: Option<StageScale>,
+    bring_up: Option<TraceConfig>,
     config: PwmConfig,
+}
+
+fn scale(axis: &Axis) -> Result<Option<StageScale>, ScaleRatioError> {
+    let Some(scale) = &axis.scale else {
+        return Ok(None);
+    };
+    let closes_loop = scale.usage == ScaleUse::Position;
+    let ratio = match closes_loop {
+        true => ScaleRatio::new,
+        false => ScaleRatio::for_monitor,
+    };
+    let ratio = ratio(axis.counts_per_unit, scale.counts_per_unit)?;
+    Ok(Some(StageScale { ratio, closes_loop }))
+}
+
+fn trace(axis: &Axis) -> Result<Option<TraceConfig>, TraceConfigError> {
+    let samples = axis.trace.map(|trace| u64::from(trace.samples));
+    samples.map(TraceConfig::new).transpose()
 }
 
 impl Parts<'_> {
@@ -145,6 +190,8 @@ impl Parts<'_> {
             pwm_period_clocks: self.pwm.period_clocks(clock),
             encoder_filter_clocks: self.filter_clocks,
             supervision: self.supervision,
+            scale: self.scale,
+            bring_up: self.bring_up,
         }
     }
 }

@@ -42,9 +42,11 @@
 //! assert_eq!((command.outputs().duty, command.outputs().pwm_enable), (0, false));
 //! ```
 
+use std::sync::Arc;
+
 use super::axis::State;
 use super::shaper::wrap;
-use super::{ClockedBlock, Direction, Moore, Port, StepError};
+use super::{ClockedBlock, Direction, Moore, Port, StepError, quiet_at_rest};
 
 /// Width of the controller's duty.
 pub const CONTROLLER_DUTY_BITS: u32 = 18;
@@ -256,8 +258,9 @@ pub fn limited(direct_duty: i32, limit: u16) -> i32 {
 }
 
 /// The block, cycle accurate at its ports.
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub struct DriveCommand {
-    ports: Vec<Port>,
+    ports: Arc<[Port]>,
     /// Ticks until direct mode expires; of no meaning outside of it.
     ticks_left: u16,
     /// The sign of the last manual duty wanted.
@@ -275,7 +278,7 @@ impl DriveCommand {
     /// The block after reset.
     pub fn new() -> Self {
         Self {
-            ports: ports(),
+            ports: ports().into(),
             ticks_left: 0,
             backward: false,
             shown: Outputs::default(),
@@ -380,6 +383,15 @@ impl Moore for DriveCommand {
     fn show(&self, outputs: &mut [u64]) {
         for (output, value) in outputs.iter_mut().zip(self.outputs().to_raw()) {
             *output = value;
+        }
+    }
+
+    fn quiet_clocks(&self, inputs: &[u64]) -> u64 {
+        match <&[u64; INPUT_PORTS]>::try_from(inputs) {
+            Ok(raw) => quiet_at_rest(self, |next| {
+                DriveCommand::step(next, &Inputs::from_raw(raw));
+            }),
+            Err(_) => 0,
         }
     }
 }

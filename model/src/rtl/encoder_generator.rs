@@ -27,7 +27,9 @@
 //! assert_eq!(generator.outputs().generated_count, 10);
 //! ```
 
-use super::{ClockedBlock, Direction, Moore, Port, StepError};
+use std::sync::Arc;
+
+use super::{ClockedBlock, Direction, Moore, Port, StepError, quiet_at_rest};
 
 /// Fraction bits of `rate`.
 pub const RATE_FRACTION: u32 = 32;
@@ -174,9 +176,9 @@ impl Encoder {
 }
 
 /// The internal encoder, cycle accurate at its ports.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub struct EncoderGenerator {
-    ports: Vec<Port>,
+    ports: Arc<[Port]>,
     encoder: Encoder,
     /// Pins or lines of the clock before: the only registers that a reset does not clear.
     shown: [bool; LINES],
@@ -192,7 +194,7 @@ impl EncoderGenerator {
     /// A generator after power-up.
     pub fn new() -> Self {
         Self {
-            ports: ports(),
+            ports: ports().into(),
             encoder: Encoder::default(),
             shown: [false; LINES],
         }
@@ -249,6 +251,15 @@ impl Moore for EncoderGenerator {
     fn show(&self, outputs: &mut [u64]) {
         for (output, value) in outputs.iter_mut().zip(self.outputs().to_raw()) {
             *output = value;
+        }
+    }
+
+    fn quiet_clocks(&self, inputs: &[u64]) -> u64 {
+        match <&[u64; INPUT_PORTS]>::try_from(inputs) {
+            Ok(raw) => quiet_at_rest(self, |next| {
+                EncoderGenerator::step(next, &Inputs::from_raw(raw));
+            }),
+            Err(_) => 0,
         }
     }
 }

@@ -29,6 +29,7 @@ pub mod time_base;
 pub mod trace;
 pub mod word;
 
+pub(crate) use moore::quiet_at_rest;
 pub use moore::{FOREVER, Moore, OutputKind};
 
 /// Direction of a port, seen from the block.

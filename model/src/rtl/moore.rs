@@ -68,3 +68,11 @@ pub trait Moore: ClockedBlock {
         false
     }
 }
+
+/// For a block that only waits while a clock changes nothing: quiet for ever then, else not at all. `clock` is one of its
+/// clocks with the inputs.
+pub(crate) fn quiet_at_rest<B: Clone + PartialEq>(block: &B, clock: impl FnOnce(&mut B)) -> u64 {
+    let mut next = block.clone();
+    clock(&mut next);
+    if next == *block { FOREVER } else { 0 }
+}

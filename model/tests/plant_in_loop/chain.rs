@@ -79,7 +79,7 @@ impl Chain {
         let periods = (clock.clocks_per_sample(), pwm.period_clocks(&clock) as i32);
         assert_eq!(periods, (TICK_CLOCKS, PERIOD_CLOCKS));
         let schedule = Schedule::controlling(shaper.pass_clocks(shaper.most_products()));
-        let lag_s = loop_lag_s(&drive, schedule_delay_s(&clock, &pwm, &schedule));
+        let lag_s = loop_lag_s(&drive, schedule_delay_s(&clock, &pwm, schedule.clocks()));
         let derived = gains(axis, clock, lag_s).unwrap();
         assert_eq!(derived.warnings, []);
         let (dead_time, minimum_pulse) = (pwm.dead_time_clocks(&clock), pwm.minimum_pulse_clocks(&clock));

@@ -17,10 +17,7 @@
 
 mod components;
 mod pins;
-// The stage that the model's tests compare block by block.
-#[path = "../../../model/tests/support/stage.rs"]
 mod stage;
-mod two_axes;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use posicast_hdl::emit::Module;
@@ -52,7 +49,7 @@ struct Whole {
 type Events = Vec<(Vec<u64>, u64)>;
 
 fn compositions(criterion: &mut Criterion) {
-    for whole in components::all().into_iter().chain([two_axes::stage()]) {
+    for whole in components::all().into_iter().chain([stage::stage()]) {
         measure(criterion, whole);
     }
 }

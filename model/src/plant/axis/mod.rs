@@ -84,8 +84,6 @@ pub struct PlantOptions {
     pub position: f64,
     /// What the encoder sees; `None`: the driven coordinate of a velocity drive, the load of a torque drive.
     pub encoder_at: Option<Coordinate>,
-    /// Counts per unit of a second encoder at the load, `[axis.scale]`.
-    pub scale_counts_per_unit: Option<f64>,
     /// The count with the index, if the encoder has one.
     pub index_at: i64,
 }
@@ -96,7 +94,6 @@ impl Default for PlantOptions {
             frequency_factor: 1.0,
             position: 0.0,
             encoder_at: None,
-            scale_counts_per_unit: None,
             index_at: 0,
         }
     }
@@ -210,7 +207,9 @@ impl AxisPlant {
         if !(factor > 0.0 && factor <= 10.0) {
             return Err(AxisPlantError::FrequencyFactor(factor));
         }
-        let scales = [Some(axis.counts_per_unit), options.scale_counts_per_unit];
+        // A second encoder, at the load.
+        let scale = axis.scale.map(|scale| scale.counts_per_unit);
+        let scales = [Some(axis.counts_per_unit), scale];
         for counts_per_unit in scales.into_iter().flatten() {
             check(axis, drive, clock, counts_per_unit, options.position)?;
         }
@@ -234,9 +233,7 @@ impl AxisPlant {
                 .encoder_at
                 .unwrap_or(if stiff { Coordinate::Driven } else { Coordinate::Load }),
             encoder: encoder(axis.counts_per_unit, has_index.then_some(options.index_at)),
-            scale: options
-                .scale_counts_per_unit
-                .map(|counts_per_unit| encoder(counts_per_unit, None)),
+            scale: scale.map(|counts_per_unit| encoder(counts_per_unit, None)),
         })
     }
 

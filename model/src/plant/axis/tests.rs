@@ -5,7 +5,7 @@ use proptest::prelude::*;
 use super::*;
 use crate::motion::{Cubic, Jump, Trajectory};
 use crate::plant::response::response_figures;
-use crate::spec::{self, Machine};
+use crate::spec::{self, Machine, Scale};
 
 const VELOCITY: &str = "mode = \"velocity\"\nfull_scale_velocity = 0.5\n";
 const TORQUE: &str = "mode = \"torque\"\nequivalent_mass = 64.274\nforce_constant = 475.01\ncurrent_limit_a = 2.73\n\
@@ -17,7 +17,7 @@ fn machine(drive: &str, mode: &str) -> Machine {
     let text = format!(
         "name = \"one\"\n[clock]\nfrequency_hz = 50_000_000\nsample_hz = 10_000\n[[axis]]\nname = \"x\"\n\
          counts_per_unit = 1_000_000\n[axis.shaper]\nkind = \"zvd\"\n[[axis.mode]]\n{mode}\n[axis.encoder]\nindex = true\n\
-         [axis.pwm]\nmode = \"locked-antiphase\"\nfrequency_hz = 20_000\n[axis.drive]\n{drive}"
+         [axis.scale]\ncounts_per_unit = 10_000_000\n[axis.pwm]\nmode = \"locked-antiphase\"\nfrequency_hz = 20_000\n[axis.drive]\n{drive}"
     );
     spec::parse("one.toml", &text).unwrap_or_else(|error| panic!("{error:?}"))
 }
@@ -157,7 +157,6 @@ fn unit_what_the_encoder_sees() {
     let counts = |drive, encoder_at| {
         let options = PlantOptions {
             encoder_at,
-            scale_counts_per_unit: Some(1e7),
             ..PlantOptions::default()
         };
         let mut axis = plant(drive, GX, options);
@@ -248,11 +247,12 @@ fn unit_what_is_no_plant_is_named() {
         assert!(of(&|_| (), options).contains("2^40"));
     }
     for counts in [f64::NAN, f64::INFINITY] {
-        let options = PlantOptions {
-            scale_counts_per_unit: Some(counts),
-            ..default
-        };
-        assert!(AxisPlant::new(&machine.axes[0], &machine.clock, &options).is_err());
+        let mut axis = machine.axes[0].clone();
+        axis.scale = axis.scale.map(|scale| Scale {
+            counts_per_unit: counts,
+            ..scale
+        });
+        assert!(AxisPlant::new(&axis, &machine.clock, &default).is_err());
     }
 }
 
@@ -276,8 +276,7 @@ proptest! {
         torque: bool,
     ) {
         let drive = if torque { TORQUE } else { VELOCITY };
-        let options = PlantOptions { scale_counts_per_unit: Some(3e6), ..PlantOptions::default() };
-        let whole = plant(drive, GX, options);
+        let whole = plant(drive, GX, PlantOptions::default());
         let [mut by_clock, mut by_cut, mut by_stretch] = [whole.clone(), whole.clone(), whole];
         let mut cuts = cuts.into_iter().cycle();
         for (pins, clocks) in stretches {

@@ -6,7 +6,10 @@ use crate::rtl::composition::{Composed, Composition, CompositionError, Part};
 use crate::rtl::divider::{Divider, DividerConfig};
 use crate::rtl::divider_share::DividerShare;
 use crate::rtl::drive_command::DriveCommand;
+use crate::rtl::encoder_generator::EncoderGenerator;
+use crate::rtl::excitation::Excitation;
 use crate::rtl::group::Group;
+use crate::rtl::linear_scale::LinearScale;
 use crate::rtl::pulse_counter::PulseCounter;
 use crate::rtl::pwm::{Pwm, PwmConfig};
 use crate::rtl::registers::{RegisterBank, RegisterMap};
@@ -17,6 +20,7 @@ use crate::rtl::setting_banks::SettingBanks;
 use crate::rtl::shaper::{Shaper, ShaperConfig};
 use crate::rtl::sliding_mode::{Settings, SlidingMode};
 use crate::rtl::time_base::TimeBase;
+use crate::rtl::trace::{Trace, TraceConfig};
 
 /// A block in a component, with what it is built from.
 #[derive(Debug, Clone, PartialEq)]
@@ -50,6 +54,14 @@ pub enum Block {
     Axis,
     /// What the PWM is told.
     DriveCommand,
+    /// Motor against scale.
+    LinearScale,
+    /// A source of encoder edges in front of the pulse counter.
+    EncoderGenerator,
+    /// Test signals behind the shaper.
+    Excitation,
+    /// A memory of what the axis did.
+    Trace(TraceConfig),
     /// One divider for so many pulse counters.
     DividerShare(usize),
     /// When the controllers start.
@@ -76,6 +88,10 @@ impl Block {
             Self::Segments => "segments",
             Self::Axis => "axis",
             Self::DriveCommand => "drive_command",
+            Self::LinearScale => "linear_scale",
+            Self::EncoderGenerator => "encoder_generator",
+            Self::Excitation => "excitation",
+            Self::Trace(_) => "trace",
             Self::DividerShare(_) => "divider_share",
             Self::Schedule(_) => "schedule",
             Self::Group(_) => "group",
@@ -87,7 +103,12 @@ impl Block {
     pub fn is_common(&self) -> bool {
         !matches!(
             self,
-            Self::Registers(_) | Self::Shaper(_) | Self::SettingBanks(_) | Self::Pwm(_) | Self::Joined(_)
+            Self::Registers(_)
+                | Self::Shaper(_)
+                | Self::SettingBanks(_)
+                | Self::Pwm(_)
+                | Self::Trace(_)
+                | Self::Joined(_)
         )
     }
 
@@ -106,6 +127,10 @@ impl Block {
             Self::Segments => Box::new(Segments::new(seed)),
             Self::Axis => Box::new(Axis::new()),
             Self::DriveCommand => Box::new(DriveCommand::new()),
+            Self::LinearScale => Box::new(LinearScale::new()),
+            Self::EncoderGenerator => Box::new(EncoderGenerator::new()),
+            Self::Excitation => Box::new(Excitation::new()),
+            Self::Trace(config) => Box::new(Trace::new(config)),
             Self::DividerShare(channels) => Box::new(DividerShare::new(*channels)),
             Self::Schedule(config) => Box::new(Schedule::new(config)),
             Self::Group(axes) => Box::new(Group::new(*axes)),

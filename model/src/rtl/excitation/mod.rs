@@ -50,8 +50,10 @@ mod wave;
 pub use ports::{DURATION_BITS, INPUT_PORTS, Inputs, Kind, OUTPUT_PORTS, Outputs, ports};
 pub use wave::{FREQUENCY_BITS, FREQUENCY_FRACTION, PRBS_BITS, TURN_STEPS};
 
+use std::sync::Arc;
+
 use self::wave::{SCALE_CLOCKS, Wave};
-use super::{ClockedBlock, Moore, Port, StepError};
+use super::{ClockedBlock, Moore, Port, StepError, quiet_at_rest};
 
 /// Clocks from `valid` to `reference_valid`.
 pub const LATENCY_CLOCKS: u32 = 1;
@@ -111,9 +113,9 @@ impl Signal {
 }
 
 /// The excitation, cycle accurate at its ports.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Excitation {
-    ports: Vec<Port>,
+    ports: Arc<[Port]>,
     signal: Signal,
     /// `enable` was low since the last signal.
     armed: bool,
@@ -130,7 +132,7 @@ impl Excitation {
     /// An excitation after reset.
     pub fn new() -> Self {
         Self {
-            ports: ports(),
+            ports: ports().into(),
             signal: Signal::default(),
             armed: false,
             shown: Outputs::default(),
@@ -218,6 +220,15 @@ impl Moore for Excitation {
     fn show(&self, outputs: &mut [u64]) {
         for (output, value) in outputs.iter_mut().zip(self.outputs().to_raw()) {
             *output = value;
+        }
+    }
+
+    fn quiet_clocks(&self, inputs: &[u64]) -> u64 {
+        match <&[u64; INPUT_PORTS]>::try_from(inputs) {
+            Ok(raw) => quiet_at_rest(self, |next| {
+                Excitation::step(next, &Inputs::from_raw(raw));
+            }),
+            Err(_) => 0,
         }
     }
 }

@@ -47,8 +47,10 @@ mod ratio;
 pub use ports::{INPUT_PORTS, Inputs, OUTPUT_PORTS, Outputs, ports};
 pub use ratio::{MANTISSA_BITS, RELATIVE_ERROR_MAX, SHIFT_BITS, ScaleRatio, ScaleRatioError};
 
+use std::sync::Arc;
+
 use self::ratio::scaled;
-use super::{ClockedBlock, Moore, Port, StepError};
+use super::{ClockedBlock, Moore, Port, StepError, quiet_at_rest};
 
 /// Clocks that the multiplier works for one product.
 pub const PASS_CLOCKS: u32 = 64;
@@ -94,8 +96,9 @@ struct Registers {
 }
 
 /// The block, cycle accurate at its ports. The three tied inputs stay as they are but in reset.
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub struct LinearScale {
-    ports: Vec<Port>,
+    ports: Arc<[Port]>,
     registers: Registers,
 }
 
@@ -109,7 +112,7 @@ impl LinearScale {
     /// The block after reset.
     pub fn new() -> Self {
         Self {
-            ports: ports(),
+            ports: ports().into(),
             registers: Registers::default(),
         }
     }
@@ -252,6 +255,15 @@ impl Moore for LinearScale {
     fn show(&self, outputs: &mut [u64]) {
         for (output, value) in outputs.iter_mut().zip(self.outputs().to_raw()) {
             *output = value;
+        }
+    }
+
+    fn quiet_clocks(&self, inputs: &[u64]) -> u64 {
+        match <&[u64; INPUT_PORTS]>::try_from(inputs) {
+            Ok(raw) => quiet_at_rest(self, |next| {
+                LinearScale::step(next, &Inputs::from_raw(raw));
+            }),
+            Err(_) => 0,
         }
     }
 }

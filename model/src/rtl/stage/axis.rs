@@ -2,11 +2,13 @@
 
 use super::config::StageAxis;
 use super::registers::{axis_window, hardware};
+use crate::rtl::Direction;
 use crate::rtl::component::{Block, Joined, Wiring};
 use crate::rtl::composition::{CompositionError, Part};
+use crate::rtl::trace::SIGNALS;
 
-/// Pins of an axis that are inputs.
-pub(super) const INPUT_PINS: &[&str] = &[
+/// Pins of every axis that are inputs.
+const INPUT_PINS: [&str; 9] = [
     "a",
     "b",
     "z",
@@ -17,6 +19,8 @@ pub(super) const INPUT_PINS: &[&str] = &[
     "drive_fault_n",
     "fault_n",
 ];
+/// Those of a linear scale.
+const SCALE_PINS: [&str; 2] = ["scale_a", "scale_b"];
 /// Pins of an axis that are outputs.
 pub(super) const OUTPUT_PINS: &[&str] = &["a_high", "a_low", "b_high", "b_low", "drive_enable", "brake_release"];
 /// What all axes of a stage read.
@@ -50,7 +54,6 @@ const SEGMENTS: Nets = &[
     ("quick_stop", "segments_quick_stop"),
     ("restart", "segments_restart"),
     ("preset", "segments_preset"),
-    ("preset_position", "count"),
     ("clear_flags", "clear_sources"),
     ("position", "command_position"),
     ("velocity", "command_velocity"),
@@ -90,7 +93,6 @@ const SETTING_BANKS: Nets = &[("bank", "law_bank"), ("row", "setting_address")];
 
 const CONTROLLER: Nets = &[
     ("start", "control"),
-    ("position_reference", "shaped_position"),
     ("velocity_reference", "shaped_velocity"),
     ("acceleration_reference", "shaped_acceleration"),
     ("position", "captured_position"),
@@ -130,9 +132,100 @@ const PWM: Nets = &[
     ("unaligned", "pwm_unaligned"),
 ];
 
+/// Part name of the scale's pulse counter.
+const SCALE_COUNTER: &str = "scale_counter";
+
+const SCALE: Nets = &[
+    ("a", "scale_a"),
+    ("b", "scale_b"),
+    ("invert", "scale_invert"),
+    ("clear_flags", "clear_sources"),
+    ("time_stamp", "edge_stamp"),
+];
+
+const LINEAR_SCALE: Nets = &[
+    ("motor_position", "count"),
+    ("scale_position", "scale_count"),
+    ("motor_velocity", "velocity"),
+    ("align", "enabled"),
+    ("position", "loop_position"),
+    ("velocity", "loop_velocity"),
+];
+
+const GENERATOR: Nets = &[
+    ("rate", "generator_rate"),
+    ("pin_a", "a"),
+    ("pin_b", "b"),
+    ("pin_z", "z"),
+    ("a", "counter_a"),
+    ("b", "counter_b"),
+    ("z", "counter_z"),
+    ("a_n", "counter_a_n"),
+    ("b_n", "counter_b_n"),
+    ("z_n", "counter_z_n"),
+];
+
+const EXCITATION: Nets = &[
+    ("valid", "shaper_valid"),
+    ("y_0", "shaped_position"),
+    ("y_1", "shaped_velocity"),
+    ("y_2", "shaped_acceleration"),
+    ("enable", "excitation_enable"),
+    // High in HOLD alone, with the brake open and nothing wrong.
+    ("allowed", "can_start"),
+    ("kind", "excitation_kind"),
+    ("amplitude", "excitation_amplitude"),
+    ("period_ticks", "excitation_period"),
+    ("sweep", "excitation_sweep"),
+    ("duration_ticks", "excitation_duration"),
+    // The shaper's own stand still between its samples.
+    ("velocity_reference", "delayed_velocity"),
+    ("acceleration_reference", "delayed_acceleration"),
+];
+
+const TRACE: Nets = &[
+    ("strobe", "controller_valid"),
+    ("select_0", "trace_select_0"),
+    ("select_1", "trace_select_1"),
+    ("select_2", "trace_select_2"),
+    ("select_3", "trace_select_3"),
+    ("signals", "trace_signals"),
+    ("decimation", "trace_decimation"),
+    ("trigger_select", "trace_trigger_select"),
+    ("trigger_mode", "trace_trigger_mode"),
+    ("trigger_level", "trace_trigger_level"),
+    ("trigger_event", "started"),
+    ("pre_trigger", "trace_pre_trigger"),
+    ("arm", "trace_arm"),
+    ("halt", "trace_halt"),
+    ("read_address", "trace_address"),
+    ("data", "trace_data"),
+    ("state", "trace_state"),
+    ("rows", "trace_rows"),
+    ("trigger_row", "trace_trigger_row"),
+    ("missed", "trace_missed"),
+    ("done", "trace_done"),
+];
+
+/// What can be traced: net, and what its words are.
+pub(super) const TRACED: [(&str, &str); 13] = [
+    ("command_position", "of the segments, Q24.8 counts"),
+    ("command_velocity", "of the segments, Q16.16 counts/tick"),
+    ("command_acceleration", "of the segments, Q8.24 counts/tick^2"),
+    ("shaped_position", "of the shaper, Q24.8 counts"),
+    ("shaped_velocity", "of the shaper, Q16.16 counts/tick"),
+    ("shaped_acceleration", "of the shaper, Q8.24 counts/tick^2"),
+    ("captured_position", "of the loop at the tick, counts"),
+    ("velocity", "of the motor, Q16.16 counts/tick"),
+    ("error", "e, Q16.16 counts"),
+    ("sliding", "s, Q16.16 counts/tick"),
+    ("command", "to the drive, Q20.12 command units"),
+    ("excitation_value", "added to the position, Q24.8 counts"),
+    ("deviation", "motor against scale, counts"),
+];
+
 const AXIS: Nets = &[
     ("start", "axis_start"),
-    ("position", "count"),
     ("reference_position", "shaped_position"),
     ("reference_velocity", "shaped_velocity"),
     ("drive_enable", "axis_drive_enable"),
@@ -141,11 +234,17 @@ const AXIS: Nets = &[
     ("pwm_trip_n", "axis_pwm_trip_n"),
 ];
 
+/// Pins of this axis that are inputs.
+pub(super) fn input_pins(axis: &StageAxis) -> Vec<&'static str> {
+    let scale: &[&str] = if axis.scale.is_some() { &SCALE_PINS } else { &[] };
+    [&INPUT_PINS, scale].concat()
+}
+
 /// Joins the blocks of an axis. The whole has the axis's name; its ports are the nets that registers, stage and pins need.
 ///
 /// `tick_clocks`: from tick to tick, for the PWM's watchdog.
 pub(super) fn join(axis: &StageAxis, tick_clocks: u32) -> Result<Joined, CompositionError> {
-    let blocks = vec![
+    let mut blocks = vec![
         Block::Segments,
         Block::Shaper(Box::new(axis.shaper.clone())),
         Block::SettingBanks(Box::new(axis.settings)),
@@ -155,13 +254,23 @@ pub(super) fn join(axis: &StageAxis, tick_clocks: u32) -> Result<Joined, Composi
         Block::Pwm(axis.pwm),
         Block::Axis,
     ];
-    let blocks = blocks.into_iter().map(|block| (block.name().to_owned(), block));
+    if let Some(trace) = axis.bring_up {
+        blocks.extend([Block::EncoderGenerator, Block::Excitation, Block::Trace(trace)]);
+    }
+    let mut blocks: Vec<(String, Block)> = blocks
+        .into_iter()
+        .map(|block| (block.name().to_owned(), block))
+        .collect();
+    if axis.scale.is_some() {
+        blocks.push((SCALE_COUNTER.to_owned(), Block::PulseCounter));
+        blocks.push(("linear_scale".to_owned(), Block::LinearScale));
+    }
     let (driven, read) = hardware(&axis_window(axis));
     let names = |lists: &[&[&str]]| -> Vec<String> {
         let all = lists.iter().flat_map(|list| list.iter());
         all.map(|name| (*name).to_owned()).collect()
     };
-    let mut inputs = names(&[&SHARED, &FROM_STAGE, INPUT_PINS]);
+    let mut inputs = names(&[&SHARED, &FROM_STAGE, &input_pins(axis)]);
     inputs.extend(driven);
     let mut outputs = names(&[&TO_STAGE, OUTPUT_PINS]);
     let more = read.into_iter().filter(|name| !outputs.contains(name));
@@ -172,34 +281,42 @@ pub(super) fn join(axis: &StageAxis, tick_clocks: u32) -> Result<Joined, Composi
         inputs,
         outputs,
     };
-    Joined::new(&axis.name, blocks.collect(), wiring)
+    Joined::new(&axis.name, blocks, wiring)
 }
 
 fn wire(axis: &StageAxis, tick_clocks: u32, block: &Block, part: Part) -> Part {
-    let joined = |part: Part, nets: Nets| nets.iter().fold(part, |part, (port, net)| part.on(port, net));
+    let on_scale = axis.scale.is_some_and(|scale| scale.closes_loop);
+    let loop_position = if on_scale { "loop_position" } else { "count" };
     let watched = &axis.supervision;
     match block {
-        Block::Segments => joined(part, SEGMENTS),
-        Block::Shaper(_) => joined(part, SHAPER),
-        Block::SettingBanks(_) => joined(part, SETTING_BANKS),
-        Block::SlidingMode => joined(part, CONTROLLER).tied("modulo", axis.modulo.into()),
-        Block::PulseCounter => joined(part, PULSE_COUNTER)
-            .tied("a_n", 0)
-            .tied("b_n", 0)
-            .tied("z_n", 0)
-            .tied("differential", 0)
-            .tied("filter_clocks", axis.encoder_filter_clocks.into())
-            .tied("mode", 0)
-            .tied("swap", 0)
-            .tied("timeout", VELOCITY_TIMEOUT)
-            .on("position", "user_position"),
-        Block::DriveCommand => joined(part, DRIVE_COMMAND)
+        Block::Segments => on(part, SEGMENTS).on("preset_position", loop_position),
+        Block::Shaper(_) => on(part, SHAPER),
+        Block::SettingBanks(_) => on(part, SETTING_BANKS),
+        Block::SlidingMode => on(part, CONTROLLER)
+            .tied("modulo", axis.modulo.into())
+            .on("velocity", if on_scale { "loop_velocity" } else { "velocity" })
+            .on(
+                "position_reference",
+                match axis.bring_up {
+                    Some(_) => "position_reference",
+                    None => "shaped_position",
+                },
+            ),
+        Block::PulseCounter if part.name() == SCALE_COUNTER => scale_counter(axis, part),
+        Block::PulseCounter => {
+            let part = counter(axis, on(part, PULSE_COUNTER)).on("position", "user_position");
+            match axis.bring_up {
+                Some(_) => part.on("a", "counter_a").on("b", "counter_b").on("z", "counter_z"),
+                None => part,
+            }
+        }
+        Block::DriveCommand => on(part, DRIVE_COMMAND)
             .tied("direct_hold_ticks", watched.direct_hold_ticks.into())
             .tied("direct_limit", watched.direct_limit.into()),
         Block::Pwm(config) => {
             let period = u64::from(axis.pwm_period_clocks & 0xffff);
             let watchdog = (WATCHDOG_TICKS * tick_clocks / axis.pwm_period_clocks.max(1)).clamp(1, 255);
-            joined(part, PWM)
+            on(part, PWM)
                 .tied("mode", axis.pwm_mode as u64)
                 .tied("period", period)
                 .tied("max_duty", axis.pwm_period_clocks.min(0xffff).into())
@@ -211,17 +328,98 @@ fn wire(axis: &StageAxis, tick_clocks: u32, block: &Block, part: Part) -> Part {
                 .tied("watchdog_periods", watchdog.into())
                 .tied("filter_clocks", watched.filter_clocks.into())
         }
-        Block::Axis => joined(part, AXIS)
-            .tied("filter_clocks", watched.filter_clocks.into())
-            .tied("brake_release_ticks", watched.brake_release_ticks.into())
-            .tied("brake_apply_ticks", watched.brake_apply_ticks.into())
-            .tied("deviation_limit", 0)
-            .tied("deviation", 0)
-            .tied("saturation_ticks", watched.saturation_ticks.into())
-            .tied("lost_command", watched.lost_command.into())
-            .tied("lost_ticks", watched.lost_ticks.into())
-            .tied("scale_illegal", 0)
-            .tied("scale_disagreement", 0),
+        Block::Axis => supervisor(axis, part).on("position", loop_position),
+        Block::LinearScale => match axis.scale {
+            Some(scale) => on(part, LINEAR_SCALE)
+                .tied("ratio_mantissa", u64::from(scale.ratio.mantissa() as u32 & 0x3_ffff))
+                .tied("ratio_shift", scale.ratio.shift().into())
+                .tied("use_scale", on_scale.into()),
+            None => part,
+        },
+        Block::EncoderGenerator => on(part, GENERATOR)
+            .tied("pin_a_n", 0)
+            .tied("pin_b_n", 0)
+            .tied("pin_z_n", 0),
+        Block::Excitation => on(part, EXCITATION)
+            .tied("amplitude_limit", watched.excitation_limit.into())
+            .tied("modulo", axis.modulo.into()),
+        Block::Trace(_) => trace(axis, on(part, TRACE)),
         _ => part,
     }
+}
+
+fn on(part: Part, nets: Nets) -> Part {
+    nets.iter().fold(part, |part, (port, net)| part.on(port, net))
+}
+
+/// What is the same for the counters of motor and scale.
+fn counter(axis: &StageAxis, part: Part) -> Part {
+    part.tied("a_n", 0)
+        .tied("b_n", 0)
+        .tied("z_n", 0)
+        .tied("differential", 0)
+        .tied("filter_clocks", axis.encoder_filter_clocks.into())
+        .tied("mode", 0)
+        .tied("swap", 0)
+        .tied("timeout", VELOCITY_TIMEOUT)
+}
+
+/// The scale's counter only counts: its velocity is not divided for.
+fn scale_counter(axis: &StageAxis, part: Part) -> Part {
+    let part = counter(axis, on(part, SCALE));
+    let zeros = [
+        "z",
+        "index_arm",
+        "index_always",
+        "index_presets",
+        "index_gate",
+        "preset",
+        "preset_value",
+        "velocity_m",
+        "smoothing",
+        "quotient_valid",
+        "quotient",
+    ];
+    let part = zeros.iter().fold(part, |part, port| part.tied(port, 0));
+    let outputs: Vec<String> = part
+        .ports()
+        .iter()
+        .filter(|port| port.direction == Direction::Output)
+        .map(|port| port.name.clone())
+        .collect();
+    outputs
+        .iter()
+        .fold(part, |part, name| part.on(name, &format!("scale_{name}")))
+}
+
+fn supervisor(axis: &StageAxis, part: Part) -> Part {
+    let watched = &axis.supervision;
+    let part = on(part, AXIS)
+        .tied("filter_clocks", watched.filter_clocks.into())
+        .tied("brake_release_ticks", watched.brake_release_ticks.into())
+        .tied("brake_apply_ticks", watched.brake_apply_ticks.into())
+        .tied("deviation_limit", watched.deviation_limit.into())
+        .tied("saturation_ticks", watched.saturation_ticks.into())
+        .tied("lost_command", watched.lost_command.into())
+        .tied("lost_ticks", watched.lost_ticks.into());
+    match axis.scale {
+        Some(_) => part,
+        None => part
+            .tied("deviation", 0)
+            .tied("scale_illegal", 0)
+            .tied("scale_disagreement", 0),
+    }
+}
+
+/// What is not built is traced as 0.
+fn trace(axis: &StageAxis, part: Part) -> Part {
+    let signals = TRACED.iter().enumerate();
+    let part = signals.fold(part, |part, (place, (net, _))| {
+        let port = format!("signal_{place}");
+        match *net {
+            "deviation" if axis.scale.is_none() => part.tied(&port, 0),
+            net => part.on(&port, net),
+        }
+    });
+    (TRACED.len()..SIGNALS).fold(part, |part, place| part.tied(&format!("signal_{place}"), 0))
 }

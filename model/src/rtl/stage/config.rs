@@ -5,11 +5,13 @@ use crate::rtl::component::ComponentError;
 use crate::rtl::composition::CompositionError;
 use crate::rtl::divider::DividerConfig;
 use crate::rtl::group::MOST_AXES;
+use crate::rtl::linear_scale::ScaleRatio;
 use crate::rtl::pwm::{Mode, PwmConfig};
 use crate::rtl::registers::MapError;
 use crate::rtl::schedule::{ScheduleConfig, ScheduleConfigError};
 use crate::rtl::shaper::ShaperConfig;
 use crate::rtl::sliding_mode::{Law, Settings};
+use crate::rtl::trace::TraceConfig;
 
 use super::Schedule;
 
@@ -45,6 +47,19 @@ pub struct StageAxis {
     pub encoder_filter_clocks: u32,
     /// What its supervisor watches.
     pub supervision: Supervision,
+    /// Its linear scale.
+    pub scale: Option<StageScale>,
+    /// What is there for bringing it up: trace memory, test signals, an encoder without a machine.
+    pub bring_up: Option<TraceConfig>,
+}
+
+/// The linear scale of an axis.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StageScale {
+    /// Between its counts and the motor's.
+    pub ratio: ScaleRatio,
+    /// The loop runs on the scale; else it is watched.
+    pub closes_loop: bool,
 }
 
 /// Why there is no such stage.
@@ -101,20 +116,14 @@ pub enum StageError {
 }
 
 impl StageConfig {
-    /// The names of what is divided for, in the order of the divisions: `x_`, `y_`.
-    pub(super) fn divided(&self) -> Vec<String> {
-        self.axes.iter().map(|axis| format!("{}_", axis.name)).collect()
-    }
-
-    /// Pulse counters that share the divider.
-    pub(super) fn channels(&self) -> usize {
-        self.divided().len()
-    }
-
     /// What is done in a tick.
     pub fn timing(&self) -> Schedule {
         let shapers: Vec<&ShaperConfig> = self.axes.iter().map(|axis| &axis.shaper).collect();
-        Schedule::of(&shapers, self.channels() as u32)
+        let scaled = self
+            .axes
+            .iter()
+            .any(|axis| axis.scale.is_some_and(|scale| scale.closes_loop));
+        Schedule::of(&shapers, scaled)
     }
 
     pub(super) fn schedule(&self) -> Result<ScheduleConfig, StageError> {

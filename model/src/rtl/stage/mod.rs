@@ -7,8 +7,8 @@
 //!                │
 //!  per axis: segments ─► shaper ─► sliding_mode ─► drive_command ─► pwm ─► gates
 //!                │                  ▲  ▲
-//!            axis (supervisor)      │  pulse_counter ◄─ encoder
-//!                              setting_banks
+//!            axis (supervisor)      │  pulse_counter ◄─ encoder        with [axis.scale]: pulse_counter, linear_scale
+//!                              setting_banks                           with [axis.trace]: trace, excitation, encoder_generator
 //! ```
 //!
 //! A stage is a [`Component`]: blocks joined by names, from which come the model here and the Verilog in
@@ -19,11 +19,12 @@
 //! The datasheet is `docs/stage.md`.
 
 mod axis;
+mod bring_up;
 mod config;
 mod registers;
 mod schedule;
 
-pub use self::config::{StageAxis, StageConfig, StageError};
+pub use self::config::{StageAxis, StageConfig, StageError, StageScale};
 pub use self::registers::{AXIS_INTERRUPTS, axis_window};
 pub use self::schedule::Schedule;
 
@@ -46,7 +47,7 @@ impl Component {
         let mut blocks = vec![
             Block::TimeBase(config.tick),
             Block::Schedule(config.schedule()?),
-            Block::DividerShare(config.channels()),
+            Block::DividerShare(config.axes.len()),
             Block::Divider(config.tick),
             Block::Group(config.axes.len()),
         ];
@@ -56,18 +57,18 @@ impl Component {
         let blocks = blocks.into_iter().map(|block| (block.name().to_owned(), block));
         let wiring = Wiring {
             part: Box::new(|block, part| wire(config, block, part)),
-            inputs: pins(config, &SHARED_PINS, axis::INPUT_PINS),
-            outputs: pins(config, &["tick"], axis::OUTPUT_PINS),
+            inputs: pins(config, &SHARED_PINS, axis::input_pins),
+            outputs: pins(config, &["tick"], |_| axis::OUTPUT_PINS.to_vec()),
         };
         Ok(Self::joined(map, "stage", blocks.collect(), wiring)?)
     }
 }
 
 /// Shared pins, then those of each axis.
-fn pins(config: &StageConfig, shared: &[&str], of_axis: &[&str]) -> Vec<String> {
+fn pins(config: &StageConfig, shared: &[&str], of_axis: fn(&StageAxis) -> Vec<&'static str>) -> Vec<String> {
     let mut pins: Vec<String> = shared.iter().map(|pin| (*pin).to_owned()).collect();
     for axis in &config.axes {
-        pins.extend(of_axis.iter().map(|pin| format!("{}_{pin}", axis.name)));
+        pins.extend(of_axis(axis).iter().map(|pin| format!("{}_{pin}", axis.name)));
     }
     pins
 }
@@ -83,15 +84,16 @@ fn wire(config: &StageConfig, block: &Block, part: Part) -> Part {
             .tied("clear_flags", 1),
         Block::DividerShare(_) => {
             let part = part.on("start", "divider_start").on("done", "divider_done");
-            config
-                .divided()
-                .into_iter()
-                .enumerate()
-                .fold(part, |part, (channel, owner)| {
-                    part.on(&format!("steps_of_{channel}"), &format!("{owner}steps"))
-                        .on(&format!("elapsed_of_{channel}"), &format!("{owner}elapsed"))
-                        .on(&format!("quotient_valid_{channel}"), &format!("{owner}quotient_valid"))
+            config.axes.iter().enumerate().fold(part, |part, (channel, axis)| {
+                let each = ["steps", "elapsed", "quotient_valid"];
+                each.iter().fold(part, |part, net| {
+                    let port = match *net {
+                        "quotient_valid" => format!("quotient_valid_{channel}"),
+                        operand => format!("{operand}_of_{channel}"),
+                    };
+                    part.on(&port, &format!("{}_{net}", axis.name))
                 })
+            })
         }
         Block::Group(_) => config.axes.iter().enumerate().fold(part, |part, (index, axis)| {
             let each = [

@@ -1,5 +1,6 @@
 //! What a host sees of a stage: a window of its own, and one per axis, all alike.
 
+use super::bring_up;
 use super::config::{StageAxis, StageConfig, StageError};
 use crate::rtl::group::MOST_AXES;
 use crate::rtl::registers::maps;
@@ -154,14 +155,14 @@ pub(super) fn hardware(registers: &[Register]) -> (Vec<String>, Vec<String>) {
     (driven, read)
 }
 
-fn command(strobe: &str) -> Access {
+pub(super) fn command(strobe: &str) -> Access {
     Access::Command {
         strobe: strobe.to_owned(),
     }
 }
 
 /// A register of an axis, without the axis's name.
-fn register(name: &str, offset: u32, access: Access, meaning: &str, fields: Vec<Field>) -> Register {
+pub(super) fn register(name: &str, offset: u32, access: Access, meaning: &str, fields: Vec<Field>) -> Register {
     Register {
         name: name.to_owned(),
         offset,
@@ -180,7 +181,35 @@ pub fn axis_window(axis: &StageAxis) -> Vec<Register> {
     registers.extend(encoder());
     registers.extend(states());
     registers.extend(motion());
+    if axis.scale.is_some() {
+        registers.extend(scale());
+    }
+    if axis.bring_up.is_some() {
+        registers.extend(bring_up::registers());
+    }
     registers
+}
+
+fn scale() -> Vec<Register> {
+    let live = |name: &str, offset, meaning: &str| {
+        let field = Field::new(name, 0, 32, meaning).signed().with_unit("counts");
+        register(name, offset, Access::Live, meaning, vec![field])
+    };
+    vec![
+        register(
+            "scale_control",
+            0x23,
+            Access::Configuration,
+            "how the scale is read",
+            vec![Field::flag("scale_invert", 0, "reverses the scale's direction")],
+        ),
+        live("scale_count", 0x3b, "steps of the scale since reset"),
+        live(
+            "deviation",
+            0x3c,
+            "motor against scale since HOLD, in counts of the loop",
+        ),
+    ]
 }
 
 fn parameters(axis: &StageAxis) -> Vec<Register> {

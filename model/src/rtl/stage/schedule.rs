@@ -3,13 +3,14 @@
 use std::fmt;
 
 use crate::rtl::divider_share::SHARE_CLOCKS;
+use crate::rtl::linear_scale;
 use crate::rtl::shaper::ShaperConfig;
 use crate::rtl::sliding_mode::CONTROL_CLOCKS;
 
 /// Clocks from the tick to the divider's first operands, and a clock for the last velocity.
 const CAPTURE_CLOCKS: u32 = 4;
-/// Clocks from the tick to the shaper's sample, and one to its end: the segments' five, and the strobe.
-const GENERATE_CLOCKS: u32 = 7;
+/// Clocks from the tick to the shaper's sample, and two to its end: the segments' five, the strobe, and the test signal's.
+const GENERATE_CLOCKS: u32 = 8;
 /// Clocks from the controller's `valid` to the duty at the PWM.
 const OUTPUT_CLOCKS: u32 = 2;
 
@@ -17,28 +18,31 @@ const OUTPUT_CLOCKS: u32 = 2;
 /// slower of them is over at its longest, always in the same clock.
 ///
 /// ```text
-/// tick ─┬─► capture ─► divide, one pulse counter after the other ─┬─► control ─► duty at the PWM, for its next boundary
+/// tick ─┬─► capture ─► divide, one axis after the other ─► scale ─┬─► control ─► duty at the PWM, for its next boundary
 ///       └─► generate ─► shape ────────────────────────────────────┘
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Schedule {
     divide: u32,
+    /// The last velocity in counts of the scale.
+    scale: u32,
     shape: u32,
 }
 
 impl Schedule {
-    /// Of axes with these shapers, and so many pulse counters.
-    pub fn of(shapers: &[&ShaperConfig], counters: u32) -> Self {
+    /// Of axes with these shapers; `on_scale`: the loop of one runs on its scale.
+    pub fn of(shapers: &[&ShaperConfig], on_scale: bool) -> Self {
         let passes = shapers.iter().map(|shaper| shaper.pass_clocks(shaper.most_products()));
         Self {
-            divide: counters * SHARE_CLOCKS,
+            divide: shapers.len() as u32 * SHARE_CLOCKS,
+            scale: if on_scale { linear_scale::LATENCY_CLOCKS } else { 0 },
             shape: passes.max().unwrap_or(0),
         }
     }
 
     /// Clocks from the tick to the start of the controllers.
     pub fn control_clocks(&self) -> u32 {
-        (CAPTURE_CLOCKS + self.divide).max(GENERATE_CLOCKS + self.shape)
+        (CAPTURE_CLOCKS + self.divide + self.scale).max(GENERATE_CLOCKS + self.shape)
     }
 
     /// Clocks from the tick to the new duty, which the PWM takes at its next boundary.
@@ -51,9 +55,10 @@ impl fmt::Display for Schedule {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(
             f,
-            "capture and divide {CAPTURE_CLOCKS} + {}, beside generate and shape {GENERATE_CLOCKS} + {}; control from {} on, \
+            "capture, divide and scale {CAPTURE_CLOCKS} + {} + {}, beside generate and shape {GENERATE_CLOCKS} + {}; control from {} on, \
              {CONTROL_CLOCKS}; duty {OUTPUT_CLOCKS} later: {} clocks",
             self.divide,
+            self.scale,
             self.shape,
             self.control_clocks(),
             self.duty_clocks()

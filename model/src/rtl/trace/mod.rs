@@ -56,7 +56,7 @@ pub use ports::{INPUT_PORTS, Inputs, OUTPUT_PORTS, Outputs, State, ports};
 
 use std::collections::VecDeque;
 
-use super::{ClockedBlock, Moore, Port, StepError};
+use super::{ClockedBlock, FOREVER, Moore, Port, StepError};
 
 /// What a row's clock does.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -176,14 +176,19 @@ impl Trace {
         !self.registers.triggered && self.rows() == self.registers.pre_trigger
     }
 
+    /// The word that the memory gives.
+    fn read(&self, address: u16) -> u32 {
+        let word = self.words.get(usize::from(address & 0x7ff));
+        word.copied().filter(|_| !self.registers.active).unwrap_or(0)
+    }
+
     fn clock(&mut self, inputs: &Inputs) {
         if inputs.rst {
             self.registers = Registers::default();
             self.words.clear();
             return;
         }
-        let read = self.words.get(usize::from(inputs.read_address & 0x7ff));
-        let data = read.copied().filter(|_| !self.registers.active).unwrap_or(0);
+        let data = self.read(inputs.read_address);
         if inputs.arm {
             self.arm(inputs);
         } else {
@@ -307,5 +312,27 @@ impl Moore for Trace {
         for (output, value) in outputs.iter_mut().zip(self.outputs().to_raw()) {
             *output = value;
         }
+    }
+
+    fn quiet_clocks(&self, inputs: &[u64]) -> u64 {
+        let Ok(raw) = <&[u64; INPUT_PORTS]>::try_from(inputs) else {
+            return 0;
+        };
+        let (inputs, registers) = (Inputs::from_raw(raw), &self.registers);
+        let called = inputs.rst || inputs.strobe || inputs.arm || registers.phase != Phase::Ready || registers.done;
+        let complete = usize::from(self.rows()) == self.config.rows(registers.signals);
+        let ends = registers.active && (complete || registers.halting);
+        let noted = (!inputs.halt || registers.halting) && (!inputs.trigger_event || registers.event);
+        let chosen = registers.select == inputs.trigger_select && registers.data == self.read(inputs.read_address);
+        match called || ends || !noted || !chosen {
+            true => 0,
+            false => FOREVER,
+        }
+    }
+
+    /// What is read in the clocks of a row only.
+    fn ignores(&self, input: &str) -> bool {
+        let settings = ["signals", "decimation", "trigger_mode", "trigger_level", "pre_trigger"];
+        input.starts_with("signal_") || input.starts_with("select_") || settings.contains(&input)
     }
 }

@@ -1,0 +1,212 @@
+//! What the closed loop did, for people and for programs.
+
+use super::{Circles, ClosedLoop};
+use crate::output::Table;
+use posicast_model::plant::axis::ErrorFigures;
+use posicast_testbench::stage_run::{Circled, Compared, Moved};
+use serde::Serialize;
+use std::fmt::Write;
+
+/// Millionths, with as many digits as a count is worth.
+pub(super) fn micro(value: f64) -> String {
+    format!("{:.2}", 1e6 * value)
+}
+
+impl ClosedLoop<'_> {
+    /// The section for people.
+    pub(crate) fn text(&self) -> String {
+        let mut table = Table::new(&[
+            "axis",
+            ">tracking, peak",
+            ">rms",
+            ">rests off by",
+            ">ringing unshaped",
+            ">shaped",
+            ">machine -10 %",
+            ">machine +10 %",
+        ]);
+        for (index, axis) in self.machine.axes.iter().enumerate() {
+            let Some(figures) = self.shaped.axes.get(index) else {
+                continue;
+            };
+            let ringing = |moved: &Moved| moved.axes.get(index).map_or(f64::NAN, |axis| axis.residual.peak);
+            let numbers = [
+                figures.tracking.peak,
+                figures.tracking.rms,
+                figures.offset,
+                ringing(&self.unshaped),
+                ringing(&self.shaped),
+                ringing(&self.slower),
+                ringing(&self.faster),
+            ];
+            table.row(std::iter::once(axis.name.clone()).chain(numbers.map(micro)));
+        }
+        let mut text = format!(
+            "Closed loop: the default move of all axes at once on the simulated machine; millionths of the unit\n{}",
+            table.text("  ")
+        );
+        if let Some(circles) = &self.circles {
+            text += &self.circles_text(circles);
+        }
+        let schedule = self.stage.of_machine.config.timing();
+        let tick = self.stage.of_machine.config.tick.tick_clocks();
+        let _ = writeln!(text, "\nSchedule of a tick of {tick} clocks\n  {schedule}");
+        text
+    }
+
+    fn circles_text(&self, circles: &Circles) -> String {
+        let mut table = Table::new(&["tap tables", ">distance from the circle, peak", ">rms"]);
+        let mut row = |name: &str, circled: &Circled| {
+            table.row([name.to_owned(), micro(circled.error.peak), micro(circled.error.rms)]);
+        };
+        row("unshaped", &circles.unshaped);
+        row("shaped, each with its own delay", &circles.apart);
+        if let Ok(matched) = &circles.matched {
+            row("shaped, delays made equal", matched);
+        }
+        let names: Vec<&str> = self
+            .machine
+            .axes
+            .iter()
+            .take(2)
+            .map(|axis| axis.name.as_str())
+            .collect();
+        let mut text = format!(
+            "\nCircle of axes {}, radius {} at {} per s; millionths of the unit\n{}",
+            names.join(" and "),
+            rounded(circles.circle.radius),
+            rounded(circles.circle.speed),
+            table.text("  ")
+        );
+        if let Err(reason) = &circles.matched {
+            let _ = writeln!(text, "  delays cannot be made equal: {reason}");
+        }
+        text
+    }
+
+    /// `stage` in `run --json` and `report.json`.
+    pub(crate) fn json(&self) -> StageDocument {
+        let axes = self.machine.axes.iter().enumerate();
+        let residual = |moved: &Moved, index: usize| moved.axes.get(index).map(|axis| axis.residual.peak);
+        let config = &self.stage.of_machine.config;
+        StageDocument {
+            side_by_side: self.compared.as_ref().map(SideBySideDocument::new),
+            axes: axes
+                .map(|(index, axis)| {
+                    let figures = self.shaped.axes.get(index);
+                    AxisDocument {
+                        name: axis.name.clone(),
+                        tracking: figures.map(|figures| figures.tracking.into()),
+                        offset: figures.map(|figures| figures.offset),
+                        residual_unshaped: residual(&self.unshaped, index),
+                        residual: residual(&self.shaped, index),
+                        residual_minus_10_percent: residual(&self.slower, index),
+                        residual_plus_10_percent: residual(&self.faster, index),
+                    }
+                })
+                .collect(),
+            circle: self.circles.as_ref().map(|circles| CircleDocument {
+                axes: self.machine.axes.iter().take(2).map(|axis| axis.name.clone()).collect(),
+                radius: circles.circle.radius,
+                speed: circles.circle.speed,
+                unshaped: circles.unshaped.error.into(),
+                own_delays: circles.apart.error.into(),
+                equal_delays: circles.matched.as_ref().ok().map(|circled| circled.error.into()),
+            }),
+            schedule: ScheduleDocument {
+                tick_clocks: config.tick.tick_clocks(),
+                control_clocks: config.timing().control_clocks(),
+                duty_clocks: config.timing().duty_clocks(),
+            },
+        }
+    }
+}
+
+/// A length or speed with three digits.
+fn rounded(value: f64) -> f64 {
+    format!("{value:.2e}").parse().unwrap_or(value)
+}
+
+/// `stage` in `report.json`. Lengths in m or rad.
+#[derive(Serialize)]
+pub(crate) struct StageDocument {
+    side_by_side: Option<SideBySideDocument>,
+    axes: Vec<AxisDocument>,
+    circle: Option<CircleDocument>,
+    schedule: ScheduleDocument,
+}
+
+#[derive(Serialize)]
+struct SideBySideDocument {
+    clocks: u64,
+    whole: bool,
+    mismatches: u64,
+    first: Option<FirstDocument>,
+}
+
+impl SideBySideDocument {
+    fn new(compared: &Compared) -> Self {
+        Self {
+            clocks: compared.clocks,
+            whole: compared.whole,
+            mismatches: compared.mismatches,
+            first: compared.first.as_ref().map(|first| FirstDocument {
+                time: first.clock,
+                signal: first.signal.clone(),
+                expected: format!("{:b}", first.expected),
+                actual: format!("{:b}", first.actual),
+            }),
+        }
+    }
+}
+
+#[derive(Serialize)]
+struct FirstDocument {
+    time: u64,
+    signal: String,
+    expected: String,
+    actual: String,
+}
+
+#[derive(Serialize)]
+struct AxisDocument {
+    name: String,
+    tracking: Option<ErrorDocument>,
+    offset: Option<f64>,
+    residual_unshaped: Option<f64>,
+    residual: Option<f64>,
+    residual_minus_10_percent: Option<f64>,
+    residual_plus_10_percent: Option<f64>,
+}
+
+#[derive(Serialize)]
+struct CircleDocument {
+    axes: Vec<String>,
+    radius: f64,
+    speed: f64,
+    unshaped: ErrorDocument,
+    own_delays: ErrorDocument,
+    equal_delays: Option<ErrorDocument>,
+}
+
+#[derive(Serialize)]
+struct ErrorDocument {
+    peak: f64,
+    rms: f64,
+}
+
+impl From<ErrorFigures> for ErrorDocument {
+    fn from(figures: ErrorFigures) -> Self {
+        Self {
+            peak: figures.peak,
+            rms: figures.rms,
+        }
+    }
+}
+
+#[derive(Serialize)]
+struct ScheduleDocument {
+    tick_clocks: u32,
+    control_clocks: u32,
+    duty_clocks: u32,
+}

@@ -1,0 +1,229 @@
+//! A circle of two axes, point by point: what unequal delays bend.
+
+use posicast_model::motion::{TickLimits, plan_circle};
+use posicast_model::plant::axis::{ErrorFigures, contour_error};
+use posicast_model::rtl::segments::{Entry, Motion};
+use posicast_model::spec::{Axis, Machine};
+
+use super::host::{Host, Trouble};
+use super::{Shaping, StageRun, StageRunError};
+
+/// Speed of the circle as a part of the slower axis's limit, where `[stage]` has no `contour_speed`.
+const PART_OF_VELOCITY: f64 = 0.4;
+/// The same of acceleration: for the way along the path, and towards its centre.
+const PART_OF_ACCELERATION: f64 = 0.125;
+/// The same of jerk.
+const PART_OF_JERK: f64 = 0.25;
+/// The same of the room in the travel.
+const PART_OF_TRAVEL: f64 = 0.9;
+/// Least radius in counts, below which steps of the encoders are all that is seen.
+const LEAST_RADIUS_COUNTS: f64 = 100.0;
+/// Entries that a FIFO holds beside those that it may still have when it calls itself low.
+const REFILL: usize = 40;
+/// Entries that wait at the start.
+const FIRST_FILL: usize = 60;
+/// Ticks between two looks at the FIFOs: fewer than entries are left in one that is almost low.
+const LOOK_TICKS: u64 = 8;
+/// Ticks beyond the plan.
+const SPARE_TICKS: u64 = 1000;
+
+/// A circle of the first two axes, once round, counter-clockwise, from rest at its right end to rest there.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Circle {
+    /// m.
+    pub radius: f64,
+    /// m/s.
+    pub speed: f64,
+    /// m/s² along the path.
+    acceleration: f64,
+    /// m/s³ along the path.
+    jerk: f64,
+    /// 1, or −1 where the first axis has more room on its positive side: then it is mirrored.
+    side: f64,
+}
+
+/// A circle and what came of it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Circled {
+    /// The load's distance from the circle, along its radius, in m.
+    pub error: ErrorFigures,
+    /// The load's places `(x, y)` from the circle's centre, at every tick, in m.
+    pub points: Vec<(f64, f64)>,
+    /// What the stage did not do.
+    pub trouble: Option<Trouble>,
+    radius: f64,
+}
+
+impl Circle {
+    /// A circle that suits the limits of the machine; none with less than two axes, with axes that turn round and round, or
+    /// without room.
+    pub fn of_machine(machine: &Machine) -> Option<Self> {
+        let [x, y, ..] = machine.axes.as_slice() else {
+            return None;
+        };
+        if x.modulo || y.modulo {
+            return None;
+        }
+        let per_s = |axis: &Axis| {
+            let limits = TickLimits::of_axis(axis, &machine.clock);
+            let [unit, hz] = [axis.loop_counts_per_unit(), machine.clock.sample_hz];
+            [
+                limits.velocity * hz / unit,
+                limits.acceleration * hz.powi(2) / unit,
+                limits.jerk * hz.powi(3) / unit,
+            ]
+        };
+        let (of_x, of_y) = (per_s(x), per_s(y));
+        let [velocity, acceleration, jerk] = std::array::from_fn(|limit| f64::min(of_x[limit], of_y[limit]));
+        let wanted = machine.stage.and_then(|stage| stage.contour_speed);
+        let speed = wanted.unwrap_or(PART_OF_VELOCITY * velocity).min(velocity);
+        let acceleration = PART_OF_ACCELERATION * acceleration;
+        let travel = |axis: &Axis| {
+            let travel = axis.limits.and_then(|limits| limits.travel);
+            travel.map_or([f64::INFINITY; 2], |[low, high]| [-low, high].map(|room| room.max(0.0)))
+        };
+        let ([left, right], [below, above]) = (travel(x), travel(y));
+        let room = PART_OF_TRAVEL * (left.max(right) / 2.0).min(below.min(above));
+        let radius = (speed * speed / acceleration).min(room);
+        let circle = Self {
+            radius,
+            speed: speed.min((acceleration * radius).sqrt()),
+            acceleration,
+            jerk: PART_OF_JERK * jerk,
+            side: if right > left { -1.0 } else { 1.0 },
+        };
+        let counts = radius * x.loop_counts_per_unit().min(y.loop_counts_per_unit());
+        (counts >= LEAST_RADIUS_COUNTS).then_some(circle)
+    }
+
+    /// The points of both axes, from where they stand.
+    fn plan(&self, run: &StageRun<'_>, host: &mut Host<'_>) -> Result<[Vec<Entry>; 2], StageRunError> {
+        let clock = &run.machine.clock;
+        let mut of_axis = |index: usize| {
+            let axis = &run.machine.axes[index];
+            let unit = axis.loop_counts_per_unit();
+            let limits = TickLimits::new(self.speed, self.acceleration, self.jerk, unit, clock.sample_hz);
+            // Planned from 0, then moved to where the axis stands, so that a mirror is a sign.
+            let planned = plan_circle([0, 0], self.radius * unit, 1.0, &limits);
+            let [x, y] = planned.map_err(|source| StageRunError::Plan {
+                axis: axis.name.clone(),
+                source,
+            })?;
+            let start = host.command(index)?;
+            let (entries, sign) = if index == 0 { (x, self.side as i32) } else { (y, 1) };
+            let placed = entries.into_iter().map(|entry| match entry.motion {
+                Motion::Point(mut point) => {
+                    point.position = start.saturating_add(sign * point.position);
+                    point.velocity *= sign;
+                    point.acceleration *= sign;
+                    Entry {
+                        motion: Motion::Point(point),
+                        ..entry
+                    }
+                }
+                Motion::Jerk(_) => entry,
+            });
+            Ok::<Vec<Entry>, StageRunError>(placed.collect())
+        };
+        let (mut x, mut y) = (of_axis(0)?, of_axis(1)?);
+        // Counts of different size may round the number of ticks differently.
+        let longer = x.len().max(y.len());
+        for entries in [&mut x, &mut y] {
+            let last = entries.last().copied();
+            entries.extend(last.into_iter().cycle().take(longer - entries.len()));
+        }
+        Ok([x, y])
+    }
+}
+
+impl Circled {
+    /// How far the load is outside of the circle, at each tick: direction from the centre in degrees, from 0 on and on, and
+    /// distance in m.
+    pub fn distances(&self) -> Vec<(f64, f64)> {
+        let mut turned = 0.0;
+        let mut distances: Vec<(f64, f64)> = Vec::with_capacity(self.points.len());
+        for (x, y) in &self.points {
+            let degrees = y.atan2(*x).to_degrees();
+            // The direction goes on beyond a half turn instead of jumping back.
+            turned += (degrees - turned + 180.0).rem_euclid(360.0) - 180.0;
+            distances.push((turned, x.hypot(*y) - self.radius));
+        }
+        distances
+    }
+}
+
+/// Writes the next entries to the FIFOs of both axes.
+fn write(
+    host: &mut Host<'_>,
+    paths: &[Vec<Entry>; 2],
+    written: &mut [usize; 2],
+    axis: usize,
+    entries: usize,
+) -> Result<(), StageRunError> {
+    let path = &paths[axis];
+    let end = (written[axis] + entries).min(path.len());
+    let name = host.config.axes[axis].name.clone();
+    for entry in &path[written[axis]..end] {
+        host.bench.segment(&name, entry)?;
+    }
+    written[axis] = end;
+    Ok(())
+}
+
+/// Streams the points of both axes, refilling as the FIFOs ask for it.
+fn stream(host: &mut Host<'_>, paths: &[Vec<Entry>; 2]) -> Result<Option<Trouble>, StageRunError> {
+    let mut written = [0, 0];
+    for axis in 0..2 {
+        write(host, paths, &mut written, axis, FIRST_FILL)?;
+    }
+    host.bench.record();
+    if let Some(trouble) = host.start(&[0, 1])? {
+        return Ok(Some(trouble));
+    }
+    while written[0] < paths[0].len() || written[1] < paths[1].len() {
+        host.pass(LOOK_TICKS * host.tick_clocks())?;
+        for axis in 0..2 {
+            if host.state(axis)? != crate::stage_bench::state::RUN {
+                return Ok(Some(host.trouble(axis, "play the circle")?));
+            }
+            let name = host.config.axes[axis].name.clone();
+            if host.bench.field(&name, "fifo", "fifo_low")? != 0 {
+                write(host, paths, &mut written, axis, REFILL)?;
+            }
+        }
+    }
+    Ok(host.arrive(SPARE_TICKS)?)
+}
+
+/// The circle in the model.
+pub(super) fn measure(
+    run: &StageRun<'_>,
+    mut host: Host<'_>,
+    circle: &Circle,
+    shaping: Shaping,
+) -> Result<Circled, StageRunError> {
+    let mut trouble = host.switch_on()?;
+    if trouble.is_none() {
+        trouble = host.shape(shaping)?;
+    }
+    if trouble.is_none() {
+        let paths = circle.plan(run, &mut host)?;
+        trouble = stream(&mut host, &paths)?;
+    }
+    let samples = host.bench.recorded();
+    let points: Vec<(f64, f64)> = match samples.as_slice() {
+        [x, y, ..] => {
+            let places = x.iter().zip(y);
+            places
+                .map(|(x, y)| (circle.side * x.load + circle.radius, y.load))
+                .collect()
+        }
+        _ => Vec::new(),
+    };
+    Ok(Circled {
+        error: contour_error(&points, (0.0, 0.0), circle.radius),
+        points,
+        trouble,
+        radius: circle.radius,
+    })
+}

@@ -1,0 +1,223 @@
+//! The program that works the stage's registers.
+
+use posicast_model::rtl::axis::Cause;
+use posicast_model::rtl::stage::StageConfig;
+use std::fmt;
+
+use super::Shaping;
+use crate::Error;
+use crate::stage_bench::{StageBench, state};
+
+/// Clocks in which filters and encoders settle after a reset.
+const SETTLE_CLOCKS: u64 = 1000;
+/// Ticks after which a stage that has not done what it was told will not do it.
+const PATIENCE_TICKS: u64 = 100;
+/// What the watchdog wants to read: `KICK`.
+const KICK: u32 = 0x4b49_434b;
+/// The bank that the host loads.
+const BANK: u32 = 1;
+
+/// A stage that did not do what it should.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Trouble {
+    /// Clocks since the start.
+    pub clock: u64,
+    /// The axis.
+    pub axis: String,
+    /// What it should have done.
+    pub wanted: &'static str,
+    /// The state that it was in instead, as [`state`] numbers them.
+    pub state: u32,
+    /// Why, a bit per [`Cause`].
+    pub causes: u16,
+}
+
+impl fmt::Display for Trouble {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let names = ["OFF", "READY", "HOLD", "RUN", "QUICK_STOP", "FAULT"];
+        let state = names.get(self.state as usize).copied().unwrap_or("no state");
+        let causes = Cause::ALL.into_iter().filter(|cause| self.causes & cause.bit() != 0);
+        let causes: Vec<String> = causes.map(|cause| format!("{cause:?}")).collect();
+        write!(
+            f,
+            "axis {} should have {}, and is in {state} in clock {}",
+            self.axis, self.wanted, self.clock
+        )?;
+        match causes.is_empty() {
+            true => Ok(()),
+            false => write!(f, ", because of {}", causes.join(", ")),
+        }
+    }
+}
+
+/// A stage on its bench, and who works its registers.
+pub(super) struct Host<'a> {
+    pub(super) bench: StageBench,
+    pub(super) config: &'a StageConfig,
+    /// Clocks between kicks, where an axis has a watchdog.
+    kick_clocks: Option<u64>,
+    kicked: u64,
+}
+
+impl<'a> Host<'a> {
+    pub(super) fn new(bench: StageBench, config: &'a StageConfig) -> Self {
+        let tick = u64::from(config.tick.tick_clocks());
+        let ticks = config
+            .axes
+            .iter()
+            .map(|axis| u64::from(axis.supervision.watchdog_ticks));
+        let shortest = ticks.filter(|ticks| *ticks > 0).min();
+        Self {
+            bench,
+            config,
+            kick_clocks: shortest.map(|ticks| (ticks * tick / 2).max(1)),
+            kicked: 0,
+        }
+    }
+
+    pub(super) fn tick_clocks(&self) -> u64 {
+        self.config.tick.tick_clocks().into()
+    }
+
+    /// Lets time pass, and kicks the watchdogs in time.
+    pub(super) fn pass(&mut self, clocks: u64) -> Result<(), Error> {
+        let end = self.bench.now() + clocks;
+        loop {
+            let left = end.saturating_sub(self.bench.now());
+            if left == 0 {
+                return Ok(());
+            }
+            let Some(pause) = self.kick_clocks else {
+                return self.bench.clocks(left);
+            };
+            let due = (self.kicked + pause).saturating_sub(self.bench.now());
+            if due == 0 {
+                for axis in &self.config.axes {
+                    self.bench.write(&format!("{}_kick", axis.name), KICK)?;
+                }
+                self.kicked = self.bench.now();
+            }
+            self.bench.clocks(left.min(due))?;
+        }
+    }
+
+    /// The axis's state, from the inside: a bus would tell the same a little later.
+    pub(super) fn state(&self, axis: usize) -> Result<u32, Error> {
+        let net = format!("{}_state", self.config.axes[axis].name);
+        Ok(self.bench.net(&net)? as u32)
+    }
+
+    /// What an axis should have done and did not.
+    pub(super) fn trouble(&mut self, axis: usize, wanted: &'static str) -> Result<Trouble, Error> {
+        let name = &self.config.axes[axis].name;
+        Ok(Trouble {
+            clock: self.bench.now(),
+            state: self.state(axis)?,
+            causes: self.bench.read(&format!("{name}_causes"))? as u16,
+            axis: name.clone(),
+            wanted,
+        })
+    }
+
+    /// Waits until `done` holds for each axis, tick by tick, or an axis is in a state that leads nowhere.
+    pub(super) fn wait(
+        &mut self,
+        wanted: &'static str,
+        most_ticks: u64,
+        done: impl Fn(&Self, usize) -> Result<bool, Error>,
+    ) -> Result<Option<Trouble>, Error> {
+        let end = self.bench.now() + most_ticks * self.tick_clocks();
+        for axis in 0..self.config.axes.len() {
+            while !done(self, axis)? {
+                let lost = (0..self.config.axes.len()).map(|other| Ok((other, self.state(other)?)));
+                let lost: Vec<(usize, u32)> = lost.collect::<Result<_, Error>>()?;
+                let failed = |(_, state): &&(usize, u32)| [state::FAULT, state::QUICK_STOP].contains(state);
+                if let Some((other, _)) = lost.iter().find(failed) {
+                    return self.trouble(*other, wanted).map(Some);
+                }
+                if self.bench.now() >= end {
+                    return self.trouble(axis, wanted).map(Some);
+                }
+                self.pass(self.tick_clocks())?;
+            }
+        }
+        Ok(None)
+    }
+
+    /// From reset until every axis holds its position.
+    pub(super) fn switch_on(&mut self) -> Result<Option<Trouble>, Error> {
+        self.pass(SETTLE_CLOCKS)?;
+        for axis in &self.config.axes {
+            self.bench.write(&format!("{}_clear_faults", axis.name), 0)?;
+        }
+        for axis in 0..self.config.axes.len() {
+            // The PWM's first trip is over; what is not stays a cause.
+            let mut patience = PATIENCE_TICKS;
+            while self.state(axis)? != state::READY {
+                if patience == 0 {
+                    return self.trouble(axis, "become ready").map(Some);
+                }
+                patience -= 1;
+                self.pass(self.tick_clocks())?;
+            }
+        }
+        for axis in &self.config.axes {
+            self.bench.write(&format!("{}_control", axis.name), 1)?;
+        }
+        self.wait("come to hold its position", PATIENCE_TICKS, |host, axis| {
+            Ok(host.state(axis)? == state::HOLD)
+        })
+    }
+
+    /// Puts a table of one tap in the place of each axis's own, if wanted.
+    pub(super) fn shape(&mut self, shaping: Shaping) -> Result<Option<Trouble>, Error> {
+        if shaping == Shaping::Shaped {
+            return Ok(None);
+        }
+        for axis in &self.config.axes {
+            let one = 1 << axis.shaper.coefficient_fraction();
+            self.bench.write(&format!("{}_tap_address", axis.name), BANK << 8)?;
+            self.bench.write(&format!("{}_tap", axis.name), one)?;
+            self.bench.write(&format!("{}_swap", axis.name), BANK)?;
+        }
+        self.wait("take another tap table", PATIENCE_TICKS, |host, axis| {
+            let net = format!("{}_table_bank", host.config.axes[axis].name);
+            Ok(host.bench.net(&net)? == u64::from(BANK))
+        })
+    }
+
+    /// Waits for the brakes, then starts these axes together; there must be something to play.
+    pub(super) fn start(&mut self, axes: &[usize]) -> Result<Option<Trouble>, Error> {
+        let release = self
+            .config
+            .axes
+            .iter()
+            .map(|axis| u64::from(axis.supervision.brake_release_ticks));
+        let patience = PATIENCE_TICKS + release.max().unwrap_or(0);
+        let trouble = self.wait("be able to start", patience, |host, axis| {
+            let net = format!("{}_can_start", host.config.axes[axis].name);
+            Ok(!axes.contains(&axis) || host.bench.net(&net)? != 0)
+        })?;
+        if trouble.is_some() {
+            return Ok(trouble);
+        }
+        let mask = axes.iter().fold(0, |mask, axis| mask | 1 << axis);
+        self.bench.write("start", mask)?;
+        self.wait("start", PATIENCE_TICKS, |host, axis| {
+            Ok(!axes.contains(&axis) || host.state(axis)? == state::RUN)
+        })
+    }
+
+    /// Waits until all commands are at their ends.
+    pub(super) fn arrive(&mut self, most_ticks: u64) -> Result<Option<Trouble>, Error> {
+        self.wait("come to the end of its motion", most_ticks, |host, axis| {
+            Ok(host.state(axis)? == state::HOLD)
+        })
+    }
+
+    /// The command position as it stands, Q24.8 counts.
+    pub(super) fn command(&mut self, axis: usize) -> Result<i32, Error> {
+        let name = &self.config.axes[axis].name;
+        Ok(self.bench.read(&format!("{name}_command_position"))? as i32)
+    }
+}

@@ -1,0 +1,182 @@
+//! What a stage does with its machine, measured: from reset over switch-on and a move to standstill, and round a circle.
+//!
+//! ```text
+//!  StageRun ─┬─ side_by_side ─► model and RTL in every clock of a move       ─► Compared: the first clock that differs
+//!            ├─ moved ────────► the model alone: shaped, unshaped, other plant ─► Moved: tracking, residual vibration
+//!            └─ circle ───────► the model alone: points through the FIFOs      ─► Circled: contour error
+//! ```
+//!
+//! A host on the bus does what a program would: it clears the first trip, enables, waits for the brakes, writes segments, sets one
+//! bit, kicks the watchdogs, and keeps the FIFOs filled as their low marks say. A stage that does not do what it should is a
+//! result, with its [`Trouble`]; an error is what could not be run at all.
+
+mod circle;
+mod figures;
+mod host;
+mod moves;
+
+use posicast_model::control::{self, MachineStageError};
+use posicast_model::design::design_machine;
+use posicast_model::motion::{PlanError, ProfileError};
+use posicast_model::plant::axis::{AxisPlant, AxisPlantError, PlantOptions};
+use posicast_model::rtl::component::Component;
+use posicast_model::rtl::stage::{StageConfig, StageError};
+use posicast_model::spec::{Machine, Stage};
+
+use crate::Error;
+use crate::lockstep::Device;
+use crate::stage_bench::{StageBench, StageMismatch};
+
+pub use circle::{Circle, Circled};
+pub use figures::{AxisFigures, residual_allowed};
+pub use host::Trouble;
+pub use moves::Moved;
+
+use host::Host;
+
+/// Why a run could not be made.
+#[derive(Debug, thiserror::Error)]
+pub enum StageRunError {
+    /// The bench.
+    #[error(transparent)]
+    Bench(#[from] Error),
+    /// A move of an axis.
+    #[error("the move of axis {axis}: {source}")]
+    Plan {
+        /// The axis.
+        axis: String,
+        /// Why there is none.
+        source: PlanError,
+    },
+    /// The machine.
+    #[error(transparent)]
+    Plant(#[from] AxisPlantError),
+    /// The hardware.
+    #[error(transparent)]
+    Stage(#[from] StageError),
+    /// The hardware, from the machine file.
+    #[error(transparent)]
+    MachineStage(#[from] MachineStageError),
+    /// The tap tables of the same machine with, or without, `[stage]`.
+    #[error("the axes with and without equal delays: {0}")]
+    Design(Box<dyn std::error::Error + Send + Sync>),
+}
+
+impl StageRunError {
+    pub(crate) fn profile(axis: &str) -> impl Fn(ProfileError) -> Self {
+        move |error| Self::Plan {
+            axis: axis.to_owned(),
+            source: error.into(),
+        }
+    }
+}
+
+/// What the shapers do.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Shaping {
+    /// The machine's tap tables.
+    Shaped,
+    /// A table of one tap, loaded over the bus: the command goes through as it is.
+    Unshaped,
+}
+
+/// The comparison of model and RTL over a move.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Compared {
+    /// Clocks that were compared, reset included.
+    pub clocks: u64,
+    /// Whether they reach to standstill; a very long move is compared at its beginning.
+    pub whole: bool,
+    /// Outputs that differed, clock by clock.
+    pub mismatches: u64,
+    /// The first.
+    pub first: Option<StageMismatch>,
+    /// What the stage did not do.
+    pub trouble: Option<Trouble>,
+}
+
+/// A stage and the machine that it is for.
+#[derive(Debug, Clone)]
+pub struct StageRun<'a> {
+    machine: &'a Machine,
+    config: StageConfig,
+    component: Component,
+    seed: u64,
+}
+
+impl<'a> StageRun<'a> {
+    /// A stage with this configuration, of `machine`. `seed` gives the arbitrary contents of memories.
+    ///
+    /// # Errors
+    /// [`StageRunError::Stage`] where the configuration is none.
+    pub fn new(machine: &'a Machine, config: &StageConfig, seed: u64) -> Result<Self, StageRunError> {
+        Ok(Self {
+            machine,
+            config: config.clone(),
+            component: Component::stage(config)?,
+            seed,
+        })
+    }
+
+    /// The same machine with delays that are equal for all axes, or with each shaper's own.
+    ///
+    /// # Errors
+    /// [`StageRunError::Design`] where a table cannot hold the delay that is missing; [`StageRunError::MachineStage`].
+    pub fn with_delays(machine: &'a Machine, equal: bool, seed: u64) -> Result<Option<Self>, StageRunError> {
+        let own = machine.stage.unwrap_or(Stage {
+            extra_delay_s: 0.0,
+            contour_speed: None,
+        });
+        let other = Machine {
+            stage: equal.then_some(own),
+            ..machine.clone()
+        };
+        let design = design_machine(&other).map_err(|error| StageRunError::Design(Box::new(error)))?;
+        let stage = control::stage(&other, &design)?;
+        stage.map(|stage| Self::new(machine, &stage.config, seed)).transpose()
+    }
+
+    /// Moves model and `device` side by side, from reset to standstill: every output of every clock is compared.
+    ///
+    /// # Errors
+    /// [`StageRunError`] where that cannot be run.
+    pub fn side_by_side(&self, device: Box<dyn Device>) -> Result<Compared, StageRunError> {
+        let mut host = self.host(1.0, Some(device))?;
+        let (trouble, whole) = moves::compare(self, &mut host)?;
+        let (mismatches, first) = host.bench.mismatches();
+        Ok(Compared {
+            clocks: host.bench.now(),
+            whole,
+            mismatches,
+            first: first.cloned(),
+            trouble,
+        })
+    }
+
+    /// The move in the model alone, on a machine whose modes are at `frequency_factor` times their frequencies.
+    ///
+    /// # Errors
+    /// [`StageRunError`] where that cannot be run.
+    pub fn moved(&self, shaping: Shaping, frequency_factor: f64) -> Result<Moved, StageRunError> {
+        moves::measure(self, self.host(frequency_factor, None)?, shaping)
+    }
+
+    /// The circle in the model alone.
+    ///
+    /// # Errors
+    /// [`StageRunError`] where that cannot be run.
+    pub fn circle(&self, circle: &Circle, shaping: Shaping) -> Result<Circled, StageRunError> {
+        circle::measure(self, self.host(1.0, None)?, circle, shaping)
+    }
+
+    fn host(&self, frequency_factor: f64, device: Option<Box<dyn Device>>) -> Result<Host<'_>, StageRunError> {
+        let options = PlantOptions {
+            frequency_factor,
+            ..PlantOptions::default()
+        };
+        let plant = |axis| AxisPlant::new(axis, &self.machine.clock, &options);
+        let plants = self.machine.axes.iter().map(plant).collect::<Result<_, _>>()?;
+        let bench = StageBench::new(&self.config, &self.component, plants, device, self.seed)?;
+        Ok(Host::new(bench, &self.config))
+    }
+}

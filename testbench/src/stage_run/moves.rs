@@ -1,0 +1,151 @@
+//! The move that all axes make at once.
+
+use posicast_model::motion::{TickLimits, default_move, plan_move, settle_s};
+use posicast_model::rtl::segments::Entry;
+
+use super::figures::{self, AxisFigures};
+use super::host::{Host, Trouble};
+use super::{Shaping, StageRun, StageRunError};
+use crate::stage_bench::AxisSample;
+
+/// Most clocks that model and RTL are compared in: half a minute of Verilator.
+const COMPARED_CLOCKS: u64 = 12_000_000;
+/// Longest time in which a machine is watched after its move, s.
+const LONGEST_SETTLE_S: f64 = 2.0;
+/// Ticks beyond the plan and the shapers after which a move is over.
+const SPARE_TICKS: u64 = 1000;
+/// Ticks at the end, in which nothing moves any more.
+const STANDSTILL_TICKS: u64 = 20;
+/// Fraction bits of a command word and of an exact position.
+const WORD_FRACTION: u32 = 8;
+const EXACT_FRACTION: u32 = 32;
+
+/// A move and what came of it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Moved {
+    /// Of each axis; empty where the stage never moved.
+    pub axes: Vec<AxisFigures>,
+    /// Each tick from the start on, by axis: of motion, then of standstill.
+    pub samples: Vec<Vec<AxisSample>>,
+    /// What the stage did not do.
+    pub trouble: Option<Trouble>,
+}
+
+impl Moved {
+    /// The load of an axis about its place of rest, in m or rad, at each tick from when the shaped command has come to its end.
+    pub fn ringing(&self, axis: usize) -> Vec<f64> {
+        let samples = self.samples.get(axis).map_or(&[][..], Vec::as_slice);
+        figures::ringing(samples).0
+    }
+}
+
+/// The segments of an axis, and how many ticks they last.
+struct Plan {
+    entries: Vec<Entry>,
+    ticks: u64,
+}
+
+/// The default move of each axis, from where it stands.
+fn plan(run: &StageRun<'_>, host: &mut Host<'_>) -> Result<Vec<Plan>, StageRunError> {
+    let mut plans = Vec::new();
+    for (index, axis) in run.machine.axes.iter().enumerate() {
+        let profile = default_move(axis.limits.as_ref()).map_err(StageRunError::profile(&axis.name))?;
+        let distance = profile.position(profile.duration_s()) - profile.position(0.0);
+        let words = distance * axis.loop_counts_per_unit() * f64::from(1u32 << WORD_FRACTION);
+        let start = host.command(index)?;
+        // A distance beyond the words ends at the last word; counting so finely, the axis is refused as a plant.
+        let end = start.saturating_add(words.round() as i32);
+        let limits = TickLimits::of_axis(axis, &run.machine.clock);
+        let exact = i64::from(start) << (EXACT_FRACTION - WORD_FRACTION);
+        let planned = plan_move(exact, end, &limits).map_err(|source| StageRunError::Plan {
+            axis: axis.name.clone(),
+            source,
+        });
+        let entries = planned?;
+        let ticks = entries.iter().map(|entry| u64::from(entry.ticks)).sum();
+        plans.push(Plan { entries, ticks });
+    }
+    Ok(plans)
+}
+
+/// Switches on, loads the moves and starts them; the ticks that they last.
+fn begin(run: &StageRun<'_>, host: &mut Host<'_>, shaping: Shaping) -> Result<Result<u64, Trouble>, StageRunError> {
+    if let Some(trouble) = host.switch_on()? {
+        return Ok(Err(trouble));
+    }
+    if let Some(trouble) = host.shape(shaping)? {
+        return Ok(Err(trouble));
+    }
+    let plans = plan(run, host)?;
+    for (axis, plan) in run.machine.axes.iter().zip(&plans) {
+        for entry in &plan.entries {
+            host.bench.segment(&axis.name, entry)?;
+        }
+    }
+    let all: Vec<usize> = (0..plans.len()).collect();
+    host.bench.record();
+    Ok(match host.start(&all)? {
+        Some(trouble) => Err(trouble),
+        None => Ok(plans.iter().map(|plan| plan.ticks).max().unwrap_or(0)),
+    })
+}
+
+/// Ticks that the longest shaper goes on for.
+fn shaper_ticks(run: &StageRun<'_>) -> u64 {
+    let delays = run
+        .config
+        .axes
+        .iter()
+        .map(|axis| axis.shaper.table().longest_delay_samples());
+    delays.max().unwrap_or(0).into()
+}
+
+/// The move with a device beside the model; whether it came to its end within the clocks that are compared.
+pub(super) fn compare(run: &StageRun<'_>, host: &mut Host<'_>) -> Result<(Option<Trouble>, bool), StageRunError> {
+    let ticks = match begin(run, host, Shaping::Shaped)? {
+        Ok(ticks) => ticks,
+        Err(trouble) => return Ok((Some(trouble), false)),
+    };
+    let rest = ticks + shaper_ticks(run) + STANDSTILL_TICKS;
+    let affordable = COMPARED_CLOCKS.saturating_sub(host.bench.now()) / host.tick_clocks();
+    if rest > affordable {
+        host.pass(affordable * host.tick_clocks())?;
+        return Ok((None, false));
+    }
+    let trouble = host.arrive(ticks + SPARE_TICKS)?;
+    if trouble.is_none() {
+        host.pass((shaper_ticks(run) + STANDSTILL_TICKS) * host.tick_clocks())?;
+    }
+    let whole = trouble.is_none();
+    Ok((trouble, whole))
+}
+
+/// The move in the model, watched until the machine has come to rest.
+pub(super) fn measure(run: &StageRun<'_>, mut host: Host<'_>, shaping: Shaping) -> Result<Moved, StageRunError> {
+    let trouble = match begin(run, &mut host, shaping)? {
+        Ok(ticks) => host.arrive(ticks + SPARE_TICKS)?,
+        Err(trouble) => Some(trouble),
+    };
+    if trouble.is_none() {
+        let clock = &run.machine.clock;
+        let modes = run
+            .machine
+            .axes
+            .iter()
+            .flat_map(|axis| &axis.modes)
+            .map(|mode| mode.mode);
+        let shaper_s = shaper_ticks(run) as f64 / clock.sample_hz;
+        let settle_s = settle_s(shaper_s, modes).min(LONGEST_SETTLE_S);
+        let ticks = (settle_s * clock.sample_hz).ceil() as u64 + STANDSTILL_TICKS;
+        host.pass(ticks * host.tick_clocks())?;
+    }
+    let samples = host.bench.recorded();
+    let axes = samples.iter().zip(&run.machine.axes);
+    Ok(Moved {
+        axes: axes
+            .map(|(samples, axis)| figures::of_move(samples, axis.loop_counts_per_unit()))
+            .collect(),
+        samples,
+        trouble,
+    })
+}

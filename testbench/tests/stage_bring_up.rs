@@ -1,0 +1,168 @@
+//! A stage with linear scales and what is there for bringing it up: Verilog beside model, on the simulated machine.
+#![allow(clippy::unwrap_used)] // helpers of tests, which clippy.toml exempts only inside of #[test]
+
+use posicast_model::control;
+use posicast_model::design::design_machine;
+use posicast_model::motion::{TickLimits, plan_move};
+use posicast_model::plant::axis::{AxisPlant, PlantOptions};
+use posicast_model::rtl::component::Component;
+use posicast_model::spec::{self, Machine};
+use posicast_testbench::blocks::{ComponentBlock, Sources};
+use posicast_testbench::lockstep::Device;
+use posicast_testbench::stage_bench::{StageBench, state};
+
+/// The loop of X runs on its scale, that of Y is watched by one; both have a trace memory.
+fn machine() -> Machine {
+    let bring_up = |usage: &str| {
+        format!("[axis.scale]\ncounts_per_unit = 4_000_000\nuse = \"{usage}\"\n[axis.trace]\nsamples = 256\n[axis.pwm]")
+    };
+    let text = include_str!("../../examples/xy-stage.toml");
+    let text = text.replacen("[axis.pwm]", &bring_up("position"), 1);
+    // Its mode is inside of the loop on the scale, and allows a gain of 130/s.
+    let text = text.replacen("kind = \"pd\"", "kind = \"pd\"\nproportional = 60.0", 1);
+    let second = text.rfind("[axis.pwm]").unwrap();
+    let text = format!(
+        "{}{}{}",
+        &text[..second],
+        bring_up("monitor"),
+        &text[second + "[axis.pwm]".len()..]
+    );
+    spec::parse("xy-stage.toml", &text).unwrap()
+}
+
+fn bench(machine: &Machine, with_rtl: bool) -> StageBench {
+    let stage = control::stage(machine, &design_machine(machine).unwrap());
+    let stage = stage.unwrap().unwrap();
+    let component = Component::stage(&stage.config).unwrap();
+    let device = with_rtl.then(|| {
+        let block = ComponentBlock::new(component.clone(), "scaled", "xy");
+        let sources = Sources::write(&block).unwrap();
+        assert_eq!(sources.lint(&block).unwrap(), [""; 0]);
+        Box::new(sources.verilated(&block, 1).unwrap()) as Box<dyn Device>
+    });
+    let plant = |axis| AxisPlant::new(axis, &machine.clock, &PlantOptions::default()).unwrap();
+    let plants = machine.axes.iter().map(plant).collect();
+    StageBench::new(&stage.config, &component, plants, device, 1).unwrap()
+}
+
+/// Moves one axis by so many counts of its loop.
+fn move_by(machine: &Machine, bench: &mut StageBench, axis: usize, counts: i64) {
+    let name = machine.axes[axis].name.clone();
+    let at = i64::from(bench.read(&format!("{name}_command_position")).unwrap() as i32) << 24;
+    let limits = TickLimits::of_axis(&machine.axes[axis], &machine.clock);
+    let end = ((at >> 24) + 256 * counts) as i32;
+    for entry in plan_move(at, end, &limits).unwrap() {
+        bench.segment(&name, &entry).unwrap();
+    }
+    bench.write("start", 1 << axis).unwrap();
+    bench.clocks(20_000).unwrap();
+    assert!(bench.wait(&name, state::HOLD, 20_000_000).unwrap());
+    bench.clocks(250_000).unwrap();
+}
+
+/// The words of a trace that is full or halted.
+fn traced(bench: &mut StageBench, axis: &str) -> Vec<i32> {
+    let rows = bench.field(axis, "trace_status", "trace_rows").unwrap();
+    let words = (0..4 * rows).map(|word| {
+        bench.write(&format!("{axis}_trace_address"), word).unwrap();
+        bench.clocks(2).unwrap();
+        bench.read(&format!("{axis}_trace_data")).unwrap() as i32
+    });
+    words.collect()
+}
+
+/// Four signals: shaped position, captured position, error, test signal.
+const SETUP: u32 = 3 | 6 << 4 | 8 << 8 | 11 << 12 | 2 << 16;
+
+#[test]
+fn lockstep_a_move_on_the_scale_and_its_trace() {
+    let machine = machine();
+    let mut bench = bench(&machine, true);
+    assert!(bench.switch_on(20_000_000).unwrap());
+    bench.record();
+    // From the start of the move on, every tick.
+    bench.write("x_trace_setup", SETUP | 3 << 24).unwrap();
+    bench.write("x_trace_rate", 2 << 16).unwrap();
+    bench.write("x_trace_arm", 0).unwrap();
+    bench.clocks(20_000).unwrap();
+    move_by(&machine, &mut bench, 0, 300);
+    assert_eq!(bench.mismatches(), (0, None));
+
+    let samples = bench.recorded().swap_remove(0);
+    let words = traced(&mut bench, "x");
+    let trigger = bench.field("x", "trace_status", "trace_trigger_row").unwrap() as usize;
+    assert_eq!((words.len(), trigger), (256, 2));
+    assert_eq!(bench.field("x", "bring_up_events", "trace_done").unwrap(), 1);
+    // What was traced is what the bench saw at the same ticks.
+    let shaped: Vec<f64> = words.chunks(4).map(|row| f64::from(row[0]) / 256.0).collect();
+    let seen: Vec<f64> = samples.iter().map(|sample| sample.shaped).collect();
+    assert!(
+        seen.windows(shaped.len()).any(|window| window == shaped),
+        "{shaped:?}\n{seen:?}"
+    );
+    assert!(shaped.last() > shaped.first());
+    // 300 counts of the scale, 75 of the motor.
+    let (scale, motor) = (bench.plant(0).scale_count().unwrap(), bench.plant(0).count());
+    assert!((scale - 300).abs() <= 4 && (motor - 75).abs() <= 2, "{scale} {motor}");
+    assert!((bench.field("x", "deviation", "deviation").unwrap() as i32).abs() <= 4);
+}
+
+#[test]
+fn unit_a_watched_scale_stops_what_leaves_it() {
+    let mut machine = machine();
+    let limits = machine.axes[1].limits.as_mut().unwrap();
+    limits.deviation = Some(20e-6);
+    let mut bench = bench(&machine, false);
+    assert!(bench.switch_on(20_000_000).unwrap());
+    move_by(&machine, &mut bench, 1, 500);
+    assert_eq!(bench.read("y_causes").unwrap(), 0);
+    // A scale that counts the other way is a broken coupling.
+    bench.write("y_scale_control", 1).unwrap();
+    let at = bench.read("y_command_position").unwrap() as i32;
+    let limits = TickLimits::of_axis(&machine.axes[1], &machine.clock);
+    for entry in plan_move(i64::from(at) << 24, at + 256 * 500, &limits).unwrap() {
+        bench.segment("y", &entry).unwrap();
+    }
+    bench.write("start", 2).unwrap();
+    assert!(bench.wait("y", state::FAULT, 20_000_000).unwrap());
+    assert_eq!(bench.read("y_causes").unwrap() & 1 << 8, 1 << 8);
+}
+
+#[test]
+fn unit_a_test_signal_shakes_the_axis_in_hold() {
+    let machine = machine();
+    let mut bench = bench(&machine, false);
+    assert!(bench.switch_on(20_000_000).unwrap());
+    // A square of 3 counts, 20 ticks long, for 100 ticks.
+    bench.write("y_excitation_time", 20).unwrap();
+    bench.write("y_excitation_length", 100).unwrap();
+    bench.write("y_trace_setup", SETUP).unwrap();
+    bench.write("y_trace_arm", 0).unwrap();
+    bench.write("y_excitation", 3 | 1 << 4 | (3 << 8) << 16).unwrap();
+    bench.clocks(10_000).unwrap();
+    assert_eq!(bench.field("y", "excitation_state", "excitation_active").unwrap(), 1);
+    bench.clocks(5000 * 120).unwrap();
+    assert_eq!(bench.field("y", "bring_up_events", "excitation_done").unwrap(), 1);
+    let words = traced(&mut bench, "y");
+    let added: Vec<i32> = words.chunks(4).map(|row| row[3]).collect();
+    assert!(added.contains(&768) && added.contains(&-768), "{added:?}");
+    let reached = words.chunks(4).map(|row| row[1]);
+    assert!(reached.clone().max() >= Some(2) && reached.min() <= Some(-2));
+    assert_eq!(bench.read("y_causes").unwrap(), 0);
+}
+
+#[test]
+fn unit_the_generator_counts_without_a_machine() {
+    let machine = machine();
+    let mut bench = bench(&machine, false);
+    bench.clocks(1000).unwrap();
+    let before = bench.read("x_count").unwrap() as i32;
+    // A count in 250 clocks: 20 per tick.
+    bench.write("x_generator_rate", ((1u64 << 32) / 250) as u32).unwrap();
+    bench.write("x_generator", 1).unwrap();
+    bench.clocks(250_000).unwrap();
+    let counted = bench.read("x_count").unwrap() as i32 - before;
+    assert!((counted - 1000).abs() <= 4, "{counted}");
+    let velocity = f64::from(bench.read("x_velocity").unwrap() as i32) / 65_536.0;
+    assert!((velocity - 20.0).abs() < 0.01, "{velocity}");
+}
