@@ -1,15 +1,29 @@
 //! The stage of the example machine: its Verilog against its model, and what a host does with it.
-#![allow(clippy::unwrap_used)] // helpers of tests, which clippy.toml exempts only inside of #[test]
+#![allow(clippy::unwrap_used, clippy::panic)] // helpers of tests, which clippy.toml exempts only inside of #[test]
+
+mod support;
 
 use posicast_model::control::{self, MachineStage};
 use posicast_model::design::design_machine;
 use posicast_model::motion::{TickLimits, plan_move};
 use posicast_model::plant::axis::{AxisPlant, PlantOptions};
 use posicast_model::rtl::component::Component;
+use posicast_model::rtl::divider::DividerConfig;
+use posicast_model::rtl::pwm::{ActiveLow, Mode, PwmConfig};
+use posicast_model::rtl::shaper::{Motion, ShaperConfig};
+use posicast_model::rtl::sliding_mode::{Gain, Row};
+use posicast_model::rtl::stage::StageConfig;
+use posicast_model::rtl::{ClockedBlock, Direction};
 use posicast_model::spec::{self, Machine};
-use posicast_testbench::blocks::{ComponentBlock, Sources};
+use posicast_model::taps::{Tap, TapTable};
+use posicast_testbench::blocks::{self, Block, ComponentBlock, Sources, StageBlock};
 use posicast_testbench::lockstep::Device;
+use posicast_testbench::register_tests::{Hardware, Host, TESTS};
 use posicast_testbench::stage_bench::{StageBench, state};
+use support::{assert_match, caught, icarus_agrees, million_random_clocks};
+
+/// Clocks of a PWM period in the random runs.
+const PERIOD_CLOCKS: u32 = 80;
 
 fn machine() -> Machine {
     let text = include_str!("../../examples/xy-stage.toml");
@@ -78,4 +92,200 @@ fn lockstep_a_move_from_reset_to_standstill() {
     let mut bench = bench(&machine, true);
     move_both(&machine, &mut bench, 200);
     assert_eq!(bench.mismatches(), (0, None));
+}
+
+/// So many axes with short ticks, small tables and short times, so that much happens in a million clocks. PWM modes differ.
+fn quick(axes: usize) -> StageConfig {
+    let config = stage(&machine()).config;
+    let modes = [Mode::Locked, Mode::Unipolar, Mode::HalfBridge, Mode::Direction];
+    let half = |delay_samples| Tap {
+        delay_samples,
+        coefficient: 1 << 15,
+    };
+    let table = TapTable::new(16, vec![half(0), half(2)]).unwrap();
+    let motion = Motion {
+        channels: 3,
+        modulo: false,
+    };
+    let mut quick = StageConfig {
+        tick: config.tick,
+        axes: Vec::new(),
+    };
+    for (name, mode) in ["x", "y", "z", "phi"].into_iter().zip(modes).take(axes) {
+        let mut axis = config.axes[0].clone();
+        axis.name = name.to_owned();
+        axis.shaper = ShaperConfig::new(32, table.clone())
+            .unwrap()
+            .for_motion(motion)
+            .unwrap();
+        axis.shaper = axis.shaper.with_room_for(62, 4).unwrap();
+        axis.pwm = PwmConfig::new(ActiveLow::default(), 2, 3).unwrap();
+        axis.pwm_mode = mode;
+        axis.pwm_period_clocks = PERIOD_CLOCKS;
+        axis.modulo = name == "phi";
+        axis.encoder_filter_clocks = 2;
+        axis.settings
+            .set_gain(Row::Duty, Gain::nearest(0.02, Row::Duty).unwrap());
+        axis.settings.set_limit(2000 << 12);
+        let watched = &mut axis.supervision;
+        (
+            watched.filter_clocks,
+            watched.brake_release_ticks,
+            watched.brake_apply_ticks,
+        ) = (3, 1, 1);
+        (watched.saturation_ticks, watched.lost_ticks, watched.lost_command) = (3, 3, 50 << 12);
+        (watched.direct_hold_ticks, watched.direct_limit) = (2, 30);
+        quick.axes.push(axis);
+    }
+    // The shortest tick that holds the schedule, in whole periods.
+    let periods = quick.timing().duty_clocks() / PERIOD_CLOCKS + 1;
+    quick.tick = DividerConfig::new(u64::from(periods * PERIOD_CLOCKS)).unwrap();
+    quick
+}
+
+fn block(axes: usize) -> StageBlock {
+    StageBlock::new(&quick(axes), "quick_stage").unwrap()
+}
+
+/// A line of the Verilog that begins with `begins` and has `has`, as it stands there.
+fn line(block: &StageBlock, begins: &str, has: &str) -> String {
+    let modules = block.modules().unwrap();
+    let mut lines = modules.iter().flat_map(|module| module.text.lines());
+    let found = lines.find(|line| line.trim_start().starts_with(begins) && line.contains(has));
+    found
+        .unwrap_or_else(|| panic!("no line with `{begins}` and `{has}`: adapt the test"))
+        .to_owned()
+}
+
+/// Puts another net on a port, and insists that it is found.
+fn rewired(axes: usize, port: &str, net: &str, other: &str) {
+    let block = block(axes);
+    let line = line(&block, &format!(".{port} "), &format!("({net})"));
+    caught(&block, &line, &line.replace(&format!("({net})"), other), 300_000);
+}
+
+#[test]
+fn lockstep_one_axis_a_million_random_clocks() {
+    million_random_clocks(&block(1), 1, 1);
+}
+
+#[test]
+fn lockstep_two_axes_a_million_random_clocks() {
+    million_random_clocks(&block(2), 1, 1);
+}
+
+#[test]
+fn lockstep_four_axes_a_million_random_clocks() {
+    // Which the bins of two axes cover: four have longer ticks, and less happens in as many clocks.
+    million_random_clocks(&block(4), 3, 0);
+}
+
+#[test]
+fn lockstep_the_machine_under_random_traffic() {
+    let config = stage(&machine()).config;
+    let block = StageBlock::new(&config, "xy_stage").unwrap();
+    let mut device = Sources::write(&block).unwrap().verilated(&block, 5).unwrap();
+    let report = blocks::check(&block, &mut device, 300_000, 5, &mut |_| {}).unwrap();
+    assert_match(&report, "the machine's stage");
+}
+
+#[test]
+fn crosssim_icarus_agrees_with_two_axes() {
+    icarus_agrees(&block(2));
+}
+
+#[test]
+fn lockstep_catches_the_nets_of_another_axis() {
+    rewired(2, "can_start_0", "x_can_start", "(y_can_start)");
+}
+
+#[test]
+fn lockstep_catches_a_start_of_an_axis_that_cannot() {
+    caught(&block(2), "& !can_start_0)", "& 1'd0)", 300_000);
+}
+
+#[test]
+fn lockstep_catches_divisions_in_another_order() {
+    caught(
+        &block(2),
+        "next_turn = FIRST_CHANNEL;",
+        "next_turn = LAST_CHANNEL;",
+        300_000,
+    );
+}
+
+#[test]
+fn lockstep_catches_controllers_that_start_a_clock_early() {
+    caught(&block(1), "(since == LAST)", "(since + ONE == LAST)", 300_000);
+}
+
+#[test]
+fn lockstep_catches_an_axis_that_does_not_stop_the_others() {
+    caught(
+        &block(2),
+        "wants_group_stop_0 & (AXIS_1 != AXIS_0)",
+        "wants_group_stop_0 & (AXIS_1 == AXIS_0)",
+        300_000,
+    );
+}
+
+#[test]
+fn lockstep_catches_a_stop_that_does_not_wait_for_the_shaper() {
+    rewired(1, "settle_ticks", "settle_ticks", "(16'd0)");
+}
+
+#[test]
+fn lockstep_catches_a_preset_that_takes_the_users_position() {
+    rewired(1, "preset_position", "count", "(user_position)");
+}
+
+/// The schedule fits its tick, whatever a host does: no pass is late, and no start finds one running.
+#[test]
+fn unit_no_pass_is_ever_missed() {
+    for axes in [1, 4] {
+        let config = quick(axes);
+        let block = block(axes);
+        let mut model = block.component().model(1);
+        let mut stimuli = block.stimuli(0, 1);
+        let count = |direction| model.ports().iter().filter(|port| port.direction == direction).count();
+        let (mut inputs, mut outputs) = (vec![0; count(Direction::Input)], vec![0; count(Direction::Output)]);
+        let late = [
+            "segments_tick_missed",
+            "shaper_overrun",
+            "controller_overrun",
+            "velocity_missed",
+            "pwm_unaligned",
+        ];
+        let names = config
+            .axes
+            .iter()
+            .flat_map(|axis| late.map(|flag| format!("{}_{flag}", axis.name)));
+        let nets: Vec<(String, usize)> = names
+            .map(|name| {
+                let net = model.net(&name).unwrap();
+                (name, net)
+            })
+            .collect();
+        for clock in 0..300_000 {
+            stimuli.fill(&outputs, &mut inputs);
+            model.step(&inputs, &mut outputs).unwrap();
+            for (name, net) in &nets {
+                assert_eq!(model.value(*net), 0, "{name} of {axes} axes in clock {clock}");
+            }
+        }
+    }
+}
+
+#[test]
+fn lockstep_the_registers_keep_their_promises() {
+    let block = block(2);
+    let component = block.component();
+    let mut verilated = Sources::write(&block).unwrap().verilated(&block, 1).unwrap();
+    let mut model = component.model(1);
+    for (name, test) in TESTS {
+        for device in [&mut model as &mut dyn ClockedBlock, &mut verilated] {
+            let mut host = Host::new(component.map(), device, Hardware::Running).unwrap();
+            assert_eq!(test(&mut host), Ok(()), "{name}");
+        }
+    }
 }

@@ -5,9 +5,14 @@
 
 mod component;
 mod coverage;
+mod stage;
+mod stage_coverage;
+mod stage_driver;
 
 pub use self::component::ComponentRandom;
 pub use self::coverage::RegistersCoverage;
+pub use self::stage::StageRandom;
+pub use self::stage_coverage::StageCoverage;
 
 use posicast_model::rtl::registers::{Register, RegisterMap};
 use posicast_model::rtl::{Direction, Port};

@@ -1,0 +1,126 @@
+//! The bench of the small blocks between others: schedule, divider share, group, time base, sample select, setting banks.
+
+use posicast_hdl::emit::{EmitError, Module};
+use posicast_hdl::{SimulationError, divider_share, group, sample_select, schedule, setting_banks, time_base};
+use posicast_model::rtl::component::Block as Model;
+use posicast_model::rtl::divider::DividerConfig;
+use posicast_model::rtl::schedule::ScheduleConfig;
+use posicast_model::rtl::sliding_mode::Settings;
+use posicast_model::rtl::{ClockedBlock, Port};
+
+use super::component::Changes;
+use super::{Bins, Block, prefixed};
+use crate::stimuli::{PartRandom, Stimuli};
+
+/// A block that joins others.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Part {
+    /// When the controllers start.
+    Schedule(ScheduleConfig),
+    /// One divider for so many pulse counters.
+    DividerShare(usize),
+    /// What so many axes have to do with each other.
+    Group(usize),
+    /// Ticks of this length.
+    TimeBase(DividerConfig),
+    /// Where samples come from.
+    SampleSelect {
+        /// Width of a word.
+        word_bits: u32,
+        /// Words per sample.
+        channels: usize,
+    },
+    /// A controller's settings, these in bank 0.
+    SettingBanks(Settings),
+}
+
+/// One of them, with its own name, under inputs of every pace.
+#[derive(Debug, Clone)]
+pub struct PartBlock {
+    part: Part,
+    model: Model,
+    prefix: String,
+    instance: String,
+}
+
+impl PartBlock {
+    /// The module `PREFIX_NAME`.
+    pub fn new(part: Part, prefix: &str) -> Self {
+        let (model, instance) = match part {
+            Part::Schedule(config) => {
+                let clocks = format!("{} clocks to control", config.control_clocks());
+                (Model::Schedule(config), clocks)
+            }
+            Part::DividerShare(channels) => (Model::DividerShare(channels), format!("{channels} channels")),
+            Part::Group(axes) => (Model::Group(axes), format!("{axes} axes")),
+            Part::TimeBase(config) => {
+                let clocks = format!("{} clocks per tick", config.tick_clocks());
+                (Model::TimeBase(config), clocks)
+            }
+            Part::SampleSelect { word_bits, channels } => (
+                Model::SampleSelect { word_bits, channels },
+                format!("{channels} x {word_bits} bits"),
+            ),
+            Part::SettingBanks(settings) => (Model::SettingBanks(Box::new(settings)), "alone".to_owned()),
+        };
+        Self {
+            part,
+            model,
+            prefix: prefix.to_owned(),
+            instance,
+        }
+    }
+
+    fn ports(&self) -> Vec<Port> {
+        self.model.model(0).ports().to_vec()
+    }
+}
+
+impl Block for PartBlock {
+    fn name(&self) -> &str {
+        self.model.name()
+    }
+
+    fn instance(&self) -> &str {
+        &self.instance
+    }
+
+    fn modules(&self) -> Result<Vec<Module>, EmitError> {
+        let prefix = self.prefix.as_str();
+        match &self.part {
+            Part::Schedule(config) => schedule::emit(config, prefix),
+            Part::DividerShare(channels) => divider_share::emit(*channels, prefix),
+            Part::Group(axes) => group::emit(*axes, prefix),
+            Part::TimeBase(config) => time_base::emit(config, prefix),
+            Part::SampleSelect { word_bits, channels } => sample_select::emit(*word_bits, *channels, prefix),
+            Part::SettingBanks(settings) => setting_banks::emit(settings, prefix),
+        }
+    }
+
+    fn top(&self) -> String {
+        prefixed(&self.prefix, self.name())
+    }
+
+    fn model(&self, seed: u64) -> Box<dyn ClockedBlock> {
+        self.model.model(seed)
+    }
+
+    fn simulate(&self) -> Result<Box<dyn ClockedBlock>, SimulationError> {
+        match &self.part {
+            Part::Schedule(config) => schedule::simulate(config),
+            Part::DividerShare(channels) => divider_share::simulate(*channels),
+            Part::Group(axes) => group::simulate(*axes),
+            Part::TimeBase(config) => time_base::simulate(config),
+            Part::SampleSelect { word_bits, channels } => sample_select::simulate(*word_bits, *channels),
+            Part::SettingBanks(settings) => setting_banks::simulate(settings),
+        }
+    }
+
+    fn stimuli(&self, _cycles: u64, seed: u64) -> Box<dyn Stimuli + '_> {
+        Box::new(PartRandom::new(&self.ports(), seed))
+    }
+
+    fn coverage(&self) -> Box<dyn Bins + '_> {
+        Box::new(Changes::new(&self.ports()))
+    }
+}

@@ -1,0 +1,90 @@
+//! The bench of a whole `stage`: a driver, random traffic, lines and encoders at its pins.
+
+use posicast_hdl::SimulationError;
+use posicast_hdl::component::emit;
+use posicast_hdl::emit::{EmitError, Module};
+use posicast_model::rtl::ClockedBlock;
+use posicast_model::rtl::component::Component;
+use posicast_model::rtl::stage::{StageConfig, StageError};
+
+use super::{Bins, Block, not_in_rusthdl};
+use crate::lockstep::Clock;
+use crate::stimuli::{StageCoverage, StageRandom, Stimuli};
+
+/// A stage under a name of its own.
+#[derive(Debug, Clone)]
+pub struct StageBlock {
+    component: Component,
+    axes: Vec<String>,
+    instance: String,
+    top: String,
+}
+
+impl StageBlock {
+    /// The stage with the top module `top`.
+    ///
+    /// # Errors
+    /// As [`Component::stage`].
+    pub fn new(config: &StageConfig, top: &str) -> Result<Self, StageError> {
+        let axes: Vec<String> = config.axes.iter().map(|axis| axis.name.clone()).collect();
+        Ok(Self {
+            component: Component::stage(config)?,
+            instance: axes.join(", "),
+            axes,
+            top: top.to_owned(),
+        })
+    }
+
+    /// What it is.
+    pub fn component(&self) -> &Component {
+        &self.component
+    }
+}
+
+impl Block for StageBlock {
+    fn name(&self) -> &str {
+        self.component.name()
+    }
+
+    fn instance(&self) -> &str {
+        &self.instance
+    }
+
+    fn modules(&self) -> Result<Vec<Module>, EmitError> {
+        emit(&self.component, &self.top)
+    }
+
+    fn top(&self) -> String {
+        self.top.clone()
+    }
+
+    fn model(&self, seed: u64) -> Box<dyn ClockedBlock> {
+        Box::new(self.component.model(seed))
+    }
+
+    fn simulate(&self) -> Result<Box<dyn ClockedBlock>, SimulationError> {
+        Err(not_in_rusthdl("stage"))
+    }
+
+    fn in_rusthdl(&self) -> bool {
+        false
+    }
+
+    fn stimuli(&self, _cycles: u64, seed: u64) -> Box<dyn Stimuli + '_> {
+        Box::new(StageRandom::new(&self.component, &self.axes, seed))
+    }
+
+    fn coverage(&self) -> Box<dyn Bins + '_> {
+        Box::new(StageCoverage::new(&self.component, &self.axes))
+    }
+}
+
+impl Bins for StageCoverage {
+    fn observe(&mut self, clock: &Clock<'_>) {
+        self.observe(clock.inputs);
+    }
+
+    fn counts(&self) -> Vec<(String, u64)> {
+        self.counts()
+    }
+}

@@ -1,0 +1,250 @@
+//! Inputs for a whole stage, seeded: a driver that switches on, loads, starts and stops, among random traffic on all
+//! windows; lines that are healthy most of the time; encoders that move.
+
+use posicast_model::rtl::component::Component;
+use posicast_model::rtl::{Direction, Port};
+
+use super::super::table::pick;
+use super::stage_driver::Driver;
+use super::{ADDRESS, BYTE_ENABLE, READ, RegistersRandom, WRITE, WRITE_DATA};
+use crate::stimuli::Stimuli;
+
+/// Clocks between changes of what holds for a while: with writes anywhere, and without.
+const MOOD_CLOCKS: [u64; 2] = [6_000, 40_000];
+/// Lines of an axis that are high while all is well, and how rarely each is low: those are seldom that stop all.
+const LINES: [(&str, u32); 6] = [
+    ("limit_plus_n", 1),
+    ("limit_minus_n", 1),
+    ("drive_ready", 4),
+    ("drive_fault_n", 4),
+    ("fault_n", 8),
+    ("home", 1),
+];
+/// The same, of the stage.
+const SHARED_LINES: [(&str, u32); 2] = [("emergency_stop_n", 4), ("pll_locked", 8)];
+/// Clocks of the gates' mean that make a step of an encoder that follows them.
+const STEP_CLOCKS: i32 = 48;
+/// Fewest clocks between two steps, so that the encoder's filter lets them through.
+const EDGE_CLOCKS: u32 = 12;
+
+/// What holds for a while.
+#[derive(Debug, Clone, Copy)]
+struct Mood {
+    /// Writes anywhere.
+    wild: bool,
+    /// One fault in so many clocks.
+    fault_pace: u32,
+    /// One request of the driver in so many clocks.
+    request_pace: u32,
+    /// One reset in so many clocks.
+    reset_pace: u32,
+}
+
+/// How an encoder moves.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Moves {
+    /// Not at all.
+    Still,
+    /// With the mean of the gates.
+    Follows,
+    /// To and fro, at random.
+    Walks,
+}
+
+/// An axis as its pins see it.
+#[derive(Debug, Clone)]
+struct AxisPins {
+    /// Places of A, B and Z; those of a linear scale too, if there is one.
+    encoders: Vec<[usize; 3]>,
+    /// Places of the limit switches, + and −.
+    switches: [usize; 2],
+    /// Places of A's and B's high gate, and of the drive's enable, among the outputs.
+    shown: [usize; 3],
+    moves: Moves,
+    count: i32,
+    /// What has come together for the next step.
+    mean: i32,
+    since_step: u32,
+    invert: bool,
+}
+
+/// A line, and how long it will be low.
+#[derive(Debug, Clone, Copy)]
+struct Line {
+    at: usize,
+    /// How much rarer than others it is low.
+    pace: u32,
+    low: u32,
+}
+
+/// A mixture of everything, without end.
+#[derive(Debug, Clone)]
+pub struct StageRandom {
+    registers: RegistersRandom,
+    driver: Driver,
+    tick_clocks: u32,
+    clock: u64,
+    mood: Mood,
+    mood_ends: u64,
+    axes: Vec<AxisPins>,
+    lines: Vec<Line>,
+}
+
+fn place(ports: &[Port], direction: Direction, name: &str) -> Option<usize> {
+    let mut names = ports.iter().filter(|port| port.direction == direction);
+    names.position(|port| port.name == name)
+}
+
+impl StageRandom {
+    /// Equal seeds give equal inputs for equal outputs.
+    pub fn new(component: &Component, axes: &[String], seed: u64) -> Self {
+        let ports = component.composition().ports();
+        let input = |name: &str| place(ports, Direction::Input, name);
+        let of_axis = |axis: &String| {
+            let encoder = |kind: &str| {
+                let [a, b, z] = ["a", "b", "z"].map(|pin| input(&format!("{axis}_{kind}{pin}")));
+                Some([a?, b?, z?])
+            };
+            let shown = ["a_high", "b_high", "drive_enable"];
+            AxisPins {
+                encoders: [encoder(""), encoder("scale_")].into_iter().flatten().collect(),
+                switches: [0, 1].map(|which| input(&format!("{axis}_{}", LINES[which].0)).unwrap_or(0)),
+                shown: shown.map(|pin| place(ports, Direction::Output, &format!("{axis}_{pin}")).unwrap_or(0)),
+                moves: Moves::Still,
+                count: 0,
+                mean: 0,
+                since_step: 0,
+                invert: false,
+            }
+        };
+        let of_axes = |axis: &String| LINES.map(|(line, pace)| (format!("{axis}_{line}"), pace));
+        let shared = SHARED_LINES.map(|(line, pace)| (line.to_owned(), pace));
+        let lines = shared.into_iter().chain(axes.iter().flat_map(of_axes));
+        let line = |(name, pace): (String, u32)| input(&name).map(|at| Line { at, pace, low: 0 });
+        let map = component.map();
+        Self {
+            registers: RegistersRandom::new(map, ports, seed),
+            tick_clocks: map.register("tick_clocks").map_or(1000, |register| register.reset()),
+            driver: Driver::new(map, axes, seed),
+            clock: 0,
+            mood_ends: 0,
+            mood: Mood {
+                wild: false,
+                fault_pace: 1,
+                request_pace: 1,
+                reset_pace: 1,
+            },
+            axes: axes.iter().map(of_axis).collect(),
+            lines: lines.filter_map(line).collect(),
+        }
+    }
+
+    fn one_in(&mut self, clocks: u32) -> bool {
+        self.registers.one_in(clocks)
+    }
+
+    fn pick<T: Copy>(&mut self, choices: &[T]) -> T {
+        *pick(&mut self.registers.rng, choices)
+    }
+
+    fn new_mood(&mut self) {
+        self.mood = Mood {
+            wild: self.one_in(4),
+            fault_pace: self.pick(&[3_000, 12_000, 12_000, 100_000]),
+            request_pace: self.pick(&[3, 30, 30, 300]),
+            reset_pace: self.pick(&[10_000, 1_000_000, 1_000_000, 1_000_000]),
+        };
+        for at in 0..self.axes.len() {
+            self.axes[at].moves = self.pick(&[Moves::Still, Moves::Follows, Moves::Follows, Moves::Walks]);
+            self.axes[at].invert = self.one_in(3);
+        }
+        self.driver.begin_anew();
+    }
+
+    /// The encoders, a step at a time.
+    fn encoders(&mut self, seen: &[u64], inputs: &mut [u64]) {
+        for at in 0..self.axes.len() {
+            let step = match self.axes[at].moves {
+                Moves::Still => 0,
+                Moves::Walks => {
+                    let walks = self.one_in(40);
+                    let back = self.one_in(3);
+                    i32::from(walks) * if back { -1 } else { 1 }
+                }
+                Moves::Follows => {
+                    let axis = &mut self.axes[at];
+                    let level = |output: usize| seen.get(output).map_or(0, |value| *value as i32 & 1);
+                    axis.mean += level(axis.shown[0]) - level(axis.shown[1]);
+                    let step = i32::from(axis.mean >= STEP_CLOCKS) - i32::from(axis.mean <= -STEP_CLOCKS);
+                    axis.mean -= step * STEP_CLOCKS;
+                    if axis.invert { -step } else { step }
+                }
+            };
+            // Both lines at once.
+            let slips = self.one_in(300_000);
+            let axis = &mut self.axes[at];
+            axis.since_step += 1;
+            if step != 0 && axis.since_step > EDGE_CLOCKS || slips {
+                axis.count += if slips { 2 } else { step };
+                axis.since_step = 0;
+            }
+            let phase = axis.count & 3;
+            let levels = [phase == 1 || phase == 2, phase >= 2, axis.count & 31 == 0];
+            for places in &axis.encoders {
+                for (place, level) in places.iter().zip(levels) {
+                    inputs[*place] = level.into();
+                }
+            }
+        }
+    }
+
+    fn lines(&mut self, inputs: &mut [u64]) {
+        for at in 0..self.lines.len() {
+            let pace = self.mood.fault_pace * self.lines[at].pace * self.axes.len() as u32;
+            if self.one_in(pace) {
+                let tick = self.tick_clocks;
+                self.lines[at].low = self.pick(&[1, 3, 9, 40, tick, 3 * tick, 8 * tick]);
+            }
+            let line = &mut self.lines[at];
+            inputs[line.at] = (line.low == 0).into();
+            line.low = line.low.saturating_sub(1);
+        }
+        for (at, axis) in self.axes.iter().enumerate() {
+            for (bit, place) in axis.switches.into_iter().enumerate() {
+                inputs[place] &= u64::from(!self.driver.switches(at) >> bit & 1);
+            }
+        }
+    }
+
+    /// The driver's next access, if there is one.
+    fn drive(&mut self, seen: &[u64], inputs: &mut [u64]) {
+        for (at, axis) in self.axes.iter().enumerate() {
+            let on = seen.get(axis.shown[2]).is_some_and(|value| value & 1 != 0);
+            self.driver.plan(at, on, axis.count, self.mood.request_pace);
+        }
+        if let Some((offset, data)) = self.driver.clock() {
+            inputs[ADDRESS] = offset.into();
+            inputs[WRITE_DATA] = data.into();
+            inputs[BYTE_ENABLE] = 0xf;
+            (inputs[WRITE], inputs[READ]) = (1, 0);
+        }
+    }
+}
+
+impl Stimuli for StageRandom {
+    fn fill(&mut self, seen: &[u64], inputs: &mut [u64]) {
+        if self.clock == self.mood_ends {
+            self.new_mood();
+            self.mood_ends += MOOD_CLOCKS[usize::from(!self.mood.wild)];
+        }
+        self.registers.fill(seen, inputs);
+        if !self.mood.wild {
+            inputs[WRITE] = 0;
+        }
+        inputs[0] = (self.clock < 2 || self.one_in(self.mood.reset_pace)).into();
+        self.encoders(seen, inputs);
+        self.lines(inputs);
+        self.drive(seen, inputs);
+        self.clock += 1;
+    }
+}

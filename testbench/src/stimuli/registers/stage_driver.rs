@@ -1,0 +1,435 @@
+//! What a driver does with a stage, seeded: it settles an axis, switches it on, loads and starts moves, changes tables,
+//! settings and limits, kicks watchdogs, and now and then does what it should not.
+
+use std::collections::VecDeque;
+
+use posicast_model::rtl::axis::KICK;
+use posicast_model::rtl::registers::RegisterMap;
+use posicast_model::rtl::segments::{Entry, Motion, Point};
+use posicast_model::taps::COEFFICIENT_MAX;
+use rand::{Rng, RngExt, SeedableRng};
+use rand_xoshiro::Xoshiro256PlusPlus;
+
+use super::super::table::{Table, pick};
+
+/// What a driver does next.
+#[derive(Debug, Clone, Copy)]
+enum Do {
+    Write(u32, u32),
+    Wait(u32),
+    /// Onto the limit switches: bit 0 +, bit 1 −; 0 is off them.
+    Switch(u32),
+}
+
+/// An axis as its driver sees it.
+#[derive(Debug, Clone)]
+struct Plan {
+    name: String,
+    script: VecDeque<Do>,
+    /// About where it is, in counts.
+    here: i32,
+    /// On which limit switches it is.
+    switches: u32,
+}
+
+/// A driver of all axes of a stage, each with plans of its own, on one bus.
+#[derive(Debug, Clone)]
+pub(super) struct Driver {
+    rng: Xoshiro256PlusPlus,
+    map: RegisterMap,
+    tick_clocks: u32,
+    axes: Vec<Plan>,
+    table: Table,
+}
+
+impl Driver {
+    /// Of the axes of these names. Equal seeds give equal plans.
+    pub(super) fn new(map: &RegisterMap, axes: &[String], seed: u64) -> Self {
+        let plan = |name: &String| Plan {
+            name: name.clone(),
+            script: VecDeque::new(),
+            here: 0,
+            switches: 0,
+        };
+        Self {
+            rng: Xoshiro256PlusPlus::seed_from_u64(!seed),
+            tick_clocks: map.register("tick_clocks").map_or(1000, |register| register.reset()),
+            map: map.clone(),
+            axes: axes.iter().map(plan).collect(),
+            table: Table::with_capacity(256),
+        }
+    }
+
+    /// Forgets all plans, and settles all axes.
+    pub(super) fn begin_anew(&mut self) {
+        for axis in 0..self.axes.len() {
+            self.axes[axis].script.clear();
+            self.axes[axis].switches = 0;
+            self.settle(axis);
+        }
+    }
+
+    /// Plans, where an axis has nothing to do: one in so many clocks. `on`: its drive is enabled; `here`: its counts.
+    pub(super) fn plan(&mut self, axis: usize, on: bool, here: i32, pace: u32) {
+        if !self.axes[axis].script.is_empty() || !self.one_in(pace) {
+            return;
+        }
+        self.axes[axis].here = here;
+        self.think_of(axis, on);
+    }
+
+    /// A clock: waits pass. The register and the word that are to be written in it, if any are.
+    pub(super) fn clock(&mut self) -> Option<(u32, u32)> {
+        for axis in &mut self.axes {
+            match axis.script.front_mut() {
+                Some(Do::Wait(0)) => {
+                    axis.script.pop_front();
+                }
+                Some(Do::Wait(clocks)) => *clocks -= 1,
+                Some(Do::Switch(which)) => {
+                    axis.switches = *which;
+                    axis.script.pop_front();
+                }
+                _ => {}
+            }
+        }
+        let first = self.below(self.axes.len() as u32) as usize;
+        if self.one_in(5) {
+            return None;
+        }
+        match self.axes[first].script.front().copied() {
+            Some(Do::Write(offset, data)) => {
+                self.axes[first].script.pop_front();
+                Some((offset, data))
+            }
+            _ => None,
+        }
+    }
+
+    /// On which limit switches an axis is: bit 0 +, bit 1 −.
+    pub(super) fn switches(&self, axis: usize) -> u32 {
+        self.axes[axis].switches
+    }
+
+    fn one_in(&mut self, clocks: u32) -> bool {
+        self.rng.random_range(0..clocks.max(1)) == 0
+    }
+
+    fn below(&mut self, end: u32) -> u32 {
+        self.rng.random_range(0..end.max(1))
+    }
+
+    fn pick<T: Copy>(&mut self, choices: &[T]) -> T {
+        *pick(&mut self.rng, choices)
+    }
+
+    fn write(&mut self, axis: usize, register: &str, data: u32) {
+        let found = self.map.register(register);
+        let access = found.map(|register| Do::Write(register.offset, data));
+        self.axes[axis].script.extend(access);
+    }
+
+    fn tell(&mut self, axis: usize, register: &str, data: u32) {
+        let name = format!("{}_{register}", self.axes[axis].name);
+        self.write(axis, &name, data);
+    }
+
+    fn wait(&mut self, axis: usize, clocks: u32) {
+        self.axes[axis].script.push_back(Do::Wait(clocks));
+    }
+
+    fn ticks(&mut self, axis: usize, ticks: u32) {
+        self.wait(axis, ticks * self.tick_clocks);
+    }
+
+    /// What a driver writes before anything else, so that the axis can do something.
+    fn settle(&mut self, axis: usize) {
+        let random = self.rng.next_u32();
+        self.tell(axis, "settle", random & 3);
+        let off_causes = self.pick(&[0, 0, 0xffff, random >> 16]);
+        self.tell(axis, "watchdog", off_causes << 16);
+        self.unlimited(axis);
+        let slowly = 1 << (20 + (random >> 8 & 7));
+        let deceleration = self.pick(&[slowly, slowly, slowly, 0]);
+        self.tell(axis, "stop_deceleration", deceleration);
+        self.tell(axis, "swap", 0);
+        self.tell(axis, "law", random >> 4 & 1);
+        self.tell(axis, "control", 0);
+        self.write(axis, "commit", 0);
+    }
+
+    /// What a driver does with an axis that is off, or on.
+    fn think_of(&mut self, axis: usize, on: bool) {
+        let choice = self.below(20);
+        match choice {
+            _ if !on && choice < 12 => self.switch_on(axis),
+            _ if !on && choice < 15 => self.direct(axis),
+            0..=3 => self.motion(axis),
+            4..=6 => self.swings(axis),
+            7..=8 => self.interrupted(axis),
+            9..=11 => self.onto_a_switch(axis),
+            12..=13 => self.limits(axis),
+            14 => self.watchdog(axis),
+            15 => self.taps(axis),
+            16..=17 => self.settings(axis),
+            18 => self.interrupts(axis),
+            _ => self.index(axis),
+        }
+    }
+
+    /// Drops what waits. That takes effect at a tick: entries that come before it go too.
+    fn flush(&mut self, axis: usize) {
+        self.tell(axis, "flush", 0);
+        self.ticks(axis, 1);
+    }
+
+    /// A move that a command breaks off.
+    fn interrupted(&mut self, axis: usize) {
+        self.flush(axis);
+        self.to_and_fro(axis, 4);
+        self.start(axis);
+        let before = self.below(4 * self.tick_clocks);
+        self.wait(axis, before);
+        match self.below(6) {
+            0 => self.start(axis),
+            1..=3 => self.tell(axis, "stop", 0),
+            4 => self.tell(axis, "control", 0),
+            _ => self.tell(axis, "flush", 0),
+        }
+        self.ticks(axis, 4);
+    }
+
+    /// From end to end of the numbers, through a table with the largest coefficients.
+    fn swings(&mut self, axis: usize) {
+        let one = 1 << self.fraction(axis);
+        self.tell(axis, "swap", 0);
+        self.ticks(axis, 1);
+        self.load(axis, 1, &[(COEFFICIENT_MAX, 0), (one - COEFFICIENT_MAX, 1)]);
+        self.tell(axis, "swap", 1);
+        self.flush(axis);
+        if self.one_in(2) {
+            // More than the sums hold.
+            self.entry(axis, 3, Motion::Jerk((1 << 38) - 1), false);
+        }
+        for position in [i32::MAX, i32::MIN, i32::MAX, 0] {
+            let motion = Motion::Point(Point {
+                position,
+                velocity: 0,
+                acceleration: 0,
+            });
+            self.entry(axis, 1, motion, false);
+        }
+        self.start(axis);
+        self.ticks(axis, 5);
+        self.tell(axis, "swap", 0);
+    }
+
+    /// Moves to and fro while it is on a switch.
+    fn onto_a_switch(&mut self, axis: usize) {
+        self.flush(axis);
+        self.to_and_fro(axis, 2);
+        self.start(axis);
+        let (clocks, which) = (self.below(3 * self.tick_clocks), self.below(3) + 1);
+        self.wait(axis, clocks);
+        self.axes[axis].script.push_back(Do::Switch(which));
+        self.ticks(axis, 3);
+        self.axes[axis].script.push_back(Do::Switch(0));
+    }
+
+    fn switch_on(&mut self, axis: usize) {
+        if self.one_in(3) {
+            self.settle(axis);
+        }
+        let invert = self.below(4) & 4;
+        self.tell(axis, "control", invert);
+        self.tell(axis, "clear_faults", 0);
+        let while_clearing = self.pick(&[20, 40, self.tick_clocks]);
+        self.wait(axis, while_clearing);
+        self.tell(axis, "control", 1 | invert);
+        let ticks = self.below(3) + 1;
+        self.ticks(axis, ticks);
+    }
+
+    fn direct(&mut self, axis: usize) {
+        self.tell(axis, "control", 0);
+        self.tell(axis, "clear_faults", 0);
+        self.wait(axis, 40);
+        self.tell(axis, "control", 2);
+        for _ in 0..=self.below(3) {
+            let duty = self.below(80) as i32 - 40;
+            self.tell(axis, "direct", duty as u32);
+            let ticks = self.below(5);
+            self.ticks(axis, ticks);
+        }
+        let leave = self.pick(&[0, 0, 3]);
+        self.tell(axis, "control", leave);
+    }
+
+    fn entry(&mut self, axis: usize, ticks: u32, motion: Motion, notify: bool) {
+        let name = format!("{}_segment", self.axes[axis].name);
+        let base = self.map.register(&name).map_or(0, |register| register.offset);
+        let entry = Entry { ticks, motion, notify };
+        let words = (base..).zip(entry.words());
+        let writes = words.map(|(offset, word)| Do::Write(offset, word));
+        self.axes[axis].script.extend(writes);
+    }
+
+    /// There and back: jerk j, −2·j, j ends at rest.
+    fn to_and_fro(&mut self, axis: usize, ticks: u32) {
+        let any = self.rng.random_range(-(1i64 << 39)..1 << 39);
+        let jerk = any >> self.rng.random_range(6..26);
+        for (ticks, jerk) in [(ticks, jerk), (2 * ticks, -jerk), (ticks, jerk)] {
+            let notify = self.one_in(2);
+            self.entry(axis, ticks, Motion::Jerk(jerk), notify);
+        }
+    }
+
+    /// Moves that end at rest, and some that do not.
+    fn motion(&mut self, axis: usize) {
+        if self.one_in(2) {
+            self.flush(axis);
+        }
+        for _ in 0..=self.below(2) {
+            let ticks = self.below(2) + 1;
+            self.to_and_fro(axis, ticks);
+        }
+        match self.below(24) {
+            0..=2 => self.point(axis),
+            // Does not end at rest.
+            3..=6 => self.entry(axis, 2, Motion::Jerk(1 << 28), true),
+            // An entry of no ticks is none.
+            7 => self.entry(axis, 0, Motion::Jerk(1), true),
+            // More than the FIFO holds.
+            8 => (0..70).for_each(|_| self.entry(axis, 1, Motion::Jerk(0), false)),
+            _ => {}
+        }
+        self.start(axis);
+        let ticks = self.below(10);
+        self.ticks(axis, ticks);
+    }
+
+    fn point(&mut self, axis: usize) {
+        let any = self.rng.next_u32() as i32;
+        let (velocity, acceleration) = self.pick(&[(0, 0), (0, 0), (any >> 4, any >> 9)]);
+        let motion = Motion::Point(Point {
+            position: self.pick(&[any >> 20, any >> 12, any]),
+            velocity,
+            acceleration,
+        });
+        let ticks = self.below(3) + 1;
+        self.entry(axis, ticks, motion, true);
+    }
+
+    /// One axis, some, or a mask with strangers; mostly after the group stop of another axis is forgotten.
+    fn start(&mut self, axis: usize) {
+        if !self.one_in(4) {
+            self.tell(axis, "clear_faults", 0);
+            self.wait(axis, 16);
+        }
+        let one = 1 << axis;
+        let any = self.below(16);
+        let mask = self.pick(&[one, one, one, one, any]);
+        self.write(axis, "start", mask);
+    }
+
+    fn limits(&mut self, axis: usize) {
+        let here = self.axes[axis].here << 8;
+        let some = |driver: &mut Self| driver.below(40 << 8) as i32;
+        let (plus, minus) = (here + some(self), here - some(self));
+        let plus = self.pick(&[plus, plus, minus]);
+        self.tell(axis, "soft_limit_plus", plus as u32);
+        self.tell(axis, "soft_limit_minus", minus as u32);
+        if self.one_in(2) {
+            let error = self.below(3 << 16);
+            self.tell(axis, "following_error_limit", error);
+        }
+        self.motion(axis);
+        if !self.one_in(4) {
+            self.unlimited(axis);
+        }
+    }
+
+    fn unlimited(&mut self, axis: usize) {
+        for register in ["following_error_limit", "soft_limit_plus", "soft_limit_minus"] {
+            self.tell(axis, register, 0);
+        }
+    }
+
+    fn watchdog(&mut self, axis: usize) {
+        let ticks = self.below(5) + 1;
+        let off_causes = self.pick(&[0, 1 << 13]);
+        self.tell(axis, "watchdog", ticks | off_causes << 16);
+        for _ in 0..self.below(4) {
+            let wrong = KICK ^ 1 << self.below(32);
+            let word = self.pick(&[KICK, KICK, KICK, wrong]);
+            self.tell(axis, "kick", word);
+            let clocks = self.below(2 * self.tick_clocks);
+            self.wait(axis, clocks);
+        }
+        let ticks = self.below(7);
+        self.ticks(axis, ticks);
+        self.tell(axis, "watchdog", off_causes << 16);
+    }
+
+    fn fraction(&self, axis: usize) -> u32 {
+        let name = format!("{}_coefficient_fraction", self.axes[axis].name);
+        self.map.register(&name).map_or(16, |register| register.reset())
+    }
+
+    fn load(&mut self, axis: usize, bank: u32, taps: &[(i32, u64)]) {
+        for (index, (coefficient, delay)) in (0..).zip(taps) {
+            self.tell(axis, "tap_address", index | bank << 8);
+            self.tell(axis, "tap", *coefficient as u32 & 0x3_ffff | (*delay as u32) << 18);
+        }
+    }
+
+    /// A table into bank 1 or 2, and a swap of any kind.
+    fn taps(&mut self, axis: usize) {
+        let (fraction, count) = (self.fraction(axis), self.below(4) as usize + 1);
+        self.table.draw(&mut self.rng, count, fraction, 4);
+        let bank = self.below(2) + 1;
+        let taps = self.table.taps.clone();
+        self.load(axis, bank, &taps);
+        let how = self.below(4);
+        self.tell(axis, "swap", bank | how << 4);
+        let ticks = self.below(4);
+        self.ticks(axis, ticks);
+    }
+
+    fn settings(&mut self, axis: usize) {
+        let bank = self.below(2) + 1;
+        for row in 0..16 {
+            let (any, bit) = (self.rng.next_u32(), 1 << self.below(32));
+            let small = any >> self.below(32);
+            let setting = self.pick(&[any, any, small, bit, !bit, 0, u32::MAX]);
+            self.tell(axis, "setting_address", row | bank << 8);
+            self.tell(axis, "setting", setting);
+        }
+        let law = self.below(4);
+        self.tell(axis, "law", law | bank << 8);
+        self.write(axis, "commit", 0);
+        let ticks = self.below(4);
+        self.ticks(axis, ticks);
+    }
+
+    fn interrupts(&mut self, axis: usize) {
+        let any = self.rng.next_u32();
+        self.write(axis, "interrupt_enable", any);
+        self.write(axis, "interrupt_state", u32::MAX);
+        self.write(axis, "snapshot", 0);
+        let test = any.rotate_left(9) & any;
+        self.write(axis, "interrupt_test", test);
+        self.write(axis, "flags", u32::MAX);
+        self.tell(axis, "events", u32::MAX);
+    }
+
+    fn index(&mut self, axis: usize) {
+        let any = self.rng.next_u32();
+        self.tell(axis, "index", any & 0x13f3);
+        self.tell(axis, "index_arm", 0);
+        let preset = any >> 16;
+        self.tell(axis, "preset", preset);
+        let low_water = any & 0x3f;
+        self.tell(axis, "fifo_control", low_water);
+    }
+}

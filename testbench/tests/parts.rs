@@ -1,0 +1,90 @@
+//! The small blocks between others: lock step of each against its model.
+
+mod support;
+
+use posicast_model::rtl::divider::DividerConfig;
+use posicast_model::rtl::schedule::ScheduleConfig;
+use posicast_model::rtl::sliding_mode::Settings;
+use posicast_testbench::blocks::{Part, PartBlock};
+use support::{caught, icarus_agrees, million_random_clocks};
+
+fn bench(part: Part) -> PartBlock {
+    PartBlock::new(part, "alone")
+}
+
+fn schedule() -> PartBlock {
+    bench(Part::Schedule(ScheduleConfig::new(37).unwrap()))
+}
+
+fn time_base() -> PartBlock {
+    bench(Part::TimeBase(DividerConfig::new(17).unwrap()))
+}
+
+fn sample_select() -> PartBlock {
+    bench(Part::SampleSelect {
+        word_bits: 32,
+        channels: 3,
+    })
+}
+
+fn setting_banks() -> PartBlock {
+    let words = std::array::from_fn(|row| 0x1234_5678u32.rotate_left(row as u32));
+    bench(Part::SettingBanks(Settings(words)))
+}
+
+fn agrees(block: &PartBlock) {
+    million_random_clocks(block, 1, 20);
+    icarus_agrees(block);
+}
+
+#[test]
+fn lockstep_schedule_a_million_random_clocks() {
+    agrees(&schedule());
+}
+
+#[test]
+fn lockstep_divider_share_a_million_random_clocks() {
+    for channels in [1, 2, 8] {
+        agrees(&bench(Part::DividerShare(channels)));
+    }
+}
+
+#[test]
+fn lockstep_group_a_million_random_clocks() {
+    agrees(&bench(Part::Group(2)));
+    agrees(&bench(Part::Group(4)));
+}
+
+#[test]
+fn lockstep_time_base_a_million_random_clocks() {
+    agrees(&time_base());
+}
+
+#[test]
+fn lockstep_sample_select_a_million_random_clocks() {
+    agrees(&sample_select());
+}
+
+#[test]
+fn lockstep_setting_banks_a_million_random_clocks() {
+    agrees(&setting_banks());
+}
+
+#[test]
+fn lockstep_catches_a_break_in_each() {
+    caught(
+        &schedule(),
+        "if (tick) begin",
+        "if (tick & (since == IDLE)) begin",
+        100_000,
+    );
+    let share = bench(Part::DividerShare(2));
+    caught(
+        &share,
+        "steps_q_next = steps_of_1;",
+        "steps_q_next = steps_of_0;",
+        100_000,
+    );
+    let group = bench(Part::Group(2));
+    caught(&group, "& !can_start_1)", "& !can_start_0)", 100_000);
+}
