@@ -15,7 +15,8 @@ fn lockstep_everything_at_random() {
     let mut rusthdl = simulate().unwrap();
     let mut random = Random(3);
     let (mut expected, mut actual) = ([0; OUTPUT_PORTS], [0; OUTPUT_PORTS]);
-    let mut direct_clocks = 0;
+    let mut self_test = 0;
+    let (mut direct_clocks, mut test_clocks) = (0, 0);
     for clock in 0..20_000 {
         let mut seldom = |pace| u64::from(random.once_in(pace));
         let bits = [seldom(2000), seldom(5), seldom(7), seldom(9), seldom(9), seldom(9)];
@@ -25,6 +26,9 @@ fn lockstep_everything_at_random() {
         let direct_enable = u64::from(!random.once_in(100));
         let kick = u64::from(random.once_in(30));
         let size = random.below(18);
+        if random.once_in(80) {
+            self_test = 1 - self_test;
+        }
         let inputs = [
             rst,
             tick,
@@ -43,13 +47,18 @@ fn lockstep_everything_at_random() {
             random.below(7),
             (random.word() & 0x1_ffff) >> size,
             (random.word() & 0xffff) >> random.below(17),
+            self_test,
+            random.below(16),
+            u64::from(random.once_in(12)),
         ];
         ClockedBlock::step(&mut model, &inputs, &mut expected).unwrap();
         rusthdl.step(&inputs, &mut actual).unwrap();
         assert_eq!(actual, expected, "clock {clock}, {inputs:?}");
         direct_clocks += expected[6];
+        test_clocks += expected[8];
     }
     assert!(direct_clocks > 5000, "{direct_clocks} clocks in direct mode");
+    assert!(test_clocks > 2000, "{test_clocks} clocks in the self-test");
 }
 
 #[test]

@@ -51,6 +51,9 @@ fn lockstep_everything_at_random() {
         inputs.filtered_fault_n = if random.once_in(400) { 1 } else { 3 };
         inputs.clear_trip = random.once_in(10);
         inputs.clear_flags = random.once_in(100);
+        if random.once_in(150) {
+            inputs.mask_pins = !inputs.mask_pins;
+        }
         ClockedBlock::step(&mut model, &inputs.to_raw(), &mut expected).unwrap();
         rusthdl.step(&inputs.to_raw(), &mut actual).unwrap();
         assert_eq!(actual, expected, "clock {clock}, {inputs:?}");

@@ -22,6 +22,9 @@ const READY: Inputs = Inputs {
     direct_hold_ticks: 3,
     direct_duty: 500,
     direct_limit: 1000,
+    self_test: false,
+    gates: 0,
+    valley: false,
 };
 const KICK: Inputs = Inputs {
     direct_kick: true,
@@ -152,6 +155,91 @@ fn unit_the_supervisor_takes_over_without_a_gap_and_without_the_manual_duty() {
     assert!(!shown[6].pwm_enable && shown[4].feed && !shown[5].feed);
 }
 
+/// READY with the self-test, and these gates.
+const TEST: Inputs = Inputs {
+    self_test: true,
+    ..READY
+};
+
+#[test]
+fn unit_a_self_test_runs_the_pwm_alone_and_behind_its_mask() {
+    let kick = Inputs {
+        direct_kick: true,
+        ..TEST
+    };
+    let tick = Inputs { tick: true, ..TEST };
+    let hold = Inputs {
+        axis_state: State::Hold as u8,
+        axis_pwm_enable: true,
+        axis_drive_enable: true,
+        axis_brake_release: true,
+        ..TEST
+    };
+    let outputs = |clocks: &[Inputs]| -> Vec<[bool; 4]> {
+        let shown = play(clocks).into_iter();
+        let pins = shown.map(|s| [s.mask_pins, s.pwm_enable, s.drive_enable, s.brake_release]);
+        pins.collect()
+    };
+    let tests = [true, true, false, false];
+    let ends = [true, false, false, false];
+    let off = [false; 4];
+    // Expires.
+    assert_eq!(
+        outputs(&[kick, tick, TEST, tick, tick, TEST]),
+        [tests, tests, tests, tests, ends, off]
+    );
+    // The flag goes: the mask stays until the PWM has been off, and direct mode is not there with the pins on.
+    assert_eq!(
+        outputs(&[kick, tick, READY, READY, READY]),
+        [tests, tests, ends, off, off]
+    );
+    let direct = [false, true, true, true];
+    assert_eq!(outputs(&[kick, READY, KICK, READY]), [tests, ends, direct, direct]);
+    // The flag comes.
+    assert_eq!(outputs(&[KICK, TEST, kick]), [direct, off, tests]);
+    // The supervisor takes over: a clock with the PWM off lies between.
+    assert_eq!(outputs(&[kick, hold, hold]), [tests, [true, false, true, true], direct]);
+    assert_eq!(duties(&[kick, tick, tick]), [0, 500, 500]);
+}
+
+#[test]
+fn unit_gates_are_counted_from_valley_to_valley() {
+    let gates = |gates| Inputs { gates, ..TEST };
+    let valley = |gates| Inputs {
+        gates,
+        valley: true,
+        ..TEST
+    };
+    let kick = Inputs {
+        direct_kick: true,
+        ..TEST
+    };
+    let results = |clocks: &[Inputs]| {
+        let shown = play(clocks);
+        let last = shown[shown.len() - 1];
+        (last.self_test_high, last.self_test_low)
+    };
+    let period = [
+        kick,
+        gates(1),
+        valley(1),
+        gates(0xd),
+        gates(2),
+        gates(0),
+        gates(2),
+        gates(2),
+    ];
+    assert_eq!(results(&period), (1, 0));
+    let ended = [&period[..], &[valley(1)]].concat();
+    assert_eq!(results(&ended), (2, 3));
+    // What is counted without a mask is nothing.
+    let after = [&ended[..], &[READY, READY, valley(3), valley(3)]].concat();
+    assert_eq!(results(&after), (2, 3));
+    // Longer than the longest period.
+    let long = [vec![kick], vec![gates(1); 70_000], vec![valley(0)]].concat();
+    assert_eq!(results(&long), (u16::MAX, 0));
+}
+
 #[test]
 fn unit_18_bits_saturate_to_17() {
     for (wide, narrow) in [
@@ -180,12 +268,12 @@ fn any_inputs() -> impl Strategy<Value = Inputs> {
             states,
         ),
         (seldom, seldom, seldom, often, often, often, often, often),
-        (seldom, 0u16..9, -70_000i32..70_000),
+        (seldom, 0u16..9, -70_000i32..70_000, often, 0u8..16, any::<bool>()),
     )
         .prop_map(|(first, second, third)| {
             let (rst, tick, controller_duty, controller_valid, axis_state) = first;
             let (pwm, drive, brake, trip_n, fault_n, plus, minus, direct_enable) = second;
-            let (direct_kick, direct_hold_ticks, direct_duty) = third;
+            let (direct_kick, direct_hold_ticks, direct_duty, self_test, gates, valley) = third;
             Inputs {
                 rst,
                 tick,
@@ -204,6 +292,9 @@ fn any_inputs() -> impl Strategy<Value = Inputs> {
                 direct_hold_ticks,
                 direct_duty,
                 direct_limit: 0,
+                self_test,
+                gates,
+                valley,
             }
         })
 }
@@ -213,11 +304,13 @@ proptest! {
     fn prop_nothing_is_on_that_should_not_be(
         clocks in proptest::collection::vec(any_inputs(), 1..400),
         direct_limit: u16,
+        never_tested: bool,
     ) {
         let mut command = DriveCommand::new();
         let mut time_left = 0;
         for inputs in clocks {
-            let inputs = Inputs { direct_limit, ..inputs };
+            let self_test = inputs.self_test && !never_tested;
+            let inputs = Inputs { direct_limit, self_test, ..inputs };
             let before = command.step(&inputs);
             let after = command.outputs();
             time_left = match (inputs.rst, inputs.direct_kick) {
@@ -229,8 +322,22 @@ proptest! {
             prop_assert!(permitted || !after.direct_active);
             let wanted = [inputs.axis_pwm_enable, inputs.axis_drive_enable, inputs.axis_brake_release];
             let shown = [after.pwm_enable, after.drive_enable, after.brake_release];
-            for (shown, wanted) in shown.into_iter().zip(wanted) {
-                prop_assert_eq!(shown, !inputs.rst && wanted || after.direct_active);
+            let tests = after.direct_active && after.mask_pins;
+            let ends = before.direct_active && before.mask_pins && !after.direct_active;
+            for (output, (shown, wanted)) in shown.into_iter().zip(wanted).enumerate() {
+                let is_pwm = output == 0;
+                let wanted = !inputs.rst && wanted && !(is_pwm && ends);
+                prop_assert_eq!(shown, (wanted || after.direct_active) && (is_pwm || !tests));
+            }
+            // Direct mode is the self-test as a whole or not at all; its mask outlives the PWM, and not for long.
+            prop_assert!(!after.direct_active || after.mask_pins == inputs.self_test);
+            prop_assert!(after.direct_active || !after.mask_pins || (ends && !after.pwm_enable));
+            prop_assert!(inputs.rst || !before.mask_pins || after.mask_pins || !before.pwm_enable);
+            if !before.mask_pins && !inputs.rst {
+                prop_assert_eq!(
+                    (after.self_test_high, after.self_test_low),
+                    (before.self_test_high, before.self_test_low)
+                );
             }
             prop_assert!(after.pwm_enable || after.duty == 0);
             if after.direct_active {

@@ -167,7 +167,7 @@ proptest! {
     fn prop_holding_is_stepping(
         period in prop_oneof![1u16..60, any::<u16>()], duty in -70_000i32..70_000, mode: u8, dead_time in 0u16..30,
         minimum_pulse in 0u16..30, trigger_phase in 0u16..100, at_peak: bool,
-        changes in prop::collection::vec((0u8..11, 1u64..700), 1..40),
+        changes in prop::collection::vec((0u8..12, 1u64..700), 1..40),
     ) {
         let mut inputs = Inputs {
             enable: true, mode, period, duty: duty % (i32::from(period) + 5), max_duty: 0xffff, dead_time, minimum_pulse,
@@ -187,6 +187,7 @@ proptest! {
                 7 => inputs.clear_trip ^= true,
                 8 => inputs.filter_clocks ^= 9,
                 9 => inputs.clear_flags ^= true,
+                10 => inputs.mask_pins ^= true,
                 _ => {}
             }
             fast.hold(&inputs, clocks);
@@ -300,4 +301,46 @@ fn unit_the_time_base_sets_the_phase_while_off() {
         assert!(pwm.outputs(&inputs).trigger);
         pwm.hold(&inputs, 48);
     }
+}
+
+#[test]
+fn unit_a_mask_takes_the_pins_and_nothing_else() {
+    let timing = Timing {
+        period: 50,
+        dead_time: 3,
+        minimum_pulse: 4,
+    };
+    let open = Inputs {
+        mode: Mode::Unipolar as u8,
+        duty: 30,
+        ..healthy(&timing)
+    };
+    let masked = Inputs {
+        mask_pins: true,
+        ..open
+    };
+    let (mut bare, mut hidden) = (started(&open), started(&open));
+    let mut on = 0;
+    for clock in 0..400 {
+        let inputs = if (100..300).contains(&clock) { &masked } else { &open };
+        let (expected, shown) = (bare.step(&open), hidden.step(inputs));
+        // One clock later, as a register does.
+        let pins = if (101..301).contains(&clock) {
+            Gates::default()
+        } else {
+            gates(&expected)
+        };
+        assert_eq!(gates(&shown), pins, "clock {clock}");
+        let rest = |shown: Outputs| Outputs {
+            a_high: false,
+            a_low: false,
+            b_high: false,
+            b_low: false,
+            ..shown
+        };
+        assert_eq!(rest(shown), rest(expected), "clock {clock}");
+        assert_eq!(shown.gates, gates(&expected), "clock {clock}");
+        on += usize::from((100..300).contains(&clock) && shown.gates.a_high);
+    }
+    assert_eq!(on, 4 * (30 - 3));
 }

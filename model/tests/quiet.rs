@@ -121,6 +121,7 @@ const PWM: Hints = &[
     ("pll_locked", &[1, 1, 1, 1, 1, 1, 0]),
     ("filtered_fault_n", &[3, 3, 3, 3, 1]),
     ("watchdog_periods", &[0, 0, 3]),
+    ("mask_pins", &[0, 0, 1]),
     ("clear_flags", &[0, 0, 1]),
 ];
 

@@ -25,8 +25,8 @@ fn crosssim_icarus_agrees_with_the_model() {
 fn lockstep_catches_outputs_that_stay_on_beyond_ready() {
     caught(
         &block(),
-        "permitted = (axis_state == READY_STATE) & direct_enable",
-        "permitted = direct_enable",
+        "(axis_state == READY_STATE) & direct_enable",
+        "direct_enable",
         100_000,
     );
 }
@@ -54,4 +54,24 @@ fn lockstep_catches_limit_switches_that_are_swapped() {
 #[test]
 fn lockstep_catches_a_manual_duty_that_the_supervisor_inherits() {
     caught(&block(), " | (next_active ^ active)", "", 300_000);
+}
+
+#[test]
+fn lockstep_catches_a_mask_that_ends_with_the_pwm() {
+    caught(
+        &block(),
+        "masked_next = next_test | tested",
+        "masked_next = next_test",
+        100_000,
+    );
+}
+
+#[test]
+fn lockstep_catches_a_drive_that_a_self_test_switches_on() {
+    caught(
+        &block(),
+        "drive_enable_q_next = (axis_drive_enable | next_active) & !next_test",
+        "drive_enable_q_next = axis_drive_enable | next_active",
+        100_000,
+    );
 }

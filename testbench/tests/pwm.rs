@@ -157,6 +157,11 @@ fn lockstep_catches_a_duty_one_above_its_limit() {
 }
 
 #[test]
+fn lockstep_catches_a_pin_that_the_mask_forgets() {
+    caught("b_low_gate & on", "b_low_gate & armed");
+}
+
+#[test]
 fn lockstep_watches_the_gates_of_a_leg_without_dead_time() {
     let outcome = caught("pause = dead_time;", "pause = 10'd1;");
     assert!(outcome.violation.is_some(), "the gates are not watched");

@@ -74,10 +74,65 @@ fn traced(bench: &mut StageBench, axis: &str) -> Vec<i32> {
 /// Four signals: shaped position, captured position, error, test signal.
 const SETUP: u32 = 3 | 6 << 4 | 8 << 8 | 11 << 12 | 2 << 16;
 
+/// All that leaves the stage for the drive of X, off while 0.
+const DRIVE_PINS: [&str; 6] = [
+    "x_a_high",
+    "x_a_low",
+    "x_b_high",
+    "x_b_low",
+    "x_drive_enable",
+    "x_brake_release",
+];
+
+/// In so many clocks, one by one, no pin of X is on.
+fn all_off(bench: &mut StageBench, clocks: u64) {
+    for _ in 0..clocks {
+        bench.clocks(1).unwrap();
+        for pin in DRIVE_PINS {
+            assert_eq!(bench.output(pin).unwrap(), 0, "{pin} in clock {}", bench.now());
+        }
+    }
+}
+
+/// From reset: the PWM of X tests itself in READY with this duty. The clocks that its gates of leg A are on.
+fn self_test(bench: &mut StageBench, duty: i32) -> (u32, u32) {
+    bench.clocks(1000).unwrap();
+    bench.write("x_clear_faults", 0).unwrap();
+    assert!(bench.wait("x", state::READY, 100_000).unwrap());
+    bench.write("x_control", 1 << 1 | 1 << 3).unwrap();
+    bench.write("x_direct", duty as u32 & 0x1_ffff).unwrap();
+    // The next tick takes the duty; a period later the one after it is whole.
+    all_off(bench, 3 * 5000);
+    assert_eq!(bench.net("x_pwm_running").unwrap(), 1);
+    let clocks = ["self_test_high", "self_test_low"].map(|field| bench.field("x", "self_test", field).unwrap());
+    // Once with its flag gone first, once with all gone.
+    let last = if duty < 0 { 1 << 1 } else { 0 };
+    bench.write("x_control", last).unwrap();
+    all_off(bench, 3 * 5000);
+    assert_eq!(bench.net("x_pwm_running").unwrap(), 0);
+    (clocks[0], clocks[1])
+}
+
+#[test]
+fn unit_a_self_test_runs_the_pwm_and_nothing_else() {
+    let machine = machine();
+    // Locked antiphase, 2500 clocks, dead time 25: the leg's duty is half of period and duty.
+    for (duty, leg_duty) in [(0, 1250), (200, 1350), (-101, 1199)] {
+        let mut bench = bench(&machine, false);
+        let count = bench.plant(0).count();
+        let high = leg_duty - 25;
+        assert_eq!(self_test(&mut bench, duty), (high, 2500 - high - 2 * 25), "{duty}");
+        assert_eq!(bench.plant(0).count(), count);
+        assert!(bench.switch_on(20_000_000).unwrap());
+        assert_eq!(bench.read("x_causes").unwrap(), 0);
+    }
+}
+
 #[test]
 fn lockstep_a_move_on_the_scale_and_its_trace() {
     let machine = machine();
     let mut bench = bench(&machine, true);
+    assert_eq!(self_test(&mut bench, 200), (1325, 1125));
     assert!(bench.switch_on(20_000_000).unwrap());
     bench.record();
     // From the start of the move on, every tick.

@@ -1,4 +1,4 @@
-//! One multiplexer for both duties, one comparison for both signs of the manual one.
+//! One multiplexer for both duties, one comparison for both signs of the manual one, a counter per gate that is tested.
 
 use crate::prelude::*;
 use posicast_model::rtl::axis::State;
@@ -23,6 +23,9 @@ pub(super) struct DriveCommand {
     pub(super) direct_hold_ticks: Signal<In, Bits<16>>,
     pub(super) direct_duty: Signal<In, Signed<17>>,
     pub(super) direct_limit: Signal<In, Bits<16>>,
+    pub(super) self_test: Signal<In, Bit>,
+    pub(super) gates: Signal<In, Bits<4>>,
+    pub(super) valley: Signal<In, Bit>,
     pub(super) duty: Signal<Out, Signed<17>>,
     pub(super) feed: Signal<Out, Bit>,
     pub(super) pwm_enable: Signal<Out, Bit>,
@@ -31,6 +34,9 @@ pub(super) struct DriveCommand {
     pub(super) filtered_fault_n: Signal<Out, Bits<2>>,
     pub(super) direct_active: Signal<Out, Bit>,
     pub(super) direct_expired: Signal<Out, Bit>,
+    pub(super) mask_pins: Signal<Out, Bit>,
+    pub(super) self_test_high: Signal<Out, Bits<16>>,
+    pub(super) self_test_low: Signal<Out, Bits<16>>,
 
     duty_q: Dff<Bits<17>>,
     feed_q: Dff<Bit>,
@@ -42,10 +48,20 @@ pub(super) struct DriveCommand {
     expired: Dff<Bit>,
     ticks_left: Dff<Bits<16>>,
     backward: Dff<Bit>,
+    masked: Dff<Bit>,
+    high_clocks: Dff<Bits<16>>,
+    low_clocks: Dff<Bits<16>>,
+    high_result: Dff<Bits<16>>,
+    low_result: Dff<Bits<16>>,
 
     permitted: Signal<Local, Bit>,
     last_tick: Signal<Local, Bit>,
     next_active: Signal<Local, Bit>,
+    next_test: Signal<Local, Bit>,
+    tested: Signal<Local, Bit>,
+    test_changes: Signal<Local, Bit>,
+    counts_high: Signal<Local, Bits<16>>,
+    counts_low: Signal<Local, Bits<16>>,
     controller_bits: Signal<Local, Bits<18>>,
     direct_bits: Signal<Local, Bits<17>>,
     negative: Signal<Local, Bit>,
@@ -95,6 +111,9 @@ impl Default for DriveCommand {
             direct_hold_ticks: Signal::default(),
             direct_duty: Signal::default(),
             direct_limit: Signal::default(),
+            self_test: Signal::default(),
+            gates: Signal::default(),
+            valley: Signal::default(),
             duty: Signal::default(),
             feed: Signal::default(),
             pwm_enable: Signal::default(),
@@ -103,6 +122,9 @@ impl Default for DriveCommand {
             filtered_fault_n: Signal::default(),
             direct_active: Signal::default(),
             direct_expired: Signal::default(),
+            mask_pins: Signal::default(),
+            self_test_high: Signal::default(),
+            self_test_low: Signal::default(),
             duty_q: Dff::default(),
             feed_q: Dff::default(),
             pwm_enable_q: Dff::default(),
@@ -113,9 +135,19 @@ impl Default for DriveCommand {
             expired: Dff::default(),
             ticks_left: Dff::default(),
             backward: Dff::default(),
+            masked: Dff::default(),
+            high_clocks: Dff::default(),
+            low_clocks: Dff::default(),
+            high_result: Dff::default(),
+            low_result: Dff::default(),
             permitted: Signal::default(),
             last_tick: Signal::default(),
             next_active: Signal::default(),
+            next_test: Signal::default(),
+            tested: Signal::default(),
+            test_changes: Signal::default(),
+            counts_high: Signal::default(),
+            counts_low: Signal::default(),
             controller_bits: Signal::default(),
             direct_bits: Signal::default(),
             negative: Signal::default(),
@@ -161,11 +193,18 @@ impl Logic for DriveCommand {
             active,
             expired,
             ticks_left,
-            backward
+            backward,
+            masked,
+            high_clocks,
+            low_clocks,
+            high_result,
+            low_result
         );
 
         comment!("Direct mode: in READY, from a kick, for a time");
-        self.permitted.next = (self.axis_state.val() == self.ready_state.val()) & self.direct_enable.val();
+        self.test_changes.next = self.active.q.val() & (self.self_test.val() ^ self.masked.q.val());
+        self.permitted.next =
+            (self.axis_state.val() == self.ready_state.val()) & self.direct_enable.val() & !self.test_changes.val();
         self.last_tick.next = self.tick.val() & (self.ticks_left.q.val() == self.one_tick.val());
         self.next_active.next = self.permitted.val() & self.active.q.val() & !self.last_tick.val();
         self.expired.d.next = self.permitted.val() & self.active.q.val() & self.last_tick.val();
@@ -178,9 +217,15 @@ impl Logic for DriveCommand {
             self.ticks_left.d.next = self.direct_hold_ticks.val();
         }
         self.active.d.next = self.next_active.val();
-        self.pwm_enable_q.d.next = self.axis_pwm_enable.val() | self.next_active.val();
-        self.drive_enable_q.d.next = self.axis_drive_enable.val() | self.next_active.val();
-        self.brake_release_q.d.next = self.axis_brake_release.val() | self.next_active.val();
+
+        comment!("Self-test: pins masked, drive and brake off; the");
+        comment!("mask stays for a clock with the PWM off");
+        self.next_test.next = self.next_active.val() & self.self_test.val();
+        self.tested.next = self.active.q.val() & self.masked.q.val();
+        self.pwm_enable_q.d.next = (self.axis_pwm_enable.val() & !self.tested.val()) | self.next_active.val();
+        self.drive_enable_q.d.next = (self.axis_drive_enable.val() | self.next_active.val()) & !self.next_test.val();
+        self.brake_release_q.d.next = (self.axis_brake_release.val() | self.next_active.val()) & !self.next_test.val();
+        self.masked.d.next = self.next_test.val() | self.tested.val();
 
         comment!("The controller's duty, saturated");
         self.controller_bits.next = unsigned_cast(self.controller_duty.val());
@@ -249,6 +294,28 @@ impl Logic for DriveCommand {
             }
         }
 
+        comment!("Clocks of a gate within a period; a result each");
+        self.counts_high.next = self.high_clocks.q.val();
+        self.counts_low.next = self.low_clocks.q.val();
+        if self.valley.val() | !self.masked.q.val() {
+            self.counts_high.next = 0.into();
+            self.counts_low.next = 0.into();
+        }
+        self.high_clocks.d.next = self.counts_high.val();
+        self.low_clocks.d.next = self.counts_low.val();
+        if self.masked.q.val() {
+            if self.gates.val().get_bit(0) & !self.counts_high.val().all() {
+                self.high_clocks.d.next = self.counts_high.val() + 1;
+            }
+            if self.gates.val().get_bit(1) & !self.counts_low.val().all() {
+                self.low_clocks.d.next = self.counts_low.val() + 1;
+            }
+            if self.valley.val() {
+                self.high_result.d.next = self.high_clocks.q.val();
+                self.low_result.d.next = self.low_clocks.q.val();
+            }
+        }
+
         comment!("Outputs");
         self.duty.next = signed_cast(self.duty_q.q.val());
         self.feed.next = self.feed_q.q.val();
@@ -258,5 +325,8 @@ impl Logic for DriveCommand {
         self.filtered_fault_n.next = self.filtered_fault_n_q.q.val();
         self.direct_active.next = self.active.q.val();
         self.direct_expired.next = self.expired.q.val();
+        self.mask_pins.next = self.masked.q.val();
+        self.self_test_high.next = self.high_result.q.val();
+        self.self_test_low.next = self.low_result.q.val();
     }
 }

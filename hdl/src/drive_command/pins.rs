@@ -28,6 +28,9 @@ impl Pins for DriveCommand {
             direct_hold_ticks,
             direct_duty,
             direct_limit,
+            self_test,
+            gates,
+            valley,
         ] = inputs
         else {
             return;
@@ -50,6 +53,9 @@ impl Pins for DriveCommand {
         self.direct_hold_ticks.next = from_u64(direct_hold_ticks);
         self.direct_duty.next = from_i64(direct_duty as i64);
         self.direct_limit.next = from_u64(direct_limit);
+        self.self_test.next = bit(self_test);
+        self.gates.next = from_u64(gates);
+        self.valley.next = bit(valley);
     }
 
     fn read(&self, outputs: &mut [u64]) {
@@ -62,6 +68,9 @@ impl Pins for DriveCommand {
             self.filtered_fault_n.val().into(),
             u64::from(self.direct_active.val()),
             u64::from(self.direct_expired.val()),
+            u64::from(self.mask_pins.val()),
+            self.self_test_high.val().into(),
+            self.self_test_low.val().into(),
         ];
         for (output, value) in outputs.iter_mut().zip(shown) {
             *output = value;

@@ -8,6 +8,7 @@ pub(super) struct Gates {
     pub(super) clk: Signal<In, Clock>,
     pub(super) rst: Signal<In, Bit>,
     pub(super) armed: Signal<In, Bit>,
+    pub(super) mask_pins: Signal<In, Bit>,
     pub(super) mode: Signal<In, Bits<2>>,
     pub(super) negative: Signal<In, Bit>,
     pub(super) wanted: Signal<In, Bit>,
@@ -18,11 +19,19 @@ pub(super) struct Gates {
     pub(super) a_low: Signal<Out, Bit>,
     pub(super) b_high: Signal<Out, Bit>,
     pub(super) b_low: Signal<Out, Bit>,
+    pub(super) gates: Signal<Out, Bits<4>>,
 
     a_high_gate: Dff<Bit>,
     a_low_gate: Dff<Bit>,
     b_high_gate: Dff<Bit>,
     b_low_gate: Dff<Bit>,
+    masked: Dff<Bit>,
+
+    on: Signal<Local, Bit>,
+    leg_a_high: Signal<Local, Bits<4>>,
+    leg_a: Signal<Local, Bits<4>>,
+    leg_b_high: Signal<Local, Bits<4>>,
+    no_gate: Constant<Bits<4>>,
 
     a_high_off: Constant<Bit>,
     a_low_off: Constant<Bit>,
@@ -37,6 +46,7 @@ impl Gates {
             clk: Signal::default(),
             rst: Signal::default(),
             armed: Signal::default(),
+            mask_pins: Signal::default(),
             mode: Signal::default(),
             negative: Signal::default(),
             wanted: Signal::default(),
@@ -47,10 +57,17 @@ impl Gates {
             a_low: Signal::default(),
             b_high: Signal::default(),
             b_low: Signal::default(),
+            gates: Signal::default(),
             a_high_gate: Dff::default(),
             a_low_gate: Dff::default(),
             b_high_gate: Dff::default(),
             b_low_gate: Dff::default(),
+            masked: Dff::default(),
+            on: Signal::default(),
+            leg_a_high: Signal::default(),
+            leg_a: Signal::default(),
+            leg_b_high: Signal::default(),
+            no_gate: Constant::new(from_u64(0)),
             a_high_off: Constant::new(off.a_high),
             a_low_off: Constant::new(off.a_low),
             b_high_off: Constant::new(off.b_high),
@@ -64,8 +81,8 @@ impl Logic for Gates {
     fn update(&mut self) {
         comment!("@module pwm_gates");
         comment!("@about The leg on its pins: a register each, then");
-        comment!("@about the fault path, then the polarity.");
-        dff_setup!(self, clk, a_high_gate, a_low_gate, b_high_gate, b_low_gate);
+        comment!("@about fault path and mask, then the polarity.");
+        dff_setup!(self, clk, a_high_gate, a_low_gate, b_high_gate, b_low_gate, masked);
 
         comment!("Half bridge; and the other modes from there");
         self.a_high_gate.d.next = self.high_side.val();
@@ -93,9 +110,15 @@ impl Logic for Gates {
             self.b_low_gate.d.next = self.high_side.val();
         }
 
-        self.a_high.next = (self.a_high_gate.q.val() & self.armed.val()) ^ self.a_high_off.val();
-        self.a_low.next = (self.a_low_gate.q.val() & self.armed.val()) ^ self.a_low_off.val();
-        self.b_high.next = (self.b_high_gate.q.val() & self.armed.val()) ^ self.b_high_off.val();
-        self.b_low.next = (self.b_low_gate.q.val() & self.armed.val()) ^ self.b_low_off.val();
+        self.masked.d.next = self.mask_pins.val();
+        self.on.next = self.armed.val() & !self.masked.q.val();
+        self.a_high.next = (self.a_high_gate.q.val() & self.on.val()) ^ self.a_high_off.val();
+        self.a_low.next = (self.a_low_gate.q.val() & self.on.val()) ^ self.a_low_off.val();
+        self.b_high.next = (self.b_high_gate.q.val() & self.on.val()) ^ self.b_high_off.val();
+        self.b_low.next = (self.b_low_gate.q.val() & self.on.val()) ^ self.b_low_off.val();
+        self.leg_a_high.next = self.no_gate.val().replace_bit(0, self.a_high_gate.q.val());
+        self.leg_a.next = self.leg_a_high.val().replace_bit(1, self.a_low_gate.q.val());
+        self.leg_b_high.next = self.leg_a.val().replace_bit(2, self.b_high_gate.q.val());
+        self.gates.next = self.leg_b_high.val().replace_bit(3, self.b_low_gate.q.val());
     }
 }

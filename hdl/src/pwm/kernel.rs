@@ -32,6 +32,7 @@ pub(super) struct Pwm {
     pub(super) filtered_fault_n: Signal<In, Bits<2>>,
     pub(super) clear_trip: Signal<In, Bit>,
     pub(super) clear_flags: Signal<In, Bit>,
+    pub(super) mask_pins: Signal<In, Bit>,
     pub(super) a_high: Signal<Out, Bit>,
     pub(super) a_low: Signal<Out, Bit>,
     pub(super) b_high: Signal<Out, Bit>,
@@ -49,13 +50,14 @@ pub(super) struct Pwm {
     pub(super) unaligned: Signal<Out, Bit>,
     pub(super) dead_time_used: Signal<Out, Bits<10>>,
     pub(super) minimum_pulse_used: Signal<Out, Bits<10>>,
+    pub(super) gates: Signal<Out, Bits<4>>,
 
     carrier: Carrier,
     timing: Timing,
     command: Command,
     guard: Trip,
     leg: Leg,
-    gates: Gates,
+    pin_gates: Gates,
 
     running_q: Dff<Bit>,
     mode_q: Dff<Bits<2>>,
@@ -120,6 +122,7 @@ impl Pwm {
             filtered_fault_n: Signal::default(),
             clear_trip: Signal::default(),
             clear_flags: Signal::default(),
+            mask_pins: Signal::default(),
             a_high: Signal::default(),
             a_low: Signal::default(),
             b_high: Signal::default(),
@@ -137,12 +140,13 @@ impl Pwm {
             unaligned: Signal::default(),
             dead_time_used: Signal::default(),
             minimum_pulse_used: Signal::default(),
+            gates: Signal::default(),
             carrier: Carrier::new(),
             timing: Timing::new(config),
             command: Command::default(),
             guard: Trip::default(),
             leg: Leg::default(),
-            gates: Gates::new(config),
+            pin_gates: Gates::new(config),
             running_q: Dff::default(),
             mode_q: Dff::default(),
             negative_q: Dff::default(),
@@ -257,15 +261,16 @@ impl Logic for Pwm {
         self.leg.wants_high.next = self.wants_high.val();
         self.leg.dead_time.next = self.timing.dead_time_used.val();
         self.leg.minimum_pulse.next = self.timing.minimum_pulse_used.val();
-        self.gates.clk.next = self.clk.val();
-        self.gates.rst.next = self.rst.val();
-        self.gates.armed.next = self.guard.armed.val();
-        self.gates.mode.next = self.mode_q.q.val();
-        self.gates.negative.next = self.negative_q.q.val();
-        self.gates.wanted.next = self.wanted.val();
-        self.gates.awake.next = self.leg.awake.val();
-        self.gates.high_side.next = self.leg.high_side.val();
-        self.gates.low_side.next = self.leg.low_side.val();
+        self.pin_gates.clk.next = self.clk.val();
+        self.pin_gates.rst.next = self.rst.val();
+        self.pin_gates.armed.next = self.guard.armed.val();
+        self.pin_gates.mask_pins.next = self.mask_pins.val();
+        self.pin_gates.mode.next = self.mode_q.q.val();
+        self.pin_gates.negative.next = self.negative_q.q.val();
+        self.pin_gates.wanted.next = self.wanted.val();
+        self.pin_gates.awake.next = self.leg.awake.val();
+        self.pin_gates.high_side.next = self.leg.high_side.val();
+        self.pin_gates.low_side.next = self.leg.low_side.val();
 
         comment!("Shorter than the minimum: none, or full");
         self.boundary.next = self.carrier.valley_next.val() | self.carrier.peak_next.val();
@@ -344,10 +349,10 @@ impl Logic for Pwm {
         }
 
         comment!("Outputs");
-        self.a_high.next = self.gates.a_high.val();
-        self.a_low.next = self.gates.a_low.val();
-        self.b_high.next = self.gates.b_high.val();
-        self.b_low.next = self.gates.b_low.val();
+        self.a_high.next = self.pin_gates.a_high.val();
+        self.a_low.next = self.pin_gates.a_low.val();
+        self.b_high.next = self.pin_gates.b_high.val();
+        self.b_low.next = self.pin_gates.b_low.val();
         self.running.next = self.running_q.q.val();
         self.tripped.next = self.guard.tripped.val();
         self.trip_causes.next = self.guard.causes.val();
@@ -361,5 +366,6 @@ impl Logic for Pwm {
         self.unaligned.next = self.unaligned_q.q.val();
         self.dead_time_used.next = self.timing.dead_time_used.val();
         self.minimum_pulse_used.next = self.timing.minimum_pulse_used.val();
+        self.gates.next = self.pin_gates.gates.val();
     }
 }

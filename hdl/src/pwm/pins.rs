@@ -31,6 +31,7 @@ impl Pins for Pwm {
             filtered_fault_n,
             clear_trip,
             clear_flags,
+            mask_pins,
         ] = inputs
         else {
             return;
@@ -55,6 +56,7 @@ impl Pins for Pwm {
         self.filtered_fault_n.next = from_u64(filtered_fault_n);
         self.clear_trip.next = clear_trip & 1 != 0;
         self.clear_flags.next = clear_flags & 1 != 0;
+        self.mask_pins.next = mask_pins & 1 != 0;
     }
 
     fn read(&self, outputs: &mut [u64]) {
@@ -76,6 +78,7 @@ impl Pins for Pwm {
             u64::from(self.unaligned.val()),
             self.dead_time_used.val().into(),
             self.minimum_pulse_used.val().into(),
+            self.gates.val().into(),
         ];
         for (output, value) in outputs.iter_mut().zip(shown) {
             *output = value;

@@ -8,6 +8,9 @@
 //!   `direct_hold_ticks` said then. All outputs are on; each tick takes `direct_duty`, at most `direct_limit` in size. A sign
 //!   that turns is 0 for a tick; on a limit switch the duty is 0 in its direction, at once.
 //! - A change between the two, either way, begins with a duty of 0.
+//! - **Self-test** of the PWM: direct mode with `self_test` masks the pins and leaves drive and brake off. Only the PWM runs,
+//!   and the clocks that its gates of leg A are on are counted. A change of `self_test` ends direct mode. The mask stays for
+//!   the first clock in which `pwm_enable` is low again, and that clock there always is.
 //!
 //! ```text
 //! clock           0    1             100  101            200  201
@@ -94,6 +97,12 @@ pub struct Inputs {
     pub direct_duty: i32,
     /// Largest manual duty in size.
     pub direct_limit: u16,
+    /// Direct mode is the PWM's self-test: pins masked, drive and brake off.
+    pub self_test: bool,
+    /// Of the PWM, before its mask: bit 0 `a_high`, bit 1 `a_low`.
+    pub gates: u8,
+    /// Of the PWM, one clock: `gates` are those of the first clock of a period.
+    pub valley: bool,
 }
 
 /// The output ports, all of them registers.
@@ -115,6 +124,12 @@ pub struct Outputs {
     pub direct_active: bool,
     /// One clock: direct mode ended since its time ran out.
     pub direct_expired: bool,
+    /// To the PWM: its pins are off.
+    pub mask_pins: bool,
+    /// Clocks that `a_high` was on in the last whole period of a self-test; stops at 65,535.
+    pub self_test_high: u16,
+    /// The same of `a_low`.
+    pub self_test_low: u16,
 }
 
 impl Default for Outputs {
@@ -129,12 +144,15 @@ impl Default for Outputs {
             filtered_fault_n: 3,
             direct_active: false,
             direct_expired: false,
+            mask_pins: false,
+            self_test_high: 0,
+            self_test_low: 0,
         }
     }
 }
 
 /// Input ports in port order, with their widths.
-const INPUTS: [(&str, u32, bool); 17] = [
+const INPUTS: [(&str, u32, bool); 20] = [
     ("rst", 1, false),
     ("tick", 1, false),
     ("controller_duty", CONTROLLER_DUTY_BITS, true),
@@ -152,10 +170,13 @@ const INPUTS: [(&str, u32, bool); 17] = [
     ("direct_hold_ticks", 16, false),
     ("direct_duty", DUTY_BITS, true),
     ("direct_limit", 16, false),
+    ("self_test", 1, false),
+    ("gates", 4, false),
+    ("valley", 1, false),
 ];
 
 /// Output ports in port order, with their widths.
-const OUTPUTS: [(&str, u32, bool); 8] = [
+const OUTPUTS: [(&str, u32, bool); 11] = [
     ("duty", DUTY_BITS, true),
     ("feed", 1, false),
     ("pwm_enable", 1, false),
@@ -164,6 +185,9 @@ const OUTPUTS: [(&str, u32, bool); 8] = [
     ("filtered_fault_n", 2, false),
     ("direct_active", 1, false),
     ("direct_expired", 1, false),
+    ("mask_pins", 1, false),
+    ("self_test_high", 16, false),
+    ("self_test_low", 16, false),
 ];
 
 /// Number of input ports, without `clk`.
@@ -207,6 +231,9 @@ impl Inputs {
             direct_hold_ticks,
             direct_duty,
             direct_limit,
+            self_test,
+            gates,
+            valley,
         ] = *raw;
         Self {
             rst: bit(rst),
@@ -226,6 +253,9 @@ impl Inputs {
             direct_hold_ticks: direct_hold_ticks as u16,
             direct_duty: direct_duty as i32,
             direct_limit: direct_limit as u16,
+            self_test: bit(self_test),
+            gates: (gates & 0xf) as u8,
+            valley: bit(valley),
         }
     }
 }
@@ -242,6 +272,9 @@ impl Outputs {
             u64::from(self.filtered_fault_n),
             u64::from(self.direct_active),
             u64::from(self.direct_expired),
+            u64::from(self.mask_pins),
+            u64::from(self.self_test_high),
+            u64::from(self.self_test_low),
         ]
     }
 }
@@ -265,6 +298,8 @@ pub struct DriveCommand {
     ticks_left: u16,
     /// The sign of the last manual duty wanted.
     backward: bool,
+    /// Clocks of this period that a gate was on: `a_high`, `a_low`.
+    on_clocks: [u16; 2],
     shown: Outputs,
 }
 
@@ -281,6 +316,7 @@ impl DriveCommand {
             ports: ports().into(),
             ticks_left: 0,
             backward: false,
+            on_clocks: [0; 2],
             shown: Outputs::default(),
         }
     }
@@ -295,10 +331,12 @@ impl DriveCommand {
     pub fn step(&mut self, inputs: &Inputs) -> Outputs {
         let shown = self.shown;
         if inputs.rst {
-            (self.ticks_left, self.backward, self.shown) = (0, false, Outputs::default());
+            (self.ticks_left, self.backward) = (0, false);
+            (self.on_clocks, self.shown) = ([0; 2], Outputs::default());
             return shown;
         }
-        let permitted = inputs.axis_state == State::Ready as u8 && inputs.direct_enable;
+        let test_changes = shown.direct_active && inputs.self_test != shown.mask_pins;
+        let permitted = inputs.axis_state == State::Ready as u8 && inputs.direct_enable && !test_changes;
         let expires = inputs.tick && self.ticks_left == 1;
         let direct = permitted
             && if inputs.direct_kick {
@@ -306,6 +344,9 @@ impl DriveCommand {
             } else {
                 shown.direct_active && !expires
             };
+        let tests = direct && inputs.self_test;
+        let tested = shown.direct_active && shown.mask_pins;
+        let [self_test_high, self_test_low] = self.count(inputs);
         self.shown = Outputs {
             duty: self.next_duty(inputs, direct),
             feed: if shown.direct_active {
@@ -313,12 +354,15 @@ impl DriveCommand {
             } else {
                 inputs.controller_valid
             },
-            pwm_enable: inputs.axis_pwm_enable || direct,
-            drive_enable: inputs.axis_drive_enable || direct,
-            brake_release: inputs.axis_brake_release || direct,
+            pwm_enable: (inputs.axis_pwm_enable && !tested) || direct,
+            drive_enable: (inputs.axis_drive_enable || direct) && !tests,
+            brake_release: (inputs.axis_brake_release || direct) && !tests,
             filtered_fault_n: u8::from(inputs.axis_pwm_trip_n) | u8::from(inputs.drive_fault_n) << 1,
             direct_active: direct,
             direct_expired: shown.direct_active && permitted && !inputs.direct_kick && expires,
+            mask_pins: tests || tested,
+            self_test_high,
+            self_test_low,
         };
         if inputs.direct_kick {
             self.ticks_left = inputs.direct_hold_ticks;
@@ -329,6 +373,21 @@ impl DriveCommand {
             self.backward = inputs.direct_duty & (1 << (DUTY_BITS - 1)) != 0;
         }
         shown
+    }
+
+    /// Counts the gates while the pins are masked; the results after this clock.
+    fn count(&mut self, inputs: &Inputs) -> [u16; 2] {
+        let results = [self.shown.self_test_high, self.shown.self_test_low];
+        if !self.shown.mask_pins {
+            self.on_clocks = [0; 2];
+            return results;
+        }
+        let counted = self.on_clocks;
+        for (gate, clocks) in self.on_clocks.iter_mut().enumerate() {
+            let before = if inputs.valley { 0 } else { *clocks };
+            *clocks = before.saturating_add((inputs.gates >> gate & 1).into());
+        }
+        if inputs.valley { counted } else { results }
     }
 
     /// The duty after this clock, with direct mode on or off after it.

@@ -1,6 +1,8 @@
 //! Inputs for the drive command, seeded: a supervisor that is mostly in READY or beyond it, ticks and controllers at every
 //! pace, kicks in time and too late, duties at and about their limits, limit switches, faults; resets at any clock.
 
+use std::ops::Range;
+
 use posicast_model::rtl::axis::State;
 use posicast_model::rtl::drive_command::{DUTY_BITS, INPUT_PORTS, OUTPUT_PORTS};
 use rand::{RngExt, SeedableRng};
@@ -12,6 +14,11 @@ use crate::lockstep::Clock;
 
 /// Clocks between changes of the slow inputs.
 const MOOD_CLOCKS: u64 = 500;
+
+/// Clocks of the one long self-test: a gate that is on longer than its counter counts.
+const LONG_TEST: Range<u64> = 400_000..466_500;
+/// Its only valley.
+const LONG_TEST_VALLEY: u64 = 466_000;
 
 /// What holds for a while.
 #[derive(Debug, Clone, Copy, Default)]
@@ -25,6 +32,8 @@ struct Mood {
     line_pace: u32,
     hold_ticks: u64,
     limit: i64,
+    self_test: bool,
+    valley_pace: u32,
 }
 
 /// A mixture of everything, without end.
@@ -68,6 +77,8 @@ impl DriveCommandRandom {
             line_pace: *pick(rng, &[2, 20, 100_000, 100_000]),
             hold_ticks: *pick(rng, &[0, 1, 2, 3, 5, 20, 65_535]),
             limit: *pick(rng, &[0, 65_535, any_limit, any_limit >> size]),
+            self_test: rng.random_range(0..3) == 0,
+            valley_pace: *pick(rng, &[1, 4, 20, 60]),
         };
     }
 
@@ -102,6 +113,7 @@ impl Stimuli for DriveCommandRandom {
         let state = if once_in(200) { self.clock % 8 } else { mood.state };
         let [pwm, drive, brake] = mood.outputs.map(|output| output != once_in(500));
         let lines = [(); 4].map(|()| u64::from(!once_in(mood.line_pace)));
+        let self_test = mood.self_test != once_in(150);
         *inputs = [
             u64::from(self.clock < 2 || once_in(1000)),
             u64::from(once_in(mood.tick_pace)),
@@ -120,13 +132,23 @@ impl Stimuli for DriveCommandRandom {
             mood.hold_ticks,
             self.direct_duty as u64,
             mood.limit as u64,
+            u64::from(self_test),
+            0,
+            u64::from(once_in(mood.valley_pace)),
         ];
+        inputs[18] = rng.random_range(0..16);
+        if LONG_TEST.contains(&self.clock) {
+            let valley = u64::from(self.clock == LONG_TEST_VALLEY);
+            (inputs[0], inputs[4], inputs[12]) = (0, State::Ready as u64, 1);
+            (inputs[13], inputs[14]) = (1, 65_535);
+            (inputs[17], inputs[18], inputs[19]) = (1, 3, valley);
+        }
         self.clock += 1;
     }
 }
 
 /// What is counted.
-const NAMES: [&str; 16] = [
+const NAMES: [&str; 24] = [
     "resets",
     "clocks off",
     "duties of the controller",
@@ -143,6 +165,14 @@ const NAMES: [&str; 16] = [
     "direct mode ended by READY left",
     "direct mode ended by direct_enable",
     "direct mode ended, the supervisor on",
+    "self-test begun",
+    "self-test ended by its flag",
+    "direct mode ended by the self-test's flag",
+    "self-test ended, the supervisor wants the PWM",
+    "self-test begun again behind its mask",
+    "clocks of a_high counted",
+    "clocks of a_low counted",
+    "clocks of a gate beyond the end of the counter",
 ];
 
 /// How often things happened in a lock step of the drive command.
@@ -172,7 +202,7 @@ impl DriveCommandCoverage {
         before: &[u64; OUTPUT_PORTS],
         shown: &[u64; OUTPUT_PORTS],
     ) -> [bool; NAMES.len()] {
-        let &[rst, tick, .., plus_ok, minus_ok, enable, _, _, _, limit] = inputs;
+        let &[rst, tick, .., plus_ok, minus_ok, enable, _, _, _, limit, _, _, _] = inputs;
         let [controller_valid, state] = [inputs[3], inputs[4]].map(|value| value & 7);
         let signed = |duty: u64| (duty << (64 - DUTY_BITS)) as i64 >> (64 - DUTY_BITS);
         let (duty, duty_before) = (signed(shown[0]), signed(before[0]));
@@ -182,6 +212,9 @@ impl DriveCommandCoverage {
         let manual = running && active && was_active && tick == 1;
         let held = running && active && was_active && tick == 0;
         let limit = limit as i64;
+        let [masked, was_masked] = [shown[8], before[8]].map(|value| value == 1);
+        let [self_test, valley] = [inputs[17], inputs[19]].map(|value| value == 1);
+        let flagged = state == State::Ready as u64 && enable == 1;
         let ended = running && was_active && !active;
         [
             !running,
@@ -200,6 +233,14 @@ impl DriveCommandCoverage {
             ended && state != State::Ready as u64,
             ended && state == State::Ready as u64 && enable == 0,
             ended && on,
+            running && active && masked && !was_masked,
+            ended && was_masked && !self_test && flagged,
+            ended && !was_masked && self_test && flagged,
+            ended && was_masked && inputs[5] == 1,
+            running && active && masked && !was_active && was_masked,
+            was_masked && valley && shown[9] > 1,
+            was_masked && valley && shown[10] > 1,
+            shown[9] == 65_535,
         ]
     }
 

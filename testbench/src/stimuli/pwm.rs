@@ -1,6 +1,7 @@
 //! Inputs for the PWM, seeded: duties of every size, and about the ends of every pattern; modes, periods and times that a
 //! host changes in any clock; a time base in step and out of it; faults of every kind and length, and hosts that clear them;
-//! a controller that feeds the watchdog, or forgets. Beside it what every run must hold ([`GateSafety`]).
+//! a controller that feeds the watchdog, or forgets; a mask that comes
+//! and goes in any clock. Beside it what every run must hold ([`GateSafety`]).
 
 use posicast_model::rtl::pwm::{ActiveLow, Inputs, ports};
 use posicast_model::rtl::{Direction, Port};
@@ -147,6 +148,9 @@ impl Stimuli for PwmRandom {
         if self.one_in(if self.inputs.enable { 2500 } else { 300 }) {
             self.inputs.enable = !self.inputs.enable;
         }
+        if self.one_in(if self.inputs.mask_pins { 150 } else { 1500 }) {
+            self.inputs.mask_pins = !self.inputs.mask_pins;
+        }
         self.clock += 1;
         for (input, value) in inputs.iter_mut().zip(self.inputs.to_raw()) {
             *input = value;
@@ -233,6 +237,9 @@ pub struct PwmCoverage {
     mode: u64,
     peak_updates: u64,
     off_by_enable: u64,
+    /// Pins: clocks in which the gate is on, and the mask keeps the pin off.
+    masked: [u64; 4],
+    was_masked: bool,
 }
 
 impl Default for PwmCoverage {
@@ -253,6 +260,8 @@ impl Default for PwmCoverage {
             mode: 0,
             peak_updates: 0,
             off_by_enable: 0,
+            masked: [0; 4],
+            was_masked: false,
         }
     }
 }
@@ -271,7 +280,13 @@ impl PwmCoverage {
         let running = shown[4] != 0;
         self.off_by_enable += u64::from(!running && self.before[4] != 0 && shown[5] == 0);
         self.peak_updates += u64::from(running && shown[9] != 0 && inputs[6] != 0);
-        let high = shown[0] | shown[2];
+        let gates = shown[17];
+        for (gate, masked) in self.masked.iter_mut().enumerate() {
+            *masked += u64::from(self.was_masked) & gates >> gate;
+        }
+        self.was_masked = inputs[20] != 0;
+        // Before the mask: a period whose pins were masked had its pulse.
+        let high = u64::from(gates & 0b0101 != 0);
         if shown[8] != 0 {
             self.full += u64::from(self.constant == Some(1));
             self.none += u64::from(self.constant == Some(0));
@@ -302,6 +317,7 @@ impl PwmCoverage {
             "pll trips",
             "watchdog trips",
         ];
+        let masked = ["masked a_high", "masked a_low", "masked b_high", "masked b_low"];
         let more = [
             ("resets", self.resets),
             ("full periods", self.full),
@@ -313,6 +329,7 @@ impl PwmCoverage {
             .chain(modes.into_iter().zip(self.pulses))
             .chain(starts.into_iter().zip(self.starts))
             .chain(trips.into_iter().zip(self.trips))
+            .chain(masked.into_iter().zip(self.masked))
             .chain(more)
             .collect()
     }

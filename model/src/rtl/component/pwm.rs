@@ -35,7 +35,8 @@ fn part(block: &Block, part: Part) -> Part {
         Block::Pwm(_) => part
             .on("feed", "selected_feed")
             .on("duty", "selected_duty")
-            .tied("clear_flags", 1),
+            .tied("clear_flags", 1)
+            .tied("mask_pins", 0),
         _ => part,
     }
 }

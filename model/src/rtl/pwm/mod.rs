@@ -91,6 +91,8 @@ struct State {
     leg: Leg,
     gates: Gates,
     running: bool,
+    /// `mask_pins` of the clock before.
+    masked: bool,
     trip: Trip,
     /// The carrier is at its valley, its peak; one clock later the pins are.
     at_valley: bool,
@@ -123,6 +125,7 @@ impl State {
             leg: Leg::default(),
             gates: Gates::default(),
             running: false,
+            masked: false,
             trip: Trip::default(),
             at_valley: false,
             at_peak: false,
@@ -158,13 +161,13 @@ impl Pwm {
     #[inline]
     pub fn outputs(&self, inputs: &Inputs) -> Outputs {
         let state = &self.state;
-        let armed = state.trip.armed(inputs);
+        let on = state.trip.armed(inputs) && !state.masked;
         let off = self.config.active_low();
         Outputs {
-            a_high: (state.gates.a_high && armed) != off.a_high,
-            a_low: (state.gates.a_low && armed) != off.a_low,
-            b_high: (state.gates.b_high && armed) != off.b_high,
-            b_low: (state.gates.b_low && armed) != off.b_low,
+            a_high: (state.gates.a_high && on) != off.a_high,
+            a_low: (state.gates.a_low && on) != off.a_low,
+            b_high: (state.gates.b_high && on) != off.b_high,
+            b_low: (state.gates.b_low && on) != off.b_low,
             running: state.running,
             tripped: state.trip.tripped(),
             trip_causes: state.trip.causes(),
@@ -178,6 +181,7 @@ impl Pwm {
             unaligned: state.unaligned,
             dead_time_used: state.dead_time,
             minimum_pulse_used: state.minimum_pulse,
+            gates: state.gates,
         }
     }
 
@@ -273,6 +277,7 @@ impl State {
                 state.period = inputs.period;
             }
         }
+        state.masked = inputs.mask_pins;
         state.trigger = state.position == inputs.trigger_phase;
         (state.valley, state.peak) = (state.at_valley, state.at_peak);
         (state.at_valley, state.at_peak) = (valley && !realigns, peak && !realigns);

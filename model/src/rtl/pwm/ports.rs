@@ -78,6 +78,8 @@ pub struct Inputs {
     pub clear_trip: bool,
     /// Clears `saturated`, `refused`, `below_floor`, `unaligned`.
     pub clear_flags: bool,
+    /// Level: all pins off, from the next clock on; all else goes on as it would.
+    pub mask_pins: bool,
 }
 
 /// Four gates, high side and low side of two legs: true is on (of the gate, not of the level).
@@ -94,6 +96,13 @@ pub struct Gates {
 }
 
 impl Gates {
+    /// Bit 0 `a_high`, 1 `a_low`, 2 `b_high`, 3 `b_low`.
+    #[inline]
+    fn to_bits(self) -> u64 {
+        let gates = [self.a_high, self.a_low, self.b_high, self.b_low];
+        (0..).zip(gates).map(|(at, gate)| u64::from(gate) << at).sum()
+    }
+
     /// What a leg, and the rest of the bridge, are in a mode. `leg` is the leg that switches: its high side, its low side.
     /// `awake`: its first dead time is over. `active`: it has something to do.
     #[inline]
@@ -152,6 +161,8 @@ pub struct Outputs {
     pub dead_time_used: u16,
     /// Minimum pulse in use, clocks.
     pub minimum_pulse_used: u16,
+    /// The gates before fault path, mask and polarity.
+    pub gates: Gates,
 }
 
 /// The ports of a PWM in the order of the Verilog's port list, without `clk`.
@@ -184,6 +195,7 @@ pub fn ports() -> Vec<Port> {
         port("filtered_fault_n", Input, 2, false),
         port("clear_trip", Input, 1, false),
         port("clear_flags", Input, 1, false),
+        port("mask_pins", Input, 1, false),
         port("a_high", Output, 1, false),
         port("a_low", Output, 1, false),
         port("b_high", Output, 1, false),
@@ -201,13 +213,14 @@ pub fn ports() -> Vec<Port> {
         port("unaligned", Output, 1, false),
         port("dead_time_used", Output, TIME_BITS, false),
         port("minimum_pulse_used", Output, TIME_BITS, false),
+        port("gates", Output, 4, false),
     ]
 }
 
 /// Input ports.
-pub const INPUTS: usize = 20;
+pub const INPUTS: usize = 21;
 /// Output ports.
-pub const OUTPUTS: usize = 17;
+pub const OUTPUTS: usize = 18;
 /// Bits of [`Inputs::duty`].
 const DUTY_UNUSED_BITS: u32 = 32 - 17;
 
@@ -237,6 +250,7 @@ impl Inputs {
             filtered_fault_n: raw[17] as u8,
             clear_trip: bit(18),
             clear_flags: bit(19),
+            mask_pins: bit(20),
         }
     }
 
@@ -263,6 +277,7 @@ impl Inputs {
             u64::from(self.filtered_fault_n & 3),
             u64::from(self.clear_trip),
             u64::from(self.clear_flags),
+            u64::from(self.mask_pins),
         ]
     }
 }
@@ -289,6 +304,7 @@ impl Outputs {
             u64::from(self.unaligned),
             u64::from(self.dead_time_used),
             u64::from(self.minimum_pulse_used),
+            self.gates.to_bits(),
         ]
     }
 }

@@ -252,6 +252,11 @@ fn commands() -> Vec<Register> {
                 Field::flag("enable", 0, "outputs on; low: off, through a quick stop and the brake"),
                 Field::flag("direct_enable", 1, "direct mode, in READY"),
                 Field::flag("encoder_invert", 2, "reverses the encoder's direction"),
+                Field::flag(
+                    "self_test",
+                    3,
+                    "direct mode tests the PWM: pins, drive and brake stay off",
+                ),
             ],
         ),
         register("stop", 0x09, command("stop"), "quick stop, then HOLD", vec![]),
@@ -595,6 +600,22 @@ fn states() -> Vec<Register> {
                 Field::new("fifo_level", 0, 7, "entries that wait"),
                 Field::flag("fifo_low", 8, "at most `low_water`"),
                 Field::flag("segments_empty", 9, "none"),
+            ],
+        ),
+        register(
+            "self_test",
+            0x2e,
+            Access::Live,
+            "gates of the PWM in the last whole period of a self-test",
+            vec![
+                Field::new(
+                    "self_test_high",
+                    0,
+                    16,
+                    "on time of `a_high`, behind no pin; stops at 65535",
+                )
+                .with_unit("clocks"),
+                Field::new("self_test_low", 16, 16, "the same of `a_low`").with_unit("clocks"),
             ],
         ),
     ]
