@@ -132,10 +132,15 @@ impl Observation {
             self.stood = Some(now);
         }
         if tick {
-            let command = bench.at(self.probes.command_position) as u32 as i32;
-            self.travel = [command.wrapping_sub(self.command).unsigned_abs(), self.travel[0]];
-            self.command = command;
+            self.follow_command(bench);
         }
+    }
+
+    /// Once per tick.
+    pub(super) fn follow_command(&mut self, bench: &StageBench) {
+        let command = bench.at(self.probes.command_position) as u32 as i32;
+        self.travel = [command.wrapping_sub(self.command).unsigned_abs(), self.travel[0]];
+        self.command = command;
     }
 
     /// The same for what the monitors look at, of which most count at ticks only.

@@ -103,8 +103,8 @@ impl Running<'_> {
             return Ok(());
         }
         self.bench.write("interrupt_state", u32::MAX)?;
-        self.to_the_fault(plan.ticks)?;
-        let observed = self.observe(plan.ticks)?;
+        let axes = self.to_the_fault(plan.ticks)?;
+        let observed = self.observe(axes, plan.ticks)?;
         judge::stopped(
             &Seen {
                 bed: self.bed,
@@ -198,21 +198,30 @@ impl Running<'_> {
         Ok(())
     }
 
-    fn to_the_fault(&mut self, ticks: u64) -> Result<(), Error> {
-        if self.case.row.kind == Kind::Overflow {
-            return Ok(());
-        }
-        let whole = ticks * self.case.when / 10_000;
-        self.bench.clocks(whole * TICK_CLOCKS + self.case.clock_of_tick)
-    }
-
-    /// The fault, and all until the axes are where they end.
-    fn observe(&mut self, move_ticks: u64) -> Result<Observed, Error> {
+    /// To the clock of the fault; the last two ticks before it one by one, to know the commands' velocities.
+    fn to_the_fault(&mut self, ticks: u64) -> Result<Vec<Observation>, Error> {
         let mut axes = Vec::new();
         for axis in 0..2 {
             let lost_command = self.bed.stage.config.axes[axis].supervision.lost_command;
             axes.push(Observation::new(&self.bench, axis, lost_command)?);
         }
+        if self.case.row.kind == Kind::Overflow {
+            return Ok(axes);
+        }
+        let whole = ticks * self.case.when / 10_000;
+        let close = whole.min(2);
+        self.bench
+            .clocks((whole - close) * TICK_CLOCKS + self.case.clock_of_tick)?;
+        axes.iter_mut().for_each(|axis| axis.follow_command(&self.bench));
+        for _ in 0..close {
+            self.bench.clocks(TICK_CLOCKS)?;
+            axes.iter_mut().for_each(|axis| axis.follow_command(&self.bench));
+        }
+        Ok(axes)
+    }
+
+    /// The fault, and all until the axes are where they end.
+    fn observe(&mut self, mut axes: Vec<Observation>, move_ticks: u64) -> Result<Observed, Error> {
         let began = self.bench.now();
         begin(&mut self.bench, self.case)?;
         let start = self.bench.now();
