@@ -13,6 +13,7 @@
 //! - [`lockstep`] steps model and device side by side and compares every output in every clock.
 //! - [`blocks`] is the list of hardware blocks, each with its Verilog, model, stimuli and coverage.
 //! - [`campaign`] is the order of stimuli that a machine goes through; [`recording`] runs a real move into waveforms.
+//! - [`fault_campaign`] puts a stage with its machine in every fault, at random clocks of a move.
 //! - [`register_tests`] asks registers, through the bus, for what their description promises.
 //! - [`stage_bench`] joins a stage with its simulated machine; [`stage_run`] moves it and measures.
 //! - [`wave`] writes waveforms; [`diff`] compares two of them.
@@ -21,6 +22,7 @@ pub mod blocks;
 pub mod campaign;
 pub mod diff;
 mod error;
+pub mod fault_campaign;
 pub mod icarus;
 pub mod lockstep;
 mod reader;

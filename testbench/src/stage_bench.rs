@@ -9,8 +9,15 @@
 //!
 //! With a device every clock is stepped and compared. Without one the model runs event by event, much faster, and exactly
 //! the same. The plants hear the model.
+//!
+//! Faults: [`StageBench::set`] drives lines, [`StageBench::force_encoder`] cuts or corrupts an encoder,
+//! [`StageBench::jam`] holds an axis. What must never happen at the pins is watched in every clock: [`StageBench::watched`].
 
-use posicast_model::plant::axis::{AxisPlant, DrivePins};
+mod watch;
+
+pub use watch::Watched;
+
+use posicast_model::plant::axis::{AxisPlant, DrivePins, EncoderPins};
 use posicast_model::rtl::component::Component;
 use posicast_model::rtl::composition::Composed;
 use posicast_model::rtl::segments::Entry;
@@ -87,6 +94,17 @@ struct Places {
     recorded: [usize; 4],
 }
 
+/// What stands between an axis of the machine and the stage.
+#[derive(Debug, Clone, Copy, Default)]
+struct Fault {
+    encoder: Option<EncoderPins>,
+    jammed: bool,
+}
+
+/// A net to look at often: see [`StageBench::probe`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Probe(usize);
+
 fn stopped(clock: u64) -> impl Fn(StepError) -> Error {
     move |source| Error::Step { clock, source }
 }
@@ -111,6 +129,9 @@ pub struct StageBench {
     mismatches: u64,
     first: Option<StageMismatch>,
     samples: Option<Vec<Vec<AxisSample>>>,
+    faults: Vec<Fault>,
+    shown: Vec<DrivePins>,
+    watched: Vec<Watched>,
 }
 
 impl StageBench {
@@ -172,6 +193,9 @@ impl StageBench {
         let mut bench = Self {
             tick: place(&output_names, "tick")?,
             read_data: place(&output_names, "avs_readdata")?,
+            faults: vec![Fault::default(); axes.len()],
+            shown: vec![DrivePins::default(); axes.len()],
+            watched: vec![Watched::default(); axes.len()],
             inputs: vec![0; input_names.len()],
             outputs: vec![0; output_names.len()],
             actual: vec![0; output_names.len()],
@@ -197,10 +221,47 @@ impl StageBench {
                 bench.set(&format!("{axis}_{line}"), 1)?;
             }
         }
-        bench.set("rst", 1)?;
-        bench.clocks(2)?;
-        bench.set("rst", 0)?;
+        bench.reset(2)?;
         Ok(bench)
+    }
+
+    /// A reset of so many clocks, at any time. Counters begin anew at 0 where the plants are.
+    ///
+    /// # Errors
+    /// [`Error::Step`] where a simulator stops.
+    pub fn reset(&mut self, clocks: u64) -> Result<(), Error> {
+        self.set("rst", 1)?;
+        self.clocks(clocks)?;
+        self.set("rst", 0)?;
+        self.rebase();
+        Ok(())
+    }
+
+    /// The counters are right as they are: from now on none may be further away from its plant than now.
+    pub fn rebase(&mut self) {
+        for ((watched, plant), places) in self.watched.iter_mut().zip(&self.plants).zip(&self.places) {
+            watched.rebase(self.model.value(places.recorded[2]), plant);
+        }
+    }
+
+    /// What was seen at an axis's pins, in every clock since the start.
+    pub fn watched(&self, axis: usize) -> &Watched {
+        &self.watched[axis]
+    }
+
+    /// What the pins of an axis showed in the last clock.
+    pub fn pins(&self, axis: usize) -> DrivePins {
+        self.shown[axis]
+    }
+
+    /// The lines of an axis's encoder are these, from the next clock on, whatever the plant does; `None`: the plant's.
+    pub fn force_encoder(&mut self, axis: usize, pins: Option<EncoderPins>) {
+        self.faults[axis].encoder = pins;
+    }
+
+    /// Jams an axis, or frees it: the plant stands as if its brake were applied.
+    pub fn jam(&mut self, axis: usize, jammed: bool) {
+        self.faults[axis].jammed = jammed;
     }
 
     /// Names of the axes.
@@ -249,9 +310,22 @@ impl StageBench {
     /// # Errors
     /// [`Error::Unlike`] if there is no such net.
     pub fn net(&self, net: &str) -> Result<u64, Error> {
+        Ok(self.at(self.probe(net)?))
+    }
+
+    /// The same net for many looks.
+    ///
+    /// # Errors
+    /// [`Error::Unlike`] if there is no such net.
+    pub fn probe(&self, net: &str) -> Result<Probe, Error> {
         let place = self.model.net(net);
         let place = place.ok_or_else(|| Error::Unlike(format!("the stage has no net `{net}`")))?;
-        Ok(self.model.value(place))
+        Ok(Probe(place))
+    }
+
+    /// What it carries in the clock that comes, as far as registers say.
+    pub fn at(&self, probe: Probe) -> u64 {
+        self.model.value(probe.0)
     }
 
     /// From now on, each tick records all axes.
@@ -271,8 +345,10 @@ impl StageBench {
     pub fn clocks(&mut self, clocks: u64) -> Result<(), Error> {
         let end = self.now + clocks;
         while self.now < end {
-            for (plant, places) in self.plants.iter().zip(&self.places) {
-                let pins = plant.encoder();
+            let axes = self.plants.iter().zip(&self.places).zip(&self.faults);
+            for (((plant, places), fault), watched) in axes.zip(&mut self.watched) {
+                watched.look(self.model.value(places.recorded[2]), plant);
+                let pins = fault.encoder.unwrap_or_else(|| plant.encoder());
                 for (place, level) in places.encoder.into_iter().zip([pins.a, pins.b, pins.z]) {
                     self.inputs[place] = level.into();
                 }
@@ -294,7 +370,7 @@ impl StageBench {
             if self.outputs[self.tick] != 0 {
                 self.sample();
             }
-            for (plant, places) in self.plants.iter_mut().zip(&self.places) {
+            for (axis, (plant, places)) in self.plants.iter_mut().zip(&self.places).enumerate() {
                 let [a_high, a_low, b_high, b_low, drive_enable, brake_release] =
                     places.drive.map(|place| self.outputs[place] != 0);
                 let pins = DrivePins {
@@ -305,7 +381,10 @@ impl StageBench {
                     drive_enable,
                     brake_release,
                 };
-                plant.clocks(pins, passed);
+                self.shown[axis] = pins;
+                self.watched[axis].pass(&pins, passed);
+                let brake_release = brake_release && !self.faults[axis].jammed;
+                plant.clocks(DrivePins { brake_release, ..pins }, passed);
             }
             self.now += passed;
         }
@@ -415,11 +494,19 @@ impl StageBench {
     /// # Errors
     /// As [`write`](Self::write).
     pub fn segment(&mut self, axis: &str, entry: &Entry) -> Result<(), Error> {
-        let address = self.address(&format!("{axis}_segment"))?;
-        for (place, word) in (0..).zip(entry.words()) {
-            self.access(address + place, Some(word))?;
+        for (place, word) in entry.words().into_iter().enumerate() {
+            self.write_word(&format!("{axis}_segment"), place, word)?;
         }
         Ok(())
+    }
+
+    /// Writes one word of a register that has several: one clock.
+    ///
+    /// # Errors
+    /// As [`write`](Self::write).
+    pub fn write_word(&mut self, register: &str, place: usize, data: u32) -> Result<(), Error> {
+        let address = self.address(register)?;
+        self.access(address + place as u64, Some(data))
     }
 
     /// Clocks until an axis's state is that, at most so many; says whether it came.

@@ -1,0 +1,196 @@
+//! How each kind of fault is put in, and taken away again.
+
+use posicast_model::plant::axis::EncoderPins;
+use posicast_model::rtl::axis::KICK;
+use posicast_model::rtl::segments::{Entry, Motion};
+
+use super::case::Case;
+use super::kind::Kind;
+use crate::Error;
+use crate::stage_bench::StageBench;
+
+/// Ticks of the watchdog.
+const WATCHDOG_TICKS: u32 = 5;
+/// A velocity that does not fit after a few ticks, Q8.32 counts per tick³.
+const HUGE_JERK: i64 = 127 << 32;
+/// More entries than the FIFO takes.
+const MANY_ENTRIES: usize = 70;
+/// Handover to bank 1: `swap_bank` and `swap_how`.
+const SWAP_TO_1: u32 = 1 | 1 << 4;
+/// The register `law`: PD with the settings of bank 3, which are all 0.
+const NO_SETTINGS: u32 = 1 | 3 << 8;
+/// The entry after which the velocity does not fit.
+pub(super) const OVERFLOWING: Entry = Entry {
+    ticks: 100,
+    motion: Motion::Jerk(HUGE_JERK),
+    notify: false,
+};
+
+/// The line of a kind that is one, with the level that is the fault; shared lines have no axis before their name.
+fn line(case: &Case, axis: usize) -> Option<(&'static str, u64)> {
+    let forward = case.counts[axis] > 0;
+    Some(match case.row.kind {
+        Kind::RawFault | Kind::RawFaultOneClock => ("fault_n", 0),
+        Kind::DriveFault | Kind::DriveFaultGlitch => ("drive_fault_n", 0),
+        Kind::DriveNotReady | Kind::DriveReadyGlitch => ("drive_ready", 0),
+        Kind::LimitAhead | Kind::LimitGlitch if forward => ("limit_plus_n", 0),
+        Kind::LimitAhead | Kind::LimitGlitch => ("limit_minus_n", 0),
+        Kind::LimitBehind if forward => ("limit_minus_n", 0),
+        Kind::LimitBehind => ("limit_plus_n", 0),
+        Kind::Home => ("home", 1),
+        _ => return None,
+    })
+}
+
+/// The shared line of a kind that is one; low is the fault.
+fn shared_line(kind: Kind) -> Option<&'static str> {
+    match kind {
+        Kind::EmergencyStop | Kind::EmergencyStopGlitch => Some("emergency_stop_n"),
+        Kind::PllUnlocked => Some("pll_locked"),
+        _ => None,
+    }
+}
+
+/// Puts the fault in: from the next clock on, or with writes that begin in it.
+pub(super) fn begin(bench: &mut StageBench, case: &Case) -> Result<(), Error> {
+    if let Some(line) = shared_line(case.row.kind) {
+        return bench.set(line, 0);
+    }
+    match case.row.kind {
+        Kind::Reset => return bench.set("rst", 1),
+        Kind::StartAgain => return bench.write("start", 3),
+        _ => {}
+    }
+    for axis in case.hit_axes() {
+        let name = bench.axes()[axis].clone();
+        match line(case, axis) {
+            Some((line, level)) => bench.set(&format!("{name}_{line}"), level)?,
+            None => begin_at(bench, case, axis, &name)?,
+        }
+    }
+    if case.row.kind == Kind::NoGains {
+        bench.write("commit", 0)?;
+    }
+    Ok(())
+}
+
+/// What is not a line, at an axis.
+fn begin_at(bench: &mut StageBench, case: &Case, axis: usize, name: &str) -> Result<(), Error> {
+    let register = |register: &str| format!("{name}_{register}");
+    let lines = bench.plant(axis).encoder();
+    match case.row.kind {
+        Kind::EncoderIllegal => bench.force_encoder(
+            axis,
+            Some(EncoderPins {
+                a: !lines.a,
+                b: !lines.b,
+                ..lines
+            }),
+        ),
+        Kind::EncoderGlitch => {
+            let a = case.choice & 1 != 0;
+            let (a, b) = (lines.a ^ a, lines.b ^ !a);
+            bench.force_encoder(axis, Some(EncoderPins { a, b, ..lines }));
+        }
+        Kind::EncoderStuck => bench.force_encoder(axis, Some(lines)),
+        Kind::EncoderDisconnected => bench.force_encoder(axis, Some(EncoderPins::default())),
+        Kind::EncoderReversed => bench.write(&register("control"), 0b101)?,
+        Kind::Jam => bench.jam(axis, true),
+        Kind::JamWithoutFollowingError => {
+            bench.write(&register("following_error_limit"), 0)?;
+            bench.jam(axis, true);
+        }
+        Kind::HostSilent => {
+            bench.write(&register("kick"), KICK)?;
+            bench.write(&register("watchdog"), WATCHDOG_TICKS | u32::from(case.off_causes) << 16)?;
+            bench.write(&register("kick"), KICK ^ (1 << (case.choice % 32)))?;
+        }
+        Kind::Flush => bench.write(&register("flush"), 0)?,
+        Kind::Overflow => {
+            bench.write(&register("following_error_limit"), 0)?;
+            bench.write(&register("stop_deceleration"), 0)?;
+        }
+        Kind::Malformed => malformed(bench, name)?,
+        Kind::FifoFull => {
+            let still = Entry {
+                ticks: 1,
+                motion: Motion::Jerk(0),
+                notify: false,
+            };
+            for _ in 0..MANY_ENTRIES {
+                bench.segment(name, &still)?;
+            }
+        }
+        Kind::SoftLimit => {
+            let at = bench.net(&register("shaped_position"))? as u32;
+            let side = if case.counts[axis] > 0 { "plus" } else { "minus" };
+            bench.write(&register(&format!("soft_limit_{side}")), at)?;
+        }
+        Kind::Stop => bench.write(&register("stop"), 0)?,
+        Kind::Disable => bench.write(&register("control"), 0)?,
+        Kind::SettingRefused => {
+            for bank in [0, 3] {
+                bench.write(&register("setting_address"), case.choice % 16 | bank << 8)?;
+                bench.write(&register("setting"), case.choice)?;
+            }
+        }
+        Kind::NoGains => bench.write(&register("law"), NO_SETTINGS)?,
+        Kind::TableHandover => {
+            let one = 1 << bench.read(&register("coefficient_fraction"))?;
+            bench.write(&register("tap_address"), 1 << 8)?;
+            bench.write(&register("tap"), one)?;
+            bench.write(&register("swap"), SWAP_TO_1)?;
+        }
+        Kind::PresetOrigin => bench.write(&register("preset"), case.choice)?,
+        Kind::ClearFaults => bench.write(&register("clear_faults"), 0)?,
+        Kind::DirectMode => {
+            bench.write(&register("control"), 0b11)?;
+            bench.write(&register("direct"), case.choice & 0x1_ffff)?;
+        }
+        _ => {}
+    }
+    Ok(())
+}
+
+/// Entries that are dropped: no ticks; word 0 missing; a reserved flag.
+fn malformed(bench: &mut StageBench, name: &str) -> Result<(), Error> {
+    let mut words = |entry: &[(usize, u32)]| {
+        let mut writes = entry.iter();
+        writes.try_for_each(|(word, data)| bench.write_word(&format!("{name}_segment"), *word, *data))
+    };
+    words(&[(0, 5), (1, 0), (3, 0)])?;
+    words(&[(1, 0), (3, 7)])?;
+    words(&[(0, 5), (1, 0), (3, 7 | 1 << 24)])
+}
+
+/// Takes away what does not end by itself. `way_back`: a limit stays, since the way back must be open on it.
+pub(super) fn end(bench: &mut StageBench, case: &Case, way_back: bool) -> Result<(), Error> {
+    let kind = case.row.kind;
+    if kind == Kind::Reset {
+        return bench.set("rst", 0);
+    }
+    if let Some(line) = shared_line(kind) {
+        return bench.set(line, 1);
+    }
+    for axis in case.hit_axes() {
+        let name = bench.axes()[axis].clone();
+        let register = |register: &str| format!("{name}_{register}");
+        match line(case, axis) {
+            Some(_) if way_back && kind == Kind::LimitAhead => {}
+            Some((line, level)) => bench.set(&register(line), 1 - level)?,
+            None => {}
+        }
+        bench.force_encoder(axis, None);
+        bench.jam(axis, false);
+        match kind {
+            Kind::EncoderReversed | Kind::DirectMode => bench.write(&register("control"), 1)?,
+            Kind::HostSilent => bench.write(&register("watchdog"), u32::from(case.off_causes) << 16)?,
+            Kind::NoGains => bench.write(&register("law"), 1)?,
+            _ => {}
+        }
+    }
+    if kind == Kind::NoGains {
+        bench.write("commit", 0)?;
+    }
+    Ok(())
+}

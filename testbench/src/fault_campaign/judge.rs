@@ -1,0 +1,313 @@
+//! What was seen from the fault to the end, against what is demanded.
+
+use posicast_model::rtl::axis::{Cause, State, switching_off};
+
+use super::case::Case;
+use super::expectation::{Due, Others, Reaction};
+use super::machine::{BRAKE_APPLY_TICKS, Bed, TICK_CLOCKS};
+use super::observation::{Change, Observation};
+use crate::Error;
+use crate::stage_bench::StageBench;
+
+/// Counts that an axis may be away from its target: half a count of the encoder, and what the loop leaves.
+pub(super) const ON_TARGET: i64 = 2;
+/// From the state to drive and brake: the register of drive_command.
+const PINS_CLOCKS: u64 = 1;
+/// From the state to the gates: that register, and the gates' own.
+const GATES_CLOCKS: u64 = 2;
+/// From the state of one axis to QUICK_STOP of another: the group's register, the state.
+const GROUP_CLOCKS: u64 = 2;
+/// Ticks of a quick stop beside the slowing down and the settling: three at its begin, in which the command still gains
+/// speed, the state's, and two that have begun.
+const STOP_TICKS: u64 = 6;
+/// Places of an axis's interrupts.
+const STOPPING: u32 = 4;
+const FAULTED: u32 = 5;
+const INTERRUPTS_PER_AXIS: u32 = 7;
+
+/// A case on its way.
+pub(super) struct Seen<'a> {
+    pub(super) bed: &'a Bed,
+    pub(super) case: &'a Case,
+    /// The clock after the last write of the fault.
+    pub(super) start: u64,
+    /// The clock by which the state has changed.
+    pub(super) due: Option<u64>,
+    /// Where the moves end, in counts.
+    pub(super) targets: [i64; 2],
+}
+
+/// Clocks and ticks of the axes that were hit; the largest.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Figures {
+    /// Clocks from the fault, or from when it can be seen, to another state.
+    pub state_clocks: Option<u64>,
+    /// The same until all gates are off and the drive is disabled, without a quick stop.
+    pub off_clocks: Option<u64>,
+    /// Ticks from QUICK_STOP to its end.
+    pub stop_ticks: Option<u64>,
+}
+
+fn larger(figure: &mut Option<u64>, value: u64) {
+    *figure = Some(figure.map_or(value, |figure| figure.max(value)));
+}
+
+struct Judge<'a> {
+    seen: &'a Seen<'a>,
+    failures: &'a mut Vec<String>,
+    figures: &'a mut Figures,
+    name: String,
+    axis: usize,
+}
+
+/// Judges all axes.
+pub(super) fn stopped(
+    seen: &Seen<'_>,
+    bench: &mut StageBench,
+    axes: &[Observation],
+    figures: &mut Figures,
+    failures: &mut Vec<String>,
+) -> Result<(), Error> {
+    let first_stop = axes.iter().enumerate().filter(|(axis, _)| seen.case.hits(*axis));
+    let first_stop = first_stop
+        .filter_map(|(_, axis)| axis.change.map(|change| change.clock))
+        .min();
+    let interrupts = bench.read("interrupt_state")?;
+    for (axis, observed) in axes.iter().enumerate() {
+        let mut judge = Judge {
+            seen,
+            failures,
+            figures,
+            name: bench.axes()[axis].clone(),
+            axis,
+        };
+        let quick = match judge.reaction() {
+            Some(reaction) => judge.hit(bench, observed, reaction),
+            None => judge.other(bench, observed, first_stop),
+        };
+        let bits = interrupts >> (INTERRUPTS_PER_AXIS * axis as u32);
+        let faulted = observed.state(bench) == State::Fault as u64;
+        judge.interrupts(bits, quick, faulted);
+        if let (true, Some((register, field))) = (seen.case.hits(axis), seen.case.row.expects.flag) {
+            let name = judge.name.clone();
+            let is = bench.field(&name, register, field)?;
+            let flagged = is != 0;
+            failures.extend((!flagged).then(|| format!("{name}: `{field}` is not set")));
+        }
+    }
+    Ok(())
+}
+
+impl Judge<'_> {
+    fn demand(&mut self, holds: bool, what: impl FnOnce() -> String) {
+        if !holds {
+            self.failures.push(format!("{}: {}", self.name, what()));
+        }
+    }
+
+    /// What this axis does, if it is hit.
+    fn reaction(&self) -> Option<Reaction> {
+        self.seen
+            .case
+            .hits(self.axis)
+            .then_some(self.seen.case.row.expects.reaction)
+    }
+
+    /// An axis that is hit; says whether it went through QUICK_STOP.
+    fn hit(&mut self, bench: &StageBench, observed: &Observation, reaction: Reaction) -> bool {
+        match reaction {
+            Reaction::Nothing => {
+                self.goes_on(bench, observed);
+                false
+            }
+            Reaction::Fault => self.fault(bench, observed),
+            Reaction::Reset => {
+                self.in_time(observed, State::Off as u64);
+                self.off(observed, None);
+                self.causes(observed.causes(bench), 0);
+                false
+            }
+            Reaction::Halt | Reaction::Disable => {
+                let change = self.in_time(observed, State::QuickStop as u64);
+                self.stands(observed, change);
+                self.causes(observed.causes(bench), 0);
+                true
+            }
+        }
+    }
+
+    /// The move ends on target, and nothing is reported.
+    fn goes_on(&mut self, bench: &StageBench, observed: &Observation) {
+        let target = self.seen.targets[self.axis];
+        let at = bench.plant(self.axis).count();
+        self.demand((at - target).abs() <= ON_TARGET, || {
+            format!("at {at} instead of {target}")
+        });
+        let causes = observed.causes(bench);
+        self.demand(causes == 0, || format!("causes {causes:#x}"));
+        let change = observed.change.map(|change| change.state);
+        let ended = change == Some(State::Hold as u64);
+        self.demand(ended, || format!("RUN ended in state {change:?}"));
+        self.demand(observed.drive_off.is_none(), || "the drive was disabled".to_owned());
+    }
+
+    /// The group stop, or nothing; says whether it went through QUICK_STOP.
+    fn other(&mut self, bench: &StageBench, observed: &Observation, first_stop: Option<u64>) -> bool {
+        if self.seen.case.row.expects.others == Others::GoOn {
+            self.goes_on(bench, observed);
+            return false;
+        }
+        let Some(change) = observed.change.filter(|change| change.state == State::QuickStop as u64) else {
+            self.demand(false, || "no group stop".to_owned());
+            return false;
+        };
+        let late = change.clock.saturating_sub(first_stop.unwrap_or(change.clock));
+        self.demand(late <= GROUP_CLOCKS, || {
+            format!("group stop {late} clocks after the fault's")
+        });
+        let causes = observed.causes(bench);
+        self.demand(causes == Cause::GroupStop.bit(), || {
+            format!("causes {causes:#x} of a group stop")
+        });
+        self.stands(observed, Some(change));
+        self.demand(observed.drive_off.is_none(), || {
+            "the group stop disabled the drive".to_owned()
+        });
+        true
+    }
+
+    fn fault(&mut self, bench: &StageBench, observed: &Observation) -> bool {
+        let both = self.seen.case.axes == 3;
+        let group = if both { Cause::GroupStop.bit() } else { 0 };
+        let expects = &self.seen.case.row.expects;
+        self.causes(observed.causes(bench), group);
+        let Some(change) = observed.change else {
+            self.demand(false, || "no reaction".to_owned());
+            return false;
+        };
+        let known = change.causes & (expects.causes | expects.also | group) != 0;
+        self.demand(known, || format!("causes {:#x} when it stopped", change.causes));
+        let cut = switching_off(change.causes, self.seen.case.off_causes) != 0;
+        let wanted = if cut { State::Fault } else { State::QuickStop };
+        self.in_time(observed, wanted as u64);
+        if cut {
+            self.off(observed, Some(change));
+        } else if switching_off(observed.causes(bench), self.seen.case.off_causes) == 0 {
+            self.stands(observed, Some(change));
+            self.brakes(observed);
+        }
+        !cut
+    }
+
+    /// The state has changed to that one, in time.
+    fn in_time(&mut self, observed: &Observation, state: u64) -> Option<Change> {
+        let Some(change) = observed.change else {
+            self.demand(false, || "no reaction".to_owned());
+            return None;
+        };
+        self.demand(change.state == state, || {
+            format!("RUN became state {}, not {state}", change.state)
+        });
+        let due = match self.seen.case.row.expects.due {
+            Due::Seen(_) => observed.seen.map(|seen| seen + 1),
+            Due::Clocks(_) | Due::Ticks { .. } => self.seen.due,
+        };
+        let clocks = change.clock.saturating_sub(self.base(observed));
+        if let Some(due) = due {
+            let late = change.clock.saturating_sub(due);
+            self.demand(late == 0, || format!("{late} clocks late, {clocks} after the fault"));
+        }
+        larger(&mut self.figures.state_clocks, clocks);
+        Some(change)
+    }
+
+    /// Where times count from: the fault, or when it is seen.
+    fn base(&self, observed: &Observation) -> u64 {
+        match self.seen.case.row.expects.due {
+            Due::Seen(_) => observed.seen.unwrap_or(self.seen.start),
+            Due::Clocks(_) | Due::Ticks { .. } => self.seen.start,
+        }
+    }
+
+    /// Gates, drive and brake after a cause that switches off.
+    fn off(&mut self, observed: &Observation, change: Option<Change>) {
+        let (base, start) = (self.base(observed), self.seen.start);
+        let state = change.map_or(start, |change| change.clock);
+        if self.seen.case.row.expects.gates_at_once {
+            let gate = observed.last_gate;
+            self.demand(gate < start, || {
+                format!("a gate was on {} clocks after the fault", gate + 1 - start)
+            });
+        }
+        let gates_off = observed.last_gate + 1;
+        self.demand(gates_off <= state + GATES_CLOCKS, || {
+            format!("a gate was on {} clocks after the state", gates_off - state)
+        });
+        for (what, clock) in [("drive", observed.drive_off), ("brake", observed.brake)] {
+            let in_time = clock.is_some_and(|clock| clock <= state + PINS_CLOCKS);
+            self.demand(in_time, || {
+                format!("the {what} is off at {clock:?}, the state changed at {state}")
+            });
+        }
+        let all_off = observed.drive_off.unwrap_or(gates_off).max(gates_off);
+        larger(&mut self.figures.off_clocks, all_off.saturating_sub(base));
+    }
+
+    /// A quick stop ends in time.
+    fn stands(&mut self, observed: &Observation, change: Option<Change>) {
+        let (Some(change), Some(stood)) = (change, observed.stood) else {
+            self.demand(false, || "the quick stop does not end".to_owned());
+            return;
+        };
+        let watched = &self.seen.bed.stage.config.axes[self.axis].supervision;
+        // Without a deceleration it stops at once.
+        let deceleration = u64::from(watched.stop_deceleration.max(1));
+        let slowing = (u64::from(change.travel) << 16).div_ceil(deceleration);
+        let most = slowing + u64::from(watched.settle_ticks) + STOP_TICKS;
+        let ticks = (stood - change.clock).div_ceil(TICK_CLOCKS);
+        self.demand(ticks <= most, || {
+            format!("a quick stop of {ticks} ticks, at most {most}")
+        });
+        larger(&mut self.figures.stop_ticks, ticks);
+    }
+
+    /// After the quick stop of a fault: the brake, and when it holds the outputs.
+    fn brakes(&mut self, observed: &Observation) {
+        let (Some(stood), Some(brake), Some(drive)) = (observed.stood, observed.brake, observed.drive_off) else {
+            self.demand(false, || "no brake after the quick stop".to_owned());
+            return;
+        };
+        self.demand(brake <= stood + PINS_CLOCKS, || {
+            format!("the brake came {} clocks after the stop", brake - stood)
+        });
+        let holds = (BRAKE_APPLY_TICKS + 1) * TICK_CLOCKS + PINS_CLOCKS;
+        let in_time = drive > brake && drive <= stood + holds;
+        self.demand(in_time, || {
+            format!("outputs off {} clocks after the stop", drive.abs_diff(stood))
+        });
+        self.demand(observed.last_gate < drive + GATES_CLOCKS, || {
+            "a gate was on with the brake".to_owned()
+        });
+    }
+
+    /// One of the causes of this kind, and none that it does not lead to.
+    fn causes(&mut self, causes: u16, group: u16) {
+        let expects = &self.seen.case.row.expects;
+        let there = expects.causes == 0 || causes & (expects.causes | group) != 0;
+        let strange = causes & !(expects.causes | expects.also | group);
+        self.demand(there, || format!("causes {causes:#x}, none of {:#x}", expects.causes));
+        self.demand(strange == 0, || {
+            format!("causes {causes:#x}, of which {strange:#x} should not be")
+        });
+    }
+
+    fn interrupts(&mut self, bits: u32, quick: bool, faulted: bool) {
+        let is = |place: u32| bits >> place & 1 != 0;
+        if self.reaction() == Some(Reaction::Reset) {
+            return;
+        }
+        for (place, name, wanted) in [(STOPPING, "stopping", quick), (FAULTED, "faulted", faulted)] {
+            self.demand(is(place) == wanted, || format!("interrupt `{name}` is {}", is(place)));
+        }
+    }
+}

@@ -1,0 +1,460 @@
+//! The faults: what is injected, and what is demanded. A table, one row each.
+
+use posicast_model::rtl::axis::Cause;
+
+use super::expectation::{Due, Expectation, FAULT, Hit, Lasts, NOTHING, Others, Reaction, Seen, bits};
+use super::machine::{FILTER_CLOCKS, TICK_CLOCKS};
+
+/// A kind of fault.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[expect(missing_docs, reason = "the table says what each is")]
+pub enum Kind {
+    EmergencyStop,
+    EmergencyStopGlitch,
+    PllUnlocked,
+    RawFault,
+    RawFaultOneClock,
+    DriveFault,
+    DriveFaultGlitch,
+    DriveNotReady,
+    DriveReadyGlitch,
+    LimitAhead,
+    LimitBehind,
+    LimitGlitch,
+    Home,
+    EncoderIllegal,
+    EncoderGlitch,
+    EncoderStuck,
+    EncoderDisconnected,
+    EncoderReversed,
+    Jam,
+    JamWithoutFollowingError,
+    HostSilent,
+    Flush,
+    Overflow,
+    Malformed,
+    FifoFull,
+    SoftLimit,
+    Stop,
+    Disable,
+    Reset,
+    SettingRefused,
+    NoGains,
+    TableHandover,
+    PresetOrigin,
+    ClearFaults,
+    StartAgain,
+    DirectMode,
+}
+
+/// A row of the table.
+#[derive(Debug, Clone, Copy)]
+pub struct Row {
+    /// Which.
+    pub kind: Kind,
+    /// Its name in reports.
+    pub name: &'static str,
+    /// What is injected.
+    pub injected: &'static str,
+    /// What is demanded.
+    pub expects: Expectation,
+}
+
+/// From a line to the state: synchroniser, filter, state.
+const LINE: Due = Due::Clocks(FILTER_CLOCKS + 4);
+/// From a raw fault to the state: latch, synchroniser, `tripped`, state.
+const RAW: Due = Due::Clocks(4);
+/// From a drive's fault to the state: a register, synchroniser, filter, trip, state.
+const DRIVE_FAULT: Due = Due::Clocks(FILTER_CLOCKS + 6);
+/// From the bus to the state: the bus's register, the command's, the state.
+const HOST: Due = Due::Clocks(4);
+/// From the encoder's lines to the state: synchroniser, filter, counter, state.
+const ENCODER: Due = Due::Clocks(FILTER_CLOCKS + 5);
+/// What an axis that no longer follows ends in.
+const LOST: u16 = bits(&[
+    Cause::FollowingError,
+    Cause::Saturation,
+    Cause::EncoderLost,
+    Cause::SoftLimitPlus,
+    Cause::SoftLimitMinus,
+]);
+const SHORT: Lasts = Lasts::Clocks(1, FILTER_CLOCKS);
+/// While the command moves fast enough for an error to grow.
+const IN_MOTION: [u64; 2] = [15, 50];
+
+const fn row(kind: Kind, name: &'static str, injected: &'static str, expects: Expectation) -> Row {
+    Row {
+        kind,
+        name,
+        injected,
+        expects,
+    }
+}
+
+/// A fault with this cause, due then.
+const fn fault(cause: Cause, due: Due) -> Expectation {
+    Expectation {
+        causes: cause.bit(),
+        due,
+        ..FAULT
+    }
+}
+
+/// All kinds.
+pub const TABLE: [Row; 36] = [
+    row(
+        Kind::EmergencyStop,
+        "emergency stop",
+        "`emergency_stop_n` low, for longer than the filter or for good",
+        Expectation {
+            hit: Hit::Stage,
+            also: bits(&[Cause::PwmTripped]),
+            lasts: Lasts::HeldOrClocks(FILTER_CLOCKS + 1, 4000),
+            ..fault(Cause::EmergencyStop, LINE)
+        },
+    ),
+    row(
+        Kind::EmergencyStopGlitch,
+        "emergency stop, glitch",
+        "the same, no longer than the filter",
+        Expectation {
+            hit: Hit::Stage,
+            lasts: SHORT,
+            ..NOTHING
+        },
+    ),
+    row(
+        Kind::PllUnlocked,
+        "PLL unlocked",
+        "`pll_locked` low, from one clock on",
+        Expectation {
+            hit: Hit::Stage,
+            gates_at_once: true,
+            lasts: Lasts::HeldOrClocks(1, 4000),
+            ..fault(Cause::PwmTripped, RAW)
+        },
+    ),
+    row(
+        Kind::RawFault,
+        "raw fault",
+        "`fault_n` low",
+        Expectation {
+            gates_at_once: true,
+            lasts: Lasts::HeldOrClocks(2, 4000),
+            ..fault(Cause::PwmTripped, RAW)
+        },
+    ),
+    row(
+        Kind::RawFaultOneClock,
+        "raw fault, one clock",
+        "`fault_n` low for one clock",
+        Expectation {
+            gates_at_once: true,
+            lasts: Lasts::Clocks(1, 1),
+            ..fault(Cause::PwmTripped, RAW)
+        },
+    ),
+    row(
+        Kind::DriveFault,
+        "drive's fault",
+        "`drive_fault_n` low, for longer than the filter or for good",
+        Expectation {
+            lasts: Lasts::HeldOrClocks(FILTER_CLOCKS + 1, 4000),
+            ..fault(Cause::PwmTripped, DRIVE_FAULT)
+        },
+    ),
+    row(
+        Kind::DriveFaultGlitch,
+        "drive's fault, glitch",
+        "the same, no longer than the filter",
+        Expectation {
+            lasts: SHORT,
+            ..NOTHING
+        },
+    ),
+    row(
+        Kind::DriveNotReady,
+        "drive not ready",
+        "`drive_ready` low, for longer than the filter or for good",
+        Expectation {
+            lasts: Lasts::HeldOrClocks(FILTER_CLOCKS + 1, 4000),
+            ..fault(Cause::DriveLost, LINE)
+        },
+    ),
+    row(
+        Kind::DriveReadyGlitch,
+        "drive not ready, glitch",
+        "the same, no longer than the filter",
+        Expectation {
+            lasts: SHORT,
+            ..NOTHING
+        },
+    ),
+    row(
+        Kind::LimitAhead,
+        "limit switch ahead",
+        "the limit switch in the direction of motion, for more than a tick or for good; the way back stays open",
+        Expectation {
+            causes: bits(&[Cause::LimitPlus, Cause::LimitMinus]),
+            due: Due::Ticks {
+                clocks: FILTER_CLOCKS + 3,
+                ticks: 1,
+            },
+            lasts: Lasts::HeldOrClocks(FILTER_CLOCKS + 4 + TICK_CLOCKS, 4000),
+            within_percent: [5, 85],
+            ..FAULT
+        },
+    ),
+    row(
+        Kind::LimitBehind,
+        "limit switch behind",
+        "the limit switch of the other direction",
+        Expectation {
+            lasts: Lasts::HeldOrClocks(1, 4000),
+            within_percent: [5, 85],
+            ..NOTHING
+        },
+    ),
+    row(
+        Kind::LimitGlitch,
+        "limit switch, glitch",
+        "the limit switch ahead, no longer than the filter",
+        Expectation {
+            lasts: SHORT,
+            ..NOTHING
+        },
+    ),
+    row(
+        Kind::Home,
+        "home",
+        "`home` high or low, for any time",
+        Expectation {
+            lasts: Lasts::HeldOrClocks(1, 4000),
+            ..NOTHING
+        },
+    ),
+    row(
+        Kind::EncoderIllegal,
+        "encoder, illegal transition",
+        "A and B inverted together",
+        Expectation {
+            also: LOST,
+            flag: Some(("flags", "encoder_illegal")),
+            position_known: false,
+            lasts: Lasts::Clocks(2 * FILTER_CLOCKS, 400),
+            ..fault(Cause::EncoderError, ENCODER)
+        },
+    ),
+    row(
+        Kind::EncoderGlitch,
+        "encoder, glitch",
+        "A or B inverted, no longer than the filter",
+        Expectation {
+            lasts: SHORT,
+            ..NOTHING
+        },
+    ),
+    row(
+        Kind::EncoderStuck,
+        "encoder stuck",
+        "A and B stay as they are",
+        Expectation {
+            causes: bits(&[Cause::FollowingError]),
+            also: LOST | bits(&[Cause::EncoderError]),
+            due: Due::Seen(Seen::FollowingError),
+            position_known: false,
+            within_percent: IN_MOTION,
+            ..FAULT
+        },
+    ),
+    row(
+        Kind::EncoderDisconnected,
+        "encoder disconnected",
+        "A, B and Z low",
+        Expectation {
+            causes: bits(&[Cause::FollowingError, Cause::EncoderError]),
+            also: LOST,
+            due: Due::Seen(Seen::FollowingError),
+            position_known: false,
+            within_percent: IN_MOTION,
+            ..FAULT
+        },
+    ),
+    row(
+        Kind::EncoderReversed,
+        "encoder reversed",
+        "`encoder_invert` in the move: the loop runs away",
+        Expectation {
+            also: LOST | bits(&[Cause::EncoderError]),
+            position_known: false,
+            within_percent: IN_MOTION,
+            ..fault(Cause::FollowingError, Due::Seen(Seen::FollowingError))
+        },
+    ),
+    row(
+        Kind::Jam,
+        "jam",
+        "the axis stands still",
+        Expectation {
+            also: LOST,
+            within_percent: IN_MOTION,
+            ..fault(Cause::FollowingError, Due::Seen(Seen::FollowingError))
+        },
+    ),
+    row(
+        Kind::JamWithoutFollowingError,
+        "jam, error not watched",
+        "the same with `following_error_limit` 0",
+        Expectation {
+            causes: bits(&[Cause::Saturation, Cause::EncoderLost]),
+            due: Due::Seen(Seen::Stuck),
+            within_percent: IN_MOTION,
+            ..FAULT
+        },
+    ),
+    row(
+        Kind::HostSilent,
+        "host silent",
+        "`watchdog_ticks` 5, one kick, then kicks with a wrong word",
+        fault(Cause::Watchdog, Due::Ticks { clocks: 2, ticks: 6 }),
+    ),
+    row(
+        Kind::Flush,
+        "FIFO underrun",
+        "`flush` in motion: nothing follows the entry that plays",
+        Expectation {
+            flag: Some(("flags", "segments_underrun")),
+            within_percent: [3, 50],
+            ..fault(Cause::Segments, Due::Seen(Seen::Segments))
+        },
+    ),
+    row(
+        Kind::Overflow,
+        "segments' overflow",
+        "a velocity that does not fit, without monitors and with a stop at once",
+        Expectation {
+            flag: Some(("flags", "segments_overflow")),
+            also: bits(&[Cause::Saturation, Cause::EncoderLost]),
+            ..fault(Cause::Segments, Due::Seen(Seen::Segments))
+        },
+    ),
+    row(
+        Kind::Malformed,
+        "malformed entry",
+        "an entry without ticks, one with words missing, and one with a reserved flag",
+        Expectation {
+            flag: Some(("flags", "segment_malformed")),
+            ..NOTHING
+        },
+    ),
+    row(
+        Kind::FifoFull,
+        "FIFO full",
+        "70 entries that stand still",
+        Expectation {
+            flag: Some(("flags", "segment_refused")),
+            within_percent: [5, 85],
+            ..NOTHING
+        },
+    ),
+    row(
+        Kind::SoftLimit,
+        "soft limit",
+        "`soft_limit_plus` or `_minus` moved to where the axis is",
+        Expectation {
+            causes: bits(&[Cause::SoftLimitPlus, Cause::SoftLimitMinus]),
+            due: Due::Seen(Seen::SoftLimit),
+            within_percent: IN_MOTION,
+            ..FAULT
+        },
+    ),
+    row(
+        Kind::Stop,
+        "stop",
+        "`stop` of the host",
+        Expectation {
+            reaction: Reaction::Halt,
+            due: HOST,
+            ..NOTHING
+        },
+    ),
+    row(
+        Kind::Disable,
+        "disable",
+        "`enable` low in the move",
+        Expectation {
+            reaction: Reaction::Disable,
+            due: HOST,
+            ..NOTHING
+        },
+    ),
+    row(
+        Kind::Reset,
+        "reset",
+        "`rst` for 1 to 40 clocks",
+        Expectation {
+            hit: Hit::Stage,
+            reaction: Reaction::Reset,
+            causes: bits(&[Cause::PwmTripped]),
+            due: Due::Clocks(1),
+            gates_at_once: false,
+            lasts: Lasts::Clocks(1, 40),
+            ..FAULT
+        },
+    ),
+    row(
+        Kind::SettingRefused,
+        "settings of garbage",
+        "random settings for the bank in use, and for one that there is not",
+        Expectation {
+            flag: Some(("events", "setting_refused")),
+            ..NOTHING
+        },
+    ),
+    row(
+        Kind::NoGains,
+        "settings all 0",
+        "the law's bank 3 committed: the drive is told to stand",
+        Expectation {
+            also: LOST,
+            within_percent: IN_MOTION,
+            ..fault(Cause::FollowingError, Due::Seen(Seen::FollowingError))
+        },
+    ),
+    row(
+        Kind::TableHandover,
+        "another tap table",
+        "a table of one tap is loaded, and swapped to by handover",
+        NOTHING,
+    ),
+    row(
+        Kind::PresetOrigin,
+        "preset of the position",
+        "the user's position becomes another; the loop's count does not",
+        NOTHING,
+    ),
+    row(
+        Kind::ClearFaults,
+        "clear_faults",
+        "`clear_faults` with nothing to clear",
+        NOTHING,
+    ),
+    row(
+        Kind::StartAgain,
+        "start again",
+        "`start` of both axes in the move",
+        Expectation {
+            hit: Hit::Stage,
+            ..NOTHING
+        },
+    ),
+    row(
+        Kind::DirectMode,
+        "direct mode",
+        "a manual duty in the move",
+        Expectation {
+            others: Others::GoOn,
+            ..NOTHING
+        },
+    ),
+];

@@ -1,0 +1,113 @@
+//! The machine that is put in fault: the example's XY stage, ten times as fast in ticks, with every monitor on.
+//!
+//! | | example | here | why |
+//! |---|---|---|---|
+//! | tick | 5000 clocks | 1000 clocks | a case is 300 ticks long |
+//! | PWM | 20 kHz | 100 kHz | two periods per tick, as there |
+//! | modes | 131 and 93 Hz | ten times that | the shaper's delay is about 50 ticks |
+//! | acceleration, jerk | 8 m/s², 400 m/s³ | 800 m/s², 400,000 m/s³ | 300 counts in 150 ticks |
+//! | monitors | off | all that a stage without a scale has | they are what is tested |
+
+use posicast_model::control::{self, MachineStage};
+use posicast_model::design::design_machine;
+use posicast_model::plant::axis::{AxisPlant, PlantOptions};
+use posicast_model::rtl::component::Component;
+use posicast_model::spec::{self, Limits, Machine};
+
+use super::CampaignError;
+use crate::lockstep::Device;
+use crate::stage_bench::StageBench;
+
+/// The example.
+const EXAMPLE: &str = include_str!("../../../examples/xy-stage.toml");
+const SAMPLE_HZ: f64 = 50_000.0;
+const PWM_HZ: f64 = 100_000.0;
+const FASTER: f64 = 10.0;
+
+/// Clocks per tick.
+pub const TICK_CLOCKS: u64 = 1000;
+/// Clocks that the lines' filters hold back; the encoder's filter is the example's, of as many.
+pub(super) const FILTER_CLOCKS: u64 = 8;
+/// Ticks from applying the brake until it holds.
+pub(super) const BRAKE_APPLY_TICKS: u64 = 2;
+/// Ticks without a count under a command until the encoder is lost.
+pub(super) const LOST_TICKS: u64 = 10;
+/// Ticks in a row that the command may be cut.
+pub(super) const SATURATION_TICKS: u64 = 8;
+const BRAKE_RELEASE_TICKS: u64 = 2;
+const TICK_S: f64 = 1.0 / SAMPLE_HZ;
+
+/// The stage under test: its machine, and what it is built from.
+#[derive(Debug, Clone)]
+pub struct Bed {
+    /// The machine.
+    pub machine: Machine,
+    /// Its stage.
+    pub stage: MachineStage,
+    /// Its blocks and registers.
+    pub component: Component,
+}
+
+impl Bed {
+    /// The machine above.
+    ///
+    /// # Errors
+    /// [`CampaignError::Machine`] if the example can no longer be made into it.
+    pub fn new() -> Result<Self, CampaignError> {
+        let failed = |reason: String| CampaignError::Machine(reason);
+        let mut machine = spec::parse("xy-stage.toml", EXAMPLE).map_err(|error| failed(error.to_string()))?;
+        machine.clock.sample_hz = SAMPLE_HZ;
+        for axis in &mut machine.axes {
+            for mode in &mut axis.modes {
+                mode.mode.frequency_hz *= FASTER;
+            }
+            if let Some(pwm) = &mut axis.pwm {
+                pwm.frequency_hz = PWM_HZ;
+            }
+            axis.limits = Some(limits(axis.limits.unwrap_or_default()));
+        }
+        let design = design_machine(&machine).map_err(|error| failed(error.to_string()))?;
+        let stage = control::stage(&machine, &design).map_err(|error| failed(error.to_string()))?;
+        let stage = stage.ok_or_else(|| failed("it has an axis without a loop".to_owned()))?;
+        let component = Component::stage(&stage.config).map_err(|error| failed(error.to_string()))?;
+        Ok(Self {
+            machine,
+            stage,
+            component,
+        })
+    }
+
+    /// A bench at reset, with the RTL beside it if there is some.
+    ///
+    /// # Errors
+    /// As [`StageBench::new`].
+    pub fn bench(&self, device: Option<Box<dyn Device>>, seed: u64) -> Result<StageBench, CampaignError> {
+        let plant = |axis| AxisPlant::new(axis, &self.machine.clock, &PlantOptions::default());
+        let plants: Result<Vec<_>, _> = self.machine.axes.iter().map(plant).collect();
+        let plants = plants.map_err(|error| CampaignError::Machine(error.to_string()))?;
+        Ok(StageBench::new(
+            &self.stage.config,
+            &self.component,
+            plants,
+            device,
+            seed,
+        )?)
+    }
+}
+
+/// Every monitor that a stage without a scale has.
+fn limits(of_example: Limits) -> Limits {
+    Limits {
+        acceleration: Some(800.0),
+        jerk: Some(400_000.0),
+        travel: Some([-0.01, 0.01]),
+        stop_deceleration: Some(800.0),
+        following_error: Some(30e-6),
+        saturation_s: SATURATION_TICKS as f64 * TICK_S,
+        encoder_lost_s: LOST_TICKS as f64 * TICK_S,
+        brake_release_s: BRAKE_RELEASE_TICKS as f64 * TICK_S,
+        brake_apply_s: BRAKE_APPLY_TICKS as f64 * TICK_S,
+        line_filter_s: FILTER_CLOCKS as f64 / 50e6,
+        ..of_example
+    }
+}

@@ -1,0 +1,113 @@
+//! The fault campaign: every input and every trip at random clocks of a move of both axes.
+//!
+//! ```text
+//!  case ─► switch on ─► move ─► fault at a random clock ─► observe ─► judge ─► take away, clear ─► a small move ─► judge
+//! ```
+//!
+//! | part | what it is |
+//! |---|---|
+//! | `kind` | the table of faults: what is injected, and what is demanded |
+//! | `expectation` | what can be demanded: cause, times, what the others do |
+//! | `case` | a kind, an axis, a clock and a duration, from a seed |
+//! | `injection` | how a fault is put in and taken away |
+//! | `observation` | states and pins from the fault on, clock by clock |
+//! | `judge` | what was seen against what is demanded |
+//! | `run` | one case from reset to the small move |
+//! | `report` | figures per kind |
+//!
+//! In every clock of every case, beside what is demanded of its kind: both gates of a leg never on together, no gate on and no
+//! brake released while the drive is disabled, and the counter never away from the plant by more than a count on its way.
+//!
+//! It runs on the event-driven model, or with the RTL beside it, compared in every clock. `docs/fault-campaign.md` has the
+//! table with the figures.
+
+mod case;
+mod expectation;
+mod injection;
+mod judge;
+mod kind;
+mod machine;
+mod observation;
+mod report;
+mod run;
+
+pub use case::Case;
+pub use expectation::{Due, Expectation, Hit, Lasts, Others, Reaction, Seen};
+pub use judge::Figures;
+pub use kind::{Kind, Row, TABLE};
+pub use machine::{Bed, TICK_CLOCKS};
+pub use report::{KindFigures, Report};
+pub use run::{Outcome, run_case};
+
+use std::ops::Range;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Mutex, PoisonError};
+use std::thread;
+
+use crate::Error;
+use crate::lockstep::Device;
+
+/// Why a campaign could not be run. A fault that is not handled is a result, never an error.
+#[derive(Debug, thiserror::Error)]
+pub enum CampaignError {
+    /// The machine.
+    #[error(
+        "the machine of the fault campaign, made from examples/xy-stage.toml: {0}; adapt fault_campaign/machine.rs"
+    )]
+    Machine(String),
+    /// The bench.
+    #[error("case {case}, {kind}: {error}")]
+    Case {
+        /// Its number.
+        case: u64,
+        /// Its kind.
+        kind: &'static str,
+        /// What stopped it.
+        error: Error,
+    },
+    /// A bench that could not be built.
+    #[error(transparent)]
+    Bench(#[from] Error),
+}
+
+/// Runs the cases of these numbers on so many threads.
+///
+/// # Errors
+/// [`CampaignError`] of the first case that could not be run.
+pub fn run(bed: &Bed, cases: Range<u64>, seed: u64, threads: usize) -> Result<Report, CampaignError> {
+    let (next, report) = (AtomicU64::new(cases.start), Mutex::new(Report::new(seed)));
+    let work = || -> Result<(), CampaignError> {
+        loop {
+            let number = next.fetch_add(1, Ordering::Relaxed);
+            if number >= cases.end {
+                return Ok(());
+            }
+            let outcome = run_case(bed, &Case::new(number, seed), None)?;
+            report.lock().unwrap_or_else(PoisonError::into_inner).add(&outcome);
+        }
+    };
+    thread::scope(|scope| {
+        let workers: Vec<_> = (0..threads.clamp(1, 64)).map(|_| scope.spawn(work)).collect();
+        let joined = workers.into_iter().map(|worker| worker.join());
+        // A worker that panics has said so.
+        joined.flatten().collect::<Result<(), _>>()
+    })?;
+    Ok(report.into_inner().unwrap_or_else(PoisonError::into_inner))
+}
+
+/// Runs the cases of these numbers one after the other with the RTL of `device` beside the model.
+///
+/// # Errors
+/// [`CampaignError`], also of `device`.
+pub fn run_with_rtl(
+    bed: &Bed,
+    cases: Range<u64>,
+    seed: u64,
+    mut device: impl FnMut() -> Result<Box<dyn Device>, Error>,
+) -> Result<Report, CampaignError> {
+    let mut report = Report::new(seed);
+    for number in cases {
+        report.add(&run_case(bed, &Case::new(number, seed), Some(device()?))?);
+    }
+    Ok(report)
+}

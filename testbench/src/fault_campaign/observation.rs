@@ -1,0 +1,188 @@
+//! What is seen of an axis from the fault on, and in which clock.
+
+use posicast_model::rtl::axis::State;
+
+use super::expectation::Seen;
+use super::machine::{LOST_TICKS, SATURATION_TICKS};
+use crate::Error;
+use crate::stage_bench::{Probe, StageBench};
+
+/// Nets that are looked at.
+struct Probes {
+    state: Probe,
+    causes: Probe,
+    error: Probe,
+    error_limit: Probe,
+    shaped: Probe,
+    soft_plus: Probe,
+    soft_minus: Probe,
+    count: Probe,
+    command: Probe,
+    command_position: Probe,
+    limited_ticks: Probe,
+    underrun: Probe,
+    overflow: Probe,
+}
+
+/// An axis in the clock in which its state first was another than RUN.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Change {
+    /// The clock.
+    pub(super) clock: u64,
+    /// The new state.
+    pub(super) state: u64,
+    /// Causes in it.
+    pub(super) causes: u16,
+    /// The most that the command has moved in one of the last two ticks, in 1/256 counts.
+    pub(super) travel: u32,
+}
+
+/// An axis from the fault on.
+pub(super) struct Observation {
+    axis: usize,
+    probes: Probes,
+    lost_command: u32,
+    still: Still,
+    /// The command at the last tick, and how far it had moved in each of the last two.
+    command: i32,
+    travel: [u32; 2],
+    /// The first other state than RUN.
+    pub(super) change: Option<Change>,
+    /// When what the fault is seen by was first there.
+    pub(super) seen: Option<u64>,
+    /// The last clock with a gate on.
+    pub(super) last_gate: u64,
+    /// The first clock with the drive disabled.
+    pub(super) drive_off: Option<u64>,
+    /// The first clock with the brake applied.
+    pub(super) brake: Option<u64>,
+    /// The first clock after QUICK_STOP.
+    pub(super) stood: Option<u64>,
+}
+
+/// Ticks in a row with a command and without a count.
+#[derive(Default)]
+struct Still {
+    count: u64,
+    ticks: u64,
+}
+
+impl Observation {
+    /// Of an axis in RUN.
+    pub(super) fn new(bench: &StageBench, axis: usize, lost_command: u32) -> Result<Self, Error> {
+        let name = &bench.axes()[axis];
+        let probe = |net: &str| bench.probe(&format!("{name}_{net}"));
+        Ok(Self {
+            axis,
+            probes: Probes {
+                state: probe("state")?,
+                causes: probe("causes")?,
+                error: probe("error")?,
+                error_limit: probe("following_error_limit")?,
+                shaped: probe("shaped_position")?,
+                soft_plus: probe("soft_limit_plus")?,
+                soft_minus: probe("soft_limit_minus")?,
+                count: probe("count")?,
+                command: probe("command")?,
+                command_position: probe("command_position")?,
+                limited_ticks: probe("limited_ticks")?,
+                underrun: probe("segments_underrun")?,
+                overflow: probe("segments_overflow")?,
+            },
+            lost_command,
+            still: Still::default(),
+            command: bench.at(probe("command_position")?) as u32 as i32,
+            travel: [0; 2],
+            change: None,
+            seen: None,
+            last_gate: 0,
+            drive_off: None,
+            brake: None,
+            stood: None,
+        })
+    }
+
+    /// The state in the clock that comes.
+    pub(super) fn state(&self, bench: &StageBench) -> u64 {
+        bench.at(self.probes.state)
+    }
+
+    /// The causes in the clock that comes.
+    pub(super) fn causes(&self, bench: &StageBench) -> u16 {
+        bench.at(self.probes.causes) as u16
+    }
+
+    /// Does the shaped command stand where the command does?
+    pub(super) fn settled(&self, bench: &StageBench) -> bool {
+        bench.at(self.probes.shaped) == bench.at(self.probes.command_position)
+    }
+
+    /// Before a clock: what registers show in it.
+    pub(super) fn before(&mut self, bench: &StageBench, tick: bool) {
+        let (now, state) = (bench.now(), self.state(bench));
+        if state != State::Run as u64 && self.change.is_none() {
+            self.change = Some(Change {
+                clock: now,
+                state,
+                causes: self.causes(bench),
+                travel: self.travel[0].max(self.travel[1]),
+            });
+        }
+        if self.change.is_some() && state != State::QuickStop as u64 && self.stood.is_none() {
+            self.stood = Some(now);
+        }
+        if tick {
+            self.follow_command(bench);
+        }
+    }
+
+    /// Once per tick.
+    pub(super) fn follow_command(&mut self, bench: &StageBench) {
+        let command = bench.at(self.probes.command_position) as u32 as i32;
+        self.travel = [command.wrapping_sub(self.command).unsigned_abs(), self.travel[0]];
+        self.command = command;
+    }
+
+    /// The same for what the monitors look at, of which most count at ticks only.
+    pub(super) fn look_for(&mut self, bench: &StageBench, seen: Seen, tick: bool) {
+        let value = |probe| bench.at(probe);
+        let signed = |probe| bench.at(probe) as u32 as i32;
+        let size = |value: i32| (value ^ (value >> 31)) as u32;
+        let probes = &self.probes;
+        let count = value(probes.count);
+        let is = match seen {
+            Seen::Segments => (value(probes.underrun) | value(probes.overflow)) != 0,
+            _ if !tick => false,
+            Seen::FollowingError => u64::from(size(signed(probes.error))) > value(probes.error_limit),
+            Seen::SoftLimit => {
+                let shaped = signed(probes.shaped);
+                shaped > signed(probes.soft_plus) || shaped < signed(probes.soft_minus)
+            }
+            Seen::Stuck => value(probes.limited_ticks) >= SATURATION_TICKS || self.still.ticks >= LOST_TICKS,
+        };
+        if is {
+            self.seen.get_or_insert(bench.now());
+        }
+        if tick {
+            let still = size(signed(probes.command)) > self.lost_command && count == self.still.count;
+            self.still = Still {
+                count,
+                ticks: if still { self.still.ticks + 1 } else { 0 },
+            };
+        }
+    }
+
+    /// After some clocks: what the pins showed in the last of them.
+    pub(super) fn after(&mut self, bench: &StageBench) {
+        let (pins, last) = (bench.pins(self.axis), bench.now() - 1);
+        if pins.a_high || pins.a_low || pins.b_high || pins.b_low {
+            self.last_gate = last;
+        }
+        if !pins.drive_enable {
+            self.drive_off.get_or_insert(last);
+        }
+        if !pins.brake_release {
+            self.brake.get_or_insert(last);
+        }
+    }
+}

@@ -1,0 +1,90 @@
+//! What must never happen at the pins of an axis, watched in every clock of a bench.
+
+use posicast_model::plant::axis::{AxisPlant, DrivePins};
+
+/// Clocks that the gates may stay on once the drive is disabled: the gates' register is behind the enable's.
+const GATES_FOLLOW_CLOCKS: u64 = 1;
+
+/// What was seen of an axis since its bench began.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Watched {
+    /// Clocks with a gate on, more than one clock after the drive was disabled. Must be 0.
+    pub gates_while_disabled: u64,
+    /// Clocks with the brake released and the drive disabled. Must be 0.
+    pub released_while_disabled: u64,
+    /// Largest distance of the counter from the plant's count, since the last reset or
+    /// [`rebase`](super::StageBench::rebase). A count on its way through filter and
+    /// synchroniser makes 1.
+    pub largest_count_error: u64,
+    /// The plant's count at which the counter is 0.
+    pub origin: i64,
+    disabled_clocks: u64,
+}
+
+impl Watched {
+    /// What the counter shows, and where the plant is, in one clock.
+    pub(super) fn look(&mut self, counter: u64, plant: &AxisPlant) {
+        let off_by = (plant.count() - self.origin).abs_diff(signed(counter));
+        self.largest_count_error = self.largest_count_error.max(off_by);
+    }
+
+    /// So many clocks with these pins.
+    pub(super) fn pass(&mut self, pins: &DrivePins, passed: u64) {
+        if pins.drive_enable {
+            self.disabled_clocks = 0;
+            return;
+        }
+        let before = self.disabled_clocks;
+        self.disabled_clocks += passed;
+        if pins.brake_release {
+            self.released_while_disabled += passed;
+        }
+        if pins.a_high || pins.a_low || pins.b_high || pins.b_low {
+            let late = |clocks: u64| clocks.saturating_sub(GATES_FOLLOW_CLOCKS);
+            self.gates_while_disabled += late(self.disabled_clocks) - late(before);
+        }
+    }
+
+    /// The counter is right as it is.
+    pub(super) fn rebase(&mut self, counter: u64, plant: &AxisPlant) {
+        self.origin = plant.count() - signed(counter);
+        self.largest_count_error = 0;
+    }
+}
+
+fn signed(counter: u64) -> i64 {
+    i64::from(counter as u32 as i32)
+}
+
+#[cfg(test)]
+mod tests {
+    use posicast_model::plant::axis::PlantOptions;
+
+    use super::*;
+
+    #[test]
+    fn unit_a_gate_may_follow_the_enable_by_one_clock() {
+        let text = include_str!("../../../examples/xy-stage.toml");
+        let machine = posicast_model::spec::parse("xy-stage.toml", text).unwrap();
+        let plant = AxisPlant::new(&machine.axes[0], &machine.clock, &PlantOptions::default()).unwrap();
+        let mut watched = Watched::default();
+        let pins = DrivePins {
+            a_high: true,
+            ..DrivePins::default()
+        };
+        watched.look(0, &plant);
+        watched.pass(&pins, 1);
+        assert_eq!(watched.gates_while_disabled, 0);
+        watched.look(u64::from(-2_i32 as u32), &plant);
+        watched.pass(&pins, 3);
+        assert_eq!((watched.gates_while_disabled, watched.largest_count_error), (3, 2));
+        watched.pass(
+            &DrivePins {
+                brake_release: true,
+                ..pins
+            },
+            2,
+        );
+        assert_eq!((watched.gates_while_disabled, watched.released_while_disabled), (5, 2));
+    }
+}
