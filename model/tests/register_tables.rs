@@ -1,11 +1,14 @@
 //! `docs/register-tables.md` is what the register maps say. `scripts/regenerate` writes it anew.
 
+use posicast_model::control;
+use posicast_model::design::design_machine;
 use posicast_model::rtl::component::Component;
 use posicast_model::rtl::divider::DividerConfig;
 use posicast_model::rtl::pwm::{ActiveLow, Mode, PwmConfig};
 use posicast_model::rtl::registers::markdown;
 use posicast_model::rtl::shaper::{Motion, ShaperConfig};
 use posicast_model::rtl::sliding_mode::{Law, Settings};
+use posicast_model::spec;
 use posicast_model::taps::{Tap, TapTable};
 use std::error::Error;
 use std::path::Path;
@@ -16,7 +19,8 @@ const HEAD: &str = "\
 Written from the register maps by `scripts/regenerate`; [registers.md](registers.md) says what the kinds of access do.
 Parameters and widths are those of an example: a shaper of 32 bits for three channels with a table of two taps, ticks of 5000
 clocks, a PWM of 20 kHz at 50 MHz. `X_1`, `X_2`, `Y_1` and `Y_2` are there only in a shaper with so many channels, `swap_how` only in
-one that is built for motion, which can hand over; the plain shaper has `X` and `Y` in their place.
+one that is built for motion, which can hand over; the plain shaper has `X` and `Y` in their place. The [stage](stage.md) is that of
+`examples/xy-stage.toml`.
 
 ";
 
@@ -35,7 +39,15 @@ fn components() -> Result<Vec<Component>, Box<dyn Error>> {
         Component::pulse_counter(DividerConfig::new(5000)?, 8)?,
         Component::pwm(PwmConfig::new(ActiveLow::default(), 25, 50)?, Mode::HalfBridge, 2500)?,
         Component::sliding_mode(&Settings::default(), Law::SlidingMode, false)?,
+        stage()?,
     ])
+}
+
+/// The example's.
+fn stage() -> Result<Component, Box<dyn Error>> {
+    let machine = spec::parse("xy-stage.toml", include_str!("../../examples/xy-stage.toml"))?;
+    let stage = control::stage(&machine, &design_machine(&machine)?)?;
+    Ok(Component::stage(&stage.ok_or("the example has no stage")?.config)?)
 }
 
 #[test]

@@ -10,6 +10,7 @@ use posicast_model::plant::axis::{AxisPlant, PlantOptions};
 use posicast_model::rtl::component::Component;
 use posicast_model::rtl::divider::DividerConfig;
 use posicast_model::rtl::pwm::{ActiveLow, Mode, PwmConfig};
+use posicast_model::rtl::segments::{self, Entry, NOTIFY};
 use posicast_model::rtl::shaper::{Motion, ShaperConfig};
 use posicast_model::rtl::sliding_mode::{Gain, Row};
 use posicast_model::rtl::stage::StageConfig;
@@ -287,5 +288,98 @@ fn lockstep_the_registers_keep_their_promises() {
             let mut host = Host::new(component.map(), device, Hardware::Running).unwrap();
             assert_eq!(test(&mut host), Ok(()), "{name}");
         }
+    }
+}
+
+const DATASHEET: &str = include_str!("../../docs/stage.md");
+
+/// The cells of the rows of the datasheet's table under this head.
+fn rows(head: &str) -> Vec<Vec<String>> {
+    let table = DATASHEET.split_once(head).unwrap().1.lines().skip(2);
+    let rows = table.take_while(|line| line.starts_with('|'));
+    rows.map(|row| {
+        let cells = row.trim_matches('|').split('|');
+        cells.map(|cell| cell.trim().replace('`', "")).collect()
+    })
+    .collect()
+}
+
+fn number(text: &str) -> u32 {
+    let hexadecimal = text.strip_prefix("0x").map(|digits| u32::from_str_radix(digits, 16));
+    hexadecimal.unwrap_or_else(|| text.parse()).unwrap()
+}
+
+/// The register, or the field of one as `X_STATUS.state`.
+fn look(bench: &mut StageBench, name: &str) -> u32 {
+    let lower = name.to_lowercase();
+    let Some((register, field)) = lower.split_once('.') else {
+        return bench.read(&lower).unwrap();
+    };
+    let (axis, register) = register.split_once('_').unwrap();
+    bench.field(axis, register, field).unwrap()
+}
+
+#[test]
+fn unit_the_first_move_of_the_datasheet_is_what_it_says() {
+    let machine = machine();
+    let mut bench = bench(&machine, false);
+    let rows = rows("| do | register or field | word | what it does |");
+    assert!(rows.len() > 20, "{rows:?}");
+    for row in rows {
+        let [action, name, word, ..] = row.as_slice() else {
+            panic!("{row:?}");
+        };
+        match action.as_str() {
+            "wait" => bench.clocks(number(word).into()).unwrap(),
+            "write" => bench.write(&name.to_lowercase(), number(word)).unwrap(),
+            "read" => assert_eq!(look(&mut bench, name), number(word), "{row:?}"),
+            "near" => {
+                let apart = look(&mut bench, name).wrapping_sub(number(word)) as i32;
+                assert!(apart.abs() <= 2, "{row:?}: {apart} apart");
+            }
+            "until" => {
+                let mut steps = 0..2000;
+                let arrives = steps.any(|_| {
+                    bench.clocks(1000).unwrap();
+                    look(&mut bench, name) == number(word)
+                });
+                assert!(arrives, "{row:?}");
+            }
+            "entry" => {
+                let words: Vec<u32> = word.split(' ').map(number).collect();
+                let jerk = u64::from(words[0]) | u64::from(words[1]) << 32;
+                let entry = Entry {
+                    ticks: words[3] & 0xff_ffff,
+                    motion: segments::Motion::Jerk(jerk as i64),
+                    notify: words[3] & NOTIFY != 0,
+                };
+                assert_eq!(entry.words().as_slice(), words);
+                bench.segment(&name[..1].to_lowercase(), &entry).unwrap();
+            }
+            other => panic!("`{other}` is no action"),
+        }
+    }
+}
+
+#[test]
+fn unit_the_datasheet_has_the_pins() {
+    let component = Component::stage(&stage(&machine()).config).unwrap();
+    let rows = rows("## Pins\n\n").len();
+    assert_eq!(rows, 0, "the table has moved");
+    let table = self::rows("| port | | width | meaning |");
+    for port in component.composition().ports() {
+        let of_x = match port.name.strip_prefix("y_") {
+            Some(pin) => format!("x_{pin}"),
+            None => port.name.clone(),
+        };
+        let direction = match port.direction {
+            Direction::Input => "in",
+            Direction::Output => "out",
+        };
+        let row = [of_x.as_str(), direction, &port.width.to_string()];
+        assert!(
+            table.iter().any(|cells| cells.iter().take(3).eq(row)),
+            "docs/stage.md lacks {row:?}"
+        );
     }
 }

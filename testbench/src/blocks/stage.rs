@@ -29,7 +29,7 @@ impl StageBlock {
         let axes: Vec<String> = config.axes.iter().map(|axis| axis.name.clone()).collect();
         Ok(Self {
             component: Component::stage(config)?,
-            instance: axes.join(", "),
+            instance: format!("{}, Avalon", axes.join(", ")),
             axes,
             top: top.to_owned(),
         })

@@ -54,8 +54,8 @@ enum Moves {
 /// An axis as its pins see it.
 #[derive(Debug, Clone)]
 struct AxisPins {
-    /// Places of A, B and Z; those of a linear scale too, if there is one.
-    encoders: Vec<[usize; 3]>,
+    /// Places of A, B and Z, and of a linear scale's, if there is one: it moves as the motor does.
+    encoders: [Vec<usize>; 2],
     /// Places of the limit switches, + and −.
     switches: [usize; 2],
     /// Places of A's and B's high gate, and of the drive's enable, among the outputs.
@@ -102,12 +102,12 @@ impl StageRandom {
         let input = |name: &str| place(ports, Direction::Input, name);
         let of_axis = |axis: &String| {
             let encoder = |kind: &str| {
-                let [a, b, z] = ["a", "b", "z"].map(|pin| input(&format!("{axis}_{kind}{pin}")));
-                Some([a?, b?, z?])
+                let pins = ["a", "b", "z"].map(|pin| input(&format!("{axis}_{kind}{pin}")));
+                pins.into_iter().flatten().collect()
             };
             let shown = ["a_high", "b_high", "drive_enable"];
             AxisPins {
-                encoders: [encoder(""), encoder("scale_")].into_iter().flatten().collect(),
+                encoders: [encoder(""), encoder("scale_")],
                 switches: [0, 1].map(|which| input(&format!("{axis}_{}", LINES[which].0)).unwrap_or(0)),
                 shown: shown.map(|pin| place(ports, Direction::Output, &format!("{axis}_{pin}")).unwrap_or(0)),
                 moves: Moves::Still,

@@ -186,7 +186,7 @@ impl Driver {
     /// A move that a command breaks off.
     fn interrupted(&mut self, axis: usize) {
         self.flush(axis);
-        self.back_and_forth(axis, 4);
+        self.there_and_back(axis, 4);
         self.start(axis);
         let before = self.below(4 * self.tick_clocks);
         self.wait(axis, before);
@@ -227,7 +227,7 @@ impl Driver {
     /// Moves to and fro while it is on a switch.
     fn onto_a_switch(&mut self, axis: usize) {
         self.flush(axis);
-        self.back_and_forth(axis, 2);
+        self.there_and_back(axis, 2);
         self.start(axis);
         let (clocks, which) = (self.below(3 * self.tick_clocks), self.below(3) + 1);
         self.wait(axis, clocks);
@@ -275,7 +275,7 @@ impl Driver {
     }
 
     /// There and back: jerk j, −2·j, j ends at rest.
-    fn back_and_forth(&mut self, axis: usize, ticks: u32) {
+    fn there_and_back(&mut self, axis: usize, ticks: u32) {
         let any = self.rng.random_range(-(1i64 << 39)..1 << 39);
         let jerk = any >> self.rng.random_range(6..26);
         for (ticks, jerk) in [(ticks, jerk), (2 * ticks, -jerk), (ticks, jerk)] {
@@ -291,7 +291,7 @@ impl Driver {
         }
         for _ in 0..=self.below(2) {
             let ticks = self.below(2) + 1;
-            self.back_and_forth(axis, ticks);
+            self.there_and_back(axis, ticks);
         }
         match self.below(24) {
             0..=2 => self.point(axis),
