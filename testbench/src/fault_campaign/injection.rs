@@ -130,7 +130,7 @@ fn begin_at(bench: &mut StageBench, case: &Case, axis: usize, name: &str) -> Res
         Kind::Disable => bench.write(&register("control"), 0)?,
         Kind::SettingRefused => {
             for bank in [0, 3] {
-                bench.write(&register("setting_address"), case.choice % 16 | bank << 8)?;
+                bench.write(&register("setting_address"), (case.choice % 16) | (bank << 8))?;
                 bench.write(&register("setting"), case.choice)?;
             }
         }
