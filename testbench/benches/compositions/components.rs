@@ -1,8 +1,7 @@
 //! The blocks that stand alone on a bus: written to at the start, then read once per 1000 clocks; their work is at the pins.
 
 use crate::pins::encoder;
-use crate::stage::{pwm_config, settings, shaper_config};
-use crate::{TICK_CLOCKS, Whole};
+use crate::{TICK_CLOCKS, Whole, stage};
 use posicast_hdl::component::emit;
 use posicast_model::rtl::component::Component;
 use posicast_model::rtl::divider::DividerConfig;
@@ -12,6 +11,7 @@ use posicast_model::rtl::sliding_mode::Law;
 
 pub(crate) fn all() -> [Whole; 4] {
     let divider = DividerConfig::new(TICK_CLOCKS).unwrap();
+    let axis = stage::config().axes.swap_remove(0);
     [
         whole(
             "pulse_counter",
@@ -28,7 +28,7 @@ pub(crate) fn all() -> [Whole; 4] {
         ),
         whole(
             "shaper",
-            Component::shaper(shaper_config()).unwrap(),
+            Component::shaper(axis.shaper).unwrap(),
             &[("control", "from_pins", 1)],
             |name, clock| {
                 let tick = clock / TICK_CLOCKS;
@@ -42,7 +42,7 @@ pub(crate) fn all() -> [Whole; 4] {
         ),
         whole(
             "sliding_mode",
-            Component::sliding_mode(&settings(), Law::SlidingMode, false).unwrap(),
+            Component::sliding_mode(&axis.settings, Law::SlidingMode, false).unwrap(),
             &[("control", "from_pins", 1)],
             |name, clock| {
                 let tick = clock / TICK_CLOCKS;
@@ -58,7 +58,7 @@ pub(crate) fn all() -> [Whole; 4] {
         ),
         whole(
             "pwm",
-            Component::pwm(pwm_config(), Mode::Unipolar, 2500).unwrap(),
+            Component::pwm(axis.pwm, Mode::Unipolar, 2500).unwrap(),
             &[
                 ("clear_trip", "", 0),
                 ("control", "from_pins", 1),

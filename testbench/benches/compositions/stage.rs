@@ -7,13 +7,19 @@ use posicast_model::control;
 use posicast_model::design::design_machine;
 use posicast_model::rtl::component::Component;
 use posicast_model::rtl::segments::{Entry, Motion};
+use posicast_model::rtl::stage::StageConfig;
 use posicast_model::spec;
 use std::collections::HashMap;
 
-pub(crate) fn stage() -> Whole {
+/// The example's.
+pub(crate) fn config() -> StageConfig {
     let machine = spec::parse("xy-stage.toml", include_str!("../../../examples/xy-stage.toml")).unwrap();
     let stage = control::stage(&machine, &design_machine(&machine).unwrap());
-    let component = Component::stage(&stage.unwrap().unwrap().config).unwrap();
+    stage.unwrap().unwrap().config
+}
+
+pub(crate) fn stage() -> Whole {
+    let component = Component::stage(&config()).unwrap();
     let writes = writes(&component);
     Whole {
         name: "stage",

@@ -103,7 +103,7 @@ impl Running<'_> {
             return Ok(());
         }
         self.bench.write("interrupt_state", u32::MAX)?;
-        let axes = self.run_to_fault(plan.ticks)?;
+        let axes = self.run_run_to_fault(plan.ticks)?;
         let observed = self.observe(axes, plan.ticks)?;
         judge::stopped(
             &Seen {
@@ -199,7 +199,7 @@ impl Running<'_> {
     }
 
     /// To the clock of the fault; the last two ticks before it one by one, to know the commands' velocities.
-    fn run_to_fault(&mut self, ticks: u64) -> Result<Vec<Observation>, Error> {
+    fn run_run_to_fault(&mut self, ticks: u64) -> Result<Vec<Observation>, Error> {
         let mut axes = Vec::new();
         for axis in 0..2 {
             let lost_command = self.bed.stage.config.axes[axis].supervision.lost_command;
