@@ -71,6 +71,7 @@ module xy_stage_stage (
     wire               x_enable;
     wire               x_direct_enable;
     wire               x_encoder_invert;
+    wire               x_self_test;
     wire               x_stop;
     wire               x_clear_faults;
     wire               x_flush;
@@ -114,6 +115,7 @@ module xy_stage_stage (
     wire               y_enable;
     wire               y_direct_enable;
     wire               y_encoder_invert;
+    wire               y_self_test;
     wire               y_stop;
     wire               y_clear_faults;
     wire               y_flush;
@@ -223,6 +225,8 @@ module xy_stage_stage (
     wire [6:0]         x_fifo_level;
     wire               x_fifo_low;
     wire               x_segments_empty;
+    wire [15:0]        x_self_test_high;
+    wire [15:0]        x_self_test_low;
     wire signed [31:0] x_user_position;
     wire signed [31:0] x_count;
     wire signed [31:0] x_velocity;
@@ -288,6 +292,8 @@ module xy_stage_stage (
     wire [6:0]         y_fifo_level;
     wire               y_fifo_low;
     wire               y_segments_empty;
+    wire [15:0]        y_self_test_high;
+    wire [15:0]        y_self_test_low;
     wire signed [31:0] y_user_position;
     wire signed [31:0] y_count;
     wire signed [31:0] y_velocity;
@@ -339,6 +345,7 @@ module xy_stage_stage (
         .x_enable                    (x_enable),
         .x_direct_enable             (x_direct_enable),
         .x_encoder_invert            (x_encoder_invert),
+        .x_self_test                 (x_self_test),
         .x_stop                      (x_stop),
         .x_clear_faults              (x_clear_faults),
         .x_flush                     (x_flush),
@@ -422,6 +429,8 @@ module xy_stage_stage (
         .x_limited_ticks             (x_limited_ticks),
         .x_fifo_level                (x_fifo_level),
         .x_segments_empty            (x_segments_empty),
+        .x_self_test_high            (x_self_test_high),
+        .x_self_test_low             (x_self_test_low),
         .x_user_position             (x_user_position),
         .x_count                     (x_count),
         .x_velocity                  (x_velocity),
@@ -436,6 +445,7 @@ module xy_stage_stage (
         .y_enable                    (y_enable),
         .y_direct_enable             (y_direct_enable),
         .y_encoder_invert            (y_encoder_invert),
+        .y_self_test                 (y_self_test),
         .y_stop                      (y_stop),
         .y_clear_faults              (y_clear_faults),
         .y_flush                     (y_flush),
@@ -519,6 +529,8 @@ module xy_stage_stage (
         .y_limited_ticks             (y_limited_ticks),
         .y_fifo_level                (y_fifo_level),
         .y_segments_empty            (y_segments_empty),
+        .y_self_test_high            (y_self_test_high),
+        .y_self_test_low             (y_self_test_low),
         .y_user_position             (y_user_position),
         .y_count                     (y_count),
         .y_velocity                  (y_velocity),
@@ -623,6 +635,7 @@ module xy_stage_stage (
         .enable                    (x_enable),
         .direct_enable             (x_direct_enable),
         .encoder_invert            (x_encoder_invert),
+        .self_test                 (x_self_test),
         .stop                      (x_stop),
         .clear_faults              (x_clear_faults),
         .flush                     (x_flush),
@@ -717,6 +730,8 @@ module xy_stage_stage (
         .fifo_level                (x_fifo_level),
         .fifo_low                  (x_fifo_low),
         .segments_empty            (x_segments_empty),
+        .self_test_high            (x_self_test_high),
+        .self_test_low             (x_self_test_low),
         .user_position             (x_user_position),
         .count                     (x_count),
         .velocity                  (x_velocity),
@@ -761,6 +776,7 @@ module xy_stage_stage (
         .enable                    (y_enable),
         .direct_enable             (y_direct_enable),
         .encoder_invert            (y_encoder_invert),
+        .self_test                 (y_self_test),
         .stop                      (y_stop),
         .clear_faults              (y_clear_faults),
         .flush                     (y_flush),
@@ -855,6 +871,8 @@ module xy_stage_stage (
         .fifo_level                (y_fifo_level),
         .fifo_low                  (y_fifo_low),
         .segments_empty            (y_segments_empty),
+        .self_test_high            (y_self_test_high),
+        .self_test_low             (y_self_test_low),
         .user_position             (y_user_position),
         .count                     (y_count),
         .velocity                  (y_velocity),

@@ -25,6 +25,9 @@ module xy_stage_stage_drive_command (
     input  wire [15:0]        direct_hold_ticks,
     input  wire signed [16:0] direct_duty,
     input  wire [15:0]        direct_limit,
+    input  wire               self_test,
+    input  wire [3:0]         gates,
+    input  wire               valley,
     output wire signed [16:0] duty,
     output wire               feed,
     output wire               pwm_enable,
@@ -32,7 +35,10 @@ module xy_stage_stage_drive_command (
     output wire               brake_release,
     output wire [1:0]         filtered_fault_n,
     output wire               direct_active,
-    output wire               direct_expired
+    output wire               direct_expired,
+    output wire               mask_pins,
+    output wire [15:0]        self_test_high,
+    output wire [15:0]        self_test_low
 );
     localparam [2:0]  READY_STATE = 3'd1;
     localparam [15:0] ONE_TICK = 16'd1;
@@ -49,6 +55,11 @@ module xy_stage_stage_drive_command (
     wire        permitted;
     wire        last_tick;
     reg         next_active;
+    wire        next_test;
+    wire        tested;
+    wire        test_changes;
+    reg  [15:0] counts_high;
+    reg  [15:0] counts_low;
     wire [17:0] controller_bits;
     wire [16:0] direct_bits;
     wire        negative;
@@ -81,13 +92,30 @@ module xy_stage_stage_drive_command (
     reg  [15:0] ticks_left_next;
     reg         backward;
     reg         backward_next;
+    reg         masked;
+    wire        masked_next;
+    reg  [15:0] high_clocks;
+    reg  [15:0] high_clocks_next;
+    reg  [15:0] low_clocks;
+    reg  [15:0] low_clocks_next;
+    reg  [15:0] high_result;
+    reg  [15:0] high_result_next;
+    reg  [15:0] low_result;
+    reg  [15:0] low_result_next;
 
     // Direct mode: in READY, from a kick, for a time
-    assign permitted = (axis_state == READY_STATE) & direct_enable;
+    assign test_changes = active & (self_test ^ masked);
+    assign permitted = ((axis_state == READY_STATE) & direct_enable) & !test_changes;
     assign last_tick = tick & (ticks_left == ONE_TICK);
-    assign pwm_enable_q_next = axis_pwm_enable | next_active;
-    assign drive_enable_q_next = axis_drive_enable | next_active;
-    assign brake_release_q_next = axis_brake_release | next_active;
+
+    // Self-test: pins masked, drive and brake off; the
+    // mask stays for a clock with the PWM off
+    assign next_test = next_active & self_test;
+    assign tested = active & masked;
+    assign pwm_enable_q_next = (axis_pwm_enable & !tested) | next_active;
+    assign drive_enable_q_next = (axis_drive_enable | next_active) & !next_test;
+    assign brake_release_q_next = (axis_brake_release | next_active) & !next_test;
+    assign masked_next = next_test | tested;
 
     // The controller's duty, saturated
     assign controller_bits = $unsigned(controller_duty);
@@ -112,11 +140,16 @@ module xy_stage_stage_drive_command (
     assign filtered_fault_n = filtered_fault_n_q;
     assign direct_active = active;
     assign direct_expired = expired;
+    assign mask_pins = masked;
+    assign self_test_high = high_result;
+    assign self_test_low = low_result;
 
     always @(*) begin
         duty_q_next = duty_q;
         ticks_left_next = ticks_left;
         backward_next = backward;
+        high_result_next = high_result;
+        low_result_next = low_result;
 
         // Direct mode: in READY, from a kick, for a time
         next_active = (permitted & active) & !last_tick;
@@ -186,6 +219,28 @@ module xy_stage_stage_drive_command (
                 filtered_fault_n_q_next = NO_FAULT;
             end
         end
+
+        // Clocks of a gate within a period; a result each
+        counts_high = high_clocks;
+        counts_low = low_clocks;
+        if (valley | !masked) begin
+            counts_high = 16'd0;
+            counts_low = 16'd0;
+        end
+        high_clocks_next = counts_high;
+        low_clocks_next = counts_low;
+        if (masked) begin
+            if (gates[0] & !(&counts_high)) begin
+                high_clocks_next = counts_high + 16'd1;
+            end
+            if (gates[1] & !(&counts_low)) begin
+                low_clocks_next = counts_low + 16'd1;
+            end
+            if (valley) begin
+                high_result_next = high_clocks;
+                low_result_next = low_clocks;
+            end
+        end
     end
 
     always @(posedge clk) begin
@@ -200,6 +255,11 @@ module xy_stage_stage_drive_command (
             expired <= 1'd0;
             ticks_left <= 16'd0;
             backward <= 1'd0;
+            masked <= 1'd0;
+            high_clocks <= 16'd0;
+            low_clocks <= 16'd0;
+            high_result <= 16'd0;
+            low_result <= 16'd0;
         end else begin
             duty_q <= duty_q_next;
             feed_q <= taken;
@@ -211,6 +271,11 @@ module xy_stage_stage_drive_command (
             expired <= expired_next;
             ticks_left <= ticks_left_next;
             backward <= backward_next;
+            masked <= masked_next;
+            high_clocks <= high_clocks_next;
+            low_clocks <= low_clocks_next;
+            high_result <= high_result_next;
+            low_result <= low_result_next;
         end
     end
 
@@ -225,7 +290,15 @@ module xy_stage_stage_drive_command (
         expired = 1'd0;
         ticks_left = 16'd0;
         backward = 1'd0;
+        masked = 1'd0;
+        high_clocks = 16'd0;
+        low_clocks = 16'd0;
+        high_result = 16'd0;
+        low_result = 16'd0;
     end
+
+    // Bits that nothing reads.
+    wire unused = &{1'b0, gates[3:2]};
 endmodule
 
 `default_nettype wire

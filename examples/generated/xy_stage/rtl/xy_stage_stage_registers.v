@@ -55,6 +55,7 @@ module xy_stage_stage_registers (
     output reg                x_enable,
     output reg                x_direct_enable,
     output reg                x_encoder_invert,
+    output reg                x_self_test,
     output reg                x_stop,
     output reg                x_clear_faults,
     output reg                x_flush,
@@ -138,6 +139,8 @@ module xy_stage_stage_registers (
     input  wire [15:0]        x_limited_ticks,
     input  wire [6:0]         x_fifo_level,
     input  wire               x_segments_empty,
+    input  wire [15:0]        x_self_test_high,
+    input  wire [15:0]        x_self_test_low,
     input  wire signed [31:0] x_user_position,
     input  wire signed [31:0] x_count,
     input  wire signed [31:0] x_velocity,
@@ -152,6 +155,7 @@ module xy_stage_stage_registers (
     output reg                y_enable,
     output reg                y_direct_enable,
     output reg                y_encoder_invert,
+    output reg                y_self_test,
     output reg                y_stop,
     output reg                y_clear_faults,
     output reg                y_flush,
@@ -235,6 +239,8 @@ module xy_stage_stage_registers (
     input  wire [15:0]        y_limited_ticks,
     input  wire [6:0]         y_fifo_level,
     input  wire               y_segments_empty,
+    input  wire [15:0]        y_self_test_high,
+    input  wire [15:0]        y_self_test_low,
     input  wire signed [31:0] y_user_position,
     input  wire signed [31:0] y_count,
     input  wire signed [31:0] y_velocity,
@@ -299,6 +305,7 @@ module xy_stage_stage_registers (
     localparam [9:0] X_EVENTS                = 10'h12b;
     localparam [9:0] X_SATURATIONS           = 10'h12c;
     localparam [9:0] X_FIFO                  = 10'h12d;
+    localparam [9:0] X_SELF_TEST             = 10'h12e;
     localparam [9:0] X_POSITION              = 10'h130;
     localparam [9:0] X_COUNT                 = 10'h131;
     localparam [9:0] X_VELOCITY              = 10'h132;
@@ -346,6 +353,7 @@ module xy_stage_stage_registers (
     localparam [9:0] Y_EVENTS                = 10'h22b;
     localparam [9:0] Y_SATURATIONS           = 10'h22c;
     localparam [9:0] Y_FIFO                  = 10'h22d;
+    localparam [9:0] Y_SELF_TEST             = 10'h22e;
     localparam [9:0] Y_POSITION              = 10'h230;
     localparam [9:0] Y_COUNT                 = 10'h231;
     localparam [9:0] Y_VELOCITY              = 10'h232;
@@ -588,10 +596,12 @@ module xy_stage_stage_registers (
             x_enable <= 1'd0;
             x_direct_enable <= 1'd0;
             x_encoder_invert <= 1'd0;
+            x_self_test <= 1'd0;
         end else if (write_x_control) begin
             x_enable <= written[0] | (x_enable & ~mask[0]);
             x_direct_enable <= written[1] | (x_direct_enable & ~mask[1]);
             x_encoder_invert <= written[2] | (x_encoder_invert & ~mask[2]);
+            x_self_test <= written[3] | (x_self_test & ~mask[3]);
         end
     end
 
@@ -875,10 +885,12 @@ module xy_stage_stage_registers (
             y_enable <= 1'd0;
             y_direct_enable <= 1'd0;
             y_encoder_invert <= 1'd0;
+            y_self_test <= 1'd0;
         end else if (write_y_control) begin
             y_enable <= written[0] | (y_enable & ~mask[0]);
             y_direct_enable <= written[1] | (y_direct_enable & ~mask[1]);
             y_encoder_invert <= written[2] | (y_encoder_invert & ~mask[2]);
+            y_self_test <= written[3] | (y_self_test & ~mask[3]);
         end
     end
 
@@ -1235,7 +1247,7 @@ module xy_stage_stage_registers (
                 X_MOST_TAPS: avs_readdata <= 32'h00000040;
                 X_MACHINE_TAPS: avs_readdata <= 32'h00000005;
                 X_COEFFICIENT_FRACTION: avs_readdata <= 32'h00000010;
-                X_CONTROL: avs_readdata <= {29'd0, x_encoder_invert, x_direct_enable, x_enable};
+                X_CONTROL: avs_readdata <= {28'd0, x_self_test, x_encoder_invert, x_direct_enable, x_enable};
                 X_FIFO_CONTROL: avs_readdata <= {26'd0, x_low_water};
                 X_TAP_ADDRESS: avs_readdata <= {22'd0, x_tap_bank, 2'd0, x_tap_index};
                 X_SETTING_ADDRESS: avs_readdata <= {22'd0, x_setting_bank, 4'd0, x_setting_row};
@@ -1261,6 +1273,7 @@ module xy_stage_stage_registers (
                 X_SATURATIONS: avs_readdata <= {x_limited_ticks, 1'd0, x_controller_saturated_low, 1'd0,
                     x_controller_saturated_high};
                 X_FIFO: avs_readdata <= {22'd0, x_segments_empty, x_fifo_low, 1'd0, x_fifo_level};
+                X_SELF_TEST: avs_readdata <= {x_self_test_low, x_self_test_high};
                 X_POSITION: avs_readdata <= x_user_position;
                 X_COUNT: avs_readdata <= x_count;
                 X_VELOCITY: avs_readdata <= x_velocity;
@@ -1279,7 +1292,7 @@ module xy_stage_stage_registers (
                 Y_MOST_TAPS: avs_readdata <= 32'h00000040;
                 Y_MACHINE_TAPS: avs_readdata <= 32'h00000005;
                 Y_COEFFICIENT_FRACTION: avs_readdata <= 32'h00000010;
-                Y_CONTROL: avs_readdata <= {29'd0, y_encoder_invert, y_direct_enable, y_enable};
+                Y_CONTROL: avs_readdata <= {28'd0, y_self_test, y_encoder_invert, y_direct_enable, y_enable};
                 Y_FIFO_CONTROL: avs_readdata <= {26'd0, y_low_water};
                 Y_TAP_ADDRESS: avs_readdata <= {22'd0, y_tap_bank, 2'd0, y_tap_index};
                 Y_SETTING_ADDRESS: avs_readdata <= {22'd0, y_setting_bank, 4'd0, y_setting_row};
@@ -1305,6 +1318,7 @@ module xy_stage_stage_registers (
                 Y_SATURATIONS: avs_readdata <= {y_limited_ticks, 1'd0, y_controller_saturated_low, 1'd0,
                     y_controller_saturated_high};
                 Y_FIFO: avs_readdata <= {22'd0, y_segments_empty, y_fifo_low, 1'd0, y_fifo_level};
+                Y_SELF_TEST: avs_readdata <= {y_self_test_low, y_self_test_high};
                 Y_POSITION: avs_readdata <= y_user_position;
                 Y_COUNT: avs_readdata <= y_count;
                 Y_VELOCITY: avs_readdata <= y_velocity;
@@ -1365,6 +1379,7 @@ module xy_stage_stage_registers (
         x_enable = 1'd0;
         x_direct_enable = 1'd0;
         x_encoder_invert = 1'd0;
+        x_self_test = 1'd0;
         x_stop = 1'd0;
         x_clear_faults = 1'd0;
         x_flush = 1'd0;
@@ -1413,6 +1428,7 @@ module xy_stage_stage_registers (
         y_enable = 1'd0;
         y_direct_enable = 1'd0;
         y_encoder_invert = 1'd0;
+        y_self_test = 1'd0;
         y_stop = 1'd0;
         y_clear_faults = 1'd0;
         y_flush = 1'd0;

@@ -30,6 +30,7 @@ module xy_stage_stage_x (
     input  wire               enable,
     input  wire               direct_enable,
     input  wire               encoder_invert,
+    input  wire               self_test,
     input  wire               stop,
     input  wire               clear_faults,
     input  wire               flush,
@@ -124,6 +125,8 @@ module xy_stage_stage_x (
     output wire [6:0]         fifo_level,
     output wire               fifo_low,
     output wire               segments_empty,
+    output wire [15:0]        self_test_high,
+    output wire [15:0]        self_test_low,
     output wire signed [31:0] user_position,
     output wire signed [31:0] count,
     output wire signed [31:0] velocity,
@@ -159,6 +162,7 @@ module xy_stage_stage_x (
     wire               feed;
     wire               pwm_enable;
     wire [1:0]         filtered_fault_n;
+    wire               mask_pins;
     wire               pwm_tripped;
     wire               negative;
     wire               valley;
@@ -168,6 +172,7 @@ module xy_stage_stage_x (
     wire               pwm_below_floor;
     wire [9:0]         dead_time_used;
     wire [9:0]         minimum_pulse_used;
+    wire [3:0]         gates;
     wire               axis_drive_enable;
     wire               axis_brake_release;
     wire               axis_pwm_enable;
@@ -355,6 +360,9 @@ module xy_stage_stage_x (
         .direct_hold_ticks  (16'd2000),
         .direct_duty        (direct_duty),
         .direct_limit       (16'd250),
+        .self_test          (self_test),
+        .gates              (gates),
+        .valley             (valley),
         .duty               (duty),
         .feed               (feed),
         .pwm_enable         (pwm_enable),
@@ -362,7 +370,10 @@ module xy_stage_stage_x (
         .brake_release      (brake_release),
         .filtered_fault_n   (filtered_fault_n),
         .direct_active      (direct_active),
-        .direct_expired     (direct_expired)
+        .direct_expired     (direct_expired),
+        .mask_pins          (mask_pins),
+        .self_test_high     (self_test_high),
+        .self_test_low      (self_test_low)
     );
 
     xy_stage_stage_x_pwm u_pwm (
@@ -387,6 +398,7 @@ module xy_stage_stage_x (
         .filtered_fault_n   (filtered_fault_n),
         .clear_trip         (clear_sources),
         .clear_flags        (clear_sources),
+        .mask_pins          (mask_pins),
         .a_high             (a_high),
         .a_low              (a_low),
         .b_high             (b_high),
@@ -403,7 +415,8 @@ module xy_stage_stage_x (
         .below_floor        (pwm_below_floor),
         .unaligned          (pwm_unaligned),
         .dead_time_used     (dead_time_used),
-        .minimum_pulse_used (minimum_pulse_used)
+        .minimum_pulse_used (minimum_pulse_used),
+        .gates              (gates)
     );
 
     xy_stage_stage_axis u_axis (
@@ -490,7 +503,7 @@ module xy_stage_stage_x (
     );
 
     // Nets that nothing reads.
-    wire unused = &{1'b0, shaper_valid, shaper_busy, sliding, controller_busy, velocity_pending, velocity_valid, negative, valley, peak, trigger, pwm_refused, pwm_below_floor, dead_time_used, minimum_pulse_used, enabled, started, disabled};
+    wire unused = &{1'b0, shaper_valid, shaper_busy, sliding, controller_busy, velocity_pending, velocity_valid, negative, peak, trigger, pwm_refused, pwm_below_floor, dead_time_used, minimum_pulse_used, enabled, started, disabled};
 endmodule
 
 `default_nettype wire

@@ -33,6 +33,7 @@ module xy_stage_stage_y_pwm (
     input  wire [1:0]         filtered_fault_n,
     input  wire               clear_trip,
     input  wire               clear_flags,
+    input  wire               mask_pins,
     output wire               a_high,
     output wire               a_low,
     output wire               b_high,
@@ -49,7 +50,8 @@ module xy_stage_stage_y_pwm (
     output wire               below_floor,
     output wire               unaligned,
     output wire [9:0]         dead_time_used,
-    output wire [9:0]         minimum_pulse_used
+    output wire [9:0]         minimum_pulse_used,
+    output wire [3:0]         gates
 );
     wire               settled;
     wire               may_run;
@@ -97,10 +99,11 @@ module xy_stage_stage_y_pwm (
     wire               leg_awake;
     wire               leg_high_side;
     wire               leg_low_side;
-    wire               gates_a_high;
-    wire               gates_a_low;
-    wire               gates_b_high;
-    wire               gates_b_low;
+    wire               pin_gates_a_high;
+    wire               pin_gates_a_low;
+    wire               pin_gates_b_high;
+    wire               pin_gates_b_low;
+    wire [3:0]         pin_gates_gates;
     reg                running_q;
     wire               running_q_next;
     reg  [1:0]         mode_q;
@@ -202,20 +205,22 @@ module xy_stage_stage_y_pwm (
         .low_side      (leg_low_side)
     );
 
-    xy_stage_stage_y_pwm_gates u_gates (
+    xy_stage_stage_y_pwm_gates u_pin_gates (
         .clk       (clk),
         .rst       (rst),
         .armed     (guard_armed),
+        .mask_pins (mask_pins),
         .mode      (mode_q),
         .negative  (negative_q),
         .wanted    (wanted),
         .awake     (leg_awake),
         .high_side (leg_high_side),
         .low_side  (leg_low_side),
-        .a_high    (gates_a_high),
-        .a_low     (gates_a_low),
-        .b_high    (gates_b_high),
-        .b_low     (gates_b_low)
+        .a_high    (pin_gates_a_high),
+        .a_low     (pin_gates_a_low),
+        .b_high    (pin_gates_b_high),
+        .b_low     (pin_gates_b_low),
+        .gates     (pin_gates_gates)
     );
 
     // Off at once; on at a valley, registers settled
@@ -251,10 +256,10 @@ module xy_stage_stage_y_pwm (
     assign edge_position = sum[16:1];
 
     // Outputs
-    assign a_high = gates_a_high;
-    assign a_low = gates_a_low;
-    assign b_high = gates_b_high;
-    assign b_low = gates_b_low;
+    assign a_high = pin_gates_a_high;
+    assign a_low = pin_gates_a_low;
+    assign b_high = pin_gates_b_high;
+    assign b_low = pin_gates_b_low;
     assign running = running_q;
     assign tripped = guard_tripped;
     assign trip_causes = guard_causes;
@@ -268,6 +273,7 @@ module xy_stage_stage_y_pwm (
     assign unaligned = unaligned_q;
     assign dead_time_used = timing_dead_time_used;
     assign minimum_pulse_used = timing_minimum_pulse_used;
+    assign gates = pin_gates_gates;
 
     always @(*) begin
         mode_q_next = mode_q;

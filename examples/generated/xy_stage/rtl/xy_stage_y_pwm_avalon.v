@@ -62,6 +62,7 @@ module xy_stage_y_pwm_avalon (
     wire               unaligned;
     wire [9:0]         dead_time_used;
     wire [9:0]         minimum_pulse_used;
+    wire [3:0]         gates;
 
     xy_stage_y_pwm_avalon_registers u_registers (
         .clk                (clk),
@@ -139,6 +140,7 @@ module xy_stage_y_pwm_avalon (
         .filtered_fault_n   (filtered_fault_n),
         .clear_trip         (clear_trip),
         .clear_flags        (1'd1),
+        .mask_pins          (1'd0),
         .a_high             (a_high),
         .a_low              (a_low),
         .b_high             (b_high),
@@ -155,11 +157,12 @@ module xy_stage_y_pwm_avalon (
         .below_floor        (below_floor),
         .unaligned          (unaligned),
         .dead_time_used     (dead_time_used),
-        .minimum_pulse_used (minimum_pulse_used)
+        .minimum_pulse_used (minimum_pulse_used),
+        .gates              (gates)
     );
 
     // Nets that nothing reads.
-    wire unused = &{1'b0, no_start};
+    wire unused = &{1'b0, no_start, gates};
 endmodule
 
 `default_nettype wire
