@@ -1,4 +1,5 @@
 //! The small blocks between others: lock step of each against its model.
+#![allow(clippy::unwrap_used)] // helpers of tests, which clippy.toml exempts only inside of #[test]
 
 mod support;
 
