@@ -9,15 +9,17 @@ use posicast_model::control;
 use posicast_model::rtl::cascade::CascadeConfig;
 use posicast_model::rtl::component::{Component, ComponentError};
 use posicast_model::rtl::divider::DividerConfig;
+use posicast_model::rtl::group::MOST_AXES;
 use posicast_model::rtl::pwm::{ActiveLow, PwmConfig};
 use posicast_model::rtl::registers::RegisterMap;
+use posicast_model::rtl::schedule::ScheduleConfig;
 use posicast_model::rtl::shaper::{MOTION_WORD_BITS, Motion, ShaperConfig};
 use posicast_model::rtl::trace::TraceConfig;
 use posicast_model::spec::{Axis, Machine};
 use posicast_testbench::blocks::{
     AxisBlock, Block, CascadeBlock, ComponentBlock, DividerBlock, DriveCommandBlock, EncoderGeneratorBlock,
-    ExcitationBlock, LinearScaleBlock, MachineShapers, PulseCounterBlock, PwmBlock, RegistersBlock, SegmentsBlock,
-    ShaperBlock, SlidingModeBlock, TraceBlock,
+    ExcitationBlock, LinearScaleBlock, MachineShapers, Part, PartBlock, PulseCounterBlock, PwmBlock, RegistersBlock,
+    SegmentsBlock, ShaperBlock, SlidingModeBlock, TraceBlock,
 };
 use std::path::Path;
 
@@ -31,6 +33,8 @@ const CASCADE_WORD_BITS: u32 = 32;
 const PWM_FLOORS_CLOCKS: [u64; 2] = [2, 1];
 /// Words of the trace memory that is compared.
 const TRACE_SAMPLES: u64 = 1024;
+/// Clocks from the tick to the controllers of the schedule that is compared.
+const SCHEDULE_CLOCKS: u32 = 500;
 /// The shaper for motion that is compared where no axis has one: position, velocity and acceleration share a table.
 const MOTION: Motion = Motion {
     channels: 3,
@@ -80,6 +84,9 @@ pub(crate) fn others(
     blocks.push(Box::new(LinearScaleBlock::new(name, "alone")));
     blocks.push(Box::new(EncoderGeneratorBlock::new(name, "alone")));
     blocks.push(Box::new(ExcitationBlock::new(name, "alone")));
+    for part in parts(machine, controllers, path)? {
+        blocks.push(Box::new(PartBlock::new(part, name)));
+    }
     let components = components(machine, shapers, controllers, path)?;
     let mut maps: Vec<&RegisterMap> = Vec::new();
     for map in components.iter().map(|component| component.component().map()) {
@@ -152,6 +159,23 @@ pub(crate) fn components(
         components.extend(of_axis.into_iter().map(named));
     }
     Ok(components)
+}
+
+/// The small blocks between others, at the machine's sizes where these do not depend on a stage.
+fn parts(machine: &Machine, controllers: &[Option<AxisControl>], path: &Path) -> Result<[Part; 6], Failure> {
+    let first = controllers.iter().flatten().next();
+    let axes = machine.axes.len().clamp(1, MOST_AXES);
+    Ok([
+        Part::TimeBase(divider(machine, path)?),
+        Part::Schedule(ScheduleConfig::new(SCHEDULE_CLOCKS).map_err(Failure::because)?),
+        Part::DividerShare(axes),
+        Part::Group(axes),
+        Part::SampleSelect {
+            word_bits: MOTION_WORD_BITS[1],
+            channels: MOTION.channels as usize,
+        },
+        Part::SettingBanks(first.map_or_else(Default::default, |control| control.derived.settings)),
+    ])
 }
 
 /// The PWMs of the machine, each with the axes that have one like it; one of its own where no axis has any.

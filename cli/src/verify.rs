@@ -6,7 +6,7 @@ use crate::failure::Failure;
 use crate::output::{self, Table};
 use crate::{blocks, command, machine, stage};
 use posicast_synth::package;
-use posicast_testbench::blocks::{Block, Sources};
+use posicast_testbench::blocks::{Block, Sources, StageBlock};
 use posicast_testbench::lockstep::report::{Report, Verdict};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -107,7 +107,10 @@ impl Job {
             Some(_) => blocks::of_components(&machine, &shapers, &report.controllers, &path)?,
             None => blocks::others(&machine, &shapers, &report.controllers, &path)?,
         };
-        others.extend(stage.map(|stage| Box::new(stage.block) as Box<dyn Block>));
+        if let Some(stage) = stage {
+            let block = StageBlock::new(&stage.of_machine.config, &stage.block.top()).map_err(Failure::because)?;
+            others.push(Box::new(block));
+        }
         if let Some(files) = &folder {
             let there = Sources::found(files.clone());
             others.retain(|block| there.hold(block.as_ref()));
