@@ -17,7 +17,7 @@ fn lockstep_everything_at_random() {
     let (mut expected, mut actual) = ([0; OUTPUT_PORTS], [0; OUTPUT_PORTS]);
     let mut self_test = 0;
     let (mut direct_clocks, mut test_clocks) = (0, 0);
-    for clock in 0..20_000 {
+    for clock in 0..30_000 {
         let mut seldom = |pace| u64::from(random.once_in(pace));
         let bits = [seldom(2000), seldom(5), seldom(7), seldom(9), seldom(9), seldom(9)];
         let [rst, tick, valid, pwm_enable, drive_enable, brake_release] = bits;
@@ -26,7 +26,7 @@ fn lockstep_everything_at_random() {
         let direct_enable = u64::from(!random.once_in(100));
         let kick = u64::from(random.once_in(30));
         let size = random.below(18);
-        if random.once_in(80) {
+        if random.once_in(200) {
             self_test = 1 - self_test;
         }
         let inputs = [

@@ -110,12 +110,15 @@ impl Logic for Gates {
             self.b_low_gate.d.next = self.high_side.val();
         }
 
+        comment!("Fault path and mask only ever add off");
         self.masked.d.next = self.mask_pins.val();
         self.on.next = self.armed.val() & !self.masked.q.val();
         self.a_high.next = (self.a_high_gate.q.val() & self.on.val()) ^ self.a_high_off.val();
         self.a_low.next = (self.a_low_gate.q.val() & self.on.val()) ^ self.a_low_off.val();
         self.b_high.next = (self.b_high_gate.q.val() & self.on.val()) ^ self.b_high_off.val();
         self.b_low.next = (self.b_low_gate.q.val() & self.on.val()) ^ self.b_low_off.val();
+
+        comment!("What the mask hides");
         self.leg_a_high.next = self.no_gate.val().replace_bit(0, self.a_high_gate.q.val());
         self.leg_a.next = self.leg_a_high.val().replace_bit(1, self.a_low_gate.q.val());
         self.leg_b_high.next = self.leg_a.val().replace_bit(2, self.b_high_gate.q.val());
