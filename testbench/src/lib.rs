@@ -14,12 +14,14 @@
 //! - [`blocks`] is the list of hardware blocks, each with its Verilog, model, stimuli and coverage.
 //! - [`campaign`] is the order of stimuli that a machine goes through; [`recording`] runs a real move into waveforms.
 //! - [`register_tests`] asks registers, through the bus, for what their description promises.
+//! - [`formal`] proves what property files say of the blocks.
 //! - [`wave`] writes waveforms; [`diff`] compares two of them.
 
 pub mod blocks;
 pub mod campaign;
 pub mod diff;
 mod error;
+pub mod formal;
 pub mod icarus;
 pub mod lockstep;
 mod reader;
