@@ -1,0 +1,87 @@
+//! Proves what `testbench/formal` says of the blocks: `cargo run -p posicast-testbench --example formal [-- BLOCK…]`.
+//!
+//! Prints a row per proof. Exit status: 0 all proven and all covers reached, 1 not so, 2 cannot run, 3 a tool is missing.
+//! `POSICAST_FORMAL_KEEP` names a folder that keeps all files, counterexamples as VCD among them;
+//! `POSICAST_FORMAL_SECONDS` limits each run of an engine (300).
+#![allow(clippy::print_stdout, clippy::print_stderr, reason = "it is a program")]
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::time::Duration;
+
+use posicast_testbench::Error;
+use posicast_testbench::formal::{Outcome, Task, Verdict, all, named, run};
+
+fn main() -> ExitCode {
+    match prove() {
+        Ok(true) => ExitCode::SUCCESS,
+        Ok(false) => ExitCode::from(1),
+        Err(error) => {
+            eprintln!("{error}");
+            ExitCode::from(if error.is_missing_tool() { 3 } else { 2 })
+        }
+    }
+}
+
+fn prove() -> Result<bool, Error> {
+    let blocks: Vec<String> = std::env::args().skip(1).collect();
+    let mut tasks = Vec::new();
+    for block in &blocks {
+        tasks.extend(named(block)?);
+    }
+    if blocks.is_empty() {
+        tasks = all()?;
+    }
+    let seconds = std::env::var("POSICAST_FORMAL_SECONDS")
+        .ok()
+        .and_then(|text| text.parse().ok());
+    let limit = Duration::from_secs(seconds.unwrap_or(300));
+    let temporary = std::env::temp_dir().join(format!("posicast-formal-{}", std::process::id()));
+    let kept = std::env::var_os("POSICAST_FORMAL_KEEP").map(PathBuf::from);
+    let folder = kept.clone().unwrap_or_else(|| temporary.clone());
+
+    println!("| block | size | engine | assertions | result | covers reached | seconds |");
+    println!("|---|---|---|---|---|---|---|");
+    let mut is_good = true;
+    for (at, task) in tasks.iter().enumerate() {
+        let outcome = run(task, &folder.join(format!("{at}_{}", task.name)), limit)?;
+        println!("{}", row(task, &outcome));
+        is_good &= outcome.is_good();
+    }
+    if kept.is_none() && is_good {
+        // What cannot be deleted stays in the temporary folder: no reason to fail.
+        let _ = std::fs::remove_dir_all(&temporary);
+    }
+    Ok(is_good)
+}
+
+fn row(task: &Task, outcome: &Outcome) -> String {
+    let result = match &outcome.verdict {
+        Verdict::Proven => "proven".to_owned(),
+        Verdict::Counterexample {
+            property,
+            clock,
+            waveform,
+        } => format!("`{property}` fails in clock {clock}: {}", waveform.display()),
+        Verdict::Unknown => "unknown".to_owned(),
+    };
+    let missed: Vec<&str> = outcome
+        .covers
+        .iter()
+        .filter(|cover| cover.clock.is_none())
+        .map(|cover| cover.name.as_str())
+        .collect();
+    let reached = outcome.covers.len() - missed.len();
+    let covers = match missed.len() {
+        0 => format!("{reached} of {reached}"),
+        _ => format!("{reached} of {}, not {}", outcome.covers.len(), missed.join(", ")),
+    };
+    format!(
+        "| {} | {} | {} | {} | {result} | {covers} | {:.1} |",
+        task.name,
+        task.size,
+        task.engine.name(),
+        outcome.assertions,
+        outcome.time.as_secs_f64()
+    )
+}

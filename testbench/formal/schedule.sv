@@ -1,0 +1,31 @@
+// schedule: `control` comes exactly CONTROL_CLOCKS after a tick, and at no other time.
+//
+// Proven for all inputs in every clock, resets included; nothing is assumed. A tick that comes before the one before it has
+// led to `control` takes its place, as the stage's registers make impossible: the last one counts.
+module schedule_properties (
+    input wire clk,
+    input wire rst,
+    input wire tick,
+    input wire control,
+    (* peek = "since" *) input wire [16:0] since
+);
+    // Clocks since the last tick; 0: none, or its control is over.
+    reg [16:0] age = 17'd0;
+    reg        due = 1'b0;
+    always @(posedge clk) begin
+        due <= !rst & age == `CONTROL_CLOCKS - 17'd1;
+        if (rst) age <= 17'd0;
+        else if (tick) age <= 17'd1;
+        else if (age == `CONTROL_CLOCKS - 17'd1) age <= 17'd0;
+        else if (age != 17'd0) age <= age + 17'd1;
+    end
+
+    always @(*) begin
+        exactly: assert (control == due);
+        known_age: assert (since == age & age < `CONTROL_CLOCKS);
+    end
+
+    always @(*) begin
+        reach_tick: cover (age == 17'd1);
+    end
+endmodule

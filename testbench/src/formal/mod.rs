@@ -1,0 +1,24 @@
+//! Proofs about the emitted Verilog: property files against blocks, by Yosys and ABC.
+//!
+//! ```text
+//!  block's modules ──┐
+//!  formal/NAME.sv ───┼─► Yosys ─► design.il ──► sat -tempinduct ─┐
+//!  formal_top.sv ────┘     │                                     ├─► proven, counterexample (VCD), unknown
+//!  (written here)          ├────► asserts.aig ─► abc pdr, bmc3 ──┘
+//!                          └────► covers.aig ──► abc bmc3 ───────► clocks until each cover is reached
+//! ```
+//!
+//! A property file holds one module, `NAME_properties`. Its inputs are any of the block's ports, by name, and registers inside
+//! of the block, which the attribute `peek` names: `(* peek = "u_leg.timer" *) input wire [9:0] leg_timer`. The top written
+//! here leaves all inputs of the block free in every clock, resets included, and joins both. Rows start at power-up, where
+//! every register has its reset value. Block RAM is left out: what is read from it is anything, in every clock.
+//!
+//! Two engines, both unbounded: [`Engine::Pdr`] finds its invariants itself; [`Engine::Induction`] needs them among the
+//! properties. What either does not prove is searched for a counterexample of at most [`SEARCHED_CLOCKS`].
+
+mod names;
+mod task;
+mod tool;
+
+pub use self::task::{Engine, Task, all, named};
+pub use self::tool::{Outcome, Reached, SEARCHED_CLOCKS, Verdict, run};

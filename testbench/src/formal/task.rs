@@ -1,0 +1,243 @@
+//! The list of proofs: block, size, property file, engine.
+
+use std::fmt::Write as _;
+
+use posicast_hdl::emit::Module;
+use posicast_hdl::{axis, divider_share, group, pulse_counter, pwm, registers, schedule, segments};
+use posicast_model::rtl::axis::TRANSITIONS;
+use posicast_model::rtl::component::Component;
+use posicast_model::rtl::pwm::{ActiveLow, Mode, PwmConfig};
+use posicast_model::rtl::schedule::ScheduleConfig;
+use posicast_model::rtl::segments as segments_model;
+use posicast_model::rtl::{Port, axis as axis_model, divider_share as share_model, group as group_model};
+use posicast_model::rtl::{pulse_counter as counter_model, pwm as pwm_model, schedule as schedule_model};
+
+use crate::Error;
+
+/// How a task is proven. Both proofs are unbounded.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Engine {
+    /// Property directed reachability, by ABC: finds its invariants itself.
+    Pdr,
+    /// Induction over at most so many clocks, by Yosys: invariants are among the properties.
+    Induction {
+        /// Clocks in a row in which all is assumed to hold.
+        clocks: u32,
+    },
+}
+
+impl Engine {
+    /// Its name in a table.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Pdr => "PDR (ABC)",
+            Self::Induction { .. } => "induction (Yosys)",
+        }
+    }
+}
+
+/// Properties of a block at one size.
+#[derive(Debug, Clone)]
+pub struct Task {
+    /// The block's name, and that of its property file.
+    pub name: &'static str,
+    /// Which of its sizes.
+    pub size: String,
+    /// How it is proven.
+    pub engine: Engine,
+    /// The block's Verilog, the top last. Tests change it.
+    pub modules: Vec<Module>,
+    pub(super) top: String,
+    pub(super) ports: Vec<Port>,
+    pub(super) properties: String,
+}
+
+impl Task {
+    fn new(name: &'static str, size: &str, engine: Engine, (modules, ports): (Vec<Module>, Vec<Port>)) -> Self {
+        Self {
+            name,
+            size: size.to_owned(),
+            engine,
+            top: modules.last().map_or_else(String::new, |top| top.name.clone()),
+            modules,
+            ports,
+            properties: String::new(),
+        }
+    }
+
+    /// With a property file, after macros for this size.
+    fn properties(mut self, macros: &[(&str, String)], text: &str) -> Self {
+        for (name, value) in macros {
+            let _ = writeln!(self.properties, "`define {name} {value}");
+        }
+        self.properties.push_str(text);
+        self
+    }
+}
+
+/// All tasks.
+///
+/// # Errors
+/// [`Error::Block`] where a block cannot be written as Verilog.
+pub fn all() -> Result<Vec<Task>, Error> {
+    let mut tasks = vec![
+        pwm(ActiveLow::default(), 2, 1, "16-bit period, all active high")?,
+        pwm(
+            ActiveLow {
+                a_high: true,
+                b_low: true,
+                ..ActiveLow::default()
+            },
+            25,
+            50,
+            "16-bit period, two pins active low",
+        )?,
+        Task::new(
+            "pulse_counter",
+            "32-bit count",
+            Engine::Induction { clocks: 1 },
+            (pulse_counter::emit("")?, counter_model::ports()),
+        )
+        .properties(&[], include_str!("../../formal/pulse_counter.sv")),
+        axis_task()?,
+        registers_task()?,
+    ];
+    for axes in [2, 4] {
+        tasks.push(group_task(axes)?);
+    }
+    for clocks in [2, 400] {
+        tasks.push(schedule_task(clocks)?);
+    }
+    for channels in [1, 2, 3, 8] {
+        tasks.push(divider_share_task(channels)?);
+    }
+    tasks.push(
+        Task::new(
+            "segments",
+            "64 entries",
+            Engine::Pdr,
+            (segments::emit("")?, segments_model::ports()),
+        )
+        .properties(&[], include_str!("../../formal/segments.sv")),
+    );
+    Ok(tasks)
+}
+
+/// The tasks of a block.
+///
+/// # Errors
+/// As [`all`], and [`Error::Option`] for a block that has none.
+pub fn named(name: &str) -> Result<Vec<Task>, Error> {
+    let all = all()?;
+    let names: Vec<&str> = all.iter().map(|task| task.name).collect();
+    if !names.contains(&name) {
+        let names = names.join(", ");
+        return Err(Error::Option(format!(
+            "no proofs for `{name}`: there are some for {names}"
+        )));
+    }
+    Ok(all.into_iter().filter(|task| task.name == name).collect())
+}
+
+fn refused(error: impl std::fmt::Display) -> Error {
+    Error::Option(error.to_string())
+}
+
+fn pwm(active_low: ActiveLow, dead_time: u16, minimum_pulse: u16, size: &str) -> Result<Task, Error> {
+    let config = PwmConfig::new(active_low, dead_time.into(), minimum_pulse.into()).map_err(refused)?;
+    let bit = |low: bool| u8::from(low);
+    let off = format!(
+        "4'b{}{}{}{}",
+        bit(active_low.b_low),
+        bit(active_low.b_high),
+        bit(active_low.a_low),
+        bit(active_low.a_high)
+    );
+    let macros = [
+        ("PINS_OFF", off),
+        ("DEAD_TIME_FLOOR", format!("10'd{dead_time}")),
+        ("MINIMUM_PULSE_FLOOR", format!("10'd{minimum_pulse}")),
+    ];
+    let block = (pwm::emit(&config, "")?, pwm_model::ports());
+    Ok(Task::new("pwm", size, Engine::Induction { clocks: 1 }, block)
+        .properties(&macros, include_str!("../../formal/pwm.sv")))
+}
+
+/// The table of allowed transitions comes from the model's.
+fn axis_task() -> Result<Task, Error> {
+    let row = |from, to| format!("((from) == 3'd{from} & (to) == 3'd{to})");
+    let rows: Vec<String> = TRANSITIONS
+        .iter()
+        .map(|row_of| row(row_of.from as u8, row_of.to as u8))
+        .collect();
+    let block = (axis::emit("")?, axis_model::ports());
+    Ok(Task::new("axis", "all inputs", Engine::Pdr, block).properties(
+        &[("ALLOWED(from, to)", format!("({})", rows.join(" | ")))],
+        include_str!("../../formal/axis.sv"),
+    ))
+}
+
+/// The bank of the PWM's component: fields of every kind, an interrupt, byte enables.
+fn registers_task() -> Result<Task, Error> {
+    let config = PwmConfig::new(ActiveLow::default(), 25, 50).map_err(refused)?;
+    let component = Component::pwm(config, Mode::Unipolar, 2500).map_err(refused)?;
+    let block = (
+        vec![registers::emit(component.map(), "")?],
+        component.map().ports().to_vec(),
+    );
+    Ok(Task::new("registers", "bank of pwm", Engine::Pdr, block)
+        .properties(&[], include_str!("../../formal/registers.sv")))
+}
+
+fn group_task(axes: usize) -> Result<Task, Error> {
+    let list = |name: &str| {
+        let lines: Vec<String> = (0..axes).rev().map(|axis| format!("{name}_{axis}")).collect();
+        format!("{{{}}}", lines.join(", "))
+    };
+    let inputs: Vec<String> = group_model::ports(axes)
+        .iter()
+        .filter(|port| port.name.ends_with(|c: char| c.is_ascii_digit()))
+        .map(|port| format!("input wire {}", port.name))
+        .collect();
+    let macros = [
+        ("AXES", axes.to_string()),
+        ("PER_AXIS", inputs.join(", ")),
+        ("CAN_START", list("can_start")),
+        ("WANTS_GROUP_STOP", list("wants_group_stop")),
+        ("EMERGENCY_STOP", list("emergency_stop")),
+        ("AXIS_START", list("axis_start")),
+        ("GROUP_STOP", list("group_stop")),
+    ];
+    let block = (group::emit(axes, "")?, group_model::ports(axes));
+    Ok(Task::new("group", &format!("{axes} axes"), Engine::Pdr, block)
+        .properties(&macros, include_str!("../../formal/group.sv")))
+}
+
+fn schedule_task(clocks: u32) -> Result<Task, Error> {
+    let config = ScheduleConfig::new(clocks).map_err(refused)?;
+    let block = (schedule::emit(&config, "")?, schedule_model::ports());
+    let size = format!("control after {clocks} clocks");
+    Ok(
+        Task::new("schedule", &size, Engine::Induction { clocks: 2 }, block).properties(
+            &[("CONTROL_CLOCKS", format!("17'd{clocks}"))],
+            include_str!("../../formal/schedule.sv"),
+        ),
+    )
+}
+
+fn divider_share_task(channels: usize) -> Result<Task, Error> {
+    let valid: Vec<String> = (0..channels)
+        .map(|channel| format!("quotient_valid_{channel}"))
+        .collect();
+    let reversed: Vec<&str> = valid.iter().rev().map(String::as_str).collect();
+    let macros = [
+        ("CHANNELS", format!("4'd{channels}")),
+        ("PER_CHANNEL", format!("input wire {}", valid.join(", input wire "))),
+        ("VALID", format!("{{{}}}", reversed.join(", "))),
+    ];
+    let block = (divider_share::emit(channels, "")?, share_model::ports(channels));
+    Ok(
+        Task::new("divider_share", &format!("{channels} channels"), Engine::Pdr, block)
+            .properties(&macros, include_str!("../../formal/divider_share.sv")),
+    )
+}

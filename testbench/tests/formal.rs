@@ -1,0 +1,132 @@
+//! The proofs that are quick, and each property file seen to fail on a block that was broken on purpose.
+#![allow(clippy::unwrap_used, clippy::panic)] // helpers of tests, which clippy.toml exempts only inside of #[test]
+
+use std::time::Duration;
+
+use posicast_testbench::formal::{Outcome, Task, Verdict, named, run};
+
+const LIMIT: Duration = Duration::from_secs(120);
+
+fn tried(task: &Task) -> Outcome {
+    let folder = tempfile::tempdir().unwrap();
+    let outcome = run(task, folder.path(), LIMIT).unwrap();
+    if let Verdict::Counterexample { waveform, .. } = &outcome.verdict {
+        assert!(std::fs::metadata(waveform).unwrap().len() > 1000, "no waveform");
+    }
+    outcome
+}
+
+#[track_caller]
+fn proven(name: &str, size: usize) {
+    let outcome = tried(&named(name).unwrap()[size]);
+    assert!(outcome.is_good(), "{outcome:?}");
+    assert!(outcome.assertions > 1 && !outcome.covers.is_empty(), "{outcome:?}");
+}
+
+/// Replaces the first `from` in the block's Verilog by `to`, and insists on a counterexample to this property.
+#[track_caller]
+fn fails(name: &str, from: &str, to: &str, expected: &str) {
+    let mut task = named(name).unwrap().swap_remove(0);
+    let found = task.modules.iter_mut().find(|module| module.text.contains(from));
+    let module = found.unwrap_or_else(|| panic!("the Verilog no longer has `{from}`: adapt the test"));
+    module.text = module.text.replacen(from, to, 1);
+    match tried(&task).verdict {
+        Verdict::Counterexample { property, .. } => assert_eq!(property, expected, "`{to}`"),
+        other => panic!("`{to}` is not found: {other:?}"),
+    }
+}
+
+#[test]
+fn formal_pulse_counter() {
+    proven("pulse_counter", 0);
+}
+
+#[test]
+fn formal_axis() {
+    proven("axis", 0);
+}
+
+#[test]
+fn formal_registers() {
+    proven("registers", 0);
+}
+
+#[test]
+fn formal_group() {
+    proven("group", 0);
+}
+
+#[test]
+fn formal_schedule() {
+    proven("schedule", 1);
+}
+
+#[test]
+fn formal_divider_share() {
+    proven("divider_share", 0);
+}
+
+#[test]
+fn formal_segments() {
+    proven("segments", 0);
+}
+
+#[test]
+fn formal_a_fault_that_waits_for_a_clock_is_found() {
+    fails("pwm", "fault_latch_armed & trip_n", "fault_latch_armed", "fault_is_off");
+}
+
+#[test]
+fn formal_an_illegal_transition_without_a_flag_is_found() {
+    fails(
+        "pulse_counter",
+        "assign illegal = both & ready",
+        "assign illegal = both & ready & swap",
+        "illegal_flags",
+    );
+}
+
+#[test]
+fn formal_a_brake_that_opens_with_the_outputs_off_is_found() {
+    fails("axis", "= next_on & !next_closing", "= next_on", "brake_never_in_fault");
+}
+
+#[test]
+fn formal_a_byte_that_nobody_wrote_is_found() {
+    fails(
+        "registers",
+        "(phase & ~mask[15:0])",
+        "(phase & ~mask[31:16])",
+        "holds_what_was_written",
+    );
+}
+
+#[test]
+fn formal_an_axis_that_starts_alone_is_found() {
+    fails(
+        "group",
+        "start_q_0_next = (start & !blocked)",
+        "start_q_0_next = start",
+        "refused",
+    );
+}
+
+#[test]
+fn formal_a_control_a_clock_late_is_found() {
+    fails("schedule", "LAST = 17'd1", "LAST = 17'd2", "exactly");
+}
+
+#[test]
+fn formal_a_quotient_for_the_wrong_channel_is_found() {
+    fails(
+        "divider_share",
+        "FIRST_CHANNEL = 4'd0",
+        "FIRST_CHANNEL = 4'd1",
+        "in_order",
+    );
+}
+
+#[test]
+fn formal_a_fifo_that_takes_one_more_is_found() {
+    fails("segments", "FULL_LEVEL = 7'd64", "FULL_LEVEL = 7'd65", "level_bound");
+}
