@@ -43,12 +43,14 @@ module xy_stage_stage_y_pwm_gates (
     reg        b_low_gate_next;
     reg        masked;
 
-    // Half bridge; and the other modes from there
+    // Fault path and mask only ever add off
     assign on = armed & !masked;
     assign a_high = (a_high_gate & on) ^ A_HIGH_OFF;
     assign a_low = (a_low_gate & on) ^ A_LOW_OFF;
     assign b_high = (b_high_gate & on) ^ B_HIGH_OFF;
     assign b_low = (b_low_gate & on) ^ B_LOW_OFF;
+
+    // What the mask hides
     assign leg_a_high = {3'd0, a_high_gate};
     assign leg_a = {leg_a_high[3:2], a_low_gate, leg_a_high[0]};
     assign leg_b_high = {leg_a[3], b_high_gate, leg_a[1:0]};
