@@ -122,7 +122,7 @@ fn formal_a_share_that_begins_with_the_second_channel_is_found() {
         "divider_share",
         "FIRST_CHANNEL = 4'd0",
         "FIRST_CHANNEL = 4'd1",
-        "in_order",
+        "next_follows",
     );
 }
 
