@@ -23,7 +23,7 @@ fn proven(name: &str, size: usize) {
     assert!(outcome.assertions > 1 && !outcome.covers.is_empty(), "{outcome:?}");
 }
 
-/// Replaces the first `from` in the block's Verilog by `to`, and insists on a counterexample to this property.
+/// Replaces the first `from` in the block's Verilog by `to`, and insists on a counterexample to a property that begins so.
 #[track_caller]
 fn fails(name: &str, from: &str, to: &str, expected: &str) {
     let mut task = named(name).unwrap().swap_remove(0);
@@ -31,7 +31,7 @@ fn fails(name: &str, from: &str, to: &str, expected: &str) {
     let module = found.unwrap_or_else(|| panic!("the Verilog no longer has `{from}`: adapt the test"));
     module.text = module.text.replacen(from, to, 1);
     match tried(&task).verdict {
-        Verdict::Counterexample { property, .. } => assert_eq!(property, expected, "`{to}`"),
+        Verdict::Counterexample { property, .. } => assert!(property.starts_with(expected), "`{to}`: {property}"),
         other => panic!("`{to}` is not found: {other:?}"),
     }
 }
@@ -72,8 +72,8 @@ fn formal_segments() {
 }
 
 #[test]
-fn formal_a_fault_that_waits_for_a_clock_is_found() {
-    fails("pwm", "fault_latch_armed & trip_n", "fault_latch_armed", "fault_is_off");
+fn formal_half_a_dead_time_is_found() {
+    fails("pwm", "pause = dead_time;", "pause = dead_time >> 1;", "known_pause");
 }
 
 #[test]
@@ -107,7 +107,7 @@ fn formal_an_axis_that_starts_alone_is_found() {
         "group",
         "start_q_0_next = (start & !blocked)",
         "start_q_0_next = start",
-        "refused",
+        "all_or_none",
     );
 }
 
@@ -117,16 +117,21 @@ fn formal_a_control_a_clock_late_is_found() {
 }
 
 #[test]
-fn formal_a_quotient_for_the_wrong_channel_is_found() {
+fn formal_a_share_that_begins_with_the_second_channel_is_found() {
     fails(
         "divider_share",
         "FIRST_CHANNEL = 4'd0",
         "FIRST_CHANNEL = 4'd1",
-        "in_order",
+        "next_follows",
     );
 }
 
 #[test]
-fn formal_a_fifo_that_takes_one_more_is_found() {
-    fails("segments", "FULL_LEVEL = 7'd64", "FULL_LEVEL = 7'd65", "level_bound");
+fn formal_a_fifo_that_writes_over_its_oldest_entry_is_found() {
+    fails(
+        "segments",
+        "memory_write_address = ({2'd0, tail} << 2)",
+        "memory_write_address = ({2'd0, head} << 2)",
+        "no_overwrite",
+    );
 }

@@ -10,7 +10,7 @@ use crate::Error;
 use crate::tool::{Tool, text};
 
 /// Longest counterexample that is searched for where an engine proves nothing, in clocks.
-pub const SEARCHED_CLOCKS: u32 = 200;
+pub const SEARCHED_CLOCKS: u32 = 60;
 
 const YOSYS: Tool = Tool {
     name: "yosys",
