@@ -60,8 +60,6 @@ pub(super) struct DriveCommand {
     next_test: Signal<Local, Bit>,
     tested: Signal<Local, Bit>,
     test_changes: Signal<Local, Bit>,
-    counts_high: Signal<Local, Bits<16>>,
-    counts_low: Signal<Local, Bits<16>>,
     controller_bits: Signal<Local, Bits<18>>,
     direct_bits: Signal<Local, Bits<17>>,
     negative: Signal<Local, Bit>,
@@ -79,6 +77,8 @@ pub(super) struct DriveCommand {
 
     ready_state: Constant<Bits<3>>,
     one_tick: Constant<Bits<16>>,
+    no_clock: Constant<Bits<16>>,
+    one_clock: Constant<Bits<16>>,
     nothing: Constant<Bits<17>>,
     most: Constant<Bits<17>>,
     least: Constant<Bits<17>>,
@@ -146,8 +146,6 @@ impl Default for DriveCommand {
             next_test: Signal::default(),
             tested: Signal::default(),
             test_changes: Signal::default(),
-            counts_high: Signal::default(),
-            counts_low: Signal::default(),
             controller_bits: Signal::default(),
             direct_bits: Signal::default(),
             negative: Signal::default(),
@@ -164,6 +162,8 @@ impl Default for DriveCommand {
             limit: Signal::default(),
             ready_state: Constant::new(from_u64(State::Ready as u64)),
             one_tick: Constant::new(from_u64(1)),
+            no_clock: Constant::new(from_u64(0)),
+            one_clock: Constant::new(from_u64(1)),
             nothing: Constant::new(from_u64(0)),
             most: Constant::new(from_u64(0xffff)),
             least: Constant::new(from_u64(0x1_0000)),
@@ -294,26 +294,27 @@ impl Logic for DriveCommand {
             }
         }
 
-        comment!("Clocks of a gate within a period; a result each");
-        self.counts_high.next = self.high_clocks.q.val();
-        self.counts_low.next = self.low_clocks.q.val();
-        if self.valley.val() | !self.masked.q.val() {
-            self.counts_high.next = 0.into();
-            self.counts_low.next = 0.into();
+        comment!("Clocks of a gate within a period; a valley clears");
+        comment!("all but the bit of its own clock");
+        if self.gates.val().get_bit(0) & !self.high_clocks.q.val().all() {
+            self.high_clocks.d.next = self.high_clocks.q.val() + 1;
         }
-        self.high_clocks.d.next = self.counts_high.val();
-        self.low_clocks.d.next = self.counts_low.val();
-        if self.masked.q.val() {
-            if self.gates.val().get_bit(0) & !self.counts_high.val().all() {
-                self.high_clocks.d.next = self.counts_high.val() + 1;
+        if self.gates.val().get_bit(1) & !self.low_clocks.q.val().all() {
+            self.low_clocks.d.next = self.low_clocks.q.val() + 1;
+        }
+        if self.valley.val() | !self.masked.q.val() {
+            self.high_clocks.d.next = self.no_clock.val();
+            self.low_clocks.d.next = self.no_clock.val();
+            if self.gates.val().get_bit(0) & self.masked.q.val() {
+                self.high_clocks.d.next = self.one_clock.val();
             }
-            if self.gates.val().get_bit(1) & !self.counts_low.val().all() {
-                self.low_clocks.d.next = self.counts_low.val() + 1;
+            if self.gates.val().get_bit(1) & self.masked.q.val() {
+                self.low_clocks.d.next = self.one_clock.val();
             }
-            if self.valley.val() {
-                self.high_result.d.next = self.high_clocks.q.val();
-                self.low_result.d.next = self.low_clocks.q.val();
-            }
+        }
+        if self.valley.val() & self.masked.q.val() {
+            self.high_result.d.next = self.high_clocks.q.val();
+            self.low_result.d.next = self.low_clocks.q.val();
         }
 
         comment!("Outputs");

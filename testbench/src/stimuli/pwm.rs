@@ -70,17 +70,15 @@ impl PwmRandom {
             let pulse = i32::from(self.inputs.minimum_pulse);
             let about = self.rng.random_range(-3..=3);
             let limit = i32::from(self.inputs.max_duty);
-            let ends = [0, dead + pulse, period - dead - pulse, period, period / 2, limit];
+            let ends = [0, dead + pulse, period - dead - pulse, period, period / 2, limit, limit];
             let end = *pick(&mut self.rng, &ends) + about;
             let any = self.rng.random_range(-65_536..=65_535);
             let choices = [within, within, end, -end, period, -period, -self.inputs.duty, any];
             self.inputs.duty = *pick(&mut self.rng, &choices);
         }
         if self.one_in(2500) {
-            self.inputs.max_duty = *pick(
-                &mut self.rng,
-                &[0xffff, 0xffff, self.inputs.period, self.inputs.period / 2, 0],
-            );
+            let half = self.inputs.period / 2;
+            self.inputs.max_duty = *pick(&mut self.rng, &[0xffff, 0xffff, self.inputs.period, half, half, 0]);
         }
         if self.one_in(700) {
             self.inputs.mode = self.rng.random_range(0..4);
