@@ -42,6 +42,8 @@ module xy_stage_stage_drive_command (
 );
     localparam [2:0]  READY_STATE = 3'd1;
     localparam [15:0] ONE_TICK = 16'd1;
+    localparam [15:0] NO_CLOCK = 16'd0;
+    localparam [15:0] ONE_CLOCK = 16'd1;
     localparam [16:0] NOTHING = 17'd0;
     localparam [16:0] MOST = 17'd65535;
     localparam [16:0] LEAST = 17'd65536;
@@ -58,8 +60,6 @@ module xy_stage_stage_drive_command (
     wire        next_test;
     wire        tested;
     wire        test_changes;
-    reg  [15:0] counts_high;
-    reg  [15:0] counts_low;
     wire [17:0] controller_bits;
     wire [16:0] direct_bits;
     wire        negative;
@@ -148,6 +148,8 @@ module xy_stage_stage_drive_command (
         duty_q_next = duty_q;
         ticks_left_next = ticks_left;
         backward_next = backward;
+        high_clocks_next = high_clocks;
+        low_clocks_next = low_clocks;
         high_result_next = high_result;
         low_result_next = low_result;
 
@@ -220,26 +222,27 @@ module xy_stage_stage_drive_command (
             end
         end
 
-        // Clocks of a gate within a period; a result each
-        counts_high = high_clocks;
-        counts_low = low_clocks;
-        if (valley | !masked) begin
-            counts_high = 16'd0;
-            counts_low = 16'd0;
+        // Clocks of a gate within a period; a valley clears
+        // all but the bit of its own clock
+        if (gates[0] & !(&high_clocks)) begin
+            high_clocks_next = high_clocks + 16'd1;
         end
-        high_clocks_next = counts_high;
-        low_clocks_next = counts_low;
-        if (masked) begin
-            if (gates[0] & !(&counts_high)) begin
-                high_clocks_next = counts_high + 16'd1;
+        if (gates[1] & !(&low_clocks)) begin
+            low_clocks_next = low_clocks + 16'd1;
+        end
+        if (valley | !masked) begin
+            high_clocks_next = NO_CLOCK;
+            low_clocks_next = NO_CLOCK;
+            if (gates[0] & masked) begin
+                high_clocks_next = ONE_CLOCK;
             end
-            if (gates[1] & !(&counts_low)) begin
-                low_clocks_next = counts_low + 16'd1;
+            if (gates[1] & masked) begin
+                low_clocks_next = ONE_CLOCK;
             end
-            if (valley) begin
-                high_result_next = high_clocks;
-                low_result_next = low_clocks;
-            end
+        end
+        if (valley & masked) begin
+            high_result_next = high_clocks;
+            low_result_next = low_clocks;
         end
     end
 
