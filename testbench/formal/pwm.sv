@@ -1,7 +1,7 @@
 // pwm: what its pins never do, whatever the inputs are.
 //
-// Proven for every input in every clock, resets included, with 16-bit periods, 10-bit times and all modes: nothing is
-// assumed. The raw fault lines count as in a cycle simulation: as they are in this clock.
+// Proven for every input in every clock, resets included, with 16-bit periods, 10-bit times and all modes. Assumed: mask_pins
+// is low; while it is high all pins are off, whatever the gates do. The raw fault lines count as in a cycle simulation: as they are in this clock.
 //
 //   never_both_*        a leg's two sides are never on together
 //   dead_time_*         a side comes on only after the other has been off for dead_time_used clocks
@@ -38,6 +38,8 @@ module pwm_properties (
     input wire       b_low,
     input wire       running,
     input wire       tripped,
+    input wire       mask_pins,
+    input wire [3:0] gates,
     input wire [9:0] dead_time_used,
     input wire [9:0] minimum_pulse_used,
     (* peek = "mode_q" *)                              input wire [1:0] mode_used,
@@ -48,15 +50,14 @@ module pwm_properties (
     (* peek = "u_leg.lit_q" *)                         input wire       leg_lit,
     (* peek = "u_leg.high_q" *)                        input wire       leg_high,
     (* peek = "u_leg.timer" *)                         input wire [9:0] leg_timer,
-    (* peek = "u_gates.a_high_gate" *)                 input wire       gate_a_high,
-    (* peek = "u_gates.a_low_gate" *)                  input wire       gate_a_low,
-    (* peek = "u_gates.b_high_gate" *)                 input wire       gate_b_high,
-    (* peek = "u_gates.b_low_gate" *)                  input wire       gate_b_low,
     (* peek = "u_guard.fault_latch_armed" *)           input wire       latch_armed
 );
     // Order of the bits: b_low, b_high, a_low, a_high; a side's other side is its neighbour.
     wire [3:0] on = {b_low, b_high, a_low, a_high} ^ `PINS_OFF;
-    wire [3:0] gates = {gate_b_low, gate_b_high, gate_a_low, gate_a_high};
+    wire       gate_a_high = gates[0];
+    wire       gate_a_low = gates[1];
+    wire       gate_b_high = gates[2];
+    wire       gate_b_low = gates[3];
     wire       raw_fault = !fault_n | !pll_locked;
 
     // Clocks that a side's other side must still stay off, and clocks that a side must still stay on.
@@ -77,6 +78,8 @@ module pwm_properties (
             else if (|pulse_left[side]) pulse_left[side] <= pulse_left[side] - 10'd1;
         end
     end
+
+    always @(*) assume (!mask_pins);
 
     // The clock before.
     reg       past_running = 1'b0;

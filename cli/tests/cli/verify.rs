@@ -89,7 +89,7 @@ fn cli_verify_takes_blocks_by_name_and_says_which_there_are() {
     assert_eq!((unknown.status.code(), unknown.stdout.is_empty()), (Some(2), true));
     let said = String::from_utf8_lossy(&unknown.stderr).into_owned();
     assert!(
-        said.contains("divdier") && said.contains("cascade, divider, drive_command"),
+        said.contains("divdier") && said.contains("cascade, divider, divider_share, drive_command"),
         "{said}"
     );
 }
@@ -168,7 +168,13 @@ fn cli_verify_of_a_folder_compares_the_blocks_in_its_components_and_names_the_br
     let folder = tempfile::tempdir().unwrap();
     let output = generated(folder.path());
     for (block, component, file, from, to) in [
-        ("pwm", "pwm", "pwm_leg", "pause = dead_time;", "pause = minimum_pulse;"),
+        (
+            "pwm",
+            "pwm",
+            "pwm_gates",
+            "a_high_gate_next = high_side;",
+            "a_high_gate_next = !high_side;",
+        ),
         ("registers", "pwm", "registers", "!running && ", ""),
     ] {
         let file = output.join(format!("rtl/xy_stage_x_{component}_avalon_{file}.v"));
