@@ -50,6 +50,7 @@ module pwm_properties (
     (* peek = "u_leg.lit_q" *)                         input wire       leg_lit,
     (* peek = "u_leg.high_q" *)                        input wire       leg_high,
     (* peek = "u_leg.timer" *)                         input wire [9:0] leg_timer,
+    (* peek = "u_pin_gates.masked" *)                      input wire       masked,
     (* peek = "u_guard.fault_latch_armed" *)           input wire       latch_armed
 );
     // Order of the bits: b_low, b_high, a_low, a_high; a side's other side is its neighbour.
@@ -136,6 +137,7 @@ module pwm_properties (
     wire leg_is_high = leg_lit & leg_high;
     wire leg_is_low = leg_lit & !leg_high;
     always @(*) begin
+        known_unmasked: assert (!masked);
         known_a_high: assert (gate_a_high == (a_leads & leg_is_high));
         known_a_low: assert (gate_a_low == (a_leads ? past_mode != 2'd0 & leg_is_low : leg_awake));
         known_b_low: assert (gate_b_low == (b_leads ? leg_is_low : b_holds ? leg_awake : opposed & leg_is_high));
