@@ -11,6 +11,8 @@ use crate::tool::{Tool, text};
 
 /// Longest counterexample that is searched for where an engine proves nothing, in clocks.
 pub const SEARCHED_CLOCKS: u32 = 60;
+/// Clocks in which a cover must be reached: a period with the longest floors, and some.
+const COVERED_CLOCKS: u32 = 200;
 
 const YOSYS: Tool = Tool {
     name: "yosys",
@@ -216,7 +218,7 @@ impl Bench<'_> {
     fn covers(&self, names: Vec<String>) -> Result<Vec<Reached>, Error> {
         let search = |(output, name)| {
             let commands = format!(
-                "read_aiger covers.aig; fold; strash; cone -s -O {output}; bmc3 -F {SEARCHED_CLOCKS} -T {}",
+                "read_aiger covers.aig; fold; strash; cone -s -O {output}; bmc3 -F {COVERED_CLOCKS} -T {}",
                 self.seconds()
             );
             let said = self.abc(&commands)?;
