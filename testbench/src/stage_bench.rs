@@ -546,10 +546,7 @@ impl StageBench {
         for axis in self.axes.clone() {
             let net = format!("{axis}_can_start");
             let end = self.now + most_clocks;
-            // An axis can start once there is something to play, so that is not asked for here: the brake's time is.
-            while self.now < end && self.net(&format!("{axis}_state"))? != u64::from(state::HOLD) {
-                self.clocks(100)?;
-            }
+            // High in HOLD alone, once the brake is open.
             while self.now < end && self.net(&net)? == 0 {
                 self.clocks(100)?;
             }

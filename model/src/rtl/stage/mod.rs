@@ -43,7 +43,7 @@ impl Component {
     /// [`StageError`] for no axis or more than four, ticks that are too short, and names that clash.
     pub fn stage(config: &StageConfig) -> Result<Self, StageError> {
         config.check()?;
-        let map = RegisterMap::new(registers::stage(config)?)?;
+        let map = RegisterMap::new(registers::stage(config))?;
         let mut blocks = vec![
             Block::TimeBase(config.tick),
             Block::Schedule(config.schedule()?),
@@ -85,14 +85,10 @@ fn wire(config: &StageConfig, block: &Block, part: Part) -> Part {
         Block::DividerShare(_) => {
             let part = part.on("start", "divider_start").on("done", "divider_done");
             config.axes.iter().enumerate().fold(part, |part, (channel, axis)| {
-                let each = ["steps", "elapsed", "quotient_valid"];
-                each.iter().fold(part, |part, net| {
-                    let port = match *net {
-                        "quotient_valid" => format!("quotient_valid_{channel}"),
-                        operand => format!("{operand}_of_{channel}"),
-                    };
-                    part.on(&port, &format!("{}_{net}", axis.name))
-                })
+                let net = |name: &str| format!("{}_{name}", axis.name);
+                part.on(&format!("steps_of_{channel}"), &net("steps"))
+                    .on(&format!("elapsed_of_{channel}"), &net("elapsed"))
+                    .on(&format!("quotient_valid_{channel}"), &net("quotient_valid"))
             })
         }
         Block::Group(_) => config.axes.iter().enumerate().fold(part, |part, (index, axis)| {

@@ -1,7 +1,7 @@
 //! What a host sees of a stage: a window of its own, and one per axis, all alike.
 
 use super::bring_up;
-use super::config::{StageAxis, StageConfig, StageError};
+use super::config::{StageAxis, StageConfig};
 use crate::rtl::group::MOST_AXES;
 use crate::rtl::registers::maps;
 use crate::rtl::registers::{Access, Description, Field, Register, Source, WINDOW_WORDS};
@@ -18,10 +18,7 @@ pub const AXIS_INTERRUPTS: [(&str, &str); 7] = [
 ];
 
 /// All registers of the stage.
-///
-/// # Errors
-/// [`StageError::Axes`] never, for a checked configuration.
-pub(super) fn stage(config: &StageConfig) -> Result<Description, StageError> {
+pub(super) fn stage(config: &StageConfig) -> Description {
     let about = "Stage: axes from motion segments to the pins; window 0 is the stage's, then one window per axis.";
     let parameter = |name: &str, bits, meaning: &str, value| Field::new(name, 0, bits, meaning).with_reset(value);
     let parameters = vec![
@@ -98,7 +95,7 @@ pub(super) fn stage(config: &StageConfig) -> Result<Description, StageError> {
         let placed = registers.map(|register| of_axis(register, &axis.name, window * WINDOW_WORDS));
         description.registers.extend(placed);
     }
-    Ok(description)
+    description
 }
 
 /// The register under the axis's name and in its window.
