@@ -1,4 +1,4 @@
-//! `posicast generate`: the Verilog of a machine, in a folder of its own.
+//! `posicast generate`: the Verilog of a machine, and what Quartus needs beside it, in a folder of its own.
 
 use crate::blocks;
 use crate::control::AxisControl;
@@ -6,6 +6,7 @@ use crate::design::Report;
 use crate::failure::Failure;
 use crate::machine::{self, MachineFile};
 use crate::output;
+use crate::sopc;
 use crate::stage::{self, Stage};
 use posicast_hdl::emit::Module;
 use posicast_hdl::machine::{AxisShaper, emit_machine};
@@ -15,7 +16,7 @@ use posicast_testbench::blocks::Block;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-/// Write the machine's Verilog and its components into a folder
+/// Write the machine's Verilog, its components and its Quartus projects into a folder
 #[derive(clap::Args)]
 #[command(after_help = "Example:\n  posicast generate examples/xy-stage.toml -o xy_stage")]
 pub(crate) struct Args {
@@ -30,6 +31,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let file = machine::read(&args.machine)?;
     let report = Report::new(&file.machine, &args.machine)?;
     report.warn();
+    let board = sopc::board(&file.machine, &args.machine)?;
     let shapers = machine::shapers(&file.machine, &report.design, &args.machine)?;
     let stage = stage::of_machine(&file.machine, &report.design, &args.machine)?;
     let modules = modules(
@@ -41,6 +43,8 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     )?;
     let mut package = open(args.output.as_deref(), &file)?;
     add_sources(&mut package, &file, &modules)?;
+    let components = blocks::components(&file.machine, &shapers, &report.controllers, &args.machine)?;
+    sopc::add(&mut package, &file.machine, board, stage.as_ref(), &components)?;
     package
         .add("report.json", output::json_text(&report.json())?.as_bytes())
         .map_err(Failure::because)?;

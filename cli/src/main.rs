@@ -19,6 +19,7 @@ mod progress;
 mod reproduce;
 mod run;
 mod simulate;
+mod sopc;
 mod stage;
 mod synth;
 mod verify;

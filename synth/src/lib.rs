@@ -1,8 +1,9 @@
-//! What leaves posicast for a device: the output folder ([`package`]) and the estimate of what its Verilog costs
-//! ([`yosys`]).
+//! What leaves posicast for a device: the output folder ([`package`]), what of it is opened in Quartus ([`sopc`]), and the
+//! estimate of what its Verilog costs ([`yosys`]).
 //!
-//! Neither knows how the files came to be: this crate takes bytes and file names, and depends on no other crate of the
-//! workspace.
+//! Folder and estimate do not know how the files came to be: they take bytes and file names. The package for an SOPC reads the
+//! model's register maps and ports.
 
 pub mod package;
+pub mod sopc;
 pub mod yosys;

@@ -1,0 +1,90 @@
+//! What `generate` adds for Platform Designer and Quartus: a machine's stage and blocks as components, its system and projects.
+
+use crate::failure::Failure;
+use crate::machine;
+use crate::output;
+use crate::stage::Stage;
+use crate::synth;
+use posicast_model::spec::{Axis, Machine};
+use posicast_synth::package::Package;
+use posicast_synth::sopc::{Board, Design, Unit};
+use posicast_testbench::blocks::{Block, ComponentBlock};
+use std::path::Path;
+
+/// The key of the board.
+const BOARD_KEY: &str = "target.board";
+
+/// The board that the machine file at `path` names.
+///
+/// # Errors
+/// [`Failure`] with the line for a board that is not known, or whose device is of another family than the file says.
+pub(crate) fn board(machine: &Machine, path: &Path) -> Result<Option<Board>, Failure> {
+    let Some(name) = machine.target.as_ref().and_then(|target| target.board.as_deref()) else {
+        return Ok(None);
+    };
+    let refused = |reason: &dyn std::fmt::Display| machine::at_key(path, 0, BOARD_KEY, reason);
+    let board: Board = name.parse().map_err(|error| refused(&error))?;
+    let family = synth::family_of(machine)?;
+    if board.family() != family {
+        let device = board.family().device().name;
+        let allowed = board.family();
+        return Err(refused(&format_args!(
+            "{board} has an {device}, of family {allowed}, and target.family is {family}: change one of them"
+        )));
+    }
+    Ok(Some(board))
+}
+
+/// Adds the files to the folder.
+pub(crate) fn add(
+    package: &mut Package,
+    machine: &Machine,
+    board: Option<Board>,
+    stage: Option<&Stage>,
+    components: &[ComponentBlock],
+) -> Result<(), Failure> {
+    let tops: Vec<String> = components.iter().map(Block::top).collect();
+    let stage_top = stage.map(|stage| stage.block.top());
+    let axes: Vec<&str> = machine.axes.iter().map(|axis| axis.name.as_str()).collect();
+    let stage = match stage.zip(stage_top.as_deref()) {
+        Some((stage, top)) => Some(unit(&stage.block, top, axes)?),
+        None => None,
+    };
+    let components: Result<Vec<Unit<'_>>, Failure> = components
+        .iter()
+        .zip(&tops)
+        .map(|(block, top)| unit(block, top, Vec::new()))
+        .collect();
+    let is_active_low = |axis: &&Axis| axis.pwm.as_ref().is_some_and(|pwm| pwm.active_low);
+    let active_low = machine.axes.iter().filter(is_active_low);
+    let design = Design {
+        machine: &machine.name,
+        clock_hz: machine.clock.frequency_hz,
+        board,
+        stage,
+        active_low_axes: active_low.map(|axis| axis.name.as_str()).collect(),
+        components: components?,
+    };
+    if let Some(board) = board.filter(|board| design.stage.is_some() && !design.runs_on(*board)) {
+        output::say(&format!(
+            "warning: no project for {board}: its oscillator and clock.frequency_hz differ; README.md says by how much"
+        ));
+    }
+    for file in design.files().map_err(Failure::because)? {
+        package
+            .add(&file.path, file.text.as_bytes())
+            .map_err(Failure::because)?;
+    }
+    Ok(())
+}
+
+/// A component, with the names of its modules.
+fn unit<'a>(block: &'a ComponentBlock, top: &'a str, axes: Vec<&'a str>) -> Result<Unit<'a>, Failure> {
+    let modules = block.modules().map_err(Failure::because)?;
+    Ok(Unit {
+        top,
+        component: block.component(),
+        modules: modules.into_iter().map(|module| module.name).collect(),
+        axes,
+    })
+}

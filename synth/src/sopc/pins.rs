@@ -1,0 +1,110 @@
+//! Which pin of a board every port of its top level is on.
+//!
+//! Clock, reset and, where the fabric has one, the serial line are where the board has them. All others are on the expansion
+//! headers, `GPIO_0[0]` upwards, in the order of the stage's ports: first what belongs to no axis, then axis by axis.
+
+use super::SopcError;
+use super::board::Board;
+use super::unit::{PINS, Unit};
+
+/// Ports of the stage that do not leave the device: the one is for a trace, the other has no PLL to watch.
+pub(super) const INSIDE: [&str; 2] = ["tick", "pll_locked"];
+
+/// Ports of the top level beside those of the stage.
+pub(super) const CLOCK: &str = "clock_50";
+pub(super) const RESET: &str = "reset_button_n";
+pub(super) const UART_RECEIVE: &str = "uart_rxd";
+pub(super) const UART_TRANSMIT: &str = "uart_txd";
+
+/// What a port of the top level is for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Use {
+    Clock,
+    Reset,
+    Uart,
+    /// A port of the stage's conduits.
+    Stage,
+}
+
+/// A port of the top level, one bit, on its pin.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Pin {
+    pub(super) port: String,
+    pub(super) is_input: bool,
+    pub(super) purpose: Use,
+    /// Of the device, without `PIN_`.
+    pub(super) location: &'static str,
+    /// What the board calls it.
+    pub(super) on_board: String,
+    /// Of a port of the stage: conduit and role.
+    pub(super) conduit: Option<(String, String)>,
+}
+
+/// The pins of a stage on a board.
+///
+/// # Errors
+/// [`SopcError::Pins`] where the headers have fewer than it needs, [`SopcError::Wide`] for a port of more than one bit.
+pub(super) fn assign(board: Board, stage: &Unit<'_>) -> Result<Vec<Pin>, SopcError> {
+    let facts = board.facts();
+    let fixed = |port: &str, is_input, purpose, location, on_board: &str| Pin {
+        port: port.to_owned(),
+        is_input,
+        purpose,
+        location,
+        on_board: on_board.to_owned(),
+        conduit: None,
+    };
+    let mut pins = vec![
+        fixed(CLOCK, true, Use::Clock, facts.clock_pin, "CLOCK_50"),
+        fixed(RESET, true, Use::Reset, facts.reset_pin.0, facts.reset_pin.1),
+    ];
+    let mut on_headers = Vec::new();
+    match facts.uart_pins {
+        Some([receive, transmit]) => pins.extend([
+            fixed(UART_RECEIVE, true, Use::Uart, receive, "UART_RXD"),
+            fixed(UART_TRANSMIT, false, Use::Uart, transmit, "UART_TXD"),
+        ]),
+        None => on_headers.extend([
+            (UART_RECEIVE.to_owned(), true, Use::Uart, None),
+            (UART_TRANSMIT.to_owned(), false, Use::Uart, None),
+        ]),
+    }
+    let mut conduits = stage.conduits();
+    conduits.sort_by_key(|conduit| conduit.name != PINS);
+    for conduit in conduits {
+        for signal in conduit.signals {
+            if INSIDE.contains(&signal.port.as_str()) {
+                continue;
+            }
+            if signal.width != 1 {
+                return Err(SopcError::Wide { port: signal.port });
+            }
+            let place = Some((conduit.name.clone(), signal.role));
+            on_headers.push((signal.port, signal.is_input, Use::Stage, place));
+        }
+    }
+    let places = facts.headers.iter().enumerate().flat_map(|(header, locations)| {
+        let place = move |(index, location): (usize, &&'static str)| (format!("GPIO_{header}[{index}]"), *location);
+        locations.iter().enumerate().map(place)
+    });
+    let available = facts.headers.as_flattened().len();
+    if on_headers.len() > available {
+        return Err(SopcError::Pins {
+            board,
+            needed: on_headers.len(),
+            available,
+        });
+    }
+    let placed = on_headers.into_iter().zip(places);
+    pins.extend(
+        placed.map(|((port, is_input, purpose, conduit), (on_board, location))| Pin {
+            port,
+            is_input,
+            purpose,
+            location,
+            on_board,
+            conduit,
+        }),
+    );
+    Ok(pins)
+}

@@ -1,0 +1,248 @@
+//! `README.md` of the folder: what is in it, and what to do with it in Quartus.
+
+use std::fmt::Write;
+
+use super::board::{Board, Processor};
+use super::pins::{Pin, Use};
+use super::unit::Unit;
+use super::{Design, system, top};
+
+/// The text. `projects` are the boards with a project and their pins.
+pub(super) fn text(design: &Design<'_>, projects: &[(Board, Vec<Pin>)]) -> String {
+    let mut text = String::new();
+    contents(&mut text, design);
+    if design.units().next().is_none() {
+        text.push_str(
+            "\nThe machine has shapers alone: no component with registers, so nothing for Platform Designer. Instantiate the top \
+             module in a design of your own.\n",
+        );
+        return text;
+    }
+    components(&mut text, design);
+    if design.stage.is_none() {
+        text.push_str(
+            "\nThe machine has no stage (that takes a complete loop on every axis), so there is no system and no project. Add the \
+             components to a system of your own: in Platform Designer, add the folder `sopc/` to the search path.\n",
+        );
+        return text;
+    }
+    boards(&mut text, design);
+    for (board, _) in projects {
+        steps(&mut text, design.machine, *board);
+    }
+    if !projects.is_empty() {
+        resistors(&mut text, design);
+        for (board, pins) in projects {
+            pin_table(&mut text, design.machine, *board, pins);
+        }
+        bus(&mut text, design);
+    }
+    text
+}
+
+fn contents(text: &mut String, design: &Design<'_>) {
+    let _ = write!(
+        text,
+        "\
+# {machine}
+
+Written by posicast {posicast}. Do not edit what is here: change the machine file and generate anew; `posicast generate` refuses
+to overwrite a file that was edited.
+
+| folder or file | what |
+|---|---|
+| `machine.toml` | the machine file that everything comes from |
+| `rtl/` | Verilog-2001, one module per file |
+",
+        machine = design.machine,
+        posicast = env!("CARGO_PKG_VERSION"),
+    );
+    if design.units().next().is_some() {
+        text.push_str("| `sopc/*_hw.tcl` | components for Platform Designer (Qsys) |\n");
+    }
+    if design.stage.is_some() {
+        text.push_str(
+            "| `sopc/*_system.tcl` | a system with a processor and the stage, for `qsys-script` |\n\
+             | `sopc/quartus/BOARD/` | a Quartus project per board: top level, pins, timing |\n",
+        );
+    }
+    text.push_str("| `report.json` | the design in numbers |\n| `posicast.json` | which files are posicast's |\n");
+}
+
+fn components(text: &mut String, design: &Design<'_>) {
+    text.push_str("\n## Components\n\n| component | registers | what |\n|---|---|---|\n");
+    for unit in design.units() {
+        let _ = writeln!(
+            text,
+            "| `{}` | `{}` {}, {} bytes | {} |",
+            unit.top,
+            unit.component.name(),
+            unit.version(),
+            unit.span_bytes(),
+            unit.component.map().about().lines().collect::<Vec<_>>().join(" "),
+        );
+    }
+    text.push_str(
+        "\nEach has a clock, a reset that is synchronous at both edges, an Avalon-MM agent without wait states (read latency 1), an \
+         interrupt, and conduits for its pins. Their parameters say what was built; they cannot be changed.\n",
+    );
+}
+
+fn boards(text: &mut String, design: &Design<'_>) {
+    text.push_str("\n## Boards\n\n| board | device | processor | memory | Quartus | |\n|---|---|---|---|---|---|\n");
+    for board in Board::ALL {
+        let facts = board.facts();
+        let state = match (design.runs_on(board), design.board == Some(board)) {
+            (true, true) => "the machine file's board".to_owned(),
+            (true, false) => "the same machine on another board".to_owned(),
+            (false, _) => format!(
+                "no project: its oscillator has {} MHz, the machine's clock {} MHz, and there is no PLL here",
+                facts.oscillator_hz / 1e6,
+                design.clock_hz / 1e6
+            ),
+        };
+        let processor = match facts.processor {
+            Processor::Nios2 => "Nios II/e",
+            Processor::NiosV => "Nios V/m",
+        };
+        let _ = writeln!(
+            text,
+            "| {} (`{board}`) | {} ({}) | {processor} | {} KiB on chip | {} | {state} |",
+            facts.title,
+            board.family().device().name,
+            facts.quartus_family,
+            facts.memory_bytes >> 10,
+            facts.quartus,
+        );
+    }
+    text.push_str(
+        "\nThe versions do not mix: a project for 13.0sp1 has a Nios II, which later versions dropped; a Nios V is not in 13.0sp1. \
+         The components work in both.\n",
+    );
+}
+
+fn steps(text: &mut String, machine: &str, board: Board) {
+    let facts = board.facts();
+    let name = top::name(machine, board);
+    let system = system::name(machine, board);
+    let _ = write!(
+        text,
+        "
+## {title}, step by step
+
+With {quartus}, in a shell with its tools (Nios II Command Shell of 13.0sp1, Nios V Command Shell of newer ones):
+
+1. Go to the project: `cd sopc/quartus/{board}`.
+2. Build the system: `qsys-script --script=../../{system}.tcl '--search-path=../..,$'`. This writes `{system}.qsys`.
+",
+        title = facts.title,
+        quartus = facts.quartus,
+    );
+    let generation = match facts.processor {
+        Processor::Nios2 => format!(
+            "3. Generate it: `qsys-edit {system}.qsys '--search-path=../..,$'`, tab *Generation*, synthesis on, simulation off, \
+             *Generate*. Leave the output folder as it is offered: the project wants \
+             `{system}/synthesis/{system}.qip`."
+        ),
+        Processor::NiosV => format!(
+            "3. Generate it: `qsys-generate {system}.qsys --synthesis=VERILOG --output-directory={system} \
+             '--search-path=../..,$'`. The project wants `{system}/synthesis/{system}.qip`."
+        ),
+    };
+    let (position, software) = match facts.processor {
+        Processor::Nios2 => (
+            "",
+            format!("`nios2-bsp hal bsp {system}.sopcinfo`, and your program with the driver's sources"),
+        ),
+        Processor::NiosV => (
+            "@2",
+            format!(
+                "`niosv-bsp -c --type=hal --sopcinfo={system}.sopcinfo --bsp-dir=bsp --cpu-instance=cpu bsp/settings.bsp`, and your \
+                 program with the driver's sources (its compiler is installed apart)"
+            ),
+        ),
+    };
+    let _ = write!(
+        text,
+        "{generation}
+4. Check the pins in `{name}.qsf` against your wiring, and the delays in `{name}.sdc` against your drivers.
+5. Compile: `quartus_sh --flow compile {name}`. Then read the timing report: no path may fail, and none be unconstrained but those
+   of the JTAG pins.
+6. With the power stage **off**, load it: `quartus_pgm -m jtag -o 'p;output_files/{name}.sof{position}'`.
+7. Measure the gates: they must be at their off level before, while and after it is loaded, and while {key} is pressed.
+8. Software: {software}. `system.h` has the stage's facts as `STAGE_BASE`, `STAGE_IRQ`, `STAGE_MAGIC` and so on.
+",
+        key = facts.reset_pin.1,
+    );
+}
+
+fn resistors(text: &mut String, design: &Design<'_>) {
+    let pulled_up = match design.active_low_axes.as_slice() {
+        [] => "no axis of this machine".to_owned(),
+        axes => axes.join(", "),
+    };
+    let _ = write!(
+        text,
+        "
+## Resistors outside: not optional
+
+Until the device is configured, and where nothing uses a pin, all its pins are inputs with a weak pull-up: some 25 kΩ to 3.3 V,
+in the worst case 7 kΩ. A gate driver takes that for *on*.
+
+- Every gate pin needs a resistor outside that holds its **off** level: 1 kΩ to ground; to 3.3 V where `active_low` is set
+  ({pulled_up}). The same for `drive_enable` and `brake_release`, to ground.
+- Every line for which low is the safe side (`emergency_stop_n`, `limit_plus_n`, `limit_minus_n`, `drive_ready`, `drive_fault_n`,
+  `fault_n`) needs 10 kΩ to ground, so that a broken wire reads as a fault. The project turns the weak pull-ups of inputs off.
+- A line that you leave open reads low through its resistor: the axis stays in FAULT. That is meant.
+- The pins take 3.3 V. Encoders and switches of 5 V or 24 V need level shifters or optocouplers.
+"
+    );
+}
+
+fn pin_table(text: &mut String, machine: &str, board: Board, pins: &[Pin]) {
+    let facts = board.facts();
+    let _ = write!(
+        text,
+        "
+## Pins on the {title}
+
+Our choice, in the order of the expansion headers. `{name}.qsf` is the one place to change it.
+
+| port | | on the board | pin |
+|---|---|---|---|
+",
+        title = facts.title,
+        name = top::name(machine, board),
+    );
+    for pin in pins {
+        let direction = if pin.is_input { "in" } else { "out" };
+        let _ = writeln!(
+            text,
+            "| `{}` | {direction} | {} | {} |",
+            pin.port, pin.on_board, pin.location
+        );
+    }
+    if pins
+        .iter()
+        .any(|pin| pin.purpose == Use::Uart && pin.on_board.starts_with("GPIO"))
+    {
+        text.push_str(
+            "\nThe board's own serial line belongs to its hard processor, so the UART is on the header: 3.3 V, no RS-232 levels.\n",
+        );
+    }
+}
+
+fn bus(text: &mut String, design: &Design<'_>) {
+    let span = design.stage.as_ref().map_or(0, Unit::span_bytes);
+    let _ = write!(
+        text,
+        "
+## Bus
+
+The stage is at {base:#010x}, {span} bytes, interrupt 0; program and data are at 0. The host's UART has {baud} baud, 8 data bits, no
+parity, one stop bit.
+",
+        base = system::STAGE_BASE,
+        baud = system::BAUD,
+    );
+}

@@ -1,0 +1,164 @@
+//! A component as Platform Designer sees it: which of its ports belong to which interface.
+//!
+//! | interface | kind | ports |
+//! |---|---|---|
+//! | `clk` | clock | `clk` |
+//! | `reset` | reset, synchronous | `rst` |
+//! | `avs` | Avalon-MM agent | `avs_ROLE` |
+//! | `irq` | interrupt | `irq`, where the map has interrupts |
+//! | `pins` | conduit | what belongs to no axis: all pins of a block that stands alone |
+//! | `axis_NAME` | conduit | of a stage: `NAME_ROLE`, for each axis |
+//!
+//! Every port is in one interface. The rule reads the ports of the model's composition, which are those of the Verilog.
+
+use posicast_model::rtl::component::Component;
+use posicast_model::rtl::registers::{Access, Field};
+use posicast_model::rtl::{Direction, Port};
+
+/// A component of the package.
+#[derive(Debug, Clone)]
+pub struct Unit<'a> {
+    /// Name of its top module.
+    pub top: &'a str,
+    /// What it is.
+    pub component: &'a Component,
+    /// Its Verilog modules, each a file `rtl/NAME.v` of the package, the top last.
+    pub modules: Vec<String>,
+    /// The axes whose ports begin with their names: those of a stage, none of a block that stands alone.
+    pub axes: Vec<&'a str>,
+}
+
+/// Kind of an interface.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Kind {
+    Clock,
+    Reset,
+    Agent,
+    Interrupt,
+    Conduit,
+}
+
+/// Some ports that go together.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Interface {
+    pub(super) name: String,
+    pub(super) kind: Kind,
+    pub(super) signals: Vec<Signal>,
+}
+
+/// A port in its interface.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Signal {
+    pub(super) port: String,
+    /// What it is in the interface; in a conduit a name of its own.
+    pub(super) role: String,
+    pub(super) is_input: bool,
+    /// In bits.
+    pub(super) width: u32,
+}
+
+/// Name of the conduit of what belongs to no axis.
+pub(super) const PINS: &str = "pins";
+/// What the conduit of an axis is called begins with; the axis's name follows.
+const AXIS_PREFIX: &str = "axis_";
+
+impl Unit<'_> {
+    /// Its interfaces, each with at least one port; together they have every port of the top module once.
+    pub(super) fn interfaces(&self) -> Vec<Interface> {
+        let clk = Signal {
+            port: "clk".to_owned(),
+            role: "clk".to_owned(),
+            is_input: true,
+            width: 1,
+        };
+        let mut interfaces = vec![Interface {
+            name: "clk".to_owned(),
+            kind: Kind::Clock,
+            signals: vec![clk],
+        }];
+        for port in self.component.composition().ports() {
+            let (name, kind, role) = self.place(&port.name);
+            let signal = signal(port, role);
+            match interfaces.iter_mut().find(|interface| interface.name == name) {
+                Some(interface) => interface.signals.push(signal),
+                None => interfaces.push(Interface {
+                    name,
+                    kind,
+                    signals: vec![signal],
+                }),
+            }
+        }
+        interfaces
+    }
+
+    /// Its conduits.
+    pub(super) fn conduits(&self) -> Vec<Interface> {
+        let mut interfaces = self.interfaces();
+        interfaces.retain(|interface| interface.kind == Kind::Conduit);
+        interfaces
+    }
+
+    /// Interface, its kind, and role of a port.
+    fn place<'p>(&self, port: &'p str) -> (String, Kind, &'p str) {
+        if let Some(role) = port.strip_prefix("avs_") {
+            return ("avs".to_owned(), Kind::Agent, role);
+        }
+        match port {
+            "rst" => ("reset".to_owned(), Kind::Reset, "reset"),
+            "irq" => ("irq".to_owned(), Kind::Interrupt, "irq"),
+            _ => match self.axis_of(port) {
+                Some((axis, role)) => (format!("{AXIS_PREFIX}{axis}"), Kind::Conduit, role),
+                None => (PINS.to_owned(), Kind::Conduit, port),
+            },
+        }
+    }
+
+    /// The axis that a port belongs to, and the rest of its name. Of axes `x` and `x_2`, `x_2_home` is the second's.
+    pub(super) fn axis_of<'p>(&self, port: &'p str) -> Option<(&str, &'p str)> {
+        let of_axis = |axis: &&str| {
+            port.strip_prefix(*axis)?
+                .strip_prefix('_')
+                .filter(|role| !role.is_empty())
+        };
+        let axes = self.axes.iter().filter(|axis| of_axis(axis).is_some());
+        let axis = axes.max_by_key(|axis| axis.len())?;
+        Some((axis, of_axis(axis)?))
+    }
+
+    /// What it was built with: the constants of its register map behind magic and version.
+    pub(super) fn parameters(&self) -> impl Iterator<Item = &Field> {
+        let registers = self.component.map().registers().iter();
+        let constants = registers.filter(|register| register.access == Access::Constant && register.offset > 1);
+        constants.flat_map(|register| &register.fields)
+    }
+
+    /// Reset value of the field of the constants `magic` and `version`; 0 where the map has none of that name.
+    pub(super) fn constant(&self, register: &str, field: &str) -> u32 {
+        let register = self.component.map().register(register);
+        let field = register.and_then(|register| register.fields.iter().find(|other| other.name == field));
+        field.map_or(0, |field| field.reset)
+    }
+
+    /// Version of the register map, `MAJOR.MINOR`.
+    pub(super) fn version(&self) -> String {
+        format!(
+            "{}.{}",
+            self.constant("version", "major"),
+            self.constant("version", "minor")
+        )
+    }
+
+    /// Bytes that its agent takes on the bus.
+    pub(super) fn span_bytes(&self) -> u32 {
+        4 << self.component.map().address_bits()
+    }
+}
+
+fn signal(port: &Port, role: &str) -> Signal {
+    Signal {
+        port: port.name.clone(),
+        role: role.to_owned(),
+        is_input: port.direction == Direction::Input,
+        width: port.width,
+    }
+}
