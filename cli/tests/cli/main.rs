@@ -1,5 +1,6 @@
 //! The command line from outside: exit status, standard output, standard error, files.
 
+mod sopc;
 mod stage;
 mod support;
 mod verify;

@@ -46,8 +46,8 @@ fn contents(text: &mut String, design: &Design<'_>) {
         "\
 # {machine}
 
-Written by posicast {posicast}. Do not edit what is here: change the machine file and generate anew; `posicast generate` refuses
-to overwrite a file that was edited.
+Written by posicast {posicast}. Do not edit what is here: change the machine file and generate anew. `posicast generate` refuses
+to overwrite a file that was edited, and says which.
 
 | folder or file | what |
 |---|---|
@@ -84,7 +84,7 @@ fn components(text: &mut String, design: &Design<'_>) {
     }
     text.push_str(
         "\nEach has a clock, a reset that is synchronous at both edges, an Avalon-MM agent without wait states (read latency 1), an \
-         interrupt, and conduits for its pins. Their parameters say what was built; they cannot be changed.\n",
+         interrupt, and conduits for its pins.\nTheir parameters say what was built; they cannot be changed.\n",
     );
 }
 
@@ -116,8 +116,8 @@ fn boards(text: &mut String, design: &Design<'_>) {
         );
     }
     text.push_str(
-        "\nThe versions do not mix: a project for 13.0sp1 has a Nios II, which later versions dropped; a Nios V is not in 13.0sp1. \
-         The components work in both.\n",
+        "\nThe versions do not mix: Cyclone II and this Nios II are not in 25.1std, Cyclone V projects with a Nios V not in 13.0sp1. \
+         The components are the same for both.\n",
     );
 }
 
@@ -125,55 +125,76 @@ fn steps(text: &mut String, machine: &str, board: Board) {
     let facts = board.facts();
     let name = top::name(machine, board);
     let system = system::name(machine, board);
+    let shell = match facts.processor {
+        Processor::Nios2 => "Nios II Command Shell",
+        Processor::NiosV => "Nios V Command Shell",
+    };
     let _ = write!(
         text,
         "
 ## {title}, step by step
 
-With {quartus}, in a shell with its tools (Nios II Command Shell of 13.0sp1, Nios V Command Shell of newer ones):
+With {quartus}, in its {shell}, from this folder:
 
-1. Go to the project: `cd sopc/quartus/{board}`.
-2. Build the system: `qsys-script --script=../../{system}.tcl '--search-path=../..,$'`. This writes `{system}.qsys`.
+1. Copy the project, for Quartus writes in it, and so will you:
+   `PACKAGE=$PWD; cp -r sopc/quartus/{board} ../{name}; cd ../{name}`.
+2. Build the system: `qsys-script --script=$PACKAGE/sopc/{system}.tcl \"--search-path=$PACKAGE/sopc,\\$\"`. This writes
+   `{system}.qsys`.
 ",
         title = facts.title,
         quartus = facts.quartus,
     );
-    let generation = match facts.processor {
-        Processor::Nios2 => format!(
-            "3. Generate it: `qsys-edit {system}.qsys '--search-path=../..,$'`, tab *Generation*, synthesis on, simulation off, \
-             *Generate*. Leave the output folder as it is offered: the project wants \
-             `{system}/synthesis/{system}.qip`."
-        ),
-        Processor::NiosV => format!(
-            "3. Generate it: `qsys-generate {system}.qsys --synthesis=VERILOG --output-directory={system} \
-             '--search-path=../..,$'`. The project wants `{system}/synthesis/{system}.qip`."
-        ),
-    };
-    let (position, software) = match facts.processor {
-        Processor::Nios2 => (
-            "",
-            format!("`nios2-bsp hal bsp {system}.sopcinfo`, and your program with the driver's sources"),
-        ),
-        Processor::NiosV => (
-            "@2",
-            format!(
-                "`niosv-bsp -c --type=hal --sopcinfo={system}.sopcinfo --bsp-dir=bsp --cpu-instance=cpu bsp/settings.bsp`, and your \
-                 program with the driver's sources (its compiler is installed apart)"
-            ),
-        ),
+    text.push_str(&generate_step(board, &system));
+    let position = match facts.processor {
+        Processor::Nios2 => "",
+        // The hard processor is the first device of the chain.
+        Processor::NiosV => "@2",
     };
     let _ = write!(
         text,
-        "{generation}
-4. Check the pins in `{name}.qsf` against your wiring, and the delays in `{name}.sdc` against your drivers.
+        "4. Set the pins in `{name}.qsf` to your wiring, and the delays in `{name}.sdc` to your drivers.
 5. Compile: `quartus_sh --flow compile {name}`. Then read the timing report: no path may fail, and none be unconstrained but those
    of the JTAG pins.
 6. With the power stage **off**, load it: `quartus_pgm -m jtag -o 'p;output_files/{name}.sof{position}'`.
 7. Measure the gates: they must be at their off level before, while and after it is loaded, and while {key} is pressed.
-8. Software: {software}. `system.h` has the stage's facts as `STAGE_BASE`, `STAGE_IRQ`, `STAGE_MAGIC` and so on.
+8. Software: {software}.
+   `system.h` has the stage's facts as `STAGE_BASE`, `STAGE_IRQ`, `STAGE_MAGIC` and so on. The program is loaded over JTAG and is
+   gone after power-off; for one that stays, switch `initMemContent` of the memory on and give it the program's `.hex`.
 ",
         key = facts.reset_pin.1,
+        software = software(facts.processor, &system),
     );
+}
+
+/// The third step, which differs most between the versions.
+fn generate_step(board: Board, system: &str) -> String {
+    let search = "\"--search-path=$PACKAGE/sopc,\\$\"";
+    match board.facts().processor {
+        Processor::Nios2 => format!(
+            "3. Generate it: `qsys-edit {system}.qsys {search}`, tab *Generation*, synthesis on, simulation off, *Generate*.
+   Leave the output folder as it is offered: the project wants `{system}/synthesis/{system}.qip`.
+"
+        ),
+        Processor::NiosV => format!(
+            "3. Generate it: `qsys-generate {system}.qsys --synthesis=VERILOG --output-directory={system} {search}`.
+   The project wants `{system}/synthesis/{system}.qip`.
+"
+        ),
+    }
+}
+
+/// How software is made for the system.
+fn software(processor: Processor, system: &str) -> String {
+    match processor {
+        Processor::Nios2 => format!(
+            "`nios2-bsp hal bsp {system}.sopcinfo --set hal.enable_small_c_library true --set hal.enable_reduced_device_drivers true`
+   (the memory is small), then your program with the driver's sources"
+        ),
+        Processor::NiosV => format!(
+            "`niosv-bsp -c --type=hal --sopcinfo={system}.sopcinfo --bsp-dir=bsp --cpu-instance=cpu bsp/settings.bsp`, then your
+   program with the driver's sources; its compiler is installed apart"
+        ),
+    }
 }
 
 fn resistors(text: &mut String, design: &Design<'_>) {
@@ -206,7 +227,8 @@ fn pin_table(text: &mut String, machine: &str, board: Board, pins: &[Pin]) {
         "
 ## Pins on the {title}
 
-Our choice, in the order of the expansion headers. `{name}.qsf` is the one place to change it.
+Our choice, in the order of the expansion headers; the copied `{name}.qsf` is the one place to change it. Where a pin is on its
+header is in the board's manual.
 
 | port | | on the board | pin |
 |---|---|---|---|

@@ -52,9 +52,9 @@ const STAGE_INTERRUPT: u32 = 0;
 
 /// Names that differ between the processors.
 struct Names {
-    /// Source of the clock, and of the reset.
+    /// Source of the clock, and sources of the reset: a debugger's resets the stage too, so that its gates go off.
     clock: &'static str,
-    reset: &'static str,
+    resets: &'static [&'static str],
     /// The processor's reset input, its masters, its interrupt receiver.
     cpu_reset: &'static str,
     data: &'static str,
@@ -66,7 +66,7 @@ struct Names {
 
 const NIOS_2: Names = Names {
     clock: "clock.clk",
-    reset: "clock.clk_reset",
+    resets: &["clock.clk_reset", "cpu.jtag_debug_module_reset"],
     cpu_reset: "cpu.reset_n",
     data: "cpu.data_master",
     instructions: "cpu.instruction_master",
@@ -76,7 +76,7 @@ const NIOS_2: Names = Names {
 
 const NIOS_V: Names = Names {
     clock: "clock.out_clk",
-    reset: "reset_bridge.out_reset",
+    resets: &["reset_bridge.out_reset"],
     cpu_reset: "cpu.reset",
     data: "cpu.data_manager",
     instructions: "cpu.instruction_manager",
@@ -180,9 +180,7 @@ impl Script {
             ("exceptionOffset", text("32")),
         ];
         self.instance("cpu", "altera_nios2_qsys", &cpu);
-        self.connect(NIOS_2.clock, "cpu.clk");
-        self.connect(NIOS_2.reset, NIOS_2.cpu_reset);
-        self.connect("cpu.jtag_debug_module_reset", NIOS_2.cpu_reset);
+        self.clocked(&NIOS_2, "cpu.clk", NIOS_2.cpu_reset);
         for master in [NIOS_2.data, NIOS_2.instructions] {
             self.on_bus(master, "cpu.jtag_debug_module", DEBUG_BASE);
         }
@@ -205,8 +203,7 @@ impl Script {
             ("resetOffset", text("0")),
         ];
         self.instance("cpu", "intel_niosv_m", &cpu);
-        self.connect(NIOS_V.clock, "cpu.clk");
-        self.connect(NIOS_V.reset, NIOS_V.cpu_reset);
+        self.clocked(&NIOS_V, "cpu.clk", NIOS_V.cpu_reset);
         self.on_bus(NIOS_V.data, "cpu.timer_sw_agent", MACHINE_TIMER_BASE);
         for master in [NIOS_V.data, NIOS_V.instructions] {
             self.on_bus(master, "cpu.dm_agent", NIOS_V_DEBUG_BASE);
@@ -218,10 +215,10 @@ impl Script {
         let parameters = [
             ("memorySize", bytes.to_string()),
             ("dataWidth", "32".to_owned()),
-            ("initMemContent", "1".to_owned()),
+            ("initMemContent", "0".to_owned()),
         ];
         self.instance("memory", "altera_avalon_onchip_memory2", &parameters);
-        self.clocked(names, "memory", "clk1", "reset1");
+        self.clocked(names, "memory.clk1", "memory.reset1");
         for master in [names.data, names.instructions] {
             self.on_bus(master, "memory.s1", MEMORY_BASE);
         }
@@ -238,7 +235,7 @@ impl Script {
             _ => Vec::new(),
         };
         self.instance(instance, kind, &parameters);
-        self.clocked(names, instance, "clk", "reset");
+        self.clocked(names, &format!("{instance}.clk"), &format!("{instance}.reset"));
         self.on_bus(names.data, &format!("{instance}.{agent}"), *base);
         if let Some(number) = interrupt {
             self.interrupt(names, &format!("{instance}.irq"), *number);
@@ -247,14 +244,17 @@ impl Script {
 
     fn stage(&mut self, names: &Names, stage: &Unit<'_>) {
         self.instance(STAGE, stage.top, &[]);
-        self.clocked(names, STAGE, "clk", "reset");
+        self.clocked(names, &format!("{STAGE}.clk"), &format!("{STAGE}.reset"));
         self.on_bus(names.data, &format!("{STAGE}.avs"), STAGE_BASE);
         self.interrupt(names, &format!("{STAGE}.irq"), STAGE_INTERRUPT);
     }
 
-    fn clocked(&mut self, names: &Names, instance: &str, clock: &str, reset: &str) {
-        self.connect(names.clock, &format!("{instance}.{clock}"));
-        self.connect(names.reset, &format!("{instance}.{reset}"));
+    /// A clock input and a reset input, on their sources.
+    fn clocked(&mut self, names: &Names, clock: &str, reset: &str) {
+        self.connect(names.clock, clock);
+        for source in names.resets {
+            self.connect(source, reset);
+        }
     }
 
     fn exports(&mut self, names: &Names, stage: &Unit<'_>) {
