@@ -14,7 +14,7 @@ use posicast_testbench::blocks::{Block, ComponentBlock};
 use std::path::Path;
 
 /// What the name of a stage's top module ends with.
-const STAGE_SUFFIX: &str = "_stage";
+pub(crate) const STAGE_SUFFIX: &str = "_stage";
 /// The key of an axis's name.
 const NAME_KEY: &str = "axis.name";
 /// The key of a PWM's period.

@@ -4,10 +4,11 @@ use crate::blocks::COMPONENT_SUFFIX;
 use crate::design::Report;
 use crate::failure::Failure;
 use crate::output::{self, Table};
+use crate::stage::STAGE_SUFFIX;
 use crate::{generate, machine, progress, stage};
 use posicast_model::spec::Machine;
 use posicast_synth::package;
-use posicast_synth::yosys::{Block, Estimate, Family, Resources, Yosys, YosysError};
+use posicast_synth::yosys::{Block, Estimate, Excess, Family, Resources, Yosys, YosysError};
 use serde::Serialize;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -36,15 +37,18 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let spinner = progress::spinner("Yosys maps the design");
     let estimate = yosys.estimate(&files, &machine.name, family).map_err(failure)?;
     spinner.finish_and_clear();
-    let components = components(&files)
-        .into_iter()
-        .map(|name| {
-            let spinner = progress::spinner(&format!("Yosys maps {name}"));
-            let total = yosys.estimate(&files, &name, family).map_err(failure)?.total;
-            spinner.finish_and_clear();
-            Ok(Block { name, resources: total })
-        })
-        .collect::<Result<Vec<_>, Failure>>()?;
+    let mut lacks = lacks(&estimate);
+    let mut components = Vec::new();
+    for name in self::components(&files, &machine.name) {
+        let spinner = progress::spinner(&format!("Yosys maps {name}"));
+        let estimate = yosys.estimate(&files, &name, family).map_err(failure)?;
+        spinner.finish_and_clear();
+        lacks.extend(self::lacks(&estimate));
+        components.push(Block {
+            name,
+            resources: estimate.total,
+        });
+    }
     let document = Document {
         estimate: &estimate,
         components: &components,
@@ -54,20 +58,25 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     } else {
         output::print(&(text(&estimate) + &components_text(&components)))?
     }
-    let excesses = estimate.excesses();
-    if excesses.is_empty() {
+    if lacks.is_empty() {
         return Ok(());
     }
-    let list: Vec<_> = excesses
-        .iter()
-        .map(|e| {
-            format!(
-                "{} {} needed, {} available, most of it in {}",
-                e.needed, e.resource, e.available, e.block
-            )
-        })
-        .collect();
-    Err(Failure::Check(format!("does not fit the device: {}", list.join("; "))))
+    Err(Failure::Check(format!("does not fit the device: {}", lacks.join("; "))))
+}
+
+/// What the device has too little of for this top, and by how much.
+fn lacks(estimate: &Estimate) -> Vec<String> {
+    let lack = |excess: &Excess<'_>| {
+        let Excess {
+            resource,
+            needed,
+            available,
+            block,
+        } = excess;
+        let missing = needed - available;
+        format!("{needed} {resource} needed, {available} available, {missing} too few; most of it in {block}")
+    };
+    estimate.excesses().iter().map(lack).collect()
 }
 
 /// `synth --json`: the estimate of the top, and of each component beside it, which is in no sum.
@@ -79,11 +88,12 @@ struct Document<'a> {
     components: &'a [Block],
 }
 
-/// The top modules of the components among these files.
-fn components(files: &[PathBuf]) -> Vec<String> {
+/// The top modules of the components among these files: the stage, and the blocks that stand alone.
+fn components(files: &[PathBuf], machine: &str) -> Vec<String> {
+    let stage = format!("{machine}{STAGE_SUFFIX}");
     let stems = files.iter().filter_map(|file| file.file_stem()?.to_str());
     let mut names: Vec<String> = stems
-        .filter(|name| name.ends_with(COMPONENT_SUFFIX))
+        .filter(|name| name.ends_with(COMPONENT_SUFFIX) || *name == stage)
         .map(str::to_owned)
         .collect();
     names.sort_unstable();
@@ -157,5 +167,39 @@ fn failure(error: YosysError) -> Failure {
     match error {
         YosysError::Missing(_) => Failure::missing_tool(error),
         other => Failure::because(other),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use posicast_synth::yosys::Method;
+
+    #[test]
+    fn unit_what_is_lacking_says_by_how_much_and_where() {
+        let of = |cells| Resources {
+            cells,
+            ..Resources::default()
+        };
+        let block = |name: &str, cells| Block {
+            name: name.to_owned(),
+            resources: of(cells),
+        };
+        let mut estimate = Estimate {
+            family: Family::Cyclone2,
+            blocks: vec![block("u_x", 9_000), block("u_y", 10_000)],
+            total: of(19_000),
+            device: Family::Cyclone2.device(),
+            clock_mhz_estimate: None,
+            method: Method {
+                tool: String::new(),
+                mapped_as: Family::Cyclone2.mapped_as(),
+                note: String::new(),
+            },
+        };
+        let words = "19000 cells needed, 18752 available, 248 too few; most of it in u_y";
+        assert_eq!(lacks(&estimate), [words]);
+        estimate.total = of(18_752);
+        assert!(lacks(&estimate).is_empty());
     }
 }

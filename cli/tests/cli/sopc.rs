@@ -408,6 +408,70 @@ fn cli_a_project_places_and_constrains_every_port() {
 }
 
 #[test]
+fn cli_lines_end_in_registers_that_the_timing_excludes_and_in_no_others() {
+    let text = fs::read_to_string(example("xy-stage.toml")).unwrap();
+    // With a trace there is an encoder generator between the pins and the pulse counter.
+    let with_trace = text.replacen("[axis.limits]", "[axis.trace]\nsamples = 256\n\n[axis.limits]", 1);
+    assert_ne!(with_trace, text);
+    for machine in [text, with_trace] {
+        check_lines(&machine);
+    }
+}
+
+fn check_lines(machine: &str) {
+    let (folder, output) = package(machine);
+    let project = output.join("sopc/quartus/de1");
+    let ports = verilog_ports(&project.join("xy_stage_de1.v"));
+    let (timing, _) = check_project("13.0", &project.join("xy_stage_de1.sdc"), &ports);
+    let excluded = |line: &str, register: &str| {
+        timing.iter().any(|record| {
+            let ends = record[2..]
+                .iter()
+                .any(|end| register.ends_with(end.trim_start_matches(['*', '|'])));
+            record[0] == "false_path" && record[1] == line && ends
+        })
+    };
+    let inside = ["clk", "rst", "pll_locked"];
+    let stage = verilog_ports(&output.join("rtl/xy_stage_stage.v"));
+    let is_line =
+        |name: &str, direction: &str| direction == "Input" && !inside.contains(&name) && !name.starts_with("avs_");
+    let lines: Vec<&String> = stage
+        .iter()
+        .filter(|(name, (direction, _))| is_line(name, direction))
+        .map(|(name, _)| name)
+        .collect();
+    assert_eq!(lines.len(), 1 + 2 * 9);
+    // What a line reaches through the netlist, up to flip-flops and not through them.
+    let kinds = ["dff", "sdff", "adff", "dffe", "sdffe", "adffe", "sdffce"];
+    let stop: String = kinds.map(|kind| format!(":-${kind}[Q]")).concat();
+    let mut script = String::from("hierarchy -top xy_stage_stage; proc; flatten; opt_clean; ");
+    for line in &lines {
+        let list = folder.path().join(line);
+        script += &format!(
+            "tee -q -o {} select -list i:{line} %co*{stop} t:$*dff* %i; ",
+            list.display()
+        );
+    }
+    let mut yosys = Command::new("yosys");
+    let (records, _) = check_component(&output.join("sopc/xy_stage_stage_hw.tcl"));
+    yosys
+        .args(["-q", "-p", &script])
+        .args(file_set(&records, "QUARTUS_SYNTH", &output.join("sopc")));
+    let run = yosys.output().unwrap();
+    assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stderr));
+    for line in lines {
+        let reached = fs::read_to_string(folder.path().join(line)).unwrap();
+        assert!(!reached.is_empty(), "{line} reaches nothing");
+        for register in reached.lines() {
+            assert!(
+                excluded(line, register),
+                "{line} reaches {register}, which the .sdc does not exclude"
+            );
+        }
+    }
+}
+
+#[test]
 fn cli_a_project_that_is_wrong_is_found() {
     let (_folder, output) = xy_stage();
     let project = output.join("sopc/quartus/de1");
@@ -448,7 +512,7 @@ fn cli_four_axes_with_scales_find_their_pins() {
         "[axis.pwm]",
         "[axis.scale]\ncounts_per_unit = 10_000_000\nuse = \"monitor\"\n\n[axis.pwm]",
     );
-    let named = ["x", "y", "z", "u"].map(|name| with_scale.replacen("name = \"x\"", &format!("name = \"{name}\""), 1));
+    let named = ["x", "y", "z", "w"].map(|name| with_scale.replacen("name = \"x\"", &format!("name = \"{name}\""), 1));
     let (_folder, output) = package(&format!("{head}{}", named.join("\n")));
     for (board, quartus, ..) in BOARDS {
         let project = output.join("sopc/quartus").join(board);

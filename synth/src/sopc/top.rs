@@ -34,7 +34,6 @@ pub(super) fn text(machine: &str, board: Board, stage: &Unit<'_>, pins: &[Pin]) 
     for conduit in stage.conduits() {
         for signal in conduit.signals {
             let net = match signal.port.as_str() {
-                "tick" => String::new(),
                 "pll_locked" => "1'b1".to_owned(),
                 port => port.to_owned(),
             };
@@ -74,9 +73,11 @@ module {name} (
         synchroniser_second <= synchroniser_first;
     end
 
+    wire tick;
     {system} u_system (
 {connections}
     );
+    wire unused = &{{1'b0, tick}};
 endmodule
 
 `default_nettype wire
