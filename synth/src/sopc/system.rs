@@ -267,7 +267,7 @@ impl Script {
         };
         export("clk", "clock sink", clock);
         export("reset", "reset sink", reset);
-        export("uart", "conduit end", "uart.external_connection");
+        export("serial", "conduit end", "uart.external_connection");
         for conduit in stage.conduits() {
             export(&conduit.name, "conduit end", &format!("{STAGE}.{}", conduit.name));
         }

@@ -28,8 +28,8 @@ pub(super) fn text(machine: &str, board: Board, stage: &Unit<'_>, pins: &[Pin]) 
     let mut connections = vec![
         ("clk_clk".to_owned(), pins::CLOCK.to_owned()),
         ("reset_reset_n".to_owned(), "synchroniser_second".to_owned()),
-        ("uart_rxd".to_owned(), pins::UART_RECEIVE.to_owned()),
-        ("uart_txd".to_owned(), pins::UART_TRANSMIT.to_owned()),
+        ("serial_rxd".to_owned(), pins::UART_RECEIVE.to_owned()),
+        ("serial_txd".to_owned(), pins::UART_TRANSMIT.to_owned()),
     ];
     for conduit in stage.conduits() {
         for signal in conduit.signals {

@@ -1,0 +1,193 @@
+//! Projects: pins and timing of every port of the top level.
+
+use super::{
+    BOARDS, check_component, check_project, check_system, file_set, findings, package, replace, verilog_ports, xy_stage,
+};
+use crate::support::example;
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use std::process::Command;
+
+#[test]
+fn cli_a_project_places_and_constrains_every_port() {
+    let (_folder, output) = xy_stage();
+    for (board, quartus, clock_pin, device) in BOARDS {
+        let name = format!("xy_stage_{board}");
+        let project = output.join("sopc/quartus").join(board);
+        let ports = verilog_ports(&project.join(format!("{name}.v")));
+        let (settings, content) = check_project(quartus, &project.join(format!("{name}.qsf")), &ports);
+        assert!(content, "{:#?}", findings(&settings));
+        let pins: BTreeMap<&str, &str> = settings
+            .iter()
+            .filter(|record| record[0] == "pin")
+            .map(|record| (record[1].as_str(), record[2].as_str()))
+            .collect();
+        assert_eq!(
+            pins.keys().copied().collect::<Vec<_>>(),
+            ports.keys().map(String::as_str).collect::<Vec<_>>()
+        );
+        assert_eq!(pins["clock_50"], clock_pin);
+        let global = |name: &str| {
+            settings
+                .iter()
+                .find(|record| record[0] == "global" && record[1] == name)
+                .unwrap()[2..]
+                .join(" ")
+        };
+        assert_eq!(global("DEVICE"), device);
+        assert_eq!(global("TOP_LEVEL_ENTITY"), name);
+        assert_eq!(
+            global("RESERVE_ALL_UNUSED_PINS_WEAK_PULLUP"),
+            "AS INPUT TRI-STATED WITH WEAK PULL-UP"
+        );
+        // A broken wire must not read as healthy.
+        for line in ["emergency_stop_n", "x_fault_n", "x_limit_plus_n", "y_drive_ready"] {
+            let off = ["assignment", line, "WEAK_PULL_UP_RESISTOR", "OFF"];
+            assert!(settings.iter().any(|record| record[..] == off), "{line}");
+        }
+
+        let (timing, content) = check_project(quartus, &project.join(format!("{name}.sdc")), &ports);
+        assert!(content, "{:#?}", findings(&timing));
+        assert!(
+            timing
+                .iter()
+                .any(|record| record[..] == ["clock", "clock_50", "20.000"])
+        );
+        for port in ports.keys().filter(|port| *port != "clock_50") {
+            let delays = timing
+                .iter()
+                .filter(|record| record[0] == "delay" && record[1] == *port);
+            assert_eq!(delays.count(), 2, "{port}");
+        }
+        // False paths go to first flip-flops and fault latches, and to nothing else; registers of these names are in the RTL.
+        let ends: BTreeSet<String> = timing
+            .iter()
+            .filter(|record| record[0] == "false_path")
+            .map(|record| record[2..].join(" "))
+            .collect();
+        let expected = ["*altera_std_synchronizer:*|din_s1", "*synchroniser_first", "*|armed"];
+        assert_eq!(ends.iter().map(String::as_str).collect::<Vec<_>>(), expected);
+        let rtl = |module: &str| fs::read_to_string(output.join(format!("rtl/{module}.v"))).unwrap();
+        assert!(rtl("xy_stage_stage_synchroniser").contains("reg synchroniser_first;"));
+        assert!(rtl("xy_stage_stage_x_fault_latch").contains("output reg  armed"));
+    }
+}
+
+#[test]
+fn cli_lines_end_in_registers_that_the_timing_excludes_and_in_no_others() {
+    let text = fs::read_to_string(example("xy-stage.toml")).unwrap();
+    // With a trace there is an encoder generator between the pins and the pulse counter.
+    let with_trace = text.replacen("[axis.limits]", "[axis.trace]\nsamples = 256\n\n[axis.limits]", 1);
+    assert_ne!(with_trace, text);
+    for machine in [text, with_trace] {
+        check_lines(&machine);
+    }
+}
+
+fn check_lines(machine: &str) {
+    let (folder, output) = package(machine);
+    let project = output.join("sopc/quartus/de1");
+    let ports = verilog_ports(&project.join("xy_stage_de1.v"));
+    let (timing, _) = check_project("13.0", &project.join("xy_stage_de1.sdc"), &ports);
+    let excluded = |line: &str, register: &str| {
+        timing.iter().any(|record| {
+            let ends = record[2..]
+                .iter()
+                .any(|end| register.ends_with(end.trim_start_matches(['*', '|'])));
+            record[0] == "false_path" && record[1] == line && ends
+        })
+    };
+    let inside = ["clk", "rst", "pll_locked"];
+    let stage = verilog_ports(&output.join("rtl/xy_stage_stage.v"));
+    let is_line =
+        |name: &str, direction: &str| direction == "Input" && !inside.contains(&name) && !name.starts_with("avs_");
+    let lines: Vec<&String> = stage
+        .iter()
+        .filter(|(name, (direction, _))| is_line(name, direction))
+        .map(|(name, _)| name)
+        .collect();
+    assert_eq!(lines.len(), 1 + 2 * 9);
+    // What a line reaches through the netlist, up to flip-flops and not through them.
+    let kinds = ["dff", "sdff", "adff", "dffe", "sdffe", "adffe", "sdffce"];
+    let stop: String = kinds.map(|kind| format!(":-${kind}[Q]")).concat();
+    let mut script = String::from("hierarchy -top xy_stage_stage; proc; flatten; opt_clean; ");
+    for line in &lines {
+        let list = folder.path().join(line);
+        script += &format!(
+            "tee -q -o {} select -list i:{line} %co*{stop} t:$*dff* %i; ",
+            list.display()
+        );
+    }
+    let mut yosys = Command::new("yosys");
+    let (records, _) = check_component(&output.join("sopc/xy_stage_stage_hw.tcl"));
+    yosys
+        .args(["-q", "-p", &script])
+        .args(file_set(&records, "QUARTUS_SYNTH", &output.join("sopc")));
+    let run = yosys.output().unwrap();
+    assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stderr));
+    for line in lines {
+        let reached = fs::read_to_string(folder.path().join(line)).unwrap();
+        assert!(!reached.is_empty(), "{line} reaches nothing");
+        for register in reached.lines() {
+            assert!(
+                excluded(line, register),
+                "{line} reaches {register}, which the .sdc does not exclude"
+            );
+        }
+    }
+}
+
+#[test]
+fn cli_a_project_that_is_wrong_is_found() {
+    let (_folder, output) = xy_stage();
+    let project = output.join("sopc/quartus/de1");
+    let ports = verilog_ports(&project.join("xy_stage_de1.v"));
+    let breaks = [
+        ("qsf", "PIN_L1 -to clock_50", "PIN_A13 -to clock_50"),
+        ("qsf", "-to x_home", "-to x_hom"),
+        ("qsf", "-name SDC_FILE", "-name SDC_ENTITY_FILE"),
+        (
+            "sdc",
+            "create_clock -name clock_50 -period",
+            "create_clock -name clock_50 -perod",
+        ),
+        (
+            "sdc",
+            "set_output_delay -clock clock_50 -max",
+            "set_output_delay -clock clock -max",
+        ),
+        ("sdc", "[get_ports {uart_txd ", "[get_ports {uart_rxd "),
+        ("sdc", "# Delays of drivers", "derive_clock_uncertainty\n#"),
+    ];
+    for (extension, from, to) in breaks {
+        let file = project.join(format!("xy_stage_de1.{extension}"));
+        let text = fs::read_to_string(&file).unwrap();
+        replace(&file, from, to);
+        let (_, content) = check_project("13.0", &file, &ports);
+        assert!(!content, "{from} -> {to} was not found");
+        fs::write(&file, text).unwrap();
+    }
+}
+
+#[test]
+fn cli_four_axes_with_scales_find_their_pins() {
+    let text = fs::read_to_string(example("xy-stage.toml")).unwrap();
+    let (head, axes) = text.split_at(text.find("[[axis]]").unwrap());
+    let axis = &axes[..axes[1..].find("[[axis]]").unwrap()];
+    let with_scale = axis.replace(
+        "[axis.pwm]",
+        "[axis.scale]\ncounts_per_unit = 10_000_000\nuse = \"monitor\"\n\n[axis.pwm]",
+    );
+    let named = ["x", "y", "z", "w"].map(|name| with_scale.replacen("name = \"x\"", &format!("name = \"{name}\""), 1));
+    let (_folder, output) = package(&format!("{head}{}", named.join("\n")));
+    for (board, quartus, ..) in BOARDS {
+        let project = output.join("sopc/quartus").join(board);
+        let ports = verilog_ports(&project.join(format!("xy_stage_{board}.v")));
+        // Clock, button, serial line, emergency stop; of each axis 11 lines in and 6 out.
+        assert_eq!(ports.len(), 5 + 4 * 17);
+        let (records, content) = check_project(quartus, &project.join(format!("xy_stage_{board}.qsf")), &ports);
+        assert!(content, "{:#?}", findings(&records));
+        let (records, content) = check_system(quartus, &output.join(format!("sopc/xy_stage_{board}_system.tcl")));
+        assert!(content, "{:#?}", findings(&records));
+    }
+}
