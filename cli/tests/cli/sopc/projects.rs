@@ -114,7 +114,7 @@ fn check_lines(machine: &str) {
     for line in &lines {
         let list = folder.path().join(line);
         script += &format!(
-            "tee -q -o {} select -list i:{line} %co*{stop} t:$*dff* %i; ",
+            "tee -q -o {} select -list i:{line} %co*{stop} t:$*dff* %i %co1:+[Q] w:* %i; ",
             list.display()
         );
     }

@@ -93,8 +93,8 @@ set_interface_property clk EXPORT_OF clock.clk_in
 add_interface reset reset sink
 set_interface_property reset EXPORT_OF clock.clk_in_reset
 
-add_interface uart conduit end
-set_interface_property uart EXPORT_OF uart.external_connection
+add_interface serial conduit end
+set_interface_property serial EXPORT_OF uart.external_connection
 
 add_interface pins conduit end
 set_interface_property pins EXPORT_OF stage.pins

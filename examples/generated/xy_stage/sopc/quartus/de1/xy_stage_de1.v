@@ -57,14 +57,15 @@ module xy_stage_de1 (
         synchroniser_second <= synchroniser_first;
     end
 
+    wire tick;
     xy_stage_de1_system u_system (
         .clk_clk(clock_50),
         .reset_reset_n(synchroniser_second),
-        .uart_rxd(uart_rxd),
-        .uart_txd(uart_txd),
+        .serial_rxd(uart_rxd),
+        .serial_txd(uart_txd),
         .pins_emergency_stop_n(emergency_stop_n),
         .pins_pll_locked(1'b1),
-        .pins_tick(),
+        .pins_tick(tick),
         .axis_x_a(x_a),
         .axis_x_b(x_b),
         .axis_x_z(x_z),
@@ -96,6 +97,7 @@ module xy_stage_de1 (
         .axis_y_drive_enable(y_drive_enable),
         .axis_y_brake_release(y_brake_release)
     );
+    wire unused = &{1'b0, tick};
 endmodule
 
 `default_nettype wire
