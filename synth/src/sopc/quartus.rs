@@ -127,7 +127,7 @@ set_input_delay -clock {clock} -max {most:.1} [get_ports {{{lines}}}]
 set_output_delay -clock {clock} -min {least:.1} [get_ports {{{outputs}}}]
 set_output_delay -clock {clock} -max {most:.1} [get_ports {{{outputs}}}]
 
-# Lines change at any time. Each ends in a synchroniser, and its first flip-flop may be late
+# Lines change at any time. Each ends in a synchroniser, and the first flip-flop on the way may be late
 set_false_path -from [get_ports {{{synchronised}}}] -to [get_registers {{{first}}}]
 set_false_path -from [get_ports {{{receive}}}] -to [get_registers {{*altera_std_synchronizer:*|din_s1}}]
 ",
@@ -146,12 +146,17 @@ set_false_path -from [get_ports {{{trips}}}] -to [get_registers {{*|armed}}]
     text
 }
 
-/// Patterns of the flip-flops that lines end in. With an encoder generator a plain one stands before the synchroniser.
-fn first_registers(stage: &Unit<'_>) -> &'static str {
-    match stage.modules.iter().any(|module| module.ends_with("_pin_register")) {
-        true => "*synchroniser_first *|pin_register_q",
-        false => "*synchroniser_first",
-    }
+/// Patterns of the flip-flops that lines end in: the first of a synchroniser, or a plain one that stands before it, as the
+/// encoder generator and `drive_command` have.
+fn first_registers(stage: &Unit<'_>) -> String {
+    let plain = [
+        ("_pin_register", "*|pin_register_q"),
+        ("_drive_command", "*|filtered_fault_n_q*"),
+    ];
+    let has = |module: &str| stage.modules.iter().any(|name| name.ends_with(module));
+    let plain = plain.into_iter().filter(|(module, _)| has(module));
+    let patterns = std::iter::once("*synchroniser_first").chain(plain.map(|(_, pattern)| pattern));
+    patterns.collect::<Vec<_>>().join(" ")
 }
 
 /// Does this pin trip a PWM without a clock?

@@ -117,7 +117,8 @@ fn boards(text: &mut String, design: &Design<'_>) {
     }
     text.push_str(
         "\nThe versions do not mix: Cyclone II and this Nios II are not in 25.1std, Cyclone V projects with a Nios V not in 13.0sp1. \
-         The components are the same for both.\n",
+         The components are the same for both.\n\nPosicast checks these files without Quartus: its commands, its fitter and its timing have the last word. Whether the \
+         stage fits the device, by estimate and without the processor, says `posicast synth .`\n",
     );
 }
 
