@@ -2,9 +2,9 @@
 #![cfg(test)]
 
 use posicast_model::analysis::residual_vibration;
-use posicast_model::design::{DesignError, MachineDesign, design_machine};
+use posicast_model::design::{DesignError, MachineDesign, design_machine, mode_lag_s};
 use posicast_model::digitise::{DELAY_MAX_SAMPLES, TableError};
-use posicast_model::spec::{self, Machine};
+use posicast_model::spec::{self, Machine, Scale, ScaleUse};
 use proptest::prelude::*;
 
 /// Axes `a`, `b`, … of a kind, frequency and damping each, and further lines at the end.
@@ -122,6 +122,30 @@ fn unit_an_axis_without_modes_gets_the_lag_of_the_others() {
     near(delay.added_s, design.stage.unwrap().total_s);
     // A two-tap table: a delay of a fraction of a sample.
     assert_eq!(design.axes[1].table.taps().len(), 2);
+}
+
+#[test]
+fn unit_a_loop_that_holds_the_load_has_no_lag_of_modes() {
+    let text = include_str!("../../examples/xy-stage-torque.toml");
+    let torque = spec::parse("m.toml", text).unwrap();
+    assert_eq!(mode_lag_s(&torque.axes[0]), 0.0);
+    let mut open = torque.axes[0].clone();
+    open.controller = None;
+    near(mode_lag_s(&open), 0.0003691310407755789);
+    let text = include_str!("../../examples/xy-stage.toml");
+    let velocity = spec::parse("m.toml", text).unwrap();
+    near(mode_lag_s(&velocity.axes[0]), 0.0003830853101510995);
+    let mut scaled = velocity.axes[0].clone();
+    scaled.scale = Some(Scale {
+        counts_per_unit: 1e6,
+        usage: ScaleUse::Monitor,
+    });
+    assert!(mode_lag_s(&scaled) > 0.0);
+    scaled.scale = Some(Scale {
+        counts_per_unit: 1e6,
+        usage: ScaleUse::Position,
+    });
+    assert_eq!(mode_lag_s(&scaled), 0.0);
 }
 
 #[test]

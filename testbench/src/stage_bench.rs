@@ -11,7 +11,7 @@
 //! the same. The plants hear the model.
 //!
 //! Faults: [`StageBench::set`] drives lines, [`StageBench::force_encoder`] cuts or corrupts an encoder,
-//! [`StageBench::jam`] holds an axis. What must never happen at the pins is watched in every clock: [`StageBench::watched`].
+//! [`StageBench::force_scale`] a scale, [`StageBench::jam`] holds an axis. What must never happen at the pins is watched in every clock: [`StageBench::watched`].
 
 mod watch;
 
@@ -98,6 +98,7 @@ struct Places {
 #[derive(Debug, Clone, Copy, Default)]
 struct Fault {
     encoder: Option<EncoderPins>,
+    scale: Option<EncoderPins>,
     jammed: bool,
 }
 
@@ -259,6 +260,11 @@ impl StageBench {
         self.faults[axis].encoder = pins;
     }
 
+    /// The same for A and B of its scale.
+    pub fn force_scale(&mut self, axis: usize, pins: Option<EncoderPins>) {
+        self.faults[axis].scale = pins;
+    }
+
     /// Jams an axis, or frees it: the plant stands as if its brake were applied.
     pub fn jam(&mut self, axis: usize, jammed: bool) {
         self.faults[axis].jammed = jammed;
@@ -353,7 +359,7 @@ impl StageBench {
                     self.inputs[place] = level.into();
                 }
                 if let Some([a, b]) = places.scale {
-                    let pins = plant.scale();
+                    let pins = fault.scale.unwrap_or_else(|| plant.scale());
                     (self.inputs[a], self.inputs[b]) = (pins.a.into(), pins.b.into());
                 }
             }

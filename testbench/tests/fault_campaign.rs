@@ -13,7 +13,7 @@ use posicast_testbench::fault_campaign::{Bed, Kind, Report, TABLE, run, run_with
 use posicast_testbench::lockstep::Device;
 
 /// Cases of every kind.
-const ROUNDS: u64 = 2;
+const ROUNDS: u64 = 8;
 const SEED: u64 = 7;
 
 fn threads() -> usize {

@@ -9,11 +9,12 @@ use posicast_model::motion::{TickLimits, plan_move};
 use posicast_model::plant::axis::{AxisPlant, PlantOptions};
 use posicast_model::rtl::component::Component;
 use posicast_model::rtl::divider::DividerConfig;
+use posicast_model::rtl::linear_scale::ScaleRatio;
 use posicast_model::rtl::pwm::{ActiveLow, Mode, PwmConfig};
 use posicast_model::rtl::segments::{self, Entry, NOTIFY};
 use posicast_model::rtl::shaper::{Motion, ShaperConfig};
 use posicast_model::rtl::sliding_mode::{Gain, Row};
-use posicast_model::rtl::stage::StageConfig;
+use posicast_model::rtl::stage::{StageConfig, StageScale};
 use posicast_model::rtl::{ClockedBlock, Direction};
 use posicast_model::spec::{self, Machine};
 use posicast_model::taps::{Tap, TapTable};
@@ -124,6 +125,11 @@ fn quick(axes: usize) -> StageConfig {
         axis.pwm_mode = mode;
         axis.pwm_period_clocks = PERIOD_CLOCKS;
         axis.modulo = name == "phi";
+        // Of four axes the third is watched by a scale of 2.5 counts per count of the motor, the fourth runs on one.
+        axis.scale = matches!(name, "z" | "phi").then(|| StageScale {
+            ratio: ScaleRatio::new(1e6, 2.5e6).unwrap(),
+            closes_loop: name == "phi",
+        });
         axis.encoder_filter_clocks = 2;
         axis.settings
             .set_gain(Row::Duty, Gain::nearest(0.02, Row::Duty).unwrap());
@@ -135,6 +141,7 @@ fn quick(axes: usize) -> StageConfig {
             watched.brake_apply_ticks,
         ) = (3, 1, 1);
         (watched.saturation_ticks, watched.lost_ticks, watched.lost_command) = (3, 3, 50 << 12);
+        watched.deviation_limit = if axis.scale.is_some() { 20 } else { 0 };
         (watched.direct_hold_ticks, watched.direct_limit) = (2, 30);
         quick.axes.push(axis);
     }

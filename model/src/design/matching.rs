@@ -9,13 +9,14 @@
 //!
 //! A ramp comes out of every axis `total` late, so that a straight line at any angle stays one, and a circle keeps its shape
 //! but for what the shapers' different lengths smooth away. `2ζ/ω` is the delay of a mode at low frequencies; modes one behind
-//! the other add it up.
+//! the other add it up. It counts where the loop is closed before the modes; where the loop's own position is the load's (a torque
+//! drive with its encoder on the load, or a scale that closes the loop), the controller takes it out, and it is 0.
 //!
 //! What rounding the coefficients leaves is the mismatch that is reported: with `e_i = c_i/2^F − a_i`, whose sum is 0, at most
 //! `½·(d_n − d_1)·Σ|e_i|` samples per axis.
 
 use crate::digitise::{Digitised, TableError};
-use crate::spec::{Axis, Machine};
+use crate::spec::{Axis, DriveMode, Machine, ScaleUse};
 use crate::taps::TapTable;
 
 /// What the delay of an axis is made of, in seconds, from the command to the load under a ramp.
@@ -86,8 +87,15 @@ impl StageDelay {
     }
 }
 
-/// Lag of the modes of an axis at low frequencies, `Σ 2ζ/ω`, in seconds.
+/// Lag of the modes of an axis at low frequencies, `Σ 2ζ/ω`, in seconds; 0 where the loop holds the load itself.
 pub fn mode_lag_s(axis: &Axis) -> f64 {
+    let torque = axis
+        .drive
+        .is_some_and(|drive| matches!(drive.mode, DriveMode::Torque { .. }));
+    let scale = axis.scale.is_some_and(|scale| scale.usage == ScaleUse::Position);
+    if torque && axis.controller.is_some() || scale {
+        return 0.0;
+    }
     let modes = axis.modes.iter().map(|axis_mode| axis_mode.mode);
     modes.map(|mode| 2.0 * mode.damping / mode.omega()).sum()
 }

@@ -31,6 +31,8 @@ use std::time::Duration;
 /// Clocks per tick: 10 kHz from 50 MHz.
 const TICK_CLOCKS: u64 = 5000;
 const CLOCKS: u64 = 20 * TICK_CLOCKS;
+/// Clocks in which an output changes, at least: two per tick.
+const LEAST_CHANGES: usize = 40;
 
 /// The value of an input in a clock.
 type Input = Box<dyn Fn(&str, u64) -> u64>;
@@ -73,6 +75,12 @@ fn measure(criterion: &mut Criterion, mut whole: Whole) {
         whole.model.step(row, &mut shown).unwrap();
         assert_eq!(shown, expected[clock], "{}, step: clock {clock}", whole.name);
     }
+    let changes = expected.windows(2).filter(|pair| pair[0] != pair[1]).count();
+    assert!(
+        changes > LEAST_CHANGES,
+        "{}: {changes} changes are rest, not work",
+        whole.name
+    );
     // Again, by `hold`, from a reset on.
     whole.model.step(&events[0].0, &mut shown).unwrap();
     let mut expected = expected.iter();

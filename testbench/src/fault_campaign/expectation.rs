@@ -40,6 +40,8 @@ pub enum Others {
 pub enum Seen {
     /// |e| above its limit.
     FollowingError,
+    /// |motor − scale| above its limit.
+    Deviation,
     /// The command was cut for [`SATURATION_TICKS`](super::machine::SATURATION_TICKS), or there was no count under a command
     /// for [`LOST_TICKS`](super::machine::LOST_TICKS).
     Stuck,

@@ -79,14 +79,7 @@ fn begin_at(bench: &mut StageBench, case: &Case, axis: usize, name: &str) -> Res
     let register = |register: &str| format!("{name}_{register}");
     let lines = bench.plant(axis).encoder();
     match case.row.kind {
-        Kind::EncoderIllegal => bench.force_encoder(
-            axis,
-            Some(EncoderPins {
-                a: !lines.a,
-                b: !lines.b,
-                ..lines
-            }),
-        ),
+        Kind::EncoderIllegal => bench.force_encoder(axis, Some(inverted(lines))),
         Kind::EncoderGlitch => {
             let a = case.choice & 1 != 0;
             let (a, b) = (lines.a ^ a, lines.b ^ !a);
@@ -95,6 +88,8 @@ fn begin_at(bench: &mut StageBench, case: &Case, axis: usize, name: &str) -> Res
         Kind::EncoderStuck => bench.force_encoder(axis, Some(lines)),
         Kind::EncoderDisconnected => bench.force_encoder(axis, Some(EncoderPins::default())),
         Kind::EncoderReversed => bench.write(&register("control"), 0b101)?,
+        Kind::ScaleStuck => bench.force_scale(axis, Some(bench.plant(axis).scale())),
+        Kind::ScaleIllegal => bench.force_scale(axis, Some(inverted(bench.plant(axis).scale()))),
         Kind::Jam => bench.jam(axis, true),
         Kind::JamWithoutFollowingError => {
             bench.write(&register("following_error_limit"), 0)?;
@@ -152,6 +147,15 @@ fn begin_at(bench: &mut StageBench, case: &Case, axis: usize, name: &str) -> Res
     Ok(())
 }
 
+/// A and B the other way round.
+fn inverted(lines: EncoderPins) -> EncoderPins {
+    EncoderPins {
+        a: !lines.a,
+        b: !lines.b,
+        ..lines
+    }
+}
+
 /// Entries that are dropped: no ticks; word 0 missing; a reserved flag.
 fn malformed(bench: &mut StageBench, name: &str) -> Result<(), Error> {
     let mut words = |entry: &[(usize, u32)]| {
@@ -181,6 +185,7 @@ pub(super) fn end(bench: &mut StageBench, case: &Case, way_back: bool) -> Result
             None => {}
         }
         bench.force_encoder(axis, None);
+        bench.force_scale(axis, None);
         bench.jam(axis, false);
         match kind {
             Kind::EncoderReversed | Kind::DirectMode => bench.write(&register("control"), 1)?,

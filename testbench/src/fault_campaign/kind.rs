@@ -27,6 +27,8 @@ pub enum Kind {
     EncoderStuck,
     EncoderDisconnected,
     EncoderReversed,
+    ScaleStuck,
+    ScaleIllegal,
     Jam,
     JamWithoutFollowingError,
     HostSilent,
@@ -73,6 +75,7 @@ const ENCODER: Due = Due::Clocks(FILTER_CLOCKS + 5);
 /// What an axis that no longer follows ends in.
 const LOST: u16 = bits(&[
     Cause::FollowingError,
+    Cause::Deviation,
     Cause::Saturation,
     Cause::EncoderLost,
     Cause::SoftLimitPlus,
@@ -101,7 +104,7 @@ const fn fault(cause: Cause, due: Due) -> Expectation {
 }
 
 /// All kinds.
-pub const TABLE: [Row; 36] = [
+pub const TABLE: [Row; 38] = [
     row(
         Kind::EmergencyStop,
         "emergency stop",
@@ -292,6 +295,24 @@ pub const TABLE: [Row; 36] = [
         },
     ),
     row(
+        Kind::ScaleStuck,
+        "scale stuck",
+        "A and B of the scale stay as they are",
+        Expectation {
+            within_percent: IN_MOTION,
+            ..fault(Cause::Deviation, Due::Seen(Seen::Deviation))
+        },
+    ),
+    row(
+        Kind::ScaleIllegal,
+        "scale, illegal transition",
+        "A and B of the scale inverted together",
+        Expectation {
+            lasts: Lasts::Clocks(2 * FILTER_CLOCKS, 400),
+            ..fault(Cause::EncoderError, ENCODER)
+        },
+    ),
+    row(
         Kind::Jam,
         "jam",
         "the axis stands still",
@@ -334,7 +355,7 @@ pub const TABLE: [Row; 36] = [
         "a velocity that does not fit, without monitors and with a stop at once",
         Expectation {
             flag: Some(("flags", "segments_overflow")),
-            also: bits(&[Cause::Saturation, Cause::EncoderLost]),
+            also: bits(&[Cause::Deviation, Cause::Saturation, Cause::EncoderLost]),
             ..fault(Cause::Segments, Due::Seen(Seen::Segments))
         },
     ),

@@ -6,13 +6,14 @@
 //! | PWM | 20 kHz | 100 kHz | two periods per tick, as there |
 //! | modes | 131 and 93 Hz | ten times that | the shaper's delay is about 50 ticks |
 //! | acceleration, jerk | 8 m/s², 400 m/s³ | 800 m/s², 400,000 m/s³ | 300 counts in 150 ticks |
-//! | monitors | off | all that a stage without a scale has | they are what is tested |
+//! | scale | none | on both axes, compared with the motor | so that its trip is tested |
+//! | monitors | off | all | they are what is tested |
 
 use posicast_model::control::{self, MachineStage};
 use posicast_model::design::design_machine;
 use posicast_model::plant::axis::{AxisPlant, PlantOptions};
 use posicast_model::rtl::component::Component;
-use posicast_model::spec::{self, Limits, Machine};
+use posicast_model::spec::{self, Limits, Machine, Scale, ScaleUse};
 
 use super::CampaignError;
 use crate::lockstep::Device;
@@ -64,6 +65,10 @@ impl Bed {
             if let Some(pwm) = &mut axis.pwm {
                 pwm.frequency_hz = PWM_HZ;
             }
+            axis.scale = Some(Scale {
+                counts_per_unit: axis.counts_per_unit,
+                usage: ScaleUse::Monitor,
+            });
             axis.limits = Some(limits(axis.limits.unwrap_or_default()));
         }
         let design = design_machine(&machine).map_err(|error| failed(error.to_string()))?;
@@ -95,7 +100,7 @@ impl Bed {
     }
 }
 
-/// Every monitor that a stage without a scale has.
+/// Every monitor.
 fn limits(of_example: Limits) -> Limits {
     Limits {
         acceleration: Some(800.0),
@@ -103,6 +108,7 @@ fn limits(of_example: Limits) -> Limits {
         travel: Some([-0.01, 0.01]),
         stop_deceleration: Some(800.0),
         following_error: Some(30e-6),
+        deviation: Some(60e-6),
         saturation_s: SATURATION_TICKS as f64 * TICK_S,
         encoder_lost_s: LOST_TICKS as f64 * TICK_S,
         brake_release_s: BRAKE_RELEASE_TICKS as f64 * TICK_S,

@@ -1,5 +1,6 @@
 //! What is seen of an axis from the fault on, and in which clock.
 
+use posicast_model::control::Supervision;
 use posicast_model::rtl::axis::State;
 
 use super::expectation::Seen;
@@ -13,6 +14,7 @@ struct Probes {
     causes: Probe,
     error: Probe,
     error_limit: Probe,
+    deviation: Probe,
     shaped: Probe,
     soft_plus: Probe,
     soft_minus: Probe,
@@ -42,6 +44,7 @@ pub(super) struct Observation {
     axis: usize,
     probes: Probes,
     lost_command: u32,
+    deviation_limit: u32,
     still: Still,
     /// The command at the last tick, and how far it had moved in each of the last two.
     command: i32,
@@ -69,7 +72,7 @@ struct Still {
 
 impl Observation {
     /// Of an axis in RUN.
-    pub(super) fn new(bench: &StageBench, axis: usize, lost_command: u32) -> Result<Self, Error> {
+    pub(super) fn new(bench: &StageBench, axis: usize, watched: &Supervision) -> Result<Self, Error> {
         let name = &bench.axes()[axis];
         let probe = |net: &str| bench.probe(&format!("{name}_{net}"));
         Ok(Self {
@@ -79,6 +82,7 @@ impl Observation {
                 causes: probe("causes")?,
                 error: probe("error")?,
                 error_limit: probe("following_error_limit")?,
+                deviation: probe("deviation")?,
                 shaped: probe("shaped_position")?,
                 soft_plus: probe("soft_limit_plus")?,
                 soft_minus: probe("soft_limit_minus")?,
@@ -89,7 +93,8 @@ impl Observation {
                 underrun: probe("segments_underrun")?,
                 overflow: probe("segments_overflow")?,
             },
-            lost_command,
+            lost_command: watched.lost_command,
+            deviation_limit: watched.deviation_limit,
             still: Still::default(),
             command: bench.at(probe("command_position")?) as u32 as i32,
             travel: [0; 2],
@@ -154,6 +159,7 @@ impl Observation {
             Seen::Segments => (value(probes.underrun) | value(probes.overflow)) != 0,
             _ if !tick => false,
             Seen::FollowingError => u64::from(size(signed(probes.error))) > value(probes.error_limit),
+            Seen::Deviation => u64::from(size(signed(probes.deviation))) > u64::from(self.deviation_limit),
             Seen::SoftLimit => {
                 let shaped = signed(probes.shaped);
                 shaped > signed(probes.soft_plus) || shaped < signed(probes.soft_minus)

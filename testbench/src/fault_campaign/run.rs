@@ -9,7 +9,7 @@ use super::expectation::{Due, Reaction};
 use super::injection::{OVERFLOWING, begin, end};
 use super::judge::{self, Figures, Seen};
 use super::kind::Kind;
-use super::machine::{Bed, TICK_CLOCKS};
+use super::machine::{Bed, FILTER_CLOCKS, TICK_CLOCKS};
 use super::observation::Observation;
 use crate::Error;
 use crate::lockstep::Device;
@@ -23,8 +23,12 @@ const ABOUT_TICK_CLOCKS: [u64; 2] = [2, 24];
 const PATIENCE_TICKS: u64 = 400;
 /// Ticks that all must stay as they are after the end.
 const STAY_TICKS: u64 = 3;
+/// Clocks in which a load that was stopped at once rings no more: four time constants of the slower mode.
+const RINGING_CLOCKS: u64 = 225_000;
 /// Clocks in which lines and encoders settle after a fault.
 const SETTLE_CLOCKS: u64 = 200;
+/// Clocks of an encoder's line through synchroniser and filter, and a few.
+const STILL_CLOCKS: u64 = FILTER_CLOCKS + 4;
 /// Until the brake is open, or a small move is over, at the latest.
 const PATIENCE_CLOCKS: u64 = 300_000;
 /// Ticks until the loop has followed a command that stands.
@@ -202,8 +206,8 @@ impl Running<'_> {
     fn run_run_to_fault(&mut self, ticks: u64) -> Result<Vec<Observation>, Error> {
         let mut axes = Vec::new();
         for axis in 0..2 {
-            let lost_command = self.bed.stage.config.axes[axis].supervision.lost_command;
-            axes.push(Observation::new(&self.bench, axis, lost_command)?);
+            let watched = &self.bed.stage.config.axes[axis].supervision;
+            axes.push(Observation::new(&self.bench, axis, watched)?);
         }
         if self.case.row.kind == Kind::Overflow {
             return Ok(axes);
@@ -217,15 +221,37 @@ impl Running<'_> {
             self.bench.clocks(TICK_CLOCKS)?;
             axes.iter_mut().for_each(|axis| axis.follow_command(&self.bench));
         }
+        if let Kind::EncoderIllegal | Kind::ScaleIllegal = self.case.row.kind {
+            self.wait_for_still_encoders()?;
+        }
         Ok(axes)
+    }
+
+    /// Until the filters show what the encoders' lines are: while a step is on its way through them, the inverse of both lines
+    /// is a step beside what the counter has.
+    fn wait_for_still_encoders(&mut self) -> Result<(), Error> {
+        let (mut lines, mut still) = (Vec::new(), 0);
+        for _ in 0..2 * TICK_CLOCKS {
+            let found: Vec<_> = self
+                .case
+                .hit_axes()
+                .map(|axis| (self.bench.plant(axis).encoder(), self.bench.plant(axis).scale()))
+                .collect();
+            still = if found == lines { still + 1 } else { 0 };
+            lines = found;
+            if still > STILL_CLOCKS {
+                break;
+            }
+            self.bench.clocks(1)?;
+        }
+        Ok(())
     }
 
     /// The fault, and all until the axes are where they end.
     fn observe(&mut self, mut axes: Vec<Observation>, move_ticks: u64) -> Result<Observed, Error> {
-        let began = self.bench.now();
         begin(&mut self.bench, self.case)?;
         let start = self.bench.now();
-        let lifted = self.case.lasts.map(|clocks| began + clocks);
+        let lifted = self.case.lasts.map(|clocks| start + clocks);
         let latest = start + (move_ticks + PATIENCE_TICKS) * TICK_CLOCKS;
         let mut due = self.first_due(start);
         let tick_net = self.bench.probe("tick")?;
@@ -316,7 +342,7 @@ impl Running<'_> {
     fn recover(&mut self) -> Result<(), Error> {
         let held = self.case.lasts.is_none();
         end(&mut self.bench, self.case, held)?;
-        self.bench.clocks(SETTLE_CLOCKS)?;
+        self.bench.clocks(RINGING_CLOCKS)?;
         let known = self.case.row.expects.position_known && self.case.row.expects.reaction != Reaction::Reset;
         if !known {
             // What came of the encoder's lines while they were corrupted is over: from here on nothing may be lost.

@@ -186,9 +186,25 @@ impl Joined {
         &self.composition
     }
 
-    /// The model of the whole, after reset. `seed` gives the arbitrary contents of its memories.
+    /// The model of the whole, after reset. `seed` gives the arbitrary contents of its memories. Blocks within blocks are
+    /// clocked side by side: a level between them would cost time and change nothing.
     pub fn model(&self, seed: u64) -> Composed {
-        let blocks = self.blocks.iter().map(|block| block.model(seed));
-        Composed::new(self.composition.clone(), blocks.collect())
+        let (composition, blocks) = self.flattened(seed);
+        Composed::new(composition, blocks)
+    }
+
+    fn flattened(&self, seed: u64) -> (Composition, Vec<Box<dyn Moore>>) {
+        let (mut inner, mut models) = (Vec::new(), Vec::new());
+        for block in &self.blocks {
+            if let Block::Joined(joined) = block {
+                let (composition, blocks) = joined.flattened(seed);
+                inner.push(Some(composition));
+                models.extend(blocks);
+            } else {
+                inner.push(None);
+                models.push(block.model(seed));
+            }
+        }
+        (self.composition.flattened(&inner), models)
     }
 }

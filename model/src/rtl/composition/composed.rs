@@ -19,6 +19,8 @@ use crate::rtl::{ClockedBlock, Direction, Moore, OutputKind, Port, StepError};
 pub struct Composed {
     composition: Composition,
     members: Vec<Member>,
+    /// The clock in which each member must be clocked next. By themselves, since every clock looks at all of them.
+    wakes: Vec<u64>,
     wires: Vec<Wire>,
     input_count: usize,
     /// Net of each output of the whole.
@@ -58,6 +60,7 @@ impl Composed {
             output_nets: outputs.filter_map(net).collect(),
             combinational: combinational.map(|(at, _)| at).collect(),
             clocked: (0..members.len()).collect(),
+            wakes: vec![1; members.len()],
             members,
             wires,
             now: 1,
@@ -134,8 +137,7 @@ impl Composed {
 
     /// The next clock in which a member must be clocked.
     fn next_wake(&self) -> u64 {
-        let wakes = self.members.iter().map(|member| member.wakes);
-        wakes.fold(u64::MAX, u64::min)
+        self.wakes.iter().copied().fold(u64::MAX, u64::min)
     }
 
     /// Gives a net a value from now on, and wakes who watches it.
@@ -143,7 +145,8 @@ impl Composed {
     fn set(&mut self, net: usize, value: u64) {
         if self.wires[net].set(value, self.now) {
             for watcher in &self.wires[net].watchers {
-                self.members[*watcher].wake(self.now);
+                self.wakes[*watcher] = self.wakes[*watcher].min(self.now);
+                self.members[*watcher].is_combined = false;
             }
         }
     }
@@ -160,16 +163,25 @@ impl Composed {
                 let (from, net) = self.members[at].combinational_to[output];
                 self.set(net, self.members[at].outputs[from]);
             }
-            self.members[at].sleep(self.now);
+            self.sleep(at);
+        }
+    }
+
+    /// A member that was clocked to its next event, unless an input has changed.
+    #[inline]
+    fn sleep(&mut self, at: usize) {
+        if self.wakes[at] > self.now && self.members[at].is_clocked_to(self.now) {
+            self.wakes[at] = self.members[at].sleep_until(self.now);
         }
     }
 
     /// Clocks all members that are awake.
     fn clock(&mut self) -> Result<(), StepError> {
         self.clocked.clear();
-        for (at, member) in self.members.iter_mut().enumerate() {
-            if member.wakes <= self.now {
-                member.clock(&self.wires, self.now)?;
+        for at in 0..self.wakes.len() {
+            if self.wakes[at] <= self.now {
+                self.members[at].clock(&self.wires, self.now)?;
+                self.wakes[at] = u64::MAX;
                 self.clocked.push(at);
             }
         }
@@ -189,10 +201,10 @@ impl Composed {
                 self.set(net, self.members[at].outputs[from]);
             }
         }
-        for at in &self.clocked {
-            let member = &mut self.members[*at];
-            if !member.is_combinational() {
-                member.sleep(self.now);
+        for place in 0..self.clocked.len() {
+            let at = self.clocked[place];
+            if !self.members[at].is_combinational() {
+                self.sleep(at);
             }
         }
     }

@@ -4,8 +4,8 @@ use super::wire::Wire;
 use super::{Connection, Part};
 use crate::rtl::{Direction, Moore, OutputKind, StepError};
 
-/// A block while its composition is clocked. Its state is that before the clock `clocked_to`; from there to the clock `wakes`
-/// it is quiet, unless an input changes.
+/// A block while its composition is clocked. Its state is that before the clock `clocked_to`; from there on it is quiet until
+/// the clock in which it [sleeps](Self::sleep_until) no longer, unless an input changes.
 pub(super) struct Member {
     pub(super) block: Box<dyn Moore>,
     /// Places among the inputs, and their nets; the other inputs are tied.
@@ -19,7 +19,6 @@ pub(super) struct Member {
     /// It watches a net that counts, so that it has something to do in every clock.
     never_sleeps: bool,
     clocked_to: u64,
-    pub(super) wakes: u64,
     /// Its combinational outputs are those of its state and inputs.
     pub(super) is_combined: bool,
 }
@@ -69,7 +68,6 @@ impl Member {
             kinds,
             never_sleeps,
             clocked_to: 1,
-            wakes: 1,
             is_combined: false,
         }
     }
@@ -82,24 +80,17 @@ impl Member {
         !self.combinational_to.is_empty()
     }
 
-    /// An input has changed in this clock.
-    #[inline]
-    pub(super) fn wake(&mut self, clock: u64) {
-        self.wakes = self.wakes.min(clock);
-        self.is_combined = false;
+    /// After it was clocked to `now`, with all nets known and no input changed: the clock of its next event.
+    pub(super) fn sleep_until(&self, now: u64) -> u64 {
+        if self.never_sleeps {
+            return now;
+        }
+        now.saturating_add(self.block.quiet_clocks(&self.inputs))
     }
 
-    /// After it was clocked, and all nets are known: to its next event, unless an input has changed.
-    pub(super) fn sleep(&mut self, now: u64) {
-        let was_clocked = self.clocked_to == now && self.wakes > now;
-        if was_clocked {
-            let quiet = if self.never_sleeps {
-                0
-            } else {
-                self.block.quiet_clocks(&self.inputs)
-            };
-            self.wakes = now.saturating_add(quiet);
-        }
+    /// Has it been clocked in the clock before `now`?
+    pub(super) fn is_clocked_to(&self, now: u64) -> bool {
+        self.clocked_to == now
     }
 
     #[inline]
@@ -125,7 +116,6 @@ impl Member {
         self.read(wires, now);
         self.block.step(&self.inputs, &mut self.outputs)?;
         self.clocked_to = now + 1;
-        self.wakes = u64::MAX;
         self.is_combined = false;
         Ok(())
     }

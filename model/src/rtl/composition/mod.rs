@@ -30,6 +30,7 @@
 //! ```
 
 mod composed;
+mod flat;
 mod member;
 mod wire;
 
