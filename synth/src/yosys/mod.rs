@@ -1,7 +1,7 @@
 //! What Verilog costs in a device, and whether a synthesiser accepts it, through [Yosys](https://yosyshq.net/yosys).
 //!
 //! It is an **estimate**: Yosys is not the vendor's tool, and nothing is placed or routed, so no clock frequency comes out
-//! of it (`clock_mhz_estimate` is `None`). How the figures come about:
+//! of it; [`clock`](crate::clock) has a proxy for that. How the figures come about:
 //!
 //! - Logic and flip-flops: mapped by Yosys to Cyclone V for [`Family::Cyclone5`], and to Cyclone IV E for all others, whose
 //!   logic element it shares; then counted as `netlist` says. Quartus packs differently; its figures decide. Yosys does not
@@ -11,11 +11,13 @@
 //!
 //! Blocks are the instances in the top module, each flattened; what lies between them is a row under the top's name.
 
+mod ecp5;
 mod family;
 mod m4k;
 mod netlist;
 mod process;
 
+pub use ecp5::TopPort;
 pub use family::{Cell, Device, Family, UnknownFamily};
 pub use netlist::{Block, Resources};
 
@@ -36,7 +38,7 @@ pub struct Estimate {
     pub total: Resources,
     /// What a device of the family holds.
     pub device: Device,
-    /// Highest clock in MHz, where a tool tells it.
+    /// Highest clock in MHz, where [`clock`](crate::clock) was asked for it.
     pub clock_mhz_estimate: Option<f64>,
     /// Where the figures come from.
     pub method: Method,

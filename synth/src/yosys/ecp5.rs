@@ -1,0 +1,62 @@
+//! A netlist for Lattice ECP5, which open tools can place and route, and the ports that it is wrapped by.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use serde_json::Value;
+
+use super::process::{at, scratch};
+use super::{Yosys, YosysError, module_name};
+
+/// A port of a top module.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct TopPort {
+    /// Its name.
+    pub name: String,
+    /// Else an output.
+    pub is_input: bool,
+    /// Its bits.
+    pub width: u32,
+}
+
+impl Yosys {
+    /// The ports of `top`, in the order of their names.
+    ///
+    /// # Errors
+    /// As [`check`](Yosys::check).
+    pub fn ports(&self, files: &[PathBuf], top: &str) -> Result<Vec<TopPort>, YosysError> {
+        let top = module_name(top)?;
+        let scratch = scratch()?;
+        let script = format!("hierarchy -check -top {top}; proc; write_json ports.json");
+        self.run_in(scratch.path(), top, files, &["-p".as_ref(), script.as_ref()])?;
+        let path = scratch.path().join("ports.json");
+        let text = fs::read(&path).map_err(at(&path))?;
+        let unreadable = |reason: String| YosysError::Netlist {
+            top: top.to_owned(),
+            reason,
+        };
+        let design: Value = serde_json::from_slice(&text).map_err(|error| unreadable(error.to_string()))?;
+        let ports = design["modules"][top]["ports"].as_object();
+        let ports = ports.ok_or_else(|| unreadable("it has no ports".to_owned()))?;
+        let port = |(name, port): (&String, &Value)| TopPort {
+            name: name.clone(),
+            is_input: port["direction"] == "input",
+            width: port["bits"].as_array().map_or(0, Vec::len) as u32,
+        };
+        Ok(ports.iter().map(port).collect())
+    }
+
+    /// Writes `top`, mapped to ECP5, into `output`, as nextpnr reads it.
+    ///
+    /// # Errors
+    /// As [`check`](Yosys::check).
+    pub fn ecp5_netlist(&self, files: &[PathBuf], top: &str, output: &Path) -> Result<(), YosysError> {
+        let top = module_name(top)?;
+        let scratch = scratch()?;
+        let script = format!("synth_ecp5 -top {top} -json netlist.json");
+        self.run_in(scratch.path(), top, files, &["-p".as_ref(), script.as_ref()])?;
+        let path = scratch.path().join("netlist.json");
+        fs::copy(&path, output).map_err(at(&path))?;
+        Ok(())
+    }
+}
