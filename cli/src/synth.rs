@@ -1,5 +1,8 @@
 //! `posicast synth`: what a machine's Verilog takes of a device.
 
+mod clock;
+
+use self::clock::{ClockEstimates, Clocks};
 use crate::blocks::COMPONENT_SUFFIX;
 use crate::design::Report;
 use crate::failure::Failure;
@@ -22,6 +25,10 @@ pub(crate) struct Args {
     /// Device family: cyclone2, cyclone4e, cyclone10lp, cyclone5, max10 [default: the machine file's, else cyclone5]
     #[arg(long)]
     family: Option<Family>,
+    /// Clock estimate of this top module, by place and route on an open family as a proxy: minutes for a stage; may be given
+    /// several times
+    #[arg(long, value_name = "TOP")]
+    clock: Vec<String>,
     /// Print one JSON document on standard output
     #[arg(long)]
     json: bool,
@@ -34,12 +41,14 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         None => family_of(&machine)?,
     };
     let yosys = Yosys::installed().map_err(failure)?;
+    let names = self::components(&files, &machine.name);
+    let clocks = Clocks::of(args, &machine.name, &names)?;
     let spinner = progress::spinner("Yosys maps the design");
-    let estimate = yosys.estimate(&files, &machine.name, family).map_err(failure)?;
+    let mut estimate = yosys.estimate(&files, &machine.name, family).map_err(failure)?;
     spinner.finish_and_clear();
     let mut lacks = lacks(&estimate);
     let mut components = Vec::new();
-    for name in self::components(&files, &machine.name) {
+    for name in names {
         let spinner = progress::spinner(&format!("Yosys maps {name}"));
         let estimate = yosys.estimate(&files, &name, family).map_err(failure)?;
         spinner.finish_and_clear();
@@ -49,14 +58,21 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
             resources: estimate.total,
         });
     }
+    let clocks = clocks.map(|clocks| clocks.estimate(&yosys, &files)).transpose()?;
+    let of_top = clocks.iter().flat_map(|clocks| &clocks.tops);
+    let of_top = of_top.filter(|clock| clock.name == machine.name);
+    estimate.clock_mhz_estimate = of_top.map(|clock| clock.mhz).next();
     let document = Document {
         estimate: &estimate,
         components: &components,
+        clocks: clocks.as_ref(),
     };
     if args.json {
         output::print_json(&document)?
     } else {
-        output::print(&(text(&estimate) + &components_text(&components)))?
+        output::print(
+            &(text(&estimate) + &components_text(&components) + &clocks.map_or_else(String::new, |c| c.text())),
+        )?
     }
     if lacks.is_empty() {
         return Ok(());
@@ -86,6 +102,8 @@ struct Document<'a> {
     estimate: &'a Estimate,
     #[serde(skip_serializing_if = "<[_]>::is_empty")]
     components: &'a [Block],
+    #[serde(skip_serializing_if = "Option::is_none")]
+    clocks: Option<&'a ClockEstimates>,
 }
 
 /// The top modules of the components among these files: the stage, and the blocks that stand alone.

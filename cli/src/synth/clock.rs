@@ -1,0 +1,84 @@
+//! `posicast synth --clock TOP`.
+
+use super::Args;
+use crate::failure::Failure;
+use crate::output::Table;
+use crate::progress;
+use posicast_synth::clock::{ClockError, PlaceAndRoute};
+use posicast_synth::yosys::{Yosys, YosysError};
+use serde::Serialize;
+use std::path::PathBuf;
+
+/// The tops that were asked for, and what places and routes them.
+pub(super) struct Clocks<'a> {
+    tool: PlaceAndRoute,
+    tops: &'a [String],
+}
+
+/// The highest clock of a top.
+#[derive(Serialize)]
+pub(super) struct ClockEstimate {
+    pub(super) name: String,
+    pub(super) mhz: f64,
+}
+
+/// `clocks` of `synth --json`.
+#[derive(Serialize)]
+pub(super) struct ClockEstimates {
+    pub(super) tops: Vec<ClockEstimate>,
+    method: String,
+}
+
+impl<'a> Clocks<'a> {
+    /// None was asked for: none. Says what is missing or misspelt before anything long begins.
+    pub(super) fn of(args: &'a Args, machine: &str, components: &[String]) -> Result<Option<Self>, Failure> {
+        if args.clock.is_empty() {
+            return Ok(None);
+        }
+        let known = || std::iter::once(machine).chain(components.iter().map(String::as_str));
+        if let Some(unknown) = args.clock.iter().find(|top| !known().any(|known| known == *top)) {
+            let list = known().collect::<Vec<_>>().join(", ");
+            return Err(Failure::Input(miette::miette!(
+                "--clock {unknown}: there is no such top module; there are {list}"
+            )));
+        }
+        let tool = PlaceAndRoute::installed().map_err(failure)?;
+        Ok(Some(Self {
+            tool,
+            tops: &args.clock,
+        }))
+    }
+
+    /// One after the other.
+    pub(super) fn estimate(&self, yosys: &Yosys, files: &[PathBuf]) -> Result<ClockEstimates, Failure> {
+        let estimate = |top: &String| {
+            let spinner = progress::spinner(&format!("nextpnr places and routes {top}"));
+            let mhz = self.tool.highest_mhz(yosys, files, top).map_err(failure)?;
+            spinner.finish_and_clear();
+            let name = top.clone();
+            Ok(ClockEstimate { name, mhz })
+        };
+        Ok(ClockEstimates {
+            tops: self.tops.iter().map(estimate).collect::<Result<_, Failure>>()?,
+            method: self.tool.method(),
+        })
+    }
+}
+
+impl ClockEstimates {
+    /// A table, and where the figures come from.
+    pub(super) fn text(&self) -> String {
+        let mut table = Table::new(&["top", ">clock, MHz"]);
+        for clock in &self.tops {
+            table.row([clock.name.clone(), format!("{:.1}", clock.mhz)]);
+        }
+        format!("\n{}Clock: {}\n", table.text(""), self.method)
+    }
+}
+
+fn failure(error: ClockError) -> Failure {
+    match error {
+        ClockError::Missing(_) | ClockError::Yosys(YosysError::Missing(_)) => Failure::missing_tool(error),
+        other => Failure::because(other),
+    }
+}
