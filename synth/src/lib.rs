@@ -1,8 +1,9 @@
-//! What leaves posicast for a device: the output folder ([`package`]) and the estimate of what its Verilog costs
-//! ([`yosys`]).
+//! What leaves posicast for a device: the output folder ([`package`]), the C driver ([`driver`]), and the estimate of what its
+//! Verilog costs ([`yosys`]).
 //!
-//! Neither knows how the files came to be: this crate takes bytes and file names, and depends on no other crate of the
-//! workspace.
+//! The driver is written from the register maps of `posicast-model`. The other two do not know how the files came to be: they
+//! take bytes and file names.
 
+pub mod driver;
 pub mod package;
 pub mod yosys;

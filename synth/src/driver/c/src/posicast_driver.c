@@ -1,0 +1,500 @@
+/* The functions of posicast_driver.h. */
+#include "posicast_driver.h"
+
+#include <stddef.h>
+
+#define FIELD(word, name) (((uint32_t)(word) & name##_MSK) >> name##_OFST)
+#define AS_FIELD(value, name) (((uint32_t)(value) << name##_OFST) & name##_MSK)
+
+/* Looks at the time stamp in a row that find it unchanged: an access takes clocks, so it always changes. */
+#define STILL_LOOKS 8u
+/* Clocks from a write until every flag that follows from it shows. */
+#define FLAG_CLOCKS 16u
+/* Ticks until a start has led to RUN, or to nothing. */
+#define START_TICKS 4u
+/* Ticks until the PWM has run for a whole period with a new duty. */
+#define SELF_TEST_TICKS 4u
+
+/* What is waited for ends. */
+typedef struct {
+    uint32_t from_tick;
+    uint32_t ticks;
+    uint32_t stamp;
+    uint32_t still;
+} patience;
+
+static uint32_t time_stamp(const posicast_stage *stage)
+{
+    return (uint32_t)IORD_POSICAST_STAGE_TIME_STAMP(stage->base);
+}
+
+static uint32_t tick_count(const posicast_stage *stage)
+{
+    return (uint32_t)IORD_POSICAST_STAGE_TICK_COUNT(stage->base);
+}
+
+static uint32_t status(const posicast_stage *stage, uint32_t axis)
+{
+    return (uint32_t)IORD_POSICAST_AXIS_STATUS(stage->base, axis);
+}
+
+static int is_axis(const posicast_stage *stage, uint32_t axis)
+{
+    return axis < stage->axes;
+}
+
+static int are_axes(const posicast_stage *stage, uint32_t axes)
+{
+    return axes != 0 && (axes & ~posicast_all_axes(stage)) == 0;
+}
+
+static int has(uint32_t axes, uint32_t axis)
+{
+    return (axes >> axis & 1u) != 0;
+}
+
+static patience patience_for(const posicast_stage *stage, uint32_t ticks)
+{
+    patience left;
+
+    left.from_tick = tick_count(stage);
+    left.ticks = ticks;
+    left.stamp = time_stamp(stage);
+    left.still = 0;
+    return left;
+}
+
+/* Lets a little time pass: POSICAST_OK, or why waiting has no more sense. */
+static posicast_result pass_time(const posicast_stage *stage, patience *left)
+{
+    uint32_t stamp;
+
+    posicast_kick(stage);
+    if (stage->pause != NULL)
+        stage->pause(stage->context);
+    stamp = time_stamp(stage);
+    left->still = stamp == left->stamp ? left->still + 1 : 0;
+    left->stamp = stamp;
+    if (left->still >= STILL_LOOKS)
+        return POSICAST_DEAD;
+    return tick_count(stage) - left->from_tick > left->ticks ? POSICAST_TIMEOUT : POSICAST_OK;
+}
+
+/* Until bits of STATUS are these. */
+static posicast_result wait_status(const posicast_stage *stage, uint32_t axis, uint32_t mask, uint32_t wanted,
+                                   patience *left)
+{
+    while ((status(stage, axis) & mask) != wanted) {
+        const posicast_result result = pass_time(stage, left);
+
+        if (result != POSICAST_OK)
+            return result;
+    }
+    return POSICAST_OK;
+}
+
+/* Until flags that a write has caused can be read. */
+static posicast_result wait_flags(const posicast_stage *stage)
+{
+    const uint32_t from = time_stamp(stage);
+    uint32_t looks;
+
+    for (looks = 0; looks < FLAG_CLOCKS; looks++) {
+        if (time_stamp(stage) - from >= FLAG_CLOCKS)
+            return POSICAST_OK;
+    }
+    return time_stamp(stage) == from ? POSICAST_DEAD : POSICAST_OK;
+}
+
+static void set_control(const posicast_stage *stage, uint32_t axis, uint32_t clear, uint32_t set)
+{
+    const uint32_t word = (uint32_t)IORD_POSICAST_AXIS_CONTROL(stage->base, axis);
+
+    IOWR_POSICAST_AXIS_CONTROL(stage->base, axis, (word & ~clear) | set);
+}
+
+posicast_result posicast_open(posicast_stage *stage, uintptr_t base)
+{
+    uint32_t version;
+
+    stage->base = base;
+    stage->axes = 0;
+    stage->tick_clocks = 0;
+    stage->pause = NULL;
+    stage->context = NULL;
+    if ((uint32_t)IORD_POSICAST_STAGE_MAGIC(base) != POSICAST_STAGE_MAGIC_RESET)
+        return POSICAST_NOT_FOUND;
+    version = (uint32_t)IORD_POSICAST_STAGE_VERSION(base);
+    /* A larger minor version has registers that this driver does not use. */
+    if (version < POSICAST_STAGE_VERSION_RESET ||
+        FIELD(version, POSICAST_STAGE_VERSION_MAJOR) !=
+            FIELD(POSICAST_STAGE_VERSION_RESET, POSICAST_STAGE_VERSION_MAJOR))
+        return POSICAST_VERSION;
+    stage->axes = FIELD(IORD_POSICAST_STAGE_AXES(base), POSICAST_STAGE_AXES_AXES);
+    stage->tick_clocks = FIELD(IORD_POSICAST_STAGE_TICK_CLOCKS(base), POSICAST_STAGE_TICK_CLOCKS_TICK_CLOCKS);
+    return stage->axes >= 1 && stage->axes <= POSICAST_AXES_MAX ? POSICAST_OK : POSICAST_VERSION;
+}
+
+uint32_t posicast_all_axes(const posicast_stage *stage)
+{
+    return (1u << stage->axes) - 1u;
+}
+
+uint32_t posicast_state(const posicast_stage *stage, uint32_t axis)
+{
+    return FIELD(status(stage, axis), POSICAST_AXIS_STATUS_STATE);
+}
+
+void posicast_kick(const posicast_stage *stage)
+{
+    uint32_t axis;
+
+    for (axis = 0; axis < stage->axes; axis++)
+        IOWR_POSICAST_AXIS_KICK(stage->base, axis, POSICAST_KICK_WORD);
+}
+
+posicast_result posicast_wait_ticks(const posicast_stage *stage, uint32_t ticks)
+{
+    patience left = patience_for(stage, ticks);
+    posicast_result result;
+
+    do {
+        result = pass_time(stage, &left);
+    } while (result == POSICAST_OK);
+    return result == POSICAST_TIMEOUT ? POSICAST_OK : result;
+}
+
+posicast_result posicast_switch_on(const posicast_stage *stage, uint32_t axes, uint32_t ticks)
+{
+    const uint32_t settled = POSICAST_AXIS_STATUS_STATE_MSK | POSICAST_AXIS_STATUS_CAN_START_MSK;
+    const uint32_t holds = AS_FIELD(POSICAST_AXIS_STATUS_STATE_HOLD, POSICAST_AXIS_STATUS_STATE) |
+                           POSICAST_AXIS_STATUS_CAN_START_MSK;
+    patience left = patience_for(stage, ticks);
+    uint32_t axis, off = 0;
+    posicast_result result;
+
+    if (!are_axes(stage, axes))
+        return POSICAST_BAD_ARGUMENT;
+    for (axis = 0; axis < stage->axes; axis++) {
+        const uint32_t state = posicast_state(stage, axis);
+
+        if (!has(axes, axis))
+            continue;
+        if (state == POSICAST_AXIS_STATUS_STATE_RUN || state == POSICAST_AXIS_STATUS_STATE_QUICK_STOP)
+            return POSICAST_WRONG_STATE;
+        if (state != POSICAST_AXIS_STATUS_STATE_HOLD)
+            off |= 1u << axis;
+    }
+    for (axis = 0; axis < stage->axes; axis++) {
+        /* READY wants to have seen it low: an axis whose fault is cleared does not go on by itself. */
+        if (has(off, axis))
+            set_control(stage, axis, POSICAST_AXIS_CONTROL_ENABLE_MSK | POSICAST_AXIS_CONTROL_DIRECT_ENABLE_MSK, 0);
+        /* One that holds may still have the group stop of another: no start is taken with it. */
+        if (has(axes, axis))
+            IOWR_POSICAST_AXIS_CLEAR_FAULTS(stage->base, axis, 0);
+    }
+    for (axis = 0; axis < stage->axes; axis++) {
+        if (!has(off, axis))
+            continue;
+        result = wait_status(stage, axis, POSICAST_AXIS_STATUS_STATE_MSK,
+                             AS_FIELD(POSICAST_AXIS_STATUS_STATE_READY, POSICAST_AXIS_STATUS_STATE), &left);
+        if (result != POSICAST_OK)
+            return posicast_causes(stage, axis) != 0 && result == POSICAST_TIMEOUT ? POSICAST_FAULT : result;
+    }
+    for (axis = 0; axis < stage->axes; axis++) {
+        if (has(off, axis))
+            set_control(stage, axis, 0, POSICAST_AXIS_CONTROL_ENABLE_MSK);
+    }
+    for (axis = 0; axis < stage->axes; axis++) {
+        if (!has(axes, axis))
+            continue;
+        result = wait_status(stage, axis, settled, holds, &left);
+        if (result != POSICAST_OK)
+            return posicast_causes(stage, axis) != 0 && result == POSICAST_TIMEOUT ? POSICAST_FAULT : result;
+    }
+    return POSICAST_OK;
+}
+
+posicast_result posicast_switch_off(const posicast_stage *stage, uint32_t axes, uint32_t ticks)
+{
+    patience left = patience_for(stage, ticks);
+    uint32_t axis;
+
+    if (!are_axes(stage, axes))
+        return POSICAST_BAD_ARGUMENT;
+    for (axis = 0; axis < stage->axes; axis++) {
+        if (has(axes, axis))
+            set_control(stage, axis, POSICAST_AXIS_CONTROL_ENABLE_MSK | POSICAST_AXIS_CONTROL_DIRECT_ENABLE_MSK, 0);
+    }
+    for (axis = 0; axis < stage->axes; axis++) {
+        while (has(axes, axis)) {
+            const uint32_t state = posicast_state(stage, axis);
+            posicast_result result;
+
+            if (state == POSICAST_AXIS_STATUS_STATE_OFF || state == POSICAST_AXIS_STATUS_STATE_READY)
+                break;
+            result = pass_time(stage, &left);
+            if (result != POSICAST_OK)
+                return state == POSICAST_AXIS_STATUS_STATE_FAULT && result == POSICAST_TIMEOUT ? POSICAST_FAULT : result;
+        }
+    }
+    return POSICAST_OK;
+}
+
+posicast_result posicast_write_entry(const posicast_stage *stage, uint32_t axis, const posicast_entry *entry)
+{
+    const uint32_t refusals = POSICAST_AXIS_FLAGS_SEGMENT_REFUSED_MSK | POSICAST_AXIS_FLAGS_SEGMENT_MALFORMED_MSK;
+    uint32_t word;
+    posicast_result result;
+
+    if (!is_axis(stage, axis))
+        return POSICAST_BAD_ARGUMENT;
+    if (FIELD(IORD_POSICAST_AXIS_FIFO(stage->base, axis), POSICAST_AXIS_FIFO_FIFO_LEVEL) >= POSICAST_FIFO_ENTRIES)
+        return POSICAST_FULL;
+    for (word = 0; word < POSICAST_ENTRY_WORDS; word++)
+        IOWR_POSICAST_AXIS_SEGMENT(stage->base, axis, word, entry->words[word]);
+    /* The level and the flags are then those after this entry. */
+    result = wait_flags(stage);
+    if (result != POSICAST_OK)
+        return result;
+    return (uint32_t)IORD_POSICAST_AXIS_FLAGS(stage->base, axis) & refusals ? POSICAST_REFUSED : POSICAST_OK;
+}
+
+posicast_result posicast_queue_move(const posicast_stage *stage, uint32_t axis, int32_t end,
+                                    const posicast_limits *limits)
+{
+    posicast_entry entries[POSICAST_PLAN_ROOM];
+    uint32_t count, place;
+    posicast_result result;
+
+    if (!is_axis(stage, axis))
+        return POSICAST_BAD_ARGUMENT;
+    if (posicast_state(stage, axis) != POSICAST_AXIS_STATUS_STATE_HOLD ||
+        !FIELD(IORD_POSICAST_AXIS_FIFO(stage->base, axis), POSICAST_AXIS_FIFO_SEGMENTS_EMPTY))
+        return POSICAST_WRONG_STATE;
+    result = posicast_plan_move(posicast_command_position(stage, axis), end, limits, entries, POSICAST_PLAN_ROOM,
+                                &count);
+    for (place = 0; place < count && result == POSICAST_OK; place++)
+        result = posicast_write_entry(stage, axis, &entries[place]);
+    return result;
+}
+
+posicast_result posicast_start(const posicast_stage *stage, uint32_t axes)
+{
+    patience left = patience_for(stage, START_TICKS);
+    uint32_t axis;
+    posicast_result result;
+
+    if (!are_axes(stage, axes))
+        return POSICAST_BAD_ARGUMENT;
+    IOWR_POSICAST_STAGE_FLAGS(stage->base, POSICAST_STAGE_FLAGS_START_REFUSED_MSK);
+    for (axis = 0; axis < stage->axes; axis++) {
+        if (has(axes, axis))
+            IOWR_POSICAST_AXIS_EVENTS(stage->base, axis, POSICAST_AXIS_EVENTS_REFUSED_MSK);
+    }
+    IOWR_POSICAST_STAGE_START(stage->base, AS_FIELD(axes, POSICAST_STAGE_START_START_AXES));
+    result = wait_flags(stage);
+    if (result != POSICAST_OK)
+        return result;
+    if ((uint32_t)IORD_POSICAST_STAGE_FLAGS(stage->base) & POSICAST_STAGE_FLAGS_START_REFUSED_MSK)
+        return POSICAST_REFUSED;
+    /* The start itself comes with the next tick; there an axis may still refuse. */
+    for (axis = 0; axis < stage->axes; axis++) {
+        while (has(axes, axis) && FIELD(status(stage, axis), POSICAST_AXIS_STATUS_CAN_START)) {
+            result = pass_time(stage, &left);
+            /* A move that was over so soon can start again. */
+            if (result == POSICAST_TIMEOUT)
+                break;
+            if (result != POSICAST_OK)
+                return result;
+        }
+        if (has(axes, axis) &&
+            (uint32_t)IORD_POSICAST_AXIS_EVENTS(stage->base, axis) & POSICAST_AXIS_EVENTS_REFUSED_MSK)
+            return POSICAST_REFUSED;
+    }
+    return POSICAST_OK;
+}
+
+posicast_result posicast_wait_at_rest(const posicast_stage *stage, uint32_t axes, uint32_t ticks)
+{
+    patience left = patience_for(stage, ticks);
+    uint32_t axis, longest = 0;
+
+    if (!are_axes(stage, axes))
+        return POSICAST_BAD_ARGUMENT;
+    for (axis = 0; axis < stage->axes; axis++) {
+        uint32_t settle;
+
+        while (has(axes, axis)) {
+            const uint32_t fifo = (uint32_t)IORD_POSICAST_AXIS_FIFO(stage->base, axis);
+            posicast_result result;
+
+            if (posicast_causes(stage, axis) != 0)
+                return POSICAST_FAULT;
+            if (posicast_state(stage, axis) == POSICAST_AXIS_STATUS_STATE_HOLD &&
+                FIELD(fifo, POSICAST_AXIS_FIFO_SEGMENTS_EMPTY))
+                break;
+            result = pass_time(stage, &left);
+            if (result != POSICAST_OK)
+                return result;
+        }
+        settle = FIELD(IORD_POSICAST_AXIS_SETTLE(stage->base, axis), POSICAST_AXIS_SETTLE_SETTLE_TICKS);
+        if (has(axes, axis) && settle > longest)
+            longest = settle;
+    }
+    return posicast_wait_ticks(stage, longest);
+}
+
+void posicast_stop(const posicast_stage *stage, uint32_t axes)
+{
+    uint32_t axis;
+
+    for (axis = 0; axis < stage->axes; axis++) {
+        if (has(axes, axis))
+            IOWR_POSICAST_AXIS_STOP(stage->base, axis, 0);
+    }
+}
+
+void posicast_take_snapshot(const posicast_stage *stage, posicast_snapshot *snapshot)
+{
+    uint32_t axis;
+
+    IOWR_POSICAST_STAGE_SNAPSHOT(stage->base, 0);
+    snapshot->time_stamp = (uint32_t)IORD_POSICAST_STAGE_SNAPSHOT_TIME_STAMP(stage->base);
+    snapshot->tick_count = (uint32_t)IORD_POSICAST_STAGE_SNAPSHOT_TICK_COUNT(stage->base);
+    for (axis = 0; axis < stage->axes; axis++) {
+        snapshot->position[axis] = (int32_t)IORD_POSICAST_AXIS_SNAPSHOT_POSITION(stage->base, axis);
+        snapshot->velocity[axis] = (int32_t)IORD_POSICAST_AXIS_SNAPSHOT_VELOCITY(stage->base, axis);
+    }
+}
+
+int32_t posicast_command_position(const posicast_stage *stage, uint32_t axis)
+{
+    return (int32_t)IORD_POSICAST_AXIS_COMMAND_POSITION(stage->base, axis);
+}
+
+uint32_t posicast_causes(const posicast_stage *stage, uint32_t axis)
+{
+    return FIELD(IORD_POSICAST_AXIS_CAUSES(stage->base, axis), POSICAST_AXIS_CAUSES_CAUSES);
+}
+
+const char *posicast_cause_name(uint32_t causes)
+{
+    static const char *const names[] = POSICAST_CAUSE_NAMES;
+    uint32_t bit;
+
+    for (bit = 0; bit < sizeof names / sizeof names[0]; bit++) {
+        if (causes >> bit & 1u)
+            return names[bit];
+    }
+    return "none";
+}
+
+/* Is it one that the hardware of the axis holds? */
+static int table_fits(const posicast_stage *stage, uint32_t axis, const posicast_table *table)
+{
+    const uint32_t ring = (uint32_t)IORD_POSICAST_AXIS_RING_SAMPLES(stage->base, axis);
+    const int32_t half = (int32_t)((POSICAST_AXIS_TAP_TAP_COEFFICIENT_MSK >> POSICAST_AXIS_TAP_TAP_COEFFICIENT_OFST) / 2u);
+    int64_t sum = 0;
+    uint32_t tap;
+
+    if (table->count == 0 || table->count > (uint32_t)IORD_POSICAST_AXIS_MOST_TAPS(stage->base, axis) ||
+        table->coefficient_fraction != (uint32_t)IORD_POSICAST_AXIS_COEFFICIENT_FRACTION(stage->base, axis))
+        return 0;
+    for (tap = 0; tap < table->count; tap++) {
+        const int32_t coefficient = table->taps[tap].coefficient;
+
+        if (coefficient == 0 || coefficient > half || coefficient < -half - 1 ||
+            table->taps[tap].delay_samples > ring - 2u ||
+            (tap > 0 && table->taps[tap].delay_samples <= table->taps[tap - 1].delay_samples))
+            return 0;
+        sum += coefficient;
+    }
+    return sum == (int64_t)1 << table->coefficient_fraction;
+}
+
+posicast_result posicast_load_table(const posicast_stage *stage, uint32_t axis, uint32_t bank,
+                                    const posicast_table *table, uint32_t how, uint32_t ticks)
+{
+    uint32_t tap, longest, settle;
+
+    if (!is_axis(stage, axis) || bank == 0 || !table_fits(stage, axis, table))
+        return POSICAST_BAD_ARGUMENT;
+    if (status(stage, axis) & POSICAST_AXIS_STATUS_SWAP_PENDING_MSK ||
+        FIELD(status(stage, axis), POSICAST_AXIS_STATUS_TABLE_BANK) == bank)
+        return POSICAST_WRONG_STATE;
+    for (tap = 0; tap < table->count; tap++) {
+        IOWR_POSICAST_AXIS_TAP_ADDRESS(stage->base, axis,
+                                       AS_FIELD(tap, POSICAST_AXIS_TAP_ADDRESS_TAP_INDEX) |
+                                           AS_FIELD(bank, POSICAST_AXIS_TAP_ADDRESS_TAP_BANK));
+        IOWR_POSICAST_AXIS_TAP(stage->base, axis,
+                               AS_FIELD(table->taps[tap].delay_samples, POSICAST_AXIS_TAP_TAP_DELAY) |
+                                   AS_FIELD(table->taps[tap].coefficient, POSICAST_AXIS_TAP_TAP_COEFFICIENT));
+    }
+    longest = table->taps[table->count - 1].delay_samples;
+    settle = FIELD(IORD_POSICAST_AXIS_SETTLE(stage->base, axis), POSICAST_AXIS_SETTLE_SETTLE_TICKS);
+    if (longest > settle)
+        IOWR_POSICAST_AXIS_SETTLE(stage->base, axis, AS_FIELD(longest, POSICAST_AXIS_SETTLE_SETTLE_TICKS));
+    return posicast_use_table(stage, axis, bank, how, ticks);
+}
+
+posicast_result posicast_use_table(const posicast_stage *stage, uint32_t axis, uint32_t bank, uint32_t how,
+                                   uint32_t ticks)
+{
+    const uint32_t swapped = POSICAST_AXIS_STATUS_SWAP_PENDING_MSK | POSICAST_AXIS_STATUS_TABLE_BANK_MSK;
+    patience left = patience_for(stage, ticks);
+    posicast_result result;
+
+    if (!is_axis(stage, axis) || bank > 2)
+        return POSICAST_BAD_ARGUMENT;
+    IOWR_POSICAST_AXIS_SWAP(
+        stage->base, axis,
+        AS_FIELD(bank, POSICAST_AXIS_SWAP_SWAP_BANK) | AS_FIELD(how, POSICAST_AXIS_SWAP_SWAP_HOW));
+    result = wait_flags(stage);
+    if (result != POSICAST_OK)
+        return result;
+    if ((uint32_t)IORD_POSICAST_AXIS_FLAGS(stage->base, axis) & POSICAST_AXIS_FLAGS_TABLE_REFUSED_MSK)
+        return POSICAST_REFUSED;
+    return wait_status(stage, axis, swapped, AS_FIELD(bank, POSICAST_AXIS_STATUS_TABLE_BANK), &left);
+}
+
+posicast_result posicast_self_test(const posicast_stage *stage, uint32_t axis, int32_t duty,
+                                   posicast_self_test_clocks *counted)
+{
+    const uint32_t test = POSICAST_AXIS_CONTROL_DIRECT_ENABLE_MSK | POSICAST_AXIS_CONTROL_SELF_TEST_MSK;
+    posicast_result result = POSICAST_OK;
+    uint32_t tick, clocks;
+
+    if (!is_axis(stage, axis))
+        return POSICAST_BAD_ARGUMENT;
+    if (posicast_state(stage, axis) != POSICAST_AXIS_STATUS_STATE_READY)
+        return POSICAST_WRONG_STATE;
+    set_control(stage, axis, 0, test);
+    /* A duty holds for some time only. */
+    for (tick = 0; tick < SELF_TEST_TICKS && result == POSICAST_OK; tick++) {
+        IOWR_POSICAST_AXIS_DIRECT(stage->base, axis, AS_FIELD(duty, POSICAST_AXIS_DIRECT_DIRECT_DUTY));
+        result = posicast_wait_ticks(stage, 1);
+    }
+    clocks = (uint32_t)IORD_POSICAST_AXIS_SELF_TEST(stage->base, axis);
+    /* Direct mode first: without the other flag alone the duty would go to the pins. */
+    set_control(stage, axis, POSICAST_AXIS_CONTROL_DIRECT_ENABLE_MSK, 0);
+    set_control(stage, axis, POSICAST_AXIS_CONTROL_SELF_TEST_MSK, 0);
+    counted->a_high = FIELD(clocks, POSICAST_AXIS_SELF_TEST_SELF_TEST_HIGH);
+    counted->a_low = FIELD(clocks, POSICAST_AXIS_SELF_TEST_SELF_TEST_LOW);
+    return result;
+}
+
+void posicast_enable_interrupts(const posicast_stage *stage, uint32_t interrupts)
+{
+    IOWR_POSICAST_STAGE_INTERRUPT_ENABLE(stage->base, interrupts);
+}
+
+uint32_t posicast_take_interrupts(const posicast_stage *stage)
+{
+    const uint32_t enabled = (uint32_t)IORD_POSICAST_STAGE_INTERRUPT_ENABLE(stage->base);
+    const uint32_t happened = (uint32_t)IORD_POSICAST_STAGE_INTERRUPT_STATE(stage->base) & enabled;
+
+    /* Only what was seen: what comes in between stays, and raises the line again. */
+    IOWR_POSICAST_STAGE_INTERRUPT_STATE(stage->base, happened);
+    return happened;
+}
