@@ -43,7 +43,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let mut package = open(args.output.as_deref(), &file)?;
     add_sources(&mut package, &file, &modules)?;
     let components = blocks::components(&file.machine, &shapers, &report.controllers, &args.machine)?;
-    driver::add(&mut package, &file.machine, &components, stage.as_ref())?;
+    driver::add(&mut package, &file.machine, &modules, &components, stage.as_ref())?;
     package
         .add("report.json", output::json_text(&report.json())?.as_bytes())
         .map_err(Failure::because)?;

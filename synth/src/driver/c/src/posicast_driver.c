@@ -106,6 +106,53 @@ static posicast_result wait_flags(const posicast_stage *stage)
     return time_stamp(stage) == from ? POSICAST_DEAD : POSICAST_OK;
 }
 
+static void clear_faults(const posicast_stage *stage, uint32_t axis)
+{
+    IOWR_POSICAST_AXIS_CLEAR_FAULTS(stage->base, axis, 0);
+}
+
+static uint32_t state_of(uint32_t word)
+{
+    return FIELD(word, POSICAST_AXIS_STATUS_STATE);
+}
+
+/* Until an axis is READY. It forgets only what is over, and only with its outputs off: so it is told again and again. */
+static posicast_result wait_ready(const posicast_stage *stage, uint32_t axis, patience *left)
+{
+    while (posicast_state(stage, axis) != POSICAST_AXIS_STATUS_STATE_READY) {
+        const uint32_t causes = posicast_causes(stage, axis);
+        posicast_result result;
+
+        if (causes != 0)
+            clear_faults(stage, axis);
+        result = pass_time(stage, left);
+        if (result != POSICAST_OK)
+            return result == POSICAST_TIMEOUT && causes != 0 ? POSICAST_FAULT : result;
+    }
+    return POSICAST_OK;
+}
+
+/* Until an axis that was switched on can start. What stays with one that holds is the group stop of another: it is forgotten. */
+static posicast_result wait_holding(const posicast_stage *stage, uint32_t axis, patience *left)
+{
+    for (;;) {
+        const uint32_t word = status(stage, axis);
+        posicast_result result;
+
+        if (state_of(word) == POSICAST_AXIS_STATUS_STATE_FAULT)
+            return POSICAST_FAULT;
+        if (state_of(word) == POSICAST_AXIS_STATUS_STATE_HOLD) {
+            if (FIELD(word, POSICAST_AXIS_STATUS_CAN_START))
+                return POSICAST_OK;
+            if (posicast_causes(stage, axis) != 0)
+                clear_faults(stage, axis);
+        }
+        result = pass_time(stage, left);
+        if (result != POSICAST_OK)
+            return result;
+    }
+}
+
 static void set_control(const posicast_stage *stage, uint32_t axis, uint32_t clear, uint32_t set)
 {
     const uint32_t word = (uint32_t)IORD_POSICAST_AXIS_CONTROL(stage->base, axis);
@@ -142,7 +189,7 @@ uint32_t posicast_all_axes(const posicast_stage *stage)
 
 uint32_t posicast_state(const posicast_stage *stage, uint32_t axis)
 {
-    return FIELD(status(stage, axis), POSICAST_AXIS_STATUS_STATE);
+    return state_of(status(stage, axis));
 }
 
 void posicast_kick(const posicast_stage *stage)
@@ -166,12 +213,9 @@ posicast_result posicast_wait_ticks(const posicast_stage *stage, uint32_t ticks)
 
 posicast_result posicast_switch_on(const posicast_stage *stage, uint32_t axes, uint32_t ticks)
 {
-    const uint32_t settled = POSICAST_AXIS_STATUS_STATE_MSK | POSICAST_AXIS_STATUS_CAN_START_MSK;
-    const uint32_t holds = AS_FIELD(POSICAST_AXIS_STATUS_STATE_HOLD, POSICAST_AXIS_STATUS_STATE) |
-                           POSICAST_AXIS_STATUS_CAN_START_MSK;
     patience left = patience_for(stage, ticks);
     uint32_t axis, off = 0;
-    posicast_result result;
+    posicast_result result = POSICAST_OK;
 
     if (!are_axes(stage, axes))
         return POSICAST_BAD_ARGUMENT;
@@ -185,34 +229,24 @@ posicast_result posicast_switch_on(const posicast_stage *stage, uint32_t axes, u
         if (state != POSICAST_AXIS_STATUS_STATE_HOLD)
             off |= 1u << axis;
     }
+    /* READY wants to have seen it low: an axis whose fault is cleared does not go on by itself. */
     for (axis = 0; axis < stage->axes; axis++) {
-        /* READY wants to have seen it low: an axis whose fault is cleared does not go on by itself. */
         if (has(off, axis))
             set_control(stage, axis, POSICAST_AXIS_CONTROL_ENABLE_MSK | POSICAST_AXIS_CONTROL_DIRECT_ENABLE_MSK, 0);
-        /* One that holds may still have the group stop of another: no start is taken with it. */
-        if (has(axes, axis))
-            IOWR_POSICAST_AXIS_CLEAR_FAULTS(stage->base, axis, 0);
     }
-    for (axis = 0; axis < stage->axes; axis++) {
-        if (!has(off, axis))
-            continue;
-        result = wait_status(stage, axis, POSICAST_AXIS_STATUS_STATE_MSK,
-                             AS_FIELD(POSICAST_AXIS_STATUS_STATE_READY, POSICAST_AXIS_STATUS_STATE), &left);
-        if (result != POSICAST_OK)
-            return posicast_causes(stage, axis) != 0 && result == POSICAST_TIMEOUT ? POSICAST_FAULT : result;
+    for (axis = 0; axis < stage->axes && result == POSICAST_OK; axis++) {
+        if (has(off, axis))
+            result = wait_ready(stage, axis, &left);
     }
-    for (axis = 0; axis < stage->axes; axis++) {
+    for (axis = 0; axis < stage->axes && result == POSICAST_OK; axis++) {
         if (has(off, axis))
             set_control(stage, axis, 0, POSICAST_AXIS_CONTROL_ENABLE_MSK);
     }
-    for (axis = 0; axis < stage->axes; axis++) {
-        if (!has(axes, axis))
-            continue;
-        result = wait_status(stage, axis, settled, holds, &left);
-        if (result != POSICAST_OK)
-            return posicast_causes(stage, axis) != 0 && result == POSICAST_TIMEOUT ? POSICAST_FAULT : result;
+    for (axis = 0; axis < stage->axes && result == POSICAST_OK; axis++) {
+        if (has(axes, axis))
+            result = wait_holding(stage, axis, &left);
     }
-    return POSICAST_OK;
+    return result;
 }
 
 posicast_result posicast_switch_off(const posicast_stage *stage, uint32_t axes, uint32_t ticks)
