@@ -1,11 +1,22 @@
 //! What a system needs to find the driver: `_sw.tcl` and macros for the HAL, the overlay of a device tree.
 
 use super::{File, StageDriver, file};
+use posicast_model::rtl::registers::RegisterMap;
 
-/// Version of the driver and of the hardware class, as Platform Designer compares them.
-pub(super) const CLASS_VERSION: &str = "1.0";
-/// Name in device trees.
-pub(super) const COMPATIBLE: &str = "posicast,stage-1.0";
+/// Name in device trees, before the version of the register map: as the component for Platform Designer has it.
+const COMPATIBLE: &str = "posicast,stage";
+
+/// Version of the register map, as Platform Designer compares that of a driver with that of its hardware: `1.0`.
+fn version(map: &RegisterMap) -> String {
+    let part = |name: &str| {
+        let fields = map.register("version").map_or(&[][..], |register| &register.fields);
+        fields
+            .iter()
+            .find(|field| field.name == name)
+            .map_or(0, |field| field.reset)
+    };
+    format!("{}.{}", part("major"), part("minor"))
+}
 
 pub(super) fn files(driver: &StageDriver<'_>) -> Vec<File> {
     let top = driver.top;
@@ -18,14 +29,14 @@ pub(super) fn files(driver: &StageDriver<'_>) -> Vec<File> {
 
 /// What `nios2-bsp` and `niosv-bsp` read.
 fn sw_tcl(driver: &StageDriver<'_>) -> String {
-    let (top, machine) = (driver.top, driver.machine);
+    let (top, machine, version) = (driver.top, driver.machine, version(driver.map));
     format!(
         "# Driver of {top} for the HAL of Nios II and Nios V. Written by posicast.
 create_driver {top}_driver
 
 set_sw_property hw_class_name {top}
-set_sw_property version {CLASS_VERSION}
-set_sw_property min_compatible_hw_version {CLASS_VERSION}
+set_sw_property version {version}
+set_sw_property min_compatible_hw_version {version}
 set_sw_property bsp_subdirectory drivers
 set_sw_property auto_initialize true
 set_sw_property isr_preemption_supported true
@@ -93,7 +104,7 @@ fn overlay(driver: &StageDriver<'_>) -> String {
             #size-cells = <1>;
 
             {top}: stage@ff200000 {{
-                compatible = \"{COMPATIBLE}\";
+                compatible = \"{COMPATIBLE}-{version}\";
                 reg = <0xff200000 {bytes:#x}>;
                 interrupt-parent = <&intc>;
                 interrupts = <0 40 4>;
@@ -103,5 +114,6 @@ fn overlay(driver: &StageDriver<'_>) -> String {
 }};
 ",
         top = driver.top,
+        version = version(driver.map),
     )
 }

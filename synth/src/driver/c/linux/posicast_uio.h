@@ -2,7 +2,7 @@
  * A stage under Linux, from user space, through the kernel's generic UIO driver (uio_pdrv_genirq):
  *
  *   the device tree says where it is: NAME.dtso
- *   modprobe uio_pdrv_genirq of_id=posicast,stage-1.0
+ *   modprobe uio_pdrv_genirq of_id=posicast,stage-1.0   (its `compatible`)
  *   posicast_uio_open(&device, "/dev/uio0")
  */
 #ifndef POSICAST_UIO_H
