@@ -15,7 +15,7 @@ use std::process::{Command, Stdio};
 const PAUSE_CLOCKS: u64 = 2500;
 
 /// What a program wants of its hardware.
-pub enum Asked<'a> {
+pub(crate) enum Asked<'a> {
     Read(u32),
     Write(u32, u32),
     Pause,
@@ -23,7 +23,7 @@ pub enum Asked<'a> {
 }
 
 /// Runs a program until it ends well, and gives its results. `answer` gives the word of a read.
-pub fn talk(
+pub(crate) fn talk(
     program: &Path,
     arguments: &[&str],
     answer: &mut dyn FnMut(Asked<'_>) -> Option<u32>,
@@ -59,14 +59,14 @@ pub fn talk(
 }
 
 /// The example's stage, and a program with the driver.
-pub struct Bridge {
-    pub bench: StageBench,
+pub(crate) struct Bridge {
+    pub(crate) bench: StageBench,
     program: PathBuf,
 }
 
 impl Bridge {
     /// With the Verilog beside the model, if wanted.
-    pub fn new(driver: &Driver, with_rtl: bool) -> Self {
+    pub(crate) fn new(driver: &Driver, with_rtl: bool) -> Self {
         let machine = machine();
         let stage = stage(&machine);
         let component = Component::stage(&stage.config).unwrap();
@@ -85,7 +85,7 @@ impl Bridge {
     }
 
     /// Runs the program on the stage.
-    pub fn talk(&mut self, arguments: &[&str]) -> BTreeMap<String, i64> {
+    pub(crate) fn talk(&mut self, arguments: &[&str]) -> BTreeMap<String, i64> {
         let bench = &mut self.bench;
         talk(&self.program, arguments, &mut |asked| {
             match asked {

@@ -47,12 +47,9 @@ fn unit_headers_compile_alone_in_c_and_in_cpp() {
     for entry in std::fs::read_dir(driver.path().join("inc")).unwrap() {
         let header = entry.unwrap().path();
         let cpp = ["-std=c++11", "-Wall", "-Wextra", "-Werror"];
-        compile(
-            Command::new("gcc").args(STRICT).args(["-x", "c"]),
-            &driver,
-            &[header.clone()],
-        );
-        compile(Command::new("g++").args(cpp).args(["-x", "c++"]), &driver, &[header]);
+        let header = [header];
+        compile(Command::new("gcc").args(STRICT).args(["-x", "c"]), &driver, &header);
+        compile(Command::new("g++").args(cpp).args(["-x", "c++"]), &driver, &header);
     }
 }
 

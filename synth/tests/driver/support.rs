@@ -10,27 +10,27 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// What every file of the driver must pass.
-pub const STRICT: [&str; 6] = ["-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Werror"];
+pub(crate) const STRICT: [&str; 6] = ["-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Werror"];
 
 /// The example.
-pub fn machine() -> Machine {
+pub(crate) fn machine() -> Machine {
     spec::parse("xy-stage.toml", include_str!("../../../examples/xy-stage.toml")).unwrap()
 }
 
 /// Its stage.
-pub fn stage(machine: &Machine) -> MachineStage {
+pub(crate) fn stage(machine: &Machine) -> MachineStage {
     control::stage(machine, &design_machine(machine).unwrap())
         .unwrap()
         .unwrap()
 }
 
 /// Its driver, written into a folder.
-pub struct Driver {
+pub(crate) struct Driver {
     folder: tempfile::TempDir,
 }
 
 impl Driver {
-    pub fn write() -> Self {
+    pub(crate) fn write() -> Self {
         let machine = machine();
         let stage = stage(&machine);
         let component = Component::stage(&stage.config).unwrap();
@@ -60,12 +60,12 @@ impl Driver {
         Self { folder }
     }
 
-    pub fn path(&self) -> PathBuf {
+    pub(crate) fn path(&self) -> PathBuf {
         self.folder.path().join(FOLDER)
     }
 
     /// The C files of its core.
-    pub fn core(&self) -> Vec<PathBuf> {
+    pub(crate) fn core(&self) -> Vec<PathBuf> {
         let files = std::fs::read_dir(self.path().join("src")).unwrap();
         let mut files: Vec<PathBuf> = files.map(|file| file.unwrap().path()).collect();
         files.sort();
@@ -74,7 +74,7 @@ impl Driver {
     }
 
     /// Builds a program of these files and the core, with strict warnings.
-    pub fn program(&self, name: &str, options: &[&str], files: &[PathBuf]) -> PathBuf {
+    pub(crate) fn program(&self, name: &str, options: &[&str], files: &[PathBuf]) -> PathBuf {
         let program = self.folder.path().join(name);
         let mut gcc = Command::new("gcc");
         gcc.args(STRICT)
@@ -87,19 +87,19 @@ impl Driver {
 }
 
 /// A component beside the stage.
-pub fn pwm() -> Component {
+pub(crate) fn pwm() -> Component {
     use posicast_model::rtl::pwm::{ActiveLow, Mode, PwmConfig};
     let config = PwmConfig::new(ActiveLow::default(), 25, 50).unwrap();
     Component::pwm(config, Mode::HalfBridge, 2500).unwrap()
 }
 
 /// A file beside this one.
-pub fn beside(name: &str) -> PathBuf {
+pub(crate) fn beside(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/driver").join(name)
 }
 
 /// Runs it, and gives its output.
-pub fn run(command: &mut Command) -> String {
+pub(crate) fn run(command: &mut Command) -> String {
     let output = command.output();
     let output = output.unwrap_or_else(|error| panic!("{command:?}: {error}; scripts/install-tools installs it"));
     assert!(
