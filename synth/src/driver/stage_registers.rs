@@ -10,7 +10,7 @@ use posicast_model::rtl::group::MOST_AXES;
 use posicast_model::rtl::registers::{Field, Register, RegisterMap, WINDOW_WORDS};
 use posicast_model::rtl::segments::{
     ACCELERATION_BITS, ACCELERATION_FRACTION, ENTRIES_MAX, ENTRY_WORDS, FRACTION_BITS, NOTIFY, POINT,
-    POSITION_FRACTION, TICK_BITS, VELOCITY_BITS, VELOCITY_FRACTION,
+    POSITION_FRACTION, State, TICK_BITS, VELOCITY_BITS, VELOCITY_FRACTION,
 };
 use posicast_model::rtl::stage::AXIS_INTERRUPTS;
 use std::fmt::Write;
@@ -58,12 +58,13 @@ pub(super) fn header(driver: &StageDriver<'_>) -> String {
 
 /// What is counted in windows, entries and bits.
 fn numbers(text: &mut String, map: &RegisterMap) {
-    let numbers: [(&str, u32); 16] = [
+    let numbers: [(&str, u32); 17] = [
         ("AXES_MAX", MOST_AXES as u32),
         ("WINDOW_WORDS", WINDOW_WORDS),
         ("STAGE_BYTES", 4 * map.words()),
         ("KICK_WORD", KICK),
         ("FIFO_ENTRIES", ENTRIES_MAX.into()),
+        ("SEGMENTS_STOP", State::Stop as u32),
         ("ENTRY_WORDS", ENTRY_WORDS as u32),
         ("ENTRY_POINT", POINT),
         ("ENTRY_NOTIFY", NOTIFY),

@@ -88,6 +88,7 @@ static void first_move(posicast_stage *stage)
 /* The drive of X fails in a move: both stop, the fault is read, forgotten, and the move begun again. */
 static void fault(posicast_stage *stage)
 {
+    const posicast_entry nothing = posicast_segment(0, 0, 0), rest = posicast_segment(0, 1, 0);
     uint32_t causes;
 
     need("move X on", posicast_queue_move(stage, X, COUNTS(90), limits_of(X)), POSICAST_OK);
@@ -95,6 +96,7 @@ static void fault(posicast_stage *stage)
     posicast_enable_interrupts(stage, POSICAST_AXIS_INTERRUPT(X, POSICAST_INTERRUPT_FAULTED));
     (void)posicast_take_interrupts(stage);
     need("start again", posicast_start(stage, BOTH), POSICAST_OK);
+    need("an entry without ticks", posicast_write_entry(stage, X, &nothing), POSICAST_BAD_ARGUMENT);
     need("a while", posicast_wait_ticks(stage, 20), POSICAST_OK);
     set_line("x_drive_fault_n", 0);
     need("a fault", posicast_wait_at_rest(stage, 1u << X, TICKS), POSICAST_FAULT);
@@ -103,6 +105,7 @@ static void fault(posicast_stage *stage)
     result("causes_x", causes);
     result("named", strcmp(posicast_cause_name(causes), "pwm tripped") == 0);
     need("a fault that stays", posicast_switch_on(stage, BOTH, 20), POSICAST_WRONG_STATE);
+    need("an entry in a stop", posicast_write_entry(stage, Y, &rest), POSICAST_REFUSED);
     need("the group to stop", posicast_wait_at_rest(stage, 1u << Y, TICKS), POSICAST_FAULT);
     need("the stop to end", posicast_wait_ticks(stage, 200), POSICAST_OK);
     result("causes_y", posicast_causes(stage, Y));

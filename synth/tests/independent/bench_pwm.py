@@ -49,7 +49,7 @@ async def begin(dut):
     return registers
 
 
-@cocotb.test()
+@cocotb.test(timeout_time=1, timeout_unit="ms")
 async def constants_and_configuration(dut):
     """Constants read as the document says, configuration as it was written, commands and holes as 0."""
     registers = await begin(dut)
@@ -70,7 +70,7 @@ async def constants_and_configuration(dut):
     assert await registers.read("FLAGS") == 0
 
 
-@cocotb.test()
+@cocotb.test(timeout_time=1, timeout_unit="ms")
 async def a_period(dut):
     """Tripped after reset; then leg A is high for duty less dead time, and low for the rest less two dead times."""
     registers = await begin(dut)
@@ -93,7 +93,7 @@ async def a_period(dut):
     assert await registers.read("STATUS") & 3 == 1
 
 
-@cocotb.test()
+@cocotb.test(timeout_time=1, timeout_unit="ms")
 async def a_raw_fault(dut):
     """The pins are off with the fault, without a clock; the trip stays until it is cleared."""
     registers = await begin(dut)

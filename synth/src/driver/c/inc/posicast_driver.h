@@ -72,7 +72,10 @@ posicast_result posicast_switch_on(const posicast_stage *stage, uint32_t axes, u
 /* Off, through a stop and the brakes; waits until the outputs are off. */
 posicast_result posicast_switch_off(const posicast_stage *stage, uint32_t axes, uint32_t ticks);
 
-/* Puts an entry into an axis's FIFO. POSICAST_FULL; POSICAST_REFUSED where the axis takes none, as in a stop. */
+/*
+ * Puts an entry into an axis's FIFO. POSICAST_BAD_ARGUMENT without ticks; POSICAST_FULL; POSICAST_REFUSED where it is
+ * not kept, as in a stop or while off.
+ */
 posicast_result posicast_write_entry(const posicast_stage *stage, uint32_t axis, const posicast_entry *entry);
 
 /*

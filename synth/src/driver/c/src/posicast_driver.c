@@ -106,6 +106,21 @@ static posicast_result wait_flags(const posicast_stage *stage)
     return time_stamp(stage) == from ? POSICAST_DEAD : POSICAST_OK;
 }
 
+static uint32_t flags_of(const posicast_stage *stage, uint32_t axis)
+{
+    return (uint32_t)IORD_POSICAST_AXIS_FLAGS(stage->base, axis);
+}
+
+/* Whether writes since `before` was read have set one of these flags, which stay until faults are cleared. */
+static posicast_result refused_since(const posicast_stage *stage, uint32_t axis, uint32_t refusals, uint32_t before)
+{
+    const posicast_result result = wait_flags(stage);
+
+    if (result != POSICAST_OK)
+        return result;
+    return flags_of(stage, axis) & ~before & refusals ? POSICAST_REFUSED : POSICAST_OK;
+}
+
 static void clear_faults(const posicast_stage *stage, uint32_t axis)
 {
     IOWR_POSICAST_AXIS_CLEAR_FAULTS(stage->base, axis, 0);
@@ -114,6 +129,15 @@ static void clear_faults(const posicast_stage *stage, uint32_t axis)
 static uint32_t state_of(uint32_t word)
 {
     return FIELD(word, POSICAST_AXIS_STATUS_STATE);
+}
+
+/* Entries stay in the FIFO in HOLD and RUN alone. The stop of the segments follows that of the axis a tick later. */
+static int keeps_entries(const posicast_stage *stage, uint32_t axis)
+{
+    const uint32_t word = status(stage, axis);
+
+    return (state_of(word) == POSICAST_AXIS_STATUS_STATE_HOLD || state_of(word) == POSICAST_AXIS_STATUS_STATE_RUN) &&
+           FIELD(word, POSICAST_AXIS_STATUS_SEGMENTS_STATE) < POSICAST_SEGMENTS_STOP;
 }
 
 /* Until an axis is READY. It forgets only what is over, and only with its outputs off: so it is told again and again. */
@@ -278,20 +302,21 @@ posicast_result posicast_switch_off(const posicast_stage *stage, uint32_t axes, 
 posicast_result posicast_write_entry(const posicast_stage *stage, uint32_t axis, const posicast_entry *entry)
 {
     const uint32_t refusals = POSICAST_AXIS_FLAGS_SEGMENT_REFUSED_MSK | POSICAST_AXIS_FLAGS_SEGMENT_MALFORMED_MSK;
-    uint32_t word;
+    uint32_t word, before;
     posicast_result result;
 
-    if (!is_axis(stage, axis))
+    if (!is_axis(stage, axis) || posicast_entry_ticks(entry) == 0)
         return POSICAST_BAD_ARGUMENT;
     if (FIELD(IORD_POSICAST_AXIS_FIFO(stage->base, axis), POSICAST_AXIS_FIFO_FIFO_LEVEL) >= POSICAST_FIFO_ENTRIES)
         return POSICAST_FULL;
+    if (!keeps_entries(stage, axis))
+        return POSICAST_REFUSED;
+    before = flags_of(stage, axis);
     for (word = 0; word < POSICAST_ENTRY_WORDS; word++)
         IOWR_POSICAST_AXIS_SEGMENT(stage->base, axis, word, entry->words[word]);
-    /* The level and the flags are then those after this entry. */
-    result = wait_flags(stage);
-    if (result != POSICAST_OK)
-        return result;
-    return (uint32_t)IORD_POSICAST_AXIS_FLAGS(stage->base, axis) & refusals ? POSICAST_REFUSED : POSICAST_OK;
+    /* Level and flags are then those after this entry. */
+    result = refused_since(stage, axis, refusals, before);
+    return result == POSICAST_OK && !keeps_entries(stage, axis) ? POSICAST_REFUSED : result;
 }
 
 posicast_result posicast_queue_move(const posicast_stage *stage, uint32_t axis, int32_t end,
@@ -450,13 +475,15 @@ static int table_fits(const posicast_stage *stage, uint32_t axis, const posicast
 posicast_result posicast_load_table(const posicast_stage *stage, uint32_t axis, uint32_t bank,
                                     const posicast_table *table, uint32_t how, uint32_t ticks)
 {
-    uint32_t tap, longest, settle;
+    uint32_t tap, longest, settle, before;
+    posicast_result result;
 
-    if (!is_axis(stage, axis) || bank == 0 || !table_fits(stage, axis, table))
+    if (!is_axis(stage, axis) || bank == 0 || bank > 2 || !table_fits(stage, axis, table))
         return POSICAST_BAD_ARGUMENT;
     if (status(stage, axis) & POSICAST_AXIS_STATUS_SWAP_PENDING_MSK ||
         FIELD(status(stage, axis), POSICAST_AXIS_STATUS_TABLE_BANK) == bank)
         return POSICAST_WRONG_STATE;
+    before = flags_of(stage, axis);
     for (tap = 0; tap < table->count; tap++) {
         IOWR_POSICAST_AXIS_TAP_ADDRESS(stage->base, axis,
                                        AS_FIELD(tap, POSICAST_AXIS_TAP_ADDRESS_TAP_INDEX) |
@@ -465,6 +492,9 @@ posicast_result posicast_load_table(const posicast_stage *stage, uint32_t axis, 
                                AS_FIELD(table->taps[tap].delay_samples, POSICAST_AXIS_TAP_TAP_DELAY) |
                                    AS_FIELD(table->taps[tap].coefficient, POSICAST_AXIS_TAP_TAP_COEFFICIENT));
     }
+    result = refused_since(stage, axis, POSICAST_AXIS_FLAGS_TABLE_REFUSED_MSK, before);
+    if (result != POSICAST_OK)
+        return result;
     longest = table->taps[table->count - 1].delay_samples;
     settle = FIELD(IORD_POSICAST_AXIS_SETTLE(stage->base, axis), POSICAST_AXIS_SETTLE_SETTLE_TICKS);
     if (longest > settle)
@@ -477,18 +507,18 @@ posicast_result posicast_use_table(const posicast_stage *stage, uint32_t axis, u
 {
     const uint32_t swapped = POSICAST_AXIS_STATUS_SWAP_PENDING_MSK | POSICAST_AXIS_STATUS_TABLE_BANK_MSK;
     patience left = patience_for(stage, ticks);
+    uint32_t before;
     posicast_result result;
 
     if (!is_axis(stage, axis) || bank > 2)
         return POSICAST_BAD_ARGUMENT;
+    before = flags_of(stage, axis);
     IOWR_POSICAST_AXIS_SWAP(
         stage->base, axis,
         AS_FIELD(bank, POSICAST_AXIS_SWAP_SWAP_BANK) | AS_FIELD(how, POSICAST_AXIS_SWAP_SWAP_HOW));
-    result = wait_flags(stage);
+    result = refused_since(stage, axis, POSICAST_AXIS_FLAGS_TABLE_REFUSED_MSK, before);
     if (result != POSICAST_OK)
         return result;
-    if ((uint32_t)IORD_POSICAST_AXIS_FLAGS(stage->base, axis) & POSICAST_AXIS_FLAGS_TABLE_REFUSED_MSK)
-        return POSICAST_REFUSED;
     return wait_status(stage, axis, swapped, AS_FIELD(bank, POSICAST_AXIS_STATUS_TABLE_BANK), &left);
 }
 
