@@ -3,7 +3,7 @@
 use super::{File, file};
 
 /// Path below the driver's folder, and text.
-const FILES: [(&str, &str); 14] = [
+const FILES: [(&str, &str); 17] = [
     ("inc/posicast_io.h", include_str!("c/inc/posicast_io.h")),
     ("inc/posicast_machine.h", include_str!("c/inc/posicast_machine.h")),
     ("inc/posicast_plan.h", include_str!("c/inc/posicast_plan.h")),
@@ -13,6 +13,9 @@ const FILES: [(&str, &str); 14] = [
     ("src/posicast_plan.c", include_str!("c/src/posicast_plan.c")),
     ("src/posicast_segments.c", include_str!("c/src/posicast_segments.c")),
     ("src/posicast_driver.c", include_str!("c/src/posicast_driver.c")),
+    ("src/posicast_tables.c", include_str!("c/src/posicast_tables.c")),
+    ("src/posicast_wait.c", include_str!("c/src/posicast_wait.c")),
+    ("src/posicast_wait.h", include_str!("c/src/posicast_wait.h")),
     (
         "HAL/inc/posicast_stage_hal.h",
         include_str!("c/HAL/inc/posicast_stage_hal.h"),

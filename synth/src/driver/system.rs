@@ -44,6 +44,8 @@ set_sw_property supported_interrupt_apis \"enhanced_interrupt_api\"
 
 add_sw_property c_source src/posicast_driver.c
 add_sw_property c_source src/posicast_segments.c
+add_sw_property c_source src/posicast_tables.c
+add_sw_property c_source src/posicast_wait.c
 add_sw_property c_source src/posicast_plan.c
 add_sw_property c_source src/machine_{machine}.c
 add_sw_property c_source HAL/src/posicast_stage_hal.c
@@ -55,6 +57,7 @@ add_sw_property include_source inc/posicast_plan.h
 add_sw_property include_source inc/posicast_machine.h
 add_sw_property include_source inc/posicast_driver.h
 add_sw_property include_source inc/machine_{machine}.h
+add_sw_property include_source src/posicast_wait.h
 add_sw_property include_source HAL/inc/posicast_stage_hal.h
 add_sw_property include_source HAL/inc/{top}.h
 add_sw_property include_directory inc

@@ -3,145 +3,29 @@
 
 #include <stddef.h>
 
-#define FIELD(word, name) (((uint32_t)(word) & name##_MSK) >> name##_OFST)
-#define AS_FIELD(value, name) (((uint32_t)(value) << name##_OFST) & name##_MSK)
+#include "posicast_wait.h"
 
-/* Looks at the time stamp in a row that find it unchanged: an access takes clocks, so it always changes. */
-#define STILL_LOOKS 8u
-/* Clocks from a write until every flag that follows from it shows. */
-#define FLAG_CLOCKS 16u
 /* Ticks until a start has led to RUN, or to nothing. */
 #define START_TICKS 4u
 /* Ticks until the PWM has run for a whole period with a new duty. */
 #define SELF_TEST_TICKS 4u
-
-/* What is waited for ends. */
-typedef struct {
-    uint32_t from_tick;
-    uint32_t ticks;
-    uint32_t stamp;
-    uint32_t still;
-} patience;
-
-static uint32_t time_stamp(const posicast_stage *stage)
-{
-    return (uint32_t)IORD_POSICAST_STAGE_TIME_STAMP(stage->base);
-}
-
-static uint32_t tick_count(const posicast_stage *stage)
-{
-    return (uint32_t)IORD_POSICAST_STAGE_TICK_COUNT(stage->base);
-}
-
-static uint32_t status(const posicast_stage *stage, uint32_t axis)
-{
-    return (uint32_t)IORD_POSICAST_AXIS_STATUS(stage->base, axis);
-}
-
-static int is_axis(const posicast_stage *stage, uint32_t axis)
-{
-    return axis < stage->axes;
-}
-
-static int are_axes(const posicast_stage *stage, uint32_t axes)
-{
-    return axes != 0 && (axes & ~posicast_all_axes(stage)) == 0;
-}
-
-static int has(uint32_t axes, uint32_t axis)
-{
-    return (axes >> axis & 1u) != 0;
-}
-
-static patience patience_for(const posicast_stage *stage, uint32_t ticks)
-{
-    patience left;
-
-    left.from_tick = tick_count(stage);
-    left.ticks = ticks;
-    left.stamp = time_stamp(stage);
-    left.still = 0;
-    return left;
-}
-
-/* Lets a little time pass: POSICAST_OK, or why waiting has no more sense. */
-static posicast_result pass_time(const posicast_stage *stage, patience *left)
-{
-    uint32_t stamp;
-
-    posicast_kick(stage);
-    if (stage->pause != NULL)
-        stage->pause(stage->context);
-    stamp = time_stamp(stage);
-    left->still = stamp == left->stamp ? left->still + 1 : 0;
-    left->stamp = stamp;
-    if (left->still >= STILL_LOOKS)
-        return POSICAST_DEAD;
-    return tick_count(stage) - left->from_tick > left->ticks ? POSICAST_TIMEOUT : POSICAST_OK;
-}
-
-/* Until bits of STATUS are these. */
-static posicast_result wait_status(const posicast_stage *stage, uint32_t axis, uint32_t mask, uint32_t wanted,
-                                   patience *left)
-{
-    while ((status(stage, axis) & mask) != wanted) {
-        const posicast_result result = pass_time(stage, left);
-
-        if (result != POSICAST_OK)
-            return result;
-    }
-    return POSICAST_OK;
-}
-
-/* Until flags that a write has caused can be read. */
-static posicast_result wait_flags(const posicast_stage *stage)
-{
-    const uint32_t from = time_stamp(stage);
-    uint32_t looks;
-
-    for (looks = 0; looks < FLAG_CLOCKS; looks++) {
-        if (time_stamp(stage) - from >= FLAG_CLOCKS)
-            return POSICAST_OK;
-    }
-    return time_stamp(stage) == from ? POSICAST_DEAD : POSICAST_OK;
-}
-
-static uint32_t flags_of(const posicast_stage *stage, uint32_t axis)
-{
-    return (uint32_t)IORD_POSICAST_AXIS_FLAGS(stage->base, axis);
-}
-
-/* Whether writes since `before` was read have set one of these flags, which stay until faults are cleared. */
-static posicast_result refused_since(const posicast_stage *stage, uint32_t axis, uint32_t refusals, uint32_t before)
-{
-    const posicast_result result = wait_flags(stage);
-
-    if (result != POSICAST_OK)
-        return result;
-    return flags_of(stage, axis) & ~before & refusals ? POSICAST_REFUSED : POSICAST_OK;
-}
 
 static void clear_faults(const posicast_stage *stage, uint32_t axis)
 {
     IOWR_POSICAST_AXIS_CLEAR_FAULTS(stage->base, axis, 0);
 }
 
-static uint32_t state_of(uint32_t word)
-{
-    return FIELD(word, POSICAST_AXIS_STATUS_STATE);
-}
-
 /* Entries stay in the FIFO in HOLD and RUN alone. The stop of the segments follows that of the axis a tick later. */
 static int keeps_entries(const posicast_stage *stage, uint32_t axis)
 {
-    const uint32_t word = status(stage, axis);
+    const uint32_t word = posicast_status(stage, axis);
 
     return (state_of(word) == POSICAST_AXIS_STATUS_STATE_HOLD || state_of(word) == POSICAST_AXIS_STATUS_STATE_RUN) &&
            FIELD(word, POSICAST_AXIS_STATUS_SEGMENTS_STATE) < POSICAST_SEGMENTS_STOP;
 }
 
 /* Until an axis is READY. It forgets only what is over, and only with its outputs off: so it is told again and again. */
-static posicast_result wait_ready(const posicast_stage *stage, uint32_t axis, patience *left)
+static posicast_result wait_ready(const posicast_stage *stage, uint32_t axis, posicast_patience *left)
 {
     while (posicast_state(stage, axis) != POSICAST_AXIS_STATUS_STATE_READY) {
         const uint32_t causes = posicast_causes(stage, axis);
@@ -149,7 +33,7 @@ static posicast_result wait_ready(const posicast_stage *stage, uint32_t axis, pa
 
         if (causes != 0)
             clear_faults(stage, axis);
-        result = pass_time(stage, left);
+        result = posicast_pass_time(stage, left);
         if (result != POSICAST_OK)
             return result == POSICAST_TIMEOUT && causes != 0 ? POSICAST_FAULT : result;
     }
@@ -157,10 +41,10 @@ static posicast_result wait_ready(const posicast_stage *stage, uint32_t axis, pa
 }
 
 /* Until an axis that was switched on can start. What stays with one that holds is the group stop of another: it is forgotten. */
-static posicast_result wait_holding(const posicast_stage *stage, uint32_t axis, patience *left)
+static posicast_result wait_holding(const posicast_stage *stage, uint32_t axis, posicast_patience *left)
 {
     for (;;) {
-        const uint32_t word = status(stage, axis);
+        const uint32_t word = posicast_status(stage, axis);
         posicast_result result;
 
         if (state_of(word) == POSICAST_AXIS_STATUS_STATE_FAULT)
@@ -171,7 +55,7 @@ static posicast_result wait_holding(const posicast_stage *stage, uint32_t axis, 
             if (posicast_causes(stage, axis) != 0)
                 clear_faults(stage, axis);
         }
-        result = pass_time(stage, left);
+        result = posicast_pass_time(stage, left);
         if (result != POSICAST_OK)
             return result;
     }
@@ -213,31 +97,12 @@ uint32_t posicast_all_axes(const posicast_stage *stage)
 
 uint32_t posicast_state(const posicast_stage *stage, uint32_t axis)
 {
-    return state_of(status(stage, axis));
-}
-
-void posicast_kick(const posicast_stage *stage)
-{
-    uint32_t axis;
-
-    for (axis = 0; axis < stage->axes; axis++)
-        IOWR_POSICAST_AXIS_KICK(stage->base, axis, POSICAST_KICK_WORD);
-}
-
-posicast_result posicast_wait_ticks(const posicast_stage *stage, uint32_t ticks)
-{
-    patience left = patience_for(stage, ticks);
-    posicast_result result;
-
-    do {
-        result = pass_time(stage, &left);
-    } while (result == POSICAST_OK);
-    return result == POSICAST_TIMEOUT ? POSICAST_OK : result;
+    return state_of(posicast_status(stage, axis));
 }
 
 posicast_result posicast_switch_on(const posicast_stage *stage, uint32_t axes, uint32_t ticks)
 {
-    patience left = patience_for(stage, ticks);
+    posicast_patience left = posicast_patience_for(stage, ticks);
     uint32_t axis, off = 0;
     posicast_result result = POSICAST_OK;
 
@@ -275,7 +140,7 @@ posicast_result posicast_switch_on(const posicast_stage *stage, uint32_t axes, u
 
 posicast_result posicast_switch_off(const posicast_stage *stage, uint32_t axes, uint32_t ticks)
 {
-    patience left = patience_for(stage, ticks);
+    posicast_patience left = posicast_patience_for(stage, ticks);
     uint32_t axis;
 
     if (!are_axes(stage, axes))
@@ -291,7 +156,7 @@ posicast_result posicast_switch_off(const posicast_stage *stage, uint32_t axes, 
 
             if (state == POSICAST_AXIS_STATUS_STATE_OFF || state == POSICAST_AXIS_STATUS_STATE_READY)
                 break;
-            result = pass_time(stage, &left);
+            result = posicast_pass_time(stage, &left);
             if (result != POSICAST_OK)
                 return state == POSICAST_AXIS_STATUS_STATE_FAULT && result == POSICAST_TIMEOUT ? POSICAST_FAULT : result;
         }
@@ -311,11 +176,11 @@ posicast_result posicast_write_entry(const posicast_stage *stage, uint32_t axis,
         return POSICAST_FULL;
     if (!keeps_entries(stage, axis))
         return POSICAST_REFUSED;
-    before = flags_of(stage, axis);
+    before = posicast_flags(stage, axis);
     for (word = 0; word < POSICAST_ENTRY_WORDS; word++)
         IOWR_POSICAST_AXIS_SEGMENT(stage->base, axis, word, entry->words[word]);
     /* Level and flags are then those after this entry. */
-    result = refused_since(stage, axis, refusals, before);
+    result = posicast_refused_since(stage, axis, refusals, before);
     return result == POSICAST_OK && !keeps_entries(stage, axis) ? POSICAST_REFUSED : result;
 }
 
@@ -340,7 +205,7 @@ posicast_result posicast_queue_move(const posicast_stage *stage, uint32_t axis, 
 
 posicast_result posicast_start(const posicast_stage *stage, uint32_t axes)
 {
-    patience left = patience_for(stage, START_TICKS);
+    posicast_patience left = posicast_patience_for(stage, START_TICKS);
     uint32_t axis;
     posicast_result result;
 
@@ -352,15 +217,15 @@ posicast_result posicast_start(const posicast_stage *stage, uint32_t axes)
             IOWR_POSICAST_AXIS_EVENTS(stage->base, axis, POSICAST_AXIS_EVENTS_REFUSED_MSK);
     }
     IOWR_POSICAST_STAGE_START(stage->base, AS_FIELD(axes, POSICAST_STAGE_START_START_AXES));
-    result = wait_flags(stage);
+    result = posicast_wait_flags(stage);
     if (result != POSICAST_OK)
         return result;
     if ((uint32_t)IORD_POSICAST_STAGE_FLAGS(stage->base) & POSICAST_STAGE_FLAGS_START_REFUSED_MSK)
         return POSICAST_REFUSED;
     /* The start itself comes with the next tick; there an axis may still refuse. */
     for (axis = 0; axis < stage->axes; axis++) {
-        while (has(axes, axis) && FIELD(status(stage, axis), POSICAST_AXIS_STATUS_CAN_START)) {
-            result = pass_time(stage, &left);
+        while (has(axes, axis) && FIELD(posicast_status(stage, axis), POSICAST_AXIS_STATUS_CAN_START)) {
+            result = posicast_pass_time(stage, &left);
             /* A move that was over so soon can start again. */
             if (result == POSICAST_TIMEOUT)
                 break;
@@ -376,7 +241,7 @@ posicast_result posicast_start(const posicast_stage *stage, uint32_t axes)
 
 posicast_result posicast_wait_at_rest(const posicast_stage *stage, uint32_t axes, uint32_t ticks)
 {
-    patience left = patience_for(stage, ticks);
+    posicast_patience left = posicast_patience_for(stage, ticks);
     uint32_t axis, longest = 0;
 
     if (!are_axes(stage, axes))
@@ -393,7 +258,7 @@ posicast_result posicast_wait_at_rest(const posicast_stage *stage, uint32_t axes
             if (posicast_state(stage, axis) == POSICAST_AXIS_STATUS_STATE_HOLD &&
                 FIELD(fifo, POSICAST_AXIS_FIFO_SEGMENTS_EMPTY))
                 break;
-            result = pass_time(stage, &left);
+            result = posicast_pass_time(stage, &left);
             if (result != POSICAST_OK)
                 return result;
         }
@@ -447,79 +312,6 @@ const char *posicast_cause_name(uint32_t causes)
             return names[bit];
     }
     return "none";
-}
-
-/* Is it one that the hardware of the axis holds? */
-static int table_fits(const posicast_stage *stage, uint32_t axis, const posicast_table *table)
-{
-    const uint32_t ring = (uint32_t)IORD_POSICAST_AXIS_RING_SAMPLES(stage->base, axis);
-    const int32_t half = (int32_t)((POSICAST_AXIS_TAP_TAP_COEFFICIENT_MSK >> POSICAST_AXIS_TAP_TAP_COEFFICIENT_OFST) / 2u);
-    int64_t sum = 0;
-    uint32_t tap;
-
-    if (table->count == 0 || table->count > (uint32_t)IORD_POSICAST_AXIS_MOST_TAPS(stage->base, axis) ||
-        table->coefficient_fraction != (uint32_t)IORD_POSICAST_AXIS_COEFFICIENT_FRACTION(stage->base, axis))
-        return 0;
-    for (tap = 0; tap < table->count; tap++) {
-        const int32_t coefficient = table->taps[tap].coefficient;
-
-        if (coefficient == 0 || coefficient > half || coefficient < -half - 1 ||
-            table->taps[tap].delay_samples > ring - 2u ||
-            (tap > 0 && table->taps[tap].delay_samples <= table->taps[tap - 1].delay_samples))
-            return 0;
-        sum += coefficient;
-    }
-    return sum == (int64_t)1 << table->coefficient_fraction;
-}
-
-posicast_result posicast_load_table(const posicast_stage *stage, uint32_t axis, uint32_t bank,
-                                    const posicast_table *table, uint32_t how, uint32_t ticks)
-{
-    uint32_t tap, longest, settle, before;
-    posicast_result result;
-
-    if (!is_axis(stage, axis) || bank == 0 || bank > 2 || !table_fits(stage, axis, table))
-        return POSICAST_BAD_ARGUMENT;
-    if (status(stage, axis) & POSICAST_AXIS_STATUS_SWAP_PENDING_MSK ||
-        FIELD(status(stage, axis), POSICAST_AXIS_STATUS_TABLE_BANK) == bank)
-        return POSICAST_WRONG_STATE;
-    before = flags_of(stage, axis);
-    for (tap = 0; tap < table->count; tap++) {
-        IOWR_POSICAST_AXIS_TAP_ADDRESS(stage->base, axis,
-                                       AS_FIELD(tap, POSICAST_AXIS_TAP_ADDRESS_TAP_INDEX) |
-                                           AS_FIELD(bank, POSICAST_AXIS_TAP_ADDRESS_TAP_BANK));
-        IOWR_POSICAST_AXIS_TAP(stage->base, axis,
-                               AS_FIELD(table->taps[tap].delay_samples, POSICAST_AXIS_TAP_TAP_DELAY) |
-                                   AS_FIELD(table->taps[tap].coefficient, POSICAST_AXIS_TAP_TAP_COEFFICIENT));
-    }
-    result = refused_since(stage, axis, POSICAST_AXIS_FLAGS_TABLE_REFUSED_MSK, before);
-    if (result != POSICAST_OK)
-        return result;
-    longest = table->taps[table->count - 1].delay_samples;
-    settle = FIELD(IORD_POSICAST_AXIS_SETTLE(stage->base, axis), POSICAST_AXIS_SETTLE_SETTLE_TICKS);
-    if (longest > settle)
-        IOWR_POSICAST_AXIS_SETTLE(stage->base, axis, AS_FIELD(longest, POSICAST_AXIS_SETTLE_SETTLE_TICKS));
-    return posicast_use_table(stage, axis, bank, how, ticks);
-}
-
-posicast_result posicast_use_table(const posicast_stage *stage, uint32_t axis, uint32_t bank, uint32_t how,
-                                   uint32_t ticks)
-{
-    const uint32_t swapped = POSICAST_AXIS_STATUS_SWAP_PENDING_MSK | POSICAST_AXIS_STATUS_TABLE_BANK_MSK;
-    patience left = patience_for(stage, ticks);
-    uint32_t before;
-    posicast_result result;
-
-    if (!is_axis(stage, axis) || bank > 2)
-        return POSICAST_BAD_ARGUMENT;
-    before = flags_of(stage, axis);
-    IOWR_POSICAST_AXIS_SWAP(
-        stage->base, axis,
-        AS_FIELD(bank, POSICAST_AXIS_SWAP_SWAP_BANK) | AS_FIELD(how, POSICAST_AXIS_SWAP_SWAP_HOW));
-    result = refused_since(stage, axis, POSICAST_AXIS_FLAGS_TABLE_REFUSED_MSK, before);
-    if (result != POSICAST_OK)
-        return result;
-    return wait_status(stage, axis, swapped, AS_FIELD(bank, POSICAST_AXIS_STATUS_TABLE_BANK), &left);
 }
 
 posicast_result posicast_self_test(const posicast_stage *stage, uint32_t axis, int32_t duty,
