@@ -3,6 +3,7 @@
 use crate::blocks;
 use crate::control::AxisControl;
 use crate::design::Report;
+use crate::driver;
 use crate::failure::Failure;
 use crate::machine::{self, MachineFile};
 use crate::output;
@@ -45,6 +46,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     add_sources(&mut package, &file, &modules)?;
     let components = blocks::components(&file.machine, &shapers, &report.controllers, &args.machine)?;
     sopc::add(&mut package, &file.machine, board, stage.as_ref(), &components)?;
+    driver::add(&mut package, &file.machine, &modules, &components, stage.as_ref())?;
     package
         .add("report.json", output::json_text(&report.json())?.as_bytes())
         .map_err(Failure::because)?;

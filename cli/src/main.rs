@@ -10,6 +10,7 @@ mod compare;
 mod control;
 mod design;
 mod diff;
+mod driver;
 mod failure;
 mod generate;
 mod machine;

@@ -1,11 +1,15 @@
-//! What leaves posicast for a device: the output folder ([`package`]), what of it is opened in Quartus ([`sopc`]), and the
-//! estimates of what its Verilog costs ([`yosys`]) and how fast it is ([`clock`]).
+//! What leaves posicast for a device: the output folder ([`package`]), what of it is opened in Quartus ([`sopc`]), the C driver
+//! ([`driver`]), the documents of the registers ([`register_documents`]), and the estimates of what its Verilog costs ([`yosys`])
+//! and how fast it is ([`clock`]).
 //!
-//! Folder and estimate do not know how the files came to be: they take bytes and file names. The package for an SOPC reads the
-//! model's register maps and ports.
+//! Folder and estimates do not know how the files came to be: they take bytes and file names. The others are written from the
+//! register maps and ports of `posicast-model`.
 
 pub mod clock;
+pub mod core_file;
+pub mod driver;
 pub mod package;
 mod process;
+pub mod register_documents;
 pub mod sopc;
 pub mod yosys;

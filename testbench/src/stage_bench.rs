@@ -462,6 +462,33 @@ impl StageBench {
         Ok(())
     }
 
+    /// Writes the word at this address, as a program on the bus does: one clock.
+    ///
+    /// # Errors
+    /// [`Error::Unlike`] for an address beyond the stage's windows; [`Error::Step`] where a simulator stops.
+    pub fn write_at(&mut self, address: u32, data: u32) -> Result<(), Error> {
+        let address = self.inside(address)?;
+        self.access(address, Some(data))
+    }
+
+    /// Reads the word at this address: two clocks.
+    ///
+    /// # Errors
+    /// As [`write_at`](Self::write_at).
+    pub fn read_at(&mut self, address: u32) -> Result<u32, Error> {
+        let address = self.inside(address)?;
+        self.access(address, None)?;
+        self.clocks(1)?;
+        Ok(self.outputs[self.read_data] as u32)
+    }
+
+    fn inside(&self, address: u32) -> Result<u64, Error> {
+        match self.component.map().words() {
+            words if address < words => Ok(address.into()),
+            words => Err(Error::Unlike(format!("the stage has {words} words, none at {address}"))),
+        }
+    }
+
     /// Writes a register: one clock.
     ///
     /// # Errors

@@ -66,6 +66,14 @@ to overwrite a file that was edited, and says which.
              | `sopc/quartus/BOARD/` | a Quartus project per board: top level, pins, timing |\n",
         );
     }
+    if design.units().next().is_some() {
+        let _ = writeln!(
+            text,
+            "| `driver/` | C: headers of the registers; of a stage also the driver, for bare metal, HAL and Linux |\n\
+             | `doc/` | the registers as Markdown, SystemRDL and SVD |"
+        );
+    }
+    let _ = writeln!(text, "| `{}.core` | the Verilog for FuseSoC |", design.machine);
     text.push_str("| `report.json` | the design in numbers |\n| `posicast.json` | which files are posicast's |\n");
 }
 

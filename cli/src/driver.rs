@@ -1,0 +1,66 @@
+//! What goes with the Verilog in its folder: the C driver, documents of the registers, the FuseSoC core.
+
+use crate::failure::Failure;
+use crate::stage::Stage;
+use posicast_hdl::emit::Module;
+use posicast_model::motion::TickLimits;
+use posicast_model::rtl::component::Component;
+use posicast_model::spec::Machine;
+use posicast_synth::core_file::{self, Core};
+use posicast_synth::driver::{self, AxisData, File, StageDriver};
+use posicast_synth::package::Package;
+use posicast_synth::register_documents;
+use posicast_testbench::blocks::{Block, ComponentBlock};
+
+/// Adds the whole driver where there is a stage, a header and the documents of every component's registers, and the core.
+pub(crate) fn add(
+    package: &mut Package,
+    machine: &Machine,
+    modules: &[Module],
+    components: &[ComponentBlock],
+    stage: Option<&Stage>,
+) -> Result<(), Failure> {
+    let mut add = |path: &str, text: &str| package.add(path, text.as_bytes()).map_err(Failure::because);
+    for block in components {
+        let header = driver::component_header(&block.top(), block.component().map());
+        add(&header.path, &header.text)?;
+    }
+    for file in stage.into_iter().flat_map(|stage| of_stage(machine, stage)) {
+        add(&file.path, &file.text)?;
+    }
+    for block in components.iter().chain(stage.map(|stage| &stage.block)) {
+        for (path, text) in register_documents::files(&block.top(), block.component().map()) {
+            add(&path, &text)?;
+        }
+    }
+    for (path, text) in core_files(machine, modules, stage) {
+        add(&path, &text)?;
+    }
+    Ok(())
+}
+
+fn core_files(machine: &Machine, modules: &[Module], stage: Option<&Stage>) -> Vec<(String, String)> {
+    let files: Vec<String> = modules.iter().map(|module| format!("rtl/{}.v", module.name)).collect();
+    let component: Option<&Component> = stage.map(|stage| stage.block.component());
+    core_file::files(&Core {
+        machine: &machine.name,
+        top: &stage.map_or_else(|| machine.name.clone(), |stage| stage.block.top()),
+        files: &files,
+        bus: component.map(|component| (component.map(), component.composition().ports())),
+    })
+}
+
+fn of_stage(machine: &Machine, stage: &Stage) -> Vec<File> {
+    let axes = machine.axes.iter().map(|axis| AxisData {
+        counts_per_unit: axis.loop_counts_per_unit(),
+        limits: TickLimits::of_axis(axis, &machine.clock),
+    });
+    driver::stage_files(&StageDriver {
+        machine: &machine.name,
+        top: &stage.block.top(),
+        map: stage.block.component().map(),
+        config: &stage.of_machine.config,
+        tick_hz: machine.clock.sample_hz,
+        axes: &axes.collect::<Vec<_>>(),
+    })
+}

@@ -1,0 +1,37 @@
+//! The part of the driver that is the same for every machine: C that stands in `c/`, as it is compiled.
+
+use super::{File, file};
+
+/// Path below the driver's folder, and text.
+const FILES: [(&str, &str); 17] = [
+    ("inc/posicast_io.h", include_str!("c/inc/posicast_io.h")),
+    ("inc/posicast_machine.h", include_str!("c/inc/posicast_machine.h")),
+    ("inc/posicast_plan.h", include_str!("c/inc/posicast_plan.h")),
+    ("inc/posicast_result.h", include_str!("c/inc/posicast_result.h")),
+    ("inc/posicast_segments.h", include_str!("c/inc/posicast_segments.h")),
+    ("inc/posicast_driver.h", include_str!("c/inc/posicast_driver.h")),
+    ("src/posicast_plan.c", include_str!("c/src/posicast_plan.c")),
+    ("src/posicast_segments.c", include_str!("c/src/posicast_segments.c")),
+    ("src/posicast_driver.c", include_str!("c/src/posicast_driver.c")),
+    ("src/posicast_tables.c", include_str!("c/src/posicast_tables.c")),
+    ("src/posicast_wait.c", include_str!("c/src/posicast_wait.c")),
+    ("src/posicast_wait.h", include_str!("c/src/posicast_wait.h")),
+    (
+        "HAL/inc/posicast_stage_hal.h",
+        include_str!("c/HAL/inc/posicast_stage_hal.h"),
+    ),
+    (
+        "HAL/src/posicast_stage_hal.c",
+        include_str!("c/HAL/src/posicast_stage_hal.c"),
+    ),
+    ("linux/posicast_uio.h", include_str!("c/linux/posicast_uio.h")),
+    ("linux/posicast_uio.c", include_str!("c/linux/posicast_uio.c")),
+    ("linux/Makefile", include_str!("c/linux/Makefile")),
+];
+
+pub(super) fn files() -> Vec<File> {
+    FILES
+        .iter()
+        .map(|(path, text)| file(path, (*text).to_owned()))
+        .collect()
+}

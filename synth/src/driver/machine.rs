@@ -1,0 +1,83 @@
+//! The machine's tap tables and limits, in C.
+
+use super::{AxisData, File, StageDriver, file};
+use posicast_model::rtl::segments::{ACCELERATION_BITS, FRACTION_BITS, VELOCITY_BITS};
+use posicast_model::rtl::stage::StageAxis;
+use std::fmt::Write;
+
+/// `machine_NAME.h` and `machine_NAME.c`.
+pub(super) fn files(driver: &StageDriver<'_>) -> Vec<File> {
+    let name = driver.machine;
+    vec![
+        file(&format!("inc/machine_{name}.h"), header(driver)),
+        file(&format!("src/machine_{name}.c"), source(driver)),
+    ]
+}
+
+fn header(driver: &StageDriver<'_>) -> String {
+    let name = driver.machine;
+    let upper = name.to_uppercase();
+    let mut text = format!(
+        "/* What the machine file says of {name}. Written by posicast. */\n#ifndef MACHINE_{upper}_H\n#define MACHINE_{upper}_H\n\n\
+         #include \"posicast_machine.h\"\n\n/* Axes, as the driver counts them. */\n"
+    );
+    for (index, axis) in driver.config.axes.iter().enumerate() {
+        let _ = writeln!(
+            text,
+            "#define MACHINE_{upper}_AXIS_{} {index}u",
+            axis.name.to_uppercase()
+        );
+    }
+    let _ = write!(text, "\nextern const posicast_machine machine_{name};\n\n#endif\n");
+    text
+}
+
+fn source(driver: &StageDriver<'_>) -> String {
+    let name = driver.machine;
+    let mut text =
+        format!("/* Tap tables and limits of {name}. Written by posicast. */\n#include \"machine_{name}.h\"\n");
+    for axis in &driver.config.axes {
+        let _ = write!(text, "\nstatic const posicast_tap taps_of_{}[] = {{\n", axis.name);
+        for tap in axis.shaper.table().taps() {
+            let _ = writeln!(text, "    {{{}, {}}},", tap.delay_samples, tap.coefficient);
+        }
+        text.push_str("};\n");
+    }
+    text.push_str("\nstatic const posicast_axis_machine axes[] = {\n");
+    for (axis, data) in driver.config.axes.iter().zip(driver.axes) {
+        of_axis(&mut text, axis, data);
+    }
+    let _ = write!(
+        text,
+        "}};\n\nconst posicast_machine machine_{name} = {{\n    \"{name}\",\n    {:?}, /* ticks per second */\n    {}, /* axes */\n    axes,\n}};\n",
+        driver.tick_hz,
+        driver.config.axes.len(),
+    );
+    text
+}
+
+fn of_axis(text: &mut String, axis: &StageAxis, data: &AxisData) {
+    let limits = &data.limits;
+    let _ = write!(
+        text,
+        "    {{\n        \"{name}\",\n        {counts:?}, /* counts per unit */\n        \
+         /* velocity, acceleration, jerk: counts per tick, tick^2, tick^3, in LSB of 2^-32 */\n        \
+         {{INT64_C({velocity}), INT64_C({acceleration}), INT64_C({jerk})}},\n        \
+         {{taps_of_{name}, {taps}, {fraction}}},\n    }},\n",
+        name = axis.name,
+        counts = data.counts_per_unit,
+        velocity = lsb(limits.velocity, VELOCITY_BITS),
+        acceleration = lsb(limits.acceleration, ACCELERATION_BITS),
+        jerk = lsb(limits.jerk, ACCELERATION_BITS),
+        taps = axis.shaper.table().taps().len(),
+        fraction = axis.shaper.coefficient_fraction(),
+    );
+}
+
+/// A limit in LSB of the integrator: cut, so that no move is faster, at least 1, and what the word holds.
+fn lsb(limit: f64, bits: u32) -> i64 {
+    let largest = (1i64 << (bits - 1)) - 1;
+    let scaled = limit * (1u64 << FRACTION_BITS) as f64;
+    // A cast of a number that is too large ends at the largest.
+    (scaled as i64).clamp(1, largest)
+}

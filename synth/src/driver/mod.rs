@@ -1,0 +1,85 @@
+//! The C driver of a stage, as files of the output folder.
+//!
+//! ```text
+//! driver/inc/*_regs.h            registers of the stage and of each component, from their maps
+//! driver/inc, src/posicast_*     the core: bare metal, C99, the same for every machine
+//! driver/inc, src/machine_NAME.* the machine's tap tables and limits
+//! driver/TOP_sw.tcl, HAL/        for the HAL of Nios II and Nios V, with the enhanced interrupt API
+//! driver/linux/                  user space over UIO, and the overlay of the device tree
+//! ```
+//!
+//! What is the same for every machine stands as C in `c/` and is copied. What depends on the machine is written from its one
+//! description: macros from the [`RegisterMap`], numbers of the command FIFO from the model's constants, tables from the
+//! stage's configuration. No name of an axis is in the core: it works on windows, by number.
+//!
+//! `docs/driver.md` says how a program uses it.
+
+mod fixed;
+mod machine;
+mod macros;
+mod registers;
+mod stage_registers;
+mod system;
+
+use posicast_model::motion::TickLimits;
+use posicast_model::rtl::registers::RegisterMap;
+use posicast_model::rtl::stage::StageConfig;
+
+/// Folder of the driver in the output folder.
+pub const FOLDER: &str = "driver";
+
+/// A file to be written.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct File {
+    /// Its path in the output folder, with `/` between the parts.
+    pub path: String,
+    /// Its contents.
+    pub text: String,
+}
+
+/// What the driver of a stage is written from.
+#[derive(Debug, Clone, Copy)]
+pub struct StageDriver<'a> {
+    /// The machine's name.
+    pub machine: &'a str,
+    /// The stage's top module: the class that the driver of the HAL is for.
+    pub top: &'a str,
+    /// The stage's registers.
+    pub map: &'a RegisterMap,
+    /// The stage.
+    pub config: &'a StageConfig,
+    /// Ticks per second.
+    pub tick_hz: f64,
+    /// Of each axis of the stage, in its order.
+    pub axes: &'a [AxisData],
+}
+
+/// What the driver knows of an axis beside its hardware.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AxisData {
+    /// Counts of its loop per unit of the machine file.
+    pub counts_per_unit: f64,
+    /// What its moves may ask for.
+    pub limits: TickLimits,
+}
+
+/// The driver of a stage.
+pub fn stage_files(driver: &StageDriver<'_>) -> Vec<File> {
+    let mut files = fixed::files();
+    files.push(file("inc/posicast_stage_regs.h", stage_registers::header(driver)));
+    files.extend(machine::files(driver));
+    files.extend(system::files(driver));
+    files
+}
+
+/// The macros of a component's registers, under the name of its top module.
+pub fn component_header(top: &str, map: &RegisterMap) -> File {
+    file(&format!("inc/{top}_regs.h"), registers::header(top, map))
+}
+
+fn file(path: &str, text: String) -> File {
+    File {
+        path: format!("{FOLDER}/{path}"),
+        text,
+    }
+}

@@ -1,0 +1,173 @@
+//! The header of the stage's registers: those of its own window, and once those of an axis, for every axis.
+//!
+//! The windows of axes are alike: a register stands at the same place in each that has it. Widths of fields may differ, where
+//! the memories of axes do; the masks here are the widest, and the parameters of each axis are registers of its window.
+
+use super::StageDriver;
+use super::macros::{self, END, Place};
+use posicast_model::rtl::axis::{Cause, KICK};
+use posicast_model::rtl::group::MOST_AXES;
+use posicast_model::rtl::registers::{Field, Register, RegisterMap, WINDOW_WORDS};
+use posicast_model::rtl::segments::{
+    ACCELERATION_BITS, ACCELERATION_FRACTION, ENTRIES_MAX, ENTRY_WORDS, FRACTION_BITS, NOTIFY, POINT,
+    POSITION_FRACTION, State, TICK_BITS, VELOCITY_BITS, VELOCITY_FRACTION,
+};
+use posicast_model::rtl::stage::AXIS_INTERRUPTS;
+use std::fmt::Write;
+
+const STAGE: &str = "POSICAST_STAGE";
+const AXIS: &str = "POSICAST_AXIS";
+
+/// A register of the axes' windows, without an axis's name, with its widest fields.
+struct AxisRegister {
+    register: Register,
+    fields: Vec<Field>,
+    /// Axes that have it.
+    axes: Vec<String>,
+}
+
+/// `posicast_stage_regs.h`.
+pub(super) fn header(driver: &StageDriver<'_>) -> String {
+    let map = driver.map;
+    let names: Vec<&str> = driver.config.axes.iter().map(|axis| axis.name.as_str()).collect();
+    let about = format!(
+        "Registers of the stage of {}: axes {}.",
+        driver.machine,
+        names.join(", ")
+    );
+    let mut text = macros::head("POSICAST_STAGE_REGS_H", &about);
+    text.push_str("\n#include <stdint.h>\n\n#include \"posicast_io.h\"\n");
+    numbers(&mut text, map);
+    text.push_str("\n/* ---- Window 0: the stage ---- */\n");
+    for register in map.registers().iter().filter(|register| register.offset < WINDOW_WORDS) {
+        macros::register(&mut text, STAGE, register, map.fields(register), &Place::Fixed);
+    }
+    text.push_str("\n/* ---- Windows 1 and up: an axis each ---- */\n");
+    for found in axis_registers(map, &names) {
+        let mut register = found.register;
+        if found.axes.len() < names.len() {
+            let _ = write!(register.meaning, "; of {} only", found.axes.join(", "));
+        }
+        macros::register(&mut text, AXIS, &register, &found.fields, &Place::Axis);
+    }
+    interrupts(&mut text);
+    causes(&mut text);
+    text.push_str(END);
+    text
+}
+
+/// What is counted in windows, entries and bits.
+fn numbers(text: &mut String, map: &RegisterMap) {
+    let numbers: [(&str, u32); 17] = [
+        ("AXES_MAX", MOST_AXES as u32),
+        ("WINDOW_WORDS", WINDOW_WORDS),
+        ("STAGE_BYTES", 4 * map.words()),
+        ("KICK_WORD", KICK),
+        ("FIFO_ENTRIES", ENTRIES_MAX.into()),
+        ("SEGMENTS_STOP", State::Stop as u32),
+        ("ENTRY_WORDS", ENTRY_WORDS as u32),
+        ("ENTRY_POINT", POINT),
+        ("ENTRY_NOTIFY", NOTIFY),
+        ("TICKS_MAX", (1 << TICK_BITS) - 1),
+        ("FRACTION_BITS", FRACTION_BITS),
+        ("ACCELERATION_BITS", ACCELERATION_BITS),
+        ("VELOCITY_BITS", VELOCITY_BITS),
+        ("POSITION_FRACTION", POSITION_FRACTION),
+        ("VELOCITY_FRACTION", VELOCITY_FRACTION),
+        ("ACCELERATION_FRACTION", ACCELERATION_FRACTION),
+        ("AXIS_INTERRUPTS", AXIS_INTERRUPTS.len() as u32),
+    ];
+    text.push_str(
+        "\n/* Windows of words, the watchdog's word, entries of the command FIFO, and the integrator's formats. */\n",
+    );
+    for (name, value) in numbers {
+        let value = if value > 0xffff {
+            format!("{value:#x}")
+        } else {
+            value.to_string()
+        };
+        let _ = writeln!(text, "#define POSICAST_{name} {value}u");
+    }
+    text.push_str("#define POSICAST_AXIS_WORD(axis, reg) (POSICAST_WINDOW_WORDS * ((uint32_t)(axis) + 1u) + (reg))\n");
+}
+
+/// The registers of all windows of axes, by their place.
+fn axis_registers(map: &RegisterMap, axes: &[&str]) -> Vec<AxisRegister> {
+    let mut found: Vec<AxisRegister> = Vec::new();
+    for (window, axis) in (1..).zip(axes) {
+        let own = |name: &str| name.strip_prefix(&format!("{axis}_")).unwrap_or(name).to_owned();
+        let inside = map
+            .registers()
+            .iter()
+            .filter(|register| register.offset / WINDOW_WORDS == window);
+        for register in inside {
+            let name = own(&register.name);
+            let fields = map.fields(register).iter().cloned().map(|mut field| {
+                field.name = own(&field.name);
+                field
+            });
+            let place = found.iter().position(|other| other.register.name == name);
+            let Some(known) = place.and_then(|place| found.get_mut(place)) else {
+                let mut register = register.clone();
+                register.name = name;
+                register.offset %= WINDOW_WORDS;
+                found.push(AxisRegister {
+                    register,
+                    fields: fields.collect(),
+                    axes: vec![(*axis).to_owned()],
+                });
+                continue;
+            };
+            known.axes.push((*axis).to_owned());
+            for field in fields {
+                match known.fields.iter_mut().find(|other| other.name == field.name) {
+                    Some(other) => other.width = other.width.max(field.width),
+                    None => known.fields.push(field),
+                }
+            }
+        }
+    }
+    found.sort_by_key(|found| found.register.offset);
+    found
+}
+
+fn interrupts(text: &mut String) {
+    text.push_str("\n/* Interrupts of an axis: POSICAST_AXIS_INTERRUPT(axis, POSICAST_INTERRUPT_MOVE_DONE) */\n");
+    for (place, (name, _)) in AXIS_INTERRUPTS.iter().enumerate() {
+        let _ = writeln!(
+            text,
+            "#define POSICAST_INTERRUPT_{} {:#x}u",
+            name.to_uppercase(),
+            1u32 << place
+        );
+    }
+    text.push_str(
+        "#define POSICAST_AXIS_INTERRUPT(axis, interrupt) \
+         ((uint32_t)(interrupt) << (POSICAST_AXIS_INTERRUPTS * (uint32_t)(axis)))\n",
+    );
+}
+
+/// Bits of CAUSES.
+fn causes(text: &mut String) {
+    text.push_str("\n/* Bits of CAUSES, and their names from the lowest on. */\n");
+    let mut names = Vec::new();
+    for cause in Cause::ALL {
+        let words = words(&format!("{cause:?}"));
+        let name = words.to_uppercase().replace(' ', "_");
+        let _ = writeln!(text, "#define POSICAST_CAUSE_{name} {:#x}u", cause.bit());
+        names.push(format!("\"{words}\""));
+    }
+    let _ = writeln!(text, "#define POSICAST_CAUSE_NAMES {{{}}}", names.join(", "));
+}
+
+/// `EmergencyStop` as `emergency stop`.
+fn words(camel: &str) -> String {
+    let mut words = String::new();
+    for letter in camel.chars() {
+        if letter.is_ascii_uppercase() && !words.is_empty() {
+            words.push(' ');
+        }
+        words.push(letter.to_ascii_lowercase());
+    }
+    words
+}

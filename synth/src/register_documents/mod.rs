@@ -1,0 +1,76 @@
+//! Register maps as documents that other tools read.
+//!
+//! | file | format | for |
+//! |---|---|---|
+//! | `doc/TOP.md` | Markdown | people |
+//! | `doc/TOP.rdl` | SystemRDL 2.0 | PeakRDL and its kin: HTML, UVM, IP-XACT |
+//! | `doc/TOP.svd` | CMSIS-SVD 1.3 | debuggers, and generators of register access in C and Rust |
+//!
+//! All three come from the one [`RegisterMap`]. IP-XACT is not written: PeakRDL makes it from the SystemRDL, and it would say
+//! nothing that the other two do not.
+//!
+//! On the bus a word has an address of its own; in these formats, addresses are bytes: word · 4.
+
+mod svd;
+mod systemrdl;
+
+use posicast_model::rtl::registers::{Access, Field, Register, RegisterMap, markdown};
+
+/// Folder of the documents in the output folder.
+pub const FOLDER: &str = "doc";
+/// Bytes of a word.
+const WORD_BYTES: u32 = 4;
+
+/// The documents of a component's registers, as path in the output folder and text. `top` is its top module.
+pub fn files(top: &str, map: &RegisterMap) -> [(String, String); 3] {
+    let path = |ending: &str| format!("{FOLDER}/{top}.{ending}");
+    [
+        (path("md"), format!("# Registers of {top}\n\n{}", markdown(map))),
+        (path("rdl"), systemrdl::document(top, map)),
+        (path("svd"), svd::document(top, map)),
+    ]
+}
+
+/// What software may do with a register.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Software {
+    Read,
+    ReadWrite,
+    /// Reads flags; a one clears.
+    ReadClear,
+    Write,
+}
+
+fn software(access: &Access) -> Software {
+    match access {
+        Access::Constant | Access::Live | Access::Shadow { .. } => Software::Read,
+        Access::Configuration
+        | Access::Guarded { .. }
+        | Access::Staged
+        | Access::InterruptEnable
+        | Access::Commit { .. } => Software::ReadWrite,
+        Access::Sticky | Access::InterruptState => Software::ReadClear,
+        Access::Command { .. } | Access::Words { .. } | Access::Snapshot | Access::InterruptTest => Software::Write,
+    }
+}
+
+/// Its fields; one of the whole word where a write of any value counts.
+fn fields(map: &RegisterMap, register: &Register) -> Vec<Field> {
+    match map.fields(register) {
+        [] => vec![Field::new("any", 0, 32, "any value: the write itself counts")],
+        fields => fields.to_vec(),
+    }
+}
+
+/// Its value after reset, where it has one that software can rely on.
+fn has_reset(access: &Access) -> bool {
+    !matches!(access, Access::Live | Access::Shadow { .. }) && software(access) != Software::Write
+}
+
+/// What a field is, with its unit.
+fn meaning(field: &Field) -> String {
+    match field.unit.as_str() {
+        "" => field.meaning.clone(),
+        unit => format!("{}, in {unit}", field.meaning),
+    }
+}

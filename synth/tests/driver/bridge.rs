@@ -1,0 +1,100 @@
+//! Register accesses of a C program, line by line over its pipes, on a stage with its machine.
+
+use crate::support::{Driver, beside, machine, stage};
+use posicast_model::plant::axis::{AxisPlant, PlantOptions};
+use posicast_model::rtl::component::Component;
+use posicast_testbench::blocks::{ComponentBlock, Sources};
+use posicast_testbench::lockstep::Device;
+use posicast_testbench::stage_bench::StageBench;
+use std::collections::BTreeMap;
+use std::io::{BufRead, BufReader, Write};
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+/// Clocks that pass when the program pauses: half a tick.
+const PAUSE_CLOCKS: u64 = 2500;
+
+/// What a program wants of its hardware.
+pub(crate) enum Asked<'a> {
+    Read(u32),
+    Write(u32, u32),
+    Pause,
+    Line(&'a str, u64),
+}
+
+/// Runs a program until it ends well, and gives its results. `answer` gives the word of a read.
+pub(crate) fn talk(
+    program: &Path,
+    arguments: &[&str],
+    answer: &mut dyn FnMut(Asked<'_>) -> Option<u32>,
+) -> BTreeMap<String, i64> {
+    let mut command = Command::new(program);
+    let mut child = command
+        .args(arguments)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut to = child.stdin.take().unwrap();
+    let from = BufReader::new(child.stdout.take().unwrap());
+    let mut results = BTreeMap::new();
+    for line in from.lines() {
+        let line = line.unwrap();
+        let words: Vec<&str> = line.split(' ').collect();
+        match words[..] {
+            ["r", word] => {
+                let data = answer(Asked::Read(word.parse().unwrap())).unwrap_or(0);
+                writeln!(to, "{data}").unwrap();
+            }
+            ["w", word, data] => drop(answer(Asked::Write(word.parse().unwrap(), data.parse().unwrap()))),
+            ["p"] => drop(answer(Asked::Pause)),
+            ["s", line, level] => drop(answer(Asked::Line(line, level.parse().unwrap()))),
+            ["=", name, value] => drop(results.insert(name.to_owned(), value.parse().unwrap())),
+            _ => panic!("{line}"),
+        }
+    }
+    let status = child.wait().unwrap();
+    assert!(status.success(), "{status}");
+    results
+}
+
+/// The example's stage, and a program with the driver.
+pub(crate) struct Bridge {
+    pub(crate) bench: StageBench,
+    program: PathBuf,
+}
+
+impl Bridge {
+    /// With the Verilog beside the model, if wanted.
+    pub(crate) fn new(driver: &Driver, with_rtl: bool) -> Self {
+        let machine = machine();
+        let stage = stage(&machine);
+        let component = Component::stage(&stage.config).unwrap();
+        let device = with_rtl.then(|| {
+            let block = ComponentBlock::new(component.clone(), "xy_stage", "xy");
+            let sources = Sources::write(&block).unwrap();
+            Box::new(sources.verilated(&block, 1).unwrap()) as Box<dyn Device>
+        });
+        let plant = |axis| AxisPlant::new(axis, &machine.clock, &PlantOptions::default()).unwrap();
+        let plants = machine.axes.iter().map(plant).collect();
+        let mut bench = StageBench::new(&stage.config, &component, plants, device, 1).unwrap();
+        // Filters and encoders settle.
+        bench.clocks(1000).unwrap();
+        let program = driver.program("scenario", &["-DPOSICAST_ACCESS_FUNCTIONS"], &[beside("scenario.c")]);
+        Self { bench, program }
+    }
+
+    /// Runs the program on the stage.
+    pub(crate) fn talk(&mut self, arguments: &[&str]) -> BTreeMap<String, i64> {
+        let bench = &mut self.bench;
+        talk(&self.program, arguments, &mut |asked| {
+            match asked {
+                Asked::Read(word) => return Some(bench.read_at(word).unwrap()),
+                Asked::Write(word, data) => bench.write_at(word, data).unwrap(),
+                Asked::Pause => bench.clocks(PAUSE_CLOCKS).unwrap(),
+                Asked::Line(line, level) => bench.set(line, level).unwrap(),
+            }
+            None
+        })
+    }
+}

@@ -1,0 +1,179 @@
+//! The C driver: compiled by gcc and for a RISC-V, its integers against the model's, and run against the stage's Verilog.
+#![allow(clippy::unwrap_used, clippy::panic)] // helpers of tests, which clippy.toml exempts only inside of #[test]
+
+mod bridge;
+mod integers;
+mod support;
+
+use bridge::Bridge;
+use std::path::PathBuf;
+use std::process::Command;
+use support::{Driver, STRICT, beside, machine, run, stage};
+
+fn compile(command: &mut Command, driver: &Driver, files: &[PathBuf]) {
+    for file in files {
+        let object = driver.path().join("object.o");
+        run(Command::new(command.get_program())
+            .args(command.get_args())
+            .arg("-I")
+            .arg(driver.path().join("inc"))
+            .arg("-c")
+            .arg(file)
+            .arg("-o")
+            .arg(object));
+    }
+}
+
+#[test]
+fn unit_the_core_needs_no_library_and_no_operating_system() {
+    let driver = Driver::write();
+    compile(
+        Command::new("gcc").args(STRICT).args(["-O2", "-ffreestanding"]),
+        &driver,
+        &driver.core(),
+    );
+    // What a Nios V is; the nearest there is to a Nios II.
+    let riscv = ["-O2", "-ffreestanding", "-march=rv32im", "-mabi=ilp32"];
+    compile(
+        Command::new("riscv64-unknown-elf-gcc").args(STRICT).args(riscv),
+        &driver,
+        &driver.core(),
+    );
+}
+
+#[test]
+fn unit_headers_compile_alone_in_c_and_in_cpp() {
+    let driver = Driver::write();
+    for entry in std::fs::read_dir(driver.path().join("inc")).unwrap() {
+        let header = entry.unwrap().path();
+        let cpp = ["-std=c++11", "-Wall", "-Wextra", "-Werror"];
+        let header = [header];
+        compile(Command::new("gcc").args(STRICT).args(["-x", "c"]), &driver, &header);
+        compile(Command::new("g++").args(cpp).args(["-x", "c++"]), &driver, &header);
+    }
+}
+
+#[test]
+fn unit_the_variant_for_linux_builds_and_refuses_what_is_no_device() {
+    let driver = Driver::write();
+    let linux = driver.path().join("linux");
+    run(Command::new("make").arg("-C").arg(&linux));
+    let program = driver.path().join("open.c");
+    std::fs::write(
+        &program,
+        "#include <errno.h>\n#include \"posicast_uio.h\"\nint main(void)\n{\n    posicast_uio device;\n    \
+         return posicast_uio_open(&device, \"/dev/does-not-exist\") == -1 && errno == ENOENT ? 0 : 1;\n}\n",
+    )
+    .unwrap();
+    let built = driver.path().join("open");
+    let mut gcc = Command::new("gcc");
+    gcc.args(STRICT)
+        .arg("-I")
+        .arg(driver.path().join("inc"))
+        .arg("-I")
+        .arg(&linux);
+    run(gcc.arg(&program).arg(linux.join("libposicast.a")).arg("-o").arg(&built));
+    run(&mut Command::new(built));
+}
+
+#[test]
+fn unit_the_overlay_is_one() {
+    let driver = Driver::write();
+    let overlay = driver.path().join("linux/xy_stage.dtso");
+    run(Command::new("dtc")
+        .args(["-@", "-I", "dts", "-O", "dtb", "-o", "/dev/null"])
+        .arg(overlay));
+}
+
+/// `alt_sys_init` and an interrupt, on headers that stand for the HAL's.
+#[test]
+fn unit_the_hal_finds_the_stage_and_takes_its_interrupt() {
+    let driver = Driver::write();
+    let hal = driver.path().join("HAL");
+    let includes = [hal.join("inc"), beside("hal")].map(|folder| format!("-I{}", folder.display()));
+    let files = [hal.join("src/posicast_stage_hal.c"), beside("hal/system.c")];
+    let program = driver.program("hal", &["-DPOSICAST_HAL", &includes[0], &includes[1]], &files);
+    run(&mut Command::new(program));
+}
+
+/// `_sw.tcl` under a Tcl that knows its two commands: every file that it names is there, and every C file is named.
+#[test]
+fn unit_the_bsp_finds_every_file() {
+    let driver = Driver::write();
+    let script = driver.path().join("check.tcl");
+    std::fs::write(
+        &script,
+        "proc create_driver {name} {}\nproc set_sw_property {name value} {puts \"$name $value\"}\n\
+         proc add_sw_property {name value} {puts \"$name $value\"}\nsource xy_stage_stage_sw.tcl\n",
+    )
+    .unwrap();
+    let said = run(Command::new("tclsh").arg("check.tcl").current_dir(driver.path()));
+    let of = |kind: &str| -> Vec<PathBuf> {
+        let lines = said.lines().filter_map(|line| line.strip_prefix(kind));
+        lines.map(|name| driver.path().join(name.trim())).collect()
+    };
+    for file in [of("c_source "), of("include_source "), of("include_directory ")].concat() {
+        assert!(file.exists(), "{}", file.display());
+    }
+    assert!(driver.core().iter().all(|file| of("c_source ").contains(file)));
+    assert!(said.contains("hw_class_name xy_stage_stage\n"), "{said}");
+}
+
+#[test]
+fn lockstep_a_program_moves_the_stage_and_handles_a_fault() {
+    let driver = Driver::write();
+    let mut bridge = Bridge::new(&driver, true);
+    let said = bridge.talk(&[]);
+    // 40 and -25 counts, from 0: the command to the last bit, the motor to its count.
+    assert_eq!(
+        (said["command_x"], said["command_y"]),
+        (40 * 256, -25 * 256),
+        "{said:?}"
+    );
+    assert!((said["x"] - 40).abs() <= 1 && (said["y"] + 25).abs() <= 1, "{said:?}");
+    assert_eq!(said["after_fault_x"], 90 * 256);
+    let at = bridge.bench.plant(0).count();
+    assert!((at - 90).abs() <= 1, "{at}");
+    // PWM tripped; group stop.
+    assert_eq!(
+        (said["causes_x"], said["causes_y"], said["causes_after"]),
+        (1 << 1, 1 << 14, 0)
+    );
+    assert_eq!((said["named"], said["interrupt"]), (1, 1));
+    assert_eq!(bridge.bench.mismatches(), (0, None));
+}
+
+#[test]
+fn unit_tables_are_loaded_and_the_pwm_tests_itself() {
+    let driver = Driver::write();
+    let mut bridge = Bridge::new(&driver, false);
+    let said = bridge.talk(&["tables"]);
+    // Locked antiphase, 2500 clocks, dead time 25, duty -101: as in the tests of the stage.
+    assert_eq!((said["high"], said["low"]), (1199 - 25, 2500 - (1199 - 25) - 50));
+    assert_eq!((said["machine_taps"], said["bank"], said["settle"]), (1, 1, 126));
+    assert_eq!((said["x"], said["causes"]), (400 * 256, 0));
+    assert!(said["off"] <= 1, "{said:?}");
+    let at = bridge.bench.plant(0).count();
+    assert!((at - 400).abs() <= 1, "{at}");
+}
+
+#[test]
+fn unit_the_driver_does_not_hang_where_nothing_answers() {
+    let driver = Driver::write();
+    let program = driver.program("absent", &["-DPOSICAST_ACCESS_FUNCTIONS"], &[beside("scenario.c")]);
+    bridge::talk(&program, &["absent"], &mut |_| Some(0));
+    // Only constants: the clock stands still.
+    let machine = machine();
+    let component = posicast_model::rtl::component::Component::stage(&stage(&machine).config).unwrap();
+    bridge::talk(&program, &["dead"], &mut |asked| match asked {
+        bridge::Asked::Read(word) => {
+            let found = component
+                .map()
+                .registers()
+                .iter()
+                .find(|register| register.offset == word);
+            Some(found.map_or(0, |register| register.reset()))
+        }
+        _ => None,
+    });
+}

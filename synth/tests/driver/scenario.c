@@ -1,0 +1,191 @@
+/*
+ * A program that uses the driver, with its register accesses on standard output and input: r, w, p (time passes), s (a line of the
+ * machine changes), and = (a result). The test at the other end has the stage.
+ */
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "machine_xy_stage.h"
+#include "posicast_driver.h"
+
+#define BASE 0x40000u
+#define X MACHINE_XY_STAGE_AXIS_X
+#define Y MACHINE_XY_STAGE_AXIS_Y
+#define BOTH 3u
+#define COUNTS(n) ((int32_t)(n) * 256)
+#define TICKS 2000u
+
+uint32_t posicast_read(uintptr_t base, uint32_t word)
+{
+    uint32_t data;
+
+    printf("r %" PRIu32 "\n", word);
+    if (base != BASE || fflush(stdout) != 0 || scanf("%" SCNu32, &data) != 1)
+        exit(3);
+    return data;
+}
+
+void posicast_write(uintptr_t base, uint32_t word, uint32_t data)
+{
+    if (base != BASE)
+        exit(3);
+    printf("w %" PRIu32 " %" PRIu32 "\n", word, data);
+}
+
+static void pause_here(void *context)
+{
+    (void)context;
+    printf("p\n");
+}
+
+static void set_line(const char *line, int level)
+{
+    printf("s %s %d\n", line, level);
+}
+
+static void result(const char *name, int64_t value)
+{
+    printf("= %s %" PRId64 "\n", name, value);
+}
+
+static void need(const char *what, posicast_result got, posicast_result wanted)
+{
+    if (got == wanted)
+        return;
+    printf("! %s gives %d, not %d\n", what, got, wanted);
+    (void)fflush(stdout);
+    exit(2);
+}
+
+static const posicast_limits *limits_of(uint32_t axis)
+{
+    return &machine_xy_stage.axis[axis].limits;
+}
+
+/* From reset to a move of both axes. */
+static void first_move(posicast_stage *stage)
+{
+    posicast_snapshot at;
+
+    need("switch on", posicast_switch_on(stage, BOTH, TICKS), POSICAST_OK);
+    need("start of nothing", posicast_start(stage, 1u << 2), POSICAST_BAD_ARGUMENT);
+    need("move X", posicast_queue_move(stage, X, COUNTS(40), limits_of(X)), POSICAST_OK);
+    need("move Y", posicast_queue_move(stage, Y, COUNTS(-25), limits_of(Y)), POSICAST_OK);
+    need("a second move", posicast_queue_move(stage, X, 0, limits_of(X)), POSICAST_WRONG_STATE);
+    need("start", posicast_start(stage, BOTH), POSICAST_OK);
+    need("switch on in a move", posicast_switch_on(stage, BOTH, TICKS), POSICAST_WRONG_STATE);
+    need("come to rest", posicast_wait_at_rest(stage, BOTH, TICKS), POSICAST_OK);
+    posicast_take_snapshot(stage, &at);
+    result("x", at.position[X]);
+    result("y", at.position[Y]);
+    result("command_x", posicast_command_position(stage, X));
+    result("command_y", posicast_command_position(stage, Y));
+    result("ticks", at.tick_count);
+}
+
+/* The drive of X fails in a move: both stop, the fault is read, forgotten, and the move begun again. */
+static void fault(posicast_stage *stage)
+{
+    const posicast_entry nothing = posicast_segment(0, 0, 0), rest = posicast_segment(0, 1, 0);
+    uint32_t causes;
+
+    need("move X on", posicast_queue_move(stage, X, COUNTS(90), limits_of(X)), POSICAST_OK);
+    need("move Y on", posicast_queue_move(stage, Y, COUNTS(40), limits_of(Y)), POSICAST_OK);
+    posicast_enable_interrupts(stage, POSICAST_AXIS_INTERRUPT(X, POSICAST_INTERRUPT_FAULTED));
+    (void)posicast_take_interrupts(stage);
+    need("start again", posicast_start(stage, BOTH), POSICAST_OK);
+    need("an entry without ticks", posicast_write_entry(stage, X, &nothing), POSICAST_BAD_ARGUMENT);
+    need("a while", posicast_wait_ticks(stage, 20), POSICAST_OK);
+    set_line("x_drive_fault_n", 0);
+    need("a fault", posicast_wait_at_rest(stage, 1u << X, TICKS), POSICAST_FAULT);
+    result("interrupt", posicast_take_interrupts(stage) == POSICAST_AXIS_INTERRUPT(X, POSICAST_INTERRUPT_FAULTED));
+    causes = posicast_causes(stage, X);
+    result("causes_x", causes);
+    result("named", strcmp(posicast_cause_name(causes), "pwm tripped") == 0);
+    need("a fault that stays", posicast_switch_on(stage, BOTH, 20), POSICAST_WRONG_STATE);
+    need("an entry in a stop", posicast_write_entry(stage, Y, &rest), POSICAST_REFUSED);
+    need("the group to stop", posicast_wait_at_rest(stage, 1u << Y, TICKS), POSICAST_FAULT);
+    need("the stop to end", posicast_wait_ticks(stage, 200), POSICAST_OK);
+    result("causes_y", posicast_causes(stage, Y));
+    need("a fault that stays", posicast_switch_on(stage, BOTH, 20), POSICAST_FAULT);
+    set_line("x_drive_fault_n", 1);
+    need("switch on again", posicast_switch_on(stage, BOTH, TICKS), POSICAST_OK);
+    result("causes_after", posicast_causes(stage, X) | posicast_causes(stage, Y));
+    need("move X again", posicast_queue_move(stage, X, COUNTS(90), limits_of(X)), POSICAST_OK);
+    need("start X", posicast_start(stage, 1u << X), POSICAST_OK);
+    need("rest", posicast_wait_at_rest(stage, 1u << X, TICKS), POSICAST_OK);
+    result("after_fault_x", posicast_command_position(stage, X));
+}
+
+/* Another table while the axis moves, what is refused, and off. */
+static void tables(posicast_stage *stage)
+{
+    static const posicast_tap one[] = {{0, 65536}};
+    static const posicast_tap late[] = {{0, 32768}, {126, 32768}};
+    static const posicast_tap wrong[] = {{0, 65535}};
+    const posicast_table machine = machine_xy_stage.axis[X].table;
+    posicast_table table = {one, 1, machine.coefficient_fraction};
+
+    result("machine_taps", (int64_t)IORD_POSICAST_AXIS_MACHINE_TAPS(stage->base, X) == machine.count);
+    need("move X", posicast_queue_move(stage, X, COUNTS(400), limits_of(X)), POSICAST_OK);
+    need("start X", posicast_start(stage, 1u << X), POSICAST_OK);
+    need("table", posicast_load_table(stage, X, 1, &table, POSICAST_AXIS_SWAP_SWAP_HOW_HANDOVER, TICKS), POSICAST_OK);
+    result("bank", (IORD_POSICAST_AXIS_STATUS(stage->base, X) & POSICAST_AXIS_STATUS_TABLE_BANK_MSK) >>
+                       POSICAST_AXIS_STATUS_TABLE_BANK_OFST);
+    need("the bank in use", posicast_load_table(stage, X, 1, &table, 0, TICKS), POSICAST_WRONG_STATE);
+    table.taps = wrong;
+    need("no table", posicast_load_table(stage, X, 2, &table, 0, TICKS), POSICAST_BAD_ARGUMENT);
+    table.taps = late;
+    table.count = 2;
+    need("a late table", posicast_load_table(stage, X, 2, &table, POSICAST_AXIS_SWAP_SWAP_HOW_HANDOVER, TICKS),
+         POSICAST_OK);
+    result("settle", IORD_POSICAST_AXIS_SETTLE(stage->base, X));
+    need("the machine's", posicast_use_table(stage, X, 0, POSICAST_AXIS_SWAP_SWAP_HOW_HANDOVER, TICKS), POSICAST_OK);
+    need("rest", posicast_wait_at_rest(stage, 1u << X, TICKS), POSICAST_OK);
+    result("x", posicast_command_position(stage, X));
+    result("causes", posicast_causes(stage, X));
+    need("off", posicast_switch_off(stage, BOTH, TICKS), POSICAST_OK);
+    result("off", posicast_state(stage, X));
+}
+
+/* The PWM of Y by itself, in READY. */
+static void self_test(posicast_stage *stage)
+{
+    posicast_self_test_clocks counted;
+
+    need("not in OFF", posicast_self_test(stage, Y, 0, &counted), POSICAST_WRONG_STATE);
+    need("on", posicast_switch_on(stage, BOTH, TICKS), POSICAST_OK);
+    need("off", posicast_switch_off(stage, BOTH, TICKS), POSICAST_OK);
+    need("a while", posicast_wait_ticks(stage, 4), POSICAST_OK);
+    need("self-test", posicast_self_test(stage, Y, -101, &counted), POSICAST_OK);
+    result("high", counted.a_high);
+    result("low", counted.a_low);
+}
+
+int main(int argc, char **argv)
+{
+    posicast_stage stage;
+    posicast_result found = posicast_open(&stage, BASE);
+
+    stage.pause = pause_here;
+    if (argc == 2 && strcmp(argv[1], "absent") == 0) {
+        need("nothing", found, POSICAST_NOT_FOUND);
+        return 0;
+    }
+    need("open", found, POSICAST_OK);
+    if (argc == 2 && strcmp(argv[1], "dead") == 0) {
+        need("a stage without a clock", posicast_switch_on(&stage, BOTH, TICKS), POSICAST_DEAD);
+        return 0;
+    }
+    if (argc == 2 && strcmp(argv[1], "tables") == 0) {
+        self_test(&stage);
+        need("on again", posicast_switch_on(&stage, BOTH, TICKS), POSICAST_OK);
+        tables(&stage);
+        return 0;
+    }
+    first_move(&stage);
+    fault(&stage);
+    return 0;
+}

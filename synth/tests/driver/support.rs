@@ -1,0 +1,114 @@
+//! The driver of the example's stage in a folder, and C compilers.
+
+use posicast_model::control::{self, MachineStage};
+use posicast_model::design::design_machine;
+use posicast_model::motion::TickLimits;
+use posicast_model::rtl::component::Component;
+use posicast_model::spec::{self, Machine};
+use posicast_synth::driver::{AxisData, FOLDER, StageDriver, component_header, stage_files};
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// What every file of the driver must pass.
+pub(crate) const STRICT: [&str; 6] = ["-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Werror"];
+
+/// The example.
+pub(crate) fn machine() -> Machine {
+    spec::parse("xy-stage.toml", include_str!("../../../examples/xy-stage.toml")).unwrap()
+}
+
+/// Its stage.
+pub(crate) fn stage(machine: &Machine) -> MachineStage {
+    control::stage(machine, &design_machine(machine).unwrap())
+        .unwrap()
+        .unwrap()
+}
+
+/// Its driver, written into a folder.
+pub(crate) struct Driver {
+    folder: tempfile::TempDir,
+}
+
+impl Driver {
+    pub(crate) fn write() -> Self {
+        let machine = machine();
+        let stage = stage(&machine);
+        let component = Component::stage(&stage.config).unwrap();
+        let axes: Vec<AxisData> = machine
+            .axes
+            .iter()
+            .map(|axis| AxisData {
+                counts_per_unit: axis.loop_counts_per_unit(),
+                limits: TickLimits::of_axis(axis, &machine.clock),
+            })
+            .collect();
+        let mut files = stage_files(&StageDriver {
+            machine: &machine.name,
+            top: "xy_stage_stage",
+            map: component.map(),
+            config: &stage.config,
+            tick_hz: machine.clock.sample_hz,
+            axes: &axes,
+        });
+        files.push(component_header("xy_stage_pwm_avalon", pwm().map()));
+        let folder = tempfile::tempdir().unwrap();
+        for file in files {
+            let path = folder.path().join(&file.path);
+            std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+            std::fs::write(path, &file.text).unwrap();
+        }
+        Self { folder }
+    }
+
+    pub(crate) fn path(&self) -> PathBuf {
+        self.folder.path().join(FOLDER)
+    }
+
+    /// The C files of its core.
+    pub(crate) fn core(&self) -> Vec<PathBuf> {
+        let files = std::fs::read_dir(self.path().join("src")).unwrap();
+        let mut files: Vec<PathBuf> = files.map(|file| file.unwrap().path()).collect();
+        files.retain(|file| file.extension().is_some_and(|ending| ending == "c"));
+        files.sort();
+        assert_eq!(files.len(), 6, "{files:?}");
+        files
+    }
+
+    /// Builds a program of these files and the core, with strict warnings.
+    pub(crate) fn program(&self, name: &str, options: &[&str], files: &[PathBuf]) -> PathBuf {
+        let program = self.folder.path().join(name);
+        let mut gcc = Command::new("gcc");
+        gcc.args(STRICT)
+            .args(["-O1", "-fsanitize=undefined", "-fno-sanitize-recover=all"])
+            .args(options);
+        gcc.arg("-I").arg(self.path().join("inc")).args(files).args(self.core());
+        run(gcc.arg("-o").arg(&program));
+        program
+    }
+}
+
+/// A component beside the stage.
+pub(crate) fn pwm() -> Component {
+    use posicast_model::rtl::pwm::{ActiveLow, Mode, PwmConfig};
+    let config = PwmConfig::new(ActiveLow::default(), 25, 50).unwrap();
+    Component::pwm(config, Mode::HalfBridge, 2500).unwrap()
+}
+
+/// A file beside this one.
+pub(crate) fn beside(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/driver").join(name)
+}
+
+/// Runs it, and gives its output.
+pub(crate) fn run(command: &mut Command) -> String {
+    let output = command.output();
+    let output = output.unwrap_or_else(|error| panic!("{command:?}: {error}; scripts/install-tools installs it"));
+    assert!(
+        output.status.success(),
+        "{command:?}: {}\n{}{}",
+        output.status,
+        String::from_utf8_lossy(&output.stdout),
+        String::from_utf8_lossy(&output.stderr)
+    );
+    String::from_utf8(output.stdout).unwrap()
+}

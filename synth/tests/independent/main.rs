@@ -1,0 +1,194 @@
+//! What is generated, before tools that know nothing of posicast: systemrdl-compiler, the schema of CMSIS-SVD and its parser,
+//! FuseSoC with Verilator and Icarus, and cocotb with the bus driver of cocotb-bus.
+//!
+//! They are Python, in `.venv` of the repository, which `scripts/install-tools` makes.
+#![allow(clippy::unwrap_used, clippy::panic)] // helpers of tests, which clippy.toml exempts only inside of #[test]
+
+use posicast_model::control;
+use posicast_model::design::design_machine;
+use posicast_model::rtl::component::Component;
+use posicast_model::rtl::pwm::{ActiveLow, Mode, PwmConfig};
+use posicast_model::rtl::registers::{Access, Field, RegisterMap};
+use posicast_model::spec;
+use posicast_synth::core_file::{self, Core};
+use posicast_synth::register_documents;
+use posicast_testbench::blocks::{Block, ComponentBlock};
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use tempfile::TempDir;
+
+/// A tool of the virtual environment.
+fn tool(name: &str) -> Command {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../.venv/bin").join(name);
+    assert!(
+        path.exists(),
+        "{} is missing: scripts/install-tools makes it",
+        path.display()
+    );
+    Command::new(path)
+}
+
+fn python(script: &str) -> Command {
+    let mut python = tool("python");
+    python.arg(
+        Path::new(env!("CARGO_MANIFEST_DIR"))
+            .join("tests/independent")
+            .join(script),
+    );
+    python
+}
+
+/// What it prints, if it ends well.
+fn output(command: &mut Command) -> String {
+    let output = command.output().unwrap();
+    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
+    let (out, err) = (text(&output.stdout), text(&output.stderr));
+    assert!(output.status.success(), "{command:?}: {}\n{out}{err}", output.status);
+    out
+}
+
+fn stage() -> Component {
+    let machine = spec::parse("xy-stage.toml", include_str!("../../../examples/xy-stage.toml")).unwrap();
+    let stage = control::stage(&machine, &design_machine(&machine).unwrap()).unwrap();
+    Component::stage(&stage.unwrap().config).unwrap()
+}
+
+fn pwm() -> Component {
+    let config = PwmConfig::new(ActiveLow::default(), 25, 50).unwrap();
+    Component::pwm(config, Mode::HalfBridge, 2500).unwrap()
+}
+
+/// Writes text below a folder.
+fn write(folder: &Path, path: &str, text: &str) -> PathBuf {
+    let path = folder.join(path);
+    std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+    std::fs::write(&path, text).unwrap();
+    path
+}
+
+/// The documents of a component in a folder: paths of SystemRDL and SVD.
+fn documents(folder: &TempDir, top: &str, map: &RegisterMap) -> [PathBuf; 2] {
+    let [_, rdl, svd] = register_documents::files(top, map).map(|(path, text)| write(folder.path(), &path, &text));
+    [rdl, svd]
+}
+
+/// A line per field, as the Python programs print them. `array`: how a word of several is named.
+fn fields(map: &RegisterMap, array: fn(&str, u32) -> String) -> Vec<String> {
+    let mut lines = Vec::new();
+    for register in map.registers() {
+        let access = match &register.access {
+            Access::Constant | Access::Live | Access::Shadow { .. } => "r",
+            Access::Sticky | Access::InterruptState => "rw1c",
+            Access::Command { .. } | Access::Words { .. } | Access::Snapshot | Access::InterruptTest => "w",
+            _ => "rw",
+        };
+        let resets = ["rw", "rw1c"].contains(&access) || register.access == Access::Constant;
+        let whole = [Field::new("any", 0, 32, "")];
+        let mut fields: Vec<&Field> = match map.fields(register) {
+            [] => whole.iter().collect(),
+            fields => fields.iter().collect(),
+        };
+        fields.sort_by_key(|field| field.low);
+        for word in 0..register.words() {
+            let name = register.name.to_uppercase();
+            let name = if register.words() > 1 { array(&name, word) } else { name };
+            for field in &fields {
+                let reset = if resets {
+                    (field.reset & field.ones()).to_string()
+                } else {
+                    "-".to_owned()
+                };
+                let address = 4 * (register.offset + word);
+                let (field, low, width) = (&field.name, field.low, field.width);
+                lines.push(format!("{address} {name} {field} {low} {width} {access} {reset}"));
+            }
+        }
+    }
+    lines
+}
+
+#[test]
+fn unit_systemrdl_compiler_reads_what_the_map_says() {
+    let folder = tempfile::tempdir().unwrap();
+    for (top, component) in [("xy_stage_stage", stage()), ("xy_stage_x_pwm_avalon", pwm())] {
+        let [rdl, _] = documents(&folder, top, component.map());
+        let said = output(python("read_rdl.py").arg(rdl));
+        let expected = fields(component.map(), |name, _| name.to_owned());
+        assert_eq!(said.lines().collect::<Vec<_>>(), expected);
+    }
+}
+
+#[test]
+fn unit_the_svd_is_valid_and_reads_as_the_map() {
+    let folder = tempfile::tempdir().unwrap();
+    for (top, component) in [("xy_stage_stage", stage()), ("xy_stage_x_pwm_avalon", pwm())] {
+        let [_, svd] = documents(&folder, top, component.map());
+        let said = output(python("read_svd.py").arg(svd));
+        let expected = fields(component.map(), |name, word| format!("{name}_{word}"));
+        assert_eq!(said.lines().collect::<Vec<_>>(), expected);
+    }
+}
+
+#[test]
+fn unit_fusesoc_runs_lint_and_sim() {
+    let folder = tempfile::tempdir().unwrap();
+    let component = stage();
+    let block = ComponentBlock::new(component.clone(), "xy_stage_stage", "x, y");
+    let modules = block.modules().unwrap();
+    let files: Vec<String> = modules.iter().map(|module| format!("rtl/{}.v", module.name)).collect();
+    for (path, module) in files.iter().zip(&modules) {
+        write(folder.path(), path, &module.text);
+    }
+    let core = Core {
+        machine: "xy_stage",
+        top: "xy_stage_stage",
+        files: &files,
+        bus: Some((component.map(), component.composition().ports())),
+    };
+    for (path, text) in core_file::files(&core) {
+        write(folder.path(), &path, &text);
+    }
+    let run = |target: &str| {
+        let mut fusesoc = tool("fusesoc");
+        fusesoc
+            .arg("--cores-root")
+            .arg(folder.path())
+            .args(["run", "--target", target]);
+        // Its settings and caches stay in the folder.
+        fusesoc.current_dir(folder.path()).env("HOME", folder.path());
+        output(fusesoc.arg("posicast:machines:xy_stage"))
+    };
+    run("lint");
+    let said = run("sim");
+    assert!(said.contains("PASS"), "{said}");
+    // A constant that is not what the map says stops it.
+    let bench = folder.path().join("sim/xy_stage_stage_bench.v");
+    let text = std::fs::read_to_string(&bench).unwrap();
+    std::fs::write(&bench, text.replacen("45475453", "45475454", 1)).unwrap();
+    let mut fusesoc = tool("fusesoc");
+    fusesoc
+        .arg("--cores-root")
+        .arg(folder.path())
+        .args(["run", "--target", "sim", "posicast:machines:xy_stage"]);
+    let broken = fusesoc
+        .current_dir(folder.path())
+        .env("HOME", folder.path())
+        .output()
+        .unwrap();
+    assert!(!broken.status.success());
+}
+
+#[test]
+fn crosssim_cocotb_reads_writes_and_runs_a_period_of_the_pwm() {
+    let folder = tempfile::tempdir().unwrap();
+    let component = pwm();
+    let top = "xy_stage_x_pwm_avalon";
+    let [_, svd] = documents(&folder, top, component.map());
+    let modules = ComponentBlock::new(component, top, "x").modules().unwrap();
+    let files = modules
+        .iter()
+        .map(|module| write(folder.path(), &format!("{}.v", module.name), &module.text));
+    let build = folder.path().join("build");
+    let said = output(python("run_cocotb.py").args([Path::new(top), &svd, &build]).args(files));
+    assert!(said.contains("3 tests, 0 failed"), "{said}");
+}
