@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 /// Which file, and how its names are read.
 #[derive(clap::Args)]
 #[command(next_help_heading = "Recorded stimuli")]
-pub(crate) struct Args {
+pub(crate) struct Recording {
     /// Replay the inputs in this VCD or FST into RTL and model, and compare with the outputs in it
     #[arg(long, value_name = "FILE")]
     stimulus: Option<PathBuf>,
@@ -32,7 +32,7 @@ pub(crate) struct Args {
     reset: Option<String>,
 }
 
-impl Args {
+impl Recording {
     /// The recording, if there is one.
     pub(crate) fn recording(&self) -> Option<&Path> {
         self.stimulus.as_deref()
@@ -114,7 +114,7 @@ impl Replayed {
 pub(crate) fn run(
     blocks: &[(Box<dyn Block>, Sources)],
     file: &Path,
-    args: &Args,
+    args: &Recording,
     (simulator, seed, most_clocks): (Simulator, u64, u64),
 ) -> Result<(Report, Replayed), Failure> {
     let options = args.options().map_err(bench::failure)?;

@@ -40,7 +40,7 @@ pub(crate) struct Args {
     #[arg(long)]
     json: bool,
     #[command(flatten)]
-    replay: replay::Args,
+    replay: replay::Recording,
 }
 
 /// Seed where none is given: the same run every time.
