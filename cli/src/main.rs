@@ -17,6 +17,7 @@ mod machine;
 mod output;
 mod plot;
 mod progress;
+mod replay;
 mod reproduce;
 mod run;
 mod simulate;

@@ -4,7 +4,7 @@ use crate::bench::{self, Bench, Simulator};
 use crate::design::Report as DesignReport;
 use crate::failure::Failure;
 use crate::output::{self, Table};
-use crate::{blocks, command, machine, stage};
+use crate::{blocks, command, machine, replay, stage};
 use posicast_synth::package;
 use posicast_testbench::blocks::{Block, Sources, StageBlock};
 use posicast_testbench::lockstep::report::{Report, Verdict};
@@ -18,6 +18,7 @@ Examples:
   posicast verify examples/xy-stage.toml --cycles 10000000
   posicast verify examples/xy-stage.toml --block pulse_counter --block divider
   posicast verify xy_stage                    the Verilog in that folder, as it is
+  posicast verify xy_stage --stimulus recorded.vcd --map tb.dut=xy_stage
 
 Exit status: 0 no mismatch, 1 a mismatch, 2 bad input, 3 the simulator is missing.")]
 pub(crate) struct Args {
@@ -29,7 +30,7 @@ pub(crate) struct Args {
     /// Only the blocks of this name, such as pulse_counter; may be given several times
     #[arg(long = "block", value_name = "NAME")]
     blocks: Vec<String>,
-    /// Clocks to compare in every row [default: 1000000 with verilator, 20000 with icarus and rusthdl]
+    /// Clocks to compare in every row, with --stimulus at most [default: 1000000 with verilator, 20000 with icarus and rusthdl]
     #[arg(long, value_parser = clap::value_parser!(u64).range(1..))]
     cycles: Option<u64>,
     /// Seed of the random stimuli
@@ -38,6 +39,8 @@ pub(crate) struct Args {
     /// Print one JSON document on standard output
     #[arg(long)]
     json: bool,
+    #[command(flatten)]
+    replay: replay::Recording,
 }
 
 /// Seed where none is given: the same run every time.
@@ -60,14 +63,24 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     if simulator == Simulator::Rusthdl {
         job.keep_what_is_rusthdl()?;
     }
-    let cycles = args.cycles.unwrap_or(simulator.default_cycles());
-    let report = job.lockstep(simulator, cycles, args.seed)?;
+    let (report, replayed) = match args.replay.recording() {
+        Some(file) => {
+            let how = (simulator, args.seed, args.cycles.unwrap_or(u64::MAX));
+            let (report, replayed) = replay::run(&job.blocks, file, &args.replay, how)?;
+            (report, Some(replayed))
+        }
+        None => {
+            let cycles = args.cycles.unwrap_or(simulator.default_cycles());
+            (job.lockstep(simulator, cycles, args.seed)?, None)
+        }
+    };
     if report.samples == 0 && report.blocks.iter().any(|block| block.samples.is_some()) {
         output::say("warning: no output sample was among these clocks: compare more with --cycles");
     }
     let document = Document {
         simulator,
         seed: args.seed,
+        replayed: replayed.as_ref(),
         report: &report,
     };
     if args.json {
@@ -77,6 +90,9 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     }
     match report.result {
         Verdict::Match => Ok(()),
+        Verdict::Mismatch if replayed.is_some() => {
+            Err(Failure::Check("recording, RTL and model do not match".to_owned()))
+        }
         Verdict::Mismatch => Err(Failure::Check("the RTL does not match the model".to_owned())),
     }
 }
@@ -185,6 +201,8 @@ struct Document<'a> {
     report: &'a Report,
     simulator: Simulator,
     seed: u64,
+    #[serde(rename = "stimulus", skip_serializing_if = "Option::is_none")]
+    replayed: Option<&'a replay::Replayed>,
 }
 
 impl Document<'_> {
@@ -200,6 +218,7 @@ impl Document<'_> {
                 text += &format!("\n{} {}: {first}\n", block.name, block.instance);
             }
         }
+        text += &self.replayed.map_or_else(String::new, replay::Replayed::text);
         let verdict = match self.report.result {
             Verdict::Match => "match: every output of every clock is equal to the model's",
             Verdict::Mismatch => "MISMATCH",

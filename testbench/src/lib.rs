@@ -16,20 +16,26 @@
 //! - [`fault_campaign`] puts a stage with its machine in every fault, at random clocks of a move.
 //! - [`register_tests`] asks registers, through the bus, for what their description promises.
 //! - [`stage_bench`] joins a stage with its simulated machine; [`stage_run`] moves it and measures.
+//! - [`crosssim`] compares the waveforms of two simulators.
 //! - [`formal`] proves what property files say of the blocks.
+//! - [`netlist`] simulates and proves what a synthesiser made of a block.
+//! - [`replay`] plays a recording into model and RTL.
 //! - [`wave`] writes waveforms; [`diff`] compares two of them.
 
 pub mod blocks;
 pub mod campaign;
+pub mod crosssim;
 pub mod diff;
 mod error;
 pub mod fault_campaign;
 pub mod formal;
 pub mod icarus;
 pub mod lockstep;
+pub mod netlist;
 mod reader;
 pub mod recording;
 pub mod register_tests;
+pub mod replay;
 pub mod stage_bench;
 pub mod stage_run;
 pub mod stimuli;

@@ -9,3 +9,4 @@ mod bad_input;
 mod design;
 mod diff;
 mod hardware;
+mod replay;

@@ -13,12 +13,14 @@
 
 mod ecp5;
 mod family;
+mod gates;
 mod m4k;
 mod netlist;
 mod process;
 
 pub use ecp5::TopPort;
 pub use family::{Cell, Device, Family, UnknownFamily};
+pub use gates::CELL_MODELS;
 pub use netlist::{Block, Resources};
 
 use std::fs;
@@ -277,21 +279,7 @@ impl Yosys {
 /// multipliers become black boxes before the family's own mapping sees them.
 fn script(top: &str, family: Family, mapping: Mapping) -> String {
     let map = match family.device().cell {
-        Cell::LogicElement => {
-            let synth = format!("synth_intel -family cycloneive -noflatten -nobram -top {top}");
-            let to_luts = match mapping {
-                Mapping::Luts => format!("{synth} -run begin:map_luts"),
-                // A clear serves all flip-flops of a block of 16 elements: not worth it for few. Flip-flops without
-                // one, or with an asynchronous one, go Yosys's way.
-                Mapping::LogicElement => format!(
-                    "{synth} -run begin:map_ffram; techmap -map logic_element.v t:$alu; {synth} -run map_ffram:map_ffs; \
-                     dfflegalize -cell $_SDFFCE_PP0P_ 01 -cell $_DFFE_PN0P_ 01 -minsrst 8; opt_merge; techmap -map logic_element.v; \
-                     {synth} -run map_ffs:map_luts"
-                ),
-            };
-            // The last optimisation before the LUTs can leave a multiplexer behind, which `techmap` takes care of.
-            format!("{to_luts}; techmap; {synth} -run map_luts:vqm")
-        }
+        Cell::LogicElement => to_logic_elements(top, mapping),
         Cell::AdaptiveLogicModule => {
             let without = "-noflatten -nobram -nolutram -nodsp -noiopad -noclkbuf";
             format!("synth_intel_alm -family cyclonev {without} -top {top}")
@@ -311,6 +299,23 @@ fn script(top: &str, family: Family, mapping: Mapping) -> String {
         "write_json netlist.json",
     ]
     .join("; ")
+}
+
+/// Commands that map to Cyclone IV E's logic element.
+fn to_logic_elements(top: &str, mapping: Mapping) -> String {
+    let synth = format!("synth_intel -family cycloneive -noflatten -nobram -top {top}");
+    let to_luts = match mapping {
+        Mapping::Luts => format!("{synth} -run begin:map_luts"),
+        // A clear serves all flip-flops of a block of 16 elements: not worth it for few. Flip-flops without
+        // one, or with an asynchronous one, go Yosys's way.
+        Mapping::LogicElement => format!(
+            "{synth} -run begin:map_ffram; techmap -map logic_element.v t:$alu; {synth} -run map_ffram:map_ffs; \
+             dfflegalize -cell $_SDFFCE_PP0P_ 01 -cell $_DFFE_PN0P_ 01 -minsrst 8; opt_merge; techmap -map logic_element.v; \
+             {synth} -run map_ffs:map_luts"
+        ),
+    };
+    // The last optimisation before the LUTs can leave a multiplexer behind, which `techmap` takes care of.
+    format!("{to_luts}; techmap; {synth} -run map_luts:vqm")
 }
 
 fn module_name(top: &str) -> Result<&str, YosysError> {

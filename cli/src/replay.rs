@@ -1,0 +1,200 @@
+//! `posicast verify --stimulus FILE`: a recording replayed into the RTL and the model.
+
+use crate::bench::{self, Simulator};
+use crate::failure::Failure;
+use crate::output;
+use posicast_testbench::Error;
+use posicast_testbench::blocks::{Block, Sources};
+use posicast_testbench::diff::{Options, Reset};
+use posicast_testbench::lockstep::report::Report;
+use posicast_testbench::replay::{Extent, Replay};
+use serde::Serialize;
+use std::path::{Path, PathBuf};
+
+/// Which file, and how its names are read.
+#[derive(clap::Args)]
+#[command(next_help_heading = "Recorded stimuli")]
+pub(crate) struct Recording {
+    /// Replay the inputs in this VCD or FST into RTL and model, and compare with the outputs in it
+    #[arg(long, value_name = "FILE")]
+    stimulus: Option<PathBuf>,
+    /// Scope or signal A of the recording is B of the block, whose scope is its top module; with * in both, a pattern (repeatable)
+    #[arg(long, value_name = "A=B", requires = "stimulus")]
+    map: Vec<String>,
+    /// Look only below this scope of the recording
+    #[arg(long, value_name = "SCOPE", requires = "stimulus")]
+    root: Option<String>,
+    /// The recorded clock [default: the only clk or clock]
+    #[arg(long, value_name = "NAME", requires = "stimulus")]
+    clock: Option<String>,
+    /// Compare recorded outputs from where this signal is released; `none`: from the first edge [default: the only reset found]
+    #[arg(long, value_name = "NAME[=0|1]", requires = "stimulus")]
+    reset: Option<String>,
+}
+
+impl Recording {
+    /// The recording, if there is one.
+    pub(crate) fn recording(&self) -> Option<&Path> {
+        self.stimulus.as_deref()
+    }
+
+    fn options(&self) -> Result<Options, Error> {
+        let mut options = Options {
+            clock: self.clock.clone(),
+            roots: [self.root.clone(), None],
+            reset: Reset::Found,
+            ..Options::default()
+        };
+        self.map.iter().try_for_each(|text| options.add_map(text))?;
+        if let Some(text) = &self.reset {
+            options.set_reset(text)?;
+        }
+        Ok(options)
+    }
+}
+
+/// What was replayed, beside the rows of the report.
+#[derive(Debug, Serialize)]
+pub(crate) struct Replayed {
+    file: PathBuf,
+    /// Clocks of the recording that were replayed, and those of them in which its outputs were compared.
+    clocks: u64,
+    compared: u64,
+    /// Inputs that are not in the file: 0 all the time.
+    missing_inputs: Vec<String>,
+    /// Outputs that are not in the file: compared between RTL and model only.
+    missing_outputs: Vec<String>,
+    /// Clocks in which recorded bits were `x` or `z`: taken as 0 in inputs, not compared in outputs.
+    unknown_input_clocks: u64,
+    unknown_output_clocks: u64,
+    /// Signals of the file that are no port.
+    other_signals: usize,
+    notes: Vec<String>,
+}
+
+impl Replayed {
+    /// In words, a line each.
+    pub(crate) fn text(&self) -> String {
+        let mut text = format!(
+            "replayed {}: {} clocks, recorded outputs compared in {} of them\n",
+            self.file.display(),
+            self.clocks,
+            self.compared
+        );
+        let mut line = |names: &[String], what: &str| {
+            if !names.is_empty() {
+                text += &format!("  {what}: {}\n", names.join(", "));
+            }
+        };
+        line(&self.notes, "time");
+        line(&self.missing_inputs, "inputs not in the file, held at 0");
+        line(
+            &self.missing_outputs,
+            "outputs not in the file, compared between RTL and model only",
+        );
+        for (clocks, what) in [
+            (self.unknown_input_clocks, "with x or z in inputs, taken as 0"),
+            (
+                self.unknown_output_clocks,
+                "with x or z in outputs, whose bits were not compared",
+            ),
+        ] {
+            if clocks > 0 {
+                text += &format!("  clocks {what}: {clocks}\n");
+            }
+        }
+        if self.other_signals > 0 {
+            text += &format!("  signals of the file that are no port: {}\n", self.other_signals);
+        }
+        text
+    }
+}
+
+/// Replays the recording into the block that has most in common with it, at most so many clocks.
+pub(crate) fn run(
+    blocks: &[(Box<dyn Block>, Sources)],
+    file: &Path,
+    args: &Recording,
+    (simulator, seed, most_clocks): (Simulator, u64, u64),
+) -> Result<(Report, Replayed), Failure> {
+    let options = args.options().map_err(bench::failure)?;
+    let (block, sources, replay) = choose(blocks, file, &options)?;
+    let extent = replay.extent(most_clocks).map_err(bench::failure)?;
+    let Extent { clocks, compared, .. } = extent;
+    if compared == 0 {
+        return Err(Failure::from(miette::miette!(
+            help = "--clock NAME names another clock, --reset none compares from the first edge",
+            "`{}` has {clocks} clock edges and none behind the release of its reset: there is nothing to compare ({})",
+            file.display(),
+            replay.notes().join(", ")
+        )));
+    }
+    let mut device = simulator.device(block, sources, seed).map_err(bench::failure)?;
+    let report = replay
+        .run(block, device.as_mut(), clocks, seed)
+        .map_err(bench::failure)?;
+    let replayed = Replayed {
+        file: file.to_owned(),
+        clocks,
+        compared,
+        missing_inputs: replay.missing_inputs(),
+        missing_outputs: replay.missing_outputs(),
+        unknown_input_clocks: extent.unknown_inputs,
+        unknown_output_clocks: extent.unknown_outputs,
+        other_signals: replay.strangers(),
+        notes: replay.notes().to_vec(),
+    };
+    if !replayed.missing_inputs.is_empty() {
+        output::say(&format!(
+            "warning: not in the recording, and so held at 0: {}",
+            replayed.missing_inputs.join(", ")
+        ));
+    }
+    Ok((report, replayed))
+}
+
+type Chosen<'a> = (&'a dyn Block, &'a Sources, Replay);
+
+/// The block with most ports in the file.
+fn choose<'a>(blocks: &'a [(Box<dyn Block>, Sources)], file: &Path, options: &Options) -> Result<Chosen<'a>, Failure> {
+    let mut best: Vec<Chosen<'a>> = Vec::new();
+    let mut refused = None;
+    for (block, sources) in blocks {
+        let block = block.as_ref();
+        match Replay::new(block, file, options) {
+            Ok(None) => {}
+            Ok(Some(replay)) => {
+                let most = best.first().map_or(0, |(_, _, best)| best.found());
+                if replay.found() > most {
+                    best.clear();
+                }
+                if replay.found() >= most {
+                    best.push((block, sources, replay));
+                }
+            }
+            // A map that this block has no port for: another may.
+            Err(error @ Error::Option(_)) => refused = refused.or(Some(error)),
+            Err(error) => return Err(bench::failure(error)),
+        }
+    }
+    if best.len() > 1 {
+        let names = best
+            .iter()
+            .map(|(block, ..)| format!("{} {} (top {})", block.name(), block.instance(), block.top()));
+        return Err(Failure::from(miette::miette!(
+            help = "choose with --block NAME, or map the recorded scope to a top: --map SCOPE=TOP",
+            "`{}` fits several blocks equally well: {}",
+            file.display(),
+            names.collect::<Vec<_>>().join("; ")
+        )));
+    }
+    match (best.pop(), refused) {
+        (Some(chosen), _) => Ok(chosen),
+        (None, Some(error)) => Err(bench::failure(error)),
+        (None, None) => Err(Failure::from(miette::miette!(
+            help = "say with --map A=B which scope or signal of the file is which of the block, or choose the block with --block",
+            "`{}` has no signal in common with the ports of any block",
+            file.display()
+        ))),
+    }
+}

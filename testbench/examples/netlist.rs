@@ -1,0 +1,100 @@
+//! Every block through Yosys to a netlist of logic elements, simulated against the model and proven equal to the RTL:
+//! `cargo run --release -p posicast-testbench --example netlist [-- --clocks N] [BLOCK…]`.
+//!
+//! Prints a row per block. Without names all blocks but the stage, whose parts they are. `--clocks 0` only proves. Exit status: 0
+//! all equal, 1 not so, 2 cannot run, 3 a tool is missing.
+#![allow(clippy::print_stdout, clippy::print_stderr, reason = "it is a program")]
+
+use std::error::Error;
+use std::process::ExitCode;
+use std::time::Duration;
+
+use posicast_synth::yosys::{CELL_MODELS, Yosys, YosysError};
+use posicast_testbench::blocks::{Block, Sources, library};
+use posicast_testbench::lockstep::report;
+use posicast_testbench::netlist::{Outcome, Parts, Verdict, check};
+
+/// Clocks of the simulation where none are asked for.
+const CLOCKS: u64 = 100_000;
+/// What each engine of a proof gets.
+const LIMIT: Duration = Duration::from_secs(300);
+
+fn main() -> ExitCode {
+    match compare() {
+        Ok(true) => ExitCode::SUCCESS,
+        Ok(false) => ExitCode::from(1),
+        Err(error) => {
+            eprintln!("{error}");
+            let no_simulator = error
+                .downcast_ref()
+                .is_some_and(posicast_testbench::Error::is_missing_tool);
+            let no_yosys = matches!(error.downcast_ref(), Some(YosysError::Missing(_)));
+            ExitCode::from(if no_simulator || no_yosys { 3 } else { 2 })
+        }
+    }
+}
+
+fn compare() -> Result<bool, Box<dyn Error>> {
+    let mut names: Vec<String> = std::env::args().skip(1).collect();
+    let mut clocks = CLOCKS;
+    if names.first().is_some_and(|first| first == "--clocks") {
+        clocks = names.get(1).ok_or("--clocks: write a number behind it")?.parse()?;
+        names.drain(..2);
+    }
+    let yosys = Yosys::installed()?;
+    let blocks = library()?;
+    if let Some(unknown) = names
+        .iter()
+        .find(|name| !blocks.iter().any(|block| block.name() == *name))
+    {
+        return Err(format!("there is no block `{unknown}`").into());
+    }
+    println!("| block | instance | LUT | flip-flops | kept | simulated | RTL = netlist | seconds |");
+    println!("|---|---|---|---|---|---|---|---|");
+    let mut is_good = true;
+    for block in blocks {
+        let wanted = match names.is_empty() {
+            true => block.name() != "stage",
+            false => names.iter().any(|name| name == block.name()),
+        };
+        if wanted {
+            is_good &= row(&yosys, block.as_ref(), clocks)?;
+        }
+    }
+    Ok(is_good)
+}
+
+/// Prints a block's row, and says whether it is good.
+fn row(yosys: &Yosys, block: &dyn Block, clocks: u64) -> Result<bool, Box<dyn Error>> {
+    let parts = Parts::of(block.modules()?);
+    let (logic, kept) = (Sources::of_modules(&parts.logic)?, Sources::of_modules(&parts.kept)?);
+    let netlist = yosys.netlist(logic.files(), kept.files(), &block.top())?;
+    let outcome = check(block, &parts, (&netlist, CELL_MODELS), (clocks, 1), LIMIT)?;
+    let Outcome {
+        cells: [luts, flip_flops],
+        kept,
+        simulated,
+        verdict,
+        time,
+    } = &outcome;
+    let matches = simulated
+        .as_ref()
+        .is_none_or(|report| report.result == report::Verdict::Match);
+    let simulated = match simulated {
+        None => "no".to_owned(),
+        Some(report) if matches => format!("{} clocks, equal", report.cycles),
+        Some(report) => format!("{} wrong values in {} clocks", report.mismatches(), report.cycles),
+    };
+    let proof = match verdict {
+        Verdict::Equivalent => "proven".to_owned(),
+        Verdict::Different { clock } => format!("differ in clock {clock}"),
+        Verdict::Unknown => "unknown".to_owned(),
+    };
+    println!(
+        "| {} | {} | {luts} | {flip_flops} | {kept} | {simulated} | {proof} | {:.1} |",
+        block.name(),
+        block.instance(),
+        time.as_secs_f64()
+    );
+    Ok(matches && *verdict == Verdict::Equivalent)
+}

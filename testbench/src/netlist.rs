@@ -1,0 +1,202 @@
+//! A block's netlist, as a synthesiser wrote it, against the block: simulated, and proven.
+//!
+//! ```text
+//!  modules ─┬─ logic ─► synthesiser ─► netlist ─┬─► with models of its cells ─► Verilator, lock step with the model
+//!           │                                   └─► ┐
+//!           └─ memories, multipliers: kept ─────────┴─► RTL = netlist?  Yosys: miter ─► ABC: register correspondence, PDR
+//! ```
+//!
+//! - Memories, ROMs and multipliers are modules of their own, which a device has as blocks. They are kept: in the simulation they
+//!   are what they were; in the proof they are cut out, on both sides. What comes out of them is then anything, and what goes
+//!   into them is compared like an output. Equal inputs give equal contents, so the proof holds for the whole.
+//! - The proof is for all inputs in all clocks from power-up on, resets included, without a bound.
+//! - An asynchronous clear counts as it is in a clock.
+//! - The netlist is read from its text, so a changed table is seen.
+
+use std::fmt::Write as _;
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use posicast_hdl::emit::Module;
+
+use crate::Error;
+use crate::blocks::{self, Block, Sources};
+use crate::formal::{ABC, YOSYS, asserted};
+use crate::lockstep::report::Report;
+use crate::tool::text;
+
+/// Longest difference that is searched for, in clocks: more than a division lasts.
+const SEARCHED_CLOCKS: u32 = 150;
+
+/// Whether netlist and RTL do the same.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Verdict {
+    /// For all inputs and for ever.
+    Equivalent,
+    /// They differ first in this clock after power-up, from 0.
+    Different {
+        /// The clock.
+        clock: u32,
+    },
+    /// Neither within the time limit.
+    Unknown,
+}
+
+/// A block's Verilog, sorted.
+#[derive(Debug, Clone)]
+pub struct Parts {
+    /// What is mapped to logic elements; the top among them.
+    pub logic: Vec<Module>,
+    /// What is kept.
+    pub kept: Vec<Module>,
+}
+
+impl Parts {
+    /// Sorts a block's modules.
+    pub fn of(modules: Vec<Module>) -> Self {
+        let is_kept = |module: &Module| module.text.contains(" words [0:") || module.text.contains(" <= a_q * b_q;");
+        let (kept, logic) = modules.into_iter().partition(is_kept);
+        Self { logic, kept }
+    }
+}
+
+/// The netlist with the models of its cells in lock step with the block's model.
+///
+/// # Errors
+/// As [`Sources::verilated`] and [`blocks::check`].
+pub fn simulate(
+    block: &dyn Block,
+    parts: &Parts,
+    netlist: &str,
+    cell_models: &str,
+    clocks: u64,
+    seed: u64,
+) -> Result<Report, Error> {
+    let mut modules = parts.kept.clone();
+    for (name, text) in [("cell_models", cell_models), ("netlist", netlist)] {
+        modules.push(Module {
+            name: name.to_owned(),
+            text: text.to_owned(),
+            ports: Vec::new(),
+            clocked: true,
+        });
+    }
+    let sources = Sources::of_modules(&modules)?;
+    let mut device = sources.verilated(block, seed)?;
+    blocks::check(block, &mut device, clocks, seed, &mut |_| {})
+}
+
+/// Whether the netlist does what the RTL does; `folder` gets the files. ABC's engines get `limit` each.
+///
+/// # Errors
+/// [`Error::ToolMissing`] without Yosys or its ABC; [`Error::ToolFailed`] where Yosys refuses RTL or netlist, which includes ports
+/// or kept modules that only one of them has; [`Error::File`] for the files.
+pub fn equivalent(
+    top: &str,
+    parts: &Parts,
+    netlist: &str,
+    cell_models: &str,
+    folder: &Path,
+    limit: Duration,
+) -> Result<Verdict, Error> {
+    let write = |name: &str, text: &str| {
+        let path = folder.join(name);
+        std::fs::write(&path, text).map_err(Error::file(&path, "write"))
+    };
+    write("netlist.v", netlist)?;
+    write("cell_models.v", cell_models)?;
+    let mut rtl = String::new();
+    let (mut kept, mut cut) = (String::new(), String::new());
+    for module in &parts.logic {
+        let file = format!("{}.v", module.name);
+        write(&file, &module.text)?;
+        let _ = write!(rtl, " {file}");
+    }
+    for module in &parts.kept {
+        let file = format!("{}.v", module.name);
+        write(&file, &module.text)?;
+        let _ = writeln!(kept, "read_verilog -lib {file}");
+        let _ = write!(cut, " t:{}", module.name);
+    }
+    if !cut.is_empty() {
+        cut = format!("expose -evert{cut}\n");
+    }
+    let side = |files: &str, name: &str| {
+        format!(
+            "{kept}read_verilog {files}\nhierarchy -check -top {top}\nproc\nflatten\nasync2sync\nopt_clean\n{cut}rename -top {name}\n\
+             design -stash {name}\n"
+        )
+    };
+    let script = format!(
+        "{}{}design -copy-from gold -as gold gold\ndesign -copy-from gate -as gate gate\n\
+         miter -equiv -flatten -make_assert gold gate miter\nhierarchy -top miter\nproc\nsetundef -undriven -zero\n\
+         delete -output\nopt -fast\ntechmap\nopt -fast\ndffunmap\nabc -g AND -fast\nopt_clean\n\
+         write_aiger -I -B -zinit -no-startoffset miter.aig\n",
+        side(&rtl, "gold"),
+        side("netlist.v cell_models.v", "gate")
+    );
+    write("miter.ys", &script)?;
+    let mut yosys = YOSYS.command();
+    yosys.current_dir(folder).args(["-q", "miter.ys"]);
+    YOSYS.run(&mut yosys, "joining RTL and netlist")?;
+
+    let seconds = limit.as_secs().max(1);
+    let proof = format!("read_aiger miter.aig; fold; strash; scorr; pdr -T {seconds}");
+    if abc(folder, &proof)?.contains("Property proved") {
+        return Ok(Verdict::Equivalent);
+    }
+    let search = format!("read_aiger miter.aig; fold; strash; bmc3 -F {SEARCHED_CLOCKS} -T {seconds}");
+    let found = asserted(&abc(folder, &search)?).next();
+    Ok(found.map_or(Verdict::Unknown, |(_, clock)| Verdict::Different { clock }))
+}
+
+fn abc(folder: &Path, commands: &str) -> Result<String, Error> {
+    let mut abc = ABC.command();
+    abc.current_dir(folder).args(["-c", commands]);
+    ABC.run(&mut abc, "comparing RTL and netlist")
+        .map(|output| text(&output))
+}
+
+/// What came out for a block.
+#[derive(Debug, Clone)]
+pub struct Outcome {
+    /// Logic elements that compute, and flip-flops.
+    pub cells: [usize; 2],
+    /// Kept modules.
+    pub kept: usize,
+    /// Netlist against the model; none where it was not simulated.
+    pub simulated: Option<Report>,
+    /// Netlist against the RTL.
+    pub verdict: Verdict,
+    /// How long it took, without the synthesis.
+    pub time: Duration,
+}
+
+/// Simulates a netlist for so many clocks, none if that is 0, and proves it.
+///
+/// # Errors
+/// As [`simulate`] and [`equivalent`].
+pub fn check(
+    block: &dyn Block,
+    parts: &Parts,
+    (netlist, cell_models): (&str, &str),
+    (clocks, seed): (u64, u64),
+    limit: Duration,
+) -> Result<Outcome, Error> {
+    let start = Instant::now();
+    let simulated = match clocks {
+        0 => None,
+        _ => Some(simulate(block, parts, netlist, cell_models, clocks, seed)?),
+    };
+    let temporary = std::env::temp_dir();
+    let folder = tempfile::Builder::new().prefix("posicast-").tempdir();
+    let folder = folder.map_err(Error::file(&temporary, "create a folder in"))?;
+    let verdict = equivalent(&block.top(), parts, netlist, cell_models, folder.path(), limit)?;
+    Ok(Outcome {
+        cells: ["  cycloneive_lcell_comb ", "  dffeas "].map(|cell| netlist.matches(cell).count()),
+        kept: parts.kept.len(),
+        simulated,
+        verdict,
+        time: start.elapsed(),
+    })
+}

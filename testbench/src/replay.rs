@@ -1,0 +1,233 @@
+//! A recording replayed: its inputs into model and device, and its outputs against the model's.
+//!
+//! ```text
+//!                       ┌─► model ─────┬─► lock step: device = model?
+//!  recording ─► inputs ─┼─► device ────┘
+//!      │                └─► model ─────┬─► lock step: recording = model?
+//!      └──────► outputs ───────────────┘
+//! ```
+//!
+//! - Values are those just before each edge of the recorded clock. All edges are replayed, those in reset too; what the
+//!   recording shows counts from the release of its reset on, from the first edge where it has none.
+//! - Model and device begin as at power-up. A recording that begins later, without a reset, does not fit them.
+//! - An input that is not in the file, and a bit of one that is `x` or `z`, is 0.
+//! - An output that is not in the file, and a bit of one that is `x` or `z`, is not compared.
+//! - The file is read three times, never kept: memory does not depend on its length.
+
+use std::path::Path;
+
+use posicast_model::rtl::{ClockedBlock, Direction, Port, StepError};
+
+use crate::Error;
+use crate::blocks::Block;
+use crate::diff::{Options, Player, PortMap, Recorded, missing};
+use crate::lockstep::report::Report;
+use crate::lockstep::{self, Device, Instance};
+use crate::stimuli::Stimuli;
+
+/// What the rows of the recording are called, behind the instance.
+const RECORDED: &str = "recorded";
+
+/// A recording that has something in common with a block.
+#[derive(Debug, Clone)]
+pub struct Replay {
+    map: PortMap,
+    ports: Vec<Port>,
+}
+
+/// What a file says as a whole.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Extent {
+    /// Edges of its clock.
+    pub clocks: u64,
+    /// Those from the release of reset on.
+    pub compared: u64,
+    /// Clocks in which an input had bits that were `x` or `z`.
+    pub unknown_inputs: u64,
+    /// Clocks from the release on in which an output had such bits.
+    pub unknown_outputs: u64,
+}
+
+impl Replay {
+    /// Matches the file with the block's ports below the scope of its top; nothing, where they have none in common.
+    ///
+    /// # Errors
+    /// As [`PortMap::find`].
+    pub fn new(block: &dyn Block, path: &Path, options: &Options) -> Result<Option<Self>, Error> {
+        let ports = block.model(0).ports().to_vec();
+        let map = PortMap::find(path, &block.top(), &ports, options)?;
+        Ok(map.map(|map| Self { map, ports }))
+    }
+
+    /// Ports that are in the file.
+    pub fn found(&self) -> usize {
+        self.map.found()
+    }
+
+    /// How clock and reset were found.
+    pub fn notes(&self) -> &[String] {
+        &self.map.notes
+    }
+
+    /// Inputs that are not in the file, and so are 0.
+    pub fn missing_inputs(&self) -> Vec<String> {
+        missing(&self.map, &self.ports, Direction::Input)
+    }
+
+    /// Outputs that are not in the file, and so are compared between model and device only.
+    pub fn missing_outputs(&self) -> Vec<String> {
+        missing(&self.map, &self.ports, Direction::Output)
+    }
+
+    /// Signals of the file that are no port of the block.
+    pub fn strangers(&self) -> usize {
+        self.map.strangers
+    }
+
+    /// Reads the file once, at most so many clocks of it.
+    ///
+    /// # Errors
+    /// As [`Player::next`].
+    pub fn extent(&self, most_clocks: u64) -> Result<Extent, Error> {
+        let mut player = self.map.play()?;
+        let mut row = vec![None; self.ports.len()];
+        let mut extent = Extent::default();
+        while extent.clocks < most_clocks
+            && let Some(released) = player.next(&mut row)?
+        {
+            let unknown = |direction| {
+                let of = self
+                    .ports
+                    .iter()
+                    .zip(&row)
+                    .filter(|(port, _)| port.direction == direction);
+                of.into_iter()
+                    .any(|(_, value)| value.is_some_and(|value| value.unknown != 0))
+            };
+            extent.clocks += 1;
+            extent.compared += u64::from(released);
+            extent.unknown_inputs += u64::from(unknown(Direction::Input));
+            extent.unknown_outputs += u64::from(released && unknown(Direction::Output));
+        }
+        Ok(extent)
+    }
+
+    /// Replays so many clocks: the device against the model, then the recording, in rows of their own.
+    ///
+    /// # Errors
+    /// As [`lockstep::run`], and [`Player::next`] of a file that has changed since its [`Replay::extent`] was taken.
+    pub fn run(&self, block: &dyn Block, device: &mut dyn Device, clocks: u64, seed: u64) -> Result<Report, Error> {
+        let instances = block.instances(&self.ports);
+        let of_device = self.against(block, device, &instances, clocks, seed)?;
+        let outputs = missing(&self.map, &self.ports, Direction::Output);
+        let recorded = instances.into_iter().map(|instance| Instance {
+            name: format!("{}, {RECORDED}", instance.name),
+            outputs: instance
+                .outputs
+                .into_iter()
+                .filter(|name| !outputs.contains(name))
+                .collect(),
+            ..instance
+        });
+        let recorded: Vec<Instance> = recorded.filter(|instance| !instance.outputs.is_empty()).collect();
+        if recorded.is_empty() {
+            return Ok(of_device);
+        }
+        let mut shown = Shown {
+            player: self.map.play()?,
+            model: block.model(seed),
+            row: vec![None; self.ports.len()],
+            outputs: places(&self.ports, Direction::Output),
+        };
+        let of_recording = self.against(block, &mut shown, &recorded, clocks, seed)?;
+        Ok(Report::joined(vec![of_device, of_recording]))
+    }
+
+    fn against(
+        &self,
+        block: &dyn Block,
+        device: &mut dyn Device,
+        instances: &[Instance],
+        clocks: u64,
+        seed: u64,
+    ) -> Result<Report, Error> {
+        let mut inputs = Inputs {
+            player: self.map.play()?,
+            row: vec![None; self.ports.len()],
+            places: places(&self.ports, Direction::Input),
+            failed: None,
+        };
+        let mut model = block.model(seed);
+        let options = lockstep::Options::cycles(clocks);
+        let report = lockstep::run(
+            model.as_mut(),
+            device,
+            &mut inputs,
+            instances,
+            &options,
+            &mut |_| {},
+            &mut |_| {},
+        );
+        match inputs.failed {
+            Some(error) => Err(error),
+            None => report,
+        }
+    }
+}
+
+/// Places of the ports of one direction.
+fn places(ports: &[Port], direction: Direction) -> Vec<usize> {
+    let of = ports.iter().enumerate().filter(|(_, port)| port.direction == direction);
+    of.map(|(at, _)| at).collect()
+}
+
+/// The recorded inputs as stimuli.
+struct Inputs {
+    player: Player,
+    row: Vec<Option<Recorded>>,
+    places: Vec<usize>,
+    failed: Option<Error>,
+}
+
+impl Stimuli for Inputs {
+    fn fill(&mut self, _seen: &[u64], inputs: &mut [u64]) {
+        if self.failed.is_none() {
+            self.failed = self.player.next(&mut self.row).err();
+        }
+        for (input, place) in inputs.iter_mut().zip(&self.places) {
+            *input = self.row[*place].map_or(0, |value| value.bits);
+        }
+    }
+}
+
+/// The recorded outputs as a device. What the recording does not say is taken from a model, so that it is no mismatch.
+struct Shown {
+    player: Player,
+    model: Box<dyn ClockedBlock>,
+    row: Vec<Option<Recorded>>,
+    outputs: Vec<usize>,
+}
+
+impl Device for Shown {
+    fn ports(&self) -> &[Port] {
+        self.model.ports()
+    }
+
+    fn step(&mut self, inputs: &[u64], outputs: &mut [u64], unknown: &mut [u64]) -> Result<(), StepError> {
+        unknown.fill(0);
+        self.model.step(inputs, outputs)?;
+        let released = self
+            .player
+            .next(&mut self.row)
+            .map_err(|error| StepError(error.to_string()))?;
+        if released != Some(true) {
+            return Ok(());
+        }
+        for (output, place) in outputs.iter_mut().zip(&self.outputs) {
+            if let Some(value) = self.row[*place] {
+                *output = *output & value.unknown | value.bits;
+            }
+        }
+        Ok(())
+    }
+}

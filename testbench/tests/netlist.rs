@@ -1,0 +1,106 @@
+//! Some blocks as netlists of logic elements: against their models, and proven equal to their RTL; and netlists with a fault.
+//!
+//! All blocks: the example `netlist`, in `scripts/verify-all`.
+#![allow(clippy::unwrap_used, clippy::panic)] // helpers of tests, which clippy.toml exempts only inside of #[test]
+
+use std::time::Duration;
+
+use posicast_synth::yosys::{CELL_MODELS, Yosys};
+use posicast_testbench::blocks::{Block, Sources, library};
+use posicast_testbench::lockstep::report;
+use posicast_testbench::netlist::{Outcome, Parts, Verdict, check};
+
+const CLOCKS: u64 = 20_000;
+
+struct Mapped {
+    block: Box<dyn Block>,
+    parts: Parts,
+    netlist: String,
+}
+
+impl Mapped {
+    fn new(name: &str) -> Self {
+        let blocks = library().unwrap().into_iter();
+        let block = blocks.into_iter().find(|block| block.name() == name).unwrap();
+        let parts = Parts::of(block.modules().unwrap());
+        let files = |modules| Sources::of_modules(modules).unwrap();
+        let (logic, kept) = (files(&parts.logic), files(&parts.kept));
+        let yosys = Yosys::installed().unwrap();
+        let netlist = yosys.netlist(logic.files(), kept.files(), &block.top()).unwrap();
+        Self { block, parts, netlist }
+    }
+
+    fn check(&self, clocks: u64) -> Outcome {
+        let netlist = (self.netlist.as_str(), CELL_MODELS);
+        check(
+            self.block.as_ref(),
+            &self.parts,
+            netlist,
+            (clocks, 1),
+            Duration::from_secs(60),
+        )
+        .unwrap()
+    }
+
+    /// Replaces the first `from` in the netlist by `to`.
+    fn broken(mut self, from: &str, to: &str) -> Self {
+        assert!(
+            self.netlist.contains(from),
+            "the netlist no longer has `{from}`: adapt the test"
+        );
+        self.netlist = self.netlist.replacen(from, to, 1);
+        self
+    }
+}
+
+/// Plain logic; carry chains; a kept ROM and RAM.
+#[test]
+fn netlist_is_proven_equal_to_the_rtl() {
+    for (name, kept) in [("group", 0), ("divider", 0), ("setting_banks", 2)] {
+        let outcome = Mapped::new(name).check(0);
+        assert_eq!(outcome.verdict, Verdict::Equivalent, "{name}: {outcome:?}");
+        assert_eq!(outcome.kept, kept, "{name}");
+        assert!(outcome.cells.iter().all(|count| *count > 5), "{name}: {outcome:?}");
+    }
+}
+
+#[test]
+fn netlist_does_what_the_model_does() {
+    let outcome = Mapped::new("group").check(CLOCKS);
+    let report = outcome.simulated.unwrap();
+    assert_eq!((report.result, report.cycles), (report::Verdict::Match, CLOCKS));
+}
+
+/// One table inverted, in the way a mapper's fault would look.
+#[test]
+fn netlist_with_a_wrong_table_is_found_by_simulation_and_proof() {
+    let mapped = Mapped::new("group");
+    let mask = mapped.netlist.split(".lut_mask(16'h").nth(1).unwrap();
+    let mask: String = mask.chars().take(4).collect();
+    let flipped = u16::from_str_radix(&mask, 16).unwrap() ^ 0xffff;
+    let outcome = mapped
+        .broken(
+            &format!(".lut_mask(16'h{mask})"),
+            &format!(".lut_mask(16'h{flipped:04x})"),
+        )
+        .check(CLOCKS);
+    assert_eq!(outcome.simulated.unwrap().result, report::Verdict::Mismatch);
+    assert!(
+        matches!(outcome.verdict, Verdict::Different { clock } if clock < 5),
+        "{:?}",
+        outcome.verdict
+    );
+}
+
+/// It works from the first reset on, so only the proof, which begins at power-up, sees it.
+#[test]
+fn netlist_with_a_wrong_power_up_is_found_by_the_proof() {
+    let outcome = Mapped::new("group")
+        .broken(".power_up(\"low\")", ".power_up(\"high\")")
+        .check(0);
+    assert!(
+        matches!(outcome.verdict, Verdict::Different { .. }),
+        "{:?}",
+        outcome.verdict
+    );
+}
