@@ -7,4 +7,5 @@ mod verify;
 mod bad_input;
 mod design;
 mod diff;
+mod fuzz;
 mod hardware;
