@@ -21,6 +21,7 @@
 
 pub mod blocks;
 pub mod campaign;
+pub mod coverage;
 pub mod diff;
 mod error;
 pub mod fault_campaign;
