@@ -1,13 +1,15 @@
 //! The second simulator: Icarus Verilog. Slow, independent, and it knows `x`.
 //!
 //! A generated testbench reads one line of inputs from its standard input, settles, writes one line of outputs, and gives
-//! one clock; `vvp` runs beside us and is talked to through two pipes. No VPI, no files that grow with the length.
+//! one clock; `vvp` runs beside us and is talked to through two pipes. No VPI, and no files that grow with the length, unless
+//! a waveform is asked for ([`Icarus::recording`]).
 //!
 //! An output that is `x` or `z` is a mismatch where the device is a [`Device`], and a [`StepError`] where it is stepped as
 //! a [`ClockedBlock`], which has no word for it.
 
 use std::fmt::Write as _;
 use std::io::{BufRead, BufReader, Read, Write};
+use std::path::Path;
 use std::process::{Child, ChildStdin, ChildStdout, Stdio};
 
 use posicast_model::rtl::{ClockedBlock, Direction, Port, StepError};
@@ -33,6 +35,13 @@ const VVP: Tool = Tool {
 /// Bytes that a line of outputs may have: 64 per port and more than enough for any top module.
 const LINE_BYTES: u64 = 1 << 20;
 
+/// The scope of the testbench, and so of the signals in a waveform.
+pub const SCOPE: &str = "posicast_bench";
+/// The waveform, in the folder in which `vvp` runs.
+const WAVES: &str = "waves.vcd";
+/// What `vvp` runs.
+const PROGRAM: &str = "bench.vvp";
+
 /// A Verilog module that runs under Icarus.
 #[derive(Debug)]
 pub struct Icarus {
@@ -43,7 +52,7 @@ pub struct Icarus {
     from: BufReader<ChildStdout>,
     line: String,
     unknown: Vec<u64>,
-    _folder: TempDir,
+    folder: TempDir,
 }
 
 impl Icarus {
@@ -53,18 +62,45 @@ impl Icarus {
     /// [`Error::ToolMissing`] without Icarus; [`Error::ToolFailed`] where it refuses the Verilog, which includes ports
     /// that are missing or have another width.
     pub fn build(source: &Source<'_>) -> Result<Self, Error> {
+        Self::start(source, "")
+    }
+
+    /// The same, with a waveform of `clk` and all ports, written by Icarus itself: below [`SCOPE`], four-valued.
+    ///
+    /// # Errors
+    /// As [`Self::build`].
+    pub fn recording(source: &Source<'_>) -> Result<Self, Error> {
+        Self::start(
+            source,
+            &format!("    initial begin $dumpfile(\"{WAVES}\"); $dumpvars(1, {SCOPE}); end\n"),
+        )
+    }
+
+    /// Ends a simulation that was [`Self::recording`], and puts its waveform into the file `to`.
+    ///
+    /// # Errors
+    /// [`Error::File`] where the file cannot be written, or where nothing was recorded.
+    pub fn finish(mut self, to: &Path) -> Result<(), Error> {
+        // Without input the testbench ends, and closes its file.
+        self.to = None;
+        let status = self.process.wait();
+        status.map_err(|cause| VVP.failed("simulating", "not ended".to_owned(), &cause.to_string()))?;
+        std::fs::copy(self.folder.path().join(WAVES), to).map_err(Error::file(to, "copy the waveform to"))?;
+        Ok(())
+    }
+
+    fn start(source: &Source<'_>, also: &str) -> Result<Self, Error> {
         let temporary = std::env::temp_dir();
         let folder = tempfile::Builder::new().prefix("posicast-").tempdir();
         let folder = folder.map_err(Error::file(&temporary, "create a folder in"))?;
         let bench = folder.path().join("bench.v");
-        std::fs::write(&bench, testbench(source)).map_err(Error::file(&bench, "write"))?;
-        let program = folder.path().join("bench.vvp");
+        std::fs::write(&bench, testbench(source, also)).map_err(Error::file(&bench, "write"))?;
 
         let mut compile = ICARUS.command();
         // A port of another width is only a warning to Icarus, in words that only it uses: made an error below.
         compile
-            .args(["-g2005", "-Wall", "-s", "posicast_bench", "-o"])
-            .arg(&program)
+            .args(["-g2005", "-Wall", "-s", SCOPE, "-o"])
+            .arg(folder.path().join(PROGRAM))
             .arg(&bench)
             .args(source.files);
         let output = ICARUS.run(&mut compile, "compiling the Verilog")?;
@@ -82,8 +118,8 @@ impl Icarus {
         }
 
         let mut run = VVP.command();
-        run.arg("-n")
-            .arg(&program)
+        run.args(["-n", PROGRAM])
+            .current_dir(folder.path())
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
             .stderr(Stdio::null());
@@ -105,7 +141,7 @@ impl Icarus {
             from: BufReader::new(from),
             line: String::new(),
             unknown: Vec::new(),
-            _folder: folder,
+            folder,
         })
     }
 
@@ -209,7 +245,8 @@ impl Drop for Icarus {
     }
 }
 
-fn testbench(source: &Source<'_>) -> String {
+/// The testbench, with what else it is to do in `also`.
+fn testbench(source: &Source<'_>, also: &str) -> String {
     let inputs: Vec<&Port> = source
         .ports
         .iter()
@@ -232,8 +269,8 @@ fn testbench(source: &Source<'_>) -> String {
     let names = |ports: &[&Port]| ports.iter().map(|p| format!(", {}", p.name)).collect::<String>();
     let connections: String = source.ports.iter().map(|p| format!(", .{0}({0})", p.name)).collect();
     format!(
-        "`timescale 1ns/1ns\nmodule posicast_bench;\n    reg clk = 0;\n    integer posicast_read;\n{declarations}\
-         {top} posicast_device(.clk(clk){connections});\n    \
+        "`timescale 1ns/1ns\nmodule {SCOPE};\n    reg clk = 0;\n    integer posicast_read;\n{declarations}\
+         {also}    {top} posicast_device(.clk(clk){connections});\n    \
          initial begin\n        posicast_read = {count};\n        while (posicast_read == {count}) begin\n            \
          posicast_read = $fscanf(32'h8000_0000, \"{in_format}\"{in_names});\n            \
          if (posicast_read == {count}) begin\n                #1;\n                \

@@ -16,12 +16,15 @@
 //! - [`fault_campaign`] puts a stage with its machine in every fault, at random clocks of a move.
 //! - [`register_tests`] asks registers, through the bus, for what their description promises.
 //! - [`stage_bench`] joins a stage with its simulated machine; [`stage_run`] moves it and measures.
+//! - [`crosssim`] compares the waveforms of two simulators.
+//! - [`coverage`] measures which lines and nets a lock step reaches, and wants a reason for the rest.
 //! - [`formal`] proves what property files say of the blocks.
 //! - [`wave`] writes waveforms; [`diff`] compares two of them.
 
 pub mod blocks;
 pub mod campaign;
 pub mod coverage;
+pub mod crosssim;
 pub mod diff;
 mod error;
 pub mod fault_campaign;

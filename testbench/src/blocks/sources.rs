@@ -119,6 +119,14 @@ impl Sources {
         self.with_source(block, Icarus::build)
     }
 
+    /// The block in Icarus, with a waveform.
+    ///
+    /// # Errors
+    /// As [`Icarus::build`].
+    pub fn icarus_recording(&self, block: &dyn Block) -> Result<Icarus, Error> {
+        self.with_source(block, Icarus::recording)
+    }
+
     /// What Verilator's lint has to say: nothing, where the list is empty.
     ///
     /// # Errors

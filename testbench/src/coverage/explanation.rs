@@ -5,8 +5,8 @@
 //! ```
 //!
 //! Block (with its instance), module and what are patterns: `*` stands for any characters, `?` for one. What is a line's
-//! text in the Verilog, a net with its bit, or the name of a bin; `not if (…)` is an `if` that was always true. Lines that
-//! begin with `#` are comments.
+//! text in the Verilog, a net with its bit, or the name of a bin; `not if (…)` is an `if` that was always true. A net's bits
+//! are a list, as in `count[0,4,24-31]`. Lines that begin with `#` are comments.
 
 use std::fmt;
 
@@ -75,6 +75,20 @@ impl Explanation {
             && fits(&self.what, &hole.what)
     }
 
+    fn names(&self, what: &str) -> bool {
+        let bits = |text: &str| {
+            let (net, bits) = text.strip_suffix(']')?.rsplit_once('[')?;
+            Some((net.to_owned(), bits.to_owned()))
+        };
+        match (self.kind.as_str(), bits(&self.what), bits(what)) {
+            ("toggle", Some((pattern, list)), Some((net, bit))) => {
+                let has = |bit: u32| list.split(',').any(|part| is_among(part, bit));
+                fits(&pattern, &net) && bit.parse().is_ok_and(has)
+            }
+            _ => fits(&self.what, what),
+        }
+    }
+
     /// Why.
     pub fn reason(&self) -> &str {
         &self.reason
@@ -124,6 +138,15 @@ pub fn parse(table: &str) -> Result<Vec<Explanation>, Error> {
     .collect()
 }
 
+/// Whether a number is this one, or in this range.
+fn is_among(part: &str, bit: u32) -> bool {
+    let (low, high) = part.split_once('-').unwrap_or((part, part));
+    match (low.trim().parse::<u32>(), high.trim().parse::<u32>()) {
+        (Ok(low), Ok(high)) => (low..=high).contains(&bit),
+        _ => false,
+    }
+}
+
 /// Whether a text fits a pattern.
 fn fits(pattern: &str, text: &str) -> bool {
     let (pattern, text) = (pattern.as_bytes(), text.as_bytes());
@@ -168,6 +191,24 @@ mod tests {
             ("", "", true),
         ] {
             assert_eq!(fits(pattern, text), fit, "{pattern} {text}");
+        }
+    }
+
+    #[test]
+    fn unit_bits_are_a_list() {
+        let rows = parse("b | m | toggle | *count[0,4,24-31] | slow").unwrap();
+        let hole = |what: &str| Hole {
+            module: "m".to_owned(),
+            kind: "toggle",
+            what: what.to_owned(),
+        };
+        for (what, fit) in [
+            ("count[4]", true),
+            ("a_count[31]", true),
+            ("count[5]", false),
+            ("count", false),
+        ] {
+            assert_eq!(rows[0].explains("b", &hole(what)), fit, "{what}");
         }
     }
 

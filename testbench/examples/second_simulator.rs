@@ -1,0 +1,71 @@
+//! Every block under Verilator and under Icarus, and their waveforms compared:
+//! `cargo run --release -p posicast-testbench --example second_simulator [-- --clocks N] [BLOCK…]`.
+//!
+//! Prints a row per block. Exit status: 0 all equal, 1 not so, 2 cannot run, 3 a tool is missing.
+#![allow(clippy::print_stdout, clippy::print_stderr, reason = "it is a program")]
+
+use std::process::ExitCode;
+
+use posicast_testbench::Error;
+use posicast_testbench::blocks::library;
+use posicast_testbench::crosssim::{Outcome, outputs, run};
+use posicast_testbench::diff::Verdict;
+
+fn main() -> ExitCode {
+    match compare() {
+        Ok(true) => ExitCode::SUCCESS,
+        Ok(false) => ExitCode::from(1),
+        Err(error) => {
+            eprintln!("{error}");
+            ExitCode::from(if error.is_missing_tool() { 3 } else { 2 })
+        }
+    }
+}
+
+fn compare() -> Result<bool, Error> {
+    let mut arguments: Vec<String> = std::env::args().skip(1).collect();
+    let mut clocks = 20_000;
+    if arguments.first().is_some_and(|first| first == "--clocks") {
+        let number = arguments.get(1).and_then(|text| text.parse().ok());
+        clocks = number.ok_or_else(|| Error::Option("--clocks: write a number of clocks behind it".to_owned()))?;
+        arguments.drain(..2);
+    }
+    let blocks = library()?;
+    if let Some(unknown) = arguments
+        .iter()
+        .find(|name| !blocks.iter().any(|block| block.name() == *name))
+    {
+        return Err(Error::Option(format!("there is no block `{unknown}`")));
+    }
+    println!("| block | instance | outputs | clocks | Verilator = Icarus | after reset, nothing preset | seconds |");
+    println!("|---|---|---|---|---|---|---|");
+    let mut is_good = true;
+    for block in blocks {
+        if !arguments.is_empty() && !arguments.iter().any(|name| name == block.name()) {
+            continue;
+        }
+        let folder = tempfile::tempdir()
+            .map_err(|cause| Error::Option(format!("no temporary folder for the waveforms: {cause}")))?;
+        let outcome = run(block.as_ref(), clocks, 1, folder.path())?;
+        println!(
+            "| {} | {} | {} | {clocks} | {} | {} | {:.1} |",
+            block.name(),
+            block.instance(),
+            outputs(block.as_ref()),
+            verdict(&outcome, &outcome.waves),
+            verdict(&outcome, &outcome.unset),
+            outcome.time.as_secs_f64()
+        );
+        is_good &= outcome.is_good();
+    }
+    Ok(is_good)
+}
+
+fn verdict(outcome: &Outcome, waves: &posicast_testbench::diff::Comparison) -> String {
+    match waves.differences.first() {
+        Some(first) => format!("{} differs at {} s", first.signal, first.time),
+        None if waves.result == Verdict::Equal && outcome.is_good() => "equal".to_owned(),
+        None if waves.result == Verdict::Equal => "equal, but not to the model, or not whole".to_owned(),
+        None => waves.notes.join("; "),
+    }
+}

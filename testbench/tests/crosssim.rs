@@ -1,0 +1,72 @@
+//! Some blocks in two simulators with their waveforms compared, and faults that only this finds.
+//!
+//! All blocks: the example `second_simulator`, in `scripts/verify-all`.
+#![allow(clippy::unwrap_used, clippy::panic)] // helpers of tests, which clippy.toml exempts only inside of #[test]
+
+use posicast_model::rtl::divider::DividerConfig;
+use posicast_testbench::blocks::{Block, DividerBlock, Part, PartBlock, library};
+use posicast_testbench::crosssim::{self, Outcome};
+use posicast_testbench::diff::Verdict;
+use posicast_testbench::lockstep::report;
+
+const CLOCKS: u64 = 3000;
+
+fn divider() -> DividerBlock {
+    DividerBlock::new(DividerConfig::new(5000).unwrap(), "")
+}
+
+/// The outcome with the first `from` in the block's Verilog replaced by `to`.
+fn after(block: &dyn Block, from: &str, to: &str) -> Outcome {
+    let mut modules = block.modules().unwrap();
+    let found = modules.iter_mut().find(|module| module.text.contains(from));
+    let module = found.unwrap_or_else(|| panic!("the Verilog no longer has `{from}`: adapt the test"));
+    module.text = module.text.replacen(from, to, 1);
+    let folder = tempfile::tempdir().unwrap();
+    crosssim::run_modules(block, &modules, CLOCKS, 1, folder.path()).unwrap()
+}
+
+/// Clocked outputs and unclocked ones, a memory, a multiplier, a bus.
+#[test]
+fn crosssim_waveforms_of_both_simulators_are_equal() {
+    let names = ["divider", "group", "sample_select", "cascade", "registers"];
+    let blocks = library().unwrap();
+    for name in names {
+        let block = blocks.iter().find(|block| block.name() == name).unwrap();
+        let folder = tempfile::tempdir().unwrap();
+        let outcome = crosssim::run(block.as_ref(), CLOCKS, 1, folder.path()).unwrap();
+        assert!(outcome.is_good(), "{name}: {outcome:?}");
+        assert_eq!(outcome.waves.samples, CLOCKS, "{name}");
+    }
+}
+
+/// The value at power-up hides it from every other run: until the second reset, or for ever.
+#[test]
+fn crosssim_a_register_without_reset_is_x_after_it() {
+    let outcome = after(&divider(), "            saturated_q <= 1'd0;\n", "");
+    assert_eq!(outcome.unset.result, Verdict::Different);
+    let first = &outcome.unset.differences[0];
+    assert_eq!(first.signal, "posicast_bench.saturated");
+    assert!(format!("{:?}", first.b).contains('x'), "{first:?}");
+    assert!(!outcome.is_good());
+}
+
+#[test]
+fn crosssim_a_wire_that_nothing_drives_is_found_in_the_waveforms() {
+    let outcome = after(&divider(), "    assign busy = busy_q;\n", "");
+    let first = &outcome.waves.differences[0];
+    assert_eq!(
+        (outcome.waves.result, first.signal.as_str()),
+        (Verdict::Different, "posicast_bench.busy")
+    );
+}
+
+/// What each simulator reads differently: here by a macro, as a bug in one of them would.
+#[test]
+fn crosssim_a_simulator_with_a_mind_of_its_own_is_found() {
+    let from = "    assign refused_q_next = start & blocked;";
+    let to = format!("`ifdef __ICARUS__\n    assign refused_q_next = start;\n`else\n{from}\n`endif");
+    let outcome = after(&PartBlock::new(Part::Group(2), ""), from, &to);
+    assert_eq!(outcome.verilator.result, report::Verdict::Match);
+    assert_eq!(outcome.waves.result, Verdict::Different);
+    assert!(!outcome.is_good());
+}
