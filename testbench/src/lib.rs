@@ -19,6 +19,7 @@
 //! - [`crosssim`] compares the waveforms of two simulators.
 //! - [`coverage`] measures which lines and nets a lock step reaches, and wants a reason for the rest.
 //! - [`formal`] proves what property files say of the blocks.
+//! - [`ladder`] puts the results of all rungs into one table.
 //! - [`wave`] writes waveforms; [`diff`] compares two of them.
 
 pub mod blocks;
@@ -30,6 +31,7 @@ mod error;
 pub mod fault_campaign;
 pub mod formal;
 pub mod icarus;
+pub mod ladder;
 pub mod lockstep;
 mod reader;
 pub mod recording;

@@ -69,10 +69,7 @@ impl Explanation {
 
     /// Whether it explains this hole of this block.
     pub fn explains(&self, block: &str, hole: &Hole) -> bool {
-        self.concerns(block)
-            && self.kind == hole.kind
-            && fits(&self.module, &hole.module)
-            && fits(&self.what, &hole.what)
+        self.concerns(block) && self.kind == hole.kind && fits(&self.module, &hole.module) && self.names(&hole.what)
     }
 
     fn names(&self, what: &str) -> bool {

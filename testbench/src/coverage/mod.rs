@@ -98,7 +98,7 @@ pub fn measure_with<'a>(
         let run = blocks::compare_with(block, &mut device, stimuli().as_mut(), clocks, SEED, &mut |_| {})?;
         let written = device.write_coverage(&path);
         written.map_err(|source| Error::Step { clock: clocks, source })?;
-        Ok::<_, Error>((run, point::read(&path)?))
+        Ok::<_, Error>((run, point::read(&path, sources.files())?))
     };
     let (_, beginning) = run(BEGINNING_CLOCKS)?;
     let (run, mut points) = run(clocks)?;

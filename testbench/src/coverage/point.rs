@@ -7,7 +7,7 @@
 //! Keys: `f` file, `l` line, `page` kind and module, `o` what (a branch, or a net's bit). A module that stands in a block
 //! several times is counted once, all its instances together.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use crate::Error;
 
@@ -43,13 +43,18 @@ impl Kind {
     }
 }
 
-/// The points in the file at `path`; lines are looked up in the Verilog files that it names.
+/// The points in the file at `path`; lines are looked up in these Verilog files, by their names: the folder in Verilator's
+/// file is the one in which the simulation was built once.
 ///
 /// # Errors
 /// [`Error::File`] where a file cannot be read, [`Error::Option`] where a line is not as above.
-pub fn read(path: &Path) -> Result<Vec<Point>, Error> {
+pub fn read(path: &Path, files: &[PathBuf]) -> Result<Vec<Point>, Error> {
     let text = std::fs::read_to_string(path).map_err(Error::file(path, "read what Verilator counted in"))?;
-    let mut verilog = Verilog::default();
+    let mut verilog = Verilog {
+        files,
+        path: PathBuf::new(),
+        lines: Vec::new(),
+    };
     let mut points = Vec::new();
     for line in text.lines().filter(|line| line.starts_with("C ")) {
         let point = point(line, &mut verilog)?;
@@ -58,7 +63,7 @@ pub fn read(path: &Path) -> Result<Vec<Point>, Error> {
     Ok(points)
 }
 
-fn point(line: &str, verilog: &mut Verilog) -> Result<Point, Error> {
+fn point(line: &str, verilog: &mut Verilog<'_>) -> Result<Point, Error> {
     let strange = || Error::Option(format!("`{line}` is no line of Verilator's coverage file"));
     let (keys, count) = line
         .strip_prefix("C '")
@@ -97,17 +102,20 @@ fn point(line: &str, verilog: &mut Verilog) -> Result<Point, Error> {
     })
 }
 
-/// The file that was read last.
-#[derive(Default)]
-struct Verilog {
-    path: std::path::PathBuf,
+/// The Verilog files, and the one that was read last.
+struct Verilog<'a> {
+    files: &'a [PathBuf],
+    path: PathBuf,
     lines: Vec<String>,
 }
 
-impl Verilog {
+impl Verilog<'_> {
     fn line(&mut self, path: &Path, number: usize) -> Result<String, Error> {
         if self.path != path {
-            let text = std::fs::read_to_string(path).map_err(Error::file(path, "read the Verilog"))?;
+            let file = self.files.iter().find(|file| file.file_name() == path.file_name());
+            let unknown = || Error::Option(format!("{} is none of the block's files", path.display()));
+            let file = file.ok_or_else(unknown)?;
+            let text = std::fs::read_to_string(file).map_err(Error::file(file, "read the Verilog"))?;
             self.lines = text.lines().map(|line| line.trim().to_owned()).collect();
             self.path = path.to_owned();
         }
