@@ -96,7 +96,7 @@ pub fn measure(block: &dyn Block, clocks: u64) -> Result<Measured, Error> {
 /// # Errors
 /// As [`measure`].
 pub fn measure_with<'a>(
-    block: &'a dyn Block,
+    block: &dyn Block,
     stimuli: &dyn Fn() -> Box<dyn Stimuli + 'a>,
     clocks: u64,
 ) -> Result<Measured, Error> {
