@@ -1,11 +1,16 @@
 //! The command that a machine is given: from a CSV file, or the default move.
 
+use crate::allowance::Allowance;
 use crate::failure::Failure;
 use posicast_model::design::MachineDesign;
-use posicast_model::motion::{command_words, default_move, modulo_words, resample, settle_s};
+use posicast_model::motion::{SAMPLES_MAX, command_words, default_move, modulo_words, resample, settle_s};
 use posicast_model::rtl::shaper::wrap;
 use posicast_model::spec::{Axis, Machine};
+use std::fs::File;
 use std::path::Path;
+
+/// Longest line: a heading and numbers need far less, and a file that is no table has none.
+const LINE_BYTES: u64 = 1 << 16;
 
 /// Command words per axis, all of one length; of a modulo axis with their whole turns.
 pub(crate) type Words = Vec<Vec<i64>>;
@@ -60,10 +65,10 @@ fn read(machine: &Machine, path: &Path) -> Result<Vec<Vec<(f64, f64)>>, Failure>
             path.display()
         ))
     };
+    let file = File::open(path).map_err(|e| refused(e.to_string()))?;
     let mut reader = csv::ReaderBuilder::new()
         .trim(csv::Trim::All)
-        .from_path(path)
-        .map_err(|e| refused(e.to_string()))?;
+        .from_reader(Allowance::new(file, LINE_BYTES));
     let headings = reader.headers().map_err(|e| refused(e.to_string()))?.clone();
     let column = |name: &str| headings.iter().position(|h| h == name);
     let time = column("time_s").ok_or_else(|| refused("line 1: there is no column `time_s`".to_owned()))?;
@@ -81,8 +86,18 @@ fn read(machine: &Machine, path: &Path) -> Result<Vec<Vec<(f64, f64)>>, Failure>
         })
         .collect::<Result<_, _>>()?;
     let mut points = vec![Vec::new(); machine.axes.len()];
-    for record in reader.records() {
-        let record = record.map_err(|e| refused(e.to_string()))?;
+    let mut record = csv::StringRecord::new();
+    loop {
+        reader.get_mut().renew();
+        if !reader.read_record(&mut record).map_err(|e| refused(e.to_string()))? {
+            break;
+        }
+        if points
+            .first()
+            .is_some_and(|points: &Vec<_>| points.len() == SAMPLES_MAX)
+        {
+            return Err(refused(format!("more than {SAMPLES_MAX} points")));
+        }
         let line = record.position().map_or(0, csv::Position::line);
         let value = |column: usize| {
             let text = record.get(column).unwrap_or("");

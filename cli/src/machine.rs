@@ -7,6 +7,8 @@ use posicast_model::design::{AxisTables, MachineDesign};
 use posicast_model::rtl::shaper::{Motion, ShaperConfig, ShaperConfigError};
 use posicast_model::spec::{self, Axis, Machine};
 use std::fmt;
+use std::fs::File;
+use std::io::Read;
 use std::path::Path;
 
 /// A machine file is a page of text; anything far beyond is some other file named by mistake.
@@ -45,7 +47,13 @@ pub(crate) fn read(path: &Path) -> Result<MachineFile, Failure> {
             metadata.len()
         )));
     }
-    let bytes = std::fs::read(path).map_err(|e| unreadable(&e))?;
+    // The length above is 0 for a device or a pipe: these may go on for ever.
+    let file = File::open(path).map_err(|e| unreadable(&e))?;
+    let mut bytes = Vec::new();
+    let limit = file.take(LARGEST_FILE_BYTES + 1).read_to_end(&mut bytes);
+    if limit.map_err(|e| unreadable(&e))? as u64 > LARGEST_FILE_BYTES {
+        return Err(unreadable(&format!("it goes on after {LARGEST_FILE_BYTES} bytes")));
+    }
     let text = String::from_utf8(bytes).map_err(|e| unreadable(&format!("it is not UTF-8 text: {e}")))?;
     let machine = parse(path, &text)?;
     Ok(MachineFile { text, machine })

@@ -3,6 +3,7 @@
 //! One file per subcommand. This crate reads arguments, calls the other crates in order and prints; it computes nothing
 //! itself. Exit status: 0 all checks hold, 1 a check failed, 2 bad usage or input, 3 a tool that was asked for is missing.
 
+mod allowance;
 mod bench;
 mod blocks;
 mod command;

@@ -17,19 +17,23 @@
 //! - [`register_tests`] asks registers, through the bus, for what their description promises.
 //! - [`stage_bench`] joins a stage with its simulated machine; [`stage_run`] moves it and measures.
 //! - [`crosssim`] compares the waveforms of two simulators.
+//! - [`coverage`] measures which lines and nets a lock step reaches, and wants a reason for the rest.
 //! - [`formal`] proves what property files say of the blocks.
 //! - [`netlist`] simulates and proves what a synthesiser made of a block.
 //! - [`replay`] plays a recording into model and RTL.
+//! - [`ladder`] puts the results of all rungs into one table.
 //! - [`wave`] writes waveforms; [`diff`] compares two of them.
 
 pub mod blocks;
 pub mod campaign;
+pub mod coverage;
 pub mod crosssim;
 pub mod diff;
 mod error;
 pub mod fault_campaign;
 pub mod formal;
 pub mod icarus;
+pub mod ladder;
 pub mod lockstep;
 pub mod netlist;
 mod reader;

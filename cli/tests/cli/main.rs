@@ -8,5 +8,6 @@ mod verify;
 mod bad_input;
 mod design;
 mod diff;
+mod fuzz;
 mod hardware;
 mod replay;

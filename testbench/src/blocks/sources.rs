@@ -103,6 +103,14 @@ impl Sources {
         self.with_source(block, |source| Verilated::build(source, seed))
     }
 
+    /// The same, counting what its lines and nets do.
+    ///
+    /// # Errors
+    /// As [`Verilated::build`].
+    pub fn counting(&self, block: &dyn Block, seed: u64) -> Result<Verilated, Error> {
+        self.with_source(block, |source| Verilated::counting(source, seed))
+    }
+
     /// The block in Icarus.
     ///
     /// # Errors

@@ -49,7 +49,9 @@ pub use self::part::PartRandom;
 pub use self::pulse_counter::{PulseCounterCoverage, PulseCounterRandom};
 pub use self::pwm::{GateSafety, PwmCoverage, PwmRandom};
 pub use self::random::Random;
-pub use self::registers::{ComponentRandom, RegistersCoverage, RegistersRandom, StageCoverage, StageRandom};
+pub use self::registers::{
+    ComponentRandom, ReadPromises, RegistersCoverage, RegistersRandom, StageCoverage, StageRandom,
+};
 pub use self::segments::{SegmentsCoverage, SegmentsRandom};
 pub use self::sliding_mode::{SlidingModeCoverage, SlidingModeRandom};
 pub use self::trace::{TraceCoverage, TraceRandom};

@@ -1,12 +1,12 @@
 //! The one file with `unsafe`: loads the shared object that Verilator and the C++ compiler built, and calls it.
 //!
-//! Why it is sound: the object is built from our own harness (`harness.rs`), whose four functions have exactly the types
+//! Why it is sound: the object is built from our own harness (`harness.rs`), whose functions have exactly the types
 //! below; its content hash is its name, so an object of another harness is never loaded. C++ exceptions do not leave the
 //! harness. The buffers' lengths are checked here before every call against the numbers of ports for which the harness
 //! was made. The simulation is freed before the library that holds its code is unloaded.
 #![allow(unsafe_code)] // dlopen and calls through the C interface have no safe form
 
-use std::ffi::{CStr, c_char, c_int, c_void};
+use std::ffi::{CStr, CString, c_char, c_int, c_void};
 use std::path::Path;
 use std::ptr::NonNull;
 
@@ -18,6 +18,7 @@ use crate::Error;
 type New = unsafe extern "C" fn(u32) -> *mut c_void;
 type Free = unsafe extern "C" fn(*mut c_void);
 type Message = unsafe extern "C" fn(*mut c_void) -> *const c_char;
+type WriteCoverage = unsafe extern "C" fn(*mut c_void, *const c_char) -> c_int;
 type Run = unsafe extern "C" fn(*mut c_void, *const u64, *mut u64, u64) -> c_int;
 
 /// A simulation in a loaded shared object.
@@ -27,6 +28,8 @@ pub(super) struct Simulation {
     run: Run,
     free: Free,
     message: Message,
+    /// Of a simulation that was built to count.
+    coverage: Option<WriteCoverage>,
     inputs: usize,
     outputs: usize,
     // Last, so that the code outlives the state.
@@ -43,14 +46,15 @@ impl Simulation {
         // Verilator takes 31 bits, and 0 as "choose one yourself".
         let seed = ((seed ^ (seed >> 32)) as u32 & 0x7fff_fffe) | 1;
         // SAFETY: the object's initialisers are those of Verilator's runtime library; types as the module doc says.
-        let (library, new, free, message, run) = unsafe {
+        let (library, new, free, message, run, coverage) = unsafe {
             let library = Library::new(object).map_err(|cause| refuse(cause.to_string()))?;
             let missing = |cause: libloading::Error| refuse(cause.to_string());
             let new: New = *library.get(b"posicast_new\0").map_err(missing)?;
             let free: Free = *library.get(b"posicast_free\0").map_err(missing)?;
             let message: Message = *library.get(b"posicast_message\0").map_err(missing)?;
             let run: Run = *library.get(b"posicast_run\0").map_err(missing)?;
-            (library, new, free, message, run)
+            let coverage = library.get(b"posicast_coverage\0").ok().map(|found| *found);
+            (library, new, free, message, run, coverage)
         };
         // SAFETY: `new` takes any seed and returns a simulation or null.
         let state = NonNull::new(unsafe { new(seed) });
@@ -60,6 +64,7 @@ impl Simulation {
             run,
             free,
             message,
+            coverage,
             inputs,
             outputs,
             _library: library,
@@ -101,6 +106,21 @@ impl Simulation {
         // SAFETY: a string that ends in 0 and lives until the next call.
         let message = unsafe { CStr::from_ptr((self.message)(self.state.as_ptr())) };
         Err(StepError(format!("Verilator: {}", message.to_string_lossy())))
+    }
+}
+
+impl Simulation {
+    /// Writes what was counted since the start into the file `path`, in Verilator's format.
+    pub(super) fn write_coverage(&mut self, path: &Path) -> Result<(), StepError> {
+        let name = CString::new(path.as_os_str().as_encoded_bytes());
+        let (Some(write), Ok(name)) = (self.coverage, name) else {
+            return Err(StepError("this simulation was not built to count".to_owned()));
+        };
+        // SAFETY: `state` came from this library, and `name` is a string that ends in 0 and outlives the call.
+        match unsafe { write(self.state.as_ptr(), name.as_ptr()) } {
+            0 => Ok(()),
+            _ => Err(StepError(format!("Verilator cannot write {}", path.display()))),
+        }
     }
 }
 

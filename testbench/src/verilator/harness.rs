@@ -92,6 +92,20 @@ EXPORT int posicast_run(Simulation* simulation, const uint64_t* in, uint64_t* ou
 int main() { return 0; }
 "#;
 
+/// Put behind the harness of a simulation that counts what its Verilog did.
+pub(super) const COVERAGE: &str = r#"
+#include "verilated_cov.h"
+
+EXPORT int posicast_coverage(Simulation* simulation, const char* path) {
+    try {
+        simulation->context.coveragep()->write(path);
+    } catch (...) {
+        return 1;
+    }
+    return 0;
+}
+"#;
+
 /// A port as Verilator declares it.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Declared {

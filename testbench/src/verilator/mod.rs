@@ -58,6 +58,9 @@ const FLAGS: [&str; 12] = [
     "-shared -Wl,-Bsymbolic",
 ];
 
+/// More of them, for a simulation that counts lines and toggles. Buses of more bits than that are not counted.
+const COVERAGE_FLAGS: [&str; 4] = ["--coverage-line", "--coverage-toggle", "--coverage-max-width", "1024"];
+
 /// What is to be simulated.
 #[derive(Debug, Clone)]
 pub struct Source<'a> {
@@ -86,18 +89,30 @@ impl Verilated {
         Self::build_in(&cache::folder(), source, seed)
     }
 
+    /// As [`Verilated::build`], and counts what its lines and nets do: some times slower.
+    ///
+    /// # Errors
+    /// As [`Verilated::build`].
+    pub fn counting(source: &Source<'_>, seed: u64) -> Result<Self, Error> {
+        Self::build_with(&cache::folder(), source, seed, true)
+    }
+
     /// The same with a cache folder of the caller's choice.
     ///
     /// # Errors
     /// As [`Verilated::build`].
     pub fn build_in(cache: &Path, source: &Source<'_>, seed: u64) -> Result<Self, Error> {
+        Self::build_with(cache, source, seed, false)
+    }
+
+    fn build_with(cache: &Path, source: &Source<'_>, seed: u64, counts: bool) -> Result<Self, Error> {
         if let Some(port) = source.ports.iter().find(|p| !(1..=64).contains(&p.width)) {
             return Err(Error::Unlike(format!(
                 "port `{}` has {} bits; a port has 1 to 64",
                 port.name, port.width
             )));
         }
-        let object = compile(cache, source)?;
+        let object = compile(cache, source, counts)?;
         let count = |direction| source.ports.iter().filter(|p| p.direction == direction).count();
         let simulation = dynamic::Simulation::load(&object, seed, count(Direction::Input), count(Direction::Output))?;
         Ok(Self {
@@ -112,6 +127,14 @@ impl Verilated {
     /// [`StepError`] where the Verilog stops the simulation, or if the lengths are not whole, equal numbers of rows.
     pub fn run(&mut self, inputs: &[u64], outputs: &mut [u64]) -> Result<(), StepError> {
         self.simulation.run(inputs, outputs)
+    }
+
+    /// Writes what was counted since the start into a file, in the format of `verilator_coverage`.
+    ///
+    /// # Errors
+    /// [`StepError`] where it was not built by [`Verilated::counting`], or the file cannot be written.
+    pub fn write_coverage(&mut self, path: &Path) -> Result<(), StepError> {
+        self.simulation.write_coverage(path)
     }
 }
 
@@ -153,14 +176,17 @@ pub fn version() -> Result<&'static str, Error> {
     Ok(VERSION.get_or_init(|| text(&output).trim().to_owned()))
 }
 
-fn compile(folder: &Path, source: &Source<'_>) -> Result<PathBuf, Error> {
+fn compile(folder: &Path, source: &Source<'_>, counts: bool) -> Result<PathBuf, Error> {
     let mut contents = Vec::with_capacity(source.files.len());
     for file in source.files {
         let text = std::fs::read(file).map_err(Error::file(file, "read the Verilog"))?;
         let path = std::path::absolute(file).map_err(Error::file(file, "find"))?;
         contents.push((path, text));
     }
-    let object = folder.join(format!("verilator-{}.so", content_hash(source, &contents, version()?)));
+    let object = folder.join(format!(
+        "verilator-{}.so",
+        content_hash(source, &contents, version()?, counts)
+    ));
     if cache::holds(&object) {
         return Ok(object);
     }
@@ -181,6 +207,7 @@ fn compile(folder: &Path, source: &Source<'_>) -> Result<PathBuf, Error> {
     verilate
         .current_dir(work.path())
         .args(FLAGS)
+        .args(coverage_flags(counts))
         .args(["-o", "simulation.so", "--Mdir", ".", "--top-module", source.top])
         .args(contents.iter().map(|(path, _)| path))
         .arg("harness.cpp");
@@ -189,7 +216,11 @@ fn compile(folder: &Path, source: &Source<'_>) -> Result<PathBuf, Error> {
     let header = work.path().join(format!("{}.h", harness::CLASS));
     let header = std::fs::read_to_string(&header).map_err(Error::file(&header, "read what Verilator wrote"))?;
     let members = harness::members(source, &harness::declared_ports(&header))?;
-    write("harness.cpp", &harness::source_text(source.ports, &members))?;
+    let coverage = if counts { harness::COVERAGE } else { "" };
+    write(
+        "harness.cpp",
+        &(harness::source_text(source.ports, &members) + coverage),
+    )?;
     let mut make = MAKE.command();
     make.current_dir(work.path())
         .args(["-s", "-f", &format!("{}.mk", harness::CLASS)])
@@ -205,8 +236,12 @@ fn compile(folder: &Path, source: &Source<'_>) -> Result<PathBuf, Error> {
     Ok(object)
 }
 
+fn coverage_flags(counts: bool) -> &'static [&'static str] {
+    if counts { &COVERAGE_FLAGS } else { &[] }
+}
+
 /// Hash of all that the shared object depends on. Lengths go in, so that no two inputs run into each other.
-fn content_hash(source: &Source<'_>, contents: &[(PathBuf, Vec<u8>)], version: &str) -> String {
+fn content_hash(source: &Source<'_>, contents: &[(PathBuf, Vec<u8>)], version: &str, counts: bool) -> String {
     let mut hash = Sha256::new();
     let mut add = |bytes: &[u8]| {
         hash.update((bytes.len() as u64).to_le_bytes());
@@ -217,6 +252,10 @@ fn content_hash(source: &Source<'_>, contents: &[(PathBuf, Vec<u8>)], version: &
     add(harness::PRINT.as_bytes());
     for flag in FLAGS.iter().chain(&MAKE_FLAGS) {
         add(flag.as_bytes());
+    }
+    if counts {
+        add(harness::COVERAGE.as_bytes());
+        COVERAGE_FLAGS.iter().for_each(|flag| add(flag.as_bytes()));
     }
     add(source.top.as_bytes());
     for port in source.ports {

@@ -1,6 +1,7 @@
 //! Damaged recordings of every producer: an error or a result, never a panic, and never another result for the same file.
 //!
-//! A few hundred on stable in every test run; `fuzz/` has the same for `cargo fuzz`, without end.
+//! A few hundred on stable in every test run, and as many as `PROPTEST_CASES` says; `fuzz/` has the same for `cargo fuzz`,
+//! without end.
 
 use std::path::{Path, PathBuf};
 
@@ -16,6 +17,14 @@ fn recordings(extension: &str) -> Vec<Vec<u8>> {
     paths.retain(|path| path.extension().is_some_and(|e| e == extension));
     paths.sort();
     paths.iter().map(|path| std::fs::read(path).unwrap()).collect()
+}
+
+/// So many, or `PROPTEST_CASES`.
+fn cases(ordinary: u32) -> u32 {
+    let wanted = std::env::var("PROPTEST_CASES")
+        .ok()
+        .and_then(|cases| cases.parse().ok());
+    wanted.unwrap_or(ordinary)
 }
 
 /// Words that matter to a parser, put where they do not belong.
@@ -66,12 +75,24 @@ fn survives(content: &[u8], options: &Options) -> Result<(), TestCaseError> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 200, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: cases(200), failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn prop_damaged_vcds_are_survived(which in any::<prop::sample::Index>(), damage in damage(), raw: bool) {
+    fn prop_damaged_vcds_are_survived(
+        which in any::<[prop::sample::Index; 2]>(),
+        cut in any::<[prop::sample::Index; 2]>(),
+        damage in damage(),
+        raw: bool,
+        spliced in prop::bool::weighted(0.3),
+    ) {
         let recordings = recordings("vcd");
-        let content = damaged(recordings[which.index(recordings.len())].clone(), &damage);
+        let [mut content, other] = which.map(|which| recordings[which.index(recordings.len())].clone());
+        if spliced {
+            // The beginning of one with the end of another.
+            content.truncate(cut[0].index(content.len()));
+            content.extend(&other[cut[1].index(other.len())..]);
+        }
+        let content = damaged(content, &damage);
         survives(&content, &Options { raw, glitch_fs: u128::from(raw) * 3_000_000, ..Options::default() })?;
     }
 }

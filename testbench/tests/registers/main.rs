@@ -6,4 +6,6 @@ mod bank;
 mod classic;
 mod components;
 mod everything;
+mod pins;
 mod support;
+mod traffic;

@@ -5,12 +5,14 @@
 
 mod component;
 mod coverage;
+mod promises;
 mod stage;
 mod stage_coverage;
 mod stage_driver;
 
 pub use self::component::ComponentRandom;
 pub use self::coverage::RegistersCoverage;
+pub use self::promises::ReadPromises;
 pub use self::stage::StageRandom;
 pub use self::stage_coverage::StageCoverage;
 

@@ -1,0 +1,257 @@
+//! All rungs of the verification ladder, and one table at the end: `scripts/verify-all`.
+//!
+//! ```text
+//! --clocks N      of the lock step, per machine and seed (10,000,000); the other rungs shrink with it
+//! --only RUNG     only this rung; may be given several times
+//! ```
+//!
+//! Runs the other examples and the command line, as they are built beside it, and `cargo test` for the property tests; what
+//! they say goes to standard error. Exit status: 0 all rungs hold, 1 not so, 2 bad usage.
+#![allow(clippy::print_stdout, clippy::print_stderr, reason = "it is a program")]
+
+use std::error::Error;
+use std::path::{Path, PathBuf};
+use std::process::{Command, ExitCode, Stdio};
+use std::time::Instant;
+
+use posicast_testbench::ladder::{Columns, Rung, rows, table};
+
+const RUNGS: [&str; 8] = [
+    "lock step",
+    "second simulator",
+    "netlist",
+    "formal",
+    "mutation",
+    "coverage",
+    "fuzz",
+    "fault campaign",
+];
+const SEEDS: [u64; 3] = [1, 2, 3];
+
+struct Options {
+    clocks: u64,
+    only: Vec<String>,
+}
+
+impl Options {
+    fn read() -> Result<Self, String> {
+        let mut options = Self {
+            clocks: 10_000_000,
+            only: Vec::new(),
+        };
+        let mut words = std::env::args().skip(1);
+        while let Some(word) = words.next() {
+            let value = words.next().ok_or_else(|| format!("`{word}` needs a value"))?;
+            match word.as_str() {
+                "--clocks" => {
+                    let clocks = value.parse().ok().filter(|clocks| *clocks > 0);
+                    options.clocks = clocks.ok_or_else(|| format!("--clocks {value}: a whole number is needed"))?;
+                }
+                "--only" if RUNGS.contains(&value.as_str()) => options.only.push(value),
+                "--only" => return Err(format!("--only {value}: the rungs are {}", RUNGS.join(", "))),
+                _ => return Err(format!("`{word}`: the options are --clocks and --only")),
+            }
+        }
+        Ok(options)
+    }
+
+    /// What is so much at ten million clocks, and less with fewer, but not below `least`.
+    fn share(&self, whole: u64, least: u64) -> u64 {
+        (whole as u128 * u128::from(self.clocks) / 10_000_000).clamp(least.into(), whole.into()) as u64
+    }
+}
+
+fn main() -> ExitCode {
+    let options = match Options::read() {
+        Ok(options) => options,
+        Err(reason) => {
+            eprintln!("{reason}");
+            return ExitCode::from(2);
+        }
+    };
+    let wanted = |name: &&str| options.only.is_empty() || options.only.iter().any(|only| only == name);
+    let mut rungs = Vec::new();
+    for name in RUNGS.iter().copied().filter(wanted) {
+        eprintln!("== {name}");
+        rungs.push(climb(name, &options).unwrap_or_else(|error| {
+            eprintln!("{name}: {error}");
+            Rung::new(name, &[], &[], false, std::time::Duration::ZERO)
+        }));
+    }
+    print!("{}", table(&rungs));
+    match rungs.iter().all(|rung| rung.holds) {
+        true => ExitCode::SUCCESS,
+        false => ExitCode::FAILURE,
+    }
+}
+
+fn climb(name: &str, options: &Options) -> Result<Rung, Box<dyn Error>> {
+    let number = |whole, least| options.share(whole, least).to_string();
+    match name {
+        "lock step" => lock_step(options.clocks),
+        "second simulator" => {
+            let arguments = ["--clocks".to_owned(), number(20_000, 2_000)];
+            example(name, "second_simulator", &arguments, &[("clocks", "clocks")])
+        }
+        "netlist" => {
+            let arguments = ["--clocks".to_owned(), number(100_000, 2_000)];
+            example(
+                name,
+                "netlist",
+                &arguments,
+                &[("LUT", "LUT"), ("flip-flops", "flip-flops")],
+            )
+        }
+        "formal" => example(
+            name,
+            "formal",
+            &[],
+            &[("assertions", "properties"), ("covers reached", "covers")],
+        ),
+        "mutation" => {
+            let arguments = [
+                "--clocks".to_owned(),
+                number(1_000_000, 20_000),
+                "--mutants".to_owned(),
+                number(60, 6),
+            ];
+            example(
+                name,
+                "mutate",
+                &arguments,
+                &[("mutants", "mutants"), ("unknown", "unknown")],
+            )
+        }
+        "coverage" => example(
+            name,
+            "coverage",
+            &[],
+            &[("holes explained", "holes explained"), ("bins", "bins")],
+        ),
+        "fuzz" => fuzz(options.share(5_000, 50)),
+        _ => faults(options.share(10_000, 50)),
+    }
+}
+
+/// The folder with the examples, and the command line beside it.
+fn programs() -> Result<(PathBuf, PathBuf), Box<dyn Error>> {
+    let own = std::env::current_exe()?;
+    let examples = own.parent().ok_or("this program is in no folder")?;
+    let posicast = examples
+        .parent()
+        .ok_or("the examples are in no folder")?
+        .join("posicast");
+    Ok((examples.to_owned(), posicast))
+}
+
+/// Runs a program with its standard error shown, and returns what it printed and whether it ended with 0.
+fn run(command: &mut Command) -> Result<(String, bool), Box<dyn Error>> {
+    let name = command.get_program().to_string_lossy().into_owned();
+    let output = command.stderr(Stdio::inherit()).output();
+    let output =
+        output.map_err(|error| format!("cannot run {name}: {error}; build it first, as scripts/verify-all does"))?;
+    let text = String::from_utf8_lossy(&output.stdout).into_owned();
+    eprint!("{text}");
+    Ok((text, output.status.success()))
+}
+
+/// A rung that is an example with a table.
+fn example(name: &str, program: &str, arguments: &[String], columns: Columns) -> Result<Rung, Box<dyn Error>> {
+    let began = Instant::now();
+    let (text, succeeded) = run(Command::new(programs()?.0.join(program)).args(arguments))?;
+    let units: Vec<&str> = columns.iter().map(|(_, unit)| *unit).collect();
+    Ok(Rung::new(
+        name,
+        &units,
+        &rows(&text, columns),
+        succeeded,
+        began.elapsed(),
+    ))
+}
+
+/// Every example machine with every seed through `posicast verify`.
+fn lock_step(clocks: u64) -> Result<Rung, Box<dyn Error>> {
+    let began = Instant::now();
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../examples");
+    let files = std::fs::read_dir(folder)?.map(|entry| entry.map(|entry| entry.path()));
+    let mut machines = files.collect::<Result<Vec<_>, _>>()?;
+    machines.retain(|path| path.extension().is_some_and(|extension| extension == "toml"));
+    machines.sort();
+    let (mut found, mut succeeded) = (Vec::new(), !machines.is_empty());
+    for (machine, seed) in machines.iter().flat_map(|machine| SEEDS.map(|seed| (machine, seed))) {
+        eprintln!("{}, {clocks} clocks, seed {seed}", machine.display());
+        let mut command = Command::new(programs()?.1);
+        command
+            .arg("verify")
+            .arg(machine)
+            .args(["--simulator", "verilator", "--json"]);
+        let output = command.args(["--cycles", &clocks.to_string(), "--seed", &seed.to_string()]);
+        let output = output.stderr(Stdio::inherit()).output()?;
+        succeeded &= output.status.success();
+        let document: serde_json::Value = serde_json::from_slice(&output.stdout)?;
+        for block in document["blocks"].as_array().ok_or("verify --json has no blocks")? {
+            let name = block["name"].as_str().unwrap_or("?").to_owned();
+            let count = |key: &str| {
+                block[key]
+                    .as_u64()
+                    .ok_or_else(|| format!("verify --json: {name} has no {key}"))
+            };
+            found.push((name.clone(), vec![count("cycles")?, count("mismatches")?]));
+        }
+    }
+    Ok(Rung::new(
+        "lock step",
+        &["clocks", "wrong"],
+        &found,
+        succeeded,
+        began.elapsed(),
+    ))
+}
+
+/// The property tests of the workspace, with so many cases each.
+fn fuzz(cases: u64) -> Result<Rung, Box<dyn Error>> {
+    let began = Instant::now();
+    let mut command = Command::new("cargo");
+    command.current_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join(".."));
+    command.args([
+        "test",
+        "--release",
+        "--workspace",
+        "--locked",
+        "--lib",
+        "--bins",
+        "--tests",
+        "--",
+        "prop_",
+    ]);
+    let (text, succeeded) = run(command.env("PROPTEST_CASES", cases.to_string()))?;
+    let ended = text.lines().filter_map(|line| line.strip_prefix("test result: ok. "));
+    let passed: u64 = ended
+        .filter_map(|rest| rest.split(' ').next()?.parse::<u64>().ok())
+        .sum();
+    let rows = [("(all)".to_owned(), vec![passed, cases])];
+    let is_some = succeeded && passed > 0;
+    Ok(Rung::new(
+        "fuzz",
+        &["tests", "cases each"],
+        &rows,
+        is_some,
+        began.elapsed(),
+    ))
+}
+
+/// The fault campaign of a stage.
+fn faults(cases: u64) -> Result<Rung, Box<dyn Error>> {
+    let began = Instant::now();
+    let mut command = Command::new(programs()?.0.join("fault_campaign"));
+    let with_rtl = cases.min(36);
+    let (_, succeeded) = run(command.args(["--cases", &cases.to_string(), "--rtl", &with_rtl.to_string()]))?;
+    let rows = [("stage".to_owned(), vec![cases, with_rtl])];
+    Ok(Rung::new(
+        "fault campaign",
+        &["faults", "with RTL"],
+        &rows,
+        succeeded,
+        began.elapsed(),
+    ))
+}

@@ -1,0 +1,183 @@
+//! Which lines, nets and situations of the emitted Verilog the lock step reaches.
+//!
+//! ```text
+//! block ─► Verilog ─► Verilator --coverage-line --coverage-toggle ─► lock step with the block's own stimuli
+//!                                                                       ├─► points at 0: holes ─┐
+//!                                                                       └─► bins at 0 ──────────┤
+//! testbench/coverage/holes.txt: explanations ────────────────────────────────────────────────────┴─► table, or errors
+//! ```
+//!
+//! - **Line**: the body that begins in a line was run; of an `if`, the other way counts too.
+//! - **Toggle**: a bit of a net changed. Memories have no toggles.
+//! - **Bins** are what the block's bench counts: saturation at each side, every flag, every state ([`Bins`](crate::blocks::Bins)).
+//! - Toggles in the first clocks are not counted: there all nets leave their random start.
+//! - A hole without an [explanation](explanation) is an error, and so is an explanation that no longer fits any hole.
+//! - A module that stands in a block several times is counted once, all its instances together.
+
+pub mod explanation;
+pub mod point;
+pub mod table;
+
+use posicast_model::rtl::pwm::{ActiveLow, PwmConfig};
+
+use crate::Error;
+use crate::blocks::{self, Block, PwmBlock, Sources, library};
+use crate::stimuli::Stimuli;
+use explanation::{Explanation, Hole};
+use point::{Kind, Point};
+
+/// Clocks of a measurement: those of the explanations, for with fewer there are other holes.
+pub const CLOCKS: u64 = 1_000_000;
+/// Seed of a measurement.
+pub const SEED: u64 = 1;
+/// Clocks at the beginning that do not count.
+const BEGINNING_CLOCKS: u64 = 3;
+
+/// Dead time and minimum pulse that a host cannot go below, in clocks.
+const PWM_FLOORS_CLOCKS: [u64; 2] = [2, 1];
+/// What the instances of components and of the stage end with.
+const ON_A_BUS: &str = ", Avalon";
+
+/// How much of something was reached.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Share {
+    /// That many.
+    pub reached: usize,
+    /// Of that many.
+    pub all: usize,
+}
+
+/// What the lock step of a block reached.
+#[derive(Debug, Clone)]
+pub struct Measured {
+    /// The block's name.
+    pub block: String,
+    /// And which of them.
+    pub instance: String,
+    /// Bodies of lines.
+    pub lines: Share,
+    /// Bits of nets.
+    pub toggles: Share,
+    /// Bins of the bench.
+    pub bins: Share,
+    /// What was not reached, in the order of the files.
+    pub holes: Vec<Hole>,
+    /// Wrong values in the lock step.
+    pub mismatches: u64,
+}
+
+/// The blocks that are measured: those of the [`library`] that stand alone. Components and the stage are joined from these,
+/// and what joins them is compared in their lock step. The PWM has low floors here, so that its short stimuli get above them.
+///
+/// # Errors
+/// As [`library`].
+pub fn subjects() -> Result<Vec<Box<dyn Block>>, Error> {
+    let mut blocks = library()?;
+    blocks.retain(|block| !block.instance().ends_with(ON_A_BUS));
+    let [dead_time, minimum_pulse] = PWM_FLOORS_CLOCKS;
+    let pwm = PwmConfig::new(ActiveLow::default(), dead_time, minimum_pulse)
+        .map_err(|error| Error::Option(format!("the PWM of the coverage: {error}")))?;
+    for block in blocks.iter_mut().filter(|block| block.name() == "pwm") {
+        *block = Box::new(PwmBlock::new(pwm, "", "low floors"));
+    }
+    Ok(blocks)
+}
+
+/// Measures a block under its own stimuli.
+///
+/// # Errors
+/// As [`blocks::compare`]; [`Error::File`] where the counts cannot be read.
+pub fn measure(block: &dyn Block, clocks: u64) -> Result<Measured, Error> {
+    measure_with(block, &|| block.stimuli(clocks, SEED), clocks)
+}
+
+/// Measures a block under other stimuli, which are made twice.
+///
+/// # Errors
+/// As [`measure`].
+pub fn measure_with<'a>(
+    block: &dyn Block,
+    stimuli: &dyn Fn() -> Box<dyn Stimuli + 'a>,
+    clocks: u64,
+) -> Result<Measured, Error> {
+    let sources = Sources::write(block)?;
+    let folder = tempfile::tempdir().map_err(Error::file(&std::env::temp_dir(), "create a folder in"))?;
+    let path = folder.path().join("coverage.dat");
+    let run = |clocks: u64| {
+        let mut device = sources.counting(block, SEED)?;
+        let run = blocks::compare_with(block, &mut device, stimuli().as_mut(), clocks, SEED, &mut |_| {})?;
+        let written = device.write_coverage(&path);
+        written.map_err(|source| Error::Step { clock: clocks, source })?;
+        Ok::<_, Error>((run, point::read(&path, sources.files())?))
+    };
+    let (_, beginning) = run(BEGINNING_CLOCKS)?;
+    let (run, mut points) = run(clocks)?;
+    for (point, before) in points.iter_mut().zip(&beginning) {
+        // A line is run or not, whatever nets begin with; Verilator runs what depends on no input only once.
+        if point.kind == Kind::Toggle {
+            point.count -= before.count.min(point.count);
+        }
+    }
+    Ok(Measured::new(block, &run, &points))
+}
+
+impl Measured {
+    fn new(block: &dyn Block, run: &blocks::Run, points: &[Point]) -> Self {
+        let share = |kind| {
+            let of_kind = points.iter().filter(|point| point.kind == kind);
+            Share {
+                reached: of_kind.clone().filter(|point| point.count > 0).count(),
+                all: of_kind.count(),
+            }
+        };
+        let mut holes: Vec<Hole> = points
+            .iter()
+            .filter(|point| point.count == 0)
+            .map(Hole::of_point)
+            .collect();
+        let missed = run.rare(1);
+        holes.extend(missed.iter().map(|bin| Hole::of_bin(block.name(), bin)));
+        Self {
+            block: block.name().to_owned(),
+            instance: block.instance().to_owned(),
+            lines: share(Kind::Line),
+            toggles: share(Kind::Toggle),
+            bins: Share {
+                reached: run.coverage.len() - missed.len(),
+                all: run.coverage.len(),
+            },
+            holes,
+            mismatches: run.report.mismatches(),
+        }
+    }
+
+    /// What is wrong with it: holes that nothing explains, and wrong values.
+    pub fn problems(&self, explanations: &[Explanation]) -> Vec<String> {
+        let name = format!("{} {}", self.block, self.instance);
+        let unexplained = self
+            .holes
+            .iter()
+            .filter(|hole| !explanations.iter().any(|e| e.explains(&name, hole)));
+        let mut problems: Vec<String> = unexplained
+            .map(|hole| format!("{name}: no explanation of {hole}"))
+            .collect();
+        if self.mismatches > 0 {
+            problems.push(format!("{name}: {} wrong values", self.mismatches));
+        }
+        problems
+    }
+}
+
+/// The explanations of these blocks that fit no hole of them: what they speak of is reached now, or has another name.
+pub fn outdated(measured: &[Measured], explanations: &[Explanation]) -> Vec<String> {
+    let mut outdated = Vec::new();
+    for explanation in explanations {
+        let names = measured.iter().map(|of| (format!("{} {}", of.block, of.instance), of));
+        let concerned: Vec<_> = names.filter(|(name, _)| explanation.concerns(name)).collect();
+        let fits = |(name, of): &(String, &Measured)| of.holes.iter().any(|hole| explanation.explains(name, hole));
+        if !concerned.is_empty() && !concerned.iter().any(fits) {
+            outdated.push(format!("no hole is left for the explanation `{explanation}`"));
+        }
+    }
+    outdated
+}

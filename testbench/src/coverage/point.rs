@@ -1,0 +1,126 @@
+//! What Verilator counted: its file, read.
+//!
+//! ```text
+//! C '\x01KEY\x02VALUE\x01KEY\x02VALUE…' COUNT      one line per point, the letters here being the characters 1 and 2
+//! ```
+//!
+//! Keys: `f` file, `l` line, `page` kind and module, `o` what (a branch, or a net's bit). A module that stands in a block
+//! several times is counted once, all its instances together.
+
+use std::path::{Path, PathBuf};
+
+use crate::Error;
+
+/// Something of a module that may happen, and how often it did.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Point {
+    /// The module, as in the Verilog.
+    pub module: String,
+    /// Line or toggle.
+    pub kind: Kind,
+    /// Of a line: its text in the Verilog. Of a toggle: the net, with its bit if it has several.
+    pub what: String,
+    /// How often.
+    pub count: u64,
+}
+
+/// What is counted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Kind {
+    /// The body that begins in a line was run.
+    Line,
+    /// A bit of a net changed, up or down.
+    Toggle,
+}
+
+impl Kind {
+    /// Its name in the table of holes.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Line => "line",
+            Self::Toggle => "toggle",
+        }
+    }
+}
+
+/// The points in the file at `path`; lines are looked up in these Verilog files, by their names: the folder in Verilator's
+/// file is the one in which the simulation was built once.
+///
+/// # Errors
+/// [`Error::File`] where a file cannot be read, [`Error::Option`] where a line is not as above.
+pub fn read(path: &Path, files: &[PathBuf]) -> Result<Vec<Point>, Error> {
+    let text = std::fs::read_to_string(path).map_err(Error::file(path, "read what Verilator counted in"))?;
+    let mut verilog = Verilog {
+        files,
+        path: PathBuf::new(),
+        lines: Vec::new(),
+    };
+    let mut points = Vec::new();
+    for line in text.lines().filter(|line| line.starts_with("C ")) {
+        let point = point(line, &mut verilog)?;
+        points.push(point);
+    }
+    Ok(points)
+}
+
+fn point(line: &str, verilog: &mut Verilog<'_>) -> Result<Point, Error> {
+    let strange = || Error::Option(format!("`{line}` is no line of Verilator's coverage file"));
+    let (keys, count) = line
+        .strip_prefix("C '")
+        .and_then(|rest| rest.rsplit_once("' "))
+        .ok_or_else(strange)?;
+    let value = |wanted: &str| {
+        let mut pairs = keys.split('\u{1}').filter_map(|pair| pair.split_once('\u{2}'));
+        pairs
+            .find(|(key, _)| *key == wanted)
+            .map(|(_, value)| value)
+            .ok_or_else(strange)
+    };
+    let (page, module) = value("page")?.split_once('/').ok_or_else(strange)?;
+    let kind = match page {
+        "v_toggle" => Kind::Toggle,
+        "v_line" | "v_branch" => Kind::Line,
+        _ => return Err(strange()),
+    };
+    let what = match kind {
+        Kind::Toggle => value("o")?.to_owned(),
+        Kind::Line => {
+            let number = value("l")?.parse().map_err(|_| strange())?;
+            let text = verilog.line(Path::new(value("f")?), number)?;
+            // Where the condition of an `if` stands for its other branch.
+            match value("o")? {
+                "else" => format!("not {text}"),
+                _ => text,
+            }
+        }
+    };
+    Ok(Point {
+        module: module.to_owned(),
+        kind,
+        what,
+        count: count.trim().parse().map_err(|_| strange())?,
+    })
+}
+
+/// The Verilog files, and the one that was read last.
+struct Verilog<'a> {
+    files: &'a [PathBuf],
+    path: PathBuf,
+    lines: Vec<String>,
+}
+
+impl Verilog<'_> {
+    fn line(&mut self, path: &Path, number: usize) -> Result<String, Error> {
+        if self.path != path {
+            let file = self.files.iter().find(|file| file.file_name() == path.file_name());
+            let unknown = || Error::Option(format!("{} is none of the block's files", path.display()));
+            let file = file.ok_or_else(unknown)?;
+            let text = std::fs::read_to_string(file).map_err(Error::file(file, "read the Verilog"))?;
+            self.lines = text.lines().map(|line| line.trim().to_owned()).collect();
+            self.path = path.to_owned();
+        }
+        let text = number.checked_sub(1).and_then(|at| self.lines.get(at));
+        text.cloned()
+            .ok_or_else(|| Error::Option(format!("{} has no line {number}", path.display())))
+    }
+}

@@ -1,0 +1,132 @@
+//! What every read must show, whatever traffic there is: said from the description alone, not from the bank's model.
+//!
+//! ```text
+//! unmapped, command, commands' words, snapshot, interrupt test      0
+//! constant                                                          its value
+//! configuration, interrupt enable                                   what the bytes written last make of it
+//! guarded                                                           no field below its minimum
+//! all others                                                        0 in the bits of no field
+//! no read                                                           readdata as it was
+//! ```
+
+use posicast_model::rtl::registers::{Access, Register, RegisterMap};
+
+use super::{ADDRESS, BYTE_ENABLE, READ, WRITE, WRITE_DATA};
+
+/// What a read must show.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Expected {
+    Word(u32),
+    /// Anything in the fields of the register, each at least its minimum.
+    Fields(usize),
+}
+
+/// Watches the reads of a component, clock by clock.
+#[derive(Debug, Clone)]
+pub struct ReadPromises {
+    map: RegisterMap,
+    /// Words that follow writes, by the register's place in the map.
+    kept: Vec<u32>,
+    /// Of the clock before: its read, if there was one, or that readdata stays.
+    pending: Option<Expected>,
+    /// What readdata showed.
+    shown: Option<u32>,
+    clock: u64,
+    reads: u64,
+    violation: Option<String>,
+}
+
+impl ReadPromises {
+    /// Of a component with this map, before its first reset.
+    pub fn new(map: &RegisterMap) -> Self {
+        Self {
+            kept: map.registers().iter().map(Register::reset).collect(),
+            map: map.clone(),
+            pending: None,
+            shown: None,
+            clock: 0,
+            reads: 0,
+            violation: None,
+        }
+    }
+
+    /// A clock: its inputs, and `avs_readdata` in it.
+    pub fn observe(&mut self, inputs: &[u64], read_data: u64) {
+        let data = read_data as u32;
+        let wrong = match (self.pending, self.shown) {
+            (Some(Expected::Word(word)), _) if word != data => Some(format!("{word:#010x} is promised")),
+            (Some(Expected::Fields(at)), _) => self.fields_of(at, data),
+            (None, Some(before)) if before != data => Some(format!("no read changed it from {before:#010x}")),
+            _ => None,
+        };
+        if let (Some(wrong), None) = (wrong, &self.violation) {
+            self.violation = Some(format!("clock {}: readdata {data:#010x}, but {wrong}", self.clock));
+        }
+        self.clock += 1;
+        self.shown = Some(data);
+        let register = self.at(inputs[ADDRESS] as u32);
+        self.pending = (inputs[READ] & 1 == 1).then(|| self.expected(register));
+        self.reads += inputs[READ] & 1;
+        if inputs[WRITE] & 1 == 1
+            && let Some(at) = register
+        {
+            self.write(at, inputs[WRITE_DATA] as u32, inputs[BYTE_ENABLE] as u32);
+        }
+        if inputs[0] & 1 == 1 {
+            self.kept = self.map.registers().iter().map(Register::reset).collect();
+            // What readdata is after a reset is not promised.
+            (self.pending, self.shown) = (None, None);
+        }
+    }
+
+    /// The first read that was not as promised, in words.
+    pub fn violation(&self) -> Option<&str> {
+        self.violation.as_deref()
+    }
+
+    /// Reads that were watched.
+    pub fn reads(&self) -> u64 {
+        self.reads
+    }
+
+    fn at(&self, offset: u32) -> Option<usize> {
+        let covers = |register: &Register| (register.offset..register.offset + register.words()).contains(&offset);
+        self.map.registers().iter().position(covers)
+    }
+
+    fn expected(&self, register: Option<usize>) -> Expected {
+        let Some(at) = register else {
+            return Expected::Word(0);
+        };
+        match &self.map.registers()[at].access {
+            Access::Constant | Access::Configuration | Access::InterruptEnable => Expected::Word(self.kept[at]),
+            Access::Command { .. } | Access::Words { .. } | Access::Snapshot | Access::InterruptTest => {
+                Expected::Word(0)
+            }
+            _ => Expected::Fields(at),
+        }
+    }
+
+    fn write(&mut self, at: usize, data: u32, byte_enable: u32) {
+        let register = &self.map.registers()[at];
+        if matches!(register.access, Access::Configuration | Access::InterruptEnable) {
+            let bytes = (0..4).filter(|byte| byte_enable >> byte & 1 == 1);
+            let mask = bytes.fold(0, |mask, byte| mask | 0xff << (8 * byte)) & register.mask();
+            self.kept[at] = self.kept[at] & !mask | data & mask;
+        }
+    }
+
+    /// What is wrong with the word of this register.
+    fn fields_of(&self, at: usize, data: u32) -> Option<String> {
+        let register = &self.map.registers()[at];
+        let fields = self.map.fields(register);
+        let outside = fields.iter().fold(data, |data, field| data & !field.mask());
+        if outside != 0 {
+            return Some(format!("{} has no field in the bits {outside:#010x}", register.name));
+        }
+        let low = fields
+            .iter()
+            .find(|field| (data & field.mask()) >> field.low < field.minimum);
+        low.map(|field| format!("{}.{} is at least {}", register.name, field.name, field.minimum))
+    }
+}
