@@ -17,6 +17,7 @@
 //! - [`register_tests`] asks registers, through the bus, for what their description promises.
 //! - [`stage_bench`] joins a stage with its simulated machine; [`stage_run`] moves it and measures.
 //! - [`formal`] proves what property files say of the blocks.
+//! - [`mutation`] puts faults into the blocks, and finds out which checks notice.
 //! - [`wave`] writes waveforms; [`diff`] compares two of them.
 
 pub mod blocks;
@@ -27,6 +28,7 @@ pub mod fault_campaign;
 pub mod formal;
 pub mod icarus;
 pub mod lockstep;
+pub mod mutation;
 mod reader;
 pub mod recording;
 pub mod register_tests;

@@ -21,4 +21,5 @@ mod task;
 mod tool;
 
 pub use self::task::{Engine, Task, all, named};
+pub(crate) use self::tool::{ABC, YOSYS, asserted};
 pub use self::tool::{Outcome, Reached, SEARCHED_CLOCKS, Verdict, run};

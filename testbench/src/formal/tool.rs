@@ -14,14 +14,14 @@ pub const SEARCHED_CLOCKS: u32 = 60;
 /// Clocks in which a cover must be reached: a period with the longest floors, and some.
 const COVERED_CLOCKS: u32 = 200;
 
-const YOSYS: Tool = Tool {
+pub(crate) const YOSYS: Tool = Tool {
     name: "yosys",
     variable: "POSICAST_YOSYS",
-    purpose: "reads blocks and properties, proves by induction",
+    purpose: "reads blocks and properties, proves by induction, makes mutants",
     remedy: "Install it (Debian: apt-get install --no-install-recommends yosys), or name it in POSICAST_YOSYS",
 };
 
-const ABC: Tool = Tool {
+pub(crate) const ABC: Tool = Tool {
     name: "yosys-abc",
     variable: "POSICAST_YOSYS_ABC",
     purpose: "proves without invariants, finds counterexamples and covers",
@@ -253,7 +253,7 @@ impl Bench<'_> {
 }
 
 /// Outputs and clocks in ABC's words: `Output 3 of miter "asserts" was asserted in frame 12.`
-fn asserted(said: &str) -> impl Iterator<Item = (usize, u32)> + '_ {
+pub(crate) fn asserted(said: &str) -> impl Iterator<Item = (usize, u32)> + '_ {
     let number = |word: Option<&str>| word?.trim_matches(|c: char| !c.is_ascii_digit()).parse().ok();
     said.lines()
         .filter(|line| line.contains("asserted in frame"))
