@@ -4,7 +4,7 @@
 //! ```text
 //! --block NAME    only this block                    --mutants N   per block (60)
 //! --seed S        of the choice of mutants (1)       --clocks C    per run of stimuli (1,000,000)
-//! --write         renews the table in docs/verification.md
+//! --write         renews the table in docs/verification.md, or the rows of the block
 //! ```
 //!
 //! Prints the table, and while it works a line per block. Exit status: 0 nothing is unknown, 1 something is, 2 cannot run,
@@ -61,9 +61,9 @@ impl Arguments {
                 }
             }
         }
-        if found.write && found.block.is_some() {
+        if found.write && found.options != Options::default() {
             return Err(Error::Option(
-                "--write needs all blocks, and --block names one: choose one of the two".to_owned(),
+                "--write keeps the table that the defaults give: leave --mutants, --seed and --clocks away".to_owned(),
             ));
         }
         Ok(found)
@@ -106,15 +106,14 @@ fn mutate() -> Result<bool, Error> {
         // What cannot be deleted stays in the temporary folder: no reason to fail.
         let _ = std::fs::remove_dir_all(&temporary);
     }
-    let table = table(&rows);
-    print!("{table}");
+    print!("{}", table(&rows));
     if write {
-        renew(&table)?;
+        renew(&rows)?;
     }
     Ok(rows.iter().all(|row| row.unknown.is_empty()))
 }
 
-fn renew(table: &str) -> Result<(), Error> {
+fn renew(rows: &[Row]) -> Result<(), Error> {
     let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/verification.md"));
     let failed = |doing| {
         move |source| Error::File {
@@ -124,5 +123,5 @@ fn renew(table: &str) -> Result<(), Error> {
         }
     };
     let page = std::fs::read_to_string(path).map_err(failed("read"))?;
-    std::fs::write(path, renewed(&page, table)?).map_err(failed("write"))
+    std::fs::write(path, renewed(&page, rows, &all()?)?).map_err(failed("write"))
 }

@@ -47,6 +47,17 @@ impl Mutant {
             source: after("-src").map(|place| line_of(&place)),
         })
     }
+
+    /// With another number.
+    pub(super) fn numbered(self, number: usize) -> Self {
+        Self { number, ..self }
+    }
+
+    /// Whether registers stay what they are: not so at their output, with which Yosys loses the value at power-up, and at
+    /// their clock.
+    pub(super) fn keeps_registers(&self) -> bool {
+        self.port != "Q" && self.port != "CLK"
+    }
 }
 
 /// `FILE:LINE` of `FILE:LINE.COLUMN-LINE.COLUMN`.
@@ -93,6 +104,9 @@ mod tests {
             mutant.to_string(),
             "const1 at Y[6] of $procmux$2533 in velocity, borrow[6], velocity.v:42"
         );
+        assert!(mutant.keeps_registers());
+        let register = Mutant::parse(&line.replace("-port Y", "-port Q")).unwrap();
+        assert!(!register.keeps_registers());
         assert_eq!(Mutant::parse("mutate -ctrl mutsel 16 0 -mode none"), None);
     }
 }

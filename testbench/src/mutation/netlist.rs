@@ -61,15 +61,20 @@ impl<'a> Netlist<'a> {
         }
         // Yosys takes 31 bits.
         let seed = seed & 0x7fff_ffff;
+        // More than are needed, for some places are not for us.
+        let listed = 2 * count;
         self.yosys(
             "list",
             &format!(
-                "read_ilang block.il\nmutate -list {count} -seed {seed} -ctrl {SELECT} {SELECT_BITS} 1 -o mutants.txt\n"
+                "read_ilang block.il\nmutate -list {listed} -seed {seed} -ctrl {SELECT} {SELECT_BITS} 1 -o mutants.txt \
+                 * t:$meminit* %d\n"
             ),
         )?;
         let path = self.folder.join("mutants.txt");
         let list = std::fs::read_to_string(&path).map_err(Error::file(&path, "read"))?;
-        Ok(list.lines().filter_map(Mutant::parse).collect())
+        let usable = list.lines().filter_map(Mutant::parse).filter(Mutant::keeps_registers);
+        let numbered = (1..=count).zip(usable);
+        Ok(numbered.map(|(number, mutant)| mutant.numbered(number)).collect())
     }
 
     /// A Verilog file with all mutants, and the input that chooses.

@@ -96,7 +96,7 @@ fn blocks() -> Result<Vec<OfSize>, Error> {
             "16-bit period, all active high",
         ),
         (Box::new(SlidingModeBlock::new("", alone)), "all laws"),
-        (Box::new(ShaperBlock::new(shaper(None)?, "", alone)?), "16 bits, 5 taps"),
+        (Box::new(ShaperBlock::new(shaper(None)?, "", alone)?), "24 bits, 5 taps"),
         (
             Box::new(ShaperBlock::new(shaper(Some(3))?, "", alone)?),
             "the same for motion",
@@ -113,8 +113,8 @@ fn blocks() -> Result<Vec<OfSize>, Error> {
         (Box::new(DriveCommandBlock::new("", alone)), "nothing tied"),
         (Box::new(LinearScaleBlock::new("", alone)), "nothing tied"),
         (
-            Box::new(TraceBlock::new(TraceConfig::new(64).map_err(refused)?, "")),
-            "64 samples",
+            Box::new(TraceBlock::new(TraceConfig::new(256).map_err(refused)?, "")),
+            "256 samples",
         ),
         (Box::new(ExcitationBlock::new("", alone)), "32 bits"),
         (Box::new(EncoderGeneratorBlock::new("", alone)), "32 bits"),
@@ -142,6 +142,8 @@ fn blocks() -> Result<Vec<OfSize>, Error> {
     let component = Component::pwm(pwm, Mode::Unipolar, 2500).map_err(refused)?;
     let bank = RegistersBlock::new(component.map().clone(), "");
     blocks.push((Box::new(bank), "bank of pwm"));
+    // Longer than a division takes.
+    let ticks = DividerConfig::new(127).map_err(refused)?;
     let component = Component::pulse_counter(ticks, 3).map_err(refused)?;
     let component = ComponentBlock::new(component, "component", "x");
     blocks.push((Box::new(component), "pulse_counter with registers"));
@@ -155,7 +157,7 @@ fn shaper(channels: Option<u32>) -> Result<ShaperConfig, Error> {
         coefficient,
     });
     let table = TapTable::new(10, taps.to_vec()).map_err(refused)?;
-    let config = ShaperConfig::new(16, table).map_err(refused)?;
+    let config = ShaperConfig::new(24, table).map_err(refused)?;
     match channels {
         None => Ok(config),
         Some(channels) => config

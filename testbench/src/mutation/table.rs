@@ -1,4 +1,7 @@
 //! What became of the mutants, as the table of `docs/verification.md`.
+//!
+//! The page keeps a row per block, so that a run of one block renews its own and leaves the rest; sums and the list of what
+//! is unknown follow from the rows.
 
 use std::fmt::Write as _;
 
@@ -10,18 +13,24 @@ const MARKS: (&str, &str) = (
     "<!-- mutants: written by the example `mutate` -->",
     "<!-- end of mutants -->",
 );
+const HEAD: &str = "| block | size | mutants | lock step | of these late | property | equivalent | unknown |\n\
+                    |---|---|---|---|---|---|---|---|\n";
+/// A kill in a later run than the first, or after so many clocks, is late.
+const LATE_CLOCKS: u64 = 10_000;
 
 /// A block's line, and its mutants that are unknown.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Row {
-    block: String,
-    size: String,
-    /// How many there were.
+    /// The block's name.
+    pub block: String,
+    /// Which of its sizes.
+    pub size: String,
+    /// How many mutants there were.
     pub mutants: usize,
     /// Killed by lock step.
     pub lockstep: usize,
-    /// Of these, after more than 10,000 clocks.
-    late: usize,
+    /// Of these, in the second run or after 10,000 clocks.
+    pub late: usize,
     /// Killed by a property.
     pub property: usize,
     /// Proven equivalent.
@@ -43,19 +52,37 @@ impl Row {
             match fate {
                 Fate::Lockstep(kill) => {
                     row.lockstep += 1;
-                    row.late += usize::from(kill.seed > 1 || kill.clock >= 10_000);
+                    row.late += usize::from(kill.seed > 1 || kill.clock >= LATE_CLOCKS);
                 }
                 Fate::Property(_) => row.property += 1,
                 Fate::Equivalent => row.equivalent += 1,
-                Fate::Unknown { differs: Some(clock) } => {
-                    row.unknown.push(format!(
-                        "{mutant}: a search tells it from the block after {clock} clocks"
-                    ));
-                }
+                Fate::Unknown { differs: Some(clock) } => row.unknown.push(format!(
+                    "{mutant}; a search tells it from the block after {clock} clocks"
+                )),
                 Fate::Unknown { differs: None } => row.unknown.push(mutant.to_string()),
             }
         }
         row
+    }
+
+    /// A line of the table; the mutants that are unknown stand elsewhere.
+    fn parse(line: &str) -> Option<Self> {
+        let cells: Vec<&str> = line.strip_prefix("| ")?.strip_suffix(" |")?.split(" | ").collect();
+        let [block, size, counts @ .., _unknown] = cells.as_slice() else {
+            return None;
+        };
+        let counts: Vec<usize> = counts.iter().map(|count| count.parse().ok()).collect::<Option<_>>()?;
+        let [mutants, lockstep, late, property, equivalent] = counts.try_into().ok()?;
+        Some(Self {
+            block: (*block).to_owned(),
+            size: (*size).to_owned(),
+            mutants,
+            lockstep,
+            late,
+            property,
+            equivalent,
+            unknown: Vec::new(),
+        })
     }
 
     fn cells(&self) -> String {
@@ -71,15 +98,21 @@ impl Row {
             self.unknown.len()
         )
     }
+
+    fn is_of(&self, subject: &Subject) -> bool {
+        self.block == subject.block().name() && self.size == subject.size()
+    }
+
+    /// What stands before each of its unknown mutants.
+    fn mark(&self) -> String {
+        format!("- {}, {}: `", self.block, self.size)
+    }
 }
 
 /// Rows, their sum, and the list of what is unknown.
 pub fn table(rows: &[Row]) -> String {
     let sum = |count: fn(&Row) -> usize| rows.iter().map(count).sum::<usize>();
-    let mut text = String::from(
-        "| block | size | mutants | lock step | of these late | property | equivalent | unknown |\n\
-         |---|---|---|---|---|---|---|---|\n",
-    );
+    let mut text = HEAD.to_owned();
     for row in rows {
         let _ = writeln!(text, "{}", row.cells());
     }
@@ -93,43 +126,92 @@ pub fn table(rows: &[Row]) -> String {
         sum(|row| row.equivalent),
         sum(|row| row.unknown.len())
     );
-    for row in rows.iter().filter(|row| !row.unknown.is_empty()) {
-        let _ = writeln!(text, "\nUnknown in {}, {}:\n", row.block, row.size);
+    if rows.iter().any(|row| !row.unknown.is_empty()) {
+        text.push_str("\nUnknown:\n\n");
+    }
+    for row in rows {
         for mutant in &row.unknown {
-            let _ = writeln!(text, "- `{mutant}`");
+            let _ = writeln!(text, "{}{mutant}`", row.mark());
         }
     }
     text
 }
 
-/// A page with this table between its marks.
+/// A page with these rows in its table, and those that it has of the other subjects.
 ///
 /// # Errors
 /// [`Error::Option`] where the page has no marks, one after the other.
-pub fn renewed(page: &str, table: &str) -> Result<String, Error> {
+pub fn renewed(page: &str, rows: &[Row], subjects: &[Subject]) -> Result<String, Error> {
     let parts = page.split_once(MARKS.0).and_then(|(before, rest)| {
-        let (_, after) = rest.split_once(MARKS.1)?;
-        Some((before, after))
+        let (old, after) = rest.split_once(MARKS.1)?;
+        Some((before, old, after))
     });
-    let (before, after) = parts.ok_or_else(|| {
+    let (before, old, after) = parts.ok_or_else(|| {
         Error::Option(format!(
             "the page has no place for the table: it needs the lines `{}` and `{}`",
             MARKS.0, MARKS.1
         ))
     })?;
-    Ok(format!("{before}{}\n\n{table}\n{}{after}", MARKS.0, MARKS.1))
+    let old = on_page(old);
+    let of = |subject: &Subject| {
+        let mut found = rows.iter().chain(&old);
+        found.find(|row| row.is_of(subject)).cloned()
+    };
+    let rows: Vec<Row> = subjects.iter().filter_map(of).collect();
+    Ok(format!("{before}{}\n\n{}\n{}{after}", MARKS.0, table(&rows), MARKS.1))
+}
+
+/// The rows of a table as [`table`] writes it.
+fn on_page(text: &str) -> Vec<Row> {
+    let mut rows: Vec<Row> = text.lines().filter_map(Row::parse).collect();
+    for row in &mut rows {
+        let mark = row.mark();
+        let unknown = text
+            .lines()
+            .filter_map(|line| line.strip_prefix(&mark)?.strip_suffix('`'));
+        row.unknown = unknown.map(str::to_owned).collect();
+    }
+    rows
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    fn row(block: &str, unknown: &[&str]) -> Row {
+        Row {
+            block: block.to_owned(),
+            size: "2 axes".to_owned(),
+            mutants: 60,
+            lockstep: 51,
+            late: 3,
+            property: 2,
+            equivalent: 5,
+            unknown: unknown.iter().map(|text| (*text).to_owned()).collect(),
+        }
+    }
+
     #[test]
-    fn unit_only_what_is_between_the_marks_is_renewed() {
+    fn unit_a_table_is_read_as_it_was_written() {
+        let rows = [row("a", &["inv at Y[1] of $and$a.v:3$7 in a, a.v:3"]), row("b", &[])];
+        let text = table(&rows);
+        assert!(
+            text.contains("| **all** | | **120** | **102** | **6** | **4** | **10** | **1** |"),
+            "{text}"
+        );
+        assert_eq!(on_page(&text), rows);
+    }
+
+    #[test]
+    fn unit_a_page_without_a_place_is_refused() {
         let page = format!("before\n{}\nold\n{}\nafter\n", MARKS.0, MARKS.1);
-        let first = renewed(&page, "new\n").unwrap();
-        assert_eq!(first, format!("before\n{}\n\nnew\n\n{}\nafter\n", MARKS.0, MARKS.1));
-        assert_eq!(renewed(&first, "new\n").unwrap(), first);
-        assert!(renewed("no marks", "new").is_err());
+        let renewed_page = renewed(&page, &[], &[]).unwrap();
+        assert!(
+            renewed_page.starts_with("before\n") && renewed_page.ends_with("after\n"),
+            "{renewed_page}"
+        );
+        assert!(!renewed_page.contains("old"));
+        assert_eq!(renewed(&renewed_page, &[], &[]).unwrap(), renewed_page);
+        assert!(renewed("no marks", &[], &[]).is_err());
     }
 }
