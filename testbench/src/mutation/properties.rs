@@ -7,7 +7,7 @@ use super::{Mutant, Subject};
 use crate::Error;
 use crate::formal::{self, Verdict};
 
-/// The property that a mutant breaks, if the block has a property file and one of it is found to be.
+/// A property that the mutant breaks: none where the block has no property file at this size.
 pub(super) fn broken(
     subject: &Subject,
     netlist: &Netlist<'_>,
