@@ -22,7 +22,7 @@ fn fates(subject: &Subject, mutants: usize) -> Vec<(Mutant, Fate)> {
 
 #[test]
 fn mutate_no_mutant_of_a_small_block_is_unknown() {
-    for block in ["schedule", "divider_share"] {
+    for block in ["group", "divider_share"] {
         let fates = fates(&subject(block), 30);
         assert!(fates.len() > 20, "{block}: {} mutants", fates.len());
         for (mutant, fate) in fates {

@@ -36,7 +36,7 @@ pub(super) fn compare(netlist: &Netlist<'_>, mutant: &Mutant, limit: Duration) -
     // never get far are quick with BDDs, and slow with PDR, which needs a clause for each value.
     let engines = [
         format!(
-            "read_aiger miter.aig; fold; strash; orpos; scorr; scorr -F 4; write_aiger merged.aig; reach -T 10 -B {BDD_NODES}"
+            "read_aiger miter.aig; fold; strash; orpos; scorr; scorr -F 4; write_aiger merged.aig; reach -T 20 -F 100000 -B {BDD_NODES}"
         ),
         format!("read_aiger merged.aig; pdr -T {seconds}"),
         format!("read_aiger merged.aig; bmc3 -T {seconds}"),
@@ -65,7 +65,7 @@ const WITHOUT_MEMORY: &str = "select -set memories t:$mem* %m\nblackbox @memorie
 fn miter(top: &str, arguments: &str) -> String {
     let side = |name: &str, change: &str| {
         format!(
-            "design -load both\n{change}{WITHOUT_MEMORY}flatten\nrename {top} {name}\nexpose -evert {name}\ndesign -stash {name}\n"
+            "design -load both\n{change}{WITHOUT_MEMORY}flatten\nrename {top} {name}\nexpose -evert {name}/c:*\ndesign -stash {name}\n"
         )
     };
     let (block, mutant) = (side("block", ""), side("mutant", &format!("mutate {arguments}\n")));

@@ -6,7 +6,6 @@ use posicast_model::rtl::divider::DividerConfig;
 use posicast_model::rtl::pwm::{ActiveLow, Mode, PwmConfig};
 use posicast_model::rtl::schedule::ScheduleConfig;
 use posicast_model::rtl::shaper::{Motion, ShaperConfig};
-use posicast_model::rtl::sliding_mode::Settings;
 use posicast_model::rtl::trace::TraceConfig;
 use posicast_model::taps::{Tap, TapTable};
 
@@ -136,8 +135,6 @@ fn blocks() -> Result<Vec<OfSize>, Error> {
             "3 channels of 16 bits",
         ),
     ];
-    let words = std::array::from_fn(|row| 0x1234_5678u32.rotate_left(row as u32));
-    blocks.push((part(Part::SettingBanks(Settings(words))), "2 banks"));
     let pwm = PwmConfig::new(ActiveLow::default(), 25, 50).map_err(refused)?;
     let component = Component::pwm(pwm, Mode::Unipolar, 2500).map_err(refused)?;
     let bank = RegistersBlock::new(component.map().clone(), "");
