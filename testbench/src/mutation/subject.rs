@@ -129,10 +129,10 @@ fn blocks() -> Result<Vec<OfSize>, Error> {
         ),
         (
             part(Part::SampleSelect {
-                word_bits: 16,
+                word_bits: 32,
                 channels: 3,
             }),
-            "3 channels of 16 bits",
+            "3 channels of 32 bits",
         ),
     ];
     let pwm = PwmConfig::new(ActiveLow::default(), 25, 50).map_err(refused)?;
