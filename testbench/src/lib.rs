@@ -22,6 +22,7 @@
 //! - [`netlist`] simulates and proves what a synthesiser made of a block.
 //! - [`replay`] plays a recording into model and RTL.
 //! - [`ladder`] puts the results of all rungs into one table.
+//! - [`mutation`] puts faults into the blocks, and finds out which checks notice.
 //! - [`wave`] writes waveforms; [`diff`] compares two of them.
 
 pub mod blocks;
@@ -36,6 +37,7 @@ pub mod icarus;
 pub mod ladder;
 pub mod lockstep;
 pub mod netlist;
+pub mod mutation;
 mod reader;
 pub mod recording;
 pub mod register_tests;

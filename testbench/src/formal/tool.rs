@@ -17,7 +17,7 @@ const COVERED_CLOCKS: u32 = 200;
 pub(crate) const YOSYS: Tool = Tool {
     name: "yosys",
     variable: "POSICAST_YOSYS",
-    purpose: "reads blocks and properties, proves by induction",
+    purpose: "reads blocks and properties, proves by induction, makes mutants",
     remedy: "Install it (Debian: apt-get install --no-install-recommends yosys), or name it in POSICAST_YOSYS",
 };
 

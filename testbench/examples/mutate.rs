@@ -1,0 +1,127 @@
+//! Puts mutants into the blocks and finds out what becomes of each:
+//! `cargo run --release -p posicast-testbench --example mutate [-- OPTIONS]`.
+//!
+//! ```text
+//! --block NAME    only this block                    --mutants N   per block (60)
+//! --seed S        of the choice of mutants (1)       --clocks C    per run of stimuli (1,000,000)
+//! --write         renews the table in docs/verification.md, or the rows of the block
+//! ```
+//!
+//! Prints the table, and while it works a line per block. Exit status: 0 nothing is unknown, 1 something is, 2 cannot run,
+//! 3 a tool is missing. `POSICAST_MUTATE_KEEP` names a folder that keeps all files.
+#![allow(clippy::print_stdout, clippy::print_stderr, reason = "it is a program")]
+
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::time::Instant;
+
+use posicast_testbench::Error;
+use posicast_testbench::mutation::{Options, Row, all, named, renewed, run, table};
+
+fn main() -> ExitCode {
+    match mutate() {
+        Ok(true) => ExitCode::SUCCESS,
+        Ok(false) => ExitCode::from(1),
+        Err(error) => {
+            eprintln!("{error}");
+            ExitCode::from(if error.is_missing_tool() { 3 } else { 2 })
+        }
+    }
+}
+
+struct Arguments {
+    block: Option<String>,
+    options: Options,
+    write: bool,
+}
+
+impl Arguments {
+    fn read() -> Result<Self, Error> {
+        let mut found = Self {
+            block: None,
+            options: Options::default(),
+            write: false,
+        };
+        let mut words = std::env::args().skip(1);
+        while let Some(word) = words.next() {
+            let mut value = || {
+                let missing = || Error::Option(format!("`{word}` needs a value"));
+                words.next().ok_or_else(missing)
+            };
+            match word.as_str() {
+                "--block" => found.block = Some(value()?),
+                "--mutants" => found.options.mutants = number(&word, &value()?)?,
+                "--seed" => found.options.seed = number(&word, &value()?)?,
+                "--clocks" => found.options.clocks = number(&word, &value()?)?,
+                "--write" => found.write = true,
+                other => {
+                    return Err(Error::Option(format!(
+                        "`{other}`: the options are --block, --mutants, --seed, --clocks and --write"
+                    )));
+                }
+            }
+        }
+        if found.write && found.options != Options::default() {
+            return Err(Error::Option(
+                "--write keeps the table that the defaults give: leave --mutants, --seed and --clocks away".to_owned(),
+            ));
+        }
+        Ok(found)
+    }
+}
+
+fn number<T: std::str::FromStr>(option: &str, text: &str) -> Result<T, Error> {
+    text.parse()
+        .map_err(|_| Error::Option(format!("{option} {text}: a whole number is needed")))
+}
+
+fn mutate() -> Result<bool, Error> {
+    let Arguments { block, options, write } = Arguments::read()?;
+    let subjects = match &block {
+        Some(name) => named(name)?,
+        None => all()?,
+    };
+    let temporary = std::env::temp_dir().join(format!("posicast-mutate-{}", std::process::id()));
+    let kept = std::env::var_os("POSICAST_MUTATE_KEEP").map(PathBuf::from);
+    let folder = kept.clone().unwrap_or_else(|| temporary.clone());
+    let mut rows = Vec::new();
+    for (at, subject) in subjects.iter().enumerate() {
+        let start = Instant::now();
+        let name = subject.block().name();
+        let fates = run(subject, &options, &folder.join(format!("{at}_{name}")))?;
+        let row = Row::new(subject, &fates);
+        eprintln!(
+            "{name}, {}: {} mutants, {} by lock step, {} by a property, {} equivalent, {} unknown, {:.1} s",
+            subject.size(),
+            row.mutants,
+            row.lockstep,
+            row.property,
+            row.equivalent,
+            row.unknown.len(),
+            start.elapsed().as_secs_f64()
+        );
+        rows.push(row);
+    }
+    if kept.is_none() {
+        // What cannot be deleted stays in the temporary folder: no reason to fail.
+        let _ = std::fs::remove_dir_all(&temporary);
+    }
+    print!("{}", table(&rows));
+    if write {
+        renew(&rows)?;
+    }
+    Ok(rows.iter().all(|row| row.unknown.is_empty()))
+}
+
+fn renew(rows: &[Row]) -> Result<(), Error> {
+    let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/verification.md"));
+    let failed = |doing| {
+        move |source| Error::File {
+            path: path.to_owned(),
+            doing,
+            source,
+        }
+    };
+    let page = std::fs::read_to_string(path).map_err(failed("read"))?;
+    std::fs::write(path, renewed(&page, rows, &all()?)?).map_err(failed("write"))
+}

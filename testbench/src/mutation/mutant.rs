@@ -1,0 +1,112 @@
+//! A mutant, as Yosys lists it.
+
+use std::fmt;
+
+/// One fault in a netlist.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Mutant {
+    /// Its number in the list, from 1; also the value of `mutsel` that chooses it.
+    pub number: usize,
+    /// Arguments of Yosys's `mutate` that make it.
+    pub(super) arguments: String,
+    /// `const0`, `const1`, `inv`, `cnot0` or `cnot1`.
+    mode: String,
+    module: String,
+    cell: String,
+    port: String,
+    /// The register or wire that the bit is a part of, where it has a name.
+    wire: Option<String>,
+    bit: String,
+    /// Verilog file and line.
+    source: Option<String>,
+}
+
+impl Mutant {
+    /// From a line of `mutate -list … -ctrl NAME WIDTH VALUE`; `None` for the line that changes nothing.
+    pub(super) fn parse(line: &str) -> Option<Self> {
+        let words: Vec<&str> = line.split_whitespace().collect();
+        let after = |option: &str| {
+            let at = words.iter().position(|word| *word == option)?;
+            words.get(at + 1).copied().map(str::to_owned)
+        };
+        let control = words.iter().position(|word| *word == "-ctrl")?;
+        let number = words.get(control + 3)?.parse().ok()?;
+        let wire = after("-wire").map(|wire| match after("-wirebit") {
+            Some(bit) => format!("{wire}[{bit}]"),
+            None => wire,
+        });
+        Some(Self {
+            number,
+            arguments: words.get(control + 4..)?.join(" "),
+            mode: after("-mode").filter(|mode| mode != "none")?,
+            module: after("-module")?,
+            cell: after("-cell")?,
+            port: after("-port")?,
+            wire,
+            bit: after("-portbit")?,
+            source: after("-src").map(|place| line_of(&place)),
+        })
+    }
+
+    /// With another number.
+    pub(super) fn numbered(self, number: usize) -> Self {
+        Self { number, ..self }
+    }
+
+    /// Whether registers stay what they are: not so at their output, with which Yosys loses the value at power-up, and at
+    /// their clock.
+    pub(super) fn keeps_registers(&self) -> bool {
+        self.port != "Q" && self.port != "CLK"
+    }
+}
+
+/// `FILE:LINE` of `FILE:LINE.COLUMN-LINE.COLUMN`.
+fn line_of(place: &str) -> String {
+    place.split('.').take(2).collect::<Vec<_>>().join(".")
+}
+
+impl fmt::Display for Mutant {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self {
+            mode,
+            module,
+            cell,
+            port,
+            bit,
+            ..
+        } = self;
+        write!(f, "{mode} at {port}[{bit}] of {cell} in {module}")?;
+        if let Some(wire) = &self.wire {
+            write!(f, ", {wire}")?;
+        }
+        match &self.source {
+            Some(source) => write!(f, ", {source}"),
+            None => Ok(()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn unit_lines_of_yosys_are_read() {
+        let line = "mutate -ctrl mutsel 16 2 -mode const1 -module velocity -cell $procmux$2533 -port Y -portbit 6 \
+                    -wire borrow -wirebit 6 -src velocity.v:42.24-42.30 -src velocity.v:164.13-164.33";
+        let mutant = Mutant::parse(line).unwrap();
+        assert_eq!(mutant.number, 2);
+        assert!(
+            mutant.arguments.starts_with("-mode const1 -module velocity "),
+            "{mutant:?}"
+        );
+        assert_eq!(
+            mutant.to_string(),
+            "const1 at Y[6] of $procmux$2533 in velocity, borrow[6], velocity.v:42"
+        );
+        assert!(mutant.keeps_registers());
+        let register = Mutant::parse(&line.replace("-port Y", "-port Q")).unwrap();
+        assert!(!register.keeps_registers());
+        assert_eq!(Mutant::parse("mutate -ctrl mutsel 16 0 -mode none"), None);
+    }
+}

@@ -1,0 +1,124 @@
+//! A block as Yosys reads it, and its mutants.
+
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+use posicast_hdl::emit::Module;
+
+use super::Mutant;
+use crate::Error;
+use crate::formal::YOSYS;
+
+/// The input that chooses a mutant; 0 is none of them.
+pub(super) const SELECT: &str = "mutsel";
+/// Its width.
+pub(super) const SELECT_BITS: u32 = 16;
+/// Most mutants of a netlist: the input counts no further.
+const MOST: usize = (1 << SELECT_BITS) - 1;
+
+/// Cells in the block's modules, in a folder.
+pub(super) struct Netlist<'a> {
+    folder: &'a Path,
+    modules: &'a [Module],
+    top: &'a str,
+}
+
+impl<'a> Netlist<'a> {
+    /// Reads the Verilog. Only logic that can be told to be superfluous is removed: what is left is where mutants go.
+    pub(super) fn read(modules: &'a [Module], top: &'a str, folder: &'a Path) -> Result<Self, Error> {
+        std::fs::create_dir_all(folder).map_err(Error::file(folder, "create"))?;
+        let netlist = Self { folder, modules, top };
+        let mut script = String::new();
+        for module in modules {
+            let file = format!("{}.v", module.name);
+            netlist.write(&file, &module.text)?;
+            let _ = writeln!(script, "read_verilog {file}");
+        }
+        let _ = writeln!(
+            script,
+            "hierarchy -check -top {top}\nproc\nopt -nodffe -nosdff\nwrite_ilang block.il"
+        );
+        netlist.yosys("read", &script)?;
+        Ok(netlist)
+    }
+
+    /// Where the files are.
+    pub(super) fn folder(&self) -> &Path {
+        self.folder
+    }
+
+    /// Name of the top module.
+    pub(super) fn top(&self) -> &str {
+        self.top
+    }
+
+    /// At most so many mutants, by the seed.
+    pub(super) fn mutants(&self, count: usize, seed: u64) -> Result<Vec<Mutant>, Error> {
+        if !(1..=MOST).contains(&count) {
+            return Err(Error::Option(format!(
+                "{count} mutants of a block: 1 to {MOST} are possible"
+            )));
+        }
+        // Yosys takes 31 bits.
+        let seed = seed & 0x7fff_ffff;
+        // More than are needed, for some places are not for us.
+        let listed = 2 * count;
+        self.yosys(
+            "list",
+            &format!(
+                "read_ilang block.il\nmutate -list {listed} -seed {seed} -ctrl {SELECT} {SELECT_BITS} 1 -o mutants.txt \
+                 * t:$meminit* %d\n"
+            ),
+        )?;
+        let path = self.folder.join("mutants.txt");
+        let list = std::fs::read_to_string(&path).map_err(Error::file(&path, "read"))?;
+        let usable = list.lines().filter_map(Mutant::parse).filter(Mutant::keeps_registers);
+        let numbered = (1..=count).zip(usable);
+        Ok(numbered.map(|(number, mutant)| mutant.numbered(number)).collect())
+    }
+
+    /// A Verilog file with all mutants, and the input that chooses.
+    pub(super) fn with_all(&self, mutants: &[Mutant]) -> Result<PathBuf, Error> {
+        let mut script = String::from("read_ilang block.il\n");
+        for mutant in mutants {
+            let Mutant { number, arguments, .. } = mutant;
+            let _ = writeln!(script, "mutate -ctrl {SELECT} {SELECT_BITS} {number} {arguments}");
+        }
+        script.push_str("opt_clean\nwrite_verilog -noattr mutants.v\n");
+        self.yosys("mutate", &script)?;
+        Ok(self.folder.join("mutants.v"))
+    }
+
+    /// The block's modules with one mutant in them, all in one text.
+    pub(super) fn with(&self, mutant: &Mutant) -> Result<Vec<Module>, Error> {
+        let arguments = &mutant.arguments;
+        self.yosys(
+            "mutant",
+            &format!("read_ilang block.il\nmutate {arguments}\nopt_clean\nwrite_verilog -noattr mutant.v\n"),
+        )?;
+        let path = self.folder.join("mutant.v");
+        let text = std::fs::read_to_string(&path).map_err(Error::file(&path, "read"))?;
+        let top = self.modules.last().cloned();
+        Ok(top
+            .into_iter()
+            .map(|top| Module {
+                text: text.clone(),
+                ..top
+            })
+            .collect())
+    }
+
+    /// Runs a script, which stays in the folder under this name.
+    pub(super) fn yosys(&self, name: &str, script: &str) -> Result<(), Error> {
+        let file = format!("{name}.ys");
+        self.write(&file, script)?;
+        let mut yosys = YOSYS.command();
+        yosys.current_dir(self.folder).args(["-q", &file]);
+        YOSYS.run(&mut yosys, "putting mutants into a block").map(drop)
+    }
+
+    fn write(&self, file: &str, text: &str) -> Result<(), Error> {
+        let path = self.folder.join(file);
+        std::fs::write(&path, text).map_err(Error::file(&path, "write"))
+    }
+}

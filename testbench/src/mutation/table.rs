@@ -1,0 +1,217 @@
+//! What became of the mutants, as the table of `docs/verification.md`.
+//!
+//! The page keeps a row per block, so that a run of one block renews its own and leaves the rest; sums and the list of what
+//! is unknown follow from the rows.
+
+use std::fmt::Write as _;
+
+use super::{Fate, Mutant, Subject};
+use crate::Error;
+
+/// Lines of the page between which the table stands.
+const MARKS: (&str, &str) = (
+    "<!-- mutants: written by the example `mutate` -->",
+    "<!-- end of mutants -->",
+);
+const HEAD: &str = "| block | size | mutants | lock step | of these late | property | equivalent | unknown |\n\
+                    |---|---|---|---|---|---|---|---|\n";
+/// A kill in a later run than the first, or after so many clocks, is late.
+const LATE_CLOCKS: u64 = 10_000;
+
+/// A block's line, and its mutants that are unknown.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Row {
+    /// The block's name.
+    pub block: String,
+    /// Which of its sizes.
+    pub size: String,
+    /// How many mutants there were.
+    pub mutants: usize,
+    /// Killed by lock step.
+    pub lockstep: usize,
+    /// Of these, in the second run or after 10,000 clocks.
+    pub late: usize,
+    /// Killed by a property.
+    pub property: usize,
+    /// Proven equivalent.
+    pub equivalent: usize,
+    /// Neither killed nor equivalent.
+    pub unknown: Vec<String>,
+}
+
+impl Row {
+    /// Counts.
+    pub fn new(subject: &Subject, fates: &[(Mutant, Fate)]) -> Self {
+        let mut row = Self {
+            block: subject.block().name().to_owned(),
+            size: subject.size().to_owned(),
+            mutants: fates.len(),
+            ..Self::default()
+        };
+        for (mutant, fate) in fates {
+            match fate {
+                Fate::Lockstep(kill) => {
+                    row.lockstep += 1;
+                    row.late += usize::from(kill.seed > 1 || kill.clock >= LATE_CLOCKS);
+                }
+                Fate::Property(_) => row.property += 1,
+                Fate::Equivalent => row.equivalent += 1,
+                Fate::Unknown { differs: Some(clock) } => row.unknown.push(format!(
+                    "{mutant}; a search tells it from the block after {clock} clocks"
+                )),
+                Fate::Unknown { differs: None } => row.unknown.push(mutant.to_string()),
+            }
+        }
+        row
+    }
+
+    /// A line of the table; the mutants that are unknown stand elsewhere.
+    fn parse(line: &str) -> Option<Self> {
+        let cells: Vec<&str> = line.strip_prefix("| ")?.strip_suffix(" |")?.split(" | ").collect();
+        let [block, size, counts @ .., _unknown] = cells.as_slice() else {
+            return None;
+        };
+        let counts: Vec<usize> = counts.iter().map(|count| count.parse().ok()).collect::<Option<_>>()?;
+        let [mutants, lockstep, late, property, equivalent] = counts.try_into().ok()?;
+        Some(Self {
+            block: (*block).to_owned(),
+            size: (*size).to_owned(),
+            mutants,
+            lockstep,
+            late,
+            property,
+            equivalent,
+            unknown: Vec::new(),
+        })
+    }
+
+    fn cells(&self) -> String {
+        format!(
+            "| {} | {} | {} | {} | {} | {} | {} | {} |",
+            self.block,
+            self.size,
+            self.mutants,
+            self.lockstep,
+            self.late,
+            self.property,
+            self.equivalent,
+            self.unknown.len()
+        )
+    }
+
+    fn is_of(&self, subject: &Subject) -> bool {
+        self.block == subject.block().name() && self.size == subject.size()
+    }
+
+    /// What stands before each of its unknown mutants.
+    fn mark(&self) -> String {
+        format!("- {}, {}: `", self.block, self.size)
+    }
+}
+
+/// Rows, their sum, and the list of what is unknown.
+pub fn table(rows: &[Row]) -> String {
+    let sum = |count: fn(&Row) -> usize| rows.iter().map(count).sum::<usize>();
+    let mut text = HEAD.to_owned();
+    for row in rows {
+        let _ = writeln!(text, "{}", row.cells());
+    }
+    let _ = writeln!(
+        text,
+        "| **all** | | **{}** | **{}** | **{}** | **{}** | **{}** | **{}** |",
+        sum(|row| row.mutants),
+        sum(|row| row.lockstep),
+        sum(|row| row.late),
+        sum(|row| row.property),
+        sum(|row| row.equivalent),
+        sum(|row| row.unknown.len())
+    );
+    if rows.iter().any(|row| !row.unknown.is_empty()) {
+        text.push_str("\nUnknown:\n\n");
+    }
+    for row in rows {
+        for mutant in &row.unknown {
+            let _ = writeln!(text, "{}{mutant}`", row.mark());
+        }
+    }
+    text
+}
+
+/// A page with these rows in its table, and those that it has of the other subjects.
+///
+/// # Errors
+/// [`Error::Option`] where the page has no marks, one after the other.
+pub fn renewed(page: &str, rows: &[Row], subjects: &[Subject]) -> Result<String, Error> {
+    let parts = page.split_once(MARKS.0).and_then(|(before, rest)| {
+        let (old, after) = rest.split_once(MARKS.1)?;
+        Some((before, old, after))
+    });
+    let (before, old, after) = parts.ok_or_else(|| {
+        Error::Option(format!(
+            "the page has no place for the table: it needs the lines `{}` and `{}`",
+            MARKS.0, MARKS.1
+        ))
+    })?;
+    let old = on_page(old);
+    let of = |subject: &Subject| {
+        let mut found = rows.iter().chain(&old);
+        found.find(|row| row.is_of(subject)).cloned()
+    };
+    let rows: Vec<Row> = subjects.iter().filter_map(of).collect();
+    Ok(format!("{before}{}\n\n{}\n{}{after}", MARKS.0, table(&rows), MARKS.1))
+}
+
+/// The rows of a table as [`table`] writes it.
+fn on_page(text: &str) -> Vec<Row> {
+    let mut rows: Vec<Row> = text.lines().filter_map(Row::parse).collect();
+    for row in &mut rows {
+        let mark = row.mark();
+        let unknown = text
+            .lines()
+            .filter_map(|line| line.strip_prefix(&mark)?.strip_suffix('`'));
+        row.unknown = unknown.map(str::to_owned).collect();
+    }
+    rows
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn row(block: &str, unknown: &[&str]) -> Row {
+        Row {
+            block: block.to_owned(),
+            size: "2 axes".to_owned(),
+            mutants: 60,
+            lockstep: 51,
+            late: 3,
+            property: 2,
+            equivalent: 5,
+            unknown: unknown.iter().map(|text| (*text).to_owned()).collect(),
+        }
+    }
+
+    #[test]
+    fn unit_a_table_is_read_as_it_was_written() {
+        let rows = [row("a", &["inv at Y[1] of $and$a.v:3$7 in a, a.v:3"]), row("b", &[])];
+        let text = table(&rows);
+        assert!(
+            text.contains("| **all** | | **120** | **102** | **6** | **4** | **10** | **1** |"),
+            "{text}"
+        );
+        assert_eq!(on_page(&text), rows);
+    }
+
+    #[test]
+    fn unit_a_page_without_a_place_is_refused() {
+        let page = format!("before\n{}\nold\n{}\nafter\n", MARKS.0, MARKS.1);
+        let renewed_page = renewed(&page, &[], &[]).unwrap();
+        assert!(
+            renewed_page.starts_with("before\n") && renewed_page.ends_with("after\n"),
+            "{renewed_page}"
+        );
+        assert!(!renewed_page.contains("old"));
+        assert_eq!(renewed(&renewed_page, &[], &[]).unwrap(), renewed_page);
+        assert!(renewed("no marks", &[], &[]).is_err());
+    }
+}

@@ -1,0 +1,64 @@
+//! The mutation rung on small blocks: no mutant stays unknown; and it says so where stimuli see nothing.
+#![allow(clippy::unwrap_used)] // helpers of tests, which clippy.toml exempts only inside of #[test]
+
+use posicast_testbench::mutation::{Fate, Mutant, Options, Subject, named, run, run_with};
+
+fn subject(block: &str) -> Subject {
+    named(block).unwrap().swap_remove(0)
+}
+
+fn options(mutants: usize) -> Options {
+    Options {
+        mutants,
+        clocks: 100_000,
+        ..Options::default()
+    }
+}
+
+fn fates(subject: &Subject, mutants: usize) -> Vec<(Mutant, Fate)> {
+    let folder = tempfile::tempdir().unwrap();
+    run(subject, &options(mutants), folder.path()).unwrap()
+}
+
+#[test]
+fn mutate_no_mutant_of_a_small_block_is_unknown() {
+    for block in ["group", "divider_share"] {
+        let fates = fates(&subject(block), 30);
+        assert!(fates.len() > 20, "{block}: {} mutants", fates.len());
+        for (mutant, fate) in fates {
+            let is_known = !matches!(fate, Fate::Unknown { .. });
+            assert!(is_known, "{block}, {mutant}: {fate:?}");
+        }
+    }
+}
+
+#[test]
+fn mutate_stimuli_that_do_nothing_leave_mutants_alive_and_no_proof_calls_them_equivalent() {
+    let subject = subject("group");
+    let seen = fates(&subject, 12);
+    let folder = tempfile::tempdir().unwrap();
+    let mut nothing = |_clocks, _seed| Box::new(|_: &[u64], inputs: &mut [u64]| inputs.fill(0)) as Box<_>;
+    let unseen = run_with(&subject, &options(12), folder.path(), &mut nothing).unwrap();
+    let mut lost = 0;
+    for ((mutant, fate), (same, idle)) in seen.iter().zip(&unseen) {
+        assert_eq!(mutant, same);
+        if *idle != *fate && !matches!((fate, idle), (Fate::Lockstep(_), Fate::Lockstep(_))) {
+            lost += 1;
+            let is_found = matches!(idle, Fate::Property(_) | Fate::Unknown { differs: Some(_) });
+            assert!(is_found, "{mutant}: {fate:?}, and {idle:?} without stimuli");
+        }
+    }
+    assert!(lost >= 2, "only {lost} mutants need stimuli");
+}
+
+#[test]
+fn mutate_equal_seeds_choose_equal_mutants_and_others_do_not() {
+    let subject = subject("schedule");
+    let few = |seed| {
+        let folder = tempfile::tempdir().unwrap();
+        let options = Options { seed, ..options(5) };
+        run(&subject, &options, folder.path()).unwrap()
+    };
+    assert_eq!(few(1), few(1));
+    assert_ne!(few(1), few(2));
+}
