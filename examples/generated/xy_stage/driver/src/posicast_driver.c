@@ -1,0 +1,356 @@
+/* The functions of posicast_driver.h. */
+#include "posicast_driver.h"
+
+#include <stddef.h>
+
+#include "posicast_wait.h"
+
+/* Ticks until a start has led to RUN, or to nothing. */
+#define START_TICKS 4u
+/* Ticks until the PWM has run for a whole period with a new duty. */
+#define SELF_TEST_TICKS 4u
+
+static void clear_faults(const posicast_stage *stage, uint32_t axis)
+{
+    IOWR_POSICAST_AXIS_CLEAR_FAULTS(stage->base, axis, 0);
+}
+
+/* Entries stay in the FIFO in HOLD and RUN alone. The stop of the segments follows that of the axis a tick later. */
+static int keeps_entries(const posicast_stage *stage, uint32_t axis)
+{
+    const uint32_t word = posicast_status(stage, axis);
+
+    return (state_of(word) == POSICAST_AXIS_STATUS_STATE_HOLD || state_of(word) == POSICAST_AXIS_STATUS_STATE_RUN) &&
+           FIELD(word, POSICAST_AXIS_STATUS_SEGMENTS_STATE) < POSICAST_SEGMENTS_STOP;
+}
+
+/* Until an axis is READY. It forgets only what is over, and only with its outputs off: so it is told again and again. */
+static posicast_result wait_ready(const posicast_stage *stage, uint32_t axis, posicast_patience *left)
+{
+    while (posicast_state(stage, axis) != POSICAST_AXIS_STATUS_STATE_READY) {
+        const uint32_t causes = posicast_causes(stage, axis);
+        posicast_result result;
+
+        if (causes != 0)
+            clear_faults(stage, axis);
+        result = posicast_pass_time(stage, left);
+        if (result != POSICAST_OK)
+            return result == POSICAST_TIMEOUT && causes != 0 ? POSICAST_FAULT : result;
+    }
+    return POSICAST_OK;
+}
+
+/* Until an axis that was switched on can start. What stays with one that holds is the group stop of another: it is forgotten. */
+static posicast_result wait_holding(const posicast_stage *stage, uint32_t axis, posicast_patience *left)
+{
+    for (;;) {
+        const uint32_t word = posicast_status(stage, axis);
+        posicast_result result;
+
+        if (state_of(word) == POSICAST_AXIS_STATUS_STATE_FAULT)
+            return POSICAST_FAULT;
+        if (state_of(word) == POSICAST_AXIS_STATUS_STATE_HOLD) {
+            if (FIELD(word, POSICAST_AXIS_STATUS_CAN_START))
+                return POSICAST_OK;
+            if (posicast_causes(stage, axis) != 0)
+                clear_faults(stage, axis);
+        }
+        result = posicast_pass_time(stage, left);
+        if (result != POSICAST_OK)
+            return result;
+    }
+}
+
+static void set_control(const posicast_stage *stage, uint32_t axis, uint32_t clear, uint32_t set)
+{
+    const uint32_t word = (uint32_t)IORD_POSICAST_AXIS_CONTROL(stage->base, axis);
+
+    IOWR_POSICAST_AXIS_CONTROL(stage->base, axis, (word & ~clear) | set);
+}
+
+posicast_result posicast_open(posicast_stage *stage, uintptr_t base)
+{
+    uint32_t version;
+
+    stage->base = base;
+    stage->axes = 0;
+    stage->tick_clocks = 0;
+    stage->pause = NULL;
+    stage->context = NULL;
+    if ((uint32_t)IORD_POSICAST_STAGE_MAGIC(base) != POSICAST_STAGE_MAGIC_RESET)
+        return POSICAST_NOT_FOUND;
+    version = (uint32_t)IORD_POSICAST_STAGE_VERSION(base);
+    /* A larger minor version has registers that this driver does not use. */
+    if (version < POSICAST_STAGE_VERSION_RESET ||
+        FIELD(version, POSICAST_STAGE_VERSION_MAJOR) !=
+            FIELD(POSICAST_STAGE_VERSION_RESET, POSICAST_STAGE_VERSION_MAJOR))
+        return POSICAST_VERSION;
+    stage->axes = FIELD(IORD_POSICAST_STAGE_AXES(base), POSICAST_STAGE_AXES_AXES);
+    stage->tick_clocks = FIELD(IORD_POSICAST_STAGE_TICK_CLOCKS(base), POSICAST_STAGE_TICK_CLOCKS_TICK_CLOCKS);
+    return stage->axes >= 1 && stage->axes <= POSICAST_AXES_MAX ? POSICAST_OK : POSICAST_VERSION;
+}
+
+uint32_t posicast_all_axes(const posicast_stage *stage)
+{
+    return (1u << stage->axes) - 1u;
+}
+
+uint32_t posicast_state(const posicast_stage *stage, uint32_t axis)
+{
+    return state_of(posicast_status(stage, axis));
+}
+
+posicast_result posicast_switch_on(const posicast_stage *stage, uint32_t axes, uint32_t ticks)
+{
+    posicast_patience left = posicast_patience_for(stage, ticks);
+    uint32_t axis, off = 0;
+    posicast_result result = POSICAST_OK;
+
+    if (!are_axes(stage, axes))
+        return POSICAST_BAD_ARGUMENT;
+    for (axis = 0; axis < stage->axes; axis++) {
+        const uint32_t state = posicast_state(stage, axis);
+
+        if (!has(axes, axis))
+            continue;
+        if (state == POSICAST_AXIS_STATUS_STATE_RUN || state == POSICAST_AXIS_STATUS_STATE_QUICK_STOP)
+            return POSICAST_WRONG_STATE;
+        if (state != POSICAST_AXIS_STATUS_STATE_HOLD)
+            off |= 1u << axis;
+    }
+    /* READY wants to have seen it low: an axis whose fault is cleared does not go on by itself. */
+    for (axis = 0; axis < stage->axes; axis++) {
+        if (has(off, axis))
+            set_control(stage, axis, POSICAST_AXIS_CONTROL_ENABLE_MSK | POSICAST_AXIS_CONTROL_DIRECT_ENABLE_MSK, 0);
+    }
+    for (axis = 0; axis < stage->axes && result == POSICAST_OK; axis++) {
+        if (has(off, axis))
+            result = wait_ready(stage, axis, &left);
+    }
+    for (axis = 0; axis < stage->axes && result == POSICAST_OK; axis++) {
+        if (has(off, axis))
+            set_control(stage, axis, 0, POSICAST_AXIS_CONTROL_ENABLE_MSK);
+    }
+    for (axis = 0; axis < stage->axes && result == POSICAST_OK; axis++) {
+        if (has(axes, axis))
+            result = wait_holding(stage, axis, &left);
+    }
+    return result;
+}
+
+posicast_result posicast_switch_off(const posicast_stage *stage, uint32_t axes, uint32_t ticks)
+{
+    posicast_patience left = posicast_patience_for(stage, ticks);
+    uint32_t axis;
+
+    if (!are_axes(stage, axes))
+        return POSICAST_BAD_ARGUMENT;
+    for (axis = 0; axis < stage->axes; axis++) {
+        if (has(axes, axis))
+            set_control(stage, axis, POSICAST_AXIS_CONTROL_ENABLE_MSK | POSICAST_AXIS_CONTROL_DIRECT_ENABLE_MSK, 0);
+    }
+    for (axis = 0; axis < stage->axes; axis++) {
+        while (has(axes, axis)) {
+            const uint32_t state = posicast_state(stage, axis);
+            posicast_result result;
+
+            if (state == POSICAST_AXIS_STATUS_STATE_OFF || state == POSICAST_AXIS_STATUS_STATE_READY)
+                break;
+            result = posicast_pass_time(stage, &left);
+            if (result != POSICAST_OK)
+                return state == POSICAST_AXIS_STATUS_STATE_FAULT && result == POSICAST_TIMEOUT ? POSICAST_FAULT : result;
+        }
+    }
+    return POSICAST_OK;
+}
+
+posicast_result posicast_write_entry(const posicast_stage *stage, uint32_t axis, const posicast_entry *entry)
+{
+    const uint32_t refusals = POSICAST_AXIS_FLAGS_SEGMENT_REFUSED_MSK | POSICAST_AXIS_FLAGS_SEGMENT_MALFORMED_MSK;
+    uint32_t word, before;
+    posicast_result result;
+
+    if (!is_axis(stage, axis) || posicast_entry_ticks(entry) == 0)
+        return POSICAST_BAD_ARGUMENT;
+    if (FIELD(IORD_POSICAST_AXIS_FIFO(stage->base, axis), POSICAST_AXIS_FIFO_FIFO_LEVEL) >= POSICAST_FIFO_ENTRIES)
+        return POSICAST_FULL;
+    if (!keeps_entries(stage, axis))
+        return POSICAST_REFUSED;
+    before = posicast_flags(stage, axis);
+    for (word = 0; word < POSICAST_ENTRY_WORDS; word++)
+        IOWR_POSICAST_AXIS_SEGMENT(stage->base, axis, word, entry->words[word]);
+    /* Level and flags are then those after this entry. */
+    result = posicast_refused_since(stage, axis, refusals, before);
+    return result == POSICAST_OK && !keeps_entries(stage, axis) ? POSICAST_REFUSED : result;
+}
+
+posicast_result posicast_queue_move(const posicast_stage *stage, uint32_t axis, int32_t end,
+                                    const posicast_limits *limits)
+{
+    posicast_entry entries[POSICAST_PLAN_ROOM];
+    uint32_t count, place;
+    posicast_result result;
+
+    if (!is_axis(stage, axis))
+        return POSICAST_BAD_ARGUMENT;
+    if (posicast_state(stage, axis) != POSICAST_AXIS_STATUS_STATE_HOLD ||
+        !FIELD(IORD_POSICAST_AXIS_FIFO(stage->base, axis), POSICAST_AXIS_FIFO_SEGMENTS_EMPTY))
+        return POSICAST_WRONG_STATE;
+    result = posicast_plan_move(posicast_command_position(stage, axis), end, limits, entries, POSICAST_PLAN_ROOM,
+                                &count);
+    for (place = 0; place < count && result == POSICAST_OK; place++)
+        result = posicast_write_entry(stage, axis, &entries[place]);
+    return result;
+}
+
+posicast_result posicast_start(const posicast_stage *stage, uint32_t axes)
+{
+    posicast_patience left = posicast_patience_for(stage, START_TICKS);
+    uint32_t axis;
+    posicast_result result;
+
+    if (!are_axes(stage, axes))
+        return POSICAST_BAD_ARGUMENT;
+    IOWR_POSICAST_STAGE_FLAGS(stage->base, POSICAST_STAGE_FLAGS_START_REFUSED_MSK);
+    for (axis = 0; axis < stage->axes; axis++) {
+        if (has(axes, axis))
+            IOWR_POSICAST_AXIS_EVENTS(stage->base, axis, POSICAST_AXIS_EVENTS_REFUSED_MSK);
+    }
+    IOWR_POSICAST_STAGE_START(stage->base, AS_FIELD(axes, POSICAST_STAGE_START_START_AXES));
+    result = posicast_wait_flags(stage);
+    if (result != POSICAST_OK)
+        return result;
+    if ((uint32_t)IORD_POSICAST_STAGE_FLAGS(stage->base) & POSICAST_STAGE_FLAGS_START_REFUSED_MSK)
+        return POSICAST_REFUSED;
+    /* The start itself comes with the next tick; there an axis may still refuse. */
+    for (axis = 0; axis < stage->axes; axis++) {
+        while (has(axes, axis) && FIELD(posicast_status(stage, axis), POSICAST_AXIS_STATUS_CAN_START)) {
+            result = posicast_pass_time(stage, &left);
+            /* A move that was over so soon can start again. */
+            if (result == POSICAST_TIMEOUT)
+                break;
+            if (result != POSICAST_OK)
+                return result;
+        }
+        if (has(axes, axis) &&
+            (uint32_t)IORD_POSICAST_AXIS_EVENTS(stage->base, axis) & POSICAST_AXIS_EVENTS_REFUSED_MSK)
+            return POSICAST_REFUSED;
+    }
+    return POSICAST_OK;
+}
+
+posicast_result posicast_wait_at_rest(const posicast_stage *stage, uint32_t axes, uint32_t ticks)
+{
+    posicast_patience left = posicast_patience_for(stage, ticks);
+    uint32_t axis, longest = 0;
+
+    if (!are_axes(stage, axes))
+        return POSICAST_BAD_ARGUMENT;
+    for (axis = 0; axis < stage->axes; axis++) {
+        uint32_t settle;
+
+        while (has(axes, axis)) {
+            const uint32_t fifo = (uint32_t)IORD_POSICAST_AXIS_FIFO(stage->base, axis);
+            posicast_result result;
+
+            if (posicast_causes(stage, axis) != 0)
+                return POSICAST_FAULT;
+            if (posicast_state(stage, axis) == POSICAST_AXIS_STATUS_STATE_HOLD &&
+                FIELD(fifo, POSICAST_AXIS_FIFO_SEGMENTS_EMPTY))
+                break;
+            result = posicast_pass_time(stage, &left);
+            if (result != POSICAST_OK)
+                return result;
+        }
+        settle = FIELD(IORD_POSICAST_AXIS_SETTLE(stage->base, axis), POSICAST_AXIS_SETTLE_SETTLE_TICKS);
+        if (has(axes, axis) && settle > longest)
+            longest = settle;
+    }
+    return posicast_wait_ticks(stage, longest);
+}
+
+void posicast_stop(const posicast_stage *stage, uint32_t axes)
+{
+    uint32_t axis;
+
+    for (axis = 0; axis < stage->axes; axis++) {
+        if (has(axes, axis))
+            IOWR_POSICAST_AXIS_STOP(stage->base, axis, 0);
+    }
+}
+
+void posicast_take_snapshot(const posicast_stage *stage, posicast_snapshot *snapshot)
+{
+    uint32_t axis;
+
+    IOWR_POSICAST_STAGE_SNAPSHOT(stage->base, 0);
+    snapshot->time_stamp = (uint32_t)IORD_POSICAST_STAGE_SNAPSHOT_TIME_STAMP(stage->base);
+    snapshot->tick_count = (uint32_t)IORD_POSICAST_STAGE_SNAPSHOT_TICK_COUNT(stage->base);
+    for (axis = 0; axis < stage->axes; axis++) {
+        snapshot->position[axis] = (int32_t)IORD_POSICAST_AXIS_SNAPSHOT_POSITION(stage->base, axis);
+        snapshot->velocity[axis] = (int32_t)IORD_POSICAST_AXIS_SNAPSHOT_VELOCITY(stage->base, axis);
+    }
+}
+
+int32_t posicast_command_position(const posicast_stage *stage, uint32_t axis)
+{
+    return (int32_t)IORD_POSICAST_AXIS_COMMAND_POSITION(stage->base, axis);
+}
+
+uint32_t posicast_causes(const posicast_stage *stage, uint32_t axis)
+{
+    return FIELD(IORD_POSICAST_AXIS_CAUSES(stage->base, axis), POSICAST_AXIS_CAUSES_CAUSES);
+}
+
+const char *posicast_cause_name(uint32_t causes)
+{
+    static const char *const names[] = POSICAST_CAUSE_NAMES;
+    uint32_t bit;
+
+    for (bit = 0; bit < sizeof names / sizeof names[0]; bit++) {
+        if (causes >> bit & 1u)
+            return names[bit];
+    }
+    return "none";
+}
+
+posicast_result posicast_self_test(const posicast_stage *stage, uint32_t axis, int32_t duty,
+                                   posicast_self_test_clocks *counted)
+{
+    const uint32_t test = POSICAST_AXIS_CONTROL_DIRECT_ENABLE_MSK | POSICAST_AXIS_CONTROL_SELF_TEST_MSK;
+    posicast_result result = POSICAST_OK;
+    uint32_t tick, clocks;
+
+    if (!is_axis(stage, axis))
+        return POSICAST_BAD_ARGUMENT;
+    if (posicast_state(stage, axis) != POSICAST_AXIS_STATUS_STATE_READY)
+        return POSICAST_WRONG_STATE;
+    set_control(stage, axis, 0, test);
+    /* A duty holds for some time only. */
+    for (tick = 0; tick < SELF_TEST_TICKS && result == POSICAST_OK; tick++) {
+        IOWR_POSICAST_AXIS_DIRECT(stage->base, axis, AS_FIELD(duty, POSICAST_AXIS_DIRECT_DIRECT_DUTY));
+        result = posicast_wait_ticks(stage, 1);
+    }
+    clocks = (uint32_t)IORD_POSICAST_AXIS_SELF_TEST(stage->base, axis);
+    /* Direct mode first: without the other flag alone the duty would go to the pins. */
+    set_control(stage, axis, POSICAST_AXIS_CONTROL_DIRECT_ENABLE_MSK, 0);
+    set_control(stage, axis, POSICAST_AXIS_CONTROL_SELF_TEST_MSK, 0);
+    counted->a_high = FIELD(clocks, POSICAST_AXIS_SELF_TEST_SELF_TEST_HIGH);
+    counted->a_low = FIELD(clocks, POSICAST_AXIS_SELF_TEST_SELF_TEST_LOW);
+    return result;
+}
+
+void posicast_enable_interrupts(const posicast_stage *stage, uint32_t interrupts)
+{
+    IOWR_POSICAST_STAGE_INTERRUPT_ENABLE(stage->base, interrupts);
+}
+
+uint32_t posicast_take_interrupts(const posicast_stage *stage)
+{
+    const uint32_t enabled = (uint32_t)IORD_POSICAST_STAGE_INTERRUPT_ENABLE(stage->base);
+    const uint32_t happened = (uint32_t)IORD_POSICAST_STAGE_INTERRUPT_STATE(stage->base) & enabled;
+
+    /* Only what was seen: what comes in between stays, and raises the line again. */
+    IOWR_POSICAST_STAGE_INTERRUPT_STATE(stage->base, happened);
+    return happened;
+}

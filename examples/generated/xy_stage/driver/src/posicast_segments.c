@@ -1,0 +1,132 @@
+/* The arithmetic of posicast_segments.h. */
+#include "posicast_segments.h"
+
+/* Floor of value / 2^bits; C leaves the shift of a negative number to the compiler. */
+static int64_t shifted_down(int64_t value, unsigned bits)
+{
+    return value >= 0 ? value >> bits : ~(~value >> bits);
+}
+
+/* Sums wrap in the hardware; in C only those of unsigned numbers do. */
+static int64_t wrapping_sum(int64_t a, int64_t b)
+{
+    return (int64_t)((uint64_t)a + (uint64_t)b);
+}
+
+static int fits(int64_t value, unsigned bits)
+{
+    const int64_t half = (int64_t)1 << (bits - 1);
+
+    return value >= -half && value < half;
+}
+
+/* To a word with fewer fraction bits, half up; the largest stays below the end of the word. */
+static int32_t half_up(int64_t value, unsigned bits)
+{
+    const int64_t rounded = shifted_down(value + ((int64_t)1 << (bits - 1)), bits);
+
+    return rounded > INT32_MAX ? INT32_MAX : (int32_t)rounded;
+}
+
+static int64_t extended(int32_t word, unsigned fraction)
+{
+    return (int64_t)word * ((int64_t)1 << (POSICAST_FRACTION_BITS - fraction));
+}
+
+/* The jerk of a segment: 40 bits, two's complement. */
+static int64_t jerk_of(const posicast_entry *entry)
+{
+    const int64_t upper = (int64_t)((entry->words[1] & 0xffu) ^ 0x80u) - 0x80;
+
+    return upper * ((int64_t)1 << 32) + (int64_t)entry->words[0];
+}
+
+posicast_entry posicast_segment(int64_t jerk, uint32_t ticks, uint32_t flags)
+{
+    const uint64_t bits = (uint64_t)jerk;
+    posicast_entry entry;
+
+    entry.words[0] = (uint32_t)bits;
+    entry.words[1] = (uint32_t)(bits >> 32);
+    entry.words[2] = 0;
+    entry.words[3] = ticks | flags;
+    return entry;
+}
+
+posicast_entry posicast_point(posicast_motion at, uint32_t ticks, uint32_t flags)
+{
+    posicast_entry entry;
+
+    entry.words[0] = (uint32_t)at.position;
+    entry.words[1] = (uint32_t)at.velocity;
+    entry.words[2] = (uint32_t)at.acceleration;
+    entry.words[3] = ticks | flags | POSICAST_ENTRY_POINT;
+    return entry;
+}
+
+uint32_t posicast_entry_ticks(const posicast_entry *entry)
+{
+    return entry->words[3] & POSICAST_TICKS_MAX;
+}
+
+posicast_integrator posicast_resting_at(int32_t position)
+{
+    posicast_integrator at;
+
+    at.position = extended(position, POSICAST_POSITION_FRACTION);
+    at.velocity = 0;
+    at.acceleration = 0;
+    return at;
+}
+
+int posicast_integrate(posicast_integrator *at, const posicast_entry *entry)
+{
+    int64_t sum;
+
+    if (entry->words[3] & POSICAST_ENTRY_POINT) {
+        at->position = extended((int32_t)entry->words[0], POSICAST_POSITION_FRACTION);
+        at->velocity = extended((int32_t)entry->words[1], POSICAST_VELOCITY_FRACTION);
+        at->acceleration = extended((int32_t)entry->words[2], POSICAST_ACCELERATION_FRACTION);
+        return 1;
+    }
+    sum = at->acceleration + jerk_of(entry);
+    if (!fits(sum, POSICAST_ACCELERATION_BITS))
+        return 0;
+    at->acceleration = sum;
+    sum = at->velocity + at->acceleration;
+    if (!fits(sum, POSICAST_VELOCITY_BITS))
+        return 0;
+    at->velocity = sum;
+    at->position = wrapping_sum(at->position, at->velocity);
+    return 1;
+}
+
+void posicast_integrate_stop(posicast_integrator *at, int64_t deceleration)
+{
+    int64_t change = -at->velocity;
+
+    if (deceleration == 0) {
+        at->velocity = 0;
+        at->acceleration = 0;
+        return;
+    }
+    if (change > deceleration)
+        change = deceleration;
+    else if (change < -deceleration)
+        change = -deceleration;
+    at->acceleration = change;
+    at->velocity += change;
+    at->position = wrapping_sum(at->position, at->velocity);
+}
+
+posicast_motion posicast_rounded(const posicast_integrator *at)
+{
+    const unsigned bits = POSICAST_FRACTION_BITS - POSICAST_POSITION_FRACTION;
+    const uint64_t rounded = (uint64_t)at->position + ((uint64_t)1 << (bits - 1));
+    posicast_motion shown;
+
+    shown.position = (int32_t)(uint32_t)(rounded >> bits);
+    shown.velocity = half_up(at->velocity, POSICAST_FRACTION_BITS - POSICAST_VELOCITY_FRACTION);
+    shown.acceleration = half_up(at->acceleration, POSICAST_FRACTION_BITS - POSICAST_ACCELERATION_FRACTION);
+    return shown;
+}

@@ -1,0 +1,76 @@
+/* Tap tables: the functions of posicast_driver.h that load and choose them. */
+#include "posicast_driver.h"
+#include "posicast_wait.h"
+
+/* Is it one that the hardware of the axis holds? */
+static int table_fits(const posicast_stage *stage, uint32_t axis, const posicast_table *table)
+{
+    const uint32_t ring = (uint32_t)IORD_POSICAST_AXIS_RING_SAMPLES(stage->base, axis);
+    const int32_t half = (int32_t)((POSICAST_AXIS_TAP_TAP_COEFFICIENT_MSK >> POSICAST_AXIS_TAP_TAP_COEFFICIENT_OFST) / 2u);
+    int64_t sum = 0;
+    uint32_t tap;
+
+    if (table->count == 0 || table->count > (uint32_t)IORD_POSICAST_AXIS_MOST_TAPS(stage->base, axis) ||
+        table->coefficient_fraction != (uint32_t)IORD_POSICAST_AXIS_COEFFICIENT_FRACTION(stage->base, axis))
+        return 0;
+    for (tap = 0; tap < table->count; tap++) {
+        const int32_t coefficient = table->taps[tap].coefficient;
+
+        if (coefficient == 0 || coefficient > half || coefficient < -half - 1 ||
+            table->taps[tap].delay_samples > ring - 2u ||
+            (tap > 0 && table->taps[tap].delay_samples <= table->taps[tap - 1].delay_samples))
+            return 0;
+        sum += coefficient;
+    }
+    return sum == (int64_t)1 << table->coefficient_fraction;
+}
+
+posicast_result posicast_load_table(const posicast_stage *stage, uint32_t axis, uint32_t bank,
+                                    const posicast_table *table, uint32_t how, uint32_t ticks)
+{
+    uint32_t tap, longest, settle, before;
+    posicast_result result;
+
+    if (!is_axis(stage, axis) || bank == 0 || bank > 2 || !table_fits(stage, axis, table))
+        return POSICAST_BAD_ARGUMENT;
+    if (posicast_status(stage, axis) & POSICAST_AXIS_STATUS_SWAP_PENDING_MSK ||
+        FIELD(posicast_status(stage, axis), POSICAST_AXIS_STATUS_TABLE_BANK) == bank)
+        return POSICAST_WRONG_STATE;
+    before = posicast_flags(stage, axis);
+    for (tap = 0; tap < table->count; tap++) {
+        IOWR_POSICAST_AXIS_TAP_ADDRESS(stage->base, axis,
+                                       AS_FIELD(tap, POSICAST_AXIS_TAP_ADDRESS_TAP_INDEX) |
+                                           AS_FIELD(bank, POSICAST_AXIS_TAP_ADDRESS_TAP_BANK));
+        IOWR_POSICAST_AXIS_TAP(stage->base, axis,
+                               AS_FIELD(table->taps[tap].delay_samples, POSICAST_AXIS_TAP_TAP_DELAY) |
+                                   AS_FIELD(table->taps[tap].coefficient, POSICAST_AXIS_TAP_TAP_COEFFICIENT));
+    }
+    result = posicast_refused_since(stage, axis, POSICAST_AXIS_FLAGS_TABLE_REFUSED_MSK, before);
+    if (result != POSICAST_OK)
+        return result;
+    longest = table->taps[table->count - 1].delay_samples;
+    settle = FIELD(IORD_POSICAST_AXIS_SETTLE(stage->base, axis), POSICAST_AXIS_SETTLE_SETTLE_TICKS);
+    if (longest > settle)
+        IOWR_POSICAST_AXIS_SETTLE(stage->base, axis, AS_FIELD(longest, POSICAST_AXIS_SETTLE_SETTLE_TICKS));
+    return posicast_use_table(stage, axis, bank, how, ticks);
+}
+
+posicast_result posicast_use_table(const posicast_stage *stage, uint32_t axis, uint32_t bank, uint32_t how,
+                                   uint32_t ticks)
+{
+    const uint32_t swapped = POSICAST_AXIS_STATUS_SWAP_PENDING_MSK | POSICAST_AXIS_STATUS_TABLE_BANK_MSK;
+    posicast_patience left = posicast_patience_for(stage, ticks);
+    uint32_t before;
+    posicast_result result;
+
+    if (!is_axis(stage, axis) || bank > 2)
+        return POSICAST_BAD_ARGUMENT;
+    before = posicast_flags(stage, axis);
+    IOWR_POSICAST_AXIS_SWAP(
+        stage->base, axis,
+        AS_FIELD(bank, POSICAST_AXIS_SWAP_SWAP_BANK) | AS_FIELD(how, POSICAST_AXIS_SWAP_SWAP_HOW));
+    result = posicast_refused_since(stage, axis, POSICAST_AXIS_FLAGS_TABLE_REFUSED_MSK, before);
+    if (result != POSICAST_OK)
+        return result;
+    return posicast_wait_status(stage, axis, swapped, AS_FIELD(bank, POSICAST_AXIS_STATUS_TABLE_BANK), &left);
+}

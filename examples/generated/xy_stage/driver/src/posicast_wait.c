@@ -1,0 +1,102 @@
+/* The functions of posicast_wait.h, and those of posicast_driver.h that let time pass. */
+#include "posicast_wait.h"
+
+#include <stddef.h>
+
+/* Looks at the time stamp in a row that find it unchanged: an access takes clocks, so it always changes. */
+#define STILL_LOOKS 8u
+/* Clocks from a write until every flag that follows from it shows. */
+#define FLAG_CLOCKS 16u
+
+static uint32_t time_stamp(const posicast_stage *stage)
+{
+    return (uint32_t)IORD_POSICAST_STAGE_TIME_STAMP(stage->base);
+}
+
+static uint32_t tick_count(const posicast_stage *stage)
+{
+    return (uint32_t)IORD_POSICAST_STAGE_TICK_COUNT(stage->base);
+}
+
+posicast_patience posicast_patience_for(const posicast_stage *stage, uint32_t ticks)
+{
+    posicast_patience left;
+
+    left.from_tick = tick_count(stage);
+    left.ticks = ticks;
+    left.stamp = time_stamp(stage);
+    left.still = 0;
+    return left;
+}
+
+posicast_result posicast_pass_time(const posicast_stage *stage, posicast_patience *left)
+{
+    uint32_t stamp;
+
+    posicast_kick(stage);
+    if (stage->pause != NULL)
+        stage->pause(stage->context);
+    stamp = time_stamp(stage);
+    left->still = stamp == left->stamp ? left->still + 1 : 0;
+    left->stamp = stamp;
+    if (left->still >= STILL_LOOKS)
+        return POSICAST_DEAD;
+    return tick_count(stage) - left->from_tick > left->ticks ? POSICAST_TIMEOUT : POSICAST_OK;
+}
+
+posicast_result posicast_wait_status(const posicast_stage *stage, uint32_t axis, uint32_t mask, uint32_t wanted,
+                                     posicast_patience *left)
+{
+    while ((posicast_status(stage, axis) & mask) != wanted) {
+        const posicast_result result = posicast_pass_time(stage, left);
+
+        if (result != POSICAST_OK)
+            return result;
+    }
+    return POSICAST_OK;
+}
+
+posicast_result posicast_wait_flags(const posicast_stage *stage)
+{
+    const uint32_t from = time_stamp(stage);
+    uint32_t looks;
+
+    for (looks = 0; looks < FLAG_CLOCKS; looks++) {
+        if (time_stamp(stage) - from >= FLAG_CLOCKS)
+            return POSICAST_OK;
+    }
+    return time_stamp(stage) == from ? POSICAST_DEAD : POSICAST_OK;
+}
+
+uint32_t posicast_flags(const posicast_stage *stage, uint32_t axis)
+{
+    return (uint32_t)IORD_POSICAST_AXIS_FLAGS(stage->base, axis);
+}
+
+posicast_result posicast_refused_since(const posicast_stage *stage, uint32_t axis, uint32_t refusals, uint32_t before)
+{
+    const posicast_result result = posicast_wait_flags(stage);
+
+    if (result != POSICAST_OK)
+        return result;
+    return posicast_flags(stage, axis) & ~before & refusals ? POSICAST_REFUSED : POSICAST_OK;
+}
+
+void posicast_kick(const posicast_stage *stage)
+{
+    uint32_t axis;
+
+    for (axis = 0; axis < stage->axes; axis++)
+        IOWR_POSICAST_AXIS_KICK(stage->base, axis, POSICAST_KICK_WORD);
+}
+
+posicast_result posicast_wait_ticks(const posicast_stage *stage, uint32_t ticks)
+{
+    posicast_patience left = posicast_patience_for(stage, ticks);
+    posicast_result result;
+
+    do {
+        result = posicast_pass_time(stage, &left);
+    } while (result == POSICAST_OK);
+    return result == POSICAST_TIMEOUT ? POSICAST_OK : result;
+}

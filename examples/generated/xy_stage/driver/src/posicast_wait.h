@@ -1,0 +1,62 @@
+/* Waiting with an end, and looks at an axis: what the parts of the driver share. */
+#ifndef POSICAST_WAIT_H
+#define POSICAST_WAIT_H
+
+#include "posicast_driver.h"
+
+#define FIELD(word, name) (((uint32_t)(word) & name##_MSK) >> name##_OFST)
+#define AS_FIELD(value, name) (((uint32_t)(value) << name##_OFST) & name##_MSK)
+
+/* What is waited for ends. */
+typedef struct {
+    uint32_t from_tick;
+    uint32_t ticks;
+    uint32_t stamp;
+    uint32_t still;
+} posicast_patience;
+
+/* From now on, for so many ticks. */
+posicast_patience posicast_patience_for(const posicast_stage *stage, uint32_t ticks);
+
+/* Lets a little time pass: POSICAST_OK, or why waiting has no more sense. */
+posicast_result posicast_pass_time(const posicast_stage *stage, posicast_patience *left);
+
+/* Until bits of STATUS are these. */
+posicast_result posicast_wait_status(const posicast_stage *stage, uint32_t axis, uint32_t mask, uint32_t wanted,
+                                     posicast_patience *left);
+
+/* Until flags that a write has caused can be read. */
+posicast_result posicast_wait_flags(const posicast_stage *stage);
+
+/* FLAGS of an axis. */
+uint32_t posicast_flags(const posicast_stage *stage, uint32_t axis);
+
+/* Whether writes since `before` was read have set one of these flags, which stay until faults are cleared. */
+posicast_result posicast_refused_since(const posicast_stage *stage, uint32_t axis, uint32_t refusals, uint32_t before);
+
+static inline uint32_t posicast_status(const posicast_stage *stage, uint32_t axis)
+{
+    return (uint32_t)IORD_POSICAST_AXIS_STATUS(stage->base, axis);
+}
+
+static inline int is_axis(const posicast_stage *stage, uint32_t axis)
+{
+    return axis < stage->axes;
+}
+
+static inline int are_axes(const posicast_stage *stage, uint32_t axes)
+{
+    return axes != 0 && (axes & ~posicast_all_axes(stage)) == 0;
+}
+
+static inline int has(uint32_t axes, uint32_t axis)
+{
+    return (axes >> axis & 1u) != 0;
+}
+
+static inline uint32_t state_of(uint32_t word)
+{
+    return FIELD(word, POSICAST_AXIS_STATUS_STATE);
+}
+
+#endif
