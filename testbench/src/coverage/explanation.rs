@@ -121,7 +121,8 @@ pub fn parse(table: &str) -> Result<Vec<Explanation>, Error> {
         let found = cells.and_then(|(block, module, kind, rest)| {
             let (what, reason) = rest.rsplit_once(" | ")?;
             let known = ["line", "toggle", "bin"].contains(&kind.as_str());
-            (known && !reason.trim().is_empty()).then(|| Explanation {
+            // A reason that ends with a bar is one without words.
+            (known && !reason.ends_with('|')).then(|| Explanation {
                 what: what.trim().to_owned(),
                 reason: reason.trim().to_owned(),
                 block,
