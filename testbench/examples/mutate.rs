@@ -100,6 +100,10 @@ fn mutate() -> Result<bool, Error> {
             row.unknown.len(),
             start.elapsed().as_secs_f64()
         );
+        if write {
+            // One by one: what took long is not lost with what comes after it.
+            renew(std::slice::from_ref(&row))?;
+        }
         rows.push(row);
     }
     if kept.is_none() {
@@ -107,9 +111,6 @@ fn mutate() -> Result<bool, Error> {
         let _ = std::fs::remove_dir_all(&temporary);
     }
     print!("{}", table(&rows));
-    if write {
-        renew(&rows)?;
-    }
     Ok(rows.iter().all(|row| row.unknown.is_empty()))
 }
 

@@ -1,7 +1,9 @@
 //! Runs external programs: missing and failed are different errors, and a failure keeps the end of the output.
 
-use std::io::ErrorKind;
+use std::io::{ErrorKind, Read, Seek, SeekFrom};
 use std::process::{Command, Output, Stdio};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
 
 use crate::Error;
 
@@ -45,6 +47,44 @@ impl Tool {
     /// Runs to the end, whatever the exit status.
     pub(crate) fn output(&self, command: &mut Command, doing: &'static str) -> Result<Output, Error> {
         command.output().map_err(|cause| self.not_started(doing, &cause))
+    }
+
+    /// What a success printed on standard output; none if it did not end within `limit`, and was stopped.
+    pub(crate) fn run_within(
+        &self,
+        command: &mut Command,
+        doing: &'static str,
+        limit: Duration,
+    ) -> Result<Option<String>, Error> {
+        let failed = |cause: std::io::Error| self.not_started(doing, &cause);
+        // A file, not a pipe: nobody has to read while it runs.
+        let mut log = tempfile::tempfile().map_err(failed)?;
+        let mut child = command
+            .stdout(log.try_clone().map_err(failed)?)
+            .stderr(Stdio::null())
+            .spawn()
+            .map_err(failed)?;
+        let start = Instant::now();
+        let status = loop {
+            if let Some(status) = child.try_wait().map_err(failed)? {
+                break status;
+            }
+            if start.elapsed() >= limit {
+                // It may have ended by itself in the meantime; both calls then do nothing.
+                let _ = child.kill();
+                let _ = child.wait();
+                return Ok(None);
+            }
+            sleep(Duration::from_millis(5));
+        };
+        let mut printed = String::new();
+        log.seek(SeekFrom::Start(0))
+            .and_then(|_| log.read_to_string(&mut printed))
+            .map_err(failed)?;
+        if status.success() {
+            return Ok(Some(printed));
+        }
+        Err(self.failed(doing, status.to_string(), &printed))
     }
 
     pub(crate) fn not_started(&self, doing: &'static str, cause: &std::io::Error) -> Error {
@@ -106,6 +146,22 @@ mod tests {
             .unwrap_err();
         assert!(!failing.is_missing_tool());
         assert!(failing.to_string().contains("why"), "{failing}");
+    }
+
+    #[test]
+    fn unit_a_program_without_end_is_stopped() {
+        let run =
+            |words: &[&str], limit| NOTHING.run_within(Command::new("sh").arg("-c").args(words), "testing", limit);
+        let soon = Duration::from_millis(50);
+        assert_eq!(run(&["sleep 60"], soon).unwrap(), None);
+        let long = Duration::from_secs(60);
+        assert_eq!(run(&["echo said"], long).unwrap().as_deref(), Some("said\n"));
+        assert!(
+            run(&["echo why; exit 3"], long)
+                .unwrap_err()
+                .to_string()
+                .contains("why")
+        );
     }
 
     #[test]

@@ -3,9 +3,8 @@
 #   tclsh platform_designer.tcl component FILE_hw.tcl
 #   tclsh platform_designer.tcl system 13.0|25.1 SCRIPT.tcl FOLDER_OF_COMPONENTS
 #
-# A script runs in an interpreter that has the commands below and no others. Lists of names are what Quartus II 13.0 knows
-# (handbook 13.0 volume 1, chapters "Creating Qsys Components" and "Component Interface Tcl Reference", and scripts that its
-# component editor wrote): a name that came later is a finding. Prints a record per line, and exits with 1 on a finding.
+# A script runs in an interpreter that has the commands below and no others. Lists of names are what Quartus II 13.0 knows,
+# made by hand from excerpts of its handbook and from public scripts for 13.0 and 13.1: any other name is a finding. Prints a record per line, and exits with 1 on a finding.
 
 set findings 0
 proc finding {text} {

@@ -6,7 +6,6 @@ use super::Mutant;
 use super::netlist::Netlist;
 use crate::Error;
 use crate::formal::{ABC, asserted};
-use crate::tool::text;
 
 /// What is known of a block and its mutant.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -25,7 +24,7 @@ pub(super) enum Comparison {
 /// Most nodes of ABC's BDDs: a few seconds.
 const BDD_NODES: u32 = 200_000;
 
-/// Compares, for at most three times `limit`.
+/// Compares, for at most about four times `limit`.
 ///
 /// Modules that hold a memory are taken out of both: what drives them becomes outputs, what is read from them inputs. That is
 /// sufficient, not necessary: a mutant that reads another word, and then does not use it, counts as different.
@@ -34,6 +33,9 @@ pub(super) fn compare(netlist: &Netlist<'_>, mutant: &Mutant, limit: Duration) -
     let seconds = limit.as_secs().max(1);
     // What is equal in both, by induction over signals, is merged; what is left is small, mostly nothing. Counters that
     // never get far are quick with BDDs, and slow with PDR, which needs a clause for each value.
+    let at = |name: &str| netlist.folder().join(name);
+    // If the first engine comes to no end, the others take what it was given.
+    std::fs::copy(at("miter.aig"), at("merged.aig")).map_err(Error::file(&at("merged.aig"), "write"))?;
     let engines = [
         format!(
             "read_aiger miter.aig; fold; strash; orpos; scorr; scorr -F 4; write_aiger merged.aig; reach -T 20 -F 100000 -B {BDD_NODES}"
@@ -44,7 +46,9 @@ pub(super) fn compare(netlist: &Netlist<'_>, mutant: &Mutant, limit: Duration) -
     for commands in engines {
         let mut abc = ABC.command();
         abc.current_dir(netlist.folder()).args(["-c", &commands]);
-        let said = ABC.run(&mut abc, "comparing a mutant").map(|output| text(&output))?;
+        let Some(said) = ABC.run_within(&mut abc, "comparing a mutant", limit.saturating_mul(2))? else {
+            continue;
+        };
         if ["Property proved", "proved unreachable"]
             .iter()
             .any(|proof| said.contains(proof))
