@@ -2,7 +2,8 @@
 #![cfg(test)]
 
 use posicast_model::analysis::residual_vibration;
-use posicast_model::design::{DesignError, MachineDesign, design_machine, mode_lag_s};
+use posicast_model::design::matching::mode_lag_s;
+use posicast_model::design::{DesignError, MachineDesign, design_machine};
 use posicast_model::digitise::{DELAY_MAX_SAMPLES, TableError};
 use posicast_model::spec::{self, Machine, Scale, ScaleUse};
 use proptest::prelude::*;

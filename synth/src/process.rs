@@ -5,8 +5,9 @@ use std::fs::{self, File};
 use std::io;
 use std::path::Path;
 use std::process::{Command, Stdio};
-use std::thread::sleep;
-use std::time::{Duration, Instant};
+use std::time::Duration;
+
+use wait_timeout::ChildExt;
 
 /// Lines of its output that an error repeats.
 const LAST_LINES: usize = 8;
@@ -44,18 +45,11 @@ pub(crate) fn run(
         .stdout(log)
         .stderr(log_too)
         .spawn()?;
-    let deadline = Instant::now().checked_add(limit);
-    let status = loop {
-        if let Some(status) = child.try_wait()? {
-            break status;
-        }
-        if deadline.is_some_and(|deadline| Instant::now() >= deadline) {
-            // It may have ended by itself in the meantime; both calls then do nothing.
-            let _ = child.kill();
-            let _ = child.wait();
-            return Ok(Ended::TimeOut);
-        }
-        sleep(Duration::from_millis(5));
+    let Some(status) = child.wait_timeout(limit)? else {
+        // It may have ended by itself in the meantime; both calls then do nothing.
+        let _ = child.kill();
+        let _ = child.wait();
+        return Ok(Ended::TimeOut);
     };
     let printed = fs::read(&log_path)?;
     let printed = String::from_utf8_lossy(&printed).into_owned();

@@ -27,6 +27,7 @@ use crate::diff::{self, Comparison, Options, Reset, Verdict};
 use crate::icarus::SCOPE;
 use crate::lockstep::report::{self, Report};
 use crate::lockstep::{self, Clock};
+use crate::netlist::has_memory;
 use crate::wave::Recorder;
 
 /// The clock of the waveforms: Icarus's testbench has two steps of 1 ns per clock.
@@ -172,7 +173,7 @@ impl Bench<'_> {
 
 /// The module without the values that its registers have at power-up. A memory keeps its contents: that of a ROM is what it is.
 fn without_initial_values(module: &Module) -> Module {
-    if module.text.contains(" words [0:") {
+    if has_memory(module) {
         return module.clone();
     }
     let mut text = String::with_capacity(module.text.len());

@@ -21,19 +21,20 @@ use posicast_hdl::emit::Module;
 
 use crate::Error;
 use crate::blocks::{self, Block, Sources};
-use crate::formal::{ABC, YOSYS, asserted};
+use crate::formal::{YOSYS, abc, asserted};
 use crate::lockstep::report::Report;
-use crate::tool::text;
 
 /// Longest difference that is searched for, in clocks: more than a division lasts.
 const SEARCHED_CLOCKS: u32 = 150;
 
-/// Whether netlist and RTL do the same.
+const COMPARING: &str = "comparing RTL and netlist";
+
+/// Whether two versions of a block do the same: its RTL and its netlist, or the block and a mutant.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Verdict {
     /// For all inputs and for ever.
     Equivalent,
-    /// They differ first in this clock after power-up, from 0.
+    /// Some input tells them apart in this clock after power-up, from 0.
     Different {
         /// The clock.
         clock: u32,
@@ -54,10 +55,15 @@ pub struct Parts {
 impl Parts {
     /// Sorts a block's modules.
     pub fn of(modules: Vec<Module>) -> Self {
-        let is_kept = |module: &Module| module.text.contains(" words [0:") || module.text.contains(" <= a_q * b_q;");
+        let is_kept = |module: &Module| has_memory(module) || module.text.contains(" <= a_q * b_q;");
         let (kept, logic) = modules.into_iter().partition(is_kept);
         Self { logic, kept }
     }
+}
+
+/// Whether a module is a memory: the emitter's RAM and ROM are, and nothing else has one.
+pub(crate) fn has_memory(module: &Module) -> bool {
+    module.text.contains(" words [0:")
 }
 
 /// The netlist with the models of its cells in lock step with the block's model.
@@ -142,19 +148,12 @@ pub fn equivalent(
 
     let seconds = limit.as_secs().max(1);
     let proof = format!("read_aiger miter.aig; fold; strash; scorr; pdr -T {seconds}");
-    if abc(folder, &proof)?.contains("Property proved") {
+    if abc(folder, &proof, COMPARING)?.contains("Property proved") {
         return Ok(Verdict::Equivalent);
     }
     let search = format!("read_aiger miter.aig; fold; strash; bmc3 -F {SEARCHED_CLOCKS} -T {seconds}");
-    let found = asserted(&abc(folder, &search)?).next();
+    let found = asserted(&abc(folder, &search, COMPARING)?).next();
     Ok(found.map_or(Verdict::Unknown, |(_, clock)| Verdict::Different { clock }))
-}
-
-fn abc(folder: &Path, commands: &str) -> Result<String, Error> {
-    let mut abc = ABC.command();
-    abc.current_dir(folder).args(["-c", commands]);
-    ABC.run(&mut abc, "comparing RTL and netlist")
-        .map(|output| text(&output))
 }
 
 /// What came out for a block.

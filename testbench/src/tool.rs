@@ -2,8 +2,9 @@
 
 use std::io::{ErrorKind, Read, Seek, SeekFrom};
 use std::process::{Command, Output, Stdio};
-use std::thread::sleep;
-use std::time::{Duration, Instant};
+use std::time::Duration;
+
+use wait_timeout::ChildExt;
 
 use crate::Error;
 
@@ -64,18 +65,11 @@ impl Tool {
             .stderr(Stdio::null())
             .spawn()
             .map_err(failed)?;
-        let start = Instant::now();
-        let status = loop {
-            if let Some(status) = child.try_wait().map_err(failed)? {
-                break status;
-            }
-            if start.elapsed() >= limit {
-                // It may have ended by itself in the meantime; both calls then do nothing.
-                let _ = child.kill();
-                let _ = child.wait();
-                return Ok(None);
-            }
-            sleep(Duration::from_millis(5));
+        let Some(status) = child.wait_timeout(limit).map_err(failed)? else {
+            // It may have ended by itself in the meantime; both calls then do nothing.
+            let _ = child.kill();
+            let _ = child.wait();
+            return Ok(None);
         };
         let mut printed = String::new();
         log.seek(SeekFrom::Start(0))

@@ -36,7 +36,7 @@ pub use error::DesignError;
 pub use joint::Findings;
 pub use joint_error::JointError;
 pub use machine::{AxisTables, MachineDesign, ModeFigures, design_machine};
-pub use matching::{AxisDelay, StageDelay, mode_lag_s};
+pub use matching::{AxisDelay, StageDelay};
 
 use crate::analysis::residual_vibration;
 use crate::impulse::ImpulseSequence;

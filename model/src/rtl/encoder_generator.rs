@@ -29,7 +29,7 @@
 
 use std::sync::Arc;
 
-use super::{ClockedBlock, Direction, Moore, Port, StepError, quiet_at_rest};
+use super::{ClockedBlock, Moore, Port, PortRow, StepError, ports_of, quiet_at_rest};
 
 /// Fraction bits of `rate`.
 pub const RATE_FRACTION: u32 = 32;
@@ -66,7 +66,7 @@ pub struct Outputs {
 }
 
 /// Input ports in port order, with their widths.
-const INPUTS: [(&str, u32, bool); 10] = [
+const INPUTS: [PortRow; 10] = [
     ("rst", 1, false),
     ("loop_back", 1, false),
     ("rate", 32, true),
@@ -80,7 +80,7 @@ const INPUTS: [(&str, u32, bool); 10] = [
 ];
 
 /// Output ports in port order, with their widths.
-const OUTPUTS: [(&str, u32, bool); 7] = [
+const OUTPUTS: [PortRow; 7] = [
     ("a", 1, false),
     ("b", 1, false),
     ("z", 1, false),
@@ -97,16 +97,7 @@ pub const OUTPUT_PORTS: usize = OUTPUTS.len();
 
 /// The ports in the order of the Verilog's port list, without `clk`.
 pub fn ports() -> Vec<Port> {
-    let port = |direction| {
-        move |&(name, width, signed): &(&str, u32, bool)| Port {
-            name: name.to_owned(),
-            direction,
-            width,
-            signed,
-        }
-    };
-    let inputs = INPUTS.iter().map(port(Direction::Input));
-    inputs.chain(OUTPUTS.iter().map(port(Direction::Output))).collect()
+    ports_of(&INPUTS, &OUTPUTS)
 }
 
 impl Inputs {

@@ -21,5 +21,5 @@ mod task;
 mod tool;
 
 pub use self::task::{Engine, Task, all, named};
-pub(crate) use self::tool::{ABC, YOSYS, asserted};
+pub(crate) use self::tool::{ABC, YOSYS, abc, asserted};
 pub use self::tool::{Outcome, Reached, SEARCHED_CLOCKS, Verdict, run};

@@ -229,9 +229,7 @@ impl Bench<'_> {
     }
 
     fn abc(&self, commands: &str) -> Result<String, Error> {
-        let mut abc = ABC.command();
-        abc.current_dir(self.folder).args(["-c", commands]);
-        ABC.run(&mut abc, "proving").map(|output| text(&output))
+        abc(self.folder, commands, "proving")
     }
 
     /// The labels of assertions or covers, in the order of ABC's outputs.
@@ -250,6 +248,13 @@ impl Bench<'_> {
     fn seconds(&self) -> u64 {
         self.limit.as_secs().max(1)
     }
+}
+
+/// What ABC says to these commands, with `folder` as its own.
+pub(crate) fn abc(folder: &Path, commands: &str, doing: &'static str) -> Result<String, Error> {
+    let mut abc = ABC.command();
+    abc.current_dir(folder).args(["-c", commands]);
+    ABC.run(&mut abc, doing).map(|output| text(&output))
 }
 
 /// Outputs and clocks in ABC's words: `Output 3 of miter "asserts" was asserted in frame 12.`

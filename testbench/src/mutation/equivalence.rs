@@ -6,20 +6,7 @@ use super::Mutant;
 use super::netlist::Netlist;
 use crate::Error;
 use crate::formal::{ABC, asserted};
-
-/// What is known of a block and its mutant.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Comparison {
-    /// No input tells them apart, ever.
-    Equivalent,
-    /// Some input does.
-    Different {
-        /// Clocks after power-up, from 0.
-        clock: u32,
-    },
-    /// Neither within the time limit.
-    Unknown,
-}
+use crate::netlist::Verdict;
 
 /// Most nodes of ABC's BDDs: a few seconds.
 const BDD_NODES: u32 = 200_000;
@@ -28,7 +15,7 @@ const BDD_NODES: u32 = 200_000;
 ///
 /// Modules that hold a memory are taken out of both: what drives them becomes outputs, what is read from them inputs. That is
 /// sufficient, not necessary: a mutant that reads another word, and then does not use it, counts as different.
-pub(super) fn compare(netlist: &Netlist<'_>, mutant: &Mutant, limit: Duration) -> Result<Comparison, Error> {
+pub(super) fn compare(netlist: &Netlist<'_>, mutant: &Mutant, limit: Duration) -> Result<Verdict, Error> {
     netlist.yosys("miter", &miter(netlist.top(), &mutant.arguments))?;
     let seconds = limit.as_secs().max(1);
     // What is equal in both, by induction over signals, is merged; what is left is small, mostly nothing. Counters that
@@ -53,13 +40,13 @@ pub(super) fn compare(netlist: &Netlist<'_>, mutant: &Mutant, limit: Duration) -
             .iter()
             .any(|proof| said.contains(proof))
         {
-            return Ok(Comparison::Equivalent);
+            return Ok(Verdict::Equivalent);
         }
         if let Some((_, clock)) = asserted(&said).next() {
-            return Ok(Comparison::Different { clock });
+            return Ok(Verdict::Different { clock });
         }
     }
-    Ok(Comparison::Unknown)
+    Ok(Verdict::Unknown)
 }
 
 /// Makes modules with memory in them black boxes.

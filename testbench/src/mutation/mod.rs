@@ -35,9 +35,9 @@ pub use self::table::{Row, renewed, table};
 use std::path::Path;
 use std::time::Duration;
 
-use self::equivalence::Comparison;
 use self::netlist::Netlist;
 use crate::Error;
+use crate::netlist::Verdict;
 
 /// How many mutants, and how hard each is tried.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -124,9 +124,9 @@ pub fn run_with<'a>(
 /// Equivalent, broken by a property, or unknown.
 fn survivor(subject: &Subject, netlist: &Netlist<'_>, mutant: &Mutant, options: &Options) -> Result<Fate, Error> {
     let differs = match equivalence::compare(netlist, mutant, options.proof)? {
-        Comparison::Equivalent => return Ok(Fate::Equivalent),
-        Comparison::Different { clock } => Some(clock),
-        Comparison::Unknown => None,
+        Verdict::Equivalent => return Ok(Fate::Equivalent),
+        Verdict::Different { clock } => Some(clock),
+        Verdict::Unknown => None,
     };
     let broken = properties::broken(subject, netlist, mutant, options.proof)?;
     Ok(broken.map_or(Fate::Unknown { differs }, Fate::Property))

@@ -1,5 +1,7 @@
 //! The input ports of the axis's supervisor.
 
+use crate::rtl::PortRow;
+
 /// The input ports. Bits above a port's width are ignored.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Inputs {
@@ -106,7 +108,7 @@ pub struct Inputs {
 }
 
 /// In port order, with width and sign.
-pub(super) const INPUTS: [(&str, u32, bool); 50] = [
+pub(super) const INPUTS: [PortRow; 50] = [
     ("rst", 1, false),
     ("tick", 1, false),
     ("emergency_stop_n", 1, false),

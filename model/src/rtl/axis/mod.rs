@@ -39,7 +39,7 @@ pub use outputs::{OUTPUT_PORTS, Outputs};
 pub use transition::{Condition, Conditions, State, TRANSITIONS, Transition, next};
 
 use self::registers::Registers;
-use super::{ClockedBlock, Direction, FOREVER, Moore, Port, StepError};
+use super::{ClockedBlock, FOREVER, Moore, Port, StepError, ports_of};
 
 /// The word that kicks the watchdog: `KICK`, in ASCII.
 pub const KICK: u32 = 0x4b49_434b;
@@ -133,18 +133,7 @@ impl Axis {
 
 /// The ports in the order of the Verilog's port list, without `clk`.
 pub fn ports() -> Vec<Port> {
-    let port = |direction| {
-        move |&(name, width, signed): &(&str, u32, bool)| Port {
-            name: name.to_owned(),
-            direction,
-            width,
-            signed,
-        }
-    };
-    let inputs = inputs::INPUTS.iter().map(port(Direction::Input));
-    inputs
-        .chain(outputs::OUTPUTS.iter().map(port(Direction::Output)))
-        .collect()
+    ports_of(&inputs::INPUTS, &outputs::OUTPUTS)
 }
 
 impl ClockedBlock for Axis {

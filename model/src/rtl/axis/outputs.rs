@@ -1,6 +1,7 @@
 //! The output ports of the axis's supervisor.
 
 use super::transition::State;
+use crate::rtl::PortRow;
 
 /// The output ports, all of them registers or functions of registers.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -66,7 +67,7 @@ pub struct Outputs {
 }
 
 /// In port order, with width and sign.
-pub(super) const OUTPUTS: [(&str, u32, bool); 29] = [
+pub(super) const OUTPUTS: [PortRow; 29] = [
     ("state", 3, false),
     ("causes", 16, false),
     ("drive_enable", 1, false),

@@ -70,11 +70,6 @@ impl Composed {
         composed
     }
 
-    /// How it is joined.
-    pub fn composition(&self) -> &Composition {
-        &self.composition
-    }
-
     /// The place of the net of that name, for [`value`](Self::value).
     pub fn net(&self, name: &str) -> Option<usize> {
         self.composition.nets.iter().position(|net| net.port.name == name)

@@ -1,6 +1,6 @@
 //! The ports of the drive command.
 
-use crate::rtl::{Direction, Port};
+use crate::rtl::{Port, PortRow, ports_of};
 
 /// Width of the controller's duty.
 pub const CONTROLLER_DUTY_BITS: u32 = 18;
@@ -103,7 +103,7 @@ impl Default for Outputs {
 }
 
 /// Input ports in port order, with their widths.
-const INPUTS: [(&str, u32, bool); 20] = [
+const INPUTS: [PortRow; 20] = [
     ("rst", 1, false),
     ("tick", 1, false),
     ("controller_duty", CONTROLLER_DUTY_BITS, true),
@@ -127,7 +127,7 @@ const INPUTS: [(&str, u32, bool); 20] = [
 ];
 
 /// Output ports in port order, with their widths.
-const OUTPUTS: [(&str, u32, bool); 11] = [
+const OUTPUTS: [PortRow; 11] = [
     ("duty", DUTY_BITS, true),
     ("feed", 1, false),
     ("pwm_enable", 1, false),
@@ -148,16 +148,7 @@ pub const OUTPUT_PORTS: usize = OUTPUTS.len();
 
 /// The ports in the order of the Verilog's port list, without `clk`.
 pub fn ports() -> Vec<Port> {
-    let port = |direction| {
-        move |&(name, width, signed): &(&str, u32, bool)| Port {
-            name: name.to_owned(),
-            direction,
-            width,
-            signed,
-        }
-    };
-    let inputs = INPUTS.iter().map(port(Direction::Input));
-    inputs.chain(OUTPUTS.iter().map(port(Direction::Output))).collect()
+    ports_of(&INPUTS, &OUTPUTS)
 }
 
 impl Inputs {

@@ -1,6 +1,6 @@
 //! The ports of the excitation.
 
-use crate::rtl::{Direction, Port};
+use crate::rtl::{Port, PortRow, ports_of};
 
 /// What the signal is.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -69,7 +69,7 @@ pub struct Outputs {
 }
 
 /// Input ports in port order, with their widths.
-const INPUTS: [(&str, u32, bool); 14] = [
+const INPUTS: [PortRow; 14] = [
     ("rst", 1, false),
     ("valid", 1, false),
     ("y_0", 32, true),
@@ -87,7 +87,7 @@ const INPUTS: [(&str, u32, bool); 14] = [
 ];
 
 /// Output ports in port order, with their widths.
-const OUTPUTS: [(&str, u32, bool); 7] = [
+const OUTPUTS: [PortRow; 7] = [
     ("position_reference", 32, true),
     ("velocity_reference", 32, true),
     ("acceleration_reference", 32, true),
@@ -165,14 +165,5 @@ impl Outputs {
 
 /// The ports in the order of the Verilog's port list, without `clk`.
 pub fn ports() -> Vec<Port> {
-    let port = |direction| {
-        move |&(name, width, signed): &(&str, u32, bool)| Port {
-            name: name.to_owned(),
-            direction,
-            width,
-            signed,
-        }
-    };
-    let inputs = INPUTS.iter().map(port(Direction::Input));
-    inputs.chain(OUTPUTS.iter().map(port(Direction::Output))).collect()
+    ports_of(&INPUTS, &OUTPUTS)
 }

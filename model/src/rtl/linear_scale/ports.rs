@@ -2,7 +2,7 @@
 
 use super::{MANTISSA_BITS, SHIFT_BITS};
 use crate::rtl::shaper::wrap;
-use crate::rtl::{Direction, Port};
+use crate::rtl::{Port, PortRow, ports_of};
 
 /// The input ports. Bits above a port's width are ignored.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -44,7 +44,7 @@ pub struct Outputs {
 }
 
 /// Input ports in port order, with their widths.
-const INPUTS: [(&str, u32, bool); 10] = [
+const INPUTS: [PortRow; 10] = [
     ("rst", 1, false),
     ("tick", 1, false),
     ("motor_position", 32, true),
@@ -58,7 +58,7 @@ const INPUTS: [(&str, u32, bool); 10] = [
 ];
 
 /// Output ports in port order, with their widths.
-const OUTPUTS: [(&str, u32, bool); 4] = [
+const OUTPUTS: [PortRow; 4] = [
     ("deviation", 32, true),
     ("deviation_valid", 1, false),
     ("position", 32, true),
@@ -72,16 +72,7 @@ pub const OUTPUT_PORTS: usize = OUTPUTS.len();
 
 /// The ports in the order of the Verilog's port list, without `clk`.
 pub fn ports() -> Vec<Port> {
-    let port = |direction| {
-        move |&(name, width, signed): &(&str, u32, bool)| Port {
-            name: name.to_owned(),
-            direction,
-            width,
-            signed,
-        }
-    };
-    let inputs = INPUTS.iter().map(port(Direction::Input));
-    inputs.chain(OUTPUTS.iter().map(port(Direction::Output))).collect()
+    ports_of(&INPUTS, &OUTPUTS)
 }
 
 impl Inputs {

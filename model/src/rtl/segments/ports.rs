@@ -1,6 +1,6 @@
 //! The ports of the command FIFO.
 
-use crate::rtl::{Direction, Port};
+use crate::rtl::{Port, PortRow, ports_of};
 
 /// The input ports. Bits above a port's width are ignored.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -36,7 +36,7 @@ pub struct Inputs {
 }
 
 /// Input ports in port order, with their widths.
-const INPUTS: [(&str, u32, bool); 14] = [
+const INPUTS: [PortRow; 14] = [
     ("rst", 1, false),
     ("tick", 1, false),
     ("enable", 1, false),
@@ -54,7 +54,7 @@ const INPUTS: [(&str, u32, bool); 14] = [
 ];
 
 /// Output ports in port order, with their widths.
-const OUTPUTS: [(&str, u32, bool); 15] = [
+const OUTPUTS: [PortRow; 15] = [
     ("position", 32, true),
     ("velocity", 32, true),
     ("acceleration", 32, true),
@@ -190,14 +190,5 @@ impl Outputs {
 
 /// The ports in the order of the Verilog's port list, without `clk`.
 pub fn ports() -> Vec<Port> {
-    let port = |direction| {
-        move |&(name, width, signed): &(&str, u32, bool)| Port {
-            name: name.to_owned(),
-            direction,
-            width,
-            signed,
-        }
-    };
-    let inputs = INPUTS.iter().map(port(Direction::Input));
-    inputs.chain(OUTPUTS.iter().map(port(Direction::Output))).collect()
+    ports_of(&INPUTS, &OUTPUTS)
 }
