@@ -3,6 +3,8 @@
 #![cfg(test)] // lets clippy see that this is test code
 
 use crate::support::{example, json, one_axis, posicast, scratch};
+use posicast_testbench::blocks::library;
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::process::Output;
 
@@ -92,6 +94,26 @@ fn cli_verify_takes_blocks_by_name_and_says_which_there_are() {
         said.contains("divdier") && said.contains("cascade, divider, divider_share, drive_command"),
         "{said}"
     );
+}
+
+#[test]
+fn cli_verify_knows_no_block_that_the_ladder_leaves_out() {
+    let mut unknown = posicast();
+    unknown
+        .arg("verify")
+        .arg(example("xy-stage.toml"))
+        .args(["--block", "none"]);
+    let said = String::from_utf8_lossy(&unknown.output().unwrap().stderr).into_owned();
+    let said = said.split_whitespace().collect::<Vec<_>>().join(" ");
+    let (_, names) = said.split_once("choose from: ").unwrap_or_else(|| panic!("{said}"));
+    let library = library().unwrap();
+    let in_ladder: BTreeSet<&str> = library.iter().map(|block| block.name()).collect();
+    for name in names.trim().split(", ") {
+        assert!(
+            in_ladder.contains(name),
+            "{name} is no row of the ladder: {in_ladder:?}"
+        );
+    }
 }
 
 #[test]
