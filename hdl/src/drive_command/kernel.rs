@@ -43,7 +43,8 @@ pub(super) struct DriveCommand {
     pwm_enable_q: Dff<Bit>,
     drive_enable_q: Dff<Bit>,
     brake_release_q: Dff<Bit>,
-    filtered_fault_n_q: Dff<Bits<2>>,
+    axis_trip_n_q: Dff<Bit>,
+    drive_fault_pin: PinRegister,
     active: Dff<Bit>,
     expired: Dff<Bit>,
     ticks_left: Dff<Bits<16>>,
@@ -130,7 +131,8 @@ impl Default for DriveCommand {
             pwm_enable_q: Dff::default(),
             drive_enable_q: Dff::default(),
             brake_release_q: Dff::default(),
-            filtered_fault_n_q: Dff::new(from_u64(3)),
+            axis_trip_n_q: Dff::new(true),
+            drive_fault_pin: PinRegister::default(),
             active: Dff::default(),
             expired: Dff::default(),
             ticks_left: Dff::default(),
@@ -189,7 +191,7 @@ impl Logic for DriveCommand {
             pwm_enable_q,
             drive_enable_q,
             brake_release_q,
-            filtered_fault_n_q,
+            axis_trip_n_q,
             active,
             expired,
             ticks_left,
@@ -282,15 +284,18 @@ impl Logic for DriveCommand {
             self.duty_q.d.next = self.nothing.val();
         }
 
-        comment!("Faults: bit 0 the supervisor, bit 1 the drive");
-        self.filtered_fault_n_q.d.next = self.both_faults.val();
-        if self.axis_pwm_trip_n.val() {
-            self.filtered_fault_n_q.d.next = self.fault_of_drive.val();
+        comment!("Faults: bit 0 the supervisor, bit 1 the drive's pin");
+        self.drive_fault_pin.clk.next = self.clk.val();
+        self.drive_fault_pin.pin.next = self.drive_fault_n.val();
+        self.axis_trip_n_q.d.next = self.axis_pwm_trip_n.val();
+        self.filtered_fault_n.next = self.both_faults.val();
+        if self.axis_trip_n_q.q.val() {
+            self.filtered_fault_n.next = self.fault_of_drive.val();
         }
-        if self.drive_fault_n.val() {
-            self.filtered_fault_n_q.d.next = self.fault_of_axis.val();
-            if self.axis_pwm_trip_n.val() {
-                self.filtered_fault_n_q.d.next = self.no_fault.val();
+        if self.drive_fault_pin.level.val() {
+            self.filtered_fault_n.next = self.fault_of_axis.val();
+            if self.axis_trip_n_q.q.val() {
+                self.filtered_fault_n.next = self.no_fault.val();
             }
         }
 
@@ -323,7 +328,6 @@ impl Logic for DriveCommand {
         self.pwm_enable.next = self.pwm_enable_q.q.val();
         self.drive_enable.next = self.drive_enable_q.q.val();
         self.brake_release.next = self.brake_release_q.q.val();
-        self.filtered_fault_n.next = self.filtered_fault_n_q.q.val();
         self.direct_active.next = self.active.q.val();
         self.direct_expired.next = self.expired.q.val();
         self.mask_pins.next = self.masked.q.val();

@@ -146,17 +146,12 @@ set_false_path -from [get_ports {{{trips}}}] -to [get_registers {{*|armed}}]
     text
 }
 
-/// Patterns of the flip-flops that lines end in: the first of a synchroniser, or a plain one that stands before it, as the
+/// Patterns of the flip-flops that lines end in: the first of a synchroniser, or a pin register that stands before it, as the
 /// encoder generator and `drive_command` have.
 fn first_registers(stage: &Unit<'_>) -> String {
-    let plain = [
-        ("_pin_register", "*|pin_register_q"),
-        ("_drive_command", "*|filtered_fault_n_q*"),
-    ];
-    let has = |module: &str| stage.modules.iter().any(|name| name.ends_with(module));
-    let plain = plain.into_iter().filter(|(module, _)| has(module));
-    let patterns = std::iter::once("*synchroniser_first").chain(plain.map(|(_, pattern)| pattern));
-    patterns.collect::<Vec<_>>().join(" ")
+    let has_pin_register = stage.modules.iter().any(|name| name.ends_with("_pin_register"));
+    let pin_register = has_pin_register.then_some(" *|pin_register_q");
+    format!("*synchroniser_first{}", pin_register.unwrap_or_default())
 }
 
 /// Does this pin trip a PWM without a clock?

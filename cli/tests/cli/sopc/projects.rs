@@ -67,7 +67,7 @@ fn cli_a_project_places_and_constrains_every_port() {
             .collect();
         let expected = [
             "*altera_std_synchronizer:*|din_s1",
-            "*synchroniser_first *|filtered_fault_n_q*",
+            "*synchroniser_first *|pin_register_q",
             "*|armed",
         ];
         assert_eq!(ends.iter().map(String::as_str).collect::<Vec<_>>(), expected);

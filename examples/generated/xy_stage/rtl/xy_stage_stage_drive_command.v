@@ -33,7 +33,7 @@ module xy_stage_stage_drive_command (
     output wire               pwm_enable,
     output wire               drive_enable,
     output wire               brake_release,
-    output wire [1:0]         filtered_fault_n,
+    output reg  [1:0]         filtered_fault_n,
     output wire               direct_active,
     output wire               direct_expired,
     output wire               mask_pins,
@@ -83,8 +83,8 @@ module xy_stage_stage_drive_command (
     wire        drive_enable_q_next;
     reg         brake_release_q;
     wire        brake_release_q_next;
-    reg  [1:0]  filtered_fault_n_q;
-    reg  [1:0]  filtered_fault_n_q_next;
+    reg         axis_trip_n_q;
+    wire        drive_fault_pin_level;
     reg         active;
     reg         expired;
     reg         expired_next;
@@ -102,6 +102,12 @@ module xy_stage_stage_drive_command (
     reg  [15:0] high_result_next;
     reg  [15:0] low_result;
     reg  [15:0] low_result_next;
+
+    xy_stage_stage_pin_register u_drive_fault_pin (
+        .clk   (clk),
+        .pin   (drive_fault_n),
+        .level (drive_fault_pin_level)
+    );
 
     // Direct mode: in READY, from a kick, for a time
     assign test_changes = active & (self_test ^ masked);
@@ -137,7 +143,6 @@ module xy_stage_stage_drive_command (
     assign pwm_enable = pwm_enable_q;
     assign drive_enable = drive_enable_q;
     assign brake_release = brake_release_q;
-    assign filtered_fault_n = filtered_fault_n_q;
     assign direct_active = active;
     assign direct_expired = expired;
     assign mask_pins = masked;
@@ -210,15 +215,15 @@ module xy_stage_stage_drive_command (
             duty_q_next = NOTHING;
         end
 
-        // Faults: bit 0 the supervisor, bit 1 the drive
-        filtered_fault_n_q_next = BOTH_FAULTS;
-        if (axis_pwm_trip_n) begin
-            filtered_fault_n_q_next = FAULT_OF_DRIVE;
+        // Faults: bit 0 the supervisor, bit 1 the drive's pin
+        filtered_fault_n = BOTH_FAULTS;
+        if (axis_trip_n_q) begin
+            filtered_fault_n = FAULT_OF_DRIVE;
         end
-        if (drive_fault_n) begin
-            filtered_fault_n_q_next = FAULT_OF_AXIS;
-            if (axis_pwm_trip_n) begin
-                filtered_fault_n_q_next = NO_FAULT;
+        if (drive_fault_pin_level) begin
+            filtered_fault_n = FAULT_OF_AXIS;
+            if (axis_trip_n_q) begin
+                filtered_fault_n = NO_FAULT;
             end
         end
 
@@ -253,7 +258,7 @@ module xy_stage_stage_drive_command (
             pwm_enable_q <= 1'd0;
             drive_enable_q <= 1'd0;
             brake_release_q <= 1'd0;
-            filtered_fault_n_q <= 2'd3;
+            axis_trip_n_q <= 1'd1;
             active <= 1'd0;
             expired <= 1'd0;
             ticks_left <= 16'd0;
@@ -269,7 +274,7 @@ module xy_stage_stage_drive_command (
             pwm_enable_q <= pwm_enable_q_next;
             drive_enable_q <= drive_enable_q_next;
             brake_release_q <= brake_release_q_next;
-            filtered_fault_n_q <= filtered_fault_n_q_next;
+            axis_trip_n_q <= axis_pwm_trip_n;
             active <= next_active;
             expired <= expired_next;
             ticks_left <= ticks_left_next;
@@ -288,7 +293,7 @@ module xy_stage_stage_drive_command (
         pwm_enable_q = 1'd0;
         drive_enable_q = 1'd0;
         brake_release_q = 1'd0;
-        filtered_fault_n_q = 2'd3;
+        axis_trip_n_q = 1'd1;
         active = 1'd0;
         expired = 1'd0;
         ticks_left = 16'd0;

@@ -77,6 +77,7 @@ foreach kind {QUARTUS_SYNTH SIM_VERILOG} {
     add_fileset_file xy_stage_stage_decoder.v VERILOG PATH ../rtl/xy_stage_stage_decoder.v
     add_fileset_file xy_stage_stage_velocity.v VERILOG PATH ../rtl/xy_stage_stage_velocity.v
     add_fileset_file xy_stage_stage_pulse_counter.v VERILOG PATH ../rtl/xy_stage_stage_pulse_counter.v
+    add_fileset_file xy_stage_stage_pin_register.v VERILOG PATH ../rtl/xy_stage_stage_pin_register.v
     add_fileset_file xy_stage_stage_drive_command.v VERILOG PATH ../rtl/xy_stage_stage_drive_command.v
     add_fileset_file xy_stage_stage_x_pwm_carrier.v VERILOG PATH ../rtl/xy_stage_stage_x_pwm_carrier.v
     add_fileset_file xy_stage_stage_x_pwm_timing.v VERILOG PATH ../rtl/xy_stage_stage_x_pwm_timing.v

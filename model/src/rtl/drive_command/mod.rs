@@ -7,6 +7,7 @@
 //! - **Direct mode**, for bring-up: in READY alone, with `direct_enable`, from a `direct_kick` until as many ticks have come as
 //!   `direct_hold_ticks` said then. All outputs are on; each tick takes `direct_duty`, at most `direct_limit` in size. A sign
 //!   that turns is 0 for a tick; on a limit switch the duty is 0 in its direction, at once.
+//! - `drive_fault_n` is asynchronous: it passes one register that no reset touches, to the synchroniser in the PWM.
 //! - A change between the two, either way, begins with a duty of 0.
 //! - **Self-test** of the PWM: direct mode with `self_test` masks the pins and leaves drive and brake off. Only the PWM runs,
 //!   and the clocks that its gates of leg A are on are counted. A change of `self_test` ends direct mode. The mask stays for
@@ -88,7 +89,7 @@ impl Default for DriveCommand {
 }
 
 impl DriveCommand {
-    /// The block after reset.
+    /// The block at power-up.
     pub fn new() -> Self {
         Self {
             ports: ports().into(),
@@ -110,7 +111,11 @@ impl DriveCommand {
         let shown = self.shown;
         if inputs.rst {
             (self.ticks_left, self.backward) = (0, false);
-            (self.on_clocks, self.shown) = ([0; 2], Outputs::default());
+            self.on_clocks = [0; 2];
+            self.shown = Outputs {
+                filtered_fault_n: 1 | u8::from(inputs.drive_fault_n) << 1,
+                ..Outputs::default()
+            };
             return shown;
         }
         let test_changes = shown.direct_active && inputs.self_test != shown.mask_pins;

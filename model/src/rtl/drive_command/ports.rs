@@ -84,7 +84,7 @@ pub struct Outputs {
 }
 
 impl Default for Outputs {
-    /// After reset: all off. No fault is reported: the PWM is off by its own latch then.
+    /// At power-up: all off, and the register behind `drive_fault_n` low.
     fn default() -> Self {
         Self {
             duty: 0,
@@ -92,7 +92,7 @@ impl Default for Outputs {
             pwm_enable: false,
             drive_enable: false,
             brake_release: false,
-            filtered_fault_n: 3,
+            filtered_fault_n: 1,
             direct_active: false,
             direct_expired: false,
             mask_pins: false,

@@ -13,7 +13,7 @@ set_output_delay -clock clock_50 -min 0.0 [get_ports {uart_txd x_a_high x_a_low 
 set_output_delay -clock clock_50 -max 5.0 [get_ports {uart_txd x_a_high x_a_low x_b_high x_b_low x_drive_enable x_brake_release y_a_high y_a_low y_b_high y_b_low y_drive_enable y_brake_release}]
 
 # Lines change at any time. Each ends in a synchroniser, and the first flip-flop on the way may be late
-set_false_path -from [get_ports {reset_button_n emergency_stop_n x_a x_b x_z x_limit_plus_n x_limit_minus_n x_home x_drive_ready x_drive_fault_n x_fault_n y_a y_b y_z y_limit_plus_n y_limit_minus_n y_home y_drive_ready y_drive_fault_n y_fault_n}] -to [get_registers {*synchroniser_first *|filtered_fault_n_q*}]
+set_false_path -from [get_ports {reset_button_n emergency_stop_n x_a x_b x_z x_limit_plus_n x_limit_minus_n x_home x_drive_ready x_drive_fault_n x_fault_n y_a y_b y_z y_limit_plus_n y_limit_minus_n y_home y_drive_ready y_drive_fault_n y_fault_n}] -to [get_registers {*synchroniser_first *|pin_register_q}]
 set_false_path -from [get_ports {uart_rxd}] -to [get_registers {*altera_std_synchronizer:*|din_s1}]
 
 # A fault sets its latch without a clock
