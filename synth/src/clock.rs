@@ -99,14 +99,13 @@ impl PlaceAndRoute {
     /// # Errors
     /// [`ClockError::Missing`], or what its start failed with.
     pub fn installed() -> Result<Self, ClockError> {
-        let mut found = Err(ClockError::Missing(PROGRAMS[0].into()));
         for program in PROGRAMS {
-            found = Self::at(Path::new(program));
-            if !matches!(found, Err(ClockError::Missing(_))) {
-                break;
+            match Self::at(Path::new(program)) {
+                Err(ClockError::Missing(_)) => {}
+                found => return found,
             }
         }
-        found
+        Err(ClockError::Missing(PROGRAMS[0].into()))
     }
 
     /// The nextpnr of this path.

