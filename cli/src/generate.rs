@@ -1,7 +1,6 @@
 //! `posicast generate`: the Verilog of a machine, and what Quartus needs beside it, in a folder of its own.
 
 use crate::blocks;
-use crate::control::AxisControl;
 use crate::design::Report;
 use crate::driver;
 use crate::failure::Failure;
@@ -13,7 +12,7 @@ use posicast_hdl::emit::Module;
 use posicast_hdl::machine::{AxisShaper, emit_machine};
 use posicast_model::spec::Machine;
 use posicast_synth::package::Package;
-use posicast_testbench::blocks::Block;
+use posicast_testbench::blocks::{Block, ComponentBlock};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
@@ -35,16 +34,10 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let board = sopc::board(&file.machine, &args.machine)?;
     let shapers = machine::shapers(&file.machine, &report.design, &args.machine)?;
     let stage = stage::of_machine(&file.machine, &report.design, &args.machine)?;
-    let modules = modules(
-        &file.machine,
-        &shapers,
-        &report.controllers,
-        stage.as_ref(),
-        &args.machine,
-    )?;
+    let components = blocks::components(&file.machine, &shapers, &report.controllers, &args.machine)?;
+    let modules = modules(&file.machine, &shapers, &components, stage.as_ref(), &args.machine)?;
     let mut package = open(args.output.as_deref(), &file)?;
     add_sources(&mut package, &file, &modules)?;
-    let components = blocks::components(&file.machine, &shapers, &report.controllers, &args.machine)?;
     sopc::add(&mut package, &file.machine, board, stage.as_ref(), &components)?;
     driver::add(&mut package, &file.machine, &modules, &components, stage.as_ref())?;
     package
@@ -62,12 +55,12 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
 pub(crate) fn modules(
     machine: &Machine,
     shapers: &[AxisShaper],
-    controllers: &[Option<AxisControl>],
+    components: &[ComponentBlock],
     stage: Option<&Stage>,
     path: &Path,
 ) -> Result<Vec<Module>, Failure> {
     let mut modules = emit_machine(&machine.name, shapers).map_err(Failure::because)?;
-    for component in blocks::components(machine, shapers, controllers, path)? {
+    for component in components {
         modules.extend(component.modules().map_err(Failure::because)?);
     }
     if let Some(stage) = stage {

@@ -78,8 +78,8 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     }
     let yosys = installed_yosys()?;
     let axes = simulate(machine, &design.design, &shapers, &words)?;
-    let modules = generate::modules(machine, &shapers, &design.controllers, stage.as_ref(), &args.machine)?;
     let components = blocks::components(machine, &shapers, &design.controllers, &args.machine)?;
+    let modules = generate::modules(machine, &shapers, &components, stage.as_ref(), &args.machine)?;
     let top = blocks::shapers(machine, shapers, &words)?;
     let components = components.iter().chain(stage.as_ref().map(|stage| &stage.block));
     let components = components.map(|component| component as &dyn Block);

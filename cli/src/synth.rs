@@ -3,7 +3,7 @@
 mod clock;
 
 use self::clock::{ClockEstimates, Clocks};
-use crate::blocks::COMPONENT_SUFFIX;
+use crate::blocks::{self, COMPONENT_SUFFIX};
 use crate::design::Report;
 use crate::failure::Failure;
 use crate::output::{self, Table};
@@ -145,7 +145,8 @@ fn sources(source: &Path) -> Result<(Machine, Vec<PathBuf>, Option<tempfile::Tem
     let report = Report::new(&machine, source)?;
     let shapers = machine::shapers(&machine, &report.design, source)?;
     let stage = stage::of_machine(&machine, &report.design, source)?;
-    let modules = generate::modules(&machine, &shapers, &report.controllers, stage.as_ref(), source)?;
+    let components = blocks::components(&machine, &shapers, &report.controllers, source)?;
+    let modules = generate::modules(&machine, &shapers, &components, stage.as_ref(), source)?;
     let (files, scratch) = generate::write_scratch(&modules)?;
     Ok((machine, files, Some(scratch)))
 }

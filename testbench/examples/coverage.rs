@@ -4,14 +4,13 @@
 //! ```text
 //! --block NAME    only these blocks; may be given several times
 //! --clocks N      per block (1,000,000): with fewer, more is not reached, and explained nowhere
-//! --write         renews the table in docs/verification.md
+//! --write         renews the table in docs/verification.md, or the rows of the block
 //! ```
 //!
 //! Prints the table, and what is wrong on standard error. Exit status: 0 every hole explained and no explanation outdated, 1
 //! not so, 2 cannot run, 3 a tool is missing.
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "it is a program")]
 
-use std::path::Path;
 use std::process::ExitCode;
 
 use posicast_testbench::Error;
@@ -61,8 +60,8 @@ impl Arguments {
                 }
             }
         }
-        if found.write && !(found.blocks.is_empty() && found.clocks == CLOCKS) {
-            let reason = "--write is for all blocks and the clocks of the explanations: leave out --block and --clocks";
+        if found.write && found.clocks != CLOCKS {
+            let reason = "--write is for the clocks of the explanations: leave out --clocks";
             return Err(Error::Option(reason.to_owned()));
         }
         Ok(found)
@@ -95,20 +94,8 @@ fn cover() -> Result<bool, Error> {
     let table = table::markdown(&measured, &explanations);
     print!("{table}");
     if arguments.write {
-        renew(&table)?;
+        let subjects = subjects()?;
+        table::MARKS.renew(|old| table::merged(old, &table, &subjects))?;
     }
     Ok(problems.is_empty() && outdated.is_empty())
-}
-
-fn renew(table: &str) -> Result<(), Error> {
-    let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/verification.md"));
-    let failed = |doing| {
-        move |source| Error::File {
-            path: path.to_owned(),
-            doing,
-            source,
-        }
-    };
-    let page = std::fs::read_to_string(path).map_err(failed("read"))?;
-    std::fs::write(path, table::renewed(&page, table)?).map_err(failed("write"))
 }

@@ -11,12 +11,12 @@
 //! 3 a tool is missing. `POSICAST_MUTATE_KEEP` names a folder that keeps all files.
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "it is a program")]
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Instant;
 
 use posicast_testbench::Error;
-use posicast_testbench::mutation::{Options, Row, all, named, renewed, run, table};
+use posicast_testbench::mutation::{MARKS, Options, Row, all, merged, named, run, table};
 
 fn main() -> ExitCode {
     match mutate() {
@@ -102,7 +102,8 @@ fn mutate() -> Result<bool, Error> {
         );
         if write {
             // One by one: what took long is not lost with what comes after it.
-            renew(std::slice::from_ref(&row))?;
+            let subjects = all()?;
+            MARKS.renew(|old| merged(old, std::slice::from_ref(&row), &subjects))?;
         }
         rows.push(row);
     }
@@ -112,17 +113,4 @@ fn mutate() -> Result<bool, Error> {
     }
     print!("{}", table(&rows));
     Ok(rows.iter().all(|row| row.unknown.is_empty()))
-}
-
-fn renew(rows: &[Row]) -> Result<(), Error> {
-    let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/verification.md"));
-    let failed = |doing| {
-        move |source| Error::File {
-            path: path.to_owned(),
-            doing,
-            source,
-        }
-    };
-    let page = std::fs::read_to_string(path).map_err(failed("read"))?;
-    std::fs::write(path, renewed(&page, rows, &all()?)?).map_err(failed("write"))
 }

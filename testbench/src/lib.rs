@@ -38,6 +38,7 @@ pub mod ladder;
 pub mod lockstep;
 pub mod mutation;
 pub mod netlist;
+pub mod page;
 mod reader;
 pub mod recording;
 pub mod register_tests;

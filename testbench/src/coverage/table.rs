@@ -2,15 +2,19 @@
 
 use super::explanation::Explanation;
 use super::{Measured, Share};
-use crate::Error;
+use crate::blocks::Block;
+use crate::page::Marks;
 
-const BEGIN: &str = "<!-- coverage: written by `--example coverage -- --write` -->\n";
-const END: &str = "<!-- coverage: end -->\n";
+/// Where the table stands.
+pub const MARKS: Marks = Marks {
+    begin: "<!-- coverage: written by `--example coverage -- --write` -->",
+    end: "<!-- coverage: end -->",
+};
+const HEAD: &str = "| block | instance | lines | toggles | holes explained | bins |\n|---|---|---|---|---|---|\n";
 
 /// A row per block.
 pub fn markdown(measured: &[Measured], explanations: &[Explanation]) -> String {
-    let mut table =
-        "| block | instance | lines | toggles | holes explained | bins |\n|---|---|---|---|---|---|\n".to_owned();
+    let mut table = HEAD.to_owned();
     for of in measured {
         let name = format!("{} {}", of.block, of.instance);
         let explained = of
@@ -38,17 +42,16 @@ fn percent(share: Share) -> String {
     format!("{}.{} % of {}", tenths / 10, tenths % 10, share.all)
 }
 
-/// The page with the table in place of what stands between the marks.
-///
-/// # Errors
-/// [`Error::Option`] where the page has no marks.
-pub fn renewed(page: &str, table: &str) -> Result<String, Error> {
-    let parts = page
-        .split_once(BEGIN)
-        .and_then(|(before, rest)| Some((before, rest.split_once(END)?.1)));
-    let (before, after) =
-        parts.ok_or_else(|| Error::Option(format!("docs/verification.md lacks the marks {BEGIN} and {END}")))?;
-    Ok(format!("{before}{BEGIN}{table}{END}{after}"))
+/// A row of `new` for each of these blocks, else that of `old`.
+pub fn merged(old: &str, new: &str, subjects: &[Box<dyn Block>]) -> String {
+    let row_of = |block: &dyn Block| {
+        let first_cells = format!("| {} | {} |", block.name(), block.instance());
+        let mut rows = new.lines().chain(old.lines());
+        rows.find(|row| row.starts_with(&first_cells))
+            .map(|row| format!("{row}\n"))
+    };
+    let rows: String = subjects.iter().filter_map(|block| row_of(block.as_ref())).collect();
+    format!("{HEAD}{rows}")
 }
 
 #[cfg(test)]
@@ -56,19 +59,24 @@ mod tests {
     use super::*;
 
     #[test]
-    fn unit_only_what_is_between_the_marks_is_renewed() {
-        let page = format!("before\n{BEGIN}old\n{END}after\n");
-        assert_eq!(
-            renewed(&page, "new\n").unwrap(),
-            format!("before\n{BEGIN}new\n{END}after\n")
-        );
-        assert!(renewed("no marks", "new").is_err());
-        assert_eq!(
-            percent(Share {
-                reached: 1999,
-                all: 2000
-            }),
-            "99.9 % of 2000"
-        );
+    fn unit_a_row_is_renewed_and_the_others_stay() {
+        let subjects = super::super::subjects().unwrap();
+        let row = |index: usize, what: &str| {
+            let block = &subjects[index];
+            format!("| {} | {} | {what} |\n", block.name(), block.instance())
+        };
+        let old = format!("{HEAD}{}{}| gone | | |\n", row(0, "old"), row(2, "old"));
+        let new = format!("{HEAD}{}{}", row(1, "new"), row(2, "new"));
+        let expected = format!("{HEAD}{}{}{}", row(0, "old"), row(1, "new"), row(2, "new"));
+        assert_eq!(merged(&old, &new, &subjects), expected);
+    }
+
+    #[test]
+    fn unit_only_all_is_all() {
+        let share = Share {
+            reached: 1999,
+            all: 2000,
+        };
+        assert_eq!(percent(share), "99.9 % of 2000");
     }
 }

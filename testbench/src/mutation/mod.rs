@@ -30,7 +30,7 @@ mod table;
 pub use self::mutant::Mutant;
 pub use self::simulation::{Kill, StimuliOf};
 pub use self::subject::{Subject, all, named};
-pub use self::table::{Row, renewed, table};
+pub use self::table::{MARKS, Row, merged, table};
 
 use std::path::Path;
 use std::time::Duration;

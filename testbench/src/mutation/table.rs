@@ -6,13 +6,13 @@
 use std::fmt::Write as _;
 
 use super::{Fate, Mutant, Subject};
-use crate::Error;
+use crate::page::Marks;
 
-/// Lines of the page between which the table stands.
-const MARKS: (&str, &str) = (
-    "<!-- mutants: written by the example `mutate` -->",
-    "<!-- end of mutants -->",
-);
+/// Where the table stands.
+pub const MARKS: Marks = Marks {
+    begin: "<!-- mutants: written by the example `mutate` -->",
+    end: "<!-- end of mutants -->",
+};
 const HEAD: &str = "| block | size | mutants | lock step | of these late | property | equivalent | unknown |\n\
                     |---|---|---|---|---|---|---|---|\n";
 /// A kill in a later run than the first, or after so many clocks, is late.
@@ -137,28 +137,15 @@ pub fn table(rows: &[Row]) -> String {
     text
 }
 
-/// A page with these rows in its table, and those that it has of the other subjects.
-///
-/// # Errors
-/// [`Error::Option`] where the page has no marks, one after the other.
-pub fn renewed(page: &str, rows: &[Row], subjects: &[Subject]) -> Result<String, Error> {
-    let parts = page.split_once(MARKS.0).and_then(|(before, rest)| {
-        let (old, after) = rest.split_once(MARKS.1)?;
-        Some((before, old, after))
-    });
-    let (before, old, after) = parts.ok_or_else(|| {
-        Error::Option(format!(
-            "the page has no place for the table: it needs the lines `{}` and `{}`",
-            MARKS.0, MARKS.1
-        ))
-    })?;
+/// The table of these subjects: with these rows, and with those of `old` where there is none.
+pub fn merged(old: &str, rows: &[Row], subjects: &[Subject]) -> String {
     let old = on_page(old);
     let of = |subject: &Subject| {
         let mut found = rows.iter().chain(&old);
         found.find(|row| row.is_of(subject)).cloned()
     };
     let rows: Vec<Row> = subjects.iter().filter_map(of).collect();
-    Ok(format!("{before}{}\n\n{}\n{}{after}", MARKS.0, table(&rows), MARKS.1))
+    table(&rows)
 }
 
 /// The rows of a table as [`table`] writes it.
@@ -200,18 +187,5 @@ mod tests {
             "{text}"
         );
         assert_eq!(on_page(&text), rows);
-    }
-
-    #[test]
-    fn unit_a_page_without_a_place_is_refused() {
-        let page = format!("before\n{}\nold\n{}\nafter\n", MARKS.0, MARKS.1);
-        let renewed_page = renewed(&page, &[], &[]).unwrap();
-        assert!(
-            renewed_page.starts_with("before\n") && renewed_page.ends_with("after\n"),
-            "{renewed_page}"
-        );
-        assert!(!renewed_page.contains("old"));
-        assert_eq!(renewed(&renewed_page, &[], &[]).unwrap(), renewed_page);
-        assert!(renewed("no marks", &[], &[]).is_err());
     }
 }
