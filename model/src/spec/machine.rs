@@ -49,6 +49,12 @@ fn read_axes(root: &Table<'_, '_>, clock: Option<Clock>, fixed_point: Option<Fix
         if let Some(name) = &name {
             match lines.iter().find(|(other, _)| other == name) {
                 Some((_, line)) => table.duplicate("name", *line, "every axis has a name of its own"),
+                None if lines.iter().any(|(other, _)| clash(other, name)) => table.refuse(
+                    "name",
+                    "not `u` where another axis is `x` or `y`: their shapers are the instances `u_x` and `u_y` in the Verilog, which \
+                     the command and the output of an axis `u` would be too",
+                    "rename one of the two",
+                ),
                 None => lines.push((name.clone(), table.line_of("name"))),
             }
         }
@@ -60,6 +66,13 @@ fn read_axes(root: &Table<'_, '_>, clock: Option<Clock>, fixed_point: Option<Fix
             });
     }
     axes
+}
+
+/// Would a port of one axis have the name of the other's shaper?
+fn clash(one: &str, other: &str) -> bool {
+    [(one, other), (other, one)]
+        .iter()
+        .any(|(of_ports, of_shaper)| *of_ports == "u" && ["x", "y"].contains(of_shaper))
 }
 
 fn read_clock(table: &Table<'_, '_>) -> Option<Clock> {
@@ -144,15 +157,7 @@ fn read_fixed_point(table: &Table<'_, '_>) -> Option<FixedPoint> {
         "coefficient_fraction",
         "digitise",
     ]);
-    let command_bits = match table.integer("command_bits", 1, u32::MAX) {
-        Some(bits) if WORD_BITS.contains(&bits) => Some(bits),
-        Some(_) => {
-            let list: Vec<String> = WORD_BITS.iter().map(u32::to_string).collect();
-            table.refuse("command_bits", list.join(", "), "choose one of the list");
-            None
-        }
-        None => None,
-    };
+    let command_bits = table.one_of("command_bits", &WORD_BITS);
     let default = default_fixed_point(command_bits.unwrap_or(DEFAULT_COMMAND_BITS));
     let fraction = |key, default| {
         table

@@ -207,6 +207,23 @@ impl<'r, 't> Table<'r, 't> {
         inside
     }
 
+    /// A whole number of this list.
+    pub(super) fn one_of(&self, key: &str, list: &[u32]) -> Option<u32> {
+        let value = self.value(key)?;
+        let texts: Vec<String> = list.iter().map(u32::to_string).collect();
+        let allowed = texts.join(", ");
+        let DeValue::Integer(integer) = value.get_ref() else {
+            self.wrong_type(key, value, format_args!("a whole number: {allowed}"));
+            return None;
+        };
+        let parsed = u32::from_str_radix(integer.as_str(), integer.radix()).ok();
+        let listed = parsed.filter(|n| list.contains(n));
+        if listed.is_none() {
+            self.refuse(key, allowed, "choose one of the list");
+        }
+        listed
+    }
+
     /// True or false.
     pub(super) fn boolean(&self, key: &str) -> Option<bool> {
         let value = self.value(key)?;

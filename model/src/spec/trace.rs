@@ -16,10 +16,7 @@ pub struct Trace {
 pub(super) fn read(table: &Table<'_, '_>) -> Option<Trace> {
     let list = SAMPLES.map(|samples| samples.to_string()).join(", ");
     table.allow(&["samples"]);
-    table.require("samples", &list);
-    let samples = table.integer("samples", 1, u32::MAX)?;
-    if !SAMPLES.contains(&samples) {
-        table.refuse("samples", list, "choose one of the list");
-    }
+    table.require("samples", list);
+    let samples = table.one_of("samples", &SAMPLES)?;
     Some(Trace { samples })
 }

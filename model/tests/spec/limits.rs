@@ -82,6 +82,11 @@ fn unit_values_out_of_range_are_refused_with_their_place() {
         "1000",
         "m.toml:86: axis.trace.samples of axis x: found 1000; allowed: 256, 512, 1024, 2048",
     );
+    case(
+        "1024",
+        "1000000000000",
+        "m.toml:86: axis.trace.samples of axis x: found 1000000000000; allowed: 256, 512, 1024, 2048",
+    );
     let expected = "m.toml:90: stage.contour_speed: found 0; allowed: above 0, at most 1000000000 m/s";
     case("contour_speed = 0.1", "contour_speed = 0", expected);
     let expected = "m.toml:89: stage.extra_delay_s: found 1.1; allowed: at least 0, at most 1 s";
