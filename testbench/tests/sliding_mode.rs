@@ -104,7 +104,7 @@ fn lockstep_catches_products_that_are_cut_instead_of_rounded() {
 
 #[test]
 fn lockstep_catches_a_limit_that_is_passed_by_an_lsb() {
-    caught("({2'd0, limit} << 1) -", "({2'd0, limit} << 1) + 33'd2 -");
+    caught("({2'd0, limit_q} << 1) -", "({2'd0, limit_q} << 1) + 33'd2 -");
     caught("| borrow)", ")");
 }
 

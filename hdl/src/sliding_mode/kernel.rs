@@ -66,6 +66,7 @@ pub(super) struct SlidingMode {
     feedback: Dff<Signed<32>>,
     duty_q: Dff<Signed<18>>,
     opposes: Dff<Bit>,
+    operand_q: Dff<Signed<32>>,
 
     reads: Signal<Local, Bit>,
     settles: Signal<Local, Bit>,
@@ -143,6 +144,7 @@ impl Default for SlidingMode {
             feedback: Dff::default(),
             duty_q: Dff::default(),
             opposes: Dff::default(),
+            operand_q: Dff::default(),
             reads: Signal::default(),
             settles: Signal::default(),
             takes_fraction: Signal::default(),
@@ -187,7 +189,7 @@ impl Logic for SlidingMode {
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module sliding_mode");
-        dff_setup!(self, clk, sliding_q, fraction, feedback, duty_q, opposes);
+        dff_setup!(self, clk, sliding_q, fraction, feedback, duty_q, opposes, operand_q);
 
         self.sequencer.clk.next = self.clk.val();
         self.sequencer.rst.next = self.rst.val();
@@ -212,7 +214,7 @@ impl Logic for SlidingMode {
         self.error_word.next = signed_cast(bit_cast::<32, 24>(self.error_bits.val()) << 8);
         self.fraction_word.next = signed_bit_cast::<32, 26>(self.fraction.q.val());
 
-        comment!("What a step multiplies");
+        comment!("What a step multiplies, a clock before its gain");
         self.operand.next = self.limiter.command.val();
         if self.sequencer.step.val() == self.surface.val() {
             self.operand.next = self.error_word.val();
@@ -254,12 +256,14 @@ impl Logic for SlidingMode {
             self.operand.next = self.fraction_word.val();
         }
 
+        self.operand_q.d.next = self.operand.val();
+
         self.scaled_product.clk.next = self.clk.val();
         self.scaled_product.rst.next = self.rst.val();
         self.scaled_product.read.next = self.reads.val();
         self.scaled_product.load.next = self.sequencer.loads.val();
         self.scaled_product.shift.next = self.sequencer.shifts.val();
-        self.scaled_product.operand.next = self.operand.val();
+        self.scaled_product.operand.next = self.operand_q.q.val();
         self.scaled_product.gain.next = self.setting.val().get_bits::<23>(0);
 
         self.accumulator.clk.next = self.clk.val();
@@ -327,7 +331,7 @@ impl Logic for SlidingMode {
                 self.what.next = self.of_duty.val();
             }
         }
-        if self.reads.val() & self.at_limit.val() {
+        if self.limiter.decides.val() {
             self.what.next = self.of_command.val();
             self.high.next = self.limiter.high.val();
             self.low.next = self.limiter.low.val();

@@ -8,6 +8,9 @@
 //! scaled  ---------------------< shifting >< product
 //! ```
 //!
+//! The multiplier is two, of 18 × 18 bits as the blocks of an FPGA are: the operand's lower 17 bits and its upper 15, and the
+//! sum of their products where the shifter loads it. In one clock with the multiplication that sum would be the longest path.
+//!
 //! The shift goes by four bits a clock and then by one: a shifter for any distance in one clock takes three times the cells.
 
 use crate::prelude::*;
@@ -23,13 +26,19 @@ pub(super) struct ScaledProduct {
     pub(super) gain: Signal<In, Bits<23>>,
     pub(super) scaled: Signal<Out, Signed<51>>,
 
-    multiplier: SMul<32, 18, 50>,
+    upper: SMul<15, 18, 33>,
+    lower: SMul<18, 18, 36>,
 
     shifter: Dff<Signed<51>>,
     fours: Dff<Bits<3>>,
     ones: Dff<Bits<2>>,
 
     mantissa: Signal<Local, Bits<18>>,
+    operand_bits: Signal<Local, Bits<32>>,
+    lower_part: Signal<Local, Bits<17>>,
+    upper_part: Signal<Local, Bits<15>>,
+    upper_bits: Signal<Local, Bits<33>>,
+    wide_lower: Signal<Local, Signed<50>>,
     product: Signal<Local, Bits<50>>,
     by_four: Signal<Local, Signed<47>>,
     by_one: Signal<Local, Signed<50>>,
@@ -49,11 +58,17 @@ impl Default for ScaledProduct {
             operand: Signal::default(),
             gain: Signal::default(),
             scaled: Signal::default(),
-            multiplier: SMul::default(),
+            upper: SMul::default(),
+            lower: SMul::default(),
             shifter: Dff::default(),
             fours: Dff::default(),
             ones: Dff::default(),
             mantissa: Signal::default(),
+            operand_bits: Signal::default(),
+            lower_part: Signal::default(),
+            upper_part: Signal::default(),
+            upper_bits: Signal::default(),
+            wide_lower: Signal::default(),
             product: Signal::default(),
             by_four: Signal::default(),
             by_one: Signal::default(),
@@ -73,10 +88,18 @@ impl Logic for ScaledProduct {
 
         comment!("Multiply");
         self.mantissa.next = self.gain.val().get_bits::<18>(0);
-        self.multiplier.clk.next = self.clk.val();
-        self.multiplier.a.next = self.operand.val();
-        self.multiplier.b.next = signed_cast(self.mantissa.val());
-        self.product.next = unsigned_cast(self.multiplier.product.val());
+        self.operand_bits.next = unsigned_cast(self.operand.val());
+        self.lower_part.next = self.operand_bits.val().get_bits::<17>(0);
+        self.upper_part.next = self.operand_bits.val().get_bits::<15>(17);
+        self.upper.clk.next = self.clk.val();
+        self.upper.a.next = signed_cast(self.upper_part.val());
+        self.upper.b.next = signed_cast(self.mantissa.val());
+        self.lower.clk.next = self.clk.val();
+        self.lower.a.next = signed_cast(bit_cast::<18, 17>(self.lower_part.val()));
+        self.lower.b.next = signed_cast(self.mantissa.val());
+        self.upper_bits.next = unsigned_cast(self.upper.product.val());
+        self.wide_lower.next = signed_bit_cast::<50, 36>(self.lower.product.val());
+        self.product.next = (bit_cast::<50, 33>(self.upper_bits.val()) << 17) + unsigned_cast(self.wide_lower.val());
 
         comment!("Shift by four while it takes fours, then by one");
         self.by_four.next = self.shifter.q.val().get_bits::<47>(4);

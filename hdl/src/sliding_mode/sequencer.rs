@@ -2,7 +2,8 @@
 //!
 //! ```text
 //! phase of a step   0         1              2     3      4 … 13    14     15
-//!                   address   setting read   ...   load   shift     add    a register takes the sum
+//!                   address,  setting read   ...   load   shift     add    a register takes the sum
+//!                   operand
 //! strobe                      reads                loads  shifts    adds   settles
 //! ```
 

@@ -3,12 +3,13 @@
 use std::fmt::Write as _;
 
 use posicast_hdl::emit::Module;
-use posicast_hdl::{axis, divider_share, group, pulse_counter, pwm, registers, schedule, segments};
+use posicast_hdl::{axis, divider_share, group, pulse_counter, pwm, registers, schedule, segments, sliding_mode};
 use posicast_model::rtl::axis::TRANSITIONS;
 use posicast_model::rtl::component::Component;
 use posicast_model::rtl::pwm::{ActiveLow, Mode, PwmConfig};
 use posicast_model::rtl::schedule::ScheduleConfig;
 use posicast_model::rtl::segments as segments_model;
+use posicast_model::rtl::sliding_mode as controller_model;
 use posicast_model::rtl::{Port, axis as axis_model, divider_share as share_model, group as group_model};
 use posicast_model::rtl::{pulse_counter as counter_model, pwm as pwm_model, schedule as schedule_model};
 
@@ -120,6 +121,22 @@ pub fn all() -> Result<Vec<Task>, Error> {
         )
         .properties(&[], include_str!("../../formal/segments.sv")),
     );
+    tasks.push(sliding_mode_task()?);
+    tasks.push(part_of_controller(
+        "scaled_product",
+        "51 bits, any product",
+        include_str!("../../formal/scaled_product.sv"),
+    )?);
+    tasks.push(part_of_controller(
+        "accumulator",
+        "52 bits",
+        include_str!("../../formal/accumulator.sv"),
+    )?);
+    tasks.push(part_of_controller(
+        "limiter",
+        "32 bits",
+        include_str!("../../formal/limiter.sv"),
+    )?);
     Ok(tasks)
 }
 
@@ -223,6 +240,42 @@ fn schedule_task(clocks: u32) -> Result<Task, Error> {
             include_str!("../../formal/schedule.sv"),
         ),
     )
+}
+
+/// The controller's Verilog with products that are anything: nothing drives them any more.
+fn controller_of_any_products() -> Result<Vec<Module>, Error> {
+    let mut modules = sliding_mode::emit("")?;
+    for module in &mut modules {
+        if module.name.starts_with("smul_") {
+            let cut = module.text.replace("product <= a_q * b_q;", "");
+            if cut == module.text {
+                return Err(refused(format!("`{}` has no product of its own name", module.name)));
+            }
+            module.text = cut;
+        }
+    }
+    Ok(modules)
+}
+
+/// The control of a pass.
+fn sliding_mode_task() -> Result<Task, Error> {
+    let block = (controller_of_any_products()?, controller_model::ports());
+    let macros = [("PASS_CLOCKS", format!("8'd{}", controller_model::CONTROL_CLOCKS))];
+    Ok(
+        Task::new("sliding_mode", "any products", Engine::Induction { clocks: 1 }, block)
+            .properties(&macros, include_str!("../../formal/sliding_mode.sv")),
+    )
+}
+
+/// A part of the controller on its own: a lemma of its arithmetic.
+fn part_of_controller(name: &'static str, size: &str, properties: &str) -> Result<Task, Error> {
+    let mut modules = controller_of_any_products()?;
+    let at = modules.iter().position(|module| module.name == name);
+    let part = modules.remove(at.ok_or_else(|| refused(format!("the controller has no `{name}`")))?);
+    let ports = part.ports.clone();
+    modules.push(part);
+    let engine = Engine::Induction { clocks: 1 };
+    Ok(Task::new(name, size, engine, (modules, ports)).properties(&[], properties))
 }
 
 fn divider_share_task(channels: usize) -> Result<Task, Error> {

@@ -103,6 +103,7 @@ module xy_stage_x_sliding_mode_avalon_sliding_mode (
     wire               limiter_limited_high;
     wire               limiter_limited_low;
     wire [15:0]        limiter_limited_ticks;
+    wire               limiter_decides;
     wire               limiter_high;
     wire               limiter_low;
     wire               integral_update;
@@ -121,6 +122,7 @@ module xy_stage_x_sliding_mode_avalon_sliding_mode (
     reg  signed [17:0] duty_q_next;
     reg                opposes;
     reg                opposes_next;
+    reg  signed [31:0] operand_q;
 
     xy_stage_x_sliding_mode_avalon_sequencer u_sequencer (
         .clk             (clk),
@@ -166,7 +168,7 @@ module xy_stage_x_sliding_mode_avalon_sliding_mode (
         .read    (reads),
         .load    (sequencer_loads),
         .shift   (sequencer_shifts),
-        .operand (operand),
+        .operand (operand_q),
         .gain    (scaled_product_gain),
         .scaled  (scaled_product_scaled)
     );
@@ -199,6 +201,7 @@ module xy_stage_x_sliding_mode_avalon_sliding_mode (
         .limited_high  (limiter_limited_high),
         .limited_low   (limiter_limited_low),
         .limited_ticks (limiter_limited_ticks),
+        .decides       (limiter_decides),
         .high          (limiter_high),
         .low           (limiter_low)
     );
@@ -247,7 +250,7 @@ module xy_stage_x_sliding_mode_avalon_sliding_mode (
     assign error_word = $signed({8'd0, error_bits} << 8);
     assign fraction_word = $signed({{6{fraction[25]}}, fraction});
 
-    // What a step multiplies
+    // What a step multiplies, a clock before its gain
     assign scaled_product_gain = setting[22:0];
     assign accumulator_begin_rate = sequencer_step == SURFACE;
     assign accumulator_begin_sum = ((((sequencer_step == BOUNDARY) | (sequencer_step == ON_RATE)) | (sequencer_step == FADE)) | (sequencer_step == ON_FEEDBACK)) | (sequencer_step == TO_DUTY);
@@ -281,7 +284,7 @@ module xy_stage_x_sliding_mode_avalon_sliding_mode (
         duty_q_next = duty_q;
         opposes_next = opposes;
 
-        // What a step multiplies
+        // What a step multiplies, a clock before its gain
         operand = limiter_command;
         if (sequencer_step == SURFACE) begin
             operand = error_word;
@@ -357,7 +360,7 @@ module xy_stage_x_sliding_mode_avalon_sliding_mode (
                 what = OF_DUTY;
             end
         end
-        if (reads & at_limit) begin
+        if (limiter_decides) begin
             what = OF_COMMAND;
             high = limiter_high;
             low = limiter_low;
@@ -371,12 +374,14 @@ module xy_stage_x_sliding_mode_avalon_sliding_mode (
             feedback <= 32'sd0;
             duty_q <= 18'sd0;
             opposes <= 1'd0;
+            operand_q <= 32'sd0;
         end else begin
             sliding_q <= sliding_q_next;
             fraction <= fraction_next;
             feedback <= feedback_next;
             duty_q <= duty_q_next;
             opposes <= opposes_next;
+            operand_q <= operand;
         end
     end
 
@@ -386,6 +391,7 @@ module xy_stage_x_sliding_mode_avalon_sliding_mode (
         feedback = 32'sd0;
         duty_q = 18'sd0;
         opposes = 1'd0;
+        operand_q = 32'sd0;
     end
 
     // Bits that nothing reads.

@@ -19,24 +19,36 @@ module xy_stage_y_sliding_mode_avalon_limiter (
     output wire               limited_high,
     output wire               limited_low,
     output wire [15:0]        limited_ticks,
+    output wire               decides,
     output wire               high,
     output wire               low
 );
     localparam [31:0] ZERO = 32'd0;
-    localparam [32:0] NOTHING = 33'd0;
-    localparam [32:0] ONE = 33'd1;
+    localparam [31:0] ONE = 32'd1;
+    localparam [32:0] NO_BORROW = 33'd0;
+    localparam [32:0] ONE_BORROW = 33'd1;
     localparam [15:0] NO_TICKS = 16'd0;
     localparam [15:0] ONE_TICK = 16'd1;
 
-    wire               negative;
-    wire [31:0]        size;
-    reg  [31:0]        sign;
+    wire [31:0]        taken;
+    reg  [31:0]        taken_sign;
     reg  [32:0]        borrow;
-    wire [31:0]        borrow_word;
-    wire [31:0]        flipped;
     wire [32:0]        margin;
-    wire               cut;
-    wire [31:0]        nearest;
+    reg  [31:0]        kept;
+    reg  [31:0]        sign;
+    reg  [31:0]        carry;
+    reg                compares_q;
+    reg                decides_q;
+    reg  [30:0]        limit_q;
+    reg  [30:0]        limit_q_next;
+    reg  [31:0]        size;
+    reg  [31:0]        size_next;
+    reg                negative;
+    reg                negative_next;
+    reg                beyond;
+    reg                beyond_next;
+    reg                cut;
+    wire               cut_next;
     reg  signed [31:0] command_q;
     reg  signed [31:0] command_q_next;
     reg                high_q;
@@ -46,39 +58,65 @@ module xy_stage_y_sliding_mode_avalon_limiter (
     reg  [15:0]        ticks;
     reg  [15:0]        ticks_next;
 
-    // Its size, less an LSB if negative, on the limit
-    assign negative = word[31];
-    assign size = $unsigned(word);
-    assign borrow_word = borrow[31:0];
-    assign flipped = size ^ sign;
-    assign margin = ({2'd0, limit} << 1) - (({1'd0, flipped} << 1) | borrow);
-    assign cut = (word_high | word_low) | margin[32];
-    assign nearest = ({1'd0, limit} ^ sign) + borrow_word;
+    // Its size, less an LSB if negative, and the limit
+    assign taken = $unsigned(word);
+
+    // One on the other
+    assign margin = ({2'd0, limit_q} << 1) - (({1'd0, size} << 1) | borrow);
+    assign cut_next = beyond | margin[32];
+
+    // The nearer of them, with its sign
     assign command = command_q;
     assign limited_high = high_q;
     assign limited_low = low_q;
     assign limited_ticks = ticks;
+    assign decides = decides_q;
     assign high = cut & !negative;
     assign low = cut & negative;
 
     always @(*) begin
+        limit_q_next = limit_q;
+        size_next = size;
+        negative_next = negative;
+        beyond_next = beyond;
         command_q_next = command_q;
         high_q_next = high_q;
         low_q_next = low_q;
         ticks_next = ticks;
 
-        // Its size, less an LSB if negative, on the limit
-        sign = ZERO;
-        borrow = NOTHING;
-        if (negative) begin
-            sign = ~ZERO;
-            borrow = ONE;
+        // Its size, less an LSB if negative, and the limit
+        taken_sign = ZERO;
+        if (word[31]) begin
+            taken_sign = ~ZERO;
         end
         if (take) begin
-            command_q_next = word;
-            if (cut) begin
-                command_q_next = $signed(nearest);
+            limit_q_next = limit;
+            size_next = taken ^ taken_sign;
+            negative_next = word[31];
+            beyond_next = word_high | word_low;
+        end
+
+        // One on the other
+        borrow = NO_BORROW;
+        if (negative) begin
+            borrow = ONE_BORROW;
+        end
+
+        // The nearer of them, with its sign
+        kept = size;
+        sign = ZERO;
+        carry = ZERO;
+        if (negative) begin
+            sign = ~ZERO;
+        end
+        if (cut) begin
+            kept = {1'd0, limit_q};
+            if (negative) begin
+                carry = ONE;
             end
+        end
+        if (decides_q) begin
+            command_q_next = $signed((kept ^ sign) + carry);
             high_q_next = cut & !negative;
             low_q_next = cut & negative;
         end
@@ -95,11 +133,25 @@ module xy_stage_y_sliding_mode_avalon_limiter (
 
     always @(posedge clk) begin
         if (rst) begin
+            compares_q <= 1'd0;
+            decides_q <= 1'd0;
+            limit_q <= 31'd0;
+            size <= 32'd0;
+            negative <= 1'd0;
+            beyond <= 1'd0;
+            cut <= 1'd0;
             command_q <= 32'sd0;
             high_q <= 1'd0;
             low_q <= 1'd0;
             ticks <= 16'd0;
         end else begin
+            compares_q <= take;
+            decides_q <= compares_q;
+            limit_q <= limit_q_next;
+            size <= size_next;
+            negative <= negative_next;
+            beyond <= beyond_next;
+            cut <= cut_next;
             command_q <= command_q_next;
             high_q <= high_q_next;
             low_q <= low_q_next;
@@ -108,6 +160,13 @@ module xy_stage_y_sliding_mode_avalon_limiter (
     end
 
     initial begin
+        compares_q = 1'd0;
+        decides_q = 1'd0;
+        limit_q = 31'd0;
+        size = 32'd0;
+        negative = 1'd0;
+        beyond = 1'd0;
+        cut = 1'd0;
         command_q = 32'sd0;
         high_q = 1'd0;
         low_q = 1'd0;

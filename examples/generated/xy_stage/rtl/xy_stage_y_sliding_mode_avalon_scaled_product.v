@@ -21,11 +21,20 @@ module xy_stage_y_sliding_mode_avalon_scaled_product (
     localparam [1:0] ONE = 2'd1;
 
     wire [17:0]        mantissa;
+    wire [31:0]        operand_bits;
+    wire [16:0]        lower_part;
+    wire [14:0]        upper_part;
+    wire [32:0]        upper_bits;
+    wire signed [49:0] wide_lower;
     wire [49:0]        product;
     wire signed [46:0] by_four;
     wire signed [49:0] by_one;
-    wire signed [17:0] multiplier_b;
-    wire signed [49:0] multiplier_product;
+    wire signed [14:0] upper_a;
+    wire signed [17:0] upper_b;
+    wire signed [32:0] upper_product;
+    wire signed [17:0] lower_a;
+    wire signed [17:0] lower_b;
+    wire signed [35:0] lower_product;
     reg  signed [50:0] shifter;
     reg  signed [50:0] shifter_next;
     reg  [2:0]         fours;
@@ -33,17 +42,32 @@ module xy_stage_y_sliding_mode_avalon_scaled_product (
     reg  [1:0]         ones;
     reg  [1:0]         ones_next;
 
-    xy_stage_y_sliding_mode_avalon_smul_32x18 u_multiplier (
+    xy_stage_y_sliding_mode_avalon_smul_15x18 u_upper (
         .clk     (clk),
-        .a       (operand),
-        .b       (multiplier_b),
-        .product (multiplier_product)
+        .a       (upper_a),
+        .b       (upper_b),
+        .product (upper_product)
+    );
+
+    xy_stage_y_sliding_mode_avalon_smul_18x18 u_lower (
+        .clk     (clk),
+        .a       (lower_a),
+        .b       (lower_b),
+        .product (lower_product)
     );
 
     // Multiply
     assign mantissa = gain[17:0];
-    assign multiplier_b = $signed(mantissa);
-    assign product = $unsigned(multiplier_product);
+    assign operand_bits = $unsigned(operand);
+    assign lower_part = operand_bits[16:0];
+    assign upper_part = operand_bits[31:17];
+    assign upper_a = $signed(upper_part);
+    assign upper_b = $signed(mantissa);
+    assign lower_a = $signed({1'd0, lower_part});
+    assign lower_b = $signed(mantissa);
+    assign upper_bits = $unsigned(upper_product);
+    assign wide_lower = $signed({{14{lower_product[35]}}, lower_product});
+    assign product = ({17'd0, upper_bits} << 17) + $unsigned(wide_lower);
 
     // Shift by four while it takes fours, then by one
     assign by_four = $signed(shifter[50:4]);

@@ -64,7 +64,8 @@ foreach kind {QUARTUS_SYNTH SIM_VERILOG} {
     add_fileset_file xy_stage_stage_x_setting_banks.v VERILOG PATH ../rtl/xy_stage_stage_x_setting_banks.v
     add_fileset_file xy_stage_stage_sequencer.v VERILOG PATH ../rtl/xy_stage_stage_sequencer.v
     add_fileset_file xy_stage_stage_tracking.v VERILOG PATH ../rtl/xy_stage_stage_tracking.v
-    add_fileset_file xy_stage_stage_smul_32x18.v VERILOG PATH ../rtl/xy_stage_stage_smul_32x18.v
+    add_fileset_file xy_stage_stage_smul_15x18.v VERILOG PATH ../rtl/xy_stage_stage_smul_15x18.v
+    add_fileset_file xy_stage_stage_smul_18x18.v VERILOG PATH ../rtl/xy_stage_stage_smul_18x18.v
     add_fileset_file xy_stage_stage_scaled_product.v VERILOG PATH ../rtl/xy_stage_stage_scaled_product.v
     add_fileset_file xy_stage_stage_accumulator.v VERILOG PATH ../rtl/xy_stage_stage_accumulator.v
     add_fileset_file xy_stage_stage_limiter.v VERILOG PATH ../rtl/xy_stage_stage_limiter.v

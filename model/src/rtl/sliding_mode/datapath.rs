@@ -1,13 +1,16 @@
 //! The arithmetic of a pass: what each step multiplies, adds up, cuts to its word and keeps.
 //!
 //! A step is `accumulator := base + round(operand · mantissa · 2^−shift)`, then perhaps a word takes the accumulator,
-//! saturated. `product` and `add` and `settle` are the clocks of a step at which something happens.
+//! saturated. `fetch`, `multiply`, `add` and `settle` are the clocks of a step at which something happens; `cut_command` is
+//! one more, of step 11.
 
 use super::ports::{Law, Motion, Saturation};
 use super::settings::{Gain, LIMIT_MAX, Row};
 
 /// Steps of a pass.
 pub(super) const STEPS: u8 = 13;
+/// The step that has a limit for its setting.
+pub(super) const LIMIT_STEP: u8 = 11;
 /// Bits of the boundary layer's and the Coulomb term's fraction: Q1.25, so that ±1 is its range.
 const FRACTION_BITS: u32 = 26;
 /// Bits of e before it is shifted to Q16.16.
@@ -29,6 +32,8 @@ pub(super) struct Datapath {
     feedback: i32,
     /// ∫e, Q24.8.
     integral: i32,
+    /// The largest command, as read.
+    limit: u32,
     pub(super) command: i32,
     pub(super) duty: i32,
     pub(super) limited_high: bool,
@@ -38,6 +43,8 @@ pub(super) struct Datapath {
     pub(super) saturated_low: u8,
     /// The integral's gain and the feedback's have opposite signs.
     opposes: bool,
+    /// What the running step multiplies.
+    operand: i32,
     /// Rounded product of the running step.
     product: i64,
     accumulator: i64,
@@ -95,10 +102,11 @@ impl Datapath {
         self.error_rate = self.flag(Saturation::ErrorRate, saturate(rate, WORD_BITS));
     }
 
-    /// What a step multiplies.
-    fn operand(&self, step: u8, motion: &Motion) -> i32 {
+    /// The clock in which a step takes what it multiplies.
+    #[inline]
+    pub(super) fn fetch(&mut self, step: u8, motion: &Motion) {
         let sliding_mode = self.law == Law::SlidingMode;
-        match step {
+        self.operand = match step {
             0 => self.error_q16_16(),
             1 => self.sliding,
             2 => self.error_rate,
@@ -112,28 +120,28 @@ impl Datapath {
             7 => motion.acceleration_reference,
             9 => motion.velocity,
             _ => self.command,
-        }
+        };
     }
 
     /// The clock in which a step reads its setting.
     #[inline]
-    pub(super) fn multiply(&mut self, step: u8, motion: &Motion, setting: u32) {
+    pub(super) fn multiply(&mut self, step: u8, setting: u32) {
         let gain = Gain::from_word(setting);
-        let exact = i64::from(self.operand(step, motion)) * i64::from(gain.mantissa());
+        let exact = i64::from(self.operand) * i64::from(gain.mantissa());
         // Half up: the last bit shifted out is added.
         self.product = ((exact << 1 >> gain.shift()) + 1) >> 1;
         let negative = gain.mantissa() < 0;
         match step {
             4 => self.opposes = negative,
             6 => self.opposes ^= negative,
-            11 => self.limit(setting & LIMIT_MAX),
+            LIMIT_STEP => self.limit = setting & LIMIT_MAX,
             _ => {}
         }
     }
 
-    /// Cuts the command at its limit.
-    fn limit(&mut self, limit: u32) {
-        let limit = i64::from(limit);
+    /// The clock in which the command is cut at the limit read.
+    pub(super) fn cut_command(&mut self) {
+        let limit = i64::from(self.limit);
         (self.limited_high, self.limited_low) = (self.accumulator > limit, self.accumulator < -limit);
         let cut = self.accumulator.clamp(-limit, limit) as i32;
         self.command = self.flag(Saturation::Command, (cut, self.limited_high, self.limited_low));
@@ -157,7 +165,7 @@ impl Datapath {
             0 => self.sliding = self.flag(Saturation::Sliding, saturate(self.accumulator, WORD_BITS)),
             1 | 5 => self.fraction = saturate(self.accumulator, FRACTION_BITS).0,
             4 => self.feedback = self.flag(Saturation::Feedback, saturate(self.accumulator, WORD_BITS)),
-            11 => self.integrate(),
+            LIMIT_STEP => self.integrate(),
             12 => self.duty = self.flag(Saturation::Duty, saturate(self.accumulator, DUTY_BITS)),
             _ => {}
         }

@@ -39,13 +39,17 @@ mod settings;
 pub use ports::{INPUTS, Inputs, Law, Motion, OUTPUTS, Outputs, Saturation, ports};
 pub use settings::{Gain, GainError, LIMIT_MAX, MANTISSA_BITS, MANTISSA_MAX, Row, SETTINGS, SHIFT_MAX, Settings};
 
-use self::datapath::{Datapath, STEPS, address};
+use self::datapath::{Datapath, LIMIT_STEP, STEPS, address};
 use super::{ClockedBlock, FOREVER, Moore, Port, StepError};
 
 /// Clocks of a step.
 const STEP_CLOCKS: u8 = 16;
+/// Clock of a step in which its operand is taken.
+const FETCH_PHASE: u8 = 0;
 /// Clock of a step in which its setting is read.
 const READ_PHASE: u8 = 1;
+/// Clock of the step with the limit in which the command is new.
+const CUT_PHASE: u8 = 3;
 /// Clock of a step in which the shifted product is added.
 const ADD_PHASE: u8 = 14;
 /// Clocks from `start` to `valid`, and the smallest distance of two starts without `overrun`.
@@ -97,7 +101,9 @@ impl State {
         if self.busy {
             self.overrun |= inputs.start;
             match self.phase {
-                READ_PHASE => self.datapath.multiply(self.step, &inputs.motion, inputs.setting),
+                FETCH_PHASE => self.datapath.fetch(self.step, &inputs.motion),
+                READ_PHASE => self.datapath.multiply(self.step, inputs.setting),
+                CUT_PHASE if self.step == LIMIT_STEP => self.datapath.cut_command(),
                 ADD_PHASE => self.datapath.add(self.step),
                 _ if self.phase == STEP_CLOCKS - 1 => self.datapath.settle(self.step),
                 _ => {}
@@ -118,7 +124,8 @@ impl State {
         }
     }
 
-    /// In a pass, the clocks from one that reads a setting to the one that keeps the result.
+    /// In a pass, the clocks from one that reads a setting to the one that keeps the result; in step 11 the
+    /// command changes on the way.
     fn quiet_clocks(&self, inputs: &Inputs) -> u64 {
         let data = &self.datapath;
         let flags = self.overrun || data.saturated_high | data.saturated_low != 0;
@@ -128,7 +135,8 @@ impl State {
         }
         let left = match self.phase {
             _ if !self.busy => return FOREVER,
-            phase @ ..=READ_PHASE => READ_PHASE - phase,
+            FETCH_PHASE | READ_PHASE => 0,
+            phase @ ..=CUT_PHASE if self.step == LIMIT_STEP => CUT_PHASE - phase,
             phase => STEP_CLOCKS - 1 - phase,
         };
         left.into()
@@ -232,7 +240,11 @@ impl TickController {
         self.datapath.capture(law, modulo, motion);
         for step in 0..STEPS {
             let setting = settings.word(usize::from(address(step, law)));
-            self.datapath.multiply(step, motion, setting);
+            self.datapath.fetch(step, motion);
+            self.datapath.multiply(step, setting);
+            if step == LIMIT_STEP {
+                self.datapath.cut_command();
+            }
             self.datapath.add(step);
             self.datapath.settle(step);
         }
