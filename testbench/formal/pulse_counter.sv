@@ -12,7 +12,7 @@
 //   *_held               flags stay until clear_flags
 //   illegal_saturates    the count of illegal transitions never wraps
 //   index_latches        the index latches the count after a step of the same clock
-//   origin_stays         only preset, or an index that presets, moves the origin
+//   origin_stays         only preset, or an index that presets, moves the origin, in the clock after it
 //
 // Not proven here: synchroniser and filter (their delay is in the lock step), and the velocity.
 module pulse_counter_properties (
@@ -36,6 +36,7 @@ module pulse_counter_properties (
     input wire               level_b,
     (* peek = "ready" *) input wire ready,
     (* peek = "index" *) input wire index,
+    (* peek = "presets" *) input wire presets,
     (* peek = "u_decoder.a_before" *) input wire a_before,
     (* peek = "u_decoder.b_before" *) input wire b_before
 );
@@ -44,6 +45,8 @@ module pulse_counter_properties (
     reg               past_clear = 1'b0;
     reg               past_preset = 1'b0;
     reg               past_index = 1'b0;
+    // A clock earlier still.
+    reg               last_preset = 1'b0;
     reg               past_illegal = 1'b0;
     reg               past_seen = 1'b0;
     reg               past_disagreement = 1'b0;
@@ -63,8 +66,9 @@ module pulse_counter_properties (
         past_reset <= rst;
         past_ready <= ready;
         past_clear <= clear_flags;
-        past_preset <= preset;
-        past_index <= index & index_presets;
+        past_preset <= preset & !rst;
+        past_index <= index & index_presets & !rst;
+        last_preset <= past_preset | past_index;
         past_illegal <= illegal;
         past_seen <= index_seen;
         past_disagreement <= disagreement;
@@ -91,6 +95,7 @@ module pulse_counter_properties (
     wire               rises = count == past_plus_one;
     wire               falls = count == past_minus_one;
     always @(*) begin
+        known_presets: assert (presets == (past_preset | past_index));
         known_levels: assert (last_a == a_before & last_b == b_before);
         count_by_one: assert (past_reset ? count == 32'sd0 : rests | rises | falls);
         position_is_difference: assert (position == count - origin);
@@ -103,7 +108,7 @@ module pulse_counter_properties (
         disagreement_held: assert (!(past_disagreement & !past_clear & !past_reset) | disagreement);
         illegal_saturates: assert (past_clear | past_reset | illegal_count >= past_illegal_count);
         index_latches: assert (!(past_index_alone & !past_reset) | (index_count == count & index_seen));
-        origin_stays: assert (past_reset | past_preset | past_index | origin == past_origin);
+        origin_stays: assert (past_reset | last_preset | origin == past_origin);
     end
 
     always @(*) begin
@@ -111,6 +116,6 @@ module pulse_counter_properties (
         reach_down: cover (live & falls);
         reach_illegal: cover (both);
         reach_index: cover (past_index_alone & !past_reset);
-        reach_preset: cover (past_preset & origin != past_origin);
+        reach_preset: cover (last_preset & origin != past_origin);
     end
 endmodule

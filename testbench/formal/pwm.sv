@@ -4,7 +4,7 @@
 // is low; while it is high all pins are off, whatever the gates do. The raw fault lines count as in a cycle simulation: as they are in this clock.
 //
 //   never_both_*        a leg's two sides are never on together
-//   dead_time_*         a side comes on only after the other has been off for dead_time_used clocks
+//   dead_time_*         a side comes on only after the other has been off for dead_time_used clocks, in every mode
 //   minimum_pulse_*     a side that goes off while running, in the same mode and without a fault, was on for
 //                       minimum_pulse_used clocks (mode 0: the PWM pin only; b_high is a direction)
 //   fault_is_off        a raw fault or a lost PLL: all off in the same clock
@@ -109,7 +109,7 @@ module pwm_properties (
         never_both_b: assert (!(on[2] & on[3]));
         dead_time_a_high: assert (!on[0] | pause_left[1] == 10'd0);
         dead_time_a_low: assert (!on[1] | pause_left[0] == 10'd0);
-        dead_time_b_high: assert (!on[2] | past_mode == 2'd0 | pause_left[3] == 10'd0);
+        dead_time_b_high: assert (!on[2] | pause_left[3] == 10'd0);
         dead_time_b_low: assert (!on[3] | pause_left[2] == 10'd0);
         fault_is_off: assert (!raw_fault | on == 4'd0);
         latched_is_off: assert (!latched | on == 4'd0);
@@ -141,7 +141,7 @@ module pwm_properties (
         known_a_high: assert (gate_a_high == (a_leads & leg_is_high));
         known_a_low: assert (gate_a_low == (a_leads ? past_mode != 2'd0 & leg_is_low : leg_awake));
         known_b_low: assert (gate_b_low == (b_leads ? leg_is_low : b_holds ? leg_awake : opposed & leg_is_high));
-        known_b_high: assert (gate_b_high == (b_leads ? leg_is_high : opposed ? leg_is_low : past_mode == 2'd0 & past_negative & past_wanted));
+        known_b_high: assert (gate_b_high == (b_leads ? leg_is_high : opposed ? leg_is_low : past_mode == 2'd0 & past_negative & leg_awake));
         known_awake: assert (!leg_lit | leg_awake);
         known_wanted: assert (!leg_awake | past_wanted);
         known_running: assert (!past_wanted | running);
@@ -168,7 +168,8 @@ module pwm_properties (
     always @(*) begin
         known_range: assert (!running | (&in_range));
         known_start_a: assert (!asleep | (ready[0] & ready[1]));
-        known_start_b: assert (!asleep | ((ready[2] | mode_used == 2'd0) & ready[3]));
+        known_start_b: assert (!asleep | (ready[2] & ready[3]));
+        known_direction_rested: assert (!(leg_awake & past_mode == 2'd0) | pause_left[3] == 10'd0);
         known_pause_a: assert (!(pauses & a_leads) | ready[next_high ? 1 : 0]);
         known_pause_b: assert (!(pauses & b_leads) | ready[next_high ? 3 : 2]);
         known_pause_opposed: assert (!(pauses & opposed) | ready[next_high ? 2 : 3]);
@@ -186,6 +187,7 @@ module pwm_properties (
     always @(*) begin
         reach_a_high: cover (on[0] & past_mode == 2'd1);
         reach_a_low: cover (on[1] & past_mode == 2'd1);
+        reach_direction: cover (on[2] & past_mode == 2'd0);
         reach_opposed: cover (on == 4'b1001 & past_mode == 2'd3);
         reach_b_leads: cover (on[2] & past_mode == 2'd2);
         reach_end: cover (ended[0] & by_itself);

@@ -148,12 +148,15 @@ fn lockstep_catches_a_clear_while_the_fault_stands() {
 
 #[test]
 fn lockstep_catches_an_unlimited_duty() {
-    caught("magnitude_next = max_duty", "magnitude_next = size[15:0]");
+    caught("magnitude_next = max_duty", "magnitude_next = size[16:1]");
 }
 
 #[test]
 fn lockstep_catches_a_duty_one_above_its_limit() {
-    caught("size > {1'd0, max_duty}", "size >= {1'd0, max_duty} + 17'd2");
+    caught(
+        "size > ({1'd0, max_duty} << 1)",
+        "size > ({1'd0, max_duty} << 1) + 17'd2",
+    );
 }
 
 #[test]

@@ -66,6 +66,7 @@ pub(super) struct PulseCounter {
     primed: Dff<Bits<4>>,
     count_q: Dff<Signed<32>>,
     origin_q: Dff<Signed<32>>,
+    presets: Dff<Bit>,
     index_count_q: Dff<Signed<32>>,
     index_before: Dff<Bit>,
     index_seen_q: Dff<Bit>,
@@ -147,6 +148,7 @@ impl Default for PulseCounter {
             primed: Dff::default(),
             count_q: Dff::default(),
             origin_q: Dff::default(),
+            presets: Dff::default(),
             index_count_q: Dff::default(),
             index_before: Dff::default(),
             index_seen_q: Dff::default(),
@@ -181,6 +183,7 @@ impl Logic for PulseCounter {
             primed,
             count_q,
             origin_q,
+            presets,
             index_count_q,
             index_before,
             index_seen_q,
@@ -284,9 +287,11 @@ impl Logic for PulseCounter {
             self.index_armed_q.d.next = true;
         }
 
-        comment!("Presets move the origin, not the count");
-        if self.preset.val() | (self.index.val() & self.index_presets.val()) {
-            self.origin_q.d.next = self.counted.val() - self.preset_value.val();
+        comment!("Presets move the origin, not the count: a clock later,");
+        comment!("when the count has the step of the preset's clock");
+        self.presets.d.next = self.preset.val() | (self.index.val() & self.index_presets.val());
+        if self.presets.q.val() {
+            self.origin_q.d.next = self.count_q.q.val() - self.preset_value.val();
         }
 
         comment!("Velocity, of the count before the step");

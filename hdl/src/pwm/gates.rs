@@ -11,7 +11,6 @@ pub(super) struct Gates {
     pub(super) mask_pins: Signal<In, Bit>,
     pub(super) mode: Signal<In, Bits<2>>,
     pub(super) negative: Signal<In, Bit>,
-    pub(super) wanted: Signal<In, Bit>,
     pub(super) awake: Signal<In, Bit>,
     pub(super) high_side: Signal<In, Bit>,
     pub(super) low_side: Signal<In, Bit>,
@@ -49,7 +48,6 @@ impl Gates {
             mask_pins: Signal::default(),
             mode: Signal::default(),
             negative: Signal::default(),
-            wanted: Signal::default(),
             awake: Signal::default(),
             high_side: Signal::default(),
             low_side: Signal::default(),
@@ -92,7 +90,7 @@ impl Logic for Gates {
         if self.mode.val() == 0 {
             comment!("PWM and direction");
             self.a_low_gate.d.next = false;
-            self.b_high_gate.d.next = self.negative.val() & self.wanted.val();
+            self.b_high_gate.d.next = self.negative.val() & self.awake.val();
         }
         if self.mode.val() == 2 {
             comment!("Unipolar: the other leg stays low");

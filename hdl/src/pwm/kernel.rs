@@ -65,8 +65,10 @@ pub(super) struct Pwm {
     low_q: Dff<Bit>,
     high_q: Dff<Bit>,
     off_q: Dff<Bit>,
-    pulse: Dff<Signed<18>>,
-    edge_at: Dff<Bits<16>>,
+    settled_once: Dff<Bit>,
+    settled_twice: Dff<Bit>,
+    rise_at: Dff<Bits<16>>,
+    fall_at: Dff<Bits<16>>,
     level: Dff<Bit>,
     saturated_q: Dff<Bit>,
     refused_q: Dff<Bit>,
@@ -77,25 +79,23 @@ pub(super) struct Pwm {
     may_run: Signal<Local, Bit>,
     goes_on: Signal<Local, Bit>,
     starts: Signal<Local, Bit>,
-    level_now: Signal<Local, Bit>,
     wanted: Signal<Local, Bit>,
     wants_high: Signal<Local, Bit>,
-    boundary: Signal<Local, Bit>,
     updates: Signal<Local, Bit>,
-    dead: Signal<Local, Bits<18>>,
     minimum: Signal<Local, Bits<18>>,
-    longest: Signal<Local, Signed<18>>,
+    width_bits: Signal<Local, Bits<18>>,
+    whole_bits: Signal<Local, Bits<18>>,
+    rise: Signal<Local, Bits<17>>,
+    half_period: Signal<Local, Bits<16>>,
+    fall: Signal<Local, Bits<17>>,
+    rise_position: Signal<Local, Bits<16>>,
+    odd: Signal<Local, Bits<17>>,
+    low_side: Signal<Local, Signed<19>>,
+    shortest: Signal<Local, Bits<19>>,
     too_short: Signal<Local, Bit>,
     too_long: Signal<Local, Bit>,
     may_turn: Signal<Local, Bit>,
     turns: Signal<Local, Bit>,
-    width_now: Signal<Local, Signed<18>>,
-    pulse_bits: Signal<Local, Bits<18>>,
-    half_period: Signal<Local, Bits<16>>,
-    start: Signal<Local, Bits<16>>,
-    carry: Signal<Local, Bits<17>>,
-    sum: Signal<Local, Bits<17>>,
-    edge_position: Signal<Local, Bits<16>>,
 }
 
 impl Pwm {
@@ -153,8 +153,10 @@ impl Pwm {
             low_q: Dff::default(),
             high_q: Dff::default(),
             off_q: Dff::default(),
-            pulse: Dff::default(),
-            edge_at: Dff::default(),
+            settled_once: Dff::default(),
+            settled_twice: Dff::default(),
+            rise_at: Dff::default(),
+            fall_at: Dff::default(),
             level: Dff::default(),
             saturated_q: Dff::default(),
             refused_q: Dff::default(),
@@ -164,25 +166,23 @@ impl Pwm {
             may_run: Signal::default(),
             goes_on: Signal::default(),
             starts: Signal::default(),
-            level_now: Signal::default(),
             wanted: Signal::default(),
             wants_high: Signal::default(),
-            boundary: Signal::default(),
             updates: Signal::default(),
-            dead: Signal::default(),
             minimum: Signal::default(),
-            longest: Signal::default(),
+            width_bits: Signal::default(),
+            whole_bits: Signal::default(),
+            rise: Signal::default(),
+            half_period: Signal::default(),
+            fall: Signal::default(),
+            rise_position: Signal::default(),
+            odd: Signal::default(),
+            low_side: Signal::default(),
+            shortest: Signal::default(),
             too_short: Signal::default(),
             too_long: Signal::default(),
             may_turn: Signal::default(),
             turns: Signal::default(),
-            width_now: Signal::default(),
-            pulse_bits: Signal::default(),
-            half_period: Signal::default(),
-            start: Signal::default(),
-            carry: Signal::default(),
-            sum: Signal::default(),
-            edge_position: Signal::default(),
         }
     }
 }
@@ -200,8 +200,10 @@ impl Logic for Pwm {
             low_q,
             high_q,
             off_q,
-            pulse,
-            edge_at,
+            settled_once,
+            settled_twice,
+            rise_at,
+            fall_at,
             level,
             saturated_q,
             refused_q,
@@ -242,23 +244,27 @@ impl Logic for Pwm {
 
         comment!("Off at once; on at a valley, registers settled");
         self.settled.next = self.timing.settled.val() & (self.carrier.period_used.val() == self.period.val());
+        self.settled_once.d.next = self.settled.val();
+        self.settled_twice.d.next = self.settled_once.q.val();
         self.may_run.next = self.enable.val() & !self.guard.tripped.val();
         self.goes_on.next = self.running_q.q.val() & self.may_run.val();
         self.starts.next = !self.running_q.q.val()
             & self.may_run.val()
             & self.carrier.valley_next.val()
             & self.settled.val()
+            & self.settled_once.q.val()
+            & self.settled_twice.q.val()
             & !self.carrier.realigns.val();
         self.running_q.d.next = self.goes_on.val() | self.starts.val();
 
         comment!("What is wanted of the leg at this position");
-        self.level_now.next = self.level.q.val() ^ (self.carrier.position.val() == self.edge_at.q.val());
         self.wanted.next = self.goes_on.val() & !self.off_q.q.val();
-        self.wants_high.next = self.high_q.q.val() | (self.level_now.val() & !self.low_q.q.val());
+        self.wants_high.next = self.high_q.q.val() | (self.level.q.val() & !self.low_q.q.val());
         self.leg.clk.next = self.clk.val();
         self.leg.rst.next = self.rst.val();
         self.leg.wanted.next = self.wanted.val();
         self.leg.wants_high.next = self.wants_high.val();
+        self.leg.low_first.next = self.mode_q.q.val() == 0;
         self.leg.dead_time.next = self.timing.dead_time_used.val();
         self.leg.minimum_pulse.next = self.timing.minimum_pulse_used.val();
         self.pin_gates.clk.next = self.clk.val();
@@ -267,21 +273,32 @@ impl Logic for Pwm {
         self.pin_gates.mask_pins.next = self.mask_pins.val();
         self.pin_gates.mode.next = self.mode_q.q.val();
         self.pin_gates.negative.next = self.negative_q.q.val();
-        self.pin_gates.wanted.next = self.wanted.val();
         self.pin_gates.awake.next = self.leg.awake.val();
         self.pin_gates.high_side.next = self.leg.high_side.val();
         self.pin_gates.low_side.next = self.leg.low_side.val();
 
-        comment!("Shorter than the minimum: none, or full");
-        self.boundary.next = self.carrier.valley_next.val() | self.carrier.peak_next.val();
+        comment!("The edges of a pulse: half of it before the peak, half");
+        comment!("behind it, an odd clock behind it");
         self.updates.next = self.carrier.valley_next.val() | (self.carrier.peak_next.val() & self.update_at_peak.val());
-        self.dead.next = bit_cast::<18, 10>(self.timing.dead_time_used.val());
+        self.width_bits.next = unsigned_cast(self.command.width.val());
+        self.whole_bits.next = unsigned_cast(self.command.whole.val());
+        self.odd.next = bit_cast::<17, 1>(self.width_bits.val().get_bits::<1>(0));
+        self.rise.next = self.whole_bits.val().get_bits::<17>(1) - self.width_bits.val().get_bits::<17>(1);
+        self.rise_position.next = self.rise.val().get_bits::<16>(0);
+        self.half_period.next = self.carrier.period_used.val() >> 1;
+        self.fall.next = ((bit_cast::<17, 16>(self.half_period.val()) << 1) | self.odd.val())
+            + ((bit_cast::<17, 16>(self.width_bits.val().get_bits::<16>(1)) << 1) | self.odd.val());
+
+        comment!("Shorter than the minimum: none, or full. The low side's");
+        comment!("pulse is twice the rise and the odd clocks");
         self.minimum.next = bit_cast::<18, 10>(self.timing.minimum_pulse_used.val());
-        self.longest.next = signed_cast(
-            bit_cast::<18, 16>(self.carrier.period_used.val()) - ((self.dead.val() << 1) + self.minimum.val()),
+        self.low_side.next = signed_cast(
+            (bit_cast::<19, 17>(self.rise.val()) << 2)
+                | (bit_cast::<19, 1>(self.whole_bits.val().get_bits::<1>(0)) << 1),
         );
+        self.shortest.next = (bit_cast::<19, 18>(self.minimum.val()) << 1) | bit_cast::<19, 17>(self.odd.val());
         self.too_short.next = self.command.width.val() < signed_cast(self.minimum.val());
-        self.too_long.next = self.command.width.val() > self.longest.val();
+        self.too_long.next = self.low_side.val() < signed_cast(self.shortest.val());
 
         comment!("A direction turns with its first pulse, from low");
         self.may_turn.next = !self.leg.awake.val() | self.leg.low_side.val();
@@ -296,36 +313,22 @@ impl Logic for Pwm {
             self.low_q.d.next = self.too_short.val() | (self.turns.val() & !self.may_turn.val());
             self.high_q.d.next =
                 self.too_long.val() & !self.too_short.val() & !(self.turns.val() & !self.may_turn.val());
-            self.pulse.d.next = self.command.width.val();
+            self.fall_at.d.next = self.fall.val().get_bits::<16>(1);
             if self.turns.val() & self.may_turn.val() {
                 self.negative_q.d.next = self.command.negative.val();
             }
         }
 
-        comment!("The edge of the half that begins: a sum; by two");
-        comment!("inversions a difference; the odd clock carries");
-        self.width_now.next = self.pulse.q.val();
-        if self.updates.val() {
-            self.width_now.next = self.command.width.val();
-        }
-        self.pulse_bits.next = unsigned_cast(self.width_now.val());
-        self.half_period.next = self.carrier.period_used.val() >> 1;
-        self.start.next = !(self.half_period.val() - self.dead.val().get_bits::<16>(0));
-        self.carry.next = 0.into();
+        comment!("The level of the position to come: low from the valley,");
+        comment!("high from the rise, and in any case from the peak");
+        self.level.d.next = (self.level.q.val() | (self.carrier.ahead.val() == self.rise_at.q.val()))
+            & (self.carrier.ahead.val() != self.fall_at.q.val());
         if self.carrier.peak_next.val() {
-            self.start.next = self.half_period.val();
-            self.carry.next = bit_cast::<17, 1>(self.pulse_bits.val().get_bits::<1>(0));
+            self.level.d.next = true;
         }
-        self.sum.next = ((bit_cast::<17, 16>(self.start.val()) << 1) | self.carry.val())
-            + ((bit_cast::<17, 16>(self.pulse_bits.val().get_bits::<16>(1)) << 1) | self.carry.val());
-        self.edge_position.next = self.sum.val().get_bits::<16>(1);
-        self.level.d.next = self.level_now.val();
-        if self.boundary.val() {
-            self.level.d.next = self.carrier.peak_next.val();
-            self.edge_at.d.next = !self.edge_position.val();
-            if self.carrier.peak_next.val() {
-                self.edge_at.d.next = self.edge_position.val();
-            }
+        if self.carrier.valley_next.val() {
+            self.rise_at.d.next = self.rise_position.val();
+            self.level.d.next = !self.rise_position.val().any();
         }
 
         comment!("Flags, set over clear");

@@ -10,6 +10,7 @@ pub(super) struct Leg {
     pub(super) rst: Signal<In, Bit>,
     pub(super) wanted: Signal<In, Bit>,
     pub(super) wants_high: Signal<In, Bit>,
+    pub(super) low_first: Signal<In, Bit>,
     pub(super) dead_time: Signal<In, Bits<10>>,
     pub(super) minimum_pulse: Signal<In, Bits<10>>,
     pub(super) awake: Signal<Out, Bit>,
@@ -47,7 +48,7 @@ impl Logic for Leg {
                 self.lit_next.next = true;
                 self.awake_next.next = true;
                 if !self.awake_q.q.val() {
-                    self.high_next.next = self.wants_high.val();
+                    self.high_next.next = self.wants_high.val() & !self.low_first.val();
                 }
                 self.pause.next = self.minimum_pulse.val();
             } else {

@@ -78,13 +78,16 @@ impl<'a> Netlist<'a> {
     }
 
     /// A Verilog file with all mutants, and the input that chooses.
+    ///
+    /// A mutant may tie a bit of a net to another bit of it. Verilator 5.006 takes that for a loop, and then simulates wrongly
+    /// what depends on it, whichever mutant is chosen: so nets are split where their drivers are.
     pub(super) fn with_all(&self, mutants: &[Mutant]) -> Result<PathBuf, Error> {
         let mut script = String::from("read_ilang block.il\n");
         for mutant in mutants {
             let Mutant { number, arguments, .. } = mutant;
             let _ = writeln!(script, "mutate -ctrl {SELECT} {SELECT_BITS} {number} {arguments}");
         }
-        script.push_str("opt_clean\nwrite_verilog -noattr mutants.v\n");
+        script.push_str("opt_clean\nsplitnets -driver\nwrite_verilog -noattr mutants.v\n");
         self.yosys("mutate", &script)?;
         Ok(self.folder.join("mutants.v"))
     }

@@ -6,6 +6,7 @@ use posicast_model::rtl::divider::DividerConfig;
 use posicast_model::rtl::pwm::{ActiveLow, Mode, PwmConfig};
 use posicast_model::rtl::schedule::ScheduleConfig;
 use posicast_model::rtl::shaper::{Motion, ShaperConfig};
+use posicast_model::rtl::sliding_mode::Settings;
 use posicast_model::rtl::trace::TraceConfig;
 use posicast_model::taps::{Tap, TapTable};
 
@@ -134,6 +135,7 @@ fn blocks() -> Result<Vec<OfSize>, Error> {
             }),
             "3 channels of 32 bits",
         ),
+        (part(Part::SettingBanks(Settings::default())), "settings of 0"),
     ];
     let pwm = PwmConfig::new(ActiveLow::default(), 25, 50).map_err(refused)?;
     let component = Component::pwm(pwm, Mode::Unipolar, 2500).map_err(refused)?;

@@ -53,10 +53,15 @@ impl EncoderGeneratorRandom {
                 &[any, any, small, turned, turned, i32::MIN, i32::MAX, 1 << 30],
             );
         }
-        if self.one_in(3000) {
+        if self.one_in(1500) {
             let any = self.rng.next_u32() as u16;
             let small = any & 63;
-            self.index_every = *pick(&mut self.rng, &[any, small, small, 3, 4, 8, 40, 0]);
+            // A power of two periods and one more: the first step below the index is to each bit of the period alone.
+            let bit = (1 + (1 << self.rng.random_range(0..13))) << 2;
+            self.index_every = *pick(
+                &mut self.rng,
+                &[any, any, bit, bit, bit, bit, bit, bit, small, small, 3, 4, 8, 0],
+            );
         }
         if self.one_in(700) {
             self.loop_back = !self.loop_back;

@@ -52,6 +52,8 @@ struct State {
     index_before: bool,
     count: i32,
     origin: i32,
+    /// A preset in the clock before: the origin moves in this one.
+    presets: bool,
     index_count: i32,
     index_seen: bool,
     index_armed: bool,
@@ -82,7 +84,7 @@ impl State {
         let [level_a, level_b, index_level] = [0, 1, 2].map(|line: usize| self.lines[line].level());
         let levels = [level_a, level_b];
         let arms = inputs.index_arm && !self.index_armed;
-        let acts = inputs.rst || inputs.tick || inputs.preset || inputs.quotient_valid || arms;
+        let acts = inputs.rst || inputs.tick || inputs.preset || self.presets || inputs.quotient_valid || arms;
         let flags = self.index_seen || self.illegal || self.disagreement || self.velocity.missed();
         let clears = inputs.clear_flags && (flags || self.illegal_count > 0);
         let steps = self.before != levels || self.index_before != (index_level && inputs.index_gate_open(levels));
@@ -198,6 +200,9 @@ impl PulseCounter {
         let event = decode(inputs, levels, state.before);
         let step = event.step && ready;
         let count_before = state.count;
+        if state.presets {
+            state.origin = count_before.wrapping_sub(inputs.preset_value);
+        }
         if step {
             state.count = state.count.wrapping_add(if event.up { 1 } else { -1 });
         }
@@ -222,9 +227,7 @@ impl PulseCounter {
             state.index_armed = false;
         }
         state.index_armed |= inputs.index_arm;
-        if inputs.preset || (index && inputs.index_presets) {
-            state.origin = state.count.wrapping_sub(inputs.preset_value);
-        }
+        state.presets = inputs.preset || (index && inputs.index_presets);
         state.index_before = gated;
 
         state.velocity.clock(inputs, step.then_some(event.up), count_before);

@@ -39,8 +39,9 @@ impl Leg {
         !self.awake || (self.lit && !self.high)
     }
 
+    /// `low_first`: after all was off, the low side comes first, whatever is wanted by then.
     #[inline]
-    pub(super) fn clock(&mut self, want: Want, dead_time: u16, minimum_pulse: u16) {
+    pub(super) fn clock(&mut self, want: Want, low_first: bool, dead_time: u16, minimum_pulse: u16) {
         let wants_high = want == Want::High;
         if want == Want::Off {
             *self = Self {
@@ -50,7 +51,11 @@ impl Leg {
         } else if self.timer != 0 {
             self.timer -= 1;
         } else if !self.lit {
-            self.high = if self.awake { self.high } else { wants_high };
+            self.high = if self.awake {
+                self.high
+            } else {
+                wants_high && !low_first
+            };
             (self.awake, self.lit) = (true, true);
             self.timer = minimum_pulse - 1;
         } else if self.high != wants_high {

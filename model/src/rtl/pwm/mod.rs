@@ -91,12 +91,15 @@ struct State {
     leg: Leg,
     gates: Gates,
     running: bool,
+    /// Whether the times in use stood at the inputs, one and two clocks ago.
+    settled: [bool; 2],
     /// `mask_pins` of the clock before.
     masked: bool,
     trip: Trip,
-    /// The carrier is at its valley, its peak; one clock later the pins are.
+    /// The carrier is at its valley, its peak, the trigger's phase; one clock later the pins are.
     at_valley: bool,
     at_peak: bool,
+    at_trigger: bool,
     valley: bool,
     peak: bool,
     trigger: bool,
@@ -125,10 +128,12 @@ impl State {
             leg: Leg::default(),
             gates: Gates::default(),
             running: false,
+            settled: [false; 2],
             masked: false,
             trip: Trip::default(),
             at_valley: false,
             at_peak: false,
+            at_trigger: false,
             valley: false,
             peak: false,
             trigger: false,
@@ -236,7 +241,7 @@ impl State {
         let was_running = state.running;
         let may_run = inputs.enable && !state.trip.tripped();
         let goes_on = was_running && may_run;
-        let starts = !was_running && may_run && valley && settled && !realigns;
+        let starts = !was_running && may_run && valley && settled && state.settled == [true; 2] && !realigns;
 
         // The gates, for the present position.
         state.level ^= state.position == state.edge_at;
@@ -245,10 +250,9 @@ impl State {
             (_, Pattern::Low, _) | (_, Pattern::Pulse, false) => Want::Low,
             (_, Pattern::High, _) | (_, Pattern::Pulse, true) => Want::High,
         };
-        state.leg.clock(want, state.dead_time, state.minimum_pulse);
-        let active = want != Want::Off;
-        let leg = &state.leg;
-        state.gates = Gates::of(state.mode, state.negative, active, leg.awake(), leg.sides());
+        let low_first = state.mode == Mode::Direction;
+        state.leg.clock(want, low_first, state.dead_time, state.minimum_pulse);
+        state.gates = Gates::of(state.mode, state.negative, state.leg.awake(), state.leg.sides());
 
         let updates = valley || (peak && inputs.update_at_peak);
         if inputs.clear_flags {
@@ -278,9 +282,10 @@ impl State {
             }
         }
         state.masked = inputs.mask_pins;
-        state.trigger = state.position == inputs.trigger_phase;
-        (state.valley, state.peak) = (state.at_valley, state.at_peak);
+        state.settled = [settled, state.settled[0]];
+        (state.valley, state.peak, state.trigger) = (state.at_valley, state.at_peak, state.at_trigger);
         (state.at_valley, state.at_peak) = (valley && !realigns, peak && !realigns);
+        state.at_trigger = next == inputs.trigger_phase && !realigns;
         state.position = if realigns { inputs.phase } else { next };
     }
 

@@ -104,9 +104,9 @@ impl Gates {
     }
 
     /// What a leg, and the rest of the bridge, are in a mode. `leg` is the leg that switches: its high side, its low side.
-    /// `awake`: its first dead time is over. `active`: it has something to do.
+    /// `awake`: its first dead time is over.
     #[inline]
-    pub(super) fn of(mode: Mode, negative: bool, active: bool, awake: bool, leg: (bool, bool)) -> Self {
+    pub(super) fn of(mode: Mode, negative: bool, awake: bool, leg: (bool, bool)) -> Self {
         let (high, low) = leg;
         let gates = |a_high, a_low, b_high, b_low| Self {
             a_high,
@@ -115,7 +115,7 @@ impl Gates {
             b_low,
         };
         match (mode, negative) {
-            (Mode::Direction, _) => gates(high, false, active && negative, false),
+            (Mode::Direction, _) => gates(high, false, awake && negative, false),
             (Mode::HalfBridge, _) => gates(high, low, false, false),
             (Mode::Unipolar, false) => gates(high, low, false, awake),
             (Mode::Unipolar, true) => gates(false, awake, high, low),

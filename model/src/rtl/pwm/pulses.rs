@@ -151,7 +151,7 @@ impl Bridge {
         match (self.pattern.unwrap_or(Pattern::Off), half) {
             (Pattern::Off, _) => {
                 self.leg = Leg::Off;
-                self.show(0, false, &mut edges);
+                self.show(0, &mut edges);
             }
             (Pattern::Low, _) => self.drive(timing, 0..clocks, false, &mut edges),
             (Pattern::High, _) => self.drive(timing, 0..clocks, true, &mut edges),
@@ -219,11 +219,11 @@ impl Bridge {
                 high: None,
             };
         }
-        self.show(now, true, edges);
+        self.show(now, edges);
         loop {
             let (at, leg) = match self.leg {
                 Leg::Dead { until, high } => {
-                    let high = high.unwrap_or(wants_high);
+                    let high = high.unwrap_or(wants_high && self.mode != Mode::Direction);
                     (until, Leg::On { since: until, high })
                 }
                 Leg::On { since, high } if high != wants_high => {
@@ -239,18 +239,18 @@ impl Bridge {
             }
             now = at;
             self.leg = leg;
-            self.show(now, true, edges);
+            self.show(now, edges);
         }
     }
 
     /// Notes the gates from a clock on, if they differ.
-    fn show(&mut self, clock: i64, active: bool, edges: &mut Vec<Edge>) {
+    fn show(&mut self, clock: i64, edges: &mut Vec<Edge>) {
         let (awake, sides) = match self.leg {
             Leg::Off | Leg::Dead { high: None, .. } => (false, (false, false)),
             Leg::Dead { .. } => (true, (false, false)),
             Leg::On { high, .. } => (true, (high, !high)),
         };
-        let gates = Gates::of(self.mode, self.negative, active, awake, sides);
+        let gates = Gates::of(self.mode, self.negative, awake, sides);
         if gates != self.gates {
             self.gates = gates;
             edges.push(Edge { clock, gates });

@@ -16,7 +16,8 @@ impl State {
             counted.leg.timer = before.leg.timer.wrapping_sub(1);
         }
         // A strobe that is on falls in the next clock.
-        let strobes = state.at_valley || state.at_peak || state.valley || state.peak || state.trigger;
+        let strobes =
+            state.at_valley || state.at_peak || state.at_trigger || state.valley || state.peak || state.trigger;
         if counted != *state || strobes || inputs.sync || inputs.rst {
             return None;
         }
@@ -24,7 +25,7 @@ impl State {
             state.period.wrapping_sub(1),
             (state.period >> 1).wrapping_sub(1),
             state.edge_at,
-            inputs.trigger_phase,
+            inputs.trigger_phase.wrapping_sub(1),
         ];
         let distances = events.map(|position| position.wrapping_sub(state.position));
         let timer = if counts { state.leg.timer } else { u16::MAX };
