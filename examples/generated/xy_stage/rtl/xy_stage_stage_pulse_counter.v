@@ -90,6 +90,8 @@ module xy_stage_stage_pulse_counter (
     reg  signed [31:0] count_q;
     reg  signed [31:0] origin_q;
     reg  signed [31:0] origin_q_next;
+    reg                presets;
+    wire               presets_next;
     reg  signed [31:0] index_count_q;
     reg  signed [31:0] index_count_q_next;
     reg                index_before;
@@ -199,6 +201,10 @@ module xy_stage_stage_pulse_counter (
     assign gated = gate & line_z_level;
     assign index = (gated & !index_before) & (index_armed_q | index_always);
 
+    // Presets move the origin, not the count: a clock later,
+    // when the count has the step of the preset's clock
+    assign presets_next = preset | (index & index_presets);
+
     // Velocity, of the count before the step
     assign count_bits = $unsigned(count_q);
     assign speed_count = count_bits[17:0];
@@ -277,9 +283,10 @@ module xy_stage_stage_pulse_counter (
             index_armed_q_next = 1'd1;
         end
 
-        // Presets move the origin, not the count
-        if (preset | (index & index_presets)) begin
-            origin_q_next = counted - preset_value;
+        // Presets move the origin, not the count: a clock later,
+        // when the count has the step of the preset's clock
+        if (presets) begin
+            origin_q_next = count_q - preset_value;
         end
     end
 
@@ -288,6 +295,7 @@ module xy_stage_stage_pulse_counter (
             primed <= 4'd0;
             count_q <= 32'sd0;
             origin_q <= 32'sd0;
+            presets <= 1'd0;
             index_count_q <= 32'sd0;
             index_before <= 1'd0;
             index_seen_q <= 1'd0;
@@ -299,6 +307,7 @@ module xy_stage_stage_pulse_counter (
             primed <= primed_next;
             count_q <= counted;
             origin_q <= origin_q_next;
+            presets <= presets_next;
             index_count_q <= index_count_q_next;
             index_before <= gated;
             index_seen_q <= index_seen_q_next;
@@ -313,6 +322,7 @@ module xy_stage_stage_pulse_counter (
         primed = 4'd0;
         count_q = 32'sd0;
         origin_q = 32'sd0;
+        presets = 1'd0;
         index_count_q = 32'sd0;
         index_before = 1'd0;
         index_seen_q = 1'd0;

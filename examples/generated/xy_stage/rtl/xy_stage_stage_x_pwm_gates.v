@@ -14,7 +14,6 @@ module xy_stage_stage_x_pwm_gates (
     input  wire       mask_pins,
     input  wire [1:0] mode,
     input  wire       negative,
-    input  wire       wanted,
     input  wire       awake,
     input  wire       high_side,
     input  wire       low_side,
@@ -65,7 +64,7 @@ module xy_stage_stage_x_pwm_gates (
         if (mode == 2'd0) begin
             // PWM and direction
             a_low_gate_next = 1'd0;
-            b_high_gate_next = negative & wanted;
+            b_high_gate_next = negative & awake;
         end
         if (mode == 2'd2) begin
             // Unipolar: the other leg stays low

@@ -57,26 +57,24 @@ module xy_stage_stage_y_pwm (
     wire               may_run;
     wire               goes_on;
     wire               starts;
-    wire               level_now;
     wire               wanted;
     wire               wants_high;
-    wire               boundary;
     wire               updates;
-    wire [17:0]        dead;
     wire [17:0]        minimum;
-    wire signed [17:0] longest;
+    wire [17:0]        width_bits;
+    wire [17:0]        whole_bits;
+    wire [16:0]        rise;
+    wire [15:0]        half_period;
+    wire [16:0]        fall;
+    wire [15:0]        rise_position;
+    wire [16:0]        odd;
+    wire signed [18:0] low_side;
+    wire [18:0]        shortest;
     wire               too_short;
     wire               too_long;
     wire               may_turn;
     wire               turns;
-    reg  signed [17:0] width_now;
-    wire [17:0]        pulse_bits;
-    wire [15:0]        half_period;
-    reg  [15:0]        start;
-    reg  [16:0]        carry;
-    wire [16:0]        sum;
-    wire [15:0]        edge_position;
-    wire [15:0]        carrier_position;
+    wire [15:0]        carrier_ahead;
     wire [15:0]        carrier_period_used;
     wire               carrier_valley_next;
     wire               carrier_peak_next;
@@ -89,6 +87,7 @@ module xy_stage_stage_y_pwm (
     wire [9:0]         timing_minimum_pulse_used;
     wire               timing_below;
     wire               timing_settled;
+    wire signed [17:0] command_whole;
     wire signed [17:0] command_width;
     wire [1:0]         command_width_mode;
     wire               command_negative;
@@ -96,6 +95,7 @@ module xy_stage_stage_y_pwm (
     wire               guard_armed;
     wire               guard_tripped;
     wire [4:0]         guard_causes;
+    wire               leg_low_first;
     wire               leg_awake;
     wire               leg_high_side;
     wire               leg_low_side;
@@ -116,10 +116,12 @@ module xy_stage_stage_y_pwm (
     reg                high_q_next;
     reg                off_q;
     reg                off_q_next;
-    reg  signed [17:0] pulse;
-    reg  signed [17:0] pulse_next;
-    reg  [15:0]        edge_at;
-    reg  [15:0]        edge_at_next;
+    reg                settled_once;
+    reg                settled_twice;
+    reg  [15:0]        rise_at;
+    reg  [15:0]        rise_at_next;
+    reg  [15:0]        fall_at;
+    reg  [15:0]        fall_at_next;
     reg                level;
     reg                level_next;
     reg                saturated_q;
@@ -139,7 +141,7 @@ module xy_stage_stage_y_pwm (
         .sync          (sync),
         .phase         (phase),
         .trigger_phase (trigger_phase),
-        .position      (carrier_position),
+        .ahead         (carrier_ahead),
         .period_used   (carrier_period_used),
         .valley_next   (carrier_valley_next),
         .peak_next     (carrier_peak_next),
@@ -170,6 +172,7 @@ module xy_stage_stage_y_pwm (
         .max_duty   (max_duty),
         .period     (carrier_period_used),
         .dead_time  (timing_dead_time_used),
+        .whole      (command_whole),
         .width      (command_width),
         .width_mode (command_width_mode),
         .negative   (command_negative),
@@ -198,6 +201,7 @@ module xy_stage_stage_y_pwm (
         .rst           (rst),
         .wanted        (wanted),
         .wants_high    (wants_high),
+        .low_first     (leg_low_first),
         .dead_time     (timing_dead_time_used),
         .minimum_pulse (timing_minimum_pulse_used),
         .awake         (leg_awake),
@@ -212,7 +216,6 @@ module xy_stage_stage_y_pwm (
         .mask_pins (mask_pins),
         .mode      (mode_q),
         .negative  (negative_q),
-        .wanted    (wanted),
         .awake     (leg_awake),
         .high_side (leg_high_side),
         .low_side  (leg_low_side),
@@ -227,33 +230,36 @@ module xy_stage_stage_y_pwm (
     assign settled = timing_settled & (carrier_period_used == period);
     assign may_run = enable & !guard_tripped;
     assign goes_on = running_q & may_run;
-    assign starts = (((!running_q & may_run) & carrier_valley_next) & settled) & !carrier_realigns;
+    assign starts = (((((!running_q & may_run) & carrier_valley_next) & settled) & settled_once) & settled_twice) & !carrier_realigns;
     assign running_q_next = goes_on | starts;
 
     // What is wanted of the leg at this position
-    assign level_now = level ^ (carrier_position == edge_at);
     assign wanted = goes_on & !off_q;
-    assign wants_high = high_q | (level_now & !low_q);
+    assign wants_high = high_q | (level & !low_q);
+    assign leg_low_first = mode_q == 2'd0;
 
-    // Shorter than the minimum: none, or full
-    assign boundary = carrier_valley_next | carrier_peak_next;
+    // The edges of a pulse: half of it before the peak, half
+    // behind it, an odd clock behind it
     assign updates = carrier_valley_next | (carrier_peak_next & update_at_peak);
-    assign dead = {8'd0, timing_dead_time_used};
+    assign width_bits = $unsigned(command_width);
+    assign whole_bits = $unsigned(command_whole);
+    assign odd = {16'd0, width_bits[0]};
+    assign rise = whole_bits[17:1] - width_bits[17:1];
+    assign rise_position = rise[15:0];
+    assign half_period = carrier_period_used >> 1;
+    assign fall = (({1'd0, half_period} << 1) | odd) + (({1'd0, width_bits[16:1]} << 1) | odd);
+
+    // Shorter than the minimum: none, or full. The low side's
+    // pulse is twice the rise and the odd clocks
     assign minimum = {8'd0, timing_minimum_pulse_used};
-    assign longest = $signed({2'd0, carrier_period_used} - ((dead << 1) + minimum));
+    assign low_side = $signed(({2'd0, rise} << 2) | ({18'd0, whole_bits[0]} << 1));
+    assign shortest = ({1'd0, minimum} << 1) | {2'd0, odd};
     assign too_short = command_width < $signed(minimum);
-    assign too_long = command_width > longest;
+    assign too_long = low_side < $signed(shortest);
 
     // A direction turns with its first pulse, from low
     assign may_turn = !leg_awake | leg_low_side;
     assign turns = (((command_width_mode == 2'd0) | (command_width_mode == 2'd2)) & !too_short) & (command_negative != negative_q);
-
-    // The edge of the half that begins: a sum; by two
-    // inversions a difference; the odd clock carries
-    assign pulse_bits = $unsigned(width_now);
-    assign half_period = carrier_period_used >> 1;
-    assign sum = (({1'd0, start} << 1) | carry) + (({1'd0, pulse_bits[16:1]} << 1) | carry);
-    assign edge_position = sum[16:1];
 
     // Outputs
     assign a_high = pin_gates_a_high;
@@ -281,8 +287,8 @@ module xy_stage_stage_y_pwm (
         low_q_next = low_q;
         high_q_next = high_q;
         off_q_next = off_q;
-        pulse_next = pulse;
-        edge_at_next = edge_at;
+        rise_at_next = rise_at;
+        fall_at_next = fall_at;
         saturated_q_next = saturated_q;
         refused_q_next = refused_q;
         below_floor_q_next = below_floor_q;
@@ -294,31 +300,21 @@ module xy_stage_stage_y_pwm (
             off_q_next = goes_on & (command_width_mode != mode_q);
             low_q_next = too_short | (turns & !may_turn);
             high_q_next = (too_long & !too_short) & !(turns & !may_turn);
-            pulse_next = command_width;
+            fall_at_next = fall[16:1];
             if (turns & may_turn) begin
                 negative_q_next = command_negative;
             end
         end
 
-        // The edge of the half that begins: a sum; by two
-        // inversions a difference; the odd clock carries
-        width_now = pulse;
-        if (updates) begin
-            width_now = command_width;
-        end
-        start = ~(half_period - dead[15:0]);
-        carry = 17'd0;
+        // The level of the position to come: low from the valley,
+        // high from the rise, and in any case from the peak
+        level_next = (level | (carrier_ahead == rise_at)) & (carrier_ahead != fall_at);
         if (carrier_peak_next) begin
-            start = half_period;
-            carry = {16'd0, pulse_bits[0]};
+            level_next = 1'd1;
         end
-        level_next = level_now;
-        if (boundary) begin
-            level_next = carrier_peak_next;
-            edge_at_next = ~edge_position;
-            if (carrier_peak_next) begin
-                edge_at_next = edge_position;
-            end
+        if (carrier_valley_next) begin
+            rise_at_next = rise_position;
+            level_next = !(|rise_position);
         end
 
         // Flags, set over clear
@@ -350,8 +346,10 @@ module xy_stage_stage_y_pwm (
             low_q <= 1'd0;
             high_q <= 1'd0;
             off_q <= 1'd0;
-            pulse <= 18'sd0;
-            edge_at <= 16'd0;
+            settled_once <= 1'd0;
+            settled_twice <= 1'd0;
+            rise_at <= 16'd0;
+            fall_at <= 16'd0;
             level <= 1'd0;
             saturated_q <= 1'd0;
             refused_q <= 1'd0;
@@ -364,8 +362,10 @@ module xy_stage_stage_y_pwm (
             low_q <= low_q_next;
             high_q <= high_q_next;
             off_q <= off_q_next;
-            pulse <= pulse_next;
-            edge_at <= edge_at_next;
+            settled_once <= settled;
+            settled_twice <= settled_once;
+            rise_at <= rise_at_next;
+            fall_at <= fall_at_next;
             level <= level_next;
             saturated_q <= saturated_q_next;
             refused_q <= refused_q_next;
@@ -381,8 +381,10 @@ module xy_stage_stage_y_pwm (
         low_q = 1'd0;
         high_q = 1'd0;
         off_q = 1'd0;
-        pulse = 18'sd0;
-        edge_at = 16'd0;
+        settled_once = 1'd0;
+        settled_twice = 1'd0;
+        rise_at = 16'd0;
+        fall_at = 16'd0;
         level = 1'd0;
         saturated_q = 1'd0;
         refused_q = 1'd0;
@@ -391,7 +393,7 @@ module xy_stage_stage_y_pwm (
     end
 
     // Bits that nothing reads.
-    wire unused = &{1'b0, pulse_bits[17], sum[0]};
+    wire unused = &{1'b0, fall[0]};
 endmodule
 
 `default_nettype wire

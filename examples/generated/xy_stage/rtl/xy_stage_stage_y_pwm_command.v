@@ -14,66 +14,71 @@ module xy_stage_stage_y_pwm_command (
     input  wire [15:0]        max_duty,
     input  wire [15:0]        period,
     input  wire [9:0]         dead_time,
+    output wire signed [17:0] whole,
     output wire signed [17:0] width,
     output wire [1:0]         width_mode,
     output wire               negative,
     output wire               saturated
 );
+    localparam [19:0] CARRY = 20'd1;
+
     wire               below_zero;
     wire [16:0]        duty_bits;
     reg  [16:0]        size;
     reg                over;
     wire               one_sided;
     wire [17:0]        dead;
-    wire [17:0]        wide;
-    wire [17:0]        whole;
-    wire [17:0]        upper;
-    wire [17:0]        lower;
-    wire signed [16:0] upper_half;
-    wire signed [16:0] lower_half;
+    wire signed [19:0] wide_whole;
+    reg  [19:0]        base;
+    reg  [19:0]        operand;
+    wire [19:0]        sum;
     reg  [1:0]         limited_mode;
     reg                limited_negative;
     reg                limited;
     wire               limited_next;
     reg  [15:0]        magnitude;
     reg  [15:0]        magnitude_next;
+    reg  signed [17:0] whole_q;
+    wire signed [17:0] whole_q_next;
     reg  signed [17:0] width_q;
-    reg  signed [17:0] width_q_next;
+    wire signed [17:0] width_q_next;
     reg  [1:0]         width_mode_q;
     reg                negative_q;
     reg                saturated_q;
     wire               saturated_q_next;
 
-    // First clock: size, and limit
+    // First clock: size, and limit. Of a negative duty the
+    // inverse, which is one less: bit 0 adds it
     assign below_zero = duty[16];
     assign duty_bits = $unsigned(duty);
     assign one_sided = (mode == 2'd1) & below_zero;
     assign limited_next = over | one_sided;
 
     // Second clock: less the dead time; locked: half of
-    // what the period leaves, up or down
+    // what the period leaves, up or down. It is one sum, of
+    // twice the width; to subtract, inverse and carry
     assign dead = {8'd0, dead_time};
-    assign wide = {2'd0, magnitude};
-    assign whole = {2'd0, period} - (dead << 1);
-    assign upper = whole + wide;
-    assign lower = whole - wide;
-    assign upper_half = $signed(upper[17:1]);
-    assign lower_half = $signed(lower[17:1]);
+    assign whole_q_next = $signed({2'd0, period} - (dead << 1));
+    assign wide_whole = $signed({{2{whole_q[17]}}, whole_q});
+    assign sum = base + operand;
+    assign width_q_next = $signed(sum[19:2]);
     assign saturated_q_next = limited | (magnitude > period);
+    assign whole = whole_q;
     assign width = width_q;
     assign width_mode = width_mode_q;
     assign negative = negative_q;
     assign saturated = saturated_q;
 
     always @(*) begin
-        // First clock: size, and limit
-        size = duty_bits;
+        // First clock: size, and limit. Of a negative duty the
+        // inverse, which is one less: bit 0 adds it
+        size = duty_bits << 1;
         if (below_zero) begin
-            size = ~duty_bits + 17'd1;
+            size = ~(duty_bits << 1);
         end
         over = 1'd0;
-        magnitude_next = size[15:0];
-        if (size > {1'd0, max_duty}) begin
+        magnitude_next = size[16:1] + {15'd0, size[0]};
+        if (size > ({1'd0, max_duty} << 1)) begin
             over = 1'd1;
             magnitude_next = max_duty;
         end
@@ -82,12 +87,16 @@ module xy_stage_stage_y_pwm_command (
         end
 
         // Second clock: less the dead time; locked: half of
-        // what the period leaves, up or down
-        width_q_next = $signed(wide - dead);
+        // what the period leaves, up or down. It is one sum, of
+        // twice the width; to subtract, inverse and carry
+        base = ~({10'd0, dead_time} << 2);
+        operand = ({4'd0, magnitude} << 2) | CARRY;
         if (limited_mode == 2'd3) begin
-            width_q_next = $signed({{1{upper_half[16]}}, upper_half});
+            base = $unsigned(wide_whole) << 1;
+            operand = {4'd0, magnitude} << 1;
             if (limited_negative) begin
-                width_q_next = $signed({{1{lower_half[16]}}, lower_half});
+                base = ($unsigned(wide_whole) << 1) | CARRY;
+                operand = ~({4'd0, magnitude} << 1);
             end
         end
     end
@@ -98,6 +107,7 @@ module xy_stage_stage_y_pwm_command (
             limited_negative <= 1'd0;
             limited <= 1'd0;
             magnitude <= 16'd0;
+            whole_q <= 18'sd0;
             width_q <= 18'sd0;
             width_mode_q <= 2'd0;
             negative_q <= 1'd0;
@@ -107,6 +117,7 @@ module xy_stage_stage_y_pwm_command (
             limited_negative <= below_zero;
             limited <= limited_next;
             magnitude <= magnitude_next;
+            whole_q <= whole_q_next;
             width_q <= width_q_next;
             width_mode_q <= limited_mode;
             negative_q <= limited_negative;
@@ -119,6 +130,7 @@ module xy_stage_stage_y_pwm_command (
         limited_negative = 1'd0;
         limited = 1'd0;
         magnitude = 16'd0;
+        whole_q = 18'sd0;
         width_q = 18'sd0;
         width_mode_q = 2'd0;
         negative_q = 1'd0;
@@ -126,7 +138,7 @@ module xy_stage_stage_y_pwm_command (
     end
 
     // Bits that nothing reads.
-    wire unused = &{1'b0, upper[0], lower[0]};
+    wire unused = &{1'b0, sum[1:0]};
 endmodule
 
 `default_nettype wire

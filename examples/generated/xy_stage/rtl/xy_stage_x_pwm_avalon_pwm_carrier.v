@@ -14,7 +14,7 @@ module xy_stage_x_pwm_avalon_pwm_carrier (
     input  wire        sync,
     input  wire [15:0] phase,
     input  wire [15:0] trigger_phase,
-    output wire [15:0] position,
+    output wire [15:0] ahead,
     output wire [15:0] period_used,
     output wire        valley_next,
     output wire        peak_next,
@@ -24,34 +24,39 @@ module xy_stage_x_pwm_avalon_pwm_carrier (
     output wire        peak,
     output wire        trigger
 );
-    wire [15:0] counted;
     wire        at_end;
     wire        at_half;
-    reg  [15:0] next_position;
-    reg         off_phase;
-    reg         moves;
-    reg  [15:0] position_q;
-    reg  [15:0] position_q_next;
+    reg         in_phase;
+    reg         triggers;
+    wire        off_phase;
+    wire        moves;
+    reg  [15:0] comes;
+    reg  [15:0] ahead_q;
+    wire [15:0] ahead_q_next;
     reg  [15:0] period_q;
     reg  [15:0] period_q_next;
     reg         at_valley;
     wire        at_valley_next;
     reg         at_peak;
     wire        at_peak_next;
+    reg         at_trigger;
+    wire        at_trigger_next;
     reg         valley_q;
     reg         peak_q;
     reg         trigger_q;
-    wire        trigger_q_next;
 
-    assign counted = position_q + 16'd1;
-    assign at_end = counted == period_q;
-    assign at_half = !at_end & (counted == (period_q >> 1));
+    // The position to come, or 0 at the end
+    assign at_end = ahead_q == period_q;
+    assign at_half = !at_end & (ahead_q == (period_q >> 1));
 
     // The time base moves it while off only
+    assign off_phase = sync & !in_phase;
+    assign moves = off_phase & !running;
+    assign ahead_q_next = comes + 16'd1;
     assign at_valley_next = at_end & !moves;
     assign at_peak_next = at_half & !moves;
-    assign trigger_q_next = position_q == trigger_phase;
-    assign position = position_q;
+    assign at_trigger_next = triggers & !moves;
+    assign ahead = ahead_q;
     assign period_used = period_q;
     assign valley_next = at_end;
     assign peak_next = at_half;
@@ -63,21 +68,20 @@ module xy_stage_x_pwm_avalon_pwm_carrier (
 
     always @(*) begin
         period_q_next = period_q;
-        next_position = counted;
+
+        // The position to come, or 0 at the end
+        in_phase = ahead_q == phase;
+        triggers = ahead_q == trigger_phase;
+        comes = ahead_q;
         if (at_end) begin
-            next_position = 16'd0;
+            in_phase = !(|phase);
+            triggers = !(|trigger_phase);
+            comes = 16'd0;
         end
 
         // The time base moves it while off only
-        off_phase = 1'd0;
-        moves = 1'd0;
-        position_q_next = next_position;
-        if (sync & (next_position != phase)) begin
-            off_phase = 1'd1;
-            if (!running) begin
-                moves = 1'd1;
-                position_q_next = phase;
-            end
+        if (sync & !running) begin
+            comes = phase;
         end
         if (at_end & !running) begin
             period_q_next = period;
@@ -86,29 +90,32 @@ module xy_stage_x_pwm_avalon_pwm_carrier (
 
     always @(posedge clk) begin
         if (rst) begin
-            position_q <= 16'd0;
+            ahead_q <= 16'd1;
             period_q <= 16'd1;
             at_valley <= 1'd0;
             at_peak <= 1'd0;
+            at_trigger <= 1'd0;
             valley_q <= 1'd0;
             peak_q <= 1'd0;
             trigger_q <= 1'd0;
         end else begin
-            position_q <= position_q_next;
+            ahead_q <= ahead_q_next;
             period_q <= period_q_next;
             at_valley <= at_valley_next;
             at_peak <= at_peak_next;
+            at_trigger <= at_trigger_next;
             valley_q <= at_valley;
             peak_q <= at_peak;
-            trigger_q <= trigger_q_next;
+            trigger_q <= at_trigger;
         end
     end
 
     initial begin
-        position_q = 16'd0;
+        ahead_q = 16'd1;
         period_q = 16'd1;
         at_valley = 1'd0;
         at_peak = 1'd0;
+        at_trigger = 1'd0;
         valley_q = 1'd0;
         peak_q = 1'd0;
         trigger_q = 1'd0;

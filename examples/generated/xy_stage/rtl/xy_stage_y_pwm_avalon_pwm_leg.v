@@ -12,6 +12,7 @@ module xy_stage_y_pwm_avalon_pwm_leg (
     input  wire       rst,
     input  wire       wanted,
     input  wire       wants_high,
+    input  wire       low_first,
     input  wire [9:0] dead_time,
     input  wire [9:0] minimum_pulse,
     output wire       awake,
@@ -46,7 +47,7 @@ module xy_stage_y_pwm_avalon_pwm_leg (
                 lit_next = 1'd1;
                 awake_next = 1'd1;
                 if (!awake_q) begin
-                    high_next = wants_high;
+                    high_next = wants_high & !low_first;
                 end
                 pause = minimum_pulse;
             end else if (high_q != wants_high) begin
