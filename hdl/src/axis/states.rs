@@ -50,6 +50,8 @@ pub(super) struct States {
     state_q: Dff<Bits<3>>,
     opening: Dff<Bit>,
     closing: Dff<Bit>,
+    ran: Dff<Bit>,
+    applies: Dff<Bit>,
     on_q: Dff<Bit>,
     released_q: Dff<Bit>,
     starting_q: Dff<Bit>,
@@ -146,6 +148,8 @@ impl Default for States {
             state_q: Dff::default(),
             opening: Dff::default(),
             closing: Dff::default(),
+            ran: Dff::default(),
+            applies: Dff::default(),
             on_q: Dff::default(),
             released_q: Dff::default(),
             starting_q: Dff::new(true),
@@ -210,6 +214,8 @@ impl Logic for States {
             state_q,
             opening,
             closing,
+            ran,
+            applies,
             on_q,
             released_q,
             starting_q,
@@ -318,11 +324,11 @@ impl Logic for States {
         self.timer.clk.next = self.clk.val();
         self.timer.rst.next = self.rst.val();
         self.timer.counts.next = self.tick.val() & (!self.in_stop.val() | self.segments_stopped.val());
-        self.timer.starts_release.next = self.in_ready.val() & self.to_hold.val();
-        self.timer.starts_settle.next =
-            (self.in_run.val() & (self.to_hold.val() | self.to_stop.val())) | (self.in_hold.val() & self.to_stop.val());
-        self.timer.starts_apply.next =
-            (self.in_stop.val() & self.to_fault.val()) | (self.closes.val() & self.to_hold.val());
+        self.timer.load_release.next = self.enabled_q.q.val();
+        self.ran.d.next = self.in_run.val();
+        self.timer.load_settle.next = self.ran.q.val() | self.stopping_q.q.val();
+        self.applies.d.next = (self.in_stop.val() & self.to_fault.val()) | (self.closes.val() & self.to_hold.val());
+        self.timer.load_apply.next = self.applies.q.val();
         self.timer.brake_release_ticks.next = self.brake_release_ticks.val();
         self.timer.brake_apply_ticks.next = self.brake_apply_ticks.val();
         self.timer.settle_ticks.next = self.settle_ticks.val();

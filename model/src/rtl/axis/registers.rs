@@ -257,7 +257,8 @@ impl Registers {
         let counts = inputs.tick && (before != QuickStop || now.stopped);
         let begins = match (before, after) {
             (Ready, Hold) => Some(Begins::Release),
-            (Run, Hold) | (Hold | Run, QuickStop) => Some(Begins::Settle),
+            // In RUN in every clock: whatever ends it finds the timer loaded.
+            (Run, _) | (Hold, QuickStop) => Some(Begins::Settle),
             (QuickStop, Fault) => Some(Begins::Apply),
             (Hold, Hold) if now.closes => Some(Begins::Apply),
             _ => None,
