@@ -87,17 +87,17 @@ fn lockstep_sees_what_is_not_safe() {
 
 #[test]
 fn lockstep_catches_a_limit_that_blocks_the_way_back() {
-    caught(
-        &block(),
-        "on_limit_minus & (backward",
-        "on_limit_minus & (forward",
-        200_000,
-    );
+    caught(&block(), "on_minus & (backward", "on_minus & (forward", 200_000);
 }
 
 #[test]
 fn lockstep_catches_a_clear_that_forgets_what_is_active() {
-    caught(&block(), "(kept | lines)", "(forget ? 16'd0 : (kept | lines))", 200_000);
+    caught(
+        &block(),
+        "= kept | active",
+        "= kept | (forget ? 16'd0 : active)",
+        200_000,
+    );
 }
 
 #[test]

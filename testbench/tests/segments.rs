@@ -23,7 +23,7 @@ fn crosssim_icarus_agrees_with_the_model() {
 
 #[test]
 fn lockstep_catches_a_stop_that_is_too_strong() {
-    caught(&segments(), "reverse > deceleration", "reverse < deceleration", 300_000);
+    caught(&segments(), "reverse > asked", "reverse < asked", 300_000);
 }
 
 #[test]

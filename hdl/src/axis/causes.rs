@@ -1,4 +1,6 @@
 //! The cause word, and what follows from it in the clock in which a cause becomes active.
+//!
+//! What follows from causes that stand is registered with them, so that only new ones are on the way to the state.
 
 use crate::prelude::*;
 use posicast_model::rtl::axis::{ALWAYS_OFF, Cause, HARMLESS};
@@ -24,6 +26,9 @@ pub(super) struct Causes {
     pub(super) had_fault: Signal<Out, Bit>,
 
     causes_q: Dff<Bits<16>>,
+    had_cause_q: Dff<Bit>,
+    had_fault_q: Dff<Bit>,
+    had_cut_q: Dff<Bit>,
 
     by_emergency: Signal<Local, Bits<16>>,
     by_tripped: Signal<Local, Bits<16>>,
@@ -36,9 +41,13 @@ pub(super) struct Causes {
     lines: Signal<Local, Bits<16>>,
     flags: Signal<Local, Bits<16>>,
     now: Signal<Local, Bits<16>>,
+    active: Signal<Local, Bits<16>>,
     harmful: Signal<Local, Bits<16>>,
+    off: Signal<Local, Bits<16>>,
+    harmful_now: Signal<Local, Bits<16>>,
     cutting: Signal<Local, Bits<16>>,
-    harmful_before: Signal<Local, Bits<16>>,
+    cutting_now: Signal<Local, Bits<16>>,
+    stays: Signal<Local, Bit>,
 
     no_causes: Constant<Bits<16>>,
     of_emergency: Constant<Bits<16>>,
@@ -73,6 +82,9 @@ impl Default for Causes {
             cut: Signal::default(),
             had_fault: Signal::default(),
             causes_q: Dff::default(),
+            had_cause_q: Dff::default(),
+            had_fault_q: Dff::default(),
+            had_cut_q: Dff::default(),
             by_emergency: Signal::default(),
             by_tripped: Signal::default(),
             by_drive_lost: Signal::default(),
@@ -84,9 +96,13 @@ impl Default for Causes {
             lines: Signal::default(),
             flags: Signal::default(),
             now: Signal::default(),
+            active: Signal::default(),
             harmful: Signal::default(),
+            off: Signal::default(),
+            harmful_now: Signal::default(),
             cutting: Signal::default(),
-            harmful_before: Signal::default(),
+            cutting_now: Signal::default(),
+            stays: Signal::default(),
             no_causes: Constant::new(from_u64(0)),
             of_emergency: Constant::new(from_u64(u64::from(Cause::EmergencyStop.bit()))),
             of_tripped: Constant::new(from_u64(u64::from(Cause::PwmTripped.bit()))),
@@ -106,7 +122,7 @@ impl Logic for Causes {
     fn update(&mut self) {
         comment!("@module axis_causes");
         comment!("@about Sticky causes: set wins over forget.");
-        dff_setup!(self, clk, causes_q);
+        dff_setup!(self, clk, causes_q, had_cause_q, had_fault_q, had_cut_q);
         self.by_emergency.next = self.no_causes.val();
         if self.emergency.val() {
             self.by_emergency.next = self.of_emergency.val();
@@ -142,17 +158,26 @@ impl Logic for Causes {
         if self.forget.val() {
             self.kept.next = self.no_causes.val();
         }
-        self.now.next = self.kept.val() | self.lines.val() | self.flags.val() | self.watched.val();
+        self.active.next = self.lines.val() | self.flags.val() | self.watched.val();
+        self.now.next = self.kept.val() | self.active.val();
         self.causes_q.d.next = self.now.val();
 
-        comment!("What follows, in this very clock");
-        self.harmful.next = self.now.val() & self.harmful_causes.val();
-        self.cutting.next = self.harmful.val() & (self.off_causes.val() | self.always_off.val());
-        self.any_cause.next = self.now.val().any();
-        self.fault.next = self.harmful.val().any();
-        self.cut.next = self.cutting.val().any();
-        self.harmful_before.next = self.causes_q.q.val() & self.harmful_causes.val();
-        self.had_fault.next = self.harmful_before.val().any();
+        comment!("What follows: at once of new ones");
+        self.stays.next = !self.forget.val();
+        self.off.next = (self.off_causes.val() | self.always_off.val()) & self.harmful_causes.val();
+        self.harmful.next = self.active.val() & self.harmful_causes.val();
+        self.cutting.next = self.active.val() & self.off.val();
+        self.any_cause.next = self.active.val().any() | (self.had_cause_q.q.val() & self.stays.val());
+        self.fault.next = self.harmful.val().any() | (self.had_fault_q.q.val() & self.stays.val());
+        self.cut.next = self.cutting.val().any() | (self.had_cut_q.q.val() & self.stays.val());
+
+        comment!("And of those that stand, a clock later");
+        self.harmful_now.next = self.now.val() & self.harmful_causes.val();
+        self.cutting_now.next = self.now.val() & self.off.val();
+        self.had_cause_q.d.next = self.now.val().any();
+        self.had_fault_q.d.next = self.harmful_now.val().any();
+        self.had_cut_q.d.next = self.cutting_now.val().any();
+        self.had_fault.next = self.had_fault_q.q.val();
         self.causes.next = self.causes_q.q.val();
     }
 }

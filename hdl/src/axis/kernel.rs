@@ -103,6 +103,7 @@ pub(super) struct Axis {
 
     primed: Dff<Bits<4>>,
     clear_left: Dff<Bits<4>>,
+    clear_due: Dff<Bit>,
     clear_sources_q: Dff<Bit>,
     tripping: Dff<Bit>,
 
@@ -116,6 +117,7 @@ pub(super) struct Axis {
     first_clock: Constant<Bits<4>>,
     no_clocks: Constant<Bits<4>>,
     one_clock: Constant<Bits<4>>,
+    two_clocks: Constant<Bits<4>>,
     clear_clocks: Constant<Bits<4>>,
     kick_value: Constant<Bits<32>>,
 }
@@ -213,6 +215,7 @@ impl Default for Axis {
             states: States::default(),
             primed: Dff::default(),
             clear_left: Dff::default(),
+            clear_due: Dff::default(),
             clear_sources_q: Dff::default(),
             tripping: Dff::default(),
             ready: Signal::default(),
@@ -224,6 +227,7 @@ impl Default for Axis {
             first_clock: Constant::new(from_u64(1)),
             no_clocks: Constant::new(from_u64(0)),
             one_clock: Constant::new(from_u64(1)),
+            two_clocks: Constant::new(from_u64(2)),
             clear_clocks: Constant::new(from_u64(u64::from(CLEAR_CLOCKS))),
             kick_value: Constant::new(from_u64(u64::from(KICK))),
         }
@@ -234,7 +238,7 @@ impl Logic for Axis {
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module axis");
-        dff_setup!(self, clk, primed, clear_left, clear_sources_q, tripping);
+        dff_setup!(self, clk, primed, clear_left, clear_due, clear_sources_q, tripping);
 
         comment!("After reset, levels are taken as they are");
         self.primed.d.next = (self.primed.q.val() << 1) | self.first_clock.val();
@@ -323,6 +327,7 @@ impl Logic for Axis {
         if self.clear_left.q.val() != self.no_clocks.val() {
             self.clear_left.d.next = self.clear_left.q.val() - self.one_clock.val();
         }
+        self.clear_due.d.next = (self.clear_left.q.val() == self.two_clocks.val()) & !self.clear_faults.val();
         if self.clear_faults.val() {
             self.clear_left.d.next = self.clear_clocks.val();
         }
@@ -332,7 +337,7 @@ impl Logic for Axis {
         self.states.rst.next = self.rst.val();
         self.states.drive_ready.next = self.ready.val() & self.drive_line.level.val();
         self.states.group_stop.next = self.others_stop.val();
-        self.states.clear_due.next = self.clear_left.q.val() == self.one_clock.val();
+        self.states.clear_due.next = self.clear_due.q.val();
         self.states.tick.next = self.tick.val();
         self.states.enable.next = self.enable.val();
         self.states.start.next = self.start.val();

@@ -8,12 +8,13 @@ mod line;
 mod monitors;
 mod pins;
 mod states;
+mod timer;
 
 use crate::emit::{self, EmitError, EmitOptions, Header, Module, Parameter};
 use crate::simulation::{Simulated, SimulationError};
 use kernel::Axis;
 use posicast_model::rtl::ClockedBlock;
-use posicast_model::rtl::axis::{CLEAR_CLOCKS, LINE_CLOCKS, ports};
+use posicast_model::rtl::axis::{CLEAR_CLOCKS, LINE_CLOCKS, WATCH_CLOCKS, ports};
 
 /// The supervisor in RustHDL's own simulator.
 ///
@@ -48,6 +49,11 @@ pub fn emit(prefix: &str) -> Result<Vec<Module>, EmitError> {
                     "line_clocks",
                     LINE_CLOCKS,
                     "from a line to the state, and filter_clocks more",
+                ),
+                parameter(
+                    "watch_clocks",
+                    WATCH_CLOCKS,
+                    "from a tick to the state, for what is watched at ticks",
                 ),
                 parameter(
                     "clear_clocks",

@@ -1,4 +1,7 @@
 //! What is watched at ticks: limits, soft limits, errors against their limits, and what has lasted too long.
+//!
+//! At the tick everything is taken as it is, a clock later it is compared, and the result is registered: no comparison is
+//! on the way to the state.
 
 use crate::prelude::*;
 use posicast_model::rtl::axis::Cause;
@@ -39,35 +42,40 @@ pub(super) struct Monitors {
     still_ticks: Dff<Bits<16>>,
     unkicked_ticks: Dff<Bits<16>>,
 
+    looks: Dff<Bit>,
+    was_on: Dff<Bit>,
+    on_plus: Dff<Bit>,
+    on_minus: Dff<Bit>,
+    forward: Dff<Bit>,
+    backward: Dff<Bit>,
+    shaped_forward: Dff<Bit>,
+    shaped_backward: Dff<Bit>,
+    past_plus: Dff<Bit>,
+    past_minus: Dff<Bit>,
+    same_position: Dff<Bit>,
+    saturated: Dff<Bit>,
+    error_size: Dff<Bits<32>>,
+    deviation_size: Dff<Bits<32>>,
+    command_size: Dff<Bits<32>>,
+    counts: Dff<Bit>,
+    counts_on: Dff<Bit>,
+    stands: Dff<Bit>,
+    found: Dff<Bits<16>>,
+
     command_velocity_bits: Signal<Local, Bits<32>>,
-    forward: Signal<Local, Bit>,
-    backward: Signal<Local, Bit>,
     reference_velocity_bits: Signal<Local, Bits<32>>,
-    shaped_forward: Signal<Local, Bit>,
-    shaped_backward: Signal<Local, Bit>,
     has_soft_limits: Signal<Local, Bit>,
-    past_plus: Signal<Local, Bit>,
-    past_minus: Signal<Local, Bit>,
     error_bits: Signal<Local, Bits<32>>,
-    error_size: Signal<Local, Bits<32>>,
     deviation_bits: Signal<Local, Bits<32>>,
-    deviation_size: Signal<Local, Bits<32>>,
     command_bits: Signal<Local, Bits<32>>,
-    command_size: Signal<Local, Bits<32>>,
-    still: Signal<Local, Bit>,
     limit_plus: Signal<Local, Bit>,
     limit_minus: Signal<Local, Bit>,
     soft_plus: Signal<Local, Bit>,
     soft_minus: Signal<Local, Bit>,
     error_trip: Signal<Local, Bit>,
     deviation_trip: Signal<Local, Bit>,
-    saturation_trip: Signal<Local, Bit>,
     lost_trip: Signal<Local, Bit>,
     watchdog_trip: Signal<Local, Bit>,
-    limits: Signal<Local, Bits<16>>,
-    errors: Signal<Local, Bits<16>>,
-    times: Signal<Local, Bits<16>>,
-    found: Signal<Local, Bits<16>>,
     by_limit_plus: Signal<Local, Bits<16>>,
     by_limit_minus: Signal<Local, Bits<16>>,
     by_soft_plus: Signal<Local, Bits<16>>,
@@ -128,35 +136,39 @@ impl Default for Monitors {
             was_past_minus: Dff::default(),
             still_ticks: Dff::default(),
             unkicked_ticks: Dff::default(),
+            looks: Dff::default(),
+            was_on: Dff::default(),
+            on_plus: Dff::default(),
+            on_minus: Dff::default(),
+            forward: Dff::default(),
+            backward: Dff::default(),
+            shaped_forward: Dff::default(),
+            shaped_backward: Dff::default(),
+            past_plus: Dff::default(),
+            past_minus: Dff::default(),
+            same_position: Dff::default(),
+            saturated: Dff::default(),
+            error_size: Dff::default(),
+            deviation_size: Dff::default(),
+            command_size: Dff::default(),
+            counts: Dff::default(),
+            counts_on: Dff::default(),
+            stands: Dff::default(),
+            found: Dff::default(),
             command_velocity_bits: Signal::default(),
-            forward: Signal::default(),
-            backward: Signal::default(),
             reference_velocity_bits: Signal::default(),
-            shaped_forward: Signal::default(),
-            shaped_backward: Signal::default(),
             has_soft_limits: Signal::default(),
-            past_plus: Signal::default(),
-            past_minus: Signal::default(),
             error_bits: Signal::default(),
-            error_size: Signal::default(),
             deviation_bits: Signal::default(),
-            deviation_size: Signal::default(),
             command_bits: Signal::default(),
-            command_size: Signal::default(),
-            still: Signal::default(),
             limit_plus: Signal::default(),
             limit_minus: Signal::default(),
             soft_plus: Signal::default(),
             soft_minus: Signal::default(),
             error_trip: Signal::default(),
             deviation_trip: Signal::default(),
-            saturation_trip: Signal::default(),
             lost_trip: Signal::default(),
             watchdog_trip: Signal::default(),
-            limits: Signal::default(),
-            errors: Signal::default(),
-            times: Signal::default(),
-            found: Signal::default(),
             by_limit_plus: Signal::default(),
             by_limit_minus: Signal::default(),
             by_soft_plus: Signal::default(),
@@ -197,79 +209,108 @@ impl Logic for Monitors {
             was_past_plus,
             was_past_minus,
             still_ticks,
-            unkicked_ticks
+            unkicked_ticks,
+            looks,
+            was_on,
+            on_plus,
+            on_minus,
+            forward,
+            backward,
+            shaped_forward,
+            shaped_backward,
+            past_plus,
+            past_minus,
+            same_position,
+            saturated,
+            error_size,
+            deviation_size,
+            command_size,
+            counts,
+            counts_on,
+            stands,
+            found
         );
 
-        comment!("Which way");
+        comment!("Clock 1: what the tick shows");
+        self.looks.d.next = self.tick.val();
         self.command_velocity_bits.next = unsigned_cast(self.command_velocity.val());
-        self.forward.next = self.command_velocity_bits.val().any() & !self.command_velocity_bits.val().get_bit(31);
-        self.backward.next = self.command_velocity_bits.val().get_bit(31);
         self.reference_velocity_bits.next = unsigned_cast(self.reference_velocity.val());
-        self.shaped_forward.next =
-            self.reference_velocity_bits.val().any() & !self.reference_velocity_bits.val().get_bit(31);
-        self.shaped_backward.next = self.reference_velocity_bits.val().get_bit(31);
-
-        comment!("A switch bounces when left: newly needs a way");
-        self.limit_plus.next =
-            self.on_limit_plus.val() & (self.forward.val() | (!self.was_on_plus.q.val() & self.shaped_forward.val()));
-        self.limit_minus.next = self.on_limit_minus.val()
-            & (self.backward.val() | (!self.was_on_minus.q.val() & self.shaped_backward.val()));
-
-        comment!("Soft limits, on the shaped position");
+        self.error_bits.next = unsigned_cast(self.error.val());
+        self.deviation_bits.next = unsigned_cast(self.deviation.val());
+        self.command_bits.next = unsigned_cast(self.command.val());
         self.has_soft_limits.next =
             (self.soft_limit_plus.val() != self.nil.val()) | (self.soft_limit_minus.val() != self.nil.val());
-        self.past_plus.next = self.has_soft_limits.val() & (self.reference_position.val() > self.soft_limit_plus.val());
-        self.past_minus.next =
-            self.has_soft_limits.val() & (self.reference_position.val() < self.soft_limit_minus.val());
-        self.soft_plus.next = self.past_plus.val() & (self.forward.val() | !self.was_past_plus.q.val());
-        self.soft_minus.next = self.past_minus.val() & (self.backward.val() | !self.was_past_minus.q.val());
+        if self.tick.val() {
+            self.captured.d.next = self.position.val();
+            self.same_position.d.next = self.position.val() == self.captured.q.val();
+            self.was_on.d.next = self.on.val();
+            self.on_plus.d.next = self.on_limit_plus.val();
+            self.on_minus.d.next = self.on_limit_minus.val();
+            self.forward.d.next =
+                self.command_velocity_bits.val().any() & !self.command_velocity_bits.val().get_bit(31);
+            self.backward.d.next = self.command_velocity_bits.val().get_bit(31);
+            self.shaped_forward.d.next =
+                self.reference_velocity_bits.val().any() & !self.reference_velocity_bits.val().get_bit(31);
+            self.shaped_backward.d.next = self.reference_velocity_bits.val().get_bit(31);
+            self.past_plus.d.next =
+                self.has_soft_limits.val() & (self.reference_position.val() > self.soft_limit_plus.val());
+            self.past_minus.d.next =
+                self.has_soft_limits.val() & (self.reference_position.val() < self.soft_limit_minus.val());
+            self.saturated.d.next =
+                self.saturation_ticks.val().any() & (self.limited_ticks.val() >= self.saturation_ticks.val());
+            comment!("Sizes, of a negative -x - 1: no carry");
+            self.error_size.d.next = self.error_bits.val();
+            if self.error_bits.val().get_bit(31) {
+                self.error_size.d.next = !self.error_bits.val();
+            }
+            self.deviation_size.d.next = self.deviation_bits.val();
+            if self.deviation_bits.val().get_bit(31) {
+                self.deviation_size.d.next = !self.deviation_bits.val();
+            }
+            self.command_size.d.next = self.command_bits.val();
+            if self.command_bits.val().get_bit(31) {
+                self.command_size.d.next = !self.command_bits.val();
+            }
+        }
 
-        comment!("Sizes, of a negative -x - 1: no carry");
-        self.error_bits.next = unsigned_cast(self.error.val());
-        self.error_size.next = self.error_bits.val();
-        if self.error_bits.val().get_bit(31) {
-            self.error_size.next = !self.error_bits.val();
-        }
-        self.deviation_bits.next = unsigned_cast(self.deviation.val());
-        self.deviation_size.next = self.deviation_bits.val();
-        if self.deviation_bits.val().get_bit(31) {
-            self.deviation_size.next = !self.deviation_bits.val();
-        }
-        self.command_bits.next = unsigned_cast(self.command.val());
-        self.command_size.next = self.command_bits.val();
-        if self.command_bits.val().get_bit(31) {
-            self.command_size.next = !self.command_bits.val();
-        }
+        comment!("Clock 2: compared");
+        comment!("A switch bounces when left: newly needs a way");
+        self.limit_plus.next =
+            self.on_plus.q.val() & (self.forward.q.val() | (!self.was_on_plus.q.val() & self.shaped_forward.q.val()));
+        self.limit_minus.next = self.on_minus.q.val()
+            & (self.backward.q.val() | (!self.was_on_minus.q.val() & self.shaped_backward.q.val()));
+        self.soft_plus.next = self.past_plus.q.val() & (self.forward.q.val() | !self.was_past_plus.q.val());
+        self.soft_minus.next = self.past_minus.q.val() & (self.backward.q.val() | !self.was_past_minus.q.val());
         self.error_trip.next =
-            self.following_error_limit.val().any() & (self.error_size.val() > self.following_error_limit.val());
+            self.following_error_limit.val().any() & (self.error_size.q.val() > self.following_error_limit.val());
         self.deviation_trip.next =
-            self.deviation_limit.val().any() & (self.deviation_size.val() > self.deviation_limit.val());
-        self.still.next = self.on.val()
-            & (self.command_size.val() > self.lost_command.val())
-            & (self.position.val() == self.captured.q.val());
-
-        comment!("Ticks in a row");
-        self.saturation_trip.next =
-            self.saturation_ticks.val().any() & (self.limited_ticks.val() >= self.saturation_ticks.val());
+            self.deviation_limit.val().any() & (self.deviation_size.q.val() > self.deviation_limit.val());
         self.lost_trip.next = self.lost_ticks.val().any() & (self.still_ticks.q.val() >= self.lost_ticks.val());
         self.watchdog_trip.next =
             self.watchdog_ticks.val().any() & (self.unkicked_ticks.q.val() >= self.watchdog_ticks.val());
-        if self.tick.val() {
-            self.captured.d.next = self.position.val();
-            self.was_on_plus.d.next = self.on_limit_plus.val();
-            self.was_on_minus.d.next = self.on_limit_minus.val();
-            self.was_past_plus.d.next = self.past_plus.val();
-            self.was_past_minus.d.next = self.past_minus.val();
+        if self.looks.q.val() {
+            self.was_on_plus.d.next = self.on_plus.q.val();
+            self.was_on_minus.d.next = self.on_minus.q.val();
+            self.was_past_plus.d.next = self.past_plus.q.val();
+            self.was_past_minus.d.next = self.past_minus.q.val();
+        }
+
+        comment!("Clock 3: ticks in a row");
+        self.counts.d.next = self.looks.q.val();
+        self.counts_on.d.next = self.was_on.q.val();
+        self.stands.d.next =
+            self.was_on.q.val() & self.same_position.q.val() & (self.command_size.q.val() > self.lost_command.val());
+        if self.counts.q.val() {
             if !self.still_ticks.q.val().all() {
                 self.still_ticks.d.next = self.still_ticks.q.val() + self.one_tick.val();
             }
             if !self.unkicked_ticks.q.val().all() {
                 self.unkicked_ticks.d.next = self.unkicked_ticks.q.val() + self.one_tick.val();
             }
-            if !self.still.val() {
+            if !self.stands.q.val() {
                 self.still_ticks.d.next = self.no_ticks.val();
             }
-            if !self.on.val() {
+            if !self.counts_on.q.val() {
                 self.unkicked_ticks.d.next = self.no_ticks.val();
             }
         }
@@ -303,7 +344,7 @@ impl Logic for Monitors {
             self.by_deviation_trip.next = self.of_deviation_trip.val();
         }
         self.by_saturation_trip.next = self.no_causes.val();
-        if self.saturation_trip.val() {
+        if self.saturated.q.val() {
             self.by_saturation_trip.next = self.of_saturation_trip.val();
         }
         self.by_lost_trip.next = self.no_causes.val();
@@ -314,15 +355,19 @@ impl Logic for Monitors {
         if self.watchdog_trip.val() {
             self.by_watchdog_trip.next = self.of_watchdog_trip.val();
         }
-        self.limits.next =
-            self.by_limit_plus.val() | self.by_limit_minus.val() | self.by_soft_plus.val() | self.by_soft_minus.val();
-        self.errors.next = self.by_error_trip.val() | self.by_deviation_trip.val() | self.by_saturation_trip.val();
-        self.times.next = self.by_lost_trip.val() | self.by_watchdog_trip.val();
-        self.found.next = self.no_causes.val();
-        if self.tick.val() & self.on.val() {
-            self.found.next = self.limits.val() | self.errors.val() | self.times.val();
+        self.found.d.next = self.no_causes.val();
+        if self.looks.q.val() & self.was_on.q.val() {
+            self.found.d.next = self.by_limit_plus.val()
+                | self.by_limit_minus.val()
+                | self.by_soft_plus.val()
+                | self.by_soft_minus.val()
+                | self.by_error_trip.val()
+                | self.by_deviation_trip.val()
+                | self.by_saturation_trip.val()
+                | self.by_lost_trip.val()
+                | self.by_watchdog_trip.val();
         }
-        self.causes.next = self.found.val();
+        self.causes.next = self.found.q.val();
         self.captured_position.next = self.captured.q.val();
     }
 }

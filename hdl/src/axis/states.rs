@@ -2,6 +2,7 @@
 //!
 //! Within a state, later branches win: they are the earlier rows of the table.
 
+use super::timer::Timer;
 use crate::prelude::*;
 use posicast_model::rtl::axis::State;
 use posicast_model::rtl::segments;
@@ -45,10 +46,12 @@ pub(super) struct States {
     pub(super) faulted: Signal<Out, Bit>,
     pub(super) refused: Signal<Out, Bit>,
 
+    timer: Timer,
     state_q: Dff<Bits<3>>,
-    timer: Dff<Bits<16>>,
     opening: Dff<Bit>,
     closing: Dff<Bit>,
+    ran: Dff<Bit>,
+    applies: Dff<Bit>,
     on_q: Dff<Bit>,
     released_q: Dff<Bit>,
     starting_q: Dff<Bit>,
@@ -73,7 +76,6 @@ pub(super) struct States {
     segments_hold: Signal<Local, Bit>,
     segments_stopped: Signal<Local, Bit>,
     segments_play: Signal<Local, Bit>,
-    elapsed: Signal<Local, Bit>,
     timed_out: Signal<Local, Bit>,
     able: Signal<Local, Bit>,
     wants_start: Signal<Local, Bit>,
@@ -101,8 +103,6 @@ pub(super) struct States {
     fault_state: Constant<Bits<3>>,
     segments_hold_state: Constant<Bits<2>>,
     segments_stopped_state: Constant<Bits<2>>,
-    no_ticks: Constant<Bits<16>>,
-    one_tick: Constant<Bits<16>>,
 }
 
 impl Default for States {
@@ -144,10 +144,12 @@ impl Default for States {
             disabled: Signal::default(),
             faulted: Signal::default(),
             refused: Signal::default(),
+            timer: Timer::default(),
             state_q: Dff::default(),
-            timer: Dff::default(),
             opening: Dff::default(),
             closing: Dff::default(),
+            ran: Dff::default(),
+            applies: Dff::default(),
             on_q: Dff::default(),
             released_q: Dff::default(),
             starting_q: Dff::new(true),
@@ -171,7 +173,6 @@ impl Default for States {
             segments_hold: Signal::default(),
             segments_stopped: Signal::default(),
             segments_play: Signal::default(),
-            elapsed: Signal::default(),
             timed_out: Signal::default(),
             able: Signal::default(),
             wants_start: Signal::default(),
@@ -198,8 +199,6 @@ impl Default for States {
             fault_state: Constant::new(from_u64(State::Fault as u64)),
             segments_hold_state: Constant::new(from_u64(segments::State::Hold as u64)),
             segments_stopped_state: Constant::new(from_u64(segments::State::Stopped as u64)),
-            no_ticks: Constant::new(from_u64(0)),
-            one_tick: Constant::new(from_u64(1)),
         }
     }
 }
@@ -213,9 +212,10 @@ impl Logic for States {
             self,
             clk,
             state_q,
-            timer,
             opening,
             closing,
+            ran,
+            applies,
             on_q,
             released_q,
             starting_q,
@@ -240,12 +240,11 @@ impl Logic for States {
         self.segments_hold.next = self.segments_state.val() == self.segments_hold_state.val();
         self.segments_stopped.next = self.segments_state.val() == self.segments_stopped_state.val();
         self.segments_play.next = !self.segments_state.val().get_bit(1);
-        self.elapsed.next = self.timer.q.val() == self.no_ticks.val();
-        self.timed_out.next = self.tick.val() & self.elapsed.val();
+        self.timed_out.next = self.tick.val() & self.timer.elapsed.val();
 
         comment!("A start waits for the tick");
         self.able.next = self.in_hold.val()
-            & (!self.opening.q.val() | self.elapsed.val())
+            & (!self.opening.q.val() | self.timer.elapsed.val())
             & !self.closing.q.val()
             & self.segments_hold.val();
         self.wants_start.next = (self.start.val() | self.start_waits.q.val()) & !self.stop.val();
@@ -322,18 +321,17 @@ impl Logic for States {
         self.to_fault.next = self.next_state.val() == self.fault_state.val();
 
         comment!("The timer of brake and shaper");
-        if self.tick.val() & !self.elapsed.val() & (!self.in_stop.val() | self.segments_stopped.val()) {
-            self.timer.d.next = self.timer.q.val() - self.one_tick.val();
-        }
-        if self.in_ready.val() & self.to_hold.val() {
-            self.timer.d.next = self.brake_release_ticks.val();
-        }
-        if (self.in_run.val() & (self.to_hold.val() | self.to_stop.val())) | (self.in_hold.val() & self.to_stop.val()) {
-            self.timer.d.next = self.settle_ticks.val();
-        }
-        if (self.in_stop.val() & self.to_fault.val()) | (self.closes.val() & self.to_hold.val()) {
-            self.timer.d.next = self.brake_apply_ticks.val();
-        }
+        self.timer.clk.next = self.clk.val();
+        self.timer.rst.next = self.rst.val();
+        self.timer.counts.next = self.tick.val() & (!self.in_stop.val() | self.segments_stopped.val());
+        self.timer.load_release.next = self.enabled_q.q.val();
+        self.ran.d.next = self.in_run.val();
+        self.timer.load_settle.next = self.ran.q.val() | self.stopping_q.q.val();
+        self.applies.d.next = (self.in_stop.val() & self.to_fault.val()) | (self.closes.val() & self.to_hold.val());
+        self.timer.load_apply.next = self.applies.q.val();
+        self.timer.brake_release_ticks.next = self.brake_release_ticks.val();
+        self.timer.brake_apply_ticks.next = self.brake_apply_ticks.val();
+        self.timer.settle_ticks.next = self.settle_ticks.val();
 
         comment!("Outputs and brake");
         self.next_on.next = self.on_q.q.val();

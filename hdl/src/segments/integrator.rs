@@ -37,6 +37,11 @@ pub(super) struct Integrator {
     exact_acceleration: Dff<Signed<40>>,
     failed: Dff<Bit>,
     at_once: Dff<Bit>,
+    deceleration: Dff<Bits<31>>,
+    reverse: Dff<Signed<49>>,
+    exceeds: Dff<Bit>,
+    falls_below: Dff<Bit>,
+    rests: Dff<Bit>,
 
     jerk_bits: Signal<Local, Bits<40>>,
     jerk: Signal<Local, Signed<40>>,
@@ -44,11 +49,12 @@ pub(super) struct Integrator {
     wide_acceleration: Signal<Local, Signed<41>>,
     next_acceleration: Signal<Local, Signed<41>>,
     next_acceleration_bits: Signal<Local, Bits<41>>,
-    deceleration_bits: Signal<Local, Bits<49>>,
-    deceleration: Signal<Local, Signed<49>>,
-    acceleration_limit: Signal<Local, Signed<49>>,
+    asked_bits: Signal<Local, Bits<49>>,
+    asked: Signal<Local, Signed<49>>,
+    most_bits: Signal<Local, Bits<49>>,
+    most: Signal<Local, Signed<49>>,
+    least: Signal<Local, Signed<49>>,
     speed: Signal<Local, Signed<49>>,
-    reverse: Signal<Local, Signed<49>>,
     braking: Signal<Local, Signed<40>>,
     acceleration_step: Signal<Local, Signed<49>>,
     next_velocity: Signal<Local, Signed<49>>,
@@ -96,17 +102,23 @@ impl Default for Integrator {
             exact_acceleration: Dff::default(),
             failed: Dff::default(),
             at_once: Dff::default(),
+            deceleration: Dff::default(),
+            reverse: Dff::default(),
+            exceeds: Dff::default(),
+            falls_below: Dff::default(),
+            rests: Dff::default(),
             jerk_bits: Signal::default(),
             jerk: Signal::default(),
             wide_jerk: Signal::default(),
             wide_acceleration: Signal::default(),
             next_acceleration: Signal::default(),
             next_acceleration_bits: Signal::default(),
-            deceleration_bits: Signal::default(),
-            deceleration: Signal::default(),
-            acceleration_limit: Signal::default(),
+            asked_bits: Signal::default(),
+            asked: Signal::default(),
+            most_bits: Signal::default(),
+            most: Signal::default(),
+            least: Signal::default(),
             speed: Signal::default(),
-            reverse: Signal::default(),
             braking: Signal::default(),
             acceleration_step: Signal::default(),
             next_velocity: Signal::default(),
@@ -141,7 +153,12 @@ impl Logic for Integrator {
             exact_velocity,
             exact_acceleration,
             failed,
-            at_once
+            at_once,
+            deceleration,
+            reverse,
+            exceeds,
+            falls_below,
+            rests
         );
 
         comment!("Acceleration: plus the jerk, or against v");
@@ -152,21 +169,27 @@ impl Logic for Integrator {
         self.wide_acceleration.next = signed_bit_cast::<41, 40>(self.exact_acceleration.q.val());
         self.next_acceleration.next = self.wide_acceleration.val() + self.wide_jerk.val();
         self.next_acceleration_bits.next = unsigned_cast(self.next_acceleration.val());
-        self.deceleration_bits.next = bit_cast::<49, 31>(self.stop_deceleration.val()) << 8;
-        self.deceleration.next = signed_cast(self.deceleration_bits.val());
-        self.acceleration_limit.next = self.nil.val() - self.deceleration.val();
         self.speed.next = signed_bit_cast::<49, 48>(self.exact_velocity.q.val());
-        self.reverse.next = self.nil.val() - self.speed.val();
-        self.braking.next = signed_bit_cast::<40, 49>(self.reverse.val());
-        if self.reverse.val() > self.deceleration.val() {
-            self.braking.next = signed_bit_cast::<40, 49>(self.deceleration.val());
+        comment!("-v, and compared: ready before the next tick");
+        self.reverse.d.next = self.nil.val() - self.speed.val();
+        self.deceleration.d.next = self.stop_deceleration.val();
+        self.asked_bits.next = bit_cast::<49, 31>(self.stop_deceleration.val()) << 8;
+        self.asked.next = signed_cast(self.asked_bits.val());
+        self.exceeds.d.next = self.reverse.q.val() > self.asked.val();
+        self.falls_below.d.next = self.speed.val() > self.asked.val();
+        self.most_bits.next = bit_cast::<49, 31>(self.deceleration.q.val()) << 8;
+        self.most.next = signed_cast(self.most_bits.val());
+        self.least.next = self.nil.val() - self.most.val();
+        self.braking.next = signed_bit_cast::<40, 49>(self.reverse.q.val());
+        if self.exceeds.q.val() {
+            self.braking.next = signed_bit_cast::<40, 49>(self.most.val());
         }
-        if self.reverse.val() < self.acceleration_limit.val() {
-            self.braking.next = signed_bit_cast::<40, 49>(self.acceleration_limit.val());
+        if self.falls_below.q.val() {
+            self.braking.next = signed_bit_cast::<40, 49>(self.least.val());
         }
         if self.accelerate.val() {
             self.failed.d.next = false;
-            self.at_once.d.next = !self.stop_deceleration.val().any();
+            self.at_once.d.next = !self.deceleration.q.val().any();
             if self.play.val() {
                 if self.point.val() {
                     self.exact_acceleration.d.next = signed_cast(bit_cast::<40, 32>(self.third.val()) << 8);
@@ -236,8 +259,9 @@ impl Logic for Integrator {
         if self.acceleration_sum.val().get_bit(39) & !self.exact_acceleration.q.val().get_bit(39) {
             self.acceleration.next = self.largest.val();
         }
-        self.at_rest.next = (self.exact_velocity.q.val() == self.rest_velocity.val())
+        self.rests.d.next = (self.exact_velocity.q.val() == self.rest_velocity.val())
             & (self.exact_acceleration.q.val() == self.rest_acceleration.val());
+        self.at_rest.next = self.rests.q.val();
         self.overflowed.next = self.failed.q.val();
     }
 }

@@ -56,6 +56,7 @@ pub(super) struct Segments {
     first: Dff<Bits<32>>,
     second: Dff<Bits<32>>,
     third: Dff<Bits<32>>,
+    read_data: Dff<Bits<32>>,
     ticks_left: Dff<Bits<24>>,
     point: Dff<Bit>,
     notifies: Dff<Bit>,
@@ -149,6 +150,7 @@ impl Default for Segments {
             first: Dff::default(),
             second: Dff::default(),
             third: Dff::default(),
+            read_data: Dff::default(),
             ticks_left: Dff::default(),
             point: Dff::default(),
             notifies: Dff::default(),
@@ -181,10 +183,10 @@ impl Default for Segments {
             speed_phase: Constant::new(from_u64(2)),
             travel_phase: Constant::new(from_u64(3)),
             decide_phase: Constant::new(from_u64(4)),
-            last_word_phase: Constant::new(from_u64(5)),
-            first_word_phase: Constant::new(from_u64(6)),
-            second_word_phase: Constant::new(from_u64(7)),
-            third_word_phase: Constant::new(from_u64(8)),
+            last_word_phase: Constant::new(from_u64(6)),
+            first_word_phase: Constant::new(from_u64(7)),
+            second_word_phase: Constant::new(from_u64(8)),
+            third_word_phase: Constant::new(from_u64(9)),
             one_phase: Constant::new(from_u64(1)),
             one_word: Constant::new(from_u64(1)),
             hold_state: Constant::new(from_u64(State::Hold as u64)),
@@ -214,6 +216,7 @@ impl Logic for Segments {
             first,
             second,
             third,
+            read_data,
             ticks_left,
             point,
             notifies,
@@ -362,21 +365,22 @@ impl Logic for Segments {
         }
 
         comment!("Read the next entry: words 3, 0, 1, 2");
+        self.read_data.d.next = self.fifo.read_data.val();
         self.fifo.read_word.next = self.phase.q.val().get_bits::<2>(0) - self.one_word.val();
         if self.phase.q.val() == self.last_word_phase.val() {
-            self.ticks_left.d.next = self.fifo.read_data.val().get_bits::<24>(0);
-            self.notifies.d.next = self.fifo.read_data.val().get_bit(30);
-            self.point.d.next = self.fifo.read_data.val().get_bit(31);
+            self.ticks_left.d.next = self.read_data.q.val().get_bits::<24>(0);
+            self.notifies.d.next = self.read_data.q.val().get_bit(30);
+            self.point.d.next = self.read_data.q.val().get_bit(31);
         }
         if self.phase.q.val() == self.first_word_phase.val() {
-            self.first.d.next = self.fifo.read_data.val();
+            self.first.d.next = self.read_data.q.val();
         }
         if self.phase.q.val() == self.second_word_phase.val() {
-            self.second.d.next = self.fifo.read_data.val();
+            self.second.d.next = self.read_data.q.val();
         }
         self.fifo.pop.next = self.phase.q.val() == self.third_word_phase.val();
         if self.phase.q.val() == self.third_word_phase.val() {
-            self.third.d.next = self.fifo.read_data.val();
+            self.third.d.next = self.read_data.q.val();
             self.phase.d.next = self.idle_phase.val();
         }
 

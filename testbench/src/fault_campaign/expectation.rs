@@ -1,6 +1,6 @@
 //! What is demanded of a fault: data, one [`Expectation`] per kind, with the times of `docs/axis.md` and its neighbours.
 
-use posicast_model::rtl::axis::Cause;
+use posicast_model::rtl::axis::{Cause, WATCH_CLOCKS};
 
 /// Which axes a fault is at.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -51,19 +51,29 @@ pub enum Seen {
     Segments,
 }
 
+impl Seen {
+    /// Clocks from then to the state: a flag is a cause at once, the rest is compared first.
+    pub(super) fn clocks(self) -> u64 {
+        match self {
+            Self::Segments => 1,
+            Self::FollowingError | Self::Deviation | Self::Stuck | Self::SoftLimit => WATCH_CLOCKS.into(),
+        }
+    }
+}
+
 /// When the state has changed at the latest.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Due {
     /// So many clocks after the fault.
     Clocks(u64),
-    /// So many clocks after the fault comes the first of so many ticks, then a clock.
+    /// So many clocks after the fault comes the first of so many ticks, then [`WATCH_CLOCKS`].
     Ticks {
         /// Clocks.
         clocks: u64,
         /// Ticks.
         ticks: u64,
     },
-    /// A clock after it is seen.
+    /// [`Seen::clocks`] after it is seen.
     Seen(Seen),
 }
 

@@ -209,7 +209,7 @@ impl Judge<'_> {
             format!("RUN became state {}, not {state}", change.state)
         });
         let due = match self.seen.case.row.expects.due {
-            Due::Seen(_) => observed.seen.map(|seen| seen + 1),
+            Due::Seen(what) => observed.seen.map(|seen| seen + what.clocks()),
             Due::Clocks(_) | Due::Ticks { .. } => self.seen.due,
         };
         let clocks = change.clock.saturating_sub(self.base(observed));

@@ -1,6 +1,7 @@
 //! One case, from reset to the small move after the fault.
 
 use posicast_model::motion::{TickLimits, plan_move};
+use posicast_model::rtl::axis::WATCH_CLOCKS;
 use posicast_model::rtl::segments::Entry;
 
 use super::CampaignError;
@@ -283,7 +284,7 @@ impl Running<'_> {
                 if let Due::Ticks { clocks, ticks: wanted } = self.case.row.expects.due {
                     ticks += u64::from(now >= start + clocks);
                     if ticks == wanted && due.is_none() {
-                        due = Some(now + 1);
+                        due = Some(now + u64::from(WATCH_CLOCKS));
                     }
                 }
             }

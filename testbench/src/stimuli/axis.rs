@@ -2,7 +2,7 @@
 //! the supervisor tells them, or do what they like; lines with glitches around the filter's length; everything that can go
 //! wrong, rarely and often; registers that change in any clock.
 
-use posicast_model::rtl::axis::{HARMLESS, Inputs, KICK, OUTPUT_PORTS, Outputs, State};
+use posicast_model::rtl::axis::{HARMLESS, Inputs, KICK, LEAST_TICK_CLOCKS, OUTPUT_PORTS, Outputs, State};
 use posicast_model::rtl::segments::State as Segments;
 use rand::{Rng, RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -63,7 +63,7 @@ impl AxisRandom {
     fn new_mood(&mut self) {
         let rng = &mut self.rng;
         self.mood = Mood {
-            tick_pace: *pick(rng, &[1, 4, 9, 9, 12, 30]),
+            tick_pace: *pick(rng, &[LEAST_TICK_CLOCKS, 4, 9, 9, 12, 30]),
             request_pace: *pick(rng, &[5, 60, 300, 300]),
             fault_pace: *pick(rng, &[40, 500, 5_000, 50_000]),
             glitch_pace: *pick(rng, &[100, 3_000, 30_000]),

@@ -102,6 +102,8 @@ impl AxisCoverage {
 pub struct AxisSafety {
     clock: u64,
     before: Option<(Inputs, Outputs)>,
+    /// `off_causes` of the clock before that.
+    off_causes: u16,
     /// Ticks with the outputs on and the brake applied, and how many are allowed.
     braked: Option<(u64, u64)>,
     /// Clocks since the emergency stop's line went low, and the longest filter meanwhile.
@@ -123,6 +125,7 @@ impl AxisSafety {
         if let Some((inputs, before)) = self.before {
             self.transition(&inputs, &before, &shown);
         }
+        self.off_causes = self.before.map_or(0, |(inputs, _)| inputs.off_causes);
         self.before = (!inputs.rst).then_some((inputs, shown));
         self.clock += 1;
     }
@@ -173,7 +176,8 @@ impl AxisSafety {
             self.braked = None;
             return;
         }
-        let at_entry = self.before.map_or(0, |(inputs, _)| u64::from(inputs.brake_apply_ticks));
+        // The timer is loaded in the first clock.
+        let at_entry = u64::from(inputs.brake_apply_ticks);
         let (ticks, allowed) = self.braked.unwrap_or((0, at_entry + 1));
         if ticks >= allowed {
             self.violated("outputs on against the brake for too long");
@@ -201,7 +205,10 @@ impl AxisSafety {
         if from != to && !TRANSITIONS.iter().any(|row| (row.from, row.to) == (from, to)) {
             self.violated(&format!("{from:?} to {to:?} is not in the table"));
         }
-        let cut = switching_off(shown.causes, inputs.off_causes) != 0;
+        // Causes that stand switch off by what `off_causes` was when they were registered.
+        let stand = before.causes & shown.causes;
+        let cut = switching_off(shown.causes & !stand, inputs.off_causes) != 0
+            || switching_off(stand, inputs.off_causes & self.off_causes) != 0;
         let at_once = inputs.pwm_tripped || inputs.group_emergency_stop;
         let is_off = !shown.drive_enable && matches!(to, State::Fault | State::Off);
         if (cut || at_once) && !is_off {

@@ -1,7 +1,7 @@
 //! Inputs for the command FIFO, seeded: whole entries and single words, well formed and not; moves that end at rest and
 //! such that do not; ticks at every pace; requests, resets, and stops of every size.
 
-use posicast_model::rtl::segments::{Entry, INPUT_PORTS, Motion, POINT, Point, State};
+use posicast_model::rtl::segments::{Entry, INPUT_PORTS, Motion, POINT, Point, State, TICK_CLOCKS};
 use rand::{Rng, RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use std::collections::VecDeque;
@@ -55,7 +55,7 @@ impl SegmentsRandom {
         let shifted = any >> rng.random_range(0..31);
         self.mood = Mood {
             write_pace: *pick(rng, &[1, 1, 2, 5, 40]),
-            tick_pace: *pick(rng, &[1, 4, 9, 9, 10, 12, 12, 30]),
+            tick_pace: *pick(rng, &[1, 4, TICK_CLOCKS, TICK_CLOCKS, TICK_CLOCKS + 1, 12, 12, 30]),
             request_pace: *pick(rng, &[50, 500, 100_000, 100_000]),
             enable: rng.random_range(0..8) != 0,
             stop_deceleration: *pick(rng, &[0, 1, any, shifted, shifted, (1 << 31) - 1]),

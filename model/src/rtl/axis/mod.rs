@@ -7,7 +7,8 @@
 //! | [`TRANSITIONS`], [`next`] | the states, as data |
 //! | [`Cause`], [`switching_off`] | what can go wrong, and which of it switches off |
 //! | `monitors` | limits, soft limits, following error and the rest of what is watched at ticks |
-//! | `registers` | lines, sticky causes, the state, timer and brake, clock by clock |
+//! | `timer` | how long brake and shaper take |
+//! | `registers` | lines, sticky causes, the state and brake, clock by clock |
 //! | [`Axis`] | the ports |
 //!
 //! [`Axis::step`] is one clock; [`Axis::hold`] is many with the same inputs, and skips those that change nothing.
@@ -31,6 +32,7 @@ mod inputs;
 mod monitors;
 mod outputs;
 mod registers;
+mod timer;
 mod transition;
 
 pub use cause::{ALWAYS_OFF, Cause, HARMLESS, switching_off};
@@ -49,6 +51,10 @@ pub const CLEAR_CLOCKS: u8 = 8;
 pub const PRIMING_CLOCKS: u8 = 4;
 /// Clocks from a line to the state, beside `filter_clocks`: two of the synchroniser, the filter's, the state's.
 pub const LINE_CLOCKS: u32 = 4;
+/// Clocks from a tick to the state that follows from what is watched at it: taken, compared, the state's.
+pub const WATCH_CLOCKS: u32 = 3;
+/// Clocks from a tick to the next one, at least: the timer's.
+pub const LEAST_TICK_CLOCKS: u32 = 3;
 
 /// The supervisor, cycle accurate at its ports.
 #[derive(Debug, Clone)]

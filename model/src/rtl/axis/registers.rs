@@ -3,6 +3,7 @@
 use super::cause::{Cause, HARMLESS, switching_off};
 use super::inputs::Inputs;
 use super::monitors::Monitors;
+use super::timer::{Begins, Timer};
 use super::transition::{Condition, Conditions, State, next};
 use super::{CLEAR_CLOCKS, KICK, PRIMING_CLOCKS};
 use crate::rtl::pulse_counter::GlitchFilter;
@@ -48,8 +49,9 @@ pub(super) struct Registers {
     pub(super) monitors: Monitors,
     pub(super) state: State,
     pub(super) causes: u16,
-    /// Ticks until brake, shaper or brake are done.
-    timer: u16,
+    /// A cause that stands switches off, by `off_causes` of the clock before.
+    cuts: bool,
+    timer: Timer,
     /// In HOLD after READY: the timer is that of the brake's release.
     opening: bool,
     /// In HOLD and FAULT: the brake is applied and the outputs are still on.
@@ -73,7 +75,8 @@ impl Default for Registers {
             monitors: Monitors::default(),
             state: State::Off,
             causes: 0,
-            timer: 0,
+            cuts: false,
+            timer: Timer::default(),
             opening: false,
             closing: false,
             on: false,
@@ -133,6 +136,7 @@ impl Registers {
         let after = next(self.state, now.conditions);
         self.pulses = self.pulses(inputs, &now, after);
         self.run_timer(inputs, &now, after);
+        self.cuts = switching_off(now.causes, inputs.off_causes) != 0;
         self.switch(&now, after);
         self.starting = !self.on || (self.starting && !inputs.segments_valid);
         self.start_waits = now.wants_start && !inputs.tick;
@@ -160,7 +164,7 @@ impl Registers {
         };
     }
 
-    /// The causes of this clock, those of tick and monitors among them.
+    /// The causes of this clock, those that the monitors have found among them.
     fn active(&self, inputs: &Inputs, group_stop: bool) -> u16 {
         let encoder = inputs.encoder_illegal || inputs.encoder_disagreement;
         let scale = inputs.scale_illegal || inputs.scale_disagreement;
@@ -178,13 +182,8 @@ impl Registers {
             (Cause::GroupStop, self.on && group_stop),
             (Cause::Schedule, missed || overrun),
         ];
-        let watched = if self.on && inputs.tick {
-            self.monitors.causes(inputs, self.on_limits())
-        } else {
-            0
-        };
         let bits = found.map(|(cause, is)| if is { cause.bit() } else { 0 });
-        bits.into_iter().fold(watched, |all, bit| all | bit)
+        bits.into_iter().fold(self.monitors.found, |all, bit| all | bit)
     }
 
     /// Causes and conditions of this clock.
@@ -193,12 +192,13 @@ impl Registers {
         let may_forget = self.state != State::QuickStop && (self.state != State::Fault || !self.on);
         let forgets = self.clear_left == 1 && may_forget;
         let kept = if forgets { 0 } else { self.causes };
-        let causes = kept | self.active(inputs, group_stop);
-        let cut = switching_off(causes, inputs.off_causes) != 0;
+        let active = self.active(inputs, group_stop);
+        let causes = kept | active;
+        let cut = (self.cuts && !forgets) || switching_off(active, inputs.off_causes) != 0;
         let fault = causes & !HARMLESS != 0;
         let segments_hold = inputs.segments_state == segments::State::Hold as u8;
         let stopped = inputs.segments_state == segments::State::Stopped as u8;
-        let elapsed = self.timer == 0;
+        let elapsed = self.timer.elapsed();
         let opened = !self.opening || elapsed;
         let able = self.state == State::Hold && opened && !self.closing && segments_hold;
         let wants_start = (inputs.start || self.start_waits) && !inputs.stop;
@@ -255,13 +255,15 @@ impl Registers {
         use State::{Fault, Hold, QuickStop, Ready, Run};
         let before = self.state;
         let counts = inputs.tick && (before != QuickStop || now.stopped);
-        self.timer = match (before, after) {
-            (Ready, Hold) => inputs.brake_release_ticks,
-            (Run, Hold) | (Hold | Run, QuickStop) => inputs.settle_ticks,
-            (QuickStop, Fault) => inputs.brake_apply_ticks,
-            (Hold, Hold) if now.closes => inputs.brake_apply_ticks,
-            _ => self.timer.saturating_sub(u16::from(counts)),
+        let begins = match (before, after) {
+            (Ready, Hold) => Some(Begins::Release),
+            // In RUN in every clock: whatever ends it finds the timer loaded.
+            (Run, _) | (Hold, QuickStop) => Some(Begins::Settle),
+            (QuickStop, Fault) => Some(Begins::Apply),
+            (Hold, Hold) if now.closes => Some(Begins::Apply),
+            _ => None,
         };
+        self.timer.clock(inputs, counts, begins);
     }
 
     /// Outputs and brake.
@@ -297,7 +299,7 @@ mod tests {
         let mut registers = Registers {
             primed: PRIMING_CLOCKS,
             state,
-            timer: u16::from(!elapsed),
+            timer: Timer::left(u16::from(!elapsed)),
             opening,
             closing,
             on,

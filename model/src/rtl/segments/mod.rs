@@ -11,7 +11,7 @@
 //! A tick takes [`TICK_CLOCKS`], always the same ones:
 //!
 //! ```text
-//! phase   0            1    2    3    4                        5 6 7 8
+//! phase   0            1    2    3    4                        5 6 7 8 9
 //!         tick taken   a    v    p    rounded, what comes next read an entry, if one is next
 //! ```
 //!
@@ -52,7 +52,7 @@ use self::fifo::{Fifo, Pointers};
 use super::{ClockedBlock, FOREVER, Moore, OutputKind, Port, StepError};
 
 /// Clocks from a tick until the next one is taken.
-pub const TICK_CLOCKS: u32 = 9;
+pub const TICK_CLOCKS: u32 = 10;
 /// Clocks from a tick to `valid`.
 pub const LATENCY_CLOCKS: u32 = 5;
 
@@ -63,7 +63,7 @@ const INTEGRATE: u8 = 1;
 /// Phase that rounds and decides what comes next.
 const DECIDE: u8 = 4;
 /// Phase that reads the last word of the next entry.
-const READ: u8 = 8;
+const READ: u8 = 9;
 
 /// Pulses that wait for the next tick.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -92,6 +92,8 @@ struct Registers {
     phase: u8,
     requests: Requests,
     enabled: bool,
+    /// Of the clock of the tick.
+    stop_deceleration: u32,
     at: Integrator,
     overflowed: bool,
     playing: Option<Entry>,
@@ -172,7 +174,7 @@ impl Segments {
         };
         match phase {
             IDLE if inputs.tick => self.take_tick(inputs),
-            INTEGRATE => self.integrate(i64::from(inputs.stop_deceleration)),
+            INTEGRATE => self.integrate(),
             DECIDE => self.decide(shown.state, level > 0),
             READ => self.registers.playing = Some(self.fifo.pop()),
             _ => {}
@@ -198,6 +200,7 @@ impl Segments {
         let requests = std::mem::take(&mut self.registers.requests);
         let registers = &mut self.registers;
         registers.enabled = inputs.enable;
+        registers.stop_deceleration = inputs.stop_deceleration;
         let state = &mut registers.shown.state;
         let mut flush = requests.flush;
         if requests.preset {
@@ -217,19 +220,20 @@ impl Segments {
         }
     }
 
-    fn integrate(&mut self, stop_deceleration: i64) {
+    fn integrate(&mut self) {
         let Registers {
             at,
             playing,
             shown,
             overflowed,
+            stop_deceleration,
             ..
         } = &mut self.registers;
         *overflowed = false;
         match (shown.state, playing.map(|entry| entry.motion)) {
             (State::Move, Some(Motion::Jerk(jerk))) => *overflowed = at.jerk(jerk).is_err(),
             (State::Move, Some(Motion::Point(point))) => *at = Integrator::at_point(&point),
-            (State::Stop, _) => at.stop(stop_deceleration << (FRACTION_BITS - ACCELERATION_FRACTION)),
+            (State::Stop, _) => at.stop(i64::from(*stop_deceleration) << (FRACTION_BITS - ACCELERATION_FRACTION)),
             _ => {}
         }
     }
