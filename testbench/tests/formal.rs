@@ -72,6 +72,11 @@ fn formal_segments() {
 }
 
 #[test]
+fn formal_shaper() {
+    proven("shaper", 0);
+}
+
+#[test]
 fn formal_half_a_dead_time_is_found() {
     fails("pwm", "pause = dead_time;", "pause = dead_time >> 1;", "known_pause");
 }
@@ -134,4 +139,39 @@ fn formal_a_fifo_that_writes_over_its_oldest_entry_is_found() {
         "memory_write_address = ({2'd0, head} << 2)",
         "no_overwrite",
     );
+}
+
+#[test]
+fn formal_a_product_that_is_subtracted_is_found() {
+    fails(
+        "shaper",
+        "accumulator + wide_product",
+        "accumulator - wide_product",
+        "sum_adds",
+    );
+}
+
+#[test]
+fn formal_a_pass_that_ends_a_tap_early_is_found() {
+    fails("shaper", "ONE_MORE = 7'd1", "ONE_MORE = 7'd2", "pass_");
+}
+
+#[test]
+fn formal_a_sample_of_the_wrong_side_is_found() {
+    fails("shaper", "= head - delay", "= head + delay", "address");
+}
+
+#[test]
+fn formal_a_swap_to_a_bank_that_does_not_sum_to_one_is_found() {
+    fails(
+        "shaper",
+        "(swap_bank == BANK_1) & (sum_1 == UNITY)",
+        "(swap_bank == BANK_1)",
+        "table_to_come",
+    );
+}
+
+#[test]
+fn formal_a_result_clamped_to_the_wrong_end_is_found() {
+    fails("shaper", "y_q_next = Y_MAX", "y_q_next = Y_MIN", "result");
 }
