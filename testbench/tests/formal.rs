@@ -84,6 +84,11 @@ fn formal_arithmetic_of_the_controller() {
 }
 
 #[test]
+fn formal_shaper() {
+    proven("shaper", 0);
+}
+
+#[test]
 fn formal_half_a_dead_time_is_found() {
     fails("pwm", "pause = dead_time;", "pause = dead_time >> 1;", "known_pause");
 }
@@ -160,12 +165,42 @@ fn formal_a_sum_that_goes_on_from_the_last_one_is_found() {
 }
 
 #[test]
+fn formal_a_product_that_is_subtracted_is_found() {
+    fails(
+        "shaper",
+        "accumulator + wide_product",
+        "accumulator - wide_product",
+        "sum_adds",
+    );
+}
+
+#[test]
 fn formal_a_shift_that_loses_the_sign_is_found() {
     fails(
         "scaled_product",
         "by_one = $signed(shifter[50:1])",
         "by_one = $signed({1'b0, shifter[49:1]})",
         "shifted",
+    );
+}
+
+#[test]
+fn formal_a_pass_that_ends_a_tap_early_is_found() {
+    fails("shaper", "ONE_MORE = 7'd1", "ONE_MORE = 7'd2", "pass_");
+}
+
+#[test]
+fn formal_a_sample_of_the_wrong_side_is_found() {
+    fails("shaper", "= head - delay", "= head + delay", "address");
+}
+
+#[test]
+fn formal_a_swap_to_a_bank_that_does_not_sum_to_one_is_found() {
+    fails(
+        "shaper",
+        "(swap_bank == BANK_1) & (sum_1 == UNITY)",
+        "(swap_bank == BANK_1)",
+        "table_to_come",
     );
 }
 
@@ -177,4 +212,9 @@ fn formal_a_product_that_is_cut_instead_of_rounded_is_found() {
 #[test]
 fn formal_a_limit_that_is_passed_by_an_lsb_is_found() {
     fails("limiter", "(kept ^ sign) + carry", "kept ^ sign", "command_is_cut");
+}
+
+#[test]
+fn formal_a_result_clamped_to_the_wrong_end_is_found() {
+    fails("shaper", "y_q_next = Y_MAX", "y_q_next = Y_MIN", "result");
 }

@@ -319,8 +319,8 @@ fn crosssim_corners_catch_what_random_stimuli_miss() {
         ("longest_delay", "FULL_AGE = 7'd127", "FULL_AGE = 7'd126"),
         (
             "largest_products",
-            "{6{multiplier_product[49]}}",
-            "{6{multiplier_product[48]}}",
+            "{6{product_product[49]}}",
+            "{6{product_product[48]}}",
         ),
         ("sums_beside_one", "sum_2 == UNITY", "sum_2[18:0] == UNITY[18:0]"),
         ("sums_beside_one", "sum_1 == UNITY", "sum_1[22:0] == UNITY[22:0]"),

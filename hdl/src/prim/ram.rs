@@ -64,6 +64,7 @@ impl<const D: usize, const N: usize> Logic for Ram<D, N> {
 // @leaf ram_{words}x{D} reg: read_data
 // @about Block RAM, {words} words of {D} bits: one write port, one read port, read data one clock after the address.
 // @about No reset: what was not written is unknown, and so is a word read in the clock in which it is written.
+(* no_rw_check *)
 reg [{last_bit}:0] words [0:{last_word}];
 always @(posedge clk) begin
     if (write_enable) words[write_address] <= write_data;

@@ -1,13 +1,15 @@
 //! Every channel's `saturate( (Σ coefficient · sample + 2^(F−1)) >> F )`, one channel after the other, shown together.
 //!
 //! As [`super::weighted_sum`], with a `finish` per channel: a channel's first `add` may come in the clock of the `finish` of
-//! the one before. After that of the last channel all outputs change in one clock, and `valid` shows it.
+//! the one before. A sample goes through a register of its own before it is one: `sample_channel` comes a clock after it, and
+//! the product stands four clocks after it. After that of the last channel all outputs change in one clock, and `valid` shows it.
 //!
 //! A position that wraps gets differences to its newest word as samples: the accumulator begins with that word times 2^F,
 //! and the sum is taken modulo 2^W.
 //!
 //! 2 · 2^T + 1 products of W + 18 bits fit in ACC = W + 19 + T bits, the half included: the accumulator never overflows.
 
+use super::product::Product;
 use crate::prelude::*;
 use posicast_model::rtl::shaper::ShaperConfig;
 
@@ -31,9 +33,11 @@ pub(super) struct ChannelSums<const W: usize, const P: usize, const ACC: usize, 
     pub(super) busy: Signal<Out, Bit>,
     pub(super) saturated: Signal<Out, Bit>,
 
-    multiplier: SMul<W, 18, P>,
+    product: Product<W, P, 1>,
 
+    coefficient_read: Dff<Signed<18>>,
     coefficient_q: Dff<Signed<18>>,
+    sample_q: [Dff<Signed<W>>; C],
     accumulator: Dff<Signed<ACC>>,
     channel: Dff<Bits<2>>,
     held: [Dff<Signed<W>>; C],
@@ -44,7 +48,7 @@ pub(super) struct ChannelSums<const W: usize, const P: usize, const ACC: usize, 
     busy_q: Dff<Bit>,
     saturated_q: Dff<Bit>,
 
-    product: Signal<Local, Signed<ACC>>,
+    wide_product: Signal<Local, Signed<ACC>>,
     addend: Signal<Local, Signed<ACC>>,
     base: Signal<Local, Signed<ACC>>,
     operand: Signal<Local, Signed<W>>,
@@ -89,8 +93,10 @@ impl<const W: usize, const P: usize, const ACC: usize, const C: usize> ChannelSu
             valid: Signal::default(),
             busy: Signal::default(),
             saturated: Signal::default(),
-            multiplier: SMul::default(),
+            product: Product::default(),
+            coefficient_read: Dff::default(),
             coefficient_q: Dff::default(),
+            sample_q: std::array::from_fn(|_| Dff::default()),
             accumulator: Dff::default(),
             channel: Dff::default(),
             held: std::array::from_fn(|_| Dff::default()),
@@ -100,7 +106,7 @@ impl<const W: usize, const P: usize, const ACC: usize, const C: usize> ChannelSu
             valid_q: Dff::default(),
             busy_q: Dff::default(),
             saturated_q: Dff::default(),
-            product: Signal::default(),
+            wide_product: Signal::default(),
             addend: Signal::default(),
             base: Signal::default(),
             operand: Signal::default(),
@@ -133,10 +139,11 @@ impl<const W: usize, const P: usize, const ACC: usize, const C: usize> Logic for
         comment!("@about y = rounded, saturated sum of products,");
         comment!("@about channel by channel, shown together.");
         comment!("@about A coefficient comes a clock before its");
-        comment!("@about sample, the product two clocks after that.");
+        comment!("@about sample, the product 4 clocks after that.");
         dff_setup!(
             self,
             clk,
+            coefficient_read,
             coefficient_q,
             accumulator,
             channel,
@@ -147,6 +154,9 @@ impl<const W: usize, const P: usize, const ACC: usize, const C: usize> Logic for
             saturated_q
         );
         for i in 0..C {
+            self.sample_q[i].clock.next = self.clk.val();
+            self.sample_q[i].rst.next = self.rst.val();
+            self.sample_q[i].d.next = self.sample[i].val();
             self.held[i].clock.next = self.clk.val();
             self.held[i].rst.next = self.rst.val();
             self.held[i].d.next = self.held[i].q.val();
@@ -156,25 +166,27 @@ impl<const W: usize, const P: usize, const ACC: usize, const C: usize> Logic for
         }
 
         comment!("A position that wraps: the way to the newest");
-        self.operand.next = self.sample[0].val();
+        self.operand.next = self.sample_q[0].q.val();
         if self.modulo.val() & (self.sample_channel.val() == self.first_channel.val()) {
-            self.operand.next = self.sample[0].val() - self.newest.val();
+            self.operand.next = self.sample_q[0].q.val() - self.newest.val();
         }
         for i in 1..C {
             if self.sample_channel.val() == i.to_bits() {
-                self.operand.next = self.sample[i].val();
+                self.operand.next = self.sample_q[i].q.val();
             }
         }
 
         comment!("Multiply and accumulate, exactly");
-        self.coefficient_q.d.next = self.coefficient.val();
-        self.multiplier.clk.next = self.clk.val();
-        self.multiplier.a.next = self.operand.val();
-        self.multiplier.b.next = self.coefficient_q.q.val();
-        self.product.next = signed_bit_cast::<ACC, P>(self.multiplier.product.val());
+        self.coefficient_read.d.next = self.coefficient.val();
+        self.coefficient_q.d.next = self.coefficient_read.q.val();
+        self.product.clk.next = self.clk.val();
+        self.product.rst.next = self.rst.val();
+        self.product.sample.next = self.operand.val();
+        self.product.coefficient.next = self.coefficient_q.q.val();
+        self.wide_product.next = signed_bit_cast::<ACC, P>(self.product.product.val());
         self.addend.next = self.no_product.val();
         if self.add.val() {
-            self.addend.next = self.product.val();
+            self.addend.next = self.wide_product.val();
         }
         self.base.next = self.accumulator.q.val();
         if self.finish.val() {

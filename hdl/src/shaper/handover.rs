@@ -4,8 +4,8 @@
 //! samples, the longest delay of both tables. In a handover `active` is high, and `since` counts the samples since the last
 //! one that the old table shaped alone; above `reach` it is over. `newest` is the position of the last sample.
 //!
-//! A tap goes through on its way from the tables to the rings, in the clock after `old`, `correcting` and `of_position` told
-//! of it. Of the old table a tap belongs to the increments of the command with delay ≥ `since`, of the new table to those
+//! A tap goes through on its way from the tables to the rings: it comes two clocks after `old`, `correcting` and `of_position`
+//! told of it, and leaves a clock later. Of the old table a tap belongs to the increments of the command with delay ≥ `since`, of the new table to those
 //! below. Any other sees the sample that lies `since` back where it is of the position, and counts as zero elsewhere.
 
 use crate::prelude::*;
@@ -40,9 +40,14 @@ pub(super) struct Handover<const W: usize, const A: usize> {
     newest_q: Dff<Signed<W>>,
     active_q: Dff<Bit>,
     since_q: Dff<Bits<A>>,
+    old_read: Dff<Bit>,
     old_tap: Dff<Bit>,
+    correction_read: Dff<Bit>,
     correction: Dff<Bit>,
+    position_read: Dff<Bit>,
     position_tap: Dff<Bit>,
+    coefficient_q: Dff<Signed<18>>,
+    delay_q: Dff<Bits<A>>,
 
     settled: Signal<Local, Bit>,
     begins: Signal<Local, Bit>,
@@ -87,9 +92,14 @@ impl<const W: usize, const A: usize> Handover<W, A> {
             newest_q: Dff::default(),
             active_q: Dff::default(),
             since_q: Dff::default(),
+            old_read: Dff::default(),
             old_tap: Dff::default(),
+            correction_read: Dff::default(),
             correction: Dff::default(),
+            position_read: Dff::default(),
             position_tap: Dff::default(),
+            coefficient_q: Dff::default(),
+            delay_q: Dff::default(),
             settled: Signal::default(),
             begins: Signal::default(),
             next_since: Signal::default(),
@@ -120,9 +130,14 @@ impl<const W: usize, const A: usize> Logic for Handover<W, A> {
             newest_q,
             active_q,
             since_q,
+            old_read,
             old_tap,
+            correction_read,
             correction,
-            position_tap
+            position_read,
+            position_tap,
+            coefficient_q,
+            delay_q
         );
 
         comment!("How long the position has stood still");
@@ -164,28 +179,33 @@ impl<const W: usize, const A: usize> Logic for Handover<W, A> {
         }
 
         comment!("What it makes of a tap");
-        self.old_tap.d.next = self.old.val();
-        self.correction.d.next = self.correcting.val();
-        self.position_tap.d.next = self.of_position.val();
+        self.old_read.d.next = self.old.val();
+        self.old_tap.d.next = self.old_read.q.val();
+        self.correction_read.d.next = self.correcting.val();
+        self.correction.d.next = self.correction_read.q.val();
+        self.position_read.d.next = self.of_position.val();
+        self.position_tap.d.next = self.position_read.q.val();
         self.below.next = self.tap_delay.val() < self.since_q.q.val();
         self.foreign.next = self.active_q.q.val() & (self.old_tap.q.val() == self.below.val());
-        self.coefficient.next = self.tap_coefficient.val();
-        self.delay.next = self.tap_delay.val();
+        self.coefficient_q.d.next = self.tap_coefficient.val();
+        self.delay_q.d.next = self.tap_delay.val();
         if self.foreign.val() {
             if self.position_tap.q.val() {
-                self.delay.next = self.since_q.q.val();
+                self.delay_q.d.next = self.since_q.q.val();
             } else {
-                self.coefficient.next = self.no_coefficient.val();
+                self.coefficient_q.d.next = self.no_coefficient.val();
             }
         }
         if self.correction.q.val() {
-            self.coefficient.next = self.minus_unity.val();
-            self.delay.next = self.since_q.q.val();
+            self.coefficient_q.d.next = self.minus_unity.val();
+            self.delay_q.d.next = self.since_q.q.val();
         }
 
         comment!("Outputs");
         self.active.next = self.active_q.q.val();
         self.since.next = self.since_q.q.val();
         self.newest.next = self.newest_q.q.val();
+        self.coefficient.next = self.coefficient_q.q.val();
+        self.delay.next = self.delay_q.q.val();
     }
 }

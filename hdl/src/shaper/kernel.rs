@@ -3,11 +3,11 @@
 //! ```text
 //! tap ─► tap_banks ─► delay ─────► history ─► sample ──────► weighted_sum ─────────────────► y
 //!                  └► coefficient ──────────────────────────►
-//! running            stages[0]                stages[1]     stages[2] stages[3] done      valid
+//! running   stages[0] stages[1]              stages[2]     stages[3] to [5] done         valid
 //! ```
 //!
-//! A tap is in each place for one clock. So of N taps the last product is added in clock N + 4 after the strobe, `done`
-//! shows in clock N + 5, and `y` in clock N + 6.
+//! A tap is in each place for one clock. So of N taps the last product is added in clock N + 6 after the strobe, `done`
+//! shows in clock N + 7, and `y` in clock N + 8.
 
 use super::history::History;
 use super::tap_banks::TapBanks;
@@ -17,7 +17,7 @@ use crate::simulation::Pins;
 use posicast_model::rtl::shaper::ShaperConfig;
 
 /// W word, P = W + 18 product, ACC = P + T accumulator, A ring address, T index, COUNT = T + 1, SUM = 18 + T and
-/// WORD = 18 + A bits.
+/// WORD = 18 + A bits; U of [`super::product`].
 #[derive(LogicBlock)]
 pub(super) struct Shaper<
     const W: usize,
@@ -28,6 +28,7 @@ pub(super) struct Shaper<
     const COUNT: usize,
     const SUM: usize,
     const WORD: usize,
+    const U: usize,
 > {
     pub(super) clk: Signal<In, Clock>,
     pub(super) rst: Signal<In, Bit>,
@@ -53,11 +54,11 @@ pub(super) struct Shaper<
 
     banks: TapBanks<A, T, COUNT, SUM, WORD>,
     history: History<W, A>,
-    sum: WeightedSum<W, P, ACC>,
+    sum: WeightedSum<W, P, ACC, U>,
 
     tap: Dff<Bits<T>>,
     running: Dff<Bit>,
-    stages: Dff<Bits<4>>,
+    stages: Dff<Bits<6>>,
     done: Dff<Bit>,
     valid_q: Dff<Bit>,
     busy_q: Dff<Bit>,
@@ -69,8 +70,8 @@ pub(super) struct Shaper<
     first_tap: Constant<Bits<T>>,
     one_tap: Constant<Bits<T>>,
     one_more: Constant<Bits<COUNT>>,
-    no_stage: Constant<Bits<4>>,
-    first_stage: Constant<Bits<4>>,
+    no_stage: Constant<Bits<6>>,
+    first_stage: Constant<Bits<6>>,
 }
 
 impl<
@@ -82,7 +83,8 @@ impl<
     const COUNT: usize,
     const SUM: usize,
     const WORD: usize,
-> Shaper<W, P, ACC, A, T, COUNT, SUM, WORD>
+    const U: usize,
+> Shaper<W, P, ACC, A, T, COUNT, SUM, WORD, U>
 {
     /// A shaper for `config`, whose sizes must be these.
     pub(super) fn new(config: &ShaperConfig) -> Self {
@@ -111,7 +113,7 @@ impl<
             refused: Signal::default(),
             banks: TapBanks::new(config),
             history: History::default(),
-            sum: WeightedSum::new(config),
+            sum: WeightedSum::new(config.coefficient_fraction()),
             tap: Dff::default(),
             running: Dff::default(),
             stages: Dff::default(),
@@ -139,14 +141,15 @@ impl<
     const COUNT: usize,
     const SUM: usize,
     const WORD: usize,
-> Logic for Shaper<W, P, ACC, A, T, COUNT, SUM, WORD>
+    const U: usize,
+> Logic for Shaper<W, P, ACC, A, T, COUNT, SUM, WORD, U>
 {
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module shaper");
         dff_setup!(self, clk, tap, running, stages, done, valid_q, busy_q, overrun_q);
 
-        comment!("The tables: the word of tap, a clock later");
+        comment!("The tables: the word of tap, two clocks later");
         self.banks.clk.next = self.clk.val();
         self.banks.rst.next = self.rst.val();
         self.banks.strobe.next = self.strobe.val();
@@ -181,7 +184,7 @@ impl<
         self.sum.begin_pass.next = self.strobe.val();
         self.sum.coefficient.next = self.banks.coefficient.val();
         self.sum.sample.next = self.history.sample.val();
-        self.sum.add.next = self.stages.q.val().get_bit(3);
+        self.sum.add.next = self.stages.q.val().get_bit(5);
         self.sum.finish.next = self.finish.val();
         self.sum.start.next = self.start.val();
         self.sum.x.next = self.x.val();
@@ -198,7 +201,7 @@ impl<
                 self.tap.d.next = self.tap.q.val() + self.one_tap.val();
             }
         }
-        self.done.d.next = self.stages.q.val().get_bit(3) & !self.stages.q.val().get_bit(2);
+        self.done.d.next = self.stages.q.val().get_bit(5) & !self.stages.q.val().get_bit(4);
         self.valid_q.d.next = self.finish.val();
         if self.finish.val() {
             self.busy_q.d.next = false;
@@ -244,7 +247,8 @@ impl<
     const COUNT: usize,
     const SUM: usize,
     const WORD: usize,
-> Pins for Shaper<W, P, ACC, A, T, COUNT, SUM, WORD>
+    const U: usize,
+> Pins for Shaper<W, P, ACC, A, T, COUNT, SUM, WORD, U>
 {
     fn set_clk(&mut self, level: bool) {
         self.clk.next = level.into();

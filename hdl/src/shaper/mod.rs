@@ -12,6 +12,7 @@ mod history;
 mod kernel;
 mod motion;
 mod motion_pins;
+mod product;
 mod tap_banks;
 mod weighted_sum;
 
@@ -28,27 +29,27 @@ use posicast_model::rtl::shaper::{ShaperConfig, ports};
 macro_rules! sized_shaper {
     ($config:expr, $action:ident) => {
         match $config.word_bits() {
-            16 => sized_shaper!(@ring $config, $action, 16),
-            24 => sized_shaper!(@ring $config, $action, 24),
-            _ => sized_shaper!(@ring $config, $action, 32),
+            16 => sized_shaper!(@ring $config, $action, 16, 0),
+            24 => sized_shaper!(@ring $config, $action, 24, 1),
+            _ => sized_shaper!(@ring $config, $action, 32, 1),
         }
     };
-    (@ring $config:expr, $action:ident, $w:literal) => {
+    (@ring $config:expr, $action:ident, $w:literal, $u:literal) => {
         match $config.ring_address_bits() {
-            6 => sized_shaper!(@index $config, $action, $w, 6),
-            7 => sized_shaper!(@index $config, $action, $w, 7),
-            8 => sized_shaper!(@index $config, $action, $w, 8),
-            9 => sized_shaper!(@index $config, $action, $w, 9),
-            10 => sized_shaper!(@index $config, $action, $w, 10),
-            11 => sized_shaper!(@index $config, $action, $w, 11),
-            12 => sized_shaper!(@index $config, $action, $w, 12),
-            _ => sized_shaper!(@index $config, $action, $w, 14),
+            6 => sized_shaper!(@index $config, $action, $w, $u, 6),
+            7 => sized_shaper!(@index $config, $action, $w, $u, 7),
+            8 => sized_shaper!(@index $config, $action, $w, $u, 8),
+            9 => sized_shaper!(@index $config, $action, $w, $u, 9),
+            10 => sized_shaper!(@index $config, $action, $w, $u, 10),
+            11 => sized_shaper!(@index $config, $action, $w, $u, 11),
+            12 => sized_shaper!(@index $config, $action, $w, $u, 12),
+            _ => sized_shaper!(@index $config, $action, $w, $u, 14),
         }
     };
-    (@index $config:expr, $action:ident, $w:literal, $a:literal) => {
+    (@index $config:expr, $action:ident, $w:literal, $u:literal, $a:literal) => {
         match $config.tap_index_bits() {
-            6 => $action!(Shaper<$w, { $w + 18 }, { $w + 18 + 6 }, $a, 6, 7, { 18 + 6 }, { 18 + $a }>),
-            _ => $action!(Shaper<$w, { $w + 18 }, { $w + 18 + 8 }, $a, 8, 9, { 18 + 8 }, { 18 + $a }>),
+            6 => $action!(Shaper<$w, { $w + 18 }, { $w + 18 + 6 }, $a, 6, 7, { 18 + 6 }, { 18 + $a }, $u>),
+            _ => $action!(Shaper<$w, { $w + 18 }, { $w + 18 + 8 }, $a, 8, 9, { 18 + 8 }, { 18 + $a }, $u>),
         }
     };
 }

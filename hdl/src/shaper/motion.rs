@@ -11,8 +11,8 @@
 //! is m; a tap of the old table belongs to the increments of delay d ≥ m, one of the new table to those of d < m. Of the
 //! position, any other tap sees `x[n − m]`; of velocity and acceleration it counts as zero.
 //!
-//! So of N products `y` stands N + 7 clocks after the strobe: one more than in the plain shaper, because the channels wait
-//! for each other.
+//! So of N products `y` stands N + 11 clocks after the strobe, three more than in the plain shaper: one for the handover, one
+//! for the way from the rings to the multiplier, and one because the channels wait for each other.
 
 use super::channel_sums::ChannelSums;
 use super::handover::Handover;
@@ -68,10 +68,9 @@ pub(super) struct MotionShaper<
     channel: Dff<Bits<2>>,
     second: Dff<Bit>,
     correcting: Dff<Bit>,
-    stages: Dff<Bits<4>>,
-    lasts: Dff<Bits<4>>,
+    stages: Dff<Bits<8>>,
+    lasts: Dff<Bits<8>>,
     done: Dff<Bit>,
-    tap_channel: Dff<Bits<2>>,
     sample_channel: Dff<Bits<2>>,
     overrun_q: Dff<Bit>,
 
@@ -88,8 +87,8 @@ pub(super) struct MotionShaper<
     first_channel: Constant<Bits<2>>,
     one_channel: Constant<Bits<2>>,
     last_channel: Constant<Bits<2>>,
-    no_stage: Constant<Bits<4>>,
-    first_stage: Constant<Bits<4>>,
+    no_stage: Constant<Bits<8>>,
+    first_stage: Constant<Bits<8>>,
     unknown_how: Constant<Bits<2>>,
 }
 
@@ -143,7 +142,6 @@ impl<
             stages: Dff::default(),
             lasts: Dff::default(),
             done: Dff::default(),
-            tap_channel: Dff::default(),
             sample_channel: Dff::default(),
             overrun_q: Dff::default(),
             tap_number: Signal::default(),
@@ -191,12 +189,11 @@ impl<
             stages,
             lasts,
             done,
-            tap_channel,
             sample_channel,
             overrun_q
         );
 
-        comment!("The tables: the word of tap, a clock later");
+        comment!("The tables: the word of tap, two clocks later");
         self.of_position.next = self.channel.q.val() == self.first_channel.val();
         self.old.next = self.handover.active.val() & !self.second.q.val();
         self.banks.clk.next = self.clk.val();
@@ -233,8 +230,6 @@ impl<
         self.handover.of_position.next = self.of_position.val();
         self.handover.tap_coefficient.next = self.banks.coefficient.val();
         self.handover.tap_delay.next = self.banks.delay.val();
-        self.tap_channel.d.next = self.channel.q.val();
-        self.sample_channel.d.next = self.tap_channel.q.val();
 
         comment!("The samples: those at delay, a clock later");
         for i in 0..C {
@@ -256,7 +251,7 @@ impl<
         self.sums.coefficient.next = self.handover.coefficient.val();
         self.sums.sample_channel.next = self.sample_channel.q.val();
         self.sums.newest.next = self.handover.newest.val();
-        self.sums.add.next = self.stages.q.val().get_bit(3);
+        self.sums.add.next = self.stages.q.val().get_bit(7);
         self.sums.finish.next = self.finish.val();
         self.sums.start.next = self.start.val();
         self.sums.clear_flags.next = self.clear_flags.val();
@@ -293,13 +288,17 @@ impl<
                 self.running.d.next = false;
             }
         }
-        self.done.d.next = self.lasts.q.val().get_bit(3);
+        if self.lasts.q.val().get_bit(4) {
+            self.sample_channel.d.next = self.sample_channel.q.val() + self.one_channel.val();
+        }
+        self.done.d.next = self.lasts.q.val().get_bit(7);
 
         comment!("A start or a strobe cuts off what runs");
         if self.start.val() | self.strobe.val() {
             self.running.d.next = self.strobe.val();
             self.tap.d.next = self.first_tap.val();
             self.channel.d.next = self.first_channel.val();
+            self.sample_channel.d.next = self.first_channel.val();
             self.second.d.next = false;
             self.correcting.d.next = false;
             self.stages.d.next = self.no_stage.val();

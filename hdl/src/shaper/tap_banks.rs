@@ -1,7 +1,8 @@
 //! The three tap tables, how one is loaded, and when one becomes active.
 //!
 //! Bank 0 is a ROM with the machine's table; banks 1 and 2 are the halves of one RAM. A word of either is
-//! `{delay, coefficient}`. The word of `tap` stands at `coefficient` and `delay` one clock later.
+//! `{delay, coefficient}`. The word of `tap` stands at `coefficient` and `delay` two clocks later: one is the memory's, and since
+//! block RAM is slow to show its word, it goes through a register before anything is made of it.
 //!
 //! - A write with index 0 begins a table anew, one with the number of taps so far goes on. Each loadable bank keeps that
 //!   number and the sum of its coefficients.
@@ -55,11 +56,14 @@ pub(super) struct TapBanks<const A: usize, const T: usize, const COUNT: usize, c
     longest_1: Dff<Bits<A>>,
     longest_2: Dff<Bits<A>>,
     active: Dff<Bits<2>>,
+    active_taps: Dff<Bits<COUNT>>,
     previous: Dff<Bits<2>>,
+    previous_taps: Dff<Bits<COUNT>>,
     upcoming: Dff<Bits<2>>,
     pending: Dff<Bit>,
     reach_q: Dff<Bits<A>>,
     old_q: Dff<Bit>,
+    word: Dff<Bits<WORD>>,
     refused_q: Dff<Bit>,
 
     taps_so_far: Signal<Local, Bits<COUNT>>,
@@ -84,7 +88,7 @@ pub(super) struct TapBanks<const A: usize, const T: usize, const COUNT: usize, c
     write_address: Signal<Local, Bits<COUNT>>,
     read_address: Signal<Local, Bits<COUNT>>,
     coefficient_bits: Signal<Local, Bits<18>>,
-    word: Signal<Local, Bits<WORD>>,
+    upcoming_taps: Signal<Local, Bits<COUNT>>,
 
     bank_rom: Constant<Bits<2>>,
     bank_1: Constant<Bits<2>>,
@@ -136,11 +140,14 @@ impl<const A: usize, const T: usize, const COUNT: usize, const SUM: usize, const
             longest_1: Dff::default(),
             longest_2: Dff::default(),
             active: Dff::default(),
+            active_taps: Dff::new(from_u64(config.table().taps().len() as u64)),
             previous: Dff::default(),
+            previous_taps: Dff::default(),
             upcoming: Dff::default(),
             pending: Dff::default(),
             reach_q: Dff::default(),
             old_q: Dff::default(),
+            word: Dff::default(),
             refused_q: Dff::default(),
             taps_so_far: Signal::default(),
             sum_so_far: Signal::default(),
@@ -164,7 +171,7 @@ impl<const A: usize, const T: usize, const COUNT: usize, const SUM: usize, const
             write_address: Signal::default(),
             read_address: Signal::default(),
             coefficient_bits: Signal::default(),
-            word: Signal::default(),
+            upcoming_taps: Signal::default(),
             bank_rom: Constant::new(from_u64(0)),
             bank_1: Constant::new(from_u64(1)),
             bank_2: Constant::new(from_u64(2)),
@@ -206,8 +213,24 @@ impl<const A: usize, const T: usize, const COUNT: usize, const SUM: usize, const
         comment!("@about A swap waits for the next strobe; refused");
         comment!("@about unless the coefficients sum to 2^F.");
         dff_setup!(
-            self, clk, taps_1, taps_2, sum_1, sum_2, longest_1, longest_2, active, previous, upcoming, pending,
-            reach_q, old_q, refused_q
+            self,
+            clk,
+            taps_1,
+            taps_2,
+            sum_1,
+            sum_2,
+            longest_1,
+            longest_2,
+            active,
+            active_taps,
+            previous,
+            previous_taps,
+            upcoming,
+            pending,
+            reach_q,
+            old_q,
+            word,
+            refused_q
         );
         self.machine_taps.clk.next = self.clk.val();
         self.loaded_taps.clk.next = self.clk.val();
@@ -275,9 +298,18 @@ impl<const A: usize, const T: usize, const COUNT: usize, const SUM: usize, const
         if (self.swap_bank.val() == self.bank_2.val()) & (self.sum_2.q.val() == self.unity.val()) {
             self.swap_taken.next = self.swap.val() & self.free.val() & self.known.val();
         }
+        self.upcoming_taps.next = self.taps_1.q.val();
+        if self.upcoming.q.val() == self.bank_2.val() {
+            self.upcoming_taps.next = self.taps_2.q.val();
+        }
+        if self.upcoming.q.val() == self.bank_rom.val() {
+            self.upcoming_taps.next = self.machine_count.val();
+        }
         if self.strobe.val() & self.pending.q.val() & self.take.val() {
             self.active.d.next = self.upcoming.q.val();
+            self.active_taps.d.next = self.upcoming_taps.val();
             self.previous.d.next = self.active.q.val();
+            self.previous_taps.d.next = self.active_taps.q.val();
             self.pending.d.next = false;
         }
         if self.swap_taken.val() {
@@ -317,17 +349,14 @@ impl<const A: usize, const T: usize, const COUNT: usize, const SUM: usize, const
 
         comment!("Reading: the active table, or the old one");
         self.read_bank.next = self.active.q.val();
+        self.taps.next = self.active_taps.q.val();
         if self.old.val() {
             self.read_bank.next = self.previous.q.val();
+            self.taps.next = self.previous_taps.q.val();
         }
-        self.taps.next = self.taps_1.q.val();
         self.read_address.next = bit_cast::<COUNT, T>(self.tap.val());
         if self.read_bank.val() == self.bank_2.val() {
-            self.taps.next = self.taps_2.q.val();
             self.read_address.next = bit_cast::<COUNT, T>(self.tap.val()) | self.upper_half.val();
-        }
-        if self.read_bank.val() == self.bank_rom.val() {
-            self.taps.next = self.machine_count.val();
         }
         self.machine_taps.address.next = self.tap.val();
         self.loaded_taps.read_address.next = self.read_address.val();
@@ -336,12 +365,12 @@ impl<const A: usize, const T: usize, const COUNT: usize, const SUM: usize, const
         if self.old_q.q.val() {
             self.word_bank.next = self.previous.q.val();
         }
-        self.word.next = self.loaded_taps.read_data.val();
+        self.word.d.next = self.loaded_taps.read_data.val();
         if self.word_bank.val() == self.bank_rom.val() {
-            self.word.next = self.machine_taps.data.val();
+            self.word.d.next = self.machine_taps.data.val();
         }
-        self.coefficient.next = signed_cast(self.word.val().get_bits::<18>(0));
-        self.delay.next = self.word.val().get_bits::<A>(18);
+        self.coefficient.next = signed_cast(self.word.q.val().get_bits::<18>(0));
+        self.delay.next = self.word.q.val().get_bits::<A>(18);
 
         comment!("Outputs");
         self.accepted.next = self.swap_taken.val();

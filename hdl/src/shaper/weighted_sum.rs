@@ -1,19 +1,19 @@
 //! `y = saturate( (Σ coefficient · sample + 2^(F−1)) >> F )`, exact up to the one rounding.
 //!
 //! `begin` puts the half that rounds into the accumulator. A coefficient comes one clock before its sample, its product
-//! stands two clocks after the sample; `add` marks the products that count. `finish` comes in the clock after the last
+//! stands three clocks after the sample; `add` marks the products that count. `finish` comes in the clock after the last
 //! `add` and moves the result to `y`, which holds it. `start` sets `y` to `x`.
 //!
 //! The result fits its word if the bits of the accumulator from the word's sign bit up are equal.
 //!
 //! 2^T products of W + 18 bits fit in ACC = W + 18 + T bits, the half included: the accumulator never overflows.
 
+use super::product::Product;
 use crate::prelude::*;
-use posicast_model::rtl::shaper::ShaperConfig;
 
-/// W word, P = W + 18 product, ACC = P + T accumulator bits.
+/// W word, P = W + 18 product, ACC = P + T accumulator bits; U of [`Product`].
 #[derive(LogicBlock)]
-pub(super) struct WeightedSum<const W: usize, const P: usize, const ACC: usize> {
+pub(super) struct WeightedSum<const W: usize, const P: usize, const ACC: usize, const U: usize> {
     pub(super) clk: Signal<In, Clock>,
     pub(super) rst: Signal<In, Bit>,
     pub(super) begin_pass: Signal<In, Bit>,
@@ -27,14 +27,14 @@ pub(super) struct WeightedSum<const W: usize, const P: usize, const ACC: usize> 
     pub(super) y: Signal<Out, Signed<W>>,
     pub(super) saturated: Signal<Out, Bit>,
 
-    multiplier: SMul<W, 18, P>,
+    product: Product<W, P, U>,
 
     coefficient_q: Dff<Signed<18>>,
     accumulator: Dff<Signed<ACC>>,
     y_q: Dff<Signed<W>>,
     saturated_q: Dff<Bit>,
 
-    product: Signal<Local, Signed<ACC>>,
+    wide_product: Signal<Local, Signed<ACC>>,
     sign_bits: Signal<Local, Bits<ACC>>,
 
     half: Constant<Signed<ACC>>,
@@ -46,9 +46,9 @@ pub(super) struct WeightedSum<const W: usize, const P: usize, const ACC: usize> 
     fraction: Constant<Bits<5>>,
 }
 
-impl<const W: usize, const P: usize, const ACC: usize> WeightedSum<W, P, ACC> {
-    pub(super) fn new(config: &ShaperConfig) -> Self {
-        let fraction = config.coefficient_fraction();
+impl<const W: usize, const P: usize, const ACC: usize, const U: usize> WeightedSum<W, P, ACC, U> {
+    /// For coefficients with so many fraction bits.
+    pub(super) fn new(fraction: u32) -> Self {
         Self {
             clk: Signal::default(),
             rst: Signal::default(),
@@ -62,41 +62,42 @@ impl<const W: usize, const P: usize, const ACC: usize> WeightedSum<W, P, ACC> {
             clear_flags: Signal::default(),
             y: Signal::default(),
             saturated: Signal::default(),
-            multiplier: SMul::default(),
+            product: Product::default(),
             coefficient_q: Dff::default(),
             accumulator: Dff::default(),
             y_q: Dff::default(),
             saturated_q: Dff::default(),
-            product: Signal::default(),
+            wide_product: Signal::default(),
             sign_bits: Signal::default(),
             half: Constant::new(from_i64(1 << (fraction - 1))),
-            sign_mask: Constant::new(from_u64(u64::MAX << (fraction + config.word_bits() - 1))),
+            sign_mask: Constant::new(from_u64(u64::MAX << (fraction as usize + W - 1))),
             all_clear: Constant::new(from_u64(0)),
             top_bit: Constant::new(from_u64(ACC as u64 - 1)),
-            y_max: Constant::new(from_i64(config.word_max())),
-            y_min: Constant::new(from_i64(config.word_min())),
+            y_max: Constant::new(from_i64((1 << (W - 1)) - 1)),
+            y_min: Constant::new(from_i64(-(1 << (W - 1)))),
             fraction: Constant::new(from_u64(u64::from(fraction))),
         }
     }
 }
 
-impl<const W: usize, const P: usize, const ACC: usize> Logic for WeightedSum<W, P, ACC> {
+impl<const W: usize, const P: usize, const ACC: usize, const U: usize> Logic for WeightedSum<W, P, ACC, U> {
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module weighted_sum");
         comment!("@about y = rounded, saturated sum of products.");
         comment!("@about A coefficient comes a clock before its");
-        comment!("@about sample, the product two clocks after that.");
+        comment!("@about sample, the product 3 clocks after that.");
         dff_setup!(self, clk, coefficient_q, accumulator, y_q, saturated_q);
 
         comment!("Multiply and accumulate, exactly");
         self.coefficient_q.d.next = self.coefficient.val();
-        self.multiplier.clk.next = self.clk.val();
-        self.multiplier.a.next = self.sample.val();
-        self.multiplier.b.next = self.coefficient_q.q.val();
-        self.product.next = signed_bit_cast::<ACC, P>(self.multiplier.product.val());
+        self.product.clk.next = self.clk.val();
+        self.product.rst.next = self.rst.val();
+        self.product.sample.next = self.sample.val();
+        self.product.coefficient.next = self.coefficient_q.q.val();
+        self.wide_product.next = signed_bit_cast::<ACC, P>(self.product.product.val());
         if self.add.val() {
-            self.accumulator.d.next = self.accumulator.q.val() + self.product.val();
+            self.accumulator.d.next = self.accumulator.q.val() + self.wide_product.val();
         }
         if self.begin_pass.val() {
             self.accumulator.d.next = self.half.val();

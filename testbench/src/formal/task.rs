@@ -3,15 +3,19 @@
 use std::fmt::Write as _;
 
 use posicast_hdl::emit::Module;
-use posicast_hdl::{axis, divider_share, group, pulse_counter, pwm, registers, schedule, segments, sliding_mode};
+use posicast_hdl::{
+    axis, divider_share, group, pulse_counter, pwm, registers, schedule, segments, shaper, sliding_mode,
+};
 use posicast_model::rtl::axis::TRANSITIONS;
 use posicast_model::rtl::component::Component;
 use posicast_model::rtl::pwm::{ActiveLow, Mode, PwmConfig};
 use posicast_model::rtl::schedule::ScheduleConfig;
 use posicast_model::rtl::segments as segments_model;
+use posicast_model::rtl::shaper::{self as shaper_model, ShaperConfig};
 use posicast_model::rtl::sliding_mode as controller_model;
 use posicast_model::rtl::{Port, axis as axis_model, divider_share as share_model, group as group_model};
 use posicast_model::rtl::{pulse_counter as counter_model, pwm as pwm_model, schedule as schedule_model};
+use posicast_model::taps::{Tap, TapTable};
 
 use crate::Error;
 
@@ -51,6 +55,8 @@ pub struct Task {
     pub(super) top: String,
     pub(super) ports: Vec<Port>,
     pub(super) properties: String,
+    /// Whether multipliers are left out: what they give is anything, in every clock.
+    pub(super) leaves_products_open: bool,
 }
 
 impl Task {
@@ -63,6 +69,7 @@ impl Task {
             modules,
             ports,
             properties: String::new(),
+            leaves_products_open: false,
         }
     }
 
@@ -137,6 +144,7 @@ pub fn all() -> Result<Vec<Task>, Error> {
         "32 bits",
         include_str!("../../formal/limiter.sv"),
     )?);
+    tasks.push(shaper_task()?);
     Ok(tasks)
 }
 
@@ -228,6 +236,34 @@ fn group_task(axes: usize) -> Result<Task, Error> {
     let block = (group::emit(axes, "")?, group_model::ports(axes));
     Ok(Task::new("group", &format!("{axes} axes"), Engine::Pdr, block)
         .properties(&macros, include_str!("../../formal/group.sv")))
+}
+
+/// The plain shaper with the smallest memories; delays have 6 bits, the rest of a tap's word is its coefficient.
+fn shaper_task() -> Result<Task, Error> {
+    const COEFFICIENTS: [(u32, i32); 3] = [(0, 20_000), (3, 30_000), (7, 15_536)];
+    const FRACTION: u32 = 16;
+    let taps = COEFFICIENTS.map(|(delay_samples, coefficient)| Tap {
+        delay_samples,
+        coefficient,
+    });
+    let table = TapTable::new(FRACTION, taps.to_vec()).map_err(refused)?;
+    let config = ShaperConfig::new(32, table).map_err(refused)?;
+    let macros = [
+        ("FRACTION", FRACTION.to_string()),
+        ("MACHINE_TAPS", format!("7'd{}", COEFFICIENTS.len())),
+    ];
+    let block = (shaper::emit(&config, "")?, shaper_model::ports(&config));
+    let task = Task::new(
+        "shaper",
+        "32 bits, 64 samples, 64 taps",
+        Engine::Induction { clocks: 1 },
+        block,
+    )
+    .properties(&macros, include_str!("../../formal/shaper.sv"));
+    Ok(Task {
+        leaves_products_open: true,
+        ..task
+    })
 }
 
 fn schedule_task(clocks: u32) -> Result<Task, Error> {

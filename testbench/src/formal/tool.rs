@@ -142,6 +142,12 @@ impl Bench<'_> {
         }
         script.push_str("cd ..\nsetattr -unset keep formal_top/w:dut.*\n");
         // Without its memories: what is read from a block RAM is anything, in every clock.
+        let multipliers = if self.task.leaves_products_open {
+            "delete t:$mul\n"
+        } else {
+            ""
+        };
+        script.push_str(multipliers);
         script.push_str(
             "memory -nomap\ndelete t:$mem_v2\nasync2sync\nsetundef -undriven -anyseq\nopt\ndffunmap\nopt_clean\n\
              write_ilang design.il\ndesign -save whole\n",

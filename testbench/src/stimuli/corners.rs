@@ -9,7 +9,7 @@ use Action::{Clear, Reset, Start, StartAlone, Strobe, StrobeExact, Swap, Tap, Ta
 /// Rings up to this size are filled: a larger one takes more clocks than a corner is worth.
 const FILLED_RING_BITS: u32 = 9;
 /// Clocks over which a second event is moved across a pass of one tap.
-const PASS_SPAN: u32 = 12;
+const PASS_SPAN: u32 = 18;
 
 /// The corner cases of a shaper with the sizes of `axis`, each with its name.
 pub fn corners(axis: &Axis) -> Vec<(&'static str, Vec<Action>)> {

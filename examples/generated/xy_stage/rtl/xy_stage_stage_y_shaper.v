@@ -11,10 +11,10 @@
 // ring_samples          128    delays up to this - 2
 // most_taps             64     per bank
 // machine_taps          5      bank 0, ROM
-// pass_clocks           22     from strobe to valid in bank 0
+// pass_clocks           26     from strobe to valid in bank 0
 // channels              3      share the table, outputs in one clock
 // modulo                0      1: position wraps, no saturation
-// longest_pass_clocks   38     in a handover
+// longest_pass_clocks   42     in a handover
 
 `default_nettype none
 
@@ -52,8 +52,8 @@ module xy_stage_stage_y_shaper (
     localparam [1:0] FIRST_CHANNEL = 2'd0;
     localparam [1:0] ONE_CHANNEL = 2'd1;
     localparam [1:0] LAST_CHANNEL = 2'd2;
-    localparam [3:0] NO_STAGE = 4'd0;
-    localparam [3:0] FIRST_STAGE = 4'd1;
+    localparam [7:0] NO_STAGE = 8'd0;
+    localparam [7:0] FIRST_STAGE = 8'd1;
     localparam [1:0] UNKNOWN_HOW = 2'd3;
 
     wire [6:0]         tap_number;
@@ -97,14 +97,14 @@ module xy_stage_stage_y_shaper (
     reg                second_next;
     reg                correcting;
     reg                correcting_next;
-    reg  [3:0]         stages;
-    reg  [3:0]         stages_next;
-    reg  [3:0]         lasts;
-    reg  [3:0]         lasts_next;
+    reg  [7:0]         stages;
+    reg  [7:0]         stages_next;
+    reg  [7:0]         lasts;
+    reg  [7:0]         lasts_next;
     reg                done;
     reg                done_next;
-    reg  [1:0]         tap_channel;
     reg  [1:0]         sample_channel;
+    reg  [1:0]         sample_channel_next;
     reg                overrun_q;
     reg                overrun_q_next;
 
@@ -213,14 +213,14 @@ module xy_stage_stage_y_shaper (
         .saturated      (sums_saturated)
     );
 
-    // The tables: the word of tap, a clock later
+    // The tables: the word of tap, two clocks later
     assign of_position = channel == FIRST_CHANNEL;
     assign old = handover_active & !second;
     assign banks_known = swap_how != UNKNOWN_HOW;
 
     // The sums: a pass that is cut off leaves y
     assign finish = (done & !start) & !strobe;
-    assign sums_add = stages[3];
+    assign sums_add = stages[7];
 
     // One product per clock, channel by channel
     assign tap_number = {1'd0, tap} + ONE_MORE;
@@ -244,6 +244,7 @@ module xy_stage_stage_y_shaper (
         channel_next = channel;
         second_next = second;
         correcting_next = correcting;
+        sample_channel_next = sample_channel;
         overrun_q_next = overrun_q;
 
         // One product per clock, channel by channel
@@ -276,13 +277,17 @@ module xy_stage_stage_y_shaper (
                 running_next = 1'd0;
             end
         end
-        done_next = lasts[3];
+        if (lasts[4]) begin
+            sample_channel_next = sample_channel + ONE_CHANNEL;
+        end
+        done_next = lasts[7];
 
         // A start or a strobe cuts off what runs
         if (start | strobe) begin
             running_next = strobe;
             tap_next = FIRST_TAP;
             channel_next = FIRST_CHANNEL;
+            sample_channel_next = FIRST_CHANNEL;
             second_next = 1'd0;
             correcting_next = 1'd0;
             stages_next = NO_STAGE;
@@ -304,10 +309,9 @@ module xy_stage_stage_y_shaper (
             channel <= 2'd0;
             second <= 1'd0;
             correcting <= 1'd0;
-            stages <= 4'd0;
-            lasts <= 4'd0;
+            stages <= 8'd0;
+            lasts <= 8'd0;
             done <= 1'd0;
-            tap_channel <= 2'd0;
             sample_channel <= 2'd0;
             overrun_q <= 1'd0;
         end else begin
@@ -319,8 +323,7 @@ module xy_stage_stage_y_shaper (
             stages <= stages_next;
             lasts <= lasts_next;
             done <= done_next;
-            tap_channel <= channel;
-            sample_channel <= tap_channel;
+            sample_channel <= sample_channel_next;
             overrun_q <= overrun_q_next;
         end
     end
@@ -331,10 +334,9 @@ module xy_stage_stage_y_shaper (
         channel = 2'd0;
         second = 1'd0;
         correcting = 1'd0;
-        stages = 4'd0;
-        lasts = 4'd0;
+        stages = 8'd0;
+        lasts = 8'd0;
         done = 1'd0;
-        tap_channel = 2'd0;
         sample_channel = 2'd0;
         overrun_q = 1'd0;
     end

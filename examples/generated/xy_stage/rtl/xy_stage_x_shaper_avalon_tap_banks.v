@@ -67,7 +67,7 @@ module xy_stage_x_shaper_avalon_tap_banks (
     reg  [6:0]         write_address;
     reg  [6:0]         read_address;
     wire [17:0]        coefficient_bits;
-    reg  [24:0]        word;
+    reg  [6:0]         upcoming_taps;
     wire [24:0]        machine_taps_data;
     wire [24:0]        loaded_taps_write_data;
     wire [24:0]        loaded_taps_read_data;
@@ -85,8 +85,12 @@ module xy_stage_x_shaper_avalon_tap_banks (
     reg  [6:0]         longest_2_next;
     reg  [1:0]         active;
     reg  [1:0]         active_next;
+    reg  [6:0]         active_taps;
+    reg  [6:0]         active_taps_next;
     reg  [1:0]         previous;
     reg  [1:0]         previous_next;
+    reg  [6:0]         previous_taps;
+    reg  [6:0]         previous_taps_next;
     reg  [1:0]         upcoming;
     reg  [1:0]         upcoming_next;
     reg                pending;
@@ -94,6 +98,8 @@ module xy_stage_x_shaper_avalon_tap_banks (
     reg  [6:0]         reach_q;
     reg  [6:0]         reach_q_next;
     reg                old_q;
+    reg  [24:0]        word;
+    reg  [24:0]        word_next;
     reg                refused_q;
     reg                refused_q_next;
 
@@ -142,7 +148,9 @@ module xy_stage_x_shaper_avalon_tap_banks (
         longest_1_next = longest_1;
         longest_2_next = longest_2;
         active_next = active;
+        active_taps_next = active_taps;
         previous_next = previous;
+        previous_taps_next = previous_taps;
         upcoming_next = upcoming;
         pending_next = pending;
         reach_q_next = reach_q;
@@ -198,9 +206,18 @@ module xy_stage_x_shaper_avalon_tap_banks (
         if ((swap_bank == BANK_2) & (sum_2 == UNITY)) begin
             swap_taken = (swap & free) & known;
         end
+        upcoming_taps = taps_1;
+        if (upcoming == BANK_2) begin
+            upcoming_taps = taps_2;
+        end
+        if (upcoming == BANK_ROM) begin
+            upcoming_taps = MACHINE_COUNT;
+        end
         if ((strobe & pending) & take) begin
             active_next = upcoming;
+            active_taps_next = upcoming_taps;
             previous_next = active;
+            previous_taps_next = active_taps;
             pending_next = 1'd0;
         end
         if (swap_taken) begin
@@ -240,25 +257,22 @@ module xy_stage_x_shaper_avalon_tap_banks (
 
         // Reading: the active table, or the old one
         read_bank = active;
+        taps = active_taps;
         if (old) begin
             read_bank = previous;
+            taps = previous_taps;
         end
-        taps = taps_1;
         read_address = {1'd0, tap};
         if (read_bank == BANK_2) begin
-            taps = taps_2;
             read_address = {1'd0, tap} | UPPER_HALF;
-        end
-        if (read_bank == BANK_ROM) begin
-            taps = MACHINE_COUNT;
         end
         word_bank = active;
         if (old_q) begin
             word_bank = previous;
         end
-        word = loaded_taps_read_data;
+        word_next = loaded_taps_read_data;
         if (word_bank == BANK_ROM) begin
-            word = machine_taps_data;
+            word_next = machine_taps_data;
         end
     end
 
@@ -271,11 +285,14 @@ module xy_stage_x_shaper_avalon_tap_banks (
             longest_1 <= 7'd0;
             longest_2 <= 7'd0;
             active <= 2'd0;
+            active_taps <= 7'd5;
             previous <= 2'd0;
+            previous_taps <= 7'd0;
             upcoming <= 2'd0;
             pending <= 1'd0;
             reach_q <= 7'd0;
             old_q <= 1'd0;
+            word <= 25'd0;
             refused_q <= 1'd0;
         end else begin
             taps_1 <= taps_1_next;
@@ -285,11 +302,14 @@ module xy_stage_x_shaper_avalon_tap_banks (
             longest_1 <= longest_1_next;
             longest_2 <= longest_2_next;
             active <= active_next;
+            active_taps <= active_taps_next;
             previous <= previous_next;
+            previous_taps <= previous_taps_next;
             upcoming <= upcoming_next;
             pending <= pending_next;
             reach_q <= reach_q_next;
             old_q <= old;
+            word <= word_next;
             refused_q <= refused_q_next;
         end
     end
@@ -302,11 +322,14 @@ module xy_stage_x_shaper_avalon_tap_banks (
         longest_1 = 7'd0;
         longest_2 = 7'd0;
         active = 2'd0;
+        active_taps = 7'd5;
         previous = 2'd0;
+        previous_taps = 7'd0;
         upcoming = 2'd0;
         pending = 1'd0;
         reach_q = 7'd0;
         old_q = 1'd0;
+        word = 25'd0;
         refused_q = 1'd0;
     end
 endmodule

@@ -10,7 +10,7 @@
 // ring_samples          128    delays up to this - 2
 // most_taps             64     per bank
 // machine_taps          5      bank 0, ROM
-// pass_clocks           11     from strobe to valid in bank 0
+// pass_clocks           13     from strobe to valid in bank 0
 
 `default_nettype none
 
@@ -40,8 +40,8 @@ module xy_stage_y_shaper (
     localparam [5:0] FIRST_TAP = 6'd0;
     localparam [5:0] ONE_TAP = 6'd1;
     localparam [6:0] ONE_MORE = 7'd1;
-    localparam [3:0] NO_STAGE = 4'd0;
-    localparam [3:0] FIRST_STAGE = 4'd1;
+    localparam [5:0] NO_STAGE = 6'd0;
+    localparam [5:0] FIRST_STAGE = 6'd1;
 
     wire [6:0]         tap_number;
     wire               finish;
@@ -65,8 +65,8 @@ module xy_stage_y_shaper (
     reg  [5:0]         tap_next;
     reg                running;
     reg                running_next;
-    reg  [3:0]         stages;
-    reg  [3:0]         stages_next;
+    reg  [5:0]         stages;
+    reg  [5:0]         stages_next;
     reg                done;
     reg                done_next;
     reg                valid_q;
@@ -135,7 +135,7 @@ module xy_stage_y_shaper (
 
     // The sum: a pass that is cut off leaves y
     assign finish = (done & !start) & !strobe;
-    assign sum_add = stages[3];
+    assign sum_add = stages[5];
 
     // One tap per clock, up to the last of the table
     assign tap_number = {1'd0, tap} + ONE_MORE;
@@ -166,7 +166,7 @@ module xy_stage_y_shaper (
                 tap_next = tap + ONE_TAP;
             end
         end
-        done_next = stages[3] & !stages[2];
+        done_next = stages[5] & !stages[4];
         if (finish) begin
             busy_q_next = 1'd0;
         end
@@ -195,7 +195,7 @@ module xy_stage_y_shaper (
         if (rst) begin
             tap <= 6'd0;
             running <= 1'd0;
-            stages <= 4'd0;
+            stages <= 6'd0;
             done <= 1'd0;
             valid_q <= 1'd0;
             busy_q <= 1'd0;
@@ -214,7 +214,7 @@ module xy_stage_y_shaper (
     initial begin
         tap = 6'd0;
         running = 1'd0;
-        stages = 4'd0;
+        stages = 6'd0;
         done = 1'd0;
         valid_q = 1'd0;
         busy_q = 1'd0;

@@ -26,8 +26,8 @@ module xy_stage_y_shaper_avalon_handover (
     output wire               active,
     output wire [6:0]         since,
     output wire signed [31:0] newest,
-    output reg  signed [17:0] coefficient,
-    output reg  [6:0]         delay
+    output wire signed [17:0] coefficient,
+    output wire [6:0]         delay
 );
     localparam [1:0]         HANDS_OVER = 2'd1;
     localparam [1:0]         WHEN_SETTLED = 2'd2;
@@ -52,9 +52,16 @@ module xy_stage_y_shaper_avalon_handover (
     reg                active_q_next;
     reg  [6:0]         since_q;
     reg  [6:0]         since_q_next;
+    reg                old_read;
     reg                old_tap;
+    reg                correction_read;
     reg                correction;
+    reg                position_read;
     reg                position_tap;
+    reg  signed [17:0] coefficient_q;
+    reg  signed [17:0] coefficient_q_next;
+    reg  [6:0]         delay_q;
+    reg  [6:0]         delay_q_next;
 
     // Whether a swap takes effect at a strobe
     assign settled = start | (still >= reach);
@@ -72,6 +79,8 @@ module xy_stage_y_shaper_avalon_handover (
     assign active = active_q;
     assign since = since_q;
     assign newest = newest_q;
+    assign coefficient = coefficient_q;
+    assign delay = delay_q;
 
     always @(*) begin
         how_next = how;
@@ -115,18 +124,18 @@ module xy_stage_y_shaper_avalon_handover (
         end
 
         // What it makes of a tap
-        coefficient = tap_coefficient;
-        delay = tap_delay;
+        coefficient_q_next = tap_coefficient;
+        delay_q_next = tap_delay;
         if (foreign) begin
             if (position_tap) begin
-                delay = since_q;
+                delay_q_next = since_q;
             end else begin
-                coefficient = NO_COEFFICIENT;
+                coefficient_q_next = NO_COEFFICIENT;
             end
         end
         if (correction) begin
-            coefficient = MINUS_UNITY;
-            delay = since_q;
+            coefficient_q_next = MINUS_UNITY;
+            delay_q_next = since_q;
         end
     end
 
@@ -137,18 +146,28 @@ module xy_stage_y_shaper_avalon_handover (
             newest_q <= 32'sd0;
             active_q <= 1'd0;
             since_q <= 7'd0;
+            old_read <= 1'd0;
             old_tap <= 1'd0;
+            correction_read <= 1'd0;
             correction <= 1'd0;
+            position_read <= 1'd0;
             position_tap <= 1'd0;
+            coefficient_q <= 18'sd0;
+            delay_q <= 7'd0;
         end else begin
             how <= how_next;
             still <= still_next;
             newest_q <= newest_q_next;
             active_q <= active_q_next;
             since_q <= since_q_next;
-            old_tap <= old;
-            correction <= correcting;
-            position_tap <= of_position;
+            old_read <= old;
+            old_tap <= old_read;
+            correction_read <= correcting;
+            correction <= correction_read;
+            position_read <= of_position;
+            position_tap <= position_read;
+            coefficient_q <= coefficient_q_next;
+            delay_q <= delay_q_next;
         end
     end
 
@@ -158,9 +177,14 @@ module xy_stage_y_shaper_avalon_handover (
         newest_q = 32'sd0;
         active_q = 1'd0;
         since_q = 7'd0;
+        old_read = 1'd0;
         old_tap = 1'd0;
+        correction_read = 1'd0;
         correction = 1'd0;
+        position_read = 1'd0;
         position_tap = 1'd0;
+        coefficient_q = 18'sd0;
+        delay_q = 7'd0;
     end
 endmodule
 

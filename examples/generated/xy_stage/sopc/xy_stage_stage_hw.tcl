@@ -56,7 +56,9 @@ foreach kind {QUARTUS_SYNTH SIM_VERILOG} {
     add_fileset_file xy_stage_stage_x_handover.v VERILOG PATH ../rtl/xy_stage_stage_x_handover.v
     add_fileset_file xy_stage_stage_x_ram_128x32.v VERILOG PATH ../rtl/xy_stage_stage_x_ram_128x32.v
     add_fileset_file xy_stage_stage_x_history.v VERILOG PATH ../rtl/xy_stage_stage_x_history.v
-    add_fileset_file xy_stage_stage_x_smul_32x18.v VERILOG PATH ../rtl/xy_stage_stage_x_smul_32x18.v
+    add_fileset_file xy_stage_stage_x_smul_18x18.v VERILOG PATH ../rtl/xy_stage_stage_x_smul_18x18.v
+    add_fileset_file xy_stage_stage_x_smul_15x18.v VERILOG PATH ../rtl/xy_stage_stage_x_smul_15x18.v
+    add_fileset_file xy_stage_stage_x_product.v VERILOG PATH ../rtl/xy_stage_stage_x_product.v
     add_fileset_file xy_stage_stage_x_channel_sums.v VERILOG PATH ../rtl/xy_stage_stage_x_channel_sums.v
     add_fileset_file xy_stage_stage_x_shaper.v VERILOG PATH ../rtl/xy_stage_stage_x_shaper.v
     add_fileset_file xy_stage_stage_x_machine_settings.v VERILOG PATH ../rtl/xy_stage_stage_x_machine_settings.v
@@ -102,7 +104,9 @@ foreach kind {QUARTUS_SYNTH SIM_VERILOG} {
     add_fileset_file xy_stage_stage_y_handover.v VERILOG PATH ../rtl/xy_stage_stage_y_handover.v
     add_fileset_file xy_stage_stage_y_ram_128x32.v VERILOG PATH ../rtl/xy_stage_stage_y_ram_128x32.v
     add_fileset_file xy_stage_stage_y_history.v VERILOG PATH ../rtl/xy_stage_stage_y_history.v
-    add_fileset_file xy_stage_stage_y_smul_32x18.v VERILOG PATH ../rtl/xy_stage_stage_y_smul_32x18.v
+    add_fileset_file xy_stage_stage_y_smul_18x18.v VERILOG PATH ../rtl/xy_stage_stage_y_smul_18x18.v
+    add_fileset_file xy_stage_stage_y_smul_15x18.v VERILOG PATH ../rtl/xy_stage_stage_y_smul_15x18.v
+    add_fileset_file xy_stage_stage_y_product.v VERILOG PATH ../rtl/xy_stage_stage_y_product.v
     add_fileset_file xy_stage_stage_y_channel_sums.v VERILOG PATH ../rtl/xy_stage_stage_y_channel_sums.v
     add_fileset_file xy_stage_stage_y_shaper.v VERILOG PATH ../rtl/xy_stage_stage_y_shaper.v
     add_fileset_file xy_stage_stage_y_machine_settings.v VERILOG PATH ../rtl/xy_stage_stage_y_machine_settings.v

@@ -41,7 +41,9 @@ foreach kind {QUARTUS_SYNTH SIM_VERILOG} {
     add_fileset_file xy_stage_y_shaper_avalon_handover.v VERILOG PATH ../rtl/xy_stage_y_shaper_avalon_handover.v
     add_fileset_file xy_stage_y_shaper_avalon_ram_128x32.v VERILOG PATH ../rtl/xy_stage_y_shaper_avalon_ram_128x32.v
     add_fileset_file xy_stage_y_shaper_avalon_history.v VERILOG PATH ../rtl/xy_stage_y_shaper_avalon_history.v
-    add_fileset_file xy_stage_y_shaper_avalon_smul_32x18.v VERILOG PATH ../rtl/xy_stage_y_shaper_avalon_smul_32x18.v
+    add_fileset_file xy_stage_y_shaper_avalon_smul_18x18.v VERILOG PATH ../rtl/xy_stage_y_shaper_avalon_smul_18x18.v
+    add_fileset_file xy_stage_y_shaper_avalon_smul_15x18.v VERILOG PATH ../rtl/xy_stage_y_shaper_avalon_smul_15x18.v
+    add_fileset_file xy_stage_y_shaper_avalon_product.v VERILOG PATH ../rtl/xy_stage_y_shaper_avalon_product.v
     add_fileset_file xy_stage_y_shaper_avalon_channel_sums.v VERILOG PATH ../rtl/xy_stage_y_shaper_avalon_channel_sums.v
     add_fileset_file xy_stage_y_shaper_avalon_shaper.v VERILOG PATH ../rtl/xy_stage_y_shaper_avalon_shaper.v
     add_fileset_file xy_stage_y_shaper_avalon.v VERILOG PATH ../rtl/xy_stage_y_shaper_avalon.v

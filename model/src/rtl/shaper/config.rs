@@ -14,8 +14,10 @@ pub const MOTION_WORD_BITS: [u32; 2] = [24, 32];
 pub const CHANNELS_MAX: usize = 3;
 /// Largest ring of more than one channel, as bits of address.
 const SHARED_RING_ADDRESS_BITS_MAX: u32 = 12;
-/// Clocks of a pass beyond one per tap: table, ring, multiplier (two), accumulator, rounding.
-pub const PASS_OVERHEAD_CLOCKS: u32 = 6;
+/// Clocks of a pass beyond one per tap: table (two), ring, multiplier (three), accumulator, rounding.
+pub const PASS_OVERHEAD_CLOCKS: u32 = 8;
+/// Clocks of a pass for [`Motion`] beyond that: handover, choice of the channel, wait for all channels.
+pub const MOTION_OVERHEAD_CLOCKS: u32 = 3;
 
 /// Clocks from a strobe to its `valid`, and the smallest distance of two strobes without `overrun`.
 ///
@@ -246,9 +248,10 @@ impl ShaperConfig {
     }
 
     /// Clocks from a strobe to its `valid`, and the smallest distance of two strobes without `overrun`, where a pass has so
-    /// many products: for motion one more than [`pass_clocks`], because the channels wait for each other.
+    /// many products: for motion [`MOTION_OVERHEAD_CLOCKS`] more than [`pass_clocks`].
     pub fn pass_clocks(&self, products: u32) -> u32 {
-        pass_clocks(products).saturating_add(u32::from(self.motion.is_some()))
+        let of_motion = self.motion.map_or(0, |_| MOTION_OVERHEAD_CLOCKS);
+        pass_clocks(products).saturating_add(of_motion)
     }
 
     /// Whether the longest pass, that over [`Self::most_products`], ends before the next sample.
@@ -373,10 +376,11 @@ mod tests {
     #[test]
     fn unit_a_pass_that_does_not_fit_states_both_clock_counts() {
         let config = ShaperConfig::new(32, table(60, 100)).unwrap();
-        assert_eq!(config.fits(66), Ok(()));
-        let error = config.fits(65).unwrap_err();
-        assert_eq!((error.needed, error.available), (66, 65));
-        assert!(error.to_string().contains("66 clocks"), "{error}");
+        let needed = 60 + PASS_OVERHEAD_CLOCKS;
+        assert_eq!(config.fits(needed.into()), Ok(()));
+        let error = config.fits(u64::from(needed) - 1).unwrap_err();
+        assert_eq!((error.needed, error.available), (needed, u64::from(needed) - 1));
+        assert!(error.to_string().contains(&format!("{needed} clocks")), "{error}");
         assert_eq!(pass_clocks(u32::MAX), u32::MAX);
     }
 }

@@ -11,7 +11,7 @@
 //! | [`MotionShaper`] | its samples without the clocks |
 //!
 //! ```text
-//! clock     0   1   2   3         N+5 N+6 N+7
+//! clock     0   1   2   3         N+7 N+8 N+9
 //! strobe   ‾‾‾\__________________________________
 //! x        < x>----------------------------------
 //! busy     ___/‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾\____________
@@ -54,8 +54,8 @@ mod tables;
 
 pub use clocked::Shaper;
 pub use config::{
-    CHANNELS_MAX, MOTION_WORD_BITS, Motion, PASS_OVERHEAD_CLOCKS, PassError, RING_ADDRESS_BITS, ShaperConfig,
-    ShaperConfigError, TAP_INDEX_BITS, WORD_BITS, pass_clocks,
+    CHANNELS_MAX, MOTION_OVERHEAD_CLOCKS, MOTION_WORD_BITS, Motion, PASS_OVERHEAD_CLOCKS, PassError, RING_ADDRESS_BITS,
+    ShaperConfig, ShaperConfigError, TAP_INDEX_BITS, WORD_BITS, pass_clocks,
 };
 pub(crate) use memory::Arbitrary;
 pub use motion::MotionShaper;

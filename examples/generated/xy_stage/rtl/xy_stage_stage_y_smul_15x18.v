@@ -1,5 +1,5 @@
-// xy_stage_stage_y_smul_32x18
-// Signed multiplier, 32 x 18 bits, inputs and output registered: product two clocks after the operands.
+// xy_stage_stage_y_smul_15x18
+// Signed multiplier, 15 x 18 bits, inputs and output registered: product two clocks after the operands.
 // No reset: a multiplier block has no synchronous one.
 // Part of xy_stage_stage_y_shaper, whose header lists the parameters.
 //
@@ -7,13 +7,13 @@
 
 `default_nettype none
 
-module xy_stage_stage_y_smul_32x18 (
+module xy_stage_stage_y_smul_15x18 (
     input  wire               clk,
-    input  wire signed [31:0] a,
+    input  wire signed [14:0] a,
     input  wire signed [17:0] b,
-    output reg  signed [49:0] product
+    output reg  signed [32:0] product
 );
-    reg signed [31:0] a_q;
+    reg signed [14:0] a_q;
     reg signed [17:0] b_q;
     always @(posedge clk) begin
         a_q <= a;
