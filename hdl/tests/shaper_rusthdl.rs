@@ -225,7 +225,7 @@ fn lockstep_full_scale_saturates_at_both_ends() {
     let mut outputs = Vec::new();
     for x in [high, low, high, high, low, high, low, low, 0] {
         both.strobe(x);
-        both.idle(9);
+        both.idle(pass_clocks(3));
         outputs.push(both.outputs_y());
     }
     assert!(outputs.contains(&high) && outputs.contains(&low), "{outputs:?}");

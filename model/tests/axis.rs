@@ -2,7 +2,9 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper that fails fails its test")]
 
-use posicast_model::rtl::axis::{Axis, CLEAR_CLOCKS, Cause, INPUT_PORTS, Inputs, KICK, LINE_CLOCKS, Outputs, State};
+use posicast_model::rtl::axis::{
+    Axis, CLEAR_CLOCKS, Cause, INPUT_PORTS, Inputs, KICK, LINE_CLOCKS, Outputs, State, WATCH_CLOCKS,
+};
 use posicast_model::rtl::segments::{self, Entry, Motion, Segments};
 use proptest::prelude::*;
 
@@ -315,7 +317,7 @@ fn a_quick_stop_by_a_cause_closes_the_brake_before_the_outputs_go_off() {
     let mut bench = Bench::run(JERK);
     bench.inputs.following_error_limit = 1 << 16;
     bench.inputs.error = -(1 << 16) - 2;
-    bench.until(State::QuickStop, TICK_CLOCKS);
+    bench.until(State::QuickStop, TICK_CLOCKS + u64::from(WATCH_CLOCKS));
     assert_eq!(bench.axis.outputs().causes, Cause::FollowingError.bit());
     assert!(bench.axis.outputs().wants_group_stop);
     assert_eq!(bench.clear().state, State::QuickStop, "a clear is too early");
@@ -430,9 +432,9 @@ fn what_lasts_too_long_trips_after_its_ticks() {
     let mut bench = Bench::hold();
     (bench.inputs.lost_command, bench.inputs.lost_ticks) = (500, 6);
     bench.inputs.command = -502;
-    bench.ticks(6);
+    bench.ticks(7);
     assert_eq!(bench.axis.outputs().causes, 0);
-    bench.ticks(1);
+    bench.clocks(u64::from(WATCH_CLOCKS) - 1);
     assert_eq!(bench.axis.outputs().causes, Cause::EncoderLost.bit());
     // A command that moves a count now and then.
     let mut bench = Bench::hold();
@@ -457,6 +459,7 @@ fn what_lasts_too_long_trips_after_its_ticks() {
         bench.inputs.kick = true;
         bench.ticks(1);
     }
+    bench.clocks(u64::from(WATCH_CLOCKS) - 1);
     assert_eq!(bench.axis.outputs().causes, Cause::Watchdog.bit());
 }
 

@@ -271,7 +271,7 @@ fn unit_a_handover_takes_two_passes_and_refuses_what_comes_in_it() {
     let table = TapTable::new(FRACTION, vec![half(0), half(4)]).unwrap();
     let config = config(32, table, 2, false);
     assert_eq!(config.most_products(), 2 * 2 * 2 + 1);
-    assert!(config.fits(16).is_ok() && config.fits(15).unwrap_err().needed == 16);
+    assert!(config.fits(20).is_ok() && config.fits(19).unwrap_err().needed == 20);
     let mut both = Both::new(&config);
     let bypass = TapTable::bypass(FRACTION).unwrap();
     assert!(both.swap(&bypass, 1, swap_how::HANDOVER));

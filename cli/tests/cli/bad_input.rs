@@ -79,7 +79,7 @@ fn cli_more_taps_than_a_table_holds_are_refused() {
 #[test]
 fn cli_a_pass_longer_than_a_sample_is_printed_by_design_and_refused_by_generate() {
     let machine = one_axis("kind = \"zvd\"", MODE).replace("50_000_000", "100_000");
-    refused(&["generate"], &machine, &["axis `x`", "11 clocks", "10"]);
+    refused(&["generate"], &machine, &["axis `x`", "13 clocks", "10"]);
     let (_folder, file) = scratch(&machine);
     let output = posicast().arg("design").arg(&file).arg("--json").assert().success();
     assert_eq!(
@@ -101,7 +101,7 @@ fn fast_stage(sample_hz: &str, pwm_hz: &str) -> String {
 fn cli_a_tick_too_short_for_the_controller_is_printed_by_design_and_refused_by_the_others() {
     // 250 clocks, and 400 at the largest rate of whole periods of 50 clocks.
     let machine = fast_stage("200_000", "1_000_000");
-    let sum = "capture 4 + divide 102 + shape 38 + control 209 = 353 clocks";
+    let sum = "capture 4 + divide 102 + shape 42 + control 209 = 357 clocks";
     let words = ["machine.toml:13: clock.sample_hz", sum, "lasts 250", "up to 125000 Hz"];
     for command in ["generate", "run", "verify"] {
         refused(&[command], &machine, &words);

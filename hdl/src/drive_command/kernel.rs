@@ -284,7 +284,7 @@ impl Logic for DriveCommand {
             self.duty_q.d.next = self.nothing.val();
         }
 
-        comment!("Faults: bit 0 the supervisor, bit 1 the drive's pin");
+        comment!("Faults: bit 0 the supervisor, bit 1 the drive");
         self.drive_fault_pin.clk.next = self.clk.val();
         self.drive_fault_pin.pin.next = self.drive_fault_n.val();
         self.axis_trip_n_q.d.next = self.axis_pwm_trip_n.val();

@@ -287,8 +287,8 @@ impl Logic for PulseCounter {
             self.index_armed_q.d.next = true;
         }
 
-        comment!("Presets move the origin, not the count: a clock later,");
-        comment!("when the count has the step of the preset's clock");
+        comment!("Presets move the origin, not the count; a clock");
+        comment!("later: the count has the step of their clock");
         self.presets.d.next = self.preset.val() | (self.index.val() & self.index_presets.val());
         if self.presets.q.val() {
             self.origin_q.d.next = self.count_q.q.val() - self.preset_value.val();

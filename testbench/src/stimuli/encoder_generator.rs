@@ -56,8 +56,8 @@ impl EncoderGeneratorRandom {
         if self.one_in(1500) {
             let any = self.rng.next_u32() as u16;
             let small = any & 63;
-            // A power of two periods and one more: the first step below the index is to each bit of the period alone.
-            let bit = (1 + (1 << self.rng.random_range(0..13))) << 2;
+            // A power of two periods, or one more: turns, and the first step below the index, of each bit alone.
+            let bit = (self.rng.random_range(0..2_u16) + (1 << self.rng.random_range(0..13))) << 2;
             self.index_every = *pick(
                 &mut self.rng,
                 &[any, any, bit, bit, bit, bit, bit, bit, small, small, 3, 4, 8, 0],

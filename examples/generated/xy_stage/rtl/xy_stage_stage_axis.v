@@ -6,6 +6,7 @@
 //
 // parameter     value  meaning
 // line_clocks   4      from a line to the state, and filter_clocks more
+// watch_clocks  3      from a tick to the state, for what is watched at ticks
 // clear_clocks  8      from clear_faults until causes that are over are forgotten
 
 `default_nettype none
@@ -95,6 +96,7 @@ module xy_stage_stage_axis (
     localparam [3:0]  FIRST_CLOCK = 4'd1;
     localparam [3:0]  NO_CLOCKS = 4'd0;
     localparam [3:0]  ONE_CLOCK = 4'd1;
+    localparam [3:0]  TWO_CLOCKS = 4'd2;
     localparam [3:0]  CLEAR_CLOCKS = 4'd8;
     localparam [31:0] KICK_VALUE = 32'd1263092555;
 
@@ -125,7 +127,6 @@ module xy_stage_stage_axis (
     wire               cause_word_cut;
     wire               cause_word_had_fault;
     wire               states_drive_ready;
-    wire               states_clear_due;
     wire [2:0]         states_state;
     wire               states_on;
     wire               states_released;
@@ -147,6 +148,8 @@ module xy_stage_stage_axis (
     wire [3:0]         primed_next;
     reg  [3:0]         clear_left;
     reg  [3:0]         clear_left_next;
+    reg                clear_due;
+    wire               clear_due_next;
     reg                clear_sources_q;
     reg                tripping;
 
@@ -256,7 +259,7 @@ module xy_stage_stage_axis (
         .fault               (cause_word_fault),
         .cut                 (cause_word_cut),
         .had_fault           (cause_word_had_fault),
-        .clear_due           (states_clear_due),
+        .clear_due           (clear_due),
         .segments_state      (segments_state),
         .segments_empty      (segments_empty),
         .segments_valid      (segments_valid),
@@ -308,9 +311,11 @@ module xy_stage_stage_axis (
     assign cause_word_group_stops = states_on & others_stop;
     assign cause_word_late = ((segments_tick_missed | velocity_missed) | shaper_overrun) | controller_overrun;
 
+    // Sources are cleared first, causes later
+    assign clear_due_next = (clear_left == TWO_CLOCKS) & !clear_faults;
+
     // States
     assign states_drive_ready = ready & drive_line_level;
-    assign states_clear_due = clear_left == ONE_CLOCK;
 
     // Outputs
     assign state = states_state;
@@ -354,11 +359,13 @@ module xy_stage_stage_axis (
         if (rst) begin
             primed <= 4'd0;
             clear_left <= 4'd0;
+            clear_due <= 1'd0;
             clear_sources_q <= 1'd0;
             tripping <= 1'd0;
         end else begin
             primed <= primed_next;
             clear_left <= clear_left_next;
+            clear_due <= clear_due_next;
             clear_sources_q <= clear_faults;
             tripping <= emergency;
         end
@@ -367,6 +374,7 @@ module xy_stage_stage_axis (
     initial begin
         primed = 4'd0;
         clear_left = 4'd0;
+        clear_due = 1'd0;
         clear_sources_q = 1'd0;
         tripping = 1'd0;
     end

@@ -48,34 +48,19 @@ module xy_stage_stage_axis_monitors (
     localparam [15:0]        OF_WATCHDOG_TRIP = 16'd8192;
 
     wire [31:0]        command_velocity_bits;
-    wire               forward;
-    wire               backward;
     wire [31:0]        reference_velocity_bits;
-    wire               shaped_forward;
-    wire               shaped_backward;
     wire               has_soft_limits;
-    wire               past_plus;
-    wire               past_minus;
     wire [31:0]        error_bits;
-    reg  [31:0]        error_size;
     wire [31:0]        deviation_bits;
-    reg  [31:0]        deviation_size;
     wire [31:0]        command_bits;
-    reg  [31:0]        command_size;
-    wire               still;
     wire               limit_plus;
     wire               limit_minus;
     wire               soft_plus;
     wire               soft_minus;
     wire               error_trip;
     wire               deviation_trip;
-    wire               saturation_trip;
     wire               lost_trip;
     wire               watchdog_trip;
-    wire [15:0]        limits;
-    wire [15:0]        errors;
-    wire [15:0]        times;
-    reg  [15:0]        found;
     reg  [15:0]        by_limit_plus;
     reg  [15:0]        by_limit_minus;
     reg  [15:0]        by_soft_plus;
@@ -99,43 +84,65 @@ module xy_stage_stage_axis_monitors (
     reg  [15:0]        still_ticks_next;
     reg  [15:0]        unkicked_ticks;
     reg  [15:0]        unkicked_ticks_next;
+    reg                looks;
+    reg                was_on;
+    reg                was_on_next;
+    reg                on_plus;
+    reg                on_plus_next;
+    reg                on_minus;
+    reg                on_minus_next;
+    reg                forward;
+    reg                forward_next;
+    reg                backward;
+    reg                backward_next;
+    reg                shaped_forward;
+    reg                shaped_forward_next;
+    reg                shaped_backward;
+    reg                shaped_backward_next;
+    reg                past_plus;
+    reg                past_plus_next;
+    reg                past_minus;
+    reg                past_minus_next;
+    reg                same_position;
+    reg                same_position_next;
+    reg                saturated;
+    reg                saturated_next;
+    reg  [31:0]        error_size;
+    reg  [31:0]        error_size_next;
+    reg  [31:0]        deviation_size;
+    reg  [31:0]        deviation_size_next;
+    reg  [31:0]        command_size;
+    reg  [31:0]        command_size_next;
+    reg                counts;
+    reg                counts_on;
+    reg                stands;
+    wire               stands_next;
+    reg  [15:0]        found;
+    reg  [15:0]        found_next;
 
-    // Which way
+    // Clock 1: what the tick shows
     assign command_velocity_bits = $unsigned(command_velocity);
-    assign forward = (|command_velocity_bits) & !command_velocity_bits[31];
-    assign backward = command_velocity_bits[31];
     assign reference_velocity_bits = $unsigned(reference_velocity);
-    assign shaped_forward = (|reference_velocity_bits) & !reference_velocity_bits[31];
-    assign shaped_backward = reference_velocity_bits[31];
-
-    // A switch bounces when left: newly needs a way
-    assign limit_plus = on_limit_plus & (forward | (!was_on_plus & shaped_forward));
-    assign limit_minus = on_limit_minus & (backward | (!was_on_minus & shaped_backward));
-
-    // Soft limits, on the shaped position
-    assign has_soft_limits = (soft_limit_plus != NIL) | (soft_limit_minus != NIL);
-    assign past_plus = has_soft_limits & (reference_position > soft_limit_plus);
-    assign past_minus = has_soft_limits & (reference_position < soft_limit_minus);
-    assign soft_plus = past_plus & (forward | !was_past_plus);
-    assign soft_minus = past_minus & (backward | !was_past_minus);
-
-    // Sizes, of a negative -x - 1: no carry
     assign error_bits = $unsigned(error);
     assign deviation_bits = $unsigned(deviation);
     assign command_bits = $unsigned(command);
+    assign has_soft_limits = (soft_limit_plus != NIL) | (soft_limit_minus != NIL);
+
+    // Clock 2: compared
+    // A switch bounces when left: newly needs a way
+    assign limit_plus = on_plus & (forward | (!was_on_plus & shaped_forward));
+    assign limit_minus = on_minus & (backward | (!was_on_minus & shaped_backward));
+    assign soft_plus = past_plus & (forward | !was_past_plus);
+    assign soft_minus = past_minus & (backward | !was_past_minus);
     assign error_trip = (|following_error_limit) & (error_size > following_error_limit);
     assign deviation_trip = (|deviation_limit) & (deviation_size > deviation_limit);
-    assign still = (on & (command_size > lost_command)) & (position == captured);
-
-    // Ticks in a row
-    assign saturation_trip = (|saturation_ticks) & (limited_ticks >= saturation_ticks);
     assign lost_trip = (|lost_ticks) & (still_ticks >= lost_ticks);
     assign watchdog_trip = (|watchdog_ticks) & (unkicked_ticks >= watchdog_ticks);
 
+    // Clock 3: ticks in a row
+    assign stands_next = (was_on & same_position) & (command_size > lost_command);
+
     // The causes of this tick
-    assign limits = ((by_limit_plus | by_limit_minus) | by_soft_plus) | by_soft_minus;
-    assign errors = (by_error_trip | by_deviation_trip) | by_saturation_trip;
-    assign times = by_lost_trip | by_watchdog_trip;
     assign causes = found;
     assign captured_position = captured;
 
@@ -147,38 +154,72 @@ module xy_stage_stage_axis_monitors (
         was_past_minus_next = was_past_minus;
         still_ticks_next = still_ticks;
         unkicked_ticks_next = unkicked_ticks;
+        was_on_next = was_on;
+        on_plus_next = on_plus;
+        on_minus_next = on_minus;
+        forward_next = forward;
+        backward_next = backward;
+        shaped_forward_next = shaped_forward;
+        shaped_backward_next = shaped_backward;
+        past_plus_next = past_plus;
+        past_minus_next = past_minus;
+        same_position_next = same_position;
+        saturated_next = saturated;
+        error_size_next = error_size;
+        deviation_size_next = deviation_size;
+        command_size_next = command_size;
 
-        // Sizes, of a negative -x - 1: no carry
-        error_size = error_bits;
-        if (error_bits[31]) begin
-            error_size = ~error_bits;
-        end
-        deviation_size = deviation_bits;
-        if (deviation_bits[31]) begin
-            deviation_size = ~deviation_bits;
-        end
-        command_size = command_bits;
-        if (command_bits[31]) begin
-            command_size = ~command_bits;
-        end
-
-        // Ticks in a row
+        // Clock 1: what the tick shows
         if (tick) begin
             captured_next = position;
-            was_on_plus_next = on_limit_plus;
-            was_on_minus_next = on_limit_minus;
+            same_position_next = position == captured;
+            was_on_next = on;
+            on_plus_next = on_limit_plus;
+            on_minus_next = on_limit_minus;
+            forward_next = (|command_velocity_bits) & !command_velocity_bits[31];
+            backward_next = command_velocity_bits[31];
+            shaped_forward_next = (|reference_velocity_bits) & !reference_velocity_bits[31];
+            shaped_backward_next = reference_velocity_bits[31];
+            past_plus_next = has_soft_limits & (reference_position > soft_limit_plus);
+            past_minus_next = has_soft_limits & (reference_position < soft_limit_minus);
+            saturated_next = (|saturation_ticks) & (limited_ticks >= saturation_ticks);
+
+            // Sizes, of a negative -x - 1: no carry
+            error_size_next = error_bits;
+            if (error_bits[31]) begin
+                error_size_next = ~error_bits;
+            end
+            deviation_size_next = deviation_bits;
+            if (deviation_bits[31]) begin
+                deviation_size_next = ~deviation_bits;
+            end
+            command_size_next = command_bits;
+            if (command_bits[31]) begin
+                command_size_next = ~command_bits;
+            end
+        end
+
+        // Clock 2: compared
+        // A switch bounces when left: newly needs a way
+        if (looks) begin
+            was_on_plus_next = on_plus;
+            was_on_minus_next = on_minus;
             was_past_plus_next = past_plus;
             was_past_minus_next = past_minus;
+        end
+
+        // Clock 3: ticks in a row
+        if (counts) begin
             if (!(&still_ticks)) begin
                 still_ticks_next = still_ticks + ONE_TICK;
             end
             if (!(&unkicked_ticks)) begin
                 unkicked_ticks_next = unkicked_ticks + ONE_TICK;
             end
-            if (!still) begin
+            if (!stands) begin
                 still_ticks_next = NO_TICKS;
             end
-            if (!on) begin
+            if (!counts_on) begin
                 unkicked_ticks_next = NO_TICKS;
             end
         end
@@ -212,7 +253,7 @@ module xy_stage_stage_axis_monitors (
             by_deviation_trip = OF_DEVIATION_TRIP;
         end
         by_saturation_trip = NO_CAUSES;
-        if (saturation_trip) begin
+        if (saturated) begin
             by_saturation_trip = OF_SATURATION_TRIP;
         end
         by_lost_trip = NO_CAUSES;
@@ -223,9 +264,9 @@ module xy_stage_stage_axis_monitors (
         if (watchdog_trip) begin
             by_watchdog_trip = OF_WATCHDOG_TRIP;
         end
-        found = NO_CAUSES;
-        if (tick & on) begin
-            found = (limits | errors) | times;
+        found_next = NO_CAUSES;
+        if (looks & was_on) begin
+            found_next = (((((((by_limit_plus | by_limit_minus) | by_soft_plus) | by_soft_minus) | by_error_trip) | by_deviation_trip) | by_saturation_trip) | by_lost_trip) | by_watchdog_trip;
         end
     end
 
@@ -238,6 +279,25 @@ module xy_stage_stage_axis_monitors (
             was_past_minus <= 1'd0;
             still_ticks <= 16'd0;
             unkicked_ticks <= 16'd0;
+            looks <= 1'd0;
+            was_on <= 1'd0;
+            on_plus <= 1'd0;
+            on_minus <= 1'd0;
+            forward <= 1'd0;
+            backward <= 1'd0;
+            shaped_forward <= 1'd0;
+            shaped_backward <= 1'd0;
+            past_plus <= 1'd0;
+            past_minus <= 1'd0;
+            same_position <= 1'd0;
+            saturated <= 1'd0;
+            error_size <= 32'd0;
+            deviation_size <= 32'd0;
+            command_size <= 32'd0;
+            counts <= 1'd0;
+            counts_on <= 1'd0;
+            stands <= 1'd0;
+            found <= 16'd0;
         end else begin
             captured <= captured_next;
             was_on_plus <= was_on_plus_next;
@@ -246,6 +306,25 @@ module xy_stage_stage_axis_monitors (
             was_past_minus <= was_past_minus_next;
             still_ticks <= still_ticks_next;
             unkicked_ticks <= unkicked_ticks_next;
+            looks <= tick;
+            was_on <= was_on_next;
+            on_plus <= on_plus_next;
+            on_minus <= on_minus_next;
+            forward <= forward_next;
+            backward <= backward_next;
+            shaped_forward <= shaped_forward_next;
+            shaped_backward <= shaped_backward_next;
+            past_plus <= past_plus_next;
+            past_minus <= past_minus_next;
+            same_position <= same_position_next;
+            saturated <= saturated_next;
+            error_size <= error_size_next;
+            deviation_size <= deviation_size_next;
+            command_size <= command_size_next;
+            counts <= looks;
+            counts_on <= was_on;
+            stands <= stands_next;
+            found <= found_next;
         end
     end
 
@@ -257,6 +336,25 @@ module xy_stage_stage_axis_monitors (
         was_past_minus = 1'd0;
         still_ticks = 16'd0;
         unkicked_ticks = 16'd0;
+        looks = 1'd0;
+        was_on = 1'd0;
+        on_plus = 1'd0;
+        on_minus = 1'd0;
+        forward = 1'd0;
+        backward = 1'd0;
+        shaped_forward = 1'd0;
+        shaped_backward = 1'd0;
+        past_plus = 1'd0;
+        past_minus = 1'd0;
+        same_position = 1'd0;
+        saturated = 1'd0;
+        error_size = 32'd0;
+        deviation_size = 32'd0;
+        command_size = 32'd0;
+        counts = 1'd0;
+        counts_on = 1'd0;
+        stands = 1'd0;
+        found = 16'd0;
     end
 endmodule
 

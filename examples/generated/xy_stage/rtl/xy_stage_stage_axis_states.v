@@ -44,78 +44,92 @@ module xy_stage_stage_axis_states (
     output wire        faulted,
     output wire        refused
 );
-    localparam [2:0]  OFF_STATE = 3'd0;
-    localparam [2:0]  READY_STATE = 3'd1;
-    localparam [2:0]  HOLD_STATE = 3'd2;
-    localparam [2:0]  RUN_STATE = 3'd3;
-    localparam [2:0]  STOP_STATE = 3'd4;
-    localparam [2:0]  FAULT_STATE = 3'd5;
-    localparam [1:0]  SEGMENTS_HOLD_STATE = 2'd0;
-    localparam [1:0]  SEGMENTS_STOPPED_STATE = 2'd3;
-    localparam [15:0] NO_TICKS = 16'd0;
-    localparam [15:0] ONE_TICK = 16'd1;
+    localparam [2:0] OFF_STATE = 3'd0;
+    localparam [2:0] READY_STATE = 3'd1;
+    localparam [2:0] HOLD_STATE = 3'd2;
+    localparam [2:0] RUN_STATE = 3'd3;
+    localparam [2:0] STOP_STATE = 3'd4;
+    localparam [2:0] FAULT_STATE = 3'd5;
+    localparam [1:0] SEGMENTS_HOLD_STATE = 2'd0;
+    localparam [1:0] SEGMENTS_STOPPED_STATE = 2'd3;
 
-    wire        in_off;
-    wire        in_ready;
-    wire        in_hold;
-    wire        in_run;
-    wire        in_stop;
-    wire        in_fault;
-    wire        segments_hold;
-    wire        segments_stopped;
-    wire        segments_play;
-    wire        elapsed;
-    wire        timed_out;
-    wire        able;
-    wire        wants_start;
-    wire        closes;
-    wire        clears;
-    wire        asked;
-    wire        done;
-    wire        at_rest;
-    wire        goes_on;
-    wire        goes_quiet;
-    wire        to_off;
-    wire        to_hold;
-    wire        to_run;
-    wire        to_stop;
-    wire        to_fault;
-    reg         next_on;
-    reg         next_closing;
-    reg  [2:0]  next_state;
-    reg  [2:0]  state_q;
-    reg  [15:0] timer;
-    reg  [15:0] timer_next;
-    reg         opening;
-    wire        opening_next;
-    reg         closing;
-    reg         on_q;
-    reg         released_q;
-    wire        released_q_next;
-    reg         starting_q;
-    wire        starting_q_next;
-    reg         start_waits;
-    wire        start_waits_next;
-    reg         quick_stop_q;
-    wire        quick_stop_q_next;
-    reg         restart_q;
-    wire        restart_q_next;
-    reg         can_start_q;
-    wire        can_start_q_next;
-    reg         enabled_q;
-    wire        enabled_q_next;
-    reg         started_q;
-    wire        started_q_next;
-    reg         stopping_q;
-    wire        stopping_q_next;
-    reg         halted_q;
-    wire        halted_q_next;
-    reg         disabled_q;
-    wire        disabled_q_next;
-    reg         faulted_q;
-    wire        faulted_q_next;
-    reg         refused_q;
-    wire        refused_q_next;
+    wire       in_off;
+    wire       in_ready;
+    wire       in_hold;
+    wire       in_run;
+    wire       in_stop;
+    wire       in_fault;
+    wire       segments_hold;
+    wire       segments_stopped;
+    wire       segments_play;
+    wire       timed_out;
+    wire       able;
+    wire       wants_start;
+    wire       closes;
+    wire       clears;
+    wire       asked;
+    wire       done;
+    wire       at_rest;
+    wire       goes_on;
+    wire       goes_quiet;
+    wire       to_off;
+    wire       to_hold;
+    wire       to_run;
+    wire       to_stop;
+    wire       to_fault;
+    reg        next_on;
+    reg        next_closing;
+    reg  [2:0] next_state;
+    wire       timer_counts;
+    wire       timer_load_settle;
+    wire       timer_elapsed;
+    reg  [2:0] state_q;
+    reg        opening;
+    wire       opening_next;
+    reg        closing;
+    reg        ran;
+    reg        applies;
+    wire       applies_next;
+    reg        on_q;
+    reg        released_q;
+    wire       released_q_next;
+    reg        starting_q;
+    wire       starting_q_next;
+    reg        start_waits;
+    wire       start_waits_next;
+    reg        quick_stop_q;
+    wire       quick_stop_q_next;
+    reg        restart_q;
+    wire       restart_q_next;
+    reg        can_start_q;
+    wire       can_start_q_next;
+    reg        enabled_q;
+    wire       enabled_q_next;
+    reg        started_q;
+    wire       started_q_next;
+    reg        stopping_q;
+    wire       stopping_q_next;
+    reg        halted_q;
+    wire       halted_q_next;
+    reg        disabled_q;
+    wire       disabled_q_next;
+    reg        faulted_q;
+    wire       faulted_q_next;
+    reg        refused_q;
+    wire       refused_q_next;
+
+    xy_stage_stage_axis_timer u_timer (
+        .clk                 (clk),
+        .rst                 (rst),
+        .counts              (timer_counts),
+        .load_release        (enabled_q),
+        .load_settle         (timer_load_settle),
+        .load_apply          (applies),
+        .brake_release_ticks (brake_release_ticks),
+        .brake_apply_ticks   (brake_apply_ticks),
+        .settle_ticks        (settle_ticks),
+        .elapsed             (timer_elapsed)
+    );
 
     assign in_off = state_q == OFF_STATE;
     assign in_ready = state_q == READY_STATE;
@@ -126,11 +140,10 @@ module xy_stage_stage_axis_states (
     assign segments_hold = segments_state == SEGMENTS_HOLD_STATE;
     assign segments_stopped = segments_state == SEGMENTS_STOPPED_STATE;
     assign segments_play = !segments_state[1];
-    assign elapsed = timer == NO_TICKS;
-    assign timed_out = tick & elapsed;
+    assign timed_out = tick & timer_elapsed;
 
     // A start waits for the tick
-    assign able = ((in_hold & (!opening | elapsed)) & !closing) & segments_hold;
+    assign able = ((in_hold & (!opening | timer_elapsed)) & !closing) & segments_hold;
     assign wants_start = (start | start_waits) & !stop;
     assign start_waits_next = wants_start & !tick;
 
@@ -150,6 +163,11 @@ module xy_stage_stage_axis_states (
     assign to_run = next_state == RUN_STATE;
     assign to_stop = next_state == STOP_STATE;
     assign to_fault = next_state == FAULT_STATE;
+
+    // The timer of brake and shaper
+    assign timer_counts = tick & (!in_stop | segments_stopped);
+    assign timer_load_settle = ran | stopping_q;
+    assign applies_next = (in_stop & to_fault) | (closes & to_hold);
 
     // Outputs and brake
     assign released_q_next = next_on & !next_closing;
@@ -185,8 +203,6 @@ module xy_stage_stage_axis_states (
     assign refused = refused_q;
 
     always @(*) begin
-        timer_next = timer;
-
         // The transition table
         next_state = state_q;
         if (((in_off & drive_ready) & !any_cause) & !enable) begin
@@ -240,20 +256,6 @@ module xy_stage_stage_axis_states (
             next_state = OFF_STATE;
         end
 
-        // The timer of brake and shaper
-        if ((tick & !elapsed) & (!in_stop | segments_stopped)) begin
-            timer_next = timer - ONE_TICK;
-        end
-        if (in_ready & to_hold) begin
-            timer_next = brake_release_ticks;
-        end
-        if ((in_run & (to_hold | to_stop)) | (in_hold & to_stop)) begin
-            timer_next = settle_ticks;
-        end
-        if ((in_stop & to_fault) | (closes & to_hold)) begin
-            timer_next = brake_apply_ticks;
-        end
-
         // Outputs and brake
         next_on = on_q;
         next_closing = closing | (closes & to_hold);
@@ -272,9 +274,10 @@ module xy_stage_stage_axis_states (
     always @(posedge clk) begin
         if (rst) begin
             state_q <= 3'd0;
-            timer <= 16'd0;
             opening <= 1'd0;
             closing <= 1'd0;
+            ran <= 1'd0;
+            applies <= 1'd0;
             on_q <= 1'd0;
             released_q <= 1'd0;
             starting_q <= 1'd1;
@@ -291,9 +294,10 @@ module xy_stage_stage_axis_states (
             refused_q <= 1'd0;
         end else begin
             state_q <= next_state;
-            timer <= timer_next;
             opening <= opening_next;
             closing <= next_closing;
+            ran <= in_run;
+            applies <= applies_next;
             on_q <= next_on;
             released_q <= released_q_next;
             starting_q <= starting_q_next;
@@ -313,9 +317,10 @@ module xy_stage_stage_axis_states (
 
     initial begin
         state_q = 3'd0;
-        timer = 16'd0;
         opening = 1'd0;
         closing = 1'd0;
+        ran = 1'd0;
+        applies = 1'd0;
         on_q = 1'd0;
         released_q = 1'd0;
         starting_q = 1'd1;

@@ -215,7 +215,7 @@ module xy_stage_stage_drive_command (
             duty_q_next = NOTHING;
         end
 
-        // Faults: bit 0 the supervisor, bit 1 the drive's pin
+        // Faults: bit 0 the supervisor, bit 1 the drive
         filtered_fault_n = BOTH_FAULTS;
         if (axis_trip_n_q) begin
             filtered_fault_n = FAULT_OF_DRIVE;

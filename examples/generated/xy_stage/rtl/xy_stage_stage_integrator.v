@@ -42,11 +42,12 @@ module xy_stage_stage_integrator (
     wire signed [40:0] wide_acceleration;
     wire signed [40:0] next_acceleration;
     wire [40:0]        next_acceleration_bits;
-    wire [48:0]        deceleration_bits;
-    wire signed [48:0] deceleration;
-    wire signed [48:0] acceleration_limit;
+    wire [48:0]        asked_bits;
+    wire signed [48:0] asked;
+    wire [48:0]        most_bits;
+    wire signed [48:0] most;
+    wire signed [48:0] least;
     wire signed [48:0] speed;
-    wire signed [48:0] reverse;
     reg  signed [39:0] braking;
     wire signed [48:0] acceleration_step;
     wire signed [48:0] next_velocity;
@@ -67,6 +68,15 @@ module xy_stage_stage_integrator (
     reg                failed_next;
     reg                at_once;
     reg                at_once_next;
+    reg  [30:0]        deceleration;
+    reg  signed [48:0] reverse;
+    wire signed [48:0] reverse_next;
+    reg                exceeds;
+    wire               exceeds_next;
+    reg                falls_below;
+    wire               falls_below_next;
+    reg                rests;
+    wire               rests_next;
 
     // Acceleration: plus the jerk, or against v
     assign jerk_bits = ({32'd0, second[7:0]} << 32) | {8'd0, first};
@@ -75,11 +85,17 @@ module xy_stage_stage_integrator (
     assign wide_acceleration = $signed({{1{exact_acceleration[39]}}, exact_acceleration});
     assign next_acceleration = wide_acceleration + wide_jerk;
     assign next_acceleration_bits = $unsigned(next_acceleration);
-    assign deceleration_bits = {18'd0, stop_deceleration} << 8;
-    assign deceleration = $signed(deceleration_bits);
-    assign acceleration_limit = NIL - deceleration;
     assign speed = $signed({{1{exact_velocity[47]}}, exact_velocity});
-    assign reverse = NIL - speed;
+
+    // -v, and compared: ready before the next tick
+    assign reverse_next = NIL - speed;
+    assign asked_bits = {18'd0, stop_deceleration} << 8;
+    assign asked = $signed(asked_bits);
+    assign exceeds_next = reverse > asked;
+    assign falls_below_next = speed > asked;
+    assign most_bits = {18'd0, deceleration} << 8;
+    assign most = $signed(most_bits);
+    assign least = NIL - most;
 
     // Velocity
     assign acceleration_step = $signed({{9{exact_acceleration[39]}}, exact_acceleration});
@@ -96,7 +112,8 @@ module xy_stage_stage_integrator (
     assign position = $signed(position_sum[55:24]);
     assign velocity_sum = $unsigned(exact_velocity) + VELOCITY_HALF;
     assign acceleration_sum = $unsigned(exact_acceleration) + ACCELERATION_HALF;
-    assign at_rest = (exact_velocity == REST_VELOCITY) & (exact_acceleration == REST_ACCELERATION);
+    assign rests_next = (exact_velocity == REST_VELOCITY) & (exact_acceleration == REST_ACCELERATION);
+    assign at_rest = rests;
     assign overflowed = failed;
 
     always @(*) begin
@@ -106,17 +123,17 @@ module xy_stage_stage_integrator (
         failed_next = failed;
         at_once_next = at_once;
 
-        // Acceleration: plus the jerk, or against v
+        // -v, and compared: ready before the next tick
         braking = $signed(reverse[39:0]);
-        if (reverse > deceleration) begin
-            braking = $signed(deceleration[39:0]);
+        if (exceeds) begin
+            braking = $signed(most[39:0]);
         end
-        if (reverse < acceleration_limit) begin
-            braking = $signed(acceleration_limit[39:0]);
+        if (falls_below) begin
+            braking = $signed(least[39:0]);
         end
         if (accelerate) begin
             failed_next = 1'd0;
-            at_once_next = !(|stop_deceleration);
+            at_once_next = !(|deceleration);
             if (play) begin
                 if (point) begin
                     exact_acceleration_next = $signed({8'd0, third} << 8);
@@ -177,12 +194,22 @@ module xy_stage_stage_integrator (
             exact_acceleration <= 40'sd0;
             failed <= 1'd0;
             at_once <= 1'd0;
+            deceleration <= 31'd0;
+            reverse <= 49'sd0;
+            exceeds <= 1'd0;
+            falls_below <= 1'd0;
+            rests <= 1'd0;
         end else begin
             exact_position <= exact_position_next;
             exact_velocity <= exact_velocity_next;
             exact_acceleration <= exact_acceleration_next;
             failed <= failed_next;
             at_once <= at_once_next;
+            deceleration <= stop_deceleration;
+            reverse <= reverse_next;
+            exceeds <= exceeds_next;
+            falls_below <= falls_below_next;
+            rests <= rests_next;
         end
     end
 
@@ -192,10 +219,15 @@ module xy_stage_stage_integrator (
         exact_acceleration = 40'sd0;
         failed = 1'd0;
         at_once = 1'd0;
+        deceleration = 31'd0;
+        reverse = 49'sd0;
+        exceeds = 1'd0;
+        falls_below = 1'd0;
+        rests = 1'd0;
     end
 
     // Bits that nothing reads.
-    wire unused = &{1'b0, next_acceleration_bits[38:0], next_velocity_bits[46:0], position_sum[23:0], position_sum[63:56], velocity_sum[15:0], acceleration_sum[7:0]};
+    wire unused = &{1'b0, next_acceleration_bits[38:0], least[48:40], next_velocity_bits[46:0], position_sum[23:0], position_sum[63:56], velocity_sum[15:0], acceleration_sum[7:0]};
 endmodule
 
 `default_nettype wire

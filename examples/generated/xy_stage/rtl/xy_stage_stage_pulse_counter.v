@@ -201,8 +201,8 @@ module xy_stage_stage_pulse_counter (
     assign gated = gate & line_z_level;
     assign index = (gated & !index_before) & (index_armed_q | index_always);
 
-    // Presets move the origin, not the count: a clock later,
-    // when the count has the step of the preset's clock
+    // Presets move the origin, not the count; a clock
+    // later: the count has the step of their clock
     assign presets_next = preset | (index & index_presets);
 
     // Velocity, of the count before the step
@@ -283,8 +283,8 @@ module xy_stage_stage_pulse_counter (
             index_armed_q_next = 1'd1;
         end
 
-        // Presets move the origin, not the count: a clock later,
-        // when the count has the step of the preset's clock
+        // Presets move the origin, not the count; a clock
+        // later: the count has the step of their clock
         if (presets) begin
             origin_q_next = count_q - preset_value;
         end

@@ -7,7 +7,7 @@
 // parameter       value  meaning
 // entries         64     that can wait
 // latency_clocks  5      from tick to valid
-// tick_clocks     9      from a tick until the next one is taken
+// tick_clocks     10     from a tick until the next one is taken
 
 `default_nettype none
 
@@ -48,10 +48,10 @@ module xy_stage_stage_segments (
     localparam [3:0]  SPEED_PHASE = 4'd2;
     localparam [3:0]  TRAVEL_PHASE = 4'd3;
     localparam [3:0]  DECIDE_PHASE = 4'd4;
-    localparam [3:0]  LAST_WORD_PHASE = 4'd5;
-    localparam [3:0]  FIRST_WORD_PHASE = 4'd6;
-    localparam [3:0]  SECOND_WORD_PHASE = 4'd7;
-    localparam [3:0]  THIRD_WORD_PHASE = 4'd8;
+    localparam [3:0]  LAST_WORD_PHASE = 4'd6;
+    localparam [3:0]  FIRST_WORD_PHASE = 4'd7;
+    localparam [3:0]  SECOND_WORD_PHASE = 4'd8;
+    localparam [3:0]  THIRD_WORD_PHASE = 4'd9;
     localparam [3:0]  ONE_PHASE = 4'd1;
     localparam [1:0]  ONE_WORD = 2'd1;
     localparam [1:0]  HOLD_STATE = 2'd0;
@@ -110,6 +110,7 @@ module xy_stage_stage_segments (
     reg  [31:0]        second_next;
     reg  [31:0]        third;
     reg  [31:0]        third_next;
+    reg  [31:0]        read_data;
     reg  [23:0]        ticks_left;
     reg  [23:0]        ticks_left_next;
     reg                point;
@@ -344,18 +345,18 @@ module xy_stage_stage_segments (
 
         // Read the next entry: words 3, 0, 1, 2
         if (phase == LAST_WORD_PHASE) begin
-            ticks_left_next = fifo_read_data[23:0];
-            notifies_next = fifo_read_data[30];
-            point_next = fifo_read_data[31];
+            ticks_left_next = read_data[23:0];
+            notifies_next = read_data[30];
+            point_next = read_data[31];
         end
         if (phase == FIRST_WORD_PHASE) begin
-            first_next = fifo_read_data;
+            first_next = read_data;
         end
         if (phase == SECOND_WORD_PHASE) begin
-            second_next = fifo_read_data;
+            second_next = read_data;
         end
         if (phase == THIRD_WORD_PHASE) begin
-            third_next = fifo_read_data;
+            third_next = read_data;
             phase_next = IDLE_PHASE;
         end
     end
@@ -372,6 +373,7 @@ module xy_stage_stage_segments (
             first <= 32'd0;
             second <= 32'd0;
             third <= 32'd0;
+            read_data <= 32'd0;
             ticks_left <= 24'd0;
             point <= 1'd0;
             notifies <= 1'd0;
@@ -397,6 +399,7 @@ module xy_stage_stage_segments (
             first <= first_next;
             second <= second_next;
             third <= third_next;
+            read_data <= fifo_read_data;
             ticks_left <= ticks_left_next;
             point <= point_next;
             notifies <= notifies_next;
@@ -425,6 +428,7 @@ module xy_stage_stage_segments (
         first = 32'd0;
         second = 32'd0;
         third = 32'd0;
+        read_data = 32'd0;
         ticks_left = 24'd0;
         point = 1'd0;
         notifies = 1'd0;

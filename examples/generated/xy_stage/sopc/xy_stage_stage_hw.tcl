@@ -95,6 +95,7 @@ foreach kind {QUARTUS_SYNTH SIM_VERILOG} {
     add_fileset_file xy_stage_stage_single_line.v VERILOG PATH ../rtl/xy_stage_stage_single_line.v
     add_fileset_file xy_stage_stage_axis_monitors.v VERILOG PATH ../rtl/xy_stage_stage_axis_monitors.v
     add_fileset_file xy_stage_stage_axis_causes.v VERILOG PATH ../rtl/xy_stage_stage_axis_causes.v
+    add_fileset_file xy_stage_stage_axis_timer.v VERILOG PATH ../rtl/xy_stage_stage_axis_timer.v
     add_fileset_file xy_stage_stage_axis_states.v VERILOG PATH ../rtl/xy_stage_stage_axis_states.v
     add_fileset_file xy_stage_stage_axis.v VERILOG PATH ../rtl/xy_stage_stage_axis.v
     add_fileset_file xy_stage_stage_x.v VERILOG PATH ../rtl/xy_stage_stage_x.v
