@@ -257,9 +257,6 @@ impl Logic for Velocity {
             self.steps_q.d.next = self.counted.val().get_bits::<18>(1) | self.one_count.val();
             self.elapsed_q.d.next = self.interval.val();
         }
-        if self.tick.val() & self.rests.val() {
-            self.steps_q.d.next = self.no_steps.val();
-        }
         if self.tick.val() & self.velocity_m.val() {
             self.elapsed_q.d.next = self.no_elapsed.val();
         }
@@ -278,8 +275,11 @@ impl Logic for Velocity {
             }
         }
 
-        comment!("Outputs");
+        comment!("Outputs; at rest no steps are divided");
         self.steps.next = signed_cast(self.steps_q.q.val());
+        if self.halt.q.val() {
+            self.steps.next = signed_cast(self.no_steps.val());
+        }
         self.elapsed.next = self.elapsed_q.q.val();
         self.velocity_pending.next = self.pending.q.val();
         self.velocity.next = self.smoothed.q.val().get_bits::<32>(3);

@@ -106,8 +106,8 @@ impl Logic for Command {
             saturated_q
         );
 
-        comment!("First clock: size, and limit. Of a negative duty the");
-        comment!("inverse, which is one less: bit 0 adds it");
+        comment!("First clock: size and limit. Of a negative duty");
+        comment!("the inverse, which is one less: bit 0 adds it");
         self.below_zero.next = self.duty.val().get_bit(16);
         self.duty_bits.next = unsigned_cast(self.duty.val());
         self.size.next = self.duty_bits.val() << 1;
@@ -129,7 +129,7 @@ impl Logic for Command {
         self.limited_negative.d.next = self.below_zero.val();
 
         comment!("Second clock: less the dead time; locked: half of");
-        comment!("what the period leaves, up or down. It is one sum, of");
+        comment!("what the period leaves, up or down. One sum, of");
         comment!("twice the width; to subtract, inverse and carry");
         self.dead.next = bit_cast::<18, 10>(self.dead_time.val());
         self.whole_q.d.next = signed_cast(bit_cast::<18, 16>(self.period.val()) - (self.dead.val() << 1));

@@ -277,8 +277,8 @@ impl Logic for Pwm {
         self.pin_gates.high_side.next = self.leg.high_side.val();
         self.pin_gates.low_side.next = self.leg.low_side.val();
 
-        comment!("The edges of a pulse: half of it before the peak, half");
-        comment!("behind it, an odd clock behind it");
+        comment!("The edges of a pulse: half before the peak, half");
+        comment!("and an odd clock behind it");
         self.updates.next = self.carrier.valley_next.val() | (self.carrier.peak_next.val() & self.update_at_peak.val());
         self.width_bits.next = unsigned_cast(self.command.width.val());
         self.whole_bits.next = unsigned_cast(self.command.whole.val());
@@ -289,8 +289,8 @@ impl Logic for Pwm {
         self.fall.next = ((bit_cast::<17, 16>(self.half_period.val()) << 1) | self.odd.val())
             + ((bit_cast::<17, 16>(self.width_bits.val().get_bits::<16>(1)) << 1) | self.odd.val());
 
-        comment!("Shorter than the minimum: none, or full. The low side's");
-        comment!("pulse is twice the rise and the odd clocks");
+        comment!("Shorter than the minimum: none, or full. The low");
+        comment!("side's pulse is twice the rise and the odd clocks");
         self.minimum.next = bit_cast::<18, 10>(self.timing.minimum_pulse_used.val());
         self.low_side.next = signed_cast(
             (bit_cast::<19, 17>(self.rise.val()) << 2)
@@ -319,8 +319,8 @@ impl Logic for Pwm {
             }
         }
 
-        comment!("The level of the position to come: low from the valley,");
-        comment!("high from the rise, and in any case from the peak");
+        comment!("The level of the position to come: low from the");
+        comment!("valley, high from the rise, at last from the peak");
         self.level.d.next = (self.level.q.val() | (self.carrier.ahead.val() == self.rise_at.q.val()))
             & (self.carrier.ahead.val() != self.fall_at.q.val());
         if self.carrier.peak_next.val() {

@@ -21,7 +21,7 @@ module xy_stage_x_pulse_counter_avalon_velocity (
     input  wire [1:0]         smoothing,
     input  wire [7:0]         timeout,
     input  wire signed [31:0] quotient,
-    output wire signed [17:0] steps,
+    output reg  signed [17:0] steps,
     output wire [23:0]        elapsed,
     output wire               velocity_pending,
     output wire               velocity_valid,
@@ -115,8 +115,7 @@ module xy_stage_x_pulse_counter_avalon_velocity (
     assign waits = !moved & !velocity_m;
     assign counted = ({1'd0, count} << 1) - (({1'd0, captured} << 1) | borrow);
 
-    // Outputs
-    assign steps = $signed(steps_q);
+    // Outputs; at rest no steps are divided
     assign elapsed = elapsed_q;
     assign velocity_pending = pending;
     assign velocity = $signed(smoothed[34:3]);
@@ -190,9 +189,6 @@ module xy_stage_x_pulse_counter_avalon_velocity (
             steps_q_next = counted[18:1] | one_count;
             elapsed_q_next = interval;
         end
-        if (tick & rests) begin
-            steps_q_next = NO_STEPS;
-        end
         if (tick & velocity_m) begin
             elapsed_q_next = NO_ELAPSED;
         end
@@ -209,6 +205,12 @@ module xy_stage_x_pulse_counter_avalon_velocity (
             if (up != last_up) begin
                 turned_next = 1'd1;
             end
+        end
+
+        // Outputs; at rest no steps are divided
+        steps = $signed(steps_q);
+        if (halt) begin
+            steps = 18'sd0;
         end
     end
 

@@ -47,15 +47,15 @@ module xy_stage_x_pwm_avalon_pwm_command (
     reg                saturated_q;
     wire               saturated_q_next;
 
-    // First clock: size, and limit. Of a negative duty the
-    // inverse, which is one less: bit 0 adds it
+    // First clock: size and limit. Of a negative duty
+    // the inverse, which is one less: bit 0 adds it
     assign below_zero = duty[16];
     assign duty_bits = $unsigned(duty);
     assign one_sided = (mode == 2'd1) & below_zero;
     assign limited_next = over | one_sided;
 
     // Second clock: less the dead time; locked: half of
-    // what the period leaves, up or down. It is one sum, of
+    // what the period leaves, up or down. One sum, of
     // twice the width; to subtract, inverse and carry
     assign dead = {8'd0, dead_time};
     assign whole_q_next = $signed({2'd0, period} - (dead << 1));
@@ -70,8 +70,8 @@ module xy_stage_x_pwm_avalon_pwm_command (
     assign saturated = saturated_q;
 
     always @(*) begin
-        // First clock: size, and limit. Of a negative duty the
-        // inverse, which is one less: bit 0 adds it
+        // First clock: size and limit. Of a negative duty
+        // the inverse, which is one less: bit 0 adds it
         size = duty_bits << 1;
         if (below_zero) begin
             size = ~(duty_bits << 1);
@@ -87,7 +87,7 @@ module xy_stage_x_pwm_avalon_pwm_command (
         end
 
         // Second clock: less the dead time; locked: half of
-        // what the period leaves, up or down. It is one sum, of
+        // what the period leaves, up or down. One sum, of
         // twice the width; to subtract, inverse and carry
         base = ~({10'd0, dead_time} << 2);
         operand = ({4'd0, magnitude} << 2) | CARRY;

@@ -238,8 +238,8 @@ module xy_stage_y_pwm_avalon_pwm (
     assign wants_high = high_q | (level & !low_q);
     assign leg_low_first = mode_q == 2'd0;
 
-    // The edges of a pulse: half of it before the peak, half
-    // behind it, an odd clock behind it
+    // The edges of a pulse: half before the peak, half
+    // and an odd clock behind it
     assign updates = carrier_valley_next | (carrier_peak_next & update_at_peak);
     assign width_bits = $unsigned(command_width);
     assign whole_bits = $unsigned(command_whole);
@@ -249,8 +249,8 @@ module xy_stage_y_pwm_avalon_pwm (
     assign half_period = carrier_period_used >> 1;
     assign fall = (({1'd0, half_period} << 1) | odd) + (({1'd0, width_bits[16:1]} << 1) | odd);
 
-    // Shorter than the minimum: none, or full. The low side's
-    // pulse is twice the rise and the odd clocks
+    // Shorter than the minimum: none, or full. The low
+    // side's pulse is twice the rise and the odd clocks
     assign minimum = {8'd0, timing_minimum_pulse_used};
     assign low_side = $signed(({2'd0, rise} << 2) | ({18'd0, whole_bits[0]} << 1));
     assign shortest = ({1'd0, minimum} << 1) | {2'd0, odd};
@@ -306,8 +306,8 @@ module xy_stage_y_pwm_avalon_pwm (
             end
         end
 
-        // The level of the position to come: low from the valley,
-        // high from the rise, and in any case from the peak
+        // The level of the position to come: low from the
+        // valley, high from the rise, at last from the peak
         level_next = (level | (carrier_ahead == rise_at)) & (carrier_ahead != fall_at);
         if (carrier_peak_next) begin
             level_next = 1'd1;
