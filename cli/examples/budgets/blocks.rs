@@ -180,7 +180,7 @@ fn stage() -> Result<Row, Box<dyn Error>> {
         size: "XY, whole",
         modules: component::emit(&Component::stage(&stage.config)?, "xy")?,
         budget: None,
-        note: "With `[axis.trace]` of 256 samples on both axes: 16,671 LE, 22 M4K.",
+        note: "With `[axis.trace]` of 256 samples on both axes: 17,791 LE, 22 M4K.",
     })
 }
 
