@@ -1,9 +1,7 @@
 //! `[axis.trace]`: the memory that records signals of the axis's loop.
 
 use super::table::Table;
-
-/// Depths that the memory has.
-const SAMPLES: [u32; 4] = [256, 512, 1024, 2048];
+use crate::rtl::trace::SAMPLES;
 
 /// `[axis.trace]`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
