@@ -62,6 +62,11 @@ fn formal_schedule() {
 }
 
 #[test]
+fn formal_time_base() {
+    proven("time_base", 0);
+}
+
+#[test]
 fn formal_divider_share() {
     proven("divider_share", 0);
 }
@@ -131,6 +136,16 @@ fn formal_an_axis_that_starts_alone_is_found() {
 #[test]
 fn formal_a_control_a_clock_late_is_found() {
     fails("schedule", "LAST = 17'd1", "LAST = 17'd2", "exactly");
+}
+
+#[test]
+fn formal_a_tick_a_clock_early_is_found() {
+    fails(
+        "time_base",
+        "LAST_PHASE = 17'd16",
+        "LAST_PHASE = 17'd15",
+        "tick_after_all",
+    );
 }
 
 #[test]

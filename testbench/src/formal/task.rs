@@ -4,17 +4,20 @@ use std::fmt::Write as _;
 
 use posicast_hdl::emit::Module;
 use posicast_hdl::{
-    axis, divider_share, group, pulse_counter, pwm, registers, schedule, segments, shaper, sliding_mode,
+    axis, divider_share, group, pulse_counter, pwm, registers, schedule, segments, shaper, sliding_mode, time_base,
 };
 use posicast_model::rtl::axis::TRANSITIONS;
 use posicast_model::rtl::component::Component;
+use posicast_model::rtl::divider::DividerConfig;
 use posicast_model::rtl::pwm::{ActiveLow, Mode, PwmConfig};
 use posicast_model::rtl::schedule::ScheduleConfig;
 use posicast_model::rtl::segments as segments_model;
 use posicast_model::rtl::shaper::{self as shaper_model, ShaperConfig};
 use posicast_model::rtl::sliding_mode as controller_model;
 use posicast_model::rtl::{Port, axis as axis_model, divider_share as share_model, group as group_model};
-use posicast_model::rtl::{pulse_counter as counter_model, pwm as pwm_model, schedule as schedule_model};
+use posicast_model::rtl::{
+    pulse_counter as counter_model, pwm as pwm_model, schedule as schedule_model, time_base as time_model,
+};
 use posicast_model::taps::{Tap, TapTable};
 
 use crate::Error;
@@ -57,6 +60,9 @@ pub struct Task {
     pub(super) properties: String,
     /// Whether multipliers are left out: what they give is anything, in every clock.
     pub(super) leaves_products_open: bool,
+    /// Registers that begin with another value than 0, with that value. For counters that nothing loads: what comes after
+    /// more clocks than can be searched.
+    pub(super) begins: Vec<(&'static str, &'static str)>,
 }
 
 impl Task {
@@ -70,6 +76,7 @@ impl Task {
             ports,
             properties: String::new(),
             leaves_products_open: false,
+            begins: Vec::new(),
         }
     }
 
@@ -116,6 +123,9 @@ pub fn all() -> Result<Vec<Task>, Error> {
     for clocks in [2, 400] {
         tasks.push(schedule_task(clocks)?);
     }
+    tasks.push(time_base_task(17, "32'd0")?);
+    tasks.push(time_base_task(127, "32'd0")?);
+    tasks.push(time_base_task(17, "32'hfffffff0")?);
     for channels in [1, 2, 3, 8] {
         tasks.push(divider_share_task(channels)?);
     }
@@ -276,6 +286,23 @@ fn schedule_task(clocks: u32) -> Result<Task, Error> {
             include_str!("../../formal/schedule.sv"),
         ),
     )
+}
+
+/// Both counters begin with the same value: as after a reset, or shortly before they come round.
+fn time_base_task(tick_clocks: u64, begin: &'static str) -> Result<Task, Error> {
+    let config = DividerConfig::new(tick_clocks).map_err(refused)?;
+    let block = (time_base::emit(&config, "")?, time_model::ports());
+    let size = format!("{tick_clocks} clocks per tick, counters from {begin}");
+    let macros = [
+        ("TICK_CLOCKS", format!("17'd{tick_clocks}")),
+        ("BEGIN", begin.to_owned()),
+    ];
+    let task = Task::new("time_base", &size, Engine::Induction { clocks: 1 }, block)
+        .properties(&macros, include_str!("../../formal/time_base.sv"));
+    Ok(Task {
+        begins: vec![("time_stamp_q", begin), ("tick_count_q", begin)],
+        ..task
+    })
 }
 
 /// The controller's Verilog with products that are anything: nothing drives them any more.

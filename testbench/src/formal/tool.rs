@@ -116,7 +116,11 @@ impl Bench<'_> {
         let mut script = String::new();
         for module in &self.task.modules {
             let file = format!("{}.v", module.name);
-            self.write(&file, &module.text)?;
+            let begun = |text: String, (register, value): &(&str, &str)| {
+                text.replace(&format!(" {register} = 32'd0;"), &format!(" {register} = {value};"))
+            };
+            let text = self.task.begins.iter().fold(module.text.clone(), begun);
+            self.write(&file, &text)?;
             let _ = writeln!(script, "read_verilog {file}");
         }
         let peeks = peeks(&self.task.properties);

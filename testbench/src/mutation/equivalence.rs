@@ -8,26 +8,70 @@ use crate::Error;
 use crate::formal::{ABC, asserted};
 use crate::netlist::Verdict;
 
+/// Most bits of memories that become registers.
+const MOST_MEMORY_BITS: u32 = 8192;
 /// Most nodes of ABC's BDDs: a few seconds.
 const BDD_NODES: u32 = 200_000;
 
-/// Compares, for at most about four times `limit`.
+/// What is taken out of both sides of a comparison: what drives it becomes outputs, what it gives inputs. That is sufficient,
+/// not necessary: a mutant that reads another word, and then does not use it, counts as different.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Without {
+    MemoriesAndProducts,
+    Memories,
+    Nothing,
+}
+
+impl Without {
+    /// Takes modules with such cells out, but `kept`. ROMs stay: their words are known.
+    fn script(self, kept: &str) -> String {
+        let cells = match self {
+            Self::MemoriesAndProducts => "t:$memwr* %m t:$mul %m %u",
+            Self::Memories => "t:$memwr* %m",
+            Self::Nothing => return String::new(),
+        };
+        format!("select -set boxes {cells} {kept} %d\nblackbox @boxes\n")
+    }
+}
+
+/// Compares, for at most about fifteen times `limit`.
 ///
-/// Modules that hold a memory are taken out of both: what drives them becomes outputs, what is read from them inputs. That is
-/// sufficient, not necessary: a mutant that reads another word, and then does not use it, counts as different.
+/// First without memories and multipliers; where that is no proof, with the multipliers, then with the memories too, as
+/// registers that begin as 0 in both. The module of the mutant always stays.
 pub(super) fn compare(netlist: &Netlist<'_>, mutant: &Mutant, limit: Duration) -> Result<Verdict, Error> {
-    netlist.yosys("miter", &miter(netlist.top(), &mutant.arguments))?;
-    let seconds = limit.as_secs().max(1);
+    let mut ways = vec![Without::MemoriesAndProducts];
+    if netlist.multiplies() {
+        ways.push(Without::Memories);
+    }
+    if (1..=MOST_MEMORY_BITS).contains(&netlist.memory_bits()) {
+        ways.push(Without::Nothing);
+    }
+    let mut verdict = Verdict::Unknown;
+    for without in ways {
+        netlist.yosys("miter", &miter(netlist.top(), mutant, without))?;
+        verdict = prove(netlist, limit)?;
+        if verdict == Verdict::Equivalent {
+            break;
+        }
+    }
+    Ok(verdict)
+}
+
+/// What is known of `miter.aig`.
+fn prove(netlist: &Netlist<'_>, limit: Duration) -> Result<Verdict, Error> {
     // What is equal in both, by induction over signals, is merged; what is left is small, mostly nothing. Counters that
     // never get far are quick with BDDs, and slow with PDR, which needs a clause for each value.
     let at = |name: &str| netlist.folder().join(name);
     // If the first engine comes to no end, the others take what it was given.
     std::fs::copy(at("miter.aig"), at("merged.aig")).map_err(Error::file(&at("merged.aig"), "write"))?;
+    let seconds = limit.as_secs().max(1);
     let engines = [
         format!(
             "read_aiger miter.aig; fold; strash; orpos; scorr; scorr -F 4; write_aiger merged.aig; reach -T 20 -F 100000 -B {BDD_NODES}"
         ),
-        format!("read_aiger merged.aig; pdr -T {seconds}"),
+        // Induction, retiming and reachability in turn: soon, or never.
+        "read_aiger merged.aig; dprove -T 5".to_owned(),
+        format!("read_aiger merged.aig; pdr -m -T {seconds}"),
         format!("read_aiger merged.aig; bmc3 -T {seconds}"),
     ];
     for commands in engines {
@@ -36,7 +80,7 @@ pub(super) fn compare(netlist: &Netlist<'_>, mutant: &Mutant, limit: Duration) -
         let Some(said) = ABC.run_within(&mut abc, "comparing a mutant", limit.saturating_mul(2))? else {
             continue;
         };
-        if ["Property proved", "proved unreachable"]
+        if ["Property proved", "proved unreachable", "Networks are equivalent"]
             .iter()
             .any(|proof| said.contains(proof))
         {
@@ -49,14 +93,14 @@ pub(super) fn compare(netlist: &Netlist<'_>, mutant: &Mutant, limit: Duration) -
     Ok(Verdict::Unknown)
 }
 
-/// Makes modules with memory in them black boxes.
-const WITHOUT_MEMORY: &str = "select -set memories t:$mem* %m\nblackbox @memories\n";
-
 /// The script that writes `miter.aig`, whose one output says that an output differs.
-fn miter(top: &str, arguments: &str) -> String {
+fn miter(top: &str, mutant: &Mutant, without: Without) -> String {
+    let Mutant { arguments, module, .. } = mutant;
+    let boxes = without.script(module);
     let side = |name: &str, change: &str| {
         format!(
-            "design -load both\n{change}{WITHOUT_MEMORY}flatten\nrename {top} {name}\nexpose -evert {name}/c:*\ndesign -stash {name}\n"
+            "design -load both\n{change}{boxes}\
+             flatten\nrename {top} {name}\nexpose -evert {name}/c:*\ndesign -stash {name}\n"
         )
     };
     let (block, mutant) = (side("block", ""), side("mutant", &format!("mutate {arguments}\n")));
@@ -64,7 +108,7 @@ fn miter(top: &str, arguments: &str) -> String {
         "read_ilang block.il\ndesign -save both\n{block}{mutant}\
          design -copy-from block block\ndesign -copy-from mutant mutant\n\
          miter -equiv -flatten -make_assert block mutant miter\nhierarchy -top miter\ndelete -output\n\
-         opt -nodffe -nosdff -fast\nmemory\nasync2sync\ndffunmap\ntechmap\nopt -fast\ndffunmap\nabc -g AND -fast\nopt_clean\n\
+         opt -nodffe -nosdff -fast\nmemory\nsetundef -init -zero\nasync2sync\ndffunmap\ntechmap\nopt -fast\ndffunmap\nabc -g AND -fast\nopt_clean\n\
          write_aiger -I -B -zinit -no-startoffset miter.aig\n"
     )
 }

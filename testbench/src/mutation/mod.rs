@@ -62,7 +62,7 @@ impl Default for Options {
             seed: 1,
             runs: 1,
             clocks: 1_000_000,
-            proof: Duration::from_secs(30),
+            proof: Duration::from_secs(60),
         }
     }
 }

@@ -11,7 +11,7 @@ pub struct Mutant {
     pub(super) arguments: String,
     /// `const0`, `const1`, `inv`, `cnot0` or `cnot1`.
     mode: String,
-    module: String,
+    pub(super) module: String,
     cell: String,
     port: String,
     /// The register or wire that the bit is a part of, where it has a name.

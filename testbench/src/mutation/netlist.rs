@@ -52,6 +52,20 @@ impl<'a> Netlist<'a> {
         self.top
     }
 
+    /// Whether there are multipliers in it.
+    pub(super) fn multiplies(&self) -> bool {
+        self.modules.iter().any(|module| module.name.contains("smul_"))
+    }
+
+    /// Bits of its memories that can be written, by the modules' names: `ram_WORDSxBITS`.
+    pub(super) fn memory_bits(&self) -> u32 {
+        let bits = |name: &str| -> Option<u32> {
+            let (words, bits) = name.rsplit_once("ram_")?.1.split_once('x')?;
+            Some(words.parse::<u32>().ok()? * bits.parse::<u32>().ok()?)
+        };
+        self.modules.iter().filter_map(|module| bits(&module.name)).sum()
+    }
+
     /// At most so many mutants, by the seed.
     pub(super) fn mutants(&self, count: usize, seed: u64) -> Result<Vec<Mutant>, Error> {
         if !(1..=MOST).contains(&count) {

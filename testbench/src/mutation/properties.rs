@@ -14,12 +14,17 @@ pub(super) fn broken(
     mutant: &Mutant,
     limit: Duration,
 ) -> Result<Option<String>, Error> {
-    let Some(task) = subject.task() else { return Ok(None) };
-    let mut task = task.clone();
-    task.modules = netlist.with(mutant)?;
-    let folder = netlist.folder().join(format!("properties_{}", mutant.number));
-    match formal::run(&task, &folder, limit)?.verdict {
-        Verdict::Counterexample { property, .. } => Ok(Some(property)),
-        Verdict::Proven | Verdict::Unknown => Ok(None),
+    if subject.tasks().is_empty() {
+        return Ok(None);
     }
+    let modules = netlist.with(mutant)?;
+    for (at, task) in subject.tasks().iter().enumerate() {
+        let mut task = task.clone();
+        task.modules.clone_from(&modules);
+        let folder = netlist.folder().join(format!("properties_{}_{at}", mutant.number));
+        if let Verdict::Counterexample { property, .. } = formal::run(&task, &folder, limit)?.verdict {
+            return Ok(Some(property));
+        }
+    }
+    Ok(None)
 }

@@ -12,9 +12,9 @@ use posicast_model::taps::{Tap, TapTable};
 
 use crate::Error;
 use crate::blocks::{
-    AxisBlock, Block, CascadeBlock, ComponentBlock, DividerBlock, DriveCommandBlock, EncoderGeneratorBlock,
-    ExcitationBlock, LinearScaleBlock, Part, PartBlock, PulseCounterBlock, PwmBlock, RegistersBlock, SegmentsBlock,
-    ShaperBlock, SlidingModeBlock, TraceBlock,
+    AxisBlock, Block, CascadeBlock, DividerBlock, DriveCommandBlock, EncoderGeneratorBlock, ExcitationBlock,
+    LinearScaleBlock, Part, PartBlock, PulseCounterBlock, PwmBlock, RegistersBlock, SegmentsBlock, ShaperBlock,
+    SlidingModeBlock, TraceBlock,
 };
 use crate::formal::{self, Task};
 
@@ -22,7 +22,7 @@ use crate::formal::{self, Task};
 pub struct Subject {
     block: Box<dyn Block>,
     size: &'static str,
-    task: Option<Task>,
+    tasks: Vec<Task>,
 }
 
 impl Subject {
@@ -36,9 +36,9 @@ impl Subject {
         self.size
     }
 
-    /// The task whose properties hold for this block at this size.
-    pub(super) fn task(&self) -> Option<&Task> {
-        self.task.as_ref()
+    /// The tasks whose properties hold for this block at this size.
+    pub(super) fn tasks(&self) -> &[Task] {
+        &self.tasks
     }
 }
 
@@ -54,7 +54,7 @@ pub fn all() -> Result<Vec<Subject>, Error> {
     let subject = |(block, size): OfSize| {
         let modules = block.modules()?;
         Ok(Subject {
-            task: tasks.iter().find(|task| task.modules == modules).cloned(),
+            tasks: tasks.iter().filter(|task| task.modules == modules).cloned().collect(),
             block,
             size,
         })
@@ -141,11 +141,6 @@ fn blocks() -> Result<Vec<OfSize>, Error> {
     let component = Component::pwm(pwm, Mode::Unipolar, 2500).map_err(refused)?;
     let bank = RegistersBlock::new(component.map().clone(), "");
     blocks.push((Box::new(bank), "bank of pwm"));
-    // Longer than a division takes.
-    let ticks = DividerConfig::new(127).map_err(refused)?;
-    let component = Component::pulse_counter(ticks, 3).map_err(refused)?;
-    let component = ComponentBlock::new(component, "component", "x");
-    blocks.push((Box::new(component), "pulse_counter with registers"));
     Ok(blocks)
 }
 

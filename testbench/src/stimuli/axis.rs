@@ -2,6 +2,8 @@
 //! the supervisor tells them, or do what they like; lines with glitches around the filter's length; everything that can go
 //! wrong, rarely and often; registers that change in any clock.
 
+use std::ops::Range;
+
 use posicast_model::rtl::axis::{HARMLESS, Inputs, KICK, LEAST_TICK_CLOCKS, OUTPUT_PORTS, Outputs, State};
 use posicast_model::rtl::segments::State as Segments;
 use rand::{Rng, RngExt, SeedableRng};
@@ -12,6 +14,10 @@ use super::table::pick;
 
 /// Clocks between changes of the slow inputs.
 const MOOD_CLOCKS: u64 = 1_500;
+
+/// Clocks in which nothing happens but ticks, and the watchdog comes to its end after [`CALM_TICKS`].
+const CALM: Range<u64> = 300_000..340_000;
+const CALM_TICKS: u16 = 1 << 13;
 
 /// What holds for a while.
 #[derive(Debug, Clone, Copy, Default)]
@@ -24,6 +30,8 @@ struct Mood {
     fault_pace: u32,
     /// One glitch of a line in so many clocks.
     glitch_pace: u32,
+    /// One kick of the watchdog in so many clocks.
+    kick_pace: u32,
     /// Segments that do what they like.
     lawless: bool,
 }
@@ -60,6 +68,26 @@ impl AxisRandom {
         self.rng.random_range(0..clocks) == 0
     }
 
+    /// An axis that stays on, with a host that no longer kicks.
+    fn calm(&mut self, state: State) {
+        // Not a beat in which a bit that turns over in every clock would never show.
+        let ticks = self.clock.is_multiple_of(LEAST_TICK_CLOCKS.into()) && !self.one_in(50);
+        let inputs = &self.inputs;
+        self.inputs = Inputs {
+            tick: ticks,
+            enable: inputs.enable || !matches!(state, State::Off | State::Fault),
+            clear_faults: inputs.clear_faults,
+            watchdog_ticks: CALM_TICKS,
+            kick_word: KICK,
+            emergency_stop_n: true,
+            limit_plus_n: true,
+            limit_minus_n: true,
+            drive_ready: true,
+            segments_empty: true,
+            ..Inputs::default()
+        };
+    }
+
     fn new_mood(&mut self) {
         let rng = &mut self.rng;
         self.mood = Mood {
@@ -67,6 +95,7 @@ impl AxisRandom {
             request_pace: *pick(rng, &[5, 60, 300, 300]),
             fault_pace: *pick(rng, &[40, 500, 5_000, 50_000]),
             glitch_pace: *pick(rng, &[100, 3_000, 30_000]),
+            kick_pace: *pick(rng, &[10, 40, 40, 5_000]),
             lawless: rng.random_range(0..4) == 0,
         };
         self.registers();
@@ -78,7 +107,8 @@ impl AxisRandom {
         let any = rng.next_u64();
         let mut ticks = || {
             let few = rng.random_range(0..6);
-            *pick(rng, &[0, few, few, few, few, few, 40])
+            let one_bit = 1 << rng.random_range(3..9);
+            *pick(rng, &[0, few, few, few, few, few, few, one_bit])
         };
         let [release, apply, settle] = [ticks(), ticks(), ticks()];
         let inputs = &mut self.inputs;
@@ -93,9 +123,10 @@ impl AxisRandom {
         inputs.deviation_limit = if any & 1 << 16 == 0 { 0 } else { limit };
         inputs.lost_command = if any & 1 << 17 == 0 { limit } else { 0 };
         let few = rng.random_range(0..9);
-        inputs.lost_ticks = *pick(rng, &[0, 0, few, u16::MAX]);
-        inputs.saturation_ticks = *pick(rng, &[0, 0, few, u16::MAX]);
-        inputs.watchdog_ticks = *pick(rng, &[0, 0, few * 10, u16::MAX]);
+        let one_bit = 1 << rng.random_range(0..9);
+        inputs.lost_ticks = *pick(rng, &[0, few, one_bit, u16::MAX]);
+        inputs.saturation_ticks = *pick(rng, &[0, few, one_bit, u16::MAX]);
+        inputs.watchdog_ticks = *pick(rng, &[0, few * 10, one_bit, u16::MAX]);
         let (one, other) = (rng.next_u32() as i32 >> 8, rng.next_u32() as i32 >> 12);
         (inputs.soft_limit_plus, inputs.soft_limit_minus) = *pick(
             rng,
@@ -166,7 +197,7 @@ impl AxisRandom {
             self.inputs.enable = !matches!(state, State::Off | State::Fault);
         }
         self.inputs.start = start;
-        self.inputs.kick = self.rng.random_range(0..40) == 0;
+        self.inputs.kick = self.one_in(self.mood.kick_pace);
         let wrong = KICK ^ 1 << self.rng.random_range(0..32);
         self.inputs.kick_word = *pick(&mut self.rng, &[KICK, KICK, KICK, wrong]);
     }
@@ -270,6 +301,9 @@ impl Stimuli for AxisRandom {
         // A cause that is over soon, so that a run is not all FAULT.
         if seen.causes & !HARMLESS != 0 {
             (self.inputs.error, self.inputs.deviation) = (0, 0);
+        }
+        if CALM.contains(&self.clock) {
+            self.calm(seen.state);
         }
         for (input, value) in inputs.iter_mut().zip(self.inputs.to_raw()) {
             *input = value;

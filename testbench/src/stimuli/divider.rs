@@ -51,7 +51,7 @@ impl Stimuli for DividerRandom {
             return;
         };
         self.until_start -= 1;
-        *rst = u64::from(self.clock < 2 || self.rng.random_range(0..3000) == 0);
+        *rst = u64::from(self.clock < 2 || self.rng.random_range(0..700) == 0);
         *start = u64::from(self.until_start == 0);
         (*steps, *elapsed) = (self.rng.next_u64(), self.rng.next_u64());
         *clear_flags = u64::from(self.rng.random_range(0..40) == 0);

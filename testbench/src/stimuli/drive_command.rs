@@ -77,13 +77,14 @@ impl DriveCommandRandom {
         let outputs = [(); 3].map(|()| on != (rng.random_range(0..12) == 0));
         let size = rng.random_range(0..=16);
         let any_limit: i64 = rng.random_range(0..=65_535);
+        let one_bit = rng.random_range(3..16);
         self.mood = Mood {
             state,
             outputs,
             tick_pace: *pick(rng, &[1, 2, 7, 20]),
             kick_pace: *pick(rng, &[3, 10, 30, 100]),
             line_pace: *pick(rng, &[2, 20, 100_000, 100_000]),
-            hold_ticks: *pick(rng, &[0, 1, 2, 3, 5, 20, 65_535]),
+            hold_ticks: *pick(rng, &[0, 1, 2, 3, 5, 1 << one_bit, 1 << one_bit, 65_535]),
             limit: *pick(rng, &[0, 65_535, any_limit, any_limit >> size]),
             self_test: rng.random_range(0..3) == 0,
             valley_pace: *pick(rng, &[1, 4, 20, 60]),

@@ -11,6 +11,9 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 use super::Stimuli;
 use super::table::pick;
 
+/// Every third of these is calm.
+const CALM_CLOCKS: u64 = 50_000;
+
 /// A mixture of everything, without end.
 #[derive(Debug, Clone)]
 pub struct PwmRandom {
@@ -22,6 +25,8 @@ pub struct PwmRandom {
     faults: [u32; 4],
     /// Clocks since the time base.
     since_sync: u32,
+    /// The period that the carrier counts, as far as the pins show it.
+    period_used: u16,
 }
 
 impl PwmRandom {
@@ -39,7 +44,19 @@ impl PwmRandom {
             until_feed: 50,
             faults: [0; 4],
             since_sync: 0,
+            period_used: 1,
         }
+    }
+
+    /// Now and then nothing interrupts a run, so that long periods come to their edges.
+    fn is_calm(&self) -> bool {
+        self.clock / CALM_CLOCKS % 3 == 2
+    }
+
+    /// As [`one_in`](Self::one_in), and twenty times as rare while it is calm.
+    fn interrupts(&mut self, clocks: u32) -> bool {
+        let rarity = if self.is_calm() { 20 } else { 1 };
+        self.one_in(clocks * rarity)
     }
 
     fn one_in(&mut self, clocks: u32) -> bool {
@@ -48,18 +65,28 @@ impl PwmRandom {
 
     /// Period, dead time and minimum pulse: mostly while off, as they should be.
     fn timing(&mut self, running: bool) {
-        if !self.one_in(if running { 4000 } else { 200 }) {
+        let changes = match running {
+            true => self.one_in(4000),
+            false => self.interrupts(200),
+        };
+        if !changes {
             return;
         }
         let any = self.rng.next_u32() as u16;
-        let short = self.rng.random_range(8..120);
+        // A period of 0 is one of 65,536 clocks.
+        let seldom = if self.one_in(4) { 0 } else { 2 };
+        let short = match self.is_calm() {
+            true => any >> self.rng.random_range(0..9),
+            false => self.rng.random_range(8..120),
+        };
         self.inputs.period = *pick(
             &mut self.rng,
-            &[short, short, short, short, 40, 41, 300, 7, 1, 0, any >> 4],
+            &[short, short, short, short, 40, 41, 300, 7, 1, seldom, any >> 4, any],
         );
         let some = self.rng.random_range(0..12);
-        self.inputs.dead_time = *pick(&mut self.rng, &[0, 1, 2, 3, some, some, 40]);
-        self.inputs.minimum_pulse = *pick(&mut self.rng, &[0, 1, 2, some, some, 30]);
+        let one_bit = [0; 2].map(|_: u8| 1 << self.rng.random_range(0..10));
+        self.inputs.dead_time = *pick(&mut self.rng, &[0, 1, 2, 3, some, some, one_bit[0]]);
+        self.inputs.minimum_pulse = *pick(&mut self.rng, &[0, 1, 2, some, some, one_bit[1]]);
     }
 
     fn command(&mut self) {
@@ -80,7 +107,7 @@ impl PwmRandom {
             let half = self.inputs.period / 2;
             self.inputs.max_duty = *pick(&mut self.rng, &[0xffff, 0xffff, self.inputs.period, half, half, 0]);
         }
-        if self.one_in(700) {
+        if self.interrupts(700) {
             self.inputs.mode = self.rng.random_range(0..4);
         }
         if self.one_in(2000) {
@@ -88,36 +115,53 @@ impl PwmRandom {
         }
     }
 
-    fn time_base(&mut self) {
-        if self.one_in(3000) {
-            self.inputs.phase = self.rng.random_range(0..40);
-            self.inputs.trigger_phase = *pick(&mut self.rng, &[0, 5, 20, self.inputs.period.wrapping_sub(1)]);
+    /// A position in the period, often shortly before a boundary, so that the longest ends soon. Seldom one beyond the
+    /// period, from where it is a long way to the next valley.
+    fn position(&mut self) -> u16 {
+        let period = self.period_used;
+        if self.one_in(30) {
+            let one_bit = 1 << self.rng.random_range(0..16);
+            return *pick(&mut self.rng, &[one_bit, u16::MAX]);
+        }
+        let early = self.rng.random_range(0..40).min(period / 2);
+        let before = self.rng.random_range(1..20);
+        let ends = [period.saturating_sub(before), (period / 2).saturating_sub(before)];
+        *pick(&mut self.rng, &[early, early, early, ends[0], ends[0], ends[1]])
+    }
+
+    fn time_base(&mut self, running: bool) {
+        if self.one_in(if running { 3000 } else { 60 }) {
+            self.inputs.phase = self.position();
+            let any = self.position();
+            self.inputs.trigger_phase = *pick(&mut self.rng, &[0, any, any, self.inputs.period.wrapping_sub(1)]);
         }
         self.since_sync += 1;
         // In step for long times: the period times three, or sometimes any moment.
-        self.inputs.sync = self.since_sync >= 3 * u32::from(self.inputs.period.max(1)) || self.one_in(9000);
+        let moment = if running { 9000 } else { 60 };
+        self.inputs.sync = self.since_sync >= 3 * u32::from(self.inputs.period.max(1)) || self.one_in(moment);
         if self.inputs.sync {
             self.since_sync = 0;
         }
         self.until_feed = self.until_feed.saturating_sub(1);
         self.inputs.feed = self.until_feed == 0;
         if self.inputs.feed {
-            let forgets = self.one_in(30);
+            let forgets = self.interrupts(30);
             self.until_feed = if forgets {
                 3000
             } else {
-                2 * u32::from(self.inputs.period.max(1))
+                (2 * u32::from(self.inputs.period.max(1))).min(2000)
             };
         }
         if self.one_in(5000) {
-            self.inputs.watchdog_periods = *pick(&mut self.rng, &[0, 2, 3, 3, 5, 255]);
+            let one_bit = 1 << self.rng.random_range(0..8);
+            self.inputs.watchdog_periods = *pick(&mut self.rng, &[0, 2, 3, 3, 5, one_bit, one_bit, 255]);
         }
     }
 
     fn faults(&mut self) {
         for (at, rarity) in [(0, 4000), (1, 9000), (2, 900), (3, 900)] {
             self.faults[at] = self.faults[at].saturating_sub(1);
-            if self.one_in(rarity) {
+            if self.interrupts(rarity) {
                 let filter = u32::from(self.inputs.filter_clocks);
                 let lengths = [1, 2, 30, filter.max(1), filter + 1, filter + 2];
                 self.faults[at] = *pick(&mut self.rng, &lengths);
@@ -138,12 +182,19 @@ impl PwmRandom {
 impl Stimuli for PwmRandom {
     fn fill(&mut self, seen: &[u64], inputs: &mut [u64]) {
         let running = seen.get(4).is_some_and(|running| *running != 0);
+        if !running && seen.get(8).is_some_and(|valley| *valley != 0) {
+            self.period_used = self.inputs.period;
+        }
         self.timing(running);
         self.command();
-        self.time_base();
+        self.time_base(running);
         self.faults();
-        self.inputs.rst = self.clock < 2 || self.one_in(20_000);
-        if self.one_in(if self.inputs.enable { 2500 } else { 300 }) {
+        self.inputs.rst = self.clock < 2 || self.interrupts(20_000);
+        let toggles = match self.inputs.enable {
+            true => self.interrupts(2500),
+            false => self.one_in(300),
+        };
+        if toggles {
             self.inputs.enable = !self.inputs.enable;
         }
         if self.one_in(if self.inputs.mask_pins { 150 } else { 1500 }) {
