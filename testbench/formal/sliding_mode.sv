@@ -20,7 +20,7 @@
 //   integral_exact    it then takes the whole of e, or stops at an end
 //   clears            clear_integral makes it 0
 //   flags_held        sticky flags fall by clear_flags or reset only
-//   flags_of_words    a cut of s, a or duty shows, even when the flags are cleared in its clock
+//   flags_of_words    a cut of s, a or duty shows, a clock after the word, even when the flags are cleared in its clock
 //   overrun_found     a start in a pass is ignored and flagged
 //   known_*           invariants
 //
@@ -71,7 +71,9 @@ module sliding_mode_properties (
     (* peek = "u_limiter.take" *) input wire take,
     (* peek = "u_limiter.compares_q" *) input wire compares,
     (* peek = "u_limiter.decides_q" *) input wire decides,
-    (* peek = "u_integral.integral_q" *) input wire signed [31:0] integral
+    (* peek = "u_integral.integral_q" *) input wire signed [31:0] integral,
+    (* peek = "u_cut_high.found" *) input wire [6:0] found_high,
+    (* peek = "u_cut_low.found" *) input wire [6:0] found_low
 );
     localparam [7:0] LAST_CLOCK = `PASS_CLOCKS - 8'd1;
 
@@ -196,8 +198,13 @@ module sliding_mode_properties (
     wire signed [32:0] wide_integral = $signed({past_integral[31], past_integral}) + wide_error;
     wire signed [31:0] integrated =
         wide_integral > 33'sd2147483647 ? 32'sh7fffffff : wide_integral < -33'sd2147483648 ? 32'sh80000000 : wide_integral[31:0];
-    // A sum has been taken with its flag: s, a and duty.
+    // A sum has been taken: s, a and duty. Its flag comes a clock later.
     wire [6:0] flag_of = past_place == 8'h0f ? 7'h04 : past_place == 8'h4f ? 7'h08 : past_place == 8'hcf ? 7'h40 : 7'h00;
+    wire [6:0] cut_high = past_word_high & !past_reset ? flag_of : 7'h00;
+    wire [6:0] cut_low = past_word_low & !past_reset ? flag_of : 7'h00;
+    reg  [6:0] due_high = 7'h00;
+    reg  [6:0] due_low = 7'h00;
+    always @(posedge clk) {due_high, due_low} <= rst ? 14'd0 : {cut_high, cut_low};
 
     always @(*) begin
         known_place: assert (busy == runs & {step, phase} == place & clock <= LAST_CLOCK);
@@ -234,8 +241,8 @@ module sliding_mode_properties (
         clears: assert (past_reset | !past_clear_integral | integral == 32'sd0);
         flags_held: assert (past_reset | past_clear |
             ((past_saturated_high & ~saturated_high) == 7'd0 & (past_saturated_low & ~saturated_low) == 7'd0));
-        flags_of_words: assert (past_reset |
-            ((!past_word_high | (saturated_high & flag_of) == flag_of) & (!past_word_low | (saturated_low & flag_of) == flag_of)));
+        known_found: assert ((found_high & cut_high) == cut_high & (found_low & cut_low) == cut_low);
+        flags_of_words: assert ((saturated_high & due_high) == due_high & (saturated_low & due_low) == due_low);
         overrun_found: assert (past_reset | overrun == (past_collides | (past_overrun & !past_clear)));
     end
 

@@ -164,23 +164,27 @@ pub(crate) fn rows() -> Result<Vec<Row>, Box<dyn Error>> {
             "of sliding_mode",
             &Component::sliding_mode(&Settings::default(), Law::SlidingMode, false)?,
         )?,
-        stage()?,
+        stage("XY, whole", "")?,
+        stage("XY, traces of 256 samples", "[axis.trace]\nsamples = 256\n\n")?,
     ])
 }
 
 /// The name of the stage's row.
 pub(crate) const STAGE: &str = "stage";
 
-/// The stage of the example machine, flattened: what is tied to the machine file is folded.
-fn stage() -> Result<Row, Box<dyn Error>> {
-    let machine = spec::parse("xy-stage.toml", include_str!("../../../examples/xy-stage.toml"))?;
+/// The stage of the example machine, flattened: what is tied to the machine file is folded. `traces` is written before the
+/// controller of each axis.
+fn stage(size: &'static str, traces: &str) -> Result<Row, Box<dyn Error>> {
+    let controller = "[axis.controller]";
+    let file = include_str!("../../../examples/xy-stage.toml").replace(controller, &format!("{traces}{controller}"));
+    let machine = spec::parse("xy-stage.toml", &file)?;
     let stage = control::stage(&machine, &design_machine(&machine)?)?.ok_or("the example has no stage")?;
     Ok(Row {
         block: STAGE,
-        size: "XY, whole",
+        size,
         modules: component::emit(&Component::stage(&stage.config)?, "xy")?,
         budget: None,
-        note: "With `[axis.trace]` of 256 samples on both axes: 17,791 LE, 22 M4K.",
+        note: "",
     })
 }
 

@@ -3,8 +3,8 @@
 //! ```text
 //! phase  27 …  44   product = { partial sum (17), what is left of steps (18) } moves down: T is added where the lowest bit
 //!                   of |steps| is set
-//! phase  45 …  95   product moves up: |steps| · T leaves at the top into the remainder, then 16 zeros; quotient bits enter
-//!                   at the bottom
+//! phase  45 …  95   product moves up: |steps| · T leaves at the top into the remainder; quotient bits enter at the bottom,
+//!                   and leave as the 16 fraction bits: zeros, or the quotient is clamped and what follows does not matter
 //! phase  96 … 127   product moves down once more: the quotient's bits enter at the top, negated or not
 //! ```
 //!
@@ -42,9 +42,11 @@ pub(super) struct Divider {
     done_q: Dff<Bit>,
     saturated_q: Dff<Bit>,
     overrun_q: Dff<Bit>,
+    downward: Dff<Bit>,
+    last_pass: Dff<Bit>,
+    fits: Dff<Bit>,
 
-    downward: Signal<Local, Bit>,
-    last_pass: Signal<Local, Bit>,
+    next_phase: Signal<Local, Bits<7>>,
     magnitude_bit: Signal<Local, Bit>,
     entering: Signal<Local, Bits<1>>,
     addend: Signal<Local, Bits<18>>,
@@ -61,7 +63,6 @@ pub(super) struct Divider {
     one_phase: Constant<Bits<7>>,
     divide_phase: Constant<Bits<7>>,
     fits_phase: Constant<Bits<7>>,
-    zeros_phase: Constant<Bits<7>>,
     sign_phase: Constant<Bits<7>>,
     no_clocks: Constant<Bits<24>>,
     tick_clocks: Constant<Bits<24>>,
@@ -98,8 +99,10 @@ impl Divider {
             done_q: Dff::default(),
             saturated_q: Dff::default(),
             overrun_q: Dff::default(),
-            downward: Signal::default(),
-            last_pass: Signal::default(),
+            downward: Dff::default(),
+            last_pass: Dff::default(),
+            fits: Dff::default(),
+            next_phase: Signal::default(),
             magnitude_bit: Signal::default(),
             entering: Signal::default(),
             addend: Signal::default(),
@@ -115,7 +118,6 @@ impl Divider {
             one_phase: Constant::new(from_u64(1)),
             divide_phase: Constant::new(from_u64(45)),
             fits_phase: Constant::new(from_u64(65)),
-            zeros_phase: Constant::new(from_u64(80)),
             sign_phase: Constant::new(from_u64(96)),
             no_clocks: Constant::new(from_u64(0)),
             tick_clocks: Constant::new(from_u64(tick_clocks)),
@@ -145,7 +147,10 @@ impl Logic for Divider {
             quotient_q,
             done_q,
             saturated_q,
-            overrun_q
+            overrun_q,
+            downward,
+            last_pass,
+            fits
         );
         self.done_q.d.next = false;
         if self.clear_flags.val() {
@@ -153,16 +158,14 @@ impl Logic for Divider {
         }
 
         comment!("Lowest bit first: negate what is negative");
-        self.last_pass.next = self.phase.q.val() >= self.sign_phase.val();
-        self.downward.next = self.last_pass.val() | (self.phase.q.val() < self.divide_phase.val());
         self.magnitude_bit.next = self.product.q.val().get_bit(0) ^ (self.negative.q.val() & self.turns_over.q.val());
-        self.turns_over.d.next = self.downward.val() & (self.turns_over.q.val() | self.product.q.val().get_bit(0));
+        self.turns_over.d.next = self.downward.q.val() & (self.turns_over.q.val() | self.product.q.val().get_bit(0));
 
         comment!("Multiply: add T, or not, and shift down");
         self.addend.next = self.no_addend.val();
         self.entering.next = self.no_bit.val();
         if self.magnitude_bit.val() {
-            if self.last_pass.val() {
+            if self.last_pass.q.val() {
                 self.entering.next = self.one_bit.val();
             } else {
                 self.addend.next = self.tick_addend.val();
@@ -174,7 +177,7 @@ impl Logic for Divider {
 
         comment!("Divide: a bit into the remainder; subtract");
         self.next_bit.next = self.no_bit.val();
-        if !self.downward.val() & (self.phase.q.val() < self.zeros_phase.val()) {
+        if !self.downward.q.val() {
             self.next_bit.next = self.product.q.val().get_bits::<1>(34);
         }
         self.shifted.next = (bit_cast::<26, 24>(self.remainder.q.val()) << 1) | bit_cast::<26, 1>(self.next_bit.val());
@@ -183,13 +186,13 @@ impl Logic for Divider {
 
         comment!("Beyond 31 bits: all ones");
         self.kept_bit.next = self.no_bit.val();
-        if (self.phase.q.val() >= self.fits_phase.val()) & (self.subtracts.val() | self.too_large.q.val()) {
+        if self.fits.q.val() & (self.subtracts.val() | self.too_large.q.val()) {
             self.kept_bit.next = self.one_bit.val();
         }
 
         comment!("One phase per clock; between divisions,");
         comment!("what is in the registers does not matter");
-        if self.downward.val() {
+        if self.downward.q.val() {
             self.product.d.next = (bit_cast::<35, 1>(self.entering.val()) << 34)
                 | (bit_cast::<35, 18>(self.partial.val()) << 17)
                 | bit_cast::<35, 17>(self.product.q.val().get_bits::<17>(1));
@@ -200,10 +203,12 @@ impl Logic for Divider {
         if self.subtracts.val() {
             self.remainder.d.next = self.difference.val().get_bits::<24>(0);
         }
+        self.next_phase.next = self.phase.q.val();
         if self.busy_q.q.val() {
-            self.phase.d.next = self.phase.q.val() + self.one_phase.val();
+            self.next_phase.next = self.phase.q.val() + self.one_phase.val();
         }
-        if self.subtracts.val() & !self.downward.val() & (self.phase.q.val() < self.fits_phase.val()) {
+        comment!("Too large; while it multiplies, 0 is too small");
+        if self.subtracts.val() & !self.fits.q.val() {
             self.too_large.d.next = true;
         }
         if self.phase.q.val().all() {
@@ -223,7 +228,7 @@ impl Logic for Divider {
         }
         if self.start.val() & !self.busy_q.q.val() {
             self.busy_q.d.next = true;
-            self.phase.d.next = self.first_phase.val();
+            self.next_phase.next = self.first_phase.val();
             self.product.d.next = bit_cast::<35, 18>(unsigned_cast(self.steps.val()));
             self.remainder.d.next = self.no_clocks.val();
             self.divisor.d.next = self.elapsed.val() | self.one_tick.val();
@@ -231,6 +236,13 @@ impl Logic for Divider {
             self.turns_over.d.next = false;
             self.too_large.d.next = false;
         }
+
+        comment!("Which part a phase is of, told a clock ahead");
+        self.phase.d.next = self.next_phase.val();
+        self.last_pass.d.next = self.next_phase.val() >= self.sign_phase.val();
+        self.downward.d.next =
+            (self.next_phase.val() >= self.sign_phase.val()) | (self.next_phase.val() < self.divide_phase.val());
+        self.fits.d.next = self.next_phase.val() >= self.fits_phase.val();
 
         comment!("Outputs");
         self.quotient.next = self.quotient_q.q.val();

@@ -13,10 +13,11 @@ const COLUMNS: usize = 100;
 
 pub(super) fn body(map: &RegisterMap) -> String {
     let clock = ("input  wire", bits(1), "clk".to_owned());
+    let is_grouped = read_groups(map).len() > 1;
     let ports = map.ports().iter().map(|port| {
         let keyword = match port.direction {
             Direction::Input => "input  wire",
-            // All outputs are registers.
+            Direction::Output if is_grouped && port.name == "avs_readdata" => "output wire",
             Direction::Output => "output reg ",
         };
         let ty = Type {
@@ -225,23 +226,52 @@ fn refusals(lines: &mut Lines, map: &RegisterMap) {
     }
 }
 
+/// Words that are read in a clock: with more of them the way through the decode is the longest of a stage.
+const GROUP_WORDS: usize = 16;
+
+/// The registers that can be read, with what they show, in groups of about the same size.
+fn read_groups(map: &RegisterMap) -> Vec<Vec<(&Register, Vec<String>)>> {
+    let readable = |register| read_value(map, register).map(|value| (register, value));
+    let all: Vec<_> = map.registers().iter().filter_map(readable).collect();
+    let groups = all.len().div_ceil(GROUP_WORDS).max(1);
+    let words = all.len().div_ceil(groups).max(1);
+    all.chunks(words).map(<[_]>::to_vec).collect()
+}
+
+/// The registers behind the decode, by the number of groups.
+fn read_flops(groups: usize) -> Vec<Flop> {
+    let name = |at: usize| match groups {
+        1 => "avs_readdata".to_owned(),
+        _ => format!("read_group_{at}"),
+    };
+    (0..groups).map(|at| (bits(32), name(at), 0)).collect()
+}
+
 fn reads(lines: &mut Lines, map: &RegisterMap) {
-    let data = [(bits(32), "avs_readdata".to_owned(), 0)];
-    clocked(lines, &data, "else if (avs_read)", |lines| {
-        lines.nest("case (avs_address)", "endcase", |lines| {
-            for register in map.registers() {
-                let Some(value) = read_value(map, register) else {
-                    continue;
-                };
-                let begin = format!("{}: avs_readdata <= ", register.name.to_uppercase());
-                match value.as_slice() {
-                    [whole] => lines.line(&format!("{begin}{whole};")),
-                    pieces => joined(lines, &format!("{begin}{{"), pieces, ", ", "};"),
+    let groups = read_groups(map);
+    let flops = read_flops(groups.len());
+    if groups.len() > 1 {
+        lines.line("// Each group of words has a register, which is 0 where the word read is of another group.");
+        declare(lines, &flops, "");
+    }
+    for (group, flop) in groups.iter().zip(&flops) {
+        clocked(lines, std::slice::from_ref(flop), "else if (avs_read)", |lines| {
+            lines.nest("case (avs_address)", "endcase", |lines| {
+                for (register, value) in group {
+                    let begin = format!("{}: {} <= ", register.name.to_uppercase(), flop.1);
+                    match value.as_slice() {
+                        [whole] => lines.line(&format!("{begin}{whole};")),
+                        pieces => joined(lines, &format!("{begin}{{"), pieces, ", ", "};"),
+                    }
                 }
-            }
-            lines.line("default: avs_readdata <= 32'd0;");
+                lines.line(&format!("default: {} <= 32'd0;", flop.1));
+            });
         });
-    });
+    }
+    if groups.len() > 1 {
+        let names: Vec<String> = flops.into_iter().map(|(_, name, _)| name).collect();
+        joined(lines, "assign avs_readdata = ", &names, " | ", ";");
+    }
 }
 
 fn read_value(map: &RegisterMap, register: &Register) -> Option<Vec<String>> {
@@ -264,7 +294,7 @@ fn read_value(map: &RegisterMap, register: &Register) -> Option<Vec<String>> {
 fn power_up(lines: &mut Lines, map: &RegisterMap) {
     let mut all: Vec<Flop> = map.registers().iter().flat_map(flops).collect();
     all.extend(shadow_flops(map));
-    all.push((bits(32), "avs_readdata".to_owned(), 0));
+    all.extend(read_flops(read_groups(map).len()));
     if map.find(|access| *access == Access::InterruptState).is_some() {
         all.push((bits(1), "irq".to_owned(), 0));
     }

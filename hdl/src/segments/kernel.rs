@@ -47,6 +47,7 @@ pub(super) struct Segments {
     integrator: Integrator,
 
     phase: Dff<Bits<4>>,
+    idle: Dff<Bit>,
     state_q: Dff<Bits<2>>,
     wants_flush: Dff<Bit>,
     wants_quick_stop: Dff<Bit>,
@@ -141,6 +142,7 @@ impl Default for Segments {
             fifo: CommandFifo::default(),
             integrator: Integrator::default(),
             phase: Dff::default(),
+            idle: Dff::new(true),
             state_q: Dff::default(),
             wants_flush: Dff::default(),
             wants_quick_stop: Dff::default(),
@@ -207,6 +209,7 @@ impl Logic for Segments {
             self,
             clk,
             phase,
+            idle,
             state_q,
             wants_flush,
             wants_quick_stop,
@@ -270,9 +273,9 @@ impl Logic for Segments {
         self.wants_preset.d.next = self.preset_now.val();
 
         comment!("A tick: preset, else quick stop, else restart");
-        self.takes_tick.next = self.tick.val() & (self.phase.q.val() == self.idle_phase.val());
+        self.takes_tick.next = self.tick.val() & self.idle.q.val();
         self.drops.next = false;
-        if self.phase.q.val() != self.idle_phase.val() {
+        if !self.idle.q.val() {
             self.phase.d.next = self.phase.q.val() + self.one_phase.val();
             if self.tick.val() {
                 self.tick_missed_q.d.next = true;
@@ -280,6 +283,7 @@ impl Logic for Segments {
         }
         if self.takes_tick.val() {
             self.phase.d.next = self.accelerate_phase.val();
+            self.idle.d.next = false;
             self.enabled.d.next = self.enable.val();
             self.wants_flush.d.next = false;
             self.wants_quick_stop.d.next = false;
@@ -361,6 +365,7 @@ impl Logic for Segments {
             }
             if !self.reads.val() {
                 self.phase.d.next = self.idle_phase.val();
+                self.idle.d.next = true;
             }
         }
 
@@ -382,6 +387,7 @@ impl Logic for Segments {
         if self.phase.q.val() == self.third_word_phase.val() {
             self.third.d.next = self.read_data.q.val();
             self.phase.d.next = self.idle_phase.val();
+            self.idle.d.next = true;
         }
 
         comment!("Words of a host");

@@ -354,9 +354,10 @@ impl<const A: usize, const T: usize, const COUNT: usize, const SUM: usize, const
             self.read_bank.next = self.previous.q.val();
             self.taps.next = self.previous_taps.q.val();
         }
-        self.read_address.next = bit_cast::<COUNT, T>(self.tap.val());
-        if self.read_bank.val() == self.bank_2.val() {
-            self.read_address.next = bit_cast::<COUNT, T>(self.tap.val()) | self.upper_half.val();
+        comment!("Bank 1 is the lower half, all others the upper");
+        self.read_address.next = bit_cast::<COUNT, T>(self.tap.val()) | self.upper_half.val();
+        if self.read_bank.val() == self.bank_1.val() {
+            self.read_address.next = bit_cast::<COUNT, T>(self.tap.val());
         }
         self.machine_taps.address.next = self.tap.val();
         self.loaded_taps.read_address.next = self.read_address.val();

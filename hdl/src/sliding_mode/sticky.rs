@@ -1,6 +1,7 @@
-//! Sticky flags of one side: seven bits, set wins over clear.
+//! Sticky flags of one side: seven bits, set wins over clear. A flag shows two clocks after its cut was seen.
 //!
-//! e and de are taken together, in the clock of `start`; everything else is one `what` at a time.
+//! e and de are taken together, in the clock of `start`; everything else is one `what` at a time. A register is behind them,
+//! since what tells a cut from a sum, or from a difference, is a clock's work.
 
 use crate::prelude::*;
 use posicast_model::rtl::sliding_mode::Saturation;
@@ -16,6 +17,7 @@ pub(super) struct Sticky {
     pub(super) is_cut: Signal<In, Bit>,
     pub(super) flags: Signal<Out, Bits<7>>,
 
+    found: Dff<Bits<7>>,
     flags_q: Dff<Bits<7>>,
 
     kept: Signal<Local, Bits<7>>,
@@ -39,6 +41,7 @@ impl Default for Sticky {
             what: Signal::default(),
             is_cut: Signal::default(),
             flags: Signal::default(),
+            found: Dff::default(),
             flags_q: Dff::default(),
             kept: Signal::default(),
             by_error: Signal::default(),
@@ -56,7 +59,7 @@ impl Logic for Sticky {
     fn update(&mut self) {
         comment!("@module sticky");
         comment!("@about Sticky flags: set wins over clear.");
-        dff_setup!(self, clk, flags_q);
+        dff_setup!(self, clk, found, flags_q);
 
         self.kept.next = self.flags_q.q.val();
         if self.clear_flags.val() {
@@ -74,7 +77,8 @@ impl Logic for Sticky {
         if self.is_cut.val() {
             self.by_sum.next = self.what.val();
         }
-        self.flags_q.d.next = self.kept.val() | self.by_error.val() | self.by_rate.val() | self.by_sum.val();
+        self.found.d.next = self.by_error.val() | self.by_rate.val() | self.by_sum.val();
+        self.flags_q.d.next = self.kept.val() | self.found.q.val();
         self.flags.next = self.flags_q.q.val();
     }
 }

@@ -30,7 +30,7 @@ module xy_stage_stage_registers (
     input  wire               avs_write,
     input  wire [3:0]         avs_byteenable,
     input  wire [31:0]        avs_writedata,
-    output reg  [31:0]        avs_readdata,
+    output wire [31:0]        avs_readdata,
     output reg                irq,
     input  wire               tick,
     output reg                start,
@@ -1215,127 +1215,181 @@ module xy_stage_stage_registers (
         end
     end
 
+    // Each group of words has a register, which is 0 where the word read is of another group.
+    reg [31:0] read_group_0;
+    reg [31:0] read_group_1;
+    reg [31:0] read_group_2;
+    reg [31:0] read_group_3;
+    reg [31:0] read_group_4;
+    reg [31:0] read_group_5;
     always @(posedge clk) begin
         if (rst) begin
-            avs_readdata <= 32'd0;
+            read_group_0 <= 32'd0;
         end else if (avs_read) begin
             case (avs_address)
-                MAGIC: avs_readdata <= 32'h45475453;
-                VERSION: avs_readdata <= 32'h00010000;
-                AXES: avs_readdata <= 32'h00000002;
-                TICK_CLOCKS: avs_readdata <= 32'h00001388;
-                CONTROL_CLOCKS: avs_readdata <= 32'h000000d2;
-                DUTY_CLOCKS: avs_readdata <= 32'h000001a5;
-                COMMIT: avs_readdata <= {31'd0, waits};
-                FLAGS: avs_readdata <= {29'd0, flag_start_refused, flag_commit_rejected, flag_partial_write};
-                INTERRUPT_STATE: avs_readdata <= {2'd0, irq_state_start_refused, irq_state_tick, 14'd0,
+                MAGIC: read_group_0 <= 32'h45475453;
+                VERSION: read_group_0 <= 32'h00010000;
+                AXES: read_group_0 <= 32'h00000002;
+                TICK_CLOCKS: read_group_0 <= 32'h00001388;
+                CONTROL_CLOCKS: read_group_0 <= 32'h000000d2;
+                DUTY_CLOCKS: read_group_0 <= 32'h000001a5;
+                COMMIT: read_group_0 <= {31'd0, waits};
+                FLAGS: read_group_0 <= {29'd0, flag_start_refused, flag_commit_rejected, flag_partial_write};
+                INTERRUPT_STATE: read_group_0 <= {2'd0, irq_state_start_refused, irq_state_tick, 14'd0,
                     irq_state_y_index_seen, irq_state_y_faulted, irq_state_y_stopping, irq_state_y_halted,
                     irq_state_y_fifo_low, irq_state_y_move_done, irq_state_y_notify, irq_state_x_index_seen,
                     irq_state_x_faulted, irq_state_x_stopping, irq_state_x_halted, irq_state_x_fifo_low,
                     irq_state_x_move_done, irq_state_x_notify};
-                INTERRUPT_ENABLE: avs_readdata <= {2'd0, irq_enable_start_refused, irq_enable_tick, 14'd0,
+                INTERRUPT_ENABLE: read_group_0 <= {2'd0, irq_enable_start_refused, irq_enable_tick, 14'd0,
                     irq_enable_y_index_seen, irq_enable_y_faulted, irq_enable_y_stopping, irq_enable_y_halted,
                     irq_enable_y_fifo_low, irq_enable_y_move_done, irq_enable_y_notify, irq_enable_x_index_seen,
                     irq_enable_x_faulted, irq_enable_x_stopping, irq_enable_x_halted, irq_enable_x_fifo_low,
                     irq_enable_x_move_done, irq_enable_x_notify};
-                TIME_STAMP: avs_readdata <= time_stamp;
-                TICK_COUNT: avs_readdata <= tick_count;
-                SNAPSHOT_TIME_STAMP: avs_readdata <= shadow_time_stamp;
-                SNAPSHOT_TICK_COUNT: avs_readdata <= shadow_tick_count;
-                X_PWM_PERIOD_CLOCKS: avs_readdata <= 32'h000009c4;
-                X_RING_SAMPLES: avs_readdata <= 32'h00000080;
-                X_MOST_TAPS: avs_readdata <= 32'h00000040;
-                X_MACHINE_TAPS: avs_readdata <= 32'h00000005;
-                X_COEFFICIENT_FRACTION: avs_readdata <= 32'h00000010;
-                X_CONTROL: avs_readdata <= {28'd0, x_self_test, x_encoder_invert, x_direct_enable, x_enable};
-                X_FIFO_CONTROL: avs_readdata <= {26'd0, x_low_water};
-                X_TAP_ADDRESS: avs_readdata <= {22'd0, x_tap_bank, 2'd0, x_tap_index};
-                X_SETTING_ADDRESS: avs_readdata <= {22'd0, x_setting_bank, 4'd0, x_setting_row};
-                X_LAW: avs_readdata <= {22'd0, staged_x_law_bank, 6'd0, staged_x_law};
-                X_SOFT_LIMIT_PLUS: avs_readdata <= x_soft_limit_plus;
-                X_SOFT_LIMIT_MINUS: avs_readdata <= x_soft_limit_minus;
-                X_FOLLOWING_ERROR_LIMIT: avs_readdata <= x_following_error_limit;
-                X_WATCHDOG: avs_readdata <= {x_off_causes, x_watchdog_ticks};
-                X_STOP_DECELERATION: avs_readdata <= {1'd0, x_stop_deceleration};
-                X_SETTLE: avs_readdata <= {16'd0, x_settle_ticks};
-                X_INDEX: avs_readdata <= {19'd0, x_velocity_m, 2'd0, x_smoothing, x_index_gate, 2'd0,
-                    x_index_presets, x_index_always};
-                X_STATUS: avs_readdata <= {7'd0, x_trip_causes, x_index_armed, x_table_bank, x_swap_pending,
-                    x_level_z, x_level_b, x_level_a, x_level_home, x_level_drive_ready, x_level_limit_minus_n,
-                    x_level_limit_plus_n, x_level_emergency_stop_n, x_pwm_running, x_direct_active,
-                    x_segments_state, x_can_start, x_state};
-                X_CAUSES: avs_readdata <= {16'd0, x_causes};
-                X_FLAGS: avs_readdata <= {8'd0, x_illegal_count, x_pwm_unaligned, x_pwm_saturated, x_limited_low,
-                    x_limited_high, x_controller_overrun, x_velocity_missed, x_encoder_disagreement,
-                    x_encoder_illegal, x_table_refused, x_shaper_overrun, x_shaper_saturated, x_segment_malformed,
-                    x_segment_refused, x_segments_tick_missed, x_segments_overflow, x_segments_underrun};
-                X_EVENTS: avs_readdata <= {29'd0, flag_x_direct_expired, flag_x_setting_refused, flag_x_refused};
-                X_SATURATIONS: avs_readdata <= {x_limited_ticks, 1'd0, x_controller_saturated_low, 1'd0,
-                    x_controller_saturated_high};
-                X_FIFO: avs_readdata <= {22'd0, x_segments_empty, x_fifo_low, 1'd0, x_fifo_level};
-                X_SELF_TEST: avs_readdata <= {x_self_test_low, x_self_test_high};
-                X_POSITION: avs_readdata <= x_user_position;
-                X_COUNT: avs_readdata <= x_count;
-                X_VELOCITY: avs_readdata <= x_velocity;
-                X_ORIGIN: avs_readdata <= x_origin;
-                X_INDEX_COUNT: avs_readdata <= x_index_count;
-                X_COMMAND_POSITION: avs_readdata <= x_command_position;
-                X_SHAPED_POSITION: avs_readdata <= x_shaped_position;
-                X_SHAPED_VELOCITY: avs_readdata <= x_shaped_velocity;
-                X_ERROR: avs_readdata <= x_error;
-                X_COMMAND: avs_readdata <= x_command;
-                X_DUTY: avs_readdata <= {15'd0, x_duty};
-                X_SNAPSHOT_POSITION: avs_readdata <= shadow_x_user_position;
-                X_SNAPSHOT_VELOCITY: avs_readdata <= shadow_x_velocity;
-                Y_PWM_PERIOD_CLOCKS: avs_readdata <= 32'h000009c4;
-                Y_RING_SAMPLES: avs_readdata <= 32'h00000080;
-                Y_MOST_TAPS: avs_readdata <= 32'h00000040;
-                Y_MACHINE_TAPS: avs_readdata <= 32'h00000005;
-                Y_COEFFICIENT_FRACTION: avs_readdata <= 32'h00000010;
-                Y_CONTROL: avs_readdata <= {28'd0, y_self_test, y_encoder_invert, y_direct_enable, y_enable};
-                Y_FIFO_CONTROL: avs_readdata <= {26'd0, y_low_water};
-                Y_TAP_ADDRESS: avs_readdata <= {22'd0, y_tap_bank, 2'd0, y_tap_index};
-                Y_SETTING_ADDRESS: avs_readdata <= {22'd0, y_setting_bank, 4'd0, y_setting_row};
-                Y_LAW: avs_readdata <= {22'd0, staged_y_law_bank, 6'd0, staged_y_law};
-                Y_SOFT_LIMIT_PLUS: avs_readdata <= y_soft_limit_plus;
-                Y_SOFT_LIMIT_MINUS: avs_readdata <= y_soft_limit_minus;
-                Y_FOLLOWING_ERROR_LIMIT: avs_readdata <= y_following_error_limit;
-                Y_WATCHDOG: avs_readdata <= {y_off_causes, y_watchdog_ticks};
-                Y_STOP_DECELERATION: avs_readdata <= {1'd0, y_stop_deceleration};
-                Y_SETTLE: avs_readdata <= {16'd0, y_settle_ticks};
-                Y_INDEX: avs_readdata <= {19'd0, y_velocity_m, 2'd0, y_smoothing, y_index_gate, 2'd0,
-                    y_index_presets, y_index_always};
-                Y_STATUS: avs_readdata <= {7'd0, y_trip_causes, y_index_armed, y_table_bank, y_swap_pending,
-                    y_level_z, y_level_b, y_level_a, y_level_home, y_level_drive_ready, y_level_limit_minus_n,
-                    y_level_limit_plus_n, y_level_emergency_stop_n, y_pwm_running, y_direct_active,
-                    y_segments_state, y_can_start, y_state};
-                Y_CAUSES: avs_readdata <= {16'd0, y_causes};
-                Y_FLAGS: avs_readdata <= {8'd0, y_illegal_count, y_pwm_unaligned, y_pwm_saturated, y_limited_low,
-                    y_limited_high, y_controller_overrun, y_velocity_missed, y_encoder_disagreement,
-                    y_encoder_illegal, y_table_refused, y_shaper_overrun, y_shaper_saturated, y_segment_malformed,
-                    y_segment_refused, y_segments_tick_missed, y_segments_overflow, y_segments_underrun};
-                Y_EVENTS: avs_readdata <= {29'd0, flag_y_direct_expired, flag_y_setting_refused, flag_y_refused};
-                Y_SATURATIONS: avs_readdata <= {y_limited_ticks, 1'd0, y_controller_saturated_low, 1'd0,
-                    y_controller_saturated_high};
-                Y_FIFO: avs_readdata <= {22'd0, y_segments_empty, y_fifo_low, 1'd0, y_fifo_level};
-                Y_SELF_TEST: avs_readdata <= {y_self_test_low, y_self_test_high};
-                Y_POSITION: avs_readdata <= y_user_position;
-                Y_COUNT: avs_readdata <= y_count;
-                Y_VELOCITY: avs_readdata <= y_velocity;
-                Y_ORIGIN: avs_readdata <= y_origin;
-                Y_INDEX_COUNT: avs_readdata <= y_index_count;
-                Y_COMMAND_POSITION: avs_readdata <= y_command_position;
-                Y_SHAPED_POSITION: avs_readdata <= y_shaped_position;
-                Y_SHAPED_VELOCITY: avs_readdata <= y_shaped_velocity;
-                Y_ERROR: avs_readdata <= y_error;
-                Y_COMMAND: avs_readdata <= y_command;
-                Y_DUTY: avs_readdata <= {15'd0, y_duty};
-                Y_SNAPSHOT_POSITION: avs_readdata <= shadow_y_user_position;
-                Y_SNAPSHOT_VELOCITY: avs_readdata <= shadow_y_velocity;
-                default: avs_readdata <= 32'd0;
+                TIME_STAMP: read_group_0 <= time_stamp;
+                TICK_COUNT: read_group_0 <= tick_count;
+                SNAPSHOT_TIME_STAMP: read_group_0 <= shadow_time_stamp;
+                SNAPSHOT_TICK_COUNT: read_group_0 <= shadow_tick_count;
+                X_PWM_PERIOD_CLOCKS: read_group_0 <= 32'h000009c4;
+                default: read_group_0 <= 32'd0;
             endcase
         end
     end
+    always @(posedge clk) begin
+        if (rst) begin
+            read_group_1 <= 32'd0;
+        end else if (avs_read) begin
+            case (avs_address)
+                X_RING_SAMPLES: read_group_1 <= 32'h00000080;
+                X_MOST_TAPS: read_group_1 <= 32'h00000040;
+                X_MACHINE_TAPS: read_group_1 <= 32'h00000005;
+                X_COEFFICIENT_FRACTION: read_group_1 <= 32'h00000010;
+                X_CONTROL: read_group_1 <= {28'd0, x_self_test, x_encoder_invert, x_direct_enable, x_enable};
+                X_FIFO_CONTROL: read_group_1 <= {26'd0, x_low_water};
+                X_TAP_ADDRESS: read_group_1 <= {22'd0, x_tap_bank, 2'd0, x_tap_index};
+                X_SETTING_ADDRESS: read_group_1 <= {22'd0, x_setting_bank, 4'd0, x_setting_row};
+                X_LAW: read_group_1 <= {22'd0, staged_x_law_bank, 6'd0, staged_x_law};
+                X_SOFT_LIMIT_PLUS: read_group_1 <= x_soft_limit_plus;
+                X_SOFT_LIMIT_MINUS: read_group_1 <= x_soft_limit_minus;
+                X_FOLLOWING_ERROR_LIMIT: read_group_1 <= x_following_error_limit;
+                X_WATCHDOG: read_group_1 <= {x_off_causes, x_watchdog_ticks};
+                X_STOP_DECELERATION: read_group_1 <= {1'd0, x_stop_deceleration};
+                X_SETTLE: read_group_1 <= {16'd0, x_settle_ticks};
+                default: read_group_1 <= 32'd0;
+            endcase
+        end
+    end
+    always @(posedge clk) begin
+        if (rst) begin
+            read_group_2 <= 32'd0;
+        end else if (avs_read) begin
+            case (avs_address)
+                X_INDEX: read_group_2 <= {19'd0, x_velocity_m, 2'd0, x_smoothing, x_index_gate, 2'd0,
+                    x_index_presets, x_index_always};
+                X_STATUS: read_group_2 <= {7'd0, x_trip_causes, x_index_armed, x_table_bank, x_swap_pending,
+                    x_level_z, x_level_b, x_level_a, x_level_home, x_level_drive_ready, x_level_limit_minus_n,
+                    x_level_limit_plus_n, x_level_emergency_stop_n, x_pwm_running, x_direct_active,
+                    x_segments_state, x_can_start, x_state};
+                X_CAUSES: read_group_2 <= {16'd0, x_causes};
+                X_FLAGS: read_group_2 <= {8'd0, x_illegal_count, x_pwm_unaligned, x_pwm_saturated, x_limited_low,
+                    x_limited_high, x_controller_overrun, x_velocity_missed, x_encoder_disagreement,
+                    x_encoder_illegal, x_table_refused, x_shaper_overrun, x_shaper_saturated, x_segment_malformed,
+                    x_segment_refused, x_segments_tick_missed, x_segments_overflow, x_segments_underrun};
+                X_EVENTS: read_group_2 <= {29'd0, flag_x_direct_expired, flag_x_setting_refused, flag_x_refused};
+                X_SATURATIONS: read_group_2 <= {x_limited_ticks, 1'd0, x_controller_saturated_low, 1'd0,
+                    x_controller_saturated_high};
+                X_FIFO: read_group_2 <= {22'd0, x_segments_empty, x_fifo_low, 1'd0, x_fifo_level};
+                X_SELF_TEST: read_group_2 <= {x_self_test_low, x_self_test_high};
+                X_POSITION: read_group_2 <= x_user_position;
+                X_COUNT: read_group_2 <= x_count;
+                X_VELOCITY: read_group_2 <= x_velocity;
+                X_ORIGIN: read_group_2 <= x_origin;
+                X_INDEX_COUNT: read_group_2 <= x_index_count;
+                X_COMMAND_POSITION: read_group_2 <= x_command_position;
+                X_SHAPED_POSITION: read_group_2 <= x_shaped_position;
+                default: read_group_2 <= 32'd0;
+            endcase
+        end
+    end
+    always @(posedge clk) begin
+        if (rst) begin
+            read_group_3 <= 32'd0;
+        end else if (avs_read) begin
+            case (avs_address)
+                X_SHAPED_VELOCITY: read_group_3 <= x_shaped_velocity;
+                X_ERROR: read_group_3 <= x_error;
+                X_COMMAND: read_group_3 <= x_command;
+                X_DUTY: read_group_3 <= {15'd0, x_duty};
+                X_SNAPSHOT_POSITION: read_group_3 <= shadow_x_user_position;
+                X_SNAPSHOT_VELOCITY: read_group_3 <= shadow_x_velocity;
+                Y_PWM_PERIOD_CLOCKS: read_group_3 <= 32'h000009c4;
+                Y_RING_SAMPLES: read_group_3 <= 32'h00000080;
+                Y_MOST_TAPS: read_group_3 <= 32'h00000040;
+                Y_MACHINE_TAPS: read_group_3 <= 32'h00000005;
+                Y_COEFFICIENT_FRACTION: read_group_3 <= 32'h00000010;
+                Y_CONTROL: read_group_3 <= {28'd0, y_self_test, y_encoder_invert, y_direct_enable, y_enable};
+                Y_FIFO_CONTROL: read_group_3 <= {26'd0, y_low_water};
+                Y_TAP_ADDRESS: read_group_3 <= {22'd0, y_tap_bank, 2'd0, y_tap_index};
+                Y_SETTING_ADDRESS: read_group_3 <= {22'd0, y_setting_bank, 4'd0, y_setting_row};
+                default: read_group_3 <= 32'd0;
+            endcase
+        end
+    end
+    always @(posedge clk) begin
+        if (rst) begin
+            read_group_4 <= 32'd0;
+        end else if (avs_read) begin
+            case (avs_address)
+                Y_LAW: read_group_4 <= {22'd0, staged_y_law_bank, 6'd0, staged_y_law};
+                Y_SOFT_LIMIT_PLUS: read_group_4 <= y_soft_limit_plus;
+                Y_SOFT_LIMIT_MINUS: read_group_4 <= y_soft_limit_minus;
+                Y_FOLLOWING_ERROR_LIMIT: read_group_4 <= y_following_error_limit;
+                Y_WATCHDOG: read_group_4 <= {y_off_causes, y_watchdog_ticks};
+                Y_STOP_DECELERATION: read_group_4 <= {1'd0, y_stop_deceleration};
+                Y_SETTLE: read_group_4 <= {16'd0, y_settle_ticks};
+                Y_INDEX: read_group_4 <= {19'd0, y_velocity_m, 2'd0, y_smoothing, y_index_gate, 2'd0,
+                    y_index_presets, y_index_always};
+                Y_STATUS: read_group_4 <= {7'd0, y_trip_causes, y_index_armed, y_table_bank, y_swap_pending,
+                    y_level_z, y_level_b, y_level_a, y_level_home, y_level_drive_ready, y_level_limit_minus_n,
+                    y_level_limit_plus_n, y_level_emergency_stop_n, y_pwm_running, y_direct_active,
+                    y_segments_state, y_can_start, y_state};
+                Y_CAUSES: read_group_4 <= {16'd0, y_causes};
+                Y_FLAGS: read_group_4 <= {8'd0, y_illegal_count, y_pwm_unaligned, y_pwm_saturated, y_limited_low,
+                    y_limited_high, y_controller_overrun, y_velocity_missed, y_encoder_disagreement,
+                    y_encoder_illegal, y_table_refused, y_shaper_overrun, y_shaper_saturated, y_segment_malformed,
+                    y_segment_refused, y_segments_tick_missed, y_segments_overflow, y_segments_underrun};
+                Y_EVENTS: read_group_4 <= {29'd0, flag_y_direct_expired, flag_y_setting_refused, flag_y_refused};
+                Y_SATURATIONS: read_group_4 <= {y_limited_ticks, 1'd0, y_controller_saturated_low, 1'd0,
+                    y_controller_saturated_high};
+                Y_FIFO: read_group_4 <= {22'd0, y_segments_empty, y_fifo_low, 1'd0, y_fifo_level};
+                Y_SELF_TEST: read_group_4 <= {y_self_test_low, y_self_test_high};
+                default: read_group_4 <= 32'd0;
+            endcase
+        end
+    end
+    always @(posedge clk) begin
+        if (rst) begin
+            read_group_5 <= 32'd0;
+        end else if (avs_read) begin
+            case (avs_address)
+                Y_POSITION: read_group_5 <= y_user_position;
+                Y_COUNT: read_group_5 <= y_count;
+                Y_VELOCITY: read_group_5 <= y_velocity;
+                Y_ORIGIN: read_group_5 <= y_origin;
+                Y_INDEX_COUNT: read_group_5 <= y_index_count;
+                Y_COMMAND_POSITION: read_group_5 <= y_command_position;
+                Y_SHAPED_POSITION: read_group_5 <= y_shaped_position;
+                Y_SHAPED_VELOCITY: read_group_5 <= y_shaped_velocity;
+                Y_ERROR: read_group_5 <= y_error;
+                Y_COMMAND: read_group_5 <= y_command;
+                Y_DUTY: read_group_5 <= {15'd0, y_duty};
+                Y_SNAPSHOT_POSITION: read_group_5 <= shadow_y_user_position;
+                Y_SNAPSHOT_VELOCITY: read_group_5 <= shadow_y_velocity;
+                default: read_group_5 <= 32'd0;
+            endcase
+        end
+    end
+    assign avs_readdata = read_group_0 | read_group_1 | read_group_2 | read_group_3 | read_group_4
+        | read_group_5;
 
     initial begin
         waits = 1'd0;
@@ -1480,7 +1534,12 @@ module xy_stage_stage_registers (
         shadow_x_velocity = 32'sd0;
         shadow_y_user_position = 32'sd0;
         shadow_y_velocity = 32'sd0;
-        avs_readdata = 32'd0;
+        read_group_0 = 32'd0;
+        read_group_1 = 32'd0;
+        read_group_2 = 32'd0;
+        read_group_3 = 32'd0;
+        read_group_4 = 32'd0;
+        read_group_5 = 32'd0;
         irq = 1'd0;
     end
 endmodule

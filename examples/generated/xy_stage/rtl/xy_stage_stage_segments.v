@@ -92,6 +92,8 @@ module xy_stage_stage_segments (
     wire               integrator_overflowed;
     reg  [3:0]         phase;
     reg  [3:0]         phase_next;
+    reg                idle;
+    reg                idle_next;
     reg  [1:0]         state_q;
     reg  [1:0]         state_q_next;
     reg                wants_flush;
@@ -190,7 +192,7 @@ module xy_stage_stage_segments (
     assign preset_now = preset | wants_preset;
 
     // A tick: preset, else quick stop, else restart
-    assign takes_tick = tick & (phase == IDLE_PHASE);
+    assign takes_tick = tick & idle;
 
     // Three sums
     assign integrator_preset = takes_tick & preset_now;
@@ -228,6 +230,7 @@ module xy_stage_stage_segments (
 
     always @(*) begin
         phase_next = phase;
+        idle_next = idle;
         state_q_next = state_q;
         enabled_next = enabled;
         first_next = first;
@@ -271,7 +274,7 @@ module xy_stage_stage_segments (
 
         // A tick: preset, else quick stop, else restart
         drops = 1'd0;
-        if (phase != IDLE_PHASE) begin
+        if (!idle) begin
             phase_next = phase + ONE_PHASE;
             if (tick) begin
                 tick_missed_q_next = 1'd1;
@@ -279,6 +282,7 @@ module xy_stage_stage_segments (
         end
         if (takes_tick) begin
             phase_next = ACCELERATE_PHASE;
+            idle_next = 1'd0;
             enabled_next = enable;
             wants_flush_next = 1'd0;
             wants_quick_stop_next = 1'd0;
@@ -340,6 +344,7 @@ module xy_stage_stage_segments (
             end
             if (!reads) begin
                 phase_next = IDLE_PHASE;
+                idle_next = 1'd1;
             end
         end
 
@@ -358,12 +363,14 @@ module xy_stage_stage_segments (
         if (phase == THIRD_WORD_PHASE) begin
             third_next = read_data;
             phase_next = IDLE_PHASE;
+            idle_next = 1'd1;
         end
     end
 
     always @(posedge clk) begin
         if (rst) begin
             phase <= 4'd0;
+            idle <= 1'd1;
             state_q <= 2'd0;
             wants_flush <= 1'd0;
             wants_quick_stop <= 1'd0;
@@ -390,6 +397,7 @@ module xy_stage_stage_segments (
             tick_missed_q <= 1'd0;
         end else begin
             phase <= phase_next;
+            idle <= idle_next;
             state_q <= state_q_next;
             wants_flush <= wants_flush_next;
             wants_quick_stop <= wants_quick_stop_next;
@@ -419,6 +427,7 @@ module xy_stage_stage_segments (
 
     initial begin
         phase = 4'd0;
+        idle = 1'd1;
         state_q = 2'd0;
         wants_flush = 1'd0;
         wants_quick_stop = 1'd0;

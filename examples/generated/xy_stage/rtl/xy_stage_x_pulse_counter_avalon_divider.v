@@ -27,7 +27,6 @@ module xy_stage_x_pulse_counter_avalon_divider (
     localparam [6:0]  ONE_PHASE = 7'd1;
     localparam [6:0]  DIVIDE_PHASE = 7'd45;
     localparam [6:0]  FITS_PHASE = 7'd65;
-    localparam [6:0]  ZEROS_PHASE = 7'd80;
     localparam [6:0]  SIGN_PHASE = 7'd96;
     localparam [23:0] NO_CLOCKS = 24'd0;
     localparam [23:0] TICK_CLOCKS = 24'd5000;
@@ -36,8 +35,7 @@ module xy_stage_x_pulse_counter_avalon_divider (
     localparam        NO_BIT = 1'd0;
     localparam        ONE_BIT = 1'd1;
 
-    wire               downward;
-    wire               last_pass;
+    reg  [6:0]         next_phase;
     wire               magnitude_bit;
     reg                entering;
     reg  [17:0]        addend;
@@ -50,7 +48,6 @@ module xy_stage_x_pulse_counter_avalon_divider (
     wire [31:0]        result;
     reg  [23:0]        one_tick;
     reg  [6:0]         phase;
-    reg  [6:0]         phase_next;
     reg  [34:0]        product;
     reg  [34:0]        product_next;
     reg  [23:0]        remainder;
@@ -73,10 +70,14 @@ module xy_stage_x_pulse_counter_avalon_divider (
     reg                saturated_q_next;
     reg                overrun_q;
     reg                overrun_q_next;
+    reg                downward;
+    wire               downward_next;
+    reg                last_pass;
+    wire               last_pass_next;
+    reg                fits;
+    wire               fits_next;
 
     // Lowest bit first: negate what is negative
-    assign last_pass = phase >= SIGN_PHASE;
-    assign downward = last_pass | (phase < DIVIDE_PHASE);
     assign magnitude_bit = product[0] ^ (negative & turns_over);
 
     // Multiply: add T, or not, and shift down
@@ -88,6 +89,11 @@ module xy_stage_x_pulse_counter_avalon_divider (
     assign difference = shifted - {2'd0, divisor};
     assign subtracts = !difference[25];
 
+    // Which part a phase is of, told a clock ahead
+    assign last_pass_next = next_phase >= SIGN_PHASE;
+    assign downward_next = (next_phase >= SIGN_PHASE) | (next_phase < DIVIDE_PHASE);
+    assign fits_next = next_phase >= FITS_PHASE;
+
     // Outputs
     assign quotient = quotient_q;
     assign done = done_q;
@@ -96,7 +102,6 @@ module xy_stage_x_pulse_counter_avalon_divider (
     assign overrun = overrun_q;
 
     always @(*) begin
-        phase_next = phase;
         product_next = product;
         divisor_next = divisor;
         negative_next = negative;
@@ -126,13 +131,13 @@ module xy_stage_x_pulse_counter_avalon_divider (
 
         // Divide: a bit into the remainder; subtract
         next_bit = NO_BIT;
-        if (!downward & (phase < ZEROS_PHASE)) begin
+        if (!downward) begin
             next_bit = product[34];
         end
 
         // Beyond 31 bits: all ones
         kept_bit = NO_BIT;
-        if ((phase >= FITS_PHASE) & (subtracts | too_large)) begin
+        if (fits & (subtracts | too_large)) begin
             kept_bit = ONE_BIT;
         end
 
@@ -147,10 +152,13 @@ module xy_stage_x_pulse_counter_avalon_divider (
         if (subtracts) begin
             remainder_next = difference[23:0];
         end
+        next_phase = phase;
         if (busy_q) begin
-            phase_next = phase + ONE_PHASE;
+            next_phase = phase + ONE_PHASE;
         end
-        if ((subtracts & !downward) & (phase < FITS_PHASE)) begin
+
+        // Too large; while it multiplies, 0 is too small
+        if (subtracts & !fits) begin
             too_large_next = 1'd1;
         end
         if ((&phase)) begin
@@ -170,7 +178,7 @@ module xy_stage_x_pulse_counter_avalon_divider (
         end
         if (start & !busy_q) begin
             busy_q_next = 1'd1;
-            phase_next = FIRST_PHASE;
+            next_phase = FIRST_PHASE;
             product_next = {17'd0, steps};
             remainder_next = NO_CLOCKS;
             divisor_next = elapsed | one_tick;
@@ -194,8 +202,11 @@ module xy_stage_x_pulse_counter_avalon_divider (
             done_q <= 1'd0;
             saturated_q <= 1'd0;
             overrun_q <= 1'd0;
+            downward <= 1'd0;
+            last_pass <= 1'd0;
+            fits <= 1'd0;
         end else begin
-            phase <= phase_next;
+            phase <= next_phase;
             product <= product_next;
             remainder <= remainder_next;
             divisor <= divisor_next;
@@ -207,6 +218,9 @@ module xy_stage_x_pulse_counter_avalon_divider (
             done_q <= done_q_next;
             saturated_q <= saturated_q_next;
             overrun_q <= overrun_q_next;
+            downward <= downward_next;
+            last_pass <= last_pass_next;
+            fits <= fits_next;
         end
     end
 
@@ -223,6 +237,9 @@ module xy_stage_x_pulse_counter_avalon_divider (
         done_q = 1'd0;
         saturated_q = 1'd0;
         overrun_q = 1'd0;
+        downward = 1'd0;
+        last_pass = 1'd0;
+        fits = 1'd0;
     end
 
     // Bits that nothing reads.

@@ -14,7 +14,7 @@ module xy_stage_x_sliding_mode_avalon_registers (
     input  wire               avs_write,
     input  wire [3:0]         avs_byteenable,
     input  wire [31:0]        avs_writedata,
-    output reg  [31:0]        avs_readdata,
+    output wire [31:0]        avs_readdata,
     output reg                irq,
     input  wire               valid,
     output reg                from_pins,
@@ -334,42 +334,55 @@ module xy_stage_x_sliding_mode_avalon_registers (
         end
     end
 
+    // Each group of words has a register, which is 0 where the word read is of another group.
+    reg [31:0] read_group_0;
+    reg [31:0] read_group_1;
     always @(posedge clk) begin
         if (rst) begin
-            avs_readdata <= 32'd0;
+            read_group_0 <= 32'd0;
         end else if (avs_read) begin
             case (avs_address)
-                MAGIC: avs_readdata <= 32'h31434d53;
-                VERSION: avs_readdata <= 32'h00010000;
-                COMMIT: avs_readdata <= {31'd0, waits};
-                CONTROL: avs_readdata <= {31'd0, from_pins};
-                LAW: avs_readdata <= {22'd0, staged_bank, 3'd0, staged_modulo, 2'd0, staged_law};
-                STATUS: avs_readdata <= {9'd0, saturated_low, 1'd0, saturated_high, 4'd0, limited_low,
+                MAGIC: read_group_0 <= 32'h31434d53;
+                VERSION: read_group_0 <= 32'h00010000;
+                COMMIT: read_group_0 <= {31'd0, waits};
+                CONTROL: read_group_0 <= {31'd0, from_pins};
+                LAW: read_group_0 <= {22'd0, staged_bank, 3'd0, staged_modulo, 2'd0, staged_law};
+                STATUS: read_group_0 <= {9'd0, saturated_low, 1'd0, saturated_high, 4'd0, limited_low,
                     limited_high, overrun, busy};
-                FLAGS: avs_readdata <= {29'd0, flag_setting_refused, flag_commit_rejected, flag_partial_write};
-                INTERRUPT_STATE: avs_readdata <= {28'd0, irq_state_limited_low, irq_state_limited_high,
+                FLAGS: read_group_0 <= {29'd0, flag_setting_refused, flag_commit_rejected, flag_partial_write};
+                INTERRUPT_STATE: read_group_0 <= {28'd0, irq_state_limited_low, irq_state_limited_high,
                     irq_state_overrun, irq_state_valid};
-                INTERRUPT_ENABLE: avs_readdata <= {28'd0, irq_enable_limited_low, irq_enable_limited_high,
+                INTERRUPT_ENABLE: read_group_0 <= {28'd0, irq_enable_limited_low, irq_enable_limited_high,
                     irq_enable_overrun, irq_enable_valid};
-                POSITION_REFERENCE: avs_readdata <= host_x_0;
-                VELOCITY_REFERENCE: avs_readdata <= host_x_1;
-                ACCELERATION_REFERENCE: avs_readdata <= host_x_2;
-                POSITION: avs_readdata <= host_x_3;
-                VELOCITY: avs_readdata <= host_x_4;
-                ERROR: avs_readdata <= error;
-                SLIDING: avs_readdata <= sliding;
-                COMMAND: avs_readdata <= command;
-                DUTY: avs_readdata <= {14'd0, duty};
-                LIMITED_TICKS: avs_readdata <= {16'd0, limited_ticks};
-                SETTING_ADDRESS: avs_readdata <= {22'd0, setting_bank, 4'd0, setting_row};
-                SNAPSHOT_ERROR: avs_readdata <= shadow_error;
-                SNAPSHOT_SLIDING: avs_readdata <= shadow_sliding;
-                SNAPSHOT_COMMAND: avs_readdata <= shadow_command;
-                SNAPSHOT_DUTY: avs_readdata <= {14'd0, shadow_duty};
-                default: avs_readdata <= 32'd0;
+                POSITION_REFERENCE: read_group_0 <= host_x_0;
+                VELOCITY_REFERENCE: read_group_0 <= host_x_1;
+                ACCELERATION_REFERENCE: read_group_0 <= host_x_2;
+                default: read_group_0 <= 32'd0;
             endcase
         end
     end
+    always @(posedge clk) begin
+        if (rst) begin
+            read_group_1 <= 32'd0;
+        end else if (avs_read) begin
+            case (avs_address)
+                POSITION: read_group_1 <= host_x_3;
+                VELOCITY: read_group_1 <= host_x_4;
+                ERROR: read_group_1 <= error;
+                SLIDING: read_group_1 <= sliding;
+                COMMAND: read_group_1 <= command;
+                DUTY: read_group_1 <= {14'd0, duty};
+                LIMITED_TICKS: read_group_1 <= {16'd0, limited_ticks};
+                SETTING_ADDRESS: read_group_1 <= {22'd0, setting_bank, 4'd0, setting_row};
+                SNAPSHOT_ERROR: read_group_1 <= shadow_error;
+                SNAPSHOT_SLIDING: read_group_1 <= shadow_sliding;
+                SNAPSHOT_COMMAND: read_group_1 <= shadow_command;
+                SNAPSHOT_DUTY: read_group_1 <= {14'd0, shadow_duty};
+                default: read_group_1 <= 32'd0;
+            endcase
+        end
+    end
+    assign avs_readdata = read_group_0 | read_group_1;
 
     initial begin
         waits = 1'd0;
@@ -407,7 +420,8 @@ module xy_stage_x_sliding_mode_avalon_registers (
         shadow_sliding = 32'sd0;
         shadow_command = 32'sd0;
         shadow_duty = 18'sd0;
-        avs_readdata = 32'd0;
+        read_group_0 = 32'd0;
+        read_group_1 = 32'd0;
         irq = 1'd0;
     end
 endmodule

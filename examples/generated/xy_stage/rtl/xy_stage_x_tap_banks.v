@@ -129,7 +129,7 @@ module xy_stage_x_tap_banks (
     assign coefficient_bits = $unsigned(tap_coefficient);
     assign loaded_taps_write_data = ({18'd0, tap_delay} << 18) | {7'd0, coefficient_bits};
 
-    // Reading: the active table, or the old one
+    // Bank 1 is the lower half, all others the upper
     assign coefficient = $signed(word[17:0]);
     assign delay = word[24:18];
 
@@ -262,9 +262,11 @@ module xy_stage_x_tap_banks (
             read_bank = previous;
             taps = previous_taps;
         end
-        read_address = {1'd0, tap};
-        if (read_bank == BANK_2) begin
-            read_address = {1'd0, tap} | UPPER_HALF;
+
+        // Bank 1 is the lower half, all others the upper
+        read_address = {1'd0, tap} | UPPER_HALF;
+        if (read_bank == BANK_1) begin
+            read_address = {1'd0, tap};
         end
         word_bank = active;
         if (old_q) begin

@@ -17,7 +17,7 @@ module xy_stage_y_pulse_counter_avalon_registers (
     input  wire               avs_write,
     input  wire [3:0]         avs_byteenable,
     input  wire [31:0]        avs_writedata,
-    output reg  [31:0]        avs_readdata,
+    output wire [31:0]        avs_readdata,
     output reg                irq,
     output reg  [5:0]         filter_clocks,
     output reg  [2:0]         mode,
@@ -281,42 +281,55 @@ module xy_stage_y_pulse_counter_avalon_registers (
         end
     end
 
+    // Each group of words has a register, which is 0 where the word read is of another group.
+    reg [31:0] read_group_0;
+    reg [31:0] read_group_1;
     always @(posedge clk) begin
         if (rst) begin
-            avs_readdata <= 32'd0;
+            read_group_0 <= 32'd0;
         end else if (avs_read) begin
             case (avs_address)
-                MAGIC: avs_readdata <= 32'h544e4350;
-                VERSION: avs_readdata <= 32'h00010000;
-                TICK_CLOCKS: avs_readdata <= 32'h00001388;
-                LINES: avs_readdata <= {13'd0, differential, invert, swap, 5'd0, mode, 2'd0, filter_clocks};
-                INDEX: avs_readdata <= {24'd0, index_gate, 2'd0, index_presets, index_always};
-                VELOCITY_FILTER: avs_readdata <= {16'd0, timeout, 3'd0, velocity_m, 2'd0, smoothing};
-                PRESET_VALUE: avs_readdata <= preset_value;
-                INTERRUPT_STATE: avs_readdata <= {27'd0, irq_state_velocity_missed, irq_state_disagreement,
+                MAGIC: read_group_0 <= 32'h544e4350;
+                VERSION: read_group_0 <= 32'h00010000;
+                TICK_CLOCKS: read_group_0 <= 32'h00001388;
+                LINES: read_group_0 <= {13'd0, differential, invert, swap, 5'd0, mode, 2'd0, filter_clocks};
+                INDEX: read_group_0 <= {24'd0, index_gate, 2'd0, index_presets, index_always};
+                VELOCITY_FILTER: read_group_0 <= {16'd0, timeout, 3'd0, velocity_m, 2'd0, smoothing};
+                PRESET_VALUE: read_group_0 <= preset_value;
+                INTERRUPT_STATE: read_group_0 <= {27'd0, irq_state_velocity_missed, irq_state_disagreement,
                     irq_state_illegal, irq_state_index_seen, irq_state_tick};
-                INTERRUPT_ENABLE: avs_readdata <= {27'd0, irq_enable_velocity_missed, irq_enable_disagreement,
+                INTERRUPT_ENABLE: read_group_0 <= {27'd0, irq_enable_velocity_missed, irq_enable_disagreement,
                     irq_enable_illegal, irq_enable_index_seen, irq_enable_tick};
-                FLAGS: avs_readdata <= {30'd0, flag_saturated, flag_partial_write};
-                STATUS: avs_readdata <= {8'd0, illegal_count, 5'd0, level_z, level_b, level_a, 2'd0,
+                FLAGS: read_group_0 <= {30'd0, flag_saturated, flag_partial_write};
+                STATUS: read_group_0 <= {8'd0, illegal_count, 5'd0, level_z, level_b, level_a, 2'd0,
                     velocity_pending, velocity_missed, disagreement, illegal, index_armed, index_seen};
-                POSITION: avs_readdata <= position;
-                VELOCITY: avs_readdata <= velocity;
-                TIME_STAMP: avs_readdata <= time_stamp;
-                TICK_COUNT: avs_readdata <= tick_count;
-                COUNT: avs_readdata <= count;
-                INDEX_COUNT: avs_readdata <= index_count;
-                ORIGIN: avs_readdata <= origin;
-                SNAPSHOT_POSITION: avs_readdata <= shadow_position;
-                SNAPSHOT_VELOCITY: avs_readdata <= shadow_velocity;
-                SNAPSHOT_TIME_STAMP: avs_readdata <= shadow_time_stamp;
-                SNAPSHOT_TICK_COUNT: avs_readdata <= shadow_tick_count;
-                SNAPSHOT_COUNT: avs_readdata <= shadow_count;
-                SNAPSHOT_INDEX_COUNT: avs_readdata <= shadow_index_count;
-                default: avs_readdata <= 32'd0;
+                POSITION: read_group_0 <= position;
+                default: read_group_0 <= 32'd0;
             endcase
         end
     end
+    always @(posedge clk) begin
+        if (rst) begin
+            read_group_1 <= 32'd0;
+        end else if (avs_read) begin
+            case (avs_address)
+                VELOCITY: read_group_1 <= velocity;
+                TIME_STAMP: read_group_1 <= time_stamp;
+                TICK_COUNT: read_group_1 <= tick_count;
+                COUNT: read_group_1 <= count;
+                INDEX_COUNT: read_group_1 <= index_count;
+                ORIGIN: read_group_1 <= origin;
+                SNAPSHOT_POSITION: read_group_1 <= shadow_position;
+                SNAPSHOT_VELOCITY: read_group_1 <= shadow_velocity;
+                SNAPSHOT_TIME_STAMP: read_group_1 <= shadow_time_stamp;
+                SNAPSHOT_TICK_COUNT: read_group_1 <= shadow_tick_count;
+                SNAPSHOT_COUNT: read_group_1 <= shadow_count;
+                SNAPSHOT_INDEX_COUNT: read_group_1 <= shadow_index_count;
+                default: read_group_1 <= 32'd0;
+            endcase
+        end
+    end
+    assign avs_readdata = read_group_0 | read_group_1;
 
     initial begin
         filter_clocks = 6'd8;
@@ -352,7 +365,8 @@ module xy_stage_y_pulse_counter_avalon_registers (
         shadow_tick_count = 32'd0;
         shadow_count = 32'sd0;
         shadow_index_count = 32'sd0;
-        avs_readdata = 32'd0;
+        read_group_0 = 32'd0;
+        read_group_1 = 32'd0;
         irq = 1'd0;
     end
 endmodule

@@ -23,7 +23,7 @@ module xy_stage_y_shaper_avalon_registers (
     input  wire               avs_write,
     input  wire [3:0]         avs_byteenable,
     input  wire [31:0]        avs_writedata,
-    output reg  [31:0]        avs_readdata,
+    output wire [31:0]        avs_readdata,
     output reg                irq,
     output reg                from_pins,
     input  wire               busy,
@@ -264,38 +264,51 @@ module xy_stage_y_shaper_avalon_registers (
         end
     end
 
+    // Each group of words has a register, which is 0 where the word read is of another group.
+    reg [31:0] read_group_0;
+    reg [31:0] read_group_1;
     always @(posedge clk) begin
         if (rst) begin
-            avs_readdata <= 32'd0;
+            read_group_0 <= 32'd0;
         end else if (avs_read) begin
             case (avs_address)
-                MAGIC: avs_readdata <= 32'h52504853;
-                VERSION: avs_readdata <= 32'h00010000;
-                WORD_BITS: avs_readdata <= 32'h00000020;
-                CHANNELS: avs_readdata <= 32'h00000003;
-                RING_SAMPLES: avs_readdata <= 32'h00000080;
-                MOST_TAPS: avs_readdata <= 32'h00000040;
-                MACHINE_TAPS: avs_readdata <= 32'h00000005;
-                COEFFICIENT_FRACTION: avs_readdata <= 32'h00000010;
-                MODULO: avs_readdata <= 32'h00000000;
-                CONTROL: avs_readdata <= {31'd0, from_pins};
-                STATUS: avs_readdata <= {28'd0, bank, swap_pending, busy};
-                FLAGS: avs_readdata <= {28'd0, flag_partial_write, flag_refused, flag_overrun, flag_saturated};
-                INTERRUPT_STATE: avs_readdata <= {28'd0, irq_state_refused, irq_state_overrun, irq_state_saturated,
-                    irq_state_valid};
-                INTERRUPT_ENABLE: avs_readdata <= {28'd0, irq_enable_refused, irq_enable_overrun,
-                    irq_enable_saturated, irq_enable_valid};
-                X_0: avs_readdata <= host_x_0;
-                X_1: avs_readdata <= host_x_1;
-                X_2: avs_readdata <= host_x_2;
-                Y_0: avs_readdata <= y_0;
-                Y_1: avs_readdata <= y_1;
-                Y_2: avs_readdata <= y_2;
-                TAP_ADDRESS: avs_readdata <= {22'd0, tap_bank, 2'd0, tap_index};
-                default: avs_readdata <= 32'd0;
+                MAGIC: read_group_0 <= 32'h52504853;
+                VERSION: read_group_0 <= 32'h00010000;
+                WORD_BITS: read_group_0 <= 32'h00000020;
+                CHANNELS: read_group_0 <= 32'h00000003;
+                RING_SAMPLES: read_group_0 <= 32'h00000080;
+                MOST_TAPS: read_group_0 <= 32'h00000040;
+                MACHINE_TAPS: read_group_0 <= 32'h00000005;
+                COEFFICIENT_FRACTION: read_group_0 <= 32'h00000010;
+                MODULO: read_group_0 <= 32'h00000000;
+                CONTROL: read_group_0 <= {31'd0, from_pins};
+                STATUS: read_group_0 <= {28'd0, bank, swap_pending, busy};
+                default: read_group_0 <= 32'd0;
             endcase
         end
     end
+    always @(posedge clk) begin
+        if (rst) begin
+            read_group_1 <= 32'd0;
+        end else if (avs_read) begin
+            case (avs_address)
+                FLAGS: read_group_1 <= {28'd0, flag_partial_write, flag_refused, flag_overrun, flag_saturated};
+                INTERRUPT_STATE: read_group_1 <= {28'd0, irq_state_refused, irq_state_overrun, irq_state_saturated,
+                    irq_state_valid};
+                INTERRUPT_ENABLE: read_group_1 <= {28'd0, irq_enable_refused, irq_enable_overrun,
+                    irq_enable_saturated, irq_enable_valid};
+                X_0: read_group_1 <= host_x_0;
+                X_1: read_group_1 <= host_x_1;
+                X_2: read_group_1 <= host_x_2;
+                Y_0: read_group_1 <= y_0;
+                Y_1: read_group_1 <= y_1;
+                Y_2: read_group_1 <= y_2;
+                TAP_ADDRESS: read_group_1 <= {22'd0, tap_bank, 2'd0, tap_index};
+                default: read_group_1 <= 32'd0;
+            endcase
+        end
+    end
+    assign avs_readdata = read_group_0 | read_group_1;
 
     initial begin
         from_pins = 1'd0;
@@ -324,7 +337,8 @@ module xy_stage_y_shaper_avalon_registers (
         swap = 1'd0;
         swap_bank = 2'd0;
         swap_how = 2'd0;
-        avs_readdata = 32'd0;
+        read_group_0 = 32'd0;
+        read_group_1 = 32'd0;
         irq = 1'd0;
     end
 endmodule

@@ -24,10 +24,13 @@ module xy_stage_y_sliding_mode_avalon_sticky (
     reg  [6:0] by_error;
     reg  [6:0] by_rate;
     reg  [6:0] by_sum;
+    reg  [6:0] found;
+    wire [6:0] found_next;
     reg  [6:0] flags_q;
     wire [6:0] flags_q_next;
 
-    assign flags_q_next = ((kept | by_error) | by_rate) | by_sum;
+    assign found_next = (by_error | by_rate) | by_sum;
+    assign flags_q_next = kept | found;
     assign flags = flags_q;
 
     always @(*) begin
@@ -51,13 +54,16 @@ module xy_stage_y_sliding_mode_avalon_sticky (
 
     always @(posedge clk) begin
         if (rst) begin
+            found <= 7'd0;
             flags_q <= 7'd0;
         end else begin
+            found <= found_next;
             flags_q <= flags_q_next;
         end
     end
 
     initial begin
+        found = 7'd0;
         flags_q = 7'd0;
     end
 endmodule

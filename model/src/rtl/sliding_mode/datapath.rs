@@ -41,6 +41,8 @@ pub(super) struct Datapath {
     pub(super) limited_ticks: u16,
     pub(super) saturated_high: u8,
     pub(super) saturated_low: u8,
+    /// What was cut in the last clock, high and low: flags of the next.
+    found: (u8, u8),
     /// The integral's gain and the feedback's have opposite signs.
     opposes: bool,
     /// What the running step multiplies.
@@ -82,9 +84,21 @@ impl Datapath {
         (self.saturated_high, self.saturated_low) = (0, 0);
     }
 
+    /// What was cut in the clock before becomes flags.
+    pub(super) fn raise_flags(&mut self) {
+        let (high, low) = std::mem::take(&mut self.found);
+        self.saturated_high |= high;
+        self.saturated_low |= low;
+    }
+
+    /// Flags are about to rise.
+    pub(super) fn has_found(&self) -> bool {
+        self.found != (0, 0)
+    }
+
     fn flag(&mut self, what: Saturation, (value, high, low): (i32, bool, bool)) -> i32 {
-        self.saturated_high |= u8::from(high) << what as u8;
-        self.saturated_low |= u8::from(low) << what as u8;
+        self.found.0 |= u8::from(high) << what as u8;
+        self.found.1 |= u8::from(low) << what as u8;
         value
     }
 

@@ -97,6 +97,7 @@ impl State {
             self.datapath.clear_flags();
             self.overrun = false;
         }
+        self.datapath.raise_flags();
         self.valid = false;
         if self.busy {
             self.overrun |= inputs.start;
@@ -130,7 +131,7 @@ impl State {
         let data = &self.datapath;
         let flags = self.overrun || data.saturated_high | data.saturated_low != 0;
         let clears = (inputs.clear_flags && flags) || (inputs.clear_integral && data.has_integral());
-        if inputs.rst || inputs.start || clears || self.valid {
+        if inputs.rst || inputs.start || clears || self.valid || data.has_found() {
             return 0;
         }
         let left = match self.phase {
@@ -228,7 +229,7 @@ impl Moore for SlidingMode {
     }
 }
 
-/// The fast path: a tick in one call, with what the outputs show at the end of its pass.
+/// The fast path: a tick in one call, with what the outputs show at the end of its pass, and the flags a clock later.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct TickController {
     datapath: Datapath,
@@ -248,6 +249,7 @@ impl TickController {
             self.datapath.add(step);
             self.datapath.settle(step);
         }
+        self.datapath.raise_flags();
         let ended = State {
             datapath: self.datapath.clone(),
             valid: true,

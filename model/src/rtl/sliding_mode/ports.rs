@@ -110,7 +110,7 @@ pub struct Outputs {
     pub limited_low: bool,
     /// For how many ticks in a row commands were cut; stops at 65,535.
     pub limited_ticks: u16,
-    /// Sticky: what was cut at its upper end; bits as in [`Saturation`].
+    /// Sticky: what was cut at its upper end, a clock after the word; bits as in [`Saturation`].
     pub saturated_high: u8,
     /// Sticky: what was cut at its lower end.
     pub saturated_low: u8,
