@@ -139,12 +139,12 @@ fn formal_a_control_a_clock_late_is_found() {
 }
 
 #[test]
-fn formal_a_tick_a_clock_early_is_found() {
+fn formal_a_division_that_starts_with_its_tick_is_found() {
     fails(
         "time_base",
-        "LAST_PHASE = 17'd16",
-        "LAST_PHASE = 17'd15",
-        "tick_after_all",
+        "divide_q <= tick_q;",
+        "divide_q <= tick_q_next;",
+        "divide_follows",
     );
 }
 
