@@ -13,11 +13,12 @@ const COLUMNS: usize = 100;
 
 pub(super) fn body(map: &RegisterMap) -> String {
     let clock = ("input  wire", bits(1), "clk".to_owned());
-    let is_grouped = read_groups(map).len() > 1;
+    let groups = read_groups(map);
+    let data = read_flops(groups.len());
     let ports = map.ports().iter().map(|port| {
         let keyword = match port.direction {
             Direction::Input => "input  wire",
-            Direction::Output if is_grouped && port.name == "avs_readdata" => "output wire",
+            Direction::Output if data.len() > 1 && port.name == "avs_readdata" => "output wire",
             Direction::Output => "output reg ",
         };
         let ty = Type {
@@ -37,9 +38,9 @@ pub(super) fn body(map: &RegisterMap) -> String {
         lines.section(|lines| shadows(lines, map));
         lines.section(|lines| interrupt(lines, map));
         lines.line("");
-        reads(lines, map);
+        reads(lines, &groups, &data);
         lines.line("");
-        power_up(lines, map);
+        power_up(lines, map, &data);
         lines.section(|lines| unused(lines, map));
     });
     lines.text
@@ -229,8 +230,11 @@ fn refusals(lines: &mut Lines, map: &RegisterMap) {
 /// Words that are read in a clock: with more of them the way through the decode is the longest of a stage.
 const GROUP_WORDS: usize = 16;
 
-/// The registers that can be read, with what they show, in groups of about the same size.
-fn read_groups(map: &RegisterMap) -> Vec<Vec<(&Register, Vec<String>)>> {
+/// Registers that can be read, with the pieces of the word that each shows.
+type ReadGroup<'a> = Vec<(&'a Register, Vec<String>)>;
+
+/// All that can be read, in groups of about the same size.
+fn read_groups(map: &RegisterMap) -> Vec<ReadGroup<'_>> {
     let readable = |register| read_value(map, register).map(|value| (register, value));
     let all: Vec<_> = map.registers().iter().filter_map(readable).collect();
     let groups = all.len().div_ceil(GROUP_WORDS).max(1);
@@ -247,14 +251,12 @@ fn read_flops(groups: usize) -> Vec<Flop> {
     (0..groups).map(|at| (bits(32), name(at), 0)).collect()
 }
 
-fn reads(lines: &mut Lines, map: &RegisterMap) {
-    let groups = read_groups(map);
-    let flops = read_flops(groups.len());
+fn reads(lines: &mut Lines, groups: &[ReadGroup<'_>], flops: &[Flop]) {
     if groups.len() > 1 {
         lines.line("// Each group of words has a register, which is 0 where the word read is of another group.");
-        declare(lines, &flops, "");
+        declare(lines, flops, "");
     }
-    for (group, flop) in groups.iter().zip(&flops) {
+    for (group, flop) in groups.iter().zip(flops) {
         clocked(lines, std::slice::from_ref(flop), "else if (avs_read)", |lines| {
             lines.nest("case (avs_address)", "endcase", |lines| {
                 for (register, value) in group {
@@ -269,7 +271,7 @@ fn reads(lines: &mut Lines, map: &RegisterMap) {
         });
     }
     if groups.len() > 1 {
-        let names: Vec<String> = flops.into_iter().map(|(_, name, _)| name).collect();
+        let names: Vec<String> = flops.iter().map(|(_, name, _)| name.clone()).collect();
         joined(lines, "assign avs_readdata = ", &names, " | ", ";");
     }
 }
@@ -291,10 +293,10 @@ fn read_value(map: &RegisterMap, register: &Register) -> Option<Vec<String>> {
     }
 }
 
-fn power_up(lines: &mut Lines, map: &RegisterMap) {
+fn power_up(lines: &mut Lines, map: &RegisterMap, data: &[Flop]) {
     let mut all: Vec<Flop> = map.registers().iter().flat_map(flops).collect();
     all.extend(shadow_flops(map));
-    all.extend(read_flops(read_groups(map).len()));
+    all.extend_from_slice(data);
     if map.find(|access| *access == Access::InterruptState).is_some() {
         all.push((bits(1), "irq".to_owned(), 0));
     }
