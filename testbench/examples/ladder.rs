@@ -108,20 +108,8 @@ fn climb(name: &str, options: &Options) -> Result<Rung, Box<dyn Error>> {
             &[],
             &[("assertions", "properties"), ("covers reached", "covers")],
         ),
-        "mutation" => {
-            let arguments = [
-                "--clocks".to_owned(),
-                number(1_000_000, 20_000),
-                "--mutants".to_owned(),
-                number(60, 6),
-            ];
-            example(
-                name,
-                "mutate",
-                &arguments,
-                &[("mutants", "mutants"), ("unknown", "unknown")],
-            )
-        }
+        // Always the published sample: of others, or in fewer clocks, a mutant may stay unknown.
+        "mutation" => example(name, "mutate", &[], &[("mutants", "mutants"), ("unknown", "unknown")]),
         "coverage" => example(
             name,
             "coverage",

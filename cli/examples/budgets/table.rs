@@ -22,7 +22,7 @@ pub(crate) fn page(tool: &str, measured: &[Measured]) -> String {
          Without `--write` the command compares, and fails where a figure has grown.\n\n\
          - **LUT**: logic, with a logic element's carry chain and synchronous clear. **LUT by Yosys alone** is without both,\n  \
          which `synth_intel -family cycloneive` does not map: sums and resets are in it as logic.\n\
-         - **LE**: LUT and the flip-flops that no LUT drives.\n\
+         - **LE**: LUT and the flip-flops that no LUT drives and no multiplier has built in.\n\
          - **M4K**: counted by the shape of the ports. **18×18**: multipliers by the width of their operands.\n\
          - **budget**: LUT + flip-flops, where there is one. The note tells what is above it (⚠), or what takes most.\n\n\
          {HEAD}",

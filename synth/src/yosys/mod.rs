@@ -7,7 +7,7 @@
 //!   logic element it shares; then counted as `netlist` says. Quartus packs differently; its figures decide. Yosys does not
 //!   know that element's carry chain and synchronous clear; `logic_element.v` adds both ([`Mapping`]).
 //! - Memory and multipliers: counted from their sizes and left out of the mapping, since Yosys 0.23 maps neither for all
-//!   families. The registers of a multiplier count as flip-flops although a device can absorb them.
+//!   families. The registers of a multiplier count as flip-flops, but take no logic element: it has them built in.
 //!
 //! Blocks are the instances in the top module, each flattened; what lies between them is a row under the top's name.
 
@@ -15,6 +15,7 @@ mod ecp5;
 mod family;
 mod gates;
 mod m4k;
+mod multiplier_registers;
 mod netlist;
 mod process;
 

@@ -1,7 +1,8 @@
 //! Counting a mapped netlist, as Yosys's `write_json` describes it.
 //!
 //! - Logic elements: LUTs, a bit of a carry chain being one, plus the flip-flops that cannot share a LUT's element. A
-//!   flip-flop shares the element of the LUT that drives its data input; a LUT gives room to one.
+//!   flip-flop shares the element of the LUT that drives its data input; a LUT gives room to one. Those that are a
+//!   multiplier's own registers take no element (`multiplier_registers`).
 //! - ALMs: a 6-input LUT fills one, two smaller LUTs share one; one for every four flip-flops where those need more.
 //! - Memory bits and multipliers: from the sizes of the black boxes (`cells.v`), the same for every tool version.
 
@@ -11,7 +12,7 @@ use std::ops::AddAssign;
 use serde::{Deserialize, Serialize};
 
 use super::family::{Cell, Family};
-use super::m4k;
+use super::{m4k, multiplier_registers};
 
 /// What a block takes of a device.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
@@ -59,26 +60,33 @@ pub(super) struct Netlist {
 }
 
 #[derive(Debug, Deserialize)]
-struct Module {
+pub(super) struct Module {
     #[serde(default)]
     attributes: HashMap<String, serde_json::Value>,
-    cells: BTreeMap<String, NetlistCell>,
+    #[serde(default)]
+    pub(super) ports: BTreeMap<String, Port>,
+    pub(super) cells: BTreeMap<String, NetlistCell>,
 }
 
 #[derive(Debug, Deserialize)]
-struct NetlistCell {
+pub(super) struct Port {
+    pub(super) bits: Vec<Bit>,
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct NetlistCell {
     #[serde(rename = "type")]
-    kind: String,
+    pub(super) kind: String,
     #[serde(default)]
     parameters: HashMap<String, serde_json::Value>,
     #[serde(default)]
-    connections: HashMap<String, Vec<Bit>>,
+    pub(super) connections: HashMap<String, Vec<Bit>>,
 }
 
 /// A wire's number, or a constant `0`, `1`, `x`, `z`.
 #[derive(Debug, PartialEq, Eq, Hash, Deserialize)]
 #[serde(untagged)]
-enum Bit {
+pub(super) enum Bit {
     Wire(u64),
     Constant(String),
 }
@@ -130,6 +138,7 @@ fn count(netlist: &Netlist, module: &Module, family: Family) -> Result<Resources
     let mut luts = BTreeMap::new(); // output wire → name
     let mut flip_flop_data = Vec::new();
     let mut half_luts = 0u64;
+    let in_multipliers = multiplier_registers::of(module);
     for (name, cell) in &module.cells {
         match cell.kind.as_str() {
             "cycloneive_lcell_comb" => {
@@ -140,6 +149,9 @@ fn count(netlist: &Netlist, module: &Module, family: Family) -> Result<Resources
             }
             "dffeas" => {
                 total.registers += 1;
+                if in_multipliers.contains(name.as_str()) {
+                    continue;
+                }
                 flip_flop_data.extend(cell.connections.get("d").into_iter().flatten());
             }
             "MISTRAL_ALUT6" => wide_luts += 1,
@@ -168,7 +180,7 @@ fn count(netlist: &Netlist, module: &Module, family: Family) -> Result<Resources
     total.cells = match family.device().cell {
         Cell::LogicElement => {
             total.luts = half_luts;
-            half_luts + total.registers - packed(&luts, &flip_flop_data)
+            half_luts + flip_flop_data.len() as u64 - packed(&luts, &flip_flop_data)
         }
         Cell::AdaptiveLogicModule => (wide_luts + half_luts.div_ceil(2)).max(total.registers.div_ceil(4)),
     };
