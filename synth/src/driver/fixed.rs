@@ -3,16 +3,21 @@
 use super::{File, file};
 
 /// Path below the driver's folder, and text.
-const FILES: [(&str, &str); 17] = [
+type Fixed = (&'static str, &'static str);
+
+/// Every stage's.
+const CORE: [Fixed; 19] = [
     ("inc/posicast_io.h", include_str!("c/inc/posicast_io.h")),
     ("inc/posicast_machine.h", include_str!("c/inc/posicast_machine.h")),
     ("inc/posicast_plan.h", include_str!("c/inc/posicast_plan.h")),
     ("inc/posicast_result.h", include_str!("c/inc/posicast_result.h")),
     ("inc/posicast_segments.h", include_str!("c/inc/posicast_segments.h")),
     ("inc/posicast_driver.h", include_str!("c/inc/posicast_driver.h")),
+    ("inc/posicast_homing.h", include_str!("c/inc/posicast_homing.h")),
     ("src/posicast_plan.c", include_str!("c/src/posicast_plan.c")),
     ("src/posicast_segments.c", include_str!("c/src/posicast_segments.c")),
     ("src/posicast_driver.c", include_str!("c/src/posicast_driver.c")),
+    ("src/posicast_homing.c", include_str!("c/src/posicast_homing.c")),
     ("src/posicast_tables.c", include_str!("c/src/posicast_tables.c")),
     ("src/posicast_wait.c", include_str!("c/src/posicast_wait.c")),
     ("src/posicast_wait.h", include_str!("c/src/posicast_wait.h")),
@@ -29,9 +34,16 @@ const FILES: [(&str, &str); 17] = [
     ("linux/Makefile", include_str!("c/linux/Makefile")),
 ];
 
-pub(super) fn files() -> Vec<File> {
-    FILES
-        .iter()
+/// Where an axis has the registers for it.
+const BRING_UP: [Fixed; 2] = [
+    ("inc/posicast_bring_up.h", include_str!("c/inc/posicast_bring_up.h")),
+    ("src/posicast_bring_up.c", include_str!("c/src/posicast_bring_up.c")),
+];
+
+pub(super) fn files(with_bring_up: bool) -> Vec<File> {
+    let bring_up = BRING_UP.iter().filter(|_| with_bring_up);
+    CORE.iter()
+        .chain(bring_up)
         .map(|(path, text)| file(path, (*text).to_owned()))
         .collect()
 }

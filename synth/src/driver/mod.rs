@@ -65,10 +65,11 @@ pub struct AxisData {
 
 /// The driver of a stage.
 pub fn stage_files(driver: &StageDriver<'_>) -> Vec<File> {
-    let mut files = fixed::files();
+    let mut files = fixed::files(driver.config.axes.iter().any(|axis| axis.bring_up.is_some()));
     files.push(file("inc/posicast_stage_regs.h", stage_registers::header(driver)));
     files.extend(machine::files(driver));
-    files.extend(system::files(driver));
+    let system = system::files(driver, &files);
+    files.extend(system);
     files
 }
 

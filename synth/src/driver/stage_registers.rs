@@ -38,6 +38,7 @@ pub(super) fn header(driver: &StageDriver<'_>) -> String {
     let mut text = macros::head("POSICAST_STAGE_REGS_H", &about);
     text.push_str("\n#include <stdint.h>\n\n#include \"posicast_io.h\"\n");
     numbers(&mut text, map);
+    bring_up(&mut text, driver);
     text.push_str("\n/* ---- Window 0: the stage ---- */\n");
     for register in map.registers().iter().filter(|register| register.offset < WINDOW_WORDS) {
         macros::register(&mut text, STAGE, register, map.fields(register), &Place::Fixed);
@@ -89,6 +90,17 @@ fn numbers(text: &mut String, map: &RegisterMap) {
         let _ = writeln!(text, "#define POSICAST_{name} {value}u");
     }
     text.push_str("#define POSICAST_AXIS_WORD(axis, reg) (POSICAST_WINDOW_WORDS * ((uint32_t)(axis) + 1u) + (reg))\n");
+}
+
+/// Which axes have the registers for bringing them up.
+fn bring_up(text: &mut String, driver: &StageDriver<'_>) {
+    let axes = driver.config.axes.iter().enumerate();
+    let mask: u32 = axes
+        .filter(|(_, axis)| axis.bring_up.is_some())
+        .map(|(place, _)| 1 << place)
+        .sum();
+    text.push_str("\n/* Mask of the axes with a trace memory and test signals. */\n");
+    let _ = writeln!(text, "#define POSICAST_BRING_UP_AXES {mask:#x}u");
 }
 
 /// The registers of all windows of axes, by their place.

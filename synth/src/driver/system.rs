@@ -1,6 +1,6 @@
 //! What a system needs to find the driver: `_sw.tcl` and macros for the HAL, the overlay of a device tree.
 
-use super::{File, StageDriver, file};
+use super::{FOLDER, File, StageDriver, file};
 use posicast_model::rtl::registers::RegisterMap;
 
 /// Name in device trees, before the version of the register map: as the component for Platform Designer has it.
@@ -18,18 +18,29 @@ fn version(map: &RegisterMap) -> String {
     format!("{}.{}", part("major"), part("minor"))
 }
 
-pub(super) fn files(driver: &StageDriver<'_>) -> Vec<File> {
+/// `others`: the rest of the driver, which a system compiles.
+pub(super) fn files(driver: &StageDriver<'_>, others: &[File]) -> Vec<File> {
     let top = driver.top;
-    vec![
-        file(&format!("{top}_sw.tcl"), sw_tcl(driver)),
-        file(&format!("HAL/inc/{top}.h"), hal_header(top)),
-        file(&format!("linux/{}.dtso", driver.machine), overlay(driver)),
-    ]
+    let hal = file(&format!("HAL/inc/{top}.h"), hal_header(top));
+    let compiled = others.iter().chain([&hal]);
+    let script = sw_tcl(driver, compiled.map(|file| file.path.as_str()));
+    let overlay = file(&format!("linux/{}.dtso", driver.machine), overlay(driver));
+    vec![file(&format!("{top}_sw.tcl"), script), hal, overlay]
 }
 
 /// What `nios2-bsp` and `niosv-bsp` read.
-fn sw_tcl(driver: &StageDriver<'_>) -> String {
-    let (top, machine, version) = (driver.top, driver.machine, version(driver.map));
+fn sw_tcl<'a>(driver: &StageDriver<'_>, paths: impl Iterator<Item = &'a str>) -> String {
+    let (top, version) = (driver.top, version(driver.map));
+    let inside = paths.filter_map(|path| path.strip_prefix(FOLDER)?.strip_prefix('/'));
+    let mut lines: Vec<String> = inside
+        .filter(|path| !path.starts_with("linux/"))
+        .map(|path| match path.ends_with(".c") {
+            true => format!("add_sw_property c_source {path}"),
+            false => format!("add_sw_property include_source {path}"),
+        })
+        .collect();
+    lines.sort();
+    let files = lines.join("\n");
     format!(
         "# Driver of {top} for the HAL of Nios II and Nios V. Written by posicast.
 create_driver {top}_driver
@@ -42,24 +53,7 @@ set_sw_property auto_initialize true
 set_sw_property isr_preemption_supported true
 set_sw_property supported_interrupt_apis \"enhanced_interrupt_api\"
 
-add_sw_property c_source src/posicast_driver.c
-add_sw_property c_source src/posicast_segments.c
-add_sw_property c_source src/posicast_tables.c
-add_sw_property c_source src/posicast_wait.c
-add_sw_property c_source src/posicast_plan.c
-add_sw_property c_source src/machine_{machine}.c
-add_sw_property c_source HAL/src/posicast_stage_hal.c
-add_sw_property include_source inc/posicast_io.h
-add_sw_property include_source inc/posicast_result.h
-add_sw_property include_source inc/posicast_stage_regs.h
-add_sw_property include_source inc/posicast_segments.h
-add_sw_property include_source inc/posicast_plan.h
-add_sw_property include_source inc/posicast_machine.h
-add_sw_property include_source inc/posicast_driver.h
-add_sw_property include_source inc/machine_{machine}.h
-add_sw_property include_source src/posicast_wait.h
-add_sw_property include_source HAL/inc/posicast_stage_hal.h
-add_sw_property include_source HAL/inc/{top}.h
+{files}
 add_sw_property include_directory inc
 add_sw_property include_directory HAL/inc
 add_sw_property alt_cppflags_addition \"-DPOSICAST_HAL\"

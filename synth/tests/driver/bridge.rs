@@ -1,6 +1,6 @@
 //! Register accesses of a C program, line by line over its pipes, on a stage with its machine.
 
-use crate::support::{Driver, beside, machine, stage};
+use crate::support::{Driver, beside, stage};
 use posicast_model::plant::axis::{AxisPlant, PlantOptions};
 use posicast_model::rtl::component::Component;
 use posicast_testbench::blocks::{ComponentBlock, Sources};
@@ -13,6 +13,9 @@ use std::process::{Command, Stdio};
 
 /// Clocks that pass when the program pauses: half a tick.
 const PAUSE_CLOCKS: u64 = 2500;
+
+/// Where the simulated encoders have their index.
+pub(crate) const INDEX_AT: i64 = 22;
 
 /// What a program wants of its hardware.
 pub(crate) enum Asked<'a> {
@@ -65,33 +68,49 @@ pub(crate) struct Bridge {
 }
 
 impl Bridge {
-    /// With the Verilog beside the model, if wanted.
-    pub(crate) fn new(driver: &Driver, with_rtl: bool) -> Self {
-        let machine = machine();
-        let stage = stage(&machine);
+    /// The stage of the driver's machine, and this program; with the Verilog beside the model, if wanted.
+    pub(crate) fn new(driver: &Driver, program: &str, with_rtl: bool) -> Self {
+        let machine = &driver.machine;
+        let stage = stage(machine);
         let component = Component::stage(&stage.config).unwrap();
         let device = with_rtl.then(|| {
             let block = ComponentBlock::new(component.clone(), "xy_stage", "xy");
             let sources = Sources::write(&block).unwrap();
             Box::new(sources.verilated(&block, 1).unwrap()) as Box<dyn Device>
         });
-        let plant = |axis| AxisPlant::new(axis, &machine.clock, &PlantOptions::default()).unwrap();
+        let options = PlantOptions {
+            index_at: INDEX_AT,
+            ..PlantOptions::default()
+        };
+        let plant = |axis| AxisPlant::new(axis, &machine.clock, &options).unwrap();
         let plants = machine.axes.iter().map(plant).collect();
         let mut bench = StageBench::new(&stage.config, &component, plants, device, 1).unwrap();
         // Filters and encoders settle.
         bench.clocks(1000).unwrap();
-        let program = driver.program("scenario", &["-DPOSICAST_ACCESS_FUNCTIONS"], &[beside("scenario.c")]);
+        let program = driver.program("on_the_stage", &["-DPOSICAST_ACCESS_FUNCTIONS"], &[beside(program)]);
         Self { bench, program }
     }
 
     /// Runs the program on the stage.
     pub(crate) fn talk(&mut self, arguments: &[&str]) -> BTreeMap<String, i64> {
+        self.talk_beside(arguments, |_| ())
+    }
+
+    /// The same; `surroundings` sets lines of the machine whenever time has passed.
+    pub(crate) fn talk_beside(
+        &mut self,
+        arguments: &[&str],
+        surroundings: impl Fn(&mut StageBench),
+    ) -> BTreeMap<String, i64> {
         let bench = &mut self.bench;
         talk(&self.program, arguments, &mut |asked| {
             match asked {
                 Asked::Read(word) => return Some(bench.read_at(word).unwrap()),
                 Asked::Write(word, data) => bench.write_at(word, data).unwrap(),
-                Asked::Pause => bench.clocks(PAUSE_CLOCKS).unwrap(),
+                Asked::Pause => {
+                    bench.clocks(PAUSE_CLOCKS).unwrap();
+                    surroundings(bench);
+                }
                 Asked::Line(line, level) => bench.set(line, level).unwrap(),
             }
             None

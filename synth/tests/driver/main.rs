@@ -5,10 +5,10 @@ mod bridge;
 mod integers;
 mod support;
 
-use bridge::Bridge;
+use bridge::{Bridge, INDEX_AT};
 use std::path::PathBuf;
 use std::process::Command;
-use support::{Driver, STRICT, beside, machine, run, stage};
+use support::{Driver, STRICT, beside, machine, run, stage, traced_machine};
 
 fn compile(command: &mut Command, driver: &Driver, files: &[PathBuf]) {
     for file in files {
@@ -26,7 +26,7 @@ fn compile(command: &mut Command, driver: &Driver, files: &[PathBuf]) {
 
 #[test]
 fn unit_the_core_needs_no_library_and_no_operating_system() {
-    let driver = Driver::write();
+    let driver = Driver::of(traced_machine());
     compile(
         Command::new("gcc").args(STRICT).args(["-O2", "-ffreestanding"]),
         &driver,
@@ -43,7 +43,7 @@ fn unit_the_core_needs_no_library_and_no_operating_system() {
 
 #[test]
 fn unit_headers_compile_alone_in_c_and_in_cpp() {
-    let driver = Driver::write();
+    let driver = Driver::of(traced_machine());
     for entry in std::fs::read_dir(driver.path().join("inc")).unwrap() {
         let header = entry.unwrap().path();
         let cpp = ["-std=c++11", "-Wall", "-Wextra", "-Werror"];
@@ -99,7 +99,7 @@ fn unit_the_hal_finds_the_stage_and_takes_its_interrupt() {
 /// `_sw.tcl` under a Tcl that knows its two commands: every file that it names is there, and every C file is named.
 #[test]
 fn unit_the_bsp_finds_every_file() {
-    let driver = Driver::write();
+    let driver = Driver::of(traced_machine());
     let script = driver.path().join("check.tcl");
     std::fs::write(
         &script,
@@ -122,7 +122,7 @@ fn unit_the_bsp_finds_every_file() {
 #[test]
 fn lockstep_a_program_moves_the_stage_and_handles_a_fault() {
     let driver = Driver::write();
-    let mut bridge = Bridge::new(&driver, true);
+    let mut bridge = Bridge::new(&driver, "scenario.c", true);
     let said = bridge.talk(&[]);
     // 40 and -25 counts, from 0: the command to the last bit, the motor to its count.
     assert_eq!(
@@ -146,7 +146,7 @@ fn lockstep_a_program_moves_the_stage_and_handles_a_fault() {
 #[test]
 fn unit_tables_are_loaded_and_the_pwm_tests_itself() {
     let driver = Driver::write();
-    let mut bridge = Bridge::new(&driver, false);
+    let mut bridge = Bridge::new(&driver, "scenario.c", false);
     let said = bridge.talk(&["tables"]);
     // Locked antiphase, 2500 clocks, dead time 25, duty -101: as in the tests of the stage.
     assert_eq!((said["high"], said["low"]), (1199 - 25, 2500 - (1199 - 25) - 50));
@@ -155,6 +155,30 @@ fn unit_tables_are_loaded_and_the_pwm_tests_itself() {
     assert!(said["off"] <= 1, "{said:?}");
     let at = bridge.bench.plant(0).count();
     assert!((at - 400).abs() <= 1, "{at}");
+}
+
+/// The home switch is pressed from 30 counts on, the index before it.
+#[test]
+fn unit_an_axis_is_homed_and_looked_at() {
+    let driver = Driver::of(traced_machine());
+    let mut bridge = Bridge::new(&driver, "bring_up.c", false);
+    let said = bridge.talk_beside(&[], |bench| {
+        let is_pressed = bench.plant(0).count() >= 30;
+        bench.set("x_home", is_pressed.into()).unwrap();
+    });
+    // The index to the count, the switch within the speed of the search.
+    assert_eq!(
+        (said["origin_by_index"], said["index_setup"]),
+        (INDEX_AT - 1000, 0),
+        "{said:?}"
+    );
+    assert!((said["origin_by_switch"] - 30).abs() <= 1, "{said:?}");
+    assert_eq!(said["origin_moves"], 0, "{said:?}");
+    // 64 rows of four signals; a square of 3 counts, which the axis follows.
+    assert_eq!((said["rows"], said["trigger_row"]), (64, 0), "{said:?}");
+    assert_eq!((said["most"], said["least"]), (3 << 8, -(3 << 8)), "{said:?}");
+    assert!(said["moved"] >= 4, "{said:?}");
+    assert_eq!(said["causes"], 0);
 }
 
 #[test]

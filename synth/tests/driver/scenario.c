@@ -1,68 +1,7 @@
-/*
- * A program that uses the driver, with its register accesses on standard output and input: r, w, p (time passes), s (a line of the
- * machine changes), and = (a result). The test at the other end has the stage.
- */
-#include <inttypes.h>
-#include <stdio.h>
-#include <stdlib.h>
+/* A program that uses the driver: moves, a fault, tables, the self-test, and a stage that does not answer. */
 #include <string.h>
 
-#include "machine_xy_stage.h"
-#include "posicast_driver.h"
-
-#define BASE 0x40000u
-#define X MACHINE_XY_STAGE_AXIS_X
-#define Y MACHINE_XY_STAGE_AXIS_Y
-#define BOTH 3u
-#define COUNTS(n) ((int32_t)(n) * 256)
-#define TICKS 2000u
-
-uint32_t posicast_read(uintptr_t base, uint32_t word)
-{
-    uint32_t data;
-
-    printf("r %" PRIu32 "\n", word);
-    if (base != BASE || fflush(stdout) != 0 || scanf("%" SCNu32, &data) != 1)
-        exit(3);
-    return data;
-}
-
-void posicast_write(uintptr_t base, uint32_t word, uint32_t data)
-{
-    if (base != BASE)
-        exit(3);
-    printf("w %" PRIu32 " %" PRIu32 "\n", word, data);
-}
-
-static void pause_here(void *context)
-{
-    (void)context;
-    printf("p\n");
-}
-
-static void set_line(const char *line, int level)
-{
-    printf("s %s %d\n", line, level);
-}
-
-static void result(const char *name, int64_t value)
-{
-    printf("= %s %" PRId64 "\n", name, value);
-}
-
-static void need(const char *what, posicast_result got, posicast_result wanted)
-{
-    if (got == wanted)
-        return;
-    printf("! %s gives %d, not %d\n", what, got, wanted);
-    (void)fflush(stdout);
-    exit(2);
-}
-
-static const posicast_limits *limits_of(uint32_t axis)
-{
-    return &machine_xy_stage.axis[axis].limits;
-}
+#include "pipe.h"
 
 /* From reset to a move of both axes. */
 static void first_move(posicast_stage *stage)

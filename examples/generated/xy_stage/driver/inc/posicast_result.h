@@ -13,7 +13,8 @@ typedef enum {
     POSICAST_REFUSED,      /* the hardware refused: the flags of stage and axis say what */
     POSICAST_FAULT,        /* an axis has a cause: posicast_causes */
     POSICAST_TIMEOUT,      /* it did not happen within the ticks that were allowed */
-    POSICAST_DEAD          /* time does not pass: no clock, or held in reset */
+    POSICAST_DEAD,         /* time does not pass: no clock, or held in reset */
+    POSICAST_NO_REFERENCE  /* neither switch nor index on the way that was allowed */
 } posicast_result;
 
 #endif

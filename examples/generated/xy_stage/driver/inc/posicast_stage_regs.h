@@ -29,6 +29,9 @@
 #define POSICAST_AXIS_INTERRUPTS 7u
 #define POSICAST_AXIS_WORD(axis, reg) (POSICAST_WINDOW_WORDS * ((uint32_t)(axis) + 1u) + (reg))
 
+/* Mask of the axes with a trace memory and test signals. */
+#define POSICAST_BRING_UP_AXES 0x0u
+
 /* ---- Window 0: the stage ---- */
 
 /* MAGIC, constant: what stands here */

@@ -1,0 +1,118 @@
+/* The functions of posicast_homing.h. */
+#include "posicast_homing.h"
+
+#include "posicast_wait.h"
+
+static int32_t position_of(const posicast_stage *stage, uint32_t axis)
+{
+    return (int32_t)IORD_POSICAST_AXIS_POSITION(stage->base, axis);
+}
+
+/* Until STATUS shows what is looked for, or the move is over: POSICAST_NO_REFERENCE. */
+static posicast_result watch(const posicast_stage *stage, uint32_t axis, uint32_t mask, uint32_t wanted, uint32_t ticks)
+{
+    posicast_patience left = posicast_patience_for(stage, ticks);
+
+    for (;;) {
+        const uint32_t word = posicast_status(stage, axis);
+        posicast_result result;
+
+        if ((word & mask) == wanted)
+            return POSICAST_OK;
+        if (posicast_causes(stage, axis) != 0)
+            return POSICAST_FAULT;
+        if (state_of(word) == POSICAST_AXIS_STATUS_STATE_HOLD)
+            return POSICAST_NO_REFERENCE;
+        result = posicast_pass_time(stage, &left);
+        if (result != POSICAST_OK)
+            return result;
+    }
+}
+
+/* Moves over a distance until STATUS shows what is looked for, and comes to rest. `found_at` is the position there. */
+static posicast_result seek(const posicast_stage *stage, uint32_t axis, const posicast_limits *limits, int32_t distance,
+                            uint32_t mask, uint32_t wanted, uint32_t ticks, int32_t *found_at)
+{
+    const int64_t end = (int64_t)posicast_command_position(stage, axis) + distance;
+    posicast_result found, result;
+
+    if (end < INT32_MIN || end > INT32_MAX)
+        return POSICAST_BAD_ARGUMENT;
+    result = posicast_queue_move(stage, axis, (int32_t)end, limits);
+    if (result == POSICAST_OK)
+        result = posicast_start(stage, 1u << axis);
+    if (result != POSICAST_OK)
+        return result;
+    found = watch(stage, axis, mask, wanted, ticks);
+    *found_at = position_of(stage, axis);
+    posicast_stop(stage, 1u << axis);
+    if (found != POSICAST_OK && found != POSICAST_NO_REFERENCE)
+        return found;
+    result = posicast_wait_at_rest(stage, 1u << axis, ticks);
+    return result == POSICAST_OK ? found : result;
+}
+
+/* The edge of the switch, from the side that it is not pressed on. */
+static posicast_result seek_switch(const posicast_stage *stage, uint32_t axis, const posicast_homing *homing, uint32_t ticks,
+                                   int32_t *found_at)
+{
+    const uint32_t home = POSICAST_AXIS_STATUS_LEVEL_HOME_MSK;
+
+    if (homing->switch_within == INT32_MIN)
+        return POSICAST_BAD_ARGUMENT;
+    if (posicast_status(stage, axis) & home) {
+        const posicast_result result =
+            seek(stage, axis, &homing->limits, -homing->switch_within, home, 0, ticks, found_at);
+
+        if (result != POSICAST_OK)
+            return result;
+    }
+    return seek(stage, axis, &homing->limits, homing->switch_within, home, home, ticks, found_at);
+}
+
+/* The index, which sets the position by itself: exact, however fast the axis passes it. */
+static posicast_result seek_index(const posicast_stage *stage, uint32_t axis, const posicast_homing *homing, uint32_t ticks)
+{
+    const uint32_t setup = (uint32_t)IORD_POSICAST_AXIS_INDEX(stage->base, axis);
+    posicast_result result;
+    int32_t found_at;
+
+    IOWR_POSICAST_AXIS_PRESET(stage->base, axis, (uint32_t)homing->position);
+    IOWR_POSICAST_AXIS_INDEX(stage->base, axis,
+                             (setup & ~POSICAST_AXIS_INDEX_INDEX_ALWAYS_MSK) | POSICAST_AXIS_INDEX_INDEX_PRESETS_MSK);
+    IOWR_POSICAST_AXIS_INDEX_ARM(stage->base, axis, 0);
+    result = posicast_wait_flags(stage);
+    if (result == POSICAST_OK)
+        result = seek(stage, axis, &homing->limits, homing->index_within, POSICAST_AXIS_STATUS_INDEX_ARMED_MSK, 0, ticks,
+                      &found_at);
+    /* One that comes later must not move the origin again. */
+    IOWR_POSICAST_AXIS_INDEX(stage->base, axis, setup);
+    return result;
+}
+
+posicast_result posicast_home(const posicast_stage *stage, uint32_t axis, const posicast_homing *homing, uint32_t ticks)
+{
+    posicast_result result = POSICAST_OK;
+    int32_t found_at;
+
+    if (!is_axis(stage, axis))
+        return POSICAST_BAD_ARGUMENT;
+    if (posicast_state(stage, axis) != POSICAST_AXIS_STATUS_STATE_HOLD)
+        return POSICAST_WRONG_STATE;
+    found_at = position_of(stage, axis);
+    if (homing->switch_within != 0)
+        result = seek_switch(stage, axis, homing, ticks, &found_at);
+    if (result != POSICAST_OK)
+        return result;
+    if (homing->index_within != 0)
+        return seek_index(stage, axis, homing, ticks);
+    /* What the axis has moved since; positions come round at 2^32, as the hardware's do. */
+    IOWR_POSICAST_AXIS_PRESET(stage->base, axis,
+                              (uint32_t)homing->position + (uint32_t)position_of(stage, axis) - (uint32_t)found_at);
+    return posicast_wait_flags(stage);
+}
+
+int32_t posicast_origin(const posicast_stage *stage, uint32_t axis)
+{
+    return (int32_t)IORD_POSICAST_AXIS_ORIGIN(stage->base, axis);
+}
