@@ -19,6 +19,8 @@
 //! The datasheet is `docs/stage.md`.
 
 mod axis;
+mod axis_settings;
+mod axis_words;
 mod bring_up;
 mod config;
 mod registers;

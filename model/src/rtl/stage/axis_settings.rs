@@ -1,0 +1,286 @@
+//! What a host writes of an axis: what is wanted of it, tables and settings, limits, and how its encoder is read.
+
+use super::config::StageAxis;
+use super::registers::{command, register};
+use crate::rtl::registers::{Access, Field, Register, maps};
+
+/// The registers, in words of the axis's window, and before them what its hardware was built with.
+pub(super) fn registers(axis: &StageAxis) -> Vec<Register> {
+    [parameters(axis), commands(), tables(axis), supervision(axis), encoder()].concat()
+}
+
+fn parameters(axis: &StageAxis) -> Vec<Register> {
+    let constant = |name: &str, offset, meaning: &str, value| {
+        let field = Field::new(name, 0, 32, meaning).with_reset(value);
+        register(name, offset, Access::Constant, "parameter of the build", vec![field])
+    };
+    vec![
+        constant("pwm_period_clocks", 0x00, "full duty", axis.pwm_period_clocks),
+        constant(
+            "ring_samples",
+            0x01,
+            "delays of a table reach up to this less 2",
+            1 << axis.shaper.ring_address_bits(),
+        ),
+        constant("most_taps", 0x02, "taps per bank", axis.shaper.most_taps()),
+        constant(
+            "machine_taps",
+            0x03,
+            "taps of bank 0",
+            axis.shaper.table().taps().len() as u32,
+        ),
+        constant(
+            "coefficient_fraction",
+            0x04,
+            "F of the coefficients",
+            axis.shaper.coefficient_fraction(),
+        ),
+    ]
+}
+
+fn commands() -> Vec<Register> {
+    vec![
+        register(
+            "control",
+            0x08,
+            Access::Configuration,
+            "what is wanted of the axis",
+            vec![
+                Field::flag("enable", 0, "outputs on; low: off, through a quick stop and the brake"),
+                Field::flag("direct_enable", 1, "direct mode, in READY"),
+                Field::flag("encoder_invert", 2, "reverses the encoder's direction"),
+                Field::flag(
+                    "self_test",
+                    3,
+                    "direct mode tests the PWM: pins, drive and brake stay off",
+                ),
+            ],
+        ),
+        register("stop", 0x09, command("stop"), "quick stop, then HOLD", vec![]),
+        register(
+            "clear_faults",
+            0x0a,
+            command("clear_faults"),
+            "forgets the causes that are over, and the flags of all blocks",
+            vec![],
+        ),
+        register("flush", 0x0b, command("flush"), "drops the entries that wait", vec![]),
+        register(
+            "kick",
+            0x0c,
+            command("kick"),
+            "of the host's watchdog",
+            vec![Field::new("kick_word", 0, 32, "0x4b49434b, `KICK`")],
+        ),
+        register(
+            "direct",
+            0x0d,
+            command("direct_kick"),
+            "direct mode: a duty, held for some time only",
+            vec![
+                Field::new("direct_duty", 0, 17, "limited by the machine file")
+                    .signed()
+                    .with_unit("clocks"),
+            ],
+        ),
+        register(
+            "fifo_control",
+            0x0e,
+            Access::Configuration,
+            "when the FIFO is low",
+            vec![Field::new("low_water", 0, 6, "entries").with_reset(16)],
+        ),
+        register(
+            "segment",
+            0x10,
+            Access::Words {
+                strobe: "segment_write".to_owned(),
+                word: "segment_word".to_owned(),
+                words: 4,
+            },
+            "an entry of the FIFO, four words; the last commits: see docs/segments.md",
+            vec![Field::new("segment_data", 0, 32, "the word")],
+        ),
+    ]
+}
+
+fn tables(axis: &StageAxis) -> Vec<Register> {
+    let laws = [
+        (0, "sliding_mode", "c de + k s + eps sat(s / phi)"),
+        (1, "pd", "proportional and derivative"),
+        (2, "pid", "the same and the integral"),
+    ];
+    let banks = [
+        (0, "machine", "the machine's, a ROM"),
+        (1, "loaded_1", "what was loaded into bank 1"),
+        (2, "loaded_2", "what was loaded into bank 2"),
+    ];
+    vec![
+        register(
+            "tap_address",
+            0x14,
+            Access::Configuration,
+            "which tap `TAP` is",
+            maps::tap_address(&axis.shaper),
+        ),
+        register(
+            "tap",
+            0x15,
+            command("tap_write"),
+            "writes a tap",
+            maps::tap(&axis.shaper),
+        ),
+        register(
+            "swap",
+            0x16,
+            command("swap"),
+            "makes a bank active",
+            maps::swap(&axis.shaper),
+        ),
+        register(
+            "setting_address",
+            0x17,
+            Access::Configuration,
+            "which setting `SETTING` is",
+            vec![
+                Field::new("setting_row", 0, 4, "its place: see docs/sliding_mode.md"),
+                Field::new("setting_bank", 8, 2, "bank 1 or 2"),
+            ],
+        ),
+        register(
+            "setting",
+            0x18,
+            command("setting_write"),
+            "writes a setting",
+            vec![Field::new("setting_word", 0, 32, "mantissa and shift, or the limit")],
+        ),
+        register(
+            "law",
+            0x19,
+            Access::Staged,
+            "what computes the command",
+            vec![
+                Field::choice("law", 0, 2, "the law", &laws).with_reset(axis.law as u32),
+                Field::choice("law_bank", 8, 2, "settings in use; bank 3 is all 0", &banks),
+            ],
+        ),
+    ]
+}
+
+fn supervision(axis: &StageAxis) -> Vec<Register> {
+    let watched = &axis.supervision;
+    let limit = |name: &str, value: i32| {
+        Field::new(name, 0, 32, "of the shaped position; both 0: none")
+            .fixed(8)
+            .with_unit("counts")
+            .with_reset(value as u32)
+    };
+    vec![
+        register(
+            "soft_limit_plus",
+            0x1a,
+            Access::Configuration,
+            "end of the travel, in counts since reset: see `ORIGIN`",
+            vec![limit("soft_limit_plus", watched.soft_limit_plus)],
+        ),
+        register(
+            "soft_limit_minus",
+            0x1b,
+            Access::Configuration,
+            "the other end",
+            vec![limit("soft_limit_minus", watched.soft_limit_minus)],
+        ),
+        register(
+            "following_error_limit",
+            0x1c,
+            Access::Configuration,
+            "largest error",
+            vec![
+                Field::new("following_error_limit", 0, 32, "Q16.16; 0: not watched")
+                    .with_unit("counts / 65536")
+                    .with_reset(watched.following_error_limit),
+            ],
+        ),
+        register(
+            "watchdog",
+            0x1d,
+            Access::Configuration,
+            "of the host, and what follows from a cause",
+            vec![
+                Field::new("watchdog_ticks", 0, 16, "without a kick; 0: no watchdog")
+                    .with_unit("ticks")
+                    .with_reset(watched.watchdog_ticks.into()),
+                Field::new("off_causes", 16, 16, "per cause: 1 outputs off, 0 quick stop")
+                    .with_reset(watched.off_causes.into()),
+            ],
+        ),
+        register(
+            "stop_deceleration",
+            0x1e,
+            Access::Configuration,
+            "of a quick stop",
+            vec![
+                Field::new("stop_deceleration", 0, 31, "Q7.24; 0: at once")
+                    .with_unit("counts/tick^2 / 2^24")
+                    .with_reset(watched.stop_deceleration),
+            ],
+        ),
+        register(
+            "settle",
+            0x1f,
+            Access::Configuration,
+            "how long a stop rings: the longest delay of the tables in use",
+            vec![
+                Field::new("settle_ticks", 0, 16, "after the command stands")
+                    .with_unit("ticks")
+                    .with_reset(watched.settle_ticks.into()),
+            ],
+        ),
+    ]
+}
+
+fn encoder() -> Vec<Register> {
+    vec![
+        register(
+            "index",
+            0x20,
+            Access::Configuration,
+            "what an index does, and how the velocity is measured",
+            vec![
+                Field::flag("index_always", 0, "latches every index"),
+                Field::flag("index_presets", 1, "a latched index also presets"),
+                Field::new(
+                    "index_gate",
+                    4,
+                    4,
+                    "bit 0: only while A is as bit 1; bit 2: only while B is as bit 3",
+                ),
+                Field::new(
+                    "smoothing",
+                    8,
+                    2,
+                    "k of the velocity's one-pole filter with coefficient 2^-k",
+                ),
+                Field::flag("velocity_m", 12, "velocity by counts per tick alone"),
+            ],
+        ),
+        register(
+            "index_arm",
+            0x21,
+            command("index_arm"),
+            "latches the next index",
+            vec![],
+        ),
+        register(
+            "preset",
+            0x22,
+            command("preset"),
+            "the user's position becomes this; the loop's count never jumps",
+            vec![
+                Field::new("preset_value", 0, 32, "position")
+                    .signed()
+                    .with_unit("counts"),
+            ],
+        ),
+    ]
+}

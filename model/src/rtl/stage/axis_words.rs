@@ -1,0 +1,234 @@
+//! What a host reads of an axis: its state, what went wrong, and what moves.
+
+use super::registers::register;
+use crate::rtl::registers::{Access, Field, Register};
+
+/// The registers, in words of the axis's window.
+pub(super) fn registers() -> Vec<Register> {
+    [states(), motion()].concat()
+}
+
+/// Of the linear scale, where there is one: how it is read, its count, and how far the motor is from it.
+pub(super) fn of_scale() -> Vec<Register> {
+    let live = |name: &str, offset, meaning: &str| {
+        let field = Field::new(name, 0, 32, meaning).signed().with_unit("counts");
+        register(name, offset, Access::Live, meaning, vec![field])
+    };
+    vec![
+        register(
+            "scale_control",
+            0x23,
+            Access::Configuration,
+            "how the scale is read",
+            vec![Field::flag("scale_invert", 0, "reverses the scale's direction")],
+        ),
+        live("scale_count", 0x3b, "steps of the scale since reset"),
+        live(
+            "deviation",
+            0x3c,
+            "motor against scale since HOLD, in counts of the loop",
+        ),
+    ]
+}
+
+fn states() -> Vec<Register> {
+    let states = [
+        (0, "off", "outputs off"),
+        (1, "ready", "outputs off, nothing wrong"),
+        (2, "hold", "outputs on, the command stands"),
+        (3, "run", "segments play"),
+        (4, "quick_stop", "slowing down"),
+        (5, "fault", "a cause, until it is cleared"),
+    ];
+    vec![
+        register(
+            "status",
+            0x28,
+            Access::Live,
+            "what the axis is doing",
+            vec![
+                Field::choice("state", 0, 3, "state of the supervisor", &states),
+                Field::flag("can_start", 3, "a start would lead to RUN"),
+                Field::new("segments_state", 4, 2, "0 hold, 1 move, 2 stop, 3 stopped"),
+                Field::flag("direct_active", 6, "direct mode drives the outputs"),
+                Field::flag("pwm_running", 7, "the PWM's outputs are on"),
+                Field::flag("level_emergency_stop_n", 8, "filtered line: low is a stop"),
+                Field::flag("level_limit_plus_n", 9, "filtered line: low is on the switch"),
+                Field::flag("level_limit_minus_n", 10, "filtered line: low is on the switch"),
+                Field::flag("level_drive_ready", 11, "filtered line"),
+                Field::flag("level_home", 12, "filtered line"),
+                Field::flag("level_a", 13, "filtered A"),
+                Field::flag("level_b", 14, "filtered B"),
+                Field::flag("level_z", 15, "filtered Z"),
+                Field::flag("swap_pending", 16, "a swap of tables waits, or hands over"),
+                Field::new("table_bank", 17, 2, "the shaper's active bank"),
+                Field::flag("index_armed", 19, "the next index will be latched"),
+                Field::new(
+                    "trip_causes",
+                    20,
+                    5,
+                    "0 fault latch, 1 supervisor, 2 drive, 3 PLL, 4 PWM's watchdog",
+                ),
+            ],
+        ),
+        register(
+            "causes",
+            0x29,
+            Access::Live,
+            "what went wrong, until `CLEAR_FAULTS`: see docs/axis.md",
+            vec![Field::new("causes", 0, 16, "bit per cause")],
+        ),
+        register(
+            "flags",
+            0x2a,
+            Access::Live,
+            "what the blocks have flagged, until `CLEAR_FAULTS`",
+            vec![
+                Field::flag("segments_underrun", 0, "no entry was there while moving"),
+                Field::flag("segments_overflow", 1, "a sum did not fit"),
+                Field::flag("segments_tick_missed", 2, "a tick came while one was played"),
+                Field::flag("segment_refused", 3, "a word was written to a full FIFO, or in a stop"),
+                Field::flag("segment_malformed", 4, "an entry was dropped"),
+                Field::flag("shaper_saturated", 5, "an output was clamped"),
+                Field::flag("shaper_overrun", 6, "a sample came while a pass ran"),
+                Field::flag("table_refused", 7, "a tap or a swap was refused"),
+                Field::flag("encoder_illegal", 8, "A and B changed together"),
+                Field::flag("encoder_disagreement", 9, "the lines of a pair were equal"),
+                Field::flag("velocity_missed", 10, "a tick had no velocity"),
+                Field::flag("controller_overrun", 11, "a start came while a pass ran"),
+                Field::flag("limited_high", 12, "the last command was cut at +limit"),
+                Field::flag("limited_low", 13, "the last command was cut at -limit"),
+                Field::flag("pwm_saturated", 14, "a duty was limited"),
+                Field::flag("pwm_unaligned", 15, "the PWM was not in step with the tick"),
+                Field::new("illegal_count", 16, 8, "illegal transitions; stops at 255"),
+            ],
+        ),
+        register(
+            "events",
+            0x2b,
+            Access::Sticky,
+            "what has happened since the flag was cleared",
+            vec![
+                Field::flag("refused", 0, "a start led to nothing"),
+                Field::flag(
+                    "setting_refused",
+                    1,
+                    "a setting for a bank in use, or for none that can be loaded",
+                ),
+                Field::flag("direct_expired", 2, "direct mode was not held"),
+            ],
+        ),
+        register(
+            "saturations",
+            0x2c,
+            Access::Live,
+            "where the controller was cut, until `CLEAR_FAULTS`",
+            vec![
+                Field::new(
+                    "controller_saturated_high",
+                    0,
+                    7,
+                    "e, de, s, feedback, integral, command, duty",
+                ),
+                Field::new("controller_saturated_low", 8, 7, "the same, at the lower end"),
+                Field::new("limited_ticks", 16, 16, "ticks in a row that commands were cut").with_unit("ticks"),
+            ],
+        ),
+        register(
+            "fifo",
+            0x2d,
+            Access::Live,
+            "how much of the motion is left",
+            vec![
+                Field::new("fifo_level", 0, 7, "entries that wait"),
+                Field::flag("fifo_low", 8, "at most `low_water`"),
+                Field::flag("segments_empty", 9, "none"),
+            ],
+        ),
+        register(
+            "self_test",
+            0x2e,
+            Access::Live,
+            "gates of the PWM in the last whole period of a self-test",
+            vec![
+                Field::new(
+                    "self_test_high",
+                    0,
+                    16,
+                    "on time of `a_high`, behind no pin; stops at 65535",
+                )
+                .with_unit("clocks"),
+                Field::new("self_test_low", 16, 16, "the same of `a_low`").with_unit("clocks"),
+            ],
+        ),
+    ]
+}
+
+/// What moves: live words, and shadows of position and velocity.
+fn motion() -> Vec<Register> {
+    let word = |name: &str, meaning: &str, fraction, unit: &str| {
+        let field = Field::new(name, 0, 32, meaning);
+        match fraction {
+            0 => field.signed(),
+            fraction => field.fixed(fraction),
+        }
+        .with_unit(unit)
+    };
+    let live =
+        |name: &str, offset, field: Field| register(name, offset, Access::Live, &field.meaning.clone(), vec![field]);
+    let shadow = |of: &str, offset, meaning: &str| {
+        let access = Access::Shadow { of: of.to_owned() };
+        register(&format!("snapshot_{of}"), offset, access, meaning, vec![])
+    };
+    vec![
+        live(
+            "position",
+            0x30,
+            word("user_position", "count less origin", 0, "counts"),
+        ),
+        live(
+            "count",
+            0x31,
+            word("count", "steps since reset: the loop's position", 0, "counts"),
+        ),
+        live(
+            "velocity",
+            0x32,
+            word("velocity", "at the last tick", 16, "counts/tick"),
+        ),
+        live(
+            "origin",
+            0x33,
+            word("origin", "count at which the position is 0", 0, "counts"),
+        ),
+        live(
+            "index_count",
+            0x34,
+            word("index_count", "count at the index", 0, "counts"),
+        ),
+        live(
+            "command_position",
+            0x35,
+            word("command_position", "before the shaper, of the count", 8, "counts"),
+        ),
+        live(
+            "shaped_position",
+            0x36,
+            word("shaped_position", "after the shaper, of the count", 8, "counts"),
+        ),
+        live(
+            "shaped_velocity",
+            0x37,
+            word("shaped_velocity", "after the shaper", 16, "counts/tick"),
+        ),
+        live("error", 0x38, word("error", "e of the last tick", 16, "counts")),
+        live("command", 0x39, word("command", "to the drive", 12, "command units")),
+        live(
+            "duty",
+            0x3a,
+            Field::new("duty", 0, 17, "to the PWM").signed().with_unit("clocks"),
+        ),
+        shadow("position", 0x40, "position at the snapshot"),
+        shadow("velocity", 0x41, "velocity at the snapshot"),
+    ]
+}
