@@ -10,6 +10,7 @@
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "it is a program")]
 
 use std::error::Error;
+use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode, Stdio};
 use std::time::Instant;
@@ -132,15 +133,21 @@ fn programs() -> Result<(PathBuf, PathBuf), Box<dyn Error>> {
     Ok((examples.to_owned(), posicast))
 }
 
-/// Runs a program with its standard error shown, and returns what it printed and whether it ended with 0.
+/// Runs a program with what it says shown on standard error as it comes, and returns what it printed and whether it ended with 0.
 fn run(command: &mut Command) -> Result<(String, bool), Box<dyn Error>> {
     let name = command.get_program().to_string_lossy().into_owned();
-    let output = command.stderr(Stdio::inherit()).output();
-    let output =
-        output.map_err(|error| format!("cannot run {name}: {error}; build it first, as scripts/verify-all does"))?;
-    let text = String::from_utf8_lossy(&output.stdout).into_owned();
-    eprint!("{text}");
-    Ok((text, output.status.success()))
+    let started = command.stdout(Stdio::piped()).spawn();
+    let mut program =
+        started.map_err(|error| format!("cannot run {name}: {error}; build it first, as scripts/verify-all does"))?;
+    let printed = program.stdout.take().ok_or("a program without standard output")?;
+    let mut text = String::new();
+    for line in BufReader::new(printed).lines() {
+        let line = line?;
+        eprintln!("{line}");
+        text.push_str(&line);
+        text.push('\n');
+    }
+    Ok((text, program.wait()?.success()))
 }
 
 /// A rung that is an example with a table.
