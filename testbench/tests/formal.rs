@@ -56,6 +56,16 @@ fn formal_axis() {
 }
 
 #[test]
+fn formal_drive_command() {
+    proven("drive_command", 0);
+}
+
+#[test]
+fn formal_trace() {
+    proven("trace", 0);
+}
+
+#[test]
 fn formal_registers() {
     proven("registers", 0);
 }
@@ -168,8 +178,23 @@ fn formal_an_emergency_stop_that_is_only_told_to_others_is_found() {
         "axis_lines",
         "emergency = own_emergency | group_emergency_stop",
         "emergency = group_emergency_stop",
-        "stops_in_time",
+        "trips_in_time",
     );
+}
+
+#[test]
+fn formal_a_mask_that_goes_with_the_self_test_is_found() {
+    fails(
+        "drive_command",
+        "masked_next = next_test | tested",
+        "masked_next = next_test",
+        "mask_",
+    );
+}
+
+#[test]
+fn formal_a_halt_that_nobody_hears_is_found() {
+    fails("trace", "ends = full | halting", "ends = full", "exact_state");
 }
 
 #[test]

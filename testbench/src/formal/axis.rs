@@ -1,10 +1,11 @@
-//! The proofs of the supervisor of an axis: one block, and a property file for each of its subjects.
+//! The proofs of the supervisor of an axis, one block with a property file for each of its subjects; and of what stands between
+//! it and the drive.
 
-use posicast_hdl::axis;
+use posicast_hdl::{axis, drive_command};
 use posicast_model::rtl::axis::{
     self as model, ALWAYS_OFF, Cause, Condition, HARMLESS, KICK, State, TRANSITIONS, Transition,
 };
-use posicast_model::rtl::segments;
+use posicast_model::rtl::{drive_command as command_model, segments};
 
 use super::task::{Engine, Task};
 use crate::Error;
@@ -30,6 +31,13 @@ pub(super) fn tasks() -> Result<Vec<Task>, Error> {
             include_str!("../../formal/axis_monitors.sv"),
         ),
         task("axis_lines", induction, include_str!("../../formal/axis_lines.sv")),
+        Task::new(
+            "drive_command",
+            "all inputs",
+            induction,
+            (drive_command::emit("")?, command_model::ports()),
+        )
+        .properties(&macros, include_str!("../../formal/drive_command.sv")),
     ])
 }
 

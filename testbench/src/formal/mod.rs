@@ -21,6 +21,7 @@ mod axis;
 mod names;
 mod task;
 mod tool;
+mod trace;
 
 pub use self::task::{Engine, Task, all, named};
 pub(crate) use self::tool::{ABC, YOSYS, abc, asserted};

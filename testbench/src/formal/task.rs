@@ -19,7 +19,7 @@ use posicast_model::rtl::{
 };
 use posicast_model::taps::{Tap, TapTable};
 
-use super::axis;
+use super::{axis, trace};
 use crate::Error;
 
 /// How a task is proven. Both proofs are unbounded.
@@ -122,6 +122,7 @@ pub fn all() -> Result<Vec<Task>, Error> {
         registers_task()?,
     ];
     tasks.extend(axis::tasks()?);
+    tasks.extend(trace::tasks()?);
     for axes in [2, 4] {
         tasks.push(group_task(axes)?);
     }
