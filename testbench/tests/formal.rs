@@ -66,6 +66,11 @@ fn formal_trace() {
 }
 
 #[test]
+fn formal_sample_select() {
+    proven("sample_select", 1);
+}
+
+#[test]
 fn formal_registers() {
     proven("registers", 0);
 }
@@ -193,8 +198,18 @@ fn formal_a_mask_that_goes_with_the_self_test_is_found() {
 }
 
 #[test]
-fn formal_a_halt_that_nobody_hears_is_found() {
-    fails("trace", "ends = full | halting", "ends = full", "exact_state");
+fn formal_a_word_behind_the_last_one_that_is_shown_is_found() {
+    fails("trace", "read_address} < words", "read_address} <= words", "shown_");
+}
+
+#[test]
+fn formal_a_start_of_the_other_source_is_found() {
+    fails(
+        "sample_select",
+        "start_q_next = pin_start",
+        "start_q_next = pin_start | host_start",
+        "exact",
+    );
 }
 
 #[test]
