@@ -16,7 +16,7 @@
 //   shaper_restarts      the shaper is held at the position while they are off
 //   causes_held          causes stay until clear_faults
 //
-// Not proven here: that the right row is taken for its conditions, times of the brake, and the monitors' arithmetic: lock step.
+// That it is the right row for its conditions: axis_table. Causes: axis_causes, axis_monitors, axis_lines. Times: axis_brake.
 module axis_properties (
     input wire        clk,
     input wire        rst,
@@ -30,15 +30,8 @@ module axis_properties (
     input wire        segments_preset,
     input wire        shaper_start
 );
-    localparam [2:0] OFF = 3'd0;
-    localparam [2:0] READY = 3'd1;
-    localparam [2:0] HOLD = 3'd2;
-    localparam [2:0] RUN = 3'd3;
-    localparam [2:0] QUICK_STOP = 3'd4;
-    localparam [2:0] FAULT = 3'd5;
-
     reg        past_reset = 1'b1;
-    reg [2:0]  past_state = OFF;
+    reg [2:0]  past_state = `OFF;
     reg [15:0] past_causes = 16'd0;
     // Causes are forgotten in the eighth clock after clear_faults, or a ninth or tenth.
     reg [11:0] cleared = 12'd0;
@@ -49,30 +42,30 @@ module axis_properties (
         cleared <= {cleared[10:0], clear_faults};
     end
 
-    wire moves = state == RUN | state == QUICK_STOP;
+    wire moves = state == `RUN | state == `QUICK_STOP;
     always @(*) begin
-        known_state: assert (state <= FAULT);
+        known_state: assert (state <= `FAULT);
         in_table: assert (past_reset | state == past_state | `ALLOWED(past_state, state));
-        reset_is_off: assert (!past_reset | state == OFF);
+        reset_is_off: assert (!past_reset | state == `OFF);
         same_outputs: assert (drive_enable == pwm_enable);
-        off_in_off_and_ready: assert (!(state == OFF | state == READY) | !drive_enable);
-        on_while_moving: assert (!(moves | state == HOLD) | drive_enable);
+        off_in_off_and_ready: assert (!(state == `OFF | state == `READY) | !drive_enable);
+        on_while_moving: assert (!(moves | state == `HOLD) | drive_enable);
         brake_only_with_outputs: assert (!brake_release | drive_enable);
-        brake_never_in_fault: assert (!brake_release | state != FAULT);
+        brake_never_in_fault: assert (!brake_release | state != `FAULT);
         brake_open_while_moving: assert (!moves | brake_release);
-        run_is_healthy: assert (state != RUN | causes == 16'd0);
-        plays_in_run: assert (segments_enable == (state == RUN));
+        run_is_healthy: assert (state != `RUN | causes == 16'd0);
+        plays_in_run: assert (segments_enable == (state == `RUN));
         follows_while_off: assert (segments_preset != drive_enable);
         shaper_restarts: assert (drive_enable | shaper_start);
         causes_held: assert (past_reset | (|cleared) | (past_causes & ~causes) == 16'd0);
     end
 
     always @(*) begin
-        reach_ready: cover (state == READY);
-        reach_hold: cover (state == HOLD);
-        reach_run: cover (state == RUN);
-        reach_quick_stop: cover (state == QUICK_STOP);
-        reach_fault: cover (state == FAULT);
-        reach_fault_from_run: cover (state == FAULT & past_state == RUN);
+        reach_ready: cover (state == `READY);
+        reach_hold: cover (state == `HOLD);
+        reach_run: cover (state == `RUN);
+        reach_quick_stop: cover (state == `QUICK_STOP);
+        reach_fault: cover (state == `FAULT);
+        reach_fault_from_run: cover (state == `FAULT & past_state == `RUN);
     end
 endmodule

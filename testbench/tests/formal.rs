@@ -43,7 +43,31 @@ fn formal_pulse_counter() {
 
 #[test]
 fn formal_axis() {
-    proven("axis", 0);
+    for subject in [
+        "axis",
+        "axis_table",
+        "axis_causes",
+        "axis_brake",
+        "axis_monitors",
+        "axis_lines",
+    ] {
+        proven(subject, 0);
+    }
+}
+
+#[test]
+fn formal_drive_command() {
+    proven("drive_command", 0);
+}
+
+#[test]
+fn formal_trace() {
+    proven("trace", 0);
+}
+
+#[test]
+fn formal_sample_select() {
+    proven("sample_select", 1);
 }
 
 #[test]
@@ -111,6 +135,81 @@ fn formal_an_illegal_transition_without_a_flag_is_found() {
 #[test]
 fn formal_a_brake_that_opens_with_the_outputs_off_is_found() {
     fails("axis", "= next_on & !next_closing", "= next_on", "brake_never_in_fault");
+}
+
+#[test]
+fn formal_a_row_of_less_priority_that_is_taken_is_found() {
+    fails(
+        "axis_table",
+        "if (cut | closing) begin",
+        "if (closing) begin",
+        "exact_state",
+    );
+}
+
+#[test]
+fn formal_a_cause_that_is_cleared_while_it_is_active_is_found() {
+    fails(
+        "axis_causes",
+        "now = kept | active",
+        "now = forget ? kept : kept | active",
+        "exact_causes",
+    );
+}
+
+#[test]
+fn formal_a_brake_with_a_tick_too_little_is_found() {
+    fails(
+        "axis_brake",
+        "at_zero = left == NO_TICKS",
+        "at_zero = left <= ONE_TICK",
+        "exact_",
+    );
+}
+
+#[test]
+fn formal_a_limit_that_trips_where_it_is_reached_is_found() {
+    fails(
+        "axis_monitors",
+        "(error_size > following_error_limit)",
+        "(error_size >= following_error_limit)",
+        "following_error",
+    );
+}
+
+#[test]
+fn formal_an_emergency_stop_that_is_only_told_to_others_is_found() {
+    fails(
+        "axis_lines",
+        "emergency = own_emergency | group_emergency_stop",
+        "emergency = group_emergency_stop",
+        "trips_in_time",
+    );
+}
+
+#[test]
+fn formal_a_mask_that_goes_with_the_self_test_is_found() {
+    fails(
+        "drive_command",
+        "masked_next = next_test | tested",
+        "masked_next = next_test",
+        "mask_",
+    );
+}
+
+#[test]
+fn formal_a_word_behind_the_last_one_that_is_shown_is_found() {
+    fails("trace", "read_address} < words", "read_address} <= words", "shown_");
+}
+
+#[test]
+fn formal_a_start_of_the_other_source_is_found() {
+    fails(
+        "sample_select",
+        "start_q_next = pin_start",
+        "start_q_next = pin_start | host_start",
+        "exact",
+    );
 }
 
 #[test]

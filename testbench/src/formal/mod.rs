@@ -17,9 +17,11 @@
 //! Two engines, both unbounded: [`Engine::Pdr`] finds its invariants itself; [`Engine::Induction`] needs them among the
 //! properties. What either does not prove is searched for a counterexample of at most [`SEARCHED_CLOCKS`].
 
+mod axis;
 mod names;
 mod task;
 mod tool;
+mod trace;
 
 pub use self::task::{Engine, Task, all, named};
 pub(crate) use self::tool::{ABC, YOSYS, abc, asserted};

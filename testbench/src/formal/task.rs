@@ -4,9 +4,8 @@ use std::fmt::Write as _;
 
 use posicast_hdl::emit::Module;
 use posicast_hdl::{
-    axis, divider_share, group, pulse_counter, pwm, registers, schedule, segments, shaper, sliding_mode, time_base,
+    divider_share, group, pulse_counter, pwm, registers, schedule, segments, shaper, sliding_mode, time_base,
 };
-use posicast_model::rtl::axis::TRANSITIONS;
 use posicast_model::rtl::component::Component;
 use posicast_model::rtl::divider::DividerConfig;
 use posicast_model::rtl::pwm::{ActiveLow, Mode, PwmConfig};
@@ -14,12 +13,13 @@ use posicast_model::rtl::schedule::ScheduleConfig;
 use posicast_model::rtl::segments as segments_model;
 use posicast_model::rtl::shaper::{self as shaper_model, ShaperConfig};
 use posicast_model::rtl::sliding_mode as controller_model;
-use posicast_model::rtl::{Port, axis as axis_model, divider_share as share_model, group as group_model};
+use posicast_model::rtl::{Port, divider_share as share_model, group as group_model};
 use posicast_model::rtl::{
     pulse_counter as counter_model, pwm as pwm_model, schedule as schedule_model, time_base as time_model,
 };
 use posicast_model::taps::{Tap, TapTable};
 
+use super::{axis, trace};
 use crate::Error;
 
 /// How a task is proven. Both proofs are unbounded.
@@ -66,7 +66,12 @@ pub struct Task {
 }
 
 impl Task {
-    fn new(name: &'static str, size: &str, engine: Engine, (modules, ports): (Vec<Module>, Vec<Port>)) -> Self {
+    pub(super) fn new(
+        name: &'static str,
+        size: &str,
+        engine: Engine,
+        (modules, ports): (Vec<Module>, Vec<Port>),
+    ) -> Self {
         Self {
             name,
             size: size.to_owned(),
@@ -81,7 +86,7 @@ impl Task {
     }
 
     /// With a property file, after macros for this size.
-    fn properties(mut self, macros: &[(&str, String)], text: &str) -> Self {
+    pub(super) fn properties(mut self, macros: &[(&str, String)], text: &str) -> Self {
         for (name, value) in macros {
             let _ = writeln!(self.properties, "`define {name} {value}");
         }
@@ -114,9 +119,10 @@ pub fn all() -> Result<Vec<Task>, Error> {
             (pulse_counter::emit("")?, counter_model::ports()),
         )
         .properties(&[], include_str!("../../formal/pulse_counter.sv")),
-        axis_task()?,
         registers_task()?,
     ];
+    tasks.extend(axis::tasks()?);
+    tasks.extend(trace::tasks()?);
     for axes in [2, 4] {
         tasks.push(group_task(axes)?);
     }
@@ -196,20 +202,6 @@ fn pwm(active_low: ActiveLow, dead_time: u16, minimum_pulse: u16, size: &str) ->
     let block = (pwm::emit(&config, "")?, pwm_model::ports());
     Ok(Task::new("pwm", size, Engine::Induction { clocks: 1 }, block)
         .properties(&macros, include_str!("../../formal/pwm.sv")))
-}
-
-/// The table of allowed transitions comes from the model's.
-fn axis_task() -> Result<Task, Error> {
-    let row = |from, to| format!("((from) == 3'd{from} & (to) == 3'd{to})");
-    let rows: Vec<String> = TRANSITIONS
-        .iter()
-        .map(|row_of| row(row_of.from as u8, row_of.to as u8))
-        .collect();
-    let block = (axis::emit("")?, axis_model::ports());
-    Ok(Task::new("axis", "all inputs", Engine::Pdr, block).properties(
-        &[("ALLOWED(from, to)", format!("({})", rows.join(" | ")))],
-        include_str!("../../formal/axis.sv"),
-    ))
 }
 
 /// The bank of the PWM's component: fields of every kind, an interrupt, byte enables.

@@ -147,6 +147,16 @@ impl Transition {
         }
     }
 
+    /// Is it only taken while `condition` holds?
+    pub const fn needs(&self, condition: Condition) -> bool {
+        self.needs & condition.bit() != 0
+    }
+
+    /// Is it only taken while `condition` does not hold?
+    pub const fn forbids(&self, condition: Condition) -> bool {
+        self.forbids & condition.bit() != 0
+    }
+
     #[inline]
     fn applies(&self, state: State, conditions: Conditions) -> bool {
         self.from == state && conditions.0 & self.needs == self.needs && conditions.0 & self.forbids == 0

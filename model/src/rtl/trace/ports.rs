@@ -86,7 +86,7 @@ pub enum State {
 /// The output ports, functions of registers only.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Outputs {
-    /// The word at the `read_address` of the clock before; 0 where the trace has none, and while it is being taken.
+    /// The word at the `read_address` of the clock before; 0 where the trace has none, or was being taken.
     pub data: u32,
     /// What the block is doing.
     pub state: State,

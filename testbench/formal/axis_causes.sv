@@ -1,0 +1,154 @@
+// axis, its causes: which are latched, when they are forgotten, and what they do in the clock in which they become active.
+//
+// Proven for all inputs in every clock, resets included; nothing is assumed. All is said of pins; only what the monitors have
+// found comes from inside, and axis_monitors proves that. The bits of causes, and which of them always switch off or are
+// harmless, are macros from `posicast_model::rtl::axis::Cause`.
+//
+//   exact_causes         each cause has its own line, flag or monitor: it is set in the clock in which that is active, by nothing
+//                        else, and stays until it is forgotten; several at once are all kept
+//   forgets_*            forgotten eight clocks after the last clear_faults, not in QUICK_STOP, not in FAULT with outputs on;
+//                        set wins
+//   known_lines          own emergency stop: the filtered line is low, four clocks after a reset or later
+//   trips_pwm            pwm_trip_n is low in the clock after an emergency stop, of this axis or of another
+//   clears_sources       clear_sources is clear_faults, a clock later
+//   any_*, fault_*, cut_*  what the states are told: any cause; any but the group stop; one that switches off, a new one by this
+//                        clock's off_causes, one that stands by those of the clock before
+//   off_at_once          outputs off and brake applied in the clock after one that switches off, in every state
+//   stop_or_fault        with a cause but the group stop, the state is QUICK_STOP, FAULT or OFF
+//   tells_others         wants_group_stop is FAULT, or QUICK_STOP with a cause but the group stop
+//   not_by_itself        the axis that wants the stop does not get the group stop of it
+//
+// Not proven here: what the monitors find (axis_monitors), the filters of the lines (single_line).
+module axis_causes_properties (
+    input wire        clk,
+    input wire        rst,
+    input wire        clear_faults,
+    input wire        group_stop,
+    input wire        group_emergency_stop,
+    input wire [15:0] off_causes,
+    input wire        segments_underrun,
+    input wire        segments_overflow,
+    input wire        segments_tick_missed,
+    input wire        shaper_overrun,
+    input wire        controller_overrun,
+    input wire        pwm_tripped,
+    input wire        encoder_illegal,
+    input wire        encoder_disagreement,
+    input wire        velocity_missed,
+    input wire        scale_illegal,
+    input wire        scale_disagreement,
+    input wire [2:0]  state,
+    input wire [15:0] causes,
+    input wire        drive_enable,
+    input wire        brake_release,
+    input wire        pwm_enable,
+    input wire        pwm_trip_n,
+    input wire        clear_sources,
+    input wire        wants_group_stop,
+    input wire        emergency_stop,
+    input wire        level_emergency_stop_n,
+    input wire        level_drive_ready,
+    (* peek = "u_monitors.found" *) input wire [15:0] found,
+    (* peek = "primed" *) input wire [3:0] primed,
+    (* peek = "clear_left" *) input wire [3:0] clear_left,
+    (* peek = "clear_due" *) input wire clear_due,
+    (* peek = "u_cause_word.had_cause_q" *) input wire had_cause,
+    (* peek = "u_cause_word.had_fault_q" *) input wire had_fault,
+    (* peek = "u_cause_word.had_cut_q" *) input wire had_cut,
+    (* peek = "u_states.forget" *) input wire states_forget,
+    (* peek = "u_states.any_cause" *) input wire states_any_cause,
+    (* peek = "u_states.fault" *) input wire states_fault,
+    (* peek = "u_states.cut" *) input wire states_cut
+);
+    // Lines count from the fifth clock after a reset on.
+    reg [3:0] awake = 4'd0;
+    // clear_faults of the eight clocks before, the last one in bit 0.
+    reg [7:0] cleared = 8'd0;
+    always @(posedge clk) begin
+        awake <= rst ? 4'd0 : {awake[2:0], 1'b1};
+        cleared <= rst ? 8'd0 : {cleared[6:0], clear_faults};
+    end
+    wire due = cleared[7] & ~|cleared[6:0];
+    wire forgets = due & state != `QUICK_STOP & !(state == `FAULT & drive_enable);
+
+    wire        own_emergency = awake[3] & !level_emergency_stop_n;
+    wire        emergency = own_emergency | group_emergency_stop;
+    wire        encoder_error = encoder_illegal | encoder_disagreement | scale_illegal | scale_disagreement;
+    wire        late = segments_tick_missed | velocity_missed | shaper_overrun | controller_overrun;
+    wire [15:0] active = found
+        | (emergency ? `EMERGENCY_STOP : 16'd0)
+        | (pwm_tripped ? `PWM_TRIPPED : 16'd0)
+        | (drive_enable & !level_drive_ready ? `DRIVE_LOST : 16'd0)
+        | (encoder_error ? `ENCODER_ERROR : 16'd0)
+        | (segments_underrun | segments_overflow ? `SEGMENTS : 16'd0)
+        | (drive_enable & group_stop & !wants_group_stop ? `GROUP_STOP : 16'd0)
+        | (late ? `SCHEDULE : 16'd0);
+    wire [15:0] standing = forgets ? 16'd0 : causes;
+    wire [15:0] now = standing | active;
+
+    wire [15:0] off = (off_causes | `ALWAYS_OFF) & ~`HARMLESS;
+    reg  [15:0] past_off_causes = 16'd0;
+    wire [15:0] past_off = (past_off_causes | `ALWAYS_OFF) & ~`HARMLESS;
+    wire        cut = |(active & off) | |(standing & past_off);
+
+    reg         past_reset = 1'b1;
+    reg         past_cut = 1'b0;
+    reg         past_emergency = 1'b0;
+    reg         past_clear = 1'b0;
+    reg         past_wants = 1'b0;
+    reg  [2:0]  past_state = `OFF;
+    reg  [15:0] past_causes = 16'd0;
+    reg  [15:0] expected = 16'd0;
+    always @(posedge clk) begin
+        past_reset <= rst;
+        past_off_causes <= off_causes;
+        past_cut <= cut & !rst;
+        past_emergency <= emergency & !rst;
+        past_clear <= clear_faults & !rst;
+        past_wants <= wants_group_stop;
+        past_state <= state;
+        past_causes <= causes;
+        expected <= rst ? 16'd0 : now;
+    end
+
+    wire [15:0] harmful = causes & ~`HARMLESS;
+    always @(*) begin
+        exact_causes: assert (causes == expected);
+        forgets_when_due: assert (clear_due == due);
+        forgets_nothing_else: assert (states_forget == forgets);
+        known_lines: assert (emergency_stop == own_emergency);
+        trips_pwm: assert (pwm_trip_n != past_emergency);
+        clears_sources: assert (clear_sources == past_clear);
+        any_cause_at_once: assert (states_any_cause == |now);
+        fault_at_once: assert (states_fault == |(now & ~`HARMLESS));
+        cut_at_once: assert (states_cut == cut);
+        off_at_once: assert (!past_cut | (!drive_enable & !pwm_enable & !brake_release));
+        cut_is_a_fault: assert (!past_cut | state == `FAULT | state == `OFF);
+        stop_or_fault: assert (harmful == 16'd0 | state == `QUICK_STOP | state == `FAULT | state == `OFF);
+        tells_others: assert (wants_group_stop == (state == `FAULT | (state == `QUICK_STOP & harmful != 16'd0)));
+        not_by_itself: assert (past_reset | !past_wants | (causes & ~past_causes & `GROUP_STOP) == 16'd0);
+    end
+
+    // What registers hold, for the induction.
+    wire [15:0] of_pins = `EMERGENCY_STOP | `PWM_TRIPPED | `DRIVE_LOST | `ENCODER_ERROR | `SEGMENTS | `GROUP_STOP | `SCHEDULE;
+    wire [3:0] left = cleared[0] ? 4'd8 : cleared[1] ? 4'd7 : cleared[2] ? 4'd6 : cleared[3] ? 4'd5 :
+        cleared[4] ? 4'd4 : cleared[5] ? 4'd3 : cleared[6] ? 4'd2 : cleared[7] ? 4'd1 : 4'd0;
+    always @(*) begin
+        known_state: assert (state <= `FAULT);
+        found_at_ticks: assert ((found & of_pins) == 16'd0);
+        lines_wait: assert (primed == awake);
+        clear_counts: assert (clear_left == left);
+        any_stands: assert (had_cause == |causes);
+        fault_stands: assert (had_fault == |harmful);
+        cut_stands: assert (had_cut == |(causes & past_off));
+    end
+
+    always @(*) begin
+        reach_new_cut: cover (past_cut & past_causes == 16'd0 & past_state == `RUN);
+        reach_cut_of_standing: cover (past_cut & past_causes == causes & past_state == `QUICK_STOP);
+        reach_forgotten: cover (past_causes != 16'd0 & causes == 16'd0 & !past_reset);
+        reach_set_wins: cover (past_causes != 16'd0 & causes != 16'd0 & states_forget);
+        reach_group_stop: cover (causes == `GROUP_STOP);
+        reach_several: cover (causes == 16'hffff);
+    end
+endmodule

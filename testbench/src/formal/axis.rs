@@ -1,0 +1,122 @@
+//! The proofs of the supervisor of an axis, one block with a property file for each of its subjects; and of what stands between
+//! it and the drive.
+
+use posicast_hdl::{axis, drive_command};
+use posicast_model::rtl::axis::{
+    self as model, ALWAYS_OFF, Cause, Condition, HARMLESS, KICK, State, TRANSITIONS, Transition,
+};
+use posicast_model::rtl::{drive_command as command_model, segments};
+
+use super::task::{Engine, Task};
+use crate::Error;
+
+/// All of them.
+pub(super) fn tasks() -> Result<Vec<Task>, Error> {
+    let block = (axis::emit("")?, model::ports());
+    let macros = macros();
+    let macros: Vec<(&str, String)> = macros
+        .iter()
+        .map(|(name, value)| (name.as_str(), value.clone()))
+        .collect();
+    let task = |name, engine, text| Task::new(name, "all inputs", engine, block.clone()).properties(&macros, text);
+    let induction = Engine::Induction { clocks: 1 };
+    Ok(vec![
+        task("axis", Engine::Pdr, include_str!("../../formal/axis.sv")),
+        task("axis_table", induction, include_str!("../../formal/axis_table.sv")),
+        task("axis_causes", induction, include_str!("../../formal/axis_causes.sv")),
+        task("axis_brake", induction, include_str!("../../formal/axis_brake.sv")),
+        task(
+            "axis_monitors",
+            induction,
+            include_str!("../../formal/axis_monitors.sv"),
+        ),
+        task("axis_lines", induction, include_str!("../../formal/axis_lines.sv")),
+        Task::new(
+            "drive_command",
+            "all inputs",
+            induction,
+            (drive_command::emit("")?, command_model::ports()),
+        )
+        .properties(&macros, include_str!("../../formal/drive_command.sv")),
+    ])
+}
+
+/// States, causes and the transition table, all from the model.
+fn macros() -> Vec<(String, String)> {
+    let mut macros: Vec<(String, String)> = State::ALL
+        .map(|state| (state.name().to_owned(), format!("3'd{}", state as u8)))
+        .into();
+    macros.extend(Cause::ALL.map(|cause| {
+        let name = words(&format!("{cause:?}")).to_uppercase();
+        (name, format!("16'd{}", cause.bit()))
+    }));
+    let segments = |state: segments::State| format!("2'd{}", state as u8);
+    let others = [
+        ("ALWAYS_OFF", format!("16'd{ALWAYS_OFF}")),
+        ("HARMLESS", format!("16'd{HARMLESS}")),
+        ("KICK", format!("32'd{KICK}")),
+        ("SEGMENTS_HOLD", segments(segments::State::Hold)),
+        ("SEGMENTS_STOPPED", segments(segments::State::Stopped)),
+        ("ALLOWED(from, to)", allowed()),
+        ("NEXT(from)", next()),
+    ];
+    macros.extend(others.map(|(name, value)| (name.to_owned(), value)));
+    macros
+}
+
+/// Whether a state may follow another.
+fn allowed() -> String {
+    let row = |row: &Transition| format!("((from) == 3'd{} & (to) == 3'd{})", row.from as u8, row.to as u8);
+    let rows: Vec<String> = TRANSITIONS.iter().map(row).collect();
+    format!("({})", rows.join(" | "))
+}
+
+/// The state that follows: of the rows the first whose conditions hold. Conditions are wires, `if_tick` that of `Tick`.
+fn next() -> String {
+    let rows = TRANSITIONS.iter().map(|row| {
+        let named = |condition| format!("if_{}", words(&format!("{condition:?}")));
+        let needed = Condition::ALL
+            .into_iter()
+            .filter(|condition| row.needs(*condition))
+            .map(named);
+        let forbidden = Condition::ALL
+            .into_iter()
+            .filter(|condition| row.forbids(*condition))
+            .map(|condition| format!("!{}", named(condition)));
+        let from = format!("(from) == 3'd{}", row.from as u8);
+        let all: Vec<String> = std::iter::once(from).chain(needed).chain(forbidden).collect();
+        format!("({}) ? 3'd{} : ", all.join(" & "), row.to as u8)
+    });
+    format!("({}(from))", rows.collect::<String>())
+}
+
+/// `DriveReady` as `drive_ready`.
+fn words(name: &str) -> String {
+    let mut text = String::new();
+    for letter in name.chars() {
+        if letter.is_uppercase() && !text.is_empty() {
+            text.push('_');
+        }
+        text.push(letter.to_ascii_lowercase());
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn unit_rows_are_in_the_order_of_the_table() {
+        let text = next();
+        assert!(
+            text.starts_with("(((from) == 3'd0 & if_drive_ready & !if_cause & !if_enable) ? 3'd1 : "),
+            "{text}"
+        );
+        assert_eq!(text.matches('?').count(), TRANSITIONS.len());
+        assert!(
+            text.ends_with("((from) == 3'd5 & if_cleared) ? 3'd0 : (from))"),
+            "{text}"
+        );
+    }
+}
