@@ -233,3 +233,29 @@ fn formal_a_limit_that_is_passed_by_an_lsb_is_found() {
 fn formal_a_result_clamped_to_the_wrong_end_is_found() {
     fails("shaper", "y_q_next = Y_MAX", "y_q_next = Y_MIN", "result");
 }
+
+#[test]
+fn formal_commit() {
+    proven("commit", 0);
+    proven("commit", 1);
+}
+
+#[test]
+fn formal_setting_banks() {
+    proven("setting_banks", 0);
+}
+
+#[test]
+fn formal_a_write_after_its_commit_is_found() {
+    fails(
+        "commit",
+        "if (write_law && !waits) begin",
+        "if (write_law) begin",
+        "all_at_once",
+    );
+}
+
+#[test]
+fn formal_a_setting_that_changes_in_use_is_found() {
+    fails("setting_banks", " & (setting_bank != bank)", "", "active_stays");
+}

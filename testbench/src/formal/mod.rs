@@ -17,6 +17,7 @@
 //! Two engines, both unbounded: [`Engine::Pdr`] finds its invariants itself; [`Engine::Induction`] needs them among the
 //! properties. What either does not prove is searched for a counterexample of at most [`SEARCHED_CLOCKS`].
 
+mod blocks;
 mod names;
 mod task;
 mod tool;

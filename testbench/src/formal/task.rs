@@ -66,7 +66,12 @@ pub struct Task {
 }
 
 impl Task {
-    fn new(name: &'static str, size: &str, engine: Engine, (modules, ports): (Vec<Module>, Vec<Port>)) -> Self {
+    pub(super) fn new(
+        name: &'static str,
+        size: &str,
+        engine: Engine,
+        (modules, ports): (Vec<Module>, Vec<Port>),
+    ) -> Self {
         Self {
             name,
             size: size.to_owned(),
@@ -81,7 +86,7 @@ impl Task {
     }
 
     /// With a property file, after macros for this size.
-    fn properties(mut self, macros: &[(&str, String)], text: &str) -> Self {
+    pub(super) fn properties(mut self, macros: &[(&str, String)], text: &str) -> Self {
         for (name, value) in macros {
             let _ = writeln!(self.properties, "`define {name} {value}");
         }
@@ -155,6 +160,7 @@ pub fn all() -> Result<Vec<Task>, Error> {
         include_str!("../../formal/limiter.sv"),
     )?);
     tasks.push(shaper_task()?);
+    tasks.extend(super::blocks::tasks()?);
     Ok(tasks)
 }
 
@@ -174,7 +180,7 @@ pub fn named(name: &str) -> Result<Vec<Task>, Error> {
     Ok(all.into_iter().filter(|task| task.name == name).collect())
 }
 
-fn refused(error: impl std::fmt::Display) -> Error {
+pub(super) fn refused(error: impl std::fmt::Display) -> Error {
     Error::Option(error.to_string())
 }
 
