@@ -246,6 +246,11 @@ fn formal_setting_banks() {
 }
 
 #[test]
+fn formal_divider() {
+    proven("divider", 0);
+}
+
+#[test]
 fn formal_a_write_after_its_commit_is_found() {
     fails(
         "commit",
@@ -258,4 +263,14 @@ fn formal_a_write_after_its_commit_is_found() {
 #[test]
 fn formal_a_setting_that_changes_in_use_is_found() {
     fails("setting_banks", " & (setting_bank != bank)", "", "active_stays");
+}
+
+#[test]
+fn formal_a_division_by_no_clocks_is_found() {
+    fails(
+        "divider",
+        "divisor_next = elapsed | one_tick",
+        "divisor_next = elapsed",
+        "known_operands",
+    );
 }

@@ -1,9 +1,10 @@
 //! Proofs of single blocks whose tasks are bound by what their configuration says.
 
-use posicast_hdl::{registers, setting_banks};
+use posicast_hdl::{divider, registers, setting_banks};
 use posicast_model::control;
 use posicast_model::design::design_machine;
 use posicast_model::rtl::component::Component;
+use posicast_model::rtl::divider::{self as divider_model, DividerConfig};
 use posicast_model::rtl::registers::{Access, Register, RegisterMap};
 use posicast_model::rtl::setting_banks as banks_model;
 use posicast_model::rtl::sliding_mode::{Law, Settings};
@@ -23,6 +24,8 @@ pub(super) fn tasks() -> Result<Vec<Task>, Error> {
         commit_task("bank of sliding_mode", controller.map())?,
         commit_task("bank of a stage of two axes", stage.map())?,
         setting_banks_task(&settings)?,
+        divider_task(5000)?,
+        divider_task(131_071)?,
     ])
 }
 
@@ -99,4 +102,16 @@ fn setting_banks_task(settings: &Settings) -> Result<Task, Error> {
         Task::new("setting_banks", "32 rows, contents left out", Engine::Pdr, block)
             .properties(&[], include_str!("../../formal/setting_banks.sv")),
     )
+}
+
+fn divider_task(tick_clocks: u64) -> Result<Task, Error> {
+    let config = DividerConfig::new(tick_clocks).map_err(refused)?;
+    let macros = [
+        ("TICK_CLOCKS", format!("17'd{tick_clocks}")),
+        ("DIVISION_CLOCKS", format!("7'd{}", divider_model::DIVISION_CLOCKS)),
+    ];
+    let block = (divider::emit(&config, "")?, divider_model::ports());
+    let size = format!("{tick_clocks} clocks per tick, full width");
+    let engine = Engine::Induction { clocks: 1 };
+    Ok(Task::new("divider", &size, engine, block).properties(&macros, include_str!("../../formal/divider.sv")))
 }
