@@ -251,6 +251,11 @@ fn formal_divider() {
 }
 
 #[test]
+fn formal_encoder_generator() {
+    proven("encoder_generator", 0);
+}
+
+#[test]
 fn formal_a_write_after_its_commit_is_found() {
     fails(
         "commit",
@@ -273,4 +278,9 @@ fn formal_a_division_by_no_clocks_is_found() {
         "divisor_next = elapsed",
         "known_operands",
     );
+}
+
+#[test]
+fn formal_lines_that_turn_back_at_once_are_found() {
+    fails("encoder_generator", "if (!moved) begin", "begin", "every_other_clock");
 }

@@ -1,10 +1,11 @@
 //! Proofs of single blocks whose tasks are bound by what their configuration says.
 
-use posicast_hdl::{divider, registers, setting_banks};
+use posicast_hdl::{divider, encoder_generator, registers, setting_banks};
 use posicast_model::control;
 use posicast_model::design::design_machine;
 use posicast_model::rtl::component::Component;
 use posicast_model::rtl::divider::{self as divider_model, DividerConfig};
+use posicast_model::rtl::encoder_generator as generator_model;
 use posicast_model::rtl::registers::{Access, Register, RegisterMap};
 use posicast_model::rtl::setting_banks as banks_model;
 use posicast_model::rtl::sliding_mode::{Law, Settings};
@@ -26,6 +27,7 @@ pub(super) fn tasks() -> Result<Vec<Task>, Error> {
         setting_banks_task(&settings)?,
         divider_task(5000)?,
         divider_task(131_071)?,
+        encoder_generator_task()?,
     ])
 }
 
@@ -114,4 +116,11 @@ fn divider_task(tick_clocks: u64) -> Result<Task, Error> {
     let size = format!("{tick_clocks} clocks per tick, full width");
     let engine = Engine::Induction { clocks: 1 };
     Ok(Task::new("divider", &size, engine, block).properties(&macros, include_str!("../../formal/divider.sv")))
+}
+
+fn encoder_generator_task() -> Result<Task, Error> {
+    let block = (encoder_generator::emit("")?, generator_model::ports());
+    let engine = Engine::Induction { clocks: 1 };
+    Ok(Task::new("encoder_generator", "all rates", engine, block)
+        .properties(&[], include_str!("../../formal/encoder_generator.sv")))
 }
