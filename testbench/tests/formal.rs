@@ -284,3 +284,24 @@ fn formal_a_division_by_no_clocks_is_found() {
 fn formal_lines_that_turn_back_at_once_are_found() {
     fails("encoder_generator", "if (!moved) begin", "begin", "every_other_clock");
 }
+
+#[test]
+fn formal_cascade() {
+    proven("cascade", 0);
+    proven("cascade", 1);
+}
+
+#[test]
+fn formal_halves_that_are_dropped_are_found() {
+    fails(
+        "cascade",
+        "assign rounded = sum + HALF",
+        "assign rounded = sum",
+        "result",
+    );
+}
+
+#[test]
+fn formal_a_sample_from_before_the_start_is_found() {
+    fails("cascade", "delays_data >= age", "delays_data > age", "before_known");
+}

@@ -1,8 +1,9 @@
 //! Proofs of single blocks whose tasks are bound by what their configuration says.
 
-use posicast_hdl::{divider, encoder_generator, registers, setting_banks};
+use posicast_hdl::{cascade, divider, encoder_generator, registers, setting_banks};
 use posicast_model::control;
 use posicast_model::design::design_machine;
+use posicast_model::rtl::cascade::{self as cascade_model, CascadeConfig};
 use posicast_model::rtl::component::Component;
 use posicast_model::rtl::divider::{self as divider_model, DividerConfig};
 use posicast_model::rtl::encoder_generator as generator_model;
@@ -28,6 +29,8 @@ pub(super) fn tasks() -> Result<Vec<Task>, Error> {
         divider_task(5000)?,
         divider_task(131_071)?,
         encoder_generator_task()?,
+        cascade_task(16, vec![3, 5, 7])?,
+        cascade_task(32, vec![60; 8])?,
     ])
 }
 
@@ -123,4 +126,23 @@ fn encoder_generator_task() -> Result<Task, Error> {
     let engine = Engine::Induction { clocks: 1 };
     Ok(Task::new("encoder_generator", "all rates", engine, block)
         .properties(&[], include_str!("../../formal/encoder_generator.sv")))
+}
+
+fn cascade_task(word_bits: u32, delays_samples: Vec<u32>) -> Result<Task, Error> {
+    let config = CascadeConfig::new(word_bits, delays_samples).map_err(refused)?;
+    let macros = [
+        ("WORD", word_bits.to_string()),
+        ("SUM", config.sum_bits().to_string()),
+        ("INDEX", config.stage_index_bits().to_string()),
+        ("ADDRESS", config.ring_address_bits().to_string()),
+        ("STAGES", config.stages().to_string()),
+        (
+            "PASS_CLOCKS",
+            format!("6'd{}", cascade_model::pass_clocks(config.stages())),
+        ),
+    ];
+    let block = (cascade::emit(&config, "")?, cascade_model::ports(&config));
+    let size = format!("{word_bits} bits, {} stages, contents left out", config.stages());
+    let engine = Engine::Induction { clocks: 1 };
+    Ok(Task::new("cascade", &size, engine, block).properties(&macros, include_str!("../../formal/cascade.sv")))
 }
