@@ -292,6 +292,11 @@ fn formal_cascade() {
 }
 
 #[test]
+fn formal_excitation() {
+    proven("excitation", 0);
+}
+
+#[test]
 fn formal_halves_that_are_dropped_are_found() {
     fails(
         "cascade",
@@ -304,4 +309,9 @@ fn formal_halves_that_are_dropped_are_found() {
 #[test]
 fn formal_a_sample_from_before_the_start_is_found() {
     fails("cascade", "delays_data >= age", "delays_data > age", "before_known");
+}
+
+#[test]
+fn formal_a_test_signal_that_is_not_allowed_is_found() {
+    fails("excitation", "(enable & allowed) & (|kind)", "enable & (|kind)", "cut_off");
 }

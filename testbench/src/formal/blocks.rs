@@ -1,6 +1,6 @@
 //! Proofs of single blocks whose tasks are bound by what their configuration says.
 
-use posicast_hdl::{cascade, divider, encoder_generator, registers, setting_banks};
+use posicast_hdl::{cascade, divider, encoder_generator, excitation, registers, setting_banks};
 use posicast_model::control;
 use posicast_model::design::design_machine;
 use posicast_model::rtl::cascade::{self as cascade_model, CascadeConfig};
@@ -10,6 +10,7 @@ use posicast_model::rtl::encoder_generator as generator_model;
 use posicast_model::rtl::registers::{Access, Register, RegisterMap};
 use posicast_model::rtl::setting_banks as banks_model;
 use posicast_model::rtl::sliding_mode::{Law, Settings};
+use posicast_model::rtl::excitation as excitation_model;
 use posicast_model::spec;
 
 use super::task::{Engine, Task, refused};
@@ -31,6 +32,7 @@ pub(super) fn tasks() -> Result<Vec<Task>, Error> {
         encoder_generator_task()?,
         cascade_task(16, vec![3, 5, 7])?,
         cascade_task(32, vec![60; 8])?,
+        excitation_task()?,
     ])
 }
 
@@ -145,4 +147,11 @@ fn cascade_task(word_bits: u32, delays_samples: Vec<u32>) -> Result<Task, Error>
     let size = format!("{word_bits} bits, {} stages, contents left out", config.stages());
     let engine = Engine::Induction { clocks: 1 };
     Ok(Task::new("cascade", &size, engine, block).properties(&macros, include_str!("../../formal/cascade.sv")))
+}
+
+fn excitation_task() -> Result<Task, Error> {
+    let block = (excitation::emit("")?, excitation_model::ports());
+    let engine = Engine::Induction { clocks: 1 };
+    Ok(Task::new("excitation", "all signals", engine, block)
+        .properties(&[], include_str!("../../formal/excitation.sv")))
 }
