@@ -297,6 +297,11 @@ fn formal_excitation() {
 }
 
 #[test]
+fn formal_linear_scale() {
+    proven("linear_scale", 0);
+}
+
+#[test]
 fn formal_halves_that_are_dropped_are_found() {
     fails(
         "cascade",
@@ -314,4 +319,14 @@ fn formal_a_sample_from_before_the_start_is_found() {
 #[test]
 fn formal_a_test_signal_that_is_not_allowed_is_found() {
     fails("excitation", "(enable & allowed) & (|kind)", "enable & (|kind)", "cut_off");
+}
+
+#[test]
+fn formal_a_tick_over_the_one_that_is_computed_is_found() {
+    fails(
+        "linear_scale",
+        "takes_positions = tick & !positions_wait",
+        "takes_positions = tick",
+        "known_ahead",
+    );
 }

@@ -1,6 +1,6 @@
 //! Proofs of single blocks whose tasks are bound by what their configuration says.
 
-use posicast_hdl::{cascade, divider, encoder_generator, excitation, registers, setting_banks};
+use posicast_hdl::{cascade, divider, encoder_generator, excitation, linear_scale, registers, setting_banks};
 use posicast_model::control;
 use posicast_model::design::design_machine;
 use posicast_model::rtl::cascade::{self as cascade_model, CascadeConfig};
@@ -10,7 +10,7 @@ use posicast_model::rtl::encoder_generator as generator_model;
 use posicast_model::rtl::registers::{Access, Register, RegisterMap};
 use posicast_model::rtl::setting_banks as banks_model;
 use posicast_model::rtl::sliding_mode::{Law, Settings};
-use posicast_model::rtl::excitation as excitation_model;
+use posicast_model::rtl::{excitation as excitation_model, linear_scale as scale_model};
 use posicast_model::spec;
 
 use super::task::{Engine, Task, refused};
@@ -33,6 +33,7 @@ pub(super) fn tasks() -> Result<Vec<Task>, Error> {
         cascade_task(16, vec![3, 5, 7])?,
         cascade_task(32, vec![60; 8])?,
         excitation_task()?,
+        linear_scale_task()?,
     ])
 }
 
@@ -154,4 +155,11 @@ fn excitation_task() -> Result<Task, Error> {
     let engine = Engine::Induction { clocks: 1 };
     Ok(Task::new("excitation", "all signals", engine, block)
         .properties(&[], include_str!("../../formal/excitation.sv")))
+}
+
+fn linear_scale_task() -> Result<Task, Error> {
+    let block = (linear_scale::emit("")?, scale_model::ports());
+    let engine = Engine::Induction { clocks: 1 };
+    Ok(Task::new("linear_scale", "all ratios", engine, block)
+        .properties(&[], include_str!("../../formal/linear_scale.sv")))
 }
