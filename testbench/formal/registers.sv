@@ -17,8 +17,8 @@
 //   irq_level          irq is high exactly while an enabled state was, a clock before
 //   command_*          a command is one clock, after a write of the whole word, and at no other time
 //
-// Proven for this bank; the banks of other blocks are written by the same emitter. It has no staged group: that a commit
-// applies all of them at once is in the lock step of setting_banks and sliding_mode, not here.
+// Proven for this bank; the banks of other blocks are written by the same emitter. It has no staged registers: what
+// a commit does with these is in commit.sv.
 module registers_properties (
     input wire               clk,
     input wire               rst,

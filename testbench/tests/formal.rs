@@ -332,3 +332,100 @@ fn formal_a_limit_that_is_passed_by_an_lsb_is_found() {
 fn formal_a_result_clamped_to_the_wrong_end_is_found() {
     fails("shaper", "y_q_next = Y_MAX", "y_q_next = Y_MIN", "result");
 }
+
+#[test]
+fn formal_commit() {
+    proven("commit", 0);
+    proven("commit", 1);
+}
+
+#[test]
+fn formal_setting_banks() {
+    proven("setting_banks", 0);
+}
+
+#[test]
+fn formal_divider() {
+    proven("divider", 0);
+}
+
+#[test]
+fn formal_encoder_generator() {
+    proven("encoder_generator", 0);
+}
+
+#[test]
+fn formal_a_write_after_its_commit_is_found() {
+    fails(
+        "commit",
+        "if (write_law && !waits) begin",
+        "if (write_law) begin",
+        "all_at_once",
+    );
+}
+
+#[test]
+fn formal_a_setting_that_changes_in_use_is_found() {
+    fails("setting_banks", " & (setting_bank != bank)", "", "active_stays");
+}
+
+#[test]
+fn formal_a_division_by_no_clocks_is_found() {
+    fails(
+        "divider",
+        "divisor_next = elapsed | one_tick",
+        "divisor_next = elapsed",
+        "known_operands",
+    );
+}
+
+#[test]
+fn formal_lines_that_turn_back_at_once_are_found() {
+    fails("encoder_generator", "if (!moved) begin", "begin", "every_other_clock");
+}
+
+#[test]
+fn formal_cascade() {
+    proven("cascade", 0);
+    proven("cascade", 1);
+}
+
+#[test]
+fn formal_excitation() {
+    proven("excitation", 0);
+}
+
+#[test]
+fn formal_linear_scale() {
+    proven("linear_scale", 0);
+}
+
+#[test]
+fn formal_halves_that_are_dropped_are_found() {
+    fails(
+        "cascade",
+        "assign rounded = sum + HALF",
+        "assign rounded = sum",
+        "result",
+    );
+}
+
+#[test]
+fn formal_a_sample_from_before_the_start_is_found() {
+    fails("cascade", "delays_data >= age", "delays_data > age", "before_known");
+}
+
+#[test]
+fn formal_a_test_signal_that_is_not_allowed_is_found() {
+    fails("excitation", "(enable & allowed) & (|kind)", "enable & (|kind)", "cut_off");
+}
+
+#[test]
+fn formal_a_tick_over_the_one_that_is_computed_is_found() {
+    fails(
+        "linear_scale",
+        "takes_positions = tick & !positions_wait",
+        "takes_positions = tick",
+        "known_ahead",
+    );
+}

@@ -18,6 +18,7 @@
 //! properties. What either does not prove is searched for a counterexample of at most [`SEARCHED_CLOCKS`].
 
 mod axis;
+mod blocks;
 mod names;
 mod task;
 mod tool;

@@ -161,6 +161,7 @@ pub fn all() -> Result<Vec<Task>, Error> {
         include_str!("../../formal/limiter.sv"),
     )?);
     tasks.push(shaper_task()?);
+    tasks.extend(super::blocks::tasks()?);
     Ok(tasks)
 }
 
@@ -180,7 +181,7 @@ pub fn named(name: &str) -> Result<Vec<Task>, Error> {
     Ok(all.into_iter().filter(|task| task.name == name).collect())
 }
 
-fn refused(error: impl std::fmt::Display) -> Error {
+pub(super) fn refused(error: impl std::fmt::Display) -> Error {
     Error::Option(error.to_string())
 }
 

@@ -1,0 +1,179 @@
+// linear_scale: when deviation and velocity are there, how long they stay, and what align does to them.
+//
+// Proven for all inputs in every clock, resets included. Assumed, as docs/linear_scale.md says: `use_scale` and `ratio_shift`
+// change in reset only; from another change on nothing is claimed until the next reset. Ticks and velocities come as they like.
+//
+//   position_is        position is that of the counter that the loop runs on, a clock late
+//   valid_in_time      a tick is taken unless one waits or is being computed; deviation_valid comes 65 clocks after it, or later
+//                      by what is left of a velocity's pass, 63 clocks at most; for each such tick once, at no other time
+//   velocity_in_time   with use_scale a velocity is new 65 clocks after it is taken, later by the pass of a position that is
+//                      under way or starts with it; never later than 129
+//   velocity_past      without use_scale the velocity is the motor's, a clock late
+//   deviation_stays    deviation changes from its valid to the next tick or align in no clock
+//   velocity_stays     velocity changes from the end of its pass to the next velocity_valid in no clock
+//   align_at_once      after an align it is 0 in the next clock, unless a tick is taken or computed
+//   align_counts       it is 0 with deviation_valid if an align has come since the one before, and in the next one too, if the
+//                      align came in the pass
+//   align_takes        a pass of a tick before whose start an align has come leaves both references as that tick's positions
+//   reference_stays    any other pass leaves them as they were
+//   known_...          invariants
+//
+// Left open: the product of ratio and difference, its rounding, the subtraction of the other one and saturation.
+module linear_scale_properties (
+    input wire               clk,
+    input wire               rst,
+    input wire               tick,
+    input wire signed [31:0] motor_position,
+    input wire signed [31:0] scale_position,
+    input wire signed [31:0] motor_velocity,
+    input wire               velocity_valid,
+    input wire               align,
+    input wire [4:0]         ratio_shift,
+    input wire               use_scale,
+    input wire signed [31:0] deviation,
+    input wire               deviation_valid,
+    input wire signed [31:0] position,
+    input wire signed [31:0] velocity,
+    (* peek = "positions_wait" *) input wire positions_wait,
+    (* peek = "velocity_waits" *) input wire velocity_waits,
+    (* peek = "runs" *) input wire runs,
+    (* peek = "of_position" *) input wire of_position,
+    (* peek = "asked" *) input wire asked,
+    (* peek = "aligning" *) input wire aligning,
+    (* peek = "other" *) input wire [31:0] other,
+    (* peek = "operand_reference" *) input wire [31:0] operand_reference,
+    (* peek = "other_reference" *) input wire [31:0] other_reference,
+    (* peek = "u_serial.phase" *) input wire [5:0] phase,
+    (* peek = "u_serial.begun_q" *) input wire begun,
+    (* peek = "u_serial.ended_q" *) input wire ended
+);
+    // The inputs that are tied: as in the clock before, or that was a reset.
+    reg        first = 1'b1;
+    reg        past_reset = 1'b1;
+    reg        was_tied = 1'b1;
+    reg        tied_use = 1'b0;
+    reg  [4:0] tied_shift = 5'd0;
+    wire       tied = was_tied & (first | past_reset | (use_scale == tied_use & ratio_shift == tied_shift));
+
+    // Clocks to the result of a tick, and of a velocity: 0, none is under way.
+    reg  [7:0] left = 8'd0;
+    reg  [7:0] velocity_left = 8'd0;
+    wire       takes = tick & left == 8'd0;
+    wire       takes_velocity = velocity_valid & use_scale & velocity_left == 8'd0;
+    wire [7:0] velocity_runs = velocity_left == 8'd0 | velocity_left > 8'd64 ? 8'd0 : velocity_left - 8'd1;
+    wire [7:0] position_runs = takes ? 8'd64 + velocity_runs : left == 8'd0 ? 8'd0 : left - 8'd1;
+    wire [7:0] done = 8'd64 - left;
+    wire       works = left != 8'd0 & left <= 8'd64;
+    wire       starts = left == 8'd65 | (takes & velocity_runs == 8'd0);
+
+    // Align: since the last valid or with it; before the start of this pass.
+    reg        since_valid = 1'b0;
+    reg        before_start = 1'b0;
+    reg        in_pass = 1'b0;
+    reg [31:0] operand = 32'd0;
+    reg [31:0] beside = 32'd0;
+    reg [31:0] zero_operand = 32'd0;
+    reg [31:0] zero_beside = 32'd0;
+
+    reg        past_takes = 1'b0;
+    reg        past_align = 1'b0;
+    reg        past_ends = 1'b0;
+    reg        past_silent = 1'b0;
+    reg        past_works = 1'b0;
+    reg        past_idle = 1'b1;
+    reg        past_valid_velocity = 1'b0;
+    reg        past_velocity_idle = 1'b1;
+    reg [31:0] past_loop = 32'd0;
+    reg [31:0] past_motor_velocity = 32'd0;
+    reg [31:0] past_deviation = 32'd0;
+    reg [31:0] past_velocity = 32'd0;
+    always @(posedge clk) begin
+        first <= 1'b0;
+        past_reset <= rst;
+        was_tied <= rst | tied;
+        tied_use <= use_scale;
+        tied_shift <= ratio_shift;
+        left <= rst ? 8'd0 : position_runs;
+        velocity_left <= rst ? 8'd0 : takes_velocity ? 8'd64 + position_runs
+            : velocity_left == 8'd0 ? 8'd0 : velocity_left - 8'd1;
+        // What was asked for before a pass is for it; what is asked for in it, for it and the next one.
+        if (rst) begin
+            before_start <= 1'b0;
+            in_pass <= 1'b0;
+        end else if (starts) begin
+            before_start <= in_pass | align;
+            in_pass <= 1'b0;
+        end else in_pass <= in_pass | align;
+        since_valid <= !rst & (left == 8'd1 ? 1'b0 : since_valid | align);
+        if (takes) begin
+            operand <= use_scale ? motor_position : scale_position;
+            beside <= use_scale ? scale_position : motor_position;
+        end
+        if (rst) begin
+            zero_operand <= 32'd0;
+            zero_beside <= 32'd0;
+        end else if (left == 8'd1 & before_start) begin
+            zero_operand <= operand;
+            zero_beside <= beside;
+        end
+        past_takes <= takes;
+        past_align <= align;
+        past_ends <= !rst & left == 8'd1;
+        past_silent <= since_valid | align | before_start;
+        past_works <= works;
+        past_idle <= left == 8'd0;
+        past_valid_velocity <= velocity_valid;
+        past_velocity_idle <= velocity_left == 8'd0;
+        past_loop <= use_scale ? scale_position : motor_position;
+        past_motor_velocity <= motor_velocity;
+        past_deviation <= deviation;
+        past_velocity <= velocity;
+    end
+
+    always @(*) begin
+        position_is: assert (past_reset | position == past_loop);
+        valid_in_time: assert (!tied | deviation_valid == past_ends);
+        velocity_past: assert (!tied | past_reset | use_scale | !past_valid_velocity | velocity == past_motor_velocity);
+        deviation_stays: assert (!tied | past_reset | !past_idle | past_takes | past_align | deviation == past_deviation);
+        velocity_stays: assert (!tied | past_reset | !past_velocity_idle | past_valid_velocity | velocity == past_velocity);
+        align_at_once: assert (!tied | past_reset | !past_align | !past_idle | past_takes | deviation == 32'sd0);
+        align_counts: assert (!tied | !past_ends | !past_silent | deviation == 32'sd0);
+        known_left: assert (!tied | (left <= 8'd127 & positions_wait == (left != 8'd0)));
+        velocity_in_time: assert (!tied | (velocity_left <= 8'd128 & velocity_waits == (velocity_left != 8'd0)
+            & (use_scale | velocity_left == 8'd0)));
+        known_runs: assert (!tied | runs == (left != 8'd0 | velocity_left != 8'd0));
+        known_which: assert (!tied | !runs | !use_scale | of_position == works);
+        known_first: assert (!tied | left <= 8'd64 | left == velocity_left + 8'd64);
+        known_second: assert (!tied | velocity_left <= 8'd64 | velocity_left == left + 8'd64);
+        known_order: assert (!tied | left == 8'd0 | velocity_left == 8'd0 | left > 8'd64 | velocity_left > 8'd64);
+        known_phase: assert (!tied | {2'd0, phase} == (works ? done : velocity_left != 8'd0 ? 8'd64 - velocity_left : 8'd0));
+        known_asked: assert (!tied | (asked == in_pass & (!works | aligning == before_start)));
+        known_since: assert (!tied | !since_valid | in_pass | (works & before_start));
+    end
+
+    // The references turn round in the pass, the operand's in its first 32 clocks, the other one's in 32 from ratio_shift on.
+    wire [5:0]  turned = done[5] ? 6'd32 : done[5:0];
+    wire [5:0]  from_shift = done[5:0] - {1'b0, ratio_shift};
+    wire [5:0]  other_turned = done < {3'd0, ratio_shift} ? 6'd0 : from_shift[5] ? 6'd32 : from_shift;
+    wire [63:0] operands = {before_start ? operand : zero_operand, zero_operand} >> turned;
+    wire [63:0] others = {before_start ? beside : zero_beside, zero_beside} >> other_turned;
+    always @(*) begin
+        align_takes: assert (!tied | works | (operand_reference == zero_operand & other_reference == zero_beside));
+        known_operand: assert (!tied | !works | operand_reference == operands[31:0]);
+        known_other: assert (!tied | !works | other_reference == others[31:0]);
+        known_taken: assert (!tied | left <= 8'd64 | deviation == operand);
+        known_ahead: assert (!tied | !works | done >= 8'd32 |
+            ((deviation ^ (operand >> done[4:0])) & (32'hffffffff >> done[4:0])) == 32'd0);
+        known_beside: assert (!tied | left == 8'd0 | other == beside >> (works ? other_turned : 6'd0));
+        known_begun: assert (!tied | !works | begun == (done > {3'd0, ratio_shift}));
+        known_ended: assert (!tied | !works | ended == (done > 8'd32 + {3'd0, ratio_shift}));
+    end
+
+    always @(*) begin
+        reach_valid: cover (deviation_valid & deviation != 32'sd0);
+        reach_late: cover (tied & left == 8'd120);
+        reach_velocity: cover (tied & velocity_left == 8'd128);
+        reach_aligned: cover (deviation_valid & past_silent & use_scale & operand != 32'd0);
+        reach_referenced: cover (zero_operand == 32'd5 & zero_beside == 32'd7);
+    end
+endmodule
