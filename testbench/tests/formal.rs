@@ -417,7 +417,12 @@ fn formal_a_sample_from_before_the_start_is_found() {
 
 #[test]
 fn formal_a_test_signal_that_is_not_allowed_is_found() {
-    fails("excitation", "(enable & allowed) & (|kind)", "enable & (|kind)", "cut_off");
+    fails(
+        "excitation",
+        "(enable & allowed) & (|kind)",
+        "enable & (|kind)",
+        "cut_off",
+    );
 }
 
 #[test]
