@@ -61,6 +61,13 @@ fn formal_drive_command() {
 }
 
 #[test]
+fn formal_axes_of_a_stage() {
+    for axis in [0, 1] {
+        proven("stage_axis", axis);
+    }
+}
+
+#[test]
 fn formal_trace() {
     proven("trace", 0);
 }
@@ -210,6 +217,12 @@ fn formal_a_start_of_the_other_source_is_found() {
         "start_q_next = pin_start | host_start",
         "exact",
     );
+}
+
+#[test]
+fn formal_an_emergency_stop_of_another_axis_on_no_wire_is_found() {
+    let wired = ".group_emergency_stop   (group_emergency_stop)";
+    fails("stage_axis", wired, ".group_emergency_stop   (1'd0)", "group_stop_");
 }
 
 #[test]

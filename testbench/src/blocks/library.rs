@@ -120,7 +120,7 @@ fn shaper(delays: [u32; 4]) -> Result<ShaperConfig, Error> {
 }
 
 /// Two axes: one with trace memory and test signals, one whose loop is on a linear scale.
-fn stage() -> Result<StageConfig, Error> {
+pub(crate) fn stage() -> Result<StageConfig, Error> {
     let axis = |name: &str| -> Result<StageAxis, Error> {
         Ok(StageAxis {
             name: name.to_owned(),

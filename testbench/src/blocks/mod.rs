@@ -45,6 +45,7 @@ pub use self::drive_command::DriveCommandBlock;
 pub use self::encoder_generator::EncoderGeneratorBlock;
 pub use self::excitation::ExcitationBlock;
 pub use self::library::library;
+pub(crate) use self::library::stage as library_stage;
 pub use self::linear_scale::LinearScaleBlock;
 pub use self::part::{Part, PartBlock};
 pub use self::pulse_counter::PulseCounterBlock;

@@ -1,5 +1,5 @@
-//! The proofs of the supervisor of an axis, one block with a property file for each of its subjects; and of what stands between
-//! it and the drive.
+//! The proofs of the supervisor of an axis, one block with a property file for each of its subjects; of what stands between
+//! it and the drive; and of both and the PWM as a stage wires them.
 
 use posicast_hdl::{axis, drive_command};
 use posicast_model::rtl::axis::{
@@ -7,6 +7,7 @@ use posicast_model::rtl::axis::{
 };
 use posicast_model::rtl::{drive_command as command_model, segments};
 
+use super::stage;
 use super::task::{Engine, Task};
 use crate::Error;
 
@@ -20,7 +21,7 @@ pub(super) fn tasks() -> Result<Vec<Task>, Error> {
         .collect();
     let task = |name, engine, text| Task::new(name, "all inputs", engine, block.clone()).properties(&macros, text);
     let induction = Engine::Induction { clocks: 1 };
-    Ok(vec![
+    let mut tasks = vec![
         task("axis", Engine::Pdr, include_str!("../../formal/axis.sv")),
         task("axis_table", induction, include_str!("../../formal/axis_table.sv")),
         task("axis_causes", induction, include_str!("../../formal/axis_causes.sv")),
@@ -38,7 +39,9 @@ pub(super) fn tasks() -> Result<Vec<Task>, Error> {
             (drive_command::emit("")?, command_model::ports()),
         )
         .properties(&macros, include_str!("../../formal/drive_command.sv")),
-    ])
+    ];
+    tasks.extend(stage::tasks(&macros)?);
+    Ok(tasks)
 }
 
 /// States, causes and the transition table, all from the model.

@@ -1,0 +1,62 @@
+//! The proof of supervisor, drive command and PWM as a stage wires them.
+
+use posicast_hdl::component;
+use posicast_hdl::emit::Module;
+use posicast_model::rtl::component::Component;
+use posicast_model::rtl::stage::StageAxis;
+
+use super::task::{Engine, Task};
+use crate::Error;
+use crate::blocks::library_stage;
+
+/// Blocks of an axis that only say where it should be and where it is: left out, so that they say anything.
+const LEFT_OUT: [&str; 8] = [
+    "_segments",
+    "_shaper",
+    "_sliding_mode",
+    "_pulse_counter",
+    "_linear_scale",
+    "_encoder_generator",
+    "_excitation",
+    "_trace",
+];
+
+fn refused(error: impl std::fmt::Display) -> Error {
+    Error::Option(error.to_string())
+}
+
+/// The axes of the stage that the other rungs of verification take: one with what bring-up needs, one with a linear scale.
+pub(super) fn tasks(macros: &[(&str, String)]) -> Result<Vec<Task>, Error> {
+    let stage = library_stage()?;
+    let component = Component::stage(&stage).map_err(refused)?;
+    let mut modules = component::emit(&component, "stage")?;
+    for block in LEFT_OUT {
+        let of_block = modules.iter_mut().filter(|module| module.name.ends_with(block));
+        if of_block.map(empty).count() == 0 {
+            return Err(refused(format!("the stage has no block `{block}`")));
+        }
+    }
+    stage.axes.iter().map(|axis| task(axis, &modules, macros)).collect()
+}
+
+/// `modules` are those of the stage, sub-modules first.
+fn task(axis: &StageAxis, modules: &[Module], macros: &[(&str, String)]) -> Result<Task, Error> {
+    let name = format!("stage_{}", axis.name);
+    let at = modules.iter().position(|module| module.name == name);
+    let at = at.ok_or_else(|| refused(format!("the stage has no `{name}`")))?;
+    let filter_clocks = axis.supervision.filter_clocks;
+    let mut macros = macros.to_vec();
+    macros.push(("FILTER_CLOCKS", format!("7'd{filter_clocks}")));
+    let size = format!("axis {}, lines filtered for {filter_clocks} clocks", axis.name);
+    let block = (modules[..=at].to_vec(), modules[at].ports.clone());
+    Ok(Task::new("stage_axis", &size, Engine::Induction { clocks: 1 }, block)
+        .properties(&macros, include_str!("../../formal/stage_axis.sv")))
+}
+
+/// Nothing is left in it but its ports: its outputs are anything, in every clock. Without a wire Yosys would take it for a
+/// module from elsewhere.
+fn empty(module: &mut Module) {
+    if let Some((ports, _)) = module.text.split_once("\n);\n") {
+        module.text = format!("{ports}\n);\n    wire left_out = clk;\nendmodule\n\n`default_nettype wire\n");
+    }
+}
