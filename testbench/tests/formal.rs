@@ -318,7 +318,12 @@ fn formal_a_sample_from_before_the_start_is_found() {
 
 #[test]
 fn formal_a_test_signal_that_is_not_allowed_is_found() {
-    fails("excitation", "(enable & allowed) & (|kind)", "enable & (|kind)", "cut_off");
+    fails(
+        "excitation",
+        "(enable & allowed) & (|kind)",
+        "enable & (|kind)",
+        "cut_off",
+    );
 }
 
 #[test]
@@ -328,5 +333,20 @@ fn formal_a_tick_over_the_one_that_is_computed_is_found() {
         "takes_positions = tick & !positions_wait",
         "takes_positions = tick",
         "known_ahead",
+    );
+}
+
+#[test]
+fn formal_serial_ratio() {
+    proven("serial_ratio", 2);
+}
+
+#[test]
+fn formal_a_ratio_that_is_cut_instead_of_rounded_is_found() {
+    fails(
+        "serial_ratio",
+        "product_bit & (round_up | !begun)",
+        "product_bit & round_up",
+        "known_round",
     );
 }
