@@ -1,4 +1,4 @@
-// linear_scale: when deviation and velocity are there, how long they stay, and what align does to them.
+// linear_scale: when deviation and velocity are there and how long they stay, what they are made of, and what align does.
 //
 // Proven for all inputs in every clock, resets included. Assumed, as docs/linear_scale.md says: `use_scale` and `ratio_shift`
 // change in reset only; from another change on nothing is claimed until the next reset. Ticks and velocities come as they like.
@@ -16,9 +16,12 @@
 //                      align came in the pass
 //   align_takes        a pass of a tick before whose start an align has come leaves both references as that tick's positions
 //   reference_stays    any other pass leaves them as they were
+//   shows_...          the multiplier is shown, bit by bit, the positions of the tick and both references, or the velocity
+//   result_...         its 32 bits are then deviation, unless align makes it 0, or velocity; where it says that they overflow, the
+//                      end of the word is
 //   known_...          invariants
 //
-// Left open: the product of ratio and difference, its rounding, the subtraction of the other one and saturation.
+// What the multiplier makes of the bits is in serial_ratio.sv.
 module linear_scale_properties (
     input wire               clk,
     input wire               rst,
@@ -45,7 +48,14 @@ module linear_scale_properties (
     (* peek = "other_reference" *) input wire [31:0] other_reference,
     (* peek = "u_serial.phase" *) input wire [5:0] phase,
     (* peek = "u_serial.begun_q" *) input wire begun,
-    (* peek = "u_serial.ended_q" *) input wire ended
+    (* peek = "u_serial.ended_q" *) input wire ended,
+    (* peek = "u_serial.operand_bit" *) input wire operand_bit,
+    (* peek = "u_serial.operand_reference_bit" *) input wire operand_reference_bit,
+    (* peek = "u_serial.other_bit" *) input wire other_bit,
+    (* peek = "u_serial.other_reference_bit" *) input wire other_reference_bit,
+    (* peek = "u_serial.result_bit" *) input wire result_bit,
+    (* peek = "u_serial.overflows" *) input wire overflows,
+    (* peek = "u_serial.negative" *) input wire negative
 );
     // The inputs that are tied: as in the clock before, or that was a reset.
     reg        first = 1'b1;
@@ -148,6 +158,7 @@ module linear_scale_properties (
         known_order: assert (!tied | left == 8'd0 | velocity_left == 8'd0 | left > 8'd64 | velocity_left > 8'd64);
         known_phase: assert (!tied | {2'd0, phase} == (works ? done : velocity_left != 8'd0 ? 8'd64 - velocity_left : 8'd0));
         known_asked: assert (!tied | (asked == in_pass & (!works | aligning == before_start)));
+        known_in_pass: assert (!tied | !works | !in_pass | since_valid);
         known_since: assert (!tied | !since_valid | in_pass | (works & before_start));
     end
 
@@ -165,8 +176,41 @@ module linear_scale_properties (
         known_ahead: assert (!tied | !works | done >= 8'd32 |
             ((deviation ^ (operand >> done[4:0])) & (32'hffffffff >> done[4:0])) == 32'd0);
         known_beside: assert (!tied | left == 8'd0 | other == beside >> (works ? other_turned : 6'd0));
-        known_begun: assert (!tied | !works | begun == (done > {3'd0, ratio_shift}));
-        known_ended: assert (!tied | !works | ended == (done > 8'd32 + {3'd0, ratio_shift}));
+        known_begun: assert (!tied | !runs | begun == (phase > {1'b0, ratio_shift}));
+        known_ended: assert (!tied | !runs | ended == ({1'b0, phase} > 7'd32 + {2'd0, ratio_shift}));
+    end
+
+    // What the multiplier is shown, and what becomes of its bits.
+    reg  [31:0] bits = 32'd0;
+    reg  [31:0] of_velocity = 32'd0;
+    reg         past_velocity_ends = 1'b0;
+    reg  [31:0] past_result = 32'd0;
+    wire        works_velocity = velocity_left != 8'd0 & velocity_left <= 8'd64;
+    wire [5:0]  place = phase - {1'b0, ratio_shift};
+    wire        in_result = phase >= {1'b0, ratio_shift} & !place[5];
+    wire [5:0]  got = phase < {1'b0, ratio_shift} ? 6'd0 : place[5] ? 6'd32 : place;
+    wire [31:0] bits_now = bits | (in_result & result_bit ? 32'd1 << place[4:0] : 32'd0);
+    wire [63:0] in_deviation = {32'd0, deviation} >> (6'd32 - got);
+    wire [63:0] in_velocity = {32'd0, velocity} >> (6'd32 - got);
+    always @(posedge clk) begin
+        bits <= !rst & runs & phase != 6'd63 ? bits_now : 32'd0;
+        if (takes_velocity) of_velocity <= motor_velocity;
+        past_velocity_ends <= !rst & velocity_left == 8'd1;
+        past_result <= !overflows ? bits_now : negative ? 32'h80000000 : 32'h7fffffff;
+    end
+    always @(*) begin
+        shows_operand: assert (!tied | !works | phase[5] |
+            (operand_bit == operand[phase[4:0]] & operand_reference_bit == zero_operand[phase[4:0]]));
+        shows_other: assert (!tied | !works | !in_result |
+            (other_bit == beside[place[4:0]] & other_reference_bit == zero_beside[place[4:0]]));
+        shows_velocity: assert (!tied | !works_velocity | phase[5] | operand_bit == of_velocity[phase[4:0]]);
+        result_deviation: assert (!tied | !past_ends | past_silent | deviation == past_result);
+        result_velocity: assert (!tied | !past_velocity_ends | velocity == past_result);
+        known_deviation: assert (!tied | !works | in_deviation == {32'd0, bits});
+        known_speed: assert (!tied | !works_velocity | in_velocity == {32'd0, bits});
+        known_rest: assert (!tied | velocity_left <= 8'd64 | velocity == of_velocity);
+        known_behind: assert (!tied | !works_velocity | phase[5] |
+            ((velocity ^ (of_velocity >> phase[4:0])) & (32'hffffffff >> phase[4:0])) == 32'd0);
     end
 
     always @(*) begin

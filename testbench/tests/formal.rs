@@ -447,3 +447,18 @@ fn formal_a_tick_over_the_one_that_is_computed_is_found() {
         "known_ahead",
     );
 }
+
+#[test]
+fn formal_serial_ratio() {
+    proven("serial_ratio", 2);
+}
+
+#[test]
+fn formal_a_ratio_that_is_cut_instead_of_rounded_is_found() {
+    fails(
+        "serial_ratio",
+        "product_bit & (round_up | !begun)",
+        "product_bit & round_up",
+        "known_round",
+    );
+}

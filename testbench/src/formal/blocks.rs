@@ -23,7 +23,7 @@ const STAGE: &str = include_str!("../../../examples/xy-stage.toml");
 pub(super) fn tasks() -> Result<Vec<Task>, Error> {
     let (settings, stage) = stage()?;
     let controller = Component::sliding_mode(&settings, Law::Pd, false).map_err(refused)?;
-    Ok(vec![
+    let mut tasks = vec![
         commit_task("bank of sliding_mode", controller.map())?,
         commit_task("bank of a stage of two axes", stage.map())?,
         setting_banks_task(&settings)?,
@@ -34,7 +34,11 @@ pub(super) fn tasks() -> Result<Vec<Task>, Error> {
         cascade_task(32, vec![60; 8])?,
         excitation_task()?,
         linear_scale_task()?,
-    ])
+    ];
+    for shift in [1, 0, 16, 31] {
+        tasks.push(serial_ratio_task(shift)?);
+    }
+    Ok(tasks)
 }
 
 /// The example's stage, and the settings of its first controller.
@@ -162,4 +166,20 @@ fn linear_scale_task() -> Result<Task, Error> {
     let engine = Engine::Induction { clocks: 1 };
     Ok(Task::new("linear_scale", "all ratios", engine, block)
         .properties(&[], include_str!("../../formal/linear_scale.sv")))
+}
+
+/// The arithmetic of the linear scale: its part on its own.
+fn serial_ratio_task(shift: u32) -> Result<Task, Error> {
+    let modules = linear_scale::emit("")?;
+    let part = modules.into_iter().find(|module| module.name == "serial_ratio");
+    let part = part.ok_or_else(|| refused("the linear scale has no `serial_ratio`"))?;
+    let ports = part.ports.clone();
+    let engine = Engine::Induction { clocks: 1 };
+    let size = format!("all mantissas, 2^-{shift}");
+    Ok(
+        Task::new("serial_ratio", &size, engine, (vec![part], ports)).properties(
+            &[("SHIFT", format!("5'd{shift}"))],
+            include_str!("../../formal/serial_ratio.sv"),
+        ),
+    )
 }
