@@ -94,6 +94,22 @@ fn formal_shaper() {
 }
 
 #[test]
+fn formal_shaper_small() {
+    proven("shaper_small", 0);
+}
+
+#[test]
+fn formal_shaper_for_motion() {
+    proven("shaper_motion", 0);
+}
+
+#[test]
+fn formal_channel_sums() {
+    proven("channel_sums", 0);
+    proven("channel_sums", 1);
+}
+
+#[test]
 fn formal_half_a_dead_time_is_found() {
     fails("pwm", "pause = dead_time;", "pause = dead_time >> 1;", "known_pause");
 }
@@ -232,4 +248,54 @@ fn formal_a_limit_that_is_passed_by_an_lsb_is_found() {
 #[test]
 fn formal_a_result_clamped_to_the_wrong_end_is_found() {
     fails("shaper", "y_q_next = Y_MAX", "y_q_next = Y_MIN", "result");
+}
+
+#[test]
+fn formal_a_multiplier_that_loses_a_sign_is_found() {
+    fails("shaper_small", "a_q * b_q", "a_q * $unsigned(b_q)", "total");
+}
+
+#[test]
+fn formal_a_sample_that_is_an_older_one_is_found() {
+    fails("shaper_small", "delay >= age", "delay > age", "stage_sample");
+}
+
+#[test]
+fn formal_an_increment_that_goes_through_both_tables_is_found() {
+    fails("shaper_motion", "(old_tap == below)", "(old_tap & below)", "made_");
+}
+
+#[test]
+fn formal_a_handover_that_ends_a_sample_early_is_found() {
+    fails(
+        "shaper_motion",
+        "next_since > reach",
+        "next_since >= reach",
+        "handover_",
+    );
+}
+
+#[test]
+fn formal_a_swap_that_does_not_wait_is_found() {
+    fails("shaper_motion", "(still >= reach)", "(still >= 6'd1)", "swap_takes");
+}
+
+#[test]
+fn formal_a_channel_that_gets_the_sample_of_another_is_found() {
+    fails("shaper_motion", "if (lasts[4])", "if (lasts[5])", "pass_sample");
+}
+
+#[test]
+fn formal_a_position_that_clamps_where_it_should_wrap_is_found() {
+    fails("channel_sums", "& !wraps", "", "result");
+}
+
+#[test]
+fn formal_a_product_lost_between_channels_is_found() {
+    fails(
+        "channel_sums",
+        "addend = wide_product;",
+        "addend = finish ? NO_PRODUCT : wide_product;",
+        "sum_adds",
+    );
 }
