@@ -341,7 +341,7 @@ module shaper_motion_properties (
         reach_handover: cover (valid & active & since == 6'd2);
         reach_two_tables: cover (valid & active & bank == 2'd1 & previous == 2'd0);
         reach_handed_over: cover (past_active & !active & !past_start & !past_reset);
-        reach_settled: cover (past_takes & how == 2'd2 & !past_start & stood != 6'd63);
+        reach_settled: cover (past_takes & how == 2'd2 & !past_start & stood >= 6'd8 & stood != 6'd63);
         reach_watched: cover (watches & pending & upcoming == watched_bank);
         reach_overrun: cover (overrun);
     end

@@ -208,7 +208,7 @@ module shaper_small_properties (
         stage_operands: assert (&(operands | ~in_use));
     end
 
-    // The own product and sum, in the clocks of the multiplier.
+    // The own product and sum, in the clocks of the multiplier: 26 bits hold four products of at most 2^22, exactly.
     wire [3:0]         place = pass - 4'd5;
     wire               multiplies = pass >= 4'd5 & pass <= n + 4'd4;
     wire [19:0]        own_word = own_table[20 * place[1:0] +: 20];

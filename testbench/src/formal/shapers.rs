@@ -1,6 +1,8 @@
 //! The tasks of the shapers: plain, small, for motion.
 
+use posicast_hdl::emit::Module;
 use posicast_hdl::shaper;
+use posicast_model::rtl::Port;
 use posicast_model::rtl::shaper::{Motion, ShaperConfig, ports};
 use posicast_model::taps::{COEFFICIENT_BITS, Tap, TapTable};
 
@@ -11,8 +13,13 @@ const INDUCTION: Engine = Engine::Induction { clocks: 1 };
 
 /// All of them.
 pub(super) fn tasks() -> Result<Vec<Task>, Error> {
-    let motion = [motion(true)?, motion(false)?];
-    Ok([vec![plain()?, small()?], motion.concat()].concat())
+    Ok(vec![
+        plain()?,
+        small()?,
+        motion()?,
+        channel_sums(true)?,
+        channel_sums(false)?,
+    ])
 }
 
 /// Taps of delay and coefficient.
@@ -64,33 +71,48 @@ fn small() -> Result<Task, Error> {
     })
 }
 
-/// The shaper for motion with all channels, the smallest words and memories: its control, and the arithmetic of a part of it
-/// on its own.
-fn motion(modulo: bool) -> Result<[Task; 2], Error> {
+/// The control of the shaper for motion. It is the same whether the position wraps.
+fn motion() -> Result<Task, Error> {
+    let config = motion_config(true)?;
+    let block = (shaper::emit(&config, "")?, ports(&config));
+    let text = include_str!("../../formal/shaper_motion.sv");
+    let size = "3 channels, 64 samples, 64 taps";
+    Ok(of_motion("shaper_motion", size, &config, block, text))
+}
+
+/// Its arithmetic, a part of it on its own.
+fn channel_sums(modulo: bool) -> Result<Task, Error> {
+    let config = motion_config(modulo)?;
+    let block = part(shaper::emit(&config, "")?, "channel_sums")?;
+    let text = include_str!("../../formal/channel_sums.sv");
+    let size = if modulo { "24 bits, position wraps" } else { "24 bits" };
+    Ok(of_motion("channel_sums", size, &config, block, text))
+}
+
+/// All channels, the smallest words and memories.
+fn motion_config(modulo: bool) -> Result<ShaperConfig, Error> {
     let table = table(16, &[(0, 20_000), (3, 30_000), (7, 15_536)])?;
-    let longest = table.longest_delay_samples();
     let motion = Motion { channels: 3, modulo };
     let config = ShaperConfig::new(24, table).and_then(|config| config.for_motion(motion));
-    let config = config.map_err(refused)?;
+    config.map_err(refused)
+}
+
+fn of_motion(
+    name: &'static str,
+    size: &str,
+    config: &ShaperConfig,
+    block: (Vec<Module>, Vec<Port>),
+    text: &str,
+) -> Task {
+    let (table, modulo) = (config.table(), config.motion().is_some_and(|motion| motion.modulo));
     let macros = [
         ("FRACTION", config.coefficient_fraction().to_string()),
-        ("MACHINE_TAPS", format!("7'd{}", config.table().taps().len())),
-        ("MACHINE_LONGEST", format!("6'd{longest}")),
+        ("MACHINE_TAPS", format!("7'd{}", table.taps().len())),
+        ("MACHINE_LONGEST", format!("6'd{}", table.longest_delay_samples())),
         ("MODULO", format!("1'b{}", u8::from(modulo))),
     ];
-    let size = if modulo {
-        "3 channels of 24 bits, position wraps"
-    } else {
-        "3 channels of 24 bits"
-    };
-    let control = (shaper::emit(&config, "")?, ports(&config));
-    let sums = part(control.0.clone(), "channel_sums")?;
-    Ok([
-        ("shaper_motion", control, include_str!("../../formal/shaper_motion.sv")),
-        ("channel_sums", sums, include_str!("../../formal/channel_sums.sv")),
-    ]
-    .map(|(name, block, text)| Task {
+    Task {
         leaves_products_open: true,
         ..Task::new(name, size, INDUCTION, block).properties(&macros, text)
-    }))
+    }
 }
