@@ -17,8 +17,8 @@
 //   table_*         the active table, and one that waits, sums to 2^F by its own count, and is not written
 //
 // So y is the rounded, clamped sum of exactly n products, one per tap of one table that sums to one. Left open: that the two
-// partial products make coefficient times sample (their sum is shown), that memories keep what is written, and the shaper for
-// motion: lock step.
+// partial products make coefficient times sample (their sum is shown), that memories keep what is written: at small sizes both are
+// in shaper_small.
 module shaper_properties (
     input wire               clk,
     input wire               rst,

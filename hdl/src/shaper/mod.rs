@@ -112,6 +112,26 @@ pub fn emit(config: &ShaperConfig, prefix: &str) -> Result<Vec<Module>, EmitErro
     emit::emit(block(config).as_ref(), &options)
 }
 
+/// The same kernel at sizes that no machine gets: words of 6 bits, a ring of 4 samples, tables of 4 taps.
+///
+/// Small enough that a proof holds memories and multiplier too. Of `config` only the table is used; it must have at most 4
+/// taps and delays of at most 2 samples.
+///
+/// # Errors
+/// As [`emit()`].
+pub fn emit_small(config: &ShaperConfig) -> Result<Vec<Module>, EmitError> {
+    let options = EmitOptions {
+        top: "shaper".to_owned(),
+        prefix: String::new(),
+        header: Header {
+            about: "Input shaper of 6-bit words, 4 samples, 4 taps: for proofs alone.".to_owned(),
+            parameters: Vec::new(),
+        },
+    };
+    let block: Box<dyn Pins> = Box::new(Shaper::<6, 24, 26, 2, 2, 3, 20, 20, 0>::new(config));
+    emit::emit(block.as_ref(), &options)
+}
+
 fn block(config: &ShaperConfig) -> Box<dyn Pins> {
     // A function per size: in one function all sizes would have room on the stack at once, and overflow it.
     macro_rules! boxed {

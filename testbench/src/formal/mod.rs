@@ -11,8 +11,8 @@
 //! A property file holds one module, `NAME_properties`. Its inputs are any of the block's ports, by name, and registers inside
 //! of the block, which the attribute `peek` names: `(* peek = "u_leg.timer" *) input wire [9:0] leg_timer`. The top written
 //! here leaves all inputs of the block free in every clock, resets included, and joins both. Rows start at power-up, where
-//! every register has its reset value. Block RAM is left out: what is read from it is anything, in every clock; so are products
-//! and whole blocks where a task says so.
+//! every register has its reset value. Block RAM is left out but where a task keeps it: what is read from it is anything, in every
+//! clock; so are products and whole blocks where a task says so.
 //!
 //! Two engines, both unbounded: [`Engine::Pdr`] finds its invariants itself; [`Engine::Induction`] needs them among the
 //! properties. What either does not prove is searched for a counterexample of at most [`SEARCHED_CLOCKS`].
@@ -20,6 +20,7 @@
 mod axis;
 mod blocks;
 mod names;
+mod shapers;
 mod stage;
 mod task;
 mod tool;

@@ -3,23 +3,19 @@
 use std::fmt::Write as _;
 
 use posicast_hdl::emit::Module;
-use posicast_hdl::{
-    divider_share, group, pulse_counter, pwm, registers, schedule, segments, shaper, sliding_mode, time_base,
-};
+use posicast_hdl::{divider_share, group, pulse_counter, pwm, registers, schedule, segments, sliding_mode, time_base};
 use posicast_model::rtl::component::Component;
 use posicast_model::rtl::divider::DividerConfig;
 use posicast_model::rtl::pwm::{ActiveLow, Mode, PwmConfig};
 use posicast_model::rtl::schedule::ScheduleConfig;
 use posicast_model::rtl::segments as segments_model;
-use posicast_model::rtl::shaper::{self as shaper_model, ShaperConfig};
 use posicast_model::rtl::sliding_mode as controller_model;
 use posicast_model::rtl::{Port, divider_share as share_model, group as group_model};
 use posicast_model::rtl::{
     pulse_counter as counter_model, pwm as pwm_model, schedule as schedule_model, time_base as time_model,
 };
-use posicast_model::taps::{Tap, TapTable};
 
-use super::{axis, trace};
+use super::{axis, shapers, trace};
 use crate::Error;
 
 /// How a task is proven. Both proofs are unbounded.
@@ -60,6 +56,8 @@ pub struct Task {
     pub(super) properties: String,
     /// Whether multipliers are left out: what they give is anything, in every clock.
     pub(super) leaves_products_open: bool,
+    /// Whether memories are in the proof, each word a register; else what is read from one is anything, in every clock.
+    pub(super) keeps_memories: bool,
     /// Registers that begin with another value than 0, with that value. For counters that nothing loads: what comes after
     /// more clocks than can be searched.
     pub(super) begins: Vec<(&'static str, &'static str)>,
@@ -81,6 +79,7 @@ impl Task {
             ports,
             properties: String::new(),
             leaves_products_open: false,
+            keeps_memories: false,
             begins: Vec::new(),
         }
     }
@@ -160,7 +159,7 @@ pub fn all() -> Result<Vec<Task>, Error> {
         "32 bits",
         include_str!("../../formal/limiter.sv"),
     )?);
-    tasks.push(shaper_task()?);
+    tasks.extend(shapers::tasks()?);
     tasks.extend(super::blocks::tasks()?);
     Ok(tasks)
 }
@@ -241,34 +240,6 @@ fn group_task(axes: usize) -> Result<Task, Error> {
         .properties(&macros, include_str!("../../formal/group.sv")))
 }
 
-/// The plain shaper with the smallest memories; delays have 6 bits, the rest of a tap's word is its coefficient.
-fn shaper_task() -> Result<Task, Error> {
-    const COEFFICIENTS: [(u32, i32); 3] = [(0, 20_000), (3, 30_000), (7, 15_536)];
-    const FRACTION: u32 = 16;
-    let taps = COEFFICIENTS.map(|(delay_samples, coefficient)| Tap {
-        delay_samples,
-        coefficient,
-    });
-    let table = TapTable::new(FRACTION, taps.to_vec()).map_err(refused)?;
-    let config = ShaperConfig::new(32, table).map_err(refused)?;
-    let macros = [
-        ("FRACTION", FRACTION.to_string()),
-        ("MACHINE_TAPS", format!("7'd{}", COEFFICIENTS.len())),
-    ];
-    let block = (shaper::emit(&config, "")?, shaper_model::ports(&config));
-    let task = Task::new(
-        "shaper",
-        "32 bits, 64 samples, 64 taps",
-        Engine::Induction { clocks: 1 },
-        block,
-    )
-    .properties(&macros, include_str!("../../formal/shaper.sv"));
-    Ok(Task {
-        leaves_products_open: true,
-        ..task
-    })
-}
-
 fn schedule_task(clocks: u32) -> Result<Task, Error> {
     let config = ScheduleConfig::new(clocks).map_err(refused)?;
     let block = (schedule::emit(&config, "")?, schedule_model::ports());
@@ -323,15 +294,20 @@ fn sliding_mode_task() -> Result<Task, Error> {
     )
 }
 
-/// A part of the controller on its own: a lemma of its arithmetic.
-fn part_of_controller(name: &'static str, size: &str, properties: &str) -> Result<Task, Error> {
-    let mut modules = controller_of_any_products()?;
+/// A module of a block as a block of its own.
+pub(super) fn part(mut modules: Vec<Module>, name: &str) -> Result<(Vec<Module>, Vec<Port>), Error> {
     let at = modules.iter().position(|module| module.name == name);
-    let part = modules.remove(at.ok_or_else(|| refused(format!("the controller has no `{name}`")))?);
+    let part = modules.remove(at.ok_or_else(|| refused(format!("the block has no `{name}`")))?);
     let ports = part.ports.clone();
     modules.push(part);
+    Ok((modules, ports))
+}
+
+/// A part of the controller on its own: a lemma of its arithmetic.
+fn part_of_controller(name: &'static str, size: &str, properties: &str) -> Result<Task, Error> {
+    let part = part(controller_of_any_products()?, name)?;
     let engine = Engine::Induction { clocks: 1 };
-    Ok(Task::new(name, size, engine, (modules, ports)).properties(&[], properties))
+    Ok(Task::new(name, size, engine, part).properties(&[], properties))
 }
 
 fn divider_share_task(channels: usize) -> Result<Task, Error> {

@@ -135,6 +135,9 @@ impl Bench<'_> {
             "read_verilog -formal -sv properties.sv formal_top.sv\n\
              hierarchy -check -top formal_top\nproc\nflatten\n",
         );
+        if self.task.keeps_memories {
+            script.push_str("memory\n");
+        }
         // A path that is not in the block is refused: the peek would be free, and no proof possible.
         for peek in &peeks {
             let path = format!("formal_top/dut.{}", peek.path);

@@ -1,0 +1,192 @@
+// channel_sums, of the shaper for motion: its arithmetic, with the product left open; rounding, saturation and width of the
+// accumulator as lemmas. A part on its own: all its inputs are free. When the control sets them is in shaper_motion.
+//
+// Proven for all inputs in every clock, resets included; nothing is assumed. What the multipliers give is anything.
+//
+//   operands_*  the multipliers take the sample of sample_channel, a clock after it came, and the coefficient that came a clock
+//               before that; of a position that wraps, the sample's difference to the newest one; their products are added up
+//   sum_*       the sum begins with half, and with the position times 2^F where that wraps; it changes by the product of a
+//               clock with `add` alone; after a `finish` it begins with half again, and misses no product
+//   fits        lemma: of a channel that does not wrap, with up to 129 products of at most 2^(W+16), the sum is exact
+//   result_*    lemma: each channel's word is its sum >> F, clamped, or modulo 2^W where it wraps; all are shown in one clock,
+//               after the last channel's, and only by a pass that ended, or by a start; flags stay
+//
+// Left open: that the two partial products make coefficient times sample.
+module channel_sums_properties (
+    input wire               clk,
+    input wire               rst,
+    input wire               begin_pass,
+    input wire signed [17:0] coefficient,
+    input wire signed [23:0] sample_0,
+    input wire signed [23:0] sample_1,
+    input wire signed [23:0] sample_2,
+    input wire        [1:0]  sample_channel,
+    input wire signed [23:0] newest,
+    input wire               add,
+    input wire               finish,
+    input wire               start,
+    input wire signed [23:0] x_0,
+    input wire signed [23:0] x_1,
+    input wire signed [23:0] x_2,
+    input wire               clear_flags,
+    input wire signed [23:0] y_0,
+    input wire signed [23:0] y_1,
+    input wire signed [23:0] y_2,
+    input wire               valid,
+    input wire               busy,
+    input wire               saturated,
+    (* peek = "u_product.u_lower.a_q" *) input wire signed [17:0] lower_sample,
+    (* peek = "u_product.u_lower.b_q" *) input wire signed [17:0] lower_coefficient,
+    (* peek = "u_product.u_lower.product" *) input wire signed [35:0] lower_product,
+    (* peek = "u_product.u_upper_0.a_q" *) input wire signed [14:0] upper_sample,
+    (* peek = "u_product.u_upper_0.b_q" *) input wire signed [17:0] upper_coefficient,
+    (* peek = "u_product.u_upper_0.product" *) input wire signed [32:0] upper_product,
+    (* peek = "u_product.product_q" *) input wire signed [41:0] product,
+    (* peek = "sample_q_0" *) input wire signed [23:0] first,
+    (* peek = "sample_q_1" *) input wire signed [23:0] second,
+    (* peek = "sample_q_2" *) input wire signed [23:0] third,
+    (* peek = "coefficient_read" *) input wire signed [17:0] coefficient_read,
+    (* peek = "coefficient_q" *) input wire signed [17:0] coefficient_q,
+    (* peek = "accumulator" *) input wire signed [48:0] accumulator,
+    (* peek = "channel" *) input wire [1:0] channel,
+    (* peek = "held_0" *) input wire signed [23:0] held_0,
+    (* peek = "held_1" *) input wire signed [23:0] held_1,
+    (* peek = "held_2" *) input wire signed [23:0] held_2,
+    (* peek = "clamped" *) input wire clamped,
+    (* peek = "complete" *) input wire complete
+);
+    localparam signed [48:0] HALF = 49'sd1 << (`FRACTION - 1);
+
+    // What the clock before was.
+    reg               runs = 1'b0;
+    reg               past_reset = 1'b1;
+    reg               past_begin = 1'b0;
+    reg               past_finish = 1'b0;
+    reg               past_add = 1'b0;
+    reg signed [23:0] past_0 = 24'sd0;
+    reg signed [23:0] past_1 = 24'sd0;
+    reg signed [23:0] past_2 = 24'sd0;
+    reg signed [23:0] past_x_0 = 24'sd0;
+    reg signed [23:0] past_operand = 24'sd0;
+    reg signed [17:0] past_given = 18'sd0;
+    reg signed [17:0] past_read = 18'sd0;
+    reg signed [17:0] past_coefficient = 18'sd0;
+    reg signed [35:0] past_lower = 36'sd0;
+    reg signed [32:0] past_upper = 33'sd0;
+    reg signed [41:0] past_product = 42'sd0;
+    reg signed [48:0] past_accumulator = 49'sd0;
+    wire signed [23:0] way = first - newest;
+    wire signed [23:0] of_first = `MODULO & sample_channel == 2'd0 ? way : first;
+    always @(posedge clk) begin
+        runs <= 1'b1;
+        past_reset <= rst;
+        past_begin <= begin_pass;
+        past_finish <= finish;
+        past_add <= add;
+        past_0 <= sample_0;
+        past_1 <= sample_1;
+        past_2 <= sample_2;
+        past_x_0 <= x_0;
+        past_operand <= sample_channel == 2'd1 ? second : sample_channel == 2'd2 ? third : of_first;
+        past_given <= coefficient;
+        past_read <= coefficient_read;
+        past_coefficient <= coefficient_q;
+        past_lower <= lower_product;
+        past_upper <= upper_product;
+        past_product <= product;
+        past_accumulator <= accumulator;
+    end
+
+    // The products. Registers of multipliers have no reset, and any value at power-up.
+    wire signed [31:0] wide_operand = past_operand;
+    wire signed [41:0] parts = {{6{past_lower[35]}}, past_lower} + {past_upper[24:0], 17'd0};
+    always @(*) begin
+        operands_samples: assert (past_reset | (first == past_0 & second == past_1 & third == past_2));
+        operands_known: assert (past_reset | (coefficient_read == past_given & coefficient_q == past_read));
+        operands_sample: assert (!runs | ({upper_sample, lower_sample[16:0]} == wide_operand & !lower_sample[17]));
+        operands_coefficient: assert (!runs | (lower_coefficient == past_coefficient & upper_coefficient == past_coefficient));
+        operands_products: assert (past_reset | product == parts);
+    end
+
+    // The sums.
+    wire signed [48:0] begin_position = {25'd0, past_x_0} << `FRACTION;
+    wire signed [48:0] begins = `MODULO ? begin_position + HALF : HALF;
+    wire signed [48:0] base = past_finish ? HALF : past_accumulator;
+    wire signed [48:0] added = past_add ? {{7{past_product[41]}}, past_product} : 49'sd0;
+    always @(*) begin
+        sum_begins: assert (past_reset | !past_begin | accumulator == begins);
+        sum_adds: assert (past_reset | past_begin | accumulator == base + added);
+    end
+
+    // Their width: at most 129 products of at most 2^40 in size.
+    reg        within = 1'b0;
+    reg  [7:0] so_far = 8'd0;
+    wire       small = product <= (42'sd1 << 40) & product >= -(42'sd1 << 40);
+    wire       wraps = `MODULO & channel == 2'd0;
+    always @(posedge clk) begin
+        if (rst) within <= 1'b0;
+        else if (begin_pass) within <= !`MODULO;
+        else if (finish) within <= !add | small;
+        else within <= within & !(add & (!small | so_far == 8'd129));
+        if (rst | begin_pass) so_far <= 8'd0;
+        else so_far <= (finish ? 8'd0 : so_far) + {7'd0, add};
+    end
+    wire signed [50:0] bound = {3'd0, so_far, 40'd0};
+    wire signed [50:0] distance = {{2{accumulator[48]}}, accumulator} - {2'b00, HALF};
+    always @(*) begin
+        fits: assert (!within | (distance <= bound & distance >= -bound & so_far <= 8'd129));
+    end
+
+    // The results.
+    wire signed [48:0] shifted = accumulator >>> `FRACTION;
+    wire               above = !wraps & shifted > 49'sd8388607;
+    wire               below = !wraps & shifted < -49'sd8388608;
+    wire signed [23:0] rounded = above ? 24'sh7fffff : below ? 24'sh800000 : shifted[23:0];
+    reg         [1:0]  own_channel = 2'd0;
+    reg  signed [23:0] own_0 = 24'sd0;
+    reg  signed [23:0] own_1 = 24'sd0;
+    reg  signed [23:0] own_2 = 24'sd0;
+    reg                own_clamped = 1'b0;
+    reg                own_complete = 1'b0;
+    reg                own_busy = 1'b0;
+    reg                own_saturated = 1'b0;
+    reg                past_shows = 1'b0;
+    reg  signed [23:0] shown_0 = 24'sd0;
+    reg  signed [23:0] shown_1 = 24'sd0;
+    reg  signed [23:0] shown_2 = 24'sd0;
+    wire               shows = own_complete & !start & !begin_pass;
+    always @(posedge clk) begin
+        if (rst) {own_0, own_1, own_2} <= 72'd0;
+        else if (finish) begin
+            if (own_channel == 2'd0) own_0 <= rounded;
+            if (own_channel == 2'd1) own_1 <= rounded;
+            if (own_channel == 2'd2) own_2 <= rounded;
+        end
+        own_complete <= finish & own_channel == 2'd2 & !rst & !start & !begin_pass;
+        if (rst | start | begin_pass) own_channel <= 2'd0;
+        else if (finish) own_channel <= own_channel + 2'd1;
+        if (rst | start | begin_pass) own_clamped <= 1'b0;
+        else if (finish & (above | below)) own_clamped <= 1'b1;
+        if (rst | start | begin_pass) own_busy <= begin_pass & !rst;
+        else if (shows) own_busy <= 1'b0;
+        own_saturated <= !rst & ((shows & own_clamped) | (own_saturated & !clear_flags));
+        past_shows <= shows & !rst;
+        shown_0 <= rst ? 24'sd0 : start ? x_0 : shows ? own_0 : y_0;
+        shown_1 <= rst ? 24'sd0 : start ? x_1 : shows ? own_1 : y_1;
+        shown_2 <= rst ? 24'sd0 : start ? x_2 : shows ? own_2 : y_2;
+    end
+    always @(*) begin
+        result_channel: assert (channel == own_channel & complete == own_complete);
+        result_held: assert (held_0 == own_0 & held_1 == own_1 & held_2 == own_2 & clamped == own_clamped);
+        result: assert (y_0 == shown_0 & y_1 == shown_1 & y_2 == shown_2);
+        result_valid: assert (valid == past_shows & busy == own_busy);
+        result_clamped: assert (saturated == own_saturated);
+    end
+
+    always @(*) begin
+        reach_valid: cover (valid & busy == 1'b0 & y_0 != 24'sd0 & y_2 != 24'sd0);
+        reach_add_in_finish: cover (past_finish & past_add & past_product != 42'sd0);
+        reach_exact: cover (within & so_far == 8'd5 & distance < 51'sd0);
+        reach_clamped: cover (saturated);
+    end
+endmodule

@@ -1,0 +1,173 @@
+//! Encoder, time, PWM, segments, scale, trace and test signals.
+
+use crate::{fails, proven};
+
+#[test]
+fn formal_pulse_counter() {
+    proven("pulse_counter", 0);
+}
+
+#[test]
+fn formal_trace() {
+    proven("trace", 0);
+}
+
+#[test]
+fn formal_sample_select() {
+    proven("sample_select", 1);
+}
+
+#[test]
+fn formal_schedule() {
+    proven("schedule", 1);
+}
+
+#[test]
+fn formal_time_base() {
+    proven("time_base", 0);
+}
+
+#[test]
+fn formal_divider_share() {
+    proven("divider_share", 0);
+}
+
+#[test]
+fn formal_segments() {
+    proven("segments", 0);
+}
+
+#[test]
+fn formal_divider() {
+    proven("divider", 0);
+}
+
+#[test]
+fn formal_encoder_generator() {
+    proven("encoder_generator", 0);
+}
+
+#[test]
+fn formal_excitation() {
+    proven("excitation", 0);
+}
+
+#[test]
+fn formal_linear_scale() {
+    proven("linear_scale", 0);
+}
+
+#[test]
+fn formal_serial_ratio() {
+    proven("serial_ratio", 2);
+}
+
+#[test]
+fn formal_half_a_dead_time_is_found() {
+    fails("pwm", "pause = dead_time;", "pause = dead_time >> 1;", "known_pause");
+}
+
+#[test]
+fn formal_an_illegal_transition_without_a_flag_is_found() {
+    fails(
+        "pulse_counter",
+        "assign illegal = both & ready",
+        "assign illegal = both & ready & swap",
+        "illegal_flags",
+    );
+}
+
+#[test]
+fn formal_a_word_behind_the_last_one_that_is_shown_is_found() {
+    fails("trace", "read_address} < words", "read_address} <= words", "shown_");
+}
+
+#[test]
+fn formal_a_start_of_the_other_source_is_found() {
+    fails(
+        "sample_select",
+        "start_q_next = pin_start",
+        "start_q_next = pin_start | host_start",
+        "exact",
+    );
+}
+
+#[test]
+fn formal_a_control_a_clock_late_is_found() {
+    fails("schedule", "LAST = 17'd1", "LAST = 17'd2", "exactly");
+}
+
+#[test]
+fn formal_a_division_that_starts_with_its_tick_is_found() {
+    fails(
+        "time_base",
+        "divide_q <= tick_q;",
+        "divide_q <= tick_q_next;",
+        "divide_follows",
+    );
+}
+
+#[test]
+fn formal_a_share_that_begins_with_the_second_channel_is_found() {
+    fails(
+        "divider_share",
+        "FIRST_CHANNEL = 4'd0",
+        "FIRST_CHANNEL = 4'd1",
+        "next_follows",
+    );
+}
+
+#[test]
+fn formal_a_fifo_that_writes_over_its_oldest_entry_is_found() {
+    fails(
+        "segments",
+        "memory_write_address = ({2'd0, tail} << 2)",
+        "memory_write_address = ({2'd0, head} << 2)",
+        "no_overwrite",
+    );
+}
+
+#[test]
+fn formal_a_division_by_no_clocks_is_found() {
+    fails(
+        "divider",
+        "divisor_next = elapsed | one_tick",
+        "divisor_next = elapsed",
+        "known_operands",
+    );
+}
+
+#[test]
+fn formal_lines_that_turn_back_at_once_are_found() {
+    fails("encoder_generator", "if (!moved) begin", "begin", "every_other_clock");
+}
+
+#[test]
+fn formal_a_test_signal_that_is_not_allowed_is_found() {
+    fails(
+        "excitation",
+        "(enable & allowed) & (|kind)",
+        "enable & (|kind)",
+        "cut_off",
+    );
+}
+
+#[test]
+fn formal_a_tick_over_the_one_that_is_computed_is_found() {
+    fails(
+        "linear_scale",
+        "takes_positions = tick & !positions_wait",
+        "takes_positions = tick",
+        "known_ahead",
+    );
+}
+
+#[test]
+fn formal_a_ratio_that_is_cut_instead_of_rounded_is_found() {
+    fails(
+        "serial_ratio",
+        "product_bit & (round_up | !begun)",
+        "product_bit & round_up",
+        "known_round",
+    );
+}

@@ -1,0 +1,44 @@
+//! What the bus writes: registers, commits, settings.
+
+use crate::{fails, proven};
+
+#[test]
+fn formal_registers() {
+    proven("registers", 0);
+}
+
+#[test]
+fn formal_commit() {
+    proven("commit", 0);
+    proven("commit", 1);
+}
+
+#[test]
+fn formal_setting_banks() {
+    proven("setting_banks", 0);
+}
+
+#[test]
+fn formal_a_byte_that_nobody_wrote_is_found() {
+    fails(
+        "registers",
+        "(phase & ~mask[15:0])",
+        "(phase & ~mask[31:16])",
+        "holds_what_was_written",
+    );
+}
+
+#[test]
+fn formal_a_write_after_its_commit_is_found() {
+    fails(
+        "commit",
+        "if (write_law && !waits) begin",
+        "if (write_law) begin",
+        "all_at_once",
+    );
+}
+
+#[test]
+fn formal_a_setting_that_changes_in_use_is_found() {
+    fails("setting_banks", " & (setting_bank != bank)", "", "active_stays");
+}

@@ -1,0 +1,46 @@
+//! The controller and its arithmetic.
+
+use crate::{fails, proven};
+
+#[test]
+fn formal_sliding_mode_with_any_products() {
+    proven("sliding_mode", 0);
+}
+
+#[test]
+fn formal_arithmetic_of_the_controller() {
+    for part in ["scaled_product", "accumulator", "limiter"] {
+        proven(part, 0);
+    }
+}
+
+#[test]
+fn formal_a_sum_that_goes_on_from_the_last_one_is_found() {
+    let boundary = "accumulator_begin_sum = ((((sequencer_step == BOUNDARY)";
+    fails(
+        "sliding_mode",
+        boundary,
+        &boundary.replace("BOUNDARY", "COULOMB"),
+        "begins_anew",
+    );
+}
+
+#[test]
+fn formal_a_shift_that_loses_the_sign_is_found() {
+    fails(
+        "scaled_product",
+        "by_one = $signed(shifter[50:1])",
+        "by_one = $signed({1'b0, shifter[49:1]})",
+        "shifted",
+    );
+}
+
+#[test]
+fn formal_a_product_that_is_cut_instead_of_rounded_is_found() {
+    fails("accumulator", "HALF = 53'd1", "HALF = 53'd0", "exact_sum");
+}
+
+#[test]
+fn formal_a_limit_that_is_passed_by_an_lsb_is_found() {
+    fails("limiter", "(kept ^ sign) + carry", "kept ^ sign", "command_is_cut");
+}

@@ -1,0 +1,43 @@
+//! The proofs that are quick, and each property file seen to fail on a block that was broken on purpose.
+#![allow(clippy::unwrap_used, clippy::panic)] // helpers of tests, which clippy.toml exempts only inside of #[test]
+
+mod blocks;
+mod bus;
+mod controller;
+mod shapers;
+mod supervisor;
+
+use std::time::Duration;
+
+use posicast_testbench::formal::{Outcome, Task, Verdict, named, run};
+
+const LIMIT: Duration = Duration::from_secs(120);
+
+fn tried(task: &Task) -> Outcome {
+    let folder = tempfile::tempdir().unwrap();
+    let outcome = run(task, folder.path(), LIMIT).unwrap();
+    if let Verdict::Counterexample { waveform, .. } = &outcome.verdict {
+        assert!(std::fs::metadata(waveform).unwrap().len() > 1000, "no waveform");
+    }
+    outcome
+}
+
+#[track_caller]
+pub(crate) fn proven(name: &str, size: usize) {
+    let outcome = tried(&named(name).unwrap()[size]);
+    assert!(outcome.is_good(), "{outcome:?}");
+    assert!(outcome.assertions > 1 && !outcome.covers.is_empty(), "{outcome:?}");
+}
+
+/// Replaces the first `from` in the block's Verilog by `to`, and insists on a counterexample to a property that begins so.
+#[track_caller]
+pub(crate) fn fails(name: &str, from: &str, to: &str, expected: &str) {
+    let mut task = named(name).unwrap().swap_remove(0);
+    let found = task.modules.iter_mut().find(|module| module.text.contains(from));
+    let module = found.unwrap_or_else(|| panic!("the Verilog no longer has `{from}`: adapt the test"));
+    module.text = module.text.replacen(from, to, 1);
+    match tried(&task).verdict {
+        Verdict::Counterexample { property, .. } => assert!(property.starts_with(expected), "`{to}`: {property}"),
+        other => panic!("`{to}` is not found: {other:?}"),
+    }
+}

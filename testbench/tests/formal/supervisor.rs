@@ -1,0 +1,115 @@
+//! The supervisor of an axis, what it tells the drive, and the group.
+
+use crate::{fails, proven};
+
+#[test]
+fn formal_axis() {
+    for subject in [
+        "axis",
+        "axis_table",
+        "axis_causes",
+        "axis_brake",
+        "axis_monitors",
+        "axis_lines",
+    ] {
+        proven(subject, 0);
+    }
+}
+
+#[test]
+fn formal_drive_command() {
+    proven("drive_command", 0);
+}
+
+#[test]
+fn formal_axes_of_a_stage() {
+    for axis in [0, 1] {
+        proven("stage_axis", axis);
+    }
+}
+
+#[test]
+fn formal_group() {
+    proven("group", 0);
+}
+
+#[test]
+fn formal_a_brake_that_opens_with_the_outputs_off_is_found() {
+    fails("axis", "= next_on & !next_closing", "= next_on", "brake_never_in_fault");
+}
+
+#[test]
+fn formal_a_row_of_less_priority_that_is_taken_is_found() {
+    fails(
+        "axis_table",
+        "if (cut | closing) begin",
+        "if (closing) begin",
+        "exact_state",
+    );
+}
+
+#[test]
+fn formal_a_cause_that_is_cleared_while_it_is_active_is_found() {
+    fails(
+        "axis_causes",
+        "now = kept | active",
+        "now = forget ? kept : kept | active",
+        "exact_causes",
+    );
+}
+
+#[test]
+fn formal_a_brake_with_a_tick_too_little_is_found() {
+    fails(
+        "axis_brake",
+        "at_zero = left == NO_TICKS",
+        "at_zero = left <= ONE_TICK",
+        "exact_",
+    );
+}
+
+#[test]
+fn formal_a_limit_that_trips_where_it_is_reached_is_found() {
+    fails(
+        "axis_monitors",
+        "(error_size > following_error_limit)",
+        "(error_size >= following_error_limit)",
+        "following_error",
+    );
+}
+
+#[test]
+fn formal_an_emergency_stop_that_is_only_told_to_others_is_found() {
+    fails(
+        "axis_lines",
+        "emergency = own_emergency | group_emergency_stop",
+        "emergency = group_emergency_stop",
+        "trips_in_time",
+    );
+}
+
+#[test]
+fn formal_a_mask_that_goes_with_the_self_test_is_found() {
+    fails(
+        "drive_command",
+        "masked_next = next_test | tested",
+        "masked_next = next_test",
+        "mask_",
+    );
+}
+
+#[test]
+fn formal_an_emergency_stop_of_another_axis_on_no_wire_is_found() {
+    let wired = ".group_emergency_stop   (group_emergency_stop)";
+    fails("stage_axis", wired, ".group_emergency_stop   (1'd0)", "group_stop_");
+}
+
+#[test]
+fn formal_an_axis_that_starts_alone_is_found() {
+    fails(
+        "group",
+        "start_q_0_next = (start & !blocked)",
+        "start_q_0_next = start",
+        "all_or_none",
+    );
+}
