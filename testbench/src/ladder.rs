@@ -74,7 +74,8 @@ pub fn rows(output: &str, columns: Columns) -> Vec<(String, Vec<u64>)> {
             places = place("block").zip(numbers);
             continue;
         };
-        if cells.iter().all(|cell| cell.chars().all(|c| c == '-')) {
+        // The line below the heads, and sums, which are in bold.
+        if cells.iter().all(|cell| cell.chars().all(|c| c == '-')) || cells.iter().any(|cell| cell.starts_with("**")) {
             continue;
         }
         let found = numbers.iter().map(|at| cells.get(*at).map_or(0, |cell| number(cell)));
@@ -130,7 +131,8 @@ mod tests {
     use super::*;
 
     const OUTPUT: &str = "said before\n| block | size | properties | covers |\n|---|---|---|---|\n| a | 1 | 3 | 2 of 2 |\n\
-                          | a | 2 | 4 | 1 of 1 |\n| b | 1 | 1,000 | none |\n\n| what | else |\n|---|---|\n| c | 5 |\n";
+                          | a | 2 | 4 | 1 of 1 |\n| b | 1 | 1,000 | none |\n\
+                          | **all** | | **1007** | |\n\n| what | else |\n|---|---|\n| c | 5 |\n";
 
     #[test]
     fn unit_numbers_are_summed_per_block() {

@@ -5,7 +5,7 @@ use posicast_hdl::emit::Module;
 use posicast_model::rtl::component::Component;
 use posicast_model::rtl::stage::StageAxis;
 
-use super::task::{Engine, Task};
+use super::task::{Engine, Task, refused};
 use crate::Error;
 use crate::blocks::library_stage;
 
@@ -20,10 +20,6 @@ const LEFT_OUT: [&str; 8] = [
     "_excitation",
     "_trace",
 ];
-
-fn refused(error: impl std::fmt::Display) -> Error {
-    Error::Option(error.to_string())
-}
 
 /// The axes of the stage that the other rungs of verification take: one with what bring-up needs, one with a linear scale.
 pub(super) fn tasks(macros: &[(&str, String)]) -> Result<Vec<Task>, Error> {
