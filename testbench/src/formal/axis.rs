@@ -8,7 +8,7 @@ use posicast_model::rtl::axis::{
 use posicast_model::rtl::{drive_command as command_model, segments};
 
 use super::stage;
-use super::task::{Engine, Task};
+use super::task::{Engine, INDUCTION, Task};
 use crate::Error;
 
 /// All of them.
@@ -20,22 +20,21 @@ pub(super) fn tasks() -> Result<Vec<Task>, Error> {
         .map(|(name, value)| (name.as_str(), value.clone()))
         .collect();
     let task = |name, engine, text| Task::new(name, "all inputs", engine, block.clone()).properties(&macros, text);
-    let induction = Engine::Induction { clocks: 1 };
     let mut tasks = vec![
         task("axis", Engine::Pdr, include_str!("../../formal/axis.sv")),
-        task("axis_table", induction, include_str!("../../formal/axis_table.sv")),
-        task("axis_causes", induction, include_str!("../../formal/axis_causes.sv")),
-        task("axis_brake", induction, include_str!("../../formal/axis_brake.sv")),
+        task("axis_table", INDUCTION, include_str!("../../formal/axis_table.sv")),
+        task("axis_causes", INDUCTION, include_str!("../../formal/axis_causes.sv")),
+        task("axis_brake", INDUCTION, include_str!("../../formal/axis_brake.sv")),
         task(
             "axis_monitors",
-            induction,
+            INDUCTION,
             include_str!("../../formal/axis_monitors.sv"),
         ),
-        task("axis_lines", induction, include_str!("../../formal/axis_lines.sv")),
+        task("axis_lines", INDUCTION, include_str!("../../formal/axis_lines.sv")),
         Task::new(
             "drive_command",
             "all inputs",
-            induction,
+            INDUCTION,
             (drive_command::emit("")?, command_model::ports()),
         )
         .properties(&macros, include_str!("../../formal/drive_command.sv")),

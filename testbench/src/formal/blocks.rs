@@ -13,7 +13,7 @@ use posicast_model::rtl::sliding_mode::{Law, Settings};
 use posicast_model::rtl::{excitation as excitation_model, linear_scale as scale_model};
 use posicast_model::spec;
 
-use super::task::{Engine, Task, refused};
+use super::task::{Engine, INDUCTION, Task, part, refused};
 use crate::Error;
 
 /// The example, of two axes.
@@ -124,14 +124,12 @@ fn divider_task(tick_clocks: u64) -> Result<Task, Error> {
     ];
     let block = (divider::emit(&config, "")?, divider_model::ports());
     let size = format!("{tick_clocks} clocks per tick, full width");
-    let engine = Engine::Induction { clocks: 1 };
-    Ok(Task::new("divider", &size, engine, block).properties(&macros, include_str!("../../formal/divider.sv")))
+    Ok(Task::new("divider", &size, INDUCTION, block).properties(&macros, include_str!("../../formal/divider.sv")))
 }
 
 fn encoder_generator_task() -> Result<Task, Error> {
     let block = (encoder_generator::emit("")?, generator_model::ports());
-    let engine = Engine::Induction { clocks: 1 };
-    Ok(Task::new("encoder_generator", "all rates", engine, block)
+    Ok(Task::new("encoder_generator", "all rates", INDUCTION, block)
         .properties(&[], include_str!("../../formal/encoder_generator.sv")))
 }
 
@@ -150,36 +148,27 @@ fn cascade_task(word_bits: u32, delays_samples: Vec<u32>) -> Result<Task, Error>
     ];
     let block = (cascade::emit(&config, "")?, cascade_model::ports(&config));
     let size = format!("{word_bits} bits, {} stages, contents left out", config.stages());
-    let engine = Engine::Induction { clocks: 1 };
-    Ok(Task::new("cascade", &size, engine, block).properties(&macros, include_str!("../../formal/cascade.sv")))
+    Ok(Task::new("cascade", &size, INDUCTION, block).properties(&macros, include_str!("../../formal/cascade.sv")))
 }
 
 fn excitation_task() -> Result<Task, Error> {
     let block = (excitation::emit("")?, excitation_model::ports());
-    let engine = Engine::Induction { clocks: 1 };
-    Ok(Task::new("excitation", "all signals", engine, block)
+    Ok(Task::new("excitation", "all signals", INDUCTION, block)
         .properties(&[], include_str!("../../formal/excitation.sv")))
 }
 
 fn linear_scale_task() -> Result<Task, Error> {
     let block = (linear_scale::emit("")?, scale_model::ports());
-    let engine = Engine::Induction { clocks: 1 };
-    Ok(Task::new("linear_scale", "all ratios", engine, block)
+    Ok(Task::new("linear_scale", "all ratios", INDUCTION, block)
         .properties(&[], include_str!("../../formal/linear_scale.sv")))
 }
 
 /// The arithmetic of the linear scale: its part on its own.
 fn serial_ratio_task(shift: u32) -> Result<Task, Error> {
-    let modules = linear_scale::emit("")?;
-    let part = modules.into_iter().find(|module| module.name == "serial_ratio");
-    let part = part.ok_or_else(|| refused("the linear scale has no `serial_ratio`"))?;
-    let ports = part.ports.clone();
-    let engine = Engine::Induction { clocks: 1 };
+    let block = part(linear_scale::emit("")?, "serial_ratio")?;
     let size = format!("all mantissas, 2^-{shift}");
-    Ok(
-        Task::new("serial_ratio", &size, engine, (vec![part], ports)).properties(
-            &[("SHIFT", format!("5'd{shift}"))],
-            include_str!("../../formal/serial_ratio.sv"),
-        ),
-    )
+    Ok(Task::new("serial_ratio", &size, INDUCTION, block).properties(
+        &[("SHIFT", format!("5'd{shift}"))],
+        include_str!("../../formal/serial_ratio.sv"),
+    ))
 }

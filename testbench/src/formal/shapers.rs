@@ -6,10 +6,8 @@ use posicast_model::rtl::Port;
 use posicast_model::rtl::shaper::{Motion, ShaperConfig, ports};
 use posicast_model::taps::{COEFFICIENT_BITS, Tap, TapTable};
 
-use super::task::{Engine, Task, part, refused};
+use super::task::{INDUCTION, Task, part, refused};
 use crate::Error;
-
-const INDUCTION: Engine = Engine::Induction { clocks: 1 };
 
 /// All of them.
 pub(super) fn tasks() -> Result<Vec<Task>, Error> {

@@ -5,7 +5,7 @@ use posicast_hdl::emit::Module;
 use posicast_model::rtl::component::Component;
 use posicast_model::rtl::stage::StageAxis;
 
-use super::task::{Engine, Task, refused};
+use super::task::{INDUCTION, Task, refused};
 use crate::Error;
 use crate::blocks::library_stage;
 
@@ -45,8 +45,10 @@ fn task(axis: &StageAxis, modules: &[Module], macros: &[(&str, String)]) -> Resu
     macros.push(("FILTER_CLOCKS", format!("7'd{filter_clocks}")));
     let size = format!("axis {}, lines filtered for {filter_clocks} clocks", axis.name);
     let block = (modules[..=at].to_vec(), modules[at].ports.clone());
-    Ok(Task::new("stage_axis", &size, Engine::Induction { clocks: 1 }, block)
-        .properties(&macros, include_str!("../../formal/stage_axis.sv")))
+    Ok(
+        Task::new("stage_axis", &size, INDUCTION, block)
+            .properties(&macros, include_str!("../../formal/stage_axis.sv")),
+    )
 }
 
 /// Nothing is left in it but its ports: its outputs are anything, in every clock. Without a wire Yosys would take it for a

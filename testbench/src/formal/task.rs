@@ -30,6 +30,9 @@ pub enum Engine {
     },
 }
 
+/// What proofs by induction take: invariants stated so that one clock leads to the next.
+pub(super) const INDUCTION: Engine = Engine::Induction { clocks: 1 };
+
 impl Engine {
     /// Its name in a table.
     pub fn name(self) -> &'static str {
@@ -114,7 +117,7 @@ pub fn all() -> Result<Vec<Task>, Error> {
         Task::new(
             "pulse_counter",
             "32-bit count",
-            Engine::Induction { clocks: 1 },
+            INDUCTION,
             (pulse_counter::emit("")?, counter_model::ports()),
         )
         .properties(&[], include_str!("../../formal/pulse_counter.sv")),
@@ -200,8 +203,7 @@ fn pwm(active_low: ActiveLow, dead_time: u16, minimum_pulse: u16, size: &str) ->
         ("MINIMUM_PULSE_FLOOR", format!("10'd{minimum_pulse}")),
     ];
     let block = (pwm::emit(&config, "")?, pwm_model::ports());
-    Ok(Task::new("pwm", size, Engine::Induction { clocks: 1 }, block)
-        .properties(&macros, include_str!("../../formal/pwm.sv")))
+    Ok(Task::new("pwm", size, INDUCTION, block).properties(&macros, include_str!("../../formal/pwm.sv")))
 }
 
 /// The bank of the PWM's component: fields of every kind, an interrupt, byte enables.
@@ -261,8 +263,8 @@ fn time_base_task(tick_clocks: u64, begin: &'static str) -> Result<Task, Error> 
         ("TICK_CLOCKS", format!("17'd{tick_clocks}")),
         ("BEGIN", begin.to_owned()),
     ];
-    let task = Task::new("time_base", &size, Engine::Induction { clocks: 1 }, block)
-        .properties(&macros, include_str!("../../formal/time_base.sv"));
+    let task =
+        Task::new("time_base", &size, INDUCTION, block).properties(&macros, include_str!("../../formal/time_base.sv"));
     Ok(Task {
         begins: vec![("time_stamp_q", begin), ("tick_count_q", begin)],
         ..task
@@ -288,10 +290,8 @@ fn controller_of_any_products() -> Result<Vec<Module>, Error> {
 fn sliding_mode_task() -> Result<Task, Error> {
     let block = (controller_of_any_products()?, controller_model::ports());
     let macros = [("PASS_CLOCKS", format!("8'd{}", controller_model::CONTROL_CLOCKS))];
-    Ok(
-        Task::new("sliding_mode", "any products", Engine::Induction { clocks: 1 }, block)
-            .properties(&macros, include_str!("../../formal/sliding_mode.sv")),
-    )
+    Ok(Task::new("sliding_mode", "any products", INDUCTION, block)
+        .properties(&macros, include_str!("../../formal/sliding_mode.sv")))
 }
 
 /// A module of a block as a block of its own.
@@ -306,8 +306,7 @@ pub(super) fn part(mut modules: Vec<Module>, name: &str) -> Result<(Vec<Module>,
 /// A part of the controller on its own: a lemma of its arithmetic.
 fn part_of_controller(name: &'static str, size: &str, properties: &str) -> Result<Task, Error> {
     let part = part(controller_of_any_products()?, name)?;
-    let engine = Engine::Induction { clocks: 1 };
-    Ok(Task::new(name, size, engine, part).properties(&[], properties))
+    Ok(Task::new(name, size, INDUCTION, part).properties(&[], properties))
 }
 
 fn divider_share_task(channels: usize) -> Result<Task, Error> {

@@ -4,7 +4,7 @@ use posicast_hdl::{sample_select, trace};
 use posicast_model::rtl::sample_select as select_model;
 use posicast_model::rtl::trace::{SIGNALS, TraceConfig, ports};
 
-use super::task::{Engine, Task};
+use super::task::{INDUCTION, Task, refused};
 use crate::Error;
 
 /// The smallest memory and the largest; one channel and three.
@@ -15,7 +15,7 @@ pub(super) fn tasks() -> Result<Vec<Task>, Error> {
 }
 
 fn trace_task(samples: u64) -> Result<Task, Error> {
-    let config = TraceConfig::new(samples).map_err(|error| Error::Option(error.to_string()))?;
+    let config = TraceConfig::new(samples).map_err(refused)?;
     let signals = |separator: &str, before: &str| {
         let names = (0..SIGNALS).rev().map(|signal| format!("{before}signal_{signal}"));
         names.collect::<Vec<String>>().join(separator)
@@ -27,13 +27,8 @@ fn trace_task(samples: u64) -> Result<Task, Error> {
         ("ALL_SIGNALS", format!("{{{}}}", signals(", ", ""))),
     ];
     let block = (trace::emit(&config, "")?, ports());
-    Ok(Task::new(
-        "trace",
-        &format!("{samples} words"),
-        Engine::Induction { clocks: 1 },
-        block,
-    )
-    .properties(&macros, include_str!("../../formal/trace.sv")))
+    Ok(Task::new("trace", &format!("{samples} words"), INDUCTION, block)
+        .properties(&macros, include_str!("../../formal/trace.sv")))
 }
 
 fn select_task(channels: usize) -> Result<Task, Error> {
@@ -64,8 +59,6 @@ fn select_task(channels: usize) -> Result<Task, Error> {
         select_model::ports(WORD_BITS, channels),
     );
     let size = format!("{WORD_BITS} bits, {channels} channels");
-    Ok(
-        Task::new("sample_select", &size, Engine::Induction { clocks: 1 }, block)
-            .properties(&macros, include_str!("../../formal/sample_select.sv")),
-    )
+    Ok(Task::new("sample_select", &size, INDUCTION, block)
+        .properties(&macros, include_str!("../../formal/sample_select.sv")))
 }
