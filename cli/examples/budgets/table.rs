@@ -5,8 +5,9 @@ use posicast_synth::yosys::{Family, Resources};
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
-const HEAD: &str = "| block | size | LUT | flip-flops | LE | M4K | 18×18 | LUT by Yosys alone | budget | note |
-|---|---|---|---|---|---|---|---|---|---|
+const HEAD: &str =
+    "| block | size | LUT | flip-flops | LE | M4K | 18×18 | LE unpacked | LUT by Yosys alone | budget | note |
+|---|---|---|---|---|---|---|---|---|---|---|
 ";
 
 /// The whole page.
@@ -22,7 +23,9 @@ pub(crate) fn page(tool: &str, measured: &[Measured]) -> String {
          Without `--write` the command compares, and fails where a figure has grown.\n\n\
          - **LUT**: logic, with a logic element's carry chain and synchronous clear. **LUT by Yosys alone** is without both,\n  \
          which `synth_intel -family cycloneive` does not map: sums and resets are in it as logic.\n\
-         - **LE**: LUT and the flip-flops that no LUT drives and no multiplier has built in.\n\
+         - **LE**: LUT and the flip-flops that cannot be packed: no LUT drives them, no multiplier has them built in, and no LUT\n  \
+         of three inputs or fewer is left to share its element with them. **LE unpacked** is without that sharing: Quartus does as\n  \
+         much of it as a design needs to fit, so in a device with room its figure is nearer to this one.\n\
          - **M4K**: counted by the shape of the ports. **18×18**: multipliers by the width of their operands.\n\
          - **budget**: LUT + flip-flops, where there is one. The note tells what is above it (⚠), or what takes most.\n\n\
          {HEAD}",
@@ -37,10 +40,11 @@ pub(crate) fn page(tool: &str, measured: &[Measured]) -> String {
         });
         let _ = writeln!(
             text,
-            "| {} | {} | {} | {} | {budget} | {} |",
+            "| {} | {} | {} | {} | {} | {budget} | {} |",
             row.block,
             row.size,
             figures(resources),
+            resources.unpacked_cells,
             one.luts_by_yosys.map_or("–".to_owned(), |luts| luts.to_string()),
             row.note
         );
@@ -51,20 +55,21 @@ pub(crate) fn page(tool: &str, measured: &[Measured]) -> String {
         "\n## The XY stage\n\n\
          Against the budget of {cells} LE (55 %), 18 M4K and 8 multipliers. `whole` is everything, with registers, flattened: what\n\
          is tied to the machine file is folded away, so it takes less than its blocks do alone.\n\n\
-         | | LE | of the device | M4K | 18×18 |\n|---|---|---|---|---|\n"
+         | | LE | of the device | M4K | 18×18 | LE unpacked | of the device |\n|---|---|---|---|---|---|---|\n"
     );
     for one in measured.iter().filter(|one| one.row.block == blocks::STAGE) {
         let Resources {
             cells: taken,
+            unpacked_cells: unpacked,
             m4k_blocks,
             multipliers,
             ..
         } = one.resources;
         let mark = if taken > cells { "⚠ " } else { "" };
-        let share = 100 * taken / device.cells;
+        let [share, unpacked_share] = [taken, unpacked].map(|le| 100 * le / device.cells);
         let _ = writeln!(
             text,
-            "| {} | {mark}{taken} | {share} % | {m4k_blocks} | {multipliers} |",
+            "| {} | {mark}{taken} | {share} % | {m4k_blocks} | {multipliers} | {unpacked} | {unpacked_share} % |",
             one.row.size
         );
     }

@@ -14,6 +14,7 @@
 mod ecp5;
 mod family;
 mod gates;
+mod logic_elements;
 mod m4k;
 mod multiplier_registers;
 mod netlist;

@@ -1,18 +1,17 @@
 //! Counting a mapped netlist, as Yosys's `write_json` describes it.
 //!
-//! - Logic elements: LUTs, a bit of a carry chain being one, plus the flip-flops that cannot share a LUT's element. A
-//!   flip-flop shares the element of the LUT that drives its data input; a LUT gives room to one. Those that are a
-//!   multiplier's own registers take no element (`multiplier_registers`).
+//! - Logic elements: LUTs, a bit of a carry chain being one, plus the flip-flops that cannot share a LUT's element
+//!   (`logic_elements`). Those that are a multiplier's own registers take no element (`multiplier_registers`).
 //! - ALMs: a 6-input LUT fills one, two smaller LUTs share one; one for every four flip-flops where those need more.
 //! - Memory bits and multipliers: from the sizes of the black boxes (`cells.v`), the same for every tool version.
 
-use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::collections::{BTreeMap, HashMap};
 use std::ops::AddAssign;
 
 use serde::{Deserialize, Serialize};
 
 use super::family::{Cell, Family};
-use super::{m4k, multiplier_registers};
+use super::{logic_elements, m4k, multiplier_registers};
 
 /// What a block takes of a device.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
@@ -28,6 +27,9 @@ pub struct Resources {
     /// The LUTs among `cells`; not counted for Cyclone V, and no part of the document.
     #[serde(skip)]
     pub luts: u64,
+    /// `cells` if no register were packed with a LUT that does not drive it; as `luts`, no part of the document.
+    #[serde(skip)]
+    pub unpacked_cells: u64,
     /// Blocks of 4,608 bits that the memory would take in Cyclone II; no part of the document.
     #[serde(skip)]
     pub m4k_blocks: u64,
@@ -40,6 +42,7 @@ impl AddAssign for Resources {
         self.memory_bits = self.memory_bits.saturating_add(other.memory_bits);
         self.multipliers = self.multipliers.saturating_add(other.multipliers);
         self.luts = self.luts.saturating_add(other.luts);
+        self.unpacked_cells = self.unpacked_cells.saturating_add(other.unpacked_cells);
         self.m4k_blocks = self.m4k_blocks.saturating_add(other.m4k_blocks);
     }
 }
@@ -78,7 +81,7 @@ pub(super) struct NetlistCell {
     #[serde(rename = "type")]
     pub(super) kind: String,
     #[serde(default)]
-    parameters: HashMap<String, serde_json::Value>,
+    pub(super) parameters: HashMap<String, serde_json::Value>,
     #[serde(default)]
     pub(super) connections: HashMap<String, Vec<Bit>>,
 }
@@ -135,24 +138,18 @@ impl Netlist {
 fn count(netlist: &Netlist, module: &Module, family: Family) -> Result<Resources, String> {
     let mut total = Resources::default();
     let mut wide_luts = 0;
-    let mut luts = BTreeMap::new(); // output wire → name
-    let mut flip_flop_data = Vec::new();
     let mut half_luts = 0u64;
+    let mut luts = Vec::new();
+    let mut flip_flops = Vec::new();
     let in_multipliers = multiplier_registers::of(module);
     for (name, cell) in &module.cells {
         match cell.kind.as_str() {
-            "cycloneive_lcell_comb" => {
-                half_luts += 1;
-                if let Some([Bit::Wire(wire)]) = cell.connections.get("combout").map(Vec::as_slice) {
-                    luts.insert(*wire, name.as_str());
-                }
-            }
+            "cycloneive_lcell_comb" => luts.push(cell),
             "dffeas" => {
                 total.registers += 1;
-                if in_multipliers.contains(name.as_str()) {
-                    continue;
+                if !in_multipliers.contains(name.as_str()) {
+                    flip_flops.push(cell);
                 }
-                flip_flop_data.extend(cell.connections.get("d").into_iter().flatten());
             }
             "MISTRAL_ALUT6" => wide_luts += 1,
             "MISTRAL_FF" => total.registers += 1,
@@ -177,28 +174,19 @@ fn count(netlist: &Netlist, module: &Module, family: Family) -> Result<Resources
             kind => return Err(format!("cell {name} of type {kind} is left, which no estimate counts")),
         }
     }
-    total.cells = match family.device().cell {
+    match family.device().cell {
         Cell::LogicElement => {
-            total.luts = half_luts;
-            half_luts + flip_flop_data.len() as u64 - packed(&luts, &flip_flop_data)
+            let elements = logic_elements::count(&luts, &flip_flops);
+            total.luts = luts.len() as u64;
+            total.cells = elements.packed;
+            total.unpacked_cells = elements.unpacked;
         }
-        Cell::AdaptiveLogicModule => (wide_luts + half_luts.div_ceil(2)).max(total.registers.div_ceil(4)),
-    };
+        Cell::AdaptiveLogicModule => {
+            total.cells = (wide_luts + half_luts.div_ceil(2)).max(total.registers.div_ceil(4));
+            total.unpacked_cells = total.cells;
+        }
+    }
     Ok(total)
-}
-
-/// How many flip-flops share the logic element of the LUT that drives them.
-fn packed(luts: &BTreeMap<u64, &str>, flip_flop_data: &[&Bit]) -> u64 {
-    let wire = |bit: &&Bit| match bit {
-        Bit::Wire(wire) => Some(*wire),
-        Bit::Constant(_) => None,
-    };
-    let shared: BTreeSet<u64> = flip_flop_data
-        .iter()
-        .filter_map(wire)
-        .filter(|w| luts.contains_key(w))
-        .collect();
-    shared.len() as u64
 }
 
 /// 18-bit multipliers for one product. Cyclone V can join two to one of 27 × 27 bits.
@@ -225,18 +213,6 @@ mod tests {
         let netlist = serde_json::json!({"modules": {"top": {"cells": cells}}});
         let blocks = blocks(&serde_json::from_value(netlist).unwrap(), "top", family)?;
         Ok(blocks[0].resources)
-    }
-
-    #[test]
-    fn unit_a_flip_flop_shares_its_lut_once() {
-        let cells = serde_json::json!({
-            "lut": {"type": "cycloneive_lcell_comb", "connections": {"combout": [5]}},
-            "first": {"type": "dffeas", "connections": {"d": [5]}},
-            "second": {"type": "dffeas", "connections": {"d": [5]}},
-            "alone": {"type": "dffeas", "connections": {"d": ["0"]}},
-        });
-        let resources = one(cells, Family::Cyclone2).unwrap();
-        assert_eq!((resources.cells, resources.registers), (3, 3));
     }
 
     #[test]
