@@ -1,7 +1,8 @@
-//! The machine's tap tables and limits, in C.
+//! The machine's tap tables, limits and controllers, in C.
 
 use super::{AxisData, File, StageDriver, file};
 use posicast_model::rtl::segments::{ACCELERATION_BITS, FRACTION_BITS, VELOCITY_BITS};
+use posicast_model::rtl::sliding_mode::{Row, Settings};
 use posicast_model::rtl::stage::StageAxis;
 use std::fmt::Write;
 
@@ -34,8 +35,9 @@ fn header(driver: &StageDriver<'_>) -> String {
 
 fn source(driver: &StageDriver<'_>) -> String {
     let name = driver.machine;
-    let mut text =
-        format!("/* Tap tables and limits of {name}. Written by posicast. */\n#include \"machine_{name}.h\"\n");
+    let mut text = format!(
+        "/* Tap tables, limits and controllers of {name}. Written by posicast. */\n#include \"machine_{name}.h\"\n"
+    );
     for axis in &driver.config.axes {
         let _ = write!(text, "\nstatic const posicast_tap taps_of_{}[] = {{\n", axis.name);
         for tap in axis.shaper.table().taps() {
@@ -63,7 +65,7 @@ fn of_axis(text: &mut String, axis: &StageAxis, data: &AxisData) {
         "    {{\n        \"{name}\",\n        {counts:?}, /* counts per unit */\n        \
          /* velocity, acceleration, jerk: counts per tick, tick^2, tick^3, in LSB of 2^-32 */\n        \
          {{INT64_C({velocity}), INT64_C({acceleration}), INT64_C({jerk})}},\n        \
-         {{taps_of_{name}, {taps}, {fraction}}},\n    }},\n",
+         {{taps_of_{name}, {taps}, {fraction}}},\n        {{{law}u, {{\n{words}        }}}},\n    }},\n",
         name = axis.name,
         counts = data.counts_per_unit,
         velocity = lsb(limits.velocity, VELOCITY_BITS),
@@ -71,7 +73,15 @@ fn of_axis(text: &mut String, axis: &StageAxis, data: &AxisData) {
         jerk = lsb(limits.jerk, ACCELERATION_BITS),
         taps = axis.shaper.table().taps().len(),
         fraction = axis.shaper.coefficient_fraction(),
+        law = axis.law as u32,
+        words = words(&axis.settings),
     );
+}
+
+/// A line per row.
+fn words(settings: &Settings) -> String {
+    let line = |row: Row| format!("            {:#x}u, /* {row:?} */\n", settings.word(row as usize));
+    Row::ALL.map(line).concat()
 }
 
 /// A limit in LSB of the integrator: cut, so that no move is faster, at least 1, and what the word holds.

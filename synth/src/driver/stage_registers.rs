@@ -12,6 +12,7 @@ use posicast_model::rtl::segments::{
     ACCELERATION_BITS, ACCELERATION_FRACTION, ENTRIES_MAX, ENTRY_WORDS, FRACTION_BITS, NOTIFY, POINT,
     POSITION_FRACTION, State, TICK_BITS, VELOCITY_BITS, VELOCITY_FRACTION,
 };
+use posicast_model::rtl::sliding_mode::{MANTISSA_BITS, Row, SETTINGS, SHIFT_MAX};
 use posicast_model::rtl::stage::AXIS_INTERRUPTS;
 use std::fmt::Write;
 
@@ -38,6 +39,7 @@ pub(super) fn header(driver: &StageDriver<'_>) -> String {
     let mut text = macros::head("POSICAST_STAGE_REGS_H", &about);
     text.push_str("\n#include <stdint.h>\n\n#include \"posicast_io.h\"\n");
     numbers(&mut text, map);
+    settings(&mut text);
     bring_up(&mut text, driver);
     text.push_str("\n/* ---- Window 0: the stage ---- */\n");
     for register in map.registers().iter().filter(|register| register.offset < WINDOW_WORDS) {
@@ -90,6 +92,18 @@ fn numbers(text: &mut String, map: &RegisterMap) {
         let _ = writeln!(text, "#define POSICAST_{name} {value}u");
     }
     text.push_str("#define POSICAST_AXIS_WORD(axis, reg) (POSICAST_WINDOW_WORDS * ((uint32_t)(axis) + 1u) + (reg))\n");
+}
+
+/// Rows of a controller's settings, and the word of a gain.
+fn settings(text: &mut String) {
+    text.push_str("\n/* Settings of a controller by row: docs/sliding_mode.md. A gain is mantissa * 2^-shift, the mantissa in the lowest bits. */\n");
+    for row in Row::ALL {
+        let name = words(&format!("{row:?}")).to_uppercase();
+        let _ = writeln!(text, "#define POSICAST_SETTING_{name} {}u", row as u32);
+    }
+    let _ = writeln!(text, "#define POSICAST_SETTINGS {SETTINGS}u");
+    let _ = writeln!(text, "#define POSICAST_GAIN_MANTISSA_BITS {MANTISSA_BITS}u");
+    let _ = writeln!(text, "#define POSICAST_GAIN_SHIFT_MAX {SHIFT_MAX}u");
 }
 
 /// Which axes have the registers for bringing them up.

@@ -6,6 +6,7 @@ mod integers;
 mod support;
 
 use bridge::{Bridge, INDEX_AT};
+use posicast_model::rtl::sliding_mode::{Gain, Row};
 use std::path::PathBuf;
 use std::process::Command;
 use support::{Driver, STRICT, beside, machine, run, stage, traced_machine};
@@ -155,6 +156,19 @@ fn unit_tables_are_loaded_and_the_pwm_tests_itself() {
     assert!(said["off"] <= 1, "{said:?}");
     let at = bridge.bench.plant(0).count();
     assert!((at - 400).abs() <= 1, "{at}");
+}
+
+#[test]
+fn unit_settings_change_between_two_ticks() {
+    let driver = Driver::write();
+    let mut bridge = Bridge::new(&driver, "scenario.c", false);
+    let said = bridge.talk(&["settings"]);
+    assert!(said["without_command"].abs() <= 1, "{said:?}");
+    assert!((said["with_command"] - 20).abs() <= 1, "{said:?}");
+    assert_eq!((said["causes"], said["unchanged"]), (0, 0x1_ffff), "{said:?}");
+    let value = Gain::from_word(said["gain"] as u32).value(Row::Proportional);
+    let wanted = Gain::nearest(1.5 * value, Row::Proportional).unwrap();
+    assert_eq!(Gain::from_word(said["gain_3_2"] as u32), wanted);
 }
 
 /// The home switch is pressed from 30 counts on, the index before it.

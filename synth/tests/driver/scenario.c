@@ -1,7 +1,8 @@
-/* A program that uses the driver: moves, a fault, tables, the self-test, and a stage that does not answer. */
+/* A program that uses the driver: moves, a fault, tables, settings, the self-test, and a stage that does not answer. */
 #include <string.h>
 
 #include "pipe.h"
+#include "posicast_settings.h"
 
 /* From reset to a move of both axes. */
 static void first_move(posicast_stage *stage)
@@ -89,6 +90,38 @@ static void tables(posicast_stage *stage)
     result("off", posicast_state(stage, X));
 }
 
+/* A controller whose command is 0, while the reference moves on; then the machine's again, with another gain. */
+static void settings(posicast_stage *stage)
+{
+    const posicast_settings *machine = &machine_xy_stage.axis[X].settings;
+    posicast_settings changed = *machine;
+    posicast_snapshot at;
+    uint32_t gain = machine->word[POSICAST_SETTING_PROPORTIONAL];
+
+    changed.word[POSICAST_SETTING_LIMIT] = 0;
+    need("no command", posicast_load_settings(stage, X, 2, &changed, TICKS), POSICAST_OK);
+    need("the bank in use", posicast_load_settings(stage, X, 2, &changed, TICKS), POSICAST_WRONG_STATE);
+    need("bank 0", posicast_load_settings(stage, X, 0, &changed, TICKS), POSICAST_BAD_ARGUMENT);
+    need("law 3", posicast_use_settings(stage, X, 0, 3, TICKS), POSICAST_BAD_ARGUMENT);
+    need("move X", posicast_queue_move(stage, X, COUNTS(20), limits_of(X)), POSICAST_OK);
+    need("start X", posicast_start(stage, 1u << X), POSICAST_OK);
+    need("rest", posicast_wait_at_rest(stage, 1u << X, TICKS), POSICAST_OK);
+    posicast_take_snapshot(stage, &at);
+    result("without_command", at.position[X]);
+    need("3/0", posicast_scale_gain(&gain, 3, 0), POSICAST_BAD_ARGUMENT);
+    need("3/2", posicast_scale_gain(&gain, 3, 2), POSICAST_OK);
+    result("gain", machine->word[POSICAST_SETTING_PROPORTIONAL]);
+    result("gain_3_2", gain);
+    gain = 0x1ffff;
+    need("too large", posicast_scale_gain(&gain, 65535, 1), POSICAST_BAD_ARGUMENT);
+    result("unchanged", gain);
+    need("the machine's", posicast_use_settings(stage, X, 0, machine->law, TICKS), POSICAST_OK);
+    need("a while", posicast_wait_ticks(stage, 400), POSICAST_OK);
+    posicast_take_snapshot(stage, &at);
+    result("with_command", at.position[X]);
+    result("causes", posicast_causes(stage, X));
+}
+
 /* The PWM of Y by itself, in READY. */
 static void self_test(posicast_stage *stage)
 {
@@ -122,6 +155,11 @@ int main(int argc, char **argv)
         self_test(&stage);
         need("on again", posicast_switch_on(&stage, BOTH, TICKS), POSICAST_OK);
         tables(&stage);
+        return 0;
+    }
+    if (argc == 2 && strcmp(argv[1], "settings") == 0) {
+        need("on", posicast_switch_on(&stage, BOTH, TICKS), POSICAST_OK);
+        settings(&stage);
         return 0;
     }
     first_move(&stage);

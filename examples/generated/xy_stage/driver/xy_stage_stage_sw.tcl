@@ -15,6 +15,7 @@ add_sw_property c_source src/posicast_driver.c
 add_sw_property c_source src/posicast_homing.c
 add_sw_property c_source src/posicast_plan.c
 add_sw_property c_source src/posicast_segments.c
+add_sw_property c_source src/posicast_settings.c
 add_sw_property c_source src/posicast_tables.c
 add_sw_property c_source src/posicast_wait.c
 add_sw_property include_source HAL/inc/posicast_stage_hal.h
@@ -27,6 +28,7 @@ add_sw_property include_source inc/posicast_machine.h
 add_sw_property include_source inc/posicast_plan.h
 add_sw_property include_source inc/posicast_result.h
 add_sw_property include_source inc/posicast_segments.h
+add_sw_property include_source inc/posicast_settings.h
 add_sw_property include_source inc/posicast_stage_regs.h
 add_sw_property include_source src/posicast_wait.h
 add_sw_property include_directory inc

@@ -5,6 +5,7 @@
 #include <stdint.h>
 
 #include "posicast_plan.h"
+#include "posicast_stage_regs.h"
 
 /* coefficient * x[n - delay_samples] */
 typedef struct {
@@ -19,6 +20,12 @@ typedef struct {
     uint32_t coefficient_fraction;
 } posicast_table;
 
+/* A controller: POSICAST_AXIS_LAW_LAW_..., and its words by POSICAST_SETTING_... */
+typedef struct {
+    uint32_t law;
+    uint32_t word[POSICAST_SETTINGS];
+} posicast_settings;
+
 /* An axis. */
 typedef struct {
     const char *name;
@@ -27,6 +34,8 @@ typedef struct {
     posicast_limits limits;
     /* The table that is in bank 0. */
     posicast_table table;
+    /* What computes the command, with the settings that are in bank 0. */
+    posicast_settings settings;
 } posicast_axis_machine;
 
 /* A machine. */

@@ -29,6 +29,27 @@
 #define POSICAST_AXIS_INTERRUPTS 7u
 #define POSICAST_AXIS_WORD(axis, reg) (POSICAST_WINDOW_WORDS * ((uint32_t)(axis) + 1u) + (reg))
 
+/* Settings of a controller by row: docs/sliding_mode.md. A gain is mantissa * 2^-shift, the mantissa in the lowest bits. */
+#define POSICAST_SETTING_SURFACE 0u
+#define POSICAST_SETTING_BOUNDARY 1u
+#define POSICAST_SETTING_DAMPING 2u
+#define POSICAST_SETTING_REACHING 3u
+#define POSICAST_SETTING_SWITCHING 4u
+#define POSICAST_SETTING_FADE 5u
+#define POSICAST_SETTING_FEEDBACK 6u
+#define POSICAST_SETTING_ACCELERATION 7u
+#define POSICAST_SETTING_VELOCITY 8u
+#define POSICAST_SETTING_VISCOUS 9u
+#define POSICAST_SETTING_COULOMB 10u
+#define POSICAST_SETTING_LIMIT 11u
+#define POSICAST_SETTING_DUTY 12u
+#define POSICAST_SETTING_DERIVATIVE 13u
+#define POSICAST_SETTING_PROPORTIONAL 14u
+#define POSICAST_SETTING_INTEGRAL 15u
+#define POSICAST_SETTINGS 16u
+#define POSICAST_GAIN_MANTISSA_BITS 18u
+#define POSICAST_GAIN_SHIFT_MAX 31u
+
 /* Mask of the axes with a trace memory and test signals. */
 #define POSICAST_BRING_UP_AXES 0x0u
 

@@ -1,4 +1,4 @@
-/* Tap tables and limits of xy_stage. Written by posicast. */
+/* Tap tables, limits and controllers of xy_stage. Written by posicast. */
 #include "machine_xy_stage.h"
 
 static const posicast_tap taps_of_x[] = {
@@ -24,6 +24,24 @@ static const posicast_axis_machine axes[] = {
         /* velocity, acceleration, jerk: counts per tick, tick^2, tick^3, in LSB of 2^-32 */
         {INT64_C(107374182400), INT64_C(343597383), INT64_C(1717986)},
         {taps_of_x, 5, 16},
+        {1u, {
+            0x7c0000u, /* Surface */
+            0x7c0000u, /* Boundary */
+            0x7c0000u, /* Damping */
+            0x7c0000u, /* Reaching */
+            0x7c0000u, /* Switching */
+            0x110aabu, /* Fade */
+            0x614000u, /* Feedback */
+            0x7c0000u, /* Acceleration */
+            0x454000u, /* Velocity */
+            0x7c0000u, /* Viscous */
+            0x7c0000u, /* Coulomb */
+            0x1f4000u, /* Limit */
+            0x694000u, /* Duty */
+            0x7c0000u, /* Derivative */
+            0x315555u, /* Proportional */
+            0x7c0000u, /* Integral */
+        }},
     },
     {
         "y",
@@ -31,6 +49,24 @@ static const posicast_axis_machine axes[] = {
         /* velocity, acceleration, jerk: counts per tick, tick^2, tick^3, in LSB of 2^-32 */
         {INT64_C(107374182400), INT64_C(343597383), INT64_C(1717986)},
         {taps_of_y, 5, 16},
+        {1u, {
+            0x7c0000u, /* Surface */
+            0x7c0000u, /* Boundary */
+            0x7c0000u, /* Damping */
+            0x7c0000u, /* Reaching */
+            0x7c0000u, /* Switching */
+            0x110aabu, /* Fade */
+            0x614000u, /* Feedback */
+            0x7c0000u, /* Acceleration */
+            0x454000u, /* Velocity */
+            0x7c0000u, /* Viscous */
+            0x7c0000u, /* Coulomb */
+            0x1f4000u, /* Limit */
+            0x694000u, /* Duty */
+            0x7c0000u, /* Derivative */
+            0x315555u, /* Proportional */
+            0x7c0000u, /* Integral */
+        }},
     },
 };
 
