@@ -1,6 +1,6 @@
 //! One clocked block per register, and what it needs around it.
 
-use super::verilog::{bits, joined, merged, part, type_of};
+use super::verilog::{bits, joined, part, type_of};
 use crate::emit::Type;
 use crate::emit::print::Lines;
 use posicast_model::rtl::registers::{Access, Field, Register, RegisterMap, Source};
@@ -20,10 +20,8 @@ pub(super) fn register_block(lines: &mut Lines, map: &RegisterMap, register: &Re
     match &register.access {
         Access::Configuration => {
             title(lines);
-            clocked(lines, &flops, &format!("else if (write_{name})"), |lines| {
-                for field in fields {
-                    lines.line(&format!("{} <= {};", field.name, merged(field, &field.name)));
-                }
+            clocked(lines, &flops, "else", |lines| {
+                by_bytes(lines, &format!("write_{name}"), fields, "");
             });
         }
         Access::Guarded { .. } => {
@@ -43,12 +41,7 @@ pub(super) fn register_block(lines: &mut Lines, map: &RegisterMap, register: &Re
             title(lines);
             declare(lines, &flops, "staged_");
             clocked(lines, &flops, "else", |lines| {
-                lines.nest(&format!("if (write_{name} && !waits) begin"), "end", |lines| {
-                    for field in fields {
-                        let staged = format!("staged_{}", field.name);
-                        lines.line(&format!("{staged} <= {};", merged(field, &staged)));
-                    }
-                });
+                by_bytes(lines, &format!("write_{name} && !waits"), fields, "staged_");
                 lines.nest("if (applies) begin", "end", |lines| {
                     for field in fields {
                         lines.line(&format!("{0} <= staged_{0};", field.name));
@@ -102,11 +95,8 @@ pub(super) fn register_block(lines: &mut Lines, map: &RegisterMap, register: &Re
         Access::InterruptEnable => {
             title(lines);
             declare(lines, &flops, "");
-            clocked(lines, &flops, &format!("else if (write_{name})"), |lines| {
-                for field in fields {
-                    let enable = format!("irq_enable_{}", field.name);
-                    lines.line(&format!("{enable} <= {};", merged(field, &enable)));
-                }
+            clocked(lines, &flops, "else", |lines| {
+                by_bytes(lines, &format!("write_{name}"), fields, "irq_enable_");
             });
         }
         Access::Commit { .. } => {
@@ -119,12 +109,45 @@ pub(super) fn register_block(lines: &mut Lines, map: &RegisterMap, register: &Re
     }
 }
 
+/// Takes each byte of the bus that a write reaches. An enable per byte leaves a flip-flop without logic of its own.
+fn by_bytes(lines: &mut Lines, condition: &str, fields: &[Field], prefix: &str) {
+    for byte in 0..4 {
+        let in_byte = |field: &Field| {
+            let low = field.low.max(8 * byte);
+            let end = (field.low + field.width).min(8 * byte + 8);
+            (low < end).then(|| Field::new(&field.name, low, end - low, ""))
+        };
+        let parts = fields.iter().filter_map(|field| Some((field, in_byte(field)?)));
+        let taken: Vec<String> = parts
+            .map(|(field, taken)| {
+                let name = format!("{prefix}{}", field.name);
+                let target = match taken.width == field.width {
+                    true => name,
+                    false => part(&name, &Field::new("", taken.low - field.low, taken.width, "")),
+                };
+                format!("{target} <= {};", part("avs_writedata", &taken))
+            })
+            .collect();
+        if !taken.is_empty() {
+            lines.nest(
+                &format!("if ({condition} && avs_byteenable[{byte}]) begin"),
+                "end",
+                |lines| {
+                    taken.iter().for_each(|line| lines.line(line));
+                },
+            );
+        }
+    }
+}
+
 pub(super) fn guarded(lines: &mut Lines, register: &Register, while_low: &str) {
     for field in &register.fields {
         let declaration = type_of(field).declaration();
         let space = if declaration.is_empty() { "" } else { " " };
-        let next = merged(field, &field.name);
-        lines.line(&format!("wire {declaration}{space}next_{} = {next};", field.name));
+        let (name, written, mask) = (&field.name, part("written", field), part("mask", field));
+        lines.line(&format!(
+            "wire {declaration}{space}next_{name} = {written} | ({name} & ~{mask});"
+        ));
     }
     let minima = register.fields.iter().filter(|field| field.minimum > 0).map(|field| {
         // A concatenation is unsigned, whatever it holds.

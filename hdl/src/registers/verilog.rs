@@ -81,11 +81,6 @@ fn word(fields: &[Field], name: impl Fn(&Field) -> String) -> Vec<String> {
     pieces
 }
 
-/// `old`, with the bytes that are written taken from the bus.
-pub(super) fn merged(field: &Field, old: &str) -> String {
-    format!("{} | ({old} & ~{})", part("written", field), part("mask", field))
-}
-
 /// `begin`, then the terms with the operator between them, over as many lines as they need. A comma ends a line, an
 /// operator begins one.
 pub(super) fn joined(lines: &mut Lines, begin: &str, terms: &[String], operator: &str, end: &str) {
@@ -133,9 +128,21 @@ fn writables(map: &RegisterMap) -> impl Iterator<Item = &Register> {
     map.registers().iter().filter(|register| is_writable(register))
 }
 
-/// Does a write go by bytes?
+/// Does it look at the written word with the bytes that a write leaves out as 0?
 fn is_masked(register: &Register) -> bool {
-    is_writable(register) && !register.access.whole_words()
+    matches!(
+        register.access,
+        Access::Guarded { .. } | Access::Sticky | Access::InterruptState
+    )
+}
+
+/// The bytes of a register that are written by themselves, a bit each.
+fn bytes_alone(register: &Register) -> u32 {
+    if !is_writable(register) || is_masked(register) || register.access.whole_words() {
+        return 0;
+    }
+    let reaches = |byte: &u32| register.mask() >> (8 * byte) & 0xff != 0;
+    (0..4).filter(reaches).map(|byte| 1 << byte).sum()
 }
 
 fn takes_whole_words(map: &RegisterMap) -> bool {
@@ -321,7 +328,11 @@ fn unused(lines: &mut Lines, map: &RegisterMap) {
     } else {
         terms.extend(runs("avs_writedata", !fields_of(&takes_data)));
         if !takes_whole_words(map) {
-            terms.push("avs_byteenable".to_owned());
+            let alone = map
+                .registers()
+                .iter()
+                .fold(0, |all, register| all | bytes_alone(register));
+            terms.extend(runs("avs_byteenable", !alone & 0xf));
         }
     }
     if writables(map).next().is_none() {

@@ -22,8 +22,8 @@ fn formal_setting_banks() {
 fn formal_a_byte_that_nobody_wrote_is_found() {
     fails(
         "registers",
-        "(phase & ~mask[15:0])",
-        "(phase & ~mask[31:16])",
+        "phase[15:8] <= avs_writedata[15:8]",
+        "phase[15:8] <= avs_writedata[7:0]",
         "holds_what_was_written",
     );
 }
@@ -32,8 +32,8 @@ fn formal_a_byte_that_nobody_wrote_is_found() {
 fn formal_a_write_after_its_commit_is_found() {
     fails(
         "commit",
-        "if (write_law && !waits) begin",
-        "if (write_law) begin",
+        "if (write_law && !waits && avs_byteenable[0]) begin",
+        "if (write_law && avs_byteenable[0]) begin",
         "all_at_once",
     );
 }

@@ -68,7 +68,10 @@ fn lockstep_catches_a_command_that_takes_a_part() {
 
 #[test]
 fn lockstep_catches_staging_words_that_move_while_a_commit_waits() {
-    caught("if (write_gain && !waits)", "if (write_gain)");
+    caught(
+        "if (write_gain && !waits && avs_byteenable[0])",
+        "if (write_gain && avs_byteenable[0])",
+    );
 }
 
 #[test]
@@ -78,7 +81,7 @@ fn lockstep_catches_a_floor_one_too_low() {
 
 #[test]
 fn lockstep_catches_a_missing_byte_enable() {
-    caught("written[17:5] | (wide & ~mask[17:5])", "avs_writedata[17:5]");
+    caught("if (write_mode && avs_byteenable[1])", "if (write_mode)");
 }
 
 #[test]

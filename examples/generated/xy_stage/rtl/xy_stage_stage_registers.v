@@ -570,23 +570,29 @@ module xy_stage_stage_registers (
             irq_enable_y_index_seen <= 1'd0;
             irq_enable_tick <= 1'd0;
             irq_enable_start_refused <= 1'd0;
-        end else if (write_interrupt_enable) begin
-            irq_enable_x_notify <= written[0] | (irq_enable_x_notify & ~mask[0]);
-            irq_enable_x_move_done <= written[1] | (irq_enable_x_move_done & ~mask[1]);
-            irq_enable_x_fifo_low <= written[2] | (irq_enable_x_fifo_low & ~mask[2]);
-            irq_enable_x_halted <= written[3] | (irq_enable_x_halted & ~mask[3]);
-            irq_enable_x_stopping <= written[4] | (irq_enable_x_stopping & ~mask[4]);
-            irq_enable_x_faulted <= written[5] | (irq_enable_x_faulted & ~mask[5]);
-            irq_enable_x_index_seen <= written[6] | (irq_enable_x_index_seen & ~mask[6]);
-            irq_enable_y_notify <= written[7] | (irq_enable_y_notify & ~mask[7]);
-            irq_enable_y_move_done <= written[8] | (irq_enable_y_move_done & ~mask[8]);
-            irq_enable_y_fifo_low <= written[9] | (irq_enable_y_fifo_low & ~mask[9]);
-            irq_enable_y_halted <= written[10] | (irq_enable_y_halted & ~mask[10]);
-            irq_enable_y_stopping <= written[11] | (irq_enable_y_stopping & ~mask[11]);
-            irq_enable_y_faulted <= written[12] | (irq_enable_y_faulted & ~mask[12]);
-            irq_enable_y_index_seen <= written[13] | (irq_enable_y_index_seen & ~mask[13]);
-            irq_enable_tick <= written[28] | (irq_enable_tick & ~mask[28]);
-            irq_enable_start_refused <= written[29] | (irq_enable_start_refused & ~mask[29]);
+        end else begin
+            if (write_interrupt_enable && avs_byteenable[0]) begin
+                irq_enable_x_notify <= avs_writedata[0];
+                irq_enable_x_move_done <= avs_writedata[1];
+                irq_enable_x_fifo_low <= avs_writedata[2];
+                irq_enable_x_halted <= avs_writedata[3];
+                irq_enable_x_stopping <= avs_writedata[4];
+                irq_enable_x_faulted <= avs_writedata[5];
+                irq_enable_x_index_seen <= avs_writedata[6];
+                irq_enable_y_notify <= avs_writedata[7];
+            end
+            if (write_interrupt_enable && avs_byteenable[1]) begin
+                irq_enable_y_move_done <= avs_writedata[8];
+                irq_enable_y_fifo_low <= avs_writedata[9];
+                irq_enable_y_halted <= avs_writedata[10];
+                irq_enable_y_stopping <= avs_writedata[11];
+                irq_enable_y_faulted <= avs_writedata[12];
+                irq_enable_y_index_seen <= avs_writedata[13];
+            end
+            if (write_interrupt_enable && avs_byteenable[3]) begin
+                irq_enable_tick <= avs_writedata[28];
+                irq_enable_start_refused <= avs_writedata[29];
+            end
         end
     end
 
@@ -597,11 +603,13 @@ module xy_stage_stage_registers (
             x_direct_enable <= 1'd0;
             x_encoder_invert <= 1'd0;
             x_self_test <= 1'd0;
-        end else if (write_x_control) begin
-            x_enable <= written[0] | (x_enable & ~mask[0]);
-            x_direct_enable <= written[1] | (x_direct_enable & ~mask[1]);
-            x_encoder_invert <= written[2] | (x_encoder_invert & ~mask[2]);
-            x_self_test <= written[3] | (x_self_test & ~mask[3]);
+        end else begin
+            if (write_x_control && avs_byteenable[0]) begin
+                x_enable <= avs_writedata[0];
+                x_direct_enable <= avs_writedata[1];
+                x_encoder_invert <= avs_writedata[2];
+                x_self_test <= avs_writedata[3];
+            end
         end
     end
 
@@ -662,8 +670,10 @@ module xy_stage_stage_registers (
     always @(posedge clk) begin
         if (rst) begin
             x_low_water <= 6'd16;
-        end else if (write_x_fifo_control) begin
-            x_low_water <= written[5:0] | (x_low_water & ~mask[5:0]);
+        end else begin
+            if (write_x_fifo_control && avs_byteenable[0]) begin
+                x_low_water <= avs_writedata[5:0];
+            end
         end
     end
 
@@ -687,9 +697,13 @@ module xy_stage_stage_registers (
         if (rst) begin
             x_tap_index <= 6'd0;
             x_tap_bank <= 2'd0;
-        end else if (write_x_tap_address) begin
-            x_tap_index <= written[5:0] | (x_tap_index & ~mask[5:0]);
-            x_tap_bank <= written[9:8] | (x_tap_bank & ~mask[9:8]);
+        end else begin
+            if (write_x_tap_address && avs_byteenable[0]) begin
+                x_tap_index <= avs_writedata[5:0];
+            end
+            if (write_x_tap_address && avs_byteenable[1]) begin
+                x_tap_bank <= avs_writedata[9:8];
+            end
         end
     end
 
@@ -728,9 +742,13 @@ module xy_stage_stage_registers (
         if (rst) begin
             x_setting_row <= 4'd0;
             x_setting_bank <= 2'd0;
-        end else if (write_x_setting_address) begin
-            x_setting_row <= written[3:0] | (x_setting_row & ~mask[3:0]);
-            x_setting_bank <= written[9:8] | (x_setting_bank & ~mask[9:8]);
+        end else begin
+            if (write_x_setting_address && avs_byteenable[0]) begin
+                x_setting_row <= avs_writedata[3:0];
+            end
+            if (write_x_setting_address && avs_byteenable[1]) begin
+                x_setting_bank <= avs_writedata[9:8];
+            end
         end
     end
 
@@ -757,9 +775,11 @@ module xy_stage_stage_registers (
             x_law <= 2'd1;
             x_law_bank <= 2'd0;
         end else begin
-            if (write_x_law && !waits) begin
-                staged_x_law <= written[1:0] | (staged_x_law & ~mask[1:0]);
-                staged_x_law_bank <= written[9:8] | (staged_x_law_bank & ~mask[9:8]);
+            if (write_x_law && !waits && avs_byteenable[0]) begin
+                staged_x_law <= avs_writedata[1:0];
+            end
+            if (write_x_law && !waits && avs_byteenable[1]) begin
+                staged_x_law_bank <= avs_writedata[9:8];
             end
             if (applies) begin
                 x_law <= staged_x_law;
@@ -772,8 +792,19 @@ module xy_stage_stage_registers (
     always @(posedge clk) begin
         if (rst) begin
             x_soft_limit_plus <= 32'sd0;
-        end else if (write_x_soft_limit_plus) begin
-            x_soft_limit_plus <= written | (x_soft_limit_plus & ~mask);
+        end else begin
+            if (write_x_soft_limit_plus && avs_byteenable[0]) begin
+                x_soft_limit_plus[7:0] <= avs_writedata[7:0];
+            end
+            if (write_x_soft_limit_plus && avs_byteenable[1]) begin
+                x_soft_limit_plus[15:8] <= avs_writedata[15:8];
+            end
+            if (write_x_soft_limit_plus && avs_byteenable[2]) begin
+                x_soft_limit_plus[23:16] <= avs_writedata[23:16];
+            end
+            if (write_x_soft_limit_plus && avs_byteenable[3]) begin
+                x_soft_limit_plus[31:24] <= avs_writedata[31:24];
+            end
         end
     end
 
@@ -781,8 +812,19 @@ module xy_stage_stage_registers (
     always @(posedge clk) begin
         if (rst) begin
             x_soft_limit_minus <= 32'sd0;
-        end else if (write_x_soft_limit_minus) begin
-            x_soft_limit_minus <= written | (x_soft_limit_minus & ~mask);
+        end else begin
+            if (write_x_soft_limit_minus && avs_byteenable[0]) begin
+                x_soft_limit_minus[7:0] <= avs_writedata[7:0];
+            end
+            if (write_x_soft_limit_minus && avs_byteenable[1]) begin
+                x_soft_limit_minus[15:8] <= avs_writedata[15:8];
+            end
+            if (write_x_soft_limit_minus && avs_byteenable[2]) begin
+                x_soft_limit_minus[23:16] <= avs_writedata[23:16];
+            end
+            if (write_x_soft_limit_minus && avs_byteenable[3]) begin
+                x_soft_limit_minus[31:24] <= avs_writedata[31:24];
+            end
         end
     end
 
@@ -790,8 +832,19 @@ module xy_stage_stage_registers (
     always @(posedge clk) begin
         if (rst) begin
             x_following_error_limit <= 32'd0;
-        end else if (write_x_following_error_limit) begin
-            x_following_error_limit <= written | (x_following_error_limit & ~mask);
+        end else begin
+            if (write_x_following_error_limit && avs_byteenable[0]) begin
+                x_following_error_limit[7:0] <= avs_writedata[7:0];
+            end
+            if (write_x_following_error_limit && avs_byteenable[1]) begin
+                x_following_error_limit[15:8] <= avs_writedata[15:8];
+            end
+            if (write_x_following_error_limit && avs_byteenable[2]) begin
+                x_following_error_limit[23:16] <= avs_writedata[23:16];
+            end
+            if (write_x_following_error_limit && avs_byteenable[3]) begin
+                x_following_error_limit[31:24] <= avs_writedata[31:24];
+            end
         end
     end
 
@@ -800,9 +853,19 @@ module xy_stage_stage_registers (
         if (rst) begin
             x_watchdog_ticks <= 16'd0;
             x_off_causes <= 16'd36231;
-        end else if (write_x_watchdog) begin
-            x_watchdog_ticks <= written[15:0] | (x_watchdog_ticks & ~mask[15:0]);
-            x_off_causes <= written[31:16] | (x_off_causes & ~mask[31:16]);
+        end else begin
+            if (write_x_watchdog && avs_byteenable[0]) begin
+                x_watchdog_ticks[7:0] <= avs_writedata[7:0];
+            end
+            if (write_x_watchdog && avs_byteenable[1]) begin
+                x_watchdog_ticks[15:8] <= avs_writedata[15:8];
+            end
+            if (write_x_watchdog && avs_byteenable[2]) begin
+                x_off_causes[7:0] <= avs_writedata[23:16];
+            end
+            if (write_x_watchdog && avs_byteenable[3]) begin
+                x_off_causes[15:8] <= avs_writedata[31:24];
+            end
         end
     end
 
@@ -810,8 +873,19 @@ module xy_stage_stage_registers (
     always @(posedge clk) begin
         if (rst) begin
             x_stop_deceleration <= 31'd1342177;
-        end else if (write_x_stop_deceleration) begin
-            x_stop_deceleration <= written[30:0] | (x_stop_deceleration & ~mask[30:0]);
+        end else begin
+            if (write_x_stop_deceleration && avs_byteenable[0]) begin
+                x_stop_deceleration[7:0] <= avs_writedata[7:0];
+            end
+            if (write_x_stop_deceleration && avs_byteenable[1]) begin
+                x_stop_deceleration[15:8] <= avs_writedata[15:8];
+            end
+            if (write_x_stop_deceleration && avs_byteenable[2]) begin
+                x_stop_deceleration[23:16] <= avs_writedata[23:16];
+            end
+            if (write_x_stop_deceleration && avs_byteenable[3]) begin
+                x_stop_deceleration[30:24] <= avs_writedata[30:24];
+            end
         end
     end
 
@@ -819,8 +893,13 @@ module xy_stage_stage_registers (
     always @(posedge clk) begin
         if (rst) begin
             x_settle_ticks <= 16'd78;
-        end else if (write_x_settle) begin
-            x_settle_ticks <= written[15:0] | (x_settle_ticks & ~mask[15:0]);
+        end else begin
+            if (write_x_settle && avs_byteenable[0]) begin
+                x_settle_ticks[7:0] <= avs_writedata[7:0];
+            end
+            if (write_x_settle && avs_byteenable[1]) begin
+                x_settle_ticks[15:8] <= avs_writedata[15:8];
+            end
         end
     end
 
@@ -832,12 +911,16 @@ module xy_stage_stage_registers (
             x_index_gate <= 4'd0;
             x_smoothing <= 2'd0;
             x_velocity_m <= 1'd0;
-        end else if (write_x_index) begin
-            x_index_always <= written[0] | (x_index_always & ~mask[0]);
-            x_index_presets <= written[1] | (x_index_presets & ~mask[1]);
-            x_index_gate <= written[7:4] | (x_index_gate & ~mask[7:4]);
-            x_smoothing <= written[9:8] | (x_smoothing & ~mask[9:8]);
-            x_velocity_m <= written[12] | (x_velocity_m & ~mask[12]);
+        end else begin
+            if (write_x_index && avs_byteenable[0]) begin
+                x_index_always <= avs_writedata[0];
+                x_index_presets <= avs_writedata[1];
+                x_index_gate <= avs_writedata[7:4];
+            end
+            if (write_x_index && avs_byteenable[1]) begin
+                x_smoothing <= avs_writedata[9:8];
+                x_velocity_m <= avs_writedata[12];
+            end
         end
     end
 
@@ -886,11 +969,13 @@ module xy_stage_stage_registers (
             y_direct_enable <= 1'd0;
             y_encoder_invert <= 1'd0;
             y_self_test <= 1'd0;
-        end else if (write_y_control) begin
-            y_enable <= written[0] | (y_enable & ~mask[0]);
-            y_direct_enable <= written[1] | (y_direct_enable & ~mask[1]);
-            y_encoder_invert <= written[2] | (y_encoder_invert & ~mask[2]);
-            y_self_test <= written[3] | (y_self_test & ~mask[3]);
+        end else begin
+            if (write_y_control && avs_byteenable[0]) begin
+                y_enable <= avs_writedata[0];
+                y_direct_enable <= avs_writedata[1];
+                y_encoder_invert <= avs_writedata[2];
+                y_self_test <= avs_writedata[3];
+            end
         end
     end
 
@@ -951,8 +1036,10 @@ module xy_stage_stage_registers (
     always @(posedge clk) begin
         if (rst) begin
             y_low_water <= 6'd16;
-        end else if (write_y_fifo_control) begin
-            y_low_water <= written[5:0] | (y_low_water & ~mask[5:0]);
+        end else begin
+            if (write_y_fifo_control && avs_byteenable[0]) begin
+                y_low_water <= avs_writedata[5:0];
+            end
         end
     end
 
@@ -976,9 +1063,13 @@ module xy_stage_stage_registers (
         if (rst) begin
             y_tap_index <= 6'd0;
             y_tap_bank <= 2'd0;
-        end else if (write_y_tap_address) begin
-            y_tap_index <= written[5:0] | (y_tap_index & ~mask[5:0]);
-            y_tap_bank <= written[9:8] | (y_tap_bank & ~mask[9:8]);
+        end else begin
+            if (write_y_tap_address && avs_byteenable[0]) begin
+                y_tap_index <= avs_writedata[5:0];
+            end
+            if (write_y_tap_address && avs_byteenable[1]) begin
+                y_tap_bank <= avs_writedata[9:8];
+            end
         end
     end
 
@@ -1017,9 +1108,13 @@ module xy_stage_stage_registers (
         if (rst) begin
             y_setting_row <= 4'd0;
             y_setting_bank <= 2'd0;
-        end else if (write_y_setting_address) begin
-            y_setting_row <= written[3:0] | (y_setting_row & ~mask[3:0]);
-            y_setting_bank <= written[9:8] | (y_setting_bank & ~mask[9:8]);
+        end else begin
+            if (write_y_setting_address && avs_byteenable[0]) begin
+                y_setting_row <= avs_writedata[3:0];
+            end
+            if (write_y_setting_address && avs_byteenable[1]) begin
+                y_setting_bank <= avs_writedata[9:8];
+            end
         end
     end
 
@@ -1046,9 +1141,11 @@ module xy_stage_stage_registers (
             y_law <= 2'd1;
             y_law_bank <= 2'd0;
         end else begin
-            if (write_y_law && !waits) begin
-                staged_y_law <= written[1:0] | (staged_y_law & ~mask[1:0]);
-                staged_y_law_bank <= written[9:8] | (staged_y_law_bank & ~mask[9:8]);
+            if (write_y_law && !waits && avs_byteenable[0]) begin
+                staged_y_law <= avs_writedata[1:0];
+            end
+            if (write_y_law && !waits && avs_byteenable[1]) begin
+                staged_y_law_bank <= avs_writedata[9:8];
             end
             if (applies) begin
                 y_law <= staged_y_law;
@@ -1061,8 +1158,19 @@ module xy_stage_stage_registers (
     always @(posedge clk) begin
         if (rst) begin
             y_soft_limit_plus <= 32'sd0;
-        end else if (write_y_soft_limit_plus) begin
-            y_soft_limit_plus <= written | (y_soft_limit_plus & ~mask);
+        end else begin
+            if (write_y_soft_limit_plus && avs_byteenable[0]) begin
+                y_soft_limit_plus[7:0] <= avs_writedata[7:0];
+            end
+            if (write_y_soft_limit_plus && avs_byteenable[1]) begin
+                y_soft_limit_plus[15:8] <= avs_writedata[15:8];
+            end
+            if (write_y_soft_limit_plus && avs_byteenable[2]) begin
+                y_soft_limit_plus[23:16] <= avs_writedata[23:16];
+            end
+            if (write_y_soft_limit_plus && avs_byteenable[3]) begin
+                y_soft_limit_plus[31:24] <= avs_writedata[31:24];
+            end
         end
     end
 
@@ -1070,8 +1178,19 @@ module xy_stage_stage_registers (
     always @(posedge clk) begin
         if (rst) begin
             y_soft_limit_minus <= 32'sd0;
-        end else if (write_y_soft_limit_minus) begin
-            y_soft_limit_minus <= written | (y_soft_limit_minus & ~mask);
+        end else begin
+            if (write_y_soft_limit_minus && avs_byteenable[0]) begin
+                y_soft_limit_minus[7:0] <= avs_writedata[7:0];
+            end
+            if (write_y_soft_limit_minus && avs_byteenable[1]) begin
+                y_soft_limit_minus[15:8] <= avs_writedata[15:8];
+            end
+            if (write_y_soft_limit_minus && avs_byteenable[2]) begin
+                y_soft_limit_minus[23:16] <= avs_writedata[23:16];
+            end
+            if (write_y_soft_limit_minus && avs_byteenable[3]) begin
+                y_soft_limit_minus[31:24] <= avs_writedata[31:24];
+            end
         end
     end
 
@@ -1079,8 +1198,19 @@ module xy_stage_stage_registers (
     always @(posedge clk) begin
         if (rst) begin
             y_following_error_limit <= 32'd0;
-        end else if (write_y_following_error_limit) begin
-            y_following_error_limit <= written | (y_following_error_limit & ~mask);
+        end else begin
+            if (write_y_following_error_limit && avs_byteenable[0]) begin
+                y_following_error_limit[7:0] <= avs_writedata[7:0];
+            end
+            if (write_y_following_error_limit && avs_byteenable[1]) begin
+                y_following_error_limit[15:8] <= avs_writedata[15:8];
+            end
+            if (write_y_following_error_limit && avs_byteenable[2]) begin
+                y_following_error_limit[23:16] <= avs_writedata[23:16];
+            end
+            if (write_y_following_error_limit && avs_byteenable[3]) begin
+                y_following_error_limit[31:24] <= avs_writedata[31:24];
+            end
         end
     end
 
@@ -1089,9 +1219,19 @@ module xy_stage_stage_registers (
         if (rst) begin
             y_watchdog_ticks <= 16'd0;
             y_off_causes <= 16'd36231;
-        end else if (write_y_watchdog) begin
-            y_watchdog_ticks <= written[15:0] | (y_watchdog_ticks & ~mask[15:0]);
-            y_off_causes <= written[31:16] | (y_off_causes & ~mask[31:16]);
+        end else begin
+            if (write_y_watchdog && avs_byteenable[0]) begin
+                y_watchdog_ticks[7:0] <= avs_writedata[7:0];
+            end
+            if (write_y_watchdog && avs_byteenable[1]) begin
+                y_watchdog_ticks[15:8] <= avs_writedata[15:8];
+            end
+            if (write_y_watchdog && avs_byteenable[2]) begin
+                y_off_causes[7:0] <= avs_writedata[23:16];
+            end
+            if (write_y_watchdog && avs_byteenable[3]) begin
+                y_off_causes[15:8] <= avs_writedata[31:24];
+            end
         end
     end
 
@@ -1099,8 +1239,19 @@ module xy_stage_stage_registers (
     always @(posedge clk) begin
         if (rst) begin
             y_stop_deceleration <= 31'd1342177;
-        end else if (write_y_stop_deceleration) begin
-            y_stop_deceleration <= written[30:0] | (y_stop_deceleration & ~mask[30:0]);
+        end else begin
+            if (write_y_stop_deceleration && avs_byteenable[0]) begin
+                y_stop_deceleration[7:0] <= avs_writedata[7:0];
+            end
+            if (write_y_stop_deceleration && avs_byteenable[1]) begin
+                y_stop_deceleration[15:8] <= avs_writedata[15:8];
+            end
+            if (write_y_stop_deceleration && avs_byteenable[2]) begin
+                y_stop_deceleration[23:16] <= avs_writedata[23:16];
+            end
+            if (write_y_stop_deceleration && avs_byteenable[3]) begin
+                y_stop_deceleration[30:24] <= avs_writedata[30:24];
+            end
         end
     end
 
@@ -1108,8 +1259,13 @@ module xy_stage_stage_registers (
     always @(posedge clk) begin
         if (rst) begin
             y_settle_ticks <= 16'd109;
-        end else if (write_y_settle) begin
-            y_settle_ticks <= written[15:0] | (y_settle_ticks & ~mask[15:0]);
+        end else begin
+            if (write_y_settle && avs_byteenable[0]) begin
+                y_settle_ticks[7:0] <= avs_writedata[7:0];
+            end
+            if (write_y_settle && avs_byteenable[1]) begin
+                y_settle_ticks[15:8] <= avs_writedata[15:8];
+            end
         end
     end
 
@@ -1121,12 +1277,16 @@ module xy_stage_stage_registers (
             y_index_gate <= 4'd0;
             y_smoothing <= 2'd0;
             y_velocity_m <= 1'd0;
-        end else if (write_y_index) begin
-            y_index_always <= written[0] | (y_index_always & ~mask[0]);
-            y_index_presets <= written[1] | (y_index_presets & ~mask[1]);
-            y_index_gate <= written[7:4] | (y_index_gate & ~mask[7:4]);
-            y_smoothing <= written[9:8] | (y_smoothing & ~mask[9:8]);
-            y_velocity_m <= written[12] | (y_velocity_m & ~mask[12]);
+        end else begin
+            if (write_y_index && avs_byteenable[0]) begin
+                y_index_always <= avs_writedata[0];
+                y_index_presets <= avs_writedata[1];
+                y_index_gate <= avs_writedata[7:4];
+            end
+            if (write_y_index && avs_byteenable[1]) begin
+                y_smoothing <= avs_writedata[9:8];
+                y_velocity_m <= avs_writedata[12];
+            end
         end
     end
 
@@ -1542,6 +1702,9 @@ module xy_stage_stage_registers (
         read_group_5 = 32'd0;
         irq = 1'd0;
     end
+
+    // Bits that nothing reads.
+    wire unused = &{1'b0, written[27:14], written[31:30]};
 endmodule
 
 `default_nettype wire

@@ -106,11 +106,15 @@ module xy_stage_x_pwm_avalon_registers (
             from_pins <= 1'd0;
             update_at_peak <= 1'd0;
             mode <= 2'd3;
-        end else if (write_control) begin
-            enable <= written[0] | (enable & ~mask[0]);
-            from_pins <= written[1] | (from_pins & ~mask[1]);
-            update_at_peak <= written[2] | (update_at_peak & ~mask[2]);
-            mode <= written[9:8] | (mode & ~mask[9:8]);
+        end else begin
+            if (write_control && avs_byteenable[0]) begin
+                enable <= avs_writedata[0];
+                from_pins <= avs_writedata[1];
+                update_at_peak <= avs_writedata[2];
+            end
+            if (write_control && avs_byteenable[1]) begin
+                mode <= avs_writedata[9:8];
+            end
         end
     end
 
@@ -174,12 +178,14 @@ module xy_stage_x_pwm_avalon_registers (
             irq_enable_unaligned <= 1'd0;
             irq_enable_valley <= 1'd0;
             irq_enable_trigger <= 1'd0;
-        end else if (write_interrupt_enable) begin
-            irq_enable_tripped <= written[0] | (irq_enable_tripped & ~mask[0]);
-            irq_enable_saturated <= written[1] | (irq_enable_saturated & ~mask[1]);
-            irq_enable_unaligned <= written[2] | (irq_enable_unaligned & ~mask[2]);
-            irq_enable_valley <= written[3] | (irq_enable_valley & ~mask[3]);
-            irq_enable_trigger <= written[4] | (irq_enable_trigger & ~mask[4]);
+        end else begin
+            if (write_interrupt_enable && avs_byteenable[0]) begin
+                irq_enable_tripped <= avs_writedata[0];
+                irq_enable_saturated <= avs_writedata[1];
+                irq_enable_unaligned <= avs_writedata[2];
+                irq_enable_valley <= avs_writedata[3];
+                irq_enable_trigger <= avs_writedata[4];
+            end
         end
     end
 
@@ -207,8 +213,16 @@ module xy_stage_x_pwm_avalon_registers (
     always @(posedge clk) begin
         if (rst) begin
             host_x_0 <= 17'sd0;
-        end else if (write_duty) begin
-            host_x_0 <= written[16:0] | (host_x_0 & ~mask[16:0]);
+        end else begin
+            if (write_duty && avs_byteenable[0]) begin
+                host_x_0[7:0] <= avs_writedata[7:0];
+            end
+            if (write_duty && avs_byteenable[1]) begin
+                host_x_0[15:8] <= avs_writedata[15:8];
+            end
+            if (write_duty && avs_byteenable[2]) begin
+                host_x_0[16] <= avs_writedata[16];
+            end
         end
     end
 
@@ -216,8 +230,13 @@ module xy_stage_x_pwm_avalon_registers (
     always @(posedge clk) begin
         if (rst) begin
             max_duty <= 16'd2500;
-        end else if (write_max_duty) begin
-            max_duty <= written[15:0] | (max_duty & ~mask[15:0]);
+        end else begin
+            if (write_max_duty && avs_byteenable[0]) begin
+                max_duty[7:0] <= avs_writedata[7:0];
+            end
+            if (write_max_duty && avs_byteenable[1]) begin
+                max_duty[15:8] <= avs_writedata[15:8];
+            end
         end
     end
 
@@ -226,9 +245,19 @@ module xy_stage_x_pwm_avalon_registers (
         if (rst) begin
             phase <= 16'd0;
             trigger_phase <= 16'd0;
-        end else if (write_phase) begin
-            phase <= written[15:0] | (phase & ~mask[15:0]);
-            trigger_phase <= written[31:16] | (trigger_phase & ~mask[31:16]);
+        end else begin
+            if (write_phase && avs_byteenable[0]) begin
+                phase[7:0] <= avs_writedata[7:0];
+            end
+            if (write_phase && avs_byteenable[1]) begin
+                phase[15:8] <= avs_writedata[15:8];
+            end
+            if (write_phase && avs_byteenable[2]) begin
+                trigger_phase[7:0] <= avs_writedata[23:16];
+            end
+            if (write_phase && avs_byteenable[3]) begin
+                trigger_phase[15:8] <= avs_writedata[31:24];
+            end
         end
     end
 
@@ -237,9 +266,13 @@ module xy_stage_x_pwm_avalon_registers (
         if (rst) begin
             watchdog_periods <= 8'd0;
             filter_clocks <= 8'd0;
-        end else if (write_supervision) begin
-            watchdog_periods <= written[7:0] | (watchdog_periods & ~mask[7:0]);
-            filter_clocks <= written[15:8] | (filter_clocks & ~mask[15:8]);
+        end else begin
+            if (write_supervision && avs_byteenable[0]) begin
+                watchdog_periods <= avs_writedata[7:0];
+            end
+            if (write_supervision && avs_byteenable[1]) begin
+                filter_clocks <= avs_writedata[15:8];
+            end
         end
     end
 
@@ -335,6 +368,9 @@ module xy_stage_x_pwm_avalon_registers (
         avs_readdata = 32'd0;
         irq = 1'd0;
     end
+
+    // Bits that nothing reads.
+    wire unused = &{1'b0, written[31:26]};
 endmodule
 
 `default_nettype wire

@@ -107,8 +107,10 @@ module xy_stage_x_shaper_avalon_registers (
     always @(posedge clk) begin
         if (rst) begin
             from_pins <= 1'd0;
-        end else if (write_control) begin
-            from_pins <= written[0] | (from_pins & ~mask[0]);
+        end else begin
+            if (write_control && avs_byteenable[0]) begin
+                from_pins <= avs_writedata[0];
+            end
         end
     end
 
@@ -161,11 +163,13 @@ module xy_stage_x_shaper_avalon_registers (
             irq_enable_saturated <= 1'd0;
             irq_enable_overrun <= 1'd0;
             irq_enable_refused <= 1'd0;
-        end else if (write_interrupt_enable) begin
-            irq_enable_valid <= written[0] | (irq_enable_valid & ~mask[0]);
-            irq_enable_saturated <= written[1] | (irq_enable_saturated & ~mask[1]);
-            irq_enable_overrun <= written[2] | (irq_enable_overrun & ~mask[2]);
-            irq_enable_refused <= written[3] | (irq_enable_refused & ~mask[3]);
+        end else begin
+            if (write_interrupt_enable && avs_byteenable[0]) begin
+                irq_enable_valid <= avs_writedata[0];
+                irq_enable_saturated <= avs_writedata[1];
+                irq_enable_overrun <= avs_writedata[2];
+                irq_enable_refused <= avs_writedata[3];
+            end
         end
     end
 
@@ -173,8 +177,19 @@ module xy_stage_x_shaper_avalon_registers (
     always @(posedge clk) begin
         if (rst) begin
             host_x_0 <= 32'sd0;
-        end else if (write_x_0) begin
-            host_x_0 <= written | (host_x_0 & ~mask);
+        end else begin
+            if (write_x_0 && avs_byteenable[0]) begin
+                host_x_0[7:0] <= avs_writedata[7:0];
+            end
+            if (write_x_0 && avs_byteenable[1]) begin
+                host_x_0[15:8] <= avs_writedata[15:8];
+            end
+            if (write_x_0 && avs_byteenable[2]) begin
+                host_x_0[23:16] <= avs_writedata[23:16];
+            end
+            if (write_x_0 && avs_byteenable[3]) begin
+                host_x_0[31:24] <= avs_writedata[31:24];
+            end
         end
     end
 
@@ -182,8 +197,19 @@ module xy_stage_x_shaper_avalon_registers (
     always @(posedge clk) begin
         if (rst) begin
             host_x_1 <= 32'sd0;
-        end else if (write_x_1) begin
-            host_x_1 <= written | (host_x_1 & ~mask);
+        end else begin
+            if (write_x_1 && avs_byteenable[0]) begin
+                host_x_1[7:0] <= avs_writedata[7:0];
+            end
+            if (write_x_1 && avs_byteenable[1]) begin
+                host_x_1[15:8] <= avs_writedata[15:8];
+            end
+            if (write_x_1 && avs_byteenable[2]) begin
+                host_x_1[23:16] <= avs_writedata[23:16];
+            end
+            if (write_x_1 && avs_byteenable[3]) begin
+                host_x_1[31:24] <= avs_writedata[31:24];
+            end
         end
     end
 
@@ -191,8 +217,19 @@ module xy_stage_x_shaper_avalon_registers (
     always @(posedge clk) begin
         if (rst) begin
             host_x_2 <= 32'sd0;
-        end else if (write_x_2) begin
-            host_x_2 <= written | (host_x_2 & ~mask);
+        end else begin
+            if (write_x_2 && avs_byteenable[0]) begin
+                host_x_2[7:0] <= avs_writedata[7:0];
+            end
+            if (write_x_2 && avs_byteenable[1]) begin
+                host_x_2[15:8] <= avs_writedata[15:8];
+            end
+            if (write_x_2 && avs_byteenable[2]) begin
+                host_x_2[23:16] <= avs_writedata[23:16];
+            end
+            if (write_x_2 && avs_byteenable[3]) begin
+                host_x_2[31:24] <= avs_writedata[31:24];
+            end
         end
     end
 
@@ -219,9 +256,13 @@ module xy_stage_x_shaper_avalon_registers (
         if (rst) begin
             tap_index <= 6'd0;
             tap_bank <= 2'd0;
-        end else if (write_tap_address) begin
-            tap_index <= written[5:0] | (tap_index & ~mask[5:0]);
-            tap_bank <= written[9:8] | (tap_bank & ~mask[9:8]);
+        end else begin
+            if (write_tap_address && avs_byteenable[0]) begin
+                tap_index <= avs_writedata[5:0];
+            end
+            if (write_tap_address && avs_byteenable[1]) begin
+                tap_bank <= avs_writedata[9:8];
+            end
         end
     end
 
@@ -341,6 +382,9 @@ module xy_stage_x_shaper_avalon_registers (
         read_group_1 = 32'd0;
         irq = 1'd0;
     end
+
+    // Bits that nothing reads.
+    wire unused = &{1'b0, written[31:4]};
 endmodule
 
 `default_nettype wire

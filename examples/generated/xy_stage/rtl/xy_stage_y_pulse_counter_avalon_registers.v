@@ -117,12 +117,18 @@ module xy_stage_y_pulse_counter_avalon_registers (
             swap <= 1'd0;
             invert <= 1'd0;
             differential <= 1'd0;
-        end else if (write_lines) begin
-            filter_clocks <= written[5:0] | (filter_clocks & ~mask[5:0]);
-            mode <= written[10:8] | (mode & ~mask[10:8]);
-            swap <= written[16] | (swap & ~mask[16]);
-            invert <= written[17] | (invert & ~mask[17]);
-            differential <= written[18] | (differential & ~mask[18]);
+        end else begin
+            if (write_lines && avs_byteenable[0]) begin
+                filter_clocks <= avs_writedata[5:0];
+            end
+            if (write_lines && avs_byteenable[1]) begin
+                mode <= avs_writedata[10:8];
+            end
+            if (write_lines && avs_byteenable[2]) begin
+                swap <= avs_writedata[16];
+                invert <= avs_writedata[17];
+                differential <= avs_writedata[18];
+            end
         end
     end
 
@@ -132,10 +138,12 @@ module xy_stage_y_pulse_counter_avalon_registers (
             index_always <= 1'd0;
             index_presets <= 1'd0;
             index_gate <= 4'd0;
-        end else if (write_index) begin
-            index_always <= written[0] | (index_always & ~mask[0]);
-            index_presets <= written[1] | (index_presets & ~mask[1]);
-            index_gate <= written[7:4] | (index_gate & ~mask[7:4]);
+        end else begin
+            if (write_index && avs_byteenable[0]) begin
+                index_always <= avs_writedata[0];
+                index_presets <= avs_writedata[1];
+                index_gate <= avs_writedata[7:4];
+            end
         end
     end
 
@@ -145,10 +153,14 @@ module xy_stage_y_pulse_counter_avalon_registers (
             smoothing <= 2'd0;
             velocity_m <= 1'd0;
             timeout <= 8'd76;
-        end else if (write_velocity_filter) begin
-            smoothing <= written[1:0] | (smoothing & ~mask[1:0]);
-            velocity_m <= written[4] | (velocity_m & ~mask[4]);
-            timeout <= written[15:8] | (timeout & ~mask[15:8]);
+        end else begin
+            if (write_velocity_filter && avs_byteenable[0]) begin
+                smoothing <= avs_writedata[1:0];
+                velocity_m <= avs_writedata[4];
+            end
+            if (write_velocity_filter && avs_byteenable[1]) begin
+                timeout <= avs_writedata[15:8];
+            end
         end
     end
 
@@ -156,8 +168,19 @@ module xy_stage_y_pulse_counter_avalon_registers (
     always @(posedge clk) begin
         if (rst) begin
             preset_value <= 32'sd0;
-        end else if (write_preset_value) begin
-            preset_value <= written | (preset_value & ~mask);
+        end else begin
+            if (write_preset_value && avs_byteenable[0]) begin
+                preset_value[7:0] <= avs_writedata[7:0];
+            end
+            if (write_preset_value && avs_byteenable[1]) begin
+                preset_value[15:8] <= avs_writedata[15:8];
+            end
+            if (write_preset_value && avs_byteenable[2]) begin
+                preset_value[23:16] <= avs_writedata[23:16];
+            end
+            if (write_preset_value && avs_byteenable[3]) begin
+                preset_value[31:24] <= avs_writedata[31:24];
+            end
         end
     end
 
@@ -196,12 +219,14 @@ module xy_stage_y_pulse_counter_avalon_registers (
             irq_enable_illegal <= 1'd0;
             irq_enable_disagreement <= 1'd0;
             irq_enable_velocity_missed <= 1'd0;
-        end else if (write_interrupt_enable) begin
-            irq_enable_tick <= written[0] | (irq_enable_tick & ~mask[0]);
-            irq_enable_index_seen <= written[1] | (irq_enable_index_seen & ~mask[1]);
-            irq_enable_illegal <= written[2] | (irq_enable_illegal & ~mask[2]);
-            irq_enable_disagreement <= written[3] | (irq_enable_disagreement & ~mask[3]);
-            irq_enable_velocity_missed <= written[4] | (irq_enable_velocity_missed & ~mask[4]);
+        end else begin
+            if (write_interrupt_enable && avs_byteenable[0]) begin
+                irq_enable_tick <= avs_writedata[0];
+                irq_enable_index_seen <= avs_writedata[1];
+                irq_enable_illegal <= avs_writedata[2];
+                irq_enable_disagreement <= avs_writedata[3];
+                irq_enable_velocity_missed <= avs_writedata[4];
+            end
         end
     end
 
@@ -369,6 +394,9 @@ module xy_stage_y_pulse_counter_avalon_registers (
         read_group_1 = 32'd0;
         irq = 1'd0;
     end
+
+    // Bits that nothing reads.
+    wire unused = &{1'b0, written[31:5]};
 endmodule
 
 `default_nettype wire

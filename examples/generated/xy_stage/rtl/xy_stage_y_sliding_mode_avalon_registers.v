@@ -124,8 +124,10 @@ module xy_stage_y_sliding_mode_avalon_registers (
     always @(posedge clk) begin
         if (rst) begin
             from_pins <= 1'd0;
-        end else if (write_control) begin
-            from_pins <= written[0] | (from_pins & ~mask[0]);
+        end else begin
+            if (write_control && avs_byteenable[0]) begin
+                from_pins <= avs_writedata[0];
+            end
         end
     end
 
@@ -142,10 +144,12 @@ module xy_stage_y_sliding_mode_avalon_registers (
             modulo <= 1'd0;
             bank <= 2'd0;
         end else begin
-            if (write_law && !waits) begin
-                staged_law <= written[1:0] | (staged_law & ~mask[1:0]);
-                staged_modulo <= written[4] | (staged_modulo & ~mask[4]);
-                staged_bank <= written[9:8] | (staged_bank & ~mask[9:8]);
+            if (write_law && !waits && avs_byteenable[0]) begin
+                staged_law <= avs_writedata[1:0];
+                staged_modulo <= avs_writedata[4];
+            end
+            if (write_law && !waits && avs_byteenable[1]) begin
+                staged_bank <= avs_writedata[9:8];
             end
             if (applies) begin
                 law <= staged_law;
@@ -201,11 +205,13 @@ module xy_stage_y_sliding_mode_avalon_registers (
             irq_enable_overrun <= 1'd0;
             irq_enable_limited_high <= 1'd0;
             irq_enable_limited_low <= 1'd0;
-        end else if (write_interrupt_enable) begin
-            irq_enable_valid <= written[0] | (irq_enable_valid & ~mask[0]);
-            irq_enable_overrun <= written[1] | (irq_enable_overrun & ~mask[1]);
-            irq_enable_limited_high <= written[2] | (irq_enable_limited_high & ~mask[2]);
-            irq_enable_limited_low <= written[3] | (irq_enable_limited_low & ~mask[3]);
+        end else begin
+            if (write_interrupt_enable && avs_byteenable[0]) begin
+                irq_enable_valid <= avs_writedata[0];
+                irq_enable_overrun <= avs_writedata[1];
+                irq_enable_limited_high <= avs_writedata[2];
+                irq_enable_limited_low <= avs_writedata[3];
+            end
         end
     end
 
@@ -213,8 +219,19 @@ module xy_stage_y_sliding_mode_avalon_registers (
     always @(posedge clk) begin
         if (rst) begin
             host_x_0 <= 32'sd0;
-        end else if (write_position_reference) begin
-            host_x_0 <= written | (host_x_0 & ~mask);
+        end else begin
+            if (write_position_reference && avs_byteenable[0]) begin
+                host_x_0[7:0] <= avs_writedata[7:0];
+            end
+            if (write_position_reference && avs_byteenable[1]) begin
+                host_x_0[15:8] <= avs_writedata[15:8];
+            end
+            if (write_position_reference && avs_byteenable[2]) begin
+                host_x_0[23:16] <= avs_writedata[23:16];
+            end
+            if (write_position_reference && avs_byteenable[3]) begin
+                host_x_0[31:24] <= avs_writedata[31:24];
+            end
         end
     end
 
@@ -222,8 +239,19 @@ module xy_stage_y_sliding_mode_avalon_registers (
     always @(posedge clk) begin
         if (rst) begin
             host_x_1 <= 32'sd0;
-        end else if (write_velocity_reference) begin
-            host_x_1 <= written | (host_x_1 & ~mask);
+        end else begin
+            if (write_velocity_reference && avs_byteenable[0]) begin
+                host_x_1[7:0] <= avs_writedata[7:0];
+            end
+            if (write_velocity_reference && avs_byteenable[1]) begin
+                host_x_1[15:8] <= avs_writedata[15:8];
+            end
+            if (write_velocity_reference && avs_byteenable[2]) begin
+                host_x_1[23:16] <= avs_writedata[23:16];
+            end
+            if (write_velocity_reference && avs_byteenable[3]) begin
+                host_x_1[31:24] <= avs_writedata[31:24];
+            end
         end
     end
 
@@ -231,8 +259,19 @@ module xy_stage_y_sliding_mode_avalon_registers (
     always @(posedge clk) begin
         if (rst) begin
             host_x_2 <= 32'sd0;
-        end else if (write_acceleration_reference) begin
-            host_x_2 <= written | (host_x_2 & ~mask);
+        end else begin
+            if (write_acceleration_reference && avs_byteenable[0]) begin
+                host_x_2[7:0] <= avs_writedata[7:0];
+            end
+            if (write_acceleration_reference && avs_byteenable[1]) begin
+                host_x_2[15:8] <= avs_writedata[15:8];
+            end
+            if (write_acceleration_reference && avs_byteenable[2]) begin
+                host_x_2[23:16] <= avs_writedata[23:16];
+            end
+            if (write_acceleration_reference && avs_byteenable[3]) begin
+                host_x_2[31:24] <= avs_writedata[31:24];
+            end
         end
     end
 
@@ -240,8 +279,19 @@ module xy_stage_y_sliding_mode_avalon_registers (
     always @(posedge clk) begin
         if (rst) begin
             host_x_3 <= 32'sd0;
-        end else if (write_position) begin
-            host_x_3 <= written | (host_x_3 & ~mask);
+        end else begin
+            if (write_position && avs_byteenable[0]) begin
+                host_x_3[7:0] <= avs_writedata[7:0];
+            end
+            if (write_position && avs_byteenable[1]) begin
+                host_x_3[15:8] <= avs_writedata[15:8];
+            end
+            if (write_position && avs_byteenable[2]) begin
+                host_x_3[23:16] <= avs_writedata[23:16];
+            end
+            if (write_position && avs_byteenable[3]) begin
+                host_x_3[31:24] <= avs_writedata[31:24];
+            end
         end
     end
 
@@ -249,8 +299,19 @@ module xy_stage_y_sliding_mode_avalon_registers (
     always @(posedge clk) begin
         if (rst) begin
             host_x_4 <= 32'sd0;
-        end else if (write_velocity) begin
-            host_x_4 <= written | (host_x_4 & ~mask);
+        end else begin
+            if (write_velocity && avs_byteenable[0]) begin
+                host_x_4[7:0] <= avs_writedata[7:0];
+            end
+            if (write_velocity && avs_byteenable[1]) begin
+                host_x_4[15:8] <= avs_writedata[15:8];
+            end
+            if (write_velocity && avs_byteenable[2]) begin
+                host_x_4[23:16] <= avs_writedata[23:16];
+            end
+            if (write_velocity && avs_byteenable[3]) begin
+                host_x_4[31:24] <= avs_writedata[31:24];
+            end
         end
     end
 
@@ -286,9 +347,13 @@ module xy_stage_y_sliding_mode_avalon_registers (
         if (rst) begin
             setting_row <= 4'd0;
             setting_bank <= 2'd0;
-        end else if (write_setting_address) begin
-            setting_row <= written[3:0] | (setting_row & ~mask[3:0]);
-            setting_bank <= written[9:8] | (setting_bank & ~mask[9:8]);
+        end else begin
+            if (write_setting_address && avs_byteenable[0]) begin
+                setting_row <= avs_writedata[3:0];
+            end
+            if (write_setting_address && avs_byteenable[1]) begin
+                setting_bank <= avs_writedata[9:8];
+            end
         end
     end
 
@@ -424,6 +489,9 @@ module xy_stage_y_sliding_mode_avalon_registers (
         read_group_1 = 32'd0;
         irq = 1'd0;
     end
+
+    // Bits that nothing reads.
+    wire unused = &{1'b0, written[31:4]};
 endmodule
 
 `default_nettype wire
