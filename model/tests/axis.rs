@@ -9,7 +9,7 @@ use posicast_model::rtl::segments::{self, Entry, Motion, Segments};
 use proptest::prelude::*;
 
 /// Clocks per tick of these tests.
-const TICK_CLOCKS: u64 = 40;
+const TICK_CLOCKS: u64 = 80;
 
 /// Everything in order, nothing wanted.
 const GOOD: Inputs = {

@@ -1,30 +1,32 @@
 // segments: the command FIFO loses nothing, repeats nothing, and never holds more than 64 entries.
 //
 // Proven for all inputs in every clock, resets included, with all 64 slots; nothing is assumed. Contents are left out: an
-// entry is its slot. An entry's words lie in the slot at the tail until it is committed, which the tail shows.
+// entry is its slot. The entry that plays, or did so last, is in the slot at the head, those that wait in the slots after it.
+// An entry's words lie in the first slot after those until it is committed, which the level shows.
 //
-//   level_bound       0 to 64 entries
-//   pointers          the level is the distance from head to tail, modulo 64
-//   in_one            an entry comes in at the tail only; the tail moves by one, or back to the head at a flush
-//   out_one           an entry goes out at the head only, in order; the head moves by one
-//   no_overwrite      no word is written into a slot that holds an entry
+//   level_bound       0 to 64 entries, with the one that plays
+//   pointers          words go into the slot after the last that waits, modulo 64
+//   in_one            an entry comes in there only; that slot moves by one, or back behind the head at a flush
+//   out_one           an entry begins to play in order: the head moves by one
+//   no_overwrite      no word is written into a slot that holds an entry that waits or plays
 //   never_from_empty  nothing is taken from an empty FIFO
 //   refused_when_full a write to a full FIFO changes neither memory nor level
 //   accounted         level = entries in - entries out since the last flush
 //
 // With pointers, in_one and out_one each slot is filled once and emptied once per turn: so nothing is lost or repeated.
-// Not proven here: that the integrator reads all four words of an entry before it goes, and what it makes of them: lock step.
+// Not proven here: which words of the entry the integrator reads, and what it makes of them: lock step.
 module segments_properties (
     input wire       clk,
     input wire       rst,
     (* peek = "u_fifo.head" *) input wire [5:0] head,
-    (* peek = "u_fifo.tail" *) input wire [5:0] tail,
+    (* peek = "u_fifo.slot" *) input wire [5:0] free,
     (* peek = "u_fifo.level_q" *) input wire [6:0] entries,
     (* peek = "u_fifo.write" *) input wire fifo_write,
     (* peek = "u_fifo.refused" *) input wire fifo_refused,
     (* peek = "u_fifo.takes" *) input wire fifo_takes,
     (* peek = "u_fifo.entered" *) input wire fifo_entered,
     (* peek = "u_fifo.pop" *) input wire fifo_pop,
+    (* peek = "u_fifo.plays" *) input wire fifo_plays,
     (* peek = "u_fifo.flush" *) input wire fifo_flush,
     (* peek = "u_fifo.memory_write_address" *) input wire [7:0] write_address
 );
@@ -33,7 +35,7 @@ module segments_properties (
     reg       past_pop = 1'b0;
     reg       past_flush = 1'b0;
     reg [5:0] past_head = 6'd0;
-    reg [5:0] past_tail = 6'd0;
+    reg [5:0] past_free = 6'd0;
     reg [6:0] count = 7'd0;
     always @(posedge clk) begin
         past_reset <= rst;
@@ -41,24 +43,26 @@ module segments_properties (
         past_pop <= fifo_pop;
         past_flush <= fifo_flush;
         past_head <= head;
-        past_tail <= tail;
+        past_free <= free;
         count <= rst | fifo_flush ? 7'd0 : count + {6'd0, fifo_entered} - {6'd0, fifo_pop};
     end
 
-    wire [5:0] distance = tail - head;
+    wire [5:0] oldest = head + 6'd1;
+    wire [5:0] distance = free - oldest;
     wire [5:0] slot = write_address[7:2];
-    wire [5:0] behind_head = slot - head;
-    wire [5:0] tail_moved = tail - past_tail;
+    wire [5:0] behind_oldest = slot - oldest;
+    wire [6:0] held = entries + {6'd0, fifo_plays};
+    wire [5:0] free_moved = free - past_free;
     wire [5:0] head_moved = head - past_head;
     always @(*) begin
-        level_bound: assert (entries <= 7'd64);
+        level_bound: assert (held <= 7'd64);
         pointers: assert (entries[5:0] == distance);
-        in_one: assert (past_reset | past_flush | tail_moved == {5'd0, past_entered});
-        flush_empties: assert (!past_flush | past_reset | (entries == 7'd0 & tail == head));
+        in_one: assert (past_reset | past_flush | free_moved == {5'd0, past_entered});
+        flush_empties: assert (!past_flush | past_reset | (entries == 7'd0 & free == oldest));
         out_one: assert (past_reset | past_flush | head_moved == {5'd0, past_pop});
-        no_overwrite: assert (!fifo_takes | ({1'b0, behind_head} >= entries & entries != 7'd64));
+        no_overwrite: assert (!fifo_takes | ({1'b0, behind_oldest} >= entries & entries != 7'd64 & !(fifo_plays & slot == head)));
         never_from_empty: assert (!fifo_pop | entries != 7'd0);
-        refused_when_full: assert (!(fifo_write & entries == 7'd64) | (fifo_refused & !fifo_takes & !fifo_entered));
+        refused_when_full: assert (!(fifo_write & held == 7'd64) | (fifo_refused & !fifo_takes & !fifo_entered));
         accounted: assert (entries == count);
     end
 
@@ -67,5 +71,6 @@ module segments_properties (
         reach_out: cover (fifo_pop);
         reach_in_and_out: cover (fifo_entered & fifo_pop);
         reach_two: cover (entries == 7'd2);
+        reach_play: cover (fifo_plays & entries == 7'd1);
     end
 endmodule

@@ -23,15 +23,20 @@ fn crosssim_icarus_agrees_with_the_model() {
 
 #[test]
 fn lockstep_catches_a_stop_that_is_too_strong() {
-    caught(&segments(), "reverse > asked", "reverse < asked", 300_000);
+    caught(
+        &segments(),
+        "stop_deceleration} << 8",
+        "stop_deceleration} << 9",
+        300_000,
+    );
 }
 
 #[test]
-fn lockstep_catches_a_velocity_that_is_not_sign_extended() {
+fn lockstep_catches_an_addend_that_is_not_sign_extended() {
     caught(
         &segments(),
-        "velocity_step = $signed({{16{exact_velocity[47]}}",
-        "velocity_step = $signed({{16{exact_velocity[46]}}",
+        "addend_sign = addend[7]",
+        "addend_sign = addend[6]",
         300_000,
     );
 }
@@ -60,8 +65,8 @@ fn lockstep_catches_an_underrun_that_holds_its_speed() {
 fn lockstep_catches_an_acceleration_that_wraps() {
     caught(
         &segments(),
-        "next_acceleration_bits[40] == next_acceleration_bits[39]",
-        "next_acceleration_bits[40] == next_acceleration_bits[40]",
+        "jerk_failed_next = unfit",
+        "jerk_failed_next = unfit & points",
         300_000,
     );
 }

@@ -1,7 +1,7 @@
 //! The entries that wait: 64 of 4 words in block RAM, and the pointers.
 //!
-//! A word goes into the slot at `tail`, word 3 commits it. The slot at `head` is read word by word, at the pace of the
-//! kernel above, and freed by `pop`: until then it is not written, since a full FIFO refuses.
+//! `pop` makes the oldest entry the one that plays: its slot, `head`, is read in every tick, and is free again at the next
+//! `pop` or once nothing plays. The slots after it wait, and a word goes into the first one after those; word 3 commits it.
 
 use crate::prelude::*;
 
@@ -13,6 +13,7 @@ pub(super) struct CommandFifo {
     pub(super) word: Signal<In, Bits<2>>,
     pub(super) data: Signal<In, Bits<32>>,
     pub(super) closed: Signal<In, Bit>,
+    pub(super) plays: Signal<In, Bit>,
     pub(super) flush: Signal<In, Bit>,
     pub(super) pop: Signal<In, Bit>,
     pub(super) read_word: Signal<In, Bits<2>>,
@@ -24,11 +25,14 @@ pub(super) struct CommandFifo {
     memory: Ram<32, 8>,
 
     head: Dff<Bits<6>>,
-    tail: Dff<Bits<6>>,
     level_q: Dff<Bits<7>>,
     written: Dff<Bits<3>>,
     too_wide: Dff<Bit>,
 
+    full: Signal<Local, Bit>,
+    waiting: Signal<Local, Bits<6>>,
+    slot: Signal<Local, Bits<6>>,
+    level_step: Signal<Local, Bits<7>>,
     refuses: Signal<Local, Bit>,
     takes: Signal<Local, Bit>,
     commits: Signal<Local, Bit>,
@@ -40,7 +44,8 @@ pub(super) struct CommandFifo {
     reserved: Signal<Local, Bits<6>>,
     entered: Signal<Local, Bit>,
 
-    full_level: Constant<Bits<7>>,
+    all_but_one: Constant<Bits<6>>,
+    one_less: Constant<Bits<7>>,
     no_level: Constant<Bits<7>>,
     one_level: Constant<Bits<7>>,
     one_slot: Constant<Bits<6>>,
@@ -65,6 +70,7 @@ impl Default for CommandFifo {
             word: Signal::default(),
             data: Signal::default(),
             closed: Signal::default(),
+            plays: Signal::default(),
             flush: Signal::default(),
             pop: Signal::default(),
             read_word: Signal::default(),
@@ -74,10 +80,13 @@ impl Default for CommandFifo {
             read_data: Signal::default(),
             memory: Ram::default(),
             head: Dff::default(),
-            tail: Dff::default(),
             level_q: Dff::default(),
             written: Dff::default(),
             too_wide: Dff::default(),
+            full: Signal::default(),
+            waiting: Signal::default(),
+            slot: Signal::default(),
+            level_step: Signal::default(),
             refuses: Signal::default(),
             takes: Signal::default(),
             commits: Signal::default(),
@@ -88,7 +97,8 @@ impl Default for CommandFifo {
             ticks: Signal::default(),
             reserved: Signal::default(),
             entered: Signal::default(),
-            full_level: Constant::new(from_u64(64)),
+            all_but_one: Constant::new(from_u64(63)),
+            one_less: Constant::new(from_u64(u64::MAX)),
             no_level: Constant::new(from_u64(0)),
             one_level: Constant::new(from_u64(1)),
             one_slot: Constant::new(from_u64(1)),
@@ -111,14 +121,18 @@ impl Logic for CommandFifo {
     fn update(&mut self) {
         comment!("@module command_fifo");
         comment!("@about 64 entries of 4 words; word 3 commits.");
-        dff_setup!(self, clk, head, tail, level_q, written, too_wide);
+        dff_setup!(self, clk, head, level_q, written, too_wide);
         self.memory.clk.next = self.clk.val();
 
         comment!("A word, unless closed or full");
-        self.refuses.next = self.closed.val() | (self.level_q.q.val() == self.full_level.val());
+        self.waiting.next = self.level_q.q.val().get_bits::<6>(0);
+        self.full.next =
+            self.level_q.q.val().get_bit(6) | (self.plays.val() & (self.waiting.val() == self.all_but_one.val()));
+        self.refuses.next = self.closed.val() | self.full.val();
         self.takes.next = self.write.val() & !self.refuses.val();
+        self.slot.next = self.head.q.val() + self.waiting.val() + self.one_slot.val();
         self.memory.write_enable.next = self.takes.val();
-        self.memory.write_address.next = (bit_cast::<8, 6>(self.tail.q.val()) << 2) | bit_cast::<8, 2>(self.word.val());
+        self.memory.write_address.next = (bit_cast::<8, 6>(self.slot.val()) << 2) | bit_cast::<8, 2>(self.word.val());
         self.memory.write_data.next = self.data.val();
 
         comment!("The last word commits a whole entry");
@@ -156,28 +170,22 @@ impl Logic for CommandFifo {
             self.too_wide.d.next = false;
         }
 
-        comment!("One in at the tail, one out at the head");
-        if self.entered.val() {
-            self.tail.d.next = self.tail.q.val() + self.one_slot.val();
-            if !self.pop.val() {
-                self.level_q.d.next = self.level_q.q.val() + self.one_level.val();
-            }
-        } else {
-            if self.pop.val() {
-                self.level_q.d.next = self.level_q.q.val() - self.one_level.val();
-            }
-        }
+        comment!("One in, one out");
+        self.level_step.next = self.one_level.val();
         if self.pop.val() {
             self.head.d.next = self.head.q.val() + self.one_slot.val();
+            self.level_step.next = self.one_less.val();
+        }
+        if self.entered.val() != self.pop.val() {
+            self.level_q.d.next = self.level_q.q.val() + self.level_step.val();
         }
         if self.flush.val() {
-            self.tail.d.next = self.head.q.val();
             self.level_q.d.next = self.no_level.val();
             self.written.d.next = self.nothing.val();
             self.too_wide.d.next = false;
         }
 
-        comment!("The oldest entry, a word at a time");
+        comment!("The entry that plays, a word at a time");
         self.memory.read_address.next =
             (bit_cast::<8, 6>(self.head.q.val()) << 2) | bit_cast::<8, 2>(self.read_word.val());
         self.read_data.next = self.memory.read_data.val();

@@ -1,78 +1,78 @@
-//! `a += j; v += a; p += v`, one sum per clock; a quick stop; a point.
+//! `a += j; v += a; p += v`, a quick stop and a point, byte by byte on one adder.
 //!
-//! ```text
-//! clock         1   2   3   4
-//! accelerate   ‾‾‾\___________
-//! speed_up     ____/‾‾‾\_______
-//! travel       ________/‾‾‾\___
-//! position     --as before-< p     rounded: combinational from the exact registers
-//! ```
+//! Each register turns past the adder, lowest byte first, as `passes` says; what is written is the sum. Outputs are rounded
+//! from the registers at rest.
 
+use super::passes::Passes;
 use crate::prelude::*;
 
 #[derive(LogicBlock)]
 pub(super) struct Integrator {
     pub(super) clk: Signal<In, Clock>,
     pub(super) rst: Signal<In, Bit>,
-    pub(super) accelerate: Signal<In, Bit>,
-    pub(super) speed_up: Signal<In, Bit>,
-    pub(super) travel: Signal<In, Bit>,
-    pub(super) play: Signal<In, Bit>,
-    pub(super) point: Signal<In, Bit>,
-    pub(super) stop: Signal<In, Bit>,
+    pub(super) phase: Signal<In, Bits<6>>,
+    pub(super) takes_tick: Signal<In, Bit>,
     pub(super) preset: Signal<In, Bit>,
+    pub(super) brakes: Signal<In, Bit>,
+    pub(super) moves: Signal<In, Bit>,
+    pub(super) points: Signal<In, Bit>,
     pub(super) preset_position: Signal<In, Signed<32>>,
-    pub(super) first: Signal<In, Bits<32>>,
-    pub(super) second: Signal<In, Bits<32>>,
-    pub(super) third: Signal<In, Bits<32>>,
     pub(super) stop_deceleration: Signal<In, Bits<31>>,
+    pub(super) read_data: Signal<In, Bits<32>>,
+    pub(super) read_word: Signal<Out, Bits<2>>,
     pub(super) position: Signal<Out, Signed<32>>,
     pub(super) velocity: Signal<Out, Signed<32>>,
     pub(super) acceleration: Signal<Out, Signed<32>>,
     pub(super) at_rest: Signal<Out, Bit>,
     pub(super) overflowed: Signal<Out, Bit>,
+    pub(super) entry_ends: Signal<Out, Bit>,
+    pub(super) decides: Signal<Out, Bit>,
+    pub(super) reads_flags: Signal<Out, Bit>,
+    pub(super) ends: Signal<Out, Bit>,
 
-    exact_position: Dff<Bits<64>>,
-    exact_velocity: Dff<Signed<48>>,
-    exact_acceleration: Dff<Signed<40>>,
-    failed: Dff<Bit>,
-    at_once: Dff<Bit>,
-    deceleration: Dff<Bits<31>>,
-    reverse: Dff<Signed<49>>,
-    exceeds: Dff<Bit>,
-    falls_below: Dff<Bit>,
-    rests: Dff<Bit>,
+    passes: Passes,
 
-    jerk_bits: Signal<Local, Bits<40>>,
-    jerk: Signal<Local, Signed<40>>,
-    wide_jerk: Signal<Local, Signed<41>>,
-    wide_acceleration: Signal<Local, Signed<41>>,
-    next_acceleration: Signal<Local, Signed<41>>,
-    next_acceleration_bits: Signal<Local, Bits<41>>,
-    asked_bits: Signal<Local, Bits<49>>,
-    asked: Signal<Local, Signed<49>>,
-    most_bits: Signal<Local, Bits<49>>,
-    most: Signal<Local, Signed<49>>,
-    least: Signal<Local, Signed<49>>,
-    speed: Signal<Local, Signed<49>>,
-    braking: Signal<Local, Signed<40>>,
-    acceleration_step: Signal<Local, Signed<49>>,
-    next_velocity: Signal<Local, Signed<49>>,
-    next_velocity_bits: Signal<Local, Bits<49>>,
-    velocity_step: Signal<Local, Signed<64>>,
-    point_position: Signal<Local, Signed<56>>,
-    wide_point: Signal<Local, Signed<64>>,
-    position_sum: Signal<Local, Bits<64>>,
-    velocity_sum: Signal<Local, Bits<48>>,
-    acceleration_sum: Signal<Local, Bits<40>>,
+    exact_position: Dff<Bits<56>>,
+    exact_velocity: Dff<Bits<48>>,
+    exact_acceleration: Dff<Bits<40>>,
+    ticks: Dff<Bits<24>>,
+    entry_byte: Dff<Bits<8>>,
+    carry: Dff<Bit>,
+    jerk_failed: Dff<Bit>,
+    speed_failed: Dff<Bit>,
+    moving: Dff<Bit>,
+    velocity_ends: Dff<Bit>,
+    acceleration_ends: Dff<Bit>,
 
-    nil: Constant<Signed<49>>,
-    rest_velocity: Constant<Signed<48>>,
-    rest_acceleration: Constant<Signed<40>>,
-    position_half: Constant<Bits<64>>,
-    velocity_half: Constant<Bits<48>>,
-    acceleration_half: Constant<Bits<40>>,
-    largest: Constant<Signed<32>>,
+    augend: Signal<Local, Bits<8>>,
+    addend: Signal<Local, Bits<8>>,
+    chosen: Signal<Local, Bits<8>>,
+    wide_sum: Signal<Local, Bits<10>>,
+    sum: Signal<Local, Bits<8>>,
+    unfit: Signal<Local, Bit>,
+    turned_sign: Signal<Local, Bit>,
+    gathered: Signal<Local, Bits<8>>,
+    shifted_addend: Signal<Local, Bits<10>>,
+    backwards: Signal<Local, Bit>,
+    starts_point: Signal<Local, Bit>,
+    preset_bits: Signal<Local, Bits<24>>,
+    velocity_byte: Signal<Local, Bits<8>>,
+    acceleration_byte: Signal<Local, Bits<8>>,
+    deceleration: Signal<Local, Bits<40>>,
+    position_sum: Signal<Local, Bits<33>>,
+    velocity_sum: Signal<Local, Bits<33>>,
+    acceleration_sum: Signal<Local, Bits<33>>,
+    velocity_half: Signal<Local, Bits<33>>,
+    acceleration_half: Signal<Local, Bits<33>>,
+
+    nil: Constant<Bits<8>>,
+    carry_in: Constant<Bits<10>>,
+    half: Constant<Bits<33>>,
+    no_half: Constant<Bits<33>>,
+    no_position: Constant<Bits<56>>,
+    no_velocity: Constant<Bits<48>>,
+    no_acceleration: Constant<Bits<40>>,
+    no_ticks: Constant<Bits<24>>,
 }
 
 impl Default for Integrator {
@@ -80,62 +80,65 @@ impl Default for Integrator {
         Self {
             clk: Signal::default(),
             rst: Signal::default(),
-            accelerate: Signal::default(),
-            speed_up: Signal::default(),
-            travel: Signal::default(),
-            play: Signal::default(),
-            point: Signal::default(),
-            stop: Signal::default(),
+            phase: Signal::default(),
+            takes_tick: Signal::default(),
             preset: Signal::default(),
+            brakes: Signal::default(),
+            moves: Signal::default(),
+            points: Signal::default(),
             preset_position: Signal::default(),
-            first: Signal::default(),
-            second: Signal::default(),
-            third: Signal::default(),
             stop_deceleration: Signal::default(),
+            read_data: Signal::default(),
+            read_word: Signal::default(),
             position: Signal::default(),
             velocity: Signal::default(),
             acceleration: Signal::default(),
             at_rest: Signal::default(),
             overflowed: Signal::default(),
+            entry_ends: Signal::default(),
+            decides: Signal::default(),
+            reads_flags: Signal::default(),
+            ends: Signal::default(),
+            passes: Passes::default(),
             exact_position: Dff::default(),
             exact_velocity: Dff::default(),
             exact_acceleration: Dff::default(),
-            failed: Dff::default(),
-            at_once: Dff::default(),
-            deceleration: Dff::default(),
-            reverse: Dff::default(),
-            exceeds: Dff::default(),
-            falls_below: Dff::default(),
-            rests: Dff::default(),
-            jerk_bits: Signal::default(),
-            jerk: Signal::default(),
-            wide_jerk: Signal::default(),
-            wide_acceleration: Signal::default(),
-            next_acceleration: Signal::default(),
-            next_acceleration_bits: Signal::default(),
-            asked_bits: Signal::default(),
-            asked: Signal::default(),
-            most_bits: Signal::default(),
-            most: Signal::default(),
-            least: Signal::default(),
-            speed: Signal::default(),
-            braking: Signal::default(),
-            acceleration_step: Signal::default(),
-            next_velocity: Signal::default(),
-            next_velocity_bits: Signal::default(),
-            velocity_step: Signal::default(),
-            point_position: Signal::default(),
-            wide_point: Signal::default(),
+            ticks: Dff::default(),
+            entry_byte: Dff::default(),
+            carry: Dff::default(),
+            jerk_failed: Dff::default(),
+            speed_failed: Dff::default(),
+            moving: Dff::default(),
+            velocity_ends: Dff::default(),
+            acceleration_ends: Dff::default(),
+            augend: Signal::default(),
+            addend: Signal::default(),
+            chosen: Signal::default(),
+            wide_sum: Signal::default(),
+            sum: Signal::default(),
+            unfit: Signal::default(),
+            turned_sign: Signal::default(),
+            gathered: Signal::default(),
+            shifted_addend: Signal::default(),
+            backwards: Signal::default(),
+            starts_point: Signal::default(),
+            preset_bits: Signal::default(),
+            velocity_byte: Signal::default(),
+            acceleration_byte: Signal::default(),
+            deceleration: Signal::default(),
             position_sum: Signal::default(),
             velocity_sum: Signal::default(),
             acceleration_sum: Signal::default(),
-            nil: Constant::new(from_i64(0)),
-            rest_velocity: Constant::new(from_i64(0)),
-            rest_acceleration: Constant::new(from_i64(0)),
-            position_half: Constant::new(from_u64(1 << 23)),
-            velocity_half: Constant::new(from_u64(1 << 15)),
-            acceleration_half: Constant::new(from_u64(1 << 7)),
-            largest: Constant::new(from_i64(i64::from(i32::MAX))),
+            velocity_half: Signal::default(),
+            acceleration_half: Signal::default(),
+            nil: Constant::new(from_u64(0)),
+            carry_in: Constant::new(from_u64(1)),
+            half: Constant::new(from_u64(1)),
+            no_half: Constant::new(from_u64(0)),
+            no_position: Constant::new(from_u64(0)),
+            no_velocity: Constant::new(from_u64(0)),
+            no_acceleration: Constant::new(from_u64(0)),
+            no_ticks: Constant::new(from_u64(0)),
         }
     }
 }
@@ -144,124 +147,193 @@ impl Logic for Integrator {
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module integrator");
-        comment!("@about a += j; v += a; p += v: exact, one sum");
-        comment!("@about per clock, in 2^-32 counts.");
+        comment!("@about a += j; v += a; p += v: exact, byte by");
+        comment!("@about byte on one adder, in 2^-32 counts.");
         dff_setup!(
             self,
             clk,
             exact_position,
             exact_velocity,
             exact_acceleration,
-            failed,
-            at_once,
-            deceleration,
-            reverse,
-            exceeds,
-            falls_below,
-            rests
+            ticks,
+            entry_byte,
+            carry,
+            jerk_failed,
+            speed_failed,
+            moving,
+            velocity_ends,
+            acceleration_ends
         );
+        self.passes.clk.next = self.clk.val();
+        self.passes.rst.next = self.rst.val();
+        self.passes.phase.next = self.phase.val();
+        self.passes.moves.next = self.moves.val();
+        self.passes.points.next = self.points.val();
+        self.passes.jerk_failed.next = self.jerk_failed.q.val();
+        self.passes.speed_failed.next = self.speed_failed.q.val();
+        self.passes.moving.next = self.moving.q.val();
 
-        comment!("Acceleration: plus the jerk, or against v");
-        self.jerk_bits.next =
-            (bit_cast::<40, 8>(self.second.val().get_bits::<8>(0)) << 32) | bit_cast::<40, 32>(self.first.val());
-        self.jerk.next = signed_cast(self.jerk_bits.val());
-        self.wide_jerk.next = signed_bit_cast::<41, 40>(self.jerk.val());
-        self.wide_acceleration.next = signed_bit_cast::<41, 40>(self.exact_acceleration.q.val());
-        self.next_acceleration.next = self.wide_acceleration.val() + self.wide_jerk.val();
-        self.next_acceleration_bits.next = unsigned_cast(self.next_acceleration.val());
-        self.speed.next = signed_bit_cast::<49, 48>(self.exact_velocity.q.val());
-        comment!("-v, and compared: ready before the next tick");
-        self.reverse.d.next = self.nil.val() - self.speed.val();
-        self.deceleration.d.next = self.stop_deceleration.val();
-        self.asked_bits.next = bit_cast::<49, 31>(self.stop_deceleration.val()) << 8;
-        self.asked.next = signed_cast(self.asked_bits.val());
-        self.exceeds.d.next = self.reverse.q.val() > self.asked.val();
-        self.falls_below.d.next = self.speed.val() > self.asked.val();
-        self.most_bits.next = bit_cast::<49, 31>(self.deceleration.q.val()) << 8;
-        self.most.next = signed_cast(self.most_bits.val());
-        self.least.next = self.nil.val() - self.most.val();
-        self.braking.next = signed_bit_cast::<40, 49>(self.reverse.q.val());
-        if self.exceeds.q.val() {
-            self.braking.next = signed_bit_cast::<40, 49>(self.most.val());
-        }
-        if self.falls_below.q.val() {
-            self.braking.next = signed_bit_cast::<40, 49>(self.least.val());
-        }
-        if self.accelerate.val() {
-            self.failed.d.next = false;
-            self.at_once.d.next = !self.deceleration.q.val().any();
-            if self.play.val() {
-                if self.point.val() {
-                    self.exact_acceleration.d.next = signed_cast(bit_cast::<40, 32>(self.third.val()) << 8);
-                } else {
-                    if self.next_acceleration_bits.val().get_bit(40) == self.next_acceleration_bits.val().get_bit(39) {
-                        self.exact_acceleration.d.next = signed_bit_cast::<40, 41>(self.next_acceleration.val());
-                    } else {
-                        self.failed.d.next = true;
-                    }
-                }
+        comment!("A byte of the entry");
+        if self.passes.read_byte_1.val() {
+            if self.passes.read_byte_0.val() {
+                self.entry_byte.d.next = self.read_data.val().get_bits::<8>(24);
+            } else {
+                self.entry_byte.d.next = self.read_data.val().get_bits::<8>(16);
             }
-            if self.stop.val() {
-                self.exact_acceleration.d.next = self.braking.val();
+        } else {
+            if self.passes.read_byte_0.val() {
+                self.entry_byte.d.next = self.read_data.val().get_bits::<8>(8);
+            } else {
+                self.entry_byte.d.next = self.read_data.val().get_bits::<8>(0);
             }
+        }
+        if self.passes.blank.val() {
+            self.entry_byte.d.next = self.nil.val();
+        }
+
+        comment!("One adder of a byte");
+        if self.passes.from_later.val() {
+            if self.passes.from_odd.val() {
+                self.augend.next = self.ticks.q.val().get_bits::<8>(0);
+            } else {
+                self.augend.next = self.exact_position.q.val().get_bits::<8>(0);
+            }
+        } else {
+            if self.passes.from_odd.val() {
+                self.augend.next = self.exact_velocity.q.val().get_bits::<8>(0);
+            } else {
+                self.augend.next = self.exact_acceleration.q.val().get_bits::<8>(0);
+            }
+        }
+        self.chosen.next = self.nil.val();
+        if self.passes.add_acceleration.val() {
+            self.chosen.next = self.exact_acceleration.q.val().get_bits::<8>(0);
+        }
+        if self.passes.add_velocity.val() {
+            self.chosen.next = self.exact_velocity.q.val().get_bits::<8>(0);
+        }
+        self.gathered.next = self.chosen.val();
+        if self.moves.val() {
+            self.gathered.next = self.chosen.val() | self.entry_byte.q.val();
+        }
+        self.addend.next = self.gathered.val();
+        if self.passes.invert.val() {
+            self.addend.next = !self.gathered.val();
+        }
+        self.passes.addend_sign.next = self.addend.val().get_bit(7);
+        self.shifted_addend.next = bit_cast::<10, 8>(self.addend.val()) << 1;
+        self.wide_sum.next = ((bit_cast::<10, 8>(self.augend.val()) << 1) | self.carry_in.val())
+            + self.shifted_addend.val().replace_bit(0, self.carry.q.val());
+        self.sum.next = self.wide_sum.val().get_bits::<8>(1);
+        self.backwards.next = self.exact_velocity.q.val().get_bit(47);
+        self.carry.d.next = self.wide_sum.val().get_bit(9);
+        if self.passes.first.val() {
+            self.carry.d.next = self.passes.carry.val() | (self.brakes.val() & !self.backwards.val());
+        }
+
+        comment!("Beyond the end; a change of sign; any motion");
+        self.turned_sign.next = self.sum.val().get_bit(7) != self.augend.val().get_bit(7);
+        self.unfit.next = self.turned_sign.val() & (self.augend.val().get_bit(7) == self.addend.val().get_bit(7));
+        if self.passes.judges_jerk.val() {
+            self.jerk_failed.d.next = self.unfit.val();
+        }
+        if self.passes.judges_speed.val() {
+            if self.moves.val() {
+                self.speed_failed.d.next = self.unfit.val();
+            } else {
+                self.speed_failed.d.next = self.turned_sign.val();
+            }
+        }
+        if self.passes.sees_moving.val() & self.sum.val().any() {
+            self.moving.d.next = true;
+        }
+        if self.passes.forgets_moving.val() {
+            self.moving.d.next = false;
+        }
+
+        comment!("Acceleration: a stop's begins at its tick");
+        self.deceleration.next = bit_cast::<40, 31>(self.stop_deceleration.val()) << 8;
+        self.acceleration_byte.next = self.exact_acceleration.q.val().get_bits::<8>(0);
+        if self.passes.write_acceleration.val() {
+            self.acceleration_byte.next = self.sum.val();
+        }
+        if self.passes.turn_acceleration.val() {
+            self.exact_acceleration.d.next =
+                (self.exact_acceleration.q.val() >> 8) | (bit_cast::<40, 8>(self.acceleration_byte.val()) << 32);
+        }
+        if self.brakes.val() {
+            if self.backwards.val() {
+                self.exact_acceleration.d.next = self.deceleration.val();
+            } else {
+                self.exact_acceleration.d.next = !self.deceleration.val();
+            }
+        }
+        self.starts_point.next = self.takes_tick.val() & self.points.val() & !self.brakes.val();
+        if self.preset.val() | self.starts_point.val() | self.passes.clear_acceleration.val() {
+            self.exact_acceleration.d.next = self.no_acceleration.val();
         }
 
         comment!("Velocity");
-        self.acceleration_step.next = signed_bit_cast::<49, 40>(self.exact_acceleration.q.val());
-        self.next_velocity.next = self.speed.val() + self.acceleration_step.val();
-        self.next_velocity_bits.next = unsigned_cast(self.next_velocity.val());
-        if self.speed_up.val() {
-            if self.play.val() & self.point.val() {
-                self.exact_velocity.d.next = signed_cast(bit_cast::<48, 32>(self.second.val()) << 16);
-            } else {
-                if self.next_velocity_bits.val().get_bit(48) != self.next_velocity_bits.val().get_bit(47) {
-                    self.failed.d.next = true;
-                } else {
-                    if !self.failed.q.val() {
-                        self.exact_velocity.d.next = signed_bit_cast::<48, 49>(self.next_velocity.val());
-                    }
-                }
-            }
-            if self.stop.val() & self.at_once.q.val() {
-                self.exact_velocity.d.next = self.rest_velocity.val();
-            }
+        self.velocity_byte.next = self.exact_velocity.q.val().get_bits::<8>(0);
+        if self.passes.write_velocity.val() {
+            self.velocity_byte.next = self.sum.val();
+        }
+        if self.passes.turn_velocity.val() {
+            self.exact_velocity.d.next =
+                (self.exact_velocity.q.val() >> 8) | (bit_cast::<48, 8>(self.velocity_byte.val()) << 40);
+        }
+        if self.preset.val() | self.passes.clear_velocity.val() {
+            self.exact_velocity.d.next = self.no_velocity.val();
         }
 
-        comment!("Position");
-        self.velocity_step.next = signed_bit_cast::<64, 48>(self.exact_velocity.q.val());
-        self.point_position.next = signed_cast(bit_cast::<56, 32>(self.first.val()) << 24);
-        self.wide_point.next = signed_bit_cast::<64, 56>(self.point_position.val());
-        if self.travel.val() {
-            if self.play.val() & self.point.val() {
-                self.exact_position.d.next = unsigned_cast(self.wide_point.val());
-            } else {
-                if !self.failed.q.val() {
-                    self.exact_position.d.next = self.exact_position.q.val() + unsigned_cast(self.velocity_step.val());
-                }
-            }
+        comment!("Position: what is above is never seen");
+        self.preset_bits.next = unsigned_cast(self.preset_position.val()).get_bits::<24>(0);
+        if self.passes.turn_position.val() {
+            self.exact_position.d.next = (self.exact_position.q.val() >> 8) | (bit_cast::<56, 8>(self.sum.val()) << 48);
         }
         if self.preset.val() {
-            self.exact_position.d.next = bit_cast::<64, 32>(unsigned_cast(self.preset_position.val())) << 32;
-            self.exact_velocity.d.next = self.rest_velocity.val();
-            self.exact_acceleration.d.next = self.rest_acceleration.val();
+            self.exact_position.d.next = bit_cast::<56, 24>(self.preset_bits.val()) << 32;
+        }
+        if self.passes.clear_position.val() {
+            self.exact_position.d.next = self.no_position.val();
+        }
+
+        comment!("Ticks of the entry: up to 0, from -ticks");
+        if self.passes.turn_ticks.val() {
+            self.ticks.d.next = (self.ticks.q.val() >> 8) | (bit_cast::<24, 8>(self.sum.val()) << 16);
+        }
+        if self.passes.clear_ticks.val() {
+            self.ticks.d.next = self.no_ticks.val();
         }
 
         comment!("Each rounded once, half up, without wrapping");
-        self.position_sum.next = self.exact_position.q.val() + self.position_half.val();
-        self.position.next = signed_cast(self.position_sum.val().get_bits::<32>(24));
-        self.velocity_sum.next = unsigned_cast(self.exact_velocity.q.val()) + self.velocity_half.val();
-        self.velocity.next = signed_cast(self.velocity_sum.val().get_bits::<32>(16));
-        if self.velocity_sum.val().get_bit(47) & !self.exact_velocity.q.val().get_bit(47) {
-            self.velocity.next = self.largest.val();
+        self.velocity_half.next = self.half.val();
+        if self.velocity_ends.q.val() {
+            self.velocity_half.next = self.no_half.val();
         }
-        self.acceleration_sum.next = unsigned_cast(self.exact_acceleration.q.val()) + self.acceleration_half.val();
-        self.acceleration.next = signed_cast(self.acceleration_sum.val().get_bits::<32>(8));
-        if self.acceleration_sum.val().get_bit(39) & !self.exact_acceleration.q.val().get_bit(39) {
-            self.acceleration.next = self.largest.val();
+        self.acceleration_half.next = self.half.val();
+        if self.acceleration_ends.q.val() {
+            self.acceleration_half.next = self.no_half.val();
         }
-        self.rests.d.next = (self.exact_velocity.q.val() == self.rest_velocity.val())
-            & (self.exact_acceleration.q.val() == self.rest_acceleration.val());
-        self.at_rest.next = self.rests.q.val();
-        self.overflowed.next = self.failed.q.val();
+        self.position_sum.next = self.exact_position.q.val().get_bits::<33>(23) + self.half.val();
+        self.velocity_sum.next = self.exact_velocity.q.val().get_bits::<33>(15) + self.velocity_half.val();
+        self.acceleration_sum.next = self.exact_acceleration.q.val().get_bits::<33>(7) + self.acceleration_half.val();
+        self.velocity_ends.d.next =
+            self.passes.sizes.val() & self.velocity_sum.val().get_bit(32) & !self.exact_velocity.q.val().get_bit(47);
+        self.acceleration_ends.d.next = self.passes.sizes.val()
+            & self.acceleration_sum.val().get_bit(32)
+            & !self.exact_acceleration.q.val().get_bit(39);
+        self.position.next = signed_cast(self.position_sum.val().get_bits::<32>(1));
+        self.velocity.next = signed_cast(self.velocity_sum.val().get_bits::<32>(1));
+        self.acceleration.next = signed_cast(self.acceleration_sum.val().get_bits::<32>(1));
+
+        comment!("What comes of the tick");
+        self.at_rest.next = !self.moving.q.val();
+        self.overflowed.next = self.passes.failed.val();
+        self.entry_ends.next = self.carry.q.val();
+        self.decides.next = self.passes.decides.val();
+        self.reads_flags.next = self.passes.reads_flags.val();
+        self.ends.next = self.passes.ends.val();
+        self.read_word.next = self.passes.read_word.val();
     }
 }

@@ -1,8 +1,8 @@
 //! Ticks, states and flags; the FIFO and the integrator do the rest.
 //!
 //! ```text
-//! phase 0            1          2        3       4                 5 … 8
-//!       tick taken   accelerate speed_up travel  outputs, decide   read an entry, if one is next
+//! phase 0            1 … 43          44               45 … 51
+//!       tick taken   sums (passes)   outputs, decide  read the next entry's ticks and flags, if one is next
 //! ```
 
 use super::fifo::CommandFifo;
@@ -46,7 +46,7 @@ pub(super) struct Segments {
     fifo: CommandFifo,
     integrator: Integrator,
 
-    phase: Dff<Bits<4>>,
+    phase: Dff<Bits<6>>,
     idle: Dff<Bit>,
     state_q: Dff<Bits<2>>,
     wants_flush: Dff<Bit>,
@@ -54,11 +54,6 @@ pub(super) struct Segments {
     wants_restart: Dff<Bit>,
     wants_preset: Dff<Bit>,
     enabled: Dff<Bit>,
-    first: Dff<Bits<32>>,
-    second: Dff<Bits<32>>,
-    third: Dff<Bits<32>>,
-    read_data: Dff<Bits<32>>,
-    ticks_left: Dff<Bits<24>>,
     point: Dff<Bit>,
     notifies: Dff<Bit>,
     position_q: Dff<Signed<32>>,
@@ -82,27 +77,17 @@ pub(super) struct Segments {
     stops: Signal<Local, Bit>,
     stopped: Signal<Local, Bit>,
     waiting: Signal<Local, Bit>,
-    ends: Signal<Local, Bit>,
-    decides: Signal<Local, Bit>,
+    points: Signal<Local, Bit>,
+    to_stop: Signal<Local, Bit>,
     reads: Signal<Local, Bit>,
     drops: Signal<Local, Bit>,
 
-    idle_phase: Constant<Bits<4>>,
-    accelerate_phase: Constant<Bits<4>>,
-    speed_phase: Constant<Bits<4>>,
-    travel_phase: Constant<Bits<4>>,
-    decide_phase: Constant<Bits<4>>,
-    last_word_phase: Constant<Bits<4>>,
-    first_word_phase: Constant<Bits<4>>,
-    second_word_phase: Constant<Bits<4>>,
-    third_word_phase: Constant<Bits<4>>,
-    one_phase: Constant<Bits<4>>,
-    one_word: Constant<Bits<2>>,
+    idle_phase: Constant<Bits<6>>,
+    one_phase: Constant<Bits<6>>,
     hold_state: Constant<Bits<2>>,
     move_state: Constant<Bits<2>>,
     stop_state: Constant<Bits<2>>,
     stopped_state: Constant<Bits<2>>,
-    one_tick: Constant<Bits<24>>,
     no_level: Constant<Bits<7>>,
 }
 
@@ -149,11 +134,6 @@ impl Default for Segments {
             wants_restart: Dff::default(),
             wants_preset: Dff::default(),
             enabled: Dff::default(),
-            first: Dff::default(),
-            second: Dff::default(),
-            third: Dff::default(),
-            read_data: Dff::default(),
-            ticks_left: Dff::default(),
             point: Dff::default(),
             notifies: Dff::default(),
             position_q: Dff::default(),
@@ -176,26 +156,16 @@ impl Default for Segments {
             stops: Signal::default(),
             stopped: Signal::default(),
             waiting: Signal::default(),
-            ends: Signal::default(),
-            decides: Signal::default(),
+            points: Signal::default(),
+            to_stop: Signal::default(),
             reads: Signal::default(),
             drops: Signal::default(),
             idle_phase: Constant::new(from_u64(0)),
-            accelerate_phase: Constant::new(from_u64(1)),
-            speed_phase: Constant::new(from_u64(2)),
-            travel_phase: Constant::new(from_u64(3)),
-            decide_phase: Constant::new(from_u64(4)),
-            last_word_phase: Constant::new(from_u64(6)),
-            first_word_phase: Constant::new(from_u64(7)),
-            second_word_phase: Constant::new(from_u64(8)),
-            third_word_phase: Constant::new(from_u64(9)),
             one_phase: Constant::new(from_u64(1)),
-            one_word: Constant::new(from_u64(1)),
             hold_state: Constant::new(from_u64(State::Hold as u64)),
             move_state: Constant::new(from_u64(State::Move as u64)),
             stop_state: Constant::new(from_u64(State::Stop as u64)),
             stopped_state: Constant::new(from_u64(State::Stopped as u64)),
-            one_tick: Constant::new(from_u64(1)),
             no_level: Constant::new(from_u64(0)),
         }
     }
@@ -216,11 +186,6 @@ impl Logic for Segments {
             wants_restart,
             wants_preset,
             enabled,
-            first,
-            second,
-            third,
-            read_data,
-            ticks_left,
             point,
             notifies,
             position_q,
@@ -275,14 +240,14 @@ impl Logic for Segments {
         comment!("A tick: preset, else quick stop, else restart");
         self.takes_tick.next = self.tick.val() & self.idle.q.val();
         self.drops.next = false;
-        if !self.idle.q.val() {
+        self.to_stop.next = self.moves.val() & (self.quick_stop_now.val() | !self.enable.val());
+        if !self.idle.q.val() | self.tick.val() {
             self.phase.d.next = self.phase.q.val() + self.one_phase.val();
-            if self.tick.val() {
-                self.tick_missed_q.d.next = true;
-            }
+        }
+        if !self.idle.q.val() & self.tick.val() {
+            self.tick_missed_q.d.next = true;
         }
         if self.takes_tick.val() {
-            self.phase.d.next = self.accelerate_phase.val();
             self.idle.d.next = false;
             self.enabled.d.next = self.enable.val();
             self.wants_flush.d.next = false;
@@ -294,7 +259,7 @@ impl Logic for Segments {
                 self.state_q.d.next = self.hold_state.val();
                 self.drops.next = true;
             } else {
-                if self.moves.val() & (self.quick_stop_now.val() | !self.enable.val()) {
+                if self.to_stop.val() {
                     self.state_q.d.next = self.stop_state.val();
                     self.drops.next = true;
                 }
@@ -308,37 +273,34 @@ impl Logic for Segments {
             }
         }
 
-        comment!("Three sums");
+        comment!("The sums, and the entry that they take");
+        self.points.next = self.moves.val() & self.point.q.val();
+        self.integrator.phase.next = self.phase.q.val();
+        self.integrator.takes_tick.next = self.takes_tick.val();
         self.integrator.preset.next = self.takes_tick.val() & self.preset_now.val();
+        self.integrator.brakes.next =
+            self.takes_tick.val() & !self.preset_now.val() & (self.stops.val() | self.to_stop.val());
+        self.integrator.moves.next = self.moves.val();
+        self.integrator.points.next = self.points.val();
         self.integrator.preset_position.next = self.preset_position.val();
-        self.integrator.accelerate.next = self.phase.q.val() == self.accelerate_phase.val();
-        self.integrator.speed_up.next = self.phase.q.val() == self.speed_phase.val();
-        self.integrator.travel.next = self.phase.q.val() == self.travel_phase.val();
-        self.integrator.play.next = self.moves.val();
-        self.integrator.stop.next = self.stops.val();
-        self.integrator.point.next = self.point.q.val();
-        self.integrator.first.next = self.first.q.val();
-        self.integrator.second.next = self.second.q.val();
-        self.integrator.third.next = self.third.q.val();
         self.integrator.stop_deceleration.next = self.stop_deceleration.val();
+        self.integrator.read_data.next = self.fifo.read_data.val();
+        self.fifo.read_word.next = self.integrator.read_word.val();
 
         comment!("Outputs, and what the next tick does");
-        self.decides.next = self.phase.q.val() == self.decide_phase.val();
-        self.ends.next = self.ticks_left.q.val() == self.one_tick.val();
         self.reads.next = false;
-        if self.decides.val() {
+        if self.integrator.decides.val() {
             self.position_q.d.next = self.integrator.position.val();
             self.velocity_q.d.next = self.integrator.velocity.val();
             self.acceleration_q.d.next = self.integrator.acceleration.val();
             self.valid_q.d.next = true;
             if self.moves.val() {
-                self.ticks_left.d.next = self.ticks_left.q.val() - self.one_tick.val();
                 if self.integrator.overflowed.val() {
                     self.overflow_q.d.next = true;
                     self.state_q.d.next = self.stop_state.val();
                     self.drops.next = true;
                 } else {
-                    if self.ends.val() {
+                    if self.integrator.entry_ends.val() {
                         self.notify_q.d.next = self.notifies.q.val();
                         if self.waiting.val() {
                             self.reads.next = true;
@@ -369,23 +331,13 @@ impl Logic for Segments {
             }
         }
 
-        comment!("Read the next entry: words 3, 0, 1, 2");
-        self.read_data.d.next = self.fifo.read_data.val();
-        self.fifo.read_word.next = self.phase.q.val().get_bits::<2>(0) - self.one_word.val();
-        if self.phase.q.val() == self.last_word_phase.val() {
-            self.ticks_left.d.next = self.read_data.q.val().get_bits::<24>(0);
-            self.notifies.d.next = self.read_data.q.val().get_bit(30);
-            self.point.d.next = self.read_data.q.val().get_bit(31);
+        comment!("The next entry: its ticks and flags");
+        self.fifo.pop.next = self.reads.val();
+        if self.integrator.reads_flags.val() {
+            self.notifies.d.next = self.fifo.read_data.val().get_bit(30);
+            self.point.d.next = self.fifo.read_data.val().get_bit(31);
         }
-        if self.phase.q.val() == self.first_word_phase.val() {
-            self.first.d.next = self.read_data.q.val();
-        }
-        if self.phase.q.val() == self.second_word_phase.val() {
-            self.second.d.next = self.read_data.q.val();
-        }
-        self.fifo.pop.next = self.phase.q.val() == self.third_word_phase.val();
-        if self.phase.q.val() == self.third_word_phase.val() {
-            self.third.d.next = self.read_data.q.val();
+        if self.integrator.ends.val() {
             self.phase.d.next = self.idle_phase.val();
             self.idle.d.next = true;
         }
@@ -395,6 +347,7 @@ impl Logic for Segments {
         self.fifo.word.next = self.word.val();
         self.fifo.data.next = self.data.val();
         self.fifo.closed.next = self.stops.val() | self.stopped.val();
+        self.fifo.plays.next = self.moves.val();
         self.fifo.flush.next = self.drops.val();
 
         comment!("Outputs");

@@ -5,6 +5,7 @@
 mod fifo;
 mod integrator;
 mod kernel;
+mod passes;
 mod pins;
 
 use crate::emit::{self, EmitError, EmitOptions, Header, Module, Parameter};
@@ -42,7 +43,7 @@ pub fn emit(prefix: &str) -> Result<Vec<Module>, EmitError> {
                     Without an entry while moving: a quick stop."
                 .to_owned(),
             parameters: vec![
-                parameter("entries", u32::from(ENTRIES_MAX), "that can wait"),
+                parameter("entries", u32::from(ENTRIES_MAX), "with the one that plays"),
                 parameter("latency_clocks", LATENCY_CLOCKS, "from tick to valid"),
                 parameter("tick_clocks", TICK_CLOCKS, "from a tick until the next one is taken"),
             ],

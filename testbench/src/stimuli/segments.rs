@@ -1,7 +1,7 @@
 //! Inputs for the command FIFO, seeded: whole entries and single words, well formed and not; moves that end at rest and
 //! such that do not; ticks at every pace; requests, resets, and stops of every size.
 
-use posicast_model::rtl::segments::{Entry, INPUT_PORTS, Motion, POINT, Point, State, TICK_CLOCKS};
+use posicast_model::rtl::segments::{Entry, INPUT_PORTS, LATENCY_CLOCKS, Motion, POINT, Point, State, TICK_CLOCKS};
 use rand::{Rng, RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use std::collections::VecDeque;
@@ -10,7 +10,19 @@ use super::Stimuli;
 use super::table::pick;
 
 /// Clocks between changes of the slow inputs.
-const MOOD_CLOCKS: u64 = 2_000;
+const MOOD_CLOCKS: u64 = 6_000;
+
+/// Clocks from tick to tick: too soon, as soon as it may be without a new entry and with one, and later.
+const PACES: [u32; 8] = [
+    1,
+    LATENCY_CLOCKS,
+    TICK_CLOCKS,
+    TICK_CLOCKS,
+    TICK_CLOCKS,
+    TICK_CLOCKS + 1,
+    60,
+    100,
+];
 
 /// What holds for a while.
 #[derive(Debug, Clone, Copy, Default)]
@@ -55,8 +67,8 @@ impl SegmentsRandom {
         let shifted = any >> rng.random_range(0..31);
         self.mood = Mood {
             write_pace: *pick(rng, &[1, 1, 2, 5, 40]),
-            tick_pace: *pick(rng, &[1, 4, TICK_CLOCKS, TICK_CLOCKS, TICK_CLOCKS + 1, 12, 12, 30]),
-            request_pace: *pick(rng, &[50, 500, 100_000, 100_000]),
+            tick_pace: *pick(rng, &PACES),
+            request_pace: *pick(rng, &[200, 2_000, 500_000, 500_000]),
             enable: rng.random_range(0..8) != 0,
             stop_deceleration: *pick(rng, &[0, 1, any, shifted, shifted, (1 << 31) - 1]),
             low_water: rng.random_range(0..64),
@@ -188,7 +200,7 @@ impl Stimuli for SegmentsRandom {
         let mut request = || u64::from(self.rng.random_range(0..mood.request_pace) == 0);
         let [flush, quick_stop, preset] = [request(), request(), request()];
         // Without it a stop would be the end of most runs.
-        let restart = u64::from(self.rng.random_range(0..60) == 0);
+        let restart = u64::from(self.rng.random_range(0..200) == 0);
         *inputs = [
             u64::from(self.clock < 2 || self.rng.random_range(0..20_000) == 0),
             u64::from(tick),

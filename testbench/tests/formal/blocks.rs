@@ -121,9 +121,19 @@ fn formal_a_share_that_begins_with_the_second_channel_is_found() {
 fn formal_a_fifo_that_writes_over_its_oldest_entry_is_found() {
     fails(
         "segments",
-        "memory_write_address = ({2'd0, tail} << 2)",
+        "memory_write_address = ({2'd0, slot} << 2)",
         "memory_write_address = ({2'd0, head} << 2)",
         "no_overwrite",
+    );
+}
+
+#[test]
+fn formal_a_fifo_that_writes_over_the_entry_that_plays_is_found() {
+    fails(
+        "segments",
+        "slot = (head + waiting) + ONE_SLOT",
+        "slot = head + waiting",
+        "pointers",
     );
 }
 

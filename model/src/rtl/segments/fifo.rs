@@ -2,7 +2,7 @@
 
 use super::entry::{ENTRY_WORDS, Entry, POINT, RESERVED, TICK_BITS, too_wide};
 
-/// Entries that can wait.
+/// Entries that are held: those that wait, and the one that plays.
 pub const ENTRIES_MAX: u8 = 64;
 const SLOTS: usize = ENTRIES_MAX as usize;
 
@@ -62,7 +62,7 @@ impl Fifo {
     }
 
     /// Takes one word of the entry that is being written; word 3 commits it.
-    pub(super) fn write(&mut self, word: u8, data: u32, closed: bool) -> Written {
+    pub(super) fn write(&mut self, word: u8, data: u32, closed: bool, plays: bool) -> Written {
         let pointers = &mut self.pointers;
         let before = (pointers.written, pointers.too_wide);
         let at = usize::from(word);
@@ -70,7 +70,7 @@ impl Fifo {
         if is_last {
             (pointers.written, pointers.too_wide) = Default::default();
         }
-        if closed || pointers.level == ENTRIES_MAX {
+        if closed || pointers.level + u8::from(plays) == ENTRIES_MAX {
             return Written {
                 refused: true,
                 malformed: false,

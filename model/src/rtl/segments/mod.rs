@@ -11,8 +11,8 @@
 //! A tick takes [`TICK_CLOCKS`], always the same ones:
 //!
 //! ```text
-//! phase   0            1    2    3    4                        5 6 7 8 9
-//!         tick taken   a    v    p    rounded, what comes next read an entry, if one is next
+//! phase   0            1 … 43    44                       45 … 51
+//!         tick taken   a, v, p   rounded, what comes next read an entry's ticks, if one is next
 //! ```
 //!
 //! ```
@@ -52,18 +52,18 @@ use self::fifo::{Fifo, Pointers};
 use super::{ClockedBlock, FOREVER, Moore, OutputKind, Port, StepError};
 
 /// Clocks from a tick until the next one is taken.
-pub const TICK_CLOCKS: u32 = 10;
+pub const TICK_CLOCKS: u32 = 52;
 /// Clocks from a tick to `valid`.
-pub const LATENCY_CLOCKS: u32 = 5;
+pub const LATENCY_CLOCKS: u32 = 45;
 
 /// Phase in which a tick is waited for.
 const IDLE: u8 = 0;
-/// Phase in which the integration begins; the hardware takes three clocks for its three sums.
+/// Phase in which the integration begins; the hardware takes until the next one for its sums, a byte per clock.
 const INTEGRATE: u8 = 1;
 /// Phase that rounds and decides what comes next.
-const DECIDE: u8 = 4;
-/// Phase that reads the last word of the next entry.
-const READ: u8 = 9;
+const DECIDE: u8 = LATENCY_CLOCKS as u8 - 1;
+/// Phase that reads the last of the next entry.
+const READ: u8 = TICK_CLOCKS as u8 - 1;
 
 /// Pulses that wait for the next tick.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -163,7 +163,8 @@ impl Segments {
         self.begin_clock(inputs);
         if inputs.write {
             let closed = matches!(shown.state, State::Stop | State::Stopped);
-            let written = self.fifo.write(inputs.word, inputs.data, closed);
+            let plays = shown.state == State::Move;
+            let written = self.fifo.write(inputs.word, inputs.data, closed, plays);
             self.registers.shown.refused |= written.refused;
             self.registers.shown.malformed |= written.malformed;
         }
@@ -176,7 +177,6 @@ impl Segments {
             IDLE if inputs.tick => self.take_tick(inputs),
             INTEGRATE => self.integrate(),
             DECIDE => self.decide(shown.state, level > 0),
-            READ => self.registers.playing = Some(self.fifo.pop()),
             _ => {}
         }
     }
@@ -252,7 +252,7 @@ impl Segments {
         [shown.position, shown.velocity, shown.acceleration] = at.rounded();
         shown.valid = true;
         let mut next_is_read = false;
-        match (state, playing) {
+        match (state, playing.as_mut()) {
             (State::Move, Some(entry)) => {
                 entry.ticks -= 1;
                 let ended = entry.ticks == 0;
@@ -279,7 +279,9 @@ impl Segments {
             }
             _ => {}
         }
-        if !next_is_read {
+        if next_is_read {
+            *playing = Some(self.fifo.pop());
+        } else {
             *phase = IDLE;
         }
     }

@@ -118,7 +118,7 @@ pub struct Outputs {
     pub underrun: bool,
     /// Sticky: acceleration or velocity did not fit.
     pub overflow: bool,
-    /// Sticky: a word was written while the FIFO was full, or in a quick stop.
+    /// Sticky: a word was written while the FIFO held 64 entries, the one that plays included, or in a quick stop.
     pub refused: bool,
     /// Sticky: an entry was dropped: words missing, no ticks, reserved flags, or a jerk of more than 40 bits.
     pub malformed: bool,

@@ -4,13 +4,14 @@ use std::fmt;
 
 use crate::rtl::divider_share::SHARE_CLOCKS;
 use crate::rtl::linear_scale;
+use crate::rtl::segments;
 use crate::rtl::shaper::ShaperConfig;
 use crate::rtl::sliding_mode::CONTROL_CLOCKS;
 
 /// Clocks from the tick to the divider's first operands, and a clock for the last velocity.
 const CAPTURE_CLOCKS: u32 = 4;
-/// Clocks from the tick to the shaper's sample, and two to its end: the segments' five, the strobe, and the test signal's.
-const GENERATE_CLOCKS: u32 = 8;
+/// Clocks from the tick to the shaper's sample, and two to its end: the segments', the strobe, and the test signal's.
+const GENERATE_CLOCKS: u32 = segments::LATENCY_CLOCKS + 3;
 /// Clocks from the controller's `valid` to the duty at the PWM.
 const OUTPUT_CLOCKS: u32 = 2;
 
