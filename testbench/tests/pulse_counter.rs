@@ -38,17 +38,22 @@ fn lockstep_catches_an_index_that_latches_before_the_step() {
 
 #[test]
 fn lockstep_catches_a_count_of_illegal_steps_that_ends_too_early() {
-    let (from, to) = ("!(&illegal_count_q)", "illegal_count_q != 8'd127");
-    caught(&pulse_counter(), from, to, 300_000);
-    caught(&pulse_counter(), from, "illegal_count_q < 8'd254", 300_000);
+    let from = "(&illegal_high)";
+    caught(&pulse_counter(), from, "illegal_high[2:0] == 3'd7", 300_000);
+    caught(
+        &pulse_counter(),
+        "low_full & (&illegal_high)",
+        "(&illegal_high)",
+        300_000,
+    );
 }
 
 #[test]
 fn lockstep_catches_a_velocity_that_rests_a_step_of_the_timeout_late() {
     caught(
         &pulse_counter(),
-        "interval[23:16] >= timeout",
-        "interval[23:16] > timeout",
+        "interval[23:16] < timeout",
+        "interval[23:16] <= timeout",
         300_000,
     );
 }

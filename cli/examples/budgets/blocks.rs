@@ -50,7 +50,7 @@ pub(crate) fn rows() -> Result<Vec<Row>, Box<dyn Error>> {
                 flip_flops: 300,
             }),
             note: "Flip-flops: 13 are for differential pairs (three more synchronisers, a filter) and go where `differential` \
-                   is tied low. LUT: a third is the one-pole filter; a dozen hold the steps at 0, for the clock.",
+                   is tied low. LUT: a third is the one-pole filter.",
         },
         Row {
             block: "divider",

@@ -1,6 +1,7 @@
 //! Levels of this clock and of the one before to steps: quadrature ×4 ×2 ×1, step and direction, up and down.
 //!
 //! ×2 counts the edges of A, ×1 those while B is low: so the count is the same on the way there and on the way back.
+//! With one edge, A against B a clock before is the opposite of B against A: exchanging the lines turns the direction over.
 
 use crate::prelude::*;
 
@@ -100,7 +101,7 @@ impl Logic for Decoder {
 
         comment!("Quadrature: up if A leads B");
         self.counts.next = false;
-        self.upward.next = self.a.val() ^ self.was_b.val();
+        self.upward.next = self.level_a.val() ^ self.b_before.q.val() ^ self.swap.val();
         self.both.next = self.edge_a.val() & self.edge_b.val();
         if self.mode.val() == self.times_4.val() {
             self.counts.next = self.edge_a.val() ^ self.edge_b.val();

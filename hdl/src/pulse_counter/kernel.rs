@@ -63,7 +63,8 @@ pub(super) struct PulseCounter {
     decoder: Decoder,
     speed: Velocity,
 
-    primed: Dff<Bits<4>>,
+    priming: Dff<Bits<2>>,
+    ready_q: Dff<Bit>,
     count_q: Dff<Signed<32>>,
     origin_q: Dff<Signed<32>>,
     presets: Dff<Bit>,
@@ -71,11 +72,14 @@ pub(super) struct PulseCounter {
     index_before: Dff<Bit>,
     index_seen_q: Dff<Bit>,
     index_armed_q: Dff<Bit>,
-    illegal_count_q: Dff<Bits<8>>,
-    illegal_q: Dff<Bit>,
+    illegal_low: Dff<Bits<4>>,
+    illegal_high: Dff<Bits<4>>,
     disagreement_q: Dff<Bit>,
 
     ready: Signal<Local, Bit>,
+    first_half: Signal<Local, Bits<2>>,
+    low_full: Signal<Local, Bit>,
+    counts_illegal: Signal<Local, Bit>,
     gate: Signal<Local, Bit>,
     gated: Signal<Local, Bit>,
     index: Signal<Local, Bit>,
@@ -83,12 +87,14 @@ pub(super) struct PulseCounter {
     counted: Signal<Local, Signed<32>>,
     count_bits: Signal<Local, Bits<32>>,
 
-    first_clock: Constant<Bits<4>>,
+    no_half: Constant<Bits<2>>,
+    one_half: Constant<Bits<2>>,
+    last_clock: Constant<Bits<2>>,
     no_count: Constant<Signed<32>>,
     count_up: Constant<Signed<32>>,
     count_down: Constant<Signed<32>>,
-    no_illegal: Constant<Bits<8>>,
-    one_illegal: Constant<Bits<8>>,
+    no_illegal: Constant<Bits<4>>,
+    one_illegal: Constant<Bits<4>>,
 }
 
 impl Default for PulseCounter {
@@ -145,7 +151,8 @@ impl Default for PulseCounter {
             disagreement_filter: GlitchFilter::default(),
             decoder: Decoder::default(),
             speed: Velocity::default(),
-            primed: Dff::default(),
+            priming: Dff::default(),
+            ready_q: Dff::default(),
             count_q: Dff::default(),
             origin_q: Dff::default(),
             presets: Dff::default(),
@@ -153,17 +160,22 @@ impl Default for PulseCounter {
             index_before: Dff::default(),
             index_seen_q: Dff::default(),
             index_armed_q: Dff::default(),
-            illegal_count_q: Dff::default(),
-            illegal_q: Dff::default(),
+            illegal_low: Dff::default(),
+            illegal_high: Dff::default(),
             disagreement_q: Dff::default(),
             ready: Signal::default(),
+            first_half: Signal::default(),
+            low_full: Signal::default(),
+            counts_illegal: Signal::default(),
             gate: Signal::default(),
             gated: Signal::default(),
             index: Signal::default(),
             change: Signal::default(),
             counted: Signal::default(),
             count_bits: Signal::default(),
-            first_clock: Constant::new(from_u64(1)),
+            no_half: Constant::new(from_u64(0)),
+            one_half: Constant::new(from_u64(1)),
+            last_clock: Constant::new(from_u64(2)),
             no_count: Constant::new(from_i64(0)),
             count_up: Constant::new(from_i64(1)),
             count_down: Constant::new(from_i64(-1)),
@@ -180,7 +192,8 @@ impl Logic for PulseCounter {
         dff_setup!(
             self,
             clk,
-            primed,
+            priming,
+            ready_q,
             count_q,
             origin_q,
             presets,
@@ -188,14 +201,22 @@ impl Logic for PulseCounter {
             index_before,
             index_seen_q,
             index_armed_q,
-            illegal_count_q,
-            illegal_q,
+            illegal_low,
+            illegal_high,
             disagreement_q
         );
 
-        comment!("After reset, levels are taken as they are");
-        self.primed.d.next = (self.primed.q.val() << 1) | self.first_clock.val();
-        self.ready.next = self.primed.q.val().get_bit(3);
+        comment!("After reset, levels are taken as they are for");
+        comment!("four clocks: 00, 01, 11, 10");
+        self.first_half.next = self.no_half.val();
+        if !self.priming.q.val().get_bit(1) {
+            self.first_half.next = self.one_half.val();
+        }
+        self.priming.d.next = (self.priming.q.val() << 1) | self.first_half.val();
+        if self.priming.q.val() == self.last_clock.val() {
+            self.ready_q.d.next = true;
+        }
+        self.ready.next = self.ready_q.q.val();
 
         comment!("Lines, all delayed alike");
         self.line_a.clk.next = self.clk.val();
@@ -248,22 +269,29 @@ impl Logic for PulseCounter {
         comment!("Flags, set over clear");
         if self.clear_flags.val() {
             self.index_seen_q.d.next = false;
-            self.illegal_q.d.next = false;
-            self.illegal_count_q.d.next = self.no_illegal.val();
             self.disagreement_q.d.next = false;
-        }
-        if self.decoder.illegal.val() {
-            self.illegal_q.d.next = true;
-            if self.clear_flags.val() {
-                self.illegal_count_q.d.next = self.one_illegal.val();
-            } else {
-                if !self.illegal_count_q.q.val().all() {
-                    self.illegal_count_q.d.next = self.illegal_count_q.q.val() + self.one_illegal.val();
-                }
-            }
         }
         if self.disagreement_filter.level.val() {
             self.disagreement_q.d.next = true;
+        }
+
+        comment!("Illegal transitions, in two halves: so short a");
+        comment!("sum takes no carry chain");
+        self.low_full.next = self.illegal_low.q.val().all();
+        self.counts_illegal.next =
+            self.decoder.illegal.val() & !(self.low_full.val() & self.illegal_high.q.val().all());
+        if self.counts_illegal.val() {
+            self.illegal_low.d.next = self.illegal_low.q.val() + self.one_illegal.val();
+        }
+        if self.counts_illegal.val() & self.low_full.val() {
+            self.illegal_high.d.next = self.illegal_high.q.val() + self.one_illegal.val();
+        }
+        if self.clear_flags.val() {
+            self.illegal_low.d.next = self.no_illegal.val();
+            self.illegal_high.d.next = self.no_illegal.val();
+            if self.decoder.illegal.val() {
+                self.illegal_low.d.next = self.one_illegal.val();
+            }
         }
 
         comment!("The index: a rising edge behind its gate");
@@ -317,8 +345,9 @@ impl Logic for PulseCounter {
         self.index_count.next = self.index_count_q.q.val();
         self.index_seen.next = self.index_seen_q.q.val();
         self.index_armed.next = self.index_armed_q.q.val();
-        self.illegal_count.next = self.illegal_count_q.q.val();
-        self.illegal.next = self.illegal_q.q.val();
+        self.illegal_count.next =
+            (bit_cast::<8, 4>(self.illegal_high.q.val()) << 4) | bit_cast::<8, 4>(self.illegal_low.q.val());
+        self.illegal.next = self.illegal_low.q.val().any() | self.illegal_high.q.val().any();
         self.disagreement.next = self.disagreement_q.q.val();
         self.level_a.next = self.line_a.level.val();
         self.level_b.next = self.line_b.level.val();

@@ -7,7 +7,7 @@
 //! ```
 //!
 //! At a tick, `steps` and `elapsed` go out for the divider and stay until the next tick; the quotient comes back at any clock
-//! between. What it is, `bound` and `halt` tell: a tick without edge gives the velocity of one count since the last edge,
+//! between. What it is, `job` tells: a tick without edge gives the velocity of one count since the last edge,
 //! which the velocity cannot exceed; without anything to measure, the velocity is 0.
 //!
 //! `smoothed` is Q16.19 and 3/8 LSB of Q16.16, so that cutting the extra bits rounds. The sum in `resolved` has one bit more
@@ -37,31 +37,33 @@ pub(super) struct Velocity {
     pub(super) velocity_missed: Signal<Out, Bit>,
     pub(super) velocity: Signal<Out, Signed<32>>,
 
-    last_stamp: Dff<Bits<24>>,
+    last_low: Dff<Bits<19>>,
     last_up: Dff<Bit>,
     reference_stamp: Dff<Bits<24>>,
     known: Dff<Bit>,
     moved: Dff<Bit>,
     turned: Dff<Bit>,
     captured: Dff<Bits<18>>,
-    bound: Dff<Bit>,
-    halt: Dff<Bit>,
     steps_q: Dff<Bits<18>>,
     elapsed_q: Dff<Bits<24>>,
-    pending: Dff<Bit>,
+    job: Dff<Bits<2>>,
     smoothed: Dff<Signed<35>>,
     valid_q: Dff<Bit>,
     missed_q: Dff<Bit>,
 
+    last_carry: Signal<Local, Bits<5>>,
+    last_high: Signal<Local, Bits<5>>,
+    last_stamp: Signal<Local, Bits<24>>,
     interval: Signal<Local, Bits<24>>,
     waits: Signal<Local, Bit>,
     borrow: Signal<Local, Bits<19>>,
     counted: Signal<Local, Bits<19>>,
     one_count: Signal<Local, Bits<18>>,
+    recent: Signal<Local, Bit>,
+    lost: Signal<Local, Bit>,
     rests: Signal<Local, Bit>,
-    stale_time: Signal<Local, Bit>,
-    stale: Signal<Local, Bit>,
     fresh: Signal<Local, Bit>,
+    pending: Signal<Local, Bit>,
     take: Signal<Local, Bit>,
     within_bound: Signal<Local, Bit>,
     target: Signal<Local, Signed<36>>,
@@ -75,11 +77,17 @@ pub(super) struct Velocity {
     wide_difference: Signal<Local, Signed<37>>,
     shrunk: Signal<Local, Bits<35>>,
 
+    no_carry: Constant<Bits<5>>,
+    one_carry: Constant<Bits<5>>,
     no_elapsed: Constant<Bits<24>>,
     one_up: Constant<Bits<18>>,
     no_borrow: Constant<Bits<19>>,
     one_borrow: Constant<Bits<19>>,
     no_steps: Constant<Bits<18>>,
+    idle: Constant<Bits<2>>,
+    measured: Constant<Bits<2>>,
+    bound: Constant<Bits<2>>,
+    halt: Constant<Bits<2>>,
     rounding: Constant<Bits<36>>,
     rest: Constant<Signed<35>>,
     one: Constant<Bits<36>>,
@@ -107,30 +115,32 @@ impl Default for Velocity {
             velocity_valid: Signal::default(),
             velocity_missed: Signal::default(),
             velocity: Signal::default(),
-            last_stamp: Dff::default(),
+            last_low: Dff::default(),
             last_up: Dff::default(),
             reference_stamp: Dff::default(),
             known: Dff::default(),
             moved: Dff::default(),
             turned: Dff::default(),
             captured: Dff::default(),
-            bound: Dff::default(),
-            halt: Dff::default(),
             steps_q: Dff::default(),
             elapsed_q: Dff::default(),
-            pending: Dff::default(),
+            job: Dff::default(),
             smoothed: Dff::new(from_i64(3)),
             valid_q: Dff::default(),
             missed_q: Dff::default(),
+            last_carry: Signal::default(),
+            last_high: Signal::default(),
+            last_stamp: Signal::default(),
             interval: Signal::default(),
             waits: Signal::default(),
             borrow: Signal::default(),
             counted: Signal::default(),
             one_count: Signal::default(),
+            recent: Signal::default(),
+            lost: Signal::default(),
             rests: Signal::default(),
-            stale_time: Signal::default(),
-            stale: Signal::default(),
             fresh: Signal::default(),
+            pending: Signal::default(),
             take: Signal::default(),
             within_bound: Signal::default(),
             target: Signal::default(),
@@ -143,11 +153,17 @@ impl Default for Velocity {
             half: Signal::default(),
             wide_difference: Signal::default(),
             shrunk: Signal::default(),
+            no_carry: Constant::new(from_u64(0)),
+            one_carry: Constant::new(from_u64(1)),
             no_elapsed: Constant::new(from_u64(0)),
             one_up: Constant::new(from_u64(1)),
             no_borrow: Constant::new(from_u64(0)),
             one_borrow: Constant::new(from_u64(1)),
             no_steps: Constant::new(from_u64(0)),
+            idle: Constant::new(from_u64(0)),
+            measured: Constant::new(from_u64(1)),
+            bound: Constant::new(from_u64(2)),
+            halt: Constant::new(from_u64(3)),
             rounding: Constant::new(from_u64(3)),
             rest: Constant::new(from_i64(3)),
             one: Constant::new(from_u64(1)),
@@ -164,25 +180,24 @@ impl Logic for Velocity {
         dff_setup!(
             self,
             clk,
-            last_stamp,
+            last_low,
             last_up,
             reference_stamp,
             known,
             moved,
             turned,
             captured,
-            bound,
-            halt,
             steps_q,
             elapsed_q,
-            pending,
+            job,
             smoothed,
             valid_q,
             missed_q
         );
 
         comment!("The quotient: its distance from the velocity");
-        self.take.next = self.pending.q.val() & self.quotient_valid.val();
+        self.pending.next = self.job.q.val().any();
+        self.take.next = self.pending.val() & self.quotient_valid.val();
         self.target.next = signed_bit_cast::<36, 32>(self.quotient.val());
         self.target_bits.next = (unsigned_cast(self.target.val()) << 3) | self.rounding.val();
         self.wide_smoothed.next = signed_bit_cast::<36, 35>(self.smoothed.q.val());
@@ -201,25 +216,35 @@ impl Logic for Velocity {
         }
         self.resolved.next = ((unsigned_cast(self.wide_smoothed.val()) << 1) | self.one.val()) + self.scaled.val();
         self.shrunk.next = self.resolved.val().get_bits::<35>(1);
-        self.within_bound.next =
-            self.bound.q.val() & (self.difference.val().get_bit(35) == self.smoothed.q.val().get_bit(34));
+        self.within_bound.next = (self.job.q.val() == self.bound.val())
+            & (self.difference.val().get_bit(35) == self.smoothed.q.val().get_bit(34));
         self.valid_q.d.next = self.take.val();
         if self.take.val() {
-            self.pending.d.next = false;
+            self.job.d.next = self.idle.val();
             if !self.within_bound.val() {
                 self.smoothed.d.next = signed_cast(self.shrunk.val());
             }
         }
-        if self.take.val() & self.halt.q.val() {
+        if self.take.val() & (self.job.q.val() == self.halt.val()) {
             self.smoothed.d.next = self.rest.val();
         }
 
+        comment!("The last edge, less than 2^18 clocks ago: its");
+        comment!("high bits are those of the time, or one less");
+        self.last_carry.next = self.no_carry.val();
+        if self.last_low.q.val().get_bit(18) & !self.time_stamp.val().get_bit(18) {
+            self.last_carry.next = self.one_carry.val();
+        }
+        self.last_high.next = self.time_stamp.val().get_bits::<5>(19) - self.last_carry.val();
+        self.last_stamp.next =
+            (bit_cast::<24, 5>(self.last_high.val()) << 19) | bit_cast::<24, 19>(self.last_low.q.val());
+
         comment!("The time from the reference to the last edge");
         comment!("or, without one in this tick, to now");
-        self.interval.next = self.last_stamp.q.val() - self.reference_stamp.q.val();
-        self.stale_time.next = self.interval.val().get_bits::<8>(16) >= self.timeout.val();
-        self.stale.next = self.stale_time.val() & !self.moved.q.val();
-        self.fresh.next = self.known.q.val() & !self.stale.val();
+        self.interval.next = self.last_stamp.val() - self.reference_stamp.q.val();
+        self.recent.next = self.interval.val().get_bits::<8>(16) < self.timeout.val();
+        self.fresh.next = self.known.q.val() & (self.recent.val() | self.moved.q.val());
+        self.lost.next = !self.velocity_m.val() & (!self.known.q.val() | self.turned.q.val());
         self.rests.next = !self.velocity_m.val() & (!self.fresh.val() | self.turned.q.val());
 
         comment!("Steps; 0 without an edge, where 1 or -1 is to be");
@@ -241,29 +266,36 @@ impl Logic for Velocity {
             self.missed_q.d.next = false;
         }
         if self.tick.val() {
-            if self.pending.q.val() & !self.take.val() {
+            if self.pending.val() & !self.take.val() {
                 self.missed_q.d.next = true;
             }
-            self.pending.d.next = true;
+            self.job.d.next = self.measured.val();
+            if self.waits.val() {
+                self.job.d.next = self.bound.val();
+            }
+            if self.rests.val() {
+                self.job.d.next = self.halt.val();
+            }
             if self.moved.q.val() {
-                self.reference_stamp.d.next = self.last_stamp.q.val();
+                self.reference_stamp.d.next = self.last_stamp.val();
             }
             self.captured.d.next = self.count.val();
             self.known.d.next = self.moved.q.val() | self.fresh.val();
             self.moved.d.next = false;
             self.turned.d.next = false;
-            self.bound.d.next = self.waits.val();
-            self.halt.d.next = self.rests.val();
             self.steps_q.d.next = self.counted.val().get_bits::<18>(1) | self.one_count.val();
             self.elapsed_q.d.next = self.interval.val();
         }
         if self.tick.val() & self.velocity_m.val() {
             self.elapsed_q.d.next = self.no_elapsed.val();
         }
+        if self.tick.val() & self.lost.val() {
+            self.steps_q.d.next = self.no_steps.val();
+        }
 
         comment!("Time of the last edge; after a tick without: now");
         if self.step.val() | self.tick.val() | !self.moved.q.val() {
-            self.last_stamp.d.next = self.time_stamp.val();
+            self.last_low.d.next = self.time_stamp.val().get_bits::<19>(0);
         }
 
         comment!("An edge; in the clock of a tick, of the next");
@@ -275,13 +307,10 @@ impl Logic for Velocity {
             }
         }
 
-        comment!("Outputs; at rest no steps are divided");
+        comment!("Outputs");
         self.steps.next = signed_cast(self.steps_q.q.val());
-        if self.halt.q.val() {
-            self.steps.next = signed_cast(self.no_steps.val());
-        }
         self.elapsed.next = self.elapsed_q.q.val();
-        self.velocity_pending.next = self.pending.q.val();
+        self.velocity_pending.next = self.pending.val();
         self.velocity.next = self.smoothed.q.val().get_bits::<32>(3);
         self.velocity_valid.next = self.valid_q.q.val();
         self.velocity_missed.next = self.missed_q.q.val();

@@ -8,6 +8,13 @@ use crate::rtl::shaper::wrap;
 pub const SMOOTHING_BITS: u32 = 3;
 /// What the smoothed velocity has more, so that cutting its extra bits rounds: it then settles on its input exactly.
 const ROUNDING: i64 = (1 << (SMOOTHING_BITS - 1)) - 1;
+/// Bits of a time stamp that are kept of the last edge: a tick later it is less than half of that ago.
+const LAST_STAMP_BITS: u32 = 19;
+
+/// The lowest bits of a time stamp.
+fn low_stamp(time_stamp: u32) -> u32 {
+    time_stamp & ((1 << LAST_STAMP_BITS) - 1)
+}
 
 /// What the quotient is.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -23,7 +30,7 @@ enum Job {
 
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Velocity {
-    /// Of the last edge; without one since the last tick, of the clock before.
+    /// Of the last edge; without one since the last tick, of the clock before: [`LAST_STAMP_BITS`].
     last_stamp: u32,
     last_up: bool,
     /// Of the last edge before the last tick, if `known`.
@@ -110,7 +117,7 @@ impl Velocity {
             self.tick(inputs, count, negative);
         }
         if step.is_some() || !self.moved {
-            self.last_stamp = inputs.time_stamp & ((1 << ELAPSED_BITS) - 1);
+            self.last_stamp = low_stamp(inputs.time_stamp);
         }
         if let Some(up) = step {
             self.turned |= up != self.last_up;
@@ -131,19 +138,30 @@ impl Velocity {
     /// Clocks without tick, edge or quotient up to the one of this time stamp.
     pub(super) fn pass_time(&mut self, time_stamp: u32) {
         if !self.moved {
-            self.last_stamp = time_stamp & ((1 << ELAPSED_BITS) - 1);
+            self.last_stamp = low_stamp(time_stamp);
         }
     }
 
+    /// The last edge's time stamp: its high bits are those of now, or one less if a carry came since.
+    fn whole_last_stamp(&self, now: u32) -> u32 {
+        let top = 1 << (LAST_STAMP_BITS - 1);
+        let carried = self.last_stamp & top != 0 && now & top == 0;
+        let high = (now >> LAST_STAMP_BITS).wrapping_sub(u32::from(carried));
+        high << LAST_STAMP_BITS | self.last_stamp
+    }
+
     fn tick(&mut self, inputs: &Inputs, count: i32, negative: bool) {
-        let elapsed = self.last_stamp.wrapping_sub(self.reference_stamp) & ((1 << ELAPSED_BITS) - 1);
+        let last_stamp = self.whole_last_stamp(inputs.time_stamp);
+        let elapsed = last_stamp.wrapping_sub(self.reference_stamp) & ((1 << ELAPSED_BITS) - 1);
         let counted = wrap(i64::from(count.wrapping_sub(self.captured)), STEP_BITS) as i32;
         let stale = !self.moved && elapsed >> 16 >= u32::from(inputs.timeout);
         let one_back = if negative { -1 } else { 1 };
         (self.job, self.steps, self.elapsed) = if inputs.velocity_m {
             (Job::Measured, counted, 0)
-        } else if !self.known || stale || self.turned {
+        } else if !self.known || self.turned {
             (Job::Halt, 0, elapsed)
+        } else if stale {
+            (Job::Halt, one_back, elapsed)
         } else if self.moved {
             (Job::Measured, counted, elapsed)
         } else {
@@ -151,7 +169,7 @@ impl Velocity {
         };
         self.known = self.moved || (self.known && !stale);
         if self.moved {
-            self.reference_stamp = self.last_stamp;
+            self.reference_stamp = last_stamp;
         }
         self.captured = count;
         self.moved = false;
