@@ -331,6 +331,8 @@ fn a_quick_stop_by_a_cause_closes_the_brake_before_the_outputs_go_off() {
     assert_eq!(on_ticks, 5);
     let stands = bench.segments.outputs(0).position;
     bench.inputs.position = stands >> 8;
+    // The tick that switched off was one with outputs on, and its error too large.
+    bench.clocks(TICK_CLOCKS / 2);
     bench.inputs.error = 0;
     assert_eq!(bench.clear().state, State::Off);
     bench.ticks(1);
@@ -428,11 +430,13 @@ fn behind_a_soft_limit_the_way_back_is_open() {
 
 #[test]
 fn what_lasts_too_long_trips_after_its_ticks() {
-    // A command that moves nothing.
+    // A command that moves nothing, from between two ticks on.
     let mut bench = Bench::hold();
+    bench.clocks(TICK_CLOCKS / 2);
     (bench.inputs.lost_command, bench.inputs.lost_ticks) = (500, 6);
     bench.inputs.command = -502;
-    bench.ticks(7);
+    bench.clocks(TICK_CLOCKS / 2);
+    bench.ticks(6);
     assert_eq!(bench.axis.outputs().causes, 0);
     bench.clocks(u64::from(WATCH_CLOCKS) - 1);
     assert_eq!(bench.axis.outputs().causes, Cause::EncoderLost.bit());

@@ -157,6 +157,7 @@ module axis_brake_properties (
         same_without_tick: assert (past_tick | past_begins | past_reset | (seen == past_seen & needed == past_needed));
         enough_stays: assert (!enough | seen >= needed);
         ticks_left: assert (!drive_enable | begins | left == rest);
+        cleared_for_it: assert (!drive_enable | !begins | left == 16'd0);
         over_when_left: assert (!drive_enable | begins | over == enough);
         opening_counts: assert (!opening | (state == `HOLD & !settling & enabled == opens &
             (against | opens | (seen == open_seen & needed == open_needed))));

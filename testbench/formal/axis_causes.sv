@@ -48,11 +48,11 @@ module axis_causes_properties (
     input wire        emergency_stop,
     input wire        level_emergency_stop_n,
     input wire        level_drive_ready,
-    (* peek = "u_monitors.found" *) input wire [15:0] found,
+    (* peek = "u_monitors.causes" *) input wire [15:0] found,
+    (* peek = "u_monitors.found" *) input wire [15:0] kept,
     (* peek = "primed" *) input wire [3:0] primed,
     (* peek = "clear_left" *) input wire [3:0] clear_left,
     (* peek = "clear_due" *) input wire clear_due,
-    (* peek = "u_cause_word.had_cause_q" *) input wire had_cause,
     (* peek = "u_cause_word.had_fault_q" *) input wire had_fault,
     (* peek = "u_cause_word.had_cut_q" *) input wire had_cut,
     (* peek = "u_states.forget" *) input wire states_forget,
@@ -135,10 +135,9 @@ module axis_causes_properties (
         cleared[4] ? 4'd4 : cleared[5] ? 4'd3 : cleared[6] ? 4'd2 : cleared[7] ? 4'd1 : 4'd0;
     always @(*) begin
         known_state: assert (state <= `FAULT);
-        found_at_ticks: assert ((found & of_pins) == 16'd0);
+        found_at_ticks: assert ((kept & of_pins) == 16'd0);
         lines_wait: assert (primed == awake);
         clear_counts: assert (clear_left == left);
-        any_stands: assert (had_cause == |causes);
         fault_stands: assert (had_fault == |harmful);
         cut_stands: assert (had_cut == |(causes & past_off));
     end

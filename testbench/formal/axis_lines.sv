@@ -4,7 +4,8 @@
 // of emergency stop and drive ready; the other three lines are of the same module.
 //
 //   passes_*       a filtered level changes exactly after the line has differed from it for so many clocks in a row, and one, as
-//                  filter_clocks had when it last did not differ: shorter pulses leave nothing; the synchroniser's two clocks later
+//                  filter_clocks had when it last did not differ: shorter pulses leave nothing; the synchroniser's two clocks later.
+//                  With filter_clocks 0 it is the line, at once
 //   stops_in_time  outputs off and brake applied once the emergency stop's line has been low for
 //                  filter_clocks + 4 clocks, and as long as it stays low, whatever else happens; filter_clocks unchanged in them
 //   trips_in_time  pwm_trip_n is low in the same time, unless lines are not known yet after a reset
@@ -46,8 +47,8 @@ module axis_lines_properties (
     reg        past_awake = 1'b0, past_reset = 1'b1;
     reg        stop_due = 1'b0, drive_due = 1'b0;
     wire [1:0] differ = twice ^ levels;
-    wire       stop_passes = !awake[3] | (differ[0] & stop_differs == {1'b0, stop_filter});
-    wire       drive_passes = !awake[3] | (differ[1] & drive_differs == {1'b0, drive_filter});
+    wire       stop_passes = !awake[3] | filter_clocks == 6'd0 | (differ[0] & stop_differs == {1'b0, stop_filter});
+    wire       drive_passes = !awake[3] | filter_clocks == 6'd0 | (differ[1] & drive_differs == {1'b0, drive_filter});
     always @(posedge clk) begin
         past_reset <= rst;
         past_awake <= awake[3];

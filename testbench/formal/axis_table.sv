@@ -30,6 +30,7 @@ module axis_table_properties (
     input wire        segments_empty,
     input wire        segments_valid,
     input wire [2:0]  state,
+    input wire [15:0] causes,
     input wire        drive_enable,
     input wire        brake_release,
     input wire        segments_enable,
@@ -54,6 +55,7 @@ module axis_table_properties (
     (* peek = "u_states.opening" *) input wire opening,
     (* peek = "u_states.closing" *) input wire closing,
     (* peek = "u_states.start_waits" *) input wire start_waits,
+    (* peek = "u_cause_word.had_fault_q" *) input wire had_fault,
     (* peek = "primed" *) input wire [3:0] primed,
     (* peek = "clear_left" *) input wire [3:0] clear_left,
     (* peek = "clear_due" *) input wire clear_due
@@ -139,6 +141,7 @@ module axis_table_properties (
         clear_counts: assert (clear_left == left & clear_due == (cleared[7] & ~|cleared[6:0]));
         on_by_state: assert (state == `FAULT | drive_enable == (state == `HOLD | state == `RUN | state == `QUICK_STOP));
         brake_by_state: assert (!if_closing | state == `HOLD | state == `FAULT);
+        fault_stands: assert (had_fault == |(causes & ~`HARMLESS));
         cut_is_fault: assert (!if_cut | if_fault);
         fault_is_cause: assert (!if_fault | if_cause);
         start_is_kept: assert (start_waits == waits);

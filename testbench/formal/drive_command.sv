@@ -55,10 +55,11 @@ module drive_command_properties (
     input wire               mask_pins,
     input wire [15:0]        self_test_high,
     input wire [15:0]        self_test_low,
-    (* peek = "ticks_left" *) input wire [15:0] ticks_left,
+    (* peek = "counted" *) input wire [15:0] ticks_counted,
+    (* peek = "hold_ticks" *) input wire [15:0] hold_kept,
     (* peek = "backward" *) input wire backward,
-    (* peek = "high_clocks" *) input wire [15:0] high_clocks,
-    (* peek = "low_clocks" *) input wire [15:0] low_clocks
+    (* peek = "high_sum" *) input wire [15:0] high_sum,
+    (* peek = "low_sum" *) input wire [15:0] low_sum
 );
     // What the clock before was.
     reg               past_reset = 1'b1;
@@ -154,10 +155,10 @@ module drive_command_properties (
 
     // What registers hold, for the induction.
     always @(*) begin
-        time_left: assert (!direct_active | ticks_left == hold - ticks);
+        time_since: assert (ticks_counted == ticks + 16'd1 & hold_kept == hold);
         sign_wanted: assert (backward == negative);
         sign_of_duty: assert (!direct_active | (negative ? shown <= 18'sd0 : shown >= 18'sd0));
-        gates_counted: assert (high_clocks == high & low_clocks == low);
+        gates_counted: assert (high_sum == high & low_sum == low);
         limit_kept: assert (!direct_active | !steady | !past_active | limit_then == past_limit | shown == 18'sd0);
     end
 

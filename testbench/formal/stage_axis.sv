@@ -38,7 +38,6 @@ module stage_axis_properties (
     (* peek = "u_axis.u_states.on_q" *) input wire axis_on,
     (* peek = "u_axis.u_states.released_q" *) input wire axis_released,
     (* peek = "u_axis.u_states.closing" *) input wire axis_closing,
-    (* peek = "u_axis.u_cause_word.had_cause_q" *) input wire had_cause,
     (* peek = "u_axis.u_cause_word.had_fault_q" *) input wire had_fault,
     (* peek = "u_axis.u_cause_word.had_cut_q" *) input wire had_cut,
     (* peek = "u_drive_command.pwm_enable_q" *) input wire pwm_enable,
@@ -100,7 +99,7 @@ module stage_axis_properties (
         on_by_state: assert (state == `FAULT | axis_on == (state == `HOLD | state == `RUN | state == `QUICK_STOP));
         closing_against_brake: assert (axis_closing == (axis_on & !axis_released) & (axis_on | !axis_released));
         brake_by_state: assert (!axis_closing | state == `HOLD | state == `FAULT);
-        cause_stands: assert (had_cause == |causes & had_fault == harmful & (!had_cut | had_fault));
+        cause_stands: assert (had_fault == harmful & (!had_cut | had_fault));
         stop_in_axis: assert (low < FILTER + 7'd4 | axis_is_off);
         group_stop_in_axis: assert (!group[0] | axis_is_off);
         command_is_off: assert (!(low >= FILTER + 7'd5 | group[1]) | (!pwm_enable & !direct_active));

@@ -20,15 +20,15 @@ const MUTANTS: [(&str, &str, &str); 6] = [
         "against the brake for too long",
     ),
     ("= next_on & !next_closing", "= next_on", "brake released in FAULT"),
-    ("if (fault | asked)", "if (asked)", "RUN with a cause"),
+    ("in_run & (fault | asked)", "in_run & asked", "RUN with a cause"),
     (
         "= ready & !emergency",
         "= ready & home & !emergency",
         "after an emergency stop",
     ),
     (
-        "if (at_rest) begin\n                next_state = HOLD_STATE",
-        "if (at_rest) begin\n                next_state = RUN_STATE",
+        "if (hold_to_run) begin",
+        "if (hold_to_run | stop_to_hold) begin",
         "is not in the table",
     ),
 ];
@@ -104,8 +104,8 @@ fn lockstep_catches_a_clear_that_forgets_what_is_active() {
 fn lockstep_catches_a_limit_that_is_passed_by_an_lsb() {
     caught(
         &block(),
-        "error_size > following_error_limit",
-        "error_size >= following_error_limit",
+        "if (!compares) begin\n            larger_q_next = 1'd0",
+        "if (!compares) begin\n            larger_q_next = 1'd1",
         300_000,
     );
 }

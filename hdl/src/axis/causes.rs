@@ -26,7 +26,6 @@ pub(super) struct Causes {
     pub(super) had_fault: Signal<Out, Bit>,
 
     causes_q: Dff<Bits<16>>,
-    had_cause_q: Dff<Bit>,
     had_fault_q: Dff<Bit>,
     had_cut_q: Dff<Bit>,
 
@@ -44,9 +43,9 @@ pub(super) struct Causes {
     active: Signal<Local, Bits<16>>,
     harmful: Signal<Local, Bits<16>>,
     off: Signal<Local, Bits<16>>,
-    harmful_now: Signal<Local, Bits<16>>,
     cutting: Signal<Local, Bits<16>>,
     cutting_now: Signal<Local, Bits<16>>,
+    harmless: Signal<Local, Bits<16>>,
     stays: Signal<Local, Bit>,
 
     no_causes: Constant<Bits<16>>,
@@ -82,7 +81,6 @@ impl Default for Causes {
             cut: Signal::default(),
             had_fault: Signal::default(),
             causes_q: Dff::default(),
-            had_cause_q: Dff::default(),
             had_fault_q: Dff::default(),
             had_cut_q: Dff::default(),
             by_emergency: Signal::default(),
@@ -99,9 +97,9 @@ impl Default for Causes {
             active: Signal::default(),
             harmful: Signal::default(),
             off: Signal::default(),
-            harmful_now: Signal::default(),
             cutting: Signal::default(),
             cutting_now: Signal::default(),
+            harmless: Signal::default(),
             stays: Signal::default(),
             no_causes: Constant::new(from_u64(0)),
             of_emergency: Constant::new(from_u64(u64::from(Cause::EmergencyStop.bit()))),
@@ -122,7 +120,7 @@ impl Logic for Causes {
     fn update(&mut self) {
         comment!("@module axis_causes");
         comment!("@about Sticky causes: set wins over forget.");
-        dff_setup!(self, clk, causes_q, had_cause_q, had_fault_q, had_cut_q);
+        dff_setup!(self, clk, causes_q, had_fault_q, had_cut_q);
         self.by_emergency.next = self.no_causes.val();
         if self.emergency.val() {
             self.by_emergency.next = self.of_emergency.val();
@@ -167,15 +165,14 @@ impl Logic for Causes {
         self.off.next = (self.off_causes.val() | self.always_off.val()) & self.harmful_causes.val();
         self.harmful.next = self.active.val() & self.harmful_causes.val();
         self.cutting.next = self.active.val() & self.off.val();
-        self.any_cause.next = self.active.val().any() | (self.had_cause_q.q.val() & self.stays.val());
+        self.harmless.next = self.now.val() & !self.harmful_causes.val();
         self.fault.next = self.harmful.val().any() | (self.had_fault_q.q.val() & self.stays.val());
+        self.any_cause.next = self.fault.val() | self.harmless.val().any();
         self.cut.next = self.cutting.val().any() | (self.had_cut_q.q.val() & self.stays.val());
 
         comment!("And of those that stand, a clock later");
-        self.harmful_now.next = self.now.val() & self.harmful_causes.val();
         self.cutting_now.next = self.now.val() & self.off.val();
-        self.had_cause_q.d.next = self.now.val().any();
-        self.had_fault_q.d.next = self.harmful_now.val().any();
+        self.had_fault_q.d.next = self.fault.val();
         self.had_cut_q.d.next = self.cutting_now.val().any();
         self.had_fault.next = self.had_fault_q.q.val();
         self.causes.next = self.causes_q.q.val();

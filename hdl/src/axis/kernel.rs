@@ -108,6 +108,7 @@ pub(super) struct Axis {
     tripping: Dff<Bit>,
 
     ready: Signal<Local, Bit>,
+    filters: Signal<Local, Bit>,
     own_emergency: Signal<Local, Bit>,
     emergency: Signal<Local, Bit>,
     others_stop: Signal<Local, Bit>,
@@ -219,6 +220,7 @@ impl Default for Axis {
             clear_sources_q: Dff::default(),
             tripping: Dff::default(),
             ready: Signal::default(),
+            filters: Signal::default(),
             own_emergency: Signal::default(),
             emergency: Signal::default(),
             others_stop: Signal::default(),
@@ -240,37 +242,39 @@ impl Logic for Axis {
         comment!("@module axis");
         dff_setup!(self, clk, primed, clear_left, clear_due, clear_sources_q, tripping);
 
-        comment!("After reset, levels are taken as they are");
+        comment!("After reset, and with nothing to filter, levels");
+        comment!("are taken as they are");
         self.primed.d.next = (self.primed.q.val() << 1) | self.first_clock.val();
         self.ready.next = self.primed.q.val().get_bit(3);
+        self.filters.next = self.ready.val() & self.filter_clocks.val().any();
         self.emergency_stop_line.clk.next = self.clk.val();
         self.emergency_stop_line.rst.next = self.rst.val();
         self.emergency_stop_line.pin.next = self.emergency_stop_n.val();
-        self.emergency_stop_line.ready.next = self.ready.val();
+        self.emergency_stop_line.ready.next = self.filters.val();
         self.emergency_stop_line.filter_clocks.next = self.filter_clocks.val();
         self.level_emergency_stop_n.next = self.emergency_stop_line.level.val();
         self.limit_plus_line.clk.next = self.clk.val();
         self.limit_plus_line.rst.next = self.rst.val();
         self.limit_plus_line.pin.next = self.limit_plus_n.val();
-        self.limit_plus_line.ready.next = self.ready.val();
+        self.limit_plus_line.ready.next = self.filters.val();
         self.limit_plus_line.filter_clocks.next = self.filter_clocks.val();
         self.level_limit_plus_n.next = self.limit_plus_line.level.val();
         self.limit_minus_line.clk.next = self.clk.val();
         self.limit_minus_line.rst.next = self.rst.val();
         self.limit_minus_line.pin.next = self.limit_minus_n.val();
-        self.limit_minus_line.ready.next = self.ready.val();
+        self.limit_minus_line.ready.next = self.filters.val();
         self.limit_minus_line.filter_clocks.next = self.filter_clocks.val();
         self.level_limit_minus_n.next = self.limit_minus_line.level.val();
         self.drive_line.clk.next = self.clk.val();
         self.drive_line.rst.next = self.rst.val();
         self.drive_line.pin.next = self.drive_ready.val();
-        self.drive_line.ready.next = self.ready.val();
+        self.drive_line.ready.next = self.filters.val();
         self.drive_line.filter_clocks.next = self.filter_clocks.val();
         self.level_drive_ready.next = self.drive_line.level.val();
         self.home_line.clk.next = self.clk.val();
         self.home_line.rst.next = self.rst.val();
         self.home_line.pin.next = self.home.val();
-        self.home_line.ready.next = self.ready.val();
+        self.home_line.ready.next = self.filters.val();
         self.home_line.filter_clocks.next = self.filter_clocks.val();
         self.level_home.next = self.home_line.level.val();
 

@@ -2,12 +2,17 @@
 //!
 //! The datasheet is `docs/axis.md`, the reference `posicast_model::rtl::axis`.
 
+mod bytes;
 mod causes;
 mod kernel;
+mod larger;
 mod line;
 mod monitors;
 mod pins;
+mod size_limit;
+mod soft_limits;
 mod states;
+mod tick_count;
 mod timer;
 
 use crate::emit::{self, EmitError, EmitOptions, Header, Module, Parameter};

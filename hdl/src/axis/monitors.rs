@@ -1,8 +1,13 @@
 //! What is watched at ticks: limits, soft limits, errors against their limits, and what has lasted too long.
 //!
-//! At the tick everything is taken as it is, a clock later it is compared, and the result is registered: no comparison is
-//! on the way to the state.
+//! Numbers go by bytes, from the tick on, and are compared twice: a limit that a host writes meanwhile is no cause. What both
+//! rounds find is registered: no comparison is on the way to the state. Bytes are taken in clocks 0 to 3 and 5 to 8 after the
+//! tick, compared a clock later, looked at in clocks 5 and 10, and causes in clock 11.
 
+use super::bytes::Nibbles;
+use super::size_limit::SizeLimit;
+use super::soft_limits::SoftLimits;
+use super::tick_count::{Lasts, TickCount};
 use crate::prelude::*;
 use posicast_model::rtl::axis::Cause;
 
@@ -39,10 +44,23 @@ pub(super) struct Monitors {
     was_on_minus: Dff<Bit>,
     was_past_plus: Dff<Bit>,
     was_past_minus: Dff<Bit>,
-    still_ticks: Dff<Bits<16>>,
-    unkicked_ticks: Dff<Bits<16>>,
 
+    soft_limits: SoftLimits,
+    error_limit: SizeLimit,
+    deviations: SizeLimit,
+    commands: SizeLimit,
+    limited_nibbles: Nibbles,
+    saturating: Lasts,
+    still: TickCount,
+    unkicked: TickCount,
+
+    turn: Dff<Bits<2>>,
+    compares: Dff<Bit>,
     looks: Dff<Bit>,
+    again: Dff<Bit>,
+    tells: Dff<Bit>,
+    kick_waits: Dff<Bit>,
+
     was_on: Dff<Bit>,
     on_plus: Dff<Bit>,
     on_minus: Dff<Bit>,
@@ -50,32 +68,20 @@ pub(super) struct Monitors {
     backward: Dff<Bit>,
     shaped_forward: Dff<Bit>,
     shaped_backward: Dff<Bit>,
-    past_plus: Dff<Bit>,
-    past_minus: Dff<Bit>,
     same_position: Dff<Bit>,
-    saturated: Dff<Bit>,
-    error_size: Dff<Bits<32>>,
-    deviation_size: Dff<Bits<32>>,
-    command_size: Dff<Bits<32>>,
-    counts: Dff<Bit>,
-    counts_on: Dff<Bit>,
-    stands: Dff<Bit>,
     found: Dff<Bits<16>>,
 
     command_velocity_bits: Signal<Local, Bits<32>>,
     reference_velocity_bits: Signal<Local, Bits<32>>,
-    has_soft_limits: Signal<Local, Bit>,
-    error_bits: Signal<Local, Bits<32>>,
-    deviation_bits: Signal<Local, Bits<32>>,
-    command_bits: Signal<Local, Bits<32>>,
+    takes: Signal<Local, Bit>,
+    last_byte: Signal<Local, Bit>,
+    over: Signal<Local, Bit>,
+    stands: Signal<Local, Bit>,
+    is_kicked: Signal<Local, Bit>,
     limit_plus: Signal<Local, Bit>,
     limit_minus: Signal<Local, Bit>,
     soft_plus: Signal<Local, Bit>,
     soft_minus: Signal<Local, Bit>,
-    error_trip: Signal<Local, Bit>,
-    deviation_trip: Signal<Local, Bit>,
-    lost_trip: Signal<Local, Bit>,
-    watchdog_trip: Signal<Local, Bit>,
     by_limit_plus: Signal<Local, Bits<16>>,
     by_limit_minus: Signal<Local, Bits<16>>,
     by_soft_plus: Signal<Local, Bits<16>>,
@@ -85,10 +91,9 @@ pub(super) struct Monitors {
     by_saturation_trip: Signal<Local, Bits<16>>,
     by_lost_trip: Signal<Local, Bits<16>>,
     by_watchdog_trip: Signal<Local, Bits<16>>,
+    shown: Signal<Local, Bits<16>>,
 
-    nil: Constant<Signed<32>>,
-    no_ticks: Constant<Bits<16>>,
-    one_tick: Constant<Bits<16>>,
+    one_turn: Constant<Bits<2>>,
     no_causes: Constant<Bits<16>>,
     of_limit_plus: Constant<Bits<16>>,
     of_limit_minus: Constant<Bits<16>>,
@@ -134,9 +139,20 @@ impl Default for Monitors {
             was_on_minus: Dff::default(),
             was_past_plus: Dff::default(),
             was_past_minus: Dff::default(),
-            still_ticks: Dff::default(),
-            unkicked_ticks: Dff::default(),
+            soft_limits: SoftLimits::default(),
+            error_limit: SizeLimit::default(),
+            deviations: SizeLimit::default(),
+            commands: SizeLimit::default(),
+            limited_nibbles: Nibbles::default(),
+            saturating: Lasts::default(),
+            still: TickCount::default(),
+            unkicked: TickCount::default(),
+            turn: Dff::default(),
+            compares: Dff::default(),
             looks: Dff::default(),
+            again: Dff::default(),
+            tells: Dff::default(),
+            kick_waits: Dff::default(),
             was_on: Dff::default(),
             on_plus: Dff::default(),
             on_minus: Dff::default(),
@@ -144,31 +160,19 @@ impl Default for Monitors {
             backward: Dff::default(),
             shaped_forward: Dff::default(),
             shaped_backward: Dff::default(),
-            past_plus: Dff::default(),
-            past_minus: Dff::default(),
             same_position: Dff::default(),
-            saturated: Dff::default(),
-            error_size: Dff::default(),
-            deviation_size: Dff::default(),
-            command_size: Dff::default(),
-            counts: Dff::default(),
-            counts_on: Dff::default(),
-            stands: Dff::default(),
             found: Dff::default(),
             command_velocity_bits: Signal::default(),
             reference_velocity_bits: Signal::default(),
-            has_soft_limits: Signal::default(),
-            error_bits: Signal::default(),
-            deviation_bits: Signal::default(),
-            command_bits: Signal::default(),
+            takes: Signal::default(),
+            last_byte: Signal::default(),
+            over: Signal::default(),
+            stands: Signal::default(),
+            is_kicked: Signal::default(),
             limit_plus: Signal::default(),
             limit_minus: Signal::default(),
             soft_plus: Signal::default(),
             soft_minus: Signal::default(),
-            error_trip: Signal::default(),
-            deviation_trip: Signal::default(),
-            lost_trip: Signal::default(),
-            watchdog_trip: Signal::default(),
             by_limit_plus: Signal::default(),
             by_limit_minus: Signal::default(),
             by_soft_plus: Signal::default(),
@@ -178,9 +182,8 @@ impl Default for Monitors {
             by_saturation_trip: Signal::default(),
             by_lost_trip: Signal::default(),
             by_watchdog_trip: Signal::default(),
-            nil: Constant::new(from_i64(0)),
-            no_ticks: Constant::new(from_u64(0)),
-            one_tick: Constant::new(from_u64(1)),
+            shown: Signal::default(),
+            one_turn: Constant::new(from_u64(1)),
             no_causes: Constant::new(from_u64(0)),
             of_limit_plus: Constant::new(from_u64(u64::from(Cause::LimitPlus.bit()))),
             of_limit_minus: Constant::new(from_u64(u64::from(Cause::LimitMinus.bit()))),
@@ -208,9 +211,12 @@ impl Logic for Monitors {
             was_on_minus,
             was_past_plus,
             was_past_minus,
-            still_ticks,
-            unkicked_ticks,
+            turn,
+            compares,
             looks,
+            again,
+            tells,
+            kick_waits,
             was_on,
             on_plus,
             on_minus,
@@ -218,28 +224,27 @@ impl Logic for Monitors {
             backward,
             shaped_forward,
             shaped_backward,
-            past_plus,
-            past_minus,
             same_position,
-            saturated,
-            error_size,
-            deviation_size,
-            command_size,
-            counts,
-            counts_on,
-            stands,
             found
         );
 
-        comment!("Clock 1: what the tick shows");
-        self.looks.d.next = self.tick.val();
+        comment!("Two rounds of four bytes, a clock between them");
+        self.takes.next = self.tick.val() | (self.looks.q.val() & !self.again.q.val()) | self.turn.q.val().any();
+        if self.takes.val() {
+            self.turn.d.next = self.turn.q.val() + self.one_turn.val();
+        }
+        self.compares.d.next = self.takes.val();
+        self.last_byte.next = self.compares.q.val() & !self.takes.val();
+        self.looks.d.next = self.last_byte.val();
+        self.over.next = self.looks.q.val() & self.again.q.val();
+        if self.looks.q.val() {
+            self.again.d.next = !self.again.q.val();
+        }
+        self.tells.d.next = self.over.val() & self.was_on.q.val();
+
+        comment!("What the tick shows");
         self.command_velocity_bits.next = unsigned_cast(self.command_velocity.val());
         self.reference_velocity_bits.next = unsigned_cast(self.reference_velocity.val());
-        self.error_bits.next = unsigned_cast(self.error.val());
-        self.deviation_bits.next = unsigned_cast(self.deviation.val());
-        self.command_bits.next = unsigned_cast(self.command.val());
-        self.has_soft_limits.next =
-            (self.soft_limit_plus.val() != self.nil.val()) | (self.soft_limit_minus.val() != self.nil.val());
         if self.tick.val() {
             self.captured.d.next = self.position.val();
             self.same_position.d.next = self.position.val() == self.captured.q.val();
@@ -252,71 +257,85 @@ impl Logic for Monitors {
             self.shaped_forward.d.next =
                 self.reference_velocity_bits.val().any() & !self.reference_velocity_bits.val().get_bit(31);
             self.shaped_backward.d.next = self.reference_velocity_bits.val().get_bit(31);
-            self.past_plus.d.next =
-                self.has_soft_limits.val() & (self.reference_position.val() > self.soft_limit_plus.val());
-            self.past_minus.d.next =
-                self.has_soft_limits.val() & (self.reference_position.val() < self.soft_limit_minus.val());
-            self.saturated.d.next =
-                self.saturation_ticks.val().any() & (self.limited_ticks.val() >= self.saturation_ticks.val());
-            comment!("Sizes, of a negative -x - 1: no carry");
-            self.error_size.d.next = self.error_bits.val();
-            if self.error_bits.val().get_bit(31) {
-                self.error_size.d.next = !self.error_bits.val();
-            }
-            self.deviation_size.d.next = self.deviation_bits.val();
-            if self.deviation_bits.val().get_bit(31) {
-                self.deviation_size.d.next = !self.deviation_bits.val();
-            }
-            self.command_size.d.next = self.command_bits.val();
-            if self.command_bits.val().get_bit(31) {
-                self.command_size.d.next = !self.command_bits.val();
-            }
         }
 
-        comment!("Clock 2: compared");
         comment!("A switch bounces when left: newly needs a way");
         self.limit_plus.next =
             self.on_plus.q.val() & (self.forward.q.val() | (!self.was_on_plus.q.val() & self.shaped_forward.q.val()));
         self.limit_minus.next = self.on_minus.q.val()
             & (self.backward.q.val() | (!self.was_on_minus.q.val() & self.shaped_backward.q.val()));
-        self.soft_plus.next = self.past_plus.q.val() & (self.forward.q.val() | !self.was_past_plus.q.val());
-        self.soft_minus.next = self.past_minus.q.val() & (self.backward.q.val() | !self.was_past_minus.q.val());
-        self.error_trip.next =
-            self.following_error_limit.val().any() & (self.error_size.q.val() > self.following_error_limit.val());
-        self.deviation_trip.next =
-            self.deviation_limit.val().any() & (self.deviation_size.q.val() > self.deviation_limit.val());
-        self.lost_trip.next = self.lost_ticks.val().any() & (self.still_ticks.q.val() >= self.lost_ticks.val());
-        self.watchdog_trip.next =
-            self.watchdog_ticks.val().any() & (self.unkicked_ticks.q.val() >= self.watchdog_ticks.val());
-        if self.looks.q.val() {
+        self.soft_limits.clk.next = self.clk.val();
+        self.soft_limits.rst.next = self.rst.val();
+        self.soft_limits.turn.next = self.turn.q.val();
+        self.soft_limits.compares.next = self.compares.q.val();
+        self.soft_limits.signs.next = self.last_byte.val();
+        self.soft_limits.reference_position.next = self.reference_position.val();
+        self.soft_limits.soft_limit_plus.next = self.soft_limit_plus.val();
+        self.soft_limits.soft_limit_minus.next = self.soft_limit_minus.val();
+        self.soft_plus.next = self.soft_limits.past_plus.val() & (self.forward.q.val() | !self.was_past_plus.q.val());
+        self.soft_minus.next =
+            self.soft_limits.past_minus.val() & (self.backward.q.val() | !self.was_past_minus.q.val());
+        if self.over.val() {
             self.was_on_plus.d.next = self.on_plus.q.val();
             self.was_on_minus.d.next = self.on_minus.q.val();
-            self.was_past_plus.d.next = self.past_plus.q.val();
-            self.was_past_minus.d.next = self.past_minus.q.val();
+            self.was_past_plus.d.next = self.soft_limits.past_plus.val();
+            self.was_past_minus.d.next = self.soft_limits.past_minus.val();
         }
 
-        comment!("Clock 3: ticks in a row");
-        self.counts.d.next = self.looks.q.val();
-        self.counts_on.d.next = self.was_on.q.val();
-        self.stands.d.next =
-            self.was_on.q.val() & self.same_position.q.val() & (self.command_size.q.val() > self.lost_command.val());
-        if self.counts.q.val() {
-            if !self.still_ticks.q.val().all() {
-                self.still_ticks.d.next = self.still_ticks.q.val() + self.one_tick.val();
-            }
-            if !self.unkicked_ticks.q.val().all() {
-                self.unkicked_ticks.d.next = self.unkicked_ticks.q.val() + self.one_tick.val();
-            }
-            if !self.stands.q.val() {
-                self.still_ticks.d.next = self.no_ticks.val();
-            }
-            if !self.counts_on.q.val() {
-                self.unkicked_ticks.d.next = self.no_ticks.val();
-            }
-        }
-        if self.kicked.val() {
-            self.unkicked_ticks.d.next = self.no_ticks.val();
-        }
+        comment!("Sizes and times");
+        self.error_limit.clk.next = self.clk.val();
+        self.error_limit.rst.next = self.rst.val();
+        self.error_limit.tick.next = self.tick.val();
+        self.error_limit.turn.next = self.turn.q.val();
+        self.error_limit.compares.next = self.compares.q.val();
+        self.error_limit.number.next = self.error.val();
+        self.error_limit.limit.next = self.following_error_limit.val();
+        self.error_limit.zero_counts.next = false;
+        self.deviations.clk.next = self.clk.val();
+        self.deviations.rst.next = self.rst.val();
+        self.deviations.tick.next = self.tick.val();
+        self.deviations.turn.next = self.turn.q.val();
+        self.deviations.compares.next = self.compares.q.val();
+        self.deviations.number.next = self.deviation.val();
+        self.deviations.limit.next = self.deviation_limit.val();
+        self.deviations.zero_counts.next = false;
+        self.commands.clk.next = self.clk.val();
+        self.commands.rst.next = self.rst.val();
+        self.commands.tick.next = self.tick.val();
+        self.commands.turn.next = self.turn.q.val();
+        self.commands.compares.next = self.compares.q.val();
+        self.commands.number.next = self.command.val();
+        self.commands.limit.next = self.lost_command.val();
+        self.commands.zero_counts.next = true;
+        self.saturating.clk.next = self.clk.val();
+        self.saturating.rst.next = self.rst.val();
+        self.saturating.turn.next = self.turn.q.val();
+        self.saturating.compares.next = self.compares.q.val();
+        self.limited_nibbles.clk.next = self.clk.val();
+        self.limited_nibbles.rst.next = self.rst.val();
+        self.limited_nibbles.turn.next = self.turn.q.val();
+        self.limited_nibbles.word.next = self.limited_ticks.val();
+        self.saturating.ticks.next = self.limited_nibbles.part.val();
+        self.saturating.endless.next = false;
+        self.saturating.limit.next = self.saturation_ticks.val();
+        self.stands.next = self.was_on.q.val() & self.same_position.q.val() & self.commands.exceeds.val();
+        self.still.clk.next = self.clk.val();
+        self.still.rst.next = self.rst.val();
+        self.still.tick.next = self.tick.val();
+        self.still.turn.next = self.turn.q.val();
+        self.still.compares.next = self.compares.q.val();
+        self.still.limit.next = self.lost_ticks.val();
+        self.still.clears.next = self.over.val() & !self.stands.val();
+        comment!("A kick waits until the count has gone round");
+        self.is_kicked.next = self.kicked.val() | self.kick_waits.q.val();
+        self.kick_waits.d.next = self.is_kicked.val() & self.compares.q.val();
+        self.unkicked.clk.next = self.clk.val();
+        self.unkicked.rst.next = self.rst.val();
+        self.unkicked.tick.next = self.tick.val();
+        self.unkicked.turn.next = self.turn.q.val();
+        self.unkicked.compares.next = self.compares.q.val();
+        self.unkicked.limit.next = self.watchdog_ticks.val();
+        self.unkicked.clears.next = !self.compares.q.val() & (self.is_kicked.val() | !self.was_on.q.val());
 
         comment!("The causes of this tick");
         self.by_limit_plus.next = self.no_causes.val();
@@ -336,38 +355,44 @@ impl Logic for Monitors {
             self.by_soft_minus.next = self.of_soft_minus.val();
         }
         self.by_error_trip.next = self.no_causes.val();
-        if self.error_trip.val() {
+        if self.error_limit.exceeds.val() {
             self.by_error_trip.next = self.of_error_trip.val();
         }
         self.by_deviation_trip.next = self.no_causes.val();
-        if self.deviation_trip.val() {
+        if self.deviations.exceeds.val() {
             self.by_deviation_trip.next = self.of_deviation_trip.val();
         }
         self.by_saturation_trip.next = self.no_causes.val();
-        if self.saturated.q.val() {
+        if self.saturating.lasts.val() {
             self.by_saturation_trip.next = self.of_saturation_trip.val();
         }
         self.by_lost_trip.next = self.no_causes.val();
-        if self.lost_trip.val() {
+        if self.still.lasts.val() {
             self.by_lost_trip.next = self.of_lost_trip.val();
         }
         self.by_watchdog_trip.next = self.no_causes.val();
-        if self.watchdog_trip.val() {
+        if self.unkicked.lasts.val() {
             self.by_watchdog_trip.next = self.of_watchdog_trip.val();
         }
-        self.found.d.next = self.no_causes.val();
-        if self.looks.q.val() & self.was_on.q.val() {
-            self.found.d.next = self.by_limit_plus.val()
-                | self.by_limit_minus.val()
-                | self.by_soft_plus.val()
-                | self.by_soft_minus.val()
-                | self.by_error_trip.val()
-                | self.by_deviation_trip.val()
-                | self.by_saturation_trip.val()
-                | self.by_lost_trip.val()
-                | self.by_watchdog_trip.val();
+        self.shown.next = self.by_limit_plus.val()
+            | self.by_limit_minus.val()
+            | self.by_soft_plus.val()
+            | self.by_soft_minus.val()
+            | self.by_error_trip.val()
+            | self.by_deviation_trip.val()
+            | self.by_saturation_trip.val()
+            | self.by_lost_trip.val()
+            | self.by_watchdog_trip.val();
+        if self.looks.q.val() {
+            self.found.d.next = self.shown.val();
+            if self.again.q.val() {
+                self.found.d.next = self.shown.val() & self.found.q.val();
+            }
         }
-        self.causes.next = self.found.q.val();
+        self.causes.next = self.no_causes.val();
+        if self.tells.q.val() {
+            self.causes.next = self.found.q.val();
+        }
         self.captured_position.next = self.captured.q.val();
     }
 }

@@ -86,11 +86,23 @@ pub(super) struct States {
     at_rest: Signal<Local, Bit>,
     goes_on: Signal<Local, Bit>,
     goes_quiet: Signal<Local, Bit>,
+    ready_to_hold: Signal<Local, Bit>,
+    ready_to_fault: Signal<Local, Bit>,
+    hold_to_off: Signal<Local, Bit>,
+    hold_to_run: Signal<Local, Bit>,
+    hold_to_stop: Signal<Local, Bit>,
+    hold_to_fault: Signal<Local, Bit>,
+    run_to_hold: Signal<Local, Bit>,
+    run_to_stop: Signal<Local, Bit>,
+    run_to_fault: Signal<Local, Bit>,
+    stop_to_hold: Signal<Local, Bit>,
+    stop_to_fault: Signal<Local, Bit>,
     to_off: Signal<Local, Bit>,
     to_hold: Signal<Local, Bit>,
-    to_run: Signal<Local, Bit>,
     to_stop: Signal<Local, Bit>,
     to_fault: Signal<Local, Bit>,
+    begins_apply: Signal<Local, Bit>,
+    stays_stop: Signal<Local, Bit>,
     next_on: Signal<Local, Bit>,
     next_closing: Signal<Local, Bit>,
     next_state: Signal<Local, Bits<3>>,
@@ -183,11 +195,23 @@ impl Default for States {
             at_rest: Signal::default(),
             goes_on: Signal::default(),
             goes_quiet: Signal::default(),
+            ready_to_hold: Signal::default(),
+            ready_to_fault: Signal::default(),
+            hold_to_off: Signal::default(),
+            hold_to_run: Signal::default(),
+            hold_to_stop: Signal::default(),
+            hold_to_fault: Signal::default(),
+            run_to_hold: Signal::default(),
+            run_to_stop: Signal::default(),
+            run_to_fault: Signal::default(),
+            stop_to_hold: Signal::default(),
+            stop_to_fault: Signal::default(),
             to_off: Signal::default(),
             to_hold: Signal::default(),
-            to_run: Signal::default(),
             to_stop: Signal::default(),
             to_fault: Signal::default(),
+            begins_apply: Signal::default(),
+            stays_stop: Signal::default(),
             next_on: Signal::default(),
             next_closing: Signal::default(),
             next_state: Signal::default(),
@@ -260,74 +284,57 @@ impl Logic for States {
         self.goes_quiet.next = self.timed_out.val() & self.closing.q.val();
         self.closes.next = self.in_hold.val() & self.timed_out.val() & !self.enable.val() & !self.closing.q.val();
 
-        comment!("The transition table");
+        comment!("The transition table; a cut is a fault");
+        self.ready_to_fault.next = self.in_ready.val() & self.fault.val();
+        self.ready_to_hold.next = self.in_ready.val() & self.goes_on.val() & self.drive_ready.val() & !self.fault.val();
+        self.hold_to_fault.next = self.in_hold.val() & self.fault.val() & (self.cut.val() | self.closing.q.val());
+        self.hold_to_stop.next = self.in_hold.val() & self.fault.val() & !(self.cut.val() | self.closing.q.val());
+        self.hold_to_off.next = self.in_hold.val() & self.goes_quiet.val() & !self.fault.val();
+        self.hold_to_run.next = self.able.val() & self.goes_on.val() & self.wants_start.val() & !self.any_cause.val();
+        self.run_to_fault.next = self.in_run.val() & self.cut.val();
+        self.run_to_stop.next = self.in_run.val() & (self.fault.val() | self.asked.val()) & !self.cut.val();
+        self.run_to_hold.next = self.in_run.val() & self.done.val() & !self.fault.val() & !self.asked.val();
+        self.stop_to_fault.next = self.in_stop.val() & (self.cut.val() | (self.at_rest.val() & self.fault.val()));
+        self.stop_to_hold.next = self.in_stop.val() & self.at_rest.val() & !self.fault.val();
+        self.to_off.next = (self.in_ready.val() & !self.drive_ready.val() & !self.fault.val())
+            | self.hold_to_off.val()
+            | (self.in_fault.val() & self.clears.val() & !self.any_cause.val());
+        self.to_hold.next = self.ready_to_hold.val() | self.run_to_hold.val() | self.stop_to_hold.val();
+        self.to_stop.next = self.hold_to_stop.val() | self.run_to_stop.val();
+        self.to_fault.next =
+            self.ready_to_fault.val() | self.hold_to_fault.val() | self.run_to_fault.val() | self.stop_to_fault.val();
         self.next_state.next = self.state_q.q.val();
         if self.in_off.val() & self.drive_ready.val() & !self.any_cause.val() & !self.enable.val() {
             self.next_state.next = self.ready_state.val();
         }
-        if self.in_ready.val() {
-            if self.goes_on.val() {
-                self.next_state.next = self.hold_state.val();
-            }
-            if !self.drive_ready.val() {
-                self.next_state.next = self.off_state.val();
-            }
-            if self.fault.val() {
-                self.next_state.next = self.fault_state.val();
-            }
-        }
-        if self.in_hold.val() {
-            if self.goes_on.val() & self.wants_start.val() & self.able.val() & !self.any_cause.val() & !self.stop.val()
-            {
-                self.next_state.next = self.run_state.val();
-            }
-            if self.goes_quiet.val() {
-                self.next_state.next = self.off_state.val();
-            }
-            if self.fault.val() {
-                self.next_state.next = self.stop_state.val();
-                if self.cut.val() | self.closing.q.val() {
-                    self.next_state.next = self.fault_state.val();
-                }
-            }
-        }
-        if self.in_run.val() {
-            if self.done.val() {
-                self.next_state.next = self.hold_state.val();
-            }
-            if self.fault.val() | self.asked.val() {
-                self.next_state.next = self.stop_state.val();
-            }
-            if self.cut.val() {
-                self.next_state.next = self.fault_state.val();
-            }
-        }
-        if self.in_stop.val() {
-            if self.at_rest.val() {
-                self.next_state.next = self.hold_state.val();
-            }
-            if (self.at_rest.val() & self.fault.val()) | self.cut.val() {
-                self.next_state.next = self.fault_state.val();
-            }
-        }
-        if self.in_fault.val() & self.clears.val() & !self.any_cause.val() {
+        if self.to_off.val() {
             self.next_state.next = self.off_state.val();
         }
+        if self.to_hold.val() {
+            self.next_state.next = self.hold_state.val();
+        }
+        if self.hold_to_run.val() {
+            self.next_state.next = self.run_state.val();
+        }
+        if self.to_stop.val() {
+            self.next_state.next = self.stop_state.val();
+        }
+        if self.to_fault.val() {
+            self.next_state.next = self.fault_state.val();
+        }
         self.state_q.d.next = self.next_state.val();
-        self.to_off.next = self.next_state.val() == self.off_state.val();
-        self.to_hold.next = self.next_state.val() == self.hold_state.val();
-        self.to_run.next = self.next_state.val() == self.run_state.val();
-        self.to_stop.next = self.next_state.val() == self.stop_state.val();
-        self.to_fault.next = self.next_state.val() == self.fault_state.val();
 
         comment!("The timer of brake and shaper");
         self.timer.clk.next = self.clk.val();
         self.timer.rst.next = self.rst.val();
         self.timer.counts.next = self.tick.val() & (!self.in_stop.val() | self.segments_stopped.val());
+        self.begins_apply.next = self.stop_to_fault.val() | (self.closes.val() & !self.fault.val());
+        self.timer.clears.next =
+            self.ready_to_hold.val() | self.in_run.val() | self.to_stop.val() | self.begins_apply.val();
         self.timer.load_release.next = self.enabled_q.q.val();
         self.ran.d.next = self.in_run.val();
         self.timer.load_settle.next = self.ran.q.val() | self.stopping_q.q.val();
-        self.applies.d.next = (self.in_stop.val() & self.to_fault.val()) | (self.closes.val() & self.to_hold.val());
+        self.applies.d.next = self.begins_apply.val();
         self.timer.load_apply.next = self.applies.q.val();
         self.timer.brake_release_ticks.next = self.brake_release_ticks.val();
         self.timer.brake_apply_ticks.next = self.brake_apply_ticks.val();
@@ -335,12 +342,9 @@ impl Logic for States {
 
         comment!("Outputs and brake");
         self.next_on.next = self.on_q.q.val();
-        self.next_closing.next = self.closing.q.val() | (self.closes.val() & self.to_hold.val());
-        if self.in_ready.val() & self.to_hold.val() {
+        self.next_closing.next = self.closing.q.val() | self.begins_apply.val();
+        if self.ready_to_hold.val() {
             self.next_on.next = true;
-        }
-        if self.in_stop.val() & self.to_fault.val() {
-            self.next_closing.next = true;
         }
         if self.goes_quiet.val() | self.cut.val() {
             self.next_on.next = false;
@@ -349,20 +353,22 @@ impl Logic for States {
         self.on_q.d.next = self.next_on.val();
         self.closing.d.next = self.next_closing.val();
         self.released_q.d.next = self.next_on.val() & !self.next_closing.val();
-        self.opening.d.next = self.to_hold.val() & (self.in_ready.val() | self.opening.q.val());
+        self.opening.d.next = self.ready_to_hold.val()
+            | (self.opening.q.val() & !self.fault.val() & !self.goes_quiet.val() & !self.hold_to_run.val());
         self.starting_q.d.next = !self.next_on.val() | (self.starting_q.q.val() & !self.segments_valid.val());
 
         comment!("Pulses");
-        self.quick_stop_q.d.next = self.to_stop.val() & self.segments_play.val();
+        self.stays_stop.next = self.in_stop.val() & !self.stop_to_fault.val() & !self.stop_to_hold.val();
+        self.quick_stop_q.d.next = (self.to_stop.val() | self.stays_stop.val()) & self.segments_play.val();
         self.restart_q.d.next = self.in_hold.val() & self.segments_stopped.val();
         self.can_start_q.d.next = self.able.val() & self.enable.val() & !self.group_stop.val() & !self.any_cause.val();
-        self.enabled_q.d.next = self.in_ready.val() & self.to_hold.val();
-        self.started_q.d.next = self.in_hold.val() & self.to_run.val();
-        self.stopping_q.d.next = !self.in_stop.val() & self.to_stop.val();
-        self.halted_q.d.next = (self.in_run.val() | self.in_stop.val()) & self.to_hold.val();
-        self.disabled_q.d.next = self.in_hold.val() & self.to_off.val();
-        self.faulted_q.d.next = !self.in_fault.val() & self.to_fault.val();
-        self.refused_q.d.next = self.tick.val() & self.wants_start.val() & !(self.in_hold.val() & self.to_run.val());
+        self.enabled_q.d.next = self.ready_to_hold.val();
+        self.started_q.d.next = self.hold_to_run.val();
+        self.stopping_q.d.next = self.to_stop.val();
+        self.halted_q.d.next = self.run_to_hold.val() | self.stop_to_hold.val();
+        self.disabled_q.d.next = self.hold_to_off.val();
+        self.faulted_q.d.next = self.to_fault.val();
+        self.refused_q.d.next = self.tick.val() & self.wants_start.val() & !self.hold_to_run.val();
 
         self.state.next = self.state_q.q.val();
         self.on.next = self.on_q.q.val();

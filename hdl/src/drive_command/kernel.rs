@@ -47,9 +47,12 @@ pub(super) struct DriveCommand {
     drive_fault_pin: PinRegister,
     active: Dff<Bit>,
     expired: Dff<Bit>,
-    ticks_left: Dff<Bits<16>>,
+    ticks: Dff<Bits<16>>,
+    hold_ticks: Dff<Bits<16>>,
     backward: Dff<Bit>,
     masked: Dff<Bit>,
+    high_was_on: Dff<Bits<1>>,
+    low_was_on: Dff<Bits<1>>,
     high_clocks: Dff<Bits<16>>,
     low_clocks: Dff<Bits<16>>,
     high_result: Dff<Bits<16>>,
@@ -75,11 +78,18 @@ pub(super) struct DriveCommand {
     odd: Signal<Local, Bits<17>>,
     twice_size: Signal<Local, Bits<17>>,
     limit: Signal<Local, Bits<17>>,
+    counted: Signal<Local, Bits<16>>,
+    more: Signal<Local, Bits<16>>,
+    high_more: Signal<Local, Bits<1>>,
+    low_more: Signal<Local, Bits<1>>,
+    high_sum: Signal<Local, Bits<16>>,
+    low_sum: Signal<Local, Bits<16>>,
 
     ready_state: Constant<Bits<3>>,
+    no_ticks: Constant<Bits<16>>,
     one_tick: Constant<Bits<16>>,
     no_clock: Constant<Bits<16>>,
-    one_clock: Constant<Bits<16>>,
+    not_on: Constant<Bits<1>>,
     nothing: Constant<Bits<17>>,
     most: Constant<Bits<17>>,
     least: Constant<Bits<17>>,
@@ -135,9 +145,12 @@ impl Default for DriveCommand {
             drive_fault_pin: PinRegister::default(),
             active: Dff::default(),
             expired: Dff::default(),
-            ticks_left: Dff::default(),
+            ticks: Dff::default(),
+            hold_ticks: Dff::default(),
             backward: Dff::default(),
             masked: Dff::default(),
+            high_was_on: Dff::default(),
+            low_was_on: Dff::default(),
             high_clocks: Dff::default(),
             low_clocks: Dff::default(),
             high_result: Dff::default(),
@@ -162,10 +175,17 @@ impl Default for DriveCommand {
             odd: Signal::default(),
             twice_size: Signal::default(),
             limit: Signal::default(),
+            counted: Signal::default(),
+            more: Signal::default(),
+            high_more: Signal::default(),
+            low_more: Signal::default(),
+            high_sum: Signal::default(),
+            low_sum: Signal::default(),
             ready_state: Constant::new(from_u64(State::Ready as u64)),
+            no_ticks: Constant::new(from_u64(0)),
             one_tick: Constant::new(from_u64(1)),
             no_clock: Constant::new(from_u64(0)),
-            one_clock: Constant::new(from_u64(1)),
+            not_on: Constant::new(from_u64(0)),
             nothing: Constant::new(from_u64(0)),
             most: Constant::new(from_u64(0xffff)),
             least: Constant::new(from_u64(0x1_0000)),
@@ -194,9 +214,12 @@ impl Logic for DriveCommand {
             axis_trip_n_q,
             active,
             expired,
-            ticks_left,
+            ticks,
+            hold_ticks,
             backward,
             masked,
+            high_was_on,
+            low_was_on,
             high_clocks,
             low_clocks,
             high_result,
@@ -207,16 +230,20 @@ impl Logic for DriveCommand {
         self.test_changes.next = self.active.q.val() & (self.self_test.val() ^ self.masked.q.val());
         self.permitted.next =
             (self.axis_state.val() == self.ready_state.val()) & self.direct_enable.val() & !self.test_changes.val();
-        self.last_tick.next = self.tick.val() & (self.ticks_left.q.val() == self.one_tick.val());
+        comment!("Ticks since the kick; bit 0 is kept inverted");
+        self.counted.next = self.ticks.q.val() ^ self.one_tick.val();
+        self.more.next = self.counted.val() + self.one_tick.val();
+        self.last_tick.next = self.tick.val() & (self.counted.val() == self.hold_ticks.q.val());
         self.next_active.next = self.permitted.val() & self.active.q.val() & !self.last_tick.val();
         self.expired.d.next = self.permitted.val() & self.active.q.val() & self.last_tick.val();
         if self.tick.val() {
-            self.ticks_left.d.next = self.ticks_left.q.val() - self.one_tick.val();
+            self.ticks.d.next = self.more.val() ^ self.one_tick.val();
         }
         if self.direct_kick.val() {
             self.next_active.next = self.permitted.val() & self.direct_hold_ticks.val().any();
             self.expired.d.next = false;
-            self.ticks_left.d.next = self.direct_hold_ticks.val();
+            self.ticks.d.next = self.no_ticks.val();
+            self.hold_ticks.d.next = self.direct_hold_ticks.val();
         }
         self.active.d.next = self.next_active.val();
 
@@ -299,27 +326,33 @@ impl Logic for DriveCommand {
             }
         }
 
-        comment!("Clocks of a gate within a period; a valley clears");
-        comment!("all but the bit of its own clock");
-        if self.gates.val().get_bit(0) & !self.high_clocks.q.val().all() {
-            self.high_clocks.d.next = self.high_clocks.q.val() + 1;
+        comment!("Clocks of a gate in a period; the last clock's is");
+        comment!("added as it is counted, so that a valley clears");
+        self.high_was_on.d.next = self.not_on.val();
+        self.low_was_on.d.next = self.not_on.val();
+        if self.masked.q.val() {
+            self.high_was_on.d.next = self.gates.val().get_bits::<1>(0);
+            self.low_was_on.d.next = self.gates.val().get_bits::<1>(1);
         }
-        if self.gates.val().get_bit(1) & !self.low_clocks.q.val().all() {
-            self.low_clocks.d.next = self.low_clocks.q.val() + 1;
+        self.high_more.next = self.high_was_on.q.val();
+        if self.high_clocks.q.val().all() {
+            self.high_more.next = self.not_on.val();
         }
+        self.low_more.next = self.low_was_on.q.val();
+        if self.low_clocks.q.val().all() {
+            self.low_more.next = self.not_on.val();
+        }
+        self.high_sum.next = self.high_clocks.q.val() + bit_cast::<16, 1>(self.high_more.val());
+        self.low_sum.next = self.low_clocks.q.val() + bit_cast::<16, 1>(self.low_more.val());
+        self.high_clocks.d.next = self.high_sum.val();
+        self.low_clocks.d.next = self.low_sum.val();
         if self.valley.val() | !self.masked.q.val() {
             self.high_clocks.d.next = self.no_clock.val();
             self.low_clocks.d.next = self.no_clock.val();
-            if self.gates.val().get_bit(0) & self.masked.q.val() {
-                self.high_clocks.d.next = self.one_clock.val();
-            }
-            if self.gates.val().get_bit(1) & self.masked.q.val() {
-                self.low_clocks.d.next = self.one_clock.val();
-            }
         }
         if self.valley.val() & self.masked.q.val() {
-            self.high_result.d.next = self.high_clocks.q.val();
-            self.low_result.d.next = self.low_clocks.q.val();
+            self.high_result.d.next = self.high_sum.val();
+            self.low_result.d.next = self.low_sum.val();
         }
 
         comment!("Outputs");

@@ -16,8 +16,8 @@ use super::table::pick;
 const MOOD_CLOCKS: u64 = 1_500;
 
 /// Clocks in which nothing happens but ticks, and the watchdog comes to its end after [`CALM_TICKS`].
-const CALM: Range<u64> = 300_000..340_000;
-const CALM_TICKS: u16 = 1 << 13;
+const CALM: Range<u64> = 300_000..350_000;
+const CALM_TICKS: u16 = 1 << 12;
 
 /// What holds for a while.
 #[derive(Debug, Clone, Copy, Default)]
@@ -91,7 +91,7 @@ impl AxisRandom {
     fn new_mood(&mut self) {
         let rng = &mut self.rng;
         self.mood = Mood {
-            tick_pace: *pick(rng, &[LEAST_TICK_CLOCKS, 4, 9, 9, 12, 30]),
+            tick_pace: *pick(rng, &[LEAST_TICK_CLOCKS, LEAST_TICK_CLOCKS, 11, 12, 15, 30]),
             request_pace: *pick(rng, &[5, 60, 300, 300]),
             fault_pace: *pick(rng, &[40, 500, 5_000, 50_000]),
             glitch_pace: *pick(rng, &[100, 3_000, 30_000]),

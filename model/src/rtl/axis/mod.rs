@@ -51,10 +51,10 @@ pub const CLEAR_CLOCKS: u8 = 8;
 pub const PRIMING_CLOCKS: u8 = 4;
 /// Clocks from a line to the state, beside `filter_clocks`: two of the synchroniser, the filter's, the state's.
 pub const LINE_CLOCKS: u32 = 4;
-/// Clocks from a tick to the state that follows from what is watched at it: taken, compared, the state's.
-pub const WATCH_CLOCKS: u32 = 3;
-/// Clocks from a tick to the next one, at least: the timer's.
-pub const LEAST_TICK_CLOCKS: u32 = 3;
+/// Clocks from a tick to the state that follows from what is watched at it: two rounds of five, what they found, the state's.
+pub const WATCH_CLOCKS: u32 = 12;
+/// Clocks from a tick to the next one, at least: two rounds of what is watched.
+pub const LEAST_TICK_CLOCKS: u32 = 10;
 
 /// The supervisor, cycle accurate at its ports.
 #[derive(Debug, Clone)]

@@ -1,13 +1,18 @@
 //! What is watched at ticks: limits, soft limits, errors against their limits, and what has lasted too long.
 //!
-//! At the tick all is taken as it is ([`Shown`]); a clock later it is compared, and one more later the causes are there:
-//! [`WATCH_CLOCKS`](super::WATCH_CLOCKS) with the state's.
+//! At the tick levels are taken as they are ([`Shown`]). Numbers follow byte by byte ([`Taken`]) and are compared in two rounds,
+//! so that a limit that is written meanwhile, half old and half new, is no cause: what both have found is. The causes are
+//! there [`WATCH_CLOCKS`](super::WATCH_CLOCKS) after the tick, with the state's.
 
 use super::cause::Cause;
 use super::inputs::Inputs;
 
+/// Clocks after the tick in which a round is over: what it has found is known.
+const FIRST_ROUND: u8 = 5;
+const SECOND_ROUND: u8 = 10;
+
 /// What a tick shows.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
 struct Shown {
     /// The outputs are on.
     on: bool,
@@ -15,46 +20,77 @@ struct Shown {
     ways: [bool; 2],
     /// The shaped velocity is.
     shaped_ways: [bool; 2],
-    /// Limit +, limit −, soft limit +, soft limit − are passed.
-    passed: [bool; 4],
+    /// On limit +, limit −.
+    on_limits: [bool; 2],
     /// The position is that of the tick before.
     same_position: bool,
-    /// The command was cut for too many ticks in a row.
-    saturated: bool,
-    /// Sizes of e, deviation and command.
-    sizes: [u32; 3],
+    /// e, deviation and command are negative.
+    negative: [bool; 3],
 }
 
 impl Shown {
     /// `on_limits` are the filtered switches.
     fn new(inputs: &Inputs, on_limits: [bool; 2], on: bool, captured_position: i32) -> Self {
         let ways = |velocity: i32| [velocity > 0, velocity < 0];
-        let (plus, minus) = (inputs.soft_limit_plus, inputs.soft_limit_minus);
-        let watched = plus != 0 || minus != 0;
         Self {
             on,
             ways: ways(inputs.command_velocity),
             shaped_ways: ways(inputs.reference_velocity),
-            passed: [
-                on_limits[0],
-                on_limits[1],
-                watched && inputs.reference_position > plus,
-                watched && inputs.reference_position < minus,
-            ],
+            on_limits,
             same_position: inputs.position == captured_position,
-            saturated: lasts(inputs.limited_ticks, inputs.saturation_ticks),
-            sizes: [inputs.error, inputs.deviation, inputs.command].map(size),
+            negative: [inputs.error, inputs.deviation, inputs.command].map(i32::is_negative),
         }
     }
 }
 
-/// What a tick counts, two clocks later.
-#[derive(Debug, Clone, PartialEq, Eq)]
-struct Counts {
-    /// Outputs on.
-    on: bool,
-    /// A command and no count.
-    stands: bool,
+/// Numbers and limits of a round, a byte of each in a clock; of those of 16 bits a nibble.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+struct Taken {
+    reference_position: u32,
+    soft_limits: [u32; 2],
+    /// e, deviation and command.
+    numbers: [u32; 3],
+    /// Their limits.
+    limits: [u32; 3],
+    limited_ticks: u16,
+    /// Of saturation, a lost encoder and the watchdog.
+    most_ticks: [u16; 3],
+}
+
+impl Taken {
+    /// One clock: byte `part`, the lowest is 0.
+    fn take(&mut self, inputs: &Inputs, part: u8) {
+        let mask = 0xff << (8 * part);
+        let byte = |taken: &mut u32, word: u32| *taken = *taken & !mask | word & mask;
+        byte(&mut self.reference_position, inputs.reference_position as u32);
+        let soft_limits = [inputs.soft_limit_plus, inputs.soft_limit_minus];
+        let numbers = [inputs.error, inputs.deviation, inputs.command];
+        let limits = [
+            inputs.following_error_limit,
+            inputs.deviation_limit,
+            inputs.lost_command,
+        ];
+        self.soft_limits
+            .iter_mut()
+            .zip(soft_limits)
+            .for_each(|(taken, word)| byte(taken, word as u32));
+        self.numbers
+            .iter_mut()
+            .zip(numbers)
+            .for_each(|(taken, word)| byte(taken, word as u32));
+        self.limits
+            .iter_mut()
+            .zip(limits)
+            .for_each(|(taken, word)| byte(taken, word));
+        let mask = 0xf << (4 * part);
+        let nibble = |taken: &mut u16, half: u16| *taken = *taken & !mask | half & mask;
+        nibble(&mut self.limited_ticks, inputs.limited_ticks);
+        let most_ticks = [inputs.saturation_ticks, inputs.lost_ticks, inputs.watchdog_ticks];
+        self.most_ticks
+            .iter_mut()
+            .zip(most_ticks)
+            .for_each(|(taken, half)| nibble(taken, half));
+    }
 }
 
 /// Registers of what is watched, all quiet soon after a tick.
@@ -64,21 +100,52 @@ pub(super) struct Monitors {
     pub(super) captured_position: i32,
     /// Causes that a tick has found.
     pub(super) found: u16,
-    /// A clock after a tick.
-    shown: Option<Shown>,
-    /// Two clocks after it.
-    counts: Option<Counts>,
+    /// Clocks since the tick; 0 once the second round is over.
+    clocks: u8,
+    shown: Shown,
+    taken: Taken,
+    /// Causes that the first round has found.
+    first_found: u16,
     /// Limit +, limit −, soft limit +, soft limit − were passed at the last tick.
     were_passed: [bool; 4],
     /// Ticks in a row with a command and without a count.
     still_ticks: u16,
     /// Ticks since the last kick.
     unkicked_ticks: u16,
+    /// A kick during a comparison.
+    kick_waits: bool,
 }
 
 impl Monitors {
-    /// The causes of a tick with the outputs on.
-    fn causes(&self, inputs: &Inputs, shown: &Shown) -> u16 {
+    /// Limit +, limit −, soft limit +, soft limit − are passed.
+    fn passed(&self) -> [bool; 4] {
+        let [plus, minus] = self.taken.soft_limits.map(|limit| limit as i32);
+        let reference = self.taken.reference_position as i32;
+        let watched = plus != 0 || minus != 0;
+        let [on_plus, on_minus] = self.shown.on_limits;
+        [
+            on_plus,
+            on_minus,
+            watched && reference > plus,
+            watched && reference < minus,
+        ]
+    }
+
+    /// e, deviation, command: is its size above its limit?
+    fn exceeds(&self, at: usize) -> bool {
+        let word = self.taken.numbers[at];
+        let size = if self.shown.negative[at] { !word } else { word };
+        size > self.taken.limits[at]
+    }
+
+    /// A command above its threshold, and no count.
+    fn stands(&self) -> bool {
+        self.shown.on && self.shown.same_position && self.exceeds(2)
+    }
+
+    /// The causes that a round finds.
+    fn causes(&self) -> u16 {
+        let shown = &self.shown;
         let newly = |at: usize| !self.were_passed[at];
         let ([plus, minus], [shaped_plus, shaped_minus]) = (shown.ways, shown.shaped_ways);
         // A switch bounces while the axis leaves it; a shaped position does not.
@@ -88,18 +155,19 @@ impl Monitors {
             plus || newly(2),
             minus || newly(3),
         ];
-        let exceeds = |size: u32, limit: u32| limit != 0 && size > limit;
-        let [error, deviation, _] = shown.sizes;
+        let passed = self.passed();
+        let exceeds = |at: usize| self.taken.limits[at] != 0 && self.exceeds(at);
+        let [saturation, lost, watchdog] = self.taken.most_ticks;
         let found = [
-            (Cause::LimitPlus, shown.passed[0] && limit_plus),
-            (Cause::LimitMinus, shown.passed[1] && limit_minus),
-            (Cause::SoftLimitPlus, shown.passed[2] && soft_plus),
-            (Cause::SoftLimitMinus, shown.passed[3] && soft_minus),
-            (Cause::FollowingError, exceeds(error, inputs.following_error_limit)),
-            (Cause::Deviation, exceeds(deviation, inputs.deviation_limit)),
-            (Cause::Saturation, shown.saturated),
-            (Cause::EncoderLost, lasts(self.still_ticks, inputs.lost_ticks)),
-            (Cause::Watchdog, lasts(self.unkicked_ticks, inputs.watchdog_ticks)),
+            (Cause::LimitPlus, passed[0] && limit_plus),
+            (Cause::LimitMinus, passed[1] && limit_minus),
+            (Cause::SoftLimitPlus, passed[2] && soft_plus),
+            (Cause::SoftLimitMinus, passed[3] && soft_minus),
+            (Cause::FollowingError, exceeds(0)),
+            (Cause::Deviation, exceeds(1)),
+            (Cause::Saturation, lasts(self.taken.limited_ticks, saturation)),
+            (Cause::EncoderLost, lasts(self.still_ticks, lost)),
+            (Cause::Watchdog, lasts(self.unkicked_ticks, watchdog)),
         ];
         let bits = found.map(|(cause, is)| if is { cause.bit() } else { 0 });
         bits.into_iter().fold(0, |all, bit| all | bit)
@@ -107,33 +175,44 @@ impl Monitors {
 
     /// One clock.
     pub(super) fn clock(&mut self, inputs: &Inputs, on_limits: [bool; 2], on: bool, kicked: bool) {
-        let shown = self.shown.take();
-        self.found = match &shown {
-            Some(shown) if shown.on => self.causes(inputs, shown),
-            _ => 0,
-        };
-        if let Some(counts) = self.counts.take() {
-            self.still_ticks = counted(self.still_ticks, counts.stands);
-            self.unkicked_ticks = counted(self.unkicked_ticks, counts.on);
+        let clocks = self.clocks;
+        self.found = 0;
+        if clocks == FIRST_ROUND {
+            self.first_found = self.causes();
+            self.still_ticks = self.still_ticks.saturating_add(1);
+            self.unkicked_ticks = self.unkicked_ticks.saturating_add(1);
         }
-        if kicked {
+        if clocks == SECOND_ROUND {
+            if self.shown.on {
+                self.found = self.causes() & self.first_found;
+            }
+            self.were_passed = self.passed();
+            if !self.stands() {
+                self.still_ticks = 0;
+            }
+        }
+        // While counts are compared, a kick waits.
+        let compares = matches!(clocks, 1..=4 | 6..=9);
+        let kicked = kicked || self.kick_waits;
+        self.kick_waits = kicked && compares;
+        if !compares && (kicked || !self.shown.on) {
             self.unkicked_ticks = 0;
         }
-        if let Some(Shown {
-            on,
-            passed,
-            same_position,
-            sizes: [_, _, command],
-            ..
-        }) = shown
-        {
-            self.were_passed = passed;
-            let stands = on && same_position && command > inputs.lost_command;
-            self.counts = Some(Counts { on, stands });
+        match clocks {
+            1..=3 => self.taken.take(inputs, clocks),
+            5..=8 => self.taken.take(inputs, clocks - FIRST_ROUND),
+            _ => {}
         }
+        self.clocks = if matches!(clocks, 0 | SECOND_ROUND) {
+            0
+        } else {
+            clocks + 1
+        };
         if inputs.tick {
-            self.shown = Some(Shown::new(inputs, on_limits, on, self.captured_position));
+            self.taken.take(inputs, 0);
+            self.shown = Shown::new(inputs, on_limits, on, self.captured_position);
             self.captured_position = inputs.position;
+            self.clocks = 1;
         }
     }
 }
@@ -141,14 +220,4 @@ impl Monitors {
 /// Has it lasted too long? 0: not watched.
 fn lasts(ticks: u16, limit: u16) -> bool {
     limit != 0 && ticks >= limit
-}
-
-/// One more tick, up to the end of the word; or none.
-fn counted(ticks: u16, goes_on: bool) -> u16 {
-    if goes_on { ticks.saturating_add(1) } else { 0 }
-}
-
-/// Distance from the middle between −1 and 0, cut: `value`, or −`value` − 1. It needs no carry in hardware.
-fn size(value: i32) -> u32 {
-    (value ^ (value >> 31)) as u32
 }

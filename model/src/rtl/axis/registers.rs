@@ -146,7 +146,8 @@ impl Registers {
         let kicked = inputs.kick && inputs.kick_word == KICK;
         let on_limits = self.on_limits();
         self.monitors.clock(inputs, on_limits, was_on, kicked);
-        let ready = self.ready();
+        // Nothing to filter: a level is its line.
+        let filters = self.ready() && inputs.filter_clocks != 0;
         let pins = [
             inputs.emergency_stop_n,
             inputs.limit_plus_n,
@@ -155,7 +156,7 @@ impl Registers {
             inputs.home,
         ];
         for (line, pin) in self.lines.iter_mut().zip(pins) {
-            line.clock(pin, inputs.filter_clocks, ready);
+            line.clock(pin, inputs.filter_clocks, filters);
         }
         self.primed = (self.primed + 1).min(PRIMING_CLOCKS);
         self.clear_left = match (inputs.clear_faults, self.clear_left) {

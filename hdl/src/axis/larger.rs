@@ -1,0 +1,95 @@
+//! Is a number larger than another? Byte by byte, lowest first: a bit is a table of both numbers' bits and of what is below.
+
+use crate::prelude::*;
+
+/// After the last byte; known as long as nothing `compares`, and forgotten a clock later.
+#[derive(LogicBlock, Default)]
+pub(super) struct Larger {
+    pub(super) clk: Signal<In, Clock>,
+    pub(super) rst: Signal<In, Bit>,
+    /// A byte is there.
+    pub(super) compares: Signal<In, Bit>,
+    /// It is the highest of signed numbers.
+    pub(super) signs: Signal<In, Bit>,
+    /// The number is the complement of its bytes.
+    pub(super) inverts: Signal<In, Bit>,
+    pub(super) number: Signal<In, Bits<8>>,
+    pub(super) other: Signal<In, Bits<8>>,
+    pub(super) larger: Signal<Out, Bit>,
+
+    larger_q: Dff<Bit>,
+
+    one: Signal<Local, Bits<8>>,
+    neither: Signal<Local, Bits<8>>,
+    above: Signal<Local, Bits<8>>,
+    above_0: Signal<Local, Bit>,
+    above_1: Signal<Local, Bit>,
+    above_2: Signal<Local, Bit>,
+    above_3: Signal<Local, Bit>,
+    above_4: Signal<Local, Bit>,
+    above_5: Signal<Local, Bit>,
+    above_6: Signal<Local, Bit>,
+    higher: Signal<Local, Bit>,
+    not_lower: Signal<Local, Bit>,
+}
+
+impl Logic for Larger {
+    #[hdl_gen]
+    fn update(&mut self) {
+        comment!("@module axis_larger");
+        comment!("@about Is it larger? Lowest byte first.");
+        dff_setup!(self, clk, larger_q);
+        self.one.next = self.number.val();
+        if self.inverts.val() {
+            self.one.next = !self.number.val();
+        }
+        comment!("A bit that is larger, one that is not smaller");
+        self.above.next = self.one.val() & !self.other.val();
+        self.neither.next = self.one.val() | !self.other.val();
+        self.above_0.next = self.above.val().get_bit(0) | (self.neither.val().get_bit(0) & self.larger_q.q.val());
+        self.above_1.next = self.above.val().get_bit(1) | (self.neither.val().get_bit(1) & self.above_0.val());
+        self.above_2.next = self.above.val().get_bit(2) | (self.neither.val().get_bit(2) & self.above_1.val());
+        self.above_3.next = self.above.val().get_bit(3) | (self.neither.val().get_bit(3) & self.above_2.val());
+        self.above_4.next = self.above.val().get_bit(4) | (self.neither.val().get_bit(4) & self.above_3.val());
+        self.above_5.next = self.above.val().get_bit(5) | (self.neither.val().get_bit(5) & self.above_4.val());
+        self.above_6.next = self.above.val().get_bit(6) | (self.neither.val().get_bit(6) & self.above_5.val());
+        comment!("A sign counts the other way");
+        self.higher.next = self.above.val().get_bit(7);
+        self.not_lower.next = self.neither.val().get_bit(7);
+        if self.signs.val() {
+            self.higher.next = !self.neither.val().get_bit(7);
+            self.not_lower.next = !self.above.val().get_bit(7);
+        }
+        self.larger_q.d.next = self.higher.val() | (self.not_lower.val() & self.above_6.val());
+        if !self.compares.val() {
+            self.larger_q.d.next = false;
+        }
+        self.larger.next = self.larger_q.q.val();
+    }
+}
+
+/// Was any byte other than 0? As [`Larger`].
+#[derive(LogicBlock, Default)]
+pub(super) struct Nonzero {
+    pub(super) clk: Signal<In, Clock>,
+    pub(super) rst: Signal<In, Bit>,
+    pub(super) compares: Signal<In, Bit>,
+    pub(super) part: Signal<In, Bits<8>>,
+    pub(super) nonzero: Signal<Out, Bit>,
+
+    nonzero_q: Dff<Bit>,
+}
+
+impl Logic for Nonzero {
+    #[hdl_gen]
+    fn update(&mut self) {
+        comment!("@module axis_nonzero");
+        comment!("@about Is any byte other than 0?");
+        dff_setup!(self, clk, nonzero_q);
+        self.nonzero_q.d.next = self.nonzero_q.q.val() | self.part.val().any();
+        if !self.compares.val() {
+            self.nonzero_q.d.next = false;
+        }
+        self.nonzero.next = self.nonzero_q.q.val();
+    }
+}

@@ -1,0 +1,61 @@
+//! A number against a limit of its size. The size of a negative x is -x - 1: its complement, without a carry.
+
+use super::bytes::Bytes;
+use super::larger::{Larger, Nonzero};
+use crate::prelude::*;
+
+#[derive(LogicBlock, Default)]
+pub(super) struct SizeLimit {
+    pub(super) clk: Signal<In, Clock>,
+    pub(super) rst: Signal<In, Bit>,
+    pub(super) tick: Signal<In, Bit>,
+    pub(super) turn: Signal<In, Bits<2>>,
+    pub(super) compares: Signal<In, Bit>,
+    pub(super) number: Signal<In, Signed<32>>,
+    pub(super) limit: Signal<In, Bits<32>>,
+    /// A limit of 0 is one; otherwise it is none.
+    pub(super) zero_counts: Signal<In, Bit>,
+    pub(super) exceeds: Signal<Out, Bit>,
+
+    number_bytes: Bytes,
+    limit_bytes: Bytes,
+    larger: Larger,
+    limited: Nonzero,
+
+    negative: Dff<Bit>,
+
+    number_bits: Signal<Local, Bits<32>>,
+}
+
+impl Logic for SizeLimit {
+    #[hdl_gen]
+    fn update(&mut self) {
+        comment!("@module axis_size_limit");
+        comment!("@about A number's size against its limit.");
+        dff_setup!(self, clk, negative);
+        self.number_bits.next = unsigned_cast(self.number.val());
+        if self.tick.val() {
+            self.negative.d.next = self.number_bits.val().get_bit(31);
+        }
+        self.number_bytes.clk.next = self.clk.val();
+        self.number_bytes.rst.next = self.rst.val();
+        self.number_bytes.turn.next = self.turn.val();
+        self.number_bytes.word.next = self.number_bits.val();
+        self.limit_bytes.clk.next = self.clk.val();
+        self.limit_bytes.rst.next = self.rst.val();
+        self.limit_bytes.turn.next = self.turn.val();
+        self.limit_bytes.word.next = self.limit.val();
+        self.larger.clk.next = self.clk.val();
+        self.larger.rst.next = self.rst.val();
+        self.larger.compares.next = self.compares.val();
+        self.larger.signs.next = false;
+        self.larger.inverts.next = self.negative.q.val();
+        self.larger.number.next = self.number_bytes.part.val();
+        self.larger.other.next = self.limit_bytes.part.val();
+        self.limited.clk.next = self.clk.val();
+        self.limited.rst.next = self.rst.val();
+        self.limited.compares.next = self.compares.val();
+        self.limited.part.next = self.limit_bytes.part.val();
+        self.exceeds.next = self.larger.larger.val() & (self.limited.nonzero.val() | self.zero_counts.val());
+    }
+}
