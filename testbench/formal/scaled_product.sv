@@ -1,11 +1,11 @@
-// scaled_product: after ten clocks of `shift` the product is shifted by the gain's distance, whatever that is, and rounds half up.
+// scaled_product: after 31 clocks of `shift` the product is shifted by the gain's distance, whatever that is, and rounds half up.
 //
 // Proven for all inputs in every clock, resets included, with all 51 bits. The multipliers are left out: a product is
 // anything. Claimed from a `read` on, with a `load` before the first `shift`, until the next `read` or `load`: the
 // sequencer's proof has that each step is so.
 //
 //   shifted           scaled = the doubled product, shifted right with its sign, by what has been done of the distance
-//   ten_clocks        after ten clocks of `shift` all of the distance is done; and then it stays
+//   one_a_clock       a clock of `shift` does one bit of it, until all is done; and then it stays: in 31 clocks any distance
 //   half_up           then (scaled + 1) >>> 1 is the product over 2^distance, rounded half up: one rounding, of the whole
 //   known_*           invariants: what has come so far, and what is left to do
 //
@@ -16,19 +16,19 @@ module scaled_product_properties (
     input wire               read,
     input wire               load,
     input wire               shift,
+    input wire               unit,
     input wire [22:0]        gain,
     input wire signed [50:0] scaled,
     (* peek = "product" *) input wire [49:0] product,
-    (* peek = "fours" *) input wire [2:0] fours,
-    (* peek = "ones" *) input wire [1:0] ones
+    (* peek = "left" *) input wire [4:0] still_left
 );
-    localparam [3:0] ENOUGH = 4'd10;
+    localparam [5:0] ENOUGH = 6'd31;
 
     reg               is_read = 1'b0;
     reg               is_loaded = 1'b0;
     reg [4:0]         distance = 5'd0;
     reg [4:0]         moved = 5'd0;
-    reg [3:0]         clocks = 4'd0;
+    reg [5:0]         clocks = 6'd0;
     reg signed [51:0] whole = 52'sd0;
 
     wire [4:0] left = distance - moved;
@@ -39,18 +39,18 @@ module scaled_product_properties (
         end else if (read) begin
             is_read <= 1'b1;
             is_loaded <= 1'b0;
-            distance <= gain[22:18];
+            // What is added as it is has a shift of its own.
+            distance <= unit ? 5'd8 : gain[22:18];
             moved <= 5'd0;
         end else if (load) begin
             is_read <= 1'b0;
             is_loaded <= is_read & !shift;
-            clocks <= 4'd0;
+            clocks <= 6'd0;
             whole <= {product[49], product, 1'b0};
         end else if (shift) begin
             is_read <= 1'b0;
-            if (clocks != ENOUGH) clocks <= clocks + 4'd1;
-            if (left[4:2] != 3'd0) moved <= moved + 5'd4;
-            else if (left[1:0] != 2'd0) moved <= moved + 5'd1;
+            if (clocks != ENOUGH) clocks <= clocks + 6'd1;
+            if (left != 5'd0) moved <= moved + 5'd1;
         end
     end
 
@@ -60,19 +60,14 @@ module scaled_product_properties (
     wire signed [51:0] half = distance == 5'd0 ? 52'sd0 : 52'sd1 <<< distance;
     wire signed [51:0] wanted = ((whole + half) >>> 1) >>> distance;
     wire signed [51:0] so_far = whole >>> moved;
-    wire [3:0]         in_fours = {1'b0, distance[4:2]};
-    wire [3:0]         in_ones = {2'b00, distance[1:0]};
     always @(*) begin
         known_state: assert (!(is_read & is_loaded));
-        known_left: assert (!(is_read | is_loaded) | ({fours, ones} == left & moved <= distance & (is_loaded | moved == 5'd0)));
+        known_left: assert (!(is_read | is_loaded) | (still_left == left & moved <= distance & (is_loaded | moved == 5'd0)));
         known_whole: assert (!is_loaded | (whole[51] == whole[50] & !whole[0]));
-        known_pace: assert (!is_loaded | clocks > in_fours | {1'b0, fours} == in_fours - clocks);
-        known_ones: assert (!is_loaded | (clocks <= in_fours ? ones == distance[1:0] :
-            (fours == 3'd0 & (clocks >= in_fours + in_ones ? ones == 2'd0 : {2'b00, ones} == in_fours + in_ones - clocks))));
         known_clocks: assert (!is_loaded | clocks <= ENOUGH);
         shifted: assert (!is_loaded | wide_scaled == so_far);
-        ten_clocks: assert (!is_loaded | clocks != ENOUGH | moved == distance);
-        half_up: assert (!is_loaded | clocks != ENOUGH | rounded == wanted);
+        one_a_clock: assert (!is_loaded | {1'b0, moved} == (clocks < {1'b0, distance} ? clocks : {1'b0, distance}));
+        half_up: assert (!is_loaded | moved != distance | rounded == wanted);
     end
 
     always @(*) begin

@@ -4,19 +4,21 @@
 //!
 //! | part | what it does |
 //! |---|---|
-//! | `sequencer` | 13 steps of 16 clocks |
-//! | `tracking` | e and de, saturated |
+//! | `sequencer` | 17 steps of up to 39 clocks |
+//! | `tracking` | e, saturated |
+//! | `operands` | what a step multiplies |
 //! | `scaled_product` | the one multiplier, and the shift after it |
 //! | `accumulator` | sums of products, cut to words |
 //! | `integral` | ∫e, and when it is frozen |
-//! | `limiter` | the command, and for how long it is cut |
+//! | `limiter` | the word kept through a pass; the command, and for how long it is cut |
 //! | `sticky` | flags of one side |
-//! | `kernel` | what a step multiplies, and what becomes of its sum |
+//! | `kernel` | what becomes of a sum |
 
 mod accumulator;
 mod integral;
 mod kernel;
 mod limiter;
+mod operands;
 mod pins;
 mod scaled_product;
 mod sequencer;

@@ -1,7 +1,6 @@
-//! Sticky flags of one side: seven bits, set wins over clear. A flag shows two clocks after its cut was seen.
+//! Sticky flags of one side: seven bits, set wins over clear.
 //!
-//! e and de are taken together, in the clock of `start`; everything else is one `what` at a time. A register is behind them,
-//! since what tells a cut from a sum, or from a difference, is a clock's work.
+//! e may be cut in any clock; everything else is one `what` at a time.
 
 use crate::prelude::*;
 use posicast_model::rtl::sliding_mode::Saturation;
@@ -12,22 +11,18 @@ pub(super) struct Sticky {
     pub(super) rst: Signal<In, Bit>,
     pub(super) clear_flags: Signal<In, Bit>,
     pub(super) tracking_error: Signal<In, Bit>,
-    pub(super) error_rate: Signal<In, Bit>,
     pub(super) what: Signal<In, Bits<7>>,
     pub(super) is_cut: Signal<In, Bit>,
     pub(super) flags: Signal<Out, Bits<7>>,
 
-    found: Dff<Bits<7>>,
     flags_q: Dff<Bits<7>>,
 
     kept: Signal<Local, Bits<7>>,
     by_error: Signal<Local, Bits<7>>,
-    by_rate: Signal<Local, Bits<7>>,
     by_sum: Signal<Local, Bits<7>>,
 
     nothing: Constant<Bits<7>>,
     of_error: Constant<Bits<7>>,
-    of_rate: Constant<Bits<7>>,
 }
 
 impl Default for Sticky {
@@ -37,19 +32,15 @@ impl Default for Sticky {
             rst: Signal::default(),
             clear_flags: Signal::default(),
             tracking_error: Signal::default(),
-            error_rate: Signal::default(),
             what: Signal::default(),
             is_cut: Signal::default(),
             flags: Signal::default(),
-            found: Dff::default(),
             flags_q: Dff::default(),
             kept: Signal::default(),
             by_error: Signal::default(),
-            by_rate: Signal::default(),
             by_sum: Signal::default(),
             nothing: Constant::new(from_u64(0)),
             of_error: Constant::new(from_u64(u64::from(Saturation::Error.bit()))),
-            of_rate: Constant::new(from_u64(u64::from(Saturation::ErrorRate.bit()))),
         }
     }
 }
@@ -59,7 +50,7 @@ impl Logic for Sticky {
     fn update(&mut self) {
         comment!("@module sticky");
         comment!("@about Sticky flags: set wins over clear.");
-        dff_setup!(self, clk, found, flags_q);
+        dff_setup!(self, clk, flags_q);
 
         self.kept.next = self.flags_q.q.val();
         if self.clear_flags.val() {
@@ -69,16 +60,11 @@ impl Logic for Sticky {
         if self.tracking_error.val() {
             self.by_error.next = self.of_error.val();
         }
-        self.by_rate.next = self.nothing.val();
-        if self.error_rate.val() {
-            self.by_rate.next = self.of_rate.val();
-        }
         self.by_sum.next = self.nothing.val();
         if self.is_cut.val() {
             self.by_sum.next = self.what.val();
         }
-        self.found.d.next = self.by_error.val() | self.by_rate.val() | self.by_sum.val();
-        self.flags_q.d.next = self.kept.val() | self.found.q.val();
+        self.flags_q.d.next = self.kept.val() | self.by_error.val() | self.by_sum.val();
         self.flags.next = self.flags_q.q.val();
     }
 }

@@ -130,10 +130,10 @@ mod tests {
     #[test]
     fn unit_a_schedule_must_end_before_the_next_tick() {
         let schedule = Schedule::controlling(38);
-        assert_eq!(schedule.clocks(), 4 + 102 + 38 + 209);
-        assert_eq!(schedule.fits(354), Ok(()));
-        let error = schedule.fits(353).unwrap_err().to_string();
-        let sum = "capture 4 + divide 102 + shape 38 + control 209 = 353 clocks, a sample lasts 353";
+        assert_eq!(schedule.clocks(), 4 + 102 + 38 + 517);
+        assert_eq!(schedule.fits(662), Ok(()));
+        let error = schedule.fits(661).unwrap_err().to_string();
+        let sum = "capture 4 + divide 102 + shape 38 + control 517 = 661 clocks, a sample lasts 661";
         assert!(error.contains(sum), "{error}");
         assert_eq!(Schedule::measuring().clocks(), 106);
         assert!(!Schedule::measuring().to_string().contains("control"));
@@ -144,7 +144,7 @@ mod tests {
     #[test]
     fn unit_the_largest_sample_rate_fits_and_the_next_one_does_not() {
         let schedule = Schedule::controlling(38);
-        for step in [1, 50, 100, 353, 354, 2500] {
+        for step in [1, 50, 100, 661, 662, 2500] {
             let clocks = (50e6 / schedule.largest_sample_hz(50e6, step)).round() as u32;
             assert_eq!(u64::from(clocks) % step, 0);
             assert_eq!(schedule.fits(clocks), Ok(()), "{step}");
@@ -157,7 +157,7 @@ mod tests {
     fn unit_a_schedule_longer_than_a_period_waits_for_a_later_boundary() {
         let clock = Clock {
             frequency_hz: 50e6,
-            sample_hz: 100e3,
+            sample_hz: 50e3,
         };
         let pwm = Pwm {
             mode: PwmMode::HalfBridge,
@@ -167,6 +167,6 @@ mod tests {
             active_low: false,
         };
         let delay_s = schedule_delay_s(&clock, &pwm, Schedule::controlling(38).clocks());
-        assert!((delay_s - 20e-6).abs() < 1e-12, "{delay_s}");
+        assert!((delay_s - 35e-6).abs() < 1e-12, "{delay_s}");
     }
 }

@@ -10,8 +10,8 @@ use super::{Bins, Block, prefixed};
 use crate::lockstep::Clock;
 use crate::stimuli::{SlidingModeCoverage, SlidingModeRandom, Stimuli};
 
-/// A run of so many clocks has room for the ticks that wind the integral up, and three times as many besides.
-const LONG_CLOCKS: u64 = 4 * SlidingModeRandom::WIND_UP_CLOCKS;
+/// A run of so many clocks has room for the ticks that wind the integral up, and as many besides.
+const LONG_CLOCKS: u64 = 2 * SlidingModeRandom::WIND_UP_CLOCKS;
 
 /// The controller, which has one size: what it does is in its settings.
 #[derive(Debug, Clone)]

@@ -271,12 +271,17 @@ fn time_base_task(tick_clocks: u64, begin: &'static str) -> Result<Task, Error> 
     })
 }
 
-/// The controller's Verilog with products that are anything: nothing drives them any more.
+/// The controller's Verilog with products that are anything, for nothing drives them; but one times a word is the word.
 fn controller_of_any_products() -> Result<Vec<Module>, Error> {
     let mut modules = sliding_mode::emit("")?;
     for module in &mut modules {
         if module.name.starts_with("smul_") {
-            let cut = module.text.replace("product <= a_q * b_q;", "");
+            let cut = (module.text)
+                .replace("product <= a_q * b_q;", "product <= b_q == 18'sd1 ? a_q : anything;")
+                .replace(
+                    "    reg signed [17:0] b_q;",
+                    "    reg signed [17:0] b_q;\n    wire signed [35:0] anything;",
+                );
             if cut == module.text {
                 return Err(refused(format!("`{}` has no product of its own name", module.name)));
             }
@@ -289,7 +294,7 @@ fn controller_of_any_products() -> Result<Vec<Module>, Error> {
 /// The control of a pass.
 fn sliding_mode_task() -> Result<Task, Error> {
     let block = (controller_of_any_products()?, controller_model::ports());
-    let macros = [("PASS_CLOCKS", format!("8'd{}", controller_model::CONTROL_CLOCKS))];
+    let macros = [("PASS_CLOCKS", format!("10'd{}", controller_model::CONTROL_CLOCKS))];
     Ok(Task::new("sliding_mode", "any products", INDUCTION, block)
         .properties(&macros, include_str!("../../formal/sliding_mode.sv")))
 }

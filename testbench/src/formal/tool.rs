@@ -12,7 +12,7 @@ use crate::tool::{Tool, text};
 /// Longest counterexample that is searched for where an engine proves nothing, in clocks.
 pub const SEARCHED_CLOCKS: u32 = 60;
 /// Clocks in which a cover must be reached: a pass of the controller, and some.
-const COVERED_CLOCKS: u32 = 220;
+const COVERED_CLOCKS: u32 = 540;
 
 pub(crate) const YOSYS: Tool = Tool {
     name: "yosys",

@@ -142,7 +142,7 @@ impl Stimuli for SlidingModeRandom {
         let wound_up = self.starts >= WIND_UP_TICKS[0] + WIND_UP_TICKS[1];
         self.inputs.start = busy == Some(0) && self.clock > 3 && !self.inputs.start;
         self.inputs.rst = self.clock < 3;
-        self.inputs.clear_flags = self.one_in(700);
+        self.inputs.clear_flags = self.one_in(300);
         self.inputs.clear_integral = false;
         self.inputs.setting = self.settings[address.unwrap_or(0) as usize % SETTINGS];
         if wound_up {
@@ -152,11 +152,14 @@ impl Stimuli for SlidingModeRandom {
             }
             self.inputs.start |= self.one_in(2000);
             self.inputs.rst |= self.one_in(30_000);
-            self.inputs.clear_integral = self.one_in(5000);
+            // Often where the integral's next value is under way.
+            let clears = if address == Some(LIMIT as u64) { 150 } else { 5000 };
+            self.inputs.clear_integral = self.one_in(clears);
             if self.one_in(500) {
                 self.inputs.motion = self.motion();
             }
-            if self.one_in(300) {
+            // Any word, but for the limit: its step works with it for some clocks.
+            if self.one_in(300) && address != Some(LIMIT as u64) {
                 self.inputs.setting = self.rng.next_u32();
             }
         } else if self.inputs.start {

@@ -16,11 +16,11 @@ fn formal_arithmetic_of_the_controller() {
 
 #[test]
 fn formal_a_sum_that_goes_on_from_the_last_one_is_found() {
-    let boundary = "accumulator_begin_sum = ((((sequencer_step == BOUNDARY)";
+    let again = "begins_sum = (((((((sequencer_step == OF_REFERENCE) | (sequencer_step == RATE_AGAIN)";
     fails(
         "sliding_mode",
-        boundary,
-        &boundary.replace("BOUNDARY", "COULOMB"),
+        again,
+        &again.replace("RATE_AGAIN", "OF_REFERENCE"),
         "begins_anew",
     );
 }
@@ -31,7 +31,7 @@ fn formal_a_shift_that_loses_the_sign_is_found() {
         "scaled_product",
         "by_one = $signed(shifter[50:1])",
         "by_one = $signed({1'b0, shifter[49:1]})",
-        "shifted",
+        "half_up",
     );
 }
 
@@ -42,5 +42,5 @@ fn formal_a_product_that_is_cut_instead_of_rounded_is_found() {
 
 #[test]
 fn formal_a_limit_that_is_passed_by_an_lsb_is_found() {
-    fails("limiter", "(kept ^ sign) + carry", "kept ^ sign", "command_is_cut");
+    fails("limiter", "borrow = ONE_BORROW", "borrow = NO_BORROW", "known_over");
 }

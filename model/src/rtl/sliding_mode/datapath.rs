@@ -1,16 +1,23 @@
 //! The arithmetic of a pass: what each step multiplies, adds up, cuts to its word and keeps.
 //!
 //! A step is `accumulator := base + round(operand · mantissa · 2^−shift)`, then perhaps a word takes the accumulator,
-//! saturated. `fetch`, `multiply`, `add` and `settle` are the clocks of a step at which something happens; `cut_command` is
-//! one more, of step 11.
+//! saturated. `multiply` and `settle` are the clocks of a step at which something happens.
 
 use super::ports::{Law, Motion, Saturation};
 use super::settings::{Gain, LIMIT_MAX, Row};
 
 /// Steps of a pass.
-pub(super) const STEPS: u8 = 13;
+pub(super) const STEPS: u8 = 17;
 /// The step that has a limit for its setting.
-pub(super) const LIMIT_STEP: u8 = 11;
+const LIMIT_STEP: u8 = 14;
+/// The step that adds e to its integral.
+const INTEGRAL_STEP: u8 = 15;
+/// Clocks of a step that shifts by any distance: 31 bits, one a clock, and 8 more.
+const STEP_CLOCKS: u8 = 39;
+/// Clocks of a step that does not shift.
+const SHORT_CLOCKS: u8 = 8;
+/// e is shifted from Q16.16 to its integral's Q24.8.
+const ERROR_SHIFT: u8 = 8;
 /// Bits of the boundary layer's and the Coulomb term's fraction: Q1.25, so that ±1 is its range.
 const FRACTION_BITS: u32 = 26;
 /// Bits of e before it is shifted to Q16.16.
@@ -32,6 +39,8 @@ pub(super) struct Datapath {
     feedback: i32,
     /// ∫e, Q24.8.
     integral: i32,
+    /// The integral was cleared while its next value was under way.
+    cleared: bool,
     /// The largest command, as read.
     limit: u32,
     pub(super) command: i32,
@@ -52,12 +61,42 @@ pub(super) struct Datapath {
     accumulator: i64,
 }
 
-/// Row of the settings that a step reads.
+/// Row of the settings that a step reads. The first three and that of the integral's sum read none.
 pub(super) fn address(step: u8, law: Law) -> u8 {
-    match (step, law) {
-        (2..=4, Law::Pd | Law::Pid) => step - 2 + Row::Derivative as u8,
-        _ => step,
+    let linear = law != Law::SlidingMode;
+    let row = match step {
+        4 => Row::Boundary,
+        5 if linear => Row::Integral,
+        5 => Row::Switching,
+        6 if linear => Row::Proportional,
+        6 => Row::Reaching,
+        7 if linear => Row::Derivative,
+        7 => Row::Damping,
+        8 => Row::Fade,
+        9 => Row::Coulomb,
+        10 => Row::Feedback,
+        11 => Row::Acceleration,
+        12 => Row::Velocity,
+        13 => Row::Viscous,
+        LIMIT_STEP => Row::Limit,
+        16 => Row::Duty,
+        _ => Row::Surface,
+    };
+    row as u8
+}
+
+/// Clocks of a step: what is multiplied by one is not shifted, but e to its integral's format.
+pub(super) fn step_clocks(step: u8) -> u8 {
+    match step {
+        0..=2 | LIMIT_STEP => SHORT_CLOCKS,
+        INTEGRAL_STEP => SHORT_CLOCKS + ERROR_SHIFT,
+        _ => STEP_CLOCKS,
     }
+}
+
+/// Clocks of a pass.
+pub(super) const fn pass_clocks() -> u32 {
+    (4 * SHORT_CLOCKS + SHORT_CLOCKS + ERROR_SHIFT) as u32 + (STEPS - 5) as u32 * STEP_CLOCKS as u32
 }
 
 /// `value` in `bits`, and whether it was cut above or below.
@@ -72,12 +111,17 @@ impl Datapath {
         self.error << 8
     }
 
+    /// Whether a clear of the integral changes anything.
     pub(super) fn has_integral(&self) -> bool {
-        self.integral != 0
+        self.integral != 0 || !self.cleared
     }
 
+    /// Wins over a sum in the same clock, and over one under way.
     pub(super) fn clear_integral(&mut self) {
         self.integral = 0;
+        self.cleared = true;
+        self.found.0 &= !Saturation::Integral.bit();
+        self.found.1 &= !Saturation::Integral.bit();
     }
 
     pub(super) fn clear_flags(&mut self) {
@@ -102,7 +146,7 @@ impl Datapath {
         value
     }
 
-    /// The clock of `start`: e and de.
+    /// The clock of `start`: e.
     #[inline]
     pub(super) fn capture(&mut self, law: Law, modulo: bool, motion: &Motion) {
         self.law = law;
@@ -112,86 +156,90 @@ impl Datapath {
         let unused = if modulo { 32 } else { 24 };
         let nearest = (difference << unused) >> unused;
         self.error = self.flag(Saturation::Error, saturate(nearest, ERROR_BITS));
-        let rate = i64::from(motion.velocity_reference) - i64::from(motion.velocity);
-        self.error_rate = self.flag(Saturation::ErrorRate, saturate(rate, WORD_BITS));
     }
 
-    /// The clock in which a step takes what it multiplies.
-    #[inline]
-    pub(super) fn fetch(&mut self, step: u8, motion: &Motion) {
+    /// What a step multiplies.
+    fn operand(&self, step: u8, motion: &Motion) -> i32 {
         let sliding_mode = self.law == Law::SlidingMode;
-        self.operand = match step {
-            0 => self.error_q16_16(),
-            1 => self.sliding,
-            2 => self.error_rate,
-            3 if sliding_mode => self.sliding,
-            3 => self.error_q16_16(),
-            4 if self.law == Law::Pid => self.integral,
-            4 if self.law == Law::Pd => 0,
-            4 | 10 => self.fraction,
-            5 | 8 => motion.velocity_reference,
-            6 => self.feedback,
-            7 => motion.acceleration_reference,
-            9 => motion.velocity,
+        match step {
+            0 | 8 | 12 => motion.velocity_reference,
+            1 | 13 => motion.velocity,
+            2 | 7 => self.error_rate,
+            3 | INTEGRAL_STEP => self.error_q16_16(),
+            4 => self.sliding,
+            5 if self.law == Law::Pid => self.integral,
+            5 if self.law == Law::Pd => 0,
+            5 | 9 => self.fraction,
+            6 if sliding_mode => self.sliding,
+            6 => self.error_q16_16(),
+            10 => self.feedback,
+            11 => motion.acceleration_reference,
+            LIMIT_STEP => self.integral,
             _ => self.command,
-        };
+        }
     }
 
-    /// The clock in which a step reads its setting.
+    /// The clock in which a step takes what it multiplies, and reads its setting.
     #[inline]
-    pub(super) fn multiply(&mut self, step: u8, setting: u32) {
+    pub(super) fn multiply(&mut self, step: u8, motion: &Motion, setting: u32) {
+        let operand = i64::from(self.operand(step, motion));
         let gain = Gain::from_word(setting);
-        let exact = i64::from(self.operand) * i64::from(gain.mantissa());
+        let (mantissa, shift) = match step {
+            0 | 2 | LIMIT_STEP => (1, 0),
+            1 => (-1, 0),
+            INTEGRAL_STEP => (1, u32::from(ERROR_SHIFT)),
+            _ => (gain.mantissa(), gain.shift()),
+        };
         // Half up: the last bit shifted out is added.
-        self.product = ((exact << 1 >> gain.shift()) + 1) >> 1;
+        self.product = (((operand * i64::from(mantissa)) << 1 >> shift) + 1) >> 1;
         let negative = gain.mantissa() < 0;
         match step {
-            4 => self.opposes = negative,
-            6 => self.opposes ^= negative,
-            LIMIT_STEP => self.limit = setting & LIMIT_MAX,
+            5 => self.opposes = negative,
+            10 => self.opposes ^= negative,
+            LIMIT_STEP => {
+                self.limit = setting & LIMIT_MAX;
+                self.cleared = false;
+            }
             _ => {}
         }
     }
 
-    /// The clock in which the command is cut at the limit read.
-    pub(super) fn cut_command(&mut self) {
+    /// The clock in which the step's sum is taken.
+    #[inline]
+    pub(super) fn settle(&mut self, step: u8) {
+        if step == LIMIT_STEP {
+            self.cut_command();
+        }
+        let base = match step {
+            0 | 2 | 4 | 5 | 8 | 9 | LIMIT_STEP | 16 => 0,
+            _ => self.accumulator,
+        };
+        self.accumulator = base + self.product;
+        match step {
+            1 => self.error_rate = self.flag(Saturation::ErrorRate, saturate(self.accumulator, WORD_BITS)),
+            3 => self.sliding = self.flag(Saturation::Sliding, saturate(self.accumulator, WORD_BITS)),
+            4 | 8 => self.fraction = saturate(self.accumulator, FRACTION_BITS).0,
+            7 => self.feedback = self.flag(Saturation::Feedback, saturate(self.accumulator, WORD_BITS)),
+            INTEGRAL_STEP => self.integrate(),
+            16 => self.duty = self.flag(Saturation::Duty, saturate(self.accumulator, DUTY_BITS)),
+            _ => {}
+        }
+    }
+
+    /// The sum so far, cut at the limit read.
+    fn cut_command(&mut self) {
         let limit = i64::from(self.limit);
         (self.limited_high, self.limited_low) = (self.accumulator > limit, self.accumulator < -limit);
         let cut = self.accumulator.clamp(-limit, limit) as i32;
         self.command = self.flag(Saturation::Command, (cut, self.limited_high, self.limited_low));
     }
 
-    /// The clock in which a step adds.
-    #[inline]
-    pub(super) fn add(&mut self, step: u8) {
-        let base = match step {
-            0 => i64::from(self.error_rate),
-            1 | 2 | 5 | 6 | 12 => 0,
-            _ => self.accumulator,
-        };
-        self.accumulator = base + self.product;
-    }
-
-    /// The last clock of a step.
-    #[inline]
-    pub(super) fn settle(&mut self, step: u8) {
-        match step {
-            0 => self.sliding = self.flag(Saturation::Sliding, saturate(self.accumulator, WORD_BITS)),
-            1 | 5 => self.fraction = saturate(self.accumulator, FRACTION_BITS).0,
-            4 => self.feedback = self.flag(Saturation::Feedback, saturate(self.accumulator, WORD_BITS)),
-            LIMIT_STEP => self.integrate(),
-            12 => self.duty = self.flag(Saturation::Duty, saturate(self.accumulator, DUTY_BITS)),
-            _ => {}
-        }
-    }
-
     /// The integral of the next tick, frozen while it would push a cut command further; and how long it has been cut.
     fn integrate(&mut self) {
         let lowers = (self.error < 0) ^ self.opposes;
         let frozen = if lowers { self.limited_low } else { self.limited_high };
-        if self.law == Law::Pid && !frozen {
-            let sum = i64::from(self.integral) + i64::from(self.error);
-            self.integral = self.flag(Saturation::Integral, saturate(sum, WORD_BITS));
+        if self.law == Law::Pid && !frozen && !self.cleared {
+            self.integral = self.flag(Saturation::Integral, saturate(self.accumulator, WORD_BITS));
         }
         self.limited_ticks = if self.limited_high || self.limited_low {
             self.limited_ticks.saturating_add(1)

@@ -10,7 +10,7 @@
 //! ```
 //!
 //! Everything is in counts and ticks T; unit conversions are in the gains ([`crate::control`]). One multiplier does it in
-//! [`CONTROL_CLOCKS`], whatever the numbers are; each of the 13 steps reads its gain at `setting_address`.
+//! [`CONTROL_CLOCKS`], whatever the numbers are; each of its steps reads its gain at `setting_address`.
 //!
 //! | type | |
 //! |---|---|
@@ -39,21 +39,15 @@ mod settings;
 pub use ports::{INPUTS, Inputs, Law, Motion, OUTPUTS, Outputs, Saturation, ports};
 pub use settings::{Gain, GainError, LIMIT_MAX, MANTISSA_BITS, MANTISSA_MAX, Row, SETTINGS, SHIFT_MAX, Settings};
 
-use self::datapath::{Datapath, LIMIT_STEP, STEPS, address};
+use self::datapath::{Datapath, STEPS, address, pass_clocks, step_clocks};
 use super::{ClockedBlock, FOREVER, Moore, Port, StepError};
 
-/// Clocks of a step.
-const STEP_CLOCKS: u8 = 16;
-/// Clock of a step in which its operand is taken.
-const FETCH_PHASE: u8 = 0;
-/// Clock of a step in which its setting is read.
+/// Clock of a step in which its operand and its setting are taken.
 const READ_PHASE: u8 = 1;
-/// Clock of the step with the limit in which the command is new.
-const CUT_PHASE: u8 = 3;
-/// Clock of a step in which the shifted product is added.
-const ADD_PHASE: u8 = 14;
+/// From the clock in which a step's sum is taken, clocks to the next step's first.
+const CLOCKS_AFTER: u8 = 2;
 /// Clocks from `start` to `valid`, and the smallest distance of two starts without `overrun`.
-pub const CONTROL_CLOCKS: u32 = STEPS as u32 * STEP_CLOCKS as u32 + 1;
+pub const CONTROL_CLOCKS: u32 = pass_clocks() + 1;
 
 /// Everything that is a register.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -101,15 +95,13 @@ impl State {
         self.valid = false;
         if self.busy {
             self.overrun |= inputs.start;
-            match self.phase {
-                FETCH_PHASE => self.datapath.fetch(self.step, &inputs.motion),
-                READ_PHASE => self.datapath.multiply(self.step, inputs.setting),
-                CUT_PHASE if self.step == LIMIT_STEP => self.datapath.cut_command(),
-                ADD_PHASE => self.datapath.add(self.step),
-                _ if self.phase == STEP_CLOCKS - 1 => self.datapath.settle(self.step),
-                _ => {}
+            let clocks = step_clocks(self.step);
+            if self.phase == READ_PHASE {
+                self.datapath.multiply(self.step, &inputs.motion, inputs.setting);
+            } else if self.phase == clocks - CLOCKS_AFTER {
+                self.datapath.settle(self.step);
             }
-            self.phase = (self.phase + 1) % STEP_CLOCKS;
+            self.phase = (self.phase + 1) % clocks;
             if self.phase == 0 {
                 self.step = (self.step + 1) % STEPS;
                 self.valid = self.step == 0;
@@ -125,8 +117,7 @@ impl State {
         }
     }
 
-    /// In a pass, the clocks from one that reads a setting to the one that keeps the result; in step 11 the
-    /// command changes on the way.
+    /// In a pass, the clocks from one that reads a setting to the one that keeps the result.
     fn quiet_clocks(&self, inputs: &Inputs) -> u64 {
         let data = &self.datapath;
         let flags = self.overrun || data.saturated_high | data.saturated_low != 0;
@@ -134,23 +125,19 @@ impl State {
         if inputs.rst || inputs.start || clears || self.valid || data.has_found() {
             return 0;
         }
+        if !self.busy {
+            return FOREVER;
+        }
         let left = match self.phase {
-            _ if !self.busy => return FOREVER,
-            FETCH_PHASE | READ_PHASE => 0,
-            phase @ ..=CUT_PHASE if self.step == LIMIT_STEP => CUT_PHASE - phase,
-            phase => STEP_CLOCKS - 1 - phase,
+            0..=READ_PHASE => 0,
+            phase => (step_clocks(self.step) - CLOCKS_AFTER).saturating_sub(phase),
         };
         left.into()
     }
 
     fn pass(&mut self, clocks: u64) {
-        if !self.busy {
-            return;
-        }
-        let before = self.phase;
-        self.phase += clocks as u8;
-        if before <= ADD_PHASE && self.phase > ADD_PHASE {
-            self.datapath.add(self.step);
+        if self.busy {
+            self.phase += clocks as u8;
         }
     }
 }
@@ -229,7 +216,7 @@ impl Moore for SlidingMode {
     }
 }
 
-/// The fast path: a tick in one call, with what the outputs show at the end of its pass, and the flags a clock later.
+/// The fast path: a tick in one call, with what the outputs show at the end of its pass.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct TickController {
     datapath: Datapath,
@@ -239,17 +226,13 @@ impl TickController {
     /// One tick. The settings are those in the memory during the pass, `motion` holds still meanwhile.
     pub fn control(&mut self, law: Law, modulo: bool, motion: &Motion, settings: &Settings) -> Outputs {
         self.datapath.capture(law, modulo, motion);
+        self.datapath.raise_flags();
         for step in 0..STEPS {
             let setting = settings.word(usize::from(address(step, law)));
-            self.datapath.fetch(step, motion);
-            self.datapath.multiply(step, setting);
-            if step == LIMIT_STEP {
-                self.datapath.cut_command();
-            }
-            self.datapath.add(step);
+            self.datapath.multiply(step, motion, setting);
             self.datapath.settle(step);
+            self.datapath.raise_flags();
         }
-        self.datapath.raise_flags();
         let ended = State {
             datapath: self.datapath.clone(),
             valid: true,
