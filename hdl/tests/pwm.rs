@@ -20,15 +20,15 @@ fn lockstep_everything_at_random() {
     let mut rusthdl = simulate(&config).unwrap();
     let mut random = Random(1);
     let mut inputs = Inputs {
-        period: 30,
-        max_duty: 40,
+        period: 70,
+        max_duty: 90,
         ..Inputs::default()
     };
     let (mut expected, mut actual) = ([0; OUTPUTS], [0; OUTPUTS]);
     let mut running = 0;
-    for clock in 0..8_000 {
+    for clock in 0..16_000 {
         if random.once_in(600) {
-            inputs.period = 20 + random.below(30) as u16;
+            inputs.period = 60 + random.below(60) as u16;
             inputs.dead_time = random.below(6) as u16;
             inputs.minimum_pulse = random.below(6) as u16;
             inputs.update_at_peak = random.once_in(2);
@@ -37,7 +37,7 @@ fn lockstep_everything_at_random() {
             inputs.phase = random.below(20) as u16;
         }
         if random.once_in(25) {
-            inputs.duty = random.below(91) as i32 - 45;
+            inputs.duty = random.below(241) as i32 - 120;
         }
         if random.once_in(300) {
             inputs.mode = random.below(4) as u8;

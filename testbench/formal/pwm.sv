@@ -49,7 +49,7 @@ module pwm_properties (
     (* peek = "u_leg.awake_q" *)                       input wire       leg_awake,
     (* peek = "u_leg.lit_q" *)                         input wire       leg_lit,
     (* peek = "u_leg.high_q" *)                        input wire       leg_high,
-    (* peek = "u_leg.timer" *)                         input wire [9:0] leg_timer,
+    (* peek = "u_leg.timer" *)                         input wire [9:0] leg_count,
     (* peek = "u_pin_gates.masked" *)                      input wire       masked,
     (* peek = "u_guard.fault_latch_armed" *)           input wire       latch_armed
 );
@@ -148,6 +148,14 @@ module pwm_properties (
         known_mode: assert (past_mode == mode_used | mode_turns | !past_wanted);
         known_direction: assert (past_negative == negative_used | !leg_awake | leg_is_low);
         known_latched: assert (!latched | !latch_armed);
+    end
+
+    // The leg counts up to what its state lasts: what is left of it.
+    wire [9:0] leg_lasts = leg_lit ? minimum_pulse_used : dead_time_used;
+    wire [9:0] leg_timer = leg_lasts - leg_count;
+    always @(*) begin
+        known_timer: assert (leg_count <= leg_lasts | !past_wanted);
+        known_timer_rests: assert (past_wanted | leg_count == 10'd0);
     end
 
     // A side that may come next: by then the other one will have been off for the dead time.

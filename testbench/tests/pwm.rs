@@ -148,15 +148,12 @@ fn lockstep_catches_a_clear_while_the_fault_stands() {
 
 #[test]
 fn lockstep_catches_an_unlimited_duty() {
-    caught("magnitude_next = max_duty", "magnitude_next = size[16:1]");
+    caught("limited_next = !under", "limited_next = 1'd0");
 }
 
 #[test]
 fn lockstep_catches_a_duty_one_above_its_limit() {
-    caught(
-        "size > ({1'd0, max_duty} << 1)",
-        "size > ({1'd0, max_duty} << 1) + 17'd2",
-    );
+    caught("first = {3'd0, max_duty}", "first = {3'd0, max_duty} + 19'd1");
 }
 
 #[test]
@@ -166,6 +163,6 @@ fn lockstep_catches_a_pin_that_the_mask_forgets() {
 
 #[test]
 fn lockstep_watches_the_gates_of_a_leg_without_dead_time() {
-    let outcome = caught("pause = dead_time;", "pause = 10'd1;");
+    let outcome = caught("lasts = dead_time;", "lasts = 10'd1;");
     assert!(outcome.violation.is_some(), "the gates are not watched");
 }

@@ -22,7 +22,7 @@ module pwm_fault;
     integer length;
 
     pwm dut (
-        .clk(clk), .rst(rst), .enable(1'b1), .mode(2'd1), .period(16'd60), .duty(17'sd33), .max_duty(16'd60),
+        .clk(clk), .rst(rst), .enable(1'b1), .mode(2'd1), .period(16'd80), .duty(17'sd33), .max_duty(16'd60),
         .update_at_peak(1'b0), .dead_time(10'd3), .minimum_pulse(10'd4), .sync(1'b0), .phase(16'd0),
         .trigger_phase(16'd0), .feed(1'b0), .watchdog_periods(8'd0), .filter_clocks(8'd4), .fault_n(fault_n),
         .pll_locked(pll_locked), .filtered_fault_n(2'b11), .clear_trip(clear_trip), .clear_flags(1'b0), .mask_pins(1'b0),

@@ -4,7 +4,9 @@
 
 use posicast_hdl::pwm::emit;
 use posicast_model::rtl::pwm::pulses::{Bridge, Half, Latched, Timing};
-use posicast_model::rtl::pwm::{ActiveLow, COMMAND_CLOCKS, Gates, INPUTS, Inputs, Mode, OUTPUTS, PwmConfig, ports};
+use posicast_model::rtl::pwm::{
+    ActiveLow, COMMAND_CLOCKS, Gates, INPUTS, Inputs, Mode, OUTPUTS, PwmConfig, SHORTEST_PERIOD_CLOCKS, ports,
+};
 use posicast_testbench::stimuli::GateSafety;
 use posicast_testbench::verilator::{Source, Verilated};
 use rand::{Rng, RngExt, SeedableRng};
@@ -14,6 +16,9 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 const STRETCH_PERIODS: u64 = 500;
 /// From the clock of a position to that in which the pins show it.
 const PIN_CLOCKS: usize = 1;
+/// From reset to the first valley, at which the period is taken.
+const FIRST_VALLEY: i64 = 32;
+const SHORTEST_PERIOD: i64 = SHORTEST_PERIOD_CLOCKS as i64;
 
 /// The PWM under Verilator, with the first `from` in the Verilog replaced by `to`.
 fn verilated(from: &str, to: &str) -> Verilated {
@@ -70,8 +75,7 @@ impl Bench {
     fn timing(&mut self) -> Timing {
         let (dead_time, minimum_pulse) = (self.rng.random_range(1..=4), self.rng.random_range(1..=4));
         Timing {
-            // Down to where no pulse fits any more.
-            period: self.rng.random_range(2 * dead_time + 5..=34),
+            period: self.rng.random_range(SHORTEST_PERIOD..=SHORTEST_PERIOD + 30),
             dead_time,
             minimum_pulse,
         }
@@ -131,9 +135,9 @@ impl Bench {
             ..inputs(&latched)
         };
         self.rows.extend(reset.to_raw());
-        // In the first clock after the reset the carrier takes the period. The trip is cleared; the last of four periods
-        // enables, and the next one begins to run.
-        let run_in = 2 + 4 * timing.period;
+        // The first valley takes the period. The trip is cleared; the last of four periods enables, and the next one begins to
+        // run.
+        let run_in = 1 + FIRST_VALLEY + 4 * timing.period;
         for clock in 1..run_in {
             let waits = Inputs {
                 clear_trip: true,
@@ -233,12 +237,12 @@ fn caught(from: &str, to: &str) {
 
 #[test]
 fn lockstep_catches_a_dead_time_a_clock_too_short() {
-    caught("pause = dead_time;", "pause = dead_time - 10'd1;");
+    caught("lasts = dead_time;", "lasts = dead_time - 10'd1;");
 }
 
 #[test]
 fn lockstep_catches_a_minimum_pulse_a_clock_too_short() {
-    caught("too_short = command_width <", "too_short = command_width <=");
+    caught("{18'd0, carries}", "{17'd0, shortness, carries}");
 }
 
 #[test]

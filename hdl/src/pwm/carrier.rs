@@ -1,12 +1,14 @@
-//! The carrier: the position in the period, its boundaries, and the phase to the time base.
+//! The carrier: the position in the period, the leads before its boundaries, and the phase to the time base.
 //!
-//! Its register is the position to come, 1 to `period`, so that no comparison waits for a sum: with it the end of a half is
-//! announced in the clock before, and what compares with it is a register by the clock of that position. The strobes come
-//! with the pins, one clock after the position.
+//! A boundary comes a fixed number of clocks after its lead: 32 after a valley's, at `period` − 32; 16 after a peak's, at half
+//! of that. The command counts them, and tells when the boundary is there. So one register serves both, and what the command
+//! computes is ready at the boundary. The strobes come with the pins, one clock after the position.
+//!
+//! While off, a carrier that a `sync` has found at another phase waits at `phase` for the next one: no position is loaded.
 
 use crate::prelude::*;
 
-#[derive(LogicBlock, Default)]
+#[derive(LogicBlock)]
 pub(super) struct Carrier {
     pub(super) clk: Signal<In, Clock>,
     pub(super) rst: Signal<In, Bit>,
@@ -15,41 +17,74 @@ pub(super) struct Carrier {
     pub(super) sync: Signal<In, Bit>,
     pub(super) phase: Signal<In, Bits<16>>,
     pub(super) trigger_phase: Signal<In, Bits<16>>,
-    pub(super) ahead: Signal<Out, Bits<16>>,
-    pub(super) period_used: Signal<Out, Bits<16>>,
-    pub(super) valley_next: Signal<Out, Bit>,
-    pub(super) peak_next: Signal<Out, Bit>,
+    pub(super) valley_next: Signal<In, Bit>,
+    pub(super) peak_next: Signal<In, Bit>,
+    pub(super) period_used: Signal<Out, Bits<17>>,
+    pub(super) settled: Signal<Out, Bit>,
+    pub(super) valley_lead: Signal<Out, Bit>,
+    pub(super) peak_lead: Signal<Out, Bit>,
+    pub(super) waits: Signal<Out, Bit>,
     pub(super) out_of_step: Signal<Out, Bit>,
-    pub(super) realigns: Signal<Out, Bit>,
     pub(super) valley: Signal<Out, Bit>,
     pub(super) peak: Signal<Out, Bit>,
     pub(super) trigger: Signal<Out, Bit>,
 
-    ahead_q: Dff<Bits<16>>,
-    period_q: Dff<Bits<16>>,
+    position: Dff<Bits<16>>,
+    period_q: Dff<Bits<17>>,
+    lead_q: Dff<Bits<11>>,
+    synced: Dff<Bit>,
+    astray: Dff<Bit>,
     at_valley: Dff<Bit>,
     at_peak: Dff<Bit>,
-    at_trigger: Dff<Bit>,
     valley_q: Dff<Bit>,
     peak_q: Dff<Bit>,
     trigger_q: Dff<Bit>,
 
-    at_end: Signal<Local, Bit>,
-    at_half: Signal<Local, Bit>,
+    lead: Signal<Local, Bits<16>>,
     in_phase: Signal<Local, Bit>,
-    triggers: Signal<Local, Bit>,
+    holds: Signal<Local, Bit>,
     off_phase: Signal<Local, Bit>,
-    moves: Signal<Local, Bit>,
-    comes: Signal<Local, Bits<16>>,
+
+    whole_range: Constant<Bits<17>>,
 }
 
 impl Carrier {
-    /// The shortest period after reset, so that the first one set comes into use at once.
+    /// The shortest period after reset, so that the first one set soon comes into use.
     pub(super) fn new() -> Self {
         Self {
-            ahead_q: Dff::new(from_u64(1)),
-            period_q: Dff::new(from_u64(1)),
-            ..Self::default()
+            clk: Signal::default(),
+            rst: Signal::default(),
+            running: Signal::default(),
+            period: Signal::default(),
+            sync: Signal::default(),
+            phase: Signal::default(),
+            trigger_phase: Signal::default(),
+            valley_next: Signal::default(),
+            peak_next: Signal::default(),
+            period_used: Signal::default(),
+            settled: Signal::default(),
+            valley_lead: Signal::default(),
+            peak_lead: Signal::default(),
+            waits: Signal::default(),
+            out_of_step: Signal::default(),
+            valley: Signal::default(),
+            peak: Signal::default(),
+            trigger: Signal::default(),
+            position: Dff::default(),
+            period_q: Dff::new(from_u64(32)),
+            lead_q: Dff::default(),
+            synced: Dff::default(),
+            astray: Dff::default(),
+            at_valley: Dff::default(),
+            at_peak: Dff::default(),
+            valley_q: Dff::default(),
+            peak_q: Dff::default(),
+            trigger_q: Dff::default(),
+            lead: Signal::default(),
+            in_phase: Signal::default(),
+            holds: Signal::default(),
+            off_phase: Signal::default(),
+            whole_range: Constant::new(from_u64(1 << 16)),
         }
     }
 }
@@ -60,45 +95,51 @@ impl Logic for Carrier {
         comment!("@module pwm_carrier");
         comment!("@about Position in the period; boundaries.");
         dff_setup!(
-            self, clk, ahead_q, period_q, at_valley, at_peak, at_trigger, valley_q, peak_q, trigger_q
+            self, clk, position, period_q, lead_q, synced, astray, at_valley, at_peak, valley_q, peak_q, trigger_q
         );
 
-        comment!("The position to come, or 0 at the end");
-        self.at_end.next = self.ahead_q.q.val() == self.period_q.q.val();
-        self.at_half.next = !self.at_end.val() & (self.ahead_q.q.val() == (self.period_q.q.val() >> 1));
-        self.in_phase.next = self.ahead_q.q.val() == self.phase.val();
-        self.triggers.next = self.ahead_q.q.val() == self.trigger_phase.val();
-        self.comes.next = self.ahead_q.q.val();
-        if self.at_end.val() {
-            self.in_phase.next = !self.phase.val().any();
-            self.triggers.next = !self.trigger_phase.val().any();
-            self.comes.next = 0.into();
+        comment!("The leads: period - 32, and half of that");
+        self.lead.next =
+            (bit_cast::<16, 11>(self.lead_q.q.val()) << 5) | bit_cast::<16, 5>(self.period_q.q.val().get_bits::<5>(0));
+        self.valley_lead.next = self.position.q.val() == self.lead.val();
+        self.peak_lead.next = self.position.q.val() == (self.lead.val() >> 1);
+
+        comment!("Astray and off, it waits for a sync at its phase");
+        self.in_phase.next = self.position.q.val() == self.phase.val();
+        self.holds.next = self.astray.q.val() & self.in_phase.val() & !self.running.val();
+        self.synced.d.next = self.sync.val();
+        self.off_phase.next = self.synced.q.val() & !self.in_phase.val();
+        if self.holds.val() & self.sync.val() {
+            self.astray.d.next = false;
+        }
+        if self.off_phase.val() {
+            self.astray.d.next = true;
         }
 
-        comment!("The time base moves it while off only");
-        self.off_phase.next = self.sync.val() & !self.in_phase.val();
-        self.moves.next = self.off_phase.val() & !self.running.val();
-        if self.sync.val() & !self.running.val() {
-            self.comes.next = self.phase.val();
+        if !self.holds.val() {
+            self.position.d.next = self.position.q.val() + 1;
         }
-        self.ahead_q.d.next = self.comes.val() + 1;
-        if self.at_end.val() & !self.running.val() {
-            self.period_q.d.next = self.period.val();
+        if self.valley_next.val() {
+            self.position.d.next = 0.into();
+        }
+        if self.valley_next.val() & !self.running.val() {
+            self.period_q.d.next = bit_cast::<17, 16>(self.period.val());
+            if !self.period.val().any() {
+                self.period_q.d.next = self.whole_range.val();
+            }
+            self.lead_q.d.next = self.period.val().get_bits::<11>(5) - 1;
         }
 
-        self.at_valley.d.next = self.at_end.val() & !self.moves.val();
-        self.at_peak.d.next = self.at_half.val() & !self.moves.val();
-        self.at_trigger.d.next = self.triggers.val() & !self.moves.val();
+        self.at_valley.d.next = self.valley_next.val();
+        self.at_peak.d.next = self.peak_next.val();
         self.valley_q.d.next = self.at_valley.q.val();
         self.peak_q.d.next = self.at_peak.q.val();
-        self.trigger_q.d.next = self.at_trigger.q.val();
+        self.trigger_q.d.next = (self.position.q.val() == self.trigger_phase.val()) & !self.holds.val();
 
-        self.ahead.next = self.ahead_q.q.val();
         self.period_used.next = self.period_q.q.val();
-        self.valley_next.next = self.at_end.val();
-        self.peak_next.next = self.at_half.val();
+        self.settled.next = self.period_q.q.val().get_bits::<16>(0) == self.period.val();
+        self.waits.next = self.holds.val();
         self.out_of_step.next = self.off_phase.val();
-        self.realigns.next = self.moves.val();
         self.valley.next = self.valley_q.q.val();
         self.peak.next = self.peak_q.q.val();
         self.trigger.next = self.trigger_q.q.val();

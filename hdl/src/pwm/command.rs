@@ -1,159 +1,360 @@
-//! From a duty to the width of the high side's pulse, in two clocks.
+//! From a duty to the pattern and the edges of a half period, with one adder.
 //!
-//! ```text
-//! clock 1   magnitude = min(|duty|, max_duty);  half bridge: 0 if negative
-//! clock 2   width     = magnitude − D;          locked: (period − 2 D ± magnitude) / 2, rounded down
-//! ```
+//! The accumulator holds four times the clocks from the edge: it counts up in the half with the rise and down in the half with
+//! the fall, so that its sign is the level. In the 16 clocks before a boundary it computes instead; an edge that falls into
+//! them has been noted before. With U = twice the leg's duty, that is 2 |duty|, or `period` + duty when locked:
 //!
-//! `whole`, period − 2 D, is a register too: it follows the two a clock later, and the PWM waits for it before it starts.
+//! | step | | valley | peak |
+//! |---|---|---|---|
+//! | 0 | A = 0; duty and mode are read | | |
+//! | 1 | A = \|duty\| | | |
+//! | 2, 3 | A > max_duty or > period: limited; A = 0 | | |
+//! | 4, 5 | A = U, of the limited duty | | |
+//! | 6 … | | A = U − 2 D = 2 W | A = U − 2 P − 2 + 2 D |
+//! | | | W < minimum pulse: too short | L < minimum pulse: too long |
+//! | | | A = U − 2 P − 2 + 2 D | A = U − 2 D = 2 W |
+//! | | | L < minimum pulse: too long | W < minimum pulse: too short |
+//! | | | A = − 4 rise | A = 2 W − 2, from the peak to the fall |
+//!
+//! At a peak that takes no command the accumulator counts on, and only 4 D is taken from it.
+//!
+//! Each step after the first is a flip-flop, its token: what it selects needs no decoder.
 
 use crate::prelude::*;
 
-#[derive(LogicBlock)]
+#[derive(LogicBlock, Default)]
 pub(super) struct Command {
     pub(super) clk: Signal<In, Clock>,
     pub(super) rst: Signal<In, Bit>,
     pub(super) mode: Signal<In, Bits<2>>,
     pub(super) duty: Signal<In, Signed<17>>,
     pub(super) max_duty: Signal<In, Bits<16>>,
-    pub(super) period: Signal<In, Bits<16>>,
+    pub(super) update_at_peak: Signal<In, Bit>,
+    pub(super) period: Signal<In, Bits<17>>,
     pub(super) dead_time: Signal<In, Bits<10>>,
-    pub(super) whole: Signal<Out, Signed<18>>,
-    pub(super) width: Signal<Out, Signed<18>>,
-    pub(super) width_mode: Signal<Out, Bits<2>>,
+    pub(super) minimum_pulse: Signal<In, Bits<10>>,
+    pub(super) valley_lead: Signal<In, Bit>,
+    pub(super) peak_lead: Signal<In, Bit>,
+    pub(super) waits: Signal<In, Bit>,
+    pub(super) valley_next: Signal<Out, Bit>,
+    pub(super) peak_next: Signal<Out, Bit>,
+    pub(super) updates: Signal<Out, Bit>,
+    pub(super) computes: Signal<Out, Bit>,
+    pub(super) level: Signal<Out, Bit>,
+    pub(super) new_mode: Signal<Out, Bits<2>>,
     pub(super) negative: Signal<Out, Bit>,
     pub(super) saturated: Signal<Out, Bit>,
+    pub(super) too_short: Signal<Out, Bit>,
+    pub(super) too_long: Signal<Out, Bit>,
 
-    limited_mode: Dff<Bits<2>>,
-    limited_negative: Dff<Bit>,
+    step: Dff<Bits<5>>,
+    works: Dff<Bit>,
+    rises: Dff<Bit>,
+    takes: Dff<Bit>,
+    mode_q: Dff<Bits<2>>,
+    duty_q: Dff<Signed<17>>,
+    accumulator: Dff<Bits<19>>,
+    early: Dff<Bits<4>>,
+    level_q: Dff<Bit>,
     limited: Dff<Bit>,
-    magnitude: Dff<Bits<16>>,
-    whole_q: Dff<Signed<18>>,
-    width_q: Dff<Signed<18>>,
-    width_mode_q: Dff<Bits<2>>,
-    negative_q: Dff<Bit>,
-    saturated_q: Dff<Bit>,
+    short_q: Dff<Bit>,
+    long_q: Dff<Bit>,
 
+    size: Dff<Bit>,
+    over_maximum: Dff<Bit>,
+    over_period: Dff<Bit>,
+    once: Dff<Bit>,
+    twice: Dff<Bit>,
+    less_dead: Dff<Bit>,
+    shortness: Dff<Bit>,
+    with_dead: Dff<Bit>,
+    less_period: Dff<Bit>,
+    less_periods: Dff<Bit>,
+    mirror: Dff<Bit>,
+    longness: Dff<Bit>,
+    to_rise: Dff<Bit>,
+    plus_period: Dff<Bit>,
+    plus_periods: Dff<Bit>,
+    less_dead_first: Dff<Bit>,
+    to_fall: Dff<Bit>,
+
+    begins_valley: Signal<Local, Bit>,
+    begins: Signal<Local, Bit>,
+    taking: Signal<Local, Bit>,
+    ends: Signal<Local, Bit>,
+    resumes: Signal<Local, Bit>,
+    locked: Signal<Local, Bit>,
     below_zero: Signal<Local, Bit>,
-    duty_bits: Signal<Local, Bits<17>>,
-    size: Signal<Local, Bits<17>>,
-    over: Signal<Local, Bit>,
     one_sided: Signal<Local, Bit>,
-    dead: Signal<Local, Bits<18>>,
-    wide_whole: Signal<Local, Signed<20>>,
-    base: Signal<Local, Bits<20>>,
-    operand: Signal<Local, Bits<20>>,
-    sum: Signal<Local, Bits<20>>,
-
-    carry: Constant<Bits<20>>,
-}
-
-impl Default for Command {
-    fn default() -> Self {
-        Self {
-            clk: Signal::default(),
-            rst: Signal::default(),
-            mode: Signal::default(),
-            duty: Signal::default(),
-            max_duty: Signal::default(),
-            period: Signal::default(),
-            dead_time: Signal::default(),
-            whole: Signal::default(),
-            width: Signal::default(),
-            width_mode: Signal::default(),
-            negative: Signal::default(),
-            saturated: Signal::default(),
-            limited_mode: Dff::default(),
-            limited_negative: Dff::default(),
-            limited: Dff::default(),
-            magnitude: Dff::default(),
-            whole_q: Dff::default(),
-            width_q: Dff::default(),
-            width_mode_q: Dff::default(),
-            negative_q: Dff::default(),
-            saturated_q: Dff::default(),
-            below_zero: Signal::default(),
-            duty_bits: Signal::default(),
-            size: Signal::default(),
-            over: Signal::default(),
-            one_sided: Signal::default(),
-            dead: Signal::default(),
-            wide_whole: Signal::default(),
-            base: Signal::default(),
-            operand: Signal::default(),
-            sum: Signal::default(),
-            carry: Constant::new(from_u64(1)),
-        }
-    }
+    counts: Signal<Local, Bit>,
+    down: Signal<Local, Bit>,
+    loads: Signal<Local, Bit>,
+    turned: Signal<Local, Bit>,
+    of_period: Signal<Local, Bit>,
+    of_duty: Signal<Local, Bit>,
+    of_maximum: Signal<Local, Bit>,
+    of_dead: Signal<Local, Bit>,
+    of_pulse: Signal<Local, Bit>,
+    inverts: Signal<Local, Bit>,
+    carries: Signal<Local, Bit>,
+    writes: Signal<Local, Bit>,
+    first_0: Signal<Local, Bit>,
+    first_1: Signal<Local, Bit>,
+    second_0: Signal<Local, Bit>,
+    second_1: Signal<Local, Bit>,
+    wide_duty: Signal<Local, Signed<19>>,
+    none: Signal<Local, Bits<19>>,
+    first: Signal<Local, Bits<19>>,
+    second: Signal<Local, Bits<19>>,
+    chosen: Signal<Local, Bits<19>>,
+    step_size: Signal<Local, Bits<19>>,
+    addend: Signal<Local, Bits<19>>,
+    sum: Signal<Local, Bits<19>>,
+    under: Signal<Local, Bit>,
 }
 
 impl Logic for Command {
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module pwm_command");
-        comment!("@about Duty to the width of the high pulse.");
+        comment!("@about Duty to pattern and edges: one adder, which");
+        comment!("@about counts the clocks to an edge in between.");
         dff_setup!(
             self,
             clk,
-            limited_mode,
-            limited_negative,
+            step,
+            works,
+            rises,
+            takes,
+            mode_q,
+            duty_q,
+            accumulator,
+            early,
+            level_q,
             limited,
-            magnitude,
-            whole_q,
-            width_q,
-            width_mode_q,
-            negative_q,
-            saturated_q
+            short_q,
+            long_q,
+            size,
+            over_maximum,
+            over_period,
+            once,
+            twice,
+            less_dead,
+            shortness,
+            with_dead,
+            less_period,
+            less_periods,
+            mirror,
+            longness,
+            to_rise,
+            plus_period,
+            plus_periods,
+            less_dead_first,
+            to_fall
         );
 
-        comment!("First clock: size and limit. Of a negative duty");
-        comment!("the inverse, which is one less: bit 0 adds it");
-        self.below_zero.next = self.duty.val().get_bit(16);
-        self.duty_bits.next = unsigned_cast(self.duty.val());
-        self.size.next = self.duty_bits.val() << 1;
-        if self.below_zero.val() {
-            self.size.next = !(self.duty_bits.val() << 1);
-        }
-        self.over.next = false;
-        self.one_sided.next = (self.mode.val() == 1) & self.below_zero.val();
-        self.magnitude.d.next = self.size.val().get_bits::<16>(1) + bit_cast::<16, 1>(self.size.val().get_bits::<1>(0));
-        if self.size.val() > (bit_cast::<17, 16>(self.max_duty.val()) << 1) {
-            self.over.next = true;
-            self.magnitude.d.next = self.max_duty.val();
-        }
-        if self.one_sided.val() {
-            self.magnitude.d.next = 0.into();
-        }
-        self.limited.d.next = self.over.val() | self.one_sided.val();
-        self.limited_mode.d.next = self.mode.val();
-        self.limited_negative.d.next = self.below_zero.val();
+        comment!("The last 32 clocks before a valley, 16 at a peak");
+        self.begins_valley.next = self.step.q.val() == 16;
+        self.begins.next = self.begins_valley.val() | (self.peak_lead.val() & !self.valley_lead.val());
+        self.taking.next = self.begins.val() & (self.begins_valley.val() | self.update_at_peak.val());
+        self.ends.next = self.step.q.val().all();
+        self.resumes.next = (self.step.q.val() == 27) & !self.takes.q.val();
+        self.locked.next = self.mode_q.q.val().all();
+        self.below_zero.next = self.duty_q.q.val().get_bit(16);
+        self.one_sided.next = (self.mode_q.q.val() == 1) & self.below_zero.val();
 
-        comment!("Second clock: less the dead time; locked: half of");
-        comment!("what the period leaves, up or down. One sum, of");
-        comment!("twice the width; to subtract, inverse and carry");
-        self.dead.next = bit_cast::<18, 10>(self.dead_time.val());
-        self.whole_q.d.next = signed_cast(bit_cast::<18, 16>(self.period.val()) - (self.dead.val() << 1));
-        self.wide_whole.next = signed_bit_cast::<20, 18>(self.whole_q.q.val());
-        self.base.next = !(bit_cast::<20, 10>(self.dead_time.val()) << 2);
-        self.operand.next = (bit_cast::<20, 16>(self.magnitude.q.val()) << 2) | self.carry.val();
-        if self.limited_mode.q.val() == 3 {
-            self.base.next = unsigned_cast(self.wide_whole.val()) << 1;
-            self.operand.next = bit_cast::<20, 16>(self.magnitude.q.val()) << 1;
-            if self.limited_negative.q.val() {
-                self.base.next = (unsigned_cast(self.wide_whole.val()) << 1) | self.carry.val();
-                self.operand.next = !(bit_cast::<20, 16>(self.magnitude.q.val()) << 1);
+        comment!("To count: where nothing is computed");
+        self.counts.next = !self.works.q.val()
+            | (!self.takes.q.val()
+                & !(self.less_dead_first.q.val()
+                    | self.less_dead.q.val()
+                    | self.shortness.q.val()
+                    | self.to_fall.q.val()));
+        self.down.next = !self.works.q.val() & !self.rises.q.val();
+
+        comment!("What the step adds");
+        self.loads.next = self.once.q.val() | (self.twice.q.val() & !self.locked.val());
+        self.turned.next = self.below_zero.val()
+            & (self.size.q.val() | (self.loads.val() & (self.limited.q.val() == self.locked.val())));
+        self.of_period.next = self.over_period.q.val()
+            | self.less_period.q.val()
+            | self.less_periods.q.val()
+            | self.plus_period.q.val()
+            | self.plus_periods.q.val()
+            | (self.twice.q.val() & self.locked.val());
+        self.of_duty.next = self.size.q.val() | (self.loads.val() & !self.limited.q.val());
+        self.of_maximum.next = self.over_maximum.q.val() | (self.loads.val() & self.limited.q.val());
+        self.of_dead.next =
+            self.less_dead_first.q.val() | self.less_dead.q.val() | self.with_dead.q.val() | self.mirror.q.val();
+        self.of_pulse.next = self.shortness.q.val() | self.longness.q.val();
+        self.carries.next = self.turned.val()
+            | self.down.val()
+            | self.less_dead.q.val()
+            | self.shortness.q.val()
+            | self.less_dead_first.q.val()
+            | self.plus_period.q.val()
+            | self.plus_periods.q.val();
+        self.inverts.next = self.turned.val()
+            | self.down.val()
+            | self.less_dead.q.val()
+            | self.shortness.q.val()
+            | self.less_dead_first.q.val()
+            | self.over_maximum.q.val()
+            | self.over_period.q.val()
+            | self.less_period.q.val()
+            | self.less_periods.q.val()
+            | self.to_fall.q.val();
+        self.writes.next = self.counts.val()
+            | self.size.q.val()
+            | (self.loads.val() & !self.one_sided.val())
+            | (self.of_period.val() & !self.over_period.q.val())
+            | self.of_dead.val()
+            | self.to_rise.q.val()
+            | self.to_fall.q.val();
+
+        comment!("Duty or limit; dead time or pulse, doubled; all of");
+        comment!("either: the period. A choice of two bits a LUT");
+        self.first_0.next = self.of_duty.val() | self.of_period.val();
+        self.first_1.next = self.of_maximum.val() | self.of_period.val();
+        self.second_0.next = self.of_dead.val() | self.of_period.val();
+        self.second_1.next = self.of_pulse.val() | self.of_period.val();
+        self.wide_duty.next = signed_bit_cast::<19, 17>(self.duty_q.q.val());
+        self.none.next = 0.into();
+        self.first.next = self.none.val();
+        if self.first_0.val() {
+            self.first.next = unsigned_cast(self.wide_duty.val());
+        }
+        if self.first_1.val() {
+            self.first.next = bit_cast::<19, 16>(self.max_duty.val());
+            if self.first_0.val() {
+                self.first.next = !self.none.val();
             }
         }
-        self.sum.next = self.base.val() + self.operand.val();
-        self.width_q.d.next = signed_cast(self.sum.val().get_bits::<18>(2));
-        self.width_mode_q.d.next = self.limited_mode.q.val();
-        self.negative_q.d.next = self.limited_negative.q.val();
-        self.saturated_q.d.next = self.limited.q.val() | (self.magnitude.q.val() > self.period.val());
+        self.second.next = self.none.val();
+        if self.second_0.val() {
+            self.second.next = bit_cast::<19, 10>(self.dead_time.val()) << 1;
+        }
+        if self.second_1.val() {
+            self.second.next = bit_cast::<19, 10>(self.minimum_pulse.val()) << 1;
+            if self.second_0.val() {
+                self.second.next = !self.none.val();
+            }
+        }
+        self.chosen.next = (self.first.val() & self.second.val() & bit_cast::<19, 17>(self.period.val()))
+            | (self.first.val() ^ self.second.val());
+        if self.inverts.val() {
+            self.chosen.next = !((self.first.val() & self.second.val() & bit_cast::<19, 17>(self.period.val()))
+                | (self.first.val() ^ self.second.val()));
+        }
 
-        self.whole.next = self.whole_q.q.val();
-        self.width.next = self.width_q.q.val();
-        self.width_mode.next = self.width_mode_q.q.val();
-        self.negative.next = self.negative_q.q.val();
-        self.saturated.next = self.saturated_q.q.val();
+        comment!("And small numbers, where it is none of these");
+        self.step_size.next = 0.into();
+        if self.counts.val() {
+            self.step_size.next = 4.into();
+        }
+        if self.resumes.val() {
+            self.step_size.next = 20.into();
+        }
+        if self.to_rise.q.val() {
+            self.step_size.next = 2.into();
+            if self.period.val().get_bit(0) {
+                self.step_size.next = 4.into();
+            }
+        }
+        if self.to_fall.q.val() {
+            self.step_size.next = 1.into();
+        }
+        self.addend.next = self.chosen.val() ^ self.step_size.val();
+        self.sum.next = self.accumulator.q.val() + self.addend.val() + bit_cast::<19, 1>(self.carries.val().into());
+        self.under.next = self.sum.val().get_bit(18);
+
+        if !self.waits.val() {
+            comment!("Counted from the lead on");
+            if self.step.q.val().any() | self.valley_lead.val() | self.peak_lead.val() {
+                self.step.d.next = self.step.q.val() + 1;
+            }
+            if self.peak_lead.val() {
+                self.step.d.next = 17.into();
+            }
+            if self.valley_lead.val() {
+                self.step.d.next = 1.into();
+            }
+            self.works.d.next = self.begins.val() | (self.works.q.val() & !self.to_fall.q.val() & !self.ends.val());
+
+            comment!("A command is read");
+            if self.begins.val() {
+                self.rises.d.next = self.begins_valley.val();
+                self.takes.d.next = self.taking.val();
+            }
+            if self.taking.val() {
+                self.mode_q.d.next = self.mode.val();
+                self.duty_q.d.next = self.duty.val();
+            }
+
+            comment!("The tokens");
+            self.size.d.next = self.taking.val();
+            self.over_maximum.d.next = self.size.q.val();
+            self.over_period.d.next = self.over_maximum.q.val();
+            self.once.d.next = self.over_period.q.val();
+            self.twice.d.next = self.once.q.val();
+            self.less_dead.d.next = (self.twice.q.val() & self.rises.q.val()) | self.less_dead_first.q.val();
+            self.shortness.d.next = self.less_dead.q.val();
+            self.with_dead.d.next = self.shortness.q.val() & self.rises.q.val();
+            self.less_period.d.next = (self.twice.q.val() & !self.rises.q.val()) | self.with_dead.q.val();
+            self.less_periods.d.next = self.less_period.q.val();
+            self.mirror.d.next = self.less_periods.q.val();
+            self.longness.d.next = self.mirror.q.val();
+            self.to_rise.d.next = self.longness.q.val() & self.rises.q.val();
+            self.plus_period.d.next = self.longness.q.val() & !self.rises.q.val();
+            self.plus_periods.d.next = self.plus_period.q.val();
+            self.less_dead_first.d.next = self.plus_periods.q.val() | self.resumes.val();
+            self.to_fall.d.next = self.shortness.q.val() & !self.rises.q.val();
+
+            comment!("The results");
+            if self.writes.val() {
+                self.accumulator.d.next = self.sum.val();
+            }
+            if self.taking.val() | self.over_period.q.val() {
+                self.accumulator.d.next = 0.into();
+            }
+            if self.over_maximum.q.val() {
+                self.limited.d.next = !self.under.val();
+            }
+            if (self.over_period.q.val() & !self.under.val()) | (self.once.q.val() & self.one_sided.val()) {
+                self.limited.d.next = true;
+            }
+            if self.shortness.q.val() & self.takes.q.val() {
+                self.short_q.d.next = self.under.val();
+            }
+            if self.longness.q.val() {
+                self.long_q.d.next = !self.under.val();
+            }
+
+            comment!("The level: the sign, or the edge noted before");
+            if self.begins.val() {
+                self.early.d.next = self.accumulator.q.val().get_bits::<4>(2);
+                if self.rises.q.val() {
+                    self.early.d.next = !self.accumulator.q.val().get_bits::<4>(2);
+                }
+            }
+            if !self.works.q.val() | self.ends.val() {
+                self.level_q.d.next = !self.under.val();
+            } else {
+                if self.early.q.val() == self.step.q.val().get_bits::<4>(0) {
+                    self.level_q.d.next = !self.rises.q.val();
+                }
+            }
+        }
+
+        self.valley_next.next = self.ends.val() & self.rises.q.val() & !self.waits.val();
+        self.peak_next.next = self.ends.val() & !self.rises.q.val() & !self.waits.val();
+        self.updates.next = self.ends.val() & self.takes.q.val() & !self.waits.val();
+        self.computes.next = self.works.q.val();
+        self.level.next = self.level_q.q.val();
+        self.new_mode.next = self.mode_q.q.val();
+        self.negative.next = self.below_zero.val();
+        self.saturated.next = self.limited.q.val();
+        self.too_short.next = self.short_q.q.val();
+        self.too_long.next = self.long_q.q.val();
     }
 }

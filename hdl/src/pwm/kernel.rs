@@ -1,4 +1,4 @@
-//! The PWM: what is latched at a boundary, and the edge that follows from it, between carrier and leg.
+//! The PWM: what is latched at a boundary, between carrier, command and leg.
 
 use super::carrier::Carrier;
 use super::command::Command;
@@ -65,11 +65,7 @@ pub(super) struct Pwm {
     low_q: Dff<Bit>,
     high_q: Dff<Bit>,
     off_q: Dff<Bit>,
-    settled_once: Dff<Bit>,
-    settled_twice: Dff<Bit>,
-    rise_at: Dff<Bits<16>>,
-    fall_at: Dff<Bits<16>>,
-    level: Dff<Bit>,
+    stable: Dff<Bit>,
     saturated_q: Dff<Bit>,
     refused_q: Dff<Bit>,
     below_floor_q: Dff<Bit>,
@@ -81,19 +77,6 @@ pub(super) struct Pwm {
     starts: Signal<Local, Bit>,
     wanted: Signal<Local, Bit>,
     wants_high: Signal<Local, Bit>,
-    updates: Signal<Local, Bit>,
-    minimum: Signal<Local, Bits<18>>,
-    width_bits: Signal<Local, Bits<18>>,
-    whole_bits: Signal<Local, Bits<18>>,
-    rise: Signal<Local, Bits<17>>,
-    half_period: Signal<Local, Bits<16>>,
-    fall: Signal<Local, Bits<17>>,
-    rise_position: Signal<Local, Bits<16>>,
-    odd: Signal<Local, Bits<17>>,
-    low_side: Signal<Local, Signed<19>>,
-    shortest: Signal<Local, Bits<19>>,
-    too_short: Signal<Local, Bit>,
-    too_long: Signal<Local, Bit>,
     may_turn: Signal<Local, Bit>,
     turns: Signal<Local, Bit>,
 }
@@ -153,11 +136,7 @@ impl Pwm {
             low_q: Dff::default(),
             high_q: Dff::default(),
             off_q: Dff::default(),
-            settled_once: Dff::default(),
-            settled_twice: Dff::default(),
-            rise_at: Dff::default(),
-            fall_at: Dff::default(),
-            level: Dff::default(),
+            stable: Dff::default(),
             saturated_q: Dff::default(),
             refused_q: Dff::default(),
             below_floor_q: Dff::default(),
@@ -168,19 +147,6 @@ impl Pwm {
             starts: Signal::default(),
             wanted: Signal::default(),
             wants_high: Signal::default(),
-            updates: Signal::default(),
-            minimum: Signal::default(),
-            width_bits: Signal::default(),
-            whole_bits: Signal::default(),
-            rise: Signal::default(),
-            half_period: Signal::default(),
-            fall: Signal::default(),
-            rise_position: Signal::default(),
-            odd: Signal::default(),
-            low_side: Signal::default(),
-            shortest: Signal::default(),
-            too_short: Signal::default(),
-            too_long: Signal::default(),
             may_turn: Signal::default(),
             turns: Signal::default(),
         }
@@ -200,11 +166,7 @@ impl Logic for Pwm {
             low_q,
             high_q,
             off_q,
-            settled_once,
-            settled_twice,
-            rise_at,
-            fall_at,
-            level,
+            stable,
             saturated_q,
             refused_q,
             below_floor_q,
@@ -218,6 +180,8 @@ impl Logic for Pwm {
         self.carrier.sync.next = self.sync.val();
         self.carrier.phase.next = self.phase.val();
         self.carrier.trigger_phase.next = self.trigger_phase.val();
+        self.carrier.valley_next.next = self.command.valley_next.val();
+        self.carrier.peak_next.next = self.command.peak_next.val();
         self.timing.clk.next = self.clk.val();
         self.timing.rst.next = self.rst.val();
         self.timing.running.next = self.running_q.q.val();
@@ -228,12 +192,17 @@ impl Logic for Pwm {
         self.command.mode.next = self.mode.val();
         self.command.duty.next = self.duty.val();
         self.command.max_duty.next = self.max_duty.val();
+        self.command.update_at_peak.next = self.update_at_peak.val();
         self.command.period.next = self.carrier.period_used.val();
         self.command.dead_time.next = self.timing.dead_time_used.val();
+        self.command.minimum_pulse.next = self.timing.minimum_pulse_used.val();
+        self.command.valley_lead.next = self.carrier.valley_lead.val();
+        self.command.peak_lead.next = self.carrier.peak_lead.val();
+        self.command.waits.next = self.carrier.waits.val();
         self.guard.clk.next = self.clk.val();
         self.guard.rst.next = self.rst.val();
         self.guard.running.next = self.running_q.q.val();
-        self.guard.valley.next = self.carrier.valley_next.val();
+        self.guard.valley.next = self.command.valley_next.val();
         self.guard.feed.next = self.feed.val();
         self.guard.watchdog_periods.next = self.watchdog_periods.val();
         self.guard.filter_clocks.next = self.filter_clocks.val();
@@ -242,24 +211,22 @@ impl Logic for Pwm {
         self.guard.filtered_fault_n.next = self.filtered_fault_n.val();
         self.guard.clear_trip.next = self.clear_trip.val();
 
-        comment!("Off at once; on at a valley, registers settled");
-        self.settled.next = self.timing.settled.val() & (self.carrier.period_used.val() == self.period.val());
-        self.settled_once.d.next = self.settled.val();
-        self.settled_twice.d.next = self.settled_once.q.val();
+        comment!("Off at once; on at a valley, with a command from");
+        comment!("registers that were settled all the time");
+        self.settled.next = self.timing.settled.val() & self.carrier.settled.val();
+        self.stable.d.next = self.settled.val() & (self.stable.q.val() | !self.command.computes.val());
         self.may_run.next = self.enable.val() & !self.guard.tripped.val();
         self.goes_on.next = self.running_q.q.val() & self.may_run.val();
         self.starts.next = !self.running_q.q.val()
             & self.may_run.val()
-            & self.carrier.valley_next.val()
+            & self.command.valley_next.val()
             & self.settled.val()
-            & self.settled_once.q.val()
-            & self.settled_twice.q.val()
-            & !self.carrier.realigns.val();
+            & self.stable.q.val();
         self.running_q.d.next = self.goes_on.val() | self.starts.val();
 
         comment!("What is wanted of the leg at this position");
         self.wanted.next = self.goes_on.val() & !self.off_q.q.val();
-        self.wants_high.next = self.high_q.q.val() | (self.level.q.val() & !self.low_q.q.val());
+        self.wants_high.next = self.high_q.q.val() | (self.command.level.val() & !self.low_q.q.val());
         self.leg.clk.next = self.clk.val();
         self.leg.rst.next = self.rst.val();
         self.leg.wanted.next = self.wanted.val();
@@ -277,58 +244,23 @@ impl Logic for Pwm {
         self.pin_gates.high_side.next = self.leg.high_side.val();
         self.pin_gates.low_side.next = self.leg.low_side.val();
 
-        comment!("The edges of a pulse: half before the peak, half");
-        comment!("and an odd clock behind it");
-        self.updates.next = self.carrier.valley_next.val() | (self.carrier.peak_next.val() & self.update_at_peak.val());
-        self.width_bits.next = unsigned_cast(self.command.width.val());
-        self.whole_bits.next = unsigned_cast(self.command.whole.val());
-        self.odd.next = bit_cast::<17, 1>(self.width_bits.val().get_bits::<1>(0));
-        self.rise.next = self.whole_bits.val().get_bits::<17>(1) - self.width_bits.val().get_bits::<17>(1);
-        self.rise_position.next = self.rise.val().get_bits::<16>(0);
-        self.half_period.next = self.carrier.period_used.val() >> 1;
-        self.fall.next = ((bit_cast::<17, 16>(self.half_period.val()) << 1) | self.odd.val())
-            + ((bit_cast::<17, 16>(self.width_bits.val().get_bits::<16>(1)) << 1) | self.odd.val());
-
-        comment!("Shorter than the minimum: none, or full. The low");
-        comment!("side's pulse is twice the rise and the odd clocks");
-        self.minimum.next = bit_cast::<18, 10>(self.timing.minimum_pulse_used.val());
-        self.low_side.next = signed_cast(
-            (bit_cast::<19, 17>(self.rise.val()) << 2)
-                | (bit_cast::<19, 1>(self.whole_bits.val().get_bits::<1>(0)) << 1),
-        );
-        self.shortest.next = (bit_cast::<19, 18>(self.minimum.val()) << 1) | bit_cast::<19, 17>(self.odd.val());
-        self.too_short.next = self.command.width.val() < signed_cast(self.minimum.val());
-        self.too_long.next = self.low_side.val() < signed_cast(self.shortest.val());
-
         comment!("A direction turns with its first pulse, from low");
         self.may_turn.next = !self.leg.awake.val() | self.leg.low_side.val();
-        self.turns.next = ((self.command.width_mode.val() == 0) | (self.command.width_mode.val() == 2))
-            & !self.too_short.val()
+        self.turns.next = ((self.command.new_mode.val() == 0) | (self.command.new_mode.val() == 2))
+            & !self.command.too_short.val()
             & (self.command.negative.val() != self.negative_q.q.val());
 
         comment!("A boundary takes the command");
-        if self.updates.val() {
-            self.mode_q.d.next = self.command.width_mode.val();
-            self.off_q.d.next = self.goes_on.val() & (self.command.width_mode.val() != self.mode_q.q.val());
-            self.low_q.d.next = self.too_short.val() | (self.turns.val() & !self.may_turn.val());
-            self.high_q.d.next =
-                self.too_long.val() & !self.too_short.val() & !(self.turns.val() & !self.may_turn.val());
-            self.fall_at.d.next = self.fall.val().get_bits::<16>(1);
+        if self.command.updates.val() {
+            self.mode_q.d.next = self.command.new_mode.val();
+            self.off_q.d.next = self.goes_on.val() & (self.command.new_mode.val() != self.mode_q.q.val());
+            self.low_q.d.next = self.command.too_short.val() | (self.turns.val() & !self.may_turn.val());
+            self.high_q.d.next = self.command.too_long.val()
+                & !self.command.too_short.val()
+                & !(self.turns.val() & !self.may_turn.val());
             if self.turns.val() & self.may_turn.val() {
                 self.negative_q.d.next = self.command.negative.val();
             }
-        }
-
-        comment!("The level of the position to come: low from the");
-        comment!("valley, high from the rise, at last from the peak");
-        self.level.d.next = (self.level.q.val() | (self.carrier.ahead.val() == self.rise_at.q.val()))
-            & (self.carrier.ahead.val() != self.fall_at.q.val());
-        if self.carrier.peak_next.val() {
-            self.level.d.next = true;
-        }
-        if self.carrier.valley_next.val() {
-            self.rise_at.d.next = self.rise_position.val();
-            self.level.d.next = !self.rise_position.val().any();
         }
 
         comment!("Flags, set over clear");
@@ -338,7 +270,7 @@ impl Logic for Pwm {
             self.below_floor_q.d.next = false;
             self.unaligned_q.d.next = false;
         }
-        if self.updates.val() & self.goes_on.val() & self.command.saturated.val() {
+        if self.command.updates.val() & self.goes_on.val() & self.command.saturated.val() {
             self.saturated_q.d.next = true;
         }
         if self.running_q.q.val() & !self.settled.val() {

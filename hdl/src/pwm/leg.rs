@@ -1,6 +1,9 @@
 //! The leg: dead time and minimum pulse, whatever is wanted of it and from whatever state.
 //!
 //! The outputs are those of the next clock: the gates take them into registers.
+//!
+//! The timer counts up from 0 while off and from 1 in every new state, so that it needs no load, and compares with what it
+//! is to reach: of the two times only equality is asked. It stays there until something else is wanted.
 
 use crate::prelude::*;
 
@@ -25,7 +28,7 @@ pub(super) struct Leg {
     awake_next: Signal<Local, Bit>,
     lit_next: Signal<Local, Bit>,
     high_next: Signal<Local, Bit>,
-    pause: Signal<Local, Bits<10>>,
+    lasts: Signal<Local, Bits<10>>,
 }
 
 impl Logic for Leg {
@@ -40,9 +43,14 @@ impl Logic for Leg {
         self.lit_next.next = self.lit_q.q.val();
         self.high_next.next = self.high_q.q.val();
 
-        comment!("The timer: its count, or what comes next less one");
-        self.pause.next = self.timer.q.val();
-        if !self.timer.q.val().any() {
+        comment!("The timer counts up to what the state lasts");
+        self.lasts.next = self.dead_time.val();
+        if self.lit_q.q.val() {
+            self.lasts.next = self.minimum_pulse.val();
+        }
+        if self.timer.q.val() != self.lasts.val() {
+            self.timer.d.next = self.timer.q.val() + 1;
+        } else {
             if !self.lit_q.q.val() {
                 comment!("The dead time is over");
                 self.lit_next.next = true;
@@ -50,25 +58,21 @@ impl Logic for Leg {
                 if !self.awake_q.q.val() {
                     self.high_next.next = self.wants_high.val() & !self.low_first.val();
                 }
-                self.pause.next = self.minimum_pulse.val();
+                self.timer.d.next = 1.into();
             } else {
                 if self.high_q.q.val() != self.wants_high.val() {
                     comment!("The minimum pulse is over");
                     self.lit_next.next = false;
                     self.high_next.next = self.wants_high.val();
-                    self.pause.next = self.dead_time.val();
+                    self.timer.d.next = 1.into();
                 }
             }
-        }
-        self.timer.d.next = 0.into();
-        if self.pause.val().any() {
-            self.timer.d.next = self.pause.val() - 1;
         }
         if !self.wanted.val() {
             self.awake_next.next = false;
             self.lit_next.next = false;
             self.high_next.next = false;
-            self.timer.d.next = self.dead_time.val();
+            self.timer.d.next = 0.into();
         }
 
         self.awake_q.d.next = self.awake_next.val();

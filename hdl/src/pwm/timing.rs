@@ -1,4 +1,6 @@
 //! Dead time and minimum pulse: taken while off, and never below the floor.
+//!
+//! The floors are constants. Compared with them bit by bit, most bits cost nothing; a carry chain would have all ten.
 
 use crate::prelude::*;
 use posicast_model::rtl::pwm::PwmConfig;
@@ -59,12 +61,24 @@ impl Logic for Timing {
         comment!("@module pwm_timing");
         comment!("@about Dead time and minimum pulse, and floors.");
         dff_setup!(self, clk, dead_time_q, minimum_pulse_q);
-        self.dead_below.next = self.dead_time.val() < self.dead_time_floor.val();
+
+        comment!("Below: the floor has the highest bit that differs");
+        self.dead_below.next = false;
+        for i in 0..10 {
+            if self.dead_time.val().get_bit(i) != self.dead_time_floor.val().get_bit(i) {
+                self.dead_below.next = self.dead_time_floor.val().get_bit(i);
+            }
+        }
         self.dead_wanted.next = self.dead_time.val();
         if self.dead_below.val() {
             self.dead_wanted.next = self.dead_time_floor.val();
         }
-        self.pulse_below.next = self.minimum_pulse.val() < self.minimum_pulse_floor.val();
+        self.pulse_below.next = false;
+        for i in 0..10 {
+            if self.minimum_pulse.val().get_bit(i) != self.minimum_pulse_floor.val().get_bit(i) {
+                self.pulse_below.next = self.minimum_pulse_floor.val().get_bit(i);
+            }
+        }
         self.pulse_wanted.next = self.minimum_pulse.val();
         if self.pulse_below.val() {
             self.pulse_wanted.next = self.minimum_pulse_floor.val();

@@ -7,13 +7,13 @@ use super::Clock;
 use super::machine::RATIO_ROUNDING;
 use super::range::NumberRange;
 use super::table::Table;
-use crate::rtl::pwm::TIME_BITS;
+use crate::rtl::pwm::{SHORTEST_PERIOD_CLOCKS, TIME_BITS};
 
 /// Dead time and minimum pulse.
 const SHORT_S: NumberRange = NumberRange::closed(0.0, 1.0).unit("s");
 const FREQUENCY_HZ: NumberRange = NumberRange::positive(1e9).unit("Hz");
 /// PWM periods that the hardware counts, in clocks.
-const PERIOD_CLOCKS_MIN: u32 = 2;
+const PERIOD_CLOCKS_MIN: u32 = SHORTEST_PERIOD_CLOCKS;
 const PERIOD_CLOCKS_MAX: u32 = 1 << 16;
 /// Longest dead time and minimum pulse that it counts, in clocks.
 const TIME_CLOCKS_MAX: u32 = (1 << TIME_BITS) - 1;

@@ -127,7 +127,7 @@ fn unit_the_pwm_fits_clock_and_sample() {
                     the 1023 clocks that the hardware counts to";
     case("500e-9", "20.47e-6", expected);
     let slow = with_blocks().replace("= 20_000", "= 500").replace("10_000", "500");
-    let expected = "m.toml:20: axis.pwm.frequency_hz of axis x: found a period of 100000 clocks; allowed: 2 to 65536 clocks: \
+    let expected = "m.toml:20: axis.pwm.frequency_hz of axis x: found a period of 100000 clocks; allowed: 64 to 65536 clocks: \
                     from 762.939453125 Hz on";
     assert_eq!(wrong(&slow).to_string(), expected);
     // 3.985 µs and 1.01 µs end before a period of 5 µs does, in seconds; in whole clocks, rounded up, they do not.

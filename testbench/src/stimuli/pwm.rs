@@ -36,7 +36,7 @@ impl PwmRandom {
             rng: Xoshiro256PlusPlus::seed_from_u64(seed),
             inputs: Inputs {
                 enable: true,
-                period: 40,
+                period: 70,
                 max_duty: 0xffff,
                 ..Inputs::default()
             },
@@ -44,7 +44,7 @@ impl PwmRandom {
             until_feed: 50,
             faults: [0; 4],
             since_sync: 0,
-            period_used: 1,
+            period_used: 32,
         }
     }
 
@@ -77,11 +77,11 @@ impl PwmRandom {
         let seldom = if self.one_in(4) { 0 } else { 2 };
         let short = match self.is_calm() {
             true => any >> self.rng.random_range(0..9),
-            false => self.rng.random_range(8..120),
+            false => self.rng.random_range(64..160),
         };
         self.inputs.period = *pick(
             &mut self.rng,
-            &[short, short, short, short, 40, 41, 300, 7, 1, seldom, any >> 4, any],
+            &[short, short, short, short, 64, 65, 300, 48, 67, seldom, any >> 4, any],
         );
         let some = self.rng.random_range(0..12);
         let one_bit = [0; 2].map(|_: u8| 1 << self.rng.random_range(0..10));
@@ -147,7 +147,8 @@ impl PwmRandom {
         if self.inputs.feed {
             let forgets = self.interrupts(30);
             self.until_feed = if forgets {
-                3000
+                // Long enough for every bit of the watchdog.
+                if self.is_calm() { 20_000 } else { 3000 }
             } else {
                 (2 * u32::from(self.inputs.period.max(1))).min(2000)
             };

@@ -64,7 +64,7 @@ fn formal_serial_ratio() {
 
 #[test]
 fn formal_half_a_dead_time_is_found() {
-    fails("pwm", "pause = dead_time;", "pause = dead_time >> 1;", "known_pause");
+    fails("pwm", "lasts = dead_time;", "lasts = dead_time >> 1;", "dead_time_");
 }
 
 #[test]

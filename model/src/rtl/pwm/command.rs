@@ -1,60 +1,214 @@
-//! From a duty to a width, in two clocks: what the pipeline before the boundary does.
+//! From a duty to the pattern and the edges of a half period, with one adder.
+//!
+//! The accumulator holds four times the clocks from the edge and counts them, so that its sign is the level. In the 16 clocks
+//! before a boundary it computes the next half's instead. The table of steps is in `posicast_hdl::pwm`'s `command`.
 
 use super::ports::{Inputs, Mode};
 
-/// After the first clock: the duty, limited.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub(super) struct Limited {
-    mode: Mode,
-    negative: bool,
-    magnitude: u16,
-    limited: bool,
+/// The step in which a valley's command is read; a peak's is read in step 0.
+const READ_STEP: u8 = 16;
+/// The last one: the boundary is the next clock.
+const LAST_STEP: u8 = 31;
+/// Where a peak without a command takes the dead time from the count, and makes up for the clocks that are missing.
+const RESUME_STEP: u8 = 27;
+
+/// Bits of the accumulator.
+const BITS: u32 = 19;
+/// What it counts in a clock: four times a clock.
+const COUNT: i32 = 4;
+
+/// What is in use, and where the carrier is.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Surroundings {
+    pub(super) period: i32,
+    pub(super) dead_time: u16,
+    pub(super) minimum_pulse: u16,
+    pub(super) valley_lead: bool,
+    pub(super) peak_lead: bool,
 }
 
-/// After the second clock: the width of the high side's pulse.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub(super) struct Width {
+pub(super) struct Command {
+    /// Clocks since the lead, 16 more at a peak; 0 between the boundaries.
+    pub(super) step: u8,
+    /// The accumulator computes, or what is left of it counts.
+    pub(super) works: bool,
+    /// Which computation, 1 to 15; 0 is none.
+    slot: u8,
+    /// The half that is computed, and then counted, has the rise.
+    pub(super) rises: bool,
+    takes: bool,
     pub(super) mode: Mode,
-    pub(super) negative: bool,
-    /// Duty of the leg less the dead time, clocks; any sign, 18 bits.
-    pub(super) clocks: i32,
-    pub(super) saturated: bool,
+    duty: i32,
+    /// 19 bits.
+    pub(super) accumulator: i32,
+    early: u8,
+    pub(super) level: bool,
+    limited: bool,
+    pub(super) too_short: bool,
+    pub(super) too_long: bool,
 }
 
-impl Limited {
+/// What a step adds, and what becomes of the sum.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Fate {
+    Kept,
+    /// Only its sign is looked at.
+    Seen,
+}
+
+impl Command {
+    /// A boundary comes with this clock.
+    pub(super) fn ends(&self) -> bool {
+        self.step == LAST_STEP
+    }
+
+    pub(super) fn updates(&self) -> bool {
+        self.ends() && self.takes
+    }
+
+    pub(super) fn negative(&self) -> bool {
+        self.duty < 0
+    }
+
+    pub(super) fn saturated(&self) -> bool {
+        self.limited
+    }
+
     #[inline]
-    pub(super) fn new(inputs: &Inputs) -> Self {
-        let mode = Mode::from_register(inputs.mode);
-        let negative = inputs.duty < 0;
-        let over = inputs.duty.unsigned_abs() > u32::from(inputs.max_duty);
-        let one_sided = mode == Mode::HalfBridge && negative;
-        Self {
-            mode,
-            negative,
-            magnitude: match (one_sided, over) {
-                (true, _) => 0,
-                (false, true) => inputs.max_duty,
-                (false, false) => inputs.duty.unsigned_abs() as u16,
-            },
-            limited: over || one_sided,
+    pub(super) fn clock(&mut self, inputs: &Inputs, around: &Surroundings) {
+        let begins_valley = self.step == READ_STEP;
+        let begins = begins_valley || (around.peak_lead && !around.valley_lead);
+        let taking = begins && (begins_valley || inputs.update_at_peak);
+        let resumes = self.step == RESUME_STEP && !self.takes;
+        let ends = self.ends();
+
+        let (addend, fate) = self.addend(inputs, around, resumes);
+        let sum = (self.accumulator + addend) << (32 - BITS) >> (32 - BITS);
+        let under = sum < 0;
+
+        let slot = self.slot;
+        match slot {
+            2 => self.limited = !under,
+            3 => self.limited |= !under,
+            4 => self.limited |= self.one_sided(),
+            _ => {}
+        }
+        if slot == if self.rises { 7 } else { 14 } && self.takes {
+            self.too_short = under;
+        }
+        if slot == if self.rises { 12 } else { 9 } {
+            self.too_long = !under;
+        }
+        if !self.works || ends {
+            self.level = !under;
+        } else if self.early == self.step & 15 {
+            self.level = !self.rises;
+        }
+        if begins {
+            let mirror = if self.rises { 15 } else { 0 };
+            self.early = (self.accumulator >> 2 & 15) as u8 ^ mirror;
+        }
+        if taking || slot == 3 {
+            self.accumulator = 0;
+        } else if fate == Fate::Kept {
+            self.accumulator = sum;
+        }
+
+        self.works = begins || (self.works && !ends && (self.rises || slot != 15));
+        self.slot = match (taking, resumes, slot) {
+            (true, ..) => 1,
+            (_, true, _) => 12,
+            (.., 0 | 15) => 0,
+            _ => slot + 1,
+        };
+        if begins {
+            (self.rises, self.takes) = (begins_valley, taking);
+        }
+        if taking {
+            (self.mode, self.duty) = (Mode::from_register(inputs.mode), inputs.duty);
+        }
+        self.step = match (around.valley_lead, around.peak_lead, self.step) {
+            (true, ..) => 1,
+            (_, true, _) => READ_STEP + 1,
+            (.., 0 | LAST_STEP) => 0,
+            (.., step) => step + 1,
+        };
+    }
+
+    /// So many clocks in which it only counts.
+    #[inline]
+    pub(super) fn count(&mut self, clocks: u16) {
+        let steps = i32::from(clocks) * COUNT;
+        self.accumulator += if self.rises { steps } else { -steps };
+    }
+
+    /// Clocks that only count for which the level stays.
+    pub(super) fn same_level(&self) -> u16 {
+        let from_least = self.accumulator + (1 << (BITS - 1));
+        let left = match (self.rises, self.accumulator < 0) {
+            (true, true) => -1 - self.accumulator,
+            (true, false) => (1 << (BITS - 1)) - 1 - self.accumulator,
+            (false, true) => from_least,
+            (false, false) => self.accumulator,
+        };
+        u16::try_from(left / COUNT).unwrap_or(u16::MAX)
+    }
+
+    fn one_sided(&self) -> bool {
+        self.mode == Mode::HalfBridge && self.duty < 0
+    }
+
+    /// The duty, limited; its size where the mode has no use for the sign.
+    fn limited_duty(&self, inputs: &Inputs) -> i32 {
+        let size = if self.limited {
+            i32::from(inputs.max_duty)
+        } else {
+            self.duty.abs()
+        };
+        match self.mode {
+            Mode::Locked => size * self.duty.signum(),
+            _ => size,
         }
     }
-}
 
-impl Width {
-    /// In locked antiphase, leg A has the duty (period + duty) / 2.
     #[inline]
-    pub(super) fn new(from: &Limited, period: u16, dead_time: u16) -> Self {
-        let (magnitude, dead) = (i32::from(from.magnitude), i32::from(dead_time));
-        Self {
-            mode: from.mode,
-            negative: from.negative,
-            clocks: match (from.mode, from.negative) {
-                (Mode::Locked, false) => (i32::from(period) - 2 * dead + magnitude) >> 1,
-                (Mode::Locked, true) => (i32::from(period) - 2 * dead - magnitude) >> 1,
-                _ => magnitude - dead,
+    fn addend(&self, inputs: &Inputs, around: &Surroundings, resumes: bool) -> (i32, Fate) {
+        let counts = !self.works || (!self.takes && self.slot < 12);
+        if counts {
+            return match (self.works || self.rises, resumes) {
+                (true, true) => (5 * COUNT, Fate::Kept),
+                (true, false) => (COUNT, Fate::Kept),
+                (false, _) => (-COUNT, Fate::Kept),
+            };
+        }
+        let (period, dead, pulse) = (
+            around.period,
+            2 * i32::from(around.dead_time),
+            2 * i32::from(around.minimum_pulse),
+        );
+        let load = match self.one_sided() {
+            true => (0, Fate::Seen),
+            false => (self.limited_duty(inputs), Fate::Kept),
+        };
+        match (self.slot, self.rises) {
+            (1, _) => (self.duty.abs(), Fate::Kept),
+            (2, _) => (-i32::from(inputs.max_duty) - 1, Fate::Seen),
+            (3, _) => (-period - 1, Fate::Seen),
+            (4, _) => load,
+            (5, _) => match self.mode {
+                Mode::Locked => (period, Fate::Kept),
+                _ => load,
             },
-            saturated: from.limited || from.magnitude > period,
+            (6, true) | (12 | 13, false) => (-dead, Fate::Kept),
+            (7, true) | (14, false) => (-pulse, Fate::Seen),
+            (8 | 11, true) | (8, false) => (dead, Fate::Kept),
+            (9 | 10, true) | (6 | 7, false) => (-period - 1, Fate::Kept),
+            (12, true) | (9, false) => (pulse, Fate::Seen),
+            (13, true) => (2 + 2 * (period & 1), Fate::Kept),
+            (10 | 11, false) => (period + 1, Fate::Kept),
+            (15, false) => (-2, Fate::Kept),
+            _ => (0, Fate::Seen),
         }
     }
 }

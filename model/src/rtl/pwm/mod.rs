@@ -5,7 +5,7 @@
 //! | part | what it does |
 //! |---|---|
 //! | [`PwmConfig`] | polarities and floors, fixed when the PWM is built |
-//! | `command` | duty and mode to the width of a pulse, in the two clocks before a boundary |
+//! | `command` | duty and mode to pattern and edges, in the 16 clocks before a boundary; then the clocks to an edge |
 //! | [`Pwm`] | the carrier, what is latched at its boundaries, and the ports |
 //! | `leg` | dead time and minimum pulse, from any state |
 //! | `quiet` | the clocks in which only the carrier and a timer count |
@@ -48,13 +48,20 @@ mod trip;
 pub use config::{ActiveLow, PwmConfig, PwmConfigError, TIME_BITS};
 pub use ports::{Gates, INPUTS, Inputs, Mode, OUTPUTS, Outputs, ports};
 
-use self::command::{Limited, Width};
+use self::command::{Command, Surroundings};
 use self::leg::{Leg, Want};
 use self::trip::Trip;
 use super::{ClockedBlock, Port, StepError};
 
 /// Clocks before a boundary at which duty and mode are read.
-pub const COMMAND_CLOCKS: u32 = 2;
+pub const COMMAND_CLOCKS: u32 = 15;
+
+/// The shortest period with both boundaries, in clocks. Below, a period has no peak; below the half of it, it lasts 65,536
+/// clocks longer.
+pub const SHORTEST_PERIOD_CLOCKS: u32 = 64;
+
+/// Clocks from a valley's lead to the valley; half of them from a peak's.
+const LEAD_CLOCKS: u16 = 32;
 
 /// What the leg does until the next boundary.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -77,29 +84,26 @@ struct State {
     period: u16,
     dead_time: u16,
     minimum_pulse: u16,
-    limited: Limited,
-    width: Width,
+    command: Command,
     /// Latched at the last boundary with an update.
     mode: Mode,
     negative: bool,
     pattern: Pattern,
-    pulse_clocks: i32,
-    /// Position at which the sides change over.
-    edge_at: u16,
-    /// Within a pulse, before dead time and minimum.
-    level: bool,
     leg: Leg,
     gates: Gates,
     running: bool,
-    /// Whether the times in use stood at the inputs, one and two clocks ago.
-    settled: [bool; 2],
+    /// The times in use stood at the inputs ever since the command is computed.
+    stable: bool,
+    /// `sync` of the clock before.
+    synced: bool,
+    /// A `sync` came at another phase.
+    astray: bool,
     /// `mask_pins` of the clock before.
     masked: bool,
     trip: Trip,
-    /// The carrier is at its valley, its peak, the trigger's phase; one clock later the pins are.
+    /// The carrier is at its valley, its peak; one clock later the pins are.
     at_valley: bool,
     at_peak: bool,
-    at_trigger: bool,
     valley: bool,
     peak: bool,
     trigger: bool,
@@ -113,27 +117,24 @@ impl State {
     fn new(config: &PwmConfig) -> Self {
         Self {
             position: 0,
-            // The shortest, so that the first one set comes into use at once.
-            period: 1,
+            // The shortest, so that the first one set soon comes into use.
+            period: LEAD_CLOCKS,
             dead_time: config.dead_time_floor_clocks(),
             minimum_pulse: config.minimum_pulse_floor_clocks(),
-            limited: Limited::default(),
-            width: Width::default(),
+            command: Command::default(),
             mode: Mode::default(),
             negative: false,
             pattern: Pattern::Off,
-            pulse_clocks: 0,
-            edge_at: 0,
-            level: false,
             leg: Leg::default(),
             gates: Gates::default(),
             running: false,
-            settled: [false; 2],
+            stable: false,
+            synced: false,
+            astray: false,
             masked: false,
             trip: Trip::default(),
             at_valley: false,
             at_peak: false,
-            at_trigger: false,
             valley: false,
             peak: false,
             trigger: false,
@@ -211,6 +212,7 @@ impl Pwm {
             let state = &mut self.state;
             // At most the distance to a position of 16 bits, and to the end of the timer.
             state.position = state.position.wrapping_add(skipped as u16);
+            state.command.count(skipped as u16);
             if state.leg.timer != before.leg.timer {
                 state.leg.timer -= skipped as u16;
             }
@@ -225,12 +227,12 @@ impl State {
             *state = State::new(config);
             return;
         }
-        let next = state.position.wrapping_add(1);
-        let valley = next == state.period;
-        let peak = next == state.period >> 1 && !valley;
-        let next = if valley { 0 } else { next };
-        let out_of_step = inputs.sync && next != inputs.phase;
-        let realigns = out_of_step && !state.running;
+        let lead = state.period.wrapping_sub(LEAD_CLOCKS);
+        let in_phase = state.position == inputs.phase;
+        let waits = state.astray && in_phase && !state.running;
+        let out_of_step = state.synced && !in_phase;
+        let ends = state.command.ends() && !waits;
+        let (valley, peak) = (ends && state.command.rises, ends && !state.command.rises);
 
         let floors = (config.dead_time_floor_clocks(), config.minimum_pulse_floor_clocks());
         let (dead_time, minimum_pulse) = (inputs.dead_time & 0x3ff, inputs.minimum_pulse & 0x3ff);
@@ -241,11 +243,10 @@ impl State {
         let was_running = state.running;
         let may_run = inputs.enable && !state.trip.tripped();
         let goes_on = was_running && may_run;
-        let starts = !was_running && may_run && valley && settled && state.settled == [true; 2] && !realigns;
+        let starts = !was_running && may_run && valley && settled && state.stable;
 
         // The gates, for the present position.
-        state.level ^= state.position == state.edge_at;
-        let want = match (goes_on, state.pattern, state.level) {
+        let want = match (goes_on, state.pattern, state.command.level) {
             (false, ..) | (_, Pattern::Off, _) => Want::Off,
             (_, Pattern::Low, _) | (_, Pattern::Pulse, false) => Want::Low,
             (_, Pattern::High, _) | (_, Pattern::Pulse, true) => Want::High,
@@ -254,12 +255,12 @@ impl State {
         state.leg.clock(want, low_first, state.dead_time, state.minimum_pulse);
         state.gates = Gates::of(state.mode, state.negative, state.leg.awake(), state.leg.sides());
 
-        let updates = valley || (peak && inputs.update_at_peak);
+        let updates = state.command.updates() && !waits;
         if inputs.clear_flags {
             (state.saturated, state.refused) = (false, false);
             (state.below_floor, state.unaligned) = (false, false);
         }
-        state.saturated |= updates && goes_on && state.width.saturated;
+        state.saturated |= updates && goes_on && state.command.saturated();
         state.refused |= was_running && !settled;
         state.below_floor |= inputs.enable && low;
         state.unaligned |= was_running && out_of_step;
@@ -267,11 +268,25 @@ impl State {
         if updates {
             state.latch(goes_on);
         }
-        if valley || peak {
-            state.plan_edge(peak);
+        state.trigger = state.position == inputs.trigger_phase && !waits;
+        state.stable = settled && (state.stable || !state.command.works);
+        if !waits {
+            let around = Surroundings {
+                period: match state.period {
+                    0 => 1 << 16,
+                    period => i32::from(period),
+                },
+                dead_time: state.dead_time,
+                minimum_pulse: state.minimum_pulse,
+                valley_lead: state.position == lead,
+                peak_lead: state.position == lead >> 1,
+            };
+            state.command.clock(inputs, &around);
+            state.position = if valley { 0 } else { state.position.wrapping_add(1) };
         }
-        state.width = Width::new(&state.limited, state.period, state.dead_time);
-        state.limited = Limited::new(inputs);
+        // While off, it waits there for the next one.
+        state.astray = out_of_step || (state.astray && !(waits && inputs.sync));
+        state.synced = inputs.sync;
 
         state.trip.clock(inputs, was_running, valley);
         state.running = goes_on || starts;
@@ -282,21 +297,16 @@ impl State {
             }
         }
         state.masked = inputs.mask_pins;
-        state.settled = [settled, state.settled[0]];
-        (state.valley, state.peak, state.trigger) = (state.at_valley, state.at_peak, state.at_trigger);
-        (state.at_valley, state.at_peak) = (valley && !realigns, peak && !realigns);
-        state.at_trigger = next == inputs.trigger_phase && !realigns;
-        state.position = if realigns { inputs.phase } else { next };
+        (state.valley, state.peak) = (state.at_valley, state.at_peak);
+        (state.at_valley, state.at_peak) = (valley, peak);
     }
 
     /// Takes duty and mode at a boundary. `goes_on`: the outputs were on and stay on.
     fn latch(&mut self, goes_on: bool) {
-        let width = self.width;
-        let longest = i32::from(self.period) - 2 * i32::from(self.dead_time) - i32::from(self.minimum_pulse);
-        let none = width.clocks < i32::from(self.minimum_pulse);
-        let full = width.clocks > longest;
-        let turns = width.mode.has_direction() && !none && width.negative != self.negative;
-        self.pattern = if goes_on && width.mode != self.mode {
+        let command = self.command;
+        let (none, full) = (command.too_short, command.too_long);
+        let turns = command.mode.has_direction() && !none && command.negative() != self.negative;
+        self.pattern = if goes_on && command.mode != self.mode {
             Pattern::Off
         } else if none || (turns && !self.leg.may_turn()) {
             Pattern::Low
@@ -306,21 +316,7 @@ impl State {
             Pattern::Pulse
         };
         self.negative ^= turns && self.leg.may_turn();
-        self.mode = width.mode;
-        self.pulse_clocks = width.clocks;
-    }
-
-    /// Half the pulse lies before the peak, half behind it; an odd clock behind it.
-    fn plan_edge(&mut self, falling: bool) {
-        let half_period = i32::from(self.period >> 1);
-        let (half_pulse, odd) = (self.pulse_clocks >> 1, self.pulse_clocks & 1);
-        let edge_at = if falling {
-            half_period + half_pulse + odd
-        } else {
-            half_period - i32::from(self.dead_time) - half_pulse
-        };
-        self.edge_at = edge_at as u16;
-        self.level = falling;
+        self.mode = command.mode;
     }
 }
 

@@ -1,7 +1,7 @@
 //! The clocks in which nothing happens: only the carrier and a timer count.
 
 use super::ports::{INPUTS, Inputs};
-use super::{Pwm, State};
+use super::{LEAD_CLOCKS, Pwm, State};
 use crate::rtl::{Moore, OutputKind};
 
 impl State {
@@ -11,25 +11,32 @@ impl State {
         let state = self;
         let mut counted = *before;
         counted.position = before.position.wrapping_add(1);
+        counted.command.count(1);
         let counts = state.leg.timer != before.leg.timer;
         if counts {
             counted.leg.timer = before.leg.timer.wrapping_sub(1);
         }
         // A strobe that is on falls in the next clock.
-        let strobes =
-            state.at_valley || state.at_peak || state.at_trigger || state.valley || state.peak || state.trigger;
-        if counted != *state || strobes || inputs.sync || inputs.rst {
+        let strobes = state.at_valley || state.at_peak || state.valley || state.peak || state.trigger;
+        let computes = state.command.step != 0 || state.command.works;
+        if counted != *state || strobes || computes || inputs.sync || inputs.rst {
             return None;
         }
+        let lead = state.period.wrapping_sub(LEAD_CLOCKS);
         let events = [
-            state.period.wrapping_sub(1),
-            (state.period >> 1).wrapping_sub(1),
-            state.edge_at,
-            inputs.trigger_phase.wrapping_sub(1),
+            Some(lead),
+            Some(lead >> 1),
+            Some(inputs.trigger_phase),
+            state.astray.then_some(inputs.phase),
         ];
-        let distances = events.map(|position| position.wrapping_sub(state.position));
+        let distances = events
+            .into_iter()
+            .flatten()
+            .map(|position| position.wrapping_sub(state.position));
         let timer = if counts { state.leg.timer } else { u16::MAX };
-        Some(u64::from(distances.into_iter().fold(timer, u16::min)))
+        Some(u64::from(
+            distances.fold(timer.min(state.command.same_level()), u16::min),
+        ))
     }
 }
 
