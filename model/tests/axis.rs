@@ -442,9 +442,11 @@ fn what_lasts_too_long_trips_after_its_ticks() {
     assert_eq!(bench.axis.outputs().causes, Cause::EncoderLost.bit());
     // A command that moves a count now and then.
     let mut bench = Bench::hold();
+    bench.clocks(TICK_CLOCKS / 2);
     (bench.inputs.lost_command, bench.inputs.lost_ticks) = (500, 6);
     bench.inputs.command = 501;
-    for count in 0..20 {
+    bench.clocks(TICK_CLOCKS / 2);
+    for count in 1..20 {
         bench.inputs.position = count;
         bench.ticks(5);
     }
