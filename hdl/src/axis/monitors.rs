@@ -4,10 +4,11 @@
 //! rounds find is registered: no comparison is on the way to the state. Bytes are taken in clocks 0 to 3 and 5 to 8 after the
 //! tick, compared a clock later, looked at in clocks 5 and 10, and causes in clock 11.
 
-use super::bytes::Nibbles;
+use super::lasts::Lasts;
+use super::nibbles::Nibbles;
 use super::size_limit::SizeLimit;
 use super::soft_limits::SoftLimits;
-use super::tick_count::{Lasts, TickCount};
+use super::tick_count::TickCount;
 use crate::prelude::*;
 use posicast_model::rtl::axis::Cause;
 

@@ -1,7 +1,8 @@
 //! A number against a limit of its size. The size of a negative x is -x - 1: its complement, without a carry.
 
 use super::bytes::Bytes;
-use super::larger::{Larger, Nonzero};
+use super::larger::Larger;
+use super::nonzero::Nonzero;
 use crate::prelude::*;
 
 #[derive(LogicBlock, Default)]

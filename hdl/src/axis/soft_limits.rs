@@ -1,7 +1,8 @@
 //! The shaped position against both soft limits; none where both are 0.
 
 use super::bytes::Bytes;
-use super::larger::{Larger, Nonzero};
+use super::larger::Larger;
+use super::nonzero::Nonzero;
 use crate::prelude::*;
 
 #[derive(LogicBlock, Default)]

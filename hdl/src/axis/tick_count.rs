@@ -1,61 +1,7 @@
 //! Ticks in a row against the ticks that are too many, nibble by nibble, lowest first.
 
-use super::bytes::Nibbles;
+use super::lasts::Lasts;
 use crate::prelude::*;
-
-/// Has it lasted for as many ticks as the limit says? Never with a limit of 0. Known as long as nothing `compares`.
-#[derive(LogicBlock, Default)]
-pub(super) struct Lasts {
-    pub(super) clk: Signal<In, Clock>,
-    pub(super) rst: Signal<In, Bit>,
-    pub(super) turn: Signal<In, Bits<2>>,
-    pub(super) compares: Signal<In, Bit>,
-    /// A nibble of the ticks.
-    pub(super) ticks: Signal<In, Bits<4>>,
-    /// More than any limit.
-    pub(super) endless: Signal<In, Bit>,
-    pub(super) limit: Signal<In, Bits<16>>,
-    pub(super) lasts: Signal<Out, Bit>,
-
-    limit_nibbles: Nibbles,
-
-    fewer: Dff<Bit>,
-    limited: Dff<Bit>,
-
-    under: Signal<Local, Bits<4>>,
-    not_over: Signal<Local, Bits<4>>,
-    under_0: Signal<Local, Bit>,
-    under_1: Signal<Local, Bit>,
-    under_2: Signal<Local, Bit>,
-    under_3: Signal<Local, Bit>,
-}
-
-impl Logic for Lasts {
-    #[hdl_gen]
-    fn update(&mut self) {
-        comment!("@module axis_lasts");
-        comment!("@about Ticks against too many of them.");
-        dff_setup!(self, clk, fewer, limited);
-        self.limit_nibbles.clk.next = self.clk.val();
-        self.limit_nibbles.rst.next = self.rst.val();
-        self.limit_nibbles.turn.next = self.turn.val();
-        self.limit_nibbles.word.next = self.limit.val();
-        comment!("A bit that is less, one that is not more");
-        self.under.next = !self.ticks.val() & self.limit_nibbles.part.val();
-        self.not_over.next = !self.ticks.val() | self.limit_nibbles.part.val();
-        self.under_0.next = self.under.val().get_bit(0) | (self.not_over.val().get_bit(0) & self.fewer.q.val());
-        self.under_1.next = self.under.val().get_bit(1) | (self.not_over.val().get_bit(1) & self.under_0.val());
-        self.under_2.next = self.under.val().get_bit(2) | (self.not_over.val().get_bit(2) & self.under_1.val());
-        self.under_3.next = self.under.val().get_bit(3) | (self.not_over.val().get_bit(3) & self.under_2.val());
-        self.fewer.d.next = self.under_3.val();
-        self.limited.d.next = self.limited.q.val() | self.limit_nibbles.part.val().any();
-        if !self.compares.val() {
-            self.fewer.d.next = false;
-            self.limited.d.next = false;
-        }
-        self.lasts.next = self.limited.q.val() & (!self.fewer.q.val() | self.endless.val());
-    }
-}
 
 /// A count of ticks that goes round as it is compared, and takes the tick in the first round.
 #[derive(LogicBlock)]
