@@ -1,6 +1,9 @@
 //! When the controllers of a stage start: a fixed number of clocks after each tick.
 //!
 //! The reference is `posicast_model::rtl::schedule`.
+//!
+//! A counter that runs freely, from 0 in the clock after a tick, and wraps behind the bits that the time takes: those above
+//! go at synthesis. `waits` tells whether its end counts.
 
 use crate::emit::{self, EmitError, EmitOptions, Header, Module, Parameter};
 use crate::prelude::*;
@@ -16,25 +19,33 @@ struct Schedule {
     control: Signal<Out, Bit>,
 
     since: Dff<Bits<17>>,
+    waits: Dff<Bit>,
     control_q: Dff<Bit>,
 
-    idle: Constant<Bits<17>>,
+    ends: Signal<Local, Bit>,
+
+    none: Constant<Bits<17>>,
     one: Constant<Bits<17>>,
     last: Constant<Bits<17>>,
+    used: Constant<Bits<17>>,
 }
 
 impl Schedule {
     fn new(config: &ScheduleConfig) -> Self {
+        let last = u64::from(config.control_clocks()) - 2;
         Self {
             clk: Signal::default(),
             rst: Signal::default(),
             tick: Signal::default(),
             control: Signal::default(),
             since: Dff::default(),
+            waits: Dff::default(),
             control_q: Dff::default(),
-            idle: Constant::new(from_u64(0)),
+            ends: Signal::default(),
+            none: Constant::new(from_u64(0)),
             one: Constant::new(from_u64(1)),
-            last: Constant::new(from_u64(u64::from(config.control_clocks()) - 1)),
+            last: Constant::new(from_u64(last)),
+            used: Constant::new(from_u64((last + 1).next_power_of_two().max(2) - 1)),
         }
     }
 }
@@ -43,18 +54,17 @@ impl Logic for Schedule {
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module schedule");
-        dff_setup!(self, clk, since, control_q);
+        dff_setup!(self, clk, since, waits, control_q);
 
-        if self.since.q.val() != self.idle.val() {
-            self.since.d.next = self.since.q.val() + self.one.val();
-        }
-        self.control_q.d.next = false;
-        if self.since.q.val() == self.last.val() {
-            self.control_q.d.next = true;
-            self.since.d.next = self.idle.val();
+        self.since.d.next = (self.since.q.val() + self.one.val()) & self.used.val();
+        self.ends.next = self.waits.q.val() & (self.since.q.val() == self.last.val());
+        self.control_q.d.next = self.ends.val();
+        if self.ends.val() {
+            self.waits.d.next = false;
         }
         if self.tick.val() {
-            self.since.d.next = self.one.val();
+            self.since.d.next = self.none.val();
+            self.waits.d.next = true;
         }
 
         self.control.next = self.control_q.q.val();

@@ -28,11 +28,13 @@ struct TimeBase {
     first_phase: Constant<Bits<17>>,
     one_phase: Constant<Bits<17>>,
     last_phase: Constant<Bits<17>>,
+    used_phase: Constant<Bits<17>>,
     one_count: Constant<Bits<32>>,
 }
 
 impl TimeBase {
     fn new(divider: &DividerConfig) -> Self {
+        let tick_clocks = u64::from(divider.tick_clocks());
         Self {
             clk: Signal::default(),
             rst: Signal::default(),
@@ -48,7 +50,8 @@ impl TimeBase {
             tick_count_q: Dff::default(),
             first_phase: Constant::new(from_u64(0)),
             one_phase: Constant::new(from_u64(1)),
-            last_phase: Constant::new(from_u64(u64::from(divider.tick_clocks()) - 1)),
+            last_phase: Constant::new(from_u64(tick_clocks - 1)),
+            used_phase: Constant::new(from_u64(tick_clocks.next_power_of_two() - 1)),
             one_count: Constant::new(from_u64(1)),
         }
     }
@@ -60,7 +63,8 @@ impl Logic for TimeBase {
         comment!("@module time_base");
         dff_setup!(self, clk, phase, tick_q, divide_q, time_stamp_q, tick_count_q);
 
-        self.phase.d.next = self.phase.q.val() + self.one_phase.val();
+        comment!("The bits that a tick has not go at synthesis");
+        self.phase.d.next = (self.phase.q.val() + self.one_phase.val()) & self.used_phase.val();
         self.tick_q.d.next = false;
         if self.phase.q.val() == self.last_phase.val() {
             self.phase.d.next = self.first_phase.val();

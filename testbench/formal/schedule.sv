@@ -7,7 +7,8 @@ module schedule_properties (
     input wire rst,
     input wire tick,
     input wire control,
-    (* peek = "since" *) input wire [16:0] since
+    (* peek = "since" *) input wire [16:0] since,
+    (* peek = "waits" *) input wire waits
 );
     // Clocks since the last tick; 0: none, or its control is over.
     reg [16:0] age = 17'd0;
@@ -22,7 +23,7 @@ module schedule_properties (
 
     always @(*) begin
         exactly: assert (control == due);
-        known_age: assert (since == age & age < `CONTROL_CLOCKS);
+        known_age: assert (waits == (age != 17'd0) & (!waits | since == age - 17'd1) & age < `CONTROL_CLOCKS);
     end
 
     always @(*) begin

@@ -94,7 +94,7 @@ fn formal_a_start_of_the_other_source_is_found() {
 
 #[test]
 fn formal_a_control_a_clock_late_is_found() {
-    fails("schedule", "LAST = 17'd1", "LAST = 17'd2", "exactly");
+    fails("schedule", "LAST = 17'd0", "LAST = 17'd1", "exactly");
 }
 
 #[test]
