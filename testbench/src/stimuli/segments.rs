@@ -66,7 +66,7 @@ impl SegmentsRandom {
         let any: u64 = rng.random_range(0..1 << 31);
         let shifted = any >> rng.random_range(0..31);
         self.mood = Mood {
-            write_pace: *pick(rng, &[1, 1, 2, 5, 40]),
+            write_pace: *pick(rng, &[1, 5, 40, 80, 200]),
             tick_pace: *pick(rng, &PACES),
             request_pace: *pick(rng, &[200, 2_000, 500_000, 500_000]),
             enable: rng.random_range(0..8) != 0,
@@ -118,6 +118,15 @@ impl SegmentsRandom {
             motion: Motion::Point(point),
             notify: rests,
         });
+        if self.rng.random_range(0..2) == 0 {
+            // Less than an LSB of the outputs: from the largest word on they would round past their end.
+            let jerk = self.rng.random_range(0..256);
+            self.push(&Entry {
+                ticks: 1,
+                motion: Motion::Jerk(jerk),
+                notify: false,
+            });
+        }
     }
 
     fn push(&mut self, entry: &Entry) {
