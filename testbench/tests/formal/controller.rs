@@ -16,11 +16,11 @@ fn formal_arithmetic_of_the_controller() {
 
 #[test]
 fn formal_a_sum_that_goes_on_from_the_last_one_is_found() {
-    let again = "begins_sum = (((((((sequencer_step == OF_REFERENCE) | (sequencer_step == RATE_AGAIN)";
+    let first = "begins_sum = (((((((sequencer_step == OF_REFERENCE)";
     fails(
         "sliding_mode",
-        again,
-        &again.replace("RATE_AGAIN", "OF_REFERENCE"),
+        first,
+        &first.replace("OF_REFERENCE", "COULOMB"),
         "begins_anew",
     );
 }
