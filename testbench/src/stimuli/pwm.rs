@@ -145,10 +145,13 @@ impl PwmRandom {
         self.until_feed = self.until_feed.saturating_sub(1);
         self.inputs.feed = self.until_feed == 0;
         if self.inputs.feed {
-            let forgets = self.interrupts(30);
-            self.until_feed = if forgets {
+            let forgets = self.one_in(if self.is_calm() { 150 } else { 30 });
+            self.until_feed = if forgets && self.is_calm() {
                 // Long enough for every bit of the watchdog.
-                if self.is_calm() { 20_000 } else { 3000 }
+                self.inputs.watchdog_periods = 255;
+                20_000
+            } else if forgets {
+                3000
             } else {
                 (2 * u32::from(self.inputs.period.max(1))).min(2000)
             };
