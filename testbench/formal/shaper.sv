@@ -7,10 +7,13 @@
 //                   other, its product added in clock i + 7 and no other, the result shown in clock n + 8 and no other
 //   read_in_order   the tables' address is tap i of the active bank
 //   word_of_table   the word is what the active table gave a clock before
-//   address         the ring's address is head - delay; never the word that is written
-//   age_known       head moves by one per strobe, which writes before it; age counts samples since the start, and stays full
-//   before_known    a delay not below that age shows the start value
-//   operands        the multipliers take the sample and the coefficient of the same tap; their products are added up
+//   address         the ring's address is head - delay, but no farther back than the start's word; never the word that is
+//                   written
+//   age_known       head moves by one per strobe or start, which writes before it; age counts strobes since the start, or the
+//                   first strobe since the reset, and stays full
+//   before_known    without a start since the reset, a delay above that age is blank
+//   operands        the multipliers take the sample and the coefficient of the same tap, 0 of a blank one; their products are
+//                   added up
 //   sum_*           the sum begins with half, and changes by a product of the pass only
 //   fits            lemma: with products of at most 2^(W+16) in size the sum is exact: after k it lies within k such of half
 //   result          lemma: y = sum >> F, clamped to the word; only by a pass that ended, or by a start; flags stay
@@ -36,7 +39,7 @@ module shaper_properties (
     (* peek = "running" *) input wire running,
     (* peek = "stages" *) input wire [5:0] stages,
     (* peek = "done" *) input wire done,
-    (* peek = "u_banks.active_taps" *) input wire [6:0] taps,
+    (* peek = "u_banks.taps" *) input wire [6:0] taps,
     (* peek = "u_banks.taps_1" *) input wire [6:0] taps_1,
     (* peek = "u_banks.taps_2" *) input wire [6:0] taps_2,
     (* peek = "u_banks.sum_1" *) input wire signed [23:0] sum_1,
@@ -53,10 +56,12 @@ module shaper_properties (
     (* peek = "u_history.head" *) input wire [5:0] head,
     (* peek = "u_history.age" *) input wire [5:0] age,
     (* peek = "u_history.next_head" *) input wire [5:0] ring_write_address,
-    (* peek = "u_history.ring_read_address" *) input wire [5:0] ring_read_address,
-    (* peek = "u_history.ring_read_data" *) input wire [31:0] ring_word,
-    (* peek = "u_history.before_start" *) input wire before_start,
-    (* peek = "u_history.start_value" *) input wire signed [31:0] start_value,
+    (* peek = "u_history.begun" *) input wire begun,
+    (* peek = "u_history.started" *) input wire started,
+    (* peek = "u_history.writes" *) input wire ring_writes,
+    (* peek = "u_history.address" *) input wire [5:0] ring_read_address,
+    (* peek = "u_history.blank" *) input wire blank,
+    (* peek = "u_history.sample_0" *) input wire [31:0] sample,
     (* peek = "u_sum.coefficient_q" *) input wire signed [17:0] coefficient,
     (* peek = "u_sum.u_product.u_lower.a_q" *) input wire signed [17:0] lower_sample,
     (* peek = "u_sum.u_product.u_lower.b_q" *) input wire signed [17:0] lower_coefficient,
@@ -114,12 +119,11 @@ module shaper_properties (
     reg        [23:0] past_word = 24'd0;
     reg        [17:0] past_coefficient = 18'd0;
     reg        [5:0]  past_head = 6'd0;
-    reg               past_before = 1'b0;
+    reg               past_blank = 1'b0;
     reg        [31:0] past_sample = 32'd0;
     reg signed [35:0] past_lower = 36'sd0;
     reg signed [32:0] past_upper = 33'sd0;
     wire       [5:0]  delay = word[23:18];
-    wire       [31:0] sample = past_before ? start_value : ring_word;
     always @(posedge clk) begin
         past_reset <= rst;
         past_strobe <= strobe;
@@ -138,9 +142,9 @@ module shaper_properties (
         past_loaded <= loaded_word;
         past_machine <= machine_word;
         past_word <= rst ? 24'd0 : word;
-        past_coefficient <= past_word[17:0];
+        past_coefficient <= coefficient;
         past_head <= head;
-        past_before <= !rst & delay >= age;
+        past_blank <= blank;
         past_sample <= sample;
         past_lower <= lower_product;
         past_upper <= upper_product;
@@ -163,23 +167,24 @@ module shaper_properties (
 
     // The samples.
     reg [5:0] samples = 6'd0;
-    reg [31:0] started = 32'd0;
+    reg       own_started = 1'b0;
+    reg       own_begun = 1'b0;
     always @(posedge clk) begin
-        if (rst) samples <= 6'd0;
-        else if (strobe & start) samples <= 6'd1;
-        else if (start) samples <= 6'd0;
-        else if (strobe & samples != 6'd63) samples <= samples + 6'd1;
-        if (rst) started <= 32'd0;
-        else if (start) started <= x;
+        if (rst | start) samples <= 6'd0;
+        else if (strobe & own_begun & samples != 6'd63) samples <= samples + 6'd1;
+        if (rst) own_begun <= 1'b0;
+        else if (strobe | start) own_begun <= 1'b1;
+        if (rst | start) own_started <= !rst;
     end
+    wire       from_start = delay > samples;
     wire [5:0] head_moved = head - past_head;
     always @(*) begin
-        address: assert (ring_read_address == head - delay);
+        address: assert (ring_read_address == head - (from_start ? samples : delay));
         address_not_written: assert (ring_read_address != ring_write_address | delay == 6'd63);
-        before_known: assert (before_start == past_before);
-        age_known: assert (age == samples & start_value == started);
-        age_head: assert (past_reset | head_moved == {5'd0, past_strobe});
-        age_written: assert (ring_write_address == head + 6'd1);
+        before_known: assert (blank == (from_start & !own_started));
+        age_known: assert (age == samples & started == own_started & begun == own_begun & (begun | (!started & age == 6'd0)));
+        age_head: assert (past_reset | head_moved == {5'd0, past_strobe | past_start});
+        age_written: assert (ring_write_address == head + 6'd1 & ring_writes == (strobe | start));
     end
 
     // The products. Registers of multipliers have no reset, and any value at power-up.
@@ -192,7 +197,7 @@ module shaper_properties (
     end
     wire signed [49:0] parts = {{14{past_lower[35]}}, past_lower} + {past_upper, 17'd0};
     always @(*) begin
-        operands_known: assert (coefficient == past_word[17:0]);
+        operands_known: assert (coefficient == (past_blank ? 18'd0 : past_word[17:0]));
         operands_sample: assert (clocks == 2'd0 | {upper_sample, lower_sample[16:0]} == past_sample);
         operands_whole: assert (clocks == 2'd0 | !lower_sample[17]);
         operands_coefficient: assert (clocks == 2'd0 | (lower_coefficient == past_coefficient & upper_coefficient == past_coefficient));

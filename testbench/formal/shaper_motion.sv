@@ -5,14 +5,16 @@
 // each channel. A handover's products are, channel by channel, those of the old table, of the active one, and, of the
 // position, one more.
 //
-//   pass_*      channel, table, tap, stages, done, valid and busy are those of this clock: product i is asked for in clock i,
-//               its sample is of its channel in clock i + 5, it is added in clock i + 8, and in no other; all results are shown
-//               in clock N + 11, and in no other
+//   pass_*      channel, table, tap, boundaries, valid and busy are those of this clock: a product is asked for in each clock
+//               from 1 on, but in one between two channels. Of a product that is asked for in clock i the sample is of its
+//               channel in clocks i + 4 and i + 5, and it would be added in clock i + 8. There is a boundary in clock 8 and in that
+//               after each channel's last product was added, and in no other; all results are shown in clock N + 12, and in no
+//               other
 //   read_*      the tables' address is the tap of this product, of the old or the active bank; the word is that bank's
 //   made_*      in a handover, m samples after the last one of the old table alone: of the position an old tap has the delay
 //               max(d, m), a new one min(d, m), and the one more is -2^F at m; of the others an old tap counts with d >= m,
 //               a new one with d < m, else as 0. Else a tap is what the table says
-//   ring_*      as in the plain shaper, of each channel: address, start value, age; all three rings go together
+//   ring_*      as in the plain shaper: address, age, what is blank
 //   swap_*      a bank becomes active only by a strobe with a swap pending: at once, or once the position has stood still for
 //               as many samples as the longest delay of both tables; none is refused then
 //   handover_*  lasts from that strobe to the first with m above that delay, or a start; m counts strobes; swap_pending all
@@ -43,13 +45,10 @@ module shaper_motion_properties (
     (* peek = "channel" *) input wire [1:0] channel,
     (* peek = "second" *) input wire second,
     (* peek = "correcting" *) input wire correcting,
-    (* peek = "stages" *) input wire [7:0] stages,
-    (* peek = "lasts" *) input wire [7:0] lasts,
-    (* peek = "done" *) input wire done,
+    (* peek = "lasts" *) input wire [8:0] lasts,
     (* peek = "sample_channel" *) input wire [1:0] sample_channel,
-    (* peek = "u_banks.active_taps" *) input wire [6:0] taps,
+    (* peek = "u_banks.taps" *) input wire [6:0] taps_read,
     (* peek = "u_banks.previous" *) input wire [1:0] previous,
-    (* peek = "u_banks.previous_taps" *) input wire [6:0] previous_taps,
     (* peek = "u_banks.taps_1" *) input wire [6:0] taps_1,
     (* peek = "u_banks.taps_2" *) input wire [6:0] taps_2,
     (* peek = "u_banks.sum_1" *) input wire signed [23:0] sum_1,
@@ -80,73 +79,79 @@ module shaper_motion_properties (
     (* peek = "u_handover.position_tap" *) input wire position_tap,
     (* peek = "u_handover.coefficient_q" *) input wire signed [17:0] made_coefficient,
     (* peek = "u_handover.delay_q" *) input wire [5:0] made_delay,
-    (* peek = "u_history_0.head" *) input wire [5:0] head_0,
-    (* peek = "u_history_1.head" *) input wire [5:0] head_1,
-    (* peek = "u_history_2.head" *) input wire [5:0] head_2,
-    (* peek = "u_history_0.age" *) input wire [5:0] age_0,
-    (* peek = "u_history_1.age" *) input wire [5:0] age_1,
-    (* peek = "u_history_2.age" *) input wire [5:0] age_2,
-    (* peek = "u_history_0.next_head" *) input wire [5:0] written_0,
-    (* peek = "u_history_1.next_head" *) input wire [5:0] written_1,
-    (* peek = "u_history_2.next_head" *) input wire [5:0] written_2,
-    (* peek = "u_history_0.ring_read_address" *) input wire [5:0] address_0,
-    (* peek = "u_history_1.ring_read_address" *) input wire [5:0] address_1,
-    (* peek = "u_history_2.ring_read_address" *) input wire [5:0] address_2,
-    (* peek = "u_history_0.before_start" *) input wire before_0,
-    (* peek = "u_history_1.before_start" *) input wire before_1,
-    (* peek = "u_history_2.before_start" *) input wire before_2,
-    (* peek = "u_history_0.start_value" *) input wire signed [23:0] started_0,
-    (* peek = "u_history_1.start_value" *) input wire signed [23:0] started_1,
-    (* peek = "u_history_2.start_value" *) input wire signed [23:0] started_2,
-    (* peek = "u_sums.channel" *) input wire [1:0] sum_channel,
-    (* peek = "u_sums.complete" *) input wire complete
+    (* peek = "u_history.head" *) input wire [5:0] head,
+    (* peek = "u_history.age" *) input wire [5:0] age,
+    (* peek = "u_history.begun" *) input wire begun,
+    (* peek = "u_history.started" *) input wire started,
+    (* peek = "u_history.next_head" *) input wire [5:0] written,
+    (* peek = "u_history.writes" *) input wire writes,
+    (* peek = "u_history.address" *) input wire [5:0] address,
+    (* peek = "u_history.blank" *) input wire blank,
+    (* peek = "u_sums.channel" *) input wire [1:0] sum_channel
 );
     localparam signed [23:0] UNITY = 24'sd1 << `FRACTION;
     localparam signed [17:0] MINUS_UNITY = -(18'sd1 << `FRACTION);
 
-    // The products of a pass, and which of them this clock asks for.
+    // The tables: how long those of a pass are, kept from when they were taken.
+    wire       takes = strobe & pending & (how != 2'd2 | start | still >= reach);
+    function [6:0] count(input [1:0] of);
+        count = of == 2'd0 ? `MACHINE_TAPS : of == 2'd1 ? taps_1 : taps_2;
+    endfunction
+    reg  [6:0] taps = `MACHINE_TAPS;
+    reg  [6:0] previous_taps = 7'd0;
+    always @(posedge clk) begin
+        if (rst) taps <= `MACHINE_TAPS;
+        else if (takes) begin
+            taps <= count(upcoming);
+            previous_taps <= taps;
+        end
+    end
+
+    // The clocks of a pass that ask for the last product of a channel, and which product this clock asks for.
     wire [9:0] old_taps = active ? {3'd0, previous_taps} : 10'd0;
     wire [9:0] both = {3'd0, taps} + old_taps;
     wire [9:0] end_0 = both + {9'd0, active};
-    wire [9:0] end_1 = end_0 + both;
-    wire [9:0] end_2 = end_1 + both;
+    wire [9:0] end_1 = end_0 + 10'd1 + both;
+    wire [9:0] end_2 = end_1 + 10'd1 + both;
     reg  [9:0] pass = 10'd0;
     always @(posedge clk) begin
         if (rst) pass <= 10'd0;
         else if (strobe) pass <= 10'd1;
-        else if (start | pass == end_2 + 10'd11) pass <= 10'd0;
+        else if (start | pass == end_2 + 10'd10) pass <= 10'd0;
         else if (pass != 10'd0) pass <= pass + 10'd1;
     end
-    wire       asks = pass >= 10'd1 & pass <= end_2;
+    wire       pauses = pass == end_0 + 10'd1 | pass == end_1 + 10'd1;
+    wire       asks = pass >= 10'd1 & pass <= end_2 & !pauses;
     wire       of_position = pass <= end_0;
-    wire [9:0] place = pass - 10'd1 - (of_position ? 10'd0 : pass <= end_1 ? end_0 : end_1);
+    wire [9:0] place = pass - 10'd1 - (of_position ? 10'd0 : pass <= end_1 ? end_0 + 10'd1 : end_1 + 10'd1);
     wire       of_old = place < old_taps;
     wire       one_more = place == both;
     wire [9:0] place_in_table = of_old ? place : place - old_taps;
-    wire [7:0] stages_now, lasts_now;
+    wire [8:0] lasts_now;
+    reg  [2:0] stages = 3'd0;
+    always @(posedge clk) stages <= rst | start | strobe ? 3'd0 : {stages[1:0], asks};
     genvar i;
     generate
-        for (i = 0; i < 8; i = i + 1) begin : of_stage
+        for (i = 0; i < 9; i = i + 1) begin : of_last
             wire [9:0] asked = pass - 10'd1 - i;
-            assign stages_now[i] = pass >= i + 2 & pass <= end_2 + i + 1;
-            assign lasts_now[i] = pass != 10'd0 & (asked == end_0 | asked == end_1 | asked == end_2);
+            assign lasts_now[i] = pass != 10'd0 & (asked == end_0 | asked == end_1 | asked == end_2 | pass == i);
         end
     endgenerate
-    wire [9:0] summed = pass - 10'd9;
-    wire       done_now = pass >= 10'd9 & (summed == end_0 | summed == end_1 | summed == end_2);
-    wire [1:0] sample_channel_now = {1'b0, pass >= end_0 + 10'd6} + {1'b0, pass >= end_1 + 10'd6} + {1'b0, pass >= end_2 + 10'd6};
-    wire [1:0] sum_channel_now = {1'b0, pass >= end_0 + 10'd10} + {1'b0, pass >= end_1 + 10'd10} + {1'b0, pass >= end_2 + 10'd10};
+    wire [1:0] sample_channel_now = 2'd3 + {1'b0, pass >= 10'd5} +
+        {1'b0, pass >= end_0 + 10'd6} + {1'b0, pass >= end_1 + 10'd6} + {1'b0, pass >= end_2 + 10'd6};
+    wire [1:0] sum_channel_now = 2'd3 + {1'b0, pass >= 10'd9} +
+        {1'b0, pass >= end_0 + 10'd10} + {1'b0, pass >= end_1 + 10'd10} + {1'b0, pass >= end_2 + 10'd10};
     always @(*) begin
-        pass_length: assert (pass <= end_2 + 10'd11 & taps != 7'd0 & taps <= 7'd64 & (!active | (previous_taps != 7'd0 & previous_taps <= 7'd64)));
-        pass_running: assert (running == asks);
-        pass_channel: assert (!asks | channel == (of_position ? 2'd0 : pass <= end_1 ? 2'd1 : 2'd2));
+        pass_length: assert (pass <= end_2 + 10'd10 & taps != 7'd0 & taps <= 7'd64 & (!active | (previous_taps != 7'd0 & previous_taps <= 7'd64)));
+        pass_running: assert (running == (asks | pauses));
+        pass_pause: assert (!pauses | (!second & !correcting & tap == 6'd0));
+        pass_channel: assert (!running | channel == (of_position ? 2'd0 : pass <= end_1 ? 2'd1 : 2'd2));
         pass_table: assert (!asks | second == (active & !of_old));
         pass_one_more: assert (!asks | correcting == one_more);
         pass_tap: assert (!asks | one_more | {4'd0, tap} == place_in_table);
-        pass_stages: assert (stages == stages_now & lasts == lasts_now);
-        pass_done: assert (done == done_now & complete == (pass == end_2 + 10'd10));
-        pass_valid: assert (valid == (pass == end_2 + 10'd11));
-        pass_busy: assert (busy == (pass >= 10'd1 & pass <= end_2 + 10'd10));
+        pass_lasts: assert (lasts == lasts_now);
+        pass_valid: assert (valid == (pass == end_2 + 10'd10));
+        pass_busy: assert (busy == (pass >= 10'd1 & pass <= end_2 + 10'd9));
         pass_sample: assert (pass == 10'd0 | sample_channel == sample_channel_now);
         pass_sum: assert (pass == 10'd0 | sum_channel == sum_channel_now);
     end
@@ -168,13 +173,11 @@ module shaper_motion_properties (
     reg        [5:0]  past_head = 6'd0;
     reg        [23:0] past_read = 24'd0;
     reg        [23:0] past_word = 24'd0;
-    reg        [2:0]  past_before = 3'd0;
     reg        [2:0]  tags_read = 3'd0;
     reg        [2:0]  tags = 3'd0;
     reg        [2:0]  past_tags = 3'd0;
     wire [1:0] read_bank = active & !second ? previous : bank;
     wire [1:0] word_bank = old_q ? previous : bank;
-    wire       takes = strobe & pending & (how != 2'd2 | start | still >= reach);
     always @(posedge clk) begin
         past_reset <= rst;
         past_strobe <= strobe;
@@ -189,19 +192,14 @@ module shaper_motion_properties (
         past_upcoming <= upcoming;
         past_read_bank <= read_bank;
         past_since <= since;
-        past_head <= head_0;
+        past_head <= head;
         past_read <= word_bank == 2'd0 ? machine_word : loaded_word;
         past_word <= word;
-        past_before <= {made_delay >= age_2, made_delay >= age_1, made_delay >= age_0};
         tags_read <= {one_more, of_position, of_old};
         tags <= tags_read;
         past_tags <= tags;
     end
 
-    // The tables.
-    function [6:0] count(input [1:0] of);
-        count = of == 2'd0 ? `MACHINE_TAPS : of == 2'd1 ? taps_1 : taps_2;
-    endfunction
     function [5:0] longest(input [1:0] of);
         longest = of == 2'd0 ? `MACHINE_LONGEST : of == 2'd1 ? longest_1 : longest_2;
     endfunction
@@ -218,6 +216,7 @@ module shaper_motion_properties (
         read_bank_of_word: assert (!stages[0] | word_bank == past_read_bank);
         table_length: assert (taps == count(bank) & taps_1 <= 7'd64 & taps_2 <= 7'd64);
         table_length_old: assert (!active | previous_taps == count(previous));
+        table_length_read: assert (taps_read == count(read_bank));
         table_empty: assert ((taps_1 != 7'd0 | sum_1 == 24'sd0) & (taps_2 != 7'd0 | sum_2 == 24'sd0));
         table_sums_to_one: assert (sums_to_one(bank) & (!active | sums_to_one(previous)));
         table_to_come: assert (!pending | sums_to_one(upcoming));
@@ -301,33 +300,28 @@ module shaper_motion_properties (
             (past_active & made_delay == past_since & made_coefficient == MINUS_UNITY));
     end
 
-    // The samples.
-    reg        [5:0]  samples = 6'd0;
-    reg signed [23:0] own_started_0 = 24'sd0;
-    reg signed [23:0] own_started_1 = 24'sd0;
-    reg signed [23:0] own_started_2 = 24'sd0;
+    // The samples: behind the start's word stands one for each strobe.
+    reg         [5:0] samples = 6'd0;
+    reg               own_started = 1'b0;
+    reg               own_begun = 1'b0;
     always @(posedge clk) begin
-        if (rst) samples <= 6'd0;
-        else if (strobe & start) samples <= 6'd1;
-        else if (start) samples <= 6'd0;
-        else if (strobe & samples != 6'd63) samples <= samples + 6'd1;
-        if (rst | start) begin
-            own_started_0 <= rst ? 24'sd0 : x_0;
-            own_started_1 <= rst ? 24'sd0 : x_1;
-            own_started_2 <= rst ? 24'sd0 : x_2;
-        end
+        if (rst | start) samples <= 6'd0;
+        else if (strobe & own_begun & samples != 6'd63) samples <= samples + 6'd1;
+        if (rst) own_begun <= 1'b0;
+        else if (strobe | start) own_begun <= 1'b1;
+        if (rst | start) own_started <= !rst;
     end
-    wire        [5:0]  asked_for = head_0 - made_delay;
-    wire        [5:0]  head_moved = head_0 - past_head;
-    wire        [5:0]  next_head = head_0 + 6'd1;
+    wire              from_start = made_delay > samples;
+    wire        [5:0] asked_for = head - (from_start ? samples : made_delay);
+    wire        [5:0] head_moved = head - past_head;
+    wire        [5:0] next_head = head + 6'd1;
     always @(*) begin
-        ring_address: assert (address_0 == asked_for & address_1 == asked_for & address_2 == asked_for);
+        ring_address: assert (address == asked_for);
         ring_not_written: assert (asked_for != next_head | made_delay == 6'd63);
-        ring_written: assert (written_0 == next_head & written_1 == next_head & written_2 == next_head);
-        ring_together: assert (head_1 == head_0 & head_2 == head_0 & age_0 == samples & age_1 == samples & age_2 == samples);
-        ring_head: assert (past_reset | head_moved == {5'd0, past_strobe});
-        ring_started: assert (started_0 == own_started_0 & started_1 == own_started_1 & started_2 == own_started_2);
-        ring_before: assert (past_reset | {before_2, before_1, before_0} == past_before);
+        ring_written: assert (written == next_head & writes == (strobe | start));
+        ring_age: assert (age == samples & started == own_started & begun == own_begun & (begun | (!started & age == 6'd0)));
+        ring_head: assert (past_reset | head_moved == {5'd0, past_strobe | past_start});
+        ring_blank: assert (blank == (from_start & !own_started));
     end
 
     // The results are shown by the sums; what is the control's is whether a strobe came too early.

@@ -34,7 +34,7 @@ module shaper_small_properties (
     (* peek = "running" *) input wire running,
     (* peek = "stages" *) input wire [5:0] stages,
     (* peek = "done" *) input wire done,
-    (* peek = "u_banks.active_taps" *) input wire [2:0] taps,
+    (* peek = "u_banks.taps" *) input wire [2:0] taps,
     (* peek = "u_banks.taps_1" *) input wire [2:0] taps_1,
     (* peek = "u_banks.taps_2" *) input wire [2:0] taps_2,
     (* peek = "u_banks.sum_1" *) input wire signed [19:0] sum_1,
@@ -53,12 +53,13 @@ module shaper_small_properties (
     (* peek = "u_banks.u_loaded_taps.words[7]" *) input wire [19:0] word_7,
     (* peek = "u_history.head" *) input wire [1:0] head,
     (* peek = "u_history.age" *) input wire [1:0] age,
-    (* peek = "u_history.sample" *) input wire signed [5:0] sample,
-    (* peek = "u_history.start_value" *) input wire signed [5:0] start_value,
-    (* peek = "u_history.u_ring.words[0]" *) input wire [5:0] ring_0,
-    (* peek = "u_history.u_ring.words[1]" *) input wire [5:0] ring_1,
-    (* peek = "u_history.u_ring.words[2]" *) input wire [5:0] ring_2,
-    (* peek = "u_history.u_ring.words[3]" *) input wire [5:0] ring_3,
+    (* peek = "u_history.begun" *) input wire begun,
+    (* peek = "u_history.started" *) input wire started,
+    (* peek = "u_history.sample_0" *) input wire signed [5:0] sample,
+    (* peek = "u_history.u_ring_0.words[0]" *) input wire [5:0] ring_0,
+    (* peek = "u_history.u_ring_0.words[1]" *) input wire [5:0] ring_1,
+    (* peek = "u_history.u_ring_0.words[2]" *) input wire [5:0] ring_2,
+    (* peek = "u_history.u_ring_0.words[3]" *) input wire [5:0] ring_3,
     (* peek = "u_sum.coefficient_q" *) input wire signed [17:0] coefficient_q,
     (* peek = "u_sum.u_product.u_lower.a_q" *) input wire signed [17:0] a_q,
     (* peek = "u_sum.u_product.u_lower.b_q" *) input wire signed [17:0] b_q,
@@ -74,35 +75,42 @@ module shaper_small_properties (
     reg signed [5:0] history_1 = 6'sd0;
     reg signed [5:0] history_2 = 6'sd0;
     reg        [1:0] samples = 2'd0;
+    reg              own_begun = 1'b0;
+    reg              own_started = 1'b0;
     always @(posedge clk) begin
         if (rst) begin
             history_0 <= 6'sd0;
             history_1 <= 6'sd0;
             history_2 <= 6'sd0;
             samples <= 2'd0;
+            own_begun <= 1'b0;
+            own_started <= 1'b0;
         end else if (start) begin
             history_0 <= x;
             history_1 <= x;
             history_2 <= x;
-            samples <= {1'd0, strobe};
+            samples <= 2'd0;
+            own_begun <= 1'b1;
+            own_started <= 1'b1;
         end else if (strobe) begin
             history_0 <= x;
             history_1 <= history_0;
             history_2 <= history_1;
-            samples <= samples == 2'd3 ? 2'd3 : samples + 2'd1;
+            samples <= !own_begun ? 2'd0 : samples == 2'd3 ? 2'd3 : samples + 2'd1;
+            own_begun <= 1'b1;
         end
     end
     wire [23:0] ring = {ring_3, ring_2, ring_1, ring_0};
-    wire [1:0]  at_1 = head - 2'd1;
-    wire [1:0]  at_2 = head - 2'd2;
+    wire [1:0]  at_1 = head - (samples > 2'd1 ? 2'd1 : samples);
+    wire [1:0]  at_2 = head - (samples > 2'd2 ? 2'd2 : samples);
     wire [5:0]  in_ring_0 = ring[6 * head +: 6];
     wire [5:0]  in_ring_1 = ring[6 * at_1 +: 6];
     wire [5:0]  in_ring_2 = ring[6 * at_2 +: 6];
     always @(*) begin
-        ring_age: assert (age == samples);
-        ring_newest: assert (history_0 == (age > 2'd0 ? in_ring_0 : start_value));
-        ring_second: assert (history_1 == (age > 2'd1 ? in_ring_1 : start_value));
-        ring_third: assert (history_2 == (age > 2'd2 ? in_ring_2 : start_value));
+        ring_age: assert (age == samples & begun == own_begun & started == own_started & (begun | (!started & age == 2'd0)));
+        ring_newest: assert (history_0 == (begun ? in_ring_0 : 6'd0));
+        ring_second: assert (history_1 == (started | samples >= 2'd1 ? in_ring_1 : 6'd0));
+        ring_third: assert (history_2 == (started | samples >= 2'd2 ? in_ring_2 : 6'd0));
     end
 
     // The tables: words {delay, coefficient}, the first lowest, and the sums of those loaded.
@@ -179,6 +187,7 @@ module shaper_small_properties (
         pass >= 4'd4 & pass <= n + 4'd3, pass >= 4'd3 & pass <= n + 4'd2, pass >= 4'd2 & pass <= n + 4'd1};
     always @(*) begin
         pass_length: assert (pass <= last);
+        pass_begun: assert (pass == 4'd0 | begun);
         pass_running: assert (running == (pass >= 4'd1 & pass <= n));
         pass_tap: assert (!running | {2'd0, tap} == pass - 4'd1);
         pass_stages: assert (stages == stages_now);
@@ -195,9 +204,12 @@ module shaper_small_properties (
             wire signed [5:0]  own_sample = own[19:18] == 2'd0 ? history_0 : own[19:18] == 2'd1 ? history_1 : history_2;
             assign read[k] = pass != k + 2 | (bank == 2'd0 ? machine_word : loaded_word) == own;
             assign words[k] = pass != k + 3 | word == own;
-            assign samples_read[k] = pass != k + 4 | sample == own_sample;
-            assign coefficients[k] = pass != k + 4 | coefficient_q == own_coefficient;
-            assign operands[k] = pass != k + 5 | (a_q == own_sample & b_q == own_coefficient);
+            // From before the first strobe after a reset, without a start: another word, but a coefficient of 0.
+            wire               blank = !own_started & own[19:18] > samples;
+            wire signed [17:0] factor = blank ? 18'sd0 : own_coefficient;
+            assign samples_read[k] = pass != k + 4 | blank | sample == own_sample;
+            assign coefficients[k] = pass != k + 4 | coefficient_q == factor;
+            assign operands[k] = pass != k + 5 | ((blank | a_q == own_sample) & b_q == factor);
         end
     endgenerate
     always @(*) begin
@@ -214,8 +226,10 @@ module shaper_small_properties (
     wire [19:0]        own_word = own_table[20 * place[1:0] +: 20];
     wire signed [17:0] own_b = own_word[17:0];
     wire signed [17:0] own_a = own_word[19:18] == 2'd0 ? history_0 : own_word[19:18] == 2'd1 ? history_1 : history_2;
-    // Either way the product of the own words: equal words have equal products, and no two multipliers need be compared.
-    wire signed [35:0] own_ab = own_a == a_q & own_b == b_q ? a_q * b_q : own_a * own_b;
+    // Each way the product of the own words: from before the first strobe they are 0, and equal words have equal products, so
+    // that no two multipliers need be compared.
+    wire               own_blank = !own_started & own_word[19:18] > samples;
+    wire signed [35:0] own_ab = own_blank ? 36'sd0 : own_a == a_q & own_b == b_q ? a_q * b_q : own_a * own_b;
     reg         [23:0] own_product = 24'd0;
     reg  signed [25:0] own_sum = HALF;
     reg  signed [19:0] own_coefficients = 20'sd0;

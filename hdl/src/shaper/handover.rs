@@ -165,7 +165,7 @@ impl<const W: usize, const A: usize> Logic for Handover<W, A> {
         self.next_since.next = self.since_q.q.val() + self.one_sample.val();
         if self.strobe.val() {
             self.since_q.d.next = self.next_since.val();
-            if self.next_since.val() > self.reach.val() {
+            if self.since_q.q.val() == self.reach.val() {
                 self.active_q.d.next = false;
             }
         }
@@ -189,12 +189,11 @@ impl<const W: usize, const A: usize> Logic for Handover<W, A> {
         self.foreign.next = self.active_q.q.val() & (self.old_tap.q.val() == self.below.val());
         self.coefficient_q.d.next = self.tap_coefficient.val();
         self.delay_q.d.next = self.tap_delay.val();
-        if self.foreign.val() {
-            if self.position_tap.q.val() {
-                self.delay_q.d.next = self.since_q.q.val();
-            } else {
-                self.coefficient_q.d.next = self.no_coefficient.val();
-            }
+        if self.foreign.val() & self.position_tap.q.val() {
+            self.delay_q.d.next = self.since_q.q.val();
+        }
+        if self.foreign.val() & !self.position_tap.q.val() {
+            self.coefficient_q.d.next = self.no_coefficient.val();
         }
         if self.correction.q.val() {
             self.coefficient_q.d.next = self.minus_unity.val();

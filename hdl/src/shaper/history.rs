@@ -1,55 +1,67 @@
-//! The samples since the last start, and the start value for all before.
+//! The samples since the last start, and before them its words: C rings that go together.
 //!
-//! A ring of 2^A words in block RAM, the newest at `head`. What `delay` asks for stands at `sample` one clock later:
-//! `delay < age ? ring[head − delay] : start value`. So no word is used that was not written since the start.
+//! A ring of 2^A words in block RAM per channel, the newest word at `head`. A strobe writes `x` behind it, a start as well,
+//! and from then on `age` counts the strobes, so that the start's word lies that many words back. What `delay` asks for stands
+//! at `sample` one clock later: `ring[head − min(delay, age)]`, and so, of all before the start, the start's own word.
 //!
-//! `delay` is at most 2^A − 2: the word read is never the one that a strobe writes.
+//! After a reset `age` counts from the first strobe. What lies before that is 0, which no ring holds: `blank` tells of it, a
+//! clock before its sample. So no word is used that was not written since the reset.
+//!
+//! `delay` is at most 2^A − 2: the word read is never the one that is written.
 
 use crate::prelude::*;
 
-/// W word, A ring address bits.
+/// W word, A ring address bits, C channels.
 #[derive(LogicBlock)]
-pub(super) struct History<const W: usize, const A: usize> {
+pub(super) struct History<const W: usize, const A: usize, const C: usize> {
     pub(super) clk: Signal<In, Clock>,
     pub(super) rst: Signal<In, Bit>,
     pub(super) strobe: Signal<In, Bit>,
     pub(super) start: Signal<In, Bit>,
-    pub(super) x: Signal<In, Signed<W>>,
+    pub(super) x: [Signal<In, Signed<W>>; C],
     pub(super) delay: Signal<In, Bits<A>>,
-    pub(super) sample: Signal<Out, Signed<W>>,
+    pub(super) sample: [Signal<Out, Signed<W>>; C],
+    pub(super) blank: Signal<Out, Bit>,
 
-    ring: Ram<W, A>,
+    ring: [Ram<W, A>; C],
 
     head: Dff<Bits<A>>,
     age: Dff<Bits<A>>,
-    start_value: Dff<Signed<W>>,
-    before_start: Dff<Bit>,
+    begun: Dff<Bit>,
+    started: Dff<Bit>,
 
+    writes: Signal<Local, Bit>,
     next_head: Signal<Local, Bits<A>>,
-    age_before: Signal<Local, Bits<A>>,
+    before_start: Signal<Local, Bit>,
+    back: Signal<Local, Bits<A>>,
+    address: Signal<Local, Bits<A>>,
 
     one_sample: Constant<Bits<A>>,
     no_age: Constant<Bits<A>>,
     full_age: Constant<Bits<A>>,
 }
 
-impl<const W: usize, const A: usize> Default for History<W, A> {
+impl<const W: usize, const A: usize, const C: usize> Default for History<W, A, C> {
     fn default() -> Self {
         Self {
             clk: Signal::default(),
             rst: Signal::default(),
             strobe: Signal::default(),
             start: Signal::default(),
-            x: Signal::default(),
+            x: std::array::from_fn(|_| Signal::default()),
             delay: Signal::default(),
-            sample: Signal::default(),
-            ring: Ram::default(),
+            sample: std::array::from_fn(|_| Signal::default()),
+            blank: Signal::default(),
+            ring: std::array::from_fn(|_| Ram::default()),
             head: Dff::default(),
             age: Dff::default(),
-            start_value: Dff::default(),
-            before_start: Dff::default(),
+            begun: Dff::default(),
+            started: Dff::default(),
+            writes: Signal::default(),
             next_head: Signal::default(),
-            age_before: Signal::default(),
+            before_start: Signal::default(),
+            back: Signal::default(),
+            address: Signal::default(),
             one_sample: Constant::new(from_u64(1)),
             no_age: Constant::new(from_u64(0)),
             full_age: Constant::new(from_u64(u64::MAX)),
@@ -57,40 +69,46 @@ impl<const W: usize, const A: usize> Default for History<W, A> {
     }
 }
 
-impl<const W: usize, const A: usize> Logic for History<W, A> {
+impl<const W: usize, const A: usize, const C: usize> Logic for History<W, A, C> {
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module history");
         comment!("@about The samples since the last start, in a");
-        comment!("@about ring, and for all before, its value.");
+        comment!("@about ring behind its word, which also stands");
+        comment!("@about for all before: 0 if there was none.");
         comment!("@about sample: that of delay one clock before.");
-        dff_setup!(self, clk, head, age, start_value, before_start);
-        self.ring.clk.next = self.clk.val();
+        dff_setup!(self, clk, head, age, begun, started);
 
-        comment!("A start forgets, then a strobe adds x");
-        self.age_before.next = self.age.q.val();
-        if self.start.val() {
-            self.start_value.d.next = self.x.val();
-            self.age_before.next = self.no_age.val();
-            self.age.d.next = self.no_age.val();
-        }
+        comment!("A strobe adds x; a start too, and forgets");
+        self.writes.next = self.strobe.val() | self.start.val();
         self.next_head.next = self.head.q.val() + self.one_sample.val();
-        if self.strobe.val() {
+        if self.writes.val() {
             self.head.d.next = self.next_head.val();
-            if self.age_before.val() != self.full_age.val() {
-                self.age.d.next = self.age_before.val() + self.one_sample.val();
-            }
+            self.begun.d.next = true;
         }
-        self.ring.write_enable.next = self.strobe.val();
-        self.ring.write_address.next = self.next_head.val();
-        self.ring.write_data.next = unsigned_cast(self.x.val());
+        if self.strobe.val() & self.begun.q.val() & (self.age.q.val() != self.full_age.val()) {
+            self.age.d.next = self.age.q.val() + self.one_sample.val();
+        }
+        if self.start.val() {
+            self.age.d.next = self.no_age.val();
+            self.started.d.next = true;
+        }
 
         comment!("The sample that lies delay samples back");
-        self.ring.read_address.next = self.head.q.val() - self.delay.val();
-        self.before_start.d.next = self.delay.val() >= self.age.q.val();
-        self.sample.next = signed_cast(self.ring.read_data.val());
-        if self.before_start.q.val() {
-            self.sample.next = self.start_value.q.val();
+        self.before_start.next = self.delay.val() > self.age.q.val();
+        self.back.next = self.delay.val();
+        if self.before_start.val() {
+            self.back.next = self.age.q.val();
+        }
+        self.address.next = self.head.q.val() - self.back.val();
+        self.blank.next = self.before_start.val() & !self.started.q.val();
+        for i in 0..C {
+            self.ring[i].clk.next = self.clk.val();
+            self.ring[i].write_enable.next = self.writes.val();
+            self.ring[i].write_address.next = self.next_head.val();
+            self.ring[i].write_data.next = unsigned_cast(self.x[i].val());
+            self.ring[i].read_address.next = self.address.val();
+            self.sample[i].next = signed_cast(self.ring[i].read_data.val());
         }
     }
 }

@@ -53,7 +53,7 @@ pub(super) struct Shaper<
     pub(super) refused: Signal<Out, Bit>,
 
     banks: TapBanks<A, T, COUNT, SUM, WORD>,
-    history: History<W, A>,
+    history: History<W, A, 1>,
     sum: WeightedSum<W, P, ACC, U>,
 
     tap: Dff<Bits<T>>,
@@ -174,7 +174,7 @@ impl<
         self.history.rst.next = self.rst.val();
         self.history.strobe.next = self.strobe.val();
         self.history.start.next = self.start.val();
-        self.history.x.next = self.x.val();
+        self.history.x[0].next = self.x.val();
         self.history.delay.next = self.banks.delay.val();
 
         comment!("The sum: a pass that is cut off leaves y");
@@ -183,7 +183,8 @@ impl<
         self.sum.rst.next = self.rst.val();
         self.sum.begin_pass.next = self.strobe.val();
         self.sum.coefficient.next = self.banks.coefficient.val();
-        self.sum.sample.next = self.history.sample.val();
+        self.sum.sample.next = self.history.sample[0].val();
+        self.sum.blank.next = self.history.blank.val();
         self.sum.add.next = self.stages.q.val().get_bit(5);
         self.sum.finish.next = self.finish.val();
         self.sum.start.next = self.start.val();

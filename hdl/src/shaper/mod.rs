@@ -83,8 +83,8 @@ macro_rules! sized_motion_shaper {
     };
     (@index $config:expr, $action:ident, $w:literal, $a:literal, $c:literal) => {
         match $config.tap_index_bits() {
-            6 => $action!(MotionShaper<$w, { $w + 18 }, { $w + 19 + 6 }, $a, 6, 7, { 18 + 6 }, { 18 + $a }, $c>),
-            _ => $action!(MotionShaper<$w, { $w + 18 }, { $w + 19 + 8 }, $a, 8, 9, { 18 + 8 }, { 18 + $a }, $c>),
+            6 => $action!(MotionShaper<$w, { $w + 18 }, { $w + 19 + 6 }, $a, 6, 7, { 18 + 6 }, { 18 + $a }, $c, { $c - 1 }>),
+            _ => $action!(MotionShaper<$w, { $w + 18 }, { $w + 19 + 8 }, $a, 8, 9, { 18 + 8 }, { 18 + $a }, $c, { $c - 1 }>),
         }
     };
 }

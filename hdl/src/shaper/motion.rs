@@ -11,8 +11,11 @@
 //! is m; a tap of the old table belongs to the increments of delay d ≥ m, one of the new table to those of d < m. Of the
 //! position, any other tap sees `x[n − m]`; of velocity and acceleration it counts as zero.
 //!
-//! So of N products `y` stands N + 11 clocks after the strobe, three more than in the plain shaper: one for the handover, one
-//! for the way from the rings to the multiplier, and one because the channels wait for each other.
+//! After a channel one clock asks for nothing: when its place comes to the accumulator, one sum is taken and the next begins.
+//! `lasts` carries it there; that of a strobe's own clock comes before the first channel.
+//!
+//! So of N products `y` stands N + C + 9 clocks after the strobe. More than in the plain shaper are one clock for the handover,
+//! one for the way from the rings to the multiplier, and one between two channels.
 
 use super::channel_sums::ChannelSums;
 use super::handover::Handover;
@@ -22,7 +25,7 @@ use crate::prelude::*;
 use posicast_model::rtl::shaper::ShaperConfig;
 
 /// W word, P = W + 18 product, ACC = P + T + 1 accumulator, A ring address, T index, COUNT = T + 1, SUM = 18 + T and
-/// WORD = 18 + A bits, C channels.
+/// WORD = 18 + A bits, C channels, H = C − 1.
 #[derive(LogicBlock)]
 pub(super) struct MotionShaper<
     const W: usize,
@@ -34,6 +37,7 @@ pub(super) struct MotionShaper<
     const SUM: usize,
     const WORD: usize,
     const C: usize,
+    const H: usize,
 > {
     pub(super) clk: Signal<In, Clock>,
     pub(super) rst: Signal<In, Bit>,
@@ -60,17 +64,15 @@ pub(super) struct MotionShaper<
 
     banks: TapBanks<A, T, COUNT, SUM, WORD>,
     handover: Handover<W, A>,
-    history: [History<W, A>; C],
-    sums: ChannelSums<W, P, ACC, C>,
+    history: History<W, A, C>,
+    sums: ChannelSums<W, P, ACC, C, H>,
 
     tap: Dff<Bits<T>>,
     running: Dff<Bit>,
     channel: Dff<Bits<2>>,
     second: Dff<Bit>,
     correcting: Dff<Bit>,
-    stages: Dff<Bits<8>>,
-    lasts: Dff<Bits<8>>,
-    done: Dff<Bit>,
+    lasts: Dff<Bits<9>>,
     sample_channel: Dff<Bits<2>>,
     overrun_q: Dff<Bit>,
 
@@ -79,7 +81,7 @@ pub(super) struct MotionShaper<
     of_position: Signal<Local, Bit>,
     table_ends: Signal<Local, Bit>,
     ends: Signal<Local, Bit>,
-    finish: Signal<Local, Bit>,
+    begin_lasts: Signal<Local, Bits<9>>,
 
     first_tap: Constant<Bits<T>>,
     one_tap: Constant<Bits<T>>,
@@ -87,8 +89,10 @@ pub(super) struct MotionShaper<
     first_channel: Constant<Bits<2>>,
     one_channel: Constant<Bits<2>>,
     last_channel: Constant<Bits<2>>,
-    no_stage: Constant<Bits<8>>,
-    first_stage: Constant<Bits<8>>,
+    no_channel: Constant<Bits<2>>,
+    no_stage: Constant<Bits<9>>,
+    first_stage: Constant<Bits<9>>,
+    second_stage: Constant<Bits<9>>,
     unknown_how: Constant<Bits<2>>,
 }
 
@@ -102,11 +106,12 @@ impl<
     const SUM: usize,
     const WORD: usize,
     const C: usize,
-> MotionShaper<W, P, ACC, A, T, COUNT, SUM, WORD, C>
+    const H: usize,
+> MotionShaper<W, P, ACC, A, T, COUNT, SUM, WORD, C, H>
 {
     /// A shaper for `config`, whose sizes must be these.
     pub(super) fn new(config: &ShaperConfig) -> Self {
-        const { assert!(P == W + 18 && ACC == P + T + 1 && C <= 3) };
+        const { assert!(P == W + 18 && ACC == P + T + 1 && C <= 3 && H + 1 == C) };
         Self {
             clk: Signal::default(),
             rst: Signal::default(),
@@ -132,16 +137,14 @@ impl<
             refused: Signal::default(),
             banks: TapBanks::new(config),
             handover: Handover::new(config),
-            history: std::array::from_fn(|_| History::default()),
+            history: History::default(),
             sums: ChannelSums::new(config),
             tap: Dff::default(),
             running: Dff::default(),
             channel: Dff::default(),
             second: Dff::default(),
             correcting: Dff::default(),
-            stages: Dff::default(),
             lasts: Dff::default(),
-            done: Dff::default(),
             sample_channel: Dff::default(),
             overrun_q: Dff::default(),
             tap_number: Signal::default(),
@@ -149,15 +152,17 @@ impl<
             of_position: Signal::default(),
             table_ends: Signal::default(),
             ends: Signal::default(),
-            finish: Signal::default(),
+            begin_lasts: Signal::default(),
             first_tap: Constant::new(from_u64(0)),
             one_tap: Constant::new(from_u64(1)),
             one_more: Constant::new(from_u64(1)),
             first_channel: Constant::new(from_u64(0)),
             one_channel: Constant::new(from_u64(1)),
             last_channel: Constant::new(from_u64(C as u64 - 1)),
+            no_channel: Constant::new(from_u64(3)),
             no_stage: Constant::new(from_u64(0)),
             first_stage: Constant::new(from_u64(1)),
+            second_stage: Constant::new(from_u64(2)),
             unknown_how: Constant::new(from_u64(3)),
         }
     }
@@ -173,7 +178,8 @@ impl<
     const SUM: usize,
     const WORD: usize,
     const C: usize,
-> Logic for MotionShaper<W, P, ACC, A, T, COUNT, SUM, WORD, C>
+    const H: usize,
+> Logic for MotionShaper<W, P, ACC, A, T, COUNT, SUM, WORD, C, H>
 {
     #[hdl_gen]
     fn update(&mut self) {
@@ -186,9 +192,7 @@ impl<
             channel,
             second,
             correcting,
-            stages,
             lasts,
-            done,
             sample_channel,
             overrun_q
         );
@@ -232,38 +236,35 @@ impl<
         self.handover.tap_delay.next = self.banks.delay.val();
 
         comment!("The samples: those at delay, a clock later");
+        self.history.clk.next = self.clk.val();
+        self.history.rst.next = self.rst.val();
+        self.history.strobe.next = self.strobe.val();
+        self.history.start.next = self.start.val();
+        self.history.delay.next = self.handover.delay.val();
         for i in 0..C {
-            self.history[i].clk.next = self.clk.val();
-            self.history[i].rst.next = self.rst.val();
-            self.history[i].strobe.next = self.strobe.val();
-            self.history[i].start.next = self.start.val();
-            self.history[i].x.next = self.x[i].val();
-            self.history[i].delay.next = self.handover.delay.val();
-            self.sums.sample[i].next = self.history[i].sample.val();
+            self.history.x[i].next = self.x[i].val();
+            self.sums.sample[i].next = self.history.sample[i].val();
             self.sums.x[i].next = self.x[i].val();
         }
 
-        comment!("The sums: a pass that is cut off leaves y");
-        self.finish.next = self.done.q.val() & !self.start.val() & !self.strobe.val();
+        comment!("The sums: one ends and the next begins");
         self.sums.clk.next = self.clk.val();
         self.sums.rst.next = self.rst.val();
         self.sums.begin_pass.next = self.strobe.val();
         self.sums.coefficient.next = self.handover.coefficient.val();
+        self.sums.blank.next = self.history.blank.val();
         self.sums.sample_channel.next = self.sample_channel.q.val();
         self.sums.newest.next = self.handover.newest.val();
-        self.sums.add.next = self.stages.q.val().get_bit(7);
-        self.sums.finish.next = self.finish.val();
+        self.sums.boundary.next = self.lasts.q.val().get_bit(8);
         self.sums.start.next = self.start.val();
         self.sums.clear_flags.next = self.clear_flags.val();
 
-        comment!("One product per clock, channel by channel");
+        comment!("A product per clock; after a channel none");
         self.tap_number.next = bit_cast::<COUNT, T>(self.tap.q.val()) + self.one_more.val();
         self.table_ends.next = self.tap_number.val() == self.banks.taps.val();
         self.ends.next = false;
-        self.stages.d.next = self.stages.q.val() << 1;
         self.lasts.d.next = self.lasts.q.val() << 1;
-        if self.running.q.val() {
-            self.stages.d.next = (self.stages.q.val() << 1) | self.first_stage.val();
+        if self.running.q.val() & !self.lasts.q.val().get_bit(0) {
             self.tap.d.next = self.tap.q.val() + self.one_tap.val();
             if self.correcting.q.val() {
                 self.ends.next = true;
@@ -291,19 +292,20 @@ impl<
         if self.lasts.q.val().get_bit(4) {
             self.sample_channel.d.next = self.sample_channel.q.val() + self.one_channel.val();
         }
-        self.done.d.next = self.lasts.q.val().get_bit(7);
 
         comment!("A start or a strobe cuts off what runs");
+        self.begin_lasts.next = self.no_stage.val();
+        if self.strobe.val() {
+            self.begin_lasts.next = self.second_stage.val();
+        }
         if self.start.val() | self.strobe.val() {
             self.running.d.next = self.strobe.val();
             self.tap.d.next = self.first_tap.val();
             self.channel.d.next = self.first_channel.val();
-            self.sample_channel.d.next = self.first_channel.val();
+            self.sample_channel.d.next = self.no_channel.val();
             self.second.d.next = false;
             self.correcting.d.next = false;
-            self.stages.d.next = self.no_stage.val();
-            self.lasts.d.next = self.no_stage.val();
-            self.done.d.next = false;
+            self.lasts.d.next = self.begin_lasts.val();
         }
         if self.clear_flags.val() {
             self.overrun_q.d.next = false;

@@ -14,7 +14,8 @@ impl<
     const SUM: usize,
     const WORD: usize,
     const C: usize,
-> Pins for MotionShaper<W, P, ACC, A, T, COUNT, SUM, WORD, C>
+    const H: usize,
+> Pins for MotionShaper<W, P, ACC, A, T, COUNT, SUM, WORD, C, H>
 {
     fn set_clk(&mut self, level: bool) {
         self.clk.next = level.into();

@@ -56,9 +56,7 @@ pub(super) struct TapBanks<const A: usize, const T: usize, const COUNT: usize, c
     longest_1: Dff<Bits<A>>,
     longest_2: Dff<Bits<A>>,
     active: Dff<Bits<2>>,
-    active_taps: Dff<Bits<COUNT>>,
     previous: Dff<Bits<2>>,
-    previous_taps: Dff<Bits<COUNT>>,
     upcoming: Dff<Bits<2>>,
     pending: Dff<Bit>,
     reach_q: Dff<Bits<A>>,
@@ -88,7 +86,6 @@ pub(super) struct TapBanks<const A: usize, const T: usize, const COUNT: usize, c
     write_address: Signal<Local, Bits<COUNT>>,
     read_address: Signal<Local, Bits<COUNT>>,
     coefficient_bits: Signal<Local, Bits<18>>,
-    upcoming_taps: Signal<Local, Bits<COUNT>>,
 
     bank_rom: Constant<Bits<2>>,
     bank_1: Constant<Bits<2>>,
@@ -98,6 +95,8 @@ pub(super) struct TapBanks<const A: usize, const T: usize, const COUNT: usize, c
     machine_count: Constant<Bits<COUNT>>,
     machine_longest: Constant<Bits<A>>,
     forbidden_delay: Constant<Bits<A>>,
+    no_delay: Constant<Bits<A>>,
+    no_sum: Constant<Signed<SUM>>,
     unity: Constant<Signed<SUM>>,
 }
 
@@ -140,9 +139,7 @@ impl<const A: usize, const T: usize, const COUNT: usize, const SUM: usize, const
             longest_1: Dff::default(),
             longest_2: Dff::default(),
             active: Dff::default(),
-            active_taps: Dff::new(from_u64(config.table().taps().len() as u64)),
             previous: Dff::default(),
-            previous_taps: Dff::default(),
             upcoming: Dff::default(),
             pending: Dff::default(),
             reach_q: Dff::default(),
@@ -171,7 +168,6 @@ impl<const A: usize, const T: usize, const COUNT: usize, const SUM: usize, const
             write_address: Signal::default(),
             read_address: Signal::default(),
             coefficient_bits: Signal::default(),
-            upcoming_taps: Signal::default(),
             bank_rom: Constant::new(from_u64(0)),
             bank_1: Constant::new(from_u64(1)),
             bank_2: Constant::new(from_u64(2)),
@@ -180,6 +176,8 @@ impl<const A: usize, const T: usize, const COUNT: usize, const SUM: usize, const
             machine_count: Constant::new(from_u64(config.table().taps().len() as u64)),
             machine_longest: Constant::new(from_u64(u64::from(config.table().longest_delay_samples()))),
             forbidden_delay: Constant::new(from_u64(u64::MAX)),
+            no_delay: Constant::new(from_u64(0)),
+            no_sum: Constant::new(from_i64(0)),
             unity: Constant::new(from_i64(1 << config.coefficient_fraction())),
         }
     }
@@ -213,24 +211,8 @@ impl<const A: usize, const T: usize, const COUNT: usize, const SUM: usize, const
         comment!("@about A swap waits for the next strobe; refused");
         comment!("@about unless the coefficients sum to 2^F.");
         dff_setup!(
-            self,
-            clk,
-            taps_1,
-            taps_2,
-            sum_1,
-            sum_2,
-            longest_1,
-            longest_2,
-            active,
-            active_taps,
-            previous,
-            previous_taps,
-            upcoming,
-            pending,
-            reach_q,
-            old_q,
-            word,
-            refused_q
+            self, clk, taps_1, taps_2, sum_1, sum_2, longest_1, longest_2, active, previous, upcoming, pending,
+            reach_q, old_q, word, refused_q
         );
         self.machine_taps.clk.next = self.clk.val();
         self.loaded_taps.clk.next = self.clk.val();
@@ -246,6 +228,11 @@ impl<const A: usize, const T: usize, const COUNT: usize, const SUM: usize, const
             self.longest_so_far.next = self.longest_2.q.val();
             self.write_address.next = bit_cast::<COUNT, T>(self.tap_index.val()) | self.upper_half.val();
         }
+        self.begins.next = !self.tap_index.val().any();
+        if self.begins.val() {
+            self.sum_so_far.next = self.no_sum.val();
+            self.longest_so_far.next = self.no_delay.val();
+        }
 
         comment!("Taken in sequence, into a bank at rest");
         self.loadable.next = (self.tap_bank.val() == self.bank_1.val()) | (self.tap_bank.val() == self.bank_2.val());
@@ -253,22 +240,17 @@ impl<const A: usize, const T: usize, const COUNT: usize, const SUM: usize, const
         self.at_rest.next = (self.tap_bank.val() != self.active.q.val()) & self.free.val() & !self.swap.val();
         self.in_reach.next = self.tap_delay.val() != self.forbidden_delay.val();
         self.index.next = bit_cast::<COUNT, T>(self.tap_index.val());
-        self.begins.next = !self.tap_index.val().any();
         self.write_taken.next = false;
         if self.begins.val() | (self.index.val() == self.taps_so_far.val()) {
             self.write_taken.next =
                 self.tap_write.val() & self.loadable.val() & self.at_rest.val() & self.in_reach.val();
         }
         self.addend.next = signed_bit_cast::<SUM, 18>(self.tap_coefficient.val());
-        self.new_taps.next = self.taps_so_far.val() + self.one_tap.val();
+        self.new_taps.next = self.index.val() + self.one_tap.val();
         self.new_sum.next = self.sum_so_far.val() + self.addend.val();
         self.new_longest.next = self.longest_so_far.val();
-        if self.begins.val() | (self.tap_delay.val() > self.longest_so_far.val()) {
+        if self.tap_delay.val() > self.longest_so_far.val() {
             self.new_longest.next = self.tap_delay.val();
-        }
-        if self.begins.val() {
-            self.new_taps.next = self.one_tap.val();
-            self.new_sum.next = self.addend.val();
         }
         if self.write_taken.val() {
             if self.tap_bank.val() == self.bank_2.val() {
@@ -298,18 +280,9 @@ impl<const A: usize, const T: usize, const COUNT: usize, const SUM: usize, const
         if (self.swap_bank.val() == self.bank_2.val()) & (self.sum_2.q.val() == self.unity.val()) {
             self.swap_taken.next = self.swap.val() & self.free.val() & self.known.val();
         }
-        self.upcoming_taps.next = self.taps_1.q.val();
-        if self.upcoming.q.val() == self.bank_2.val() {
-            self.upcoming_taps.next = self.taps_2.q.val();
-        }
-        if self.upcoming.q.val() == self.bank_rom.val() {
-            self.upcoming_taps.next = self.machine_count.val();
-        }
         if self.strobe.val() & self.pending.q.val() & self.take.val() {
             self.active.d.next = self.upcoming.q.val();
-            self.active_taps.d.next = self.upcoming_taps.val();
             self.previous.d.next = self.active.q.val();
-            self.previous_taps.d.next = self.active_taps.q.val();
             self.pending.d.next = false;
         }
         if self.swap_taken.val() {
@@ -349,10 +322,15 @@ impl<const A: usize, const T: usize, const COUNT: usize, const SUM: usize, const
 
         comment!("Reading: the active table, or the old one");
         self.read_bank.next = self.active.q.val();
-        self.taps.next = self.active_taps.q.val();
         if self.old.val() {
             self.read_bank.next = self.previous.q.val();
-            self.taps.next = self.previous_taps.q.val();
+        }
+        self.taps.next = self.taps_1.q.val();
+        if self.read_bank.val() == self.bank_2.val() {
+            self.taps.next = self.taps_2.q.val();
+        }
+        if self.read_bank.val() == self.bank_rom.val() {
+            self.taps.next = self.machine_count.val();
         }
         comment!("Bank 1 is the lower half, all others the upper");
         self.read_address.next = bit_cast::<COUNT, T>(self.tap.val()) | self.upper_half.val();

@@ -1,8 +1,9 @@
 //! `y = saturate( (Σ coefficient · sample + 2^(F−1)) >> F )`, exact up to the one rounding.
 //!
 //! `begin` puts the half that rounds into the accumulator. A coefficient comes one clock before its sample, its product
-//! stands three clocks after the sample; `add` marks the products that count. `finish` comes in the clock after the last
-//! `add` and moves the result to `y`, which holds it. `start` sets `y` to `x`.
+//! stands three clocks after the sample; `add` marks the products that count. A sample that is `blank` counts as 0: told in
+//! the clock of its coefficient, that is 0 instead. `finish` comes in the clock after the last `add` and moves the result to
+//! `y`, which holds it. `start` sets `y` to `x`.
 //!
 //! The result fits its word if the bits of the accumulator from the word's sign bit up are equal.
 //!
@@ -18,6 +19,7 @@ pub(super) struct WeightedSum<const W: usize, const P: usize, const ACC: usize, 
     pub(super) rst: Signal<In, Bit>,
     pub(super) begin_pass: Signal<In, Bit>,
     pub(super) coefficient: Signal<In, Signed<18>>,
+    pub(super) blank: Signal<In, Bit>,
     pub(super) sample: Signal<In, Signed<W>>,
     pub(super) add: Signal<In, Bit>,
     pub(super) finish: Signal<In, Bit>,
@@ -37,6 +39,7 @@ pub(super) struct WeightedSum<const W: usize, const P: usize, const ACC: usize, 
     wide_product: Signal<Local, Signed<ACC>>,
     sign_bits: Signal<Local, Bits<ACC>>,
 
+    no_coefficient: Constant<Signed<18>>,
     half: Constant<Signed<ACC>>,
     sign_mask: Constant<Bits<ACC>>,
     all_clear: Constant<Bits<ACC>>,
@@ -54,6 +57,7 @@ impl<const W: usize, const P: usize, const ACC: usize, const U: usize> WeightedS
             rst: Signal::default(),
             begin_pass: Signal::default(),
             coefficient: Signal::default(),
+            blank: Signal::default(),
             sample: Signal::default(),
             add: Signal::default(),
             finish: Signal::default(),
@@ -69,6 +73,7 @@ impl<const W: usize, const P: usize, const ACC: usize, const U: usize> WeightedS
             saturated_q: Dff::default(),
             wide_product: Signal::default(),
             sign_bits: Signal::default(),
+            no_coefficient: Constant::new(from_i64(0)),
             half: Constant::new(from_i64(1 << (fraction - 1))),
             sign_mask: Constant::new(from_u64(u64::MAX << (fraction as usize + W - 1))),
             all_clear: Constant::new(from_u64(0)),
@@ -91,6 +96,9 @@ impl<const W: usize, const P: usize, const ACC: usize, const U: usize> Logic for
 
         comment!("Multiply and accumulate, exactly");
         self.coefficient_q.d.next = self.coefficient.val();
+        if self.blank.val() {
+            self.coefficient_q.d.next = self.no_coefficient.val();
+        }
         self.product.clk.next = self.clk.val();
         self.product.rst.next = self.rst.val();
         self.product.sample.next = self.sample.val();

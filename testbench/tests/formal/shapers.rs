@@ -41,7 +41,7 @@ fn formal_a_pass_that_ends_a_tap_early_is_found() {
 
 #[test]
 fn formal_a_sample_of_the_wrong_side_is_found() {
-    fails("shaper", "= head - delay", "= head + delay", "address");
+    fails("shaper", "= head - back", "= head + back", "address");
 }
 
 #[test]
@@ -81,7 +81,7 @@ fn formal_a_result_that_is_cut_instead_of_rounded_is_found() {
 
 #[test]
 fn formal_a_sample_that_is_an_older_one_is_found() {
-    fails("shaper_small", "delay >= age", "delay > age", "stage_sample");
+    fails("shaper_small", "delay > age", "delay >= age", "stage_coefficient");
 }
 
 #[test]
@@ -91,12 +91,7 @@ fn formal_an_increment_that_goes_through_both_tables_is_found() {
 
 #[test]
 fn formal_a_handover_that_ends_a_sample_early_is_found() {
-    fails(
-        "shaper_motion",
-        "next_since > reach",
-        "next_since >= reach",
-        "handover_",
-    );
+    fails("shaper_motion", "since_q == reach", "next_since == reach", "handover_");
 }
 
 #[test]
@@ -118,8 +113,8 @@ fn formal_a_position_that_clamps_where_it_should_wrap_is_found() {
 fn formal_a_product_lost_between_channels_is_found() {
     fails(
         "channel_sums",
-        "addend = wide_product;",
-        "addend = finish ? NO_PRODUCT : wide_product;",
+        "if (busy_q) begin",
+        "if (busy_q & (channel != FIRST_CHANNEL)) begin",
         "sum_adds",
     );
 }

@@ -16,8 +16,8 @@ pub const CHANNELS_MAX: usize = 3;
 const SHARED_RING_ADDRESS_BITS_MAX: u32 = 12;
 /// Clocks of a pass beyond one per tap: table (two), ring, multiplier (three), accumulator, rounding.
 pub const PASS_OVERHEAD_CLOCKS: u32 = 8;
-/// Clocks of a pass for [`Motion`] beyond that: handover, choice of the channel, wait for all channels.
-pub const MOTION_OVERHEAD_CLOCKS: u32 = 3;
+/// Clocks of a pass for [`Motion`] beyond that: handover, choice of the channel's sample. Between two channels is one more.
+pub const MOTION_OVERHEAD_CLOCKS: u32 = 2;
 
 /// Clocks from a strobe to its `valid`, and the smallest distance of two strobes without `overrun`.
 ///
@@ -248,9 +248,10 @@ impl ShaperConfig {
     }
 
     /// Clocks from a strobe to its `valid`, and the smallest distance of two strobes without `overrun`, where a pass has so
-    /// many products: for motion [`MOTION_OVERHEAD_CLOCKS`] more than [`pass_clocks`].
+    /// many products: for motion [`MOTION_OVERHEAD_CLOCKS`] more than [`pass_clocks`], and one between two channels.
     pub fn pass_clocks(&self, products: u32) -> u32 {
-        let of_motion = self.motion.map_or(0, |_| MOTION_OVERHEAD_CLOCKS);
+        let overhead = |motion: Motion| MOTION_OVERHEAD_CLOCKS + motion.channels - 1;
+        let of_motion = self.motion.map_or(0, overhead);
         pass_clocks(products).saturating_add(of_motion)
     }
 
