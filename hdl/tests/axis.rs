@@ -6,7 +6,7 @@ mod random;
 
 use posicast_hdl::axis::{emit, simulate};
 use posicast_model::rtl::ClockedBlock;
-use posicast_model::rtl::axis::{Axis, Inputs, OUTPUT_PORTS, ports};
+use posicast_model::rtl::axis::{Axis, Inputs, LEAST_TICK_CLOCKS, OUTPUT_PORTS, ports};
 use random::Random;
 
 #[test]
@@ -16,10 +16,16 @@ fn lockstep_everything_at_random() {
     let mut random = Random(9);
     let (mut expected, mut actual) = ([0; OUTPUT_PORTS], [0; OUTPUT_PORTS]);
     let mut seen = [0; 6];
+    let mut since_tick = 0;
     for clock in 0..10_000 {
+        since_tick += 1;
+        let tick = since_tick >= LEAST_TICK_CLOCKS && random.once_in(6);
+        if tick {
+            since_tick = 0;
+        }
         let inputs = Inputs {
             rst: clock < 2 || random.once_in(3000),
-            tick: random.once_in(6),
+            tick,
             emergency_stop_n: !random.once_in(400),
             limit_plus_n: !random.once_in(30),
             limit_minus_n: !random.once_in(30),

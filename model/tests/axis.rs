@@ -9,7 +9,7 @@ use posicast_model::rtl::segments::{self, Entry, Motion, Segments};
 use proptest::prelude::*;
 
 /// Clocks per tick of these tests.
-const TICK_CLOCKS: u64 = 80;
+const TICK_CLOCKS: u64 = 160;
 
 /// Everything in order, nothing wanted.
 const GOOD: Inputs = {
@@ -99,7 +99,7 @@ impl Bench {
             },
             clock: 0,
         };
-        bench.clocks(10);
+        bench.clocks(60);
         bench
     }
 

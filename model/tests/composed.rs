@@ -195,7 +195,7 @@ fn unit_random_inputs_move_the_axes() {
     let (mut inputs, outputs) = inputs_of(&fast, STAGE);
     let (mut shown, mut before, mut changes) = (vec![0; outputs], vec![0; outputs], vec![0; outputs]);
     let mut random = Random(3);
-    for _ in 0..3000 {
+    for _ in 0..9000 {
         let mut left = inputs.change(&mut random);
         while left > 0 {
             left -= fast.hold(&inputs.values, left, &mut shown).unwrap();

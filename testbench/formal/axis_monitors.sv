@@ -72,6 +72,7 @@ module axis_monitors_properties (
     (* peek = "u_monitors.u_error_limit.u_limit_bytes.part_q" *) input wire [7:0] error_limit_part,
     (* peek = "u_monitors.u_error_limit.u_larger.larger_q" *) input wire error_larger,
     (* peek = "u_monitors.u_error_limit.u_limited.nonzero_q" *) input wire error_limited,
+    (* peek = "u_monitors.u_deviation_at_tick.word_q" *) input wire [31:0] apart_kept,
     (* peek = "u_monitors.u_deviations.negative" *) input wire apart_negative,
     (* peek = "u_monitors.u_deviations.u_number_bytes.part_q" *) input wire [7:0] apart_part,
     (* peek = "u_monitors.u_deviations.u_limit_bytes.part_q" *) input wire [7:0] apart_limit_part,
@@ -117,6 +118,8 @@ module axis_monitors_properties (
     reg               same = 1'b0, e_below = 1'b0, apart_below = 1'b0, drive_below = 1'b0;
     // What the rounds have taken so far.
     reg signed [31:0] reference = 32'sd0, plus = 32'sd0, minus = 32'sd0;
+    reg        [31:0] apart_at_tick = 32'd0;
+    wire       [31:0] apart_now = tick ? deviation : apart_at_tick;
     reg        [31:0] e = 32'd0, e_most = 32'd0, apart = 32'd0, apart_most = 32'd0, drive = 32'd0, drive_most = 32'd0;
     reg        [15:0] cut = 16'd0, cut_most = 16'd0, still_most = 16'd0, unkicked_most = 16'd0;
     // Ticks; one bit more once there are more than any limit.
@@ -143,6 +146,7 @@ module axis_monitors_properties (
     always @(posedge clk) begin
         expected <= !rst & second & shown_on ? round & suspected : 16'd0;
         waiting <= !rst & kicked & comparing;
+        apart_at_tick <= rst ? 32'd0 : apart_now;
         in_time <= in_time & !(tick & clocks != 4'd0 & !second & !rst);
         if (rst) begin
             clocks <= 4'd0;
@@ -176,7 +180,7 @@ module axis_monitors_properties (
             minus <= (minus & ~byte_mask) | (soft_limit_minus & byte_mask);
             e <= (e & ~byte_mask) | (error & byte_mask);
             e_most <= (e_most & ~byte_mask) | (following_error_limit & byte_mask);
-            apart <= (apart & ~byte_mask) | (deviation & byte_mask);
+            apart <= (apart & ~byte_mask) | (apart_now & byte_mask);
             apart_most <= (apart_most & ~byte_mask) | (deviation_limit & byte_mask);
             drive <= (drive & ~byte_mask) | (command & byte_mask);
             drive_most <= (drive_most & ~byte_mask) | (lost_command & byte_mask);
@@ -206,6 +210,7 @@ module axis_monitors_properties (
         encoder_lost: assert ((wrong & `ENCODER_LOST) == 16'd0);
         watchdog_not_kicked: assert ((wrong & `WATCHDOG) == 16'd0);
         captured: assert (captured_position == place);
+        known_apart: assert (apart_kept == apart_at_tick);
     end
 
     // What registers hold, for the induction. So many bytes have been compared; the next is in its register.

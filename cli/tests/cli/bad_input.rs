@@ -99,10 +99,10 @@ fn fast_stage(sample_hz: &str, pwm_hz: &str) -> String {
 
 #[test]
 fn cli_a_tick_too_short_for_the_controller_is_printed_by_design_and_refused_by_the_others() {
-    // 250 clocks, and 700 at the largest rate of whole periods of 50 clocks.
-    let machine = fast_stage("200_000", "1_000_000");
-    let sum = "capture 4 + divide 102 + shape 42 + control 517 = 665 clocks";
-    let words = ["machine.toml:13: clock.sample_hz", sum, "lasts 250", "up to 71428.5"];
+    // 200 clocks, and 700 at the largest rate of whole periods of 100 clocks.
+    let machine = fast_stage("250_000", "500_000");
+    let sum = "capture 4 + divide 102 + shape 43 + control 517 = 666 clocks";
+    let words = ["machine.toml:13: clock.sample_hz", sum, "lasts 200", "up to 71428.5"];
     for command in ["generate", "run", "verify"] {
         refused(&[command], &machine, &words);
     }

@@ -223,7 +223,7 @@ fn cli_verify_gives_each_row_stimuli_of_its_own_that_repeat() {
     for axis in ["x", "y"] {
         let file = output.join(format!("rtl/xy_stage_{axis}_pwm_avalon_pwm_leg.v"));
         let text = std::fs::read_to_string(&file).unwrap();
-        std::fs::write(&file, text.replacen("pause = dead_time;", "pause = minimum_pulse;", 1)).unwrap();
+        std::fs::write(&file, text.replacen("lasts = dead_time;", "lasts = minimum_pulse;", 1)).unwrap();
     }
     let first = |arguments: &[&str]| {
         let out = verify(&output, &[&["--json", "--cycles", "6000"], arguments].concat());

@@ -2,6 +2,7 @@
 //!
 //! The datasheet is `docs/axis.md`, the reference `posicast_model::rtl::axis`.
 
+mod at_tick;
 mod bytes;
 mod causes;
 mod kernel;

@@ -4,6 +4,7 @@
 //! rounds find is registered: no comparison is on the way to the state. Bytes are taken in clocks 0 to 3 and 5 to 8 after the
 //! tick, compared a clock later, looked at in clocks 5 and 10, and causes in clock 11.
 
+use super::at_tick::AtTick;
 use super::lasts::Lasts;
 use super::nibbles::Nibbles;
 use super::size_limit::SizeLimit;
@@ -48,6 +49,7 @@ pub(super) struct Monitors {
 
     soft_limits: SoftLimits,
     error_limit: SizeLimit,
+    deviation_at_tick: AtTick,
     deviations: SizeLimit,
     commands: SizeLimit,
     limited_nibbles: Nibbles,
@@ -142,6 +144,7 @@ impl Default for Monitors {
             was_past_minus: Dff::default(),
             soft_limits: SoftLimits::default(),
             error_limit: SizeLimit::default(),
+            deviation_at_tick: AtTick::default(),
             deviations: SizeLimit::default(),
             commands: SizeLimit::default(),
             limited_nibbles: Nibbles::default(),
@@ -292,12 +295,17 @@ impl Logic for Monitors {
         self.error_limit.number.next = self.error.val();
         self.error_limit.limit.next = self.following_error_limit.val();
         self.error_limit.zero_counts.next = false;
+        comment!("A scale computes the next one from the tick on");
+        self.deviation_at_tick.clk.next = self.clk.val();
+        self.deviation_at_tick.rst.next = self.rst.val();
+        self.deviation_at_tick.tick.next = self.tick.val();
+        self.deviation_at_tick.word.next = self.deviation.val();
         self.deviations.clk.next = self.clk.val();
         self.deviations.rst.next = self.rst.val();
         self.deviations.tick.next = self.tick.val();
         self.deviations.turn.next = self.turn.q.val();
         self.deviations.compares.next = self.compares.q.val();
-        self.deviations.number.next = self.deviation.val();
+        self.deviations.number.next = self.deviation_at_tick.stands.val();
         self.deviations.limit.next = self.deviation_limit.val();
         self.deviations.zero_counts.next = false;
         self.commands.clk.next = self.clk.val();

@@ -117,7 +117,7 @@ impl Logic for Command {
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module pwm_command");
-        comment!("@about Duty to pattern and edges: one adder, which");
+        comment!("@about Duty to pattern and edges: one adder that");
         comment!("@about counts the clocks to an edge in between.");
         dff_setup!(
             self,
@@ -212,8 +212,8 @@ impl Logic for Command {
             | self.to_rise.q.val()
             | self.to_fall.q.val();
 
-        comment!("Duty or limit; dead time or pulse, doubled; all of");
-        comment!("either: the period. A choice of two bits a LUT");
+        comment!("Duty or limit; dead time or pulse, doubled; both");
+        comment!("at once: the period. A choice of two bits a LUT");
         self.first_0.next = self.of_duty.val() | self.of_period.val();
         self.first_1.next = self.of_maximum.val() | self.of_period.val();
         self.second_0.next = self.of_dead.val() | self.of_period.val();

@@ -25,7 +25,7 @@ impl Logic for FilteredFault {
         self.synchroniser.clk.next = self.clk.val();
         self.synchroniser.rst.next = self.rst.val();
         self.synchroniser.pin.next = !self.fault_n.val();
-        self.long.next = self.lasted.q.val() == self.filter_clocks.val();
+        self.long.next = self.lasted.q.val() >= self.filter_clocks.val();
         if !self.long.val() {
             self.lasted.d.next = self.lasted.q.val() + 1;
         }

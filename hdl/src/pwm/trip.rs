@@ -37,7 +37,6 @@ pub(super) struct Trip {
     over: Signal<Local, Bit>,
     latched: Signal<Local, Bit>,
     waits: Signal<Local, Bit>,
-    full: Signal<Local, Bit>,
     starved: Signal<Local, Bit>,
     others: Signal<Local, Bit>,
     none: Signal<Local, Bits<5>>,
@@ -91,11 +90,10 @@ impl Logic for Trip {
 
         comment!("The watchdog counts valleys without feed");
         self.waits.next = self.running.val() & !self.feed.val();
-        self.full.next = self.unfed.q.val() == self.watchdog_periods.val();
-        self.starved.next = self.watchdog_periods.val().any() & self.full.val();
+        self.starved.next = self.watchdog_periods.val().any() & (self.unfed.q.val() >= self.watchdog_periods.val());
         self.watchdog.d.next = (self.waits.val() & self.valley.val() & self.starved.val())
             | (self.watchdog.q.val() & !self.clear_trip.val());
-        if self.valley.val() & !self.full.val() {
+        if self.valley.val() & !self.unfed.q.val().all() {
             self.unfed.d.next = self.unfed.q.val() + 1;
         }
         if !self.waits.val() {

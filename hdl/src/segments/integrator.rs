@@ -55,6 +55,7 @@ pub(super) struct Integrator {
     shifted_addend: Signal<Local, Bits<10>>,
     backwards: Signal<Local, Bit>,
     starts_point: Signal<Local, Bit>,
+    preset_word: Signal<Local, Bits<32>>,
     preset_bits: Signal<Local, Bits<24>>,
     velocity_byte: Signal<Local, Bits<8>>,
     acceleration_byte: Signal<Local, Bits<8>>,
@@ -122,6 +123,7 @@ impl Default for Integrator {
             shifted_addend: Signal::default(),
             backwards: Signal::default(),
             starts_point: Signal::default(),
+            preset_word: Signal::default(),
             preset_bits: Signal::default(),
             velocity_byte: Signal::default(),
             acceleration_byte: Signal::default(),
@@ -192,17 +194,14 @@ impl Logic for Integrator {
         }
 
         comment!("One adder of a byte");
+        self.augend.next = self.exact_acceleration.q.val().get_bits::<8>(0);
+        if self.passes.from_odd.val() {
+            self.augend.next = self.exact_velocity.q.val().get_bits::<8>(0);
+        }
         if self.passes.from_later.val() {
+            self.augend.next = self.exact_position.q.val().get_bits::<8>(0);
             if self.passes.from_odd.val() {
                 self.augend.next = self.ticks.q.val().get_bits::<8>(0);
-            } else {
-                self.augend.next = self.exact_position.q.val().get_bits::<8>(0);
-            }
-        } else {
-            if self.passes.from_odd.val() {
-                self.augend.next = self.exact_velocity.q.val().get_bits::<8>(0);
-            } else {
-                self.augend.next = self.exact_acceleration.q.val().get_bits::<8>(0);
             }
         }
         self.chosen.next = self.nil.val();
@@ -287,7 +286,8 @@ impl Logic for Integrator {
         }
 
         comment!("Position: what is above is never seen");
-        self.preset_bits.next = unsigned_cast(self.preset_position.val()).get_bits::<24>(0);
+        self.preset_word.next = unsigned_cast(self.preset_position.val());
+        self.preset_bits.next = self.preset_word.val().get_bits::<24>(0);
         if self.passes.turn_position.val() {
             self.exact_position.d.next = (self.exact_position.q.val() >> 8) | (bit_cast::<56, 8>(self.sum.val()) << 48);
         }

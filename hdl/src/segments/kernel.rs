@@ -321,7 +321,11 @@ impl Logic for Segments {
                 self.state_q.d.next = self.stopped_state.val();
                 self.done_q.d.next = true;
             }
-            if (self.state_q.q.val() == self.hold_state.val()) & self.enabled.q.val() & self.waiting.val() {
+            if (self.state_q.q.val() == self.hold_state.val())
+                & self.enabled.q.val()
+                & self.enable.val()
+                & self.waiting.val()
+            {
                 self.state_q.d.next = self.move_state.val();
                 self.reads.next = true;
             }

@@ -27,7 +27,7 @@ impl Random {
 pub(crate) type Hints = &'static [(&'static str, &'static [u64])];
 
 /// Clocks per tick: a pass of the controller fits.
-pub(crate) const TICK_CLOCKS: u64 = 300;
+pub(crate) const TICK_CLOCKS: u64 = 800;
 
 /// What random inputs of a stage and its axes are to be, so that axes move and stop.
 pub(crate) const STAGE: Hints = &[

@@ -329,7 +329,7 @@ fn prop_traffic_finds_what_is_broken() {
     broken(component(components::sliding_mode(), 0), "written[0]", "1'd1");
     let config = PwmConfig::new(ActiveLow::default(), 4, 3).unwrap();
     let pwm = component(Component::pwm(config, Mode::HalfBridge, 60).unwrap(), 4);
-    broken(pwm, "pause = dead_time;", "pause = 10'd1;");
+    broken(pwm, "lasts = dead_time;", "lasts = 10'd1;");
 }
 
 /// The oracle of reads alone, without a model beside: a word of another register, a bit of no field, a word that changes.

@@ -8,7 +8,7 @@
 // axes                    2      windows after this one
 // tick_clocks             5000   from tick to tick
 // control_clocks          210    from the tick to the start of the controllers
-// duty_clocks             421    from the tick to the new duty, which the PWM takes at its next boundary
+// duty_clocks             729    from the tick to the new duty, which the PWM takes at its next boundary
 // x_pwm_period_clocks     2500   full duty
 // x_ring_samples          128    delays of a table reach up to this less 2
 // x_most_taps             64     taps per bank

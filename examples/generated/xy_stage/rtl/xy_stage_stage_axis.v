@@ -6,7 +6,7 @@
 //
 // parameter     value  meaning
 // line_clocks   4      from a line to the state, and filter_clocks more
-// watch_clocks  3      from a tick to the state, for what is watched at ticks
+// watch_clocks  12     from a tick to the state, for what is watched at ticks
 // clear_clocks  8      from clear_faults until causes that are over are forgotten
 
 `default_nettype none
@@ -101,6 +101,7 @@ module xy_stage_stage_axis (
     localparam [31:0] KICK_VALUE = 32'd1263092555;
 
     wire               ready;
+    wire               filters;
     wire               own_emergency;
     wire               emergency;
     wire               others_stop;
@@ -157,7 +158,7 @@ module xy_stage_stage_axis (
         .clk           (clk),
         .rst           (rst),
         .pin           (emergency_stop_n),
-        .ready         (ready),
+        .ready         (filters),
         .filter_clocks (filter_clocks),
         .level         (emergency_stop_line_level)
     );
@@ -166,7 +167,7 @@ module xy_stage_stage_axis (
         .clk           (clk),
         .rst           (rst),
         .pin           (limit_plus_n),
-        .ready         (ready),
+        .ready         (filters),
         .filter_clocks (filter_clocks),
         .level         (limit_plus_line_level)
     );
@@ -175,7 +176,7 @@ module xy_stage_stage_axis (
         .clk           (clk),
         .rst           (rst),
         .pin           (limit_minus_n),
-        .ready         (ready),
+        .ready         (filters),
         .filter_clocks (filter_clocks),
         .level         (limit_minus_line_level)
     );
@@ -184,7 +185,7 @@ module xy_stage_stage_axis (
         .clk           (clk),
         .rst           (rst),
         .pin           (drive_ready),
-        .ready         (ready),
+        .ready         (filters),
         .filter_clocks (filter_clocks),
         .level         (drive_line_level)
     );
@@ -193,7 +194,7 @@ module xy_stage_stage_axis (
         .clk           (clk),
         .rst           (rst),
         .pin           (home),
-        .ready         (ready),
+        .ready         (filters),
         .filter_clocks (filter_clocks),
         .level         (home_line_level)
     );
@@ -285,9 +286,11 @@ module xy_stage_stage_axis (
         .refused             (states_refused)
     );
 
-    // After reset, levels are taken as they are
+    // After reset, and with nothing to filter, levels
+    // are taken as they are
     assign primed_next = (primed << 1) | FIRST_CLOCK;
     assign ready = primed[3];
+    assign filters = ready & (|filter_clocks);
     assign level_emergency_stop_n = emergency_stop_line_level;
     assign level_limit_plus_n = limit_plus_line_level;
     assign level_limit_minus_n = limit_minus_line_level;

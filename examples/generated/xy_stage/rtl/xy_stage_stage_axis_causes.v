@@ -50,15 +50,12 @@ module xy_stage_stage_axis_causes (
     wire [15:0] active;
     wire [15:0] harmful;
     wire [15:0] off;
-    wire [15:0] harmful_now;
     wire [15:0] cutting;
     wire [15:0] cutting_now;
+    wire [15:0] harmless;
     wire        stays;
     reg  [15:0] causes_q;
-    reg         had_cause_q;
-    wire        had_cause_q_next;
     reg         had_fault_q;
-    wire        had_fault_q_next;
     reg         had_cut_q;
     wire        had_cut_q_next;
 
@@ -72,15 +69,13 @@ module xy_stage_stage_axis_causes (
     assign off = (off_causes | ALWAYS_OFF) & HARMFUL_CAUSES;
     assign harmful = active & HARMFUL_CAUSES;
     assign cutting = active & off;
-    assign any_cause = (|active) | (had_cause_q & stays);
+    assign harmless = now & ~HARMFUL_CAUSES;
     assign fault = (|harmful) | (had_fault_q & stays);
+    assign any_cause = fault | (|harmless);
     assign cut = (|cutting) | (had_cut_q & stays);
 
     // And of those that stand, a clock later
-    assign harmful_now = now & HARMFUL_CAUSES;
     assign cutting_now = now & off;
-    assign had_cause_q_next = (|now);
-    assign had_fault_q_next = (|harmful_now);
     assign had_cut_q_next = (|cutting_now);
     assign had_fault = had_fault_q;
     assign causes = causes_q;
@@ -123,20 +118,17 @@ module xy_stage_stage_axis_causes (
     always @(posedge clk) begin
         if (rst) begin
             causes_q <= 16'd0;
-            had_cause_q <= 1'd0;
             had_fault_q <= 1'd0;
             had_cut_q <= 1'd0;
         end else begin
             causes_q <= now;
-            had_cause_q <= had_cause_q_next;
-            had_fault_q <= had_fault_q_next;
+            had_fault_q <= fault;
             had_cut_q <= had_cut_q_next;
         end
     end
 
     initial begin
         causes_q = 16'd0;
-        had_cause_q = 1'd0;
         had_fault_q = 1'd0;
         had_cut_q = 1'd0;
     end

@@ -30,37 +30,32 @@ module xy_stage_stage_axis_monitors (
     input  wire signed [31:0] error,
     input  wire signed [31:0] command,
     input  wire [15:0]        limited_ticks,
-    output wire [15:0]        causes,
+    output reg  [15:0]        causes,
     output wire signed [31:0] captured_position
 );
-    localparam signed [31:0] NIL = 32'sd0;
-    localparam [15:0]        NO_TICKS = 16'd0;
-    localparam [15:0]        ONE_TICK = 16'd1;
-    localparam [15:0]        NO_CAUSES = 16'd0;
-    localparam [15:0]        OF_LIMIT_PLUS = 16'd8;
-    localparam [15:0]        OF_LIMIT_MINUS = 16'd16;
-    localparam [15:0]        OF_SOFT_PLUS = 16'd32;
-    localparam [15:0]        OF_SOFT_MINUS = 16'd64;
-    localparam [15:0]        OF_ERROR_TRIP = 16'd128;
-    localparam [15:0]        OF_DEVIATION_TRIP = 16'd256;
-    localparam [15:0]        OF_SATURATION_TRIP = 16'd512;
-    localparam [15:0]        OF_LOST_TRIP = 16'd1024;
-    localparam [15:0]        OF_WATCHDOG_TRIP = 16'd8192;
+    localparam [1:0]  ONE_TURN = 2'd1;
+    localparam [15:0] NO_CAUSES = 16'd0;
+    localparam [15:0] OF_LIMIT_PLUS = 16'd8;
+    localparam [15:0] OF_LIMIT_MINUS = 16'd16;
+    localparam [15:0] OF_SOFT_PLUS = 16'd32;
+    localparam [15:0] OF_SOFT_MINUS = 16'd64;
+    localparam [15:0] OF_ERROR_TRIP = 16'd128;
+    localparam [15:0] OF_DEVIATION_TRIP = 16'd256;
+    localparam [15:0] OF_SATURATION_TRIP = 16'd512;
+    localparam [15:0] OF_LOST_TRIP = 16'd1024;
+    localparam [15:0] OF_WATCHDOG_TRIP = 16'd8192;
 
     wire [31:0]        command_velocity_bits;
     wire [31:0]        reference_velocity_bits;
-    wire               has_soft_limits;
-    wire [31:0]        error_bits;
-    wire [31:0]        deviation_bits;
-    wire [31:0]        command_bits;
+    wire               takes;
+    wire               last_byte;
+    wire               over;
+    wire               stands;
+    wire               is_kicked;
     wire               limit_plus;
     wire               limit_minus;
     wire               soft_plus;
     wire               soft_minus;
-    wire               error_trip;
-    wire               deviation_trip;
-    wire               lost_trip;
-    wire               watchdog_trip;
     reg  [15:0]        by_limit_plus;
     reg  [15:0]        by_limit_minus;
     reg  [15:0]        by_soft_plus;
@@ -70,6 +65,7 @@ module xy_stage_stage_axis_monitors (
     reg  [15:0]        by_saturation_trip;
     reg  [15:0]        by_lost_trip;
     reg  [15:0]        by_watchdog_trip;
+    wire [15:0]        shown;
     reg  signed [31:0] captured;
     reg  signed [31:0] captured_next;
     reg                was_on_plus;
@@ -80,11 +76,32 @@ module xy_stage_stage_axis_monitors (
     reg                was_past_plus_next;
     reg                was_past_minus;
     reg                was_past_minus_next;
-    reg  [15:0]        still_ticks;
-    reg  [15:0]        still_ticks_next;
-    reg  [15:0]        unkicked_ticks;
-    reg  [15:0]        unkicked_ticks_next;
+    wire               soft_limits_past_plus;
+    wire               soft_limits_past_minus;
+    wire               error_limit_zero_counts;
+    wire               error_limit_exceeds;
+    wire signed [31:0] deviation_at_tick_stands;
+    wire               deviations_zero_counts;
+    wire               deviations_exceeds;
+    wire               commands_zero_counts;
+    wire               commands_exceeds;
+    wire [3:0]         limited_nibbles_part;
+    wire               saturating_endless;
+    wire               saturating_lasts;
+    wire               still_clears;
+    wire               still_lasts;
+    wire               unkicked_clears;
+    wire               unkicked_lasts;
+    reg  [1:0]         turn;
+    reg  [1:0]         turn_next;
+    reg                compares;
     reg                looks;
+    reg                again;
+    reg                again_next;
+    reg                tells;
+    wire               tells_next;
+    reg                kick_waits;
+    wire               kick_waits_next;
     reg                was_on;
     reg                was_on_next;
     reg                on_plus;
@@ -99,51 +116,142 @@ module xy_stage_stage_axis_monitors (
     reg                shaped_forward_next;
     reg                shaped_backward;
     reg                shaped_backward_next;
-    reg                past_plus;
-    reg                past_plus_next;
-    reg                past_minus;
-    reg                past_minus_next;
     reg                same_position;
     reg                same_position_next;
-    reg                saturated;
-    reg                saturated_next;
-    reg  [31:0]        error_size;
-    reg  [31:0]        error_size_next;
-    reg  [31:0]        deviation_size;
-    reg  [31:0]        deviation_size_next;
-    reg  [31:0]        command_size;
-    reg  [31:0]        command_size_next;
-    reg                counts;
-    reg                counts_on;
-    reg                stands;
-    wire               stands_next;
     reg  [15:0]        found;
     reg  [15:0]        found_next;
 
-    // Clock 1: what the tick shows
+    xy_stage_stage_axis_soft_limits u_soft_limits (
+        .clk                (clk),
+        .rst                (rst),
+        .turn               (turn),
+        .compares           (compares),
+        .signs              (last_byte),
+        .reference_position (reference_position),
+        .soft_limit_plus    (soft_limit_plus),
+        .soft_limit_minus   (soft_limit_minus),
+        .past_plus          (soft_limits_past_plus),
+        .past_minus         (soft_limits_past_minus)
+    );
+
+    xy_stage_stage_axis_size_limit u_error_limit (
+        .clk         (clk),
+        .rst         (rst),
+        .tick        (tick),
+        .turn        (turn),
+        .compares    (compares),
+        .number      (error),
+        .limit       (following_error_limit),
+        .zero_counts (error_limit_zero_counts),
+        .exceeds     (error_limit_exceeds)
+    );
+
+    xy_stage_stage_axis_at_tick u_deviation_at_tick (
+        .clk    (clk),
+        .rst    (rst),
+        .tick   (tick),
+        .word   (deviation),
+        .stands (deviation_at_tick_stands)
+    );
+
+    xy_stage_stage_axis_size_limit u_deviations (
+        .clk         (clk),
+        .rst         (rst),
+        .tick        (tick),
+        .turn        (turn),
+        .compares    (compares),
+        .number      (deviation_at_tick_stands),
+        .limit       (deviation_limit),
+        .zero_counts (deviations_zero_counts),
+        .exceeds     (deviations_exceeds)
+    );
+
+    xy_stage_stage_axis_size_limit u_commands (
+        .clk         (clk),
+        .rst         (rst),
+        .tick        (tick),
+        .turn        (turn),
+        .compares    (compares),
+        .number      (command),
+        .limit       (lost_command),
+        .zero_counts (commands_zero_counts),
+        .exceeds     (commands_exceeds)
+    );
+
+    xy_stage_stage_axis_nibbles u_limited_nibbles (
+        .clk  (clk),
+        .rst  (rst),
+        .turn (turn),
+        .word (limited_ticks),
+        .part (limited_nibbles_part)
+    );
+
+    xy_stage_stage_axis_lasts u_saturating (
+        .clk      (clk),
+        .rst      (rst),
+        .turn     (turn),
+        .compares (compares),
+        .ticks    (limited_nibbles_part),
+        .endless  (saturating_endless),
+        .limit    (saturation_ticks),
+        .lasts    (saturating_lasts)
+    );
+
+    xy_stage_stage_axis_tick_count u_still (
+        .clk      (clk),
+        .rst      (rst),
+        .tick     (tick),
+        .turn     (turn),
+        .compares (compares),
+        .clears   (still_clears),
+        .limit    (lost_ticks),
+        .lasts    (still_lasts)
+    );
+
+    xy_stage_stage_axis_tick_count u_unkicked (
+        .clk      (clk),
+        .rst      (rst),
+        .tick     (tick),
+        .turn     (turn),
+        .compares (compares),
+        .clears   (unkicked_clears),
+        .limit    (watchdog_ticks),
+        .lasts    (unkicked_lasts)
+    );
+
+    // Two rounds of four bytes, a clock between them
+    assign takes = (tick | (looks & !again)) | (|turn);
+    assign last_byte = compares & !takes;
+    assign over = looks & again;
+    assign tells_next = over & was_on;
+
+    // What the tick shows
     assign command_velocity_bits = $unsigned(command_velocity);
     assign reference_velocity_bits = $unsigned(reference_velocity);
-    assign error_bits = $unsigned(error);
-    assign deviation_bits = $unsigned(deviation);
-    assign command_bits = $unsigned(command);
-    assign has_soft_limits = (soft_limit_plus != NIL) | (soft_limit_minus != NIL);
 
-    // Clock 2: compared
     // A switch bounces when left: newly needs a way
     assign limit_plus = on_plus & (forward | (!was_on_plus & shaped_forward));
     assign limit_minus = on_minus & (backward | (!was_on_minus & shaped_backward));
-    assign soft_plus = past_plus & (forward | !was_past_plus);
-    assign soft_minus = past_minus & (backward | !was_past_minus);
-    assign error_trip = (|following_error_limit) & (error_size > following_error_limit);
-    assign deviation_trip = (|deviation_limit) & (deviation_size > deviation_limit);
-    assign lost_trip = (|lost_ticks) & (still_ticks >= lost_ticks);
-    assign watchdog_trip = (|watchdog_ticks) & (unkicked_ticks >= watchdog_ticks);
+    assign soft_plus = soft_limits_past_plus & (forward | !was_past_plus);
+    assign soft_minus = soft_limits_past_minus & (backward | !was_past_minus);
 
-    // Clock 3: ticks in a row
-    assign stands_next = (was_on & same_position) & (command_size > lost_command);
+    // Sizes and times
+    assign error_limit_zero_counts = 1'd0;
+
+    // A scale computes the next one from the tick on
+    assign deviations_zero_counts = 1'd0;
+    assign commands_zero_counts = 1'd1;
+    assign saturating_endless = 1'd0;
+    assign stands = (was_on & same_position) & commands_exceeds;
+    assign still_clears = over & !stands;
+
+    // A kick waits until the count has gone round
+    assign is_kicked = kicked | kick_waits;
+    assign kick_waits_next = is_kicked & compares;
+    assign unkicked_clears = !compares & (is_kicked | !was_on);
 
     // The causes of this tick
-    assign causes = found;
+    assign shown = (((((((by_limit_plus | by_limit_minus) | by_soft_plus) | by_soft_minus) | by_error_trip) | by_deviation_trip) | by_saturation_trip) | by_lost_trip) | by_watchdog_trip;
     assign captured_position = captured;
 
     always @(*) begin
@@ -152,8 +260,8 @@ module xy_stage_stage_axis_monitors (
         was_on_minus_next = was_on_minus;
         was_past_plus_next = was_past_plus;
         was_past_minus_next = was_past_minus;
-        still_ticks_next = still_ticks;
-        unkicked_ticks_next = unkicked_ticks;
+        turn_next = turn;
+        again_next = again;
         was_on_next = was_on;
         on_plus_next = on_plus;
         on_minus_next = on_minus;
@@ -161,15 +269,18 @@ module xy_stage_stage_axis_monitors (
         backward_next = backward;
         shaped_forward_next = shaped_forward;
         shaped_backward_next = shaped_backward;
-        past_plus_next = past_plus;
-        past_minus_next = past_minus;
         same_position_next = same_position;
-        saturated_next = saturated;
-        error_size_next = error_size;
-        deviation_size_next = deviation_size;
-        command_size_next = command_size;
+        found_next = found;
 
-        // Clock 1: what the tick shows
+        // Two rounds of four bytes, a clock between them
+        if (takes) begin
+            turn_next = turn + ONE_TURN;
+        end
+        if (looks) begin
+            again_next = !again;
+        end
+
+        // What the tick shows
         if (tick) begin
             captured_next = position;
             same_position_next = position == captured;
@@ -180,51 +291,14 @@ module xy_stage_stage_axis_monitors (
             backward_next = command_velocity_bits[31];
             shaped_forward_next = (|reference_velocity_bits) & !reference_velocity_bits[31];
             shaped_backward_next = reference_velocity_bits[31];
-            past_plus_next = has_soft_limits & (reference_position > soft_limit_plus);
-            past_minus_next = has_soft_limits & (reference_position < soft_limit_minus);
-            saturated_next = (|saturation_ticks) & (limited_ticks >= saturation_ticks);
-
-            // Sizes, of a negative -x - 1: no carry
-            error_size_next = error_bits;
-            if (error_bits[31]) begin
-                error_size_next = ~error_bits;
-            end
-            deviation_size_next = deviation_bits;
-            if (deviation_bits[31]) begin
-                deviation_size_next = ~deviation_bits;
-            end
-            command_size_next = command_bits;
-            if (command_bits[31]) begin
-                command_size_next = ~command_bits;
-            end
         end
 
-        // Clock 2: compared
         // A switch bounces when left: newly needs a way
-        if (looks) begin
+        if (over) begin
             was_on_plus_next = on_plus;
             was_on_minus_next = on_minus;
-            was_past_plus_next = past_plus;
-            was_past_minus_next = past_minus;
-        end
-
-        // Clock 3: ticks in a row
-        if (counts) begin
-            if (!(&still_ticks)) begin
-                still_ticks_next = still_ticks + ONE_TICK;
-            end
-            if (!(&unkicked_ticks)) begin
-                unkicked_ticks_next = unkicked_ticks + ONE_TICK;
-            end
-            if (!stands) begin
-                still_ticks_next = NO_TICKS;
-            end
-            if (!counts_on) begin
-                unkicked_ticks_next = NO_TICKS;
-            end
-        end
-        if (kicked) begin
-            unkicked_ticks_next = NO_TICKS;
+            was_past_plus_next = soft_limits_past_plus;
+            was_past_minus_next = soft_limits_past_minus;
         end
 
         // The causes of this tick
@@ -245,28 +319,34 @@ module xy_stage_stage_axis_monitors (
             by_soft_minus = OF_SOFT_MINUS;
         end
         by_error_trip = NO_CAUSES;
-        if (error_trip) begin
+        if (error_limit_exceeds) begin
             by_error_trip = OF_ERROR_TRIP;
         end
         by_deviation_trip = NO_CAUSES;
-        if (deviation_trip) begin
+        if (deviations_exceeds) begin
             by_deviation_trip = OF_DEVIATION_TRIP;
         end
         by_saturation_trip = NO_CAUSES;
-        if (saturated) begin
+        if (saturating_lasts) begin
             by_saturation_trip = OF_SATURATION_TRIP;
         end
         by_lost_trip = NO_CAUSES;
-        if (lost_trip) begin
+        if (still_lasts) begin
             by_lost_trip = OF_LOST_TRIP;
         end
         by_watchdog_trip = NO_CAUSES;
-        if (watchdog_trip) begin
+        if (unkicked_lasts) begin
             by_watchdog_trip = OF_WATCHDOG_TRIP;
         end
-        found_next = NO_CAUSES;
-        if (looks & was_on) begin
-            found_next = (((((((by_limit_plus | by_limit_minus) | by_soft_plus) | by_soft_minus) | by_error_trip) | by_deviation_trip) | by_saturation_trip) | by_lost_trip) | by_watchdog_trip;
+        if (looks) begin
+            found_next = shown;
+            if (again) begin
+                found_next = shown & found;
+            end
+        end
+        causes = NO_CAUSES;
+        if (tells) begin
+            causes = found;
         end
     end
 
@@ -277,9 +357,12 @@ module xy_stage_stage_axis_monitors (
             was_on_minus <= 1'd0;
             was_past_plus <= 1'd0;
             was_past_minus <= 1'd0;
-            still_ticks <= 16'd0;
-            unkicked_ticks <= 16'd0;
+            turn <= 2'd0;
+            compares <= 1'd0;
             looks <= 1'd0;
+            again <= 1'd0;
+            tells <= 1'd0;
+            kick_waits <= 1'd0;
             was_on <= 1'd0;
             on_plus <= 1'd0;
             on_minus <= 1'd0;
@@ -287,16 +370,7 @@ module xy_stage_stage_axis_monitors (
             backward <= 1'd0;
             shaped_forward <= 1'd0;
             shaped_backward <= 1'd0;
-            past_plus <= 1'd0;
-            past_minus <= 1'd0;
             same_position <= 1'd0;
-            saturated <= 1'd0;
-            error_size <= 32'd0;
-            deviation_size <= 32'd0;
-            command_size <= 32'd0;
-            counts <= 1'd0;
-            counts_on <= 1'd0;
-            stands <= 1'd0;
             found <= 16'd0;
         end else begin
             captured <= captured_next;
@@ -304,9 +378,12 @@ module xy_stage_stage_axis_monitors (
             was_on_minus <= was_on_minus_next;
             was_past_plus <= was_past_plus_next;
             was_past_minus <= was_past_minus_next;
-            still_ticks <= still_ticks_next;
-            unkicked_ticks <= unkicked_ticks_next;
-            looks <= tick;
+            turn <= turn_next;
+            compares <= takes;
+            looks <= last_byte;
+            again <= again_next;
+            tells <= tells_next;
+            kick_waits <= kick_waits_next;
             was_on <= was_on_next;
             on_plus <= on_plus_next;
             on_minus <= on_minus_next;
@@ -314,16 +391,7 @@ module xy_stage_stage_axis_monitors (
             backward <= backward_next;
             shaped_forward <= shaped_forward_next;
             shaped_backward <= shaped_backward_next;
-            past_plus <= past_plus_next;
-            past_minus <= past_minus_next;
             same_position <= same_position_next;
-            saturated <= saturated_next;
-            error_size <= error_size_next;
-            deviation_size <= deviation_size_next;
-            command_size <= command_size_next;
-            counts <= looks;
-            counts_on <= was_on;
-            stands <= stands_next;
             found <= found_next;
         end
     end
@@ -334,9 +402,12 @@ module xy_stage_stage_axis_monitors (
         was_on_minus = 1'd0;
         was_past_plus = 1'd0;
         was_past_minus = 1'd0;
-        still_ticks = 16'd0;
-        unkicked_ticks = 16'd0;
+        turn = 2'd0;
+        compares = 1'd0;
         looks = 1'd0;
+        again = 1'd0;
+        tells = 1'd0;
+        kick_waits = 1'd0;
         was_on = 1'd0;
         on_plus = 1'd0;
         on_minus = 1'd0;
@@ -344,16 +415,7 @@ module xy_stage_stage_axis_monitors (
         backward = 1'd0;
         shaped_forward = 1'd0;
         shaped_backward = 1'd0;
-        past_plus = 1'd0;
-        past_minus = 1'd0;
         same_position = 1'd0;
-        saturated = 1'd0;
-        error_size = 32'd0;
-        deviation_size = 32'd0;
-        command_size = 32'd0;
-        counts = 1'd0;
-        counts_on = 1'd0;
-        stands = 1'd0;
         found = 16'd0;
     end
 endmodule

@@ -72,15 +72,28 @@ module xy_stage_stage_axis_states (
     wire       at_rest;
     wire       goes_on;
     wire       goes_quiet;
+    wire       ready_to_hold;
+    wire       ready_to_fault;
+    wire       hold_to_off;
+    wire       hold_to_run;
+    wire       hold_to_stop;
+    wire       hold_to_fault;
+    wire       run_to_hold;
+    wire       run_to_stop;
+    wire       run_to_fault;
+    wire       stop_to_hold;
+    wire       stop_to_fault;
     wire       to_off;
     wire       to_hold;
-    wire       to_run;
     wire       to_stop;
     wire       to_fault;
+    wire       begins_apply;
+    wire       stays_stop;
     reg        next_on;
     reg        next_closing;
     reg  [2:0] next_state;
     wire       timer_counts;
+    wire       timer_clears;
     wire       timer_load_settle;
     wire       timer_elapsed;
     reg  [2:0] state_q;
@@ -89,7 +102,6 @@ module xy_stage_stage_axis_states (
     reg        closing;
     reg        ran;
     reg        applies;
-    wire       applies_next;
     reg        on_q;
     reg        released_q;
     wire       released_q_next;
@@ -104,17 +116,12 @@ module xy_stage_stage_axis_states (
     reg        can_start_q;
     wire       can_start_q_next;
     reg        enabled_q;
-    wire       enabled_q_next;
     reg        started_q;
-    wire       started_q_next;
     reg        stopping_q;
-    wire       stopping_q_next;
     reg        halted_q;
     wire       halted_q_next;
     reg        disabled_q;
-    wire       disabled_q_next;
     reg        faulted_q;
-    wire       faulted_q_next;
     reg        refused_q;
     wire       refused_q_next;
 
@@ -122,6 +129,7 @@ module xy_stage_stage_axis_states (
         .clk                 (clk),
         .rst                 (rst),
         .counts              (timer_counts),
+        .clears              (timer_clears),
         .load_release        (enabled_q),
         .load_settle         (timer_load_settle),
         .load_apply          (applies),
@@ -157,34 +165,41 @@ module xy_stage_stage_axis_states (
     assign goes_quiet = timed_out & closing;
     assign closes = ((in_hold & timed_out) & !enable) & !closing;
 
-    // The transition table
-    assign to_off = next_state == OFF_STATE;
-    assign to_hold = next_state == HOLD_STATE;
-    assign to_run = next_state == RUN_STATE;
-    assign to_stop = next_state == STOP_STATE;
-    assign to_fault = next_state == FAULT_STATE;
+    // The transition table; a cut is a fault
+    assign ready_to_fault = in_ready & fault;
+    assign ready_to_hold = ((in_ready & goes_on) & drive_ready) & !fault;
+    assign hold_to_fault = (in_hold & fault) & (cut | closing);
+    assign hold_to_stop = (in_hold & fault) & !(cut | closing);
+    assign hold_to_off = (in_hold & goes_quiet) & !fault;
+    assign hold_to_run = ((able & goes_on) & wants_start) & !any_cause;
+    assign run_to_fault = in_run & cut;
+    assign run_to_stop = (in_run & (fault | asked)) & !cut;
+    assign run_to_hold = ((in_run & done) & !fault) & !asked;
+    assign stop_to_fault = in_stop & (cut | (at_rest & fault));
+    assign stop_to_hold = (in_stop & at_rest) & !fault;
+    assign to_off = (((in_ready & !drive_ready) & !fault) | hold_to_off) | ((in_fault & clears) & !any_cause);
+    assign to_hold = (ready_to_hold | run_to_hold) | stop_to_hold;
+    assign to_stop = hold_to_stop | run_to_stop;
+    assign to_fault = ((ready_to_fault | hold_to_fault) | run_to_fault) | stop_to_fault;
 
     // The timer of brake and shaper
     assign timer_counts = tick & (!in_stop | segments_stopped);
+    assign begins_apply = stop_to_fault | (closes & !fault);
+    assign timer_clears = ((ready_to_hold | in_run) | to_stop) | begins_apply;
     assign timer_load_settle = ran | stopping_q;
-    assign applies_next = (in_stop & to_fault) | (closes & to_hold);
 
     // Outputs and brake
     assign released_q_next = next_on & !next_closing;
-    assign opening_next = to_hold & (in_ready | opening);
+    assign opening_next = ready_to_hold | (((opening & !fault) & !goes_quiet) & !hold_to_run);
     assign starting_q_next = !next_on | (starting_q & !segments_valid);
 
     // Pulses
-    assign quick_stop_q_next = to_stop & segments_play;
+    assign stays_stop = (in_stop & !stop_to_fault) & !stop_to_hold;
+    assign quick_stop_q_next = (to_stop | stays_stop) & segments_play;
     assign restart_q_next = in_hold & segments_stopped;
     assign can_start_q_next = ((able & enable) & !group_stop) & !any_cause;
-    assign enabled_q_next = in_ready & to_hold;
-    assign started_q_next = in_hold & to_run;
-    assign stopping_q_next = !in_stop & to_stop;
-    assign halted_q_next = (in_run | in_stop) & to_hold;
-    assign disabled_q_next = in_hold & to_off;
-    assign faulted_q_next = !in_fault & to_fault;
-    assign refused_q_next = (tick & wants_start) & !(in_hold & to_run);
+    assign halted_q_next = run_to_hold | stop_to_hold;
+    assign refused_q_next = (tick & wants_start) & !hold_to_run;
     assign state = state_q;
     assign on = on_q;
     assign released = released_q;
@@ -203,67 +218,32 @@ module xy_stage_stage_axis_states (
     assign refused = refused_q;
 
     always @(*) begin
-        // The transition table
+        // The transition table; a cut is a fault
         next_state = state_q;
         if (((in_off & drive_ready) & !any_cause) & !enable) begin
             next_state = READY_STATE;
         end
-        if (in_ready) begin
-            if (goes_on) begin
-                next_state = HOLD_STATE;
-            end
-            if (!drive_ready) begin
-                next_state = OFF_STATE;
-            end
-            if (fault) begin
-                next_state = FAULT_STATE;
-            end
-        end
-        if (in_hold) begin
-            if ((((goes_on & wants_start) & able) & !any_cause) & !stop) begin
-                next_state = RUN_STATE;
-            end
-            if (goes_quiet) begin
-                next_state = OFF_STATE;
-            end
-            if (fault) begin
-                next_state = STOP_STATE;
-                if (cut | closing) begin
-                    next_state = FAULT_STATE;
-                end
-            end
-        end
-        if (in_run) begin
-            if (done) begin
-                next_state = HOLD_STATE;
-            end
-            if (fault | asked) begin
-                next_state = STOP_STATE;
-            end
-            if (cut) begin
-                next_state = FAULT_STATE;
-            end
-        end
-        if (in_stop) begin
-            if (at_rest) begin
-                next_state = HOLD_STATE;
-            end
-            if ((at_rest & fault) | cut) begin
-                next_state = FAULT_STATE;
-            end
-        end
-        if ((in_fault & clears) & !any_cause) begin
+        if (to_off) begin
             next_state = OFF_STATE;
+        end
+        if (to_hold) begin
+            next_state = HOLD_STATE;
+        end
+        if (hold_to_run) begin
+            next_state = RUN_STATE;
+        end
+        if (to_stop) begin
+            next_state = STOP_STATE;
+        end
+        if (to_fault) begin
+            next_state = FAULT_STATE;
         end
 
         // Outputs and brake
         next_on = on_q;
-        next_closing = closing | (closes & to_hold);
-        if (in_ready & to_hold) begin
+        next_closing = closing | begins_apply;
+        if (ready_to_hold) begin
             next_on = 1'd1;
-        end
-        if (in_stop & to_fault) begin
-            next_closing = 1'd1;
         end
         if (goes_quiet | cut) begin
             next_on = 1'd0;
@@ -297,7 +277,7 @@ module xy_stage_stage_axis_states (
             opening <= opening_next;
             closing <= next_closing;
             ran <= in_run;
-            applies <= applies_next;
+            applies <= begins_apply;
             on_q <= next_on;
             released_q <= released_q_next;
             starting_q <= starting_q_next;
@@ -305,12 +285,12 @@ module xy_stage_stage_axis_states (
             quick_stop_q <= quick_stop_q_next;
             restart_q <= restart_q_next;
             can_start_q <= can_start_q_next;
-            enabled_q <= enabled_q_next;
-            started_q <= started_q_next;
-            stopping_q <= stopping_q_next;
+            enabled_q <= ready_to_hold;
+            started_q <= hold_to_run;
+            stopping_q <= to_stop;
             halted_q <= halted_q_next;
-            disabled_q <= disabled_q_next;
-            faulted_q <= faulted_q_next;
+            disabled_q <= hold_to_off;
+            faulted_q <= to_fault;
             refused_q <= refused_q_next;
         end
     end

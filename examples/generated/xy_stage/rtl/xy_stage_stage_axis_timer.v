@@ -10,6 +10,7 @@ module xy_stage_stage_axis_timer (
     input  wire        clk,
     input  wire        rst,
     input  wire        counts,
+    input  wire        clears,
     input  wire        load_release,
     input  wire        load_settle,
     input  wire        load_apply,
@@ -19,33 +20,55 @@ module xy_stage_stage_axis_timer (
     output wire        elapsed
 );
     localparam [15:0] NO_TICKS = 16'd0;
-    localparam [15:0] ONE_TICK = 16'd1;
+    localparam [15:0] MINUS_ONE = 16'd65535;
 
     wire        loads;
     wire        at_zero;
+    reg  [15:0] released;
+    reg  [15:0] settled;
+    reg  [15:0] applied;
+    reg  [15:0] less_one;
+    wire [15:0] addend;
+    wire [16:0] sum;
     reg  [15:0] left;
     reg  [15:0] left_next;
     reg         over;
     wire        over_next;
 
     assign loads = (load_release | load_settle) | load_apply;
-    assign at_zero = left == NO_TICKS;
+
+    // Less one has a carry unless there is none left
+    assign addend = ((released | settled) | applied) | less_one;
+    assign sum = {1'd0, left} + {1'd0, addend};
+    assign at_zero = !sum[16];
     assign over_next = at_zero & !loads;
     assign elapsed = over & !loads;
 
     always @(*) begin
         left_next = left;
-        if (counts & !at_zero) begin
-            left_next = left - ONE_TICK;
-        end
+        released = NO_TICKS;
         if (load_release) begin
-            left_next = brake_release_ticks;
+            released = brake_release_ticks;
         end
+        settled = NO_TICKS;
         if (load_settle) begin
-            left_next = settle_ticks;
+            settled = settle_ticks;
         end
+        applied = NO_TICKS;
         if (load_apply) begin
-            left_next = brake_apply_ticks;
+            applied = brake_apply_ticks;
+        end
+        less_one = MINUS_ONE;
+        if (loads) begin
+            less_one = NO_TICKS;
+        end
+
+        // Less one has a carry unless there is none left
+        if (loads | (counts & !at_zero)) begin
+            left_next = sum[15:0];
+        end
+        if (clears) begin
+            left_next = NO_TICKS;
         end
     end
 

@@ -13,6 +13,7 @@ module xy_stage_stage_command_fifo (
     input  wire [1:0]  word,
     input  wire [31:0] data,
     input  wire        closed,
+    input  wire        plays,
     input  wire        flush,
     input  wire        pop,
     input  wire [1:0]  read_word,
@@ -21,7 +22,8 @@ module xy_stage_stage_command_fifo (
     output wire        malformed,
     output wire [31:0] read_data
 );
-    localparam [6:0]  FULL_LEVEL = 7'd64;
+    localparam [5:0]  ALL_BUT_ONE = 6'd63;
+    localparam [6:0]  ONE_LESS = 7'd127;
     localparam [6:0]  NO_LEVEL = 7'd0;
     localparam [6:0]  ONE_LEVEL = 7'd1;
     localparam [5:0]  ONE_SLOT = 6'd1;
@@ -36,6 +38,10 @@ module xy_stage_stage_command_fifo (
     localparam [24:0] NO_UPPER = 25'd0;
     localparam [24:0] ALL_UPPER = 25'd33554431;
 
+    wire        full;
+    wire [5:0]  waiting;
+    wire [5:0]  slot;
+    reg  [6:0]  level_step;
     wire        refuses;
     wire        takes;
     wire        commits;
@@ -51,8 +57,6 @@ module xy_stage_stage_command_fifo (
     wire [31:0] memory_read_data;
     reg  [5:0]  head;
     reg  [5:0]  head_next;
-    reg  [5:0]  tail;
-    reg  [5:0]  tail_next;
     reg  [6:0]  level_q;
     reg  [6:0]  level_q_next;
     reg  [2:0]  written;
@@ -70,9 +74,12 @@ module xy_stage_stage_command_fifo (
     );
 
     // A word, unless closed or full
-    assign refuses = closed | (level_q == FULL_LEVEL);
+    assign waiting = level_q[5:0];
+    assign full = level_q[6] | (plays & (waiting == ALL_BUT_ONE));
+    assign refuses = closed | full;
     assign takes = write & !refuses;
-    assign memory_write_address = ({2'd0, tail} << 2) | {6'd0, word};
+    assign slot = (head + waiting) + ONE_SLOT;
+    assign memory_write_address = ({2'd0, slot} << 2) | {6'd0, word};
 
     // The last word commits a whole entry
     assign ticks = data[23:0];
@@ -88,14 +95,13 @@ module xy_stage_stage_command_fifo (
     assign upper = data[31:7];
     assign narrow = (upper == NO_UPPER) | (upper == ALL_UPPER);
 
-    // The oldest entry, a word at a time
+    // The entry that plays, a word at a time
     assign memory_read_address = ({2'd0, head} << 2) | {6'd0, read_word};
     assign read_data = memory_read_data;
     assign level = level_q;
 
     always @(*) begin
         head_next = head;
-        tail_next = tail;
         level_q_next = level_q;
         written_next = written;
         too_wide_next = too_wide;
@@ -118,20 +124,16 @@ module xy_stage_stage_command_fifo (
             too_wide_next = 1'd0;
         end
 
-        // One in at the tail, one out at the head
-        if (entered) begin
-            tail_next = tail + ONE_SLOT;
-            if (!pop) begin
-                level_q_next = level_q + ONE_LEVEL;
-            end
-        end else if (pop) begin
-            level_q_next = level_q - ONE_LEVEL;
-        end
+        // One in, one out
+        level_step = ONE_LEVEL;
         if (pop) begin
             head_next = head + ONE_SLOT;
+            level_step = ONE_LESS;
+        end
+        if (entered != pop) begin
+            level_q_next = level_q + level_step;
         end
         if (flush) begin
-            tail_next = head;
             level_q_next = NO_LEVEL;
             written_next = NOTHING;
             too_wide_next = 1'd0;
@@ -141,13 +143,11 @@ module xy_stage_stage_command_fifo (
     always @(posedge clk) begin
         if (rst) begin
             head <= 6'd0;
-            tail <= 6'd0;
             level_q <= 7'd0;
             written <= 3'd0;
             too_wide <= 1'd0;
         end else begin
             head <= head_next;
-            tail <= tail_next;
             level_q <= level_q_next;
             written <= written_next;
             too_wide <= too_wide_next;
@@ -156,7 +156,6 @@ module xy_stage_stage_command_fifo (
 
     initial begin
         head = 6'd0;
-        tail = 6'd0;
         level_q = 7'd0;
         written = 3'd0;
         too_wide = 1'd0;

@@ -41,9 +41,10 @@ module xy_stage_stage_drive_command (
     output wire [15:0]        self_test_low
 );
     localparam [2:0]  READY_STATE = 3'd1;
+    localparam [15:0] NO_TICKS = 16'd0;
     localparam [15:0] ONE_TICK = 16'd1;
     localparam [15:0] NO_CLOCK = 16'd0;
-    localparam [15:0] ONE_CLOCK = 16'd1;
+    localparam        NOT_ON = 1'd0;
     localparam [16:0] NOTHING = 17'd0;
     localparam [16:0] MOST = 17'd65535;
     localparam [16:0] LEAST = 17'd65536;
@@ -74,6 +75,12 @@ module xy_stage_stage_drive_command (
     reg  [16:0] odd;
     wire [16:0] twice_size;
     wire [16:0] limit;
+    wire [15:0] counted;
+    wire [15:0] more;
+    reg         high_more;
+    reg         low_more;
+    wire [15:0] high_sum;
+    wire [15:0] low_sum;
     reg  [16:0] duty_q;
     reg  [16:0] duty_q_next;
     reg         feed_q;
@@ -88,12 +95,18 @@ module xy_stage_stage_drive_command (
     reg         active;
     reg         expired;
     reg         expired_next;
-    reg  [15:0] ticks_left;
-    reg  [15:0] ticks_left_next;
+    reg  [15:0] ticks;
+    reg  [15:0] ticks_next;
+    reg  [15:0] hold_ticks;
+    reg  [15:0] hold_ticks_next;
     reg         backward;
     reg         backward_next;
     reg         masked;
     wire        masked_next;
+    reg         high_was_on;
+    reg         high_was_on_next;
+    reg         low_was_on;
+    reg         low_was_on_next;
     reg  [15:0] high_clocks;
     reg  [15:0] high_clocks_next;
     reg  [15:0] low_clocks;
@@ -112,7 +125,11 @@ module xy_stage_stage_drive_command (
     // Direct mode: in READY, from a kick, for a time
     assign test_changes = active & (self_test ^ masked);
     assign permitted = ((axis_state == READY_STATE) & direct_enable) & !test_changes;
-    assign last_tick = tick & (ticks_left == ONE_TICK);
+
+    // Ticks since the kick; bit 0 is kept inverted
+    assign counted = ticks ^ ONE_TICK;
+    assign more = counted + ONE_TICK;
+    assign last_tick = tick & (counted == hold_ticks);
 
     // Self-test: pins masked, drive and brake off; the
     // mask stays for a clock with the PWM off
@@ -137,6 +154,11 @@ module xy_stage_stage_drive_command (
     assign turns = tick & (negative ^ backward);
     assign silent = ((!axis_pwm_enable & !next_active) | (next_active ^ active)) | (active & (turns | on_switch));
 
+    // Clocks of a gate in a period; the last clock's is
+    // added as it is counted, so that a valley clears
+    assign high_sum = high_clocks + {15'd0, high_more};
+    assign low_sum = low_clocks + {15'd0, low_more};
+
     // Outputs
     assign duty = $signed(duty_q);
     assign feed = feed_q;
@@ -151,23 +173,23 @@ module xy_stage_stage_drive_command (
 
     always @(*) begin
         duty_q_next = duty_q;
-        ticks_left_next = ticks_left;
+        ticks_next = ticks;
+        hold_ticks_next = hold_ticks;
         backward_next = backward;
-        high_clocks_next = high_clocks;
-        low_clocks_next = low_clocks;
         high_result_next = high_result;
         low_result_next = low_result;
 
-        // Direct mode: in READY, from a kick, for a time
+        // Ticks since the kick; bit 0 is kept inverted
         next_active = (permitted & active) & !last_tick;
         expired_next = (permitted & active) & last_tick;
         if (tick) begin
-            ticks_left_next = ticks_left - ONE_TICK;
+            ticks_next = more ^ ONE_TICK;
         end
         if (direct_kick) begin
             next_active = permitted & (|direct_hold_ticks);
             expired_next = 1'd0;
-            ticks_left_next = direct_hold_ticks;
+            ticks_next = NO_TICKS;
+            hold_ticks_next = direct_hold_ticks;
         end
 
         // The controller's duty, saturated
@@ -227,27 +249,31 @@ module xy_stage_stage_drive_command (
             end
         end
 
-        // Clocks of a gate within a period; a valley clears
-        // all but the bit of its own clock
-        if (gates[0] & !(&high_clocks)) begin
-            high_clocks_next = high_clocks + 16'd1;
+        // Clocks of a gate in a period; the last clock's is
+        // added as it is counted, so that a valley clears
+        high_was_on_next = NOT_ON;
+        low_was_on_next = NOT_ON;
+        if (masked) begin
+            high_was_on_next = gates[0];
+            low_was_on_next = gates[1];
         end
-        if (gates[1] & !(&low_clocks)) begin
-            low_clocks_next = low_clocks + 16'd1;
+        high_more = high_was_on;
+        if ((&high_clocks)) begin
+            high_more = NOT_ON;
         end
+        low_more = low_was_on;
+        if ((&low_clocks)) begin
+            low_more = NOT_ON;
+        end
+        high_clocks_next = high_sum;
+        low_clocks_next = low_sum;
         if (valley | !masked) begin
             high_clocks_next = NO_CLOCK;
             low_clocks_next = NO_CLOCK;
-            if (gates[0] & masked) begin
-                high_clocks_next = ONE_CLOCK;
-            end
-            if (gates[1] & masked) begin
-                low_clocks_next = ONE_CLOCK;
-            end
         end
         if (valley & masked) begin
-            high_result_next = high_clocks;
-            low_result_next = low_clocks;
+            high_result_next = high_sum;
+            low_result_next = low_sum;
         end
     end
 
@@ -261,9 +287,12 @@ module xy_stage_stage_drive_command (
             axis_trip_n_q <= 1'd1;
             active <= 1'd0;
             expired <= 1'd0;
-            ticks_left <= 16'd0;
+            ticks <= 16'd0;
+            hold_ticks <= 16'd0;
             backward <= 1'd0;
             masked <= 1'd0;
+            high_was_on <= 1'd0;
+            low_was_on <= 1'd0;
             high_clocks <= 16'd0;
             low_clocks <= 16'd0;
             high_result <= 16'd0;
@@ -277,9 +306,12 @@ module xy_stage_stage_drive_command (
             axis_trip_n_q <= axis_pwm_trip_n;
             active <= next_active;
             expired <= expired_next;
-            ticks_left <= ticks_left_next;
+            ticks <= ticks_next;
+            hold_ticks <= hold_ticks_next;
             backward <= backward_next;
             masked <= masked_next;
+            high_was_on <= high_was_on_next;
+            low_was_on <= low_was_on_next;
             high_clocks <= high_clocks_next;
             low_clocks <= low_clocks_next;
             high_result <= high_result_next;
@@ -296,9 +328,12 @@ module xy_stage_stage_drive_command (
         axis_trip_n_q = 1'd1;
         active = 1'd0;
         expired = 1'd0;
-        ticks_left = 16'd0;
+        ticks = 16'd0;
+        hold_ticks = 16'd0;
         backward = 1'd0;
         masked = 1'd0;
+        high_was_on = 1'd0;
+        low_was_on = 1'd0;
         high_clocks = 16'd0;
         low_clocks = 16'd0;
         high_result = 16'd0;

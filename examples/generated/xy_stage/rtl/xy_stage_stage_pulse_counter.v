@@ -53,14 +53,19 @@ module xy_stage_stage_pulse_counter (
     output wire               velocity_valid,
     output wire               velocity_missed
 );
-    localparam [3:0]         FIRST_CLOCK = 4'd1;
+    localparam [1:0]         NO_HALF = 2'd0;
+    localparam [1:0]         ONE_HALF = 2'd1;
+    localparam [1:0]         LAST_CLOCK = 2'd2;
     localparam signed [31:0] NO_COUNT = 32'sd0;
     localparam signed [31:0] COUNT_UP = 32'sd1;
     localparam signed [31:0] COUNT_DOWN = -32'sd1;
-    localparam [7:0]         NO_ILLEGAL = 8'd0;
-    localparam [7:0]         ONE_ILLEGAL = 8'd1;
+    localparam [3:0]         NO_ILLEGAL = 4'd0;
+    localparam [3:0]         ONE_ILLEGAL = 4'd1;
 
     wire               ready;
+    reg  [1:0]         first_half;
+    wire               low_full;
+    wire               counts_illegal;
     reg                gate;
     wire               gated;
     wire               index;
@@ -85,8 +90,10 @@ module xy_stage_stage_pulse_counter (
     wire               speed_velocity_valid;
     wire               speed_velocity_missed;
     wire signed [31:0] speed_velocity;
-    reg  [3:0]         primed;
-    wire [3:0]         primed_next;
+    reg  [1:0]         priming;
+    wire [1:0]         priming_next;
+    reg                ready_q;
+    reg                ready_q_next;
     reg  signed [31:0] count_q;
     reg  signed [31:0] origin_q;
     reg  signed [31:0] origin_q_next;
@@ -99,10 +106,10 @@ module xy_stage_stage_pulse_counter (
     reg                index_seen_q_next;
     reg                index_armed_q;
     reg                index_armed_q_next;
-    reg  [7:0]         illegal_count_q;
-    reg  [7:0]         illegal_count_q_next;
-    reg                illegal_q;
-    reg                illegal_q_next;
+    reg  [3:0]         illegal_low;
+    reg  [3:0]         illegal_low_next;
+    reg  [3:0]         illegal_high;
+    reg  [3:0]         illegal_high_next;
     reg                disagreement_q;
     reg                disagreement_q_next;
 
@@ -187,15 +194,21 @@ module xy_stage_stage_pulse_counter (
         .velocity         (speed_velocity)
     );
 
-    // After reset, levels are taken as they are
-    assign primed_next = (primed << 1) | FIRST_CLOCK;
-    assign ready = primed[3];
+    // After reset, levels are taken as they are for
+    // four clocks: 00, 01, 11, 10
+    assign priming_next = (priming << 1) | first_half;
+    assign ready = ready_q;
 
     // Lines, all delayed alike
     assign disagreement_filter_input_level = (line_a_disagrees | line_b_disagrees) | line_z_disagrees;
 
     // Steps, and the count after them
     assign counted = count_q + change;
+
+    // Illegal transitions, in two halves: so short a
+    // sum takes no carry chain
+    assign low_full = (&illegal_low);
+    assign counts_illegal = decoder_illegal & !(low_full & (&illegal_high));
 
     // The index: a rising edge behind its gate
     assign gated = gate & line_z_level;
@@ -216,8 +229,8 @@ module xy_stage_stage_pulse_counter (
     assign index_count = index_count_q;
     assign index_seen = index_seen_q;
     assign index_armed = index_armed_q;
-    assign illegal_count = illegal_count_q;
-    assign illegal = illegal_q;
+    assign illegal_count = ({4'd0, illegal_high} << 4) | {4'd0, illegal_low};
+    assign illegal = (|illegal_low) | (|illegal_high);
     assign disagreement = disagreement_q;
     assign level_a = line_a_level;
     assign level_b = line_b_level;
@@ -230,13 +243,24 @@ module xy_stage_stage_pulse_counter (
     assign velocity_missed = speed_velocity_missed;
 
     always @(*) begin
+        ready_q_next = ready_q;
         origin_q_next = origin_q;
         index_count_q_next = index_count_q;
         index_seen_q_next = index_seen_q;
         index_armed_q_next = index_armed_q;
-        illegal_count_q_next = illegal_count_q;
-        illegal_q_next = illegal_q;
+        illegal_low_next = illegal_low;
+        illegal_high_next = illegal_high;
         disagreement_q_next = disagreement_q;
+
+        // After reset, levels are taken as they are for
+        // four clocks: 00, 01, 11, 10
+        first_half = NO_HALF;
+        if (!priming[1]) begin
+            first_half = ONE_HALF;
+        end
+        if (priming == LAST_CLOCK) begin
+            ready_q_next = 1'd1;
+        end
 
         // Steps, and the count after them
         change = NO_COUNT;
@@ -250,20 +274,26 @@ module xy_stage_stage_pulse_counter (
         // Flags, set over clear
         if (clear_flags) begin
             index_seen_q_next = 1'd0;
-            illegal_q_next = 1'd0;
-            illegal_count_q_next = NO_ILLEGAL;
             disagreement_q_next = 1'd0;
-        end
-        if (decoder_illegal) begin
-            illegal_q_next = 1'd1;
-            if (clear_flags) begin
-                illegal_count_q_next = ONE_ILLEGAL;
-            end else if (!(&illegal_count_q)) begin
-                illegal_count_q_next = illegal_count_q + ONE_ILLEGAL;
-            end
         end
         if (disagreement_filter_level) begin
             disagreement_q_next = 1'd1;
+        end
+
+        // Illegal transitions, in two halves: so short a
+        // sum takes no carry chain
+        if (counts_illegal) begin
+            illegal_low_next = illegal_low + ONE_ILLEGAL;
+        end
+        if (counts_illegal & low_full) begin
+            illegal_high_next = illegal_high + ONE_ILLEGAL;
+        end
+        if (clear_flags) begin
+            illegal_low_next = NO_ILLEGAL;
+            illegal_high_next = NO_ILLEGAL;
+            if (decoder_illegal) begin
+                illegal_low_next = ONE_ILLEGAL;
+            end
         end
 
         // The index: a rising edge behind its gate
@@ -292,7 +322,8 @@ module xy_stage_stage_pulse_counter (
 
     always @(posedge clk) begin
         if (rst) begin
-            primed <= 4'd0;
+            priming <= 2'd0;
+            ready_q <= 1'd0;
             count_q <= 32'sd0;
             origin_q <= 32'sd0;
             presets <= 1'd0;
@@ -300,11 +331,12 @@ module xy_stage_stage_pulse_counter (
             index_before <= 1'd0;
             index_seen_q <= 1'd0;
             index_armed_q <= 1'd0;
-            illegal_count_q <= 8'd0;
-            illegal_q <= 1'd0;
+            illegal_low <= 4'd0;
+            illegal_high <= 4'd0;
             disagreement_q <= 1'd0;
         end else begin
-            primed <= primed_next;
+            priming <= priming_next;
+            ready_q <= ready_q_next;
             count_q <= counted;
             origin_q <= origin_q_next;
             presets <= presets_next;
@@ -312,14 +344,15 @@ module xy_stage_stage_pulse_counter (
             index_before <= gated;
             index_seen_q <= index_seen_q_next;
             index_armed_q <= index_armed_q_next;
-            illegal_count_q <= illegal_count_q_next;
-            illegal_q <= illegal_q_next;
+            illegal_low <= illegal_low_next;
+            illegal_high <= illegal_high_next;
             disagreement_q <= disagreement_q_next;
         end
     end
 
     initial begin
-        primed = 4'd0;
+        priming = 2'd0;
+        ready_q = 1'd0;
         count_q = 32'sd0;
         origin_q = 32'sd0;
         presets = 1'd0;
@@ -327,8 +360,8 @@ module xy_stage_stage_pulse_counter (
         index_before = 1'd0;
         index_seen_q = 1'd0;
         index_armed_q = 1'd0;
-        illegal_count_q = 8'd0;
-        illegal_q = 1'd0;
+        illegal_low = 4'd0;
+        illegal_high = 4'd0;
         disagreement_q = 1'd0;
     end
 

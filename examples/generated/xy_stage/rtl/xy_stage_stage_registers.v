@@ -8,7 +8,7 @@
 // axes                    2      windows after this one
 // tick_clocks             5000   from tick to tick
 // control_clocks          210    from the tick to the start of the controllers
-// duty_clocks             421    from the tick to the new duty, which the PWM takes at its next boundary
+// duty_clocks             729    from the tick to the new duty, which the PWM takes at its next boundary
 // x_pwm_period_clocks     2500   full duty
 // x_ring_samples          128    delays of a table reach up to this less 2
 // x_most_taps             64     taps per bank
@@ -1392,7 +1392,7 @@ module xy_stage_stage_registers (
                 AXES: read_group_0 <= 32'h00000002;
                 TICK_CLOCKS: read_group_0 <= 32'h00001388;
                 CONTROL_CLOCKS: read_group_0 <= 32'h000000d2;
-                DUTY_CLOCKS: read_group_0 <= 32'h000001a5;
+                DUTY_CLOCKS: read_group_0 <= 32'h000002d9;
                 COMMIT: read_group_0 <= {31'd0, waits};
                 FLAGS: read_group_0 <= {29'd0, flag_start_refused, flag_commit_rejected, flag_partial_write};
                 INTERRUPT_STATE: read_group_0 <= {2'd0, irq_state_start_refused, irq_state_tick, 14'd0,

@@ -14,44 +14,48 @@ module xy_stage_stage_schedule (
     input  wire tick,
     output wire control
 );
-    localparam [16:0] IDLE = 17'd0;
+    localparam [16:0] NONE = 17'd0;
     localparam [16:0] ONE = 17'd1;
-    localparam [16:0] LAST = 17'd209;
+    localparam [16:0] LAST = 17'd208;
+    localparam [16:0] USED = 17'd255;
 
+    wire        ends;
     reg  [16:0] since;
     reg  [16:0] since_next;
+    reg         waits;
+    reg         waits_next;
     reg         control_q;
-    reg         control_q_next;
 
+    assign ends = waits & (since == LAST);
     assign control = control_q;
 
     always @(*) begin
-        since_next = since;
-        if (since != IDLE) begin
-            since_next = since + ONE;
-        end
-        control_q_next = 1'd0;
-        if (since == LAST) begin
-            control_q_next = 1'd1;
-            since_next = IDLE;
+        waits_next = waits;
+        since_next = (since + ONE) & USED;
+        if (ends) begin
+            waits_next = 1'd0;
         end
         if (tick) begin
-            since_next = ONE;
+            since_next = NONE;
+            waits_next = 1'd1;
         end
     end
 
     always @(posedge clk) begin
         if (rst) begin
             since <= 17'd0;
+            waits <= 1'd0;
             control_q <= 1'd0;
         end else begin
             since <= since_next;
-            control_q <= control_q_next;
+            waits <= waits_next;
+            control_q <= ends;
         end
     end
 
     initial begin
         since = 17'd0;
+        waits = 1'd0;
         control_q = 1'd0;
     end
 endmodule

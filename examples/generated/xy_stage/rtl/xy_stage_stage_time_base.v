@@ -21,6 +21,7 @@ module xy_stage_stage_time_base (
     localparam [16:0] FIRST_PHASE = 17'd0;
     localparam [16:0] ONE_PHASE = 17'd1;
     localparam [16:0] LAST_PHASE = 17'd4999;
+    localparam [16:0] USED_PHASE = 17'd8191;
     localparam [31:0] ONE_COUNT = 32'd1;
 
     reg  [16:0] phase;
@@ -33,6 +34,7 @@ module xy_stage_stage_time_base (
     reg  [31:0] tick_count_q;
     reg  [31:0] tick_count_q_next;
 
+    // The bits that a tick has not go at synthesis
     assign time_stamp_q_next = time_stamp_q + ONE_COUNT;
     assign tick = tick_q;
     assign divide = divide_q;
@@ -42,7 +44,9 @@ module xy_stage_stage_time_base (
 
     always @(*) begin
         tick_count_q_next = tick_count_q;
-        phase_next = phase + ONE_PHASE;
+
+        // The bits that a tick has not go at synthesis
+        phase_next = (phase + ONE_PHASE) & USED_PHASE;
         tick_q_next = 1'd0;
         if (phase == LAST_PHASE) begin
             phase_next = FIRST_PHASE;

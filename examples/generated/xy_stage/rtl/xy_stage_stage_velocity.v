@@ -21,31 +21,41 @@ module xy_stage_stage_velocity (
     input  wire [1:0]         smoothing,
     input  wire [7:0]         timeout,
     input  wire signed [31:0] quotient,
-    output reg  signed [17:0] steps,
+    output wire signed [17:0] steps,
     output wire [23:0]        elapsed,
     output wire               velocity_pending,
     output wire               velocity_valid,
     output wire               velocity_missed,
     output wire signed [31:0] velocity
 );
+    localparam [4:0]         NO_CARRY = 5'd0;
+    localparam [4:0]         ONE_CARRY = 5'd1;
     localparam [23:0]        NO_ELAPSED = 24'd0;
     localparam [17:0]        ONE_UP = 18'd1;
     localparam [18:0]        NO_BORROW = 19'd0;
     localparam [18:0]        ONE_BORROW = 19'd1;
     localparam [17:0]        NO_STEPS = 18'd0;
+    localparam [1:0]         IDLE = 2'd0;
+    localparam [1:0]         MEASURED = 2'd1;
+    localparam [1:0]         BOUND = 2'd2;
+    localparam [1:0]         HALT = 2'd3;
     localparam [35:0]        ROUNDING = 36'd3;
     localparam signed [34:0] REST = 35'sd3;
     localparam [35:0]        ONE = 36'd1;
 
+    reg  [4:0]         last_carry;
+    wire [4:0]         last_high;
+    wire [23:0]        last_stamp;
     wire [23:0]        interval;
     wire               waits;
     reg  [18:0]        borrow;
     wire [18:0]        counted;
     reg  [17:0]        one_count;
+    wire               recent;
+    wire               lost;
     wire               rests;
-    wire               stale_time;
-    wire               stale;
     wire               fresh;
+    wire               pending;
     wire               take;
     wire               within_bound;
     wire signed [35:0] target;
@@ -58,8 +68,8 @@ module xy_stage_stage_velocity (
     wire signed [34:0] half;
     wire signed [36:0] wide_difference;
     wire [34:0]        shrunk;
-    reg  [23:0]        last_stamp;
-    reg  [23:0]        last_stamp_next;
+    reg  [18:0]        last_low;
+    reg  [18:0]        last_low_next;
     reg                last_up;
     reg                last_up_next;
     reg  [23:0]        reference_stamp;
@@ -72,16 +82,12 @@ module xy_stage_stage_velocity (
     reg                turned_next;
     reg  [17:0]        captured;
     reg  [17:0]        captured_next;
-    reg                bound;
-    reg                bound_next;
-    reg                halt;
-    reg                halt_next;
     reg  [17:0]        steps_q;
     reg  [17:0]        steps_q_next;
     reg  [23:0]        elapsed_q;
     reg  [23:0]        elapsed_q_next;
-    reg                pending;
-    reg                pending_next;
+    reg  [1:0]         job;
+    reg  [1:0]         job_next;
     reg  signed [34:0] smoothed;
     reg  signed [34:0] smoothed_next;
     reg                valid_q;
@@ -89,6 +95,7 @@ module xy_stage_stage_velocity (
     reg                missed_q_next;
 
     // The quotient: its distance from the velocity
+    assign pending = (|job);
     assign take = pending & quotient_valid;
     assign target = $signed({{4{quotient[31]}}, quotient});
     assign target_bits = ($unsigned(target) << 3) | ROUNDING;
@@ -100,14 +107,19 @@ module xy_stage_stage_velocity (
     assign wide_difference = $signed({{1{difference[35]}}, difference});
     assign resolved = (($unsigned(wide_smoothed) << 1) | ONE) + scaled;
     assign shrunk = resolved[35:1];
-    assign within_bound = bound & (difference[35] == smoothed[34]);
+    assign within_bound = (job == BOUND) & (difference[35] == smoothed[34]);
+
+    // The last edge, less than 2^18 clocks ago: its
+    // high bits are those of the time, or one less
+    assign last_high = time_stamp[23:19] - last_carry;
+    assign last_stamp = ({19'd0, last_high} << 19) | {5'd0, last_low};
 
     // The time from the reference to the last edge
     // or, without one in this tick, to now
     assign interval = last_stamp - reference_stamp;
-    assign stale_time = interval[23:16] >= timeout;
-    assign stale = stale_time & !moved;
-    assign fresh = known & !stale;
+    assign recent = interval[23:16] < timeout;
+    assign fresh = known & (recent | moved);
+    assign lost = !velocity_m & (!known | turned);
     assign rests = !velocity_m & (!fresh | turned);
 
     // Steps; 0 without an edge, where 1 or -1 is to be
@@ -115,7 +127,8 @@ module xy_stage_stage_velocity (
     assign waits = !moved & !velocity_m;
     assign counted = ({1'd0, count} << 1) - (({1'd0, captured} << 1) | borrow);
 
-    // Outputs; at rest no steps are divided
+    // Outputs
+    assign steps = $signed(steps_q);
     assign elapsed = elapsed_q;
     assign velocity_pending = pending;
     assign velocity = $signed(smoothed[34:3]);
@@ -123,18 +136,16 @@ module xy_stage_stage_velocity (
     assign velocity_missed = missed_q;
 
     always @(*) begin
-        last_stamp_next = last_stamp;
+        last_low_next = last_low;
         last_up_next = last_up;
         reference_stamp_next = reference_stamp;
         known_next = known;
         moved_next = moved;
         turned_next = turned;
         captured_next = captured;
-        bound_next = bound;
-        halt_next = halt;
         steps_q_next = steps_q;
         elapsed_q_next = elapsed_q;
-        pending_next = pending;
+        job_next = job;
         smoothed_next = smoothed;
         missed_q_next = missed_q;
 
@@ -148,13 +159,20 @@ module xy_stage_stage_velocity (
             scaled = coarse[36:1];
         end
         if (take) begin
-            pending_next = 1'd0;
+            job_next = IDLE;
             if (!within_bound) begin
                 smoothed_next = $signed(shrunk);
             end
         end
-        if (take & halt) begin
+        if (take & (job == HALT)) begin
             smoothed_next = REST;
+        end
+
+        // The last edge, less than 2^18 clocks ago: its
+        // high bits are those of the time, or one less
+        last_carry = NO_CARRY;
+        if (last_low[18] & !time_stamp[18]) begin
+            last_carry = ONE_CARRY;
         end
 
         // Steps; 0 without an edge, where 1 or -1 is to be
@@ -176,7 +194,13 @@ module xy_stage_stage_velocity (
             if (pending & !take) begin
                 missed_q_next = 1'd1;
             end
-            pending_next = 1'd1;
+            job_next = MEASURED;
+            if (waits) begin
+                job_next = BOUND;
+            end
+            if (rests) begin
+                job_next = HALT;
+            end
             if (moved) begin
                 reference_stamp_next = last_stamp;
             end
@@ -184,18 +208,19 @@ module xy_stage_stage_velocity (
             known_next = moved | fresh;
             moved_next = 1'd0;
             turned_next = 1'd0;
-            bound_next = waits;
-            halt_next = rests;
             steps_q_next = counted[18:1] | one_count;
             elapsed_q_next = interval;
         end
         if (tick & velocity_m) begin
             elapsed_q_next = NO_ELAPSED;
         end
+        if (tick & lost) begin
+            steps_q_next = NO_STEPS;
+        end
 
         // Time of the last edge; after a tick without: now
         if ((step | tick) | !moved) begin
-            last_stamp_next = time_stamp;
+            last_low_next = time_stamp[18:0];
         end
 
         // An edge; in the clock of a tick, of the next
@@ -206,44 +231,34 @@ module xy_stage_stage_velocity (
                 turned_next = 1'd1;
             end
         end
-
-        // Outputs; at rest no steps are divided
-        steps = $signed(steps_q);
-        if (halt) begin
-            steps = 18'sd0;
-        end
     end
 
     always @(posedge clk) begin
         if (rst) begin
-            last_stamp <= 24'd0;
+            last_low <= 19'd0;
             last_up <= 1'd0;
             reference_stamp <= 24'd0;
             known <= 1'd0;
             moved <= 1'd0;
             turned <= 1'd0;
             captured <= 18'd0;
-            bound <= 1'd0;
-            halt <= 1'd0;
             steps_q <= 18'd0;
             elapsed_q <= 24'd0;
-            pending <= 1'd0;
+            job <= 2'd0;
             smoothed <= 35'sd3;
             valid_q <= 1'd0;
             missed_q <= 1'd0;
         end else begin
-            last_stamp <= last_stamp_next;
+            last_low <= last_low_next;
             last_up <= last_up_next;
             reference_stamp <= reference_stamp_next;
             known <= known_next;
             moved <= moved_next;
             turned <= turned_next;
             captured <= captured_next;
-            bound <= bound_next;
-            halt <= halt_next;
             steps_q <= steps_q_next;
             elapsed_q <= elapsed_q_next;
-            pending <= pending_next;
+            job <= job_next;
             smoothed <= smoothed_next;
             valid_q <= take;
             missed_q <= missed_q_next;
@@ -251,18 +266,16 @@ module xy_stage_stage_velocity (
     end
 
     initial begin
-        last_stamp = 24'd0;
+        last_low = 19'd0;
         last_up = 1'd0;
         reference_stamp = 24'd0;
         known = 1'd0;
         moved = 1'd0;
         turned = 1'd0;
         captured = 18'd0;
-        bound = 1'd0;
-        halt = 1'd0;
         steps_q = 18'd0;
         elapsed_q = 24'd0;
-        pending = 1'd0;
+        job = 2'd0;
         smoothed = 35'sd3;
         valid_q = 1'd0;
         missed_q = 1'd0;

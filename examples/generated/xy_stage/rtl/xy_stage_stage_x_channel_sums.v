@@ -17,10 +17,10 @@ module xy_stage_stage_x_channel_sums (
     input  wire signed [31:0] sample_0,
     input  wire signed [31:0] sample_1,
     input  wire signed [31:0] sample_2,
+    input  wire               blank,
     input  wire [1:0]         sample_channel,
     input  wire signed [31:0] newest,
-    input  wire               add,
-    input  wire               finish,
+    input  wire               boundary,
     input  wire               start,
     input  wire signed [31:0] x_0,
     input  wire signed [31:0] x_1,
@@ -34,46 +34,56 @@ module xy_stage_stage_x_channel_sums (
     output wire               saturated
 );
     localparam signed [56:0] HALF = 57'sd32768;
-    localparam signed [56:0] NO_PRODUCT = 57'sd0;
+    localparam signed [31:0] NO_SAMPLE = 32'sd0;
     localparam [56:0]        SIGN_MASK = 57'h1ff800000000000;
     localparam [56:0]        ALL_CLEAR = 57'd0;
-    localparam signed [31:0] Y_MAX = 32'sd2147483647;
-    localparam signed [31:0] Y_MIN = 32'sh80000000;
+    localparam [31:0]        Y_MAX = 32'd2147483647;
+    localparam [31:0]        Y_MIN = 32'd2147483648;
+    localparam [31:0]        NO_RESULT = 32'd0;
     localparam               MODULO = 1'd0;
     localparam [1:0]         FIRST_CHANNEL = 2'd0;
     localparam [1:0]         ONE_CHANNEL = 2'd1;
     localparam [1:0]         LAST_CHANNEL = 2'd2;
+    localparam [1:0]         NO_CHANNEL = 2'd3;
 
     wire signed [56:0] wide_product;
-    reg  signed [56:0] addend;
-    reg  signed [56:0] base;
     reg  signed [31:0] operand;
     wire [31:0]        position;
     wire [56:0]        position_scaled;
+    wire [56:0]        accumulator_bits;
     wire [56:0]        sign_bits;
+    wire               before_first;
     wire               wraps;
     wire               beyond;
-    reg  signed [31:0] result;
+    wire               above;
+    wire               below;
+    wire [31:0]        result;
+    wire               cut_off;
+    wire               shows;
     wire signed [49:0] product_product;
     reg  signed [17:0] coefficient_read;
     reg  signed [17:0] coefficient_q;
-    reg  signed [31:0] sample_q_0;
-    reg  signed [31:0] sample_q_1;
-    reg  signed [31:0] sample_q_2;
+    reg                blank_read;
+    reg  signed [31:0] sample_q;
+    reg  signed [31:0] sample_q_next;
     reg  signed [56:0] accumulator;
     reg  signed [56:0] accumulator_next;
     reg  [1:0]         channel;
     reg  [1:0]         channel_next;
-    reg  signed [31:0] held_0;
-    reg  signed [31:0] held_0_next;
-    reg  signed [31:0] held_1;
-    reg  signed [31:0] held_1_next;
-    reg  signed [31:0] held_2;
-    reg  signed [31:0] held_2_next;
+    reg  [31:0]        held_0;
+    reg  [31:0]        held_0_next;
+    reg  [31:0]        held_1;
+    reg  [31:0]        held_1_next;
+    reg                held_above_0;
+    reg                held_above_0_next;
+    reg                held_above_1;
+    reg                held_above_1_next;
+    reg                held_below_0;
+    reg                held_below_0_next;
+    reg                held_below_1;
+    reg                held_below_1_next;
     reg                clamped;
     reg                clamped_next;
-    reg                complete;
-    reg                complete_next;
     reg  signed [31:0] y_q_0;
     reg  signed [31:0] y_q_0_next;
     reg  signed [31:0] y_q_1;
@@ -81,7 +91,6 @@ module xy_stage_stage_x_channel_sums (
     reg  signed [31:0] y_q_2;
     reg  signed [31:0] y_q_2_next;
     reg                valid_q;
-    reg                valid_q_next;
     reg                busy_q;
     reg                busy_q_next;
     reg                saturated_q;
@@ -97,13 +106,22 @@ module xy_stage_stage_x_channel_sums (
 
     // Multiply and accumulate, exactly
     assign wide_product = $signed({{7{product_product[49]}}, product_product});
-    assign position = $unsigned(x_0);
+    assign before_first = channel == NO_CHANNEL;
+    assign position = $unsigned(newest);
     assign position_scaled = {25'd0, position} << 16;
 
-    // Shift by F bits and saturate
+    // Shift by F bits; what does not fit
     assign wraps = MODULO & (channel == FIRST_CHANNEL);
-    assign sign_bits = $unsigned(accumulator) & SIGN_MASK;
+    assign accumulator_bits = $unsigned(accumulator);
+    assign sign_bits = accumulator_bits & SIGN_MASK;
     assign beyond = ((sign_bits != ALL_CLEAR) & (sign_bits != SIGN_MASK)) & !wraps;
+    assign below = beyond & accumulator[56];
+    assign above = beyond & !accumulator[56];
+    assign result = accumulator_bits[47:16];
+
+    // Each channel's result, until the last is there
+    assign cut_off = start | begin_pass;
+    assign shows = (boundary & (channel == LAST_CHANNEL)) & !cut_off;
 
     // Outputs
     assign y_0 = y_q_0;
@@ -114,84 +132,97 @@ module xy_stage_stage_x_channel_sums (
     assign saturated = saturated_q;
 
     always @(*) begin
+        accumulator_next = accumulator;
         channel_next = channel;
         clamped_next = clamped;
         busy_q_next = busy_q;
         saturated_q_next = saturated_q;
         held_0_next = held_0;
-        y_q_0_next = y_q_0;
+        held_above_0_next = held_above_0;
+        held_below_0_next = held_below_0;
         held_1_next = held_1;
+        held_above_1_next = held_above_1;
+        held_below_1_next = held_below_1;
+        y_q_0_next = y_q_0;
         y_q_1_next = y_q_1;
-        held_2_next = held_2;
         y_q_2_next = y_q_2;
 
-        // A position that wraps: the way to the newest
-        operand = sample_q_0;
-        if (MODULO & (sample_channel == FIRST_CHANNEL)) begin
-            operand = sample_q_0 - newest;
-        end
+        // The channel's sample; 0 if there was none
+        sample_q_next = sample_0;
         if (sample_channel == 2'd1) begin
-            operand = sample_q_1;
+            sample_q_next = sample_1;
         end
         if (sample_channel == 2'd2) begin
-            operand = sample_q_2;
+            sample_q_next = sample_2;
+        end
+        if (blank_read) begin
+            sample_q_next = NO_SAMPLE;
+        end
+
+        // A position that wraps: the way to the newest
+        operand = sample_q;
+        if (MODULO & (sample_channel == FIRST_CHANNEL)) begin
+            operand = sample_q - newest;
         end
 
         // Multiply and accumulate, exactly
-        addend = NO_PRODUCT;
-        if (add) begin
-            addend = wide_product;
+        if (busy_q) begin
+            accumulator_next = accumulator + wide_product;
         end
-        base = accumulator;
-        if (finish) begin
-            base = HALF;
-        end
-        accumulator_next = base + addend;
-        if (begin_pass) begin
+        if (boundary) begin
             accumulator_next = HALF;
         end
-        if (begin_pass & MODULO) begin
+        if ((boundary & before_first) & MODULO) begin
             accumulator_next = $signed(position_scaled) + HALF;
         end
 
-        // Shift by F bits and saturate
-        result = $signed(accumulator[47:16]);
-        if (beyond) begin
-            result = Y_MAX;
-            if (accumulator[56]) begin
-                result = Y_MIN;
-            end
-        end
-
         // Each channel's result, until the last is there
-        complete_next = 1'd0;
-        if (finish) begin
-            if (channel == 2'd0) begin
-                held_0_next = result;
-            end
-            if (channel == 2'd1) begin
-                held_1_next = result;
-            end
-            if (channel == 2'd2) begin
-                held_2_next = result;
-            end
-            clamped_next = clamped | beyond;
+        if (boundary & (channel == 2'd0)) begin
+            held_0_next = result;
+            held_above_0_next = above;
+            held_below_0_next = below;
+        end
+        if ((boundary & (channel == 2'd0)) & beyond) begin
+            held_0_next = NO_RESULT;
+        end
+        if (boundary & (channel == 2'd1)) begin
+            held_1_next = result;
+            held_above_1_next = above;
+            held_below_1_next = below;
+        end
+        if ((boundary & (channel == 2'd1)) & beyond) begin
+            held_1_next = NO_RESULT;
+        end
+        if (boundary) begin
+            clamped_next = (clamped | beyond) & !before_first;
             channel_next = channel + ONE_CHANNEL;
-            complete_next = channel == LAST_CHANNEL;
         end
 
         // All outputs in one clock
         if (clear_flags) begin
             saturated_q_next = 1'd0;
         end
-        valid_q_next = 1'd0;
-        if (complete & !(start | begin_pass)) begin
-            y_q_0_next = held_0;
-            y_q_1_next = held_1;
-            y_q_2_next = held_2;
-            valid_q_next = 1'd1;
+        if (shows) begin
+            y_q_0_next = $signed(held_0);
+            if (held_above_0) begin
+                y_q_0_next = $signed(held_0 | Y_MAX);
+            end
+            if (held_below_0) begin
+                y_q_0_next = $signed(held_0 | Y_MIN);
+            end
+            y_q_1_next = $signed(held_1);
+            if (held_above_1) begin
+                y_q_1_next = $signed(held_1 | Y_MAX);
+            end
+            if (held_below_1) begin
+                y_q_1_next = $signed(held_1 | Y_MIN);
+            end
+            y_q_2_next = $signed(result);
+            if (above) begin
+                y_q_2_next = 32'sd2147483647;
+            end
             busy_q_next = 1'd0;
-            if (clamped) begin
+            if (clamped | beyond) begin
                 saturated_q_next = 1'd1;
             end
         end
@@ -200,12 +231,13 @@ module xy_stage_stage_x_channel_sums (
             y_q_1_next = x_1;
             y_q_2_next = x_2;
         end
+        if (shows & below) begin
+            y_q_2_next = 32'sh80000000;
+        end
 
         // A start or a new pass cuts off what runs
-        if (start | begin_pass) begin
-            channel_next = FIRST_CHANNEL;
-            clamped_next = 1'd0;
-            complete_next = 1'd0;
+        if (cut_off) begin
+            channel_next = NO_CHANNEL;
             busy_q_next = begin_pass;
         end
     end
@@ -214,16 +246,17 @@ module xy_stage_stage_x_channel_sums (
         if (rst) begin
             coefficient_read <= 18'sd0;
             coefficient_q <= 18'sd0;
-            sample_q_0 <= 32'sd0;
-            sample_q_1 <= 32'sd0;
-            sample_q_2 <= 32'sd0;
+            blank_read <= 1'd0;
+            sample_q <= 32'sd0;
             accumulator <= 57'sd0;
             channel <= 2'd0;
-            held_0 <= 32'sd0;
-            held_1 <= 32'sd0;
-            held_2 <= 32'sd0;
+            held_0 <= 32'd0;
+            held_1 <= 32'd0;
+            held_above_0 <= 1'd0;
+            held_above_1 <= 1'd0;
+            held_below_0 <= 1'd0;
+            held_below_1 <= 1'd0;
             clamped <= 1'd0;
-            complete <= 1'd0;
             y_q_0 <= 32'sd0;
             y_q_1 <= 32'sd0;
             y_q_2 <= 32'sd0;
@@ -233,20 +266,21 @@ module xy_stage_stage_x_channel_sums (
         end else begin
             coefficient_read <= coefficient;
             coefficient_q <= coefficient_read;
-            sample_q_0 <= sample_0;
-            sample_q_1 <= sample_1;
-            sample_q_2 <= sample_2;
+            blank_read <= blank;
+            sample_q <= sample_q_next;
             accumulator <= accumulator_next;
             channel <= channel_next;
             held_0 <= held_0_next;
             held_1 <= held_1_next;
-            held_2 <= held_2_next;
+            held_above_0 <= held_above_0_next;
+            held_above_1 <= held_above_1_next;
+            held_below_0 <= held_below_0_next;
+            held_below_1 <= held_below_1_next;
             clamped <= clamped_next;
-            complete <= complete_next;
             y_q_0 <= y_q_0_next;
             y_q_1 <= y_q_1_next;
             y_q_2 <= y_q_2_next;
-            valid_q <= valid_q_next;
+            valid_q <= shows;
             busy_q <= busy_q_next;
             saturated_q <= saturated_q_next;
         end
@@ -255,16 +289,17 @@ module xy_stage_stage_x_channel_sums (
     initial begin
         coefficient_read = 18'sd0;
         coefficient_q = 18'sd0;
-        sample_q_0 = 32'sd0;
-        sample_q_1 = 32'sd0;
-        sample_q_2 = 32'sd0;
+        blank_read = 1'd0;
+        sample_q = 32'sd0;
         accumulator = 57'sd0;
         channel = 2'd0;
-        held_0 = 32'sd0;
-        held_1 = 32'sd0;
-        held_2 = 32'sd0;
+        held_0 = 32'd0;
+        held_1 = 32'd0;
+        held_above_0 = 1'd0;
+        held_above_1 = 1'd0;
+        held_below_0 = 1'd0;
+        held_below_1 = 1'd0;
         clamped = 1'd0;
-        complete = 1'd0;
         y_q_0 = 32'sd0;
         y_q_1 = 32'sd0;
         y_q_2 = 32'sd0;

@@ -14,108 +14,120 @@ module xy_stage_stage_x_pwm_carrier (
     input  wire        sync,
     input  wire [15:0] phase,
     input  wire [15:0] trigger_phase,
-    output wire [15:0] ahead,
-    output wire [15:0] period_used,
-    output wire        valley_next,
-    output wire        peak_next,
+    input  wire        valley_next,
+    input  wire        peak_next,
+    output wire [16:0] period_used,
+    output wire        settled,
+    output wire        valley_lead,
+    output wire        peak_lead,
+    output wire        waits,
     output wire        out_of_step,
-    output wire        realigns,
     output wire        valley,
     output wire        peak,
     output wire        trigger
 );
-    wire        at_end;
-    wire        at_half;
-    reg         in_phase;
-    reg         triggers;
+    localparam [16:0] WHOLE_RANGE = 17'd65536;
+
+    wire [15:0] lead;
+    wire        in_phase;
+    wire        holds;
     wire        off_phase;
-    wire        moves;
-    reg  [15:0] comes;
-    reg  [15:0] ahead_q;
-    wire [15:0] ahead_q_next;
-    reg  [15:0] period_q;
-    reg  [15:0] period_q_next;
+    reg  [15:0] position;
+    reg  [15:0] position_next;
+    reg  [16:0] period_q;
+    reg  [16:0] period_q_next;
+    reg  [10:0] lead_q;
+    reg  [10:0] lead_q_next;
+    reg         synced;
+    reg         astray;
+    reg         astray_next;
     reg         at_valley;
-    wire        at_valley_next;
     reg         at_peak;
-    wire        at_peak_next;
-    reg         at_trigger;
-    wire        at_trigger_next;
     reg         valley_q;
     reg         peak_q;
     reg         trigger_q;
+    wire        trigger_q_next;
 
-    // The position to come, or 0 at the end
-    assign at_end = ahead_q == period_q;
-    assign at_half = !at_end & (ahead_q == (period_q >> 1));
+    // The leads: period - 32, and half of that
+    assign lead = ({5'd0, lead_q} << 5) | {11'd0, period_q[4:0]};
+    assign valley_lead = position == lead;
+    assign peak_lead = position == (lead >> 1);
 
-    // The time base moves it while off only
-    assign off_phase = sync & !in_phase;
-    assign moves = off_phase & !running;
-    assign ahead_q_next = comes + 16'd1;
-    assign at_valley_next = at_end & !moves;
-    assign at_peak_next = at_half & !moves;
-    assign at_trigger_next = triggers & !moves;
-    assign ahead = ahead_q;
+    // Astray and off, it waits for a sync at its phase
+    assign in_phase = position == phase;
+    assign holds = (astray & in_phase) & !running;
+    assign off_phase = synced & !in_phase;
+    assign trigger_q_next = (position == trigger_phase) & !holds;
     assign period_used = period_q;
-    assign valley_next = at_end;
-    assign peak_next = at_half;
+    assign settled = period_q[15:0] == period;
+    assign waits = holds;
     assign out_of_step = off_phase;
-    assign realigns = moves;
     assign valley = valley_q;
     assign peak = peak_q;
     assign trigger = trigger_q;
 
     always @(*) begin
+        position_next = position;
         period_q_next = period_q;
+        lead_q_next = lead_q;
+        astray_next = astray;
 
-        // The position to come, or 0 at the end
-        in_phase = ahead_q == phase;
-        triggers = ahead_q == trigger_phase;
-        comes = ahead_q;
-        if (at_end) begin
-            in_phase = !(|phase);
-            triggers = !(|trigger_phase);
-            comes = 16'd0;
+        // Astray and off, it waits for a sync at its phase
+        if (holds & sync) begin
+            astray_next = 1'd0;
         end
-
-        // The time base moves it while off only
-        if (sync & !running) begin
-            comes = phase;
+        if (off_phase) begin
+            astray_next = 1'd1;
         end
-        if (at_end & !running) begin
-            period_q_next = period;
+        if (!holds) begin
+            position_next = position + 16'd1;
+        end
+        if (valley_next) begin
+            position_next = 16'd0;
+        end
+        if (valley_next & !running) begin
+            period_q_next = {1'd0, period};
+            if (!(|period)) begin
+                period_q_next = WHOLE_RANGE;
+            end
+            lead_q_next = period[15:5] - 11'd1;
         end
     end
 
     always @(posedge clk) begin
         if (rst) begin
-            ahead_q <= 16'd1;
-            period_q <= 16'd1;
+            position <= 16'd0;
+            period_q <= 17'd32;
+            lead_q <= 11'd0;
+            synced <= 1'd0;
+            astray <= 1'd0;
             at_valley <= 1'd0;
             at_peak <= 1'd0;
-            at_trigger <= 1'd0;
             valley_q <= 1'd0;
             peak_q <= 1'd0;
             trigger_q <= 1'd0;
         end else begin
-            ahead_q <= ahead_q_next;
+            position <= position_next;
             period_q <= period_q_next;
-            at_valley <= at_valley_next;
-            at_peak <= at_peak_next;
-            at_trigger <= at_trigger_next;
+            lead_q <= lead_q_next;
+            synced <= sync;
+            astray <= astray_next;
+            at_valley <= valley_next;
+            at_peak <= peak_next;
             valley_q <= at_valley;
             peak_q <= at_peak;
-            trigger_q <= at_trigger;
+            trigger_q <= trigger_q_next;
         end
     end
 
     initial begin
-        ahead_q = 16'd1;
-        period_q = 16'd1;
+        position = 16'd0;
+        period_q = 17'd32;
+        lead_q = 11'd0;
+        synced = 1'd0;
+        astray = 1'd0;
         at_valley = 1'd0;
         at_peak = 1'd0;
-        at_trigger = 1'd0;
         valley_q = 1'd0;
         peak_q = 1'd0;
         trigger_q = 1'd0;

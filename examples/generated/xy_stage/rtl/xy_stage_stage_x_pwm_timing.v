@@ -20,8 +20,8 @@ module xy_stage_stage_x_pwm_timing (
     localparam [9:0] DEAD_TIME_FLOOR = 10'd25;
     localparam [9:0] MINIMUM_PULSE_FLOOR = 10'd50;
 
-    wire       dead_below;
-    wire       pulse_below;
+    reg        dead_below;
+    reg        pulse_below;
     reg  [9:0] dead_wanted;
     reg  [9:0] pulse_wanted;
     reg  [9:0] dead_time_q;
@@ -29,8 +29,7 @@ module xy_stage_stage_x_pwm_timing (
     reg  [9:0] minimum_pulse_q;
     reg  [9:0] minimum_pulse_q_next;
 
-    assign dead_below = dead_time < DEAD_TIME_FLOOR;
-    assign pulse_below = minimum_pulse < MINIMUM_PULSE_FLOOR;
+    // Below: the floor has the highest bit that differs
     assign dead_time_used = dead_time_q;
     assign minimum_pulse_used = minimum_pulse_q;
     assign below = dead_below | pulse_below;
@@ -39,9 +38,73 @@ module xy_stage_stage_x_pwm_timing (
     always @(*) begin
         dead_time_q_next = dead_time_q;
         minimum_pulse_q_next = minimum_pulse_q;
+
+        // Below: the floor has the highest bit that differs
+        dead_below = 1'd0;
+        if (dead_time[0] != 1'd1) begin
+            dead_below = 1'd1;
+        end
+        if (dead_time[1] != 1'd0) begin
+            dead_below = 1'd0;
+        end
+        if (dead_time[2] != 1'd0) begin
+            dead_below = 1'd0;
+        end
+        if (dead_time[3] != 1'd1) begin
+            dead_below = 1'd1;
+        end
+        if (dead_time[4] != 1'd1) begin
+            dead_below = 1'd1;
+        end
+        if (dead_time[5] != 1'd0) begin
+            dead_below = 1'd0;
+        end
+        if (dead_time[6] != 1'd0) begin
+            dead_below = 1'd0;
+        end
+        if (dead_time[7] != 1'd0) begin
+            dead_below = 1'd0;
+        end
+        if (dead_time[8] != 1'd0) begin
+            dead_below = 1'd0;
+        end
+        if (dead_time[9] != 1'd0) begin
+            dead_below = 1'd0;
+        end
         dead_wanted = dead_time;
         if (dead_below) begin
             dead_wanted = DEAD_TIME_FLOOR;
+        end
+        pulse_below = 1'd0;
+        if (minimum_pulse[0] != 1'd0) begin
+            pulse_below = 1'd0;
+        end
+        if (minimum_pulse[1] != 1'd1) begin
+            pulse_below = 1'd1;
+        end
+        if (minimum_pulse[2] != 1'd0) begin
+            pulse_below = 1'd0;
+        end
+        if (minimum_pulse[3] != 1'd0) begin
+            pulse_below = 1'd0;
+        end
+        if (minimum_pulse[4] != 1'd1) begin
+            pulse_below = 1'd1;
+        end
+        if (minimum_pulse[5] != 1'd1) begin
+            pulse_below = 1'd1;
+        end
+        if (minimum_pulse[6] != 1'd0) begin
+            pulse_below = 1'd0;
+        end
+        if (minimum_pulse[7] != 1'd0) begin
+            pulse_below = 1'd0;
+        end
+        if (minimum_pulse[8] != 1'd0) begin
+            pulse_below = 1'd0;
+        end
+        if (minimum_pulse[9] != 1'd0) begin
+            pulse_below = 1'd0;
         end
         pulse_wanted = minimum_pulse;
         if (pulse_below) begin

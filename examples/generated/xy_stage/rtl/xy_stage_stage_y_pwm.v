@@ -53,85 +53,71 @@ module xy_stage_stage_y_pwm (
     output wire [9:0]         minimum_pulse_used,
     output wire [3:0]         gates
 );
-    wire               settled;
-    wire               may_run;
-    wire               goes_on;
-    wire               starts;
-    wire               wanted;
-    wire               wants_high;
-    wire               updates;
-    wire [17:0]        minimum;
-    wire [17:0]        width_bits;
-    wire [17:0]        whole_bits;
-    wire [16:0]        rise;
-    wire [15:0]        half_period;
-    wire [16:0]        fall;
-    wire [15:0]        rise_position;
-    wire [16:0]        odd;
-    wire signed [18:0] low_side;
-    wire [18:0]        shortest;
-    wire               too_short;
-    wire               too_long;
-    wire               may_turn;
-    wire               turns;
-    wire [15:0]        carrier_ahead;
-    wire [15:0]        carrier_period_used;
-    wire               carrier_valley_next;
-    wire               carrier_peak_next;
-    wire               carrier_out_of_step;
-    wire               carrier_realigns;
-    wire               carrier_valley;
-    wire               carrier_peak;
-    wire               carrier_trigger;
-    wire [9:0]         timing_dead_time_used;
-    wire [9:0]         timing_minimum_pulse_used;
-    wire               timing_below;
-    wire               timing_settled;
-    wire signed [17:0] command_whole;
-    wire signed [17:0] command_width;
-    wire [1:0]         command_width_mode;
-    wire               command_negative;
-    wire               command_saturated;
-    wire               guard_armed;
-    wire               guard_tripped;
-    wire [4:0]         guard_causes;
-    wire               leg_low_first;
-    wire               leg_awake;
-    wire               leg_high_side;
-    wire               leg_low_side;
-    wire               pin_gates_a_high;
-    wire               pin_gates_a_low;
-    wire               pin_gates_b_high;
-    wire               pin_gates_b_low;
-    wire [3:0]         pin_gates_gates;
-    reg                running_q;
-    wire               running_q_next;
-    reg  [1:0]         mode_q;
-    reg  [1:0]         mode_q_next;
-    reg                negative_q;
-    reg                negative_q_next;
-    reg                low_q;
-    reg                low_q_next;
-    reg                high_q;
-    reg                high_q_next;
-    reg                off_q;
-    reg                off_q_next;
-    reg                settled_once;
-    reg                settled_twice;
-    reg  [15:0]        rise_at;
-    reg  [15:0]        rise_at_next;
-    reg  [15:0]        fall_at;
-    reg  [15:0]        fall_at_next;
-    reg                level;
-    reg                level_next;
-    reg                saturated_q;
-    reg                saturated_q_next;
-    reg                refused_q;
-    reg                refused_q_next;
-    reg                below_floor_q;
-    reg                below_floor_q_next;
-    reg                unaligned_q;
-    reg                unaligned_q_next;
+    wire        settled;
+    wire        may_run;
+    wire        goes_on;
+    wire        starts;
+    wire        wanted;
+    wire        wants_high;
+    wire        may_turn;
+    wire        turns;
+    wire [16:0] carrier_period_used;
+    wire        carrier_settled;
+    wire        carrier_valley_lead;
+    wire        carrier_peak_lead;
+    wire        carrier_waits;
+    wire        carrier_out_of_step;
+    wire        carrier_valley;
+    wire        carrier_peak;
+    wire        carrier_trigger;
+    wire [9:0]  timing_dead_time_used;
+    wire [9:0]  timing_minimum_pulse_used;
+    wire        timing_below;
+    wire        timing_settled;
+    wire        command_valley_next;
+    wire        command_peak_next;
+    wire        command_updates;
+    wire        command_computes;
+    wire        command_level;
+    wire [1:0]  command_new_mode;
+    wire        command_negative;
+    wire        command_saturated;
+    wire        command_too_short;
+    wire        command_too_long;
+    wire        guard_armed;
+    wire        guard_tripped;
+    wire [4:0]  guard_causes;
+    wire        leg_low_first;
+    wire        leg_awake;
+    wire        leg_high_side;
+    wire        leg_low_side;
+    wire        pin_gates_a_high;
+    wire        pin_gates_a_low;
+    wire        pin_gates_b_high;
+    wire        pin_gates_b_low;
+    wire [3:0]  pin_gates_gates;
+    reg         running_q;
+    wire        running_q_next;
+    reg  [1:0]  mode_q;
+    reg  [1:0]  mode_q_next;
+    reg         negative_q;
+    reg         negative_q_next;
+    reg         low_q;
+    reg         low_q_next;
+    reg         high_q;
+    reg         high_q_next;
+    reg         off_q;
+    reg         off_q_next;
+    reg         stable;
+    wire        stable_next;
+    reg         saturated_q;
+    reg         saturated_q_next;
+    reg         refused_q;
+    reg         refused_q_next;
+    reg         below_floor_q;
+    reg         below_floor_q_next;
+    reg         unaligned_q;
+    reg         unaligned_q_next;
 
     xy_stage_stage_y_pwm_carrier u_carrier (
         .clk           (clk),
@@ -141,12 +127,14 @@ module xy_stage_stage_y_pwm (
         .sync          (sync),
         .phase         (phase),
         .trigger_phase (trigger_phase),
-        .ahead         (carrier_ahead),
+        .valley_next   (command_valley_next),
+        .peak_next     (command_peak_next),
         .period_used   (carrier_period_used),
-        .valley_next   (carrier_valley_next),
-        .peak_next     (carrier_peak_next),
+        .settled       (carrier_settled),
+        .valley_lead   (carrier_valley_lead),
+        .peak_lead     (carrier_peak_lead),
+        .waits         (carrier_waits),
         .out_of_step   (carrier_out_of_step),
-        .realigns      (carrier_realigns),
         .valley        (carrier_valley),
         .peak          (carrier_peak),
         .trigger       (carrier_trigger)
@@ -165,25 +153,35 @@ module xy_stage_stage_y_pwm (
     );
 
     xy_stage_stage_y_pwm_command u_command (
-        .clk        (clk),
-        .rst        (rst),
-        .mode       (mode),
-        .duty       (duty),
-        .max_duty   (max_duty),
-        .period     (carrier_period_used),
-        .dead_time  (timing_dead_time_used),
-        .whole      (command_whole),
-        .width      (command_width),
-        .width_mode (command_width_mode),
-        .negative   (command_negative),
-        .saturated  (command_saturated)
+        .clk            (clk),
+        .rst            (rst),
+        .mode           (mode),
+        .duty           (duty),
+        .max_duty       (max_duty),
+        .update_at_peak (update_at_peak),
+        .period         (carrier_period_used),
+        .dead_time      (timing_dead_time_used),
+        .minimum_pulse  (timing_minimum_pulse_used),
+        .valley_lead    (carrier_valley_lead),
+        .peak_lead      (carrier_peak_lead),
+        .waits          (carrier_waits),
+        .valley_next    (command_valley_next),
+        .peak_next      (command_peak_next),
+        .updates        (command_updates),
+        .computes       (command_computes),
+        .level          (command_level),
+        .new_mode       (command_new_mode),
+        .negative       (command_negative),
+        .saturated      (command_saturated),
+        .too_short      (command_too_short),
+        .too_long       (command_too_long)
     );
 
     xy_stage_stage_y_pwm_trip u_guard (
         .clk              (clk),
         .rst              (rst),
         .running          (running_q),
-        .valley           (carrier_valley_next),
+        .valley           (command_valley_next),
         .feed             (feed),
         .watchdog_periods (watchdog_periods),
         .filter_clocks    (filter_clocks),
@@ -226,40 +224,23 @@ module xy_stage_stage_y_pwm (
         .gates     (pin_gates_gates)
     );
 
-    // Off at once; on at a valley, registers settled
-    assign settled = timing_settled & (carrier_period_used == period);
+    // Off at once; on at a valley, with a command from
+    // registers that were settled all the time
+    assign settled = timing_settled & carrier_settled;
+    assign stable_next = settled & (stable | !command_computes);
     assign may_run = enable & !guard_tripped;
     assign goes_on = running_q & may_run;
-    assign starts = (((((!running_q & may_run) & carrier_valley_next) & settled) & settled_once) & settled_twice) & !carrier_realigns;
+    assign starts = (((!running_q & may_run) & command_valley_next) & settled) & stable;
     assign running_q_next = goes_on | starts;
 
     // What is wanted of the leg at this position
     assign wanted = goes_on & !off_q;
-    assign wants_high = high_q | (level & !low_q);
+    assign wants_high = high_q | (command_level & !low_q);
     assign leg_low_first = mode_q == 2'd0;
-
-    // The edges of a pulse: half before the peak, half
-    // and an odd clock behind it
-    assign updates = carrier_valley_next | (carrier_peak_next & update_at_peak);
-    assign width_bits = $unsigned(command_width);
-    assign whole_bits = $unsigned(command_whole);
-    assign odd = {16'd0, width_bits[0]};
-    assign rise = whole_bits[17:1] - width_bits[17:1];
-    assign rise_position = rise[15:0];
-    assign half_period = carrier_period_used >> 1;
-    assign fall = (({1'd0, half_period} << 1) | odd) + (({1'd0, width_bits[16:1]} << 1) | odd);
-
-    // Shorter than the minimum: none, or full. The low
-    // side's pulse is twice the rise and the odd clocks
-    assign minimum = {8'd0, timing_minimum_pulse_used};
-    assign low_side = $signed(({2'd0, rise} << 2) | ({18'd0, whole_bits[0]} << 1));
-    assign shortest = ({1'd0, minimum} << 1) | {2'd0, odd};
-    assign too_short = command_width < $signed(minimum);
-    assign too_long = low_side < $signed(shortest);
 
     // A direction turns with its first pulse, from low
     assign may_turn = !leg_awake | leg_low_side;
-    assign turns = (((command_width_mode == 2'd0) | (command_width_mode == 2'd2)) & !too_short) & (command_negative != negative_q);
+    assign turns = (((command_new_mode == 2'd0) | (command_new_mode == 2'd2)) & !command_too_short) & (command_negative != negative_q);
 
     // Outputs
     assign a_high = pin_gates_a_high;
@@ -287,34 +268,20 @@ module xy_stage_stage_y_pwm (
         low_q_next = low_q;
         high_q_next = high_q;
         off_q_next = off_q;
-        rise_at_next = rise_at;
-        fall_at_next = fall_at;
         saturated_q_next = saturated_q;
         refused_q_next = refused_q;
         below_floor_q_next = below_floor_q;
         unaligned_q_next = unaligned_q;
 
         // A boundary takes the command
-        if (updates) begin
-            mode_q_next = command_width_mode;
-            off_q_next = goes_on & (command_width_mode != mode_q);
-            low_q_next = too_short | (turns & !may_turn);
-            high_q_next = (too_long & !too_short) & !(turns & !may_turn);
-            fall_at_next = fall[16:1];
+        if (command_updates) begin
+            mode_q_next = command_new_mode;
+            off_q_next = goes_on & (command_new_mode != mode_q);
+            low_q_next = command_too_short | (turns & !may_turn);
+            high_q_next = (command_too_long & !command_too_short) & !(turns & !may_turn);
             if (turns & may_turn) begin
                 negative_q_next = command_negative;
             end
-        end
-
-        // The level of the position to come: low from the
-        // valley, high from the rise, at last from the peak
-        level_next = (level | (carrier_ahead == rise_at)) & (carrier_ahead != fall_at);
-        if (carrier_peak_next) begin
-            level_next = 1'd1;
-        end
-        if (carrier_valley_next) begin
-            rise_at_next = rise_position;
-            level_next = !(|rise_position);
         end
 
         // Flags, set over clear
@@ -324,7 +291,7 @@ module xy_stage_stage_y_pwm (
             below_floor_q_next = 1'd0;
             unaligned_q_next = 1'd0;
         end
-        if ((updates & goes_on) & command_saturated) begin
+        if ((command_updates & goes_on) & command_saturated) begin
             saturated_q_next = 1'd1;
         end
         if (running_q & !settled) begin
@@ -346,11 +313,7 @@ module xy_stage_stage_y_pwm (
             low_q <= 1'd0;
             high_q <= 1'd0;
             off_q <= 1'd0;
-            settled_once <= 1'd0;
-            settled_twice <= 1'd0;
-            rise_at <= 16'd0;
-            fall_at <= 16'd0;
-            level <= 1'd0;
+            stable <= 1'd0;
             saturated_q <= 1'd0;
             refused_q <= 1'd0;
             below_floor_q <= 1'd0;
@@ -362,11 +325,7 @@ module xy_stage_stage_y_pwm (
             low_q <= low_q_next;
             high_q <= high_q_next;
             off_q <= off_q_next;
-            settled_once <= settled;
-            settled_twice <= settled_once;
-            rise_at <= rise_at_next;
-            fall_at <= fall_at_next;
-            level <= level_next;
+            stable <= stable_next;
             saturated_q <= saturated_q_next;
             refused_q <= refused_q_next;
             below_floor_q <= below_floor_q_next;
@@ -381,19 +340,12 @@ module xy_stage_stage_y_pwm (
         low_q = 1'd0;
         high_q = 1'd0;
         off_q = 1'd0;
-        settled_once = 1'd0;
-        settled_twice = 1'd0;
-        rise_at = 16'd0;
-        fall_at = 16'd0;
-        level = 1'd0;
+        stable = 1'd0;
         saturated_q = 1'd0;
         refused_q = 1'd0;
         below_floor_q = 1'd0;
         unaligned_q = 1'd0;
     end
-
-    // Bits that nothing reads.
-    wire unused = &{1'b0, fall[0]};
 endmodule
 
 `default_nettype wire

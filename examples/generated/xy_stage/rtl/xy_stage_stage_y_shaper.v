@@ -11,10 +11,10 @@
 // ring_samples          128    delays up to this - 2
 // most_taps             64     per bank
 // machine_taps          5      bank 0, ROM
-// pass_clocks           26     from strobe to valid in bank 0
+// pass_clocks           27     from strobe to valid in bank 0
 // channels              3      share the table, outputs in one clock
 // modulo                0      1: position wraps, no saturation
-// longest_pass_clocks   42     in a handover
+// longest_pass_clocks   43     in a handover
 
 `default_nettype none
 
@@ -52,8 +52,10 @@ module xy_stage_stage_y_shaper (
     localparam [1:0] FIRST_CHANNEL = 2'd0;
     localparam [1:0] ONE_CHANNEL = 2'd1;
     localparam [1:0] LAST_CHANNEL = 2'd2;
-    localparam [7:0] NO_STAGE = 8'd0;
-    localparam [7:0] FIRST_STAGE = 8'd1;
+    localparam [1:0] NO_CHANNEL = 2'd3;
+    localparam [8:0] NO_STAGE = 9'd0;
+    localparam [8:0] FIRST_STAGE = 9'd1;
+    localparam [8:0] SECOND_STAGE = 9'd2;
     localparam [1:0] UNKNOWN_HOW = 2'd3;
 
     wire [6:0]         tap_number;
@@ -61,7 +63,7 @@ module xy_stage_stage_y_shaper (
     wire               of_position;
     wire               table_ends;
     reg                ends;
-    wire               finish;
+    reg  [8:0]         begin_lasts;
     wire               banks_known;
     wire signed [17:0] banks_coefficient;
     wire [6:0]         banks_delay;
@@ -77,10 +79,11 @@ module xy_stage_stage_y_shaper (
     wire signed [31:0] handover_newest;
     wire signed [17:0] handover_coefficient;
     wire [6:0]         handover_delay;
-    wire signed [31:0] history_0_sample;
-    wire signed [31:0] history_1_sample;
-    wire signed [31:0] history_2_sample;
-    wire               sums_add;
+    wire signed [31:0] history_sample_0;
+    wire signed [31:0] history_sample_1;
+    wire signed [31:0] history_sample_2;
+    wire               history_blank;
+    wire               sums_boundary;
     wire signed [31:0] sums_y_0;
     wire signed [31:0] sums_y_1;
     wire signed [31:0] sums_y_2;
@@ -97,12 +100,8 @@ module xy_stage_stage_y_shaper (
     reg                second_next;
     reg                correcting;
     reg                correcting_next;
-    reg  [7:0]         stages;
-    reg  [7:0]         stages_next;
-    reg  [7:0]         lasts;
-    reg  [7:0]         lasts_next;
-    reg                done;
-    reg                done_next;
+    reg  [8:0]         lasts;
+    reg  [8:0]         lasts_next;
     reg  [1:0]         sample_channel;
     reg  [1:0]         sample_channel_next;
     reg                overrun_q;
@@ -158,34 +157,19 @@ module xy_stage_stage_y_shaper (
         .delay           (handover_delay)
     );
 
-    xy_stage_stage_y_history u_history_0 (
-        .clk    (clk),
-        .rst    (rst),
-        .strobe (strobe),
-        .start  (start),
-        .x      (x_0),
-        .delay  (handover_delay),
-        .sample (history_0_sample)
-    );
-
-    xy_stage_stage_y_history u_history_1 (
-        .clk    (clk),
-        .rst    (rst),
-        .strobe (strobe),
-        .start  (start),
-        .x      (x_1),
-        .delay  (handover_delay),
-        .sample (history_1_sample)
-    );
-
-    xy_stage_stage_y_history u_history_2 (
-        .clk    (clk),
-        .rst    (rst),
-        .strobe (strobe),
-        .start  (start),
-        .x      (x_2),
-        .delay  (handover_delay),
-        .sample (history_2_sample)
+    xy_stage_stage_y_history u_history (
+        .clk      (clk),
+        .rst      (rst),
+        .strobe   (strobe),
+        .start    (start),
+        .x_0      (x_0),
+        .x_1      (x_1),
+        .x_2      (x_2),
+        .delay    (handover_delay),
+        .sample_0 (history_sample_0),
+        .sample_1 (history_sample_1),
+        .sample_2 (history_sample_2),
+        .blank    (history_blank)
     );
 
     xy_stage_stage_y_channel_sums u_sums (
@@ -193,13 +177,13 @@ module xy_stage_stage_y_shaper (
         .rst            (rst),
         .begin_pass     (strobe),
         .coefficient    (handover_coefficient),
-        .sample_0       (history_0_sample),
-        .sample_1       (history_1_sample),
-        .sample_2       (history_2_sample),
+        .sample_0       (history_sample_0),
+        .sample_1       (history_sample_1),
+        .sample_2       (history_sample_2),
+        .blank          (history_blank),
         .sample_channel (sample_channel),
         .newest         (handover_newest),
-        .add            (sums_add),
-        .finish         (finish),
+        .boundary       (sums_boundary),
         .start          (start),
         .x_0            (x_0),
         .x_1            (x_1),
@@ -218,11 +202,10 @@ module xy_stage_stage_y_shaper (
     assign old = handover_active & !second;
     assign banks_known = swap_how != UNKNOWN_HOW;
 
-    // The sums: a pass that is cut off leaves y
-    assign finish = (done & !start) & !strobe;
-    assign sums_add = stages[7];
+    // The sums: one ends and the next begins
+    assign sums_boundary = lasts[8];
 
-    // One product per clock, channel by channel
+    // A product per clock; after a channel none
     assign tap_number = {1'd0, tap} + ONE_MORE;
     assign table_ends = tap_number == banks_taps;
 
@@ -247,12 +230,10 @@ module xy_stage_stage_y_shaper (
         sample_channel_next = sample_channel;
         overrun_q_next = overrun_q;
 
-        // One product per clock, channel by channel
+        // A product per clock; after a channel none
         ends = 1'd0;
-        stages_next = stages << 1;
         lasts_next = lasts << 1;
-        if (running) begin
-            stages_next = (stages << 1) | FIRST_STAGE;
+        if (running & !lasts[0]) begin
             tap_next = tap + ONE_TAP;
             if (correcting) begin
                 ends = 1'd1;
@@ -280,19 +261,20 @@ module xy_stage_stage_y_shaper (
         if (lasts[4]) begin
             sample_channel_next = sample_channel + ONE_CHANNEL;
         end
-        done_next = lasts[7];
 
         // A start or a strobe cuts off what runs
+        begin_lasts = NO_STAGE;
+        if (strobe) begin
+            begin_lasts = SECOND_STAGE;
+        end
         if (start | strobe) begin
             running_next = strobe;
             tap_next = FIRST_TAP;
             channel_next = FIRST_CHANNEL;
-            sample_channel_next = FIRST_CHANNEL;
+            sample_channel_next = NO_CHANNEL;
             second_next = 1'd0;
             correcting_next = 1'd0;
-            stages_next = NO_STAGE;
-            lasts_next = NO_STAGE;
-            done_next = 1'd0;
+            lasts_next = begin_lasts;
         end
         if (clear_flags) begin
             overrun_q_next = 1'd0;
@@ -309,9 +291,7 @@ module xy_stage_stage_y_shaper (
             channel <= 2'd0;
             second <= 1'd0;
             correcting <= 1'd0;
-            stages <= 8'd0;
-            lasts <= 8'd0;
-            done <= 1'd0;
+            lasts <= 9'd0;
             sample_channel <= 2'd0;
             overrun_q <= 1'd0;
         end else begin
@@ -320,9 +300,7 @@ module xy_stage_stage_y_shaper (
             channel <= channel_next;
             second <= second_next;
             correcting <= correcting_next;
-            stages <= stages_next;
             lasts <= lasts_next;
-            done <= done_next;
             sample_channel <= sample_channel_next;
             overrun_q <= overrun_q_next;
         end
@@ -334,9 +312,7 @@ module xy_stage_stage_y_shaper (
         channel = 2'd0;
         second = 1'd0;
         correcting = 1'd0;
-        stages = 8'd0;
-        lasts = 8'd0;
-        done = 1'd0;
+        lasts = 9'd0;
         sample_channel = 2'd0;
         overrun_q = 1'd0;
     end

@@ -43,6 +43,8 @@ module xy_stage_stage_y_tap_banks (
     localparam [6:0]         MACHINE_COUNT = 7'd5;
     localparam [6:0]         MACHINE_LONGEST = 7'd109;
     localparam [6:0]         FORBIDDEN_DELAY = 7'd127;
+    localparam [6:0]         NO_DELAY = 7'd0;
+    localparam signed [23:0] NO_SUM = 24'sd0;
     localparam signed [23:0] UNITY = 24'sd65536;
 
     reg  [6:0]         taps_so_far;
@@ -55,8 +57,8 @@ module xy_stage_stage_y_tap_banks (
     wire               at_rest;
     wire               in_reach;
     reg                write_taken;
-    reg  [6:0]         new_taps;
-    reg  signed [23:0] new_sum;
+    wire [6:0]         new_taps;
+    wire signed [23:0] new_sum;
     reg  [6:0]         new_longest;
     wire signed [23:0] addend;
     reg                swap_taken;
@@ -67,7 +69,6 @@ module xy_stage_stage_y_tap_banks (
     reg  [6:0]         write_address;
     reg  [6:0]         read_address;
     wire [17:0]        coefficient_bits;
-    reg  [6:0]         upcoming_taps;
     wire [24:0]        machine_taps_data;
     wire [24:0]        loaded_taps_write_data;
     wire [24:0]        loaded_taps_read_data;
@@ -85,12 +86,8 @@ module xy_stage_stage_y_tap_banks (
     reg  [6:0]         longest_2_next;
     reg  [1:0]         active;
     reg  [1:0]         active_next;
-    reg  [6:0]         active_taps;
-    reg  [6:0]         active_taps_next;
     reg  [1:0]         previous;
     reg  [1:0]         previous_next;
-    reg  [6:0]         previous_taps;
-    reg  [6:0]         previous_taps_next;
     reg  [1:0]         upcoming;
     reg  [1:0]         upcoming_next;
     reg                pending;
@@ -118,14 +115,18 @@ module xy_stage_stage_y_tap_banks (
         .read_data     (loaded_taps_read_data)
     );
 
+    // Writing: how far the bank addressed is loaded
+    assign begins = !(|tap_index);
+
     // Taken in sequence, into a bank at rest
     assign loadable = (tap_bank == BANK_1) | (tap_bank == BANK_2);
     assign free = !(pending | locked);
     assign at_rest = ((tap_bank != active) & free) & !swap;
     assign in_reach = tap_delay != FORBIDDEN_DELAY;
     assign index = {1'd0, tap_index};
-    assign begins = !(|tap_index);
     assign addend = $signed({{6{tap_coefficient[17]}}, tap_coefficient});
+    assign new_taps = index + ONE_TAP;
+    assign new_sum = sum_so_far + addend;
     assign coefficient_bits = $unsigned(tap_coefficient);
     assign loaded_taps_write_data = ({18'd0, tap_delay} << 18) | {7'd0, coefficient_bits};
 
@@ -148,9 +149,7 @@ module xy_stage_stage_y_tap_banks (
         longest_1_next = longest_1;
         longest_2_next = longest_2;
         active_next = active;
-        active_taps_next = active_taps;
         previous_next = previous;
-        previous_taps_next = previous_taps;
         upcoming_next = upcoming;
         pending_next = pending;
         reach_q_next = reach_q;
@@ -167,21 +166,19 @@ module xy_stage_stage_y_tap_banks (
             longest_so_far = longest_2;
             write_address = {1'd0, tap_index} | UPPER_HALF;
         end
+        if (begins) begin
+            sum_so_far = NO_SUM;
+            longest_so_far = NO_DELAY;
+        end
 
         // Taken in sequence, into a bank at rest
         write_taken = 1'd0;
         if (begins | (index == taps_so_far)) begin
             write_taken = ((tap_write & loadable) & at_rest) & in_reach;
         end
-        new_taps = taps_so_far + ONE_TAP;
-        new_sum = sum_so_far + addend;
         new_longest = longest_so_far;
-        if (begins | (tap_delay > longest_so_far)) begin
+        if (tap_delay > longest_so_far) begin
             new_longest = tap_delay;
-        end
-        if (begins) begin
-            new_taps = ONE_TAP;
-            new_sum = addend;
         end
         if (write_taken) begin
             if (tap_bank == BANK_2) begin
@@ -206,18 +203,9 @@ module xy_stage_stage_y_tap_banks (
         if ((swap_bank == BANK_2) & (sum_2 == UNITY)) begin
             swap_taken = (swap & free) & known;
         end
-        upcoming_taps = taps_1;
-        if (upcoming == BANK_2) begin
-            upcoming_taps = taps_2;
-        end
-        if (upcoming == BANK_ROM) begin
-            upcoming_taps = MACHINE_COUNT;
-        end
         if ((strobe & pending) & take) begin
             active_next = upcoming;
-            active_taps_next = upcoming_taps;
             previous_next = active;
-            previous_taps_next = active_taps;
             pending_next = 1'd0;
         end
         if (swap_taken) begin
@@ -257,10 +245,15 @@ module xy_stage_stage_y_tap_banks (
 
         // Reading: the active table, or the old one
         read_bank = active;
-        taps = active_taps;
         if (old) begin
             read_bank = previous;
-            taps = previous_taps;
+        end
+        taps = taps_1;
+        if (read_bank == BANK_2) begin
+            taps = taps_2;
+        end
+        if (read_bank == BANK_ROM) begin
+            taps = MACHINE_COUNT;
         end
 
         // Bank 1 is the lower half, all others the upper
@@ -287,9 +280,7 @@ module xy_stage_stage_y_tap_banks (
             longest_1 <= 7'd0;
             longest_2 <= 7'd0;
             active <= 2'd0;
-            active_taps <= 7'd5;
             previous <= 2'd0;
-            previous_taps <= 7'd0;
             upcoming <= 2'd0;
             pending <= 1'd0;
             reach_q <= 7'd0;
@@ -304,9 +295,7 @@ module xy_stage_stage_y_tap_banks (
             longest_1 <= longest_1_next;
             longest_2 <= longest_2_next;
             active <= active_next;
-            active_taps <= active_taps_next;
             previous <= previous_next;
-            previous_taps <= previous_taps_next;
             upcoming <= upcoming_next;
             pending <= pending_next;
             reach_q <= reach_q_next;
@@ -324,9 +313,7 @@ module xy_stage_stage_y_tap_banks (
         longest_1 = 7'd0;
         longest_2 = 7'd0;
         active = 2'd0;
-        active_taps = 7'd5;
         previous = 2'd0;
-        previous_taps = 7'd0;
         upcoming = 2'd0;
         pending = 1'd0;
         reach_q = 7'd0;

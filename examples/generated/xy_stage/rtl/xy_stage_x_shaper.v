@@ -57,7 +57,8 @@ module xy_stage_x_shaper (
     wire               banks_swap_pending;
     wire [1:0]         banks_bank;
     wire               banks_refused;
-    wire signed [31:0] history_sample;
+    wire signed [31:0] history_sample_0;
+    wire               history_blank;
     wire               sum_add;
     wire signed [31:0] sum_y;
     wire               sum_saturated;
@@ -103,13 +104,14 @@ module xy_stage_x_shaper (
     );
 
     xy_stage_x_history u_history (
-        .clk    (clk),
-        .rst    (rst),
-        .strobe (strobe),
-        .start  (start),
-        .x      (x),
-        .delay  (banks_delay),
-        .sample (history_sample)
+        .clk      (clk),
+        .rst      (rst),
+        .strobe   (strobe),
+        .start    (start),
+        .x_0      (x),
+        .delay    (banks_delay),
+        .sample_0 (history_sample_0),
+        .blank    (history_blank)
     );
 
     xy_stage_x_weighted_sum u_sum (
@@ -117,7 +119,8 @@ module xy_stage_x_shaper (
         .rst         (rst),
         .begin_pass  (strobe),
         .coefficient (banks_coefficient),
-        .sample      (history_sample),
+        .blank       (history_blank),
+        .sample      (history_sample_0),
         .add         (sum_add),
         .finish      (finish),
         .start       (start),

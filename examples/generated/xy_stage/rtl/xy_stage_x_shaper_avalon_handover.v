@@ -111,7 +111,7 @@ module xy_stage_x_shaper_avalon_handover (
         // From the first sample of the new table on
         if (strobe) begin
             since_q_next = next_since;
-            if (next_since > reach) begin
+            if (since_q == reach) begin
                 active_q_next = 1'd0;
             end
         end
@@ -126,12 +126,11 @@ module xy_stage_x_shaper_avalon_handover (
         // What it makes of a tap
         coefficient_q_next = tap_coefficient;
         delay_q_next = tap_delay;
-        if (foreign) begin
-            if (position_tap) begin
-                delay_q_next = since_q;
-            end else begin
-                coefficient_q_next = NO_COEFFICIENT;
-            end
+        if (foreign & position_tap) begin
+            delay_q_next = since_q;
+        end
+        if (foreign & !position_tap) begin
+            coefficient_q_next = NO_COEFFICIENT;
         end
         if (correction) begin
             coefficient_q_next = MINUS_UNITY;

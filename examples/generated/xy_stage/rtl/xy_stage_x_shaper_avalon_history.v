@@ -1,6 +1,7 @@
 // xy_stage_x_shaper_avalon_history
 // The samples since the last start, in a
-// ring, and for all before, its value.
+// ring behind its word, which also stands
+// for all before: 0 if there was none.
 // sample: that of delay one clock before.
 // Part of xy_stage_x_shaper_avalon_shaper, whose header lists the parameters.
 //
@@ -13,68 +14,104 @@ module xy_stage_x_shaper_avalon_history (
     input  wire               rst,
     input  wire               strobe,
     input  wire               start,
-    input  wire signed [31:0] x,
+    input  wire signed [31:0] x_0,
+    input  wire signed [31:0] x_1,
+    input  wire signed [31:0] x_2,
     input  wire [6:0]         delay,
-    output reg  signed [31:0] sample
+    output wire signed [31:0] sample_0,
+    output wire signed [31:0] sample_1,
+    output wire signed [31:0] sample_2,
+    output wire               blank
 );
     localparam [6:0] ONE_SAMPLE = 7'd1;
     localparam [6:0] NO_AGE = 7'd0;
     localparam [6:0] FULL_AGE = 7'd127;
 
-    wire [6:0]         next_head;
-    reg  [6:0]         age_before;
-    wire [31:0]        ring_write_data;
-    wire [6:0]         ring_read_address;
-    wire [31:0]        ring_read_data;
-    reg  [6:0]         head;
-    reg  [6:0]         head_next;
-    reg  [6:0]         age;
-    reg  [6:0]         age_next;
-    reg  signed [31:0] start_value;
-    reg  signed [31:0] start_value_next;
-    reg                before_start;
-    wire               before_start_next;
+    wire        writes;
+    wire [6:0]  next_head;
+    wire        before_start;
+    reg  [6:0]  back;
+    wire [6:0]  address;
+    wire [31:0] ring_0_write_data;
+    wire [31:0] ring_0_read_data;
+    wire [31:0] ring_1_write_data;
+    wire [31:0] ring_1_read_data;
+    wire [31:0] ring_2_write_data;
+    wire [31:0] ring_2_read_data;
+    reg  [6:0]  head;
+    reg  [6:0]  head_next;
+    reg  [6:0]  age;
+    reg  [6:0]  age_next;
+    reg         begun;
+    reg         begun_next;
+    reg         started;
+    reg         started_next;
 
-    xy_stage_x_shaper_avalon_ram_128x32 u_ring (
+    xy_stage_x_shaper_avalon_ram_128x32 u_ring_0 (
         .clk           (clk),
-        .write_enable  (strobe),
+        .write_enable  (writes),
         .write_address (next_head),
-        .write_data    (ring_write_data),
-        .read_address  (ring_read_address),
-        .read_data     (ring_read_data)
+        .write_data    (ring_0_write_data),
+        .read_address  (address),
+        .read_data     (ring_0_read_data)
     );
 
-    // A start forgets, then a strobe adds x
+    xy_stage_x_shaper_avalon_ram_128x32 u_ring_1 (
+        .clk           (clk),
+        .write_enable  (writes),
+        .write_address (next_head),
+        .write_data    (ring_1_write_data),
+        .read_address  (address),
+        .read_data     (ring_1_read_data)
+    );
+
+    xy_stage_x_shaper_avalon_ram_128x32 u_ring_2 (
+        .clk           (clk),
+        .write_enable  (writes),
+        .write_address (next_head),
+        .write_data    (ring_2_write_data),
+        .read_address  (address),
+        .read_data     (ring_2_read_data)
+    );
+
+    // A strobe adds x; a start too, and forgets
+    assign writes = strobe | start;
     assign next_head = head + ONE_SAMPLE;
-    assign ring_write_data = $unsigned(x);
 
     // The sample that lies delay samples back
-    assign ring_read_address = head - delay;
-    assign before_start_next = delay >= age;
+    assign before_start = delay > age;
+    assign address = head - back;
+    assign blank = before_start & !started;
+    assign ring_0_write_data = $unsigned(x_0);
+    assign sample_0 = $signed(ring_0_read_data);
+    assign ring_1_write_data = $unsigned(x_1);
+    assign sample_1 = $signed(ring_1_read_data);
+    assign ring_2_write_data = $unsigned(x_2);
+    assign sample_2 = $signed(ring_2_read_data);
 
     always @(*) begin
         head_next = head;
         age_next = age;
-        start_value_next = start_value;
+        begun_next = begun;
+        started_next = started;
 
-        // A start forgets, then a strobe adds x
-        age_before = age;
-        if (start) begin
-            start_value_next = x;
-            age_before = NO_AGE;
-            age_next = NO_AGE;
-        end
-        if (strobe) begin
+        // A strobe adds x; a start too, and forgets
+        if (writes) begin
             head_next = next_head;
-            if (age_before != FULL_AGE) begin
-                age_next = age_before + ONE_SAMPLE;
-            end
+            begun_next = 1'd1;
+        end
+        if ((strobe & begun) & (age != FULL_AGE)) begin
+            age_next = age + ONE_SAMPLE;
+        end
+        if (start) begin
+            age_next = NO_AGE;
+            started_next = 1'd1;
         end
 
         // The sample that lies delay samples back
-        sample = $signed(ring_read_data);
+        back = delay;
         if (before_start) begin
-            sample = start_value;
+            back = age;
         end
     end
 
@@ -82,21 +119,21 @@ module xy_stage_x_shaper_avalon_history (
         if (rst) begin
             head <= 7'd0;
             age <= 7'd0;
-            start_value <= 32'sd0;
-            before_start <= 1'd0;
+            begun <= 1'd0;
+            started <= 1'd0;
         end else begin
             head <= head_next;
             age <= age_next;
-            start_value <= start_value_next;
-            before_start <= before_start_next;
+            begun <= begun_next;
+            started <= started_next;
         end
     end
 
     initial begin
         head = 7'd0;
         age = 7'd0;
-        start_value = 32'sd0;
-        before_start = 1'd0;
+        begun = 1'd0;
+        started = 1'd0;
     end
 endmodule
 

@@ -10,57 +10,50 @@ module xy_stage_x_sliding_mode_avalon_integral (
     input  wire               clk,
     input  wire               rst,
     input  wire               clear_integral,
-    input  wire               update,
-    input  wire signed [23:0] tracking_error,
+    input  wire               open,
+    input  wire               enable,
+    input  wire               settle,
+    input  wire signed [31:0] word,
+    input  wire               falls,
     input  wire               opposes,
     input  wire               limited_high,
     input  wire               limited_low,
     output wire signed [31:0] value,
-    output wire               high,
-    output wire               low
+    output wire               takes
 );
     localparam signed [31:0] NOTHING = 32'sd0;
-    localparam signed [31:0] LARGEST = 32'sd2147483647;
-    localparam signed [31:0] LEAST = 32'sh80000000;
 
-    wire signed [32:0] wide_error;
-    wire signed [32:0] wide_integral;
-    wire [32:0]        sum;
-    wire [31:0]        sum_bits;
     wire               lowers;
-    reg                takes;
-    wire               overflows;
+    reg                grows;
     reg  signed [31:0] integral_q;
     reg  signed [31:0] integral_q_next;
-
-    assign wide_error = $signed({{9{tracking_error[23]}}, tracking_error});
-    assign wide_integral = $signed({{1{integral_q[31]}}, integral_q});
-    assign sum = $unsigned(wide_integral) + $unsigned(wide_error);
-    assign sum_bits = sum[31:0];
-    assign overflows = sum[32] != sum[31];
+    reg                cleared;
+    reg                cleared_next;
 
     // Frozen where e pushes against a limit
-    assign lowers = tracking_error[23] ^ opposes;
+    assign lowers = falls ^ opposes;
     assign value = integral_q;
-    assign high = (takes & overflows) & !sum[32];
-    assign low = (takes & overflows) & sum[32];
+    assign takes = grows;
 
     always @(*) begin
         integral_q_next = integral_q;
+        cleared_next = cleared;
+
+        // A clear wins over a sum under way
+        if (open) begin
+            cleared_next = 1'd0;
+        end
+        if (clear_integral) begin
+            cleared_next = 1'd1;
+        end
 
         // Frozen where e pushes against a limit
-        takes = update & !limited_high;
+        grows = (enable & !cleared) & !limited_high;
         if (lowers) begin
-            takes = update & !limited_low;
+            grows = (enable & !cleared) & !limited_low;
         end
-        if (takes) begin
-            integral_q_next = $signed(sum_bits);
-            if (overflows) begin
-                integral_q_next = LARGEST;
-                if (sum[32]) begin
-                    integral_q_next = LEAST;
-                end
-            end
+        if (settle & grows) begin
+            integral_q_next = word;
         end
         if (clear_integral) begin
             integral_q_next = NOTHING;
@@ -70,13 +63,16 @@ module xy_stage_x_sliding_mode_avalon_integral (
     always @(posedge clk) begin
         if (rst) begin
             integral_q <= 32'sd0;
+            cleared <= 1'd0;
         end else begin
             integral_q <= integral_q_next;
+            cleared <= cleared_next;
         end
     end
 
     initial begin
         integral_q = 32'sd0;
+        cleared = 1'd0;
     end
 endmodule
 

@@ -9,46 +9,41 @@
 module xy_stage_x_sliding_mode_avalon_limiter (
     input  wire               clk,
     input  wire               rst,
+    input  wire               keep,
     input  wire               take,
     input  wire               count,
     input  wire [30:0]        limit,
     input  wire signed [31:0] word,
-    input  wire               word_high,
-    input  wire               word_low,
+    input  wire               cut,
+    input  wire               negative,
+    output wire signed [31:0] held,
     output wire signed [31:0] command,
     output wire               limited_high,
     output wire               limited_low,
-    output wire [15:0]        limited_ticks,
-    output wire               decides,
-    output wire               high,
-    output wire               low
+    output wire [15:0]        limited_ticks
 );
-    localparam [31:0] ZERO = 32'd0;
-    localparam [31:0] ONE = 32'd1;
-    localparam [32:0] NO_BORROW = 33'd0;
-    localparam [32:0] ONE_BORROW = 33'd1;
-    localparam [15:0] NO_TICKS = 16'd0;
-    localparam [15:0] ONE_TICK = 16'd1;
+    localparam [32:0]        NO_BORROW = 33'd0;
+    localparam [32:0]        ONE_BORROW = 33'd1;
+    localparam [31:0]        NONE = 32'd0;
+    localparam signed [31:0] NOTHING = 32'sd0;
+    localparam [15:0]        NO_TICKS = 16'd0;
+    localparam [15:0]        ONE_TICK = 16'd1;
 
-    wire [31:0]        taken;
-    reg  [31:0]        taken_sign;
+    wire [31:0]        minuend;
     reg  [32:0]        borrow;
     wire [32:0]        margin;
-    reg  [31:0]        kept;
-    reg  [31:0]        sign;
-    reg  [31:0]        carry;
-    reg                compares_q;
-    reg                decides_q;
-    reg  [30:0]        limit_q;
-    reg  [30:0]        limit_q_next;
-    reg  [31:0]        size;
-    reg  [31:0]        size_next;
-    reg                negative;
-    reg                negative_next;
-    reg                beyond;
-    reg                beyond_next;
-    reg                cut;
-    wire               cut_next;
+    reg  [31:0]        inverts;
+    wire [31:0]        part;
+    reg                works;
+    reg                inverted;
+    reg                compares;
+    reg                returns;
+    reg                cuts;
+    reg                decides;
+    reg  signed [31:0] held_q;
+    reg  signed [31:0] held_q_next;
+    reg                over;
+    reg                over_next;
     reg  signed [31:0] command_q;
     reg  signed [31:0] command_q_next;
     reg                high_q;
@@ -58,100 +53,89 @@ module xy_stage_x_sliding_mode_avalon_limiter (
     reg  [15:0]        ticks;
     reg  [15:0]        ticks_next;
 
-    // Its size, less an LSB if negative, and the limit
-    assign taken = $unsigned(word);
+    // held - limit, less one for a positive word
+    assign minuend = $unsigned(held_q);
+    assign margin = ({1'd0, minuend} << 1) - (({2'd0, limit} << 1) | borrow);
+    assign part = margin[32:1] ^ inverts;
 
-    // One on the other
-    assign margin = ({2'd0, limit_q} << 1) - (({1'd0, size} << 1) | borrow);
-    assign cut_next = beyond | margin[32];
-
-    // The nearer of them, with its sign
+    // Ticks in a row
+    assign held = held_q;
     assign command = command_q;
     assign limited_high = high_q;
     assign limited_low = low_q;
     assign limited_ticks = ticks;
-    assign decides = decides_q;
-    assign high = cut & !negative;
-    assign low = cut & negative;
 
     always @(*) begin
-        limit_q_next = limit_q;
-        size_next = size;
-        negative_next = negative;
-        beyond_next = beyond;
+        held_q_next = held_q;
+        over_next = over;
         command_q_next = command_q;
         high_q_next = high_q;
         low_q_next = low_q;
         ticks_next = ticks;
 
-        // Its size, less an LSB if negative, and the limit
-        taken_sign = ZERO;
-        if (word[31]) begin
-            taken_sign = ~ZERO;
-        end
-        if (take) begin
-            limit_q_next = limit;
-            size_next = taken ^ taken_sign;
-            negative_next = word[31];
-            beyond_next = word_high | word_low;
-        end
-
-        // One on the other
+        // held - limit, less one for a positive word
         borrow = NO_BORROW;
-        if (negative) begin
+        if (!negative) begin
             borrow = ONE_BORROW;
         end
+        inverts = NONE;
+        if (take | !negative) begin
+            inverts = ~NONE;
+        end
 
-        // The nearer of them, with its sign
-        kept = size;
-        sign = ZERO;
-        carry = ZERO;
-        if (negative) begin
-            sign = ~ZERO;
+        // Twice less the limit, once inverted: its size
+        works = cuts & over;
+        if ((take | inverted) & negative) begin
+            works = 1'd1;
         end
-        if (cut) begin
-            kept = {1'd0, limit_q};
-            if (negative) begin
-                carry = ONE;
-            end
+        if (works) begin
+            held_q_next = $signed(part);
         end
-        if (decides_q) begin
-            command_q_next = $signed((kept ^ sign) + carry);
-            high_q_next = cut & !negative;
-            low_q_next = cut & negative;
+        if (keep | returns) begin
+            held_q_next = word;
         end
-        if (count) begin
-            if (high_q | low_q) begin
-                if (!(&ticks)) begin
-                    ticks_next = ticks + ONE_TICK;
-                end
-            end else begin
-                ticks_next = NO_TICKS;
-            end
+        if (compares) begin
+            over_next = cut | !margin[32];
+        end
+        if (returns & over) begin
+            held_q_next = NOTHING;
+        end
+        if (decides) begin
+            command_q_next = held_q;
+            high_q_next = over & !negative;
+            low_q_next = over & negative;
+        end
+
+        // Ticks in a row
+        if (count & !(&ticks)) begin
+            ticks_next = ticks + ONE_TICK;
+        end
+        if ((count & !high_q) & !low_q) begin
+            ticks_next = NO_TICKS;
         end
     end
 
     always @(posedge clk) begin
         if (rst) begin
-            compares_q <= 1'd0;
-            decides_q <= 1'd0;
-            limit_q <= 31'd0;
-            size <= 32'd0;
-            negative <= 1'd0;
-            beyond <= 1'd0;
-            cut <= 1'd0;
+            inverted <= 1'd0;
+            compares <= 1'd0;
+            returns <= 1'd0;
+            cuts <= 1'd0;
+            decides <= 1'd0;
+            held_q <= 32'sd0;
+            over <= 1'd0;
             command_q <= 32'sd0;
             high_q <= 1'd0;
             low_q <= 1'd0;
             ticks <= 16'd0;
         end else begin
-            compares_q <= take;
-            decides_q <= compares_q;
-            limit_q <= limit_q_next;
-            size <= size_next;
-            negative <= negative_next;
-            beyond <= beyond_next;
-            cut <= cut_next;
+            inverted <= take;
+            compares <= inverted;
+            returns <= compares;
+            cuts <= returns;
+            decides <= cuts;
+            held_q <= held_q_next;
+            over <= over_next;
             command_q <= command_q_next;
             high_q <= high_q_next;
             low_q <= low_q_next;
@@ -160,13 +144,13 @@ module xy_stage_x_sliding_mode_avalon_limiter (
     end
 
     initial begin
-        compares_q = 1'd0;
-        decides_q = 1'd0;
-        limit_q = 31'd0;
-        size = 32'd0;
-        negative = 1'd0;
-        beyond = 1'd0;
-        cut = 1'd0;
+        inverted = 1'd0;
+        compares = 1'd0;
+        returns = 1'd0;
+        cuts = 1'd0;
+        decides = 1'd0;
+        held_q = 32'sd0;
+        over = 1'd0;
         command_q = 32'sd0;
         high_q = 1'd0;
         low_q = 1'd0;
@@ -174,7 +158,7 @@ module xy_stage_x_sliding_mode_avalon_limiter (
     end
 
     // Bits that nothing reads.
-    wire unused = &{1'b0, margin[31:0]};
+    wire unused = &{1'b0, margin[0]};
 endmodule
 
 `default_nettype wire

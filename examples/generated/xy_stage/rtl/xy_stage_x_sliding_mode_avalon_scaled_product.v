@@ -13,21 +13,31 @@ module xy_stage_x_sliding_mode_avalon_scaled_product (
     input  wire               read,
     input  wire               load,
     input  wire               shift,
+    input  wire               unit,
+    input  wire               minus,
     input  wire signed [31:0] operand,
     input  wire [22:0]        gain,
     output wire signed [50:0] scaled
 );
-    localparam [2:0] ONE_FOUR = 3'd1;
-    localparam [1:0] ONE = 2'd1;
+    localparam [17:0] NO_UNIT = 18'd0;
+    localparam [17:0] ONE = 18'd1;
+    localparam [17:0] MINUS_ONE = 18'd262143;
+    localparam [4:0]  EIGHT = 5'd8;
+    localparam [4:0]  ONE_BIT = 5'd1;
 
+    reg  [17:0]        of_gain;
+    reg  [17:0]        of_unit;
     wire [17:0]        mantissa;
+    reg  [4:0]         distance;
     wire [31:0]        operand_bits;
     wire [16:0]        lower_part;
     wire [14:0]        upper_part;
-    wire [32:0]        upper_bits;
-    wire signed [49:0] wide_lower;
+    wire [35:0]        lower_bits;
+    wire [16:0]        last_bits;
+    wire signed [18:0] carried;
+    wire signed [32:0] wide_carried;
+    wire [32:0]        upper_sum;
     wire [49:0]        product;
-    wire signed [46:0] by_four;
     wire signed [49:0] by_one;
     wire signed [14:0] upper_a;
     wire signed [17:0] upper_b;
@@ -37,10 +47,8 @@ module xy_stage_x_sliding_mode_avalon_scaled_product (
     wire signed [35:0] lower_product;
     reg  signed [50:0] shifter;
     reg  signed [50:0] shifter_next;
-    reg  [2:0]         fours;
-    reg  [2:0]         fours_next;
-    reg  [1:0]         ones;
-    reg  [1:0]         ones_next;
+    reg  [4:0]         left;
+    reg  [4:0]         left_next;
 
     xy_stage_x_sliding_mode_avalon_smul_15x18 u_upper (
         .clk     (clk),
@@ -56,8 +64,8 @@ module xy_stage_x_sliding_mode_avalon_scaled_product (
         .product (lower_product)
     );
 
-    // Multiply
-    assign mantissa = gain[17:0];
+    // Multiply by the gain, or by one or minus one
+    assign mantissa = of_gain | of_unit;
     assign operand_bits = $unsigned(operand);
     assign lower_part = operand_bits[16:0];
     assign upper_part = operand_bits[31:17];
@@ -65,55 +73,60 @@ module xy_stage_x_sliding_mode_avalon_scaled_product (
     assign upper_b = $signed(mantissa);
     assign lower_a = $signed({1'd0, lower_part});
     assign lower_b = $signed(mantissa);
-    assign upper_bits = $unsigned(upper_product);
-    assign wide_lower = $signed({{14{lower_product[35]}}, lower_product});
-    assign product = ({17'd0, upper_bits} << 17) + $unsigned(wide_lower);
+    assign lower_bits = $unsigned(lower_product);
+    assign carried = $signed(lower_bits[35:17]);
+    assign wide_carried = $signed({{14{carried[18]}}, carried});
+    assign upper_sum = $unsigned(upper_product) + $unsigned(wide_carried);
+    assign last_bits = lower_bits[16:0];
+    assign product = ({17'd0, upper_sum} << 17) | {33'd0, last_bits};
 
-    // Shift by four while it takes fours, then by one
-    assign by_four = $signed(shifter[50:4]);
+    // Shift by one, so often as the gain says
     assign by_one = $signed(shifter[50:1]);
     assign scaled = shifter;
 
     always @(*) begin
         shifter_next = shifter;
-        fours_next = fours;
-        ones_next = ones;
+        left_next = left;
 
-        // Shift by four while it takes fours, then by one
+        // Multiply by the gain, or by one or minus one
+        of_gain = gain[17:0];
+        of_unit = NO_UNIT;
+        distance = gain[22:18];
+        if (unit) begin
+            of_gain = NO_UNIT;
+            of_unit = ONE;
+            distance = EIGHT;
+        end
+        if (minus) begin
+            of_unit = MINUS_ONE;
+        end
+
+        // Shift by one, so often as the gain says
+        if (shift & (|left)) begin
+            shifter_next = $signed({{1{by_one[49]}}, by_one});
+            left_next = left - ONE_BIT;
+        end
         if (load) begin
             shifter_next = $signed({1'd0, product} << 1);
         end
-        if (shift) begin
-            if ((|fours)) begin
-                shifter_next = $signed({{4{by_four[46]}}, by_four});
-                fours_next = fours - ONE_FOUR;
-            end else if ((|ones)) begin
-                shifter_next = $signed({{1{by_one[49]}}, by_one});
-                ones_next = ones - ONE;
-            end
-        end
         if (read) begin
-            ones_next = gain[19:18];
-            fours_next = gain[22:20];
+            left_next = distance;
         end
     end
 
     always @(posedge clk) begin
         if (rst) begin
             shifter <= 51'sd0;
-            fours <= 3'd0;
-            ones <= 2'd0;
+            left <= 5'd0;
         end else begin
             shifter <= shifter_next;
-            fours <= fours_next;
-            ones <= ones_next;
+            left <= left_next;
         end
     end
 
     initial begin
         shifter = 51'sd0;
-        fours = 3'd0;
-        ones = 2'd0;
+        left = 5'd0;
     end
 endmodule
 

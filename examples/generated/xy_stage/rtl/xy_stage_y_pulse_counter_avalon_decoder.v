@@ -59,7 +59,7 @@ module xy_stage_y_pulse_counter_avalon_decoder (
     always @(*) begin
         // Quadrature: up if A leads B
         counts = 1'd0;
-        upward = a ^ was_b;
+        upward = (level_a ^ b_before) ^ swap;
         both = edge_a & edge_b;
         if (mode == TIMES_4) begin
             counts = edge_a ^ edge_b;

@@ -22,50 +22,50 @@ module xy_stage_y_pwm_avalon_pwm_leg (
     reg        awake_next;
     reg        lit_next;
     reg        high_next;
-    reg  [9:0] pause;
+    reg  [9:0] lasts;
     reg        awake_q;
     reg        lit_q;
     reg        high_q;
     reg  [9:0] timer;
     reg  [9:0] timer_next;
 
-    // The timer: its count, or what comes next less one
+    // The timer counts up to what the state lasts
     assign awake = awake_next;
     assign high_side = lit_next & high_next;
     assign low_side = lit_next & !high_next;
 
     always @(*) begin
+        timer_next = timer;
         awake_next = awake_q;
         lit_next = lit_q;
         high_next = high_q;
 
-        // The timer: its count, or what comes next less one
-        pause = timer;
-        if (!(|timer)) begin
-            if (!lit_q) begin
-                // The dead time is over
-                lit_next = 1'd1;
-                awake_next = 1'd1;
-                if (!awake_q) begin
-                    high_next = wants_high & !low_first;
-                end
-                pause = minimum_pulse;
-            end else if (high_q != wants_high) begin
-                // The minimum pulse is over
-                lit_next = 1'd0;
-                high_next = wants_high;
-                pause = dead_time;
-            end
+        // The timer counts up to what the state lasts
+        lasts = dead_time;
+        if (lit_q) begin
+            lasts = minimum_pulse;
         end
-        timer_next = 10'd0;
-        if ((|pause)) begin
-            timer_next = pause - 10'd1;
+        if (timer != lasts) begin
+            timer_next = timer + 10'd1;
+        end else if (!lit_q) begin
+            // The dead time is over
+            lit_next = 1'd1;
+            awake_next = 1'd1;
+            if (!awake_q) begin
+                high_next = wants_high & !low_first;
+            end
+            timer_next = 10'd1;
+        end else if (high_q != wants_high) begin
+            // The minimum pulse is over
+            lit_next = 1'd0;
+            high_next = wants_high;
+            timer_next = 10'd1;
         end
         if (!wanted) begin
             awake_next = 1'd0;
             lit_next = 1'd0;
             high_next = 1'd0;
-            timer_next = dead_time;
+            timer_next = 10'd0;
         end
     end
 

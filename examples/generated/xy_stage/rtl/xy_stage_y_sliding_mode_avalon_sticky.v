@@ -11,26 +11,20 @@ module xy_stage_y_sliding_mode_avalon_sticky (
     input  wire       rst,
     input  wire       clear_flags,
     input  wire       tracking_error,
-    input  wire       error_rate,
     input  wire [6:0] what,
     input  wire       is_cut,
     output wire [6:0] flags
 );
     localparam [6:0] NOTHING = 7'd0;
     localparam [6:0] OF_ERROR = 7'd1;
-    localparam [6:0] OF_RATE = 7'd2;
 
     reg  [6:0] kept;
     reg  [6:0] by_error;
-    reg  [6:0] by_rate;
     reg  [6:0] by_sum;
-    reg  [6:0] found;
-    wire [6:0] found_next;
     reg  [6:0] flags_q;
     wire [6:0] flags_q_next;
 
-    assign found_next = (by_error | by_rate) | by_sum;
-    assign flags_q_next = kept | found;
+    assign flags_q_next = (kept | by_error) | by_sum;
     assign flags = flags_q;
 
     always @(*) begin
@@ -42,10 +36,6 @@ module xy_stage_y_sliding_mode_avalon_sticky (
         if (tracking_error) begin
             by_error = OF_ERROR;
         end
-        by_rate = NOTHING;
-        if (error_rate) begin
-            by_rate = OF_RATE;
-        end
         by_sum = NOTHING;
         if (is_cut) begin
             by_sum = what;
@@ -54,16 +44,13 @@ module xy_stage_y_sliding_mode_avalon_sticky (
 
     always @(posedge clk) begin
         if (rst) begin
-            found <= 7'd0;
             flags_q <= 7'd0;
         end else begin
-            found <= found_next;
             flags_q <= flags_q_next;
         end
     end
 
     initial begin
-        found = 7'd0;
         flags_q = 7'd0;
     end
 endmodule

@@ -13,6 +13,7 @@ module xy_stage_y_weighted_sum (
     input  wire               rst,
     input  wire               begin_pass,
     input  wire signed [17:0] coefficient,
+    input  wire               blank,
     input  wire signed [31:0] sample,
     input  wire               add,
     input  wire               finish,
@@ -22,6 +23,7 @@ module xy_stage_y_weighted_sum (
     output wire signed [31:0] y,
     output wire               saturated
 );
+    localparam signed [17:0] NO_COEFFICIENT = 18'sd0;
     localparam signed [55:0] HALF = 56'sd32768;
     localparam [55:0]        SIGN_MASK = 56'hff800000000000;
     localparam [55:0]        ALL_CLEAR = 56'd0;
@@ -32,6 +34,7 @@ module xy_stage_y_weighted_sum (
     wire [55:0]        sign_bits;
     wire signed [49:0] product_product;
     reg  signed [17:0] coefficient_q;
+    reg  signed [17:0] coefficient_q_next;
     reg  signed [55:0] accumulator;
     reg  signed [55:0] accumulator_next;
     reg  signed [31:0] y_q;
@@ -63,6 +66,10 @@ module xy_stage_y_weighted_sum (
         saturated_q_next = saturated_q;
 
         // Multiply and accumulate, exactly
+        coefficient_q_next = coefficient;
+        if (blank) begin
+            coefficient_q_next = NO_COEFFICIENT;
+        end
         if (add) begin
             accumulator_next = accumulator + wide_product;
         end
@@ -96,7 +103,7 @@ module xy_stage_y_weighted_sum (
             y_q <= 32'sd0;
             saturated_q <= 1'd0;
         end else begin
-            coefficient_q <= coefficient;
+            coefficient_q <= coefficient_q_next;
             accumulator <= accumulator_next;
             y_q <= y_q_next;
             saturated_q <= saturated_q_next;

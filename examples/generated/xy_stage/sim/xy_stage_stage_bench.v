@@ -78,7 +78,7 @@ module xy_stage_stage_bench;
         expect_word(2, 32'h00000002); // AXES
         expect_word(3, 32'h00001388); // TICK_CLOCKS
         expect_word(4, 32'h000000d2); // CONTROL_CLOCKS
-        expect_word(5, 32'h000001a5); // DUTY_CLOCKS
+        expect_word(5, 32'h000002d9); // DUTY_CLOCKS
         expect_word(256, 32'h000009c4); // X_PWM_PERIOD_CLOCKS
         expect_word(257, 32'h00000080); // X_RING_SAMPLES
         expect_word(258, 32'h00000040); // X_MOST_TAPS

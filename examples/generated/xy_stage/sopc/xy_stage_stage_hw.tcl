@@ -21,7 +21,7 @@ set_module_assignment embeddedsw.CMacro.VERSION_MINOR 0
 set_module_assignment embeddedsw.CMacro.AXES 2
 set_module_assignment embeddedsw.CMacro.TICK_CLOCKS 5000
 set_module_assignment embeddedsw.CMacro.CONTROL_CLOCKS 210
-set_module_assignment embeddedsw.CMacro.DUTY_CLOCKS 421
+set_module_assignment embeddedsw.CMacro.DUTY_CLOCKS 729
 set_module_assignment embeddedsw.CMacro.X_PWM_PERIOD_CLOCKS 2500
 set_module_assignment embeddedsw.CMacro.X_RING_SAMPLES 128
 set_module_assignment embeddedsw.CMacro.X_MOST_TAPS 64
@@ -48,6 +48,7 @@ foreach kind {QUARTUS_SYNTH SIM_VERILOG} {
     add_fileset_file xy_stage_stage_group.v VERILOG PATH ../rtl/xy_stage_stage_group.v
     add_fileset_file xy_stage_stage_ram_256x32.v VERILOG PATH ../rtl/xy_stage_stage_ram_256x32.v
     add_fileset_file xy_stage_stage_command_fifo.v VERILOG PATH ../rtl/xy_stage_stage_command_fifo.v
+    add_fileset_file xy_stage_stage_passes.v VERILOG PATH ../rtl/xy_stage_stage_passes.v
     add_fileset_file xy_stage_stage_integrator.v VERILOG PATH ../rtl/xy_stage_stage_integrator.v
     add_fileset_file xy_stage_stage_segments.v VERILOG PATH ../rtl/xy_stage_stage_segments.v
     add_fileset_file xy_stage_stage_x_machine_taps.v VERILOG PATH ../rtl/xy_stage_stage_x_machine_taps.v
@@ -66,6 +67,7 @@ foreach kind {QUARTUS_SYNTH SIM_VERILOG} {
     add_fileset_file xy_stage_stage_x_setting_banks.v VERILOG PATH ../rtl/xy_stage_stage_x_setting_banks.v
     add_fileset_file xy_stage_stage_sequencer.v VERILOG PATH ../rtl/xy_stage_stage_sequencer.v
     add_fileset_file xy_stage_stage_tracking.v VERILOG PATH ../rtl/xy_stage_stage_tracking.v
+    add_fileset_file xy_stage_stage_operands.v VERILOG PATH ../rtl/xy_stage_stage_operands.v
     add_fileset_file xy_stage_stage_smul_15x18.v VERILOG PATH ../rtl/xy_stage_stage_smul_15x18.v
     add_fileset_file xy_stage_stage_smul_18x18.v VERILOG PATH ../rtl/xy_stage_stage_smul_18x18.v
     add_fileset_file xy_stage_stage_scaled_product.v VERILOG PATH ../rtl/xy_stage_stage_scaled_product.v
@@ -93,6 +95,15 @@ foreach kind {QUARTUS_SYNTH SIM_VERILOG} {
     add_fileset_file xy_stage_stage_x_pwm_gates.v VERILOG PATH ../rtl/xy_stage_stage_x_pwm_gates.v
     add_fileset_file xy_stage_stage_x_pwm.v VERILOG PATH ../rtl/xy_stage_stage_x_pwm.v
     add_fileset_file xy_stage_stage_single_line.v VERILOG PATH ../rtl/xy_stage_stage_single_line.v
+    add_fileset_file xy_stage_stage_axis_bytes.v VERILOG PATH ../rtl/xy_stage_stage_axis_bytes.v
+    add_fileset_file xy_stage_stage_axis_larger.v VERILOG PATH ../rtl/xy_stage_stage_axis_larger.v
+    add_fileset_file xy_stage_stage_axis_nonzero.v VERILOG PATH ../rtl/xy_stage_stage_axis_nonzero.v
+    add_fileset_file xy_stage_stage_axis_soft_limits.v VERILOG PATH ../rtl/xy_stage_stage_axis_soft_limits.v
+    add_fileset_file xy_stage_stage_axis_size_limit.v VERILOG PATH ../rtl/xy_stage_stage_axis_size_limit.v
+    add_fileset_file xy_stage_stage_axis_at_tick.v VERILOG PATH ../rtl/xy_stage_stage_axis_at_tick.v
+    add_fileset_file xy_stage_stage_axis_nibbles.v VERILOG PATH ../rtl/xy_stage_stage_axis_nibbles.v
+    add_fileset_file xy_stage_stage_axis_lasts.v VERILOG PATH ../rtl/xy_stage_stage_axis_lasts.v
+    add_fileset_file xy_stage_stage_axis_tick_count.v VERILOG PATH ../rtl/xy_stage_stage_axis_tick_count.v
     add_fileset_file xy_stage_stage_axis_monitors.v VERILOG PATH ../rtl/xy_stage_stage_axis_monitors.v
     add_fileset_file xy_stage_stage_axis_causes.v VERILOG PATH ../rtl/xy_stage_stage_axis_causes.v
     add_fileset_file xy_stage_stage_axis_timer.v VERILOG PATH ../rtl/xy_stage_stage_axis_timer.v
@@ -145,9 +156,9 @@ set_parameter_property CONTROL_CLOCKS ALLOWED_RANGES 210:210
 set_parameter_property CONTROL_CLOCKS ENABLED false
 set_parameter_property CONTROL_CLOCKS HDL_PARAMETER false
 
-add_parameter DUTY_CLOCKS INTEGER 421 {from the tick to the new duty, which the PWM takes at its next boundary}
+add_parameter DUTY_CLOCKS INTEGER 729 {from the tick to the new duty, which the PWM takes at its next boundary}
 set_parameter_property DUTY_CLOCKS DISPLAY_NAME duty_clocks
-set_parameter_property DUTY_CLOCKS ALLOWED_RANGES 421:421
+set_parameter_property DUTY_CLOCKS ALLOWED_RANGES 729:729
 set_parameter_property DUTY_CLOCKS ENABLED false
 set_parameter_property DUTY_CLOCKS HDL_PARAMETER false
 

@@ -33,6 +33,7 @@ foreach kind {QUARTUS_SYNTH SIM_VERILOG} {
     add_fileset_file xy_stage_y_sliding_mode_avalon_setting_banks.v VERILOG PATH ../rtl/xy_stage_y_sliding_mode_avalon_setting_banks.v
     add_fileset_file xy_stage_y_sliding_mode_avalon_sequencer.v VERILOG PATH ../rtl/xy_stage_y_sliding_mode_avalon_sequencer.v
     add_fileset_file xy_stage_y_sliding_mode_avalon_tracking.v VERILOG PATH ../rtl/xy_stage_y_sliding_mode_avalon_tracking.v
+    add_fileset_file xy_stage_y_sliding_mode_avalon_operands.v VERILOG PATH ../rtl/xy_stage_y_sliding_mode_avalon_operands.v
     add_fileset_file xy_stage_y_sliding_mode_avalon_smul_15x18.v VERILOG PATH ../rtl/xy_stage_y_sliding_mode_avalon_smul_15x18.v
     add_fileset_file xy_stage_y_sliding_mode_avalon_smul_18x18.v VERILOG PATH ../rtl/xy_stage_y_sliding_mode_avalon_smul_18x18.v
     add_fileset_file xy_stage_y_sliding_mode_avalon_scaled_product.v VERILOG PATH ../rtl/xy_stage_y_sliding_mode_avalon_scaled_product.v

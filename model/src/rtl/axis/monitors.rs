@@ -58,13 +58,14 @@ struct Taken {
 }
 
 impl Taken {
-    /// One clock: byte `part`, the lowest is 0.
-    fn take(&mut self, inputs: &Inputs, part: u8) {
+    /// One clock: byte `part`, the lowest is 0. A linear scale computes its next deviation from the tick on, so that of
+    /// the tick is kept.
+    fn take(&mut self, inputs: &Inputs, deviation: i32, part: u8) {
         let mask = 0xff << (8 * part);
         let byte = |taken: &mut u32, word: u32| *taken = *taken & !mask | word & mask;
         byte(&mut self.reference_position, inputs.reference_position as u32);
         let soft_limits = [inputs.soft_limit_plus, inputs.soft_limit_minus];
-        let numbers = [inputs.error, inputs.deviation, inputs.command];
+        let numbers = [inputs.error, deviation, inputs.command];
         let limits = [
             inputs.following_error_limit,
             inputs.deviation_limit,
@@ -103,6 +104,8 @@ pub(super) struct Monitors {
     /// Clocks since the tick; 0 once the second round is over.
     clocks: u8,
     shown: Shown,
+    /// Of the tick.
+    deviation: i32,
     taken: Taken,
     /// Causes that the first round has found.
     first_found: u16,
@@ -177,6 +180,9 @@ impl Monitors {
     pub(super) fn clock(&mut self, inputs: &Inputs, on_limits: [bool; 2], on: bool, kicked: bool) {
         let clocks = self.clocks;
         self.found = 0;
+        if inputs.tick {
+            self.deviation = inputs.deviation;
+        }
         if clocks == FIRST_ROUND {
             self.first_found = self.causes();
             self.still_ticks = self.still_ticks.saturating_add(1);
@@ -199,8 +205,8 @@ impl Monitors {
             self.unkicked_ticks = 0;
         }
         match clocks {
-            1..=3 => self.taken.take(inputs, clocks),
-            5..=8 => self.taken.take(inputs, clocks - FIRST_ROUND),
+            1..=3 => self.taken.take(inputs, self.deviation, clocks),
+            5..=8 => self.taken.take(inputs, self.deviation, clocks - FIRST_ROUND),
             _ => {}
         }
         self.clocks = if matches!(clocks, 0 | SECOND_ROUND) {
@@ -209,7 +215,7 @@ impl Monitors {
             clocks + 1
         };
         if inputs.tick {
-            self.taken.take(inputs, 0);
+            self.taken.take(inputs, self.deviation, 0);
             self.shown = Shown::new(inputs, on_limits, on, self.captured_position);
             self.captured_position = inputs.position;
             self.clocks = 1;

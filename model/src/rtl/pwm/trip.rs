@@ -12,12 +12,12 @@ struct FilteredFault {
 impl FilteredFault {
     #[inline]
     fn clock(&mut self, fault: bool, filter_clocks: u8) -> bool {
-        let long = self.clocks == filter_clocks;
+        let long = self.clocks >= filter_clocks;
         let active = self.fault[1] && long;
         self.clocks = match self.fault[1] {
             false => 0,
             true if long => self.clocks,
-            true => self.clocks.wrapping_add(1),
+            true => self.clocks + 1,
         };
         self.fault = [fault, self.fault[0]];
         active
@@ -81,12 +81,11 @@ impl Trip {
         self.unlocked = [!inputs.pll_locked, self.unlocked[0]];
 
         let waits = running && !inputs.feed;
-        let full = self.unfed == inputs.watchdog_periods;
-        let starved = valley && inputs.watchdog_periods != 0 && full;
+        let starved = valley && inputs.watchdog_periods != 0 && self.unfed >= inputs.watchdog_periods;
         self.watchdog = (waits && starved) || (self.watchdog && keep);
         self.unfed = match waits {
             false => 0,
-            true => self.unfed.wrapping_add(u8::from(valley && !full)),
+            true => self.unfed.saturating_add(u8::from(valley)),
         };
     }
 }

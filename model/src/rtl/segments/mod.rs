@@ -176,7 +176,7 @@ impl Segments {
         match phase {
             IDLE if inputs.tick => self.take_tick(inputs),
             INTEGRATE => self.integrate(),
-            DECIDE => self.decide(shown.state, level > 0),
+            DECIDE => self.decide(shown.state, level > 0, inputs.enable),
             _ => {}
         }
     }
@@ -239,7 +239,7 @@ impl Segments {
     }
 
     /// The outputs of this tick, and what the next one does.
-    fn decide(&mut self, state: State, entry_waits: bool) {
+    fn decide(&mut self, state: State, entry_waits: bool, enable: bool) {
         let Registers {
             phase,
             at,
@@ -273,7 +273,7 @@ impl Segments {
                 shown.state = State::Stopped;
                 shown.done = true;
             }
-            (State::Hold, _) if *enabled && entry_waits => {
+            (State::Hold, _) if *enabled && enable && entry_waits => {
                 shown.state = State::Move;
                 next_is_read = true;
             }
