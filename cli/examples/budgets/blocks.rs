@@ -70,8 +70,8 @@ pub(crate) fn rows() -> Result<Vec<Row>, Box<dyn Error>> {
                 luts: 300,
                 flip_flops: 220,
             }),
-            note: "290 LUT are carry chains: sums and comparisons of 16 to 18 bits for duty, dead time, minimum pulse and phase, \
-                   all of them registers. Most of the rest chooses between their results.",
+            note: "One adder of 19 bits works for duty, limits and edges in turn, with what it adds 161 LUT; 97 compare positions \
+                   with period, phase and trigger; the rest is fault path, leg and times.",
         },
         Row {
             block: "sliding_mode",
@@ -92,14 +92,14 @@ pub(crate) fn rows() -> Result<Vec<Row>, Box<dyn Error>> {
             size: "",
             modules: axis::emit("")?,
             budget: None,
-            note: "Comparisons of 32 bits: two soft limits, three sizes against their limits; each is a carry chain.",
+            note: "Words of 32 bits are compared byte by byte, in turn: two soft limits, three sizes against their limits.",
         },
         Row {
             block: "drive_command",
             size: "nothing tied",
             modules: drive_command::emit("")?,
             budget: None,
-            note: "112 LE are the self-test's: two counters, two results.",
+            note: "Two counters and two results are the self-test's.",
         },
         Row {
             block: "linear_scale",

@@ -73,16 +73,8 @@ pub(crate) fn page(tool: &str, measured: &[Measured]) -> String {
             one.row.size
         );
     }
-    text.push_str(WHY_ABOVE);
     text
 }
-
-/// On the XY stage's logic elements.
-const WHY_ABOVE: &str = "
-Each axis has a controller, an integrator and a shaper of its own, which are idle for most of a tick. Were both axes to take turns at
-one of each, 64 % would be left by a hand count, with what each axis must keep and the choice between the two: less, but not the
-budget.
-";
 
 /// M4K blocks of the device.
 const M4K_BLOCKS: u64 = 52;
