@@ -343,7 +343,5 @@ module sliding_mode_properties (
         reach_valid: cover (valid);
         reach_overrun: cover (overrun);
         reach_error: cover (error != 32'sd0 & runs);
-        // At a limit: limiter.sv reaches one, this would take all of its sums.
-        reach_frozen: cover (cleared & past_settled == 5'd15 & is_pid);
     end
 endmodule
