@@ -25,6 +25,7 @@ pub(super) struct Carrier {
     pub(super) peak_lead: Signal<Out, Bit>,
     pub(super) waits: Signal<Out, Bit>,
     pub(super) out_of_step: Signal<Out, Bit>,
+    pub(super) strays: Signal<Out, Bit>,
     pub(super) valley: Signal<Out, Bit>,
     pub(super) peak: Signal<Out, Bit>,
     pub(super) trigger: Signal<Out, Bit>,
@@ -67,6 +68,7 @@ impl Carrier {
             peak_lead: Signal::default(),
             waits: Signal::default(),
             out_of_step: Signal::default(),
+            strays: Signal::default(),
             valley: Signal::default(),
             peak: Signal::default(),
             trigger: Signal::default(),
@@ -140,6 +142,7 @@ impl Logic for Carrier {
         self.settled.next = self.period_q.q.val().get_bits::<16>(0) == self.period.val();
         self.waits.next = self.holds.val();
         self.out_of_step.next = self.off_phase.val();
+        self.strays.next = self.astray.q.val();
         self.valley.next = self.valley_q.q.val();
         self.peak.next = self.peak_q.q.val();
         self.trigger.next = self.trigger_q.q.val();

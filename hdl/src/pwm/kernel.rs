@@ -221,7 +221,8 @@ impl Logic for Pwm {
             & self.may_run.val()
             & self.command.valley_next.val()
             & self.settled.val()
-            & self.stable.q.val();
+            & self.stable.q.val()
+            & !self.carrier.strays.val();
         self.running_q.d.next = self.goes_on.val() | self.starts.val();
 
         comment!("What is wanted of the leg at this position");

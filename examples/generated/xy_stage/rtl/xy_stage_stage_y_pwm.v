@@ -67,6 +67,7 @@ module xy_stage_stage_y_pwm (
     wire        carrier_peak_lead;
     wire        carrier_waits;
     wire        carrier_out_of_step;
+    wire        carrier_strays;
     wire        carrier_valley;
     wire        carrier_peak;
     wire        carrier_trigger;
@@ -135,6 +136,7 @@ module xy_stage_stage_y_pwm (
         .peak_lead     (carrier_peak_lead),
         .waits         (carrier_waits),
         .out_of_step   (carrier_out_of_step),
+        .strays        (carrier_strays),
         .valley        (carrier_valley),
         .peak          (carrier_peak),
         .trigger       (carrier_trigger)
@@ -230,7 +232,7 @@ module xy_stage_stage_y_pwm (
     assign stable_next = settled & (stable | !command_computes);
     assign may_run = enable & !guard_tripped;
     assign goes_on = running_q & may_run;
-    assign starts = (((!running_q & may_run) & command_valley_next) & settled) & stable;
+    assign starts = ((((!running_q & may_run) & command_valley_next) & settled) & stable) & !carrier_strays;
     assign running_q_next = goes_on | starts;
 
     // What is wanted of the leg at this position

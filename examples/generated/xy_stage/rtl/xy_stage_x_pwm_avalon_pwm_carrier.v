@@ -22,6 +22,7 @@ module xy_stage_x_pwm_avalon_pwm_carrier (
     output wire        peak_lead,
     output wire        waits,
     output wire        out_of_step,
+    output wire        strays,
     output wire        valley,
     output wire        peak,
     output wire        trigger
@@ -62,6 +63,7 @@ module xy_stage_x_pwm_avalon_pwm_carrier (
     assign settled = period_q[15:0] == period;
     assign waits = holds;
     assign out_of_step = off_phase;
+    assign strays = astray;
     assign valley = valley_q;
     assign peak = peak_q;
     assign trigger = trigger_q;

@@ -243,7 +243,7 @@ impl State {
         let was_running = state.running;
         let may_run = inputs.enable && !state.trip.tripped();
         let goes_on = was_running && may_run;
-        let starts = !was_running && may_run && valley && settled && state.stable;
+        let starts = !was_running && may_run && valley && settled && state.stable && !state.astray;
 
         // The gates, for the present position.
         let want = match (goes_on, state.pattern, state.command.level) {
