@@ -33,6 +33,16 @@ posicast_result posicast_scale_gain(uint32_t *word, uint16_t numerator, uint16_t
     return POSICAST_OK;
 }
 
+/* Until no commit waits. */
+static posicast_result wait_for_commit(const posicast_stage *stage, posicast_patience *left)
+{
+    posicast_result result = POSICAST_OK;
+
+    while (IORD_POSICAST_STAGE_COMMIT(stage->base) != 0 && result == POSICAST_OK)
+        result = posicast_pass_time(stage, left);
+    return result;
+}
+
 posicast_result posicast_load_settings(const posicast_stage *stage, uint32_t axis, uint32_t bank,
                                        const posicast_settings *settings, uint32_t ticks)
 {
@@ -63,19 +73,16 @@ posicast_result posicast_use_settings(const posicast_stage *stage, uint32_t axis
                                       uint32_t ticks)
 {
     posicast_patience left = posicast_patience_for(stage, ticks);
-    posicast_result result = POSICAST_OK;
+    posicast_result result;
 
     if (!is_axis(stage, axis) || bank > 2 || law > POSICAST_AXIS_LAW_LAW_PID)
         return POSICAST_BAD_ARGUMENT;
     /* Writes are refused while a commit waits, another axis's, too. */
-    while (IORD_POSICAST_STAGE_COMMIT(stage->base) != 0 && result == POSICAST_OK)
-        result = posicast_pass_time(stage, &left);
+    result = wait_for_commit(stage, &left);
     if (result != POSICAST_OK)
         return result;
     IOWR_POSICAST_AXIS_LAW(stage->base, axis,
                            AS_FIELD(law, POSICAST_AXIS_LAW_LAW) | AS_FIELD(bank, POSICAST_AXIS_LAW_LAW_BANK));
     IOWR_POSICAST_STAGE_COMMIT(stage->base, 1u);
-    while (IORD_POSICAST_STAGE_COMMIT(stage->base) != 0 && result == POSICAST_OK)
-        result = posicast_pass_time(stage, &left);
-    return result;
+    return wait_for_commit(stage, &left);
 }
