@@ -27,8 +27,11 @@ enum Core {
     Shaper(Box<ShaperConfig>, Table),
     PulseCounter(Box<PulseCounterRandom>, Vec<u64>),
     SlidingMode,
-    /// Where `fault_n` is among the inputs, with the PLL's and the filtered faults behind it.
-    Pwm(usize),
+    /// Where `sync` is among the inputs, and `fault_n`, with the PLL's and the filtered faults behind it.
+    Pwm {
+        sync: usize,
+        fault_n: usize,
+    },
     Other,
 }
 
@@ -39,9 +42,14 @@ impl ComponentRandom {
             Block::Shaper(config) => Some(Core::Shaper(config.clone(), Table::with_capacity(256))),
             Block::SlidingMode => Some(Core::SlidingMode),
             Block::Pwm(_) => {
-                let ports = component.composition().ports().iter();
-                let mut inputs = ports.filter(|port| port.direction == Direction::Input);
-                inputs.position(|port| port.name == "fault_n").map(Core::Pwm)
+                let place = |name: &str| {
+                    let ports = component.composition().ports().iter();
+                    let mut inputs = ports.filter(|port| port.direction == Direction::Input);
+                    inputs.position(|port| port.name == name)
+                };
+                place("sync")
+                    .zip(place("fault_n"))
+                    .map(|(sync, fault_n)| Core::Pwm { sync, fault_n })
             }
             Block::PulseCounter => Some(Core::PulseCounter(Box::new(PulseCounterRandom::new(seed)), vec![0; 26])),
             _ => None,
@@ -114,10 +122,10 @@ impl ComponentRandom {
                 self.write("control", u32::from(random >> 12 & 3 != 0));
                 self.write("start", 0);
             }
-            Core::Pwm(_) => {
+            Core::Pwm { .. } => {
                 // Off, a short period, times near the floors, on.
                 self.write("control", 0);
-                self.write("period", 20 + (random & 0x3f));
+                self.write("period", 64 + (random & 0x3f));
                 self.write("times", (4 + (random >> 6 & 3)) | ((3 + (random >> 8 & 3)) << 16));
                 self.write("max_duty", random >> 10 & 0x7f);
                 self.write("phase", random >> 12 & 0x1f_001f);
@@ -150,7 +158,9 @@ impl Stimuli for ComponentRandom {
             // The lines are the same in both, behind `rst` and behind the bus.
             inputs[BUS_INPUTS..BUS_INPUTS + 6].copy_from_slice(&row[1..7]);
         }
-        if let Core::Pwm(fault_n) = self.core {
+        if let Core::Pwm { sync, fault_n } = self.core {
+            // Rare, since one that finds the carrier at another phase keeps it from starting until the next one.
+            inputs[sync] &= u64::from(self.registers.one_in(500));
             // Healthy, as a rule.
             for (input, healthy) in inputs[fault_n..].iter_mut().zip([1, 1, 3]) {
                 if !self.registers.one_in(1000) {

@@ -71,7 +71,7 @@ pub fn pwm(config: &PwmConfig, mode: Mode, period_clocks: u32) -> Description {
             0x18,
             guarded(),
             "clocks per period",
-            vec![clocks("period", 0, 16, "0 stands for 65536").with_reset(period_clocks & 0xffff)],
+            vec![clocks("period", 0, 16, "from 64; 0 stands for 65536").with_reset(period_clocks & 0xffff)],
         )
         .with(
             "times",
@@ -107,7 +107,7 @@ pub fn pwm(config: &PwmConfig, mode: Mode, period_clocks: u32) -> Description {
             Configuration,
             "places in the period, from the valley",
             vec![
-                clocks("phase", 0, 16, "where the carrier is when `sync` comes"),
+                clocks("phase", 0, 16, "where the carrier is when `sync` comes; below `period`"),
                 clocks("trigger_phase", 16, 16, "where `trigger` comes"),
             ],
         )
