@@ -173,7 +173,7 @@ fn cli_run_without_verilator_runs_the_loop_in_the_model_and_a_fault_is_exit_stat
     let failed = checks.iter().filter(|check| check["passed"] == false);
     let details: Vec<&str> = failed.map(|check| check["detail"].as_str().unwrap()).collect();
     assert!(
-        details[0].contains("FAULT") && details[0].contains("FollowingError"),
+        details[0].contains("FAULT") && details[0].contains("following-error"),
         "{details:?}"
     );
 }

@@ -136,9 +136,12 @@ fn is_masked(register: &Register) -> bool {
     )
 }
 
-/// The bytes of a register that are written by themselves, a bit each.
+/// The bytes of a register that are written by themselves, a bit each: those that `by_bytes` takes.
 fn bytes_alone(register: &Register) -> u32 {
-    if !is_writable(register) || is_masked(register) || register.access.whole_words() {
+    if !matches!(
+        register.access,
+        Access::Configuration | Access::Staged | Access::InterruptEnable
+    ) {
         return 0;
     }
     let reaches = |byte: &u32| register.mask() >> (8 * byte) & 0xff != 0;

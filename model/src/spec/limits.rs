@@ -22,21 +22,21 @@ const PART: NumberRange = NumberRange::closed(0.0, 1.0);
 /// Commands above a part of full scale, which the whole is not.
 const PART_BELOW: NumberRange = PART.open_above();
 
-/// Causes of which the file chooses the reaction, with their names there.
-const CHOICES: [(&str, Cause); 13] = [
-    ("drive-lost", Cause::DriveLost),
-    ("limit-plus", Cause::LimitPlus),
-    ("limit-minus", Cause::LimitMinus),
-    ("soft-limit-plus", Cause::SoftLimitPlus),
-    ("soft-limit-minus", Cause::SoftLimitMinus),
-    ("following-error", Cause::FollowingError),
-    ("deviation", Cause::Deviation),
-    ("saturation", Cause::Saturation),
-    ("encoder-lost", Cause::EncoderLost),
-    ("encoder-error", Cause::EncoderError),
-    ("segments", Cause::Segments),
-    ("watchdog", Cause::Watchdog),
-    ("schedule", Cause::Schedule),
+/// Causes of which the file chooses the reaction.
+const CHOICES: [Cause; 13] = [
+    Cause::DriveLost,
+    Cause::LimitPlus,
+    Cause::LimitMinus,
+    Cause::SoftLimitPlus,
+    Cause::SoftLimitMinus,
+    Cause::FollowingError,
+    Cause::Deviation,
+    Cause::Saturation,
+    Cause::EncoderLost,
+    Cause::EncoderError,
+    Cause::Segments,
+    Cause::Watchdog,
+    Cause::Schedule,
 ];
 
 /// Causes that switch off where the file does not say: those that leave in doubt what a quick stop needs, which is a drive
@@ -171,7 +171,9 @@ pub(super) fn read(axis: &Table<'_, '_>, table: &Table<'_, '_>, word: Option<(f6
         brake_release_s: seconds("brake_release_s"),
         brake_apply_s: seconds("brake_apply_s"),
         line_filter_s: seconds("line_filter_s"),
-        off_causes: table.choices("off", &CHOICES).map_or(default.off_causes, word_of),
+        off_causes: table
+            .choices("off", &CHOICES.map(|cause| (cause.name(), cause)))
+            .map_or(default.off_causes, word_of),
         direct_duty: table.number("direct_duty", PART).unwrap_or(default.direct_duty),
         direct_hold_s: table.number("direct_hold_s", LASTING),
         excitation: table.number("excitation", MOTION),

@@ -99,7 +99,7 @@ fn numbers(text: &mut String, map: &RegisterMap) {
 fn settings(text: &mut String) {
     text.push_str("\n/* Settings of a controller by row: docs/sliding_mode.md. A gain is mantissa * 2^-shift, the mantissa in the lowest bits. */\n");
     for row in Row::ALL {
-        let name = words(&format!("{row:?}")).to_uppercase();
+        let name = format!("{row:?}").to_uppercase();
         let _ = writeln!(text, "#define POSICAST_SETTING_{name} {}u", row as u32);
     }
     let _ = writeln!(text, "#define POSICAST_SETTINGS {SETTINGS}u");
@@ -179,22 +179,9 @@ fn causes(text: &mut String) {
     text.push_str("\n/* Bits of CAUSES, and their names from the lowest on. */\n");
     let mut names = Vec::new();
     for cause in Cause::ALL {
-        let words = words(&format!("{cause:?}"));
-        let name = words.to_uppercase().replace(' ', "_");
+        let name = cause.name().replace('-', "_").to_uppercase();
         let _ = writeln!(text, "#define POSICAST_CAUSE_{name} {:#x}u", cause.bit());
-        names.push(format!("\"{words}\""));
+        names.push(format!("\"{}\"", cause.name().replace('-', " ")));
     }
     let _ = writeln!(text, "#define POSICAST_CAUSE_NAMES {{{}}}", names.join(", "));
-}
-
-/// `EmergencyStop` as `emergency stop`.
-fn words(camel: &str) -> String {
-    let mut words = String::new();
-    for letter in camel.chars() {
-        if letter.is_ascii_uppercase() && !words.is_empty() {
-            words.push(' ');
-        }
-        words.push(letter.to_ascii_lowercase());
-    }
-    words
 }

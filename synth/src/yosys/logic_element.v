@@ -52,14 +52,15 @@ module posicast_map_carry_chain(A, B, CI, BI, X, Y, CO);
         _TECHMAP_CONSTMSK_B_, VALUE_B, _TECHMAP_CONSTVAL_CI_) : 0;
     localparam FIRST = LOW_A > LOW_B ? LOW_A : LOW_B;
 
-    // A carry into the chain that is a signal takes an element of its own,
+    // A carry into the chain that is a signal takes an element of its own, whose own carry is tied off: left open it is an
+    // unknown to whatever reads the netlist, though the table does not look at it,
     wire [Y_WIDTH:0] carry;
     generate
         if (_TECHMAP_CONSTMSK_CI_) begin
             assign carry[FIRST] = CI;
         end else begin
             cycloneive_lcell_comb #(.lut_mask(16'haaaa), .sum_lutc_input("cin")) carry_in (
-                .dataa(CI), .datab(1'b1), .datac(1'b1), .datad(1'b1), .cout(carry[0])
+                .dataa(CI), .datab(1'b1), .datac(1'b1), .datad(1'b1), .cin(1'b0), .cout(carry[0])
             );
         end
     endgenerate

@@ -49,8 +49,10 @@ fn macros() -> Vec<(String, String)> {
         .map(|state| (state.name().to_owned(), format!("3'd{}", state as u8)))
         .into();
     macros.extend(Cause::ALL.map(|cause| {
-        let name = words(&format!("{cause:?}")).to_uppercase();
-        (name, format!("16'd{}", cause.bit()))
+        (
+            cause.name().replace('-', "_").to_uppercase(),
+            format!("16'd{}", cause.bit()),
+        )
     }));
     let segments = |state: segments::State| format!("2'd{}", state as u8);
     let others = [
@@ -76,7 +78,7 @@ fn allowed() -> String {
 /// The state that follows: of the rows the first whose conditions hold. Conditions are wires, `if_tick` that of `Tick`.
 fn next() -> String {
     let rows = TRANSITIONS.iter().map(|row| {
-        let named = |condition| format!("if_{}", words(&format!("{condition:?}")));
+        let named = |condition: Condition| format!("if_{}", condition.name());
         let needed = Condition::ALL
             .into_iter()
             .filter(|condition| row.needs(*condition))
@@ -90,18 +92,6 @@ fn next() -> String {
         format!("({}) ? 3'd{} : ", all.join(" & "), row.to as u8)
     });
     format!("({}(from))", rows.collect::<String>())
-}
-
-/// `DriveReady` as `drive_ready`.
-fn words(name: &str) -> String {
-    let mut text = String::new();
-    for letter in name.chars() {
-        if letter.is_uppercase() && !text.is_empty() {
-            text.push('_');
-        }
-        text.push(letter.to_ascii_lowercase());
-    }
-    text
 }
 
 #[cfg(test)]

@@ -37,7 +37,7 @@ impl fmt::Display for Trouble {
         let names = ["OFF", "READY", "HOLD", "RUN", "QUICK_STOP", "FAULT"];
         let state = names.get(self.state as usize).copied().unwrap_or("no state");
         let causes = Cause::ALL.into_iter().filter(|cause| self.causes & cause.bit() != 0);
-        let causes: Vec<String> = causes.map(|cause| format!("{cause:?}")).collect();
+        let causes: Vec<&str> = causes.map(Cause::name).collect();
         write!(
             f,
             "axis {} should have {}, and is in {state} in clock {}",

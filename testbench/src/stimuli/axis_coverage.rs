@@ -86,7 +86,12 @@ impl AxisCoverage {
         let causes = Cause::ALL
             .into_iter()
             .zip(self.causes)
-            .flat_map(|(cause, [came, went])| [(format!("{cause:?}"), came), (format!("{cause:?} forgotten"), went)]);
+            .flat_map(|(cause, [came, went])| {
+                [
+                    (cause.name().to_owned(), came),
+                    (format!("{} forgotten", cause.name()), went),
+                ]
+            });
         let special = SPECIAL.map(str::to_owned).into_iter().zip(self.special);
         levels
             .chain(states)

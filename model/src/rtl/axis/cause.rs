@@ -58,6 +58,28 @@ impl Cause {
         Self::Schedule,
     ];
 
+    /// Its name, as the machine file has it.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::EmergencyStop => "emergency-stop",
+            Self::PwmTripped => "pwm-tripped",
+            Self::DriveLost => "drive-lost",
+            Self::LimitPlus => "limit-plus",
+            Self::LimitMinus => "limit-minus",
+            Self::SoftLimitPlus => "soft-limit-plus",
+            Self::SoftLimitMinus => "soft-limit-minus",
+            Self::FollowingError => "following-error",
+            Self::Deviation => "deviation",
+            Self::Saturation => "saturation",
+            Self::EncoderLost => "encoder-lost",
+            Self::EncoderError => "encoder-error",
+            Self::Segments => "segments",
+            Self::Watchdog => "watchdog",
+            Self::GroupStop => "group-stop",
+            Self::Schedule => "schedule",
+        }
+    }
+
     /// Its bit.
     pub const fn bit(self) -> u16 {
         1 << self as u16

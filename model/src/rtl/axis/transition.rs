@@ -99,6 +99,26 @@ impl Condition {
         Self::Cleared,
     ];
 
+    /// Its name, in small letters with underscores.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Cut => "cut",
+            Self::Fault => "fault",
+            Self::Cause => "cause",
+            Self::DriveReady => "drive_ready",
+            Self::Enable => "enable",
+            Self::Tick => "tick",
+            Self::GroupStop => "group_stop",
+            Self::Stop => "stop",
+            Self::Start => "start",
+            Self::Done => "done",
+            Self::Stopped => "stopped",
+            Self::Elapsed => "elapsed",
+            Self::Closing => "closing",
+            Self::Cleared => "cleared",
+        }
+    }
+
     const fn bit(self) -> u16 {
         1 << self as u16
     }

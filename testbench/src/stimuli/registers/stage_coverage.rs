@@ -106,7 +106,7 @@ impl StageCoverage {
         for cause in Cause::ALL {
             let of_others = alone && cause == Cause::GroupStop;
             if !of_others && !NEVER_CAUSES.contains(&cause) {
-                let name = format!("{axis} {cause:?}");
+                let name = format!("{axis} {}", cause.name());
                 self.bin(&name, &net("causes"), Counts::Rises(cause.bit().into()));
             }
         }
