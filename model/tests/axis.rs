@@ -200,7 +200,7 @@ impl Bench {
 
     fn clear(&mut self) -> Outputs {
         self.inputs.clear_faults = true;
-        self.clocks(u64::from(CLEAR_CLOCKS) + 1)
+        self.clocks(u64::from(CLEAR_CLOCKS) + 2)
     }
 }
 

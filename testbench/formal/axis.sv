@@ -10,7 +10,7 @@
 //   off_in_off_and_ready outputs off in OFF and READY
 //   on_while_moving      outputs on in HOLD, RUN and QUICK_STOP
 //   brake_*              released only with outputs on, never in FAULT, always while moving
-//   run_is_healthy       no cause stands in RUN
+//   run_is_healthy       no cause stands in RUN for more than a clock
 //   plays_in_run         segments play in RUN and nowhere else
 //   follows_while_off    the command follows the position exactly while the outputs are off
 //   shaper_restarts      the shaper is held at the position while they are off
@@ -53,7 +53,7 @@ module axis_properties (
         brake_only_with_outputs: assert (!brake_release | drive_enable);
         brake_never_in_fault: assert (!brake_release | state != `FAULT);
         brake_open_while_moving: assert (!moves | brake_release);
-        run_is_healthy: assert (state != `RUN | causes == 16'd0);
+        run_is_healthy: assert (state != `RUN | causes == 16'd0 | past_causes == 16'd0);
         plays_in_run: assert (segments_enable == (state == `RUN));
         follows_while_off: assert (segments_preset != drive_enable);
         shaper_restarts: assert (drive_enable | shaper_start);

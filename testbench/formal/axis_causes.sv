@@ -1,4 +1,4 @@
-// axis, its causes: which are latched, when they are forgotten, and what they do in the clock in which they become active.
+// axis, its causes: which are latched, when they are forgotten, and what they do, and when.
 //
 // Proven for all inputs in every clock, resets included; nothing is assumed. All is said of pins; only what the monitors have
 // found comes from inside, and axis_monitors proves that. The bits of causes, and which of them always switch off or are
@@ -6,15 +6,16 @@
 //
 //   exact_causes         each cause has its own line, flag or monitor: it is set in the clock in which that is active, by nothing
 //                        else, and stays until it is forgotten; several at once are all kept
-//   forgets_*            forgotten eight clocks after the last clear_faults, not in QUICK_STOP, not in FAULT with outputs on;
-//                        set wins
+//   forgets_*            forgotten eight clocks after the last clear_faults, not in QUICK_STOP, not in FAULT with outputs on, and
+//                        elsewhere not before what follows; set wins
 //   known_lines          own emergency stop: the filtered line is low, four clocks after a reset or later
 //   trips_pwm            pwm_trip_n is low in the clock after an emergency stop, of this axis or of another
 //   clears_sources       clear_sources is clear_faults, a clock later
-//   any_*, fault_*, cut_*  what the states are told: any cause; any but the group stop; one that switches off, a new one by this
-//                        clock's off_causes, one that stands by those of the clock before
+//   any_*, fault_*, cut_*  what the states are told, in the clock in which it becomes active of emergency stop, PWM trip and
+//                        drive, and a clock later, when it stands, of all others: any cause; any but the group stop; one that
+//                        switches off, a new one by this clock's off_causes, one that stands by those of the clock before
 //   off_at_once          outputs off and brake applied in the clock after one that switches off, in every state
-//   stop_or_fault        with a cause but the group stop, the state is QUICK_STOP, FAULT or OFF
+//   stop_or_fault        a clock after a cause but the group stop stands, the state is QUICK_STOP, FAULT or OFF
 //   tells_others         wants_group_stop is FAULT, or QUICK_STOP with a cause but the group stop
 //   not_by_itself        the axis that wants the stop does not get the group stop of it
 //
@@ -69,16 +70,17 @@ module axis_causes_properties (
         cleared <= rst ? 8'd0 : {cleared[6:0], clear_faults};
     end
     wire due = cleared[7] & ~|cleared[6:0];
-    wire forgets = due & state != `QUICK_STOP & !(state == `FAULT & drive_enable);
+    wire forgets = due & state != `QUICK_STOP & !(state == `FAULT & drive_enable)
+        & !(|(causes & ~`HARMLESS) & state != `OFF & state != `FAULT);
 
     wire        own_emergency = awake[3] & !level_emergency_stop_n;
     wire        emergency = own_emergency | group_emergency_stop;
     wire        encoder_error = encoder_illegal | encoder_disagreement | scale_illegal | scale_disagreement;
     wire        late = segments_tick_missed | velocity_missed | shaper_overrun | controller_overrun;
-    wire [15:0] active = found
-        | (emergency ? `EMERGENCY_STOP : 16'd0)
+    wire [15:0] at_once = (emergency ? `EMERGENCY_STOP : 16'd0)
         | (pwm_tripped ? `PWM_TRIPPED : 16'd0)
-        | (drive_enable & !level_drive_ready ? `DRIVE_LOST : 16'd0)
+        | (drive_enable & !level_drive_ready ? `DRIVE_LOST : 16'd0);
+    wire [15:0] active = found | at_once
         | (encoder_error ? `ENCODER_ERROR : 16'd0)
         | (segments_underrun | segments_overflow ? `SEGMENTS : 16'd0)
         | (drive_enable & group_stop & !wants_group_stop ? `GROUP_STOP : 16'd0)
@@ -89,7 +91,8 @@ module axis_causes_properties (
     wire [15:0] off = (off_causes | `ALWAYS_OFF) & ~`HARMLESS;
     reg  [15:0] past_off_causes = 16'd0;
     wire [15:0] past_off = (past_off_causes | `ALWAYS_OFF) & ~`HARMLESS;
-    wire        cut = |(active & off) | |(standing & past_off);
+    wire        cut = |(at_once & off) | |(causes & past_off);
+    wire [15:0] seen = causes | at_once;
 
     reg         past_reset = 1'b1;
     reg         past_cut = 1'b0;
@@ -98,6 +101,7 @@ module axis_causes_properties (
     reg         past_wants = 1'b0;
     reg  [2:0]  past_state = `OFF;
     reg  [15:0] past_causes = 16'd0;
+    reg         just_noted = 1'b0;
     reg  [15:0] expected = 16'd0;
     always @(posedge clk) begin
         past_reset <= rst;
@@ -108,6 +112,7 @@ module axis_causes_properties (
         past_wants <= wants_group_stop;
         past_state <= state;
         past_causes <= causes;
+        just_noted <= !rst & (seen & ~`HARMLESS) == 16'd0;
         expected <= rst ? 16'd0 : now;
     end
 
@@ -119,12 +124,12 @@ module axis_causes_properties (
         known_lines: assert (emergency_stop == own_emergency);
         trips_pwm: assert (pwm_trip_n != past_emergency);
         clears_sources: assert (clear_sources == past_clear);
-        any_cause_at_once: assert (states_any_cause == |now);
-        fault_at_once: assert (states_fault == |(now & ~`HARMLESS));
+        any_cause_at_once: assert (states_any_cause == (|seen | (drive_enable & group_stop)));
+        fault_at_once: assert (states_fault == |(seen & ~`HARMLESS));
         cut_at_once: assert (states_cut == cut);
         off_at_once: assert (!past_cut | (!drive_enable & !pwm_enable & !brake_release));
         cut_is_a_fault: assert (!past_cut | state == `FAULT | state == `OFF);
-        stop_or_fault: assert (harmful == 16'd0 | state == `QUICK_STOP | state == `FAULT | state == `OFF);
+        stop_or_fault: assert (harmful == 16'd0 | just_noted | state == `QUICK_STOP | state == `FAULT | state == `OFF);
         tells_others: assert (wants_group_stop == (state == `FAULT | (state == `QUICK_STOP & harmful != 16'd0)));
         not_by_itself: assert (past_reset | !past_wants | (causes & ~past_causes & `GROUP_STOP) == 16'd0);
     end

@@ -58,6 +58,7 @@ module axis_table_properties (
     (* peek = "u_cause_word.had_fault_q" *) input wire had_fault,
     (* peek = "primed" *) input wire [3:0] primed,
     (* peek = "clear_left" *) input wire [3:0] clear_left,
+    (* peek = "u_states.cleared" *) input wire forgotten,
     (* peek = "clear_due" *) input wire clear_due
 );
     // Lines count from the fifth clock after a reset on.
@@ -89,11 +90,13 @@ module axis_table_properties (
     wire if_start = wants_start & able;
     wire if_done = segments_state == `SEGMENTS_HOLD & segments_empty;
     wire if_stopped = segments_state == `SEGMENTS_STOPPED;
-    wire forgets = cleared[7] & ~|cleared[6:0] & state != `QUICK_STOP & !(state == `FAULT & drive_enable);
-    wire if_cleared = forgets & !if_cause;
+    wire forgets = cleared[7] & ~|cleared[6:0] & state != `QUICK_STOP & !(state == `FAULT & drive_enable)
+        & !(|(causes & ~`HARMLESS) & state != `OFF & state != `FAULT);
+    wire if_cleared = past_forgets & !drive_enable & !if_cause;
 
     reg       past_reset = 1'b1;
     reg       past_tick = 1'b0;
+    reg       past_forgets = 1'b0;
     reg       past_wants = 1'b0;
     reg       past_able = 1'b0;
     reg       past_quick = 1'b0;
@@ -105,6 +108,7 @@ module axis_table_properties (
     always @(posedge clk) begin
         past_reset <= rst;
         past_tick <= tick & !rst;
+        past_forgets <= forgets & !rst;
         past_wants <= wants_start & !rst;
         past_able <= able & enable & !if_group_stop & !if_cause & !rst;
         past_quick <= segments_state != 2'd2 & segments_state != `SEGMENTS_STOPPED & !rst;
@@ -138,6 +142,7 @@ module axis_table_properties (
         cleared[4] ? 4'd4 : cleared[5] ? 4'd3 : cleared[6] ? 4'd2 : cleared[7] ? 4'd1 : 4'd0;
     always @(*) begin
         lines_wait: assert (primed == awake);
+        forgotten_known: assert (forgotten == past_forgets);
         clear_counts: assert (clear_left == left & clear_due == (cleared[7] & ~|cleared[6:0]));
         on_by_state: assert (state == `FAULT | drive_enable == (state == `HOLD | state == `RUN | state == `QUICK_STOP));
         brake_by_state: assert (!if_closing | state == `HOLD | state == `FAULT);

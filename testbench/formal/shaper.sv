@@ -55,6 +55,7 @@ module shaper_properties (
     (* peek = "u_banks.word" *) input wire [23:0] word,
     (* peek = "u_history.head" *) input wire [5:0] head,
     (* peek = "u_history.age" *) input wire [5:0] age,
+    (* peek = "u_history.origin" *) input wire [5:0] origin,
     (* peek = "u_history.next_head" *) input wire [5:0] ring_write_address,
     (* peek = "u_history.begun" *) input wire begun,
     (* peek = "u_history.started" *) input wire started,
@@ -183,6 +184,7 @@ module shaper_properties (
         address_not_written: assert (ring_read_address != ring_write_address | delay == 6'd63);
         before_known: assert (blank == (from_start & !own_started));
         age_known: assert (age == samples & started == own_started & begun == own_begun & (begun | (!started & age == 6'd0)));
+        origin_known: assert (age == 6'd63 | origin == head - age);
         age_head: assert (past_reset | head_moved == {5'd0, past_strobe | past_start});
         age_written: assert (ring_write_address == head + 6'd1 & ring_writes == (strobe | start));
     end

@@ -81,6 +81,7 @@ module shaper_motion_properties (
     (* peek = "u_handover.delay_q" *) input wire [5:0] made_delay,
     (* peek = "u_history.head" *) input wire [5:0] head,
     (* peek = "u_history.age" *) input wire [5:0] age,
+    (* peek = "u_history.origin" *) input wire [5:0] origin,
     (* peek = "u_history.begun" *) input wire begun,
     (* peek = "u_history.started" *) input wire started,
     (* peek = "u_history.next_head" *) input wire [5:0] written,
@@ -320,6 +321,7 @@ module shaper_motion_properties (
         ring_not_written: assert (asked_for != next_head | made_delay == 6'd63);
         ring_written: assert (written == next_head & writes == (strobe | start));
         ring_age: assert (age == samples & started == own_started & begun == own_begun & (begun | (!started & age == 6'd0)));
+        ring_origin: assert (age == 6'd63 | origin == head - age);
         ring_head: assert (past_reset | head_moved == {5'd0, past_strobe | past_start});
         ring_blank: assert (blank == (from_start & !own_started));
     end

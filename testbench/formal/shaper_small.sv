@@ -53,6 +53,7 @@ module shaper_small_properties (
     (* peek = "u_banks.u_loaded_taps.words[7]" *) input wire [19:0] word_7,
     (* peek = "u_history.head" *) input wire [1:0] head,
     (* peek = "u_history.age" *) input wire [1:0] age,
+    (* peek = "u_history.origin" *) input wire [1:0] origin,
     (* peek = "u_history.begun" *) input wire begun,
     (* peek = "u_history.started" *) input wire started,
     (* peek = "u_history.sample_0" *) input wire signed [5:0] sample,
@@ -108,6 +109,7 @@ module shaper_small_properties (
     wire [5:0]  in_ring_2 = ring[6 * at_2 +: 6];
     always @(*) begin
         ring_age: assert (age == samples & begun == own_begun & started == own_started & (begun | (!started & age == 2'd0)));
+        ring_origin: assert (age == 2'd3 | origin == head - age);
         ring_newest: assert (history_0 == (begun ? in_ring_0 : 6'd0));
         ring_second: assert (history_1 == (started | samples >= 2'd1 ? in_ring_1 : 6'd0));
         ring_third: assert (history_2 == (started | samples >= 2'd2 ? in_ring_2 : 6'd0));

@@ -92,12 +92,7 @@ fn lockstep_catches_a_limit_that_blocks_the_way_back() {
 
 #[test]
 fn lockstep_catches_a_clear_that_forgets_what_is_active() {
-    caught(
-        &block(),
-        "= kept | active",
-        "= kept | (forget ? 16'd0 : active)",
-        200_000,
-    );
+    caught(&block(), "| watched", "| (forget ? 16'd0 : watched)", 200_000);
 }
 
 #[test]

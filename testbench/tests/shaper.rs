@@ -300,8 +300,8 @@ fn lockstep_catches_a_handover_that_goes_wrong() {
 fn lockstep_catches_a_broken_address_bit() {
     caught_in(
         standard(),
-        "assign address = head - back;",
-        "assign address = (head - back) & 7'h7e;",
+        "address = head - delay;",
+        "address = (head - delay) & 7'h7e;",
     );
 }
 

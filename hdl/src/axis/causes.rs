@@ -1,6 +1,7 @@
-//! The cause word, and what follows from it in the clock in which a cause becomes active.
+//! The cause word, and what follows from it: of emergency stop, PWM trip and lost drive in the clock in which they become active,
+//! of all others when they stand, a clock later.
 //!
-//! What follows from causes that stand is registered with them, so that only new ones are on the way to the state.
+//! What follows from causes that stand is registered with them, so that only three lines are on the way to the state.
 
 use crate::prelude::*;
 use posicast_model::rtl::axis::{ALWAYS_OFF, Cause, HARMLESS};
@@ -16,6 +17,7 @@ pub(super) struct Causes {
     pub(super) encoder_error: Signal<In, Bit>,
     pub(super) segments_failed: Signal<In, Bit>,
     pub(super) group_stops: Signal<In, Bit>,
+    pub(super) group_stop: Signal<In, Bit>,
     pub(super) late: Signal<In, Bit>,
     pub(super) watched: Signal<In, Bits<16>>,
     pub(super) off_causes: Signal<In, Bits<16>>,
@@ -40,13 +42,12 @@ pub(super) struct Causes {
     lines: Signal<Local, Bits<16>>,
     flags: Signal<Local, Bits<16>>,
     now: Signal<Local, Bits<16>>,
-    active: Signal<Local, Bits<16>>,
     harmful: Signal<Local, Bits<16>>,
     off: Signal<Local, Bits<16>>,
     cutting: Signal<Local, Bits<16>>,
     cutting_now: Signal<Local, Bits<16>>,
     harmless: Signal<Local, Bits<16>>,
-    stays: Signal<Local, Bit>,
+    switches_off: Signal<Local, Bit>,
 
     no_causes: Constant<Bits<16>>,
     of_emergency: Constant<Bits<16>>,
@@ -72,6 +73,7 @@ impl Default for Causes {
             encoder_error: Signal::default(),
             segments_failed: Signal::default(),
             group_stops: Signal::default(),
+            group_stop: Signal::default(),
             late: Signal::default(),
             watched: Signal::default(),
             off_causes: Signal::default(),
@@ -94,13 +96,12 @@ impl Default for Causes {
             lines: Signal::default(),
             flags: Signal::default(),
             now: Signal::default(),
-            active: Signal::default(),
             harmful: Signal::default(),
             off: Signal::default(),
             cutting: Signal::default(),
             cutting_now: Signal::default(),
             harmless: Signal::default(),
-            stays: Signal::default(),
+            switches_off: Signal::default(),
             no_causes: Constant::new(from_u64(0)),
             of_emergency: Constant::new(from_u64(u64::from(Cause::EmergencyStop.bit()))),
             of_tripped: Constant::new(from_u64(u64::from(Cause::PwmTripped.bit()))),
@@ -156,23 +157,23 @@ impl Logic for Causes {
         if self.forget.val() {
             self.kept.next = self.no_causes.val();
         }
-        self.active.next = self.lines.val() | self.flags.val() | self.watched.val();
-        self.now.next = self.kept.val() | self.active.val();
+        self.now.next = self.kept.val() | self.lines.val() | self.flags.val() | self.watched.val();
         self.causes_q.d.next = self.now.val();
 
-        comment!("What follows: at once of new ones");
-        self.stays.next = !self.forget.val();
+        comment!("What follows: at once of these lines,");
         self.off.next = (self.off_causes.val() | self.always_off.val()) & self.harmful_causes.val();
-        self.harmful.next = self.active.val() & self.harmful_causes.val();
-        self.cutting.next = self.active.val() & self.off.val();
-        self.harmless.next = self.now.val() & !self.harmful_causes.val();
-        self.fault.next = self.harmful.val().any() | (self.had_fault_q.q.val() & self.stays.val());
-        self.any_cause.next = self.fault.val() | self.harmless.val().any();
-        self.cut.next = self.cutting.val().any() | (self.had_cut_q.q.val() & self.stays.val());
+        self.harmless.next = self.causes_q.q.val() & !self.harmful_causes.val();
+        self.switches_off.next = self.emergency.val() | self.tripped.val();
+        self.fault.next = self.switches_off.val() | self.drive_lost.val() | self.had_fault_q.q.val();
+        self.cutting.next = self.by_drive_lost.val() & self.off.val();
+        self.cut.next = self.switches_off.val() | self.cutting.val().any() | self.had_cut_q.q.val();
+        comment!("(whose own stop it is asks in no state for it)");
+        self.any_cause.next = self.fault.val() | self.harmless.val().any() | self.group_stop.val();
 
-        comment!("And of those that stand, a clock later");
+        comment!("of all that stand a clock later");
+        self.harmful.next = self.now.val() & self.harmful_causes.val();
         self.cutting_now.next = self.now.val() & self.off.val();
-        self.had_fault_q.d.next = self.fault.val();
+        self.had_fault_q.d.next = self.harmful.val().any();
         self.had_cut_q.d.next = self.cutting_now.val().any();
         self.had_fault.next = self.had_fault_q.q.val();
         self.causes.next = self.causes_q.q.val();

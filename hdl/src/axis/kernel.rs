@@ -111,7 +111,7 @@ pub(super) struct Axis {
     filters: Signal<Local, Bit>,
     own_emergency: Signal<Local, Bit>,
     emergency: Signal<Local, Bit>,
-    others_stop: Signal<Local, Bit>,
+    group_stops: Signal<Local, Bit>,
     encoder: Signal<Local, Bit>,
     scale: Signal<Local, Bit>,
 
@@ -223,7 +223,7 @@ impl Default for Axis {
             filters: Signal::default(),
             own_emergency: Signal::default(),
             emergency: Signal::default(),
-            others_stop: Signal::default(),
+            group_stops: Signal::default(),
             encoder: Signal::default(),
             scale: Signal::default(),
             first_clock: Constant::new(from_u64(1)),
@@ -307,7 +307,6 @@ impl Logic for Axis {
         self.own_emergency.next = self.ready.val() & !self.emergency_stop_line.level.val();
         self.emergency.next = self.own_emergency.val() | self.group_emergency_stop.val();
         self.tripping.d.next = self.emergency.val();
-        self.others_stop.next = self.group_stop.val() & !self.states.wants_group_stop.val();
         self.encoder.next = self.encoder_illegal.val() | self.encoder_disagreement.val();
         self.scale.next = self.scale_illegal.val() | self.scale_disagreement.val();
         self.cause_word.clk.next = self.clk.val();
@@ -318,7 +317,9 @@ impl Logic for Axis {
         self.cause_word.drive_lost.next = self.states.on.val() & !self.drive_line.level.val();
         self.cause_word.encoder_error.next = self.encoder.val() | self.scale.val();
         self.cause_word.segments_failed.next = self.segments_underrun.val() | self.segments_overflow.val();
-        self.cause_word.group_stops.next = self.states.on.val() & self.others_stop.val();
+        self.group_stops.next = self.states.on.val() & self.group_stop.val();
+        self.cause_word.group_stops.next = self.group_stops.val() & !self.states.wants_group_stop.val();
+        self.cause_word.group_stop.next = self.group_stops.val();
         self.cause_word.late.next = self.segments_tick_missed.val()
             | self.velocity_missed.val()
             | self.shaper_overrun.val()
@@ -340,7 +341,7 @@ impl Logic for Axis {
         self.states.clk.next = self.clk.val();
         self.states.rst.next = self.rst.val();
         self.states.drive_ready.next = self.ready.val() & self.drive_line.level.val();
-        self.states.group_stop.next = self.others_stop.val();
+        self.states.group_stop.next = self.group_stop.val();
         self.states.clear_due.next = self.clear_due.q.val();
         self.states.tick.next = self.tick.val();
         self.states.enable.next = self.enable.val();

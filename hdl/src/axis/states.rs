@@ -66,6 +66,7 @@ pub(super) struct States {
     disabled_q: Dff<Bit>,
     faulted_q: Dff<Bit>,
     refused_q: Dff<Bit>,
+    cleared: Dff<Bit>,
 
     in_off: Signal<Local, Bit>,
     in_ready: Signal<Local, Bit>,
@@ -176,6 +177,7 @@ impl Default for States {
             disabled_q: Dff::default(),
             faulted_q: Dff::default(),
             refused_q: Dff::default(),
+            cleared: Dff::default(),
             in_off: Signal::default(),
             in_ready: Signal::default(),
             in_hold: Signal::default(),
@@ -253,7 +255,8 @@ impl Logic for States {
             halted_q,
             disabled_q,
             faulted_q,
-            refused_q
+            refused_q,
+            cleared
         );
         self.in_off.next = self.state_q.q.val() == self.off_state.val();
         self.in_ready.next = self.state_q.q.val() == self.ready_state.val();
@@ -275,8 +278,12 @@ impl Logic for States {
         self.start_waits.d.next = self.wants_start.val() & !self.tick.val();
 
         comment!("Conditions of transitions");
-        self.clears.next = self.clear_due.val() & !self.in_stop.val() & !(self.in_fault.val() & self.on_q.q.val());
+        self.clears.next = self.clear_due.val()
+            & !self.in_stop.val()
+            & !(self.in_fault.val() & self.on_q.q.val())
+            & !(self.had_fault.val() & !self.in_off.val() & !self.in_fault.val());
         self.forget.next = self.clears.val();
+        self.cleared.d.next = self.clears.val();
         self.asked.next = self.stop.val() | self.group_stop.val() | !self.enable.val();
         self.done.next = self.tick.val() & self.segments_hold.val() & self.segments_empty.val();
         self.at_rest.next = self.timed_out.val() & self.segments_stopped.val();
@@ -298,7 +305,7 @@ impl Logic for States {
         self.stop_to_hold.next = self.in_stop.val() & self.at_rest.val() & !self.fault.val();
         self.to_off.next = (self.in_ready.val() & !self.drive_ready.val() & !self.fault.val())
             | self.hold_to_off.val()
-            | (self.in_fault.val() & self.clears.val() & !self.any_cause.val());
+            | (self.in_fault.val() & self.cleared.q.val() & !self.on_q.q.val() & !self.any_cause.val());
         self.to_hold.next = self.ready_to_hold.val() | self.run_to_hold.val() | self.stop_to_hold.val();
         self.to_stop.next = self.hold_to_stop.val() | self.run_to_stop.val();
         self.to_fault.next =

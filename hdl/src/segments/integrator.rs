@@ -36,7 +36,9 @@ pub(super) struct Integrator {
     exact_velocity: Dff<Bits<48>>,
     exact_acceleration: Dff<Bits<40>>,
     ticks: Dff<Bits<24>>,
-    entry_byte: Dff<Bits<8>>,
+    entry_half: Dff<Bits<16>>,
+    upper_byte: Dff<Bit>,
+    blank: Dff<Bit>,
     carry: Dff<Bit>,
     jerk_failed: Dff<Bit>,
     speed_failed: Dff<Bit>,
@@ -44,6 +46,7 @@ pub(super) struct Integrator {
     velocity_ends: Dff<Bit>,
     acceleration_ends: Dff<Bit>,
 
+    entry_byte: Signal<Local, Bits<8>>,
     augend: Signal<Local, Bits<8>>,
     addend: Signal<Local, Bits<8>>,
     chosen: Signal<Local, Bits<8>>,
@@ -105,13 +108,16 @@ impl Default for Integrator {
             exact_velocity: Dff::default(),
             exact_acceleration: Dff::default(),
             ticks: Dff::default(),
-            entry_byte: Dff::default(),
+            entry_half: Dff::default(),
+            upper_byte: Dff::default(),
+            blank: Dff::default(),
             carry: Dff::default(),
             jerk_failed: Dff::default(),
             speed_failed: Dff::default(),
             moving: Dff::default(),
             velocity_ends: Dff::default(),
             acceleration_ends: Dff::default(),
+            entry_byte: Signal::default(),
             augend: Signal::default(),
             addend: Signal::default(),
             chosen: Signal::default(),
@@ -158,7 +164,9 @@ impl Logic for Integrator {
             exact_velocity,
             exact_acceleration,
             ticks,
-            entry_byte,
+            entry_half,
+            upper_byte,
+            blank,
             carry,
             jerk_failed,
             speed_failed,
@@ -175,22 +183,20 @@ impl Logic for Integrator {
         self.passes.speed_failed.next = self.speed_failed.q.val();
         self.passes.moving.next = self.moving.q.val();
 
-        comment!("A byte of the entry");
+        comment!("A byte of the entry: half a word first, since");
+        comment!("what a memory shows comes late in its clock");
+        self.entry_half.d.next = self.read_data.val().get_bits::<16>(0);
         if self.passes.read_byte_1.val() {
-            if self.passes.read_byte_0.val() {
-                self.entry_byte.d.next = self.read_data.val().get_bits::<8>(24);
-            } else {
-                self.entry_byte.d.next = self.read_data.val().get_bits::<8>(16);
-            }
-        } else {
-            if self.passes.read_byte_0.val() {
-                self.entry_byte.d.next = self.read_data.val().get_bits::<8>(8);
-            } else {
-                self.entry_byte.d.next = self.read_data.val().get_bits::<8>(0);
-            }
+            self.entry_half.d.next = self.read_data.val().get_bits::<16>(16);
         }
-        if self.passes.blank.val() {
-            self.entry_byte.d.next = self.nil.val();
+        self.upper_byte.d.next = self.passes.read_byte_0.val();
+        self.blank.d.next = self.passes.blank.val();
+        self.entry_byte.next = self.entry_half.q.val().get_bits::<8>(0);
+        if self.upper_byte.q.val() {
+            self.entry_byte.next = self.entry_half.q.val().get_bits::<8>(8);
+        }
+        if self.blank.q.val() {
+            self.entry_byte.next = self.nil.val();
         }
 
         comment!("One adder of a byte");
@@ -213,7 +219,7 @@ impl Logic for Integrator {
         }
         self.gathered.next = self.chosen.val();
         if self.moves.val() {
-            self.gathered.next = self.chosen.val() | self.entry_byte.q.val();
+            self.gathered.next = self.chosen.val() | self.entry_byte.val();
         }
         self.addend.next = self.gathered.val();
         if self.passes.invert.val() {

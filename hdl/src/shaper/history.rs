@@ -2,7 +2,8 @@
 //!
 //! A ring of 2^A words in block RAM per channel, the newest word at `head`. A strobe writes `x` behind it, a start as well,
 //! and from then on `age` counts the strobes, so that the start's word lies that many words back. What `delay` asks for stands
-//! at `sample` one clock later: `ring[head − min(delay, age)]`, and so, of all before the start, the start's own word.
+//! at `sample` one clock later: `ring[head − min(delay, age)]`, and so, of all before the start, the start's own word. Where that
+//! lies is kept in `origin`, so that difference and comparison go side by side.
 //!
 //! After a reset `age` counts from the first strobe. What lies before that is 0, which no ring holds: `blank` tells of it, a
 //! clock before its sample. So no word is used that was not written since the reset.
@@ -27,13 +28,13 @@ pub(super) struct History<const W: usize, const A: usize, const C: usize> {
 
     head: Dff<Bits<A>>,
     age: Dff<Bits<A>>,
+    origin: Dff<Bits<A>>,
     begun: Dff<Bit>,
     started: Dff<Bit>,
 
     writes: Signal<Local, Bit>,
     next_head: Signal<Local, Bits<A>>,
     before_start: Signal<Local, Bit>,
-    back: Signal<Local, Bits<A>>,
     address: Signal<Local, Bits<A>>,
 
     one_sample: Constant<Bits<A>>,
@@ -55,12 +56,12 @@ impl<const W: usize, const A: usize, const C: usize> Default for History<W, A, C
             ring: std::array::from_fn(|_| Ram::default()),
             head: Dff::default(),
             age: Dff::default(),
+            origin: Dff::default(),
             begun: Dff::default(),
             started: Dff::default(),
             writes: Signal::default(),
             next_head: Signal::default(),
             before_start: Signal::default(),
-            back: Signal::default(),
             address: Signal::default(),
             one_sample: Constant::new(from_u64(1)),
             no_age: Constant::new(from_u64(0)),
@@ -77,7 +78,7 @@ impl<const W: usize, const A: usize, const C: usize> Logic for History<W, A, C> 
         comment!("@about ring behind its word, which also stands");
         comment!("@about for all before: 0 if there was none.");
         comment!("@about sample: that of delay one clock before.");
-        dff_setup!(self, clk, head, age, begun, started);
+        dff_setup!(self, clk, head, age, origin, begun, started);
 
         comment!("A strobe adds x; a start too, and forgets");
         self.writes.next = self.strobe.val() | self.start.val();
@@ -93,14 +94,16 @@ impl<const W: usize, const A: usize, const C: usize> Logic for History<W, A, C> 
             self.age.d.next = self.no_age.val();
             self.started.d.next = true;
         }
+        if self.start.val() | (self.strobe.val() & !self.begun.q.val()) {
+            self.origin.d.next = self.next_head.val();
+        }
 
         comment!("The sample that lies delay samples back");
         self.before_start.next = self.delay.val() > self.age.q.val();
-        self.back.next = self.delay.val();
+        self.address.next = self.head.q.val() - self.delay.val();
         if self.before_start.val() {
-            self.back.next = self.age.q.val();
+            self.address.next = self.origin.q.val();
         }
-        self.address.next = self.head.q.val() - self.back.val();
         self.blank.next = self.before_start.val() & !self.started.q.val();
         for i in 0..C {
             self.ring[i].clk.next = self.clk.val();

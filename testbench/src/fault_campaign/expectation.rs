@@ -52,10 +52,10 @@ pub enum Seen {
 }
 
 impl Seen {
-    /// Clocks from then to the state: a flag is a cause at once, the rest is compared first.
+    /// Clocks from then to the state: a flag is a cause and then acts, the rest is compared first.
     pub(super) fn clocks(self) -> u64 {
         match self {
-            Self::Segments => 1,
+            Self::Segments => 2,
             Self::FollowingError | Self::Deviation | Self::Stuck | Self::SoftLimit => WATCH_CLOCKS.into(),
         }
     }

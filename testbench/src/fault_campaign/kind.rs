@@ -70,8 +70,8 @@ const RAW: Due = Due::Clocks(4);
 const DRIVE_FAULT: Due = Due::Clocks(FILTER_CLOCKS + 6);
 /// From the bus to the state: the bus's register, the command's, the state.
 const HOST: Due = Due::Clocks(4);
-/// From the encoder's lines to the state: synchroniser, filter, counter, state.
-const ENCODER: Due = Due::Clocks(FILTER_CLOCKS + 5);
+/// From the encoder's lines to the state: synchroniser, filter, counter, cause, state.
+const ENCODER: Due = Due::Clocks(FILTER_CLOCKS + 6);
 /// What an axis that no longer follows ends in.
 const LOST: u16 = bits(&[
     Cause::FollowingError,

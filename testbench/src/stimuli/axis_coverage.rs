@@ -2,7 +2,8 @@
 
 use posicast_model::rtl::Direction;
 use posicast_model::rtl::axis::{
-    Cause, HARMLESS, INPUT_PORTS, Inputs, LINE_CLOCKS, OUTPUT_PORTS, Outputs, State, TRANSITIONS, ports, switching_off,
+    AT_ONCE, Cause, HARMLESS, INPUT_PORTS, Inputs, LINE_CLOCKS, OUTPUT_PORTS, Outputs, State, TRANSITIONS, ports,
+    switching_off,
 };
 
 /// Inputs and outputs of a clock, typed.
@@ -161,7 +162,6 @@ impl AxisSafety {
             (released && !on, "brake released with the outputs off"),
             (released && state == State::Fault, "brake released in FAULT"),
             (moves && !released, "motion against the brake"),
-            (state == State::Run && shown.causes != 0, "RUN with a cause"),
             (
                 shown.segments_enable != (state == State::Run),
                 "segments play outside of RUN",
@@ -212,16 +212,20 @@ impl AxisSafety {
         }
         // Causes that stand switch off by what `off_causes` was when they were registered.
         let stand = before.causes & shown.causes;
-        let cut = switching_off(shown.causes & !stand, inputs.off_causes) != 0
+        let lines = shown.causes & !stand & AT_ONCE;
+        let cut = switching_off(lines, inputs.off_causes) != 0
             || switching_off(stand, inputs.off_causes & self.off_causes) != 0;
         let at_once = inputs.pwm_tripped || inputs.group_emergency_stop;
         let is_off = !shown.drive_enable && matches!(to, State::Fault | State::Off);
         if (cut || at_once) && !is_off {
             self.violated("outputs on a clock after a cause that switches off");
         }
-        let came = shown.causes & !before.causes & !HARMLESS != 0;
-        if came && matches!(to, State::Ready | State::Hold | State::Run) {
+        let acts = lines | stand;
+        if acts & !HARMLESS != 0 && matches!(to, State::Ready | State::Hold | State::Run) {
             self.violated("a cause without a stop");
+        }
+        if acts != 0 && to == State::Run {
+            self.violated("RUN with a cause");
         }
     }
 }

@@ -41,7 +41,7 @@ fn formal_a_pass_that_ends_a_tap_early_is_found() {
 
 #[test]
 fn formal_a_sample_of_the_wrong_side_is_found() {
-    fails("shaper", "= head - back", "= head + back", "address");
+    fails("shaper", "= head - delay", "= head + delay", "address");
 }
 
 #[test]

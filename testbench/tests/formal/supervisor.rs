@@ -52,9 +52,9 @@ fn formal_a_row_of_less_priority_that_is_taken_is_found() {
 fn formal_a_cause_that_is_cleared_while_it_is_active_is_found() {
     fails(
         "axis_causes",
-        "now = kept | active",
-        "now = forget ? kept : kept | active",
-        "any_cause_at_once",
+        "| watched;",
+        "| (forget ? 16'd0 : watched);",
+        "exact_causes",
     );
 }
 

@@ -6,7 +6,7 @@
 //
 // parameter     value  meaning
 // line_clocks   4      from a line to the state, and filter_clocks more
-// watch_clocks  12     from a tick to the state, for what is watched at ticks
+// watch_clocks  13     from a tick to the state, for what is watched at ticks
 // clear_clocks  8      from clear_faults until causes that are over are forgotten
 
 `default_nettype none
@@ -104,7 +104,7 @@ module xy_stage_stage_axis (
     wire               filters;
     wire               own_emergency;
     wire               emergency;
-    wire               others_stop;
+    wire               group_stops;
     wire               encoder;
     wire               scale;
     wire               emergency_stop_line_level;
@@ -237,6 +237,7 @@ module xy_stage_stage_axis (
         .encoder_error   (cause_word_encoder_error),
         .segments_failed (cause_word_segments_failed),
         .group_stops     (cause_word_group_stops),
+        .group_stop      (group_stops),
         .late            (cause_word_late),
         .watched         (monitors_causes),
         .off_causes      (off_causes),
@@ -255,7 +256,7 @@ module xy_stage_stage_axis (
         .start               (start),
         .stop                (stop),
         .drive_ready         (states_drive_ready),
-        .group_stop          (others_stop),
+        .group_stop          (group_stop),
         .any_cause           (cause_word_any_cause),
         .fault               (cause_word_fault),
         .cut                 (cause_word_cut),
@@ -305,13 +306,13 @@ module xy_stage_stage_axis (
     // Causes
     assign own_emergency = ready & !emergency_stop_line_level;
     assign emergency = own_emergency | group_emergency_stop;
-    assign others_stop = group_stop & !states_wants_group_stop;
     assign encoder = encoder_illegal | encoder_disagreement;
     assign scale = scale_illegal | scale_disagreement;
     assign cause_word_drive_lost = states_on & !drive_line_level;
     assign cause_word_encoder_error = encoder | scale;
     assign cause_word_segments_failed = segments_underrun | segments_overflow;
-    assign cause_word_group_stops = states_on & others_stop;
+    assign group_stops = states_on & group_stop;
+    assign cause_word_group_stops = group_stops & !states_wants_group_stop;
     assign cause_word_late = ((segments_tick_missed | velocity_missed) | shaper_overrun) | controller_overrun;
 
     // Sources are cleared first, causes later

@@ -16,6 +16,7 @@ module xy_stage_stage_axis_causes (
     input  wire        encoder_error,
     input  wire        segments_failed,
     input  wire        group_stops,
+    input  wire        group_stop,
     input  wire        late,
     input  wire [15:0] watched,
     input  wire [15:0] off_causes,
@@ -47,35 +48,37 @@ module xy_stage_stage_axis_causes (
     wire [15:0] lines;
     wire [15:0] flags;
     wire [15:0] now;
-    wire [15:0] active;
     wire [15:0] harmful;
     wire [15:0] off;
     wire [15:0] cutting;
     wire [15:0] cutting_now;
     wire [15:0] harmless;
-    wire        stays;
+    wire        switches_off;
     reg  [15:0] causes_q;
     reg         had_fault_q;
+    wire        had_fault_q_next;
     reg         had_cut_q;
     wire        had_cut_q_next;
 
     assign lines = ((by_emergency | by_tripped) | by_drive_lost) | by_group_stops;
     assign flags = (by_encoder_error | by_segments_failed) | by_late;
-    assign active = (lines | flags) | watched;
-    assign now = kept | active;
+    assign now = ((kept | lines) | flags) | watched;
 
-    // What follows: at once of new ones
-    assign stays = !forget;
+    // What follows: at once of these lines,
     assign off = (off_causes | ALWAYS_OFF) & HARMFUL_CAUSES;
-    assign harmful = active & HARMFUL_CAUSES;
-    assign cutting = active & off;
-    assign harmless = now & ~HARMFUL_CAUSES;
-    assign fault = (|harmful) | (had_fault_q & stays);
-    assign any_cause = fault | (|harmless);
-    assign cut = (|cutting) | (had_cut_q & stays);
+    assign harmless = causes_q & ~HARMFUL_CAUSES;
+    assign switches_off = emergency | tripped;
+    assign fault = (switches_off | drive_lost) | had_fault_q;
+    assign cutting = by_drive_lost & off;
+    assign cut = (switches_off | (|cutting)) | had_cut_q;
 
-    // And of those that stand, a clock later
+    // (whose own stop it is asks in no state for it
+    assign any_cause = (fault | (|harmless)) | group_stop;
+
+    // of all that stand a clock later
+    assign harmful = now & HARMFUL_CAUSES;
     assign cutting_now = now & off;
+    assign had_fault_q_next = (|harmful);
     assign had_cut_q_next = (|cutting_now);
     assign had_fault = had_fault_q;
     assign causes = causes_q;
@@ -122,7 +125,7 @@ module xy_stage_stage_axis_causes (
             had_cut_q <= 1'd0;
         end else begin
             causes_q <= now;
-            had_fault_q <= fault;
+            had_fault_q <= had_fault_q_next;
             had_cut_q <= had_cut_q_next;
         end
     end

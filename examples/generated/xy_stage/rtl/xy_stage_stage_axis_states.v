@@ -124,6 +124,7 @@ module xy_stage_stage_axis_states (
     reg        faulted_q;
     reg        refused_q;
     wire       refused_q_next;
+    reg        cleared;
 
     xy_stage_stage_axis_timer u_timer (
         .clk                 (clk),
@@ -156,7 +157,7 @@ module xy_stage_stage_axis_states (
     assign start_waits_next = wants_start & !tick;
 
     // Conditions of transitions
-    assign clears = (clear_due & !in_stop) & !(in_fault & on_q);
+    assign clears = ((clear_due & !in_stop) & !(in_fault & on_q)) & !((had_fault & !in_off) & !in_fault);
     assign forget = clears;
     assign asked = (stop | group_stop) | !enable;
     assign done = (tick & segments_hold) & segments_empty;
@@ -177,7 +178,7 @@ module xy_stage_stage_axis_states (
     assign run_to_hold = ((in_run & done) & !fault) & !asked;
     assign stop_to_fault = in_stop & (cut | (at_rest & fault));
     assign stop_to_hold = (in_stop & at_rest) & !fault;
-    assign to_off = (((in_ready & !drive_ready) & !fault) | hold_to_off) | ((in_fault & clears) & !any_cause);
+    assign to_off = (((in_ready & !drive_ready) & !fault) | hold_to_off) | (((in_fault & cleared) & !on_q) & !any_cause);
     assign to_hold = (ready_to_hold | run_to_hold) | stop_to_hold;
     assign to_stop = hold_to_stop | run_to_stop;
     assign to_fault = ((ready_to_fault | hold_to_fault) | run_to_fault) | stop_to_fault;
@@ -272,6 +273,7 @@ module xy_stage_stage_axis_states (
             disabled_q <= 1'd0;
             faulted_q <= 1'd0;
             refused_q <= 1'd0;
+            cleared <= 1'd0;
         end else begin
             state_q <= next_state;
             opening <= opening_next;
@@ -292,6 +294,7 @@ module xy_stage_stage_axis_states (
             disabled_q <= hold_to_off;
             faulted_q <= to_fault;
             refused_q <= refused_q_next;
+            cleared <= clears;
         end
     end
 
@@ -315,6 +318,7 @@ module xy_stage_stage_axis_states (
         disabled_q = 1'd0;
         faulted_q = 1'd0;
         refused_q = 1'd0;
+        cleared = 1'd0;
     end
 endmodule
 

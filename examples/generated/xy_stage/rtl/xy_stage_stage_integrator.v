@@ -39,6 +39,7 @@ module xy_stage_stage_integrator (
     localparam [39:0] NO_ACCELERATION = 40'd0;
     localparam [23:0] NO_TICKS = 24'd0;
 
+    reg  [7:0]  entry_byte;
     reg  [7:0]  augend;
     reg  [7:0]  addend;
     reg  [7:0]  chosen;
@@ -99,8 +100,10 @@ module xy_stage_stage_integrator (
     reg  [39:0] exact_acceleration_next;
     reg  [23:0] ticks;
     reg  [23:0] ticks_next;
-    reg  [7:0]  entry_byte;
-    reg  [7:0]  entry_byte_next;
+    reg  [15:0] entry_half;
+    reg  [15:0] entry_half_next;
+    reg         upper_byte;
+    reg         blank;
     reg         carry;
     reg         carry_next;
     reg         jerk_failed;
@@ -199,25 +202,22 @@ module xy_stage_stage_integrator (
         exact_velocity_next = exact_velocity;
         exact_acceleration_next = exact_acceleration;
         ticks_next = ticks;
-        entry_byte_next = entry_byte;
         jerk_failed_next = jerk_failed;
         speed_failed_next = speed_failed;
         moving_next = moving;
 
-        // A byte of the entry
+        // A byte of the entry: half a word first, since
+        // what a memory shows comes late in its clock
+        entry_half_next = read_data[15:0];
         if (passes_read_byte_1) begin
-            if (passes_read_byte_0) begin
-                entry_byte_next = read_data[31:24];
-            end else begin
-                entry_byte_next = read_data[23:16];
-            end
-        end else if (passes_read_byte_0) begin
-            entry_byte_next = read_data[15:8];
-        end else begin
-            entry_byte_next = read_data[7:0];
+            entry_half_next = read_data[31:16];
         end
-        if (passes_blank) begin
-            entry_byte_next = NIL;
+        entry_byte = entry_half[7:0];
+        if (upper_byte) begin
+            entry_byte = entry_half[15:8];
+        end
+        if (blank) begin
+            entry_byte = NIL;
         end
 
         // One adder of a byte
@@ -336,7 +336,9 @@ module xy_stage_stage_integrator (
             exact_velocity <= 48'd0;
             exact_acceleration <= 40'd0;
             ticks <= 24'd0;
-            entry_byte <= 8'd0;
+            entry_half <= 16'd0;
+            upper_byte <= 1'd0;
+            blank <= 1'd0;
             carry <= 1'd0;
             jerk_failed <= 1'd0;
             speed_failed <= 1'd0;
@@ -348,7 +350,9 @@ module xy_stage_stage_integrator (
             exact_velocity <= exact_velocity_next;
             exact_acceleration <= exact_acceleration_next;
             ticks <= ticks_next;
-            entry_byte <= entry_byte_next;
+            entry_half <= entry_half_next;
+            upper_byte <= passes_read_byte_0;
+            blank <= passes_blank;
             carry <= carry_next;
             jerk_failed <= jerk_failed_next;
             speed_failed <= speed_failed_next;
@@ -363,7 +367,9 @@ module xy_stage_stage_integrator (
         exact_velocity = 48'd0;
         exact_acceleration = 40'd0;
         ticks = 24'd0;
-        entry_byte = 8'd0;
+        entry_half = 16'd0;
+        upper_byte = 1'd0;
+        blank = 1'd0;
         carry = 1'd0;
         jerk_failed = 1'd0;
         speed_failed = 1'd0;

@@ -26,14 +26,15 @@ module xy_stage_y_history (
     wire        writes;
     wire [6:0]  next_head;
     wire        before_start;
-    reg  [6:0]  back;
-    wire [6:0]  address;
+    reg  [6:0]  address;
     wire [31:0] ring_0_write_data;
     wire [31:0] ring_0_read_data;
     reg  [6:0]  head;
     reg  [6:0]  head_next;
     reg  [6:0]  age;
     reg  [6:0]  age_next;
+    reg  [6:0]  origin;
+    reg  [6:0]  origin_next;
     reg         begun;
     reg         begun_next;
     reg         started;
@@ -54,7 +55,6 @@ module xy_stage_y_history (
 
     // The sample that lies delay samples back
     assign before_start = delay > age;
-    assign address = head - back;
     assign blank = before_start & !started;
     assign ring_0_write_data = $unsigned(x_0);
     assign sample_0 = $signed(ring_0_read_data);
@@ -62,6 +62,7 @@ module xy_stage_y_history (
     always @(*) begin
         head_next = head;
         age_next = age;
+        origin_next = origin;
         begun_next = begun;
         started_next = started;
 
@@ -77,11 +78,14 @@ module xy_stage_y_history (
             age_next = NO_AGE;
             started_next = 1'd1;
         end
+        if (start | (strobe & !begun)) begin
+            origin_next = next_head;
+        end
 
         // The sample that lies delay samples back
-        back = delay;
+        address = head - delay;
         if (before_start) begin
-            back = age;
+            address = origin;
         end
     end
 
@@ -89,11 +93,13 @@ module xy_stage_y_history (
         if (rst) begin
             head <= 7'd0;
             age <= 7'd0;
+            origin <= 7'd0;
             begun <= 1'd0;
             started <= 1'd0;
         end else begin
             head <= head_next;
             age <= age_next;
+            origin <= origin_next;
             begun <= begun_next;
             started <= started_next;
         end
@@ -102,6 +108,7 @@ module xy_stage_y_history (
     initial begin
         head = 7'd0;
         age = 7'd0;
+        origin = 7'd0;
         begun = 1'd0;
         started = 1'd0;
     end

@@ -89,6 +89,9 @@ impl Cause {
 /// Causes that always switch off, whatever `off_causes` says.
 pub const ALWAYS_OFF: u16 = Cause::EmergencyStop.bit() | Cause::PwmTripped.bit();
 
+/// Causes that act in the clock in which they become active; all others act when they stand, a clock later.
+pub const AT_ONCE: u16 = Cause::EmergencyStop.bit() | Cause::PwmTripped.bit() | Cause::DriveLost.bit();
+
 /// Causes after which an axis is in order: it only waits, in HOLD, for the others.
 pub const HARMLESS: u16 = Cause::GroupStop.bit();
 

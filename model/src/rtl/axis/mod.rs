@@ -35,7 +35,7 @@ mod registers;
 mod timer;
 mod transition;
 
-pub use cause::{ALWAYS_OFF, Cause, HARMLESS, switching_off};
+pub use cause::{ALWAYS_OFF, AT_ONCE, Cause, HARMLESS, switching_off};
 pub use inputs::{INPUT_PORTS, Inputs};
 pub use outputs::{OUTPUT_PORTS, Outputs};
 pub use transition::{Condition, Conditions, State, TRANSITIONS, Transition, next};
@@ -51,8 +51,9 @@ pub const CLEAR_CLOCKS: u8 = 8;
 pub const PRIMING_CLOCKS: u8 = 4;
 /// Clocks from a line to the state, beside `filter_clocks`: two of the synchroniser, the filter's, the state's.
 pub const LINE_CLOCKS: u32 = 4;
-/// Clocks from a tick to the state that follows from what is watched at it: two rounds of five, what they found, the state's.
-pub const WATCH_CLOCKS: u32 = 12;
+/// Clocks from a tick to the state that follows from what is watched at it: two rounds of five, what they found,
+/// the cause's, the state's.
+pub const WATCH_CLOCKS: u32 = 13;
 /// Clocks from a tick to the next one, at least: two rounds of what is watched.
 pub const LEAST_TICK_CLOCKS: u32 = 10;
 

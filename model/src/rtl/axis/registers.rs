@@ -49,6 +49,8 @@ pub(super) struct Registers {
     pub(super) monitors: Monitors,
     pub(super) state: State,
     pub(super) causes: u16,
+    /// Causes were forgotten in the clock before.
+    forgot: bool,
     /// A cause that stands switches off, by `off_causes` of the clock before.
     cuts: bool,
     timer: Timer,
@@ -75,6 +77,7 @@ impl Default for Registers {
             monitors: Monitors::default(),
             state: State::Off,
             causes: 0,
+            forgot: false,
             cuts: false,
             timer: Timer::default(),
             opening: false,
@@ -93,6 +96,9 @@ impl Default for Registers {
 /// What a clock is about, from inputs and registers.
 struct Now {
     causes: u16,
+    /// Those that act in this clock.
+    seen: u16,
+    forgets: bool,
     cut: bool,
     group_stop: bool,
     wants_start: bool,
@@ -141,7 +147,7 @@ impl Registers {
         self.starting = !self.on || (self.starting && !inputs.segments_valid);
         self.start_waits = now.wants_start && !inputs.tick;
         self.tripping = self.emergency_stop() || inputs.group_emergency_stop;
-        (self.state, self.causes) = (after, now.causes);
+        (self.state, self.causes, self.forgot) = (after, now.causes, now.forgets);
 
         let kicked = inputs.kick && inputs.kick_word == KICK;
         let on_limits = self.on_limits();
@@ -165,38 +171,50 @@ impl Registers {
         };
     }
 
-    /// The causes of this clock, those that the monitors have found among them.
-    fn active(&self, inputs: &Inputs, group_stop: bool) -> u16 {
-        let encoder = inputs.encoder_illegal || inputs.encoder_disagreement;
-        let scale = inputs.scale_illegal || inputs.scale_disagreement;
-        let missed = inputs.segments_tick_missed || inputs.velocity_missed;
-        let overrun = inputs.shaper_overrun || inputs.controller_overrun;
-        let found = [
+    /// Causes of this clock that act in it: those that nothing but a line tells of.
+    fn at_once(&self, inputs: &Inputs) -> u16 {
+        word([
             (
                 Cause::EmergencyStop,
                 self.emergency_stop() || inputs.group_emergency_stop,
             ),
             (Cause::PwmTripped, inputs.pwm_tripped),
             (Cause::DriveLost, self.on && !self.level(3)),
+        ])
+    }
+
+    /// All others of this clock, those that the monitors have found among them. They act when they stand, a clock later.
+    fn noted(&self, inputs: &Inputs) -> u16 {
+        let encoder = inputs.encoder_illegal || inputs.encoder_disagreement;
+        let scale = inputs.scale_illegal || inputs.scale_disagreement;
+        let missed = inputs.segments_tick_missed || inputs.velocity_missed;
+        let overrun = inputs.shaper_overrun || inputs.controller_overrun;
+        let flags = word([
             (Cause::EncoderError, encoder || scale),
             (Cause::Segments, inputs.segments_underrun || inputs.segments_overflow),
-            (Cause::GroupStop, self.on && group_stop),
             (Cause::Schedule, missed || overrun),
-        ];
-        let bits = found.map(|(cause, is)| if is { cause.bit() } else { 0 });
-        bits.into_iter().fold(self.monitors.found, |all, bit| all | bit)
+        ]);
+        flags | self.monitors.found
     }
 
     /// Causes and conditions of this clock.
     fn look(&self, inputs: &Inputs) -> Now {
         let group_stop = inputs.group_stop && !self.wants_group_stop();
-        let may_forget = self.state != State::QuickStop && (self.state != State::Fault || !self.on);
+        // Not what has still to act.
+        let may_forget = match self.state {
+            State::Off => true,
+            State::Ready | State::Hold | State::Run => self.causes & !HARMLESS == 0,
+            State::QuickStop => false,
+            State::Fault => !self.on,
+        };
         let forgets = self.clear_left == 1 && may_forget;
         let kept = if forgets { 0 } else { self.causes };
-        let active = self.active(inputs, group_stop);
-        let causes = kept | active;
-        let cut = (self.cuts && !forgets) || switching_off(active, inputs.off_causes) != 0;
-        let fault = causes & !HARMLESS != 0;
+        let at_once = self.at_once(inputs);
+        let stops = word([(Cause::GroupStop, self.on && group_stop)]);
+        let seen = self.causes | at_once | stops;
+        let causes = kept | at_once | stops | self.noted(inputs);
+        let cut = self.cuts || switching_off(at_once, inputs.off_causes) != 0;
+        let fault = seen & !HARMLESS != 0;
         let segments_hold = inputs.segments_state == segments::State::Hold as u8;
         let stopped = inputs.segments_state == segments::State::Stopped as u8;
         let elapsed = self.timer.elapsed();
@@ -206,7 +224,7 @@ impl Registers {
         let conditions = Conditions::default()
             .with(Condition::Cut, cut)
             .with(Condition::Fault, fault)
-            .with(Condition::Cause, causes != 0)
+            .with(Condition::Cause, seen != 0)
             .with(Condition::DriveReady, self.ready() && self.level(3))
             .with(Condition::Enable, inputs.enable)
             .with(Condition::Tick, inputs.tick)
@@ -217,9 +235,11 @@ impl Registers {
             .with(Condition::Stopped, stopped)
             .with(Condition::Elapsed, elapsed)
             .with(Condition::Closing, self.closing)
-            .with(Condition::Cleared, forgets && causes == 0);
+            .with(Condition::Cleared, self.forgot && seen == 0 && !self.on);
         Now {
             causes,
+            seen,
+            forgets,
             cut,
             group_stop,
             wants_start,
@@ -235,7 +255,7 @@ impl Registers {
         use State::{Fault, Hold, Off, QuickStop, Ready, Run};
         let before = self.state;
         let plays = inputs.segments_state <= segments::State::Move as u8;
-        let steady = inputs.enable && !now.group_stop && now.causes == 0;
+        let steady = inputs.enable && !now.group_stop && now.seen == 0;
         Pulses {
             quick_stop: after == QuickStop && plays,
             restart: before == Hold && now.stopped,
@@ -282,6 +302,12 @@ impl Registers {
     }
 }
 
+/// Those that are.
+fn word<const N: usize>(causes: [(Cause, bool); N]) -> u16 {
+    let bits = causes.map(|(cause, is)| if is { cause.bit() } else { 0 });
+    bits.into_iter().fold(0, |all, bit| all | bit)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -304,7 +330,8 @@ mod tests {
             opening,
             closing,
             on,
-            clear_left: u8::from(forgotten),
+            causes: if quick { Cause::EncoderError.bit() } else { 0 },
+            forgot: forgotten,
             ..Registers::default()
         };
         registers.lines[0].clock(true, 0, false);
@@ -319,18 +346,18 @@ mod tests {
             start: is(case, 14),
             segments_empty: is(case, 15),
             segments_state,
-            // Flags of other blocks, so that nothing is forgotten while it is active.
+            // A line, so that it is not forgotten while it is active.
             pwm_tripped: cut,
-            encoder_illegal: quick,
             group_stop: group,
             drive_ready,
             ..Inputs::default()
         };
-        let seen_group = group && state != State::Fault;
+        // Whose own stop it is does not see it.
+        let wants = state == State::Fault || (state == State::QuickStop && quick);
+        let seen_group = group && !wants;
         let any = cut || quick || (on && seen_group);
         let hold = segments_state == 0;
         let brake_open = !closing && (!opening || elapsed);
-        let may_forget = !matches!((state, on), (State::QuickStop, _) | (State::Fault, true));
         let all = [
             cut,
             cut || quick,
@@ -345,7 +372,7 @@ mod tests {
             segments_state == 3,
             elapsed,
             closing,
-            forgotten && may_forget && !any,
+            forgotten && !any && !on,
         ];
         let pairs = Condition::ALL.into_iter().zip(all);
         let conditions = pairs.fold(Conditions::default(), |so_far, (condition, holds)| {
