@@ -191,7 +191,7 @@ fn break_file(file: &Path, from: &str, to: &str) {
 fn cli_verify_reports_a_broken_bit_of_the_multiplier_and_of_the_address() {
     for (file, from, to) in [
         ("rtl/xy_stage_x_smul_18x18.v", "a_q * b_q", "(a_q ^ 18'sd1) * b_q"),
-        ("rtl/xy_stage_y_history.v", "head - back;", "head - back - 7'd1;"),
+        ("rtl/xy_stage_y_history.v", "head - delay;", "head - delay - 7'd1;"),
     ] {
         let folder = tempfile::tempdir().unwrap();
         let output = generated(folder.path());
