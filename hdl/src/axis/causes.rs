@@ -160,17 +160,17 @@ impl Logic for Causes {
         self.now.next = self.kept.val() | self.lines.val() | self.flags.val() | self.watched.val();
         self.causes_q.d.next = self.now.val();
 
-        comment!("What follows: at once of these lines,");
+        comment!("What follows: at once of these lines;");
         self.off.next = (self.off_causes.val() | self.always_off.val()) & self.harmful_causes.val();
         self.harmless.next = self.causes_q.q.val() & !self.harmful_causes.val();
         self.switches_off.next = self.emergency.val() | self.tripped.val();
         self.fault.next = self.switches_off.val() | self.drive_lost.val() | self.had_fault_q.q.val();
         self.cutting.next = self.by_drive_lost.val() & self.off.val();
         self.cut.next = self.switches_off.val() | self.cutting.val().any() | self.had_cut_q.q.val();
-        comment!("(whose own stop it is asks in no state for it)");
+        comment!("an axis that stops the group never asks here;");
         self.any_cause.next = self.fault.val() | self.harmless.val().any() | self.group_stop.val();
 
-        comment!("of all that stand a clock later");
+        comment!("of all others when they stand, a clock later");
         self.harmful.next = self.now.val() & self.harmful_causes.val();
         self.cutting_now.next = self.now.val() & self.off.val();
         self.had_fault_q.d.next = self.harmful.val().any();

@@ -64,7 +64,7 @@ module xy_stage_stage_axis_causes (
     assign flags = (by_encoder_error | by_segments_failed) | by_late;
     assign now = ((kept | lines) | flags) | watched;
 
-    // What follows: at once of these lines,
+    // What follows: at once of these lines
     assign off = (off_causes | ALWAYS_OFF) & HARMFUL_CAUSES;
     assign harmless = causes_q & ~HARMFUL_CAUSES;
     assign switches_off = emergency | tripped;
@@ -72,10 +72,10 @@ module xy_stage_stage_axis_causes (
     assign cutting = by_drive_lost & off;
     assign cut = (switches_off | (|cutting)) | had_cut_q;
 
-    // (whose own stop it is asks in no state for it
+    // an axis that stops the group never asks here
     assign any_cause = (fault | (|harmless)) | group_stop;
 
-    // of all that stand a clock later
+    // of all others when they stand, a clock later
     assign harmful = now & HARMFUL_CAUSES;
     assign cutting_now = now & off;
     assign had_fault_q_next = (|harmful);
