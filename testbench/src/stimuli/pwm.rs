@@ -137,8 +137,8 @@ impl PwmRandom {
         }
         self.since_sync += 1;
         // In step for long times: the period times three, or sometimes any moment.
-        let moment = if running { 9000 } else { 60 };
-        self.inputs.sync = self.since_sync >= 3 * u32::from(self.inputs.period.max(1)) || self.one_in(20 * moment);
+        let moment = if running { 180_000 } else { 1200 };
+        self.inputs.sync = self.since_sync >= 3 * u32::from(self.inputs.period.max(1)) || self.one_in(moment);
         if self.inputs.sync {
             self.since_sync = 0;
         }

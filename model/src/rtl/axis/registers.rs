@@ -1,6 +1,6 @@
 //! What the supervisor knows, and what a clock makes of it.
 
-use super::cause::{Cause, HARMLESS, switching_off};
+use super::cause::{AT_ONCE, Cause, HARMLESS, switching_off};
 use super::inputs::Inputs;
 use super::monitors::Monitors;
 use super::timer::{Begins, Timer};
@@ -171,30 +171,26 @@ impl Registers {
         };
     }
 
-    /// Causes of this clock that act in it: those that nothing but a line tells of.
-    fn at_once(&self, inputs: &Inputs) -> u16 {
-        word([
+    /// The causes of this clock, those that the monitors have found among them.
+    fn active(&self, inputs: &Inputs, group_stop: bool) -> u16 {
+        let encoder = inputs.encoder_illegal || inputs.encoder_disagreement;
+        let scale = inputs.scale_illegal || inputs.scale_disagreement;
+        let missed = inputs.segments_tick_missed || inputs.velocity_missed;
+        let overrun = inputs.shaper_overrun || inputs.controller_overrun;
+        let found = [
             (
                 Cause::EmergencyStop,
                 self.emergency_stop() || inputs.group_emergency_stop,
             ),
             (Cause::PwmTripped, inputs.pwm_tripped),
             (Cause::DriveLost, self.on && !self.level(3)),
-        ])
-    }
-
-    /// All others of this clock, those that the monitors have found among them. They act when they stand, a clock later.
-    fn noted(&self, inputs: &Inputs) -> u16 {
-        let encoder = inputs.encoder_illegal || inputs.encoder_disagreement;
-        let scale = inputs.scale_illegal || inputs.scale_disagreement;
-        let missed = inputs.segments_tick_missed || inputs.velocity_missed;
-        let overrun = inputs.shaper_overrun || inputs.controller_overrun;
-        let flags = word([
             (Cause::EncoderError, encoder || scale),
             (Cause::Segments, inputs.segments_underrun || inputs.segments_overflow),
+            (Cause::GroupStop, self.on && group_stop),
             (Cause::Schedule, missed || overrun),
-        ]);
-        flags | self.monitors.found
+        ];
+        let bits = found.map(|(cause, is)| if is { cause.bit() } else { 0 });
+        bits.into_iter().fold(self.monitors.found, |all, bit| all | bit)
     }
 
     /// Causes and conditions of this clock.
@@ -209,10 +205,10 @@ impl Registers {
         };
         let forgets = self.clear_left == 1 && may_forget;
         let kept = if forgets { 0 } else { self.causes };
-        let at_once = self.at_once(inputs);
-        let stops = word([(Cause::GroupStop, self.on && group_stop)]);
-        let seen = self.causes | at_once | stops;
-        let causes = kept | at_once | stops | self.noted(inputs);
+        let active = self.active(inputs, group_stop);
+        let causes = kept | active;
+        let at_once = active & AT_ONCE;
+        let seen = self.causes | at_once | (active & HARMLESS);
         let cut = self.cuts || switching_off(at_once, inputs.off_causes) != 0;
         let fault = seen & !HARMLESS != 0;
         let segments_hold = inputs.segments_state == segments::State::Hold as u8;
@@ -300,12 +296,6 @@ impl Registers {
         self.opening = after == Hold && (before == Ready || self.opening);
         self.released = self.on && !self.closing;
     }
-}
-
-/// Those that are.
-fn word<const N: usize>(causes: [(Cause, bool); N]) -> u16 {
-    let bits = causes.map(|(cause, is)| if is { cause.bit() } else { 0 });
-    bits.into_iter().fold(0, |all, bit| all | bit)
 }
 
 #[cfg(test)]
