@@ -243,10 +243,7 @@ impl LateBar {
 fn verdict(comparison: &Comparison) -> Result<(), Failure> {
     match comparison.result {
         Verdict::Equal => Ok(()),
-        Verdict::Different => Err(Failure::Check(format!(
-            "{} signals differ",
-            comparison.differences.len()
-        ))),
+        Verdict::Different => Err(Failure::Check(comparison.differing())),
         Verdict::Incomparable => Err(Failure::from(miette::miette!(
             help = "name the clock with --clock, or say with --map A=B which scope or signal is which",
             "the files have nothing in common that can be compared"

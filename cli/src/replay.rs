@@ -8,6 +8,7 @@ use posicast_testbench::blocks::{Block, Sources};
 use posicast_testbench::diff::{Options, Reset};
 use posicast_testbench::lockstep::report::Report;
 use posicast_testbench::replay::{Extent, Replay};
+use posicast_testbench::wording::counted;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
@@ -76,9 +77,9 @@ impl Replayed {
     /// In words, a line each.
     pub(crate) fn text(&self) -> String {
         let mut text = format!(
-            "replayed {}: {} clocks, recorded outputs compared in {} of them\n",
+            "replayed {}: {}, recorded outputs compared in {} of them\n",
             self.file.display(),
-            self.clocks,
+            counted(self.clocks, "clock"),
             self.compared
         );
         let mut line = |names: &[String], what: &str| {
@@ -124,8 +125,9 @@ pub(crate) fn run(
     if compared == 0 {
         return Err(Failure::from(miette::miette!(
             help = "--clock NAME names another clock, --reset none compares from the first edge",
-            "`{}` has {clocks} clock edges and none behind the release of its reset: there is nothing to compare ({})",
+            "`{}` has {} and none behind the release of its reset: there is nothing to compare ({})",
             file.display(),
+            counted(clocks, "clock edge"),
             replay.notes().join(", ")
         )));
     }

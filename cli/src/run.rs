@@ -29,7 +29,7 @@ use posicast_testbench::blocks::{Block, MachineShapers, Sources};
 use posicast_testbench::diff::{self, Comparison, Options};
 use posicast_testbench::lockstep::TwoValued;
 use posicast_testbench::lockstep::report::Report as LockstepReport;
-use posicast_testbench::recording::{Move, wave_clocks_per_sample};
+use posicast_testbench::recording::Move;
 use posicast_testbench::wave::{Difference, Part, merge};
 use report::Report;
 use std::path::PathBuf;
@@ -191,6 +191,8 @@ fn estimate(yosys: &Yosys, machine: &Machine, files: &[PathBuf]) -> Result<Estim
 pub(crate) struct Waves {
     /// Output samples of each axis.
     pub(crate) samples: Vec<usize>,
+    /// Clocks of the machine that the move lasts; of these the idle ones between two passes are not recorded.
+    pub(crate) clocks: u64,
     /// RTL against model, exact.
     pub(crate) model: Comparison,
     /// RTL against float design, within the bound.
@@ -221,7 +223,8 @@ impl Job<'_> {
         let command = Move {
             layout: self.top.layout(),
             words: self.top.words(),
-            clocks_per_sample: wave_clocks_per_sample(self.top.pass_clocks()),
+            pass_clocks: self.top.pass_clocks(),
+            clock_hz: self.machine.clock.frequency_hz,
             sample_hz: design.sample_hz,
         };
         let mut stage = |name: &str| package.stage(&format!("wave/{name}")).map_err(Failure::because);
@@ -265,6 +268,7 @@ impl Job<'_> {
         let compare = |a, b, options: &Options| diff::compare(a, b, options, &mut |_| {}).map_err(bench::failure);
         let waves = Waves {
             samples: trace.shaped.iter().map(Vec::len).collect(),
+            clocks: trace.clocks,
             model: compare(&model_vcd, &rtl_vcd, &exact)?,
             float: compare(&rtl_vcd, &float_vcd, &within)?,
             largest_difference_lsb: trace

@@ -10,7 +10,8 @@ use posicast_model::design::MachineDesign;
 use posicast_model::plant::Plant;
 use posicast_model::simulation::{AxisSimulation, simulate_axis};
 use posicast_model::spec::{Axis, Machine};
-use posicast_testbench::wave::{Recorder, Signal};
+use posicast_testbench::wave::{Heading, Recorder, SAMPLE_CLOCK, Signal};
+use posicast_testbench::wording::counted;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
@@ -105,8 +106,16 @@ fn write_wave(machine: &Machine, words: &Words, axes: &[AxisSimulation], path: &
             ]
         })
         .collect();
+    let sample_hz = machine.clock.sample_hz;
+    let heading = Heading {
+        clock: SAMPLE_CLOCK,
+        comment: &format!(
+            "{SAMPLE_CLOCK} rises with each sample, at {sample_hz} Hz; it is not the clock of the hardware"
+        ),
+        gaps: false,
+    };
     let mut recorder =
-        Recorder::create(path, machine.clock.sample_hz, &[&machine.name], &signals).map_err(Failure::because)?;
+        Recorder::create_with(path, sample_hz, &[&machine.name], &signals, &heading).map_err(Failure::because)?;
     let mask = u64::MAX >> (64 - bits);
     let raw = |word: i64| word as u64 & mask;
     let float: Vec<Vec<f64>> = axes.iter().map(|axis| axis.float_words(bits)).collect();
@@ -183,9 +192,9 @@ impl Document {
             ]);
         }
         format!(
-            "{}: {} samples; ringing after the command's end, in millionths of the machine file's unit\n{}{}\n",
+            "{}: {}; ringing after the command's end, in millionths of the machine file's unit\n{}{}\n",
             self.name,
-            self.samples,
+            counted(self.samples as u64, "sample"),
             table.text(""),
             self.wave
         )

@@ -8,6 +8,7 @@ use crate::{blocks, command, machine, replay, stage};
 use posicast_synth::package;
 use posicast_testbench::blocks::{Block, Sources, StageBlock};
 use posicast_testbench::lockstep::report::{Report, Verdict};
+use posicast_testbench::wording::counted;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
@@ -224,8 +225,11 @@ impl Document<'_> {
             Verdict::Mismatch => "MISMATCH",
         };
         text + &format!(
-            "{verdict}; {} clocks, {} samples, simulator {}, seed {}\n",
-            self.report.cycles, self.report.samples, self.simulator, self.seed
+            "{verdict}; {}, {}, simulator {}, seed {}\n",
+            counted(self.report.cycles, "clock"),
+            counted(self.report.samples, "sample"),
+            self.simulator,
+            self.seed
         )
     }
 }

@@ -63,7 +63,7 @@ fn compare() -> Result<bool, Error> {
 
 fn verdict(outcome: &Outcome, waves: &posicast_testbench::diff::Comparison) -> String {
     match waves.differences.first() {
-        Some(first) => format!("{} differs at {} s", first.signal, first.time),
+        Some(first) => format!("{} differs at {}", first.signal, waves.time(first.time)),
         None if waves.result == Verdict::Equal && outcome.is_good() => "equal".to_owned(),
         None if waves.result == Verdict::Equal => "equal, but not to the model, or not whole".to_owned(),
         None => waves.notes.join("; "),

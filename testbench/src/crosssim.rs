@@ -28,7 +28,7 @@ use crate::icarus::SCOPE;
 use crate::lockstep::report::{self, Report};
 use crate::lockstep::{self, Clock};
 use crate::netlist::has_memory;
-use crate::wave::Recorder;
+use crate::wave::{Heading, Recorder};
 
 /// The clock of the waveforms: Icarus's testbench has two steps of 1 ns per clock.
 const CLOCK_HZ: f64 = 500e6;
@@ -131,7 +131,7 @@ impl Bench<'_> {
 
     fn verilated(&self, sources: &Sources, waves: &Path) -> Result<Report, Error> {
         let mut device = sources.verilated(self.block, self.seed)?;
-        let mut recorder = Recorder::for_ports(waves, CLOCK_HZ, &[SCOPE], &self.ports())?;
+        let mut recorder = Recorder::for_ports(waves, CLOCK_HZ, &[SCOPE], &self.ports(), &Heading::default())?;
         let mut written = Ok(());
         let report = self.lockstep(&mut device, &mut |clock| {
             if written.is_ok() {

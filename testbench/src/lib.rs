@@ -24,6 +24,7 @@
 //! - [`ladder`] puts the results of all rungs into one table.
 //! - [`mutation`] puts faults into the blocks, and finds out which checks notice.
 //! - [`wave`] writes waveforms; [`diff`] compares two of them.
+//! - [`wording`] counts things and writes times for people.
 
 pub mod blocks;
 pub mod campaign;
@@ -49,5 +50,6 @@ pub mod stimuli;
 mod tool;
 pub mod verilator;
 pub mod wave;
+pub mod wording;
 
 pub use error::{BlockError, Error};

@@ -1,8 +1,18 @@
 //! A real move recorded as waveforms: by the model, by the RTL, and by the float design beside them.
 //!
-//! Between two samples a shaper idles for thousands of clocks, which would fill a waveform with nothing. The recording
-//! therefore runs on a clock just fast enough for a pass within a sample ([`wave_clocks_per_sample`]): what the shaper does
-//! in its clocks does not depend on how long they last, and the samples keep their true times.
+//! ```text
+//!  time       0       40 ns         1.1 µs                      100.04 µs
+//!  clk        ‾\_/‾\_/‾\_/‾ … ‾\_/‾\_xxxxxxxxxxxxxxxxxxxxxxxxxxxx_/‾\_/‾\_ …     clock of 50 MHz, samples of 10 kHz
+//!  recording  ‾‾‾‾‾‾‾‾‾‾‾‾ … ‾‾‾‾‾‾‾\__________________________/‾‾‾‾‾‾‾‾‾ …
+//!  rst        ‾‾‾‾‾‾‾‾\_______________________________________________
+//!  strobe     ________/‾‾‾\___________________________________/‾‾‾\____     sample n: n samples after the reset
+//! ```
+//!
+//! All times are those of the machine: its clock, a strobe each sample period, the outputs as many clocks later as a pass takes.
+//! Between two samples a shaper waits for thousands of clocks, which would fill a waveform with nothing. These clocks are neither
+//! simulated nor recorded: behind each strobe come the clocks of a pass and some in which nothing happens any more, and the file
+//! [says](crate::wave::Recorder::skip_to) where clocks are left out. What a shaper does does not depend on how long it waited;
+//! a test compares with a recording of all clocks.
 
 use std::path::Path;
 
@@ -11,15 +21,10 @@ use posicast_model::rtl::{Direction, Port};
 use crate::Error;
 use crate::lockstep::Device;
 use crate::stimuli::{Axis, Layout, Motion, Stimuli};
-use crate::wave::{Recorder, Signal};
+use crate::wave::{Heading, Recorder, Signal};
 
 /// Idle clocks after a pass, so that each sample's output is seen to stand.
 const IDLE_CLOCKS: u64 = 5;
-
-/// Clocks per sample of a recording, for passes of at most `pass_clocks`.
-pub fn wave_clocks_per_sample(pass_clocks: u32) -> u64 {
-    u64::from(pass_clocks) + IDLE_CLOCKS
-}
 
 /// A move of all axes of a machine.
 #[derive(Debug, Clone)]
@@ -28,8 +33,10 @@ pub struct Move<'a> {
     pub layout: &'a Layout,
     /// Command words per axis, all of one length.
     pub words: &'a [Vec<i64>],
-    /// Clocks of the recording per sample.
-    pub clocks_per_sample: u64,
+    /// Most clocks of a pass.
+    pub pass_clocks: u32,
+    /// The machine's clock in Hz, a multiple of the sample rate.
+    pub clock_hz: f64,
     /// Sample rate in Hz.
     pub sample_hz: f64,
 }
@@ -39,13 +46,54 @@ pub struct Move<'a> {
 pub struct Trace {
     /// Shaped words per axis, one per `valid`.
     pub shaped: Vec<Vec<i64>>,
-    /// The clock of each of them.
+    /// The clock of each of them, counted among those that are recorded.
     pub valid_clocks: Vec<Vec<u64>>,
+    /// Clocks that are recorded.
+    pub recorded_clocks: u64,
+    /// Clocks of the machine from the beginning to the last that is recorded.
+    pub clocks: u64,
 }
 
 impl Move<'_> {
-    fn clock_hz(&self) -> f64 {
-        self.sample_hz * self.clocks_per_sample as f64
+    /// Clocks of a sample period.
+    fn tick_clocks(&self) -> u64 {
+        (self.clock_hz / self.sample_hz).round().max(1.0) as u64
+    }
+
+    /// Clocks that are recorded from each strobe on.
+    fn recorded_clocks(&self) -> u64 {
+        (u64::from(self.pass_clocks) + IDLE_CLOCKS).min(self.tick_clocks())
+    }
+
+    /// The machine's clock that is recorded as number `recorded`.
+    fn machine_clock(&self, motion: &Motion<'_>, recorded: u64) -> u64 {
+        match recorded.checked_sub(motion.first_strobe()) {
+            None => recorded,
+            Some(moving) => {
+                let (sample, clock) = (moving / self.recorded_clocks(), moving % self.recorded_clocks());
+                motion.first_strobe() + sample * self.tick_clocks() + clock
+            }
+        }
+    }
+
+    /// What the file says about its times.
+    fn comment(&self, motion: &Motion<'_>) -> String {
+        let (tick, recorded) = (self.tick_clocks(), self.recorded_clocks());
+        let mut text = format!(
+            "clk is the machine's clock of {} MHz, and all times are true: after {} clocks of reset there is a strobe every {tick} \
+             clocks, at {} Hz.",
+            self.clock_hz / 1e6,
+            motion.first_strobe(),
+            self.sample_hz
+        );
+        if recorded < tick {
+            text += &format!(
+                "\n    Of each sample the first {recorded} clocks are recorded. In the other {} the hardware waits for the next \
+                 strobe and nothing changes:\n    they are left out, clk is x there and recording is 0.",
+                tick - recorded
+            );
+        }
+        text
     }
 
     /// Runs the move through a block and writes its ports as a VCD with the scope `scope`.
@@ -54,13 +102,20 @@ impl Move<'_> {
     /// [`Error::Step`] where a simulator stops, [`Error::File`] where the file cannot be written.
     pub fn record(&self, device: &mut dyn Device, path: &Path, scope: &str) -> Result<Trace, Error> {
         let ports = device.ports().to_vec();
-        let mut recorder = Recorder::for_ports(path, self.clock_hz(), &[scope], &ports)?;
+        let mut motion = Motion::new(self.layout, self.words, self.recorded_clocks());
+        let heading = Heading {
+            comment: &self.comment(&motion),
+            gaps: true,
+            ..Heading::default()
+        };
+        let mut recorder = Recorder::for_ports(path, self.clock_hz, &[scope], &ports, &heading)?;
         let outputs: Vec<&Port> = ports.iter().filter(|p| p.direction == Direction::Output).collect();
         let places = Places::new(&outputs, self.layout)?;
-        let mut motion = Motion::new(self.layout, self.words, self.clocks_per_sample);
         let mut trace = Trace {
             shaped: vec![Vec::new(); places.0.len()],
             valid_clocks: vec![Vec::new(); places.0.len()],
+            recorded_clocks: motion.clocks(),
+            clocks: self.machine_clock(&motion, motion.clocks().saturating_sub(1)) + 1,
         };
         let masks: Vec<u64> = ports
             .iter()
@@ -76,6 +131,7 @@ impl Move<'_> {
             }
             let failed = |source| Error::Step { clock, source };
             device.step(&inputs, &mut values, &mut unknown).map_err(failed)?;
+            recorder.skip_to(self.machine_clock(&motion, clock))?;
             recorder.clock(&[&inputs, &values])?;
             for (axis, place) in places.0.iter().enumerate() {
                 if values[place.valid] == 1 {
@@ -96,8 +152,13 @@ impl Move<'_> {
     pub fn record_float(&self, float: &[Vec<f64>], trace: &Trace, path: &Path, scope: &str) -> Result<(), Error> {
         let names: Vec<String> = self.layout.axes.iter().map(output_of).collect();
         let signals: Vec<Signal> = names.iter().map(|name| Signal::real(name)).collect();
-        let mut recorder = Recorder::create(path, self.clock_hz(), &[scope], &signals)?;
-        let motion = Motion::new(self.layout, self.words, self.clocks_per_sample);
+        let motion = Motion::new(self.layout, self.words, self.recorded_clocks());
+        let heading = Heading {
+            comment: &self.comment(&motion),
+            gaps: true,
+            ..Heading::default()
+        };
+        let mut recorder = Recorder::create_with(path, self.clock_hz, &[scope], &signals, &heading)?;
         // After reset the hardware shows 0, after the start its start position, then one sample per `valid`.
         let start_shows = motion.first_strobe() + 1;
         let mut next = vec![0usize; names.len()];
@@ -113,6 +174,7 @@ impl Move<'_> {
                     next[axis] += 1;
                 }
             }
+            recorder.skip_to(self.machine_clock(&motion, clock))?;
             recorder.clock(&[&values])?;
         }
         recorder.finish()

@@ -9,6 +9,7 @@ use posicast_synth::yosys::Estimate;
 use posicast_testbench::blocks::{Block, Sources};
 use posicast_testbench::diff::{Comparison, Verdict};
 use posicast_testbench::lockstep::report::{Report, Verdict as LockstepVerdict};
+use posicast_testbench::wording::counted;
 use serde::Serialize;
 
 /// One check and how it went.
@@ -44,7 +45,11 @@ fn rtl_equals_model(simulator: Simulator, lockstep: &Report) -> Check {
         .iter()
         .find_map(|b| b.first.as_ref().map(|first| (b, first)));
     let detail = match first {
-        None => format!("{} clocks, {} samples, no mismatch", lockstep.cycles, lockstep.samples),
+        None => format!(
+            "{}, {}, no mismatch",
+            counted(lockstep.cycles, "clock"),
+            counted(lockstep.samples, "sample")
+        ),
         Some((block, first)) => format!("{} {}:\n{first}", block.name, block.instance),
     };
     Check {
@@ -61,7 +66,7 @@ fn move_equals_model(waves: &Waves) -> Check {
     Check {
         name: "wave/rtl.vcd equals wave/model.vcd over the move",
         passed: waves.model.result == Verdict::Equal,
-        detail: compared(&waves.model),
+        detail: compared(&waves.model, waves),
     }
 }
 
@@ -69,14 +74,24 @@ fn within_float_bound(waves: &Waves) -> Check {
     Check {
         name: "RTL stays within the rounding bound of the float design",
         passed: waves.float.result == Verdict::Equal,
-        detail: compared(&waves.float),
+        detail: compared(&waves.float, waves),
     }
 }
 
-fn compared(comparison: &Comparison) -> String {
+fn compared(comparison: &Comparison, waves: &Waves) -> String {
     match comparison.differences.first() {
-        None => format!("{} signals, {} clocks", comparison.signals, comparison.samples),
-        Some(first) => format!("{} differs first at {} s", first.signal, first.time),
+        None => format!(
+            "{} in {} recorded clocks of {}",
+            counted(comparison.signals, "signal"),
+            comparison.samples,
+            waves.clocks
+        ),
+        Some(first) => format!(
+            "{}, {} first at {}",
+            comparison.differing(),
+            first.signal,
+            comparison.time(first.time)
+        ),
     }
 }
 

@@ -89,9 +89,15 @@ fn cli_diff_writes_what_shows_the_difference() {
     assert_eq!(output.status.code(), Some(1));
     let text = String::from_utf8(output.stdout).unwrap();
     assert!(
-        text.contains("first divergence at sample 2, 2.5e-8 s") && text.ends_with('\n'),
+        text.contains("first divergence at sample 2, 25 ns") && text.ends_with('\n'),
         "{text}"
     );
+    assert!(
+        text.starts_with("different: 1 of 2 signals differs, compared at 4 samples\n"),
+        "{text}"
+    );
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(said.contains("1 of 2 signals differs"), "{said}");
     for name in ["first.vcd", "first.gtkw", "first.sucl", "first.svg"] {
         assert!(at(name).is_file(), "{name}");
     }

@@ -5,6 +5,8 @@ use std::collections::BTreeMap;
 use super::matching::{Matched, Pair};
 use super::options::{Options, Reset};
 use crate::Error;
+use crate::wave::SAMPLE_CLOCK;
+use crate::wording::counted;
 
 const CLOCKS: [&str; 2] = ["clk", "clock"];
 const RESETS: [&str; 4] = ["rst", "reset", "arst", "areset"];
@@ -43,12 +45,15 @@ impl Clocking {
             let (slots, name) = named(matched, "--clock", name, &fits)?;
             clocking.sample_at(slots, &name, options);
         } else {
-            let found = candidates(matched, &fits, |name| CLOCKS.contains(&name));
+            let mut found = candidates(matched, &fits, |name| CLOCKS.contains(&name));
+            if found.is_empty() {
+                found = candidates(matched, &fits, |name| name == SAMPLE_CLOCK);
+            }
             match found.first_key_value() {
                 Some((slots, name)) if found.len() == 1 => clocking.sample_at(*slots, name, options),
                 _ => clocking.notes.push(format!(
-                    "no clock ({} candidates named clk or clock): compared at every change",
-                    found.len()
+                    "no clock ({} named clk or clock): compared at every change",
+                    counted(found.len() as u64, "candidate")
                 )),
             }
         }

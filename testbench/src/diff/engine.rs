@@ -8,7 +8,7 @@ use super::gather::Gathering;
 use super::matching::Pair;
 use super::options::Options;
 use super::result::{Difference, Shown};
-use super::rule::Rule;
+use super::rule::{Rule, View};
 use super::side::{ClockEdge, Side, slot_of};
 use super::touched::Touched;
 use crate::Error;
@@ -245,6 +245,7 @@ impl<'a> Engine<'a> {
             persistent: true,
             a_number: None,
             b_number: None,
+            view: View::Bits,
         });
         Ok(())
     }

@@ -2,6 +2,7 @@
 
 use super::engine::{Engine, seconds};
 use super::result::{Comparison, Difference};
+use crate::wording::{counted, time};
 
 impl Engine<'_> {
     /// Writes what was found into the result.
@@ -23,6 +24,7 @@ impl Engine<'_> {
                 persistent,
                 a_number: first.a_number,
                 b_number: first.b_number,
+                view: state.rule.reading(),
             };
             differences.push((first.time_fs, difference));
         }
@@ -32,26 +34,27 @@ impl Engine<'_> {
         differences.extend(self.surplus);
         if let Some(time_fs) = self.shifted_fs {
             comparison.notes.push(format!(
-                "the clock's edges lie at different times from {} s on: compared edge by edge",
-                seconds(time_fs)
+                "the clock's edges lie at different times from {} on: compared edge by edge",
+                time(time_fs)
             ));
         }
         let [held_a, held_b] = [self.a.held_in_reset, self.b.held_in_reset];
         if held_a + held_b > 0 {
             comparison.notes.push(format!(
-                "not compared while in reset: {held_a} edges of the first file, {held_b} of the second"
+                "not compared while in reset: {} of the first file, {held_b} of the second",
+                counted(held_a, "edge")
             ));
         }
         if self.unrecorded > 0 {
             comparison.notes.push(format!(
-                "{} samples are not recorded in one file ($dumpoff) and were not compared",
-                self.unrecorded
+                "not recorded in one file ($dumpoff) and not compared: {}",
+                counted(self.unrecorded, "sample")
             ));
         }
         if self.forgiven > 0 {
             comparison.notes.push(format!(
-                "{} differences lasted no longer than the time tolerance and do not count",
-                self.forgiven
+                "no longer than the time tolerance and not counted: {}",
+                counted(self.forgiven, "difference")
             ));
         }
         comparison.context = self.context.map(|gathering| gathering.context);

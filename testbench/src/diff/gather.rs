@@ -23,6 +23,7 @@ impl Engine<'_> {
                 signal: self.states[*at].name.clone(),
                 a: Vec::new(),
                 b: Vec::new(),
+                view: self.states[*at].rule.reading(),
             });
             let mut context = Context {
                 sample: self.samples,

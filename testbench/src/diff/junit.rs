@@ -2,7 +2,9 @@
 
 use std::collections::HashMap;
 
+use super::human::value_and_digits;
 use super::{Comparison, Difference, Verdict};
+use crate::wording::counted;
 
 /// The document. `name` is that of the suite, such as the two files' names.
 pub fn junit(comparison: &Comparison, name: &str) -> String {
@@ -44,11 +46,11 @@ pub fn junit(comparison: &Comparison, name: &str) -> String {
                     "  <testcase name=\"{}\"><failure message=\"{}\"/></testcase>\n",
                     escaped(signal),
                     escaped(&format!(
-                        "first at {:e} s: {} | {}, {} samples, {}",
-                        d.time,
-                        d.a,
-                        d.b,
-                        d.count,
+                        "first at {}: {} | {}, {}, {}",
+                        comparison.time(d.time),
+                        value_and_digits(&d.a, d.view),
+                        value_and_digits(&d.b, d.view),
+                        counted(d.count, "sample"),
                         if d.persistent { "to the end" } else { "transient" }
                     ))
                 ),

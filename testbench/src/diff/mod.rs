@@ -18,7 +18,8 @@
 //!   reset, not by their time; that the times differ is a note, that the numbers differ is a difference of the clock.
 //! - **Recording.** What one file does not record (`$dumpoff`) is not compared; behind it, edges meet by time again.
 //! - **Unknown bits.** By [`UnknownPolicy`]. A signal without a value yet is `x`.
-//! - **Widths.** Exactly: the narrower is extended with zeros, as VCD does; with its sign in a signed view.
+//! - **Widths.** The narrower is extended with zeros, as VCD does; with its sign in a signed view. The result names both widths,
+//!   and is then not exact.
 //! - **Tolerance.** See [`Tolerance`]; without a [`View`], bits are then signed numbers. A real against a vector is compared
 //!   as number, exactly if there is no tolerance. A tolerance for all signals leaves single bits and text alone.
 //! - **Nothing compared** is `incomparable`: no common signal beside the clock, or no sample.
@@ -31,6 +32,7 @@ mod delay;
 mod engine;
 mod finish;
 mod gather;
+mod human;
 mod junit;
 mod matching;
 mod names;
@@ -50,6 +52,7 @@ use std::path::Path;
 use self::clocking::Clocking;
 use self::engine::Engine;
 pub use self::engine::Progress;
+pub(crate) use self::human::{value, value_and_digits};
 pub use self::junit::junit;
 use self::matching::{Matched, Pair};
 use self::names::{Filter, Names};
@@ -62,6 +65,7 @@ pub use self::rule::{Tolerance, View};
 use self::side::{Delayed, Side, slot_of};
 use crate::Error;
 use crate::reader::{Declarations, Kind, Watch, Wave};
+use crate::wording::{counted, time};
 
 /// Compares file `a` with file `b`. `progress` is called now and then.
 ///
@@ -71,10 +75,13 @@ use crate::reader::{Declarations, Kind, Watch, Wave};
 pub fn compare(a: &Path, b: &Path, options: &Options, progress: &mut dyn FnMut(Progress)) -> Result<Comparison, Error> {
     let mut waves = [Wave::open(a)?, Wave::open(b)?];
     let plan = Plan::new(&mut waves, options)?;
-    let mut comparison = Comparison::new(&plan.matched, &plan.rules, &plan.latency_texts());
+    let widths = widths(&plan.matched, &waves);
+    let mut comparison = Comparison::new(&plan.matched, &plan.rules, &plan.latency_texts(), &widths);
     comparison.unknown = options.unknown;
-    comparison.exact &=
-        options.unknown == UnknownPolicy::Strict && options.time_tolerance_fs == 0 && options.glitch_fs == 0;
+    let strict = options.unknown == UnknownPolicy::Strict && options.time_tolerance_fs == 0 && options.glitch_fs == 0;
+    comparison.exact &= strict;
+    comparison.only_widths &= strict;
+    comparison.unit_fs = waves.iter().map(|wave| wave.declarations.unit_fs).min().unwrap_or(1);
     comparison.notes.clone_from(&plan.clocking.notes);
     comparison.signals = comparison.compared.len() as u64;
     let clock = plan.clocking.clock;
@@ -144,8 +151,10 @@ impl Plan {
 
     fn latency_texts(&self) -> Vec<Option<String>> {
         let text = |latency: &Latency| match latency {
-            Latency::Samples(samples) => format!("{samples} samples"),
-            Latency::Femtoseconds(time) => format!("{:e} s", *time as f64 / 1e15),
+            Latency::Samples(samples) if *samples < 0 => format!("-{}", counted(samples.unsigned_abs(), "sample")),
+            Latency::Samples(samples) => counted(samples.unsigned_abs(), "sample"),
+            Latency::Femtoseconds(fs) if *fs < 0 => format!("-{}", time(fs.unsigned_abs())),
+            Latency::Femtoseconds(fs) => time(fs.unsigned_abs()),
         };
         self.latencies
             .iter()
@@ -211,6 +220,16 @@ impl Plan {
         engine.wait_for(delays.iter().flatten().map(|delay| delay.pair));
         Ok(engine)
     }
+}
+
+/// Of each pair of vectors their widths, where they differ.
+fn widths(matched: &Matched, [a, b]: &[Wave; 2]) -> Vec<Option<[u32; 2]>> {
+    let width = |wave: &Wave, slot: Option<u32>| match wave.declarations.kinds[slot? as usize] {
+        Kind::Bits(width) => Some(width),
+        Kind::Real | Kind::Text | Kind::Event => None,
+    };
+    let widths = |pair: &Pair| Some([width(a, pair.a)?, width(b, pair.b)?]).filter(|[a, b]| a != b);
+    matched.pairs.iter().map(widths).collect()
 }
 
 /// The rule of each pair. `kinds` gives those of its two signals.

@@ -3,6 +3,7 @@
 use super::pattern::Pattern;
 use super::rule::{Tolerance, View};
 use crate::Error;
+use crate::wording::counted;
 
 /// Which edge of the clock samples.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -109,8 +110,9 @@ impl Options {
         let (of_a, of_b) = (Pattern::new(a)?.wildcards(), Pattern::new(b)?.wildcards());
         if of_a != of_b {
             return Err(Error::Option(format!(
-                "--map {text}: {of_a} wildcards on the left and {of_b} on the right; each on the right takes what its \
-                 fellow on the left stands for"
+                "--map {text}: {} on the left and {of_b} on the right; each on the right takes what its \
+                 fellow on the left stands for",
+                counted(of_a as u64, "wildcard")
             )));
         }
         self.maps.push((a.to_owned(), b.to_owned()));

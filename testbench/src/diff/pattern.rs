@@ -10,6 +10,7 @@
 //! A pattern fits a whole path, or its end behind a dot.
 
 use crate::Error;
+use crate::wording::counted;
 
 /// More than that is no name any more, and the time to match it grows with each.
 const WILDCARDS: usize = 8;
@@ -47,7 +48,8 @@ impl Pattern {
         let wildcards = pieces.iter().filter(|p| !matches!(p, Piece::Text(_))).count();
         if wildcards > WILDCARDS {
             return Err(Error::Option(format!(
-                "`{text}` has {wildcards} wildcards; {WILDCARDS} are allowed"
+                "`{text}` has {}; {WILDCARDS} are allowed",
+                counted(wildcards as u64, "wildcard")
             )));
         }
         Ok(Self { pieces, wildcards })

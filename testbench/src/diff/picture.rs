@@ -114,7 +114,7 @@ pub fn show(base: &Path, a: &Path, b: &Path, comparison: &Comparison) -> Result<
 
 /// Some samples around the first divergence, as far apart as they are there.
 fn window(comparison: &Comparison, first: f64) -> Window {
-    let fs = |seconds: f64| (seconds * 1e15).round() as u128;
+    let fs = |seconds: f64| comparison.femtoseconds(seconds);
     let at = fs(first);
     let times = comparison.context.as_ref().map_or(&[][..], |context| &context.times);
     let steps = times.windows(2).map(|pair| fs(pair[1]).saturating_sub(fs(pair[0])));

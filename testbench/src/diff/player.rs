@@ -6,7 +6,6 @@ use std::path::{Path, PathBuf};
 use posicast_model::rtl::{Direction, Port};
 
 use super::clocking::{Clocking, Slots};
-use super::engine::seconds;
 use super::matching::{Matched, Pair};
 use super::names::{Filter, Group, Names};
 use super::options::Options;
@@ -14,6 +13,7 @@ use super::side::Side;
 use super::touched::Touched;
 use crate::Error;
 use crate::reader::{Declarations, Kind, Value, Watch, Wave};
+use crate::wording::{counted, time};
 
 const CLOCK: &str = "clk";
 
@@ -84,10 +84,10 @@ impl PortMap {
             let port = &ports[place as usize - 1];
             if kinds[slot as usize] != Kind::Bits(port.width) {
                 return Err(Error::Option(format!(
-                    "{}: `{}` is no vector of {} bits, as the port `{}` is; map another signal to it with --map A=B",
+                    "{}: `{}` is no vector of {}, as the port `{}` is; map another signal to it with --map A=B",
                     path.display(),
                     pair.name,
-                    port.width,
+                    counted(port.width.into(), "bit"),
                     port.name
                 )));
             }
@@ -186,7 +186,7 @@ impl Player {
         if edge.gap && !std::mem::take(&mut self.is_first) {
             return Err(Error::Vcd {
                 path: self.path.clone(),
-                place: format!("before {} s", seconds(edge.time_fs)),
+                place: format!("before {}", time(edge.time_fs)),
                 problem: "nothing is recorded for a while ($dumpoff), and what a block does in that time is not known; replay \
                           only what lies before, with --cycles"
                     .to_owned(),

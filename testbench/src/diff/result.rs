@@ -61,6 +61,9 @@ pub struct Difference {
     /// `b` as a number.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub b_number: Option<f64>,
+    /// How the text reads the bits.
+    #[serde(skip)]
+    pub view: View,
 }
 
 /// What stands around the first divergence of all.
@@ -85,9 +88,12 @@ pub struct ContextRow {
     pub a: Vec<Shown>,
     /// Values in the second.
     pub b: Vec<Shown>,
+    /// How the text reads the bits.
+    #[serde(skip)]
+    pub view: View,
 }
 
-/// How a signal is compared, where that is not bit by bit.
+/// How a signal is compared, where that is not bit by bit in equal widths.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Leniency {
     /// Full name.
@@ -100,6 +106,12 @@ pub struct Leniency {
     /// How much later it is in the second file.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub latency: Option<String>,
+    /// Its width in the first file and in the second, where they differ: the narrower is extended.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub widths: Option<[u32; 2]>,
+    /// Whether it is extended with its sign; else with zeros.
+    #[serde(skip)]
+    pub extends_sign: bool,
 }
 
 /// The whole result. Serialises to `diff --json`.
@@ -115,7 +127,7 @@ pub struct Comparison {
     pub differences: Vec<Difference>,
     /// Time of the first difference of all.
     pub first_time: Option<f64>,
-    /// Whether nothing was forgiven: no tolerance, no latency, unknown bits equal to themselves only.
+    /// Whether nothing was forgiven: no tolerance, no latency, equal widths, unknown bits equal to themselves only.
     pub exact: bool,
     /// Signals that are not compared bit by bit at the same time.
     #[serde(skip_serializing_if = "Vec::is_empty")]
@@ -137,6 +149,12 @@ pub struct Comparison {
     /// Names of all signals that were compared, in the first file and in the second.
     #[serde(skip)]
     pub compared: Vec<(String, String)>,
+    /// Whether widths are all that was forgiven.
+    #[serde(skip)]
+    pub only_widths: bool,
+    /// Femtoseconds per unit of time of the files, the finer of the two.
+    #[serde(skip)]
+    pub unit_fs: u64,
     /// The clock's names, if there is one.
     #[serde(skip)]
     pub clock: Option<(String, String)>,
@@ -145,29 +163,41 @@ pub struct Comparison {
 }
 
 impl Comparison {
-    pub(super) fn new(matched: &Matched, rules: &[Rule], latencies: &[Option<String>]) -> Self {
+    pub(super) fn new(
+        matched: &Matched,
+        rules: &[Rule],
+        latencies: &[Option<String>],
+        widths: &[Option<[u32; 2]>],
+    ) -> Self {
         let names = |wanted: fn(&Pair) -> bool| {
             let pairs = matched.pairs.iter().filter(|pair| wanted(pair));
             pairs.map(|pair| pair.name.clone()).collect::<Vec<_>>()
         };
-        let rules = matched.pairs.iter().zip(rules).zip(latencies);
+        let rules = matched.pairs.iter().zip(rules).zip(latencies.iter().zip(widths));
         let lenient: Vec<Leniency> = rules
             .filter(|((pair, _), _)| pair.a.is_some() && pair.b.is_some())
-            .filter(|((_, rule), latency)| rule.view != View::Bits || rule.tolerance.is_some() || latency.is_some())
-            .map(|((pair, rule), latency)| Leniency {
+            .map(|((pair, rule), (latency, widths))| Leniency {
                 signal: pair.name.clone(),
                 view: rule.view.to_string(),
                 tolerance: rule.tolerance.map(|tolerance| tolerance.to_string()),
                 latency: latency.clone(),
+                widths: *widths,
+                extends_sign: matches!(rule.reading(), View::Signed { .. }),
+            })
+            .filter(|l| {
+                l.view != View::Bits.to_string() || l.tolerance.is_some() || l.latency.is_some() || l.widths.is_some()
             })
             .collect();
+        let only_widths = !lenient.iter().any(|l| l.tolerance.is_some() || l.latency.is_some());
         Self {
             result: Verdict::Incomparable,
             signals: 0,
             samples: 0,
             differences: Vec::new(),
             first_time: None,
-            exact: !lenient.iter().any(|l| l.tolerance.is_some() || l.latency.is_some()),
+            exact: only_widths && !lenient.iter().any(|l| l.widths.is_some()),
+            only_widths,
+            unit_fs: 1,
             lenient,
             unknown: UnknownPolicy::Strict,
             context: None,

@@ -134,6 +134,14 @@ impl Rule {
         self.tolerance.is_none() && self.unknown == UnknownPolicy::Strict
     }
 
+    /// How the bits are read: as signed numbers where there is a tolerance and no view.
+    pub(super) fn reading(&self) -> View {
+        match (self.view, self.tolerance) {
+            (View::Bits, Some(_)) => View::Signed { fraction: 0 },
+            (view, _) => view,
+        }
+    }
+
     fn lsb(&self) -> f64 {
         (-f64::from(self.view.fraction())).exp2()
     }
@@ -214,11 +222,7 @@ impl Rule {
             _ => 0,
         };
         let wider = width(&a).max(width(&b));
-        let signed = match self.view {
-            View::Signed { .. } => true,
-            View::Bits => self.tolerance.is_some(),
-            View::Unsigned { .. } => false,
-        };
+        let signed = matches!(self.reading(), View::Signed { .. });
         let show = |value: Option<Value<'_>>| match value {
             Some(bits @ Value::Bits { .. }) => Shown::Bits(bits.digits(wider, signed)),
             Some(Value::Real(Some(real))) => Shown::Real(real),

@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 
 use super::picture::Window;
+use crate::wording::time;
 
 /// Values from a time on, the first at the window's beginning.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -166,15 +167,6 @@ fn differing(lane: &Lane, window: Window) -> Vec<(u128, u128)> {
 fn x(time: u128, window: Window) -> f64 {
     let part = time.saturating_sub(window.from) as f64 / (window.to - window.from).max(1) as f64;
     NAME_WIDTH + WAVE_WIDTH * part.min(1.0)
-}
-
-fn time(fs: u128) -> String {
-    let units = [("s", 15), ("ms", 12), ("us", 9), ("ns", 6), ("ps", 3)];
-    let unit = units.iter().find(|(_, zeros)| fs >= 10u128.pow(*zeros));
-    unit.map_or_else(
-        || format!("{fs} fs"),
-        |(unit, zeros)| format!("{} {unit}", fs as f64 / 10f64.powi(*zeros as i32)),
-    )
 }
 
 /// The end of a long name: it tells more than its scopes.

@@ -1,34 +1,28 @@
-//! The result of a comparison as text for people.
+//! The result of a comparison as text for people, at most 100 columns wide.
 
 use std::fmt;
 
-use super::{Comparison, Context, Difference, Leniency, Shown, UnknownPolicy, Verdict};
+use super::human::{value, value_and_digits};
+use super::{Comparison, Context, Difference, Leniency, UnknownPolicy, Verdict};
+use crate::wording::{counted, time, times};
 
 /// Lines of one kind that the text shows before it counts the rest.
 const SHOWN_LINES: usize = 20;
-/// Digits of a value in a column.
-const SHOWN_DIGITS: usize = 40;
-
-impl fmt::Display for Shown {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Bits(digits) => f.write_str(digits),
-            Self::Real(real) => write!(f, "{real}"),
-            Self::Text(text) => write!(f, "{text:?}"),
-            Self::Missing => f.write_str("(none)"),
-        }
-    }
-}
+/// Columns of the text.
+const COLUMNS: usize = 100;
+/// Characters of a name and of a value that are shown.
+const NAME: usize = 36;
+const VALUE: usize = 35;
+const CELL: usize = 26;
 
 impl fmt::Display for Comparison {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let verdict = match self.result {
-            Verdict::Equal if self.exact => "equal",
-            Verdict::Equal => "equal within the tolerances below",
-            Verdict::Different => "different",
-            Verdict::Incomparable => "incomparable",
-        };
-        write!(f, "{verdict}: {} signals at {} samples", self.signals, self.samples)?;
+        let samples = counted(self.samples, "sample");
+        match self.result {
+            Verdict::Different => write!(f, "different: {}, compared at {samples}", self.differing())?,
+            Verdict::Equal => write!(f, "{}: {} at {samples}", self.equal(), counted(self.signals, "signal"))?,
+            Verdict::Incomparable => write!(f, "incomparable: {} at {samples}", counted(self.signals, "signal"))?,
+        }
         for note in &self.notes {
             write!(f, "\n  {note}")?;
         }
@@ -39,47 +33,89 @@ impl fmt::Display for Comparison {
         }
         list(f, &self.lenient, leniency)?;
         if let Some(context) = &self.context {
-            write!(f, "\n{context}")?;
+            self.write_context(context, f)?;
         }
         if !self.differences.is_empty() {
-            let width = column(self.differences.iter().take(SHOWN_LINES).map(|d| d.signal.as_str()));
+            let width = column(
+                self.differences
+                    .iter()
+                    .take(SHOWN_LINES)
+                    .map(|d| short(&d.signal, NAME)),
+            );
             f.write_str("\ndiffering signals, the earliest first")?;
-            let earliest = self.first_time;
-            list(f, &self.differences, |d| difference(d, width, earliest))?;
+            list(f, &self.differences, |d| self.difference(d, width))?;
         }
         list(f, &self.only_in_a, |name| format!("only in the first file: {name}"))?;
         list(f, &self.only_in_b, |name| format!("only in the second file: {name}"))?;
-        list(f, &self.not_compared, |name| format!("event, not compared: {name}"))
+        list(f, &self.not_compared, |name| format!("not compared: {name}"))
     }
 }
 
-impl fmt::Display for Context {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let before = self.sample.min(1) as usize;
-        write!(f, "first divergence at sample {}", self.sample)?;
-        if let Some(time) = self.times.get(before) {
-            write!(f, ", {time:e} s")?;
+impl Comparison {
+    /// How many signals differ, in words: `1 of 39 signals differs`.
+    pub fn differing(&self) -> String {
+        let is_common = |d: &&Difference| self.compared.iter().any(|(name, _)| *name == d.signal);
+        let common = self.differences.iter().filter(is_common).count() as u64;
+        let alone = self.differences.len() as u64 - common;
+        let differ = if common == 1 { "differs" } else { "differ" };
+        let mut text = format!("{common} of {} {differ}", counted(self.signals, "signal"));
+        match alone {
+            0 => {}
+            1 => text += ", 1 signal is in one file only",
+            more => text += &format!(", {more} signals are in one file only"),
+        }
+        text
+    }
+
+    /// A time of the result as people read it, with the digits that the files' units of time have: `40.68904 ms`.
+    pub fn time(&self, seconds: f64) -> String {
+        time(self.femtoseconds(seconds))
+    }
+
+    /// Seconds in whole units of time of the files: a number of seconds has fewer digits than a long file needs.
+    pub(super) fn femtoseconds(&self, seconds: f64) -> u128 {
+        let unit_fs = u128::from(self.unit_fs.max(1));
+        (seconds * 1e15 / unit_fs as f64).round() as u128 * unit_fs
+    }
+
+    fn equal(&self) -> &'static str {
+        let is_width = |l: &Leniency| l.widths.is_some() && l.tolerance.is_none() && l.latency.is_none();
+        let only_widths = self.only_widths && self.lenient.iter().any(is_width);
+        match (self.exact, only_widths) {
+            (true, _) => "equal",
+            (false, true) => "equal, but for the widths below",
+            (false, false) => "equal within the tolerances below",
+        }
+    }
+
+    fn write_context(&self, context: &Context, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let before = context.sample.min(1) as usize;
+        write!(f, "\nfirst divergence at sample {}", context.sample)?;
+        if let Some(time) = context.times.get(before) {
+            write!(f, ", {}", self.time(*time))?;
         }
         let mut columns = vec![vec![String::new()]];
-        for row in &self.rows {
-            columns[0].push(format!("{} a", short(&row.signal, 60)));
+        for row in &context.rows {
+            columns[0].push(format!("{} a", short(&row.signal, NAME)));
             columns[0].push("b".to_owned());
         }
-        for (at, time) in self.times.iter().enumerate() {
+        let all_fs: Vec<u128> = context.times.iter().map(|time| self.femtoseconds(*time)).collect();
+        for (at, time) in times(&all_fs).iter().enumerate() {
             let mark = if at == before { ">" } else { "" };
-            let mut cells = vec![format!("{mark}{time:e} s")];
-            for row in &self.rows {
+            let mut cells = vec![format!("{mark}{time}")];
+            for row in &context.rows {
                 for values in [&row.a, &row.b] {
-                    let value = values.get(at).map(Shown::to_string).unwrap_or_default();
-                    cells.push(short(&value, SHOWN_DIGITS));
+                    let value = values.get(at).map(|shown| value(shown, row.view));
+                    cells.push(short(&value.unwrap_or_default(), CELL));
                 }
             }
             columns.push(cells);
         }
-        let widths: Vec<usize> = columns
-            .iter()
-            .map(|cells| column(cells.iter().map(String::as_str)))
-            .collect();
+        let mut widths: Vec<usize> = columns.iter().map(|cells| column(cells.iter().cloned())).collect();
+        // Samples behind the divergence that do not fit are left out.
+        while 1 + widths.iter().map(|width| width + 1).sum::<usize>() > COLUMNS && widths.len() > before + 2 {
+            widths.pop();
+        }
         for line in 0..columns[0].len() {
             f.write_str("\n ")?;
             for (cells, width) in columns.iter().zip(&widths) {
@@ -87,15 +123,47 @@ impl fmt::Display for Context {
                 write!(f, " {cell:>width$}")?;
             }
         }
-        if self.others > 0 {
-            write!(f, "\n  … and {} signals more diverge at this sample", self.others)?;
+        match context.others {
+            0 => Ok(()),
+            1 => f.write_str("\n  … and 1 signal more diverges at this sample"),
+            more => write!(f, "\n  … and {more} signals more diverge at this sample"),
         }
-        Ok(())
+    }
+
+    /// Two lines: since when and how often, and the two values.
+    fn difference(&self, d: &Difference, width: usize) -> String {
+        let cause = if Some(d.time) == self.first_time {
+            ", probable cause"
+        } else {
+            ""
+        };
+        let [a, b] = [&d.a, &d.b].map(|shown| {
+            let whole = value_and_digits(shown, d.view);
+            if whole.chars().count() <= VALUE {
+                whole
+            } else {
+                short(&value(shown, d.view), VALUE)
+            }
+        });
+        format!(
+            "{:width$}  first at {}, {}, {}\n      a {a} | b {b}{cause}",
+            short(&d.signal, NAME),
+            self.time(d.time),
+            counted(d.count, "sample"),
+            if d.persistent { "to the end" } else { "transient" },
+        )
     }
 }
 
 fn leniency(lenient: &Leniency) -> String {
     let mut text = format!("{}: compared as {}", lenient.signal, lenient.view);
+    if let Some([a, b]) = lenient.widths {
+        let with = if lenient.extends_sign { "its sign" } else { "zeros" };
+        text += &format!(
+            ", {} in the first file and {b} in the second: the narrower extended with {with}",
+            counted(a.into(), "bit")
+        );
+    }
     if let Some(tolerance) = &lenient.tolerance {
         text += &format!(", tolerance {tolerance}");
     }
@@ -105,29 +173,9 @@ fn leniency(lenient: &Leniency) -> String {
     text
 }
 
-fn difference(d: &Difference, width: usize, earliest: Option<f64>) -> String {
-    let number = |number: Option<f64>| number.map_or_else(String::new, |number| format!(" ({number})"));
-    let cause = if Some(d.time) == earliest {
-        ", probable cause"
-    } else {
-        ""
-    };
-    format!(
-        "{:width$}  first at {:e} s: {}{} | {}{}  ({} samples, {}{cause})",
-        d.signal,
-        d.time,
-        d.a,
-        number(d.a_number),
-        d.b,
-        number(d.b_number),
-        d.count,
-        if d.persistent { "to the end" } else { "transient" },
-    )
-}
-
-/// Width of a column that holds these texts, at most 60.
-fn column<'a>(texts: impl Iterator<Item = &'a str>) -> usize {
-    texts.map(|text| text.chars().count()).max().unwrap_or(0).min(62)
+/// Width of a column that holds these texts.
+fn column(texts: impl Iterator<Item = String>) -> usize {
+    texts.map(|text| text.chars().count()).max().unwrap_or(0)
 }
 
 /// The end of a long text: of names and of numbers, the end tells more.

@@ -6,6 +6,7 @@ use posicast_model::rtl::{Direction, Port};
 use serde::Serialize;
 
 use super::window::{Row, Window};
+use crate::diff::{Shown, View, value, value_and_digits};
 
 /// Match or mismatch.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -88,6 +89,9 @@ pub struct Mismatch {
     pub expected: String,
     /// What the device shows; may hold `x`.
     pub actual: String,
+    /// What the model says and what the device shows, as people read it.
+    #[serde(skip)]
+    shown: [String; 2],
     /// The clocks around it: a row per port.
     #[serde(skip)]
     table: Table,
@@ -109,11 +113,13 @@ impl Mismatch {
         let (expected, actual, unknown) = at.map_or((0, 0, 0), |row| {
             (row.expected[output], row.actual[output], row.unknown[output])
         });
+        let (expected, actual) = (binary(port.width, expected, 0), binary(port.width, actual, unknown));
         Self {
             time,
             signal: port.name.clone(),
-            expected: binary(port.width, expected, 0),
-            actual: binary(port.width, actual, unknown),
+            shown: [&expected, &actual].map(|digits| value_and_digits(&Shown::Bits(digits.clone()), view(port))),
+            expected,
+            actual,
             table: Table::new(ports, own, window.rows()),
         }
     }
@@ -160,25 +166,29 @@ fn binary(width: u32, value: u64, unknown: u64) -> String {
     (0..width.min(64)).rev().map(bit).collect()
 }
 
-/// As an engineer reads it: decimal, with sign where the port has one; binary where bits are unknown.
-fn number(port: &Port, value: u64, unknown: u64) -> String {
-    if unknown != 0 {
-        return binary(port.width, value, unknown);
-    }
-    let shift = 64 - port.width.clamp(1, 64);
-    if port.signed {
-        (((value << shift) as i64) >> shift).to_string()
-    } else {
-        value.to_string()
+/// How an engineer reads a port: as a number, with sign where the port has one.
+fn view(port: &Port) -> View {
+    match (port.width, port.signed) {
+        (..=1, _) => View::Bits,
+        (_, true) => View::Signed { fraction: 0 },
+        (_, false) => View::Unsigned { fraction: 0 },
     }
 }
+
+/// As an engineer reads it: decimal, hexadecimal where bits are unknown.
+fn number(port: &Port, bits: u64, unknown: u64) -> String {
+    value(&Shown::Bits(binary(port.width, bits, unknown)), view(port))
+}
+
+/// Columns of the text.
+const COLUMNS: usize = 100;
 
 impl fmt::Display for Mismatch {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(
             f,
             "first mismatch in clock {}: `{}` is {}, the model says {}",
-            self.time, self.signal, self.actual, self.expected
+            self.time, self.signal, self.shown[1], self.shown[0]
         )?;
         let names = self.table.rows.iter().map(|(name, _)| name.chars().count());
         let name_width = names.max().unwrap_or(0).max("clock".len());
@@ -189,6 +199,10 @@ impl fmt::Display for Mismatch {
             let width = cells.clone().map(str::len).max().unwrap_or(0);
             let head = time.to_string();
             let width = width.max(head.len());
+            // Clocks behind the mismatch that do not fit are left out.
+            if *time > self.time && lines[0].chars().count() + 2 + width > COLUMNS {
+                break;
+            }
             for (line, cell) in lines.iter_mut().zip(std::iter::once(head.as_str()).chain(cells)) {
                 // Writing to a `String` cannot fail.
                 let _ = write!(line, "  {cell:>width$}");

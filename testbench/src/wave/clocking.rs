@@ -1,64 +1,90 @@
-//! Times of the clock's edges as whole numbers of a timescale.
+//! Times of the clock's edges as whole numbers of a unit of time.
+//!
+//! A unit is always a second divided by a power of 1000. VCD also allows ten and a hundred of these, but viewers disagree on
+//! them: GTKWave multiplies the times of such a file, and not those of its session file, which then opens it elsewhere.
 
 use vcd::TimescaleUnit;
 
 use crate::Error;
 
-const UNITS: [(TimescaleUnit, i32); 6] = [
-    (TimescaleUnit::S, 0),
-    (TimescaleUnit::MS, -3),
-    (TimescaleUnit::US, -6),
-    (TimescaleUnit::NS, -9),
-    (TimescaleUnit::PS, -12),
-    (TimescaleUnit::FS, -15),
+/// The units, coarsest first, and how many femtoseconds each has.
+const UNITS: [(TimescaleUnit, u64); 6] = [
+    (TimescaleUnit::S, 1_000_000_000_000_000),
+    (TimescaleUnit::MS, 1_000_000_000_000),
+    (TimescaleUnit::US, 1_000_000_000),
+    (TimescaleUnit::NS, 1_000_000),
+    (TimescaleUnit::PS, 1_000),
+    (TimescaleUnit::FS, 1),
 ];
 
-/// A clock on the grid of a timescale.
+/// The coarsest unit of which `fs` femtoseconds are a whole number of at least 1, and how many femtoseconds it has.
+pub(super) fn unit_for(fs: u64) -> (TimescaleUnit, u64) {
+    let fitting = UNITS
+        .into_iter()
+        .find(|(_, unit)| fs >= *unit && fs.is_multiple_of(*unit));
+    fitting.unwrap_or((TimescaleUnit::FS, 1))
+}
+
+/// Half a nanohertz-second in femtoseconds: half a period in femtoseconds is this by the clock in nanohertz.
+const HALF_FS_NANOHERTZ: u128 = 500_000_000_000_000_000_000_000;
+
+/// A clock on the grid of a unit.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Clocking {
-    /// Number and unit of the `$timescale`.
-    pub(super) timescale: (u32, TimescaleUnit),
-    half_period: u64,
+    /// Unit of the `$timescale`; the number before it is 1.
+    pub(super) unit: TimescaleUnit,
+    unit_fs: u64,
+    clock_nanohertz: u128,
 }
 
 impl Clocking {
-    /// The coarsest timescale on which half a period is whole; femtoseconds, rounded, where there is none.
+    /// The coarsest unit in which half a period is whole; femtoseconds where there is none.
     pub(super) fn new(clock_hz: f64) -> Result<Self, Error> {
         let half_fs = 0.5e15 / clock_hz;
-        // The upper bound keeps 2^24 periods within 64 bits; a clock that slow is a typing error.
         if !(clock_hz > 0.0 && (1.0..=5e17).contains(&half_fs)) {
             return Err(Error::Option(format!(
                 "a clock of {clock_hz} Hz cannot be drawn: it must lie between 0.001 Hz and 500 THz"
             )));
         }
-        for (unit, exponent) in UNITS {
-            for (factor, zeros) in [(100, 2), (10, 1), (1, 0)] {
-                let half = 0.5 / clock_hz * 10f64.powi(-exponent - zeros);
-                if half >= 1.0 && (half - half.round()).abs() <= 1e-9 * half {
-                    return Ok(Self {
-                        timescale: (factor, unit),
-                        half_period: half.round() as u64,
-                    });
-                }
-            }
-        }
+        let clock_nanohertz = (clock_hz * 1e9).round() as u128;
+        let (unit, unit_fs) = if HALF_FS_NANOHERTZ.is_multiple_of(clock_nanohertz) {
+            unit_for((HALF_FS_NANOHERTZ / clock_nanohertz) as u64)
+        } else {
+            (TimescaleUnit::FS, 1)
+        };
         Ok(Self {
-            timescale: (1, TimescaleUnit::FS),
-            half_period: half_fs.round() as u64,
+            unit,
+            unit_fs,
+            clock_nanohertz,
         })
     }
 
-    /// Times of the rising edge with which step `step` begins, and of the falling edge in its middle.
-    pub(super) fn edges(&self, step: u64) -> Result<(u64, u64), Error> {
-        let rise = step
-            .checked_mul(2)
-            .and_then(|halves| halves.checked_mul(self.half_period));
-        let both = rise.and_then(|rise| Some((rise, rise.checked_add(self.half_period)?)));
-        both.ok_or_else(|| {
-            Error::Option(format!(
-                "{step} clocks of this length are more than a waveform can hold"
-            ))
-        })
+    /// Times of the rising edge with which clock `clock` begins, and of the falling edge in its middle.
+    ///
+    /// Each is rounded by itself: a half period that is no whole number of femtoseconds adds no error clock by clock.
+    pub(super) fn edges(&self, clock: u64) -> Result<(u64, u64), Error> {
+        let halves = u128::from(clock) * 2;
+        match (self.time(halves), self.time(halves + 1)) {
+            (Some(rise), Some(fall)) => Ok((rise, fall)),
+            _ => Err(Error::Option(format!(
+                "{clock} clocks of this length are more than a waveform can hold"
+            ))),
+        }
+    }
+
+    /// The time half a period before clock `clock` begins; 0 for the first clock.
+    pub(super) fn before(&self, clock: u64) -> Result<u64, Error> {
+        Ok(clock
+            .checked_sub(1)
+            .map(|last| self.edges(last))
+            .transpose()?
+            .map_or(0, |(_, fall)| fall))
+    }
+
+    fn time(&self, halves: u128) -> Option<u64> {
+        let fs = halves.checked_mul(HALF_FS_NANOHERTZ)?;
+        let unit = self.clock_nanohertz * u128::from(self.unit_fs);
+        u64::try_from((fs + unit / 2) / unit).ok()
     }
 }
 
@@ -67,16 +93,26 @@ mod tests {
     use super::*;
 
     #[test]
-    fn unit_the_timescale_is_the_coarsest_that_holds_half_a_period() {
+    fn unit_the_unit_is_the_coarsest_power_of_1000_that_holds_half_a_period() {
         let of = |hz| {
             let clocking = Clocking::new(hz).unwrap();
-            (clocking.timescale.0, clocking.timescale.1, clocking.half_period)
+            (clocking.unit, clocking.edges(1).unwrap())
         };
-        assert_eq!(of(50e6), (10, TimescaleUnit::NS, 1));
-        assert_eq!(of(40e6), (100, TimescaleUnit::PS, 125));
-        assert_eq!(of(10e3), (10, TimescaleUnit::US, 5));
-        assert_eq!(of(3e6), (1, TimescaleUnit::FS, 166_666_667));
-        assert_eq!(of(1.0), (100, TimescaleUnit::MS, 5));
+        assert_eq!(of(50e6), (TimescaleUnit::NS, (20, 30)));
+        assert_eq!(of(40e6), (TimescaleUnit::PS, (25_000, 37_500)));
+        assert_eq!(of(180e3), (TimescaleUnit::FS, (5_555_555_556, 8_333_333_333)));
+        assert_eq!(of(10e3), (TimescaleUnit::US, (100, 150)));
+        assert_eq!(of(3e6), (TimescaleUnit::FS, (333_333_333, 500_000_000)));
+        assert_eq!(of(1.0), (TimescaleUnit::MS, (1000, 1500)));
+        assert_eq!(of(0.5), (TimescaleUnit::S, (2, 3)));
+    }
+
+    #[test]
+    fn unit_a_half_period_that_is_not_whole_adds_no_error() {
+        let clocking = Clocking::new(3e6).unwrap();
+        assert_eq!(clocking.edges(3_000_000_000).unwrap().0, 1_000_000_000_000_000_000);
+        assert_eq!(clocking.before(3).unwrap(), clocking.edges(2).unwrap().1);
+        assert_eq!(clocking.before(0).unwrap(), 0);
     }
 
     #[test]

@@ -8,7 +8,15 @@
 //!
 //! - Files are written to a temporary name beside their own and renamed when complete; a run that fails leaves nothing.
 //! - Memory does not grow with the length: only the latest value of each signal is kept, only changes are written.
-//! - The timescale is the coarsest in which half a clock period is a whole number, down to femtoseconds.
+//! - The timescale is one second divided by a power of 1000: the coarsest in which half a clock period is a whole number, down
+//!   to femtoseconds.
+//! - Clocks in which nothing happens can be [left out](Recorder::skip_to), with all times true. The file then says so: `clk` is
+//!   `x` there, and a signal `recording` is 0.
+//!
+//! ```text
+//!  clk        ‾\_/‾\_/‾\_xxxxxxxxxxxxxxxxxxxxxx_/‾\_/‾\_     one row each time that clk rises
+//!  recording  ‾‾‾‾‾‾‾‾‾‾‾\____________________/‾‾‾‾‾‾‾‾‾     from half a period before the clock that is recorded next
+//! ```
 
 mod clocking;
 mod output;
@@ -61,6 +69,23 @@ impl Signal {
     }
 }
 
+/// What a file says beside its signals.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Heading<'a> {
+    /// Name of the clock; empty: `clk`.
+    pub clock: &'a str,
+    /// A `$comment` at the top; empty: none.
+    pub comment: &'a str,
+    /// Whether clocks may be [left out](Recorder::skip_to): the file then has the signal `recording`.
+    pub gaps: bool,
+}
+
+/// Name of a clock that rises once a sample: not to be taken for that of the hardware.
+pub const SAMPLE_CLOCK: &str = "sample_clk";
+
+/// Name of the signal that is 0 while the clock is not recorded.
+const RECORDING: &str = "recording";
+
 struct Recorded {
     id: IdCode,
     kind: SignalKind,
@@ -71,9 +96,14 @@ struct Recorded {
 pub struct Recorder {
     output: Output,
     clock: IdCode,
+    recording: Option<IdCode>,
     clocking: Clocking,
     signals: Vec<Recorded>,
     clocks: u64,
+    /// Nothing was written yet.
+    is_new: bool,
+    /// The clock of the row before is left out.
+    behind_gap: bool,
 }
 
 impl Recorder {
@@ -83,9 +113,24 @@ impl Recorder {
     /// [`Error::Option`] for a clock that is not positive and at most 500 THz, or a name that VCD cannot hold;
     /// [`Error::File`] if the file cannot be made.
     pub fn create(path: &Path, clock_hz: f64, scope: &[&str], signals: &[Signal]) -> Result<Self, Error> {
+        Self::create_with(path, clock_hz, scope, signals, &Heading::default())
+    }
+
+    /// As [`Recorder::create`], with a heading of one's own.
+    ///
+    /// # Errors
+    /// As [`Recorder::create`].
+    pub fn create_with(
+        path: &Path,
+        clock_hz: f64,
+        scope: &[&str],
+        signals: &[Signal],
+        heading: &Heading<'_>,
+    ) -> Result<Self, Error> {
         let clocking = Clocking::new(clock_hz)?;
+        let clock_name = if heading.clock.is_empty() { "clk" } else { heading.clock };
         let names = scope.iter().copied().chain(signals.iter().map(|s| s.name.as_str()));
-        for name in names {
+        for name in names.chain([clock_name]) {
             if name.is_empty() || !name.bytes().all(|b| b.is_ascii_graphic()) {
                 return Err(Error::Option(format!(
                     "`{name}` is no name for a waveform: use letters, digits and _"
@@ -93,15 +138,19 @@ impl Recorder {
             }
         }
         let mut output = Output::create(path)?;
-        let (clock, ids) = output.write(|vcd| {
-            vcd.timescale(clocking.timescale.0, clocking.timescale.1)?;
+        let (clock, recording, ids) = output.write(|vcd| {
+            if !heading.comment.is_empty() {
+                vcd.comment(heading.comment)?;
+            }
+            vcd.timescale(1, clocking.unit)?;
             for name in scope {
                 vcd.add_module(name)?;
             }
             if scope.is_empty() {
                 vcd.add_module("top")?;
             }
-            let clock = vcd.add_wire(1, "clk")?;
+            let clock = vcd.add_wire(1, clock_name)?;
+            let recording = heading.gaps.then(|| vcd.add_wire(1, RECORDING)).transpose()?;
             let declare = |signal: &Signal| match signal.kind {
                 SignalKind::Bits(width) => vcd.add_wire(width.clamp(1, 64), &signal.name),
                 SignalKind::Real => vcd.add_var(VarType::Real, 64, &signal.name, None),
@@ -111,7 +160,7 @@ impl Recorder {
                 vcd.upscope()?;
             }
             vcd.enddefinitions()?;
-            Ok((clock, ids))
+            Ok((clock, recording, ids))
         })?;
         let recorded = ids.into_iter().zip(signals).map(|(id, signal)| Recorded {
             id,
@@ -122,8 +171,11 @@ impl Recorder {
             signals: recorded.collect(),
             output,
             clock,
+            recording,
             clocking,
             clocks: 0,
+            is_new: true,
+            behind_gap: false,
         })
     }
 
@@ -131,11 +183,17 @@ impl Recorder {
     ///
     /// # Errors
     /// As [`Recorder::create`].
-    pub fn for_ports(path: &Path, clock_hz: f64, scope: &[&str], ports: &[Port]) -> Result<Self, Error> {
+    pub fn for_ports(
+        path: &Path,
+        clock_hz: f64,
+        scope: &[&str],
+        ports: &[Port],
+        heading: &Heading<'_>,
+    ) -> Result<Self, Error> {
         let all = |direction| ports.iter().filter(move |p| p.direction == direction);
         let signals = all(Direction::Input).chain(all(Direction::Output));
         let signals: Vec<Signal> = signals.map(|p| Signal::bits(&p.name, p.width)).collect();
-        Self::create(path, clock_hz, scope, &signals)
+        Self::create_with(path, clock_hz, scope, &signals, heading)
     }
 
     /// Writes one clock: a value per signal, in order, that may come in several slices (inputs, outputs).
@@ -151,26 +209,66 @@ impl Recorder {
             )));
         }
         let (rise, fall) = self.clocking.edges(self.clocks)?;
-        let (clock, signals, first) = (self.clock, &mut self.signals, self.clocks == 0);
+        let start = self.clocking.before(self.clocks)?;
+        let is_new = std::mem::take(&mut self.is_new);
+        let behind_gap = std::mem::take(&mut self.behind_gap);
+        let (clock, recording, signals) = (self.clock, self.recording, &mut self.signals);
         self.output.write(|vcd| {
+            if behind_gap && !is_new {
+                vcd.timestamp(start)?;
+                vcd.change_scalar(clock, false)?;
+                recording.map_or(Ok(()), |id| vcd.change_scalar(id, true))?;
+            }
             vcd.timestamp(rise)?;
-            if first {
+            if is_new {
                 vcd.begin(vcd::SimulationCommand::Dumpvars)?;
             }
             vcd.change_scalar(clock, true)?;
+            if is_new {
+                recording.map_or(Ok(()), |id| vcd.change_scalar(id, true))?;
+            }
             for (signal, value) in signals.iter_mut().zip(values.iter().copied().flatten()) {
                 if signal.last != Some(*value) {
                     signal.last = Some(*value);
                     output::change(vcd, signal.id, signal.kind, *value)?;
                 }
             }
-            if first {
+            if is_new {
                 vcd.end()?;
             }
             vcd.timestamp(fall)?;
             vcd.change_scalar(clock, false)
         })?;
         self.clocks += 1;
+        Ok(())
+    }
+
+    /// Leaves out all clocks before clock `clock`, counted from the beginning of the file: nothing may change in them, and what
+    /// is recorded next is clock `clock`. Nothing happens where that is the next clock anyway.
+    ///
+    /// # Errors
+    /// [`Error::Option`] for a clock that was recorded before, and where the file has no signal `recording`
+    /// ([`Heading::gaps`]); [`Error::File`] if writing fails.
+    pub fn skip_to(&mut self, clock: u64) -> Result<(), Error> {
+        let Some(recording) = self.recording.filter(|_| clock >= self.clocks) else {
+            return Err(Error::Option(format!(
+                "clocks before clock {clock} of a waveform cannot be left out"
+            )));
+        };
+        if clock == self.clocks {
+            return Ok(());
+        }
+        if !self.is_new && !self.behind_gap {
+            let (end, _) = self.clocking.edges(self.clocks)?;
+            let id = self.clock;
+            self.output.write(|vcd| {
+                vcd.timestamp(end)?;
+                vcd.change_scalar(id, vcd::Value::X)?;
+                vcd.change_scalar(recording, false)
+            })?;
+        }
+        self.behind_gap = true;
+        self.clocks = clock;
         Ok(())
     }
 
@@ -181,7 +279,7 @@ impl Recorder {
     pub fn finish(mut self) -> Result<(), Error> {
         let (rise, _) = self.clocking.edges(self.clocks)?;
         let clock = self.clock;
-        if self.clocks > 0 {
+        if !self.is_new && !self.behind_gap {
             self.output.write(|vcd| {
                 vcd.timestamp(rise)?;
                 vcd.change_scalar(clock, true)

@@ -7,14 +7,16 @@
 //! ```
 //!
 //! Each part keeps its signals under a scope of its name, below the scopes that they do not all share. All are on one time
-//! axis, in the finest of their timescales.
+//! axis, in the finest of their units of time (ten or a hundred of a unit count as that unit). The times of the viewers' files
+//! are in that unit, too.
 
 use std::collections::HashSet;
 use std::io::Write as _;
 use std::path::Path;
 
-use vcd::{IdCode, TimescaleUnit, VarType};
+use vcd::{IdCode, VarType};
 
+use super::clocking::unit_for;
 use super::output::{self, Output};
 use crate::Error;
 use crate::reader::{Feed, Kind, Named, Step, Value, Values, Wave};
@@ -28,7 +30,7 @@ pub struct Part<'a> {
     pub path: &'a Path,
 }
 
-/// A signal `difference.<name>` = value of one signal minus that of another, as a real number; both signed.
+/// A signal `difference.<name>` = value of one signal minus that of another, as a real number; words are signed, bits are not.
 #[derive(Debug, Clone, Copy)]
 pub struct Difference<'a> {
     /// Name of the new signal.
@@ -144,9 +146,9 @@ pub fn merge_around(
     let only = |at: usize| focus.and_then(|focus| focus.signals.get(at));
     let opened = parts.iter().enumerate().map(|(at, part)| Open::new(part, only(at)));
     let mut parts = opened.collect::<Result<Vec<_>, Error>>()?;
-    let unit_fs = parts.iter().map(|p| p.unit_fs).min().unwrap_or(1_000_000);
+    let (unit, unit_fs) = unit_for(parts.iter().map(|p| p.unit_fs).min().unwrap_or(1_000_000));
     let mut output = Output::create(path)?;
-    output.write(|vcd| vcd.timescale(timescale(unit_fs).0, timescale(unit_fs).1))?;
+    output.write(|vcd| vcd.timescale(1, unit))?;
     for part in &mut parts {
         declare(&mut output, part)?;
     }
@@ -185,29 +187,25 @@ pub fn merge_around(
             }
         }
     }
-    output.finish()?;
     let spot = focus.map(|focus| [focus.time_fs, focus.span_fs].map(|fs| (fs / u128::from(unit_fs)) as u64));
+    // Viewers show no time behind the last one of the file: GTKWave then opens at the beginning instead.
+    if let Some(room) = spot
+        .map(|[time, span]| time.saturating_add(span))
+        .filter(|room| *room > end)
+    {
+        output.write(|vcd| vcd.timestamp(room))?;
+        end = room;
+    }
+    output.finish()?;
     write_views(path, &parts, differences, end, spot)
 }
 
 fn number(value: Value<'_>) -> Option<f64> {
     match value {
         Value::Real(real) => real,
+        Value::Bits { width: 1, .. } => value.integer(false).map(|n| n as f64),
         bits => bits.integer(true).map(|n| n as f64),
     }
-}
-
-fn timescale(unit_fs: u64) -> (u32, TimescaleUnit) {
-    let units = [
-        (TimescaleUnit::S, 1_000_000_000_000_000),
-        (TimescaleUnit::MS, 1_000_000_000_000),
-        (TimescaleUnit::US, 1_000_000_000),
-        (TimescaleUnit::NS, 1_000_000),
-        (TimescaleUnit::PS, 1_000),
-        (TimescaleUnit::FS, 1),
-    ];
-    let fitting = units.into_iter().find(|(_, fs)| unit_fs >= *fs);
-    fitting.map_or((1, TimescaleUnit::FS), |(unit, fs)| ((unit_fs / fs) as u32, unit))
 }
 
 /// The part's scopes and signals.
@@ -350,9 +348,14 @@ fn write_views(
             difference.name
         ));
     }
-    match spot {
-        Some([time, _]) => surfer.push_str(&format!("zoom_fit\ncursor_set {time}\ngoto_cursor\n")),
-        None => surfer.push_str("zoom_fit\n"),
+    surfer.push_str("zoom_fit\n");
+    if let Some([time, span]) = spot {
+        // Each halves the time in view; the cursor's place in it comes last.
+        let halvings = (end.max(1) as f64 / span.max(1) as f64).log2().floor().max(0.0) as usize;
+        surfer.push_str(&format!(
+            "cursor_set {time}\n{}goto_cursor\n",
+            "zoom_in\n".repeat(halvings)
+        ));
     }
     output::write_text(&path.with_extension("gtkw"), &gtkwave)?;
     output::write_text(&path.with_extension("sucl"), &surfer)

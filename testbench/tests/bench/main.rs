@@ -8,5 +8,8 @@ mod hostile;
 mod lockstep;
 mod options;
 mod producers;
+mod recording;
 mod simulators;
+mod text;
 mod wave;
+mod waves;

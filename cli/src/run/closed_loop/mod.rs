@@ -12,6 +12,7 @@ use posicast_model::spec::Machine;
 use posicast_testbench::blocks::Sources;
 use posicast_testbench::stage_run;
 use posicast_testbench::stage_run::{Circle, Circled, Compared, Moved, Shaping, StageRun, StageRunError};
+use posicast_testbench::wording::counted;
 use std::path::Path;
 use std::sync::Mutex;
 use std::thread;
@@ -295,8 +296,13 @@ fn equals_model(compared: &Compared) -> Check {
     };
     let detail = match (&compared.first, &compared.trouble) {
         (Some(first), _) => format!(
-            "{} differs first in clock {}: expected {:#x}, found {:#x}; {} differences in {} clocks",
-            first.signal, first.clock, first.expected, first.actual, compared.mismatches, compared.clocks
+            "{} differs first in clock {}: expected {:#x}, found {:#x}; {} in {} clocks",
+            first.signal,
+            first.clock,
+            first.expected,
+            first.actual,
+            counted(compared.mismatches, "difference"),
+            compared.clocks
         ),
         (None, Some(trouble)) => trouble.to_string(),
         (None, None) => format!("{} clocks, {reach}, no mismatch", compared.clocks),
