@@ -11,7 +11,7 @@ use crate::stage::{self, Stage};
 use posicast_hdl::emit::Module;
 use posicast_hdl::machine::{AxisShaper, emit_machine};
 use posicast_model::spec::Machine;
-use posicast_synth::package::Package;
+use posicast_synth::package::{Committed, Package};
 use posicast_testbench::blocks::{Block, ComponentBlock};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -43,11 +43,35 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     package
         .add("report.json", output::json_text(&report.json())?.as_bytes())
         .map_err(Failure::because)?;
+    let committed = package.commit().map_err(Failure::because)?;
+    tell(&committed);
     let mut text = String::new();
-    for path in package.commit().map_err(Failure::because)? {
+    for path in &committed.files {
         let _ = writeln!(text, "{}", path.display());
     }
     output::print(&text)
+}
+
+/// Says on standard error which files of an earlier run went, and which of its evidence stayed.
+pub(crate) fn tell(committed: &Committed) {
+    let note = |what: &str, files: &[String]| {
+        if !files.is_empty() {
+            output::say(&format!("note: {what}: {}", files.join(", ")));
+        }
+    };
+    note(
+        "kept the evidence of the last `posicast run`, which is about this very machine file and Verilog",
+        &committed.kept,
+    );
+    note(
+        "removed the evidence of an earlier `posicast run`, which was about another machine file or other Verilog (`posicast \
+         run` makes it anew)",
+        &committed.outdated,
+    );
+    note(
+        "removed what an earlier run wrote and this one does not",
+        &committed.removed,
+    );
 }
 
 /// The Verilog modules of a machine: those of its top, then those of its components, then those of its stage. `path` is the machine

@@ -2,7 +2,7 @@
 //!
 //! design → quantise → generate → lock step → waveforms compared → plant measured → estimated → reported. What a step has
 //! decided the later ones use: the tap table is made once. The folder appears when everything is done, also after a failed
-//! check: then it is the evidence.
+//! check: it holds all that `generate` writes, and the evidence beside it.
 
 mod checks;
 mod closed_loop;
@@ -17,7 +17,7 @@ use crate::machine;
 use crate::plot;
 use crate::simulate::simulate;
 use crate::verify::DEFAULT_SEED;
-use crate::{generate, output, progress, stage, synth};
+use crate::{driver, generate, output, progress, sopc, stage, synth};
 use closed_loop::ClosedLoop;
 use posicast_hdl::machine::AxisShaper;
 use posicast_model::design::MachineDesign;
@@ -69,6 +69,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let machine = &file.machine;
     let design = DesignReport::new(machine, &args.machine)?;
     design.warn();
+    let board = sopc::board(machine, &args.machine)?;
     let shapers = machine::shapers(machine, &design.design, &args.machine)?;
     let words = command::words(machine, &design.design, args.command.as_deref())?;
     let simulator = Simulator::choose(args.simulator)?;
@@ -81,12 +82,15 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let components = blocks::components(machine, &shapers, &design.controllers, &args.machine)?;
     let modules = generate::modules(machine, &shapers, &components, stage.as_ref(), &args.machine)?;
     let top = blocks::shapers(machine, shapers, &words)?;
+
+    let package = generate::open(args.output.as_deref(), &file)?;
+    let mut package = package.with_evidence().map_err(Failure::because)?;
+    let files = generate::add_sources(&mut package, &file, &modules)?;
+    sopc::add(&mut package, machine, board, stage.as_ref(), &components)?;
+    driver::add(&mut package, machine, &modules, &components, stage.as_ref())?;
     let components = components.iter().chain(stage.as_ref().map(|stage| &stage.block));
     let components = components.map(|component| component as &dyn Block);
     let tops: Vec<&dyn Block> = std::iter::once(&top as &dyn Block).chain(components).collect();
-
-    let mut package = generate::open(args.output.as_deref(), &file)?;
-    let files = generate::add_sources(&mut package, &file, &modules)?;
     let all = Sources::found(files.clone());
     let sources = all.reached_by(&top).map_err(bench::failure)?;
     let cycles = args.cycles.unwrap_or(simulator.default_cycles());
@@ -120,16 +124,18 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     checks.extend(closed_loop.iter().flat_map(ClosedLoop::checks));
     for (name, panels) in closed_loop.iter().flat_map(ClosedLoop::pictures) {
         let picture = plot::svg(&panels)?;
-        package.add(name, picture.as_bytes()).map_err(Failure::because)?;
+        package
+            .add_evidence(name, picture.as_bytes())
+            .map_err(Failure::because)?;
     }
     package
-        .add(
+        .add_evidence(
             "plots/sensitivity.svg",
             plot::svg(&design::sensitivity_panels(machine, &design.design))?.as_bytes(),
         )
         .map_err(Failure::because)?;
     package
-        .add(
+        .add_evidence(
             "plots/response.svg",
             plot::svg(&report::response_panels(machine, &design.design, &axes)?)?.as_bytes(),
         )
@@ -149,14 +155,15 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     };
     let document = report.json();
     package
-        .add("report.json", output::json_text(&document)?.as_bytes())
+        .add_evidence("report.json", output::json_text(&document)?.as_bytes())
         .map_err(Failure::because)?;
     let root = package.root().to_owned();
-    let written = package.commit().map_err(Failure::because)?;
+    let committed = package.commit().map_err(Failure::because)?;
+    generate::tell(&committed);
     if args.json {
         output::print_json(&document)?
     } else {
-        output::print(&report.text(&root, written.len()))?
+        output::print(&report.text(&root, &committed.files))?
     }
     let failed: Vec<_> = checks.iter().filter(|c| !c.passed).map(|c| c.name).collect();
     if failed.is_empty() {
@@ -227,7 +234,11 @@ impl Job<'_> {
             clock_hz: self.machine.clock.frequency_hz,
             sample_hz: design.sample_hz,
         };
-        let mut stage = |name: &str| package.stage(&format!("wave/{name}")).map_err(Failure::because);
+        let mut stage = |name: &str| {
+            package
+                .stage_evidence(&format!("wave/{name}"))
+                .map_err(Failure::because)
+        };
         let (model_vcd, rtl_vcd, float_vcd) = (stage("model.vcd")?, stage("rtl.vcd")?, stage("float.vcd")?);
         let merged = stage("merged.vcd")?;
         for view in ["merged.gtkw", "merged.sucl"] {

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use posicast_synth::package::{self, Package, PackageError};
+use posicast_synth::package::{self, Committed, Package, PackageError};
 use tempfile::TempDir;
 
 /// Every file under a folder, path to contents.
@@ -27,7 +27,7 @@ fn snapshot(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
 }
 
 /// Writes a package of these files.
-fn write(folder: &Path, files: &[(&str, &str)]) -> Result<Vec<PathBuf>, PackageError> {
+fn write(folder: &Path, files: &[(&str, &str)]) -> Result<Committed, PackageError> {
     let mut package = Package::open(folder, "xy_stage")?;
     for (path, text) in files {
         package.add(path, text.as_bytes())?;
@@ -53,7 +53,7 @@ fn written() -> (TempDir, PathBuf) {
 fn unit_a_new_folder_is_made_and_read_back() {
     let scratch = tempfile::tempdir().unwrap();
     let folder = scratch.path().join("a/b/out");
-    let paths = write(&folder, &FILES).unwrap();
+    let paths = write(&folder, &FILES).unwrap().files;
     let names = ["machine.toml", "rtl/shaper_x.v", "rtl/xy_stage.v", "posicast.json"];
     assert_eq!(paths, names.map(|name| folder.join(name)));
     assert_eq!(snapshot(&folder).len(), 4, "nothing else, no staging folder");
@@ -306,4 +306,104 @@ fn unit_what_is_missing_is_named() {
         package::read(&folder.join("nowhere")),
         Err(PackageError::Missing(_))
     ));
+}
+
+/// Writes a package of these files with this evidence.
+fn write_with_evidence(
+    folder: &Path,
+    files: &[(&str, &str)],
+    evidence: &[(&str, &str)],
+) -> Result<Committed, PackageError> {
+    let mut package = Package::open(folder, "xy_stage")?.with_evidence()?;
+    for (path, text) in files {
+        package.add(path, text.as_bytes())?;
+    }
+    for (path, text) in evidence {
+        package.add_evidence(path, text.as_bytes())?;
+    }
+    package.commit()
+}
+
+const EVIDENCE: [(&str, &str); 2] = [("report.json", "{\"result\": \"pass\"}\n"), ("wave/rtl.vcd", "$end\n")];
+
+/// [`FILES`] with a file that evidence may have the name of, and another machine file.
+fn generated(machine: &'static str) -> Vec<(&'static str, &'static str)> {
+    let mut files = FILES.to_vec();
+    files[0].1 = machine;
+    files.extend([("report.json", "{\"name\": \"xy_stage\"}\n"), ("driver/a.h", "//\n")]);
+    files
+}
+
+#[test]
+fn unit_evidence_stays_as_long_as_machine_file_and_verilog_are_what_it_is_about() {
+    let scratch = tempfile::tempdir().unwrap();
+    let folder = scratch.path().join("out");
+    let files = &generated("1\n");
+    let without_report: Vec<_> = files
+        .iter()
+        .copied()
+        .filter(|(path, _)| *path != "report.json")
+        .collect();
+    write(&folder, files).unwrap();
+    let committed = write_with_evidence(&folder, &without_report, &EVIDENCE).unwrap();
+    assert!(
+        committed.removed.is_empty() && committed.outdated.is_empty(),
+        "{committed:?}"
+    );
+    let after_run = snapshot(&folder);
+    assert_eq!(after_run.len(), 7, "both beside each other: {:?}", after_run.keys());
+    let committed = write(&folder, files).unwrap();
+    assert_eq!(committed.kept, ["report.json", "wave/rtl.vcd"]);
+    assert_eq!(snapshot(&folder), after_run, "nothing of the run was lost");
+
+    // What the user changed of it is nobody's business as long as it stays.
+    fs::write(folder.join("wave/rtl.vcd"), "edited").unwrap();
+    assert_eq!(write(&folder, files).unwrap().kept, ["report.json", "wave/rtl.vcd"]);
+    let error = write_with_evidence(&folder, &without_report, &EVIDENCE).unwrap_err();
+    assert!(matches!(error, PackageError::Edited { .. }), "{error}");
+    let before = snapshot(&folder);
+    let error = write(&folder, &generated("2\n")).unwrap_err();
+    assert!(matches!(error, PackageError::Edited { .. }), "{error}");
+    assert_eq!(snapshot(&folder), before);
+}
+
+#[test]
+fn unit_evidence_of_another_machine_file_or_other_verilog_goes_and_is_named() {
+    let other_verilog = {
+        let mut files = generated("1\n");
+        files[1].1 = "module other; endmodule\n";
+        files
+    };
+    let one_file_less = generated("1\n")
+        .into_iter()
+        .filter(|(path, _)| *path != "rtl/shaper_x.v");
+    for (changed, removed) in [(generated("2\n"), 0), (other_verilog, 0), (one_file_less.collect(), 1)] {
+        let scratch = tempfile::tempdir().unwrap();
+        let folder = scratch.path().join("out");
+        let files = generated("1\n");
+        let files: Vec<_> = files.into_iter().filter(|(path, _)| *path != "report.json").collect();
+        write_with_evidence(&folder, &files, &EVIDENCE).unwrap();
+        let committed = write(&folder, &changed).unwrap();
+        assert_eq!(committed.outdated, ["report.json", "wave/rtl.vcd"]);
+        assert_eq!(committed.removed.len(), removed);
+        assert!(!folder.join("wave").exists());
+        let report = fs::read_to_string(folder.join("report.json")).unwrap();
+        assert!(report.contains("name"), "{report}");
+        // And it does not come back with the machine file.
+        assert!(write(&folder, &generated("1\n")).unwrap().kept.is_empty());
+    }
+}
+
+#[test]
+fn unit_evidence_that_the_user_deleted_is_not_missed() {
+    let scratch = tempfile::tempdir().unwrap();
+    let folder = scratch.path().join("out");
+    let files: Vec<_> = generated("1\n")
+        .into_iter()
+        .filter(|(path, _)| *path != "report.json")
+        .collect();
+    write_with_evidence(&folder, &files, &EVIDENCE).unwrap();
+    fs::remove_file(folder.join("report.json")).unwrap();
+    assert_eq!(write(&folder, &generated("1\n")).unwrap().kept, ["wave/rtl.vcd"]);
+    assert!(folder.join("report.json").exists(), "the package's own takes its place");
 }

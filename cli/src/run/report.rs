@@ -23,7 +23,7 @@ use posicast_testbench::lockstep::report::Report as LockstepReport;
 use posicast_testbench::verilator;
 use serde::Serialize;
 use std::fmt::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Everything that a run found out.
 pub(crate) struct Report<'a> {
@@ -83,7 +83,7 @@ impl Report<'_> {
     }
 
     /// The text for people, with the verdict last.
-    pub(crate) fn text(&self, root: &Path, files: usize) -> String {
+    pub(crate) fn text(&self, root: &Path, files: &[PathBuf]) -> String {
         let clock = &self.machine.clock;
         let tool = match self.simulator {
             Simulator::Verilator => verilator::version().map_or_else(|_| self.simulator.to_string(), str::to_owned),
@@ -118,8 +118,10 @@ impl Report<'_> {
         }
         let _ = writeln!(
             text,
-            "\n{files} files written to {}: machine.toml, rtl/, wave/, plots/, report.json",
-            root.display()
+            "\n{} files written to {}: {}",
+            files.len(),
+            root.display(),
+            entries(root, files).join(", ")
         );
         text += match (self.checks.iter().all(|c| c.passed), self.simulator) {
             (false, _) => "FAIL: do not put this Verilog into a machine.\n",
@@ -248,6 +250,24 @@ impl Report<'_> {
             checks: self.checks,
         }
     }
+}
+
+/// What the files make the folder hold: files by their names, folders with a `/`.
+fn entries(root: &Path, files: &[PathBuf]) -> Vec<String> {
+    let mut entries = Vec::new();
+    for file in files {
+        let mut parts = file.strip_prefix(root).unwrap_or(file).iter();
+        let first = parts.next().unwrap_or_default().to_string_lossy();
+        let entry = if parts.next().is_some() {
+            format!("{first}/")
+        } else {
+            first.into_owned()
+        };
+        if !entries.contains(&entry) {
+            entries.push(entry);
+        }
+    }
+    entries
 }
 
 /// Duration that a step response shows, in shaper durations.

@@ -8,6 +8,7 @@ mod verify;
 mod bad_input;
 mod design;
 mod diff;
+mod folder;
 mod fuzz;
 mod hardware;
 mod replay;

@@ -4,9 +4,13 @@
 //! {
 //!   "version": "0.1.0",
 //!   "machine": "xy_stage",
-//!   "files": { "machine.toml": "sha256:9f86d0…", "rtl/xy_stage.v": "sha256:60303a…" }
+//!   "files": { "machine.toml": "sha256:9f86d0…", "rtl/xy_stage.v": "sha256:60303a…", "wave/rtl.vcd": "sha256:fcde2b…" },
+//!   "evidence": { "of": "sha256:a665a4…", "files": ["wave/rtl.vcd"] }
 //! }
 //! ```
+//!
+//! `evidence` lists the files that say what a run found out, and `of` is the hash of what it was found out about: path and
+//! hash of `machine.toml` and of every file in `rtl/`, a line each.
 //!
 //! While files are being replaced, `replaces` lists for each path what may also be found there.
 
@@ -29,17 +33,40 @@ pub(super) struct Manifest {
     /// Name of the machine.
     pub(super) machine: String,
     files: BTreeMap<String, String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    evidence: Option<Evidence>,
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     replaces: BTreeMap<String, BTreeSet<String>>,
 }
 
+/// Which files say what a run found out, and about what.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub(super) struct Evidence {
+    /// [`subject`] of the package that the run was about.
+    of: String,
+    files: BTreeSet<String>,
+}
+
+/// Hash of what evidence is about: the machine file and the Verilog. `files` is path to hash.
+fn subject(files: &BTreeMap<String, String>) -> String {
+    let counts = |path: &str| path == "machine.toml" || path.starts_with("rtl/");
+    let lines = files.iter().filter(|(path, _)| counts(path));
+    let lines: String = lines.map(|(path, hash)| format!("{path} {hash}\n")).collect();
+    digits(Sha256::digest(lines))
+}
+
 impl Manifest {
-    /// A finished package of these files, path to hash.
-    pub(super) fn new(machine: &str, files: BTreeMap<String, String>) -> Self {
+    /// A finished package of these files, path to hash, of which `evidence` are evidence about the others.
+    pub(super) fn new(machine: &str, files: BTreeMap<String, String>, evidence: BTreeSet<String>) -> Self {
+        let evidence = (!evidence.is_empty()).then(|| Evidence {
+            of: subject(&files),
+            files: evidence,
+        });
         Self {
             version: env!("CARGO_PKG_VERSION").to_owned(),
             machine: machine.to_owned(),
             files,
+            evidence,
             replaces: BTreeMap::new(),
         }
     }
@@ -74,6 +101,23 @@ impl Manifest {
             .map(String::as_str)
             .collect();
         paths.into_iter()
+    }
+
+    /// The paths of the evidence.
+    pub(super) fn evidence(&self) -> impl Iterator<Item = &str> {
+        let evidence = self.evidence.iter().flat_map(|evidence| &evidence.files);
+        evidence.map(String::as_str)
+    }
+
+    /// The evidence that holds for a package of these files, path to hash, and is still in place. There is none in a folder
+    /// whose last run was interrupted: its files may be of two runs.
+    pub(super) fn evidence_of(&self, files: &BTreeMap<String, String>, root: &Path) -> BTreeMap<String, String> {
+        let holds = |evidence: &&Evidence| !self.unfinished() && evidence.of == subject(files);
+        let paths = self.evidence.iter().filter(holds).flat_map(|evidence| &evidence.files);
+        let there = paths.filter(|path| root.join(path).symlink_metadata().is_ok());
+        there
+            .filter_map(|path| Some((path.clone(), self.files.get(path)?.clone())))
+            .collect()
     }
 
     /// May posicast have written this path?
@@ -167,8 +211,13 @@ fn hash(path: &Path) -> Result<String, PackageError> {
             count => sha.update(&buffer[..count]),
         }
     }
-    let digits: String = sha.finalize().iter().map(|byte| format!("{byte:02x}")).collect();
-    Ok(format!("sha256:{digits}"))
+    Ok(digits(sha.finalize()))
+}
+
+/// `sha256:` and the digits.
+fn digits(hash: impl AsRef<[u8]>) -> String {
+    let digits: String = hash.as_ref().iter().map(|byte| format!("{byte:02x}")).collect();
+    format!("sha256:{digits}")
 }
 
 #[cfg(test)]
@@ -187,7 +236,8 @@ mod tests {
 
     #[test]
     fn unit_an_unfinished_manifest_accepts_every_generation() {
-        let generation = |hash: &str| Manifest::new("m", BTreeMap::from([("a".to_owned(), hash.to_owned())]));
+        let files = |hash: &str| BTreeMap::from([("a".to_owned(), hash.to_owned())]);
+        let generation = |hash: &str| Manifest::new("m", files(hash), BTreeSet::new());
         let twice = generation("3").replacing(&generation("2").replacing(&generation("1")));
         assert!(twice.unfinished());
         assert_eq!(twice.replaces["a"], BTreeSet::from(["1".to_owned(), "2".to_owned()]));

@@ -1,9 +1,10 @@
 //! The output folder: what posicast writes there, and what of it is posicast's to replace.
 //!
 //! ```text
-//! DIR/machine.toml  rtl/*.v  wave/*.vcd  sopc/  report.json      what the caller adds
-//! DIR/posicast.json                                              version, machine, sha256 of every file written
-//! DIR/.posicast-staging/                                         while a run is at work
+//! DIR/machine.toml  rtl/*.v  sopc/  driver/ …      the package: what follows from the machine file
+//! DIR/wave/*.vcd  plots/  report.json              evidence: what a run found out about it
+//! DIR/posicast.json                                version, machine, sha256 of every file written, which are evidence
+//! DIR/.posicast-staging/                           while a run is at work
 //! ```
 //!
 //! - A folder is **ours** if it does not exist, is empty, or holds `posicast.json`. Any other is refused.
@@ -11,6 +12,9 @@
 //!   last. A run that fails or is dropped before that leaves the folder as it was.
 //! - A file is replaced or removed only if it is what posicast wrote: its hash is in `posicast.json`. One that was edited
 //!   since is an error that names it, before anything is touched. Files that posicast never wrote stay where they are.
+//! - **Evidence** is about one machine file and one set of Verilog files. A package that is written anew with both unchanged
+//!   keeps it, and also keeps its own hands off a file of that name. With another machine file or other Verilog it goes:
+//!   evidence of another machine beside this one would be a false witness. What went is told ([`Committed`]).
 //! - A run that is killed between two renames leaves a `posicast.json` that knows both generations, so that the next run
 //!   can finish the work; [`read()`] refuses the folder until then.
 //! - Two runs on one folder exclude each other by a lock on the folder.
@@ -60,6 +64,21 @@ pub struct Package {
     previous: Manifest,
     staging: Staging,
     files: BTreeSet<String>,
+    /// Those of the files that are evidence; `None` where this run makes none.
+    evidence: Option<BTreeSet<String>>,
+}
+
+/// What a commit did.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Committed {
+    /// Every file that was written, also where it was there before; sorted, the manifest last.
+    pub files: Vec<PathBuf>,
+    /// Evidence of an earlier run that holds for this package too and stayed, relative to the folder.
+    pub kept: Vec<String>,
+    /// Evidence of an earlier run that was removed or replaced because it was about another machine file or other Verilog.
+    pub outdated: Vec<String>,
+    /// Other files of an earlier run that were removed because they are no longer produced.
+    pub removed: Vec<String>,
 }
 
 impl Package {
@@ -70,20 +89,28 @@ impl Package {
     /// written. The folder is then as it was.
     pub fn open(root: &Path, machine: &str) -> Result<Self, PackageError> {
         let previous = inspect(root)?;
-        let edited = previous.edited(root)?;
-        if !edited.is_empty() {
-            return Err(PackageError::Edited {
-                folder: root.to_owned(),
-                files: edited,
-            });
-        }
+        let mut edited = previous.edited(root)?;
+        // Whether edited evidence is in the way is known when the package is.
+        edited.retain(|path| !previous.evidence().any(|evidence| evidence == path));
+        refuse_edited(root, edited)?;
         Ok(Self {
             root: root.to_owned(),
             machine: machine.to_owned(),
             previous,
             staging: Staging::claim(root)?,
             files: BTreeSet::new(),
+            evidence: None,
         })
+    }
+
+    /// Says that this run makes evidence, which replaces all that is there.
+    ///
+    /// # Errors
+    /// Evidence that is there was edited since posicast wrote it.
+    pub fn with_evidence(mut self) -> Result<Self, PackageError> {
+        refuse_edited(&self.root, self.previous.edited(&self.root)?)?;
+        self.evidence = Some(BTreeSet::new());
+        Ok(self)
     }
 
     /// The folder.
@@ -98,6 +125,25 @@ impl Package {
     pub fn add(&mut self, relative: &str, bytes: &[u8]) -> Result<(), PackageError> {
         let path = self.stage(relative)?;
         fs::write(&path, bytes).map_err(at("write", &path))
+    }
+
+    /// As [`add`](Package::add), a file of evidence.
+    ///
+    /// # Errors
+    /// As [`add`](Package::add).
+    pub fn add_evidence(&mut self, relative: &str, bytes: &[u8]) -> Result<(), PackageError> {
+        let path = self.stage_evidence(relative)?;
+        fs::write(&path, bytes).map_err(at("write", &path))
+    }
+
+    /// As [`stage`](Package::stage), a file of evidence.
+    ///
+    /// # Errors
+    /// As [`stage`](Package::stage).
+    pub fn stage_evidence(&mut self, relative: &str) -> Result<PathBuf, PackageError> {
+        let path = self.stage(relative)?;
+        self.evidence.get_or_insert_default().insert(relative.to_owned());
+        Ok(path)
     }
 
     /// Announces a file that the caller writes itself, and returns where: for files too large to hold in memory. The
@@ -118,24 +164,43 @@ impl Package {
     }
 
     /// Puts the files in place, removes those of the earlier run that are no longer produced, and writes the manifest.
-    /// Returns the paths of all files of the package, sorted, the manifest last.
     ///
     /// # Errors
     /// A staged file that was never written; a file in the way that posicast did not write or that was edited: the folder
     /// is then as it was. A rename that fails midway leaves a folder that the next run completes.
-    pub fn commit(mut self) -> Result<Vec<PathBuf>, PackageError> {
+    pub fn commit(mut self) -> Result<Committed, PackageError> {
         let plan = self.plan()?;
         self.carry_out(&plan)?;
         self.staging.keep_folder();
         let names = plan.hashes.keys().map(String::as_str).chain([MANIFEST]);
-        Ok(names.map(|name| self.root.join(name)).collect())
+        let files = names.map(|name| self.root.join(name)).collect();
+        let was_evidence = |path: &String| self.previous.evidence().any(|evidence| evidence == path);
+        let outdated = match self.evidence {
+            Some(_) => Vec::new(),
+            None => self.previous.evidence().map(str::to_owned).collect(),
+        };
+        Ok(Committed {
+            files,
+            outdated: outdated
+                .into_iter()
+                .filter(|path| !plan.kept.contains_key(path))
+                .collect(),
+            kept: plan.kept.into_keys().collect(),
+            removed: plan.obsolete.into_iter().filter(|path| !was_evidence(path)).collect(),
+        })
     }
 
     /// Decides what happens to every file, and refuses to touch what is not posicast's.
     fn plan(&self) -> Result<Plan, PackageError> {
-        let hashes = self.hash_staged()?;
+        let mut hashes = self.hash_staged()?;
+        let kept = match self.evidence {
+            Some(_) => BTreeMap::new(),
+            None => self.previous.evidence_of(&hashes, &self.root),
+        };
+        hashes.retain(|path, _| !kept.contains_key(path));
         let mut changed = Vec::new();
         let mut edited = self.previous.edited(&self.root)?;
+        edited.retain(|path| !kept.contains_key(path));
         let mut foreign = Vec::new();
         for (relative, hash) in &hashes {
             match manifest::hash_in(&self.root, relative)? {
@@ -144,21 +209,22 @@ impl Package {
                 _ => changed.push(relative.clone()),
             }
         }
-        let folder = self.root.clone();
-        if !edited.is_empty() {
-            return Err(PackageError::Edited { folder, files: edited });
-        }
+        refuse_edited(&self.root, edited)?;
         if !foreign.is_empty() {
-            return Err(PackageError::InTheWay { folder, files: foreign });
+            return Err(PackageError::InTheWay {
+                folder: self.root.clone(),
+                files: foreign,
+            });
         }
         let obsolete = self
             .previous
             .paths()
-            .filter(|p| !hashes.contains_key(*p))
+            .filter(|p| !hashes.contains_key(*p) && !kept.contains_key(*p))
             .map(str::to_owned)
             .collect();
         Ok(Plan {
             hashes,
+            kept,
             changed,
             obsolete,
         })
@@ -166,7 +232,13 @@ impl Package {
 
     /// From the first rename to the last, the manifest names both generations.
     fn carry_out(&self, plan: &Plan) -> Result<(), PackageError> {
-        let last = Manifest::new(&self.machine, plan.hashes.clone());
+        let evidence = match &self.evidence {
+            Some(evidence) => evidence.clone(),
+            None => plan.kept.keys().cloned().collect(),
+        };
+        let files = plan.hashes.iter().chain(&plan.kept);
+        let files = files.map(|(path, hash)| (path.clone(), hash.clone())).collect();
+        let last = Manifest::new(&self.machine, files, evidence);
         if !plan.changed.is_empty() || !plan.obsolete.is_empty() {
             self.write_manifest(&last.replacing(&self.previous))?;
         }
@@ -221,12 +293,24 @@ impl Package {
 
 /// What a commit does, all paths relative to the folder.
 struct Plan {
-    /// Every file of the package, with its hash.
+    /// Every file that was staged and is to be in place, with its hash.
     hashes: BTreeMap<String, String>,
-    /// Those that are not in place yet.
+    /// Evidence of an earlier run that stays, with its hash.
+    kept: BTreeMap<String, String>,
+    /// Of the staged files those that are not in place yet.
     changed: Vec<String>,
     /// Files of the earlier run that are no longer produced.
     obsolete: Vec<String>,
+}
+
+fn refuse_edited(folder: &Path, files: Vec<String>) -> Result<(), PackageError> {
+    if files.is_empty() {
+        return Ok(());
+    }
+    Err(PackageError::Edited {
+        folder: folder.to_owned(),
+        files,
+    })
 }
 
 /// The manifest of the run before; an empty one for a folder that is missing or empty.
