@@ -1,0 +1,193 @@
+//! Which names a command may write to. Asked before the work begins, so that nothing is computed for nothing.
+
+use std::fs::Metadata;
+use std::io::{self, ErrorKind};
+use std::path::{Path, PathBuf};
+
+use super::seal::is_ours;
+use super::target::Target;
+
+/// Why a command does not write to a name. Every variant leaves what is there untouched.
+#[derive(Debug, thiserror::Error)]
+pub enum OutputError {
+    /// The name is that of a file which the command reads.
+    #[error("{option} {}: that is {input}, and an input is never replaced: name another file", .path.display())]
+    Input {
+        /// The option.
+        option: String,
+        /// Its value.
+        path: PathBuf,
+        /// What the command reads there, in words.
+        input: &'static str,
+    },
+    /// A file is there that posicast did not write, or that was changed since.
+    #[error(
+        "{option} {}: there is a file that posicast did not write, or that was changed since: name another file, or replace it \
+         with --force", .path.display()
+    )]
+    Foreign {
+        /// The option.
+        option: String,
+        /// Its value.
+        path: PathBuf,
+    },
+    /// The same command writes something else there.
+    #[error("{option} {}: {other} of the same command is written there: name another file", .path.display())]
+    Twice {
+        /// The option.
+        option: String,
+        /// Its value.
+        path: PathBuf,
+        /// The option that came first.
+        other: String,
+    },
+    /// A folder is there.
+    #[error("{option} {}: that is a folder: name a file", .path.display())]
+    Folder {
+        /// The option.
+        option: String,
+        /// Its value.
+        path: PathBuf,
+    },
+    /// The folder in which the file would be is not there.
+    #[error("{option} {}: there is no folder {}: make it, or name a file elsewhere", .path.display(), .folder.display())]
+    NoFolder {
+        /// The option.
+        option: String,
+        /// Its value.
+        path: PathBuf,
+        /// The folder.
+        folder: PathBuf,
+    },
+    /// The operating system refuses.
+    #[error("{option} {}: cannot write there: {source}: name another file", .path.display())]
+    Io {
+        /// The option.
+        option: String,
+        /// Its value.
+        path: PathBuf,
+        /// Its reason.
+        source: io::Error,
+    },
+}
+
+/// What a command reads and writes.
+#[derive(Debug, Clone, Default)]
+pub struct Outputs {
+    force: bool,
+    inputs: Vec<(&'static str, PathBuf)>,
+    claimed: Vec<(String, Target)>,
+}
+
+impl Outputs {
+    /// Of a command that reads nothing yet. With `force` it replaces files that posicast did not write; never its inputs.
+    pub fn new(force: bool) -> Self {
+        Self {
+            force,
+            ..Self::default()
+        }
+    }
+
+    /// Adds a file that the command reads: `what` in words, for the message.
+    pub fn input(&mut self, what: &'static str, path: &Path) {
+        self.inputs.push((what, path.to_owned()));
+    }
+
+    /// Asks for a name to write to. `option` is how the user gave it, for the message.
+    ///
+    /// # Errors
+    /// [`OutputError`], see there.
+    pub fn claim(&mut self, option: &str, path: &Path) -> Result<(), OutputError> {
+        let (option, owned) = (option.to_owned(), path.to_owned());
+        let target = match Target::of(path) {
+            Ok(target) => target,
+            Err(error) if error.kind() == ErrorKind::IsADirectory => {
+                return Err(OutputError::Folder { option, path: owned });
+            }
+            Err(source) => {
+                return Err(OutputError::Io {
+                    option,
+                    path: owned,
+                    source,
+                });
+            }
+        };
+        let other = |(_, claimed): &&(String, Target)| *claimed == target || same_target(claimed, &target);
+        if let Some((other, _)) = self.claimed.iter().find(other) {
+            return Err(OutputError::Twice {
+                option,
+                path: owned,
+                other: other.clone(),
+            });
+        }
+        match &target {
+            Target::Existing(file) => {
+                if let Some((input, _)) = self.inputs.iter().find(|(_, input)| same(input, file)) {
+                    return Err(OutputError::Input {
+                        option,
+                        path: owned,
+                        input,
+                    });
+                }
+                let ours = self.force || is_ours(file).unwrap_or(false);
+                if !ours {
+                    return Err(OutputError::Foreign { option, path: owned });
+                }
+            }
+            Target::New(file) => {
+                let folder = folder_of(file);
+                if !folder.is_dir() {
+                    return Err(OutputError::NoFolder {
+                        option,
+                        path: owned,
+                        folder: folder.to_owned(),
+                    });
+                }
+            }
+            Target::Stdout | Target::Stream(_) => {}
+        }
+        self.claimed.push((option, target));
+        Ok(())
+    }
+
+    /// Whether one of the names is the standard output.
+    pub fn take_standard_output(&self) -> bool {
+        self.claimed.iter().any(|(_, target)| *target == Target::Stdout)
+    }
+}
+
+fn folder_of(file: &Path) -> &Path {
+    file.parent()
+        .filter(|folder| !folder.as_os_str().is_empty())
+        .unwrap_or(Path::new("."))
+}
+
+/// Whether two names that need not exist lead to one file.
+fn same_target(a: &Target, b: &Target) -> bool {
+    match (a, b) {
+        (Target::Existing(a), Target::Existing(b)) => same(a, b),
+        (Target::New(a), Target::New(b)) => a.file_name() == b.file_name() && same(folder_of(a), folder_of(b)),
+        _ => false,
+    }
+}
+
+/// Whether two names lead to one file or folder, also by links and hard links. Nothing is opened: one may be a pipe.
+fn same(a: &Path, b: &Path) -> bool {
+    match (a.metadata(), b.metadata()) {
+        (Ok(of_a), Ok(of_b)) => {
+            same_file(&of_a, &of_b) || a.canonicalize().ok().is_some_and(|a| b.canonicalize().ok() == Some(a))
+        }
+        _ => false,
+    }
+}
+
+#[cfg(unix)]
+fn same_file(a: &Metadata, b: &Metadata) -> bool {
+    use std::os::unix::fs::MetadataExt;
+    (a.dev(), a.ino()) == (b.dev(), b.ino())
+}
+
+#[cfg(not(unix))]
+fn same_file(_: &Metadata, _: &Metadata) -> bool {
+    false
+}
