@@ -16,6 +16,7 @@ use posicast_model::design::{
     AxisTables, ConvolutionFigures, Findings, MachineDesign, ModeFigures, convolution_figures, design_machine,
 };
 use posicast_model::spec::{Axis, Machine};
+use posicast_system::output::Outputs;
 use posicast_testbench::wave::write_text;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -43,6 +44,9 @@ pub(crate) struct Args {
     /// Draw the sensitivity curves into this SVG file
     #[arg(long, value_name = "FILE.svg")]
     plot: Option<PathBuf>,
+    /// Replace a file that posicast did not write, or that was changed since; never one that this command reads
+    #[arg(long, requires = "plot")]
+    force: bool,
     /// Compare every kind of shaper on each axis instead: duration, worst residual, taps
     #[arg(long, conflicts_with = "plot")]
     compare: bool,
@@ -56,6 +60,12 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     if args.compare {
         return compare::run(&machine, args.band, args.json);
     }
+    let mut outputs = Outputs::new(args.force);
+    outputs.input("the machine file", &args.machine);
+    if let Some(path) = &args.plot {
+        outputs.claim("--plot", path).map_err(Failure::because)?;
+    }
+    output::one_document(&outputs, args.json)?;
     let report = Report::new(&machine, &args.machine)?;
     report.warn();
     if let Some(path) = &args.plot {
@@ -64,7 +74,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     if args.json {
         output::print_json(&report.json())
     } else {
-        output::print(&report.text())
+        output::print_beside(&outputs, &report.text())
     }
 }
 

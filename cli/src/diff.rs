@@ -2,6 +2,7 @@
 
 use crate::failure::Failure;
 use crate::{output, progress};
+use posicast_system::output::Outputs;
 use posicast_testbench::Error;
 use posicast_testbench::diff::{
     self, Comparison, Edge, Options, Progress, Reset, UnknownPolicy, Verdict, parse_time_fs,
@@ -39,6 +40,9 @@ pub(crate) struct Args {
     /// Where they differ, write NAME.vcd with both sides, NAME.gtkw and NAME.sucl that open it there, and NAME.svg
     #[arg(long, value_name = "NAME", help_heading = "Output")]
     show: Option<PathBuf>,
+    /// Replace a file that posicast did not write, or that was changed since; never one that this command reads
+    #[arg(long, help_heading = "Output")]
+    force: bool,
     /// Print one JSON document on standard output
     #[arg(long, help_heading = "Output")]
     json: bool,
@@ -134,6 +138,8 @@ enum UnknownName {
 
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let options = options(args)?;
+    let outputs = outputs(args)?;
+    output::one_document(&outputs, args.json)?;
     let mut bar = LateBar::new();
     let comparison =
         diff::compare(&args.a, &args.b, &options, &mut |progress| bar.show(progress)).map_err(Failure::because)?;
@@ -153,9 +159,25 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     if args.json {
         output::print_json(&comparison)?;
     } else {
-        output::print(&(comparison.to_string() + "\n"))?;
+        output::print_beside(&outputs, &(comparison.to_string() + "\n"))?;
     }
     verdict(&comparison)
+}
+
+/// The files that are written, each of them asked for.
+fn outputs(args: &Args) -> Result<Outputs, Failure> {
+    let mut outputs = Outputs::new(args.force);
+    outputs.input("the first file", &args.a);
+    outputs.input("the second file", &args.b);
+    if let Some(maps) = &args.which.map_file {
+        outputs.input("the file of maps", maps);
+    }
+    let junit = args.junit.iter().map(|path| ("--junit", path.clone()));
+    let shown = args.show.iter().flat_map(|base| diff::shown_files(base));
+    for (option, path) in junit.chain(shown.map(|path| ("--show", path))) {
+        outputs.claim(option, &path).map_err(Failure::because)?;
+    }
+    Ok(outputs)
 }
 
 fn options(args: &Args) -> Result<Options, Failure> {

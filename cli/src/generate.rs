@@ -12,6 +12,7 @@ use posicast_hdl::emit::Module;
 use posicast_hdl::machine::{AxisShaper, emit_machine};
 use posicast_model::spec::Machine;
 use posicast_synth::package::{Committed, Package};
+use posicast_system::scratch;
 use posicast_testbench::blocks::{Block, ComponentBlock};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -119,8 +120,8 @@ pub(crate) fn add_sources(
 }
 
 /// Writes the modules into a temporary folder, for tools that read files. The folder goes when the guard is dropped.
-pub(crate) fn write_scratch(modules: &[Module]) -> Result<(Vec<PathBuf>, tempfile::TempDir), Failure> {
-    let folder = tempfile::tempdir().map_err(Failure::because)?;
+pub(crate) fn write_scratch(modules: &[Module]) -> Result<(Vec<PathBuf>, scratch::Folder), Failure> {
+    let folder = scratch::Folder::new(scratch::PREFIX).map_err(Failure::because)?;
     let files: Result<Vec<_>, _> = modules
         .iter()
         .map(|module| {

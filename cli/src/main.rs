@@ -1,7 +1,8 @@
 //! The `posicast` command: from a machine's modes to verified input-shaper hardware.
 //!
 //! One file per subcommand. This crate reads arguments, calls the other crates in order and prints; it computes nothing
-//! itself. Exit status: 0 all checks hold, 1 a check failed, 2 bad usage or input, 3 a tool that was asked for is missing.
+//! itself. Exit status: 0 all checks hold, 1 a check failed, 2 bad usage or input, 3 a tool that was asked for is missing; 130 and
+//! 143 after SIGINT and SIGTERM, with nothing left behind.
 
 mod allowance;
 mod bench;
@@ -29,6 +30,7 @@ mod verify;
 
 use clap::{Parser, Subcommand};
 use failure::Failure;
+use posicast_system::interrupt;
 use std::process::ExitCode;
 
 const EXAMPLES: &str = "\
@@ -38,7 +40,7 @@ Examples:
   posicast verify examples/xy-stage.toml --cycles 10000000
   posicast diff xy_stage/wave/model.vcd xy_stage/wave/rtl.vcd
 
-Exit status: 0 all checks hold, 1 a check failed, 2 bad usage or input, 3 a needed tool is missing.";
+Exit status: 0 all checks hold, 1 a check failed, 2 bad usage or input, 3 a needed tool is missing,\n130 or 143 ended by SIGINT or SIGTERM, with nothing left behind.";
 
 /// From a machine's modes to verified input-shaper hardware
 #[derive(Parser)]
@@ -70,7 +72,11 @@ struct NotBuilt {
 }
 
 fn main() -> ExitCode {
-    let result = match Cli::parse().command {
+    let command = Cli::parse().command;
+    if let Err(error) = interrupt::listen() {
+        output::say(&format!("warning: a signal will not clean up: {error}"));
+    }
+    let result = match command {
         Command::Run(args) => run::run(&args),
         Command::Design(args) => design::run(&args),
         Command::Generate(args) => generate::run(&args),
@@ -81,6 +87,7 @@ fn main() -> ExitCode {
         Command::Identify(_) => Err(Failure::not_built("identify")),
         Command::Reproduce(args) => reproduce::run(&args),
     };
+    interrupt::done();
     match result {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => failure.report(),

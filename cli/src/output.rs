@@ -1,6 +1,7 @@
 //! Standard output and the files that commands write.
 
 use crate::failure::Failure;
+use posicast_system::output::Outputs;
 use serde::Serialize;
 use std::io::{ErrorKind, Write};
 
@@ -10,6 +11,26 @@ pub(crate) fn print(text: &str) -> Result<(), Failure> {
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(Failure::because(error)),
         _ => Ok(()),
+    }
+}
+
+/// Prints the result of a command that writes files: on standard error where one of them is the standard output.
+pub(crate) fn print_beside(outputs: &Outputs, text: &str) -> Result<(), Failure> {
+    if outputs.take_standard_output() {
+        say(text.trim_end());
+        return Ok(());
+    }
+    print(text)
+}
+
+/// Refuses `--json` where a file that the command writes is the standard output.
+pub(crate) fn one_document(outputs: &Outputs, json: bool) -> Result<(), Failure> {
+    match json && outputs.take_standard_output() {
+        false => Ok(()),
+        true => Err(Failure::from(miette::miette!(
+            help = "name a file for it, or leave out --json",
+            "--json: standard output takes one document, and a file is written there already"
+        ))),
     }
 }
 

@@ -6,6 +6,7 @@ use crate::plot::{self, Curve, Panel};
 use crate::progress;
 use clap::builder::PossibleValuesParser;
 use posicast_model::papers::{Figure, Paper, Row, Value, Verdict};
+use posicast_system::output::Outputs;
 use posicast_testbench::wave::write_text;
 use serde::Serialize;
 use std::fmt::Write;
@@ -27,11 +28,23 @@ pub(crate) struct Args {
     /// Draw the papers' figures into this folder, one SVG file per paper
     #[arg(long, value_name = "DIR")]
     plot: Option<PathBuf>,
+    /// Replace a file that posicast did not write, or that was changed since; never one that this command reads
+    #[arg(long, requires = "plot")]
+    force: bool,
 }
 
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let named = args.paper.as_deref().and_then(Paper::from_name);
     let papers = named.map_or_else(|| Paper::ALL.to_vec(), |paper| vec![paper]);
+    let mut outputs = Outputs::new(args.force);
+    // A folder that is yet to be made holds nothing that could be replaced.
+    for folder in args.plot.iter().filter(|folder| folder.is_dir()) {
+        for paper in &papers {
+            outputs
+                .claim("--plot", &picture(folder, *paper))
+                .map_err(Failure::because)?;
+        }
+    }
     let progress = progress::bar("reproducing", papers.len() as u64);
     let mut tables = Vec::with_capacity(papers.len());
     for paper in papers {
@@ -254,8 +267,12 @@ fn draw(folder: &Path, paper: Paper, figures: Vec<Figure>) -> Result<(), Failure
                 .collect(),
         })
         .collect();
-    let path = folder.join(format!("{}.svg", paper.name()));
-    write_text(&path, &plot::svg(&panels)?).map_err(Failure::because)
+    write_text(&picture(folder, paper), &plot::svg(&panels)?).map_err(Failure::because)
+}
+
+/// The file with the figures of a paper.
+fn picture(folder: &Path, paper: Paper) -> PathBuf {
+    folder.join(format!("{}.svg", paper.name()))
 }
 
 #[cfg(test)]

@@ -10,6 +10,7 @@ use posicast_model::design::MachineDesign;
 use posicast_model::plant::Plant;
 use posicast_model::simulation::{AxisSimulation, simulate_axis};
 use posicast_model::spec::{Axis, Machine};
+use posicast_system::output::Outputs;
 use posicast_testbench::wave::{Heading, Recorder, SAMPLE_CLOCK, Signal};
 use posicast_testbench::wording::counted;
 use serde::Serialize;
@@ -33,6 +34,9 @@ pub(crate) struct Args {
     /// Command: a CSV file with columns time_s,position [default: a jerk-limited 5 mm move]
     #[arg(long, value_name = "FILE.csv")]
     command: Option<PathBuf>,
+    /// Replace a file that posicast did not write, or that was changed since; never one that this command reads
+    #[arg(long)]
+    force: bool,
     /// Print one JSON document on standard output
     #[arg(long)]
     json: bool,
@@ -40,20 +44,25 @@ pub(crate) struct Args {
 
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let machine = machine::read(&args.machine)?.machine;
+    let default = PathBuf::from(format!("{}.vcd", machine.name));
+    let path = args.output.as_ref().unwrap_or(&default);
+    let mut outputs = Outputs::new(args.force);
+    outputs.input("the machine file", &args.machine);
+    if let Some(command) = &args.command {
+        outputs.input("the command", command);
+    }
+    outputs.claim("--output", path).map_err(Failure::because)?;
+    output::one_document(&outputs, args.json)?;
     let design = Report::new(&machine, &args.machine)?.design;
     let shapers = machine::shapers(&machine, &design, &args.machine)?;
     let words = command::words(&machine, &design, args.command.as_deref())?;
     let axes = simulate(&machine, &design, &shapers, &words)?;
-    let path = args
-        .output
-        .clone()
-        .unwrap_or_else(|| PathBuf::from(format!("{}.vcd", machine.name)));
-    write_wave(&machine, &words, &axes, &path)?;
-    let document = Document::new(&machine, &axes, &path);
+    write_wave(&machine, &words, &axes, path)?;
+    let document = Document::new(&machine, &axes, path);
     if args.json {
         output::print_json(&document)?
     } else {
-        output::print(&document.text())?
+        output::print_beside(&outputs, &document.text())?
     }
     match document.axes.iter().find(|a| a.largest_difference_lsb > a.bound_lsb) {
         None => Ok(()),

@@ -12,6 +12,7 @@ use crate::{generate, machine, progress, stage};
 use posicast_model::spec::Machine;
 use posicast_synth::package;
 use posicast_synth::yosys::{Block, Estimate, Excess, Family, Resources, Yosys, YosysError};
+use posicast_system::scratch::Folder;
 use serde::Serialize;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -135,7 +136,7 @@ fn cells(name: &str, r: &Resources) -> impl Iterator<Item = String> {
 }
 
 /// The machine, its Verilog files, and the folder that keeps them alive where they are temporary.
-fn sources(source: &Path) -> Result<(Machine, Vec<PathBuf>, Option<tempfile::TempDir>), Failure> {
+fn sources(source: &Path) -> Result<(Machine, Vec<PathBuf>, Option<Folder>), Failure> {
     if source.is_dir() {
         let contents = package::read(source).map_err(Failure::because)?;
         let machine = machine::parse(&contents.machine_path, &contents.machine_toml)?;

@@ -15,6 +15,7 @@ use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
+use posicast_system::scratch::Folder;
 use serde_json::Value;
 
 use crate::process::{self, Ended};
@@ -257,8 +258,8 @@ fn no_clock(top: &str, reason: String) -> ClockError {
 }
 
 /// An empty folder that vanishes when dropped.
-fn scratch() -> Result<tempfile::TempDir, ClockError> {
-    let folder = tempfile::Builder::new().prefix("posicast-clock-").tempdir();
+fn scratch() -> Result<Folder, ClockError> {
+    let folder = Folder::new("posicast-clock-");
     folder.map_err(at(&std::env::temp_dir()))
 }
 

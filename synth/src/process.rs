@@ -7,7 +7,7 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::Duration;
 
-use wait_timeout::ChildExt;
+use posicast_system::process;
 
 /// Lines of its output that an error repeats.
 const LAST_LINES: usize = 8;
@@ -38,17 +38,16 @@ pub(crate) fn run(
     let log_path = folder.join(log);
     let log = File::create(&log_path)?;
     let log_too = log.try_clone()?;
-    let mut child = Command::new(program)
+    let mut command = Command::new(program);
+    command
         .args(arguments)
         .current_dir(folder)
+        // Its own temporary files go with the folder, even if it is killed.
+        .env("TMPDIR", std::path::absolute(folder)?)
         .stdin(Stdio::null())
         .stdout(log)
-        .stderr(log_too)
-        .spawn()?;
-    let Some(status) = child.wait_timeout(limit)? else {
-        // It may have ended by itself in the meantime; both calls then do nothing.
-        let _ = child.kill();
-        let _ = child.wait();
+        .stderr(log_too);
+    let Some(status) = process::start(&mut command)?.wait_within(limit)? else {
         return Ok(Ended::TimeOut);
     };
     let printed = fs::read(&log_path)?;

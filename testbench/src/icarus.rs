@@ -10,10 +10,11 @@
 use std::fmt::Write as _;
 use std::io::{BufRead, BufReader, Read, Write};
 use std::path::Path;
-use std::process::{Child, ChildStdin, ChildStdout, Stdio};
+use std::process::{ChildStdin, ChildStdout, Stdio};
 
 use posicast_model::rtl::{ClockedBlock, Direction, Port, StepError};
-use tempfile::TempDir;
+use posicast_system::process::{self, Running};
+use posicast_system::scratch;
 
 use crate::Error;
 use crate::lockstep::Device;
@@ -47,12 +48,13 @@ const PROGRAM: &str = "bench.vvp";
 pub struct Icarus {
     ports: Vec<Port>,
     outputs: Vec<Port>,
-    process: Child,
+    // Dropped, it is ended; the folder in which it runs goes behind it.
+    process: Running,
     to: Option<ChildStdin>,
     from: BufReader<ChildStdout>,
     line: String,
     unknown: Vec<u64>,
-    folder: TempDir,
+    folder: scratch::Folder,
 }
 
 impl Icarus {
@@ -91,12 +93,13 @@ impl Icarus {
 
     fn start(source: &Source<'_>, also: &str) -> Result<Self, Error> {
         let temporary = std::env::temp_dir();
-        let folder = tempfile::Builder::new().prefix("posicast-").tempdir();
+        let folder = scratch::Folder::new(scratch::PREFIX);
         let folder = folder.map_err(Error::file(&temporary, "create a folder in"))?;
         let bench = folder.path().join("bench.v");
         std::fs::write(&bench, testbench(source, also)).map_err(Error::file(&bench, "write"))?;
 
         let mut compile = ICARUS.command();
+        compile.env("TMPDIR", folder.path());
         // A port of another width is only a warning to Icarus, in words that only it uses: made an error below.
         compile
             .args(["-g2005", "-Wall", "-s", SCOPE, "-o"])
@@ -117,14 +120,14 @@ impl Icarus {
             });
         }
 
-        let mut run = VVP.command();
+        let mut run = VVP.command_in(folder.path());
         run.args(["-n", PROGRAM])
-            .current_dir(folder.path())
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
             .stderr(Stdio::null());
-        let mut process = run.spawn().map_err(|cause| VVP.not_started("simulating", &cause))?;
-        let (to, from) = (process.stdin.take(), process.stdout.take());
+        let mut process = process::start(&mut run).map_err(|cause| VVP.not_started("simulating", &cause))?;
+        let pipes = process.child().map(|child| (child.stdin.take(), child.stdout.take()));
+        let (to, from) = pipes.unwrap_or_default();
         let Some(from) = from else {
             return Err(VVP.failed("simulating", "no output".to_owned(), ""));
         };
@@ -233,15 +236,6 @@ impl ClockedBlock for Icarus {
             ))),
             None => Ok(()),
         }
-    }
-}
-
-impl Drop for Icarus {
-    fn drop(&mut self) {
-        // Without input the testbench ends; one that hangs is ended.
-        self.to = None;
-        let _ = self.process.kill();
-        let _ = self.process.wait();
     }
 }
 

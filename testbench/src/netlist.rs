@@ -18,6 +18,7 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use posicast_hdl::emit::Module;
+use posicast_system::scratch;
 
 use crate::Error;
 use crate::blocks::{self, Block, Sources};
@@ -142,8 +143,8 @@ pub fn equivalent(
         side("netlist.v cell_models.v", "gate")
     );
     write("miter.ys", &script)?;
-    let mut yosys = YOSYS.command();
-    yosys.current_dir(folder).args(["-q", "miter.ys"]);
+    let mut yosys = YOSYS.command_in(folder);
+    yosys.args(["-q", "miter.ys"]);
     YOSYS.run(&mut yosys, "joining RTL and netlist")?;
 
     let seconds = limit.as_secs().max(1);
@@ -188,7 +189,7 @@ pub fn check(
         _ => Some(simulate(block, parts, netlist, cell_models, clocks, seed)?),
     };
     let temporary = std::env::temp_dir();
-    let folder = tempfile::Builder::new().prefix("posicast-").tempdir();
+    let folder = scratch::Folder::new(scratch::PREFIX);
     let folder = folder.map_err(Error::file(&temporary, "create a folder in"))?;
     let verdict = equivalent(&block.top(), parts, netlist, cell_models, folder.path(), limit)?;
     Ok(Outcome {

@@ -1,10 +1,11 @@
 //! Runs external programs: missing and failed are different errors, and a failure keeps the end of the output.
 
 use std::io::{ErrorKind, Read, Seek, SeekFrom};
+use std::path::Path;
 use std::process::{Command, Output, Stdio};
 use std::time::Duration;
 
-use wait_timeout::ChildExt;
+use posicast_system::{process, scratch};
 
 use crate::Error;
 
@@ -36,6 +37,15 @@ impl Tool {
         command
     }
 
+    /// The same, in `folder`, where it also keeps its own temporary files: they go with the folder even if it is killed.
+    pub(crate) fn command_in(&self, folder: &Path) -> Command {
+        let mut command = self.command();
+        let temporary = std::path::absolute(folder);
+        command.current_dir(folder);
+        command.env("TMPDIR", temporary.as_deref().unwrap_or(folder));
+        command
+    }
+
     /// Runs to the end and returns the output of a success.
     pub(crate) fn run(&self, command: &mut Command, doing: &'static str) -> Result<Output, Error> {
         let output = self.output(command, doing)?;
@@ -47,7 +57,9 @@ impl Tool {
 
     /// Runs to the end, whatever the exit status.
     pub(crate) fn output(&self, command: &mut Command, doing: &'static str) -> Result<Output, Error> {
-        command.output().map_err(|cause| self.not_started(doing, &cause))
+        command.stdout(Stdio::piped()).stderr(Stdio::piped());
+        let output = process::start(command).and_then(process::Running::output);
+        output.map_err(|cause| self.not_started(doing, &cause))
     }
 
     /// What a success printed on standard output; none if it did not end within `limit`, and was stopped.
@@ -59,16 +71,10 @@ impl Tool {
     ) -> Result<Option<String>, Error> {
         let failed = |cause: std::io::Error| self.not_started(doing, &cause);
         // A file, not a pipe: nobody has to read while it runs.
-        let mut log = tempfile::tempfile().map_err(failed)?;
-        let mut child = command
-            .stdout(log.try_clone().map_err(failed)?)
-            .stderr(Stdio::null())
-            .spawn()
-            .map_err(failed)?;
-        let Some(status) = child.wait_timeout(limit).map_err(failed)? else {
-            // It may have ended by itself in the meantime; both calls then do nothing.
-            let _ = child.kill();
-            let _ = child.wait();
+        let mut log = scratch::unnamed().map_err(failed)?;
+        command.stdout(log.try_clone().map_err(failed)?).stderr(Stdio::null());
+        let ended = process::start(command).and_then(|running| running.wait_within(limit));
+        let Some(status) = ended.map_err(failed)? else {
             return Ok(None);
         };
         let mut printed = String::new();

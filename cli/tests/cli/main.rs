@@ -11,4 +11,7 @@ mod diff;
 mod folder;
 mod fuzz;
 mod hardware;
+mod outputs;
 mod replay;
+#[cfg(target_os = "linux")]
+mod signals;

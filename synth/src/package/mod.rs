@@ -17,6 +17,7 @@
 //!   evidence of another machine beside this one would be a false witness. What went is told ([`Committed`]).
 //! - A run that is killed between two renames leaves a `posicast.json` that knows both generations, so that the next run
 //!   can finish the work; [`read()`] refuses the folder until then.
+//! - SIGINT and SIGTERM leave the folder as it was, or complete if they come while files are being put in place.
 //! - Two runs on one folder exclude each other by a lock on the folder.
 //!
 //! ```
@@ -48,6 +49,8 @@ pub use read::{Contents, read};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
+
+use posicast_system::interrupt;
 
 use error::at;
 use manifest::Manifest;
@@ -155,7 +158,8 @@ impl Package {
         names::check(relative)?;
         let path = self.staging.path().join(relative);
         if let Some(parent) = path.parent() {
-            fs::create_dir_all(parent).map_err(at("create", parent))?;
+            // Not behind a signal, which removes the staging folder.
+            interrupt::uninterrupted(|| fs::create_dir_all(parent)).map_err(at("create", parent))?;
         }
         if !self.files.insert(relative.to_owned()) {
             return Err(PackageError::Twice(relative.to_owned()));
@@ -170,7 +174,7 @@ impl Package {
     /// is then as it was. A rename that fails midway leaves a folder that the next run completes.
     pub fn commit(mut self) -> Result<Committed, PackageError> {
         let plan = self.plan()?;
-        self.carry_out(&plan)?;
+        interrupt::uninterrupted(|| self.carry_out(&plan))?;
         self.staging.keep_folder();
         let names = plan.hashes.keys().map(String::as_str).chain([MANIFEST]);
         let files = names.map(|name| self.root.join(name)).collect();

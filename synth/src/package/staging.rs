@@ -5,6 +5,8 @@ use std::fs::{self, File, TryLockError};
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
+use posicast_system::interrupt::{self, Leftover, Listed};
+
 use super::PackageError;
 use super::error::at;
 
@@ -19,36 +21,48 @@ pub(super) struct Staging {
     created: Vec<PathBuf>,
     /// Open on the output folder and locked; the system unlocks it even if the process is killed.
     _lock: File,
+    _listed: Listed,
 }
 
 impl Staging {
     /// Creates `root` if need be, locks it, and makes a fresh staging folder in it.
     pub(super) fn claim(root: &Path) -> Result<Self, PackageError> {
-        let missing = root
-            .ancestors()
-            .take_while(|p| !p.as_os_str().is_empty() && !p.exists());
-        let created: Vec<PathBuf> = missing.map(Path::to_owned).collect();
-        let made = fs::create_dir_all(root)
-            .map_err(at("create", root))
-            .and_then(|()| lock(root));
-        let lock = match made {
-            Ok(lock) => lock,
-            Err(error) => {
-                remove_empty(&created);
-                return Err(error);
+        let (staging, listed) = interrupt::listed(|| {
+            let missing = root
+                .ancestors()
+                .take_while(|p| !p.as_os_str().is_empty() && !p.exists());
+            let created: Vec<PathBuf> = missing.map(Path::to_owned).collect();
+            let path = root.join(FOLDER);
+            match Self::make(root, &path) {
+                Ok(lock) => {
+                    let folders = created.iter().rev().cloned().map(Leftover::EmptyFolder);
+                    let leftovers = folders.chain([Leftover::Tree(path.clone())]).collect();
+                    Ok(((path, created, lock), leftovers))
+                }
+                Err(error) => {
+                    remove_empty(&created);
+                    Err(error)
+                }
             }
-        };
-        let staging = Self {
-            path: root.join(FOLDER),
+        })?;
+        let (path, created, lock) = staging;
+        Ok(Self {
+            path,
             created,
             _lock: lock,
-        };
+            _listed: listed,
+        })
+    }
+
+    /// The folders, and the lock.
+    fn make(root: &Path, staging: &Path) -> Result<File, PackageError> {
+        fs::create_dir_all(root).map_err(at("create", root))?;
+        let lock = lock(root)?;
         // The lock is ours, so a staging folder that exists was left behind by a run that was killed.
-        match fs::remove_dir_all(&staging.path) {
-            Err(error) if error.kind() != ErrorKind::NotFound => return Err(at("remove", &staging.path)(error)),
-            _ => fs::create_dir(&staging.path).map_err(at("create", &staging.path))?,
+        match fs::remove_dir_all(staging) {
+            Err(error) if error.kind() != ErrorKind::NotFound => Err(at("remove", staging)(error)),
+            _ => fs::create_dir(staging).map(|()| lock).map_err(at("create", staging)),
         }
-        Ok(staging)
     }
 
     /// The staging folder.

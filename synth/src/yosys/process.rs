@@ -5,7 +5,7 @@ use std::fs;
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 
-use tempfile::TempDir;
+use posicast_system::{interrupt, scratch};
 
 use super::{Yosys, YosysError};
 use crate::process::{self, Ended};
@@ -54,7 +54,8 @@ fn beside(folder: &Path, files: &[PathBuf]) -> Result<Vec<PathBuf>, YosysError> 
         let copy = Path::new("sources").join(index.to_string());
         let copy = copy.join(file.file_name().unwrap_or(file.as_os_str()));
         let path = folder.join(&copy);
-        fs::create_dir_all(path.parent().unwrap_or(folder)).map_err(at(&path))?;
+        let made = interrupt::uninterrupted(|| fs::create_dir_all(path.parent().unwrap_or(folder)));
+        made.map_err(at(&path))?;
         fs::copy(file, &path).map_err(at(file))?;
         Ok(copy)
     };
@@ -62,8 +63,8 @@ fn beside(folder: &Path, files: &[PathBuf]) -> Result<Vec<PathBuf>, YosysError> 
 }
 
 /// An empty folder that vanishes when dropped.
-pub(super) fn scratch() -> Result<TempDir, YosysError> {
-    let folder = tempfile::Builder::new().prefix("posicast-yosys-").tempdir();
+pub(super) fn scratch() -> Result<scratch::Folder, YosysError> {
+    let folder = scratch::Folder::new("posicast-yosys-");
     folder.map_err(at(&std::env::temp_dir()))
 }
 

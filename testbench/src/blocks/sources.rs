@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use posicast_hdl::emit::Module;
 use posicast_model::rtl::Port;
-use tempfile::TempDir;
+use posicast_system::scratch;
 
 use super::Block;
 use crate::Error;
@@ -17,7 +17,7 @@ use crate::verilator::{self, Source, Verilated};
 #[derive(Debug)]
 pub struct Sources {
     files: Vec<PathBuf>,
-    _folder: Option<TempDir>,
+    _folder: Option<scratch::Folder>,
 }
 
 impl Sources {
@@ -35,7 +35,7 @@ impl Sources {
     /// [`Error::File`] where the files cannot be written.
     pub fn of_modules(modules: &[Module]) -> Result<Self, Error> {
         let temporary = std::env::temp_dir();
-        let folder = tempfile::Builder::new().prefix("posicast-").tempdir();
+        let folder = scratch::Folder::new(scratch::PREFIX);
         let folder = folder.map_err(Error::file(&temporary, "create a folder in"))?;
         let file = |module: &Module| {
             let path = folder.path().join(format!("{}.v", module.name));

@@ -19,6 +19,7 @@ pub mod point;
 pub mod table;
 
 use posicast_model::rtl::pwm::{ActiveLow, PwmConfig};
+use posicast_system::scratch;
 
 use crate::Error;
 use crate::blocks::{self, Block, PwmBlock, Sources, library};
@@ -101,7 +102,8 @@ pub fn measure_with<'a>(
     clocks: u64,
 ) -> Result<Measured, Error> {
     let sources = Sources::write(block)?;
-    let folder = tempfile::tempdir().map_err(Error::file(&std::env::temp_dir(), "create a folder in"))?;
+    let folder =
+        scratch::Folder::new(scratch::PREFIX).map_err(Error::file(&std::env::temp_dir(), "create a folder in"))?;
     let path = folder.path().join("coverage.dat");
     let run = |clocks: u64| {
         let mut device = sources.counting(block, SEED)?;

@@ -57,7 +57,7 @@ pub use self::junit::junit;
 use self::matching::{Matched, Pair};
 use self::names::{Filter, Names};
 pub use self::options::{Edge, Latency, Options, Reset, UnknownPolicy, parse_time_fs};
-pub use self::picture::show;
+pub use self::picture::{show, shown_files};
 pub use self::player::{Player, PortMap, Recorded, missing};
 pub use self::result::{Comparison, Context, ContextRow, Difference, Leniency, Shown, Verdict};
 use self::rule::Rule;

@@ -8,7 +8,7 @@
 //! ```
 
 use std::collections::HashSet;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::svg::{self, Lane, Trace};
 use super::{Comparison, Shown};
@@ -30,6 +30,11 @@ pub(super) struct Window {
     pub(super) from: u128,
     pub(super) at: u128,
     pub(super) to: u128,
+}
+
+/// The files that [`show`] writes.
+pub fn shown_files(base: &Path) -> [PathBuf; 4] {
+    ["vcd", "gtkw", "sucl", "svg"].map(|extension| base.with_extension(extension))
 }
 
 /// Writes `base.vcd`, `.gtkw`, `.sucl` and `.svg` for the earliest differences of `comparison`. `base` may have an

@@ -171,8 +171,8 @@ impl Bench<'_> {
             );
         }
         self.write("prepare.ys", &script)?;
-        let mut yosys = YOSYS.command();
-        yosys.current_dir(self.folder).args(["-q", "prepare.ys"]);
+        let mut yosys = YOSYS.command_in(self.folder);
+        yosys.args(["-q", "prepare.ys"]);
         YOSYS.run(&mut yosys, "reading block and properties").map(drop)
     }
 
@@ -190,8 +190,8 @@ impl Bench<'_> {
             self.seconds()
         );
         self.write("induction.ys", &script)?;
-        let mut yosys = YOSYS.command();
-        yosys.current_dir(self.folder).arg("induction.ys");
+        let mut yosys = YOSYS.command_in(self.folder);
+        yosys.arg("induction.ys");
         let output = YOSYS.output(&mut yosys, "proving by induction")?;
         Ok(text(&output).contains("Induction step proven: SUCCESS!"))
     }
@@ -221,8 +221,8 @@ impl Bench<'_> {
             "counterexample.ys",
             "read_ilang design.il\nsim -r counterexample.aiw -map asserts.aim -clock clk -vcd counterexample.vcd\n",
         )?;
-        let mut yosys = YOSYS.command();
-        yosys.current_dir(self.folder).args(["-q", "counterexample.ys"]);
+        let mut yosys = YOSYS.command_in(self.folder);
+        yosys.args(["-q", "counterexample.ys"]);
         YOSYS.run(&mut yosys, "playing a counterexample")?;
         Ok(self.folder.join("counterexample.vcd"))
     }
@@ -265,8 +265,8 @@ impl Bench<'_> {
 
 /// What ABC says to these commands, with `folder` as its own.
 pub(crate) fn abc(folder: &Path, commands: &str, doing: &'static str) -> Result<String, Error> {
-    let mut abc = ABC.command();
-    abc.current_dir(folder).args(["-c", commands]);
+    let mut abc = ABC.command_in(folder);
+    abc.args(["-c", commands]);
     ABC.run(&mut abc, doing).map(|output| text(&output))
 }
 

@@ -75,8 +75,8 @@ fn prove(netlist: &Netlist<'_>, limit: Duration) -> Result<Verdict, Error> {
         format!("read_aiger merged.aig; bmc3 -T {seconds}"),
     ];
     for commands in engines {
-        let mut abc = ABC.command();
-        abc.current_dir(netlist.folder()).args(["-c", &commands]);
+        let mut abc = ABC.command_in(netlist.folder());
+        abc.args(["-c", &commands]);
         let Some(said) = ABC.run_within(&mut abc, "comparing a mutant", limit.saturating_mul(2))? else {
             continue;
         };

@@ -129,8 +129,8 @@ impl<'a> Netlist<'a> {
     pub(super) fn yosys(&self, name: &str, script: &str) -> Result<(), Error> {
         let file = format!("{name}.ys");
         self.write(&file, script)?;
-        let mut yosys = YOSYS.command();
-        yosys.current_dir(self.folder).args(["-q", &file]);
+        let mut yosys = YOSYS.command_in(self.folder);
+        yosys.args(["-q", &file]);
         YOSYS.run(&mut yosys, "putting mutants into a block").map(drop)
     }
 

@@ -23,6 +23,7 @@ use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
 use posicast_model::rtl::{ClockedBlock, Direction, Port, StepError};
+use posicast_system::scratch;
 use sha2::{Digest, Sha256};
 
 use crate::Error;
@@ -192,9 +193,7 @@ fn compile(folder: &Path, source: &Source<'_>, counts: bool) -> Result<PathBuf, 
     }
     std::fs::create_dir_all(folder).map_err(Error::file(folder, "create the cache folder"))?;
     cache::tidy(folder);
-    let work = tempfile::Builder::new()
-        .prefix(cache::BUILD_PREFIX)
-        .tempdir_in(folder)
+    let work = scratch::Folder::new_in(cache::BUILD_PREFIX, folder)
         .map_err(Error::file(folder, "create a folder to build in"))?;
 
     let write = |name: &str, text: &str| {
@@ -203,9 +202,8 @@ fn compile(folder: &Path, source: &Source<'_>, counts: bool) -> Result<PathBuf, 
     };
     write("harness.cpp", "")?;
     write("harness_print.h", harness::PRINT)?;
-    let mut verilate = VERILATOR.command();
+    let mut verilate = VERILATOR.command_in(work.path());
     verilate
-        .current_dir(work.path())
         .args(FLAGS)
         .args(coverage_flags(counts))
         .args(["-o", "simulation.so", "--Mdir", ".", "--top-module", source.top])
@@ -221,9 +219,8 @@ fn compile(folder: &Path, source: &Source<'_>, counts: bool) -> Result<PathBuf, 
         "harness.cpp",
         &(harness::source_text(source.ports, &members) + coverage),
     )?;
-    let mut make = MAKE.command();
-    make.current_dir(work.path())
-        .args(["-s", "-f", &format!("{}.mk", harness::CLASS)])
+    let mut make = MAKE.command_in(work.path());
+    make.args(["-s", "-f", &format!("{}.mk", harness::CLASS)])
         .args(MAKE_FLAGS);
     // Inherited from a make that runs us: would change flags, or claim job slots that are not ours.
     make.env_remove("MAKEFLAGS")

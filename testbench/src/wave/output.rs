@@ -3,13 +3,13 @@
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-use tempfile::NamedTempFile;
+use posicast_system::output::{self, Draft, seal};
 use vcd::{IdCode, Writer};
 
 use super::SignalKind;
 use crate::Error;
 
-pub(super) type Vcd = Writer<BufWriter<NamedTempFile>>;
+pub(super) type Vcd = Writer<BufWriter<Draft>>;
 
 /// The writer, with the file that it will become.
 pub(super) struct Output {
@@ -19,10 +19,10 @@ pub(super) struct Output {
 
 impl Output {
     pub(super) fn create(path: &Path) -> Result<Self, Error> {
-        let path = &target(path)?;
-        let file = temporary(path)?;
-        let mut vcd = Writer::new(BufWriter::with_capacity(1 << 16, file));
+        let draft = Draft::new(path).map_err(Error::file(path, "create"))?;
+        let mut vcd = Writer::new(BufWriter::with_capacity(1 << 16, draft));
         vcd.version(concat!("posicast ", env!("CARGO_PKG_VERSION")))
+            .and_then(|()| vcd.comment(&seal::blank()))
             .map_err(Error::file(path, "write"))?;
         Ok(Self {
             path: path.to_owned(),
@@ -35,60 +35,17 @@ impl Output {
     }
 
     pub(super) fn finish(mut self) -> Result<(), Error> {
-        self.vcd.flush().map_err(Error::file(&self.path, "write"))?;
-        // The writer does not give its file back: swap in an empty one. It is removed at once.
-        let empty = BufWriter::new(temporary(&self.path)?);
-        let full = std::mem::replace(self.vcd.writer(), empty);
-        let file = full.into_inner().map_err(|cause| cause.into_error());
-        put(file.map_err(Error::file(&self.path, "write"))?, &self.path)
+        let written = self.vcd.flush().and_then(|()| self.vcd.writer().get_mut().put());
+        written.map_err(Error::file(&self.path, "write"))
     }
 }
 
-/// Writes a text file, complete or not at all.
+/// Writes a text file with posicast's seal, complete or not at all ([`output::write_text`]).
 ///
 /// # Errors
-/// [`Error::File`] if it cannot be written, or if something else than a file stands in its place.
+/// [`Error::File`] if it cannot be written.
 pub fn write_text(path: &Path, text: &str) -> Result<(), Error> {
-    let path = &target(path)?;
-    let mut file = temporary(path)?;
-    file.write_all(text.as_bytes()).map_err(Error::file(path, "write"))?;
-    put(file, path)
-}
-
-/// What is to be replaced: behind a link the file that it names. A device or a pipe is refused: renaming over it would
-/// destroy it.
-fn target(path: &Path) -> Result<PathBuf, Error> {
-    match std::fs::metadata(path) {
-        Err(_) => Ok(path.to_owned()),
-        Ok(found) if found.is_file() => path.canonicalize().map_err(Error::file(path, "follow")),
-        Ok(_) => {
-            let problem = std::io::Error::other("it is no regular file; name a new file or one to replace");
-            Err(Error::file(path, "replace")(problem))
-        }
-    }
-}
-
-fn temporary(path: &Path) -> Result<NamedTempFile, Error> {
-    let folder = path
-        .parent()
-        .filter(|p| !p.as_os_str().is_empty())
-        .unwrap_or(Path::new("."));
-    let mut builder = tempfile::Builder::new();
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::PermissionsExt;
-        // The default of temporary files, 0600, would stay on the finished file.
-        builder.permissions(std::fs::Permissions::from_mode(0o644));
-    }
-    builder
-        .prefix(".posicast-")
-        .tempfile_in(folder)
-        .map_err(Error::file(path, "create"))
-}
-
-fn put(file: NamedTempFile, path: &Path) -> Result<(), Error> {
-    let renamed = file.persist(path).map_err(|cause| cause.error);
-    renamed.map(drop).map_err(Error::file(path, "write"))
+    output::write_text(path, text).map_err(Error::file(path, "write"))
 }
 
 /// Writes one change. Reals with an exponent: written out, the large ones are longer than readers take.
