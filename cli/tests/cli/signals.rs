@@ -116,8 +116,8 @@ fn entries(folder: &Path) -> Vec<String> {
         .collect()
 }
 
-/// Names and contents of all files below a folder.
-fn contents(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
+/// Names and contents of all files below a folder; only the names are shown.
+fn contents(folder: &Path) -> Contents {
     let mut files = Vec::new();
     let mut paths = vec![folder.to_owned()];
     while let Some(path) = paths.pop() {
@@ -128,7 +128,16 @@ fn contents(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
         }
     }
     files.sort();
-    files
+    Contents(files)
+}
+
+#[derive(PartialEq)]
+struct Contents(Vec<(PathBuf, Vec<u8>)>);
+
+impl std::fmt::Debug for Contents {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_list().entries(self.0.iter().map(|(path, _)| path)).finish()
+    }
 }
 
 type Moment = fn(&Bench) -> bool;

@@ -27,7 +27,7 @@ pub fn blank() -> String {
 }
 
 /// The text with a blank seal in a comment: of XML where it begins with `<`, of GTKWave's session files where it begins with
-/// `[`, else a line that begins with `#`.
+/// `[`, else a second line that begins with `#`.
 pub(super) fn with_blank(text: &str) -> String {
     let seal = blank();
     match text.as_bytes().first() {
@@ -38,7 +38,11 @@ pub(super) fn with_blank(text: &str) -> String {
             format!("{before}\n<!-- {seal} -->\n{}", after.trim_start_matches('\n'))
         }
         Some(b'[') => format!("[*] {seal}\n{text}"),
-        _ => format!("# {seal}\n{text}"),
+        // Behind the first line: what it says is what a reader looks for.
+        _ => {
+            let (before, after) = text.split_at(text.find('\n').map_or(text.len(), |at| at + 1));
+            format!("{before}# {seal}\n{after}")
+        }
     }
 }
 
@@ -117,7 +121,11 @@ mod tests {
             "{svg}"
         );
         assert!(with_blank("[dumpfile] \"a\"\n").starts_with("[*] written by posicast "));
-        assert!(with_blank("load_file a\n").starts_with("# written by posicast "));
+        let commands = with_blank("load_file a\nzoom_fit\n");
+        assert!(
+            commands.starts_with("load_file a\n# written by posicast ") && commands.ends_with("\nzoom_fit\n"),
+            "{commands}"
+        );
     }
 
     #[test]
