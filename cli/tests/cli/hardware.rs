@@ -47,6 +47,15 @@ fn cli_run_goes_the_whole_way_on_the_xy_stage() {
     ] {
         assert!(output.join(file).is_file(), "{file}");
     }
+    for wave in ["model", "rtl", "float", "merged"] {
+        let text = std::fs::read_to_string(output.join(format!("wave/{wave}.vcd"))).unwrap();
+        assert!(text.contains("$timescale 1 ns $end"), "{wave}");
+        // The machine's clock of 20 ns; the strobe of sample 1 comes 100 us after that of sample 0, at the end of the reset.
+        assert!(
+            text.contains("\n#10\n0!\n") && text.contains("\n#100040\n1!\n"),
+            "{wave}"
+        );
+    }
     assert_eq!(
         run(),
         document,
@@ -105,6 +114,12 @@ fn cli_a_modulo_axis_goes_the_whole_way_across_the_end_of_its_word() {
         .arg(folder.path().join("turns.vcd"))
         .arg("--json");
     json(&simulate.assert().success().get_output().stdout);
+    let samples = std::fs::read_to_string(folder.path().join("turns.vcd")).unwrap();
+    assert!(
+        samples.contains("$timescale 1 us $end") && samples.contains(" sample_clk $end"),
+        "{}",
+        &samples[..400]
+    );
 
     // Half a turn of the word within the shaper's delay cannot be told from the other half.
     std::fs::write(&command, "time_s,position\n0,0\n0.01,200\n").unwrap();
