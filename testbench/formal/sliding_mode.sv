@@ -5,6 +5,8 @@
 // clocks are counted here on their own, from 1 in the clock after `start` on.
 //
 //   latency_exact     valid comes PASS_CLOCKS after a start that was taken, and at no other time; busy in between
+//   ends_before_valid ends comes in the clock before valid, the last of a pass, and at no other time: what changes with it changes
+//                     between two passes
 //   setting_of_step   the address of each step's setting, by law
 //   operand_of_step   what each step multiplies, by law
 //   factor_of_step    by what: its setting's mantissa and shift; or one, or minus one, where words are added as they are
@@ -21,7 +23,7 @@
 //   takes_the_word    s, de, a, the sum to be limited and duty are then the sum's word
 //   error_at_start    e changes in the clock of a start alone
 //   frozen            the integral takes e only in PID, and not while the command is cut on the side to which e pushes it,
-//                     and not if it was cleared since its sum began
+//                     and not if it was cleared since its sum began, in step 14 or 15
 //   integral_exact    it then takes the whole of e, or stops at an end
 //   clears            clear_integral makes it 0
 //   flags_held        sticky flags fall by clear_flags or reset only
@@ -55,6 +57,7 @@ module sliding_mode_properties (
     input wire [6:0]  saturated_high,
     input wire [6:0]  saturated_low,
     input wire        overrun,
+    input wire        ends,
     (* peek = "u_sequencer.step_q" *) input wire [4:0] step,
     (* peek = "u_sequencer.phase" *) input wire [5:0] phase,
     (* peek = "u_sequencer.linear_q" *) input wire linear,
@@ -121,7 +124,7 @@ module sliding_mode_properties (
     wire      adds = at == shifting + 6'd4;
     wire      checks = at == shifting + 6'd5;
     wire      settles = at == shifting + 6'd6;
-    wire      ends = at == end_of_step;
+    wire      step_ends = at == end_of_step;
     always @(posedge clk) begin
         past_reset <= rst;
         due <= !rst & clock == LAST_CLOCK;
@@ -131,8 +134,8 @@ module sliding_mode_properties (
         else if (runs) clock <= clock + 10'd1;
         if (rst) {now, at} <= 11'd0;
         else if (runs) begin
-            at <= ends ? 6'd0 : at + 6'd1;
-            if (ends) now <= now == 5'd16 ? 5'd0 : now + 5'd1;
+            at <= step_ends ? 6'd0 : at + 6'd1;
+            if (step_ends) now <= now == 5'd16 ? 5'd0 : now + 5'd1;
         end
         if (rst) {is_linear, is_pid} <= 2'b00;
         else if (taken) {is_linear, is_pid} <= {law != 2'd0, law == 2'd2};
@@ -157,7 +160,7 @@ module sliding_mode_properties (
             is_read <= 1'b0;
             is_loaded <= 1'b0;
         end else begin
-            added <= (added | add) & !ends;
+            added <= (added | add) & !step_ends;
             products <= taken ? 5'd0 : products + {4'd0, add};
             if (empty) terms <= 3'd0;
             else if (add) terms <= terms + 3'd1;
@@ -240,7 +243,7 @@ module sliding_mode_properties (
         past_clear_integral <= clear_integral;
         past_overrun <= overrun;
         past_collides <= start & runs;
-        past_frozen <= !is_pid | cleared | (lowers ? limited_low : limited_high);
+        past_frozen <= !is_pid | was_cleared | (lowers ? limited_low : limited_high);
         past_saturated_high <= saturated_high;
         past_saturated_low <= saturated_low;
         // The sign of the integral's gain, and of the feedback's after it.
@@ -257,6 +260,9 @@ module sliding_mode_properties (
     wire signed [31:0] integrated_word = integrated > 33'sd2147483647 ? 32'sh7fffffff :
         integrated < -33'sd2147483648 ? 32'sh80000000 : integrated[31:0];
     wire               integrated_cut = integrated[32] != integrated[31];
+    // The integral was cleared since its sum began.
+    reg                was_cleared = 1'b0;
+    always @(posedge clk) was_cleared <= !rst & (now == 5'd14 | is_sum) & (was_cleared | clear_integral);
     wire               sums = (now == 5'd14 | is_sum) & !cleared;
     wire signed [31:0] term = is_sum ? error : integral;
     wire signed [50:0] wide_term = {{18{term[31]}}, term, 1'b0};
@@ -283,10 +289,11 @@ module sliding_mode_properties (
             (at < 6'd4 | (is_loaded & shifts == (is_added ? shifts : at - 6'd4)))));
         known_terms: assert (!runs | (begins & !is_begun) | terms == (begins ? 3'd0 : terms_before) + {2'd0, is_added});
         known_operand: assert (!runs | at == 6'd0 | takes == takes_now);
-        known_settled: assert ((past_settled == 5'd31 | (runs & past_settled == now & ends)) & (!past_reset | !runs));
+        known_settled: assert ((past_settled == 5'd31 | (runs & past_settled == now & step_ends)) & (!past_reset | !runs));
         known_frozen: assert (past_settled != 5'd15 | past_clear_integral |
-            past_frozen == (!is_pid | cleared | (lowers ? limited_low : limited_high)));
+            past_frozen == (!is_pid | was_cleared | (lowers ? limited_low : limited_high)));
         latency_exact: assert (valid == due);
+        ends_before_valid: assert (ends == (clock == LAST_CLOCK) & (!ends | busy));
         setting_of_step: assert (setting_address == address_now);
         operand_of_step: assert (!runs | at != 6'd1 | operand == operand_now);
         factor_of_step: assert (!runs | at != 6'd1 | (mantissa == (now == 5'd1 ? 18'h3ffff : is_unit ? 18'd1 : setting[17:0]) &
@@ -329,7 +336,8 @@ module sliding_mode_properties (
         frozen: assert (past_reset | past_clear_integral | !past_frozen | integral == past_integral);
         integral_exact: assert (past_reset | past_clear_integral | past_settled != 5'd15 | past_frozen |
             integral == past_integrated);
-        clears: assert (past_reset | !past_clear_integral | (integral == 32'sd0 & cleared));
+        clears: assert (past_reset | !past_clear_integral | integral == 32'sd0);
+        known_cleared: assert (!(now == 5'd14 | is_sum) | !runs | cleared == was_cleared);
         flags_held: assert (past_reset | past_clear |
             ((past_saturated_high & ~saturated_high) == 7'd0 & (past_saturated_low & ~saturated_low) == 7'd0));
         flags_of_words: assert ((saturated_high & due_high) == due_high & (saturated_low & due_low) == due_low);

@@ -1,8 +1,7 @@
 //! ∫e, Q24.8: the word that holds the sum of it and e, at `settle`; frozen while e would push a command further that is cut
 //! already.
 //!
-//! `open` is the clock in which the sum takes the integral. A clear after it, before the word is taken, wins: that tick's e
-//! is not added.
+//! `open` is the clock before the sum begins. A clear after it, before the word is taken, wins: that tick's e is not added.
 
 use crate::prelude::*;
 
@@ -64,11 +63,11 @@ impl Logic for Integral {
         dff_setup!(self, clk, integral_q, cleared);
 
         comment!("A clear wins over a sum under way");
-        if self.open.val() {
-            self.cleared.d.next = false;
-        }
         if self.clear_integral.val() {
             self.cleared.d.next = true;
+        }
+        if self.open.val() {
+            self.cleared.d.next = false;
         }
 
         comment!("Frozen where e pushes against a limit");

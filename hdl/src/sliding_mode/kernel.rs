@@ -56,6 +56,7 @@ pub(super) struct SlidingMode {
     pub(super) saturated_high: Signal<Out, Bits<7>>,
     pub(super) saturated_low: Signal<Out, Bits<7>>,
     pub(super) overrun: Signal<Out, Bit>,
+    pub(super) ends: Signal<Out, Bit>,
 
     sequencer: Sequencer,
     tracking: Tracking,
@@ -137,6 +138,7 @@ impl Default for SlidingMode {
             saturated_high: Signal::default(),
             saturated_low: Signal::default(),
             overrun: Signal::default(),
+            ends: Signal::default(),
             sequencer: Sequencer::default(),
             tracking: Tracking::default(),
             operands: Operands::default(),
@@ -285,7 +287,7 @@ impl Logic for SlidingMode {
         self.integral.clk.next = self.clk.val();
         self.integral.rst.next = self.rst.val();
         self.integral.clear_integral.next = self.clear_integral.val();
-        self.integral.open.next = self.reads.val() & self.at_limit.val();
+        self.integral.open.next = self.sequencer.marks.val() & (self.sequencer.step.val() == self.on_velocity.val());
         self.integral.enable.next = self.sequencer.integrates.val() & self.to_integral.val();
         self.integral.settle.next = self.settles.val();
         self.integral.word.next = self.accumulator.word.val();
@@ -355,5 +357,6 @@ impl Logic for SlidingMode {
         self.saturated_high.next = self.cut_high.flags.val();
         self.saturated_low.next = self.cut_low.flags.val();
         self.overrun.next = self.sequencer.overrun.val();
+        self.ends.next = self.sequencer.ends.val();
     }
 }

@@ -42,7 +42,7 @@ impl Pins for SlidingMode {
     }
 
     fn read(&self, outputs: &mut [u64]) {
-        let shown: [u64; 13] = [
+        let shown: [u64; 14] = [
             self.setting_address.val().into(),
             unsigned_cast(self.error.val()).into(),
             unsigned_cast(self.sliding.val()).into(),
@@ -56,6 +56,7 @@ impl Pins for SlidingMode {
             self.saturated_high.val().into(),
             self.saturated_low.val().into(),
             self.overrun.val().into(),
+            self.ends.val().into(),
         ];
         for (output, value) in outputs.iter_mut().zip(shown) {
             *output = value;

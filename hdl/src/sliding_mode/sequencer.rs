@@ -34,6 +34,7 @@ pub(super) struct Sequencer {
     pub(super) busy: Signal<Out, Bit>,
     pub(super) valid: Signal<Out, Bit>,
     pub(super) overrun: Signal<Out, Bit>,
+    pub(super) ends: Signal<Out, Bit>,
 
     busy_q: Dff<Bit>,
     step_q: Dff<Bits<5>>,
@@ -45,6 +46,7 @@ pub(super) struct Sequencer {
 
     begins_pass: Signal<Local, Bit>,
     last_phase: Signal<Local, Bit>,
+    last_step: Signal<Local, Bit>,
     is_short: Signal<Local, Bit>,
     moves_enough: Signal<Local, Bit>,
 
@@ -117,6 +119,7 @@ impl Default for Sequencer {
             busy: Signal::default(),
             valid: Signal::default(),
             overrun: Signal::default(),
+            ends: Signal::default(),
             busy_q: Dff::default(),
             step_q: Dff::default(),
             phase: Dff::default(),
@@ -126,6 +129,7 @@ impl Default for Sequencer {
             integrates_q: Dff::default(),
             begins_pass: Signal::default(),
             last_phase: Signal::default(),
+            last_step: Signal::default(),
             is_short: Signal::default(),
             moves_enough: Signal::default(),
             first_step: Constant::new(from_u64(0)),
@@ -195,6 +199,7 @@ impl Logic for Sequencer {
         comment!("Steps of ones move nothing, but that of e");
         self.begins_pass.next = self.start.val() & !self.busy_q.q.val();
         self.last_phase.next = self.phase.q.val() == self.mark_phase.val();
+        self.last_step.next = self.step_q.q.val() == self.of_duty.val();
         self.is_short.next =
             (self.step_q.q.val() < self.of_surface.val()) | (self.step_q.q.val() == self.of_limit.val());
         self.moves_enough.next = (self.phase.q.val() == self.load_phase.val()) & self.is_short.val();
@@ -213,7 +218,7 @@ impl Logic for Sequencer {
             if self.last_phase.val() {
                 self.phase.d.next = self.first_phase.val();
                 self.step_q.d.next = self.step_q.q.val() + self.one_step.val();
-                if self.step_q.q.val() == self.of_duty.val() {
+                if self.last_step.val() {
                     self.step_q.d.next = self.first_step.val();
                     self.busy_q.d.next = false;
                     self.valid_q.d.next = true;
@@ -273,7 +278,7 @@ impl Logic for Sequencer {
         if self.step_q.q.val() == self.of_limit.val() {
             self.setting_address.next = self.limit.val();
         }
-        if self.step_q.q.val() == self.of_duty.val() {
+        if self.last_step.val() {
             self.setting_address.next = self.duty.val();
         }
 
@@ -294,5 +299,6 @@ impl Logic for Sequencer {
         self.busy.next = self.busy_q.q.val();
         self.valid.next = self.valid_q.q.val();
         self.overrun.next = self.overrun_q.q.val();
+        self.ends.next = self.last_phase.val() & self.last_step.val();
     }
 }

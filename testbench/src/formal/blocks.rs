@@ -1,6 +1,8 @@
 //! Proofs of single blocks whose tasks are bound by what their configuration says.
 
-use posicast_hdl::{cascade, divider, encoder_generator, excitation, linear_scale, registers, setting_banks};
+use posicast_hdl::{
+    cascade, component, divider, encoder_generator, excitation, linear_scale, registers, setting_banks,
+};
 use posicast_model::control;
 use posicast_model::design::design_machine;
 use posicast_model::rtl::cascade::{self as cascade_model, CascadeConfig};
@@ -13,6 +15,7 @@ use posicast_model::rtl::sliding_mode::{Law, Settings};
 use posicast_model::rtl::{excitation as excitation_model, linear_scale as scale_model};
 use posicast_model::spec;
 
+use super::stage::empty;
 use super::task::{Engine, INDUCTION, Task, part, refused};
 use crate::Error;
 
@@ -27,6 +30,7 @@ pub(super) fn tasks() -> Result<Vec<Task>, Error> {
         commit_task("bank of sliding_mode", controller.map())?,
         commit_task("bank of a stage of two axes", stage.map())?,
         setting_banks_task(&settings)?,
+        law_and_bank_task(&controller)?,
         divider_task(5000)?,
         divider_task(131_071)?,
         encoder_generator_task()?,
@@ -114,6 +118,32 @@ fn setting_banks_task(settings: &Settings) -> Result<Task, Error> {
         Task::new("setting_banks", "32 rows, contents left out", Engine::Pdr, block)
             .properties(&[], include_str!("../../formal/setting_banks.sv")),
     )
+}
+
+/// The controller's component without arithmetic: bank, settings and the sequence of a pass, as they are wired.
+fn law_and_bank_task(controller: &Component) -> Result<Task, Error> {
+    let mut modules = component::emit(controller, "alone")?;
+    for part in [
+        "tracking",
+        "operands",
+        "scaled_product",
+        "accumulator",
+        "limiter",
+        "integral",
+        "sticky",
+    ] {
+        let name = format!("alone_{part}");
+        let module = modules.iter_mut().find(|module| module.name == name);
+        empty(module.ok_or_else(|| refused(format!("the controller has no `{name}`")))?);
+    }
+    let block = (modules, controller.composition().ports().to_vec());
+    Ok(Task::new(
+        "law_and_bank",
+        "component of sliding_mode, arithmetic left out",
+        INDUCTION,
+        block,
+    )
+    .properties(&[], include_str!("../../formal/law_and_bank.sv")))
 }
 
 fn divider_task(tick_clocks: u64) -> Result<Task, Error> {

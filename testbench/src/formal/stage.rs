@@ -53,7 +53,7 @@ fn task(axis: &StageAxis, modules: &[Module], macros: &[(&str, String)]) -> Resu
 
 /// Nothing is left in it but its ports: its outputs are anything, in every clock. Without a wire Yosys would take it for a
 /// module from elsewhere.
-fn empty(module: &mut Module) {
+pub(super) fn empty(module: &mut Module) {
     if let Some((ports, _)) = module.text.split_once("\n);\n") {
         module.text = format!("{ports}\n);\n    wire left_out = clk;\nendmodule\n\n`default_nettype wire\n");
     }

@@ -8,8 +8,8 @@ use super::settings::{Gain, LIMIT_MAX, Row};
 
 /// Steps of a pass.
 pub(super) const STEPS: u8 = 17;
-/// The step that has a limit for its setting.
-const LIMIT_STEP: u8 = 14;
+/// The step that has a limit for its setting; the sum of the integral begins with it.
+pub(super) const LIMIT_STEP: u8 = 14;
 /// The step that adds e to its integral.
 const INTEGRAL_STEP: u8 = 15;
 /// Clocks of a step that shifts by any distance: 31 bits, one a clock, and 8 more.
@@ -124,6 +124,11 @@ impl Datapath {
         self.found.1 &= !Saturation::Integral.bit();
     }
 
+    /// The sum of the integral and e begins: a clear from now on drops it.
+    pub(super) fn open_integral(&mut self) {
+        self.cleared = false;
+    }
+
     pub(super) fn clear_flags(&mut self) {
         (self.saturated_high, self.saturated_low) = (0, 0);
     }
@@ -196,10 +201,7 @@ impl Datapath {
         match step {
             5 => self.opposes = negative,
             10 => self.opposes ^= negative,
-            LIMIT_STEP => {
-                self.limit = setting & LIMIT_MAX;
-                self.cleared = false;
-            }
+            LIMIT_STEP => self.limit = setting & LIMIT_MAX,
             _ => {}
         }
     }

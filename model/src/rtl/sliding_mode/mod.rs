@@ -39,7 +39,7 @@ mod settings;
 pub use ports::{INPUTS, Inputs, Law, Motion, OUTPUTS, Outputs, Saturation, ports};
 pub use settings::{Gain, GainError, LIMIT_MAX, MANTISSA_BITS, MANTISSA_MAX, Row, SETTINGS, SHIFT_MAX, Settings};
 
-use self::datapath::{Datapath, STEPS, address, pass_clocks, step_clocks};
+use self::datapath::{Datapath, LIMIT_STEP, STEPS, address, pass_clocks, step_clocks};
 use super::{ClockedBlock, FOREVER, Moore, Port, StepError};
 
 /// Clock of a step in which its operand and its setting are taken.
@@ -78,6 +78,7 @@ impl State {
             saturated_high: data.saturated_high,
             saturated_low: data.saturated_low,
             overrun: self.overrun,
+            ends: self.step == STEPS - 1 && self.phase == step_clocks(self.step) - 1,
         }
     }
 
@@ -93,9 +94,11 @@ impl State {
         }
         self.datapath.raise_flags();
         self.valid = false;
+        let clocks = step_clocks(self.step);
+        // The clock before the sum of the integral begins.
+        let opens = self.step + 1 == LIMIT_STEP && self.phase == clocks - 1;
         if self.busy {
             self.overrun |= inputs.start;
-            let clocks = step_clocks(self.step);
             if self.phase == READ_PHASE {
                 self.datapath.multiply(self.step, &inputs.motion, inputs.setting);
             } else if self.phase == clocks - CLOCKS_AFTER {
@@ -114,6 +117,9 @@ impl State {
         }
         if inputs.clear_integral {
             self.datapath.clear_integral();
+        }
+        if opens {
+            self.datapath.open_integral();
         }
     }
 
@@ -228,6 +234,9 @@ impl TickController {
         self.datapath.capture(law, modulo, motion);
         self.datapath.raise_flags();
         for step in 0..STEPS {
+            if step == LIMIT_STEP {
+                self.datapath.open_integral();
+            }
             let setting = settings.word(usize::from(address(step, law)));
             self.datapath.multiply(step, motion, setting);
             self.datapath.settle(step);

@@ -87,7 +87,7 @@ impl Saturation {
     }
 }
 
-/// The output ports, all of them registers but `setting_address`, which follows from registers.
+/// The output ports, all of them registers but `setting_address` and `ends`, which follow from registers.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Outputs {
     /// Address of a setting: its word is expected in the next clock.
@@ -116,12 +116,15 @@ pub struct Outputs {
     pub saturated_low: u8,
     /// Sticky: a start came while a pass ran, and was ignored.
     pub overrun: bool,
+    /// One clock: the last of a pass; `valid` comes in the next, in which another pass may start. Law and settings change
+    /// with it.
+    pub ends: bool,
 }
 
 /// Number of input ports.
 pub const INPUTS: usize = 12;
 /// Number of output ports.
-pub const OUTPUTS: usize = 13;
+pub const OUTPUTS: usize = 14;
 
 /// The ports of a controller in the order of the Verilog's port list, without `clk`.
 pub fn ports() -> Vec<Port> {
@@ -158,6 +161,7 @@ pub fn ports() -> Vec<Port> {
         port("saturated_high", Output, 7, false),
         port("saturated_low", Output, 7, false),
         port("overrun", Output, 1, false),
+        port("ends", Output, 1, false),
     ]
 }
 
@@ -235,6 +239,7 @@ impl Outputs {
             u64::from(self.saturated_high),
             u64::from(self.saturated_low),
             u64::from(self.overrun),
+            u64::from(self.ends),
         ]
     }
 }

@@ -9,7 +9,7 @@ pub fn sliding_mode(law: u32, modulo: bool) -> Description {
         strobe: strobe.to_owned(),
     };
     let commit = Access::Commit {
-        tick: "valid".to_owned(),
+        tick: "ends".to_owned(),
     };
     let laws = [
         (0, "sliding_mode", "c de + k s + eps sat(s / phi)"),
@@ -34,7 +34,7 @@ pub fn sliding_mode(law: u32, modulo: bool) -> Description {
             "commit",
             0x09,
             commit,
-            "law and bank of settings, together, at the end of a pass",
+            "law and bank of settings, together, between two passes",
             vec![Field::flag("commit_waits", 0, "a commit waits")],
         )
         .with(
