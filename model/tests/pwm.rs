@@ -259,6 +259,57 @@ fn unit_the_floor_holds_and_running_refuses() {
     assert_eq!(pwm.outputs(&inputs).dead_time_used, 1);
 }
 
+/// With 2 · (dead time + minimum pulse) both sides last the minimum and no longer, so that a leg that is late stays late.
+#[test]
+fn unit_a_period_without_slack_is_not_started() {
+    let with_period = |period| {
+        let inputs = healthy(&Timing {
+            period,
+            dead_time: 20,
+            minimum_pulse: 15,
+        });
+        let mut pwm = Pwm::new(&config());
+        pwm.hold(
+            &Inputs {
+                clear_trip: true,
+                enable: false,
+                ..inputs
+            },
+            1000,
+        );
+        pwm.hold(&inputs, 1000);
+        (pwm.outputs(&inputs).running, pwm.outputs(&inputs).below_floor)
+    };
+    assert_eq!(with_period(69), (true, false));
+    assert_eq!(with_period(70), (false, true));
+    assert_eq!(with_period(71), (true, false));
+}
+
+/// With a clock more, a leg that starts late is in phase again after as many periods as it was late by clocks.
+#[test]
+fn unit_a_leg_that_starts_late_catches_up() {
+    let timing = Timing {
+        period: 71,
+        dead_time: 20,
+        minimum_pulse: 15,
+    };
+    let inputs = Inputs {
+        // The low side comes first from off, and then lasts its minimum: the first pulse is late.
+        mode: Mode::Direction as u8,
+        duty: 35,
+        ..healthy(&timing)
+    };
+    let mut pwm = started(&inputs);
+    let mut edge_of = |_: i64| {
+        let high: Vec<bool> = (0..timing.period).map(|_| pwm.step(&inputs).a_high).collect();
+        high.iter().position(|high| *high)
+    };
+    let edges: Vec<Option<usize>> = (0..60).map(&mut edge_of).collect();
+    assert_eq!((edges[0], edges[27]), (Some(56), edges[59]), "{edges:?}");
+    // By the pin rule: half the pulse before the peak; the pins follow by a clock.
+    assert_eq!(edges[59], Some(35 - 15 / 2 + 1));
+}
+
 #[test]
 fn unit_a_hungry_watchdog_trips_after_so_many_valleys() {
     let timing = Timing {
@@ -301,6 +352,78 @@ fn unit_the_time_base_sets_the_phase_while_off() {
         pwm.step(&inputs);
         assert_eq!(pwm.outputs(&inputs).trigger, turn > 0, "turn {turn}");
         pwm.hold(&inputs, 298);
+    }
+}
+
+/// What runs when, with a host that enables at once: clocks from reset to `running`, and whether it was ever out of phase.
+fn first_start(config: &PwmConfig, inputs: &Inputs, tick_clocks: u64) -> (Option<u64>, bool) {
+    let mut pwm = Pwm::new(config);
+    let mut start = None;
+    for clock in 0..6 * tick_clocks {
+        let shown = pwm.step(&Inputs {
+            sync: clock % tick_clocks == tick_clocks - 1,
+            clear_trip: true,
+            ..*inputs
+        });
+        start = start.or(shown.running.then_some(clock));
+        if shown.unaligned {
+            return (start, true);
+        }
+    }
+    (start, false)
+}
+
+#[test]
+fn unit_on_a_time_base_it_does_not_start_before_it_is_in_phase() {
+    let timing = Timing {
+        period: 100,
+        dead_time: 3,
+        minimum_pulse: 4,
+    };
+    let alone = PwmConfig::new(ActiveLow::default(), 1, 1).unwrap();
+    for phase in [0, 1, 31, 32, 50, 99] {
+        let inputs = Inputs {
+            phase,
+            ..healthy(&timing)
+        };
+        let (start, unaligned) = first_start(&alone.on_time_base(), &inputs, 1000);
+        assert!(!unaligned, "phase {phase}");
+        assert!(
+            start.is_some_and(|clock| (1000..3200).contains(&clock)),
+            "phase {phase}: {start:?}"
+        );
+    }
+    // Alone, it cannot know of a time base before the first `sync`.
+    assert!(first_start(&alone, &healthy(&timing), 1000).1);
+}
+
+/// Another period, taken while off: it is in phase by chance only, and waits for the next `sync`.
+#[test]
+fn unit_with_another_period_it_waits_for_the_time_base_again() {
+    for config in [config(), config().on_time_base()] {
+        let mut pwm = Pwm::new(&config);
+        let mut inputs = Inputs {
+            period: 125,
+            clear_trip: true,
+            ..healthy(&Timing {
+                period: 100,
+                dead_time: 3,
+                minimum_pulse: 4,
+            })
+        };
+        let mut ran = [false; 2];
+        for clock in 0..12_000 {
+            (inputs.period, inputs.enable) = if clock < 5300 {
+                (125, clock > 2500 && clock < 5200)
+            } else {
+                (100, true)
+            };
+            inputs.sync = clock % 1000 == 999;
+            let shown = pwm.step(&inputs);
+            ran[usize::from(clock >= 5300)] |= shown.running;
+            assert!(!shown.unaligned, "clock {clock}");
+        }
+        assert_eq!(ran, [true; 2]);
     }
 }
 

@@ -11,12 +11,18 @@
 //   latched_is_off      all off until clear_trip, however short the fault was
 //   stopped_is_off      all off one clock after running has fallen, and so two after enable has
 //   floor               the times in use are never below their floors
+//   has_slack           while running the period is not 2 (dead_time_used + minimum_pulse_used): a leg that is late catches up
+//   starts_in_phase     with a time base (built for one, or after the first sync) it starts only after a sync that found the
+//                       carrier at its phase, with the period that is in use since
 //
 // Not proven here: where in the period an edge is, and pulses shorter than a clock (testbench/tests/pwm_pins.rs, pwm_fault.rs).
 // The invariants (`known_*`) tie the monitors below to the leg's timer. They are proven with the rest, not assumed.
 
 `ifndef PINS_OFF
 `define PINS_OFF 4'b0000
+`endif
+`ifndef ON_TIME_BASE
+`define ON_TIME_BASE 1'b0
 `endif
 `ifndef DEAD_TIME_FLOOR
 `define DEAD_TIME_FLOOR 10'd2
@@ -42,6 +48,8 @@ module pwm_properties (
     input wire [3:0] gates,
     input wire [9:0] dead_time_used,
     input wire [9:0] minimum_pulse_used,
+    input wire       sync,
+    input wire [15:0] phase,
     (* peek = "mode_q" *)                              input wire [1:0] mode_used,
     (* peek = "negative_q" *)                          input wire       negative_used,
     (* peek = "off_q" *)                               input wire       mode_turns,
@@ -51,6 +59,11 @@ module pwm_properties (
     (* peek = "u_leg.high_q" *)                        input wire       leg_high,
     (* peek = "u_leg.timer" *)                         input wire [9:0] leg_count,
     (* peek = "u_pin_gates.masked" *)                      input wire       masked,
+    (* peek = "u_carrier.position" *)                  input wire [15:0] position,
+    (* peek = "u_carrier.period_q" *)                  input wire [16:0] period_used,
+    (* peek = "u_carrier.synced" *)                    input wire       synced,
+    (* peek = "u_carrier.astray" *)                    input wire       astray,
+    (* peek = "u_carrier.timed" *)                     input wire       timed,
     (* peek = "u_guard.fault_latch_armed" *)           input wire       latch_armed
 );
     // Order of the bits: b_low, b_high, a_low, a_high; a side's other side is its neighbour.
@@ -116,7 +129,30 @@ module pwm_properties (
         reset_is_off: assert (!past_reset | on == 4'd0);
         stopped_is_off: assert (running | on == 4'd0);
         disabled_is_off: assert (past_enable | on == 4'd0);
+        has_slack: assert (!running | period_used != {6'd0, {1'b0, dead_time_used} + {1'b0, minimum_pulse_used}} << 1);
+        starts_in_phase: assert (!running | past_running | !timed_for[1] | past_in_phase);
+        known_timed: assert (timed == has_time_base & synced == past_sync & (!timed | timed_for[0] | synced));
+        known_phase: assert (!timed_for[0] | astray | in_phase);
         floor: assert (dead_time_used >= `DEAD_TIME_FLOOR & minimum_pulse_used >= `MINIMUM_PULSE_FLOOR);
+    end
+
+    // In phase: the last sync found the carrier at its phase, or it waited there for this sync; and the period is still the same.
+    // `timed_for`: there has been a time base for a clock, for two.
+    reg        has_time_base = `ON_TIME_BASE;
+    reg  [1:0] timed_for = {2{`ON_TIME_BASE}};
+    reg        found = 1'b0;
+    reg        past_in_phase = 1'b0;
+    reg        past_sync = 1'b0;
+    reg [16:0] past_period = 17'd32;
+    wire       in_phase = found & period_used == past_period;
+    wire       at_phase = position == phase;
+    always @(posedge clk) begin
+        has_time_base <= rst ? `ON_TIME_BASE : has_time_base | sync;
+        timed_for <= rst ? {2{`ON_TIME_BASE}} : {timed_for[0], has_time_base};
+        found <= !rst & (synced ? at_phase : in_phase) | (!rst & sync & astray & at_phase & !running & (!synced | at_phase));
+        past_in_phase <= !rst & in_phase;
+        past_sync <= !rst & sync;
+        past_period <= period_used;
     end
 
     // A pulse that ends by itself.

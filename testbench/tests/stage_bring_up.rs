@@ -99,6 +99,8 @@ fn self_test(bench: &mut StageBench, duty: i32) -> (u32, u32) {
     bench.clocks(1000).unwrap();
     bench.write("x_clear_faults", 0).unwrap();
     assert!(bench.wait("x", state::READY, 100_000).unwrap());
+    // The PWM starts once the second tick has found it in phase.
+    bench.clocks(2 * 5000).unwrap();
     bench.write("x_control", 1 << 1 | 1 << 3).unwrap();
     bench.write("x_direct", duty as u32 & 0x1_ffff).unwrap();
     // The next tick takes the duty; a period later the one after it is whole.

@@ -4,7 +4,8 @@
 //! of that. The command counts them, and tells when the boundary is there. So one register serves both, and what the command
 //! computes is ready at the boundary. The strobes come with the pins, one clock after the position.
 //!
-//! While off, a carrier that a `sync` has found at another phase waits at `phase` for the next one: no position is loaded.
+//! While off, a carrier that a `sync` has found at another phase waits at `phase` for the next one: no position is loaded. So
+//! does one that has a time base and another period than before, and after reset one that is built for a time base.
 
 use crate::prelude::*;
 
@@ -35,6 +36,7 @@ pub(super) struct Carrier {
     lead_q: Dff<Bits<11>>,
     synced: Dff<Bit>,
     astray: Dff<Bit>,
+    timed: Dff<Bit>,
     at_valley: Dff<Bit>,
     at_peak: Dff<Bit>,
     valley_q: Dff<Bit>,
@@ -45,13 +47,15 @@ pub(super) struct Carrier {
     in_phase: Signal<Local, Bit>,
     holds: Signal<Local, Bit>,
     off_phase: Signal<Local, Bit>,
+    in_use: Signal<Local, Bit>,
 
     whole_range: Constant<Bits<17>>,
 }
 
 impl Carrier {
-    /// The shortest period after reset, so that the first one set soon comes into use.
-    pub(super) fn new() -> Self {
+    /// The shortest period after reset, so that the first one set soon comes into use. `on_time_base`: it waits for its first
+    /// `sync`.
+    pub(super) fn new(on_time_base: bool) -> Self {
         Self {
             clk: Signal::default(),
             rst: Signal::default(),
@@ -76,7 +80,8 @@ impl Carrier {
             period_q: Dff::new(from_u64(32)),
             lead_q: Dff::default(),
             synced: Dff::default(),
-            astray: Dff::default(),
+            astray: Dff::new(on_time_base),
+            timed: Dff::new(on_time_base),
             at_valley: Dff::default(),
             at_peak: Dff::default(),
             valley_q: Dff::default(),
@@ -86,6 +91,7 @@ impl Carrier {
             in_phase: Signal::default(),
             holds: Signal::default(),
             off_phase: Signal::default(),
+            in_use: Signal::default(),
             whole_range: Constant::new(from_u64(1 << 16)),
         }
     }
@@ -97,7 +103,8 @@ impl Logic for Carrier {
         comment!("@module pwm_carrier");
         comment!("@about Position in the period; boundaries.");
         dff_setup!(
-            self, clk, position, period_q, lead_q, synced, astray, at_valley, at_peak, valley_q, peak_q, trigger_q
+            self, clk, position, period_q, lead_q, synced, astray, timed, at_valley, at_peak, valley_q, peak_q,
+            trigger_q
         );
 
         comment!("The leads: period - 32, and half of that");
@@ -106,7 +113,10 @@ impl Logic for Carrier {
         self.valley_lead.next = self.position.q.val() == self.lead.val();
         self.peak_lead.next = self.position.q.val() == (self.lead.val() >> 1);
 
-        comment!("Astray and off, it waits for a sync at its phase");
+        comment!("Astray and off, it waits for a sync at its phase;");
+        comment!("with another period it is in phase by chance only");
+        self.in_use.next = self.period_q.q.val().get_bits::<16>(0) == self.period.val();
+        self.timed.d.next = self.timed.q.val() | self.sync.val();
         self.in_phase.next = self.position.q.val() == self.phase.val();
         self.holds.next = self.astray.q.val() & self.in_phase.val() & !self.running.val();
         self.synced.d.next = self.sync.val();
@@ -114,7 +124,9 @@ impl Logic for Carrier {
         if self.holds.val() & self.sync.val() {
             self.astray.d.next = false;
         }
-        if self.off_phase.val() {
+        if self.off_phase.val()
+            | (self.valley_next.val() & !self.running.val() & !self.in_use.val() & self.timed.q.val())
+        {
             self.astray.d.next = true;
         }
 
@@ -139,7 +151,7 @@ impl Logic for Carrier {
         self.trigger_q.d.next = (self.position.q.val() == self.trigger_phase.val()) & !self.holds.val();
 
         self.period_used.next = self.period_q.q.val();
-        self.settled.next = self.period_q.q.val().get_bits::<16>(0) == self.period.val();
+        self.settled.next = self.in_use.val();
         self.waits.next = self.holds.val();
         self.out_of_step.next = self.off_phase.val();
         self.strays.next = self.astray.q.val();

@@ -72,6 +72,8 @@ pub(super) struct Pwm {
     unaligned_q: Dff<Bit>,
 
     settled: Signal<Local, Bit>,
+    busy_clocks: Signal<Local, Bits<16>>,
+    no_slack: Signal<Local, Bit>,
     may_run: Signal<Local, Bit>,
     goes_on: Signal<Local, Bit>,
     starts: Signal<Local, Bit>,
@@ -124,7 +126,7 @@ impl Pwm {
             dead_time_used: Signal::default(),
             minimum_pulse_used: Signal::default(),
             gates: Signal::default(),
-            carrier: Carrier::new(),
+            carrier: Carrier::new(config.is_on_time_base()),
             timing: Timing::new(config),
             command: Command::default(),
             guard: Trip::default(),
@@ -142,6 +144,8 @@ impl Pwm {
             below_floor_q: Dff::default(),
             unaligned_q: Dff::default(),
             settled: Signal::default(),
+            busy_clocks: Signal::default(),
+            no_slack: Signal::default(),
             may_run: Signal::default(),
             goes_on: Signal::default(),
             starts: Signal::default(),
@@ -215,6 +219,12 @@ impl Logic for Pwm {
         comment!("registers that were settled all the time");
         self.settled.next = self.timing.settled.val() & self.carrier.settled.val();
         self.stable.d.next = self.settled.val() & (self.stable.q.val() | !self.command.computes.val());
+        comment!("Not where both sides last the minimum and no longer:");
+        comment!("a leg that is late once would stay late");
+        self.busy_clocks.next = (bit_cast::<16, 10>(self.timing.dead_time_used.val())
+            + bit_cast::<16, 10>(self.timing.minimum_pulse_used.val()))
+            << 1;
+        self.no_slack.next = self.period.val() == self.busy_clocks.val();
         self.may_run.next = self.enable.val() & !self.guard.tripped.val();
         self.goes_on.next = self.running_q.q.val() & self.may_run.val();
         self.starts.next = !self.running_q.q.val()
@@ -222,7 +232,8 @@ impl Logic for Pwm {
             & self.command.valley_next.val()
             & self.settled.val()
             & self.stable.q.val()
-            & !self.carrier.strays.val();
+            & !self.carrier.strays.val()
+            & !self.no_slack.val();
         self.running_q.d.next = self.goes_on.val() | self.starts.val();
 
         comment!("What is wanted of the leg at this position");
@@ -277,7 +288,7 @@ impl Logic for Pwm {
         if self.running_q.q.val() & !self.settled.val() {
             self.refused_q.d.next = true;
         }
-        if self.enable.val() & self.timing.below.val() {
+        if self.enable.val() & (self.timing.below.val() | (self.settled.val() & self.no_slack.val())) {
             self.below_floor_q.d.next = true;
         }
         if self.running_q.q.val() & self.carrier.out_of_step.val() {

@@ -71,6 +71,16 @@ pub fn emit(config: &PwmConfig, prefix: &str) -> Result<Vec<Module>, EmitError> 
                     config.minimum_pulse_floor_clocks().to_string(),
                     "clocks, at least 1",
                 ),
+                parameter(
+                    "first start",
+                    if config.is_on_time_base() {
+                        "in phase"
+                    } else {
+                        "as it is"
+                    }
+                    .to_owned(),
+                    "with the time base at sync, or without one",
+                ),
             ],
         },
     };

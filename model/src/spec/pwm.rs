@@ -124,28 +124,22 @@ fn check_frequency(table: &Table<'_, '_>, pwm_hz: f64, clock: &Clock) {
     }
 }
 
-/// Dead time and shortest pulse together leave something of the period, in seconds and in whole clocks.
+/// A period has room for both sides' dead time and minimum pulse, and for a clock more: a leg that is late once, after a turn
+/// or a start, catches up only where a side lasts longer than the minimum. The hardware has at least a clock of each.
 fn check_pulse(table: &Table<'_, '_>, pwm: &Pwm, clock: &Clock) {
-    let together_s = pwm.dead_time_s + pwm.minimum_pulse_s;
-    let period_s = 1.0 / pwm.frequency_hz;
-    let clocks = u64::from(pwm.dead_time_clocks(clock)) + u64::from(pwm.minimum_pulse_clocks(clock));
-    let (found, allowed) = if together_s >= period_s {
-        (format!("{together_s} s"), format!("below {period_s} s, the PWM period"))
-    } else if clocks >= u64::from(pwm.period_clocks(clock)) {
-        let period = pwm.period_clocks(clock);
-        (
-            format!("{clocks} clocks"),
-            format!("below {period} clocks, the PWM period"),
-        )
-    } else {
+    let least = |clocks: u32| u64::from(clocks.max(1));
+    let clocks = 2 * (least(pwm.dead_time_clocks(clock)) + least(pwm.minimum_pulse_clocks(clock)));
+    let period = pwm.period_clocks(clock);
+    if clocks < u64::from(period) {
         return;
-    };
+    }
     let key = if table.has("dead_time_s") {
         "dead_time_s"
     } else {
         "minimum_pulse_s"
     };
-    let found = format!("a dead time and a minimum pulse of {found} together");
+    let found = format!("{clocks} clocks, twice the dead time and the minimum pulse");
+    let allowed = format!("below {period} clocks, the PWM period");
     table.contradiction(key, found, allowed, "shorten both, or lower the PWM frequency");
 }
 

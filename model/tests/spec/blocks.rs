@@ -116,13 +116,12 @@ fn unit_the_pwm_fits_clock_and_sample() {
     let expected = "m.toml:20: axis.pwm.frequency_hz of axis x: found 25_000; allowed: what divides clock.frequency_hz = \
                     50000000 Hz and is a multiple of clock.sample_hz = 10000 Hz; the nearest is 20000";
     case("= 20_000", "= 25_000", expected);
-    let expected = format!(
-        "m.toml:21: axis.pwm.dead_time_s of axis x: found a dead time and a minimum pulse of {} s together; allowed: below \
-         0.000005 s, the PWM period",
-        10e-6 + 1.01e-6
-    );
     let short = with_blocks().replace("= 20_000", "= 200_000");
-    assert_eq!(wrong(&short.replace("500e-9", "10e-6")).to_string(), expected);
+    // 1.48 µs and 1.01 µs are 74 and 51 clocks: a leg of a period of 250 clocks that is late once would stay late.
+    let expected = "m.toml:21: axis.pwm.dead_time_s of axis x: found 250 clocks, twice the dead time and the minimum pulse; \
+                    allowed: below 250 clocks, the PWM period";
+    assert_eq!(wrong(&short.replace("500e-9", "1.48e-6")).to_string(), expected);
+    right(&short.replace("500e-9", "1.46e-6"));
     let expected = "m.toml:21: axis.pwm.dead_time_s of axis x: found 20.47e-6 s, 1024 clocks; allowed: at most 0.00002046 s, \
                     the 1023 clocks that the hardware counts to";
     case("500e-9", "20.47e-6", expected);
@@ -130,10 +129,6 @@ fn unit_the_pwm_fits_clock_and_sample() {
     let expected = "m.toml:20: axis.pwm.frequency_hz of axis x: found a period of 100000 clocks; allowed: 64 to 65536 clocks: \
                     from 762.939453125 Hz on";
     assert_eq!(wrong(&slow).to_string(), expected);
-    // 3.985 µs and 1.01 µs end before a period of 5 µs does, in seconds; in whole clocks, rounded up, they do not.
-    let expected = "m.toml:21: axis.pwm.dead_time_s of axis x: found a dead time and a minimum pulse of 251 clocks together; \
-                    allowed: below 250 clocks, the PWM period";
-    assert_eq!(wrong(&short.replace("500e-9", "3.985e-6")).to_string(), expected);
     let expected = "m.toml:19: axis.pwm.mode of axis x: found \"bridge\"; allowed: direction, half-bridge, full-bridge, \
                     locked-antiphase";
     case("\"half-bridge\"", "\"bridge\"", expected);

@@ -102,17 +102,19 @@ impl Task {
 /// # Errors
 /// [`Error::Block`] where a block cannot be written as Verilog.
 pub fn all() -> Result<Vec<Task>, Error> {
+    let two_low = ActiveLow {
+        a_high: true,
+        b_low: true,
+        ..ActiveLow::default()
+    };
     let mut tasks = vec![
-        pwm(ActiveLow::default(), 2, 1, "16-bit period, all active high")?,
         pwm(
-            ActiveLow {
-                a_high: true,
-                b_low: true,
-                ..ActiveLow::default()
-            },
-            25,
-            50,
-            "16-bit period, two pins active low",
+            PwmConfig::new(ActiveLow::default(), 2, 1).map_err(refused)?,
+            "16-bit period, all active high",
+        )?,
+        pwm(
+            PwmConfig::new(two_low, 25, 50).map_err(refused)?.on_time_base(),
+            "16-bit period, two pins active low, on a time base",
         )?,
         Task::new(
             "pulse_counter",
@@ -187,8 +189,8 @@ pub(super) fn refused(error: impl std::fmt::Display) -> Error {
     Error::Option(error.to_string())
 }
 
-fn pwm(active_low: ActiveLow, dead_time: u16, minimum_pulse: u16, size: &str) -> Result<Task, Error> {
-    let config = PwmConfig::new(active_low, dead_time.into(), minimum_pulse.into()).map_err(refused)?;
+fn pwm(config: PwmConfig, size: &str) -> Result<Task, Error> {
+    let active_low = config.active_low();
     let bit = |low: bool| u8::from(low);
     let off = format!(
         "4'b{}{}{}{}",
@@ -199,8 +201,12 @@ fn pwm(active_low: ActiveLow, dead_time: u16, minimum_pulse: u16, size: &str) ->
     );
     let macros = [
         ("PINS_OFF", off),
-        ("DEAD_TIME_FLOOR", format!("10'd{dead_time}")),
-        ("MINIMUM_PULSE_FLOOR", format!("10'd{minimum_pulse}")),
+        ("DEAD_TIME_FLOOR", format!("10'd{}", config.dead_time_floor_clocks())),
+        (
+            "MINIMUM_PULSE_FLOOR",
+            format!("10'd{}", config.minimum_pulse_floor_clocks()),
+        ),
+        ("ON_TIME_BASE", format!("1'b{}", bit(config.is_on_time_base()))),
     ];
     let block = (pwm::emit(&config, "")?, pwm_model::ports());
     Ok(Task::new("pwm", size, INDUCTION, block).properties(&macros, include_str!("../../formal/pwm.sv")))

@@ -67,7 +67,7 @@ impl PwmRandom {
     fn timing(&mut self, running: bool) {
         let changes = match running {
             true => self.one_in(4000),
-            false => self.interrupts(200),
+            false => self.interrupts(900),
         };
         if !changes {
             return;
@@ -87,6 +87,13 @@ impl PwmRandom {
         let one_bit = [0; 2].map(|_: u8| 1 << self.rng.random_range(0..10));
         self.inputs.dead_time = *pick(&mut self.rng, &[0, 1, 2, 3, some, some, one_bit[0]]);
         self.inputs.minimum_pulse = *pick(&mut self.rng, &[0, 1, 2, some, some, one_bit[1]]);
+        if self.one_in(6) {
+            // Room for both sides' minima and nothing more, or a clock either side of it.
+            let sum = *pick(&mut self.rng, &[32, 33, 40, 64, 135]);
+            self.inputs.dead_time = self.rng.random_range(4..28);
+            self.inputs.minimum_pulse = sum - self.inputs.dead_time;
+            self.inputs.period = 2 * sum + *pick(&mut self.rng, &[0, 0, 1]);
+        }
     }
 
     fn command(&mut self) {
@@ -130,15 +137,19 @@ impl PwmRandom {
     }
 
     fn time_base(&mut self, running: bool) {
-        if self.one_in(if running { 3000 } else { 60 }) {
+        // A carrier that is off waits at its phase for a sync or two: in peace, as a rule.
+        if self.one_in(if running { 3000 } else { 900 }) {
             self.inputs.phase = self.position();
+        }
+        if self.one_in(if running { 3000 } else { 60 }) {
             let any = self.position();
             self.inputs.trigger_phase = *pick(&mut self.rng, &[0, any, any, self.inputs.period.wrapping_sub(1)]);
         }
         self.since_sync += 1;
-        // In step for long times: the period times three, or sometimes any moment.
-        let moment = if running { 180_000 } else { 1200 };
-        self.inputs.sync = self.since_sync >= 3 * u32::from(self.inputs.period.max(1)) || self.one_in(moment);
+        // In step for long times: every third period, off every one, or sometimes any moment.
+        let (periods, moment) = if running { (3, 180_000) } else { (1, 1200) };
+        let in_step = self.since_sync >= periods * u32::from(self.inputs.period.max(1));
+        self.inputs.sync = in_step || self.one_in(moment);
         if self.inputs.sync {
             self.since_sync = 0;
         }

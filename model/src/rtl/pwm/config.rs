@@ -1,4 +1,4 @@
-//! What is fixed when a PWM is built: polarities, and the floors that no register can undercut.
+//! What is fixed when a PWM is built: polarities, the floors that no register can undercut, and whether it waits for a time base.
 
 /// Width of the dead time and of the minimum pulse.
 pub const TIME_BITS: u32 = 10;
@@ -9,6 +9,7 @@ pub struct PwmConfig {
     active_low: ActiveLow,
     dead_time_floor_clocks: u16,
     minimum_pulse_floor_clocks: u16,
+    on_time_base: bool,
 }
 
 /// Which pins are on at a low level. Such a pin is off at a high level: the off level follows from the polarity, so that a
@@ -62,7 +63,23 @@ impl PwmConfig {
                 .ok_or(PwmConfigError::DeadTime(dead_time_floor_clocks))?,
             minimum_pulse_floor_clocks: fits(minimum_pulse_floor_clocks)
                 .ok_or(PwmConfigError::MinimumPulse(minimum_pulse_floor_clocks))?,
+            on_time_base: false,
         })
+    }
+
+    /// With a time base on `sync`: it does not start before a `sync` has found it in phase. Without, one that has not seen
+    /// any `sync` since its reset starts as it is.
+    #[must_use]
+    pub fn on_time_base(self) -> Self {
+        Self {
+            on_time_base: true,
+            ..self
+        }
+    }
+
+    /// Whether it waits for its first `sync`.
+    pub fn is_on_time_base(&self) -> bool {
+        self.on_time_base
     }
 
     /// Which pins are on at a low level.

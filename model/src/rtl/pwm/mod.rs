@@ -96,8 +96,10 @@ struct State {
     stable: bool,
     /// `sync` of the clock before.
     synced: bool,
-    /// A `sync` came at another phase.
+    /// Out of phase as far as it is known: a `sync` came at another phase, or none has come since the period changed.
     astray: bool,
+    /// There is a time base: by the build, or since a `sync` came.
+    timed: bool,
     /// `mask_pins` of the clock before.
     masked: bool,
     trip: Trip,
@@ -130,7 +132,8 @@ impl State {
             running: false,
             stable: false,
             synced: false,
-            astray: false,
+            astray: config.is_on_time_base(),
+            timed: config.is_on_time_base(),
             masked: false,
             trip: Trip::default(),
             at_valley: false,
@@ -238,12 +241,14 @@ impl State {
         let (dead_time, minimum_pulse) = (inputs.dead_time & 0x3ff, inputs.minimum_pulse & 0x3ff);
         let low = dead_time < floors.0 || minimum_pulse < floors.1;
         let (dead_time, minimum_pulse) = (dead_time.max(floors.0), minimum_pulse.max(floors.1));
+        // Both sides for the minimum pulse and no longer: a leg that is late once would stay late.
+        let no_slack = inputs.period == 2 * (state.dead_time + state.minimum_pulse);
         let settled = (state.dead_time, state.minimum_pulse, state.period) == (dead_time, minimum_pulse, inputs.period);
 
         let was_running = state.running;
         let may_run = inputs.enable && !state.trip.tripped();
         let goes_on = was_running && may_run;
-        let starts = !was_running && may_run && valley && settled && state.stable && !state.astray;
+        let starts = !was_running && may_run && valley && settled && state.stable && !state.astray && !no_slack;
 
         // The gates, for the present position.
         let want = match (goes_on, state.pattern, state.command.level) {
@@ -262,7 +267,7 @@ impl State {
         }
         state.saturated |= updates && goes_on && state.command.saturated();
         state.refused |= was_running && !settled;
-        state.below_floor |= inputs.enable && low;
+        state.below_floor |= inputs.enable && (low || (settled && no_slack));
         state.unaligned |= was_running && out_of_step;
 
         if updates {
@@ -284,9 +289,11 @@ impl State {
             state.command.clock(inputs, &around);
             state.position = if valley { 0 } else { state.position.wrapping_add(1) };
         }
-        // While off, it waits there for the next one.
-        state.astray = out_of_step || (state.astray && !(waits && inputs.sync));
+        // While off, it waits there for the next one; with another period it is in phase by chance only.
+        let other_period = !was_running && valley && state.period != inputs.period && state.timed;
+        state.astray = out_of_step || other_period || (state.astray && !(waits && inputs.sync));
         state.synced = inputs.sync;
+        state.timed |= inputs.sync;
 
         state.trip.clock(inputs, was_running, valley);
         state.running = goes_on || starts;

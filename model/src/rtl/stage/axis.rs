@@ -251,7 +251,7 @@ pub(super) fn join(axis: &StageAxis, tick_clocks: u32) -> Result<Joined, Composi
         Block::SlidingMode,
         Block::PulseCounter,
         Block::DriveCommand,
-        Block::Pwm(axis.pwm),
+        Block::Pwm(axis.pwm.on_time_base()),
         Block::Axis,
     ];
     if let Some(trace) = axis.bring_up {

@@ -50,7 +50,11 @@ pub fn pwm(config: &PwmConfig, mode: Mode, period_clocks: u32) -> Description {
                     1,
                     "a period, dead time or minimum pulse differed from that in use while running",
                 ),
-                Field::flag("below_floor", 2, "a dead time or minimum pulse was below its floor"),
+                Field::flag(
+                    "below_floor",
+                    2,
+                    "a dead time or minimum pulse was below its floor, or the period is exactly twice their sum",
+                ),
                 Field::flag("unaligned", 3, "`sync` came at another phase while running"),
                 super::partial_write(4),
                 Field::flag("guard_refused", 5, "a write was ignored").set_by(Source::GuardRefused),
