@@ -140,7 +140,7 @@ pub(crate) fn components(
             vec![Component::shaper(crate::machine::component_shaper(axis, &shaper.config)).map_err(refused)?];
         if let Some(encoder) = &axis.encoder {
             let divider = divider(machine, path)?;
-            of_axis.push(Component::pulse_counter(divider, encoder.filter_clocks).map_err(refused)?);
+            of_axis.push(Component::pulse_counter(divider, encoder.filter_clocks, encoder.invert).map_err(refused)?);
         }
         if let Some(pwm) = &axis.pwm {
             let config =

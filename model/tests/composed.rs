@@ -52,7 +52,7 @@ fn wholes() -> Vec<(String, Hints, Composed, Plain)> {
     let counter = DividerConfig::new(300).unwrap();
     let components = [
         Component::shaper(shaper_config()).unwrap(),
-        Component::pulse_counter(counter, 3).unwrap(),
+        Component::pulse_counter(counter, 3, false).unwrap(),
         Component::sliding_mode(&settings(), Law::Pid, false).unwrap(),
         Component::pwm(pwm, Mode::HalfBridge, 100).unwrap(),
     ];
@@ -175,7 +175,7 @@ fn unit_a_part_that_says_something_wrong_is_found() {
 #[test]
 fn unit_a_wait_is_one_call() {
     // Nothing on the bus, and no pin moves: from tick to tick.
-    let counter = Component::pulse_counter(DividerConfig::new(5000).unwrap(), 3).unwrap();
+    let counter = Component::pulse_counter(DividerConfig::new(5000).unwrap(), 3, false).unwrap();
     let mut fast = counter.model(1);
     let (inputs, outputs) = inputs_of(&fast, &[]);
     let mut shown = vec![0; outputs];

@@ -140,11 +140,13 @@ fn unit_a_loop_that_holds_the_load_has_no_lag_of_modes() {
     scaled.scale = Some(Scale {
         counts_per_unit: 1e6,
         usage: ScaleUse::Monitor,
+        invert: false,
     });
     assert!(mode_lag_s(&scaled) > 0.0);
     scaled.scale = Some(Scale {
         counts_per_unit: 1e6,
         usage: ScaleUse::Position,
+        invert: false,
     });
     assert_eq!(mode_lag_s(&scaled), 0.0);
 }

@@ -57,7 +57,7 @@ fn composed((composition, blocks): (Composition, Vec<Box<dyn Moore>>)) -> Compos
 
 fn bank() -> RegisterBank {
     let divider = DividerConfig::new(300).unwrap();
-    RegisterBank::new(&RegisterMap::new(maps::pulse_counter(&divider, 3)).unwrap())
+    RegisterBank::new(&RegisterMap::new(maps::pulse_counter(&divider, 3, false)).unwrap())
 }
 
 fn staged_bank() -> RegisterBank {

@@ -36,7 +36,7 @@ fn components() -> Result<Vec<Component>, Box<dyn Error>> {
     let shaper = ShaperConfig::new(32, TapTable::new(16, vec![half(0), half(40)])?)?.for_motion(motion)?;
     Ok(vec![
         Component::shaper(shaper)?,
-        Component::pulse_counter(DividerConfig::new(5000)?, 8)?,
+        Component::pulse_counter(DividerConfig::new(5000)?, 8, false)?,
         Component::pwm(PwmConfig::new(ActiveLow::default(), 25, 50)?, Mode::HalfBridge, 2500)?,
         Component::sliding_mode(&Settings::default(), Law::SlidingMode, false)?,
         stage()?,

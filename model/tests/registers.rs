@@ -132,7 +132,7 @@ fn unit_extreme_numbers_in_a_description_are_refused() {
 #[test]
 fn unit_maps_of_the_components_hold_together() {
     let divider = DividerConfig::new(131_071).unwrap();
-    assert!(RegisterMap::new(maps::pulse_counter(&divider, 63)).is_ok());
+    assert!(RegisterMap::new(maps::pulse_counter(&divider, 63, false)).is_ok());
     assert!(RegisterMap::new(maps::sliding_mode(2, true)).is_ok());
 }
 

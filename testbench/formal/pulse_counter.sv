@@ -12,6 +12,7 @@
 //   *_held               flags stay until clear_flags
 //   illegal_saturates    the count of illegal transitions never wraps
 //   index_latches        the index latches the count after a step of the same clock
+//   seen_once            index_seen is high for the clock after it, and for no other
 //   origin_stays         only preset, or an index that presets, moves the origin, in the clock after it
 //
 // Not proven here: synchroniser and filter (their delay is in the lock step), and the velocity.
@@ -48,7 +49,6 @@ module pulse_counter_properties (
     // A clock earlier still.
     reg               last_preset = 1'b0;
     reg               past_illegal = 1'b0;
-    reg               past_seen = 1'b0;
     reg               past_disagreement = 1'b0;
     reg               past_up = 1'b0;
     reg [2:0]         past_mode = 3'd0;
@@ -70,7 +70,6 @@ module pulse_counter_properties (
         past_index <= index & index_presets & !rst;
         last_preset <= past_preset | past_index;
         past_illegal <= illegal;
-        past_seen <= index_seen;
         past_disagreement <= disagreement;
         past_mode <= mode;
         past_illegal_count <= illegal_count;
@@ -104,10 +103,10 @@ module pulse_counter_properties (
         step_counts: assert (!(live & past_mode == 3'd0 & moved_a != moved_b) | (past_up ? rises : falls));
         rest_stays: assert (!(live & past_mode == 3'd0 & !moved_a & !moved_b) | rests);
         illegal_held: assert (!(past_illegal & !past_clear & !past_reset) | illegal);
-        seen_held: assert (!(past_seen & !past_clear & !past_reset) | index_seen);
+        seen_once: assert (index_seen == (past_index_alone & !past_reset));
         disagreement_held: assert (!(past_disagreement & !past_clear & !past_reset) | disagreement);
         illegal_saturates: assert (past_clear | past_reset | illegal_count >= past_illegal_count);
-        index_latches: assert (!(past_index_alone & !past_reset) | (index_count == count & index_seen));
+        index_latches: assert (!(past_index_alone & !past_reset) | index_count == count);
         origin_stays: assert (past_reset | last_preset | origin == past_origin);
     end
 

@@ -98,6 +98,7 @@ struct Places {
 #[derive(Debug, Clone, Copy, Default)]
 struct Fault {
     encoder: Option<EncoderPins>,
+    reversed: bool,
     scale: Option<EncoderPins>,
     jammed: bool,
 }
@@ -260,7 +261,13 @@ impl StageBench {
         self.faults[axis].encoder = pins;
     }
 
-    /// The same for A and B of its scale.
+    /// Reverses the direction in which the lines of an axis's encoder count: A is inverted, so that at this moment they make one
+    /// step and no illegal one.
+    pub fn reverse_encoder(&mut self, axis: usize, reversed: bool) {
+        self.faults[axis].reversed = reversed;
+    }
+
+    /// The lines A and B of an axis's scale are these; `None`: the plant's.
     pub fn force_scale(&mut self, axis: usize, pins: Option<EncoderPins>) {
         self.faults[axis].scale = pins;
     }
@@ -354,7 +361,8 @@ impl StageBench {
             let axes = self.plants.iter().zip(&self.places).zip(&self.faults);
             for (((plant, places), fault), watched) in axes.zip(&mut self.watched) {
                 watched.look(self.model.value(places.recorded[2]), plant);
-                let pins = fault.encoder.unwrap_or_else(|| plant.encoder());
+                let mut pins = fault.encoder.unwrap_or_else(|| plant.encoder());
+                pins.a ^= fault.reversed;
                 for (place, level) in places.encoder.into_iter().zip([pins.a, pins.b, pins.z]) {
                     self.inputs[place] = level.into();
                 }

@@ -129,6 +129,7 @@ fn quick(axes: usize) -> StageConfig {
         axis.scale = matches!(name, "z" | "phi").then(|| StageScale {
             ratio: ScaleRatio::new(1e6, 2.5e6).unwrap(),
             closes_loop: name == "phi",
+            invert: false,
         });
         axis.encoder_filter_clocks = 2;
         axis.settings

@@ -154,7 +154,7 @@ pub(crate) fn rows() -> Result<Vec<Row>, Box<dyn Error>> {
         )?,
         bank(
             "of pulse_counter",
-            &Component::pulse_counter(DividerConfig::new(5000)?, 8)?,
+            &Component::pulse_counter(DividerConfig::new(5000)?, 8, false)?,
         )?,
         bank(
             "of pwm",

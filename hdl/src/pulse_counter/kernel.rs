@@ -268,7 +268,6 @@ impl Logic for PulseCounter {
 
         comment!("Flags, set over clear");
         if self.clear_flags.val() {
-            self.index_seen_q.d.next = false;
             self.disagreement_q.d.next = false;
         }
         if self.disagreement_filter.level.val() {
@@ -306,9 +305,9 @@ impl Logic for PulseCounter {
         self.index_before.d.next = self.gated.val();
         self.index.next =
             self.gated.val() & !self.index_before.q.val() & (self.index_armed_q.q.val() | self.index_always.val());
+        self.index_seen_q.d.next = self.index.val();
         if self.index.val() {
             self.index_count_q.d.next = self.counted.val();
-            self.index_seen_q.d.next = true;
             self.index_armed_q.d.next = false;
         }
         if self.index_arm.val() {

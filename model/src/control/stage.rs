@@ -8,7 +8,7 @@ use crate::rtl::pwm::{ActiveLow, Mode, PwmConfig, PwmConfigError};
 use crate::rtl::shaper::{Motion, ShaperConfig, ShaperConfigError};
 use crate::rtl::stage::{Schedule, StageAxis, StageConfig, StageScale};
 use crate::rtl::trace::{TraceConfig, TraceConfigError};
-use crate::spec::{Axis, Clock, Machine, Pwm, PwmMode, ScaleUse};
+use crate::spec::{Axis, Clock, Encoder, Machine, Pwm, PwmMode, ScaleUse};
 
 /// A stage, and what was derived for its axes.
 #[derive(Debug, Clone, PartialEq)]
@@ -113,7 +113,7 @@ pub fn stage(machine: &Machine, design: &MachineDesign) -> Result<Option<Machine
         axes.push(Parts {
             axis,
             pwm,
-            filter_clocks: encoder.filter_clocks,
+            encoder: *encoder,
             shaper: shaper.map_err(|error| MachineStageError::Shaper { axis: index, error })?,
             scale: scale(axis).map_err(|error| MachineStageError::Scale { axis: index, error })?,
             bring_up: trace(axis).map_err(|error| MachineStageError::Trace { axis: index, error })?,
@@ -151,7 +151,7 @@ pub fn stage(machine: &Machine, design: &MachineDesign) -> Result<Option<Machine
 struct Parts<'a> {
     axis: &'a Axis,
     pwm: &'a Pwm,
-    filter_clocks: u32,
+    encoder: Encoder,
     shaper: ShaperConfig,
     supervision: Supervision,
     scale: Option<StageScale>,
@@ -169,7 +169,11 @@ fn scale(axis: &Axis) -> Result<Option<StageScale>, ScaleRatioError> {
         false => ScaleRatio::for_monitor,
     };
     let ratio = ratio(axis.counts_per_unit, scale.counts_per_unit)?;
-    Ok(Some(StageScale { ratio, closes_loop }))
+    Ok(Some(StageScale {
+        ratio,
+        closes_loop,
+        invert: scale.invert,
+    }))
 }
 
 fn trace(axis: &Axis) -> Result<Option<TraceConfig>, TraceConfigError> {
@@ -188,7 +192,8 @@ impl Parts<'_> {
             pwm: self.config,
             pwm_mode: pwm_mode(self.pwm.mode),
             pwm_period_clocks: self.pwm.period_clocks(clock),
-            encoder_filter_clocks: self.filter_clocks,
+            encoder_filter_clocks: self.encoder.filter_clocks,
+            encoder_invert: self.encoder.invert,
             supervision: self.supervision,
             scale: self.scale,
             bring_up: self.bring_up,

@@ -11,11 +11,13 @@ pub struct Encoder {
     pub filter_clocks: u32,
     /// Whether the encoder has an index line. Default: it has none.
     pub index: bool,
+    /// Whether its lines count down where the drive's positive command moves up. Default: they count up.
+    pub invert: bool,
 }
 
 /// Reads the table; `None` where a value is refused.
 pub(super) fn read(table: &Table<'_, '_>) -> Option<Encoder> {
-    table.allow(&["filter_clocks", "index"]);
+    table.allow(&["filter_clocks", "index", "invert"]);
     let filter_clocks = match table.has("filter_clocks") {
         true => table.integer("filter_clocks", 0, FILTER_CLOCKS_MAX)?,
         false => 0,
@@ -23,5 +25,6 @@ pub(super) fn read(table: &Table<'_, '_>) -> Option<Encoder> {
     Some(Encoder {
         filter_clocks,
         index: table.boolean("index").unwrap_or(false),
+        invert: table.boolean("invert").unwrap_or(false),
     })
 }

@@ -25,11 +25,13 @@ pub struct Scale {
     pub counts_per_unit: f64,
     /// What it is for. Default: to be compared.
     pub usage: ScaleUse,
+    /// Whether its lines count down where the motor's encoder counts up. Default: they count up.
+    pub invert: bool,
 }
 
 /// Reads the table of an axis; `None` where a value is refused.
 pub(super) fn read(axis: &Table<'_, '_>, table: &Table<'_, '_>) -> Option<Scale> {
-    table.allow(&["counts_per_unit", "use"]);
+    table.allow(&["counts_per_unit", "use", "invert"]);
     let counts_per_unit = table.required_number("counts_per_unit", COUNTS_PER_UNIT);
     let word = table.choice("use", &ScaleUse::ALL.map(|(_, name)| name));
     let usage = ScaleUse::ALL.into_iter().find(|(_, name)| Some(*name) == word);
@@ -42,5 +44,6 @@ pub(super) fn read(axis: &Table<'_, '_>, table: &Table<'_, '_>) -> Option<Scale>
     Some(Scale {
         counts_per_unit: counts_per_unit?,
         usage,
+        invert: table.boolean("invert").unwrap_or(false),
     })
 }

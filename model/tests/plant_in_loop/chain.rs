@@ -58,6 +58,8 @@ pub(crate) struct Chain {
     pwm: Pwm,
     pub(crate) pwm_inputs: pwm::Inputs,
     pub(crate) counter: PulseCounter,
+    /// Indices that were latched.
+    pub(crate) indices: u32,
     counter_inputs: pulse_counter::Inputs,
     pub(crate) plant: AxisPlant,
     /// Drive enabled, brake open.
@@ -109,6 +111,7 @@ impl Chain {
                 ..pwm::Inputs::default()
             },
             counter: PulseCounter::new(),
+            indices: 0,
             counter_inputs: pulse_counter::Inputs {
                 filter_clocks: axis.encoder.unwrap().filter_clocks as u8,
                 timeout: 4,
@@ -155,7 +158,7 @@ impl Chain {
         let lines = self.plant.encoder();
         (self.counter_inputs.a, self.counter_inputs.b, self.counter_inputs.z) = (lines.a, lines.b, lines.z);
         let gates = self.pwm.step(&self.pwm_inputs);
-        self.counter.step(&self.counter_inputs);
+        self.indices += u32::from(self.counter.step(&self.counter_inputs).index_seen);
         self.counter_inputs.time_stamp = (self.counter_inputs.time_stamp + 1) & 0xff_ffff;
         let pins = DrivePins {
             a_high: gates.a_high,

@@ -49,7 +49,8 @@ fn unit_every_block_yields_its_values() {
         axis.encoder,
         Some(Encoder {
             filter_clocks: 8,
-            index: true
+            index: true,
+            invert: false
         })
     );
     let pwm = axis.pwm.unwrap();
@@ -91,7 +92,8 @@ fn unit_what_is_left_out_has_its_default() {
         axis.encoder,
         Some(Encoder {
             filter_clocks: 0,
-            index: false
+            index: false,
+            invert: false
         })
     );
     let pwm = axis.pwm.unwrap();

@@ -38,6 +38,7 @@ fn unit_every_key_yields_its_value() {
     let scale = Scale {
         counts_per_unit: 10e6,
         usage: ScaleUse::Monitor,
+        invert: false,
     };
     assert_eq!(axis.scale, Some(scale));
     assert_eq!(axis.trace, Some(Trace { samples: 1024 }));

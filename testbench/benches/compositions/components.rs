@@ -15,7 +15,7 @@ pub(crate) fn all() -> [Whole; 4] {
     [
         whole(
             "pulse_counter",
-            Component::pulse_counter(divider, 5).unwrap(),
+            Component::pulse_counter(divider, 5, false).unwrap(),
             &[],
             |name, clock| {
                 let [a, b] = encoder(clock);

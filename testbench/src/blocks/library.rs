@@ -89,7 +89,7 @@ pub fn library() -> Result<Vec<Box<dyn Block>>, Error> {
     blocks.extend(parts.map(|part| Box::new(PartBlock::new(part, "")) as Box<dyn Block>));
     let components = [
         Component::shaper(motion.clone()),
-        Component::pulse_counter(tick, 8),
+        Component::pulse_counter(tick, 8, false),
         Component::pwm(pwm, Mode::HalfBridge, PERIOD_CLOCKS),
         Component::sliding_mode(&Settings::default(), Law::SlidingMode, false),
     ];
@@ -132,6 +132,7 @@ pub(crate) fn stage() -> Result<StageConfig, Error> {
             pwm_mode: Mode::Unipolar,
             pwm_period_clocks: STAGE_PERIOD_CLOCKS,
             encoder_filter_clocks: 2,
+            encoder_invert: false,
             supervision: SUPERVISION,
             scale: None,
             bring_up: None,
@@ -145,6 +146,7 @@ pub(crate) fn stage() -> Result<StageConfig, Error> {
         scale: Some(StageScale {
             ratio: ScaleRatio::new(1000.0, 2000.0).map_err(refused)?,
             closes_loop: true,
+            invert: false,
         }),
         ..axis("y")?
     };

@@ -87,7 +87,7 @@ fn begin_at(bench: &mut StageBench, case: &Case, axis: usize, name: &str) -> Res
         }
         Kind::EncoderStuck => bench.force_encoder(axis, Some(lines)),
         Kind::EncoderDisconnected => bench.force_encoder(axis, Some(EncoderPins::default())),
-        Kind::EncoderReversed => bench.write(&register("control"), 0b101)?,
+        Kind::EncoderReversed => bench.reverse_encoder(axis, true),
         Kind::ScaleStuck => bench.force_scale(axis, Some(bench.plant(axis).scale())),
         Kind::ScaleIllegal => bench.force_scale(axis, Some(inverted(bench.plant(axis).scale()))),
         Kind::Jam => bench.jam(axis, true),
@@ -188,7 +188,8 @@ pub(super) fn end(bench: &mut StageBench, case: &Case, way_back: bool) -> Result
         bench.force_scale(axis, None);
         bench.jam(axis, false);
         match kind {
-            Kind::EncoderReversed | Kind::DirectMode => bench.write(&register("control"), 1)?,
+            Kind::EncoderReversed => bench.reverse_encoder(axis, false),
+            Kind::DirectMode => bench.write(&register("control"), 1)?,
             Kind::HostSilent => bench.write(&register("watchdog"), u32::from(case.off_causes) << 16)?,
             Kind::NoGains => bench.write(&register("law"), 1)?,
             _ => {}

@@ -286,7 +286,7 @@ pub const TABLE: [Row; 38] = [
     row(
         Kind::EncoderReversed,
         "encoder reversed",
-        "`encoder_invert` in the move: the loop runs away",
+        "A inverted in the move: the lines count backwards, the loop runs away",
         Expectation {
             also: LOST | bits(&[Cause::EncoderError]),
             position_known: false,

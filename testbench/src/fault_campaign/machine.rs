@@ -68,6 +68,7 @@ impl Bed {
             axis.scale = Some(Scale {
                 counts_per_unit: axis.counts_per_unit,
                 usage: ScaleUse::Monitor,
+                invert: false,
             });
             axis.limits = Some(limits(axis.limits.unwrap_or_default()));
         }

@@ -12,7 +12,7 @@ use posicast_testbench::lockstep::report::Verdict;
 use posicast_testbench::stimuli::ComponentRandom;
 
 pub(crate) fn pulse_counter() -> Component {
-    Component::pulse_counter(DividerConfig::new(127).unwrap(), 3).unwrap()
+    Component::pulse_counter(DividerConfig::new(127).unwrap(), 3, false).unwrap()
 }
 
 pub(crate) fn pwm() -> Component {

@@ -26,6 +26,8 @@ pub(super) struct Encoder {
     counts_per_unit: f64,
     cell_clocks: u32,
     index_at: Option<i64>,
+    /// A and B are exchanged: the lines count down where the count goes up.
+    reversed: bool,
     /// The count on the lines.
     shown: i64,
     /// Ends of the cell's line, counts.
@@ -42,6 +44,7 @@ impl Encoder {
             counts_per_unit,
             cell_clocks,
             index_at,
+            reversed: false,
             shown: nearest(at),
             from: at,
             to: at,
@@ -49,14 +52,21 @@ impl Encoder {
         }
     }
 
+    /// With A and B exchanged, as by its wiring.
+    pub(super) fn reversed(self, reversed: bool) -> Self {
+        Self { reversed, ..self }
+    }
+
     pub(super) fn count(&self) -> i64 {
         self.shown
     }
 
     pub(super) fn pins(&self) -> EncoderPins {
+        let lines = ((self.shown + 1) & 2 != 0, self.shown & 2 != 0);
+        let (a, b) = if self.reversed { (lines.1, lines.0) } else { lines };
         EncoderPins {
-            a: (self.shown + 1) & 2 != 0,
-            b: self.shown & 2 != 0,
+            a,
+            b,
             z: self.index_at == Some(self.shown),
         }
     }

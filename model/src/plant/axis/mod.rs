@@ -194,7 +194,7 @@ pub struct AxisPlant {
 }
 
 impl AxisPlant {
-    /// The axis of the machine file at rest. `[axis.encoder]` says whether there is an index.
+    /// The axis of the machine file at rest. `[axis.encoder]` says whether there is an index, and which way the lines count.
     ///
     /// # Errors
     /// [`AxisPlantError`] for an axis without PWM or drive, for options that are none, and for speeds beyond a count per clock.
@@ -220,6 +220,9 @@ impl AxisPlant {
         let stiff = matches!(drive.mode, DriveMode::Velocity { .. });
         let encoder =
             |counts_per_unit, index_at| Encoder::new(counts_per_unit, cell_clocks, index_at, options.position);
+        // The machine file says how the machine is wired: what the hardware inverts.
+        let is_reversed = axis.encoder.as_ref().is_some_and(|encoder| encoder.invert);
+        let is_scale_reversed = axis.scale.is_some_and(|scale| scale.invert);
         let has_index = axis.encoder.as_ref().is_some_and(|encoder| encoder.index);
         Ok(Self {
             cell_clocks,
@@ -232,8 +235,8 @@ impl AxisPlant {
             encoder_at: options
                 .encoder_at
                 .unwrap_or(if stiff { Coordinate::Driven } else { Coordinate::Load }),
-            encoder: encoder(axis.counts_per_unit, has_index.then_some(options.index_at)),
-            scale: scale.map(|counts_per_unit| encoder(counts_per_unit, None)),
+            encoder: encoder(axis.counts_per_unit, has_index.then_some(options.index_at)).reversed(is_reversed),
+            scale: scale.map(|counts_per_unit| encoder(counts_per_unit, None).reversed(is_scale_reversed)),
         })
     }
 

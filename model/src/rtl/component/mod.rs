@@ -20,7 +20,7 @@
 //! use posicast_model::rtl::component::Component;
 //! use posicast_model::rtl::divider::DividerConfig;
 //!
-//! let counter = Component::pulse_counter(DividerConfig::new(5000)?, 8)?;
+//! let counter = Component::pulse_counter(DividerConfig::new(5000)?, 8, false)?;
 //! let model = counter.model(1);
 //! assert_eq!(model.ports()[1].name, "avs_address");
 //! # Ok::<(), Box<dyn std::error::Error>>(())
@@ -102,11 +102,12 @@ impl Component {
         Self::new(super::registers::maps::shaper(&config), blocks, wiring)
     }
 
-    /// The pulse counter with a divider and a time base of its own. Its filter is `filter_clocks` long after reset.
+    /// The pulse counter with a divider and a time base of its own. Its filter is `filter_clocks` long after reset,
+    /// its direction reversed with `invert`.
     ///
     /// # Errors
     /// [`ComponentError`] for ticks no longer than a division, or a filter above 63.
-    pub fn pulse_counter(divider: DividerConfig, filter_clocks: u32) -> Result<Self, ComponentError> {
+    pub fn pulse_counter(divider: DividerConfig, filter_clocks: u32, invert: bool) -> Result<Self, ComponentError> {
         if divider.tick_clocks() <= DIVISION_CLOCKS {
             return Err(ComponentError::Tick(divider.tick_clocks()));
         }
@@ -114,7 +115,7 @@ impl Component {
             return Err(ComponentError::Filter(filter_clocks));
         }
         let blocks = vec![Block::TimeBase(divider), Block::PulseCounter, Block::Divider(divider)];
-        let map = super::registers::maps::pulse_counter(&divider, filter_clocks);
+        let map = super::registers::maps::pulse_counter(&divider, filter_clocks, invert);
         Self::new(map, blocks, pulse_counter::wiring())
     }
 

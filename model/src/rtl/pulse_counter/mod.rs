@@ -85,12 +85,12 @@ impl State {
         let levels = [level_a, level_b];
         let arms = inputs.index_arm && !self.index_armed;
         let acts = inputs.rst || inputs.tick || inputs.preset || self.presets || inputs.quotient_valid || arms;
-        let flags = self.index_seen || self.illegal || self.disagreement || self.velocity.missed();
+        let flags = self.illegal || self.disagreement || self.velocity.missed();
         let clears = inputs.clear_flags && (flags || self.illegal_count > 0);
         let steps = self.before != levels || self.index_before != (index_level && inputs.index_gate_open(levels));
         let disagrees = self.disagreement_filter.level() && !self.disagreement;
         let starts = self.primed != PRIMING_CLOCKS;
-        if acts || clears || steps || disagrees || starts || self.velocity.valid() {
+        if acts || clears || steps || self.index_seen || disagrees || starts || self.velocity.valid() {
             return 0;
         }
         let filter = &self.disagreement_filter;
@@ -208,7 +208,6 @@ impl PulseCounter {
         }
 
         if inputs.clear_flags {
-            state.index_seen = false;
             state.illegal = false;
             state.illegal_count = 0;
             state.disagreement = false;
@@ -221,9 +220,9 @@ impl PulseCounter {
 
         let gated = ready && index_level && inputs.index_gate_open(levels);
         let index = gated && !state.index_before && (state.index_armed || inputs.index_always);
+        state.index_seen = index;
         if index {
             state.index_count = state.count;
-            state.index_seen = true;
             state.index_armed = false;
         }
         state.index_armed |= inputs.index_arm;

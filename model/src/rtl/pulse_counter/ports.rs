@@ -44,7 +44,7 @@ pub struct Inputs {
     pub preset: bool,
     /// What a preset makes of the position.
     pub preset_value: i32,
-    /// Clears `index_seen`, `illegal`, `illegal_count`, `disagreement`, `velocity_missed`.
+    /// Clears `illegal`, `illegal_count`, `disagreement`, `velocity_missed`.
     pub clear_flags: bool,
     /// One clock: the sample tick.
     pub tick: bool,
@@ -73,7 +73,7 @@ pub struct Outputs {
     pub position: i32,
     /// The count at the index.
     pub index_count: i32,
-    /// Sticky: an index was latched.
+    /// One clock: an index was latched; `index_count` is new.
     pub index_seen: bool,
     /// The next index will be latched.
     pub index_armed: bool,

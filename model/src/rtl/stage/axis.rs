@@ -22,7 +22,15 @@ const INPUT_PINS: [&str; 9] = [
 /// Those of a linear scale.
 const SCALE_PINS: [&str; 2] = ["scale_a", "scale_b"];
 /// Pins of an axis that are outputs.
-pub(super) const OUTPUT_PINS: &[&str] = &["a_high", "a_low", "b_high", "b_low", "drive_enable", "brake_release"];
+pub(super) const OUTPUT_PINS: &[&str] = &[
+    "a_high",
+    "a_low",
+    "b_high",
+    "b_low",
+    "pwm_trigger",
+    "drive_enable",
+    "brake_release",
+];
 /// What all axes of a stage read.
 pub(super) const SHARED: [&str; 8] = [
     "rst",
@@ -130,6 +138,7 @@ const PWM: Nets = &[
     ("refused", "pwm_refused"),
     ("below_floor", "pwm_below_floor"),
     ("unaligned", "pwm_unaligned"),
+    ("trigger", "pwm_trigger"),
 ];
 
 /// Part name of the scale's pulse counter.
@@ -324,7 +333,6 @@ fn wire(axis: &StageAxis, tick_clocks: u32, block: &Block, part: Part) -> Part {
                 .tied("dead_time", config.dead_time_floor_clocks().into())
                 .tied("minimum_pulse", config.minimum_pulse_floor_clocks().into())
                 .tied("phase", 0)
-                .tied("trigger_phase", 0)
                 .tied("watchdog_periods", watchdog.into())
                 .tied("filter_clocks", watched.filter_clocks.into())
         }

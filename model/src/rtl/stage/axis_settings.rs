@@ -1,12 +1,19 @@
 //! What a host writes of an axis: what is wanted of it, tables and settings, limits, and how its encoder is read.
 
 use super::config::StageAxis;
-use super::registers::{command, register};
+use super::registers::{command, register, with_the_drive_off};
 use crate::rtl::registers::{Access, Field, Register, maps};
 
 /// The registers, in words of the axis's window, and before them what its hardware was built with.
 pub(super) fn registers(axis: &StageAxis) -> Vec<Register> {
-    [parameters(axis), commands(), tables(axis), supervision(axis), encoder()].concat()
+    [
+        parameters(axis),
+        commands(),
+        tables(axis),
+        supervision(axis),
+        encoder(axis),
+    ]
+    .concat()
 }
 
 fn parameters(axis: &StageAxis) -> Vec<Register> {
@@ -48,7 +55,6 @@ fn commands() -> Vec<Register> {
             vec![
                 Field::flag("enable", 0, "outputs on; low: off, through a quick stop and the brake"),
                 Field::flag("direct_enable", 1, "direct mode, in READY"),
-                Field::flag("encoder_invert", 2, "reverses the encoder's direction"),
                 Field::flag(
                     "self_test",
                     3,
@@ -239,8 +245,25 @@ fn supervision(axis: &StageAxis) -> Vec<Register> {
     ]
 }
 
-fn encoder() -> Vec<Register> {
+fn encoder(axis: &StageAxis) -> Vec<Register> {
     vec![
+        register(
+            "encoder",
+            0x24,
+            with_the_drive_off(),
+            "the sign of the loop's feedback",
+            vec![
+                Field::flag("encoder_invert", 0, "reverses the encoder's direction")
+                    .with_reset(axis.encoder_invert.into()),
+            ],
+        ),
+        register(
+            "pwm_trigger",
+            0x25,
+            Access::Configuration,
+            "when the pin `pwm_trigger` is high for a clock, as for an ADC",
+            vec![Field::new("trigger_phase", 0, 16, "after the valley").with_unit("clocks")],
+        ),
         register(
             "index",
             0x20,

@@ -1,6 +1,7 @@
 //! What a host reads of an axis: its state, what went wrong, and what moves.
 
-use super::registers::register;
+use super::config::StageScale;
+use super::registers::{register, with_the_drive_off};
 use crate::rtl::registers::{Access, Field, Register};
 
 /// The registers, in words of the axis's window.
@@ -9,7 +10,7 @@ pub(super) fn registers() -> Vec<Register> {
 }
 
 /// Of the linear scale, where there is one: how it is read, its count, and how far the motor is from it.
-pub(super) fn of_scale() -> Vec<Register> {
+pub(super) fn of_scale(scale: &StageScale) -> Vec<Register> {
     let live = |name: &str, offset, meaning: &str| {
         let field = Field::new(name, 0, 32, meaning).signed().with_unit("counts");
         register(name, offset, Access::Live, meaning, vec![field])
@@ -18,9 +19,9 @@ pub(super) fn of_scale() -> Vec<Register> {
         register(
             "scale_control",
             0x23,
-            Access::Configuration,
+            with_the_drive_off(),
             "how the scale is read",
-            vec![Field::flag("scale_invert", 0, "reverses the scale's direction")],
+            vec![Field::flag("scale_invert", 0, "reverses the scale's direction").with_reset(scale.invert.into())],
         ),
         live("scale_count", 0x3b, "steps of the scale since reset"),
         live(

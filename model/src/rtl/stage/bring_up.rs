@@ -1,7 +1,7 @@
 //! Registers for bringing an axis up: trace memory, test signals, and encoder edges without a machine.
 
 use super::axis::TRACED;
-use super::registers::{command, register};
+use super::registers::{command, register, with_the_drive_off};
 use crate::rtl::registers::{Access, Field, Register};
 
 /// Signal of the trace: what there is to choose from.
@@ -160,8 +160,8 @@ fn generator() -> Vec<Register> {
         register(
             "generator",
             0x58,
-            Access::Configuration,
-            "encoder edges without a machine; to be switched in OFF",
+            with_the_drive_off(),
+            "encoder edges without a machine",
             vec![
                 Field::flag("loop_back", 0, "the counter sees the generator, not the pins"),
                 Field::new("index_every", 16, 16, "an index every so many counts; 0: none").with_unit("counts"),

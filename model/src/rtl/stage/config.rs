@@ -45,6 +45,8 @@ pub struct StageAxis {
     pub pwm_period_clocks: u32,
     /// Pulses of up to so many clocks on an encoder's line are ignored, 0 to 63.
     pub encoder_filter_clocks: u32,
+    /// The encoder's direction is reversed, after reset.
+    pub encoder_invert: bool,
     /// What its supervisor watches.
     pub supervision: Supervision,
     /// Its linear scale.
@@ -60,6 +62,8 @@ pub struct StageScale {
     pub ratio: ScaleRatio,
     /// The loop runs on the scale; else it is watched.
     pub closes_loop: bool,
+    /// Its direction is reversed, after reset.
+    pub invert: bool,
 }
 
 /// Why there is no such stage.

@@ -39,7 +39,7 @@ pub(super) fn stage(config: &StageConfig) -> Description {
         )
         .with_unit("clocks"),
     ];
-    let mut description = Description::new("stage", about, *b"STGE", (1, 0), parameters)
+    let mut description = Description::new("stage", about, *b"STGE", (2, 0), parameters)
         .with_windows(config.axes.len() as u32 + 1)
         .with(
             "snapshot",
@@ -73,6 +73,8 @@ pub(super) fn stage(config: &StageConfig) -> Description {
                 maps::partial_write(0),
                 Field::flag("commit_rejected", 1, "a write was ignored").set_by(Source::CommitRejected),
                 Field::flag("start_refused", 2, "an axis could not start, so none did"),
+                Field::flag("guard_refused", 3, "a write was ignored: the drive of its axis was on")
+                    .set_by(Source::GuardRefused),
             ],
         )
         .with_interrupts(0x0c, interrupts(config))
@@ -108,6 +110,7 @@ fn of_axis(mut register: Register, axis: &str, base: u32) -> Register {
     }
     match &mut register.access {
         Access::Shadow { of } => named(of),
+        Access::Guarded { while_low } => named(while_low),
         Access::Command { strobe } => named(strobe),
         Access::Words { strobe, word, .. } => {
             named(strobe);
@@ -152,6 +155,13 @@ pub(super) fn hardware(registers: &[Register]) -> (Vec<String>, Vec<String>) {
     (driven, read)
 }
 
+/// What the loop's feedback is: written only while the axis's drive is off.
+pub(super) fn with_the_drive_off() -> Access {
+    Access::Guarded {
+        while_low: "drive_enable".to_owned(),
+    }
+}
+
 pub(super) fn command(strobe: &str) -> Access {
     Access::Command {
         strobe: strobe.to_owned(),
@@ -173,8 +183,8 @@ pub(super) fn register(name: &str, offset: u32, access: Access, meaning: &str, f
 pub fn axis_window(axis: &StageAxis) -> Vec<Register> {
     let mut registers = axis_settings::registers(axis);
     registers.extend(axis_words::registers());
-    if axis.scale.is_some() {
-        registers.extend(axis_words::of_scale());
+    if let Some(scale) = &axis.scale {
+        registers.extend(axis_words::of_scale(scale));
     }
     if axis.bring_up.is_some() {
         registers.extend(bring_up::registers());

@@ -240,12 +240,21 @@ impl Driver {
         if self.one_in(3) {
             self.settle(axis);
         }
-        let invert = self.below(4) & 4;
-        self.tell(axis, "control", invert);
+        let invert = self.below(4) & 1;
+        self.tell(axis, "control", 0);
+        // Off only; refused while the drive is on.
+        self.tell(axis, "encoder", invert);
+        self.tell(axis, "scale_control", invert);
         self.tell(axis, "clear_faults", 0);
         let while_clearing = self.pick(&[20, 40, self.tick_clocks]);
         self.wait(axis, while_clearing);
-        self.tell(axis, "control", 1 | invert);
+        self.tell(axis, "control", 1);
+        if self.one_in(4) {
+            let ticks = self.below(3);
+            self.ticks(axis, ticks);
+            let refused = self.below(2);
+            self.tell(axis, "encoder", refused);
+        }
         let ticks = self.below(3) + 1;
         self.ticks(axis, ticks);
     }

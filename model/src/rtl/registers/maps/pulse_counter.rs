@@ -6,8 +6,9 @@ use crate::rtl::divider::DividerConfig;
 /// `timeout` after reset: 5 million clocks.
 const TIMEOUT: u32 = 76;
 
-/// The map of a pulse counter with the ticks of `divider`, whose filter is `filter_clocks` (6 bits) long after reset.
-pub fn pulse_counter(divider: &DividerConfig, filter_clocks: u32) -> Description {
+/// The map of a pulse counter with the ticks of `divider`, whose filter is `filter_clocks` (6 bits) long after reset,
+/// and whose direction is reversed with `invert`.
+pub fn pulse_counter(divider: &DividerConfig, filter_clocks: u32, invert: bool) -> Description {
     use Access::{Configuration, Live, Snapshot, Sticky};
     let parameters = vec![
         Field::new("tick_clocks", 0, 17, "from tick to tick")
@@ -18,14 +19,14 @@ pub fn pulse_counter(divider: &DividerConfig, filter_clocks: u32) -> Description
         strobe: strobe.to_owned(),
     };
     let about = "Pulse counter: encoder or scale signals to position, index and velocity.";
-    Description::new("pulse_counter", about, *b"PCNT", (1, 0), parameters)
+    Description::new("pulse_counter", about, *b"PCNT", (2, 0), parameters)
         .with("snapshot", 0x08, Snapshot, "freezes the words `SNAPSHOT_...`", vec![])
         .with(
             "lines",
             0x10,
             Configuration,
             "how A, B and Z are read",
-            lines(filter_clocks),
+            lines(filter_clocks, invert),
         )
         .with("index", 0x11, Configuration, "what an index does", index())
         .with(
@@ -81,6 +82,7 @@ pub fn pulse_counter(divider: &DividerConfig, filter_clocks: u32) -> Description
             vec![
                 super::partial_write(0),
                 Field::flag("saturated", 1, "the velocity was clamped"),
+                Field::flag("index_seen", 2, "an index was latched"),
             ],
         )
         .with("status", 0x1c, Live, "state of the counter", status())
@@ -143,7 +145,7 @@ fn counts(name: &str, meaning: &str) -> Field {
     Field::new(name, 0, 32, meaning).signed().with_unit("counts")
 }
 
-fn lines(filter_clocks: u32) -> Vec<Field> {
+fn lines(filter_clocks: u32, invert: bool) -> Vec<Field> {
     let modes = [
         (0, "quadrature_x4", "every edge of A and B"),
         (1, "quadrature_x2", "edges of A"),
@@ -157,7 +159,7 @@ fn lines(filter_clocks: u32) -> Vec<Field> {
             .with_unit("clocks"),
         Field::choice("mode", 8, 3, "what counts", &modes),
         Field::flag("swap", 16, "exchanges A and B"),
-        Field::flag("invert", 17, "reverses the direction"),
+        Field::flag("invert", 17, "reverses the direction").with_reset(invert.into()),
         Field::flag("differential", 18, "the lines are pairs"),
     ]
 }
@@ -192,7 +194,6 @@ fn velocity_filter() -> Vec<Field> {
 
 fn status() -> Vec<Field> {
     vec![
-        Field::flag("index_seen", 0, "an index was latched"),
         Field::flag("index_armed", 1, "the next index will be latched"),
         Field::flag("illegal", 2, "A and B changed together"),
         Field::flag("disagreement", 3, "the lines of a pair were equal"),

@@ -1,0 +1,184 @@
+//! What a stage refuses, and what it waits for: the sign of its feedback with the drive on, a PWM out of step, an interrupt
+//! that nobody can end.
+#![allow(clippy::unwrap_used)] // helpers of tests, which clippy.toml exempts only inside of #[test]
+
+use posicast_model::control;
+use posicast_model::design::design_machine;
+use posicast_model::motion::{TickLimits, plan_move};
+use posicast_model::plant::axis::{AxisPlant, PlantOptions};
+use posicast_model::rtl::component::Component;
+use posicast_model::spec;
+use posicast_testbench::stage_bench::{StageBench, state};
+
+/// The example's stage with a linear scale and an encoder generator at X, on its simulated machine. `invert`: encoder and scale of
+/// X are wired backwards, and the file says so.
+fn bench(invert: bool) -> StageBench {
+    let text = include_str!("../../examples/xy-stage.toml");
+    let more = format!(
+        "[axis.scale]\ncounts_per_unit = 4_000_000\nuse = \"monitor\"\ninvert = {invert}\n[axis.trace]\nsamples = 256\n[axis.pwm]"
+    );
+    let text = text.replacen("[axis.pwm]", &more, 1);
+    let encoder = format!("[axis.encoder]\ninvert = {invert}");
+    let text = text.replacen("[axis.encoder]", &encoder, 1);
+    let machine = spec::parse("xy-stage.toml", &text).unwrap();
+    let stage = control::stage(&machine, &design_machine(&machine).unwrap());
+    let stage = stage.unwrap().unwrap();
+    let component = Component::stage(&stage.config).unwrap();
+    let plant = |axis| AxisPlant::new(axis, &machine.clock, &PlantOptions::default()).unwrap();
+    let plants = machine.axes.iter().map(plant).collect();
+    StageBench::new(&stage.config, &component, plants, None, 1).unwrap()
+}
+
+/// From reset to HOLD with the words of the published bring-up, and the brake open.
+fn switch_on(bench: &mut StageBench, axis: &str) {
+    bench.clocks(1000).unwrap();
+    bench.write(&format!("{axis}_clear_faults"), 0).unwrap();
+    assert!(bench.wait(axis, state::READY, 100_000).unwrap());
+    bench.write(&format!("{axis}_control"), 1).unwrap();
+    assert!(bench.wait(axis, state::HOLD, 100_000).unwrap());
+    while bench.field(axis, "status", "can_start").unwrap() == 0 {
+        bench.clocks(1000).unwrap();
+    }
+}
+
+/// Registers that choose what the loop takes for its position.
+const FEEDBACK: [&str; 3] = ["x_encoder", "x_scale_control", "x_generator"];
+
+#[test]
+fn unit_the_feedback_is_not_changed_while_the_drive_is_on() {
+    let mut bench = bench(false);
+    switch_on(&mut bench, "x");
+    for register in FEEDBACK {
+        bench.write("flags", 1 << 3).unwrap();
+        bench.write(register, 1).unwrap();
+        bench.clocks(4).unwrap();
+        assert_eq!(bench.read(register).unwrap(), 0, "{register}");
+        assert_eq!(bench.read("flags").unwrap(), 1 << 3, "{register}");
+    }
+    // What was bit 2 of CONTROL is none of its any more.
+    bench.write("x_control", 0b101).unwrap();
+    bench.clocks(50_000).unwrap();
+    assert_eq!(
+        (bench.read("x_control").unwrap(), bench.read("x_causes").unwrap()),
+        (1, 0)
+    );
+    assert_eq!(bench.field("x", "status", "state").unwrap(), state::HOLD);
+
+    // Through the brake, off: now they are taken.
+    bench.write("x_control", 0).unwrap();
+    assert!(bench.wait("x", state::READY, 20_000_000).unwrap());
+    bench.clocks(10_000).unwrap();
+    bench.write("flags", 1 << 3).unwrap();
+    for register in FEEDBACK {
+        bench.write(register, 1).unwrap();
+        bench.clocks(4).unwrap();
+        assert_eq!(bench.read(register).unwrap(), 1, "{register}");
+    }
+    assert_eq!(bench.read("flags").unwrap(), 0);
+}
+
+/// A machine whose lines count backwards, and whose file says so: the published bring-up keeps the sign.
+#[test]
+fn unit_a_machine_wired_backwards_moves_by_its_file() {
+    let mut bench = bench(true);
+    switch_on(&mut bench, "x");
+    assert_eq!(
+        (bench.read("x_encoder").unwrap(), bench.read("x_scale_control").unwrap()),
+        (1, 1)
+    );
+    let machine = spec::parse("xy-stage.toml", include_str!("../../examples/xy-stage.toml")).unwrap();
+    let limits = TickLimits::of_axis(&machine.axes[0], &machine.clock);
+    for entry in plan_move(0, 1000 * 256, &limits).unwrap() {
+        bench.segment("x", &entry).unwrap();
+    }
+    bench.write("start", 1).unwrap();
+    bench.clocks(20_000).unwrap();
+    assert!(bench.wait("x", state::HOLD, 20_000_000).unwrap());
+    bench.clocks(500_000).unwrap();
+    assert_eq!(bench.read("x_causes").unwrap(), 0);
+    let [count, scale] = ["x_count", "x_scale_count"].map(|register| bench.read(register).unwrap() as i32);
+    assert!((count - 1000).abs() <= 2, "{count}");
+    assert!((scale - 4000).abs() <= 40, "{scale}");
+}
+
+/// A host that enables at once, in direct mode and from there in HOLD: the PWM waits for the time base.
+#[test]
+fn unit_the_pwm_never_runs_out_of_step() {
+    for wait in [50, 700, 1300, 2700, 4800] {
+        let mut bench = bench(false);
+        bench.clocks(wait).unwrap();
+        bench.write("x_clear_faults", 0).unwrap();
+        assert!(bench.wait("x", state::READY, 100_000).unwrap());
+        bench.write("x_control", 2).unwrap();
+        for _ in 0..4 {
+            bench.write("x_direct", 50).unwrap();
+            bench.clocks(5000).unwrap();
+            assert_eq!(bench.field("x", "flags", "pwm_unaligned").unwrap(), 0, "wait {wait}");
+        }
+        assert_eq!(bench.net("x_pwm_running").unwrap(), 1);
+        bench.write("x_control", 1).unwrap();
+        assert!(bench.wait("x", state::HOLD, 100_000).unwrap());
+        bench.clocks(20_000).unwrap();
+        assert_eq!(bench.net("x_pwm_running").unwrap(), 1);
+        assert_eq!(bench.field("x", "flags", "pwm_unaligned").unwrap(), 0, "wait {wait}");
+    }
+}
+
+/// Each index interrupts, and a one written to the state ends it, as with any other interrupt.
+#[test]
+fn unit_an_index_interrupts_once() {
+    const INDEX_SEEN: u32 = 1 << 6;
+    let mut bench = bench(false);
+    bench.clocks(1000).unwrap();
+    bench.write("x_index", 1).unwrap();
+    // A count in 250 clocks, an index in 100 counts.
+    bench.write("x_generator_rate", ((1u64 << 32) / 250) as u32).unwrap();
+    bench.write("x_generator", 1 | 100 << 16).unwrap();
+    let mut latched = Vec::new();
+    while latched.len() < 3 {
+        bench.clocks(100).unwrap();
+        if bench.read("interrupt_state").unwrap() & INDEX_SEEN != 0 {
+            latched.push(bench.read("x_index_count").unwrap() as i32);
+            bench.write("interrupt_state", INDEX_SEEN).unwrap();
+            bench.clocks(4).unwrap();
+            assert_eq!(bench.read("interrupt_state").unwrap() & INDEX_SEEN, 0);
+        }
+    }
+    assert_eq!(
+        [latched[1] - latched[0], latched[2] - latched[1]],
+        [100, 100],
+        "{latched:?}"
+    );
+}
+
+/// The pin for an ADC: a clock in each period, at the phase of the register.
+#[test]
+fn unit_the_trigger_comes_at_its_phase() {
+    let mut bench = bench(false);
+    // Two ticks: the PWM is in phase.
+    bench.clocks(12_000).unwrap();
+    let mut phases = |phase| {
+        bench.write("x_pwm_trigger", phase).unwrap();
+        let mut seen = Vec::new();
+        let mut since_tick = None;
+        for _ in 0..15_000 {
+            bench.clocks(1).unwrap();
+            since_tick = match bench.output("tick").unwrap() {
+                1 => Some(0),
+                _ => since_tick.map(|clocks| clocks + 1),
+            };
+            if bench.output("x_pwm_trigger").unwrap() == 1 {
+                seen.extend(since_tick);
+            }
+        }
+        seen
+    };
+    // Position 0 is in the clock after the tick, and the pins follow by a clock.
+    let at_valley = phases(0);
+    assert!(
+        at_valley.len() >= 4 && at_valley.iter().all(|clocks| clocks % 2500 == 2),
+        "{at_valley:?}"
+    );
+    let later = phases(1250);
+    assert!(later.iter().all(|clocks| clocks % 2500 == 1252), "{later:?}");
+}
