@@ -64,7 +64,7 @@ impl<const D: usize, const N: usize> Logic for Ram<D, N> {
 // @leaf ram_{words}x{D} reg: read_data
 // @about Block RAM, {words} words of {D} bits: one write port, one read port, read data one clock after the address.
 // @about No reset: what was not written is unknown, and so is a word read in the clock in which it is written.
-(* no_rw_check *)
+(* no_rw_check, ramstyle = \"no_rw_check\" *)
 reg [{last_bit}:0] words [0:{last_word}];
 always @(posedge clk) begin
     if (write_enable) words[write_address] <= write_data;
@@ -72,5 +72,23 @@ always @(posedge clk) begin
 end
 "
         ))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Yosys takes the bare attribute, Quartus the value of `ramstyle`. Without it either builds logic around the memory for a word
+    /// that is read in the clock in which it is written, which no block does.
+    #[test]
+    fn unit_both_synthesisers_are_told_that_no_word_is_read_while_it_is_written() {
+        let Verilog::Custom(text) = Ram::<8, 4>::default().hdl() else {
+            panic!("a leaf has Verilog of its own");
+        };
+        assert!(
+            text.contains("(* no_rw_check, ramstyle = \"no_rw_check\" *)\nreg [7:0] words"),
+            "{text}"
+        );
     }
 }
