@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use crate::machine;
 use crate::output;
-use posicast_model::control::{self, Derived, Schedule, Supervision};
+use posicast_model::control::{self, Derived, NoTravel, Schedule, Supervision};
 use posicast_model::design::{AxisTables, MachineDesign};
 use posicast_model::rtl::sliding_mode::{Law, Row};
 use posicast_model::spec::{Axis, Machine, PwmMode};
@@ -22,6 +22,8 @@ pub(crate) struct AxisControl {
     one_sided: bool,
     /// Whether velocity and acceleration are not shaped.
     one_channel: bool,
+    /// Where the file does not say how far it goes.
+    no_travel: Option<NoTravel>,
 }
 
 const ONE_SIDED: &str = "a half bridge shows a negative command as 0: choose direction, full-bridge or locked-antiphase \
@@ -48,7 +50,7 @@ pub(crate) fn of_machine(
         let lag_s = control::loop_lag_s(drive, control::schedule_delay_s(&machine.clock, pwm, schedule.clocks()));
         let derived = control::gains(axis, machine.clock, lag_s)
             .map_err(|error| machine::at_key(path, index, &error.key(), &error))?;
-        let supervision = control::supervision(axis, &machine.clock, tables.table.longest_delay_samples())
+        let supervision = control::supervision(axis, &machine.clock, (&tables.table).into())
             .map_err(|error| machine::at_key(path, index, error.key(), &error))?;
         Ok(Some(AxisControl {
             axis: axis.name.clone(),
@@ -56,6 +58,7 @@ pub(crate) fn of_machine(
             derived,
             supervision,
             one_sided: pwm.mode == PwmMode::HalfBridge,
+            no_travel: control::no_travel(axis),
             one_channel: component.is_some_and(|shaper| shaper.channels() == 1),
         }))
     };
@@ -74,7 +77,9 @@ impl AxisControl {
         let of_law = self.derived.warnings.iter().map(ToString::to_string);
         let hardware = [(self.one_sided, ONE_SIDED), (self.one_channel, ONE_CHANNEL)];
         let hardware = hardware.into_iter().filter(|(holds, _)| *holds);
-        of_law.chain(hardware.map(|(_, text)| text.to_owned())).collect()
+        let hardware = hardware.map(|(_, text)| text.to_owned());
+        let range = self.no_travel.iter().map(ToString::to_string);
+        of_law.chain(hardware).chain(range).collect()
     }
 
     /// A line for people.

@@ -5,7 +5,7 @@
 use posicast_model::rtl::axis::{
     Axis, CLEAR_CLOCKS, Cause, INPUT_PORTS, Inputs, KICK, LINE_CLOCKS, Outputs, State, WATCH_CLOCKS,
 };
-use posicast_model::rtl::segments::{self, Entry, Motion, Segments};
+use posicast_model::rtl::segments::{self, Entry, Motion, STAND_COUNTS, Segments};
 use proptest::prelude::*;
 
 /// Clocks per tick of these tests.
@@ -53,7 +53,9 @@ const ZERO: Inputs = Inputs {
     saturation_ticks: 0,
     lost_command: 0,
     lost_ticks: 0,
+    velocity_drive: false,
     watchdog_ticks: 0,
+    modulo: false,
     position: 0,
     deviation: 0,
     segments_state: 0,
@@ -62,13 +64,17 @@ const ZERO: Inputs = Inputs {
     segments_underrun: false,
     segments_overflow: false,
     segments_tick_missed: false,
+    segments_out_of_range: false,
     command_velocity: 0,
     reference_position: 0,
     reference_velocity: 0,
+    shaper_saturated: false,
     shaper_overrun: false,
     error: 0,
     command: 0,
     limited_ticks: 0,
+    saturated_high: 0,
+    saturated_low: 0,
     controller_overrun: false,
     pwm_tripped: false,
     encoder_illegal: false,
@@ -111,6 +117,7 @@ impl Bench {
         self.inputs.segments_valid = played.valid;
         self.inputs.segments_underrun = played.underrun;
         self.inputs.segments_overflow = played.overflow;
+        self.inputs.segments_out_of_range = played.out_of_range;
         self.inputs.command_velocity = played.velocity;
         // Without a shaper.
         self.inputs.reference_position = played.position;
@@ -292,7 +299,7 @@ fn every_line_reaches_the_pins_in_its_stated_clocks() {
         for line in 0..2 {
             let mut bench = Bench::run(JERK);
             bench.inputs.filter_clocks = filter_clocks;
-            bench.inputs.off_causes = Cause::DriveLost.bit();
+            bench.inputs.off_causes = Cause::DriveLost.bit() as u16;
             bench.clocks(100);
             match line {
                 0 => bench.inputs.emergency_stop_n = false,
@@ -436,18 +443,19 @@ fn what_lasts_too_long_trips_after_its_ticks() {
     (bench.inputs.lost_command, bench.inputs.lost_ticks) = (500, 6);
     bench.inputs.command = -502;
     bench.clocks(TICK_CLOCKS / 2);
-    bench.ticks(6);
+    // One tick to see the new direction.
+    bench.ticks(7);
     assert_eq!(bench.axis.outputs().causes, 0);
     bench.clocks(u64::from(WATCH_CLOCKS) - 1);
     assert_eq!(bench.axis.outputs().causes, Cause::EncoderLost.bit());
-    // A command that moves a count now and then.
+    // A command that moves five counts now and then.
     let mut bench = Bench::hold();
     bench.clocks(TICK_CLOCKS / 2);
     (bench.inputs.lost_command, bench.inputs.lost_ticks) = (500, 6);
     bench.inputs.command = 501;
     bench.clocks(TICK_CLOCKS / 2);
     for count in 1..20 {
-        bench.inputs.position = count;
+        bench.inputs.position = 5 * count;
         bench.ticks(5);
     }
     assert_eq!(bench.axis.outputs().causes, 0);
@@ -536,5 +544,117 @@ proptest! {
             }
             prop_assert_eq!(fast.outputs(), slow.outputs());
         }
+    }
+}
+
+#[test]
+fn a_count_that_dithers_is_no_motion() {
+    // One line of the encoder is stuck: the other lets the count go to and fro. At other times it goes on slowly.
+    for (counts, trips) in [
+        ([0, 1], true),
+        ([0, -1], true),
+        ([2, -1], true),
+        ([0, 5], false),
+        ([0, -5], false),
+    ] {
+        let mut bench = Bench::hold();
+        (bench.inputs.lost_command, bench.inputs.lost_ticks) = (500, 20);
+        bench.inputs.command = 501;
+        for tick in 0..100 {
+            bench.inputs.position = 70 + counts[tick % 2];
+            bench.ticks(1);
+        }
+        let causes = bench.axis.outputs().causes;
+        assert_eq!(causes, if trips { Cause::EncoderLost.bit() } else { 0 }, "{counts:?}");
+    }
+    // A command that changes sides moves to and fro, and so may the position.
+    let mut bench = Bench::hold();
+    (bench.inputs.lost_command, bench.inputs.lost_ticks) = (500, 20);
+    for tick in 0..100 {
+        bench.inputs.command = if tick / 15 % 2 == 0 { 501 } else { -501 };
+        bench.inputs.position = tick % 2;
+        bench.ticks(1);
+    }
+    assert_eq!(bench.axis.outputs().causes, 0);
+}
+
+#[test]
+fn out_of_range_the_outputs_are_refused_and_switched_off() {
+    // Not by a quick stop, whatever is chosen: what position, command or e mean is unknown.
+    let out: [(&str, fn(&mut Inputs)); 5] = [
+        ("count +", |inputs| inputs.position = STAND_COUNTS),
+        ("count -", |inputs| inputs.position = -STAND_COUNTS - 1),
+        ("shaper", |inputs| inputs.shaper_saturated = true),
+        ("e high", |inputs| inputs.saturated_high = 1),
+        ("e low", |inputs| inputs.saturated_low = 0x7f),
+    ];
+    for (what, leave) in out {
+        let mut bench = Bench::hold();
+        leave(&mut bench.inputs);
+        bench.clocks(2);
+        let shown = bench.axis.outputs();
+        assert_eq!(
+            (shown.state, shown.causes),
+            (State::Fault, Cause::Range.bit()),
+            "{what}"
+        );
+        assert!(!shown.drive_enable && !shown.pwm_enable, "{what}");
+        // READY goes nowhere with it, and says why once outputs are asked for; without them there is nothing to say.
+        let mut bench = Bench::new();
+        leave(&mut bench.inputs);
+        bench.ticks(3);
+        assert_eq!(
+            (bench.axis.outputs().state, bench.axis.outputs().causes),
+            (State::Ready, 0),
+            "{what}"
+        );
+        bench.inputs.enable = true;
+        for _ in 0..4 * TICK_CLOCKS {
+            bench.clock();
+            assert!(!bench.axis.outputs().drive_enable, "{what}");
+        }
+        assert_eq!(bench.axis.outputs().causes, Cause::Range.bit(), "{what}");
+    }
+    // Within, and for a rotary axis, nothing.
+    for (position, modulo) in [
+        (STAND_COUNTS - 1, false),
+        (-STAND_COUNTS, false),
+        (i32::MIN, true),
+        (i32::MAX, true),
+    ] {
+        let mut bench = Bench::new();
+        (bench.inputs.position, bench.inputs.modulo) = (position, modulo);
+        (bench.inputs.saturated_high, bench.inputs.saturated_low) = (0x7e, 0x7e);
+        bench.inputs.enable = true;
+        let shown = bench.ticks(3);
+        assert_eq!((shown.state, shown.causes), (State::Hold, 0), "{position}");
+    }
+}
+
+#[test]
+fn a_velocity_that_goes_against_its_command_is_none() {
+    // The sign of the encoder is wrong: at full speed the position runs away from where the command wants it.
+    for (command, step, velocity_drive, trips) in [
+        (502, -7, true, true),
+        (-502, 7, true, true),
+        (502, 7, true, false),
+        (-502, -7, true, false),
+        // A torque may go against the motion: it slows it down.
+        (502, -7, false, false),
+        (-502, 7, false, false),
+    ] {
+        let mut bench = Bench::hold();
+        (bench.inputs.lost_command, bench.inputs.lost_ticks) = (500, 20);
+        (bench.inputs.command, bench.inputs.velocity_drive) = (command, velocity_drive);
+        for _ in 0..60 {
+            bench.inputs.position += step;
+            bench.ticks(1);
+        }
+        let causes = bench.axis.outputs().causes;
+        assert_eq!(
+            causes,
+            if trips { Cause::EncoderLost.bit() } else { 0 },
+            "{command} {step} {velocity_drive}"
+        );
     }
 }

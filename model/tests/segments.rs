@@ -4,7 +4,8 @@
 
 use posicast_model::motion::{TickLimits, plan_move};
 use posicast_model::rtl::segments::{
-    ENTRIES_MAX, Entry, Inputs, Integrator, LATENCY_CLOCKS, Motion, Outputs, Point, Segments, State, TICK_CLOCKS,
+    ENTRIES_MAX, Entry, Inputs, Integrator, LATENCY_CLOCKS, Motion, Outputs, Point, REACH_COUNTS, STAND_COUNTS,
+    Segments, State, TICK_CLOCKS,
 };
 use proptest::prelude::*;
 
@@ -23,6 +24,7 @@ const QUIET: Inputs = Inputs {
     stop_deceleration: 1 << 24,
     low_water: 2,
     clear_flags: false,
+    modulo: false,
 };
 
 fn write(segments: &mut Segments, entry: &Entry) {
@@ -102,6 +104,72 @@ fn without_an_entry_while_moving_it_stops_by_itself_and_says_so() {
     assert_eq!(segments.outputs(2).level, 1);
 }
 
+/// Rests at so many counts; then what the ticks show while `entry` plays.
+fn from(counts: i32, entry: &Entry, inputs: &Inputs, ticks: usize) -> Vec<Outputs> {
+    let mut segments = Segments::new(3);
+    segments.step(&Inputs {
+        preset: true,
+        ..*inputs
+    });
+    let tick = |segments: &mut Segments| {
+        segments.step(&Inputs {
+            tick: true,
+            preset_position: counts,
+            ..*inputs
+        });
+        segments.hold(inputs, 100);
+        segments.outputs(0)
+    };
+    tick(&mut segments);
+    write(&mut segments, entry);
+    (0..ticks).map(|_| tick(&mut segments)).collect()
+}
+
+#[test]
+fn the_command_stops_before_the_end_of_its_word_and_never_wraps() {
+    let way = |side: i32| (side * (REACH_COUNTS - 3_000), jerk(600, i64::from(side) << 32));
+    for side in [1, -1] {
+        // Up to 1,200 counts per tick, against 1 count per tick², and against next to nothing: what is left stands at once.
+        for stop_deceleration in [1 << 24, 1, 0] {
+            let inputs = Inputs {
+                stop_deceleration,
+                ..QUIET
+            };
+            let (counts, entry) = way(side);
+            let shown = from(counts, &entry, &inputs, 3_000);
+            let last = shown.last().unwrap();
+            assert!(last.out_of_range && !last.overflow && !last.underrun);
+            assert_eq!((last.state, last.velocity), (State::Stopped, 0));
+            for (before, after) in shown.iter().zip(&shown[1..]) {
+                let step = i64::from(after.position) - i64::from(before.position);
+                assert!(
+                    (0..40_000 << 8).contains(&(step * i64::from(side))),
+                    "{before:?} {after:?}"
+                );
+                let decelerates = (before.velocity - after.velocity) * side <= 1 << 16;
+                let stands = after.velocity == 0 && before.position / 256 * side >= STAND_COUNTS;
+                assert!(stop_deceleration == 0 || decelerates || stands, "{before:?} {after:?}");
+            }
+        }
+        // A rotary axis turns for ever; and the way back from the end is open.
+        let (counts, entry) = way(side);
+        let shown = from(counts, &entry, &Inputs { modulo: true, ..QUIET }, 590);
+        assert!(shown.iter().all(|shown| !shown.out_of_range));
+        assert!(shown.iter().any(|shown| shown.position.signum() == -side));
+        let shown = from(
+            side * (STAND_COUNTS + 9),
+            &jerk(100, i64::from(-side) << 32),
+            &QUIET,
+            90,
+        );
+        assert!(
+            shown
+                .iter()
+                .all(|shown| !shown.out_of_range && shown.position.signum() == side)
+        );
+    }
+}
+
 #[test]
 fn a_full_fifo_refuses_and_keeps_what_it_has() {
     let mut segments = Segments::new(3);
@@ -170,6 +238,7 @@ fn inputs() -> impl Strategy<Value = Inputs> {
             stop_deceleration: deceleration >> shift,
             low_water: 3,
             clear_flags: false,
+            modulo: data & 1 != 0,
         },
     )
 }

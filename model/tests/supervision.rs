@@ -1,9 +1,10 @@
 //! The words of the supervisor: worked out by hand, never looser than the file, and nothing that does not fit.
 #![cfg(test)]
 
-use posicast_model::control::{Supervision, SupervisionError, supervision};
+use posicast_model::control::{Supervision, SupervisionError, TableBounds, no_travel, supervision};
 use posicast_model::motion::TickLimits;
 use posicast_model::spec::{self, Machine, ScaleUse};
+use posicast_model::taps::{Tap, TapTable};
 use proptest::prelude::*;
 
 const TORQUE: &str = "mode = \"torque\"\nequivalent_mass = 64.274\nforce_constant = 475.01\ncurrent_limit_a = 2.73\n\
@@ -21,8 +22,16 @@ fn machine(axis: &str, drive: &str, limits: &str) -> Machine {
     spec::parse("one.toml", &text).unwrap_or_else(|error| panic!("{error}"))
 }
 
+/// A table of so many samples whose steps go so far.
+fn bounds(longest_delay_samples: u32, farthest: f64) -> TableBounds {
+    TableBounds {
+        longest_delay_samples,
+        farthest,
+    }
+}
+
 fn of(machine: &Machine) -> Result<Supervision, SupervisionError> {
-    supervision(&machine.axes[0], &machine.clock, 79)
+    supervision(&machine.axes[0], &machine.clock, bounds(79, 1.0))
 }
 
 fn with(limits: &str) -> Result<Supervision, SupervisionError> {
@@ -42,6 +51,7 @@ const LEFT_OUT: Supervision = Supervision {
     saturation_ticks: 0,
     lost_command: 0,
     lost_ticks: 0,
+    velocity_drive: false,
     watchdog_ticks: 0,
     filter_clocks: 0,
     stop_deceleration: 0,
@@ -83,6 +93,7 @@ fn golden_words_worked_out_by_hand() {
         // Half of 3000 mA, times 4096.
         lost_command: 6_144_000,
         lost_ticks: 200,
+        velocity_drive: false,
         watchdog_ticks: 5000,
         filter_clocks: 50,
         // 0.08 counts per tick², times 2^24: 1342177.28.
@@ -101,10 +112,10 @@ fn golden_words_worked_out_by_hand() {
         ["soft_limit_plus", "soft_limit_minus", "following_error_limit"]
     );
     assert_eq!(found[4..7], [25_600_000, -25_600_000, 65_536_000]);
-    assert_eq!(found.len(), 17);
+    assert_eq!(found.len(), 18);
     // A velocity drive: half of 500 mm/s.
     let velocity = of(&machine("", VELOCITY, limits)).unwrap();
-    assert_eq!(velocity.lost_command, 1_024_000);
+    assert_eq!((velocity.lost_command, velocity.velocity_drive), (1_024_000, true));
     // With the scale's position ten times as many counts; the test signal's word then ends at 25.6 µm.
     let mut scale = machine("", TORQUE, limits);
     scale.axes[0].scale.as_mut().unwrap().usage = ScaleUse::Position;
@@ -167,7 +178,11 @@ fn unit_what_does_not_fit_names_its_key_and_the_range() {
     refused("travel = [1e-7, 1.001e-7]", "axis.limits.travel", narrow);
     let around_0 = "travel = [-1e-10, 1e-10]";
     assert_eq!(with(around_0).unwrap_err().key(), "axis.limits.travel");
-    let long = supervision(&machine("", TORQUE, "").axes[0], &machine("", TORQUE, "").clock, 65_536);
+    let long = supervision(
+        &machine("", TORQUE, "").axes[0],
+        &machine("", TORQUE, "").clock,
+        bounds(65_536, 1.0),
+    );
     assert_eq!(long.unwrap_err().key(), "axis.shaper");
     let mut bare = machine("", TORQUE, "");
     bare.axes[0].drive = None;
@@ -197,6 +212,44 @@ fn unit_limits_of_moves_in_ticks() {
         TickLimits::new(0.1, 8.0, 100.0, 1e6, 1e4)
     );
     assert_eq!(limits(""), TickLimits::new(0.25, 8.0, 400.0, 1e6, 1e4));
+}
+
+#[test]
+fn unit_a_travel_fits_wherever_the_axis_stands_at_reset() {
+    // The count is 0 there, perhaps at one end: a scale of 12.5 nm has 8 million counts on either side of the middle.
+    let mut fine = machine("", TORQUE, "travel = [-0.1, 0.1]");
+    let scale = fine.axes[0].scale.as_mut().unwrap();
+    (scale.usage, scale.counts_per_unit) = (ScaleUse::Position, 80e6);
+    let error = of(&fine).unwrap_err();
+    assert_eq!(error.key(), "axis.limits.travel");
+    let text = error.to_string();
+    assert!(
+        text.contains("takes 0.2") && text.contains("at most 0.1015808 m at 80000000 counts"),
+        "{text}"
+    );
+    // A micrometre reaches 8.126464 m, with 8 m/s² at 0.25 m/s less 3.9 mm for a stop; a shaper may go further than its command.
+    let reaches = |travel: f64, farthest: f64| {
+        let mut machine = machine("", TORQUE, "velocity = 0.25\nacceleration = 8.0");
+        machine.axes[0].limits.as_mut().unwrap().travel = Some([-1.0, travel - 1.0]);
+        supervision(&machine.axes[0], &machine.clock, bounds(79, farthest)).is_ok()
+    };
+    assert!(reaches(8.122, 1.0) && !reaches(8.123, 1.0));
+    assert!(reaches(4.061, 2.0) && !reaches(4.062, 2.0));
+    let taps = |coefficients: [i32; 3]| {
+        let taps = (0..).zip(coefficients).map(|(delay_samples, coefficient)| Tap {
+            delay_samples,
+            coefficient,
+        });
+        TableBounds::from(&TapTable::new(15, taps.collect()).unwrap())
+    };
+    assert_eq!(taps([1 << 14, 1 << 13, 1 << 13]), bounds(2, 1.0));
+    assert_eq!(taps([1 << 15, -(1 << 16), 1 << 16]), bounds(2, 2.0));
+    assert_eq!(taps([3 << 14, -(1 << 15), 1 << 14]).farthest, 1.5);
+    // Without a travel there is a warning that says how far it goes; a rotary axis turns for ever.
+    let warning = no_travel(&machine("", TORQUE, "").axes[0]).unwrap().to_string();
+    assert!(warning.contains("reaches 8.126464 m"), "{warning}");
+    assert_eq!(no_travel(&machine("modulo = true", TORQUE, "").axes[0]), None);
+    assert_eq!(no_travel(&fine.axes[0]), None);
 }
 
 proptest! {

@@ -22,7 +22,7 @@ module axis_properties (
     input wire        rst,
     input wire        clear_faults,
     input wire [2:0]  state,
-    input wire [15:0] causes,
+    input wire [16:0] causes,
     input wire        drive_enable,
     input wire        brake_release,
     input wire        pwm_enable,
@@ -32,7 +32,7 @@ module axis_properties (
 );
     reg        past_reset = 1'b1;
     reg [2:0]  past_state = `OFF;
-    reg [15:0] past_causes = 16'd0;
+    reg [16:0] past_causes = 16'd0;
     // Causes are forgotten in the eighth clock after clear_faults, or a ninth or tenth.
     reg [11:0] cleared = 12'd0;
     always @(posedge clk) begin

@@ -26,7 +26,7 @@ module axis_brake_properties (
     input wire [15:0] settle_ticks,
     input wire [1:0]  segments_state,
     input wire [2:0]  state,
-    input wire [15:0] causes,
+    input wire [16:0] causes,
     input wire        drive_enable,
     input wire        brake_release,
     input wire        pwm_enable,
@@ -75,7 +75,7 @@ module axis_brake_properties (
     wire settling = (past_state == `RUN & !past_reset) | stopping;
     wire begins = enabled | settling | applied;
     // Ticks since it began, and how many it asks for. In QUICK_STOP those with stopped segments.
-    reg  [15:0] seen = 16'd0;
+    reg  [16:0] seen = 16'd0;
     reg  [15:0] needed = 16'd0;
     // All have come, a clock ago or earlier.
     reg         enough = 1'b0;

@@ -11,8 +11,10 @@
 //   known_lines          own emergency stop: the filtered line is low, four clocks after a reset or later
 //   trips_pwm            pwm_trip_n is low in the clock after an emergency stop, of this axis or of another
 //   clears_sources       clear_sources is clear_faults, a clock later
-//   any_*, fault_*, cut_*  what the states are told, in the clock in which it becomes active of emergency stop, PWM trip and
-//                        drive, and a clock later, when it stands, of all others: any cause; any but the group stop; one that
+//   known_range          range: the count of an axis that is not modulo is in the last 64th of its word, or shaped command or e
+//                        were cut to theirs, as of the clock before; active with the outputs on, and where they are asked for
+//   any_*, fault_*, cut_*  what the states are told, in the clock in which it becomes active of emergency stop, PWM trip, drive
+//                        and range, and a clock later, when it stands, of all others: any cause; any but the group stop; one that
 //                        switches off, a new one by this clock's off_causes, one that stands by those of the clock before
 //   off_at_once          outputs off and brake applied in the clock after one that switches off, in every state
 //   stop_or_fault        a clock after a cause but the group stop stands, the state is QUICK_STOP, FAULT or OFF
@@ -29,8 +31,15 @@ module axis_causes_properties (
     input wire [15:0] off_causes,
     input wire        segments_underrun,
     input wire        segments_overflow,
+    input wire        segments_out_of_range,
     input wire        segments_tick_missed,
+    input wire        enable,
+    input wire        modulo,
+    input wire signed [31:0] position,
+    input wire        shaper_saturated,
     input wire        shaper_overrun,
+    input wire [6:0]  saturated_high,
+    input wire [6:0]  saturated_low,
     input wire        controller_overrun,
     input wire        pwm_tripped,
     input wire        encoder_illegal,
@@ -39,7 +48,7 @@ module axis_causes_properties (
     input wire        scale_illegal,
     input wire        scale_disagreement,
     input wire [2:0]  state,
-    input wire [15:0] causes,
+    input wire [16:0] causes,
     input wire        drive_enable,
     input wire        brake_release,
     input wire        pwm_enable,
@@ -49,8 +58,9 @@ module axis_causes_properties (
     input wire        emergency_stop,
     input wire        level_emergency_stop_n,
     input wire        level_drive_ready,
-    (* peek = "u_monitors.causes" *) input wire [15:0] found,
-    (* peek = "u_monitors.found" *) input wire [15:0] kept,
+    (* peek = "u_monitors.causes" *) input wire [16:0] found,
+    (* peek = "u_monitors.found" *) input wire [16:0] kept,
+    (* peek = "out_of_range" *) input wire range_left,
     (* peek = "primed" *) input wire [3:0] primed,
     (* peek = "clear_left" *) input wire [3:0] clear_left,
     (* peek = "clear_due" *) input wire clear_due,
@@ -63,9 +73,13 @@ module axis_causes_properties (
 );
     // Lines count from the fifth clock after a reset on.
     reg [3:0] awake = 4'd0;
+    // As of the clock before: the count, the shaped command or e is beyond its word, or as good as.
+    reg       left_range = 1'b0;
     // clear_faults of the eight clocks before, the last one in bit 0.
     reg [7:0] cleared = 8'd0;
     always @(posedge clk) begin
+        left_range <= !rst & ((!modulo & (position >= `STAND_COUNTS | position < -`STAND_COUNTS))
+            | shaper_saturated | saturated_high[0] | saturated_low[0]);
         awake <= rst ? 4'd0 : {awake[2:0], 1'b1};
         cleared <= rst ? 8'd0 : {cleared[6:0], clear_faults};
     end
@@ -77,22 +91,23 @@ module axis_causes_properties (
     wire        emergency = own_emergency | group_emergency_stop;
     wire        encoder_error = encoder_illegal | encoder_disagreement | scale_illegal | scale_disagreement;
     wire        late = segments_tick_missed | velocity_missed | shaper_overrun | controller_overrun;
-    wire [15:0] at_once = (emergency ? `EMERGENCY_STOP : 16'd0)
+    wire [16:0] at_once = (emergency ? `EMERGENCY_STOP : 16'd0)
         | (pwm_tripped ? `PWM_TRIPPED : 16'd0)
-        | (drive_enable & !level_drive_ready ? `DRIVE_LOST : 16'd0);
-    wire [15:0] active = found | at_once
+        | (drive_enable & !level_drive_ready ? `DRIVE_LOST : 16'd0)
+        | (left_range & (drive_enable | enable) ? `RANGE : 17'd0);
+    wire [16:0] active = found | at_once
         | (encoder_error ? `ENCODER_ERROR : 16'd0)
-        | (segments_underrun | segments_overflow ? `SEGMENTS : 16'd0)
+        | (segments_underrun | segments_overflow | segments_out_of_range ? `SEGMENTS : 16'd0)
         | (drive_enable & group_stop & !wants_group_stop ? `GROUP_STOP : 16'd0)
         | (late ? `SCHEDULE : 16'd0);
-    wire [15:0] standing = forgets ? 16'd0 : causes;
-    wire [15:0] now = standing | active;
+    wire [16:0] standing = forgets ? 16'd0 : causes;
+    wire [16:0] now = standing | active;
 
-    wire [15:0] off = (off_causes | `ALWAYS_OFF) & ~`HARMLESS;
+    wire [16:0] off = ({1'b0, off_causes} | `ALWAYS_OFF) & ~`HARMLESS;
     reg  [15:0] past_off_causes = 16'd0;
-    wire [15:0] past_off = (past_off_causes | `ALWAYS_OFF) & ~`HARMLESS;
+    wire [16:0] past_off = ({1'b0, past_off_causes} | `ALWAYS_OFF) & ~`HARMLESS;
     wire        cut = |(at_once & off) | |(causes & past_off);
-    wire [15:0] seen = causes | at_once;
+    wire [16:0] seen = causes | at_once;
 
     reg         past_reset = 1'b1;
     reg         past_cut = 1'b0;
@@ -100,9 +115,9 @@ module axis_causes_properties (
     reg         past_clear = 1'b0;
     reg         past_wants = 1'b0;
     reg  [2:0]  past_state = `OFF;
-    reg  [15:0] past_causes = 16'd0;
+    reg  [16:0] past_causes = 16'd0;
     reg         just_noted = 1'b0;
-    reg  [15:0] expected = 16'd0;
+    reg  [16:0] expected = 16'd0;
     always @(posedge clk) begin
         past_reset <= rst;
         past_off_causes <= off_causes;
@@ -116,7 +131,7 @@ module axis_causes_properties (
         expected <= rst ? 16'd0 : now;
     end
 
-    wire [15:0] harmful = causes & ~`HARMLESS;
+    wire [16:0] harmful = causes & ~`HARMLESS;
     always @(*) begin
         exact_causes: assert (causes == expected);
         forgets_when_due: assert (clear_due == due);
@@ -135,12 +150,13 @@ module axis_causes_properties (
     end
 
     // What registers hold, for the induction.
-    wire [15:0] of_pins = `EMERGENCY_STOP | `PWM_TRIPPED | `DRIVE_LOST | `ENCODER_ERROR | `SEGMENTS | `GROUP_STOP | `SCHEDULE;
+    wire [16:0] of_pins = `EMERGENCY_STOP | `PWM_TRIPPED | `DRIVE_LOST | `ENCODER_ERROR | `SEGMENTS | `GROUP_STOP | `SCHEDULE;
     wire [3:0] left = cleared[0] ? 4'd8 : cleared[1] ? 4'd7 : cleared[2] ? 4'd6 : cleared[3] ? 4'd5 :
         cleared[4] ? 4'd4 : cleared[5] ? 4'd3 : cleared[6] ? 4'd2 : cleared[7] ? 4'd1 : 4'd0;
     always @(*) begin
         known_state: assert (state <= `FAULT);
         found_at_ticks: assert ((kept & of_pins) == 16'd0);
+        known_range: assert (range_left == left_range);
         lines_wait: assert (primed == awake);
         clear_counts: assert (clear_left == left);
         fault_stands: assert (had_fault == |harmful);
@@ -152,7 +168,8 @@ module axis_causes_properties (
         reach_cut_of_standing: cover (past_cut & past_causes == causes & past_state == `QUICK_STOP);
         reach_forgotten: cover (past_causes != 16'd0 & causes == 16'd0 & !past_reset);
         reach_set_wins: cover (past_causes != 16'd0 & causes != 16'd0 & states_forget);
+        reach_range: cover (causes == `RANGE & past_state == `READY);
         reach_group_stop: cover (causes == `GROUP_STOP);
-        reach_several: cover (causes == 16'hffff);
+        reach_several: cover (causes == 17'h1ffff);
     end
 endmodule

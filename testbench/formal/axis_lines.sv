@@ -19,7 +19,7 @@ module axis_lines_properties (
     input wire [5:0]  filter_clocks,
     input wire [15:0] off_causes,
     input wire [2:0]  state,
-    input wire [15:0] causes,
+    input wire [16:0] causes,
     input wire        drive_enable,
     input wire        brake_release,
     input wire        pwm_enable,

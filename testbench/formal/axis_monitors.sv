@@ -12,7 +12,8 @@
 //   following_error, deviation_, saturation_, encoder_lost, watchdog_
 //                        exactly when above the limit, or there for as many ticks in a row; never with a limit of 0
 //   captured             captured_position is the position of the last tick
-//   counted_*            lemma: so many ticks in a row with a command and the same position; so many since the last kick
+//   counted_*            lemma: so many ticks in a row with a command to one side and no motion (of 4 counts backwards, or more than
+//                        3 forwards; with velocity_drive the other way is as none); so many since the last kick
 //
 // Left open: that levels are those of the switches (single_line), and where e comes from.
 module axis_monitors_properties (
@@ -28,6 +29,7 @@ module axis_monitors_properties (
     input wire [15:0]        saturation_ticks,
     input wire [31:0]        lost_command,
     input wire [15:0]        lost_ticks,
+    input wire               velocity_drive,
     input wire [15:0]        watchdog_ticks,
     input wire signed [31:0] position,
     input wire signed [31:0] deviation,
@@ -41,7 +43,7 @@ module axis_monitors_properties (
     input wire signed [31:0] captured_position,
     input wire               level_limit_plus_n,
     input wire               level_limit_minus_n,
-    (* peek = "u_monitors.found" *) input wire [15:0] found,
+    (* peek = "u_monitors.found" *) input wire [16:0] found,
     (* peek = "u_monitors.tells" *) input wire tells,
     (* peek = "u_monitors.turn" *) input wire [1:0] turn,
     (* peek = "u_monitors.compares" *) input wire compares,
@@ -49,7 +51,12 @@ module axis_monitors_properties (
     (* peek = "u_monitors.again" *) input wire again,
     (* peek = "u_monitors.kick_waits" *) input wire kick_waits,
     (* peek = "u_monitors.was_on" *) input wire was_on,
-    (* peek = "u_monitors.same_position" *) input wire same_position,
+    (* peek = "u_monitors.still_since" *) input wire signed [31:0] still_since,
+    (* peek = "u_monitors.still_backward" *) input wire still_backward,
+    (* peek = "u_monitors.drive_backward" *) input wire drive_backward,
+    (* peek = "u_monitors.motion" *) input wire signed [31:0] motion,
+    (* peek = "u_monitors.not_forward" *) input wire not_forward,
+    (* peek = "u_monitors.not_backward" *) input wire not_backward,
     (* peek = "u_monitors.on_plus" *) input wire on_plus,
     (* peek = "u_monitors.on_minus" *) input wire on_minus,
     (* peek = "u_monitors.was_on_plus" *) input wire was_on_plus,
@@ -115,7 +122,11 @@ module axis_monitors_properties (
     reg               at_plus = 1'b0, at_minus = 1'b0, was_at_plus = 1'b0, was_at_minus = 1'b0;
     reg               was_beyond_plus = 1'b0, was_beyond_minus = 1'b0;
     reg signed [31:0] velocity = 32'sd0, shaped = 32'sd0, place = 32'sd0;
-    reg               same = 1'b0, e_below = 1'b0, apart_below = 1'b0, drive_below = 1'b0;
+    // Where the position was last seen to move, or the command to change sides; how far it is from there, a clock later each.
+    reg signed [31:0] since = 32'sd0, moved = 32'sd0;
+    reg               since_below = 1'b0, up_little = 1'b0, down_little = 1'b0;
+    wire signed [31:0] distance = place - since;
+    reg               e_below = 1'b0, apart_below = 1'b0, drive_below = 1'b0;
     // What the rounds have taken so far.
     reg signed [31:0] reference = 32'sd0, plus = 32'sd0, minus = 32'sd0;
     reg        [31:0] apart_at_tick = 32'd0;
@@ -130,8 +141,10 @@ module axis_monitors_properties (
     wire [31:0] e_size = e ^ {32{e_below}}, apart_size = apart ^ {32{apart_below}}, drive_size = drive ^ {32{drive_below}};
     wire        soft = plus != 32'sd0 | minus != 32'sd0;
     wire        beyond_plus = soft & reference > plus, beyond_minus = soft & reference < minus;
-    wire        stays = shown_on & same & drive_size > drive_most;
-    wire [15:0] round =
+    wire        stays = shown_on & since_below == drive_below & drive_size > drive_most
+        & (distance >= -32'sd4 | (velocity_drive & !drive_below))
+        & (distance <= 32'sd3 | (velocity_drive & drive_below));
+    wire [16:0] round =
         (at_plus & (velocity > 32'sd0 | (!was_at_plus & shaped > 32'sd0)) ? `LIMIT_PLUS : 16'd0)
         | (at_minus & (velocity < 32'sd0 | (!was_at_minus & shaped < 32'sd0)) ? `LIMIT_MINUS : 16'd0)
         | (beyond_plus & (velocity > 32'sd0 | !was_beyond_plus) ? `SOFT_LIMIT_PLUS : 16'd0)
@@ -142,7 +155,7 @@ module axis_monitors_properties (
         | (still_most != 16'd0 & (still_long | still_for >= still_most) ? `ENCODER_LOST : 16'd0)
         | (unkicked_most != 16'd0 & (unkicked_long | unkicked_for >= unkicked_most) ? `WATCHDOG : 16'd0);
 
-    reg [15:0] suspected = 16'd0, expected = 16'd0;
+    reg [16:0] suspected = 16'd0, expected = 16'd0;
     always @(posedge clk) begin
         expected <= !rst & second & shown_on ? round & suspected : 16'd0;
         waiting <= !rst & kicked & comparing;
@@ -151,16 +164,18 @@ module axis_monitors_properties (
         if (rst) begin
             clocks <= 4'd0;
             {shown_on, at_plus, at_minus, was_at_plus, was_at_minus, was_beyond_plus, was_beyond_minus} <= 7'd0;
-            {same, e_below, apart_below, drive_below, still_long, unkicked_long} <= 6'd0;
-            {velocity, shaped, place} <= 96'd0;
+            {since_below, up_little, down_little, e_below, apart_below, drive_below, still_long, unkicked_long} <= 8'd0;
+            {velocity, shaped, place, since, moved} <= 160'd0;
             {still_for, unkicked_for, suspected} <= 48'd0;
         end else begin
+            moved <= distance;
+            up_little <= moved <= 32'sd3;
+            down_little <= moved >= -32'sd4;
             clocks <= tick ? 4'd1 : clocks == 4'd0 | second ? 4'd0 : clocks + 4'd1;
             if (tick) begin
                 {shown_on, at_plus, at_minus} <= {drive_enable, !level_limit_plus_n, !level_limit_minus_n};
                 {velocity, shaped, place} <= {command_velocity, reference_velocity, position};
                 {e_below, apart_below, drive_below} <= {error[31], deviation[31], command[31]};
-                same <= position == place;
             end
             if (first) begin
                 suspected <= round;
@@ -170,7 +185,10 @@ module axis_monitors_properties (
             if (second) begin
                 {was_at_plus, was_at_minus} <= {at_plus, at_minus};
                 {was_beyond_plus, was_beyond_minus} <= {beyond_plus, beyond_minus};
-                if (!stays) {still_long, still_for} <= 17'd0;
+                if (!stays) begin
+                    {still_long, still_for} <= 17'd0;
+                    {since, since_below} <= {place, drive_below};
+                end
             end
             if (!comparing & (kicked | !shown_on)) {unkicked_long, unkicked_for} <= 17'd0;
         end
@@ -191,11 +209,11 @@ module axis_monitors_properties (
         end
     end
 
-    wire [15:0] told = tells ? found : 16'd0;
-    wire [15:0] wrong = in_time ? told ^ expected : 16'd0;
+    wire [16:0] told = tells ? found : 16'd0;
+    wire [16:0] wrong = in_time ? told ^ expected : 16'd0;
     reg         past_second = 1'b0;
     always @(posedge clk) past_second <= second & shown_on & !rst;
-    wire [15:0] monitored = `LIMIT_PLUS | `LIMIT_MINUS | `SOFT_LIMIT_PLUS | `SOFT_LIMIT_MINUS | `FOLLOWING_ERROR | `DEVIATION
+    wire [16:0] monitored = `LIMIT_PLUS | `LIMIT_MINUS | `SOFT_LIMIT_PLUS | `SOFT_LIMIT_MINUS | `FOLLOWING_ERROR | `DEVIATION
         | `SATURATION | `ENCODER_LOST | `WATCHDOG;
     always @(*) begin
         only_at_ticks: assert (!in_time | told == 16'd0 | past_second);
@@ -244,8 +262,12 @@ module axis_monitors_properties (
         switches: assert ({on_plus, on_minus} == {at_plus, at_minus});
         ways: assert ({forward, backward} == {velocity > 32'sd0, velocity < 32'sd0});
         shaped_ways: assert ({shaped_forward, shaped_backward} == {shaped > 32'sd0, shaped < 32'sd0});
-        signs: assert ({same_position, error_negative, apart_negative, drive_negative}
-            == {same, e_below, apart_below, drive_below});
+        signs: assert ({error_negative, apart_negative, drive_negative, drive_backward}
+            == {e_below, apart_below, drive_below, drive_below});
+        since_when: assert (!in_time | {still_since, still_backward} == {since, since_below});
+        motions: assert (!in_time | {motion, not_forward, not_backward} == {moved, up_little, down_little});
+        motion_in_time: assert (!in_time | clocks < 4'd2 | moved == distance);
+        still_in_time: assert (!in_time | clocks < 4'd3 | {up_little, down_little} == {distance <= 32'sd3, distance >= -32'sd4});
         passed_before: assert (!in_time | {was_on_plus, was_on_minus, was_past_plus, was_past_minus}
             == {was_at_plus, was_at_minus, was_beyond_plus, was_beyond_minus});
         found_before: assert (!in_time | clocks < 4'd6 | found == suspected);

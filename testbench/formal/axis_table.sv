@@ -30,7 +30,7 @@ module axis_table_properties (
     input wire        segments_empty,
     input wire        segments_valid,
     input wire [2:0]  state,
-    input wire [15:0] causes,
+    input wire [16:0] causes,
     input wire        drive_enable,
     input wire        brake_release,
     input wire        segments_enable,

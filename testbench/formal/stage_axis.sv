@@ -30,7 +30,7 @@ module stage_axis_properties (
     input wire       direct_active,
     input wire [2:0] state,
     input wire       level_emergency_stop_n,
-    input wire [15:0] causes,
+    input wire [16:0] causes,
     (* peek = "u_axis.primed" *) input wire [3:0] primed,
     (* peek = "u_axis.u_emergency_stop_line.u_synchroniser.synchroniser_first" *) input wire first,
     (* peek = "u_axis.u_emergency_stop_line.u_synchroniser.synchroniser_second" *) input wire second,

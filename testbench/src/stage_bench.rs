@@ -10,7 +10,7 @@
 //! With a device every clock is stepped and compared. Without one the model runs event by event, much faster, and exactly
 //! the same. The plants hear the model.
 //!
-//! Faults: [`StageBench::set`] drives lines, [`StageBench::force_encoder`] cuts or corrupts an encoder,
+//! Faults: [`StageBench::set`] drives lines, [`StageBench::force_encoder`] and [`StageBench::break_wire`] cut or corrupt an encoder,
 //! [`StageBench::force_scale`] a scale, [`StageBench::jam`] holds an axis. What must never happen at the pins is watched in every clock: [`StageBench::watched`].
 
 mod watch;
@@ -98,9 +98,31 @@ struct Places {
 #[derive(Debug, Clone, Copy, Default)]
 struct Fault {
     encoder: Option<EncoderPins>,
-    reversed: bool,
+    wire: Option<Wire>,
     scale: Option<EncoderPins>,
     jammed: bool,
+}
+
+/// A fault of one wire of an encoder.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Wire {
+    /// A stays at this level.
+    AStuck(bool),
+    /// B does.
+    BStuck(bool),
+    /// A has the wires of its pair exchanged: the encoder counts the other way.
+    AInverted,
+}
+
+impl Wire {
+    /// What the lines are then.
+    fn of(self, lines: EncoderPins) -> EncoderPins {
+        match self {
+            Self::AStuck(a) => EncoderPins { a, ..lines },
+            Self::BStuck(b) => EncoderPins { b, ..lines },
+            Self::AInverted => EncoderPins { a: !lines.a, ..lines },
+        }
+    }
 }
 
 /// A net to look at often: see [`StageBench::probe`].
@@ -261,13 +283,12 @@ impl StageBench {
         self.faults[axis].encoder = pins;
     }
 
-    /// Reverses the direction in which the lines of an axis's encoder count: A is inverted, so that at this moment they make one
-    /// step and no illegal one.
-    pub fn reverse_encoder(&mut self, axis: usize, reversed: bool) {
-        self.faults[axis].reversed = reversed;
+    /// One wire of an axis's encoder is broken, from the next clock on; `None`: none is.
+    pub fn break_wire(&mut self, axis: usize, wire: Option<Wire>) {
+        self.faults[axis].wire = wire;
     }
 
-    /// The lines A and B of an axis's scale are these; `None`: the plant's.
+    /// The same for A and B of its scale, as [`force_encoder`](Self::force_encoder).
     pub fn force_scale(&mut self, axis: usize, pins: Option<EncoderPins>) {
         self.faults[axis].scale = pins;
     }
@@ -361,8 +382,8 @@ impl StageBench {
             let axes = self.plants.iter().zip(&self.places).zip(&self.faults);
             for (((plant, places), fault), watched) in axes.zip(&mut self.watched) {
                 watched.look(self.model.value(places.recorded[2]), plant);
-                let mut pins = fault.encoder.unwrap_or_else(|| plant.encoder());
-                pins.a ^= fault.reversed;
+                let lines = fault.wire.map_or(plant.encoder(), |wire| wire.of(plant.encoder()));
+                let pins = fault.encoder.unwrap_or(lines);
                 for (place, level) in places.encoder.into_iter().zip([pins.a, pins.b, pins.z]) {
                     self.inputs[place] = level.into();
                 }

@@ -114,3 +114,18 @@ fn lockstep_catches_a_shaper_that_is_let_go_before_its_first_sample() {
         100_000,
     );
 }
+
+#[test]
+fn lockstep_catches_a_rotary_axis_that_is_held_in_a_range() {
+    caught(&block(), "far & !modulo", "far & modulo", 300_000);
+}
+
+#[test]
+fn lockstep_catches_a_motion_of_the_wrong_sign() {
+    caught(
+        &block(),
+        "motion_next = captured - still_since",
+        "motion_next = still_since - captured",
+        300_000,
+    );
+}

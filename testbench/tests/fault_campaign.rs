@@ -5,12 +5,18 @@
 
 use std::thread;
 
-use posicast_model::control::Supervision;
+use posicast_model::control::{self, Supervision};
+use posicast_model::design::design_machine;
+use posicast_model::motion::{TickLimits, plan_move};
+use posicast_model::plant::axis::{AxisPlant, PlantOptions};
+use posicast_model::rtl::axis::Cause;
 use posicast_model::rtl::component::Component;
+use posicast_model::spec::{self, Machine, PwmMode};
 use posicast_testbench::Error;
 use posicast_testbench::blocks::{ComponentBlock, Sources};
 use posicast_testbench::fault_campaign::{Bed, Kind, Report, TABLE, run, run_with_rtl};
 use posicast_testbench::lockstep::Device;
+use posicast_testbench::stage_bench::{StageBench, Wire, state};
 
 /// Cases of every kind.
 const ROUNDS: u64 = 8;
@@ -61,6 +67,89 @@ fn lockstep_faults_with_the_rtl_beside_the_model() {
     let first = number(Kind::RawFaultOneClock);
     let report = run_with_rtl(&bed, first..first + 3, SEED, device).unwrap();
     assert_eq!(report.failures(), [""; 0], "{report}");
+}
+
+#[test]
+fn unit_a_lost_encoder_is_seen_in_every_mode_of_pwm_and_encoder() {
+    // A half bridge pushes one way only, and does not do these moves: it is in the test below.
+    for mode in [PwmMode::Direction, PwmMode::FullBridge, PwmMode::LockedAntiphase] {
+        for (filter_clocks, drive) in [(0, 0.5), (8, 0.6), (16, 0.5)] {
+            let bed = Bed::of(|axis| {
+                axis.pwm.as_mut().unwrap().mode = mode;
+                axis.encoder.as_mut().unwrap().filter_clocks = filter_clocks;
+                // Nothing but the watch of the encoder sees it: no scale to compare with, no time of saturation.
+                let limits = axis.limits.as_mut().unwrap();
+                (limits.deviation, limits.saturation_s) = (None, 0.0);
+                limits.encoder_lost_command = drive;
+            });
+            let bed = bed.unwrap();
+            for kind in [Kind::EncoderLineStuck, Kind::EncoderLineStuckUnwatched] {
+                let cases = (0..3).map(|round| number(kind) + round * TABLE.len() as u64);
+                for case in cases {
+                    let report = run(&bed, case..case + 1, SEED, 1).unwrap();
+                    // The gains are those of another mode: where small moves end is not what is asked here.
+                    let mut failures = report.failures().to_vec();
+                    failures.retain(|failure| !failure.ends_with("after the fault"));
+                    assert_eq!(failures, [""; 0], "{mode:?}, filter {filter_clocks}: {report}");
+                }
+            }
+        }
+    }
+}
+
+/// The machine with which an encoder of one stuck line was not seen: 118,622 counts at full speed, without a cause.
+const LOST_ENCODER: &str = include_str!("fixtures/lost-encoder.toml");
+
+#[test]
+fn unit_a_line_that_is_stuck_stops_the_machine_without_a_following_error() {
+    for mode in [
+        PwmMode::Direction,
+        PwmMode::HalfBridge,
+        PwmMode::FullBridge,
+        PwmMode::LockedAntiphase,
+    ] {
+        let mut machine = spec::parse("lost-encoder.toml", LOST_ENCODER).unwrap();
+        machine.axes[0].pwm.as_mut().unwrap().mode = mode;
+        stuck_lines_stop(&machine);
+    }
+}
+
+/// Each line, at each level, stuck at full speed.
+fn stuck_lines_stop(machine: &Machine) {
+    let design = design_machine(machine).unwrap();
+    let stage = control::stage(machine, &design).unwrap().unwrap();
+    let watched = stage.config.axes[0].supervision;
+    assert_eq!((watched.following_error_limit, watched.lost_ticks), (0, 100));
+    let component = Component::stage(&stage.config).unwrap();
+    let plant = |axis| AxisPlant::new(axis, &machine.clock, &PlantOptions::default()).unwrap();
+    for stuck in 0..4 {
+        let plants = machine.axes.iter().map(plant).collect();
+        let mut bench = StageBench::new(&stage.config, &component, plants, None, SEED).unwrap();
+        assert!(bench.switch_on(200_000).unwrap());
+        let limits = TickLimits::of_axis(&machine.axes[0], &machine.clock);
+        for entry in plan_move(0, 200_000 << 8, &limits).unwrap() {
+            bench.segment("x", &entry).unwrap();
+        }
+        bench.write("start", 1).unwrap();
+        bench.clocks(200_000).unwrap();
+        let (at, lines) = (bench.plant(0).count(), bench.plant(0).encoder());
+        let wires = [
+            Wire::AStuck(lines.a),
+            Wire::BStuck(lines.b),
+            Wire::AStuck(!lines.a),
+            Wire::BStuck(!lines.b),
+        ];
+        bench.break_wire(0, Some(wires[stuck]));
+        assert!(bench.wait("x", state::FAULT, 1_000_000).unwrap(), "{stuck}: it runs on");
+        assert_ne!(
+            u64::from(Cause::EncoderLost.bit()) & bench.net("x_causes").unwrap(),
+            0,
+            "{stuck}"
+        );
+        // At most the whole speed for the time of the watch, and what comes before and after.
+        let on = (bench.plant(0).count() - at).abs();
+        assert!(on < 150 * 50, "{stuck}: {on} counts");
+    }
 }
 
 #[test]

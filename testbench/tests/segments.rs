@@ -70,3 +70,18 @@ fn lockstep_catches_an_acceleration_that_wraps() {
         300_000,
     );
 }
+
+#[test]
+fn lockstep_catches_a_command_that_goes_on_to_the_end_of_its_word() {
+    caught(
+        &segments(),
+        "leaves = past_reach & moving",
+        "leaves = stands & moving",
+        300_000,
+    );
+}
+
+#[test]
+fn lockstep_catches_a_stop_that_slows_down_past_the_end_of_its_word() {
+    caught(&segments(), "brakes & stands", "brakes & moves", 300_000);
+}

@@ -39,7 +39,9 @@ pub(super) struct Axis {
     pub(super) saturation_ticks: Signal<In, Bits<16>>,
     pub(super) lost_command: Signal<In, Bits<32>>,
     pub(super) lost_ticks: Signal<In, Bits<16>>,
+    pub(super) velocity_drive: Signal<In, Bit>,
     pub(super) watchdog_ticks: Signal<In, Bits<16>>,
+    pub(super) modulo: Signal<In, Bit>,
     pub(super) position: Signal<In, Signed<32>>,
     pub(super) deviation: Signal<In, Signed<32>>,
     pub(super) segments_state: Signal<In, Bits<2>>,
@@ -48,13 +50,17 @@ pub(super) struct Axis {
     pub(super) segments_underrun: Signal<In, Bit>,
     pub(super) segments_overflow: Signal<In, Bit>,
     pub(super) segments_tick_missed: Signal<In, Bit>,
+    pub(super) segments_out_of_range: Signal<In, Bit>,
     pub(super) command_velocity: Signal<In, Signed<32>>,
     pub(super) reference_position: Signal<In, Signed<32>>,
     pub(super) reference_velocity: Signal<In, Signed<32>>,
+    pub(super) shaper_saturated: Signal<In, Bit>,
     pub(super) shaper_overrun: Signal<In, Bit>,
     pub(super) error: Signal<In, Signed<32>>,
     pub(super) command: Signal<In, Signed<32>>,
     pub(super) limited_ticks: Signal<In, Bits<16>>,
+    pub(super) saturated_high: Signal<In, Bits<7>>,
+    pub(super) saturated_low: Signal<In, Bits<7>>,
     pub(super) controller_overrun: Signal<In, Bit>,
     pub(super) pwm_tripped: Signal<In, Bit>,
     pub(super) encoder_illegal: Signal<In, Bit>,
@@ -63,7 +69,7 @@ pub(super) struct Axis {
     pub(super) scale_illegal: Signal<In, Bit>,
     pub(super) scale_disagreement: Signal<In, Bit>,
     pub(super) state: Signal<Out, Bits<3>>,
-    pub(super) causes: Signal<Out, Bits<16>>,
+    pub(super) causes: Signal<Out, Bits<17>>,
     pub(super) drive_enable: Signal<Out, Bit>,
     pub(super) brake_release: Signal<Out, Bit>,
     pub(super) pwm_enable: Signal<Out, Bit>,
@@ -106,6 +112,7 @@ pub(super) struct Axis {
     clear_due: Dff<Bit>,
     clear_sources_q: Dff<Bit>,
     tripping: Dff<Bit>,
+    out_of_range: Dff<Bit>,
 
     ready: Signal<Local, Bit>,
     filters: Signal<Local, Bit>,
@@ -114,6 +121,11 @@ pub(super) struct Axis {
     group_stops: Signal<Local, Bit>,
     encoder: Signal<Local, Bit>,
     scale: Signal<Local, Bit>,
+    segments_failed: Signal<Local, Bit>,
+    count_bits: Signal<Local, Bits<32>>,
+    count_above: Signal<Local, Bits<9>>,
+    count_end: Signal<Local, Bits<6>>,
+    far: Signal<Local, Bit>,
 
     first_clock: Constant<Bits<4>>,
     no_clocks: Constant<Bits<4>>,
@@ -154,7 +166,9 @@ impl Default for Axis {
             saturation_ticks: Signal::default(),
             lost_command: Signal::default(),
             lost_ticks: Signal::default(),
+            velocity_drive: Signal::default(),
             watchdog_ticks: Signal::default(),
+            modulo: Signal::default(),
             position: Signal::default(),
             deviation: Signal::default(),
             segments_state: Signal::default(),
@@ -163,13 +177,17 @@ impl Default for Axis {
             segments_underrun: Signal::default(),
             segments_overflow: Signal::default(),
             segments_tick_missed: Signal::default(),
+            segments_out_of_range: Signal::default(),
             command_velocity: Signal::default(),
             reference_position: Signal::default(),
             reference_velocity: Signal::default(),
+            shaper_saturated: Signal::default(),
             shaper_overrun: Signal::default(),
             error: Signal::default(),
             command: Signal::default(),
             limited_ticks: Signal::default(),
+            saturated_high: Signal::default(),
+            saturated_low: Signal::default(),
             controller_overrun: Signal::default(),
             pwm_tripped: Signal::default(),
             encoder_illegal: Signal::default(),
@@ -219,6 +237,7 @@ impl Default for Axis {
             clear_due: Dff::default(),
             clear_sources_q: Dff::default(),
             tripping: Dff::default(),
+            out_of_range: Dff::default(),
             ready: Signal::default(),
             filters: Signal::default(),
             own_emergency: Signal::default(),
@@ -226,6 +245,11 @@ impl Default for Axis {
             group_stops: Signal::default(),
             encoder: Signal::default(),
             scale: Signal::default(),
+            segments_failed: Signal::default(),
+            count_bits: Signal::default(),
+            count_above: Signal::default(),
+            count_end: Signal::default(),
+            far: Signal::default(),
             first_clock: Constant::new(from_u64(1)),
             no_clocks: Constant::new(from_u64(0)),
             one_clock: Constant::new(from_u64(1)),
@@ -240,7 +264,16 @@ impl Logic for Axis {
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module axis");
-        dff_setup!(self, clk, primed, clear_left, clear_due, clear_sources_q, tripping);
+        dff_setup!(
+            self,
+            clk,
+            primed,
+            clear_left,
+            clear_due,
+            clear_sources_q,
+            tripping,
+            out_of_range
+        );
 
         comment!("After reset, and with nothing to filter, levels");
         comment!("are taken as they are");
@@ -293,6 +326,7 @@ impl Logic for Axis {
         self.monitors.saturation_ticks.next = self.saturation_ticks.val();
         self.monitors.lost_command.next = self.lost_command.val();
         self.monitors.lost_ticks.next = self.lost_ticks.val();
+        self.monitors.velocity_drive.next = self.velocity_drive.val();
         self.monitors.watchdog_ticks.next = self.watchdog_ticks.val();
         self.monitors.position.next = self.position.val();
         self.monitors.deviation.next = self.deviation.val();
@@ -302,6 +336,20 @@ impl Logic for Axis {
         self.monitors.error.next = self.error.val();
         self.monitors.command.next = self.command.val();
         self.monitors.limited_ticks.next = self.limited_ticks.val();
+
+        comment!("The range of the position's word: its last 64th");
+        comment!("at either end, and what was cut to its word");
+        self.count_bits.next = unsigned_cast(self.position.val());
+        self.count_above.next = self.count_bits.val().get_bits::<9>(23);
+        self.count_end.next = self.count_bits.val().get_bits::<6>(17);
+        self.far.next = self.count_above.val().any() | self.count_end.val().all();
+        if self.count_bits.val().get_bit(31) {
+            self.far.next = !self.count_above.val().all() | !self.count_end.val().any();
+        }
+        self.out_of_range.d.next = (self.far.val() & !self.modulo.val())
+            | self.shaper_saturated.val()
+            | self.saturated_high.val().get_bit(0)
+            | self.saturated_low.val().get_bit(0);
 
         comment!("Causes");
         self.own_emergency.next = self.ready.val() & !self.emergency_stop_line.level.val();
@@ -316,7 +364,10 @@ impl Logic for Axis {
         self.cause_word.tripped.next = self.pwm_tripped.val();
         self.cause_word.drive_lost.next = self.states.on.val() & !self.drive_line.level.val();
         self.cause_word.encoder_error.next = self.encoder.val() | self.scale.val();
-        self.cause_word.segments_failed.next = self.segments_underrun.val() | self.segments_overflow.val();
+        self.segments_failed.next =
+            self.segments_underrun.val() | self.segments_overflow.val() | self.segments_out_of_range.val();
+        self.cause_word.segments_failed.next = self.segments_failed.val();
+        self.cause_word.out_of_range.next = self.out_of_range.q.val() & (self.states.on.val() | self.enable.val());
         self.group_stops.next = self.states.on.val() & self.group_stop.val();
         self.cause_word.group_stops.next = self.group_stops.val() & !self.states.wants_group_stop.val();
         self.cause_word.group_stop.next = self.group_stops.val();

@@ -29,6 +29,7 @@ pub(super) struct Monitors {
     pub(super) saturation_ticks: Signal<In, Bits<16>>,
     pub(super) lost_command: Signal<In, Bits<32>>,
     pub(super) lost_ticks: Signal<In, Bits<16>>,
+    pub(super) velocity_drive: Signal<In, Bit>,
     pub(super) watchdog_ticks: Signal<In, Bits<16>>,
     pub(super) position: Signal<In, Signed<32>>,
     pub(super) deviation: Signal<In, Signed<32>>,
@@ -38,7 +39,7 @@ pub(super) struct Monitors {
     pub(super) error: Signal<In, Signed<32>>,
     pub(super) command: Signal<In, Signed<32>>,
     pub(super) limited_ticks: Signal<In, Bits<16>>,
-    pub(super) causes: Signal<Out, Bits<16>>,
+    pub(super) causes: Signal<Out, Bits<17>>,
     pub(super) captured_position: Signal<Out, Signed<32>>,
 
     captured: Dff<Signed<32>>,
@@ -71,10 +72,19 @@ pub(super) struct Monitors {
     backward: Dff<Bit>,
     shaped_forward: Dff<Bit>,
     shaped_backward: Dff<Bit>,
-    same_position: Dff<Bit>,
-    found: Dff<Bits<16>>,
+    drive_backward: Dff<Bit>,
+    still_since: Dff<Signed<32>>,
+    still_backward: Dff<Bit>,
+    motion: Dff<Signed<32>>,
+    not_forward: Dff<Bit>,
+    not_backward: Dff<Bit>,
+    found: Dff<Bits<17>>,
 
     command_velocity_bits: Signal<Local, Bits<32>>,
+    command_bits: Signal<Local, Bits<32>>,
+    motion_bits: Signal<Local, Bits<32>>,
+    motion_above: Signal<Local, Bits<30>>,
+    not_its_way: Signal<Local, Bit>,
     reference_velocity_bits: Signal<Local, Bits<32>>,
     takes: Signal<Local, Bit>,
     last_byte: Signal<Local, Bit>,
@@ -85,28 +95,28 @@ pub(super) struct Monitors {
     limit_minus: Signal<Local, Bit>,
     soft_plus: Signal<Local, Bit>,
     soft_minus: Signal<Local, Bit>,
-    by_limit_plus: Signal<Local, Bits<16>>,
-    by_limit_minus: Signal<Local, Bits<16>>,
-    by_soft_plus: Signal<Local, Bits<16>>,
-    by_soft_minus: Signal<Local, Bits<16>>,
-    by_error_trip: Signal<Local, Bits<16>>,
-    by_deviation_trip: Signal<Local, Bits<16>>,
-    by_saturation_trip: Signal<Local, Bits<16>>,
-    by_lost_trip: Signal<Local, Bits<16>>,
-    by_watchdog_trip: Signal<Local, Bits<16>>,
-    shown: Signal<Local, Bits<16>>,
+    by_limit_plus: Signal<Local, Bits<17>>,
+    by_limit_minus: Signal<Local, Bits<17>>,
+    by_soft_plus: Signal<Local, Bits<17>>,
+    by_soft_minus: Signal<Local, Bits<17>>,
+    by_error_trip: Signal<Local, Bits<17>>,
+    by_deviation_trip: Signal<Local, Bits<17>>,
+    by_saturation_trip: Signal<Local, Bits<17>>,
+    by_lost_trip: Signal<Local, Bits<17>>,
+    by_watchdog_trip: Signal<Local, Bits<17>>,
+    shown: Signal<Local, Bits<17>>,
 
     one_turn: Constant<Bits<2>>,
-    no_causes: Constant<Bits<16>>,
-    of_limit_plus: Constant<Bits<16>>,
-    of_limit_minus: Constant<Bits<16>>,
-    of_soft_plus: Constant<Bits<16>>,
-    of_soft_minus: Constant<Bits<16>>,
-    of_error_trip: Constant<Bits<16>>,
-    of_deviation_trip: Constant<Bits<16>>,
-    of_saturation_trip: Constant<Bits<16>>,
-    of_lost_trip: Constant<Bits<16>>,
-    of_watchdog_trip: Constant<Bits<16>>,
+    no_causes: Constant<Bits<17>>,
+    of_limit_plus: Constant<Bits<17>>,
+    of_limit_minus: Constant<Bits<17>>,
+    of_soft_plus: Constant<Bits<17>>,
+    of_soft_minus: Constant<Bits<17>>,
+    of_error_trip: Constant<Bits<17>>,
+    of_deviation_trip: Constant<Bits<17>>,
+    of_saturation_trip: Constant<Bits<17>>,
+    of_lost_trip: Constant<Bits<17>>,
+    of_watchdog_trip: Constant<Bits<17>>,
 }
 
 impl Default for Monitors {
@@ -126,6 +136,7 @@ impl Default for Monitors {
             saturation_ticks: Signal::default(),
             lost_command: Signal::default(),
             lost_ticks: Signal::default(),
+            velocity_drive: Signal::default(),
             watchdog_ticks: Signal::default(),
             position: Signal::default(),
             deviation: Signal::default(),
@@ -164,9 +175,18 @@ impl Default for Monitors {
             backward: Dff::default(),
             shaped_forward: Dff::default(),
             shaped_backward: Dff::default(),
-            same_position: Dff::default(),
+            drive_backward: Dff::default(),
+            still_since: Dff::default(),
+            still_backward: Dff::default(),
+            motion: Dff::default(),
+            not_forward: Dff::default(),
+            not_backward: Dff::default(),
             found: Dff::default(),
             command_velocity_bits: Signal::default(),
+            command_bits: Signal::default(),
+            motion_bits: Signal::default(),
+            motion_above: Signal::default(),
+            not_its_way: Signal::default(),
             reference_velocity_bits: Signal::default(),
             takes: Signal::default(),
             last_byte: Signal::default(),
@@ -228,7 +248,12 @@ impl Logic for Monitors {
             backward,
             shaped_forward,
             shaped_backward,
-            same_position,
+            drive_backward,
+            still_since,
+            still_backward,
+            motion,
+            not_forward,
+            not_backward,
             found
         );
 
@@ -247,11 +272,12 @@ impl Logic for Monitors {
         self.tells.d.next = self.over.val() & self.was_on.q.val();
 
         comment!("What the tick shows");
+        self.command_bits.next = unsigned_cast(self.command.val());
         self.command_velocity_bits.next = unsigned_cast(self.command_velocity.val());
         self.reference_velocity_bits.next = unsigned_cast(self.reference_velocity.val());
         if self.tick.val() {
             self.captured.d.next = self.position.val();
-            self.same_position.d.next = self.position.val() == self.captured.q.val();
+            self.drive_backward.d.next = self.command_bits.val().get_bit(31);
             self.was_on.d.next = self.on.val();
             self.on_plus.d.next = self.on_limit_plus.val();
             self.on_minus.d.next = self.on_limit_minus.val();
@@ -327,7 +353,26 @@ impl Logic for Monitors {
         self.saturating.ticks.next = self.limited_nibbles.part.val();
         self.saturating.endless.next = false;
         self.saturating.limit.next = self.saturation_ticks.val();
-        self.stands.next = self.was_on.q.val() & self.same_position.q.val() & self.commands.exceeds.val();
+        comment!("Moved since it last stood still, a clock each");
+        self.motion.d.next = self.captured.q.val() - self.still_since.q.val();
+        self.motion_bits.next = unsigned_cast(self.motion.q.val());
+        self.motion_above.next = self.motion_bits.val().get_bits::<30>(2);
+        self.not_forward.d.next = self.motion_bits.val().get_bit(31) | !self.motion_above.val().any();
+        self.not_backward.d.next = !self.motion_bits.val().get_bit(31) | self.motion_above.val().all();
+        comment!("Against a velocity's command is as not at all");
+        self.not_its_way.next = self.not_forward.q.val();
+        if self.drive_backward.q.val() {
+            self.not_its_way.next = self.not_backward.q.val();
+        }
+        self.stands.next = self.was_on.q.val()
+            & self.not_its_way.val()
+            & (self.velocity_drive.val() | (self.not_forward.q.val() & self.not_backward.q.val()))
+            & (self.drive_backward.q.val() == self.still_backward.q.val())
+            & self.commands.exceeds.val();
+        if self.over.val() & !self.stands.val() {
+            self.still_since.d.next = self.captured.q.val();
+            self.still_backward.d.next = self.drive_backward.q.val();
+        }
         self.still.clk.next = self.clk.val();
         self.still.rst.next = self.rst.val();
         self.still.tick.next = self.tick.val();

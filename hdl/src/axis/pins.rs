@@ -39,7 +39,9 @@ impl Pins for Axis {
         self.saturation_ticks.next = from_u64(word());
         self.lost_command.next = from_u64(word());
         self.lost_ticks.next = from_u64(word());
+        self.velocity_drive.next = word() & 1 != 0;
         self.watchdog_ticks.next = from_u64(word());
+        self.modulo.next = word() & 1 != 0;
         self.position.next = from_i64(word() as i64);
         self.deviation.next = from_i64(word() as i64);
         self.segments_state.next = from_u64(word());
@@ -48,13 +50,17 @@ impl Pins for Axis {
         self.segments_underrun.next = word() & 1 != 0;
         self.segments_overflow.next = word() & 1 != 0;
         self.segments_tick_missed.next = word() & 1 != 0;
+        self.segments_out_of_range.next = word() & 1 != 0;
         self.command_velocity.next = from_i64(word() as i64);
         self.reference_position.next = from_i64(word() as i64);
         self.reference_velocity.next = from_i64(word() as i64);
+        self.shaper_saturated.next = word() & 1 != 0;
         self.shaper_overrun.next = word() & 1 != 0;
         self.error.next = from_i64(word() as i64);
         self.command.next = from_i64(word() as i64);
         self.limited_ticks.next = from_u64(word());
+        self.saturated_high.next = from_u64(word());
+        self.saturated_low.next = from_u64(word());
         self.controller_overrun.next = word() & 1 != 0;
         self.pwm_tripped.next = word() & 1 != 0;
         self.encoder_illegal.next = word() & 1 != 0;

@@ -16,6 +16,7 @@ pub(super) struct Integrator {
     pub(super) brakes: Signal<In, Bit>,
     pub(super) moves: Signal<In, Bit>,
     pub(super) points: Signal<In, Bit>,
+    pub(super) modulo: Signal<In, Bit>,
     pub(super) preset_position: Signal<In, Signed<32>>,
     pub(super) stop_deceleration: Signal<In, Bits<31>>,
     pub(super) read_data: Signal<In, Bits<32>>,
@@ -25,6 +26,7 @@ pub(super) struct Integrator {
     pub(super) acceleration: Signal<Out, Signed<32>>,
     pub(super) at_rest: Signal<Out, Bit>,
     pub(super) overflowed: Signal<Out, Bit>,
+    pub(super) leaves: Signal<Out, Bit>,
     pub(super) entry_ends: Signal<Out, Bit>,
     pub(super) decides: Signal<Out, Bit>,
     pub(super) reads_flags: Signal<Out, Bit>,
@@ -57,6 +59,13 @@ pub(super) struct Integrator {
     gathered: Signal<Local, Bits<8>>,
     shifted_addend: Signal<Local, Bits<10>>,
     backwards: Signal<Local, Bit>,
+    below: Signal<Local, Bit>,
+    outwards: Signal<Local, Bit>,
+    past_reach: Signal<Local, Bit>,
+    stands: Signal<Local, Bit>,
+    upper_bits: Signal<Local, Bits<6>>,
+    reach_bits: Signal<Local, Bits<5>>,
+    stand_bit: Signal<Local, Bit>,
     starts_point: Signal<Local, Bit>,
     preset_word: Signal<Local, Bits<32>>,
     preset_bits: Signal<Local, Bits<24>>,
@@ -70,6 +79,8 @@ pub(super) struct Integrator {
     acceleration_half: Signal<Local, Bits<33>>,
 
     nil: Constant<Bits<8>>,
+    full_reach: Constant<Bits<5>>,
+    no_reach: Constant<Bits<5>>,
     carry_in: Constant<Bits<10>>,
     half: Constant<Bits<33>>,
     no_half: Constant<Bits<33>>,
@@ -90,6 +101,7 @@ impl Default for Integrator {
             brakes: Signal::default(),
             moves: Signal::default(),
             points: Signal::default(),
+            modulo: Signal::default(),
             preset_position: Signal::default(),
             stop_deceleration: Signal::default(),
             read_data: Signal::default(),
@@ -99,6 +111,7 @@ impl Default for Integrator {
             acceleration: Signal::default(),
             at_rest: Signal::default(),
             overflowed: Signal::default(),
+            leaves: Signal::default(),
             entry_ends: Signal::default(),
             decides: Signal::default(),
             reads_flags: Signal::default(),
@@ -128,6 +141,13 @@ impl Default for Integrator {
             gathered: Signal::default(),
             shifted_addend: Signal::default(),
             backwards: Signal::default(),
+            below: Signal::default(),
+            outwards: Signal::default(),
+            past_reach: Signal::default(),
+            stands: Signal::default(),
+            upper_bits: Signal::default(),
+            reach_bits: Signal::default(),
+            stand_bit: Signal::default(),
             starts_point: Signal::default(),
             preset_word: Signal::default(),
             preset_bits: Signal::default(),
@@ -140,6 +160,8 @@ impl Default for Integrator {
             velocity_half: Signal::default(),
             acceleration_half: Signal::default(),
             nil: Constant::new(from_u64(0)),
+            full_reach: Constant::new(from_u64(31)),
+            no_reach: Constant::new(from_u64(0)),
             carry_in: Constant::new(from_u64(1)),
             half: Constant::new(from_u64(1)),
             no_half: Constant::new(from_u64(0)),
@@ -231,9 +253,22 @@ impl Logic for Integrator {
             + self.shifted_addend.val().replace_bit(0, self.carry.q.val());
         self.sum.next = self.wide_sum.val().get_bits::<8>(1);
         self.backwards.next = self.exact_velocity.q.val().get_bit(47);
+        comment!("In the last 32nd before an end of the word, and");
+        comment!("outwards; in the last 64th a stop stands at once");
+        self.below.next = self.exact_position.q.val().get_bit(55);
+        self.outwards.next = (self.backwards.val() == self.below.val()) & !self.modulo.val();
+        self.upper_bits.next = self.exact_position.q.val().get_bits::<6>(49);
+        self.reach_bits.next = self.upper_bits.val().get_bits::<5>(1);
+        self.stand_bit.next = self.upper_bits.val().get_bit(0);
+        self.past_reach.next = self.outwards.val() & (self.reach_bits.val() == self.full_reach.val());
+        if self.below.val() {
+            self.past_reach.next = self.outwards.val() & (self.reach_bits.val() == self.no_reach.val());
+        }
+        self.stands.next = self.past_reach.val() & (self.stand_bit.val() != self.below.val());
         self.carry.d.next = self.wide_sum.val().get_bit(9);
         if self.passes.first.val() {
-            self.carry.d.next = self.passes.carry.val() | (self.brakes.val() & !self.backwards.val());
+            self.carry.d.next =
+                self.passes.carry.val() | (self.brakes.val() & !self.backwards.val() & !self.stands.val());
         }
 
         comment!("Beyond the end; a change of sign; any motion");
@@ -274,7 +309,11 @@ impl Logic for Integrator {
             }
         }
         self.starts_point.next = self.takes_tick.val() & self.points.val() & !self.brakes.val();
-        if self.preset.val() | self.starts_point.val() | self.passes.clear_acceleration.val() {
+        if self.preset.val()
+            | self.starts_point.val()
+            | (self.brakes.val() & self.stands.val())
+            | self.passes.clear_acceleration.val()
+        {
             self.exact_acceleration.d.next = self.no_acceleration.val();
         }
 
@@ -336,6 +375,7 @@ impl Logic for Integrator {
         comment!("What comes of the tick");
         self.at_rest.next = !self.moving.q.val();
         self.overflowed.next = self.passes.failed.val();
+        self.leaves.next = self.past_reach.val() & self.moving.q.val();
         self.entry_ends.next = self.carry.q.val();
         self.decides.next = self.passes.decides.val();
         self.reads_flags.next = self.passes.reads_flags.val();

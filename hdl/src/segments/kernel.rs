@@ -27,6 +27,7 @@ pub(super) struct Segments {
     pub(super) stop_deceleration: Signal<In, Bits<31>>,
     pub(super) low_water: Signal<In, Bits<6>>,
     pub(super) clear_flags: Signal<In, Bit>,
+    pub(super) modulo: Signal<In, Bit>,
     pub(super) position: Signal<Out, Signed<32>>,
     pub(super) velocity: Signal<Out, Signed<32>>,
     pub(super) acceleration: Signal<Out, Signed<32>>,
@@ -42,6 +43,7 @@ pub(super) struct Segments {
     pub(super) refused: Signal<Out, Bit>,
     pub(super) malformed: Signal<Out, Bit>,
     pub(super) tick_missed: Signal<Out, Bit>,
+    pub(super) out_of_range: Signal<Out, Bit>,
 
     fifo: CommandFifo,
     integrator: Integrator,
@@ -67,6 +69,7 @@ pub(super) struct Segments {
     refused_q: Dff<Bit>,
     malformed_q: Dff<Bit>,
     tick_missed_q: Dff<Bit>,
+    out_of_range_q: Dff<Bit>,
 
     flush_now: Signal<Local, Bit>,
     quick_stop_now: Signal<Local, Bit>,
@@ -109,6 +112,7 @@ impl Default for Segments {
             stop_deceleration: Signal::default(),
             low_water: Signal::default(),
             clear_flags: Signal::default(),
+            modulo: Signal::default(),
             position: Signal::default(),
             velocity: Signal::default(),
             acceleration: Signal::default(),
@@ -124,6 +128,7 @@ impl Default for Segments {
             refused: Signal::default(),
             malformed: Signal::default(),
             tick_missed: Signal::default(),
+            out_of_range: Signal::default(),
             fifo: CommandFifo::default(),
             integrator: Integrator::default(),
             phase: Dff::default(),
@@ -147,6 +152,7 @@ impl Default for Segments {
             refused_q: Dff::default(),
             malformed_q: Dff::default(),
             tick_missed_q: Dff::default(),
+            out_of_range_q: Dff::default(),
             flush_now: Signal::default(),
             quick_stop_now: Signal::default(),
             restart_now: Signal::default(),
@@ -198,7 +204,8 @@ impl Logic for Segments {
             overflow_q,
             refused_q,
             malformed_q,
-            tick_missed_q
+            tick_missed_q,
+            out_of_range_q
         );
         self.fifo.clk.next = self.clk.val();
         self.fifo.rst.next = self.rst.val();
@@ -219,6 +226,7 @@ impl Logic for Segments {
             self.refused_q.d.next = false;
             self.malformed_q.d.next = false;
             self.tick_missed_q.d.next = false;
+            self.out_of_range_q.d.next = false;
         }
         if self.fifo.refused.val() {
             self.refused_q.d.next = true;
@@ -281,6 +289,7 @@ impl Logic for Segments {
         self.integrator.brakes.next =
             self.takes_tick.val() & !self.preset_now.val() & (self.stops.val() | self.to_stop.val());
         self.integrator.moves.next = self.moves.val();
+        self.integrator.modulo.next = self.modulo.val();
         self.integrator.points.next = self.points.val();
         self.integrator.preset_position.next = self.preset_position.val();
         self.integrator.stop_deceleration.next = self.stop_deceleration.val();
@@ -295,8 +304,12 @@ impl Logic for Segments {
             self.acceleration_q.d.next = self.integrator.acceleration.val();
             self.valid_q.d.next = true;
             if self.moves.val() {
-                if self.integrator.overflowed.val() {
-                    self.overflow_q.d.next = true;
+                if self.integrator.overflowed.val() | self.integrator.leaves.val() {
+                    if self.integrator.overflowed.val() {
+                        self.overflow_q.d.next = true;
+                    } else {
+                        self.out_of_range_q.d.next = true;
+                    }
                     self.state_q.d.next = self.stop_state.val();
                     self.drops.next = true;
                 } else {
@@ -370,5 +383,6 @@ impl Logic for Segments {
         self.refused.next = self.refused_q.q.val();
         self.malformed.next = self.malformed_q.q.val();
         self.tick_missed.next = self.tick_missed_q.q.val();
+        self.out_of_range.next = self.out_of_range_q.q.val();
     }
 }

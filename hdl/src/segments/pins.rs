@@ -25,6 +25,7 @@ impl Pins for Segments {
             stop_deceleration,
             low_water,
             clear_flags,
+            modulo,
         ] = inputs
         else {
             return;
@@ -44,6 +45,7 @@ impl Pins for Segments {
         self.stop_deceleration.next = from_u64(stop_deceleration);
         self.low_water.next = from_u64(low_water);
         self.clear_flags.next = bit(clear_flags);
+        self.modulo.next = bit(modulo);
     }
 
     fn read(&self, outputs: &mut [u64]) {
@@ -63,6 +65,7 @@ impl Pins for Segments {
             u64::from(self.refused.val()),
             u64::from(self.malformed.val()),
             u64::from(self.tick_missed.val()),
+            u64::from(self.out_of_range.val()),
         ];
         for (output, value) in outputs.iter_mut().zip(shown) {
             *output = value;

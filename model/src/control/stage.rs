@@ -109,7 +109,7 @@ pub fn stage(machine: &Machine, design: &MachineDesign) -> Result<Option<Machine
         };
         let shaper = ShaperConfig::new(machine.fixed_point.command_bits, tables.table.clone());
         let shaper = shaper.and_then(|plain| plain.for_motion(motion));
-        let watched = supervision(axis, &machine.clock, tables.table.longest_delay_samples());
+        let watched = supervision(axis, &machine.clock, (&tables.table).into());
         axes.push(Parts {
             axis,
             pwm,

@@ -18,6 +18,7 @@
 //! not hold, above or below, is an error: nothing is clamped. "Counts" are those
 //! that the loop runs on, [`Axis::loop_counts_per_unit`].
 
+use super::reach::{TableBounds, check_travel};
 use super::supervision_error::SupervisionError;
 use crate::control::derive::full_scale;
 use crate::control::law::COMMAND_FRACTION;
@@ -65,6 +66,8 @@ pub struct Supervision {
     pub lost_command: u32,
     /// Ticks without a count; 0: not watched.
     pub lost_ticks: u16,
+    /// The drive's command is a velocity: a motion against it is as none.
+    pub velocity_drive: bool,
     /// Ticks without a kick; 0: no watchdog.
     pub watchdog_ticks: u16,
     /// Pulses of up to so many clocks on a line are ignored, 0 to 63.
@@ -81,7 +84,7 @@ pub struct Supervision {
 
 impl Supervision {
     /// Every word with its name, in the order of the fields.
-    pub fn words(&self) -> [(&'static str, i64); 17] {
+    pub fn words(&self) -> [(&'static str, i64); 18] {
         [
             ("off_causes", self.off_causes.into()),
             ("brake_release_ticks", self.brake_release_ticks.into()),
@@ -94,6 +97,7 @@ impl Supervision {
             ("saturation_ticks", self.saturation_ticks.into()),
             ("lost_command", self.lost_command.into()),
             ("lost_ticks", self.lost_ticks.into()),
+            ("velocity_drive", self.velocity_drive.into()),
             ("watchdog_ticks", self.watchdog_ticks.into()),
             ("filter_clocks", self.filter_clocks.into()),
             ("stop_deceleration", self.stop_deceleration.into()),
@@ -104,11 +108,11 @@ impl Supervision {
     }
 }
 
-/// The words of the supervisor of an axis with a controller. `longest_delay_samples` is that of its shaper's table.
+/// The words of the supervisor of an axis with a controller and this table of its shaper.
 ///
 /// # Errors
 /// [`SupervisionError`] names the first value that its word does not hold, with the range that it does.
-pub fn supervision(axis: &Axis, clock: &Clock, longest_delay_samples: u32) -> Result<Supervision, SupervisionError> {
+pub fn supervision(axis: &Axis, clock: &Clock, table: TableBounds) -> Result<Supervision, SupervisionError> {
     let missing = |table| SupervisionError::Missing {
         axis: axis.name.clone(),
         table,
@@ -122,11 +126,12 @@ pub fn supervision(axis: &Axis, clock: &Clock, longest_delay_samples: u32) -> Re
     };
     let limits = &words.limits;
     let [soft_limit_minus, soft_limit_plus] = words.soft_limits()?;
+    check_travel(axis, &table)?;
     Ok(Supervision {
         off_causes: limits.off_causes,
         brake_release_ticks: words.ticks_up("axis.limits.brake_release_s", limits.brake_release_s)?,
         brake_apply_ticks: words.ticks_up("axis.limits.brake_apply_s", limits.brake_apply_s)?,
-        settle_ticks: words.settle_ticks(longest_delay_samples)?,
+        settle_ticks: words.settle_ticks(table.longest_delay_samples)?,
         soft_limit_plus,
         soft_limit_minus,
         following_error_limit: words.error_limit(
@@ -138,6 +143,7 @@ pub fn supervision(axis: &Axis, clock: &Clock, longest_delay_samples: u32) -> Re
         saturation_ticks: words.ticks_down("axis.limits.saturation_s", limits.saturation_s)?,
         lost_command: words.lost_command()?,
         lost_ticks: words.ticks_down("axis.limits.encoder_lost_s", limits.encoder_lost_s)?,
+        velocity_drive: matches!(words.drive.mode, DriveMode::Velocity { .. }),
         watchdog_ticks: words.ticks_down("axis.limits.watchdog_s", limits.watchdog_s)?,
         filter_clocks: words.filter_clocks()?,
         stop_deceleration: words.stop_deceleration()?,

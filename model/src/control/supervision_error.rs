@@ -29,6 +29,26 @@ pub enum SupervisionError {
         /// What sets the range.
         reason: &'static str,
     },
+    /// A travel that the position word does not hold wherever the axis stands at reset.
+    #[error(
+        "axis {axis}: found a travel from {low} to {high} m, which takes {taken} m with shaper and stop; allowed: at most {reach} m \
+         at {counts_per_unit} counts per m, since the count is 0 where the axis stands at reset, at either end perhaps; shorten \
+         the travel, or lower the counts_per_unit that the loop runs on"
+    )]
+    Reach {
+        /// The axis.
+        axis: String,
+        /// Lower end.
+        low: f64,
+        /// Upper end.
+        high: f64,
+        /// From one end to the other, with the shaper's overshoot and a quick stop.
+        taken: f64,
+        /// What the word holds to one side.
+        reach: f64,
+        /// Counts of the loop per unit.
+        counts_per_unit: f64,
+    },
     /// A travel of which rounding inwards leaves nothing, or limits of 0, which mean that there are none.
     #[error("axis {axis}: found a travel from {low} to {high} m; allowed: one that is wider than a count, {count} m")]
     Travel {
@@ -49,7 +69,7 @@ impl SupervisionError {
         match self {
             Self::Missing { .. } => "axis.limits",
             Self::Range { key, .. } => key,
-            Self::Travel { .. } => "axis.limits.travel",
+            Self::Travel { .. } | Self::Reach { .. } => "axis.limits.travel",
         }
     }
 }

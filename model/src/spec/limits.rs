@@ -124,7 +124,8 @@ impl Default for Limits {
 
 /// The word with the bits of these causes, and of those that always switch off.
 fn word_of(causes: impl IntoIterator<Item = Cause>) -> u16 {
-    causes.into_iter().fold(ALWAYS_OFF, |word, cause| word | cause.bit())
+    // Above are causes that leave no choice.
+    causes.into_iter().fold(ALWAYS_OFF, |word, cause| word | cause.bit()) as u16
 }
 
 /// Keys of what moves may ask for: the tools use them without a supervisor.

@@ -29,7 +29,7 @@ fn unit_every_key_yields_its_value() {
         brake_release_s: 0.05,
         brake_apply_s: 0.05,
         line_filter_s: 1e-6,
-        off_causes: ALWAYS_OFF | Cause::FollowingError.bit() | Cause::Watchdog.bit(),
+        off_causes: (ALWAYS_OFF | Cause::FollowingError.bit() | Cause::Watchdog.bit()) as u16,
         direct_duty: 0.05,
         direct_hold_s: Some(0.1),
         excitation: Some(10e-6),
@@ -106,7 +106,7 @@ fn unit_values_out_of_range_are_refused_with_their_place() {
 #[test]
 fn unit_causes_that_switch_off_are_words_of_a_list() {
     let off = |list: &str| EVERYTHING.replace("[\"following-error\", \"watchdog\"]", list);
-    assert_eq!(right(&off("[]")).axes[0].limits.unwrap().off_causes, ALWAYS_OFF);
+    assert_eq!(right(&off("[]")).axes[0].limits.unwrap().off_causes, ALWAYS_OFF as u16);
     let both = right(&off("[\"schedule\", \"schedule\", \"drive-lost\"]")).axes[0].limits;
     assert_eq!(both.unwrap().off_causes, 0b1000_0000_0000_0111);
     let names = "drive-lost, limit-plus, limit-minus, soft-limit-plus, soft-limit-minus, following-error, deviation, \

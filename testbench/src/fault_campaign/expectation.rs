@@ -45,18 +45,23 @@ pub enum Seen {
     /// The command was cut for [`SATURATION_TICKS`](super::machine::SATURATION_TICKS), or there was no count under a command
     /// for [`LOST_TICKS`](super::machine::LOST_TICKS).
     Stuck,
+    /// [`Stuck`](Self::Stuck) or [`Deviation`](Self::Deviation).
+    Lost,
     /// The shaped position is beyond the soft limit that was moved.
     SoftLimit,
     /// The flag of the segments: underrun or overflow.
     Segments,
+    /// The controller's flag: e was cut to its word.
+    Range,
 }
 
 impl Seen {
-    /// Clocks from then to the state: a flag is a cause and then acts, the rest is compared first.
+    /// Clocks from then to the state: a flag is a cause and then acts, or has left the range and then is a cause that acts at
+    /// once; the rest is compared first.
     pub(super) fn clocks(self) -> u64 {
         match self {
-            Self::Segments => 2,
-            Self::FollowingError | Self::Deviation | Self::Stuck | Self::SoftLimit => WATCH_CLOCKS.into(),
+            Self::Segments | Self::Range => 2,
+            Self::FollowingError | Self::Deviation | Self::Stuck | Self::Lost | Self::SoftLimit => WATCH_CLOCKS.into(),
         }
     }
 }
@@ -96,9 +101,9 @@ pub struct Expectation {
     /// What follows.
     pub reaction: Reaction,
     /// Causes of which at least one must be there.
-    pub causes: u16,
+    pub causes: u32,
     /// Causes that may be there too: what the first one leads to.
-    pub also: u16,
+    pub also: u32,
     /// When the state has changed.
     pub due: Due,
     /// The gates are off in the clock of the fault itself, without waiting for the state.
@@ -138,7 +143,7 @@ pub(super) const NOTHING: Expectation = Expectation {
 };
 
 /// Bits of causes.
-pub(super) const fn bits(causes: &[Cause]) -> u16 {
+pub(super) const fn bits(causes: &[Cause]) -> u32 {
     let mut bits = 0;
     let mut at = 0;
     while at < causes.len() {

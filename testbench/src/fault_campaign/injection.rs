@@ -2,12 +2,12 @@
 
 use posicast_model::plant::axis::EncoderPins;
 use posicast_model::rtl::axis::KICK;
-use posicast_model::rtl::segments::{Entry, Motion};
+use posicast_model::rtl::segments::{Entry, Motion, Point};
 
 use super::case::Case;
 use super::kind::Kind;
 use crate::Error;
-use crate::stage_bench::StageBench;
+use crate::stage_bench::{StageBench, Wire};
 
 /// Ticks of the watchdog.
 const WATCHDOG_TICKS: u32 = 5;
@@ -20,11 +20,32 @@ const SWAP_TO_1: u32 = 1 | 1 << 4;
 /// The register `law`: PD with the settings of bank 3, which are all 0.
 const NO_SETTINGS: u32 = 1 | 3 << 8;
 /// The entry after which the velocity does not fit.
-pub(super) const OVERFLOWING: Entry = Entry {
+const OVERFLOWING: Entry = Entry {
     ticks: 100,
     motion: Motion::Jerk(HUGE_JERK),
     notify: false,
 };
+
+/// Counts to a point that is far away, but within the position's word: e does not fit its own.
+const FAR_COUNTS: i32 = 4_000_000;
+
+/// What the entries of a move end in, for a kind that is an entry.
+pub(super) fn last_entry(case: &Case, axis: usize) -> Option<Entry> {
+    let side = case.counts[axis].signum() as i32;
+    match case.row.kind {
+        Kind::Overflow => Some(OVERFLOWING),
+        Kind::OutOfRange => Some(Entry {
+            ticks: 1,
+            motion: Motion::Point(Point {
+                position: (side * FAR_COUNTS) << 8,
+                velocity: 0,
+                acceleration: 0,
+            }),
+            notify: false,
+        }),
+        _ => None,
+    }
+}
 
 /// The line of a kind that is one, with the level that is the fault; shared lines have no axis before their name.
 fn line(case: &Case, axis: usize) -> Option<(&'static str, u64)> {
@@ -87,7 +108,12 @@ fn begin_at(bench: &mut StageBench, case: &Case, axis: usize, name: &str) -> Res
         }
         Kind::EncoderStuck => bench.force_encoder(axis, Some(lines)),
         Kind::EncoderDisconnected => bench.force_encoder(axis, Some(EncoderPins::default())),
-        Kind::EncoderReversed => bench.reverse_encoder(axis, true),
+        Kind::EncoderLineStuck => bench.break_wire(axis, Some(stuck(case, lines))),
+        Kind::EncoderLineStuckUnwatched => {
+            bench.write(&register("following_error_limit"), 0)?;
+            bench.break_wire(axis, Some(stuck(case, lines)));
+        }
+        Kind::EncoderReversed => bench.break_wire(axis, Some(Wire::AInverted)),
         Kind::ScaleStuck => bench.force_scale(axis, Some(bench.plant(axis).scale())),
         Kind::ScaleIllegal => bench.force_scale(axis, Some(inverted(bench.plant(axis).scale()))),
         Kind::Jam => bench.jam(axis, true),
@@ -101,6 +127,7 @@ fn begin_at(bench: &mut StageBench, case: &Case, axis: usize, name: &str) -> Res
             bench.write(&register("kick"), KICK ^ (1 << (case.choice % 32)))?;
         }
         Kind::Flush => bench.write(&register("flush"), 0)?,
+        Kind::OutOfRange => bench.write(&register("following_error_limit"), 0)?,
         Kind::Overflow => {
             bench.write(&register("following_error_limit"), 0)?;
             bench.write(&register("stop_deceleration"), 0)?;
@@ -147,6 +174,14 @@ fn begin_at(bench: &mut StageBench, case: &Case, axis: usize, name: &str) -> Res
     Ok(())
 }
 
+/// A or B stays as it is.
+fn stuck(case: &Case, lines: EncoderPins) -> Wire {
+    match case.choice & 1 {
+        0 => Wire::AStuck(lines.a),
+        _ => Wire::BStuck(lines.b),
+    }
+}
+
 /// A and B the other way round.
 fn inverted(lines: EncoderPins) -> EncoderPins {
     EncoderPins {
@@ -185,10 +220,10 @@ pub(super) fn end(bench: &mut StageBench, case: &Case, way_back: bool) -> Result
             None => {}
         }
         bench.force_encoder(axis, None);
+        bench.break_wire(axis, None);
         bench.force_scale(axis, None);
         bench.jam(axis, false);
         match kind {
-            Kind::EncoderReversed => bench.reverse_encoder(axis, false),
             Kind::DirectMode => bench.write(&register("control"), 1)?,
             Kind::HostSilent => bench.write(&register("watchdog"), u32::from(case.off_causes) << 16)?,
             Kind::NoGains => bench.write(&register("law"), 1)?,

@@ -291,7 +291,7 @@ impl Judge<'_> {
     }
 
     /// One of the causes of this kind, and none that it does not lead to.
-    fn causes(&mut self, causes: u16, group: u16) {
+    fn causes(&mut self, causes: u32, group: u32) {
         let expects = &self.seen.case.row.expects;
         let there = expects.causes == 0 || causes & (expects.causes | group) != 0;
         let strange = causes & !(expects.causes | expects.also | group);

@@ -25,6 +25,8 @@ pub enum Kind {
     EncoderIllegal,
     EncoderGlitch,
     EncoderStuck,
+    EncoderLineStuck,
+    EncoderLineStuckUnwatched,
     EncoderDisconnected,
     EncoderReversed,
     ScaleStuck,
@@ -34,6 +36,7 @@ pub enum Kind {
     HostSilent,
     Flush,
     Overflow,
+    OutOfRange,
     Malformed,
     FifoFull,
     SoftLimit,
@@ -73,7 +76,7 @@ const HOST: Due = Due::Clocks(4);
 /// From the encoder's lines to the state: synchroniser, filter, counter, cause, state.
 const ENCODER: Due = Due::Clocks(FILTER_CLOCKS + 6);
 /// What an axis that no longer follows ends in.
-const LOST: u16 = bits(&[
+const LOST: u32 = bits(&[
     Cause::FollowingError,
     Cause::Deviation,
     Cause::Saturation,
@@ -104,7 +107,7 @@ const fn fault(cause: Cause, due: Due) -> Expectation {
 }
 
 /// All kinds.
-pub const TABLE: [Row; 38] = [
+pub const TABLE: [Row; 41] = [
     row(
         Kind::EmergencyStop,
         "emergency stop",
@@ -271,6 +274,32 @@ pub const TABLE: [Row; 38] = [
         },
     ),
     row(
+        Kind::EncoderLineStuck,
+        "encoder, one line stuck",
+        "A or B stays as it is: the count dithers by one",
+        Expectation {
+            causes: bits(&[Cause::FollowingError, Cause::Deviation]),
+            also: LOST | bits(&[Cause::EncoderError]),
+            due: Due::Seen(Seen::FollowingError),
+            position_known: false,
+            within_percent: IN_MOTION,
+            ..FAULT
+        },
+    ),
+    row(
+        Kind::EncoderLineStuckUnwatched,
+        "encoder, one line stuck, error not watched",
+        "the same with `following_error_limit` 0",
+        Expectation {
+            causes: bits(&[Cause::Saturation, Cause::EncoderLost, Cause::Deviation]),
+            also: LOST | bits(&[Cause::EncoderError]),
+            due: Due::Seen(Seen::Lost),
+            position_known: false,
+            within_percent: IN_MOTION,
+            ..FAULT
+        },
+    ),
+    row(
         Kind::EncoderDisconnected,
         "encoder disconnected",
         "A, B and Z low",
@@ -286,7 +315,7 @@ pub const TABLE: [Row; 38] = [
     row(
         Kind::EncoderReversed,
         "encoder reversed",
-        "A inverted in the move: the lines count backwards, the loop runs away",
+        "the wires of A exchanged in the move: the loop runs away",
         Expectation {
             also: LOST | bits(&[Cause::EncoderError]),
             position_known: false,
@@ -357,6 +386,15 @@ pub const TABLE: [Row; 38] = [
             flag: Some(("flags", "segments_overflow")),
             also: bits(&[Cause::Deviation, Cause::Saturation, Cause::EncoderLost]),
             ..fault(Cause::Segments, Due::Seen(Seen::Segments))
+        },
+    ),
+    row(
+        Kind::OutOfRange,
+        "out of range",
+        "a point so far away that e does not fit its word, without monitors",
+        Expectation {
+            also: bits(&[Cause::SoftLimitPlus, Cause::SoftLimitMinus]),
+            ..fault(Cause::Range, Due::Seen(Seen::Range))
         },
     ),
     row(

@@ -13,7 +13,7 @@ use posicast_model::control::{self, MachineStage};
 use posicast_model::design::design_machine;
 use posicast_model::plant::axis::{AxisPlant, PlantOptions};
 use posicast_model::rtl::component::Component;
-use posicast_model::spec::{self, Limits, Machine, Scale, ScaleUse};
+use posicast_model::spec::{self, Axis, Limits, Machine, Scale, ScaleUse};
 
 use super::CampaignError;
 use crate::lockstep::Device;
@@ -55,6 +55,14 @@ impl Bed {
     /// # Errors
     /// [`CampaignError::Machine`] if the example can no longer be made into it.
     pub fn new() -> Result<Self, CampaignError> {
+        Self::of(|_| {})
+    }
+
+    /// The same with something else about its axes.
+    ///
+    /// # Errors
+    /// [`CampaignError::Machine`] if that is no machine.
+    pub fn of(change: impl Fn(&mut Axis)) -> Result<Self, CampaignError> {
         let failed = |reason: String| CampaignError::Machine(reason);
         let mut machine = spec::parse("xy-stage.toml", EXAMPLE).map_err(|error| failed(error.to_string()))?;
         machine.clock.sample_hz = SAMPLE_HZ;
@@ -71,6 +79,7 @@ impl Bed {
                 invert: false,
             });
             axis.limits = Some(limits(axis.limits.unwrap_or_default()));
+            change(axis);
         }
         let design = design_machine(&machine).map_err(|error| failed(error.to_string()))?;
         let stage = control::stage(&machine, &design).map_err(|error| failed(error.to_string()))?;

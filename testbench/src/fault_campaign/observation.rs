@@ -24,6 +24,8 @@ struct Probes {
     limited_ticks: Probe,
     underrun: Probe,
     overflow: Probe,
+    cut_high: Probe,
+    cut_low: Probe,
 }
 
 /// An axis in the clock in which its state first was another than RUN.
@@ -34,7 +36,7 @@ pub(super) struct Change {
     /// The new state.
     pub(super) state: u64,
     /// Causes in it.
-    pub(super) causes: u16,
+    pub(super) causes: u32,
     /// The most that the command has moved in one of the last two ticks, in 1/256 counts.
     pub(super) travel: u32,
 }
@@ -63,10 +65,11 @@ pub(super) struct Observation {
     pub(super) stood: Option<u64>,
 }
 
-/// Ticks in a row with a command and without a count.
+/// Ticks in a row with a command to one side and without a motion, and since where.
 #[derive(Default)]
 struct Still {
-    count: u64,
+    count: i32,
+    backwards: bool,
     ticks: u64,
 }
 
@@ -92,6 +95,8 @@ impl Observation {
                 limited_ticks: probe("limited_ticks")?,
                 underrun: probe("segments_underrun")?,
                 overflow: probe("segments_overflow")?,
+                cut_high: probe("controller_saturated_high")?,
+                cut_low: probe("controller_saturated_low")?,
             },
             lost_command: watched.lost_command,
             deviation_limit: watched.deviation_limit,
@@ -113,8 +118,8 @@ impl Observation {
     }
 
     /// The causes in the clock that comes.
-    pub(super) fn causes(&self, bench: &StageBench) -> u16 {
-        bench.at(self.probes.causes) as u16
+    pub(super) fn causes(&self, bench: &StageBench) -> u32 {
+        bench.at(self.probes.causes) as u32
     }
 
     /// Does the shaped command stand where the command does?
@@ -154,27 +159,41 @@ impl Observation {
         let signed = |probe| bench.at(probe) as u32 as i32;
         let size = |value: i32| (value ^ (value >> 31)) as u32;
         let probes = &self.probes;
-        let count = value(probes.count);
+        let deviates = |deviation| {
+            self.deviation_limit != 0 && u64::from(size(signed(deviation))) > u64::from(self.deviation_limit)
+        };
+        let is_stuck = value(probes.limited_ticks) >= SATURATION_TICKS || self.still.ticks >= LOST_TICKS;
         let is = match seen {
             Seen::Segments => (value(probes.underrun) | value(probes.overflow)) != 0,
+            Seen::Range => (value(probes.cut_high) | value(probes.cut_low)) & 1 != 0,
             _ if !tick => false,
             Seen::FollowingError => u64::from(size(signed(probes.error))) > value(probes.error_limit),
-            Seen::Deviation => u64::from(size(signed(probes.deviation))) > u64::from(self.deviation_limit),
+            Seen::Deviation => deviates(probes.deviation),
+            Seen::Lost => deviates(probes.deviation) || is_stuck,
             Seen::SoftLimit => {
                 let shaped = signed(probes.shaped);
                 shaped > signed(probes.soft_plus) || shaped < signed(probes.soft_minus)
             }
-            Seen::Stuck => value(probes.limited_ticks) >= SATURATION_TICKS || self.still.ticks >= LOST_TICKS,
+            Seen::Stuck => is_stuck,
         };
         if is {
             self.seen.get_or_insert(bench.now());
         }
         if tick {
-            let still = size(signed(probes.command)) > self.lost_command && count == self.still.count;
-            self.still = Still {
-                count,
-                ticks: if still { self.still.ticks + 1 } else { 0 },
-            };
+            let (count, command) = (signed(probes.count), signed(probes.command));
+            let motion = count.wrapping_sub(self.still.count);
+            let one_way = (command < 0) == self.still.backwards;
+            // The drives here take a velocity.
+            let its_way = if command < 0 { motion < -4 } else { motion >= 4 };
+            if size(command) > self.lost_command && one_way && !its_way {
+                self.still.ticks += 1;
+            } else {
+                self.still = Still {
+                    count,
+                    backwards: command < 0,
+                    ticks: 0,
+                };
+            }
         }
     }
 

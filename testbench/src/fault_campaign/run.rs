@@ -7,7 +7,7 @@ use posicast_model::rtl::segments::Entry;
 use super::CampaignError;
 use super::case::Case;
 use super::expectation::{Due, Reaction};
-use super::injection::{OVERFLOWING, begin, end};
+use super::injection::{begin, end, last_entry};
 use super::judge::{self, Figures, Seen};
 use super::kind::Kind;
 use super::machine::{Bed, FILTER_CLOCKS, TICK_CLOCKS};
@@ -128,7 +128,7 @@ impl Running<'_> {
         Ok(())
     }
 
-    /// The move of both axes; an overflow takes the place of its end.
+    /// The move of both axes; a fault that is an entry takes the place of its end.
     fn plan(&mut self) -> Result<Plan, Error> {
         let mut plan = Plan::default();
         for axis in 0..2 {
@@ -137,15 +137,15 @@ impl Running<'_> {
             plan.ticks = entries.iter().map(|entry| u64::from(entry.ticks)).sum();
             plan.entries[axis] = entries;
         }
-        if self.case.row.kind == Kind::Overflow {
-            for axis in self.case.hit_axes() {
+        for axis in self.case.hit_axes() {
+            if let Some(last) = last_entry(self.case, axis) {
                 let cut = plan.ticks * self.case.when / 10_000;
                 let mut ticks = 0;
                 plan.entries[axis].retain(|entry| {
                     ticks += u64::from(entry.ticks);
                     ticks <= cut
                 });
-                plan.entries[axis].push(OVERFLOWING);
+                plan.entries[axis].push(last);
             }
         }
         Ok(plan)
@@ -210,7 +210,7 @@ impl Running<'_> {
             let watched = &self.bed.stage.config.axes[axis].supervision;
             axes.push(Observation::new(&self.bench, axis, watched)?);
         }
-        if self.case.row.kind == Kind::Overflow {
+        if let Kind::Overflow | Kind::OutOfRange = self.case.row.kind {
             return Ok(axes);
         }
         let whole = ticks * self.case.when / 10_000;

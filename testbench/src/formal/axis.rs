@@ -3,7 +3,7 @@
 
 use posicast_hdl::{axis, drive_command};
 use posicast_model::rtl::axis::{
-    self as model, ALWAYS_OFF, Cause, Condition, HARMLESS, KICK, State, TRANSITIONS, Transition,
+    self as model, ALWAYS_OFF, CAUSE_BITS, Cause, Condition, HARMLESS, KICK, State, TRANSITIONS, Transition,
 };
 use posicast_model::rtl::{drive_command as command_model, segments};
 
@@ -51,14 +51,16 @@ fn macros() -> Vec<(String, String)> {
     macros.extend(Cause::ALL.map(|cause| {
         (
             cause.name().replace('-', "_").to_uppercase(),
-            format!("16'd{}", cause.bit()),
+            format!("{CAUSE_BITS}'d{}", cause.bit()),
         )
     }));
+    let counts = |counts: i32| format!("32'sd{counts}");
     let segments = |state: segments::State| format!("2'd{}", state as u8);
     let others = [
-        ("ALWAYS_OFF", format!("16'd{ALWAYS_OFF}")),
-        ("HARMLESS", format!("16'd{HARMLESS}")),
+        ("ALWAYS_OFF", format!("{CAUSE_BITS}'d{ALWAYS_OFF}")),
+        ("HARMLESS", format!("{CAUSE_BITS}'d{HARMLESS}")),
         ("KICK", format!("32'd{KICK}")),
+        ("STAND_COUNTS", counts(segments::STAND_COUNTS)),
         ("SEGMENTS_HOLD", segments(segments::State::Hold)),
         ("SEGMENTS_STOPPED", segments(segments::State::Stopped)),
         ("ALLOWED(from, to)", allowed()),

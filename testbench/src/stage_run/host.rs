@@ -29,7 +29,7 @@ pub struct Trouble {
     /// The state that it was in instead, as [`state`] numbers them.
     pub state: u32,
     /// Why, a bit per [`Cause`].
-    pub causes: u16,
+    pub causes: u32,
 }
 
 impl fmt::Display for Trouble {
@@ -112,7 +112,7 @@ impl<'a> Host<'a> {
         Ok(Trouble {
             clock: self.bench.now(),
             state: self.state(axis)?,
-            causes: self.bench.read(&format!("{name}_causes"))? as u16,
+            causes: self.bench.read(&format!("{name}_causes"))?,
             axis: name.clone(),
             wanted,
         })

@@ -5,7 +5,7 @@
 use std::ops::Range;
 
 use posicast_model::rtl::axis::{HARMLESS, Inputs, KICK, LEAST_TICK_CLOCKS, OUTPUT_PORTS, Outputs, State};
-use posicast_model::rtl::segments::State as Segments;
+use posicast_model::rtl::segments::{STAND_COUNTS, State as Segments};
 use rand::{Rng, RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
@@ -71,7 +71,9 @@ impl AxisRandom {
     /// An axis that stays on, with a host that no longer kicks.
     fn calm(&mut self, state: State) {
         // Not a beat in which a bit that turns over in every clock would never show.
-        let ticks = self.clock.is_multiple_of(LEAST_TICK_CLOCKS.into()) && !self.one_in(50);
+        // Nor one that begins too soon after a tick before.
+        let least = u64::from(LEAST_TICK_CLOCKS);
+        let ticks = self.clock.is_multiple_of(least) && self.clock >= CALM.start + least && !self.one_in(50);
         let inputs = &self.inputs;
         self.inputs = Inputs {
             tick: ticks,
@@ -119,6 +121,8 @@ impl AxisRandom {
         inputs.off_causes = *pick(rng, &[0, 0, u16::MAX, off_causes]);
         let limit = rng.next_u32() >> rng.random_range(1..32);
         let watched = rng.random_range(0..4) == 0;
+        inputs.modulo = any & 7 << 20 == 0;
+        inputs.velocity_drive = any & 1 << 23 == 0;
         inputs.following_error_limit = if watched { limit } else { 0 };
         inputs.deviation_limit = if any & 1 << 16 == 0 { 0 } else { limit };
         inputs.lost_command = if any & 1 << 17 == 0 { limit } else { 0 };
@@ -159,7 +163,14 @@ impl AxisRandom {
             4 => inputs.reference_velocity = near(rng, 1),
             5 => inputs.reference_position = near(rng, inputs.soft_limit_plus),
             6 => inputs.reference_position = near(rng, inputs.soft_limit_minus),
-            7 => inputs.position = inputs.position.wrapping_add(rng.random_range(-1..2)),
+            7 => {
+                let [step, few] = [rng.random_range(-1..2), rng.random_range(-6..7)];
+                let (here, end) = (inputs.position, STAND_COUNTS + rng.random_range(-2..3));
+                let any = rng.next_u32() as i32;
+                let ends = *pick(rng, &[end, -end, any, 0, 0, 0]);
+                let [step, few] = [step, few].map(|counts| here.wrapping_add(counts));
+                inputs.position = *pick(rng, &[step, step, step, step, step, step, few, ends]);
+            }
             _ => {
                 let any = rng.next_u32() as u16;
                 let limit = inputs.saturation_ticks;
@@ -204,11 +215,12 @@ impl AxisRandom {
 
     fn faults(&mut self) {
         let pace = self.mood.fault_pace;
-        let mut held = [false; 12];
+        let mut held = [false; 16];
         for is in &mut held {
-            *is = self.rng.random_range(0..pace * 12) == 0;
+            *is = self.rng.random_range(0..pace * 16) == 0;
         }
         let (asks, long) = (self.one_in(300), self.one_in(10));
+        let any = self.rng.next_u32();
         let inputs = &mut self.inputs;
         // Flags of other blocks stay until they are cleared.
         for (flag, is) in [
@@ -223,14 +235,23 @@ impl AxisRandom {
             &mut inputs.velocity_missed,
             &mut inputs.scale_illegal,
             &mut inputs.scale_disagreement,
+            &mut inputs.segments_out_of_range,
+            &mut inputs.shaper_saturated,
         ]
         .into_iter()
         .zip(held)
         {
             *flag = is || (*flag && !inputs.clear_faults);
         }
+        for (flags, is, found) in [
+            (&mut inputs.saturated_high, held[14], any),
+            (&mut inputs.saturated_low, held[15], any >> 8),
+        ] {
+            let kept = if inputs.clear_faults { 0 } else { *flags };
+            *flags = if is { kept | found as u8 & 0x7f } else { kept };
+        }
         inputs.group_stop = asks || (inputs.group_stop && !long);
-        inputs.group_emergency_stop = held[11];
+        inputs.group_emergency_stop = held[13];
     }
 
     /// Segments as the supervisor sees them.
@@ -301,6 +322,7 @@ impl Stimuli for AxisRandom {
         // A cause that is over soon, so that a run is not all FAULT.
         if seen.causes & !HARMLESS != 0 {
             (self.inputs.error, self.inputs.deviation) = (0, 0);
+            self.inputs.position = self.inputs.position % STAND_COUNTS;
         }
         if CALM.contains(&self.clock) {
             self.calm(seen.state);

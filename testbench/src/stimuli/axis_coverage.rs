@@ -2,8 +2,8 @@
 
 use posicast_model::rtl::Direction;
 use posicast_model::rtl::axis::{
-    AT_ONCE, Cause, HARMLESS, INPUT_PORTS, Inputs, LINE_CLOCKS, OUTPUT_PORTS, Outputs, State, TRANSITIONS, ports,
-    switching_off,
+    AT_ONCE, CAUSE_BITS, Cause, HARMLESS, INPUT_PORTS, Inputs, LINE_CLOCKS, OUTPUT_PORTS, Outputs, State, TRANSITIONS,
+    ports, switching_off,
 };
 
 /// Inputs and outputs of a clock, typed.
@@ -31,7 +31,7 @@ pub struct AxisCoverage {
     /// From a state to another; on the diagonal, clocks in it.
     changes: [[u64; 6]; 6],
     /// Causes that became active, and that were forgotten.
-    causes: [[u64; 2]; 16],
+    causes: [[u64; 2]; CAUSE_BITS as usize],
     special: [u64; SPECIAL.len()],
     before: Option<(Inputs, Outputs)>,
 }
@@ -54,7 +54,7 @@ impl AxisCoverage {
     fn changes(&mut self, inputs: &Inputs, before: &Outputs, shown: &Outputs) {
         self.changes[before.state as usize][shown.state as usize] += 1;
         for (bit, [came, went]) in self.causes.iter_mut().enumerate() {
-            let is = |causes: u16| u64::from(causes >> bit & 1);
+            let is = |causes: u32| u64::from(causes >> bit & 1);
             *came += is(shown.causes & !before.causes);
             *went += is(before.causes & !shown.causes);
         }

@@ -36,6 +36,7 @@ struct Mood {
     enable: bool,
     stop_deceleration: u64,
     low_water: u64,
+    modulo: u64,
 }
 
 /// A mixture of everything, without end.
@@ -72,6 +73,7 @@ impl SegmentsRandom {
             enable: rng.random_range(0..8) != 0,
             stop_deceleration: *pick(rng, &[0, 1, any, shifted, shifted, (1 << 31) - 1]),
             low_water: rng.random_range(0..64),
+            modulo: rng.random_range(0..2),
         };
     }
 
@@ -225,6 +227,7 @@ impl Stimuli for SegmentsRandom {
             mood.stop_deceleration,
             mood.low_water,
             u64::from(self.rng.random_range(0..100) == 0),
+            mood.modulo,
         ];
         self.clock += 1;
     }
@@ -238,7 +241,7 @@ pub struct SegmentsCoverage {
 }
 
 /// What is counted.
-const NAMES: [&str; 15] = [
+const NAMES: [&str; 16] = [
     "hold",
     "move",
     "stop",
@@ -254,6 +257,7 @@ const NAMES: [&str; 15] = [
     "malformed",
     "tick_missed",
     "stop to stopped",
+    "out_of_range",
 ];
 
 impl SegmentsCoverage {
@@ -275,6 +279,7 @@ impl SegmentsCoverage {
             refused,
             malformed,
             missed,
+            out_of_range,
         ] = outputs
         else {
             return;
@@ -297,6 +302,7 @@ impl SegmentsCoverage {
             malformed,
             missed,
             stopped,
+            out_of_range,
         ];
         for (count, seen) in self.counts.iter_mut().zip(seen) {
             *count += seen;

@@ -59,6 +59,21 @@ fn formal_a_cause_that_is_cleared_while_it_is_active_is_found() {
 }
 
 #[test]
+fn formal_a_range_that_a_rotary_axis_leaves_is_found() {
+    fails("axis_causes", "far & !modulo", "far", "known_range");
+}
+
+#[test]
+fn formal_a_motion_from_elsewhere_is_found() {
+    fails(
+        "axis_monitors",
+        "motion_next = captured - still_since",
+        "motion_next = still_since - captured",
+        "motions",
+    );
+}
+
+#[test]
 fn formal_a_brake_with_a_tick_too_little_is_found() {
     fails("axis_brake", "at_zero = !sum[16]", "at_zero = left <= 16'd1", "exact_");
 }

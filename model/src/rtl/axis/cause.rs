@@ -35,11 +35,16 @@ pub enum Cause {
     GroupStop = 14,
     /// A tick was missed, or a pass was not over in time.
     Schedule = 15,
+    /// A position left the range of its word: the count, the shaped command, or e.
+    Range = 16,
 }
+
+/// Bits of the cause word. Those above the 16 of `off_causes` leave no choice: they always switch off.
+pub const CAUSE_BITS: u32 = 17;
 
 impl Cause {
     /// All, in the order of their bits.
-    pub const ALL: [Self; 16] = [
+    pub const ALL: [Self; CAUSE_BITS as usize] = [
         Self::EmergencyStop,
         Self::PwmTripped,
         Self::DriveLost,
@@ -56,6 +61,7 @@ impl Cause {
         Self::Watchdog,
         Self::GroupStop,
         Self::Schedule,
+        Self::Range,
     ];
 
     /// Its name, as the machine file has it.
@@ -77,27 +83,29 @@ impl Cause {
             Self::Watchdog => "watchdog",
             Self::GroupStop => "group-stop",
             Self::Schedule => "schedule",
+            Self::Range => "range",
         }
     }
 
     /// Its bit.
-    pub const fn bit(self) -> u16 {
-        1 << self as u16
+    pub const fn bit(self) -> u32 {
+        1 << self as u32
     }
 }
 
 /// Causes that always switch off, whatever `off_causes` says.
-pub const ALWAYS_OFF: u16 = Cause::EmergencyStop.bit() | Cause::PwmTripped.bit();
+pub const ALWAYS_OFF: u32 = Cause::EmergencyStop.bit() | Cause::PwmTripped.bit() | Cause::Range.bit();
 
 /// Causes that act in the clock in which they become active; all others act when they stand, a clock later.
-pub const AT_ONCE: u16 = Cause::EmergencyStop.bit() | Cause::PwmTripped.bit() | Cause::DriveLost.bit();
+pub const AT_ONCE: u32 =
+    Cause::EmergencyStop.bit() | Cause::PwmTripped.bit() | Cause::DriveLost.bit() | Cause::Range.bit();
 
 /// Causes after which an axis is in order: it only waits, in HOLD, for the others.
-pub const HARMLESS: u16 = Cause::GroupStop.bit();
+pub const HARMLESS: u32 = Cause::GroupStop.bit();
 
 /// Those of `causes` that switch the outputs off at once.
-pub const fn switching_off(causes: u16, off_causes: u16) -> u16 {
-    causes & (off_causes | ALWAYS_OFF) & !HARMLESS
+pub const fn switching_off(causes: u32, off_causes: u16) -> u32 {
+    causes & (off_causes as u32 | ALWAYS_OFF) & !HARMLESS
 }
 
 #[cfg(test)]
@@ -109,7 +117,7 @@ mod tests {
         for (bit, cause) in (0..).zip(Cause::ALL) {
             assert_eq!(cause.bit(), 1 << bit);
         }
-        assert_eq!(switching_off(u16::MAX, 0), 3);
-        assert_eq!(switching_off(u16::MAX, u16::MAX), !(1 << 14));
+        assert_eq!(switching_off(u32::MAX, 0), 1 << 16 | 3);
+        assert_eq!(switching_off(u32::MAX, u16::MAX), 0x1_ffff & !(1 << 14));
     }
 }

@@ -55,12 +55,16 @@ pub struct Inputs {
     pub deviation_limit: u32,
     /// Ticks in a row; 0: not watched.
     pub saturation_ticks: u16,
-    /// Q20.12 command units, above which an encoder must count.
+    /// Q20.12 command units, above which the position must move.
     pub lost_command: u32,
-    /// Ticks without a count; 0: not watched.
+    /// Ticks without a motion the command's way; 0: not watched.
     pub lost_ticks: u16,
+    /// The drive's command is a velocity: a motion against it is as none.
+    pub velocity_drive: bool,
     /// Ticks without a kick; 0: no watchdog.
     pub watchdog_ticks: u16,
+    /// A rotary axis: positions wrap, and no range is left.
+    pub modulo: bool,
     /// Measured, counts; live.
     pub position: i32,
     /// Motor against scale.
@@ -77,12 +81,16 @@ pub struct Inputs {
     pub segments_overflow: bool,
     /// Of `segments`: its `tick_missed`.
     pub segments_tick_missed: bool,
+    /// Of `segments`: its `out_of_range`.
+    pub segments_out_of_range: bool,
     /// Of `segments`: its `velocity`.
     pub command_velocity: i32,
     /// Of the shaper: `y_0`, Q24.8 counts.
     pub reference_position: i32,
     /// Of the shaper: `y_1`, Q16.16 counts per tick.
     pub reference_velocity: i32,
+    /// Of the shaper: its `saturated`.
+    pub shaper_saturated: bool,
     /// Of the shaper: its `overrun`.
     pub shaper_overrun: bool,
     /// Of the controller: e, Q16.16 counts.
@@ -91,6 +99,10 @@ pub struct Inputs {
     pub command: i32,
     /// Of the controller: its `limited_ticks`.
     pub limited_ticks: u16,
+    /// Of the controller: its `saturated_high`, 7 bits; bit 0 is that of e.
+    pub saturated_high: u8,
+    /// Of the controller: its `saturated_low`, the same.
+    pub saturated_low: u8,
     /// Of the controller: its `overrun`.
     pub controller_overrun: bool,
     /// Of the PWM: its `tripped`.
@@ -108,7 +120,7 @@ pub struct Inputs {
 }
 
 /// In port order, with width and sign.
-pub(super) const INPUTS: [PortRow; 50] = [
+pub(super) const INPUTS: [PortRow; 56] = [
     ("rst", 1, false),
     ("tick", 1, false),
     ("emergency_stop_n", 1, false),
@@ -136,7 +148,9 @@ pub(super) const INPUTS: [PortRow; 50] = [
     ("saturation_ticks", 16, false),
     ("lost_command", 32, false),
     ("lost_ticks", 16, false),
+    ("velocity_drive", 1, false),
     ("watchdog_ticks", 16, false),
+    ("modulo", 1, false),
     ("position", 32, true),
     ("deviation", 32, true),
     ("segments_state", 2, false),
@@ -145,13 +159,17 @@ pub(super) const INPUTS: [PortRow; 50] = [
     ("segments_underrun", 1, false),
     ("segments_overflow", 1, false),
     ("segments_tick_missed", 1, false),
+    ("segments_out_of_range", 1, false),
     ("command_velocity", 32, true),
     ("reference_position", 32, true),
     ("reference_velocity", 32, true),
+    ("shaper_saturated", 1, false),
     ("shaper_overrun", 1, false),
     ("error", 32, true),
     ("command", 32, true),
     ("limited_ticks", 16, false),
+    ("saturated_high", 7, false),
+    ("saturated_low", 7, false),
     ("controller_overrun", 1, false),
     ("pwm_tripped", 1, false),
     ("encoder_illegal", 1, false),
@@ -197,7 +215,9 @@ impl Inputs {
             saturation_ticks: word() as u16,
             lost_command: word() as u32,
             lost_ticks: word() as u16,
+            velocity_drive: word() & 1 != 0,
             watchdog_ticks: word() as u16,
+            modulo: word() & 1 != 0,
             position: word() as i32,
             deviation: word() as i32,
             segments_state: word() as u8 & 0x3,
@@ -206,13 +226,17 @@ impl Inputs {
             segments_underrun: word() & 1 != 0,
             segments_overflow: word() & 1 != 0,
             segments_tick_missed: word() & 1 != 0,
+            segments_out_of_range: word() & 1 != 0,
             command_velocity: word() as i32,
             reference_position: word() as i32,
             reference_velocity: word() as i32,
+            shaper_saturated: word() & 1 != 0,
             shaper_overrun: word() & 1 != 0,
             error: word() as i32,
             command: word() as i32,
             limited_ticks: word() as u16,
+            saturated_high: word() as u8 & 0x7f,
+            saturated_low: word() as u8 & 0x7f,
             controller_overrun: word() & 1 != 0,
             pwm_tripped: word() & 1 != 0,
             encoder_illegal: word() & 1 != 0,
@@ -253,7 +277,9 @@ impl Inputs {
             u64::from(self.saturation_ticks),
             u64::from(self.lost_command),
             u64::from(self.lost_ticks),
+            u64::from(self.velocity_drive),
             u64::from(self.watchdog_ticks),
+            u64::from(self.modulo),
             u64::from(self.position as u32),
             u64::from(self.deviation as u32),
             u64::from(self.segments_state),
@@ -262,13 +288,17 @@ impl Inputs {
             u64::from(self.segments_underrun),
             u64::from(self.segments_overflow),
             u64::from(self.segments_tick_missed),
+            u64::from(self.segments_out_of_range),
             u64::from(self.command_velocity as u32),
             u64::from(self.reference_position as u32),
             u64::from(self.reference_velocity as u32),
+            u64::from(self.shaper_saturated),
             u64::from(self.shaper_overrun),
             u64::from(self.error as u32),
             u64::from(self.command as u32),
             u64::from(self.limited_ticks),
+            u64::from(self.saturated_high),
+            u64::from(self.saturated_low),
             u64::from(self.controller_overrun),
             u64::from(self.pwm_tripped),
             u64::from(self.encoder_illegal),

@@ -35,7 +35,7 @@ mod registers;
 mod timer;
 mod transition;
 
-pub use cause::{ALWAYS_OFF, AT_ONCE, Cause, HARMLESS, switching_off};
+pub use cause::{ALWAYS_OFF, AT_ONCE, CAUSE_BITS, Cause, HARMLESS, switching_off};
 pub use inputs::{INPUT_PORTS, Inputs};
 pub use outputs::{OUTPUT_PORTS, Outputs};
 pub use transition::{Condition, Conditions, State, TRANSITIONS, Transition, next};

@@ -10,6 +10,8 @@ use super::inputs::Inputs;
 /// Clocks after the tick in which a round is over: what it has found is known.
 const FIRST_ROUND: u8 = 5;
 const SECOND_ROUND: u8 = 10;
+/// A motion of fewer counts is none: −4 to 3.
+pub(super) const STILL_COUNTS: i32 = 4;
 
 /// What a tick shows.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -22,22 +24,19 @@ struct Shown {
     shaped_ways: [bool; 2],
     /// On limit +, limit −.
     on_limits: [bool; 2],
-    /// The position is that of the tick before.
-    same_position: bool,
     /// e, deviation and command are negative.
     negative: [bool; 3],
 }
 
 impl Shown {
     /// `on_limits` are the filtered switches.
-    fn new(inputs: &Inputs, on_limits: [bool; 2], on: bool, captured_position: i32) -> Self {
+    fn new(inputs: &Inputs, on_limits: [bool; 2], on: bool) -> Self {
         let ways = |velocity: i32| [velocity > 0, velocity < 0];
         Self {
             on,
             ways: ways(inputs.command_velocity),
             shaped_ways: ways(inputs.reference_velocity),
             on_limits,
-            same_position: inputs.position == captured_position,
             negative: [inputs.error, inputs.deviation, inputs.command].map(i32::is_negative),
         }
     }
@@ -100,7 +99,7 @@ pub(super) struct Monitors {
     /// The position at the last tick.
     pub(super) captured_position: i32,
     /// Causes that a tick has found.
-    pub(super) found: u16,
+    pub(super) found: u32,
     /// Clocks since the tick; 0 once the second round is over.
     clocks: u8,
     shown: Shown,
@@ -108,11 +107,13 @@ pub(super) struct Monitors {
     deviation: i32,
     taken: Taken,
     /// Causes that the first round has found.
-    first_found: u16,
+    first_found: u32,
     /// Limit +, limit −, soft limit +, soft limit − were passed at the last tick.
     were_passed: [bool; 4],
-    /// Ticks in a row with a command and without a count.
+    /// Ticks in a row with a command to one side and without a motion of more than [`STILL_COUNTS`].
     still_ticks: u16,
+    /// Position and command's sign of the last tick that was not one of them.
+    still_since: (i32, bool),
     /// Ticks since the last kick.
     unkicked_ticks: u16,
     /// A kick during a comparison.
@@ -141,13 +142,20 @@ impl Monitors {
         size > self.taken.limits[at]
     }
 
-    /// A command above its threshold, and no count.
-    fn stands(&self) -> bool {
-        self.shown.on && self.shown.same_position && self.exceeds(2)
+    /// A command above its threshold, to the same side as when the position was last seen to move, and no motion since
+    /// then. A line that is stuck lets the count dither by one: that is none. Nor is one against the command of a drive whose
+    /// command is a velocity; where it is a torque, an axis that is slowed down goes against it.
+    fn stands(&self, velocity_drive: bool) -> bool {
+        let (position, negative) = self.still_since;
+        let motion = self.captured_position.wrapping_sub(position);
+        let [backward, forward] = [motion < -STILL_COUNTS, motion >= STILL_COUNTS];
+        let against = if negative { forward } else { backward };
+        let moves = (backward || forward) && !(velocity_drive && against);
+        self.shown.on && !moves && self.shown.negative[2] == negative && self.exceeds(2)
     }
 
     /// The causes that a round finds.
-    fn causes(&self) -> u16 {
+    fn causes(&self) -> u32 {
         let shown = &self.shown;
         let newly = |at: usize| !self.were_passed[at];
         let ([plus, minus], [shaped_plus, shaped_minus]) = (shown.ways, shown.shaped_ways);
@@ -193,8 +201,9 @@ impl Monitors {
                 self.found = self.causes() & self.first_found;
             }
             self.were_passed = self.passed();
-            if !self.stands() {
+            if !self.stands(inputs.velocity_drive) {
                 self.still_ticks = 0;
+                self.still_since = (self.captured_position, self.shown.negative[2]);
             }
         }
         // While counts are compared, a kick waits.
@@ -216,7 +225,7 @@ impl Monitors {
         };
         if inputs.tick {
             self.taken.take(inputs, self.deviation, 0);
-            self.shown = Shown::new(inputs, on_limits, on, self.captured_position);
+            self.shown = Shown::new(inputs, on_limits, on);
             self.captured_position = inputs.position;
             self.clocks = 1;
         }

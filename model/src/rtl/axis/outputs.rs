@@ -9,7 +9,7 @@ pub struct Outputs {
     /// What the axis is doing: 0 OFF, 1 READY, 2 HOLD, 3 RUN, 4 QUICK_STOP, 5 FAULT.
     pub state: State,
     /// Sticky: what went wrong. See [`Cause`](super::Cause).
-    pub causes: u16,
+    pub causes: u32,
     /// To the drive.
     pub drive_enable: bool,
     /// To the brake: high opens it.
@@ -69,7 +69,7 @@ pub struct Outputs {
 /// In port order, with width and sign.
 pub(super) const OUTPUTS: [PortRow; 29] = [
     ("state", 3, false),
-    ("causes", 16, false),
+    ("causes", 17, false),
     ("drive_enable", 1, false),
     ("brake_release", 1, false),
     ("pwm_enable", 1, false),
@@ -109,7 +109,7 @@ impl Outputs {
         let mut word = || values.next().unwrap_or_default();
         Some(Self {
             state: State::from_value(word())?,
-            causes: word() as u16,
+            causes: word() as u32 & 0x1_ffff,
             drive_enable: word() & 1 != 0,
             brake_release: word() & 1 != 0,
             pwm_enable: word() & 1 != 0,

@@ -7,7 +7,8 @@ use super::timer::{Begins, Timer};
 use super::transition::{Condition, Conditions, State, next};
 use super::{CLEAR_CLOCKS, KICK, PRIMING_CLOCKS};
 use crate::rtl::pulse_counter::GlitchFilter;
-use crate::rtl::segments;
+use crate::rtl::segments::{self, STAND_COUNTS};
+use crate::rtl::sliding_mode::Saturation;
 
 /// A line: synchroniser, then filter.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -48,7 +49,9 @@ pub(super) struct Registers {
     primed: u8,
     pub(super) monitors: Monitors,
     pub(super) state: State,
-    pub(super) causes: u16,
+    pub(super) causes: u32,
+    /// A position left the range of its word, as of the clock before.
+    out_of_range: bool,
     /// Causes were forgotten in the clock before.
     forgot: bool,
     /// A cause that stands switches off, by `off_causes` of the clock before.
@@ -77,6 +80,7 @@ impl Default for Registers {
             monitors: Monitors::default(),
             state: State::Off,
             causes: 0,
+            out_of_range: false,
             forgot: false,
             cuts: false,
             timer: Timer::default(),
@@ -95,9 +99,9 @@ impl Default for Registers {
 
 /// What a clock is about, from inputs and registers.
 struct Now {
-    causes: u16,
+    causes: u32,
     /// Those that act in this clock.
-    seen: u16,
+    seen: u32,
     forgets: bool,
     cut: bool,
     group_stop: bool,
@@ -109,6 +113,14 @@ struct Now {
     /// `enable` is low in HOLD, and nothing has to be waited for: the brake is applied.
     closes: bool,
     conditions: Conditions,
+}
+
+/// Is a number at the end of its word: the count of an axis that is not modulo, the shaped command, or e? What it means is
+/// wrong from there on, so the outputs must not be on.
+fn leaves_range(inputs: &Inputs) -> bool {
+    let far = !(-STAND_COUNTS..STAND_COUNTS).contains(&inputs.position);
+    let error = (inputs.saturated_high | inputs.saturated_low) & Saturation::Error.bit() != 0;
+    (far && !inputs.modulo) || inputs.shaper_saturated || error
 }
 
 impl Registers {
@@ -148,6 +160,7 @@ impl Registers {
         self.start_waits = now.wants_start && !inputs.tick;
         self.tripping = self.emergency_stop() || inputs.group_emergency_stop;
         (self.state, self.causes, self.forgot) = (after, now.causes, now.forgets);
+        self.out_of_range = leaves_range(inputs);
 
         let kicked = inputs.kick && inputs.kick_word == KICK;
         let on_limits = self.on_limits();
@@ -172,10 +185,11 @@ impl Registers {
     }
 
     /// The causes of this clock, those that the monitors have found among them.
-    fn active(&self, inputs: &Inputs, group_stop: bool) -> u16 {
+    fn active(&self, inputs: &Inputs, group_stop: bool) -> u32 {
         let encoder = inputs.encoder_illegal || inputs.encoder_disagreement;
         let scale = inputs.scale_illegal || inputs.scale_disagreement;
         let missed = inputs.segments_tick_missed || inputs.velocity_missed;
+        let segments = inputs.segments_underrun || inputs.segments_overflow || inputs.segments_out_of_range;
         let overrun = inputs.shaper_overrun || inputs.controller_overrun;
         let found = [
             (
@@ -185,9 +199,10 @@ impl Registers {
             (Cause::PwmTripped, inputs.pwm_tripped),
             (Cause::DriveLost, self.on && !self.level(3)),
             (Cause::EncoderError, encoder || scale),
-            (Cause::Segments, inputs.segments_underrun || inputs.segments_overflow),
+            (Cause::Segments, segments),
             (Cause::GroupStop, self.on && group_stop),
             (Cause::Schedule, missed || overrun),
+            (Cause::Range, self.out_of_range && (self.on || inputs.enable)),
         ];
         let bits = found.map(|(cause, is)| if is { cause.bit() } else { 0 });
         bits.into_iter().fold(self.monitors.found, |all, bit| all | bit)

@@ -19,6 +19,11 @@ pub const VELOCITY_FRACTION: u32 = 16;
 /// Fraction bits of the rounded acceleration: Q8.24 counts per tick².
 pub const ACCELERATION_FRACTION: u32 = 24;
 
+/// Counts that a command that is not modulo reaches: beyond ±2^23 less a 32nd, a motion outwards is stopped.
+pub const REACH_COUNTS: i32 = (1 << 23) - (1 << 18);
+/// Counts beyond which such a stop does not slow down but stands at once: no velocity goes from here past the end of the word.
+pub const STAND_COUNTS: i32 = (1 << 23) - (1 << 17);
+
 /// A sum that its word does not hold: the integrator stays as it was, and the move cannot go on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error("acceleration or velocity does not fit its word: 128 counts per tick² and 32768 counts per tick are the ends")]
@@ -74,6 +79,14 @@ impl Integrator {
         self.acceleration = (-self.velocity).clamp(-deceleration, deceleration);
         self.velocity += self.acceleration;
         self.position = self.position.wrapping_add(self.velocity);
+    }
+
+    /// Beyond ±`counts` (of the lower 24 bits of the position's counts), and not on the way back.
+    pub fn leaves(&self, counts: i32) -> bool {
+        // As outputs and hardware have it: modulo 2^24 counts.
+        let position = self.position << 8 >> 8;
+        let ends = -(i64::from(counts) << FRACTION_BITS)..i64::from(counts) << FRACTION_BITS;
+        !ends.contains(&position) && (self.velocity < 0) == (position < 0)
     }
 
     /// Neither velocity nor acceleration: only then a position holds.
@@ -157,6 +170,20 @@ mod tests {
             }
             assert!(at.at_rest(), "{velocity}: {at:?}");
         }
+    }
+
+    #[test]
+    fn unit_only_a_way_outwards_leaves_the_reach() {
+        let at = |counts: i64, velocity: i64| Integrator {
+            position: counts << FRACTION_BITS,
+            velocity,
+            acceleration: 0,
+        };
+        let reach = i64::from(REACH_COUNTS);
+        assert!(!at(reach - 1, 1).leaves(REACH_COUNTS) && at(reach, 1).leaves(REACH_COUNTS));
+        assert!(!at(-reach, -1).leaves(REACH_COUNTS) && at(-reach - 1, -1).leaves(REACH_COUNTS));
+        assert!(!at(reach + 9, -1).leaves(REACH_COUNTS) && !at(-reach - 9, 1).leaves(REACH_COUNTS));
+        assert!(at((1 << 23) - 1, 1).leaves(STAND_COUNTS) && at(-(1 << 23), -1).leaves(STAND_COUNTS));
     }
 
     #[test]

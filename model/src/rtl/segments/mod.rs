@@ -43,8 +43,8 @@ mod ports;
 pub use entry::{ENTRY_WORDS, Entry, Motion, NOTIFY, POINT, Point, RESERVED, TICK_BITS};
 pub use fifo::ENTRIES_MAX;
 pub use integrator::{
-    ACCELERATION_BITS, ACCELERATION_FRACTION, FRACTION_BITS, Integrator, Overflow, POSITION_FRACTION, VELOCITY_BITS,
-    VELOCITY_FRACTION,
+    ACCELERATION_BITS, ACCELERATION_FRACTION, FRACTION_BITS, Integrator, Overflow, POSITION_FRACTION, REACH_COUNTS,
+    STAND_COUNTS, VELOCITY_BITS, VELOCITY_FRACTION,
 };
 pub use ports::{INPUT_PORTS, Inputs, OUTPUT_PORTS, Outputs, State, ports};
 
@@ -92,7 +92,7 @@ struct Registers {
     phase: u8,
     requests: Requests,
     enabled: bool,
-    /// Of the clock of the tick.
+    /// Of the clock of the tick; 0 beyond [`STAND_COUNTS`].
     stop_deceleration: u32,
     at: Integrator,
     overflowed: bool,
@@ -176,7 +176,7 @@ impl Segments {
         match phase {
             IDLE if inputs.tick => self.take_tick(inputs),
             INTEGRATE => self.integrate(),
-            DECIDE => self.decide(shown.state, level > 0, inputs.enable),
+            DECIDE => self.decide(shown.state, level > 0, inputs),
             _ => {}
         }
     }
@@ -190,6 +190,7 @@ impl Segments {
         if inputs.clear_flags {
             (shown.underrun, shown.overflow, shown.refused) = (false, false, false);
             (shown.malformed, shown.tick_missed) = (false, false);
+            shown.out_of_range = false;
         }
         shown.tick_missed |= inputs.tick && *phase != IDLE;
         *requests = requests.with(inputs);
@@ -200,7 +201,8 @@ impl Segments {
         let requests = std::mem::take(&mut self.registers.requests);
         let registers = &mut self.registers;
         registers.enabled = inputs.enable;
-        registers.stop_deceleration = inputs.stop_deceleration;
+        let stands = !inputs.modulo && registers.at.leaves(STAND_COUNTS);
+        registers.stop_deceleration = if stands { 0 } else { inputs.stop_deceleration };
         let state = &mut registers.shown.state;
         let mut flush = requests.flush;
         if requests.preset {
@@ -239,7 +241,7 @@ impl Segments {
     }
 
     /// The outputs of this tick, and what the next one does.
-    fn decide(&mut self, state: State, entry_waits: bool, enable: bool) {
+    fn decide(&mut self, state: State, entry_waits: bool, inputs: &Inputs) {
         let Registers {
             phase,
             at,
@@ -252,14 +254,16 @@ impl Segments {
         [shown.position, shown.velocity, shown.acceleration] = at.rounded();
         shown.valid = true;
         let mut next_is_read = false;
+        let leaves = !inputs.modulo && at.leaves(REACH_COUNTS) && !at.at_rest();
         match (state, playing.as_mut()) {
             (State::Move, Some(entry)) => {
                 entry.ticks -= 1;
                 let ended = entry.ticks == 0;
-                shown.notify = ended && entry.notify && !*overflowed;
-                if *overflowed || (ended && !entry_waits && !at.at_rest()) {
+                shown.notify = ended && entry.notify && !*overflowed && !leaves;
+                if *overflowed || leaves || (ended && !entry_waits && !at.at_rest()) {
                     shown.overflow |= *overflowed;
-                    shown.underrun |= !*overflowed;
+                    shown.out_of_range |= !*overflowed && leaves;
+                    shown.underrun |= !*overflowed && !leaves;
                     shown.state = State::Stop;
                     self.fifo.flush();
                 } else if ended && entry_waits {
@@ -273,7 +277,7 @@ impl Segments {
                 shown.state = State::Stopped;
                 shown.done = true;
             }
-            (State::Hold, _) if *enabled && enable && entry_waits => {
+            (State::Hold, _) if *enabled && inputs.enable && entry_waits => {
                 shown.state = State::Move;
                 next_is_read = true;
             }
@@ -343,6 +347,7 @@ impl Moore for Segments {
             shown.refused,
             shown.malformed,
             shown.tick_missed,
+            shown.out_of_range,
         ];
         let clears = inputs.clear_flags && flags.contains(&true);
         let pulses = shown.valid || shown.notify || shown.done;
@@ -356,7 +361,7 @@ impl Moore for Segments {
     fn ignores(&self, input: &str) -> bool {
         matches!(
             input,
-            "enable" | "word" | "data" | "preset_position" | "stop_deceleration"
+            "enable" | "word" | "data" | "preset_position" | "stop_deceleration" | "modulo"
         )
     }
 }

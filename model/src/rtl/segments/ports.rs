@@ -33,10 +33,12 @@ pub struct Inputs {
     pub low_water: u8,
     /// Clears the sticky flags.
     pub clear_flags: bool,
+    /// A rotary axis: the position wraps, and no end of its word stops it.
+    pub modulo: bool,
 }
 
 /// Input ports in port order, with their widths.
-const INPUTS: [PortRow; 14] = [
+const INPUTS: [PortRow; 15] = [
     ("rst", 1, false),
     ("tick", 1, false),
     ("enable", 1, false),
@@ -51,10 +53,11 @@ const INPUTS: [PortRow; 14] = [
     ("stop_deceleration", 31, false),
     ("low_water", 6, false),
     ("clear_flags", 1, false),
+    ("modulo", 1, false),
 ];
 
 /// Output ports in port order, with their widths.
-const OUTPUTS: [PortRow; 15] = [
+const OUTPUTS: [PortRow; 16] = [
     ("position", 32, true),
     ("velocity", 32, true),
     ("acceleration", 32, true),
@@ -70,6 +73,7 @@ const OUTPUTS: [PortRow; 15] = [
     ("refused", 1, false),
     ("malformed", 1, false),
     ("tick_missed", 1, false),
+    ("out_of_range", 1, false),
 ];
 
 /// Number of input ports, without `clk`.
@@ -124,6 +128,8 @@ pub struct Outputs {
     pub malformed: bool,
     /// Sticky: a tick came while one was being played, and was left out.
     pub tick_missed: bool,
+    /// Sticky: the command came near an end of the position's word, and stopped.
+    pub out_of_range: bool,
 }
 
 impl Inputs {
@@ -145,6 +151,7 @@ impl Inputs {
             stop_deceleration,
             low_water,
             clear_flags,
+            modulo,
         ] = *raw;
         Self {
             rst: bit(rst),
@@ -161,6 +168,7 @@ impl Inputs {
             stop_deceleration: stop_deceleration as u32 & (u32::MAX >> 1),
             low_water: (low_water & 63) as u8,
             clear_flags: bit(clear_flags),
+            modulo: bit(modulo),
         }
     }
 }
@@ -184,6 +192,7 @@ impl Outputs {
             u64::from(self.refused),
             u64::from(self.malformed),
             u64::from(self.tick_missed),
+            u64::from(self.out_of_range),
         ]
     }
 }

@@ -77,6 +77,7 @@ const SEGMENTS: Nets = &[
     ("refused", "segment_refused"),
     ("malformed", "segment_malformed"),
     ("tick_missed", "segments_tick_missed"),
+    ("out_of_range", "segments_out_of_range"),
 ];
 
 const SHAPER: Nets = &[
@@ -237,6 +238,8 @@ const AXIS: Nets = &[
     ("start", "axis_start"),
     ("reference_position", "shaped_position"),
     ("reference_velocity", "shaped_velocity"),
+    ("saturated_high", "controller_saturated_high"),
+    ("saturated_low", "controller_saturated_low"),
     ("drive_enable", "axis_drive_enable"),
     ("brake_release", "axis_brake_release"),
     ("pwm_enable", "axis_pwm_enable"),
@@ -298,7 +301,9 @@ fn wire(axis: &StageAxis, tick_clocks: u32, block: &Block, part: Part) -> Part {
     let loop_position = if on_scale { "loop_position" } else { "count" };
     let watched = &axis.supervision;
     match block {
-        Block::Segments => on(part, SEGMENTS).on("preset_position", loop_position),
+        Block::Segments => on(part, SEGMENTS)
+            .tied("modulo", axis.modulo.into())
+            .on("preset_position", loop_position),
         Block::Shaper(_) => on(part, SHAPER),
         Block::SettingBanks(_) => on(part, SETTING_BANKS),
         Block::SlidingMode => on(part, CONTROLLER)
@@ -336,7 +341,9 @@ fn wire(axis: &StageAxis, tick_clocks: u32, block: &Block, part: Part) -> Part {
                 .tied("watchdog_periods", watchdog.into())
                 .tied("filter_clocks", watched.filter_clocks.into())
         }
-        Block::Axis => supervisor(axis, part).on("position", loop_position),
+        Block::Axis => supervisor(axis, part)
+            .tied("modulo", axis.modulo.into())
+            .on("position", loop_position),
         Block::LinearScale => match axis.scale {
             Some(scale) => on(part, LINEAR_SCALE)
                 .tied("ratio_mantissa", u64::from(scale.ratio.mantissa() as u32 & 0x3_ffff))
@@ -409,7 +416,8 @@ fn supervisor(axis: &StageAxis, part: Part) -> Part {
         .tied("deviation_limit", watched.deviation_limit.into())
         .tied("saturation_ticks", watched.saturation_ticks.into())
         .tied("lost_command", watched.lost_command.into())
-        .tied("lost_ticks", watched.lost_ticks.into());
+        .tied("lost_ticks", watched.lost_ticks.into())
+        .tied("velocity_drive", watched.velocity_drive.into());
     match axis.scale {
         Some(_) => part,
         None => part

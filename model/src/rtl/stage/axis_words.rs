@@ -77,7 +77,7 @@ fn states() -> Vec<Register> {
             0x29,
             Access::Live,
             "what went wrong, until `CLEAR_FAULTS`: see docs/axis.md",
-            vec![Field::new("causes", 0, 16, "bit per cause")],
+            vec![Field::new("causes", 0, 17, "bit per cause")],
         ),
         register(
             "flags",
@@ -102,6 +102,7 @@ fn states() -> Vec<Register> {
                 Field::flag("pwm_saturated", 14, "a duty was limited"),
                 Field::flag("pwm_unaligned", 15, "the PWM was not in step with the tick"),
                 Field::new("illegal_count", 16, 8, "illegal transitions; stops at 255"),
+                Field::flag("segments_out_of_range", 24, "the command came near the end of its word"),
             ],
         ),
         register(

@@ -211,10 +211,12 @@ impl Driver {
             // More than the sums hold.
             self.entry(axis, 3, Motion::Jerk((1 << 38) - 1), false);
         }
+        // At rest there, or on the way out of the position's word.
+        let leaves = i32::from(self.one_in(2));
         for position in [i32::MAX, i32::MIN, i32::MAX, 0] {
             let motion = Motion::Point(Point {
                 position,
-                velocity: 0,
+                velocity: leaves * position.signum(),
                 acceleration: 0,
             });
             self.entry(axis, 1, motion, false);

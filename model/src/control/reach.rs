@@ -1,0 +1,85 @@
+//! Where the position word ends, in the units of the machine file.
+//!
+//! Commands are Q24.8 counts, and 0 is where the axis stands at reset: an encoder that only counts does not know better. So
+//! either end of the travel may be a whole travel away from 0, and the shaped command further by the shaper's overshoot and by
+//! a quick stop that begins at the end.
+
+use super::supervision_error::SupervisionError;
+use crate::rtl::segments::REACH_COUNTS;
+use crate::spec::Axis;
+use crate::taps::TapTable;
+
+/// What the words of a supervisor depend on in a shaper's table.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TableBounds {
+    /// Its longest delay, in samples.
+    pub longest_delay_samples: u32,
+    /// How far a step of 1 goes: above 1 where it overshoots, or above 1 by how far it first goes the other way.
+    pub farthest: f64,
+}
+
+impl From<&TapTable> for TableBounds {
+    fn from(table: &TapTable) -> Self {
+        let unit = f64::from(table.coefficient_fraction()).exp2();
+        let sums = table.taps().iter().scan(0, |sum, tap| {
+            *sum += i64::from(tap.coefficient);
+            Some(*sum)
+        });
+        let farthest = sums.map(|sum| sum.max((unit as i64) - sum)).max().unwrap_or(0);
+        Self {
+            longest_delay_samples: table.longest_delay_samples(),
+            farthest: (farthest as f64 / unit).max(1.0),
+        }
+    }
+}
+
+/// An axis whose file does not say how far it goes, and the position word's end that it may then meet.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[error(
+    "no travel in [axis.limits]: the position word reaches {reach} m to either side of where the axis stands at reset; a \
+     command further on stops before its end (cause segments), a count beyond it switches off (cause range): give travel"
+)]
+pub struct NoTravel {
+    /// How far the word reaches.
+    pub reach: f64,
+}
+
+/// A warning, where neither `travel` bounds the axis nor `modulo` lets it turn for ever.
+pub fn no_travel(axis: &Axis) -> Option<NoTravel> {
+    let bounded = axis.modulo || axis.limits.is_some_and(|limits| limits.travel.is_some());
+    (!bounded).then(|| NoTravel { reach: reach(axis) })
+}
+
+/// How far the command goes from where the axis stands at reset.
+fn reach(axis: &Axis) -> f64 {
+    f64::from(REACH_COUNTS) / axis.loop_counts_per_unit()
+}
+
+/// Checks that the travel fits the position word, wherever the axis stands at reset.
+///
+/// # Errors
+/// [`SupervisionError::Reach`] with what it takes and what there is.
+pub(super) fn check_travel(axis: &Axis, table: &TableBounds) -> Result<(), SupervisionError> {
+    let limits = axis.limits.unwrap_or_default();
+    let Some([low, high]) = limits.travel.filter(|_| !axis.modulo) else {
+        return Ok(());
+    };
+    let deceleration = limits.stop_deceleration.or(limits.acceleration);
+    let stop = match (limits.velocity, deceleration) {
+        (Some(velocity), Some(deceleration)) => velocity * velocity / (2.0 * deceleration),
+        _ => 0.0,
+    };
+    let taken = (high - low) * table.farthest + stop;
+    let reach = reach(axis);
+    if taken <= reach {
+        return Ok(());
+    }
+    Err(SupervisionError::Reach {
+        axis: axis.name.clone(),
+        low,
+        high,
+        taken,
+        reach,
+        counts_per_unit: axis.loop_counts_per_unit(),
+    })
+}
