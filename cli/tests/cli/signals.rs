@@ -345,3 +345,26 @@ fn cli_a_second_signal_ends_a_command_that_is_stuck_in_cleaning_up() {
     assert_eq!(ended(&mut child).code(), Some(130));
     bench.nothing_is_left("after the second signal");
 }
+
+#[test]
+fn cli_a_signal_ends_a_program_with_all_that_it_started() {
+    use std::os::unix::fs::PermissionsExt;
+    for (signal, status) in SIGNALS {
+        let bench = Bench::new();
+        // A Verilator that never ends, nor does what it starts, whatever becomes of its folder.
+        let tool = bench.path("verilator");
+        let text = "#!/bin/sh\n[ \"$1\" = --version ] && { echo Verilator 5.006; exit; }\nsleep 1000 &\nwait\n";
+        std::fs::write(&tool, text).unwrap();
+        std::fs::set_permissions(&tool, std::fs::Permissions::from_mode(0o755)).unwrap();
+        let mut command = bench.command(&["verify", "../machine.toml", "--block", "shaper"]);
+        let mut child = command.env("VERILATOR", tool).spawn().unwrap();
+        let start = Instant::now();
+        while !bench.programs().iter().any(|name| name == "sleep") {
+            assert!(start.elapsed() < PATIENCE, "the tool does not start");
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        kill_process(Pid::from_child(&child), signal).unwrap();
+        assert_eq!(ended(&mut child).code(), Some(status));
+        bench.nothing_is_left("a tool that never ends");
+    }
+}
