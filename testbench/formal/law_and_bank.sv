@@ -18,6 +18,7 @@ module law_and_bank_properties (
     (* peek = "u_sliding_mode.law" *) input wire [1:0] law,
     (* peek = "u_sliding_mode.modulo" *) input wire modulo,
     (* peek = "u_setting_banks.bank" *) input wire [1:0] bank,
+    (* peek = "u_registers.waits" *) input wire waits,
     (* peek = "u_sliding_mode.u_sequencer.step_q" *) input wire [4:0] step,
     (* peek = "u_sliding_mode.u_sequencer.phase" *) input wire [5:0] phase,
     (* peek = "u_sliding_mode.u_sequencer.linear_q" *) input wire linear,
@@ -38,14 +39,15 @@ module law_and_bank_properties (
     end
 
     always @(*) begin
-        known_idle: assert (busy ? runs : step == 5'd0 & phase == 6'd0);
+        known_idle: assert (busy ? runs & !past_reset : step == 5'd0 & phase == 6'd0);
         one_law_and_bank: assert (past_reset | !busy | in_force == of_pass);
         law_of_pass: assert (past_reset | !busy | (linear == (of_pass[1:0] != 2'd0) & integrates == (of_pass[1:0] == 2'd2)));
         changes_between: assert (past_reset | valid | in_force == past_in_force);
     end
 
     always @(*) begin
-        // A pass begins in the clock in which law and bank are new: no clock lies between it and the last one.
-        reach_boundary: cover (valid & start & !past_reset & in_force[1:0] != past_in_force[1:0] & bank != past_in_force[4:3]);
+        // That a pass begins in the clock in which they change is in model/tests/controller_commit.rs, at every distance.
+        reach_pass: cover (busy & step == 5'd2 & linear);
+        reach_waiting: cover (busy & waits);
     end
 endmodule

@@ -23,17 +23,6 @@ fn formal_law_and_bank() {
     proven("law_and_bank", 0);
 }
 
-/// A commit in the clock of `valid` reaches the settings of a pass that starts in it, and not its law.
-#[test]
-fn formal_a_commit_a_clock_later_is_found() {
-    fails(
-        "law_and_bank",
-        ".ends                   (ends)",
-        ".ends                   (valid)",
-        "one_law_and_bank",
-    );
-}
-
 #[test]
 fn formal_a_byte_that_nobody_wrote_is_found() {
     fails(
