@@ -54,6 +54,19 @@ pub enum ShaperConfigError {
     /// A word width that is not in [`WORD_BITS`].
     #[error("command words of {0} bits: the shaper is built for 16, 24 or 32")]
     WordBits(u32),
+    /// Sizes that no shaper can have.
+    #[error(
+        "a shaper of {word_bits}-bit words, 2^{ring_address_bits} samples and 2^{tap_index_bits} taps: words have 4 to 32 bits, \
+         rings 2^2 to 2^14 samples, tables 2^1 to 2^8 taps"
+    )]
+    Sizes {
+        /// Width of a word in bits.
+        word_bits: u32,
+        /// The ring holds 2 to the power of this samples.
+        ring_address_bits: u32,
+        /// A table holds 2 to the power of this taps.
+        tap_index_bits: u32,
+    },
     /// A delay that the largest ring does not reach.
     #[error(
         "the longest delay is {found} samples, the largest ring reaches back {allowed}: \
@@ -129,6 +142,41 @@ impl ShaperConfig {
             table,
             motion: None,
         })
+    }
+
+    /// The shaper of just these sizes: words of `word_bits`, a ring of 2^`ring_address_bits` samples, tables of up to
+    /// 2^`tap_index_bits` taps. Machine files choose among the sizes of [`WORD_BITS`], [`RING_ADDRESS_BITS`] and
+    /// [`TAP_INDEX_BITS`]; a proof that holds the memories needs smaller ones.
+    ///
+    /// # Errors
+    /// [`ShaperConfigError`] for words of other than 4 to 32 bits, a ring of other than 2^2 to 2^14 samples, a table of other
+    /// than 2^1 to 2^8 taps, and for a `table` that they do not hold.
+    pub fn of_sizes(
+        word_bits: u32,
+        ring_address_bits: u32,
+        tap_index_bits: u32,
+        table: TapTable,
+    ) -> Result<Self, ShaperConfigError> {
+        if !(4..=32).contains(&word_bits)
+            || !(2..=14).contains(&ring_address_bits)
+            || !(1..=8).contains(&tap_index_bits)
+        {
+            return Err(ShaperConfigError::Sizes {
+                word_bits,
+                ring_address_bits,
+                tap_index_bits,
+            });
+        }
+        let config = Self {
+            word_bits,
+            ring_address_bits,
+            tap_index_bits,
+            largest_taps: table.taps().len() as u32,
+            table,
+            motion: None,
+        };
+        config.holds(config.table.taps())?;
+        Ok(config)
     }
 
     /// The same shaper for commands in motion.
@@ -363,6 +411,29 @@ mod tests {
             }
         );
         assert_eq!(ShaperConfig::new(20, table(1, 0)), Err(ShaperConfigError::WordBits(20)));
+    }
+
+    #[test]
+    fn unit_given_sizes_are_kept_and_checked() {
+        let config = ShaperConfig::of_sizes(20, 13, 7, table(65, 300)).unwrap();
+        let sizes = (config.word_bits(), config.ring_address_bits(), config.tap_index_bits());
+        assert_eq!(sizes, (20, 13, 7));
+        for (word, ring, index) in [(3, 6, 6), (33, 6, 6), (16, 1, 6), (16, 15, 6), (16, 6, 0), (16, 6, 9)] {
+            let refused = ShaperConfig::of_sizes(word, ring, index, table(1, 0));
+            assert!(
+                matches!(refused, Err(ShaperConfigError::Sizes { .. })),
+                "{word}, {ring}, {index}"
+            );
+        }
+        let refused = |ring, index, table| ShaperConfig::of_sizes(6, ring, index, table).unwrap_err();
+        assert_eq!(
+            refused(2, 2, table(2, 3)),
+            ShaperConfigError::Delay { found: 3, allowed: 2 }
+        );
+        assert_eq!(
+            refused(6, 2, table(5, 9)),
+            ShaperConfigError::Taps { found: 5, allowed: 4 }
+        );
     }
 
     #[test]
