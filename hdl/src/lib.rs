@@ -30,6 +30,7 @@
 
 pub mod axis;
 pub mod cascade;
+mod compiled;
 pub mod component;
 pub mod divider;
 pub mod divider_share;

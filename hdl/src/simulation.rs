@@ -4,7 +4,7 @@
 //! slower.
 
 use crate::prelude::*;
-use posicast_model::rtl::{ClockedBlock, Port, StepError};
+use posicast_model::rtl::{ClockedBlock, Direction, Port, StepError};
 
 /// Updates of a design within one edge before it counts as an oscillator.
 const MOST_UPDATES: usize = 100;
@@ -19,6 +19,14 @@ pub enum SimulationError {
         block: &'static str,
         /// What RustHDL says.
         reason: String,
+    },
+    /// No size of the kernel that is compiled can stand for the one that is asked for.
+    #[error("RustHDL's simulator has no `{block}` for words of {word_bits} bits: simulate its Verilog instead")]
+    Size {
+        /// The block.
+        block: &'static str,
+        /// Width of its words in bits.
+        word_bits: u32,
     },
 }
 
@@ -37,21 +45,26 @@ pub(crate) struct Simulated {
     block: Box<dyn Pins>,
     ports: Vec<Port>,
     inputs: usize,
+    /// The inputs of a clock, at 64 bits.
+    driven: Vec<u64>,
 }
 
 impl Simulated {
-    /// Connects and checks `block`.
+    /// Connects and checks `block`. `ports` may be narrower than the block's: inputs are extended by zeros, or their sign, and
+    /// of outputs the low bits count.
     pub(crate) fn new(name: &'static str, mut block: Box<dyn Pins>, ports: Vec<Port>) -> Result<Self, SimulationError> {
         block.connect_all();
         check_all(block.as_ref()).map_err(|error| SimulationError::Refused {
             block: name,
             reason: format!("{error:?}"),
         })?;
-        let inputs = ports
-            .iter()
-            .filter(|p| p.direction == posicast_model::rtl::Direction::Input)
-            .count();
-        Ok(Self { block, ports, inputs })
+        let inputs = ports.iter().filter(|port| port.direction == Direction::Input).count();
+        Ok(Self {
+            block,
+            ports,
+            inputs,
+            driven: Vec::new(),
+        })
     }
 
     fn settle(&mut self) -> Result<(), StepError> {
@@ -83,11 +96,30 @@ impl ClockedBlock for Simulated {
                 expected.1
             )));
         }
-        self.block.drive(inputs);
+        let of = |direction| move |port: &&Port| port.direction == direction;
+        let ports = self.ports.iter().filter(of(Direction::Input));
+        self.driven.clear();
+        self.driven
+            .extend(ports.zip(inputs).map(|(port, input)| extended(*input, port)));
+        self.block.drive(&self.driven);
         self.block.set_clk(false);
         self.settle()?;
         self.block.read(outputs);
+        let ports = self.ports.iter().filter(of(Direction::Output));
+        for (port, output) in ports.zip(outputs) {
+            *output &= u64::MAX >> (64 - port.width);
+        }
         self.block.set_clk(true);
         self.settle()
+    }
+}
+
+/// The pattern of a port at 64 bits.
+fn extended(pattern: u64, port: &Port) -> u64 {
+    let above = 64 - port.width;
+    if port.signed {
+        ((pattern << above) as i64 >> above) as u64
+    } else {
+        pattern << above >> above
     }
 }

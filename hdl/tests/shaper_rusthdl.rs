@@ -282,6 +282,18 @@ fn lockstep_every_size_that_is_listed() {
 }
 
 #[test]
+fn lockstep_sizes_that_no_machine_file_gives() {
+    for (word_bits, ring, index) in [(8, 6, 5), (17, 5, 4), (18, 13, 7), (20, 6, 2), (31, 9, 3)] {
+        let machine = table(&mut Random(5), 12, 4, 9, 2);
+        let config = ShaperConfig::of_sizes(word_bits, ring, index, machine).unwrap();
+        let mut both = LockStep::new(&config);
+        for inputs in Anything::new(&config, u64::from(word_bits * ring * index)).take(1500) {
+            both.step(&inputs);
+        }
+    }
+}
+
+#[test]
 fn lockstep_a_table_of_256_taps_and_the_longest_ring() {
     let machine = table(&mut Random(11), 14, 256, 16_382, 4);
     let config = ShaperConfig::new(32, machine).unwrap();

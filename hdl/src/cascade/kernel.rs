@@ -17,7 +17,7 @@ use crate::prelude::*;
 use crate::simulation::Pins;
 use posicast_model::rtl::cascade::CascadeConfig;
 
-/// W word, S = W + 2^I sum, A ring address, I stage index and ADDRESS = A + I bits.
+/// W word, S sum of W + one bit per stage, A ring address, I stage index and ADDRESS = A + I bits.
 #[derive(LogicBlock)]
 pub(super) struct Cascade<const W: usize, const S: usize, const A: usize, const I: usize, const ADDRESS: usize> {
     pub(super) clk: Signal<In, Clock>,
@@ -72,9 +72,9 @@ pub(super) struct Cascade<const W: usize, const S: usize, const A: usize, const 
 impl<const W: usize, const S: usize, const A: usize, const I: usize, const ADDRESS: usize>
     Cascade<W, S, A, I, ADDRESS>
 {
-    /// A cascade for `config`, whose sizes must be these.
+    /// A cascade for `config`, whose sizes must not be above these.
     pub(super) fn new(config: &CascadeConfig) -> Self {
-        const { assert!(S == W + (1 << I) && ADDRESS == A + I) };
+        const { assert!(S > W && ADDRESS == A + I) };
         let stages = u64::from(config.stages());
         let word = |&delay: &u32| RomWord {
             pattern: u64::from(delay),
@@ -117,7 +117,7 @@ impl<const W: usize, const S: usize, const A: usize, const I: usize, const ADDRE
             rounded: Signal::default(),
             one_sample: Constant::new(from_u64(1)),
             no_age: Constant::new(from_u64(0)),
-            full_age: Constant::new(from_u64(u64::MAX)),
+            full_age: Constant::new(from_u64((1 << config.ring_address_bits()) - 1)),
             first_stage: Constant::new(from_u64(0)),
             one_stage: Constant::new(from_u64(1)),
             last_stage: Constant::new(from_u64(stages - 1)),

@@ -2,53 +2,73 @@
 //!
 //! The datasheet is `docs/cascade.md`, the reference `posicast_model::rtl::cascade`.
 //!
-//! One kernel serves all sizes. A size is a type in RustHDL, so `sized_cascade!` lists the types and picks the one that
-//! a [`CascadeConfig`] names.
+//! One kernel serves all sizes. It is compiled at three, from which the emitter writes any: see
+//! [`compiled`](crate::compiled).
 
 mod kernel;
 
-use crate::emit::{self, EmitError, EmitOptions, Header, Module, Parameter};
-use crate::simulation::{Pins, Simulated, SimulationError};
+use crate::compiled::{self, Compiled};
+use crate::emit::{EmitError, EmitOptions, Header, Module, Parameter};
+use crate::simulation::{Simulated, SimulationError};
 use kernel::Cascade;
 use posicast_model::rtl::ClockedBlock;
 use posicast_model::rtl::cascade::{CascadeConfig, pass_clocks, ports};
 
-/// Picks the kernel of the sizes that `$config` names and hands its type to the macro `$action`.
-///
-/// Each last arm is the largest size: [`CascadeConfig`] lets no other through.
-macro_rules! sized_cascade {
-    ($config:expr, $action:ident) => {
-        match $config.word_bits() {
-            16 => sized_cascade!(@ring $config, $action, 16),
-            24 => sized_cascade!(@ring $config, $action, 24),
-            _ => sized_cascade!(@ring $config, $action, 32),
-        }
-    };
-    (@ring $config:expr, $action:ident, $w:literal) => {
-        match $config.ring_address_bits() {
-            6 => sized_cascade!(@stages $config, $action, $w, 6),
-            7 => sized_cascade!(@stages $config, $action, $w, 7),
-            8 => sized_cascade!(@stages $config, $action, $w, 8),
-            9 => sized_cascade!(@stages $config, $action, $w, 9),
-            10 => sized_cascade!(@stages $config, $action, $w, 10),
-            _ => sized_cascade!(@stages $config, $action, $w, 12),
-        }
-    };
-    (@stages $config:expr, $action:ident, $w:literal, $a:literal) => {
-        match $config.stage_index_bits() {
-            2 => $action!(Cascade<$w, { $w + 4 }, $a, 2, { $a + 2 }>),
-            3 => $action!(Cascade<$w, { $w + 8 }, $a, 3, { $a + 3 }>),
-            _ => $action!(Cascade<$w, { $w + 16 }, $a, 4, { $a + 4 }>),
+/// The cascade with words of W bits, sums of S, rings of 2^A samples and 2^I stages.
+macro_rules! cascade {
+    ($w:literal, $s:literal, $a:literal, $i:literal) => {
+        Compiled {
+            sizes: &[$w, $s, $a, $i],
+            build: |config| Box::new(Cascade::<$w, $s, $a, $i, { $a + $i }>::new(config)),
         }
     };
 }
 
+const SIZES: [Compiled<CascadeConfig>; 3] = [cascade!(32, 48, 12, 4), cascade!(24, 52, 13, 6), cascade!(29, 34, 9, 3)];
+
+/// W, S, A and I.
+fn sizes(config: &CascadeConfig) -> [u32; 4] {
+    [
+        config.word_bits(),
+        config.sum_bits(),
+        config.ring_address_bits(),
+        config.stage_index_bits(),
+    ]
+}
+
 /// The cascade in RustHDL's own simulator.
+///
+/// It runs at a size that is compiled and holds this cascade, and whose outputs are the same: words are wider, rings larger.
 ///
 /// # Errors
 /// [`SimulationError`] where RustHDL finds a fault in the block.
 pub fn simulate(config: &CascadeConfig) -> Result<Box<dyn ClockedBlock>, SimulationError> {
-    Ok(Box::new(Simulated::new("cascade", block(config), ports(config))?))
+    let holding = simulated(config).ok_or(SimulationError::Size {
+        block: "cascade",
+        word_bits: config.word_bits(),
+    })?;
+    Ok(Box::new(Simulated::new(
+        "cascade",
+        (holding.build)(config),
+        ports(config),
+    )?))
+}
+
+/// The sizes at which [`simulate`] runs the cascade, in words, where they are not its own.
+pub fn simulated_as(config: &CascadeConfig) -> Option<String> {
+    match simulated(config)?.sizes {
+        same if same == sizes(config) => None,
+        &[word_bits, _, ring, index] => Some(format!(
+            "words of {word_bits} bits, rings of {} samples, {} stages",
+            1u32 << ring,
+            1u32 << index
+        )),
+        _ => None,
+    }
+}
+
+fn simulated(config: &CascadeConfig) -> Option<&'static Compiled<CascadeConfig>> {
+    compiled::holding(&SIZES, &sizes(config), false)
 }
 
 /// The cascade's Verilog, one module per file, the top last.
@@ -63,16 +83,7 @@ pub fn emit(config: &CascadeConfig, prefix: &str) -> Result<Vec<Module>, EmitErr
         prefix: prefix.to_owned(),
         header: header(config),
     };
-    emit::emit(block(config).as_ref(), &options)
-}
-
-fn block(config: &CascadeConfig) -> Box<dyn Pins> {
-    macro_rules! boxed {
-        ($cascade:ty) => {
-            Box::new(<$cascade>::new(config))
-        };
-    }
-    sized_cascade!(config, boxed)
+    compiled::emit(&SIZES, config, &sizes(config), &options)
 }
 
 fn header(config: &CascadeConfig) -> Header {
@@ -92,5 +103,25 @@ fn header(config: &CascadeConfig) -> Header {
             parameter("ring_samples", 1 << config.ring_address_bits(), "delays up to this - 2"),
             parameter("pass_clocks", pass_clocks(stages), "from strobe to valid"),
         ],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::emit::emit as emit_directly;
+
+    #[test]
+    fn unit_a_cascade_comes_out_as_if_its_size_were_compiled() {
+        let kernel: Compiled<CascadeConfig> = cascade!(16, 24, 7, 3);
+        let config = CascadeConfig::new(16, vec![3, 100, 7, 1, 2]).unwrap();
+        assert_eq!(kernel.sizes, sizes(&config));
+        let options = EmitOptions {
+            top: "cascade".to_owned(),
+            prefix: "m".to_owned(),
+            header: header(&config),
+        };
+        let expected = emit_directly((kernel.build)(&config).as_ref(), &options).unwrap();
+        assert_eq!(super::emit(&config, "m").unwrap(), expected);
     }
 }

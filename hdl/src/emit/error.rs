@@ -177,6 +177,20 @@ pub enum Cause {
     #[error("conditions on constants alone never trigger in an event simulator; decide them where the block is built")]
     ConstantCondition,
 
+    // Sizes.
+    /// A number that is not a constant plus a sum of sizes.
+    #[error(
+        "the number that is {0} at the sizes that are compiled is no sum of sizes and a constant; \
+         write it as one, or make it a size of its own"
+    )]
+    SizeNumber(String),
+    /// A constant or reset value that depends on the size that is compiled instead of the configuration.
+    #[error("the value that is {0} at the sizes that are compiled depends on them; make it from the configuration")]
+    SizeValue(String),
+    /// What is not the same at all sizes that are compiled.
+    #[error("the {0} differs between the sizes that are compiled; keep a set of sizes for each form")]
+    SizesDiffer(String),
+
     // Composition.
     /// A shared input that no instance has.
     #[error("no instance has an input `{0}` to share; remove it from the shared inputs")]

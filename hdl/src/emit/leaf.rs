@@ -7,10 +7,13 @@
 //! // @about One line of the header, repeatable.
 //! reg [15:0] memory [0:63];           the body, between port list and `endmodule`
 //! ```
+//!
+//! A number that follows from a port's width is written as `${..}`, so that the text serves every size: see [`fill`].
 
 use super::collect::{Kind, Node};
 use super::error::Cause;
 use super::names;
+use super::types::Type;
 use rust_hdl_core::prelude::Verilog;
 
 /// A hand-written module, as its tag describes it.
@@ -56,6 +59,58 @@ pub(super) fn register(node: &Node) -> Result<Option<u64>, Cause> {
         return Err(bad());
     }
     Ok(Some(value))
+}
+
+/// The text of a register: what [`register`] reads.
+pub(super) fn register_text(pattern: u64, ty: Type) -> String {
+    format!("// @dff {}'h{pattern:x}\n", ty.width)
+}
+
+/// The text of the leaf `node` with its numbers, each of which follows from the width of a port:
+///
+/// | in the text | w = width of the port |
+/// |---|---|
+/// | `${width PORT}` | w |
+/// | `${last_bit PORT}` | w − 1 |
+/// | `${words PORT}` | 2^w |
+/// | `${last_word PORT}` | 2^w − 1 |
+/// | `${pattern PORT HEX}` | the bit pattern as a sized literal, w bits wide |
+pub(super) fn fill(text: &str, node: &Node) -> Result<String, Cause> {
+    let mut filled = String::new();
+    let mut rest = text;
+    while let Some((before, from)) = rest.split_once("${") {
+        let (number, after) = from
+            .split_once('}')
+            .ok_or_else(|| Cause::Leaf("a `${` without `}`".to_owned()))?;
+        filled.push_str(before);
+        filled.push_str(&self::number(number, node)?);
+        rest = after;
+    }
+    filled.push_str(rest);
+    Ok(filled)
+}
+
+fn number(text: &str, node: &Node) -> Result<String, Cause> {
+    let wrong = || Cause::Leaf(format!("`${{{text}}}` is no number of a port, or does not fit it"));
+    let mut parts = text.split_whitespace();
+    let (what, port, value) = (parts.next(), parts.next(), parts.next());
+    let port = node.ports().find(|found| Some(found.raw.as_str()) == port);
+    let ty = port.ok_or_else(wrong)?.ty;
+    let words = 1u128 << ty.width;
+    Ok(match (what, value) {
+        (Some("width"), None) => ty.width.to_string(),
+        (Some("last_bit"), None) => (ty.width - 1).to_string(),
+        (Some("words"), None) => words.to_string(),
+        (Some("last_word"), None) => (words - 1).to_string(),
+        (Some("pattern"), Some(value)) => {
+            let pattern = u64::from_str_radix(value, 16)
+                .ok()
+                .filter(|pattern| pattern & !ty.mask() == 0);
+            let digits = ty.width.div_ceil(4) as usize;
+            format!("{}'h{:0digits$x}", ty.width, pattern.ok_or_else(wrong)?)
+        }
+        _ => return Err(wrong()),
+    })
 }
 
 /// The parts of a leaf's text.

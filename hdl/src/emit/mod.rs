@@ -49,6 +49,7 @@ pub(crate) mod names;
 mod paths;
 pub(crate) mod print;
 mod scope;
+mod sizes;
 mod statements;
 mod types;
 mod values;
@@ -110,14 +111,39 @@ pub struct Parameter {
 /// # Errors
 /// [`EmitError`] for the first thing that cannot be expressed exactly, or that breaks a rule of the kernels.
 pub fn emit<B: Block + ?Sized>(block: &B, options: &EmitOptions) -> Result<Vec<Module>, EmitError> {
-    let wrong_name = |cause| EmitError::new(&options.top, "", cause);
-    if options.prefix.is_empty() {
-        names::check_name(&options.top).map_err(wrong_name)?;
-    } else {
-        names::check_form(&options.prefix)
-            .and_then(|()| names::check_form(&options.top))
-            .map_err(wrong_name)?;
-    }
+    check_names(options)?;
     let top = collect::collect(block, &options.top)?;
     modules::modules(&top, options)
+}
+
+/// Writes a kernel at the sizes `wanted` as Verilog, from the same kernel at a few other sizes.
+///
+/// Each sample is the kernel's sizes and the kernel, all built for one configuration. A width must be a constant plus the sum
+/// of some of the sizes. That is told from the samples: two whose sizes differ by amounts of which no two sets have the
+/// same sum, and at least one more, which all must fit.
+///
+/// # Errors
+/// As [`emit`], and for what does not follow from the sizes.
+pub fn emit_sized<B: Block + ?Sized>(
+    samples: &[(&[u32], &B)],
+    wanted: &[u32],
+    options: &EmitOptions,
+) -> Result<Vec<Module>, EmitError> {
+    check_names(options)?;
+    let sample = |(sizes, block): &(&'_ [u32], &B)| {
+        let node = collect::collect(*block, &options.top)?;
+        Ok((sizes.to_vec(), node))
+    };
+    let samples = samples.iter().map(sample).collect::<Result<Vec<_>, EmitError>>()?;
+    let top = sizes::resolve(samples, wanted)?;
+    modules::modules(&top, options)
+}
+
+fn check_names(options: &EmitOptions) -> Result<(), EmitError> {
+    let checked = if options.prefix.is_empty() {
+        names::check_name(&options.top)
+    } else {
+        names::check_form(&options.prefix).and_then(|()| names::check_form(&options.top))
+    };
+    checked.map_err(|cause| EmitError::new(&options.top, "", cause))
 }

@@ -71,7 +71,9 @@ impl Modules<'_> {
     }
 
     fn leaf(&self, node: &Node, text: &str) -> Result<Draft, EmitError> {
-        let leaf = leaf::parse(text, node).map_err(|cause| EmitError::new(&node.path, "", cause))?;
+        let wrong = |cause| EmitError::new(&node.path, "", cause);
+        let text = leaf::fill(text, node).map_err(wrong)?;
+        let leaf = leaf::parse(&text, node).map_err(wrong)?;
         for port in node.ports() {
             let checked = names::check_name(&names::flatten(&port.raw));
             checked.map_err(|cause| EmitError::new(&node.path, &port.raw, cause))?;

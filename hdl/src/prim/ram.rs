@@ -4,6 +4,7 @@
 //! written is undefined: devices differ. The simulation gives arbitrary contents for the one and the complement of the
 //! written word for the other, so that a block that uses either differs from its model.
 
+use crate::prelude::from_u64;
 use rust_hdl_core::prelude::*;
 use rust_hdl_macros::LogicBlock;
 
@@ -16,7 +17,8 @@ pub(crate) struct Ram<const D: usize, const N: usize> {
     pub(crate) write_data: Signal<In, Bits<D>>,
     pub(crate) read_address: Signal<In, Bits<N>>,
     pub(crate) read_data: Signal<Out, Bits<D>>,
-    _words: Vec<Bits<D>>,
+    /// Bit patterns; none before the first clock, so that a block that is only emitted takes no memory.
+    _words: Vec<u64>,
 }
 
 impl<const D: usize, const N: usize> Default for Ram<D, N> {
@@ -28,24 +30,26 @@ impl<const D: usize, const N: usize> Default for Ram<D, N> {
             write_data: Signal::default(),
             read_address: Signal::default(),
             read_data: Signal::default(),
-            _words: (0..1 << N).map(arbitrary).collect(),
+            _words: Vec::new(),
         }
     }
 }
 
 /// A word like any other (the multiplier is 2^64 over the golden ratio).
-fn arbitrary<const D: usize>(address: u64) -> Bits<D> {
-    let word = (address + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 13;
-    Bits::from(word & (u64::MAX >> (64 - D)))
+fn arbitrary(address: u64) -> u64 {
+    (address + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 13
 }
 
 impl<const D: usize, const N: usize> Logic for Ram<D, N> {
     fn update(&mut self) {
         if self.clk.pos_edge() {
+            if self._words.is_empty() {
+                self._words = (0..1 << N).map(arbitrary).collect();
+            }
             let (write, read) = (self.write_address.val(), self.read_address.val());
-            self.read_data.next = self._words[read.index()];
+            self.read_data.next = from_u64(self._words[read.index()]);
             if self.write_enable.val() {
-                self._words[write.index()] = self.write_data.val();
+                self._words[write.index()] = self.write_data.val().into();
                 if write == read {
                     self.read_data.next = !self.write_data.val();
                 }
@@ -58,20 +62,20 @@ impl<const D: usize, const N: usize> Logic for Ram<D, N> {
     }
 
     fn hdl(&self) -> Verilog {
-        let (words, last_word, last_bit) = (1u64 << N, (1u64 << N) - 1, D - 1);
-        Verilog::Custom(format!(
+        Verilog::Custom(
             "\
-// @leaf ram_{words}x{D} reg: read_data
-// @about Block RAM, {words} words of {D} bits: one write port, one read port, read data one clock after the address.
+// @leaf ram_${words write_address}x${width write_data} reg: read_data
+// @about Block RAM, ${words write_address} words of ${width write_data} bits: one write port, one read port, read data one clock after the address.
 // @about No reset: what was not written is unknown, and so is a word read in the clock in which it is written.
 (* no_rw_check, ramstyle = \"no_rw_check\" *)
-reg [{last_bit}:0] words [0:{last_word}];
+reg [${last_bit write_data}:0] words [0:${last_word write_address}];
 always @(posedge clk) begin
     if (write_enable) words[write_address] <= write_data;
     read_data <= words[read_address];
 end
 "
-        ))
+            .to_owned(),
+        )
     }
 }
 
@@ -87,7 +91,7 @@ mod tests {
             panic!("a leaf has Verilog of its own");
         };
         assert!(
-            text.contains("(* no_rw_check, ramstyle = \"no_rw_check\" *)\nreg [7:0] words"),
+            text.contains("(* no_rw_check, ramstyle = \"no_rw_check\" *)\nreg [${last_bit write_data}:0] words"),
             "{text}"
         );
     }

@@ -52,24 +52,21 @@ impl<const D: usize, const N: usize> Logic for Rom<D, N> {
     }
 
     fn hdl(&self) -> Verilog {
-        let (size, last_word, last_bit) = (1u64 << N, (1u64 << N) - 1, D - 1);
         let (name, used) = (&self._base_name, self._words.len());
         let mut contents = String::new();
         for (address, word) in self._words.iter().enumerate() {
             // Writing to a String cannot fail.
             let _ = writeln!(
                 contents,
-                "    words[{address}] = {D}'h{:0digits$x}; // {}",
-                word.pattern,
-                word.meaning,
-                digits = D.div_ceil(4),
+                "    words[{address}] = ${{pattern data {:x}}}; // {}",
+                word.pattern, word.meaning,
             );
         }
         Verilog::Custom(format!(
             "\
 // @leaf {name} reg: data
-// @about Block ROM, {used} of {size} words of {D} bits are used: data one clock after the address.
-reg [{last_bit}:0] words [0:{last_word}];
+// @about Block ROM, {used} of ${{words address}} words of ${{width data}} bits are used: data one clock after the address.
+reg [${{last_bit data}}:0] words [0:${{last_word address}}];
 initial begin
 {contents}end
 always @(posedge clk) begin

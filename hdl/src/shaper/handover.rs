@@ -66,6 +66,7 @@ pub(super) struct Handover<const W: usize, const A: usize> {
 
 impl<const W: usize, const A: usize> Handover<W, A> {
     pub(super) fn new(config: &ShaperConfig) -> Self {
+        let for_ever = u64::from(config.longest_delay_samples()) + 1;
         Self {
             clk: Signal::default(),
             rst: Signal::default(),
@@ -88,7 +89,7 @@ impl<const W: usize, const A: usize> Handover<W, A> {
             coefficient: Signal::default(),
             delay: Signal::default(),
             how: Dff::default(),
-            still: Dff::new(from_u64(u64::MAX)),
+            still: Dff::new(from_u64(for_ever)),
             newest_q: Dff::default(),
             active_q: Dff::default(),
             since_q: Dff::default(),
@@ -109,7 +110,7 @@ impl<const W: usize, const A: usize> Handover<W, A> {
             when_settled: Constant::new(from_u64(u64::from(swap_how::WHEN_SETTLED))),
             moved: Constant::new(from_u64(0)),
             one_sample: Constant::new(from_u64(1)),
-            for_ever: Constant::new(from_u64(u64::MAX)),
+            for_ever: Constant::new(from_u64(for_ever)),
             no_coefficient: Constant::new(from_i64(0)),
             minus_unity: Constant::new(from_i64(-(1 << config.coefficient_fraction()))),
         }

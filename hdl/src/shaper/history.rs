@@ -11,6 +11,7 @@
 //! `delay` is at most 2^A − 2: the word read is never the one that is written.
 
 use crate::prelude::*;
+use posicast_model::rtl::shaper::ShaperConfig;
 
 /// W word, A ring address bits, C channels.
 #[derive(LogicBlock)]
@@ -42,8 +43,8 @@ pub(super) struct History<const W: usize, const A: usize, const C: usize> {
     full_age: Constant<Bits<A>>,
 }
 
-impl<const W: usize, const A: usize, const C: usize> Default for History<W, A, C> {
-    fn default() -> Self {
+impl<const W: usize, const A: usize, const C: usize> History<W, A, C> {
+    pub(super) fn new(config: &ShaperConfig) -> Self {
         Self {
             clk: Signal::default(),
             rst: Signal::default(),
@@ -65,7 +66,7 @@ impl<const W: usize, const A: usize, const C: usize> Default for History<W, A, C
             address: Signal::default(),
             one_sample: Constant::new(from_u64(1)),
             no_age: Constant::new(from_u64(0)),
-            full_age: Constant::new(from_u64(u64::MAX)),
+            full_age: Constant::new(from_u64(u64::from(config.longest_delay_samples()) + 1)),
         }
     }
 }

@@ -86,7 +86,7 @@ impl<
     const U: usize,
 > Shaper<W, P, ACC, A, T, COUNT, SUM, WORD, U>
 {
-    /// A shaper for `config`, whose sizes must be these.
+    /// A shaper for `config`, whose sizes must not be above these.
     pub(super) fn new(config: &ShaperConfig) -> Self {
         const { assert!(P == W + 18 && ACC == P + T) };
         Self {
@@ -112,8 +112,8 @@ impl<
             bank: Signal::default(),
             refused: Signal::default(),
             banks: TapBanks::new(config),
-            history: History::default(),
-            sum: WeightedSum::new(config.coefficient_fraction()),
+            history: History::new(config),
+            sum: WeightedSum::new(config),
             tap: Dff::default(),
             running: Dff::default(),
             stages: Dff::default(),

@@ -3,8 +3,9 @@
 //! The datasheet is `docs/shaper.md`, the reference `posicast_model::rtl::shaper`.
 //!
 //! One kernel serves all sizes, and a second one all shapers for commands in motion: with channels, handover and modulo
-//! axes. A size is a type in RustHDL, so `sized_shaper!` and `sized_motion_shaper!` list the types and pick the one that a
-//! [`ShaperConfig`] names.
+//! axes. Each is compiled at three sizes, from which the emitter writes any: see [`compiled`](crate::compiled). What changes the
+//! form of a kernel has a set of three of its own: one or two multipliers, one to three channels. Sizes are equal between the
+//! sets wherever they can be, so that the parts are compiled once.
 
 mod channel_sums;
 mod handover;
@@ -16,85 +17,134 @@ mod product;
 mod tap_banks;
 mod weighted_sum;
 
-use crate::emit::{self, EmitError, EmitOptions, Header, Module, Parameter};
-use crate::simulation::{Pins, Simulated, SimulationError};
+use crate::compiled::{self, Compiled};
+use crate::emit::{EmitError, EmitOptions, Header, Module, Parameter};
+use crate::simulation::{Simulated, SimulationError};
 use kernel::Shaper;
 use motion::MotionShaper;
 use posicast_model::rtl::ClockedBlock;
 use posicast_model::rtl::shaper::{ShaperConfig, ports};
 
-/// Picks the kernel of the sizes that `$config` names and hands its type to the macro `$action`.
-///
-/// Each last arm is the largest size: [`ShaperConfig`] lets no other through.
-macro_rules! sized_shaper {
-    ($config:expr, $action:ident) => {
-        match $config.word_bits() {
-            16 => sized_shaper!(@ring $config, $action, 16, 0),
-            24 => sized_shaper!(@ring $config, $action, 24, 1),
-            _ => sized_shaper!(@ring $config, $action, 32, 1),
-        }
-    };
-    (@ring $config:expr, $action:ident, $w:literal, $u:literal) => {
-        match $config.ring_address_bits() {
-            6 => sized_shaper!(@index $config, $action, $w, $u, 6),
-            7 => sized_shaper!(@index $config, $action, $w, $u, 7),
-            8 => sized_shaper!(@index $config, $action, $w, $u, 8),
-            9 => sized_shaper!(@index $config, $action, $w, $u, 9),
-            10 => sized_shaper!(@index $config, $action, $w, $u, 10),
-            11 => sized_shaper!(@index $config, $action, $w, $u, 11),
-            12 => sized_shaper!(@index $config, $action, $w, $u, 12),
-            _ => sized_shaper!(@index $config, $action, $w, $u, 14),
-        }
-    };
-    (@index $config:expr, $action:ident, $w:literal, $u:literal, $a:literal) => {
-        match $config.tap_index_bits() {
-            6 => $action!(Shaper<$w, { $w + 18 }, { $w + 18 + 6 }, $a, 6, 7, { 18 + 6 }, { 18 + $a }, $u>),
-            _ => $action!(Shaper<$w, { $w + 18 }, { $w + 18 + 8 }, $a, 8, 9, { 18 + 8 }, { 18 + $a }, $u>),
+/// The plain shaper with words of W bits, a ring of 2^A samples, tables of 2^T taps, and U of the [`Shaper`].
+macro_rules! shaper {
+    ($w:literal, $a:literal, $t:literal, $u:literal) => {
+        Compiled {
+            sizes: &[$w, $a, $t],
+            build: |config| {
+                Box::new(Shaper::<
+                    $w,
+                    { $w + 18 },
+                    { $w + 18 + $t },
+                    $a,
+                    $t,
+                    { $t + 1 },
+                    { 18 + $t },
+                    { 18 + $a },
+                    $u,
+                >::new(config))
+            },
         }
     };
 }
 
-/// As `sized_shaper!`, for the shapers for motion: words of 24 and 32 bits, 1 to 3 channels, the largest ring for one.
-macro_rules! sized_motion_shaper {
-    ($config:expr, $action:ident) => {
-        match $config.word_bits() {
-            24 => sized_motion_shaper!(@channels $config, $action, 24),
-            _ => sized_motion_shaper!(@channels $config, $action, 32),
+/// The shaper for motion of C channels, else the same.
+macro_rules! motion_shaper {
+    ($w:literal, $a:literal, $t:literal, $c:literal) => {
+        Compiled {
+            sizes: &[$w, $a, $t],
+            build: |config| {
+                Box::new(MotionShaper::<
+                    $w,
+                    { $w + 18 },
+                    { $w + 19 + $t },
+                    $a,
+                    $t,
+                    { $t + 1 },
+                    { 18 + $t },
+                    { 18 + $a },
+                    $c,
+                    { $c - 1 },
+                >::new(config))
+            },
         }
     };
-    (@channels $config:expr, $action:ident, $w:literal) => {
-        match ($config.channels(), $config.ring_address_bits()) {
-            (1, 14) => sized_motion_shaper!(@index $config, $action, $w, 14, 1),
-            (1, _) => sized_motion_shaper!(@ring $config, $action, $w, 1),
-            (2, _) => sized_motion_shaper!(@ring $config, $action, $w, 2),
-            _ => sized_motion_shaper!(@ring $config, $action, $w, 3),
-        }
-    };
-    (@ring $config:expr, $action:ident, $w:literal, $c:literal) => {
-        match $config.ring_address_bits() {
-            6 => sized_motion_shaper!(@index $config, $action, $w, 6, $c),
-            7 => sized_motion_shaper!(@index $config, $action, $w, 7, $c),
-            8 => sized_motion_shaper!(@index $config, $action, $w, 8, $c),
-            9 => sized_motion_shaper!(@index $config, $action, $w, 9, $c),
-            10 => sized_motion_shaper!(@index $config, $action, $w, 10, $c),
-            11 => sized_motion_shaper!(@index $config, $action, $w, 11, $c),
-            _ => sized_motion_shaper!(@index $config, $action, $w, 12, $c),
-        }
-    };
-    (@index $config:expr, $action:ident, $w:literal, $a:literal, $c:literal) => {
-        match $config.tap_index_bits() {
-            6 => $action!(MotionShaper<$w, { $w + 18 }, { $w + 19 + 6 }, $a, 6, 7, { 18 + 6 }, { 18 + $a }, $c, { $c - 1 }>),
-            _ => $action!(MotionShaper<$w, { $w + 18 }, { $w + 19 + 8 }, $a, 8, 9, { 18 + 8 }, { 18 + $a }, $c, { $c - 1 }>),
-        }
-    };
+}
+
+/// The kernel that is compiled at three sizes, by its form.
+type Sizes = [Compiled<ShaperConfig>; 3];
+
+/// Widest word that one multiplier takes.
+const ONE_MULTIPLIER_BITS: u32 = 17;
+const ONE_MULTIPLIER: Sizes = [shaper!(17, 14, 8, 0), shaper!(9, 15, 10, 0), shaper!(14, 11, 5, 0)];
+const TWO_MULTIPLIERS: Sizes = [shaper!(32, 14, 8, 1), shaper!(24, 15, 10, 1), shaper!(29, 11, 5, 1)];
+const ONE_CHANNEL: Sizes = [
+    motion_shaper!(32, 14, 8, 1),
+    motion_shaper!(24, 15, 10, 1),
+    motion_shaper!(29, 11, 5, 1),
+];
+const TWO_CHANNELS: Sizes = [
+    motion_shaper!(32, 14, 8, 2),
+    motion_shaper!(24, 15, 10, 2),
+    motion_shaper!(29, 11, 5, 2),
+];
+const THREE_CHANNELS: Sizes = [
+    motion_shaper!(32, 14, 8, 3),
+    motion_shaper!(24, 15, 10, 3),
+    motion_shaper!(29, 11, 5, 3),
+];
+
+/// The kernel of the form that a shaper needs.
+fn kernel(config: &ShaperConfig) -> &'static Sizes {
+    match config.motion().map(|motion| motion.channels) {
+        None if config.word_bits() <= ONE_MULTIPLIER_BITS => &ONE_MULTIPLIER,
+        None => &TWO_MULTIPLIERS,
+        Some(1) => &ONE_CHANNEL,
+        Some(2) => &TWO_CHANNELS,
+        Some(_) => &THREE_CHANNELS,
+    }
+}
+
+/// W, A and T.
+fn sizes(config: &ShaperConfig) -> [u32; 3] {
+    [config.word_bits(), config.ring_address_bits(), config.tap_index_bits()]
 }
 
 /// The shaper in RustHDL's own simulator.
 ///
+/// It runs at a size that is compiled and holds this shaper, and whose outputs are the same: rings and tables are larger, and
+/// words may be wider.
+///
 /// # Errors
-/// [`SimulationError`] where RustHDL finds a fault in the block.
+/// [`SimulationError`] where RustHDL finds a fault in the block, or where a position wraps at a width that is not compiled.
 pub fn simulate(config: &ShaperConfig) -> Result<Box<dyn ClockedBlock>, SimulationError> {
-    Ok(Box::new(Simulated::new("shaper", block(config), ports(config))?))
+    let holding = simulated(config).ok_or(SimulationError::Size {
+        block: "shaper",
+        word_bits: config.word_bits(),
+    })?;
+    Ok(Box::new(Simulated::new(
+        "shaper",
+        (holding.build)(config),
+        ports(config),
+    )?))
+}
+
+/// The sizes at which [`simulate`] runs the shaper, in words, where they are not its own.
+pub fn simulated_as(config: &ShaperConfig) -> Option<String> {
+    match simulated(config)?.sizes {
+        same if same == sizes(config) => None,
+        &[word_bits, ring, index] => Some(format!(
+            "words of {word_bits} bits, a ring of {} samples, tables of {} taps",
+            1u32 << ring,
+            1u32 << index
+        )),
+        _ => None,
+    }
+}
+
+/// The kernel that the simulation runs. The arithmetic of a position that wraps is that of its word's very width.
+fn simulated(config: &ShaperConfig) -> Option<&'static Compiled<ShaperConfig>> {
+    let wraps = config.motion().is_some_and(|motion| motion.modulo);
+    compiled::holding(kernel(config), &sizes(config), wraps)
 }
 
 /// The shaper's Verilog, one module per file, the top last.
@@ -109,43 +159,7 @@ pub fn emit(config: &ShaperConfig, prefix: &str) -> Result<Vec<Module>, EmitErro
         prefix: prefix.to_owned(),
         header: header(config),
     };
-    emit::emit(block(config).as_ref(), &options)
-}
-
-/// The same kernel at sizes that no machine gets: words of 6 bits, a ring of 4 samples, tables of 4 taps.
-///
-/// Small enough that a proof holds memories and multiplier too. Of `config` only the table is used; it must have at most 4
-/// taps and delays of at most 2 samples.
-///
-/// # Errors
-/// As [`emit()`].
-pub fn emit_small(config: &ShaperConfig) -> Result<Vec<Module>, EmitError> {
-    let options = EmitOptions {
-        top: "shaper".to_owned(),
-        prefix: String::new(),
-        header: Header {
-            about: "Input shaper of 6-bit words, 4 samples, 4 taps: for proofs alone.".to_owned(),
-            parameters: Vec::new(),
-        },
-    };
-    let block: Box<dyn Pins> = Box::new(Shaper::<6, 24, 26, 2, 2, 3, 20, 20, 0>::new(config));
-    emit::emit(block.as_ref(), &options)
-}
-
-fn block(config: &ShaperConfig) -> Box<dyn Pins> {
-    // A function per size: in one function all sizes would have room on the stack at once, and overflow it.
-    macro_rules! boxed {
-        ($shaper:ty) => {{
-            fn build(config: &ShaperConfig) -> Box<dyn Pins> {
-                Box::new(<$shaper>::new(config))
-            }
-            build(config)
-        }};
-    }
-    match config.motion() {
-        None => sized_shaper!(config, boxed),
-        Some(_) => sized_motion_shaper!(config, boxed),
-    }
+    compiled::emit(kernel(config), config, &sizes(config), &options)
 }
 
 fn header(config: &ShaperConfig) -> Header {
@@ -202,5 +216,53 @@ fn header(config: &ShaperConfig) -> Header {
     Header {
         about,
         parameters: [parameters, of_motion].concat(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::emit::emit as emit_directly;
+    use posicast_model::rtl::shaper::Motion;
+    use posicast_model::taps::{Tap, TapTable};
+
+    fn table() -> TapTable {
+        let tap = |(delay_samples, coefficient)| Tap {
+            delay_samples,
+            coefficient,
+        };
+        TapTable::new(9, [(0, -300), (1, 400), (60, 412)].map(tap).to_vec()).unwrap()
+    }
+
+    /// One size for each form of the kernel, none of them among those that are compiled.
+    #[test]
+    fn unit_each_form_comes_out_as_if_its_size_were_compiled() {
+        let direct: [Compiled<ShaperConfig>; 5] = [
+            shaper!(16, 6, 6, 0),
+            shaper!(18, 13, 7, 1),
+            motion_shaper!(24, 7, 8, 1),
+            motion_shaper!(24, 12, 6, 2),
+            motion_shaper!(32, 9, 6, 3),
+        ];
+        for (form, kernel) in direct.iter().enumerate() {
+            let &[word, ring, index] = kernel.sizes else {
+                panic!("three sizes")
+            };
+            let config = ShaperConfig::of_sizes(word, ring, index, table()).unwrap();
+            for modulo in [false, true] {
+                let mut config = config.clone();
+                if let Some(channels) = form.checked_sub(1).filter(|channels| *channels > 0) {
+                    let channels = channels as u32;
+                    config = config.for_motion(Motion { channels, modulo }).unwrap();
+                }
+                let options = EmitOptions {
+                    top: "shaper".to_owned(),
+                    prefix: "m".to_owned(),
+                    header: header(&config),
+                };
+                let expected = emit_directly((kernel.build)(&config).as_ref(), &options).unwrap();
+                assert_eq!(super::emit(&config, "m").unwrap(), expected, "{config:?}");
+            }
+        }
     }
 }

@@ -109,7 +109,7 @@ impl<
     const H: usize,
 > MotionShaper<W, P, ACC, A, T, COUNT, SUM, WORD, C, H>
 {
-    /// A shaper for `config`, whose sizes must be these.
+    /// A shaper for `config`, whose sizes must not be above these, and whose word must be W bits if its position wraps.
     pub(super) fn new(config: &ShaperConfig) -> Self {
         const { assert!(P == W + 18 && ACC == P + T + 1 && C <= 3 && H + 1 == C) };
         Self {
@@ -137,7 +137,7 @@ impl<
             refused: Signal::default(),
             banks: TapBanks::new(config),
             handover: Handover::new(config),
-            history: History::default(),
+            history: History::new(config),
             sums: ChannelSums::new(config),
             tap: Dff::default(),
             running: Dff::default(),

@@ -11,6 +11,7 @@
 
 use super::product::Product;
 use crate::prelude::*;
+use posicast_model::rtl::shaper::ShaperConfig;
 
 /// W word, P = W + 18 product, ACC = P + T accumulator bits; U of [`Product`].
 #[derive(LogicBlock)]
@@ -50,8 +51,8 @@ pub(super) struct WeightedSum<const W: usize, const P: usize, const ACC: usize, 
 }
 
 impl<const W: usize, const P: usize, const ACC: usize, const U: usize> WeightedSum<W, P, ACC, U> {
-    /// For coefficients with so many fraction bits.
-    pub(super) fn new(fraction: u32) -> Self {
+    pub(super) fn new(config: &ShaperConfig) -> Self {
+        let fraction = config.coefficient_fraction();
         Self {
             clk: Signal::default(),
             rst: Signal::default(),
@@ -75,11 +76,11 @@ impl<const W: usize, const P: usize, const ACC: usize, const U: usize> WeightedS
             sign_bits: Signal::default(),
             no_coefficient: Constant::new(from_i64(0)),
             half: Constant::new(from_i64(1 << (fraction - 1))),
-            sign_mask: Constant::new(from_u64(u64::MAX << (fraction as usize + W - 1))),
+            sign_mask: Constant::new(from_u64(u64::MAX << (fraction + config.word_bits() - 1))),
             all_clear: Constant::new(from_u64(0)),
             top_bit: Constant::new(from_u64(ACC as u64 - 1)),
-            y_max: Constant::new(from_i64((1 << (W - 1)) - 1)),
-            y_min: Constant::new(from_i64(-(1 << (W - 1)))),
+            y_max: Constant::new(from_i64(config.word_max())),
+            y_min: Constant::new(from_i64(config.word_min())),
             fraction: Constant::new(from_u64(u64::from(fraction))),
         }
     }

@@ -6,6 +6,7 @@
 //! | `refused` | the refusals: block, signal, remedy |
 //! | `modules` | names, files, sharing, headers, composition |
 //! | `shaper` | the shaper's Verilog against its model |
+//! | `sizes` | kernels at sizes that are not compiled |
 
 #![cfg(test)]
 
@@ -16,6 +17,7 @@ mod kernels;
 mod modules;
 mod refused;
 mod shaper;
+mod sizes;
 #[path = "../stimulus/mod.rs"]
 mod stimulus;
 mod tools;

@@ -10,6 +10,11 @@ fn config(word_bits: u32, taps: usize, longest: u32) -> ShaperConfig {
     ShaperConfig::new(word_bits, table(&mut Random(5), 16, taps, longest, 2)).unwrap()
 }
 
+/// Of sizes that no machine file gives.
+fn of_sizes(word_bits: u32, ring: u32, index: u32) -> ShaperConfig {
+    ShaperConfig::of_sizes(word_bits, ring, index, table(&mut Random(5), 9, 3, 9, 2)).unwrap()
+}
+
 fn for_motion(config: ShaperConfig, channels: u32, modulo: bool) -> ShaperConfig {
     config.for_motion(Motion { channels, modulo }).unwrap()
 }
@@ -20,6 +25,8 @@ fn crosssim_shaper_equals_its_model() {
         ("small", config(16, 3, 20)),
         ("middle", config(24, 40, 200)),
         ("large", config(32, 77, 900)),
+        ("between", of_sizes(20, 5, 3)),
+        ("tiny", of_sizes(6, 4, 2)),
         ("motion", for_motion(config(32, 5, 11), 3, false)),
         ("rotary", for_motion(config(24, 3, 9), 1, true)),
     ];

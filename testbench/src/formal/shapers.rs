@@ -48,7 +48,7 @@ fn plain() -> Result<Task, Error> {
 /// The plain shaper's kernel so small that memories and multiplier are in the proof.
 fn small() -> Result<Task, Error> {
     const DELAY_BITS: u32 = 2;
-    let config = ShaperConfig::new(16, table(4, &[(0, 9), (1, -3), (2, 10)])?).map_err(refused)?;
+    let config = ShaperConfig::of_sizes(6, DELAY_BITS, 2, table(4, &[(0, 9), (1, -3), (2, 10)])?).map_err(refused)?;
     let mask = (1 << COEFFICIENT_BITS) - 1;
     let words = config.table().taps().iter().rev().map(|tap| {
         let (delay, coefficient) = (tap.delay_samples, tap.coefficient & mask);
@@ -59,9 +59,8 @@ fn small() -> Result<Task, Error> {
         ("MACHINE_TAPS", format!("3'd{}", config.table().taps().len())),
         ("MACHINE_TABLE", format!("{{{}}}", words.collect::<Vec<_>>().join(", "))),
     ];
-    let modules = shaper::emit_small(&config)?;
-    let ports = modules.last().map_or_else(Vec::new, |top| top.ports.clone());
-    let task = Task::new("shaper_small", "6 bits, 4 samples, 4 taps", INDUCTION, (modules, ports))
+    let block = (shaper::emit(&config, "")?, ports(&config));
+    let task = Task::new("shaper_small", "6 bits, 4 samples, 4 taps", INDUCTION, block)
         .properties(&macros, include_str!("../../formal/shaper_small.sv"));
     Ok(Task {
         keeps_memories: true,
