@@ -59,6 +59,19 @@ impl Simulator {
         }
     }
 
+    /// Says where the simulator runs a block at other sizes than those of its Verilog.
+    pub(crate) fn say_sizes<'a>(self, blocks: impl Iterator<Item = &'a dyn Block>) {
+        for block in blocks.filter(|_| self == Self::Rusthdl) {
+            if let Some(sizes) = block.simulated_as() {
+                output::say(&format!(
+                    "note: RustHDL's simulator runs {} {} at larger sizes with equal outputs ({sizes})",
+                    block.name(),
+                    block.instance()
+                ));
+            }
+        }
+    }
+
     /// The block in this simulator. RustHDL's runs its own description instead of the Verilog.
     pub(crate) fn device(self, block: &dyn Block, sources: &Sources, seed: u64) -> Result<Box<dyn Device>, Error> {
         match self {
@@ -89,6 +102,7 @@ pub(crate) struct Bench<'a> {
 
 /// Compares every block with its model, at most [`MOST_AT_ONCE`] at a time, and reports them in their order.
 pub(crate) fn compare_all(benches: &[Bench<'_>], simulator: Simulator, seed: u64) -> Result<Report, Failure> {
+    simulator.say_sizes(benches.iter().map(|bench| bench.block));
     let total = benches.iter().map(|bench| bench.cycles).fold(0, u64::saturating_add);
     let bar = progress::bar("lock step", total);
     let next = Mutex::new(benches.iter().enumerate());

@@ -131,6 +131,7 @@ pub(crate) fn run(
             replay.notes().join(", ")
         )));
     }
+    simulator.say_sizes(std::iter::once(block));
     let mut device = simulator.device(block, sources, seed).map_err(bench::failure)?;
     let report = replay
         .run(block, device.as_mut(), clocks, seed)

@@ -1,7 +1,7 @@
 //! The bench of `cascade`.
 
 use posicast_hdl::SimulationError;
-use posicast_hdl::cascade::{emit, simulate};
+use posicast_hdl::cascade::{emit, simulate, simulated_as};
 use posicast_hdl::emit::{EmitError, Module};
 use posicast_model::rtl::ClockedBlock;
 use posicast_model::rtl::cascade::{Cascade, CascadeConfig};
@@ -52,6 +52,10 @@ impl Block for CascadeBlock {
 
     fn simulate(&self) -> Result<Box<dyn ClockedBlock>, SimulationError> {
         simulate(&self.config)
+    }
+
+    fn simulated_as(&self) -> Option<String> {
+        simulated_as(&self.config)
     }
 
     fn stimuli(&self, _cycles: u64, seed: u64) -> Box<dyn Stimuli + '_> {

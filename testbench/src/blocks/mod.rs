@@ -93,6 +93,11 @@ pub trait Block: Send + Sync {
     /// [`SimulationError`] where RustHDL finds a fault in the block, or where it is not [`Self::in_rusthdl`].
     fn simulate(&self) -> Result<Box<dyn ClockedBlock>, SimulationError>;
 
+    /// The sizes at which RustHDL's simulator runs the block, in words, where they are not the block's own. Outputs are equal.
+    fn simulated_as(&self) -> Option<String> {
+        None
+    }
+
     /// Whether the whole block is written in RustHDL. Register banks are not, and so no component is.
     fn in_rusthdl(&self) -> bool {
         true

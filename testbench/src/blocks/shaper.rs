@@ -3,7 +3,7 @@
 use posicast_hdl::SimulationError;
 use posicast_hdl::emit::{EmitError, Module};
 use posicast_hdl::machine::{AxisShaper, emit_machine};
-use posicast_hdl::shaper::{emit, simulate};
+use posicast_hdl::shaper::{emit, simulate, simulated_as};
 use posicast_model::rtl::shaper::{Motion, Shaper, ShaperConfig, ports};
 use posicast_model::rtl::{ClockedBlock, Port};
 
@@ -70,6 +70,10 @@ impl Block for ShaperBlock {
 
     fn simulate(&self) -> Result<Box<dyn ClockedBlock>, SimulationError> {
         simulate(&self.config)
+    }
+
+    fn simulated_as(&self) -> Option<String> {
+        simulated_as(&self.config)
     }
 
     fn stimuli(&self, cycles: u64, seed: u64) -> Box<dyn Stimuli + '_> {
@@ -157,6 +161,12 @@ impl Block for MachineShapers {
         let block = |s: &AxisShaper| Ok((s.axis.clone(), simulate(&s.config)?));
         let blocks = self.shapers.iter().map(block).collect::<Result<_, _>>()?;
         Ok(Box::new(Joined::new(blocks)))
+    }
+
+    fn simulated_as(&self) -> Option<String> {
+        let of_axis = |s: &AxisShaper| Some(format!("{}: {}", s.axis, simulated_as(&s.config)?));
+        let sizes: Vec<_> = self.shapers.iter().filter_map(of_axis).collect();
+        (!sizes.is_empty()).then(|| sizes.join("; "))
     }
 
     fn stimuli(&self, cycles: u64, seed: u64) -> Box<dyn Stimuli + '_> {
