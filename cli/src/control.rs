@@ -3,7 +3,9 @@
 use crate::failure::Failure;
 use crate::machine;
 use crate::output;
-use posicast_model::control::{self, Derived, NoTravel, Schedule, Supervision};
+use crate::plot::{Curve, Panel};
+use posicast_model::control::sampled::Margins;
+use posicast_model::control::{self, DEFAULT_MARGIN, Derived, NoTravel, Schedule, Supervision};
 use posicast_model::design::{AxisTables, MachineDesign};
 use posicast_model::rtl::sliding_mode::{Law, Row};
 use posicast_model::spec::{Axis, Machine, PwmMode};
@@ -25,6 +27,9 @@ pub(crate) struct AxisControl {
     /// Where the file does not say how far it goes.
     no_travel: Option<NoTravel>,
 }
+
+/// What is shown of the Nyquist curve, either way: circles are round in a panel.
+const NYQUIST_REACH: [f64; 2] = [2.8, 1.0];
 
 const ONE_SIDED: &str = "a half bridge shows a negative command as 0: choose direction, full-bridge or locked-antiphase \
                          for mode in [axis.pwm], unless the axis is pushed back by something else";
@@ -85,11 +90,72 @@ impl AxisControl {
     /// A line for people.
     pub(crate) fn text(&self) -> String {
         format!(
-            "  controller {}: loop lag {:.1} µs, friction leaves {:.3} µ of error\n",
+            "  controller {}: loop lag {:.1} µs, friction leaves {:.3} µ of error\n  {}\n",
             self.law(),
             1e6 * self.lag_s,
-            1e6 * self.derived.steady_error
+            1e6 * self.derived.steady_error,
+            self.margins_text()
         )
+    }
+
+    fn margins_text(&self) -> String {
+        let margins = &self.derived.margins;
+        let figure = |value: Option<f64>, digits: usize, unit: &str| match value {
+            Some(value) if value.is_finite() => format!("{value:.digits$} {unit}"),
+            _ => "without limit".to_owned(),
+        };
+        format!(
+            "stability of the sampled loop on this machine: gain margin {}, phase margin {}, delay margin {}, modulus margin {:.2}, \
+             crossover at {}",
+            figure(margins.gain_margin_db(), 1, "dB"),
+            figure(margins.phase_margin_deg, 0, "degrees"),
+            figure(margins.delay_margin_s.map(|time_s| 1e6 * time_s), 0, "µs"),
+            margins.modulus_margin,
+            figure(margins.crossover_hz, 2, "Hz"),
+        )
+    }
+
+    /// The Nyquist curve round −1, with the circle that the default gains stay out of.
+    pub(crate) fn nyquist(&self) -> Panel {
+        let curve = self.derived.sampled.nyquist(&self.derived.linear);
+        let [reach_x, reach_y] = NYQUIST_REACH;
+        let near = |x: f64, y: f64| x.abs() <= reach_x && y.abs() <= reach_y;
+        let points = curve.into_iter().map(|point| (point.open_loop.re, point.open_loop.im));
+        let circle = |centre: f64, radius: f64| {
+            let places = (0..=180).map(|step| {
+                let (sin, cos) = f64::from(2 * step).to_radians().sin_cos();
+                (radius * cos + centre, radius * sin)
+            });
+            places.collect::<Vec<_>>()
+        };
+        // Where it leaves the picture the curve is cut: what comes back is a curve of its own.
+        let mut parts: Vec<Vec<(f64, f64)>> = vec![Vec::new()];
+        for (x, y) in points {
+            match (near(x, y), parts.last_mut()) {
+                (true, Some(part)) => part.push((x, y)),
+                (false, Some(part)) if !part.is_empty() => parts.push(Vec::new()),
+                _ => {}
+            }
+        }
+        parts.retain(|part| !part.is_empty());
+        let mut curves = vec![
+            Curve::reference("real axis", vec![(-reach_x, 0.0), (reach_x, 0.0)]),
+            Curve::reference("distance 1 from 0", circle(0.0, 1.0)),
+            Curve::reference(
+                format!("distance {DEFAULT_MARGIN} from −1"),
+                circle(-1.0, DEFAULT_MARGIN),
+            ),
+        ];
+        curves.extend(parts.into_iter().enumerate().map(|(index, part)| match index {
+            0 => Curve::new("open loop", part),
+            _ => Curve::new("open loop, at higher frequencies", part),
+        }));
+        Panel {
+            title: format!("axis {}: Nyquist curve of the loop, {}", self.axis, self.law()),
+            x_label: "real part".into(),
+            y_label: "imaginary part".into(),
+            curves,
+        }
     }
 
     /// For programs.
@@ -98,6 +164,7 @@ impl AxisControl {
             law: self.law(),
             lag_s: self.lag_s,
             steady_error: self.derived.steady_error,
+            margins: MarginsDocument::new(&self.derived.margins),
             settings: Row::ALL
                 .into_iter()
                 .map(|row| SettingDocument {
@@ -128,11 +195,39 @@ pub(crate) struct ControlDocument {
     lag_s: f64,
     /// Error in m or rad that Coulomb friction leaves.
     steady_error: f64,
+    /// Of the sampled loop on the machine of the file.
+    margins: MarginsDocument,
     /// By address: what the controller's memory holds after reset.
     settings: Vec<SettingDocument>,
     /// By name: what the axis's supervisor starts with.
     supervision: BTreeMap<&'static str, i64>,
     warnings: Vec<String>,
+}
+
+/// Stability margins; null where there is no limit.
+#[derive(Serialize)]
+struct MarginsDocument {
+    gain_margin_db: Option<f64>,
+    /// By so much lower gains make the loop unstable.
+    gain_reduction_db: Option<f64>,
+    phase_margin_deg: Option<f64>,
+    delay_margin_s: Option<f64>,
+    modulus_margin: f64,
+    crossover_hz: Option<f64>,
+}
+
+impl MarginsDocument {
+    fn new(margins: &Margins) -> Self {
+        let finite = |value: Option<f64>| value.filter(|value| value.is_finite());
+        Self {
+            gain_margin_db: finite(margins.gain_margin_db()),
+            gain_reduction_db: finite(margins.gain_reduction.map(|factor| 20.0 * factor.log10())),
+            phase_margin_deg: finite(margins.phase_margin_deg),
+            delay_margin_s: finite(margins.delay_margin_s),
+            modulus_margin: margins.modulus_margin,
+            crossover_hz: finite(margins.crossover_hz),
+        }
+    }
 }
 
 #[derive(Serialize)]

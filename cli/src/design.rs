@@ -7,9 +7,11 @@ mod sensitivity;
 use crate::compare;
 use crate::control::{self, AxisControl};
 use crate::failure::Failure;
+use crate::guards;
 use crate::machine::{self, Unfit};
 use crate::output::{self, Table, percent};
 use crate::plot;
+use crate::tolerance::beyond_tolerance;
 use posicast_model::analysis::INSENSITIVITY_LIMIT;
 use posicast_model::design::ratios::Class;
 use posicast_model::design::{
@@ -69,7 +71,9 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let report = Report::new(&machine, &args.machine)?;
     report.warn();
     if let Some(path) = &args.plot {
-        write_text(path, &plot::svg(&sensitivity_panels(&machine, &report.design))?).map_err(Failure::because)?;
+        let mut panels = sensitivity_panels(&machine, &report.design);
+        panels.extend(report.controllers.iter().flatten().map(AxisControl::nyquist));
+        write_text(path, &plot::svg(&panels)?).map_err(Failure::because)?;
     }
     if args.json {
         output::print_json(&report.json())
@@ -97,8 +101,12 @@ impl<'a> Report<'a> {
         })
     }
 
-    /// Says on standard error what is doubtful about the controllers.
+    /// Says on standard error what is doubtful about tables and controllers, and what does not watch over the axes.
     pub(crate) fn warn(&self) {
+        let tables = beyond_tolerance(self.machine, &self.design);
+        for warning in tables.into_iter().chain(guards::missing(self.machine)) {
+            output::say(&format!("warning: {warning}"));
+        }
         self.controllers.iter().flatten().for_each(AxisControl::warn);
     }
 

@@ -15,6 +15,7 @@ mod diff;
 mod driver;
 mod failure;
 mod generate;
+mod guards;
 mod machine;
 mod output;
 mod plot;
@@ -26,6 +27,7 @@ mod simulate;
 mod sopc;
 mod stage;
 mod synth;
+mod tolerance;
 mod verify;
 
 use clap::{Parser, Subcommand};

@@ -4,6 +4,7 @@
 //! decided the later ones use: the tap table is made once. The folder appears when everything is done, also after a failed
 //! check: it holds all that `generate` writes, and the evidence beside it.
 
+mod advice;
 mod checks;
 mod closed_loop;
 mod report;
@@ -119,6 +120,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let closed_loop = closed_loop.transpose()?;
 
     let mut checks = Vec::from_iter(checks::lint(simulator, &all, &tops)?);
+    checks.push(checks::moves(machine, &axes));
     checks.extend(checks::all(simulator, machine, &design.design, &lockstep, &waves));
     checks.extend(estimate.as_ref().and_then(|e| checks::fits(machine, e)));
     checks.extend(closed_loop.iter().flat_map(ClosedLoop::checks));

@@ -13,11 +13,15 @@ const SLIDING: &str = "kind = \"sliding-mode\"\nc = 150.0\nk = 50.0\nepsilon = 4
 const T: f64 = 1e-4;
 const COUNT: f64 = 1e-6;
 
-/// The XY stage's axis X with another drive and controller.
+/// The XY stage's axis X with another drive and controller. A torque drive has the mode of motor against table in its loop.
 fn machine(drive: &str, controller: &str) -> Machine {
+    let (frequency_hz, damping) = match drive.contains("torque") {
+        true => (283.665, 0.329),
+        false => (131.1, 0.158),
+    };
     let text = format!(
         "name = \"one\"\n[clock]\nfrequency_hz = 50_000_000\nsample_hz = 10_000\n[[axis]]\nname = \"x\"\n\
-         counts_per_unit = 1_000_000\n[[axis.mode]]\nfrequency_hz = 131.1\ndamping = 0.158\n[axis.shaper]\nkind = \"zvd\"\n\
+         counts_per_unit = 1_000_000\n[[axis.mode]]\nfrequency_hz = {frequency_hz}\ndamping = {damping}\n[axis.shaper]\nkind = \"zvd\"\n\
          [axis.encoder]\n[axis.pwm]\nmode = \"half-bridge\"\nfrequency_hz = 20_000\n[axis.drive]\n{drive}\n\
          [axis.controller]\n{controller}\n[axis.limits]\nvelocity = 0.25\nacceleration = 8.0\n"
     );
@@ -76,19 +80,22 @@ fn unit_each_condition_of_the_notes_warns() {
         w,
         ControlWarning::SwitchingSaturates { .. }
     )));
-    assert!(has(&sliding(150.0, 50.0, 4.0, 4e-4), |w| matches!(
-        w,
-        ControlWarning::SampledReaching { .. }
-    )));
+    // A boundary layer that is crossed within a tick.
+    let narrow = SLIDING.replace("0.05", "4e-4");
+    let error = derive(TORQUE, &narrow).unwrap_err();
+    assert!(matches!(error, ControlError::Unstable { .. }), "{error}");
+    assert_eq!(error.key(), "axis.controller.c");
     assert!(has(
-        &sliding(2000.0, 500.0, 4.0, 0.05),
+        &derive(VELOCITY, &SLIDING.replace("k = 50.0", "k = 400.0"))
+            .unwrap()
+            .warnings,
         |w| matches!(w, ControlWarning::GainTimesLag { found, .. } if *found > 0.5)
     ));
     let pid = "kind = \"pid\"\nproportional = 1000.0\nderivative = 100.0\nintegral = 2e5";
-    assert_eq!(warnings(pid), [ControlWarning::Unstable]);
-    assert!(has(&warnings("kind = \"pd\"\nderivative = 3000.0"), |w| matches!(
+    assert!(matches!(derive(TORQUE, pid), Err(ControlError::Unstable { .. })));
+    assert!(has(&sliding(400.0, 200.0, 4.0, 0.05), |w| matches!(
         w,
-        ControlWarning::GainTimesLag { .. }
+        ControlWarning::ThinMargin { .. }
     )));
     let slow = TORQUE.replace("2.73", "1.1");
     let found = derive(&slow, SLIDING).unwrap().warnings;

@@ -3,7 +3,9 @@
 use super::Waves;
 use crate::bench::{self, Simulator};
 use crate::failure::Failure;
+use crate::tolerance::{beyond_tolerance, shaped_modes};
 use posicast_model::design::MachineDesign;
+use posicast_model::simulation::AxisSimulation;
 use posicast_model::spec::Machine;
 use posicast_synth::yosys::Estimate;
 use posicast_testbench::blocks::{Block, Sources};
@@ -23,6 +25,25 @@ pub(crate) struct Check {
     pub(crate) detail: String,
 }
 
+/// What the detail of a check begins with that had nothing, or too little, to compare: it is named, and is not ok.
+pub(crate) const NOT_EXERCISED: &str = "not exercised: ";
+
+impl Check {
+    /// How it went, in a word.
+    pub(crate) fn verdict(&self) -> &'static str {
+        match (self.passed, self.detail.starts_with(NOT_EXERCISED)) {
+            (false, _) => "FAILED",
+            (true, true) => "open  ",
+            (true, false) => "ok    ",
+        }
+    }
+
+    /// Whether it held by what was compared.
+    pub(crate) fn is_open(&self) -> bool {
+        self.passed && self.detail.starts_with(NOT_EXERCISED)
+    }
+}
+
 /// The checks of the comparisons.
 pub(crate) fn all(
     simulator: Simulator,
@@ -36,6 +57,7 @@ pub(crate) fn all(
         move_equals_model(waves),
         within_float_bound(waves),
         residual_within_rounding(machine, design),
+        residual_within_tolerance(machine, design),
     ]
 }
 
@@ -57,15 +79,18 @@ fn rtl_equals_model(simulator: Simulator, lockstep: &Report) -> Check {
             Simulator::Rusthdl => "RustHDL description equals the bit-exact model in every clock",
             Simulator::Verilator | Simulator::Icarus => "RTL equals the bit-exact model in every clock",
         },
-        passed: lockstep.result == LockstepVerdict::Match,
-        detail,
+        passed: lockstep.result == LockstepVerdict::Match && lockstep.cycles > 0 && lockstep.samples > 0,
+        detail: match lockstep.cycles > 0 && lockstep.samples > 0 {
+            true => detail,
+            false => format!("{NOT_EXERCISED}{detail}"),
+        },
     }
 }
 
 fn move_equals_model(waves: &Waves) -> Check {
     Check {
         name: "wave/rtl.vcd equals wave/model.vcd over the move",
-        passed: waves.model.result == Verdict::Equal,
+        passed: waves.model.result == Verdict::Equal && !is_empty(&waves.model),
         detail: compared(&waves.model, waves),
     }
 }
@@ -73,12 +98,23 @@ fn move_equals_model(waves: &Waves) -> Check {
 fn within_float_bound(waves: &Waves) -> Check {
     Check {
         name: "RTL stays within the rounding bound of the float design",
-        passed: waves.float.result == Verdict::Equal,
+        passed: waves.float.result == Verdict::Equal && !is_empty(&waves.float),
         detail: compared(&waves.float, waves),
     }
 }
 
+fn is_empty(comparison: &Comparison) -> bool {
+    comparison.signals == 0 || comparison.samples == 0
+}
+
 fn compared(comparison: &Comparison, waves: &Waves) -> String {
+    if is_empty(comparison) {
+        return format!(
+            "{NOT_EXERCISED}{}, {}",
+            counted(comparison.signals, "signal"),
+            counted(comparison.samples, "clock")
+        );
+    }
     match comparison.differences.first() {
         None => format!(
             "{} in {} recorded clocks of {}",
@@ -92,6 +128,52 @@ fn compared(comparison: &Comparison, waves: &Waves) -> String {
             first.signal,
             comparison.time(first.time)
         ),
+    }
+}
+
+/// Every axis moves by a count or more: the waveforms of one that stands compare nothing.
+pub(crate) fn moves(machine: &Machine, axes: &[AxisSimulation]) -> Check {
+    let one = f64::from(machine.fixed_point.command_fraction).exp2();
+    let counts = |run: &AxisSimulation| {
+        let [low, high] =
+            [run.shaped.iter().min(), run.shaped.iter().max()].map(|word| word.copied().unwrap_or(0) as f64);
+        (high - low) / one
+    };
+    let moved: Vec<(&str, f64)> = machine
+        .axes
+        .iter()
+        .map(|axis| axis.name.as_str())
+        .zip(axes.iter().map(counts))
+        .collect();
+    let still = moved.iter().find(|(_, counts)| *counts < 1.0);
+    Check {
+        name: "the command moves every axis",
+        passed: still.is_none() && !moved.is_empty(),
+        detail: match still {
+            Some((axis, counts)) => format!("{NOT_EXERCISED}axis {axis} moves by {counts:.3} counts"),
+            None => {
+                let texts: Vec<String> = moved
+                    .iter()
+                    .map(|(axis, counts)| format!("{axis} by {counts:.0} counts"))
+                    .collect();
+                texts.join(", ")
+            }
+        },
+    }
+}
+
+/// The integer tables keep every mode within the tolerance that was asked for.
+fn residual_within_tolerance(machine: &Machine, design: &MachineDesign) -> Check {
+    let (beyond, modes) = (beyond_tolerance(machine, design), shaped_modes(machine, design));
+    Check {
+        name: "the integer taps keep the tolerance that was asked for",
+        // A machine of axes without a shaper asks for nothing: that is said, and is no failure.
+        passed: beyond.is_empty(),
+        detail: match (beyond.first(), modes) {
+            (Some(text), _) => text.clone(),
+            (None, 0) => format!("{NOT_EXERCISED}no axis has a shaper for a mode"),
+            (None, modes) => format!("{modes} modes"),
+        },
     }
 }
 

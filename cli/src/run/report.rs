@@ -1,8 +1,8 @@
 //! What `run` reports: a table for people, a document for programs, a picture for both.
 
-use super::Waves;
 use super::checks::Check;
 use super::closed_loop::{ClosedLoop, StageDocument};
+use super::{Waves, advice};
 use crate::bench::Simulator;
 use crate::design::{self, Report as DesignReport};
 use crate::failure::Failure;
@@ -113,8 +113,10 @@ impl Report<'_> {
         }
         text.push('\n');
         for check in self.checks {
-            let verdict = if check.passed { "ok    " } else { "FAILED" };
-            let _ = writeln!(text, "{verdict}  {}: {}", check.name, check.detail);
+            let _ = writeln!(text, "{}  {}: {}", check.verdict(), check.name, check.detail);
+            if !check.passed {
+                text += &advice::text(check.name);
+            }
         }
         let _ = writeln!(
             text,
@@ -130,6 +132,9 @@ impl Report<'_> {
             }
             (true, _) => "PASS: the Verilog computes what was designed.\n",
         };
+        if self.checks.iter().any(Check::is_open) {
+            text += "What is marked open was not exercised by this run: it is neither right nor wrong.\n";
+        }
         text
     }
 

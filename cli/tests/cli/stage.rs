@@ -77,8 +77,12 @@ fn cli_generate_of_a_stage_that_cannot_be_names_line_and_key_and_writes_nothing(
 fn cli_a_loop_that_is_not_complete_or_has_short_words_gives_no_stage() {
     let controller = "[axis.controller]                     # turns the position's error into the velocity that is asked for\n\
                       kind = \"pd\"";
+    // Guards are of an axis with a controller; those of Y stay.
+    let guards = ["following_error", "encoder_lost_s", "watchdog_s"];
+    let open = changed(controller, "# ");
+    let open = guards.iter().fold(open, |text, guard| text.replacen(guard, "# ", 1));
     let cases = [
-        (changed(controller, "# "), ""),
+        (open, ""),
         (
             changed("[[axis]]", "[fixed_point]\ncommand_bits = 16\n[[axis]]"),
             "no stage is built",
@@ -105,7 +109,8 @@ fn cli_a_loop_that_is_not_complete_or_has_short_words_gives_no_stage() {
 fn quick() -> String {
     let text = std::fs::read_to_string(example("xy-stage.toml")).unwrap();
     text.replace("frequency_hz = 50_000_000", "frequency_hz = 10_000_000")
-        .replace("velocity = 0.25", "following_error = 0.0005\nvelocity = 0.4")
+        .replace("following_error = 0.001", "following_error = 0.0005")
+        .replace("velocity = 0.25", "velocity = 0.4")
         .replace("acceleration = 8.0", "acceleration = 40.0")
         .replace("jerk = 400.0", "jerk = 8000.0")
 }
@@ -155,7 +160,7 @@ fn cli_run_closes_the_loop_in_verilog_and_model() {
             .iter()
             .any(|begin| name.starts_with(begin))
     });
-    assert_eq!(of_stage.count(), 4);
+    assert_eq!(of_stage.count(), 5);
     for picture in ["move", "vibration", "circle"] {
         assert!(folder.path().join(format!("out/plots/stage-{picture}.svg")).is_file());
     }
@@ -176,4 +181,82 @@ fn cli_run_without_verilator_runs_the_loop_in_the_model_and_a_fault_is_exit_stat
         details[0].contains("FAULT") && details[0].contains("following-error"),
         "{details:?}"
     );
+}
+
+/// Name and detail of each check that failed.
+fn failed(document: &serde_json::Value) -> Vec<(String, String)> {
+    let text = |value: &serde_json::Value| value.as_str().unwrap().to_owned();
+    let checks = document["checks"].as_array().unwrap();
+    let failed = checks.iter().filter(|check| check["passed"] == false);
+    failed
+        .map(|check| (text(&check["name"]), text(&check["detail"])))
+        .collect()
+}
+
+#[test]
+fn cli_run_that_moves_nothing_or_misses_its_tolerance_fails() {
+    let coarse = quick().replace("counts_per_unit = 1_000_000", "counts_per_unit = 80");
+    // Half a metre per second is less than a count per tick.
+    let text = coarse.replacen("[target]", "[fixed_point]\ncoefficient_fraction = 1\n[target]", 1);
+    let (status, document, said, _folder) = run(&text, &["--simulator", "rusthdl"]);
+    assert_eq!(status, Some(1), "{said}");
+    let failed = failed(&document);
+    let has = |name: &str, detail: &str| failed.iter().any(|(n, d)| n.starts_with(name) && d.contains(detail));
+    assert!(
+        has("the integer taps keep the tolerance", "is the tolerance"),
+        "{failed:?}"
+    );
+    assert!(has("the command moves every axis", "not exercised"), "{failed:?}");
+    assert!(has("the axes follow as closely", "not exercised"), "{failed:?}");
+    assert!(
+        said.contains("warning: axis x, mode of 131.117 Hz: the integer taps leave"),
+        "{said}"
+    );
+}
+
+#[test]
+fn cli_run_of_ei_shapers_passes_and_says_what_was_expected() {
+    let text = include_str!("../../../testbench/tests/fixtures/machines/ei-gantry.toml");
+    let (status, document, said, _folder) = run(text, &["--simulator", "rusthdl"]);
+    assert_eq!((status, failed(&document).len()), (Some(0), 0), "{said} {document}");
+    let checks = document["checks"].as_array().unwrap();
+    let shapers = checks
+        .iter()
+        .find(|check| check["name"].as_str().unwrap().starts_with("the shapers take"));
+    let detail = shapers.unwrap()["detail"].as_str().unwrap();
+    assert!(
+        detail.contains("axis x: 47.") && detail.contains("expected of its design"),
+        "{detail}"
+    );
+    assert!(
+        said.contains("has no following_error") && said.contains("has no watchdog_s"),
+        "{said}"
+    );
+}
+
+#[test]
+fn cli_gains_that_the_machine_does_not_bear_are_refused_with_the_margin() {
+    let torque = std::fs::read_to_string(example("xy-stage-torque.toml")).unwrap();
+    let unstable = torque.replacen("k = 50.0 ", "k = 5000.0 ", 1);
+    let (_folder, file) = scratch(&unstable);
+    let mut design = posicast();
+    let refused = design.arg("design").arg(&file).output().unwrap();
+    let said = String::from_utf8_lossy(&refused.stderr).into_owned();
+    assert_eq!(
+        (refused.status.code(), refused.stdout.is_empty()),
+        (Some(2), true),
+        "{said}"
+    );
+    assert!(
+        said.contains("axis.controller.c") && said.contains("unstable on the machine"),
+        "{said}"
+    );
+
+    let mut design = posicast();
+    design.arg("design").arg(example("xy-stage-torque.toml")).arg("--json");
+    let sound = design.output().unwrap();
+    let margins = json(&sound.stdout)["axes"][0]["control"]["margins"].clone();
+    assert!(margins["gain_margin_db"].as_f64().unwrap() > 6.0, "{margins}");
+    assert!(margins["modulus_margin"].as_f64().unwrap() > 0.5, "{margins}");
+    assert!(sound.stderr.is_empty(), "{}", String::from_utf8_lossy(&sound.stderr));
 }

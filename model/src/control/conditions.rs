@@ -1,8 +1,10 @@
 //! Conditions under which the laws do what they promise (the notes on the XY stage, 8.2 and 8.4), as warnings.
 
 use super::law::Gains;
+use super::linear::{FACTORS, has_modes};
+use super::sampled::{LinearLaw, SampledLoop};
 use crate::rtl::sliding_mode::{Row, Settings};
-use crate::spec::{Controller, Drive, DriveMode, Limits};
+use crate::spec::{Axis, Clock, Controller, Drive, DriveMode, Limits};
 
 /// The largest product of gains and lag.
 const GAIN_LAG_MAX: f64 = 0.5;
@@ -34,12 +36,6 @@ pub enum ControlWarning {
         /// Largest current.
         limit_a: f64,
     },
-    /// The boundary layer is crossed within a tick.
-    #[error("(k + epsilon/boundary)·T = {found}, and must be below 1: widen boundary, or raise sample_hz")]
-    SampledReaching {
-        /// The product.
-        found: f64,
-    },
     /// Gains too high for the lag of the loop.
     #[error("{what}·lag = {found} with a lag of {lag_s} s, and must not exceed {allowed}: lower the gains or the lag")]
     GainTimesLag {
@@ -52,21 +48,30 @@ pub enum ControlWarning {
         /// Largest product.
         allowed: f64,
     },
-    /// Gains of PD or PID whose loop is not stable even without what the model leaves out.
+    /// A stable loop that is close to instability.
     #[error(
-        "proportional, derivative and integral make an unstable loop: lower integral (velocity drive: derivative below 1)"
+        "the loop's margins on the machine of this file are thin: gain margin {gain_margin_db:.1} dB, phase margin \
+         {phase_margin_deg:.0}°, modulus margin {modulus_margin:.2}, and a sound loop has 6 dB, 30° and 0.5: lower {gains}, or \
+         leave them out: the defaults have these margins"
     )]
-    Unstable,
-    /// A loop on the scale has the flexibility between motor and load inside, which only its damping keeps quiet.
+    ThinMargin {
+        /// Smallest distance of the open loop from −1.
+        modulus_margin: f64,
+        /// dB.
+        gain_margin_db: f64,
+        /// Degrees.
+        phase_margin_deg: f64,
+        /// The keys that make it so.
+        gains: &'static str,
+    },
+    /// A loop that is stable on the machine of the file, and not on one that is a little different.
     #[error(
-        "the loop on the scale has the axis's modes in it: proportional is {found}/s, and must not exceed {allowed}/s, half of \
-         2·damping·ω of the mode that allows least; lower proportional"
+        "the loop is unstable on a machine whose modes are at {percent} % of their frequencies: lower the gains, or leave them \
+         out: the defaults hold from 80 to 120 %"
     )]
-    ModesInLoop {
-        /// The proportional gain in 1/s.
-        found: f64,
-        /// Largest gain in 1/s.
-        allowed: f64,
+    UnstableNearby {
+        /// Frequencies in percent of those in the file.
+        percent: f64,
     },
     /// The acceleration limit asks for more than the drive gives.
     #[error(
@@ -120,7 +125,6 @@ pub(super) struct Loop<'a> {
     pub(super) drive: &'a Drive,
     /// Sum of the closed loop's poles of PD and PID, 1/s.
     pub(super) linear_poles: f64,
-    pub(super) stable: bool,
     pub(super) lag_s: f64,
     pub(super) tick_s: f64,
     /// m per count.
@@ -160,22 +164,13 @@ impl Loop<'_> {
                 boundary,
             } => {
                 let reaching = k + epsilon / boundary;
-                if reaching * self.tick_s >= 1.0 {
-                    let found = reaching * self.tick_s;
-                    warnings.push(ControlWarning::SampledReaching { found });
-                }
                 warnings.extend(self.switching(epsilon));
                 ("(c + k + epsilon/boundary)", c + reaching)
             }
-            _ => {
-                if !self.stable {
-                    warnings.push(ControlWarning::Unstable);
-                }
-                match self.drive.mode {
-                    DriveMode::Torque { .. } => ("derivative", self.linear_poles),
-                    DriveMode::Velocity { .. } => ("proportional", self.linear_poles),
-                }
-            }
+            _ => match self.drive.mode {
+                DriveMode::Torque { .. } => ("derivative", self.linear_poles),
+                DriveMode::Velocity { .. } => ("proportional", self.linear_poles),
+            },
         };
         let found = poles * self.lag_s;
         if found > GAIN_LAG_MAX {
@@ -271,6 +266,55 @@ impl Loop<'_> {
             Controller::Pd { .. } => disturbance / proportional,
             Controller::Pid { .. } => 0.0,
         }
+    }
+}
+
+/// The first frequency between 80 and 120 % at which a loop that has the modes in it is unstable.
+pub(super) fn unstable_nearby(axis: &Axis, clock: Clock, lag_s: f64, law: &LinearLaw) -> Option<ControlWarning> {
+    let drive = axis.drive.as_ref()?;
+    if !has_modes(axis, drive) {
+        return None;
+    }
+    let unstable = |factor: &&f64| {
+        let sampled = SampledLoop::new(axis, clock, lag_s, **factor);
+        sampled.is_some_and(|sampled| !sampled.is_stable(law))
+    };
+    let factor = FACTORS.iter().find(unstable)?;
+    Some(ControlWarning::UnstableNearby {
+        percent: 100.0 * factor,
+    })
+}
+
+/// The key of the machine file that an unstable loop comes from.
+pub(super) fn gain_key(controller: &Controller) -> &'static str {
+    match controller {
+        Controller::SlidingMode { .. } => "axis.controller.c",
+        Controller::Pd {
+            derivative: Some(_),
+            proportional: None,
+        }
+        | Controller::Pid {
+            derivative: Some(_),
+            proportional: None,
+            ..
+        } => "axis.controller.derivative",
+        Controller::Pd {
+            proportional: Some(_), ..
+        }
+        | Controller::Pid {
+            proportional: Some(_), ..
+        } => "axis.controller.proportional",
+        Controller::Pid { integral: Some(_), .. } => "axis.controller.integral",
+        Controller::Pd { .. } | Controller::Pid { .. } => "axis.controller.kind",
+    }
+}
+
+/// The gains of a law.
+pub(super) fn gain_names(controller: &Controller) -> &'static str {
+    match controller {
+        Controller::SlidingMode { .. } => "c, k or epsilon",
+        Controller::Pd { .. } => "proportional and derivative",
+        Controller::Pid { .. } => "proportional, derivative and integral",
     }
 }
 

@@ -6,8 +6,10 @@ use super::ControlError;
 use super::conditions::{self, ControlWarning, Loop};
 use super::culprit::Numbers;
 use super::law::Gains;
+use super::linear::{Linear, default_linear, linear_law};
+use super::sampled::{LinearLaw, Margins, SampledLoop};
 use crate::rtl::sliding_mode::{Law, MANTISSA_MAX, Row, Settings};
-use crate::spec::{Axis, Clock, Controller, Drive, DriveMode, ScaleUse};
+use crate::spec::{Axis, Clock, Controller, Drive, DriveMode};
 
 /// Command units per unit of the drive: mA per A, mm/s per m/s.
 const COMMAND_UNITS: f64 = 1000.0;
@@ -15,8 +17,10 @@ const COMMAND_UNITS: f64 = 1000.0;
 const FEEDBACK_RANGE: f64 = 128.0;
 /// The feedback reaches so many times the limit before its word saturates.
 const FEEDBACK_HEADROOM: f64 = 4.0;
-/// Of the largest gain × lag that the notes allow (0.5): what a default takes.
-const TORQUE_SHARE: f64 = 0.4;
+/// A modulus margin below this is worth a word: a gain margin of 6 dB and a phase margin of 29° may not be there.
+const THIN: f64 = 0.5;
+/// What the rounding of a default may take from it.
+const ROUNDED: f64 = 1e-6;
 /// The steepest fade: over this part of a count per tick.
 const LEAST_FADE: f64 = 1.0 / 128.0;
 
@@ -33,6 +37,12 @@ pub struct Derived {
     pub warnings: Vec<ControlWarning>,
     /// Error in m (rad) that a constant Coulomb friction leaves, without what is fed forward against it.
     pub steady_error: f64,
+    /// The law as the loop has it near its reference, in m and s; of the sliding mode within the boundary layer.
+    pub linear: LinearLaw,
+    /// Stability of the sampled loop on the machine of the file, with its modes.
+    pub margins: Margins,
+    /// The loop that they are of.
+    pub sampled: SampledLoop,
 }
 
 /// Lag of a loop: the schedule's delay from the capture of the position to the new duty, and the drive's own.
@@ -52,17 +62,10 @@ struct Units {
     count: f64,
 }
 
-/// Feedback gains in m and s: PD and PID.
-#[derive(Clone, Copy)]
-struct Linear {
-    proportional: f64,
-    derivative: f64,
-    integral: f64,
-}
-
 /// Derives gains, settings and warnings of an axis.
 ///
-/// `lag_s` is the whole lag of the loop, see [`loop_lag_s`]. Gains that the file leaves out follow from it:
+/// `lag_s` is the whole lag of the loop, see [`loop_lag_s`]. Gains that the file leaves out follow from it and from the modes
+/// that are in the loop, with `lag` the smallest time, not below `lag_s`, that leaves the margin of [`crate::control::DEFAULT_MARGIN`]:
 ///
 /// | drive | law | rule | reason |
 /// |---|---|---|---|
@@ -75,7 +78,7 @@ struct Linear {
 /// mode of a torque drive then is one without switching, c = k = D/2, which equals the default PD.
 ///
 /// # Errors
-/// [`ControlError`] where a table or the bandwidth is missing, or a gain does not fit.
+/// [`ControlError`] where a table or the bandwidth is missing, a gain does not fit, or the loop is unstable on the machine.
 pub fn gains(axis: &Axis, clock: Clock, lag_s: f64) -> Result<Derived, ControlError> {
     let missing = |table| ControlError::Missing {
         axis: axis.name.clone(),
@@ -96,14 +99,13 @@ pub fn gains(axis: &Axis, clock: Clock, lag_s: f64) -> Result<Derived, ControlEr
         Controller::Pd { .. } => Law::Pd,
         Controller::Pid { .. } => Law::Pid,
     };
-    let linear = linear(controller, &drive.mode, lag_s);
+    let linear = default_linear(axis, clock, controller, drive, lag_s);
     let closed = Loop {
         controller,
         linear_poles: match drive.mode {
             DriveMode::Torque { .. } => linear.derivative,
             DriveMode::Velocity { .. } => linear.proportional,
         },
-        stable: is_stable(&linear, &drive.mode, lag_s),
         drive,
         lag_s,
         tick_s: units.tick_s,
@@ -139,8 +141,28 @@ pub fn gains(axis: &Axis, clock: Clock, lag_s: f64) -> Result<Derived, ControlEr
             culprit: numbers.culprit(row),
         });
     }
+    let sampled = SampledLoop::new(axis, clock, lag_s, 1.0).ok_or_else(|| missing("drive"))?;
+    let of_loop = linear_law(controller, &linear, drive);
+    let margins = sampled.margins(&of_loop);
+    if !margins.stable {
+        return Err(ControlError::Unstable {
+            axis: axis.name.clone(),
+            key: conditions::gain_key(controller),
+            gain_margin_db: margins.gain_margin_db(),
+            largest_factor: margins.gain_margin,
+            gains: conditions::gain_names(controller),
+        });
+    }
     let mut warnings = closed.warnings();
-    warnings.extend(modes_in_loop(axis, &drive.mode, linear.proportional));
+    warnings.extend(
+        (margins.modulus_margin < THIN - ROUNDED).then(|| ControlWarning::ThinMargin {
+            modulus_margin: margins.modulus_margin,
+            gain_margin_db: margins.gain_margin_db().unwrap_or(f64::INFINITY),
+            phase_margin_deg: margins.phase_margin_deg.unwrap_or(180.0),
+            gains: conditions::gain_names(controller),
+        }),
+    );
+    warnings.extend(conditions::unstable_nearby(axis, clock, lag_s, &of_loop));
     warnings.extend(conditions::coarse_gains(&gains, &settings));
     Ok(Derived {
         law,
@@ -148,20 +170,9 @@ pub fn gains(axis: &Axis, clock: Clock, lag_s: f64) -> Result<Derived, ControlEr
         settings,
         warnings,
         steady_error: closed.steady_error(&linear.proportional),
-    })
-}
-
-/// A velocity drive's loop on a scale at the load: `K·ω²/(s·(s² + 2ζω·s + ω²))` is stable for K below 2ζω.
-fn modes_in_loop(axis: &Axis, drive: &DriveMode, proportional: f64) -> Option<ControlWarning> {
-    let on_scale = axis.scale.is_some_and(|scale| scale.usage == ScaleUse::Position);
-    if !on_scale || !matches!(drive, DriveMode::Velocity { .. }) {
-        return None;
-    }
-    let modes = axis.modes.iter().map(|spec| spec.mode.decay());
-    let allowed = modes.fold(f64::INFINITY, f64::min);
-    (proportional > allowed).then_some(ControlWarning::ModesInLoop {
-        found: proportional,
-        allowed,
+        linear: of_loop,
+        margins,
+        sampled,
     })
 }
 
@@ -178,46 +189,6 @@ fn lost(gains: &Gains, settings: &Settings, law: Law) -> Option<Row> {
     };
     let is_lost = |row: &Row| gains.get(*row) != 0.0 && actual.get(*row) == 0.0;
     Row::ALL.into_iter().find(|row| is_read(row) && is_lost(row))
-}
-
-/// Gains of PD and PID: those of the file, or the defaults.
-fn linear(controller: &Controller, mode: &DriveMode, lag_s: f64) -> Linear {
-    let (proportional, derivative, integral, with_integral) = match *controller {
-        Controller::SlidingMode { .. } => (None, None, None, false),
-        Controller::Pd {
-            proportional,
-            derivative,
-        } => (proportional, derivative, None, false),
-        Controller::Pid {
-            proportional,
-            derivative,
-            integral,
-        } => (proportional, derivative, integral, true),
-    };
-    let torque = matches!(mode, DriveMode::Torque { .. });
-    let derivative = derivative.unwrap_or(if torque { TORQUE_SHARE / lag_s } else { 0.0 });
-    let d = derivative;
-    let (p, i) = match (torque, with_integral) {
-        (true, false) => (d * d / 4.0, 0.0),
-        (true, true) => (d * d / 3.0, d * d * d / 27.0),
-        (false, false) => (0.25 / lag_s, 0.0),
-        (false, true) => (1.0 / (3.0 * lag_s), 1.0 / (27.0 * lag_s * lag_s)),
-    };
-    Linear {
-        proportional: proportional.unwrap_or(p),
-        derivative,
-        integral: integral.unwrap_or(i),
-    }
-}
-
-/// Routh's criterion of the loop as it is without the lag (torque), or with it (velocity).
-fn is_stable(linear: &Linear, mode: &DriveMode, lag_s: f64) -> bool {
-    match mode {
-        DriveMode::Torque { .. } => linear.derivative * linear.proportional > linear.integral,
-        DriveMode::Velocity { .. } => {
-            linear.derivative < 1.0 && (1.0 + linear.derivative) * linear.proportional > linear.integral * lag_s
-        }
-    }
 }
 
 /// The rows of the laws: acceleration in counts/T² of a torque drive and of the sliding mode, velocity in counts/T else.

@@ -22,7 +22,9 @@ mod conditions;
 mod culprit;
 mod derive;
 mod law;
+mod linear;
 mod reach;
+pub mod sampled;
 mod schedule;
 mod stage;
 mod supervision;
@@ -32,6 +34,7 @@ pub use conditions::ControlWarning;
 pub use culprit::Culprit;
 pub use derive::{Derived, gains, loop_lag_s};
 pub use law::{COMMAND_FRACTION, FloatController, Gains, Response, Tracking};
+pub use linear::DEFAULT_MARGIN;
 pub use reach::{NoTravel, TableBounds, no_travel};
 pub use schedule::{CAPTURE_CLOCKS, Schedule, ScheduleError, schedule_delay_s};
 pub use stage::{MachineStage, MachineStageError, pwm_config, pwm_mode, stage};
@@ -67,6 +70,23 @@ pub enum ControlError {
         "a loop lag of {0:e} s: it must be a finite time above 0, the schedule's delay and the drive's 1/(2π·bandwidth)"
     )]
     Lag(f64),
+    /// A loop that is unstable on the machine of the file.
+    #[error(
+        "axis {axis}: the loop is unstable on the machine of this file{}",
+        remedy(*.gain_margin_db, *.largest_factor, .gains)
+    )]
+    Unstable {
+        /// The axis.
+        axis: String,
+        /// The key of the machine file.
+        key: &'static str,
+        /// By how many dB the gains are too high, as a negative number; none where lower gains do not make it stable.
+        gain_margin_db: Option<f64>,
+        /// The same as a factor on all gains.
+        largest_factor: Option<f64>,
+        /// The gains of the law.
+        gains: &'static str,
+    },
     /// A gain that the hardware does not hold.
     #[error("axis {axis}: {source}; {culprit}")]
     Gain {
@@ -96,12 +116,27 @@ pub enum ControlError {
     },
 }
 
+/// What to do about an unstable loop.
+fn remedy(gain_margin_db: Option<f64>, largest_factor: Option<f64>, gains: &str) -> String {
+    match (gain_margin_db, largest_factor) {
+        (Some(margin), Some(factor)) => format!(
+            ", gain margin {margin:.1} dB: multiply {gains} by less than {factor:.2e}, or leave the gains of pd and pid out: the defaults \
+             leave a margin"
+        ),
+        _ => format!(
+            ", whatever the factor on {gains}: leave the gains of pd and pid out, raise damping where a mode has none, or choose \
+             a velocity drive, whose encoder does not feel the modes"
+        ),
+    }
+}
+
 impl ControlError {
     /// The key of the machine file that is to blame, dotted: `axis.drive.bandwidth_hz`, for example.
     pub fn key(&self) -> String {
         match self {
             Self::Missing { .. } => "axis.controller".to_owned(),
             Self::Bandwidth { .. } | Self::Lag(_) => "axis.drive.bandwidth_hz".to_owned(),
+            Self::Unstable { key, .. } => (*key).to_owned(),
             Self::Gain { culprit, .. } | Self::Lost { culprit, .. } => culprit.key.to_owned(),
         }
     }

@@ -9,7 +9,7 @@ use posicast_model::rtl::pulse_counter::{self, PulseCounter};
 use posicast_model::rtl::pwm::{self, ActiveLow, Pwm, PwmConfig};
 use posicast_model::rtl::segments::{Entry, Integrator, Motion as Segment};
 use posicast_model::rtl::shaper::{Motion, MotionShaper, ShaperConfig};
-use posicast_model::rtl::sliding_mode::{self, TickController};
+use posicast_model::rtl::sliding_mode::{self, Row, TickController};
 use posicast_model::spec::{self, Machine, ShaperChoice};
 
 pub(crate) const VELOCITY: &str = include_str!("../../../examples/xy-stage.toml");
@@ -123,6 +123,33 @@ impl Chain {
             count_before: 0,
             duty: 0,
         }
+    }
+
+    /// With the feedback `factor` times as strong.
+    pub(crate) fn with_feedback(mut self, factor: f64) -> Self {
+        let rows = [
+            Row::Damping,
+            Row::Reaching,
+            Row::Switching,
+            Row::Derivative,
+            Row::Proportional,
+            Row::Integral,
+        ];
+        let gains = &mut self.derived.gains;
+        for row in rows {
+            gains.set(row, factor * gains.get(row));
+        }
+        self.derived.settings = gains.quantise().unwrap();
+        self
+    }
+
+    /// Holds the place this many counts away from where it stands: the load's distance from there, counts, at each tick.
+    pub(crate) fn hold(&mut self, counts: i32, ticks: u32) -> Vec<f64> {
+        let distances = (0..ticks).map(|_| {
+            self.tick_at_once([counts << 8, 0, 0]);
+            self.plant.count() as f64 - f64::from(counts)
+        });
+        distances.collect()
     }
 
     /// Plays entries from rest at 0, and so many ticks at their end.

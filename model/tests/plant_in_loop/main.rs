@@ -7,6 +7,7 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper that fails fails its test")]
 
 mod chain;
+mod margins;
 
 use chain::{Chain, Pace, Sample, TORQUE, VELOCITY, machine};
 use posicast_model::motion::{TickLimits, Trajectory, plan_circle, plan_move};

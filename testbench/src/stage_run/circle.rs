@@ -6,7 +6,7 @@ use posicast_model::rtl::segments::{Entry, Motion};
 use posicast_model::spec::{Axis, Machine};
 
 use super::host::{Host, Trouble};
-use super::{StageRun, StageRunError};
+use super::{StageRun, StageRunError, moves};
 use crate::stage_bench::{AxisSample, state};
 
 /// Speed of the circle as a part of the slower axis's limit, where `[stage]` has no `contour_speed`.
@@ -188,7 +188,7 @@ fn stream(host: &mut Host<'_>, paths: &[Vec<Entry>; 2]) -> Result<Option<Trouble
         host.pass(LOOK_TICKS * host.tick_clocks())?;
         for axis in 0..2 {
             if host.state(axis)? != state::RUN {
-                return Ok(Some(host.trouble(axis, "play the circle")?));
+                return Ok(Some(host.trouble(axis, "played the circle")?));
             }
             let name = host.config.axes[axis].name.clone();
             if host.bench.field(&name, "fifo", "fifo_low")? != 0 {
@@ -205,6 +205,9 @@ pub(super) fn measure(run: &StageRun<'_>, mut host: Host<'_>, circle: &Circle) -
     if trouble.is_none() {
         let paths = circle.plan(run, &mut host)?;
         trouble = stream(&mut host, &paths)?;
+    }
+    if trouble.is_none() {
+        trouble = host.rest(moves::settle_ticks(run))?;
     }
     let samples = host.bench.recorded();
     let points = match samples.as_slice() {

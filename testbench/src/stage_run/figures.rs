@@ -1,7 +1,6 @@
 //! Figures of a move, in m or rad.
 
 use posicast_model::plant::axis::{ErrorFigures, residual_vibration, tracking_error};
-use posicast_model::spec::Axis;
 
 use crate::stage_bench::AxisSample;
 
@@ -32,13 +31,6 @@ pub(super) fn ringing(samples: &[AxisSample]) -> (Vec<f64>, f64) {
     let resting = &load[load.len() - load.len() / REST_PART..];
     let rest = resting.iter().sum::<f64>() / resting.len().max(1) as f64;
     (load.iter().map(|position| position - rest).collect(), rest)
-}
-
-/// What an axis may ring with its shaper, if it rings like this without: the tolerance of its modes allows a part of that, and
-/// nobody sees half a count. In m or rad.
-pub fn residual_allowed(axis: &Axis, unshaped: &AxisFigures) -> f64 {
-    let tolerances = axis.modes.iter().map(|mode| axis.tolerance_of(mode));
-    tolerances.fold(0.0, f64::max) * unshaped.residual.peak + 0.5 / axis.loop_counts_per_unit()
 }
 
 /// The figures of an axis of so many counts per unit.

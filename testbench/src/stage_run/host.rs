@@ -39,7 +39,7 @@ impl fmt::Display for Trouble {
         let causes: Vec<&str> = causes.map(Cause::name).collect();
         write!(
             f,
-            "axis {} should have {}, and is in {state} in clock {}",
+            "axis {} should have {}, and was in {state} in clock {}",
             self.axis, self.wanted, self.clock
         )?;
         match causes.is_empty() {
@@ -179,7 +179,7 @@ impl<'a> Host<'a> {
             self.bench.write(&format!("{}_tap", axis.name), one)?;
             self.bench.write(&format!("{}_swap", axis.name), BANK)?;
         }
-        self.wait("take another tap table", PATIENCE_TICKS, |host, axis| {
+        self.wait("taken another tap table", PATIENCE_TICKS, |host, axis| {
             let net = format!("{}_table_bank", host.config.axes[axis].name);
             Ok(host.bench.net(&net)? == u64::from(BANK))
         })
@@ -193,7 +193,7 @@ impl<'a> Host<'a> {
             .iter()
             .map(|axis| u64::from(axis.supervision.brake_release_ticks));
         let patience = PATIENCE_TICKS + release.max().unwrap_or(0);
-        let trouble = self.wait("be able to start", patience, |host, axis| {
+        let trouble = self.wait("been able to start", patience, |host, axis| {
             let net = format!("{}_can_start", host.config.axes[axis].name);
             Ok(!axes.contains(&axis) || host.bench.net(&net)? != 0)
         })?;
@@ -202,7 +202,7 @@ impl<'a> Host<'a> {
         }
         let mask = axes.iter().fold(0, |mask, axis| mask | 1 << axis);
         self.bench.write("start", mask)?;
-        self.wait("start", PATIENCE_TICKS, |host, axis| {
+        self.wait("started", PATIENCE_TICKS, |host, axis| {
             Ok(!axes.contains(&axis) || host.state(axis)? == state::RUN)
         })
     }
@@ -212,6 +212,19 @@ impl<'a> Host<'a> {
         self.wait("come to the end of its motion", most_ticks, |host, axis| {
             Ok(host.state(axis)? == state::HOLD)
         })
+    }
+
+    /// Watches so many ticks, in which every axis must hold its position, which it leaves with any cause: the shapers' tail, and settling.
+    pub(super) fn rest(&mut self, ticks: u64) -> Result<Option<Trouble>, Error> {
+        for _ in 0..ticks {
+            self.pass(self.tick_clocks())?;
+            for axis in 0..self.config.axes.len() {
+                if self.state(axis)? != state::HOLD {
+                    return self.trouble(axis, "stayed at its target").map(Some);
+                }
+            }
+        }
+        Ok(None)
     }
 
     /// The command position as it stands, Q24.8 counts.

@@ -11,6 +11,7 @@
 //! result, with its [`Trouble`]; an error is what could not be run at all.
 
 mod circle;
+mod expected;
 mod figures;
 mod host;
 mod moves;
@@ -28,7 +29,8 @@ use crate::lockstep::Device;
 use crate::stage_bench::{StageBench, StageMismatch};
 
 pub use circle::{Circle, Circled};
-pub use figures::{AxisFigures, residual_allowed};
+pub use expected::Expected;
+pub use figures::AxisFigures;
 pub use host::Trouble;
 pub use moves::Moved;
 
@@ -102,6 +104,8 @@ pub struct StageRun<'a> {
     config: StageConfig,
     component: Component,
     seed: u64,
+    /// Of each axis, whether its move has its acceleration from tick to tick, because a smoother one would not exercise its shaper.
+    harsh: Vec<bool>,
 }
 
 impl<'a> StageRun<'a> {
@@ -110,12 +114,24 @@ impl<'a> StageRun<'a> {
     /// # Errors
     /// [`StageRunError::Stage`] where the configuration is none.
     pub fn new(machine: &'a Machine, config: &StageConfig, seed: u64) -> Result<Self, StageRunError> {
-        Ok(Self {
+        let mut run = Self {
             machine,
             config: config.clone(),
             component: Component::stage(config)?,
             seed,
-        })
+            harsh: vec![false; machine.axes.len()],
+        };
+        // A machine of which nothing can be expected says so where it is moved.
+        if let Ok(harsh) = expected::too_smooth(&run) {
+            run.harsh.splice(..harsh.len(), harsh);
+        }
+        Ok(run)
+    }
+
+    /// Whether the move of an axis has its whole acceleration from tick to tick: its limited jerk would excite its modes too little to
+    /// see what the shaper does.
+    pub fn is_harsh(&self, axis: usize) -> bool {
+        self.harsh.get(axis).copied().unwrap_or(false)
     }
 
     /// The same machine with delays that are equal for all axes, or with each shaper's own.
@@ -159,6 +175,14 @@ impl<'a> StageRun<'a> {
     /// [`StageRunError`] where that cannot be run.
     pub fn moved(&self, shaping: Shaping, frequency_factor: f64) -> Result<Moved, StageRunError> {
         moves::measure(self, self.host(frequency_factor, None)?, shaping)
+    }
+
+    /// What the move should come to, by axis, from the machine file alone.
+    ///
+    /// # Errors
+    /// [`StageRunError`] where the machine has no such move.
+    pub fn expected(&self, shaping: Shaping, frequency_factor: f64) -> Result<Vec<Expected>, StageRunError> {
+        expected::of_move(self, shaping, frequency_factor)
     }
 
     /// The circle in the model alone.

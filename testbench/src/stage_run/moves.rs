@@ -2,6 +2,7 @@
 
 use posicast_model::motion::{TickLimits, default_move, plan_move, settle_s};
 use posicast_model::rtl::segments::Entry;
+use posicast_model::spec::{Axis, Machine};
 
 use super::figures::{self, AxisFigures};
 use super::host::{Host, Trouble};
@@ -10,7 +11,7 @@ use crate::stage_bench::AxisSample;
 
 /// Most clocks that model and RTL are compared in: half a minute of Verilator.
 const COMPARED_CLOCKS: u64 = 12_000_000;
-/// Longest time in which a machine is watched after its move, s.
+/// Longest time in which a machine is watched after its shaped command has come to its end, s.
 const LONGEST_SETTLE_S: f64 = 2.0;
 /// Ticks beyond the plan and the shapers after which a move is over.
 const SPARE_TICKS: u64 = 1000;
@@ -45,23 +46,37 @@ struct Plan {
     ticks: u64,
 }
 
+/// The default move of an axis from `start` (Q24.8 counts) on: its entries, and where it ends. A `harsh` one has its whole
+/// acceleration from tick to tick.
+pub(super) fn plan_axis(
+    machine: &Machine,
+    axis: &Axis,
+    harsh: bool,
+    start: i32,
+) -> Result<(Vec<Entry>, i32), StageRunError> {
+    let mut limits = TickLimits::of_axis(axis, &machine.clock);
+    if harsh {
+        limits.jerk = limits.acceleration;
+    }
+    let profile = default_move(axis.limits.as_ref()).map_err(StageRunError::profile(&axis.name))?;
+    let distance = profile.position(profile.duration_s()) - profile.position(0.0);
+    let words = distance * axis.loop_counts_per_unit() * f64::from(1u32 << WORD_FRACTION);
+    // A distance beyond the words ends at the last word; counting so finely, the axis is refused as a plant.
+    let end = start.saturating_add(words.round() as i32);
+    let exact = i64::from(start) << (EXACT_FRACTION - WORD_FRACTION);
+    let entries = plan_move(exact, end, &limits).map_err(|source| StageRunError::Plan {
+        axis: axis.name.clone(),
+        source,
+    });
+    Ok((entries?, end))
+}
+
 /// The default move of each axis, from where it stands.
 fn plan(run: &StageRun<'_>, host: &mut Host<'_>) -> Result<Vec<Plan>, StageRunError> {
     let mut plans = Vec::new();
     for (index, axis) in run.machine.axes.iter().enumerate() {
-        let profile = default_move(axis.limits.as_ref()).map_err(StageRunError::profile(&axis.name))?;
-        let distance = profile.position(profile.duration_s()) - profile.position(0.0);
-        let words = distance * axis.loop_counts_per_unit() * f64::from(1u32 << WORD_FRACTION);
         let start = host.command(index)?;
-        // A distance beyond the words ends at the last word; counting so finely, the axis is refused as a plant.
-        let end = start.saturating_add(words.round() as i32);
-        let limits = TickLimits::of_axis(axis, &run.machine.clock);
-        let exact = i64::from(start) << (EXACT_FRACTION - WORD_FRACTION);
-        let planned = plan_move(exact, end, &limits).map_err(|source| StageRunError::Plan {
-            axis: axis.name.clone(),
-            source,
-        });
-        let entries = planned?;
+        let (entries, _) = plan_axis(run.machine, axis, run.harsh[index], start)?;
         let ticks = entries.iter().map(|entry| u64::from(entry.ticks)).sum();
         plans.push(Plan { entries, ticks });
     }
@@ -100,6 +115,15 @@ fn shaper_ticks(run: &StageRun<'_>) -> u64 {
     delays.max().unwrap_or(0).into()
 }
 
+/// Ticks in which a machine is watched after its commands have come to their end: the shapers' tail, and settling.
+pub(super) fn settle_ticks(run: &StageRun<'_>) -> u64 {
+    let clock = &run.machine.clock;
+    let modes = run.machine.axes.iter().flat_map(|axis| &axis.modes);
+    let shaper_s = shaper_ticks(run) as f64 / clock.sample_hz;
+    let settle_s = settle_s(shaper_s, modes.map(|mode| mode.mode)).min(shaper_s + LONGEST_SETTLE_S);
+    (settle_s * clock.sample_hz).ceil() as u64 + STANDSTILL_TICKS
+}
+
 /// The move with a device beside the model; whether it came to its end within the clocks that are compared.
 pub(super) fn compare(run: &StageRun<'_>, host: &mut Host<'_>) -> Result<(Option<Trouble>, bool), StageRunError> {
     let ticks = match begin(run, host, Shaping::Shaped)? {
@@ -112,9 +136,9 @@ pub(super) fn compare(run: &StageRun<'_>, host: &mut Host<'_>) -> Result<(Option
         host.pass(affordable * host.tick_clocks())?;
         return Ok((None, false));
     }
-    let trouble = host.arrive(ticks + SPARE_TICKS)?;
+    let mut trouble = host.arrive(ticks + SPARE_TICKS)?;
     if trouble.is_none() {
-        host.pass((shaper_ticks(run) + STANDSTILL_TICKS) * host.tick_clocks())?;
+        trouble = host.rest(shaper_ticks(run) + STANDSTILL_TICKS)?;
     }
     let whole = trouble.is_none();
     Ok((trouble, whole))
@@ -122,22 +146,12 @@ pub(super) fn compare(run: &StageRun<'_>, host: &mut Host<'_>) -> Result<(Option
 
 /// The move in the model, watched until the machine has come to rest.
 pub(super) fn measure(run: &StageRun<'_>, mut host: Host<'_>, shaping: Shaping) -> Result<Moved, StageRunError> {
-    let trouble = match begin(run, &mut host, shaping)? {
+    let mut trouble = match begin(run, &mut host, shaping)? {
         Ok(ticks) => host.arrive(ticks + SPARE_TICKS)?,
         Err(trouble) => Some(trouble),
     };
     if trouble.is_none() {
-        let clock = &run.machine.clock;
-        let modes = run
-            .machine
-            .axes
-            .iter()
-            .flat_map(|axis| &axis.modes)
-            .map(|mode| mode.mode);
-        let shaper_s = shaper_ticks(run) as f64 / clock.sample_hz;
-        let settle_s = settle_s(shaper_s, modes).min(LONGEST_SETTLE_S);
-        let ticks = (settle_s * clock.sample_hz).ceil() as u64 + STANDSTILL_TICKS;
-        host.pass(ticks * host.tick_clocks())?;
+        trouble = host.rest(settle_ticks(run))?;
     }
     let samples = host.bench.recorded();
     let axes = samples.iter().zip(&run.machine.axes);

@@ -1,0 +1,185 @@
+//! What a failed check most likely comes from, and what to try.
+
+/// A likely cause, and two things to try.
+pub(crate) struct Advice {
+    pub(crate) cause: &'static str,
+    pub(crate) remedies: [&'static str; 2],
+}
+
+/// By the beginning of a check's name.
+const ADVICE: [(&str, Advice); 13] = [
+    (
+        "the command moves every axis",
+        Advice {
+            cause: "counts_per_unit that is meant for another unit, or a command that stands still",
+            remedies: [
+                "write counts_per_unit for the axis's unit: 1 µm per count is 1_000_000 per m",
+                "give a --command that moves the axis by many counts",
+            ],
+        },
+    ),
+    (
+        "RustHDL description equals",
+        Advice {
+            cause: "a fault of posicast: description and model of a block differ",
+            remedies: [
+                "run `posicast verify` with the same --seed, and report its first difference",
+                "run `posicast doctor`, and install what it misses",
+            ],
+        },
+    ),
+    (
+        "RTL equals",
+        Advice {
+            cause: "the Verilog was changed by hand, or a fault of posicast",
+            remedies: [
+                "generate into an empty folder and run again",
+                "run `posicast verify` with the same --seed, and report its first difference",
+            ],
+        },
+    ),
+    (
+        "wave/rtl.vcd equals",
+        Advice {
+            cause: "the command has no samples, or the Verilog differs from the model on it",
+            remedies: [
+                "give a --command with at least two points at different times",
+                "compare with `posicast diff` of wave/model.vcd and wave/rtl.vcd",
+            ],
+        },
+    ),
+    (
+        "RTL stays within the rounding",
+        Advice {
+            cause: "the command is beyond the command word and saturates",
+            remedies: [
+                "shorten the command, or use coarser counts_per_unit",
+                "raise command_bits, or lower command_fraction",
+            ],
+        },
+    ),
+    (
+        "integer taps keep the residual",
+        Advice {
+            cause: "coefficients with too few fraction bits",
+            remedies: [
+                "leave coefficient_fraction out",
+                "lower sample_hz, so that fewer taps are small",
+            ],
+        },
+    ),
+    (
+        "the integer taps keep the tolerance",
+        Advice {
+            cause: "coefficients with too few fraction bits, or a shaper that is not made for the mode",
+            remedies: [
+                "leave coefficient_fraction out, or raise sample_hz",
+                "choose another kind, or raise the mode's tolerance",
+            ],
+        },
+    ),
+    (
+        "Verilog is clean",
+        Advice {
+            cause: "a version of Verilator with other warnings than the one that posicast is tested with",
+            remedies: [
+                "run `posicast doctor`, and install the version that it names",
+                "report the warning with the machine file",
+            ],
+        },
+    ),
+    (
+        "the top module",
+        Advice {
+            cause: "the device that [target] names is too small",
+            remedies: [
+                "name a larger family or board in [target]",
+                "choose a kind of shaper with fewer impulses, or a lower sample_hz, for shorter delay lines",
+            ],
+        },
+    ),
+    (
+        "the stage's RTL equals",
+        Advice {
+            cause: "the Verilog was changed by hand, or a fault of posicast",
+            remedies: [
+                "generate into an empty folder and run again",
+                "run `posicast verify` with the same --seed, and report its first difference",
+            ],
+        },
+    ),
+    (
+        "the stage does what it is told",
+        Advice {
+            cause: "a limit that is tighter than the loop follows, or a loop that swings: see the cause that is named",
+            remedies: [
+                "leave the gains out of [axis.controller], and look at the margins that `design` prints",
+                "lower acceleration and jerk, or raise the limit that tripped",
+            ],
+        },
+    ),
+    (
+        "the axes follow",
+        Advice {
+            cause: "friction or dead time of the bridge is more than the gains overcome, the drive is at its limit, or the encoder is \
+                    coarse for the move",
+            remedies: [
+                "raise the gains as far as the margins of `design` allow, or shorten dead_time_s and minimum_pulse_s",
+                "check counts_per_unit against unit, lower acceleration, or raise following_error",
+            ],
+        },
+    ),
+    (
+        "the shapers take",
+        Advice {
+            cause: "the loop swings by itself, or the drive or a word is at its limit, so that the load does not get the shaped command",
+            remedies: [
+                "look at plots/stage-move.svg, and lower acceleration or the gains",
+                "check frequency_hz and damping, and the mode's participation",
+            ],
+        },
+    ),
+];
+
+/// The advice for a failed check.
+pub(crate) fn for_check(name: &str) -> Option<&'static Advice> {
+    ADVICE
+        .iter()
+        .find(|(start, _)| name.starts_with(start))
+        .map(|(_, advice)| advice)
+}
+
+/// The same as lines of text.
+pub(crate) fn text(name: &str) -> String {
+    for_check(name).map_or_else(String::new, |advice| {
+        let [first, second] = advice.remedies;
+        format!(
+            "        likely cause: {}\n        try: {first}\n        or:  {second}\n",
+            advice.cause
+        )
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn unit_every_check_of_a_run_has_advice() {
+        let sources = [include_str!("checks.rs"), include_str!("closed_loop/verdicts.rs")];
+        let mut names = 0;
+        for line in sources.iter().flat_map(|source| source.lines()) {
+            let Some(name) = line
+                .trim()
+                .strip_prefix("name: \"")
+                .and_then(|rest| rest.split('"').next())
+            else {
+                continue;
+            };
+            names += 1;
+            // What is open is said, and no failure; a move that is too short has its advice in the check of the error.
+            assert!(for_check(name).is_some() || name.starts_with("every shaper"), "{name}");
+        }
+        assert!(names >= 9, "{names}");
+    }
+}

@@ -1,0 +1,227 @@
+//! What must hold in the closed loop. `docs/closed-loop.md` derives the bounds.
+
+use super::report::micro;
+use super::{ClosedLoop, MOVES};
+use crate::run::checks::{Check, NOT_EXERCISED};
+use posicast_model::spec::Axis;
+use posicast_testbench::stage_run::{AxisFigures, Compared, Expected, Moved, Shaping};
+use posicast_testbench::wording::counted;
+
+impl ClosedLoop<'_> {
+    /// What must hold.
+    pub(crate) fn checks(&self) -> Vec<Check> {
+        let mut checks = Vec::from_iter(self.compared.as_ref().map(equals_model));
+        checks.push(self.without_trouble());
+        checks.push(self.follows());
+        checks.extend(self.calmer());
+        checks.extend(self.limited());
+        checks
+    }
+
+    fn moves(&self) -> [&Moved; 4] {
+        [&self.shaped, &self.unshaped, &self.slower, &self.faster]
+    }
+
+    fn without_trouble(&self) -> Check {
+        let circles = self.circles.iter().flat_map(|circles| {
+            let matched = circles.matched.as_ref().ok();
+            std::iter::once(&circles.apart).chain(matched)
+        });
+        let of_moves = self.moves().map(|moved| moved.trouble.as_ref());
+        let mut of_runs = of_moves
+            .into_iter()
+            .chain(circles.map(|circled| circled.trouble.as_ref()));
+        let runs = of_runs.clone().count();
+        let circles = match &self.circles {
+            Some(circles) if circles.matched.is_ok() => "",
+            Some(_) => "; no circle with equal delays, which the tables do not hold",
+            None => "; no circle: it takes two axes that do not turn round and round, and room",
+        };
+        let trouble = of_runs.find_map(|trouble| trouble);
+        Check {
+            name: "the stage does what it is told, without a fault",
+            passed: trouble.is_none(),
+            detail: trouble.map_or_else(
+                || format!("{runs} runs, watched in every tick from reset to standstill{circles}"),
+                ToString::to_string,
+            ),
+        }
+    }
+
+    /// Figures of every move of every axis, and what they should be. Empty for a move that was not made.
+    fn figures(&self) -> impl Iterator<Item = (String, &Axis, &AxisFigures, &Expected)> {
+        let moves = self.moves().into_iter().zip(&self.expected).zip(MOVES);
+        moves.flat_map(move |((moved, expected), (shaping, factor))| {
+            let name = match (shaping, factor) {
+                (Shaping::Unshaped, _) => ", without its shaper".to_owned(),
+                (Shaping::Shaped, 1.0) => String::new(),
+                (Shaping::Shaped, factor) => format!(", its modes at {:.0} %", 100.0 * factor),
+            };
+            let axes = self.machine.axes.iter().zip(&moved.axes).zip(expected);
+            axes.map(move |((axis, found), expected)| (format!("axis {}{name}", axis.name), axis, found, expected))
+        })
+    }
+
+    /// Axes whose move says nothing.
+    fn motionless(&self) -> Option<String> {
+        let axes = self.machine.axes.iter().zip(&self.expected[0]);
+        let mut short = axes.filter(|(_, expected)| !expected.moves());
+        short.next().map(|(axis, expected)| {
+            format!(
+                "{NOT_EXERCISED}axis {}: its move of {} µ is {:.1} counts, and below 100 it is the encoder's steps that move",
+                axis.name,
+                micro(expected.distance),
+                expected.counts
+            )
+        })
+    }
+
+    /// The error of every move stays below what lag, content of the move, friction and counts make of it.
+    fn follows(&self) -> Check {
+        let (mut compared, mut worst) = (0, None);
+        for (name, _, found, expected) in self.figures() {
+            compared += 1;
+            let (peak, allowed) = (found.tracking.peak, expected.tracking_allowed());
+            if peak.is_nan() || peak > allowed {
+                worst.get_or_insert_with(|| {
+                    let [found, allowed, float] = [peak, allowed, expected.figures.tracking.peak].map(micro);
+                    format!("{name}: {found} µ of error, {float} µ expected of its loop, {allowed} µ allowed")
+                });
+            }
+        }
+        let empty = self
+            .motionless()
+            .or_else(|| (compared == 0).then(|| format!("{NOT_EXERCISED}nothing moved")));
+        Check {
+            name: "the axes follow as closely as their loops are designed to",
+            passed: empty.is_none() && worst.is_none(),
+            detail: empty.or(worst).unwrap_or_else(|| {
+                format!(
+                    "{compared} moves of an axis, each within its bound; tightest {}",
+                    self.tightest()
+                )
+            }),
+        }
+    }
+
+    /// The move that comes closest to its bound.
+    fn tightest(&self) -> String {
+        let part = |found: &AxisFigures, expected: &Expected| found.tracking.peak / expected.tracking_allowed();
+        let moves = self
+            .figures()
+            .map(|(name, _, found, expected)| (part(found, expected), name, found, expected));
+        let tightest = moves.max_by(|a, b| a.0.total_cmp(&b.0));
+        tightest.map_or_else(String::new, |(_, name, found, expected)| {
+            let [found, allowed] = [found.tracking.peak, expected.tracking_allowed()].map(micro);
+            format!("{name}: {found} of {allowed} µ")
+        })
+    }
+
+    /// The shapers take away the vibration that they are for: a check of the axes that their moves exercise, and a word about the
+    /// others. Nothing where no axis has a shaper.
+    fn calmer(&self) -> Vec<Check> {
+        let built = &self.stage.of_machine.config.axes;
+        let (mut louder, mut held, mut open) = (None, Vec::new(), Vec::new());
+        for (index, (axis, built)) in self.machine.axes.iter().zip(built).enumerate() {
+            if axis.modes.is_empty() || built.shaper.table().taps().len() < 2 {
+                continue;
+            }
+            let of = |at: usize| Some((self.moves()[at].axes.get(index)?, self.expected[at].get(index)?));
+            let (Some((shaped, expected)), Some((unshaped, bare))) = (of(0), of(1)) else {
+                open.push(format!("axis {} did not move", axis.name));
+                continue;
+            };
+            let [found, allowed, without] = [shaped.residual.peak, expected.ringing_allowed(), unshaped.residual.peak];
+            let figures = [found, expected.figures.residual.peak, allowed, without].map(micro);
+            let [of_shaper, of_design, most, bare_found] = figures;
+            let text = format!(
+                "axis {}: {of_shaper} µ with its shaper, {of_design} µ expected of its design, {most} µ allowed, {bare_found} µ without",
+                axis.name
+            );
+            if found.is_nan() || found > allowed || without.is_nan() || without > bare.ringing_allowed() {
+                louder.get_or_insert(text);
+            } else if expected.exercises(bare) && without > allowed && expected.moves() {
+                let harsh = match self.harsh.get(index) {
+                    Some(true) => ", by a move without a limit of the jerk",
+                    _ => "",
+                };
+                held.push(text + harsh);
+            } else {
+                open.push(text);
+            }
+        }
+        let name = "the shapers take the vibration of the move that they are made for";
+        let mut checks = Vec::new();
+        if let Some(detail) = louder {
+            checks.push(Check {
+                name,
+                passed: false,
+                detail,
+            });
+        } else if !held.is_empty() {
+            checks.push(Check {
+                name,
+                passed: true,
+                detail: held.join("; "),
+            });
+        }
+        if !open.is_empty() {
+            // A move that is too short for any figure fails in the check of the error.
+            checks.push(Check {
+                name: "every shaper is exercised by the move",
+                passed: self.motionless().is_none(),
+                detail: format!(
+                    "{NOT_EXERCISED}{}: too little to tell from counts and friction",
+                    open.join("; ")
+                ),
+            });
+        }
+        checks
+    }
+
+    /// The error stays below `following_error`; no check where no axis has that.
+    fn limited(&self) -> Option<Check> {
+        let limited = self.figures().filter_map(|(name, axis, found, _)| {
+            let limit = axis.limits?.following_error?;
+            Some((name, found.tracking.peak, limit))
+        });
+        let limited: Vec<_> = limited.collect();
+        let beyond = limited.iter().find(|(_, peak, limit)| peak.is_nan() || peak > limit);
+        (!limited.is_empty()).then(|| Check {
+            name: "the axes follow within their following_error",
+            passed: beyond.is_none(),
+            detail: beyond.map_or_else(
+                || format!("{} moves of an axis", limited.len()),
+                |(name, peak, limit)| {
+                    let (found, allowed) = (micro(*peak), micro(*limit));
+                    format!("{name}: {found} µ, {allowed} µ allowed")
+                },
+            ),
+        })
+    }
+}
+
+fn equals_model(compared: &Compared) -> Check {
+    let reach = match compared.whole {
+        true => "from reset over switch-on and the move to standstill",
+        false => "from reset on, not to the end of the move",
+    };
+    let detail = match (&compared.first, &compared.trouble) {
+        (Some(first), _) => format!(
+            "{} differs first in clock {}: expected {:#x}, found {:#x}; {} in {} clocks",
+            first.signal,
+            first.clock,
+            first.expected,
+            first.actual,
+            counted(compared.mismatches, "difference"),
+            compared.clocks
+        ),
+        (None, Some(trouble)) => trouble.to_string(),
+        (None, None) => format!("{} clocks, {reach}, no mismatch", compared.clocks),
+    };
+    Check {
+        name: "the stage's RTL equals the bit-exact model in every clock of the closed loop",
+        passed: compared.clocks > 0 && compared.mismatches == 0 && compared.trouble.is_none(),
+        detail,
+    }
+}

@@ -1,0 +1,43 @@
+//! Whether the integer tap tables keep the tolerance that the machine file asks for.
+
+use posicast_model::design::MachineDesign;
+use posicast_model::spec::Machine;
+
+/// Part of a tolerance by which the integer taps may exceed it: an impulse between two samples becomes two taps, which moves the
+/// residual of kinds that leave one by design.
+const BETWEEN_SAMPLES: f64 = 0.05;
+
+/// Modes that a shaper is made for: those of axes whose shaper has more than one impulse.
+pub(crate) fn shaped_modes(machine: &Machine, design: &MachineDesign) -> usize {
+    let axes = machine.axes.iter().zip(&design.axes);
+    let shaped = axes.filter(|(_, tables)| tables.design.impulses.impulses().len() > 1);
+    shaped.map(|(axis, _)| axis.modes.len()).sum()
+}
+
+/// The modes whose residual with the integer taps exceeds their tolerance, each with what to do.
+pub(crate) fn beyond_tolerance(machine: &Machine, design: &MachineDesign) -> Vec<String> {
+    let mut beyond = Vec::new();
+    for (axis, tables) in machine.axes.iter().zip(&design.axes) {
+        if tables.design.impulses.impulses().len() < 2 {
+            continue;
+        }
+        for mode in tables.mode_figures(axis, design.sample_hz) {
+            let (found, asked) = (mode.residual_quantised, mode.tolerance);
+            if found <= asked * (1.0 + BETWEEN_SAMPLES) {
+                continue;
+            }
+            let remedy = match mode.residual > asked {
+                true => "the impulses leave as much: choose another kind, or raise the tolerance of the mode",
+                false => "the impulses themselves do not: leave coefficient_fraction out, or raise sample_hz",
+            };
+            beyond.push(format!(
+                "axis {}, mode of {:.3} Hz: the integer taps leave {:.2} % of the vibration, {:.2} % is the tolerance; {remedy}",
+                axis.name,
+                mode.mode.frequency_hz,
+                100.0 * found,
+                100.0 * asked
+            ));
+        }
+    }
+    beyond
+}

@@ -1,0 +1,224 @@
+//! What the move should come to, from the machine file alone: the designed tap table, the law in floating point, and the loop as it
+//! is sampled ([`SampledLoop`]). The stage, its fixed-point words and the simulated pins are not in it, so that the two are
+//! witnesses against each other. `docs/closed-loop.md` derives the bounds.
+
+use posicast_model::control::sampled::{Limits, SampledLoop};
+use posicast_model::control::{self, Derived};
+use posicast_model::design::{AxisTables, design_machine};
+use posicast_model::rtl::segments::{Integrator, Motion};
+use posicast_model::spec::{Axis, DriveMode, Machine, PwmMode};
+use posicast_model::taps::TapTable;
+
+use super::figures::{self, AxisFigures};
+use super::moves;
+use super::{Shaping, StageRun, StageRunError};
+use crate::stage_bench::AxisSample;
+
+/// Part of an expected figure by which the stage may differ: what the drive's limits, the clocks of the schedule and the fixed point
+/// make of it.
+const MODEL_PART: f64 = 0.1;
+/// Counts of the encoder that an error may have beside what is expected: half a count is not seen, and the measured velocity moves
+/// the command by a count.
+const TRACKING_COUNTS: f64 = 2.0;
+/// The same of the load's ringing: the driven coordinate rests within half a count of its target, and a mode overshoots such a step
+/// by itself.
+const RINGING_COUNTS: f64 = 1.0;
+/// Part of the move that an error may be at most.
+const MOVE_PART: f64 = 0.5;
+/// A shaper is exercised by a move that would ring so many times as much as is allowed if it did nothing.
+const EXERCISED: f64 = 1.5;
+/// So many times as much, or the move is made harsher.
+const CLEARLY: f64 = 4.0;
+/// Least counts of a move: below that, the encoder's steps are what is moved.
+const LEAST_COUNTS: f64 = 100.0;
+
+/// What a move of an axis should come to. Lengths in m or rad.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Expected {
+    /// How far the move goes.
+    pub distance: f64,
+    /// The same in counts of the loop.
+    pub counts: f64,
+    /// Error and ringing of the float loop.
+    pub figures: AxisFigures,
+    /// Error that the whole of Coulomb friction, and what the bridge loses to dead time and minimum pulse, make as a step.
+    pub friction: f64,
+    /// A count of the loop.
+    pub count: f64,
+}
+
+impl Expected {
+    /// Largest error that the loop may have: what is expected, friction and the encoder's steps, and at most half of the move.
+    pub fn tracking_allowed(&self) -> f64 {
+        let expected = (1.0 + MODEL_PART) * self.figures.tracking.peak + self.friction;
+        (expected + TRACKING_COUNTS * self.count).min(MOVE_PART * self.distance.abs())
+    }
+
+    /// Most that the load may ring.
+    pub fn ringing_allowed(&self) -> f64 {
+        (1.0 + MODEL_PART) * self.figures.residual.peak + self.friction + RINGING_COUNTS * self.count
+    }
+
+    /// Whether the move is long enough to say something.
+    pub fn moves(&self) -> bool {
+        self.counts.abs() >= LEAST_COUNTS
+    }
+
+    /// Whether the shaper has something to do: without it (`unshaped`) the load would ring clearly more than is allowed with it.
+    pub fn exercises(&self, unshaped: &Self) -> bool {
+        self.times_allowed(unshaped) >= EXERCISED
+    }
+
+    fn times_allowed(&self, unshaped: &Self) -> f64 {
+        unshaped.figures.residual.peak / self.ringing_allowed()
+    }
+}
+
+/// What the move should come to on a machine whose modes are at `frequency_factor` times their frequencies, by axis.
+pub(super) fn of_move(
+    run: &StageRun<'_>,
+    shaping: Shaping,
+    frequency_factor: f64,
+) -> Result<Vec<Expected>, StageRunError> {
+    let machine = run.machine;
+    let design = design_machine(machine).map_err(|error| StageRunError::Design(Box::new(error)))?;
+    let Some(stage) = control::stage(machine, &design)? else {
+        return Ok(Vec::new());
+    };
+    let ticks = moves::settle_ticks(run);
+    let axes = machine.axes.iter().zip(&design.axes);
+    let of_axis = |(index, ((axis, tables), (derived, lag_s))): (usize, ((&Axis, &AxisTables), (&Derived, &f64)))| {
+        let table = match shaping {
+            Shaping::Shaped => tables.table.clone(),
+            Shaping::Unshaped => TapTable::bypass(tables.table.coefficient_fraction())
+                .map_err(|error| StageRunError::Design(Box::new(error)))?,
+        };
+        let sampled = SampledLoop::new(axis, machine.clock, *lag_s, frequency_factor);
+        let sampled = sampled.unwrap_or_else(|| derived.sampled.clone());
+        expected(machine, axis, derived, &sampled, &table, ticks, run.harsh[index])
+    };
+    let loops = stage.derived.iter().zip(&stage.lags_s);
+    axes.zip(loops).enumerate().map(of_axis).collect()
+}
+
+/// The axes whose default move would not exercise their shaper clearly.
+pub(super) fn too_smooth(run: &StageRun<'_>) -> Result<Vec<bool>, StageRunError> {
+    let (shaped, unshaped) = (
+        of_move(run, Shaping::Shaped, 1.0)?,
+        of_move(run, Shaping::Unshaped, 1.0)?,
+    );
+    let axes = shaped.iter().zip(&unshaped);
+    Ok(axes
+        .map(|(shaped, unshaped)| shaped.times_allowed(unshaped) < CLEARLY)
+        .collect())
+}
+
+fn expected(
+    machine: &Machine,
+    axis: &Axis,
+    derived: &Derived,
+    sampled: &SampledLoop,
+    table: &TapTable,
+    settle_ticks: u64,
+    harsh: bool,
+) -> Result<Expected, StageRunError> {
+    let unit = axis.loop_counts_per_unit();
+    let (entries, end) = moves::plan_axis(machine, axis, harsh, 0)?;
+    let mut at = Integrator::default();
+    let mut commands = Vec::new();
+    for entry in &entries {
+        for _ in 0..entry.ticks {
+            match entry.motion {
+                // What does not fit is a plan that the stage refuses.
+                Motion::Jerk(jerk) => drop(at.jerk(jerk)),
+                Motion::Point(point) => at = Integrator::at_point(&point),
+            }
+            commands.push(at.rounded().map(f64::from));
+        }
+    }
+    let last = [f64::from(end), 0.0, 0.0];
+    commands.extend((0..settle_ticks).map(|_| last));
+    let scales = [
+        256.0 * unit,
+        65_536.0 * unit / machine.clock.sample_hz,
+        16_777_216.0 * unit / machine.clock.sample_hz.powi(2),
+    ];
+    let references = shaped(&commands, table, scales);
+    let (input, push) = pushes(machine, axis);
+    let free = Limits {
+        input,
+        disturbance: 0.0,
+    };
+    let samples: Vec<AxisSample> = sampled
+        .follow(&derived.linear, &free, &references)
+        .into_iter()
+        .map(|at| AxisSample {
+            command: at.reference * unit,
+            shaped: at.reference * unit,
+            count: (at.reference - at.error) * unit,
+            error: at.error * unit,
+            motor: at.load,
+            load: at.load,
+        })
+        .collect();
+    let friction = match push > 0.0 {
+        false => 0.0,
+        true => {
+            let pushed = Limits {
+                input: f64::INFINITY,
+                disturbance: push,
+            };
+            let still = vec![[0.0; 3]; references.len()];
+            let errors = sampled.follow(&derived.linear, &pushed, &still);
+            errors.iter().fold(0.0f64, |peak, at| peak.max(at.error.abs()))
+        }
+    };
+    Ok(Expected {
+        distance: f64::from(end) / scales[0],
+        counts: f64::from(end) / 256.0,
+        figures: figures::of_move(&samples, unit),
+        friction,
+        count: 1.0 / unit,
+    })
+}
+
+/// Largest input of the loop's plant, and what friction and the bridge take from it.
+fn pushes(machine: &Machine, axis: &Axis) -> (f64, f64) {
+    let (Some(drive), Some(pwm)) = (axis.drive, axis.pwm) else {
+        return (f64::INFINITY, 0.0);
+    };
+    // Both legs lose a dead time in a period, and pulses below the least are left out; locked antiphase is at half duty near 0.
+    let lost_clocks = match pwm.mode {
+        PwmMode::LockedAntiphase => 0,
+        _ => 2 * pwm.dead_time_clocks(&machine.clock) + pwm.minimum_pulse_clocks(&machine.clock),
+    };
+    let lost = f64::from(lost_clocks) / f64::from(pwm.period_clocks(&machine.clock).max(1));
+    match drive.mode {
+        DriveMode::Torque {
+            equivalent_mass,
+            force_constant,
+            current_limit_a,
+            full_scale_a,
+        } => {
+            let per_a = force_constant / equivalent_mass;
+            let friction = drive.coulomb / equivalent_mass;
+            (per_a * current_limit_a, friction + lost * full_scale_a * per_a)
+        }
+        DriveMode::Velocity { full_scale_velocity } => (full_scale_velocity, lost * full_scale_velocity),
+    }
+}
+
+/// Commands through a tap table, in units and s.
+fn shaped(commands: &[[f64; 3]], table: &TapTable, scales: [f64; 3]) -> Vec<[f64; 3]> {
+    let one = f64::from(1u32 << table.coefficient_fraction());
+    let at = |tick: usize, channel: usize| {
+        let taps = table.taps().iter().map(|tap| {
+            let before = tick.checked_sub(tap.delay_samples as usize);
+            before.map_or(0.0, |before| f64::from(tap.coefficient) * commands[before][channel])
+        });
+        taps.sum::<f64>() / one / scales[channel]
+    };
+    (0..commands.len())
+        .map(|tick| [at(tick, 0), at(tick, 1), at(tick, 2)])
+        .collect()
+}

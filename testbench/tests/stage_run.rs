@@ -1,0 +1,169 @@
+//! The closed loop of `run`: what is expected of a move, and what the stage makes of it.
+#![allow(clippy::unwrap_used, clippy::panic)] // helpers of tests, which clippy.toml exempts only inside of #[test]
+
+use posicast_model::control::{self, MachineStage};
+use posicast_model::design::design_machine;
+use posicast_model::rtl::shaper::{Motion, ShaperConfig};
+use posicast_model::rtl::sliding_mode::Row;
+use posicast_model::spec::{self, Machine};
+use posicast_model::taps::{Tap, TapTable};
+use posicast_testbench::stage_run::{Expected, Moved, Shaping, StageRun};
+
+const XY: &str = include_str!("../../examples/xy-stage.toml");
+const TORQUE: &str = include_str!("../../examples/xy-stage-torque.toml");
+const GANTRY: &str = include_str!("fixtures/machines/ei-gantry.toml");
+const WRIST: &str = include_str!("fixtures/machines/wrist.toml");
+
+fn machine(text: &str) -> Machine {
+    spec::parse("machine.toml", text).unwrap_or_else(|error| panic!("{error:?}"))
+}
+
+fn stage(machine: &Machine) -> MachineStage {
+    control::stage(machine, &design_machine(machine).unwrap())
+        .unwrap()
+        .unwrap()
+}
+
+/// The move of a machine, and what it should come to.
+fn moved(machine: &Machine, shaping: Shaping, factor: f64) -> (Moved, Vec<Expected>) {
+    let run = StageRun::new(machine, &stage(machine).config, 1).unwrap();
+    (
+        run.moved(shaping, factor).unwrap(),
+        run.expected(shaping, factor).unwrap(),
+    )
+}
+
+const RUNS: [(Shaping, f64); 4] = [
+    (Shaping::Shaped, 1.0),
+    (Shaping::Unshaped, 1.0),
+    (Shaping::Shaped, 0.9),
+    (Shaping::Shaped, 1.1),
+];
+
+/// Whether the first axis follows, and rings no more, than it should.
+fn holds(moved: &Moved, expected: &[Expected]) -> [bool; 2] {
+    let (found, allowed) = (&moved.axes[0], &expected[0]);
+    [
+        found.tracking.peak <= allowed.tracking_allowed(),
+        found.residual.peak <= allowed.ringing_allowed(),
+    ]
+}
+
+#[test]
+fn golden_the_float_loop_foresees_what_the_stage_does() {
+    for (text, ringing) in [(XY, true), (GANTRY, true), (TORQUE, false)] {
+        let machine = machine(text);
+        let [shaped, unshaped] = [Shaping::Shaped, Shaping::Unshaped].map(|shaping| moved(&machine, shaping, 1.0).1);
+        for (shaped, unshaped) in shaped.iter().zip(&unshaped) {
+            assert!(shaped.moves() && shaped.exercises(unshaped) == ringing, "{shaped:?}");
+        }
+        for (shaping, factor) in RUNS {
+            let (moved, expected) = moved(&machine, shaping, factor);
+            assert_eq!(moved.trouble, None);
+            for (found, expected) in moved.axes.iter().zip(&expected) {
+                let case = format!("{} {shaping:?} {factor}: {found:?}, {expected:?}", machine.name);
+                assert!(found.tracking.peak <= expected.tracking_allowed(), "{case}");
+                assert!(found.residual.peak <= expected.ringing_allowed(), "{case}");
+                let apart = (found.residual.peak - expected.figures.residual.peak).abs();
+                let part = 0.05 * expected.figures.residual.peak;
+                assert!(!ringing || apart <= part + expected.count, "{case}");
+            }
+        }
+    }
+}
+
+#[test]
+fn unit_a_broken_shaper_rings_more_than_is_allowed() {
+    for kind in ["zv", "zvd", "ei"] {
+        let machine = machine(&GANTRY.replace("kind = \"ei\"", &format!("kind = \"{kind}\"")));
+        let right = stage(&machine).config;
+        let expected = StageRun::new(&machine, &right, 1)
+            .unwrap()
+            .expected(Shaping::Shaped, 1.0)
+            .unwrap();
+        let table = right.axes[0].shaper.table();
+        let (fraction, taps) = (table.coefficient_fraction(), table.taps());
+        let first = Tap {
+            delay_samples: 0,
+            coefficient: 1 << fraction,
+        };
+        // The last tap at the place of the first: its coefficient is there too.
+        let mut merged = taps[..taps.len() - 1].to_vec();
+        merged[0].coefficient += taps[taps.len() - 1].coefficient;
+        let mut slow = machine.clone();
+        for mode in &mut slow.axes[0].modes {
+            mode.mode.frequency_hz *= 0.8;
+        }
+        let mut tables = vec![("bypass", vec![first])];
+        if kind != "ei" {
+            // EI leaves its tolerance at its mode, and no more a fifth beside it: that is what it is for. Its outer impulses at one
+            // place are a ZV shaper.
+            tables.push(("a tap off", merged));
+            let wrong = stage(&slow).config.axes[0].shaper.table().taps().to_vec();
+            tables.push(("20 % off", wrong));
+        }
+        for (case, taps) in tables {
+            let mut config = right.clone();
+            let table = TapTable::new(fraction, taps).unwrap();
+            let motion = Motion {
+                channels: 3,
+                modulo: false,
+            };
+            let shaper = ShaperConfig::new(32, table).unwrap().for_motion(motion).unwrap();
+            config.axes[0].shaper = shaper;
+            let moved = StageRun::new(&machine, &config, 1)
+                .unwrap()
+                .moved(Shaping::Shaped, 1.0)
+                .unwrap();
+            assert_eq!(moved.trouble, None);
+            assert!(
+                !holds(&moved, &expected)[1],
+                "{kind}, {case}: {:?}, {expected:?}",
+                moved.axes[0]
+            );
+        }
+    }
+}
+
+/// A wrist whose gains are so many times those of its file.
+fn wild_wrist(text: &str, factor: f64) -> (Moved, Vec<Expected>) {
+    let machine = machine(text);
+    let stage = stage(&machine);
+    let mut config = stage.config.clone();
+    let mut gains = stage.derived[0].gains;
+    for row in [Row::Derivative, Row::Proportional, Row::Integral] {
+        gains.set(row, factor * gains.get(row));
+    }
+    config.axes[0].settings = gains.quantise().unwrap();
+    let run = StageRun::new(&machine, &config, 1).unwrap();
+    let moved = run.moved(Shaping::Shaped, 1.0).unwrap();
+    (moved, run.expected(Shaping::Shaped, 1.0).unwrap())
+}
+
+#[test]
+fn unit_a_loop_that_swings_after_its_commands_is_seen() {
+    let (moved, _) = wild_wrist(WRIST, 120.0);
+    let trouble = moved.trouble.unwrap().to_string();
+    assert!(
+        trouble.contains("stayed at its target") && trouble.contains("following"),
+        "{trouble}"
+    );
+    // Without the limit nothing trips, and the error itself is too large.
+    let unlimited = WRIST.replace("following_error = 0.02\n", "");
+    let (moved, expected) = wild_wrist(&unlimited, 120.0);
+    let peak = moved.axes[0].tracking.peak;
+    assert!(!holds(&moved, &expected)[0] && peak > 5e-3, "{peak}");
+    // And so it is where dead time and friction are more than gains give that the modes bear.
+    let (moved, expected) = wild_wrist(WRIST, 1.0);
+    assert_eq!(moved.trouble, None);
+    assert!(!holds(&moved, &expected)[0]);
+}
+
+#[test]
+fn unit_a_move_of_a_few_counts_is_none() {
+    let coarse = XY.replace("counts_per_unit = 1_000_000", "counts_per_unit = 80");
+    let machine = machine(&coarse);
+    let run = StageRun::new(&machine, &stage(&machine).config, 1).unwrap();
+    let expected = run.expected(Shaping::Shaped, 1.0).unwrap();
+    assert!(expected.iter().all(|axis| !axis.moves()), "{expected:?}");
+}
