@@ -5,6 +5,7 @@ use crate::{output, progress};
 use clap::ValueEnum;
 use indicatif::ProgressBar;
 use posicast_testbench::Error;
+use posicast_testbench::asynchronous;
 use posicast_testbench::blocks::{self, Block, Sources};
 use posicast_testbench::lockstep::Device;
 use posicast_testbench::lockstep::report::Report;
@@ -51,12 +52,14 @@ impl Simulator {
         }
     }
 
-    /// Clocks of a lock step where none are asked for.
-    pub(crate) fn default_cycles(self) -> u64 {
-        match self {
+    /// Clocks of a block's lock step where none are asked for: what the simulator does in a few seconds, and never fewer
+    /// than the block's stimuli need to reach what a verdict speaks of.
+    pub(crate) fn default_cycles(self, block: &dyn Block) -> u64 {
+        let usual = match self {
             Self::Verilator => 1_000_000,
             Self::Icarus | Self::Rusthdl => 20_000,
-        }
+        };
+        usual.max(block.least_clocks())
     }
 
     /// Says where the simulator runs a block at other sizes than those of its Verilog.
@@ -96,14 +99,15 @@ impl fmt::Display for Simulator {
 pub(crate) struct Bench<'a> {
     pub(crate) block: &'a dyn Block,
     pub(crate) sources: &'a Sources,
-    /// Clocks to compare.
-    pub(crate) cycles: u64,
+    /// Clocks to compare, where the default is not wanted.
+    pub(crate) cycles: Option<u64>,
 }
 
 /// Compares every block with its model, at most [`MOST_AT_ONCE`] at a time, and reports them in their order.
 pub(crate) fn compare_all(benches: &[Bench<'_>], simulator: Simulator, seed: u64) -> Result<Report, Failure> {
     simulator.say_sizes(benches.iter().map(|bench| bench.block));
-    let total = benches.iter().map(|bench| bench.cycles).fold(0, u64::saturating_add);
+    let cycles = |bench: &Bench<'_>| bench.cycles.unwrap_or(simulator.default_cycles(bench.block));
+    let total = benches.iter().map(cycles).fold(0, u64::saturating_add);
     let bar = progress::bar("lock step", total);
     let next = Mutex::new(benches.iter().enumerate());
     let done = Mutex::new(Vec::new());
@@ -136,25 +140,26 @@ pub(crate) fn compare_all(benches: &[Bench<'_>], simulator: Simulator, seed: u64
 
 fn compare(bench: &Bench<'_>, simulator: Simulator, seed: u64, bar: &ProgressBar) -> Result<Report, Error> {
     bar.set_message(format!("building {} {}", bench.block.name(), bench.block.instance()));
-    let seed = row_seed(bench.block, seed);
+    let seed = blocks::row_seed(bench.block, seed);
     let mut device = simulator.device(bench.block, bench.sources, seed)?;
     bar.set_message(format!("{} {}", bench.block.name(), bench.block.instance()));
     let mut shown = 0;
-    blocks::check(bench.block, device.as_mut(), bench.cycles, seed, &mut |done| {
+    let cycles = bench.cycles.unwrap_or(simulator.default_cycles(bench.block));
+    let report = blocks::judge(bench.block, device.as_mut(), cycles, seed, &mut |done| {
         bar.inc(done - shown);
         shown = done;
+    })?;
+    if simulator == Simulator::Rusthdl {
+        return Ok(report);
+    }
+    let between_clocks = match asynchronous::check(bench.block, bench.sources) {
+        Err(error) if error.is_missing_tool() => asynchronous::not_run(bench.block, &error.to_string()),
+        other => other?,
+    };
+    Ok(match between_clocks {
+        Some(row) => Report::joined(vec![report, row]),
+        None => report,
     })
-}
-
-/// The seed of a row: each has stimuli of its own, so that one axis's may find what another's miss. It depends on what the row
-/// is, not on where it stands, so that a row alone repeats what it did among others.
-fn row_seed(block: &dyn Block, seed: u64) -> u64 {
-    // FNV-1a, 64 bits; a byte that no text holds parts name and instance.
-    let bytes = block.name().bytes().chain([0xff]).chain(block.instance().bytes());
-    let hash = bytes.fold(0xcbf2_9ce4_8422_2325, |hash: u64, byte| {
-        (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
-    });
-    seed ^ hash
 }
 
 /// What a mutex holds; a thread that died over it does not matter here, the panic goes on by itself.

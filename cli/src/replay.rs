@@ -3,6 +3,7 @@
 use crate::bench::{self, Simulator};
 use crate::failure::Failure;
 use crate::output;
+use posicast_model::rtl::{Direction, Port};
 use posicast_testbench::Error;
 use posicast_testbench::blocks::{Block, Sources};
 use posicast_testbench::diff::{Options, Reset};
@@ -74,6 +75,11 @@ pub(crate) struct Replayed {
 }
 
 impl Replayed {
+    /// Inputs that are not in the file.
+    pub(crate) fn missing_inputs(&self) -> &[String] {
+        &self.missing_inputs
+    }
+
     /// In words, a line each.
     pub(crate) fn text(&self) -> String {
         let mut text = format!(
@@ -120,6 +126,7 @@ pub(crate) fn run(
 ) -> Result<(Report, Replayed), Failure> {
     let options = args.options().map_err(bench::failure)?;
     let (block, sources, replay) = choose(blocks, file, &options)?;
+    has_content(block, &replay, file)?;
     let extent = replay.extent(most_clocks).map_err(bench::failure)?;
     let Extent { clocks, compared, .. } = extent;
     if compared == 0 {
@@ -154,6 +161,41 @@ pub(crate) fn run(
         ));
     }
     Ok((report, replayed))
+}
+
+/// Inputs that say when, not what: a recording with these alone drives nothing.
+const TIMING: [&str; 3] = ["rst", "strobe", "tick"];
+
+/// A recording without an input that carries something, or without an output, compares nothing.
+fn has_content(block: &dyn Block, replay: &Replay, file: &Path) -> Result<(), Failure> {
+    let ports = block.model(0).ports().to_vec();
+    let lacks_all = |direction: Direction, missing: &[String]| {
+        let of = |port: &&Port| port.direction == direction && !TIMING.contains(&port.name.as_str());
+        let mut of = ports.iter().filter(of).peekable();
+        of.peek().is_some() && of.all(|port| missing.contains(&port.name))
+    };
+    let what = match (
+        lacks_all(Direction::Input, &replay.missing_inputs()),
+        lacks_all(Direction::Output, &replay.missing_outputs()),
+    ) {
+        (false, false) => return Ok(()),
+        (true, true) => "none of the data inputs and none of the outputs",
+        (true, false) => "none of the data inputs",
+        (false, true) => "none of the outputs",
+    };
+    let inputs = replay.missing_inputs().into_iter().chain(replay.missing_outputs());
+    let some = inputs.take(6).collect::<Vec<_>>().join(", ");
+    Err(Failure::from(miette::miette!(
+        help = format!(
+            "say with --map SCOPE=TOP or --map SIGNAL=TOP.PORT which signals of the file are the block's, or choose another \
+             block with --block; its top is `{}`",
+            block.top()
+        ),
+        "`{}` has {what} of {} {}: a replay of it would compare nothing. Not found: {some}, …",
+        file.display(),
+        block.name(),
+        block.instance()
+    )))
 }
 
 type Chosen<'a> = (&'a dyn Block, &'a Sources, Replay);

@@ -94,7 +94,6 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let tops: Vec<&dyn Block> = std::iter::once(&top as &dyn Block).chain(components).collect();
     let all = Sources::found(files.clone());
     let sources = all.reached_by(&top).map_err(bench::failure)?;
-    let cycles = args.cycles.unwrap_or(simulator.default_cycles());
     let job = Job {
         machine,
         top: &top,
@@ -102,7 +101,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         simulator,
         seed: args.seed,
     };
-    let lockstep = job.lockstep(cycles)?;
+    let lockstep = job.lockstep(args.cycles)?;
     let waves = job.waves(&mut package, &design.design, &axes)?;
     let estimate = yosys.map(|yosys| estimate(&yosys, machine, &files)).transpose()?;
 
@@ -219,7 +218,7 @@ struct Job<'a> {
 }
 
 impl Job<'_> {
-    fn lockstep(&self, cycles: u64) -> Result<LockstepReport, Failure> {
+    fn lockstep(&self, cycles: Option<u64>) -> Result<LockstepReport, Failure> {
         let bench = Bench {
             block: self.top,
             sources: self.sources,

@@ -1,15 +1,18 @@
 //! `posicast verify`: RTL against the bit-exact model, clock by clock, block by block.
 
+mod document;
+mod folder;
+
+use self::document::Document;
+use self::folder::Folder;
 use crate::bench::{self, Bench, Simulator};
 use crate::design::Report as DesignReport;
 use crate::failure::Failure;
-use crate::output::{self, Table};
-use crate::{blocks, command, machine, replay, stage};
+use crate::output;
+use crate::{blocks, command, generate, machine, replay, stage};
 use posicast_synth::package;
 use posicast_testbench::blocks::{Block, Sources, StageBlock};
 use posicast_testbench::lockstep::report::{Report, Verdict};
-use posicast_testbench::wording::counted;
-use serde::Serialize;
 use std::path::{Path, PathBuf};
 
 /// Compare the Verilog with the bit-exact model in every clock
@@ -21,7 +24,7 @@ Examples:
   posicast verify xy_stage                    the Verilog in that folder, as it is
   posicast verify xy_stage --stimulus recorded.vcd --map tb.dut=xy_stage
 
-Exit status: 0 no mismatch, 1 a mismatch, 2 bad input, 3 the simulator is missing.")]
+Exit status: 0 everything was exercised and equal, 1 it was not, 2 bad input, 3 the simulator is missing.")]
 pub(crate) struct Args {
     /// Machine file, or a folder that `generate` or `run` wrote
     source: PathBuf,
@@ -31,7 +34,8 @@ pub(crate) struct Args {
     /// Only the blocks of this name, such as pulse_counter; may be given several times
     #[arg(long = "block", value_name = "NAME")]
     blocks: Vec<String>,
-    /// Clocks to compare in every row, with --stimulus at most [default: 1000000 with verilator, 20000 with icarus and rusthdl]
+    /// Clocks to compare in every row, with --stimulus at most [default: 1000000 with verilator, 20000 with icarus and
+    /// rusthdl, and never fewer than it takes to see every tap, bank and flag of a shaper]
     #[arg(long, value_parser = clap::value_parser!(u64).range(1..))]
     cycles: Option<u64>,
     /// Seed of the random stimuli
@@ -49,14 +53,14 @@ pub(crate) const DEFAULT_SEED: u64 = 1;
 
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let mut job = Job::new(&args.source, &args.blocks)?;
-    if job.from_folder && args.simulator == Some(Simulator::Rusthdl) {
+    if job.folder.is_some() && args.simulator == Some(Simulator::Rusthdl) {
         return Err(Failure::from(miette::miette!(
             help = "use --simulator verilator or icarus, or verify the machine file",
             "`--simulator rusthdl` runs the RustHDL description: it cannot run the Verilog in `{}`",
             args.source.display()
         )));
     }
-    let simulator = if job.from_folder {
+    let simulator = if job.folder.is_some() {
         args.simulator.unwrap_or(Simulator::Verilator)
     } else {
         Simulator::choose(args.simulator)?
@@ -64,21 +68,33 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     if simulator == Simulator::Rusthdl {
         job.keep_what_is_rusthdl()?;
     }
-    let (report, replayed) = match args.replay.recording() {
+    let (mut report, replayed) = match args.replay.recording() {
         Some(file) => {
             let how = (simulator, args.seed, args.cycles.unwrap_or(u64::MAX));
             let (report, replayed) = replay::run(&job.blocks, file, &args.replay, how)?;
             (report, Some(replayed))
         }
         None => {
-            let cycles = args.cycles.unwrap_or(simulator.default_cycles());
-            (job.lockstep(simulator, cycles, args.seed)?, None)
+            let report = job.lockstep(simulator, args.cycles, args.seed);
+            // An edited machine file may make ports that do not fit: what was edited is said first.
+            let report = report.inspect_err(|_| {
+                job.folder
+                    .iter()
+                    .for_each(|folder| output::say(folder.text().trim_end()))
+            });
+            (report?, None)
         }
     };
+    if job.folder.as_ref().is_some_and(Folder::fails) {
+        report.result = Verdict::Mismatch;
+    }
     if report.samples == 0 && report.blocks.iter().any(|block| block.samples.is_some()) {
         output::say("warning: no output sample was among these clocks: compare more with --cycles");
     }
     let document = Document {
+        least_clocks: job.least_clocks(),
+        folder: job.folder.as_ref(),
+        not_exercised: report.not_exercised_names(),
         simulator,
         seed: args.seed,
         replayed: replayed.as_ref(),
@@ -89,19 +105,17 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     } else {
         output::print(&document.text())?
     }
-    match report.result {
-        Verdict::Match => Ok(()),
-        Verdict::Mismatch if replayed.is_some() => {
-            Err(Failure::Check("recording, RTL and model do not match".to_owned()))
-        }
-        Verdict::Mismatch => Err(Failure::Check("the RTL does not match the model".to_owned())),
+    match document.failed() {
+        None => Ok(()),
+        Some(reason) => Err(Failure::Check(reason)),
     }
 }
 
 /// The blocks that are to be compared with their models.
 struct Job {
     blocks: Vec<(Box<dyn Block>, Sources)>,
-    from_folder: bool,
+    /// What the files of the folder are beside what posicast generates, where it is a folder.
+    folder: Option<Folder>,
 }
 
 impl Job {
@@ -110,7 +124,7 @@ impl Job {
         let (machine, path, folder) = if source.is_dir() {
             let contents = package::read(source).map_err(Failure::because)?;
             let machine = machine::parse(&contents.machine_path, &contents.machine_toml)?;
-            (machine, contents.machine_path, Some(contents.rtl))
+            (machine, contents.machine_path.clone(), Some(contents))
         } else {
             (machine::read(source)?.machine, source.to_owned(), None)
         };
@@ -120,14 +134,26 @@ impl Job {
         // A move that does not fit the words is an error of `run`; a lock step has its other stimuli.
         let words = command::words(&machine, design, None).unwrap_or_default();
         let stage = stage::of_machine(&machine, design, source)?;
+        let compared = match &folder {
+            Some(contents) => {
+                let components = blocks::components(&machine, &shapers, &report.controllers, &path)?;
+                let modules = generate::modules(&machine, &shapers, &components, stage.as_ref(), &path)?;
+                Some(Folder::compare(source, contents, &modules).map_err(Failure::because)?)
+            }
+            None => None,
+        };
         let mut others = match &folder {
             Some(_) => blocks::of_components(&machine, &shapers, &report.controllers, &path)?,
             None => blocks::others(&machine, &shapers, &report.controllers, &path)?,
         };
         if let Some(stage) = stage {
             let block = StageBlock::new(&stage.of_machine.config, &stage.block.top()).map_err(Failure::because)?;
+            if folder.is_some() {
+                others.extend(block.inner().map_err(bench::failure)?);
+            }
             others.push(Box::new(block));
         }
+        let folder = folder.map(|contents| contents.rtl);
         if let Some(files) = &folder {
             let there = Sources::found(files.clone());
             others.retain(|block| there.hold(block.as_ref()));
@@ -142,7 +168,7 @@ impl Job {
         let blocks = chosen.map(|block| sources(block.as_ref()).map(|sources| (block, sources)));
         Ok(Self {
             blocks: blocks.collect::<Result<_, _>>()?,
-            from_folder: folder.is_some(),
+            folder: compared,
         })
     }
 
@@ -169,7 +195,16 @@ impl Job {
         Ok(())
     }
 
-    fn lockstep(&self, simulator: Simulator, cycles: u64, seed: u64) -> Result<Report, Failure> {
+    /// Clocks that exercise what a verdict on any of the rows speaks of.
+    fn least_clocks(&self) -> u64 {
+        self.blocks
+            .iter()
+            .map(|(block, _)| block.least_clocks())
+            .max()
+            .unwrap_or(0)
+    }
+
+    fn lockstep(&self, simulator: Simulator, cycles: Option<u64>, seed: u64) -> Result<Report, Failure> {
         let benches = self.blocks.iter().map(|(block, sources)| Bench {
             block: block.as_ref(),
             sources,
@@ -193,43 +228,4 @@ fn choose(blocks: Vec<Box<dyn Block>>, names: &[String], source: &Path) -> Resul
     }
     let wanted = |name: &str| names.is_empty() || names.iter().any(|chosen| chosen == name);
     Ok(blocks.into_iter().filter(|block| wanted(block.name())).collect())
-}
-
-/// `verify --json`.
-#[derive(Serialize)]
-struct Document<'a> {
-    #[serde(flatten)]
-    report: &'a Report,
-    simulator: Simulator,
-    seed: u64,
-    #[serde(rename = "stimulus", skip_serializing_if = "Option::is_none")]
-    replayed: Option<&'a replay::Replayed>,
-}
-
-impl Document<'_> {
-    fn text(&self) -> String {
-        let mut table = Table::new(&["block", "instance", ">clocks", ">mismatches"]);
-        for block in &self.report.blocks {
-            let counts = [block.cycles.to_string(), block.mismatches.to_string()];
-            table.row([block.name.clone(), block.instance.clone()].into_iter().chain(counts));
-        }
-        let mut text = table.text("");
-        for block in &self.report.blocks {
-            if let Some(first) = &block.first {
-                text += &format!("\n{} {}: {first}\n", block.name, block.instance);
-            }
-        }
-        text += &self.replayed.map_or_else(String::new, replay::Replayed::text);
-        let verdict = match self.report.result {
-            Verdict::Match => "match: every output of every clock is equal to the model's",
-            Verdict::Mismatch => "MISMATCH",
-        };
-        text + &format!(
-            "{verdict}; {}, {}, simulator {}, seed {}\n",
-            counted(self.report.cycles, "clock"),
-            counted(self.report.samples, "sample"),
-            self.simulator,
-            self.seed
-        )
-    }
 }

@@ -5,6 +5,7 @@
 //! --block NAME    only this block                    --mutants N   per block (60)
 //! --seed S        of the choice of mutants (1)       --clocks C    per run of stimuli (1,000,000)
 //! --write         renews the table in docs/verification.md, or the rows of the block
+//! --inside        the named mutants inside the stage of examples/xy-stage.toml instead, as `verify DIR` looks for them
 //! ```
 //!
 //! Prints the table, and while it works a line per block. Exit status: 0 nothing is unknown, 1 something is, 2 cannot run,
@@ -15,8 +16,11 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Instant;
 
+use posicast_model::{control, design::design_machine, spec};
 use posicast_testbench::Error;
-use posicast_testbench::mutation::{MARKS, Options, Row, all, merged, named, run, table};
+use posicast_testbench::mutation::{
+    INSIDE, INSIDE_MARKS, MARKS, Options, Row, all, inside_table, merged, named, run, table,
+};
 
 fn main() -> ExitCode {
     match mutate() {
@@ -33,7 +37,11 @@ struct Arguments {
     block: Option<String>,
     options: Options,
     write: bool,
+    inside: bool,
 }
+
+/// The machine whose stage gets the named mutants.
+const MACHINE: &str = include_str!("../../examples/xy-stage.toml");
 
 impl Arguments {
     fn read() -> Result<Self, Error> {
@@ -41,6 +49,7 @@ impl Arguments {
             block: None,
             options: Options::default(),
             write: false,
+            inside: false,
         };
         let mut words = std::env::args().skip(1);
         while let Some(word) = words.next() {
@@ -54,9 +63,10 @@ impl Arguments {
                 "--seed" => found.options.seed = number(&word, &value()?)?,
                 "--clocks" => found.options.clocks = number(&word, &value()?)?,
                 "--write" => found.write = true,
+                "--inside" => found.inside = true,
                 other => {
                     return Err(Error::Option(format!(
-                        "`{other}`: the options are --block, --mutants, --seed, --clocks and --write"
+                        "`{other}`: the options are --block, --mutants, --seed, --clocks, --write and --inside"
                     )));
                 }
             }
@@ -76,7 +86,15 @@ fn number<T: std::str::FromStr>(option: &str, text: &str) -> Result<T, Error> {
 }
 
 fn mutate() -> Result<bool, Error> {
-    let Arguments { block, options, write } = Arguments::read()?;
+    let Arguments {
+        block,
+        options,
+        write,
+        inside,
+    } = Arguments::read()?;
+    if inside {
+        return mutate_inside(&options, write);
+    }
     let subjects = match &block {
         Some(name) => named(name)?,
         None => all()?,
@@ -113,4 +131,29 @@ fn mutate() -> Result<bool, Error> {
     }
     print!("{}", table(&rows));
     Ok(rows.iter().all(|row| row.unknown.is_empty()))
+}
+
+/// The named mutants, each in the stage of the example machine.
+fn mutate_inside(options: &Options, write: bool) -> Result<bool, Error> {
+    let refused = |error: &dyn std::fmt::Display| Error::Option(format!("examples/xy-stage.toml: {error}"));
+    let machine = spec::parse("xy-stage.toml", MACHINE).map_err(|error| refused(&error))?;
+    let design = design_machine(&machine).map_err(|error| refused(&error))?;
+    let stage = control::stage(&machine, &design).map_err(|error| refused(&error))?;
+    let stage = stage.ok_or_else(|| refused(&"it has no stage"))?;
+    let mut fates = Vec::new();
+    for mutant in INSIDE {
+        let start = Instant::now();
+        let found = mutant.hunt(&stage.config, "xy_stage_stage", options.clocks, options.seed)?;
+        let by = found
+            .as_ref()
+            .map_or("NOT FOUND".to_owned(), |found| format!("{found:?}"));
+        eprintln!("{}: {by}, {:.1} s", mutant.name, start.elapsed().as_secs_f64());
+        fates.push((mutant, found));
+    }
+    let table = inside_table(&fates);
+    if write {
+        INSIDE_MARKS.renew(|_| table.clone())?;
+    }
+    print!("{table}");
+    Ok(fates.iter().all(|(_, found)| found.is_some()))
 }

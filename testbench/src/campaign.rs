@@ -1,15 +1,19 @@
-//! The stimuli that a machine's lock step goes through: every directed case, a real move, then random to the end.
+//! The stimuli that a machine's lock step goes through: the delay line filled, every directed case, a real move, then random
+//! to the end.
 //!
 //! ```text
-//! | directed case 1 | … | corner case n   | real move, strobes one pass apart and more | random, seeded …        |
+//! | noise, a sample per pass | directed case 1 | … | corner case n | real move | random, seeded …        |
+//! |◄──────────────── [`Campaign::least_clocks`] ──►|
 //! ```
 //!
-//! One run, so that each phase begins in whatever state the one before has left: every directed case and the move begin
-//! with a reset, the random stimuli do not. A short run sees only the first phases; the report's clock counts tell.
+//! One run, so that each phase begins in whatever state the one before has left: the noise, every directed case and the move
+//! begin with a reset, the random stimuli do not. What slow simulators must reach comes first.
 
 use std::collections::VecDeque;
 
-use crate::stimuli::{Directed, Layout, Motion, Random, Stimuli, cases, corners, motion_cases};
+use posicast_model::rtl::shaper::ShaperConfig;
+
+use crate::stimuli::{Action, Directed, Fill, Layout, Motion, Random, Stimuli, cases, corners, motion_cases};
 
 /// Clocks between the strobes of the move beyond a pass: idle clocks, a handful.
 const IDLE_CLOCKS: u64 = 5;
@@ -26,16 +30,18 @@ struct Phase<'a> {
 }
 
 impl<'a> Campaign<'a> {
-    /// The campaign for the shapers of `layout`, whose passes take at most `pass_clocks`. `words` is the move: command
-    /// words per axis; none, and the move is left out. The move gets at most a quarter of `cycles`, so that a long move
-    /// does not crowd out the random stimuli.
-    pub fn new(layout: &Layout, pass_clocks: u32, words: &'a [Vec<i64>], cycles: u64, seed: u64) -> Self {
-        let mut phases = VecDeque::new();
+    /// The campaign for the shapers of `layout`, built of `configs`. `words` is the move: command words per axis; none, and
+    /// the move is left out. The move gets at most a quarter of `cycles`, so that a long move does not crowd out the random
+    /// stimuli.
+    pub fn new(layout: &Layout, configs: &[&ShaperConfig], words: &'a [Vec<i64>], cycles: u64, seed: u64) -> Self {
+        let pass_clocks = longest_pass_clocks(configs);
+        let mut phases = VecDeque::from([Phase {
+            stimuli: Box::new(Fill::new(layout, seed)),
+            clocks: fill_clocks(configs),
+        }]);
         // A corner belongs to one axis's sizes; on the others it is one more script.
         let corner_cases = layout.axes.iter().flat_map(corners);
-        let in_motion = layout.axes.iter().any(|axis| axis.swap_how.is_some());
-        let motion_cases = in_motion.then(motion_cases).into_iter().flatten();
-        for (_, script) in cases().into_iter().chain(motion_cases).chain(corner_cases) {
+        for (_, script) in directed(layout).into_iter().chain(corner_cases) {
             let directed = Directed::new(layout, script);
             let clocks = directed.clocks(pass_clocks);
             phases.push_back(Phase {
@@ -56,6 +62,39 @@ impl<'a> Campaign<'a> {
             last: Random::new(layout, seed),
         }
     }
+
+    /// Clocks after which the delay lines were full, every tap was seen, and every directed case is over.
+    pub fn least_clocks(layout: &Layout, configs: &[&ShaperConfig]) -> u64 {
+        let pass_clocks = longest_pass_clocks(configs);
+        let cases = directed(layout).into_iter();
+        let cases = cases.map(|(_, script)| Directed::new(layout, script).clocks(pass_clocks));
+        fill_clocks(configs) + cases.sum::<u64>()
+    }
+}
+
+/// Clocks of the longest pass of all: in a handover two tables long.
+fn longest_pass_clocks(configs: &[&ShaperConfig]) -> u32 {
+    let passes = configs.iter().map(|config| config.pass_clocks(config.most_products()));
+    passes.max().unwrap_or(0)
+}
+
+/// Clocks of the phase that fills the delay lines, whose passes go over the machine's tables only.
+fn fill_clocks(configs: &[&ShaperConfig]) -> u64 {
+    let products = |config: &ShaperConfig| (config.channels() * config.table().taps().len()) as u32;
+    let pass = configs.iter().map(|config| config.pass_clocks(products(config))).max();
+    let longest = configs
+        .iter()
+        .map(|config| config.table().longest_delay_samples())
+        .max();
+    Fill::clocks(longest.unwrap_or(0), pass.unwrap_or(0))
+}
+
+/// The directed cases that suit the shapers of the layout.
+fn directed(layout: &Layout) -> Vec<(&'static str, Vec<Action>)> {
+    let in_motion = layout.axes.iter().any(|axis| axis.swap_how.is_some());
+    let mut all = cases();
+    all.extend(in_motion.then(motion_cases).into_iter().flatten());
+    all
 }
 
 impl Stimuli for Campaign<'_> {

@@ -9,7 +9,7 @@
 
 use std::fmt::Write as _;
 use std::io::{BufRead, BufReader, Read, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{ChildStdin, ChildStdout, Stdio};
 
 use posicast_model::rtl::{ClockedBlock, Direction, Port, StepError};
@@ -237,6 +237,24 @@ impl ClockedBlock for Icarus {
             None => Ok(()),
         }
     }
+}
+
+/// Compiles a testbench with the top module `top` and these files, runs it to its end, and returns what it printed.
+///
+/// # Errors
+/// [`Error::ToolMissing`] without Icarus; [`Error::ToolFailed`] where it refuses the Verilog.
+pub(crate) fn directed(bench: &str, top: &str, files: &[PathBuf]) -> Result<String, Error> {
+    let temporary = std::env::temp_dir();
+    let folder = scratch::Folder::new(scratch::PREFIX);
+    let folder = folder.map_err(Error::file(&temporary, "create a folder in"))?;
+    let (file, program) = (folder.path().join("bench.v"), folder.path().join(PROGRAM));
+    std::fs::write(&file, bench).map_err(Error::file(&file, "write"))?;
+    let mut compile = ICARUS.command();
+    compile.env("TMPDIR", folder.path());
+    compile.args(["-g2005", "-s", top, "-o"]).arg(&program).arg(&file);
+    ICARUS.run(compile.args(files), "compiling the Verilog")?;
+    let ran = VVP.run(VVP.command_in(folder.path()).args(["-n", PROGRAM]), "simulating")?;
+    Ok(String::from_utf8_lossy(&ran.stdout).into_owned())
 }
 
 /// The testbench, with what else it is to do in `also`.

@@ -16,6 +16,7 @@
 //! - [`fault_campaign`] puts a stage with its machine in every fault, at random clocks of a move.
 //! - [`register_tests`] asks registers, through the bus, for what their description promises.
 //! - [`stage_bench`] joins a stage with its simulated machine; [`stage_run`] moves it and measures.
+//! - [`asynchronous`] tests what no clock sees.
 //! - [`crosssim`] compares the waveforms of two simulators.
 //! - [`coverage`] measures which lines and nets a lock step reaches, and wants a reason for the rest.
 //! - [`formal`] proves what property files say of the blocks.
@@ -26,6 +27,7 @@
 //! - [`wave`] writes waveforms; [`diff`] compares two of them.
 //! - [`wording`] counts things and writes times for people.
 
+pub mod asynchronous;
 pub mod blocks;
 pub mod campaign;
 pub mod coverage;

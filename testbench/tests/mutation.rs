@@ -1,7 +1,9 @@
 //! The mutation rung on small blocks: no mutant stays unknown; and it says so where stimuli see nothing.
 #![allow(clippy::unwrap_used)] // helpers of tests, which clippy.toml exempts only inside of #[test]
 
-use posicast_testbench::mutation::{Fate, Mutant, Options, Subject, named, run, run_with};
+use posicast_model::{control, design::design_machine, spec};
+use posicast_testbench::blocks::{Block, Part, PartBlock};
+use posicast_testbench::mutation::{Fate, INSIDE, Mutant, Options, Subject, named, run, run_with};
 
 fn subject(block: &str) -> Subject {
     named(block).unwrap().swap_remove(0)
@@ -61,4 +63,29 @@ fn mutate_equal_seeds_choose_equal_mutants_and_others_do_not() {
     };
     assert_eq!(few(1), few(1));
     assert_ne!(few(1), few(2));
+}
+
+/// The rows of a folder's check, on the stage of the example machine, under its default clocks and seed.
+#[test]
+fn mutate_every_named_mutant_inside_the_stage_is_found() {
+    let machine = spec::parse("xy-stage.toml", include_str!("../../examples/xy-stage.toml")).unwrap();
+    let stage = control::stage(&machine, &design_machine(&machine).unwrap());
+    let config = stage.unwrap().unwrap().config;
+    for mutant in INSIDE {
+        let found = mutant.hunt(&config, "xy_stage_stage", 1_000_000, 1).unwrap();
+        assert!(found.is_some(), "not found: {}", mutant.name);
+    }
+}
+
+#[test]
+fn mutate_a_named_mutant_whose_text_is_gone_is_an_error() {
+    let mutant = INSIDE.iter().find(|mutant| mutant.module == "_group").unwrap();
+    let modules = PartBlock::new(Part::Group(2), "top").modules().unwrap();
+    assert!(mutant.put_into(&modules, "top").is_ok());
+    for (text, times) in [(String::new(), "0 times"), (mutant.from.repeat(2), "2 times")] {
+        let mut outdated = modules.clone();
+        outdated.last_mut().unwrap().text = text;
+        let refused = mutant.put_into(&outdated, "top").unwrap_err().to_string();
+        assert!(refused.contains(times), "{refused}");
+    }
 }

@@ -67,6 +67,11 @@ fn rtl_equals_model(simulator: Simulator, lockstep: &Report) -> Check {
         .iter()
         .find_map(|b| b.first.as_ref().map(|first| (b, first)));
     let detail = match first {
+        None if lockstep.not_exercised() > 0 => format!(
+            "{}, no mismatch, but not exercised: {}; compare more clocks with --cycles",
+            counted(lockstep.cycles, "clock"),
+            lockstep.not_exercised_names().join(", ")
+        ),
         None => format!(
             "{}, {}, no mismatch",
             counted(lockstep.cycles, "clock"),

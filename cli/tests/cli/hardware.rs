@@ -148,7 +148,7 @@ fn cli_verify_without_any_tool_still_gives_a_verdict_and_names_it_the_weaker_che
     verify
         .arg("verify")
         .arg(example("xy-stage.toml"))
-        .args(["--json", "--cycles", "2000"])
+        .args(["--json", "--block", "shaper"])
         .env("PATH", "");
     let assert = verify.assert().success().stderr(predicates::str::contains("weaker"));
     // A size of the shaper is not compiled for each machine, and what is simulated instead is told.

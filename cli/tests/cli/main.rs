@@ -3,6 +3,7 @@
 mod sopc;
 mod stage;
 mod support;
+mod verdict;
 mod verify;
 
 mod bad_input;

@@ -137,6 +137,23 @@ fn cli_replay_says_what_is_not_in_the_file() {
 }
 
 #[test]
+fn cli_replay_of_a_recording_without_data_or_without_outputs_fails_as_empty() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("recorded.vcd");
+    let only = |direction: Direction| move |port: &Port| port.name == "rst" || port.direction == direction;
+    for (kept, lacks) in [
+        (Direction::Output, "none of the data inputs"),
+        (Direction::Input, "none of the outputs"),
+    ] {
+        record(&path, only(kept), |_, _| {});
+        let output = replay(&path, &["--json"]);
+        assert_eq!((output.status.code(), output.stdout.is_empty()), (Some(2), true));
+        let said = said(&output);
+        assert!(said.contains(lacks) && said.contains("--map"), "{said}");
+    }
+}
+
+#[test]
 fn cli_replay_does_not_compare_unknown_bits_and_counts_their_clocks() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("recorded.vcd");

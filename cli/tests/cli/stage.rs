@@ -122,7 +122,7 @@ fn run(text: &str, arguments: &[&str]) -> (Option<i32>, serde_json::Value, Strin
     let mut run = posicast();
     run.arg("run").arg(&file).arg("-o").arg(&output);
     let out = run
-        .args(["--json", "--cycles", "2000"])
+        .args(["--json", "--cycles", "20000"])
         .args(arguments)
         .output()
         .unwrap();

@@ -12,7 +12,7 @@ use std::process::Output;
 fn rows(machine: &Path, arguments: &[&str]) -> (serde_json::Value, Vec<(String, String)>) {
     let mut verify = posicast();
     verify.arg("verify").arg(machine).arg("--json").args(arguments);
-    let document = json(&verify.assert().success().get_output().stdout);
+    let document = json(&verify.output().unwrap().stdout);
     let text = |row: &serde_json::Value, key: &str| row[key].as_str().unwrap().to_owned();
     let blocks = document["blocks"].as_array().unwrap();
     let rows = blocks.iter().map(|row| (text(row, "name"), text(row, "instance")));
@@ -25,7 +25,9 @@ fn cli_verify_compares_every_block_of_the_library_for_a_machine_with_a_loop() {
     for simulator in ["icarus", "rusthdl"] {
         let arguments = ["--cycles", "3000", "--simulator", simulator];
         let (document, rows) = rows(&example("xy-stage.toml"), &arguments);
-        assert_eq!(document["result"], "match");
+        // 3,000 clocks do not fill a delay line: every value is equal, and that is no verdict.
+        assert_eq!(document["result"], "mismatch");
+        assert!(!document["not_exercised"].as_array().unwrap().is_empty());
         let component = |block: &str| rows.contains(&(block.to_owned(), "x, Avalon".to_owned()));
         for block in ["shaper", "pulse_counter", "pwm", "sliding_mode"] {
             // RustHDL's simulator has no registers.
@@ -63,7 +65,8 @@ fn cli_verify_compares_every_block_of_the_library_for_a_machine_with_a_loop() {
 #[test]
 fn cli_verify_of_shapers_alone_keeps_to_them() {
     let (_folder, machine) = scratch(&one_axis("kind = \"zvd\"", "frequency_hz = 40.0\ndamping = 0.1"));
-    let (_, rows) = rows(&machine, &["--cycles", "2000", "--simulator", "rusthdl"]);
+    let (document, rows) = rows(&machine, &["--simulator", "rusthdl"]);
+    assert_eq!(document["result"], "match");
     assert_eq!(rows, [("shaper".to_owned(), "x".to_owned())]);
 }
 
@@ -79,7 +82,8 @@ fn cli_verify_takes_blocks_by_name_and_says_which_there_are() {
         "--block",
         "cascade",
     ];
-    let (_, rows) = rows(&example("xy-stage.toml"), &chosen);
+    let (document, rows) = rows(&example("xy-stage.toml"), &chosen);
+    assert_eq!(document["result"], "match");
     let names: Vec<&str> = rows.iter().map(|(name, _)| name.as_str()).collect();
     assert_eq!(names, ["divider", "cascade"]);
     let unknown = posicast()
@@ -165,6 +169,7 @@ fn cli_verify_of_a_folder_finds_a_broken_component_and_no_other() {
             ("x, in the pulse_counter component", false),
             ("y, Avalon", true),
             ("y, in the pulse_counter component", false),
+            ("in the stage", false),
         ]
     );
 }
@@ -230,7 +235,7 @@ fn cli_verify_gives_each_row_stimuli_of_its_own_that_repeat() {
         let document = json(&out.stdout);
         assert_eq!(document["seed"], 1);
         let rows = document["blocks"].as_array().unwrap().iter();
-        let inner = rows.filter(|row| row["name"] == "pwm" && row["instance"].as_str().unwrap().contains("in the"));
+        let inner = rows.filter(|row| row["name"] == "pwm" && row["instance"].as_str().unwrap().ends_with("component"));
         inner.map(|row| row["first"]["time"].as_u64()).collect::<Vec<_>>()
     };
     let alone = first(&["--block", "pwm"]);

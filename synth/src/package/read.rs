@@ -24,6 +24,8 @@ pub struct Contents {
     pub machine_toml: String,
     /// `rtl/*.v` as they are now, sorted: at least one.
     pub rtl: Vec<PathBuf>,
+    /// Files that posicast wrote and that are not as it wrote them: paths below the folder.
+    pub edited: Vec<String>,
 }
 
 /// Reads an output folder. Files may have been edited since posicast wrote them; that is what one verifies.
@@ -51,6 +53,7 @@ pub fn read(root: &Path) -> Result<Contents, PackageError> {
         return Err(PackageError::Missing(gone));
     }
     Ok(Contents {
+        edited: manifest.edited(root)?,
         version: manifest.version,
         machine: manifest.machine,
         machine_toml,

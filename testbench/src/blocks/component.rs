@@ -3,13 +3,10 @@
 use posicast_hdl::SimulationError;
 use posicast_hdl::component::emit;
 use posicast_hdl::emit::{EmitError, Module};
-use posicast_model::rtl::component::{Block as Part, Component};
+use posicast_model::rtl::component::Component;
 use posicast_model::rtl::{ClockedBlock, Direction, Port};
 
-use super::{
-    Bins, Block, DividerBlock, PulseCounterBlock, PwmBlock, RegistersBlock, ShaperBlock, SlidingModeBlock,
-    not_in_rusthdl,
-};
+use super::{Bins, Block, inside, not_in_rusthdl};
 use crate::Error;
 use crate::lockstep::Clock;
 use crate::stimuli::{ComponentRandom, Stimuli};
@@ -45,23 +42,9 @@ impl ComponentBlock {
     /// What only joins them (sample select, setting banks, time base) has no bench of its own: the component's covers it.
     ///
     /// # Errors
-    /// As [`ShaperBlock::new`].
+    /// [`Error::Unlike`] where a shaper lacks a port that the stimuli drive.
     pub fn inner(&self) -> Result<Vec<Box<dyn Block>>, Error> {
-        let top = self.top.as_str();
-        let instance = format!("{}, in the {} component", self.axis, self.component.name());
-        let mut blocks: Vec<Box<dyn Block>> = Vec::new();
-        for part in self.component.blocks() {
-            blocks.push(match part {
-                Part::Registers(map) => Box::new(RegistersBlock::new(map.as_ref().clone(), top).called(&instance)),
-                Part::Shaper(config) => Box::new(ShaperBlock::new(config.as_ref().clone(), top, &instance)?),
-                Part::PulseCounter => Box::new(PulseCounterBlock::new(top, &instance)),
-                Part::Divider(config) => Box::new(DividerBlock::new(*config, top).called(&instance)),
-                Part::Pwm(config) => Box::new(PwmBlock::new(*config, top, &instance)),
-                Part::SlidingMode => Box::new(SlidingModeBlock::new(top, &instance)),
-                _ => continue,
-            });
-        }
-        Ok(blocks)
+        inside::of_component(&self.component, &self.top, &self.axis)
     }
 }
 

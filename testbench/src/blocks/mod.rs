@@ -24,6 +24,7 @@ mod divider;
 mod drive_command;
 mod encoder_generator;
 mod excitation;
+mod inside;
 mod library;
 mod linear_scale;
 mod part;
@@ -109,6 +110,21 @@ pub trait Block: Send + Sync {
     /// Counts what a run reached.
     fn coverage(&self) -> Box<dyn Bins + '_>;
 
+    /// Clocks after which its stimuli have driven all that [`Self::exercise`] wants; 0 where it wants nothing.
+    fn least_clocks(&self) -> u64 {
+        0
+    }
+
+    /// What a run must have driven before it says anything of the block; nothing in particular, by default.
+    fn exercise(&self) -> Option<Box<dyn Exercise + '_>> {
+        None
+    }
+
+    /// A testbench for what no clock sees, and the name of its top module; see [`crate::asynchronous`].
+    fn asynchronous(&self) -> Option<(String, &'static str)> {
+        None
+    }
+
     /// The entries of the report: one for all outputs, unless several blocks stand side by side in one top.
     fn instances(&self, ports: &[Port]) -> Vec<Instance> {
         vec![Instance::whole(self.name(), self.instance(), ports)]
@@ -122,6 +138,15 @@ pub trait Bins {
 
     /// What happened how often. A bin at 0 after a long run is a hole in the stimuli.
     fn counts(&self) -> Vec<(String, u64)>;
+}
+
+/// Watches whether a run drives what it must.
+pub trait Exercise {
+    /// Adds a clock.
+    fn observe(&mut self, clock: &Clock<'_>);
+
+    /// What was not driven yet: the instance of its row, and what it is, in words.
+    fn missing(&self) -> Vec<(String, String)>;
 }
 
 /// A lock step that is over, and what it reached.
@@ -193,6 +218,28 @@ pub fn check(
     run(block, device, stimuli.as_mut(), (cycles, seed), &mut |_| {}, progress)
 }
 
+/// As [`check`], for a verdict: what the run has not driven stands in the report, which then is no match.
+///
+/// # Errors
+/// As [`lockstep::run`].
+pub fn judge(
+    block: &dyn Block,
+    device: &mut dyn Device,
+    cycles: u64,
+    seed: u64,
+    progress: &mut dyn FnMut(u64),
+) -> Result<Report, Error> {
+    let mut stimuli = block.stimuli(cycles, seed);
+    let mut exercise = block.exercise();
+    let mut watch = |clock: &Clock<'_>| {
+        if let Some(exercise) = &mut exercise {
+            exercise.observe(clock);
+        }
+    };
+    let report = run(block, device, stimuli.as_mut(), (cycles, seed), &mut watch, progress)?;
+    Ok(report.without(exercise.map(|exercise| exercise.missing()).unwrap_or_default()))
+}
+
 fn run(
     block: &dyn Block,
     device: &mut dyn Device,
@@ -205,6 +252,17 @@ fn run(
     let instances = block.instances(model.ports());
     let options = Options::cycles(cycles);
     lockstep::run(model.as_mut(), device, stimuli, &instances, &options, watch, progress)
+}
+
+/// The seed of a row: each has stimuli of its own, so that one axis's may find what another's miss. It depends on what the row
+/// is, not on where it stands, so that a row alone repeats what it did among others.
+pub fn row_seed(block: &dyn Block, seed: u64) -> u64 {
+    // FNV-1a, 64 bits; a byte that no text holds parts name and instance.
+    let bytes = block.name().bytes().chain([0xff]).chain(block.instance().bytes());
+    let hash = bytes.fold(0xcbf2_9ce4_8422_2325, |hash: u64, byte| {
+        (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
+    });
+    seed ^ hash
 }
 
 /// Why a block that is written from a register map is not in RustHDL's simulator.

@@ -71,6 +71,14 @@ impl PartBlock {
         }
     }
 
+    /// The same, called `instance` in the report.
+    pub fn called(self, instance: &str) -> Self {
+        Self {
+            instance: instance.to_owned(),
+            ..self
+        }
+    }
+
     fn ports(&self) -> Vec<Port> {
         self.model.model(0).ports().to_vec()
     }

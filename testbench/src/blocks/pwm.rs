@@ -10,6 +10,9 @@ use super::{Bins, Block, prefixed};
 use crate::lockstep::Clock;
 use crate::stimuli::{PwmCoverage, PwmRandom, Stimuli};
 
+/// The top module of the test of the fault path.
+const ASYNCHRONOUS_TOP: &str = "posicast_asynchronous";
+
 /// The PWM with its polarities and floors.
 #[derive(Debug, Clone)]
 pub struct PwmBlock {
@@ -60,6 +63,21 @@ impl Block for PwmBlock {
 
     fn coverage(&self) -> Box<dyn Bins + '_> {
         Box::new(PwmCoverage::default())
+    }
+
+    fn asynchronous(&self) -> Option<(String, &'static str)> {
+        let (dead_time, pulse) = (
+            self.config.dead_time_floor_clocks(),
+            self.config.minimum_pulse_floor_clocks(),
+        );
+        // Long enough that either side is on for a while, at the slowest floors too.
+        let period = 8 * (u32::from(dead_time) + u32::from(pulse)) + 64;
+        let bench = include_str!("pwm_asynchronous.v")
+            .replace("TOP", &self.top())
+            .replace("PERIOD", &period.to_string())
+            .replace("DEAD", &dead_time.to_string())
+            .replace("PULSE", &pulse.to_string());
+        Some((bench, ASYNCHRONOUS_TOP))
     }
 }
 

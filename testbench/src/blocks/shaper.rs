@@ -7,11 +7,11 @@ use posicast_hdl::shaper::{emit, simulate, simulated_as};
 use posicast_model::rtl::shaper::{Motion, Shaper, ShaperConfig, ports};
 use posicast_model::rtl::{ClockedBlock, Port};
 
-use super::{Bins, Block, named, prefixed};
+use super::{Bins, Block, Exercise, named, prefixed};
 use crate::Error;
 use crate::campaign::Campaign;
 use crate::lockstep::{Clock, Instance, Joined};
-use crate::stimuli::{Coverage, Layout, Stimuli};
+use crate::stimuli::{Coverage, Layout, ShaperExercise, Stimuli};
 
 /// A shaper that stands alone.
 #[derive(Debug, Clone)]
@@ -77,8 +77,19 @@ impl Block for ShaperBlock {
     }
 
     fn stimuli(&self, cycles: u64, seed: u64) -> Box<dyn Stimuli + '_> {
-        let pass_clocks = self.config.pass_clocks(self.config.most_products());
-        Box::new(Campaign::new(&self.layout, pass_clocks, &[], cycles, seed))
+        Box::new(Campaign::new(&self.layout, &[&self.config], &[], cycles, seed))
+    }
+
+    fn least_clocks(&self) -> u64 {
+        Campaign::least_clocks(&self.layout, &[&self.config])
+    }
+
+    fn exercise(&self) -> Option<Box<dyn Exercise + '_>> {
+        let shown = ShaperExercise::new(&self.layout, [&self.config]);
+        Some(Box::new(OfInstances {
+            shown,
+            names: vec![self.instance.clone()],
+        }))
     }
 
     fn coverage(&self) -> Box<dyn Bins + '_> {
@@ -126,6 +137,10 @@ impl MachineShapers {
         &self.words
     }
 
+    fn configs(&self) -> Vec<&ShaperConfig> {
+        self.shapers.iter().map(|shaper| &shaper.config).collect()
+    }
+
     /// Clocks of the longest pass of all axes.
     pub fn pass_clocks(&self) -> u32 {
         let passes = self
@@ -170,13 +185,17 @@ impl Block for MachineShapers {
     }
 
     fn stimuli(&self, cycles: u64, seed: u64) -> Box<dyn Stimuli + '_> {
-        Box::new(Campaign::new(
-            &self.layout,
-            self.pass_clocks(),
-            &self.words,
-            cycles,
-            seed,
-        ))
+        Box::new(Campaign::new(&self.layout, &self.configs(), &self.words, cycles, seed))
+    }
+
+    fn least_clocks(&self) -> u64 {
+        Campaign::least_clocks(&self.layout, &self.configs())
+    }
+
+    fn exercise(&self) -> Option<Box<dyn Exercise + '_>> {
+        let shown = ShaperExercise::new(&self.layout, self.configs());
+        let names = self.shapers.iter().map(|shaper| shaper.axis.clone()).collect();
+        Some(Box::new(OfInstances { shown, names }))
     }
 
     fn coverage(&self) -> Box<dyn Bins + '_> {
@@ -185,6 +204,29 @@ impl Block for MachineShapers {
 
     fn instances(&self, _ports: &[Port]) -> Vec<Instance> {
         joined(&self.shapers, 0).instances(self.name())
+    }
+}
+
+/// What the shapers of a layout have shown, by the names of their rows.
+struct OfInstances {
+    shown: ShaperExercise,
+    names: Vec<String>,
+}
+
+impl Exercise for OfInstances {
+    fn observe(&mut self, clock: &Clock<'_>) {
+        self.shown.observe(clock);
+    }
+
+    fn missing(&self) -> Vec<(String, String)> {
+        let of_instance = |(name, missing): (&String, Vec<String>)| -> Vec<(String, String)> {
+            missing.into_iter().map(|what| (name.clone(), what)).collect()
+        };
+        self.names
+            .iter()
+            .zip(self.shown.missing())
+            .flat_map(of_instance)
+            .collect()
     }
 }
 

@@ -7,7 +7,8 @@ use posicast_model::rtl::ClockedBlock;
 use posicast_model::rtl::component::Component;
 use posicast_model::rtl::stage::{StageConfig, StageError};
 
-use super::{Bins, Block, not_in_rusthdl};
+use super::{Bins, Block, inside, not_in_rusthdl};
+use crate::Error;
 use crate::lockstep::Clock;
 use crate::stimuli::{StageCoverage, StageRandom, Stimuli};
 
@@ -33,6 +34,14 @@ impl StageBlock {
             axes,
             top: top.to_owned(),
         })
+    }
+
+    /// Its blocks, each as it stands in the stage, on the bench of its kind: what all axes share once, the rest per axis.
+    ///
+    /// # Errors
+    /// [`Error::Unlike`] where a shaper lacks a port that the stimuli drive.
+    pub fn inner(&self) -> Result<Vec<Box<dyn Block>>, Error> {
+        inside::of_stage(&self.component, &self.top)
     }
 
     /// What it is.

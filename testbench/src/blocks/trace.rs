@@ -29,6 +29,16 @@ impl TraceBlock {
     }
 }
 
+impl TraceBlock {
+    /// The same, called `instance` in the report.
+    pub fn called(self, instance: &str) -> Self {
+        Self {
+            instance: instance.to_owned(),
+            ..self
+        }
+    }
+}
+
 impl Block for TraceBlock {
     fn name(&self) -> &str {
         "trace"

@@ -311,6 +311,8 @@ impl Comparison {
             cycles,
             samples: watched.valid.map(|_| watched.samples),
             mismatches: watched.mismatches,
+            not_exercised: Vec::new(),
+            findings: Vec::new(),
         });
         Report::new(cycles, blocks.collect())
     }

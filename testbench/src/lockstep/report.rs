@@ -21,7 +21,8 @@ pub enum Verdict {
 /// A whole run. Serialises to `verify --json`.
 #[derive(Debug, Clone, Serialize)]
 pub struct Report {
-    /// The verdict over all blocks. A run of no clocks is a mismatch: it shows nothing.
+    /// The verdict over all blocks. A run of no clocks is a mismatch: it shows nothing; nor does one that has not
+    /// exercised all it should ([`Block::not_exercised`]).
     pub result: Verdict,
     /// Clocks compared.
     pub cycles: u64,
@@ -34,7 +35,8 @@ pub struct Report {
 impl Report {
     /// From the blocks of one run.
     pub fn new(cycles: u64, blocks: Vec<Block>) -> Self {
-        let equal = cycles > 0 && !blocks.is_empty() && blocks.iter().all(|b| b.mismatches == 0);
+        let holds = |block: &Block| block.mismatches == 0 && block.not_exercised.is_empty();
+        let equal = cycles > 0 && !blocks.is_empty() && blocks.iter().all(holds);
         Self {
             result: if equal { Verdict::Match } else { Verdict::Mismatch },
             cycles,
@@ -52,6 +54,31 @@ impl Report {
             all.result = Verdict::Mismatch;
         }
         all
+    }
+
+    /// The same, where this was not exercised: the instance of a row, and what it is.
+    pub fn without(mut self, missing: Vec<(String, String)>) -> Self {
+        for (instance, what) in missing {
+            let row = self.blocks.iter_mut().find(|block| block.instance == instance);
+            if let Some(row) = row {
+                row.not_exercised.push(what);
+            }
+        }
+        Self::new(self.cycles, self.blocks)
+    }
+
+    /// What was not exercised, in all rows: how much.
+    pub fn not_exercised(&self) -> usize {
+        self.blocks.iter().map(|block| block.not_exercised.len()).sum()
+    }
+
+    /// What was not exercised, each behind the name of its row.
+    pub fn not_exercised_names(&self) -> Vec<String> {
+        let of_block = |block: &Block| -> Vec<String> {
+            let name = |what: &String| format!("{} {}: {what}", block.name, block.instance);
+            block.not_exercised.iter().map(name).collect()
+        };
+        self.blocks.iter().flat_map(of_block).collect()
     }
 
     /// Wrong values over all blocks.
@@ -76,6 +103,11 @@ pub struct Block {
     pub mismatches: u64,
     /// The first of them.
     pub first: Option<Mismatch>,
+    /// What the run should have driven and did not, in words: a tap, a bank, a flag.
+    pub not_exercised: Vec<String>,
+    /// What a directed test found that the lock step cannot see, in its words.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub findings: Vec<String>,
 }
 
 /// The first wrong value of a block, with the clocks around it. `Display` draws the table.

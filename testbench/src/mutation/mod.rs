@@ -20,6 +20,7 @@
 //! - The rest is *unknown*: each is listed. Where a search finds how to tell it from the block, the stimuli have a hole.
 
 mod equivalence;
+mod inside;
 mod mutant;
 mod netlist;
 mod properties;
@@ -27,6 +28,7 @@ mod simulation;
 mod subject;
 mod table;
 
+pub use self::inside::{Found, INSIDE, INSIDE_MARKS, Inside, inside_table};
 pub use self::mutant::Mutant;
 pub use self::simulation::{Kill, StimuliOf};
 pub use self::subject::{Subject, all, named};

@@ -1,8 +1,10 @@
 //! Inputs for shapers, one row of values per clock, without allocation in the clock.
 //!
+//! - [`Fill`] fills the delay line, a sample per pass, until every tap has been seen.
 //! - [`Directed`] plays scripts: the cases that one thinks of ([`cases`]), and the corners of each size ([`corners`]).
 //! - [`Random`] mixes everything, seeded: the cases that one does not think of.
 //! - [`Motion`] strobes real command words at a steady rate.
+//! - [`ShaperExercise`] says which tap, bank or flag a run has not shown.
 //! - [`Coverage`] counts what a run reached, so that a test can insist on it.
 //!
 //! All work on one shaper (`x`, `valid`, …) and on a machine's top module (`<axis>_x`, …; `rst` and `strobe` shared):
@@ -19,6 +21,8 @@ mod divider;
 mod drive_command;
 mod encoder_generator;
 mod excitation;
+mod exercise;
+mod fill;
 mod layout;
 mod linear_scale;
 mod motion;
@@ -42,6 +46,8 @@ pub use self::divider::{DividerCoverage, DividerRandom};
 pub use self::drive_command::{DriveCommandCoverage, DriveCommandRandom};
 pub use self::encoder_generator::{EncoderGeneratorCoverage, EncoderGeneratorRandom};
 pub use self::excitation::{ExcitationCoverage, ExcitationRandom};
+pub use self::exercise::ShaperExercise;
+pub use self::fill::Fill;
 pub use self::layout::{Axis, Layout};
 pub use self::linear_scale::{LinearScaleCoverage, LinearScaleRandom};
 pub use self::motion::Motion;

@@ -1,0 +1,147 @@
+//! What `verify` prints: the rows, what was found, and a last line that says what was compared and how much.
+
+use super::folder::Folder;
+use crate::bench::Simulator;
+use crate::output::Table;
+use crate::replay::Replayed;
+use posicast_testbench::lockstep::report::{Report, Verdict};
+use serde::Serialize;
+
+/// Names that the text shows of a list; JSON has all.
+const SHOWN: usize = 8;
+
+/// `verify --json`.
+#[derive(Serialize)]
+pub(super) struct Document<'a> {
+    #[serde(flatten)]
+    pub(super) report: &'a Report,
+    /// What no clock of the run exercised, though a verdict would speak of it: then there is none.
+    pub(super) not_exercised: Vec<String>,
+    /// Clocks that exercise all of it.
+    #[serde(skip)]
+    pub(super) least_clocks: u64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) folder: Option<&'a Folder>,
+    pub(super) simulator: Simulator,
+    pub(super) seed: u64,
+    #[serde(rename = "stimulus", skip_serializing_if = "Option::is_none")]
+    pub(super) replayed: Option<&'a Replayed>,
+}
+
+impl Document<'_> {
+    /// Why the command fails; nothing where all was exercised and equal.
+    pub(super) fn failed(&self) -> Option<String> {
+        if self.report.result == Verdict::Match {
+            return None;
+        }
+        Some(
+            match (self.report.mismatches(), self.folder.is_some_and(Folder::fails)) {
+                (1.., _) if self.replayed.is_some() => "recording, RTL and model do not match".to_owned(),
+                (1.., _) => "the RTL does not match the model".to_owned(),
+                (0, true) => "the folder is not what posicast generates from its machine file".to_owned(),
+                (0, false) => format!("no verdict: too little was exercised; {}", self.remedy()),
+            },
+        )
+    }
+
+    fn remedy(&self) -> String {
+        match self.least_clocks {
+            least if least > self.fewest_clocks() => format!("compare more: --cycles {least}, or leave --cycles away"),
+            _ => "the rows say why".to_owned(),
+        }
+    }
+
+    /// Clocks of the shortest row in which something was not exercised.
+    fn fewest_clocks(&self) -> u64 {
+        let rows = self.report.blocks.iter().filter(|row| !row.not_exercised.is_empty());
+        rows.map(|row| row.cycles).min().unwrap_or(u64::MAX)
+    }
+
+    pub(super) fn text(&self) -> String {
+        let mut table = Table::new(&["block", "instance", ">clocks", ">mismatches"]);
+        for block in &self.report.blocks {
+            let counts = [block.cycles.to_string(), block.mismatches.to_string()];
+            table.row([block.name.clone(), block.instance.clone()].into_iter().chain(counts));
+        }
+        let mut text = table.text("");
+        for block in &self.report.blocks {
+            let row = format!("{} {}", block.name, block.instance);
+            if let Some(first) = &block.first {
+                text += &format!("\n{row}: {first}\n");
+            }
+            for finding in &block.findings {
+                text += &format!("{row}: {finding}\n");
+            }
+            if !block.not_exercised.is_empty() {
+                text += &format!("{row}: not exercised: {}\n", few(&block.not_exercised));
+            }
+        }
+        text += &self.folder.map_or_else(String::new, Folder::text);
+        text += &self.replayed.map_or_else(String::new, Replayed::text);
+        text + &self.verdict() + "\n"
+    }
+
+    /// The last line.
+    fn verdict(&self) -> String {
+        let report = self.report;
+        let verdict = match (
+            report.result,
+            report.mismatches(),
+            self.folder.is_some_and(Folder::fails),
+        ) {
+            (Verdict::Match, ..) => "match: every output of every clock is equal to the model's".to_owned(),
+            (_, 1.., _) => "MISMATCH".to_owned(),
+            (_, 0, true) => {
+                "MISMATCH: the files are not those of the machine file, though what was simulated is equal".to_owned()
+            }
+            (_, 0, false) => format!(
+                "NO VERDICT: what was compared is equal, and {} things were not exercised; {}",
+                self.not_exercised.len(),
+                self.remedy()
+            ),
+        };
+        let rows = match report.blocks.len() {
+            1 => "1 row".to_owned(),
+            rows => format!("{rows} rows"),
+        };
+        let mut compared = vec![
+            rows,
+            format!("{} clocks", report.cycles),
+            format!("{} samples", report.samples),
+        ];
+        let shapers = report
+            .blocks
+            .iter()
+            .any(|block| block.name == "shaper" && block.samples.is_some());
+        if report.result == Verdict::Match && self.replayed.is_none() && shapers {
+            compared.push("every tap, bank and flag of the shapers exercised".to_owned());
+        }
+        compared.extend(self.folder.map(Folder::summary));
+        if let Some(missing) = self
+            .replayed
+            .map(Replayed::missing_inputs)
+            .filter(|missing| !missing.is_empty())
+        {
+            compared.push(format!(
+                "{} inputs that are not in the recording held at 0 ({})",
+                missing.len(),
+                few(missing)
+            ));
+        }
+        format!(
+            "{verdict}; {}, simulator {}, seed {}",
+            compared.join(", "),
+            self.simulator,
+            self.seed
+        )
+    }
+}
+
+/// The first names of a list, and how many more there are.
+fn few(names: &[String]) -> String {
+    let mut text = names.iter().take(SHOWN).cloned().collect::<Vec<_>>().join(", ");
+    if names.len() > SHOWN {
+        text += &format!(" and {} more", names.len() - SHOWN);
+    }
+    text
+}

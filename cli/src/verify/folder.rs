@@ -1,0 +1,295 @@
+//! A folder's files beside what posicast generates from the machine file in it: tables, and whatever else was edited.
+//!
+//! The simulation says whether the Verilog behaves as the model of the machine file. It does not say that a table is the
+//! machine file's where few samples reach it, nor that the machine file is the one the Verilog was generated from. Both are
+//! compared directly: a difference in a table, or in the machine file, is no match, whatever the simulation says. Verilog
+//! that was edited otherwise is named, and the simulation decides.
+
+use posicast_hdl::emit::Module;
+use posicast_synth::package::Contents;
+use serde::Serialize;
+use std::path::{Path, PathBuf};
+
+/// Bits of a coefficient, the low ones of a word of a tap table; the others are the delay.
+const COEFFICIENT_BITS: u32 = 18;
+/// What the name of a tap table's module ends with.
+const TAPS: &str = "machine_taps";
+/// Differences that the text shows; JSON has all.
+const SHOWN: usize = 12;
+
+/// Where a file of the folder is not what posicast generates from the machine file beside it.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub(super) struct Difference {
+    /// Below the folder.
+    file: String,
+    /// The first line that differs, from 1; none where the file as a whole is meant.
+    line: Option<usize>,
+    kind: Kind,
+    /// In words.
+    what: String,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+enum Kind {
+    /// The machine file was edited after the Verilog was generated.
+    Machine,
+    /// A word of a ROM.
+    Table,
+    /// A module that the machine file asks for is not there.
+    Missing,
+    /// The Verilog, in another way.
+    Verilog,
+    /// Comments or white space.
+    Comment,
+    /// A file that posicast does not generate.
+    Extra,
+}
+
+impl Kind {
+    /// Whether no simulation makes good for it.
+    fn fails(self) -> bool {
+        matches!(self, Self::Machine | Self::Table | Self::Missing)
+    }
+}
+
+/// What was found in a folder.
+#[derive(Debug, Default, Serialize)]
+pub(super) struct Folder {
+    /// Verilog files that are, byte for byte, what posicast generates.
+    identical: usize,
+    differences: Vec<Difference>,
+    #[serde(skip)]
+    path: PathBuf,
+}
+
+impl Folder {
+    /// Compares the folder `root` with these modules, which were generated from the machine file in it.
+    pub(super) fn compare(root: &Path, contents: &Contents, modules: &[Module]) -> std::io::Result<Self> {
+        let mut folder = Self {
+            path: root.to_owned(),
+            ..Self::default()
+        };
+        if contents.edited.iter().any(|path| path == "machine.toml") {
+            let what =
+                "was edited after the Verilog was generated: its hash is not the one in posicast.json".to_owned();
+            folder.add("machine.toml", None, Kind::Machine, what);
+        }
+        let mut rest: Vec<&PathBuf> = contents.rtl.iter().collect();
+        for module in modules {
+            let name = format!("{}.v", module.name);
+            let file = format!("rtl/{name}");
+            let Some(at) = rest.iter().position(|path| path.ends_with(&name)) else {
+                let what = "is not there, and the machine file asks for it".to_owned();
+                folder.add(&file, None, Kind::Missing, what);
+                continue;
+            };
+            let text = std::fs::read(rest.swap_remove(at))?;
+            let text = String::from_utf8_lossy(&text);
+            if text == module.text {
+                folder.identical += 1;
+            } else {
+                folder.file(&file, &module.name, &module.text, &text);
+            }
+        }
+        for path in rest {
+            let name = path.file_name().unwrap_or_default().to_string_lossy();
+            let what = "is no file that posicast generates for this machine".to_owned();
+            folder.add(&format!("rtl/{name}"), None, Kind::Extra, what);
+        }
+        Ok(folder)
+    }
+
+    fn add(&mut self, file: &str, line: Option<usize>, kind: Kind, what: String) {
+        self.differences.push(Difference {
+            file: file.to_owned(),
+            line,
+            kind,
+            what,
+        });
+    }
+
+    /// A file of the module `name` that has another `text` than the one that is `wanted`.
+    fn file(&mut self, file: &str, name: &str, wanted: &str, text: &str) {
+        let (ours, theirs) = (words(wanted), words(text));
+        for (address, (_, word)) in &ours {
+            let found = theirs.get(address);
+            if found.is_none_or(|(_, found)| found != word) {
+                let line = found.map(|(line, _)| *line);
+                let found = found.map(|(_, found)| found.as_str());
+                self.add(file, line, Kind::Table, of_word(name, *address, found, word));
+            }
+        }
+        for (address, (line, found)) in &theirs {
+            if !ours.contains_key(address) {
+                let what = format!("word {address} is {found}; the machine file has no such word");
+                self.add(file, Some(*line), Kind::Table, what);
+            }
+        }
+        let (ours, theirs) = (code(wanted), code(text));
+        let first = first_difference(&ours, &theirs);
+        let tables = self.differences.iter().any(|d| d.file == file && d.kind == Kind::Table);
+        match first {
+            Some((line, found)) => {
+                let what = format!("is not what posicast generates, which the simulation judges; first: `{found}`");
+                self.add(file, Some(line), Kind::Verilog, what);
+            }
+            None if !tables => {
+                let what = "differs from what posicast generates in comments or white space".to_owned();
+                self.add(file, None, Kind::Comment, what);
+            }
+            None => {}
+        }
+    }
+
+    /// Whether something is wrong that no simulation makes good for.
+    pub(super) fn fails(&self) -> bool {
+        self.differences.iter().any(|difference| difference.kind.fails())
+    }
+
+    /// A line per difference, then the remedy.
+    pub(super) fn text(&self) -> String {
+        let mut text = String::new();
+        for difference in self.differences.iter().take(SHOWN) {
+            let line = difference.line.map_or_else(String::new, |line| format!(":{line}"));
+            text += &format!("{}{line}: {}\n", difference.file, difference.what);
+        }
+        if self.differences.len() > SHOWN {
+            text += &format!("… and {} more, all of them in --json\n", self.differences.len() - SHOWN);
+        }
+        if self.fails() {
+            let path = self.path.display();
+            text += &format!(
+                "To write the Verilog of the machine file anew: posicast generate {path}/machine.toml -o {path}_new. To keep a \
+                 table that was edited, put it into the machine file instead (kind = \"custom\").\n"
+            );
+        }
+        text
+    }
+
+    /// What was compared, for the line of the verdict.
+    pub(super) fn summary(&self) -> String {
+        let edited = self.differences.iter().filter(|d| d.kind == Kind::Verilog).count();
+        let mut text = format!("{} files are what posicast generates", self.identical);
+        if edited > 0 {
+            text += &format!(", {edited} edited (see above)");
+        }
+        text
+    }
+}
+
+type Words = std::collections::BTreeMap<u64, (usize, String)>;
+
+/// The statement `words[N] = VALUE;` of a line.
+fn words_of(line: &str) -> Option<(u64, String)> {
+    let (address, rest) = line.trim().strip_prefix("words[")?.split_once(']')?;
+    let (value, _) = rest.trim().strip_prefix('=')?.split_once(';')?;
+    Some((address.trim().parse().ok()?, value.trim().to_owned()))
+}
+
+/// The words of a ROM: the value by its address, with its line.
+fn words(text: &str) -> Words {
+    let words = (1..).zip(text.lines());
+    words
+        .filter_map(|(line, text)| words_of(text).map(|(address, value)| (address, (line, value))))
+        .collect()
+}
+
+/// The lines that say something: without comments, with single spaces, with their numbers. Words of a ROM are left out.
+fn code(text: &str) -> Vec<(usize, String)> {
+    let lines = (1..).zip(text.lines());
+    let plain = lines
+        .filter(|(_, line)| words_of(line).is_none())
+        .map(|(number, line)| {
+            let code = line.split_once("//").map_or(line, |(code, _)| code);
+            (number, code.split_whitespace().collect::<Vec<_>>().join(" "))
+        });
+    plain.filter(|(_, line)| !line.is_empty()).collect()
+}
+
+/// The first line of `theirs` that is another than in `ours`, and its number.
+fn first_difference(ours: &[(usize, String)], theirs: &[(usize, String)]) -> Option<(usize, String)> {
+    let differs = ours.iter().zip(theirs).find(|((_, our), (_, their))| our != their);
+    if let Some((_, (line, found))) = differs {
+        return Some((*line, found.clone()));
+    }
+    match ours.len().cmp(&theirs.len()) {
+        std::cmp::Ordering::Equal => None,
+        std::cmp::Ordering::Less => theirs.get(ours.len()).cloned(),
+        std::cmp::Ordering::Greater => {
+            let last = theirs.last().map_or(1, |(line, _)| *line);
+            Some((last, "the end of the file".to_owned()))
+        }
+    }
+}
+
+/// A word of the table of `module` that is another one, in words.
+fn of_word(module: &str, address: u64, found: Option<&str>, wanted: &str) -> String {
+    let Some(found) = found else {
+        return format!("word {address} is missing; the machine file gives {wanted}");
+    };
+    match (module.ends_with(TAPS), tap(found), tap(wanted)) {
+        (true, Some(found), Some(wanted)) => {
+            let [found, wanted] =
+                [found, wanted].map(|(coefficient, delay)| format!("coefficient {coefficient} after {delay} samples"));
+            format!("tap {address} has {found}; the machine file gives {wanted}")
+        }
+        _ => format!("word {address} is {found}; the machine file gives {wanted}"),
+    }
+}
+
+/// Coefficient and delay of a word such as `25'h0982e5e`.
+fn tap(word: &str) -> Option<(i64, u64)> {
+    let (_, digits) = word.split_once("'h")?;
+    let word = u64::from_str_radix(digits, 16).ok()?;
+    let unused = 64 - COEFFICIENT_BITS;
+    Some((((word << unused) as i64) >> unused, word >> COEFFICIENT_BITS))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const ROM: &str =
+        "module m_machine_taps;\n    words[0] = 25'h000634c; // 0.38\n    words[1] = 25'h0982e5e;\nendmodule\n";
+
+    fn compared(text: &str) -> Folder {
+        let mut folder = Folder::default();
+        folder.file("rtl/m_machine_taps.v", "m_machine_taps", ROM, text);
+        folder
+    }
+
+    #[test]
+    fn unit_a_changed_delay_is_a_difference_of_the_table_and_named() {
+        let folder = compared(&ROM.replace("25'h0982e5e", "25'h0942e5e"));
+        assert!(folder.fails());
+        let [difference] = folder.differences.as_slice() else {
+            panic!("{folder:?}");
+        };
+        assert_eq!((difference.kind, difference.line), (Kind::Table, Some(3)));
+        assert_eq!(
+            difference.what,
+            "tap 1 has coefficient 11870 after 37 samples; the machine file gives coefficient 11870 after 38 samples"
+        );
+    }
+
+    #[test]
+    fn unit_other_edits_do_not_fail_and_are_told_apart() {
+        for (from, to, kind) in [
+            ("// 0.38", "// three eighths", Kind::Comment),
+            ("    words[1]", "\twords[1]", Kind::Comment),
+            ("endmodule", "initial $stop;\nendmodule", Kind::Verilog),
+        ] {
+            let folder = compared(&ROM.replace(from, to));
+            assert!(!folder.fails(), "{to}");
+            assert_eq!(folder.differences.len(), 1, "{to}: {folder:?}");
+            assert_eq!(folder.differences[0].kind, kind, "{to}");
+        }
+    }
+
+    #[test]
+    fn unit_words_that_are_missing_or_new_fail() {
+        assert!(compared(&ROM.replace("    words[1] = 25'h0982e5e;\n", "")).fails());
+        assert!(compared(&ROM.replace("endmodule", "    words[7] = 25'h0000001;\nendmodule")).fails());
+    }
+}

@@ -1,0 +1,167 @@
+//! `verify`: what it takes to say "match", and what is no match though every simulated value is equal.
+
+#![cfg(test)] // lets clippy see that this is test code
+
+use crate::support::{example, json, one_axis, posicast, scratch};
+use std::path::{Path, PathBuf};
+use std::process::Output;
+
+/// A folder of a machine whose delay line is longer than 20,000 clocks of slow strobes fill: EI at 17 Hz, two modes' worth
+/// of delays.
+fn long_delays(folder: &Path) -> PathBuf {
+    let machine = folder.join("machine.toml");
+    let text = one_axis("kind = \"zvd\"", "frequency_hz = 17.4\ndamping = 0.05");
+    std::fs::write(&machine, text).unwrap();
+    let output = folder.join("out");
+    let mut generate = posicast();
+    generate.arg("generate").arg(&machine).arg("-o").arg(&output);
+    generate.assert().success();
+    output
+}
+
+fn verify(source: &Path, arguments: &[&str]) -> Output {
+    let mut verify = posicast();
+    verify
+        .arg("verify")
+        .arg(source)
+        .args(["--simulator", "icarus", "--json"])
+        .args(arguments);
+    verify.output().unwrap()
+}
+
+fn said(output: &Output) -> String {
+    format!(
+        "{}{}",
+        String::from_utf8_lossy(&output.stdout),
+        String::from_utf8_lossy(&output.stderr)
+    )
+}
+
+/// Puts other delays into the ROM of an axis: the same coefficients, one after fewer samples.
+fn shorten_a_delay(output: &Path) -> String {
+    let rom = output.join("rtl/one_x_machine_taps.v");
+    let text = std::fs::read_to_string(&rom).unwrap();
+    let line = text.lines().filter(|line| line.contains("words[")).nth(3).unwrap();
+    let (before, rest) = line.split_once("'h").unwrap();
+    let (digits, after) = rest.split_once(';').unwrap();
+    let word = u64::from_str_radix(digits, 16).unwrap() - (43 << 18);
+    let changed = format!("{before}'h{word:0width$x};{after}", width = digits.len());
+    std::fs::write(&rom, text.replace(line, &changed)).unwrap();
+    text
+}
+
+#[test]
+fn cli_verify_of_a_folder_finds_a_changed_delay_in_the_simulation_and_in_the_rom() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = long_delays(folder.path());
+    let untouched = verify(&output, &[]);
+    assert_eq!(untouched.status.code(), Some(0), "{}", said(&untouched));
+    let document = json(&untouched.stdout);
+    assert_eq!(document["not_exercised"], serde_json::json!([]));
+    assert_eq!(document["folder"]["differences"], serde_json::json!([]));
+
+    shorten_a_delay(&output);
+    let changed = verify(&output, &[]);
+    assert_eq!(changed.status.code(), Some(1), "{}", said(&changed));
+    let document = json(&changed.stdout);
+    assert_eq!(document["result"], "mismatch");
+    assert!(document["blocks"][0]["mismatches"].as_u64().unwrap() > 0, "{document}");
+    let difference = &document["folder"]["differences"][0];
+    assert_eq!(difference["file"], "rtl/one_x_machine_taps.v");
+    assert_eq!(difference["kind"], "table");
+    let what = difference["what"].as_str().unwrap();
+    assert!(what.starts_with("tap 3 has coefficient "), "{what}");
+}
+
+#[test]
+fn cli_verify_of_a_folder_whose_machine_file_was_edited_is_no_match() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = long_delays(folder.path());
+    let machine = output.join("machine.toml");
+    let text = std::fs::read_to_string(&machine).unwrap();
+    std::fs::write(&machine, text.replace("17.4", "17.5")).unwrap();
+    let edited = verify(&output, &[]);
+    assert_eq!(edited.status.code(), Some(1), "{}", said(&edited));
+    let document = json(&edited.stdout);
+    let kinds: Vec<&str> = document["folder"]["differences"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|difference| difference["kind"].as_str().unwrap())
+        .collect();
+    assert!(kinds.contains(&"machine") && kinds.contains(&"table"), "{document}");
+    // A comment is an edit too: the hash is not the one the Verilog was generated with.
+    std::fs::write(&machine, format!("{text}# mine\n")).unwrap();
+    let commented = verify(&output, &[]);
+    assert_eq!(commented.status.code(), Some(1), "{}", said(&commented));
+    let document = json(&commented.stdout);
+    assert_eq!(
+        (&document["result"], &document["blocks"][0]["mismatches"]),
+        (&"mismatch".into(), &0.into())
+    );
+}
+
+#[test]
+fn cli_verify_names_verilog_that_was_edited_and_lets_the_simulation_judge() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = long_delays(folder.path());
+    let top = output.join("rtl/one.v");
+    let text = std::fs::read_to_string(&top).unwrap();
+    std::fs::write(&top, text.replacen("endmodule", "    wire mine = 1'b0;\nendmodule", 1)).unwrap();
+    let edited = verify(&output, &[]);
+    assert_eq!(edited.status.code(), Some(0), "{}", said(&edited));
+    let document = json(&edited.stdout);
+    let difference = &document["folder"]["differences"][0];
+    assert_eq!(
+        (&difference["file"], &difference["kind"]),
+        (&"rtl/one.v".into(), &"verilog".into())
+    );
+}
+
+#[test]
+fn cli_verify_that_exercised_too_little_says_what_and_is_no_match() {
+    let (_folder, machine) = scratch(&one_axis("kind = \"zvd\"", "frequency_hz = 17.4\ndamping = 0.05"));
+    let few = verify(&machine, &["--cycles", "1000"]);
+    assert_eq!(few.status.code(), Some(1), "{}", said(&few));
+    let document = json(&few.stdout);
+    assert_eq!(
+        (&document["result"], &document["blocks"][0]["mismatches"]),
+        (&"mismatch".into(), &0.into())
+    );
+    let missing = document["not_exercised"].to_string();
+    assert!(missing.contains("shaper x: tap 4 of the machine's table"), "{missing}");
+    assert!(
+        missing.contains("a result over bank 2") && missing.contains("`refused` = 1"),
+        "{missing}"
+    );
+    // The remedy names a number of clocks, and it is enough.
+    let remedy = said(&few);
+    let (_, cycles) = remedy.split_once("--cycles ").unwrap_or_else(|| panic!("{remedy}"));
+    let cycles: String = cycles.chars().take_while(char::is_ascii_digit).collect();
+    let enough = verify(&machine, &["--cycles", &cycles]);
+    assert_eq!(enough.status.code(), Some(0), "{}", said(&enough));
+}
+
+#[test]
+fn cli_verify_of_a_folder_finds_a_fault_latch_that_needs_the_clock() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = folder.path().join("out");
+    let mut generate = posicast();
+    generate.arg("generate").arg(example("xy-stage.toml"));
+    generate.arg("-o").arg(&output).assert().success();
+    let latch = output.join("rtl/xy_stage_stage_y_fault_latch.v");
+    let text = std::fs::read_to_string(&latch).unwrap();
+    let from = "always @(posedge clk or negedge trip_n)";
+    assert!(text.contains(from), "{text}");
+    std::fs::write(&latch, text.replace(from, "always @(posedge clk)")).unwrap();
+    let broken = verify(&output, &["--block", "pwm", "--cycles", "500"]);
+    assert_eq!(broken.status.code(), Some(1), "{}", said(&broken));
+    let document = json(&broken.stdout);
+    let rows = document["blocks"].as_array().unwrap();
+    let wrong: Vec<&str> = rows
+        .iter()
+        .filter(|row| row["mismatches"] != 0)
+        .map(|row| row["instance"].as_str().unwrap())
+        .collect();
+    assert_eq!(wrong, ["y, in the stage, pulses between clocks"]);
+}

@@ -1,0 +1,62 @@
+//! What no clock sees: pulses between two edges of the clock, in Icarus, on the block's own Verilog.
+//!
+//! A lock step gives one set of inputs per clock, so a latch that needs the clock looks the same as one that does not. A block
+//! that has such a path brings a testbench of its own ([`Block::asynchronous`]): it prints a line `not …` for each thing that
+//! does not hold, and `passed` at its end.
+
+use crate::Error;
+use crate::blocks::{Block, Sources};
+use crate::icarus;
+use crate::lockstep::report::{self, Report};
+
+/// What the instance of the row ends with.
+const INSTANCE: &str = "pulses between clocks";
+
+/// Runs the block's directed test, where it has one, as a report of one row.
+///
+/// # Errors
+/// [`Error::ToolMissing`] without Icarus; [`Error::ToolFailed`] where it refuses the Verilog.
+pub fn check(block: &dyn Block, sources: &Sources) -> Result<Option<Report>, Error> {
+    let Some((bench, top)) = block.asynchronous() else {
+        return Ok(None);
+    };
+    let said = icarus::directed(&bench, top, sources.files())?;
+    let mut findings: Vec<String> = said
+        .lines()
+        .filter(|line| line.contains(": not "))
+        .map(|line| line.trim().to_owned())
+        .collect();
+    let clocks = said.lines().find_map(|line| line.trim().strip_prefix("passed after "));
+    let clocks = clocks.and_then(|text| text.split(' ').next()?.parse().ok());
+    if clocks.is_none() && findings.is_empty() {
+        findings.push("the directed test did not come to its end: no pin was ever switched on".to_owned());
+    }
+    let cycles: u64 = clocks.unwrap_or(1);
+    let row = report::Block {
+        name: block.name().to_owned(),
+        instance: format!("{}, {INSTANCE}", block.instance()),
+        cycles,
+        samples: None,
+        mismatches: findings.len() as u64,
+        first: None,
+        not_exercised: Vec::new(),
+        findings,
+    };
+    Ok(Some(Report::new(cycles, vec![row])))
+}
+
+/// The row of a test that could not be run: it says why, and is no match.
+pub fn not_run(block: &dyn Block, why: &str) -> Option<Report> {
+    block.asynchronous()?;
+    let row = report::Block {
+        name: block.name().to_owned(),
+        instance: format!("{}, {INSTANCE}", block.instance()),
+        cycles: 1,
+        samples: None,
+        mismatches: 0,
+        first: None,
+        not_exercised: vec![why.to_owned()],
+        findings: Vec::new(),
+    };
+    Some(Report::new(1, vec![row]))
+}

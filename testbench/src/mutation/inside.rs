@@ -1,0 +1,215 @@
+//! Named mutants inside a stage: faults that stood in a stage's Verilog and that a check of its folder did not find.
+//!
+//! ```text
+//!  stage's modules ─► one text replaced by another ─► every row of the folder's check whose files have changed ─► found, or not
+//! ```
+//!
+//! The other mutants of this folder are chosen by chance, in blocks that stand alone. These are faults that someone thought
+//! of, in words, put into the modules as they stand in a stage, and looked for by exactly the rows that
+//! `posicast verify DIR` compares there, with its default clocks. A text that is no longer there, or is there twice, is an
+//! error: a mutant that is not put in proves nothing.
+
+use std::fmt::Write as _;
+
+use posicast_hdl::emit::Module;
+use posicast_model::rtl::stage::StageConfig;
+
+use crate::Error;
+use crate::asynchronous;
+use crate::blocks::{self, Block, Sources, StageBlock};
+use crate::page::Marks;
+
+/// Where the table of these mutants stands.
+pub const INSIDE_MARKS: Marks = Marks {
+    begin: "<!-- mutants inside the stage: written by the example `mutate` -->",
+    end: "<!-- end of mutants inside the stage -->",
+};
+
+/// One of them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Inside {
+    /// What the fault does, in words.
+    pub name: &'static str,
+    /// What the name of the module ends with, behind the stage's top; several modules with this end all get the fault.
+    pub module: &'static str,
+    /// What is there once.
+    pub from: &'static str,
+    /// And what is put there.
+    pub to: &'static str,
+}
+
+/// All of them.
+pub const INSIDE: [Inside; 13] = [
+    Inside {
+        name: "the velocity's timeout a step late",
+        module: "_velocity",
+        from: "recent = interval[23:16] < timeout;",
+        to: "recent = interval[23:16] <= timeout;",
+    },
+    Inside {
+        name: "a handover that ends a sample early",
+        module: "_x_handover",
+        from: "if (since_q == reach) begin",
+        to: "if (next_since == reach) begin",
+    },
+    Inside {
+        name: "a negative overflow of the integrator unseen",
+        module: "_integrator",
+        from: "unfit = turned_sign & (augend[7] == addend[7]);",
+        to: "unfit = (turned_sign & (augend[7] == addend[7])) & !augend[7];",
+    },
+    Inside {
+        name: "a limit that acts on a bounce",
+        module: "_axis",
+        from: "monitors_on_limit_plus = !limit_plus_line_level;",
+        to: "monitors_on_limit_plus = !limit_plus_line_level | !limit_plus_n;",
+    },
+    Inside {
+        name: "a limit whose first look is enough",
+        module: "_axis_monitors",
+        from: "found_next = shown & found;",
+        to: "found_next = shown | found;",
+    },
+    Inside {
+        name: "a cause of the upper byte that cuts",
+        module: "_axis_causes",
+        from: "cutting_now = now & off;",
+        to: "cutting_now = (now & off) | (now & 16'd4096);",
+    },
+    Inside {
+        name: "a cause of the upper byte that is told to cut and does not",
+        module: "_axis_causes",
+        from: "cutting_now = now & off;",
+        to: "cutting_now = (now & off) & 16'd255;",
+    },
+    Inside {
+        name: "the asynchronous fault latch made synchronous",
+        module: "_x_fault_latch",
+        from: "always @(posedge clk or negedge trip_n) begin",
+        to: "always @(posedge clk) begin",
+    },
+    Inside {
+        name: "a 64th entry beside the one that plays",
+        module: "_command_fifo",
+        from: "full = level_q[6] | (plays & (waiting == ALL_BUT_ONE));",
+        to: "full = level_q[6];",
+    },
+    Inside {
+        name: "the group's emergency stop ignored by an axis",
+        module: "_axis",
+        from: "emergency = own_emergency | group_emergency_stop;",
+        to: "emergency = own_emergency;",
+    },
+    Inside {
+        name: "the group's emergency stop not passed on",
+        module: "_group",
+        from: "if (emergency_stop_1) begin",
+        to: "if (1'd0 & emergency_stop_1) begin",
+    },
+    Inside {
+        name: "a group stop not passed on",
+        module: "_group",
+        from: "if (wants_group_stop_1 & (AXIS_0 != AXIS_1)) begin",
+        to: "if (1'd0 & wants_group_stop_1) begin",
+    },
+    Inside {
+        name: "`stop_deceleration` above bit 23 ignored",
+        module: "_integrator",
+        from: "deceleration = {9'd0, stop_deceleration} << 8;",
+        to: "deceleration = {16'd0, stop_deceleration[23:0]} << 8;",
+    },
+];
+
+/// What found a mutant.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Found {
+    /// The row: name and instance.
+    pub row: String,
+    /// The first wrong clock; none where a directed test between clocks found it.
+    pub clock: Option<u64>,
+}
+
+impl Inside {
+    /// These modules with the fault in them.
+    ///
+    /// # Errors
+    /// [`Error::Option`] where no module has that end, or its text is not there exactly once.
+    pub fn put_into(&self, modules: &[Module], top: &str) -> Result<Vec<Module>, Error> {
+        let name = format!("{top}{}", self.module);
+        let mut modules = modules.to_vec();
+        let module = modules.iter_mut().find(|module| module.name == name);
+        let module = module.ok_or_else(|| self.outdated(format!("there is no module `{name}`")))?;
+        let times = module.text.matches(self.from).count();
+        if times != 1 {
+            return Err(self.outdated(format!("`{}` is {times} times in `{name}`", self.from)));
+        }
+        module.text = module.text.replacen(self.from, self.to, 1);
+        Ok(modules)
+    }
+
+    fn outdated(&self, why: String) -> Error {
+        Error::Option(format!("the mutant `{}` cannot be put in: {why}", self.name))
+    }
+
+    /// Looks for it with the rows of the folder's check that reach the module, the blocks inside the stage first; `None`
+    /// where all of them match.
+    ///
+    /// # Errors
+    /// As [`Self::put_into`], and what a simulator says.
+    pub fn hunt(&self, config: &StageConfig, top: &str, clocks: u64, seed: u64) -> Result<Option<Found>, Error> {
+        let stage = StageBlock::new(config, top).map_err(|error| Error::Option(error.to_string()))?;
+        let broken = Sources::of_modules(&self.put_into(&stage.modules()?, top)?)?;
+        let changed = format!("{top}{}.v", self.module);
+        let mut rows = stage.inner()?;
+        rows.push(Box::new(stage));
+        for row in rows {
+            let sources = broken.reached_by(row.as_ref())?;
+            if !sources.files().iter().any(|file| file.ends_with(&changed)) {
+                continue;
+            }
+            if let Some(found) = look(row.as_ref(), &sources, clocks.max(row.least_clocks()), seed)? {
+                return Ok(Some(found));
+            }
+        }
+        Ok(None)
+    }
+}
+
+/// The row's lock step, and its test between clocks.
+fn look(row: &dyn Block, sources: &Sources, clocks: u64, seed: u64) -> Result<Option<Found>, Error> {
+    let found = |clock| Found {
+        row: format!("{} {}", row.name(), row.instance()),
+        clock,
+    };
+    if let Some(report) = asynchronous::check(row, sources)?
+        && report.mismatches() > 0
+    {
+        return Ok(Some(found(None)));
+    }
+    let seed = blocks::row_seed(row, seed);
+    let mut device = sources.verilated(row, seed)?;
+    let report = blocks::judge(row, &mut device, clocks, seed, &mut |_| {})?;
+    let first = report.blocks.iter().find_map(|block| block.first.as_ref());
+    Ok(first.map(|first| found(Some(first.time))))
+}
+
+/// The mutants and what found them, as the table of `docs/verification.md`.
+pub fn inside_table(fates: &[(Inside, Option<Found>)]) -> String {
+    let mut text = "| mutant | module | found by | first wrong clock |\n|---|---|---|---|\n".to_owned();
+    for (mutant, found) in fates {
+        let (row, clock) = match found {
+            None => ("**not found**", String::new()),
+            Some(found) => {
+                let clock = found
+                    .clock
+                    .map_or_else(|| "between clocks".to_owned(), |clock| clock.to_string());
+                (found.row.as_str(), clock)
+            }
+        };
+        // Writing to a `String` cannot fail.
+        let _ = writeln!(text, "| {} | `…{}` | {row} | {clock} |", mutant.name, mutant.module);
+    }
+    let count = fates.iter().filter(|(_, found)| found.is_some()).count();
+    let _ = writeln!(text, "\n{count} of {} found.", fates.len());
+    text
+}
