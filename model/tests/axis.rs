@@ -591,7 +591,8 @@ fn out_of_range_the_outputs_are_refused_and_switched_off() {
     for (what, leave) in out {
         let mut bench = Bench::hold();
         leave(&mut bench.inputs);
-        bench.clocks(2);
+        bench.ticks(1);
+        bench.clocks(3);
         let shown = bench.axis.outputs();
         assert_eq!(
             (shown.state, shown.causes),

@@ -75,7 +75,7 @@ module axis_brake_properties (
     wire settling = (past_state == `RUN & !past_reset) | stopping;
     wire begins = enabled | settling | applied;
     // Ticks since it began, and how many it asks for. In QUICK_STOP those with stopped segments.
-    reg  [16:0] seen = 16'd0;
+    reg  [15:0] seen = 16'd0;
     reg  [15:0] needed = 16'd0;
     // All have come, a clock ago or earlier.
     reg         enough = 1'b0;

@@ -11,7 +11,7 @@
 //   known_lines          own emergency stop: the filtered line is low, four clocks after a reset or later
 //   trips_pwm            pwm_trip_n is low in the clock after an emergency stop, of this axis or of another
 //   clears_sources       clear_sources is clear_faults, a clock later
-//   known_range          range: the count of an axis that is not modulo is in the last 64th of its word, or shaped command or e
+//   known_range          range: the count at the last tick of an axis that is not modulo is in the last 64th of its word, or shaped command or e
 //                        were cut to theirs, as of the clock before; active with the outputs on, and where they are asked for
 //   any_*, fault_*, cut_*  what the states are told, in the clock in which it becomes active of emergency stop, PWM trip, drive
 //                        and range, and a clock later, when it stands, of all others: any cause; any but the group stop; one that
@@ -35,7 +35,7 @@ module axis_causes_properties (
     input wire        segments_tick_missed,
     input wire        enable,
     input wire        modulo,
-    input wire signed [31:0] position,
+    input wire signed [31:0] captured_position,
     input wire        shaper_saturated,
     input wire        shaper_overrun,
     input wire [6:0]  saturated_high,
@@ -78,7 +78,7 @@ module axis_causes_properties (
     // clear_faults of the eight clocks before, the last one in bit 0.
     reg [7:0] cleared = 8'd0;
     always @(posedge clk) begin
-        left_range <= !rst & ((!modulo & (position >= `STAND_COUNTS | position < -`STAND_COUNTS))
+        left_range <= !rst & ((!modulo & (captured_position >= `STAND_COUNTS | captured_position < -`STAND_COUNTS))
             | shaper_saturated | saturated_high[0] | saturated_low[0]);
         awake <= rst ? 4'd0 : {awake[2:0], 1'b1};
         cleared <= rst ? 8'd0 : {cleared[6:0], clear_faults};

@@ -339,7 +339,7 @@ impl Logic for Axis {
 
         comment!("The range of the position's word: its last 64th");
         comment!("at either end, and what was cut to its word");
-        self.count_bits.next = unsigned_cast(self.position.val());
+        self.count_bits.next = unsigned_cast(self.monitors.captured_position.val());
         self.count_above.next = self.count_bits.val().get_bits::<9>(23);
         self.count_end.next = self.count_bits.val().get_bits::<6>(17);
         self.far.next = self.count_above.val().any() | self.count_end.val().all();

@@ -115,10 +115,10 @@ struct Now {
     conditions: Conditions,
 }
 
-/// Is a number at the end of its word: the count of an axis that is not modulo, the shaped command, or e? What it means is
+/// Is a number at the end of its word: the count of the last tick, of an axis that is not modulo, the shaped command, or e? What it means is
 /// wrong from there on, so the outputs must not be on.
-fn leaves_range(inputs: &Inputs) -> bool {
-    let far = !(-STAND_COUNTS..STAND_COUNTS).contains(&inputs.position);
+fn leaves_range(inputs: &Inputs, position: i32) -> bool {
+    let far = !(-STAND_COUNTS..STAND_COUNTS).contains(&position);
     let error = (inputs.saturated_high | inputs.saturated_low) & Saturation::Error.bit() != 0;
     (far && !inputs.modulo) || inputs.shaper_saturated || error
 }
@@ -160,7 +160,7 @@ impl Registers {
         self.start_waits = now.wants_start && !inputs.tick;
         self.tripping = self.emergency_stop() || inputs.group_emergency_stop;
         (self.state, self.causes, self.forgot) = (after, now.causes, now.forgets);
-        self.out_of_range = leaves_range(inputs);
+        self.out_of_range = leaves_range(inputs, self.monitors.captured_position);
 
         let kicked = inputs.kick && inputs.kick_word == KICK;
         let on_limits = self.on_limits();
