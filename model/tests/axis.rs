@@ -581,7 +581,8 @@ fn a_count_that_dithers_is_no_motion() {
 #[test]
 fn out_of_range_the_outputs_are_refused_and_switched_off() {
     // Not by a quick stop, whatever is chosen: what position, command or e mean is unknown.
-    let out: [(&str, fn(&mut Inputs)); 5] = [
+    type Change = fn(&mut Inputs);
+    let out: [(&str, Change); 5] = [
         ("count +", |inputs| inputs.position = STAND_COUNTS),
         ("count -", |inputs| inputs.position = -STAND_COUNTS - 1),
         ("shaper", |inputs| inputs.shaper_saturated = true),
