@@ -322,7 +322,7 @@ impl Stimuli for AxisRandom {
         // A cause that is over soon, so that a run is not all FAULT.
         if seen.causes & !HARMLESS != 0 {
             (self.inputs.error, self.inputs.deviation) = (0, 0);
-            self.inputs.position = self.inputs.position % STAND_COUNTS;
+            self.inputs.position %= STAND_COUNTS;
         }
         if CALM.contains(&self.clock) {
             self.calm(seen.state);
