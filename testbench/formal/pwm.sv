@@ -133,6 +133,7 @@ module pwm_properties (
         starts_in_phase: assert (!running | past_running | !timed_for[1] | past_in_phase);
         known_timed: assert (timed == has_time_base & synced == past_sync & (!timed | timed_for[0] | synced));
         known_phase: assert (!timed_for[0] | astray | in_phase);
+        known_period: assert (period_used[16] == (period_used[15:0] == 16'd0));
         floor: assert (dead_time_used >= `DEAD_TIME_FLOOR & minimum_pulse_used >= `MINIMUM_PULSE_FLOOR);
     end
 
