@@ -4,7 +4,7 @@
 
 use posicast_model::control::sampled::{Limits, SampledLoop};
 use posicast_model::control::{self, Derived};
-use posicast_model::design::{AxisTables, design_machine};
+use posicast_model::design::design_machine;
 use posicast_model::rtl::segments::{Integrator, Motion};
 use posicast_model::spec::{Axis, DriveMode, Machine, PwmMode};
 use posicast_model::taps::TapTable;
@@ -87,7 +87,9 @@ pub(super) fn of_move(
     };
     let ticks = moves::settle_ticks(run);
     let axes = machine.axes.iter().zip(&design.axes);
-    let of_axis = |(index, ((axis, tables), (derived, lag_s))): (usize, ((&Axis, &AxisTables), (&Derived, &f64)))| {
+    let loops = stage.derived.iter().zip(&stage.lags_s).zip(&run.harsh);
+    let mut moves = Vec::new();
+    for ((axis, tables), ((derived, lag_s), harsh)) in axes.zip(loops) {
         let table = match shaping {
             Shaping::Shaped => tables.table.clone(),
             Shaping::Unshaped => TapTable::bypass(tables.table.coefficient_fraction())
@@ -95,10 +97,9 @@ pub(super) fn of_move(
         };
         let sampled = SampledLoop::new(axis, machine.clock, *lag_s, frequency_factor);
         let sampled = sampled.unwrap_or_else(|| derived.sampled.clone());
-        expected(machine, axis, derived, &sampled, &table, ticks, run.harsh[index])
-    };
-    let loops = stage.derived.iter().zip(&stage.lags_s);
-    axes.zip(loops).enumerate().map(of_axis).collect()
+        moves.push(expected(machine, axis, derived, &sampled, &table, ticks, *harsh)?);
+    }
+    Ok(moves)
 }
 
 /// The axes whose default move would not exercise their shaper clearly.
