@@ -57,12 +57,14 @@ module xy_stage_stage (
     output wire        x_a_low,
     output wire        x_b_high,
     output wire        x_b_low,
+    output wire        x_pwm_trigger,
     output wire        x_drive_enable,
     output wire        x_brake_release,
     output wire        y_a_high,
     output wire        y_a_low,
     output wire        y_b_high,
     output wire        y_b_low,
+    output wire        y_pwm_trigger,
     output wire        y_drive_enable,
     output wire        y_brake_release
 );
@@ -70,7 +72,6 @@ module xy_stage_stage (
     wire [3:0]         start_axes;
     wire               x_enable;
     wire               x_direct_enable;
-    wire               x_encoder_invert;
     wire               x_self_test;
     wire               x_stop;
     wire               x_clear_faults;
@@ -112,9 +113,10 @@ module xy_stage_stage (
     wire               x_index_arm;
     wire               x_preset;
     wire signed [31:0] x_preset_value;
+    wire               x_encoder_invert;
+    wire [15:0]        x_trigger_phase;
     wire               y_enable;
     wire               y_direct_enable;
-    wire               y_encoder_invert;
     wire               y_self_test;
     wire               y_stop;
     wire               y_clear_faults;
@@ -156,6 +158,8 @@ module xy_stage_stage (
     wire               y_index_arm;
     wire               y_preset;
     wire signed [31:0] y_preset_value;
+    wire               y_encoder_invert;
+    wire [15:0]        y_trigger_phase;
     wire               divide;
     wire [31:0]        time_stamp;
     wire [23:0]        edge_stamp;
@@ -198,7 +202,7 @@ module xy_stage_stage (
     wire [1:0]         x_table_bank;
     wire               x_index_armed;
     wire [4:0]         x_trip_causes;
-    wire [15:0]        x_causes;
+    wire [16:0]        x_causes;
     wire               x_segments_underrun;
     wire               x_segments_overflow;
     wire               x_segments_tick_missed;
@@ -216,6 +220,7 @@ module xy_stage_stage (
     wire               x_pwm_saturated;
     wire               x_pwm_unaligned;
     wire [7:0]         x_illegal_count;
+    wire               x_segments_out_of_range;
     wire               x_refused;
     wire               x_setting_refused;
     wire               x_direct_expired;
@@ -265,7 +270,7 @@ module xy_stage_stage (
     wire [1:0]         y_table_bank;
     wire               y_index_armed;
     wire [4:0]         y_trip_causes;
-    wire [15:0]        y_causes;
+    wire [16:0]        y_causes;
     wire               y_segments_underrun;
     wire               y_segments_overflow;
     wire               y_segments_tick_missed;
@@ -283,6 +288,7 @@ module xy_stage_stage (
     wire               y_pwm_saturated;
     wire               y_pwm_unaligned;
     wire [7:0]         y_illegal_count;
+    wire               y_segments_out_of_range;
     wire               y_refused;
     wire               y_setting_refused;
     wire               y_direct_expired;
@@ -344,7 +350,6 @@ module xy_stage_stage (
         .tick_count                  (tick_count),
         .x_enable                    (x_enable),
         .x_direct_enable             (x_direct_enable),
-        .x_encoder_invert            (x_encoder_invert),
         .x_self_test                 (x_self_test),
         .x_stop                      (x_stop),
         .x_clear_faults              (x_clear_faults),
@@ -386,6 +391,9 @@ module xy_stage_stage (
         .x_index_arm                 (x_index_arm),
         .x_preset                    (x_preset),
         .x_preset_value              (x_preset_value),
+        .x_drive_enable              (x_drive_enable),
+        .x_encoder_invert            (x_encoder_invert),
+        .x_trigger_phase             (x_trigger_phase),
         .x_state                     (x_state),
         .x_can_start                 (x_can_start),
         .x_segments_state            (x_segments_state),
@@ -421,6 +429,7 @@ module xy_stage_stage (
         .x_pwm_saturated             (x_pwm_saturated),
         .x_pwm_unaligned             (x_pwm_unaligned),
         .x_illegal_count             (x_illegal_count),
+        .x_segments_out_of_range     (x_segments_out_of_range),
         .x_refused                   (x_refused),
         .x_setting_refused           (x_setting_refused),
         .x_direct_expired            (x_direct_expired),
@@ -444,7 +453,6 @@ module xy_stage_stage (
         .x_duty                      (x_duty),
         .y_enable                    (y_enable),
         .y_direct_enable             (y_direct_enable),
-        .y_encoder_invert            (y_encoder_invert),
         .y_self_test                 (y_self_test),
         .y_stop                      (y_stop),
         .y_clear_faults              (y_clear_faults),
@@ -486,6 +494,9 @@ module xy_stage_stage (
         .y_index_arm                 (y_index_arm),
         .y_preset                    (y_preset),
         .y_preset_value              (y_preset_value),
+        .y_drive_enable              (y_drive_enable),
+        .y_encoder_invert            (y_encoder_invert),
+        .y_trigger_phase             (y_trigger_phase),
         .y_state                     (y_state),
         .y_can_start                 (y_can_start),
         .y_segments_state            (y_segments_state),
@@ -521,6 +532,7 @@ module xy_stage_stage (
         .y_pwm_saturated             (y_pwm_saturated),
         .y_pwm_unaligned             (y_pwm_unaligned),
         .y_illegal_count             (y_illegal_count),
+        .y_segments_out_of_range     (y_segments_out_of_range),
         .y_refused                   (y_refused),
         .y_setting_refused           (y_setting_refused),
         .y_direct_expired            (y_direct_expired),
@@ -634,7 +646,6 @@ module xy_stage_stage (
         .fault_n                   (x_fault_n),
         .enable                    (x_enable),
         .direct_enable             (x_direct_enable),
-        .encoder_invert            (x_encoder_invert),
         .self_test                 (x_self_test),
         .stop                      (x_stop),
         .clear_faults              (x_clear_faults),
@@ -668,6 +679,8 @@ module xy_stage_stage (
         .off_causes                (x_off_causes),
         .stop_deceleration         (x_stop_deceleration),
         .settle_ticks              (x_settle_ticks),
+        .encoder_invert            (x_encoder_invert),
+        .trigger_phase             (x_trigger_phase),
         .index_always              (x_index_always),
         .index_presets             (x_index_presets),
         .index_gate                (x_index_gate),
@@ -685,6 +698,7 @@ module xy_stage_stage (
         .a_low                     (x_a_low),
         .b_high                    (x_b_high),
         .b_low                     (x_b_low),
+        .pwm_trigger               (x_pwm_trigger),
         .drive_enable              (x_drive_enable),
         .brake_release             (x_brake_release),
         .state                     (x_state),
@@ -721,6 +735,7 @@ module xy_stage_stage (
         .pwm_saturated             (x_pwm_saturated),
         .pwm_unaligned             (x_pwm_unaligned),
         .illegal_count             (x_illegal_count),
+        .segments_out_of_range     (x_segments_out_of_range),
         .refused                   (x_refused),
         .setting_refused           (x_setting_refused),
         .direct_expired            (x_direct_expired),
@@ -775,7 +790,6 @@ module xy_stage_stage (
         .fault_n                   (y_fault_n),
         .enable                    (y_enable),
         .direct_enable             (y_direct_enable),
-        .encoder_invert            (y_encoder_invert),
         .self_test                 (y_self_test),
         .stop                      (y_stop),
         .clear_faults              (y_clear_faults),
@@ -809,6 +823,8 @@ module xy_stage_stage (
         .off_causes                (y_off_causes),
         .stop_deceleration         (y_stop_deceleration),
         .settle_ticks              (y_settle_ticks),
+        .encoder_invert            (y_encoder_invert),
+        .trigger_phase             (y_trigger_phase),
         .index_always              (y_index_always),
         .index_presets             (y_index_presets),
         .index_gate                (y_index_gate),
@@ -826,6 +842,7 @@ module xy_stage_stage (
         .a_low                     (y_a_low),
         .b_high                    (y_b_high),
         .b_low                     (y_b_low),
+        .pwm_trigger               (y_pwm_trigger),
         .drive_enable              (y_drive_enable),
         .brake_release             (y_brake_release),
         .state                     (y_state),
@@ -862,6 +879,7 @@ module xy_stage_stage (
         .pwm_saturated             (y_pwm_saturated),
         .pwm_unaligned             (y_pwm_unaligned),
         .illegal_count             (y_illegal_count),
+        .segments_out_of_range     (y_segments_out_of_range),
         .refused                   (y_refused),
         .setting_refused           (y_setting_refused),
         .direct_expired            (y_direct_expired),

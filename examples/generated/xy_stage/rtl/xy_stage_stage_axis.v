@@ -40,7 +40,9 @@ module xy_stage_stage_axis (
     input  wire [15:0]        saturation_ticks,
     input  wire [31:0]        lost_command,
     input  wire [15:0]        lost_ticks,
+    input  wire               velocity_drive,
     input  wire [15:0]        watchdog_ticks,
+    input  wire               modulo,
     input  wire signed [31:0] position,
     input  wire signed [31:0] deviation,
     input  wire [1:0]         segments_state,
@@ -49,13 +51,17 @@ module xy_stage_stage_axis (
     input  wire               segments_underrun,
     input  wire               segments_overflow,
     input  wire               segments_tick_missed,
+    input  wire               segments_out_of_range,
     input  wire signed [31:0] command_velocity,
     input  wire signed [31:0] reference_position,
     input  wire signed [31:0] reference_velocity,
+    input  wire               shaper_saturated,
     input  wire               shaper_overrun,
     input  wire signed [31:0] error,
     input  wire signed [31:0] command,
     input  wire [15:0]        limited_ticks,
+    input  wire [6:0]         saturated_high,
+    input  wire [6:0]         saturated_low,
     input  wire               controller_overrun,
     input  wire               pwm_tripped,
     input  wire               encoder_illegal,
@@ -64,7 +70,7 @@ module xy_stage_stage_axis (
     input  wire               scale_illegal,
     input  wire               scale_disagreement,
     output wire [2:0]         state,
-    output wire [15:0]        causes,
+    output wire [16:0]        causes,
     output wire               drive_enable,
     output wire               brake_release,
     output wire               pwm_enable,
@@ -107,6 +113,11 @@ module xy_stage_stage_axis (
     wire               group_stops;
     wire               encoder;
     wire               scale;
+    wire               segments_failed;
+    wire [31:0]        count_bits;
+    wire [8:0]         count_above;
+    wire [5:0]         count_end;
+    reg                far;
     wire               emergency_stop_line_level;
     wire               limit_plus_line_level;
     wire               limit_minus_line_level;
@@ -115,14 +126,14 @@ module xy_stage_stage_axis (
     wire               monitors_kicked;
     wire               monitors_on_limit_plus;
     wire               monitors_on_limit_minus;
-    wire [15:0]        monitors_causes;
+    wire [16:0]        monitors_causes;
     wire signed [31:0] monitors_captured_position;
     wire               cause_word_drive_lost;
+    wire               cause_word_out_of_range;
     wire               cause_word_encoder_error;
-    wire               cause_word_segments_failed;
     wire               cause_word_group_stops;
     wire               cause_word_late;
-    wire [15:0]        cause_word_causes;
+    wire [16:0]        cause_word_causes;
     wire               cause_word_any_cause;
     wire               cause_word_fault;
     wire               cause_word_cut;
@@ -153,6 +164,8 @@ module xy_stage_stage_axis (
     wire               clear_due_next;
     reg                clear_sources_q;
     reg                tripping;
+    reg                out_of_range;
+    wire               out_of_range_next;
 
     xy_stage_stage_single_line u_emergency_stop_line (
         .clk           (clk),
@@ -214,6 +227,7 @@ module xy_stage_stage_axis (
         .saturation_ticks      (saturation_ticks),
         .lost_command          (lost_command),
         .lost_ticks            (lost_ticks),
+        .velocity_drive        (velocity_drive),
         .watchdog_ticks        (watchdog_ticks),
         .position              (position),
         .deviation             (deviation),
@@ -234,8 +248,9 @@ module xy_stage_stage_axis (
         .emergency       (emergency),
         .tripped         (pwm_tripped),
         .drive_lost      (cause_word_drive_lost),
+        .out_of_range    (cause_word_out_of_range),
         .encoder_error   (cause_word_encoder_error),
-        .segments_failed (cause_word_segments_failed),
+        .segments_failed (segments_failed),
         .group_stops     (cause_word_group_stops),
         .group_stop      (group_stops),
         .late            (cause_word_late),
@@ -303,6 +318,13 @@ module xy_stage_stage_axis (
     assign monitors_on_limit_plus = !limit_plus_line_level;
     assign monitors_on_limit_minus = !limit_minus_line_level;
 
+    // The range of the position's word: its last 64th
+    // at either end, and what was cut to its word
+    assign count_bits = $unsigned(monitors_captured_position);
+    assign count_above = count_bits[31:23];
+    assign count_end = count_bits[22:17];
+    assign out_of_range_next = (((far & !modulo) | shaper_saturated) | saturated_high[0]) | saturated_low[0];
+
     // Causes
     assign own_emergency = ready & !emergency_stop_line_level;
     assign emergency = own_emergency | group_emergency_stop;
@@ -310,7 +332,8 @@ module xy_stage_stage_axis (
     assign scale = scale_illegal | scale_disagreement;
     assign cause_word_drive_lost = states_on & !drive_line_level;
     assign cause_word_encoder_error = encoder | scale;
-    assign cause_word_segments_failed = segments_underrun | segments_overflow;
+    assign segments_failed = (segments_underrun | segments_overflow) | segments_out_of_range;
+    assign cause_word_out_of_range = out_of_range & (states_on | enable);
     assign group_stops = states_on & group_stop;
     assign cause_word_group_stops = group_stops & !states_wants_group_stop;
     assign cause_word_late = ((segments_tick_missed | velocity_missed) | shaper_overrun) | controller_overrun;
@@ -350,6 +373,13 @@ module xy_stage_stage_axis (
     always @(*) begin
         clear_left_next = clear_left;
 
+        // The range of the position's word: its last 64th
+        // at either end, and what was cut to its word
+        far = (|count_above) | (&count_end);
+        if (count_bits[31]) begin
+            far = !(&count_above) | !(|count_end);
+        end
+
         // Sources are cleared first, causes later
         if (clear_left != NO_CLOCKS) begin
             clear_left_next = clear_left - ONE_CLOCK;
@@ -366,12 +396,14 @@ module xy_stage_stage_axis (
             clear_due <= 1'd0;
             clear_sources_q <= 1'd0;
             tripping <= 1'd0;
+            out_of_range <= 1'd0;
         end else begin
             primed <= primed_next;
             clear_left <= clear_left_next;
             clear_due <= clear_due_next;
             clear_sources_q <= clear_faults;
             tripping <= emergency;
+            out_of_range <= out_of_range_next;
         end
     end
 
@@ -381,7 +413,11 @@ module xy_stage_stage_axis (
         clear_due = 1'd0;
         clear_sources_q = 1'd0;
         tripping = 1'd0;
+        out_of_range = 1'd0;
     end
+
+    // Bits that nothing reads.
+    wire unused = &{1'b0, saturated_high[6:1], saturated_low[6:1], count_bits[16:0]};
 endmodule
 
 `default_nettype wire

@@ -13,61 +13,64 @@ module xy_stage_stage_axis_causes (
     input  wire        emergency,
     input  wire        tripped,
     input  wire        drive_lost,
+    input  wire        out_of_range,
     input  wire        encoder_error,
     input  wire        segments_failed,
     input  wire        group_stops,
     input  wire        group_stop,
     input  wire        late,
-    input  wire [15:0] watched,
+    input  wire [16:0] watched,
     input  wire [15:0] off_causes,
-    output wire [15:0] causes,
+    output wire [16:0] causes,
     output wire        any_cause,
     output wire        fault,
     output wire        cut,
     output wire        had_fault
 );
-    localparam [15:0] NO_CAUSES = 16'd0;
-    localparam [15:0] OF_EMERGENCY = 16'd1;
-    localparam [15:0] OF_TRIPPED = 16'd2;
-    localparam [15:0] OF_DRIVE_LOST = 16'd4;
-    localparam [15:0] OF_ENCODER_ERROR = 16'd2048;
-    localparam [15:0] OF_SEGMENTS_FAILED = 16'd4096;
-    localparam [15:0] OF_GROUP_STOPS = 16'd16384;
-    localparam [15:0] OF_LATE = 16'd32768;
-    localparam [15:0] HARMFUL_CAUSES = 16'd49151;
-    localparam [15:0] ALWAYS_OFF = 16'd3;
+    localparam [16:0] NO_CAUSES = 17'd0;
+    localparam [16:0] OF_EMERGENCY = 17'd1;
+    localparam [16:0] OF_TRIPPED = 17'd2;
+    localparam [16:0] OF_DRIVE_LOST = 17'd4;
+    localparam [16:0] OF_OUT_OF_RANGE = 17'd65536;
+    localparam [16:0] OF_ENCODER_ERROR = 17'd2048;
+    localparam [16:0] OF_SEGMENTS_FAILED = 17'd4096;
+    localparam [16:0] OF_GROUP_STOPS = 17'd16384;
+    localparam [16:0] OF_LATE = 17'd32768;
+    localparam [16:0] HARMFUL_CAUSES = 17'd114687;
+    localparam [16:0] ALWAYS_OFF = 17'd65539;
 
-    reg  [15:0] by_emergency;
-    reg  [15:0] by_tripped;
-    reg  [15:0] by_drive_lost;
-    reg  [15:0] by_encoder_error;
-    reg  [15:0] by_segments_failed;
-    reg  [15:0] by_group_stops;
-    reg  [15:0] by_late;
-    reg  [15:0] kept;
-    wire [15:0] lines;
-    wire [15:0] flags;
-    wire [15:0] now;
-    wire [15:0] harmful;
-    wire [15:0] off;
-    wire [15:0] cutting;
-    wire [15:0] cutting_now;
-    wire [15:0] harmless;
+    reg  [16:0] by_emergency;
+    reg  [16:0] by_tripped;
+    reg  [16:0] by_drive_lost;
+    reg  [16:0] by_out_of_range;
+    reg  [16:0] by_encoder_error;
+    reg  [16:0] by_segments_failed;
+    reg  [16:0] by_group_stops;
+    reg  [16:0] by_late;
+    reg  [16:0] kept;
+    wire [16:0] lines;
+    wire [16:0] flags;
+    wire [16:0] now;
+    wire [16:0] harmful;
+    wire [16:0] off;
+    wire [16:0] cutting;
+    wire [16:0] cutting_now;
+    wire [16:0] harmless;
     wire        switches_off;
-    reg  [15:0] causes_q;
+    reg  [16:0] causes_q;
     reg         had_fault_q;
     wire        had_fault_q_next;
     reg         had_cut_q;
     wire        had_cut_q_next;
 
-    assign lines = ((by_emergency | by_tripped) | by_drive_lost) | by_group_stops;
+    assign lines = (((by_emergency | by_tripped) | by_drive_lost) | by_out_of_range) | by_group_stops;
     assign flags = (by_encoder_error | by_segments_failed) | by_late;
     assign now = ((kept | lines) | flags) | watched;
 
     // What follows: at once of these lines
-    assign off = (off_causes | ALWAYS_OFF) & HARMFUL_CAUSES;
+    assign off = ({1'd0, off_causes} | ALWAYS_OFF) & HARMFUL_CAUSES;
     assign harmless = causes_q & ~HARMFUL_CAUSES;
-    assign switches_off = emergency | tripped;
+    assign switches_off = (emergency | tripped) | out_of_range;
     assign fault = (switches_off | drive_lost) | had_fault_q;
     assign cutting = by_drive_lost & off;
     assign cut = (switches_off | (|cutting)) | had_cut_q;
@@ -96,6 +99,10 @@ module xy_stage_stage_axis_causes (
         if (drive_lost) begin
             by_drive_lost = OF_DRIVE_LOST;
         end
+        by_out_of_range = NO_CAUSES;
+        if (out_of_range) begin
+            by_out_of_range = OF_OUT_OF_RANGE;
+        end
         by_encoder_error = NO_CAUSES;
         if (encoder_error) begin
             by_encoder_error = OF_ENCODER_ERROR;
@@ -120,7 +127,7 @@ module xy_stage_stage_axis_causes (
 
     always @(posedge clk) begin
         if (rst) begin
-            causes_q <= 16'd0;
+            causes_q <= 17'd0;
             had_fault_q <= 1'd0;
             had_cut_q <= 1'd0;
         end else begin
@@ -131,7 +138,7 @@ module xy_stage_stage_axis_causes (
     end
 
     initial begin
-        causes_q = 16'd0;
+        causes_q = 17'd0;
         had_fault_q = 1'd0;
         had_cut_q = 1'd0;
     end

@@ -21,6 +21,7 @@ module xy_stage_stage_axis_monitors (
     input  wire [15:0]        saturation_ticks,
     input  wire [31:0]        lost_command,
     input  wire [15:0]        lost_ticks,
+    input  wire               velocity_drive,
     input  wire [15:0]        watchdog_ticks,
     input  wire signed [31:0] position,
     input  wire signed [31:0] deviation,
@@ -30,22 +31,26 @@ module xy_stage_stage_axis_monitors (
     input  wire signed [31:0] error,
     input  wire signed [31:0] command,
     input  wire [15:0]        limited_ticks,
-    output reg  [15:0]        causes,
+    output reg  [16:0]        causes,
     output wire signed [31:0] captured_position
 );
     localparam [1:0]  ONE_TURN = 2'd1;
-    localparam [15:0] NO_CAUSES = 16'd0;
-    localparam [15:0] OF_LIMIT_PLUS = 16'd8;
-    localparam [15:0] OF_LIMIT_MINUS = 16'd16;
-    localparam [15:0] OF_SOFT_PLUS = 16'd32;
-    localparam [15:0] OF_SOFT_MINUS = 16'd64;
-    localparam [15:0] OF_ERROR_TRIP = 16'd128;
-    localparam [15:0] OF_DEVIATION_TRIP = 16'd256;
-    localparam [15:0] OF_SATURATION_TRIP = 16'd512;
-    localparam [15:0] OF_LOST_TRIP = 16'd1024;
-    localparam [15:0] OF_WATCHDOG_TRIP = 16'd8192;
+    localparam [16:0] NO_CAUSES = 17'd0;
+    localparam [16:0] OF_LIMIT_PLUS = 17'd8;
+    localparam [16:0] OF_LIMIT_MINUS = 17'd16;
+    localparam [16:0] OF_SOFT_PLUS = 17'd32;
+    localparam [16:0] OF_SOFT_MINUS = 17'd64;
+    localparam [16:0] OF_ERROR_TRIP = 17'd128;
+    localparam [16:0] OF_DEVIATION_TRIP = 17'd256;
+    localparam [16:0] OF_SATURATION_TRIP = 17'd512;
+    localparam [16:0] OF_LOST_TRIP = 17'd1024;
+    localparam [16:0] OF_WATCHDOG_TRIP = 17'd8192;
 
     wire [31:0]        command_velocity_bits;
+    wire [31:0]        command_bits;
+    wire [31:0]        motion_bits;
+    wire [29:0]        motion_above;
+    reg                not_its_way;
     wire [31:0]        reference_velocity_bits;
     wire               takes;
     wire               last_byte;
@@ -56,16 +61,16 @@ module xy_stage_stage_axis_monitors (
     wire               limit_minus;
     wire               soft_plus;
     wire               soft_minus;
-    reg  [15:0]        by_limit_plus;
-    reg  [15:0]        by_limit_minus;
-    reg  [15:0]        by_soft_plus;
-    reg  [15:0]        by_soft_minus;
-    reg  [15:0]        by_error_trip;
-    reg  [15:0]        by_deviation_trip;
-    reg  [15:0]        by_saturation_trip;
-    reg  [15:0]        by_lost_trip;
-    reg  [15:0]        by_watchdog_trip;
-    wire [15:0]        shown;
+    reg  [16:0]        by_limit_plus;
+    reg  [16:0]        by_limit_minus;
+    reg  [16:0]        by_soft_plus;
+    reg  [16:0]        by_soft_minus;
+    reg  [16:0]        by_error_trip;
+    reg  [16:0]        by_deviation_trip;
+    reg  [16:0]        by_saturation_trip;
+    reg  [16:0]        by_lost_trip;
+    reg  [16:0]        by_watchdog_trip;
+    wire [16:0]        shown;
     reg  signed [31:0] captured;
     reg  signed [31:0] captured_next;
     reg                was_on_plus;
@@ -116,10 +121,20 @@ module xy_stage_stage_axis_monitors (
     reg                shaped_forward_next;
     reg                shaped_backward;
     reg                shaped_backward_next;
-    reg                same_position;
-    reg                same_position_next;
-    reg  [15:0]        found;
-    reg  [15:0]        found_next;
+    reg                drive_backward;
+    reg                drive_backward_next;
+    reg  signed [31:0] still_since;
+    reg  signed [31:0] still_since_next;
+    reg                still_backward;
+    reg                still_backward_next;
+    reg  signed [31:0] motion;
+    wire signed [31:0] motion_next;
+    reg                not_forward;
+    wire               not_forward_next;
+    reg                not_backward;
+    wire               not_backward_next;
+    reg  [16:0]        found;
+    reg  [16:0]        found_next;
 
     xy_stage_stage_axis_soft_limits u_soft_limits (
         .clk                (clk),
@@ -226,6 +241,7 @@ module xy_stage_stage_axis_monitors (
     assign tells_next = over & was_on;
 
     // What the tick shows
+    assign command_bits = $unsigned(command);
     assign command_velocity_bits = $unsigned(command_velocity);
     assign reference_velocity_bits = $unsigned(reference_velocity);
 
@@ -242,7 +258,16 @@ module xy_stage_stage_axis_monitors (
     assign deviations_zero_counts = 1'd0;
     assign commands_zero_counts = 1'd1;
     assign saturating_endless = 1'd0;
-    assign stands = (was_on & same_position) & commands_exceeds;
+
+    // Moved since it last stood still, a clock each
+    assign motion_next = captured - still_since;
+    assign motion_bits = $unsigned(motion);
+    assign motion_above = motion_bits[31:2];
+    assign not_forward_next = motion_bits[31] | !(|motion_above);
+    assign not_backward_next = !motion_bits[31] | (&motion_above);
+
+    // Against a velocity's command is as not at all
+    assign stands = (((was_on & not_its_way) & (velocity_drive | (not_forward & not_backward))) & (drive_backward == still_backward)) & commands_exceeds;
     assign still_clears = over & !stands;
 
     // A kick waits until the count has gone round
@@ -269,7 +294,9 @@ module xy_stage_stage_axis_monitors (
         backward_next = backward;
         shaped_forward_next = shaped_forward;
         shaped_backward_next = shaped_backward;
-        same_position_next = same_position;
+        drive_backward_next = drive_backward;
+        still_since_next = still_since;
+        still_backward_next = still_backward;
         found_next = found;
 
         // Two rounds of four bytes, a clock between them
@@ -283,7 +310,7 @@ module xy_stage_stage_axis_monitors (
         // What the tick shows
         if (tick) begin
             captured_next = position;
-            same_position_next = position == captured;
+            drive_backward_next = command_bits[31];
             was_on_next = on;
             on_plus_next = on_limit_plus;
             on_minus_next = on_limit_minus;
@@ -299,6 +326,16 @@ module xy_stage_stage_axis_monitors (
             was_on_minus_next = on_minus;
             was_past_plus_next = soft_limits_past_plus;
             was_past_minus_next = soft_limits_past_minus;
+        end
+
+        // Against a velocity's command is as not at all
+        not_its_way = not_forward;
+        if (drive_backward) begin
+            not_its_way = not_backward;
+        end
+        if (over & !stands) begin
+            still_since_next = captured;
+            still_backward_next = drive_backward;
         end
 
         // The causes of this tick
@@ -370,8 +407,13 @@ module xy_stage_stage_axis_monitors (
             backward <= 1'd0;
             shaped_forward <= 1'd0;
             shaped_backward <= 1'd0;
-            same_position <= 1'd0;
-            found <= 16'd0;
+            drive_backward <= 1'd0;
+            still_since <= 32'sd0;
+            still_backward <= 1'd0;
+            motion <= 32'sd0;
+            not_forward <= 1'd0;
+            not_backward <= 1'd0;
+            found <= 17'd0;
         end else begin
             captured <= captured_next;
             was_on_plus <= was_on_plus_next;
@@ -391,7 +433,12 @@ module xy_stage_stage_axis_monitors (
             backward <= backward_next;
             shaped_forward <= shaped_forward_next;
             shaped_backward <= shaped_backward_next;
-            same_position <= same_position_next;
+            drive_backward <= drive_backward_next;
+            still_since <= still_since_next;
+            still_backward <= still_backward_next;
+            motion <= motion_next;
+            not_forward <= not_forward_next;
+            not_backward <= not_backward_next;
             found <= found_next;
         end
     end
@@ -415,9 +462,17 @@ module xy_stage_stage_axis_monitors (
         backward = 1'd0;
         shaped_forward = 1'd0;
         shaped_backward = 1'd0;
-        same_position = 1'd0;
-        found = 16'd0;
+        drive_backward = 1'd0;
+        still_since = 32'sd0;
+        still_backward = 1'd0;
+        motion = 32'sd0;
+        not_forward = 1'd0;
+        not_backward = 1'd0;
+        found = 17'd0;
     end
+
+    // Bits that nothing reads.
+    wire unused = &{1'b0, command_bits[30:0], motion_bits[1:0]};
 endmodule
 
 `default_nettype wire

@@ -16,6 +16,7 @@ module xy_stage_stage_integrator (
     input  wire               brakes,
     input  wire               moves,
     input  wire               points,
+    input  wire               modulo,
     input  wire signed [31:0] preset_position,
     input  wire [30:0]        stop_deceleration,
     input  wire [31:0]        read_data,
@@ -25,12 +26,15 @@ module xy_stage_stage_integrator (
     output wire signed [31:0] acceleration,
     output wire               at_rest,
     output wire               overflowed,
+    output wire               leaves,
     output wire               entry_ends,
     output wire               decides,
     output wire               reads_flags,
     output wire               ends
 );
     localparam [7:0]  NIL = 8'd0;
+    localparam [4:0]  FULL_REACH = 5'd31;
+    localparam [4:0]  NO_REACH = 5'd0;
     localparam [9:0]  CARRY_IN = 10'd1;
     localparam [32:0] HALF = 33'd1;
     localparam [32:0] NO_HALF = 33'd0;
@@ -50,6 +54,13 @@ module xy_stage_stage_integrator (
     reg  [7:0]  gathered;
     wire [9:0]  shifted_addend;
     wire        backwards;
+    wire        below;
+    wire        outwards;
+    reg         past_reach;
+    wire        stands;
+    wire [5:0]  upper_bits;
+    wire [4:0]  reach_bits;
+    wire        stand_bit;
     wire        starts_point;
     wire [31:0] preset_word;
     wire [23:0] preset_bits;
@@ -166,6 +177,15 @@ module xy_stage_stage_integrator (
     assign sum = wide_sum[8:1];
     assign backwards = exact_velocity[47];
 
+    // In the last 32nd before an end of the word, and
+    // outwards; in the last 64th a stop stands at once
+    assign below = exact_position[55];
+    assign outwards = (backwards == below) & !modulo;
+    assign upper_bits = exact_position[54:49];
+    assign reach_bits = upper_bits[5:1];
+    assign stand_bit = upper_bits[0];
+    assign stands = past_reach & (stand_bit != below);
+
     // Beyond the end; a change of sign; any motion
     assign turned_sign = sum[7] != augend[7];
     assign unfit = turned_sign & (augend[7] == addend[7]);
@@ -191,6 +211,7 @@ module xy_stage_stage_integrator (
     // What comes of the tick
     assign at_rest = !moving;
     assign overflowed = passes_failed;
+    assign leaves = past_reach & moving;
     assign entry_ends = carry;
     assign decides = passes_decides;
     assign reads_flags = passes_reads_flags;
@@ -246,9 +267,16 @@ module xy_stage_stage_integrator (
         if (passes_invert) begin
             addend = ~gathered;
         end
+
+        // In the last 32nd before an end of the word, and
+        // outwards; in the last 64th a stop stands at once
+        past_reach = outwards & (reach_bits == FULL_REACH);
+        if (below) begin
+            past_reach = outwards & (reach_bits == NO_REACH);
+        end
         carry_next = wide_sum[9];
         if (passes_first) begin
-            carry_next = passes_carry | (brakes & !backwards);
+            carry_next = passes_carry | ((brakes & !backwards) & !stands);
         end
 
         // Beyond the end; a change of sign; any motion
@@ -284,7 +312,7 @@ module xy_stage_stage_integrator (
                 exact_acceleration_next = ~deceleration;
             end
         end
-        if ((preset | starts_point) | passes_clear_acceleration) begin
+        if (((preset | starts_point) | (brakes & stands)) | passes_clear_acceleration) begin
             exact_acceleration_next = NO_ACCELERATION;
         end
 

@@ -15,7 +15,7 @@ module xy_stage_stage_ram_256x32 (
     input  wire [7:0]  read_address,
     output reg  [31:0] read_data
 );
-    (* no_rw_check *)
+    (* no_rw_check, ramstyle = "no_rw_check" *)
     reg [31:0] words [0:255];
     always @(posedge clk) begin
         if (write_enable) words[write_address] <= write_data;

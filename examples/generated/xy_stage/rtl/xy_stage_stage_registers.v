@@ -54,7 +54,6 @@ module xy_stage_stage_registers (
     input  wire [31:0]        tick_count,
     output reg                x_enable,
     output reg                x_direct_enable,
-    output reg                x_encoder_invert,
     output reg                x_self_test,
     output reg                x_stop,
     output reg                x_clear_faults,
@@ -96,6 +95,9 @@ module xy_stage_stage_registers (
     output reg                x_index_arm,
     output reg                x_preset,
     output reg  signed [31:0] x_preset_value,
+    input  wire               x_drive_enable,
+    output reg                x_encoder_invert,
+    output reg  [15:0]        x_trigger_phase,
     input  wire [2:0]         x_state,
     input  wire               x_can_start,
     input  wire [1:0]         x_segments_state,
@@ -113,7 +115,7 @@ module xy_stage_stage_registers (
     input  wire [1:0]         x_table_bank,
     input  wire               x_index_armed,
     input  wire [4:0]         x_trip_causes,
-    input  wire [15:0]        x_causes,
+    input  wire [16:0]        x_causes,
     input  wire               x_segments_underrun,
     input  wire               x_segments_overflow,
     input  wire               x_segments_tick_missed,
@@ -131,6 +133,7 @@ module xy_stage_stage_registers (
     input  wire               x_pwm_saturated,
     input  wire               x_pwm_unaligned,
     input  wire [7:0]         x_illegal_count,
+    input  wire               x_segments_out_of_range,
     input  wire               x_refused,
     input  wire               x_setting_refused,
     input  wire               x_direct_expired,
@@ -154,7 +157,6 @@ module xy_stage_stage_registers (
     input  wire signed [16:0] x_duty,
     output reg                y_enable,
     output reg                y_direct_enable,
-    output reg                y_encoder_invert,
     output reg                y_self_test,
     output reg                y_stop,
     output reg                y_clear_faults,
@@ -196,6 +198,9 @@ module xy_stage_stage_registers (
     output reg                y_index_arm,
     output reg                y_preset,
     output reg  signed [31:0] y_preset_value,
+    input  wire               y_drive_enable,
+    output reg                y_encoder_invert,
+    output reg  [15:0]        y_trigger_phase,
     input  wire [2:0]         y_state,
     input  wire               y_can_start,
     input  wire [1:0]         y_segments_state,
@@ -213,7 +218,7 @@ module xy_stage_stage_registers (
     input  wire [1:0]         y_table_bank,
     input  wire               y_index_armed,
     input  wire [4:0]         y_trip_causes,
-    input  wire [15:0]        y_causes,
+    input  wire [16:0]        y_causes,
     input  wire               y_segments_underrun,
     input  wire               y_segments_overflow,
     input  wire               y_segments_tick_missed,
@@ -231,6 +236,7 @@ module xy_stage_stage_registers (
     input  wire               y_pwm_saturated,
     input  wire               y_pwm_unaligned,
     input  wire [7:0]         y_illegal_count,
+    input  wire               y_segments_out_of_range,
     input  wire               y_refused,
     input  wire               y_setting_refused,
     input  wire               y_direct_expired,
@@ -299,6 +305,8 @@ module xy_stage_stage_registers (
     localparam [9:0] X_INDEX                 = 10'h120;
     localparam [9:0] X_INDEX_ARM             = 10'h121;
     localparam [9:0] X_PRESET                = 10'h122;
+    localparam [9:0] X_ENCODER               = 10'h124;
+    localparam [9:0] X_PWM_TRIGGER           = 10'h125;
     localparam [9:0] X_STATUS                = 10'h128;
     localparam [9:0] X_CAUSES                = 10'h129;
     localparam [9:0] X_FLAGS                 = 10'h12a;
@@ -347,6 +355,8 @@ module xy_stage_stage_registers (
     localparam [9:0] Y_INDEX                 = 10'h220;
     localparam [9:0] Y_INDEX_ARM             = 10'h221;
     localparam [9:0] Y_PRESET                = 10'h222;
+    localparam [9:0] Y_ENCODER               = 10'h224;
+    localparam [9:0] Y_PWM_TRIGGER           = 10'h225;
     localparam [9:0] Y_STATUS                = 10'h228;
     localparam [9:0] Y_CAUSES                = 10'h229;
     localparam [9:0] Y_FLAGS                 = 10'h22a;
@@ -406,6 +416,8 @@ module xy_stage_stage_registers (
     wire write_x_index = avs_write && avs_address == X_INDEX;
     wire write_x_index_arm = avs_write && avs_address == X_INDEX_ARM;
     wire write_x_preset = avs_write && avs_address == X_PRESET;
+    wire write_x_encoder = avs_write && avs_address == X_ENCODER;
+    wire write_x_pwm_trigger = avs_write && avs_address == X_PWM_TRIGGER;
     wire write_x_events = avs_write && avs_address == X_EVENTS;
     wire write_y_control = avs_write && avs_address == Y_CONTROL;
     wire write_y_stop = avs_write && avs_address == Y_STOP;
@@ -430,16 +442,23 @@ module xy_stage_stage_registers (
     wire write_y_index = avs_write && avs_address == Y_INDEX;
     wire write_y_index_arm = avs_write && avs_address == Y_INDEX_ARM;
     wire write_y_preset = avs_write && avs_address == Y_PRESET;
+    wire write_y_encoder = avs_write && avs_address == Y_ENCODER;
+    wire write_y_pwm_trigger = avs_write && avs_address == Y_PWM_TRIGGER;
     wire write_y_events = avs_write && avs_address == Y_EVENTS;
 
     reg waits;
     wire applies = waits && tick;
+    wire next_x_encoder_invert = written[0] | (x_encoder_invert & ~mask[0]);
+    wire allow_x_encoder = !x_drive_enable;
+    wire next_y_encoder_invert = written[0] | (y_encoder_invert & ~mask[0]);
+    wire allow_y_encoder = !y_drive_enable;
     wire bus_partial = !whole && (write_snapshot || write_commit || write_start
         || write_interrupt_test || write_x_stop || write_x_clear_faults || write_x_flush
         || write_x_kick || write_x_direct || write_x_segment || write_x_tap || write_x_swap
         || write_x_setting || write_x_index_arm || write_x_preset || write_y_stop
         || write_y_clear_faults || write_y_flush || write_y_kick || write_y_direct || write_y_segment
         || write_y_tap || write_y_swap || write_y_setting || write_y_index_arm || write_y_preset);
+    wire bus_refused = (write_x_encoder && !allow_x_encoder) || (write_y_encoder && !allow_y_encoder);
     wire bus_rejected = waits && ((write_commit && whole) || write_x_law || write_y_law);
 
     // COMMIT: commit; the staged registers of all axes, together, at the next tick
@@ -468,15 +487,18 @@ module xy_stage_stage_registers (
     reg flag_partial_write;
     reg flag_commit_rejected;
     reg flag_start_refused;
+    reg flag_guard_refused;
     always @(posedge clk) begin
         if (rst) begin
             flag_partial_write <= 1'd0;
             flag_commit_rejected <= 1'd0;
             flag_start_refused <= 1'd0;
+            flag_guard_refused <= 1'd0;
         end else begin
             flag_partial_write <= bus_partial || (flag_partial_write && !(write_flags && written[0]));
             flag_commit_rejected <= bus_rejected || (flag_commit_rejected && !(write_flags && written[1]));
             flag_start_refused <= start_refused || (flag_start_refused && !(write_flags && written[2]));
+            flag_guard_refused <= bus_refused || (flag_guard_refused && !(write_flags && written[3]));
         end
     end
 
@@ -601,13 +623,11 @@ module xy_stage_stage_registers (
         if (rst) begin
             x_enable <= 1'd0;
             x_direct_enable <= 1'd0;
-            x_encoder_invert <= 1'd0;
             x_self_test <= 1'd0;
         end else begin
             if (write_x_control && avs_byteenable[0]) begin
                 x_enable <= avs_writedata[0];
                 x_direct_enable <= avs_writedata[1];
-                x_encoder_invert <= avs_writedata[2];
                 x_self_test <= avs_writedata[3];
             end
         end
@@ -791,7 +811,7 @@ module xy_stage_stage_registers (
     // X_SOFT_LIMIT_PLUS: configuration; end of the travel, in counts since reset: see `ORIGIN`
     always @(posedge clk) begin
         if (rst) begin
-            x_soft_limit_plus <= 32'sd0;
+            x_soft_limit_plus <= 32'sd25600000;
         end else begin
             if (write_x_soft_limit_plus && avs_byteenable[0]) begin
                 x_soft_limit_plus[7:0] <= avs_writedata[7:0];
@@ -811,7 +831,7 @@ module xy_stage_stage_registers (
     // X_SOFT_LIMIT_MINUS: configuration; the other end
     always @(posedge clk) begin
         if (rst) begin
-            x_soft_limit_minus <= 32'sd0;
+            x_soft_limit_minus <= -32'sd25600000;
         end else begin
             if (write_x_soft_limit_minus && avs_byteenable[0]) begin
                 x_soft_limit_minus[7:0] <= avs_writedata[7:0];
@@ -831,7 +851,7 @@ module xy_stage_stage_registers (
     // X_FOLLOWING_ERROR_LIMIT: configuration; largest error
     always @(posedge clk) begin
         if (rst) begin
-            x_following_error_limit <= 32'd0;
+            x_following_error_limit <= 32'd65536000;
         end else begin
             if (write_x_following_error_limit && avs_byteenable[0]) begin
                 x_following_error_limit[7:0] <= avs_writedata[7:0];
@@ -851,7 +871,7 @@ module xy_stage_stage_registers (
     // X_WATCHDOG: configuration; of the host, and what follows from a cause
     always @(posedge clk) begin
         if (rst) begin
-            x_watchdog_ticks <= 16'd0;
+            x_watchdog_ticks <= 16'd5000;
             x_off_causes <= 16'd36231;
         end else begin
             if (write_x_watchdog && avs_byteenable[0]) begin
@@ -946,6 +966,29 @@ module xy_stage_stage_registers (
         end
     end
 
+    // X_ENCODER: guarded; the sign of the loop's feedback
+    always @(posedge clk) begin
+        if (rst) begin
+            x_encoder_invert <= 1'd0;
+        end else if (write_x_encoder && allow_x_encoder) begin
+            x_encoder_invert <= next_x_encoder_invert;
+        end
+    end
+
+    // X_PWM_TRIGGER: configuration; when the pin `pwm_trigger` is high for a clock, as for an ADC
+    always @(posedge clk) begin
+        if (rst) begin
+            x_trigger_phase <= 16'd0;
+        end else begin
+            if (write_x_pwm_trigger && avs_byteenable[0]) begin
+                x_trigger_phase[7:0] <= avs_writedata[7:0];
+            end
+            if (write_x_pwm_trigger && avs_byteenable[1]) begin
+                x_trigger_phase[15:8] <= avs_writedata[15:8];
+            end
+        end
+    end
+
     // X_EVENTS: sticky; what has happened since the flag was cleared
     reg flag_x_refused;
     reg flag_x_setting_refused;
@@ -967,13 +1010,11 @@ module xy_stage_stage_registers (
         if (rst) begin
             y_enable <= 1'd0;
             y_direct_enable <= 1'd0;
-            y_encoder_invert <= 1'd0;
             y_self_test <= 1'd0;
         end else begin
             if (write_y_control && avs_byteenable[0]) begin
                 y_enable <= avs_writedata[0];
                 y_direct_enable <= avs_writedata[1];
-                y_encoder_invert <= avs_writedata[2];
                 y_self_test <= avs_writedata[3];
             end
         end
@@ -1157,7 +1198,7 @@ module xy_stage_stage_registers (
     // Y_SOFT_LIMIT_PLUS: configuration; end of the travel, in counts since reset: see `ORIGIN`
     always @(posedge clk) begin
         if (rst) begin
-            y_soft_limit_plus <= 32'sd0;
+            y_soft_limit_plus <= 32'sd25600000;
         end else begin
             if (write_y_soft_limit_plus && avs_byteenable[0]) begin
                 y_soft_limit_plus[7:0] <= avs_writedata[7:0];
@@ -1177,7 +1218,7 @@ module xy_stage_stage_registers (
     // Y_SOFT_LIMIT_MINUS: configuration; the other end
     always @(posedge clk) begin
         if (rst) begin
-            y_soft_limit_minus <= 32'sd0;
+            y_soft_limit_minus <= -32'sd25600000;
         end else begin
             if (write_y_soft_limit_minus && avs_byteenable[0]) begin
                 y_soft_limit_minus[7:0] <= avs_writedata[7:0];
@@ -1197,7 +1238,7 @@ module xy_stage_stage_registers (
     // Y_FOLLOWING_ERROR_LIMIT: configuration; largest error
     always @(posedge clk) begin
         if (rst) begin
-            y_following_error_limit <= 32'd0;
+            y_following_error_limit <= 32'd65536000;
         end else begin
             if (write_y_following_error_limit && avs_byteenable[0]) begin
                 y_following_error_limit[7:0] <= avs_writedata[7:0];
@@ -1217,7 +1258,7 @@ module xy_stage_stage_registers (
     // Y_WATCHDOG: configuration; of the host, and what follows from a cause
     always @(posedge clk) begin
         if (rst) begin
-            y_watchdog_ticks <= 16'd0;
+            y_watchdog_ticks <= 16'd5000;
             y_off_causes <= 16'd36231;
         end else begin
             if (write_y_watchdog && avs_byteenable[0]) begin
@@ -1312,6 +1353,29 @@ module xy_stage_stage_registers (
         end
     end
 
+    // Y_ENCODER: guarded; the sign of the loop's feedback
+    always @(posedge clk) begin
+        if (rst) begin
+            y_encoder_invert <= 1'd0;
+        end else if (write_y_encoder && allow_y_encoder) begin
+            y_encoder_invert <= next_y_encoder_invert;
+        end
+    end
+
+    // Y_PWM_TRIGGER: configuration; when the pin `pwm_trigger` is high for a clock, as for an ADC
+    always @(posedge clk) begin
+        if (rst) begin
+            y_trigger_phase <= 16'd0;
+        end else begin
+            if (write_y_pwm_trigger && avs_byteenable[0]) begin
+                y_trigger_phase[7:0] <= avs_writedata[7:0];
+            end
+            if (write_y_pwm_trigger && avs_byteenable[1]) begin
+                y_trigger_phase[15:8] <= avs_writedata[15:8];
+            end
+        end
+    end
+
     // Y_EVENTS: sticky; what has happened since the flag was cleared
     reg flag_y_refused;
     reg flag_y_setting_refused;
@@ -1388,13 +1452,14 @@ module xy_stage_stage_registers (
         end else if (avs_read) begin
             case (avs_address)
                 MAGIC: read_group_0 <= 32'h45475453;
-                VERSION: read_group_0 <= 32'h00010000;
+                VERSION: read_group_0 <= 32'h00020000;
                 AXES: read_group_0 <= 32'h00000002;
                 TICK_CLOCKS: read_group_0 <= 32'h00001388;
                 CONTROL_CLOCKS: read_group_0 <= 32'h000000d2;
                 DUTY_CLOCKS: read_group_0 <= 32'h000002d9;
                 COMMIT: read_group_0 <= {31'd0, waits};
-                FLAGS: read_group_0 <= {29'd0, flag_start_refused, flag_commit_rejected, flag_partial_write};
+                FLAGS: read_group_0 <= {28'd0, flag_guard_refused, flag_start_refused, flag_commit_rejected,
+                    flag_partial_write};
                 INTERRUPT_STATE: read_group_0 <= {2'd0, irq_state_start_refused, irq_state_tick, 14'd0,
                     irq_state_y_index_seen, irq_state_y_faulted, irq_state_y_stopping, irq_state_y_halted,
                     irq_state_y_fifo_low, irq_state_y_move_done, irq_state_y_notify, irq_state_x_index_seen,
@@ -1410,6 +1475,7 @@ module xy_stage_stage_registers (
                 SNAPSHOT_TIME_STAMP: read_group_0 <= shadow_time_stamp;
                 SNAPSHOT_TICK_COUNT: read_group_0 <= shadow_tick_count;
                 X_PWM_PERIOD_CLOCKS: read_group_0 <= 32'h000009c4;
+                X_RING_SAMPLES: read_group_0 <= 32'h00000080;
                 default: read_group_0 <= 32'd0;
             endcase
         end
@@ -1419,11 +1485,10 @@ module xy_stage_stage_registers (
             read_group_1 <= 32'd0;
         end else if (avs_read) begin
             case (avs_address)
-                X_RING_SAMPLES: read_group_1 <= 32'h00000080;
                 X_MOST_TAPS: read_group_1 <= 32'h00000040;
                 X_MACHINE_TAPS: read_group_1 <= 32'h00000005;
                 X_COEFFICIENT_FRACTION: read_group_1 <= 32'h00000010;
-                X_CONTROL: read_group_1 <= {28'd0, x_self_test, x_encoder_invert, x_direct_enable, x_enable};
+                X_CONTROL: read_group_1 <= {28'd0, x_self_test, 1'd0, x_direct_enable, x_enable};
                 X_FIFO_CONTROL: read_group_1 <= {26'd0, x_low_water};
                 X_TAP_ADDRESS: read_group_1 <= {22'd0, x_tap_bank, 2'd0, x_tap_index};
                 X_SETTING_ADDRESS: read_group_1 <= {22'd0, x_setting_bank, 4'd0, x_setting_row};
@@ -1434,6 +1499,9 @@ module xy_stage_stage_registers (
                 X_WATCHDOG: read_group_1 <= {x_off_causes, x_watchdog_ticks};
                 X_STOP_DECELERATION: read_group_1 <= {1'd0, x_stop_deceleration};
                 X_SETTLE: read_group_1 <= {16'd0, x_settle_ticks};
+                X_INDEX: read_group_1 <= {19'd0, x_velocity_m, 2'd0, x_smoothing, x_index_gate, 2'd0,
+                    x_index_presets, x_index_always};
+                X_ENCODER: read_group_1 <= {31'd0, x_encoder_invert};
                 default: read_group_1 <= 32'd0;
             endcase
         end
@@ -1443,17 +1511,17 @@ module xy_stage_stage_registers (
             read_group_2 <= 32'd0;
         end else if (avs_read) begin
             case (avs_address)
-                X_INDEX: read_group_2 <= {19'd0, x_velocity_m, 2'd0, x_smoothing, x_index_gate, 2'd0,
-                    x_index_presets, x_index_always};
+                X_PWM_TRIGGER: read_group_2 <= {16'd0, x_trigger_phase};
                 X_STATUS: read_group_2 <= {7'd0, x_trip_causes, x_index_armed, x_table_bank, x_swap_pending,
                     x_level_z, x_level_b, x_level_a, x_level_home, x_level_drive_ready, x_level_limit_minus_n,
                     x_level_limit_plus_n, x_level_emergency_stop_n, x_pwm_running, x_direct_active,
                     x_segments_state, x_can_start, x_state};
-                X_CAUSES: read_group_2 <= {16'd0, x_causes};
-                X_FLAGS: read_group_2 <= {8'd0, x_illegal_count, x_pwm_unaligned, x_pwm_saturated, x_limited_low,
-                    x_limited_high, x_controller_overrun, x_velocity_missed, x_encoder_disagreement,
-                    x_encoder_illegal, x_table_refused, x_shaper_overrun, x_shaper_saturated, x_segment_malformed,
-                    x_segment_refused, x_segments_tick_missed, x_segments_overflow, x_segments_underrun};
+                X_CAUSES: read_group_2 <= {15'd0, x_causes};
+                X_FLAGS: read_group_2 <= {7'd0, x_segments_out_of_range, x_illegal_count, x_pwm_unaligned,
+                    x_pwm_saturated, x_limited_low, x_limited_high, x_controller_overrun, x_velocity_missed,
+                    x_encoder_disagreement, x_encoder_illegal, x_table_refused, x_shaper_overrun,
+                    x_shaper_saturated, x_segment_malformed, x_segment_refused, x_segments_tick_missed,
+                    x_segments_overflow, x_segments_underrun};
                 X_EVENTS: read_group_2 <= {29'd0, flag_x_direct_expired, flag_x_setting_refused, flag_x_refused};
                 X_SATURATIONS: read_group_2 <= {x_limited_ticks, 1'd0, x_controller_saturated_low, 1'd0,
                     x_controller_saturated_high};
@@ -1466,6 +1534,7 @@ module xy_stage_stage_registers (
                 X_INDEX_COUNT: read_group_2 <= x_index_count;
                 X_COMMAND_POSITION: read_group_2 <= x_command_position;
                 X_SHAPED_POSITION: read_group_2 <= x_shaped_position;
+                X_SHAPED_VELOCITY: read_group_2 <= x_shaped_velocity;
                 default: read_group_2 <= 32'd0;
             endcase
         end
@@ -1475,7 +1544,6 @@ module xy_stage_stage_registers (
             read_group_3 <= 32'd0;
         end else if (avs_read) begin
             case (avs_address)
-                X_SHAPED_VELOCITY: read_group_3 <= x_shaped_velocity;
                 X_ERROR: read_group_3 <= x_error;
                 X_COMMAND: read_group_3 <= x_command;
                 X_DUTY: read_group_3 <= {15'd0, x_duty};
@@ -1486,10 +1554,12 @@ module xy_stage_stage_registers (
                 Y_MOST_TAPS: read_group_3 <= 32'h00000040;
                 Y_MACHINE_TAPS: read_group_3 <= 32'h00000005;
                 Y_COEFFICIENT_FRACTION: read_group_3 <= 32'h00000010;
-                Y_CONTROL: read_group_3 <= {28'd0, y_self_test, y_encoder_invert, y_direct_enable, y_enable};
+                Y_CONTROL: read_group_3 <= {28'd0, y_self_test, 1'd0, y_direct_enable, y_enable};
                 Y_FIFO_CONTROL: read_group_3 <= {26'd0, y_low_water};
                 Y_TAP_ADDRESS: read_group_3 <= {22'd0, y_tap_bank, 2'd0, y_tap_index};
                 Y_SETTING_ADDRESS: read_group_3 <= {22'd0, y_setting_bank, 4'd0, y_setting_row};
+                Y_LAW: read_group_3 <= {22'd0, staged_y_law_bank, 6'd0, staged_y_law};
+                Y_SOFT_LIMIT_PLUS: read_group_3 <= y_soft_limit_plus;
                 default: read_group_3 <= 32'd0;
             endcase
         end
@@ -1499,8 +1569,6 @@ module xy_stage_stage_registers (
             read_group_4 <= 32'd0;
         end else if (avs_read) begin
             case (avs_address)
-                Y_LAW: read_group_4 <= {22'd0, staged_y_law_bank, 6'd0, staged_y_law};
-                Y_SOFT_LIMIT_PLUS: read_group_4 <= y_soft_limit_plus;
                 Y_SOFT_LIMIT_MINUS: read_group_4 <= y_soft_limit_minus;
                 Y_FOLLOWING_ERROR_LIMIT: read_group_4 <= y_following_error_limit;
                 Y_WATCHDOG: read_group_4 <= {y_off_causes, y_watchdog_ticks};
@@ -1508,20 +1576,24 @@ module xy_stage_stage_registers (
                 Y_SETTLE: read_group_4 <= {16'd0, y_settle_ticks};
                 Y_INDEX: read_group_4 <= {19'd0, y_velocity_m, 2'd0, y_smoothing, y_index_gate, 2'd0,
                     y_index_presets, y_index_always};
+                Y_ENCODER: read_group_4 <= {31'd0, y_encoder_invert};
+                Y_PWM_TRIGGER: read_group_4 <= {16'd0, y_trigger_phase};
                 Y_STATUS: read_group_4 <= {7'd0, y_trip_causes, y_index_armed, y_table_bank, y_swap_pending,
                     y_level_z, y_level_b, y_level_a, y_level_home, y_level_drive_ready, y_level_limit_minus_n,
                     y_level_limit_plus_n, y_level_emergency_stop_n, y_pwm_running, y_direct_active,
                     y_segments_state, y_can_start, y_state};
-                Y_CAUSES: read_group_4 <= {16'd0, y_causes};
-                Y_FLAGS: read_group_4 <= {8'd0, y_illegal_count, y_pwm_unaligned, y_pwm_saturated, y_limited_low,
-                    y_limited_high, y_controller_overrun, y_velocity_missed, y_encoder_disagreement,
-                    y_encoder_illegal, y_table_refused, y_shaper_overrun, y_shaper_saturated, y_segment_malformed,
-                    y_segment_refused, y_segments_tick_missed, y_segments_overflow, y_segments_underrun};
+                Y_CAUSES: read_group_4 <= {15'd0, y_causes};
+                Y_FLAGS: read_group_4 <= {7'd0, y_segments_out_of_range, y_illegal_count, y_pwm_unaligned,
+                    y_pwm_saturated, y_limited_low, y_limited_high, y_controller_overrun, y_velocity_missed,
+                    y_encoder_disagreement, y_encoder_illegal, y_table_refused, y_shaper_overrun,
+                    y_shaper_saturated, y_segment_malformed, y_segment_refused, y_segments_tick_missed,
+                    y_segments_overflow, y_segments_underrun};
                 Y_EVENTS: read_group_4 <= {29'd0, flag_y_direct_expired, flag_y_setting_refused, flag_y_refused};
                 Y_SATURATIONS: read_group_4 <= {y_limited_ticks, 1'd0, y_controller_saturated_low, 1'd0,
                     y_controller_saturated_high};
                 Y_FIFO: read_group_4 <= {22'd0, y_segments_empty, y_fifo_low, 1'd0, y_fifo_level};
                 Y_SELF_TEST: read_group_4 <= {y_self_test_low, y_self_test_high};
+                Y_POSITION: read_group_4 <= y_user_position;
                 default: read_group_4 <= 32'd0;
             endcase
         end
@@ -1531,7 +1603,6 @@ module xy_stage_stage_registers (
             read_group_5 <= 32'd0;
         end else if (avs_read) begin
             case (avs_address)
-                Y_POSITION: read_group_5 <= y_user_position;
                 Y_COUNT: read_group_5 <= y_count;
                 Y_VELOCITY: read_group_5 <= y_velocity;
                 Y_ORIGIN: read_group_5 <= y_origin;
@@ -1558,6 +1629,7 @@ module xy_stage_stage_registers (
         flag_partial_write = 1'd0;
         flag_commit_rejected = 1'd0;
         flag_start_refused = 1'd0;
+        flag_guard_refused = 1'd0;
         irq_state_x_notify = 1'd0;
         irq_state_x_move_done = 1'd0;
         irq_state_x_fifo_low = 1'd0;
@@ -1592,7 +1664,6 @@ module xy_stage_stage_registers (
         irq_enable_start_refused = 1'd0;
         x_enable = 1'd0;
         x_direct_enable = 1'd0;
-        x_encoder_invert = 1'd0;
         x_self_test = 1'd0;
         x_stop = 1'd0;
         x_clear_faults = 1'd0;
@@ -1621,10 +1692,10 @@ module xy_stage_stage_registers (
         staged_x_law_bank = 2'd0;
         x_law = 2'd1;
         x_law_bank = 2'd0;
-        x_soft_limit_plus = 32'sd0;
-        x_soft_limit_minus = 32'sd0;
-        x_following_error_limit = 32'd0;
-        x_watchdog_ticks = 16'd0;
+        x_soft_limit_plus = 32'sd25600000;
+        x_soft_limit_minus = -32'sd25600000;
+        x_following_error_limit = 32'd65536000;
+        x_watchdog_ticks = 16'd5000;
         x_off_causes = 16'd36231;
         x_stop_deceleration = 31'd1342177;
         x_settle_ticks = 16'd78;
@@ -1636,12 +1707,13 @@ module xy_stage_stage_registers (
         x_index_arm = 1'd0;
         x_preset = 1'd0;
         x_preset_value = 32'sd0;
+        x_encoder_invert = 1'd0;
+        x_trigger_phase = 16'd0;
         flag_x_refused = 1'd0;
         flag_x_setting_refused = 1'd0;
         flag_x_direct_expired = 1'd0;
         y_enable = 1'd0;
         y_direct_enable = 1'd0;
-        y_encoder_invert = 1'd0;
         y_self_test = 1'd0;
         y_stop = 1'd0;
         y_clear_faults = 1'd0;
@@ -1670,10 +1742,10 @@ module xy_stage_stage_registers (
         staged_y_law_bank = 2'd0;
         y_law = 2'd1;
         y_law_bank = 2'd0;
-        y_soft_limit_plus = 32'sd0;
-        y_soft_limit_minus = 32'sd0;
-        y_following_error_limit = 32'd0;
-        y_watchdog_ticks = 16'd0;
+        y_soft_limit_plus = 32'sd25600000;
+        y_soft_limit_minus = -32'sd25600000;
+        y_following_error_limit = 32'd65536000;
+        y_watchdog_ticks = 16'd5000;
         y_off_causes = 16'd36231;
         y_stop_deceleration = 31'd1342177;
         y_settle_ticks = 16'd109;
@@ -1685,6 +1757,8 @@ module xy_stage_stage_registers (
         y_index_arm = 1'd0;
         y_preset = 1'd0;
         y_preset_value = 32'sd0;
+        y_encoder_invert = 1'd0;
+        y_trigger_phase = 16'd0;
         flag_y_refused = 1'd0;
         flag_y_setting_refused = 1'd0;
         flag_y_direct_expired = 1'd0;

@@ -27,6 +27,7 @@ module xy_stage_stage_segments (
     input  wire [30:0]        stop_deceleration,
     input  wire [5:0]         low_water,
     input  wire               clear_flags,
+    input  wire               modulo,
     output wire signed [31:0] position,
     output wire signed [31:0] velocity,
     output wire signed [31:0] acceleration,
@@ -41,7 +42,8 @@ module xy_stage_stage_segments (
     output wire               overflow,
     output wire               refused,
     output wire               malformed,
-    output wire               tick_missed
+    output wire               tick_missed,
+    output wire               out_of_range
 );
     localparam [5:0] IDLE_PHASE = 6'd0;
     localparam [5:0] ONE_PHASE = 6'd1;
@@ -77,6 +79,7 @@ module xy_stage_stage_segments (
     wire signed [31:0] integrator_acceleration;
     wire               integrator_at_rest;
     wire               integrator_overflowed;
+    wire               integrator_leaves;
     wire               integrator_entry_ends;
     wire               integrator_decides;
     wire               integrator_reads_flags;
@@ -123,6 +126,8 @@ module xy_stage_stage_segments (
     reg                malformed_q_next;
     reg                tick_missed_q;
     reg                tick_missed_q_next;
+    reg                out_of_range_q;
+    reg                out_of_range_q_next;
 
     xy_stage_stage_command_fifo u_fifo (
         .clk       (clk),
@@ -150,6 +155,7 @@ module xy_stage_stage_segments (
         .brakes            (integrator_brakes),
         .moves             (moves),
         .points            (points),
+        .modulo            (modulo),
         .preset_position   (preset_position),
         .stop_deceleration (stop_deceleration),
         .read_data         (fifo_read_data),
@@ -159,6 +165,7 @@ module xy_stage_stage_segments (
         .acceleration      (integrator_acceleration),
         .at_rest           (integrator_at_rest),
         .overflowed        (integrator_overflowed),
+        .leaves            (integrator_leaves),
         .entry_ends        (integrator_entry_ends),
         .decides           (integrator_decides),
         .reads_flags       (integrator_reads_flags),
@@ -204,6 +211,7 @@ module xy_stage_stage_segments (
     assign refused = refused_q;
     assign malformed = malformed_q;
     assign tick_missed = tick_missed_q;
+    assign out_of_range = out_of_range_q;
 
     always @(*) begin
         phase_next = phase;
@@ -220,6 +228,7 @@ module xy_stage_stage_segments (
         refused_q_next = refused_q;
         malformed_q_next = malformed_q;
         tick_missed_q_next = tick_missed_q;
+        out_of_range_q_next = out_of_range_q;
 
         // Pulses end; flags are cleared, then set
         valid_q_next = 1'd0;
@@ -231,6 +240,7 @@ module xy_stage_stage_segments (
             refused_q_next = 1'd0;
             malformed_q_next = 1'd0;
             tick_missed_q_next = 1'd0;
+            out_of_range_q_next = 1'd0;
         end
         if (fifo_refused) begin
             refused_q_next = 1'd1;
@@ -287,8 +297,12 @@ module xy_stage_stage_segments (
             acceleration_q_next = integrator_acceleration;
             valid_q_next = 1'd1;
             if (moves) begin
-                if (integrator_overflowed) begin
-                    overflow_q_next = 1'd1;
+                if (integrator_overflowed | integrator_leaves) begin
+                    if (integrator_overflowed) begin
+                        overflow_q_next = 1'd1;
+                    end else begin
+                        out_of_range_q_next = 1'd1;
+                    end
                     state_q_next = STOP_STATE;
                     drops = 1'd1;
                 end else if (integrator_entry_ends) begin
@@ -353,6 +367,7 @@ module xy_stage_stage_segments (
             refused_q <= 1'd0;
             malformed_q <= 1'd0;
             tick_missed_q <= 1'd0;
+            out_of_range_q <= 1'd0;
         end else begin
             phase <= phase_next;
             idle <= idle_next;
@@ -375,6 +390,7 @@ module xy_stage_stage_segments (
             refused_q <= refused_q_next;
             malformed_q <= malformed_q_next;
             tick_missed_q <= tick_missed_q_next;
+            out_of_range_q <= out_of_range_q_next;
         end
     end
 
@@ -400,6 +416,7 @@ module xy_stage_stage_segments (
         refused_q = 1'd0;
         malformed_q = 1'd0;
         tick_missed_q = 1'd0;
+        out_of_range_q = 1'd0;
     end
 endmodule
 

@@ -27,7 +27,8 @@ module xy_stage_stage_sequencer (
     output wire       integrates,
     output wire       busy,
     output wire       valid,
-    output wire       overrun
+    output wire       overrun,
+    output wire       ends
 );
     localparam [4:0] FIRST_STEP = 5'd0;
     localparam [4:0] ONE_STEP = 5'd1;
@@ -75,6 +76,7 @@ module xy_stage_stage_sequencer (
 
     wire       begins_pass;
     wire       last_phase;
+    wire       last_step;
     wire       is_short;
     reg        moves_enough;
     reg        busy_q;
@@ -95,6 +97,7 @@ module xy_stage_stage_sequencer (
     // Steps of ones move nothing, but that of e
     assign begins_pass = start & !busy_q;
     assign last_phase = phase == MARK_PHASE;
+    assign last_step = step_q == OF_DUTY;
     assign is_short = (step_q < OF_SURFACE) | (step_q == OF_LIMIT);
 
     // Strobes
@@ -113,6 +116,7 @@ module xy_stage_stage_sequencer (
     assign busy = busy_q;
     assign valid = valid_q;
     assign overrun = overrun_q;
+    assign ends = last_phase & last_step;
 
     always @(*) begin
         busy_q_next = busy_q;
@@ -139,7 +143,7 @@ module xy_stage_stage_sequencer (
             if (last_phase) begin
                 phase_next = FIRST_PHASE;
                 step_q_next = step_q + ONE_STEP;
-                if (step_q == OF_DUTY) begin
+                if (last_step) begin
                     step_q_next = FIRST_STEP;
                     busy_q_next = 1'd0;
                     valid_q_next = 1'd1;
@@ -199,7 +203,7 @@ module xy_stage_stage_sequencer (
         if (step_q == OF_LIMIT) begin
             setting_address = LIMIT;
         end
-        if (step_q == OF_DUTY) begin
+        if (last_step) begin
             setting_address = DUTY;
         end
     end

@@ -33,6 +33,7 @@ module xy_stage_stage_x_pwm_carrier (
     wire        in_phase;
     wire        holds;
     wire        off_phase;
+    wire        in_use;
     reg  [15:0] position;
     reg  [15:0] position_next;
     reg  [16:0] period_q;
@@ -42,6 +43,8 @@ module xy_stage_stage_x_pwm_carrier (
     reg         synced;
     reg         astray;
     reg         astray_next;
+    reg         timed;
+    wire        timed_next;
     reg         at_valley;
     reg         at_peak;
     reg         valley_q;
@@ -55,12 +58,15 @@ module xy_stage_stage_x_pwm_carrier (
     assign peak_lead = position == (lead >> 1);
 
     // Astray and off, it waits for a sync at its phase
+    // with another period it is in phase by chance only
+    assign in_use = period_q[15:0] == period;
+    assign timed_next = timed | sync;
     assign in_phase = position == phase;
     assign holds = (astray & in_phase) & !running;
     assign off_phase = synced & !in_phase;
     assign trigger_q_next = (position == trigger_phase) & !holds;
     assign period_used = period_q;
-    assign settled = period_q[15:0] == period;
+    assign settled = in_use;
     assign waits = holds;
     assign out_of_step = off_phase;
     assign strays = astray;
@@ -75,10 +81,11 @@ module xy_stage_stage_x_pwm_carrier (
         astray_next = astray;
 
         // Astray and off, it waits for a sync at its phase
+        // with another period it is in phase by chance only
         if (holds & sync) begin
             astray_next = 1'd0;
         end
-        if (off_phase) begin
+        if (off_phase | (((valley_next & !running) & !in_use) & timed)) begin
             astray_next = 1'd1;
         end
         if (!holds) begin
@@ -102,7 +109,8 @@ module xy_stage_stage_x_pwm_carrier (
             period_q <= 17'd32;
             lead_q <= 11'd0;
             synced <= 1'd0;
-            astray <= 1'd0;
+            astray <= 1'd1;
+            timed <= 1'd1;
             at_valley <= 1'd0;
             at_peak <= 1'd0;
             valley_q <= 1'd0;
@@ -114,6 +122,7 @@ module xy_stage_stage_x_pwm_carrier (
             lead_q <= lead_q_next;
             synced <= sync;
             astray <= astray_next;
+            timed <= timed_next;
             at_valley <= valley_next;
             at_peak <= peak_next;
             valley_q <= at_valley;
@@ -127,7 +136,8 @@ module xy_stage_stage_x_pwm_carrier (
         period_q = 17'd32;
         lead_q = 11'd0;
         synced = 1'd0;
-        astray = 1'd0;
+        astray = 1'd1;
+        timed = 1'd1;
         at_valley = 1'd0;
         at_peak = 1'd0;
         valley_q = 1'd0;

@@ -15,7 +15,7 @@ module xy_stage_stage_x_ram_128x32 (
     input  wire [6:0]  read_address,
     output reg  [31:0] read_data
 );
-    (* no_rw_check *)
+    (* no_rw_check, ramstyle = "no_rw_check" *)
     reg [31:0] words [0:127];
     always @(posedge clk) begin
         if (write_enable) words[write_address] <= write_data;

@@ -29,7 +29,6 @@ module xy_stage_stage_y (
     input  wire               fault_n,
     input  wire               enable,
     input  wire               direct_enable,
-    input  wire               encoder_invert,
     input  wire               self_test,
     input  wire               stop,
     input  wire               clear_faults,
@@ -63,6 +62,8 @@ module xy_stage_stage_y (
     input  wire [15:0]        off_causes,
     input  wire [30:0]        stop_deceleration,
     input  wire [15:0]        settle_ticks,
+    input  wire               encoder_invert,
+    input  wire [15:0]        trigger_phase,
     input  wire               index_always,
     input  wire               index_presets,
     input  wire [3:0]         index_gate,
@@ -80,6 +81,7 @@ module xy_stage_stage_y (
     output wire               a_low,
     output wire               b_high,
     output wire               b_low,
+    output wire               pwm_trigger,
     output wire               drive_enable,
     output wire               brake_release,
     output wire [2:0]         state,
@@ -98,7 +100,7 @@ module xy_stage_stage_y (
     output wire [1:0]         table_bank,
     output wire               index_armed,
     output wire [4:0]         trip_causes,
-    output wire [15:0]        causes,
+    output wire [16:0]        causes,
     output wire               segments_underrun,
     output wire               segments_overflow,
     output wire               segments_tick_missed,
@@ -116,6 +118,7 @@ module xy_stage_stage_y (
     output wire               pwm_saturated,
     output wire               pwm_unaligned,
     output wire [7:0]         illegal_count,
+    output wire               segments_out_of_range,
     output wire               refused,
     output wire               setting_refused,
     output wire               direct_expired,
@@ -157,6 +160,7 @@ module xy_stage_stage_y (
     wire signed [17:0] controller_duty;
     wire               controller_valid;
     wire               controller_busy;
+    wire               ends;
     wire               velocity_pending;
     wire               velocity_valid;
     wire               feed;
@@ -167,7 +171,6 @@ module xy_stage_stage_y (
     wire               negative;
     wire               valley;
     wire               peak;
-    wire               trigger;
     wire               pwm_refused;
     wire               pwm_below_floor;
     wire [9:0]         dead_time_used;
@@ -205,6 +208,7 @@ module xy_stage_stage_y (
         .stop_deceleration (stop_deceleration),
         .low_water         (low_water),
         .clear_flags       (clear_sources),
+        .modulo            (1'd0),
         .position          (command_position),
         .velocity          (command_velocity),
         .acceleration      (command_acceleration),
@@ -219,7 +223,8 @@ module xy_stage_stage_y (
         .overflow          (segments_overflow),
         .refused           (segment_refused),
         .malformed         (segment_malformed),
-        .tick_missed       (segments_tick_missed)
+        .tick_missed       (segments_tick_missed),
+        .out_of_range      (segments_out_of_range)
     );
 
     xy_stage_stage_y_shaper u_shaper (
@@ -290,7 +295,8 @@ module xy_stage_stage_y (
         .limited_ticks          (limited_ticks),
         .saturated_high         (controller_saturated_high),
         .saturated_low          (controller_saturated_low),
-        .overrun                (controller_overrun)
+        .overrun                (controller_overrun),
+        .ends                   (ends)
     );
 
     xy_stage_stage_pulse_counter u_pulse_counter (
@@ -389,7 +395,7 @@ module xy_stage_stage_y (
         .minimum_pulse      (10'd50),
         .sync               (tick),
         .phase              (16'd0),
-        .trigger_phase      (16'd0),
+        .trigger_phase      (trigger_phase),
         .feed               (feed),
         .watchdog_periods   (8'd4),
         .filter_clocks      (8'd0),
@@ -409,7 +415,7 @@ module xy_stage_stage_y (
         .negative           (negative),
         .valley             (valley),
         .peak               (peak),
-        .trigger            (trigger),
+        .trigger            (pwm_trigger),
         .saturated          (pwm_saturated),
         .refused            (pwm_refused),
         .below_floor        (pwm_below_floor),
@@ -446,9 +452,11 @@ module xy_stage_stage_y (
         .following_error_limit  (following_error_limit),
         .deviation_limit        (32'd0),
         .saturation_ticks       (16'd0),
-        .lost_command           (32'd0),
-        .lost_ticks             (16'd0),
+        .lost_command           (32'd1024000),
+        .lost_ticks             (16'd500),
+        .velocity_drive         (1'd1),
         .watchdog_ticks         (watchdog_ticks),
+        .modulo                 (1'd0),
         .position               (count),
         .deviation              (32'sd0),
         .segments_state         (segments_state),
@@ -457,13 +465,17 @@ module xy_stage_stage_y (
         .segments_underrun      (segments_underrun),
         .segments_overflow      (segments_overflow),
         .segments_tick_missed   (segments_tick_missed),
+        .segments_out_of_range  (segments_out_of_range),
         .command_velocity       (command_velocity),
         .reference_position     (shaped_position),
         .reference_velocity     (shaped_velocity),
+        .shaper_saturated       (shaper_saturated),
         .shaper_overrun         (shaper_overrun),
         .error                  (error),
         .command                (command),
         .limited_ticks          (limited_ticks),
+        .saturated_high         (controller_saturated_high),
+        .saturated_low          (controller_saturated_low),
         .controller_overrun     (controller_overrun),
         .pwm_tripped            (pwm_tripped),
         .encoder_illegal        (encoder_illegal),
@@ -503,7 +515,7 @@ module xy_stage_stage_y (
     );
 
     // Nets that nothing reads.
-    wire unused = &{1'b0, shaper_valid, shaper_busy, sliding, controller_busy, velocity_pending, velocity_valid, negative, peak, trigger, pwm_refused, pwm_below_floor, dead_time_used, minimum_pulse_used, enabled, started, disabled};
+    wire unused = &{1'b0, shaper_valid, shaper_busy, sliding, controller_busy, ends, velocity_pending, velocity_valid, negative, peak, pwm_refused, pwm_below_floor, dead_time_used, minimum_pulse_used, enabled, started, disabled};
 endmodule
 
 `default_nettype wire

@@ -40,11 +40,11 @@ module xy_stage_x_sliding_mode_avalon_integral (
         cleared_next = cleared;
 
         // A clear wins over a sum under way
-        if (open) begin
-            cleared_next = 1'd0;
-        end
         if (clear_integral) begin
             cleared_next = 1'd1;
+        end
+        if (open) begin
+            cleared_next = 1'd0;
         end
 
         // Frozen where e pushes against a limit

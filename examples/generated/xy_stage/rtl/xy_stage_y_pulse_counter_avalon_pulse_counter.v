@@ -103,7 +103,6 @@ module xy_stage_y_pulse_counter_avalon_pulse_counter (
     reg  signed [31:0] index_count_q_next;
     reg                index_before;
     reg                index_seen_q;
-    reg                index_seen_q_next;
     reg                index_armed_q;
     reg                index_armed_q_next;
     reg  [3:0]         illegal_low;
@@ -246,7 +245,6 @@ module xy_stage_y_pulse_counter_avalon_pulse_counter (
         ready_q_next = ready_q;
         origin_q_next = origin_q;
         index_count_q_next = index_count_q;
-        index_seen_q_next = index_seen_q;
         index_armed_q_next = index_armed_q;
         illegal_low_next = illegal_low;
         illegal_high_next = illegal_high;
@@ -273,7 +271,6 @@ module xy_stage_y_pulse_counter_avalon_pulse_counter (
 
         // Flags, set over clear
         if (clear_flags) begin
-            index_seen_q_next = 1'd0;
             disagreement_q_next = 1'd0;
         end
         if (disagreement_filter_level) begin
@@ -306,7 +303,6 @@ module xy_stage_y_pulse_counter_avalon_pulse_counter (
         end
         if (index) begin
             index_count_q_next = counted;
-            index_seen_q_next = 1'd1;
             index_armed_q_next = 1'd0;
         end
         if (index_arm) begin
@@ -342,7 +338,7 @@ module xy_stage_y_pulse_counter_avalon_pulse_counter (
             presets <= presets_next;
             index_count_q <= index_count_q_next;
             index_before <= gated;
-            index_seen_q <= index_seen_q_next;
+            index_seen_q <= index;
             index_armed_q <= index_armed_q_next;
             illegal_low <= illegal_low_next;
             illegal_high <= illegal_high_next;

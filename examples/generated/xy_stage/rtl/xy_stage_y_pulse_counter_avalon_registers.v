@@ -260,13 +260,16 @@ module xy_stage_y_pulse_counter_avalon_registers (
     // FLAGS: sticky; what has happened since the flag was cleared
     reg flag_partial_write;
     reg flag_saturated;
+    reg flag_index_seen;
     always @(posedge clk) begin
         if (rst) begin
             flag_partial_write <= 1'd0;
             flag_saturated <= 1'd0;
+            flag_index_seen <= 1'd0;
         end else begin
             flag_partial_write <= bus_partial || (flag_partial_write && !(write_flags && written[0]));
             flag_saturated <= saturated || (flag_saturated && !(write_flags && written[1]));
+            flag_index_seen <= index_seen || (flag_index_seen && !(write_flags && written[2]));
         end
     end
 
@@ -315,7 +318,7 @@ module xy_stage_y_pulse_counter_avalon_registers (
         end else if (avs_read) begin
             case (avs_address)
                 MAGIC: read_group_0 <= 32'h544e4350;
-                VERSION: read_group_0 <= 32'h00010000;
+                VERSION: read_group_0 <= 32'h00020000;
                 TICK_CLOCKS: read_group_0 <= 32'h00001388;
                 LINES: read_group_0 <= {13'd0, differential, invert, swap, 5'd0, mode, 2'd0, filter_clocks};
                 INDEX: read_group_0 <= {24'd0, index_gate, 2'd0, index_presets, index_always};
@@ -325,9 +328,9 @@ module xy_stage_y_pulse_counter_avalon_registers (
                     irq_state_illegal, irq_state_index_seen, irq_state_tick};
                 INTERRUPT_ENABLE: read_group_0 <= {27'd0, irq_enable_velocity_missed, irq_enable_disagreement,
                     irq_enable_illegal, irq_enable_index_seen, irq_enable_tick};
-                FLAGS: read_group_0 <= {30'd0, flag_saturated, flag_partial_write};
+                FLAGS: read_group_0 <= {29'd0, flag_index_seen, flag_saturated, flag_partial_write};
                 STATUS: read_group_0 <= {8'd0, illegal_count, 5'd0, level_z, level_b, level_a, 2'd0,
-                    velocity_pending, velocity_missed, disagreement, illegal, index_armed, index_seen};
+                    velocity_pending, velocity_missed, disagreement, illegal, index_armed, 1'd0};
                 POSITION: read_group_0 <= position;
                 default: read_group_0 <= 32'd0;
             endcase
@@ -384,6 +387,7 @@ module xy_stage_y_pulse_counter_avalon_registers (
         clear_flags = 1'd0;
         flag_partial_write = 1'd0;
         flag_saturated = 1'd0;
+        flag_index_seen = 1'd0;
         shadow_position = 32'sd0;
         shadow_velocity = 32'sd0;
         shadow_time_stamp = 32'd0;

@@ -15,7 +15,7 @@ module xy_stage_y_ram_128x25 (
     input  wire [6:0]  read_address,
     output reg  [24:0] read_data
 );
-    (* no_rw_check *)
+    (* no_rw_check, ramstyle = "no_rw_check" *)
     reg [24:0] words [0:127];
     always @(posedge clk) begin
         if (write_enable) words[write_address] <= write_data;

@@ -61,6 +61,7 @@ module xy_stage_y_sliding_mode_avalon (
     wire [6:0]         saturated_high;
     wire [6:0]         saturated_low;
     wire               overrun;
+    wire               ends;
 
     xy_stage_y_sliding_mode_avalon_registers u_registers (
         .clk             (clk),
@@ -72,7 +73,7 @@ module xy_stage_y_sliding_mode_avalon (
         .avs_writedata   (avs_writedata),
         .avs_readdata    (avs_readdata),
         .irq             (irq),
-        .valid           (valid),
+        .ends            (ends),
         .from_pins       (from_pins),
         .law             (law),
         .modulo          (modulo),
@@ -84,6 +85,7 @@ module xy_stage_y_sliding_mode_avalon (
         .saturated_high  (saturated_high),
         .saturated_low   (saturated_low),
         .setting_refused (setting_refused),
+        .valid           (valid),
         .host_x_0        (host_x_0),
         .host_x_1        (host_x_1),
         .host_x_2        (host_x_2),
@@ -169,7 +171,8 @@ module xy_stage_y_sliding_mode_avalon (
         .limited_ticks          (limited_ticks),
         .saturated_high         (saturated_high),
         .saturated_low          (saturated_low),
-        .overrun                (overrun)
+        .overrun                (overrun),
+        .ends                   (ends)
     );
 
     // Nets that nothing reads.

@@ -16,7 +16,7 @@ module xy_stage_y_sliding_mode_avalon_registers (
     input  wire [31:0]        avs_writedata,
     output wire [31:0]        avs_readdata,
     output reg                irq,
-    input  wire               valid,
+    input  wire               ends,
     output reg                from_pins,
     output reg  [1:0]         law,
     output reg                modulo,
@@ -28,6 +28,7 @@ module xy_stage_y_sliding_mode_avalon_registers (
     input  wire [6:0]         saturated_high,
     input  wire [6:0]         saturated_low,
     input  wire               setting_refused,
+    input  wire               valid,
     output reg  signed [31:0] host_x_0,
     output reg  signed [31:0] host_x_1,
     output reg  signed [31:0] host_x_2,
@@ -106,12 +107,12 @@ module xy_stage_y_sliding_mode_avalon_registers (
     wire write_setting = avs_write && avs_address == SETTING;
 
     reg waits;
-    wire applies = waits && valid;
+    wire applies = waits && ends;
     wire bus_partial = !whole && (write_snapshot || write_commit || write_interrupt_test
         || write_start || write_clear_integral || write_clear_flags || write_setting);
     wire bus_rejected = waits && ((write_commit && whole) || write_law);
 
-    // COMMIT: commit; law and bank of settings, together, at the end of a pass
+    // COMMIT: commit; law and bank of settings, together, between two passes
     always @(posedge clk) begin
         if (rst) begin
             waits <= 1'd0;

@@ -35,7 +35,8 @@ module xy_stage_y_sliding_mode_avalon_sliding_mode (
     output wire [15:0]        limited_ticks,
     output wire [6:0]         saturated_high,
     output wire [6:0]         saturated_low,
-    output wire               overrun
+    output wire               overrun,
+    output wire               ends
 );
     localparam [4:0] OF_REFERENCE = 5'd0;
     localparam [4:0] OF_VELOCITY = 5'd1;
@@ -88,6 +89,7 @@ module xy_stage_y_sliding_mode_avalon_sliding_mode (
     wire               sequencer_busy;
     wire               sequencer_valid;
     wire               sequencer_overrun;
+    wire               sequencer_ends;
     wire signed [23:0] tracking_tracking_error;
     wire               tracking_high;
     wire               tracking_low;
@@ -144,7 +146,8 @@ module xy_stage_y_sliding_mode_avalon_sliding_mode (
         .integrates      (sequencer_integrates),
         .busy            (sequencer_busy),
         .valid           (sequencer_valid),
-        .overrun         (sequencer_overrun)
+        .overrun         (sequencer_overrun),
+        .ends            (sequencer_ends)
     );
 
     xy_stage_y_sliding_mode_avalon_tracking u_tracking (
@@ -278,7 +281,7 @@ module xy_stage_y_sliding_mode_avalon_sliding_mode (
     assign limiter_limit = setting[30:0];
 
     // The integral works against the feedback's sign
-    assign integral_open = reads & at_limit;
+    assign integral_open = sequencer_marks & (sequencer_step == ON_VELOCITY);
     assign integral_enable = sequencer_integrates & to_integral;
     assign integral_falls = error_bits[23];
 
@@ -296,6 +299,7 @@ module xy_stage_y_sliding_mode_avalon_sliding_mode (
     assign saturated_high = cut_high_flags;
     assign saturated_low = cut_low_flags;
     assign overrun = sequencer_overrun;
+    assign ends = sequencer_ends;
 
     always @(*) begin
         sliding_q_next = sliding_q;

@@ -45,12 +45,14 @@ module xy_stage_stage_bench;
         .x_a_low(),
         .x_b_high(),
         .x_b_low(),
+        .x_pwm_trigger(),
         .x_drive_enable(),
         .x_brake_release(),
         .y_a_high(),
         .y_a_low(),
         .y_b_high(),
         .y_b_low(),
+        .y_pwm_trigger(),
         .y_drive_enable(),
         .y_brake_release(),
         .avs_readdata(avs_readdata)
@@ -74,7 +76,7 @@ module xy_stage_stage_bench;
         repeat (4) @(negedge clk);
         rst = 0;
         expect_word(0, 32'h45475453); // MAGIC
-        expect_word(1, 32'h00010000); // VERSION
+        expect_word(1, 32'h00020000); // VERSION
         expect_word(2, 32'h00000002); // AXES
         expect_word(3, 32'h00001388); // TICK_CLOCKS
         expect_word(4, 32'h000000d2); // CONTROL_CLOCKS

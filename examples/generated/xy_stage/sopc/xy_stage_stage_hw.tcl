@@ -4,7 +4,7 @@
 package require -exact qsys 13.0
 
 set_module_property NAME xy_stage_stage
-set_module_property VERSION 1.0
+set_module_property VERSION 2.0
 set_module_property DISPLAY_NAME {stage: xy_stage_stage}
 set_module_property DESCRIPTION {Stage: axes from motion segments to the pins; window 0 is the stage's, then one window per axis.}
 set_module_property GROUP Posicast
@@ -16,7 +16,7 @@ set_module_property EDITABLE false
 
 # Facts for system.h and the device tree
 set_module_assignment embeddedsw.CMacro.MAGIC 0x45475453
-set_module_assignment embeddedsw.CMacro.VERSION_MAJOR 1
+set_module_assignment embeddedsw.CMacro.VERSION_MAJOR 2
 set_module_assignment embeddedsw.CMacro.VERSION_MINOR 0
 set_module_assignment embeddedsw.CMacro.AXES 2
 set_module_assignment embeddedsw.CMacro.TICK_CLOCKS 5000
@@ -35,7 +35,7 @@ set_module_assignment embeddedsw.CMacro.Y_COEFFICIENT_FRACTION 16
 set_module_assignment embeddedsw.dts.vendor posicast
 set_module_assignment embeddedsw.dts.name stage
 set_module_assignment embeddedsw.dts.group motion
-set_module_assignment embeddedsw.dts.compatible {posicast,stage-1.0}
+set_module_assignment embeddedsw.dts.compatible {posicast,stage-2.0}
 
 foreach kind {QUARTUS_SYNTH SIM_VERILOG} {
     add_fileset $kind $kind {} {}
@@ -274,6 +274,7 @@ add_interface_port axis_x x_a_high a_high Output 1
 add_interface_port axis_x x_a_low a_low Output 1
 add_interface_port axis_x x_b_high b_high Output 1
 add_interface_port axis_x x_b_low b_low Output 1
+add_interface_port axis_x x_pwm_trigger pwm_trigger Output 1
 add_interface_port axis_x x_drive_enable drive_enable Output 1
 add_interface_port axis_x x_brake_release brake_release Output 1
 
@@ -293,6 +294,7 @@ add_interface_port axis_y y_a_high a_high Output 1
 add_interface_port axis_y y_a_low a_low Output 1
 add_interface_port axis_y y_b_high b_high Output 1
 add_interface_port axis_y y_b_low b_low Output 1
+add_interface_port axis_y y_pwm_trigger pwm_trigger Output 1
 add_interface_port axis_y y_drive_enable drive_enable Output 1
 add_interface_port axis_y y_brake_release brake_release Output 1
 

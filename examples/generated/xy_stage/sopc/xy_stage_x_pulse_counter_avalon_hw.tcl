@@ -4,7 +4,7 @@
 package require -exact qsys 13.0
 
 set_module_property NAME xy_stage_x_pulse_counter_avalon
-set_module_property VERSION 1.0
+set_module_property VERSION 2.0
 set_module_property DISPLAY_NAME {pulse_counter: xy_stage_x_pulse_counter_avalon}
 set_module_property DESCRIPTION {Pulse counter: encoder or scale signals to position, index and velocity.}
 set_module_property GROUP Posicast
@@ -16,13 +16,13 @@ set_module_property EDITABLE false
 
 # Facts for system.h and the device tree
 set_module_assignment embeddedsw.CMacro.MAGIC 0x544e4350
-set_module_assignment embeddedsw.CMacro.VERSION_MAJOR 1
+set_module_assignment embeddedsw.CMacro.VERSION_MAJOR 2
 set_module_assignment embeddedsw.CMacro.VERSION_MINOR 0
 set_module_assignment embeddedsw.CMacro.TICK_CLOCKS 5000
 set_module_assignment embeddedsw.dts.vendor posicast
 set_module_assignment embeddedsw.dts.name pulse_counter
 set_module_assignment embeddedsw.dts.group motion
-set_module_assignment embeddedsw.dts.compatible {posicast,pulse_counter-1.0}
+set_module_assignment embeddedsw.dts.compatible {posicast,pulse_counter-2.0}
 
 foreach kind {QUARTUS_SYNTH SIM_VERILOG} {
     add_fileset $kind $kind {} {}

@@ -65,7 +65,7 @@
 /* VERSION, constant: of this register map */
 #define POSICAST_STAGE_VERSION_REG 0x01u
 #define IORD_POSICAST_STAGE_VERSION(base) IORD(base, POSICAST_STAGE_VERSION_REG)
-#define POSICAST_STAGE_VERSION_RESET 0x10000u
+#define POSICAST_STAGE_VERSION_RESET 0x20000u
 #define POSICAST_STAGE_VERSION_MINOR_OFST 0u
 #define POSICAST_STAGE_VERSION_MINOR_MSK 0xffffu
 #define POSICAST_STAGE_VERSION_MAJOR_OFST 16u
@@ -126,6 +126,8 @@
 #define POSICAST_STAGE_FLAGS_COMMIT_REJECTED_MSK 0x2u
 #define POSICAST_STAGE_FLAGS_START_REFUSED_OFST 2u
 #define POSICAST_STAGE_FLAGS_START_REFUSED_MSK 0x4u
+#define POSICAST_STAGE_FLAGS_GUARD_REFUSED_OFST 3u
+#define POSICAST_STAGE_FLAGS_GUARD_REFUSED_MSK 0x8u
 
 /* INTERRUPT_STATE, interrupt state: what has happened; write one to clear */
 #define POSICAST_STAGE_INTERRUPT_STATE_REG 0x0cu
@@ -301,8 +303,6 @@
 #define POSICAST_AXIS_CONTROL_ENABLE_MSK 0x1u
 #define POSICAST_AXIS_CONTROL_DIRECT_ENABLE_OFST 1u
 #define POSICAST_AXIS_CONTROL_DIRECT_ENABLE_MSK 0x2u
-#define POSICAST_AXIS_CONTROL_ENCODER_INVERT_OFST 2u
-#define POSICAST_AXIS_CONTROL_ENCODER_INVERT_MSK 0x4u
 #define POSICAST_AXIS_CONTROL_SELF_TEST_OFST 3u
 #define POSICAST_AXIS_CONTROL_SELF_TEST_MSK 0x8u
 
@@ -470,6 +470,20 @@
 #define POSICAST_AXIS_PRESET_PRESET_VALUE_OFST 0u
 #define POSICAST_AXIS_PRESET_PRESET_VALUE_MSK 0xffffffffu
 
+/* ENCODER, guarded: the sign of the loop's feedback */
+#define POSICAST_AXIS_ENCODER_REG 0x24u
+#define IORD_POSICAST_AXIS_ENCODER(base, axis) IORD(base, POSICAST_AXIS_WORD(axis, POSICAST_AXIS_ENCODER_REG))
+#define IOWR_POSICAST_AXIS_ENCODER(base, axis, data) IOWR(base, POSICAST_AXIS_WORD(axis, POSICAST_AXIS_ENCODER_REG), data)
+#define POSICAST_AXIS_ENCODER_ENCODER_INVERT_OFST 0u
+#define POSICAST_AXIS_ENCODER_ENCODER_INVERT_MSK 0x1u
+
+/* PWM_TRIGGER, configuration: when the pin `pwm_trigger` is high for a clock, as for an ADC */
+#define POSICAST_AXIS_PWM_TRIGGER_REG 0x25u
+#define IORD_POSICAST_AXIS_PWM_TRIGGER(base, axis) IORD(base, POSICAST_AXIS_WORD(axis, POSICAST_AXIS_PWM_TRIGGER_REG))
+#define IOWR_POSICAST_AXIS_PWM_TRIGGER(base, axis, data) IOWR(base, POSICAST_AXIS_WORD(axis, POSICAST_AXIS_PWM_TRIGGER_REG), data)
+#define POSICAST_AXIS_PWM_TRIGGER_TRIGGER_PHASE_OFST 0u
+#define POSICAST_AXIS_PWM_TRIGGER_TRIGGER_PHASE_MSK 0xffffu
+
 /* STATUS, live: what the axis is doing */
 #define POSICAST_AXIS_STATUS_REG 0x28u
 #define IORD_POSICAST_AXIS_STATUS(base, axis) IORD(base, POSICAST_AXIS_WORD(axis, POSICAST_AXIS_STATUS_REG))
@@ -518,7 +532,7 @@
 #define POSICAST_AXIS_CAUSES_REG 0x29u
 #define IORD_POSICAST_AXIS_CAUSES(base, axis) IORD(base, POSICAST_AXIS_WORD(axis, POSICAST_AXIS_CAUSES_REG))
 #define POSICAST_AXIS_CAUSES_CAUSES_OFST 0u
-#define POSICAST_AXIS_CAUSES_CAUSES_MSK 0xffffu
+#define POSICAST_AXIS_CAUSES_CAUSES_MSK 0x1ffffu
 
 /* FLAGS, live: what the blocks have flagged, until `CLEAR_FAULTS` */
 #define POSICAST_AXIS_FLAGS_REG 0x2au
@@ -557,6 +571,8 @@
 #define POSICAST_AXIS_FLAGS_PWM_UNALIGNED_MSK 0x8000u
 #define POSICAST_AXIS_FLAGS_ILLEGAL_COUNT_OFST 16u
 #define POSICAST_AXIS_FLAGS_ILLEGAL_COUNT_MSK 0xff0000u
+#define POSICAST_AXIS_FLAGS_SEGMENTS_OUT_OF_RANGE_OFST 24u
+#define POSICAST_AXIS_FLAGS_SEGMENTS_OUT_OF_RANGE_MSK 0x1000000u
 
 /* EVENTS, sticky: what has happened since the flag was cleared */
 #define POSICAST_AXIS_EVENTS_REG 0x2bu
@@ -702,6 +718,7 @@
 #define POSICAST_CAUSE_WATCHDOG 0x2000u
 #define POSICAST_CAUSE_GROUP_STOP 0x4000u
 #define POSICAST_CAUSE_SCHEDULE 0x8000u
-#define POSICAST_CAUSE_NAMES {"emergency stop", "pwm tripped", "drive lost", "limit plus", "limit minus", "soft limit plus", "soft limit minus", "following error", "deviation", "saturation", "encoder lost", "encoder error", "segments", "watchdog", "group stop", "schedule"}
+#define POSICAST_CAUSE_RANGE 0x10000u
+#define POSICAST_CAUSE_NAMES {"emergency stop", "pwm tripped", "drive lost", "limit plus", "limit minus", "soft limit plus", "soft limit minus", "following error", "deviation", "saturation", "encoder lost", "encoder error", "segments", "watchdog", "group stop", "schedule", "range"}
 
 #endif

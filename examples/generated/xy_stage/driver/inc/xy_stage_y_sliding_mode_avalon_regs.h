@@ -29,7 +29,7 @@
 #define XY_STAGE_Y_SLIDING_MODE_AVALON_SNAPSHOT_REG 0x08u
 #define IOWR_XY_STAGE_Y_SLIDING_MODE_AVALON_SNAPSHOT(base, data) IOWR(base, XY_STAGE_Y_SLIDING_MODE_AVALON_SNAPSHOT_REG, data)
 
-/* COMMIT, commit: law and bank of settings, together, at the end of a pass */
+/* COMMIT, commit: law and bank of settings, together, between two passes */
 #define XY_STAGE_Y_SLIDING_MODE_AVALON_COMMIT_REG 0x09u
 #define IORD_XY_STAGE_Y_SLIDING_MODE_AVALON_COMMIT(base) IORD(base, XY_STAGE_Y_SLIDING_MODE_AVALON_COMMIT_REG)
 #define IOWR_XY_STAGE_Y_SLIDING_MODE_AVALON_COMMIT(base, data) IOWR(base, XY_STAGE_Y_SLIDING_MODE_AVALON_COMMIT_REG, data)

@@ -25,6 +25,7 @@ module xy_stage_de1soc (
     output wire x_a_low,
     output wire x_b_high,
     output wire x_b_low,
+    output wire x_pwm_trigger,
     output wire x_drive_enable,
     output wire x_brake_release,
     input  wire y_a,
@@ -40,6 +41,7 @@ module xy_stage_de1soc (
     output wire y_a_low,
     output wire y_b_high,
     output wire y_b_low,
+    output wire y_pwm_trigger,
     output wire y_drive_enable,
     output wire y_brake_release
 );
@@ -79,6 +81,7 @@ module xy_stage_de1soc (
         .axis_x_a_low(x_a_low),
         .axis_x_b_high(x_b_high),
         .axis_x_b_low(x_b_low),
+        .axis_x_pwm_trigger(x_pwm_trigger),
         .axis_x_drive_enable(x_drive_enable),
         .axis_x_brake_release(x_brake_release),
         .axis_y_a(y_a),
@@ -94,6 +97,7 @@ module xy_stage_de1soc (
         .axis_y_a_low(y_a_low),
         .axis_y_b_high(y_b_high),
         .axis_y_b_low(y_b_low),
+        .axis_y_pwm_trigger(y_pwm_trigger),
         .axis_y_drive_enable(y_drive_enable),
         .axis_y_brake_release(y_brake_release)
     );
