@@ -38,6 +38,7 @@ fn lockstep_everything_at_random() {
             (random.word() & 0x7fff_ffff) >> random.below(31),
             random.below(64),
             u64::from(random.once_in(50)),
+            u64::from(random.once_in(2)),
         ];
         ClockedBlock::step(&mut model, &inputs, &mut expected).unwrap();
         rusthdl.step(&inputs, &mut actual).unwrap();

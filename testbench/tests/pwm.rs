@@ -128,7 +128,7 @@ fn crosssim_icarus_agrees_with_the_model() {
 /// Breaks the Verilog and insists on a mismatch.
 fn caught(from: &str, to: &str) -> Outcome {
     let bench = Bench::new(plain(), from, to);
-    let outcome = bench.run(&mut bench.verilated(1), 1, 200_000);
+    let outcome = bench.run(&mut bench.verilated(1), 1, 600_000);
     assert_eq!(outcome.report.result, Verdict::Mismatch, "`{to}` is not found");
     outcome
 }

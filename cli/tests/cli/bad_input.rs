@@ -95,6 +95,8 @@ fn fast_stage(sample_hz: &str, pwm_hz: &str) -> String {
         .replace("frequency_hz = 20_000", &format!("frequency_hz = {pwm_hz}"))
         .replace("dead_time_s = 500e-9", "dead_time_s = 0.0")
         .replace("minimum_pulse_s = 1e-6", "minimum_pulse_s = 0.0")
+        // The times of the guards are words of 16 bits, in ticks.
+        .replace("watchdog_s = 0.5", "watchdog_s = 0.05")
 }
 
 #[test]

@@ -66,7 +66,7 @@ impl Bench {
             "--command",
             "step.csv",
             "--cycles",
-            "500",
+            "20000",
         ];
         self.posicast(&[&words, more].concat())
     }

@@ -219,7 +219,7 @@ impl Logic for Pwm {
         comment!("registers that were settled all the time");
         self.settled.next = self.timing.settled.val() & self.carrier.settled.val();
         self.stable.d.next = self.settled.val() & (self.stable.q.val() | !self.command.computes.val());
-        comment!("Not where both sides last the minimum and no longer:");
+        comment!("Not where both sides last just the minimum:");
         comment!("a leg that is late once would stay late");
         self.busy_clocks.next = (bit_cast::<16, 10>(self.timing.dead_time_used.val())
             + bit_cast::<16, 10>(self.timing.minimum_pulse_used.val()))

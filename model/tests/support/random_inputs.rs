@@ -47,6 +47,8 @@ pub(crate) const STAGE: Hints = &[
     ("tick", RARE),
     ("divide", RARE),
     ("line_mode", &[0]),
+    // Positions are anything: not modulo, they would always be out of range.
+    ("modulo", &[1]),
     ("emergency_stop_n", USUAL),
     ("limit_plus_n", &[1]),
     ("limit_minus_n", &[1]),

@@ -101,6 +101,7 @@ pub(crate) fn axis(tick_clocks: u64) -> (Composition, Vec<Box<dyn Moore>>) {
                 ("overflow", "segments_overflow"),
                 ("underrun", "segments_underrun"),
                 ("tick_missed", "segments_tick_missed"),
+                ("out_of_range", "segments_out_of_range"),
                 ("refused", "segments_refused"),
             ],
         ),

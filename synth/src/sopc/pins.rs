@@ -7,8 +7,17 @@ use super::SopcError;
 use super::board::Board;
 use super::unit::{PINS, Unit};
 
-/// Ports of the stage that do not leave the device: the one is for a trace, the other has no PLL to watch.
-pub(super) const INSIDE: [&str; 2] = ["tick", "pll_locked"];
+/// Ports of the stage that do not leave the device: the tick is for a trace, and there is no PLL to watch.
+const INSIDE: [&str; 2] = ["tick", "pll_locked"];
+
+/// How the ports end that start an ADC's conversion: the ADC's own logic is in the device, and these boards' headers have no pins to
+/// spare for four axes.
+const ADC_TRIGGER: &str = "_pwm_trigger";
+
+/// Whether a port of the stage has no pin.
+pub(super) fn stays_inside(port: &str) -> bool {
+    INSIDE.contains(&port) || port.ends_with(ADC_TRIGGER)
+}
 
 /// Ports of the top level beside those of the stage.
 pub(super) const CLOCK: &str = "clock_50";
@@ -73,7 +82,7 @@ pub(super) fn assign(board: Board, stage: &Unit<'_>) -> Result<Vec<Pin>, SopcErr
     conduits.sort_by_key(|conduit| conduit.name != PINS);
     for conduit in conduits {
         for signal in conduit.signals {
-            if INSIDE.contains(&signal.port.as_str()) {
+            if stays_inside(&signal.port) {
                 continue;
             }
             if signal.width != 1 {

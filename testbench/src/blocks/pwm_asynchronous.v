@@ -6,6 +6,7 @@ module posicast_asynchronous;
     reg fault_n = 1;
     reg pll_locked = 1;
     reg clear_trip = 0;
+    reg sync = 0;
     wire a_high, a_low, b_high, b_low, tripped;
     wire [3:0] pins = {a_high, a_low, b_high, b_low};
     reg [3:0] off;
@@ -15,7 +16,7 @@ module posicast_asynchronous;
 
     TOP dut (
         .clk(clk), .rst(rst), .enable(1'b1), .mode(2'd1), .period(16'dPERIOD), .duty(17'sd0), .max_duty(16'hffff),
-        .update_at_peak(1'b0), .dead_time(10'dDEAD), .minimum_pulse(10'dPULSE), .sync(1'b0), .phase(16'd0),
+        .update_at_peak(1'b0), .dead_time(10'dDEAD), .minimum_pulse(10'dPULSE), .sync(sync), .phase(16'd0),
         .trigger_phase(16'd0), .feed(1'b0), .watchdog_periods(8'd0), .filter_clocks(8'hff), .fault_n(fault_n),
         .pll_locked(pll_locked), .filtered_fault_n(2'b11), .clear_trip(clear_trip), .clear_flags(1'b0), .mask_pins(1'b0),
         .a_high(a_high), .a_low(a_low), .b_high(b_high), .b_low(b_low), .tripped(tripped)
@@ -23,6 +24,8 @@ module posicast_asynchronous;
 
     always #10 clk = !clk;
     always @(posedge clk) clocks = clocks + 1;
+    // A PWM on a time base waits for it.
+    always @(negedge clk) sync = clocks % PERIOD == 0;
 
     task check(input good, input [8 * 60 - 1:0] what);
         if (good !== 1'b1 && errors < 5) begin

@@ -220,5 +220,8 @@ fn lockstep_joined_models_share_reset_and_strobe() {
         .keys()
         .map(String::as_str)
         .collect();
-    assert_eq!(keys, ["name", "instance", "cycles", "mismatches", "first"]);
+    assert_eq!(
+        keys,
+        ["name", "instance", "cycles", "mismatches", "first", "not_exercised"]
+    );
 }

@@ -234,7 +234,7 @@ module xy_stage_y_pwm_avalon_pwm (
     assign settled = timing_settled & carrier_settled;
     assign stable_next = settled & (stable | !command_computes);
 
-    // Not where both sides last the minimum and no longer:
+    // Not where both sides last just the minimum:
     // a leg that is late once would stay late
     assign busy_clocks = ({6'd0, timing_dead_time_used} + {6'd0, timing_minimum_pulse_used}) << 1;
     assign no_slack = period == busy_clocks;

@@ -8,8 +8,8 @@ set_clock_groups -asynchronous -group {altera_reserved_tck} -group {clock_50}
 # Delays of drivers and wires outside, in ns: yours
 set_input_delay -clock clock_50 -min 0.0 [get_ports {reset_button_n uart_rxd emergency_stop_n x_a x_b x_z x_limit_plus_n x_limit_minus_n x_home x_drive_ready x_drive_fault_n x_fault_n y_a y_b y_z y_limit_plus_n y_limit_minus_n y_home y_drive_ready y_drive_fault_n y_fault_n}]
 set_input_delay -clock clock_50 -max 5.0 [get_ports {reset_button_n uart_rxd emergency_stop_n x_a x_b x_z x_limit_plus_n x_limit_minus_n x_home x_drive_ready x_drive_fault_n x_fault_n y_a y_b y_z y_limit_plus_n y_limit_minus_n y_home y_drive_ready y_drive_fault_n y_fault_n}]
-set_output_delay -clock clock_50 -min 0.0 [get_ports {uart_txd x_a_high x_a_low x_b_high x_b_low x_pwm_trigger x_drive_enable x_brake_release y_a_high y_a_low y_b_high y_b_low y_pwm_trigger y_drive_enable y_brake_release}]
-set_output_delay -clock clock_50 -max 5.0 [get_ports {uart_txd x_a_high x_a_low x_b_high x_b_low x_pwm_trigger x_drive_enable x_brake_release y_a_high y_a_low y_b_high y_b_low y_pwm_trigger y_drive_enable y_brake_release}]
+set_output_delay -clock clock_50 -min 0.0 [get_ports {uart_txd x_a_high x_a_low x_b_high x_b_low x_drive_enable x_brake_release y_a_high y_a_low y_b_high y_b_low y_drive_enable y_brake_release}]
+set_output_delay -clock clock_50 -max 5.0 [get_ports {uart_txd x_a_high x_a_low x_b_high x_b_low x_drive_enable x_brake_release y_a_high y_a_low y_b_high y_b_low y_drive_enable y_brake_release}]
 
 # Lines change at any time. Each ends in a synchroniser, and the first flip-flop on the way may be late
 set_false_path -from [get_ports {reset_button_n emergency_stop_n x_a x_b x_z x_limit_plus_n x_limit_minus_n x_home x_drive_ready x_drive_fault_n x_fault_n y_a y_b y_z y_limit_plus_n y_limit_minus_n y_home y_drive_ready y_drive_fault_n y_fault_n}] -to [get_registers {*synchroniser_first *|pin_register_q}]
