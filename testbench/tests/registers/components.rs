@@ -139,8 +139,9 @@ fn lockstep_sliding_mode_a_million_random_clocks() {
 }
 
 #[test]
-fn lockstep_pwm_a_million_random_clocks() {
-    lockstep(&pwm(), 1_000_000);
+fn lockstep_pwm_two_million_random_clocks() {
+    // A PWM that waits for its time base after every change of period runs seldom under random traffic.
+    lockstep(&pwm(), 2_000_000);
 }
 
 #[test]
