@@ -173,8 +173,9 @@ fn unit_a_watched_scale_stops_what_leaves_it() {
     assert!(bench.switch_on(20_000_000).unwrap());
     move_by(&machine, &mut bench, 1, 500);
     assert_eq!(bench.read("y_causes").unwrap(), 0);
-    // A scale that counts the other way is a broken coupling.
-    bench.write("y_scale_control", 1).unwrap();
+    // A scale that stands while the motor moves is a broken coupling.
+    let stands = bench.plant(1).scale();
+    bench.force_scale(1, Some(stands));
     let at = bench.read("y_command_position").unwrap() as i32;
     let limits = TickLimits::of_axis(&machine.axes[1], &machine.clock);
     for entry in plan_move(i64::from(at) << 24, at + 256 * 500, &limits).unwrap() {
