@@ -1,5 +1,4 @@
 //! `posicast reproduce` and `posicast design --compare`: exit status, standard output, the JSON documents.
-#![cfg(test)]
 
 use assert_cmd::Command;
 use predicates::str::contains;

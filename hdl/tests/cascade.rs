@@ -1,8 +1,6 @@
 //! The cascade in RustHDL's simulator against its model, and its Verilog as text.
 
-#![allow(clippy::unwrap_used, reason = "a helper that fails fails its test")]
-
-mod random;
+use crate::random;
 
 use posicast_hdl::cascade::{emit, simulate};
 use posicast_model::rtl::cascade::{

@@ -1,8 +1,6 @@
 //! The small blocks of components in RustHDL's simulator against their models, and compositions that are refused.
 
-#![allow(clippy::unwrap_used, reason = "a helper that fails fails its test")]
-
-mod random;
+use crate::random;
 
 use posicast_hdl::emit::{Cause, Header, connect};
 use posicast_hdl::{divider, divider_share, group, sample_select, schedule, setting_banks, time_base};

@@ -1,8 +1,6 @@
 //! The drive command in RustHDL's simulator against its model.
 
-#![allow(clippy::unwrap_used, reason = "a helper that fails fails its test")]
-
-mod random;
+use crate::random;
 
 use posicast_hdl::drive_command::{emit, simulate};
 use posicast_model::rtl::ClockedBlock;

@@ -1,8 +1,6 @@
 //! The excitation in RustHDL's simulator against its model.
 
-#![allow(clippy::unwrap_used, reason = "a helper that fails fails its test")]
-
-mod random;
+use crate::random;
 
 use posicast_hdl::excitation::{emit, simulate};
 use posicast_model::rtl::ClockedBlock;

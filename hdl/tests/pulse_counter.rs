@@ -1,8 +1,6 @@
 //! The pulse counter in RustHDL's simulator against its model.
 
-#![allow(clippy::unwrap_used, reason = "a helper that fails fails its test")]
-
-mod random;
+use crate::random;
 
 use posicast_hdl::pulse_counter::{emit, simulate};
 use posicast_model::rtl::ClockedBlock;

@@ -1,8 +1,6 @@
 //! Lock step of the shaper in RustHDL's simulator with its model: every output, every clock.
 
-#![allow(clippy::unwrap_used, reason = "a helper that fails fails its test")]
-
-mod stimulus;
+use crate::stimulus;
 
 use posicast_model::rtl::shaper::{
     Inputs, MOTION_WORD_BITS, Motion, Outputs, RING_ADDRESS_BITS, Shaper, ShaperConfig, TAP_INDEX_BITS, WORD_BITS,

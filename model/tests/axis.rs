@@ -1,7 +1,5 @@
 //! The supervisor of an axis: what a motion engineer expects of it, and `hold` against `step`.
 
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a helper that fails fails its test")]
-
 use posicast_model::rtl::axis::{
     Axis, CLEAR_CLOCKS, Cause, INPUT_PORTS, Inputs, KICK, LINE_CLOCKS, Outputs, State, WATCH_CLOCKS,
 };

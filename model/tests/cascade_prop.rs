@@ -1,7 +1,5 @@
 //! The cascade against its table, and its two models against each other.
 
-#![allow(clippy::unwrap_used, reason = "a helper that fails fails its test")]
-
 use posicast_model::rtl::cascade::{Cascade, CascadeConfig, Inputs, SampleCascade, WORD_BITS, pass_clocks};
 use posicast_model::rtl::shaper::{SampleShaper, ShaperConfig};
 use proptest::prelude::*;

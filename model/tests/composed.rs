@@ -1,15 +1,9 @@
 //! Compositions, clocked only where something happens, against every block clocked in every clock.
 
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a helper that fails fails its test")]
-
-#[path = "support/plain.rs"]
-mod plain;
-#[path = "support/random_inputs.rs"]
-mod random_inputs;
-#[path = "support/stage.rs"]
-mod stage;
-#[path = "support/wrong.rs"]
-mod wrong;
+use crate::support::plain;
+use crate::support::random_inputs;
+use crate::support::stage;
+use crate::support::wrong;
 
 use plain::Plain;
 use posicast_model::rtl::component::Component;

@@ -1,5 +1,4 @@
 //! Gains from a machine file, their warnings, and loops closed over a mass with friction by the fixed-point controller.
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a helper that fails fails its test")]
 
 use posicast_model::control::{ControlError, ControlWarning, Derived, gains, loop_lag_s};
 use posicast_model::rtl::sliding_mode::{Law, Motion, Row, TickController};

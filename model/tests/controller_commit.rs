@@ -1,5 +1,4 @@
 //! The controller as a component: law and settings change together, between two passes, whenever the host commits.
-#![allow(clippy::unwrap_used, reason = "a helper that fails fails its test")]
 
 use posicast_model::rtl::component::Component;
 use posicast_model::rtl::composition::Composed;

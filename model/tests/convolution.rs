@@ -1,7 +1,6 @@
 //! What the convolution of several modes' shapers does to partial sums and tolerances.
-#![cfg(test)]
 
-mod support;
+use crate::support;
 
 use posicast_model::analysis::residual_vibration;
 use posicast_model::design::{ConvolutionFigures, ConvolutionWarning, convolution_figures, design_axis};

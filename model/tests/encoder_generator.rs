@@ -1,7 +1,5 @@
 //! The internal encoder against what it promises, and through the pulse counter that it tests.
 
-#![allow(clippy::unwrap_used, reason = "a helper that fails fails its test")]
-
 use posicast_model::rtl::encoder_generator::{EncoderGenerator, Inputs, LINES};
 use posicast_model::rtl::pulse_counter::{self, PulseCounter};
 use proptest::prelude::*;

@@ -1,7 +1,5 @@
 //! The excitation against what it promises.
 
-#![allow(clippy::unwrap_used, reason = "a helper that fails fails its test")]
-
 use posicast_model::rtl::excitation::{Excitation, Inputs, Kind, Outputs, TICK_CLOCKS};
 use proptest::prelude::*;
 

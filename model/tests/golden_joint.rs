@@ -1,7 +1,6 @@
 //! Shapers for several modes at once against numbers that were computed elsewhere (`golden/joint.json` says where).
-#![cfg(test)]
 
-mod support;
+use crate::support;
 
 use posicast_model::analysis::{StartControl, residual_vibration};
 use posicast_model::design::antisymmetric::{Swing, exact, three_impulse, two_impulse};

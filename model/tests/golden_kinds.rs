@@ -1,10 +1,8 @@
 //! The kinds with several humps, the bias-point kinds and the hybrids of two modes, against numbers computed elsewhere
 //! (`golden/*.json` say where).
-#![cfg(test)]
 
-#[path = "support/golden.rs"]
-mod golden;
-mod support;
+use crate::support;
+use crate::support::golden;
 
 use std::collections::BTreeMap;
 

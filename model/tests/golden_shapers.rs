@@ -1,9 +1,7 @@
 //! Designs, figures and taps against numbers that were computed elsewhere (`golden/*.json` say where).
-#![cfg(test)]
 
-#[path = "support/golden.rs"]
-mod golden;
-mod support;
+use crate::support;
+use crate::support::golden;
 
 use golden::{close, number, numbers, rows};
 use posicast_model::analysis::{insensitivity, residual_vibration};

@@ -1,9 +1,8 @@
 //! The published XY stage: its two plants, their shapers, and what is measured on the simulated machine.
 //!
 //! Percentages are those of the notes on the thesis (sections 5 and 8.5), to the digits printed there.
-#![cfg(test)]
 
-mod support;
+use crate::support;
 
 use posicast_model::analysis::tap_impulses;
 use posicast_model::design::{AxisTables, design_machine};

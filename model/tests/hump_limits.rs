@@ -1,5 +1,4 @@
 //! Where the kinds with humps end: the limits that an error names divide the designs from the errors.
-#![cfg(test)]
 
 use posicast_model::design::kind::Kind;
 use posicast_model::design::{DesignError, hump_ei};

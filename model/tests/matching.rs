@@ -1,5 +1,4 @@
 //! Equal total delay of the axes of a stage: numbers computed elsewhere, and what holds for every stage.
-#![cfg(test)]
 
 use posicast_model::analysis::residual_vibration;
 use posicast_model::design::matching::mode_lag_s;

@@ -2,7 +2,6 @@
 //!
 //! The counts are those of the notes on the papers, one row per printed number. A change of them is a change of what
 //! posicast says about a paper: it needs a reason.
-#![cfg(test)]
 
 use posicast_model::papers::{Paper, Value, Verdict};
 

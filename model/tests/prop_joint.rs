@@ -1,7 +1,6 @@
 //! What holds for every shaper of several modes at once, whatever the modes; and that absurd numbers end in errors.
-#![cfg(test)]
 
-mod support;
+use crate::support;
 
 use posicast_model::analysis::residual_vibration;
 use posicast_model::design::antisymmetric::{self, Method, Participant};

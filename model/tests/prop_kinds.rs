@@ -1,5 +1,4 @@
 //! What the EI, negative and bias-point kinds promise, at random modes and tolerances, from a millihertz to a megahertz.
-#![cfg(test)]
 
 use std::f64::consts::PI;
 

@@ -1,7 +1,6 @@
 //! What holds for every shaper, whatever the mode: sums, zeros, tolerances, tables; and that absurd numbers end in errors.
-#![cfg(test)]
 
-mod support;
+use crate::support;
 
 use posicast_model::analysis::{insensitivity, residual_vibration, sensitivity_curve, tap_impulses};
 use posicast_model::design::kind::Kind;

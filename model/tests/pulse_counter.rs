@@ -1,7 +1,5 @@
 //! The pulse counter against what a motion engineer expects of it, alone and with its divider.
 
-#![allow(clippy::unwrap_used, reason = "a helper that fails fails its test")]
-
 use posicast_model::rtl::divider::{self, Divider, DividerConfig};
 use posicast_model::rtl::pulse_counter::{Inputs, PulseCounter};
 use proptest::prelude::*;

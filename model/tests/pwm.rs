@@ -1,7 +1,5 @@
 //! The PWM's model against its pin rule, its fast path, and what a motion engineer expects of it.
 
-#![allow(clippy::unwrap_used, reason = "a helper that fails fails its test")]
-
 use posicast_model::rtl::pwm::pulses::{Bridge, Half, Latched, Pattern, Timing};
 use posicast_model::rtl::pwm::{ActiveLow, Gates, Inputs, Mode, Outputs, Pwm, PwmConfig};
 use proptest::prelude::*;

@@ -1,13 +1,8 @@
 //! What a block says of its quiet clocks, against the block clock by clock. A new block gets a line in `blocks`.
 
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a helper that fails fails its test")]
-
-#[path = "support/random_inputs.rs"]
-mod random_inputs;
-#[path = "support/stage.rs"]
-mod stage;
-#[path = "support/wrong.rs"]
-mod wrong;
+use crate::support::random_inputs;
+use crate::support::stage;
+use crate::support::wrong;
 
 use posicast_model::rtl::axis::Axis;
 use posicast_model::rtl::component::Component;

@@ -1,7 +1,5 @@
 //! The bank's fast path against its step, descriptions that do not hold together, and parts that make no whole.
 
-#![allow(clippy::unwrap_used, reason = "a helper that fails fails its test")]
-
 use posicast_model::rtl::ClockedBlock;
 use posicast_model::rtl::composition::{Composition, CompositionError, Part};
 use posicast_model::rtl::divider::{self, DividerConfig};

@@ -1,7 +1,5 @@
 //! The command FIFO's model: what a host sees, and `hold` against `step`.
 
-#![allow(clippy::unwrap_used, reason = "a helper that fails fails its test")]
-
 use posicast_model::motion::{TickLimits, plan_move};
 use posicast_model::rtl::segments::{
     ENTRIES_MAX, Entry, Inputs, Integrator, LATENCY_CLOCKS, Motion, Outputs, Point, REACH_COUNTS, STAND_COUNTS,

@@ -1,8 +1,6 @@
 //! What a machine does that is handed over from one table to another while it moves: the figures of `docs/shaper.md`.
 
-#![allow(clippy::unwrap_used, reason = "a helper that fails fails its test")]
-
-mod support;
+use crate::support;
 
 use posicast_model::design::design_machine;
 use posicast_model::mode::Mode;

@@ -1,8 +1,6 @@
 //! The shaper for commands in motion: its two models against each other, and against what a handover and a modulo axis
 //! promise.
 
-#![allow(clippy::unwrap_used, reason = "a helper that fails fails its test")]
-
 use posicast_model::rtl::shaper::{Inputs, Motion, MotionShaper, Shaper, ShaperConfig, swap_how};
 use posicast_model::taps::{Tap, TapTable};
 use proptest::prelude::*;

@@ -1,7 +1,5 @@
 //! The shaper's two models against each other, and against exact arithmetic.
 
-#![allow(clippy::unwrap_used, reason = "a helper that fails fails its test")]
-
 use fixed::types::I96F32;
 use posicast_model::rtl::shaper::{Inputs, Outputs, SampleShaper, Shaper, ShaperConfig, pass_clocks};
 use posicast_model::taps::{COEFFICIENT_MAX, COEFFICIENT_MIN, Tap, TapTable};

@@ -1,7 +1,5 @@
 //! The shaper's protocol, one rule of the datasheet per test.
 
-#![allow(clippy::unwrap_used, reason = "a helper that fails fails its test")]
-
 use posicast_model::rtl::ClockedBlock;
 use posicast_model::rtl::shaper::{Inputs, Outputs, SampleShaper, Shaper, ShaperConfig, TableError, pass_clocks};
 use posicast_model::taps::{Tap, TapTable};

@@ -1,5 +1,4 @@
 //! The controller: golden vectors, float against fixed point, clocks against ticks, and closed loops on a mass with friction.
-#![allow(clippy::unwrap_used, reason = "a helper that fails fails its test")]
 
 use posicast_model::control::{FloatController, Gains, Tracking};
 use posicast_model::rtl::sliding_mode::{

@@ -1,7 +1,5 @@
 //! The stage of a machine file: that its parts fit together.
 
-#![allow(clippy::unwrap_used, reason = "a helper that fails fails its test")]
-
 use posicast_model::control;
 use posicast_model::design::design_machine;
 use posicast_model::rtl::component::Component;

@@ -1,5 +1,4 @@
 //! The words of the supervisor: worked out by hand, never looser than the file, and nothing that does not fit.
-#![cfg(test)]
 
 use posicast_model::control::{Supervision, SupervisionError, TableBounds, no_travel, supervision};
 use posicast_model::motion::TickLimits;

@@ -1,7 +1,5 @@
 //! The trace memory's model: what a motion engineer expects of it, and `hold` against `step`.
 
-#![allow(clippy::unwrap_used, reason = "a helper that fails fails its test")]
-
 use posicast_model::rtl::trace::{Inputs, Outputs, SIGNALS, State, Trace, TraceConfig, row_clocks, row_signals};
 use proptest::prelude::*;
 

@@ -1,7 +1,5 @@
 //! The clock estimate, by the nextpnr that `scripts/install-tools` puts into `.venv`: without it these tests fail.
 
-#![allow(clippy::unwrap_used, reason = "a helper that fails is a failed test")]
-
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 

@@ -1,7 +1,5 @@
 //! Who owns what in an output folder, and that nothing is half written.
 
-#![allow(clippy::unwrap_used, reason = "a helper that fails is a failed test")]
-
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};

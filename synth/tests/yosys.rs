@@ -1,7 +1,5 @@
 //! Estimates and checks by the Yosys that is installed: without it these tests fail.
 
-#![allow(clippy::unwrap_used, reason = "a helper that fails is a failed test")]
-
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 

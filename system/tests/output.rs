@@ -1,7 +1,5 @@
 //! Which file a command may write to, and what it leaves there.
 
-#![allow(clippy::unwrap_used, reason = "a helper that fails is a failed test")]
-
 use posicast_system::output::{Draft, OutputError, Outputs, is_ours, write_text};
 use std::fs;
 use std::io::Write;

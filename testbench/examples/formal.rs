@@ -2,7 +2,7 @@
 //!
 //! Prints a row per proof. Exit status: 0 all proven and all covers reached, 1 not so, 2 cannot run, 3 a tool is missing.
 //! `POSICAST_FORMAL_KEEP` names a folder that keeps all files, counterexamples as VCD among them;
-//! `POSICAST_FORMAL_SECONDS` limits each run of an engine (300).
+//! `POSICAST_FORMAL_SECONDS` limits each run of an engine (900).
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "it is a program")]
 
 use std::path::PathBuf;
@@ -35,7 +35,7 @@ fn prove() -> Result<bool, Error> {
     let seconds = std::env::var("POSICAST_FORMAL_SECONDS")
         .ok()
         .and_then(|text| text.parse().ok());
-    let limit = Duration::from_secs(seconds.unwrap_or(300));
+    let limit = Duration::from_secs(seconds.unwrap_or(900));
     let temporary = std::env::temp_dir().join(format!("posicast-formal-{}", std::process::id()));
     let kept = std::env::var_os("POSICAST_FORMAL_KEEP").map(PathBuf::from);
     let folder = kept.clone().unwrap_or_else(|| temporary.clone());

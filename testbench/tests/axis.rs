@@ -1,8 +1,6 @@
 //! The supervisor's Verilog against its bit-exact model, every output in every clock, and what must never happen.
 
-#![allow(clippy::unwrap_used, reason = "a helper that fails fails its test")]
-
-mod support;
+use crate::support;
 
 use posicast_model::rtl::axis::Axis;
 use posicast_model::rtl::{ClockedBlock, axis};

@@ -1,5 +1,4 @@
 //! Coverage of a few blocks, as the example `coverage` measures all of them; and that it notices what is not reached.
-#![allow(clippy::unwrap_used, clippy::panic)] // helpers of tests, which clippy.toml exempts only inside of #[test]
 
 use posicast_model::rtl::{Direction, Port};
 use posicast_testbench::blocks::Block;

@@ -1,7 +1,6 @@
 //! Some blocks in two simulators with their waveforms compared, and faults that only this finds.
 //!
 //! All blocks: the example `second_simulator`, in `scripts/verify-all`.
-#![allow(clippy::unwrap_used, clippy::panic)] // helpers of tests, which clippy.toml exempts only inside of #[test]
 
 use posicast_model::rtl::divider::DividerConfig;
 use posicast_testbench::blocks::{Block, DividerBlock, Part, PartBlock, library};

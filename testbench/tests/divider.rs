@@ -1,7 +1,6 @@
 //! The divider's Verilog against its bit-exact model, every output in every clock.
-#![allow(clippy::unwrap_used)] // helpers of tests, which clippy.toml exempts only inside of #[test]
 
-mod support;
+use crate::support;
 
 use posicast_model::rtl::divider::DividerConfig;
 use posicast_testbench::blocks::DividerBlock;

@@ -1,6 +1,6 @@
 //! The excitation's Verilog against its bit-exact model, every output in every clock.
 
-mod support;
+use crate::support;
 
 use posicast_testbench::blocks::ExcitationBlock;
 use support::{caught, icarus_agrees, million_random_clocks};

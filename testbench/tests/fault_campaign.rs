@@ -1,7 +1,6 @@
 //! The fault campaign: a share of its cases on the model, a few with the RTL beside it, and stages that are slower than stated.
 //!
 //! All of them: `scripts/verify-all`, which runs the example of the same name.
-#![allow(clippy::unwrap_used)] // helpers of tests, which clippy.toml exempts only inside of #[test]
 
 use std::thread;
 

@@ -1,5 +1,4 @@
 //! The mutation rung on small blocks: no mutant stays unknown; and it says so where stimuli see nothing.
-#![allow(clippy::unwrap_used)] // helpers of tests, which clippy.toml exempts only inside of #[test]
 
 use posicast_model::{control, design::design_machine, spec};
 use posicast_testbench::blocks::{Block, Part, PartBlock};

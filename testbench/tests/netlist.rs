@@ -1,7 +1,6 @@
 //! Some blocks as netlists of logic elements: against their models, and proven equal to their RTL; and netlists with a fault.
 //!
 //! All blocks: the example `netlist`, in `scripts/verify-all`.
-#![allow(clippy::unwrap_used, clippy::panic)] // helpers of tests, which clippy.toml exempts only inside of #[test]
 
 use std::time::Duration;
 

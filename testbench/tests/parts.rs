@@ -1,7 +1,6 @@
 //! The small blocks between others: lock step of each against its model.
-#![allow(clippy::unwrap_used)] // helpers of tests, which clippy.toml exempts only inside of #[test]
 
-mod support;
+use crate::support;
 
 use posicast_model::rtl::divider::DividerConfig;
 use posicast_model::rtl::schedule::ScheduleConfig;

@@ -1,6 +1,6 @@
 //! The pulse counter's Verilog against its bit-exact model, every output in every clock.
 
-mod support;
+use crate::support;
 
 use posicast_testbench::blocks::PulseCounterBlock;
 use support::{caught, icarus_agrees, million_random_clocks};

@@ -1,5 +1,4 @@
 //! The PWM's Verilog against its bit-exact model, every output in every clock, with the gates watched.
-#![allow(clippy::unwrap_used, clippy::panic)] // helpers of tests, which clippy.toml exempts only inside of #[test]
 
 use posicast_hdl::pwm::emit;
 use posicast_model::rtl::ClockedBlock;

@@ -1,5 +1,4 @@
 //! The PWM's fault path in an event simulator: pulses shorter than a clock, which a cycle simulation cannot see.
-#![allow(clippy::unwrap_used, clippy::panic)] // helpers of tests, which clippy.toml exempts only inside of #[test]
 
 use posicast_hdl::pwm::emit;
 use posicast_model::rtl::pwm::{ActiveLow, PwmConfig};

@@ -1,6 +1,5 @@
 //! The PWM's Verilog against the pin rule alone, over a million periods: every edge on the pins is that of
 //! `posicast_model::rtl::pwm::pulses`, a function of what is latched at the boundary. The clocked model is not asked.
-#![allow(clippy::unwrap_used, clippy::panic)] // helpers of tests, which clippy.toml exempts only inside of #[test]
 
 use posicast_hdl::pwm::emit;
 use posicast_model::rtl::pwm::pulses::{Bridge, Half, Latched, Timing};

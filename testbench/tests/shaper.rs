@@ -1,7 +1,6 @@
 //! The shaper's Verilog against its bit-exact model, every output in every clock.
-#![allow(clippy::unwrap_used, clippy::panic)] // helpers of tests, which clippy.toml exempts only inside of #[test]
 
-mod support;
+use crate::support;
 
 use posicast_hdl::machine::AxisShaper;
 use posicast_model::rtl::shaper::{Motion as ForMotion, Shaper, ShaperConfig, pass_clocks};

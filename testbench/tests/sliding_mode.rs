@@ -1,6 +1,6 @@
 //! The controller's Verilog against its bit-exact model, every output in every clock.
 
-mod support;
+use crate::support;
 
 use posicast_model::rtl::sliding_mode::{CONTROL_CLOCKS, Inputs, Motion};
 use posicast_testbench::blocks::{self, SlidingModeBlock, Sources};

@@ -1,7 +1,6 @@
 //! The stage of the example machine: its Verilog against its model, and what a host does with it.
-#![allow(clippy::unwrap_used, clippy::panic)] // helpers of tests, which clippy.toml exempts only inside of #[test]
 
-mod support;
+use crate::support;
 
 use posicast_model::control::{self, MachineStage};
 use posicast_model::design::design_machine;

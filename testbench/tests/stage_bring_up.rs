@@ -1,5 +1,4 @@
 //! A stage with linear scales and what is there for bringing it up: Verilog beside model, on the simulated machine.
-#![allow(clippy::unwrap_used)] // helpers of tests, which clippy.toml exempts only inside of #[test]
 
 use posicast_model::control;
 use posicast_model::design::design_machine;

@@ -1,6 +1,5 @@
 //! What a stage refuses, and what it waits for: the sign of its feedback with the drive on, a PWM out of step, an interrupt
 //! that nobody can end.
-#![allow(clippy::unwrap_used)] // helpers of tests, which clippy.toml exempts only inside of #[test]
 
 use posicast_model::control;
 use posicast_model::design::design_machine;

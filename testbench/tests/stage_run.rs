@@ -1,5 +1,4 @@
 //! The closed loop of `run`: what is expected of a move, and what the stage makes of it.
-#![allow(clippy::unwrap_used, clippy::panic)] // helpers of tests, which clippy.toml exempts only inside of #[test]
 
 use posicast_model::control::{self, MachineStage};
 use posicast_model::design::design_machine;

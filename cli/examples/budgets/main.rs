@@ -60,13 +60,13 @@ fn measure(yosys: &Yosys, row: Row) -> Result<Measured, Box<dyn Error>> {
         std::fs::write(&path, &module.text).map(|()| path)
     };
     let files: Vec<PathBuf> = row.modules.iter().map(write).collect::<Result<_, _>>()?;
-    // The block stands alone in a module without logic, so that it is mapped as one.
-    let top = folder.path().join("budget.v");
-    std::fs::write(&top, around(&row.modules))?;
-    let files: Vec<PathBuf> = files.into_iter().chain([top]).collect();
     let estimate = |mapping| {
+        let (top, ports) = row
+            .modules
+            .last()
+            .map_or(("", &[][..]), |top| (top.name.as_str(), &top.ports[..]));
         let yosys = yosys.clone().with_mapping(mapping);
-        yosys.estimate(&files, "budget", Family::Cyclone2)
+        yosys.estimate_alone(&files, top, ports, Family::Cyclone2)
     };
     let by_yosys = (row.block != blocks::STAGE).then(|| estimate(Mapping::Luts));
     Ok(Measured {
@@ -74,27 +74,4 @@ fn measure(yosys: &Yosys, row: Row) -> Result<Measured, Box<dyn Error>> {
         luts_by_yosys: by_yosys.transpose()?.map(|estimate| estimate.total.luts),
         row,
     })
-}
-
-/// A module `budget` around the last of `modules`: with one instance, every block is one row of the estimate.
-fn around(modules: &[Module]) -> String {
-    let Some(block) = modules.last() else {
-        return String::new();
-    };
-    let mut ports = vec!["input clk".to_owned()];
-    let mut connections = vec![".clk(clk)".to_owned()];
-    for port in &block.ports {
-        let direction = match port.direction {
-            posicast_model::rtl::Direction::Input => "input",
-            posicast_model::rtl::Direction::Output => "output",
-        };
-        ports.push(format!("{direction} [{}:0] {}", port.width - 1, port.name));
-        connections.push(format!(".{0}({0})", port.name));
-    }
-    format!(
-        "module budget ({});\n    {} block ({});\nendmodule\n",
-        ports.join(", "),
-        block.name,
-        connections.join(", ")
-    )
 }

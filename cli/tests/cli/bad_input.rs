@@ -2,7 +2,7 @@
 
 #![cfg(test)] // lets clippy see that this is test code
 
-use crate::support::{example, one_axis, posicast, scratch};
+use crate::cli::support::{example, one_axis, posicast, scratch};
 use predicates::prelude::*;
 
 const MODE: &str = "frequency_hz = 100.0\ndamping = 0.1";
@@ -83,7 +83,7 @@ fn cli_a_pass_longer_than_a_sample_is_printed_by_design_and_refused_by_generate(
     let (_folder, file) = scratch(&machine);
     let output = posicast().arg("design").arg(&file).arg("--json").assert().success();
     assert_eq!(
-        crate::support::json(&output.get_output().stdout)["axes"][0]["quantised"]["fits"],
+        crate::cli::support::json(&output.get_output().stdout)["axes"][0]["quantised"]["fits"],
         false
     );
 }

@@ -1,6 +1,6 @@
 //! `posicast design`: the published figures of the XY stage, in the contract's document.
 
-use crate::support::{example, json, one_axis, posicast, scratch};
+use crate::cli::support::{example, json, one_axis, posicast, scratch};
 
 #[test]
 fn cli_design_gives_the_published_shaper_of_the_xy_stage() {

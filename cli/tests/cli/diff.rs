@@ -2,7 +2,7 @@
 
 #![cfg(test)] // lets clippy see that this is test code
 
-use crate::support::{json, posicast};
+use crate::cli::support::{json, posicast};
 use std::path::Path;
 
 fn vcd(folder: &Path, name: &str, values: &[u8]) -> std::path::PathBuf {

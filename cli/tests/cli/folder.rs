@@ -2,7 +2,7 @@
 
 #![cfg(test)] // lets clippy see that this is test code
 
-use crate::support::{json, one_axis, posicast, scratch};
+use crate::cli::support::{json, one_axis, posicast, scratch};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 

@@ -6,7 +6,7 @@
 
 #![cfg(test)] // lets clippy see that this is test code
 
-use crate::support::example;
+use crate::cli::support::example;
 use proptest::prelude::*;
 use proptest::sample::Index;
 use std::path::Path;

@@ -2,7 +2,7 @@
 
 #![cfg(test)] // lets clippy see that this is test code
 
-use crate::support::{example, json, posicast};
+use crate::cli::support::{example, json, posicast};
 use std::path::{Path, PathBuf};
 
 /// Clocks that reach every directed case of the example and some random ones.
@@ -26,7 +26,7 @@ fn without_controllers() -> String {
 fn cli_run_goes_the_whole_way_on_the_xy_stage() {
     let folder = tempfile::tempdir().unwrap();
     let output = folder.path().join("xy_stage");
-    let (_scratch, file) = crate::support::scratch(&without_controllers());
+    let (_scratch, file) = crate::cli::support::scratch(&without_controllers());
     let run = || {
         let mut run = posicast();
         run.arg("run")
@@ -74,7 +74,7 @@ fn cli_run_goes_the_whole_way_on_the_xy_stage() {
 #[test]
 fn cli_run_of_the_zv_shaper_gives_its_published_overshoot() {
     let text = without_controllers().replace("\"zvd\"", "\"zv\"");
-    let (folder, file) = crate::support::scratch(&text);
+    let (folder, file) = crate::cli::support::scratch(&text);
     let mut run = posicast();
     run.arg("run")
         .arg(&file)
@@ -91,10 +91,10 @@ fn cli_run_of_the_zv_shaper_gives_its_published_overshoot() {
 #[test]
 fn cli_a_modulo_axis_goes_the_whole_way_across_the_end_of_its_word() {
     // 24 bits with 8 of fraction wrap after 65,536 counts: the table turns round five times and comes back a little.
-    let text = crate::support::one_axis("kind = \"zvd\"", "frequency_hz = 40.0\ndamping = 0.1")
+    let text = crate::cli::support::one_axis("kind = \"zvd\"", "frequency_hz = 40.0\ndamping = 0.1")
         .replace("1_000_000", "1_000\nmodulo = true")
         .replace("[[axis]]", "[fixed_point]\ncommand_bits = 24\n[[axis]]");
-    let (folder, file) = crate::support::scratch(&text);
+    let (folder, file) = crate::cli::support::scratch(&text);
     let command = folder.path().join("turns.csv");
     std::fs::write(&command, "time_s,position\n0,40\n0.4,360\n0.45,350\n").unwrap();
     let output = folder.path().join("out");
@@ -172,7 +172,7 @@ fn cli_the_shaper_component_of_a_controlled_axis_has_three_channels_where_it_can
         (slow, &["x_0", "swap_how"], &["x_1"]),
     ];
     for (machine, there, missing) in cases {
-        let (folder, file) = crate::support::scratch(&machine);
+        let (folder, file) = crate::cli::support::scratch(&machine);
         let output = folder.path().join("out");
         let mut generate = posicast();
         let run = generate

@@ -2,7 +2,7 @@
 
 #![cfg(test)] // lets clippy see that this is test code
 
-use crate::support::{one_axis, posicast, scratch};
+use crate::cli::support::{one_axis, posicast, scratch};
 use std::path::{Path, PathBuf};
 
 struct Bench {

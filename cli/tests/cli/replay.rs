@@ -2,7 +2,7 @@
 
 #![cfg(test)] // lets clippy see that this is test code
 
-use crate::support::{example, json, posicast};
+use crate::cli::support::{example, json, posicast};
 use posicast_model::rtl::divider::DividerConfig;
 use posicast_model::rtl::{Direction, Port};
 use posicast_testbench::blocks::{Block, DividerBlock};

@@ -2,7 +2,7 @@
 
 #![cfg(test)] // lets clippy see that this is test code
 
-use crate::support::{example, json, posicast, scratch};
+use crate::cli::support::{example, json, posicast, scratch};
 
 /// The XY stage with some text replaced, once.
 fn changed(from: &str, to: &str) -> String {

@@ -2,7 +2,7 @@
 
 #![cfg(test)] // lets clippy see that this is test code
 
-use crate::support::{example, json, one_axis, posicast, scratch};
+use crate::cli::support::{example, json, one_axis, posicast, scratch};
 use posicast_testbench::blocks::library;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};

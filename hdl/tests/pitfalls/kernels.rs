@@ -3,8 +3,8 @@
 //!
 //! P1 … P11 are the classes of docs/emitter.md.
 
-use crate::support::{Dff, Kernel, Ram16x8, Row, emit_as, local, pairs, row, signed_bit_cast};
-use crate::tools;
+use crate::pitfalls::support::{Dff, Kernel, Ram16x8, Row, emit_as, local, pairs, row, signed_bit_cast};
+use crate::pitfalls::tools;
 use posicast_hdl::emit::Cause;
 use rust_hdl_core::prelude::*;
 

@@ -1,7 +1,7 @@
 //! Whole designs: names, files, sharing, headers, unread bits, composition.
 
-use crate::support::{Dff, Ram16x8, emit_as, local, text_of};
-use crate::tools;
+use crate::pitfalls::support::{Dff, Ram16x8, emit_as, local, text_of};
+use crate::pitfalls::tools;
 use posicast_hdl::emit::{Cause, EmitOptions, Header, Instance, Module, Parameter, compose, emit};
 use posicast_model::rtl::{Direction, Port};
 use rust_hdl_core::prelude::*;

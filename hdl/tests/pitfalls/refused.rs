@@ -1,6 +1,6 @@
 //! What the emitter refuses: each kernel is legal RustHDL, and each error names block, signal and remedy.
 
-use crate::support::{Dff, Ram16x8, emit_as, emit_block, local, signed_bit_cast};
+use crate::pitfalls::support::{Dff, Ram16x8, emit_as, emit_block, local, signed_bit_cast};
 use posicast_hdl::emit::{Cause, EmitOptions, Type, emit};
 use rust_hdl_core::prelude::*;
 

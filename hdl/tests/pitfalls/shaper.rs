@@ -1,8 +1,8 @@
 //! The shaper's Verilog: lint, Yosys, and its model's answers to random stimuli in Icarus, Verilator and after Yosys.
 
+use crate::pitfalls::support::Row;
+use crate::pitfalls::tools;
 use crate::stimulus::{Anything, Random, table};
-use crate::support::Row;
-use crate::tools;
 use posicast_model::rtl::ClockedBlock;
 use posicast_model::rtl::shaper::{Inputs, Motion, Shaper, ShaperConfig};
 

@@ -1,6 +1,6 @@
 //! Kernels at sizes that are not compiled: what follows from the sizes is resolved, and what does not is refused.
 
-use crate::support::Dff;
+use crate::pitfalls::support::Dff;
 use posicast_hdl::emit::{Cause, EmitError, EmitOptions, Module, emit, emit_sized};
 use rust_hdl_core::prelude::*;
 use rust_hdl_macros::{LogicBlock, hdl_gen};

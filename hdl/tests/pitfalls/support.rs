@@ -73,13 +73,13 @@ macro_rules! kernel {
         impl Logic for $name {
             $($update)*
         }
-        impl $crate::support::Kernel for $name {
+        impl $crate::pitfalls::support::Kernel for $name {
             fn set(&mut self, inputs: &[u64]) {
                 let mut inputs = inputs.iter();
-                $(self.$in.next = <$in_type as $crate::support::FromPattern>::from_pattern(*inputs.next().unwrap());)*
+                $(self.$in.next = <$in_type as $crate::pitfalls::support::FromPattern>::from_pattern(*inputs.next().unwrap());)*
             }
             fn get(&self) -> Vec<u64> {
-                vec![$($crate::support::pattern(self.$out.val())),*]
+                vec![$($crate::pitfalls::support::pattern(self.$out.val())),*]
             }
             #[allow(unused_variables)]
             fn clock(&mut self, level: bool) {

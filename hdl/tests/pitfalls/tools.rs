@@ -1,6 +1,6 @@
 //! Icarus, Verilator and Yosys on emitted modules. A tool that is missing fails the test and says so.
 
-use crate::support::Row;
+use crate::pitfalls::support::Row;
 use posicast_hdl::emit::{Header, Instance, Module, compose};
 use posicast_model::rtl::Direction;
 use std::fmt::Write as _;

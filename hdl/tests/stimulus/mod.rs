@@ -4,8 +4,7 @@ use posicast_model::rtl::shaper::{Inputs, ShaperConfig};
 use posicast_model::taps::{COEFFICIENT_MAX, COEFFICIENT_MIN, Tap, TapTable};
 use std::collections::VecDeque;
 
-#[path = "../random/mod.rs"]
-mod random;
+use crate::random;
 
 pub(crate) use random::Random;
 

@@ -1,6 +1,6 @@
 //! The computed stability margins against the simulated machine.
 
-use crate::chain::{Chain, Pace, TORQUE, VELOCITY, machine};
+use crate::plant_in_loop::chain::{Chain, Pace, TORQUE, VELOCITY, machine};
 use posicast_model::control::{ControlError, DEFAULT_MARGIN, gains, loop_lag_s, sampled::SampledLoop};
 
 /// 5 kg behind a current drive, on a mode of 25 Hz that is lightly damped: what the lag alone allows is unstable.

@@ -1,6 +1,6 @@
 //! `[axis.encoder]`, `[axis.pwm]`, `[axis.drive]`, `[axis.controller]` and `modulo`: what they yield, what they refuse.
 
-use crate::files::{SMALL, breaks, right, wrong};
+use crate::spec::files::{SMALL, breaks, right, wrong};
 use posicast_model::spec::{Controller, DriveMode, Encoder, PwmMode};
 
 /// Every block of a torque axis, a key per line; its tables stand after those of [`SMALL`].

@@ -1,6 +1,6 @@
 //! Errors of one key: syntax, unknown, missing, wrong type, out of range, no such word, bad or double name.
 
-use crate::files::{SMALL, breaks, built_kinds, wrong};
+use crate::spec::files::{SMALL, breaks, built_kinds, wrong};
 use posicast_model::spec::Cause;
 
 #[test]

@@ -1,5 +1,4 @@
 //! The files that the tests read and break.
-#![cfg(test)]
 
 use posicast_model::design::kind::Kind;
 use posicast_model::spec::{self, Machine, SpecError};

@@ -1,6 +1,6 @@
 //! `[axis.limits]`, `[axis.scale]`, `[axis.trace]` and `[stage]`: what they yield, what they refuse.
 
-use crate::files::{EVERYTHING, SMALL, right, wrong};
+use crate::spec::files::{EVERYTHING, SMALL, right, wrong};
 use posicast_model::rtl::axis::{ALWAYS_OFF, Cause};
 use posicast_model::spec::{Limits, Scale, ScaleUse, Stage, Trace};
 

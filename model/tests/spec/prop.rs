@@ -3,7 +3,7 @@
 use posicast_model::spec;
 use proptest::prelude::*;
 
-use crate::files::{CONTOURING_STAGE, CUSTOM_SHAPER, EVERYTHING, GANTRY, ROBOT_JOINT, XY_STAGE};
+use crate::spec::files::{CONTOURING_STAGE, CUSTOM_SHAPER, EVERYTHING, GANTRY, ROBOT_JOINT, XY_STAGE};
 
 const FILES: [&str; 6] = [
     XY_STAGE,

@@ -1,6 +1,6 @@
 //! The error as a whole: several problems, the marks in the source, and what must not reach a terminal.
 
-use crate::files::{SMALL, wrong};
+use crate::spec::files::{SMALL, wrong};
 use posicast_model::spec::MAX_PROBLEMS;
 
 #[test]

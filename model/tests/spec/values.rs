@@ -1,6 +1,6 @@
 //! What a right file yields: the examples, defaults, and the effective values of each mode.
 
-use crate::files::{CUSTOM_SHAPER, GANTRY, ROBOT_JOINT, SMALL, XY_STAGE, right};
+use crate::spec::files::{CUSTOM_SHAPER, GANTRY, ROBOT_JOINT, SMALL, XY_STAGE, right};
 use posicast_model::design::kind::Kind;
 use posicast_model::spec::Digitise;
 

@@ -1,5 +1,10 @@
 //! Machines for the tests of the mathematics, written as machine files.
-#![cfg(test)]
+
+pub(crate) mod golden;
+pub(crate) mod plain;
+pub(crate) mod random_inputs;
+pub(crate) mod stage;
+pub(crate) mod wrong;
 
 use posicast_model::spec::{Machine, parse};
 

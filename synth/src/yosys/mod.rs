@@ -11,6 +11,7 @@
 //!
 //! Blocks are the instances in the top module, each flattened; what lies between them is a row under the top's name.
 
+mod alone;
 mod ecp5;
 mod family;
 mod gates;

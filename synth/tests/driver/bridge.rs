@@ -1,6 +1,6 @@
 //! Register accesses of a C program, line by line over its pipes, on a stage with its machine.
 
-use crate::support::{Driver, beside, stage};
+use crate::driver::support::{Driver, beside, stage};
 use posicast_model::plant::axis::{AxisPlant, PlantOptions};
 use posicast_model::rtl::component::Component;
 use posicast_testbench::blocks::{ComponentBlock, Sources};

@@ -1,6 +1,6 @@
 //! The integrator and the planner in C against the model's arithmetic.
 
-use crate::support::{Driver, beside};
+use crate::driver::support::{Driver, beside};
 use posicast_model::rtl::segments::{ACCELERATION_BITS, Entry, Integrator, Motion, Point};
 use std::io::Write;
 use std::process::{Command, Stdio};

@@ -1,6 +1,6 @@
 //! Lock step on hand-written Verilog: what it must find, and how it says so.
 
-use crate::common::{COUNTER, Counter, Files, counter_ports};
+use crate::bench::common::{COUNTER, Counter, Files, counter_ports};
 use posicast_model::rtl::{ClockedBlock, Port};
 use posicast_testbench::Error;
 use posicast_testbench::icarus::Icarus;

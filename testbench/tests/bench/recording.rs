@@ -10,7 +10,7 @@ use posicast_testbench::diff::{self, Comparison, Options, Verdict};
 use posicast_testbench::lockstep::TwoValued;
 use posicast_testbench::recording::{Move, Trace};
 
-use crate::waves::{read, times_of_ones};
+use crate::bench::waves::{read, times_of_ones};
 
 const SAMPLE_HZ: f64 = 10e3;
 const SAMPLES: usize = 40;

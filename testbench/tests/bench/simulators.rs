@@ -2,7 +2,7 @@
 
 use std::os::unix::fs::MetadataExt;
 
-use crate::common::{COUNTER, Counter, Files, MEMORY, counter_ports, memory_ports, port};
+use crate::bench::common::{COUNTER, Counter, Files, MEMORY, counter_ports, memory_ports, port};
 use posicast_model::rtl::{ClockedBlock, Direction};
 use posicast_testbench::Error;
 use posicast_testbench::icarus::Icarus;

@@ -6,7 +6,7 @@ use posicast_testbench::Error;
 use posicast_testbench::diff::{self, Options, Verdict};
 use posicast_testbench::wave::{self, Difference, Focus, Heading, Part, Recorder, Signal};
 
-use crate::waves::{read, times_of_ones, unit_and_times};
+use crate::bench::waves::{read, times_of_ones, unit_and_times};
 
 fn record(path: &Path, scope: &[&str], signals: &[Signal], rows: &[&[u64]]) {
     let mut recorder = Recorder::create(path, 50e6, scope, signals).unwrap();

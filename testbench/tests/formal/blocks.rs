@@ -1,6 +1,6 @@
 //! Encoder, time, PWM, segments, scale, trace and test signals.
 
-use crate::{fails, proven};
+use crate::formal::{fails, proven};
 
 #[test]
 fn formal_pulse_counter() {

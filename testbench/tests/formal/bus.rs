@@ -1,6 +1,6 @@
 //! What the bus writes: registers, commits, settings.
 
-use crate::{fails, proven};
+use crate::formal::{fails, proven};
 
 #[test]
 fn formal_registers() {

@@ -1,6 +1,6 @@
 //! The controller and its arithmetic.
 
-use crate::{fails, proven};
+use crate::formal::{fails, proven};
 
 #[test]
 fn formal_sliding_mode_with_any_products() {

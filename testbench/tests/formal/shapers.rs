@@ -1,6 +1,6 @@
 //! The shapers.
 
-use crate::{fails, proven};
+use crate::formal::{fails, proven};
 
 #[test]
 fn formal_shaper() {

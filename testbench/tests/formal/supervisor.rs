@@ -1,6 +1,6 @@
 //! The supervisor of an axis, what it tells the drive, and the group.
 
-use crate::{fails, proven};
+use crate::formal::{fails, proven};
 
 #[test]
 fn formal_axis() {

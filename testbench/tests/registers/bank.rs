@@ -1,7 +1,7 @@
 //! The bank alone: every kind of access in one map.
 
-use crate::everything::everything;
-use crate::support::{Bench, assert_match};
+use crate::registers::everything::everything;
+use crate::registers::support::{Bench, assert_match};
 use posicast_hdl::registers::emit;
 use posicast_model::rtl::registers::RegisterBank;
 use posicast_testbench::lockstep::report::Verdict;

@@ -1,8 +1,8 @@
 //! The six classic register tests: bank and components, model and Verilog. And each catches a bank that is wrong.
 
-use crate::components::{pulse_counter, pwm, shaper, sliding_mode};
-use crate::everything::everything;
-use crate::support::Bench;
+use crate::registers::components::{pulse_counter, pwm, shaper, sliding_mode};
+use crate::registers::everything::everything;
+use crate::registers::support::Bench;
 use posicast_hdl::component::emit;
 use posicast_model::rtl::ClockedBlock;
 use posicast_model::rtl::component::Component;

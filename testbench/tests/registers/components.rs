@@ -1,6 +1,6 @@
 //! The components: registers and blocks together, through the bus and the pins.
 
-use crate::support::{Bench, assert_match};
+use crate::registers::support::{Bench, assert_match};
 use posicast_hdl::component::emit;
 use posicast_model::rtl::component::Component;
 use posicast_model::rtl::divider::DividerConfig;

@@ -19,9 +19,9 @@ use proptest::prelude::*;
 use proptest::sample::Index;
 use std::cell::RefCell;
 
-use crate::components;
-use crate::everything::everything;
-use crate::pins::Pins;
+use crate::registers::components;
+use crate::registers::everything::everything;
+use crate::registers::pins::Pins;
 
 /// Places of address, read, write, byte enable and data among the inputs of every component.
 const BUS: [usize; 5] = [1, 2, 3, 4, 5];

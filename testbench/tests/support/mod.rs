@@ -1,5 +1,4 @@
 //! What the lock-step tests of the blocks share: a bench from `posicast_testbench::blocks`, run and judged.
-#![allow(clippy::unwrap_used, clippy::panic)] // helpers of tests, which clippy.toml exempts only inside of #[test]
 
 use posicast_hdl::emit::Module;
 use posicast_testbench::blocks::{self, Block, Run, Sources};

@@ -1,7 +1,7 @@
 //! Boards that are not known, clocks that they have not, machines without components, folders that were edited.
 
 use super::{package, replace, xy_stage};
-use crate::support::{example, one_axis, posicast, scratch};
+use crate::cli::support::{example, one_axis, posicast, scratch};
 use predicates::prelude::*;
 use std::fs;
 

@@ -8,7 +8,7 @@ mod components;
 mod projects;
 mod systems;
 
-use crate::support::{example, posicast, scratch};
+use crate::cli::support::{example, posicast, scratch};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};

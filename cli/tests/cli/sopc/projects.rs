@@ -3,7 +3,7 @@
 use super::{
     BOARDS, check_component, check_project, check_system, file_set, findings, package, replace, verilog_ports, xy_stage,
 };
-use crate::support::example;
+use crate::cli::support::example;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::process::Command;

@@ -2,7 +2,6 @@
 //! FuseSoC with Verilator and Icarus, and cocotb with the bus driver of cocotb-bus.
 //!
 //! They are Python, in `.venv` of the repository, which `scripts/install-tools` makes.
-#![allow(clippy::unwrap_used, clippy::panic)] // helpers of tests, which clippy.toml exempts only inside of #[test]
 
 use posicast_model::control;
 use posicast_model::design::design_machine;

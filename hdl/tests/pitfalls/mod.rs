@@ -8,8 +8,6 @@
 //! | `shaper` | the shaper's Verilog against its model |
 //! | `sizes` | kernels at sizes that are not compiled |
 
-#![cfg(test)]
-
 #[macro_use]
 mod support;
 
@@ -18,6 +16,4 @@ mod modules;
 mod refused;
 mod shaper;
 mod sizes;
-#[path = "../stimulus/mod.rs"]
-mod stimulus;
 mod tools;

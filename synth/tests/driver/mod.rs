@@ -1,5 +1,4 @@
 //! The C driver: compiled by gcc and for a RISC-V, its integers against the model's, and run against the stage's Verilog.
-#![allow(clippy::unwrap_used, clippy::panic)] // helpers of tests, which clippy.toml exempts only inside of #[test]
 
 mod bridge;
 mod integers;

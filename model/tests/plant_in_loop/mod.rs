@@ -4,7 +4,6 @@
 //! entries ─► integrator ─► shaper ─► controller ─► PWM ─► pins ─► plant ─► A, B ─► pulse counter ─┐
 //!                                        ▲────────────────────────────────────── divider ◄────────┘
 //! ```
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a helper that fails fails its test")]
 
 mod chain;
 mod margins;

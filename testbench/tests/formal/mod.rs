@@ -1,5 +1,4 @@
 //! The proofs that are quick, and each property file seen to fail on a block that was broken on purpose.
-#![allow(clippy::unwrap_used, clippy::panic)] // helpers of tests, which clippy.toml exempts only inside of #[test]
 
 mod blocks;
 mod bus;

@@ -1,0 +1,6 @@
+//! The tests of the command line, in one program: linking is most of what a program of its own would cost.
+#![cfg(test)]
+
+mod cli;
+mod reproduce;
+mod suites;

@@ -1,0 +1,41 @@
+//! The tests of `posicast-model`, in one program: linking is most of what a program of its own would cost.
+#![cfg(test)]
+
+mod axis;
+mod cascade_prop;
+mod composed;
+mod control;
+mod controller_commit;
+mod convolution;
+mod divider;
+mod drive_command;
+mod encoder_generator;
+mod excitation;
+mod golden_joint;
+mod golden_kinds;
+mod golden_shapers;
+mod golden_xy_stage;
+mod hump_limits;
+mod linear_scale;
+mod matching;
+mod papers;
+mod plant_in_loop;
+mod prop_joint;
+mod prop_kinds;
+mod prop_shapers;
+mod pulse_counter;
+mod pwm;
+mod quiet;
+mod register_tables;
+mod registers;
+mod segments;
+mod shaper_handover;
+mod shaper_motion;
+mod shaper_prop;
+mod shaper_protocol;
+mod sliding_mode;
+mod spec;
+mod stage;
+mod supervision;
+mod support;
+mod trace;

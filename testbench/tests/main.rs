@@ -1,0 +1,32 @@
+//! The tests of `posicast-testbench`, in one program: linking is most of what a program of its own would cost.
+#![cfg(test)]
+
+mod axis;
+mod bench;
+mod cascade;
+mod coverage;
+mod crosssim;
+mod divider;
+mod drive_command;
+mod encoder_generator;
+mod excitation;
+mod fault_campaign;
+mod formal;
+mod linear_scale;
+mod mutation;
+mod netlist;
+mod parts;
+mod pulse_counter;
+mod pwm;
+mod pwm_fault;
+mod pwm_pins;
+mod registers;
+mod segments;
+mod shaper;
+mod sliding_mode;
+mod stage;
+mod stage_bring_up;
+mod stage_guards;
+mod stage_run;
+mod support;
+mod trace;
