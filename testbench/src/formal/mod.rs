@@ -28,4 +28,4 @@ mod trace;
 
 pub use self::task::{Engine, Task, all, named};
 pub(crate) use self::tool::{ABC, YOSYS, abc, asserted};
-pub use self::tool::{Outcome, Reached, SEARCHED_CLOCKS, Verdict, run};
+pub use self::tool::{Outcome, Reached, SEARCHED_CLOCKS, Verdict, run, search};

@@ -104,6 +104,18 @@ pub fn run(task: &Task, folder: &Path, limit: Duration) -> Result<Outcome, Error
     })
 }
 
+/// Searches for a counterexample without trying the proof first: for a block that was broken on purpose, of which the proof
+/// would only find late that it cannot be. [`Verdict::Unknown`] where there is none in the clocks that are searched.
+///
+/// # Errors
+/// As [`run`].
+pub fn search(task: &Task, folder: &Path, limit: Duration) -> Result<Verdict, Error> {
+    std::fs::create_dir_all(folder).map_err(Error::file(folder, "create"))?;
+    let bench = Bench { task, folder, limit };
+    bench.prepare()?;
+    bench.counterexample(&bench.names("asserts.txt")?)
+}
+
 struct Bench<'a> {
     task: &'a Task,
     folder: &'a Path,

@@ -8,22 +8,14 @@ mod supervisor;
 
 use std::time::Duration;
 
-use posicast_testbench::formal::{Outcome, Task, Verdict, named, run};
+use posicast_testbench::formal::{Verdict, named, run, search};
 
 const LIMIT: Duration = Duration::from_secs(120);
 
-fn tried(task: &Task) -> Outcome {
-    let folder = tempfile::tempdir().unwrap();
-    let outcome = run(task, folder.path(), LIMIT).unwrap();
-    if let Verdict::Counterexample { waveform, .. } = &outcome.verdict {
-        assert!(std::fs::metadata(waveform).unwrap().len() > 1000, "no waveform");
-    }
-    outcome
-}
-
 #[track_caller]
 pub(crate) fn proven(name: &str, size: usize) {
-    let outcome = tried(&named(name).unwrap()[size]);
+    let folder = tempfile::tempdir().unwrap();
+    let outcome = run(&named(name).unwrap()[size], folder.path(), LIMIT).unwrap();
     assert!(outcome.is_good(), "{outcome:?}");
     assert!(outcome.assertions > 1 && !outcome.covers.is_empty(), "{outcome:?}");
 }
@@ -35,8 +27,12 @@ pub(crate) fn fails(name: &str, from: &str, to: &str, expected: &str) {
     let found = task.modules.iter_mut().find(|module| module.text.contains(from));
     let module = found.unwrap_or_else(|| panic!("the Verilog no longer has `{from}`: adapt the test"));
     module.text = module.text.replacen(from, to, 1);
-    match tried(&task).verdict {
-        Verdict::Counterexample { property, .. } => assert!(property.starts_with(expected), "`{to}`: {property}"),
+    let folder = tempfile::tempdir().unwrap();
+    match search(&task, folder.path(), LIMIT).unwrap() {
+        Verdict::Counterexample { property, waveform, .. } => {
+            assert!(property.starts_with(expected), "`{to}`: {property}");
+            assert!(std::fs::metadata(waveform).unwrap().len() > 1000, "no waveform");
+        }
         other => panic!("`{to}` is not found: {other:?}"),
     }
 }
