@@ -6,6 +6,7 @@
 //!
 //! | module | what it is |
 //! |---|---|
+//! | `kernel` | the macro that makes a kernel of its ports, registers, wires, parts and constants |
 //! | `prelude` | what a kernel sees: RustHDL with its traps closed, and our leaves |
 //! | `prim` | the leaves: blocks with Verilog of their own |
 //! | [`shaper`] | the input shaper |
@@ -39,6 +40,7 @@ pub mod emit;
 pub mod encoder_generator;
 pub mod excitation;
 pub mod group;
+mod kernel;
 pub mod linear_scale;
 pub mod machine;
 pub(crate) mod prelude;

@@ -5,10 +5,12 @@
 //! | ours | instead of |
 //! |---|---|
 //! | [`signed_bit_cast`] | RustHDL's, which overflows the stack on the most negative value |
+//! | `kernel!` | the struct, the constructor and the wiring of registers that a kernel would repeat |
 //! | [`Dff`], `dff_setup!` | RustHDL's `DFF` without reset; the macro of the same name also wires `rst` |
 //! | [`Ram`], [`Rom`] | RustHDL's `RAM` and `ROM` with two clocks, and without arbitrary contents |
 //! | `comment!` | nothing: `#[hdl_gen]` knows the macro, RustHDL has none |
 
+pub(crate) use crate::kernel::kernel;
 pub(crate) use crate::prim::{Dff, FaultLatch, PinRegister, Ram, Rom, RomWord, SMul, Synchroniser};
 pub(crate) use rust_hdl_core::prelude::*;
 pub(crate) use rust_hdl_macros::{LogicBlock, hdl_gen};

@@ -40,6 +40,80 @@ pub(crate) trait Pins: Block {
     fn read(&self, outputs: &mut [u64]);
 }
 
+/// An input, or an array of them.
+pub(crate) trait InputPins {
+    /// Takes the next raw bit patterns; bits above a port's width are ignored.
+    fn drive(&mut self, patterns: &mut dyn Iterator<Item = u64>);
+}
+
+/// An output, or an array of them.
+pub(crate) trait OutputPins {
+    /// Writes its raw bit patterns to the next places.
+    fn read(&self, patterns: &mut dyn Iterator<Item = &mut u64>);
+}
+
+/// A value of a port beside its bit pattern.
+pub(crate) trait Pattern: Synth {
+    fn from_pattern(pattern: u64) -> Self;
+    fn pattern(self) -> u64;
+}
+
+impl Pattern for Bit {
+    fn from_pattern(pattern: u64) -> Self {
+        pattern & 1 != 0
+    }
+
+    fn pattern(self) -> u64 {
+        self.into()
+    }
+}
+
+impl<const N: usize> Pattern for Bits<N> {
+    fn from_pattern(pattern: u64) -> Self {
+        from_u64(pattern)
+    }
+
+    fn pattern(self) -> u64 {
+        self.into()
+    }
+}
+
+impl<const N: usize> Pattern for Signed<N> {
+    fn from_pattern(pattern: u64) -> Self {
+        from_i64(pattern as i64)
+    }
+
+    fn pattern(self) -> u64 {
+        unsigned_cast(self).into()
+    }
+}
+
+impl<T: Pattern> InputPins for Signal<In, T> {
+    fn drive(&mut self, patterns: &mut dyn Iterator<Item = u64>) {
+        self.next = T::from_pattern(patterns.next().unwrap_or_default());
+    }
+}
+
+impl<T: Pattern> OutputPins for Signal<Out, T> {
+    fn read(&self, patterns: &mut dyn Iterator<Item = &mut u64>) {
+        if let Some(place) = patterns.next() {
+            *place = self.val().pattern();
+        }
+    }
+}
+
+impl<P: InputPins, const N: usize> InputPins for [P; N] {
+    fn drive(&mut self, patterns: &mut dyn Iterator<Item = u64>) {
+        self.iter_mut().for_each(|pin| pin.drive(patterns));
+    }
+}
+
+impl<P: OutputPins, const N: usize> OutputPins for [P; N] {
+    fn read(&self, patterns: &mut dyn Iterator<Item = &mut u64>) {
+        self.iter().for_each(|pin| pin.read(patterns));
+    }
+}
+
 /// A block in RustHDL's simulator.
 pub(crate) struct Simulated {
     block: Box<dyn Pins>,

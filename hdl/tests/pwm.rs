@@ -4,7 +4,7 @@ use crate::random;
 
 use posicast_hdl::pwm::{emit, simulate};
 use posicast_model::rtl::ClockedBlock;
-use posicast_model::rtl::pwm::{ActiveLow, Inputs, OUTPUTS, Pwm, PwmConfig, ports};
+use posicast_model::rtl::pwm::{ActiveLow, Inputs, OUTPUT_PORTS, Pwm, PwmConfig, ports};
 use random::Random;
 
 #[test]
@@ -22,7 +22,7 @@ fn lockstep_everything_at_random() {
         max_duty: 90,
         ..Inputs::default()
     };
-    let (mut expected, mut actual) = ([0; OUTPUTS], [0; OUTPUTS]);
+    let (mut expected, mut actual) = ([0; OUTPUT_PORTS], [0; OUTPUT_PORTS]);
     let mut running = 0;
     for clock in 0..16_000 {
         if random.once_in(600) {

@@ -4,7 +4,7 @@
 use posicast_hdl::pwm::emit;
 use posicast_model::rtl::pwm::pulses::{Bridge, Half, Latched, Timing};
 use posicast_model::rtl::pwm::{
-    ActiveLow, COMMAND_CLOCKS, Gates, INPUTS, Inputs, Mode, OUTPUTS, PwmConfig, SHORTEST_PERIOD_CLOCKS, ports,
+    ActiveLow, COMMAND_CLOCKS, Gates, INPUT_PORTS, Inputs, Mode, OUTPUT_PORTS, PwmConfig, SHORTEST_PERIOD_CLOCKS, ports,
 };
 use posicast_testbench::stimuli::GateSafety;
 use posicast_testbench::verilator::{Source, Verilated};
@@ -145,7 +145,7 @@ impl Bench {
             };
             self.rows.extend(waits.to_raw());
         }
-        let first = self.rows.len() / INPUTS;
+        let first = self.rows.len() / INPUT_PORTS;
 
         let mut bridge = Bridge::default();
         let mut gates = Gates::default();
@@ -183,9 +183,9 @@ impl Bench {
                 }
             }
         }
-        let clocks = self.rows.len() / INPUTS;
+        let clocks = self.rows.len() / INPUT_PORTS;
         self.shown.clear();
-        self.shown.resize(clocks * OUTPUTS, 0);
+        self.shown.resize(clocks * OUTPUT_PORTS, 0);
         self.device.run(&self.rows, &mut self.shown).unwrap();
         self.compare(first, found);
         found.periods += periods;
@@ -193,7 +193,7 @@ impl Bench {
 
     /// `first`: the clock of the first position that runs.
     fn compare(&mut self, first: usize, found: &mut Found) {
-        for (clock, shown) in self.shown.chunks_exact(OUTPUTS).enumerate() {
+        for (clock, shown) in self.shown.chunks_exact(OUTPUT_PORTS).enumerate() {
             self.safety.observe(shown);
             let Some(at) = clock.checked_sub(first + PIN_CLOCKS) else {
                 continue;

@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! // @dff 8'h05                       a register: reset and power-up value as a bit pattern; ports clock, rst, d, q
+//! // @dff 8'h05 kept                  a register that its block clocks, resets and keeps without a statement
 //!
 //! // @leaf ram_64x16 reg: read_data   any other: base name of its module, outputs that its text assigns in `always`
 //! // @about One line of the header, repeatable.
@@ -26,8 +27,17 @@ pub(super) struct Leaf<'a> {
     pub(super) body: Vec<&'a str>,
 }
 
-/// The reset value if `node` is a register.
-pub(super) fn register(node: &Node) -> Result<Option<u64>, Cause> {
+/// A register, as its tag describes it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct RegisterTag {
+    /// Reset and power-up value.
+    pub(super) initial: u64,
+    /// The block that owns the register clocks and resets it, and lets it keep its value, without a statement of the kernel.
+    pub(super) is_kept: bool,
+}
+
+/// The tag if `node` is a register.
+pub(super) fn register(node: &Node) -> Result<Option<RegisterTag>, Cause> {
     let Verilog::Custom(text) = &node.code else {
         return Ok(None);
     };
@@ -46,6 +56,10 @@ pub(super) fn register(node: &Node) -> Result<Option<u64>, Cause> {
             "a register has exactly clock, rst, d and q, the last two of one type".to_owned(),
         ));
     }
+    let (literal, is_kept) = match literal.trim().strip_suffix(" kept") {
+        Some(literal) => (literal, true),
+        None => (literal, false),
+    };
     let bad = || {
         Cause::Leaf(format!(
             "`{}` is no {}-bit pattern of the form 8'h05",
@@ -58,12 +72,16 @@ pub(super) fn register(node: &Node) -> Result<Option<u64>, Cause> {
     if width.parse() != Ok(now.ty.width) || value & !now.ty.mask() != 0 {
         return Err(bad());
     }
-    Ok(Some(value))
+    Ok(Some(RegisterTag {
+        initial: value,
+        is_kept,
+    }))
 }
 
 /// The text of a register: what [`register`] reads.
-pub(super) fn register_text(pattern: u64, ty: Type) -> String {
-    format!("// @dff {}'h{pattern:x}\n", ty.width)
+pub(super) fn register_text(tag: RegisterTag, ty: Type) -> String {
+    let kept = if tag.is_kept { " kept" } else { "" };
+    format!("// @dff {}'h{:x}{kept}\n", ty.width, tag.initial)
 }
 
 /// The text of the leaf `node` with its numbers, each of which follows from the width of a port:

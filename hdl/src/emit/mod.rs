@@ -18,6 +18,7 @@
 //! comment!("@about Walks the table."); header of the file
 //!
 //! // @dff 8'h05                        a register, inlined
+//! // @dff 8'h05 kept                   the same, wired by `kernel!`: the kernel says nothing of its clock and reset
 //! // @leaf ram_64x16 reg: read_data    any other leaf, with its outputs that are `reg`
 //! // @about 64 x 16 bit block RAM.
 //! ```

@@ -305,7 +305,11 @@ impl Composite<'_> {
         let initial = |lines: &mut Lines, assign: &str| {
             for register in &scope.registers {
                 let net = scope.net(register.now);
-                lines.line(&format!("{} {assign} {};", net.name, net.ty.literal(register.initial)));
+                lines.line(&format!(
+                    "{} {assign} {};",
+                    net.name,
+                    net.ty.literal(register.tag.initial)
+                ));
             }
         };
         let (clk, rst) = (&scope.net(clocking.clk).name, &scope.net(clocking.rst).name);

@@ -2,7 +2,7 @@
 
 use super::collect::{Kind, Node};
 use super::error::{Cause, EmitError};
-use super::leaf;
+use super::leaf::{self, RegisterTag};
 use super::names::{self, Taken};
 use super::types::{BIT, Type};
 use std::collections::BTreeMap;
@@ -85,8 +85,8 @@ pub(super) struct Register {
     pub(super) now: NetId,
     pub(super) next: NetId,
     pub(super) clock: NetId,
-    /// Reset and power-up value.
-    pub(super) initial: u64,
+    /// Reset and power-up value, and who wires it.
+    pub(super) tag: RegisterTag,
 }
 
 /// A sub-block that stays a module: its index among the children, and a net per port in port order.
@@ -141,7 +141,7 @@ impl Scope {
         for (index, child) in node.children.iter().enumerate() {
             names::check_name(&names::flatten(&child.raw)).map_err(at(&child.raw))?;
             match leaf::register(child).map_err(|cause| EmitError::new(&child.path, "", cause))? {
-                Some(initial) => scope.add_register(child, initial).map_err(at(&child.raw))?,
+                Some(tag) => scope.add_register(child, tag).map_err(at(&child.raw))?,
                 None => scope.add_pins(child, index).map_err(at(&child.raw))?,
             }
         }
@@ -176,7 +176,7 @@ impl Scope {
         id
     }
 
-    fn add_register(&mut self, child: &Node, initial: u64) -> Result<(), Cause> {
+    fn add_register(&mut self, child: &Node, tag: RegisterTag) -> Result<(), Cause> {
         let name = names::flatten(&child.raw);
         let ty = child.ports().find(|port| port.raw == "q").map_or(BIT, |port| port.ty);
         let raw = |port: &str| format!("{}${port}", child.raw);
@@ -184,12 +184,7 @@ impl Scope {
         let next = self.add(raw("d"), format!("{name}_next"), ty, Role::Next)?;
         let clock = self.add_unnamed(raw("clock"), String::new(), BIT, Role::RegisterClock);
         self.add_unnamed(raw("rst"), String::new(), BIT, Role::RegisterReset);
-        self.registers.push(Register {
-            now,
-            next,
-            clock,
-            initial,
-        });
+        self.registers.push(Register { now, next, clock, tag });
         Ok(())
     }
 

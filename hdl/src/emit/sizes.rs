@@ -15,7 +15,7 @@
 
 use super::collect::{Kind, Node};
 use super::error::{Cause, EmitError};
-use super::leaf;
+use super::leaf::{self, RegisterTag};
 use super::types::{Type, mask};
 use rust_hdl_core::ast::{VerilogBlockOrConditional, VerilogExpression as Tree, VerilogStatement as Statement};
 use rust_hdl_core::prelude::Verilog;
@@ -62,7 +62,7 @@ impl Sizes<'_> {
         .map_err(at(""))?;
         alike(all(&|other| other.enums == node.enums), "list of enumerations").map_err(at(""))?;
 
-        let reset = self.reset_value(&node, others).map_err(at(""))?;
+        let reset = self.register(&node, others).map_err(at(""))?;
         for index in 0..node.signals.len() {
             let signal = &node.signals[index];
             let same: Vec<_> = others.iter().map(|other| &other.signals[index]).collect();
@@ -92,7 +92,7 @@ impl Sizes<'_> {
             (node.signals[index].ty, node.signals[index].kind) = (ty, kind);
         }
         node.code = match reset {
-            Some((pattern, ty)) => Verilog::Custom(leaf::register_text(pattern, ty)),
+            Some((tag, ty)) => Verilog::Custom(leaf::register_text(tag, ty)),
             None => self.code(&node, others)?,
         };
         for (index, child) in std::mem::take(&mut node.children).into_iter().enumerate() {
@@ -102,20 +102,23 @@ impl Sizes<'_> {
         Ok(node)
     }
 
-    /// A register's reset value and its type; nothing for any other block.
-    fn reset_value(&self, node: &Node, others: &[&Node]) -> Result<Option<(u64, Type)>, Cause> {
+    /// A register's tag and its type; nothing for any other block.
+    fn register(&self, node: &Node, others: &[&Node]) -> Result<Option<(RegisterTag, Type)>, Cause> {
         let mut found = (Vec::new(), Vec::new());
+        let mut is_kept = false;
         for sample in [node].iter().chain(others) {
-            let Some(pattern) = leaf::register(sample)? else {
+            let Some(tag) = leaf::register(sample)? else {
                 return Ok(None);
             };
-            found.0.push(pattern);
+            is_kept = tag.is_kept;
+            found.0.push(tag.initial);
             found
                 .1
                 .extend(sample.ports().find(|port| port.raw == "q").map(|port| port.ty));
         }
         let ty = self.ty(&found.1)?;
-        Ok(Some((self.value(&found.0, &found.1, ty)?, ty)))
+        let initial = self.value(&found.0, &found.1, ty)?;
+        Ok(Some((RegisterTag { initial, is_kept }, ty)))
     }
 
     fn code(&self, node: &Node, others: &[&Node]) -> Result<Verilog, EmitError> {

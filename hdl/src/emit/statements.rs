@@ -24,7 +24,8 @@ pub(super) fn statements(kernel: &[VerilogStatement], path: &str, scope: &Scope)
         loops: Vec::new(),
         clocked: BTreeSet::new(),
     };
-    let block = reader.block(kernel)?;
+    let mut block = reader.kept_registers()?;
+    block.extend(reader.block(kernel)?);
     for register in &scope.registers {
         if !reader.clocked.contains(&register.clock) {
             let cause = Cause::RegisterWiring {
@@ -68,6 +69,19 @@ impl Reader<'_> {
         let mut block = Vec::new();
         for statement in statements {
             self.statement(statement, &mut block)?;
+        }
+        Ok(block)
+    }
+
+    /// Registers that keep their value unless the kernel says otherwise.
+    fn kept_registers(&mut self) -> Result<Vec<Statement>, EmitError> {
+        let mut block = Vec::new();
+        for register in self.scope.registers.iter().filter(|register| register.tag.is_kept) {
+            self.clocked.insert(register.clock);
+            let (now, target) = (self.scope.net(register.now), register.next);
+            let value = expression(&Tree::Signal(now.raw.clone()), now.ty, self.scope, &[])
+                .map_err(|cause| self.error(&now.raw, cause))?;
+            block.push(Statement::Assign { target, value });
         }
         Ok(block)
     }

@@ -12,9 +12,17 @@ pub(crate) struct Dff<T: Synth> {
     pub(crate) d: Signal<In, T>,
     pub(crate) q: Signal<Out, T>,
     _reset_value: T,
+    _is_kept: bool,
+}
+
+/// What `kernel!` asks of its registers, one or an array of them.
+pub(crate) trait Keep {
+    /// Wires clock and reset; the register keeps its value unless the kernel says otherwise.
+    fn keep(&mut self, clock: Clock, rst: Bit);
 }
 
 impl<T: Synth> Dff<T> {
+    /// A register that its kernel wires with `dff_setup!`.
     pub(crate) fn new(reset_value: T) -> Self {
         Self {
             clock: Signal::default(),
@@ -22,6 +30,15 @@ impl<T: Synth> Dff<T> {
             d: Signal::default(),
             q: Signal::new_with_default(reset_value),
             _reset_value: reset_value,
+            _is_kept: false,
+        }
+    }
+
+    /// A register that `kernel!` wires.
+    pub(crate) fn kept(reset_value: T) -> Self {
+        Self {
+            _is_kept: true,
+            ..Self::new(reset_value)
         }
     }
 }
@@ -29,6 +46,22 @@ impl<T: Synth> Dff<T> {
 impl<T: Synth> Default for Dff<T> {
     fn default() -> Self {
         Self::new(T::default())
+    }
+}
+
+impl<T: Synth> Keep for Dff<T> {
+    fn keep(&mut self, clock: Clock, rst: Bit) {
+        self.clock.next = clock;
+        self.rst.next = rst;
+        self.d.next = self.q.val();
+    }
+}
+
+impl<T: Synth, const N: usize> Keep for [Dff<T>; N] {
+    fn keep(&mut self, clock: Clock, rst: Bit) {
+        for register in self {
+            register.keep(clock, rst);
+        }
     }
 }
 
@@ -47,9 +80,14 @@ impl<T: Synth> Logic for Dff<T> {
     fn connect(&mut self) {
         self.q.connect();
         self.rst.connect();
+        if self._is_kept {
+            self.clock.connect();
+            self.d.connect();
+        }
     }
 
     fn hdl(&self) -> Verilog {
-        Verilog::Custom(format!("// @dff {}\n", sized(self._reset_value)))
+        let kept = if self._is_kept { " kept" } else { "" };
+        Verilog::Custom(format!("// @dff {}{kept}\n", sized(self._reset_value)))
     }
 }

@@ -11,7 +11,7 @@ mod rom;
 mod smul;
 mod synchroniser;
 
-pub(crate) use dff::Dff;
+pub(crate) use dff::{Dff, Keep};
 pub(crate) use fault_latch::FaultLatch;
 pub(crate) use pin_register::PinRegister;
 pub(crate) use ram::Ram;

@@ -9,92 +9,43 @@
 
 use crate::prelude::*;
 
-#[derive(LogicBlock)]
-pub(super) struct Carrier {
-    pub(super) clk: Signal<In, Clock>,
-    pub(super) rst: Signal<In, Bit>,
-    pub(super) running: Signal<In, Bit>,
-    pub(super) period: Signal<In, Bits<16>>,
-    pub(super) sync: Signal<In, Bit>,
-    pub(super) phase: Signal<In, Bits<16>>,
-    pub(super) trigger_phase: Signal<In, Bits<16>>,
-    pub(super) valley_next: Signal<In, Bit>,
-    pub(super) peak_next: Signal<In, Bit>,
-    pub(super) period_used: Signal<Out, Bits<17>>,
-    pub(super) settled: Signal<Out, Bit>,
-    pub(super) valley_lead: Signal<Out, Bit>,
-    pub(super) peak_lead: Signal<Out, Bit>,
-    pub(super) waits: Signal<Out, Bit>,
-    pub(super) out_of_step: Signal<Out, Bit>,
-    pub(super) strays: Signal<Out, Bit>,
-    pub(super) valley: Signal<Out, Bit>,
-    pub(super) peak: Signal<Out, Bit>,
-    pub(super) trigger: Signal<Out, Bit>,
-
-    position: Dff<Bits<16>>,
-    period_q: Dff<Bits<17>>,
-    lead_q: Dff<Bits<11>>,
-    synced: Dff<Bit>,
-    astray: Dff<Bit>,
-    timed: Dff<Bit>,
-    at_valley: Dff<Bit>,
-    at_peak: Dff<Bit>,
-    valley_q: Dff<Bit>,
-    peak_q: Dff<Bit>,
-    trigger_q: Dff<Bit>,
-
-    lead: Signal<Local, Bits<16>>,
-    in_phase: Signal<Local, Bit>,
-    holds: Signal<Local, Bit>,
-    off_phase: Signal<Local, Bit>,
-    in_use: Signal<Local, Bit>,
-
-    whole_range: Constant<Bits<17>>,
-}
-
-impl Carrier {
+kernel! {
     /// The shortest period after reset, so that the first one set soon comes into use. `on_time_base`: it waits for its first
     /// `sync`.
-    pub(super) fn new(on_time_base: bool) -> Self {
-        Self {
-            clk: Signal::default(),
-            rst: Signal::default(),
-            running: Signal::default(),
-            period: Signal::default(),
-            sync: Signal::default(),
-            phase: Signal::default(),
-            trigger_phase: Signal::default(),
-            valley_next: Signal::default(),
-            peak_next: Signal::default(),
-            period_used: Signal::default(),
-            settled: Signal::default(),
-            valley_lead: Signal::default(),
-            peak_lead: Signal::default(),
-            waits: Signal::default(),
-            out_of_step: Signal::default(),
-            strays: Signal::default(),
-            valley: Signal::default(),
-            peak: Signal::default(),
-            trigger: Signal::default(),
-            position: Dff::default(),
-            period_q: Dff::new(from_u64(32)),
-            lead_q: Dff::default(),
-            synced: Dff::default(),
-            astray: Dff::new(on_time_base),
-            timed: Dff::new(on_time_base),
-            at_valley: Dff::default(),
-            at_peak: Dff::default(),
-            valley_q: Dff::default(),
-            peak_q: Dff::default(),
-            trigger_q: Dff::default(),
-            lead: Signal::default(),
-            in_phase: Signal::default(),
-            holds: Signal::default(),
-            off_phase: Signal::default(),
-            in_use: Signal::default(),
-            whole_range: Constant::new(from_u64(1 << 16)),
-        }
+    pub(super) struct Carrier(on_time_base: bool);
+
+    inputs {
+        rst: Bit,
+        running: Bit,
+        period: Bits<16>,
+        sync: Bit,
+        phase: Bits<16>,
+        trigger_phase: Bits<16>,
+        valley_next: Bit,
+        peak_next: Bit,
     }
+    outputs {
+        period_used: Bits<17>,
+        settled: Bit,
+        valley_lead: Bit,
+        peak_lead: Bit,
+        waits: Bit,
+        out_of_step: Bit,
+        strays: Bit,
+        valley: Bit,
+        peak: Bit,
+        trigger: Bit,
+    }
+    registers {
+        position: Bits<16>,
+        period_q: Bits<17> = from_u64(32),
+        lead_q: Bits<11>, synced: Bit,
+        astray: Bit = on_time_base,
+        timed: Bit = on_time_base,
+        at_valley: Bit, at_peak: Bit, valley_q: Bit, peak_q: Bit, trigger_q: Bit,
+    }
+    wires { lead: Bits<16>, in_phase: Bit, holds: Bit, off_phase: Bit, in_use: Bit }
+    constants { whole_range: Bits<17> = from_u64(1 << 16) }
 }
 
 impl Logic for Carrier {
@@ -102,10 +53,6 @@ impl Logic for Carrier {
     fn update(&mut self) {
         comment!("@module pwm_carrier");
         comment!("@about Position in the period; boundaries.");
-        dff_setup!(
-            self, clk, position, period_q, lead_q, synced, astray, timed, at_valley, at_peak, valley_q, peak_q,
-            trigger_q
-        );
 
         comment!("The leads: period - 32, and half of that");
         self.lead.next =

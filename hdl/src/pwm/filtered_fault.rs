@@ -2,18 +2,14 @@
 
 use crate::prelude::*;
 
-#[derive(LogicBlock, Default)]
-pub(super) struct FilteredFault {
-    pub(super) clk: Signal<In, Clock>,
-    pub(super) rst: Signal<In, Bit>,
-    pub(super) fault_n: Signal<In, Bit>,
-    pub(super) filter_clocks: Signal<In, Bits<8>>,
-    pub(super) active: Signal<Out, Bit>,
+kernel! {
+    pub(super) struct FilteredFault;
 
-    synchroniser: Synchroniser,
-    lasted: Dff<Bits<8>>,
-
-    long: Signal<Local, Bit>,
+    inputs { rst: Bit, fault_n: Bit, filter_clocks: Bits<8> }
+    outputs { active: Bit }
+    parts { synchroniser: Synchroniser }
+    registers { lasted: Bits<8> }
+    wires { long: Bit }
 }
 
 impl Logic for FilteredFault {
@@ -21,7 +17,6 @@ impl Logic for FilteredFault {
     fn update(&mut self) {
         comment!("@module filtered_fault");
         comment!("@about Active when low for over filter_clocks.");
-        dff_setup!(self, clk, lasted);
         self.synchroniser.clk.next = self.clk.val();
         self.synchroniser.rst.next = self.rst.val();
         self.synchroniser.pin.next = !self.fault_n.val();

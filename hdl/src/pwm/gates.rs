@@ -3,74 +3,28 @@
 use crate::prelude::*;
 use posicast_model::rtl::pwm::PwmConfig;
 
-#[derive(LogicBlock)]
-pub(super) struct Gates {
-    pub(super) clk: Signal<In, Clock>,
-    pub(super) rst: Signal<In, Bit>,
-    pub(super) armed: Signal<In, Bit>,
-    pub(super) mask_pins: Signal<In, Bit>,
-    pub(super) mode: Signal<In, Bits<2>>,
-    pub(super) negative: Signal<In, Bit>,
-    pub(super) awake: Signal<In, Bit>,
-    pub(super) high_side: Signal<In, Bit>,
-    pub(super) low_side: Signal<In, Bit>,
-    pub(super) a_high: Signal<Out, Bit>,
-    pub(super) a_low: Signal<Out, Bit>,
-    pub(super) b_high: Signal<Out, Bit>,
-    pub(super) b_low: Signal<Out, Bit>,
-    pub(super) gates: Signal<Out, Bits<4>>,
+kernel! {
+    pub(super) struct Gates(config: &PwmConfig);
 
-    a_high_gate: Dff<Bit>,
-    a_low_gate: Dff<Bit>,
-    b_high_gate: Dff<Bit>,
-    b_low_gate: Dff<Bit>,
-    masked: Dff<Bit>,
-
-    on: Signal<Local, Bit>,
-    leg_a_high: Signal<Local, Bits<4>>,
-    leg_a: Signal<Local, Bits<4>>,
-    leg_b_high: Signal<Local, Bits<4>>,
-    no_gate: Constant<Bits<4>>,
-
-    a_high_off: Constant<Bit>,
-    a_low_off: Constant<Bit>,
-    b_high_off: Constant<Bit>,
-    b_low_off: Constant<Bit>,
-}
-
-impl Gates {
-    pub(super) fn new(config: &PwmConfig) -> Self {
-        let off = config.active_low();
-        Self {
-            clk: Signal::default(),
-            rst: Signal::default(),
-            armed: Signal::default(),
-            mask_pins: Signal::default(),
-            mode: Signal::default(),
-            negative: Signal::default(),
-            awake: Signal::default(),
-            high_side: Signal::default(),
-            low_side: Signal::default(),
-            a_high: Signal::default(),
-            a_low: Signal::default(),
-            b_high: Signal::default(),
-            b_low: Signal::default(),
-            gates: Signal::default(),
-            a_high_gate: Dff::default(),
-            a_low_gate: Dff::default(),
-            b_high_gate: Dff::default(),
-            b_low_gate: Dff::default(),
-            masked: Dff::default(),
-            on: Signal::default(),
-            leg_a_high: Signal::default(),
-            leg_a: Signal::default(),
-            leg_b_high: Signal::default(),
-            no_gate: Constant::new(from_u64(0)),
-            a_high_off: Constant::new(off.a_high),
-            a_low_off: Constant::new(off.a_low),
-            b_high_off: Constant::new(off.b_high),
-            b_low_off: Constant::new(off.b_low),
-        }
+    inputs {
+        rst: Bit,
+        armed: Bit,
+        mask_pins: Bit,
+        mode: Bits<2>,
+        negative: Bit,
+        awake: Bit,
+        high_side: Bit,
+        low_side: Bit,
+    }
+    outputs { a_high: Bit, a_low: Bit, b_high: Bit, b_low: Bit, gates: Bits<4> }
+    registers { a_high_gate: Bit, a_low_gate: Bit, b_high_gate: Bit, b_low_gate: Bit, masked: Bit }
+    wires { on: Bit, leg_a_high: Bits<4>, leg_a: Bits<4>, leg_b_high: Bits<4> }
+    constants {
+        no_gate: Bits<4> = from_u64(0),
+        a_high_off: Bit = config.active_low().a_high,
+        a_low_off: Bit = config.active_low().a_low,
+        b_high_off: Bit = config.active_low().b_high,
+        b_low_off: Bit = config.active_low().b_low,
     }
 }
 
@@ -80,7 +34,6 @@ impl Logic for Gates {
         comment!("@module pwm_gates");
         comment!("@about The leg on its pins: a register each, then");
         comment!("@about fault path and mask, then the polarity.");
-        dff_setup!(self, clk, a_high_gate, a_low_gate, b_high_gate, b_low_gate, masked);
 
         comment!("Half bridge; and the other modes from there");
         self.a_high_gate.d.next = self.high_side.val();

@@ -7,28 +7,20 @@
 
 use crate::prelude::*;
 
-#[derive(LogicBlock, Default)]
-pub(super) struct Leg {
-    pub(super) clk: Signal<In, Clock>,
-    pub(super) rst: Signal<In, Bit>,
-    pub(super) wanted: Signal<In, Bit>,
-    pub(super) wants_high: Signal<In, Bit>,
-    pub(super) low_first: Signal<In, Bit>,
-    pub(super) dead_time: Signal<In, Bits<10>>,
-    pub(super) minimum_pulse: Signal<In, Bits<10>>,
-    pub(super) awake: Signal<Out, Bit>,
-    pub(super) high_side: Signal<Out, Bit>,
-    pub(super) low_side: Signal<Out, Bit>,
+kernel! {
+    pub(super) struct Leg;
 
-    awake_q: Dff<Bit>,
-    lit_q: Dff<Bit>,
-    high_q: Dff<Bit>,
-    timer: Dff<Bits<10>>,
-
-    awake_next: Signal<Local, Bit>,
-    lit_next: Signal<Local, Bit>,
-    high_next: Signal<Local, Bit>,
-    lasts: Signal<Local, Bits<10>>,
+    inputs {
+        rst: Bit,
+        wanted: Bit,
+        wants_high: Bit,
+        low_first: Bit,
+        dead_time: Bits<10>,
+        minimum_pulse: Bits<10>,
+    }
+    outputs { awake: Bit, high_side: Bit, low_side: Bit }
+    registers { awake_q: Bit, lit_q: Bit, high_q: Bit, timer: Bits<10> }
+    wires { awake_next: Bit, lit_next: Bit, high_next: Bit, lasts: Bits<10> }
 }
 
 impl Logic for Leg {
@@ -37,7 +29,6 @@ impl Logic for Leg {
         comment!("@module pwm_leg");
         comment!("@about Never both sides; dead time between them;");
         comment!("@about no pulse below the minimum.");
-        dff_setup!(self, clk, awake_q, lit_q, high_q, timer);
 
         self.awake_next.next = self.awake_q.q.val();
         self.lit_next.next = self.lit_q.q.val();

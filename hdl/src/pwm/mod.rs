@@ -8,7 +8,6 @@ mod filtered_fault;
 mod gates;
 mod kernel;
 mod leg;
-mod pins;
 mod timing;
 mod trip;
 

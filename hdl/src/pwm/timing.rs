@@ -5,53 +5,19 @@
 use crate::prelude::*;
 use posicast_model::rtl::pwm::PwmConfig;
 
-#[derive(LogicBlock)]
-pub(super) struct Timing {
-    pub(super) clk: Signal<In, Clock>,
-    pub(super) rst: Signal<In, Bit>,
-    pub(super) running: Signal<In, Bit>,
-    pub(super) dead_time: Signal<In, Bits<10>>,
-    pub(super) minimum_pulse: Signal<In, Bits<10>>,
-    pub(super) dead_time_used: Signal<Out, Bits<10>>,
-    pub(super) minimum_pulse_used: Signal<Out, Bits<10>>,
-    pub(super) below: Signal<Out, Bit>,
-    pub(super) settled: Signal<Out, Bit>,
+kernel! {
+    pub(super) struct Timing(config: &PwmConfig);
 
-    dead_time_q: Dff<Bits<10>>,
-    minimum_pulse_q: Dff<Bits<10>>,
-
-    dead_below: Signal<Local, Bit>,
-    pulse_below: Signal<Local, Bit>,
-    dead_wanted: Signal<Local, Bits<10>>,
-    pulse_wanted: Signal<Local, Bits<10>>,
-
-    dead_time_floor: Constant<Bits<10>>,
-    minimum_pulse_floor: Constant<Bits<10>>,
-}
-
-impl Timing {
-    pub(super) fn new(config: &PwmConfig) -> Self {
-        let dead_time = from_u64(config.dead_time_floor_clocks().into());
-        let minimum_pulse = from_u64(config.minimum_pulse_floor_clocks().into());
-        Self {
-            clk: Signal::default(),
-            rst: Signal::default(),
-            running: Signal::default(),
-            dead_time: Signal::default(),
-            minimum_pulse: Signal::default(),
-            dead_time_used: Signal::default(),
-            minimum_pulse_used: Signal::default(),
-            below: Signal::default(),
-            settled: Signal::default(),
-            dead_time_q: Dff::new(dead_time),
-            minimum_pulse_q: Dff::new(minimum_pulse),
-            dead_below: Signal::default(),
-            pulse_below: Signal::default(),
-            dead_wanted: Signal::default(),
-            pulse_wanted: Signal::default(),
-            dead_time_floor: Constant::new(dead_time),
-            minimum_pulse_floor: Constant::new(minimum_pulse),
-        }
+    inputs { rst: Bit, running: Bit, dead_time: Bits<10>, minimum_pulse: Bits<10> }
+    outputs { dead_time_used: Bits<10>, minimum_pulse_used: Bits<10>, below: Bit, settled: Bit }
+    registers {
+        dead_time_q: Bits<10> = from_u64(config.dead_time_floor_clocks().into()),
+        minimum_pulse_q: Bits<10> = from_u64(config.minimum_pulse_floor_clocks().into()),
+    }
+    wires { dead_below: Bit, pulse_below: Bit, dead_wanted: Bits<10>, pulse_wanted: Bits<10> }
+    constants {
+        dead_time_floor: Bits<10> = from_u64(config.dead_time_floor_clocks().into()),
+        minimum_pulse_floor: Bits<10> = from_u64(config.minimum_pulse_floor_clocks().into()),
     }
 }
 
@@ -60,7 +26,6 @@ impl Logic for Timing {
     fn update(&mut self) {
         comment!("@module pwm_timing");
         comment!("@about Dead time and minimum pulse, and floors.");
-        dff_setup!(self, clk, dead_time_q, minimum_pulse_q);
 
         comment!("Below: the floor has the highest bit that differs");
         self.dead_below.next = false;

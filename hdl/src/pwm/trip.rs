@@ -3,47 +3,35 @@
 use super::filtered_fault::FilteredFault;
 use crate::prelude::*;
 
-#[derive(LogicBlock, Default)]
-pub(super) struct Trip {
-    pub(super) clk: Signal<In, Clock>,
-    pub(super) rst: Signal<In, Bit>,
-    pub(super) running: Signal<In, Bit>,
-    pub(super) valley: Signal<In, Bit>,
-    pub(super) feed: Signal<In, Bit>,
-    pub(super) watchdog_periods: Signal<In, Bits<8>>,
-    pub(super) filter_clocks: Signal<In, Bits<8>>,
-    pub(super) fault_n: Signal<In, Bit>,
-    pub(super) pll_locked: Signal<In, Bit>,
-    pub(super) filtered_fault_n: Signal<In, Bits<2>>,
-    pub(super) clear_trip: Signal<In, Bit>,
-    pub(super) armed: Signal<Out, Bit>,
-    pub(super) tripped: Signal<Out, Bit>,
-    pub(super) causes: Signal<Out, Bits<5>>,
+kernel! {
+    pub(super) struct Trip;
 
-    fault_latch: FaultLatch,
-    armed_synchroniser: Synchroniser,
-    fault_synchroniser: Synchroniser,
-    pll_synchroniser: Synchroniser,
-    fault_0: FilteredFault,
-    fault_1: FilteredFault,
-
-    filtered_0: Dff<Bit>,
-    filtered_1: Dff<Bit>,
-    pll: Dff<Bit>,
-    watchdog: Dff<Bit>,
-    unfed: Dff<Bits<8>>,
-
-    trip_n: Signal<Local, Bit>,
-    over: Signal<Local, Bit>,
-    latched: Signal<Local, Bit>,
-    waits: Signal<Local, Bit>,
-    starved: Signal<Local, Bit>,
-    others: Signal<Local, Bit>,
-    none: Signal<Local, Bits<5>>,
-    with_latch: Signal<Local, Bits<5>>,
-    with_fault_0: Signal<Local, Bits<5>>,
-    with_fault_1: Signal<Local, Bits<5>>,
-    with_pll: Signal<Local, Bits<5>>,
+    inputs {
+        rst: Bit,
+        running: Bit,
+        valley: Bit,
+        feed: Bit,
+        watchdog_periods: Bits<8>,
+        filter_clocks: Bits<8>,
+        fault_n: Bit,
+        pll_locked: Bit,
+        filtered_fault_n: Bits<2>,
+        clear_trip: Bit,
+    }
+    outputs { armed: Bit, tripped: Bit, causes: Bits<5> }
+    parts {
+        fault_latch: FaultLatch,
+        armed_synchroniser: Synchroniser,
+        fault_synchroniser: Synchroniser,
+        pll_synchroniser: Synchroniser,
+        fault_0: FilteredFault,
+        fault_1: FilteredFault,
+    }
+    registers { filtered_0: Bit, filtered_1: Bit, pll: Bit, watchdog: Bit, unfed: Bits<8> }
+    wires {
+        trip_n: Bit, over: Bit, latched: Bit, waits: Bit, starved: Bit, others: Bit, none: Bits<5>,
+        with_latch: Bits<5>, with_fault_0: Bits<5>, with_fault_1: Bits<5>, with_pll: Bits<5>,
+    }
 }
 
 impl Logic for Trip {
@@ -51,7 +39,6 @@ impl Logic for Trip {
     fn update(&mut self) {
         comment!("@module pwm_trip");
         comment!("@about Fault latch, faults, PLL, watchdog.");
-        dff_setup!(self, clk, filtered_0, filtered_1, pll, watchdog, unfed);
 
         comment!("Without a clock: the pins, and the latch");
         self.trip_n.next = self.fault_n.val() & self.pll_locked.val();

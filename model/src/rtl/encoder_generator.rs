@@ -29,7 +29,7 @@
 
 use std::sync::Arc;
 
-use super::{ClockedBlock, Moore, Port, PortRow, StepError, ports_of, quiet_at_rest};
+use super::{ClockedBlock, Moore, PlainRow, Port, StepError, ports_of, quiet_at_rest};
 
 /// Fraction bits of `rate`.
 pub const RATE_FRACTION: u32 = 32;
@@ -66,7 +66,7 @@ pub struct Outputs {
 }
 
 /// Input ports in port order, with their widths.
-const INPUTS: [PortRow; 10] = [
+const INPUTS: [PlainRow; 10] = [
     ("rst", 1, false),
     ("loop_back", 1, false),
     ("rate", 32, true),
@@ -80,7 +80,7 @@ const INPUTS: [PortRow; 10] = [
 ];
 
 /// Output ports in port order, with their widths.
-const OUTPUTS: [PortRow; 7] = [
+const OUTPUTS: [PlainRow; 7] = [
     ("a", 1, false),
     ("b", 1, false),
     ("z", 1, false),

@@ -15,6 +15,7 @@ pub mod excitation;
 pub mod group;
 pub mod linear_scale;
 mod moore;
+mod ports;
 pub mod pulse_counter;
 pub mod pwm;
 pub mod registers;
@@ -31,6 +32,8 @@ pub mod word;
 
 pub(crate) use moore::quiet_at_rest;
 pub use moore::{FOREVER, Moore, OutputKind};
+pub use ports::{PortList, PortRow};
+pub(crate) use ports::{clocked_block, ports};
 
 /// Direction of a port, seen from the block.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -54,13 +57,13 @@ pub struct Port {
     pub signed: bool,
 }
 
-/// Name, width and sign of a port.
-pub(crate) type PortRow = (&'static str, u32, bool);
+/// Name, width and sign of a port, where a block has no `ports!` yet.
+pub(crate) type PlainRow = (&'static str, u32, bool);
 
 /// Ports from their tables: inputs, then outputs.
-pub(crate) fn ports_of(inputs: &[PortRow], outputs: &[PortRow]) -> Vec<Port> {
+pub(crate) fn ports_of(inputs: &[PlainRow], outputs: &[PlainRow]) -> Vec<Port> {
     let port = |direction| {
-        move |&(name, width, signed): &PortRow| Port {
+        move |&(name, width, signed): &PlainRow| Port {
             name: name.to_owned(),
             direction,
             width,

@@ -1,6 +1,6 @@
 //! The input ports of the axis's supervisor.
 
-use crate::rtl::PortRow;
+use crate::rtl::PlainRow;
 
 /// The input ports. Bits above a port's width are ignored.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -120,7 +120,7 @@ pub struct Inputs {
 }
 
 /// In port order, with width and sign.
-pub(super) const INPUTS: [PortRow; 56] = [
+pub(super) const INPUTS: [PlainRow; 56] = [
     ("rst", 1, false),
     ("tick", 1, false),
     ("emergency_stop_n", 1, false),

@@ -1,7 +1,7 @@
 //! The output ports of the axis's supervisor.
 
 use super::transition::State;
-use crate::rtl::PortRow;
+use crate::rtl::PlainRow;
 
 /// The output ports, all of them registers or functions of registers.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -67,7 +67,7 @@ pub struct Outputs {
 }
 
 /// In port order, with width and sign.
-pub(super) const OUTPUTS: [PortRow; 29] = [
+pub(super) const OUTPUTS: [PlainRow; 29] = [
     ("state", 3, false),
     ("causes", 17, false),
     ("drive_enable", 1, false),

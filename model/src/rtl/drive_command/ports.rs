@@ -1,6 +1,6 @@
 //! The ports of the drive command.
 
-use crate::rtl::{Port, PortRow, ports_of};
+use crate::rtl::{PlainRow, Port, ports_of};
 
 /// Width of the controller's duty.
 pub const CONTROLLER_DUTY_BITS: u32 = 18;
@@ -103,7 +103,7 @@ impl Default for Outputs {
 }
 
 /// Input ports in port order, with their widths.
-const INPUTS: [PortRow; 20] = [
+const INPUTS: [PlainRow; 20] = [
     ("rst", 1, false),
     ("tick", 1, false),
     ("controller_duty", CONTROLLER_DUTY_BITS, true),
@@ -127,7 +127,7 @@ const INPUTS: [PortRow; 20] = [
 ];
 
 /// Output ports in port order, with their widths.
-const OUTPUTS: [PortRow; 11] = [
+const OUTPUTS: [PlainRow; 11] = [
     ("duty", DUTY_BITS, true),
     ("feed", 1, false),
     ("pwm_enable", 1, false),

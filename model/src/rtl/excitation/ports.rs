@@ -1,6 +1,6 @@
 //! The ports of the excitation.
 
-use crate::rtl::{Port, PortRow, ports_of};
+use crate::rtl::{PlainRow, Port, ports_of};
 
 /// What the signal is.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -69,7 +69,7 @@ pub struct Outputs {
 }
 
 /// Input ports in port order, with their widths.
-const INPUTS: [PortRow; 14] = [
+const INPUTS: [PlainRow; 14] = [
     ("rst", 1, false),
     ("valid", 1, false),
     ("y_0", 32, true),
@@ -87,7 +87,7 @@ const INPUTS: [PortRow; 14] = [
 ];
 
 /// Output ports in port order, with their widths.
-const OUTPUTS: [PortRow; 7] = [
+const OUTPUTS: [PlainRow; 7] = [
     ("position_reference", 32, true),
     ("velocity_reference", 32, true),
     ("acceleration_reference", 32, true),

@@ -2,7 +2,7 @@
 
 use super::{MANTISSA_BITS, SHIFT_BITS};
 use crate::rtl::shaper::wrap;
-use crate::rtl::{Port, PortRow, ports_of};
+use crate::rtl::{PlainRow, Port, ports_of};
 
 /// The input ports. Bits above a port's width are ignored.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -44,7 +44,7 @@ pub struct Outputs {
 }
 
 /// Input ports in port order, with their widths.
-const INPUTS: [PortRow; 10] = [
+const INPUTS: [PlainRow; 10] = [
     ("rst", 1, false),
     ("tick", 1, false),
     ("motor_position", 32, true),
@@ -58,7 +58,7 @@ const INPUTS: [PortRow; 10] = [
 ];
 
 /// Output ports in port order, with their widths.
-const OUTPUTS: [PortRow; 4] = [
+const OUTPUTS: [PlainRow; 4] = [
     ("deviation", 32, true),
     ("deviation_valid", 1, false),
     ("position", 32, true),

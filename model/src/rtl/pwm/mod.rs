@@ -46,12 +46,12 @@ mod quiet;
 mod trip;
 
 pub use config::{ActiveLow, PwmConfig, PwmConfigError, TIME_BITS};
-pub use ports::{Gates, INPUTS, Inputs, Mode, OUTPUTS, Outputs, ports};
+pub use ports::{Gates, INPUT_PORTS, Inputs, Mode, OUTPUT_PORTS, Outputs, PORTS, ports};
 
 use self::command::{Command, Surroundings};
 use self::leg::{Leg, Want};
 use self::trip::Trip;
-use super::{ClockedBlock, Port, StepError};
+use super::clocked_block;
 
 /// Clocks before a boundary at which duty and mode are read.
 pub const COMMAND_CLOCKS: u32 = 15;
@@ -152,7 +152,6 @@ impl State {
 /// The PWM, cycle accurate at its ports.
 pub struct Pwm {
     config: PwmConfig,
-    ports: Vec<Port>,
     state: State,
 }
 
@@ -161,7 +160,6 @@ impl Pwm {
     pub fn new(config: &PwmConfig) -> Self {
         Self {
             config: *config,
-            ports: ports(),
             state: State::new(config),
         }
     }
@@ -327,21 +325,4 @@ impl State {
     }
 }
 
-impl ClockedBlock for Pwm {
-    fn ports(&self) -> &[Port] {
-        &self.ports
-    }
-
-    fn step(&mut self, inputs: &[u64], outputs: &mut [u64]) -> Result<(), StepError> {
-        let (Ok(raw), OUTPUTS) = (<&[u64; INPUTS]>::try_from(inputs), outputs.len()) else {
-            return Err(StepError(format!(
-                "{} inputs and {} outputs: the PWM has {INPUTS} and {OUTPUTS}",
-                inputs.len(),
-                outputs.len()
-            )));
-        };
-        let shown = Pwm::step(self, &Inputs::from_raw(raw));
-        outputs.copy_from_slice(&shown.to_raw());
-        Ok(())
-    }
-}
+clocked_block!(Pwm, "the PWM");

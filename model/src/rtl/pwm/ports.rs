@@ -1,7 +1,7 @@
 //! The ports of the PWM.
 
-use super::TIME_BITS;
-use crate::rtl::{Direction, Port};
+use crate::rtl::ports;
+use crate::rtl::ports::PortValue;
 
 /// What the four pins do.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -35,54 +35,7 @@ impl Mode {
     }
 }
 
-/// The input ports. Bits above a port's width are ignored.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct Inputs {
-    /// Synchronous reset.
-    pub rst: bool,
-    /// Outputs on, from the next start of a period; off at once.
-    pub enable: bool,
-    /// 0 direction, 1 half bridge, 2 full bridge unipolar, 3 full bridge locked antiphase; 2 bits.
-    pub mode: u8,
-    /// Clocks per period; 0 stands for 65,536. Taken while off.
-    pub period: u16,
-    /// Clocks of the ideal high time, signed, 17 bits; beyond ±period is full.
-    pub duty: i32,
-    /// Largest |duty|.
-    pub max_duty: u16,
-    /// Duty and mode are taken at the peak too, not at the valley only.
-    pub update_at_peak: bool,
-    /// Clocks from one side's off to the other's on, 10 bits. Taken while off.
-    pub dead_time: u16,
-    /// Clocks of the shortest pulse, 10 bits. Taken while off.
-    pub minimum_pulse: u16,
-    /// One clock: the time base is here.
-    pub sync: bool,
-    /// Clocks after the valley at which the carrier is when `sync` comes.
-    pub phase: u16,
-    /// Clocks after the valley at which `trigger` comes.
-    pub trigger_phase: u16,
-    /// One clock: the controller lives.
-    pub feed: bool,
-    /// Valleys without `feed` that the watchdog lets pass; 0 is no watchdog.
-    pub watchdog_periods: u8,
-    /// Clocks that a filtered fault may last without effect.
-    pub filter_clocks: u8,
-    /// Raw fault, any time: low is a fault, or a broken wire.
-    pub fault_n: bool,
-    /// Any time: low trips as `fault_n` does.
-    pub pll_locked: bool,
-    /// Two faults behind synchroniser and filter, any time; low is a fault, or a broken wire.
-    pub filtered_fault_n: u8,
-    /// One clock: forget the causes that are over.
-    pub clear_trip: bool,
-    /// Clears `saturated`, `refused`, `below_floor`, `unaligned`.
-    pub clear_flags: bool,
-    /// Level: all pins off, from the next clock on; all else goes on as it would.
-    pub mask_pins: bool,
-}
-
-/// Four gates, high side and low side of two legs: true is on (of the gate, not of the level).
+/// Four gates, in a port bit 0 `a_high`, 1 `a_low`, 2 `b_high`, 3 `b_low`: high side and low side of two legs: true is on (of the gate, not of the level).
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Gates {
     /// High side of leg A; the PWM of mode `direction`.
@@ -96,13 +49,6 @@ pub struct Gates {
 }
 
 impl Gates {
-    /// Bit 0 `a_high`, 1 `a_low`, 2 `b_high`, 3 `b_low`.
-    #[inline]
-    fn to_bits(self) -> u64 {
-        let gates = [self.a_high, self.a_low, self.b_high, self.b_low];
-        (0..).zip(gates).map(|(at, gate)| u64::from(gate) << at).sum()
-    }
-
     /// What a leg, and the rest of the bridge, are in a mode. `leg` is the leg that switches: its high side, its low side.
     /// `awake`: its first dead time is over.
     #[inline]
@@ -124,187 +70,112 @@ impl Gates {
     }
 }
 
-/// The output ports.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct Outputs {
-    /// The level of pin A high.
-    pub a_high: bool,
-    /// The level of pin A low.
-    pub a_low: bool,
-    /// The level of pin B high.
-    pub b_high: bool,
-    /// The level of pin B low.
-    pub b_low: bool,
-    /// The outputs are on.
-    pub running: bool,
-    /// A cause is standing: the outputs are off.
-    pub tripped: bool,
-    /// Bit 0: the fault latch; 1, 2: the filtered faults; 3: the PLL; 4: the watchdog.
-    pub trip_causes: u8,
-    /// The direction in use is negative.
-    pub negative: bool,
-    /// One clock: the pins are at the first clock of a period.
-    pub valley: bool,
-    /// One clock: the pins are in the middle of a period.
-    pub peak: bool,
-    /// One clock: the pins are `trigger_phase` clocks after the valley.
-    pub trigger: bool,
-    /// Sticky: a duty was limited by `max_duty`, by the period, or by the mode.
-    pub saturated: bool,
-    /// Sticky: another period, dead time or minimum pulse was wanted while running.
-    pub refused: bool,
-    /// Sticky: a dead time or minimum pulse below the floor was wanted while enabled; the floor is used.
-    pub below_floor: bool,
-    /// Sticky: `sync` came at another phase while running.
-    pub unaligned: bool,
-    /// Dead time in use, clocks.
-    pub dead_time_used: u16,
-    /// Minimum pulse in use, clocks.
-    pub minimum_pulse_used: u16,
-    /// The gates before fault path, mask and polarity.
-    pub gates: Gates,
-}
-
-/// The ports of a PWM in the order of the Verilog's port list, without `clk`.
-pub fn ports() -> Vec<Port> {
-    use Direction::{Input, Output};
-    let port = |name: &str, direction, width, signed| Port {
-        name: name.to_owned(),
-        direction,
-        width,
-        signed,
-    };
-    vec![
-        port("rst", Input, 1, false),
-        port("enable", Input, 1, false),
-        port("mode", Input, 2, false),
-        port("period", Input, 16, false),
-        port("duty", Input, 17, true),
-        port("max_duty", Input, 16, false),
-        port("update_at_peak", Input, 1, false),
-        port("dead_time", Input, TIME_BITS, false),
-        port("minimum_pulse", Input, TIME_BITS, false),
-        port("sync", Input, 1, false),
-        port("phase", Input, 16, false),
-        port("trigger_phase", Input, 16, false),
-        port("feed", Input, 1, false),
-        port("watchdog_periods", Input, 8, false),
-        port("filter_clocks", Input, 8, false),
-        port("fault_n", Input, 1, false),
-        port("pll_locked", Input, 1, false),
-        port("filtered_fault_n", Input, 2, false),
-        port("clear_trip", Input, 1, false),
-        port("clear_flags", Input, 1, false),
-        port("mask_pins", Input, 1, false),
-        port("a_high", Output, 1, false),
-        port("a_low", Output, 1, false),
-        port("b_high", Output, 1, false),
-        port("b_low", Output, 1, false),
-        port("running", Output, 1, false),
-        port("tripped", Output, 1, false),
-        port("trip_causes", Output, 5, false),
-        port("negative", Output, 1, false),
-        port("valley", Output, 1, false),
-        port("peak", Output, 1, false),
-        port("trigger", Output, 1, false),
-        port("saturated", Output, 1, false),
-        port("refused", Output, 1, false),
-        port("below_floor", Output, 1, false),
-        port("unaligned", Output, 1, false),
-        port("dead_time_used", Output, TIME_BITS, false),
-        port("minimum_pulse_used", Output, TIME_BITS, false),
-        port("gates", Output, 4, false),
-    ]
-}
-
-/// Input ports.
-pub const INPUTS: usize = 21;
-/// Output ports.
-pub const OUTPUTS: usize = 18;
-/// Bits of [`Inputs::duty`].
-const DUTY_UNUSED_BITS: u32 = 32 - 17;
-
-impl Inputs {
-    /// From raw bit patterns, one per input port in port order.
+impl PortValue for Gates {
     #[inline]
-    pub fn from_raw(raw: &[u64; INPUTS]) -> Self {
-        let bit = |at: usize| raw[at] & 1 != 0;
+    fn from_pattern(pattern: u64, _: u32, _: bool) -> Self {
+        let bit = |place: u32| pattern >> place & 1 != 0;
         Self {
-            rst: bit(0),
-            enable: bit(1),
-            mode: raw[2] as u8 & 3,
-            period: raw[3] as u16,
-            duty: ((raw[4] as i32) << DUTY_UNUSED_BITS) >> DUTY_UNUSED_BITS,
-            max_duty: raw[5] as u16,
-            update_at_peak: bit(6),
-            dead_time: raw[7] as u16,
-            minimum_pulse: raw[8] as u16,
-            sync: bit(9),
-            phase: raw[10] as u16,
-            trigger_phase: raw[11] as u16,
-            feed: bit(12),
-            watchdog_periods: raw[13] as u8,
-            filter_clocks: raw[14] as u8,
-            fault_n: bit(15),
-            pll_locked: bit(16),
-            filtered_fault_n: raw[17] as u8,
-            clear_trip: bit(18),
-            clear_flags: bit(19),
-            mask_pins: bit(20),
+            a_high: bit(0),
+            a_low: bit(1),
+            b_high: bit(2),
+            b_low: bit(3),
         }
     }
 
-    /// As raw bit patterns, one per input port in port order.
-    pub fn to_raw(&self) -> [u64; INPUTS] {
-        [
-            u64::from(self.rst),
-            u64::from(self.enable),
-            u64::from(self.mode & 3),
-            u64::from(self.period),
-            self.duty as u64 & 0x1_ffff,
-            u64::from(self.max_duty),
-            u64::from(self.update_at_peak),
-            u64::from(self.dead_time & 0x3ff),
-            u64::from(self.minimum_pulse & 0x3ff),
-            u64::from(self.sync),
-            u64::from(self.phase),
-            u64::from(self.trigger_phase),
-            u64::from(self.feed),
-            u64::from(self.watchdog_periods),
-            u64::from(self.filter_clocks),
-            u64::from(self.fault_n),
-            u64::from(self.pll_locked),
-            u64::from(self.filtered_fault_n & 3),
-            u64::from(self.clear_trip),
-            u64::from(self.clear_flags),
-            u64::from(self.mask_pins),
-        ]
+    #[inline]
+    fn pattern(self) -> u64 {
+        let gates = [self.a_high, self.a_low, self.b_high, self.b_low];
+        (0..).zip(gates).map(|(at, gate)| u64::from(gate) << at).sum()
     }
 }
 
-impl Outputs {
-    /// As raw bit patterns, one per output port in port order.
-    #[inline]
-    pub fn to_raw(&self) -> [u64; OUTPUTS] {
-        [
-            u64::from(self.a_high),
-            u64::from(self.a_low),
-            u64::from(self.b_high),
-            u64::from(self.b_low),
-            u64::from(self.running),
-            u64::from(self.tripped),
-            u64::from(self.trip_causes),
-            u64::from(self.negative),
-            u64::from(self.valley),
-            u64::from(self.peak),
-            u64::from(self.trigger),
-            u64::from(self.saturated),
-            u64::from(self.refused),
-            u64::from(self.below_floor),
-            u64::from(self.unaligned),
-            u64::from(self.dead_time_used),
-            u64::from(self.minimum_pulse_used),
-            self.gates.to_bits(),
-        ]
+ports! {
+    pwm_ports;
+
+    /// The input ports. Bits above a port's width are ignored.
+    inputs Inputs {
+        /// Synchronous reset.
+        rst: Bit as bool;
+        /// Outputs on, from the next start of a period; off at once.
+        enable: Bit as bool;
+        /// 0 direction, 1 half bridge, 2 full bridge unipolar, 3 full bridge locked antiphase.
+        mode: Bits(2) as u8;
+        /// Clocks per period, from 64; 0 is 65,536. Taken while off.
+        period: Bits(16) as u16, "clocks";
+        /// Clocks of the ideal high time; beyond ±`period` is full.
+        duty: Signed(17) as i32, "clocks";
+        /// Largest |`duty`|; still for the 16 clocks before a boundary.
+        max_duty: Bits(16) as u16, "clocks";
+        /// Duty and mode are taken at the peak too.
+        update_at_peak: Bit as bool;
+        /// Time from one side's off to the other's on; below the floor, the floor counts. Taken while off.
+        dead_time: Bits(10) as u16, "clocks";
+        /// Shortest pulse; below the floor, the floor counts. Taken while off.
+        minimum_pulse: Bits(10) as u16, "clocks";
+        /// One clock: the time base is here.
+        sync: Bit as bool;
+        /// Clocks after the valley at which the carrier is in the clock after `sync`; below `period`.
+        phase: Bits(16) as u16, "clocks";
+        /// Clocks after the valley at which `trigger` comes.
+        trigger_phase: Bits(16) as u16, "clocks";
+        /// One clock: the controller lives; every tick.
+        feed: Bit as bool;
+        /// Valleys without `feed` that pass; the next one trips. 0: no watchdog.
+        watchdog_periods: Bits(8) as u8, "valleys";
+        /// Clocks that a filtered fault may last without effect.
+        filter_clocks: Bits(8) as u8, "clocks";
+        /// Raw fault, any time: low is a fault, or a broken wire.
+        fault_n: Bit as bool;
+        /// Any time: low trips as `fault_n` does.
+        pll_locked: Bit as bool;
+        /// Two faults behind synchroniser and filter, any time; low is a fault, or a broken wire.
+        filtered_fault_n: Bits(2) as u8;
+        /// One clock: forget the causes that are over.
+        clear_trip: Bit as bool;
+        /// Clears `saturated`, `refused`, `below_floor`, `unaligned`.
+        clear_flags: Bit as bool;
+        /// High: all pins off, a clock later; all else goes on.
+        mask_pins: Bit as bool;
+    }
+
+    /// The output ports.
+    outputs Outputs {
+        /// The level of pin A high.
+        a_high: Bit as bool;
+        /// The level of pin A low.
+        a_low: Bit as bool;
+        /// The level of pin B high.
+        b_high: Bit as bool;
+        /// The level of pin B low.
+        b_low: Bit as bool;
+        /// The outputs are on.
+        running: Bit as bool;
+        /// A cause stands; the outputs are off.
+        tripped: Bit as bool;
+        /// 0 fault latch, 1 and 2 filtered faults, 3 PLL, 4 watchdog.
+        trip_causes: Bits(5) as u8;
+        /// The direction in use.
+        negative: Bit as bool;
+        /// One clock: the pins are at the first clock of a period.
+        valley: Bit as bool;
+        /// One clock: the pins are in the middle of a period.
+        peak: Bit as bool;
+        /// One clock: the pins are `trigger_phase` clocks after the valley.
+        trigger: Bit as bool;
+        /// Sticky: a duty was limited, by `max_duty`, the period, or the half bridge at 0.
+        saturated: Bit as bool;
+        /// Sticky: another period, dead time or minimum pulse was wanted while running.
+        refused: Bit as bool;
+        /// Sticky: while enabled, a time below its floor was wanted, and the floor is used; or the period is 2 · (dead time
+        /// + minimum pulse), and the PWM does not start.
+        below_floor: Bit as bool;
+        /// Sticky: `sync` came at another phase while running.
+        unaligned: Bit as bool;
+        /// Dead time in use.
+        dead_time_used: Bits(10) as u16, "clocks";
+        /// Minimum pulse in use.
+        minimum_pulse_used: Bits(10) as u16, "clocks";
+        /// The gates before fault path, mask and polarity, 1 is on: 0 `a_high`, 1 `a_low`, 2 `b_high`, 3 `b_low`.
+        gates: Bits(4) as Gates;
     }
 }

@@ -1,6 +1,6 @@
 //! The clocks in which nothing happens: only the carrier and a timer count.
 
-use super::ports::{INPUTS, Inputs};
+use super::ports::{INPUT_PORTS, Inputs};
 use super::{LEAD_CLOCKS, Pwm, State};
 use crate::rtl::{Moore, OutputKind};
 
@@ -56,7 +56,7 @@ impl Moore for Pwm {
     }
 
     fn show_with(&mut self, inputs: &[u64], outputs: &mut [u64]) {
-        let inputs = <&[u64; INPUTS]>::try_from(inputs).map_or_else(|_| Inputs::default(), Inputs::from_raw);
+        let inputs = <&[u64; INPUT_PORTS]>::try_from(inputs).map_or_else(|_| Inputs::default(), Inputs::from_raw);
         for (output, value) in outputs.iter_mut().zip(self.outputs(&inputs).to_raw()) {
             *output = value;
         }
@@ -64,7 +64,7 @@ impl Moore for Pwm {
 
     /// Tries a clock: if it only counts, it and all like it are quiet.
     fn quiet_clocks(&self, inputs: &[u64]) -> u64 {
-        let Ok(inputs) = <&[u64; INPUTS]>::try_from(inputs).map(Inputs::from_raw) else {
+        let Ok(inputs) = <&[u64; INPUT_PORTS]>::try_from(inputs).map(Inputs::from_raw) else {
             return 0;
         };
         let mut next = self.state;
@@ -73,7 +73,7 @@ impl Moore for Pwm {
     }
 
     fn pass(&mut self, inputs: &[u64], clocks: u64) {
-        if let Ok(raw) = <&[u64; INPUTS]>::try_from(inputs) {
+        if let Ok(raw) = <&[u64; INPUT_PORTS]>::try_from(inputs) {
             self.hold(&Inputs::from_raw(raw), clocks);
         }
     }

@@ -1,6 +1,6 @@
 //! The ports of the command FIFO.
 
-use crate::rtl::{Port, PortRow, ports_of};
+use crate::rtl::{PlainRow, Port, ports_of};
 
 /// The input ports. Bits above a port's width are ignored.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -38,7 +38,7 @@ pub struct Inputs {
 }
 
 /// Input ports in port order, with their widths.
-const INPUTS: [PortRow; 15] = [
+const INPUTS: [PlainRow; 15] = [
     ("rst", 1, false),
     ("tick", 1, false),
     ("enable", 1, false),
@@ -57,7 +57,7 @@ const INPUTS: [PortRow; 15] = [
 ];
 
 /// Output ports in port order, with their widths.
-const OUTPUTS: [PortRow; 16] = [
+const OUTPUTS: [PlainRow; 16] = [
     ("position", 32, true),
     ("velocity", 32, true),
     ("acceleration", 32, true),

@@ -1,0 +1,221 @@
+//! `kernel!` makes of a block's ports, registers, wires, parts and constants all but its logic.
+//!
+//! ```text
+//! kernel! {
+//!     /// Counts to a limit.
+//!     pub(super) struct Counter(config: &CounterConfig);      no parentheses where the kernel needs no configuration
+//!
+//!     inputs { rst: Bit, enable: Bit, limit: Bits<8> }        the input `clk` is always there
+//!     outputs { count: Bits<8>, wrapped: Bit }
+//!     parts { filter: GlitchFilter, divider: Divider = Divider::new(config) }
+//!     registers { count_q: Bits<8>, level: Bit = true }       with a reset value that is not 0
+//!     wires { sum: Bits<8> }
+//!     constants { first: Bits<8> = from_u64(config.first()) }
+//! }
+//!
+//! impl Logic for Counter {
+//!     #[hdl_gen]
+//!     fn update(&mut self) {
+//!         comment!("@module counter");
+//!         if self.enable.val() {
+//!             self.count_q.d.next = self.sum.val();
+//!         }
+//!         ...
+//! ```
+//!
+//! | section | field | starts as |
+//! |---|---|---|
+//! | `inputs`, `outputs`, `wires` | `Signal<In, T>`, `Signal<Out, T>`, `Signal<Local, T>` | |
+//! | `registers` | [`Dff<T>`](crate::prim::Dff), clocked by `clk` and reset by `rst`; it keeps its value unless the logic sets `d` | `= reset value`, else 0 |
+//! | `parts` | `T`, another kernel or a leaf; the logic wires its inputs, `clk` and `rst` among them | `= T::new(..)`, else `T::default()` |
+//! | `constants` | `Constant<T>` | `= value` |
+//!
+//! `name[N]: T` makes an array of N; constants of an array are a function of the index, `= |index| ..`. Sections stand in the
+//! order of the Verilog's declarations, and each may stand several times. A register that the logic wires itself is a part, `Dff<T>`.
+//! The macro also makes the constructor: `new` with the arguments behind the name, or `default` where there are none.
+//!
+//! Sizes that must fit each other say so behind the name: `struct Product<const W: usize, const P: usize> where P == W + 18;`.
+//!
+//! Where a block's ports depend on its sizes, `raw ports;` before the sections says that the simulator needs raw ports too. Any other
+//! block's top kernel takes inputs and outputs from the block's list of ports in the model, which `ports!` makes there, and
+//! raw ports with them:
+//!
+//! ```text
+//! kernel! {
+//!     pub(super) struct Pwm(config: &PwmConfig);
+//!     ports posicast_model::pwm_ports;
+//!
+//!     parts { .. }
+//! }
+//! ```
+
+/// See the [module](self).
+macro_rules! kernel {
+    // With the ports of a list in the model: the list's macro comes back with them.
+    (
+        $(#[$about:meta])*
+        $seen:vis struct $name:ident $(<$(const $size:ident: usize),+ $(,)?>)? $(($($argument:ident: $of:ty),+ $(,)?))?
+            $(where $condition:expr)?;
+        ports $($list:ident)::+;
+        $($sections:tt)*
+    ) => {
+        $($list)::+! {
+            kernel
+            {
+                $(#[$about])*
+                $seen struct $name $(<$(const $size: usize),+>)? $(($($argument: $of),+))?
+                    $(where $condition)?;
+            }
+            { $($sections)* }
+        }
+    };
+    // With raw ports, and no list.
+    (
+        $(#[$about:meta])*
+        $seen:vis struct $name:ident $(<$(const $size:ident: usize),+ $(,)?>)? $(($($argument:ident: $of:ty),+ $(,)?))?
+            $(where $condition:expr)?;
+        raw ports;
+        inputs $inputs:tt
+        outputs $outputs:tt
+        $($sections:tt)*
+    ) => {
+        $crate::kernel::kernel! {
+            @ports $inputs $outputs
+            {
+                $(#[$about])*
+                $seen struct $name $(<$(const $size: usize),+>)? $(($($argument: $of),+))?
+                    $(where $condition)?;
+            }
+            { $($sections)* }
+        }
+    };
+    (@ports $inputs:tt $outputs:tt { $($header:tt)* } { $($sections:tt)* }) => {
+        $crate::kernel::kernel! { $($header)* inputs $inputs outputs $outputs $($sections)* }
+        $crate::kernel::kernel! { @pins $inputs $outputs $($header)* }
+    };
+    (
+        @pins
+        { $($input:ident $([$inputs:expr])?: $input_type:ty),* $(,)? }
+        { $($output:ident $([$outputs:expr])?: $output_type:ty),* $(,)? }
+        $(#[$about:meta])*
+        $seen:vis struct $name:ident $(<$(const $size:ident: usize),+ $(,)?>)? $(($($argument:ident: $of:ty),+ $(,)?))?
+            $(where $condition:expr)?;
+    ) => {
+        impl $(<$(const $size: usize),+>)? $crate::simulation::Pins for $name $(<$($size),+>)? {
+            fn set_clk(&mut self, level: bool) {
+                self.clk.next = level.into();
+            }
+
+            fn drive(&mut self, inputs: &[u64]) {
+                let mut patterns = inputs.iter().copied();
+                $($crate::simulation::InputPins::drive(&mut self.$input, &mut patterns);)*
+            }
+
+            fn read(&self, outputs: &mut [u64]) {
+                let mut patterns = outputs.iter_mut();
+                $($crate::simulation::OutputPins::read(&self.$output, &mut patterns);)*
+            }
+        }
+    };
+    (
+        $(#[$about:meta])*
+        $seen:vis struct $name:ident $(<$(const $size:ident: usize),+ $(,)?>)? $(($($argument:ident: $of:ty),+ $(,)?))?
+            $(where $condition:expr)?;
+        $($section:ident {
+            $($(#[$meaning:meta])* $field:ident $([$count:expr])?: $type:ty $(= $initial:expr)?),* $(,)?
+        })*
+    ) => {
+        $(#[$about])*
+        $seen struct $name $(<$(const $size: usize),+>)? {
+            $seen clk: Signal<In, Clock>,
+            $($($(#[$meaning])* $seen $field: $crate::kernel::field_type!($section $([$count])? $type),)*)*
+        }
+
+        $crate::kernel::constructor! {
+            [$(<$(const $size: usize),+>)?] $name $(<$($size),+>)?, $seen, ($($($argument: $of),+)?) {
+                $(const { assert!($condition) };)?
+                Self {
+                    clk: Signal::default(),
+                    $($($field: $crate::kernel::initial!($section $([$count])? $type $(= $initial)?),)*)*
+                }
+            }
+        }
+
+        impl $(<$(const $size: usize),+>)? Block for $name $(<$($size),+>)? {
+            fn connect_all(&mut self) {
+                self.connect();
+                self.clk.connect_all();
+                $($(self.$field.connect_all();)*)*
+            }
+
+            fn update_all(&mut self) {
+                $($($crate::kernel::keep!($section self $field);)*)*
+                self.update();
+                self.clk.update_all();
+                $($(self.$field.update_all();)*)*
+            }
+
+            fn has_changed(&self) -> bool {
+                self.clk.has_changed() $($(|| self.$field.has_changed())*)*
+            }
+
+            fn accept(&self, name: &str, probe: &mut dyn Probe) {
+                probe.visit_start_scope(name, self);
+                self.clk.accept("clk", probe);
+                $($(self.$field.accept(stringify!($field), probe);)*)*
+                probe.visit_end_scope(name, self);
+            }
+        }
+    };
+}
+
+/// The type of a field in its section.
+macro_rules! field_type {
+    ($section:ident [$count:expr] $type:ty) => { [$crate::kernel::field_type!($section $type); $count] };
+    (inputs $type:ty) => { Signal<In, $type> };
+    (outputs $type:ty) => { Signal<Out, $type> };
+    (wires $type:ty) => { Signal<Local, $type> };
+    (registers $type:ty) => { $crate::prim::Dff<$type> };
+    (parts $type:ty) => { $type };
+    (constants $type:ty) => { Constant<$type> };
+}
+
+/// What a field starts as.
+macro_rules! initial {
+    (constants [$count:expr] $type:ty = $of_index:expr) => {{
+        let of_index: fn(usize) -> $type = $of_index;
+        std::array::from_fn(|index| Constant::new(of_index(index)))
+    }};
+    ($section:ident [$count:expr] $($rest:tt)+) => {
+        std::array::from_fn(|_| $crate::kernel::initial!($section $($rest)+))
+    };
+    (registers $type:ty) => { $crate::prim::Dff::kept(<$type>::default()) };
+    (registers $type:ty = $initial:expr) => { $crate::prim::Dff::kept($initial) };
+    (parts $type:ty = $initial:expr) => { $initial };
+    (constants $type:ty = $initial:expr) => { Constant::new($initial) };
+    ($section:ident $type:ty) => { Default::default() };
+}
+
+/// Wires a register, and nothing else.
+macro_rules! keep {
+    (registers $kernel:ident $field:ident) => {
+        $crate::prim::Keep::keep(&mut $kernel.$field, $kernel.clk.val(), $kernel.rst.val())
+    };
+    ($section:ident $kernel:ident $field:ident) => {};
+}
+
+/// `new`, or `default` where there are no arguments.
+macro_rules! constructor {
+    ([$($sizes:tt)*] $kernel:ty, $seen:vis, () $body:block) => {
+        impl $($sizes)* Default for $kernel {
+            fn default() -> Self $body
+        }
+    };
+    ([$($sizes:tt)*] $kernel:ty, $seen:vis, ($($arguments:tt)+) $body:block) => {
+        impl $($sizes)* $kernel {
+            $seen fn new($($arguments)+) -> Self $body
+        }
+    };
+}
+
+pub(crate) use {constructor, field_type, initial, keep, kernel};

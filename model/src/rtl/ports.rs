@@ -1,0 +1,347 @@
+//! `ports!`: a block's ports, written once.
+//!
+//! ```text
+//! ports! {
+//!     counter_ports;                                  name of the list, for the block's kernel in `hdl`
+//!
+//!     /// The input ports.
+//!     inputs Inputs {
+//!         /// Synchronous reset.
+//!         rst: Bit as bool;
+//!         /// Where the count begins anew.
+//!         limit: Bits(8) as u8, "counts";             with a unit
+//!         /// What a trace can show.
+//!         signal[16]: Signed(32) as i32;              `signal_0` to `signal_15`, in Rust an array
+//!     }
+//!
+//!     /// The output ports.
+//!     outputs Outputs {
+//!         ...
+//!     }
+//! }
+//! ```
+//!
+//! An entry is a port's name, its type in the hardware and in Rust, its unit if it has one, and above them, as its
+//! documentation, its meaning in a sentence. `clk` is not listed. From the list come:
+//!
+//! - the structs `Inputs` and `Outputs` with a field per port, and their raw bit patterns both ways (`from_raw`, `to_raw`);
+//! - `INPUT_PORTS` and `OUTPUT_PORTS`, their numbers, `ports()` for [`ClockedBlock`](super::ClockedBlock), and `PORTS` with
+//!   units and meanings, which the datasheet's table is made of;
+//! - the macro `posicast_model::counter_ports!`, of which `kernel!` in `hdl` makes the kernel's fields and raw ports.
+//!
+//! [`clocked_block!`] makes a model with such a list a [`ClockedBlock`](super::ClockedBlock). A Rust type of its own, an enum
+//! for example, stands behind `as` once it is a [`PortValue`].
+
+use super::{Direction, Port};
+
+/// A port as its block's list describes it; an array of ports is one row.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct PortRow {
+    /// Name, as in the Verilog; of an array without its index.
+    pub name: &'static str,
+    /// Number of ports, if it is an array: they are called `name_0`, `name_1`, …
+    pub count: Option<usize>,
+    /// Direction.
+    pub direction: Direction,
+    /// Width in bits, 1..=64.
+    pub width: u32,
+    /// Two's complement?
+    pub signed: bool,
+    /// Unit; empty where there is none.
+    pub unit: &'static str,
+    /// The lines of the entry's documentation.
+    pub meaning: &'static [&'static str],
+}
+
+/// All ports of a block, inputs first, in the order of the Verilog's port list, without `clk`.
+pub type PortList = &'static [PortRow];
+
+impl PortRow {
+    /// Ports that the row stands for.
+    const fn ports(&self) -> usize {
+        match self.count {
+            Some(count) => count,
+            None => 1,
+        }
+    }
+}
+
+/// Number of ports of a direction.
+pub(crate) const fn count(list: &[PortRow], inputs: bool) -> usize {
+    let (mut ports, mut row) = (0, 0);
+    while row < list.len() {
+        if matches!(list[row].direction, Direction::Input) == inputs {
+            ports += list[row].ports();
+        }
+        row += 1;
+    }
+    ports
+}
+
+/// The ports of a list, arrays one by one.
+pub(crate) fn listed(list: &[PortRow]) -> Vec<Port> {
+    let row = |row: &PortRow| {
+        let row = *row;
+        (0..row.ports()).map(move |index| Port {
+            name: row
+                .count
+                .map_or_else(|| row.name.to_owned(), |_| format!("{}_{index}", row.name)),
+            direction: row.direction,
+            width: row.width,
+            signed: row.signed,
+        })
+    };
+    list.iter().flat_map(row).collect()
+}
+
+/// A value of a port in Rust, beside its raw bit pattern.
+pub(crate) trait PortValue: Copy + Default {
+    /// From a pattern of a port so wide; bits above are ignored.
+    fn from_pattern(pattern: u64, width: u32, signed: bool) -> Self;
+    /// The pattern, which may have bits above the port's width.
+    fn pattern(self) -> u64;
+}
+
+impl PortValue for bool {
+    #[inline]
+    fn from_pattern(pattern: u64, _: u32, _: bool) -> Self {
+        pattern & 1 != 0
+    }
+
+    #[inline]
+    fn pattern(self) -> u64 {
+        self.into()
+    }
+}
+
+macro_rules! whole_numbers {
+    ($($number:ty),*) => {
+        $(impl PortValue for $number {
+            #[inline]
+            fn from_pattern(pattern: u64, width: u32, signed: bool) -> Self {
+                let above = 64 - width;
+                if signed {
+                    ((pattern << above) as i64 >> above) as Self
+                } else {
+                    (pattern << above >> above) as Self
+                }
+            }
+
+            #[inline]
+            fn pattern(self) -> u64 {
+                self as u64
+            }
+        })*
+    };
+}
+
+whole_numbers!(u8, u16, u32, u64, i32, i64);
+
+/// See the [module](self).
+macro_rules! ports {
+    (
+        $list:ident;
+
+        $(#[$of_inputs:meta])*
+        inputs $inputs:ident {
+            $($(#[doc = $input_meaning:literal])+
+            $input:ident $([$input_count:literal])?: $input_kind:ident $(($input_width:literal))? as $input_type:ty
+                $(, $input_unit:literal)?;)*
+        }
+
+        $(#[$of_outputs:meta])*
+        outputs $outputs:ident {
+            $($(#[doc = $output_meaning:literal])+
+            $output:ident $([$output_count:literal])?: $output_kind:ident $(($output_width:literal))? as $output_type:ty
+                $(, $output_unit:literal)?;)*
+        }
+    ) => {
+        $(#[$of_inputs])*
+        #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+        pub struct $inputs {
+            $($(#[doc = $input_meaning])+
+            pub $input: $crate::rtl::ports::one_or_array!($input_type $(; $input_count)?),)*
+        }
+
+        $(#[$of_outputs])*
+        #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+        pub struct $outputs {
+            $($(#[doc = $output_meaning])+
+            pub $output: $crate::rtl::ports::one_or_array!($output_type $(; $output_count)?),)*
+        }
+
+        /// The ports with their units and meanings.
+        pub const PORTS: $crate::rtl::PortList = &[
+            $($crate::rtl::ports::row!(
+                Input $input [$($input_count)?] $input_kind ($($input_width)?) [$($input_unit)?] [$($input_meaning),+]
+            ),)*
+            $($crate::rtl::ports::row!(
+                Output $output [$($output_count)?] $output_kind ($($output_width)?) [$($output_unit)?] [$($output_meaning),+]
+            ),)*
+        ];
+        /// Number of input ports, without `clk`.
+        pub const INPUT_PORTS: usize = $crate::rtl::ports::count(PORTS, true);
+        /// Number of output ports.
+        pub const OUTPUT_PORTS: usize = $crate::rtl::ports::count(PORTS, false);
+
+        /// The ports in the order of the Verilog's port list, without `clk`.
+        pub fn ports() -> Vec<$crate::rtl::Port> {
+            $crate::rtl::ports::listed(PORTS)
+        }
+
+        $crate::rtl::ports::raw! { $inputs INPUT_PORTS $($input: $input_kind ($($input_width)?) [$($input_count)?];)* }
+        $crate::rtl::ports::raw! { $outputs OUTPUT_PORTS $($output: $output_kind ($($output_width)?) [$($output_count)?];)* }
+
+        /// The block's ports, for `kernel!` of `posicast_hdl`: calls the macro `then` with them, and with what else it is given.
+        #[macro_export]
+        macro_rules! $list {
+            ($then:ident $header:tt $sections:tt) => {
+                $then! {
+                    @ports
+                    { $($input $([$input_count])?: $input_kind $(<$input_width>)?),* }
+                    { $($output $([$output_count])?: $output_kind $(<$output_width>)?),* }
+                    $header
+                    $sections
+                }
+            };
+        }
+    };
+}
+
+/// The Rust type of an entry.
+macro_rules! one_or_array {
+    ($one:ty) => {
+        $one
+    };
+    ($one:ty; $count:literal) => {
+        [$one; $count]
+    };
+}
+
+/// A row of `PORTS`.
+macro_rules! row {
+    ($direction:ident $name:ident [$($count:literal)?] $kind:ident $width:tt [$($unit:literal)?] [$($meaning:literal),+]) => {
+        $crate::rtl::PortRow {
+            name: stringify!($name),
+            count: $crate::rtl::ports::optional!($($count)?),
+            direction: $crate::rtl::Direction::$direction,
+            width: $crate::rtl::ports::width!($kind $width),
+            signed: $crate::rtl::ports::signed!($kind),
+            unit: concat!("" $(, $unit)?),
+            meaning: &[$($meaning),+],
+        }
+    };
+}
+
+macro_rules! optional {
+    () => {
+        None
+    };
+    ($value:literal) => {
+        Some($value)
+    };
+}
+
+macro_rules! width {
+    (Bit ()) => {
+        1
+    };
+    ($kind:ident ($width:literal)) => {
+        $width
+    };
+}
+
+macro_rules! signed {
+    (Signed) => {
+        true
+    };
+    ($unsigned:ident) => {
+        false
+    };
+}
+
+/// Raw bit patterns of a struct of ports, both ways.
+macro_rules! raw {
+    ($ports:ident $number:ident $($name:ident: $kind:ident $width:tt [$($count:literal)?];)*) => {
+        impl $ports {
+            /// From raw bit patterns, one per port in port order; bits above a port's width are ignored.
+            #[inline]
+            pub fn from_raw(raw: &[u64; $number]) -> Self {
+                let mut next = 0;
+                let mut pattern = || {
+                    next += 1;
+                    raw[next - 1]
+                };
+                Self {
+                    $($name: $crate::rtl::ports::from_raw!(pattern $kind $width [$($count)?]),)*
+                }
+            }
+
+            /// As raw bit patterns, one per port in port order, each cut to its port's width.
+            #[inline]
+            pub fn to_raw(&self) -> [u64; $number] {
+                let mut raw = [0; $number];
+                let mut next = 0;
+                let mut put = |pattern: u64, width: u32| {
+                    raw[next] = pattern & (u64::MAX >> (64 - width));
+                    next += 1;
+                };
+                $($crate::rtl::ports::to_raw!(put self.$name, $kind $width [$($count)?]);)*
+                raw
+            }
+        }
+    };
+}
+
+macro_rules! from_raw {
+    ($pattern:ident $kind:ident $width:tt []) => {
+        $crate::rtl::ports::PortValue::from_pattern(
+            $pattern(),
+            $crate::rtl::ports::width!($kind $width),
+            $crate::rtl::ports::signed!($kind),
+        )
+    };
+    ($pattern:ident $kind:ident $width:tt [$count:literal]) => {
+        std::array::from_fn(|_| $crate::rtl::ports::from_raw!($pattern $kind $width []))
+    };
+}
+
+macro_rules! to_raw {
+    ($put:ident $value:expr, $kind:ident $width:tt []) => {
+        $put($crate::rtl::ports::PortValue::pattern($value), $crate::rtl::ports::width!($kind $width))
+    };
+    ($put:ident $value:expr, $kind:ident $width:tt [$count:literal]) => {
+        for value in $value {
+            $crate::rtl::ports::to_raw!($put value, $kind $width [])
+        }
+    };
+}
+
+/// Makes a model with `Inputs`, `Outputs` and `step(&Inputs) -> Outputs` a [`ClockedBlock`](super::ClockedBlock); `what` it is
+/// stands in the message for a wrong number of values.
+macro_rules! clocked_block {
+    ($block:ident, $what:literal) => {
+        impl $crate::rtl::ClockedBlock for $block {
+            fn ports(&self) -> &[$crate::rtl::Port] {
+                static SHARED: std::sync::LazyLock<Vec<$crate::rtl::Port>> = std::sync::LazyLock::new(ports);
+                &SHARED
+            }
+
+            fn step(&mut self, inputs: &[u64], outputs: &mut [u64]) -> Result<(), $crate::rtl::StepError> {
+                let (Ok(raw), OUTPUT_PORTS) = (<&[u64; INPUT_PORTS]>::try_from(inputs), outputs.len()) else {
+                    return Err($crate::rtl::StepError(format!(
+                        "{} inputs and {} outputs: {} has {INPUT_PORTS} and {OUTPUT_PORTS}",
+                        inputs.len(),
+                        outputs.len(),
+                        $what
+                    )));
+                };
+                let shown = $block::step(self, &Inputs::from_raw(raw));
+                outputs.copy_from_slice(&shown.to_raw());
+                Ok(())
+            }
+        }
+    };
+}
+
+pub(crate) use {clocked_block, from_raw, one_or_array, optional, ports, raw, row, signed, to_raw, width};
