@@ -8,64 +8,25 @@ use crate::simulation::{Pins, Simulated, SimulationError};
 use posicast_model::rtl::ClockedBlock;
 use posicast_model::rtl::divider_share::{MOST_CHANNELS, SHARE_CLOCKS, ports};
 
-/// C channels.
-#[derive(LogicBlock)]
-struct DividerShare<const C: usize> {
-    clk: Signal<In, Clock>,
-    rst: Signal<In, Bit>,
-    divide: Signal<In, Bit>,
-    steps_of: [Signal<In, Signed<18>>; C],
-    elapsed_of: [Signal<In, Bits<24>>; C],
-    done: Signal<In, Bit>,
-    start: Signal<Out, Bit>,
-    steps: Signal<Out, Signed<18>>,
-    elapsed: Signal<Out, Bits<24>>,
-    quotient_valid: [Signal<Out, Bit>; C],
+kernel! {
+    /// C channels.
+    struct DividerShare<const C: usize>;
+    raw ports;
 
-    turn: Dff<Bits<4>>,
-    start_q: Dff<Bit>,
-    steps_q: Dff<Signed<18>>,
-    elapsed_q: Dff<Bits<24>>,
-    valid_q: [Dff<Bit>; C],
-
-    is_idle: Signal<Local, Bit>,
-    begins: Signal<Local, Bit>,
-    next_turn: Signal<Local, Bits<4>>,
-
-    channel: [Constant<Bits<4>>; C],
-    first_channel: Constant<Bits<4>>,
-    last_channel: Constant<Bits<4>>,
-    idle: Constant<Bits<4>>,
-    one: Constant<Bits<4>>,
-}
-
-impl<const C: usize> Default for DividerShare<C> {
-    fn default() -> Self {
-        Self {
-            clk: Signal::default(),
-            rst: Signal::default(),
-            divide: Signal::default(),
-            steps_of: std::array::from_fn(|_| Signal::default()),
-            elapsed_of: std::array::from_fn(|_| Signal::default()),
-            done: Signal::default(),
-            start: Signal::default(),
-            steps: Signal::default(),
-            elapsed: Signal::default(),
-            quotient_valid: std::array::from_fn(|_| Signal::default()),
-            turn: Dff::new(from_u64(MOST_CHANNELS as u64)),
-            start_q: Dff::default(),
-            steps_q: Dff::default(),
-            elapsed_q: Dff::default(),
-            valid_q: std::array::from_fn(|_| Dff::default()),
-            is_idle: Signal::default(),
-            begins: Signal::default(),
-            next_turn: Signal::default(),
-            channel: std::array::from_fn(|channel| Constant::new(from_u64(channel as u64))),
-            first_channel: Constant::new(from_u64(0)),
-            last_channel: Constant::new(from_u64(C as u64 - 1)),
-            idle: Constant::new(from_u64(MOST_CHANNELS as u64)),
-            one: Constant::new(from_u64(1)),
-        }
+    inputs { rst: Bit, divide: Bit, steps_of[C]: Signed<18>, elapsed_of[C]: Bits<24>, done: Bit }
+    outputs { start: Bit, steps: Signed<18>, elapsed: Bits<24>, quotient_valid[C]: Bit }
+    registers {
+        turn: Bits<4> = from_u64(MOST_CHANNELS as u64),
+        start_q: Bit, steps_q: Signed<18>, elapsed_q: Bits<24>,
+    }
+    parts { valid_q[C]: Dff<Bit> }
+    wires { is_idle: Bit, begins: Bit, next_turn: Bits<4> }
+    constants {
+        channel[C]: Bits<4> = |channel| from_u64(channel as u64),
+        first_channel: Bits<4> = from_u64(0),
+        last_channel: Bits<4> = from_u64(C as u64 - 1),
+        idle: Bits<4> = from_u64(MOST_CHANNELS as u64),
+        one: Bits<4> = from_u64(1),
     }
 }
 
@@ -73,7 +34,6 @@ impl<const C: usize> Logic for DividerShare<C> {
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module divider_share");
-        dff_setup!(self, clk, turn, start_q, steps_q, elapsed_q);
         for i in 0..C {
             self.valid_q[i].clock.next = self.clk.val();
             self.valid_q[i].rst.next = self.rst.val();
@@ -109,38 +69,6 @@ impl<const C: usize> Logic for DividerShare<C> {
         self.elapsed.next = self.elapsed_q.q.val();
         for i in 0..C {
             self.quotient_valid[i].next = self.valid_q[i].q.val();
-        }
-    }
-}
-
-impl<const C: usize> Pins for DividerShare<C> {
-    fn set_clk(&mut self, level: bool) {
-        self.clk.next = level.into();
-    }
-
-    fn drive(&mut self, inputs: &[u64]) {
-        let mut values = inputs.iter().copied();
-        let mut next = || values.next().unwrap_or_default();
-        self.rst.next = next() & 1 != 0;
-        self.divide.next = next() & 1 != 0;
-        for steps in &mut self.steps_of {
-            steps.next = from_i64(next() as i64);
-        }
-        for elapsed in &mut self.elapsed_of {
-            elapsed.next = from_u64(next());
-        }
-        self.done.next = next() & 1 != 0;
-    }
-
-    fn read(&self, outputs: &mut [u64]) {
-        let shown = [
-            self.start.val().into(),
-            unsigned_cast(self.steps.val()).into(),
-            self.elapsed.val().into(),
-        ];
-        let valid = self.quotient_valid.iter().map(|valid| valid.val().into());
-        for (output, value) in outputs.iter_mut().zip(shown.into_iter().chain(valid)) {
-            *output = value;
         }
     }
 }

@@ -13,119 +13,34 @@
 //! from there on all bits are ones. The phases are numbered so that they are easily told apart.
 
 use crate::prelude::*;
-use crate::simulation::Pins;
 use posicast_model::rtl::divider::DividerConfig;
 
-#[derive(LogicBlock)]
-pub(super) struct Divider {
-    pub(super) clk: Signal<In, Clock>,
-    pub(super) rst: Signal<In, Bit>,
-    pub(super) start: Signal<In, Bit>,
-    pub(super) steps: Signal<In, Signed<18>>,
-    pub(super) elapsed: Signal<In, Bits<24>>,
-    pub(super) clear_flags: Signal<In, Bit>,
-    pub(super) quotient: Signal<Out, Signed<32>>,
-    pub(super) done: Signal<Out, Bit>,
-    pub(super) busy: Signal<Out, Bit>,
-    pub(super) saturated: Signal<Out, Bit>,
-    pub(super) overrun: Signal<Out, Bit>,
+kernel! {
+    pub(super) struct Divider(config: &DividerConfig);
+    ports posicast_model::divider_ports;
 
-    phase: Dff<Bits<7>>,
-    product: Dff<Bits<35>>,
-    remainder: Dff<Bits<24>>,
-    divisor: Dff<Bits<24>>,
-    negative: Dff<Bit>,
-    turns_over: Dff<Bit>,
-    too_large: Dff<Bit>,
-    busy_q: Dff<Bit>,
-    quotient_q: Dff<Signed<32>>,
-    done_q: Dff<Bit>,
-    saturated_q: Dff<Bit>,
-    overrun_q: Dff<Bit>,
-    downward: Dff<Bit>,
-    last_pass: Dff<Bit>,
-    fits: Dff<Bit>,
-
-    next_phase: Signal<Local, Bits<7>>,
-    magnitude_bit: Signal<Local, Bit>,
-    entering: Signal<Local, Bits<1>>,
-    addend: Signal<Local, Bits<18>>,
-    partial: Signal<Local, Bits<18>>,
-    next_bit: Signal<Local, Bits<1>>,
-    shifted: Signal<Local, Bits<26>>,
-    difference: Signal<Local, Bits<26>>,
-    subtracts: Signal<Local, Bit>,
-    kept_bit: Signal<Local, Bits<1>>,
-    result: Signal<Local, Bits<32>>,
-    one_tick: Signal<Local, Bits<24>>,
-
-    first_phase: Constant<Bits<7>>,
-    one_phase: Constant<Bits<7>>,
-    divide_phase: Constant<Bits<7>>,
-    fits_phase: Constant<Bits<7>>,
-    sign_phase: Constant<Bits<7>>,
-    no_clocks: Constant<Bits<24>>,
-    tick_clocks: Constant<Bits<24>>,
-    tick_addend: Constant<Bits<18>>,
-    no_addend: Constant<Bits<18>>,
-    no_bit: Constant<Bits<1>>,
-    one_bit: Constant<Bits<1>>,
-}
-
-impl Divider {
-    pub(super) fn new(config: &DividerConfig) -> Self {
-        let tick_clocks = u64::from(config.tick_clocks());
-        Self {
-            clk: Signal::default(),
-            rst: Signal::default(),
-            start: Signal::default(),
-            steps: Signal::default(),
-            elapsed: Signal::default(),
-            clear_flags: Signal::default(),
-            quotient: Signal::default(),
-            done: Signal::default(),
-            busy: Signal::default(),
-            saturated: Signal::default(),
-            overrun: Signal::default(),
-            phase: Dff::default(),
-            product: Dff::default(),
-            remainder: Dff::default(),
-            divisor: Dff::default(),
-            negative: Dff::default(),
-            turns_over: Dff::default(),
-            too_large: Dff::default(),
-            busy_q: Dff::default(),
-            quotient_q: Dff::default(),
-            done_q: Dff::default(),
-            saturated_q: Dff::default(),
-            overrun_q: Dff::default(),
-            downward: Dff::default(),
-            last_pass: Dff::default(),
-            fits: Dff::default(),
-            next_phase: Signal::default(),
-            magnitude_bit: Signal::default(),
-            entering: Signal::default(),
-            addend: Signal::default(),
-            partial: Signal::default(),
-            next_bit: Signal::default(),
-            shifted: Signal::default(),
-            difference: Signal::default(),
-            subtracts: Signal::default(),
-            kept_bit: Signal::default(),
-            result: Signal::default(),
-            one_tick: Signal::default(),
-            first_phase: Constant::new(from_u64(27)),
-            one_phase: Constant::new(from_u64(1)),
-            divide_phase: Constant::new(from_u64(45)),
-            fits_phase: Constant::new(from_u64(65)),
-            sign_phase: Constant::new(from_u64(96)),
-            no_clocks: Constant::new(from_u64(0)),
-            tick_clocks: Constant::new(from_u64(tick_clocks)),
-            tick_addend: Constant::new(from_u64(tick_clocks)),
-            no_addend: Constant::new(from_u64(0)),
-            no_bit: Constant::new(from_u64(0)),
-            one_bit: Constant::new(from_u64(1)),
-        }
+    registers {
+        phase: Bits<7>, product: Bits<35>, remainder: Bits<24>, divisor: Bits<24>, negative: Bit,
+        turns_over: Bit, too_large: Bit, busy_q: Bit, quotient_q: Signed<32>, done_q: Bit, saturated_q: Bit,
+        overrun_q: Bit, downward: Bit, last_pass: Bit, fits: Bit,
+    }
+    wires {
+        next_phase: Bits<7>, magnitude_bit: Bit, entering: Bits<1>, addend: Bits<18>, partial: Bits<18>,
+        next_bit: Bits<1>, shifted: Bits<26>, difference: Bits<26>, subtracts: Bit, kept_bit: Bits<1>,
+        result: Bits<32>, one_tick: Bits<24>,
+    }
+    constants {
+        first_phase: Bits<7> = from_u64(27),
+        one_phase: Bits<7> = from_u64(1),
+        divide_phase: Bits<7> = from_u64(45),
+        fits_phase: Bits<7> = from_u64(65),
+        sign_phase: Bits<7> = from_u64(96),
+        no_clocks: Bits<24> = from_u64(0),
+        tick_clocks: Bits<24> = from_u64(u64::from(config.tick_clocks())),
+        tick_addend: Bits<18> = from_u64(u64::from(config.tick_clocks())),
+        no_addend: Bits<18> = from_u64(0),
+        no_bit: Bits<1> = from_u64(0),
+        one_bit: Bits<1> = from_u64(1),
     }
 }
 
@@ -133,25 +48,6 @@ impl Logic for Divider {
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module divider");
-        dff_setup!(
-            self,
-            clk,
-            phase,
-            product,
-            remainder,
-            divisor,
-            negative,
-            turns_over,
-            too_large,
-            busy_q,
-            quotient_q,
-            done_q,
-            saturated_q,
-            overrun_q,
-            downward,
-            last_pass,
-            fits
-        );
         self.done_q.d.next = false;
         if self.clear_flags.val() {
             self.overrun_q.d.next = false;
@@ -250,35 +146,5 @@ impl Logic for Divider {
         self.busy.next = self.busy_q.q.val();
         self.saturated.next = self.saturated_q.q.val();
         self.overrun.next = self.overrun_q.q.val();
-    }
-}
-
-impl Pins for Divider {
-    fn set_clk(&mut self, level: bool) {
-        self.clk.next = level.into();
-    }
-
-    fn drive(&mut self, inputs: &[u64]) {
-        let &[rst, start, steps, elapsed, clear_flags] = inputs else {
-            return;
-        };
-        self.rst.next = rst & 1 != 0;
-        self.start.next = start & 1 != 0;
-        self.steps.next = from_i64(steps as i64);
-        self.elapsed.next = from_u64(elapsed);
-        self.clear_flags.next = clear_flags & 1 != 0;
-    }
-
-    fn read(&self, outputs: &mut [u64]) {
-        let shown = [
-            unsigned_cast(self.quotient.val()).into(),
-            u64::from(self.done.val()),
-            u64::from(self.busy.val()),
-            u64::from(self.saturated.val()),
-            u64::from(self.overrun.val()),
-        ];
-        for (output, value) in outputs.iter_mut().zip(shown) {
-            *output = value;
-        }
     }
 }

@@ -31,7 +31,7 @@
 //! ```
 
 use super::shaper::wrap;
-use super::{ClockedBlock, Direction, FOREVER, Moore, Port, StepError};
+use super::{FOREVER, Moore, clocked_block, ports};
 
 /// Width of `steps`.
 pub const STEP_BITS: u32 = 18;
@@ -90,90 +90,41 @@ impl DividerConfig {
     }
 }
 
-/// The input ports. Bits above a port's width are ignored.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct Inputs {
-    /// Synchronous reset.
-    pub rst: bool,
-    /// One clock: divide; ignored while a division runs.
-    pub start: bool,
-    /// Counts, 18 bits.
-    pub steps: i32,
-    /// Clocks that they took, 24 bits; 0: one tick.
-    pub elapsed: u32,
-    /// Clears `overrun`.
-    pub clear_flags: bool,
-}
+ports! {
+    divider_ports;
 
-/// The output ports, all of them registers.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct Outputs {
-    /// Q16.16 counts per tick; holds until the next `done`.
-    pub quotient: i64,
-    /// One clock: `quotient` is new.
-    pub done: bool,
-    /// A division runs.
-    pub busy: bool,
-    /// `quotient` was clamped.
-    pub saturated: bool,
-    /// Sticky: a start came while a division ran, and was ignored.
-    pub overrun: bool,
-}
-
-/// The ports of a divider in the order of the Verilog's port list, without `clk`.
-pub fn ports() -> Vec<Port> {
-    use Direction::{Input, Output};
-    let port = |name: &str, direction, width, signed| Port {
-        name: name.to_owned(),
-        direction,
-        width,
-        signed,
-    };
-    vec![
-        port("rst", Input, 1, false),
-        port("start", Input, 1, false),
-        port("steps", Input, STEP_BITS, true),
-        port("elapsed", Input, ELAPSED_BITS, false),
-        port("clear_flags", Input, 1, false),
-        port("quotient", Output, 32, true),
-        port("done", Output, 1, false),
-        port("busy", Output, 1, false),
-        port("saturated", Output, 1, false),
-        port("overrun", Output, 1, false),
-    ]
-}
-
-impl Inputs {
-    /// From raw bit patterns, one per input port in port order.
-    pub fn from_raw(raw: &[u64; 5]) -> Self {
-        let [rst, start, steps, elapsed, clear_flags] = *raw;
-        Self {
-            rst: rst & 1 != 0,
-            start: start & 1 != 0,
-            steps: steps as i32,
-            elapsed: elapsed as u32,
-            clear_flags: clear_flags & 1 != 0,
-        }
+    /// The input ports. Bits above a port's width are ignored.
+    inputs Inputs {
+        /// Synchronous reset, active high.
+        rst: Bit as bool;
+        /// For one clock: divide `steps` by `elapsed`.
+        start: Bit as bool;
+        /// Counts.
+        steps: Signed(18) as i32, "counts";
+        /// Clocks that they took; 0 stands for one tick.
+        elapsed: Bits(24) as u32, "clocks";
+        /// Clears `overrun`.
+        clear_flags: Bit as bool;
     }
-}
 
-impl Outputs {
-    /// As raw bit patterns, one per output port in port order.
-    pub fn to_raw(&self) -> [u64; 5] {
-        [
-            self.quotient as u64 & 0xffff_ffff,
-            u64::from(self.done),
-            u64::from(self.busy),
-            u64::from(self.saturated),
-            u64::from(self.overrun),
-        ]
+    /// The output ports, all of them registers.
+    outputs Outputs {
+        /// Counts per tick, Q16.16; holds until the next `done`.
+        quotient: Signed(32) as i64, "counts per tick, Q16.16";
+        /// For one clock: `quotient` is new.
+        done: Bit as bool;
+        /// A division runs.
+        busy: Bit as bool;
+        /// `quotient` was clamped; holds with it.
+        saturated: Bit as bool;
+        /// Sticky: a `start` came while `busy`, and was ignored. Set wins over `clear_flags` in the same clock.
+        overrun: Bit as bool;
     }
 }
 
 /// The divider, cycle accurate at its ports.
 pub struct Divider {
     config: DividerConfig,
-    ports: Vec<Port>,
     /// Clocks until the division has its result; 0 while none runs.
     clocks_left: u32,
     result: (i64, bool),
@@ -185,7 +136,6 @@ impl Divider {
     pub fn new(config: &DividerConfig) -> Self {
         Self {
             config: *config,
-            ports: ports(),
             clocks_left: 0,
             result: (0, false),
             shown: Outputs::default(),
@@ -224,24 +174,7 @@ impl Divider {
     }
 }
 
-impl ClockedBlock for Divider {
-    fn ports(&self) -> &[Port] {
-        &self.ports
-    }
-
-    fn step(&mut self, inputs: &[u64], outputs: &mut [u64]) -> Result<(), StepError> {
-        let (Ok(raw), 5) = (<&[u64; 5]>::try_from(inputs), outputs.len()) else {
-            return Err(StepError(format!(
-                "{} inputs and {} outputs: the divider has 5 and 5",
-                inputs.len(),
-                outputs.len()
-            )));
-        };
-        let shown = Divider::step(self, &Inputs::from_raw(raw));
-        outputs.copy_from_slice(&shown.to_raw());
-        Ok(())
-    }
-}
+clocked_block!(Divider, "the divider");
 
 impl Moore for Divider {
     fn show(&self, outputs: &mut [u64]) {
