@@ -8,60 +8,29 @@ use crate::simulation::{Pins, Simulated, SimulationError};
 use posicast_model::rtl::ClockedBlock;
 use posicast_model::rtl::sample_select::ports;
 
-/// W word, C channels.
-#[derive(LogicBlock)]
-struct SampleSelect<const W: usize, const C: usize> {
-    clk: Signal<In, Clock>,
-    rst: Signal<In, Bit>,
-    from_pins: Signal<In, Bit>,
-    host_strobe: Signal<In, Bit>,
-    host_start: Signal<In, Bit>,
-    host_x: [Signal<In, Signed<W>>; C],
-    pin_strobe: Signal<In, Bit>,
-    pin_start: Signal<In, Bit>,
-    pin_x: [Signal<In, Signed<W>>; C],
-    strobe: Signal<Out, Bit>,
-    start: Signal<Out, Bit>,
-    x: [Signal<Out, Signed<W>>; C],
+kernel! {
+    /// W word, C channels.
+    struct SampleSelect<const W: usize, const C: usize>;
+    raw ports;
 
-    strobe_q: Dff<Bit>,
-    start_q: Dff<Bit>,
-    x_q: [Dff<Signed<W>>; C],
-}
-
-impl<const W: usize, const C: usize> Default for SampleSelect<W, C> {
-    fn default() -> Self {
-        Self {
-            clk: Signal::default(),
-            rst: Signal::default(),
-            from_pins: Signal::default(),
-            host_strobe: Signal::default(),
-            host_start: Signal::default(),
-            host_x: std::array::from_fn(|_| Signal::default()),
-            pin_strobe: Signal::default(),
-            pin_start: Signal::default(),
-            pin_x: std::array::from_fn(|_| Signal::default()),
-            strobe: Signal::default(),
-            start: Signal::default(),
-            x: std::array::from_fn(|_| Signal::default()),
-            strobe_q: Dff::default(),
-            start_q: Dff::default(),
-            x_q: std::array::from_fn(|_| Dff::default()),
-        }
+    inputs {
+        rst: Bit,
+        from_pins: Bit,
+        host_strobe: Bit,
+        host_start: Bit,
+        host_x[C]: Signed<W>,
+        pin_strobe: Bit,
+        pin_start: Bit,
+        pin_x[C]: Signed<W>,
     }
+    outputs { strobe: Bit, start: Bit, x[C]: Signed<W> }
+    registers { strobe_q: Bit, start_q: Bit, x_q[C]: Signed<W> }
 }
 
 impl<const W: usize, const C: usize> Logic for SampleSelect<W, C> {
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module sample_select");
-        dff_setup!(self, clk, strobe_q, start_q);
-        for i in 0..C {
-            self.x_q[i].clock.next = self.clk.val();
-            self.x_q[i].rst.next = self.rst.val();
-            self.x_q[i].d.next = self.x_q[i].q.val();
-        }
-
         self.strobe_q.d.next = self.host_strobe.val();
         self.start_q.d.next = self.host_start.val();
         if self.from_pins.val() {
@@ -79,37 +48,6 @@ impl<const W: usize, const C: usize> Logic for SampleSelect<W, C> {
         self.start.next = self.start_q.q.val();
         for i in 0..C {
             self.x[i].next = self.x_q[i].q.val();
-        }
-    }
-}
-
-impl<const W: usize, const C: usize> Pins for SampleSelect<W, C> {
-    fn set_clk(&mut self, level: bool) {
-        self.clk.next = level.into();
-    }
-
-    fn drive(&mut self, inputs: &[u64]) {
-        let mut values = inputs.iter().copied();
-        let mut next = || values.next().unwrap_or_default();
-        self.rst.next = next() & 1 != 0;
-        self.from_pins.next = next() & 1 != 0;
-        self.host_strobe.next = next() & 1 != 0;
-        self.host_start.next = next() & 1 != 0;
-        for x in &mut self.host_x {
-            x.next = from_i64(next() as i64);
-        }
-        self.pin_strobe.next = next() & 1 != 0;
-        self.pin_start.next = next() & 1 != 0;
-        for x in &mut self.pin_x {
-            x.next = from_i64(next() as i64);
-        }
-    }
-
-    fn read(&self, outputs: &mut [u64]) {
-        let flags = [u64::from(self.strobe.val()), u64::from(self.start.val())];
-        let words = self.x.iter().map(|x| unsigned_cast(x.val()).into());
-        for (output, value) in outputs.iter_mut().zip(flags.into_iter().chain(words)) {
-            *output = value;
         }
     }
 }

@@ -7,46 +7,21 @@
 
 use crate::emit::{self, EmitError, EmitOptions, Header, Module, Parameter};
 use crate::prelude::*;
-use crate::simulation::{Pins, Simulated, SimulationError};
+use crate::simulation::{Simulated, SimulationError};
 use posicast_model::rtl::ClockedBlock;
 use posicast_model::rtl::schedule::{ScheduleConfig, ports};
 
-#[derive(LogicBlock)]
-struct Schedule {
-    clk: Signal<In, Clock>,
-    rst: Signal<In, Bit>,
-    tick: Signal<In, Bit>,
-    control: Signal<Out, Bit>,
+kernel! {
+    struct Schedule(config: &ScheduleConfig);
+    ports posicast_model::schedule_ports;
 
-    since: Dff<Bits<17>>,
-    waits: Dff<Bit>,
-    control_q: Dff<Bit>,
-
-    ends: Signal<Local, Bit>,
-
-    none: Constant<Bits<17>>,
-    one: Constant<Bits<17>>,
-    last: Constant<Bits<17>>,
-    used: Constant<Bits<17>>,
-}
-
-impl Schedule {
-    fn new(config: &ScheduleConfig) -> Self {
-        let last = u64::from(config.control_clocks()) - 2;
-        Self {
-            clk: Signal::default(),
-            rst: Signal::default(),
-            tick: Signal::default(),
-            control: Signal::default(),
-            since: Dff::default(),
-            waits: Dff::default(),
-            control_q: Dff::default(),
-            ends: Signal::default(),
-            none: Constant::new(from_u64(0)),
-            one: Constant::new(from_u64(1)),
-            last: Constant::new(from_u64(last)),
-            used: Constant::new(from_u64((last + 1).next_power_of_two().max(2) - 1)),
-        }
+    registers { since: Bits<17>, waits: Bit, control_q: Bit }
+    wires { ends: Bit }
+    constants {
+        none: Bits<17> = from_u64(0),
+        one: Bits<17> = from_u64(1),
+        last: Bits<17> = from_u64(u64::from(config.control_clocks()) - 2),
+        used: Bits<17> = from_u64(((u64::from(config.control_clocks()) - 2) + 1).next_power_of_two().max(2) - 1),
     }
 }
 
@@ -54,7 +29,6 @@ impl Logic for Schedule {
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module schedule");
-        dff_setup!(self, clk, since, waits, control_q);
 
         self.since.d.next = (self.since.q.val() + self.one.val()) & self.used.val();
         self.ends.next = self.waits.q.val() & (self.since.q.val() == self.last.val());
@@ -68,25 +42,6 @@ impl Logic for Schedule {
         }
 
         self.control.next = self.control_q.q.val();
-    }
-}
-
-impl Pins for Schedule {
-    fn set_clk(&mut self, level: bool) {
-        self.clk.next = level.into();
-    }
-
-    fn drive(&mut self, inputs: &[u64]) {
-        if let [rst, tick] = inputs {
-            self.rst.next = rst & 1 != 0;
-            self.tick.next = tick & 1 != 0;
-        }
-    }
-
-    fn read(&self, outputs: &mut [u64]) {
-        if let [control] = outputs {
-            *control = self.control.val().into();
-        }
     }
 }
 

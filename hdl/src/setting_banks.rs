@@ -5,94 +5,47 @@
 
 use crate::emit::{self, EmitError, EmitOptions, Header, Module};
 use crate::prelude::*;
-use crate::simulation::{Pins, Simulated, SimulationError};
+use crate::simulation::{Simulated, SimulationError};
 use posicast_model::rtl::ClockedBlock;
 use posicast_model::rtl::setting_banks::ports;
 use posicast_model::rtl::sliding_mode::{Row, Settings};
 
-#[derive(LogicBlock)]
-struct SettingBanks {
-    clk: Signal<In, Clock>,
-    rst: Signal<In, Bit>,
-    setting_write: Signal<In, Bit>,
-    setting_bank: Signal<In, Bits<2>>,
-    setting_row: Signal<In, Bits<4>>,
-    setting_word: Signal<In, Bits<32>>,
-    bank: Signal<In, Bits<2>>,
-    row: Signal<In, Bits<4>>,
-    setting: Signal<Out, Bits<32>>,
-    setting_refused: Signal<Out, Bit>,
+kernel! {
+    struct SettingBanks(machine: &Settings);
+    ports posicast_model::setting_banks_ports;
 
-    machine_settings: Rom<32, 4>,
-    loaded_settings: Ram<32, 5>,
-    written: Dff<Bits<32>>,
-    known: Dff<Bit>,
-    from_machine: Dff<Bit>,
-    refused_q: Dff<Bit>,
-
-    loadable: Signal<Local, Bit>,
-    taken: Signal<Local, Bit>,
-    write_half: Signal<Local, Bits<5>>,
-    write_address: Signal<Local, Bits<5>>,
-    read_half: Signal<Local, Bits<5>>,
-    read_address: Signal<Local, Bits<5>>,
-    in_loaded: Signal<Local, Bit>,
-
-    bank_machine: Constant<Bits<2>>,
-    bank_1: Constant<Bits<2>>,
-    bank_2: Constant<Bits<2>>,
-    lower_half: Constant<Bits<5>>,
-    upper_half: Constant<Bits<5>>,
-    one: Constant<Bits<32>>,
-    nothing: Constant<Bits<32>>,
+    parts {
+        machine_settings: Rom<32, 4> = machine_rom(machine),
+        loaded_settings: Ram<32, 5>,
+    }
+    registers { written: Bits<32>, known: Bit, from_machine: Bit, refused_q: Bit }
+    wires {
+        loadable: Bit, taken: Bit, write_half: Bits<5>, write_address: Bits<5>, read_half: Bits<5>,
+        read_address: Bits<5>, in_loaded: Bit,
+    }
+    constants {
+        bank_machine: Bits<2> = from_u64(0),
+        bank_1: Bits<2> = from_u64(1),
+        bank_2: Bits<2> = from_u64(2),
+        lower_half: Bits<5> = from_u64(0),
+        upper_half: Bits<5> = from_u64(16),
+        one: Bits<32> = from_u64(1),
+        nothing: Bits<32> = from_u64(0),
+    }
 }
 
-impl SettingBanks {
-    fn new(machine: &Settings) -> Self {
-        let word = |row: &Row| RomWord {
-            pattern: machine.word(*row as usize).into(),
-            meaning: format!("{row:?}"),
-        };
-        Self {
-            clk: Signal::default(),
-            rst: Signal::default(),
-            setting_write: Signal::default(),
-            setting_bank: Signal::default(),
-            setting_row: Signal::default(),
-            setting_word: Signal::default(),
-            bank: Signal::default(),
-            row: Signal::default(),
-            setting: Signal::default(),
-            setting_refused: Signal::default(),
-            machine_settings: Rom::new("machine_settings", Row::ALL.iter().map(word).collect()),
-            loaded_settings: Ram::default(),
-            written: Dff::default(),
-            known: Dff::default(),
-            from_machine: Dff::default(),
-            refused_q: Dff::default(),
-            loadable: Signal::default(),
-            taken: Signal::default(),
-            write_half: Signal::default(),
-            write_address: Signal::default(),
-            read_half: Signal::default(),
-            read_address: Signal::default(),
-            in_loaded: Signal::default(),
-            bank_machine: Constant::new(from_u64(0)),
-            bank_1: Constant::new(from_u64(1)),
-            bank_2: Constant::new(from_u64(2)),
-            lower_half: Constant::new(from_u64(0)),
-            upper_half: Constant::new(from_u64(16)),
-            one: Constant::new(from_u64(1)),
-            nothing: Constant::new(from_u64(0)),
-        }
-    }
+fn machine_rom(machine: &Settings) -> Rom<32, 4> {
+    let word = |row: &Row| RomWord {
+        pattern: machine.word(*row as usize).into(),
+        meaning: format!("{row:?}"),
+    };
+    Rom::new("machine_settings", Row::ALL.iter().map(word).collect())
 }
 
 impl Logic for SettingBanks {
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module setting_banks");
-        dff_setup!(self, clk, written, known, from_machine, refused_q);
 
         comment!("Writes: only to a bank that is not in use");
         self.loadable.next = ((self.setting_bank.val() == self.bank_1.val())
@@ -135,31 +88,6 @@ impl Logic for SettingBanks {
             self.setting.next = self.machine_settings.data.val();
         }
         self.setting_refused.next = self.refused_q.q.val();
-    }
-}
-
-impl Pins for SettingBanks {
-    fn set_clk(&mut self, level: bool) {
-        self.clk.next = level.into();
-    }
-
-    fn drive(&mut self, inputs: &[u64]) {
-        let mut values = inputs.iter().copied();
-        let mut next = || values.next().unwrap_or_default();
-        self.rst.next = next() & 1 != 0;
-        self.setting_write.next = next() & 1 != 0;
-        self.setting_bank.next = from_u64(next());
-        self.setting_row.next = from_u64(next());
-        self.setting_word.next = from_u64(next());
-        self.bank.next = from_u64(next());
-        self.row.next = from_u64(next());
-    }
-
-    fn read(&self, outputs: &mut [u64]) {
-        let shown = [self.setting.val().into(), u64::from(self.setting_refused.val())];
-        for (output, value) in outputs.iter_mut().zip(shown) {
-            *output = value;
-        }
     }
 }
 

@@ -9,7 +9,7 @@
 //! Shapers and divider take different times from tick to tick, depending on tables; the controllers start when the longest
 //! is over, always in the same clock. A tick that comes earlier begins anew.
 
-use super::{ClockedBlock, Direction, FOREVER, Moore, Port, StepError};
+use super::{FOREVER, Moore, clocked_block, ports};
 
 /// Bits of the counter.
 pub const SCHEDULE_BITS: u32 = 17;
@@ -45,25 +45,27 @@ impl ScheduleConfig {
     }
 }
 
-/// The ports in the order of the Verilog's port list, without `clk`.
-pub fn ports() -> Vec<Port> {
-    let port = |name: &str, direction| Port {
-        name: name.to_owned(),
-        direction,
-        width: 1,
-        signed: false,
-    };
-    vec![
-        port("rst", Direction::Input),
-        port("tick", Direction::Input),
-        port("control", Direction::Output),
-    ]
+ports! {
+    schedule_ports;
+
+    /// The input ports.
+    inputs Inputs {
+        /// Synchronous reset.
+        rst: Bit as bool;
+        /// One clock: the tick.
+        tick: Bit as bool;
+    }
+
+    /// The output ports, all of them registers.
+    outputs Outputs {
+        /// One clock: the controllers start.
+        control: Bit as bool;
+    }
 }
 
 /// The schedule, cycle accurate at its ports.
 #[derive(Debug, Clone)]
 pub struct Schedule {
-    ports: Vec<Port>,
     control_clocks: u32,
     /// Clocks since the tick; 0 before the first, and after `control`.
     since: u32,
@@ -74,11 +76,17 @@ impl Schedule {
     /// After reset.
     pub fn new(config: &ScheduleConfig) -> Self {
         Self {
-            ports: ports(),
             control_clocks: config.control_clocks,
             since: 0,
             control: false,
         }
+    }
+
+    /// One clock: what the outputs show before the rising edge, then the edge.
+    pub fn step(&mut self, inputs: &Inputs) -> Outputs {
+        let control = self.control;
+        self.clock(inputs.rst, inputs.tick);
+        Outputs { control }
     }
 
     fn clock(&mut self, reset: bool, tick: bool) {
@@ -116,28 +124,12 @@ impl Moore for Schedule {
     }
 }
 
-impl ClockedBlock for Schedule {
-    fn ports(&self) -> &[Port] {
-        &self.ports
-    }
-
-    fn step(&mut self, inputs: &[u64], outputs: &mut [u64]) -> Result<(), StepError> {
-        let ([reset, tick], 1) = (inputs, outputs.len()) else {
-            return Err(StepError(format!(
-                "{} inputs and {} outputs: the schedule has 2 and 1",
-                inputs.len(),
-                outputs.len()
-            )));
-        };
-        self.show(outputs);
-        self.clock(reset & 1 != 0, tick & 1 != 0);
-        Ok(())
-    }
-}
+clocked_block!(Schedule, "the schedule");
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::rtl::ClockedBlock;
 
     #[test]
     fn unit_control_comes_so_many_clocks_after_each_tick_and_not_without() {
@@ -146,7 +138,7 @@ mod tests {
             for clock in 0..500 {
                 let tick = clock >= 100 && clock % 100 == 0;
                 let mut outputs = [0];
-                schedule.step(&[0, tick.into()], &mut outputs).unwrap();
+                ClockedBlock::step(&mut schedule, &[0, tick.into()], &mut outputs).unwrap();
                 let wanted = clock >= 100 && clock % 100 == u64::from(clocks);
                 assert_eq!(outputs[0], u64::from(wanted), "{clocks} {clock}");
             }

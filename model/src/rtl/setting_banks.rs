@@ -11,34 +11,41 @@
 //!   in the clock in which it is written.
 
 use super::sliding_mode::{SETTINGS, Settings};
-use super::{ClockedBlock, Direction, FOREVER, Moore, Port, StepError};
+use super::{FOREVER, Moore, clocked_block, ports};
 
-/// The ports in the order of the Verilog's port list, without `clk`.
-pub fn ports() -> Vec<Port> {
-    use Direction::{Input, Output};
-    let port = |name: &str, direction, width| Port {
-        name: name.to_owned(),
-        direction,
-        width,
-        signed: false,
-    };
-    vec![
-        port("rst", Input, 1),
-        port("setting_write", Input, 1),
-        port("setting_bank", Input, 2),
-        port("setting_row", Input, 4),
-        port("setting_word", Input, 32),
-        port("bank", Input, 2),
-        port("row", Input, 4),
-        port("setting", Output, 32),
-        port("setting_refused", Output, 1),
-    ]
+ports! {
+    setting_banks_ports;
+
+    /// The input ports. Bits above a port's width are ignored.
+    inputs Inputs {
+        /// Synchronous reset: banks 1 and 2 are forgotten.
+        rst: Bit as bool;
+        /// One clock: `setting_word` goes to its bank and row.
+        setting_write: Bit as bool;
+        /// Bank that is written, 1 or 2.
+        setting_bank: Bits(2) as u8;
+        /// Row that is written.
+        setting_row: Bits(4) as u8;
+        /// What is written.
+        setting_word: Bits(32) as u32;
+        /// Bank that is read: 0 the machine's, 1 and 2 the loaded ones.
+        bank: Bits(2) as u8;
+        /// Row that is read.
+        row: Bits(4) as u8;
+    }
+
+    /// The output ports, all of them registers.
+    outputs Outputs {
+        /// The word that was read, a clock after its bank and row.
+        setting: Bits(32) as u32;
+        /// One clock: a write was refused.
+        setting_refused: Bit as bool;
+    }
 }
 
 /// The banks, cycle accurate at their ports.
 #[derive(Debug, Clone)]
 pub struct SettingBanks {
-    ports: Vec<Port>,
     machine: Settings,
     /// Banks 1 and 2; `None` was not written since the reset.
     loaded: [Option<u32>; 2 * SETTINGS],
@@ -50,7 +57,6 @@ impl SettingBanks {
     /// After reset, with the machine's settings in bank 0.
     pub fn new(machine: &Settings) -> Self {
         Self {
-            ports: ports(),
             machine: *machine,
             loaded: [None; 2 * SETTINGS],
             setting: 0,
@@ -58,31 +64,55 @@ impl SettingBanks {
         }
     }
 
-    fn word(&self, bank: u64, row: usize) -> u32 {
+    fn word(&self, bank: u8, row: u8) -> u32 {
+        let row = usize::from(row);
         match bank {
             0 => self.machine.word(row),
-            1 | 2 => self.loaded[(bank as usize - 1) * SETTINGS + row].unwrap_or(0),
+            1 | 2 => self.loaded[(usize::from(bank) - 1) * SETTINGS + row].unwrap_or(0),
             _ => 0,
+        }
+    }
+
+    /// One clock: what the outputs show before the rising edge, then the edge.
+    pub fn step(&mut self, inputs: &Inputs) -> Outputs {
+        let shown = self.outputs();
+        if inputs.rst {
+            *self = Self::new(&self.machine);
+            return shown;
+        }
+        let loadable = matches!(inputs.setting_bank, 1 | 2) && inputs.setting_bank != inputs.bank;
+        self.setting = self.word(inputs.bank, inputs.row);
+        self.refused = inputs.setting_write && !loadable;
+        if inputs.setting_write && loadable {
+            let row = usize::from(inputs.setting_row);
+            self.loaded[(usize::from(inputs.setting_bank) - 1) * SETTINGS + row] = Some(inputs.setting_word);
+        }
+        shown
+    }
+
+    fn outputs(&self) -> Outputs {
+        Outputs {
+            setting: self.setting,
+            setting_refused: self.refused,
         }
     }
 }
 
 impl Moore for SettingBanks {
     fn show(&self, outputs: &mut [u64]) {
-        for (output, value) in outputs.iter_mut().zip([self.setting.into(), self.refused.into()]) {
+        for (output, value) in outputs.iter_mut().zip(self.outputs().to_raw()) {
             *output = value;
         }
     }
 
     fn quiet_clocks(&self, inputs: &[u64]) -> u64 {
-        let &[reset, write, .., bank, row] = inputs else {
+        let Ok(inputs) = <&[u64; INPUT_PORTS]>::try_from(inputs).map(Inputs::from_raw) else {
             return 0;
         };
-        let stays = self.setting == self.word(bank & 3, row as usize & 0xf) && !self.refused;
-        if reset & 1 == 0 && write & 1 == 0 && stays {
-            FOREVER
-        } else {
-            0
+        let stays = self.setting == self.word(inputs.bank, inputs.row) && !self.refused;
+        match stays && !inputs.rst && !inputs.setting_write {
+            true => FOREVER,
+            false => 0,
         }
     }
 
@@ -91,32 +121,4 @@ impl Moore for SettingBanks {
     }
 }
 
-impl ClockedBlock for SettingBanks {
-    fn ports(&self) -> &[Port] {
-        &self.ports
-    }
-
-    fn step(&mut self, inputs: &[u64], outputs: &mut [u64]) -> Result<(), StepError> {
-        let (&[reset, write, to_bank, to_row, word, bank, row], 2) = (inputs, outputs.len()) else {
-            return Err(StepError(format!(
-                "{} inputs and {} outputs: the setting banks have 7 and 2",
-                inputs.len(),
-                outputs.len()
-            )));
-        };
-        self.show(outputs);
-        let (to_bank, bank) = (to_bank & 3, bank & 3);
-        self.setting = self.word(bank, row as usize & 0xf);
-        let loadable = matches!(to_bank, 1 | 2) && to_bank != bank;
-        self.refused = write & 1 != 0 && !loadable;
-        if write & 1 != 0 && loadable {
-            self.loaded[(to_bank as usize - 1) * SETTINGS + (to_row as usize & 0xf)] = Some(word as u32);
-        }
-        if reset & 1 != 0 {
-            self.loaded = [None; 2 * SETTINGS];
-            self.refused = false;
-            self.setting = 0;
-        }
-        Ok(())
-    }
-}
+clocked_block!(SettingBanks, "the setting banks' module");

@@ -10,31 +10,36 @@
 //!
 //! `edge_stamp` is the lowest 24 bits of `time_stamp`, as the pulse counter wants them. All outputs are registers.
 
-use super::divider::{DividerConfig, ELAPSED_BITS};
-use super::{ClockedBlock, Direction, Moore, OutputKind, Port, StepError};
+use super::divider::DividerConfig;
+use super::{Moore, OutputKind, clocked_block, ports};
 
-/// The ports in the order of the Verilog's port list, without `clk`.
-pub fn ports() -> Vec<Port> {
-    let port = |name: &str, direction, width| Port {
-        name: name.to_owned(),
-        direction,
-        width,
-        signed: false,
-    };
-    vec![
-        port("rst", Direction::Input, 1),
-        port("tick", Direction::Output, 1),
-        port("divide", Direction::Output, 1),
-        port("time_stamp", Direction::Output, 32),
-        port("edge_stamp", Direction::Output, ELAPSED_BITS),
-        port("tick_count", Direction::Output, 32),
-    ]
+ports! {
+    time_base_ports;
+
+    /// The input ports.
+    inputs Inputs {
+        /// Synchronous reset.
+        rst: Bit as bool;
+    }
+
+    /// The output ports, all of them registers.
+    outputs Outputs {
+        /// One clock: the tick.
+        tick: Bit as bool;
+        /// One clock, after each tick: a divider may start.
+        divide: Bit as bool;
+        /// Clocks since the reset, modulo 2^32.
+        time_stamp: Bits(32) as u32, "clocks";
+        /// The lowest 24 bits of `time_stamp`.
+        edge_stamp: Bits(24) as u32, "clocks";
+        /// Ticks since the reset, modulo 2^32.
+        tick_count: Bits(32) as u32, "ticks";
+    }
 }
 
 /// The time base, cycle accurate at its ports.
 #[derive(Debug, Clone)]
 pub struct TimeBase {
-    ports: Vec<Port>,
     tick_clocks: u32,
     phase: u32,
     tick: bool,
@@ -47,7 +52,6 @@ impl TimeBase {
     /// A time base after reset, with the ticks of `divider`.
     pub fn new(divider: &DividerConfig) -> Self {
         Self {
-            ports: ports(),
             tick_clocks: divider.tick_clocks(),
             phase: 0,
             tick: false,
@@ -55,6 +59,23 @@ impl TimeBase {
             time_stamp: 0,
             tick_count: 0,
         }
+    }
+
+    fn outputs(&self) -> Outputs {
+        Outputs {
+            tick: self.tick,
+            divide: self.divide,
+            time_stamp: self.time_stamp,
+            edge_stamp: self.time_stamp,
+            tick_count: self.tick_count,
+        }
+    }
+
+    /// One clock: what the outputs show before the rising edge, then the edge.
+    pub fn step(&mut self, inputs: &Inputs) -> Outputs {
+        let shown = self.outputs();
+        self.clock(inputs.rst);
+        shown
     }
 
     fn clock(&mut self, reset: bool) {
@@ -73,14 +94,7 @@ impl TimeBase {
 
 impl Moore for TimeBase {
     fn show(&self, outputs: &mut [u64]) {
-        let shown = [
-            self.tick.into(),
-            self.divide.into(),
-            self.time_stamp.into(),
-            u64::from(self.time_stamp) & ((1 << ELAPSED_BITS) - 1),
-            self.tick_count.into(),
-        ];
-        for (output, value) in outputs.iter_mut().zip(shown) {
+        for (output, value) in outputs.iter_mut().zip(self.outputs().to_raw()) {
             *output = value;
         }
     }
@@ -105,35 +119,19 @@ impl Moore for TimeBase {
     }
 }
 
-impl ClockedBlock for TimeBase {
-    fn ports(&self) -> &[Port] {
-        &self.ports
-    }
-
-    fn step(&mut self, inputs: &[u64], outputs: &mut [u64]) -> Result<(), StepError> {
-        let ([reset], 5) = (inputs, outputs.len()) else {
-            return Err(StepError(format!(
-                "{} inputs and {} outputs: the time base has 1 and 5",
-                inputs.len(),
-                outputs.len()
-            )));
-        };
-        self.show(outputs);
-        self.clock(reset & 1 != 0);
-        Ok(())
-    }
-}
+clocked_block!(TimeBase, "the time base");
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::rtl::ClockedBlock;
 
     #[test]
     fn unit_ticks_come_at_their_distance_and_count() {
         let mut time_base = TimeBase::new(&DividerConfig::new(7).unwrap());
         for clock in 0..100u64 {
             let mut outputs = [0; 5];
-            time_base.step(&[0], &mut outputs).unwrap();
+            ClockedBlock::step(&mut time_base, &[0], &mut outputs).unwrap();
             let after = |clocks: u64| u64::from(clock >= clocks && (clock - clocks).is_multiple_of(7));
             assert_eq!(outputs, [after(7), after(8), clock, clock, clock / 7]);
         }
