@@ -5,77 +5,22 @@
 
 use crate::prelude::*;
 
-#[derive(LogicBlock)]
-pub(super) struct Decoder {
-    pub(super) clk: Signal<In, Clock>,
-    pub(super) rst: Signal<In, Bit>,
-    pub(super) level_a: Signal<In, Bit>,
-    pub(super) level_b: Signal<In, Bit>,
-    pub(super) swap: Signal<In, Bit>,
-    pub(super) invert: Signal<In, Bit>,
-    pub(super) ready: Signal<In, Bit>,
-    pub(super) mode: Signal<In, Bits<3>>,
-    pub(super) step: Signal<Out, Bit>,
-    pub(super) up: Signal<Out, Bit>,
-    pub(super) illegal: Signal<Out, Bit>,
+kernel! {
+    pub(super) struct Decoder;
 
-    a_before: Dff<Bit>,
-    b_before: Dff<Bit>,
-
-    kept: Signal<Local, Bit>,
-    a: Signal<Local, Bit>,
-    b: Signal<Local, Bit>,
-    was_a: Signal<Local, Bit>,
-    was_b: Signal<Local, Bit>,
-    edge_a: Signal<Local, Bit>,
-    edge_b: Signal<Local, Bit>,
-    rise_a: Signal<Local, Bit>,
-    rise_b: Signal<Local, Bit>,
-    counts: Signal<Local, Bit>,
-    upward: Signal<Local, Bit>,
-    both: Signal<Local, Bit>,
-
-    times_4: Constant<Bits<3>>,
-    times_2: Constant<Bits<3>>,
-    times_1: Constant<Bits<3>>,
-    step_direction: Constant<Bits<3>>,
-    up_down: Constant<Bits<3>>,
-}
-
-impl Default for Decoder {
-    fn default() -> Self {
-        Self {
-            clk: Signal::default(),
-            rst: Signal::default(),
-            level_a: Signal::default(),
-            level_b: Signal::default(),
-            swap: Signal::default(),
-            invert: Signal::default(),
-            ready: Signal::default(),
-            mode: Signal::default(),
-            step: Signal::default(),
-            up: Signal::default(),
-            illegal: Signal::default(),
-            a_before: Dff::default(),
-            b_before: Dff::default(),
-            kept: Signal::default(),
-            a: Signal::default(),
-            b: Signal::default(),
-            was_a: Signal::default(),
-            was_b: Signal::default(),
-            edge_a: Signal::default(),
-            edge_b: Signal::default(),
-            rise_a: Signal::default(),
-            rise_b: Signal::default(),
-            counts: Signal::default(),
-            upward: Signal::default(),
-            both: Signal::default(),
-            times_4: Constant::new(from_u64(0)),
-            times_2: Constant::new(from_u64(1)),
-            times_1: Constant::new(from_u64(2)),
-            step_direction: Constant::new(from_u64(3)),
-            up_down: Constant::new(from_u64(4)),
-        }
+    inputs { rst: Bit, level_a: Bit, level_b: Bit, swap: Bit, invert: Bit, ready: Bit, mode: Bits<3> }
+    outputs { step: Bit, up: Bit, illegal: Bit }
+    registers { a_before: Bit, b_before: Bit }
+    wires {
+        kept: Bit, a: Bit, b: Bit, was_a: Bit, was_b: Bit, edge_a: Bit, edge_b: Bit, rise_a: Bit, rise_b: Bit,
+        counts: Bit, upward: Bit, both: Bit,
+    }
+    constants {
+        times_4: Bits<3> = from_u64(0),
+        times_2: Bits<3> = from_u64(1),
+        times_1: Bits<3> = from_u64(2),
+        step_direction: Bits<3> = from_u64(3),
+        up_down: Bits<3> = from_u64(4),
     }
 }
 
@@ -84,7 +29,6 @@ impl Logic for Decoder {
     fn update(&mut self) {
         comment!("@module decoder");
         comment!("@about Filtered levels to steps up and down.");
-        dff_setup!(self, clk, a_before, b_before);
         self.a_before.d.next = self.level_a.val();
         self.b_before.d.next = self.level_b.val();
 

@@ -4,37 +4,13 @@
 
 use crate::prelude::*;
 
-#[derive(LogicBlock)]
-pub(crate) struct GlitchFilter {
-    pub(crate) clk: Signal<In, Clock>,
-    pub(crate) rst: Signal<In, Bit>,
-    pub(crate) input_level: Signal<In, Bit>,
-    pub(crate) ready: Signal<In, Bit>,
-    pub(crate) filter_clocks: Signal<In, Bits<6>>,
-    pub(crate) level: Signal<Out, Bit>,
+kernel! {
+    pub(crate) struct GlitchFilter;
 
-    level_q: Dff<Bit>,
-    left: Dff<Bits<6>>,
-
-    no_clocks: Constant<Bits<6>>,
-    one_clock: Constant<Bits<6>>,
-}
-
-impl Default for GlitchFilter {
-    fn default() -> Self {
-        Self {
-            clk: Signal::default(),
-            rst: Signal::default(),
-            input_level: Signal::default(),
-            ready: Signal::default(),
-            filter_clocks: Signal::default(),
-            level: Signal::default(),
-            level_q: Dff::default(),
-            left: Dff::default(),
-            no_clocks: Constant::new(from_u64(0)),
-            one_clock: Constant::new(from_u64(1)),
-        }
-    }
+    inputs { rst: Bit, input_level: Bit, ready: Bit, filter_clocks: Bits<6> }
+    outputs { level: Bit }
+    registers { level_q: Bit, left: Bits<6> }
+    constants { no_clocks: Bits<6> = from_u64(0), one_clock: Bits<6> = from_u64(1) }
 }
 
 impl Logic for GlitchFilter {
@@ -42,7 +18,6 @@ impl Logic for GlitchFilter {
     fn update(&mut self) {
         comment!("@module glitch_filter");
         comment!("@about A level passes after filter_clocks + 1.");
-        dff_setup!(self, clk, level_q, left);
         self.left.d.next = self.left.q.val() - self.one_clock.val();
         if self.input_level.val() == self.level_q.q.val() {
             self.left.d.next = self.filter_clocks.val();

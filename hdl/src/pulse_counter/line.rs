@@ -4,24 +4,13 @@
 use super::glitch_filter::GlitchFilter;
 use crate::prelude::*;
 
-#[derive(LogicBlock, Default)]
-pub(super) struct Line {
-    pub(super) clk: Signal<In, Clock>,
-    pub(super) rst: Signal<In, Bit>,
-    pub(super) pin: Signal<In, Bit>,
-    pub(super) complement: Signal<In, Bit>,
-    pub(super) differential: Signal<In, Bit>,
-    pub(super) ready: Signal<In, Bit>,
-    pub(super) filter_clocks: Signal<In, Bits<6>>,
-    pub(super) level: Signal<Out, Bit>,
-    pub(super) disagrees: Signal<Out, Bit>,
+kernel! {
+    pub(super) struct Line;
 
-    pin_synchroniser: Synchroniser,
-    complement_synchroniser: Synchroniser,
-    filter: GlitchFilter,
-
-    equal: Signal<Local, Bit>,
-    says: Signal<Local, Bit>,
+    inputs { rst: Bit, pin: Bit, complement: Bit, differential: Bit, ready: Bit, filter_clocks: Bits<6> }
+    outputs { level: Bit, disagrees: Bit }
+    parts { pin_synchroniser: Synchroniser, complement_synchroniser: Synchroniser, filter: GlitchFilter }
+    wires { equal: Bit, says: Bit }
 }
 
 impl Logic for Line {

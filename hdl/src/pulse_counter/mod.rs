@@ -6,7 +6,6 @@ mod decoder;
 mod glitch_filter;
 mod kernel;
 mod line;
-mod pins;
 mod velocity;
 
 use crate::emit::{self, EmitError, EmitOptions, Header, Module};

@@ -29,14 +29,14 @@ mod lines;
 mod ports;
 mod velocity;
 
-pub use ports::{FILTER_CLOCKS_MAX, Inputs, Outputs, ports};
+pub use ports::{FILTER_CLOCKS_MAX, INPUT_PORTS, Inputs, OUTPUT_PORTS, Outputs, PORTS, ports};
 pub use velocity::SMOOTHING_BITS;
 
 use self::decode::decode;
 pub(super) use self::lines::GlitchFilter;
 use self::lines::Line;
 use self::velocity::Velocity;
-use super::{ClockedBlock, Moore, Port, StepError};
+use super::{Moore, clocked_block};
 
 /// Clocks after a reset until levels count as known: two of the synchroniser, the filter's, the decoder's.
 pub const PRIMING_CLOCKS: u32 = 4;
@@ -118,7 +118,6 @@ fn time_after(inputs: &Inputs, clocks: u64) -> u32 {
 
 /// The pulse counter, cycle accurate at its ports.
 pub struct PulseCounter {
-    ports: Vec<Port>,
     state: State,
 }
 
@@ -132,7 +131,6 @@ impl PulseCounter {
     /// A counter after reset.
     pub fn new() -> Self {
         Self {
-            ports: ports(),
             state: State::default(),
         }
     }
@@ -241,24 +239,7 @@ impl PulseCounter {
     }
 }
 
-impl ClockedBlock for PulseCounter {
-    fn ports(&self) -> &[Port] {
-        &self.ports
-    }
-
-    fn step(&mut self, inputs: &[u64], outputs: &mut [u64]) -> Result<(), StepError> {
-        let (Some(typed), 18) = (Inputs::from_raw(inputs), outputs.len()) else {
-            return Err(StepError(format!(
-                "{} inputs and {} outputs: the pulse counter has 26 and 18",
-                inputs.len(),
-                outputs.len()
-            )));
-        };
-        let shown = PulseCounter::step(self, &typed);
-        outputs.copy_from_slice(&shown.to_raw());
-        Ok(())
-    }
-}
+clocked_block!(PulseCounter, "the pulse counter");
 
 impl Moore for PulseCounter {
     fn show(&self, outputs: &mut [u64]) {
@@ -268,11 +249,11 @@ impl Moore for PulseCounter {
     }
 
     fn quiet_clocks(&self, inputs: &[u64]) -> u64 {
-        Inputs::from_raw(inputs).map_or(0, |inputs| self.state.quiet_clocks(&inputs))
+        <&[u64; INPUT_PORTS]>::try_from(inputs).map_or(0, |raw| self.state.quiet_clocks(&Inputs::from_raw(raw)))
     }
 
     fn pass(&mut self, inputs: &[u64], clocks: u64) {
-        if let Some(inputs) = Inputs::from_raw(inputs) {
+        if let Ok(inputs) = <&[u64; INPUT_PORTS]>::try_from(inputs).map(Inputs::from_raw) {
             self.state.pass(&inputs, clocks);
         }
     }
