@@ -3,7 +3,6 @@
 //! The datasheet is `docs/drive_command.md`, the reference `posicast_model::rtl::drive_command`.
 
 mod kernel;
-mod pins;
 
 use crate::emit::{self, EmitError, EmitOptions, Header, Module};
 use crate::simulation::{Simulated, SimulationError};

@@ -3,113 +3,26 @@
 use super::wave::Wave;
 use crate::prelude::*;
 
-#[derive(LogicBlock)]
-pub(super) struct Excitation {
-    pub(super) clk: Signal<In, Clock>,
-    pub(super) rst: Signal<In, Bit>,
-    pub(super) valid: Signal<In, Bit>,
-    pub(super) y_0: Signal<In, Signed<32>>,
-    pub(super) y_1: Signal<In, Signed<32>>,
-    pub(super) y_2: Signal<In, Signed<32>>,
-    pub(super) enable: Signal<In, Bit>,
-    pub(super) allowed: Signal<In, Bit>,
-    pub(super) kind: Signal<In, Bits<2>>,
-    pub(super) amplitude: Signal<In, Bits<16>>,
-    pub(super) amplitude_limit: Signal<In, Bits<16>>,
-    pub(super) period_ticks: Signal<In, Bits<16>>,
-    pub(super) sweep: Signal<In, Bits<16>>,
-    pub(super) duration_ticks: Signal<In, Bits<24>>,
-    pub(super) modulo: Signal<In, Bit>,
-    pub(super) position_reference: Signal<Out, Signed<32>>,
-    pub(super) velocity_reference: Signal<Out, Signed<32>>,
-    pub(super) acceleration_reference: Signal<Out, Signed<32>>,
-    pub(super) reference_valid: Signal<Out, Bit>,
-    pub(super) excitation_value: Signal<Out, Signed<32>>,
-    pub(super) excitation_active: Signal<Out, Bit>,
-    pub(super) excitation_done: Signal<Out, Bit>,
+kernel! {
+    pub(super) struct Excitation;
+    ports posicast_model::excitation_ports;
 
-    wave: Wave,
-    position_q: Dff<Signed<32>>,
-    velocity_q: Dff<Signed<32>>,
-    acceleration_q: Dff<Signed<32>>,
-    valid_q: Dff<Bit>,
-    value_q: Dff<Signed<17>>,
-    active: Dff<Bit>,
-    done: Dff<Bit>,
-    armed: Dff<Bit>,
-    ticks: Dff<Bits<24>>,
-
-    wide_position: Signal<Local, Signed<33>>,
-    wide_value: Signal<Local, Signed<33>>,
-    sum: Signal<Local, Signed<33>>,
-    sum_bits: Signal<Local, Bits<33>>,
-    beyond: Signal<Local, Bit>,
-    bounded: Signal<Local, Bits<16>>,
-    wanted: Signal<Local, Bit>,
-    ended: Signal<Local, Bit>,
-    starts: Signal<Local, Bit>,
-    runs: Signal<Local, Bit>,
-
-    prbs_kind: Constant<Bits<2>>,
-    chirp_kind: Constant<Bits<2>>,
-    largest: Constant<Signed<32>>,
-    smallest: Constant<Signed<32>>,
-    no_tick: Constant<Bits<24>>,
-    one_tick: Constant<Bits<24>>,
-}
-
-impl Default for Excitation {
-    fn default() -> Self {
-        Self {
-            clk: Signal::default(),
-            rst: Signal::default(),
-            valid: Signal::default(),
-            y_0: Signal::default(),
-            y_1: Signal::default(),
-            y_2: Signal::default(),
-            enable: Signal::default(),
-            allowed: Signal::default(),
-            kind: Signal::default(),
-            amplitude: Signal::default(),
-            amplitude_limit: Signal::default(),
-            period_ticks: Signal::default(),
-            sweep: Signal::default(),
-            duration_ticks: Signal::default(),
-            modulo: Signal::default(),
-            position_reference: Signal::default(),
-            velocity_reference: Signal::default(),
-            acceleration_reference: Signal::default(),
-            reference_valid: Signal::default(),
-            excitation_value: Signal::default(),
-            excitation_active: Signal::default(),
-            excitation_done: Signal::default(),
-            wave: Wave::default(),
-            position_q: Dff::default(),
-            velocity_q: Dff::default(),
-            acceleration_q: Dff::default(),
-            valid_q: Dff::default(),
-            value_q: Dff::default(),
-            active: Dff::default(),
-            done: Dff::default(),
-            armed: Dff::default(),
-            ticks: Dff::default(),
-            wide_position: Signal::default(),
-            wide_value: Signal::default(),
-            sum: Signal::default(),
-            sum_bits: Signal::default(),
-            beyond: Signal::default(),
-            bounded: Signal::default(),
-            wanted: Signal::default(),
-            ended: Signal::default(),
-            starts: Signal::default(),
-            runs: Signal::default(),
-            prbs_kind: Constant::new(from_u64(1)),
-            chirp_kind: Constant::new(from_u64(2)),
-            largest: Constant::new(from_i64(i64::from(i32::MAX))),
-            smallest: Constant::new(from_i64(i64::from(i32::MIN))),
-            no_tick: Constant::new(from_u64(0)),
-            one_tick: Constant::new(from_u64(1)),
-        }
+    parts { wave: Wave }
+    registers {
+        position_q: Signed<32>, velocity_q: Signed<32>, acceleration_q: Signed<32>, valid_q: Bit,
+        value_q: Signed<17>, active: Bit, done: Bit, armed: Bit, ticks: Bits<24>,
+    }
+    wires {
+        wide_position: Signed<33>, wide_value: Signed<33>, sum: Signed<33>, sum_bits: Bits<33>, beyond: Bit,
+        bounded: Bits<16>, wanted: Bit, ended: Bit, starts: Bit, runs: Bit,
+    }
+    constants {
+        prbs_kind: Bits<2> = from_u64(1),
+        chirp_kind: Bits<2> = from_u64(2),
+        largest: Signed<32> = from_i64(i64::from(i32::MAX)),
+        smallest: Signed<32> = from_i64(i64::from(i32::MIN)),
+        no_tick: Bits<24> = from_u64(0),
+        one_tick: Bits<24> = from_u64(1),
     }
 }
 
@@ -117,19 +30,6 @@ impl Logic for Excitation {
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module excitation");
-        dff_setup!(
-            self,
-            clk,
-            position_q,
-            velocity_q,
-            acceleration_q,
-            valid_q,
-            value_q,
-            active,
-            done,
-            armed,
-            ticks
-        );
 
         comment!("The sum stays at the ends of its word");
         self.wide_position.next = signed_bit_cast::<33, 32>(self.y_0.val());

@@ -3,7 +3,6 @@
 //! The datasheet is `docs/excitation.md`, the reference `posicast_model::rtl::excitation`.
 
 mod kernel;
-mod pins;
 mod wave;
 
 use crate::emit::{self, EmitError, EmitOptions, Header, Module, Parameter};

@@ -12,131 +12,50 @@
 
 use crate::prelude::*;
 
-#[derive(LogicBlock)]
-pub(super) struct Wave {
-    pub(super) clk: Signal<In, Clock>,
-    pub(super) rst: Signal<In, Bit>,
-    pub(super) run: Signal<In, Bit>,
-    pub(super) start: Signal<In, Bit>,
-    pub(super) valid: Signal<In, Bit>,
-    pub(super) chirp: Signal<In, Bit>,
-    pub(super) prbs: Signal<In, Bit>,
-    pub(super) amplitude: Signal<In, Bits<16>>,
-    pub(super) period_ticks: Signal<In, Bits<16>>,
-    pub(super) sweep: Signal<In, Bits<16>>,
-    pub(super) value: Signal<Out, Signed<17>>,
-    pub(super) too_fast: Signal<Out, Bit>,
+kernel! {
+    pub(super) struct Wave;
 
-    phase: Dff<Bits<2>>,
-    clocks: Dff<Bits<4>>,
-    angle: Dff<Bits<8>>,
-    ahead: Dff<Bits<21>>,
-    frequency: Dff<Bits<22>>,
-    turned: Dff<Bit>,
-    noise: Dff<Bits<15>>,
-    value_q: Dff<Signed<17>>,
-
-    advances: Signal<Local, Bit>,
-    turns: Signal<Local, Bit>,
-    scales: Signal<Local, Bit>,
-    not_period: Signal<Local, Bits<16>>,
-    operand: Signal<Local, Bits<23>>,
-    with_carry: Signal<Local, Bits<23>>,
-    ahead_sum: Signal<Local, Bits<22>>,
-    next_frequency: Signal<Local, Bits<23>>,
-    next_angle: Signal<Local, Bits<8>>,
-    whole_turn: Signal<Local, Bit>,
-    feedback: Signal<Local, Bits<1>>,
-    negative: Signal<Local, Bit>,
-    fold: Signal<Local, Bit>,
-    triangle_bit: Signal<Local, Bit>,
-    adds: Signal<Local, Bit>,
-    subtrahend: Signal<Local, Bits<18>>,
-    complement: Signal<Local, Bits<18>>,
-    value_sum: Signal<Local, Bits<18>>,
-    halved: Signal<Local, Bits<17>>,
-    wide_value: Signal<Local, Signed<18>>,
-
-    rest_phase: Constant<Bits<2>>,
-    advance_phase: Constant<Bits<2>>,
-    turn_phase: Constant<Bits<2>>,
-    scale_phase: Constant<Bits<2>>,
-    no_clock: Constant<Bits<4>>,
-    one_clock: Constant<Bits<4>>,
-    no_angle: Constant<Bits<8>>,
-    one_step: Constant<Bits<8>>,
-    not_ahead: Constant<Bits<21>>,
-    carry_in: Constant<Bits<23>>,
-    ones_around: Constant<Bits<23>>,
-    first_frequency: Constant<Bits<22>>,
-    no_bit: Constant<Bits<1>>,
-    one_bit: Constant<Bits<1>>,
-    seed: Constant<Bits<15>>,
-    nothing: Constant<Bits<18>>,
-    no_value: Constant<Signed<17>>,
-}
-
-impl Default for Wave {
-    fn default() -> Self {
-        Self {
-            clk: Signal::default(),
-            rst: Signal::default(),
-            run: Signal::default(),
-            start: Signal::default(),
-            valid: Signal::default(),
-            chirp: Signal::default(),
-            prbs: Signal::default(),
-            amplitude: Signal::default(),
-            period_ticks: Signal::default(),
-            sweep: Signal::default(),
-            value: Signal::default(),
-            too_fast: Signal::default(),
-            phase: Dff::default(),
-            clocks: Dff::default(),
-            angle: Dff::default(),
-            ahead: Dff::default(),
-            frequency: Dff::new(from_u64(1 << 16)),
-            turned: Dff::default(),
-            noise: Dff::default(),
-            value_q: Dff::default(),
-            advances: Signal::default(),
-            turns: Signal::default(),
-            scales: Signal::default(),
-            not_period: Signal::default(),
-            operand: Signal::default(),
-            with_carry: Signal::default(),
-            ahead_sum: Signal::default(),
-            next_frequency: Signal::default(),
-            next_angle: Signal::default(),
-            whole_turn: Signal::default(),
-            feedback: Signal::default(),
-            negative: Signal::default(),
-            fold: Signal::default(),
-            triangle_bit: Signal::default(),
-            adds: Signal::default(),
-            subtrahend: Signal::default(),
-            complement: Signal::default(),
-            value_sum: Signal::default(),
-            halved: Signal::default(),
-            wide_value: Signal::default(),
-            rest_phase: Constant::new(from_u64(0)),
-            advance_phase: Constant::new(from_u64(1)),
-            turn_phase: Constant::new(from_u64(2)),
-            scale_phase: Constant::new(from_u64(3)),
-            no_clock: Constant::new(from_u64(0)),
-            one_clock: Constant::new(from_u64(1)),
-            no_angle: Constant::new(from_u64(0)),
-            one_step: Constant::new(from_u64(1)),
-            not_ahead: Constant::new(from_u64(0)),
-            carry_in: Constant::new(from_u64(1)),
-            ones_around: Constant::new(from_u64(0x60_001f)),
-            first_frequency: Constant::new(from_u64(1 << 16)),
-            no_bit: Constant::new(from_u64(0)),
-            one_bit: Constant::new(from_u64(1)),
-            seed: Constant::new(from_u64(0)),
-            nothing: Constant::new(from_u64(0)),
-            no_value: Constant::new(from_i64(0)),
-        }
+    inputs {
+        rst: Bit,
+        run: Bit,
+        start: Bit,
+        valid: Bit,
+        chirp: Bit,
+        prbs: Bit,
+        amplitude: Bits<16>,
+        period_ticks: Bits<16>,
+        sweep: Bits<16>,
+    }
+    outputs { value: Signed<17>, too_fast: Bit }
+    registers {
+        phase: Bits<2>, clocks: Bits<4>, angle: Bits<8>, ahead: Bits<21>,
+        frequency: Bits<22> = from_u64(1 << 16),
+        turned: Bit, noise: Bits<15>, value_q: Signed<17>,
+    }
+    wires {
+        advances: Bit, turns: Bit, scales: Bit, not_period: Bits<16>, operand: Bits<23>, with_carry: Bits<23>,
+        ahead_sum: Bits<22>, next_frequency: Bits<23>, next_angle: Bits<8>, whole_turn: Bit,
+        feedback: Bits<1>, negative: Bit, fold: Bit, triangle_bit: Bit, adds: Bit, subtrahend: Bits<18>,
+        complement: Bits<18>, value_sum: Bits<18>, halved: Bits<17>, wide_value: Signed<18>,
+    }
+    constants {
+        rest_phase: Bits<2> = from_u64(0),
+        advance_phase: Bits<2> = from_u64(1),
+        turn_phase: Bits<2> = from_u64(2),
+        scale_phase: Bits<2> = from_u64(3),
+        no_clock: Bits<4> = from_u64(0),
+        one_clock: Bits<4> = from_u64(1),
+        no_angle: Bits<8> = from_u64(0),
+        one_step: Bits<8> = from_u64(1),
+        not_ahead: Bits<21> = from_u64(0),
+        carry_in: Bits<23> = from_u64(1),
+        ones_around: Bits<23> = from_u64(0x60_001f),
+        first_frequency: Bits<22> = from_u64(1 << 16),
+        no_bit: Bits<1> = from_u64(0),
+        one_bit: Bits<1> = from_u64(1),
+        seed: Bits<15> = from_u64(0),
+        nothing: Bits<18> = from_u64(0),
+        no_value: Signed<17> = from_i64(0),
     }
 }
 
@@ -145,9 +64,6 @@ impl Logic for Wave {
     fn update(&mut self) {
         comment!("@module excitation_wave");
         comment!("@about Angle, PRBS, amplitude times wave.");
-        dff_setup!(
-            self, clk, phase, clocks, angle, ahead, frequency, turned, noise, value_q
-        );
         self.advances.next = self.phase.q.val() == self.advance_phase.val();
         self.turns.next = self.phase.q.val() == self.turn_phase.val();
         self.scales.next = self.phase.q.val() == self.scale_phase.val();

@@ -49,14 +49,12 @@
 mod ports;
 
 pub use ports::{
-    CONTROLLER_DUTY_BITS, DUTY_BITS, DUTY_MAX, DUTY_MIN, INPUT_PORTS, Inputs, OUTPUT_PORTS, Outputs, ports,
+    CONTROLLER_DUTY_BITS, DUTY_BITS, DUTY_MAX, DUTY_MIN, INPUT_PORTS, Inputs, OUTPUT_PORTS, Outputs, PORTS, ports,
 };
-
-use std::sync::Arc;
 
 use super::axis::State;
 use super::shaper::wrap;
-use super::{ClockedBlock, Moore, Port, StepError, quiet_at_rest};
+use super::{Moore, clocked_block, quiet_at_rest};
 
 /// The controller's duty in the PWM's 17 bits: saturated, never cut.
 pub fn saturated(controller_duty: i32) -> i32 {
@@ -72,7 +70,6 @@ pub fn limited(direct_duty: i32, limit: u16) -> i32 {
 /// The block, cycle accurate at its ports.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct DriveCommand {
-    ports: Arc<[Port]>,
     /// Ticks until direct mode expires; of no meaning outside of it.
     ticks_left: u16,
     /// The sign of the last manual duty wanted.
@@ -92,11 +89,10 @@ impl DriveCommand {
     /// The block at power-up.
     pub fn new() -> Self {
         Self {
-            ports: ports().into(),
             ticks_left: 0,
             backward: false,
             on_clocks: [0; 2],
-            shown: Outputs::default(),
+            shown: Outputs::at_power_up(),
         }
     }
 
@@ -202,24 +198,7 @@ impl DriveCommand {
     }
 }
 
-impl ClockedBlock for DriveCommand {
-    fn ports(&self) -> &[Port] {
-        &self.ports
-    }
-
-    fn step(&mut self, inputs: &[u64], outputs: &mut [u64]) -> Result<(), StepError> {
-        let (Ok(raw), OUTPUT_PORTS) = (<&[u64; INPUT_PORTS]>::try_from(inputs), outputs.len()) else {
-            return Err(StepError(format!(
-                "{} inputs and {} outputs: the drive command has {INPUT_PORTS} and {OUTPUT_PORTS}",
-                inputs.len(),
-                outputs.len()
-            )));
-        };
-        let shown = DriveCommand::step(self, &Inputs::from_raw(raw));
-        outputs.copy_from_slice(&shown.to_raw());
-        Ok(())
-    }
-}
+clocked_block!(DriveCommand, "the drive command");
 
 impl Moore for DriveCommand {
     fn show(&self, outputs: &mut [u64]) {

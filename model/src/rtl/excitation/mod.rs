@@ -47,13 +47,11 @@
 mod ports;
 mod wave;
 
-pub use ports::{DURATION_BITS, INPUT_PORTS, Inputs, Kind, OUTPUT_PORTS, Outputs, ports};
+pub use ports::{DURATION_BITS, INPUT_PORTS, Inputs, Kind, OUTPUT_PORTS, Outputs, PORTS, ports};
 pub use wave::{FREQUENCY_BITS, FREQUENCY_FRACTION, PRBS_BITS, TURN_STEPS};
 
-use std::sync::Arc;
-
 use self::wave::{SCALE_CLOCKS, Wave};
-use super::{ClockedBlock, Moore, Port, StepError, quiet_at_rest};
+use super::{Moore, clocked_block, quiet_at_rest};
 
 /// Clocks from `valid` to `reference_valid`.
 pub const LATENCY_CLOCKS: u32 = 1;
@@ -115,7 +113,6 @@ impl Signal {
 /// The excitation, cycle accurate at its ports.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Excitation {
-    ports: Arc<[Port]>,
     signal: Signal,
     /// `enable` was low since the last signal.
     armed: bool,
@@ -132,7 +129,6 @@ impl Excitation {
     /// An excitation after reset.
     pub fn new() -> Self {
         Self {
-            ports: ports().into(),
             signal: Signal::default(),
             armed: false,
             shown: Outputs::default(),
@@ -197,24 +193,7 @@ impl Excitation {
     }
 }
 
-impl ClockedBlock for Excitation {
-    fn ports(&self) -> &[Port] {
-        &self.ports
-    }
-
-    fn step(&mut self, inputs: &[u64], outputs: &mut [u64]) -> Result<(), StepError> {
-        let (Ok(raw), OUTPUT_PORTS) = (<&[u64; INPUT_PORTS]>::try_from(inputs), outputs.len()) else {
-            return Err(StepError(format!(
-                "{} inputs and {} outputs: the excitation has {INPUT_PORTS} and {OUTPUT_PORTS}",
-                inputs.len(),
-                outputs.len()
-            )));
-        };
-        let shown = Excitation::step(self, &Inputs::from_raw(raw));
-        outputs.copy_from_slice(&shown.to_raw());
-        Ok(())
-    }
-}
+clocked_block!(Excitation, "the excitation");
 
 impl Moore for Excitation {
     fn show(&self, outputs: &mut [u64]) {
