@@ -3,128 +3,28 @@
 use super::serial_ratio::SerialRatio;
 use crate::prelude::*;
 
-#[derive(LogicBlock)]
-pub(super) struct LinearScale {
-    pub(super) clk: Signal<In, Clock>,
-    pub(super) rst: Signal<In, Bit>,
-    pub(super) tick: Signal<In, Bit>,
-    pub(super) motor_position: Signal<In, Signed<32>>,
-    pub(super) scale_position: Signal<In, Signed<32>>,
-    pub(super) motor_velocity: Signal<In, Signed<32>>,
-    pub(super) velocity_valid: Signal<In, Bit>,
-    pub(super) align: Signal<In, Bit>,
-    pub(super) ratio_mantissa: Signal<In, Signed<18>>,
-    pub(super) ratio_shift: Signal<In, Bits<5>>,
-    pub(super) use_scale: Signal<In, Bit>,
-    pub(super) deviation: Signal<Out, Signed<32>>,
-    pub(super) deviation_valid: Signal<Out, Bit>,
-    pub(super) position: Signal<Out, Signed<32>>,
-    pub(super) velocity: Signal<Out, Signed<32>>,
+kernel! {
+    pub(super) struct LinearScale;
+    ports posicast_model::linear_scale_ports;
 
-    serial: SerialRatio,
-
-    deviation_q: Dff<Bits<32>>,
-    valid_q: Dff<Bit>,
-    position_q: Dff<Bits<32>>,
-    velocity_q: Dff<Bits<32>>,
-    other: Dff<Bits<32>>,
-    operand_reference: Dff<Bits<32>>,
-    other_reference: Dff<Bits<32>>,
-    positions_wait: Dff<Bit>,
-    velocity_waits: Dff<Bit>,
-    runs: Dff<Bit>,
-    of_position: Dff<Bit>,
-    asked: Dff<Bit>,
-    aligning: Dff<Bit>,
-
-    takes_positions: Signal<Local, Bit>,
-    takes_velocity: Signal<Local, Bit>,
-    operand_position: Signal<Local, Bits<32>>,
-    other_position: Signal<Local, Bits<32>>,
-    ends_position: Signal<Local, Bit>,
-    ends_velocity: Signal<Local, Bit>,
-    positions_next: Signal<Local, Bit>,
-    velocity_next: Signal<Local, Bit>,
-    free: Signal<Local, Bit>,
-    asked_now: Signal<Local, Bit>,
-    silent: Signal<Local, Bit>,
-    for_position: Signal<Local, Bit>,
-    works_on_position: Signal<Local, Bit>,
-    saturates: Signal<Local, Bit>,
-    fills_deviation: Signal<Local, Bit>,
-    low_deviation: Signal<Local, Bit>,
-    deviation_filler: Signal<Local, Bits<32>>,
-    fills_velocity: Signal<Local, Bit>,
-    low_velocity: Signal<Local, Bit>,
-    velocity_filler: Signal<Local, Bits<32>>,
-    entering: Signal<Local, Bits<32>>,
-    operand_entering: Signal<Local, Bits<32>>,
-    other_entering: Signal<Local, Bits<32>>,
-
-    nothing: Constant<Bits<32>>,
-    largest: Constant<Bits<32>>,
-    smallest: Constant<Bits<32>>,
-}
-
-impl Default for LinearScale {
-    fn default() -> Self {
-        Self {
-            clk: Signal::default(),
-            rst: Signal::default(),
-            tick: Signal::default(),
-            motor_position: Signal::default(),
-            scale_position: Signal::default(),
-            motor_velocity: Signal::default(),
-            velocity_valid: Signal::default(),
-            align: Signal::default(),
-            ratio_mantissa: Signal::default(),
-            ratio_shift: Signal::default(),
-            use_scale: Signal::default(),
-            deviation: Signal::default(),
-            deviation_valid: Signal::default(),
-            position: Signal::default(),
-            velocity: Signal::default(),
-            serial: SerialRatio::default(),
-            deviation_q: Dff::default(),
-            valid_q: Dff::default(),
-            position_q: Dff::default(),
-            velocity_q: Dff::default(),
-            other: Dff::default(),
-            operand_reference: Dff::default(),
-            other_reference: Dff::default(),
-            positions_wait: Dff::default(),
-            velocity_waits: Dff::default(),
-            runs: Dff::default(),
-            of_position: Dff::default(),
-            asked: Dff::default(),
-            aligning: Dff::default(),
-            takes_positions: Signal::default(),
-            takes_velocity: Signal::default(),
-            operand_position: Signal::default(),
-            other_position: Signal::default(),
-            ends_position: Signal::default(),
-            ends_velocity: Signal::default(),
-            positions_next: Signal::default(),
-            velocity_next: Signal::default(),
-            free: Signal::default(),
-            asked_now: Signal::default(),
-            silent: Signal::default(),
-            for_position: Signal::default(),
-            works_on_position: Signal::default(),
-            saturates: Signal::default(),
-            fills_deviation: Signal::default(),
-            low_deviation: Signal::default(),
-            deviation_filler: Signal::default(),
-            fills_velocity: Signal::default(),
-            low_velocity: Signal::default(),
-            velocity_filler: Signal::default(),
-            entering: Signal::default(),
-            operand_entering: Signal::default(),
-            other_entering: Signal::default(),
-            nothing: Constant::new(from_u64(0)),
-            largest: Constant::new(from_u64(0x7fff_ffff)),
-            smallest: Constant::new(from_u64(0x8000_0000)),
-        }
+    parts { serial: SerialRatio }
+    registers {
+        deviation_q: Bits<32>, valid_q: Bit, position_q: Bits<32>, velocity_q: Bits<32>, other: Bits<32>,
+        operand_reference: Bits<32>, other_reference: Bits<32>, positions_wait: Bit, velocity_waits: Bit,
+        runs: Bit, of_position: Bit, asked: Bit, aligning: Bit,
+    }
+    wires {
+        takes_positions: Bit, takes_velocity: Bit, operand_position: Bits<32>, other_position: Bits<32>,
+        ends_position: Bit, ends_velocity: Bit, positions_next: Bit, velocity_next: Bit, free: Bit,
+        asked_now: Bit, silent: Bit, for_position: Bit, works_on_position: Bit, saturates: Bit,
+        fills_deviation: Bit, low_deviation: Bit, deviation_filler: Bits<32>, fills_velocity: Bit,
+        low_velocity: Bit, velocity_filler: Bits<32>, entering: Bits<32>, operand_entering: Bits<32>,
+        other_entering: Bits<32>,
+    }
+    constants {
+        nothing: Bits<32> = from_u64(0),
+        largest: Bits<32> = from_u64(0x7fff_ffff),
+        smallest: Bits<32> = from_u64(0x8000_0000),
     }
 }
 
@@ -132,23 +32,6 @@ impl Logic for LinearScale {
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module linear_scale");
-        dff_setup!(
-            self,
-            clk,
-            deviation_q,
-            valid_q,
-            position_q,
-            velocity_q,
-            other,
-            operand_reference,
-            other_reference,
-            positions_wait,
-            velocity_waits,
-            runs,
-            of_position,
-            asked,
-            aligning
-        );
 
         comment!("The loop's counter, and the one to be multiplied");
         self.other_position.next = unsigned_cast(self.motor_position.val());

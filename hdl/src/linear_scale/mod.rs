@@ -3,7 +3,6 @@
 //! The datasheet is `docs/linear_scale.md`, the reference `posicast_model::rtl::linear_scale`.
 
 mod kernel;
-mod pins;
 mod serial_ratio;
 
 use crate::emit::{self, EmitError, EmitOptions, Header, Module, Parameter};

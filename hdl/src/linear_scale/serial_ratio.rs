@@ -13,121 +13,46 @@
 
 use crate::prelude::*;
 
-#[derive(LogicBlock)]
-pub(super) struct SerialRatio {
-    pub(super) clk: Signal<In, Clock>,
-    pub(super) rst: Signal<In, Bit>,
-    pub(super) runs: Signal<In, Bit>,
-    pub(super) of_position: Signal<In, Bit>,
-    pub(super) use_scale: Signal<In, Bit>,
-    pub(super) ratio_mantissa: Signal<In, Signed<18>>,
-    pub(super) ratio_shift: Signal<In, Bits<5>>,
-    pub(super) operand_bit: Signal<In, Bit>,
-    pub(super) operand_reference_bit: Signal<In, Bit>,
-    pub(super) other_bit: Signal<In, Bit>,
-    pub(super) other_reference_bit: Signal<In, Bit>,
-    pub(super) takes_operand: Signal<Out, Bit>,
-    pub(super) takes_other: Signal<Out, Bit>,
-    pub(super) moves: Signal<Out, Bit>,
-    pub(super) result_bit: Signal<Out, Bit>,
-    pub(super) last: Signal<Out, Bit>,
-    pub(super) overflows: Signal<Out, Bit>,
-    pub(super) negative: Signal<Out, Bit>,
+kernel! {
+    pub(super) struct SerialRatio;
 
-    phase: Dff<Bits<6>>,
-    partial: Dff<Signed<18>>,
-    held_operand: Dff<Bit>,
-    operand_borrow: Dff<Bit>,
-    held_other: Dff<Bit>,
-    other_borrow: Dff<Bit>,
-    round_up: Dff<Bit>,
-    borrow: Dff<Bit>,
-    begun_q: Dff<Bit>,
-    ended_q: Dff<Bit>,
-    overflow: Dff<Bit>,
-    highest: Dff<Bit>,
-
-    at_shift: Signal<Local, Bit>,
-    begun: Signal<Local, Bit>,
-    moving: Signal<Local, Bit>,
-    ends: Signal<Local, Bit>,
-    operand_bit_now: Signal<Local, Bit>,
-    operand_less: Signal<Local, Bit>,
-    addend: Signal<Local, Signed<19>>,
-    wide_partial: Signal<Local, Signed<19>>,
-    sum: Signal<Local, Signed<19>>,
-    sum_bits: Signal<Local, Bits<19>>,
-    product_bit: Signal<Local, Bit>,
-    rounded_bit: Signal<Local, Bit>,
-    other_now: Signal<Local, Bit>,
-    other_less: Signal<Local, Bit>,
-    minuend: Signal<Local, Bit>,
-    subtrahend: Signal<Local, Bit>,
-    difference: Signal<Local, Bit>,
-    beyond: Signal<Local, Bit>,
-
-    nil: Constant<Signed<19>>,
-    no_partial: Constant<Signed<18>>,
-    first_phase: Constant<Bits<6>>,
-    one_phase: Constant<Bits<6>>,
-}
-
-impl Default for SerialRatio {
-    fn default() -> Self {
-        Self {
-            clk: Signal::default(),
-            rst: Signal::default(),
-            runs: Signal::default(),
-            of_position: Signal::default(),
-            use_scale: Signal::default(),
-            ratio_mantissa: Signal::default(),
-            ratio_shift: Signal::default(),
-            operand_bit: Signal::default(),
-            operand_reference_bit: Signal::default(),
-            other_bit: Signal::default(),
-            other_reference_bit: Signal::default(),
-            takes_operand: Signal::default(),
-            takes_other: Signal::default(),
-            moves: Signal::default(),
-            result_bit: Signal::default(),
-            last: Signal::default(),
-            overflows: Signal::default(),
-            negative: Signal::default(),
-            phase: Dff::default(),
-            partial: Dff::default(),
-            held_operand: Dff::default(),
-            operand_borrow: Dff::default(),
-            held_other: Dff::default(),
-            other_borrow: Dff::default(),
-            round_up: Dff::default(),
-            borrow: Dff::default(),
-            begun_q: Dff::default(),
-            ended_q: Dff::default(),
-            overflow: Dff::default(),
-            highest: Dff::default(),
-            at_shift: Signal::default(),
-            begun: Signal::default(),
-            moving: Signal::default(),
-            ends: Signal::default(),
-            operand_bit_now: Signal::default(),
-            operand_less: Signal::default(),
-            addend: Signal::default(),
-            wide_partial: Signal::default(),
-            sum: Signal::default(),
-            sum_bits: Signal::default(),
-            product_bit: Signal::default(),
-            rounded_bit: Signal::default(),
-            other_now: Signal::default(),
-            other_less: Signal::default(),
-            minuend: Signal::default(),
-            subtrahend: Signal::default(),
-            difference: Signal::default(),
-            beyond: Signal::default(),
-            nil: Constant::new(from_i64(0)),
-            no_partial: Constant::new(from_i64(0)),
-            first_phase: Constant::new(from_u64(0)),
-            one_phase: Constant::new(from_u64(1)),
-        }
+    inputs {
+        rst: Bit,
+        runs: Bit,
+        of_position: Bit,
+        use_scale: Bit,
+        ratio_mantissa: Signed<18>,
+        ratio_shift: Bits<5>,
+        operand_bit: Bit,
+        operand_reference_bit: Bit,
+        other_bit: Bit,
+        other_reference_bit: Bit,
+    }
+    outputs {
+        takes_operand: Bit,
+        takes_other: Bit,
+        moves: Bit,
+        result_bit: Bit,
+        last: Bit,
+        overflows: Bit,
+        negative: Bit,
+    }
+    registers {
+        phase: Bits<6>, partial: Signed<18>, held_operand: Bit, operand_borrow: Bit, held_other: Bit,
+        other_borrow: Bit, round_up: Bit, borrow: Bit, begun_q: Bit, ended_q: Bit, overflow: Bit,
+        highest: Bit,
+    }
+    wires {
+        at_shift: Bit, begun: Bit, moving: Bit, ends: Bit, operand_bit_now: Bit, operand_less: Bit,
+        addend: Signed<19>, wide_partial: Signed<19>, sum: Signed<19>, sum_bits: Bits<19>, product_bit: Bit,
+        rounded_bit: Bit, other_now: Bit, other_less: Bit, minuend: Bit, subtrahend: Bit, difference: Bit,
+        beyond: Bit,
+    }
+    constants {
+        nil: Signed<19> = from_i64(0),
+        no_partial: Signed<18> = from_i64(0),
+        first_phase: Bits<6> = from_u64(0),
+        one_phase: Bits<6> = from_u64(1),
     }
 }
 
@@ -137,22 +62,6 @@ impl Logic for SerialRatio {
         comment!("@module serial_ratio");
         comment!("@about ratio * operand, rounded, less the other:");
         comment!("@about a bit per clock, lowest first.");
-        dff_setup!(
-            self,
-            clk,
-            phase,
-            partial,
-            held_operand,
-            operand_borrow,
-            held_other,
-            other_borrow,
-            round_up,
-            borrow,
-            begun_q,
-            ended_q,
-            overflow,
-            highest
-        );
 
         comment!("32 bits from bit ratio_shift on are the result");
         self.at_shift.next = self.phase.q.val().get_bits::<5>(0) == self.ratio_shift.val();

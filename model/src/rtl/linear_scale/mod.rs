@@ -44,13 +44,11 @@
 mod ports;
 mod ratio;
 
-pub use ports::{INPUT_PORTS, Inputs, OUTPUT_PORTS, Outputs, ports};
+pub use ports::{INPUT_PORTS, Inputs, OUTPUT_PORTS, Outputs, PORTS, ports};
 pub use ratio::{MANTISSA_BITS, RELATIVE_ERROR_MAX, SHIFT_BITS, ScaleRatio, ScaleRatioError};
 
-use std::sync::Arc;
-
 use self::ratio::scaled;
-use super::{ClockedBlock, Moore, Port, StepError, quiet_at_rest};
+use super::{Moore, clocked_block, quiet_at_rest};
 
 /// Clocks that the multiplier works for one product.
 pub const PASS_CLOCKS: u32 = 64;
@@ -98,7 +96,6 @@ struct Registers {
 /// The block, cycle accurate at its ports. The three tied inputs stay as they are but in reset.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct LinearScale {
-    ports: Arc<[Port]>,
     registers: Registers,
 }
 
@@ -112,7 +109,6 @@ impl LinearScale {
     /// The block after reset.
     pub fn new() -> Self {
         Self {
-            ports: ports().into(),
             registers: Registers::default(),
         }
     }
@@ -232,24 +228,7 @@ fn saturated(exact: i64) -> i32 {
     exact.clamp(i32::MIN.into(), i32::MAX.into()) as i32
 }
 
-impl ClockedBlock for LinearScale {
-    fn ports(&self) -> &[Port] {
-        &self.ports
-    }
-
-    fn step(&mut self, inputs: &[u64], outputs: &mut [u64]) -> Result<(), StepError> {
-        let (Ok(raw), OUTPUT_PORTS) = (<&[u64; INPUT_PORTS]>::try_from(inputs), outputs.len()) else {
-            return Err(StepError(format!(
-                "{} inputs and {} outputs: the linear scale has {INPUT_PORTS} and {OUTPUT_PORTS}",
-                inputs.len(),
-                outputs.len()
-            )));
-        };
-        let shown = LinearScale::step(self, &Inputs::from_raw(raw));
-        outputs.copy_from_slice(&shown.to_raw());
-        Ok(())
-    }
-}
+clocked_block!(LinearScale, "the linear scale");
 
 impl Moore for LinearScale {
     fn show(&self, outputs: &mut [u64]) {
