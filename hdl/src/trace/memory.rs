@@ -6,59 +6,29 @@
 
 use crate::prelude::*;
 
-/// A address bits.
-#[derive(LogicBlock)]
-pub(super) struct TraceMemory<const A: usize> {
-    pub(super) clk: Signal<In, Clock>,
-    pub(super) rst: Signal<In, Bit>,
-    pub(super) forget: Signal<In, Bit>,
-    pub(super) write: Signal<In, Bit>,
-    pub(super) drops: Signal<In, Bit>,
-    pub(super) word: Signal<In, Signed<32>>,
-    pub(super) full: Signal<In, Bit>,
-    pub(super) hidden: Signal<In, Bit>,
-    pub(super) read_address: Signal<In, Bits<11>>,
-    pub(super) data: Signal<Out, Bits<32>>,
+kernel! {
+    /// A address bits.
+    pub(super) struct TraceMemory<const A: usize>;
 
-    ram: Ram<32, A>,
-
-    pointer: Dff<Bits<A>>,
-    oldest: Dff<Bits<A>>,
-    valid: Dff<Bit>,
-
-    between: Signal<Local, Bits<A>>,
-    words: Signal<Local, Bits<12>>,
-
-    no_address: Constant<Bits<A>>,
-    one_word: Constant<Bits<A>>,
-    all_words: Constant<Bits<12>>,
-    no_data: Constant<Bits<32>>,
-}
-
-impl<const A: usize> Default for TraceMemory<A> {
-    fn default() -> Self {
-        Self {
-            clk: Signal::default(),
-            rst: Signal::default(),
-            forget: Signal::default(),
-            write: Signal::default(),
-            drops: Signal::default(),
-            word: Signal::default(),
-            full: Signal::default(),
-            hidden: Signal::default(),
-            read_address: Signal::default(),
-            data: Signal::default(),
-            ram: Ram::default(),
-            pointer: Dff::default(),
-            oldest: Dff::default(),
-            valid: Dff::default(),
-            between: Signal::default(),
-            words: Signal::default(),
-            no_address: Constant::new(from_u64(0)),
-            one_word: Constant::new(from_u64(1)),
-            all_words: Constant::new(from_u64(1 << A)),
-            no_data: Constant::new(from_u64(0)),
-        }
+    inputs {
+        rst: Bit,
+        forget: Bit,
+        write: Bit,
+        drops: Bit,
+        word: Signed<32>,
+        full: Bit,
+        hidden: Bit,
+        read_address: Bits<11>,
+    }
+    outputs { data: Bits<32> }
+    parts { ram: Ram<32, A> }
+    registers { pointer: Bits<A>, oldest: Bits<A>, valid: Bit }
+    wires { between: Bits<A>, words: Bits<12> }
+    constants {
+        no_address: Bits<A> = from_u64(0),
+        one_word: Bits<A> = from_u64(1),
+        all_words: Bits<12> = from_u64(1 << A),
+        no_data: Bits<32> = from_u64(0),
     }
 }
 
@@ -67,7 +37,6 @@ impl<const A: usize> Logic for TraceMemory<A> {
     fn update(&mut self) {
         comment!("@module trace_memory");
         comment!("@about The words of the trace, in a ring.");
-        dff_setup!(self, clk, pointer, oldest, valid);
         self.ram.clk.next = self.clk.val();
 
         self.ram.write_enable.next = self.write.val();

@@ -7,7 +7,6 @@
 
 mod kernel;
 mod memory;
-mod pins;
 mod signal_select;
 mod trigger;
 

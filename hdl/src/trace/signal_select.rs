@@ -7,24 +7,13 @@
 
 use crate::prelude::*;
 
-#[derive(LogicBlock, Default)]
-pub(super) struct SignalSelect {
-    pub(super) clk: Signal<In, Clock>,
-    pub(super) rst: Signal<In, Bit>,
-    pub(super) signal: [Signal<In, Signed<32>>; 16],
-    pub(super) select: Signal<In, Bits<4>>,
-    pub(super) chosen: Signal<Out, Signed<32>>,
+kernel! {
+    pub(super) struct SignalSelect;
 
-    first: Dff<Signed<32>>,
-    second: Dff<Signed<32>>,
-    third: Dff<Signed<32>>,
-    fourth: Dff<Signed<32>>,
-    upper: Dff<Bits<2>>,
-
-    low_pair: [Signal<Local, Signed<32>>; 4],
-    high_pair: [Signal<Local, Signed<32>>; 4],
-    lower_two: Signal<Local, Signed<32>>,
-    upper_two: Signal<Local, Signed<32>>,
+    inputs { rst: Bit, signal[16]: Signed<32>, select: Bits<4> }
+    outputs { chosen: Signed<32> }
+    registers { first: Signed<32>, second: Signed<32>, third: Signed<32>, fourth: Signed<32>, upper: Bits<2> }
+    wires { low_pair[4]: Signed<32>, high_pair[4]: Signed<32>, lower_two: Signed<32>, upper_two: Signed<32> }
 }
 
 impl Logic for SignalSelect {
@@ -32,7 +21,6 @@ impl Logic for SignalSelect {
     fn update(&mut self) {
         comment!("@module signal_select");
         comment!("@about One of 16 signals, a clock after select.");
-        dff_setup!(self, clk, first, second, third, fourth, upper);
 
         comment!("One of each four");
         self.low_pair[0].next = self.signal[0].val();

@@ -4,55 +4,25 @@
 
 use crate::prelude::*;
 
-#[derive(LogicBlock)]
-pub(super) struct Trigger {
-    pub(super) clk: Signal<In, Clock>,
-    pub(super) rst: Signal<In, Bit>,
-    pub(super) forget: Signal<In, Bit>,
-    pub(super) compare: Signal<In, Bit>,
-    pub(super) value: Signal<In, Signed<32>>,
-    pub(super) mode: Signal<In, Bits<2>>,
-    pub(super) level: Signal<In, Signed<32>>,
-    pub(super) happens: Signal<In, Bit>,
-    pub(super) comes: Signal<Out, Bit>,
+kernel! {
+    pub(super) struct Trigger;
 
-    has_row: Dff<Bit>,
-    was_above: Dff<Bit>,
-    kept_event: Dff<Bit>,
-
-    wide_value: Signal<Local, Signed<33>>,
-    wide_level: Signal<Local, Signed<33>>,
-    difference: Signal<Local, Signed<33>>,
-    above: Signal<Local, Bit>,
-
-    rising_mode: Constant<Bits<2>>,
-    falling_mode: Constant<Bits<2>>,
-    event_mode: Constant<Bits<2>>,
-}
-
-impl Default for Trigger {
-    fn default() -> Self {
-        Self {
-            clk: Signal::default(),
-            rst: Signal::default(),
-            forget: Signal::default(),
-            compare: Signal::default(),
-            value: Signal::default(),
-            mode: Signal::default(),
-            level: Signal::default(),
-            happens: Signal::default(),
-            comes: Signal::default(),
-            has_row: Dff::default(),
-            was_above: Dff::default(),
-            kept_event: Dff::default(),
-            wide_value: Signal::default(),
-            wide_level: Signal::default(),
-            difference: Signal::default(),
-            above: Signal::default(),
-            rising_mode: Constant::new(from_u64(1)),
-            falling_mode: Constant::new(from_u64(2)),
-            event_mode: Constant::new(from_u64(3)),
-        }
+    inputs {
+        rst: Bit,
+        forget: Bit,
+        compare: Bit,
+        value: Signed<32>,
+        mode: Bits<2>,
+        level: Signed<32>,
+        happens: Bit,
+    }
+    outputs { comes: Bit }
+    registers { has_row: Bit, was_above: Bit, kept_event: Bit }
+    wires { wide_value: Signed<33>, wide_level: Signed<33>, difference: Signed<33>, above: Bit }
+    constants {
+        rising_mode: Bits<2> = from_u64(1),
+        falling_mode: Bits<2> = from_u64(2),
+        event_mode: Bits<2> = from_u64(3),
     }
 }
 
@@ -61,7 +31,6 @@ impl Logic for Trigger {
     fn update(&mut self) {
         comment!("@module trace_trigger");
         comment!("@about Does the trigger come with this row?");
-        dff_setup!(self, clk, has_row, was_above, kept_event);
 
         comment!("At or above: what >= says, in less logic");
         self.wide_value.next = signed_bit_cast::<33, 32>(self.value.val());
