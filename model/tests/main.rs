@@ -20,6 +20,7 @@ mod linear_scale;
 mod matching;
 mod papers;
 mod plant_in_loop;
+mod port_tables;
 mod prop_joint;
 mod prop_kinds;
 mod prop_shapers;
