@@ -1,6 +1,8 @@
 //! The stage of a machine: what its file says of the axes, as the hardware is built from it.
 
-use super::{ControlError, Derived, Supervision, SupervisionError, gains, loop_lag_s, schedule_delay_s, supervision};
+use crate::control::{
+    ControlError, Derived, Supervision, SupervisionError, gains, loop_lag_s, schedule_delay_s, supervision,
+};
 use crate::design::MachineDesign;
 use crate::rtl::divider::{DividerConfig, DividerConfigError};
 use crate::rtl::linear_scale::{ScaleRatio, ScaleRatioError};
@@ -19,6 +21,18 @@ pub struct MachineStage {
     pub lags_s: Vec<f64>,
     /// Controller of each axis.
     pub derived: Vec<Derived>,
+}
+
+impl MachineStage {
+    /// The axis whose name clashes: the first without which, under another name, the stage `builds`.
+    pub fn clashing_axis(&self, builds: impl Fn(&StageConfig) -> bool) -> usize {
+        let renamed = |axis: &usize| {
+            let mut config = self.config.clone();
+            config.axes[*axis].name = "posicast".to_owned();
+            builds(&config)
+        };
+        (0..self.config.axes.len()).find(renamed).unwrap_or(0)
+    }
 }
 
 /// Why a machine has no stage. `axis` counts from 0.
