@@ -44,49 +44,49 @@ pub enum MachineStageError {
     /// A shaper.
     #[error("axis {axis}: {error}; a stage shapes position, velocity and acceleration")]
     Shaper {
-        /// Which.
+        /// Index of the axis, from 0.
         axis: usize,
-        /// Why.
+        /// The reason.
         error: ShaperConfigError,
     },
     /// A PWM.
     #[error("{error}")]
     Pwm {
-        /// Which.
+        /// Index of the axis, from 0.
         axis: usize,
-        /// Why.
+        /// The reason.
         error: PwmConfigError,
     },
     /// A scale.
     #[error("axis {axis}: {error}")]
     Scale {
-        /// Which.
+        /// Index of the axis, from 0.
         axis: usize,
-        /// Why.
+        /// The reason.
         error: ScaleRatioError,
     },
     /// A trace memory.
     #[error("axis {axis}: {error}")]
     Trace {
-        /// Which.
+        /// Index of the axis, from 0.
         axis: usize,
-        /// Why.
+        /// The reason.
         error: TraceConfigError,
     },
     /// A controller.
     #[error("{error}")]
     Control {
-        /// Which.
+        /// Index of the axis, from 0.
         axis: usize,
-        /// Why.
+        /// The reason.
         error: ControlError,
     },
     /// A supervisor.
     #[error("{error}")]
     Supervision {
-        /// Which.
+        /// Index of the axis, from 0.
         axis: usize,
-        /// Why.
+        /// The reason.
         error: SupervisionError,
     },
 }
