@@ -2,12 +2,12 @@
 
 use crate::bench;
 use crate::command::{self, Words};
-use crate::control::AxisControl;
+use crate::design::Report;
 use crate::failure::Failure;
+use crate::hardware::failure;
 use posicast_hdl::machine::AxisShaper;
-use posicast_model::control;
+use posicast_model::hardware::{self, Hardware};
 use posicast_model::rtl::cascade::CascadeConfig;
-use posicast_model::rtl::component::{Component, ComponentError};
 use posicast_model::rtl::divider::DividerConfig;
 use posicast_model::rtl::group::MOST_AXES;
 use posicast_model::rtl::pwm::{ActiveLow, PwmConfig};
@@ -23,8 +23,6 @@ use posicast_testbench::blocks::{
 };
 use std::path::Path;
 
-/// What the name of a component's top module ends with.
-pub(crate) const COMPONENT_SUFFIX: &str = "_avalon";
 /// Delays of the cascade that is compared where no machine asks for one, in samples.
 const CASCADE_DELAYS_SAMPLES: [u32; 4] = [26, 31, 38, 62];
 /// Its word.
@@ -46,27 +44,23 @@ pub(crate) fn shapers(machine: &Machine, shapers: Vec<AxisShaper>, words: &Words
     MachineShapers::new(&machine.name, shapers, command::on_the_ports(machine, words)).map_err(bench::failure)
 }
 
-/// Whether an axis has more than a shaper.
-pub(crate) fn has_loop(axis: &Axis) -> bool {
-    axis.encoder.is_some() || axis.pwm.is_some() || axis.controller.is_some()
-}
-
 /// The other blocks: none for a machine of shapers alone, else every block of the library. `path` is the machine file.
 pub(crate) fn others(
-    machine: &Machine,
+    report: &Report<'_>,
     shapers: &[AxisShaper],
-    controllers: &[Option<AxisControl>],
+    components: Vec<ComponentBlock>,
     path: &Path,
 ) -> Result<Vec<Box<dyn Block>>, Failure> {
+    let (machine, hardware) = (report.machine, &report.hardware);
     let mut blocks: Vec<Box<dyn Block>> = Vec::new();
-    if !machine.axes.iter().any(has_loop) {
+    if !machine.axes.iter().any(Axis::has_loop) {
         return Ok(blocks);
     }
     let name = machine.name.as_str();
     let with_encoder = axes(machine, |axis| axis.encoder.is_some());
     let with_controller = axes(machine, |axis| axis.controller.is_some());
     blocks.push(Box::new(PulseCounterBlock::new(name, &with_encoder)));
-    blocks.push(Box::new(DividerBlock::new(divider(machine, path)?, name)));
+    blocks.push(Box::new(DividerBlock::new(divider(hardware, path)?, name)));
     for (config, axes) in pwms(machine, path)? {
         blocks.push(Box::new(PwmBlock::new(config, name, &axes)));
     }
@@ -84,10 +78,9 @@ pub(crate) fn others(
     blocks.push(Box::new(LinearScaleBlock::new(name, "alone")));
     blocks.push(Box::new(EncoderGeneratorBlock::new(name, "alone")));
     blocks.push(Box::new(ExcitationBlock::new(name, "alone")));
-    for part in parts(machine, controllers, path)? {
+    for part in parts(machine, hardware, path)? {
         blocks.push(Box::new(PartBlock::new(part, name)));
     }
-    let components = components(machine, shapers, controllers, path)?;
     let mut maps: Vec<&RegisterMap> = Vec::new();
     for map in components.iter().map(|component| component.component().map()) {
         if !maps.iter().any(|other| other.name() == map.name()) {
@@ -104,14 +97,9 @@ pub(crate) fn others(
 }
 
 /// What a folder holds beside the machine's top: each component, through its bus and its pins, and the blocks in it, each alone.
-pub(crate) fn of_components(
-    machine: &Machine,
-    shapers: &[AxisShaper],
-    controllers: &[Option<AxisControl>],
-    path: &Path,
-) -> Result<Vec<Box<dyn Block>>, Failure> {
+pub(crate) fn of_components(components: Vec<ComponentBlock>) -> Result<Vec<Box<dyn Block>>, Failure> {
     let mut blocks: Vec<Box<dyn Block>> = Vec::new();
-    for component in components(machine, shapers, controllers, path)? {
+    for component in components {
         let inner = component.inner().map_err(bench::failure)?;
         blocks.push(Box::new(component));
         blocks.extend(inner);
@@ -119,54 +107,12 @@ pub(crate) fn of_components(
     Ok(blocks)
 }
 
-/// The blocks of the machine's axes as components, each behind registers of its own on an Avalon-MM agent, ready for a system
-/// with a processor: none for a machine of shapers alone. Their top modules are `<machine>_<axis>_<block>_avalon`.
-pub(crate) fn components(
-    machine: &Machine,
-    shapers: &[AxisShaper],
-    controllers: &[Option<AxisControl>],
-    path: &Path,
-) -> Result<Vec<ComponentBlock>, Failure> {
-    let mut components = Vec::new();
-    if !machine.axes.iter().any(has_loop) {
-        return Ok(components);
-    }
-    for (index, ((axis, shaper), control)) in machine.axes.iter().zip(shapers).zip(controllers).enumerate() {
-        let refused = |error: ComponentError| match &error {
-            ComponentError::Tick(_) => crate::machine::at_key(path, index, crate::machine::SAMPLE_KEY, &error),
-            _ => Failure::because(error).in_file(path),
-        };
-        let mut of_axis =
-            vec![Component::shaper(crate::machine::component_shaper(axis, &shaper.config)).map_err(refused)?];
-        if let Some(encoder) = &axis.encoder {
-            let divider = divider(machine, path)?;
-            of_axis.push(Component::pulse_counter(divider, encoder.filter_clocks, encoder.invert).map_err(refused)?);
-        }
-        if let Some(pwm) = &axis.pwm {
-            let config =
-                control::pwm_config(pwm, &machine.clock).map_err(|error| Failure::because(error).in_file(path))?;
-            let period_clocks = pwm.period_clocks(&machine.clock);
-            of_axis.push(Component::pwm(config, control::pwm_mode(pwm.mode), period_clocks).map_err(refused)?);
-        }
-        if let Some(control) = control {
-            let (settings, law) = (&control.derived.settings, control.derived.law);
-            of_axis.push(Component::sliding_mode(settings, law, axis.modulo).map_err(refused)?);
-        }
-        let named = |component: Component| {
-            let top = format!("{}_{}_{}{COMPONENT_SUFFIX}", machine.name, axis.name, component.name());
-            ComponentBlock::new(component, &top, &axis.name)
-        };
-        components.extend(of_axis.into_iter().map(named));
-    }
-    Ok(components)
-}
-
 /// The small blocks between others, at the machine's sizes where these do not depend on a stage.
-fn parts(machine: &Machine, controllers: &[Option<AxisControl>], path: &Path) -> Result<[Part; 6], Failure> {
-    let first = controllers.iter().flatten().next();
+fn parts(machine: &Machine, hardware: &Hardware<'_>, path: &Path) -> Result<[Part; 6], Failure> {
+    let first = hardware.axes().iter().find_map(|axis| axis.control.as_ref());
     let axes = machine.axes.len().clamp(1, MOST_AXES);
     Ok([
-        Part::TimeBase(divider(machine, path)?),
+        Part::TimeBase(divider(hardware, path)?),
         Part::Schedule(ScheduleConfig::new(SCHEDULE_CLOCKS).map_err(Failure::because)?),
         Part::DividerShare(axes),
         Part::Group(axes),
@@ -185,7 +131,8 @@ fn pwms(machine: &Machine, path: &Path) -> Result<Vec<(PwmConfig, String)>, Fail
         let Some(pwm) = &axis.pwm else {
             continue;
         };
-        let config = control::pwm_config(pwm, &machine.clock).map_err(|error| Failure::because(error).in_file(path))?;
+        let config =
+            hardware::pwm_config(pwm, &machine.clock).map_err(|error| Failure::because(error).in_file(path))?;
         match found.iter_mut().find(|(other, _)| *other == config) {
             Some((_, axes)) => {
                 axes.push_str(", ");
@@ -217,9 +164,8 @@ fn axes(machine: &Machine, has: impl Fn(&Axis) -> bool) -> String {
 }
 
 /// The divider for the machine's tick.
-fn divider(machine: &Machine, path: &Path) -> Result<DividerConfig, Failure> {
-    DividerConfig::new(u64::from(machine.clock.clocks_per_sample()))
-        .map_err(|error| Failure::because(error).in_file(path))
+fn divider(hardware: &Hardware<'_>, path: &Path) -> Result<DividerConfig, Failure> {
+    hardware.divider().map_err(|error| failure(&error, path))
 }
 
 /// A shaper for motion with the first axis's table, at the first size that holds it.

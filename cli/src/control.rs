@@ -1,31 +1,19 @@
 //! The controllers of a machine's axes: the gains that follow from its file, and what is doubtful about them.
 
-use crate::failure::Failure;
-use crate::machine;
 use crate::output;
 use crate::plot::{Curve, Panel};
+use posicast_model::control::DEFAULT_MARGIN;
 use posicast_model::control::sampled::Margins;
-use posicast_model::control::{self, DEFAULT_MARGIN, Derived, NoTravel, Schedule, Supervision};
-use posicast_model::design::{AxisTables, MachineDesign};
+use posicast_model::hardware::{AxisLoop, Hardware};
 use posicast_model::rtl::sliding_mode::{Law, Row};
-use posicast_model::spec::{Axis, Machine, PwmMode};
+use posicast_model::spec::Machine;
 use serde::Serialize;
 use std::collections::BTreeMap;
-use std::path::Path;
 
-/// The controller of one axis.
+/// The controller of one axis, as it is shown.
 pub(crate) struct AxisControl {
     pub(crate) axis: String,
-    pub(crate) lag_s: f64,
-    pub(crate) derived: Derived,
-    /// The words of the axis's supervisor.
-    supervision: Supervision,
-    /// Whether the pins have no pattern for a negative command.
-    one_sided: bool,
-    /// Whether velocity and acceleration are not shaped.
-    one_channel: bool,
-    /// Where the file does not say how far it goes.
-    no_travel: Option<NoTravel>,
+    pub(crate) of_axis: AxisLoop,
 }
 
 /// What is shown of the Nyquist curve, either way: circles are round in a panel.
@@ -37,37 +25,16 @@ const ONE_SIDED: &str = "a half bridge shows a negative command as 0: choose dir
 const ONE_CHANNEL: &str = "the shaper component has the position's channel alone: three take command words of 24 or 32 \
                            bits and delays of at most 4094 samples; the host must give velocity and acceleration shaped";
 
-/// The controllers of the machine that the file at `path` describes: `None` for an axis without.
-pub(crate) fn of_machine(
-    machine: &Machine,
-    design: &MachineDesign,
-    path: &Path,
-) -> Result<Vec<Option<AxisControl>>, Failure> {
-    let of_axis = |(index, (axis, tables)): (usize, (&Axis, &AxisTables))| {
-        let (Some(drive), Some(pwm), Some(_)) = (&axis.drive, &axis.pwm, &axis.controller) else {
-            return Ok(None);
-        };
-        let shaper = machine::shaper(machine, axis, tables).ok();
-        // Without a shaper there is no hardware: its pass counts nothing.
-        let component = shaper.map(|top| machine::component_shaper(axis, &top));
-        let shape_clocks = component.as_ref().map_or(0, |c| c.pass_clocks(c.most_products()));
-        let schedule = Schedule::controlling(shape_clocks);
-        let lag_s = control::loop_lag_s(drive, control::schedule_delay_s(&machine.clock, pwm, schedule.clocks()));
-        let derived = control::gains(axis, machine.clock, lag_s)
-            .map_err(|error| machine::at_key(path, index, &error.key(), &error))?;
-        let supervision = control::supervision(axis, &machine.clock, (&tables.table).into())
-            .map_err(|error| machine::at_key(path, index, error.key(), &error))?;
-        Ok(Some(AxisControl {
+/// The controllers of a machine: `None` for an axis without.
+pub(crate) fn of_machine(machine: &Machine, hardware: &Hardware<'_>) -> Vec<Option<AxisControl>> {
+    let axes = machine.axes.iter().zip(hardware.axes());
+    let controls = axes.map(|(axis, built)| {
+        built.control.clone().map(|of_axis| AxisControl {
             axis: axis.name.clone(),
-            lag_s,
-            derived,
-            supervision,
-            one_sided: pwm.mode == PwmMode::HalfBridge,
-            no_travel: control::no_travel(axis),
-            one_channel: component.is_some_and(|shaper| shaper.channels() == 1),
-        }))
-    };
-    machine.axes.iter().zip(&design.axes).enumerate().map(of_axis).collect()
+            of_axis,
+        })
+    });
+    controls.collect()
 }
 
 impl AxisControl {
@@ -79,11 +46,14 @@ impl AxisControl {
     }
 
     fn warnings(&self) -> Vec<String> {
-        let of_law = self.derived.warnings.iter().map(ToString::to_string);
-        let hardware = [(self.one_sided, ONE_SIDED), (self.one_channel, ONE_CHANNEL)];
+        let of_law = self.of_axis.derived.warnings.iter().map(ToString::to_string);
+        let hardware = [
+            (self.of_axis.is_one_sided, ONE_SIDED),
+            (self.of_axis.is_one_channel, ONE_CHANNEL),
+        ];
         let hardware = hardware.into_iter().filter(|(holds, _)| *holds);
         let hardware = hardware.map(|(_, text)| text.to_owned());
-        let range = self.no_travel.iter().map(ToString::to_string);
+        let range = self.of_axis.no_travel.iter().map(ToString::to_string);
         of_law.chain(hardware).chain(range).collect()
     }
 
@@ -92,14 +62,14 @@ impl AxisControl {
         format!(
             "  controller {}: loop lag {:.1} µs, friction leaves {:.3} µ of error\n  {}\n",
             self.law(),
-            1e6 * self.lag_s,
-            1e6 * self.derived.steady_error,
+            1e6 * self.of_axis.lag_s,
+            1e6 * self.of_axis.derived.steady_error,
             self.margins_text()
         )
     }
 
     fn margins_text(&self) -> String {
-        let margins = &self.derived.margins;
+        let margins = &self.of_axis.derived.margins;
         let figure = |value: Option<f64>, digits: usize, unit: &str| match value {
             Some(value) if value.is_finite() => format!("{value:.digits$} {unit}"),
             _ => "without limit".to_owned(),
@@ -117,7 +87,7 @@ impl AxisControl {
 
     /// The Nyquist curve round −1, with the circle that the default gains stay out of.
     pub(crate) fn nyquist(&self) -> Panel {
-        let curve = self.derived.sampled.nyquist(&self.derived.linear);
+        let curve = self.of_axis.derived.sampled.nyquist(&self.of_axis.derived.linear);
         let [reach_x, reach_y] = NYQUIST_REACH;
         let near = |x: f64, y: f64| x.abs() <= reach_x && y.abs() <= reach_y;
         let points = curve.into_iter().map(|point| (point.open_loop.re, point.open_loop.im));
@@ -162,24 +132,24 @@ impl AxisControl {
     pub(crate) fn json(&self) -> ControlDocument {
         ControlDocument {
             law: self.law(),
-            lag_s: self.lag_s,
-            steady_error: self.derived.steady_error,
-            margins: MarginsDocument::new(&self.derived.margins),
+            lag_s: self.of_axis.lag_s,
+            steady_error: self.of_axis.derived.steady_error,
+            margins: MarginsDocument::new(&self.of_axis.derived.margins),
             settings: Row::ALL
                 .into_iter()
                 .map(|row| SettingDocument {
                     row: format!("{row:?}").to_lowercase(),
-                    value: self.derived.gains.get(row),
-                    word: self.derived.settings.word(row as usize),
+                    value: self.of_axis.derived.gains.get(row),
+                    word: self.of_axis.derived.settings.word(row as usize),
                 })
                 .collect(),
-            supervision: self.supervision.words().into(),
+            supervision: self.of_axis.supervision.words().into(),
             warnings: self.warnings(),
         }
     }
 
     fn law(&self) -> &'static str {
-        match self.derived.law {
+        match self.of_axis.derived.law {
             Law::SlidingMode => "sliding-mode",
             Law::Pd => "pd",
             Law::Pid => "pid",

@@ -8,7 +8,8 @@ use crate::compare;
 use crate::control::{self, AxisControl};
 use crate::failure::Failure;
 use crate::guards;
-use crate::machine::{self, Unfit};
+use crate::hardware;
+use crate::machine;
 use crate::output::{self, Table, percent};
 use crate::plot;
 use crate::tolerance::beyond_tolerance;
@@ -17,6 +18,7 @@ use posicast_model::design::ratios::Class;
 use posicast_model::design::{
     AxisTables, ConvolutionFigures, Findings, MachineDesign, ModeFigures, convolution_figures, design_machine,
 };
+use posicast_model::hardware::{Hardware, HardwareError};
 use posicast_model::spec::{Axis, Machine};
 use posicast_system::output::Outputs;
 use posicast_testbench::wave::write_text;
@@ -84,8 +86,10 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
 
 /// The design of a machine together with its figures at every mode.
 pub(crate) struct Report<'a> {
-    machine: &'a Machine,
+    pub(crate) machine: &'a Machine,
     pub(crate) design: MachineDesign,
+    /// What is built of it.
+    pub(crate) hardware: Hardware<'a>,
     pub(crate) controllers: Vec<Option<AxisControl>>,
 }
 
@@ -93,10 +97,12 @@ impl<'a> Report<'a> {
     /// Designs the shapers of `machine`, which the file at `path` describes.
     pub(crate) fn new(machine: &'a Machine, path: &Path) -> Result<Self, Failure> {
         let design = design_machine(machine).map_err(|e| Failure::because(e).in_file(path))?;
-        let controllers = control::of_machine(machine, &design, path)?;
+        let hardware = Hardware::of(machine, &design).map_err(|error| hardware::failure(&error, path))?;
+        let controllers = control::of_machine(machine, &hardware);
         Ok(Self {
             machine,
             design,
+            hardware,
             controllers,
         })
     }
@@ -116,14 +122,15 @@ impl<'a> Report<'a> {
             .iter()
             .zip(&self.design.axes)
             .zip(&self.controllers)
-            .map(|((axis, tables), control)| AxisReport {
+            .zip(self.hardware.axes())
+            .map(|(((axis, tables), control), built)| AxisReport {
                 axis,
                 tables,
                 in_stage: self.design.stage.is_some(),
                 control: control.as_ref(),
                 modes: tables.mode_figures(axis, self.design.sample_hz),
                 convolution: convolution_figures(axis, &tables.design),
-                fits: machine::shaper(self.machine, axis, tables).map(drop),
+                misfit: built.shaper.as_ref().err(),
             })
     }
 
@@ -163,7 +170,8 @@ struct AxisReport<'a> {
     in_stage: bool,
     modes: Vec<ModeFigures>,
     convolution: ConvolutionFigures,
-    fits: Result<(), Unfit>,
+    /// Why its shaper cannot be built, or not run at the sample rate.
+    misfit: Option<&'a HardwareError>,
     control: Option<&'a AxisControl>,
 }
 
@@ -226,7 +234,7 @@ impl AxisReport<'_> {
                 sample_hz,
                 coefficient_fraction,
                 digitise: self.tables.digitised.method_used.to_string(),
-                fits: self.fits.is_ok(),
+                fits: self.misfit.is_none(),
                 taps: self
                     .tables
                     .table
@@ -294,7 +302,7 @@ impl AxisReport<'_> {
             ]);
         }
         text += &table.text("  ");
-        if let Err(reason) = &self.fits {
+        if let Some(reason) = self.misfit {
             let _ = writeln!(text, "  does not fit: {reason}");
         }
         if let Some(control) = self.control {

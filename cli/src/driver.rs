@@ -1,7 +1,7 @@
 //! What goes with the Verilog in its folder: the C driver, documents of the registers, the FuseSoC core.
 
 use crate::failure::Failure;
-use crate::stage::Stage;
+use crate::hardware::Stage;
 use posicast_hdl::emit::Module;
 use posicast_model::motion::TickLimits;
 use posicast_model::rtl::component::Component;

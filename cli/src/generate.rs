@@ -1,19 +1,15 @@
 //! `posicast generate`: the Verilog of a machine, and what Quartus needs beside it, in a folder of its own.
 
-use crate::blocks;
 use crate::design::Report;
 use crate::driver;
 use crate::failure::Failure;
+use crate::hardware::Built;
 use crate::machine::{self, MachineFile};
 use crate::output;
 use crate::sopc;
-use crate::stage::{self, Stage};
 use posicast_hdl::emit::Module;
-use posicast_hdl::machine::{AxisShaper, emit_machine};
-use posicast_model::spec::Machine;
 use posicast_synth::package::{Committed, Package};
 use posicast_system::scratch;
-use posicast_testbench::blocks::{Block, ComponentBlock};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
@@ -33,14 +29,13 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let report = Report::new(&file.machine, &args.machine)?;
     report.warn();
     let board = sopc::board(&file.machine, &args.machine)?;
-    let shapers = machine::shapers(&file.machine, &report.design, &args.machine)?;
-    let stage = stage::of_machine(&file.machine, &report.design, &args.machine)?;
-    let components = blocks::components(&file.machine, &shapers, &report.controllers, &args.machine)?;
-    let modules = modules(&file.machine, &shapers, &components, stage.as_ref(), &args.machine)?;
+    let built = Built::new(&report, &args.machine)?;
+    let modules = built.modules(&args.machine)?;
     let mut package = open(args.output.as_deref(), &file)?;
     add_sources(&mut package, &file, &modules)?;
-    sopc::add(&mut package, &file.machine, board, stage.as_ref(), &components)?;
-    driver::add(&mut package, &file.machine, &modules, &components, stage.as_ref())?;
+    let (components, stage) = (&built.components, built.stage.as_ref());
+    sopc::add(&mut package, &file.machine, board, stage, components)?;
+    driver::add(&mut package, &file.machine, &modules, components, stage)?;
     package
         .add("report.json", output::json_text(&report.json())?.as_bytes())
         .map_err(Failure::because)?;
@@ -73,25 +68,6 @@ pub(crate) fn tell(committed: &Committed) {
         "removed what an earlier run wrote and this one does not",
         &committed.removed,
     );
-}
-
-/// The Verilog modules of a machine: those of its top, then those of its components, then those of its stage. `path` is the machine
-/// file.
-pub(crate) fn modules(
-    machine: &Machine,
-    shapers: &[AxisShaper],
-    components: &[ComponentBlock],
-    stage: Option<&Stage>,
-    path: &Path,
-) -> Result<Vec<Module>, Failure> {
-    let mut modules = emit_machine(&machine.name, shapers).map_err(Failure::because)?;
-    for component in components {
-        modules.extend(component.modules().map_err(Failure::because)?);
-    }
-    if let Some(stage) = stage {
-        modules.extend(stage.modules(path)?);
-    }
-    Ok(modules)
 }
 
 /// The output folder, by default named after the machine.

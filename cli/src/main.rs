@@ -16,6 +16,7 @@ mod driver;
 mod failure;
 mod generate;
 mod guards;
+mod hardware;
 mod machine;
 mod output;
 mod plot;
@@ -25,7 +26,7 @@ mod reproduce;
 mod run;
 mod simulate;
 mod sopc;
-mod stage;
+
 mod synth;
 mod tolerance;
 mod verify;

@@ -14,11 +14,12 @@ use crate::blocks;
 use crate::command;
 use crate::design::{self, Report as DesignReport};
 use crate::failure::Failure;
+use crate::hardware::Built;
 use crate::machine;
 use crate::plot;
 use crate::simulate::simulate;
 use crate::verify::DEFAULT_SEED;
-use crate::{driver, generate, output, progress, sopc, stage, synth};
+use crate::{driver, generate, output, progress, sopc, synth};
 use closed_loop::ClosedLoop;
 use posicast_hdl::machine::AxisShaper;
 use posicast_model::design::MachineDesign;
@@ -71,17 +72,21 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let design = DesignReport::new(machine, &args.machine)?;
     design.warn();
     let board = sopc::board(machine, &args.machine)?;
-    let shapers = machine::shapers(machine, &design.design, &args.machine)?;
+    let built = Built::new(&design, &args.machine)?;
     let words = command::words(machine, &design.design, args.command.as_deref())?;
     let simulator = Simulator::choose(args.simulator)?;
-    let stage = stage::of_machine(machine, &design.design, &args.machine)?;
-    if stage.is_some() {
+    if built.stage.is_some() {
         closed_loop::announce(simulator, args.command.is_some());
     }
     let yosys = installed_yosys()?;
-    let axes = simulate(machine, &design.design, &shapers, &words)?;
-    let components = blocks::components(machine, &shapers, &design.controllers, &args.machine)?;
-    let modules = generate::modules(machine, &shapers, &components, stage.as_ref(), &args.machine)?;
+    let axes = simulate(machine, &design.design, &built.shapers, &words)?;
+    let modules = built.modules(&args.machine)?;
+    let Built {
+        shapers,
+        components,
+        stage,
+        ..
+    } = built;
     let top = blocks::shapers(machine, shapers, &words)?;
 
     let package = generate::open(args.output.as_deref(), &file)?;

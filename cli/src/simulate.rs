@@ -3,6 +3,7 @@
 use crate::command::{self, Words};
 use crate::design::Report;
 use crate::failure::Failure;
+use crate::hardware;
 use crate::machine;
 use crate::output::{self, Table};
 use posicast_hdl::machine::AxisShaper;
@@ -53,8 +54,9 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     }
     outputs.claim("--output", path).map_err(Failure::because)?;
     output::one_document(&outputs, args.json)?;
-    let design = Report::new(&machine, &args.machine)?.design;
-    let shapers = machine::shapers(&machine, &design, &args.machine)?;
+    let report = Report::new(&machine, &args.machine)?;
+    let shapers = hardware::shapers(&machine, &report.hardware, &args.machine)?;
+    let design = report.design;
     let words = command::words(&machine, &design, args.command.as_deref())?;
     let axes = simulate(&machine, &design, &shapers, &words)?;
     write_wave(&machine, &words, &axes, path)?;

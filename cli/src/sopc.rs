@@ -1,9 +1,9 @@
 //! What `generate` adds for Platform Designer and Quartus: a machine's stage and blocks as components, its system and projects.
 
 use crate::failure::Failure;
+use crate::hardware::Stage;
 use crate::machine;
 use crate::output;
-use crate::stage::Stage;
 use crate::synth;
 use posicast_model::spec::{Axis, Machine};
 use posicast_synth::package::Package;

@@ -3,12 +3,12 @@
 mod clock;
 
 use self::clock::{ClockEstimates, Clocks};
-use crate::blocks::{self, COMPONENT_SUFFIX};
+
 use crate::design::Report;
 use crate::failure::Failure;
+use crate::hardware::{Built, COMPONENT_SUFFIX, STAGE_SUFFIX};
 use crate::output::{self, Table};
-use crate::stage::STAGE_SUFFIX;
-use crate::{generate, machine, progress, stage};
+use crate::{generate, machine, progress};
 use posicast_model::spec::Machine;
 use posicast_synth::package;
 use posicast_synth::yosys::{Block, Estimate, Excess, Family, Resources, Yosys, YosysError};
@@ -144,10 +144,7 @@ fn sources(source: &Path) -> Result<(Machine, Vec<PathBuf>, Option<Folder>), Fai
     }
     let machine = machine::read(source)?.machine;
     let report = Report::new(&machine, source)?;
-    let shapers = machine::shapers(&machine, &report.design, source)?;
-    let stage = stage::of_machine(&machine, &report.design, source)?;
-    let components = blocks::components(&machine, &shapers, &report.controllers, source)?;
-    let modules = generate::modules(&machine, &shapers, &components, stage.as_ref(), source)?;
+    let modules = Built::new(&report, source)?.modules(source)?;
     let (files, scratch) = generate::write_scratch(&modules)?;
     Ok((machine, files, Some(scratch)))
 }

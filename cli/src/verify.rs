@@ -8,8 +8,9 @@ use self::folder::Folder;
 use crate::bench::{self, Bench, Simulator};
 use crate::design::Report as DesignReport;
 use crate::failure::Failure;
+use crate::hardware::Built;
 use crate::output;
-use crate::{blocks, command, generate, machine, replay, stage};
+use crate::{blocks, command, machine, replay};
 use posicast_synth::package;
 use posicast_testbench::blocks::{Block, Sources, StageBlock};
 use posicast_testbench::lockstep::report::{Report, Verdict};
@@ -129,24 +130,20 @@ impl Job {
             (machine::read(source)?.machine, source.to_owned(), None)
         };
         let report = DesignReport::new(&machine, source)?;
-        let design = &report.design;
-        let shapers = machine::shapers(&machine, design, source)?;
         // A move that does not fit the words is an error of `run`; a lock step has its other stimuli.
-        let words = command::words(&machine, design, None).unwrap_or_default();
-        let stage = stage::of_machine(&machine, design, source)?;
+        let words = command::words(&machine, &report.design, None).unwrap_or_default();
+        let built = Built::new(&report, source)?;
         let compared = match &folder {
             Some(contents) => {
-                let components = blocks::components(&machine, &shapers, &report.controllers, &path)?;
-                let modules = generate::modules(&machine, &shapers, &components, stage.as_ref(), &path)?;
-                Some(Folder::compare(source, contents, &modules).map_err(Failure::because)?)
+                Some(Folder::compare(source, contents, &built.modules(&path)?).map_err(Failure::because)?)
             }
             None => None,
         };
         let mut others = match &folder {
-            Some(_) => blocks::of_components(&machine, &shapers, &report.controllers, &path)?,
-            None => blocks::others(&machine, &shapers, &report.controllers, &path)?,
+            Some(_) => blocks::of_components(built.components)?,
+            None => blocks::others(&report, &built.shapers, built.components, &path)?,
         };
-        if let Some(stage) = stage {
+        if let Some(stage) = built.stage {
             let block = StageBlock::new(&stage.of_machine.config, &stage.block.top()).map_err(Failure::because)?;
             if folder.is_some() {
                 others.extend(block.inner().map_err(bench::failure)?);
@@ -158,7 +155,7 @@ impl Job {
             let there = Sources::found(files.clone());
             others.retain(|block| there.hold(block.as_ref()));
         }
-        let mut list: Vec<Box<dyn Block>> = vec![Box::new(blocks::shapers(&machine, shapers, &words)?)];
+        let mut list: Vec<Box<dyn Block>> = vec![Box::new(blocks::shapers(&machine, built.shapers, &words)?)];
         list.extend(others);
         let sources = |block: &dyn Block| match &folder {
             Some(files) => Sources::found(files.clone()).reached_by(block).map_err(bench::failure),

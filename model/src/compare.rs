@@ -45,7 +45,7 @@ pub struct Candidate {
 pub struct Missing {
     /// The kind.
     pub kind: String,
-    /// Why.
+    /// The reason, in words.
     pub reason: String,
 }
 

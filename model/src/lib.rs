@@ -7,6 +7,7 @@
 //! spec ─► design ─► impulses ─► digitise ─► taps ─► rtl::shaper
 //!   │                   └────────────┴────────────► analysis, plant
 //!   └─► control ─► gains ─► rtl::sliding_mode
+//! spec, design ─► hardware: what is built of all that
 //! ```
 
 pub mod analysis;
@@ -14,6 +15,7 @@ pub mod compare;
 pub mod control;
 pub mod design;
 pub mod digitise;
+pub mod hardware;
 pub mod impulse;
 pub mod mode;
 pub mod motion;

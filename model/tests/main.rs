@@ -15,6 +15,7 @@ mod golden_joint;
 mod golden_kinds;
 mod golden_shapers;
 mod golden_xy_stage;
+mod hardware;
 mod hump_limits;
 mod linear_scale;
 mod matching;

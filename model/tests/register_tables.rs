@@ -1,7 +1,7 @@
 //! `docs/register-tables.md` is what the register maps say. `scripts/regenerate` writes it anew.
 
-use posicast_model::control;
 use posicast_model::design::design_machine;
+use posicast_model::hardware;
 use posicast_model::rtl::component::Component;
 use posicast_model::rtl::divider::DividerConfig;
 use posicast_model::rtl::pwm::{ActiveLow, Mode, PwmConfig};
@@ -46,7 +46,7 @@ fn components() -> Result<Vec<Component>, Box<dyn Error>> {
 /// The example's.
 fn stage() -> Result<Component, Box<dyn Error>> {
     let machine = spec::parse("xy-stage.toml", include_str!("../../examples/xy-stage.toml"))?;
-    let stage = control::stage(&machine, &design_machine(&machine)?)?;
+    let stage = hardware::stage(&machine, &design_machine(&machine)?)?;
     Ok(Component::stage(&stage.ok_or("the example has no stage")?.config)?)
 }
 

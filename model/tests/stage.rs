@@ -1,7 +1,7 @@
 //! The stage of a machine file: that its parts fit together.
 
-use posicast_model::control;
 use posicast_model::design::design_machine;
+use posicast_model::hardware;
 use posicast_model::rtl::component::Component;
 use posicast_model::rtl::stage::StageConfig;
 use posicast_model::spec;
@@ -12,7 +12,7 @@ fn stage(tables: &str) -> (StageConfig, Component) {
     let text = text.replacen("[axis.pwm]", &format!("{tables}\n[axis.pwm]"), 1);
     let machine = spec::parse("xy-stage.toml", &text).unwrap();
     let design = design_machine(&machine).unwrap();
-    let config = control::stage(&machine, &design).unwrap().unwrap().config;
+    let config = hardware::stage(&machine, &design).unwrap().unwrap().config;
     let component = Component::stage(&config).unwrap();
     (config, component)
 }

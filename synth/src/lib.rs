@@ -9,7 +9,6 @@ pub mod clock;
 pub mod core_file;
 pub mod driver;
 pub mod package;
-mod process;
 pub mod register_documents;
 pub mod sopc;
 pub mod yosys;

@@ -8,6 +8,7 @@
 //!
 //! - [`scratch`]: temporary folders and files that go when their value does, and also when a signal ends the process.
 //! - [`process`]: programs that run in a process group of their own, so that a program ends together with all that it started.
+//! - [`tool`]: the executables of external tools, and how a run of one came to its end.
 //! - [`interrupt`]: the list of both, and what happens on a signal.
 //! - [`output`]: a file under a name that a user gave: complete or not at all, never in the place of an input, and in the place
 //!   of another file only if posicast wrote that one.
@@ -16,3 +17,4 @@ pub mod interrupt;
 pub mod output;
 pub mod process;
 pub mod scratch;
+pub mod tool;

@@ -1,16 +1,17 @@
 //! Runs external programs: missing and failed are different errors, and a failure keeps the end of the output.
 
-use std::io::{ErrorKind, Read, Seek, SeekFrom};
-use std::path::Path;
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 use std::time::Duration;
 
-use posicast_system::{process, scratch};
+use posicast_system::process;
+use posicast_system::tool::{self, Ended};
 
 use crate::Error;
 
 /// Lines of a failed program's output that an error keeps: the cause is at the end, after the noise.
-const TAIL_LINES: usize = 20;
+const LAST_LINES: usize = 20;
 
 /// An external program: how it is called, what for, and how to get it.
 #[derive(Debug, Clone, Copy)]
@@ -24,26 +25,18 @@ pub(crate) struct Tool {
 
 impl Tool {
     /// The executable: that of the environment variable, else the plain name.
-    pub(crate) fn program(&self) -> String {
-        match std::env::var(self.variable) {
-            Ok(program) if !program.is_empty() => program,
-            _ => self.name.to_owned(),
-        }
+    pub(crate) fn program(&self) -> PathBuf {
+        let found = tool::executables(self.variable, &[self.name]).into_iter().next();
+        found.unwrap_or_else(|| self.name.into())
     }
 
     pub(crate) fn command(&self) -> Command {
-        let mut command = Command::new(self.program());
-        command.stdin(Stdio::null());
-        command
+        tool::command(self.program())
     }
 
-    /// The same, in `folder`, where it also keeps its own temporary files: they go with the folder even if it is killed.
+    /// The same, in `folder`: see [`tool::command_in`].
     pub(crate) fn command_in(&self, folder: &Path) -> Command {
-        let mut command = self.command();
-        let temporary = std::path::absolute(folder);
-        command.current_dir(folder);
-        command.env("TMPDIR", temporary.as_deref().unwrap_or(folder));
-        command
+        tool::command_in(self.program(), folder)
     }
 
     /// Runs to the end and returns the output of a success.
@@ -62,35 +55,24 @@ impl Tool {
         output.map_err(|cause| self.not_started(doing, &cause))
     }
 
-    /// What a success printed on standard output; none if it did not end within `limit`, and was stopped.
+    /// What a success printed; none if it did not end within `limit`, and was stopped.
     pub(crate) fn run_within(
         &self,
         command: &mut Command,
         doing: &'static str,
         limit: Duration,
     ) -> Result<Option<String>, Error> {
-        let failed = |cause: std::io::Error| self.not_started(doing, &cause);
-        // A file, not a pipe: nobody has to read while it runs.
-        let mut log = scratch::unnamed().map_err(failed)?;
-        command.stdout(log.try_clone().map_err(failed)?).stderr(Stdio::null());
-        let ended = process::start(command).and_then(|running| running.wait_within(limit));
-        let Some(status) = ended.map_err(failed)? else {
-            return Ok(None);
-        };
-        let mut printed = String::new();
-        log.seek(SeekFrom::Start(0))
-            .and_then(|_| log.read_to_string(&mut printed))
-            .map_err(failed)?;
-        if status.success() {
-            return Ok(Some(printed));
+        match tool::run_within(command, limit).map_err(|cause| self.not_started(doing, &cause))? {
+            Ended::Well(printed) => Ok(Some(printed)),
+            Ended::Badly { status, printed } => Err(self.failed(doing, status.to_string(), &printed)),
+            Ended::TimeOut => Ok(None),
         }
-        Err(self.failed(doing, status.to_string(), &printed))
     }
 
     pub(crate) fn not_started(&self, doing: &'static str, cause: &std::io::Error) -> Error {
         if cause.kind() == ErrorKind::NotFound {
             return Error::ToolMissing {
-                tool: self.program(),
+                tool: self.program().display().to_string(),
                 purpose: self.purpose,
                 remedy: self.remedy,
             };
@@ -100,10 +82,10 @@ impl Tool {
 
     pub(crate) fn failed(&self, doing: &'static str, status: String, output: &str) -> Error {
         Error::ToolFailed {
-            tool: self.program(),
+            tool: self.program().display().to_string(),
             doing,
             status,
-            output: tail(output),
+            output: tool::last_lines(output, LAST_LINES),
         }
     }
 }
@@ -113,16 +95,6 @@ pub(crate) fn text(output: &Output) -> String {
     let mut text = String::from_utf8_lossy(&output.stdout).into_owned();
     text.push_str(&String::from_utf8_lossy(&output.stderr));
     text
-}
-
-fn tail(text: &str) -> String {
-    let lines: Vec<&str> = text.lines().collect();
-    let from = lines.len().saturating_sub(TAIL_LINES);
-    let mut tail = lines[from..].join("\n");
-    if from > 0 {
-        tail.insert_str(0, &format!("… {from} lines before\n"));
-    }
-    tail
 }
 
 #[cfg(test)]
@@ -161,16 +133,6 @@ mod tests {
                 .unwrap_err()
                 .to_string()
                 .contains("why")
-        );
-    }
-
-    #[test]
-    fn unit_only_the_end_of_a_long_output_is_kept() {
-        let long: String = (0..100).map(|n| format!("line {n}\n")).collect();
-        let kept = tail(&long);
-        assert!(
-            kept.starts_with("… 80 lines before\nline 80\n") && kept.ends_with("line 99"),
-            "{kept}"
         );
     }
 }

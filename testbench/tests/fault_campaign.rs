@@ -4,8 +4,9 @@
 
 use std::thread;
 
-use posicast_model::control::{self, Supervision};
+use posicast_model::control::Supervision;
 use posicast_model::design::design_machine;
+use posicast_model::hardware;
 use posicast_model::motion::{TickLimits, plan_move};
 use posicast_model::plant::axis::{AxisPlant, PlantOptions};
 use posicast_model::rtl::axis::Cause;
@@ -116,7 +117,7 @@ fn unit_a_line_that_is_stuck_stops_the_machine_without_a_following_error() {
 /// Each line, at each level, stuck at full speed.
 fn stuck_lines_stop(machine: &Machine) {
     let design = design_machine(machine).unwrap();
-    let stage = control::stage(machine, &design).unwrap().unwrap();
+    let stage = hardware::stage(machine, &design).unwrap().unwrap();
     let watched = stage.config.axes[0].supervision;
     assert_eq!((watched.following_error_limit, watched.lost_ticks), (0, 100));
     let component = Component::stage(&stage.config).unwrap();

@@ -1,6 +1,6 @@
 //! The mutation rung on small blocks: no mutant stays unknown; and it says so where stimuli see nothing.
 
-use posicast_model::{control, design::design_machine, spec};
+use posicast_model::{design::design_machine, hardware, spec};
 use posicast_testbench::blocks::{Block, Part, PartBlock};
 use posicast_testbench::mutation::{Fate, INSIDE, Mutant, Options, Subject, named, run, run_with};
 
@@ -68,7 +68,7 @@ fn mutate_equal_seeds_choose_equal_mutants_and_others_do_not() {
 #[test]
 fn mutate_every_named_mutant_inside_the_stage_is_found() {
     let machine = spec::parse("xy-stage.toml", include_str!("../../examples/xy-stage.toml")).unwrap();
-    let stage = control::stage(&machine, &design_machine(&machine).unwrap());
+    let stage = hardware::stage(&machine, &design_machine(&machine).unwrap());
     let config = stage.unwrap().unwrap().config;
     for mutant in INSIDE {
         let found = mutant.hunt(&config, "xy_stage_stage", 1_000_000, 1).unwrap();

@@ -2,8 +2,8 @@
 
 use crate::support;
 
-use posicast_model::control::{self, MachineStage};
 use posicast_model::design::design_machine;
+use posicast_model::hardware::{self, MachineStage};
 use posicast_model::motion::{TickLimits, plan_move};
 use posicast_model::plant::axis::{AxisPlant, PlantOptions};
 use posicast_model::rtl::component::Component;
@@ -32,7 +32,7 @@ fn machine() -> Machine {
 }
 
 fn stage(machine: &Machine) -> MachineStage {
-    control::stage(machine, &design_machine(machine).unwrap())
+    hardware::stage(machine, &design_machine(machine).unwrap())
         .unwrap()
         .unwrap()
 }

@@ -1,7 +1,7 @@
 //! A stage with linear scales and what is there for bringing it up: Verilog beside model, on the simulated machine.
 
-use posicast_model::control;
 use posicast_model::design::design_machine;
+use posicast_model::hardware;
 use posicast_model::motion::{TickLimits, plan_move};
 use posicast_model::plant::axis::{AxisPlant, PlantOptions};
 use posicast_model::rtl::component::Component;
@@ -30,7 +30,7 @@ fn machine() -> Machine {
 }
 
 fn bench(machine: &Machine, with_rtl: bool) -> StageBench {
-    let stage = control::stage(machine, &design_machine(machine).unwrap());
+    let stage = hardware::stage(machine, &design_machine(machine).unwrap());
     let stage = stage.unwrap().unwrap();
     let component = Component::stage(&stage.config).unwrap();
     let device = with_rtl.then(|| {

@@ -1,8 +1,8 @@
 //! What a stage refuses, and what it waits for: the sign of its feedback with the drive on, a PWM out of step, an interrupt
 //! that nobody can end.
 
-use posicast_model::control;
 use posicast_model::design::design_machine;
+use posicast_model::hardware;
 use posicast_model::motion::{TickLimits, plan_move};
 use posicast_model::plant::axis::{AxisPlant, PlantOptions};
 use posicast_model::rtl::component::Component;
@@ -20,7 +20,7 @@ fn bench(invert: bool) -> StageBench {
     let encoder = format!("[axis.encoder]\ninvert = {invert}");
     let text = text.replacen("[axis.encoder]", &encoder, 1);
     let machine = spec::parse("xy-stage.toml", &text).unwrap();
-    let stage = control::stage(&machine, &design_machine(&machine).unwrap());
+    let stage = hardware::stage(&machine, &design_machine(&machine).unwrap());
     let stage = stage.unwrap().unwrap();
     let component = Component::stage(&stage.config).unwrap();
     let plant = |axis| AxisPlant::new(axis, &machine.clock, &PlantOptions::default()).unwrap();

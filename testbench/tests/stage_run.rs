@@ -1,7 +1,7 @@
 //! The closed loop of `run`: what is expected of a move, and what the stage makes of it.
 
-use posicast_model::control::{self, MachineStage};
 use posicast_model::design::design_machine;
+use posicast_model::hardware::{self, MachineStage};
 use posicast_model::rtl::shaper::{Motion, ShaperConfig};
 use posicast_model::rtl::sliding_mode::Row;
 use posicast_model::spec::{self, Machine};
@@ -18,7 +18,7 @@ fn machine(text: &str) -> Machine {
 }
 
 fn stage(machine: &Machine) -> MachineStage {
-    control::stage(machine, &design_machine(machine).unwrap())
+    hardware::stage(machine, &design_machine(machine).unwrap())
         .unwrap()
         .unwrap()
 }

@@ -5,8 +5,8 @@ use posicast_hdl::{
     axis, cascade, component, divider, drive_command, encoder_generator, excitation, linear_scale, pulse_counter, pwm,
     registers, segments, shaper, sliding_mode, trace,
 };
-use posicast_model::control;
 use posicast_model::design::design_machine;
+use posicast_model::hardware;
 use posicast_model::rtl::cascade::CascadeConfig;
 use posicast_model::rtl::component::Component;
 use posicast_model::rtl::divider::DividerConfig;
@@ -178,7 +178,7 @@ fn stage(size: &'static str, traces: &str) -> Result<Row, Box<dyn Error>> {
     let controller = "[axis.controller]";
     let file = include_str!("../../../examples/xy-stage.toml").replace(controller, &format!("{traces}{controller}"));
     let machine = spec::parse("xy-stage.toml", &file)?;
-    let stage = control::stage(&machine, &design_machine(&machine)?)?.ok_or("the example has no stage")?;
+    let stage = hardware::stage(&machine, &design_machine(&machine)?)?.ok_or("the example has no stage")?;
     Ok(Row {
         block: STAGE,
         size,

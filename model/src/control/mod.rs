@@ -26,7 +26,6 @@ mod linear;
 mod reach;
 pub mod sampled;
 mod schedule;
-mod stage;
 mod supervision;
 mod supervision_error;
 
@@ -37,7 +36,6 @@ pub use law::{COMMAND_FRACTION, FloatController, Gains, Response, Tracking};
 pub use linear::DEFAULT_MARGIN;
 pub use reach::{NoTravel, TableBounds, no_travel};
 pub use schedule::{CAPTURE_CLOCKS, Schedule, ScheduleError, schedule_delay_s};
-pub use stage::{MachineStage, MachineStageError, pwm_config, pwm_mode, stage};
 pub use supervision::{Supervision, supervision};
 pub use supervision_error::SupervisionError;
 

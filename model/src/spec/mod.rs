@@ -209,6 +209,11 @@ pub(crate) const DEFAULT_CHEBYSHEV_ORDER: u32 = 3;
 const DEFAULT_VIBRATIONLESS_ORDER: u32 = 2;
 
 impl Axis {
+    /// Whether the axis has more than a shaper.
+    pub fn has_loop(&self) -> bool {
+        self.encoder.is_some() || self.pwm.is_some() || self.controller.is_some()
+    }
+
     /// Counts per metre (or radian) of the counter that the position loop runs on: commands, errors and distances of the
     /// hardware are in its counts. The encoder's, or the scale's where that is the position.
     pub fn loop_counts_per_unit(&self) -> f64 {

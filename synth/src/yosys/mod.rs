@@ -30,6 +30,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
+use posicast_system::tool;
 use serde::Serialize;
 
 /// What a design costs.
@@ -170,13 +171,13 @@ pub struct Yosys {
 }
 
 impl Yosys {
-    /// That of the search path.
+    /// The one that the environment variable `POSICAST_YOSYS` names, else that of the search path.
     ///
     /// # Errors
     /// [`YosysError::Missing`], or what its start failed with.
     pub fn installed() -> Result<Self, YosysError> {
-        for program in PROGRAMS {
-            match Self::at(Path::new(program)) {
+        for program in tool::executables("POSICAST_YOSYS", &PROGRAMS) {
+            match Self::at(&program) {
                 Err(YosysError::Missing(_)) => {}
                 found => return found,
             }

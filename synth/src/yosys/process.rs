@@ -5,10 +5,13 @@ use std::fs;
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 
+use posicast_system::tool::{self, Ended};
 use posicast_system::{interrupt, scratch};
 
 use super::{Yosys, YosysError};
-use crate::process::{self, Ended};
+
+/// Lines of what it printed that an error repeats.
+const LAST_LINES: usize = 8;
 
 impl Yosys {
     /// As [`run_in`](Yosys::run_in), in a scratch folder of its own.
@@ -28,16 +31,17 @@ impl Yosys {
         let mut all = vec![OsStr::new("-q")];
         all.extend(arguments);
         all.extend(sources.iter().map(|file| file.as_os_str()));
-        let ended = process::run(&self.program, folder, "yosys.log", &all, self.time_limit);
+        let mut command = tool::command_in(&self.program, folder);
+        let ended = tool::run_within(command.args(all), self.time_limit);
         let ended = ended.map_err(|source| match source.kind() {
             ErrorKind::NotFound => YosysError::Missing(self.program.clone()),
             _ => at(&self.program)(source),
         });
         match ended? {
             Ended::Well(printed) => Ok(printed),
-            Ended::Badly(last_lines) => Err(YosysError::Failed {
+            Ended::Badly { printed, .. } => Err(YosysError::Failed {
                 top: top.to_owned(),
-                last_lines,
+                last_lines: tool::last_lines(&printed, LAST_LINES),
             }),
             Ended::TimeOut => Err(YosysError::TimeOut {
                 top: top.to_owned(),

@@ -1,7 +1,7 @@
 //! The driver of the example's stage in a folder, and C compilers.
 
-use posicast_model::control::{self, MachineStage};
 use posicast_model::design::design_machine;
+use posicast_model::hardware::{self, MachineStage};
 use posicast_model::motion::TickLimits;
 use posicast_model::rtl::component::Component;
 use posicast_model::spec::{self, Machine};
@@ -26,7 +26,7 @@ pub(crate) fn traced_machine() -> Machine {
 
 /// Its stage.
 pub(crate) fn stage(machine: &Machine) -> MachineStage {
-    control::stage(machine, &design_machine(machine).unwrap())
+    hardware::stage(machine, &design_machine(machine).unwrap())
         .unwrap()
         .unwrap()
 }

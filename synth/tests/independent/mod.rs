@@ -3,8 +3,8 @@
 //!
 //! They are Python, in `.venv` of the repository, which `scripts/install-tools` makes.
 
-use posicast_model::control;
 use posicast_model::design::design_machine;
+use posicast_model::hardware;
 use posicast_model::rtl::component::Component;
 use posicast_model::rtl::pwm::{ActiveLow, Mode, PwmConfig};
 use posicast_model::rtl::registers::{Access, Field, RegisterMap};
@@ -48,7 +48,7 @@ fn output(command: &mut Command) -> String {
 
 fn stage() -> Component {
     let machine = spec::parse("xy-stage.toml", include_str!("../../../examples/xy-stage.toml")).unwrap();
-    let stage = control::stage(&machine, &design_machine(&machine).unwrap()).unwrap();
+    let stage = hardware::stage(&machine, &design_machine(&machine).unwrap()).unwrap();
     Component::stage(&stage.unwrap().config).unwrap()
 }
 

@@ -3,8 +3,8 @@
 use crate::pins::encoder;
 use crate::{TICK_CLOCKS, Whole};
 use posicast_hdl::component::emit;
-use posicast_model::control;
 use posicast_model::design::design_machine;
+use posicast_model::hardware;
 use posicast_model::rtl::component::Component;
 use posicast_model::rtl::segments::{Entry, Motion};
 use posicast_model::rtl::stage::StageConfig;
@@ -14,7 +14,7 @@ use std::collections::HashMap;
 /// The example's.
 pub(crate) fn config() -> StageConfig {
     let machine = spec::parse("xy-stage.toml", include_str!("../../../examples/xy-stage.toml")).unwrap();
-    let stage = control::stage(&machine, &design_machine(&machine).unwrap());
+    let stage = hardware::stage(&machine, &design_machine(&machine).unwrap());
     stage.unwrap().unwrap().config
 }
 

@@ -23,7 +23,7 @@ pub struct Hole {
     pub module: String,
     /// `line`, `toggle` or `bin`.
     pub kind: &'static str,
-    /// Which.
+    /// The point of coverage that is meant.
     pub what: String,
 }
 
@@ -86,7 +86,7 @@ impl Explanation {
         }
     }
 
-    /// Why.
+    /// Why the point cannot be reached, or need not be.
     pub fn reason(&self) -> &str {
         &self.reason
     }

@@ -55,7 +55,7 @@ pub enum Kind {
 /// A row of the table.
 #[derive(Debug, Clone, Copy)]
 pub struct Row {
-    /// Which.
+    /// The kind of the fault.
     pub kind: Kind,
     /// Its name in reports.
     pub name: &'static str,

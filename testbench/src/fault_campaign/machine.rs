@@ -9,8 +9,8 @@
 //! | scale | none | on both axes, compared with the motor | so that its trip is tested |
 //! | monitors | off | all | they are what is tested |
 
-use posicast_model::control::{self, MachineStage};
 use posicast_model::design::design_machine;
+use posicast_model::hardware::{self, MachineStage};
 use posicast_model::plant::axis::{AxisPlant, PlantOptions};
 use posicast_model::rtl::component::Component;
 use posicast_model::spec::{self, Axis, Limits, Machine, Scale, ScaleUse};
@@ -82,7 +82,7 @@ impl Bed {
             change(axis);
         }
         let design = design_machine(&machine).map_err(|error| failed(error.to_string()))?;
-        let stage = control::stage(&machine, &design).map_err(|error| failed(error.to_string()))?;
+        let stage = hardware::stage(&machine, &design).map_err(|error| failed(error.to_string()))?;
         let stage = stage.ok_or_else(|| failed("it has an axis without a loop".to_owned()))?;
         let component = Component::stage(&stage.config).map_err(|error| failed(error.to_string()))?;
         Ok(Self {

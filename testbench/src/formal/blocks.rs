@@ -3,8 +3,8 @@
 use posicast_hdl::{
     cascade, component, divider, encoder_generator, excitation, linear_scale, registers, setting_banks,
 };
-use posicast_model::control;
 use posicast_model::design::design_machine;
+use posicast_model::hardware;
 use posicast_model::rtl::cascade::{self as cascade_model, CascadeConfig};
 use posicast_model::rtl::component::Component;
 use posicast_model::rtl::divider::{self as divider_model, DividerConfig};
@@ -49,7 +49,7 @@ pub(super) fn tasks() -> Result<Vec<Task>, Error> {
 fn stage() -> Result<(Settings, Component), Error> {
     let machine = spec::parse("xy-stage.toml", STAGE).map_err(refused)?;
     let designs = design_machine(&machine).map_err(refused)?;
-    let stage = control::stage(&machine, &designs).map_err(refused)?;
+    let stage = hardware::stage(&machine, &designs).map_err(refused)?;
     let config = stage.ok_or_else(|| refused("the example has no stage"))?.config;
     let axis = config.axes.first().ok_or_else(|| refused("the example has no axis"))?;
     Ok((axis.settings, Component::stage(&config).map_err(refused)?))

@@ -2,9 +2,10 @@
 //! is sampled ([`SampledLoop`]). The stage, its fixed-point words and the simulated pins are not in it, so that the two are
 //! witnesses against each other. `docs/closed-loop.md` derives the bounds.
 
+use posicast_model::control::Derived;
 use posicast_model::control::sampled::{Limits, SampledLoop};
-use posicast_model::control::{self, Derived};
 use posicast_model::design::design_machine;
+use posicast_model::hardware;
 use posicast_model::rtl::segments::{Integrator, Motion};
 use posicast_model::spec::{Axis, DriveMode, Machine, PwmMode};
 use posicast_model::taps::TapTable;
@@ -82,7 +83,7 @@ pub(super) fn of_move(
 ) -> Result<Vec<Expected>, StageRunError> {
     let machine = run.machine;
     let design = design_machine(machine).map_err(|error| StageRunError::Design(Box::new(error)))?;
-    let Some(stage) = control::stage(machine, &design)? else {
+    let Some(stage) = hardware::stage(machine, &design)? else {
         return Ok(Vec::new());
     };
     let ticks = moves::settle_ticks(run);

@@ -16,8 +16,8 @@ mod figures;
 mod host;
 mod moves;
 
-use posicast_model::control::{self, MachineStageError};
 use posicast_model::design::design_machine;
+use posicast_model::hardware::{self, MachineStageError};
 use posicast_model::motion::{PlanError, ProfileError};
 use posicast_model::plant::axis::{AxisPlant, AxisPlantError, PlantOptions};
 use posicast_model::rtl::component::Component;
@@ -148,7 +148,7 @@ impl<'a> StageRun<'a> {
             ..machine.clone()
         };
         let design = design_machine(&other).map_err(|error| StageRunError::Design(Box::new(error)))?;
-        let stage = control::stage(&other, &design)?;
+        let stage = hardware::stage(&other, &design)?;
         stage.map(|stage| Self::new(machine, &stage.config, seed)).transpose()
     }
 

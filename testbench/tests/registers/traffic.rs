@@ -3,8 +3,8 @@
 //!
 //! Proptest writes the traffic, so that a failure comes with a short one. `PROPTEST_CASES` asks for more cases.
 
-use posicast_model::control;
 use posicast_model::design::design_machine;
+use posicast_model::hardware;
 use posicast_model::rtl::Direction;
 use posicast_model::rtl::component::Component;
 use posicast_model::rtl::divider::DividerConfig;
@@ -281,7 +281,7 @@ fn stage() -> Bed {
     const PERIOD_CLOCKS: u32 = 80;
     let text = include_str!("../../../examples/xy-stage.toml");
     let machine = spec::parse("xy-stage.toml", text).unwrap();
-    let designed = control::stage(&machine, &design_machine(&machine).unwrap()).unwrap();
+    let designed = hardware::stage(&machine, &design_machine(&machine).unwrap()).unwrap();
     let mut config = designed.unwrap().config;
     for axis in &mut config.axes {
         axis.pwm = PwmConfig::new(ActiveLow::default(), 2, 3).unwrap();

@@ -6,8 +6,8 @@ mod verdicts;
 
 use crate::bench::{self, Simulator};
 use crate::failure::Failure;
+use crate::hardware::Stage;
 use crate::progress;
-use crate::stage::Stage;
 use posicast_model::spec::Machine;
 use posicast_testbench::blocks::Sources;
 use posicast_testbench::stage_run::{Circle, Circled, Compared, Expected, Moved, Shaping, StageRun, StageRunError};

@@ -46,7 +46,7 @@ pub struct Point {
 pub struct Entry {
     /// For so many ticks, 1 to 2^24 − 1.
     pub ticks: u32,
-    /// What.
+    /// The motion of the segment.
     pub motion: Motion,
     /// Tell the host when it has ended.
     pub notify: bool,

@@ -1,6 +1,8 @@
 //! The stage of a machine: what its file says of the axes, as the hardware is built from it.
 
-use super::{ControlError, Derived, Supervision, SupervisionError, gains, loop_lag_s, schedule_delay_s, supervision};
+use crate::control::{
+    ControlError, Derived, Supervision, SupervisionError, gains, loop_lag_s, schedule_delay_s, supervision,
+};
 use crate::design::MachineDesign;
 use crate::rtl::divider::{DividerConfig, DividerConfigError};
 use crate::rtl::linear_scale::{ScaleRatio, ScaleRatioError};
@@ -21,6 +23,18 @@ pub struct MachineStage {
     pub derived: Vec<Derived>,
 }
 
+impl MachineStage {
+    /// The axis whose name clashes: the first without which, under another name, the stage `builds`.
+    pub fn clashing_axis(&self, builds: impl Fn(&StageConfig) -> bool) -> usize {
+        let renamed = |axis: &usize| {
+            let mut config = self.config.clone();
+            config.axes[*axis].name = "posicast".to_owned();
+            builds(&config)
+        };
+        (0..self.config.axes.len()).find(renamed).unwrap_or(0)
+    }
+}
+
 /// Why a machine has no stage. `axis` counts from 0.
 #[derive(Debug, thiserror::Error)]
 pub enum MachineStageError {
@@ -30,49 +44,49 @@ pub enum MachineStageError {
     /// A shaper.
     #[error("axis {axis}: {error}; a stage shapes position, velocity and acceleration")]
     Shaper {
-        /// Which.
+        /// Index of the axis, from 0.
         axis: usize,
-        /// Why.
+        /// The reason.
         error: ShaperConfigError,
     },
     /// A PWM.
     #[error("{error}")]
     Pwm {
-        /// Which.
+        /// Index of the axis, from 0.
         axis: usize,
-        /// Why.
+        /// The reason.
         error: PwmConfigError,
     },
     /// A scale.
     #[error("axis {axis}: {error}")]
     Scale {
-        /// Which.
+        /// Index of the axis, from 0.
         axis: usize,
-        /// Why.
+        /// The reason.
         error: ScaleRatioError,
     },
     /// A trace memory.
     #[error("axis {axis}: {error}")]
     Trace {
-        /// Which.
+        /// Index of the axis, from 0.
         axis: usize,
-        /// Why.
+        /// The reason.
         error: TraceConfigError,
     },
     /// A controller.
     #[error("{error}")]
     Control {
-        /// Which.
+        /// Index of the axis, from 0.
         axis: usize,
-        /// Why.
+        /// The reason.
         error: ControlError,
     },
     /// A supervisor.
     #[error("{error}")]
     Supervision {
-        /// Which.
+        /// Index of the axis, from 0.
         axis: usize,
-        /// Why.
+        /// The reason.
         error: SupervisionError,
     },
 }

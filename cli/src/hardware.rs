@@ -1,0 +1,116 @@
+//! What is built for a machine, as blocks with Verilog: the shapers of its top module, its components, its stage.
+
+use crate::design::Report;
+use crate::failure::Failure;
+use crate::machine::at_key;
+use crate::output;
+use posicast_hdl::emit::Module;
+use posicast_hdl::machine::{AxisShaper, emit_machine};
+use posicast_model::hardware::{Hardware, HardwareError, MachineStage, NAME_KEY};
+use posicast_model::rtl::component::Component;
+use posicast_model::rtl::stage::StageConfig;
+use posicast_model::spec::Machine;
+use posicast_testbench::blocks::{Block, ComponentBlock};
+use std::path::Path;
+
+/// What the name of a component's top module ends with.
+pub(crate) const COMPONENT_SUFFIX: &str = "_avalon";
+/// What the name of a stage's top module ends with.
+pub(crate) const STAGE_SUFFIX: &str = "_stage";
+
+/// The hardware of a machine.
+pub(crate) struct Built<'a> {
+    machine: &'a Machine,
+    /// The shaper of each axis in the top module.
+    pub(crate) shapers: Vec<AxisShaper>,
+    /// The blocks of the axes as components, ready for a system with a processor. Their top modules are
+    /// `<machine>_<axis>_<block>_avalon`.
+    pub(crate) components: Vec<ComponentBlock>,
+    /// All axes behind one agent, where every loop is complete.
+    pub(crate) stage: Option<Stage>,
+}
+
+/// A stage: from the machine file, and as hardware.
+pub(crate) struct Stage {
+    /// Its settings, and what was derived for them.
+    pub(crate) of_machine: MachineStage,
+    /// Its top module is `<machine>_stage`.
+    pub(crate) block: ComponentBlock,
+}
+
+/// The failure of a machine file, or of that in a folder, at `path`.
+pub(crate) fn failure(error: &HardwareError, path: &Path) -> Failure {
+    at_key(path, error.axis, &error.key, error)
+}
+
+/// The shaper of each axis in the top module of the machine that the file at `path` describes.
+pub(crate) fn shapers(machine: &Machine, hardware: &Hardware<'_>, path: &Path) -> Result<Vec<AxisShaper>, Failure> {
+    let configs = hardware.shapers().map_err(|error| failure(&error, path))?;
+    let shapers = machine.axes.iter().zip(configs);
+    let shapers = shapers.map(|(axis, config)| AxisShaper {
+        axis: axis.name.clone(),
+        config,
+    });
+    Ok(shapers.collect())
+}
+
+impl<'a> Built<'a> {
+    /// The hardware of a report's machine, which the file at `path` describes. Shapers that do not suit a stage are said as a
+    /// warning: then there is none.
+    pub(crate) fn new(report: &Report<'a>, path: &Path) -> Result<Self, Failure> {
+        let (machine, hardware) = (report.machine, &report.hardware);
+        let refused = |error: HardwareError| failure(&error, path);
+        let shapers = shapers(machine, hardware, path)?;
+        let components = hardware.components().map_err(refused)?.into_iter().map(|one| {
+            let axis = &machine.axes[one.axis].name;
+            let top = format!("{}_{axis}_{}{COMPONENT_SUFFIX}", machine.name, one.component.name());
+            ComponentBlock::new(one.component, &top, axis)
+        });
+        if let Some(reason) = hardware.without_stage() {
+            output::say(&format!(
+                "warning: no stage is built, its blocks are components of their own: {reason}"
+            ));
+        }
+        let stage = hardware.stage().map_err(refused)?.map(|stage| {
+            let axes: Vec<&str> = machine.axes.iter().map(|axis| axis.name.as_str()).collect();
+            let top = format!("{}{STAGE_SUFFIX}", machine.name);
+            Stage {
+                of_machine: stage.of_machine.clone(),
+                block: ComponentBlock::new(stage.component.clone(), &top, &axes.join(", ")),
+            }
+        });
+        Ok(Self {
+            machine,
+            shapers,
+            components: components.collect(),
+            stage,
+        })
+    }
+
+    /// The Verilog modules: those of the machine's top, then those of its components, then those of its stage. `path` is the machine
+    /// file.
+    pub(crate) fn modules(&self, path: &Path) -> Result<Vec<Module>, Failure> {
+        let mut modules = emit_machine(&self.machine.name, &self.shapers).map_err(Failure::because)?;
+        for component in &self.components {
+            modules.extend(component.modules().map_err(Failure::because)?);
+        }
+        if let Some(stage) = &self.stage {
+            modules.extend(stage.modules(path)?);
+        }
+        Ok(modules)
+    }
+}
+
+impl Stage {
+    /// Its Verilog modules. Names of axes that make two modules of one name are an error of the machine file at `path`.
+    fn modules(&self, path: &Path) -> Result<Vec<Module>, Failure> {
+        self.block.modules().map_err(|error| {
+            let modules = |config: &StageConfig| {
+                let component = Component::stage(config).ok()?;
+                ComponentBlock::new(component, &self.block.top(), "").modules().ok()
+            };
+            let axis = self.of_machine.clashing_axis(|config| modules(config).is_some());
+            at_key(path, axis, NAME_KEY, format_args!("{error}; rename the axis"))
+        })
+    }
+}

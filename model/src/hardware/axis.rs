@@ -1,0 +1,202 @@
+//! What is built for one axis: its shaper, the gains of its loop, its components.
+
+use super::{HardwareError, PERIOD_KEY, SAMPLE_KEY, pwm_config, pwm_mode};
+use crate::control::{
+    Derived, NoTravel, Schedule, Supervision, gains, loop_lag_s, no_travel, schedule_delay_s, supervision,
+};
+use crate::design::AxisTables;
+use crate::rtl::component::{Component, ComponentError};
+use crate::rtl::divider::DividerConfig;
+use crate::rtl::shaper::{Motion, ShaperConfig};
+use crate::spec::{Axis, Machine, PwmMode};
+
+/// The shaper of a modulo axis in the top module: its position wraps.
+const MODULO: Motion = Motion {
+    channels: 1,
+    modulo: true,
+};
+
+/// What is built for an axis.
+#[derive(Debug, Clone)]
+pub struct AxisHardware {
+    /// Its shaper in the machine's top module, if that can be built and run at the sample rate.
+    pub shaper: Result<ShaperConfig, HardwareError>,
+    /// Its loop, where it has a controller.
+    pub control: Option<AxisLoop>,
+}
+
+/// The loop of an axis with a controller.
+#[derive(Debug, Clone)]
+pub struct AxisLoop {
+    /// From the position to what the drive does about it, in s.
+    pub lag_s: f64,
+    /// The gains, and what follows of them.
+    pub derived: Derived,
+    /// The words of the axis's supervisor.
+    pub supervision: Supervision,
+    /// Whether the pins have no pattern for a negative command.
+    pub is_one_sided: bool,
+    /// Whether velocity and acceleration are not shaped.
+    pub is_one_channel: bool,
+    /// Where the file does not say how far the axis goes.
+    pub no_travel: Option<NoTravel>,
+}
+
+/// A component, and the axis that it belongs to.
+#[derive(Debug, Clone)]
+pub struct AxisComponent {
+    /// Index of the axis, from 0.
+    pub axis: usize,
+    /// The block behind its registers.
+    pub component: Component,
+}
+
+impl AxisHardware {
+    /// `of_stage` are lag and gains where the axis is part of a stage.
+    pub(super) fn of(
+        machine: &Machine,
+        index: usize,
+        axis: &Axis,
+        tables: &AxisTables,
+        of_stage: Option<(f64, Derived)>,
+    ) -> Result<Self, HardwareError> {
+        let shaper = shaper(machine, index, axis, tables);
+        let control = control(machine, index, axis, tables, shaper.as_ref().ok(), of_stage)?;
+        Ok(Self { shaper, control })
+    }
+
+    /// The components of the axis.
+    pub(super) fn components(
+        &self,
+        axis: &Axis,
+        machine: &Machine,
+        divider: impl Fn() -> Result<DividerConfig, HardwareError>,
+    ) -> Result<Vec<Component>, HardwareError> {
+        let refused = |error: ComponentError| {
+            let key = match &error {
+                ComponentError::Tick(_) => SAMPLE_KEY,
+                ComponentError::Period(_) => PERIOD_KEY,
+                _ => "axis",
+            };
+            HardwareError::new(0, key, error)
+        };
+        let top = self.shaper.as_ref().map_err(Clone::clone)?;
+        let mut components = vec![Component::shaper(component_shaper(axis, top)).map_err(refused)?];
+        if let Some(encoder) = &axis.encoder {
+            let divider = divider()?;
+            components.push(Component::pulse_counter(divider, encoder.filter_clocks, encoder.invert).map_err(refused)?);
+        }
+        if let Some(pwm) = &axis.pwm {
+            let config = pwm_config(pwm, &machine.clock).map_err(|error| HardwareError::new(0, "axis.pwm", error))?;
+            let period_clocks = pwm.period_clocks(&machine.clock);
+            components.push(Component::pwm(config, pwm_mode(pwm.mode), period_clocks).map_err(refused)?);
+        }
+        if let Some(control) = &self.control {
+            let (settings, law) = (&control.derived.settings, control.derived.law);
+            components.push(Component::sliding_mode(settings, law, axis.modulo).map_err(refused)?);
+        }
+        Ok(components)
+    }
+}
+
+/// The shaper of an axis in the machine's top module, or why it cannot be built, or the axis not run at the sample rate.
+fn shaper(machine: &Machine, index: usize, axis: &Axis, tables: &AxisTables) -> Result<ShaperConfig, HardwareError> {
+    let unfit = |key: &str, reason: String| HardwareError::new(index, key, format!("axis `{}`: {reason}", axis.name));
+    let plain = ShaperConfig::new(machine.fixed_point.command_bits, tables.table.clone());
+    let config = match axis.modulo {
+        true => plain.and_then(|config| config.for_motion(MODULO)),
+        false => plain,
+    };
+    let config = config.map_err(|error| unfit("axis.shaper", error.to_string()))?;
+    let available = machine.clock.clocks_per_sample();
+    config
+        .fits(u64::from(available))
+        .map_err(|error| unfit(SAMPLE_KEY, error.to_string()))?;
+    let Some(schedule) = schedule(axis, &config) else {
+        return Ok(config);
+    };
+    schedule.fits(available).map_err(|error| {
+        let step_clocks = pwm_step_clocks(machine);
+        let largest_hz = schedule.largest_sample_hz(machine.clock.frequency_hz, step_clocks);
+        unfit(SAMPLE_KEY, format!("{error}; allowed: up to {largest_hz} Hz"))
+    })?;
+    Ok(config)
+}
+
+/// The shaper of an axis as a component: one with a controller shapes velocity and acceleration too, and can change its
+/// table while it moves, as far as words and ring allow.
+fn component_shaper(axis: &Axis, top: &ShaperConfig) -> ShaperConfig {
+    if axis.controller.is_none() {
+        return top.clone();
+    }
+    let channels = |channels| {
+        let motion = Motion {
+            channels,
+            modulo: axis.modulo,
+        };
+        top.clone().for_motion(motion)
+    };
+    channels(3).or_else(|_| channels(1)).unwrap_or_else(|_| top.clone())
+}
+
+/// What an axis does in a tick; nothing that must be in time where its position is not measured.
+fn schedule(axis: &Axis, top: &ShaperConfig) -> Option<Schedule> {
+    let shaper = component_shaper(axis, top);
+    match (&axis.controller, &axis.encoder) {
+        (Some(_), _) => Some(Schedule::controlling(shaper.pass_clocks(shaper.most_products()))),
+        (None, Some(_)) => Some(Schedule::measuring()),
+        (None, None) => None,
+    }
+}
+
+/// The loop of an axis with a controller: with the lag and the gains of the stage, or else of its components.
+fn control(
+    machine: &Machine,
+    index: usize,
+    axis: &Axis,
+    tables: &AxisTables,
+    top: Option<&ShaperConfig>,
+    of_stage: Option<(f64, Derived)>,
+) -> Result<Option<AxisLoop>, HardwareError> {
+    let (Some(drive), Some(pwm), Some(_)) = (&axis.drive, &axis.pwm, &axis.controller) else {
+        return Ok(None);
+    };
+    let component = top.map(|top| component_shaper(axis, top));
+    let (lag_s, derived) = match of_stage {
+        Some(of_stage) => of_stage,
+        None => {
+            // Without a shaper there is no hardware: its pass counts nothing.
+            let shape_clocks = component.as_ref().map_or(0, |c| c.pass_clocks(c.most_products()));
+            let schedule = Schedule::controlling(shape_clocks);
+            let lag_s = loop_lag_s(drive, schedule_delay_s(&machine.clock, pwm, schedule.clocks()));
+            let derived =
+                gains(axis, machine.clock, lag_s).map_err(|error| HardwareError::new(index, &error.key(), &error))?;
+            (lag_s, derived)
+        }
+    };
+    let supervision = supervision(axis, &machine.clock, (&tables.table).into())
+        .map_err(|error| HardwareError::new(index, error.key(), &error))?;
+    Ok(Some(AxisLoop {
+        lag_s,
+        derived,
+        supervision,
+        is_one_sided: pwm.mode == PwmMode::HalfBridge,
+        is_one_channel: component.is_some_and(|shaper| shaper.channels() == 1),
+        no_travel: no_travel(axis),
+    }))
+}
+
+/// A sample lasts a multiple of so many clocks: every axis's PWM has a whole number of periods in it.
+fn pwm_step_clocks(machine: &Machine) -> u64 {
+    let periods = machine.axes.iter().filter_map(|axis| axis.pwm.as_ref());
+    let periods = periods.map(|pwm| u64::from(pwm.period_clocks(&machine.clock)).max(1));
+    // Each divides the sample, which has at most a million clocks; so does what all of them divide.
+    periods.fold(1, |common, period| common / common_divisor(common, period) * period)
+}
+
+fn common_divisor(a: u64, b: u64) -> u64 {
+    match b {
+        0 => a,
+        _ => common_divisor(b, a % b),
+    }
+}

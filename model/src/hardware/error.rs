@@ -1,0 +1,26 @@
+//! What a machine cannot be built as, and which key of its file is to blame.
+
+use std::fmt;
+
+/// Why a part of a machine cannot be built.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{reason}")]
+pub struct HardwareError {
+    /// Index of the axis that is concerned, from 0.
+    pub axis: usize,
+    /// The key of the machine file to blame, such as `axis.pwm.frequency_hz`.
+    pub key: String,
+    /// The reason and the remedy, in words.
+    pub reason: String,
+}
+
+impl HardwareError {
+    /// The error of a key of an axis.
+    pub(crate) fn new(axis: usize, key: &str, reason: impl fmt::Display) -> Self {
+        Self {
+            axis,
+            key: key.to_owned(),
+            reason: reason.to_string(),
+        }
+    }
+}

