@@ -154,7 +154,7 @@ pub(crate) fn components(
         }
         let named = |component: Component| {
             let top = format!("{}_{}_{}{COMPONENT_SUFFIX}", machine.name, axis.name, component.name());
-            ComponentBlock::new(component, &top, &axis.name)
+            ComponentBlock::new(component, &top, &axis.name).with_prefix(&format!("{}_{}", machine.name, axis.name))
         };
         components.extend(of_axis.into_iter().map(named));
     }

@@ -8,7 +8,7 @@ use crate::machine::{self, MachineFile};
 use crate::output;
 use crate::sopc;
 use crate::stage::{self, Stage};
-use posicast_hdl::emit::Module;
+use posicast_hdl::emit::{Module, add};
 use posicast_hdl::machine::{AxisShaper, emit_machine};
 use posicast_model::spec::Machine;
 use posicast_synth::package::{Committed, Package};
@@ -75,8 +75,8 @@ pub(crate) fn tell(committed: &Committed) {
     );
 }
 
-/// The Verilog modules of a machine: those of its top, then those of its components, then those of its stage. `path` is the machine
-/// file.
+/// The Verilog modules of a machine, each once: those of its top, then those of its components, then those of its stage. `path` is
+/// the machine file.
 pub(crate) fn modules(
     machine: &Machine,
     shapers: &[AxisShaper],
@@ -86,10 +86,10 @@ pub(crate) fn modules(
 ) -> Result<Vec<Module>, Failure> {
     let mut modules = emit_machine(&machine.name, shapers).map_err(Failure::because)?;
     for component in components {
-        modules.extend(component.modules().map_err(Failure::because)?);
+        add(&mut modules, component.modules().map_err(Failure::because)?).map_err(Failure::because)?;
     }
     if let Some(stage) = stage {
-        modules.extend(stage.modules(path)?);
+        add(&mut modules, stage.modules(path)?).map_err(Failure::because)?;
     }
     Ok(modules)
 }

@@ -54,7 +54,7 @@ pub(crate) fn of_machine(machine: &Machine, design: &MachineDesign, path: &Path)
     };
     let axes: Vec<&str> = machine.axes.iter().map(|axis| axis.name.as_str()).collect();
     let top = format!("{}{STAGE_SUFFIX}", machine.name);
-    let block = ComponentBlock::new(component, &top, &axes.join(", "));
+    let block = ComponentBlock::new(component, &top, &axes.join(", ")).with_prefix(&machine.name);
     Ok(Some(Stage { of_machine, block }))
 }
 
@@ -64,7 +64,7 @@ impl Stage {
         self.block.modules().map_err(|error| {
             let modules = |config: &StageConfig| {
                 let component = Component::stage(config).ok()?;
-                ComponentBlock::new(component, &self.block.top(), "").modules().ok()
+                self.block.like(component).modules().ok()
             };
             let axis = clashing(&self.of_machine.config, |config| modules(config).is_some());
             at_key(path, axis, NAME_KEY, format_args!("{error}; rename the axis"))

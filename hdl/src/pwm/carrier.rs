@@ -100,7 +100,7 @@ impl Carrier {
 impl Logic for Carrier {
     #[hdl_gen]
     fn update(&mut self) {
-        comment!("@module pwm_carrier");
+        comment!("@module pwm_carrier${if timed _on_time_base}");
         comment!("@about Position in the period; boundaries.");
         dff_setup!(
             self, clk, position, period_q, lead_q, synced, astray, timed, at_valley, at_peak, valley_q, peak_q,

@@ -58,7 +58,7 @@ impl Timing {
 impl Logic for Timing {
     #[hdl_gen]
     fn update(&mut self) {
-        comment!("@module pwm_timing");
+        comment!("@module pwm_timing_${value dead_time_floor}x${value minimum_pulse_floor}");
         comment!("@about Dead time and minimum pulse, and floors.");
         dff_setup!(self, clk, dead_time_q, minimum_pulse_q);
 

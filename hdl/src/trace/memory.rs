@@ -65,7 +65,7 @@ impl<const A: usize> Default for TraceMemory<A> {
 impl<const A: usize> Logic for TraceMemory<A> {
     #[hdl_gen]
     fn update(&mut self) {
-        comment!("@module trace_memory");
+        comment!("@module trace_memory_${words no_address}");
         comment!("@about The words of the trace, in a ring.");
         dff_setup!(self, clk, pointer, oldest, valid);
         self.ram.clk.next = self.clk.val();
