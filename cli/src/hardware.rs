@@ -4,7 +4,7 @@ use crate::design::Report;
 use crate::failure::Failure;
 use crate::machine::at_key;
 use crate::output;
-use posicast_hdl::emit::Module;
+use posicast_hdl::emit::{Module, add};
 use posicast_hdl::machine::{AxisShaper, emit_machine};
 use posicast_model::hardware::{Hardware, HardwareError, MachineStage, NAME_KEY};
 use posicast_model::rtl::component::Component;
@@ -64,7 +64,7 @@ impl<'a> Built<'a> {
         let components = hardware.components().map_err(refused)?.into_iter().map(|one| {
             let axis = &machine.axes[one.axis].name;
             let top = format!("{}_{axis}_{}{COMPONENT_SUFFIX}", machine.name, one.component.name());
-            ComponentBlock::new(one.component, &top, axis)
+            ComponentBlock::new(one.component, &top, axis).with_prefix(&format!("{}_{axis}", machine.name))
         });
         if let Some(reason) = hardware.without_stage() {
             output::say(&format!(
@@ -76,7 +76,7 @@ impl<'a> Built<'a> {
             let top = format!("{}{STAGE_SUFFIX}", machine.name);
             Stage {
                 of_machine: stage.of_machine.clone(),
-                block: ComponentBlock::new(stage.component.clone(), &top, &axes.join(", ")),
+                block: ComponentBlock::new(stage.component.clone(), &top, &axes.join(", ")).with_prefix(&machine.name),
             }
         });
         Ok(Self {
@@ -87,15 +87,15 @@ impl<'a> Built<'a> {
         })
     }
 
-    /// The Verilog modules: those of the machine's top, then those of its components, then those of its stage. `path` is the machine
+    /// The Verilog modules, each once: those of the machine's top, then those of its components, then those of its stage. `path` is the machine
     /// file.
     pub(crate) fn modules(&self, path: &Path) -> Result<Vec<Module>, Failure> {
         let mut modules = emit_machine(&self.machine.name, &self.shapers).map_err(Failure::because)?;
         for component in &self.components {
-            modules.extend(component.modules().map_err(Failure::because)?);
+            add(&mut modules, component.modules().map_err(Failure::because)?).map_err(Failure::because)?;
         }
         if let Some(stage) = &self.stage {
-            modules.extend(stage.modules(path)?);
+            add(&mut modules, stage.modules(path)?).map_err(Failure::because)?;
         }
         Ok(modules)
     }
@@ -107,7 +107,7 @@ impl Stage {
         self.block.modules().map_err(|error| {
             let modules = |config: &StageConfig| {
                 let component = Component::stage(config).ok()?;
-                ComponentBlock::new(component, &self.block.top(), "").modules().ok()
+                self.block.like(component).modules().ok()
             };
             let axis = self.of_machine.clashing_axis(|config| modules(config).is_some());
             at_key(path, axis, NAME_KEY, format_args!("{error}; rename the axis"))

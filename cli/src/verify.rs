@@ -144,7 +144,9 @@ impl Job {
             None => blocks::others(&report, &built.shapers, built.components, &path)?,
         };
         if let Some(stage) = built.stage {
-            let block = StageBlock::new(&stage.of_machine.config, &stage.block.top()).map_err(Failure::because)?;
+            let block = StageBlock::new(&stage.of_machine.config, &stage.block.top())
+                .map_err(Failure::because)?
+                .with_prefix(&machine.name);
             if folder.is_some() {
                 others.extend(block.inner().map_err(bench::failure)?);
             }

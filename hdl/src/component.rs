@@ -3,37 +3,36 @@
 //! What is in a component and how it is joined says `posicast_model::rtl::component`; here are the modules and the top
 //! around them.
 
-use crate::emit::{Cause, EmitError, Header, Module, connect, print};
+use crate::emit::{EmitError, Header, Module, add, connect};
 use crate::{
     axis, divider, divider_share, drive_command, encoder_generator, excitation, group, linear_scale, pulse_counter,
     pwm, registers, sample_select, schedule, segments, setting_banks, shaper, sliding_mode, time_base, trace,
 };
 use posicast_model::rtl::component::{Block, Component, Joined};
 
-/// All Verilog modules of a component, sub-modules first, the top last. The top is called `name`, the others begin with it.
+/// All Verilog modules of a component, sub-modules first, the top last. The top is called `name`; modules that hold something of
+/// a machine begin with `prefix`: of a component the machine's and axis's names, of a stage the machine's, behind which it
+/// puts those of its axes.
 ///
 /// # Errors
-/// [`EmitError`] where `name` makes no Verilog name.
-pub fn emit(component: &Component, name: &str) -> Result<Vec<Module>, EmitError> {
+/// [`EmitError`] where `name` or `prefix` makes no Verilog name.
+pub fn emit(component: &Component, name: &str, prefix: &str) -> Result<Vec<Module>, EmitError> {
     let map = component.map();
     let header = Header {
         about: format!("{}\nAvalon-MM agent avs_*: see docs/registers.md.", map.about()),
         parameters: registers::parameters(map),
     };
-    joined(component.whole(), name, name, &header)
+    joined(component.whole(), name, prefix, &header)
 }
 
-/// The modules of blocks joined to the module `top`. Modules that are the same for all axes begin with `stage`, and are
-/// there once.
-fn joined(whole: &Joined, top: &str, stage: &str, header: &Header) -> Result<Vec<Module>, EmitError> {
+/// The modules of blocks joined to the module `top`, each once.
+fn joined(whole: &Joined, top: &str, prefix: &str, header: &Header) -> Result<Vec<Module>, EmitError> {
     let mut modules: Vec<Module> = Vec::new();
     let mut tops = Vec::new();
     for block in whole.blocks() {
-        let of_block = self::block(block, if block.is_common() { stage } else { top }, stage)?;
+        let of_block = self::block(block, top, prefix)?;
         tops.extend(of_block.last().cloned());
-        for module in of_block {
-            share(&mut modules, module, top)?;
-        }
+        add(&mut modules, of_block)?;
     }
     modules.push(connect(
         top,
@@ -44,28 +43,8 @@ fn joined(whole: &Joined, top: &str, stage: &str, header: &Header) -> Result<Vec
     Ok(modules)
 }
 
-/// Adds a module, unless it is there: parts that several blocks use, and blocks that several axes do, are one module.
-fn share(modules: &mut Vec<Module>, module: Module, top: &str) -> Result<(), EmitError> {
-    let Some(there) = modules.iter_mut().find(|there| there.name == module.name) else {
-        modules.push(module);
-        return Ok(());
-    };
-    if there.text != module.text {
-        let [kept, other] = [&there.text, &module.text].map(|text| print::without_part_of(text));
-        if kept != other {
-            let cause = Cause::NameCollision {
-                name: module.name.clone(),
-                other: "another module".to_owned(),
-            };
-            return Err(EmitError::new(top, &module.name, cause));
-        }
-        there.text = kept;
-    }
-    Ok(())
-}
-
 /// The modules of one block, its top last.
-fn block(block: &Block, prefix: &str, stage: &str) -> Result<Vec<Module>, EmitError> {
+fn block(block: &Block, top: &str, prefix: &str) -> Result<Vec<Module>, EmitError> {
     match block {
         Block::Registers(map) => Ok(vec![registers::emit(map, prefix)?]),
         Block::Shaper(config) => shaper::emit(config, prefix),
@@ -91,7 +70,8 @@ fn block(block: &Block, prefix: &str, stage: &str) -> Result<Vec<Module>, EmitEr
                 about: format!("Axis {} of the stage, without its registers.", whole.name()),
                 parameters: Vec::new(),
             };
-            joined(whole, &format!("{prefix}_{}", whole.name()), stage, &header)
+            let of_axis = |owner: &str| format!("{owner}_{}", whole.name());
+            joined(whole, &of_axis(top), &of_axis(prefix), &header)
         }
     }
 }

@@ -98,7 +98,16 @@ pub fn simulate(channels: usize) -> Result<Box<dyn ClockedBlock>, SimulationErro
     )?))
 }
 
-/// The Verilog of the share of so many channels: `PREFIX_divider_share`, or `divider_share` where `prefix` is empty.
+/// The name of the module that [`emit`] writes last.
+pub fn name(channels: usize, prefix: &str) -> String {
+    emit::shared_name(prefix, &base_name(channels))
+}
+
+fn base_name(channels: usize) -> String {
+    format!("divider_share_{channels}")
+}
+
+/// The Verilog of the share of so many channels, called as [`name`] says.
 ///
 /// # Errors
 /// [`EmitError`] where `prefix` makes no Verilog name.
@@ -109,7 +118,7 @@ pub fn emit(channels: usize, prefix: &str) -> Result<Vec<Module>, EmitError> {
         meaning: meaning.to_owned(),
     };
     let options = EmitOptions {
-        top: "divider_share".to_owned(),
+        top: base_name(channels),
         prefix: prefix.to_owned(),
         header: Header {
             about: "One divider for all pulse counters: their divisions one after the other.".to_owned(),

@@ -159,13 +159,22 @@ pub fn simulate(axes: usize) -> Result<Box<dyn ClockedBlock>, SimulationError> {
     Ok(Box::new(Simulated::new("group", block(axes), ports(axes))?))
 }
 
-/// The Verilog of the group of so many axes: `PREFIX_group`, or `group` where `prefix` is empty.
+/// The name of the module that [`emit`] writes last.
+pub fn name(axes: usize, prefix: &str) -> String {
+    emit::shared_name(prefix, &base_name(axes))
+}
+
+fn base_name(axes: usize) -> String {
+    format!("group_{axes}")
+}
+
+/// The Verilog of the group of so many axes, called as [`name`] says.
 ///
 /// # Errors
 /// [`EmitError`] where `prefix` makes no Verilog name.
 pub fn emit(axes: usize, prefix: &str) -> Result<Vec<Module>, EmitError> {
     let options = EmitOptions {
-        top: "group".to_owned(),
+        top: base_name(axes),
         prefix: prefix.to_owned(),
         header: Header {
             about: "Axes of a stage: they start in one clock, and one that stops for a fault stops all.".to_owned(),

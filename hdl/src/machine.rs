@@ -4,7 +4,7 @@
 //! `<axis>_<port>`. RustHDL's sizes are types, so a machine of any sizes cannot be one RustHDL block: the top is composed
 //! from the emitted modules' port lists ([`compose`]).
 
-use crate::emit::{EmitError, Header, Instance, Module, Parameter, compose};
+use crate::emit::{EmitError, Header, Instance, Module, Parameter, add, compose};
 use crate::shaper;
 use posicast_model::rtl::shaper::ShaperConfig;
 
@@ -36,9 +36,9 @@ pub fn emit_machine(name: &str, shapers: &[AxisShaper]) -> Result<Vec<Module>, E
     let mut modules = Vec::new();
     let mut tops = Vec::new();
     for shaper in shapers {
-        let mut of_axis = shaper::emit(&shaper.config, &format!("{name}_{}", shaper.axis))?;
+        let of_axis = shaper::emit(&shaper.config, &format!("{name}_{}", shaper.axis))?;
         tops.extend(of_axis.last().cloned());
-        modules.append(&mut of_axis);
+        add(&mut modules, of_axis)?;
     }
     let instances: Vec<_> = shapers
         .iter()

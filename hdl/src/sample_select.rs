@@ -80,13 +80,22 @@ pub fn simulate(word_bits: u32, channels: usize) -> Result<Box<dyn ClockedBlock>
     )?))
 }
 
-/// The selection's Verilog: `PREFIX_sample_select`, or `sample_select` where `prefix` is empty.
+/// The name of the module that [`emit`] writes last.
+pub fn name(word_bits: u32, channels: usize, prefix: &str) -> String {
+    emit::shared_name(prefix, &base_name(word_bits, channels))
+}
+
+fn base_name(word_bits: u32, channels: usize) -> String {
+    format!("sample_select_{word_bits}x{channels}")
+}
+
+/// The selection's Verilog, called as [`name`] says.
 ///
 /// # Errors
 /// [`EmitError`] where `prefix` makes no Verilog name.
 pub fn emit(word_bits: u32, channels: usize, prefix: &str) -> Result<Vec<Module>, EmitError> {
     let options = EmitOptions {
-        top: "sample_select".to_owned(),
+        top: base_name(word_bits, channels),
         prefix: prefix.to_owned(),
         header: Header {
             about: "Samples from the host's registers or from pins, a clock late.".to_owned(),

@@ -54,13 +54,22 @@ pub fn simulate(config: &ScheduleConfig) -> Result<Box<dyn ClockedBlock>, Simula
     Ok(Box::new(Simulated::new("schedule", block, ports())?))
 }
 
-/// The schedule's Verilog: `PREFIX_schedule`, or `schedule` where `prefix` is empty.
+/// The name of the module that [`emit`] writes last.
+pub fn name(config: &ScheduleConfig, prefix: &str) -> String {
+    emit::shared_name(prefix, &base_name(config))
+}
+
+fn base_name(config: &ScheduleConfig) -> String {
+    format!("schedule_{}", config.control_clocks())
+}
+
+/// The schedule's Verilog, called as [`name`] says.
 ///
 /// # Errors
 /// [`EmitError`] where `prefix` makes no Verilog name.
 pub fn emit(config: &ScheduleConfig, prefix: &str) -> Result<Vec<Module>, EmitError> {
     let options = EmitOptions {
-        top: "schedule".to_owned(),
+        top: base_name(config),
         prefix: prefix.to_owned(),
         header: Header {
             about: "Schedule: the controllers start a fixed number of clocks after each tick.".to_owned(),

@@ -56,13 +56,22 @@ pub fn simulate(divider: &DividerConfig) -> Result<Box<dyn ClockedBlock>, Simula
     Ok(Box::new(Simulated::new("time_base", block, ports())?))
 }
 
-/// The time base's Verilog: `PREFIX_time_base`, or `time_base` where `prefix` is empty, with the ticks of `divider`.
+/// The name of the module that [`emit`] writes last.
+pub fn name(divider: &DividerConfig, prefix: &str) -> String {
+    emit::shared_name(prefix, &base_name(divider))
+}
+
+fn base_name(divider: &DividerConfig) -> String {
+    format!("time_base_{}", divider.tick_clocks())
+}
+
+/// The time base's Verilog, with the ticks of `divider`, called as [`name`] says.
 ///
 /// # Errors
 /// [`EmitError`] where `prefix` makes no Verilog name.
 pub fn emit(divider: &DividerConfig, prefix: &str) -> Result<Vec<Module>, EmitError> {
     let options = EmitOptions {
-        top: "time_base".to_owned(),
+        top: base_name(divider),
         prefix: prefix.to_owned(),
         header: Header {
             about: "Time base: a tick every so many clocks, a counter of clocks, a counter of ticks.\n\

@@ -80,7 +80,12 @@ fn unit_every_size_has_the_ports_of_its_model() {
         let top = modules.last().unwrap();
         assert_eq!(top.name, "stage_x_cascade");
         assert_eq!(top.ports, ports(&config));
-        assert!(top.clocked && modules.iter().all(|module| module.name.starts_with("stage_x_")));
+        assert!(
+            top.clocked
+                && modules
+                    .iter()
+                    .all(|module| module.name.starts_with("stage_x_") || module.name.starts_with("posicast_"))
+        );
     }
 }
 

@@ -63,6 +63,6 @@ fn lockstep_everything_at_random() {
 fn unit_the_verilog_has_the_ports_of_the_model() {
     let modules = emit("stage").unwrap();
     let names: Vec<&str> = modules.iter().map(|module| module.name.as_str()).collect();
-    assert_eq!(names, ["stage_pin_register", "stage_drive_command"]);
+    assert_eq!(names, ["posicast_pin_register", "posicast_drive_command"]);
     assert_eq!(modules[1].ports, ports());
 }

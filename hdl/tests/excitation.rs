@@ -46,6 +46,6 @@ fn lockstep_everything_at_random() {
 fn unit_the_verilog_has_the_ports_of_the_model() {
     let modules = emit("stage").unwrap();
     let top = modules.last().unwrap();
-    assert_eq!((modules.len(), top.name.as_str()), (2, "stage_excitation"));
+    assert_eq!((modules.len(), top.name.as_str()), (2, "posicast_excitation"));
     assert_eq!(top.ports, ports());
 }

@@ -37,6 +37,6 @@ fn lockstep_everything_at_random() {
 fn unit_the_verilog_has_the_ports_of_the_model() {
     let modules = emit("stage_x").unwrap();
     let top = modules.last().unwrap();
-    assert_eq!(top.name, "stage_x_sliding_mode");
+    assert_eq!(top.name, "posicast_sliding_mode");
     assert_eq!(top.ports, ports());
 }

@@ -72,7 +72,10 @@ fn unit_the_verilog_has_the_ports_of_the_model() {
     for samples in SAMPLES {
         let modules = emit(&TraceConfig::new(u64::from(samples)).unwrap(), "stage").unwrap();
         let top = modules.last().unwrap();
-        assert_eq!((modules.len(), top.name.as_str()), (5, "stage_trace"));
+        assert_eq!(
+            (modules.len(), top.name.as_str()),
+            (5, format!("posicast_trace_{samples}").as_str())
+        );
         assert_eq!(top.ports, ports());
     }
 }

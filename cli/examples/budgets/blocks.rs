@@ -182,7 +182,7 @@ fn stage(size: &'static str, traces: &str) -> Result<Row, Box<dyn Error>> {
     Ok(Row {
         block: STAGE,
         size,
-        modules: component::emit(&Component::stage(&stage.config)?, "xy")?,
+        modules: component::emit(&Component::stage(&stage.config)?, "xy_stage", "xy")?,
         budget: None,
         note: "",
     })

@@ -214,7 +214,7 @@ reg signed [17:0] steps = 0;
 reg [23:0] elapsed = 0;
 wire signed [31:0] quotient;
 wire done, busy, saturated, overrun;
-xy_stage_stage_divider dut (
+posicast_divider_5000 dut (
     .clk(clk), .rst(rst), .start(start), .steps(steps), .elapsed(elapsed), .clear_flags(clear_flags),
     .quotient(quotient), .done(done), .busy(busy), .saturated(saturated), .overrun(overrun)
 );
@@ -248,7 +248,7 @@ endmodule
 /// Icarus's own recording of the generated divider: VCD or FST, by the name's end.
 fn record_by_icarus(folder: &Path, define: &str, format: &str) -> PathBuf {
     std::fs::write(folder.join("bench.v"), FOREIGN_BENCH).unwrap();
-    let rtl = example("generated/xy_stage/rtl/xy_stage_stage_divider.v");
+    let rtl = example("generated/xy_stage/rtl/posicast_divider_5000.v");
     let run = |program: &str, arguments: &[&str]| {
         let run = Command::new(program)
             .args(arguments)
@@ -270,7 +270,7 @@ fn record_by_icarus(folder: &Path, define: &str, format: &str) -> PathBuf {
 #[test]
 fn cli_replay_takes_what_another_simulator_recorded() {
     let folder = tempfile::tempdir().unwrap();
-    let inside = ["--map", "bench.dut=xy_stage_divider", "--json"];
+    let inside = ["--map", "bench.dut=posicast_divider_5000", "--json"];
     for format in ["vcd", "fst"] {
         let path = record_by_icarus(folder.path(), "PLAIN", format);
         let output = replay(&path, &inside);
@@ -289,7 +289,7 @@ fn cli_replay_takes_what_another_simulator_recorded() {
 fn cli_replay_takes_unknown_inputs_as_low_and_says_so() {
     let folder = tempfile::tempdir().unwrap();
     let path = record_by_icarus(folder.path(), "UNKNOWN", "vcd");
-    let output = replay(&path, &["--map", "bench.dut=xy_stage_divider", "--json"]);
+    let output = replay(&path, &["--map", "bench.dut=posicast_divider_5000", "--json"]);
     let document = json(&output.stdout);
     // Icarus chose for itself; RTL and model, with a 0 there, must still agree.
     assert_eq!(document["blocks"][0]["mismatches"], 0);
@@ -300,7 +300,7 @@ fn cli_replay_takes_unknown_inputs_as_low_and_says_so() {
 fn cli_replay_refuses_a_recording_with_a_hole_and_names_the_remedy() {
     let folder = tempfile::tempdir().unwrap();
     let path = record_by_icarus(folder.path(), "HOLE", "vcd");
-    let output = replay(&path, &["--map", "bench.dut=xy_stage_divider"]);
+    let output = replay(&path, &["--map", "bench.dut=posicast_divider_5000"]);
     assert_eq!(output.status.code(), Some(2), "{}", said(&output));
     let message = said(&output);
     assert!(
@@ -316,7 +316,7 @@ fn cli_replay_of_a_damaged_fst_is_an_error() {
     let whole = std::fs::read(&path).unwrap();
     for kept in [0, 1, whole.len() / 10, whole.len() / 2, whole.len() - 1] {
         std::fs::write(&path, &whole[..kept]).unwrap();
-        let output = replay(&path, &["--map", "bench.dut=xy_stage_divider"]);
+        let output = replay(&path, &["--map", "bench.dut=posicast_divider_5000"]);
         assert_eq!(output.status.code(), Some(2), "{kept} bytes: {}", said(&output));
         assert!(
             said(&output).contains("recorded.fst"),

@@ -18,8 +18,13 @@ fn cli_generate_writes_the_stage_and_verify_of_the_folder_compares_it() {
     let mut generate = posicast();
     generate.arg("generate").arg(example("xy-stage.toml"));
     generate.arg("-o").arg(&output).assert().success();
-    for module in ["stage", "stage_registers", "stage_x", "stage_y_shaper", "stage_axis"] {
-        assert!(output.join(format!("rtl/xy_stage_{module}.v")).is_file(), "{module}");
+    for module in [
+        "xy_stage_stage",
+        "xy_stage_stage_x",
+        "xy_stage_y_tap_banks",
+        "posicast_axis",
+    ] {
+        assert!(output.join(format!("rtl/{module}.v")).is_file(), "{module}");
     }
     let mut verify = posicast();
     verify.arg("verify").arg(&output);

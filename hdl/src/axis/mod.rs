@@ -36,7 +36,7 @@ pub fn simulate() -> Result<Box<dyn ClockedBlock>, SimulationError> {
 
 /// The supervisor's Verilog, one module per file, the top last.
 ///
-/// The top is called `PREFIX_axis`, or `axis` where `prefix` is empty.
+/// The top is called `posicast_axis`, or `axis` where `prefix` is empty.
 ///
 /// # Errors
 /// [`EmitError`] where `prefix` makes no Verilog name.

@@ -19,9 +19,18 @@ pub fn simulate(config: &DividerConfig) -> Result<Box<dyn ClockedBlock>, Simulat
     Ok(Box::new(Simulated::new("divider", block, ports())?))
 }
 
+/// The name of the module that [`emit`] writes last.
+pub fn name(config: &DividerConfig, prefix: &str) -> String {
+    emit::shared_name(prefix, &base_name(config))
+}
+
+fn base_name(config: &DividerConfig) -> String {
+    format!("divider_{}", config.tick_clocks())
+}
+
 /// The divider's Verilog.
 ///
-/// The module is called `PREFIX_divider`, or `divider` where `prefix` is empty.
+/// The module is called as [`name`] says; all names are bare where `prefix` is empty.
 ///
 /// # Errors
 /// [`EmitError`] where `prefix` makes no Verilog name.
@@ -32,7 +41,7 @@ pub fn emit(config: &DividerConfig, prefix: &str) -> Result<Vec<Module>, EmitErr
         meaning: meaning.to_owned(),
     };
     let options = EmitOptions {
-        top: "divider".to_owned(),
+        top: base_name(config),
         prefix: prefix.to_owned(),
         header: Header {
             about: "Velocity: quotient = steps * tick_clocks * 2^16 / elapsed, toward zero, in Q16.16\n\

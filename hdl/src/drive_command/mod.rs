@@ -21,7 +21,7 @@ pub fn simulate() -> Result<Box<dyn ClockedBlock>, SimulationError> {
 
 /// The drive command's Verilog.
 ///
-/// The module is called `PREFIX_drive_command`, or `drive_command` where `prefix` is empty.
+/// The module is called `posicast_drive_command`, or `drive_command` where `prefix` is empty.
 ///
 /// # Errors
 /// [`EmitError`] where `prefix` makes no Verilog name.

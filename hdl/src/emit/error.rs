@@ -48,6 +48,10 @@ pub enum Cause {
         other: String,
     },
 
+    /// Two modules with one name that say different things.
+    #[error("there are two modules `{0}` that differ; name what they differ in, as in `@module history_${{width x}}`")]
+    OtherContent(String),
+
     // Declarations.
     /// Width 0 or above 64.
     #[error("it is {0} bits wide, allowed are 1 to 64; split it")]

@@ -5,11 +5,13 @@
 //! // @dff 8'h05 kept                  a register that its block clocks, resets and keeps without a statement
 //!
 //! // @leaf ram_64x16 reg: read_data   any other: base name of its module, outputs that its text assigns in `always`
+//! // @of_machine                      its contents are a machine's: its name begins with the prefix
 //! // @about One line of the header, repeatable.
 //! reg [15:0] memory [0:63];           the body, between port list and `endmodule`
 //! ```
 //!
-//! A number that follows from a port's width is written as `${..}`, so that the text serves every size: see [`fill`].
+//! A number that follows from a port's width is written as `${..}`, so that the text serves every size: see
+//! [`numbers`](super::numbers).
 
 use super::collect::{Kind, Node};
 use super::error::Cause;
@@ -21,6 +23,8 @@ use rust_hdl_core::prelude::Verilog;
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct Leaf<'a> {
     pub(super) base_name: &'a str,
+    /// Holds contents that belong to one machine.
+    pub(super) of_machine: bool,
     /// Raw names of the outputs declared `reg`.
     pub(super) regs: Vec<&'a str>,
     pub(super) about: Vec<&'a str>,
@@ -84,53 +88,6 @@ pub(super) fn register_text(tag: RegisterTag, ty: Type) -> String {
     format!("// @dff {}'h{:x}{kept}\n", ty.width, tag.initial)
 }
 
-/// The text of the leaf `node` with its numbers, each of which follows from the width of a port:
-///
-/// | in the text | w = width of the port |
-/// |---|---|
-/// | `${width PORT}` | w |
-/// | `${last_bit PORT}` | w − 1 |
-/// | `${words PORT}` | 2^w |
-/// | `${last_word PORT}` | 2^w − 1 |
-/// | `${pattern PORT HEX}` | the bit pattern as a sized literal, w bits wide |
-pub(super) fn fill(text: &str, node: &Node) -> Result<String, Cause> {
-    let mut filled = String::new();
-    let mut rest = text;
-    while let Some((before, from)) = rest.split_once("${") {
-        let (number, after) = from
-            .split_once('}')
-            .ok_or_else(|| Cause::Leaf("a `${` without `}`".to_owned()))?;
-        filled.push_str(before);
-        filled.push_str(&self::number(number, node)?);
-        rest = after;
-    }
-    filled.push_str(rest);
-    Ok(filled)
-}
-
-fn number(text: &str, node: &Node) -> Result<String, Cause> {
-    let wrong = || Cause::Leaf(format!("`${{{text}}}` is no number of a port, or does not fit it"));
-    let mut parts = text.split_whitespace();
-    let (what, port, value) = (parts.next(), parts.next(), parts.next());
-    let port = node.ports().find(|found| Some(found.raw.as_str()) == port);
-    let ty = port.ok_or_else(wrong)?.ty;
-    let words = 1u128 << ty.width;
-    Ok(match (what, value) {
-        (Some("width"), None) => ty.width.to_string(),
-        (Some("last_bit"), None) => (ty.width - 1).to_string(),
-        (Some("words"), None) => words.to_string(),
-        (Some("last_word"), None) => (words - 1).to_string(),
-        (Some("pattern"), Some(value)) => {
-            let pattern = u64::from_str_radix(value, 16)
-                .ok()
-                .filter(|pattern| pattern & !ty.mask() == 0);
-            let digits = ty.width.div_ceil(4) as usize;
-            format!("{}'h{:0digits$x}", ty.width, pattern.ok_or_else(wrong)?)
-        }
-        _ => return Err(wrong()),
-    })
-}
-
 /// The parts of a leaf's text.
 pub(super) fn parse<'a>(text: &'a str, node: &Node) -> Result<Leaf<'a>, Cause> {
     let mut lines = text.lines().map(str::trim_end).peekable();
@@ -144,6 +101,7 @@ pub(super) fn parse<'a>(text: &'a str, node: &Node) -> Result<Leaf<'a>, Cause> {
             return Err(Cause::Leaf(format!("`{name}` after `reg:` is not an output")));
         }
     }
+    let of_machine = lines.next_if_eq(&"// @of_machine").is_some();
     let mut about = Vec::new();
     while let Some(line) = lines.peek().and_then(|line| line.strip_prefix("// @about ")) {
         about.push(line);
@@ -151,6 +109,7 @@ pub(super) fn parse<'a>(text: &'a str, node: &Node) -> Result<Leaf<'a>, Cause> {
     }
     Ok(Leaf {
         base_name: base_name.trim(),
+        of_machine,
         regs,
         about,
         body: lines.collect(),

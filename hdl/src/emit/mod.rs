@@ -9,7 +9,8 @@
 //!   each run. Verilog-2001, clean under `verilator --lint-only -Wall` without waivers, accepted by Icarus and Yosys.
 //! - Clock and reset: all registers of a module are clocked by its input `clk` and reset, synchronously, by its input
 //!   `rst`; the reset value is also the power-up value.
-//! - Sharing: sub-blocks that come out equal, under the same `@module` tag, are one module.
+//! - Sharing: equal sub-blocks are one module. Sub-blocks that come out different have different names, by the sizes that their
+//!   `@module` tags name; anything else is an error, so that a name stands for one content wherever it is used.
 //!
 //! A kernel names its module and describes it with comments, a leaf with the first lines of its text:
 //!
@@ -45,8 +46,10 @@ mod expressions;
 mod flow;
 mod ir;
 mod leaf;
+mod library;
 mod modules;
 pub(crate) mod names;
+mod numbers;
 mod paths;
 pub(crate) mod print;
 mod scope;
@@ -58,6 +61,8 @@ mod values;
 pub use compose::{Instance, compose};
 pub use connect::connect;
 pub use error::{Cause, EmitError};
+pub use library::{add, own_name, shared_name};
+pub use names::LIBRARY;
 pub use types::Type;
 
 use posicast_model::rtl::Port;
@@ -76,12 +81,26 @@ pub struct Module {
     pub clocked: bool,
 }
 
+impl Module {
+    /// Whether it is called `base`, whatever stands before that name, and whatever size behind it: `posicast_handover_32x128_f16`
+    /// is `handover`.
+    pub fn is(&self, base: &str) -> bool {
+        self.name.match_indices(base).any(|(at, _)| {
+            let (before, behind) = (&self.name[..at], &self.name[at + base.len()..]);
+            let size = behind.strip_prefix('_').and_then(|size| size.chars().next());
+            (before.is_empty() || before.ends_with('_'))
+                && (behind.is_empty() || size.is_some_and(|first| first.is_ascii_digit()))
+        })
+    }
+}
+
 /// What [`emit`] needs to know beside the block.
 #[derive(Debug, Clone, Default)]
 pub struct EmitOptions {
-    /// Base name of the top module.
+    /// Base name of the top module; a size that the block has is in it.
     pub top: String,
-    /// What stands before every module's name, joined by `_`; for example the machine's and axis's names. May be empty.
+    /// What stands before the names of modules that hold something of a machine, joined by `_`: the machine's and axis's names.
+    /// All other modules begin with [`LIBRARY`]. Where it is empty all names are bare, as a bench wants them.
     pub prefix: String,
     /// What the top's file says first.
     pub header: Header,

@@ -5,6 +5,7 @@ use super::drivers::{Drivers, unread};
 use super::error::{Cause, EmitError};
 use super::leaf;
 use super::names;
+use super::numbers;
 use super::print::{self, Lines};
 use super::scope::{NetId, Role, Scope};
 use super::statements::{comment_text, statements};
@@ -18,15 +19,21 @@ use std::collections::{BTreeMap, BTreeSet};
 pub(super) struct Modules<'a> {
     options: &'a EmitOptions,
     written: Vec<Module>,
-    /// Name of the module for a tagged name, a header and a body.
-    by_body: BTreeMap<(Option<String>, Vec<String>, String), String>,
-    taken: BTreeSet<String>,
+    /// What each module says, by its name.
+    by_name: BTreeMap<String, Content>,
+    /// Names of the modules that have none of their own, and so that of their first path.
+    untagged: BTreeMap<Content, String>,
 }
+
+/// Header and body of a module.
+type Content = (Vec<String>, String);
 
 /// A module before it has its final name.
 struct Draft {
     /// Base name from the kernel's or the leaf's tag.
     tagged: Option<String>,
+    /// It holds contents of a machine, or a part that does.
+    of_machine: bool,
     about: Vec<String>,
     /// From the port list to `endmodule`.
     body: String,
@@ -34,27 +41,19 @@ struct Draft {
 
 /// Writes `top` and all that is in it.
 pub(super) fn modules(top: &Node, options: &EmitOptions) -> Result<Vec<Module>, EmitError> {
-    let top_name = full_name(options, &options.top);
     let mut modules = Modules {
         options,
         written: Vec::new(),
-        by_body: BTreeMap::new(),
-        taken: BTreeSet::new(),
+        by_name: BTreeMap::new(),
+        untagged: BTreeMap::new(),
     };
-    modules.taken.insert(top_name.clone());
     let draft = modules.draft(top)?;
+    let top_name = names::module_name(&options.prefix, draft.of_machine, &options.top);
+    modules.take(top, &top_name, &draft)?;
     let about: Vec<_> = draft.about.iter().map(String::as_str).collect();
     let header = print::top_header(&top_name, &about, &options.header);
     modules.push(top, top_name, &header, &draft.body);
     Ok(modules.written)
-}
-
-fn full_name(options: &EmitOptions, base: &str) -> String {
-    if options.prefix.is_empty() {
-        base.to_owned()
-    } else {
-        format!("{}_{base}", options.prefix)
-    }
 }
 
 impl Modules<'_> {
@@ -72,7 +71,7 @@ impl Modules<'_> {
 
     fn leaf(&self, node: &Node, text: &str) -> Result<Draft, EmitError> {
         let wrong = |cause| EmitError::new(&node.path, "", cause);
-        let text = leaf::fill(text, node).map_err(wrong)?;
+        let text = numbers::fill(text, node).map_err(wrong)?;
         let leaf = leaf::parse(&text, node).map_err(wrong)?;
         for port in node.ports() {
             let checked = names::check_name(&names::flatten(&port.raw));
@@ -85,6 +84,7 @@ impl Modules<'_> {
         });
         Ok(Draft {
             tagged: Some(leaf.base_name.to_owned()),
+            of_machine: leaf.of_machine,
             about: leaf.about.iter().map(|&line| line.to_owned()).collect(),
             body: lines.text,
         })
@@ -101,8 +101,11 @@ impl Modules<'_> {
         let unread = unread(&bits_read, &node.path, &scope)?;
 
         let mut children = Vec::new();
+        let mut of_machine = false;
         for pins in &scope.pins {
-            children.push(self.child(&node.children[pins.child])?);
+            let (name, is_of_machine) = self.child(&node.children[pins.child])?;
+            children.push(name);
+            of_machine |= is_of_machine;
         }
         let writer = Composite {
             node,
@@ -114,31 +117,45 @@ impl Modules<'_> {
         let tags = Tags::read(kernel, node)?;
         Ok(Draft {
             tagged: tags.module,
+            of_machine,
             about: tags.about,
             body,
         })
     }
 
-    /// Writes the module of a sub-block, or finds the equal one, and gives its name.
-    fn child(&mut self, node: &Node) -> Result<String, EmitError> {
+    /// Writes the module of a sub-block, unless it is there, and gives its name, and whether it is a machine's.
+    fn child(&mut self, node: &Node) -> Result<(String, bool), EmitError> {
         let draft = self.draft(node)?;
-        let key = (draft.tagged.clone(), draft.about.clone(), draft.body.clone());
-        if let Some(name) = self.by_body.get(&key) {
-            return Ok(name.clone());
-        }
         let from_path = || node.path.split('.').skip(1).collect::<Vec<_>>().join("_");
-        let wanted = full_name(self.options, &draft.tagged.unwrap_or_else(from_path));
-        let numbered = (2..).map(|number| format!("{wanted}_{number}"));
-        let free = std::iter::once(wanted.clone())
-            .chain(numbered)
-            .find(|name| !self.taken.contains(name));
-        let name = free.unwrap_or(wanted);
-        self.taken.insert(name.clone());
-        let about: Vec<_> = draft.about.iter().map(String::as_str).collect();
-        let header = print::part_header(&name, &about, &full_name(self.options, &self.options.top));
-        self.push(node, name.clone(), &header, &draft.body);
-        self.by_body.insert(key, name.clone());
-        Ok(name)
+        let base = match &draft.tagged {
+            Some(tagged) => tagged.clone(),
+            None => {
+                let content = (draft.about.clone(), draft.body.clone());
+                self.untagged.entry(content).or_insert_with(from_path).clone()
+            }
+        };
+        let name = names::module_name(&self.options.prefix, draft.of_machine, &base);
+        if self.take(node, &name, &draft)? {
+            let about: Vec<_> = draft.about.iter().map(String::as_str).collect();
+            self.push(node, name.clone(), &print::part_header(&name, &about), &draft.body);
+        }
+        Ok((name, draft.of_machine))
+    }
+
+    /// Takes the name for the module. It is not new where the same module has it already.
+    ///
+    /// # Errors
+    /// [`Cause::OtherContent`] where another module has it.
+    fn take(&mut self, node: &Node, name: &str, draft: &Draft) -> Result<bool, EmitError> {
+        let content = (draft.about.clone(), draft.body.clone());
+        match self.by_name.get(name) {
+            None => {
+                self.by_name.insert(name.to_owned(), content);
+                Ok(true)
+            }
+            Some(there) if *there == content => Ok(false),
+            Some(_) => Err(EmitError::new(&node.path, "", Cause::OtherContent(name.to_owned()))),
+        }
     }
 
     fn push(&mut self, node: &Node, name: String, header: &str, body: &str) {
@@ -180,8 +197,8 @@ impl Tags {
             };
             let text = comment_text(raw).unwrap_or_default();
             if let Some(name) = text.strip_prefix("@module ") {
-                names::check_name(name).map_err(|cause| EmitError::new(&node.path, "", cause))?;
-                tags.module = Some(name.to_owned());
+                let name = numbers::fill(name, node).and_then(|name| names::check_name(&name).map(|()| name));
+                tags.module = Some(name.map_err(|cause| EmitError::new(&node.path, "", cause))?);
             } else if let Some(about) = text.strip_prefix("@about ") {
                 tags.about.push(about.to_owned());
             }

@@ -45,6 +45,19 @@ pub(super) fn check_form(name: &str) -> Result<(), Cause> {
     }
 }
 
+/// What the names of modules begin with that are the same for every machine.
+pub const LIBRARY: &str = "posicast";
+
+/// The whole name of a module: `posicast_BASE` where it is the same for every machine, `PREFIX_BASE` where it holds something of
+/// this one, and the base alone where there is no prefix, as in a bench.
+pub(super) fn module_name(prefix: &str, of_machine: bool, base: &str) -> String {
+    match (prefix, of_machine) {
+        ("", _) => base.to_owned(),
+        (prefix, true) => format!("{prefix}_{base}"),
+        (_, false) => format!("{LIBRARY}_{base}"),
+    }
+}
+
 /// RustHDL's path of a signal (`bus$value$0`, `State$Idle`) as part of a Verilog name (`bus_value_0`).
 pub(super) fn flatten(raw: &str) -> String {
     raw.replace('$', "_")

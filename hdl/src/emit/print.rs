@@ -92,20 +92,9 @@ pub(crate) fn file(name: &str, header_text: &str, body: &str) -> String {
     format!("{header_text}module {name} {body}\n`default_nettype wire\n")
 }
 
-/// Begins the line that names the design of a part.
-const PART_OF: &str = "// Part of ";
-
-/// The text without that line: the part of several designs.
-pub(crate) fn without_part_of(text: &str) -> String {
-    let lines = text.split_inclusive('\n');
-    lines.filter(|line| !line.starts_with(PART_OF)).collect()
-}
-
-/// Header of a file that is one part of a design: the table of parameters stands at the design's top only.
-pub(super) fn part_header(name: &str, about: &[&str], top: &str) -> String {
-    let part_of = format!("Part of {top}, whose header lists the parameters.");
-    let about: Vec<_> = about.iter().copied().chain([part_of.as_str()]).collect();
-    header(name, &about, &[], RUSTHDL)
+/// Header of a file that is a part of other blocks: the table of parameters stands at their tops.
+pub(super) fn part_header(name: &str, about: &[&str]) -> String {
+    header(name, about, &[], RUSTHDL)
 }
 
 /// Header of a design's top.

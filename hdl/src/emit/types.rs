@@ -48,6 +48,17 @@ impl Type {
         }
     }
 
+    /// The number that a bit pattern of this type stands for.
+    pub(super) fn value(self, pattern: u64) -> i128 {
+        let sign_bit = 1u64 << (self.width - 1);
+        let turn = if self.signed && pattern & sign_bit != 0 {
+            1i128 << self.width
+        } else {
+            0
+        };
+        i128::from(pattern) - turn
+    }
+
     /// `signed [7:0]`, or nothing for a single unsigned bit.
     pub(crate) fn declaration(self) -> String {
         let sign = if self.signed { "signed " } else { "" };

@@ -21,7 +21,7 @@ pub fn simulate() -> Result<Box<dyn ClockedBlock>, SimulationError> {
 
 /// The internal encoder's Verilog, one module per file, the top last.
 ///
-/// The top is called `PREFIX_encoder_generator`, or `encoder_generator` where `prefix` is empty.
+/// The top is called `posicast_encoder_generator`, or `encoder_generator` where `prefix` is empty.
 ///
 /// # Errors
 /// [`EmitError`] where `prefix` makes no Verilog name.

@@ -22,7 +22,7 @@ pub fn simulate() -> Result<Box<dyn ClockedBlock>, SimulationError> {
 
 /// The excitation's Verilog, one module per file, the top last.
 ///
-/// The top is called `PREFIX_excitation`, or `excitation` where `prefix` is empty.
+/// The top is called `posicast_excitation`, or `excitation` where `prefix` is empty.
 ///
 /// # Errors
 /// [`EmitError`] where `prefix` makes no Verilog name.

@@ -24,7 +24,7 @@ pub(crate) struct Rom<const D: usize, const N: usize> {
 }
 
 impl<const D: usize, const N: usize> Rom<D, N> {
-    /// `base_name` names the module: two ROMs of one design need two names.
+    /// `base_name` names the module, behind the machine's and axis's names: two ROMs of one block need two names.
     pub(crate) fn new(base_name: &str, words: Vec<RomWord>) -> Self {
         Self {
             clk: Signal::default(),
@@ -65,6 +65,7 @@ impl<const D: usize, const N: usize> Logic for Rom<D, N> {
         Verilog::Custom(format!(
             "\
 // @leaf {name} reg: data
+// @of_machine
 // @about Block ROM, {used} of ${{words address}} words of ${{width data}} bits are used: data one clock after the address.
 reg [${{last_bit data}}:0] words [0:${{last_word address}}];
 initial begin

@@ -26,7 +26,7 @@ pub fn simulate() -> Result<Box<dyn ClockedBlock>, SimulationError> {
 
 /// The pulse counter's Verilog, one module per file, the top last.
 ///
-/// The top is called `PREFIX_pulse_counter`, or `pulse_counter` where `prefix` is empty.
+/// The top is called `posicast_pulse_counter`, or `pulse_counter` where `prefix` is empty.
 ///
 /// # Errors
 /// [`EmitError`] where `prefix` makes no Verilog name.

@@ -26,9 +26,23 @@ pub fn simulate(config: &PwmConfig) -> Result<Box<dyn ClockedBlock>, SimulationE
     Ok(Box::new(Simulated::new("pwm", block, ports())?))
 }
 
+/// The name of the module that [`emit`] writes last.
+pub fn name(config: &PwmConfig, prefix: &str) -> String {
+    emit::shared_name(prefix, &base_name(config))
+}
+
+fn base_name(config: &PwmConfig) -> String {
+    let off = config.active_low();
+    let off = [off.a_high, off.a_low, off.b_high, off.b_low].map(|level| if level { '1' } else { '0' });
+    let off: String = off.iter().collect();
+    let floors = [config.dead_time_floor_clocks(), config.minimum_pulse_floor_clocks()];
+    let on_time_base = if config.is_on_time_base() { "_on_time_base" } else { "" };
+    format!("pwm_{}x{}_{off}{on_time_base}", floors[0], floors[1])
+}
+
 /// The PWM's Verilog, one module per file, the top last.
 ///
-/// The top is called `PREFIX_pwm`, or `pwm` where `prefix` is empty.
+/// The top is called as [`name`] says; all names are bare where `prefix` is empty.
 ///
 /// # Errors
 /// [`EmitError`] where `prefix` makes no Verilog name.
@@ -52,7 +66,7 @@ pub fn emit(config: &PwmConfig, prefix: &str) -> Result<Vec<Module>, EmitError> 
         low.join(" ")
     };
     let options = EmitOptions {
-        top: "pwm".to_owned(),
+        top: base_name(config),
         prefix: prefix.to_owned(),
         header: Header {
             about: "PWM: a duty to the gates of a bridge, with dead time, minimum pulse, fault path and watchdog.\n\

@@ -10,18 +10,16 @@ mod blocks;
 mod verilog;
 
 use crate::emit::names::check_name;
-use crate::emit::{EmitError, Header, Module, Parameter, print};
+use crate::emit::{EmitError, Header, Module, Parameter, print, shared_name};
 use posicast_model::rtl::registers::{Access, Field, Register, RegisterMap};
 
-/// The bank's Verilog: `PREFIX_registers`, or `registers` where `prefix` is empty.
+/// The bank's Verilog, called as [`name`] says.
 ///
 /// # Errors
 /// [`EmitError`] where `prefix` or a port makes no Verilog name.
 pub fn emit(map: &RegisterMap, prefix: &str) -> Result<Module, EmitError> {
-    let name = match prefix {
-        "" => "registers".to_owned(),
-        _ => format!("{prefix}_registers"),
-    };
+    let body = verilog::body(map);
+    let name = name_of(map, &body, prefix);
     check_name(&name).map_err(|cause| EmitError::new(&name, "", cause))?;
     for port in map.ports() {
         check_name(&port.name).map_err(|cause| EmitError::new(&name, &port.name, cause))?;
@@ -35,14 +33,33 @@ pub fn emit(map: &RegisterMap, prefix: &str) -> Result<Module, EmitError> {
         parameters: parameters(map),
     };
     Ok(Module {
-        text: print::file(
-            &name,
-            &print::data_header(&name, &header, "register map"),
-            &verilog::body(map),
-        ),
+        text: print::file(&name, &print::data_header(&name, &header, "register map"), &body),
         name,
         ports: map.ports().to_vec(),
         clocked: true,
+    })
+}
+
+/// The name of the bank's module: `posicast_MAP_registers_DIGEST`, or `registers` where `prefix` is empty.
+///
+/// A bank holds offsets, reset values and parameters of its build, far too many for a name. Their digest stands for them, so
+/// that two banks of one name are the same.
+pub fn name(map: &RegisterMap, prefix: &str) -> String {
+    name_of(map, &verilog::body(map), prefix)
+}
+
+fn name_of(map: &RegisterMap, body: &str, prefix: &str) -> String {
+    match prefix {
+        "" => "registers".to_owned(),
+        // What the header says of the build stands in the body too, but for the meaning of a parameter.
+        _ => shared_name(prefix, &format!("{}_registers_{:08x}", map.name(), digest(body))),
+    }
+}
+
+/// FNV-1a, 32 bits.
+fn digest(text: &str) -> u32 {
+    text.bytes().fold(0x811c_9dc5, |hash, byte| {
+        (hash ^ u32::from(byte)).wrapping_mul(0x0100_0193)
     })
 }
 

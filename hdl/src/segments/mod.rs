@@ -25,7 +25,7 @@ pub fn simulate() -> Result<Box<dyn ClockedBlock>, SimulationError> {
 
 /// The command FIFO's Verilog, one module per file, the top last.
 ///
-/// The top is called `PREFIX_segments`, or `segments` where `prefix` is empty.
+/// The top is called `posicast_segments`, or `segments` where `prefix` is empty.
 ///
 /// # Errors
 /// [`EmitError`] where `prefix` makes no Verilog name.

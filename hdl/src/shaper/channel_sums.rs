@@ -159,7 +159,7 @@ impl<const W: usize, const P: usize, const ACC: usize, const C: usize, const H: 
 {
     #[hdl_gen]
     fn update(&mut self) {
-        comment!("@module channel_sums");
+        comment!("@module channel_sums_${width x$0}x${width half}x${count x}_f${value fraction}${if modulo _modulo}");
         comment!("@about y = rounded, saturated sum of products,");
         comment!("@about channel by channel, shown together.");
         comment!("@about A coefficient comes a clock before its");

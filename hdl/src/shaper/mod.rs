@@ -18,7 +18,7 @@ mod tap_banks;
 mod weighted_sum;
 
 use crate::compiled::{self, Compiled};
-use crate::emit::{EmitError, EmitOptions, Header, Module, Parameter};
+use crate::emit::{self, EmitError, EmitOptions, Header, Module, Parameter};
 use crate::simulation::{Simulated, SimulationError};
 use kernel::Shaper;
 use motion::MotionShaper;
@@ -147,15 +147,27 @@ fn simulated(config: &ShaperConfig) -> Option<&'static Compiled<ShaperConfig>> {
     compiled::holding(kernel(config), &sizes(config), wraps)
 }
 
+/// The name of the module that [`emit`] writes last: it holds a machine's table.
+pub fn name(config: &ShaperConfig, prefix: &str) -> String {
+    emit::own_name(prefix, &base_name(config))
+}
+
+fn base_name(config: &ShaperConfig) -> String {
+    match config.motion() {
+        None => "shaper".to_owned(),
+        Some(motion) => format!("motion_shaper_{}x{}", config.word_bits(), motion.channels),
+    }
+}
+
 /// The shaper's Verilog, one module per file, the top last.
 ///
-/// The top is called `PREFIX_shaper`, or `shaper` where `prefix` is empty.
+/// The top is called as [`name`] says; all names are bare where `prefix` is empty.
 ///
 /// # Errors
 /// [`EmitError`] where `prefix` makes no Verilog name.
 pub fn emit(config: &ShaperConfig, prefix: &str) -> Result<Vec<Module>, EmitError> {
     let options = EmitOptions {
-        top: "shaper".to_owned(),
+        top: base_name(config),
         prefix: prefix.to_owned(),
         header: header(config),
     };
@@ -256,7 +268,7 @@ mod tests {
                     config = config.for_motion(Motion { channels, modulo }).unwrap();
                 }
                 let options = EmitOptions {
-                    top: "shaper".to_owned(),
+                    top: base_name(&config),
                     prefix: "m".to_owned(),
                     header: header(&config),
                 };

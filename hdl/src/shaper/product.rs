@@ -56,7 +56,7 @@ impl<const W: usize, const P: usize, const U: usize> Default for Product<W, P, U
 impl<const W: usize, const P: usize, const U: usize> Logic for Product<W, P, U> {
     #[hdl_gen]
     fn update(&mut self) {
-        comment!("@module product");
+        comment!("@module product_${width sample}");
         comment!("@about coefficient * sample, 3 clocks after both.");
         dff_setup!(self, clk, product_q);
 

@@ -89,7 +89,7 @@ impl<const W: usize, const P: usize, const ACC: usize, const U: usize> WeightedS
 impl<const W: usize, const P: usize, const ACC: usize, const U: usize> Logic for WeightedSum<W, P, ACC, U> {
     #[hdl_gen]
     fn update(&mut self) {
-        comment!("@module weighted_sum");
+        comment!("@module weighted_sum_${width x}x${width half}_f${value fraction}");
         comment!("@about y = rounded, saturated sum of products.");
         comment!("@about A coefficient comes a clock before its");
         comment!("@about sample, the product 3 clocks after that.");

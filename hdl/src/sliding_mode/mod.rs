@@ -42,7 +42,7 @@ pub fn simulate() -> Result<Box<dyn ClockedBlock>, SimulationError> {
 
 /// The controller's Verilog, one module per file, the top last.
 ///
-/// The top is called `PREFIX_sliding_mode`, or `sliding_mode` where `prefix` is empty.
+/// The top is called `posicast_sliding_mode`, or `sliding_mode` where `prefix` is empty.
 ///
 /// # Errors
 /// [`EmitError`] where `prefix` makes no Verilog name.

@@ -35,7 +35,7 @@ kernel! {
 impl<const A: usize> Logic for TraceMemory<A> {
     #[hdl_gen]
     fn update(&mut self) {
-        comment!("@module trace_memory");
+        comment!("@module trace_memory_${words no_address}");
         comment!("@about The words of the trace, in a ring.");
         self.ram.clk.next = self.clk.val();
 

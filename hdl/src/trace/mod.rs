@@ -27,9 +27,18 @@ pub fn simulate(config: &TraceConfig) -> Result<Box<dyn ClockedBlock>, Simulatio
     Ok(Box::new(Simulated::new("trace", block(config), ports())?))
 }
 
+/// The name of the module that [`emit`] writes last.
+pub fn name(config: &TraceConfig, prefix: &str) -> String {
+    emit::shared_name(prefix, &base_name(config))
+}
+
+fn base_name(config: &TraceConfig) -> String {
+    format!("trace_{}", config.samples())
+}
+
 /// The trace memory's Verilog, one module per file, the top last.
 ///
-/// The top is called `PREFIX_trace`, or `trace` where `prefix` is empty.
+/// The top is called as [`name`] says; all names are bare where `prefix` is empty.
 ///
 /// # Errors
 /// [`EmitError`] where `prefix` makes no Verilog name.
@@ -40,7 +49,7 @@ pub fn emit(config: &TraceConfig, prefix: &str) -> Result<Vec<Module>, EmitError
         meaning: meaning.to_owned(),
     };
     let options = EmitOptions {
-        top: "trace".to_owned(),
+        top: base_name(config),
         prefix: prefix.to_owned(),
         header: Header {
             about: "Trace memory: up to four of 16 signals, row by row, around a trigger.\n\

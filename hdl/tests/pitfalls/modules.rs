@@ -2,7 +2,7 @@
 
 use crate::pitfalls::support::{Dff, Ram16x8, emit_as, local, text_of};
 use crate::pitfalls::tools;
-use posicast_hdl::emit::{Cause, EmitOptions, Header, Instance, Module, Parameter, compose, emit};
+use posicast_hdl::emit::{Cause, EmitOptions, Header, Instance, Module, Parameter, add, compose, emit};
 use posicast_model::rtl::{Direction, Port};
 use rust_hdl_core::prelude::*;
 
@@ -31,7 +31,7 @@ impl<const STEP: u64> Default for Counter<STEP> {
 impl<const STEP: u64> Logic for Counter<STEP> {
     #[hdl_gen]
     fn update(&mut self) {
-        comment!("@module counter");
+        comment!("@module counter_by_${value step}");
         comment!("@about Counts clocks.");
         dff_setup!(self, clk, value);
         self.value.d.next = self.value.q.val() + self.step.val();
@@ -70,6 +70,111 @@ kernel!(Pair { rst: Bit => y: Bits<8>, high: Bits<4> } {
     self.high.next = self.sum.val().get_bits::<4>(4);
     self.y.next = self.by_three.count.val();
 });
+/// Adds `STEP`, and its name does not say so.
+#[derive(LogicBlock)]
+struct Sized<const STEP: u64> {
+    a: Signal<In, Bits<8>>,
+    y: Signal<Out, Bits<8>>,
+    step: Constant<Bits<8>>,
+}
+
+impl<const STEP: u64> Default for Sized<STEP> {
+    fn default() -> Self {
+        Self {
+            a: Signal::default(),
+            y: Signal::default(),
+            step: Constant::new(STEP.into()),
+        }
+    }
+}
+
+impl<const STEP: u64> Logic for Sized<STEP> {
+    #[hdl_gen]
+    fn update(&mut self) {
+        comment!("@module sized");
+        self.y.next = self.a.val() + self.step.val();
+    }
+}
+
+kernel!(Ambiguous { a: Bits<8> => y: Bits<8> } { one: Sized<1> = Sized::default(), two: Sized<2> = Sized::default() };
+#[hdl_gen] fn update(&mut self) {
+    self.one.a.next = self.a.val();
+    self.two.a.next = self.one.y.val();
+    self.y.next = self.two.y.val();
+});
+
+/// A name with a number that the block does not have.
+#[derive(LogicBlock, Default)]
+struct WithoutNumber {
+    a: Signal<In, Bits<8>>,
+    y: Signal<Out, Bits<8>>,
+}
+
+impl Logic for WithoutNumber {
+    #[hdl_gen]
+    fn update(&mut self) {
+        comment!("@module without_${value nothing}");
+        self.y.next = !self.a.val();
+    }
+}
+
+kernel!(Unnumbered { a: Bits<8> => y: Bits<8> } { inner: WithoutNumber = WithoutNumber::default() };
+#[hdl_gen] fn update(&mut self) {
+    self.inner.a.next = self.a.val();
+    self.y.next = self.inner.y.val();
+});
+
+/// Every kind of number in a name.
+#[derive(LogicBlock)]
+struct Numbered {
+    clk: Signal<In, Clock>,
+    rst: Signal<In, Bit>,
+    a: [Signal<In, Bits<8>>; 2],
+    y: Signal<Out, Bits<8>>,
+    value: Dff<Bits<8>>,
+    minus: Constant<Signed<8>>,
+    seven: Constant<Bits<8>>,
+    zero: Constant<Bit>,
+    one: Constant<Bit>,
+}
+
+impl Default for Numbered {
+    fn default() -> Self {
+        Self {
+            clk: Signal::default(),
+            rst: Signal::default(),
+            a: Default::default(),
+            y: Signal::default(),
+            value: Dff::new(5.into()),
+            minus: Constant::new((-16).into()),
+            seven: Constant::new(7.into()),
+            zero: Constant::new(false),
+            one: Constant::new(true),
+        }
+    }
+}
+
+impl Logic for Numbered {
+    #[hdl_gen]
+    fn update(&mut self) {
+        comment!(
+            "@module numbers_${width y}x${words y}x${count a}_${value seven}_reset${value value}_e${log2 minus}${if zero _un}${if one _set}"
+        );
+        dff_setup!(self, clk, value);
+        self.value.d.next = self.a[0].val() + self.a[1].val();
+        self.y.next = self.value.q.val();
+    }
+}
+
+kernel!(Numbers { rst: Bit, a: Bits<8> => y: Bits<8> } { inner: Numbered = Numbered::default() } @ clk;
+#[hdl_gen] fn update(&mut self) {
+    self.inner.clk.next = self.clk.val();
+    self.inner.rst.next = self.rst.val();
+    self.inner.a[0].next = self.a.val();
+    self.inner.a[1].next = self.a.val();
+    self.y.next = self.inner.y.val();
+});
+
 kernel!(Unread { a: Bits<8>, spare: Bit => y: Bits<3> } { r: Dff<Bits<8>> = Dff::new(0x5A.into()), ram: Ram16x8 = Ram16x8::default() } @ clk;
 #[hdl_gen] fn update(&mut self) {
     self.y.next = self.a.val().get_bits::<3>(2);
@@ -109,19 +214,19 @@ fn names(modules: &[Module]) -> Vec<&str> {
 fn unit_equal_modules_are_shared_and_named() {
     let modules = emit(&Pair::default(), &options("pair", "xy_stage")).unwrap();
     let expected = [
-        "xy_stage_counter",
-        "xy_stage_counter_2",
-        "xy_stage_invert_0",
-        "xy_stage_pair",
+        "posicast_counter_by_1",
+        "posicast_counter_by_3",
+        "posicast_invert_0",
+        "posicast_pair",
     ];
     assert_eq!(names(&modules), expected);
     let top = &modules[3].text;
     assert!(
-        top.contains("xy_stage_counter u_first (") && top.contains("xy_stage_counter u_second ("),
+        top.contains("posicast_counter_by_1 u_first (") && top.contains("posicast_counter_by_1 u_second ("),
         "{top}"
     );
     assert!(
-        top.contains("xy_stage_counter_2 u_by_three (") && top.contains("xy_stage_invert_0 u_invert_1 ("),
+        top.contains("posicast_counter_by_3 u_by_three (") && top.contains("posicast_invert_0 u_invert_1 ("),
         "{top}"
     );
     for module in &modules {
@@ -130,7 +235,38 @@ fn unit_equal_modules_are_shared_and_named() {
     }
     let folder = tempfile::tempdir().unwrap();
     tools::write(folder.path(), &modules);
-    tools::lint(folder.path(), "xy_stage_pair");
+    tools::lint(folder.path(), "posicast_pair");
+}
+
+/// A name stands for one content: what differs without saying so in its name is refused.
+#[test]
+fn unit_different_modules_of_one_name_are_refused() {
+    let error = emit(&Ambiguous::default(), &options("ambiguous", "")).unwrap_err();
+    assert_eq!(*error.cause, Cause::OtherContent("sized".to_owned()));
+    let error = emit(&Unnumbered::default(), &options("unnumbered", "")).unwrap_err();
+    assert!(
+        matches!(&*error.cause, Cause::Leaf(text) if text.contains("value nothing")),
+        "{error}"
+    );
+}
+
+#[test]
+fn unit_numbers_of_a_name_come_from_its_signals() {
+    let modules = emit(&Numbers::default(), &options("top", "")).unwrap();
+    assert_eq!(names(&modules), ["numbers_8x256x2_7_reset5_e4_set", "top"]);
+}
+
+#[test]
+fn unit_a_package_takes_each_module_once() {
+    let pair = emit(&Pair::default(), &options("pair", "xy_stage")).unwrap();
+    let mut package = Vec::new();
+    add(&mut package, pair.clone()).unwrap();
+    add(&mut package, pair.clone()).unwrap();
+    assert_eq!(package, pair);
+    let mut other = pair[0].clone();
+    other.text.push('\n');
+    let error = add(&mut package, vec![other]).unwrap_err();
+    assert_eq!(*error.cause, Cause::OtherContent("posicast_counter_by_1".to_owned()));
 }
 
 #[test]
@@ -145,7 +281,7 @@ fn unit_header_says_version_purpose_and_parameters() {
     let modules = emit(&Pair::default(), &options("pair", "xy_stage")).unwrap();
     let version = env!("CARGO_PKG_VERSION");
     let expected = format!(
-        "// xy_stage_pair
+        "// posicast_pair
 // Two counters.
 // Nothing else.
 //
@@ -157,13 +293,13 @@ fn unit_header_says_version_purpose_and_parameters() {
 
 `default_nettype none
 
-module xy_stage_pair ("
+module posicast_pair ("
     );
     assert!(modules[3].text.starts_with(&expected), "{}", modules[3].text);
     assert!(
         modules[0]
             .text
-            .starts_with("// xy_stage_counter\n// Counts clocks.\n// Part of xy_stage_pair,")
+            .starts_with("// posicast_counter_by_1\n// Counts clocks.\n//\n// Generated by posicast")
     );
     assert!(
         modules

@@ -113,14 +113,23 @@ pub(crate) fn emit_block<B: Block>(block: &B, name: &str) -> Result<Vec<Module>,
         about: "A kernel of the emitter's tests.".to_owned(),
         parameters: Vec::new(),
     };
-    emit(
-        block,
-        &EmitOptions {
-            top: "dut".to_owned(),
-            prefix: name.to_owned(),
-            header,
-        },
-    )
+    let options = EmitOptions {
+        top: "dut".to_owned(),
+        prefix: String::new(),
+        header,
+    };
+    let mut modules = emit(block, &options)?;
+    let names: Vec<String> = modules.iter().map(|module| module.name.clone()).collect();
+    for module in &mut modules {
+        for old in &names {
+            for (before, behind) in [("// ", "\n"), ("module ", " ("), ("    ", " u_")] {
+                let renamed = format!("{before}{name}_{old}{behind}");
+                module.text = module.text.replace(&format!("{before}{old}{behind}"), &renamed);
+            }
+        }
+        module.name = format!("{name}_{}", module.name);
+    }
+    Ok(modules)
 }
 
 /// The text of the top module of `K`.

@@ -4,8 +4,10 @@
 pub(super) const MAX_NAME_LENGTH: usize = 64;
 
 /// What a name may look like, for messages.
-pub(super) const NAME_RULE: &str =
-    "[a-z][a-z0-9_]*, at most 64 characters, no Verilog or SystemVerilog keyword, no name of a hardware block";
+pub(super) const NAME_RULE: &str = "[a-z][a-z0-9_]*, at most 64 characters, no Verilog or SystemVerilog keyword, no name of a hardware block, not beginning with posicast";
+
+/// What the names of modules begin with that are the same for every machine.
+const LIBRARY: &str = "posicast";
 
 /// Names of our own: the hardware blocks, which are module names, and the ports that every module has.
 const RESERVED: &[&str] = &[
@@ -48,6 +50,7 @@ pub(super) fn is_name(name: &str) -> bool {
         && name.len() <= MAX_NAME_LENGTH
         && name.chars().all(plain)
         && !RESERVED.contains(&name)
+        && !name.starts_with(LIBRARY)
         && !KEYWORDS.split_whitespace().any(|keyword| keyword == name)
 }
 

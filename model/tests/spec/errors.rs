@@ -143,9 +143,19 @@ fn unit_an_unknown_word_lists_the_words_and_suggests_the_nearest() {
 
 #[test]
 fn unit_names_that_verilog_cannot_hold_are_refused() {
-    let rule =
-        "[a-z][a-z0-9_]*, at most 64 characters, no Verilog or SystemVerilog keyword, no name of a hardware block";
-    for name in ["Slide", "2slide", "", "a-b", "wire", "logic", "shaper", "a\\n"] {
+    let rule = "[a-z][a-z0-9_]*, at most 64 characters, no Verilog or SystemVerilog keyword, no name of a hardware block, not \
+                beginning with posicast";
+    for name in [
+        "Slide",
+        "2slide",
+        "",
+        "a-b",
+        "wire",
+        "logic",
+        "shaper",
+        "posicast_pwm",
+        "a\\n",
+    ] {
         let expected = format!("m.toml:1: name: found \"{name}\"; allowed: {rule}");
         breaks("\"slide\"", &format!("\"{name}\""), &expected);
     }

@@ -105,7 +105,7 @@ fn whole(
     };
     Whole {
         name,
-        modules: emit(&component, name).unwrap(),
+        modules: emit(&component, name, name).unwrap(),
         model: component.model(1),
         input: Box::new(bus),
     }

@@ -23,7 +23,7 @@ pub(crate) fn stage() -> Whole {
     let writes = writes(&component);
     Whole {
         name: "stage",
-        modules: emit(&component, "stage").unwrap(),
+        modules: emit(&component, "stage", "stage").unwrap(),
         model: component.model(1),
         input: Box::new(move |name, clock| input(&writes, name, clock)),
     }

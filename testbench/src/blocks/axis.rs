@@ -2,11 +2,11 @@
 
 use posicast_hdl::SimulationError;
 use posicast_hdl::axis::{emit, simulate};
-use posicast_hdl::emit::{EmitError, Module};
+use posicast_hdl::emit::{EmitError, Module, shared_name};
 use posicast_model::rtl::ClockedBlock;
 use posicast_model::rtl::axis::Axis;
 
-use super::{Bins, Block, prefixed};
+use super::{Bins, Block};
 use crate::lockstep::Clock;
 use crate::stimuli::{AxisCoverage, AxisRandom, Stimuli};
 
@@ -41,7 +41,7 @@ impl Block for AxisBlock {
     }
 
     fn top(&self) -> String {
-        prefixed(&self.prefix, "axis")
+        shared_name(&self.prefix, "axis")
     }
 
     fn model(&self, _seed: u64) -> Box<dyn ClockedBlock> {

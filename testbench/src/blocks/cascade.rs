@@ -2,11 +2,11 @@
 
 use posicast_hdl::SimulationError;
 use posicast_hdl::cascade::{emit, simulate, simulated_as};
-use posicast_hdl::emit::{EmitError, Module};
+use posicast_hdl::emit::{EmitError, Module, own_name};
 use posicast_model::rtl::ClockedBlock;
 use posicast_model::rtl::cascade::{Cascade, CascadeConfig};
 
-use super::{Bins, Block, named, prefixed};
+use super::{Bins, Block, named};
 use crate::lockstep::Clock;
 use crate::stimuli::{CascadeCoverage, CascadeRandom, Stimuli};
 
@@ -43,7 +43,7 @@ impl Block for CascadeBlock {
     }
 
     fn top(&self) -> String {
-        prefixed(&self.prefix, "cascade")
+        own_name(&self.prefix, "cascade")
     }
 
     fn model(&self, seed: u64) -> Box<dyn ClockedBlock> {

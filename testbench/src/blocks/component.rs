@@ -16,6 +16,7 @@ use crate::stimuli::{ComponentRandom, Stimuli};
 pub struct ComponentBlock {
     component: Component,
     top: String,
+    prefix: String,
     axis: String,
     instance: String,
 }
@@ -26,8 +27,26 @@ impl ComponentBlock {
         Self {
             component,
             top: top.to_owned(),
+            prefix: top.to_owned(),
             axis: axis.to_owned(),
             instance: format!("{axis}, Avalon"),
+        }
+    }
+
+    /// The same with modules that hold something of a machine called `PREFIX_…`: the machine's and axis's names, as a package has them. By default the prefix
+    /// is the name of the top.
+    pub fn with_prefix(self, prefix: &str) -> Self {
+        Self {
+            prefix: prefix.to_owned(),
+            ..self
+        }
+    }
+
+    /// Another component under the same names.
+    pub fn like(&self, component: Component) -> Self {
+        Self {
+            component,
+            ..self.clone()
         }
     }
 
@@ -44,7 +63,7 @@ impl ComponentBlock {
     /// # Errors
     /// [`Error::Unlike`] where a shaper lacks a port that the stimuli drive.
     pub fn inner(&self) -> Result<Vec<Box<dyn Block>>, Error> {
-        inside::of_component(&self.component, &self.top, &self.axis)
+        inside::of_component(&self.component, &self.prefix, &self.axis)
     }
 }
 
@@ -58,7 +77,7 @@ impl Block for ComponentBlock {
     }
 
     fn modules(&self) -> Result<Vec<Module>, EmitError> {
-        emit(&self.component, &self.top)
+        emit(&self.component, &self.top, &self.prefix)
     }
 
     fn top(&self) -> String {

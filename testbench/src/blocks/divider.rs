@@ -6,7 +6,7 @@ use posicast_hdl::emit::{EmitError, Module};
 use posicast_model::rtl::ClockedBlock;
 use posicast_model::rtl::divider::{Divider, DividerConfig};
 
-use super::{Bins, Block, named, prefixed};
+use super::{Bins, Block, named};
 use crate::lockstep::Clock;
 use crate::stimuli::{DividerCoverage, DividerRandom, Stimuli};
 
@@ -51,7 +51,7 @@ impl Block for DividerBlock {
     }
 
     fn top(&self) -> String {
-        prefixed(&self.prefix, "divider")
+        posicast_hdl::divider::name(&self.config, &self.prefix)
     }
 
     fn model(&self, _seed: u64) -> Box<dyn ClockedBlock> {

@@ -2,11 +2,11 @@
 
 use posicast_hdl::SimulationError;
 use posicast_hdl::drive_command::{emit, simulate};
-use posicast_hdl::emit::{EmitError, Module};
+use posicast_hdl::emit::{EmitError, Module, shared_name};
 use posicast_model::rtl::ClockedBlock;
 use posicast_model::rtl::drive_command::DriveCommand;
 
-use super::{Bins, Block, named, prefixed};
+use super::{Bins, Block, named};
 use crate::lockstep::Clock;
 use crate::stimuli::{DriveCommandCoverage, DriveCommandRandom, Stimuli};
 
@@ -41,7 +41,7 @@ impl Block for DriveCommandBlock {
     }
 
     fn top(&self) -> String {
-        prefixed(&self.prefix, "drive_command")
+        shared_name(&self.prefix, "drive_command")
     }
 
     fn model(&self, _seed: u64) -> Box<dyn ClockedBlock> {

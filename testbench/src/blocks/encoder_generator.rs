@@ -1,12 +1,12 @@
 //! The bench of `encoder_generator`.
 
 use posicast_hdl::SimulationError;
-use posicast_hdl::emit::{EmitError, Module};
+use posicast_hdl::emit::{EmitError, Module, shared_name};
 use posicast_hdl::encoder_generator::{emit, simulate};
 use posicast_model::rtl::ClockedBlock;
 use posicast_model::rtl::encoder_generator::EncoderGenerator;
 
-use super::{Bins, Block, named, prefixed};
+use super::{Bins, Block, named};
 use crate::lockstep::Clock;
 use crate::stimuli::{EncoderGeneratorCoverage, EncoderGeneratorRandom, Stimuli};
 
@@ -41,7 +41,7 @@ impl Block for EncoderGeneratorBlock {
     }
 
     fn top(&self) -> String {
-        prefixed(&self.prefix, "encoder_generator")
+        shared_name(&self.prefix, "encoder_generator")
     }
 
     fn model(&self, _seed: u64) -> Box<dyn ClockedBlock> {

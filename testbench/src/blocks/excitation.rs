@@ -1,12 +1,12 @@
 //! The bench of `excitation`.
 
 use posicast_hdl::SimulationError;
-use posicast_hdl::emit::{EmitError, Module};
+use posicast_hdl::emit::{EmitError, Module, shared_name};
 use posicast_hdl::excitation::{emit, simulate};
 use posicast_model::rtl::ClockedBlock;
 use posicast_model::rtl::excitation::Excitation;
 
-use super::{Bins, Block, named, prefixed};
+use super::{Bins, Block, named};
 use crate::lockstep::Clock;
 use crate::stimuli::{ExcitationCoverage, ExcitationRandom, Stimuli};
 
@@ -41,7 +41,7 @@ impl Block for ExcitationBlock {
     }
 
     fn top(&self) -> String {
-        prefixed(&self.prefix, "excitation")
+        shared_name(&self.prefix, "excitation")
     }
 
     fn model(&self, _seed: u64) -> Box<dyn ClockedBlock> {

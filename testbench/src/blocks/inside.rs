@@ -12,27 +12,22 @@ use super::{
 };
 use crate::Error;
 
-/// Where blocks stand: the prefix of the modules that each axis has for itself, that of those all axes share, and the
-/// instances of both.
+/// Where blocks stand: the prefix of the modules that hold something of a machine, and the instance that a report calls them.
 struct Place<'a> {
-    own: &'a str,
-    shared: &'a str,
-    instance: String,
-    shared_instance: String,
+    prefix: &'a str,
+    instance: &'a str,
 }
 
-/// The blocks of the component with the top `top` that serves `axis`. What only joins them (sample select, setting banks,
-/// time base) has no row: the component's covers it.
+/// The blocks of the component of `axis` whose own modules begin with `prefix`. What only joins them (sample select, setting
+/// banks, time base) has no row: the component's covers it.
 ///
 /// # Errors
 /// As [`ShaperBlock::new`].
-pub(super) fn of_component(component: &Component, top: &str, axis: &str) -> Result<Vec<Box<dyn Block>>, Error> {
+pub(super) fn of_component(component: &Component, prefix: &str, axis: &str) -> Result<Vec<Box<dyn Block>>, Error> {
     let instance = format!("{axis}, in the {} component", component.name());
     let place = Place {
-        own: top,
-        shared: top,
-        shared_instance: instance.clone(),
-        instance,
+        prefix,
+        instance: &instance,
     };
     let mut blocks = Vec::new();
     for part in component.blocks() {
@@ -47,17 +42,23 @@ pub(super) fn of_component(component: &Component, top: &str, axis: &str) -> Resu
     Ok(blocks)
 }
 
-/// The blocks of the stage with the top `top`, those of each axis too; a module that several axes share is there once.
+/// The blocks of the stage whose own modules begin with `prefix`, those of each axis too. What is the same for all axes is there
+/// once; what could be another one in each is there for each, also where it happens to be the same module.
 ///
 /// # Errors
 /// As [`ShaperBlock::new`].
-pub(super) fn of_stage(component: &Component, top: &str) -> Result<Vec<Box<dyn Block>>, Error> {
-    let shared_instance = "in the stage".to_owned();
+pub(super) fn of_stage(component: &Component, prefix: &str) -> Result<Vec<Box<dyn Block>>, Error> {
+    let shared = Place {
+        prefix,
+        instance: "in the stage",
+    };
     let mut blocks: Vec<Box<dyn Block>> = Vec::new();
     let mut add = |part: &Part, place: &Place<'_>| -> Result<(), Error> {
-        if let Some(block) = of_part(part, place)?
-            && blocks.iter().all(|there| there.top() != block.top())
-        {
+        let is_there = |block: &dyn Block| {
+            let mut there = blocks.iter();
+            there.any(|there| there.top() == block.top() && there.instance() == block.instance())
+        };
+        if let Some(block) = of_part(part, place)?.filter(|block| !is_there(block.as_ref())) {
             blocks.push(block);
         }
         Ok(())
@@ -65,34 +66,21 @@ pub(super) fn of_stage(component: &Component, top: &str) -> Result<Vec<Box<dyn B
     for part in component.blocks() {
         match part {
             Part::Joined(axis) => {
-                let own = format!("{top}_{}", axis.name());
-                let place = Place {
-                    own: &own,
-                    shared: top,
-                    instance: format!("{}, in the stage", axis.name()),
-                    shared_instance: shared_instance.clone(),
+                let own = Place {
+                    prefix: &format!("{prefix}_{}", axis.name()),
+                    instance: &format!("{}, in the stage", axis.name()),
                 };
-                axis.blocks().try_for_each(|part| add(part, &place))?;
+                axis.blocks()
+                    .try_for_each(|part| add(part, if part.is_common() { &shared } else { &own }))?;
             }
-            part => {
-                let place = Place {
-                    own: top,
-                    shared: top,
-                    instance: shared_instance.clone(),
-                    shared_instance: shared_instance.clone(),
-                };
-                add(part, &place)?;
-            }
+            part => add(part, &shared)?,
         }
     }
     Ok(blocks)
 }
 
 fn of_part(part: &Part, place: &Place<'_>) -> Result<Option<Box<dyn Block>>, Error> {
-    let (prefix, instance) = match part.is_common() {
-        true => (place.shared, place.shared_instance.as_str()),
-        false => (place.own, place.instance.as_str()),
-    };
+    let Place { prefix, instance } = *place;
     let small = |part| -> Box<dyn Block> { Box::new(PartBlock::new(part, prefix).called(instance)) };
     Ok(Some(match part {
         Part::Registers(map) => Box::new(RegistersBlock::new(map.as_ref().clone(), prefix).called(instance)),

@@ -1,12 +1,12 @@
 //! The bench of `linear_scale`.
 
 use posicast_hdl::SimulationError;
-use posicast_hdl::emit::{EmitError, Module};
+use posicast_hdl::emit::{EmitError, Module, shared_name};
 use posicast_hdl::linear_scale::{emit, simulate};
 use posicast_model::rtl::ClockedBlock;
 use posicast_model::rtl::linear_scale::LinearScale;
 
-use super::{Bins, Block, named, prefixed};
+use super::{Bins, Block, named};
 use crate::lockstep::Clock;
 use crate::stimuli::{LinearScaleCoverage, LinearScaleRandom, Stimuli};
 
@@ -41,7 +41,7 @@ impl Block for LinearScaleBlock {
     }
 
     fn top(&self) -> String {
-        prefixed(&self.prefix, "linear_scale")
+        shared_name(&self.prefix, "linear_scale")
     }
 
     fn model(&self, _seed: u64) -> Box<dyn ClockedBlock> {

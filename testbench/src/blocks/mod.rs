@@ -277,11 +277,3 @@ fn not_in_rusthdl(block: &'static str) -> SimulationError {
 fn named<const N: usize>(counts: [(&str, u64); N]) -> Vec<(String, u64)> {
     counts.map(|(name, count)| (name.to_owned(), count)).to_vec()
 }
-
-/// `PREFIX_name`, or the name alone without a prefix: how the emitter names a top.
-fn prefixed(prefix: &str, name: &str) -> String {
-    match prefix {
-        "" => name.to_owned(),
-        prefix => format!("{prefix}_{name}"),
-    }
-}

@@ -1,6 +1,6 @@
 //! The bench of the small blocks between others: schedule, divider share, group, time base, sample select, setting banks.
 
-use posicast_hdl::emit::{EmitError, Module};
+use posicast_hdl::emit::{EmitError, Module, own_name};
 use posicast_hdl::{SimulationError, divider_share, group, sample_select, schedule, setting_banks, time_base};
 use posicast_model::rtl::component::Block as Model;
 use posicast_model::rtl::divider::DividerConfig;
@@ -9,7 +9,7 @@ use posicast_model::rtl::sliding_mode::Settings;
 use posicast_model::rtl::{ClockedBlock, Port};
 
 use super::component::Changes;
-use super::{Bins, Block, prefixed};
+use super::{Bins, Block};
 use crate::stimuli::{PartRandom, Stimuli};
 
 /// A block that joins others.
@@ -106,7 +106,15 @@ impl Block for PartBlock {
     }
 
     fn top(&self) -> String {
-        prefixed(&self.prefix, self.name())
+        let prefix = self.prefix.as_str();
+        match &self.part {
+            Part::Schedule(config) => schedule::name(config, prefix),
+            Part::DividerShare(channels) => divider_share::name(*channels, prefix),
+            Part::Group(axes) => group::name(*axes, prefix),
+            Part::TimeBase(config) => time_base::name(config, prefix),
+            Part::SampleSelect { word_bits, channels } => sample_select::name(*word_bits, *channels, prefix),
+            Part::SettingBanks(_) => own_name(prefix, "setting_banks"),
+        }
     }
 
     fn model(&self, seed: u64) -> Box<dyn ClockedBlock> {

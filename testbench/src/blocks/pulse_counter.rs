@@ -1,12 +1,12 @@
 //! The bench of `pulse_counter`.
 
 use posicast_hdl::SimulationError;
-use posicast_hdl::emit::{EmitError, Module};
+use posicast_hdl::emit::{EmitError, Module, shared_name};
 use posicast_hdl::pulse_counter::{emit, simulate};
 use posicast_model::rtl::ClockedBlock;
 use posicast_model::rtl::pulse_counter::PulseCounter;
 
-use super::{Bins, Block, prefixed};
+use super::{Bins, Block};
 use crate::lockstep::Clock;
 use crate::stimuli::{PulseCounterCoverage, PulseCounterRandom, Stimuli};
 
@@ -41,7 +41,7 @@ impl Block for PulseCounterBlock {
     }
 
     fn top(&self) -> String {
-        prefixed(&self.prefix, "pulse_counter")
+        shared_name(&self.prefix, "pulse_counter")
     }
 
     fn model(&self, _seed: u64) -> Box<dyn ClockedBlock> {

@@ -6,7 +6,7 @@ use posicast_hdl::pwm::{emit, simulate};
 use posicast_model::rtl::ClockedBlock;
 use posicast_model::rtl::pwm::{Pwm, PwmConfig};
 
-use super::{Bins, Block, prefixed};
+use super::{Bins, Block};
 use crate::lockstep::Clock;
 use crate::stimuli::{PwmCoverage, PwmRandom, Stimuli};
 
@@ -46,7 +46,7 @@ impl Block for PwmBlock {
     }
 
     fn top(&self) -> String {
-        prefixed(&self.prefix, "pwm")
+        posicast_hdl::pwm::name(&self.config, &self.prefix)
     }
 
     fn model(&self, _seed: u64) -> Box<dyn ClockedBlock> {

@@ -6,7 +6,7 @@ use posicast_hdl::registers::emit;
 use posicast_model::rtl::ClockedBlock;
 use posicast_model::rtl::registers::{RegisterBank, RegisterMap};
 
-use super::{Bins, Block, not_in_rusthdl, prefixed};
+use super::{Bins, Block, not_in_rusthdl};
 use crate::lockstep::Clock;
 use crate::stimuli::{RegistersCoverage, RegistersRandom, Stimuli};
 
@@ -51,7 +51,7 @@ impl Block for RegistersBlock {
     }
 
     fn top(&self) -> String {
-        prefixed(&self.prefix, "registers")
+        posicast_hdl::registers::name(&self.map, &self.prefix)
     }
 
     fn model(&self, _seed: u64) -> Box<dyn ClockedBlock> {

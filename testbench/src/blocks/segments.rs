@@ -1,12 +1,12 @@
 //! The bench of `segments`.
 
 use posicast_hdl::SimulationError;
-use posicast_hdl::emit::{EmitError, Module};
+use posicast_hdl::emit::{EmitError, Module, shared_name};
 use posicast_hdl::segments::{emit, simulate};
 use posicast_model::rtl::ClockedBlock;
 use posicast_model::rtl::segments::Segments;
 
-use super::{Bins, Block, prefixed};
+use super::{Bins, Block};
 use crate::lockstep::Clock;
 use crate::stimuli::{SegmentsCoverage, SegmentsRandom, Stimuli};
 
@@ -41,7 +41,7 @@ impl Block for SegmentsBlock {
     }
 
     fn top(&self) -> String {
-        prefixed(&self.prefix, "segments")
+        shared_name(&self.prefix, "segments")
     }
 
     fn model(&self, seed: u64) -> Box<dyn ClockedBlock> {

@@ -7,7 +7,7 @@ use posicast_hdl::shaper::{emit, simulate, simulated_as};
 use posicast_model::rtl::shaper::{Motion, Shaper, ShaperConfig, ports};
 use posicast_model::rtl::{ClockedBlock, Port};
 
-use super::{Bins, Block, Exercise, named, prefixed};
+use super::{Bins, Block, Exercise, named};
 use crate::Error;
 use crate::campaign::Campaign;
 use crate::lockstep::{Clock, Instance, Joined};
@@ -61,7 +61,7 @@ impl Block for ShaperBlock {
     }
 
     fn top(&self) -> String {
-        prefixed(&self.prefix, "shaper")
+        posicast_hdl::shaper::name(&self.config, &self.prefix)
     }
 
     fn model(&self, seed: u64) -> Box<dyn ClockedBlock> {

@@ -1,12 +1,12 @@
 //! The bench of `sliding_mode`.
 
 use posicast_hdl::SimulationError;
-use posicast_hdl::emit::{EmitError, Module};
+use posicast_hdl::emit::{EmitError, Module, shared_name};
 use posicast_hdl::sliding_mode::{emit, simulate};
 use posicast_model::rtl::ClockedBlock;
 use posicast_model::rtl::sliding_mode::SlidingMode;
 
-use super::{Bins, Block, prefixed};
+use super::{Bins, Block};
 use crate::lockstep::Clock;
 use crate::stimuli::{SlidingModeCoverage, SlidingModeRandom, Stimuli};
 
@@ -44,7 +44,7 @@ impl Block for SlidingModeBlock {
     }
 
     fn top(&self) -> String {
-        prefixed(&self.prefix, "sliding_mode")
+        shared_name(&self.prefix, "sliding_mode")
     }
 
     fn model(&self, _seed: u64) -> Box<dyn ClockedBlock> {

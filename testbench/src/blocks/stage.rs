@@ -19,6 +19,7 @@ pub struct StageBlock {
     axes: Vec<String>,
     instance: String,
     top: String,
+    prefix: String,
 }
 
 impl StageBlock {
@@ -33,6 +34,7 @@ impl StageBlock {
             instance: format!("{}, Avalon", axes.join(", ")),
             axes,
             top: top.to_owned(),
+            prefix: top.to_owned(),
         })
     }
 
@@ -41,7 +43,16 @@ impl StageBlock {
     /// # Errors
     /// [`Error::Unlike`] where a shaper lacks a port that the stimuli drive.
     pub fn inner(&self) -> Result<Vec<Box<dyn Block>>, Error> {
-        inside::of_stage(&self.component, &self.top)
+        inside::of_stage(&self.component, &self.prefix)
+    }
+
+    /// The same with modules that hold something of a machine called `PREFIX_…`: the machine's name, as a package has it. By default the prefix
+    /// is the name of the top.
+    pub fn with_prefix(self, prefix: &str) -> Self {
+        Self {
+            prefix: prefix.to_owned(),
+            ..self
+        }
     }
 
     /// What it is.
@@ -60,7 +71,7 @@ impl Block for StageBlock {
     }
 
     fn modules(&self) -> Result<Vec<Module>, EmitError> {
-        emit(&self.component, &self.top)
+        emit(&self.component, &self.top, &self.prefix)
     }
 
     fn top(&self) -> String {

@@ -6,7 +6,7 @@ use posicast_hdl::trace::{emit, simulate};
 use posicast_model::rtl::ClockedBlock;
 use posicast_model::rtl::trace::{Trace, TraceConfig};
 
-use super::{Bins, Block, prefixed};
+use super::{Bins, Block};
 use crate::lockstep::Clock;
 use crate::stimuli::{Stimuli, TraceCoverage, TraceRandom};
 
@@ -53,7 +53,7 @@ impl Block for TraceBlock {
     }
 
     fn top(&self) -> String {
-        prefixed(&self.prefix, "trace")
+        posicast_hdl::trace::name(&self.config, &self.prefix)
     }
 
     fn model(&self, _seed: u64) -> Box<dyn ClockedBlock> {

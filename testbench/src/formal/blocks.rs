@@ -122,7 +122,7 @@ fn setting_banks_task(settings: &Settings) -> Result<Task, Error> {
 
 /// The controller's component without arithmetic: bank, settings and the sequence of a pass, as they are wired.
 fn law_and_bank_task(controller: &Component) -> Result<Task, Error> {
-    let mut modules = component::emit(controller, "alone")?;
+    let mut modules = component::emit(controller, "alone", "")?;
     for part in [
         "tracking",
         "operands",
@@ -132,9 +132,8 @@ fn law_and_bank_task(controller: &Component) -> Result<Task, Error> {
         "integral",
         "sticky",
     ] {
-        let name = format!("alone_{part}");
-        let module = modules.iter_mut().find(|module| module.name == name);
-        empty(module.ok_or_else(|| refused(format!("the controller has no `{name}`")))?);
+        let module = modules.iter_mut().find(|module| module.is(part));
+        empty(module.ok_or_else(|| refused(format!("the controller has no `{part}`")))?);
     }
     let block = (modules, controller.composition().ports().to_vec());
     Ok(Task::new(

@@ -11,23 +11,23 @@ use crate::blocks::library_stage;
 
 /// Blocks of an axis that only say where it should be and where it is: left out, so that they say anything.
 const LEFT_OUT: [&str; 8] = [
-    "_segments",
-    "_shaper",
-    "_sliding_mode",
-    "_pulse_counter",
-    "_linear_scale",
-    "_encoder_generator",
-    "_excitation",
-    "_trace",
+    "segments",
+    "motion_shaper",
+    "sliding_mode",
+    "pulse_counter",
+    "linear_scale",
+    "encoder_generator",
+    "excitation",
+    "trace",
 ];
 
 /// The axes of the stage that the other rungs of verification take: one with what bring-up needs, one with a linear scale.
 pub(super) fn tasks(macros: &[(&str, String)]) -> Result<Vec<Task>, Error> {
     let stage = library_stage()?;
     let component = Component::stage(&stage).map_err(refused)?;
-    let mut modules = component::emit(&component, "stage")?;
+    let mut modules = component::emit(&component, "stage", "stage")?;
     for block in LEFT_OUT {
-        let of_block = modules.iter_mut().filter(|module| module.name.ends_with(block));
+        let of_block = modules.iter_mut().filter(|module| module.is(block));
         if of_block.map(empty).count() == 0 {
             return Err(refused(format!("the stage has no block `{block}`")));
         }

@@ -307,7 +307,7 @@ fn sliding_mode_task() -> Result<Task, Error> {
 
 /// A module of a block as a block of its own.
 pub(super) fn part(mut modules: Vec<Module>, name: &str) -> Result<(Vec<Module>, Vec<Port>), Error> {
-    let at = modules.iter().position(|module| module.name == name);
+    let at = modules.iter().position(|module| module.is(name));
     let part = modules.remove(at.ok_or_else(|| refused(format!("the block has no `{name}`")))?);
     let ports = part.ports.clone();
     modules.push(part);

@@ -30,7 +30,7 @@ pub const INSIDE_MARKS: Marks = Marks {
 pub struct Inside {
     /// What the fault does, in words.
     pub name: &'static str,
-    /// What the name of the module ends with, behind the stage's top; several modules with this end all get the fault.
+    /// What the module is called, without a size; several of these all get the fault.
     pub module: &'static str,
     /// What is there once.
     pub from: &'static str,
@@ -42,79 +42,79 @@ pub struct Inside {
 pub const INSIDE: [Inside; 13] = [
     Inside {
         name: "the velocity's timeout a step late",
-        module: "_velocity",
+        module: "velocity",
         from: "recent = interval[23:16] < timeout;",
         to: "recent = interval[23:16] <= timeout;",
     },
     Inside {
         name: "a handover that ends a sample early",
-        module: "_x_handover",
+        module: "handover",
         from: "if (since_q == reach) begin",
         to: "if (next_since == reach) begin",
     },
     Inside {
         name: "a negative overflow of the integrator unseen",
-        module: "_integrator",
+        module: "integrator",
         from: "unfit = turned_sign & (augend[7] == addend[7]);",
         to: "unfit = (turned_sign & (augend[7] == addend[7])) & !augend[7];",
     },
     Inside {
         name: "a limit that acts on a bounce",
-        module: "_axis",
+        module: "axis",
         from: "monitors_on_limit_plus = !limit_plus_line_level;",
         to: "monitors_on_limit_plus = !limit_plus_line_level | !limit_plus_n;",
     },
     Inside {
         name: "a limit whose first look is enough",
-        module: "_axis_monitors",
+        module: "axis_monitors",
         from: "found_next = shown & found;",
         to: "found_next = shown | found;",
     },
     Inside {
         name: "a cause of the upper byte that cuts",
-        module: "_axis_causes",
+        module: "axis_causes",
         from: "cutting_now = now & off;",
         to: "cutting_now = (now & off) | (now & 16'd4096);",
     },
     Inside {
         name: "a cause of the upper byte that is told to cut and does not",
-        module: "_axis_causes",
+        module: "axis_causes",
         from: "cutting_now = now & off;",
         to: "cutting_now = (now & off) & 16'd255;",
     },
     Inside {
         name: "the asynchronous fault latch made synchronous",
-        module: "_x_fault_latch",
+        module: "fault_latch",
         from: "always @(posedge clk or negedge trip_n) begin",
         to: "always @(posedge clk) begin",
     },
     Inside {
         name: "a 64th entry beside the one that plays",
-        module: "_command_fifo",
+        module: "command_fifo",
         from: "full = level_q[6] | (plays & (waiting == ALL_BUT_ONE));",
         to: "full = level_q[6];",
     },
     Inside {
         name: "the group's emergency stop ignored by an axis",
-        module: "_axis",
+        module: "axis",
         from: "emergency = own_emergency | group_emergency_stop;",
         to: "emergency = own_emergency;",
     },
     Inside {
         name: "the group's emergency stop not passed on",
-        module: "_group",
+        module: "group",
         from: "if (emergency_stop_1) begin",
         to: "if (1'd0 & emergency_stop_1) begin",
     },
     Inside {
         name: "a group stop not passed on",
-        module: "_group",
+        module: "group",
         from: "if (wants_group_stop_1 & (AXIS_0 != AXIS_1)) begin",
         to: "if (1'd0 & wants_group_stop_1) begin",
     },
     Inside {
         name: "`stop_deceleration` above bit 23 ignored",
-        module: "_integrator",
+        module: "integrator",
         from: "deceleration = {9'd0, stop_deceleration} << 8;",
         to: "deceleration = {16'd0, stop_deceleration[23:0]} << 8;",
     },
@@ -133,18 +133,23 @@ impl Inside {
     /// These modules with the fault in them.
     ///
     /// # Errors
-    /// [`Error::Option`] where no module has that end, or its text is not there exactly once.
-    pub fn put_into(&self, modules: &[Module], top: &str) -> Result<Vec<Module>, Error> {
-        let name = format!("{top}{}", self.module);
+    /// [`Error::Option`] where no module has that name, or its text is not there exactly once.
+    pub fn put_into(&self, modules: &[Module]) -> Result<Vec<Module>, Error> {
         let mut modules = modules.to_vec();
-        let module = modules.iter_mut().find(|module| module.name == name);
-        let module = module.ok_or_else(|| self.outdated(format!("there is no module `{name}`")))?;
-        let times = module.text.matches(self.from).count();
-        if times != 1 {
-            return Err(self.outdated(format!("`{}` is {times} times in `{name}`", self.from)));
+        let mut found = false;
+        for module in modules.iter_mut().filter(|module| module.is(self.module)) {
+            let times = module.text.matches(self.from).count();
+            if times != 1 {
+                let text = format!("`{}` is {times} times in `{}`", self.from, module.name);
+                return Err(self.outdated(text));
+            }
+            module.text = module.text.replacen(self.from, self.to, 1);
+            found = true;
         }
-        module.text = module.text.replacen(self.from, self.to, 1);
-        Ok(modules)
+        match found {
+            true => Ok(modules),
+            false => Err(self.outdated(format!("there is no module `{}`", self.module))),
+        }
     }
 
     fn outdated(&self, why: String) -> Error {
@@ -158,13 +163,21 @@ impl Inside {
     /// As [`Self::put_into`], and what a simulator says.
     pub fn hunt(&self, config: &StageConfig, top: &str, clocks: u64, seed: u64) -> Result<Option<Found>, Error> {
         let stage = StageBlock::new(config, top).map_err(|error| Error::Option(error.to_string()))?;
-        let broken = Sources::of_modules(&self.put_into(&stage.modules()?, top)?)?;
-        let changed = format!("{top}{}.v", self.module);
+        let modules = stage.modules()?;
+        let broken = Sources::of_modules(&self.put_into(&modules)?)?;
+        let changed: Vec<String> = (modules.iter())
+            .filter(|module| module.is(self.module))
+            .map(|module| format!("{}.v", module.name))
+            .collect();
         let mut rows = stage.inner()?;
         rows.push(Box::new(stage));
         for row in rows {
             let sources = broken.reached_by(row.as_ref())?;
-            if !sources.files().iter().any(|file| file.ends_with(&changed)) {
+            if !sources
+                .files()
+                .iter()
+                .any(|file| changed.iter().any(|changed| file.ends_with(changed)))
+            {
                 continue;
             }
             if let Some(found) = look(row.as_ref(), &sources, clocks.max(row.least_clocks()), seed)? {
@@ -207,7 +220,7 @@ pub fn inside_table(fates: &[(Inside, Option<Found>)]) -> String {
             }
         };
         // Writing to a `String` cannot fail.
-        let _ = writeln!(text, "| {} | `…{}` | {row} | {clock} |", mutant.name, mutant.module);
+        let _ = writeln!(text, "| {} | `{}` | {row} | {clock} |", mutant.name, mutant.module);
     }
     let count = fates.iter().filter(|(_, found)| found.is_some()).count();
     let _ = writeln!(text, "\n{count} of {} found.", fates.len());

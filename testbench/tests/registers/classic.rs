@@ -33,7 +33,7 @@ fn component(component: &Component) {
         failing(component.map(), &mut component.model(1), Hardware::Running),
         [""; 0]
     );
-    let bench = Bench::new(component.name(), emit(component, "alone").unwrap(), "", "");
+    let bench = Bench::new(component.name(), emit(component, "alone", "alone").unwrap(), "", "");
     assert_eq!(
         failing(component.map(), &mut bench.verilated(), Hardware::Running),
         [""; 0]

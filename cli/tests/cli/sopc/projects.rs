@@ -72,8 +72,8 @@ fn cli_a_project_places_and_constrains_every_port() {
         ];
         assert_eq!(ends.iter().map(String::as_str).collect::<Vec<_>>(), expected);
         let rtl = |module: &str| fs::read_to_string(output.join(format!("rtl/{module}.v"))).unwrap();
-        assert!(rtl("xy_stage_stage_synchroniser").contains("reg synchroniser_first;"));
-        assert!(rtl("xy_stage_stage_x_fault_latch").contains("output reg  armed"));
+        assert!(rtl("posicast_synchroniser").contains("reg synchroniser_first;"));
+        assert!(rtl("posicast_fault_latch").contains("output reg  armed"));
     }
 }
 

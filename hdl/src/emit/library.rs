@@ -1,0 +1,37 @@
+//! One module of a name: what several blocks, axes and packages have in common is the same file.
+
+use super::Module;
+use super::error::{Cause, EmitError};
+use super::names;
+
+/// The name of the module `base` that is the same for every machine, as [`emit`](super::emit()) writes it: `posicast_BASE`, or the
+/// base alone where the prefix is empty.
+pub fn shared_name(prefix: &str, base: &str) -> String {
+    names::module_name(prefix, false, base)
+}
+
+/// The name of the module `base` that holds something of a machine: `PREFIX_BASE`, or the base alone where the prefix is empty.
+pub fn own_name(prefix: &str, base: &str) -> String {
+    names::module_name(prefix, true, base)
+}
+
+/// Adds modules to those of a package, each once.
+///
+/// # Errors
+/// [`Cause::OtherContent`] where a module of the same name is there that says something else.
+pub fn add(modules: &mut Vec<Module>, more: Vec<Module>) -> Result<(), EmitError> {
+    for module in more {
+        match modules.iter().find(|there| there.name == module.name) {
+            None => modules.push(module),
+            Some(there) if *there == module => {}
+            Some(_) => {
+                return Err(EmitError::new(
+                    &module.name,
+                    "",
+                    Cause::OtherContent(module.name.clone()),
+                ));
+            }
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,192 @@
+//! A module's name stands for its content: in every package, of every machine, the module of a name is the same file.
+
+#![allow(clippy::unwrap_used, reason = "a helper that fails fails its test")]
+
+use posicast_hdl::emit::{LIBRARY, Module};
+use posicast_hdl::{
+    axis, cascade, component, divider, divider_share, drive_command, encoder_generator, excitation, group,
+    linear_scale, pulse_counter, pwm, registers, sample_select, schedule, segments, setting_banks, shaper,
+    sliding_mode, time_base, trace,
+};
+use posicast_model::rtl::cascade::CascadeConfig;
+use posicast_model::rtl::component::Component;
+use posicast_model::rtl::divider::DividerConfig;
+use posicast_model::rtl::pwm::{ActiveLow, Mode, PwmConfig};
+use posicast_model::rtl::schedule::ScheduleConfig;
+use posicast_model::rtl::shaper::{Motion, ShaperConfig};
+use posicast_model::rtl::sliding_mode::{Law, Settings};
+use posicast_model::rtl::trace::TraceConfig;
+use posicast_model::taps::{Tap, TapTable};
+use std::collections::BTreeMap;
+
+/// Configurations that are tried.
+const MACHINES: u64 = 40;
+
+/// A number for each `salt`, the same in every run (SplitMix64).
+struct Chance(u64);
+
+impl Chance {
+    fn below(&mut self, end: u64) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mixed = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        let mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        (mixed ^ (mixed >> 31)) % end
+    }
+
+    fn one_of<T: Copy>(&mut self, all: &[T]) -> T {
+        all[self.below(all.len() as u64) as usize]
+    }
+
+    fn is(&mut self) -> bool {
+        self.below(2) == 1
+    }
+}
+
+fn table(chance: &mut Chance) -> TapTable {
+    let fraction = 8 + chance.below(9) as u32;
+    let (longest, taps) = (
+        chance.one_of(&[3, 40, 61, 62, 63, 125, 126, 127, 900]),
+        1 + chance.below(12),
+    );
+    let one = 1i32 << fraction;
+    let part = one / (taps as i32 + 1);
+    let mut delays: Vec<u32> = (0..taps)
+        .map(|_| chance.below(longest) as u32)
+        .chain([longest as u32])
+        .collect();
+    delays.sort_unstable();
+    delays.dedup();
+    let last = delays.len() as i32 - 1;
+    let coefficient = |place: usize| if place == 0 { one - part * last } else { part };
+    let taps = delays.iter().enumerate().map(|(place, &delay_samples)| Tap {
+        delay_samples,
+        coefficient: coefficient(place),
+    });
+    TapTable::new(fraction, taps.collect()).unwrap()
+}
+
+fn shaper_config(chance: &mut Chance) -> ShaperConfig {
+    let word_bits = chance.one_of(&[16, 24, 32]);
+    let plain = ShaperConfig::new(word_bits, table(chance)).unwrap();
+    let motion = Motion {
+        channels: 1 + chance.below(3) as u32,
+        modulo: chance.is(),
+    };
+    match chance.is() {
+        true => plain.clone().for_motion(motion).unwrap_or(plain),
+        false => plain,
+    }
+}
+
+fn pwm_config(chance: &mut Chance) -> PwmConfig {
+    let off = ActiveLow {
+        a_high: chance.is(),
+        a_low: chance.is(),
+        b_high: chance.is(),
+        b_low: chance.is(),
+    };
+    let config = PwmConfig::new(off, 1 + chance.below(3), 1 + chance.below(3)).unwrap();
+    if chance.is() { config.on_time_base() } else { config }
+}
+
+/// The Verilog of every block, built as chance has it for the machine `prefix`.
+fn machine(prefix: &str, chance: &mut Chance) -> Vec<Vec<Module>> {
+    let tick = DividerConfig::new(chance.one_of(&[1000, 2500, 5000, 5001])).unwrap();
+    let (shaper, pwm) = (shaper_config(chance), pwm_config(chance));
+    let mut settings = Settings::default();
+    settings.set_limit(chance.below(4) as u32);
+    let axes = 1 + chance.below(4) as usize;
+    let delays = (0..1 + chance.below(4)).map(|_| 1 + chance.below(60) as u32).collect();
+    let cascade = CascadeConfig::new(chance.one_of(&[16, 24, 32]), delays).unwrap();
+    let trace = TraceConfig::new(chance.one_of(&[256, 512, 1024, 2048])).unwrap();
+    let schedule = ScheduleConfig::new(100 + chance.below(4) as u32).unwrap();
+    let (word_bits, channels) = chance.one_of(&[(17, 1), (32, 3), (32, 5)]);
+    let mut all = vec![
+        shaper::emit(&shaper, prefix),
+        pwm::emit(&pwm, prefix),
+        divider::emit(&tick, prefix),
+        time_base::emit(&tick, prefix),
+        schedule::emit(&schedule, prefix),
+        trace::emit(&trace, prefix),
+        cascade::emit(&cascade, prefix),
+        group::emit(axes, prefix),
+        divider_share::emit(axes, prefix),
+        sample_select::emit(word_bits, channels, prefix),
+        setting_banks::emit(&settings, prefix),
+        axis::emit(prefix),
+        segments::emit(prefix),
+        pulse_counter::emit(prefix),
+        sliding_mode::emit(prefix),
+        drive_command::emit(prefix),
+        linear_scale::emit(prefix),
+        encoder_generator::emit(prefix),
+        excitation::emit(prefix),
+    ];
+    let components = [
+        Component::shaper(shaper).unwrap(),
+        Component::pwm(pwm, Mode::HalfBridge, chance.one_of(&[1000, 2500])).unwrap(),
+        Component::pulse_counter(tick, chance.below(4) as u32, chance.is()).unwrap(),
+        Component::sliding_mode(&settings, chance.one_of(&[Law::Pd, Law::Pid]), chance.is()).unwrap(),
+    ];
+    for one in &components {
+        all.push(registers::emit(one.map(), prefix).map(|bank| vec![bank]));
+        all.push(component::emit(one, &format!("{prefix}_{}_avalon", one.name()), prefix));
+    }
+    all.into_iter().map(Result::unwrap).collect()
+}
+
+#[test]
+fn unit_a_name_stands_for_one_content_in_all_machines() {
+    let mut library: BTreeMap<String, String> = BTreeMap::new();
+    let mut variants: BTreeMap<String, usize> = BTreeMap::new();
+    for number in 0..MACHINES {
+        let prefix = format!("machine{number}_x");
+        let mut own: BTreeMap<String, Module> = BTreeMap::new();
+        for module in machine(&prefix, &mut Chance(number)).into_iter().flatten() {
+            let there = own.entry(module.name.clone()).or_insert_with(|| module.clone());
+            assert_eq!(*there, module, "twice in one package, and not the same");
+            let Some(base) = module.name.strip_prefix(&format!("{LIBRARY}_")) else {
+                assert!(module.name.starts_with(&prefix), "{}", module.name);
+                continue;
+            };
+            assert!(!module.text.contains(&prefix), "{} names its machine", module.name);
+            if library.insert(module.name.clone(), module.text.clone()).is_none() {
+                *variants
+                    .entry(
+                        base.split(|c: char| c.is_ascii_digit())
+                            .next()
+                            .unwrap_or(base)
+                            .to_owned(),
+                    )
+                    .or_default() += 1;
+            }
+            assert_eq!(library[&module.name], module.text, "{}", module.name);
+        }
+    }
+    // What has sizes was met at several of them, so that the comparison above had something to find.
+    for sized in [
+        "history_",
+        "weighted_sum_",
+        "channel_sums_",
+        "handover_",
+        "product_",
+        "pwm_",
+        "pwm_timing_",
+        "pwm_gates_",
+        "divider_",
+        "time_base_",
+        "schedule_",
+        "trace_",
+        "trace_memory_",
+        "group_",
+        "divider_share_",
+        "sample_select_",
+        "shaper_registers_",
+        "pwm_registers_",
+    ] {
+        assert!(
+            variants.get(sized).is_some_and(|count| *count > 1),
+            "{sized} {variants:?}"
+        );
+    }
+}
