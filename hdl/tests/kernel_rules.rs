@@ -100,8 +100,66 @@ fn check_kernel(code: &str, body: &str, broken: &mut Vec<String>) {
     }
 }
 
+/// The sections of `kernel!`, and what their fields are.
+const SECTIONS: [(&str, &str); 6] = [
+    ("inputs", "In"),
+    ("outputs", "Out"),
+    ("wires", "Local"),
+    ("registers", "Register"),
+    ("parts", "Part"),
+    ("constants", "Constant"),
+];
+
+/// Name and kind of the fields of a `kernel!`, those of its block's list of ports among them; arrays are left out.
+fn kernel_fields(declaration: &str) -> Vec<(String, String)> {
+    let declaration = declaration.split("\n}").next().unwrap_or_default();
+    let mut fields = Vec::new();
+    for (section, kind) in SECTIONS {
+        for content in declaration.split(&format!("    {section} {{")).skip(1) {
+            for entry in body(&format!("{{{content}")).split(',') {
+                let name = entry.split_once(": ").map_or("", |(name, _)| name.trim());
+                if name.starts_with(|c: char| c.is_ascii_lowercase()) && !name.contains(['[', ' ']) {
+                    fields.push((name.to_owned(), kind.to_owned()));
+                }
+            }
+        }
+    }
+    let list = declaration.split("ports posicast_model::").nth(1);
+    fields.extend(
+        list.and_then(|rest| rest.split(';').next())
+            .into_iter()
+            .flat_map(listed),
+    );
+    fields
+}
+
+/// Name and kind of the ports that a list in the model has.
+fn listed(list: &str) -> Vec<(String, String)> {
+    let model = Path::new(env!("CARGO_MANIFEST_DIR")).join("../model/src/rtl");
+    let texts = sources(&model)
+        .into_iter()
+        .filter_map(|file| fs::read_to_string(file).ok());
+    let text = texts
+        .into_iter()
+        .find(|text| text.contains(&format!("\n    {list};\n")));
+    let text = without_comments(&text.unwrap_or_else(|| panic!("no list {list} in the model")));
+    let lists = text.split(&format!("    {list};")).nth(1).unwrap_or_default();
+    let (inputs, outputs) = lists.split_once("    outputs ").unwrap_or_default();
+    let names = |entries: &str, kind: &str| -> Vec<(String, String)> {
+        let entries = entries.split("\n}").next().unwrap_or_default().lines();
+        let names =
+            entries.filter_map(|entry| Some(entry.split_once(": Bi").or(entry.split_once(": Signed"))?.0.trim()));
+        let names = names.filter(|name| !name.contains('['));
+        names.map(|name| (name.to_owned(), kind.to_owned())).collect()
+    };
+    [names(inputs, "In"), names(outputs, "Out")].concat()
+}
+
 /// Name and kind (`In`, `Out`, `Local`, or the type's name) of every field that is hardware.
 fn fields(code: &str) -> Vec<(String, String)> {
+    if let Some((_, declaration)) = code.split_once("kernel! {") {
+        return kernel_fields(declaration);
+    }
     let declaration = code.split("#[derive(LogicBlock").nth(1).unwrap_or_default();
     let declaration = declaration.split("\n}").next().unwrap_or_default();
     let mut fields = Vec::new();
@@ -228,6 +286,52 @@ impl Logic for Doubler {
 #[test]
 fn unit_a_good_kernel_is_let_through() {
     assert_eq!(broken_rules(GOOD), [""; 0]);
+}
+
+/// The same kernel, of `kernel!`.
+fn with_the_macro() -> String {
+    let (before, from) = GOOD.split_once("#[derive").unwrap();
+    let (_, after) = from.split_once("\n}\n").unwrap();
+    let kernel = "kernel! {
+    pub(super) struct Doubler;
+
+    inputs { rst: Bit, number: Signed<8> }
+    outputs {
+        twice: Signed<16>,
+    }
+    registers { held: Signed<8> = from_i64(1) }
+    wires { wide: Signed<16> }
+}
+";
+    format!("{before}{kernel}{after}").replace("dff_setup!(self, clk, held);", "")
+}
+
+#[test]
+fn unit_the_fields_of_a_kernel_macro_are_checked_too() {
+    let good = with_the_macro();
+    assert_eq!(broken_rules(&good), [""; 0]);
+    let cases = [
+        ("self.wide.next = ", "self.twice.next = ", "`wide` is never assigned"),
+        (
+            "self.twice.next = ",
+            "if self.rst.val() { } self.wide.next = ",
+            "`twice` is never assigned",
+        ),
+        ("number: Signed", "initial: Signed", "`initial` is no Verilog name"),
+        (
+            "    inputs { rst: Bit, number: Signed<8> }",
+            "    ports posicast_model::schedule_ports;",
+            "`control` is never assigned",
+        ),
+    ];
+    for (written, instead, finding) in cases {
+        assert!(good.contains(written), "{written}");
+        let broken = broken_rules(&good.replace(written, instead));
+        assert!(
+            broken.iter().any(|rule| rule.contains(finding)),
+            "{finding}: {broken:?}"
+        );
+    }
 }
 
 #[test]

@@ -1,15 +1,17 @@
 //! The table of ports in a block's datasheet is what its list of ports says. `scripts/regenerate` writes it anew.
 
 use posicast_model::rtl::{
-    Direction, PortList, PortRow, divider, drive_command, excitation, linear_scale, pulse_counter, pwm,
+    Direction, PortList, PortRow, divider, drive_command, encoder_generator, excitation, linear_scale, pulse_counter,
+    pwm,
 };
 use std::error::Error;
 use std::path::Path;
 
 /// The datasheets with a derived table, and the lists that they show.
-const DATASHEETS: [(&str, PortList); 6] = [
+const DATASHEETS: [(&str, PortList); 7] = [
     ("divider", divider::PORTS),
     ("drive_command", drive_command::PORTS),
+    ("encoder_generator", encoder_generator::PORTS),
     ("excitation", excitation::PORTS),
     ("linear_scale", linear_scale::PORTS),
     ("pulse_counter", pulse_counter::PORTS),

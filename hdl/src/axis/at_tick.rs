@@ -2,17 +2,13 @@
 
 use crate::prelude::*;
 
-#[derive(LogicBlock, Default)]
-pub(super) struct AtTick {
-    pub(super) clk: Signal<In, Clock>,
-    pub(super) rst: Signal<In, Bit>,
-    pub(super) tick: Signal<In, Bit>,
-    pub(super) word: Signal<In, Signed<32>>,
-    pub(super) stands: Signal<Out, Signed<32>>,
+kernel! {
+    pub(super) struct AtTick;
 
-    word_q: Dff<Signed<32>>,
-
-    now: Signal<Local, Signed<32>>,
+    inputs { rst: Bit, tick: Bit, word: Signed<32> }
+    outputs { stands: Signed<32> }
+    registers { word_q: Signed<32> }
+    wires { now: Signed<32> }
 }
 
 impl Logic for AtTick {
@@ -20,7 +16,6 @@ impl Logic for AtTick {
     fn update(&mut self) {
         comment!("@module axis_at_tick");
         comment!("@about A word as it stood at the last tick.");
-        dff_setup!(self, clk, word_q);
         self.now.next = self.word_q.q.val();
         if self.tick.val() {
             self.now.next = self.word.val();

@@ -2,18 +2,13 @@
 
 use crate::prelude::*;
 
-#[derive(LogicBlock, Default)]
-pub(super) struct Bytes {
-    pub(super) clk: Signal<In, Clock>,
-    pub(super) rst: Signal<In, Bit>,
-    pub(super) turn: Signal<In, Bits<2>>,
-    pub(super) word: Signal<In, Bits<32>>,
-    pub(super) part: Signal<Out, Bits<8>>,
+kernel! {
+    pub(super) struct Bytes;
 
-    part_q: Dff<Bits<8>>,
-
-    low: Signal<Local, Bits<8>>,
-    high: Signal<Local, Bits<8>>,
+    inputs { rst: Bit, turn: Bits<2>, word: Bits<32> }
+    outputs { part: Bits<8> }
+    registers { part_q: Bits<8> }
+    wires { low: Bits<8>, high: Bits<8> }
 }
 
 impl Logic for Bytes {
@@ -21,7 +16,6 @@ impl Logic for Bytes {
     fn update(&mut self) {
         comment!("@module axis_bytes");
         comment!("@about Bytes of a word, lowest first.");
-        dff_setup!(self, clk, part_q);
         self.low.next = self.word.val().get_bits::<8>(0);
         self.high.next = self.word.val().get_bits::<8>(16);
         if self.turn.val().get_bit(0) {

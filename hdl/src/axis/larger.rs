@@ -2,35 +2,27 @@
 
 use crate::prelude::*;
 
-/// After the last byte; known as long as nothing `compares`, and forgotten a clock later.
-#[derive(LogicBlock, Default)]
-pub(super) struct Larger {
-    pub(super) clk: Signal<In, Clock>,
-    pub(super) rst: Signal<In, Bit>,
-    /// A byte is there.
-    pub(super) compares: Signal<In, Bit>,
-    /// It is the highest of signed numbers.
-    pub(super) signs: Signal<In, Bit>,
-    /// The number is the complement of its bytes.
-    pub(super) inverts: Signal<In, Bit>,
-    pub(super) number: Signal<In, Bits<8>>,
-    pub(super) other: Signal<In, Bits<8>>,
-    pub(super) larger: Signal<Out, Bit>,
+kernel! {
+    /// After the last byte; known as long as nothing `compares`, and forgotten a clock later.
+    pub(super) struct Larger;
 
-    larger_q: Dff<Bit>,
-
-    one: Signal<Local, Bits<8>>,
-    neither: Signal<Local, Bits<8>>,
-    above: Signal<Local, Bits<8>>,
-    above_0: Signal<Local, Bit>,
-    above_1: Signal<Local, Bit>,
-    above_2: Signal<Local, Bit>,
-    above_3: Signal<Local, Bit>,
-    above_4: Signal<Local, Bit>,
-    above_5: Signal<Local, Bit>,
-    above_6: Signal<Local, Bit>,
-    higher: Signal<Local, Bit>,
-    not_lower: Signal<Local, Bit>,
+    inputs {
+        rst: Bit,
+        /// A byte is there.
+        compares: Bit,
+        /// It is the highest of signed numbers.
+        signs: Bit,
+        /// The number is the complement of its bytes.
+        inverts: Bit,
+        number: Bits<8>,
+        other: Bits<8>,
+    }
+    outputs { larger: Bit }
+    registers { larger_q: Bit }
+    wires {
+        one: Bits<8>, neither: Bits<8>, above: Bits<8>, above_0: Bit, above_1: Bit, above_2: Bit,
+        above_3: Bit, above_4: Bit, above_5: Bit, above_6: Bit, higher: Bit, not_lower: Bit,
+    }
 }
 
 impl Logic for Larger {
@@ -38,7 +30,6 @@ impl Logic for Larger {
     fn update(&mut self) {
         comment!("@module axis_larger");
         comment!("@about Is it larger? Lowest byte first.");
-        dff_setup!(self, clk, larger_q);
         self.one.next = self.number.val();
         if self.inverts.val() {
             self.one.next = !self.number.val();

@@ -3,31 +3,24 @@
 use super::nibbles::Nibbles;
 use crate::prelude::*;
 
-/// Has it lasted for as many ticks as the limit says? Never with a limit of 0. Known as long as nothing `compares`.
-#[derive(LogicBlock, Default)]
-pub(super) struct Lasts {
-    pub(super) clk: Signal<In, Clock>,
-    pub(super) rst: Signal<In, Bit>,
-    pub(super) turn: Signal<In, Bits<2>>,
-    pub(super) compares: Signal<In, Bit>,
-    /// A nibble of the ticks.
-    pub(super) ticks: Signal<In, Bits<4>>,
-    /// More than any limit.
-    pub(super) endless: Signal<In, Bit>,
-    pub(super) limit: Signal<In, Bits<16>>,
-    pub(super) lasts: Signal<Out, Bit>,
+kernel! {
+    /// Has it lasted for as many ticks as the limit says? Never with a limit of 0. Known as long as nothing `compares`.
+    pub(super) struct Lasts;
 
-    limit_nibbles: Nibbles,
-
-    fewer: Dff<Bit>,
-    limited: Dff<Bit>,
-
-    under: Signal<Local, Bits<4>>,
-    not_over: Signal<Local, Bits<4>>,
-    under_0: Signal<Local, Bit>,
-    under_1: Signal<Local, Bit>,
-    under_2: Signal<Local, Bit>,
-    under_3: Signal<Local, Bit>,
+    inputs {
+        rst: Bit,
+        turn: Bits<2>,
+        compares: Bit,
+        /// A nibble of the ticks.
+        ticks: Bits<4>,
+        /// More than any limit.
+        endless: Bit,
+        limit: Bits<16>,
+    }
+    outputs { lasts: Bit }
+    parts { limit_nibbles: Nibbles }
+    registers { fewer: Bit, limited: Bit }
+    wires { under: Bits<4>, not_over: Bits<4>, under_0: Bit, under_1: Bit, under_2: Bit, under_3: Bit }
 }
 
 impl Logic for Lasts {
@@ -35,7 +28,6 @@ impl Logic for Lasts {
     fn update(&mut self) {
         comment!("@module axis_lasts");
         comment!("@about Ticks against too many of them.");
-        dff_setup!(self, clk, fewer, limited);
         self.limit_nibbles.clk.next = self.clk.val();
         self.limit_nibbles.rst.next = self.rst.val();
         self.limit_nibbles.turn.next = self.turn.val();

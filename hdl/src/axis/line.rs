@@ -3,17 +3,12 @@
 use crate::prelude::*;
 use crate::pulse_counter::GlitchFilter;
 
-#[derive(LogicBlock, Default)]
-pub(super) struct Line {
-    pub(super) clk: Signal<In, Clock>,
-    pub(super) rst: Signal<In, Bit>,
-    pub(super) pin: Signal<In, Bit>,
-    pub(super) ready: Signal<In, Bit>,
-    pub(super) filter_clocks: Signal<In, Bits<6>>,
-    pub(super) level: Signal<Out, Bit>,
+kernel! {
+    pub(super) struct Line;
 
-    synchroniser: Synchroniser,
-    filter: GlitchFilter,
+    inputs { rst: Bit, pin: Bit, ready: Bit, filter_clocks: Bits<6> }
+    outputs { level: Bit }
+    parts { synchroniser: Synchroniser, filter: GlitchFilter }
 }
 
 impl Logic for Line {

@@ -12,7 +12,6 @@ mod line;
 mod monitors;
 mod nibbles;
 mod nonzero;
-mod pins;
 mod size_limit;
 mod soft_limits;
 mod states;

@@ -2,18 +2,13 @@
 
 use crate::prelude::*;
 
-#[derive(LogicBlock, Default)]
-pub(super) struct Nibbles {
-    pub(super) clk: Signal<In, Clock>,
-    pub(super) rst: Signal<In, Bit>,
-    pub(super) turn: Signal<In, Bits<2>>,
-    pub(super) word: Signal<In, Bits<16>>,
-    pub(super) part: Signal<Out, Bits<4>>,
+kernel! {
+    pub(super) struct Nibbles;
 
-    part_q: Dff<Bits<4>>,
-
-    low: Signal<Local, Bits<4>>,
-    high: Signal<Local, Bits<4>>,
+    inputs { rst: Bit, turn: Bits<2>, word: Bits<16> }
+    outputs { part: Bits<4> }
+    registers { part_q: Bits<4> }
+    wires { low: Bits<4>, high: Bits<4> }
 }
 
 impl Logic for Nibbles {
@@ -21,7 +16,6 @@ impl Logic for Nibbles {
     fn update(&mut self) {
         comment!("@module axis_nibbles");
         comment!("@about Nibbles of half a word, lowest first.");
-        dff_setup!(self, clk, part_q);
         self.low.next = self.word.val().get_bits::<4>(0);
         self.high.next = self.word.val().get_bits::<4>(8);
         if self.turn.val().get_bit(0) {

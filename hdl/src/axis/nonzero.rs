@@ -2,16 +2,13 @@
 
 use crate::prelude::*;
 
-/// As `Larger`.
-#[derive(LogicBlock, Default)]
-pub(super) struct Nonzero {
-    pub(super) clk: Signal<In, Clock>,
-    pub(super) rst: Signal<In, Bit>,
-    pub(super) compares: Signal<In, Bit>,
-    pub(super) part: Signal<In, Bits<8>>,
-    pub(super) nonzero: Signal<Out, Bit>,
+kernel! {
+    /// As `Larger`.
+    pub(super) struct Nonzero;
 
-    nonzero_q: Dff<Bit>,
+    inputs { rst: Bit, compares: Bit, part: Bits<8> }
+    outputs { nonzero: Bit }
+    registers { nonzero_q: Bit }
 }
 
 impl Logic for Nonzero {
@@ -19,7 +16,6 @@ impl Logic for Nonzero {
     fn update(&mut self) {
         comment!("@module axis_nonzero");
         comment!("@about Is any byte other than 0?");
-        dff_setup!(self, clk, nonzero_q);
         self.nonzero_q.d.next = self.nonzero_q.q.val() | self.part.val().any();
         if !self.compares.val() {
             self.nonzero_q.d.next = false;

@@ -5,27 +5,23 @@ use super::larger::Larger;
 use super::nonzero::Nonzero;
 use crate::prelude::*;
 
-#[derive(LogicBlock, Default)]
-pub(super) struct SizeLimit {
-    pub(super) clk: Signal<In, Clock>,
-    pub(super) rst: Signal<In, Bit>,
-    pub(super) tick: Signal<In, Bit>,
-    pub(super) turn: Signal<In, Bits<2>>,
-    pub(super) compares: Signal<In, Bit>,
-    pub(super) number: Signal<In, Signed<32>>,
-    pub(super) limit: Signal<In, Bits<32>>,
-    /// A limit of 0 is one; otherwise it is none.
-    pub(super) zero_counts: Signal<In, Bit>,
-    pub(super) exceeds: Signal<Out, Bit>,
+kernel! {
+    pub(super) struct SizeLimit;
 
-    number_bytes: Bytes,
-    limit_bytes: Bytes,
-    larger: Larger,
-    limited: Nonzero,
-
-    negative: Dff<Bit>,
-
-    number_bits: Signal<Local, Bits<32>>,
+    inputs {
+        rst: Bit,
+        tick: Bit,
+        turn: Bits<2>,
+        compares: Bit,
+        number: Signed<32>,
+        limit: Bits<32>,
+        /// A limit of 0 is one; otherwise it is none.
+        zero_counts: Bit,
+    }
+    outputs { exceeds: Bit }
+    parts { number_bytes: Bytes, limit_bytes: Bytes, larger: Larger, limited: Nonzero }
+    registers { negative: Bit }
+    wires { number_bits: Bits<32> }
 }
 
 impl Logic for SizeLimit {
@@ -33,7 +29,6 @@ impl Logic for SizeLimit {
     fn update(&mut self) {
         comment!("@module axis_size_limit");
         comment!("@about A number's size against its limit.");
-        dff_setup!(self, clk, negative);
         self.number_bits.next = unsigned_cast(self.number.val());
         if self.tick.val() {
             self.negative.d.next = self.number_bits.val().get_bit(31);

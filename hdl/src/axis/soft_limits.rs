@@ -5,28 +5,29 @@ use super::larger::Larger;
 use super::nonzero::Nonzero;
 use crate::prelude::*;
 
-#[derive(LogicBlock, Default)]
-pub(super) struct SoftLimits {
-    pub(super) clk: Signal<In, Clock>,
-    pub(super) rst: Signal<In, Bit>,
-    pub(super) turn: Signal<In, Bits<2>>,
-    pub(super) compares: Signal<In, Bit>,
-    pub(super) signs: Signal<In, Bit>,
-    pub(super) reference_position: Signal<In, Signed<32>>,
-    pub(super) soft_limit_plus: Signal<In, Signed<32>>,
-    pub(super) soft_limit_minus: Signal<In, Signed<32>>,
-    pub(super) past_plus: Signal<Out, Bit>,
-    pub(super) past_minus: Signal<Out, Bit>,
+kernel! {
+    pub(super) struct SoftLimits;
 
-    reference_bytes: Bytes,
-    plus_bytes: Bytes,
-    minus_bytes: Bytes,
-    above: Larger,
-    below: Larger,
-    plus_limited: Nonzero,
-    minus_limited: Nonzero,
-
-    limited: Signal<Local, Bit>,
+    inputs {
+        rst: Bit,
+        turn: Bits<2>,
+        compares: Bit,
+        signs: Bit,
+        reference_position: Signed<32>,
+        soft_limit_plus: Signed<32>,
+        soft_limit_minus: Signed<32>,
+    }
+    outputs { past_plus: Bit, past_minus: Bit }
+    parts {
+        reference_bytes: Bytes,
+        plus_bytes: Bytes,
+        minus_bytes: Bytes,
+        above: Larger,
+        below: Larger,
+        plus_limited: Nonzero,
+        minus_limited: Nonzero,
+    }
+    wires { limited: Bit }
 }
 
 impl Logic for SoftLimits {

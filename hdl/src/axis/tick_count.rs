@@ -3,55 +3,24 @@
 use super::lasts::Lasts;
 use crate::prelude::*;
 
-/// A count of ticks that goes round as it is compared, and takes the tick in the first round.
-#[derive(LogicBlock)]
-pub(super) struct TickCount {
-    pub(super) clk: Signal<In, Clock>,
-    pub(super) rst: Signal<In, Bit>,
-    pub(super) tick: Signal<In, Bit>,
-    pub(super) turn: Signal<In, Bits<2>>,
-    pub(super) compares: Signal<In, Bit>,
-    /// Not while it goes round.
-    pub(super) clears: Signal<In, Bit>,
-    pub(super) limit: Signal<In, Bits<16>>,
-    pub(super) lasts: Signal<Out, Bit>,
+kernel! {
+    /// A count of ticks that goes round as it is compared, and takes the tick in the first round.
+    pub(super) struct TickCount;
 
-    against: Lasts,
-
-    count: Dff<Bits<16>>,
-    carry: Dff<Bits<1>>,
-    endless: Dff<Bit>,
-
-    nibble: Signal<Local, Bits<4>>,
-    counted: Signal<Local, Bits<5>>,
-
-    nothing: Constant<Bits<16>>,
-    no_carry: Constant<Bits<1>>,
-    one: Constant<Bits<1>>,
-}
-
-impl Default for TickCount {
-    fn default() -> Self {
-        Self {
-            clk: Signal::default(),
-            rst: Signal::default(),
-            tick: Signal::default(),
-            turn: Signal::default(),
-            compares: Signal::default(),
-            clears: Signal::default(),
-            limit: Signal::default(),
-            lasts: Signal::default(),
-            against: Lasts::default(),
-            count: Dff::default(),
-            carry: Dff::default(),
-            endless: Dff::default(),
-            nibble: Signal::default(),
-            counted: Signal::default(),
-            nothing: Constant::new(from_u64(0)),
-            no_carry: Constant::new(from_u64(0)),
-            one: Constant::new(from_u64(1)),
-        }
+    inputs {
+        rst: Bit,
+        tick: Bit,
+        turn: Bits<2>,
+        compares: Bit,
+        /// Not while it goes round.
+        clears: Bit,
+        limit: Bits<16>,
     }
+    outputs { lasts: Bit }
+    parts { against: Lasts }
+    registers { count: Bits<16>, carry: Bits<1>, endless: Bit }
+    wires { nibble: Bits<4>, counted: Bits<5> }
+    constants { nothing: Bits<16> = from_u64(0), no_carry: Bits<1> = from_u64(0), one: Bits<1> = from_u64(1) }
 }
 
 impl Logic for TickCount {
@@ -59,7 +28,6 @@ impl Logic for TickCount {
     fn update(&mut self) {
         comment!("@module axis_tick_count");
         comment!("@about Counts ticks, and whether they are many.");
-        dff_setup!(self, clk, count, carry, endless);
         self.nibble.next = self.count.q.val().get_bits::<4>(0);
         self.counted.next = bit_cast::<5, 4>(self.nibble.val()) + bit_cast::<5, 1>(self.carry.q.val());
         self.carry.d.next = self.no_carry.val();

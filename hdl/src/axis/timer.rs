@@ -3,65 +3,28 @@
 
 use crate::prelude::*;
 
-#[derive(LogicBlock)]
-pub(super) struct Timer {
-    pub(super) clk: Signal<In, Clock>,
-    pub(super) rst: Signal<In, Bit>,
-    pub(super) counts: Signal<In, Bit>,
-    /// Something is loaded in the next clock, and nothing in this one that is needed.
-    pub(super) clears: Signal<In, Bit>,
-    pub(super) load_release: Signal<In, Bit>,
-    pub(super) load_settle: Signal<In, Bit>,
-    pub(super) load_apply: Signal<In, Bit>,
-    pub(super) brake_release_ticks: Signal<In, Bits<16>>,
-    pub(super) brake_apply_ticks: Signal<In, Bits<16>>,
-    pub(super) settle_ticks: Signal<In, Bits<16>>,
-    pub(super) elapsed: Signal<Out, Bit>,
+kernel! {
+    pub(super) struct Timer;
 
-    left: Dff<Bits<16>>,
-    over: Dff<Bit>,
-
-    loads: Signal<Local, Bit>,
-    at_zero: Signal<Local, Bit>,
-    released: Signal<Local, Bits<16>>,
-    settled: Signal<Local, Bits<16>>,
-    applied: Signal<Local, Bits<16>>,
-    less_one: Signal<Local, Bits<16>>,
-    addend: Signal<Local, Bits<16>>,
-    sum: Signal<Local, Bits<17>>,
-
-    no_ticks: Constant<Bits<16>>,
-    minus_one: Constant<Bits<16>>,
-}
-
-impl Default for Timer {
-    fn default() -> Self {
-        Self {
-            clk: Signal::default(),
-            rst: Signal::default(),
-            counts: Signal::default(),
-            clears: Signal::default(),
-            load_release: Signal::default(),
-            load_settle: Signal::default(),
-            load_apply: Signal::default(),
-            brake_release_ticks: Signal::default(),
-            brake_apply_ticks: Signal::default(),
-            settle_ticks: Signal::default(),
-            elapsed: Signal::default(),
-            left: Dff::default(),
-            over: Dff::default(),
-            loads: Signal::default(),
-            at_zero: Signal::default(),
-            released: Signal::default(),
-            settled: Signal::default(),
-            applied: Signal::default(),
-            less_one: Signal::default(),
-            addend: Signal::default(),
-            sum: Signal::default(),
-            no_ticks: Constant::new(from_u64(0)),
-            minus_one: Constant::new(from_u64(0xffff)),
-        }
+    inputs {
+        rst: Bit,
+        counts: Bit,
+        /// Something is loaded in the next clock, and nothing in this one that is needed.
+        clears: Bit,
+        load_release: Bit,
+        load_settle: Bit,
+        load_apply: Bit,
+        brake_release_ticks: Bits<16>,
+        brake_apply_ticks: Bits<16>,
+        settle_ticks: Bits<16>,
     }
+    outputs { elapsed: Bit }
+    registers { left: Bits<16>, over: Bit }
+    wires {
+        loads: Bit, at_zero: Bit, released: Bits<16>, settled: Bits<16>, applied: Bits<16>,
+        less_one: Bits<16>, addend: Bits<16>, sum: Bits<17>,
+    }
+    constants { no_ticks: Bits<16> = from_u64(0), minus_one: Bits<16> = from_u64(0xffff) }
 }
 
 impl Logic for Timer {
@@ -69,7 +32,6 @@ impl Logic for Timer {
     fn update(&mut self) {
         comment!("@module axis_timer");
         comment!("@about Ticks of brake and shaper.");
-        dff_setup!(self, clk, left, over);
         self.loads.next = self.load_release.val() | self.load_settle.val() | self.load_apply.val();
         self.released.next = self.no_ticks.val();
         if self.load_release.val() {

@@ -14,118 +14,51 @@
 //! A delay is 1 to 2^A − 2: the word read is never the one that is written in the same clock.
 
 use crate::prelude::*;
-use crate::simulation::Pins;
 use posicast_model::rtl::cascade::CascadeConfig;
 
-/// W word, S sum of W + one bit per stage, A ring address, I stage index and ADDRESS = A + I bits.
-#[derive(LogicBlock)]
-pub(super) struct Cascade<const W: usize, const S: usize, const A: usize, const I: usize, const ADDRESS: usize> {
-    pub(super) clk: Signal<In, Clock>,
-    pub(super) rst: Signal<In, Bit>,
-    pub(super) strobe: Signal<In, Bit>,
-    pub(super) start: Signal<In, Bit>,
-    pub(super) x: Signal<In, Signed<W>>,
-    pub(super) clear_flags: Signal<In, Bit>,
-    pub(super) y: Signal<Out, Signed<W>>,
-    pub(super) valid: Signal<Out, Bit>,
-    pub(super) busy: Signal<Out, Bit>,
-    pub(super) overrun: Signal<Out, Bit>,
+kernel! {
+    /// W word, S sum of W + one bit per stage, A ring address, I stage index and ADDRESS = A + I bits.
+    ///
+    /// A cascade for `config`, whose sizes must not be above these.
+    pub(super) struct Cascade<const W: usize, const S: usize, const A: usize, const I: usize, const ADDRESS: usize>
+        (config: &CascadeConfig)
+        where S > W && ADDRESS == A + I;
+    raw ports;
 
-    delays: Rom<A, I>,
-    rings: Ram<S, ADDRESS>,
-
-    head: Dff<Bits<A>>,
-    age: Dff<Bits<A>>,
-    start_value: Dff<Signed<W>>,
-    stage: Dff<Bits<I>>,
-    sum: Dff<Signed<S>>,
-    earlier: Dff<Signed<S>>,
-    before_start: Dff<Bit>,
-    running: Dff<Bit>,
-    adding: Dff<Bit>,
-    finish: Dff<Bit>,
-    y_q: Dff<Signed<W>>,
-    valid_q: Dff<Bit>,
-    busy_q: Dff<Bit>,
-    overrun_q: Dff<Bit>,
-
-    take: Signal<Local, Bit>,
-    age_before: Signal<Local, Bits<A>>,
-    next_head: Signal<Local, Bits<A>>,
-    next_stage: Signal<Local, Bits<I>>,
-    back: Signal<Local, Bits<A>>,
-    base: Signal<Local, Bits<ADDRESS>>,
-    delayed: Signal<Local, Signed<S>>,
-    rounded: Signal<Local, Signed<S>>,
-
-    one_sample: Constant<Bits<A>>,
-    no_age: Constant<Bits<A>>,
-    full_age: Constant<Bits<A>>,
-    first_stage: Constant<Bits<I>>,
-    one_stage: Constant<Bits<I>>,
-    last_stage: Constant<Bits<I>>,
-    ring_bits: Constant<Bits<4>>,
-    half: Constant<Signed<S>>,
-    stages: Constant<Bits<5>>,
+    inputs { rst: Bit, strobe: Bit, start: Bit, x: Signed<W>, clear_flags: Bit }
+    outputs { y: Signed<W>, valid: Bit, busy: Bit, overrun: Bit }
+    parts {
+        delays: Rom<A, I> = delays_rom(config),
+        rings: Ram<S, ADDRESS>,
+    }
+    registers {
+        head: Bits<A>, age: Bits<A>, start_value: Signed<W>, stage: Bits<I>, sum: Signed<S>,
+        earlier: Signed<S>, before_start: Bit, running: Bit, adding: Bit, finish: Bit, y_q: Signed<W>,
+        valid_q: Bit, busy_q: Bit, overrun_q: Bit,
+    }
+    wires {
+        take: Bit, age_before: Bits<A>, next_head: Bits<A>, next_stage: Bits<I>, back: Bits<A>,
+        base: Bits<ADDRESS>, delayed: Signed<S>, rounded: Signed<S>,
+    }
+    constants {
+        one_sample: Bits<A> = from_u64(1),
+        no_age: Bits<A> = from_u64(0),
+        full_age: Bits<A> = from_u64((1 << config.ring_address_bits()) - 1),
+        first_stage: Bits<I> = from_u64(0),
+        one_stage: Bits<I> = from_u64(1),
+        last_stage: Bits<I> = from_u64(u64::from(config.stages()) - 1),
+        ring_bits: Bits<4> = from_u64(A as u64),
+        half: Signed<S> = from_i64(1 << (u64::from(config.stages()) - 1)),
+        stages: Bits<5> = from_u64(u64::from(config.stages())),
+    }
 }
 
-impl<const W: usize, const S: usize, const A: usize, const I: usize, const ADDRESS: usize>
-    Cascade<W, S, A, I, ADDRESS>
-{
-    /// A cascade for `config`, whose sizes must not be above these.
-    pub(super) fn new(config: &CascadeConfig) -> Self {
-        const { assert!(S > W && ADDRESS == A + I) };
-        let stages = u64::from(config.stages());
-        let word = |&delay: &u32| RomWord {
-            pattern: u64::from(delay),
-            meaning: format!("{delay} samples"),
-        };
-        Self {
-            clk: Signal::default(),
-            rst: Signal::default(),
-            strobe: Signal::default(),
-            start: Signal::default(),
-            x: Signal::default(),
-            clear_flags: Signal::default(),
-            y: Signal::default(),
-            valid: Signal::default(),
-            busy: Signal::default(),
-            overrun: Signal::default(),
-            delays: Rom::new("stage_delays", config.delays_samples().iter().map(word).collect()),
-            rings: Ram::default(),
-            head: Dff::default(),
-            age: Dff::default(),
-            start_value: Dff::default(),
-            stage: Dff::default(),
-            sum: Dff::default(),
-            earlier: Dff::default(),
-            before_start: Dff::default(),
-            running: Dff::default(),
-            adding: Dff::default(),
-            finish: Dff::default(),
-            y_q: Dff::default(),
-            valid_q: Dff::default(),
-            busy_q: Dff::default(),
-            overrun_q: Dff::default(),
-            take: Signal::default(),
-            age_before: Signal::default(),
-            next_head: Signal::default(),
-            next_stage: Signal::default(),
-            back: Signal::default(),
-            base: Signal::default(),
-            delayed: Signal::default(),
-            rounded: Signal::default(),
-            one_sample: Constant::new(from_u64(1)),
-            no_age: Constant::new(from_u64(0)),
-            full_age: Constant::new(from_u64((1 << config.ring_address_bits()) - 1)),
-            first_stage: Constant::new(from_u64(0)),
-            one_stage: Constant::new(from_u64(1)),
-            last_stage: Constant::new(from_u64(stages - 1)),
-            ring_bits: Constant::new(from_u64(A as u64)),
-            half: Constant::new(from_i64(1 << (stages - 1))),
-            stages: Constant::new(from_u64(stages)),
-        }
-    }
+fn delays_rom<const A: usize, const I: usize>(config: &CascadeConfig) -> Rom<A, I> {
+    let word = |&delay: &u32| RomWord {
+        pattern: u64::from(delay),
+        meaning: format!("{delay} samples"),
+    };
+    Rom::new("stage_delays", config.delays_samples().iter().map(word).collect())
 }
 
 impl<const W: usize, const S: usize, const A: usize, const I: usize, const ADDRESS: usize> Logic
@@ -134,24 +67,6 @@ impl<const W: usize, const S: usize, const A: usize, const I: usize, const ADDRE
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module cascade");
-        dff_setup!(
-            self,
-            clk,
-            head,
-            age,
-            start_value,
-            stage,
-            sum,
-            earlier,
-            before_start,
-            running,
-            adding,
-            finish,
-            y_q,
-            valid_q,
-            busy_q,
-            overrun_q
-        );
         self.delays.clk.next = self.clk.val();
         self.rings.clk.next = self.clk.val();
         self.next_stage.next = self.stage.q.val();
@@ -238,36 +153,5 @@ impl<const W: usize, const S: usize, const A: usize, const I: usize, const ADDRE
         self.valid.next = self.valid_q.q.val();
         self.busy.next = self.busy_q.q.val();
         self.overrun.next = self.overrun_q.q.val();
-    }
-}
-
-impl<const W: usize, const S: usize, const A: usize, const I: usize, const ADDRESS: usize> Pins
-    for Cascade<W, S, A, I, ADDRESS>
-{
-    fn set_clk(&mut self, level: bool) {
-        self.clk.next = level.into();
-    }
-
-    fn drive(&mut self, inputs: &[u64]) {
-        let &[rst, strobe, start, x, clear_flags] = inputs else {
-            return;
-        };
-        self.rst.next = rst & 1 != 0;
-        self.strobe.next = strobe & 1 != 0;
-        self.start.next = start & 1 != 0;
-        self.x.next = from_i64(x as i64);
-        self.clear_flags.next = clear_flags & 1 != 0;
-    }
-
-    fn read(&self, outputs: &mut [u64]) {
-        let shown = [
-            unsigned_cast(self.y.val()).into(),
-            u64::from(self.valid.val()),
-            u64::from(self.busy.val()),
-            u64::from(self.overrun.val()),
-        ];
-        for (output, value) in outputs.iter_mut().zip(shown) {
-            *output = value;
-        }
     }
 }

@@ -4,21 +4,8 @@ use crate::prelude::*;
 
 kernel! {
     pub(super) struct EncoderGenerator;
-    raw ports;
+    ports posicast_model::encoder_generator_ports;
 
-    inputs {
-        rst: Bit,
-        loop_back: Bit,
-        rate: Signed<32>,
-        index_every: Bits<16>,
-        pin_a: Bit,
-        pin_b: Bit,
-        pin_z: Bit,
-        pin_a_n: Bit,
-        pin_b_n: Bit,
-        pin_z_n: Bit,
-    }
-    outputs { a: Bit, b: Bit, z: Bit, a_n: Bit, b_n: Bit, z_n: Bit, generated_count: Signed<32> }
     registers { sum: Signed<64>, period: Bits<14>, line_a: Bit, line_b: Bit, line_z: Bit, moved: Bit }
     parts {
         shown_a: PinRegister,

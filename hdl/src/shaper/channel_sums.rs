@@ -18,139 +18,55 @@ use super::product::Product;
 use crate::prelude::*;
 use posicast_model::rtl::shaper::ShaperConfig;
 
-/// W word, P = W + 18 product, ACC = P + T + 1 accumulator bits, C channels, H = C − 1 results that wait for
-/// the last.
-#[derive(LogicBlock)]
-pub(super) struct ChannelSums<const W: usize, const P: usize, const ACC: usize, const C: usize, const H: usize> {
-    pub(super) clk: Signal<In, Clock>,
-    pub(super) rst: Signal<In, Bit>,
-    pub(super) begin_pass: Signal<In, Bit>,
-    pub(super) coefficient: Signal<In, Signed<18>>,
-    pub(super) sample: [Signal<In, Signed<W>>; C],
-    pub(super) blank: Signal<In, Bit>,
-    pub(super) sample_channel: Signal<In, Bits<2>>,
-    pub(super) newest: Signal<In, Signed<W>>,
-    pub(super) boundary: Signal<In, Bit>,
-    pub(super) start: Signal<In, Bit>,
-    pub(super) x: [Signal<In, Signed<W>>; C],
-    pub(super) clear_flags: Signal<In, Bit>,
-    pub(super) y: [Signal<Out, Signed<W>>; C],
-    pub(super) valid: Signal<Out, Bit>,
-    pub(super) busy: Signal<Out, Bit>,
-    pub(super) saturated: Signal<Out, Bit>,
+kernel! {
+    /// W word, P = W + 18 product, ACC = P + T + 1 accumulator bits, C channels, H = C − 1 results that wait for
+    /// the last.
+    pub(super) struct ChannelSums<const W: usize, const P: usize, const ACC: usize, const C: usize, const H: usize>
+        (config: &ShaperConfig);
 
-    product: Product<W, P, 1>,
-
-    coefficient_read: Dff<Signed<18>>,
-    coefficient_q: Dff<Signed<18>>,
-    blank_read: Dff<Bit>,
-    sample_q: Dff<Signed<W>>,
-    accumulator: Dff<Signed<ACC>>,
-    channel: Dff<Bits<2>>,
-    held: [Dff<Bits<W>>; H],
-    held_above: [Dff<Bit>; H],
-    held_below: [Dff<Bit>; H],
-    clamped: Dff<Bit>,
-    y_q: [Dff<Signed<W>>; C],
-    valid_q: Dff<Bit>,
-    busy_q: Dff<Bit>,
-    saturated_q: Dff<Bit>,
-
-    wide_product: Signal<Local, Signed<ACC>>,
-    operand: Signal<Local, Signed<W>>,
-    position: Signal<Local, Bits<W>>,
-    position_scaled: Signal<Local, Bits<ACC>>,
-    accumulator_bits: Signal<Local, Bits<ACC>>,
-    sign_bits: Signal<Local, Bits<ACC>>,
-    before_first: Signal<Local, Bit>,
-    wraps: Signal<Local, Bit>,
-    beyond: Signal<Local, Bit>,
-    above: Signal<Local, Bit>,
-    below: Signal<Local, Bit>,
-    result: Signal<Local, Bits<W>>,
-    cut_off: Signal<Local, Bit>,
-    shows: Signal<Local, Bit>,
-
-    half: Constant<Signed<ACC>>,
-    no_sample: Constant<Signed<W>>,
-    sign_mask: Constant<Bits<ACC>>,
-    all_clear: Constant<Bits<ACC>>,
-    top_bit: Constant<Bits<6>>,
-    y_max: Constant<Bits<W>>,
-    y_min: Constant<Bits<W>>,
-    no_result: Constant<Bits<W>>,
-    fraction: Constant<Bits<5>>,
-    modulo: Constant<Bit>,
-    first_channel: Constant<Bits<2>>,
-    one_channel: Constant<Bits<2>>,
-    last_channel: Constant<Bits<2>>,
-    no_channel: Constant<Bits<2>>,
-}
-
-impl<const W: usize, const P: usize, const ACC: usize, const C: usize, const H: usize> ChannelSums<W, P, ACC, C, H> {
-    pub(super) fn new(config: &ShaperConfig) -> Self {
-        let fraction = config.coefficient_fraction();
-        Self {
-            clk: Signal::default(),
-            rst: Signal::default(),
-            begin_pass: Signal::default(),
-            coefficient: Signal::default(),
-            sample: std::array::from_fn(|_| Signal::default()),
-            blank: Signal::default(),
-            sample_channel: Signal::default(),
-            newest: Signal::default(),
-            boundary: Signal::default(),
-            start: Signal::default(),
-            x: std::array::from_fn(|_| Signal::default()),
-            clear_flags: Signal::default(),
-            y: std::array::from_fn(|_| Signal::default()),
-            valid: Signal::default(),
-            busy: Signal::default(),
-            saturated: Signal::default(),
-            product: Product::default(),
-            coefficient_read: Dff::default(),
-            coefficient_q: Dff::default(),
-            blank_read: Dff::default(),
-            sample_q: Dff::default(),
-            accumulator: Dff::default(),
-            channel: Dff::default(),
-            held: std::array::from_fn(|_| Dff::default()),
-            held_above: std::array::from_fn(|_| Dff::default()),
-            held_below: std::array::from_fn(|_| Dff::default()),
-            clamped: Dff::default(),
-            y_q: std::array::from_fn(|_| Dff::default()),
-            valid_q: Dff::default(),
-            busy_q: Dff::default(),
-            saturated_q: Dff::default(),
-            wide_product: Signal::default(),
-            operand: Signal::default(),
-            position: Signal::default(),
-            position_scaled: Signal::default(),
-            accumulator_bits: Signal::default(),
-            sign_bits: Signal::default(),
-            before_first: Signal::default(),
-            wraps: Signal::default(),
-            beyond: Signal::default(),
-            above: Signal::default(),
-            below: Signal::default(),
-            result: Signal::default(),
-            cut_off: Signal::default(),
-            shows: Signal::default(),
-            half: Constant::new(from_i64(1 << (fraction - 1))),
-            no_sample: Constant::new(from_i64(0)),
-            sign_mask: Constant::new(from_u64(u64::MAX << (fraction + config.word_bits() - 1))),
-            all_clear: Constant::new(from_u64(0)),
-            top_bit: Constant::new(from_u64(ACC as u64 - 1)),
-            y_max: Constant::new(from_u64(config.word_max() as u64)),
-            y_min: Constant::new(from_u64(config.word_min() as u64)),
-            no_result: Constant::new(from_u64(0)),
-            fraction: Constant::new(from_u64(u64::from(fraction))),
-            modulo: Constant::new(config.motion().is_some_and(|motion| motion.modulo)),
-            first_channel: Constant::new(from_u64(0)),
-            one_channel: Constant::new(from_u64(1)),
-            last_channel: Constant::new(from_u64(C as u64 - 1)),
-            no_channel: Constant::new(from_u64(3)),
-        }
+    inputs {
+        rst: Bit,
+        begin_pass: Bit,
+        coefficient: Signed<18>,
+        sample[C]: Signed<W>,
+        blank: Bit,
+        sample_channel: Bits<2>,
+        newest: Signed<W>,
+        boundary: Bit,
+        start: Bit,
+        x[C]: Signed<W>,
+        clear_flags: Bit,
+    }
+    outputs { y[C]: Signed<W>, valid: Bit, busy: Bit, saturated: Bit }
+    parts { product: Product<W, P, 1> }
+    registers {
+        coefficient_read: Signed<18>, coefficient_q: Signed<18>, blank_read: Bit, sample_q: Signed<W>,
+        accumulator: Signed<ACC>, channel: Bits<2>,
+    }
+    parts { held[H]: Dff<Bits<W>>, held_above[H]: Dff<Bit>, held_below[H]: Dff<Bit> }
+    registers { clamped: Bit }
+    parts { y_q[C]: Dff<Signed<W>> }
+    registers { valid_q: Bit, busy_q: Bit, saturated_q: Bit }
+    wires {
+        wide_product: Signed<ACC>, operand: Signed<W>, position: Bits<W>, position_scaled: Bits<ACC>,
+        accumulator_bits: Bits<ACC>, sign_bits: Bits<ACC>, before_first: Bit, wraps: Bit, beyond: Bit,
+        above: Bit, below: Bit, result: Bits<W>, cut_off: Bit, shows: Bit,
+    }
+    constants {
+        half: Signed<ACC> = from_i64(1 << (config.coefficient_fraction() - 1)),
+        no_sample: Signed<W> = from_i64(0),
+        sign_mask: Bits<ACC> = from_u64(u64::MAX << (config.coefficient_fraction() + config.word_bits() - 1)),
+        all_clear: Bits<ACC> = from_u64(0),
+        top_bit: Bits<6> = from_u64(ACC as u64 - 1),
+        y_max: Bits<W> = from_u64(config.word_max() as u64),
+        y_min: Bits<W> = from_u64(config.word_min() as u64),
+        no_result: Bits<W> = from_u64(0),
+        fraction: Bits<5> = from_u64(u64::from(config.coefficient_fraction())),
+        modulo: Bit = config.motion().is_some_and(|motion| motion.modulo),
+        first_channel: Bits<2> = from_u64(0),
+        one_channel: Bits<2> = from_u64(1),
+        last_channel: Bits<2> = from_u64(C as u64 - 1),
+        no_channel: Bits<2> = from_u64(3),
     }
 }
 
@@ -164,20 +80,6 @@ impl<const W: usize, const P: usize, const ACC: usize, const C: usize, const H: 
         comment!("@about channel by channel, shown together.");
         comment!("@about A coefficient comes a clock before its");
         comment!("@about sample, the product 4 clocks after that.");
-        dff_setup!(
-            self,
-            clk,
-            coefficient_read,
-            coefficient_q,
-            blank_read,
-            sample_q,
-            accumulator,
-            channel,
-            clamped,
-            valid_q,
-            busy_q,
-            saturated_q
-        );
         for i in 0..H {
             self.held[i].clock.next = self.clk.val();
             self.held[i].rst.next = self.rst.val();

@@ -11,109 +11,42 @@
 use crate::prelude::*;
 use posicast_model::rtl::shaper::{ShaperConfig, swap_how};
 
-/// W word, A ring address bits.
-#[derive(LogicBlock)]
-pub(super) struct Handover<const W: usize, const A: usize> {
-    pub(super) clk: Signal<In, Clock>,
-    pub(super) rst: Signal<In, Bit>,
-    pub(super) strobe: Signal<In, Bit>,
-    pub(super) start: Signal<In, Bit>,
-    pub(super) position: Signal<In, Signed<W>>,
-    pub(super) accepted: Signal<In, Bit>,
-    pub(super) swap_how: Signal<In, Bits<2>>,
-    pub(super) swap_pending: Signal<In, Bit>,
-    pub(super) reach: Signal<In, Bits<A>>,
-    pub(super) old: Signal<In, Bit>,
-    pub(super) correcting: Signal<In, Bit>,
-    pub(super) of_position: Signal<In, Bit>,
-    pub(super) tap_coefficient: Signal<In, Signed<18>>,
-    pub(super) tap_delay: Signal<In, Bits<A>>,
-    pub(super) take: Signal<Out, Bit>,
-    pub(super) active: Signal<Out, Bit>,
-    pub(super) since: Signal<Out, Bits<A>>,
-    pub(super) newest: Signal<Out, Signed<W>>,
-    pub(super) coefficient: Signal<Out, Signed<18>>,
-    pub(super) delay: Signal<Out, Bits<A>>,
+kernel! {
+    /// W word, A ring address bits.
+    pub(super) struct Handover<const W: usize, const A: usize>(config: &ShaperConfig);
 
-    how: Dff<Bits<2>>,
-    still: Dff<Bits<A>>,
-    newest_q: Dff<Signed<W>>,
-    active_q: Dff<Bit>,
-    since_q: Dff<Bits<A>>,
-    old_read: Dff<Bit>,
-    old_tap: Dff<Bit>,
-    correction_read: Dff<Bit>,
-    correction: Dff<Bit>,
-    position_read: Dff<Bit>,
-    position_tap: Dff<Bit>,
-    coefficient_q: Dff<Signed<18>>,
-    delay_q: Dff<Bits<A>>,
-
-    settled: Signal<Local, Bit>,
-    begins: Signal<Local, Bit>,
-    next_since: Signal<Local, Bits<A>>,
-    below: Signal<Local, Bit>,
-    foreign: Signal<Local, Bit>,
-
-    hands_over: Constant<Bits<2>>,
-    when_settled: Constant<Bits<2>>,
-    moved: Constant<Bits<A>>,
-    one_sample: Constant<Bits<A>>,
-    for_ever: Constant<Bits<A>>,
-    no_coefficient: Constant<Signed<18>>,
-    minus_unity: Constant<Signed<18>>,
-}
-
-impl<const W: usize, const A: usize> Handover<W, A> {
-    pub(super) fn new(config: &ShaperConfig) -> Self {
-        let for_ever = u64::from(config.longest_delay_samples()) + 1;
-        Self {
-            clk: Signal::default(),
-            rst: Signal::default(),
-            strobe: Signal::default(),
-            start: Signal::default(),
-            position: Signal::default(),
-            accepted: Signal::default(),
-            swap_how: Signal::default(),
-            swap_pending: Signal::default(),
-            reach: Signal::default(),
-            old: Signal::default(),
-            correcting: Signal::default(),
-            of_position: Signal::default(),
-            tap_coefficient: Signal::default(),
-            tap_delay: Signal::default(),
-            take: Signal::default(),
-            active: Signal::default(),
-            since: Signal::default(),
-            newest: Signal::default(),
-            coefficient: Signal::default(),
-            delay: Signal::default(),
-            how: Dff::default(),
-            still: Dff::new(from_u64(for_ever)),
-            newest_q: Dff::default(),
-            active_q: Dff::default(),
-            since_q: Dff::default(),
-            old_read: Dff::default(),
-            old_tap: Dff::default(),
-            correction_read: Dff::default(),
-            correction: Dff::default(),
-            position_read: Dff::default(),
-            position_tap: Dff::default(),
-            coefficient_q: Dff::default(),
-            delay_q: Dff::default(),
-            settled: Signal::default(),
-            begins: Signal::default(),
-            next_since: Signal::default(),
-            below: Signal::default(),
-            foreign: Signal::default(),
-            hands_over: Constant::new(from_u64(u64::from(swap_how::HANDOVER))),
-            when_settled: Constant::new(from_u64(u64::from(swap_how::WHEN_SETTLED))),
-            moved: Constant::new(from_u64(0)),
-            one_sample: Constant::new(from_u64(1)),
-            for_ever: Constant::new(from_u64(for_ever)),
-            no_coefficient: Constant::new(from_i64(0)),
-            minus_unity: Constant::new(from_i64(-(1 << config.coefficient_fraction()))),
-        }
+    inputs {
+        rst: Bit,
+        strobe: Bit,
+        start: Bit,
+        position: Signed<W>,
+        accepted: Bit,
+        swap_how: Bits<2>,
+        swap_pending: Bit,
+        reach: Bits<A>,
+        old: Bit,
+        correcting: Bit,
+        of_position: Bit,
+        tap_coefficient: Signed<18>,
+        tap_delay: Bits<A>,
+    }
+    outputs { take: Bit, active: Bit, since: Bits<A>, newest: Signed<W>, coefficient: Signed<18>, delay: Bits<A> }
+    registers {
+        how: Bits<2>,
+        still: Bits<A> = from_u64(u64::from(config.longest_delay_samples()) + 1),
+        newest_q: Signed<W>, active_q: Bit, since_q: Bits<A>, old_read: Bit, old_tap: Bit,
+        correction_read: Bit, correction: Bit, position_read: Bit, position_tap: Bit,
+        coefficient_q: Signed<18>, delay_q: Bits<A>,
+    }
+    wires { settled: Bit, begins: Bit, next_since: Bits<A>, below: Bit, foreign: Bit }
+    constants {
+        hands_over: Bits<2> = from_u64(u64::from(swap_how::HANDOVER)),
+        when_settled: Bits<2> = from_u64(u64::from(swap_how::WHEN_SETTLED)),
+        moved: Bits<A> = from_u64(0),
+        one_sample: Bits<A> = from_u64(1),
+        for_ever: Bits<A> = from_u64(u64::from(config.longest_delay_samples()) + 1),
+        no_coefficient: Signed<18> = from_i64(0),
+        minus_unity: Signed<18> = from_i64(-(1 << config.coefficient_fraction())),
     }
 }
 
@@ -123,23 +56,6 @@ impl<const W: usize, const A: usize> Logic for Handover<W, A> {
         comment!("@module handover_${width position}x${words delay}_f${log2 minus_unity}");
         comment!("@about When a swap takes effect, and how long");
         comment!("@about two tables share the history.");
-        dff_setup!(
-            self,
-            clk,
-            how,
-            still,
-            newest_q,
-            active_q,
-            since_q,
-            old_read,
-            old_tap,
-            correction_read,
-            correction,
-            position_read,
-            position_tap,
-            coefficient_q,
-            delay_q
-        );
 
         comment!("How long the position has stood still");
         if self.strobe.val() {

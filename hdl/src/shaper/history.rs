@@ -13,61 +13,19 @@
 use crate::prelude::*;
 use posicast_model::rtl::shaper::ShaperConfig;
 
-/// W word, A ring address bits, C channels.
-#[derive(LogicBlock)]
-pub(super) struct History<const W: usize, const A: usize, const C: usize> {
-    pub(super) clk: Signal<In, Clock>,
-    pub(super) rst: Signal<In, Bit>,
-    pub(super) strobe: Signal<In, Bit>,
-    pub(super) start: Signal<In, Bit>,
-    pub(super) x: [Signal<In, Signed<W>>; C],
-    pub(super) delay: Signal<In, Bits<A>>,
-    pub(super) sample: [Signal<Out, Signed<W>>; C],
-    pub(super) blank: Signal<Out, Bit>,
+kernel! {
+    /// W word, A ring address bits, C channels.
+    pub(super) struct History<const W: usize, const A: usize, const C: usize>(config: &ShaperConfig);
 
-    ring: [Ram<W, A>; C],
-
-    head: Dff<Bits<A>>,
-    age: Dff<Bits<A>>,
-    origin: Dff<Bits<A>>,
-    begun: Dff<Bit>,
-    started: Dff<Bit>,
-
-    writes: Signal<Local, Bit>,
-    next_head: Signal<Local, Bits<A>>,
-    before_start: Signal<Local, Bit>,
-    address: Signal<Local, Bits<A>>,
-
-    one_sample: Constant<Bits<A>>,
-    no_age: Constant<Bits<A>>,
-    full_age: Constant<Bits<A>>,
-}
-
-impl<const W: usize, const A: usize, const C: usize> History<W, A, C> {
-    pub(super) fn new(config: &ShaperConfig) -> Self {
-        Self {
-            clk: Signal::default(),
-            rst: Signal::default(),
-            strobe: Signal::default(),
-            start: Signal::default(),
-            x: std::array::from_fn(|_| Signal::default()),
-            delay: Signal::default(),
-            sample: std::array::from_fn(|_| Signal::default()),
-            blank: Signal::default(),
-            ring: std::array::from_fn(|_| Ram::default()),
-            head: Dff::default(),
-            age: Dff::default(),
-            origin: Dff::default(),
-            begun: Dff::default(),
-            started: Dff::default(),
-            writes: Signal::default(),
-            next_head: Signal::default(),
-            before_start: Signal::default(),
-            address: Signal::default(),
-            one_sample: Constant::new(from_u64(1)),
-            no_age: Constant::new(from_u64(0)),
-            full_age: Constant::new(from_u64(u64::from(config.longest_delay_samples()) + 1)),
-        }
+    inputs { rst: Bit, strobe: Bit, start: Bit, x[C]: Signed<W>, delay: Bits<A> }
+    outputs { sample[C]: Signed<W>, blank: Bit }
+    parts { ring[C]: Ram<W, A> }
+    registers { head: Bits<A>, age: Bits<A>, origin: Bits<A>, begun: Bit, started: Bit }
+    wires { writes: Bit, next_head: Bits<A>, before_start: Bit, address: Bits<A> }
+    constants {
+        one_sample: Bits<A> = from_u64(1),
+        no_age: Bits<A> = from_u64(0),
+        full_age: Bits<A> = from_u64(u64::from(config.longest_delay_samples()) + 1),
     }
 }
 
@@ -79,7 +37,6 @@ impl<const W: usize, const A: usize, const C: usize> Logic for History<W, A, C> 
         comment!("@about ring behind its word, which also stands");
         comment!("@about for all before: 0 if there was none.");
         comment!("@about sample: that of delay one clock before.");
-        dff_setup!(self, clk, head, age, origin, begun, started);
 
         comment!("A strobe adds x; a start too, and forgets");
         self.writes.next = self.strobe.val() | self.start.val();

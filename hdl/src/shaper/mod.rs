@@ -12,7 +12,6 @@ mod handover;
 mod history;
 mod kernel;
 mod motion;
-mod motion_pins;
 mod product;
 mod tap_banks;
 mod weighted_sum;

@@ -24,147 +24,67 @@ use super::tap_banks::TapBanks;
 use crate::prelude::*;
 use posicast_model::rtl::shaper::ShaperConfig;
 
-/// W word, P = W + 18 product, ACC = P + T + 1 accumulator, A ring address, T index, COUNT = T + 1, SUM = 18 + T and
-/// WORD = 18 + A bits, C channels, H = C − 1.
-#[derive(LogicBlock)]
-pub(super) struct MotionShaper<
-    const W: usize,
-    const P: usize,
-    const ACC: usize,
-    const A: usize,
-    const T: usize,
-    const COUNT: usize,
-    const SUM: usize,
-    const WORD: usize,
-    const C: usize,
-    const H: usize,
-> {
-    pub(super) clk: Signal<In, Clock>,
-    pub(super) rst: Signal<In, Bit>,
-    pub(super) strobe: Signal<In, Bit>,
-    pub(super) start: Signal<In, Bit>,
-    pub(super) x: [Signal<In, Signed<W>>; C],
-    pub(super) clear_flags: Signal<In, Bit>,
-    pub(super) tap_write: Signal<In, Bit>,
-    pub(super) tap_bank: Signal<In, Bits<2>>,
-    pub(super) tap_index: Signal<In, Bits<T>>,
-    pub(super) tap_coefficient: Signal<In, Signed<18>>,
-    pub(super) tap_delay: Signal<In, Bits<A>>,
-    pub(super) swap: Signal<In, Bit>,
-    pub(super) swap_bank: Signal<In, Bits<2>>,
-    pub(super) swap_how: Signal<In, Bits<2>>,
-    pub(super) y: [Signal<Out, Signed<W>>; C],
-    pub(super) valid: Signal<Out, Bit>,
-    pub(super) saturated: Signal<Out, Bit>,
-    pub(super) busy: Signal<Out, Bit>,
-    pub(super) overrun: Signal<Out, Bit>,
-    pub(super) swap_pending: Signal<Out, Bit>,
-    pub(super) bank: Signal<Out, Bits<2>>,
-    pub(super) refused: Signal<Out, Bit>,
-
-    banks: TapBanks<A, T, COUNT, SUM, WORD>,
-    handover: Handover<W, A>,
-    history: History<W, A, C>,
-    sums: ChannelSums<W, P, ACC, C, H>,
-
-    tap: Dff<Bits<T>>,
-    running: Dff<Bit>,
-    channel: Dff<Bits<2>>,
-    second: Dff<Bit>,
-    correcting: Dff<Bit>,
-    lasts: Dff<Bits<9>>,
-    sample_channel: Dff<Bits<2>>,
-    overrun_q: Dff<Bit>,
-
-    tap_number: Signal<Local, Bits<COUNT>>,
-    old: Signal<Local, Bit>,
-    of_position: Signal<Local, Bit>,
-    table_ends: Signal<Local, Bit>,
-    ends: Signal<Local, Bit>,
-    begin_lasts: Signal<Local, Bits<9>>,
-
-    first_tap: Constant<Bits<T>>,
-    one_tap: Constant<Bits<T>>,
-    one_more: Constant<Bits<COUNT>>,
-    first_channel: Constant<Bits<2>>,
-    one_channel: Constant<Bits<2>>,
-    last_channel: Constant<Bits<2>>,
-    no_channel: Constant<Bits<2>>,
-    no_stage: Constant<Bits<9>>,
-    first_stage: Constant<Bits<9>>,
-    second_stage: Constant<Bits<9>>,
-    unknown_how: Constant<Bits<2>>,
-}
-
-impl<
-    const W: usize,
-    const P: usize,
-    const ACC: usize,
-    const A: usize,
-    const T: usize,
-    const COUNT: usize,
-    const SUM: usize,
-    const WORD: usize,
-    const C: usize,
-    const H: usize,
-> MotionShaper<W, P, ACC, A, T, COUNT, SUM, WORD, C, H>
-{
+kernel! {
+    /// W word, P = W + 18 product, ACC = P + T + 1 accumulator, A ring address, T index, COUNT = T + 1, SUM = 18 + T and
+    /// WORD = 18 + A bits, C channels, H = C − 1.
+    ///
     /// A shaper for `config`, whose sizes must not be above these, and whose word must be W bits if its position wraps.
-    pub(super) fn new(config: &ShaperConfig) -> Self {
-        const { assert!(P == W + 18 && ACC == P + T + 1 && C <= 3 && H + 1 == C) };
-        Self {
-            clk: Signal::default(),
-            rst: Signal::default(),
-            strobe: Signal::default(),
-            start: Signal::default(),
-            x: std::array::from_fn(|_| Signal::default()),
-            clear_flags: Signal::default(),
-            tap_write: Signal::default(),
-            tap_bank: Signal::default(),
-            tap_index: Signal::default(),
-            tap_coefficient: Signal::default(),
-            tap_delay: Signal::default(),
-            swap: Signal::default(),
-            swap_bank: Signal::default(),
-            swap_how: Signal::default(),
-            y: std::array::from_fn(|_| Signal::default()),
-            valid: Signal::default(),
-            saturated: Signal::default(),
-            busy: Signal::default(),
-            overrun: Signal::default(),
-            swap_pending: Signal::default(),
-            bank: Signal::default(),
-            refused: Signal::default(),
-            banks: TapBanks::new(config),
-            handover: Handover::new(config),
-            history: History::new(config),
-            sums: ChannelSums::new(config),
-            tap: Dff::default(),
-            running: Dff::default(),
-            channel: Dff::default(),
-            second: Dff::default(),
-            correcting: Dff::default(),
-            lasts: Dff::default(),
-            sample_channel: Dff::default(),
-            overrun_q: Dff::default(),
-            tap_number: Signal::default(),
-            old: Signal::default(),
-            of_position: Signal::default(),
-            table_ends: Signal::default(),
-            ends: Signal::default(),
-            begin_lasts: Signal::default(),
-            first_tap: Constant::new(from_u64(0)),
-            one_tap: Constant::new(from_u64(1)),
-            one_more: Constant::new(from_u64(1)),
-            first_channel: Constant::new(from_u64(0)),
-            one_channel: Constant::new(from_u64(1)),
-            last_channel: Constant::new(from_u64(C as u64 - 1)),
-            no_channel: Constant::new(from_u64(3)),
-            no_stage: Constant::new(from_u64(0)),
-            first_stage: Constant::new(from_u64(1)),
-            second_stage: Constant::new(from_u64(2)),
-            unknown_how: Constant::new(from_u64(3)),
-        }
+    pub(super) struct MotionShaper<const W: usize, const P: usize, const ACC: usize, const A: usize, const T: usize,
+        const COUNT: usize, const SUM: usize, const WORD: usize, const C: usize, const H: usize>
+        (config: &ShaperConfig)
+        where P == W + 18 && ACC == P + T + 1 && C <= 3 && H + 1 == C;
+    raw ports;
+
+    inputs {
+        rst: Bit,
+        strobe: Bit,
+        start: Bit,
+        x[C]: Signed<W>,
+        clear_flags: Bit,
+        tap_write: Bit,
+        tap_bank: Bits<2>,
+        tap_index: Bits<T>,
+        tap_coefficient: Signed<18>,
+        tap_delay: Bits<A>,
+        swap: Bit,
+        swap_bank: Bits<2>,
+        swap_how: Bits<2>,
+    }
+    outputs {
+        y[C]: Signed<W>,
+        valid: Bit,
+        saturated: Bit,
+        busy: Bit,
+        overrun: Bit,
+        swap_pending: Bit,
+        bank: Bits<2>,
+        refused: Bit,
+    }
+    parts {
+        banks: TapBanks<A, T, COUNT, SUM, WORD> = TapBanks::new(config),
+        handover: Handover<W, A> = Handover::new(config),
+        history: History<W, A, C> = History::new(config),
+        sums: ChannelSums<W, P, ACC, C, H> = ChannelSums::new(config),
+    }
+    registers {
+        tap: Bits<T>, running: Bit, channel: Bits<2>, second: Bit, correcting: Bit, lasts: Bits<9>,
+        sample_channel: Bits<2>, overrun_q: Bit,
+    }
+    wires {
+        tap_number: Bits<COUNT>, old: Bit, of_position: Bit, table_ends: Bit, ends: Bit, begin_lasts: Bits<9>,
+    }
+    constants {
+        first_tap: Bits<T> = from_u64(0),
+        one_tap: Bits<T> = from_u64(1),
+        one_more: Bits<COUNT> = from_u64(1),
+        first_channel: Bits<2> = from_u64(0),
+        one_channel: Bits<2> = from_u64(1),
+        last_channel: Bits<2> = from_u64(C as u64 - 1),
+        no_channel: Bits<2> = from_u64(3),
+        no_stage: Bits<9> = from_u64(0),
+        first_stage: Bits<9> = from_u64(1),
+        second_stage: Bits<9> = from_u64(2),
+        unknown_how: Bits<2> = from_u64(3),
     }
 }
 
@@ -184,18 +104,6 @@ impl<
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module shaper");
-        dff_setup!(
-            self,
-            clk,
-            tap,
-            running,
-            channel,
-            second,
-            correcting,
-            lasts,
-            sample_channel,
-            overrun_q
-        );
 
         comment!("The tables: the word of tap, two clocks later");
         self.of_position.next = self.channel.q.val() == self.first_channel.val();

@@ -5,51 +5,22 @@
 
 use crate::prelude::*;
 
-/// W ≤ 32 word, P = W + 18 product bits; U = 1: two multipliers, 0: one for W ≤ 17.
-#[derive(LogicBlock)]
-pub(super) struct Product<const W: usize, const P: usize, const U: usize> {
-    pub(super) clk: Signal<In, Clock>,
-    pub(super) rst: Signal<In, Bit>,
-    pub(super) sample: Signal<In, Signed<W>>,
-    pub(super) coefficient: Signal<In, Signed<18>>,
-    pub(super) product: Signal<Out, Signed<P>>,
+kernel! {
+    /// W ≤ 32 word, P = W + 18 product bits; U = 1: two multipliers, 0: one for W ≤ 17.
+    pub(super) struct Product<const W: usize, const P: usize, const U: usize>
+        where W <= 32 && P == W + 18 && (U == 1 || (U == 0 && W <= 17));
 
-    lower: SMul<18, 18, 36>,
-    upper: [SMul<15, 18, 33>; U],
-    product_q: Dff<Bits<P>>,
-
-    word: Signal<Local, Signed<32>>,
-    word_bits: Signal<Local, Bits<32>>,
-    lower_part: Signal<Local, Bits<18>>,
-    wide_lower: Signal<Local, Signed<P>>,
-    wide_upper: Signal<Local, Signed<P>>,
-    upper_bits: Signal<Local, Bits<P>>,
-
-    lower_mask: Constant<Bits<18>>,
-    no_product: Constant<Signed<P>>,
-}
-
-impl<const W: usize, const P: usize, const U: usize> Default for Product<W, P, U> {
-    fn default() -> Self {
-        const { assert!(W <= 32 && P == W + 18 && (U == 1 || (U == 0 && W <= 17))) };
-        Self {
-            clk: Signal::default(),
-            rst: Signal::default(),
-            sample: Signal::default(),
-            coefficient: Signal::default(),
-            product: Signal::default(),
-            lower: SMul::default(),
-            upper: std::array::from_fn(|_| SMul::default()),
-            product_q: Dff::default(),
-            word: Signal::default(),
-            word_bits: Signal::default(),
-            lower_part: Signal::default(),
-            wide_lower: Signal::default(),
-            wide_upper: Signal::default(),
-            upper_bits: Signal::default(),
-            lower_mask: Constant::new(from_u64(if U == 0 { 0x3ffff } else { 0x1ffff })),
-            no_product: Constant::new(from_i64(0)),
-        }
+    inputs { rst: Bit, sample: Signed<W>, coefficient: Signed<18> }
+    outputs { product: Signed<P> }
+    parts { lower: SMul<18, 18, 36>, upper[U]: SMul<15, 18, 33> }
+    registers { product_q: Bits<P> }
+    wires {
+        word: Signed<32>, word_bits: Bits<32>, lower_part: Bits<18>, wide_lower: Signed<P>,
+        wide_upper: Signed<P>, upper_bits: Bits<P>,
+    }
+    constants {
+        lower_mask: Bits<18> = from_u64(if U == 0 { 0x3ffff } else { 0x1ffff }),
+        no_product: Signed<P> = from_i64(0),
     }
 }
 
@@ -58,7 +29,6 @@ impl<const W: usize, const P: usize, const U: usize> Logic for Product<W, P, U> 
     fn update(&mut self) {
         comment!("@module product_${width sample}");
         comment!("@about coefficient * sample, 3 clocks after both.");
-        dff_setup!(self, clk, product_q);
 
         comment!("The lower 17 bits, or all of a short word");
         self.word.next = signed_bit_cast::<32, W>(self.sample.val());

@@ -18,168 +18,67 @@ use crate::prelude::*;
 use posicast_model::rtl::shaper::ShaperConfig;
 use posicast_model::taps::COEFFICIENT_BITS;
 
-/// A ring address, T index, COUNT = T + 1, SUM = 18 + T, WORD = 18 + A bits.
-#[derive(LogicBlock)]
-pub(super) struct TapBanks<const A: usize, const T: usize, const COUNT: usize, const SUM: usize, const WORD: usize> {
-    pub(super) clk: Signal<In, Clock>,
-    pub(super) rst: Signal<In, Bit>,
-    pub(super) strobe: Signal<In, Bit>,
-    pub(super) clear_flags: Signal<In, Bit>,
-    pub(super) tap_write: Signal<In, Bit>,
-    pub(super) tap_bank: Signal<In, Bits<2>>,
-    pub(super) tap_index: Signal<In, Bits<T>>,
-    pub(super) tap_coefficient: Signal<In, Signed<18>>,
-    pub(super) tap_delay: Signal<In, Bits<A>>,
-    pub(super) swap: Signal<In, Bit>,
-    pub(super) swap_bank: Signal<In, Bits<2>>,
-    pub(super) known: Signal<In, Bit>,
-    pub(super) take: Signal<In, Bit>,
-    pub(super) locked: Signal<In, Bit>,
-    pub(super) old: Signal<In, Bit>,
-    pub(super) tap: Signal<In, Bits<T>>,
-    pub(super) coefficient: Signal<Out, Signed<18>>,
-    pub(super) delay: Signal<Out, Bits<A>>,
-    pub(super) taps: Signal<Out, Bits<COUNT>>,
-    pub(super) accepted: Signal<Out, Bit>,
-    pub(super) reach: Signal<Out, Bits<A>>,
-    pub(super) swap_pending: Signal<Out, Bit>,
-    pub(super) bank: Signal<Out, Bits<2>>,
-    pub(super) refused: Signal<Out, Bit>,
+kernel! {
+    /// A ring address, T index, COUNT = T + 1, SUM = 18 + T, WORD = 18 + A bits.
+    pub(super) struct TapBanks<const A: usize, const T: usize, const COUNT: usize, const SUM: usize, const WORD: usize>
+        (config: &ShaperConfig)
+        where COUNT == T + 1 && SUM == 18 + T && WORD == 18 + A;
 
-    machine_taps: Rom<WORD, T>,
-    loaded_taps: Ram<WORD, COUNT>,
-
-    taps_1: Dff<Bits<COUNT>>,
-    taps_2: Dff<Bits<COUNT>>,
-    sum_1: Dff<Signed<SUM>>,
-    sum_2: Dff<Signed<SUM>>,
-    longest_1: Dff<Bits<A>>,
-    longest_2: Dff<Bits<A>>,
-    active: Dff<Bits<2>>,
-    previous: Dff<Bits<2>>,
-    upcoming: Dff<Bits<2>>,
-    pending: Dff<Bit>,
-    reach_q: Dff<Bits<A>>,
-    old_q: Dff<Bit>,
-    word: Dff<Bits<WORD>>,
-    refused_q: Dff<Bit>,
-
-    taps_so_far: Signal<Local, Bits<COUNT>>,
-    sum_so_far: Signal<Local, Signed<SUM>>,
-    longest_so_far: Signal<Local, Bits<A>>,
-    index: Signal<Local, Bits<COUNT>>,
-    begins: Signal<Local, Bit>,
-    loadable: Signal<Local, Bit>,
-    free: Signal<Local, Bit>,
-    at_rest: Signal<Local, Bit>,
-    in_reach: Signal<Local, Bit>,
-    write_taken: Signal<Local, Bit>,
-    new_taps: Signal<Local, Bits<COUNT>>,
-    new_sum: Signal<Local, Signed<SUM>>,
-    new_longest: Signal<Local, Bits<A>>,
-    addend: Signal<Local, Signed<SUM>>,
-    swap_taken: Signal<Local, Bit>,
-    active_longest: Signal<Local, Bits<A>>,
-    swap_longest: Signal<Local, Bits<A>>,
-    read_bank: Signal<Local, Bits<2>>,
-    word_bank: Signal<Local, Bits<2>>,
-    write_address: Signal<Local, Bits<COUNT>>,
-    read_address: Signal<Local, Bits<COUNT>>,
-    coefficient_bits: Signal<Local, Bits<18>>,
-
-    bank_rom: Constant<Bits<2>>,
-    bank_1: Constant<Bits<2>>,
-    bank_2: Constant<Bits<2>>,
-    upper_half: Constant<Bits<COUNT>>,
-    one_tap: Constant<Bits<COUNT>>,
-    machine_count: Constant<Bits<COUNT>>,
-    machine_longest: Constant<Bits<A>>,
-    forbidden_delay: Constant<Bits<A>>,
-    no_delay: Constant<Bits<A>>,
-    no_sum: Constant<Signed<SUM>>,
-    unity: Constant<Signed<SUM>>,
-}
-
-impl<const A: usize, const T: usize, const COUNT: usize, const SUM: usize, const WORD: usize>
-    TapBanks<A, T, COUNT, SUM, WORD>
-{
-    pub(super) fn new(config: &ShaperConfig) -> Self {
-        const { assert!(COUNT == T + 1 && SUM == 18 + T && WORD == 18 + A) };
-        Self {
-            clk: Signal::default(),
-            rst: Signal::default(),
-            strobe: Signal::default(),
-            clear_flags: Signal::default(),
-            tap_write: Signal::default(),
-            tap_bank: Signal::default(),
-            tap_index: Signal::default(),
-            tap_coefficient: Signal::default(),
-            tap_delay: Signal::default(),
-            swap: Signal::default(),
-            swap_bank: Signal::default(),
-            known: Signal::default(),
-            take: Signal::default(),
-            locked: Signal::default(),
-            old: Signal::default(),
-            tap: Signal::default(),
-            coefficient: Signal::default(),
-            delay: Signal::default(),
-            taps: Signal::default(),
-            accepted: Signal::default(),
-            reach: Signal::default(),
-            swap_pending: Signal::default(),
-            bank: Signal::default(),
-            refused: Signal::default(),
-            machine_taps: Rom::new("machine_taps", rom_words(config)),
-            loaded_taps: Ram::default(),
-            taps_1: Dff::default(),
-            taps_2: Dff::default(),
-            sum_1: Dff::default(),
-            sum_2: Dff::default(),
-            longest_1: Dff::default(),
-            longest_2: Dff::default(),
-            active: Dff::default(),
-            previous: Dff::default(),
-            upcoming: Dff::default(),
-            pending: Dff::default(),
-            reach_q: Dff::default(),
-            old_q: Dff::default(),
-            word: Dff::default(),
-            refused_q: Dff::default(),
-            taps_so_far: Signal::default(),
-            sum_so_far: Signal::default(),
-            longest_so_far: Signal::default(),
-            index: Signal::default(),
-            begins: Signal::default(),
-            loadable: Signal::default(),
-            free: Signal::default(),
-            at_rest: Signal::default(),
-            in_reach: Signal::default(),
-            write_taken: Signal::default(),
-            new_taps: Signal::default(),
-            new_sum: Signal::default(),
-            new_longest: Signal::default(),
-            addend: Signal::default(),
-            swap_taken: Signal::default(),
-            active_longest: Signal::default(),
-            swap_longest: Signal::default(),
-            read_bank: Signal::default(),
-            word_bank: Signal::default(),
-            write_address: Signal::default(),
-            read_address: Signal::default(),
-            coefficient_bits: Signal::default(),
-            bank_rom: Constant::new(from_u64(0)),
-            bank_1: Constant::new(from_u64(1)),
-            bank_2: Constant::new(from_u64(2)),
-            upper_half: Constant::new(from_u64(u64::from(config.most_taps()))),
-            one_tap: Constant::new(from_u64(1)),
-            machine_count: Constant::new(from_u64(config.table().taps().len() as u64)),
-            machine_longest: Constant::new(from_u64(u64::from(config.table().longest_delay_samples()))),
-            forbidden_delay: Constant::new(from_u64(u64::from(config.longest_delay_samples()) + 1)),
-            no_delay: Constant::new(from_u64(0)),
-            no_sum: Constant::new(from_i64(0)),
-            unity: Constant::new(from_i64(1 << config.coefficient_fraction())),
-        }
+    inputs {
+        rst: Bit,
+        strobe: Bit,
+        clear_flags: Bit,
+        tap_write: Bit,
+        tap_bank: Bits<2>,
+        tap_index: Bits<T>,
+        tap_coefficient: Signed<18>,
+        tap_delay: Bits<A>,
+        swap: Bit,
+        swap_bank: Bits<2>,
+        known: Bit,
+        take: Bit,
+        locked: Bit,
+        old: Bit,
+        tap: Bits<T>,
+    }
+    outputs {
+        coefficient: Signed<18>,
+        delay: Bits<A>,
+        taps: Bits<COUNT>,
+        accepted: Bit,
+        reach: Bits<A>,
+        swap_pending: Bit,
+        bank: Bits<2>,
+        refused: Bit,
+    }
+    parts {
+        machine_taps: Rom<WORD, T> = Rom::new("machine_taps", rom_words(config)),
+        loaded_taps: Ram<WORD, COUNT>,
+    }
+    registers {
+        taps_1: Bits<COUNT>, taps_2: Bits<COUNT>, sum_1: Signed<SUM>, sum_2: Signed<SUM>, longest_1: Bits<A>,
+        longest_2: Bits<A>, active: Bits<2>, previous: Bits<2>, upcoming: Bits<2>, pending: Bit,
+        reach_q: Bits<A>, old_q: Bit, word: Bits<WORD>, refused_q: Bit,
+    }
+    wires {
+        taps_so_far: Bits<COUNT>, sum_so_far: Signed<SUM>, longest_so_far: Bits<A>, index: Bits<COUNT>,
+        begins: Bit, loadable: Bit, free: Bit, at_rest: Bit, in_reach: Bit, write_taken: Bit,
+        new_taps: Bits<COUNT>, new_sum: Signed<SUM>, new_longest: Bits<A>, addend: Signed<SUM>,
+        swap_taken: Bit, active_longest: Bits<A>, swap_longest: Bits<A>, read_bank: Bits<2>,
+        word_bank: Bits<2>, write_address: Bits<COUNT>, read_address: Bits<COUNT>, coefficient_bits: Bits<18>,
+    }
+    constants {
+        bank_rom: Bits<2> = from_u64(0),
+        bank_1: Bits<2> = from_u64(1),
+        bank_2: Bits<2> = from_u64(2),
+        upper_half: Bits<COUNT> = from_u64(u64::from(config.most_taps())),
+        one_tap: Bits<COUNT> = from_u64(1),
+        machine_count: Bits<COUNT> = from_u64(config.table().taps().len() as u64),
+        machine_longest: Bits<A> = from_u64(u64::from(config.table().longest_delay_samples())),
+        forbidden_delay: Bits<A> = from_u64(u64::from(config.longest_delay_samples()) + 1),
+        no_delay: Bits<A> = from_u64(0),
+        no_sum: Signed<SUM> = from_i64(0),
+        unity: Signed<SUM> = from_i64(1 << config.coefficient_fraction()),
     }
 }
 
@@ -210,10 +109,6 @@ impl<const A: usize, const T: usize, const COUNT: usize, const SUM: usize, const
         comment!("@about Index 0 begins a table, the rest in order.");
         comment!("@about A swap waits for the next strobe; refused");
         comment!("@about unless the coefficients sum to 2^F.");
-        dff_setup!(
-            self, clk, taps_1, taps_2, sum_1, sum_2, longest_1, longest_2, active, previous, upcoming, pending,
-            reach_q, old_q, word, refused_q
-        );
         self.machine_taps.clk.next = self.clk.val();
         self.loaded_taps.clk.next = self.clk.val();
 

@@ -13,76 +13,36 @@ use super::product::Product;
 use crate::prelude::*;
 use posicast_model::rtl::shaper::ShaperConfig;
 
-/// W word, P = W + 18 product, ACC = P + T accumulator bits; U of [`Product`].
-#[derive(LogicBlock)]
-pub(super) struct WeightedSum<const W: usize, const P: usize, const ACC: usize, const U: usize> {
-    pub(super) clk: Signal<In, Clock>,
-    pub(super) rst: Signal<In, Bit>,
-    pub(super) begin_pass: Signal<In, Bit>,
-    pub(super) coefficient: Signal<In, Signed<18>>,
-    pub(super) blank: Signal<In, Bit>,
-    pub(super) sample: Signal<In, Signed<W>>,
-    pub(super) add: Signal<In, Bit>,
-    pub(super) finish: Signal<In, Bit>,
-    pub(super) start: Signal<In, Bit>,
-    pub(super) x: Signal<In, Signed<W>>,
-    pub(super) clear_flags: Signal<In, Bit>,
-    pub(super) y: Signal<Out, Signed<W>>,
-    pub(super) saturated: Signal<Out, Bit>,
+kernel! {
+    /// W word, P = W + 18 product, ACC = P + T accumulator bits; U of [`Product`].
+    pub(super) struct WeightedSum<const W: usize, const P: usize, const ACC: usize, const U: usize>
+        (config: &ShaperConfig);
 
-    product: Product<W, P, U>,
-
-    coefficient_q: Dff<Signed<18>>,
-    accumulator: Dff<Signed<ACC>>,
-    y_q: Dff<Signed<W>>,
-    saturated_q: Dff<Bit>,
-
-    wide_product: Signal<Local, Signed<ACC>>,
-    sign_bits: Signal<Local, Bits<ACC>>,
-
-    no_coefficient: Constant<Signed<18>>,
-    half: Constant<Signed<ACC>>,
-    sign_mask: Constant<Bits<ACC>>,
-    all_clear: Constant<Bits<ACC>>,
-    top_bit: Constant<Bits<6>>,
-    y_max: Constant<Signed<W>>,
-    y_min: Constant<Signed<W>>,
-    fraction: Constant<Bits<5>>,
-}
-
-impl<const W: usize, const P: usize, const ACC: usize, const U: usize> WeightedSum<W, P, ACC, U> {
-    pub(super) fn new(config: &ShaperConfig) -> Self {
-        let fraction = config.coefficient_fraction();
-        Self {
-            clk: Signal::default(),
-            rst: Signal::default(),
-            begin_pass: Signal::default(),
-            coefficient: Signal::default(),
-            blank: Signal::default(),
-            sample: Signal::default(),
-            add: Signal::default(),
-            finish: Signal::default(),
-            start: Signal::default(),
-            x: Signal::default(),
-            clear_flags: Signal::default(),
-            y: Signal::default(),
-            saturated: Signal::default(),
-            product: Product::default(),
-            coefficient_q: Dff::default(),
-            accumulator: Dff::default(),
-            y_q: Dff::default(),
-            saturated_q: Dff::default(),
-            wide_product: Signal::default(),
-            sign_bits: Signal::default(),
-            no_coefficient: Constant::new(from_i64(0)),
-            half: Constant::new(from_i64(1 << (fraction - 1))),
-            sign_mask: Constant::new(from_u64(u64::MAX << (fraction + config.word_bits() - 1))),
-            all_clear: Constant::new(from_u64(0)),
-            top_bit: Constant::new(from_u64(ACC as u64 - 1)),
-            y_max: Constant::new(from_i64(config.word_max())),
-            y_min: Constant::new(from_i64(config.word_min())),
-            fraction: Constant::new(from_u64(u64::from(fraction))),
-        }
+    inputs {
+        rst: Bit,
+        begin_pass: Bit,
+        coefficient: Signed<18>,
+        blank: Bit,
+        sample: Signed<W>,
+        add: Bit,
+        finish: Bit,
+        start: Bit,
+        x: Signed<W>,
+        clear_flags: Bit,
+    }
+    outputs { y: Signed<W>, saturated: Bit }
+    parts { product: Product<W, P, U> }
+    registers { coefficient_q: Signed<18>, accumulator: Signed<ACC>, y_q: Signed<W>, saturated_q: Bit }
+    wires { wide_product: Signed<ACC>, sign_bits: Bits<ACC> }
+    constants {
+        no_coefficient: Signed<18> = from_i64(0),
+        half: Signed<ACC> = from_i64(1 << (config.coefficient_fraction() - 1)),
+        sign_mask: Bits<ACC> = from_u64(u64::MAX << (config.coefficient_fraction() + config.word_bits() - 1)),
+        all_clear: Bits<ACC> = from_u64(0),
+        top_bit: Bits<6> = from_u64(ACC as u64 - 1),
+        y_max: Signed<W> = from_i64(config.word_max()),
+        y_min: Signed<W> = from_i64(config.word_min()),
+        fraction: Bits<5> = from_u64(u64::from(config.coefficient_fraction())),
     }
 }
 
@@ -93,7 +53,6 @@ impl<const W: usize, const P: usize, const ACC: usize, const U: usize> Logic for
         comment!("@about y = rounded, saturated sum of products.");
         comment!("@about A coefficient comes a clock before its");
         comment!("@about sample, the product 3 clocks after that.");
-        dff_setup!(self, clk, coefficient_q, accumulator, y_q, saturated_q);
 
         comment!("Multiply and accumulate, exactly");
         self.coefficient_q.d.next = self.coefficient.val();

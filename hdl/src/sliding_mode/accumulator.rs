@@ -10,81 +10,23 @@
 
 use crate::prelude::*;
 
-#[derive(LogicBlock)]
-pub(super) struct Accumulator {
-    pub(super) clk: Signal<In, Clock>,
-    pub(super) rst: Signal<In, Bit>,
-    pub(super) empty: Signal<In, Bit>,
-    pub(super) add: Signal<In, Bit>,
-    pub(super) check: Signal<In, Bit>,
-    pub(super) scaled: Signal<In, Signed<51>>,
-    pub(super) as_fraction: Signal<In, Bit>,
-    pub(super) as_duty: Signal<In, Bit>,
-    pub(super) word: Signal<Out, Signed<32>>,
-    pub(super) cut: Signal<Out, Bit>,
-    pub(super) negative: Signal<Out, Bit>,
+kernel! {
+    pub(super) struct Accumulator;
 
-    sum_q: Dff<Signed<52>>,
-    word_q: Dff<Signed<32>>,
-    cut_q: Dff<Bit>,
-    negative_q: Dff<Bit>,
-
-    base: Signal<Local, Bits<52>>,
-    product: Signal<Local, Signed<53>>,
-    total: Signal<Local, Bits<53>>,
-    sum_negative: Signal<Local, Bit>,
-    upper: Signal<Local, Bits<21>>,
-    middle: Signal<Local, Bits<7>>,
-    lower: Signal<Local, Bits<9>>,
-    upper_differs: Signal<Local, Bit>,
-    middle_differs: Signal<Local, Bit>,
-    lower_differs: Signal<Local, Bit>,
-    passes: Signal<Local, Bit>,
-    largest: Signal<Local, Bits<32>>,
-
-    nothing: Constant<Signed<52>>,
-    half: Constant<Bits<53>>,
-    largest_word: Constant<Bits<32>>,
-    largest_fraction: Constant<Bits<32>>,
-    largest_duty: Constant<Bits<32>>,
-}
-
-impl Default for Accumulator {
-    fn default() -> Self {
-        Self {
-            clk: Signal::default(),
-            rst: Signal::default(),
-            empty: Signal::default(),
-            add: Signal::default(),
-            check: Signal::default(),
-            scaled: Signal::default(),
-            as_fraction: Signal::default(),
-            as_duty: Signal::default(),
-            word: Signal::default(),
-            cut: Signal::default(),
-            negative: Signal::default(),
-            sum_q: Dff::default(),
-            word_q: Dff::default(),
-            cut_q: Dff::default(),
-            negative_q: Dff::default(),
-            base: Signal::default(),
-            product: Signal::default(),
-            total: Signal::default(),
-            sum_negative: Signal::default(),
-            upper: Signal::default(),
-            middle: Signal::default(),
-            lower: Signal::default(),
-            upper_differs: Signal::default(),
-            middle_differs: Signal::default(),
-            lower_differs: Signal::default(),
-            passes: Signal::default(),
-            largest: Signal::default(),
-            nothing: Constant::new(from_i64(0)),
-            half: Constant::new(from_u64(1)),
-            largest_word: Constant::new(from_u64((1 << 31) - 1)),
-            largest_fraction: Constant::new(from_u64((1 << 25) - 1)),
-            largest_duty: Constant::new(from_u64((1 << 17) - 1)),
-        }
+    inputs { rst: Bit, empty: Bit, add: Bit, check: Bit, scaled: Signed<51>, as_fraction: Bit, as_duty: Bit }
+    outputs { word: Signed<32>, cut: Bit, negative: Bit }
+    registers { sum_q: Signed<52>, word_q: Signed<32>, cut_q: Bit, negative_q: Bit }
+    wires {
+        base: Bits<52>, product: Signed<53>, total: Bits<53>, sum_negative: Bit, upper: Bits<21>,
+        middle: Bits<7>, lower: Bits<9>, upper_differs: Bit, middle_differs: Bit, lower_differs: Bit,
+        passes: Bit, largest: Bits<32>,
+    }
+    constants {
+        nothing: Signed<52> = from_i64(0),
+        half: Bits<53> = from_u64(1),
+        largest_word: Bits<32> = from_u64((1 << 31) - 1),
+        largest_fraction: Bits<32> = from_u64((1 << 25) - 1),
+        largest_duty: Bits<32> = from_u64((1 << 17) - 1),
     }
 }
 
@@ -93,7 +35,6 @@ impl Logic for Accumulator {
     fn update(&mut self) {
         comment!("@module accumulator");
         comment!("@about A sum of products, and its words.");
-        dff_setup!(self, clk, sum_q, word_q, cut_q, negative_q);
 
         comment!("Add; a one below the base rounds half up");
         self.product.next = signed_bit_cast::<53, 51>(self.scaled.val());

@@ -5,54 +5,25 @@
 
 use crate::prelude::*;
 
-#[derive(LogicBlock)]
-pub(super) struct Integral {
-    pub(super) clk: Signal<In, Clock>,
-    pub(super) rst: Signal<In, Bit>,
-    pub(super) clear_integral: Signal<In, Bit>,
-    pub(super) open: Signal<In, Bit>,
-    pub(super) enable: Signal<In, Bit>,
-    pub(super) settle: Signal<In, Bit>,
-    pub(super) word: Signal<In, Signed<32>>,
-    pub(super) falls: Signal<In, Bit>,
-    pub(super) opposes: Signal<In, Bit>,
-    pub(super) limited_high: Signal<In, Bit>,
-    pub(super) limited_low: Signal<In, Bit>,
-    pub(super) value: Signal<Out, Signed<32>>,
-    pub(super) takes: Signal<Out, Bit>,
+kernel! {
+    pub(super) struct Integral;
 
-    integral_q: Dff<Signed<32>>,
-    cleared: Dff<Bit>,
-
-    lowers: Signal<Local, Bit>,
-    grows: Signal<Local, Bit>,
-
-    nothing: Constant<Signed<32>>,
-}
-
-impl Default for Integral {
-    fn default() -> Self {
-        Self {
-            clk: Signal::default(),
-            rst: Signal::default(),
-            clear_integral: Signal::default(),
-            open: Signal::default(),
-            enable: Signal::default(),
-            settle: Signal::default(),
-            word: Signal::default(),
-            falls: Signal::default(),
-            opposes: Signal::default(),
-            limited_high: Signal::default(),
-            limited_low: Signal::default(),
-            value: Signal::default(),
-            takes: Signal::default(),
-            integral_q: Dff::default(),
-            cleared: Dff::default(),
-            lowers: Signal::default(),
-            grows: Signal::default(),
-            nothing: Constant::new(from_i64(0)),
-        }
+    inputs {
+        rst: Bit,
+        clear_integral: Bit,
+        open: Bit,
+        enable: Bit,
+        settle: Bit,
+        word: Signed<32>,
+        falls: Bit,
+        opposes: Bit,
+        limited_high: Bit,
+        limited_low: Bit,
     }
+    outputs { value: Signed<32>, takes: Bit }
+    registers { integral_q: Signed<32>, cleared: Bit }
+    wires { lowers: Bit, grows: Bit }
+    constants { nothing: Signed<32> = from_i64(0) }
 }
 
 impl Logic for Integral {
@@ -60,7 +31,6 @@ impl Logic for Integral {
     fn update(&mut self) {
         comment!("@module integral");
         comment!("@about Integral of e, frozen against a limit.");
-        dff_setup!(self, clk, integral_q, cleared);
 
         comment!("A clear wins over a sum under way");
         if self.clear_integral.val() {

@@ -15,91 +15,34 @@
 
 use crate::prelude::*;
 
-#[derive(LogicBlock)]
-pub(super) struct Limiter {
-    pub(super) clk: Signal<In, Clock>,
-    pub(super) rst: Signal<In, Bit>,
-    pub(super) keep: Signal<In, Bit>,
-    pub(super) take: Signal<In, Bit>,
-    pub(super) count: Signal<In, Bit>,
-    pub(super) limit: Signal<In, Bits<31>>,
-    pub(super) word: Signal<In, Signed<32>>,
-    pub(super) cut: Signal<In, Bit>,
-    pub(super) negative: Signal<In, Bit>,
-    pub(super) held: Signal<Out, Signed<32>>,
-    pub(super) command: Signal<Out, Signed<32>>,
-    pub(super) limited_high: Signal<Out, Bit>,
-    pub(super) limited_low: Signal<Out, Bit>,
-    pub(super) limited_ticks: Signal<Out, Bits<16>>,
+kernel! {
+    pub(super) struct Limiter;
 
-    inverted: Dff<Bit>,
-    compares: Dff<Bit>,
-    returns: Dff<Bit>,
-    cuts: Dff<Bit>,
-    decides: Dff<Bit>,
-    held_q: Dff<Signed<32>>,
-    over: Dff<Bit>,
-    command_q: Dff<Signed<32>>,
-    high_q: Dff<Bit>,
-    low_q: Dff<Bit>,
-    ticks: Dff<Bits<16>>,
-
-    minuend: Signal<Local, Bits<32>>,
-    borrow: Signal<Local, Bits<33>>,
-    margin: Signal<Local, Bits<33>>,
-    inverts: Signal<Local, Bits<32>>,
-    part: Signal<Local, Bits<32>>,
-    works: Signal<Local, Bit>,
-
-    no_borrow: Constant<Bits<33>>,
-    one_borrow: Constant<Bits<33>>,
-    none: Constant<Bits<32>>,
-    nothing: Constant<Signed<32>>,
-    no_ticks: Constant<Bits<16>>,
-    one_tick: Constant<Bits<16>>,
-}
-
-impl Default for Limiter {
-    fn default() -> Self {
-        Self {
-            clk: Signal::default(),
-            rst: Signal::default(),
-            keep: Signal::default(),
-            take: Signal::default(),
-            count: Signal::default(),
-            limit: Signal::default(),
-            word: Signal::default(),
-            cut: Signal::default(),
-            negative: Signal::default(),
-            held: Signal::default(),
-            command: Signal::default(),
-            limited_high: Signal::default(),
-            limited_low: Signal::default(),
-            limited_ticks: Signal::default(),
-            inverted: Dff::default(),
-            compares: Dff::default(),
-            returns: Dff::default(),
-            cuts: Dff::default(),
-            decides: Dff::default(),
-            held_q: Dff::default(),
-            over: Dff::default(),
-            command_q: Dff::default(),
-            high_q: Dff::default(),
-            low_q: Dff::default(),
-            ticks: Dff::default(),
-            minuend: Signal::default(),
-            borrow: Signal::default(),
-            margin: Signal::default(),
-            inverts: Signal::default(),
-            part: Signal::default(),
-            works: Signal::default(),
-            no_borrow: Constant::new(from_u64(0)),
-            one_borrow: Constant::new(from_u64(1)),
-            none: Constant::new(from_u64(0)),
-            nothing: Constant::new(from_i64(0)),
-            no_ticks: Constant::new(from_u64(0)),
-            one_tick: Constant::new(from_u64(1)),
-        }
+    inputs {
+        rst: Bit,
+        keep: Bit,
+        take: Bit,
+        count: Bit,
+        limit: Bits<31>,
+        word: Signed<32>,
+        cut: Bit,
+        negative: Bit,
+    }
+    outputs { held: Signed<32>, command: Signed<32>, limited_high: Bit, limited_low: Bit, limited_ticks: Bits<16> }
+    registers {
+        inverted: Bit, compares: Bit, returns: Bit, cuts: Bit, decides: Bit, held_q: Signed<32>, over: Bit,
+        command_q: Signed<32>, high_q: Bit, low_q: Bit, ticks: Bits<16>,
+    }
+    wires {
+        minuend: Bits<32>, borrow: Bits<33>, margin: Bits<33>, inverts: Bits<32>, part: Bits<32>, works: Bit,
+    }
+    constants {
+        no_borrow: Bits<33> = from_u64(0),
+        one_borrow: Bits<33> = from_u64(1),
+        none: Bits<32> = from_u64(0),
+        nothing: Signed<32> = from_i64(0),
+        no_ticks: Bits<16> = from_u64(0),
+        one_tick: Bits<16> = from_u64(1),
     }
 }
 
@@ -108,9 +51,6 @@ impl Logic for Limiter {
     fn update(&mut self) {
         comment!("@module limiter");
         comment!("@about The command, and for how long it is cut.");
-        dff_setup!(
-            self, clk, inverted, compares, returns, cuts, decides, held_q, over, command_q, high_q, low_q, ticks
-        );
 
         comment!("held - limit, less one for a positive word");
         self.minuend.next = unsigned_cast(self.held_q.q.val());

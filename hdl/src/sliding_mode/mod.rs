@@ -19,7 +19,6 @@ mod integral;
 mod kernel;
 mod limiter;
 mod operands;
-mod pins;
 mod scaled_product;
 mod sequencer;
 mod sticky;

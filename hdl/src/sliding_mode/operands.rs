@@ -5,115 +5,52 @@
 
 use crate::prelude::*;
 
-#[derive(LogicBlock)]
-pub(super) struct Operands {
-    pub(super) clk: Signal<In, Clock>,
-    pub(super) rst: Signal<In, Bit>,
-    pub(super) step: Signal<In, Bits<5>>,
-    pub(super) linear: Signal<In, Bit>,
-    pub(super) integrates: Signal<In, Bit>,
-    pub(super) tracking_error: Signal<In, Signed<24>>,
-    pub(super) sliding: Signal<In, Signed<32>>,
-    pub(super) held: Signal<In, Signed<32>>,
-    pub(super) integral: Signal<In, Signed<32>>,
-    pub(super) velocity_reference: Signal<In, Signed<32>>,
-    pub(super) acceleration_reference: Signal<In, Signed<32>>,
-    pub(super) velocity: Signal<In, Signed<32>>,
-    pub(super) word: Signal<In, Signed<32>>,
-    pub(super) operand: Signal<Out, Signed<32>>,
+kernel! {
+    pub(super) struct Operands;
 
-    takes_error: Dff<Bit>,
-    takes_sliding: Dff<Bit>,
-    takes_held: Dff<Bit>,
-    takes_integral: Dff<Bit>,
-    takes_reference: Dff<Bit>,
-    takes_acceleration: Dff<Bit>,
-    takes_velocity: Dff<Bit>,
-    takes_word: Dff<Bit>,
-
-    error_bits: Signal<Local, Bits<24>>,
-    from_error: Signal<Local, Bits<32>>,
-    from_sliding: Signal<Local, Bits<32>>,
-    from_held: Signal<Local, Bits<32>>,
-    from_integral: Signal<Local, Bits<32>>,
-    from_reference: Signal<Local, Bits<32>>,
-    from_acceleration: Signal<Local, Bits<32>>,
-    from_velocity: Signal<Local, Bits<32>>,
-    from_word: Signal<Local, Bits<32>>,
-
-    nothing: Constant<Bits<32>>,
-    of_reference: Constant<Bits<5>>,
-    of_velocity: Constant<Bits<5>>,
-    rate_again: Constant<Bits<5>>,
-    surface: Constant<Bits<5>>,
-    boundary: Constant<Bits<5>>,
-    on_rest: Constant<Bits<5>>,
-    on_error: Constant<Bits<5>>,
-    on_rate: Constant<Bits<5>>,
-    fade: Constant<Bits<5>>,
-    coulomb: Constant<Bits<5>>,
-    on_feedback: Constant<Bits<5>>,
-    on_acceleration: Constant<Bits<5>>,
-    on_reference: Constant<Bits<5>>,
-    on_velocity: Constant<Bits<5>>,
-    limit: Constant<Bits<5>>,
-    to_sum: Constant<Bits<5>>,
-    to_duty: Constant<Bits<5>>,
-}
-
-impl Default for Operands {
-    fn default() -> Self {
-        Self {
-            clk: Signal::default(),
-            rst: Signal::default(),
-            step: Signal::default(),
-            linear: Signal::default(),
-            integrates: Signal::default(),
-            tracking_error: Signal::default(),
-            sliding: Signal::default(),
-            held: Signal::default(),
-            integral: Signal::default(),
-            velocity_reference: Signal::default(),
-            acceleration_reference: Signal::default(),
-            velocity: Signal::default(),
-            word: Signal::default(),
-            operand: Signal::default(),
-            takes_error: Dff::default(),
-            takes_sliding: Dff::default(),
-            takes_held: Dff::default(),
-            takes_integral: Dff::default(),
-            takes_reference: Dff::default(),
-            takes_acceleration: Dff::default(),
-            takes_velocity: Dff::default(),
-            takes_word: Dff::default(),
-            error_bits: Signal::default(),
-            from_error: Signal::default(),
-            from_sliding: Signal::default(),
-            from_held: Signal::default(),
-            from_integral: Signal::default(),
-            from_reference: Signal::default(),
-            from_acceleration: Signal::default(),
-            from_velocity: Signal::default(),
-            from_word: Signal::default(),
-            nothing: Constant::new(from_u64(0)),
-            of_reference: Constant::new(from_u64(0)),
-            of_velocity: Constant::new(from_u64(1)),
-            rate_again: Constant::new(from_u64(2)),
-            surface: Constant::new(from_u64(3)),
-            boundary: Constant::new(from_u64(4)),
-            on_rest: Constant::new(from_u64(5)),
-            on_error: Constant::new(from_u64(6)),
-            on_rate: Constant::new(from_u64(7)),
-            fade: Constant::new(from_u64(8)),
-            coulomb: Constant::new(from_u64(9)),
-            on_feedback: Constant::new(from_u64(10)),
-            on_acceleration: Constant::new(from_u64(11)),
-            on_reference: Constant::new(from_u64(12)),
-            on_velocity: Constant::new(from_u64(13)),
-            limit: Constant::new(from_u64(14)),
-            to_sum: Constant::new(from_u64(15)),
-            to_duty: Constant::new(from_u64(16)),
-        }
+    inputs {
+        rst: Bit,
+        step: Bits<5>,
+        linear: Bit,
+        integrates: Bit,
+        tracking_error: Signed<24>,
+        sliding: Signed<32>,
+        held: Signed<32>,
+        integral: Signed<32>,
+        velocity_reference: Signed<32>,
+        acceleration_reference: Signed<32>,
+        velocity: Signed<32>,
+        word: Signed<32>,
+    }
+    outputs { operand: Signed<32> }
+    registers {
+        takes_error: Bit, takes_sliding: Bit, takes_held: Bit, takes_integral: Bit, takes_reference: Bit,
+        takes_acceleration: Bit, takes_velocity: Bit, takes_word: Bit,
+    }
+    wires {
+        error_bits: Bits<24>, from_error: Bits<32>, from_sliding: Bits<32>, from_held: Bits<32>,
+        from_integral: Bits<32>, from_reference: Bits<32>, from_acceleration: Bits<32>,
+        from_velocity: Bits<32>, from_word: Bits<32>,
+    }
+    constants {
+        nothing: Bits<32> = from_u64(0),
+        of_reference: Bits<5> = from_u64(0),
+        of_velocity: Bits<5> = from_u64(1),
+        rate_again: Bits<5> = from_u64(2),
+        surface: Bits<5> = from_u64(3),
+        boundary: Bits<5> = from_u64(4),
+        on_rest: Bits<5> = from_u64(5),
+        on_error: Bits<5> = from_u64(6),
+        on_rate: Bits<5> = from_u64(7),
+        fade: Bits<5> = from_u64(8),
+        coulomb: Bits<5> = from_u64(9),
+        on_feedback: Bits<5> = from_u64(10),
+        on_acceleration: Bits<5> = from_u64(11),
+        on_reference: Bits<5> = from_u64(12),
+        on_velocity: Bits<5> = from_u64(13),
+        limit: Bits<5> = from_u64(14),
+        to_sum: Bits<5> = from_u64(15),
+        to_duty: Bits<5> = from_u64(16),
     }
 }
 
@@ -122,18 +59,6 @@ impl Logic for Operands {
     fn update(&mut self) {
         comment!("@module operands");
         comment!("@about The word that a step multiplies.");
-        dff_setup!(
-            self,
-            clk,
-            takes_error,
-            takes_sliding,
-            takes_held,
-            takes_integral,
-            takes_reference,
-            takes_acceleration,
-            takes_velocity,
-            takes_word
-        );
 
         comment!("Whose turn it is");
         self.takes_error.d.next = (self.step.val() == self.surface.val())

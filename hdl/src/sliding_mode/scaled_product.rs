@@ -18,84 +18,34 @@
 
 use crate::prelude::*;
 
-#[derive(LogicBlock)]
-pub(super) struct ScaledProduct {
-    pub(super) clk: Signal<In, Clock>,
-    pub(super) rst: Signal<In, Bit>,
-    pub(super) read: Signal<In, Bit>,
-    pub(super) load: Signal<In, Bit>,
-    pub(super) shift: Signal<In, Bit>,
-    pub(super) unit: Signal<In, Bit>,
-    pub(super) minus: Signal<In, Bit>,
-    pub(super) operand: Signal<In, Signed<32>>,
-    pub(super) gain: Signal<In, Bits<23>>,
-    pub(super) scaled: Signal<Out, Signed<51>>,
+kernel! {
+    pub(super) struct ScaledProduct;
 
-    upper: SMul<15, 18, 33>,
-    lower: SMul<18, 18, 36>,
-
-    shifter: Dff<Signed<51>>,
-    left: Dff<Bits<5>>,
-
-    of_gain: Signal<Local, Bits<18>>,
-    of_unit: Signal<Local, Bits<18>>,
-    mantissa: Signal<Local, Bits<18>>,
-    distance: Signal<Local, Bits<5>>,
-    operand_bits: Signal<Local, Bits<32>>,
-    lower_part: Signal<Local, Bits<17>>,
-    upper_part: Signal<Local, Bits<15>>,
-    lower_bits: Signal<Local, Bits<36>>,
-    last_bits: Signal<Local, Bits<17>>,
-    carried: Signal<Local, Signed<19>>,
-    wide_carried: Signal<Local, Signed<33>>,
-    upper_sum: Signal<Local, Bits<33>>,
-    product: Signal<Local, Bits<50>>,
-    by_one: Signal<Local, Signed<50>>,
-
-    no_unit: Constant<Bits<18>>,
-    one: Constant<Bits<18>>,
-    minus_one: Constant<Bits<18>>,
-    eight: Constant<Bits<5>>,
-    one_bit: Constant<Bits<5>>,
-}
-
-impl Default for ScaledProduct {
-    fn default() -> Self {
-        Self {
-            clk: Signal::default(),
-            rst: Signal::default(),
-            read: Signal::default(),
-            load: Signal::default(),
-            shift: Signal::default(),
-            unit: Signal::default(),
-            minus: Signal::default(),
-            operand: Signal::default(),
-            gain: Signal::default(),
-            scaled: Signal::default(),
-            upper: SMul::default(),
-            lower: SMul::default(),
-            shifter: Dff::default(),
-            left: Dff::default(),
-            of_gain: Signal::default(),
-            of_unit: Signal::default(),
-            mantissa: Signal::default(),
-            distance: Signal::default(),
-            operand_bits: Signal::default(),
-            lower_part: Signal::default(),
-            upper_part: Signal::default(),
-            lower_bits: Signal::default(),
-            last_bits: Signal::default(),
-            carried: Signal::default(),
-            wide_carried: Signal::default(),
-            upper_sum: Signal::default(),
-            product: Signal::default(),
-            by_one: Signal::default(),
-            no_unit: Constant::new(from_u64(0)),
-            one: Constant::new(from_u64(1)),
-            minus_one: Constant::new(from_u64((1 << 18) - 1)),
-            eight: Constant::new(from_u64(8)),
-            one_bit: Constant::new(from_u64(1)),
-        }
+    inputs {
+        rst: Bit,
+        read: Bit,
+        load: Bit,
+        shift: Bit,
+        unit: Bit,
+        minus: Bit,
+        operand: Signed<32>,
+        gain: Bits<23>,
+    }
+    outputs { scaled: Signed<51> }
+    parts { upper: SMul<15, 18, 33>, lower: SMul<18, 18, 36> }
+    registers { shifter: Signed<51>, left: Bits<5> }
+    wires {
+        of_gain: Bits<18>, of_unit: Bits<18>, mantissa: Bits<18>, distance: Bits<5>, operand_bits: Bits<32>,
+        lower_part: Bits<17>, upper_part: Bits<15>, lower_bits: Bits<36>, last_bits: Bits<17>,
+        carried: Signed<19>, wide_carried: Signed<33>, upper_sum: Bits<33>, product: Bits<50>,
+        by_one: Signed<50>,
+    }
+    constants {
+        no_unit: Bits<18> = from_u64(0),
+        one: Bits<18> = from_u64(1),
+        minus_one: Bits<18> = from_u64((1 << 18) - 1),
+        eight: Bits<5> = from_u64(8),
+        one_bit: Bits<5> = from_u64(1),
     }
 }
 
@@ -105,7 +55,6 @@ impl Logic for ScaledProduct {
         comment!("@module scaled_product");
         comment!("@about operand * mantissa * 2^-shift");
         comment!("@about The lowest bit is half an LSB: it rounds.");
-        dff_setup!(self, clk, shifter, left);
 
         comment!("Multiply by the gain, or by one or minus one");
         self.of_gain.next = self.gain.val().get_bits::<18>(0);

@@ -5,44 +5,14 @@
 use crate::prelude::*;
 use posicast_model::rtl::sliding_mode::Saturation;
 
-#[derive(LogicBlock)]
-pub(super) struct Sticky {
-    pub(super) clk: Signal<In, Clock>,
-    pub(super) rst: Signal<In, Bit>,
-    pub(super) clear_flags: Signal<In, Bit>,
-    pub(super) tracking_error: Signal<In, Bit>,
-    pub(super) what: Signal<In, Bits<7>>,
-    pub(super) is_cut: Signal<In, Bit>,
-    pub(super) flags: Signal<Out, Bits<7>>,
+kernel! {
+    pub(super) struct Sticky;
 
-    flags_q: Dff<Bits<7>>,
-
-    kept: Signal<Local, Bits<7>>,
-    by_error: Signal<Local, Bits<7>>,
-    by_sum: Signal<Local, Bits<7>>,
-
-    nothing: Constant<Bits<7>>,
-    of_error: Constant<Bits<7>>,
-}
-
-impl Default for Sticky {
-    fn default() -> Self {
-        Self {
-            clk: Signal::default(),
-            rst: Signal::default(),
-            clear_flags: Signal::default(),
-            tracking_error: Signal::default(),
-            what: Signal::default(),
-            is_cut: Signal::default(),
-            flags: Signal::default(),
-            flags_q: Dff::default(),
-            kept: Signal::default(),
-            by_error: Signal::default(),
-            by_sum: Signal::default(),
-            nothing: Constant::new(from_u64(0)),
-            of_error: Constant::new(from_u64(u64::from(Saturation::Error.bit()))),
-        }
-    }
+    inputs { rst: Bit, clear_flags: Bit, tracking_error: Bit, what: Bits<7>, is_cut: Bit }
+    outputs { flags: Bits<7> }
+    registers { flags_q: Bits<7> }
+    wires { kept: Bits<7>, by_error: Bits<7>, by_sum: Bits<7> }
+    constants { nothing: Bits<7> = from_u64(0), of_error: Bits<7> = from_u64(u64::from(Saturation::Error.bit())) }
 }
 
 impl Logic for Sticky {
@@ -50,7 +20,6 @@ impl Logic for Sticky {
     fn update(&mut self) {
         comment!("@module sticky");
         comment!("@about Sticky flags: set wins over clear.");
-        dff_setup!(self, clk, flags_q);
 
         self.kept.next = self.flags_q.q.val();
         if self.clear_flags.val() {

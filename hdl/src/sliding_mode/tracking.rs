@@ -5,64 +5,17 @@
 
 use crate::prelude::*;
 
-#[derive(LogicBlock)]
-pub(super) struct Tracking {
-    pub(super) clk: Signal<In, Clock>,
-    pub(super) rst: Signal<In, Bit>,
-    pub(super) capture: Signal<In, Bit>,
-    pub(super) modulo: Signal<In, Bit>,
-    pub(super) position_reference: Signal<In, Signed<32>>,
-    pub(super) position: Signal<In, Signed<32>>,
-    pub(super) tracking_error: Signal<Out, Signed<24>>,
-    pub(super) high: Signal<Out, Bit>,
-    pub(super) low: Signal<Out, Bit>,
+kernel! {
+    pub(super) struct Tracking;
 
-    error_q: Dff<Signed<24>>,
-    high_q: Dff<Bit>,
-    low_q: Dff<Bit>,
-
-    wide_reference: Signal<Local, Signed<40>>,
-    counts: Signal<Local, Bits<32>>,
-    difference: Signal<Local, Bits<40>>,
-    linear_excess: Signal<Local, Bits<17>>,
-    linear_fits: Signal<Local, Bit>,
-    rotary_excess: Signal<Local, Bits<9>>,
-    rotary_fits: Signal<Local, Bit>,
-    fits: Signal<Local, Bit>,
-    negative: Signal<Local, Bit>,
-
-    largest: Constant<Signed<24>>,
-    least: Constant<Signed<24>>,
-}
-
-impl Default for Tracking {
-    fn default() -> Self {
-        Self {
-            clk: Signal::default(),
-            rst: Signal::default(),
-            capture: Signal::default(),
-            modulo: Signal::default(),
-            position_reference: Signal::default(),
-            position: Signal::default(),
-            tracking_error: Signal::default(),
-            high: Signal::default(),
-            low: Signal::default(),
-            error_q: Dff::default(),
-            high_q: Dff::default(),
-            low_q: Dff::default(),
-            wide_reference: Signal::default(),
-            counts: Signal::default(),
-            difference: Signal::default(),
-            linear_excess: Signal::default(),
-            linear_fits: Signal::default(),
-            rotary_excess: Signal::default(),
-            rotary_fits: Signal::default(),
-            fits: Signal::default(),
-            negative: Signal::default(),
-            largest: Constant::new(from_i64((1 << 23) - 1)),
-            least: Constant::new(from_i64(-(1 << 23))),
-        }
+    inputs { rst: Bit, capture: Bit, modulo: Bit, position_reference: Signed<32>, position: Signed<32> }
+    outputs { tracking_error: Signed<24>, high: Bit, low: Bit }
+    registers { error_q: Signed<24>, high_q: Bit, low_q: Bit }
+    wires {
+        wide_reference: Signed<40>, counts: Bits<32>, difference: Bits<40>, linear_excess: Bits<17>,
+        linear_fits: Bit, rotary_excess: Bits<9>, rotary_fits: Bit, fits: Bit, negative: Bit,
     }
+    constants { largest: Signed<24> = from_i64((1 << 23) - 1), least: Signed<24> = from_i64(-(1 << 23)) }
 }
 
 impl Logic for Tracking {
@@ -70,7 +23,6 @@ impl Logic for Tracking {
     fn update(&mut self) {
         comment!("@module tracking");
         comment!("@about e = r - x, saturated.");
-        dff_setup!(self, clk, error_q, high_q, low_q);
 
         comment!("e: exact modulo 2^40 LSB, or 2^32 if rotary");
         self.wide_reference.next = signed_bit_cast::<40, 32>(self.position_reference.val());

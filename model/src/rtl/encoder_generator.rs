@@ -27,9 +27,7 @@
 //! assert_eq!(generator.outputs().generated_count, 10);
 //! ```
 
-use std::sync::Arc;
-
-use super::{ClockedBlock, Moore, PlainRow, Port, StepError, ports_of, quiet_at_rest};
+use super::{Moore, clocked_block, ports, quiet_at_rest};
 
 /// Fraction bits of `rate`.
 pub const RATE_FRACTION: u32 = 32;
@@ -38,87 +36,86 @@ pub const PERIOD_COUNTS: u16 = 4;
 /// Clocks from a pin to its output.
 pub const LATENCY_CLOCKS: u32 = 1;
 
-/// The input ports. Bits above a port's width are ignored.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct Inputs {
-    /// Synchronous reset.
-    pub rst: bool,
-    /// The outputs are the generator's lines, else the pins.
-    pub loop_back: bool,
-    /// Counts per clock, Q0.32; the sign is the direction.
-    pub rate: i32,
-    /// Counts from index to index, taken down to a multiple of 4; below 4: none.
-    pub index_every: u16,
-    /// The pins A, B, Z and their complements, at any time.
-    pub pins: [bool; LINES],
-}
-
 /// A, B, Z and their complements.
 pub const LINES: usize = 6;
 
-/// The output ports, all of them registers.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct Outputs {
-    /// A, B, Z and their complements, for the pulse counter.
-    pub lines: [bool; LINES],
-    /// Counts ×4 since the reset, modulo 2^32.
-    pub generated_count: i32,
-}
+ports! {
+    encoder_generator_ports;
 
-/// Input ports in port order, with their widths.
-const INPUTS: [PlainRow; 10] = [
-    ("rst", 1, false),
-    ("loop_back", 1, false),
-    ("rate", 32, true),
-    ("index_every", 16, false),
-    ("pin_a", 1, false),
-    ("pin_b", 1, false),
-    ("pin_z", 1, false),
-    ("pin_a_n", 1, false),
-    ("pin_b_n", 1, false),
-    ("pin_z_n", 1, false),
-];
+    /// The input ports. Bits above a port's width are ignored.
+    inputs Inputs {
+        /// Synchronous reset.
+        rst: Bit as bool;
+        /// The outputs are the generator's lines, else the pins.
+        loop_back: Bit as bool;
+        /// Counts per clock; the sign is the direction.
+        rate: Signed(32) as i32, "counts per clock, Q0.32";
+        /// Counts from index to index, taken down to a multiple of 4; 0 to 3: none.
+        index_every: Bits(16) as u16, "counts";
+        /// Pin A, at any time.
+        pin_a: Bit as bool;
+        /// Pin B, at any time.
+        pin_b: Bit as bool;
+        /// Pin Z, at any time.
+        pin_z: Bit as bool;
+        /// Complement of pin A, where lines are pairs; at any time.
+        pin_a_n: Bit as bool;
+        /// Complement of pin B, where lines are pairs; at any time.
+        pin_b_n: Bit as bool;
+        /// Complement of pin Z, where lines are pairs; at any time.
+        pin_z_n: Bit as bool;
+    }
 
-/// Output ports in port order, with their widths.
-const OUTPUTS: [PlainRow; 7] = [
-    ("a", 1, false),
-    ("b", 1, false),
-    ("z", 1, false),
-    ("a_n", 1, false),
-    ("b_n", 1, false),
-    ("z_n", 1, false),
-    ("generated_count", 32, true),
-];
-
-/// Number of input ports, without `clk`.
-pub const INPUT_PORTS: usize = INPUTS.len();
-/// Number of output ports.
-pub const OUTPUT_PORTS: usize = OUTPUTS.len();
-
-/// The ports in the order of the Verilog's port list, without `clk`.
-pub fn ports() -> Vec<Port> {
-    ports_of(&INPUTS, &OUTPUTS)
+    /// The output ports, all of them registers.
+    outputs Outputs {
+        /// Line A, for the pulse counter.
+        a: Bit as bool;
+        /// Line B, for the pulse counter.
+        b: Bit as bool;
+        /// Line Z, for the pulse counter.
+        z: Bit as bool;
+        /// Complement of A; the generator always has pairs.
+        a_n: Bit as bool;
+        /// Complement of B; the generator always has pairs.
+        b_n: Bit as bool;
+        /// Complement of Z; the generator always has pairs.
+        z_n: Bit as bool;
+        /// Counts ×4 since the reset, modulo 2^32.
+        generated_count: Signed(32) as i32, "counts";
+    }
 }
 
 impl Inputs {
-    /// From raw bit patterns, one per input port in port order.
-    pub fn from_raw(raw: &[u64; INPUT_PORTS]) -> Self {
-        let [rst, loop_back, rate, index_every, pins @ ..] = *raw;
+    /// The pins A, B, Z and their complements.
+    fn pins(&self) -> [bool; LINES] {
+        [
+            self.pin_a,
+            self.pin_b,
+            self.pin_z,
+            self.pin_a_n,
+            self.pin_b_n,
+            self.pin_z_n,
+        ]
+    }
+
+    /// These inputs with other pins: A, B, Z and their complements.
+    pub fn with_pins(self, [pin_a, pin_b, pin_z, pin_a_n, pin_b_n, pin_z_n]: [bool; LINES]) -> Self {
         Self {
-            rst: rst & 1 != 0,
-            loop_back: loop_back & 1 != 0,
-            rate: rate as i32,
-            index_every: index_every as u16,
-            pins: pins.map(|pin| pin & 1 != 0),
+            pin_a,
+            pin_b,
+            pin_z,
+            pin_a_n,
+            pin_b_n,
+            pin_z_n,
+            ..self
         }
     }
 }
 
 impl Outputs {
-    /// As raw bit patterns, one per output port in port order.
-    pub fn to_raw(&self) -> [u64; OUTPUT_PORTS] {
-        let [a, b, z, a_n, b_n, z_n] = self.lines.map(u64::from);
-        [a, b, z, a_n, b_n, z_n, u64::from(self.generated_count as u32)]
+    /// A, B, Z and their complements.
+    pub fn lines(&self) -> [bool; LINES] {
+        [self.a, self.b, self.z, self.a_n, self.b_n, self.z_n]
     }
 }
 
@@ -169,7 +166,6 @@ impl Encoder {
 /// The internal encoder, cycle accurate at its ports.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct EncoderGenerator {
-    ports: Arc<[Port]>,
     encoder: Encoder,
     /// Pins or lines of the clock before: the only registers that a reset does not clear.
     shown: [bool; LINES],
@@ -185,7 +181,6 @@ impl EncoderGenerator {
     /// A generator after power-up.
     pub fn new() -> Self {
         Self {
-            ports: ports().into(),
             encoder: Encoder::default(),
             shown: [false; LINES],
         }
@@ -193,9 +188,16 @@ impl EncoderGenerator {
 
     /// What the outputs show now.
     pub fn outputs(&self) -> Outputs {
+        let [a, b, z, a_n, b_n, z_n] = self.shown;
+        let generated_count = self.encoder.count();
         Outputs {
-            lines: self.shown,
-            generated_count: self.encoder.count(),
+            a,
+            b,
+            z,
+            a_n,
+            b_n,
+            z_n,
+            generated_count,
         }
     }
 
@@ -208,7 +210,7 @@ impl EncoderGenerator {
         self.shown = if inputs.loop_back {
             [a, b, z, !a, !b, !z]
         } else {
-            inputs.pins
+            inputs.pins()
         };
         if inputs.rst {
             self.encoder = Encoder::default();
@@ -219,24 +221,7 @@ impl EncoderGenerator {
     }
 }
 
-impl ClockedBlock for EncoderGenerator {
-    fn ports(&self) -> &[Port] {
-        &self.ports
-    }
-
-    fn step(&mut self, inputs: &[u64], outputs: &mut [u64]) -> Result<(), StepError> {
-        let (Ok(raw), OUTPUT_PORTS) = (<&[u64; INPUT_PORTS]>::try_from(inputs), outputs.len()) else {
-            return Err(StepError(format!(
-                "{} inputs and {} outputs: the internal encoder has {INPUT_PORTS} and {OUTPUT_PORTS}",
-                inputs.len(),
-                outputs.len()
-            )));
-        };
-        let shown = EncoderGenerator::step(self, &Inputs::from_raw(raw));
-        outputs.copy_from_slice(&shown.to_raw());
-        Ok(())
-    }
-}
+clocked_block!(EncoderGenerator, "the internal encoder");
 
 impl Moore for EncoderGenerator {
     fn show(&self, outputs: &mut [u64]) {
