@@ -18,17 +18,22 @@ struct Group<const N: usize> {
     can_start: [Signal<In, Bit>; N],
     wants_group_stop: [Signal<In, Bit>; N],
     emergency_stop: [Signal<In, Bit>; N],
+    feed_hold: [Signal<In, Bit>; N],
+    rests: [Signal<In, Bit>; N],
     axis_start: [Signal<Out, Bit>; N],
     group_stop: [Signal<Out, Bit>; N],
+    hold_feed: [Signal<Out, Bit>; N],
     group_emergency_stop: Signal<Out, Bit>,
     start_refused: Signal<Out, Bit>,
 
     start_q: [Dff<Bit>; N],
     stop_q: [Dff<Bit>; N],
+    hold_q: [Dff<Bit>; N],
     emergency_q: Dff<Bit>,
     refused_q: Dff<Bit>,
 
     blocked: Signal<Local, Bit>,
+    moving: Signal<Local, Bit>,
 
     axis: [Constant<Bits<4>>; N],
     strangers: Constant<Bits<4>>,
@@ -45,15 +50,20 @@ impl<const N: usize> Default for Group<N> {
             can_start: std::array::from_fn(|_| Signal::default()),
             wants_group_stop: std::array::from_fn(|_| Signal::default()),
             emergency_stop: std::array::from_fn(|_| Signal::default()),
+            feed_hold: std::array::from_fn(|_| Signal::default()),
+            rests: std::array::from_fn(|_| Signal::default()),
             axis_start: std::array::from_fn(|_| Signal::default()),
             group_stop: std::array::from_fn(|_| Signal::default()),
+            hold_feed: std::array::from_fn(|_| Signal::default()),
             group_emergency_stop: Signal::default(),
             start_refused: Signal::default(),
             start_q: std::array::from_fn(|_| Dff::default()),
             stop_q: std::array::from_fn(|_| Dff::default()),
+            hold_q: std::array::from_fn(|_| Dff::default()),
             emergency_q: Dff::default(),
             refused_q: Dff::default(),
             blocked: Signal::default(),
+            moving: Signal::default(),
             axis: std::array::from_fn(|axis| Constant::new(from_u64(1 << axis))),
             strangers: Constant::new(from_u64((0xf << N) & 0xf)),
             nobody: Constant::new(from_u64(0)),
@@ -71,6 +81,8 @@ impl<const N: usize> Logic for Group<N> {
             self.start_q[i].rst.next = self.rst.val();
             self.stop_q[i].clock.next = self.clk.val();
             self.stop_q[i].rst.next = self.rst.val();
+            self.hold_q[i].clock.next = self.clk.val();
+            self.hold_q[i].rst.next = self.rst.val();
         }
 
         comment!("All start, or none");
@@ -102,9 +114,21 @@ impl<const N: usize> Logic for Group<N> {
             }
         }
 
+        comment!("All that are to hold rest, or none holds");
+        self.moving.next = false;
+        for i in 0..N {
+            if self.feed_hold[i].val() & !self.rests[i].val() {
+                self.moving.next = true;
+            }
+        }
+        for i in 0..N {
+            self.hold_q[i].d.next = self.feed_hold[i].val() & !self.moving.val();
+        }
+
         for i in 0..N {
             self.axis_start[i].next = self.start_q[i].q.val();
             self.group_stop[i].next = self.stop_q[i].q.val();
+            self.hold_feed[i].next = self.hold_q[i].q.val();
         }
         self.group_emergency_stop.next = self.emergency_q.q.val();
         self.start_refused.next = self.refused_q.q.val();
@@ -126,6 +150,8 @@ impl<const N: usize> Pins for Group<N> {
             &mut self.can_start,
             &mut self.wants_group_stop,
             &mut self.emergency_stop,
+            &mut self.feed_hold,
+            &mut self.rests,
         ] {
             for line in lines {
                 line.next = next() & 1 != 0;
@@ -134,7 +160,7 @@ impl<const N: usize> Pins for Group<N> {
     }
 
     fn read(&self, outputs: &mut [u64]) {
-        let axes = self.axis_start.iter().chain(&self.group_stop);
+        let axes = self.axis_start.iter().chain(&self.group_stop).chain(&self.hold_feed);
         let shared = [&self.group_emergency_stop, &self.start_refused];
         for (output, line) in outputs.iter_mut().zip(axes.chain(shared)) {
             *output = line.val().into();

@@ -23,6 +23,7 @@ const QUIET: Inputs = Inputs {
     low_water: 2,
     clear_flags: false,
     modulo: false,
+    feed_hold: false,
 };
 
 fn write(segments: &mut Segments, entry: &Entry) {
@@ -168,6 +169,71 @@ fn the_command_stops_before_the_end_of_its_word_and_never_wraps() {
     }
 }
 
+/// Three moves of four ticks, by 2, 6 and −4 counts, of three entries each: jerk j, −j, −j, j.
+fn three_moves() -> Vec<Entry> {
+    let moves = [1i64, 3, -2].map(|way| way << 32);
+    let entries = moves.map(|way| [jerk(1, way), jerk(2, -way), jerk(1, way)]);
+    entries.concat()
+}
+
+#[test]
+fn a_feed_hold_stands_at_the_next_rest_and_keeps_the_queue() {
+    let held = Inputs {
+        feed_hold: true,
+        ..QUIET
+    };
+    for asked in 0..13 {
+        let mut segments = Segments::new(3);
+        three_moves().iter().for_each(|entry| write(&mut segments, entry));
+        (0..asked).for_each(|_| {
+            tick(&mut segments);
+        });
+        let shown: Vec<Outputs> = (0..20)
+            .map(|_| {
+                segments.step(&Inputs { tick: true, ..held });
+                segments.hold(&held, 100);
+                segments.outputs(2)
+            })
+            .collect();
+        // The first tick reads, and moves nothing. A move that has begun is played to its end, and none after it begins.
+        let moves_played = [0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3][asked];
+        let stands = shown[19];
+        assert_eq!(
+            stands.position,
+            [0, 2 << 8, 8 << 8, 4 << 8][moves_played],
+            "after {asked} ticks"
+        );
+        assert_eq!([stands.velocity, stands.acceleration], [0, 0]);
+        assert_eq!(
+            (stands.held, stands.state == State::Move),
+            (moves_played < 3, moves_played < 3)
+        );
+        assert_eq!(usize::from(stands.level), [8, 5, 2, 0][moves_played]);
+        // It goes on where it stood: each tick that is left is played, and the end is exact.
+        let left = (1..40).find(|_| tick(&mut segments).state == State::Hold);
+        assert_eq!(left, Some((4 * (3 - moves_played)).max(1)));
+        assert_eq!(segments.command(), Integrator::resting_at(4));
+        assert!(!segments.outputs(2).held && !segments.outputs(2).underrun);
+    }
+}
+
+#[test]
+fn a_stop_ends_a_feed_hold_and_drops_the_queue() {
+    let mut segments = Segments::new(3);
+    three_moves().iter().for_each(|entry| write(&mut segments, entry));
+    let held = Inputs {
+        tick: true,
+        feed_hold: true,
+        ..QUIET
+    };
+    for quick_stop in [false, false, false, true, false] {
+        segments.step(&Inputs { quick_stop, ..held });
+        segments.hold(&QUIET, 100);
+    }
+    let shown = segments.outputs(2);
+    assert_eq!((shown.state, shown.level, shown.held), (State::Stopped, 0, false));
+}
+
 #[test]
 fn a_full_fifo_refuses_and_keeps_what_it_has() {
     let mut segments = Segments::new(3);
@@ -237,6 +303,7 @@ fn inputs() -> impl Strategy<Value = Inputs> {
             low_water: 3,
             clear_flags: false,
             modulo: data & 1 != 0,
+            feed_hold: data & 2 != 0,
         },
     )
 }

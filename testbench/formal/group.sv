@@ -6,6 +6,7 @@
 //   refused          any other start: none starts, and it is refused
 //   all_or_none      so what starts is either nothing or all that were asked for
 //   stops_others     an axis is stopped exactly if another one wants all to stop
+//   holds            a feed hold: all that are to hold are held a clock after all of them rest; else none is
 //   emergency        an emergency stop of one is one of all
 module group_properties (
     input wire       clk,
@@ -18,6 +19,7 @@ module group_properties (
 );
     wire [`AXES-1:0] starting = `AXIS_START;
     wire [`AXES-1:0] stopped = `GROUP_STOP;
+    wire [`AXES-1:0] held = `HOLD_FEED;
 
     wire [3:0] there = (4'd1 << `AXES) - 4'd1;
     wire [3:0] can = `CAN_START;
@@ -28,11 +30,15 @@ module group_properties (
     reg             past_emergency = 1'b0;
     reg [3:0]       past_axes = 4'd0;
     reg [`AXES-1:0] past_wants = 0;
+    reg [`AXES-1:0] past_hold = 0;
+    reg [`AXES-1:0] past_rests = 0;
     always @(posedge clk) begin
         past_start <= start & !rst;
         past_good <= good;
         past_emergency <= (|`EMERGENCY_STOP) & !rst;
         past_axes <= start_axes;
+        past_hold <= rst ? 0 : `FEED_HOLD;
+        past_rests <= `RESTS;
         past_wants <= rst ? 0 : `WANTS_GROUP_STOP;
     end
 
@@ -41,6 +47,7 @@ module group_properties (
         refused: assert (!(past_start & !past_good) | (starting == 0 & start_refused));
         quiet: assert (past_start | (starting == 0 & !start_refused));
         all_or_none: assert (starting == 0 | starting == past_axes[`AXES-1:0]);
+        holds: assert (held == ((past_hold & ~past_rests) == 0 ? past_hold : 0));
         emergency: assert (group_emergency_stop == past_emergency);
     end
 
@@ -56,6 +63,7 @@ module group_properties (
     always @(*) begin
         reach_all: cover (&starting);
         reach_one: cover (starting == 1);
+        reach_held: cover (&held);
         reach_refused: cover (start_refused);
     end
 endmodule

@@ -82,6 +82,16 @@ fn lockstep_catches_a_command_that_goes_on_to_the_end_of_its_word() {
 }
 
 #[test]
+fn lockstep_catches_a_feed_hold_in_motion() {
+    caught(&segments(), "& rests_q", "", 300_000);
+}
+
+#[test]
+fn lockstep_catches_a_feed_hold_that_uses_up_ticks() {
+    caught(&segments(), "counts & !held", "counts", 300_000);
+}
+
+#[test]
 fn lockstep_catches_a_stop_that_slows_down_past_the_end_of_its_word() {
     caught(&segments(), "brakes & stands", "brakes & moves", 300_000);
 }

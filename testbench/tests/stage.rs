@@ -174,7 +174,7 @@ fn rewired(axes: usize, port: &str, net: &str, other: &str) {
 
 #[test]
 fn lockstep_one_axis_a_million_random_clocks() {
-    million_random_clocks(&block(1), 4, 1);
+    million_random_clocks(&block(1), 11, 1);
 }
 
 #[test]

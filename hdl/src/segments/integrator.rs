@@ -15,6 +15,7 @@ pub(super) struct Integrator {
     pub(super) preset: Signal<In, Bit>,
     pub(super) brakes: Signal<In, Bit>,
     pub(super) moves: Signal<In, Bit>,
+    pub(super) held: Signal<In, Bit>,
     pub(super) points: Signal<In, Bit>,
     pub(super) modulo: Signal<In, Bit>,
     pub(super) preset_position: Signal<In, Signed<32>>,
@@ -100,6 +101,7 @@ impl Default for Integrator {
             preset: Signal::default(),
             brakes: Signal::default(),
             moves: Signal::default(),
+            held: Signal::default(),
             points: Signal::default(),
             modulo: Signal::default(),
             preset_position: Signal::default(),
@@ -200,6 +202,7 @@ impl Logic for Integrator {
         self.passes.rst.next = self.rst.val();
         self.passes.phase.next = self.phase.val();
         self.passes.moves.next = self.moves.val();
+        self.passes.held.next = self.held.val();
         self.passes.points.next = self.points.val();
         self.passes.jerk_failed.next = self.jerk_failed.q.val();
         self.passes.speed_failed.next = self.speed_failed.q.val();

@@ -28,6 +28,7 @@ pub(super) struct Segments {
     pub(super) low_water: Signal<In, Bits<6>>,
     pub(super) clear_flags: Signal<In, Bit>,
     pub(super) modulo: Signal<In, Bit>,
+    pub(super) feed_hold: Signal<In, Bit>,
     pub(super) position: Signal<Out, Signed<32>>,
     pub(super) velocity: Signal<Out, Signed<32>>,
     pub(super) acceleration: Signal<Out, Signed<32>>,
@@ -44,6 +45,8 @@ pub(super) struct Segments {
     pub(super) malformed: Signal<Out, Bit>,
     pub(super) tick_missed: Signal<Out, Bit>,
     pub(super) out_of_range: Signal<Out, Bit>,
+    pub(super) rests: Signal<Out, Bit>,
+    pub(super) held: Signal<Out, Bit>,
 
     fifo: CommandFifo,
     integrator: Integrator,
@@ -70,6 +73,8 @@ pub(super) struct Segments {
     malformed_q: Dff<Bit>,
     tick_missed_q: Dff<Bit>,
     out_of_range_q: Dff<Bit>,
+    rests_q: Dff<Bit>,
+    held_q: Dff<Bit>,
 
     flush_now: Signal<Local, Bit>,
     quick_stop_now: Signal<Local, Bit>,
@@ -77,6 +82,8 @@ pub(super) struct Segments {
     preset_now: Signal<Local, Bit>,
     takes_tick: Signal<Local, Bit>,
     moves: Signal<Local, Bit>,
+    plays: Signal<Local, Bit>,
+    held_now: Signal<Local, Bit>,
     stops: Signal<Local, Bit>,
     stopped: Signal<Local, Bit>,
     waiting: Signal<Local, Bit>,
@@ -113,6 +120,7 @@ impl Default for Segments {
             low_water: Signal::default(),
             clear_flags: Signal::default(),
             modulo: Signal::default(),
+            feed_hold: Signal::default(),
             position: Signal::default(),
             velocity: Signal::default(),
             acceleration: Signal::default(),
@@ -129,6 +137,8 @@ impl Default for Segments {
             malformed: Signal::default(),
             tick_missed: Signal::default(),
             out_of_range: Signal::default(),
+            rests: Signal::default(),
+            held: Signal::default(),
             fifo: CommandFifo::default(),
             integrator: Integrator::default(),
             phase: Dff::default(),
@@ -153,12 +163,16 @@ impl Default for Segments {
             malformed_q: Dff::default(),
             tick_missed_q: Dff::default(),
             out_of_range_q: Dff::default(),
+            rests_q: Dff::default(),
+            held_q: Dff::default(),
             flush_now: Signal::default(),
             quick_stop_now: Signal::default(),
             restart_now: Signal::default(),
             preset_now: Signal::default(),
             takes_tick: Signal::default(),
             moves: Signal::default(),
+            plays: Signal::default(),
+            held_now: Signal::default(),
             stops: Signal::default(),
             stopped: Signal::default(),
             waiting: Signal::default(),
@@ -205,7 +219,9 @@ impl Logic for Segments {
             refused_q,
             malformed_q,
             tick_missed_q,
-            out_of_range_q
+            out_of_range_q,
+            rests_q,
+            held_q
         );
         self.fifo.clk.next = self.clk.val();
         self.fifo.rst.next = self.rst.val();
@@ -248,6 +264,7 @@ impl Logic for Segments {
         comment!("A tick: preset, else quick stop, else restart");
         self.takes_tick.next = self.tick.val() & self.idle.q.val();
         self.drops.next = false;
+        self.held_now.next = self.held_q.q.val();
         self.to_stop.next = self.moves.val() & (self.quick_stop_now.val() | !self.enable.val());
         if !self.idle.q.val() | self.tick.val() {
             self.phase.d.next = self.phase.q.val() + self.one_phase.val();
@@ -263,6 +280,12 @@ impl Logic for Segments {
             self.wants_restart.d.next = false;
             self.wants_preset.d.next = false;
             self.drops.next = self.flush_now.val();
+            comment!("A feed hold: at rest, nothing is played");
+            self.held_now.next = self.moves.val()
+                & self.rests_q.q.val()
+                & self.feed_hold.val()
+                & !self.preset_now.val()
+                & !self.to_stop.val();
             if self.preset_now.val() {
                 self.state_q.d.next = self.hold_state.val();
                 self.drops.next = true;
@@ -282,13 +305,16 @@ impl Logic for Segments {
         }
 
         comment!("The sums, and the entry that they take");
-        self.points.next = self.moves.val() & self.point.q.val();
+        self.held_q.d.next = self.held_now.val();
+        self.plays.next = self.moves.val() & !self.held_now.val();
+        self.points.next = self.plays.val() & self.point.q.val();
         self.integrator.phase.next = self.phase.q.val();
         self.integrator.takes_tick.next = self.takes_tick.val();
         self.integrator.preset.next = self.takes_tick.val() & self.preset_now.val();
         self.integrator.brakes.next =
             self.takes_tick.val() & !self.preset_now.val() & (self.stops.val() | self.to_stop.val());
-        self.integrator.moves.next = self.moves.val();
+        self.integrator.moves.next = self.plays.val();
+        self.integrator.held.next = self.held_now.val();
         self.integrator.modulo.next = self.modulo.val();
         self.integrator.points.next = self.points.val();
         self.integrator.preset_position.next = self.preset_position.val();
@@ -303,7 +329,8 @@ impl Logic for Segments {
             self.velocity_q.d.next = self.integrator.velocity.val();
             self.acceleration_q.d.next = self.integrator.acceleration.val();
             self.valid_q.d.next = true;
-            if self.moves.val() {
+            self.rests_q.d.next = self.integrator.at_rest.val();
+            if self.plays.val() {
                 if self.integrator.overflowed.val() | self.integrator.leaves.val() {
                     if self.integrator.overflowed.val() {
                         self.overflow_q.d.next = true;
@@ -384,5 +411,7 @@ impl Logic for Segments {
         self.malformed.next = self.malformed_q.q.val();
         self.tick_missed.next = self.tick_missed_q.q.val();
         self.out_of_range.next = self.out_of_range_q.q.val();
+        self.rests.next = self.rests_q.q.val();
+        self.held.next = self.held_q.q.val();
     }
 }

@@ -18,6 +18,7 @@ pub(super) struct Passes {
     pub(super) rst: Signal<In, Bit>,
     pub(super) phase: Signal<In, Bits<6>>,
     pub(super) moves: Signal<In, Bit>,
+    pub(super) held: Signal<In, Bit>,
     pub(super) points: Signal<In, Bit>,
     pub(super) jerk_failed: Signal<In, Bit>,
     pub(super) speed_failed: Signal<In, Bit>,
@@ -99,6 +100,7 @@ impl Default for Passes {
             rst: Signal::default(),
             phase: Signal::default(),
             moves: Signal::default(),
+            held: Signal::default(),
             points: Signal::default(),
             jerk_failed: Signal::default(),
             speed_failed: Signal::default(),
@@ -222,7 +224,8 @@ impl Logic for Passes {
             self.speeds.val() & !self.any_slot.val() & (self.points.val() | (!self.moves.val() & !self.moving.val()));
         self.clear_position.next = self.travels.val() & !self.any_slot.val() & self.points.val();
         self.clear_ticks.next = self.reads.val() & !self.any_slot.val();
-        self.carry.next = (self.corrects.val() & self.subtracts.val()) | self.counts.val() | self.reads.val();
+        self.carry.next =
+            (self.corrects.val() & self.subtracts.val()) | (self.counts.val() & !self.held.val()) | self.reads.val();
 
         comment!("The addend, a clock ahead");
         self.sums.next = !self.fails.val() & !self.points.val();

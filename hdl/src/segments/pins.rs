@@ -26,6 +26,7 @@ impl Pins for Segments {
             low_water,
             clear_flags,
             modulo,
+            feed_hold,
         ] = inputs
         else {
             return;
@@ -46,6 +47,7 @@ impl Pins for Segments {
         self.low_water.next = from_u64(low_water);
         self.clear_flags.next = bit(clear_flags);
         self.modulo.next = bit(modulo);
+        self.feed_hold.next = bit(feed_hold);
     }
 
     fn read(&self, outputs: &mut [u64]) {
@@ -66,6 +68,8 @@ impl Pins for Segments {
             u64::from(self.malformed.val()),
             u64::from(self.tick_missed.val()),
             u64::from(self.out_of_range.val()),
+            u64::from(self.rests.val()),
+            u64::from(self.held.val()),
         ];
         for (output, value) in outputs.iter_mut().zip(shown) {
             *output = value;

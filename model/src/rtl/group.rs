@@ -8,9 +8,14 @@
 //! ```
 //!
 //! - `group_stop_k`: another axis wants all to stop. `group_emergency_stop`: any axis has its emergency stop. Both a clock late.
+//! - Feed hold: the axes of `feed_hold_k` are held, `hold_feed_k`, while all of them rest. So they stand in the same tick or not at
+//!   all, and go on in the same tick. A clock late.
 //! - A start of no axis, or of one that there is not, is refused.
 
 use super::{ClockedBlock, Direction, FOREVER, Moore, Port, StepError};
+
+/// Lists of inputs, a port per axis.
+const LISTS: usize = 5;
 
 /// Most axes of a stage.
 pub const MOST_AXES: usize = 4;
@@ -33,8 +38,11 @@ pub fn ports(axes: usize) -> Vec<Port> {
     ports.extend(each("can_start", Input));
     ports.extend(each("wants_group_stop", Input));
     ports.extend(each("emergency_stop", Input));
+    ports.extend(each("feed_hold", Input));
+    ports.extend(each("rests", Input));
     ports.extend(each("axis_start", Output));
     ports.extend(each("group_stop", Output));
+    ports.extend(each("hold_feed", Output));
     ports.push(port("group_emergency_stop", Output, 1));
     ports.push(port("start_refused", Output, 1));
     ports
@@ -48,6 +56,7 @@ pub struct Group {
     /// One bit per axis.
     starts: u64,
     stops: u64,
+    holds: u64,
     emergency_stop: bool,
     refused: bool,
 }
@@ -60,13 +69,14 @@ impl Group {
             axes,
             starts: 0,
             stops: 0,
+            holds: 0,
             emergency_stop: false,
             refused: false,
         }
     }
 
-    /// `can`, `wants` and `emergency`: one bit per axis.
-    fn clock(&mut self, start: Option<u64>, can: u64, wants: u64, emergency: u64) {
+    /// `can`, `wants`, `emergency`, `feed_hold` and `rests`: one bit per axis.
+    fn clock(&mut self, start: Option<u64>, [can, wants, emergency, feed_hold, rests]: [u64; LISTS]) {
         let wanted = start.unwrap_or(0);
         let granted = wanted & !can == 0;
         self.starts = if granted { wanted } else { 0 };
@@ -74,13 +84,14 @@ impl Group {
         let others = |axis: usize| wants & !(1 << axis) != 0;
         self.stops = (0..self.axes).fold(0, |stops, axis| stops | u64::from(others(axis)) << axis);
         self.emergency_stop = emergency != 0;
+        self.holds = if feed_hold & !rests == 0 { feed_hold } else { 0 };
     }
 }
 
 impl Moore for Group {
     fn show(&self, outputs: &mut [u64]) {
         let bits = |word: u64| (0..self.axes).map(move |axis| word >> axis & 1);
-        let shown = bits(self.starts).chain(bits(self.stops));
+        let shown = bits(self.starts).chain(bits(self.stops)).chain(bits(self.holds));
         let shown = shown.chain([self.emergency_stop.into(), self.refused.into()]);
         for (output, value) in outputs.iter_mut().zip(shown) {
             *output = value;
@@ -92,8 +103,16 @@ impl Moore for Group {
             return 0;
         }
         let mut next = self.clone();
-        next.clock(None, 0, word(inputs, self.axes, 1), word(inputs, self.axes, 2));
-        let shown = |group: &Self| (group.starts, group.stops, group.emergency_stop, group.refused);
+        next.clock(None, words(inputs, self.axes));
+        let shown = |group: &Self| {
+            (
+                group.starts,
+                group.stops,
+                group.holds,
+                group.emergency_stop,
+                group.refused,
+            )
+        };
         match shown(&next) == shown(self) {
             true => FOREVER,
             false => 0,
@@ -101,9 +120,9 @@ impl Moore for Group {
     }
 }
 
-/// One bit per axis of the inputs in that place of the list.
-fn word(inputs: &[u64], axes: usize, place: usize) -> u64 {
-    (0..axes).fold(0, |word, axis| word | (inputs[3 + place * axes + axis] & 1) << axis)
+/// Of each list of inputs, one bit per axis.
+fn words(inputs: &[u64], axes: usize) -> [u64; LISTS] {
+    std::array::from_fn(|list| (0..axes).fold(0, |word, axis| word | (inputs[3 + list * axes + axis] & 1) << axis))
 }
 
 impl ClockedBlock for Group {
@@ -113,13 +132,13 @@ impl ClockedBlock for Group {
 
     fn step(&mut self, inputs: &[u64], outputs: &mut [u64]) -> Result<(), StepError> {
         let axes = self.axes;
-        if (inputs.len(), outputs.len()) != (3 + 3 * axes, 2 + 2 * axes) {
+        if (inputs.len(), outputs.len()) != (3 + LISTS * axes, 2 + 3 * axes) {
             return Err(StepError(format!(
                 "{} inputs and {} outputs: a group of {axes} axes has {} and {}",
                 inputs.len(),
                 outputs.len(),
-                3 + 3 * axes,
-                2 + 2 * axes
+                3 + LISTS * axes,
+                2 + 3 * axes
             )));
         }
         self.show(outputs);
@@ -128,12 +147,7 @@ impl ClockedBlock for Group {
             return Ok(());
         }
         let start = (inputs[1] & 1 != 0).then_some(inputs[2] & ((1 << MOST_AXES) - 1));
-        self.clock(
-            start,
-            word(inputs, axes, 0),
-            word(inputs, axes, 1),
-            word(inputs, axes, 2),
-        );
+        self.clock(start, words(inputs, axes));
         Ok(())
     }
 }
@@ -145,7 +159,7 @@ mod tests {
     /// Outputs a clock after these inputs.
     fn after(axes: usize, inputs: &[u64]) -> Vec<u64> {
         let mut group = Group::new(axes);
-        let mut outputs = vec![0; 2 + 2 * axes];
+        let mut outputs = vec![0; 2 + 3 * axes];
         group.step(inputs, &mut outputs).unwrap();
         group.show(&mut outputs);
         outputs
@@ -156,20 +170,38 @@ mod tests {
         for wanted in 0..16u64 {
             for can in 0..8u64 {
                 let can_start = [can & 1, can >> 1 & 1, can >> 2 & 1];
-                let inputs = [vec![0, 1, wanted], can_start.to_vec(), vec![0; 6]].concat();
+                let inputs = [vec![0, 1, wanted], can_start.to_vec(), vec![0; 12]].concat();
                 let granted = wanted != 0 && wanted & !can == 0;
                 let bit = |axis: u64| u64::from(granted) & wanted >> axis & 1;
-                let wanted = [bit(0), bit(1), bit(2), 0, 0, 0, 0, u64::from(!granted)];
+                let wanted = [bit(0), bit(1), bit(2), 0, 0, 0, 0, 0, 0, 0, u64::from(!granted)];
                 assert_eq!(after(3, &inputs), wanted);
             }
         }
-        assert_eq!(after(1, &[0, 0, 1, 1, 0, 0]), [0, 0, 0, 0]);
+        assert_eq!(after(1, &[0, 0, 1, 1, 0, 0, 0, 0]), [0; 5]);
     }
 
     #[test]
     fn unit_a_stop_reaches_the_others_and_an_emergency_all() {
-        assert_eq!(after(2, &[0, 0, 0, 0, 0, 1, 0, 0, 0]), [0, 0, 0, 1, 0, 0]);
-        assert_eq!(after(2, &[0, 0, 0, 0, 0, 1, 1, 0, 1]), [0, 0, 1, 1, 1, 0]);
-        assert_eq!(after(1, &[0, 0, 0, 0, 1, 1]), [0, 0, 1, 0]);
+        assert_eq!(
+            after(2, &[0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0]),
+            [0, 0, 0, 1, 0, 0, 0, 0]
+        );
+        assert_eq!(
+            after(2, &[0, 0, 0, 0, 0, 1, 1, 0, 1, 0, 0, 0, 0]),
+            [0, 0, 1, 1, 0, 0, 1, 0]
+        );
+        assert_eq!(after(1, &[0, 0, 0, 0, 1, 1, 0, 0]), [0, 0, 0, 1, 0]);
+    }
+
+    #[test]
+    fn unit_a_feed_hold_waits_until_all_its_axes_rest() {
+        for wanted in 0..8u64 {
+            for resting in 0..8u64 {
+                let bits = |word: u64| [word & 1, word >> 1 & 1, word >> 2 & 1];
+                let inputs = [vec![0; 3 + 9], bits(wanted).to_vec(), bits(resting).to_vec()].concat();
+                let held = if wanted & !resting == 0 { wanted } else { 0 };
+                assert_eq!(after(3, &inputs)[6..9], bits(held), "{wanted} {resting}");
+            }
+        }
     }
 }

@@ -131,6 +131,9 @@ fn lockstep_a_program_moves_the_stage_and_handles_a_fault() {
         "{said:?}"
     );
     assert!((said["x"] - 40).abs() <= 1 && (said["y"] + 25).abs() <= 1, "{said:?}");
+    // Held in RUN at the far end, and back to the last bit.
+    assert_eq!((said["held_at"], said["held_state"]), (60 * 256, 3), "{said:?}");
+    assert_eq!((said["resumed_to"], said["held_causes"]), (40 * 256, 0), "{said:?}");
     assert_eq!(said["after_fault_x"], 90 * 256);
     let at = bridge.bench.plant(0).count();
     assert!((at - 90).abs() <= 1, "{at}");

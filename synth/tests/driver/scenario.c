@@ -25,6 +25,35 @@ static void first_move(posicast_stage *stage)
     result("ticks", at.tick_count);
 }
 
+static void queue_from(posicast_stage *stage, uint32_t axis, int32_t start, int32_t end)
+{
+    posicast_entry entries[POSICAST_PLAN_ROOM];
+    uint32_t count, entry;
+
+    need("plan", posicast_plan_move(start, end, limits_of(axis), entries, POSICAST_PLAN_ROOM, &count), POSICAST_OK);
+    for (entry = 0; entry < count; entry++)
+        need("an entry", posicast_write_entry(stage, axis, &entries[entry]), POSICAST_OK);
+}
+
+/* X to and fro: held at the far end, with the way back in its FIFO. */
+static void feed_hold(posicast_stage *stage)
+{
+    need("no such axis", posicast_feed_hold(stage, 1u << 2), POSICAST_BAD_ARGUMENT);
+    need("none that holds", posicast_wait_held(stage, 1u << X, TICKS), POSICAST_WRONG_STATE);
+    queue_from(stage, X, COUNTS(40), COUNTS(60));
+    queue_from(stage, X, COUNTS(60), COUNTS(40));
+    need("start to and fro", posicast_start(stage, 1u << X), POSICAST_OK);
+    need("hold", posicast_feed_hold(stage, BOTH), POSICAST_OK);
+    need("held", posicast_wait_held(stage, 1u << X, TICKS), POSICAST_OK);
+    result("held_at", posicast_command_position(stage, X));
+    result("held_state", posicast_state(stage, X));
+    need("still held", posicast_wait_at_rest(stage, 1u << X, 200), POSICAST_TIMEOUT);
+    need("go on", posicast_feed_hold(stage, 0), POSICAST_OK);
+    need("the way back", posicast_wait_at_rest(stage, 1u << X, TICKS), POSICAST_OK);
+    result("resumed_to", posicast_command_position(stage, X));
+    result("held_causes", posicast_causes(stage, X));
+}
+
 /* The drive of X fails in a move: both stop, the fault is read, forgotten, and the move begun again. */
 static void fault(posicast_stage *stage)
 {
@@ -163,6 +192,7 @@ int main(int argc, char **argv)
         return 0;
     }
     first_move(&stage);
+    feed_hold(&stage);
     fault(&stage);
     return 0;
 }

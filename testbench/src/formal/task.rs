@@ -148,6 +148,7 @@ pub fn all() -> Result<Vec<Task>, Error> {
         )
         .properties(&[], include_str!("../../formal/segments.sv")),
     );
+    tasks.push(segments_range_task()?);
     tasks.push(sliding_mode_task()?);
     tasks.push(part_of_controller(
         "scaled_product",
@@ -224,6 +225,18 @@ fn registers_task() -> Result<Task, Error> {
         .properties(&[], include_str!("../../formal/registers.sv")))
 }
 
+/// The ends of the position's word.
+fn segments_range_task() -> Result<Task, Error> {
+    let counts = |counts: i32| format!("24'sd{counts}");
+    let macros = [
+        ("REACH_COUNTS", counts(segments_model::REACH_COUNTS)),
+        ("STAND_COUNTS", counts(segments_model::STAND_COUNTS)),
+    ];
+    let block = (segments::emit("")?, segments_model::ports());
+    Ok(Task::new("segments_range", "any position", INDUCTION, block)
+        .properties(&macros, include_str!("../../formal/segments_range.sv")))
+}
+
 fn group_task(axes: usize) -> Result<Task, Error> {
     let list = |name: &str| {
         let lines: Vec<String> = (0..axes).rev().map(|axis| format!("{name}_{axis}")).collect();
@@ -242,6 +255,9 @@ fn group_task(axes: usize) -> Result<Task, Error> {
         ("EMERGENCY_STOP", list("emergency_stop")),
         ("AXIS_START", list("axis_start")),
         ("GROUP_STOP", list("group_stop")),
+        ("FEED_HOLD", list("feed_hold")),
+        ("RESTS", list("rests")),
+        ("HOLD_FEED", list("hold_feed")),
     ];
     let block = (group::emit(axes, "")?, group_model::ports(axes));
     Ok(Task::new("group", &format!("{axes} axes"), Engine::Pdr, block)

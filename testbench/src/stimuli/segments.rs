@@ -37,6 +37,8 @@ struct Mood {
     stop_deceleration: u64,
     low_water: u64,
     modulo: u64,
+    /// Feed hold: never, always, or about every other tick.
+    hold_pace: u32,
 }
 
 /// A mixture of everything, without end.
@@ -46,6 +48,7 @@ pub struct SegmentsRandom {
     clock: u64,
     mood: Mood,
     until_tick: u32,
+    feed_hold: bool,
     /// Words to write, as (word, data).
     words: VecDeque<(u64, u64)>,
 }
@@ -58,6 +61,7 @@ impl SegmentsRandom {
             clock: 0,
             mood: Mood::default(),
             until_tick: 1,
+            feed_hold: false,
             words: VecDeque::new(),
         }
     }
@@ -74,6 +78,7 @@ impl SegmentsRandom {
             stop_deceleration: *pick(rng, &[0, 1, any, shifted, shifted, (1 << 31) - 1]),
             low_water: rng.random_range(0..64),
             modulo: rng.random_range(0..2),
+            hold_pace: *pick(rng, &[0, 0, 0, 1, 60, 60]),
         };
     }
 
@@ -208,6 +213,10 @@ impl Stimuli for SegmentsRandom {
             }
             (word, data) = self.words.pop_front().unwrap_or_default();
         }
+        self.feed_hold = match mood.hold_pace {
+            0 => false,
+            pace => self.feed_hold != (self.rng.random_range(0..pace) == 0),
+        };
         let mut request = || u64::from(self.rng.random_range(0..mood.request_pace) == 0);
         let [flush, quick_stop, preset] = [request(), request(), request()];
         // Without it a stop would be the end of most runs.
@@ -228,6 +237,7 @@ impl Stimuli for SegmentsRandom {
             mood.low_water,
             u64::from(self.rng.random_range(0..100) == 0),
             mood.modulo,
+            u64::from(self.feed_hold),
         ];
         self.clock += 1;
     }
@@ -241,7 +251,7 @@ pub struct SegmentsCoverage {
 }
 
 /// What is counted.
-const NAMES: [&str; 16] = [
+const NAMES: [&str; 18] = [
     "hold",
     "move",
     "stop",
@@ -258,6 +268,8 @@ const NAMES: [&str; 16] = [
     "tick_missed",
     "stop to stopped",
     "out_of_range",
+    "rests",
+    "held",
 ];
 
 impl SegmentsCoverage {
@@ -280,6 +292,8 @@ impl SegmentsCoverage {
             malformed,
             missed,
             out_of_range,
+            rests,
+            held,
         ] = outputs
         else {
             return;
@@ -303,6 +317,8 @@ impl SegmentsCoverage {
             missed,
             stopped,
             out_of_range,
+            rests,
+            held,
         ];
         for (count, seen) in self.counts.iter_mut().zip(seen) {
             *count += seen;

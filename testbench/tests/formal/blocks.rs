@@ -38,6 +38,11 @@ fn formal_segments() {
 }
 
 #[test]
+fn formal_segments_range() {
+    proven("segments_range", 0);
+}
+
+#[test]
 fn formal_divider() {
     proven("divider", 0);
 }
@@ -135,6 +140,21 @@ fn formal_a_fifo_that_writes_over_the_entry_that_plays_is_found() {
         "slot = head + waiting",
         "pointers",
     );
+}
+
+#[test]
+fn formal_a_command_that_goes_on_to_the_end_of_its_word_is_found() {
+    fails(
+        "segments_range",
+        "leaves = past_reach & moving",
+        "leaves = stands & moving",
+        "range_stops",
+    );
+}
+
+#[test]
+fn formal_a_stop_that_slows_down_past_the_end_of_its_word_is_found() {
+    fails("segments_range", "brakes & stands", "brakes & moves", "stands");
 }
 
 #[test]

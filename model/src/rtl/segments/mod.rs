@@ -203,15 +203,16 @@ impl Segments {
         registers.enabled = inputs.enable;
         let stands = !inputs.modulo && registers.at.leaves(STAND_COUNTS);
         registers.stop_deceleration = if stands { 0 } else { inputs.stop_deceleration };
-        let state = &mut registers.shown.state;
+        let Outputs { state, rests, held, .. } = &mut registers.shown;
+        *held = inputs.feed_hold && *rests && *state == State::Move;
         let mut flush = requests.flush;
         if requests.preset {
             registers.at = Integrator::resting_at(inputs.preset_position);
-            (*state, flush) = (State::Hold, true);
+            (*state, flush, *held) = (State::Hold, true, false);
         } else {
             let stops = requests.quick_stop || (!inputs.enable && *state == State::Move);
             match *state {
-                State::Move if stops => (*state, flush) = (State::Stop, true),
+                State::Move if stops => (*state, flush, *held) = (State::Stop, true, false),
                 State::Hold if stops => (*state, flush) = (State::Stopped, true),
                 State::Stopped if requests.restart && !stops => *state = State::Hold,
                 _ => {}
@@ -233,6 +234,7 @@ impl Segments {
         } = &mut self.registers;
         *overflowed = false;
         match (shown.state, playing.map(|entry| entry.motion)) {
+            _ if shown.held => {}
             (State::Move, Some(Motion::Jerk(jerk))) => *overflowed = at.jerk(jerk).is_err(),
             (State::Move, Some(Motion::Point(point))) => *at = Integrator::at_point(&point),
             (State::Stop, _) => at.stop(i64::from(*stop_deceleration) << (FRACTION_BITS - ACCELERATION_FRACTION)),
@@ -253,9 +255,11 @@ impl Segments {
         } = &mut self.registers;
         [shown.position, shown.velocity, shown.acceleration] = at.rounded();
         shown.valid = true;
+        shown.rests = at.at_rest();
         let mut next_is_read = false;
         let leaves = !inputs.modulo && at.leaves(REACH_COUNTS) && !at.at_rest();
         match (state, playing.as_mut()) {
+            _ if shown.held => {}
             (State::Move, Some(entry)) => {
                 entry.ticks -= 1;
                 let ended = entry.ticks == 0;
@@ -361,7 +365,7 @@ impl Moore for Segments {
     fn ignores(&self, input: &str) -> bool {
         matches!(
             input,
-            "enable" | "word" | "data" | "preset_position" | "stop_deceleration" | "modulo"
+            "enable" | "word" | "data" | "preset_position" | "stop_deceleration" | "modulo" | "feed_hold"
         )
     }
 }

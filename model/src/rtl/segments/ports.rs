@@ -35,10 +35,12 @@ pub struct Inputs {
     pub clear_flags: bool,
     /// A rotary axis: the position wraps, and no end of its word stops it.
     pub modulo: bool,
+    /// Feed hold, at a tick: a command that is at rest stays there, and the entry that plays keeps its ticks.
+    pub feed_hold: bool,
 }
 
 /// Input ports in port order, with their widths.
-const INPUTS: [PlainRow; 15] = [
+const INPUTS: [PlainRow; 16] = [
     ("rst", 1, false),
     ("tick", 1, false),
     ("enable", 1, false),
@@ -54,10 +56,11 @@ const INPUTS: [PlainRow; 15] = [
     ("low_water", 6, false),
     ("clear_flags", 1, false),
     ("modulo", 1, false),
+    ("feed_hold", 1, false),
 ];
 
 /// Output ports in port order, with their widths.
-const OUTPUTS: [PlainRow; 16] = [
+const OUTPUTS: [PlainRow; 18] = [
     ("position", 32, true),
     ("velocity", 32, true),
     ("acceleration", 32, true),
@@ -74,6 +77,8 @@ const OUTPUTS: [PlainRow; 16] = [
     ("malformed", 1, false),
     ("tick_missed", 1, false),
     ("out_of_range", 1, false),
+    ("rests", 1, false),
+    ("held", 1, false),
 ];
 
 /// Number of input ports, without `clk`.
@@ -130,6 +135,10 @@ pub struct Outputs {
     pub tick_missed: bool,
     /// Sticky: the command came near an end of the position's word, and stopped.
     pub out_of_range: bool,
+    /// Velocity and acceleration are 0 since the last `valid`: exactly, and not only as rounded.
+    pub rests: bool,
+    /// The last tick was not played: a feed hold keeps the command where it rests.
+    pub held: bool,
 }
 
 impl Inputs {
@@ -152,6 +161,7 @@ impl Inputs {
             low_water,
             clear_flags,
             modulo,
+            feed_hold,
         ] = *raw;
         Self {
             rst: bit(rst),
@@ -169,6 +179,7 @@ impl Inputs {
             low_water: (low_water & 63) as u8,
             clear_flags: bit(clear_flags),
             modulo: bit(modulo),
+            feed_hold: bit(feed_hold),
         }
     }
 }
@@ -193,6 +204,8 @@ impl Outputs {
             u64::from(self.malformed),
             u64::from(self.tick_missed),
             u64::from(self.out_of_range),
+            u64::from(self.rests),
+            u64::from(self.held),
         ]
     }
 }

@@ -43,9 +43,16 @@ pub(super) const SHARED: [&str; 8] = [
     "pll_locked",
 ];
 /// From the stage to this axis.
-const FROM_STAGE: [&str; 3] = ["quotient_valid", "axis_start", "group_stop"];
+const FROM_STAGE: [&str; 4] = ["quotient_valid", "axis_start", "group_stop", "hold_feed"];
 /// From this axis to the stage.
-const TO_STAGE: [&str; 5] = ["steps", "elapsed", "can_start", "wants_group_stop", "emergency_stop"];
+const TO_STAGE: [&str; 6] = [
+    "steps",
+    "elapsed",
+    "can_start",
+    "wants_group_stop",
+    "emergency_stop",
+    "rests",
+];
 /// The pulse counter's timeout, as of the stand-alone one: 5 million clocks.
 const VELOCITY_TIMEOUT: u64 = 76;
 
@@ -78,6 +85,8 @@ const SEGMENTS: Nets = &[
     ("malformed", "segment_malformed"),
     ("tick_missed", "segments_tick_missed"),
     ("out_of_range", "segments_out_of_range"),
+    ("feed_hold", "hold_feed"),
+    ("held", "feed_held"),
 ];
 
 const SHAPER: Nets = &[

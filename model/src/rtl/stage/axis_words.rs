@@ -145,6 +145,7 @@ fn states() -> Vec<Register> {
                 Field::new("fifo_level", 0, 7, "entries that wait"),
                 Field::flag("fifo_low", 8, "at most `low_water`"),
                 Field::flag("segments_empty", 9, "none"),
+                Field::flag("feed_held", 10, "a feed hold keeps the command where it rests"),
             ],
         ),
         register(

@@ -100,6 +100,9 @@ fn wire(config: &StageConfig, block: &Block, part: Part) -> Part {
                 "emergency_stop",
                 "axis_start",
                 "group_stop",
+                "feed_hold",
+                "rests",
+                "hold_feed",
             ];
             each.iter().fold(part, |part, port| {
                 part.on(&format!("{port}_{index}"), &format!("{}_{port}", axis.name))

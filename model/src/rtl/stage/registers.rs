@@ -78,6 +78,13 @@ pub(super) fn stage(config: &StageConfig) -> Description {
             ],
         )
         .with_interrupts(0x0c, interrupts(config))
+        .with(
+            "feed_hold",
+            0x0f,
+            Access::Configuration,
+            "these axes stand once all of them rest in one tick, and keep what waits",
+            feed_holds(config),
+        )
         .with_shadowed(
             "time_stamp",
             0x20,
@@ -119,6 +126,12 @@ fn of_axis(mut register: Register, axis: &str, base: u32) -> Register {
         _ => {}
     }
     register
+}
+
+fn feed_holds(config: &StageConfig) -> Vec<Field> {
+    let axes = (0..).zip(&config.axes);
+    axes.map(|(bit, axis)| Field::flag(&format!("{}_feed_hold", axis.name), bit, "its bit of `START`"))
+        .collect()
 }
 
 fn interrupts(config: &StageConfig) -> Vec<Field> {

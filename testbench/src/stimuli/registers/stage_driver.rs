@@ -155,6 +155,8 @@ impl Driver {
         self.tell(axis, "swap", 0);
         self.tell(axis, "law", random >> 4 & 1);
         self.tell(axis, "control", 0);
+        // Writes anywhere have left axes in it.
+        self.write(axis, "feed_hold", 0);
         self.write(axis, "commit", 0);
     }
 
@@ -190,13 +192,23 @@ impl Driver {
         self.start(axis);
         let before = self.below(4 * self.tick_clocks);
         self.wait(axis, before);
-        match self.below(6) {
+        match self.below(7) {
             0 => self.start(axis),
             1..=3 => self.tell(axis, "stop", 0),
             4 => self.tell(axis, "control", 0),
+            5 => self.held(axis),
             _ => self.tell(axis, "flush", 0),
         }
         self.ticks(axis, 4);
+    }
+
+    /// A feed hold over a few ticks, and on.
+    fn held(&mut self, axis: usize) {
+        self.write(axis, "feed_hold", 1 << axis);
+        let ticks = self.below(6);
+        self.there_and_back(axis, 1);
+        self.ticks(axis, ticks + 1);
+        self.write(axis, "feed_hold", 0);
     }
 
     /// From end to end of the numbers, through a table with the largest coefficients.
