@@ -9,11 +9,13 @@ use super::scope::{NetId, Role, Scope};
 use super::types::mask;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// A kernel, sorted by construct; comments go with the statements that follow them.
+/// A kernel, sorted by construct. A comment goes with the statement that follows it, and is there once.
 #[derive(Debug, Default)]
 pub(super) struct Drivers {
     /// Inputs of registers and sub-blocks that are just another net.
     pub(super) direct: BTreeMap<NetId, NetId>,
+    /// The comments above what wires these inputs.
+    pub(super) notes: BTreeMap<NetId, Vec<String>>,
     /// Comments and assignments.
     pub(super) continuous: Vec<Statement>,
     pub(super) procedural: Vec<Statement>,
@@ -30,7 +32,7 @@ impl Drivers {
             }
         });
         let mut drivers = Self::default();
-        let mut comments = Comments::default();
+        let mut comments = Vec::new();
         for statement in kernel {
             match statement {
                 Statement::Comment(text) => comments.push(text),
@@ -38,19 +40,18 @@ impl Drivers {
                     let is_input = scope.net(target).role.is_input_below();
                     match value.plain.filter(|_| is_input) {
                         Some(source) => {
+                            drivers.notes.entry(target).or_default().append(&mut comments);
                             drivers.direct.insert(target, source);
                         }
                         None => {
-                            drivers.continuous.append(&mut comments.continuous);
+                            drivers.continuous.extend(comments.drain(..).map(Statement::Comment));
                             drivers.continuous.push(statement);
                         }
                     }
-                    comments.closed = true;
                 }
                 _ => {
-                    drivers.procedural.append(&mut comments.procedural);
+                    drivers.procedural.extend(comments.drain(..).map(Statement::Comment));
                     drivers.procedural.push(statement);
-                    comments.closed = true;
                 }
             }
         }
@@ -162,23 +163,4 @@ fn drop_overridden(block: Vec<Statement>) -> Vec<Statement> {
     }
     kept.reverse();
     kept
-}
-
-/// Comments that wait for the next statement of each construct; a new comment ends the reach of the one before.
-#[derive(Debug, Default)]
-struct Comments {
-    continuous: Vec<Statement>,
-    procedural: Vec<Statement>,
-    /// A statement has followed, so that the next comment starts anew.
-    closed: bool,
-}
-
-impl Comments {
-    fn push(&mut self, text: String) {
-        if self.closed {
-            *self = Self::default();
-        }
-        self.continuous.push(Statement::Comment(text.clone()));
-        self.procedural.push(Statement::Comment(text));
-    }
 }

@@ -260,6 +260,7 @@ impl Composite<'_> {
             for (pins, module) in scope.pins.iter().zip(children) {
                 lines.section(|lines| {
                     let child = &self.node.children[pins.child];
+                    pins.nets.iter().for_each(|id| self.notes(lines, *id));
                     let names = child.ports().map(|port| names::flatten(&port.raw));
                     let nets = pins.nets.iter().map(|id| self.source(*id).to_owned());
                     let name = format!("u_{}", names::flatten(&child.raw));
@@ -287,6 +288,13 @@ impl Composite<'_> {
     /// The net that a sub-block's or a register's input is connected to.
     fn source(&self, id: NetId) -> &str {
         &self.scope.net(*self.drivers.direct.get(&id).unwrap_or(&id)).name
+    }
+
+    /// The comments above what wires this input.
+    fn notes(&self, lines: &mut Lines, id: NetId) {
+        for text in self.drivers.notes.get(&id).into_iter().flatten() {
+            lines.line(&format!("// {text}"));
+        }
     }
 
     fn constants(&self, lines: &mut Lines, bits_read: &BTreeMap<NetId, u64>) {
@@ -337,6 +345,7 @@ impl Composite<'_> {
                 });
                 lines.nest_rest("end", |lines| {
                     for register in &scope.registers {
+                        self.notes(lines, register.next);
                         let next = self.source(register.next);
                         lines.line(&format!("{} <= {next};", scope.net(register.now).name));
                     }

@@ -46,8 +46,12 @@ pub(super) fn comment_text(raw: &str) -> Option<String> {
     if is_other {
         return None;
     }
-    let text = raw.split_once('"').map_or(raw, |(_, rest)| rest);
-    let text = text.trim_end().trim_end_matches([';', ')']).trim_end_matches('"');
+    // RustHDL takes away `comment ! ("` and `")` where the compiler has printed the tokens in just that way.
+    let text = raw.split_once('"').map_or(raw, |(_, rest)| rest).trim_end();
+    let closed = text
+        .strip_suffix(')')
+        .map(|text| text.trim_end().trim_end_matches(',').trim_end());
+    let text = closed.and_then(|text| text.strip_suffix('"')).unwrap_or(text);
     let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
     (!text.is_empty()).then_some(text)
 }
@@ -248,6 +252,8 @@ mod tests {
         assert_eq!(comment_text("comment! (\"tap table").as_deref(), Some("tap table"));
         assert_eq!(comment_text("comment!(\"a\n   b\")").as_deref(), Some("a b"));
         assert_eq!(comment_text("@module mac").as_deref(), Some("@module mac"));
+        assert_eq!(comment_text("comment! (\"a; b (c);").as_deref(), Some("a; b (c);"));
+        assert_eq!(comment_text("comment!\n(\"a (b);\",\n)").as_deref(), Some("a (b);"));
         assert_eq!(comment_text("assert! (x)"), None);
         assert_eq!(comment_text("comment! (\""), None);
     }

@@ -186,6 +186,25 @@ kernel!(LongComment { a: Bits<8> => y: Bits<8> };
     self.y.next = !self.a.val();
 });
 
+kernel!(Commented { rst: Bit, a: Bits<8> => y: Bits<8>, z: Bits<8> } {
+    first: Counter<1> = Counter::default(), kept: Dff<Bits<8>> = Dff::new(0.into()), counted: Dff<Bits<8>> = Dff::new(0.into())
+} @ clk;
+#[hdl_gen] fn update(&mut self) {
+    dff_setup!(self, clk, kept, counted);
+    comment!("Counts; without a pause (see its own file);");
+    self.first.clk.next = self.clk.val();
+    self.first.rst.next = self.rst.val();
+    comment!("Of the register");
+    self.counted.d.next = self.first.count.val();
+    comment!("Of the choice");
+    if self.a.val().any() {
+        self.kept.d.next = self.a.val();
+    }
+    self.y.next = self.kept.q.val() + self.counted.q.val();
+    comment!("Of the inverse");
+    self.z.next = !self.a.val();
+});
+
 fn options(top: &str, prefix: &str) -> EmitOptions {
     let parameter = |name: &str, value: &str, meaning: &str| Parameter {
         name: name.into(),
@@ -306,6 +325,28 @@ module posicast_pair ("
             .iter()
             .all(|module| module.text.ends_with("endmodule\n\n`default_nettype wire\n"))
     );
+}
+
+/// A comment stands above the statement that follows it, whichever construct drives that, and nowhere else.
+#[test]
+fn unit_a_comment_stands_once_above_its_statement() {
+    let text = emit_as::<Commented>("of").unwrap().pop().unwrap().text;
+    for (comment, statement) in [
+        (
+            "Counts; without a pause (see its own file);",
+            "of_counter_by_1 u_first (",
+        ),
+        ("Of the register", "counted <= first_count;"),
+        ("Of the choice", "if ((|a)) begin"),
+        ("Of the inverse", "assign z = ~a;"),
+    ] {
+        let lines: Vec<&str> = text.lines().map(str::trim).collect();
+        let places: Vec<usize> = (0..lines.len())
+            .filter(|at| lines[*at] == format!("// {comment}"))
+            .collect();
+        assert_eq!(places.len(), 1, "{comment}: {text}");
+        assert_eq!(lines[places[0] + 1], statement, "{text}");
+    }
 }
 
 /// RustHDL wraps the text of long comments, which its own generator then breaks on.
