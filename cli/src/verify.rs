@@ -12,7 +12,7 @@ use crate::hardware::Built;
 use crate::output;
 use crate::{blocks, command, machine, replay};
 use posicast_synth::package;
-use posicast_testbench::blocks::{Block, Sources, StageBlock};
+use posicast_testbench::blocks::{Block, ShortTicksBlock, Sources, StageBlock};
 use posicast_testbench::lockstep::report::{Report, Verdict};
 use std::path::{Path, PathBuf};
 
@@ -150,7 +150,9 @@ impl Job {
             if folder.is_some() {
                 others.extend(block.inner().map_err(bench::failure)?);
             }
+            let short = ShortTicksBlock::new(&stage.of_machine.config, &block.top()).map_err(Failure::because)?;
             others.push(Box::new(block));
+            others.extend(short.map(|block| Box::new(block) as Box<dyn Block>));
         }
         let folder = folder.map(|contents| contents.rtl);
         if let Some(files) = &folder {
@@ -160,7 +162,10 @@ impl Job {
         let mut list: Vec<Box<dyn Block>> = vec![Box::new(blocks::shapers(&machine, built.shapers, &words)?)];
         list.extend(others);
         let sources = |block: &dyn Block| match &folder {
-            Some(files) => Sources::found(files.clone()).reached_by(block).map_err(bench::failure),
+            Some(files) => {
+                let reached = Sources::found(files.clone()).reached_by(block);
+                reached.and_then(|files| block.adapted(files)).map_err(bench::failure)
+            }
             None => Sources::write(block).map_err(bench::failure),
         };
         let chosen = choose(list, names, source)?.into_iter();

@@ -40,6 +40,7 @@ pub fn check(block: &dyn Block, sources: &Sources) -> Result<Option<Report>, Err
         mismatches: findings.len() as u64,
         first: None,
         not_exercised: Vec::new(),
+        unchanged: Vec::new(),
         findings,
     };
     Ok(Some(Report::new(cycles, vec![row])))
@@ -56,6 +57,7 @@ pub fn not_run(block: &dyn Block, why: &str) -> Option<Report> {
         mismatches: 0,
         first: None,
         not_exercised: vec![why.to_owned()],
+        unchanged: Vec::new(),
         findings: Vec::new(),
     };
     Some(Report::new(1, vec![row]))

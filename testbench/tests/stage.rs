@@ -17,8 +17,8 @@ use posicast_model::rtl::stage::{StageConfig, StageScale};
 use posicast_model::rtl::{ClockedBlock, Direction};
 use posicast_model::spec::{self, Machine};
 use posicast_model::taps::{Tap, TapTable};
-use posicast_testbench::blocks::{self, Block, ComponentBlock, Sources, StageBlock};
-use posicast_testbench::lockstep::Device;
+use posicast_testbench::blocks::{self, Block, ComponentBlock, ShortTicksBlock, Sources, StageBlock};
+use posicast_testbench::lockstep::{Device, TwoValued};
 use posicast_testbench::register_tests::{Hardware, Host, TESTS};
 use posicast_testbench::stage_bench::{StageBench, state};
 use support::{assert_match, caught, icarus_agrees, million_random_clocks};
@@ -256,6 +256,45 @@ fn lockstep_catches_a_stop_that_does_not_wait_for_the_shaper() {
 #[test]
 fn lockstep_catches_a_preset_that_takes_the_users_position() {
     rewired(1, "preset_position", "count", "(user_position)");
+}
+
+/// The clocks that Icarus has where none are asked for reach every flag of every row inside the stage and of the stage: the
+/// model runs beside itself, so this is about the stimuli alone.
+#[test]
+fn unit_the_fewest_clocks_of_a_verdict_drive_every_flag() {
+    let config = stage(&machine()).config;
+    let block = StageBlock::new(&config, "xy_stage_stage").unwrap();
+    let mut rows = block.inner().unwrap();
+    rows.push(Box::new(block));
+    let short = ShortTicksBlock::new(&config, "xy_stage_stage").unwrap();
+    rows.push(Box::new(short.expect("ticks of 5,000 clocks can be shorter")));
+    for row in rows {
+        let seed = blocks::row_seed(row.as_ref(), 1);
+        let mut twin = TwoValued(row.model(seed));
+        let clocks = row.least_clocks().max(20_000);
+        let report = blocks::judge(row.as_ref(), &mut twin, clocks, seed, &mut |_| {}).unwrap();
+        assert_eq!(report.not_exercised_names(), [""; 0], "{clocks} clocks");
+    }
+}
+
+/// A row that is not driven enough says so, by the flag.
+#[test]
+fn unit_a_row_without_a_list_of_its_own_names_the_flags_that_stayed() {
+    let block = posicast_testbench::blocks::SegmentsBlock::new("few", "alone");
+    let mut twin = TwoValued(block.model(1));
+    let report = blocks::judge(&block, &mut twin, 100, 1, &mut |_| {}).unwrap();
+    assert_eq!(report.result, posicast_testbench::lockstep::report::Verdict::Mismatch);
+    let missing = report.not_exercised_names();
+    assert!(
+        missing.iter().any(|what| what == "segments alone: `overflow` = 1"),
+        "{missing:?}"
+    );
+    assert!(
+        report.blocks[0]
+            .unchanged
+            .iter()
+            .any(|bits| bits.starts_with("position["))
+    );
 }
 
 /// The schedule fits its tick, whatever a host does: no pass is late, and no start finds one running.

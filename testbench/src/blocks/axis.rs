@@ -10,6 +10,9 @@ use super::{Bins, Block};
 use crate::lockstep::Clock;
 use crate::stimuli::{AxisCoverage, AxisRandom, Stimuli};
 
+/// Clocks after which the stimuli have driven every flag, and every named mutant of `mutation::INSIDE` shows.
+const LEAST_CLOCKS: u64 = 30_000;
+
 /// The supervisor of an axis, which has one size: what it does is in registers.
 #[derive(Debug, Clone)]
 pub struct AxisBlock {
@@ -54,6 +57,10 @@ impl Block for AxisBlock {
 
     fn stimuli(&self, _cycles: u64, seed: u64) -> Box<dyn Stimuli + '_> {
         Box::new(AxisRandom::new(seed))
+    }
+
+    fn least_clocks(&self) -> u64 {
+        LEAST_CLOCKS
     }
 
     fn coverage(&self) -> Box<dyn Bins + '_> {

@@ -25,6 +25,7 @@ mod drive_command;
 mod encoder_generator;
 mod excitation;
 mod inside;
+mod levels;
 mod library;
 mod linear_scale;
 mod part;
@@ -33,6 +34,7 @@ mod pwm;
 mod registers;
 mod segments;
 mod shaper;
+mod short_ticks;
 mod sliding_mode;
 mod sources;
 mod stage;
@@ -54,6 +56,7 @@ pub use self::pwm::PwmBlock;
 pub use self::registers::RegistersBlock;
 pub use self::segments::SegmentsBlock;
 pub use self::shaper::{MachineShapers, ShaperBlock};
+pub use self::short_ticks::ShortTicksBlock;
 pub use self::sliding_mode::SlidingModeBlock;
 pub use self::sources::{Sources, rusthdl};
 pub use self::stage::StageBlock;
@@ -85,6 +88,14 @@ pub trait Block: Send + Sync {
     /// Name of the top module.
     fn top(&self) -> String;
 
+    /// The Verilog that this row runs, of the files `sources`: those as they are, unless the row says otherwise.
+    ///
+    /// # Errors
+    /// [`Error::File`] where a file cannot be read or written.
+    fn adapted(&self, sources: Sources) -> Result<Sources, Error> {
+        Ok(sources)
+    }
+
     /// The bit-exact model. Memories start with contents that depend on the seed.
     fn model(&self, seed: u64) -> Box<dyn ClockedBlock>;
 
@@ -115,9 +126,19 @@ pub trait Block: Send + Sync {
         0
     }
 
-    /// What a run must have driven before it says anything of the block; nothing in particular, by default.
+    /// What a run must have driven before it says anything of the block: both levels of every flag, by default.
     fn exercise(&self) -> Option<Box<dyn Exercise + '_>> {
-        None
+        let model = self.model(0);
+        Some(Box::new(levels::Levels::new(
+            self.instance(),
+            model.ports(),
+            &self.fixed(),
+        )))
+    }
+
+    /// Flags among the outputs that cannot change as the block is built, and why.
+    fn fixed(&self) -> Vec<(String, &'static str)> {
+        Vec::new()
     }
 
     /// A testbench for what no clock sees, and the name of its top module; see [`crate::asynchronous`].
@@ -147,6 +168,11 @@ pub trait Exercise {
 
     /// What was not driven yet: the instance of its row, and what it is, in words.
     fn missing(&self) -> Vec<(String, String)>;
+
+    /// Bits of words that never changed, for the reader; no verdict hangs on them.
+    fn unchanged(&self) -> Vec<(String, String)> {
+        Vec::new()
+    }
 }
 
 /// A lock step that is over, and what it reached.
@@ -237,7 +263,10 @@ pub fn judge(
         }
     };
     let report = run(block, device, stimuli.as_mut(), (cycles, seed), &mut watch, progress)?;
-    Ok(report.without(exercise.map(|exercise| exercise.missing()).unwrap_or_default()))
+    Ok(match exercise {
+        Some(exercise) => report.without(exercise.missing()).with_unchanged(exercise.unchanged()),
+        None => report,
+    })
 }
 
 fn run(

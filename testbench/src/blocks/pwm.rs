@@ -10,6 +10,9 @@ use super::{Bins, Block};
 use crate::lockstep::Clock;
 use crate::stimuli::{PwmCoverage, PwmRandom, Stimuli};
 
+/// Clocks after which the stimuli have driven every flag, and every named mutant of `mutation::INSIDE` shows.
+const LEAST_CLOCKS: u64 = 40_000;
+
 /// The top module of the test of the fault path.
 const ASYNCHRONOUS_TOP: &str = "posicast_asynchronous";
 
@@ -59,6 +62,10 @@ impl Block for PwmBlock {
 
     fn stimuli(&self, _cycles: u64, seed: u64) -> Box<dyn Stimuli + '_> {
         Box::new(PwmRandom::new(seed))
+    }
+
+    fn least_clocks(&self) -> u64 {
+        LEAST_CLOCKS
     }
 
     fn coverage(&self) -> Box<dyn Bins + '_> {

@@ -10,6 +10,9 @@ use super::{Bins, Block};
 use crate::lockstep::Clock;
 use crate::stimuli::{SegmentsCoverage, SegmentsRandom, Stimuli};
 
+/// Clocks after which the stimuli have driven every flag, and every named mutant of `mutation::INSIDE` shows.
+const LEAST_CLOCKS: u64 = 60_000;
+
 /// The command FIFO, which has one size.
 #[derive(Debug, Clone)]
 pub struct SegmentsBlock {
@@ -54,6 +57,10 @@ impl Block for SegmentsBlock {
 
     fn stimuli(&self, _cycles: u64, seed: u64) -> Box<dyn Stimuli + '_> {
         Box::new(SegmentsRandom::new(seed))
+    }
+
+    fn least_clocks(&self) -> u64 {
+        LEAST_CLOCKS
     }
 
     fn coverage(&self) -> Box<dyn Bins + '_> {

@@ -83,6 +83,24 @@ impl Sources {
         Ok(Self::found(reached))
     }
 
+    /// Copies of these files, each with the text that `text` makes of its stem and its own text.
+    ///
+    /// # Errors
+    /// [`Error::File`] where a file cannot be read or written.
+    pub fn rewritten(&self, text: impl Fn(&str, &str) -> String) -> Result<Self, Error> {
+        let module = |file: &PathBuf| {
+            let old = std::fs::read(file).map_err(Error::file(file, "read the Verilog"))?;
+            let name = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+            Ok(Module {
+                text: text(&name, &String::from_utf8_lossy(&old)),
+                name,
+                ports: Vec::new(),
+                clocked: true,
+            })
+        };
+        Self::of_modules(&self.files.iter().map(module).collect::<Result<Vec<_>, Error>>()?)
+    }
+
     /// The files.
     pub fn files(&self) -> &[PathBuf] {
         &self.files

@@ -312,6 +312,7 @@ impl Comparison {
             samples: watched.valid.map(|_| watched.samples),
             mismatches: watched.mismatches,
             not_exercised: Vec::new(),
+            unchanged: Vec::new(),
             findings: Vec::new(),
         });
         Report::new(cycles, blocks.collect())

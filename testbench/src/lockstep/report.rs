@@ -67,6 +67,15 @@ impl Report {
         Self::new(self.cycles, self.blocks)
     }
 
+    /// The same, where these bits of words never changed: the instance of a row, and the bits.
+    pub fn with_unchanged(mut self, bits: Vec<(String, String)>) -> Self {
+        for (instance, bits) in bits {
+            let row = self.blocks.iter_mut().find(|block| block.instance == instance);
+            row.into_iter().for_each(|row| row.unchanged.push(bits.clone()));
+        }
+        self
+    }
+
     /// What was not exercised, in all rows: how much.
     pub fn not_exercised(&self) -> usize {
         self.blocks.iter().map(|block| block.not_exercised.len()).sum()
@@ -105,6 +114,9 @@ pub struct Block {
     pub first: Option<Mismatch>,
     /// What the run should have driven and did not, in words: a tap, a bank, a flag.
     pub not_exercised: Vec<String>,
+    /// Bits of words that had one level all the run, as `word[31:20]`: the upper ones of counters, mostly.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub unchanged: Vec<String>,
     /// What a directed test found that the lock step cannot see, in its words.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub findings: Vec<String>,

@@ -16,7 +16,7 @@ use posicast_model::rtl::stage::StageConfig;
 
 use crate::Error;
 use crate::asynchronous;
-use crate::blocks::{self, Block, Sources, StageBlock};
+use crate::blocks::{self, Block, ShortTicksBlock, Sources, StageBlock};
 use crate::page::Marks;
 
 /// Where the table of these mutants stands.
@@ -171,6 +171,8 @@ impl Inside {
             .collect();
         let mut rows = stage.inner()?;
         rows.push(Box::new(stage));
+        let short = ShortTicksBlock::new(config, top).map_err(|error| Error::Option(error.to_string()))?;
+        rows.extend(short.map(|block| Box::new(block) as Box<dyn Block>));
         for row in rows {
             let sources = broken.reached_by(row.as_ref())?;
             if !sources
@@ -180,6 +182,7 @@ impl Inside {
             {
                 continue;
             }
+            let sources = row.adapted(sources)?;
             if let Some(found) = look(row.as_ref(), &sources, clocks.max(row.least_clocks()), seed)? {
                 return Ok(Some(found));
             }

@@ -24,6 +24,9 @@ const PACES: [u32; 8] = [
     100,
 ];
 
+/// Jerks of the first moods: the sums overflow upwards, then downwards. Random ones seldom last so long.
+const OVERFLOWS: [i64; 2] = [(1 << 39) - 1, -(1 << 39)];
+
 /// What holds for a while.
 #[derive(Debug, Clone, Copy, Default)]
 struct Mood {
@@ -80,6 +83,26 @@ impl SegmentsRandom {
             modulo: rng.random_range(0..2),
             hold_pace: *pick(rng, &[0, 0, 0, 1, 60, 60]),
         };
+    }
+
+    /// Out of the words of the sums, soon and for certain.
+    fn overflow(&mut self, jerk: i64) {
+        self.mood.enable = true;
+        self.mood.modulo = 0;
+        (self.mood.write_pace, self.mood.tick_pace, self.mood.request_pace) = (5, TICK_CLOCKS, 500_000);
+        self.words.clear();
+        for _ in 0..4 {
+            let motion = Motion::Jerk(jerk);
+            let words = (0..).zip(
+                Entry {
+                    ticks: 30,
+                    motion,
+                    notify: false,
+                }
+                .words(),
+            );
+            self.words.extend(words.map(|(word, data)| (word, u64::from(data))));
+        }
     }
 
     fn jerk(&mut self) -> i64 {
@@ -195,6 +218,9 @@ impl Stimuli for SegmentsRandom {
     fn fill(&mut self, _seen: &[u64], inputs: &mut [u64]) {
         if self.clock.is_multiple_of(MOOD_CLOCKS) {
             self.new_mood();
+            if let Some(jerk) = OVERFLOWS.get((self.clock / MOOD_CLOCKS) as usize) {
+                self.overflow(*jerk);
+            }
         }
         let Ok(inputs) = <&mut [u64; INPUT_PORTS]>::try_from(inputs) else {
             return;

@@ -12,6 +12,9 @@ use super::super::table::Table;
 use super::{ADDRESS, BUS_INPUTS, BYTE_ENABLE, READ, RegistersRandom, WRITE, WRITE_DATA};
 use crate::stimuli::{PulseCounterRandom, Stimuli};
 
+/// Clocks at the start of a run in which a PWM is left in peace.
+const CALM_CLOCKS: u64 = 5_000;
+
 /// Traffic for a component: as [`RegistersRandom`], with pins and transactions such that its block has something to do.
 #[derive(Debug, Clone)]
 pub struct ComponentRandom {
@@ -20,6 +23,7 @@ pub struct ComponentRandom {
     core: Core,
     /// Writes to come: word and data.
     writes: VecDeque<(u32, u32)>,
+    clock: u64,
 }
 
 #[derive(Debug, Clone)]
@@ -59,6 +63,7 @@ impl ComponentRandom {
             map: component.map().clone(),
             core: core.unwrap_or(Core::Other),
             writes: VecDeque::new(),
+            clock: 0,
         }
     }
 
@@ -158,7 +163,16 @@ impl Stimuli for ComponentRandom {
             // The lines are the same in both, behind `rst` and behind the bus.
             inputs[BUS_INPUTS..BUS_INPUTS + 6].copy_from_slice(&row[1..7]);
         }
-        if let Core::Pwm { sync, fault_n } = self.core {
+        if let Core::Pwm { sync, fault_n } = self.core
+            && self.clock < CALM_CLOCKS
+        {
+            // Nobody but the driver writes, no line fails, and no `sync` finds the carrier at another phase: it runs.
+            (inputs[WRITE], inputs[sync]) = (0, 0);
+            for (input, healthy) in inputs[fault_n..].iter_mut().zip([1, 1, 3]) {
+                *input = healthy;
+            }
+            inputs[0] = (self.clock < 2).into();
+        } else if let Core::Pwm { sync, fault_n } = self.core {
             // Rare, since one that finds the carrier at another phase keeps it from starting until the next one.
             inputs[sync] &= u64::from(self.registers.one_in(500));
             // Healthy, as a rule.
@@ -177,5 +191,6 @@ impl Stimuli for ComponentRandom {
             inputs[BYTE_ENABLE] = 0xf;
             inputs[WRITE] = 1;
         }
+        self.clock += 1;
     }
 }

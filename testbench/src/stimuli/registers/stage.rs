@@ -2,15 +2,18 @@
 //! windows; lines that are healthy most of the time; encoders that move.
 
 use posicast_model::rtl::component::Component;
+use posicast_model::rtl::registers::{Access, Register, RegisterMap};
 use posicast_model::rtl::{Direction, Port};
 
 use super::super::table::pick;
-use super::stage_driver::Driver;
+use super::stage_driver::{Driver, Moves, Pins};
 use super::{ADDRESS, BYTE_ENABLE, READ, RegistersRandom, WRITE, WRITE_DATA};
 use crate::stimuli::Stimuli;
 
 /// Clocks between changes of what holds for a while: with writes anywhere, and without.
 const MOOD_CLOCKS: [u64; 2] = [6_000, 40_000];
+/// Scenes per axis before random traffic begins.
+const FIRST_SCENES: usize = 20;
 /// Lines of an axis that are high while all is well, and how rarely each is low: those are seldom that stop all.
 const LINES: [(&str, u32); 6] = [
     ("limit_plus_n", 1),
@@ -32,23 +35,14 @@ const EDGE_CLOCKS: u32 = 12;
 struct Mood {
     /// Writes anywhere.
     wild: bool,
+    /// A scene is played; nothing else happens.
+    scene: bool,
     /// One fault in so many clocks.
     fault_pace: u32,
     /// One request of the driver in so many clocks.
     request_pace: u32,
     /// One reset in so many clocks.
     reset_pace: u32,
-}
-
-/// How an encoder moves.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Moves {
-    /// Not at all.
-    Still,
-    /// With the mean of the gates.
-    Follows,
-    /// To and fro, at random.
-    Walks,
 }
 
 /// An axis as its pins see it.
@@ -58,19 +52,24 @@ struct AxisPins {
     encoders: [Vec<usize>; 2],
     /// Places of the limit switches, + and −.
     switches: [usize; 2],
-    /// Places of A's and B's high gate, and of the drive's enable, among the outputs.
-    shown: [usize; 3],
+    /// Places of A's and B's high gate, of the drive's enable and of the brake's release, among the outputs.
+    shown: [usize; 4],
     moves: Moves,
     count: i32,
     /// What has come together for the next step.
     mean: i32,
     since_step: u32,
     invert: bool,
+    /// Both lines change at once, next.
+    slips: bool,
 }
 
 /// A line, and how long it will be low.
 #[derive(Debug, Clone, Copy)]
 struct Line {
+    /// None: shared by all.
+    axis: Option<usize>,
+    name: &'static str,
     at: usize,
     /// How much rarer than others it is low.
     pace: u32,
@@ -86,6 +85,11 @@ pub struct StageRandom {
     clock: u64,
     mood: Mood,
     mood_ends: u64,
+    /// Moods, and scenes, so far.
+    moods: u32,
+    scenes: usize,
+    /// The words that show what is inside.
+    status: Vec<u64>,
     axes: Vec<AxisPins>,
     lines: Vec<Line>,
 }
@@ -93,6 +97,16 @@ pub struct StageRandom {
 fn place(ports: &[Port], direction: Direction, name: &str) -> Option<usize> {
     let mut names = ports.iter().filter(|port| port.direction == direction);
     names.position(|port| port.name == name)
+}
+
+/// The words that a stage shows of itself: states, flags, causes and values.
+fn status(map: &RegisterMap) -> Vec<u64> {
+    let shown = |register: &&Register| matches!(register.access, Access::Live | Access::Sticky | Access::Shadow { .. });
+    map.registers()
+        .iter()
+        .filter(shown)
+        .map(|register| register.offset.into())
+        .collect()
 }
 
 impl StageRandom {
@@ -105,7 +119,7 @@ impl StageRandom {
                 let pins = ["a", "b", "z"].map(|pin| input(&format!("{axis}_{kind}{pin}")));
                 pins.into_iter().flatten().collect()
             };
-            let shown = ["a_high", "b_high", "drive_enable"];
+            let shown = ["a_high", "b_high", "drive_enable", "brake_release"];
             AxisPins {
                 encoders: [encoder(""), encoder("scale_")],
                 switches: [0, 1].map(|which| input(&format!("{axis}_{}", LINES[which].0)).unwrap_or(0)),
@@ -115,12 +129,24 @@ impl StageRandom {
                 mean: 0,
                 since_step: 0,
                 invert: false,
+                slips: false,
             }
         };
-        let of_axes = |axis: &String| LINES.map(|(line, pace)| (format!("{axis}_{line}"), pace));
-        let shared = SHARED_LINES.map(|(line, pace)| (line.to_owned(), pace));
-        let lines = shared.into_iter().chain(axes.iter().flat_map(of_axes));
-        let line = |(name, pace): (String, u32)| input(&name).map(|at| Line { at, pace, low: 0 });
+        let of_axes = |(at, axis): (usize, &String)| {
+            let axis = axis.clone();
+            LINES.map(move |(line, pace)| (Some(at), line, format!("{axis}_{line}"), pace))
+        };
+        let shared = SHARED_LINES.map(|(line, pace)| (None, line, line.to_owned(), pace));
+        let lines = shared.into_iter().chain(axes.iter().enumerate().flat_map(of_axes));
+        let line = |(axis, name, port, pace): (Option<usize>, &'static str, String, u32)| {
+            input(&port).map(|at| Line {
+                axis,
+                name,
+                at,
+                pace,
+                low: 0,
+            })
+        };
         let map = component.map();
         Self {
             registers: RegistersRandom::new(map, ports, seed),
@@ -128,8 +154,12 @@ impl StageRandom {
             driver: Driver::new(map, axes, seed),
             clock: 0,
             mood_ends: 0,
+            scenes: 0,
+            moods: 0,
+            status: status(map),
             mood: Mood {
                 wild: false,
+                scene: false,
                 fault_pace: 1,
                 request_pace: 1,
                 reset_pace: 1,
@@ -147,8 +177,14 @@ impl StageRandom {
         *pick(&mut self.registers.rng, choices)
     }
 
+    /// A scene in turn with a while of random traffic, after the first scenes: those come at once.
     fn new_mood(&mut self) {
+        self.moods += 1;
+        if self.scenes < FIRST_SCENES * self.axes.len() || self.moods % 2 == 0 {
+            return self.new_scene();
+        }
         self.mood = Mood {
+            scene: false,
             wild: self.one_in(4),
             fault_pace: self.pick(&[3_000, 12_000, 12_000, 100_000]),
             request_pace: self.pick(&[3, 30, 30, 300]),
@@ -159,6 +195,40 @@ impl StageRandom {
             self.axes[at].invert = self.one_in(3);
         }
         self.driver.begin_anew();
+    }
+
+    fn new_scene(&mut self) {
+        self.mood = Mood {
+            wild: false,
+            scene: true,
+            fault_pace: u32::MAX,
+            request_pace: u32::MAX,
+            reset_pace: u32::MAX,
+        };
+        for axis in &mut self.axes {
+            axis.invert = false;
+        }
+        self.driver.play(self.scenes);
+        self.scenes += 1;
+    }
+
+    /// What scenes want at the pins of an axis.
+    fn pins(&mut self, seen: &[u64]) {
+        for at in 0..self.axes.len() {
+            let axis = &self.axes[at];
+            let released = seen.get(axis.shown[3]).is_some_and(|value| value & 1 != 0);
+            for pins in self.driver.sees(at, axis.count, released) {
+                match pins {
+                    Pins::Encoder(moves) => self.axes[at].moves = moves,
+                    Pins::Slip => self.axes[at].slips = true,
+                    Pins::Low(name, clocks) => {
+                        let is_meant = |line: &&mut Line| line.name == name && line.axis.is_none_or(|axis| axis == at);
+                        let line = self.lines.iter_mut().find(is_meant);
+                        line.into_iter().for_each(|line| line.low = clocks);
+                    }
+                }
+            }
+        }
     }
 
     /// The encoders, a step at a time.
@@ -181,8 +251,9 @@ impl StageRandom {
                 }
             };
             // Both lines at once.
-            let slips = self.one_in(300_000);
+            let slips = !self.mood.scene && self.one_in(300_000);
             let axis = &mut self.axes[at];
+            let slips = std::mem::take(&mut axis.slips) || slips;
             axis.since_step += 1;
             if step != 0 && axis.since_step > EDGE_CLOCKS || slips {
                 axis.count += if slips { 2 } else { step };
@@ -200,8 +271,8 @@ impl StageRandom {
 
     fn lines(&mut self, inputs: &mut [u64]) {
         for at in 0..self.lines.len() {
-            let pace = self.mood.fault_pace * self.lines[at].pace * self.axes.len() as u32;
-            if self.one_in(pace) {
+            let rarer = self.lines[at].pace * self.axes.len() as u32;
+            if !self.mood.scene && self.one_in(self.mood.fault_pace * rarer) {
                 let tick = self.tick_clocks;
                 self.lines[at].low = self.pick(&[1, 3, 9, 40, tick, 3 * tick, 8 * tick]);
             }
@@ -220,28 +291,42 @@ impl StageRandom {
     fn drive(&mut self, seen: &[u64], inputs: &mut [u64]) {
         for (at, axis) in self.axes.iter().enumerate() {
             let on = seen.get(axis.shown[2]).is_some_and(|value| value & 1 != 0);
-            self.driver.plan(at, on, axis.count, self.mood.request_pace);
+            if !self.mood.scene {
+                self.driver.plan(at, on, self.mood.request_pace);
+            }
         }
         if let Some((offset, data)) = self.driver.clock() {
             inputs[ADDRESS] = offset.into();
             inputs[WRITE_DATA] = data.into();
             inputs[BYTE_ENABLE] = 0xf;
             (inputs[WRITE], inputs[READ]) = (1, 0);
+        } else if self.mood.scene && !self.one_in(4) {
+            // What a scene does is seen in the words of status.
+            let status = std::mem::take(&mut self.status);
+            inputs[ADDRESS] = self.pick(&status);
+            self.status = status;
+            inputs[READ] = 1;
         }
     }
 }
 
 impl Stimuli for StageRandom {
     fn fill(&mut self, seen: &[u64], inputs: &mut [u64]) {
-        if self.clock == self.mood_ends {
+        let is_over = if self.mood.scene {
+            self.driver.is_idle()
+        } else {
+            self.clock >= self.mood_ends
+        };
+        if is_over {
             self.new_mood();
-            self.mood_ends += MOOD_CLOCKS[usize::from(!self.mood.wild)];
+            self.mood_ends = self.clock + MOOD_CLOCKS[usize::from(!self.mood.wild)];
         }
+        self.pins(seen);
         self.registers.fill(seen, inputs);
         if !self.mood.wild {
             inputs[WRITE] = 0;
         }
-        inputs[0] = (self.clock < 2 || self.one_in(self.mood.reset_pace)).into();
+        inputs[0] = (self.clock < 2 || !self.mood.scene && self.one_in(self.mood.reset_pace)).into();
         self.encoders(seen, inputs);
         self.lines(inputs);
         self.drive(seen, inputs);

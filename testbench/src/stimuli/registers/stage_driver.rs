@@ -12,6 +12,30 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 
 use super::super::table::{Table, pick};
 
+mod scenes;
+
+/// How an encoder moves.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Moves {
+    /// Not at all.
+    Still,
+    /// With the mean of the gates.
+    Follows,
+    /// To and fro, at random.
+    Walks,
+}
+
+/// What happens at an axis's pins.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Pins {
+    /// A line, of the axis or shared, goes low for so many clocks.
+    Low(&'static str, u32),
+    /// The encoder moves so from now on.
+    Encoder(Moves),
+    /// Both lines of the encoder change at once.
+    Slip,
+}
+
 /// What a driver does next.
 #[derive(Debug, Clone, Copy)]
 enum Do {
@@ -19,6 +43,12 @@ enum Do {
     Wait(u32),
     /// Onto the limit switches: bit 0 +, bit 1 −; 0 is off them.
     Switch(u32),
+    /// Until the brake is open, and so many clocks at most.
+    Released(u32),
+    /// As [`Pins`].
+    Low(&'static str, u32),
+    Encoder(Moves),
+    Slip,
 }
 
 /// An axis as its driver sees it.
@@ -30,6 +60,10 @@ struct Plan {
     here: i32,
     /// On which limit switches it is.
     switches: u32,
+    /// The brake is open.
+    released: bool,
+    /// What is to happen at its pins.
+    pins: Vec<Pins>,
 }
 
 /// A driver of all axes of a stage, each with plans of its own, on one bus.
@@ -40,6 +74,8 @@ pub(super) struct Driver {
     tick_clocks: u32,
     axes: Vec<Plan>,
     table: Table,
+    /// How often all scenes have been played.
+    round: u32,
 }
 
 impl Driver {
@@ -50,6 +86,8 @@ impl Driver {
             script: VecDeque::new(),
             here: 0,
             switches: 0,
+            released: false,
+            pins: Vec::new(),
         };
         Self {
             rng: Xoshiro256PlusPlus::seed_from_u64(!seed),
@@ -57,6 +95,7 @@ impl Driver {
             map: map.clone(),
             axes: axes.iter().map(plan).collect(),
             table: Table::with_capacity(256),
+            round: 0,
         }
     }
 
@@ -69,12 +108,11 @@ impl Driver {
         }
     }
 
-    /// Plans, where an axis has nothing to do: one in so many clocks. `on`: its drive is enabled; `here`: its counts.
-    pub(super) fn plan(&mut self, axis: usize, on: bool, here: i32, pace: u32) {
+    /// Plans, where an axis has nothing to do: one in so many clocks. `on`: its drive is enabled.
+    pub(super) fn plan(&mut self, axis: usize, on: bool, pace: u32) {
         if !self.axes[axis].script.is_empty() || !self.one_in(pace) {
             return;
         }
-        self.axes[axis].here = here;
         self.think_of(axis, on);
     }
 
@@ -86,11 +124,27 @@ impl Driver {
                     axis.script.pop_front();
                 }
                 Some(Do::Wait(clocks)) => *clocks -= 1,
+                Some(Do::Released(clocks)) if axis.released || *clocks == 0 => {
+                    axis.script.pop_front();
+                }
+                Some(Do::Released(clocks)) => *clocks -= 1,
                 Some(Do::Switch(which)) => {
                     axis.switches = *which;
                     axis.script.pop_front();
                 }
-                _ => {}
+                Some(Do::Low(line, clocks)) => {
+                    axis.pins.push(Pins::Low(line, *clocks));
+                    axis.script.pop_front();
+                }
+                Some(Do::Encoder(moves)) => {
+                    axis.pins.push(Pins::Encoder(*moves));
+                    axis.script.pop_front();
+                }
+                Some(Do::Slip) => {
+                    axis.pins.push(Pins::Slip);
+                    axis.script.pop_front();
+                }
+                Some(Do::Write(..)) | None => {}
             }
         }
         let first = self.below(self.axes.len() as u32) as usize;
@@ -104,6 +158,13 @@ impl Driver {
             }
             _ => None,
         }
+    }
+
+    /// What an axis shows: about where it is in counts, and whether its brake is open. What is to happen at its pins.
+    pub(super) fn sees(&mut self, axis: usize, here: i32, released: bool) -> Vec<Pins> {
+        let plan = &mut self.axes[axis];
+        (plan.here, plan.released) = (here, released);
+        std::mem::take(&mut plan.pins)
     }
 
     /// On which limit switches an axis is: bit 0 +, bit 1 −.

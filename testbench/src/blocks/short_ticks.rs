@@ -1,0 +1,201 @@
+//! The bench of a stage with the shortest ticks that its schedule holds, on the stage's own Verilog.
+//!
+//! A wire between two blocks of a stage shows what it carries once per tick. At 5,000 clocks per tick a million clocks are 200
+//! ticks: too few for a tour of all that a stage does. So the same files run a second time with other *constants*: clocks per
+//! tick, period of the PWM, and the waits of the supervisor. Nothing else is touched:
+//!
+//! ```text
+//! emitted with the machine's constants ─┐ line by line
+//! emitted with short ticks ─────────────┴─► lines that differ ─► exchanged in the files under test, where they are unedited
+//! ```
+//!
+//! A line that was edited stays as it is, and the lock step judges it. A module that is another one with short ticks (more
+//! than constants differ) is taken as it is emitted: it has a row of its own, and the stage's row at the machine's ticks.
+
+use std::collections::HashMap;
+
+use posicast_hdl::SimulationError;
+use posicast_hdl::component::emit;
+use posicast_hdl::emit::{EmitError, Module};
+use posicast_model::rtl::ClockedBlock;
+use posicast_model::rtl::component::Component;
+use posicast_model::rtl::divider::DividerConfig;
+use posicast_model::rtl::stage::{StageConfig, StageError};
+
+use super::{Bins, Block, Sources, StageBlock, not_in_rusthdl};
+use crate::Error;
+use crate::stimuli::Stimuli;
+
+/// Periods of the PWM have at least so many times dead time and minimum pulse together: below twice, a leg is never on.
+const PERIOD_TO_TIMES: u32 = 4;
+/// And at least so many clocks.
+const LEAST_PERIOD_CLOCKS: u32 = 80;
+/// Longest waits of the supervisor, in ticks: of the brake, and until a monitor acts. What is off stays off.
+const MOST_WAIT_TICKS: u16 = 4;
+
+/// Clocks of the first scenes, those that drive most wires.
+const LEAST_CLOCKS: u64 = 60_000;
+
+/// A stage with short ticks, under a name of its own.
+#[derive(Debug, Clone)]
+pub struct ShortTicksBlock {
+    machine: Component,
+    short: StageBlock,
+    instance: String,
+}
+
+impl ShortTicksBlock {
+    /// The stage with the top module `top`; nothing where its ticks are as short as its schedule allows already.
+    ///
+    /// # Errors
+    /// As [`Component::stage`].
+    pub fn new(config: &StageConfig, top: &str) -> Result<Option<Self>, StageError> {
+        let Some(short) = shortened(config) else {
+            return Ok(None);
+        };
+        let block = StageBlock::new(&short, top)?;
+        Ok(Some(Self {
+            machine: Component::stage(config)?,
+            instance: format!("{}, {} clocks per tick", block.instance(), short.tick.tick_clocks()),
+            short: block,
+        }))
+    }
+}
+
+/// The stage with its shortest tick, if that is shorter than half its own.
+fn shortened(config: &StageConfig) -> Option<StageConfig> {
+    let mut short = config.clone();
+    let times = |axis: &posicast_model::rtl::stage::StageAxis| {
+        u32::from(axis.pwm.dead_time_floor_clocks()) + u32::from(axis.pwm.minimum_pulse_floor_clocks())
+    };
+    let longest = config.axes.iter().map(times).max()?;
+    let least = (PERIOD_TO_TIMES * longest).max(LEAST_PERIOD_CLOCKS);
+    // As many periods as fit into what the schedule takes anyway, and then no longer than that.
+    let schedule = config.timing().duty_clocks() + 1;
+    let periods = (schedule / least).max(1);
+    let period = schedule.div_ceil(periods).max(least);
+    short.tick = DividerConfig::new(u64::from(periods * period)).ok()?;
+    if 2 * short.tick.tick_clocks() > config.tick.tick_clocks() {
+        return None;
+    }
+    for axis in &mut short.axes {
+        axis.pwm_period_clocks = period;
+        let watched = &mut axis.supervision;
+        for ticks in [
+            &mut watched.brake_release_ticks,
+            &mut watched.brake_apply_ticks,
+            &mut watched.saturation_ticks,
+            &mut watched.lost_ticks,
+            &mut watched.direct_hold_ticks,
+        ] {
+            *ticks = (*ticks).min(MOST_WAIT_TICKS);
+        }
+        watched.direct_limit = watched.direct_limit.min(period as u16 / 2);
+    }
+    Some(short)
+}
+
+impl Block for ShortTicksBlock {
+    fn name(&self) -> &str {
+        self.short.name()
+    }
+
+    fn instance(&self) -> &str {
+        &self.instance
+    }
+
+    fn modules(&self) -> Result<Vec<Module>, EmitError> {
+        self.short.modules()
+    }
+
+    fn top(&self) -> String {
+        self.short.top()
+    }
+
+    fn adapted(&self, sources: Sources) -> Result<Sources, Error> {
+        let emitted = emit(&self.machine, &self.short.top())?;
+        let short: HashMap<String, String> = (self.short.modules()?.into_iter())
+            .map(|module| (module.name, module.text))
+            .collect();
+        let pairs = emitted.into_iter().filter_map(|module| {
+            let short = short.get(&module.name)?.clone();
+            Some((module.name, (module.text, short)))
+        });
+        let pairs: HashMap<String, (String, String)> = pairs.collect();
+        sources.rewritten(|name, text| match pairs.get(name) {
+            Some((emitted, short)) => exchanged(text, emitted, short),
+            None => text.to_owned(),
+        })
+    }
+
+    fn model(&self, seed: u64) -> Box<dyn ClockedBlock> {
+        self.short.model(seed)
+    }
+
+    fn simulate(&self) -> Result<Box<dyn ClockedBlock>, SimulationError> {
+        Err(not_in_rusthdl("stage"))
+    }
+
+    fn in_rusthdl(&self) -> bool {
+        false
+    }
+
+    fn stimuli(&self, cycles: u64, seed: u64) -> Box<dyn Stimuli + '_> {
+        self.short.stimuli(cycles, seed)
+    }
+
+    fn least_clocks(&self) -> u64 {
+        LEAST_CLOCKS
+    }
+
+    fn coverage(&self) -> Box<dyn Bins + '_> {
+        self.short.coverage()
+    }
+}
+
+/// `text` with the lines of `emitted` that are others in `short` exchanged for those: the k-th line of a wording in one is
+/// the k-th in the other. All of `short` where the two have not as many lines.
+fn exchanged(text: &str, emitted: &str, short: &str) -> String {
+    if emitted == short {
+        return text.to_owned();
+    }
+    if emitted.lines().count() != short.lines().count() {
+        return short.to_owned();
+    }
+    let mut others: HashMap<&str, std::collections::VecDeque<&str>> = HashMap::new();
+    for (line, other) in emitted.lines().zip(short.lines()) {
+        others.entry(line).or_default().push_back(other);
+    }
+    let mut new = String::with_capacity(text.len());
+    for line in text.lines() {
+        let other = others.get_mut(line).and_then(std::collections::VecDeque::pop_front);
+        new.push_str(other.unwrap_or(line));
+        new.push('\n');
+    }
+    new
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const EMITTED: &str = "a = 5000;\nb = 1;\nc = d;\na = 5000;\n";
+    const SHORT: &str = "a = 300;\nb = 1;\nc = d;\na = 5000;\n";
+
+    #[test]
+    fn unit_constants_are_exchanged_and_edits_stay() {
+        assert_eq!(exchanged(EMITTED, EMITTED, SHORT), SHORT);
+        let edited = EMITTED.replace("c = d;", "c = e;");
+        assert_eq!(exchanged(&edited, EMITTED, SHORT), SHORT.replace("c = d;", "c = e;"));
+        let constant = EMITTED.replacen("a = 5000;", "a = 4999;", 1);
+        assert!(exchanged(&constant, EMITTED, SHORT).contains("a = 4999;"));
+        let longer = format!("initial x;\n{EMITTED}");
+        assert_eq!(exchanged(&longer, EMITTED, SHORT), format!("initial x;\n{SHORT}"));
+    }
+
+    #[test]
+    fn unit_another_module_is_taken_whole() {
+        assert_eq!(exchanged(EMITTED, EMITTED, "z;\n"), "z;\n");
+        assert_eq!(exchanged("edited\n", EMITTED, EMITTED), "edited\n");
+    }
+}

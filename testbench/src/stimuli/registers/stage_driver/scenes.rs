@@ -1,0 +1,373 @@
+//! Scenes: what a driver, the pins and the machine do together so that each cause, stop and handover of a stage is reached.
+//!
+//! Random plans reach most of it, at some time. A scene reaches one thing at once: it brings all axes up, lets the *leader*
+//! come into one fault while the others move or hold, and clears up. Each scene is played with each axis as the leader, in
+//! rounds that alternate between causes that stop the axis and causes that switch it off.
+
+use posicast_model::rtl::axis::KICK;
+use posicast_model::rtl::segments::{Motion, Point};
+use rand::Rng;
+
+use super::{Do, Driver, Moves};
+
+/// All of them, those first that drive most wires between the blocks in fewest ticks.
+const SCENES: [fn(&mut Driver, usize); 20] = [
+    Driver::follows_badly,
+    Driver::slips,
+    Driver::runs_dry,
+    Driver::stops_from_speed,
+    Driver::soft_limits,
+    Driver::overflows,
+    Driver::limit_switches,
+    Driver::emergency,
+    Driver::settings_and_laws,
+    Driver::counts_and_interrupts,
+    Driver::tables_in_flight,
+    Driver::forgets_to_kick,
+    Driver::fills_the_fifo,
+    Driver::loses_the_encoder,
+    Driver::drive_not_ready,
+    Driver::drive_fault,
+    Driver::fault_line,
+    Driver::clock_unlocked,
+    Driver::leaves_the_range,
+    Driver::by_hand,
+];
+
+/// Largest jerk of an entry: 40 bits.
+const JERK_MAX: i64 = (1 << 39) - 1;
+/// A jerk that takes an axis to some 100 counts per tick within three ticks.
+const FAST: i64 = 1 << 36;
+/// One that keeps it at a few counts per tick.
+const SLOW: i64 = 1 << 31;
+
+impl Driver {
+    /// Begins the scene of this number: all scenes with each axis as the leader, then again.
+    pub(in super::super) fn play(&mut self, number: usize) {
+        let axes = self.axes.len();
+        let (leader, rest) = (number % axes, number / axes);
+        self.round = (rest / SCENES.len()) as u32;
+        for axis in 0..axes {
+            self.axes[axis].script.clear();
+            if axis == leader {
+                let enabled = self.rng.next_u32() | self.rng.next_u32();
+                self.write(axis, "interrupt_state", u32::MAX);
+                self.write(axis, "interrupt_enable", enabled);
+            }
+            self.axes[axis].switches = 0;
+            self.bring_up(axis);
+        }
+        SCENES[rest % SCENES.len()](self, leader);
+        self.tell(leader, "clear_faults", 0);
+    }
+
+    /// Whether all scripts are over.
+    pub(in super::super) fn is_idle(&self) -> bool {
+        self.axes.iter().all(|axis| axis.script.is_empty())
+    }
+
+    fn act(&mut self, axis: usize, what: Do) {
+        self.axes[axis].script.push_back(what);
+    }
+
+    /// Causes that switch off: all or none, in turn, never the same for neighbours.
+    fn off_causes(&self, axis: usize) -> u32 {
+        0xffff * u32::from(self.is_odd(axis))
+    }
+
+    /// Every other axis, and the others in the next round.
+    fn is_odd(&self, axis: usize) -> bool {
+        (self.round + axis as u32) % 2 == 1
+    }
+
+    /// From any state to HOLD, with nothing watched.
+    fn bring_up(&mut self, axis: usize) {
+        let random = self.below(1 << 31);
+        self.act(axis, Do::Encoder(Moves::Follows));
+        self.tell(axis, "control", 0);
+        self.tell(axis, "settle", random & 1);
+        self.tell(axis, "watchdog", self.off_causes(axis) << 16);
+        self.unlimited(axis);
+        self.tell(axis, "stop_deceleration", 1 << 28 | random >> 4);
+        self.tell(axis, "swap", 0);
+        self.tell(axis, "law", random >> 4 & 1);
+        self.write(axis, "commit", 0);
+        self.tell(axis, "flush", 0);
+        self.ticks(axis, 1);
+        self.tell(axis, "clear_faults", 0);
+        self.wait(axis, 24);
+        self.tell(axis, "control", 1);
+        self.act(axis, Do::Released(12 * self.tick_clocks));
+        self.ticks(axis, 1);
+    }
+
+    /// Speeds up for three ticks and goes on for some; backwards where `back`.
+    fn goes(&mut self, axis: usize, jerk: i64, back: bool) {
+        let some = self.rng_jerk(jerk);
+        let jerk = if back { -some } else { some };
+        self.entry(axis, 1, Motion::Jerk(jerk), false);
+        self.entry(axis, 1, Motion::Jerk(0), true);
+        self.entry(axis, 1, Motion::Jerk(-jerk), false);
+        self.entry(axis, 40, Motion::Jerk(0), false);
+    }
+
+    /// Of this size, with noise in the bits below.
+    fn rng_jerk(&mut self, size: i64) -> i64 {
+        size | i64::from(self.below(1 << 31)) & (size - 1)
+    }
+
+    /// The others are on the way too, to and fro; one in three stays.
+    fn company(&mut self, leader: usize) {
+        for axis in (0..self.axes.len()).filter(|axis| *axis != leader) {
+            if !self.one_in(3) {
+                self.there_and_back(axis, 8);
+                self.write(axis, "start", 1 << axis);
+            }
+        }
+    }
+
+    fn set_off(&mut self, axis: usize) {
+        self.write(axis, "start", 1 << axis);
+    }
+
+    /// A line is low for so many clocks.
+    fn low(&mut self, axis: usize, line: &'static str, clocks: u32) {
+        self.act(axis, Do::Low(line, clocks));
+    }
+
+    /// A line that bounces beside the tick, and stays low.
+    fn bounces(&mut self, axis: usize, line: &'static str) {
+        for _ in 0..6 {
+            self.low(axis, line, 1);
+            let between = self.below(self.tick_clocks / 3) + 2;
+            self.wait(axis, between);
+        }
+        self.low(axis, line, 2 * self.tick_clocks);
+        self.ticks(axis, 4);
+    }
+
+    /// On the wrong switch, which does nothing, then on the one that it moves to; the other way round in the next round.
+    fn limit_switches(&mut self, axis: usize) {
+        self.company(axis);
+        let back = self.is_odd(axis);
+        self.goes(axis, SLOW, back);
+        self.set_off(axis);
+        self.ticks(axis, 3);
+        let lines = ["limit_plus_n", "limit_minus_n"];
+        self.low(axis, lines[usize::from(!back)], self.tick_clocks);
+        self.ticks(axis, 1);
+        self.bounces(axis, lines[usize::from(back)]);
+    }
+
+    /// Over one of them, the other far away; the other way round in the next round.
+    fn soft_limits(&mut self, axis: usize) {
+        let back = self.is_odd(axis);
+        let here = self.axes[axis].here << 8;
+        let near = self.below(40 << 8) as i32;
+        let far = i32::MAX >> (1 + self.below(3)) & !0xff | near;
+        let [plus, minus] = if back { [far, here - near] } else { [here + near, -far] };
+        self.tell(axis, "soft_limit_plus", plus as u32);
+        self.tell(axis, "soft_limit_minus", minus as u32);
+        self.company(axis);
+        self.goes(axis, SLOW << 2, back);
+        self.set_off(axis);
+        self.ticks(axis, 8);
+    }
+
+    /// A limit of the error, and an encoder that does not come along.
+    fn follows_badly(&mut self, axis: usize) {
+        self.company(axis);
+        let limit = self.below(20 << 16) + 1;
+        self.tell(axis, "following_error_limit", limit);
+        self.act(axis, Do::Encoder(Moves::Still));
+        let back = self.one_in(2);
+        self.goes(axis, SLOW << 3, back);
+        self.set_off(axis);
+        self.ticks(axis, 7);
+    }
+
+    /// Stands still under a command, with nothing that watches the error: the encoder's watch is left, or the command's.
+    fn loses_the_encoder(&mut self, axis: usize) {
+        self.act(axis, Do::Encoder(Moves::Still));
+        let back = self.one_in(2);
+        self.goes(axis, FAST, back);
+        self.set_off(axis);
+        self.ticks(axis, 14);
+    }
+
+    fn slips(&mut self, axis: usize) {
+        self.company(axis);
+        self.ticks(axis, 1);
+        self.act(axis, Do::Slip);
+        self.ticks(axis, 3);
+    }
+
+    /// A stop from some speed, by a deceleration with its upper bits set.
+    fn stops_from_speed(&mut self, axis: usize) {
+        let deceleration = 1 << 28 | self.below(1 << 29);
+        self.tell(axis, "stop_deceleration", deceleration);
+        let back = self.one_in(2);
+        self.goes(axis, FAST, back);
+        self.set_off(axis);
+        self.ticks(axis, 4);
+        self.tell(axis, "stop", 0);
+        self.ticks(axis, 5);
+    }
+
+    fn emergency(&mut self, axis: usize) {
+        self.company(axis);
+        self.goes(axis, SLOW, false);
+        self.set_off(axis);
+        self.ticks(axis, 2);
+        self.low(axis, "emergency_stop_n", 1);
+        self.wait(axis, self.tick_clocks / 2);
+        self.low(axis, "emergency_stop_n", self.tick_clocks);
+        self.ticks(axis, 3);
+    }
+
+    /// Entries that end while the axis moves.
+    fn runs_dry(&mut self, axis: usize) {
+        self.company(axis);
+        let jerk = self.rng_jerk(SLOW << 1);
+        self.entry(axis, 2, Motion::Jerk(jerk), true);
+        self.set_off(axis);
+        self.ticks(axis, 8);
+    }
+
+    /// 64 entries and more while it holds, and the same while one plays.
+    fn fills_the_fifo(&mut self, axis: usize) {
+        for _ in 0..65 {
+            self.entry(axis, 3, Motion::Jerk(0), false);
+        }
+        self.set_off(axis);
+        self.ticks(axis, 1);
+        for _ in 0..2 {
+            self.entry(axis, 1, Motion::Jerk(1), false);
+        }
+        self.ticks(axis, 2);
+        for _ in 0..2 {
+            self.entry(axis, 1, Motion::Jerk(1), false);
+        }
+        let low_water = 50 + self.below(14);
+        self.tell(axis, "fifo_control", low_water);
+        self.ticks(axis, 4);
+        self.tell(axis, "flush", 0);
+        self.ticks(axis, 2);
+    }
+
+    fn forgets_to_kick(&mut self, axis: usize) {
+        self.company(axis);
+        self.tell(axis, "watchdog", 2 | self.off_causes(axis) << 16);
+        self.there_and_back(axis, 4);
+        self.set_off(axis);
+        for word in [KICK, KICK, KICK ^ 1 << self.round % 32] {
+            self.tell(axis, "kick", word);
+            self.wait(axis, 3 * self.tick_clocks / 2);
+        }
+        self.ticks(axis, 3);
+        self.tell(axis, "watchdog", self.off_causes(axis) << 16);
+    }
+
+    /// On the way, and a line goes low.
+    fn on_the_way(&mut self, axis: usize, line: &'static str) {
+        self.company(axis);
+        self.there_and_back(axis, 3);
+        self.set_off(axis);
+        self.ticks(axis, 2);
+        self.low(axis, "home", self.tick_clocks);
+        self.low(axis, line, self.tick_clocks / 2);
+        self.ticks(axis, 4);
+    }
+
+    fn drive_not_ready(&mut self, axis: usize) {
+        self.on_the_way(axis, "drive_ready");
+    }
+
+    fn drive_fault(&mut self, axis: usize) {
+        self.on_the_way(axis, "drive_fault_n");
+    }
+
+    fn fault_line(&mut self, axis: usize) {
+        self.on_the_way(axis, "fault_n");
+    }
+
+    fn clock_unlocked(&mut self, axis: usize) {
+        self.on_the_way(axis, "pll_locked");
+    }
+
+    /// Sums that leave the integrator's words, upwards or downwards.
+    fn overflows(&mut self, axis: usize) {
+        let jerk = if self.is_odd(axis) { -JERK_MAX } else { JERK_MAX };
+        self.entry(axis, 4, Motion::Jerk(jerk), false);
+        self.set_off(axis);
+        self.ticks(axis, 5);
+    }
+
+    fn leaves_the_range(&mut self, axis: usize) {
+        self.company(axis);
+        // At the end of the range, and not at rest.
+        let position = if self.is_odd(axis) { i32::MIN } else { i32::MAX };
+        let motion = Motion::Point(Point {
+            position,
+            velocity: position.signum() << 16,
+            acceleration: 0,
+        });
+        self.entry(axis, 2, motion, false);
+        self.set_off(axis);
+        self.ticks(axis, 5);
+        self.bring_up(axis);
+        self.swings(axis);
+    }
+
+    /// Two short tables in turn, at once, handed over and when settled, in the middle of a move.
+    fn tables_in_flight(&mut self, axis: usize) {
+        let (one, count) = (self.fraction(axis), self.below(3) as usize + 2);
+        for bank in [1, 2] {
+            self.table.draw(&mut self.rng, count, one, 4);
+            let taps = self.table.taps.clone();
+            self.load(axis, bank, &taps);
+        }
+        let back = self.one_in(2);
+        self.goes(axis, SLOW, back);
+        self.set_off(axis);
+        for (bank, how) in [(1, 0), (2, 1), (1, 2), (2, 2), (1, 1), (2, 0)] {
+            self.tell(axis, "swap", bank | how << 4);
+            let ticks = self.below(4) + 4;
+            self.ticks(axis, ticks);
+        }
+        self.tell(axis, "stop", 0);
+        self.ticks(axis, 6);
+    }
+
+    /// Other gains, and each law with them, in the middle of a move.
+    fn settings_and_laws(&mut self, axis: usize) {
+        let back = self.one_in(2);
+        self.goes(axis, SLOW << 1, back);
+        self.set_off(axis);
+        for _ in 0..3 {
+            self.settings(axis);
+        }
+    }
+
+    /// A duty by hand within its time and beyond it, and the self-test of the pins.
+    fn by_hand(&mut self, axis: usize) {
+        self.direct(axis);
+        self.ticks(axis, 1);
+        self.tell(axis, "control", 0);
+        self.tell(axis, "clear_faults", 0);
+        self.wait(axis, 40);
+        self.tell(axis, "control", 6);
+        self.tell(axis, "direct", 17);
+        self.ticks(axis, 7);
+        self.tell(axis, "control", 0);
+    }
+
+    fn counts_and_interrupts(&mut self, axis: usize) {
+        self.act(axis, Do::Encoder(Moves::Walks));
+        for _ in 0..3 {
+            self.index(axis);
+            self.interrupts(axis);
+            self.ticks(axis, 2);
+        }
+    }
+}
