@@ -151,6 +151,7 @@ impl Job {
                 others.extend(block.inner().map_err(bench::failure)?);
             }
             let short = ShortTicksBlock::new(&stage.of_machine.config, &block.top()).map_err(Failure::because)?;
+            let short = short.map(|short| short.with_prefix(&machine.name));
             others.push(Box::new(block));
             others.extend(short.map(|block| Box::new(block) as Box<dyn Block>));
         }

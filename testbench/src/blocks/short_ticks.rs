@@ -15,10 +15,8 @@
 use std::collections::HashMap;
 
 use posicast_hdl::SimulationError;
-use posicast_hdl::component::emit;
 use posicast_hdl::emit::{EmitError, Module};
 use posicast_model::rtl::ClockedBlock;
-use posicast_model::rtl::component::Component;
 use posicast_model::rtl::divider::DividerConfig;
 use posicast_model::rtl::stage::{StageConfig, StageError};
 
@@ -39,13 +37,14 @@ const LEAST_CLOCKS: u64 = 60_000;
 /// A stage with short ticks, under a name of its own.
 #[derive(Debug, Clone)]
 pub struct ShortTicksBlock {
-    machine: Component,
+    machine: StageBlock,
     short: StageBlock,
     instance: String,
 }
 
 impl ShortTicksBlock {
-    /// The stage with the top module `top`; nothing where its ticks are as short as its schedule allows already.
+    /// The stage with the top module `top`; nothing where its ticks are as short as its schedule allows already, or where it
+    /// would have other modules with short ones.
     ///
     /// # Errors
     /// As [`Component::stage`].
@@ -53,12 +52,52 @@ impl ShortTicksBlock {
         let Some(short) = shortened(config) else {
             return Ok(None);
         };
-        let block = StageBlock::new(&short, top)?;
+        let (machine, block) = (StageBlock::new(config, top)?, StageBlock::new(&short, top)?);
+        // Files are exchanged one by one. What cannot be emitted is an error of the stage's own row.
+        let count = |block: &StageBlock| block.modules().map(|modules| modules.len()).ok();
+        if count(&machine) != count(&block) {
+            return Ok(None);
+        }
         Ok(Some(Self {
-            machine: Component::stage(config)?,
+            machine,
             instance: format!("{}, {} clocks per tick", block.instance(), short.tick.tick_clocks()),
             short: block,
         }))
+    }
+
+    /// The same with the prefix of a package: see [`StageBlock::with_prefix`].
+    pub fn with_prefix(self, prefix: &str) -> Self {
+        Self {
+            machine: self.machine.with_prefix(prefix),
+            short: self.short.with_prefix(prefix),
+            ..self
+        }
+    }
+
+    /// The modules of the machine's ticks, each with the text that it has with short ones. The names of modules say their
+    /// sizes; here each keeps the one that it has in the machine.
+    fn pairs(&self) -> Result<HashMap<String, (String, String)>, EmitError> {
+        let (machine, short) = (self.machine.modules()?, self.short.modules()?);
+        let names: HashMap<&str, &str> = short
+            .iter()
+            .zip(&machine)
+            .map(|(short, machine)| (short.name.as_str(), machine.name.as_str()))
+            .collect();
+        let named = |text: &str| {
+            let words = text.split_inclusive(|c: char| !(c.is_ascii_alphanumeric() || c == '_'));
+            let word = |word: &str| {
+                let end = word
+                    .trim_end_matches(|c: char| !(c.is_ascii_alphanumeric() || c == '_'))
+                    .len();
+                let (name, rest) = word.split_at(end);
+                format!("{}{rest}", names.get(name).unwrap_or(&name))
+            };
+            words.map(word).collect::<String>()
+        };
+        let pairs = machine.iter().zip(&short);
+        Ok(pairs
+            .map(|(machine, short)| (machine.name.clone(), (machine.text.clone(), named(&short.text))))
+            .collect())
     }
 }
 
@@ -113,15 +152,7 @@ impl Block for ShortTicksBlock {
     }
 
     fn adapted(&self, sources: Sources) -> Result<Sources, Error> {
-        let emitted = emit(&self.machine, &self.short.top())?;
-        let short: HashMap<String, String> = (self.short.modules()?.into_iter())
-            .map(|module| (module.name, module.text))
-            .collect();
-        let pairs = emitted.into_iter().filter_map(|module| {
-            let short = short.get(&module.name)?.clone();
-            Some((module.name, (module.text, short)))
-        });
-        let pairs: HashMap<String, (String, String)> = pairs.collect();
+        let pairs = self.pairs()?;
         sources.rewritten(|name, text| match pairs.get(name) {
             Some((emitted, short)) => exchanged(text, emitted, short),
             None => text.to_owned(),
