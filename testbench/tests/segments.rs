@@ -77,7 +77,7 @@ fn lockstep_catches_a_command_that_goes_on_to_the_end_of_its_word() {
         &segments(),
         "leaves = past_reach & moving",
         "leaves = stands & moving",
-        300_000,
+        3_000_000,
     );
 }
 

@@ -24,8 +24,11 @@ const PACES: [u32; 8] = [
     100,
 ];
 
-/// Jerks of the first moods: the sums overflow upwards, then downwards. Random ones seldom last so long.
+/// Jerks of two moods, from [`OVERFLOW_MOOD`] on: the sums overflow upwards, then downwards. Random ones seldom last so long.
 const OVERFLOWS: [i64; 2] = [(1 << 39) - 1, -(1 << 39)];
+
+/// Eight random moods come before.
+const OVERFLOW_MOOD: u64 = 8;
 
 /// What holds for a while.
 #[derive(Debug, Clone, Copy, Default)]
@@ -218,7 +221,11 @@ impl Stimuli for SegmentsRandom {
     fn fill(&mut self, _seen: &[u64], inputs: &mut [u64]) {
         if self.clock.is_multiple_of(MOOD_CLOCKS) {
             self.new_mood();
-            if let Some(jerk) = OVERFLOWS.get((self.clock / MOOD_CLOCKS) as usize) {
+            let mood = self.clock / MOOD_CLOCKS;
+            if let Some(jerk) = mood
+                .checked_sub(OVERFLOW_MOOD)
+                .and_then(|at| OVERFLOWS.get(at as usize))
+            {
                 self.overflow(*jerk);
             }
         }

@@ -146,7 +146,7 @@ impl Driver {
         self.ticks(axis, 4);
     }
 
-    /// On the wrong switch, which does nothing, then on the one that it moves to; the other way round in the next round.
+    /// On the wrong switch, which does nothing, then on the one that it moves to; then the other way.
     fn limit_switches(&mut self, axis: usize) {
         self.company(axis);
         let back = self.is_odd(axis);
@@ -157,6 +157,11 @@ impl Driver {
         self.low(axis, lines[usize::from(!back)], self.tick_clocks);
         self.ticks(axis, 1);
         self.bounces(axis, lines[usize::from(back)]);
+        self.bring_up(axis);
+        self.goes(axis, SLOW, !back);
+        self.set_off(axis);
+        self.ticks(axis, 4);
+        self.bounces(axis, lines[usize::from(!back)]);
     }
 
     /// Over one of them, the other far away; the other way round in the next round.
