@@ -43,6 +43,8 @@ static void feed_hold(posicast_stage *stage)
     queue_from(stage, X, COUNTS(40), COUNTS(60));
     queue_from(stage, X, COUNTS(60), COUNTS(40));
     need("start to and fro", posicast_start(stage, 1u << X), POSICAST_OK);
+    /* Into the first way; at rest it would be held before it. */
+    need("a while", posicast_wait_ticks(stage, 20), POSICAST_OK);
     need("hold", posicast_feed_hold(stage, BOTH), POSICAST_OK);
     need("held", posicast_wait_held(stage, 1u << X, TICKS), POSICAST_OK);
     result("held_at", posicast_command_position(stage, X));
