@@ -70,6 +70,8 @@ module xy_stage_stage (
 );
     wire               start;
     wire [3:0]         start_axes;
+    wire               x_feed_hold;
+    wire               y_feed_hold;
     wire               x_enable;
     wire               x_direct_enable;
     wire               x_self_test;
@@ -179,6 +181,8 @@ module xy_stage_stage (
     wire               y_axis_start;
     wire               x_group_stop;
     wire               y_group_stop;
+    wire               x_hold_feed;
+    wire               y_hold_feed;
     wire               group_emergency_stop;
     wire               start_refused;
     wire signed [17:0] x_steps;
@@ -186,6 +190,7 @@ module xy_stage_stage (
     wire               x_can_start;
     wire               x_wants_group_stop;
     wire               x_emergency_stop;
+    wire               x_rests;
     wire [2:0]         x_state;
     wire [1:0]         x_segments_state;
     wire               x_direct_active;
@@ -230,6 +235,7 @@ module xy_stage_stage (
     wire [6:0]         x_fifo_level;
     wire               x_fifo_low;
     wire               x_segments_empty;
+    wire               x_feed_held;
     wire [15:0]        x_self_test_high;
     wire [15:0]        x_self_test_low;
     wire signed [31:0] x_user_position;
@@ -254,6 +260,7 @@ module xy_stage_stage (
     wire               y_can_start;
     wire               y_wants_group_stop;
     wire               y_emergency_stop;
+    wire               y_rests;
     wire [2:0]         y_state;
     wire [1:0]         y_segments_state;
     wire               y_direct_active;
@@ -298,6 +305,7 @@ module xy_stage_stage (
     wire [6:0]         y_fifo_level;
     wire               y_fifo_low;
     wire               y_segments_empty;
+    wire               y_feed_held;
     wire [15:0]        y_self_test_high;
     wire [15:0]        y_self_test_low;
     wire signed [31:0] y_user_position;
@@ -318,7 +326,7 @@ module xy_stage_stage (
     wire               y_faulted;
     wire               y_index_seen;
 
-    xy_stage_stage_registers u_registers (
+    posicast_stage_registers_e62fd93e u_registers (
         .clk                         (clk),
         .rst                         (rst),
         .avs_address                 (avs_address),
@@ -346,6 +354,8 @@ module xy_stage_stage (
         .y_stopping                  (y_stopping),
         .y_faulted                   (y_faulted),
         .y_index_seen                (y_index_seen),
+        .x_feed_hold                 (x_feed_hold),
+        .y_feed_hold                 (y_feed_hold),
         .time_stamp                  (time_stamp),
         .tick_count                  (tick_count),
         .x_enable                    (x_enable),
@@ -438,6 +448,7 @@ module xy_stage_stage (
         .x_limited_ticks             (x_limited_ticks),
         .x_fifo_level                (x_fifo_level),
         .x_segments_empty            (x_segments_empty),
+        .x_feed_held                 (x_feed_held),
         .x_self_test_high            (x_self_test_high),
         .x_self_test_low             (x_self_test_low),
         .x_user_position             (x_user_position),
@@ -541,6 +552,7 @@ module xy_stage_stage (
         .y_limited_ticks             (y_limited_ticks),
         .y_fifo_level                (y_fifo_level),
         .y_segments_empty            (y_segments_empty),
+        .y_feed_held                 (y_feed_held),
         .y_self_test_high            (y_self_test_high),
         .y_self_test_low             (y_self_test_low),
         .y_user_position             (y_user_position),
@@ -556,7 +568,7 @@ module xy_stage_stage (
         .y_duty                      (y_duty)
     );
 
-    xy_stage_stage_time_base u_time_base (
+    posicast_time_base_5000 u_time_base (
         .clk        (clk),
         .rst        (rst),
         .tick       (tick),
@@ -566,14 +578,14 @@ module xy_stage_stage (
         .tick_count (tick_count)
     );
 
-    xy_stage_stage_schedule u_schedule (
+    posicast_schedule_210 u_schedule (
         .clk     (clk),
         .rst     (rst),
         .tick    (tick),
         .control (control)
     );
 
-    xy_stage_stage_divider_share u_divider_share (
+    posicast_divider_share_2 u_divider_share (
         .clk              (clk),
         .rst              (rst),
         .divide           (divide),
@@ -589,7 +601,7 @@ module xy_stage_stage (
         .quotient_valid_1 (y_quotient_valid)
     );
 
-    xy_stage_stage_divider u_divider (
+    posicast_divider_5000 u_divider (
         .clk         (clk),
         .rst         (rst),
         .start       (divider_start),
@@ -603,7 +615,7 @@ module xy_stage_stage (
         .overrun     (divider_overrun)
     );
 
-    xy_stage_stage_group u_group (
+    posicast_group_2 u_group (
         .clk                  (clk),
         .rst                  (rst),
         .start                (start),
@@ -614,10 +626,16 @@ module xy_stage_stage (
         .wants_group_stop_1   (y_wants_group_stop),
         .emergency_stop_0     (x_emergency_stop),
         .emergency_stop_1     (y_emergency_stop),
+        .feed_hold_0          (x_feed_hold),
+        .feed_hold_1          (y_feed_hold),
+        .rests_0              (x_rests),
+        .rests_1              (y_rests),
         .axis_start_0         (x_axis_start),
         .axis_start_1         (y_axis_start),
         .group_stop_0         (x_group_stop),
         .group_stop_1         (y_group_stop),
+        .hold_feed_0          (x_hold_feed),
+        .hold_feed_1          (y_hold_feed),
         .group_emergency_stop (group_emergency_stop),
         .start_refused        (start_refused)
     );
@@ -635,6 +653,7 @@ module xy_stage_stage (
         .quotient_valid            (x_quotient_valid),
         .axis_start                (x_axis_start),
         .group_stop                (x_group_stop),
+        .hold_feed                 (x_hold_feed),
         .a                         (x_a),
         .b                         (x_b),
         .z                         (x_z),
@@ -694,6 +713,7 @@ module xy_stage_stage (
         .can_start                 (x_can_start),
         .wants_group_stop          (x_wants_group_stop),
         .emergency_stop            (x_emergency_stop),
+        .rests                     (x_rests),
         .a_high                    (x_a_high),
         .a_low                     (x_a_low),
         .b_high                    (x_b_high),
@@ -745,6 +765,7 @@ module xy_stage_stage (
         .fifo_level                (x_fifo_level),
         .fifo_low                  (x_fifo_low),
         .segments_empty            (x_segments_empty),
+        .feed_held                 (x_feed_held),
         .self_test_high            (x_self_test_high),
         .self_test_low             (x_self_test_low),
         .user_position             (x_user_position),
@@ -779,6 +800,7 @@ module xy_stage_stage (
         .quotient_valid            (y_quotient_valid),
         .axis_start                (y_axis_start),
         .group_stop                (y_group_stop),
+        .hold_feed                 (y_hold_feed),
         .a                         (y_a),
         .b                         (y_b),
         .z                         (y_z),
@@ -838,6 +860,7 @@ module xy_stage_stage (
         .can_start                 (y_can_start),
         .wants_group_stop          (y_wants_group_stop),
         .emergency_stop            (y_emergency_stop),
+        .rests                     (y_rests),
         .a_high                    (y_a_high),
         .a_low                     (y_a_low),
         .b_high                    (y_b_high),
@@ -889,6 +912,7 @@ module xy_stage_stage (
         .fifo_level                (y_fifo_level),
         .fifo_low                  (y_fifo_low),
         .segments_empty            (y_segments_empty),
+        .feed_held                 (y_feed_held),
         .self_test_high            (y_self_test_high),
         .self_test_low             (y_self_test_low),
         .user_position             (y_user_position),

@@ -18,6 +18,7 @@ module xy_stage_stage_y (
     input  wire               quotient_valid,
     input  wire               axis_start,
     input  wire               group_stop,
+    input  wire               hold_feed,
     input  wire               a,
     input  wire               b,
     input  wire               z,
@@ -77,6 +78,7 @@ module xy_stage_stage_y (
     output wire               can_start,
     output wire               wants_group_stop,
     output wire               emergency_stop,
+    output wire               rests,
     output wire               a_high,
     output wire               a_low,
     output wire               b_high,
@@ -128,6 +130,7 @@ module xy_stage_stage_y (
     output wire [6:0]         fifo_level,
     output wire               fifo_low,
     output wire               segments_empty,
+    output wire               feed_held,
     output wire [15:0]        self_test_high,
     output wire [15:0]        self_test_low,
     output wire signed [31:0] user_position,
@@ -192,7 +195,7 @@ module xy_stage_stage_y (
     wire               started;
     wire               disabled;
 
-    xy_stage_stage_segments u_segments (
+    posicast_segments u_segments (
         .clk               (clk),
         .rst               (rst),
         .tick              (tick),
@@ -209,6 +212,7 @@ module xy_stage_stage_y (
         .low_water         (low_water),
         .clear_flags       (clear_sources),
         .modulo            (1'd0),
+        .feed_hold         (hold_feed),
         .position          (command_position),
         .velocity          (command_velocity),
         .acceleration      (command_acceleration),
@@ -224,10 +228,12 @@ module xy_stage_stage_y (
         .refused           (segment_refused),
         .malformed         (segment_malformed),
         .tick_missed       (segments_tick_missed),
-        .out_of_range      (segments_out_of_range)
+        .out_of_range      (segments_out_of_range),
+        .rests             (rests),
+        .held              (feed_held)
     );
 
-    xy_stage_stage_y_shaper u_shaper (
+    xy_stage_y_motion_shaper_32x3 u_shaper (
         .clk             (clk),
         .rst             (rst),
         .strobe          (segments_valid),
@@ -256,7 +262,7 @@ module xy_stage_stage_y (
         .refused         (table_refused)
     );
 
-    xy_stage_stage_y_setting_banks u_setting_banks (
+    xy_stage_y_setting_banks u_setting_banks (
         .clk             (clk),
         .rst             (rst),
         .setting_write   (setting_write),
@@ -269,7 +275,7 @@ module xy_stage_stage_y (
         .setting_refused (setting_refused)
     );
 
-    xy_stage_stage_sliding_mode u_sliding_mode (
+    posicast_sliding_mode u_sliding_mode (
         .clk                    (clk),
         .rst                    (rst),
         .start                  (control),
@@ -299,7 +305,7 @@ module xy_stage_stage_y (
         .ends                   (ends)
     );
 
-    xy_stage_stage_pulse_counter u_pulse_counter (
+    posicast_pulse_counter u_pulse_counter (
         .clk              (clk),
         .rst              (rst),
         .a                (a),
@@ -347,7 +353,7 @@ module xy_stage_stage_y (
         .velocity_missed  (velocity_missed)
     );
 
-    xy_stage_stage_drive_command u_drive_command (
+    posicast_drive_command u_drive_command (
         .clk                (clk),
         .rst                (rst),
         .tick               (tick),
@@ -382,7 +388,7 @@ module xy_stage_stage_y (
         .self_test_low      (self_test_low)
     );
 
-    xy_stage_stage_y_pwm u_pwm (
+    posicast_pwm_25x50_0000_on_time_base u_pwm (
         .clk                (clk),
         .rst                (rst),
         .enable             (pwm_enable),
@@ -425,7 +431,7 @@ module xy_stage_stage_y (
         .gates              (gates)
     );
 
-    xy_stage_stage_axis u_axis (
+    posicast_axis u_axis (
         .clk                    (clk),
         .rst                    (rst),
         .tick                   (tick),

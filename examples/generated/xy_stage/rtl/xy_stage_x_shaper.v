@@ -76,6 +76,7 @@ module xy_stage_x_shaper (
     reg                overrun_q;
     reg                overrun_q_next;
 
+    // The tables: the word of tap, two clocks later
     xy_stage_x_tap_banks u_banks (
         .clk             (clk),
         .rst             (rst),
@@ -103,7 +104,8 @@ module xy_stage_x_shaper (
         .refused         (banks_refused)
     );
 
-    xy_stage_x_history u_history (
+    // The samples: the one at delay, a clock later
+    posicast_history_32x128x1 u_history (
         .clk      (clk),
         .rst      (rst),
         .strobe   (strobe),
@@ -114,7 +116,7 @@ module xy_stage_x_shaper (
         .blank    (history_blank)
     );
 
-    xy_stage_x_weighted_sum u_sum (
+    posicast_weighted_sum_32x56_f16 u_sum (
         .clk         (clk),
         .rst         (rst),
         .begin_pass  (strobe),
@@ -158,8 +160,6 @@ module xy_stage_x_shaper (
         running_next = running;
         busy_q_next = busy_q;
         overrun_q_next = overrun_q;
-
-        // One tap per clock, up to the last of the table
         stages_next = stages << 1;
         if (running) begin
             stages_next = (stages << 1) | FIRST_STAGE;

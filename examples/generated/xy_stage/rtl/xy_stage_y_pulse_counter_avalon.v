@@ -70,7 +70,7 @@ module xy_stage_y_pulse_counter_avalon (
     wire               saturated;
     wire               divider_overrun;
 
-    xy_stage_y_pulse_counter_avalon_registers u_registers (
+    posicast_pulse_counter_registers_a0495363 u_registers (
         .clk              (clk),
         .rst              (rst),
         .avs_address      (avs_address),
@@ -116,7 +116,7 @@ module xy_stage_y_pulse_counter_avalon (
         .origin           (origin)
     );
 
-    xy_stage_y_pulse_counter_avalon_time_base u_time_base (
+    posicast_time_base_5000 u_time_base (
         .clk        (clk),
         .rst        (rst),
         .tick       (tick),
@@ -126,7 +126,7 @@ module xy_stage_y_pulse_counter_avalon (
         .tick_count (tick_count)
     );
 
-    xy_stage_y_pulse_counter_avalon_pulse_counter u_pulse_counter (
+    posicast_pulse_counter u_pulse_counter (
         .clk              (clk),
         .rst              (rst),
         .a                (a),
@@ -174,7 +174,7 @@ module xy_stage_y_pulse_counter_avalon (
         .velocity_missed  (velocity_missed)
     );
 
-    xy_stage_y_pulse_counter_avalon_divider u_divider (
+    posicast_divider_5000 u_divider (
         .clk         (clk),
         .rst         (rst),
         .start       (divide),

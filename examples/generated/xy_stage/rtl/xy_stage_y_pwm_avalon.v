@@ -64,7 +64,7 @@ module xy_stage_y_pwm_avalon (
     wire [9:0]         minimum_pulse_used;
     wire [3:0]         gates;
 
-    xy_stage_y_pwm_avalon_registers u_registers (
+    posicast_pwm_registers_bd3098e5 u_registers (
         .clk                (clk),
         .rst                (rst),
         .avs_address        (avs_address),
@@ -103,7 +103,7 @@ module xy_stage_y_pwm_avalon (
         .minimum_pulse_used (minimum_pulse_used)
     );
 
-    xy_stage_y_pwm_avalon_sample_select u_sample_select (
+    posicast_sample_select_17x1 u_sample_select (
         .clk         (clk),
         .rst         (rst),
         .from_pins   (from_pins),
@@ -118,7 +118,7 @@ module xy_stage_y_pwm_avalon (
         .x_0         (selected_duty)
     );
 
-    xy_stage_y_pwm_avalon_pwm u_pwm (
+    posicast_pwm_25x50_0000 u_pwm (
         .clk                (clk),
         .rst                (rst),
         .enable             (enable),

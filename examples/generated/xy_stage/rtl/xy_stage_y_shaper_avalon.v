@@ -61,7 +61,7 @@ module xy_stage_y_shaper_avalon (
     wire [1:0]         bank;
     wire               refused;
 
-    xy_stage_y_shaper_avalon_registers u_registers (
+    posicast_shaper_registers_56f021b6 u_registers (
         .clk             (clk),
         .rst             (rst),
         .avs_address     (avs_address),
@@ -97,7 +97,7 @@ module xy_stage_y_shaper_avalon (
         .swap_how        (swap_how)
     );
 
-    xy_stage_y_shaper_avalon_sample_select u_sample_select (
+    posicast_sample_select_32x3 u_sample_select (
         .clk         (clk),
         .rst         (rst),
         .from_pins   (from_pins),
@@ -118,7 +118,7 @@ module xy_stage_y_shaper_avalon (
         .x_2         (sample_x_2)
     );
 
-    xy_stage_y_shaper_avalon_shaper u_shaper (
+    xy_stage_y_motion_shaper_32x3 u_shaper (
         .clk             (clk),
         .rst             (rst),
         .strobe          (sample_strobe),

@@ -63,7 +63,7 @@ module xy_stage_y_sliding_mode_avalon (
     wire               overrun;
     wire               ends;
 
-    xy_stage_y_sliding_mode_avalon_registers u_registers (
+    posicast_sliding_mode_registers_53078686 u_registers (
         .clk             (clk),
         .rst             (rst),
         .avs_address     (avs_address),
@@ -105,7 +105,7 @@ module xy_stage_y_sliding_mode_avalon (
         .setting_word    (setting_word)
     );
 
-    xy_stage_y_sliding_mode_avalon_sample_select u_sample_select (
+    posicast_sample_select_32x5 u_sample_select (
         .clk         (clk),
         .rst         (rst),
         .from_pins   (from_pins),
@@ -132,7 +132,7 @@ module xy_stage_y_sliding_mode_avalon (
         .x_4         (selected_velocity)
     );
 
-    xy_stage_y_sliding_mode_avalon_setting_banks u_setting_banks (
+    xy_stage_y_setting_banks u_setting_banks (
         .clk             (clk),
         .rst             (rst),
         .setting_write   (setting_write),
@@ -145,7 +145,7 @@ module xy_stage_y_sliding_mode_avalon (
         .setting_refused (setting_refused)
     );
 
-    xy_stage_y_sliding_mode_avalon_sliding_mode u_sliding_mode (
+    posicast_sliding_mode u_sliding_mode (
         .clk                    (clk),
         .rst                    (rst),
         .start                  (selected_start),

@@ -27,15 +27,15 @@ set_module_assignment embeddedsw.dts.compatible {posicast,pulse_counter-2.0}
 foreach kind {QUARTUS_SYNTH SIM_VERILOG} {
     add_fileset $kind $kind {} {}
     set_fileset_property $kind TOP_LEVEL xy_stage_x_pulse_counter_avalon
-    add_fileset_file xy_stage_x_pulse_counter_avalon_registers.v VERILOG PATH ../rtl/xy_stage_x_pulse_counter_avalon_registers.v
-    add_fileset_file xy_stage_x_pulse_counter_avalon_time_base.v VERILOG PATH ../rtl/xy_stage_x_pulse_counter_avalon_time_base.v
-    add_fileset_file xy_stage_x_pulse_counter_avalon_synchroniser.v VERILOG PATH ../rtl/xy_stage_x_pulse_counter_avalon_synchroniser.v
-    add_fileset_file xy_stage_x_pulse_counter_avalon_glitch_filter.v VERILOG PATH ../rtl/xy_stage_x_pulse_counter_avalon_glitch_filter.v
-    add_fileset_file xy_stage_x_pulse_counter_avalon_line_receiver.v VERILOG PATH ../rtl/xy_stage_x_pulse_counter_avalon_line_receiver.v
-    add_fileset_file xy_stage_x_pulse_counter_avalon_decoder.v VERILOG PATH ../rtl/xy_stage_x_pulse_counter_avalon_decoder.v
-    add_fileset_file xy_stage_x_pulse_counter_avalon_velocity.v VERILOG PATH ../rtl/xy_stage_x_pulse_counter_avalon_velocity.v
-    add_fileset_file xy_stage_x_pulse_counter_avalon_pulse_counter.v VERILOG PATH ../rtl/xy_stage_x_pulse_counter_avalon_pulse_counter.v
-    add_fileset_file xy_stage_x_pulse_counter_avalon_divider.v VERILOG PATH ../rtl/xy_stage_x_pulse_counter_avalon_divider.v
+    add_fileset_file posicast_pulse_counter_registers_a0495363.v VERILOG PATH ../rtl/posicast_pulse_counter_registers_a0495363.v
+    add_fileset_file posicast_time_base_5000.v VERILOG PATH ../rtl/posicast_time_base_5000.v
+    add_fileset_file posicast_synchroniser.v VERILOG PATH ../rtl/posicast_synchroniser.v
+    add_fileset_file posicast_glitch_filter.v VERILOG PATH ../rtl/posicast_glitch_filter.v
+    add_fileset_file posicast_line_receiver.v VERILOG PATH ../rtl/posicast_line_receiver.v
+    add_fileset_file posicast_decoder.v VERILOG PATH ../rtl/posicast_decoder.v
+    add_fileset_file posicast_velocity.v VERILOG PATH ../rtl/posicast_velocity.v
+    add_fileset_file posicast_pulse_counter.v VERILOG PATH ../rtl/posicast_pulse_counter.v
+    add_fileset_file posicast_divider_5000.v VERILOG PATH ../rtl/posicast_divider_5000.v
     add_fileset_file xy_stage_x_pulse_counter_avalon.v VERILOG PATH ../rtl/xy_stage_x_pulse_counter_avalon.v
 }
 

@@ -28,18 +28,18 @@ set_module_assignment embeddedsw.dts.compatible {posicast,pwm-1.0}
 foreach kind {QUARTUS_SYNTH SIM_VERILOG} {
     add_fileset $kind $kind {} {}
     set_fileset_property $kind TOP_LEVEL xy_stage_x_pwm_avalon
-    add_fileset_file xy_stage_x_pwm_avalon_registers.v VERILOG PATH ../rtl/xy_stage_x_pwm_avalon_registers.v
-    add_fileset_file xy_stage_x_pwm_avalon_sample_select.v VERILOG PATH ../rtl/xy_stage_x_pwm_avalon_sample_select.v
-    add_fileset_file xy_stage_x_pwm_avalon_pwm_carrier.v VERILOG PATH ../rtl/xy_stage_x_pwm_avalon_pwm_carrier.v
-    add_fileset_file xy_stage_x_pwm_avalon_pwm_timing.v VERILOG PATH ../rtl/xy_stage_x_pwm_avalon_pwm_timing.v
-    add_fileset_file xy_stage_x_pwm_avalon_pwm_command.v VERILOG PATH ../rtl/xy_stage_x_pwm_avalon_pwm_command.v
-    add_fileset_file xy_stage_x_pwm_avalon_fault_latch.v VERILOG PATH ../rtl/xy_stage_x_pwm_avalon_fault_latch.v
-    add_fileset_file xy_stage_x_pwm_avalon_synchroniser.v VERILOG PATH ../rtl/xy_stage_x_pwm_avalon_synchroniser.v
-    add_fileset_file xy_stage_x_pwm_avalon_filtered_fault.v VERILOG PATH ../rtl/xy_stage_x_pwm_avalon_filtered_fault.v
-    add_fileset_file xy_stage_x_pwm_avalon_pwm_trip.v VERILOG PATH ../rtl/xy_stage_x_pwm_avalon_pwm_trip.v
-    add_fileset_file xy_stage_x_pwm_avalon_pwm_leg.v VERILOG PATH ../rtl/xy_stage_x_pwm_avalon_pwm_leg.v
-    add_fileset_file xy_stage_x_pwm_avalon_pwm_gates.v VERILOG PATH ../rtl/xy_stage_x_pwm_avalon_pwm_gates.v
-    add_fileset_file xy_stage_x_pwm_avalon_pwm.v VERILOG PATH ../rtl/xy_stage_x_pwm_avalon_pwm.v
+    add_fileset_file posicast_pwm_registers_bd3098e5.v VERILOG PATH ../rtl/posicast_pwm_registers_bd3098e5.v
+    add_fileset_file posicast_sample_select_17x1.v VERILOG PATH ../rtl/posicast_sample_select_17x1.v
+    add_fileset_file posicast_pwm_carrier.v VERILOG PATH ../rtl/posicast_pwm_carrier.v
+    add_fileset_file posicast_pwm_timing_25x50.v VERILOG PATH ../rtl/posicast_pwm_timing_25x50.v
+    add_fileset_file posicast_pwm_command.v VERILOG PATH ../rtl/posicast_pwm_command.v
+    add_fileset_file posicast_fault_latch.v VERILOG PATH ../rtl/posicast_fault_latch.v
+    add_fileset_file posicast_synchroniser.v VERILOG PATH ../rtl/posicast_synchroniser.v
+    add_fileset_file posicast_filtered_fault.v VERILOG PATH ../rtl/posicast_filtered_fault.v
+    add_fileset_file posicast_pwm_trip.v VERILOG PATH ../rtl/posicast_pwm_trip.v
+    add_fileset_file posicast_pwm_leg.v VERILOG PATH ../rtl/posicast_pwm_leg.v
+    add_fileset_file posicast_pwm_gates_0000.v VERILOG PATH ../rtl/posicast_pwm_gates_0000.v
+    add_fileset_file posicast_pwm_25x50_0000.v VERILOG PATH ../rtl/posicast_pwm_25x50_0000.v
     add_fileset_file xy_stage_x_pwm_avalon.v VERILOG PATH ../rtl/xy_stage_x_pwm_avalon.v
 }
 

@@ -33,19 +33,19 @@ set_module_assignment embeddedsw.dts.compatible {posicast,shaper-1.0}
 foreach kind {QUARTUS_SYNTH SIM_VERILOG} {
     add_fileset $kind $kind {} {}
     set_fileset_property $kind TOP_LEVEL xy_stage_x_shaper_avalon
-    add_fileset_file xy_stage_x_shaper_avalon_registers.v VERILOG PATH ../rtl/xy_stage_x_shaper_avalon_registers.v
-    add_fileset_file xy_stage_x_shaper_avalon_sample_select.v VERILOG PATH ../rtl/xy_stage_x_shaper_avalon_sample_select.v
-    add_fileset_file xy_stage_x_shaper_avalon_machine_taps.v VERILOG PATH ../rtl/xy_stage_x_shaper_avalon_machine_taps.v
-    add_fileset_file xy_stage_x_shaper_avalon_ram_128x25.v VERILOG PATH ../rtl/xy_stage_x_shaper_avalon_ram_128x25.v
-    add_fileset_file xy_stage_x_shaper_avalon_tap_banks.v VERILOG PATH ../rtl/xy_stage_x_shaper_avalon_tap_banks.v
-    add_fileset_file xy_stage_x_shaper_avalon_handover.v VERILOG PATH ../rtl/xy_stage_x_shaper_avalon_handover.v
-    add_fileset_file xy_stage_x_shaper_avalon_ram_128x32.v VERILOG PATH ../rtl/xy_stage_x_shaper_avalon_ram_128x32.v
-    add_fileset_file xy_stage_x_shaper_avalon_history.v VERILOG PATH ../rtl/xy_stage_x_shaper_avalon_history.v
-    add_fileset_file xy_stage_x_shaper_avalon_smul_18x18.v VERILOG PATH ../rtl/xy_stage_x_shaper_avalon_smul_18x18.v
-    add_fileset_file xy_stage_x_shaper_avalon_smul_15x18.v VERILOG PATH ../rtl/xy_stage_x_shaper_avalon_smul_15x18.v
-    add_fileset_file xy_stage_x_shaper_avalon_product.v VERILOG PATH ../rtl/xy_stage_x_shaper_avalon_product.v
-    add_fileset_file xy_stage_x_shaper_avalon_channel_sums.v VERILOG PATH ../rtl/xy_stage_x_shaper_avalon_channel_sums.v
-    add_fileset_file xy_stage_x_shaper_avalon_shaper.v VERILOG PATH ../rtl/xy_stage_x_shaper_avalon_shaper.v
+    add_fileset_file posicast_shaper_registers_56f021b6.v VERILOG PATH ../rtl/posicast_shaper_registers_56f021b6.v
+    add_fileset_file posicast_sample_select_32x3.v VERILOG PATH ../rtl/posicast_sample_select_32x3.v
+    add_fileset_file xy_stage_x_machine_taps.v VERILOG PATH ../rtl/xy_stage_x_machine_taps.v
+    add_fileset_file posicast_ram_128x25.v VERILOG PATH ../rtl/posicast_ram_128x25.v
+    add_fileset_file xy_stage_x_tap_banks.v VERILOG PATH ../rtl/xy_stage_x_tap_banks.v
+    add_fileset_file posicast_handover_32x128_f16.v VERILOG PATH ../rtl/posicast_handover_32x128_f16.v
+    add_fileset_file posicast_ram_128x32.v VERILOG PATH ../rtl/posicast_ram_128x32.v
+    add_fileset_file posicast_history_32x128x3.v VERILOG PATH ../rtl/posicast_history_32x128x3.v
+    add_fileset_file posicast_smul_18x18.v VERILOG PATH ../rtl/posicast_smul_18x18.v
+    add_fileset_file posicast_smul_15x18.v VERILOG PATH ../rtl/posicast_smul_15x18.v
+    add_fileset_file posicast_product_32.v VERILOG PATH ../rtl/posicast_product_32.v
+    add_fileset_file posicast_channel_sums_32x57x3_f16.v VERILOG PATH ../rtl/posicast_channel_sums_32x57x3_f16.v
+    add_fileset_file xy_stage_x_motion_shaper_32x3.v VERILOG PATH ../rtl/xy_stage_x_motion_shaper_32x3.v
     add_fileset_file xy_stage_x_shaper_avalon.v VERILOG PATH ../rtl/xy_stage_x_shaper_avalon.v
 }
 

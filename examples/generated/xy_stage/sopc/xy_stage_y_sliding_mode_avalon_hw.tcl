@@ -26,22 +26,22 @@ set_module_assignment embeddedsw.dts.compatible {posicast,sliding_mode-1.0}
 foreach kind {QUARTUS_SYNTH SIM_VERILOG} {
     add_fileset $kind $kind {} {}
     set_fileset_property $kind TOP_LEVEL xy_stage_y_sliding_mode_avalon
-    add_fileset_file xy_stage_y_sliding_mode_avalon_registers.v VERILOG PATH ../rtl/xy_stage_y_sliding_mode_avalon_registers.v
-    add_fileset_file xy_stage_y_sliding_mode_avalon_sample_select.v VERILOG PATH ../rtl/xy_stage_y_sliding_mode_avalon_sample_select.v
-    add_fileset_file xy_stage_y_sliding_mode_avalon_machine_settings.v VERILOG PATH ../rtl/xy_stage_y_sliding_mode_avalon_machine_settings.v
-    add_fileset_file xy_stage_y_sliding_mode_avalon_ram_32x32.v VERILOG PATH ../rtl/xy_stage_y_sliding_mode_avalon_ram_32x32.v
-    add_fileset_file xy_stage_y_sliding_mode_avalon_setting_banks.v VERILOG PATH ../rtl/xy_stage_y_sliding_mode_avalon_setting_banks.v
-    add_fileset_file xy_stage_y_sliding_mode_avalon_sequencer.v VERILOG PATH ../rtl/xy_stage_y_sliding_mode_avalon_sequencer.v
-    add_fileset_file xy_stage_y_sliding_mode_avalon_tracking.v VERILOG PATH ../rtl/xy_stage_y_sliding_mode_avalon_tracking.v
-    add_fileset_file xy_stage_y_sliding_mode_avalon_operands.v VERILOG PATH ../rtl/xy_stage_y_sliding_mode_avalon_operands.v
-    add_fileset_file xy_stage_y_sliding_mode_avalon_smul_15x18.v VERILOG PATH ../rtl/xy_stage_y_sliding_mode_avalon_smul_15x18.v
-    add_fileset_file xy_stage_y_sliding_mode_avalon_smul_18x18.v VERILOG PATH ../rtl/xy_stage_y_sliding_mode_avalon_smul_18x18.v
-    add_fileset_file xy_stage_y_sliding_mode_avalon_scaled_product.v VERILOG PATH ../rtl/xy_stage_y_sliding_mode_avalon_scaled_product.v
-    add_fileset_file xy_stage_y_sliding_mode_avalon_accumulator.v VERILOG PATH ../rtl/xy_stage_y_sliding_mode_avalon_accumulator.v
-    add_fileset_file xy_stage_y_sliding_mode_avalon_limiter.v VERILOG PATH ../rtl/xy_stage_y_sliding_mode_avalon_limiter.v
-    add_fileset_file xy_stage_y_sliding_mode_avalon_integral.v VERILOG PATH ../rtl/xy_stage_y_sliding_mode_avalon_integral.v
-    add_fileset_file xy_stage_y_sliding_mode_avalon_sticky.v VERILOG PATH ../rtl/xy_stage_y_sliding_mode_avalon_sticky.v
-    add_fileset_file xy_stage_y_sliding_mode_avalon_sliding_mode.v VERILOG PATH ../rtl/xy_stage_y_sliding_mode_avalon_sliding_mode.v
+    add_fileset_file posicast_sliding_mode_registers_53078686.v VERILOG PATH ../rtl/posicast_sliding_mode_registers_53078686.v
+    add_fileset_file posicast_sample_select_32x5.v VERILOG PATH ../rtl/posicast_sample_select_32x5.v
+    add_fileset_file xy_stage_y_machine_settings.v VERILOG PATH ../rtl/xy_stage_y_machine_settings.v
+    add_fileset_file posicast_ram_32x32.v VERILOG PATH ../rtl/posicast_ram_32x32.v
+    add_fileset_file xy_stage_y_setting_banks.v VERILOG PATH ../rtl/xy_stage_y_setting_banks.v
+    add_fileset_file posicast_sequencer.v VERILOG PATH ../rtl/posicast_sequencer.v
+    add_fileset_file posicast_tracking.v VERILOG PATH ../rtl/posicast_tracking.v
+    add_fileset_file posicast_operands.v VERILOG PATH ../rtl/posicast_operands.v
+    add_fileset_file posicast_smul_15x18.v VERILOG PATH ../rtl/posicast_smul_15x18.v
+    add_fileset_file posicast_smul_18x18.v VERILOG PATH ../rtl/posicast_smul_18x18.v
+    add_fileset_file posicast_scaled_product.v VERILOG PATH ../rtl/posicast_scaled_product.v
+    add_fileset_file posicast_accumulator.v VERILOG PATH ../rtl/posicast_accumulator.v
+    add_fileset_file posicast_limiter.v VERILOG PATH ../rtl/posicast_limiter.v
+    add_fileset_file posicast_integral.v VERILOG PATH ../rtl/posicast_integral.v
+    add_fileset_file posicast_sticky.v VERILOG PATH ../rtl/posicast_sticky.v
+    add_fileset_file posicast_sliding_mode.v VERILOG PATH ../rtl/posicast_sliding_mode.v
     add_fileset_file xy_stage_y_sliding_mode_avalon.v VERILOG PATH ../rtl/xy_stage_y_sliding_mode_avalon.v
 }
 

@@ -180,7 +180,7 @@ impl StageRandom {
     /// A scene in turn with a while of random traffic, after the first scenes: those come at once.
     fn new_mood(&mut self) {
         self.moods += 1;
-        if self.scenes < FIRST_SCENES * self.axes.len() || self.moods % 2 == 0 {
+        if self.scenes < FIRST_SCENES * self.axes.len() || self.moods.is_multiple_of(2) {
             return self.new_scene();
         }
         self.mood = Mood {

@@ -98,6 +98,19 @@ posicast_result posicast_wait_at_rest(const posicast_stage *stage, uint32_t axes
 /* Quick stop through the shaper, then HOLD; does not wait. What waits in the FIFOs is dropped. */
 void posicast_stop(const posicast_stage *stage, uint32_t axes);
 
+/*
+ * Feed hold: the axes of the mask play on until their commands are at rest in the same tick. There they stand, in RUN, and keep
+ * what waits in their FIFOs. 0 resumes: all go on in one tick, to exactly where they would have ended. It stays until it is
+ * changed, through a start too: docs/segments.md. POSICAST_BAD_ARGUMENT.
+ */
+posicast_result posicast_feed_hold(const posicast_stage *stage, uint32_t axes);
+
+/*
+ * Until the commands of these axes, in a feed hold, stand and the shaped commands with them. As posicast_wait_at_rest;
+ * POSICAST_WRONG_STATE for one that is not told to hold.
+ */
+posicast_result posicast_wait_held(const posicast_stage *stage, uint32_t axes, uint32_t ticks);
+
 /* Positions and velocities of all axes in one clock. */
 void posicast_take_snapshot(const posicast_stage *stage, posicast_snapshot *snapshot);
 

@@ -239,13 +239,12 @@ posicast_result posicast_start(const posicast_stage *stage, uint32_t axes)
     return POSICAST_OK;
 }
 
-posicast_result posicast_wait_at_rest(const posicast_stage *stage, uint32_t axes, uint32_t ticks)
+/* Until the commands stand, with nothing left or, `held`, with what a feed hold keeps; then for the shaped commands. */
+static posicast_result wait_standing(const posicast_stage *stage, uint32_t axes, int held, uint32_t ticks)
 {
     posicast_patience left = posicast_patience_for(stage, ticks);
     uint32_t axis, longest = 0;
 
-    if (!are_axes(stage, axes))
-        return POSICAST_BAD_ARGUMENT;
     for (axis = 0; axis < stage->axes; axis++) {
         uint32_t settle;
 
@@ -255,6 +254,8 @@ posicast_result posicast_wait_at_rest(const posicast_stage *stage, uint32_t axes
 
             if (posicast_causes(stage, axis) != 0)
                 return POSICAST_FAULT;
+            if (held && FIELD(fifo, POSICAST_AXIS_FIFO_FEED_HELD))
+                break;
             if (posicast_state(stage, axis) == POSICAST_AXIS_STATUS_STATE_HOLD &&
                 FIELD(fifo, POSICAST_AXIS_FIFO_SEGMENTS_EMPTY))
                 break;
@@ -267,6 +268,28 @@ posicast_result posicast_wait_at_rest(const posicast_stage *stage, uint32_t axes
             longest = settle;
     }
     return posicast_wait_ticks(stage, longest);
+}
+
+posicast_result posicast_wait_at_rest(const posicast_stage *stage, uint32_t axes, uint32_t ticks)
+{
+    return are_axes(stage, axes) ? wait_standing(stage, axes, 0, ticks) : POSICAST_BAD_ARGUMENT;
+}
+
+posicast_result posicast_feed_hold(const posicast_stage *stage, uint32_t axes)
+{
+    if (axes != 0 && !are_axes(stage, axes))
+        return POSICAST_BAD_ARGUMENT;
+    IOWR_POSICAST_STAGE_FEED_HOLD(stage->base, axes);
+    return POSICAST_OK;
+}
+
+posicast_result posicast_wait_held(const posicast_stage *stage, uint32_t axes, uint32_t ticks)
+{
+    const uint32_t holds = (uint32_t)IORD_POSICAST_STAGE_FEED_HOLD(stage->base);
+
+    if (!are_axes(stage, axes))
+        return POSICAST_BAD_ARGUMENT;
+    return (axes & ~holds) == 0 ? wait_standing(stage, axes, 1, ticks) : POSICAST_WRONG_STATE;
 }
 
 void posicast_stop(const posicast_stage *stage, uint32_t axes)

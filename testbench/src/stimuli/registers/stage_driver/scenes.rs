@@ -265,7 +265,7 @@ impl Driver {
         self.tell(axis, "watchdog", 2 | self.off_causes(axis) << 16);
         self.there_and_back(axis, 4);
         self.set_off(axis);
-        for word in [KICK, KICK, KICK ^ 1 << self.round % 32] {
+        for word in [KICK, KICK, KICK ^ (1 << (self.round % 32))] {
             self.tell(axis, "kick", word);
             self.wait(axis, 3 * self.tick_clocks / 2);
         }
