@@ -3,7 +3,7 @@
 //! The reference is `posicast_model::rtl::setting_banks`. Which rows were written since the reset is kept in flip-flops,
 //! since a memory has no reset: others read as 0.
 
-use crate::emit::{self, EmitError, EmitOptions, Header, Module};
+use crate::emit::{self, EmitError, EmitOptions, Header, LIBRARY, Module, digest, shared_name};
 use crate::prelude::*;
 use crate::simulation::{Simulated, SimulationError};
 use posicast_model::rtl::ClockedBlock;
@@ -11,11 +11,11 @@ use posicast_model::rtl::setting_banks::ports;
 use posicast_model::rtl::sliding_mode::{Row, Settings};
 
 kernel! {
-    struct SettingBanks(machine: &Settings);
+    struct SettingBanks(machine: &Settings, rom: &str);
     ports posicast_model::setting_banks_ports;
 
     parts {
-        machine_settings: Rom<32, 4> = machine_rom(machine),
+        machine_settings: Rom<32, 4> = machine_rom(machine, rom),
         loaded_settings: Ram<32, 5>,
     }
     registers { written: Bits<32>, known: Bit, from_machine: Bit, refused_q: Bit }
@@ -34,12 +34,12 @@ kernel! {
     }
 }
 
-fn machine_rom(machine: &Settings) -> Rom<32, 4> {
+fn machine_rom(machine: &Settings, name: &str) -> Rom<32, 4> {
     let word = |row: &Row| RomWord {
         pattern: machine.word(*row as usize).into(),
         meaning: format!("{row:?}"),
     };
-    Rom::new("machine_settings", Row::ALL.iter().map(word).collect())
+    Rom::new(name, Row::ALL.iter().map(word).collect())
 }
 
 impl Logic for SettingBanks {
@@ -96,19 +96,40 @@ impl Logic for SettingBanks {
 /// # Errors
 /// [`SimulationError`] where RustHDL finds a fault in the block.
 pub fn simulate(machine: &Settings) -> Result<Box<dyn ClockedBlock>, SimulationError> {
-    let block = Box::new(SettingBanks::new(machine));
+    let block = Box::new(SettingBanks::new(machine, "machine_settings"));
     Ok(Box::new(Simulated::new("setting_banks", block, ports())?))
 }
 
-/// The banks' Verilog, with the machine's settings in bank 0: `PREFIX_setting_banks`, or `setting_banks` where `prefix` is
-/// empty, last.
+/// The name of the banks' module: `posicast_setting_banks_DIGEST`, or `setting_banks` where `prefix` is empty. The digest stands for
+/// the machine's settings, so that axes with the same ones share their banks.
+pub fn name(machine: &Settings, prefix: &str) -> String {
+    match prefix {
+        "" => "setting_banks".to_owned(),
+        _ => shared_name(prefix, &of_content("setting_banks", machine)),
+    }
+}
+
+fn of_content(base: &str, machine: &Settings) -> String {
+    let words: Vec<String> = Row::ALL
+        .iter()
+        .map(|row| machine.word(*row as usize).to_string())
+        .collect();
+    format!("{base}_{:08x}", digest(&words.join(" ")))
+}
+
+/// The banks' Verilog, with the machine's settings in bank 0, last; it is called [`name`].
 ///
 /// # Errors
 /// [`EmitError`] where `prefix` makes no Verilog name.
 pub fn emit(machine: &Settings, prefix: &str) -> Result<Vec<Module>, EmitError> {
+    let named = |base: &str| match prefix {
+        "" => base.to_owned(),
+        _ => of_content(base, machine),
+    };
     let options = EmitOptions {
-        top: "setting_banks".to_owned(),
-        prefix: prefix.to_owned(),
+        top: named("setting_banks"),
+        // What holds a machine's contents begins with the prefix: here the names say which contents.
+        prefix: if prefix.is_empty() { "" } else { LIBRARY }.to_owned(),
         header: Header {
             about: "Settings of a controller: bank 0 is the machine's, banks 1 and 2 can be loaded.\n\
                     A row that was not written since the reset reads as 0."
@@ -116,5 +137,5 @@ pub fn emit(machine: &Settings, prefix: &str) -> Result<Vec<Module>, EmitError> 
             parameters: Vec::new(),
         },
     };
-    emit::emit(&SettingBanks::new(machine), &options)
+    emit::emit(&SettingBanks::new(machine, &named("machine_settings")), &options)
 }

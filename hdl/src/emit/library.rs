@@ -15,6 +15,13 @@ pub fn own_name(prefix: &str, base: &str) -> String {
     names::module_name(prefix, true, base)
 }
 
+/// What stands in a name for a content that is too long for one: FNV-1a, 32 bits.
+pub(crate) fn digest(text: &str) -> u32 {
+    text.bytes().fold(0x811c_9dc5, |hash, byte| {
+        (hash ^ u32::from(byte)).wrapping_mul(0x0100_0193)
+    })
+}
+
 /// Adds modules to those of a package, each once.
 ///
 /// # Errors

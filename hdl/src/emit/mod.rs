@@ -61,6 +61,7 @@ mod values;
 pub use compose::{Instance, compose};
 pub use connect::connect;
 pub use error::{Cause, EmitError};
+pub(crate) use library::digest;
 pub use library::{add, own_name, shared_name};
 pub use names::LIBRARY;
 pub use types::Type;

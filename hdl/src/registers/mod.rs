@@ -10,7 +10,7 @@ mod blocks;
 mod verilog;
 
 use crate::emit::names::check_name;
-use crate::emit::{EmitError, Header, Module, Parameter, print, shared_name};
+use crate::emit::{EmitError, Header, Module, Parameter, digest, print, shared_name};
 use posicast_model::rtl::registers::{Access, Field, Register, RegisterMap};
 
 /// The bank's Verilog, called as [`name`] says.
@@ -54,13 +54,6 @@ fn name_of(map: &RegisterMap, body: &str, prefix: &str) -> String {
         // What the header says of the build stands in the body too, but for the meaning of a parameter.
         _ => shared_name(prefix, &format!("{}_registers_{:08x}", map.name(), digest(body))),
     }
-}
-
-/// FNV-1a, 32 bits.
-fn digest(text: &str) -> u32 {
-    text.bytes().fold(0x811c_9dc5, |hash, byte| {
-        (hash ^ u32::from(byte)).wrapping_mul(0x0100_0193)
-    })
 }
 
 /// The build's parameters, as a file's header tells them.

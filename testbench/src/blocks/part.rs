@@ -1,6 +1,6 @@
 //! The bench of the small blocks between others: schedule, divider share, group, time base, sample select, setting banks.
 
-use posicast_hdl::emit::{EmitError, Module, own_name};
+use posicast_hdl::emit::{EmitError, Module};
 use posicast_hdl::{SimulationError, divider_share, group, sample_select, schedule, setting_banks, time_base};
 use posicast_model::rtl::component::Block as Model;
 use posicast_model::rtl::divider::DividerConfig;
@@ -113,7 +113,7 @@ impl Block for PartBlock {
             Part::Group(axes) => group::name(*axes, prefix),
             Part::TimeBase(config) => time_base::name(config, prefix),
             Part::SampleSelect { word_bits, channels } => sample_select::name(*word_bits, *channels, prefix),
-            Part::SettingBanks(_) => own_name(prefix, "setting_banks"),
+            Part::SettingBanks(settings) => setting_banks::name(settings, prefix),
         }
     }
 
