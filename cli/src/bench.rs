@@ -13,11 +13,15 @@ use posicast_testbench::verilator;
 use serde::Serialize;
 use std::fmt;
 use std::num::NonZero;
+use std::ops::RangeInclusive;
 use std::sync::Mutex;
 use std::thread;
 
 /// Blocks that are built and simulated at a time: a build takes a gigabyte at its worst.
 const MOST_AT_ONCE: usize = 2;
+
+/// How much longer than usual a row runs, where it has not shown all that a verdict speaks of.
+const MOST_TIMES_LONGER: u64 = 10;
 
 /// What runs the hardware.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum, Serialize)]
@@ -52,14 +56,15 @@ impl Simulator {
         }
     }
 
-    /// Clocks of a block's lock step where none are asked for: what the simulator does in a few seconds, and never fewer
-    /// than the block's stimuli need to reach what a verdict speaks of.
-    pub(crate) fn default_cycles(self, block: &dyn Block) -> u64 {
+    /// The fewest and the most clocks of a block's lock step where none are asked for: what the simulator does in a few
+    /// seconds, and on from there until the stimuli have reached what a verdict speaks of.
+    fn default_cycles(self, block: &dyn Block) -> RangeInclusive<u64> {
         let usual = match self {
             Self::Verilator => 1_000_000,
             Self::Icarus | Self::Rusthdl => 20_000,
         };
-        usual.max(block.least_clocks())
+        let fewest = usual.max(block.least_clocks());
+        fewest..=MOST_TIMES_LONGER * fewest
     }
 
     /// Says where the simulator runs a block at other sizes than those of its Verilog.
@@ -103,11 +108,21 @@ pub(crate) struct Bench<'a> {
     pub(crate) cycles: Option<u64>,
 }
 
+impl Bench<'_> {
+    /// The fewest and the most clocks to compare: as many as were asked for.
+    fn clocks(&self, simulator: Simulator) -> RangeInclusive<u64> {
+        match self.cycles {
+            Some(cycles) => cycles..=cycles,
+            None => simulator.default_cycles(self.block),
+        }
+    }
+}
+
 /// Compares every block with its model, at most [`MOST_AT_ONCE`] at a time, and reports them in their order.
 pub(crate) fn compare_all(benches: &[Bench<'_>], simulator: Simulator, seed: u64) -> Result<Report, Failure> {
     simulator.say_sizes(benches.iter().map(|bench| bench.block));
-    let cycles = |bench: &Bench<'_>| bench.cycles.unwrap_or(simulator.default_cycles(bench.block));
-    let total = benches.iter().map(cycles).fold(0, u64::saturating_add);
+    let fewest = |bench: &Bench<'_>| *bench.clocks(simulator).start();
+    let total = benches.iter().map(fewest).fold(0, u64::saturating_add);
     let bar = progress::bar("lock step", total);
     let next = Mutex::new(benches.iter().enumerate());
     let done = Mutex::new(Vec::new());
@@ -144,8 +159,8 @@ fn compare(bench: &Bench<'_>, simulator: Simulator, seed: u64, bar: &ProgressBar
     let mut device = simulator.device(bench.block, bench.sources, seed)?;
     bar.set_message(format!("{} {}", bench.block.name(), bench.block.instance()));
     let mut shown = 0;
-    let cycles = bench.cycles.unwrap_or(simulator.default_cycles(bench.block));
-    let report = blocks::judge(bench.block, device.as_mut(), cycles, seed, &mut |done| {
+    let clocks = bench.clocks(simulator);
+    let report = blocks::judge(bench.block, device.as_mut(), clocks, seed, &mut |done| {
         bar.inc(done - shown);
         shown = done;
     })?;

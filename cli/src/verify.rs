@@ -36,7 +36,7 @@ pub(crate) struct Args {
     #[arg(long = "block", value_name = "NAME")]
     blocks: Vec<String>,
     /// Clocks to compare in every row, with --stimulus at most [default: 1000000 with verilator, 20000 with icarus and
-    /// rusthdl, and never fewer than it takes to see every tap, bank and flag of a shaper]
+    /// rusthdl, and more where it takes more to see every tap, bank and flag]
     #[arg(long, value_parser = clap::value_parser!(u64).range(1..))]
     cycles: Option<u64>,
     /// Seed of the random stimuli
@@ -94,6 +94,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     }
     let document = Document {
         least_clocks: job.least_clocks(),
+        cycles_given: args.cycles.is_some(),
         folder: job.folder.as_ref(),
         not_exercised: report.not_exercised_names(),
         simulator,

@@ -20,7 +20,7 @@ use posicast_model::taps::{Tap, TapTable};
 use std::collections::BTreeMap;
 
 /// Configurations that are tried.
-const MACHINES: u64 = 40;
+const MACHINES: u64 = 12;
 
 /// A number for each `salt`, the same in every run (SplitMix64).
 struct Chance(u64);

@@ -9,6 +9,7 @@ mod drive_command;
 mod encoder_generator;
 mod excitation;
 mod kernel_rules;
+mod library;
 mod linear_scale;
 mod pitfalls;
 mod pulse_counter;

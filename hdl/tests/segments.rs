@@ -37,6 +37,7 @@ fn lockstep_everything_at_random() {
             random.below(64),
             u64::from(random.once_in(50)),
             u64::from(random.once_in(2)),
+            u64::from(random.once_in(4)),
         ];
         ClockedBlock::step(&mut model, &inputs, &mut expected).unwrap();
         rusthdl.step(&inputs, &mut actual).unwrap();

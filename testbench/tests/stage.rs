@@ -272,7 +272,7 @@ fn unit_the_fewest_clocks_of_a_verdict_drive_every_flag() {
         let seed = blocks::row_seed(row.as_ref(), 1);
         let mut twin = TwoValued(row.model(seed));
         let clocks = row.least_clocks().max(20_000);
-        let report = blocks::judge(row.as_ref(), &mut twin, clocks, seed, &mut |_| {}).unwrap();
+        let report = blocks::judge(row.as_ref(), &mut twin, clocks..=clocks, seed, &mut |_| {}).unwrap();
         assert_eq!(report.not_exercised_names(), [""; 0], "{clocks} clocks");
     }
 }
@@ -282,7 +282,7 @@ fn unit_the_fewest_clocks_of_a_verdict_drive_every_flag() {
 fn unit_a_row_without_a_list_of_its_own_names_the_flags_that_stayed() {
     let block = posicast_testbench::blocks::SegmentsBlock::new("few", "alone");
     let mut twin = TwoValued(block.model(1));
-    let report = blocks::judge(&block, &mut twin, 100, 1, &mut |_| {}).unwrap();
+    let report = blocks::judge(&block, &mut twin, 100..=100, 1, &mut |_| {}).unwrap();
     assert_eq!(report.result, posicast_testbench::lockstep::report::Verdict::Mismatch);
     let missing = report.not_exercised_names();
     assert!(

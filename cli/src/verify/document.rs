@@ -20,6 +20,9 @@ pub(super) struct Document<'a> {
     /// Clocks that exercise all of it.
     #[serde(skip)]
     pub(super) least_clocks: u64,
+    /// Whether the clocks were asked for with `--cycles`.
+    #[serde(skip)]
+    pub(super) cycles_given: bool,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) folder: Option<&'a Folder>,
     pub(super) simulator: Simulator,
@@ -45,9 +48,12 @@ impl Document<'_> {
     }
 
     fn remedy(&self) -> String {
-        match self.least_clocks {
-            least if least > self.fewest_clocks() => format!("compare more: --cycles {least}, or leave --cycles away"),
-            _ => "the rows say why".to_owned(),
+        match (self.least_clocks, self.cycles_given) {
+            (least, true) if least > self.fewest_clocks() => {
+                format!("compare more: --cycles {least}, or leave --cycles away")
+            }
+            (_, true) => "leave --cycles away".to_owned(),
+            (_, false) => "the rows say why".to_owned(),
         }
     }
 

@@ -46,6 +46,7 @@ pub(crate) const STAGE: Hints = &[
     ("filter_clocks", &[0, 3, 9]),
     ("tick", RARE),
     ("divide", RARE),
+    ("feed_hold", RARE),
     ("line_mode", &[0]),
     // Positions are anything: not modulo, they would always be out of range.
     ("modulo", &[1]),

@@ -66,10 +66,15 @@ use posicast_hdl::SimulationError;
 use posicast_hdl::emit::{EmitError, Module};
 use posicast_model::rtl::{ClockedBlock, Port};
 
+use std::ops::{ControlFlow, RangeInclusive};
+
 use crate::Error;
 use crate::lockstep::report::Report;
 use crate::lockstep::{self, Clock, Device, Instance, Options};
 use crate::stimuli::Stimuli;
+
+/// Clocks between two looks of [`judge`] at what is still missing.
+const LOOK_CLOCKS: u64 = 1 << 10;
 
 /// A hardware block at one size. It may be shared between threads; what it makes belongs to one.
 pub trait Block: Send + Sync {
@@ -221,7 +226,10 @@ pub fn compare_with(
     progress: &mut dyn FnMut(u64),
 ) -> Result<Run, Error> {
     let mut coverage = block.coverage();
-    let mut watch = |clock: &Clock<'_>| coverage.observe(clock);
+    let mut watch = |clock: &Clock<'_>| {
+        coverage.observe(clock);
+        ControlFlow::Continue(())
+    };
     let report = run(block, device, stimuli, (cycles, seed), &mut watch, progress)?;
     Ok(Run {
         report,
@@ -241,28 +249,51 @@ pub fn check(
     progress: &mut dyn FnMut(u64),
 ) -> Result<Report, Error> {
     let mut stimuli = block.stimuli(cycles, seed);
-    run(block, device, stimuli.as_mut(), (cycles, seed), &mut |_| {}, progress)
+    let mut to_the_end = |_: &Clock<'_>| ControlFlow::Continue(());
+    run(
+        block,
+        device,
+        stimuli.as_mut(),
+        (cycles, seed),
+        &mut to_the_end,
+        progress,
+    )
 }
 
-/// As [`check`], for a verdict: what the run has not driven stands in the report, which then is no match.
+/// As [`check`], for a verdict: it compares the fewest of `clocks`, then goes on until everything was exercised or the most are
+/// over. What was not exercised then stands in the report, which is no match.
 ///
 /// # Errors
 /// As [`lockstep::run`].
 pub fn judge(
     block: &dyn Block,
     device: &mut dyn Device,
-    cycles: u64,
+    clocks: RangeInclusive<u64>,
     seed: u64,
     progress: &mut dyn FnMut(u64),
 ) -> Result<Report, Error> {
-    let mut stimuli = block.stimuli(cycles, seed);
+    let fewest = *clocks.start();
+    let mut stimuli = block.stimuli(fewest, seed);
     let mut exercise = block.exercise();
     let mut watch = |clock: &Clock<'_>| {
         if let Some(exercise) = &mut exercise {
             exercise.observe(clock);
         }
+        let done = clock.time + 1;
+        let looks = done == fewest || (done > fewest && done.is_multiple_of(LOOK_CLOCKS));
+        match looks && exercise.as_ref().is_none_or(|exercise| exercise.missing().is_empty()) {
+            true => ControlFlow::Break(()),
+            false => ControlFlow::Continue(()),
+        }
     };
-    let report = run(block, device, stimuli.as_mut(), (cycles, seed), &mut watch, progress)?;
+    let report = run(
+        block,
+        device,
+        stimuli.as_mut(),
+        (*clocks.end(), seed),
+        &mut watch,
+        progress,
+    )?;
     Ok(match exercise {
         Some(exercise) => report.without(exercise.missing()).with_unchanged(exercise.unchanged()),
         None => report,
@@ -274,13 +305,13 @@ fn run(
     device: &mut dyn Device,
     stimuli: &mut dyn Stimuli,
     (cycles, seed): (u64, u64),
-    watch: &mut dyn FnMut(&Clock<'_>),
+    watch: &mut dyn FnMut(&Clock<'_>) -> ControlFlow<()>,
     progress: &mut dyn FnMut(u64),
 ) -> Result<Report, Error> {
     let mut model = block.model(seed);
     let instances = block.instances(model.ports());
     let options = Options::cycles(cycles);
-    lockstep::run(model.as_mut(), device, stimuli, &instances, &options, watch, progress)
+    lockstep::run_until(model.as_mut(), device, stimuli, &instances, &options, watch, progress)
 }
 
 /// The seed of a row: each has stimuli of its own, so that one axis's may find what another's miss. It depends on what the row

@@ -19,6 +19,7 @@ pub mod report;
 mod window;
 
 use posicast_model::rtl::{ClockedBlock, Direction, Port, StepError};
+use std::ops::ControlFlow;
 
 pub use self::joined::Joined;
 use self::report::{Block, Mismatch, Report};
@@ -139,6 +140,26 @@ pub fn run(
     watch: &mut dyn FnMut(&Clock<'_>),
     progress: &mut dyn FnMut(u64),
 ) -> Result<Report, Error> {
+    let mut to_the_end = |clock: &Clock<'_>| {
+        watch(clock);
+        ControlFlow::Continue(())
+    };
+    run_until(model, device, stimuli, instances, options, &mut to_the_end, progress)
+}
+
+/// As [`run`], and the clock at which `watch` breaks is the last one.
+///
+/// # Errors
+/// As [`run`].
+pub fn run_until(
+    model: &mut dyn ClockedBlock,
+    device: &mut dyn Device,
+    stimuli: &mut dyn Stimuli,
+    instances: &[Instance],
+    options: &Options,
+    watch: &mut dyn FnMut(&Clock<'_>) -> ControlFlow<()>,
+    progress: &mut dyn FnMut(u64),
+) -> Result<Report, Error> {
     let ports = model.ports().to_vec();
     let wiring = Wiring::new(&ports, device.ports())?;
     let mut comparison = Comparison::new(&ports, instances, options)?;
@@ -167,13 +188,16 @@ pub fn run(
             unknown[at] = raw_unknown[port.device];
         }
         comparison.clock(time, &inputs, &expected, &actual, &unknown);
-        watch(&Clock {
+        let goes_on = watch(&Clock {
             time,
             inputs: &inputs,
             expected: &expected,
             actual: &actual,
         });
         time += 1;
+        if goes_on.is_break() {
+            break;
+        }
         if time.is_multiple_of(PROGRESS_CLOCKS) {
             progress(time);
         }

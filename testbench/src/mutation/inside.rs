@@ -204,7 +204,7 @@ fn look(row: &dyn Block, sources: &Sources, clocks: u64, seed: u64) -> Result<Op
     }
     let seed = blocks::row_seed(row, seed);
     let mut device = sources.verilated(row, seed)?;
-    let report = blocks::judge(row, &mut device, clocks, seed, &mut |_| {})?;
+    let report = blocks::judge(row, &mut device, clocks..=clocks, seed, &mut |_| {})?;
     let first = report.blocks.iter().find_map(|block| block.first.as_ref());
     Ok(first.map(|first| found(Some(first.time))))
 }

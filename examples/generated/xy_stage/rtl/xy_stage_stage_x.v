@@ -262,7 +262,7 @@ module xy_stage_stage_x (
         .refused         (table_refused)
     );
 
-    xy_stage_x_setting_banks u_setting_banks (
+    posicast_setting_banks_94eabf14 u_setting_banks (
         .clk             (clk),
         .rst             (rst),
         .setting_write   (setting_write),

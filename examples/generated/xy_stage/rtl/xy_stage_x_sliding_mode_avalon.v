@@ -132,7 +132,7 @@ module xy_stage_x_sliding_mode_avalon (
         .x_4         (selected_velocity)
     );
 
-    xy_stage_x_setting_banks u_setting_banks (
+    posicast_setting_banks_94eabf14 u_setting_banks (
         .clk             (clk),
         .rst             (rst),
         .setting_write   (setting_write),

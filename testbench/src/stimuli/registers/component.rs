@@ -128,21 +128,22 @@ impl ComponentRandom {
                 self.write("start", 0);
             }
             Core::Pwm { .. } => {
-                // Off, a short period, times near the floors, on.
+                // Off, a short period, times near the floors, on. At first with duties that come to the pins for certain.
+                let calm = self.clock < CALM_CLOCKS;
+                let unless_calm = |value: u32, calm_value: u32| if calm { calm_value } else { value };
                 self.write("control", 0);
                 self.write("period", 64 + (random & 0x3f));
                 self.write("times", (4 + (random >> 6 & 3)) | ((3 + (random >> 8 & 3)) << 16));
-                self.write("max_duty", random >> 10 & 0x7f);
-                self.write("phase", random >> 12 & 0x1f_001f);
-                self.write(
-                    "supervision",
-                    if random >> 17 & 1 == 0 { 0 } else { random >> 18 & 0x703 },
-                );
+                self.write("max_duty", unless_calm(random >> 10 & 0x7f, 0x7f));
+                self.write("phase", unless_calm(random >> 12 & 0x1f_001f, 0));
+                let supervised = random >> 17 & 1 == 1 && !calm;
+                self.write("supervision", if supervised { random >> 18 & 0x703 } else { 0 });
                 self.write("clear_trip", 0);
                 self.write("control", 1 | random >> 20 & 0x306);
-                for _ in 0..random >> 28 {
+                for sample in 0..unless_calm(random >> 28, 15) {
                     let duty = self.registers.rng.next_u32() as i32 >> 24;
-                    self.write("duty", duty as u32);
+                    let full = if sample / 8 == 0 { 60 } else { -60 };
+                    self.write("duty", unless_calm(duty as u32, full as u32));
                     self.write("feed", 0);
                     self.writes.extend([(0x40, 0); 20]);
                     // Refused while it runs.

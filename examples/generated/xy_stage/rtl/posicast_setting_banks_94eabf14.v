@@ -1,4 +1,4 @@
-// xy_stage_y_setting_banks
+// posicast_setting_banks_94eabf14
 // Settings of a controller: bank 0 is the machine's, banks 1 and 2 can be loaded.
 // A row that was not written since the reset reads as 0.
 //
@@ -6,7 +6,7 @@
 
 `default_nettype none
 
-module xy_stage_y_setting_banks (
+module posicast_setting_banks_94eabf14 (
     input  wire        clk,
     input  wire        rst,
     input  wire        setting_write,
@@ -44,7 +44,7 @@ module xy_stage_y_setting_banks (
     reg         refused_q;
     wire        refused_q_next;
 
-    xy_stage_y_machine_settings u_machine_settings (
+    posicast_machine_settings_94eabf14 u_machine_settings (
         .clk     (clk),
         .address (row),
         .data    (machine_settings_data)
