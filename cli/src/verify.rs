@@ -42,6 +42,9 @@ pub(crate) struct Args {
     /// Seed of the random stimuli
     #[arg(long, default_value_t = DEFAULT_SEED)]
     seed: u64,
+    /// Let the simulation alone judge Verilog of the folder that was edited; without this it is no match
+    #[arg(long)]
+    edited: bool,
     /// Print one JSON document on standard output
     #[arg(long)]
     json: bool,
@@ -53,7 +56,7 @@ pub(crate) struct Args {
 pub(crate) const DEFAULT_SEED: u64 = 1;
 
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
-    let mut job = Job::new(&args.source, &args.blocks)?;
+    let mut job = Job::new(&args.source, &args.blocks, args.edited)?;
     if job.folder.is_some() && args.simulator == Some(Simulator::Rusthdl) {
         return Err(Failure::from(miette::miette!(
             help = "use --simulator verilator or icarus, or verify the machine file",
@@ -121,8 +124,8 @@ struct Job {
 }
 
 impl Job {
-    /// The blocks of a machine file or of a folder; only those in `names`, if there are any.
-    fn new(source: &Path, names: &[String]) -> Result<Self, Failure> {
+    /// The blocks of a machine file or of a folder; only those in `names`, if there are any. `edits_accepted` as in [`Folder`].
+    fn new(source: &Path, names: &[String], edits_accepted: bool) -> Result<Self, Failure> {
         let (machine, path, folder) = if source.is_dir() {
             let contents = package::read(source).map_err(Failure::because)?;
             let machine = machine::parse(&contents.machine_path, &contents.machine_toml)?;
@@ -136,7 +139,8 @@ impl Job {
         let built = Built::new(&report, source)?;
         let compared = match &folder {
             Some(contents) => {
-                Some(Folder::compare(source, contents, &built.modules(&path)?).map_err(Failure::because)?)
+                let modules = built.modules(&path)?;
+                Some(Folder::compare(source, contents, &modules, edits_accepted).map_err(Failure::because)?)
             }
             None => None,
         };

@@ -27,6 +27,8 @@ mod sliding_mode;
 mod stage;
 mod stage_bring_up;
 mod stage_guards;
+mod stage_hold;
+mod stage_range;
 mod stage_run;
 mod support;
 mod trace;

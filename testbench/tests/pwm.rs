@@ -1,6 +1,6 @@
 //! The PWM's Verilog against its bit-exact model, every output in every clock, with the gates watched.
 
-use posicast_hdl::pwm::emit;
+use posicast_hdl::pwm::{emit, name};
 use posicast_model::rtl::ClockedBlock;
 use posicast_model::rtl::pwm::{ActiveLow, Pwm, PwmConfig, ports};
 use posicast_testbench::icarus::Icarus;
@@ -13,6 +13,7 @@ use tempfile::TempDir;
 
 struct Bench {
     config: PwmConfig,
+    top: String,
     files: Vec<PathBuf>,
     _folder: TempDir,
 }
@@ -42,6 +43,7 @@ impl Bench {
         };
         Self {
             config,
+            top: name(&config, ""),
             files: modules.iter().map(file).collect(),
             _folder: folder,
         }
@@ -71,17 +73,17 @@ impl Bench {
         }
     }
 
+    fn source<'a>(&'a self, ports: &'a [posicast_model::rtl::Port]) -> Source<'a> {
+        Source {
+            files: &self.files,
+            top: &self.top,
+            ports,
+        }
+    }
+
     fn verilated(&self, seed: u64) -> Verilated {
         let ports = ports();
-        Verilated::build(&source(&self.files, &ports), seed).unwrap()
-    }
-}
-
-fn source<'a>(files: &'a [PathBuf], ports: &'a [posicast_model::rtl::Port]) -> Source<'a> {
-    Source {
-        files,
-        top: "pwm",
-        ports,
+        Verilated::build(&self.source(&ports), seed).unwrap()
     }
 }
 
@@ -96,7 +98,7 @@ fn assert_holds(outcome: &Outcome) {
 #[test]
 fn lockstep_a_million_random_clocks() {
     let bench = Bench::new(plain(), "", "");
-    assert_eq!(lint(&bench.files, "pwm").unwrap(), [""; 0]);
+    assert_eq!(lint(&bench.files, &bench.top).unwrap(), [""; 0]);
     for seed in 1..=2 {
         let outcome = bench.run(&mut bench.verilated(seed), seed, 1_000_000);
         assert_holds(&outcome);
@@ -112,7 +114,7 @@ fn lockstep_other_polarities_and_floors() {
         ..ActiveLow::default()
     };
     let bench = Bench::new(PwmConfig::new(active_low, 1, 7).unwrap(), "", "");
-    assert_eq!(lint(&bench.files, "pwm").unwrap(), [""; 0]);
+    assert_eq!(lint(&bench.files, &bench.top).unwrap(), [""; 0]);
     assert_holds(&bench.run(&mut bench.verilated(3), 3, 1_000_000));
 }
 
@@ -120,7 +122,7 @@ fn lockstep_other_polarities_and_floors() {
 fn crosssim_icarus_agrees_with_the_model() {
     let bench = Bench::new(plain(), "", "");
     let ports = ports();
-    let mut icarus = Icarus::build(&source(&bench.files, &ports)).unwrap();
+    let mut icarus = Icarus::build(&bench.source(&ports)).unwrap();
     assert_holds(&bench.run(&mut icarus, 4, 20_000));
 }
 

@@ -1,18 +1,20 @@
 //! The PWM's fault path in an event simulator: pulses shorter than a clock, which a cycle simulation cannot see.
 
-use posicast_hdl::pwm::emit;
+use posicast_hdl::pwm::{emit, name};
 use posicast_model::rtl::pwm::{ActiveLow, PwmConfig};
 use std::process::Command;
 
 /// Compiles and runs `pwm_fault.v` with the emitted Verilog, the first `from` in it replaced by `to`.
 fn said(from: &str, to: &str) -> String {
     let folder = tempfile::tempdir().unwrap();
-    let mut modules = emit(&PwmConfig::new(ActiveLow::default(), 1, 1).unwrap(), "").unwrap();
+    let config = PwmConfig::new(ActiveLow::default(), 1, 1).unwrap();
+    let mut modules = emit(&config, "").unwrap();
     let found = modules.iter_mut().find(|module| module.text.contains(from));
     let module = found.unwrap_or_else(|| panic!("the Verilog no longer has `{from}`: adapt the test"));
     module.text = module.text.replacen(from, to, 1);
     let mut files = vec![folder.path().join("pwm_fault.v")];
-    std::fs::write(&files[0], include_str!("pwm_fault.v")).unwrap();
+    let bench = include_str!("pwm_fault.v").replace("pwm dut", &format!("{} dut", name(&config, "")));
+    std::fs::write(&files[0], bench).unwrap();
     for module in &modules {
         files.push(folder.path().join(format!("{}.v", module.name)));
         std::fs::write(&files[files.len() - 1], &module.text).unwrap();

@@ -1,7 +1,7 @@
 //! The PWM's Verilog against the pin rule alone, over a million periods: every edge on the pins is that of
 //! `posicast_model::rtl::pwm::pulses`, a function of what is latched at the boundary. The clocked model is not asked.
 
-use posicast_hdl::pwm::emit;
+use posicast_hdl::pwm::{emit, name};
 use posicast_model::rtl::pwm::pulses::{Bridge, Half, Latched, Timing};
 use posicast_model::rtl::pwm::{
     ActiveLow, COMMAND_CLOCKS, Gates, INPUT_PORTS, Inputs, Mode, OUTPUT_PORTS, PwmConfig, SHORTEST_PERIOD_CLOCKS, ports,
@@ -36,7 +36,7 @@ fn verilated(from: &str, to: &str) -> Verilated {
     let ports = ports();
     let source = Source {
         files: &files,
-        top: "pwm",
+        top: &name(&config, ""),
         ports: &ports,
     };
     Verilated::build(&source, 1).unwrap()

@@ -1,8 +1,8 @@
 //! A feed hold on the example's stage, in lock step with its Verilog: all axes stand in one tick, on the path, and go on from there.
 #![allow(clippy::unwrap_used)] // helpers of tests, which clippy.toml exempts only inside of #[test]
 
-use posicast_model::control;
 use posicast_model::design::design_machine;
+use posicast_model::hardware;
 use posicast_model::motion::{TickLimits, plan_move};
 use posicast_model::plant::axis::{AxisPlant, PlantOptions};
 use posicast_model::rtl::component::Component;
@@ -23,7 +23,7 @@ struct Bed {
 fn bed() -> Bed {
     let text = include_str!("../../examples/xy-stage.toml");
     let machine = spec::parse("xy-stage.toml", text).unwrap();
-    let stage = control::stage(&machine, &design_machine(&machine).unwrap());
+    let stage = hardware::stage(&machine, &design_machine(&machine).unwrap());
     let stage = stage.unwrap().unwrap();
     let component = Component::stage(&stage.config).unwrap();
     let block = ComponentBlock::new(component.clone(), "xy_stage", "xy");

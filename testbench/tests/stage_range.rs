@@ -4,8 +4,8 @@
 //! with the outputs off, takes as many clocks as counts.
 #![allow(clippy::unwrap_used)] // helpers of tests, which clippy.toml exempts only inside of #[test]
 
-use posicast_model::control;
 use posicast_model::design::design_machine;
+use posicast_model::hardware;
 use posicast_model::rtl::axis::Cause;
 use posicast_model::rtl::component::Component;
 use posicast_model::rtl::composition::Composed;
@@ -31,7 +31,7 @@ impl Bed {
     fn new() -> Self {
         let text = include_str!("../../examples/xy-stage.toml");
         let machine = spec::parse("xy-stage.toml", text).unwrap();
-        let mut config = control::stage(&machine, &design_machine(&machine).unwrap())
+        let mut config = hardware::stage(&machine, &design_machine(&machine).unwrap())
             .unwrap()
             .unwrap()
             .config;

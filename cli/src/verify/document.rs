@@ -31,20 +31,37 @@ pub(super) struct Document<'a> {
     pub(super) replayed: Option<&'a Replayed>,
 }
 
+/// What a folder's files say, beside the simulation.
+enum Files {
+    /// They are posicast's, or edits of the Verilog are accepted; or there is no folder.
+    Agree,
+    /// Verilog was edited, and nobody accepted it.
+    Edited,
+    /// A table, the machine file or the list of modules is another.
+    Contradict,
+}
+
 impl Document<'_> {
     /// Why the command fails; nothing where all was exercised and equal.
     pub(super) fn failed(&self) -> Option<String> {
         if self.report.result == Verdict::Match {
             return None;
         }
-        Some(
-            match (self.report.mismatches(), self.folder.is_some_and(Folder::fails)) {
-                (1.., _) if self.replayed.is_some() => "recording, RTL and model do not match".to_owned(),
-                (1.., _) => "the RTL does not match the model".to_owned(),
-                (0, true) => "the folder is not what posicast generates from its machine file".to_owned(),
-                (0, false) => format!("no verdict: too little was exercised; {}", self.remedy()),
-            },
-        )
+        Some(match (self.report.mismatches(), self.of_files()) {
+            (1.., _) if self.replayed.is_some() => "recording, RTL and model do not match".to_owned(),
+            (1.., _) => "the RTL does not match the model".to_owned(),
+            (0, Files::Contradict) => "the folder is not what posicast generates from its machine file".to_owned(),
+            (0, Files::Edited) => "no verdict: Verilog of the folder was edited".to_owned(),
+            (0, Files::Agree) => format!("no verdict: too little was exercised; {}", self.remedy()),
+        })
+    }
+
+    fn of_files(&self) -> Files {
+        match self.folder {
+            Some(folder) if folder.contradicts() => Files::Contradict,
+            Some(folder) if folder.fails() => Files::Edited,
+            _ => Files::Agree,
+        }
     }
 
     fn remedy(&self) -> String {
@@ -90,17 +107,18 @@ impl Document<'_> {
     /// The last line.
     fn verdict(&self) -> String {
         let report = self.report;
-        let verdict = match (
-            report.result,
-            report.mismatches(),
-            self.folder.is_some_and(Folder::fails),
-        ) {
+        let verdict = match (report.result, report.mismatches(), self.of_files()) {
             (Verdict::Match, ..) => "match: every output of every clock is equal to the model's".to_owned(),
             (_, 1.., _) => "MISMATCH".to_owned(),
-            (_, 0, true) => {
+            (_, 0, Files::Contradict) => {
                 "MISMATCH: the files are not those of the machine file, though what was simulated is equal".to_owned()
             }
-            (_, 0, false) => format!(
+            (_, 0, Files::Edited) => {
+                "NO VERDICT: what was simulated is equal, but Verilog was edited, and no simulation \
+                                      sees every fault"
+                    .to_owned()
+            }
+            (_, 0, Files::Agree) => format!(
                 "NO VERDICT: what was compared is equal, and {} things were not exercised; {}",
                 self.not_exercised.len(),
                 self.remedy()

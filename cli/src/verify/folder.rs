@@ -3,7 +3,8 @@
 //! The simulation says whether the Verilog behaves as the model of the machine file. It does not say that a table is the
 //! machine file's where few samples reach it, nor that the machine file is the one the Verilog was generated from. Both are
 //! compared directly: a difference in a table, or in the machine file, is no match, whatever the simulation says. Verilog
-//! that was edited otherwise is named, and the simulation decides.
+//! that was edited otherwise is named, and is no match either: no random run sees every fault that an edit may bring. Who
+//! edits on purpose says so with `--edited`, and the simulation decides.
 
 use posicast_hdl::emit::Module;
 use posicast_synth::package::Contents;
@@ -47,8 +48,8 @@ enum Kind {
 }
 
 impl Kind {
-    /// Whether no simulation makes good for it.
-    fn fails(self) -> bool {
+    /// Whether the folder cannot be what posicast generates, nor behave like it.
+    fn contradicts(self) -> bool {
         matches!(self, Self::Machine | Self::Table | Self::Missing)
     }
 }
@@ -59,15 +60,24 @@ pub(super) struct Folder {
     /// Verilog files that are, byte for byte, what posicast generates.
     identical: usize,
     differences: Vec<Difference>,
+    /// Whether the simulation alone judges Verilog that was edited: the user asked for it.
+    edits_accepted: bool,
     #[serde(skip)]
     path: PathBuf,
 }
 
 impl Folder {
-    /// Compares the folder `root` with these modules, which were generated from the machine file in it.
-    pub(super) fn compare(root: &Path, contents: &Contents, modules: &[Module]) -> std::io::Result<Self> {
+    /// Compares the folder `root` with these modules, which were generated from the machine file in it. With `edits_accepted`,
+    /// Verilog that was edited is named and does not fail.
+    pub(super) fn compare(
+        root: &Path,
+        contents: &Contents,
+        modules: &[Module],
+        edits_accepted: bool,
+    ) -> std::io::Result<Self> {
         let mut folder = Self {
             path: root.to_owned(),
+            edits_accepted,
             ..Self::default()
         };
         if contents.edited.iter().any(|path| path == "machine.toml") {
@@ -131,7 +141,7 @@ impl Folder {
         let tables = self.differences.iter().any(|d| d.file == file && d.kind == Kind::Table);
         match first {
             Some((line, found)) => {
-                let what = format!("is not what posicast generates, which the simulation judges; first: `{found}`");
+                let what = format!("is not what posicast generates; first: `{found}`");
                 self.add(file, Some(line), Kind::Verilog, what);
             }
             None if !tables => {
@@ -142,9 +152,19 @@ impl Folder {
         }
     }
 
-    /// Whether something is wrong that no simulation makes good for.
+    /// Whether the folder is no match, whatever the simulation says.
     pub(super) fn fails(&self) -> bool {
-        self.differences.iter().any(|difference| difference.kind.fails())
+        self.contradicts() || (self.edited() > 0 && !self.edits_accepted)
+    }
+
+    /// Whether a table, the machine file or the list of modules is another than posicast's.
+    pub(super) fn contradicts(&self) -> bool {
+        self.differences.iter().any(|difference| difference.kind.contradicts())
+    }
+
+    /// Lines of Verilog that were edited, tables left out.
+    fn edited(&self) -> usize {
+        self.differences.iter().filter(|d| d.kind == Kind::Verilog).count()
     }
 
     /// A line per difference, then the remedy.
@@ -160,21 +180,23 @@ impl Folder {
         if self.fails() {
             let path = self.path.display();
             text += &format!(
-                "To write the Verilog of the machine file anew: posicast generate {path}/machine.toml -o {path}_new. To keep a \
-                 table that was edited, put it into the machine file instead (kind = \"custom\").\n"
+                "To write the Verilog of the machine file anew: posicast generate {path}/machine.toml -o {path}_new. "
             );
+            text += match self.contradicts() {
+                true => "To keep a table that was edited, put it into the machine file instead (kind = \"custom\").\n",
+                false => "To let the simulation alone judge what was edited: --edited.\n",
+            };
         }
         text
     }
 
     /// What was compared, for the line of the verdict.
     pub(super) fn summary(&self) -> String {
-        let edited = self.differences.iter().filter(|d| d.kind == Kind::Verilog).count();
-        let mut text = format!("{} files are what posicast generates", self.identical);
-        if edited > 0 {
-            text += &format!(", {edited} edited (see above)");
+        let same = format!("{} files are what posicast generates", self.identical);
+        match self.edited() {
+            0 => same,
+            edited => format!("{same}, {edited} edited (see above)"),
         }
-        text
     }
 }
 
@@ -274,14 +296,16 @@ mod tests {
     }
 
     #[test]
-    fn unit_other_edits_do_not_fail_and_are_told_apart() {
+    fn unit_other_edits_are_told_apart_and_only_verilog_fails_unless_it_is_accepted() {
         for (from, to, kind) in [
             ("// 0.38", "// three eighths", Kind::Comment),
             ("    words[1]", "\twords[1]", Kind::Comment),
             ("endmodule", "initial $stop;\nendmodule", Kind::Verilog),
         ] {
-            let folder = compared(&ROM.replace(from, to));
-            assert!(!folder.fails(), "{to}");
+            let mut folder = compared(&ROM.replace(from, to));
+            assert_eq!(folder.fails(), kind == Kind::Verilog, "{to}");
+            folder.edits_accepted = true;
+            assert!(!folder.fails() && !folder.contradicts(), "{to}");
             assert_eq!(folder.differences.len(), 1, "{to}: {folder:?}");
             assert_eq!(folder.differences[0].kind, kind, "{to}");
         }

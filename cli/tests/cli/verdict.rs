@@ -102,15 +102,25 @@ fn cli_verify_of_a_folder_whose_machine_file_was_edited_is_no_match() {
 }
 
 #[test]
-fn cli_verify_names_verilog_that_was_edited_and_lets_the_simulation_judge() {
+fn cli_verify_names_verilog_that_was_edited_and_the_simulation_judges_it_only_if_asked_to() {
     let folder = tempfile::tempdir().unwrap();
     let output = long_delays(folder.path());
     let top = output.join("rtl/one.v");
     let text = std::fs::read_to_string(&top).unwrap();
     std::fs::write(&top, text.replacen("endmodule", "    wire mine = 1'b0;\nendmodule", 1)).unwrap();
     let edited = verify(&output, &[]);
-    assert_eq!(edited.status.code(), Some(0), "{}", said(&edited));
+    assert_eq!(edited.status.code(), Some(1), "{}", said(&edited));
+    assert!(
+        said(&edited).contains("Verilog of the folder was edited"),
+        "{}",
+        said(&edited)
+    );
     let document = json(&edited.stdout);
+    assert_eq!(document["result"], "mismatch");
+    let accepted = verify(&output, &["--edited"]);
+    assert_eq!(accepted.status.code(), Some(0), "{}", said(&accepted));
+    let document = json(&accepted.stdout);
+    assert_eq!(document["result"], "match");
     let difference = &document["folder"]["differences"][0];
     assert_eq!(
         (&difference["file"], &difference["kind"]),

@@ -63,7 +63,7 @@ pub enum ControlError {
         /// The axis.
         axis: String,
     },
-    /// A lag that is none.
+    /// An invalid lag.
     #[error(
         "a loop lag of {0:e} s: it must be a finite time above 0, the schedule's delay and the drive's 1/(2π·bandwidth)"
     )]

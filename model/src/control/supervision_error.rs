@@ -49,7 +49,7 @@ pub enum SupervisionError {
         /// Counts of the loop per unit.
         counts_per_unit: f64,
     },
-    /// A travel of which rounding inwards leaves nothing, or limits of 0, which mean that there are none.
+    /// A travel of which rounding inwards leaves nothing, or limits of 0, which switch the limits off.
     #[error("axis {axis}: found a travel from {low} to {high} m; allowed: one that is wider than a count, {count} m")]
     Travel {
         /// The axis.

@@ -79,8 +79,8 @@ pub struct Antisymmetric {
 ///
 /// # Errors
 /// [`JointError::NoCommonDivisor`] without a usable antiperiod, [`JointError::NoAntisymmetry`] where no two of several
-/// modes share one, [`JointError::ThreeImpulse`] where the paper's equations have no solution; [`DesignError`] for a mode
-/// that is none.
+/// modes share one, [`JointError::ThreeImpulse`] where the paper's equations have no solution; [`DesignError`] for an
+/// invalid mode.
 pub fn design(
     participants: &[Participant],
     method: Method,

@@ -67,7 +67,7 @@ pub enum DesignError {
         /// Largest that is solved.
         most: f64,
     },
-    /// A bias-point shaper that is none.
+    /// An invalid bias-point shaper.
     #[error(
         "shaper \"{kind}\" with tolerance {tolerance} and order {order}: zv-ei, zv-ei-2, zvd-ei, multi-ei and chebyshev-ei \
          take a tolerance between 0 and 1, both excluded, chebyshev-ei an order of 1 to 5"

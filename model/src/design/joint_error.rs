@@ -21,7 +21,7 @@ pub enum JointError {
     /// A base that does not repeat over the modes.
     #[error("no base \"{0}\": choose zv-ei, multi-ei or chebyshev-ei")]
     Base(Kind),
-    /// A search limit that is none.
+    /// An invalid search limit.
     #[error(
         "lowest_frequency_hz {lowest_hz} with these modes means more than {most} periods to search; \
          raise lowest_frequency_hz to {least_hz} or above"
@@ -95,7 +95,7 @@ pub enum JointError {
         /// Antiperiod.
         antiperiod_s: f64,
     },
-    /// A constraint that is none.
+    /// An invalid constraint.
     #[error("a mode with shaper \"{0}\": under \"simultaneous\" a mode takes zv or zvd")]
     Constraint(Kind),
     /// More than is solved for.

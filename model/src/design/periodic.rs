@@ -64,8 +64,8 @@ pub struct Periodic {
 ///
 /// # Errors
 /// [`JointError::Base`] for another base, [`JointError::NoPeriodicSolution`] and [`JointError::SearchRange`] from the
-/// search, [`JointError::AboveTolerance`] for a mode that its damping lifts above its own tolerance; [`DesignError`] for a
-/// mode that is none or a base without amplitudes.
+/// search, [`JointError::AboveTolerance`] for a mode that its damping lifts above its own tolerance; [`DesignError`] for an
+/// invalid mode or a base without amplitudes.
 pub fn design(modes: &[(Mode, f64)], base: Base, lowest_hz: f64) -> Result<Periodic, DesignError> {
     let plain: Vec<Mode> = modes.iter().map(|(mode, _)| *mode).collect();
     plain.iter().try_for_each(DesignError::check_mode)?;

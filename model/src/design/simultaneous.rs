@@ -86,7 +86,7 @@ pub struct Simultaneous {
 ///
 /// # Errors
 /// [`JointError::TooManyModes`], [`JointError::Coincident`]; [`JointError::NoSimultaneous`] where no sequence was found;
-/// [`DesignError`] for a mode that is none or times beyond `f64`.
+/// [`DesignError`] for an invalid mode or times beyond `f64`.
 pub fn design(modes: &[(Mode, Constraint)], amplitudes: Amplitudes) -> Result<Simultaneous, DesignError> {
     let plain: Vec<Mode> = modes.iter().map(|(mode, _)| *mode).collect();
     plain.iter().try_for_each(DesignError::check_mode)?;

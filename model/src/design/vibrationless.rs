@@ -79,7 +79,7 @@ const SEEDS: [&[Seed]; 4] = [
 /// Designs the cascade of one mode: `order` frequencies for the bound `epsilon`.
 ///
 /// # Errors
-/// [`JointError::Vibrationless`] outside of what is solved; [`DesignError`] for a mode that is none, or times beyond `f64`.
+/// [`JointError::Vibrationless`] outside of what is solved; [`DesignError`] for an invalid mode, or times beyond `f64`.
 pub fn design(mode: &Mode, order: u32, epsilon: f64) -> Result<ImpulseSequence, DesignError> {
     DesignError::check_mode(mode)?;
     let cascade = optimum(order, epsilon)?;

@@ -26,7 +26,7 @@ use crate::mode::Mode;
 /// Designs `factors` ZV factors in series, 1 (`zv`) to 4 (`zvddd`); `kind` is for messages.
 ///
 /// # Errors
-/// [`DesignError::Mode`] for a mode that is none, [`DesignError::NoSequence`] where times leave the range of `f64`.
+/// [`DesignError::Mode`] for an invalid mode, [`DesignError::NoSequence`] where times leave the range of `f64`.
 pub fn design(kind: Kind, mode: &Mode, factors: u32) -> Result<ImpulseSequence, DesignError> {
     DesignError::check_mode(mode)?;
     let weights = binomial_weights(factors, mode.half_swing_ratio());

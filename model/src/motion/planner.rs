@@ -27,7 +27,7 @@ pub const POINTS_MAX: usize = 1_000_000;
 /// Why there is no plan.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum PlanError {
-    /// Limits or ends that are none.
+    /// Invalid limits or ends.
     #[error(transparent)]
     Profile(#[from] ProfileError),
     /// A stretch of too many ticks.
@@ -63,7 +63,7 @@ pub enum PlanError {
 /// `end`. Every stretch is a whole number of ticks, rounded up, so the limits are kept, but for some LSB of the jerk.
 ///
 /// # Errors
-/// [`PlanError`] for limits that are none, and for what the entries do not hold.
+/// [`PlanError`] for invalid limits, and for what the entries do not hold.
 pub fn plan_move(start: i64, end: i32, limits: &TickLimits) -> Result<Vec<Entry>, PlanError> {
     let target = i64::from(end) << (FRACTION_BITS - POSITION_FRACTION);
     let distance = i128::from(target) - i128::from(start);
@@ -213,7 +213,7 @@ pub fn plan_to_and_fro(start: i32, end: i32, times: usize, limits: &TickLimits) 
 /// `turns` times round, at rest again. The limits hold along the path; its centripetal acceleration v²/r comes on top.
 ///
 /// # Errors
-/// [`PlanError`] for limits that are none, and for points that do not fit.
+/// [`PlanError`] for invalid limits, and for points that do not fit.
 pub fn plan_circle(
     start: [i32; 2],
     radius_counts: f64,

@@ -25,7 +25,7 @@ const DEFAULT_JERK: f64 = 400.0;
 /// Why there is no move.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum ProfileError {
-    /// A limit that is none.
+    /// An invalid limit.
     #[error("{limit} limit {value}: it must be positive and finite")]
     Limit {
         /// `velocity`, `acceleration` or `jerk`.
@@ -71,7 +71,7 @@ impl Profile {
     /// The fastest symmetric move from `start` to `end` within the limits (all positive, per second, second², second³).
     ///
     /// # Errors
-    /// [`ProfileError::Limit`] and [`ProfileError::Ends`] for numbers that are none.
+    /// [`ProfileError::Limit`] and [`ProfileError::Ends`] for invalid numbers.
     pub fn new(start: f64, end: f64, velocity: f64, acceleration: f64, jerk: f64) -> Result<Self, ProfileError> {
         for (limit, value) in [("velocity", velocity), ("acceleration", acceleration), ("jerk", jerk)] {
             if !(value.is_finite() && value > 0.0) {

@@ -129,6 +129,12 @@ impl RandomInputs {
         1 + random.below(longest)
     }
 
+    /// Gives the input of this name a value.
+    pub(crate) fn set(&mut self, name: &str, value: u64) {
+        let at = self.ports.iter().position(|port| port.name == name);
+        self.values[at.unwrap_or_else(|| panic!("there is no input {name}"))] = value;
+    }
+
     /// Gives one of them a new value.
     pub(crate) fn change_one(&mut self, at: usize, random: &mut Random) {
         let port = &self.ports[at];

@@ -111,7 +111,7 @@ pub enum YosysError {
         .0.display()
     )]
     Missing(PathBuf),
-    /// A module name that is none.
+    /// An invalid module name.
     #[error("{0:?} is no module name: letters, digits, `_`, not starting with a digit")]
     Top(String),
     /// It refused the design, or failed.

@@ -17,7 +17,7 @@ pub(super) struct Peek {
 
 const MARK: &str = "(* peek = \"";
 
-/// The peeks of a property file, in its order. A line that is none of the known shape is none.
+/// The peeks of a property file, in its order. A line of another shape than the known one is left out.
 pub(super) fn peeks(text: &str) -> Vec<Peek> {
     let line = |line: &str| {
         let (path, rest) = line.trim().strip_prefix(MARK)?.split_once("\" *)")?;

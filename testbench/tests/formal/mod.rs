@@ -8,7 +8,7 @@ mod supervisor;
 
 use std::time::Duration;
 
-use posicast_testbench::formal::{Verdict, named, run, search};
+use posicast_testbench::formal::{Task, Verdict, named, run, search};
 
 const LIMIT: Duration = Duration::from_secs(120);
 
@@ -23,10 +23,7 @@ pub(crate) fn proven(name: &str, size: usize) {
 /// Replaces the first `from` in the block's Verilog by `to`, and insists on a counterexample to a property that begins so.
 #[track_caller]
 pub(crate) fn fails(name: &str, from: &str, to: &str, expected: &str) {
-    let mut task = named(name).unwrap().swap_remove(0);
-    let found = task.modules.iter_mut().find(|module| module.text.contains(from));
-    let module = found.unwrap_or_else(|| panic!("the Verilog no longer has `{from}`: adapt the test"));
-    module.text = module.text.replacen(from, to, 1);
+    let task = broken(name, from, to);
     let folder = tempfile::tempdir().unwrap();
     match search(&task, folder.path(), LIMIT).unwrap() {
         Verdict::Counterexample { property, waveform, .. } => {
@@ -35,4 +32,22 @@ pub(crate) fn fails(name: &str, from: &str, to: &str, expected: &str) {
         }
         other => panic!("`{to}` is not found: {other:?}"),
     }
+}
+
+/// As [`fails`], where a counterexample begins further from the reset than is searched: the proof of the block that was broken
+/// does not succeed, as that of the block itself does.
+#[track_caller]
+pub(crate) fn is_no_longer_proven(name: &str, from: &str, to: &str) {
+    let folder = tempfile::tempdir().unwrap();
+    let outcome = run(&broken(name, from, to), folder.path(), LIMIT).unwrap();
+    assert_ne!(outcome.verdict, Verdict::Proven, "`{to}`");
+}
+
+#[track_caller]
+fn broken(name: &str, from: &str, to: &str) -> Task {
+    let mut task = named(name).unwrap().swap_remove(0);
+    let found = task.modules.iter_mut().find(|module| module.text.contains(from));
+    let module = found.unwrap_or_else(|| panic!("the Verilog no longer has `{from}`: adapt the test"));
+    module.text = module.text.replacen(from, to, 1);
+    task
 }

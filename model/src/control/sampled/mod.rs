@@ -98,7 +98,7 @@ struct Term {
 
 impl SampledLoop {
     /// The plant of an axis whose modes are at `frequency_factor` times their frequencies, in a loop of this lag
-    /// ([`super::loop_lag_s`]). `None` for an axis without PWM or drive, or whose participations are none.
+    /// ([`super::loop_lag_s`]). `None` for an axis without PWM or drive, or with invalid participations.
     pub fn new(axis: &Axis, clock: Clock, lag_s: f64, frequency_factor: f64) -> Option<Self> {
         let (drive, pwm) = (axis.drive.as_ref()?, axis.pwm.as_ref()?);
         let plant = Plant::of_axis(axis).ok()?.scaled(frequency_factor);

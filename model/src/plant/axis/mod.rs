@@ -119,7 +119,7 @@ pub enum AxisPlantError {
         /// The table.
         table: &'static str,
     },
-    /// Modes that are none.
+    /// Invalid modes.
     #[error("axis {axis}: {source}")]
     Modes {
         /// The axis.
@@ -127,7 +127,7 @@ pub enum AxisPlantError {
         /// What is wrong with them.
         source: PlantError,
     },
-    /// A frequency factor that is none.
+    /// An invalid frequency factor.
     #[error(
         "a frequency factor of {0}: allowed is more than 0, at most 10; 0.9 is a machine 10 % slower than its file"
     )]
@@ -197,7 +197,7 @@ impl AxisPlant {
     /// The axis of the machine file at rest. `[axis.encoder]` says whether there is an index, and which way the lines count.
     ///
     /// # Errors
-    /// [`AxisPlantError`] for an axis without PWM or drive, for options that are none, and for speeds beyond a count per clock.
+    /// [`AxisPlantError`] for an axis without PWM or drive, for invalid options, and for speeds beyond a count per clock.
     pub fn new(axis: &Axis, clock: &Clock, options: &PlantOptions) -> Result<Self, AxisPlantError> {
         let name = || axis.name.clone();
         let missing = |table| AxisPlantError::Missing { axis: name(), table };

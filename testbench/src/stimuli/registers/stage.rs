@@ -6,14 +6,12 @@ use posicast_model::rtl::registers::{Access, Register, RegisterMap};
 use posicast_model::rtl::{Direction, Port};
 
 use super::super::table::pick;
-use super::stage_driver::{Driver, Moves, Pins};
+use super::stage_driver::{Driver, Moves, Pins, SCENES};
 use super::{ADDRESS, BYTE_ENABLE, READ, RegistersRandom, WRITE, WRITE_DATA};
 use crate::stimuli::Stimuli;
 
 /// Clocks between changes of what holds for a while: with writes anywhere, and without.
 const MOOD_CLOCKS: [u64; 2] = [6_000, 40_000];
-/// Scenes per axis before random traffic begins.
-const FIRST_SCENES: usize = 20;
 /// Lines of an axis that are high while all is well, and how rarely each is low: those are seldom that stop all.
 const LINES: [(&str, u32); 6] = [
     ("limit_plus_n", 1),
@@ -180,7 +178,8 @@ impl StageRandom {
     /// A scene in turn with a while of random traffic, after the first scenes: those come at once.
     fn new_mood(&mut self) {
         self.moods += 1;
-        if self.scenes < FIRST_SCENES * self.axes.len() || self.moods.is_multiple_of(2) {
+        // Each axis leads each scene once before random traffic begins.
+        if self.scenes < SCENES.len() * self.axes.len() || self.moods.is_multiple_of(2) {
             return self.new_scene();
         }
         self.mood = Mood {

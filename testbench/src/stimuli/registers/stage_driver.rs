@@ -14,6 +14,8 @@ use super::super::table::{Table, pick};
 
 mod scenes;
 
+pub(super) use self::scenes::SCENES;
+
 /// How an encoder moves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Moves {

@@ -11,7 +11,7 @@ use rand::Rng;
 use super::{Do, Driver, Moves};
 
 /// All of them, those first that drive most wires between the blocks in fewest ticks.
-const SCENES: [fn(&mut Driver, usize); 20] = [
+pub(in super::super) const SCENES: [fn(&mut Driver, usize); 22] = [
     Driver::follows_badly,
     Driver::slips,
     Driver::runs_dry,
@@ -19,6 +19,8 @@ const SCENES: [fn(&mut Driver, usize); 20] = [
     Driver::soft_limits,
     Driver::overflows,
     Driver::limit_switches,
+    Driver::holds_the_feed,
+    Driver::is_disabled_before_it_starts,
     Driver::emergency,
     Driver::settings_and_laws,
     Driver::counts_and_interrupts,
@@ -92,6 +94,8 @@ impl Driver {
         self.tell(axis, "swap", 0);
         self.tell(axis, "law", random >> 4 & 1);
         self.write(axis, "commit", 0);
+        // Random traffic may have left axes in it.
+        self.write(axis, "feed_hold", 0);
         self.tell(axis, "flush", 0);
         self.ticks(axis, 1);
         self.tell(axis, "clear_faults", 0);
@@ -286,6 +290,17 @@ impl Driver {
 
     fn drive_not_ready(&mut self, axis: usize) {
         self.on_the_way(axis, "drive_ready");
+        // Enabled while the drive is not ready, it waits in READY, where an emergency stop finds it.
+        self.tell(axis, "control", 0);
+        self.ticks(axis, 1);
+        self.tell(axis, "clear_faults", 0);
+        self.wait(axis, 24);
+        self.low(axis, "drive_ready", 3 * self.tick_clocks);
+        self.wait(axis, 16);
+        self.tell(axis, "control", 1);
+        self.ticks(axis, 1);
+        self.low(axis, "emergency_stop_n", 16);
+        self.ticks(axis, 1);
     }
 
     fn drive_fault(&mut self, axis: usize) {
@@ -300,12 +315,35 @@ impl Driver {
         self.on_the_way(axis, "pll_locked");
     }
 
-    /// Sums that leave the integrator's words, upwards or downwards.
+    /// Sums that leave the integrator's words, upwards and downwards.
     fn overflows(&mut self, axis: usize) {
-        let jerk = if self.is_odd(axis) { -JERK_MAX } else { JERK_MAX };
-        self.entry(axis, 4, Motion::Jerk(jerk), false);
+        for jerk in [JERK_MAX, -JERK_MAX] {
+            self.entry(axis, 4, Motion::Jerk(jerk), false);
+            self.set_off(axis);
+            self.ticks(axis, 5);
+            self.bring_up(axis);
+        }
+    }
+
+    /// Held while it plays a rest, with a move to come, which then goes on.
+    fn holds_the_feed(&mut self, axis: usize) {
+        self.company(axis);
+        self.entry(axis, 3, Motion::Jerk(0), false);
+        self.there_and_back(axis, 1);
         self.set_off(axis);
-        self.ticks(axis, 5);
+        self.ticks(axis, 1);
+        self.write(axis, "feed_hold", 1 << axis);
+        self.ticks(axis, 4);
+        self.write(axis, "feed_hold", 0);
+        self.ticks(axis, 6);
+    }
+
+    /// A start that is accepted, and leads to nothing: the axis is disabled before the tick.
+    fn is_disabled_before_it_starts(&mut self, axis: usize) {
+        self.there_and_back(axis, 1);
+        self.set_off(axis);
+        self.tell(axis, "control", 0);
+        self.ticks(axis, 3);
     }
 
     fn leaves_the_range(&mut self, axis: usize) {
