@@ -55,6 +55,8 @@ pub struct SegmentsRandom {
     mood: Mood,
     until_tick: u32,
     feed_hold: bool,
+    /// The next clock asks for a preset.
+    presets: bool,
     /// Words to write, as (word, data).
     words: VecDeque<(u64, u64)>,
 }
@@ -68,6 +70,7 @@ impl SegmentsRandom {
             mood: Mood::default(),
             until_tick: 1,
             feed_hold: false,
+            presets: false,
             words: VecDeque::new(),
         }
     }
@@ -88,13 +91,16 @@ impl SegmentsRandom {
         };
     }
 
-    /// Out of the words of the sums, soon and for certain.
+    /// Out of the words of the sums, soon and for certain, and from there a stop with the upper bits of the deceleration.
     fn overflow(&mut self, jerk: i64) {
         self.mood.enable = true;
-        self.mood.modulo = 0;
+        (self.mood.modulo, self.mood.hold_pace) = (0, 0);
+        self.mood.stop_deceleration |= 1 << 30;
         (self.mood.write_pace, self.mood.tick_pace, self.mood.request_pace) = (5, TICK_CLOCKS, 500_000);
         self.words.clear();
-        for _ in 0..4 {
+        // What waits and what plays goes: at the next tick, with the first of these.
+        self.presets = true;
+        for _ in 0..8 {
             let motion = Motion::Jerk(jerk);
             let words = (0..).zip(
                 Entry {
@@ -252,6 +258,7 @@ impl Stimuli for SegmentsRandom {
         };
         let mut request = || u64::from(self.rng.random_range(0..mood.request_pace) == 0);
         let [flush, quick_stop, preset] = [request(), request(), request()];
+        let preset = preset | u64::from(std::mem::take(&mut self.presets));
         // Without it a stop would be the end of most runs.
         let restart = u64::from(self.rng.random_range(0..200) == 0);
         *inputs = [
