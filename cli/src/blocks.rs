@@ -7,6 +7,7 @@ use crate::failure::Failure;
 use crate::hardware::failure;
 use posicast_hdl::machine::AxisShaper;
 use posicast_model::hardware::{self, Hardware};
+use posicast_model::machine_file::{Axis, Machine};
 use posicast_model::rtl::cascade::CascadeConfig;
 use posicast_model::rtl::divider::DividerConfig;
 use posicast_model::rtl::group::MOST_AXES;
@@ -15,7 +16,6 @@ use posicast_model::rtl::registers::RegisterMap;
 use posicast_model::rtl::schedule::ScheduleConfig;
 use posicast_model::rtl::shaper::{MOTION_WORD_BITS, Motion, ShaperConfig};
 use posicast_model::rtl::trace::TraceConfig;
-use posicast_model::spec::{Axis, Machine};
 use posicast_testbench::blocks::{
     AxisBlock, Block, CascadeBlock, ComponentBlock, DividerBlock, DriveCommandBlock, EncoderGeneratorBlock,
     ExcitationBlock, LinearScaleBlock, MachineShapers, Part, PartBlock, PulseCounterBlock, PwmBlock, RegistersBlock,

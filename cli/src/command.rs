@@ -3,9 +3,9 @@
 use crate::allowance::Allowance;
 use crate::failure::Failure;
 use posicast_model::design::MachineDesign;
+use posicast_model::machine_file::{Axis, Machine};
 use posicast_model::motion::{SAMPLES_MAX, command_words, default_move, modulo_words, resample, settle_s};
 use posicast_model::rtl::shaper::wrap;
-use posicast_model::spec::{Axis, Machine};
 use std::fs::File;
 use std::path::Path;
 

@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use crate::output::{self, Table, percent};
 use posicast_model::compare::{Comparison, compare};
-use posicast_model::spec::Machine;
+use posicast_model::machine_file::Machine;
 use serde::Serialize;
 use std::fmt::Write;
 

@@ -5,8 +5,8 @@ use crate::plot::{Curve, Panel};
 use posicast_model::control::DEFAULT_MARGIN;
 use posicast_model::control::sampled::Margins;
 use posicast_model::hardware::{AxisLoop, Hardware};
+use posicast_model::machine_file::Machine;
 use posicast_model::rtl::sliding_mode::{Law, Row};
-use posicast_model::spec::Machine;
 use serde::Serialize;
 use std::collections::BTreeMap;
 

@@ -19,7 +19,7 @@ use posicast_model::design::{
     AxisTables, ConvolutionFigures, Findings, MachineDesign, ModeFigures, convolution_figures, design_machine,
 };
 use posicast_model::hardware::{Hardware, HardwareError};
-use posicast_model::spec::{Axis, Machine};
+use posicast_model::machine_file::{Axis, Machine};
 use posicast_system::output::Outputs;
 use posicast_testbench::wave::write_text;
 use std::fmt::Write;

@@ -3,9 +3,9 @@
 use crate::failure::Failure;
 use crate::hardware::Stage;
 use posicast_hdl::emit::Module;
+use posicast_model::machine_file::Machine;
 use posicast_model::motion::TickLimits;
 use posicast_model::rtl::component::Component;
-use posicast_model::spec::Machine;
 use posicast_synth::core_file::{self, Core};
 use posicast_synth::driver::{self, AxisData, File, StageDriver};
 use posicast_synth::package::Package;

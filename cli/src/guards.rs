@@ -1,6 +1,6 @@
 //! What does not watch over an axis, because the machine file does not ask for it, and what can then happen.
 
-use posicast_model::spec::{Axis, Limits, Machine};
+use posicast_model::machine_file::{Axis, Limits, Machine};
 
 /// A guard, whether a file has it, and what can happen without.
 struct Guard {

@@ -7,9 +7,9 @@ use crate::output;
 use posicast_hdl::emit::{Module, add};
 use posicast_hdl::machine::{AxisShaper, emit_machine};
 use posicast_model::hardware::{Hardware, HardwareError, MachineStage, NAME_KEY};
+use posicast_model::machine_file::Machine;
 use posicast_model::rtl::component::Component;
 use posicast_model::rtl::stage::StageConfig;
-use posicast_model::spec::Machine;
 use posicast_testbench::blocks::{Block, ComponentBlock};
 use std::path::Path;
 

@@ -1,7 +1,7 @@
 //! Reading the machine file, and saying which of its keys is to blame.
 
 use crate::failure::Failure;
-use posicast_model::spec::{self, Machine};
+use posicast_model::machine_file::{self, Machine};
 use std::fmt;
 use std::fs::File;
 use std::io::Read;
@@ -51,7 +51,7 @@ pub(crate) fn read(path: &Path) -> Result<MachineFile, Failure> {
 
 /// Validates the text of the machine file at `path`.
 pub(crate) fn parse(path: &Path, text: &str) -> Result<Machine, Failure> {
-    spec::parse(&path.display().to_string(), text).map_err(Failure::input)
+    machine_file::parse(&path.display().to_string(), text).map_err(Failure::input)
 }
 
 /// Bad input at a key of the machine file at `path`, or of that in the folder; `axis` counts the axes from 0.
@@ -62,6 +62,6 @@ pub(crate) fn at_key(path: &Path, axis: usize, key: &str, reason: impl fmt::Disp
     };
     // The file was read before; where it is gone, the key must do.
     let text = std::fs::read_to_string(&file).unwrap_or_default();
-    let line = spec::line_of(&text, axis, key).map_or_else(String::new, |line| format!(":{line}"));
+    let line = machine_file::line_of(&text, axis, key).map_or_else(String::new, |line| format!(":{line}"));
     Failure::from(miette::miette!("{}{line}: {key}: {reason}", file.display()))
 }

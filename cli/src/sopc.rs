@@ -5,7 +5,7 @@ use crate::hardware::Stage;
 use crate::machine;
 use crate::output;
 use crate::synth;
-use posicast_model::spec::{Axis, Machine};
+use posicast_model::machine_file::{Axis, Machine};
 use posicast_synth::package::Package;
 use posicast_synth::sopc::{Board, Design, Unit};
 use posicast_testbench::blocks::{Block, ComponentBlock};

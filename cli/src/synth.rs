@@ -9,7 +9,7 @@ use crate::failure::Failure;
 use crate::hardware::{Built, COMPONENT_SUFFIX, STAGE_SUFFIX};
 use crate::output::{self, Table};
 use crate::{generate, machine, progress};
-use posicast_model::spec::Machine;
+use posicast_model::machine_file::Machine;
 use posicast_synth::package;
 use posicast_synth::yosys::{Block, Estimate, Excess, Family, Resources, Yosys, YosysError};
 use posicast_system::scratch::Folder;

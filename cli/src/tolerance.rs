@@ -1,7 +1,7 @@
 //! Whether the integer tap tables keep the tolerance that the machine file asks for.
 
 use posicast_model::design::MachineDesign;
-use posicast_model::spec::Machine;
+use posicast_model::machine_file::Machine;
 
 /// Part of a tolerance by which the integer taps may exceed it: an impulse between two samples becomes two taps, which moves the
 /// residual of kinds that leave one by design.

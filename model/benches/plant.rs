@@ -3,8 +3,8 @@
 use std::hint::black_box;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use posicast_model::machine_file;
 use posicast_model::plant::axis::{AxisPlant, DrivePins, PlantOptions};
-use posicast_model::spec;
 
 /// Clocks of a tick of the examples.
 const TICK_CLOCKS: u64 = 5_000;
@@ -16,7 +16,9 @@ fn tick(criterion: &mut Criterion) {
         ("velocity", include_str!("../../examples/xy-stage.toml")),
         ("torque", include_str!("../../examples/xy-stage-torque.toml")),
     ] {
-        let Ok(machine) = spec::parse(name, text) else { return };
+        let Ok(machine) = machine_file::parse(name, text) else {
+            return;
+        };
         let Ok(plant) = AxisPlant::new(&machine.axes[0], &machine.clock, &PlantOptions::default()) else {
             return;
         };

@@ -11,7 +11,7 @@ use crate::design::kind::Kind;
 use crate::design::{DesignError, design_axis};
 use crate::digitise::{TableError, digitise, quantise};
 use crate::impulse::PartialSums;
-use crate::spec::{Axis, AxisMode, Machine, ShaperChoice};
+use crate::machine_file::{Axis, AxisMode, Machine, ShaperChoice};
 
 /// Relative difference below which two costs are equal: kinds that are one shaper for one mode differ by rounding.
 const EQUAL: f64 = 1e-6;
@@ -170,14 +170,14 @@ fn mark_pareto(candidates: &mut [Candidate]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::spec;
+    use crate::machine_file;
 
     fn machine(shaper: &str, modes: &str) -> Machine {
         let text = format!(
             "name = \"m\"\n[clock]\nfrequency_hz = 50_000_000\nsample_hz = 10_000\n\
              [[axis]]\nname = \"x\"\ncounts_per_unit = 1e6\n{shaper}\n{modes}"
         );
-        spec::parse("m.toml", &text).unwrap()
+        machine_file::parse("m.toml", &text).unwrap()
     }
 
     const MODE: &str = "[[axis.mode]]\nfrequency_hz = 40\ndamping = 0.02\n";

@@ -4,10 +4,10 @@
 //! A number flows left to right once:
 //!
 //! ```text
-//! spec ─► design ─► impulses ─► digitise ─► taps ─► rtl::shaper
-//!   │                   └────────────┴────────────► analysis, plant
+//! machine_file ─► design ─► impulses ─► digitise ─► taps ─► rtl::shaper
+//!   │                           └────────────┴────────────► analysis, plant
 //!   └─► control ─► gains ─► rtl::sliding_mode
-//! spec, design ─► hardware: what is built of all that
+//! machine_file, design ─► hardware: what is built of all that
 //! ```
 
 pub mod analysis;
@@ -17,11 +17,11 @@ pub mod design;
 pub mod digitise;
 pub mod hardware;
 pub mod impulse;
+pub mod machine_file;
 pub mod mode;
 pub mod motion;
 pub mod papers;
 pub mod plant;
 pub mod rtl;
 pub mod simulation;
-pub mod spec;
 pub mod taps;

@@ -122,8 +122,8 @@ fn follow(plant: &Plant, sample_period_s: f64, start: i64, words: &[i64]) -> (Ve
 mod tests {
     use super::*;
     use crate::design::design_machine;
+    use crate::machine_file;
     use crate::rtl::shaper::Motion;
-    use crate::spec;
 
     const MACHINE: &str = r#"
         name = "one"
@@ -136,7 +136,7 @@ mod tests {
     "#;
 
     fn simulate(words: &[i64]) -> AxisSimulation {
-        let machine = spec::parse("one.toml", MACHINE).unwrap();
+        let machine = machine_file::parse("one.toml", MACHINE).unwrap();
         let design = design_machine(&machine).unwrap();
         let config = ShaperConfig::new(32, design.axes[0].table.clone()).unwrap();
         let plant = Plant::of_axis(&machine.axes[0]).unwrap();
@@ -157,7 +157,7 @@ mod tests {
 
     #[test]
     fn a_modulo_axis_turns_on_where_its_word_wraps() {
-        let machine = spec::parse(
+        let machine = machine_file::parse(
             "one.toml",
             &MACHINE.replace("1_000_000\n", "1_000_000\nmodulo = true\n"),
         )

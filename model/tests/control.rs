@@ -1,8 +1,8 @@
 //! Gains from a machine file, their warnings, and loops closed over a mass with friction by the fixed-point controller.
 
 use posicast_model::control::{ControlError, ControlWarning, Derived, gains, loop_lag_s};
+use posicast_model::machine_file::{self, Drive, Machine};
 use posicast_model::rtl::sliding_mode::{Law, Motion, Row, TickController};
-use posicast_model::spec::{self, Drive, Machine};
 use std::f64::consts::TAU;
 
 const TORQUE: &str = "mode = \"torque\"\nequivalent_mass = 64.274\nforce_constant = 475.01\ncurrent_limit_a = 2.73\n\
@@ -24,7 +24,7 @@ fn machine(drive: &str, controller: &str) -> Machine {
          [axis.encoder]\n[axis.pwm]\nmode = \"half-bridge\"\nfrequency_hz = 20_000\n[axis.drive]\n{drive}\n\
          [axis.controller]\n{controller}\n[axis.limits]\nvelocity = 0.25\nacceleration = 8.0\n"
     );
-    spec::parse("one.toml", &text).unwrap_or_else(|error| panic!("{error:?}"))
+    machine_file::parse("one.toml", &text).unwrap_or_else(|error| panic!("{error:?}"))
 }
 
 fn derive(drive: &str, controller: &str) -> Result<Derived, ControlError> {

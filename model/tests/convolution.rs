@@ -4,7 +4,7 @@ use crate::support;
 
 use posicast_model::analysis::residual_vibration;
 use posicast_model::design::{ConvolutionFigures, ConvolutionWarning, convolution_figures, design_axis};
-use posicast_model::spec::Axis;
+use posicast_model::machine_file::Axis;
 use support::{machine, shaper};
 
 /// The two modes of the robot of the negative-impulse paper, with a kind and further lines for each.

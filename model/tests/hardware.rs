@@ -2,13 +2,13 @@
 
 use posicast_model::design::design_machine;
 use posicast_model::hardware::Hardware;
+use posicast_model::machine_file::{self, Machine};
 use posicast_model::rtl::component::Component;
-use posicast_model::spec::{self, Machine};
 
 const STAGE: &str = include_str!("../../examples/xy-stage.toml");
 
 fn machine(text: &str) -> Machine {
-    spec::parse("machine.toml", text).unwrap()
+    machine_file::parse("machine.toml", text).unwrap()
 }
 
 #[test]

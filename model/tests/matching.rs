@@ -4,7 +4,7 @@ use posicast_model::analysis::residual_vibration;
 use posicast_model::design::matching::mode_lag_s;
 use posicast_model::design::{DesignError, MachineDesign, design_machine};
 use posicast_model::digitise::{DELAY_MAX_SAMPLES, TableError};
-use posicast_model::spec::{self, Machine, Scale, ScaleUse};
+use posicast_model::machine_file::{self, Machine, Scale, ScaleUse};
 use proptest::prelude::*;
 
 /// Axes `a`, `b`, … of a kind, frequency and damping each, and further lines at the end.
@@ -19,7 +19,7 @@ fn machine(digitise: &str, axes: &[(&str, f64, f64)], more: &str) -> Machine {
              frequency_hz = {frequency_hz:?}\ndamping = {damping:?}\n"
         );
     }
-    spec::parse("m.toml", &(text.clone() + more)).unwrap_or_else(|error| panic!("{error}\n{text}"))
+    machine_file::parse("m.toml", &(text.clone() + more)).unwrap_or_else(|error| panic!("{error}\n{text}"))
 }
 
 const XY: [(&str, f64, f64); 2] = [("zvd", 131.117, 0.1578), ("zvd", 93.29, 0.1535)];
@@ -116,7 +116,7 @@ fn unit_an_axis_without_modes_gets_the_lag_of_the_others() {
     let text = "name = \"laser\"\n[clock]\nfrequency_hz = 50_000_000\nsample_hz = 10_000\n[[axis]]\nname = \"x\"\n\
                 counts_per_unit = 1000\n[axis.shaper]\nkind = \"zv\"\n[[axis.mode]]\nfrequency_hz = 40.0\ndamping = 0.1\n\
                 [[axis]]\nname = \"laser\"\ncounts_per_unit = 1\n[axis.shaper]\nkind = \"none\"\n[stage]\n";
-    let design = design_machine(&spec::parse("m.toml", text).unwrap()).unwrap();
+    let design = design_machine(&machine_file::parse("m.toml", text).unwrap()).unwrap();
     let delay = design.axes[1].delay;
     assert_eq!((delay.shaper_s, delay.mode_lag_s), (0.0, 0.0));
     near(delay.added_s, design.stage.unwrap().total_s);
@@ -127,13 +127,13 @@ fn unit_an_axis_without_modes_gets_the_lag_of_the_others() {
 #[test]
 fn unit_a_loop_that_holds_the_load_has_no_lag_of_modes() {
     let text = include_str!("../../examples/xy-stage-torque.toml");
-    let torque = spec::parse("m.toml", text).unwrap();
+    let torque = machine_file::parse("m.toml", text).unwrap();
     assert_eq!(mode_lag_s(&torque.axes[0]), 0.0);
     let mut open = torque.axes[0].clone();
     open.controller = None;
     near(mode_lag_s(&open), 0.0003691310407755789);
     let text = include_str!("../../examples/xy-stage.toml");
-    let velocity = spec::parse("m.toml", text).unwrap();
+    let velocity = machine_file::parse("m.toml", text).unwrap();
     near(mode_lag_s(&velocity.axes[0]), 0.0003830853101510995);
     let mut scaled = velocity.axes[0].clone();
     scaled.scale = Some(Scale {

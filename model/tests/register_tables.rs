@@ -2,13 +2,13 @@
 
 use posicast_model::design::design_machine;
 use posicast_model::hardware;
+use posicast_model::machine_file;
 use posicast_model::rtl::component::Component;
 use posicast_model::rtl::divider::DividerConfig;
 use posicast_model::rtl::pwm::{ActiveLow, Mode, PwmConfig};
 use posicast_model::rtl::registers::markdown;
 use posicast_model::rtl::shaper::{Motion, ShaperConfig};
 use posicast_model::rtl::sliding_mode::{Law, Settings};
-use posicast_model::spec;
 use posicast_model::taps::{Tap, TapTable};
 use std::error::Error;
 use std::path::Path;
@@ -45,7 +45,7 @@ fn components() -> Result<Vec<Component>, Box<dyn Error>> {
 
 /// The example's.
 fn stage() -> Result<Component, Box<dyn Error>> {
-    let machine = spec::parse("xy-stage.toml", include_str!("../../examples/xy-stage.toml"))?;
+    let machine = machine_file::parse("xy-stage.toml", include_str!("../../examples/xy-stage.toml"))?;
     let stage = hardware::stage(&machine, &design_machine(&machine)?)?;
     Ok(Component::stage(&stage.ok_or("the example has no stage")?.config)?)
 }

@@ -2,15 +2,15 @@
 
 use posicast_model::design::design_machine;
 use posicast_model::hardware;
+use posicast_model::machine_file;
 use posicast_model::rtl::component::Component;
 use posicast_model::rtl::stage::StageConfig;
-use posicast_model::spec;
 
 /// The example's stage, with these tables on its X axis.
 fn stage(tables: &str) -> (StageConfig, Component) {
     let text = include_str!("../../examples/xy-stage.toml");
     let text = text.replacen("[axis.pwm]", &format!("{tables}\n[axis.pwm]"), 1);
-    let machine = spec::parse("xy-stage.toml", &text).unwrap();
+    let machine = machine_file::parse("xy-stage.toml", &text).unwrap();
     let design = design_machine(&machine).unwrap();
     let config = hardware::stage(&machine, &design).unwrap().unwrap().config;
     let component = Component::stage(&config).unwrap();

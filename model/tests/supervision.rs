@@ -1,8 +1,8 @@
 //! The words of the supervisor: worked out by hand, never looser than the file, and nothing that does not fit.
 
 use posicast_model::control::{Supervision, SupervisionError, TableBounds, no_travel, supervision};
+use posicast_model::machine_file::{self, Machine, ScaleUse};
 use posicast_model::motion::TickLimits;
-use posicast_model::spec::{self, Machine, ScaleUse};
 use posicast_model::taps::{Tap, TapTable};
 use proptest::prelude::*;
 
@@ -18,7 +18,7 @@ fn machine(axis: &str, drive: &str, limits: &str) -> Machine {
          kind = \"zvd\"\n[axis.encoder]\n[axis.scale]\ncounts_per_unit = 10_000_000\n[axis.pwm]\nmode = \"locked-antiphase\"\n\
          frequency_hz = 20_000\n[axis.drive]\n{drive}\n[axis.controller]\nkind = \"pd\"\n[axis.limits]\n{limits}\n"
     );
-    spec::parse("one.toml", &text).unwrap_or_else(|error| panic!("{error}"))
+    machine_file::parse("one.toml", &text).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// A table of so many samples whose steps go so far.

@@ -16,7 +16,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Instant;
 
-use posicast_model::{design::design_machine, hardware, spec};
+use posicast_model::{design::design_machine, hardware, machine_file};
 use posicast_testbench::Error;
 use posicast_testbench::mutation::{
     INSIDE, INSIDE_MARKS, MARKS, Options, Row, all, inside_table, merged, named, run, table,
@@ -136,7 +136,7 @@ fn mutate() -> Result<bool, Error> {
 /// The named mutants, each in the stage of the example machine.
 fn mutate_inside(options: &Options, write: bool) -> Result<bool, Error> {
     let refused = |error: &dyn std::fmt::Display| Error::Option(format!("examples/xy-stage.toml: {error}"));
-    let machine = spec::parse("xy-stage.toml", MACHINE).map_err(|error| refused(&error))?;
+    let machine = machine_file::parse("xy-stage.toml", MACHINE).map_err(|error| refused(&error))?;
     let design = design_machine(&machine).map_err(|error| refused(&error))?;
     let stage = hardware::stage(&machine, &design).map_err(|error| refused(&error))?;
     let stage = stage.ok_or_else(|| refused(&"it has no stage"))?;

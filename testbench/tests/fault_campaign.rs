@@ -7,11 +7,11 @@ use std::thread;
 use posicast_model::control::Supervision;
 use posicast_model::design::design_machine;
 use posicast_model::hardware;
+use posicast_model::machine_file::{self, Machine, PwmMode};
 use posicast_model::motion::{TickLimits, plan_move};
 use posicast_model::plant::axis::{AxisPlant, PlantOptions};
 use posicast_model::rtl::axis::Cause;
 use posicast_model::rtl::component::Component;
-use posicast_model::spec::{self, Machine, PwmMode};
 use posicast_testbench::Error;
 use posicast_testbench::blocks::{ComponentBlock, Sources};
 use posicast_testbench::fault_campaign::{Bed, Kind, Report, TABLE, run, run_with_rtl};
@@ -108,7 +108,7 @@ fn unit_a_line_that_is_stuck_stops_the_machine_without_a_following_error() {
         PwmMode::FullBridge,
         PwmMode::LockedAntiphase,
     ] {
-        let mut machine = spec::parse("lost-encoder.toml", LOST_ENCODER).unwrap();
+        let mut machine = machine_file::parse("lost-encoder.toml", LOST_ENCODER).unwrap();
         machine.axes[0].pwm.as_mut().unwrap().mode = mode;
         stuck_lines_stop(&machine);
     }

@@ -1,6 +1,6 @@
 //! The mutation rung on small blocks: no mutant stays unknown; and it says so where stimuli see nothing.
 
-use posicast_model::{design::design_machine, hardware, spec};
+use posicast_model::{design::design_machine, hardware, machine_file};
 use posicast_testbench::blocks::{Block, Part, PartBlock};
 use posicast_testbench::mutation::{Fate, INSIDE, Mutant, Options, Subject, named, run, run_with};
 
@@ -67,7 +67,7 @@ fn mutate_equal_seeds_choose_equal_mutants_and_others_do_not() {
 /// The rows of a folder's check, on the stage of the example machine, under its default clocks and seed.
 #[test]
 fn mutate_every_named_mutant_inside_the_stage_is_found() {
-    let machine = spec::parse("xy-stage.toml", include_str!("../../examples/xy-stage.toml")).unwrap();
+    let machine = machine_file::parse("xy-stage.toml", include_str!("../../examples/xy-stage.toml")).unwrap();
     let stage = hardware::stage(&machine, &design_machine(&machine).unwrap());
     let config = stage.unwrap().unwrap().config;
     for mutant in INSIDE {

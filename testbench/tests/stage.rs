@@ -4,6 +4,7 @@ use crate::support;
 
 use posicast_model::design::design_machine;
 use posicast_model::hardware::{self, MachineStage};
+use posicast_model::machine_file::{self, Machine};
 use posicast_model::motion::{TickLimits, plan_move};
 use posicast_model::plant::axis::{AxisPlant, PlantOptions};
 use posicast_model::rtl::component::Component;
@@ -15,7 +16,6 @@ use posicast_model::rtl::shaper::{Motion, ShaperConfig};
 use posicast_model::rtl::sliding_mode::{Gain, Row};
 use posicast_model::rtl::stage::{StageConfig, StageScale};
 use posicast_model::rtl::{ClockedBlock, Direction};
-use posicast_model::spec::{self, Machine};
 use posicast_model::taps::{Tap, TapTable};
 use posicast_testbench::blocks::{self, Block, ComponentBlock, ShortTicksBlock, Sources, StageBlock};
 use posicast_testbench::lockstep::{Device, TwoValued};
@@ -28,7 +28,7 @@ const PERIOD_CLOCKS: u32 = 80;
 
 fn machine() -> Machine {
     let text = include_str!("../../examples/xy-stage.toml");
-    spec::parse("xy-stage.toml", text).unwrap()
+    machine_file::parse("xy-stage.toml", text).unwrap()
 }
 
 fn stage(machine: &Machine) -> MachineStage {
@@ -56,9 +56,9 @@ fn move_both(machine: &Machine, bench: &mut StageBench, counts: i64) -> u64 {
     assert!(bench.switch_on(20_000_000).unwrap());
     bench.record();
     let start = bench.now();
-    for (axis, spec) in ["x", "y"].into_iter().zip(&machine.axes) {
+    for (axis, of_axis) in ["x", "y"].into_iter().zip(&machine.axes) {
         let at = i64::from(bench.read(&format!("{axis}_command_position")).unwrap() as i32) << 24;
-        let limits = TickLimits::of_axis(spec, &machine.clock);
+        let limits = TickLimits::of_axis(of_axis, &machine.clock);
         let end = ((at >> 24) + 256 * counts) as i32;
         for entry in plan_move(at, end, &limits).unwrap() {
             bench.segment(axis, &entry).unwrap();

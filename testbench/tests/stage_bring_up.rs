@@ -2,10 +2,10 @@
 
 use posicast_model::design::design_machine;
 use posicast_model::hardware;
+use posicast_model::machine_file::{self, Machine};
 use posicast_model::motion::{TickLimits, plan_move};
 use posicast_model::plant::axis::{AxisPlant, PlantOptions};
 use posicast_model::rtl::component::Component;
-use posicast_model::spec::{self, Machine};
 use posicast_testbench::blocks::{ComponentBlock, Sources};
 use posicast_testbench::lockstep::Device;
 use posicast_testbench::stage_bench::{StageBench, state};
@@ -26,7 +26,7 @@ fn machine() -> Machine {
         bring_up("monitor"),
         &text[second + "[axis.pwm]".len()..]
     );
-    spec::parse("xy-stage.toml", &text).unwrap()
+    machine_file::parse("xy-stage.toml", &text).unwrap()
 }
 
 fn bench(machine: &Machine, with_rtl: bool) -> StageBench {

@@ -3,10 +3,10 @@
 
 use posicast_model::design::design_machine;
 use posicast_model::hardware;
+use posicast_model::machine_file;
 use posicast_model::motion::{TickLimits, plan_move};
 use posicast_model::plant::axis::{AxisPlant, PlantOptions};
 use posicast_model::rtl::component::Component;
-use posicast_model::spec;
 use posicast_testbench::stage_bench::{StageBench, state};
 
 /// The example's stage with a linear scale and an encoder generator at X, on its simulated machine. `invert`: encoder and scale of
@@ -19,7 +19,7 @@ fn bench(invert: bool) -> StageBench {
     let text = text.replacen("[axis.pwm]", &more, 1);
     let encoder = format!("[axis.encoder]\ninvert = {invert}");
     let text = text.replacen("[axis.encoder]", &encoder, 1);
-    let machine = spec::parse("xy-stage.toml", &text).unwrap();
+    let machine = machine_file::parse("xy-stage.toml", &text).unwrap();
     let stage = hardware::stage(&machine, &design_machine(&machine).unwrap());
     let stage = stage.unwrap().unwrap();
     let component = Component::stage(&stage.config).unwrap();
@@ -85,7 +85,7 @@ fn unit_a_machine_wired_backwards_moves_by_its_file() {
         (bench.read("x_encoder").unwrap(), bench.read("x_scale_control").unwrap()),
         (1, 1)
     );
-    let machine = spec::parse("xy-stage.toml", include_str!("../../examples/xy-stage.toml")).unwrap();
+    let machine = machine_file::parse("xy-stage.toml", include_str!("../../examples/xy-stage.toml")).unwrap();
     let limits = TickLimits::of_axis(&machine.axes[0], &machine.clock);
     for entry in plan_move(0, 1000 * 256, &limits).unwrap() {
         bench.segment("x", &entry).unwrap();

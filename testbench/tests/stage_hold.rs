@@ -3,11 +3,11 @@
 
 use posicast_model::design::design_machine;
 use posicast_model::hardware;
+use posicast_model::machine_file;
 use posicast_model::motion::{TickLimits, plan_move};
 use posicast_model::plant::axis::{AxisPlant, PlantOptions};
 use posicast_model::rtl::component::Component;
 use posicast_model::rtl::segments::{Entry, Motion};
-use posicast_model::spec;
 use posicast_testbench::blocks::{ComponentBlock, Sources};
 use posicast_testbench::stage_bench::{StageBench, state};
 
@@ -22,7 +22,7 @@ struct Bed {
 
 fn bed() -> Bed {
     let text = include_str!("../../examples/xy-stage.toml");
-    let machine = spec::parse("xy-stage.toml", text).unwrap();
+    let machine = machine_file::parse("xy-stage.toml", text).unwrap();
     let stage = hardware::stage(&machine, &design_machine(&machine).unwrap());
     let stage = stage.unwrap().unwrap();
     let component = Component::stage(&stage.config).unwrap();

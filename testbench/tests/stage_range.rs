@@ -6,12 +6,12 @@
 
 use posicast_model::design::design_machine;
 use posicast_model::hardware;
+use posicast_model::machine_file;
 use posicast_model::rtl::axis::Cause;
 use posicast_model::rtl::component::Component;
 use posicast_model::rtl::composition::Composed;
 use posicast_model::rtl::segments::{Entry, Motion, REACH_COUNTS, STAND_COUNTS};
 use posicast_model::rtl::{ClockedBlock, Direction};
-use posicast_model::spec;
 use posicast_testbench::stage_bench::state;
 
 /// One axis of the example, whose encoder is not filtered.
@@ -30,7 +30,7 @@ struct Bed {
 impl Bed {
     fn new() -> Self {
         let text = include_str!("../../examples/xy-stage.toml");
-        let machine = spec::parse("xy-stage.toml", text).unwrap();
+        let machine = machine_file::parse("xy-stage.toml", text).unwrap();
         let mut config = hardware::stage(&machine, &design_machine(&machine).unwrap())
             .unwrap()
             .unwrap()

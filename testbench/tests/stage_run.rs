@@ -2,9 +2,9 @@
 
 use posicast_model::design::design_machine;
 use posicast_model::hardware::{self, MachineStage};
+use posicast_model::machine_file::{self, Machine};
 use posicast_model::rtl::shaper::{Motion, ShaperConfig};
 use posicast_model::rtl::sliding_mode::Row;
-use posicast_model::spec::{self, Machine};
 use posicast_model::taps::{Tap, TapTable};
 use posicast_testbench::stage_run::{Expected, Moved, Shaping, StageRun};
 
@@ -14,7 +14,7 @@ const GANTRY: &str = include_str!("fixtures/machines/ei-gantry.toml");
 const WRIST: &str = include_str!("fixtures/machines/wrist.toml");
 
 fn machine(text: &str) -> Machine {
-    spec::parse("machine.toml", text).unwrap_or_else(|error| panic!("{error:?}"))
+    machine_file::parse("machine.toml", text).unwrap_or_else(|error| panic!("{error:?}"))
 }
 
 fn stage(machine: &Machine) -> MachineStage {

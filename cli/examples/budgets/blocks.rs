@@ -7,6 +7,7 @@ use posicast_hdl::{
 };
 use posicast_model::design::design_machine;
 use posicast_model::hardware;
+use posicast_model::machine_file;
 use posicast_model::rtl::cascade::CascadeConfig;
 use posicast_model::rtl::component::Component;
 use posicast_model::rtl::divider::DividerConfig;
@@ -14,7 +15,6 @@ use posicast_model::rtl::pwm::{ActiveLow, Mode, PwmConfig};
 use posicast_model::rtl::shaper::{Motion, ShaperConfig};
 use posicast_model::rtl::sliding_mode::{Law, Settings};
 use posicast_model::rtl::trace::TraceConfig;
-use posicast_model::spec;
 use posicast_model::taps::{Tap, TapTable};
 use std::error::Error;
 
@@ -177,7 +177,7 @@ pub(crate) const STAGE: &str = "stage";
 fn stage(size: &'static str, traces: &str) -> Result<Row, Box<dyn Error>> {
     let controller = "[axis.controller]";
     let file = include_str!("../../../examples/xy-stage.toml").replace(controller, &format!("{traces}{controller}"));
-    let machine = spec::parse("xy-stage.toml", &file)?;
+    let machine = machine_file::parse("xy-stage.toml", &file)?;
     let stage = hardware::stage(&machine, &design_machine(&machine)?)?.ok_or("the example has no stage")?;
     Ok(Row {
         block: STAGE,

@@ -3,7 +3,7 @@
 use crate::plot::{Curve, Panel};
 use posicast_model::analysis::{sensitivity_curve, tap_impulses};
 use posicast_model::design::{AxisTables, MachineDesign};
-use posicast_model::spec::{Axis, Machine};
+use posicast_model::machine_file::{Axis, Machine};
 
 /// Frequency ratios that the sensitivity curves show.
 const CURVE_RATIOS: (f64, f64) = (0.4, 1.6);

@@ -3,8 +3,8 @@
 use super::law::Gains;
 use super::linear::{FACTORS, has_modes};
 use super::sampled::{LinearLaw, SampledLoop};
+use crate::machine_file::{Axis, Clock, Controller, Drive, DriveMode, Limits};
 use crate::rtl::sliding_mode::{Row, Settings};
-use crate::spec::{Axis, Clock, Controller, Drive, DriveMode, Limits};
 
 /// The largest product of gains and lag.
 const GAIN_LAG_MAX: f64 = 0.5;

@@ -5,8 +5,8 @@
 
 use std::fmt;
 
+use crate::machine_file::{Axis, Clock, Controller, DriveMode, ScaleUse};
 use crate::rtl::sliding_mode::Row;
-use crate::spec::{Axis, Clock, Controller, DriveMode, ScaleUse};
 
 /// A number of the machine file that makes a gain too large or too small.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -8,8 +8,8 @@ use super::culprit::Numbers;
 use super::law::Gains;
 use super::linear::{Linear, default_linear, linear_law};
 use super::sampled::{LinearLaw, Margins, SampledLoop};
+use crate::machine_file::{Axis, Clock, Controller, Drive, DriveMode};
 use crate::rtl::sliding_mode::{Law, MANTISSA_MAX, Row, Settings};
-use crate::spec::{Axis, Clock, Controller, Drive, DriveMode};
 
 /// Command units per unit of the drive: mA per A, mm/s per m/s.
 const COMMAND_UNITS: f64 = 1000.0;

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use super::sampled::{LinearLaw, SampledLoop};
-use crate::spec::{Axis, Clock, Controller, Drive, DriveMode, ScaleUse};
+use crate::machine_file::{Axis, Clock, Controller, Drive, DriveMode, ScaleUse};
 
 /// The modulus margin that default gains leave on the machine of the file, and with its frequencies 10 % and 20 % off: a gain
 /// margin of at least 6 dB, and a phase margin of at least 29°.

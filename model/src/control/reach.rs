@@ -5,8 +5,8 @@
 //! a quick stop that begins at the end.
 
 use super::supervision_error::SupervisionError;
+use crate::machine_file::Axis;
 use crate::rtl::segments::REACH_COUNTS;
-use crate::spec::Axis;
 use crate::taps::TapTable;
 
 /// What the words of a supervisor depend on in a shaper's table.

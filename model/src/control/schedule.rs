@@ -6,9 +6,9 @@
 
 use std::fmt;
 
+use crate::machine_file::{Clock, Pwm};
 use crate::rtl::divider::DIVISION_CLOCKS;
 use crate::rtl::sliding_mode::CONTROL_CLOCKS;
-use crate::spec::{Clock, Pwm};
 
 /// Clocks of a tick that belong to no pass: position and time are latched, the quotient is taken as the velocity, and
 /// shaper and controller take their samples a clock late each.
@@ -104,7 +104,7 @@ impl fmt::Display for Schedule {
 ///
 /// ```
 /// use posicast_model::control::{Schedule, schedule_delay_s};
-/// use posicast_model::spec::{Clock, Pwm, PwmMode};
+/// use posicast_model::machine_file::{Clock, Pwm, PwmMode};
 ///
 /// let clock = Clock { frequency_hz: 50e6, sample_hz: 10e3 };
 /// let pwm = Pwm {
@@ -125,7 +125,7 @@ pub fn schedule_delay_s(clock: &Clock, pwm: &Pwm, schedule_clocks: u32) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::spec::PwmMode;
+    use crate::machine_file::PwmMode;
 
     #[test]
     fn unit_a_schedule_must_end_before_the_next_tick() {

@@ -22,8 +22,8 @@ use super::reach::{TableBounds, check_travel};
 use super::supervision_error::SupervisionError;
 use crate::control::derive::full_scale;
 use crate::control::law::COMMAND_FRACTION;
+use crate::machine_file::{Axis, Clock, Drive, DriveMode, Limits, Pwm};
 use crate::rtl::segments::{ACCELERATION_FRACTION, POSITION_FRACTION};
-use crate::spec::{Axis, Clock, Drive, DriveMode, Limits, Pwm};
 
 /// Fraction bits of the controller's error e.
 const ERROR_FRACTION: u32 = 16;

@@ -13,8 +13,8 @@ use super::kind::Kind;
 use super::{AxisDesign, Parts};
 use crate::analysis::residual_vibration;
 use crate::impulse::PartialSums;
+use crate::machine_file::Axis;
 use crate::mode::Mode;
-use crate::spec::Axis;
 
 /// A sum or residual beyond its bound by less than this share is rounding.
 const ROUNDING: f64 = 1e-6;

@@ -8,8 +8,8 @@ use super::simultaneous::{self, Amplitudes, Constraint, Simultaneous};
 use super::{DesignError, RESIDUAL_TOLERANCE, custom};
 use crate::analysis::residual_vibration;
 use crate::impulse::ImpulseSequence;
+use crate::machine_file::{Axis, DEFAULT_CHEBYSHEV_ORDER, DEFAULT_TOLERANCE};
 use crate::mode::Mode;
-use crate::spec::{Axis, DEFAULT_CHEBYSHEV_ORDER, DEFAULT_TOLERANCE};
 
 /// What a design found out beside its impulses.
 #[derive(Debug, Clone, PartialEq, Default)]

@@ -4,8 +4,8 @@ use super::matching::{self, AxisDelay, StageDelay};
 use super::{AxisDesign, DesignError, design_axis};
 use crate::analysis::{Insensitivity, insensitivity, residual_vibration, residual_vibration_at, tap_impulses};
 use crate::digitise::{Digitised, digitise, quantise, quantising_error};
+use crate::machine_file::{Axis, Machine};
 use crate::mode::Mode;
-use crate::spec::{Axis, Machine};
 use crate::taps::TapTable;
 
 /// The shapers of a machine.

@@ -16,7 +16,7 @@
 //! `½·(d_n − d_1)·Σ|e_i|` samples per axis.
 
 use crate::digitise::{Digitised, TableError};
-use crate::spec::{Axis, DriveMode, Machine, ScaleUse};
+use crate::machine_file::{Axis, DriveMode, Machine, ScaleUse};
 use crate::taps::TapTable;
 
 /// What the delay of an axis is made of, in seconds, from the command to the load under a ramp.

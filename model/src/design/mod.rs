@@ -40,8 +40,8 @@ pub use matching::{AxisDelay, StageDelay};
 
 use crate::analysis::residual_vibration;
 use crate::impulse::ImpulseSequence;
+use crate::machine_file::{Axis, AxisMode};
 use crate::mode::Mode;
-use crate::spec::{Axis, AxisMode};
 use kind::Kind;
 
 /// Most impulses that a convolution may grow to: a tap table holds 256, so more is a slip in the machine file.

@@ -23,8 +23,8 @@ pub use quantise::{quantise, quantising_error};
 use crate::design::kind::Kind;
 use crate::design::{AxisDesign, Parts};
 use crate::impulse::{Impulse, ImpulseSequence};
+use crate::machine_file::Digitise;
 use crate::mode::Mode;
-use crate::spec::Digitise;
 
 /// A tap before rounding: `weight · x[n − delay_samples]`.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -5,10 +5,10 @@ use crate::control::{
     Derived, NoTravel, Schedule, Supervision, gains, loop_lag_s, no_travel, schedule_delay_s, supervision,
 };
 use crate::design::AxisTables;
+use crate::machine_file::{Axis, Machine, PwmMode};
 use crate::rtl::component::{Component, ComponentError};
 use crate::rtl::divider::DividerConfig;
 use crate::rtl::shaper::{Motion, ShaperConfig};
-use crate::spec::{Axis, Machine, PwmMode};
 
 /// The shaper of a modulo axis in the top module: its position wraps.
 const MODULO: Motion = Motion {

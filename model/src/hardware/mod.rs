@@ -19,11 +19,11 @@ pub use error::HardwareError;
 pub use stage::{MachineStage, MachineStageError, pwm_config, pwm_mode, stage};
 
 use crate::design::MachineDesign;
+use crate::machine_file::Machine;
 use crate::rtl::component::Component;
 use crate::rtl::divider::DividerConfig;
 use crate::rtl::shaper::ShaperConfig;
 use crate::rtl::stage::StageError;
-use crate::spec::Machine;
 
 /// The key of the sample rate.
 const SAMPLE_KEY: &str = "clock.sample_hz";
@@ -118,7 +118,7 @@ impl<'a> Hardware<'a> {
     /// [`HardwareError`] for a block that the machine file asks for and that cannot be.
     pub fn components(&self) -> Result<Vec<AxisComponent>, HardwareError> {
         let mut components = Vec::new();
-        if !self.machine.axes.iter().any(crate::spec::Axis::has_loop) {
+        if !self.machine.axes.iter().any(crate::machine_file::Axis::has_loop) {
             return Ok(components);
         }
         for (index, (axis, built)) in self.machine.axes.iter().zip(&self.axes).enumerate() {
@@ -140,7 +140,7 @@ fn complete_stage(
     reason: &mut Option<String>,
 ) -> Result<Option<Stage>, HardwareError> {
     // A machine of shapers alone has words and delays that a stage does not; it wants none.
-    if !machine.axes.iter().all(crate::spec::Axis::has_loop) {
+    if !machine.axes.iter().all(crate::machine_file::Axis::has_loop) {
         return Ok(None);
     }
     let of_machine = match stage(machine, design) {

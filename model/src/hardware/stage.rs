@@ -4,13 +4,13 @@ use crate::control::{
     ControlError, Derived, Supervision, SupervisionError, gains, loop_lag_s, schedule_delay_s, supervision,
 };
 use crate::design::MachineDesign;
+use crate::machine_file::{Axis, Clock, Encoder, Machine, Pwm, PwmMode, ScaleUse};
 use crate::rtl::divider::{DividerConfig, DividerConfigError};
 use crate::rtl::linear_scale::{ScaleRatio, ScaleRatioError};
 use crate::rtl::pwm::{ActiveLow, Mode, PwmConfig, PwmConfigError};
 use crate::rtl::shaper::{Motion, ShaperConfig, ShaperConfigError};
 use crate::rtl::stage::{Schedule, StageAxis, StageConfig, StageScale};
 use crate::rtl::trace::{TraceConfig, TraceConfigError};
-use crate::spec::{Axis, Clock, Encoder, Machine, Pwm, PwmMode, ScaleUse};
 
 /// A stage, and what was derived for its axes.
 #[derive(Debug, Clone, PartialEq)]

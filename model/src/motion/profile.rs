@@ -10,7 +10,7 @@
 
 use thiserror::Error;
 
-use crate::spec::Limits;
+use crate::machine_file::Limits;
 
 /// Most samples of a move: an hour and a half at 2 kHz, and 80 MB.
 pub const SAMPLES_MAX: usize = 10_000_000;

@@ -1,7 +1,7 @@
 //! What a move may ask for, in counts and ticks: the units of the motion commands.
 
 use super::profile::motion_limits;
-use crate::spec::{Axis, Clock};
+use crate::machine_file::{Axis, Clock};
 
 /// Limits in counts and ticks.
 #[derive(Debug, Clone, Copy, PartialEq)]

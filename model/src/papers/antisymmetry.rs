@@ -8,8 +8,8 @@ use crate::design::DesignError;
 use crate::design::kind::Kind;
 use crate::design::ratios::{common_divisor, partition};
 use crate::impulse::Impulse;
+use crate::machine_file::ShaperChoice;
 use crate::mode::Mode;
-use crate::spec::ShaperChoice;
 use std::f64::consts::PI;
 
 /// Damping ratio of both modes of the example.

@@ -3,8 +3,8 @@
 use crate::design::kind::Kind;
 use crate::design::{DesignError, design_axis};
 use crate::impulse::ImpulseSequence;
+use crate::machine_file::{Axis, AxisMode, ShaperChoice};
 use crate::mode::Mode;
-use crate::spec::{Axis, AxisMode, ShaperChoice};
 use std::f64::consts::TAU;
 
 /// An axis with these modes, all shaped as `shaper` says.

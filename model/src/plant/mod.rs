@@ -21,9 +21,9 @@ pub mod response;
 use nalgebra::{Matrix2, Vector2};
 use thiserror::Error;
 
+use crate::machine_file::Axis;
 use crate::mode::Mode;
 use crate::motion::Cubic;
-use crate::spec::Axis;
 
 /// A mode and its share in the position.
 #[derive(Debug, Clone, Copy, PartialEq)]

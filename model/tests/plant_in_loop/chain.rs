@@ -3,6 +3,7 @@
 use posicast_model::control::{Derived, Schedule, gains, loop_lag_s, schedule_delay_s};
 use posicast_model::design::design_machine;
 use posicast_model::design::kind::Kind;
+use posicast_model::machine_file::{self, Machine, ShaperChoice};
 use posicast_model::plant::axis::{AxisMotion, AxisPlant, DrivePins, PlantOptions};
 use posicast_model::rtl::divider::{DIVISION_CLOCKS, DividerConfig};
 use posicast_model::rtl::pulse_counter::{self, PulseCounter};
@@ -10,7 +11,6 @@ use posicast_model::rtl::pwm::{self, ActiveLow, Pwm, PwmConfig};
 use posicast_model::rtl::segments::{Entry, Integrator, Motion as Segment};
 use posicast_model::rtl::shaper::{Motion, MotionShaper, ShaperConfig};
 use posicast_model::rtl::sliding_mode::{self, Row, TickController};
-use posicast_model::spec::{self, Machine, ShaperChoice};
 
 pub(crate) const VELOCITY: &str = include_str!("../../../examples/xy-stage.toml");
 pub(crate) const TORQUE: &str = include_str!("../../../examples/xy-stage-torque.toml");
@@ -19,7 +19,7 @@ const PERIOD_CLOCKS: i32 = 2_500;
 
 /// The machine of an example, with its shapers or without.
 pub(crate) fn machine(text: &str, shaped: bool) -> Machine {
-    let mut machine = spec::parse("example.toml", text).unwrap_or_else(|error| panic!("{error:?}"));
+    let mut machine = machine_file::parse("example.toml", text).unwrap_or_else(|error| panic!("{error:?}"));
     if !shaped {
         for axis in &mut machine.axes {
             axis.shaper = Some(ShaperChoice::of_kind(Kind::None));

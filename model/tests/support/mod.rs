@@ -6,7 +6,7 @@ pub(crate) mod random_inputs;
 pub(crate) mod stage;
 pub(crate) mod wrong;
 
-use posicast_model::spec::{Machine, parse};
+use posicast_model::machine_file::{Machine, parse};
 
 /// One axis `x` at `sample_hz`: `shaper` are the lines under `[axis.shaper]`, each mode frequency, damping, further lines.
 pub(crate) fn machine(sample_hz: u32, digitise: &str, shaper: &str, modes: &[(f64, f64, &str)]) -> Machine {

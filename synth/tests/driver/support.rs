@@ -2,9 +2,9 @@
 
 use posicast_model::design::design_machine;
 use posicast_model::hardware::{self, MachineStage};
+use posicast_model::machine_file::{self, Machine};
 use posicast_model::motion::TickLimits;
 use posicast_model::rtl::component::Component;
-use posicast_model::spec::{self, Machine};
 use posicast_synth::driver::{AxisData, FOLDER, StageDriver, component_header, stage_files};
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -14,14 +14,14 @@ pub(crate) const STRICT: [&str; 6] = ["-std=c99", "-Wall", "-Wextra", "-Wpedanti
 
 /// The example.
 pub(crate) fn machine() -> Machine {
-    spec::parse("xy-stage.toml", include_str!("../../../examples/xy-stage.toml")).unwrap()
+    machine_file::parse("xy-stage.toml", include_str!("../../../examples/xy-stage.toml")).unwrap()
 }
 
 /// The example with a trace memory of 256 samples, and test signals, for its first axis.
 pub(crate) fn traced_machine() -> Machine {
     let text = include_str!("../../../examples/xy-stage.toml");
     let text = text.replacen("[axis.pwm]", "[axis.trace]\nsamples = 256\n[axis.pwm]", 1);
-    spec::parse("xy-stage.toml", &text).unwrap()
+    machine_file::parse("xy-stage.toml", &text).unwrap()
 }
 
 /// Its stage.

@@ -5,10 +5,10 @@
 
 use posicast_model::design::design_machine;
 use posicast_model::hardware;
+use posicast_model::machine_file;
 use posicast_model::rtl::component::Component;
 use posicast_model::rtl::pwm::{ActiveLow, Mode, PwmConfig};
 use posicast_model::rtl::registers::{Access, Field, RegisterMap};
-use posicast_model::spec;
 use posicast_synth::core_file::{self, Core};
 use posicast_synth::register_documents;
 use posicast_testbench::blocks::{Block, ComponentBlock};
@@ -47,7 +47,7 @@ fn output(command: &mut Command) -> String {
 }
 
 fn stage() -> Component {
-    let machine = spec::parse("xy-stage.toml", include_str!("../../../examples/xy-stage.toml")).unwrap();
+    let machine = machine_file::parse("xy-stage.toml", include_str!("../../../examples/xy-stage.toml")).unwrap();
     let stage = hardware::stage(&machine, &design_machine(&machine).unwrap()).unwrap();
     Component::stage(&stage.unwrap().config).unwrap()
 }

@@ -5,15 +5,15 @@ use crate::{TICK_CLOCKS, Whole};
 use posicast_hdl::component::emit;
 use posicast_model::design::design_machine;
 use posicast_model::hardware;
+use posicast_model::machine_file;
 use posicast_model::rtl::component::Component;
 use posicast_model::rtl::segments::{Entry, Motion};
 use posicast_model::rtl::stage::StageConfig;
-use posicast_model::spec;
 use std::collections::HashMap;
 
 /// The example's.
 pub(crate) fn config() -> StageConfig {
-    let machine = spec::parse("xy-stage.toml", include_str!("../../../examples/xy-stage.toml")).unwrap();
+    let machine = machine_file::parse("xy-stage.toml", include_str!("../../../examples/xy-stage.toml")).unwrap();
     let stage = hardware::stage(&machine, &design_machine(&machine).unwrap());
     stage.unwrap().unwrap().config
 }

@@ -11,9 +11,9 @@
 
 use posicast_model::design::design_machine;
 use posicast_model::hardware::{self, MachineStage};
+use posicast_model::machine_file::{self, Axis, Limits, Machine, Scale, ScaleUse};
 use posicast_model::plant::axis::{AxisPlant, PlantOptions};
 use posicast_model::rtl::component::Component;
-use posicast_model::spec::{self, Axis, Limits, Machine, Scale, ScaleUse};
 
 use super::CampaignError;
 use crate::lockstep::Device;
@@ -64,7 +64,7 @@ impl Bed {
     /// [`CampaignError::Machine`] if that is no machine.
     pub fn of(change: impl Fn(&mut Axis)) -> Result<Self, CampaignError> {
         let failed = |reason: String| CampaignError::Machine(reason);
-        let mut machine = spec::parse("xy-stage.toml", EXAMPLE).map_err(|error| failed(error.to_string()))?;
+        let mut machine = machine_file::parse("xy-stage.toml", EXAMPLE).map_err(|error| failed(error.to_string()))?;
         machine.clock.sample_hz = SAMPLE_HZ;
         for axis in &mut machine.axes {
             for mode in &mut axis.modes {

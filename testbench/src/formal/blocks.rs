@@ -5,6 +5,7 @@ use posicast_hdl::{
 };
 use posicast_model::design::design_machine;
 use posicast_model::hardware;
+use posicast_model::machine_file;
 use posicast_model::rtl::cascade::{self as cascade_model, CascadeConfig};
 use posicast_model::rtl::component::Component;
 use posicast_model::rtl::divider::{self as divider_model, DividerConfig};
@@ -13,7 +14,6 @@ use posicast_model::rtl::registers::{Access, Register, RegisterMap};
 use posicast_model::rtl::setting_banks as banks_model;
 use posicast_model::rtl::sliding_mode::{Law, Settings};
 use posicast_model::rtl::{excitation as excitation_model, linear_scale as scale_model};
-use posicast_model::spec;
 
 use super::stage::empty;
 use super::task::{Engine, INDUCTION, Task, part, refused};
@@ -47,7 +47,7 @@ pub(super) fn tasks() -> Result<Vec<Task>, Error> {
 
 /// The example's stage, and the settings of its first controller.
 fn stage() -> Result<(Settings, Component), Error> {
-    let machine = spec::parse("xy-stage.toml", STAGE).map_err(refused)?;
+    let machine = machine_file::parse("xy-stage.toml", STAGE).map_err(refused)?;
     let designs = design_machine(&machine).map_err(refused)?;
     let stage = hardware::stage(&machine, &designs).map_err(refused)?;
     let config = stage.ok_or_else(|| refused("the example has no stage"))?.config;

@@ -65,7 +65,7 @@ mod tests {
     #[test]
     fn unit_a_gate_may_follow_the_enable_by_one_clock() {
         let text = include_str!("../../../examples/xy-stage.toml");
-        let machine = posicast_model::spec::parse("xy-stage.toml", text).unwrap();
+        let machine = posicast_model::machine_file::parse("xy-stage.toml", text).unwrap();
         let plant = AxisPlant::new(&machine.axes[0], &machine.clock, &PlantOptions::default()).unwrap();
         let mut watched = Watched::default();
         let pins = DrivePins {

@@ -1,9 +1,9 @@
 //! A circle of two axes, point by point: what unequal delays bend.
 
+use posicast_model::machine_file::{Axis, Machine};
 use posicast_model::motion::{TickLimits, plan_circle};
 use posicast_model::plant::axis::{ErrorFigures, contour_error};
 use posicast_model::rtl::segments::{Entry, Motion};
-use posicast_model::spec::{Axis, Machine};
 
 use super::host::{Host, Trouble};
 use super::{StageRun, StageRunError, moves};

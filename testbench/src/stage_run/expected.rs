@@ -6,8 +6,8 @@ use posicast_model::control::Derived;
 use posicast_model::control::sampled::{Limits, SampledLoop};
 use posicast_model::design::design_machine;
 use posicast_model::hardware;
+use posicast_model::machine_file::{Axis, DriveMode, Machine, PwmMode};
 use posicast_model::rtl::segments::{Integrator, Motion};
-use posicast_model::spec::{Axis, DriveMode, Machine, PwmMode};
 use posicast_model::taps::TapTable;
 
 use super::figures::{self, AxisFigures};

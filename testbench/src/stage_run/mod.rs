@@ -18,11 +18,11 @@ mod moves;
 
 use posicast_model::design::design_machine;
 use posicast_model::hardware::{self, MachineStageError};
+use posicast_model::machine_file::{Machine, Stage};
 use posicast_model::motion::{PlanError, ProfileError};
 use posicast_model::plant::axis::{AxisPlant, AxisPlantError, PlantOptions};
 use posicast_model::rtl::component::Component;
 use posicast_model::rtl::stage::{StageConfig, StageError};
-use posicast_model::spec::{Machine, Stage};
 
 use crate::Error;
 use crate::lockstep::Device;

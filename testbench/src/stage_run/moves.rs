@@ -1,8 +1,8 @@
 //! The move that all axes make at once.
 
+use posicast_model::machine_file::{Axis, Machine};
 use posicast_model::motion::{TickLimits, default_move, plan_move, settle_s};
 use posicast_model::rtl::segments::Entry;
-use posicast_model::spec::{Axis, Machine};
 
 use super::figures::{self, AxisFigures};
 use super::host::{Host, Trouble};

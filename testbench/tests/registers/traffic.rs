@@ -5,12 +5,12 @@
 
 use posicast_model::design::design_machine;
 use posicast_model::hardware;
+use posicast_model::machine_file;
 use posicast_model::rtl::Direction;
 use posicast_model::rtl::component::Component;
 use posicast_model::rtl::divider::DividerConfig;
 use posicast_model::rtl::pwm::{ActiveLow, Mode, PwmConfig};
 use posicast_model::rtl::registers::RegisterMap;
-use posicast_model::spec;
 use posicast_testbench::blocks::{Block, ComponentBlock, Sources, StageBlock};
 use posicast_testbench::lockstep::{self, Clock, Instance, Options};
 use posicast_testbench::stimuli::{ReadPromises, Stimuli};
@@ -280,7 +280,7 @@ fn prop_traffic_on_the_pwm_leaves_the_pins_safe() {
 fn stage() -> Bed {
     const PERIOD_CLOCKS: u32 = 80;
     let text = include_str!("../../../examples/xy-stage.toml");
-    let machine = spec::parse("xy-stage.toml", text).unwrap();
+    let machine = machine_file::parse("xy-stage.toml", text).unwrap();
     let designed = hardware::stage(&machine, &design_machine(&machine).unwrap()).unwrap();
     let mut config = designed.unwrap().config;
     for axis in &mut config.axes {

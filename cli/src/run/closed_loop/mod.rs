@@ -8,7 +8,7 @@ use crate::bench::{self, Simulator};
 use crate::failure::Failure;
 use crate::hardware::Stage;
 use crate::progress;
-use posicast_model::spec::Machine;
+use posicast_model::machine_file::Machine;
 use posicast_testbench::blocks::Sources;
 use posicast_testbench::stage_run::{Circle, Circled, Compared, Expected, Moved, Shaping, StageRun, StageRunError};
 use std::path::Path;

@@ -3,7 +3,7 @@
 use super::report::micro;
 use super::{ClosedLoop, MOVES};
 use crate::run::checks::{Check, NOT_EXERCISED};
-use posicast_model::spec::Axis;
+use posicast_model::machine_file::Axis;
 use posicast_testbench::stage_run::{AxisFigures, Compared, Expected, Moved, Shaping};
 use posicast_testbench::wording::counted;
 

@@ -21,8 +21,8 @@ use std::f64::consts::TAU;
 
 use nalgebra::Complex;
 
+use crate::machine_file::{Axis, Clock, Drive, DriveMode, Pwm, ScaleUse};
 use crate::plant::Plant;
-use crate::spec::{Axis, Clock, Drive, DriveMode, Pwm, ScaleUse};
 
 pub use follow::{Followed, Limits};
 pub use margins::{Margins, NyquistPoint};

@@ -6,7 +6,7 @@ use std::f64::consts::TAU;
 
 use super::friction::{Slide, Sliding};
 use super::pins::Command;
-use crate::spec::{Drive, DriveMode};
+use crate::machine_file::{Drive, DriveMode};
 
 /// `y' = ω (u − y)`, or `y = u` for a drive without a stated bandwidth.
 #[derive(Debug, Clone, PartialEq)]

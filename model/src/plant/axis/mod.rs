@@ -41,7 +41,7 @@
 //! mode = "velocity"
 //! full_scale_velocity = 0.5
 //! "#;
-//! let machine = posicast_model::spec::parse("slide.toml", text)?;
+//! let machine = posicast_model::machine_file::parse("slide.toml", text)?;
 //! let mut plant = AxisPlant::new(&machine.axes[0], &machine.clock, &PlantOptions::default())?;
 //! let forward = DrivePins { a_high: true, b_low: true, drive_enable: true, brake_release: true, ..DrivePins::default() };
 //! plant.clocks(forward, 50_000);
@@ -68,7 +68,7 @@ use self::encoder::Encoder;
 use self::modes::LoadModes;
 use self::pins::PinMean;
 use super::{Plant, PlantError};
-use crate::spec::{Axis, Clock, Drive, DriveMode};
+use crate::machine_file::{Axis, Clock, Drive, DriveMode};
 
 /// Longest cell of the grid, s: little beside a tick and beside the period of any mode.
 const CELL_S: f64 = 2e-6;

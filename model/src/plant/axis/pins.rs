@@ -3,7 +3,7 @@
 //! A drive smooths its command, or its answer would move by micrometres in each pulse. It is taken as the mean of the last
 //! period, which has no ripple whatever the duty and the phase are, and is half a period late.
 
-use crate::spec::PwmMode;
+use crate::machine_file::PwmMode;
 
 /// Levels of the pins that go to the power stage, the drive and the brake.
 ///

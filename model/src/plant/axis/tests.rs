@@ -3,9 +3,9 @@
 use proptest::prelude::*;
 
 use super::*;
+use crate::machine_file::{self, Machine, Scale};
 use crate::motion::{Cubic, Jump, Trajectory};
 use crate::plant::response::response_figures;
-use crate::spec::{self, Machine, Scale};
 
 const VELOCITY: &str = "mode = \"velocity\"\nfull_scale_velocity = 0.5\n";
 const TORQUE: &str = "mode = \"torque\"\nequivalent_mass = 64.274\nforce_constant = 475.01\ncurrent_limit_a = 2.73\n\
@@ -19,7 +19,7 @@ fn machine(drive: &str, mode: &str) -> Machine {
          counts_per_unit = 1_000_000\n[axis.shaper]\nkind = \"zvd\"\n[[axis.mode]]\n{mode}\n[axis.encoder]\nindex = true\n\
          [axis.scale]\ncounts_per_unit = 10_000_000\n[axis.pwm]\nmode = \"locked-antiphase\"\nfrequency_hz = 20_000\n[axis.drive]\n{drive}"
     );
-    spec::parse("one.toml", &text).unwrap_or_else(|error| panic!("{error:?}"))
+    machine_file::parse("one.toml", &text).unwrap_or_else(|error| panic!("{error:?}"))
 }
 
 fn plant(drive: &str, mode: &str, options: PlantOptions) -> AxisPlant {

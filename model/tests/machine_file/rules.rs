@@ -1,6 +1,6 @@
 //! Errors of keys that are right alone and wrong together.
 
-use crate::spec::files::{SMALL, breaks, built_kinds, right, wrong};
+use crate::machine_file::files::{SMALL, breaks, built_kinds, right, wrong};
 
 #[test]
 fn unit_the_sample_rate_divides_the_clock_and_the_message_names_the_nearest() {

@@ -1,9 +1,9 @@
 //! No text makes the parser panic, and every refusal names a place inside the file.
 
-use posicast_model::spec;
+use posicast_model::machine_file;
 use proptest::prelude::*;
 
-use crate::spec::files::{CONTOURING_STAGE, CUSTOM_SHAPER, EVERYTHING, GANTRY, ROBOT_JOINT, XY_STAGE};
+use crate::machine_file::files::{CONTOURING_STAGE, CUSTOM_SHAPER, EVERYTHING, GANTRY, ROBOT_JOINT, XY_STAGE};
 
 const FILES: [&str; 6] = [
     XY_STAGE,
@@ -44,7 +44,7 @@ const VALUES: [&str; 24] = [
 
 /// Parses, and checks what holds for every text.
 fn check(text: &str) -> Result<(), TestCaseError> {
-    match spec::parse("m.toml", text) {
+    match machine_file::parse("m.toml", text) {
         Ok(machine) => {
             prop_assert!((1..=4).contains(&machine.axes.len()));
             for axis in &machine.axes {

@@ -1,7 +1,7 @@
 //! Errors of one key: syntax, unknown, missing, wrong type, out of range, no such word, bad or double name.
 
-use crate::spec::files::{SMALL, breaks, built_kinds, wrong};
-use posicast_model::spec::Cause;
+use crate::machine_file::files::{SMALL, breaks, built_kinds, wrong};
+use posicast_model::machine_file::Cause;
 
 #[test]
 fn unit_text_that_is_no_toml_names_the_line() {

@@ -1,7 +1,7 @@
 //! The files that the tests read and break.
 
 use posicast_model::design::kind::Kind;
-use posicast_model::spec::{self, Machine, SpecError};
+use posicast_model::machine_file::{self, Machine, SpecError};
 
 pub(crate) const XY_STAGE: &str = include_str!("../../../examples/xy-stage.toml");
 pub(crate) const GANTRY: &str = include_str!("../../../examples/gantry.toml");
@@ -36,12 +36,12 @@ pub(crate) fn built_kinds(wanted: impl Fn(Kind) -> bool) -> String {
 
 /// The machine of a right file.
 pub(crate) fn right(text: &str) -> Machine {
-    spec::parse("m.toml", text).unwrap_or_else(|error| panic!("{error}"))
+    machine_file::parse("m.toml", text).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// The error of a wrong file.
 pub(crate) fn wrong(text: &str) -> SpecError {
-    spec::parse("m.toml", text).expect_err("the file is wrong")
+    machine_file::parse("m.toml", text).expect_err("the file is wrong")
 }
 
 /// Replaces `from` by `to` in the small file, and expects one problem, with this plain text and a remedy.

@@ -1,6 +1,6 @@
 //! Kinds that this version knows and does not build.
 
-use crate::spec::files::{SMALL, breaks, built_kinds, right, wrong};
+use crate::machine_file::files::{SMALL, breaks, built_kinds, right, wrong};
 use posicast_model::design::kind::Kind;
 
 #[test]

@@ -1,7 +1,7 @@
 //! `[axis.encoder]`, `[axis.pwm]`, `[axis.drive]`, `[axis.controller]` and `modulo`: what they yield, what they refuse.
 
-use crate::spec::files::{SMALL, breaks, right, wrong};
-use posicast_model::spec::{Controller, DriveMode, Encoder, PwmMode};
+use crate::machine_file::files::{SMALL, breaks, right, wrong};
+use posicast_model::machine_file::{Controller, DriveMode, Encoder, PwmMode};
 
 /// Every block of a torque axis, a key per line; its tables stand after those of [`SMALL`].
 const BLOCKS: &str = r#"[axis.encoder]

@@ -1,7 +1,7 @@
 //! The error as a whole: several problems, the marks in the source, and what must not reach a terminal.
 
-use crate::spec::files::{SMALL, wrong};
-use posicast_model::spec::MAX_PROBLEMS;
+use crate::machine_file::files::{SMALL, wrong};
+use posicast_model::machine_file::MAX_PROBLEMS;
 
 #[test]
 fn unit_all_problems_of_a_file_are_shown_and_a_flood_is_cut() {

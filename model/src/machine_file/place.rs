@@ -7,7 +7,7 @@ use toml::de::{DeTable, DeValue};
 /// `axis.drive.bandwidth_hz`; `axis` counts the tables `[[axis]]` from 0. Nothing where the text has no such table.
 ///
 /// ```
-/// use posicast_model::spec::line_of;
+/// use posicast_model::machine_file::line_of;
 ///
 /// let text = "[clock]\nsample_hz = 1\n[[axis]]\nname = \"x\"\n[axis.drive]\n";
 /// assert_eq!(line_of(text, 0, "clock.sample_hz"), Some(2));

@@ -1,8 +1,8 @@
 //! What a right file yields: the examples, defaults, and the effective values of each mode.
 
-use crate::spec::files::{CUSTOM_SHAPER, GANTRY, ROBOT_JOINT, SMALL, XY_STAGE, right};
+use crate::machine_file::files::{CUSTOM_SHAPER, GANTRY, ROBOT_JOINT, SMALL, XY_STAGE, right};
 use posicast_model::design::kind::Kind;
-use posicast_model::spec::Digitise;
+use posicast_model::machine_file::Digitise;
 
 #[test]
 fn golden_xy_stage_is_the_machine_of_the_thesis() {

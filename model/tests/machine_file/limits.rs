@@ -1,8 +1,8 @@
 //! `[axis.limits]`, `[axis.scale]`, `[axis.trace]` and `[stage]`: what they yield, what they refuse.
 
-use crate::spec::files::{EVERYTHING, SMALL, right, wrong};
+use crate::machine_file::files::{EVERYTHING, SMALL, right, wrong};
+use posicast_model::machine_file::{Limits, Scale, ScaleUse, Stage, Trace};
 use posicast_model::rtl::axis::{ALWAYS_OFF, Cause};
-use posicast_model::spec::{Limits, Scale, ScaleUse, Stage, Trace};
 
 #[track_caller]
 fn case(from: &str, to: &str, expected: &str) {

@@ -20,7 +20,7 @@
 //! frequency_hz = 40.0
 //! damping = 1.3
 //! "#;
-//! let error = posicast_model::spec::parse("slide.toml", text).unwrap_err();
+//! let error = posicast_model::machine_file::parse("slide.toml", text).unwrap_err();
 //! assert_eq!(
 //!     error.to_string(),
 //!     "slide.toml:13: axis.mode.damping of axis x, mode 1: found 1.3; allowed: at least 0, below 1"
