@@ -51,7 +51,7 @@ const ZERO: Inputs = Inputs {
     saturation_ticks: 0,
     lost_command: 0,
     lost_ticks: 0,
-    velocity_drive: false,
+    watches_direction: false,
     watchdog_ticks: 0,
     modulo: false,
     position: 0,
@@ -632,20 +632,22 @@ fn out_of_range_the_outputs_are_refused_and_switched_off() {
 }
 
 #[test]
-fn a_velocity_that_goes_against_its_command_is_none() {
-    // The sign of the encoder is wrong: at full speed the position runs away from where the command wants it.
-    for (command, step, velocity_drive, trips) in [
+fn a_motion_against_the_command_is_none_where_the_direction_is_watched() {
+    // The sign of the encoder is wrong: the position runs away from where the command wants it.
+    for (command, step, watches_direction, trips) in [
         (502, -7, true, true),
         (-502, 7, true, true),
         (502, 7, true, false),
         (-502, -7, true, false),
-        // A torque may go against the motion: it slows it down.
         (502, -7, false, false),
         (-502, 7, false, false),
+        // Few counts a tick: a motion every other one.
+        (502, -3, true, true),
+        (502, 3, true, false),
     ] {
         let mut bench = Bench::hold();
         (bench.inputs.lost_command, bench.inputs.lost_ticks) = (500, 20);
-        (bench.inputs.command, bench.inputs.velocity_drive) = (command, velocity_drive);
+        (bench.inputs.command, bench.inputs.watches_direction) = (command, watches_direction);
         for _ in 0..60 {
             bench.inputs.position += step;
             bench.ticks(1);
@@ -654,7 +656,22 @@ fn a_velocity_that_goes_against_its_command_is_none() {
         assert_eq!(
             causes,
             if trips { Cause::EncoderLost.bit() } else { 0 },
-            "{command} {step} {velocity_drive}"
+            "{command} {step} {watches_direction}"
         );
+    }
+}
+
+#[test]
+fn an_axis_that_is_slowed_down_and_turned_round_is_not_lost() {
+    // One torque: 16 ticks against it, and back as far as it came.
+    for side in [1, -1] {
+        let mut bench = Bench::hold();
+        (bench.inputs.lost_command, bench.inputs.lost_ticks) = (500, 20);
+        (bench.inputs.command, bench.inputs.watches_direction) = (side * 502, true);
+        for tick in -16..=16 {
+            bench.inputs.position += side * 4 * tick;
+            bench.ticks(1);
+        }
+        assert_eq!(bench.axis.outputs().causes, 0);
     }
 }

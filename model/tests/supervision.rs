@@ -1,6 +1,8 @@
 //! The words of the supervisor: worked out by hand, never looser than the file, and nothing that does not fit.
 
-use posicast_model::control::{Supervision, SupervisionError, TableBounds, no_travel, supervision};
+use posicast_model::control::{
+    LostSign, Supervision, SupervisionError, TableBounds, lost_sign, no_travel, supervision,
+};
 use posicast_model::motion::TickLimits;
 use posicast_model::spec::{self, Machine, ScaleUse};
 use posicast_model::taps::{Tap, TapTable};
@@ -50,7 +52,7 @@ const LEFT_OUT: Supervision = Supervision {
     saturation_ticks: 0,
     lost_command: 0,
     lost_ticks: 0,
-    velocity_drive: false,
+    watches_direction: false,
     watchdog_ticks: 0,
     filter_clocks: 0,
     stop_deceleration: 0,
@@ -92,7 +94,7 @@ fn golden_words_worked_out_by_hand() {
         // Half of 3000 mA, times 4096.
         lost_command: 6_144_000,
         lost_ticks: 200,
-        velocity_drive: false,
+        watches_direction: false,
         watchdog_ticks: 5000,
         filter_clocks: 50,
         // 0.08 counts per tick², times 2^24: 1342177.28.
@@ -114,7 +116,7 @@ fn golden_words_worked_out_by_hand() {
     assert_eq!(found.len(), 18);
     // A velocity drive: half of 500 mm/s.
     let velocity = of(&machine("", VELOCITY, limits)).unwrap();
-    assert_eq!((velocity.lost_command, velocity.velocity_drive), (1_024_000, true));
+    assert_eq!((velocity.lost_command, velocity.watches_direction), (1_024_000, true));
     // With the scale's position ten times as many counts; the test signal's word then ends at 25.6 µm.
     let mut scale = machine("", TORQUE, limits);
     scale.axes[0].scale.as_mut().unwrap().usage = ScaleUse::Position;
@@ -300,5 +302,36 @@ proptest! {
                 prop_assert!(holds, "{:?} {:?}", words, limits);
             }
         }
+    }
+}
+
+#[test]
+fn unit_a_wrong_sign_is_watched_where_a_sound_axis_stops_sooner() {
+    // Half of 3 A are 11.085 m/s²: 0.25 m/s take 22.55 ms, and a fifth more 27.06 ms.
+    let of = |drive, limits: &str| lost_sign(&machine("", drive, limits).axes[0]);
+    let velocity = "velocity = 0.25\n";
+    let LostSign::TooShort { least_s } = of(TORQUE, &format!("{velocity}encoder_lost_s = 0.027")) else {
+        panic!("27 ms are too short");
+    };
+    assert!((least_s - 0.027_063).abs() < 1e-6, "{least_s}");
+    for (drive, limits, expected) in [
+        (TORQUE, format!("{velocity}encoder_lost_s = 0.0271"), LostSign::Watched),
+        (TORQUE, "encoder_lost_s = 0.05".to_owned(), LostSign::Unknown),
+        (TORQUE, velocity.to_owned(), LostSign::Unknown),
+        (
+            TORQUE,
+            format!("{velocity}encoder_lost_s = 0.05\nencoder_lost_command = 0.0"),
+            LostSign::Unknown,
+        ),
+        (VELOCITY, "encoder_lost_s = 0.001".to_owned(), LostSign::Watched),
+        (VELOCITY, String::new(), LostSign::Unknown),
+    ] {
+        assert_eq!(of(drive, &limits), expected, "{limits}");
+        let watched = supervision(
+            &machine("", drive, &limits).axes[0],
+            &machine("", drive, &limits).clock,
+            bounds(79, 1.0),
+        );
+        assert_eq!(watched.unwrap().watches_direction, expected == LostSign::Watched);
     }
 }

@@ -30,3 +30,4 @@ mod stage_guards;
 mod stage_run;
 mod support;
 mod trace;
+mod wrong_sign;

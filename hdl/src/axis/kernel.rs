@@ -41,7 +41,7 @@ kernel! {
         saturation_ticks: Bits<16>,
         lost_command: Bits<32>,
         lost_ticks: Bits<16>,
-        velocity_drive: Bit,
+        watches_direction: Bit,
         watchdog_ticks: Bits<16>,
         modulo: Bit,
         position: Signed<32>,
@@ -187,7 +187,7 @@ impl Logic for Axis {
         self.monitors.saturation_ticks.next = self.saturation_ticks.val();
         self.monitors.lost_command.next = self.lost_command.val();
         self.monitors.lost_ticks.next = self.lost_ticks.val();
-        self.monitors.velocity_drive.next = self.velocity_drive.val();
+        self.monitors.watches_direction.next = self.watches_direction.val();
         self.monitors.watchdog_ticks.next = self.watchdog_ticks.val();
         self.monitors.position.next = self.position.val();
         self.monitors.deviation.next = self.deviation.val();

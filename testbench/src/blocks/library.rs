@@ -173,7 +173,7 @@ const SUPERVISION: Supervision = Supervision {
     saturation_ticks: 3,
     lost_command: 50 << 12,
     lost_ticks: 3,
-    velocity_drive: true,
+    watches_direction: true,
     watchdog_ticks: 0,
     filter_clocks: 3,
     stop_deceleration: 0,

@@ -122,7 +122,7 @@ impl AxisRandom {
         let limit = rng.next_u32() >> rng.random_range(1..32);
         let watched = rng.random_range(0..4) == 0;
         inputs.modulo = any & 7 << 20 == 0;
-        inputs.velocity_drive = any & 1 << 23 == 0;
+        inputs.watches_direction = any & 1 << 23 == 0;
         inputs.following_error_limit = if watched { limit } else { 0 };
         inputs.deviation_limit = if any & 1 << 16 == 0 { 0 } else { limit };
         inputs.lost_command = if any & 1 << 17 == 0 { limit } else { 0 };

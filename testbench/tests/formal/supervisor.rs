@@ -74,6 +74,16 @@ fn formal_a_motion_from_elsewhere_is_found() {
 }
 
 #[test]
+fn formal_a_watch_that_does_not_follow_a_motion_against_the_command_is_found() {
+    fails(
+        "axis_monitors",
+        "over & (!stands | moves)",
+        "over & !stands",
+        "since_when",
+    );
+}
+
+#[test]
 fn formal_a_brake_with_a_tick_too_little_is_found() {
     fails("axis_brake", "at_zero = !sum[16]", "at_zero = left <= 16'd1", "exact_");
 }

@@ -23,7 +23,7 @@ pub enum Cause {
     Deviation = 8,
     /// The controller's command was cut for too many ticks in a row.
     Saturation = 9,
-    /// A command above its threshold, and no count for too many ticks.
+    /// A command above its threshold, and for too many ticks no motion, or one against it where the direction is watched.
     EncoderLost = 10,
     /// An illegal transition, or a pair that disagrees, of motor encoder or scale.
     EncoderError = 11,

@@ -59,8 +59,8 @@ pub struct Inputs {
     pub lost_command: u32,
     /// Ticks without a motion the command's way; 0: not watched.
     pub lost_ticks: u16,
-    /// The drive's command is a velocity: a motion against it is as none.
-    pub velocity_drive: bool,
+    /// A motion against the command is as none: so an encoder of the wrong sign is lost.
+    pub watches_direction: bool,
     /// Ticks without a kick; 0: no watchdog.
     pub watchdog_ticks: u16,
     /// A rotary axis: positions wrap, and no range is left.
@@ -148,7 +148,7 @@ pub(super) const INPUTS: [PlainRow; 56] = [
     ("saturation_ticks", 16, false),
     ("lost_command", 32, false),
     ("lost_ticks", 16, false),
-    ("velocity_drive", 1, false),
+    ("watches_direction", 1, false),
     ("watchdog_ticks", 16, false),
     ("modulo", 1, false),
     ("position", 32, true),
@@ -215,7 +215,7 @@ impl Inputs {
             saturation_ticks: word() as u16,
             lost_command: word() as u32,
             lost_ticks: word() as u16,
-            velocity_drive: word() & 1 != 0,
+            watches_direction: word() & 1 != 0,
             watchdog_ticks: word() as u16,
             modulo: word() & 1 != 0,
             position: word() as i32,
@@ -277,7 +277,7 @@ impl Inputs {
             u64::from(self.saturation_ticks),
             u64::from(self.lost_command),
             u64::from(self.lost_ticks),
-            u64::from(self.velocity_drive),
+            u64::from(self.watches_direction),
             u64::from(self.watchdog_ticks),
             u64::from(self.modulo),
             u64::from(self.position as u32),

@@ -112,7 +112,7 @@ pub(super) struct Monitors {
     were_passed: [bool; 4],
     /// Ticks in a row with a command to one side and without a motion of more than [`STILL_COUNTS`].
     still_ticks: u16,
-    /// Position and command's sign of the last tick that was not one of them.
+    /// The command's sign of the last tick that was not one of them, and the position of it or, if later, of the last motion.
     still_since: (i32, bool),
     /// Ticks since the last kick.
     unkicked_ticks: u16,
@@ -142,15 +142,20 @@ impl Monitors {
         size > self.taken.limits[at]
     }
 
+    /// A motion since the position was last seen to move: backward, forward. A line that is stuck lets the count dither by
+    /// one: that is none.
+    fn motion(&self) -> [bool; 2] {
+        let motion = self.captured_position.wrapping_sub(self.still_since.0);
+        [motion < -STILL_COUNTS, motion >= STILL_COUNTS]
+    }
+
     /// A command above its threshold, to the same side as when the position was last seen to move, and no motion since
-    /// then. A line that is stuck lets the count dither by one: that is none. Nor is one against the command of a drive whose
-    /// command is a velocity; where it is a torque, an axis that is slowed down goes against it.
-    fn stands(&self, velocity_drive: bool) -> bool {
-        let (position, negative) = self.still_since;
-        let motion = self.captured_position.wrapping_sub(position);
-        let [backward, forward] = [motion < -STILL_COUNTS, motion >= STILL_COUNTS];
+    /// then. With `watches_direction` a motion against the command is as none.
+    fn stands(&self, watches_direction: bool) -> bool {
+        let negative = self.still_since.1;
+        let [backward, forward] = self.motion();
         let against = if negative { forward } else { backward };
-        let moves = (backward || forward) && !(velocity_drive && against);
+        let moves = (backward || forward) && !(watches_direction && against);
         self.shown.on && !moves && self.shown.negative[2] == negative && self.exceeds(2)
     }
 
@@ -201,8 +206,13 @@ impl Monitors {
                 self.found = self.causes() & self.first_found;
             }
             self.were_passed = self.passed();
-            if !self.stands(inputs.velocity_drive) {
+            let stands = self.stands(inputs.watches_direction);
+            if !stands {
                 self.still_ticks = 0;
+            }
+            // A motion against the command counts as none, but the position follows it: an axis that a torque has slowed down
+            // and turned round moves the command's way from there on, however far it is from where it began to slow down.
+            if !stands || self.motion().contains(&true) {
                 self.still_since = (self.captured_position, self.shown.negative[2]);
             }
         }

@@ -426,7 +426,7 @@ fn supervisor(axis: &StageAxis, part: Part) -> Part {
         .tied("saturation_ticks", watched.saturation_ticks.into())
         .tied("lost_command", watched.lost_command.into())
         .tied("lost_ticks", watched.lost_ticks.into())
-        .tied("velocity_drive", watched.velocity_drive.into());
+        .tied("watches_direction", watched.watches_direction.into());
     match axis.scale {
         Some(_) => part,
         None => part
