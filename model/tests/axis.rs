@@ -38,6 +38,8 @@ const ZERO: Inputs = Inputs {
     clear_faults: false,
     kick: false,
     kick_word: 0,
+    write_homed: false,
+    homed_value: false,
     group_stop: false,
     group_emergency_stop: false,
     off_causes: 0,
@@ -46,6 +48,7 @@ const ZERO: Inputs = Inputs {
     settle_ticks: 0,
     soft_limit_plus: 0,
     soft_limit_minus: 0,
+    limits_after_homing: false,
     following_error_limit: 0,
     deviation_limit: 0,
     saturation_ticks: 0,
@@ -431,6 +434,66 @@ fn behind_a_soft_limit_the_way_back_is_open() {
         bench.inputs.enable = false;
         bench.ticks(100);
     }
+}
+
+#[test]
+fn soft_limits_wait_for_homing_where_they_shall() {
+    let moves = |after_homing: bool, homed: bool| {
+        let mut bench = Bench::run(JERK);
+        (bench.inputs.soft_limit_plus, bench.inputs.soft_limit_minus) = (40 << 8, -1000 << 8);
+        bench.inputs.limits_after_homing = after_homing;
+        (bench.inputs.write_homed, bench.inputs.homed_value) = (true, homed);
+        bench.clocks(1);
+        bench.inputs.write_homed = false;
+        bench.ticks(30);
+        bench
+    };
+    for (after_homing, homed) in [(false, false), (false, true), (true, true)] {
+        let shown = moves(after_homing, homed).axis.outputs();
+        assert_eq!(shown.causes, Cause::SoftLimitPlus.bit(), "{after_homing} {homed}");
+    }
+    let mut bench = moves(true, false);
+    assert_eq!((bench.axis.outputs().causes, bench.axis.outputs().homed), (0, false));
+    // Beyond it when it begins to act.
+    (bench.inputs.write_homed, bench.inputs.homed_value) = (true, true);
+    bench.clocks(1);
+    bench.inputs.write_homed = false;
+    bench.ticks(2);
+    assert_eq!(bench.axis.outputs().causes, Cause::SoftLimitPlus.bit());
+}
+
+#[test]
+fn an_axis_is_homed_until_its_position_is_in_doubt() {
+    let write = |bench: &mut Bench, value: bool| {
+        (bench.inputs.write_homed, bench.inputs.homed_value) = (true, value);
+        bench.clocks(1);
+        bench.inputs.write_homed = false;
+        bench.clocks(1);
+        bench.axis.outputs().homed
+    };
+    let mut bench = Bench::hold();
+    assert!(!bench.axis.outputs().homed);
+    assert!(write(&mut bench, true));
+    bench.ticks(5);
+    assert!(bench.axis.outputs().homed);
+    assert!(!write(&mut bench, false));
+    assert!(write(&mut bench, true));
+    bench.inputs.encoder_illegal = true;
+    bench.clocks(3);
+    assert!(!bench.axis.outputs().homed);
+    // Not before the cause is forgotten, and not by itself then.
+    bench.inputs.encoder_illegal = false;
+    assert!(!write(&mut bench, true));
+    bench.inputs.enable = false;
+    bench.ticks(20);
+    bench.clear();
+    bench.ticks(2);
+    assert_eq!((bench.axis.outputs().causes, bench.axis.outputs().homed), (0, false));
+    assert!(write(&mut bench, true));
+    bench.inputs.rst = true;
+    bench.clocks(1);
+    bench.inputs.rst = false;
+    assert!(!bench.axis.outputs().homed);
 }
 
 #[test]

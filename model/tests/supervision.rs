@@ -47,6 +47,7 @@ const LEFT_OUT: Supervision = Supervision {
     settle_ticks: 79,
     soft_limit_plus: 0,
     soft_limit_minus: 0,
+    limits_after_homing: false,
     following_error_limit: 0,
     deviation_limit: 0,
     saturation_ticks: 0,
@@ -76,7 +77,7 @@ fn unit_a_key_left_out_gives_its_documented_word() {
 
 #[test]
 fn golden_words_worked_out_by_hand() {
-    let limits = "travel = [-0.1, 0.1]\nfollowing_error = 0.001\nbrake_release_s = 0.05\nbrake_apply_s = 0.03\n\
+    let limits = "travel = [-0.1, 0.1]\nsoft_limits_after_homing = true\nfollowing_error = 0.001\nbrake_release_s = 0.05\nbrake_apply_s = 0.03\n\
                   acceleration = 8.0\ndeviation = 50e-6\nsaturation_s = 0.3\nencoder_lost_s = 0.02\nwatchdog_s = 0.5\n\
                   line_filter_s = 1e-6\noff = [\"watchdog\"]\ndirect_duty = 0.05\ndirect_hold_s = 0.1\nexcitation = 10e-6";
     let expected = Supervision {
@@ -87,6 +88,7 @@ fn golden_words_worked_out_by_hand() {
         // 100,000 counts of 256.
         soft_limit_plus: 25_600_000,
         soft_limit_minus: -25_600_000,
+        limits_after_homing: true,
         // 1000 counts of 65536.
         following_error_limit: 65_536_000,
         deviation_limit: 50,
@@ -109,11 +111,16 @@ fn golden_words_worked_out_by_hand() {
     let names: Vec<&str> = expected.words().iter().map(|(name, _)| *name).collect();
     let found: Vec<i64> = expected.words().iter().map(|(_, word)| *word).collect();
     assert_eq!(
-        names[4..7],
-        ["soft_limit_plus", "soft_limit_minus", "following_error_limit"]
+        names[4..8],
+        [
+            "soft_limit_plus",
+            "soft_limit_minus",
+            "limits_after_homing",
+            "following_error_limit"
+        ]
     );
-    assert_eq!(found[4..7], [25_600_000, -25_600_000, 65_536_000]);
-    assert_eq!(found.len(), 18);
+    assert_eq!(found[4..8], [25_600_000, -25_600_000, 1, 65_536_000]);
+    assert_eq!(found.len(), 19);
     // A velocity drive: half of 500 mm/s.
     let velocity = of(&machine("", VELOCITY, limits)).unwrap();
     assert_eq!((velocity.lost_command, velocity.watches_direction), (1_024_000, true));

@@ -8,7 +8,8 @@
 //   only_at_ticks        causes are found eleven clocks after a tick with the outputs on, and in no other clock
 //   only_monitored       none but those below
 //   limit_*              on the switch, and the command goes towards it; or newly on it, and the shaped command does
-//   soft_limit_*         the shaped position is past it, newly or with a command that goes on; never with both limits 0
+//   soft_limit_*         the shaped position is past it, newly or with a command that goes on; never with both limits 0, nor with
+//                        limits_after_homing and without homed
 //   following_error, deviation_, saturation_, encoder_lost, watchdog_
 //                        exactly when above the limit, or there for as many ticks in a row; never with a limit of 0
 //   captured             captured_position is the position of the last tick
@@ -25,6 +26,8 @@ module axis_monitors_properties (
     input wire [31:0]        kick_word,
     input wire signed [31:0] soft_limit_plus,
     input wire signed [31:0] soft_limit_minus,
+    input wire               limits_after_homing,
+    input wire               homed,
     input wire [31:0]        following_error_limit,
     input wire [31:0]        deviation_limit,
     input wire [15:0]        saturation_ticks,
@@ -140,7 +143,7 @@ module axis_monitors_properties (
     wire              kicked = (kick & kick_word == `KICK) | waiting;
 
     wire [31:0] e_size = e ^ {32{e_below}}, apart_size = apart ^ {32{apart_below}}, drive_size = drive ^ {32{drive_below}};
-    wire        soft = plus != 32'sd0 | minus != 32'sd0;
+    wire        soft = (plus != 32'sd0 | minus != 32'sd0) & (homed | !limits_after_homing);
     wire        beyond_plus = soft & reference > plus, beyond_minus = soft & reference < minus;
     wire        stays = shown_on & since_below == drive_below & drive_size > drive_most
         & (distance >= -32'sd4 | (watches_direction & !drive_below))

@@ -25,6 +25,7 @@ kernel! {
         on_limit_minus: Bit,
         soft_limit_plus: Signed<32>,
         soft_limit_minus: Signed<32>,
+        limits_wait: Bit,
         following_error_limit: Bits<32>,
         deviation_limit: Bits<32>,
         saturation_ticks: Bits<16>,
@@ -134,6 +135,7 @@ impl Logic for Monitors {
         self.soft_limits.reference_position.next = self.reference_position.val();
         self.soft_limits.soft_limit_plus.next = self.soft_limit_plus.val();
         self.soft_limits.soft_limit_minus.next = self.soft_limit_minus.val();
+        self.soft_limits.waits.next = self.limits_wait.val();
         self.soft_plus.next = self.soft_limits.past_plus.val() & (self.forward.q.val() | !self.was_past_plus.q.val());
         self.soft_minus.next =
             self.soft_limits.past_minus.val() & (self.backward.q.val() | !self.was_past_minus.q.val());

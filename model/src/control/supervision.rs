@@ -3,6 +3,7 @@
 //! | key of `[axis.limits]` | word | unit of its LSB | rounded | left out |
 //! |---|---|---|---|---|
 //! | `travel` | soft limits, i32 | 2^−8 counts | inwards | 0, 0: none |
+//! | `soft_limits_after_homing` | 1 bit | | | 0: at once |
 //! | `following_error` | u32 | 2^−16 counts | down, at least 1 | 0: not watched |
 //! | `deviation` | u32 | counts | down, at least 1 | 0: not watched |
 //! | `saturation_s`, `encoder_lost_s`, `watchdog_s` | u16 | ticks | down, at least 1 | 0: not watched |
@@ -59,6 +60,8 @@ pub struct Supervision {
     pub soft_limit_plus: i32,
     /// Q24.8 counts.
     pub soft_limit_minus: i32,
+    /// No soft limits until the axis is homed.
+    pub limits_after_homing: bool,
     /// Q16.16 counts; 0: not watched.
     pub following_error_limit: u32,
     /// Counts of the loop; 0: not watched.
@@ -87,7 +90,7 @@ pub struct Supervision {
 
 impl Supervision {
     /// Every word with its name, in the order of the fields.
-    pub fn words(&self) -> [(&'static str, i64); 18] {
+    pub fn words(&self) -> [(&'static str, i64); 19] {
         [
             ("off_causes", self.off_causes.into()),
             ("brake_release_ticks", self.brake_release_ticks.into()),
@@ -95,6 +98,7 @@ impl Supervision {
             ("settle_ticks", self.settle_ticks.into()),
             ("soft_limit_plus", self.soft_limit_plus.into()),
             ("soft_limit_minus", self.soft_limit_minus.into()),
+            ("limits_after_homing", self.limits_after_homing.into()),
             ("following_error_limit", self.following_error_limit.into()),
             ("deviation_limit", self.deviation_limit.into()),
             ("saturation_ticks", self.saturation_ticks.into()),
@@ -137,6 +141,7 @@ pub fn supervision(axis: &Axis, clock: &Clock, table: TableBounds) -> Result<Sup
         settle_ticks: words.settle_ticks(table.longest_delay_samples)?,
         soft_limit_plus,
         soft_limit_minus,
+        limits_after_homing: limits.soft_limits_after_homing,
         following_error_limit: words.error_limit(
             "axis.limits.following_error",
             limits.following_error,

@@ -168,6 +168,7 @@ const SUPERVISION: Supervision = Supervision {
     settle_ticks: 8,
     soft_limit_plus: 0,
     soft_limit_minus: 0,
+    limits_after_homing: true,
     following_error_limit: 0,
     deviation_limit: 0,
     saturation_ticks: 3,

@@ -103,6 +103,9 @@ pub const AT_ONCE: u32 =
 /// Causes after which an axis is in order: it only waits, in HOLD, for the others.
 pub const HARMLESS: u32 = Cause::GroupStop.bit();
 
+/// Causes after which the position may be another one: the axis is no longer homed.
+pub const DOUBTFUL: u32 = Cause::EncoderLost.bit() | Cause::EncoderError.bit();
+
 /// Those of `causes` that switch the outputs off at once.
 pub const fn switching_off(causes: u32, off_causes: u16) -> u32 {
     causes & (off_causes as u32 | ALWAYS_OFF) & !HARMLESS

@@ -121,11 +121,11 @@ pub(super) struct Monitors {
 }
 
 impl Monitors {
-    /// Limit +, limit −, soft limit +, soft limit − are passed.
-    fn passed(&self) -> [bool; 4] {
+    /// Limit +, limit −, soft limit +, soft limit − are passed. `waits`: there are no soft limits yet.
+    fn passed(&self, waits: bool) -> [bool; 4] {
         let [plus, minus] = self.taken.soft_limits.map(|limit| limit as i32);
         let reference = self.taken.reference_position as i32;
-        let watched = plus != 0 || minus != 0;
+        let watched = (plus != 0 || minus != 0) && !waits;
         let [on_plus, on_minus] = self.shown.on_limits;
         [
             on_plus,
@@ -160,7 +160,7 @@ impl Monitors {
     }
 
     /// The causes that a round finds.
-    fn causes(&self) -> u32 {
+    fn causes(&self, waits: bool) -> u32 {
         let shown = &self.shown;
         let newly = |at: usize| !self.were_passed[at];
         let ([plus, minus], [shaped_plus, shaped_minus]) = (shown.ways, shown.shaped_ways);
@@ -171,7 +171,7 @@ impl Monitors {
             plus || newly(2),
             minus || newly(3),
         ];
-        let passed = self.passed();
+        let passed = self.passed(waits);
         let exceeds = |at: usize| self.taken.limits[at] != 0 && self.exceeds(at);
         let [saturation, lost, watchdog] = self.taken.most_ticks;
         let found = [
@@ -190,22 +190,22 @@ impl Monitors {
     }
 
     /// One clock.
-    pub(super) fn clock(&mut self, inputs: &Inputs, on_limits: [bool; 2], on: bool, kicked: bool) {
+    pub(super) fn clock(&mut self, inputs: &Inputs, on_limits: [bool; 2], waits: bool, on: bool, kicked: bool) {
         let clocks = self.clocks;
         self.found = 0;
         if inputs.tick {
             self.deviation = inputs.deviation;
         }
         if clocks == FIRST_ROUND {
-            self.first_found = self.causes();
+            self.first_found = self.causes(waits);
             self.still_ticks = self.still_ticks.saturating_add(1);
             self.unkicked_ticks = self.unkicked_ticks.saturating_add(1);
         }
         if clocks == SECOND_ROUND {
             if self.shown.on {
-                self.found = self.causes() & self.first_found;
+                self.found = self.causes(waits) & self.first_found;
             }
-            self.were_passed = self.passed();
+            self.were_passed = self.passed(waits);
             let stands = self.stands(inputs.watches_direction);
             if !stands {
                 self.still_ticks = 0;
