@@ -1,5 +1,6 @@
 //! What does not watch over an axis, because the machine file does not ask for it, and what can then happen.
 
+use posicast_model::control::{LostSign, lost_sign};
 use posicast_model::machine_file::{Axis, Limits, Machine};
 
 /// A guard, whether a file has it, and what can happen without.
@@ -13,8 +14,8 @@ const GUARDS: [Guard; 4] = [
     Guard {
         key: "following_error",
         is_set: |_, limits| limits.following_error.is_some(),
-        without: "an axis that does not follow (a slipping coupling, a wrong feedback sign, an encoder line that is stuck) runs on at \
-                  full command and raises no cause",
+        without: "an axis that does not follow (a slipping coupling, an encoder line that is stuck) runs on at full command and \
+                  raises no cause",
     },
     Guard {
         key: "encoder_lost_s",
@@ -45,7 +46,32 @@ pub(crate) fn missing(machine: &Machine) -> Vec<String> {
                 axis.name, guard.key, guard.without
             )
         });
-        texts.collect::<Vec<_>>()
+        texts.chain(sign(axis, &limits)).collect::<Vec<_>>()
     };
     loops.flat_map(of_axis).collect()
+}
+
+/// A warning where neither the following error nor the watch of the encoder sees a feedback of the wrong sign.
+fn sign(axis: &Axis, limits: &Limits) -> Option<String> {
+    let remedy = match lost_sign(axis) {
+        _ if limits.following_error.is_some() => return None,
+        LostSign::Watched => return None,
+        LostSign::TooShort { least_s } => format!(
+            "`encoder_lost_s` = {}, in which an axis at `velocity` does not stop; set following_error, or encoder_lost_s to {:.3} or \
+             more",
+            limits.encoder_lost_s,
+            (1e3 * least_s).ceil() / 1e3
+        ),
+        LostSign::Unknown => {
+            "there is no following_error; set it, or encoder_lost_s, with a torque drive velocity and an encoder_lost_command \
+             above 0 too"
+                .to_owned()
+        }
+    };
+    Some(format!(
+        "axis `{}` does not notice a wrong feedback sign (`invert` of [axis.encoder]), with which it runs away at full command until \
+         it is 32,768 counts off, {:.3e} m: {remedy}",
+        axis.name,
+        32_768.0 / axis.loop_counts_per_unit()
+    ))
 }

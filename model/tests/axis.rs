@@ -38,6 +38,8 @@ const ZERO: Inputs = Inputs {
     clear_faults: false,
     kick: false,
     kick_word: 0,
+    write_homed: false,
+    homed_value: false,
     group_stop: false,
     group_emergency_stop: false,
     off_causes: 0,
@@ -46,12 +48,13 @@ const ZERO: Inputs = Inputs {
     settle_ticks: 0,
     soft_limit_plus: 0,
     soft_limit_minus: 0,
+    limits_after_homing: false,
     following_error_limit: 0,
     deviation_limit: 0,
     saturation_ticks: 0,
     lost_command: 0,
     lost_ticks: 0,
-    velocity_drive: false,
+    watches_direction: false,
     watchdog_ticks: 0,
     modulo: false,
     position: 0,
@@ -434,6 +437,66 @@ fn behind_a_soft_limit_the_way_back_is_open() {
 }
 
 #[test]
+fn soft_limits_wait_for_homing_where_they_shall() {
+    let moves = |after_homing: bool, homed: bool| {
+        let mut bench = Bench::run(JERK);
+        (bench.inputs.soft_limit_plus, bench.inputs.soft_limit_minus) = (40 << 8, -1000 << 8);
+        bench.inputs.limits_after_homing = after_homing;
+        (bench.inputs.write_homed, bench.inputs.homed_value) = (true, homed);
+        bench.clocks(1);
+        bench.inputs.write_homed = false;
+        bench.ticks(30);
+        bench
+    };
+    for (after_homing, homed) in [(false, false), (false, true), (true, true)] {
+        let shown = moves(after_homing, homed).axis.outputs();
+        assert_eq!(shown.causes, Cause::SoftLimitPlus.bit(), "{after_homing} {homed}");
+    }
+    let mut bench = moves(true, false);
+    assert_eq!((bench.axis.outputs().causes, bench.axis.outputs().homed), (0, false));
+    // Beyond it when it begins to act.
+    (bench.inputs.write_homed, bench.inputs.homed_value) = (true, true);
+    bench.clocks(1);
+    bench.inputs.write_homed = false;
+    bench.ticks(2);
+    assert_eq!(bench.axis.outputs().causes, Cause::SoftLimitPlus.bit());
+}
+
+#[test]
+fn an_axis_is_homed_until_its_position_is_in_doubt() {
+    let write = |bench: &mut Bench, value: bool| {
+        (bench.inputs.write_homed, bench.inputs.homed_value) = (true, value);
+        bench.clocks(1);
+        bench.inputs.write_homed = false;
+        bench.clocks(1);
+        bench.axis.outputs().homed
+    };
+    let mut bench = Bench::hold();
+    assert!(!bench.axis.outputs().homed);
+    assert!(write(&mut bench, true));
+    bench.ticks(5);
+    assert!(bench.axis.outputs().homed);
+    assert!(!write(&mut bench, false));
+    assert!(write(&mut bench, true));
+    bench.inputs.encoder_illegal = true;
+    bench.clocks(3);
+    assert!(!bench.axis.outputs().homed);
+    // Not before the cause is forgotten, and not by itself then.
+    bench.inputs.encoder_illegal = false;
+    assert!(!write(&mut bench, true));
+    bench.inputs.enable = false;
+    bench.ticks(20);
+    bench.clear();
+    bench.ticks(2);
+    assert_eq!((bench.axis.outputs().causes, bench.axis.outputs().homed), (0, false));
+    assert!(write(&mut bench, true));
+    bench.inputs.rst = true;
+    bench.clocks(1);
+    bench.inputs.rst = false;
+    assert!(!bench.axis.outputs().homed);
+}
+
+#[test]
 fn what_lasts_too_long_trips_after_its_ticks() {
     // A command that moves nothing, from between two ticks on.
     let mut bench = Bench::hold();
@@ -632,20 +695,22 @@ fn out_of_range_the_outputs_are_refused_and_switched_off() {
 }
 
 #[test]
-fn a_velocity_that_goes_against_its_command_is_none() {
-    // The sign of the encoder is wrong: at full speed the position runs away from where the command wants it.
-    for (command, step, velocity_drive, trips) in [
+fn a_motion_against_the_command_is_none_where_the_direction_is_watched() {
+    // The sign of the encoder is wrong: the position runs away from where the command wants it.
+    for (command, step, watches_direction, trips) in [
         (502, -7, true, true),
         (-502, 7, true, true),
         (502, 7, true, false),
         (-502, -7, true, false),
-        // A torque may go against the motion: it slows it down.
         (502, -7, false, false),
         (-502, 7, false, false),
+        // Few counts a tick: a motion every other one.
+        (502, -3, true, true),
+        (502, 3, true, false),
     ] {
         let mut bench = Bench::hold();
         (bench.inputs.lost_command, bench.inputs.lost_ticks) = (500, 20);
-        (bench.inputs.command, bench.inputs.velocity_drive) = (command, velocity_drive);
+        (bench.inputs.command, bench.inputs.watches_direction) = (command, watches_direction);
         for _ in 0..60 {
             bench.inputs.position += step;
             bench.ticks(1);
@@ -654,7 +719,22 @@ fn a_velocity_that_goes_against_its_command_is_none() {
         assert_eq!(
             causes,
             if trips { Cause::EncoderLost.bit() } else { 0 },
-            "{command} {step} {velocity_drive}"
+            "{command} {step} {watches_direction}"
         );
+    }
+}
+
+#[test]
+fn an_axis_that_is_slowed_down_and_turned_round_is_not_lost() {
+    // One torque: 16 ticks against it, and back as far as it came.
+    for side in [1, -1] {
+        let mut bench = Bench::hold();
+        (bench.inputs.lost_command, bench.inputs.lost_ticks) = (500, 20);
+        (bench.inputs.command, bench.inputs.watches_direction) = (side * 502, true);
+        for tick in -16..=16 {
+            bench.inputs.position += side * 4 * tick;
+            bench.ticks(1);
+        }
+        assert_eq!(bench.axis.outputs().causes, 0);
     }
 }

@@ -1,6 +1,8 @@
 //! The words of the supervisor: worked out by hand, never looser than the file, and nothing that does not fit.
 
-use posicast_model::control::{Supervision, SupervisionError, TableBounds, no_travel, supervision};
+use posicast_model::control::{
+    LostSign, Supervision, SupervisionError, TableBounds, lost_sign, no_travel, supervision,
+};
 use posicast_model::machine_file::{self, Machine, ScaleUse};
 use posicast_model::motion::TickLimits;
 use posicast_model::taps::{Tap, TapTable};
@@ -45,12 +47,13 @@ const LEFT_OUT: Supervision = Supervision {
     settle_ticks: 79,
     soft_limit_plus: 0,
     soft_limit_minus: 0,
+    limits_after_homing: false,
     following_error_limit: 0,
     deviation_limit: 0,
     saturation_ticks: 0,
     lost_command: 0,
     lost_ticks: 0,
-    velocity_drive: false,
+    watches_direction: false,
     watchdog_ticks: 0,
     filter_clocks: 0,
     stop_deceleration: 0,
@@ -74,7 +77,7 @@ fn unit_a_key_left_out_gives_its_documented_word() {
 
 #[test]
 fn golden_words_worked_out_by_hand() {
-    let limits = "travel = [-0.1, 0.1]\nfollowing_error = 0.001\nbrake_release_s = 0.05\nbrake_apply_s = 0.03\n\
+    let limits = "travel = [-0.1, 0.1]\nsoft_limits_after_homing = true\nfollowing_error = 0.001\nbrake_release_s = 0.05\nbrake_apply_s = 0.03\n\
                   acceleration = 8.0\ndeviation = 50e-6\nsaturation_s = 0.3\nencoder_lost_s = 0.02\nwatchdog_s = 0.5\n\
                   line_filter_s = 1e-6\noff = [\"watchdog\"]\ndirect_duty = 0.05\ndirect_hold_s = 0.1\nexcitation = 10e-6";
     let expected = Supervision {
@@ -85,6 +88,7 @@ fn golden_words_worked_out_by_hand() {
         // 100,000 counts of 256.
         soft_limit_plus: 25_600_000,
         soft_limit_minus: -25_600_000,
+        limits_after_homing: true,
         // 1000 counts of 65536.
         following_error_limit: 65_536_000,
         deviation_limit: 50,
@@ -92,7 +96,7 @@ fn golden_words_worked_out_by_hand() {
         // Half of 3000 mA, times 4096.
         lost_command: 6_144_000,
         lost_ticks: 200,
-        velocity_drive: false,
+        watches_direction: false,
         watchdog_ticks: 5000,
         filter_clocks: 50,
         // 0.08 counts per tick², times 2^24: 1342177.28.
@@ -107,14 +111,19 @@ fn golden_words_worked_out_by_hand() {
     let names: Vec<&str> = expected.words().iter().map(|(name, _)| *name).collect();
     let found: Vec<i64> = expected.words().iter().map(|(_, word)| *word).collect();
     assert_eq!(
-        names[4..7],
-        ["soft_limit_plus", "soft_limit_minus", "following_error_limit"]
+        names[4..8],
+        [
+            "soft_limit_plus",
+            "soft_limit_minus",
+            "limits_after_homing",
+            "following_error_limit"
+        ]
     );
-    assert_eq!(found[4..7], [25_600_000, -25_600_000, 65_536_000]);
-    assert_eq!(found.len(), 18);
+    assert_eq!(found[4..8], [25_600_000, -25_600_000, 1, 65_536_000]);
+    assert_eq!(found.len(), 19);
     // A velocity drive: half of 500 mm/s.
     let velocity = of(&machine("", VELOCITY, limits)).unwrap();
-    assert_eq!((velocity.lost_command, velocity.velocity_drive), (1_024_000, true));
+    assert_eq!((velocity.lost_command, velocity.watches_direction), (1_024_000, true));
     // With the scale's position ten times as many counts; the test signal's word then ends at 25.6 µm.
     let mut scale = machine("", TORQUE, limits);
     scale.axes[0].scale.as_mut().unwrap().usage = ScaleUse::Position;
@@ -300,5 +309,36 @@ proptest! {
                 prop_assert!(holds, "{:?} {:?}", words, limits);
             }
         }
+    }
+}
+
+#[test]
+fn unit_a_wrong_sign_is_watched_where_a_sound_axis_stops_sooner() {
+    // Half of 3 A are 11.085 m/s²: 0.25 m/s take 22.55 ms, and a fifth more 27.06 ms.
+    let of = |drive, limits: &str| lost_sign(&machine("", drive, limits).axes[0]);
+    let velocity = "velocity = 0.25\n";
+    let LostSign::TooShort { least_s } = of(TORQUE, &format!("{velocity}encoder_lost_s = 0.027")) else {
+        panic!("27 ms are too short");
+    };
+    assert!((least_s - 0.027_063).abs() < 1e-6, "{least_s}");
+    for (drive, limits, expected) in [
+        (TORQUE, format!("{velocity}encoder_lost_s = 0.0271"), LostSign::Watched),
+        (TORQUE, "encoder_lost_s = 0.05".to_owned(), LostSign::Unknown),
+        (TORQUE, velocity.to_owned(), LostSign::Unknown),
+        (
+            TORQUE,
+            format!("{velocity}encoder_lost_s = 0.05\nencoder_lost_command = 0.0"),
+            LostSign::Unknown,
+        ),
+        (VELOCITY, "encoder_lost_s = 0.001".to_owned(), LostSign::Watched),
+        (VELOCITY, String::new(), LostSign::Unknown),
+    ] {
+        assert_eq!(of(drive, &limits), expected, "{limits}");
+        let watched = supervision(
+            &machine("", drive, &limits).axes[0],
+            &machine("", drive, &limits).clock,
+            bounds(79, 1.0),
+        );
+        assert_eq!(watched.unwrap().watches_direction, expected == LostSign::Watched);
     }
 }

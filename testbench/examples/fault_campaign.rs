@@ -1,7 +1,7 @@
 //! The fault campaign, with as many cases as wanted: `docs/fault-campaign.md`.
 //!
 //! ```text
-//! cargo run --release -p posicast-testbench --example fault_campaign -- --cases 10000 --seed 1 --rtl 38
+//! cargo run --release -p posicast-testbench --example fault_campaign -- --cases 10000 --seed 1 --rtl 44
 //! ```
 //!
 //! `--rtl N`: N more cases with the Verilated stage beside the model, compared in every clock. `--first N` begins there: to

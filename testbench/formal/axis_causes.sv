@@ -19,6 +19,8 @@
 //   off_at_once          outputs off and brake applied in the clock after one that switches off, in every state
 //   stop_or_fault        a clock after a cause but the group stop stands, the state is QUICK_STOP, FAULT or OFF
 //   tells_others         wants_group_stop is FAULT, or QUICK_STOP with a cause but the group stop
+//   homed_until_doubtful homed is what was last written, but is low after a reset and while encoder lost or encoder error
+//                        stand, and stays so until it is written again
 //   not_by_itself        the axis that wants the stop does not get the group stop of it
 //
 // Not proven here: what the monitors find (axis_monitors), the filters of the lines (single_line).
@@ -26,6 +28,9 @@ module axis_causes_properties (
     input wire        clk,
     input wire        rst,
     input wire        clear_faults,
+    input wire        write_homed,
+    input wire        homed_value,
+    input wire        homed,
     input wire        group_stop,
     input wire        group_emergency_stop,
     input wire [15:0] off_causes,
@@ -118,6 +123,7 @@ module axis_causes_properties (
     reg  [16:0] past_causes = 16'd0;
     reg         just_noted = 1'b0;
     reg  [16:0] expected = 16'd0;
+    reg         known = 1'b0;
     always @(posedge clk) begin
         past_reset <= rst;
         past_off_causes <= off_causes;
@@ -129,6 +135,7 @@ module axis_causes_properties (
         past_causes <= causes;
         just_noted <= !rst & (seen & ~`HARMLESS) == 16'd0;
         expected <= rst ? 16'd0 : now;
+        known <= !rst & (write_homed ? homed_value : known) & (causes & (`ENCODER_LOST | `ENCODER_ERROR)) == 17'd0;
     end
 
     wire [16:0] harmful = causes & ~`HARMLESS;
@@ -146,6 +153,7 @@ module axis_causes_properties (
         cut_is_a_fault: assert (!past_cut | state == `FAULT | state == `OFF);
         stop_or_fault: assert (harmful == 16'd0 | just_noted | state == `QUICK_STOP | state == `FAULT | state == `OFF);
         tells_others: assert (wants_group_stop == (state == `FAULT | (state == `QUICK_STOP & harmful != 16'd0)));
+        homed_until_doubtful: assert (homed == known);
         not_by_itself: assert (past_reset | !past_wants | (causes & ~past_causes & `GROUP_STOP) == 16'd0);
     end
 

@@ -8,12 +8,14 @@
 //   only_at_ticks        causes are found eleven clocks after a tick with the outputs on, and in no other clock
 //   only_monitored       none but those below
 //   limit_*              on the switch, and the command goes towards it; or newly on it, and the shaped command does
-//   soft_limit_*         the shaped position is past it, newly or with a command that goes on; never with both limits 0
+//   soft_limit_*         the shaped position is past it, newly or with a command that goes on; never with both limits 0, nor with
+//                        limits_after_homing and without homed
 //   following_error, deviation_, saturation_, encoder_lost, watchdog_
 //                        exactly when above the limit, or there for as many ticks in a row; never with a limit of 0
 //   captured             captured_position is the position of the last tick
 //   counted_*            lemma: so many ticks in a row with a command to one side and no motion (of 4 counts backwards, or more than
-//                        3 forwards; with velocity_drive the other way is as none); so many since the last kick
+//                        3 forwards; with watches_direction the other way is as none, but distances count from there on); so many
+//                        since the last kick
 //
 // Left open: that levels are those of the switches (single_line), and where e comes from.
 module axis_monitors_properties (
@@ -24,12 +26,14 @@ module axis_monitors_properties (
     input wire [31:0]        kick_word,
     input wire signed [31:0] soft_limit_plus,
     input wire signed [31:0] soft_limit_minus,
+    input wire               limits_after_homing,
+    input wire               homed,
     input wire [31:0]        following_error_limit,
     input wire [31:0]        deviation_limit,
     input wire [15:0]        saturation_ticks,
     input wire [31:0]        lost_command,
     input wire [15:0]        lost_ticks,
-    input wire               velocity_drive,
+    input wire               watches_direction,
     input wire [15:0]        watchdog_ticks,
     input wire signed [31:0] position,
     input wire signed [31:0] deviation,
@@ -122,7 +126,7 @@ module axis_monitors_properties (
     reg               at_plus = 1'b0, at_minus = 1'b0, was_at_plus = 1'b0, was_at_minus = 1'b0;
     reg               was_beyond_plus = 1'b0, was_beyond_minus = 1'b0;
     reg signed [31:0] velocity = 32'sd0, shaped = 32'sd0, place = 32'sd0;
-    // Where the position was last seen to move, or the command to change sides; how far it is from there, a clock later each.
+    // Where the position was last seen to move, either way, or the command to change sides; how far it is from there, a clock later each.
     reg signed [31:0] since = 32'sd0, moved = 32'sd0;
     reg               since_below = 1'b0, up_little = 1'b0, down_little = 1'b0;
     wire signed [31:0] distance = place - since;
@@ -139,11 +143,11 @@ module axis_monitors_properties (
     wire              kicked = (kick & kick_word == `KICK) | waiting;
 
     wire [31:0] e_size = e ^ {32{e_below}}, apart_size = apart ^ {32{apart_below}}, drive_size = drive ^ {32{drive_below}};
-    wire        soft = plus != 32'sd0 | minus != 32'sd0;
+    wire        soft = (plus != 32'sd0 | minus != 32'sd0) & (homed | !limits_after_homing);
     wire        beyond_plus = soft & reference > plus, beyond_minus = soft & reference < minus;
     wire        stays = shown_on & since_below == drive_below & drive_size > drive_most
-        & (distance >= -32'sd4 | (velocity_drive & !drive_below))
-        & (distance <= 32'sd3 | (velocity_drive & drive_below));
+        & (distance >= -32'sd4 | (watches_direction & !drive_below))
+        & (distance <= 32'sd3 | (watches_direction & drive_below));
     wire [16:0] round =
         (at_plus & (velocity > 32'sd0 | (!was_at_plus & shaped > 32'sd0)) ? `LIMIT_PLUS : 16'd0)
         | (at_minus & (velocity < 32'sd0 | (!was_at_minus & shaped < 32'sd0)) ? `LIMIT_MINUS : 16'd0)
@@ -185,10 +189,8 @@ module axis_monitors_properties (
             if (second) begin
                 {was_at_plus, was_at_minus} <= {at_plus, at_minus};
                 {was_beyond_plus, was_beyond_minus} <= {beyond_plus, beyond_minus};
-                if (!stays) begin
-                    {still_long, still_for} <= 17'd0;
-                    {since, since_below} <= {place, drive_below};
-                end
+                if (!stays) {still_long, still_for} <= 17'd0;
+                if (!stays | distance < -32'sd4 | distance > 32'sd3) {since, since_below} <= {place, drive_below};
             end
             if (!comparing & (kicked | !shown_on)) {unkicked_long, unkicked_for} <= 17'd0;
         end

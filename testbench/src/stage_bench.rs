@@ -11,7 +11,7 @@
 //! the same. The plants hear the model.
 //!
 //! Faults: [`StageBench::set`] drives lines, [`StageBench::force_encoder`] and [`StageBench::break_wire`] cut or corrupt an encoder,
-//! [`StageBench::force_scale`] a scale, [`StageBench::jam`] holds an axis. What must never happen at the pins is watched in every clock: [`StageBench::watched`].
+//! [`StageBench::force_scale`] a scale, [`StageBench::jam`] holds an axis, [`StageBench::displace`] disturbs it. What must never happen at the pins is watched in every clock: [`StageBench::watched`].
 
 mod watch;
 
@@ -296,6 +296,11 @@ impl StageBench {
     /// Jams an axis, or frees it: the plant stands as if its brake were applied.
     pub fn jam(&mut self, axis: usize, jammed: bool) {
         self.faults[axis].jammed = jammed;
+    }
+
+    /// Puts an axis so many counts of its encoder away from where it is: a disturbance.
+    pub fn displace(&mut self, axis: usize, counts: f64) {
+        self.plants[axis].displace(counts);
     }
 
     /// Names of the axes.

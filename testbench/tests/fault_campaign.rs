@@ -152,6 +152,33 @@ fn stuck_lines_stop(machine: &Machine) {
     }
 }
 
+/// Only the watch of the encoder sees it, with a drive that takes a velocity; torques are in `wrong_sign.rs`.
+#[test]
+fn unit_a_wrong_sign_is_seen_by_the_watch_of_the_encoder_alone() {
+    let bed = Bed::of(|axis| {
+        let limits = axis.limits.as_mut().unwrap();
+        (limits.deviation, limits.saturation_s) = (None, 0.0);
+    });
+    let bed = bed.unwrap();
+    for kind in [Kind::EncoderReversedUnwatched, Kind::EncoderReversedInHoldUnwatched] {
+        for case in (0..4).map(|round| number(kind) + round * TABLE.len() as u64) {
+            let report = run(&bed, case..case + 1, SEED, 1).unwrap();
+            assert_eq!(report.failures(), [""; 0], "{report}");
+        }
+    }
+}
+
+#[test]
+fn mutate_a_watch_of_motion_alone_does_not_see_a_wrong_sign() {
+    for kind in [Kind::EncoderReversedUnwatched, Kind::EncoderReversedInHoldUnwatched] {
+        let report = on_a_changed_stage(kind, |watched| {
+            (watched.deviation_limit, watched.saturation_ticks) = (0, 0);
+            watched.watches_direction = false;
+        });
+        assert_ne!(report.failures(), [""; 0], "{kind:?}");
+    }
+}
+
 #[test]
 fn mutate_a_slower_filter_is_late() {
     let report = on_a_changed_stage(Kind::EmergencyStop, |watched| watched.filter_clocks += 1);

@@ -32,3 +32,4 @@ mod stage_range;
 mod stage_run;
 mod support;
 mod trace;
+mod wrong_sign;

@@ -1,17 +1,23 @@
 //! What a stage refuses, and what it waits for: the sign of its feedback with the drive on, a PWM out of step, an interrupt
-//! that nobody can end.
+//! that nobody can end; and limits that wait for homing.
 
 use posicast_model::design::design_machine;
 use posicast_model::hardware;
 use posicast_model::machine_file;
 use posicast_model::motion::{TickLimits, plan_move};
-use posicast_model::plant::axis::{AxisPlant, PlantOptions};
+use posicast_model::plant::axis::{AxisPlant, EncoderPins, PlantOptions};
+use posicast_model::rtl::axis::Cause;
 use posicast_model::rtl::component::Component;
 use posicast_testbench::stage_bench::{StageBench, state};
 
 /// The example's stage with a linear scale and an encoder generator at X, on its simulated machine. `invert`: encoder and scale of
 /// X are wired backwards, and the file says so.
 fn bench(invert: bool) -> StageBench {
+    bench_of(invert, "")
+}
+
+/// The same with more keys in `[axis.limits]` of X.
+fn bench_of(invert: bool, limits: &str) -> StageBench {
     let text = include_str!("../../examples/xy-stage.toml");
     let more = format!(
         "[axis.scale]\ncounts_per_unit = 4_000_000\nuse = \"monitor\"\ninvert = {invert}\n[axis.trace]\nsamples = 256\n[axis.pwm]"
@@ -19,6 +25,7 @@ fn bench(invert: bool) -> StageBench {
     let text = text.replacen("[axis.pwm]", &more, 1);
     let encoder = format!("[axis.encoder]\ninvert = {invert}");
     let text = text.replacen("[axis.encoder]", &encoder, 1);
+    let text = text.replacen("[axis.limits]", &format!("[axis.limits]\n{limits}"), 1);
     let machine = machine_file::parse("xy-stage.toml", &text).unwrap();
     let stage = hardware::stage(&machine, &design_machine(&machine).unwrap());
     let stage = stage.unwrap().unwrap();
@@ -180,4 +187,51 @@ fn unit_the_trigger_comes_at_its_phase() {
     );
     let later = phases(1250);
     assert!(later.iter().all(|clocks| clocks % 2500 == 1252), "{later:?}");
+}
+
+/// X by so many counts, and its causes at the end.
+fn moved(bench: &mut StageBench, counts: i32) -> u32 {
+    let machine = machine_file::parse("xy-stage.toml", include_str!("../../examples/xy-stage.toml")).unwrap();
+    let limits = TickLimits::of_axis(&machine.axes[0], &machine.clock);
+    let at = bench.read("x_command_position").unwrap() as i32;
+    for entry in plan_move(i64::from(at) << 24, at + (counts << 8), &limits).unwrap() {
+        bench.segment("x", &entry).unwrap();
+    }
+    bench.write("start", 1).unwrap();
+    bench.clocks(20_000).unwrap();
+    let _ = bench.wait("x", state::HOLD, 3_000_000).unwrap();
+    bench.clocks(500_000).unwrap();
+    bench.read("x_causes").unwrap()
+}
+
+#[test]
+fn unit_soft_limits_act_before_homing_unless_the_file_says_otherwise() {
+    for after_homing in [false, true] {
+        let mut bench = bench_of(false, &format!("soft_limits_after_homing = {after_homing}"));
+        switch_on(&mut bench, "x");
+        // Where the file's limits mean nothing yet: the axis stands anywhere in its travel.
+        bench.write("x_soft_limit_plus", 500 << 8).unwrap();
+        let causes = moved(&mut bench, 1000);
+        assert_eq!(causes, if after_homing { 0 } else { Cause::SoftLimitPlus.bit() });
+        assert_eq!(bench.field("x", "status", "homed").unwrap(), 0);
+        if !after_homing {
+            continue;
+        }
+        bench.write("x_soft_limit_plus", 1500 << 8).unwrap();
+        bench.write("x_homed", 1).unwrap();
+        bench.clocks(10_000).unwrap();
+        assert_eq!(bench.field("x", "status", "homed").unwrap(), 1);
+        assert_eq!(bench.read("x_causes").unwrap(), 0);
+        assert_eq!(moved(&mut bench, 1000), Cause::SoftLimitPlus.bit());
+        // An error of the encoder: the position may be another one.
+        let lines = bench.plant(0).encoder();
+        let pins = EncoderPins {
+            a: !lines.a,
+            b: !lines.b,
+            ..lines
+        };
+        bench.force_encoder(0, Some(pins));
+        bench.clocks(1000).unwrap();
+        assert_eq!(bench.field("x", "status", "homed").unwrap(), 0);
+    }
 }

@@ -104,6 +104,32 @@ fn cli_a_loop_that_is_not_complete_or_has_short_words_gives_no_stage() {
     }
 }
 
+#[test]
+fn cli_a_torque_drive_whose_wrong_sign_nothing_sees_is_warned_of() {
+    let text = std::fs::read_to_string(example("xy-stage-torque.toml")).unwrap();
+    let unseen = "does not notice a wrong feedback sign";
+    let said = |text: &str| {
+        let (_folder, file) = scratch(text);
+        let run = posicast().arg("design").arg(&file).output().unwrap();
+        assert!(run.status.success());
+        String::from_utf8(run.stderr).unwrap()
+    };
+    let without = text.replace("following_error", "# ");
+    // 0.25 m/s by half of 22.2 m/s² of X, 12.2 m/s² of Y.
+    assert!(!said(&text).contains(unseen) && !said(&without).contains(unseen));
+    let short = without.replace("encoder_lost_s = 0.05", "encoder_lost_s = 0.04");
+    let short = said(&short);
+    assert_eq!(short.matches(unseen).count(), 1, "{short}");
+    assert!(
+        short.contains("axis `y`") && short.contains("encoder_lost_s to 0.050 or more"),
+        "{short}"
+    );
+    let unknown = said(&without.replace("velocity = 0.25", "# "));
+    assert_eq!(unknown.matches(unseen).count(), 2, "{unknown}");
+    // The following error sees it alone.
+    assert!(!said(&text.replace("encoder_lost_s", "# ")).contains(unseen));
+}
+
 /// The XY stage, quick to simulate: a slower clock, and limits at which the move is short.
 fn quick() -> String {
     let text = std::fs::read_to_string(example("xy-stage.toml")).unwrap();

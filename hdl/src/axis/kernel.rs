@@ -7,7 +7,7 @@ use super::line::Line;
 use super::monitors::Monitors;
 use super::states::States;
 use crate::prelude::*;
-use posicast_model::rtl::axis::{CLEAR_CLOCKS, KICK};
+use posicast_model::rtl::axis::{CLEAR_CLOCKS, DOUBTFUL, KICK};
 
 kernel! {
     pub(super) struct Axis;
@@ -28,6 +28,8 @@ kernel! {
         clear_faults: Bit,
         kick: Bit,
         kick_word: Bits<32>,
+        write_homed: Bit,
+        homed_value: Bit,
         group_stop: Bit,
         group_emergency_stop: Bit,
         off_causes: Bits<16>,
@@ -36,12 +38,13 @@ kernel! {
         settle_ticks: Bits<16>,
         soft_limit_plus: Signed<32>,
         soft_limit_minus: Signed<32>,
+        limits_after_homing: Bit,
         following_error_limit: Bits<32>,
         deviation_limit: Bits<32>,
         saturation_ticks: Bits<16>,
         lost_command: Bits<32>,
         lost_ticks: Bits<16>,
-        velocity_drive: Bit,
+        watches_direction: Bit,
         watchdog_ticks: Bits<16>,
         modulo: Bit,
         position: Signed<32>,
@@ -88,6 +91,7 @@ kernel! {
         wants_group_stop: Bit,
         emergency_stop: Bit,
         can_start: Bit,
+        homed: Bit,
         captured_position: Signed<32>,
         level_emergency_stop_n: Bit,
         level_limit_plus_n: Bit,
@@ -114,12 +118,12 @@ kernel! {
     }
     registers {
         primed: Bits<4>, clear_left: Bits<4>, clear_due: Bit, clear_sources_q: Bit, tripping: Bit,
-        out_of_range: Bit,
+        out_of_range: Bit, homed_q: Bit,
     }
     wires {
         ready: Bit, filters: Bit, own_emergency: Bit, emergency: Bit, group_stops: Bit, encoder: Bit,
         scale: Bit, segments_failed: Bit, count_bits: Bits<32>, count_above: Bits<9>, count_end: Bits<6>,
-        far: Bit,
+        far: Bit, doubts: Bits<17>, is_homed: Bit,
     }
     constants {
         first_clock: Bits<4> = from_u64(1),
@@ -127,6 +131,7 @@ kernel! {
         one_clock: Bits<4> = from_u64(1),
         two_clocks: Bits<4> = from_u64(2),
         clear_clocks: Bits<4> = from_u64(u64::from(CLEAR_CLOCKS)),
+        doubtful_causes: Bits<17> = from_u64(u64::from(DOUBTFUL)),
         kick_value: Bits<32> = from_u64(u64::from(KICK)),
     }
 }
@@ -182,12 +187,13 @@ impl Logic for Axis {
         self.monitors.on_limit_minus.next = !self.limit_minus_line.level.val();
         self.monitors.soft_limit_plus.next = self.soft_limit_plus.val();
         self.monitors.soft_limit_minus.next = self.soft_limit_minus.val();
+        self.monitors.limits_wait.next = self.limits_after_homing.val() & !self.homed_q.q.val();
         self.monitors.following_error_limit.next = self.following_error_limit.val();
         self.monitors.deviation_limit.next = self.deviation_limit.val();
         self.monitors.saturation_ticks.next = self.saturation_ticks.val();
         self.monitors.lost_command.next = self.lost_command.val();
         self.monitors.lost_ticks.next = self.lost_ticks.val();
-        self.monitors.velocity_drive.next = self.velocity_drive.val();
+        self.monitors.watches_direction.next = self.watches_direction.val();
         self.monitors.watchdog_ticks.next = self.watchdog_ticks.val();
         self.monitors.position.next = self.position.val();
         self.monitors.deviation.next = self.deviation.val();
@@ -239,6 +245,14 @@ impl Logic for Axis {
         self.cause_word.watched.next = self.monitors.causes.val();
         self.cause_word.off_causes.next = self.off_causes.val();
 
+        comment!("Homed, until the position is in doubt");
+        self.doubts.next = self.cause_word.causes.val() & self.doubtful_causes.val();
+        self.is_homed.next = self.homed_q.q.val();
+        if self.write_homed.val() {
+            self.is_homed.next = self.homed_value.val();
+        }
+        self.homed_q.d.next = self.is_homed.val() & !self.doubts.val().any();
+
         comment!("Sources are cleared first, causes later");
         self.clear_sources_q.d.next = self.clear_faults.val();
         if self.clear_left.q.val() != self.no_clocks.val() {
@@ -288,6 +302,7 @@ impl Logic for Axis {
         self.emergency_stop.next = self.own_emergency.val();
         self.captured_position.next = self.monitors.captured_position.val();
         self.can_start.next = self.states.can_start.val();
+        self.homed.next = self.homed_q.q.val();
         self.enabled.next = self.states.enabled.val();
         self.started.next = self.states.started.val();
         self.stopping.next = self.states.stopping.val();

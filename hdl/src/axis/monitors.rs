@@ -25,12 +25,13 @@ kernel! {
         on_limit_minus: Bit,
         soft_limit_plus: Signed<32>,
         soft_limit_minus: Signed<32>,
+        limits_wait: Bit,
         following_error_limit: Bits<32>,
         deviation_limit: Bits<32>,
         saturation_ticks: Bits<16>,
         lost_command: Bits<32>,
         lost_ticks: Bits<16>,
-        velocity_drive: Bit,
+        watches_direction: Bit,
         watchdog_ticks: Bits<16>,
         position: Signed<32>,
         deviation: Signed<32>,
@@ -62,7 +63,7 @@ kernel! {
     }
     wires {
         command_velocity_bits: Bits<32>, command_bits: Bits<32>, motion_bits: Bits<32>,
-        motion_above: Bits<30>, not_its_way: Bit, reference_velocity_bits: Bits<32>, takes: Bit,
+        motion_above: Bits<30>, moves: Bit, not_its_way: Bit, reference_velocity_bits: Bits<32>, takes: Bit,
         last_byte: Bit, over: Bit, stands: Bit, is_kicked: Bit, limit_plus: Bit, limit_minus: Bit,
         soft_plus: Bit, soft_minus: Bit, by_limit_plus: Bits<17>, by_limit_minus: Bits<17>,
         by_soft_plus: Bits<17>, by_soft_minus: Bits<17>, by_error_trip: Bits<17>, by_deviation_trip: Bits<17>,
@@ -134,6 +135,7 @@ impl Logic for Monitors {
         self.soft_limits.reference_position.next = self.reference_position.val();
         self.soft_limits.soft_limit_plus.next = self.soft_limit_plus.val();
         self.soft_limits.soft_limit_minus.next = self.soft_limit_minus.val();
+        self.soft_limits.waits.next = self.limits_wait.val();
         self.soft_plus.next = self.soft_limits.past_plus.val() & (self.forward.q.val() | !self.was_past_plus.q.val());
         self.soft_minus.next =
             self.soft_limits.past_minus.val() & (self.backward.q.val() | !self.was_past_minus.q.val());
@@ -191,17 +193,19 @@ impl Logic for Monitors {
         self.motion_above.next = self.motion_bits.val().get_bits::<30>(2);
         self.not_forward.d.next = self.motion_bits.val().get_bit(31) | !self.motion_above.val().any();
         self.not_backward.d.next = !self.motion_bits.val().get_bit(31) | self.motion_above.val().all();
-        comment!("Against a velocity's command is as not at all");
+        comment!("Against the command is as not at all, if watched");
         self.not_its_way.next = self.not_forward.q.val();
         if self.drive_backward.q.val() {
             self.not_its_way.next = self.not_backward.q.val();
         }
+        self.moves.next = !self.not_forward.q.val() | !self.not_backward.q.val();
         self.stands.next = self.was_on.q.val()
             & self.not_its_way.val()
-            & (self.velocity_drive.val() | (self.not_forward.q.val() & self.not_backward.q.val()))
+            & (self.watches_direction.val() | !self.moves.val())
             & (self.drive_backward.q.val() == self.still_backward.q.val())
             & self.commands.exceeds.val();
-        if self.over.val() & !self.stands.val() {
+        comment!("The way back is measured from where it turned");
+        if self.over.val() & (!self.stands.val() | self.moves.val()) {
             self.still_since.d.next = self.captured.q.val();
             self.still_backward.d.next = self.drive_backward.q.val();
         }

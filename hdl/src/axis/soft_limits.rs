@@ -1,4 +1,4 @@
-//! The shaped position against both soft limits; none where both are 0.
+//! The shaped position against both soft limits; none where both are 0, or while they wait.
 
 use super::bytes::Bytes;
 use super::larger::Larger;
@@ -16,6 +16,8 @@ kernel! {
         reference_position: Signed<32>,
         soft_limit_plus: Signed<32>,
         soft_limit_minus: Signed<32>,
+        /// There are no limits yet.
+        waits: Bit,
     }
     outputs { past_plus: Bit, past_minus: Bit }
     parts {
@@ -69,7 +71,7 @@ impl Logic for SoftLimits {
         self.minus_limited.rst.next = self.rst.val();
         self.minus_limited.compares.next = self.compares.val();
         self.minus_limited.part.next = self.minus_bytes.part.val();
-        self.limited.next = self.plus_limited.nonzero.val() | self.minus_limited.nonzero.val();
+        self.limited.next = (self.plus_limited.nonzero.val() | self.minus_limited.nonzero.val()) & !self.waits.val();
         self.past_plus.next = self.limited.val() & self.above.larger.val();
         self.past_minus.next = self.limited.val() & self.below.larger.val();
     }

@@ -36,7 +36,7 @@ pub use law::{COMMAND_FRACTION, FloatController, Gains, Response, Tracking};
 pub use linear::DEFAULT_MARGIN;
 pub use reach::{NoTravel, TableBounds, no_travel};
 pub use schedule::{CAPTURE_CLOCKS, Schedule, ScheduleError, schedule_delay_s};
-pub use supervision::{Supervision, supervision};
+pub use supervision::{LostSign, Supervision, lost_sign, supervision};
 pub use supervision_error::SupervisionError;
 
 use crate::rtl::sliding_mode::{GainError, Row};

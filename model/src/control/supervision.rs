@@ -3,6 +3,7 @@
 //! | key of `[axis.limits]` | word | unit of its LSB | rounded | left out |
 //! |---|---|---|---|---|
 //! | `travel` | soft limits, i32 | 2^−8 counts | inwards | 0, 0: none |
+//! | `soft_limits_after_homing` | 1 bit | | | 0: at once |
 //! | `following_error` | u32 | 2^−16 counts | down, at least 1 | 0: not watched |
 //! | `deviation` | u32 | counts | down, at least 1 | 0: not watched |
 //! | `saturation_s`, `encoder_lost_s`, `watchdog_s` | u16 | ticks | down, at least 1 | 0: not watched |
@@ -13,6 +14,9 @@
 //! | `direct_duty` | u16 | clocks of the PWM | down | 0.1 of the period |
 //! | `direct_hold_s` | u16 | ticks | down, at least 1 | 0.2 s, or what fits |
 //! | `excitation` | u16 | 2^−8 counts | down, at least 1 | 4 counts |
+//!
+//! `watches_direction` is 1 where a motion against the command for `encoder_lost_s` can only come of a wrong sign
+//! ([`LostSign`]).
 //!
 //! So no limit is looser than the file asks for, no brake gets less time, and no filter lets more through. What a word does
 //! not hold, above or below, is an error: nothing is clamped. "Counts" are those
@@ -56,6 +60,8 @@ pub struct Supervision {
     pub soft_limit_plus: i32,
     /// Q24.8 counts.
     pub soft_limit_minus: i32,
+    /// No soft limits until the axis is homed.
+    pub limits_after_homing: bool,
     /// Q16.16 counts; 0: not watched.
     pub following_error_limit: u32,
     /// Counts of the loop; 0: not watched.
@@ -66,8 +72,8 @@ pub struct Supervision {
     pub lost_command: u32,
     /// Ticks without a count; 0: not watched.
     pub lost_ticks: u16,
-    /// The drive's command is a velocity: a motion against it is as none.
-    pub velocity_drive: bool,
+    /// A motion against the command is as none: see [`LostSign`].
+    pub watches_direction: bool,
     /// Ticks without a kick; 0: no watchdog.
     pub watchdog_ticks: u16,
     /// Pulses of up to so many clocks on a line are ignored, 0 to 63.
@@ -84,7 +90,7 @@ pub struct Supervision {
 
 impl Supervision {
     /// Every word with its name, in the order of the fields.
-    pub fn words(&self) -> [(&'static str, i64); 18] {
+    pub fn words(&self) -> [(&'static str, i64); 19] {
         [
             ("off_causes", self.off_causes.into()),
             ("brake_release_ticks", self.brake_release_ticks.into()),
@@ -92,12 +98,13 @@ impl Supervision {
             ("settle_ticks", self.settle_ticks.into()),
             ("soft_limit_plus", self.soft_limit_plus.into()),
             ("soft_limit_minus", self.soft_limit_minus.into()),
+            ("limits_after_homing", self.limits_after_homing.into()),
             ("following_error_limit", self.following_error_limit.into()),
             ("deviation_limit", self.deviation_limit.into()),
             ("saturation_ticks", self.saturation_ticks.into()),
             ("lost_command", self.lost_command.into()),
             ("lost_ticks", self.lost_ticks.into()),
-            ("velocity_drive", self.velocity_drive.into()),
+            ("watches_direction", self.watches_direction.into()),
             ("watchdog_ticks", self.watchdog_ticks.into()),
             ("filter_clocks", self.filter_clocks.into()),
             ("stop_deceleration", self.stop_deceleration.into()),
@@ -134,6 +141,7 @@ pub fn supervision(axis: &Axis, clock: &Clock, table: TableBounds) -> Result<Sup
         settle_ticks: words.settle_ticks(table.longest_delay_samples)?,
         soft_limit_plus,
         soft_limit_minus,
+        limits_after_homing: limits.soft_limits_after_homing,
         following_error_limit: words.error_limit(
             "axis.limits.following_error",
             limits.following_error,
@@ -143,7 +151,7 @@ pub fn supervision(axis: &Axis, clock: &Clock, table: TableBounds) -> Result<Sup
         saturation_ticks: words.ticks_down("axis.limits.saturation_s", limits.saturation_s)?,
         lost_command: words.lost_command()?,
         lost_ticks: words.ticks_down("axis.limits.encoder_lost_s", limits.encoder_lost_s)?,
-        velocity_drive: matches!(words.drive.mode, DriveMode::Velocity { .. }),
+        watches_direction: lost_sign(axis) == LostSign::Watched,
         watchdog_ticks: words.ticks_down("axis.limits.watchdog_s", limits.watchdog_s)?,
         filter_clocks: words.filter_clocks()?,
         stop_deceleration: words.stop_deceleration()?,
@@ -151,6 +159,57 @@ pub fn supervision(axis: &Axis, clock: &Clock, table: TableBounds) -> Result<Sup
         direct_hold_ticks: words.direct_hold_ticks()?,
         excitation_limit: words.excitation_limit()?,
     })
+}
+
+/// Is a feedback of the wrong sign seen by the watch of the encoder?
+///
+/// With a wrong sign the axis goes against its command, and ever faster. So the watch may count a motion against the command
+/// as none, where no sound axis goes on so for `encoder_lost_s`. A velocity drive does not. A torque slows down what it goes
+/// against: from `velocity` a command of more than `encoder_lost_command`, and so an acceleration of more than `a`, takes less
+/// than `velocity`/`a`, however fast the command itself slows down. Friction makes it shorter.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum LostSign {
+    /// It is: within `encoder_lost_s` of a command above `encoder_lost_command` to one side.
+    Watched,
+    /// It is not: a sound axis takes longer than `encoder_lost_s` to slow down.
+    TooShort {
+        /// The shortest `encoder_lost_s` with which it is, in s.
+        least_s: f64,
+    },
+    /// It is not: without `velocity` or `encoder_lost_s`, or with a threshold of 0, nothing says how long an axis may take.
+    Unknown,
+}
+
+/// Time to slow down that a sound axis may need, against that of an ideal one: for weight, shaped commands that overshoot, and
+/// the motion of a few counts by which the watch knows the way back.
+const SLOWER: f64 = 1.2;
+
+/// Whether the words of [`supervision`] let the watch of the encoder see a wrong sign.
+pub fn lost_sign(axis: &Axis) -> LostSign {
+    let limits = axis.limits.unwrap_or_default();
+    let Some(drive) = axis.drive.as_ref().filter(|_| limits.encoder_lost_s > 0.0) else {
+        return LostSign::Unknown;
+    };
+    let DriveMode::Torque {
+        equivalent_mass,
+        force_constant,
+        full_scale_a,
+        ..
+    } = drive.mode
+    else {
+        return LostSign::Watched;
+    };
+    let acceleration = limits.encoder_lost_command * full_scale_a * force_constant / equivalent_mass;
+    match limits.velocity {
+        Some(velocity) if acceleration > 0.0 => {
+            let least_s = SLOWER * velocity / acceleration;
+            if limits.encoder_lost_s < least_s {
+                return LostSign::TooShort { least_s };
+            }
+            LostSign::Watched
+        }
+        _ => LostSign::Unknown,
+    }
 }
 
 /// What the words are made of.

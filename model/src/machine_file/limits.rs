@@ -67,6 +67,8 @@ pub struct Limits {
     pub jerk: Option<f64>,
     /// Soft limits of the position, m.
     pub travel: Option<[f64; 2]>,
+    /// The soft limits act only once the host has homed the axis. Default false.
+    pub soft_limits_after_homing: bool,
     /// Deceleration of a quick stop, m/s²; else `acceleration`.
     pub stop_deceleration: Option<f64>,
     /// Largest distance of the position from the shaped command, m.
@@ -104,6 +106,7 @@ impl Default for Limits {
             acceleration: None,
             jerk: None,
             travel: None,
+            soft_limits_after_homing: false,
             stop_deceleration: None,
             following_error: None,
             deviation: None,
@@ -131,7 +134,8 @@ fn word_of(causes: impl IntoIterator<Item = Cause>) -> u16 {
 /// Keys of what moves may ask for: the tools use them without a supervisor.
 const OF_MOVES: [&str; 4] = ["velocity", "acceleration", "jerk", "travel"];
 /// Keys of the supervisor.
-const SUPERVISED: [&str; 14] = [
+const SUPERVISED: [&str; 15] = [
+    "soft_limits_after_homing",
     "stop_deceleration",
     "following_error",
     "deviation",
@@ -160,6 +164,7 @@ pub(super) fn read(axis: &Table<'_, '_>, table: &Table<'_, '_>, word: Option<(f6
         acceleration: table.number("acceleration", MOTION),
         jerk: table.number("jerk", MOTION),
         travel: read_travel(table, word),
+        soft_limits_after_homing: table.boolean("soft_limits_after_homing").unwrap_or(false),
         stop_deceleration: table.number("stop_deceleration", MOTION),
         following_error: table.number("following_error", MOTION),
         deviation: table.number("deviation", MOTION),
@@ -190,6 +195,9 @@ fn check_needs(axis: &Table<'_, '_>, table: &Table<'_, '_>) {
         } else if key == "deviation" && !axis.has("scale") {
             let allowed = "deviation on an axis with [axis.scale], from which the motor may deviate";
             need(table, key, "[axis.scale]", allowed.to_owned());
+        } else if key == "soft_limits_after_homing" && !table.has("travel") {
+            let allowed = "soft_limits_after_homing with travel, which are the soft limits";
+            need(table, key, "`travel`", allowed.to_owned());
         } else if key == "encoder_lost_command" && !table.has("encoder_lost_s") {
             let allowed = "encoder_lost_command with encoder_lost_s, which switches the monitor on";
             need(table, key, "`encoder_lost_s`", allowed.to_owned());

@@ -19,6 +19,7 @@ fn unit_every_key_yields_its_value() {
         acceleration: Some(8.0),
         jerk: Some(400.0),
         travel: Some([-0.1, 0.1]),
+        soft_limits_after_homing: true,
         stop_deceleration: Some(12.0),
         following_error: Some(0.001),
         deviation: Some(50e-6),
@@ -81,16 +82,16 @@ fn unit_values_out_of_range_are_refused_with_their_place() {
     case(
         "1024",
         "1000",
-        "m.toml:86: axis.trace.samples of axis x: found 1000; allowed: 256, 512, 1024, 2048",
+        "m.toml:87: axis.trace.samples of axis x: found 1000; allowed: 256, 512, 1024, 2048",
     );
     case(
         "1024",
         "1000000000000",
-        "m.toml:86: axis.trace.samples of axis x: found 1000000000000; allowed: 256, 512, 1024, 2048",
+        "m.toml:87: axis.trace.samples of axis x: found 1000000000000; allowed: 256, 512, 1024, 2048",
     );
-    let expected = "m.toml:90: stage.contour_speed: found 0; allowed: above 0, at most 1000000000 m/s";
+    let expected = "m.toml:91: stage.contour_speed: found 0; allowed: above 0, at most 1000000000 m/s";
     case("contour_speed = 0.1", "contour_speed = 0", expected);
-    let expected = "m.toml:89: stage.extra_delay_s: found 1.1; allowed: at least 0, at most 1 s";
+    let expected = "m.toml:90: stage.extra_delay_s: found 1.1; allowed: at least 0, at most 1 s";
     case("extra_delay_s = 0.0", "extra_delay_s = 1.1", expected);
     let expected = "m.toml:70: axis.limits.following_error of axis x: found the boolean true; allowed: a number, above 0, at \
                     most 1000000000";
@@ -154,6 +155,7 @@ fn unit_what_needs_another_block_says_which() {
         "direct_duty = 1",
         "direct_hold_s = 1",
         "excitation = 1",
+        "soft_limits_after_homing = true",
     ];
     for line in keys {
         let key = line.split(' ').next().unwrap();
@@ -173,6 +175,9 @@ fn unit_what_needs_another_block_says_which() {
     let expected = "m.toml:76: axis.limits.encoder_lost_command of axis x: found encoder_lost_command without encoder_lost_s; \
                     allowed: encoder_lost_command with encoder_lost_s, which switches the monitor on";
     case("encoder_lost_s = 0.02\n", "", expected);
+    let expected = "m.toml:83: axis.limits.soft_limits_after_homing of axis x: found soft_limits_after_homing without travel; \
+                    allowed: soft_limits_after_homing with travel, which are the soft limits";
+    case("travel = [-0.1, 0.1]\n", "", expected);
     let alone = |table: &str| wrong(&format!("{SMALL}{table}")).to_string();
     let expected = "m.toml:15: axis.trace of axis x: found [axis.trace] without [axis.controller]; allowed: a trace with \
                     [axis.controller], whose loop it records";

@@ -37,6 +37,14 @@ static void homing(posicast_stage *stage)
     move_to(stage, COUNTS(-10));
     move_to(stage, COUNTS(45));
     result("origin_moves", posicast_origin(stage, X) - origin);
+    result("homed_before", posicast_is_homed(stage, X));
+    need("limits the wrong way round", posicast_limit_travel(stage, X, COUNTS(10), COUNTS(-10)), POSICAST_BAD_ARGUMENT);
+    need("limits too far away", posicast_limit_travel(stage, X, INT32_MIN, INT32_MAX), POSICAST_BAD_ARGUMENT);
+    /* The index is position 1000, and the axis a few counts beside it. */
+    need("limits of the travel", posicast_limit_travel(stage, X, COUNTS(800), COUNTS(1200)), POSICAST_OK);
+    result("homed_after", posicast_is_homed(stage, X));
+    result("limit_minus", (int32_t)IORD_POSICAST_AXIS_SOFT_LIMIT_MINUS(stage->base, X) - COUNTS(origin));
+    result("limit_plus", (int32_t)IORD_POSICAST_AXIS_SOFT_LIMIT_PLUS(stage->base, X) - COUNTS(origin));
     how.index_within = 0;
     how.position = 0;
     need("homing from on the switch", posicast_home(stage, X, &how, TICKS), POSICAST_OK);

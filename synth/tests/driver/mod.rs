@@ -190,6 +190,12 @@ fn unit_an_axis_is_homed_and_looked_at() {
     );
     assert!((said["origin_by_switch"] - 30).abs() <= 1, "{said:?}");
     assert_eq!(said["origin_moves"], 0, "{said:?}");
+    assert_eq!((said["homed_before"], said["homed_after"]), (0, 1), "{said:?}");
+    assert_eq!(
+        (said["limit_minus"], said["limit_plus"]),
+        (800 << 8, 1200 << 8),
+        "{said:?}"
+    );
     // 64 rows of four signals; a square of 3 counts, which the axis follows.
     assert_eq!((said["rows"], said["trigger_row"]), (64, 0), "{said:?}");
     assert_eq!((said["most"], said["least"]), (3 << 8, -(3 << 8)), "{said:?}");

@@ -116,6 +116,8 @@ pub struct Expectation {
     pub position_known: bool,
     /// How long the fault lasts.
     pub lasts: Lasts,
+    /// It comes in HOLD, without a move.
+    pub in_hold: bool,
     /// When it comes, in percent of the move.
     pub within_percent: [u64; 2],
 }
@@ -132,6 +134,7 @@ pub(super) const FAULT: Expectation = Expectation {
     others: Others::Stop,
     position_known: true,
     lasts: Lasts::Held,
+    in_hold: false,
     within_percent: [0, 85],
 };
 

@@ -26,6 +26,8 @@ const OVERFLOWING: Entry = Entry {
     notify: false,
 };
 
+/// Counts of a disturbance.
+const PUSH_COUNTS: f64 = 3.0;
 /// Counts to a point that is far away, but within the position's word: e does not fit its own.
 const FAR_COUNTS: i32 = 4_000_000;
 
@@ -114,6 +116,15 @@ fn begin_at(bench: &mut StageBench, case: &Case, axis: usize, name: &str) -> Res
             bench.break_wire(axis, Some(stuck(case, lines)));
         }
         Kind::EncoderReversed => bench.break_wire(axis, Some(Wire::AInverted)),
+        Kind::EncoderReversedUnwatched => {
+            bench.write(&register("following_error_limit"), 0)?;
+            bench.break_wire(axis, Some(Wire::AInverted));
+        }
+        Kind::EncoderReversedInHold => reverse_and_push(bench, case, axis),
+        Kind::EncoderReversedInHoldUnwatched => {
+            bench.write(&register("following_error_limit"), 0)?;
+            reverse_and_push(bench, case, axis);
+        }
         Kind::ScaleStuck => bench.force_scale(axis, Some(bench.plant(axis).scale())),
         Kind::ScaleIllegal => bench.force_scale(axis, Some(inverted(bench.plant(axis).scale()))),
         Kind::Jam => bench.jam(axis, true),
@@ -172,6 +183,12 @@ fn begin_at(bench: &mut StageBench, case: &Case, axis: usize, name: &str) -> Res
         _ => {}
     }
     Ok(())
+}
+
+/// The wires of A exchanged, and a disturbance that the loop then makes larger.
+fn reverse_and_push(bench: &mut StageBench, case: &Case, axis: usize) {
+    bench.break_wire(axis, Some(Wire::AInverted));
+    bench.displace(axis, PUSH_COUNTS * case.counts[axis].signum() as f64);
 }
 
 /// A or B stays as it is.

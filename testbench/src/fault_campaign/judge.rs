@@ -151,10 +151,19 @@ impl Judge<'_> {
         self.demand(observed.drive_off.is_none(), || "the drive was disabled".to_owned());
     }
 
-    /// The group stop, or nothing; says whether it went through QUICK_STOP.
+    /// The group stop, which leaves an axis in HOLD, or nothing; says whether it went through QUICK_STOP.
     fn other(&mut self, bench: &StageBench, observed: &Observation, first_stop: Option<u64>) -> bool {
         if self.seen.case.row.expects.others == Others::GoOn {
             self.goes_on(bench, observed);
+            return false;
+        }
+        if self.seen.case.row.expects.in_hold {
+            let causes = observed.causes(bench);
+            self.demand(causes == Cause::GroupStop.bit(), || {
+                format!("causes {causes:#x} of a group stop")
+            });
+            let stays = observed.change.is_none() && observed.drive_off.is_none();
+            self.demand(stays, || "it did not stay in HOLD".to_owned());
             return false;
         }
         let Some(change) = observed.change.filter(|change| change.state == State::QuickStop as u64) else {
@@ -206,7 +215,7 @@ impl Judge<'_> {
             return None;
         };
         self.demand(change.state == state, || {
-            format!("RUN became state {}, not {state}", change.state)
+            format!("the state became {}, not {state}", change.state)
         });
         let due = match self.seen.case.row.expects.due {
             Due::Seen(what) => observed.seen.map(|seen| seen + what.clocks()),

@@ -29,6 +29,9 @@ pub enum Kind {
     EncoderLineStuckUnwatched,
     EncoderDisconnected,
     EncoderReversed,
+    EncoderReversedUnwatched,
+    EncoderReversedInHold,
+    EncoderReversedInHoldUnwatched,
     ScaleStuck,
     ScaleIllegal,
     Jam,
@@ -107,7 +110,7 @@ const fn fault(cause: Cause, due: Due) -> Expectation {
 }
 
 /// All kinds.
-pub const TABLE: [Row; 41] = [
+pub const TABLE: [Row; 44] = [
     row(
         Kind::EmergencyStop,
         "emergency stop",
@@ -321,6 +324,45 @@ pub const TABLE: [Row; 41] = [
             position_known: false,
             within_percent: IN_MOTION,
             ..fault(Cause::FollowingError, Due::Seen(Seen::FollowingError))
+        },
+    ),
+    row(
+        Kind::EncoderReversedUnwatched,
+        "encoder reversed, error not watched",
+        "the same with `following_error_limit` 0",
+        Expectation {
+            causes: bits(&[Cause::Saturation, Cause::EncoderLost, Cause::Deviation]),
+            also: LOST | bits(&[Cause::EncoderError]),
+            due: Due::Seen(Seen::Lost),
+            position_known: false,
+            within_percent: IN_MOTION,
+            ..FAULT
+        },
+    ),
+    row(
+        Kind::EncoderReversedInHold,
+        "encoder reversed in HOLD",
+        "the wires of A exchanged in HOLD, and the axis 3 counts away",
+        Expectation {
+            causes: bits(&[Cause::FollowingError, Cause::Deviation]),
+            also: LOST | bits(&[Cause::EncoderError]),
+            due: Due::Seen(Seen::FollowingError),
+            position_known: false,
+            in_hold: true,
+            ..FAULT
+        },
+    ),
+    row(
+        Kind::EncoderReversedInHoldUnwatched,
+        "encoder reversed in HOLD, error not watched",
+        "the same with `following_error_limit` 0",
+        Expectation {
+            causes: bits(&[Cause::Saturation, Cause::EncoderLost, Cause::Deviation]),
+            also: LOST | bits(&[Cause::EncoderError]),
+            due: Due::Seen(Seen::Lost),
+            position_known: false,
+            in_hold: true,
+            ..FAULT
         },
     ),
     row(

@@ -28,7 +28,7 @@ struct Probes {
     cut_low: Probe,
 }
 
-/// An axis in the clock in which its state first was another than RUN.
+/// An axis in the clock in which its state first was another than that in which the fault found it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Change {
     /// The clock.
@@ -45,13 +45,15 @@ pub(super) struct Change {
 pub(super) struct Observation {
     axis: usize,
     probes: Probes,
+    /// The state in which the fault finds it.
+    from: State,
     lost_command: u32,
     deviation_limit: u32,
     still: Still,
     /// The command at the last tick, and how far it had moved in each of the last two.
     command: i32,
     travel: [u32; 2],
-    /// The first other state than RUN.
+    /// The first other state.
     pub(super) change: Option<Change>,
     /// When what the fault is seen by was first there.
     pub(super) seen: Option<u64>,
@@ -74,12 +76,13 @@ struct Still {
 }
 
 impl Observation {
-    /// Of an axis in RUN.
-    pub(super) fn new(bench: &StageBench, axis: usize, watched: &Supervision) -> Result<Self, Error> {
+    /// Of an axis in this state.
+    pub(super) fn new(bench: &StageBench, axis: usize, watched: &Supervision, from: State) -> Result<Self, Error> {
         let name = &bench.axes()[axis];
         let probe = |net: &str| bench.probe(&format!("{name}_{net}"));
         Ok(Self {
             axis,
+            from,
             probes: Probes {
                 state: probe("state")?,
                 causes: probe("causes")?,
@@ -130,7 +133,7 @@ impl Observation {
     /// Before a clock: what registers show in it.
     pub(super) fn before(&mut self, bench: &StageBench, tick: bool) {
         let (now, state) = (bench.now(), self.state(bench));
-        if state != State::Run as u64 && self.change.is_none() {
+        if state != self.from as u64 && self.change.is_none() {
             self.change = Some(Change {
                 clock: now,
                 state,
@@ -183,10 +186,14 @@ impl Observation {
             let (count, command) = (signed(probes.count), signed(probes.command));
             let motion = count.wrapping_sub(self.still.count);
             let one_way = (command < 0) == self.still.backwards;
-            // The drives here take a velocity.
-            let its_way = if command < 0 { motion < -4 } else { motion >= 4 };
+            let [backward, forward] = [motion < -4, motion >= 4];
+            // A motion against the command is as none, but distances count from there on.
+            let its_way = if command < 0 { backward } else { forward };
             if size(command) > self.lost_command && one_way && !its_way {
                 self.still.ticks += 1;
+                if backward || forward {
+                    self.still.count = count;
+                }
             } else {
                 self.still = Still {
                     count,

@@ -1,7 +1,7 @@
 //! One case, from reset to the small move after the fault.
 
 use posicast_model::motion::{TickLimits, plan_move};
-use posicast_model::rtl::axis::WATCH_CLOCKS;
+use posicast_model::rtl::axis::{State, WATCH_CLOCKS};
 use posicast_model::rtl::segments::Entry;
 
 use super::CampaignError;
@@ -102,11 +102,16 @@ impl Running<'_> {
                 .write(&format!("{name}_watchdog"), u32::from(self.case.off_causes) << 16)?;
         }
         self.bench.write("interrupt_enable", INTERRUPTS)?;
-        let plan = self.plan()?;
-        self.load(&plan.entries)?;
-        if !self.start()? {
-            return Ok(());
-        }
+        let plan = if self.case.row.expects.in_hold {
+            Plan::default()
+        } else {
+            let plan = self.plan()?;
+            self.load(&plan.entries)?;
+            if !self.start()? {
+                return Ok(());
+            }
+            plan
+        };
         self.bench.write("interrupt_state", u32::MAX)?;
         let axes = self.run_run_to_fault(plan.ticks)?;
         let observed = self.observe(axes, plan.ticks)?;
@@ -206,9 +211,14 @@ impl Running<'_> {
     /// To the clock of the fault; the last two ticks before it one by one, to know the commands' velocities.
     fn run_run_to_fault(&mut self, ticks: u64) -> Result<Vec<Observation>, Error> {
         let mut axes = Vec::new();
+        let from = if self.case.row.expects.in_hold {
+            State::Hold
+        } else {
+            State::Run
+        };
         for axis in 0..2 {
             let watched = &self.bed.stage.config.axes[axis].supervision;
-            axes.push(Observation::new(&self.bench, axis, watched)?);
+            axes.push(Observation::new(&self.bench, axis, watched, from)?);
         }
         if let Kind::Overflow | Kind::OutOfRange = self.case.row.kind {
             return Ok(axes);

@@ -122,7 +122,8 @@ impl AxisRandom {
         let limit = rng.next_u32() >> rng.random_range(1..32);
         let watched = rng.random_range(0..4) == 0;
         inputs.modulo = any & 7 << 20 == 0;
-        inputs.velocity_drive = any & 1 << 23 == 0;
+        inputs.watches_direction = any & 1 << 23 == 0;
+        inputs.limits_after_homing = any & 1 << 24 == 0;
         inputs.following_error_limit = if watched { limit } else { 0 };
         inputs.deviation_limit = if any & 1 << 16 == 0 { 0 } else { limit };
         inputs.lost_command = if any & 1 << 17 == 0 { limit } else { 0 };
@@ -208,6 +209,8 @@ impl AxisRandom {
             self.inputs.enable = !matches!(state, State::Off | State::Fault);
         }
         self.inputs.start = start;
+        self.inputs.write_homed = self.one_in(100);
+        self.inputs.homed_value = !self.one_in(4);
         self.inputs.kick = self.one_in(self.mood.kick_pace);
         let wrong = KICK ^ 1 << self.rng.random_range(0..32);
         self.inputs.kick_word = *pick(&mut self.rng, &[KICK, KICK, KICK, wrong]);

@@ -59,6 +59,26 @@ fn formal_a_cause_that_is_cleared_while_it_is_active_is_found() {
 }
 
 #[test]
+fn formal_an_axis_that_is_homed_with_a_lost_encoder_is_found() {
+    fails(
+        "axis_causes",
+        "homed_q_next = is_homed & ",
+        "homed_q_next = is_homed | ",
+        "homed_until_doubtful",
+    );
+}
+
+#[test]
+fn formal_soft_limits_that_wait_for_nothing_are_found() {
+    fails(
+        "axis_monitors",
+        "(plus_limited_nonzero | minus_limited_nonzero) & !waits",
+        "(plus_limited_nonzero | minus_limited_nonzero) & waits",
+        "",
+    );
+}
+
+#[test]
 fn formal_a_range_that_a_rotary_axis_leaves_is_found() {
     fails("axis_causes", "far & !modulo", "far", "any_cause_at_once");
 }
@@ -70,6 +90,16 @@ fn formal_a_motion_from_elsewhere_is_found() {
         "motion_next = captured - still_since",
         "motion_next = still_since - captured",
         "motions",
+    );
+}
+
+#[test]
+fn formal_a_watch_that_does_not_follow_a_motion_against_the_command_is_found() {
+    fails(
+        "axis_monitors",
+        "over & (!stands | moves)",
+        "over & !stands",
+        "since_when",
     );
 }
 

@@ -57,6 +57,11 @@ impl Encoder {
         Self { reversed, ..self }
     }
 
+    /// So many counts in m or rad.
+    pub(super) fn length(&self, counts: f64) -> f64 {
+        counts / self.counts_per_unit
+    }
+
     pub(super) fn count(&self) -> i64 {
         self.shown
     }

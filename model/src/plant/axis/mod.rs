@@ -264,6 +264,12 @@ impl AxisPlant {
         }
     }
 
+    /// Puts the whole axis so many counts of the encoder away from where it is, as a hand or a shock does. The lines follow in
+    /// the cell after the present one.
+    pub fn displace(&mut self, counts: f64) {
+        self.driven.position += self.encoder.length(counts);
+    }
+
     fn end_cell(&mut self) {
         let command = self.pins.take();
         let before = self.driven.position;

@@ -23,7 +23,7 @@ pub enum Cause {
     Deviation = 8,
     /// The controller's command was cut for too many ticks in a row.
     Saturation = 9,
-    /// A command above its threshold, and no count for too many ticks.
+    /// A command above its threshold, and for too many ticks no motion, or one against it where the direction is watched.
     EncoderLost = 10,
     /// An illegal transition, or a pair that disagrees, of motor encoder or scale.
     EncoderError = 11,
@@ -102,6 +102,9 @@ pub const AT_ONCE: u32 =
 
 /// Causes after which an axis is in order: it only waits, in HOLD, for the others.
 pub const HARMLESS: u32 = Cause::GroupStop.bit();
+
+/// Causes after which the position may be another one: the axis is no longer homed.
+pub const DOUBTFUL: u32 = Cause::EncoderLost.bit() | Cause::EncoderError.bit();
 
 /// Those of `causes` that switch the outputs off at once.
 pub const fn switching_off(causes: u32, off_causes: u16) -> u32 {

@@ -33,6 +33,10 @@ pub struct Inputs {
     pub kick: bool,
     /// Only [`KICK`](super::KICK) counts.
     pub kick_word: u32,
+    /// One clock: `homed_value` is for `homed`.
+    pub write_homed: bool,
+    /// The position's origin is known, the soft limits are for it.
+    pub homed_value: bool,
     /// Another axis wants all to stop.
     pub group_stop: bool,
     /// Another axis has its emergency stop.
@@ -49,6 +53,8 @@ pub struct Inputs {
     pub soft_limit_plus: i32,
     /// Q24.8 counts.
     pub soft_limit_minus: i32,
+    /// No soft limits unless `homed`.
+    pub limits_after_homing: bool,
     /// Q16.16 counts; 0: not watched.
     pub following_error_limit: u32,
     /// As `deviation`; 0: not watched.
@@ -59,8 +65,8 @@ pub struct Inputs {
     pub lost_command: u32,
     /// Ticks without a motion the command's way; 0: not watched.
     pub lost_ticks: u16,
-    /// The drive's command is a velocity: a motion against it is as none.
-    pub velocity_drive: bool,
+    /// A motion against the command is as none: so an encoder of the wrong sign is lost.
+    pub watches_direction: bool,
     /// Ticks without a kick; 0: no watchdog.
     pub watchdog_ticks: u16,
     /// A rotary axis: positions wrap, and no range is left.
@@ -120,7 +126,7 @@ pub struct Inputs {
 }
 
 /// In port order, with width and sign.
-pub(super) const INPUTS: [PlainRow; 56] = [
+pub(super) const INPUTS: [PlainRow; 59] = [
     ("rst", 1, false),
     ("tick", 1, false),
     ("emergency_stop_n", 1, false),
@@ -135,6 +141,8 @@ pub(super) const INPUTS: [PlainRow; 56] = [
     ("clear_faults", 1, false),
     ("kick", 1, false),
     ("kick_word", 32, false),
+    ("write_homed", 1, false),
+    ("homed_value", 1, false),
     ("group_stop", 1, false),
     ("group_emergency_stop", 1, false),
     ("off_causes", 16, false),
@@ -143,12 +151,13 @@ pub(super) const INPUTS: [PlainRow; 56] = [
     ("settle_ticks", 16, false),
     ("soft_limit_plus", 32, true),
     ("soft_limit_minus", 32, true),
+    ("limits_after_homing", 1, false),
     ("following_error_limit", 32, false),
     ("deviation_limit", 32, false),
     ("saturation_ticks", 16, false),
     ("lost_command", 32, false),
     ("lost_ticks", 16, false),
-    ("velocity_drive", 1, false),
+    ("watches_direction", 1, false),
     ("watchdog_ticks", 16, false),
     ("modulo", 1, false),
     ("position", 32, true),
@@ -202,6 +211,8 @@ impl Inputs {
             clear_faults: word() & 1 != 0,
             kick: word() & 1 != 0,
             kick_word: word() as u32,
+            write_homed: word() & 1 != 0,
+            homed_value: word() & 1 != 0,
             group_stop: word() & 1 != 0,
             group_emergency_stop: word() & 1 != 0,
             off_causes: word() as u16,
@@ -210,12 +221,13 @@ impl Inputs {
             settle_ticks: word() as u16,
             soft_limit_plus: word() as i32,
             soft_limit_minus: word() as i32,
+            limits_after_homing: word() & 1 != 0,
             following_error_limit: word() as u32,
             deviation_limit: word() as u32,
             saturation_ticks: word() as u16,
             lost_command: word() as u32,
             lost_ticks: word() as u16,
-            velocity_drive: word() & 1 != 0,
+            watches_direction: word() & 1 != 0,
             watchdog_ticks: word() as u16,
             modulo: word() & 1 != 0,
             position: word() as i32,
@@ -264,6 +276,8 @@ impl Inputs {
             u64::from(self.clear_faults),
             u64::from(self.kick),
             u64::from(self.kick_word),
+            u64::from(self.write_homed),
+            u64::from(self.homed_value),
             u64::from(self.group_stop),
             u64::from(self.group_emergency_stop),
             u64::from(self.off_causes),
@@ -272,12 +286,13 @@ impl Inputs {
             u64::from(self.settle_ticks),
             u64::from(self.soft_limit_plus as u32),
             u64::from(self.soft_limit_minus as u32),
+            u64::from(self.limits_after_homing),
             u64::from(self.following_error_limit),
             u64::from(self.deviation_limit),
             u64::from(self.saturation_ticks),
             u64::from(self.lost_command),
             u64::from(self.lost_ticks),
-            u64::from(self.velocity_drive),
+            u64::from(self.watches_direction),
             u64::from(self.watchdog_ticks),
             u64::from(self.modulo),
             u64::from(self.position as u32),

@@ -35,7 +35,7 @@ mod registers;
 mod timer;
 mod transition;
 
-pub use cause::{ALWAYS_OFF, AT_ONCE, CAUSE_BITS, Cause, HARMLESS, switching_off};
+pub use cause::{ALWAYS_OFF, AT_ONCE, CAUSE_BITS, Cause, DOUBTFUL, HARMLESS, switching_off};
 pub use inputs::{INPUT_PORTS, Inputs};
 pub use outputs::{OUTPUT_PORTS, Outputs};
 pub use transition::{Condition, Conditions, State, TRANSITIONS, Transition, next};
@@ -102,6 +102,7 @@ impl Axis {
             wants_group_stop: registers.wants_group_stop(),
             emergency_stop: registers.emergency_stop(),
             can_start: pulses.can_start,
+            homed: registers.homed,
             captured_position: registers.monitors.captured_position,
             level_emergency_stop_n: emergency_stop_n,
             level_limit_plus_n: limit_plus_n,

@@ -112,7 +112,7 @@ pub(super) struct Monitors {
     were_passed: [bool; 4],
     /// Ticks in a row with a command to one side and without a motion of more than [`STILL_COUNTS`].
     still_ticks: u16,
-    /// Position and command's sign of the last tick that was not one of them.
+    /// The command's sign of the last tick that was not one of them, and the position of it or, if later, of the last motion.
     still_since: (i32, bool),
     /// Ticks since the last kick.
     unkicked_ticks: u16,
@@ -121,11 +121,11 @@ pub(super) struct Monitors {
 }
 
 impl Monitors {
-    /// Limit +, limit −, soft limit +, soft limit − are passed.
-    fn passed(&self) -> [bool; 4] {
+    /// Limit +, limit −, soft limit +, soft limit − are passed. `waits`: there are no soft limits yet.
+    fn passed(&self, waits: bool) -> [bool; 4] {
         let [plus, minus] = self.taken.soft_limits.map(|limit| limit as i32);
         let reference = self.taken.reference_position as i32;
-        let watched = plus != 0 || minus != 0;
+        let watched = (plus != 0 || minus != 0) && !waits;
         let [on_plus, on_minus] = self.shown.on_limits;
         [
             on_plus,
@@ -142,20 +142,25 @@ impl Monitors {
         size > self.taken.limits[at]
     }
 
+    /// A motion since the position was last seen to move: backward, forward. A line that is stuck lets the count dither by
+    /// one: that is none.
+    fn motion(&self) -> [bool; 2] {
+        let motion = self.captured_position.wrapping_sub(self.still_since.0);
+        [motion < -STILL_COUNTS, motion >= STILL_COUNTS]
+    }
+
     /// A command above its threshold, to the same side as when the position was last seen to move, and no motion since
-    /// then. A line that is stuck lets the count dither by one: that is none. Nor is one against the command of a drive whose
-    /// command is a velocity; where it is a torque, an axis that is slowed down goes against it.
-    fn stands(&self, velocity_drive: bool) -> bool {
-        let (position, negative) = self.still_since;
-        let motion = self.captured_position.wrapping_sub(position);
-        let [backward, forward] = [motion < -STILL_COUNTS, motion >= STILL_COUNTS];
+    /// then. With `watches_direction` a motion against the command is as none.
+    fn stands(&self, watches_direction: bool) -> bool {
+        let negative = self.still_since.1;
+        let [backward, forward] = self.motion();
         let against = if negative { forward } else { backward };
-        let moves = (backward || forward) && !(velocity_drive && against);
+        let moves = (backward || forward) && !(watches_direction && against);
         self.shown.on && !moves && self.shown.negative[2] == negative && self.exceeds(2)
     }
 
     /// The causes that a round finds.
-    fn causes(&self) -> u32 {
+    fn causes(&self, waits: bool) -> u32 {
         let shown = &self.shown;
         let newly = |at: usize| !self.were_passed[at];
         let ([plus, minus], [shaped_plus, shaped_minus]) = (shown.ways, shown.shaped_ways);
@@ -166,7 +171,7 @@ impl Monitors {
             plus || newly(2),
             minus || newly(3),
         ];
-        let passed = self.passed();
+        let passed = self.passed(waits);
         let exceeds = |at: usize| self.taken.limits[at] != 0 && self.exceeds(at);
         let [saturation, lost, watchdog] = self.taken.most_ticks;
         let found = [
@@ -185,24 +190,29 @@ impl Monitors {
     }
 
     /// One clock.
-    pub(super) fn clock(&mut self, inputs: &Inputs, on_limits: [bool; 2], on: bool, kicked: bool) {
+    pub(super) fn clock(&mut self, inputs: &Inputs, on_limits: [bool; 2], waits: bool, on: bool, kicked: bool) {
         let clocks = self.clocks;
         self.found = 0;
         if inputs.tick {
             self.deviation = inputs.deviation;
         }
         if clocks == FIRST_ROUND {
-            self.first_found = self.causes();
+            self.first_found = self.causes(waits);
             self.still_ticks = self.still_ticks.saturating_add(1);
             self.unkicked_ticks = self.unkicked_ticks.saturating_add(1);
         }
         if clocks == SECOND_ROUND {
             if self.shown.on {
-                self.found = self.causes() & self.first_found;
+                self.found = self.causes(waits) & self.first_found;
             }
-            self.were_passed = self.passed();
-            if !self.stands(inputs.velocity_drive) {
+            self.were_passed = self.passed(waits);
+            let stands = self.stands(inputs.watches_direction);
+            if !stands {
                 self.still_ticks = 0;
+            }
+            // A motion against the command counts as none, but the position follows it: an axis that a torque has slowed down
+            // and turned round moves the command's way from there on, however far it is from where it began to slow down.
+            if !stands || self.motion().contains(&true) {
                 self.still_since = (self.captured_position, self.shown.negative[2]);
             }
         }

@@ -38,6 +38,8 @@ pub struct Outputs {
     pub emergency_stop: bool,
     /// A `start` would lead to RUN at the next tick; as of the clock before.
     pub can_start: bool,
+    /// The host has homed the axis, and its position has not been in doubt since then.
+    pub homed: bool,
     /// The position at the last tick, counts.
     pub captured_position: i32,
     /// Filtered line.
@@ -67,7 +69,7 @@ pub struct Outputs {
 }
 
 /// In port order, with width and sign.
-pub(super) const OUTPUTS: [PlainRow; 29] = [
+pub(super) const OUTPUTS: [PlainRow; 30] = [
     ("state", 3, false),
     ("causes", 17, false),
     ("drive_enable", 1, false),
@@ -84,6 +86,7 @@ pub(super) const OUTPUTS: [PlainRow; 29] = [
     ("wants_group_stop", 1, false),
     ("emergency_stop", 1, false),
     ("can_start", 1, false),
+    ("homed", 1, false),
     ("captured_position", 32, true),
     ("level_emergency_stop_n", 1, false),
     ("level_limit_plus_n", 1, false),
@@ -124,6 +127,7 @@ impl Outputs {
             wants_group_stop: word() & 1 != 0,
             emergency_stop: word() & 1 != 0,
             can_start: word() & 1 != 0,
+            homed: word() & 1 != 0,
             captured_position: word() as i32,
             level_emergency_stop_n: word() & 1 != 0,
             level_limit_plus_n: word() & 1 != 0,
@@ -159,6 +163,7 @@ impl Outputs {
             u64::from(self.wants_group_stop),
             u64::from(self.emergency_stop),
             u64::from(self.can_start),
+            u64::from(self.homed),
             u64::from(self.captured_position as u32),
             u64::from(self.level_emergency_stop_n),
             u64::from(self.level_limit_plus_n),

@@ -1,6 +1,6 @@
 //! What the supervisor knows, and what a clock makes of it.
 
-use super::cause::{AT_ONCE, Cause, HARMLESS, switching_off};
+use super::cause::{AT_ONCE, Cause, DOUBTFUL, HARMLESS, switching_off};
 use super::inputs::Inputs;
 use super::monitors::Monitors;
 use super::timer::{Begins, Timer};
@@ -69,6 +69,7 @@ pub(super) struct Registers {
     /// Clocks until causes are forgotten.
     clear_left: u8,
     pub(super) tripping: bool,
+    pub(super) homed: bool,
     pub(super) pulses: Pulses,
 }
 
@@ -92,6 +93,7 @@ impl Default for Registers {
             start_waits: false,
             clear_left: 0,
             tripping: false,
+            homed: false,
             pulses: Pulses::default(),
         }
     }
@@ -150,7 +152,14 @@ impl Registers {
             return;
         }
         let now = self.look(inputs);
-        let was_on = self.on;
+        let (was_on, waits) = (self.on, inputs.limits_after_homing && !self.homed);
+        // What stands in the clock before: a write has no effect until it is forgotten.
+        let is_homed = if inputs.write_homed {
+            inputs.homed_value
+        } else {
+            self.homed
+        };
+        self.homed = is_homed && self.causes & DOUBTFUL == 0;
         let after = next(self.state, now.conditions);
         self.pulses = self.pulses(inputs, &now, after);
         self.run_timer(inputs, &now, after);
@@ -164,7 +173,7 @@ impl Registers {
 
         let kicked = inputs.kick && inputs.kick_word == KICK;
         let on_limits = self.on_limits();
-        self.monitors.clock(inputs, on_limits, was_on, kicked);
+        self.monitors.clock(inputs, on_limits, waits, was_on, kicked);
         // Nothing to filter: a level is its line.
         let filters = self.ready() && inputs.filter_clocks != 0;
         let pins = [

@@ -424,9 +424,10 @@ fn supervisor(axis: &StageAxis, part: Part) -> Part {
         .tied("brake_apply_ticks", watched.brake_apply_ticks.into())
         .tied("deviation_limit", watched.deviation_limit.into())
         .tied("saturation_ticks", watched.saturation_ticks.into())
+        .tied("limits_after_homing", watched.limits_after_homing.into())
         .tied("lost_command", watched.lost_command.into())
         .tied("lost_ticks", watched.lost_ticks.into())
-        .tied("velocity_drive", watched.velocity_drive.into());
+        .tied("watches_direction", watched.watches_direction.into());
     match axis.scale {
         Some(_) => part,
         None => part

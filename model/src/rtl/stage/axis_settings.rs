@@ -79,6 +79,17 @@ fn commands() -> Vec<Register> {
             vec![Field::new("kick_word", 0, 32, "0x4b49434b, `KICK`")],
         ),
         register(
+            "homed",
+            0x0f,
+            command("write_homed"),
+            "the host says whether the axis is homed: until then there are no soft limits, if the machine file says so",
+            vec![Field::flag(
+                "homed_value",
+                0,
+                "the origin is known, and the soft limits are for it",
+            )],
+        ),
+        register(
             "direct",
             0x0d,
             command("direct_kick"),

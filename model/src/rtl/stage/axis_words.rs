@@ -70,6 +70,7 @@ fn states() -> Vec<Register> {
                     5,
                     "0 fault latch, 1 supervisor, 2 drive, 3 PLL, 4 PWM's watchdog",
                 ),
+                Field::flag("homed", 25, "by `HOMED`; not since a lost encoder, or an error of it"),
             ],
         ),
         register(

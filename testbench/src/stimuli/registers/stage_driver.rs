@@ -425,6 +425,7 @@ impl Driver {
         let plus = self.pick(&[plus, plus, minus]);
         self.tell(axis, "soft_limit_plus", plus as u32);
         self.tell(axis, "soft_limit_minus", minus as u32);
+        self.tell(axis, "homed", 1);
         if self.one_in(2) {
             let error = self.below(3 << 16);
             self.tell(axis, "following_error_limit", error);
