@@ -188,7 +188,7 @@ fn unit_random_inputs_move_the_axes() {
     let mut fast = Composed::new(composition, blocks);
     let (mut inputs, outputs) = inputs_of(&fast, STAGE);
     let (mut shown, mut before, mut changes) = (vec![0; outputs], vec![0; outputs], vec![0; outputs]);
-    let mut random = Random(3);
+    let mut random = Random(4);
     for _ in 0..9000 {
         let mut left = inputs.change(&mut random);
         while left > 0 {

@@ -70,6 +70,7 @@ fn states() -> Vec<Register> {
                     5,
                     "0 fault latch, 1 supervisor, 2 drive, 3 PLL, 4 PWM's watchdog",
                 ),
+                Field::flag("setting_read_waits", 25, "`SETTING_READ` was not served yet"),
             ],
         ),
         register(
@@ -163,6 +164,13 @@ fn states() -> Vec<Register> {
                 .with_unit("clocks"),
                 Field::new("self_test_low", 16, 16, "the same of `a_low`").with_unit("clocks"),
             ],
+        ),
+        register(
+            "setting_loaded",
+            0x3e,
+            Access::Live,
+            "what `SETTING_READ` found: 0 where nothing was written since the reset",
+            vec![Field::new("setting_loaded", 0, 32, "mantissa and shift, or the limit")],
         ),
     ]
 }
