@@ -18,10 +18,10 @@ kernel! {
         machine_settings: Rom<32, 4> = machine_rom(machine, rom),
         loaded_settings: Ram<32, 5>,
     }
-    registers { written: Bits<32>, known: Bit, from_machine: Bit, refused_q: Bit }
+    registers { written: Bits<32>, known: Bit, from_machine: Bit, refused_q: Bit, read_waits: Bit, served: Bit, read_back: Bits<32> }
     wires {
         loadable: Bit, taken: Bit, write_half: Bits<5>, write_address: Bits<5>, read_half: Bits<5>,
-        read_address: Bits<5>, in_loaded: Bit,
+        read_address: Bits<5>, in_loaded: Bit, serves: Bit, read_bank: Bits<2>, read_row: Bits<4>,
     }
     constants {
         bank_machine: Bits<2> = from_u64(0),
@@ -62,18 +62,30 @@ impl Logic for SettingBanks {
             self.written.d.next = self.written.q.val() | (self.one.val() << self.write_address.val());
         }
 
+        comment!("A host's read takes the place of one that is not used");
+        self.serves.next =
+            self.read_waits.q.val() & !self.served.q.val() & !self.busy.val() & !self.setting_write.val();
+        self.served.d.next = self.serves.val();
+        self.read_waits.d.next = self.setting_read.val() | (self.read_waits.q.val() & !self.served.q.val());
+        self.read_bank.next = self.bank.val();
+        self.read_row.next = self.row.val();
+        if self.serves.val() {
+            self.read_bank.next = self.setting_bank.val();
+            self.read_row.next = self.setting_row.val();
+        }
+
         comment!("Reads: what was not written is 0");
         self.read_half.next = self.lower_half.val();
-        if self.bank.val() == self.bank_2.val() {
+        if self.read_bank.val() == self.bank_2.val() {
             self.read_half.next = self.upper_half.val();
         }
-        self.read_address.next = self.read_half.val() | bit_cast::<5, 4>(self.row.val());
-        self.in_loaded.next = (self.bank.val() == self.bank_1.val()) | (self.bank.val() == self.bank_2.val());
+        self.read_address.next = self.read_half.val() | bit_cast::<5, 4>(self.read_row.val());
+        self.in_loaded.next = (self.read_bank.val() == self.bank_1.val()) | (self.read_bank.val() == self.bank_2.val());
         self.known.d.next = self.in_loaded.val() & self.written.q.val().get_bit(self.read_address.val().index());
-        self.from_machine.d.next = self.bank.val() == self.bank_machine.val();
+        self.from_machine.d.next = self.read_bank.val() == self.bank_machine.val();
 
         self.machine_settings.clk.next = self.clk.val();
-        self.machine_settings.address.next = self.row.val();
+        self.machine_settings.address.next = self.read_row.val();
         self.loaded_settings.clk.next = self.clk.val();
         self.loaded_settings.write_enable.next = self.taken.val();
         self.loaded_settings.write_address.next = self.write_address.val();
@@ -87,7 +99,12 @@ impl Logic for SettingBanks {
         if self.from_machine.q.val() {
             self.setting.next = self.machine_settings.data.val();
         }
+        if self.served.q.val() {
+            self.read_back.d.next = self.setting.val();
+        }
         self.setting_refused.next = self.refused_q.q.val();
+        self.setting_loaded.next = self.read_back.q.val();
+        self.setting_read_waits.next = self.read_waits.q.val();
     }
 }
 
@@ -132,7 +149,8 @@ pub fn emit(machine: &Settings, prefix: &str) -> Result<Vec<Module>, EmitError> 
         prefix: if prefix.is_empty() { "" } else { LIBRARY }.to_owned(),
         header: Header {
             about: "Settings of a controller: bank 0 is the machine's, banks 1 and 2 can be loaded.\n\
-                    A row that was not written since the reset reads as 0."
+                    A row that was not written since the reset reads as 0.\n\
+                    A host reads any row back while the controller is not busy."
                 .to_owned(),
             parameters: Vec::new(),
         },

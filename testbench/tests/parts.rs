@@ -82,4 +82,6 @@ fn lockstep_catches_a_break_in_each() {
     );
     let group = bench(Part::Group(2));
     caught(&group, "& !can_start_1)", "& !can_start_0)", 100_000);
+    caught(&setting_banks(), "read_row = setting_row;", "read_row = row;", 100_000);
+    caught(&setting_banks(), "& !busy", "", 100_000);
 }

@@ -168,6 +168,8 @@ fn unit_settings_change_between_two_ticks() {
     assert!(said["without_command"].abs() <= 1, "{said:?}");
     assert!((said["with_command"] - 20).abs() <= 1, "{said:?}");
     assert_eq!((said["causes"], said["unchanged"]), (0, 0x1_ffff), "{said:?}");
+    let back = ["read_back", "read_machine", "read_unwritten"].map(|what| said[what]);
+    assert_eq!(back, [1, 1, 0], "{said:?}");
     let value = Gain::from_word(said["gain"] as u32).value(Row::Proportional);
     let wanted = Gain::nearest(1.5 * value, Row::Proportional).unwrap();
     assert_eq!(Gain::from_word(said["gain_3_2"] as u32), wanted);

@@ -125,14 +125,23 @@ static void tables(posicast_stage *stage)
 static void settings(posicast_stage *stage)
 {
     const posicast_settings *machine = &machine_xy_stage.axis[X].settings;
-    posicast_settings changed = *machine;
+    posicast_settings changed = *machine, back;
     posicast_snapshot at;
-    uint32_t gain = machine->word[POSICAST_SETTING_PROPORTIONAL];
+    uint32_t gain = machine->word[POSICAST_SETTING_PROPORTIONAL], row, unwritten = 0;
 
     changed.word[POSICAST_SETTING_LIMIT] = 0;
     need("no command", posicast_load_settings(stage, X, 2, &changed, TICKS), POSICAST_OK);
     need("the bank in use", posicast_load_settings(stage, X, 2, &changed, TICKS), POSICAST_WRONG_STATE);
     need("bank 0", posicast_load_settings(stage, X, 0, &changed, TICKS), POSICAST_BAD_ARGUMENT);
+    need("reads the bank in use", posicast_read_settings(stage, X, 2, &back, TICKS), POSICAST_OK);
+    result("read_back", memcmp(back.word, changed.word, sizeof back.word) == 0 && back.law == changed.law);
+    need("reads the machine's", posicast_read_settings(stage, X, 0, &back, TICKS), POSICAST_OK);
+    result("read_machine", memcmp(back.word, machine->word, sizeof back.word) == 0);
+    need("reads bank 1", posicast_read_settings(stage, X, 1, &back, TICKS), POSICAST_OK);
+    for (row = 0; row < POSICAST_SETTINGS; row++)
+        unwritten |= back.word[row];
+    result("read_unwritten", unwritten);
+    need("bank 3", posicast_read_settings(stage, X, 3, &back, TICKS), POSICAST_BAD_ARGUMENT);
     need("law 3", posicast_use_settings(stage, X, 0, 3, TICKS), POSICAST_BAD_ARGUMENT);
     need("move X", posicast_queue_move(stage, X, COUNTS(20), limits_of(X)), POSICAST_OK);
     need("start X", posicast_start(stage, 1u << X), POSICAST_OK);

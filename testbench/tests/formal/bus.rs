@@ -47,3 +47,8 @@ fn formal_a_write_after_its_commit_is_found() {
 fn formal_a_setting_that_changes_in_use_is_found() {
     fails("setting_banks", " & (setting_bank != bank)", "", "active_stays");
 }
+
+#[test]
+fn formal_a_read_back_in_a_pass_is_found() {
+    fails("setting_banks", "& !busy", "", "serves_idle");
+}

@@ -2,8 +2,8 @@
 create_driver xy_stage_stage_driver
 
 set_sw_property hw_class_name xy_stage_stage
-set_sw_property version 2.0
-set_sw_property min_compatible_hw_version 2.0
+set_sw_property version 2.1
+set_sw_property min_compatible_hw_version 2.1
 set_sw_property bsp_subdirectory drivers
 set_sw_property auto_initialize true
 set_sw_property isr_preemption_supported true

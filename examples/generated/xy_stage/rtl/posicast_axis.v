@@ -27,6 +27,8 @@ module posicast_axis (
     input  wire               clear_faults,
     input  wire               kick,
     input  wire [31:0]        kick_word,
+    input  wire               write_homed,
+    input  wire               homed_value,
     input  wire               group_stop,
     input  wire               group_emergency_stop,
     input  wire [15:0]        off_causes,
@@ -35,12 +37,13 @@ module posicast_axis (
     input  wire [15:0]        settle_ticks,
     input  wire signed [31:0] soft_limit_plus,
     input  wire signed [31:0] soft_limit_minus,
+    input  wire               limits_after_homing,
     input  wire [31:0]        following_error_limit,
     input  wire [31:0]        deviation_limit,
     input  wire [15:0]        saturation_ticks,
     input  wire [31:0]        lost_command,
     input  wire [15:0]        lost_ticks,
-    input  wire               velocity_drive,
+    input  wire               watches_direction,
     input  wire [15:0]        watchdog_ticks,
     input  wire               modulo,
     input  wire signed [31:0] position,
@@ -85,6 +88,7 @@ module posicast_axis (
     output wire               wants_group_stop,
     output wire               emergency_stop,
     output wire               can_start,
+    output wire               homed,
     output wire signed [31:0] captured_position,
     output wire               level_emergency_stop_n,
     output wire               level_limit_plus_n,
@@ -104,6 +108,7 @@ module posicast_axis (
     localparam [3:0]  ONE_CLOCK = 4'd1;
     localparam [3:0]  TWO_CLOCKS = 4'd2;
     localparam [3:0]  CLEAR_CLOCKS = 4'd8;
+    localparam [16:0] DOUBTFUL_CAUSES = 17'd3072;
     localparam [31:0] KICK_VALUE = 32'd1263092555;
 
     wire               ready;
@@ -118,6 +123,8 @@ module posicast_axis (
     wire [8:0]         count_above;
     wire [5:0]         count_end;
     reg                far;
+    wire [16:0]        doubts;
+    reg                is_homed;
     wire               emergency_stop_line_level;
     wire               limit_plus_line_level;
     wire               limit_minus_line_level;
@@ -126,6 +133,7 @@ module posicast_axis (
     wire               monitors_kicked;
     wire               monitors_on_limit_plus;
     wire               monitors_on_limit_minus;
+    wire               monitors_limits_wait;
     wire [16:0]        monitors_causes;
     wire signed [31:0] monitors_captured_position;
     wire               cause_word_drive_lost;
@@ -166,6 +174,8 @@ module posicast_axis (
     reg                tripping;
     reg                out_of_range;
     wire               out_of_range_next;
+    reg                homed_q;
+    wire               homed_q_next;
 
     posicast_single_line u_emergency_stop_line (
         .clk           (clk),
@@ -223,12 +233,13 @@ module posicast_axis (
         .on_limit_minus        (monitors_on_limit_minus),
         .soft_limit_plus       (soft_limit_plus),
         .soft_limit_minus      (soft_limit_minus),
+        .limits_wait           (monitors_limits_wait),
         .following_error_limit (following_error_limit),
         .deviation_limit       (deviation_limit),
         .saturation_ticks      (saturation_ticks),
         .lost_command          (lost_command),
         .lost_ticks            (lost_ticks),
-        .velocity_drive        (velocity_drive),
+        .watches_direction     (watches_direction),
         .watchdog_ticks        (watchdog_ticks),
         .position              (position),
         .deviation             (deviation),
@@ -317,6 +328,7 @@ module posicast_axis (
     assign monitors_kicked = kick & (kick_word == KICK_VALUE);
     assign monitors_on_limit_plus = !limit_plus_line_level;
     assign monitors_on_limit_minus = !limit_minus_line_level;
+    assign monitors_limits_wait = limits_after_homing & !homed_q;
 
     // The range of the position's word: its last 64th
     // at either end, and what was cut to its word
@@ -337,6 +349,10 @@ module posicast_axis (
     assign group_stops = states_on & group_stop;
     assign cause_word_group_stops = group_stops & !states_wants_group_stop;
     assign cause_word_late = ((segments_tick_missed | velocity_missed) | shaper_overrun) | controller_overrun;
+
+    // Homed, until the position is in doubt
+    assign doubts = cause_word_causes & DOUBTFUL_CAUSES;
+    assign homed_q_next = is_homed & !(|doubts);
     assign clear_due_next = (clear_left == TWO_CLOCKS) & !clear_faults;
     assign states_drive_ready = ready & drive_line_level;
 
@@ -358,6 +374,7 @@ module posicast_axis (
     assign emergency_stop = own_emergency;
     assign captured_position = monitors_captured_position;
     assign can_start = states_can_start;
+    assign homed = homed_q;
     assign enabled = states_enabled;
     assign started = states_started;
     assign stopping = states_stopping;
@@ -371,6 +388,10 @@ module posicast_axis (
         far = (|count_above) | (&count_end);
         if (count_bits[31]) begin
             far = !(&count_above) | !(|count_end);
+        end
+        is_homed = homed_q;
+        if (write_homed) begin
+            is_homed = homed_value;
         end
         if (clear_left != NO_CLOCKS) begin
             clear_left_next = clear_left - ONE_CLOCK;
@@ -388,6 +409,7 @@ module posicast_axis (
             clear_sources_q <= 1'd0;
             tripping <= 1'd0;
             out_of_range <= 1'd0;
+            homed_q <= 1'd0;
         end else begin
             primed <= primed_next;
             clear_left <= clear_left_next;
@@ -396,6 +418,7 @@ module posicast_axis (
             clear_sources_q <= clear_faults;
             tripping <= emergency;
             out_of_range <= out_of_range_next;
+            homed_q <= homed_q_next;
         end
     end
 
@@ -406,6 +429,7 @@ module posicast_axis (
         clear_sources_q = 1'd0;
         tripping = 1'd0;
         out_of_range = 1'd0;
+        homed_q = 1'd0;
     end
 
     // Bits that nothing reads.

@@ -15,12 +15,13 @@ module posicast_axis_monitors (
     input  wire               on_limit_minus,
     input  wire signed [31:0] soft_limit_plus,
     input  wire signed [31:0] soft_limit_minus,
+    input  wire               limits_wait,
     input  wire [31:0]        following_error_limit,
     input  wire [31:0]        deviation_limit,
     input  wire [15:0]        saturation_ticks,
     input  wire [31:0]        lost_command,
     input  wire [15:0]        lost_ticks,
-    input  wire               velocity_drive,
+    input  wire               watches_direction,
     input  wire [15:0]        watchdog_ticks,
     input  wire signed [31:0] position,
     input  wire signed [31:0] deviation,
@@ -49,6 +50,7 @@ module posicast_axis_monitors (
     wire [31:0]        command_bits;
     wire [31:0]        motion_bits;
     wire [29:0]        motion_above;
+    wire               moves;
     reg                not_its_way;
     wire [31:0]        reference_velocity_bits;
     wire               takes;
@@ -144,6 +146,7 @@ module posicast_axis_monitors (
         .reference_position (reference_position),
         .soft_limit_plus    (soft_limit_plus),
         .soft_limit_minus   (soft_limit_minus),
+        .waits              (limits_wait),
         .past_plus          (soft_limits_past_plus),
         .past_minus         (soft_limits_past_minus)
     );
@@ -262,7 +265,8 @@ module posicast_axis_monitors (
     assign motion_above = motion_bits[31:2];
     assign not_forward_next = motion_bits[31] | !(|motion_above);
     assign not_backward_next = !motion_bits[31] | (&motion_above);
-    assign stands = (((was_on & not_its_way) & (velocity_drive | (not_forward & not_backward))) & (drive_backward == still_backward)) & commands_exceeds;
+    assign moves = !not_forward | !not_backward;
+    assign stands = (((was_on & not_its_way) & (watches_direction | !moves)) & (drive_backward == still_backward)) & commands_exceeds;
     assign still_clears = over & !stands;
 
     // A kick waits until the count has gone round
@@ -315,12 +319,14 @@ module posicast_axis_monitors (
             was_past_minus_next = soft_limits_past_minus;
         end
 
-        // Against a velocity's command is as not at all
+        // Against the command is as not at all, if watched
         not_its_way = not_forward;
         if (drive_backward) begin
             not_its_way = not_backward;
         end
-        if (over & !stands) begin
+
+        // The way back is measured from where it turned
+        if (over & (!stands | moves)) begin
             still_since_next = captured;
             still_backward_next = drive_backward;
         end

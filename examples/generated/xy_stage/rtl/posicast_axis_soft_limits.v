@@ -14,6 +14,7 @@ module posicast_axis_soft_limits (
     input  wire signed [31:0] reference_position,
     input  wire signed [31:0] soft_limit_plus,
     input  wire signed [31:0] soft_limit_minus,
+    input  wire               waits,
     output wire               past_plus,
     output wire               past_minus
 );
@@ -98,7 +99,7 @@ module posicast_axis_soft_limits (
     assign minus_bytes_word = $unsigned(soft_limit_minus);
     assign above_inverts = 1'd0;
     assign below_inverts = 1'd0;
-    assign limited = plus_limited_nonzero | minus_limited_nonzero;
+    assign limited = (plus_limited_nonzero | minus_limited_nonzero) & !waits;
     assign past_plus = limited & above_larger;
     assign past_minus = limited & below_larger;
 endmodule

@@ -83,6 +83,8 @@ module xy_stage_stage (
     wire               x_direct_kick;
     wire signed [16:0] x_direct_duty;
     wire [5:0]         x_low_water;
+    wire               x_write_homed;
+    wire               x_homed_value;
     wire               x_segment_write;
     wire [1:0]         x_segment_word;
     wire [31:0]        x_segment_data;
@@ -117,6 +119,7 @@ module xy_stage_stage (
     wire signed [31:0] x_preset_value;
     wire               x_encoder_invert;
     wire [15:0]        x_trigger_phase;
+    wire               x_setting_read;
     wire               y_enable;
     wire               y_direct_enable;
     wire               y_self_test;
@@ -128,6 +131,8 @@ module xy_stage_stage (
     wire               y_direct_kick;
     wire signed [16:0] y_direct_duty;
     wire [5:0]         y_low_water;
+    wire               y_write_homed;
+    wire               y_homed_value;
     wire               y_segment_write;
     wire [1:0]         y_segment_word;
     wire [31:0]        y_segment_data;
@@ -162,6 +167,7 @@ module xy_stage_stage (
     wire signed [31:0] y_preset_value;
     wire               y_encoder_invert;
     wire [15:0]        y_trigger_phase;
+    wire               y_setting_read;
     wire               divide;
     wire [31:0]        time_stamp;
     wire [23:0]        edge_stamp;
@@ -207,6 +213,8 @@ module xy_stage_stage (
     wire [1:0]         x_table_bank;
     wire               x_index_armed;
     wire [4:0]         x_trip_causes;
+    wire               x_homed;
+    wire               x_setting_read_waits;
     wire [16:0]        x_causes;
     wire               x_segments_underrun;
     wire               x_segments_overflow;
@@ -238,6 +246,7 @@ module xy_stage_stage (
     wire               x_feed_held;
     wire [15:0]        x_self_test_high;
     wire [15:0]        x_self_test_low;
+    wire [31:0]        x_setting_loaded;
     wire signed [31:0] x_user_position;
     wire signed [31:0] x_count;
     wire signed [31:0] x_velocity;
@@ -277,6 +286,8 @@ module xy_stage_stage (
     wire [1:0]         y_table_bank;
     wire               y_index_armed;
     wire [4:0]         y_trip_causes;
+    wire               y_homed;
+    wire               y_setting_read_waits;
     wire [16:0]        y_causes;
     wire               y_segments_underrun;
     wire               y_segments_overflow;
@@ -308,6 +319,7 @@ module xy_stage_stage (
     wire               y_feed_held;
     wire [15:0]        y_self_test_high;
     wire [15:0]        y_self_test_low;
+    wire [31:0]        y_setting_loaded;
     wire signed [31:0] y_user_position;
     wire signed [31:0] y_count;
     wire signed [31:0] y_velocity;
@@ -326,7 +338,7 @@ module xy_stage_stage (
     wire               y_faulted;
     wire               y_index_seen;
 
-    posicast_stage_registers_e62fd93e u_registers (
+    posicast_stage_registers_5ab0eac9 u_registers (
         .clk                         (clk),
         .rst                         (rst),
         .avs_address                 (avs_address),
@@ -369,6 +381,8 @@ module xy_stage_stage (
         .x_direct_kick               (x_direct_kick),
         .x_direct_duty               (x_direct_duty),
         .x_low_water                 (x_low_water),
+        .x_write_homed               (x_write_homed),
+        .x_homed_value               (x_homed_value),
         .x_segment_write             (x_segment_write),
         .x_segment_word              (x_segment_word),
         .x_segment_data              (x_segment_data),
@@ -404,6 +418,7 @@ module xy_stage_stage (
         .x_drive_enable              (x_drive_enable),
         .x_encoder_invert            (x_encoder_invert),
         .x_trigger_phase             (x_trigger_phase),
+        .x_setting_read              (x_setting_read),
         .x_state                     (x_state),
         .x_can_start                 (x_can_start),
         .x_segments_state            (x_segments_state),
@@ -421,6 +436,8 @@ module xy_stage_stage (
         .x_table_bank                (x_table_bank),
         .x_index_armed               (x_index_armed),
         .x_trip_causes               (x_trip_causes),
+        .x_homed                     (x_homed),
+        .x_setting_read_waits        (x_setting_read_waits),
         .x_causes                    (x_causes),
         .x_segments_underrun         (x_segments_underrun),
         .x_segments_overflow         (x_segments_overflow),
@@ -462,6 +479,7 @@ module xy_stage_stage (
         .x_error                     (x_error),
         .x_command                   (x_command),
         .x_duty                      (x_duty),
+        .x_setting_loaded            (x_setting_loaded),
         .y_enable                    (y_enable),
         .y_direct_enable             (y_direct_enable),
         .y_self_test                 (y_self_test),
@@ -473,6 +491,8 @@ module xy_stage_stage (
         .y_direct_kick               (y_direct_kick),
         .y_direct_duty               (y_direct_duty),
         .y_low_water                 (y_low_water),
+        .y_write_homed               (y_write_homed),
+        .y_homed_value               (y_homed_value),
         .y_segment_write             (y_segment_write),
         .y_segment_word              (y_segment_word),
         .y_segment_data              (y_segment_data),
@@ -508,6 +528,7 @@ module xy_stage_stage (
         .y_drive_enable              (y_drive_enable),
         .y_encoder_invert            (y_encoder_invert),
         .y_trigger_phase             (y_trigger_phase),
+        .y_setting_read              (y_setting_read),
         .y_state                     (y_state),
         .y_can_start                 (y_can_start),
         .y_segments_state            (y_segments_state),
@@ -525,6 +546,8 @@ module xy_stage_stage (
         .y_table_bank                (y_table_bank),
         .y_index_armed               (y_index_armed),
         .y_trip_causes               (y_trip_causes),
+        .y_homed                     (y_homed),
+        .y_setting_read_waits        (y_setting_read_waits),
         .y_causes                    (y_causes),
         .y_segments_underrun         (y_segments_underrun),
         .y_segments_overflow         (y_segments_overflow),
@@ -565,7 +588,8 @@ module xy_stage_stage (
         .y_shaped_velocity           (y_shaped_velocity),
         .y_error                     (y_error),
         .y_command                   (y_command),
-        .y_duty                      (y_duty)
+        .y_duty                      (y_duty),
+        .y_setting_loaded            (y_setting_loaded)
     );
 
     posicast_time_base_5000 u_time_base (
@@ -671,6 +695,8 @@ module xy_stage_stage (
         .flush                     (x_flush),
         .kick                      (x_kick),
         .kick_word                 (x_kick_word),
+        .write_homed               (x_write_homed),
+        .homed_value               (x_homed_value),
         .direct_kick               (x_direct_kick),
         .direct_duty               (x_direct_duty),
         .low_water                 (x_low_water),
@@ -689,6 +715,7 @@ module xy_stage_stage (
         .setting_bank              (x_setting_bank),
         .setting_write             (x_setting_write),
         .setting_word              (x_setting_word),
+        .setting_read              (x_setting_read),
         .law                       (x_law),
         .law_bank                  (x_law_bank),
         .soft_limit_plus           (x_soft_limit_plus),
@@ -737,6 +764,8 @@ module xy_stage_stage (
         .table_bank                (x_table_bank),
         .index_armed               (x_index_armed),
         .trip_causes               (x_trip_causes),
+        .homed                     (x_homed),
+        .setting_read_waits        (x_setting_read_waits),
         .causes                    (x_causes),
         .segments_underrun         (x_segments_underrun),
         .segments_overflow         (x_segments_overflow),
@@ -768,6 +797,7 @@ module xy_stage_stage (
         .feed_held                 (x_feed_held),
         .self_test_high            (x_self_test_high),
         .self_test_low             (x_self_test_low),
+        .setting_loaded            (x_setting_loaded),
         .user_position             (x_user_position),
         .count                     (x_count),
         .velocity                  (x_velocity),
@@ -818,6 +848,8 @@ module xy_stage_stage (
         .flush                     (y_flush),
         .kick                      (y_kick),
         .kick_word                 (y_kick_word),
+        .write_homed               (y_write_homed),
+        .homed_value               (y_homed_value),
         .direct_kick               (y_direct_kick),
         .direct_duty               (y_direct_duty),
         .low_water                 (y_low_water),
@@ -836,6 +868,7 @@ module xy_stage_stage (
         .setting_bank              (y_setting_bank),
         .setting_write             (y_setting_write),
         .setting_word              (y_setting_word),
+        .setting_read              (y_setting_read),
         .law                       (y_law),
         .law_bank                  (y_law_bank),
         .soft_limit_plus           (y_soft_limit_plus),
@@ -884,6 +917,8 @@ module xy_stage_stage (
         .table_bank                (y_table_bank),
         .index_armed               (y_index_armed),
         .trip_causes               (y_trip_causes),
+        .homed                     (y_homed),
+        .setting_read_waits        (y_setting_read_waits),
         .causes                    (y_causes),
         .segments_underrun         (y_segments_underrun),
         .segments_overflow         (y_segments_overflow),
@@ -915,6 +950,7 @@ module xy_stage_stage (
         .feed_held                 (y_feed_held),
         .self_test_high            (y_self_test_high),
         .self_test_low             (y_self_test_low),
+        .setting_loaded            (y_setting_loaded),
         .user_position             (y_user_position),
         .count                     (y_count),
         .velocity                  (y_velocity),

@@ -36,6 +36,8 @@ module xy_stage_stage_y (
     input  wire               flush,
     input  wire               kick,
     input  wire [31:0]        kick_word,
+    input  wire               write_homed,
+    input  wire               homed_value,
     input  wire               direct_kick,
     input  wire signed [16:0] direct_duty,
     input  wire [5:0]         low_water,
@@ -54,6 +56,7 @@ module xy_stage_stage_y (
     input  wire [1:0]         setting_bank,
     input  wire               setting_write,
     input  wire [31:0]        setting_word,
+    input  wire               setting_read,
     input  wire [1:0]         law,
     input  wire [1:0]         law_bank,
     input  wire signed [31:0] soft_limit_plus,
@@ -102,6 +105,8 @@ module xy_stage_stage_y (
     output wire [1:0]         table_bank,
     output wire               index_armed,
     output wire [4:0]         trip_causes,
+    output wire               homed,
+    output wire               setting_read_waits,
     output wire [16:0]        causes,
     output wire               segments_underrun,
     output wire               segments_overflow,
@@ -133,6 +138,7 @@ module xy_stage_stage_y (
     output wire               feed_held,
     output wire [15:0]        self_test_high,
     output wire [15:0]        self_test_low,
+    output wire [31:0]        setting_loaded,
     output wire signed [31:0] user_position,
     output wire signed [31:0] count,
     output wire signed [31:0] velocity,
@@ -263,16 +269,20 @@ module xy_stage_stage_y (
     );
 
     posicast_setting_banks_94eabf14 u_setting_banks (
-        .clk             (clk),
-        .rst             (rst),
-        .setting_write   (setting_write),
-        .setting_bank    (setting_bank),
-        .setting_row     (setting_row),
-        .setting_word    (setting_word),
-        .bank            (law_bank),
-        .row             (setting_address),
-        .setting         (setting),
-        .setting_refused (setting_refused)
+        .clk                (clk),
+        .rst                (rst),
+        .setting_write      (setting_write),
+        .setting_bank       (setting_bank),
+        .setting_row        (setting_row),
+        .setting_word       (setting_word),
+        .bank               (law_bank),
+        .row                (setting_address),
+        .busy               (controller_busy),
+        .setting_read       (setting_read),
+        .setting            (setting),
+        .setting_refused    (setting_refused),
+        .setting_loaded     (setting_loaded),
+        .setting_read_waits (setting_read_waits)
     );
 
     posicast_sliding_mode u_sliding_mode (
@@ -447,6 +457,8 @@ module xy_stage_stage_y (
         .clear_faults           (clear_faults),
         .kick                   (kick),
         .kick_word              (kick_word),
+        .write_homed            (write_homed),
+        .homed_value            (homed_value),
         .group_stop             (group_stop),
         .group_emergency_stop   (group_emergency_stop),
         .off_causes             (off_causes),
@@ -455,12 +467,13 @@ module xy_stage_stage_y (
         .settle_ticks           (settle_ticks),
         .soft_limit_plus        (soft_limit_plus),
         .soft_limit_minus       (soft_limit_minus),
+        .limits_after_homing    (1'd0),
         .following_error_limit  (following_error_limit),
         .deviation_limit        (32'd0),
         .saturation_ticks       (16'd0),
         .lost_command           (32'd1024000),
         .lost_ticks             (16'd500),
-        .velocity_drive         (1'd1),
+        .watches_direction      (1'd1),
         .watchdog_ticks         (watchdog_ticks),
         .modulo                 (1'd0),
         .position               (count),
@@ -505,6 +518,7 @@ module xy_stage_stage_y (
         .wants_group_stop       (wants_group_stop),
         .emergency_stop         (emergency_stop),
         .can_start              (can_start),
+        .homed                  (homed),
         .captured_position      (captured_position),
         .level_emergency_stop_n (level_emergency_stop_n),
         .level_limit_plus_n     (level_limit_plus_n),
@@ -521,7 +535,7 @@ module xy_stage_stage_y (
     );
 
     // Nets that nothing reads.
-    wire unused = &{1'b0, shaper_valid, shaper_busy, sliding, controller_busy, ends, velocity_pending, velocity_valid, negative, peak, pwm_refused, pwm_below_floor, dead_time_used, minimum_pulse_used, enabled, started, disabled};
+    wire unused = &{1'b0, shaper_valid, shaper_busy, sliding, ends, velocity_pending, velocity_valid, negative, peak, pwm_refused, pwm_below_floor, dead_time_used, minimum_pulse_used, enabled, started, disabled};
 endmodule
 
 `default_nettype wire

@@ -42,6 +42,7 @@ module xy_stage_y_sliding_mode_avalon (
     wire [1:0]         setting_bank;
     wire               setting_write;
     wire [31:0]        setting_word;
+    wire               setting_read;
     wire               selected_start;
     wire               no_start;
     wire signed [31:0] selected_position_reference;
@@ -51,6 +52,8 @@ module xy_stage_y_sliding_mode_avalon (
     wire signed [31:0] selected_velocity;
     wire [31:0]        setting;
     wire               setting_refused;
+    wire [31:0]        setting_loaded;
+    wire               setting_read_waits;
     wire [3:0]         setting_address;
     wire signed [31:0] error;
     wire signed [31:0] sliding;
@@ -63,46 +66,49 @@ module xy_stage_y_sliding_mode_avalon (
     wire               overrun;
     wire               ends;
 
-    posicast_sliding_mode_registers_53078686 u_registers (
-        .clk             (clk),
-        .rst             (rst),
-        .avs_address     (avs_address),
-        .avs_read        (avs_read),
-        .avs_write       (avs_write),
-        .avs_byteenable  (avs_byteenable),
-        .avs_writedata   (avs_writedata),
-        .avs_readdata    (avs_readdata),
-        .irq             (irq),
-        .ends            (ends),
-        .from_pins       (from_pins),
-        .law             (law),
-        .modulo          (modulo),
-        .bank            (bank),
-        .busy            (busy),
-        .overrun         (overrun),
-        .limited_high    (limited_high),
-        .limited_low     (limited_low),
-        .saturated_high  (saturated_high),
-        .saturated_low   (saturated_low),
-        .setting_refused (setting_refused),
-        .valid           (valid),
-        .host_x_0        (host_x_0),
-        .host_x_1        (host_x_1),
-        .host_x_2        (host_x_2),
-        .host_x_3        (host_x_3),
-        .host_x_4        (host_x_4),
-        .host_strobe     (host_strobe),
-        .clear_integral  (clear_integral),
-        .clear_flags     (clear_flags),
-        .error           (error),
-        .sliding         (sliding),
-        .command         (command),
-        .duty            (duty),
-        .limited_ticks   (limited_ticks),
-        .setting_row     (setting_row),
-        .setting_bank    (setting_bank),
-        .setting_write   (setting_write),
-        .setting_word    (setting_word)
+    posicast_sliding_mode_registers_06f65421 u_registers (
+        .clk                (clk),
+        .rst                (rst),
+        .avs_address        (avs_address),
+        .avs_read           (avs_read),
+        .avs_write          (avs_write),
+        .avs_byteenable     (avs_byteenable),
+        .avs_writedata      (avs_writedata),
+        .avs_readdata       (avs_readdata),
+        .irq                (irq),
+        .ends               (ends),
+        .from_pins          (from_pins),
+        .law                (law),
+        .modulo             (modulo),
+        .bank               (bank),
+        .busy               (busy),
+        .overrun            (overrun),
+        .limited_high       (limited_high),
+        .limited_low        (limited_low),
+        .setting_read_waits (setting_read_waits),
+        .saturated_high     (saturated_high),
+        .saturated_low      (saturated_low),
+        .setting_refused    (setting_refused),
+        .valid              (valid),
+        .host_x_0           (host_x_0),
+        .host_x_1           (host_x_1),
+        .host_x_2           (host_x_2),
+        .host_x_3           (host_x_3),
+        .host_x_4           (host_x_4),
+        .host_strobe        (host_strobe),
+        .clear_integral     (clear_integral),
+        .clear_flags        (clear_flags),
+        .error              (error),
+        .sliding            (sliding),
+        .command            (command),
+        .duty               (duty),
+        .limited_ticks      (limited_ticks),
+        .setting_row        (setting_row),
+        .setting_bank       (setting_bank),
+        .setting_write      (setting_write),
+        .setting_word       (setting_word),
+        .setting_read       (setting_read),
+        .setting_loaded     (setting_loaded)
     );
 
     posicast_sample_select_32x5 u_sample_select (
@@ -133,16 +139,20 @@ module xy_stage_y_sliding_mode_avalon (
     );
 
     posicast_setting_banks_94eabf14 u_setting_banks (
-        .clk             (clk),
-        .rst             (rst),
-        .setting_write   (setting_write),
-        .setting_bank    (setting_bank),
-        .setting_row     (setting_row),
-        .setting_word    (setting_word),
-        .bank            (bank),
-        .row             (setting_address),
-        .setting         (setting),
-        .setting_refused (setting_refused)
+        .clk                (clk),
+        .rst                (rst),
+        .setting_write      (setting_write),
+        .setting_bank       (setting_bank),
+        .setting_row        (setting_row),
+        .setting_word       (setting_word),
+        .bank               (bank),
+        .row                (setting_address),
+        .busy               (busy),
+        .setting_read       (setting_read),
+        .setting            (setting),
+        .setting_refused    (setting_refused),
+        .setting_loaded     (setting_loaded),
+        .setting_read_waits (setting_read_waits)
     );
 
     posicast_sliding_mode u_sliding_mode (

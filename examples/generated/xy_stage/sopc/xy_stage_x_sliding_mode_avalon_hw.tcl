@@ -4,7 +4,7 @@
 package require -exact qsys 13.0
 
 set_module_property NAME xy_stage_x_sliding_mode_avalon
-set_module_property VERSION 1.0
+set_module_property VERSION 1.1
 set_module_property DISPLAY_NAME {sliding_mode: xy_stage_x_sliding_mode_avalon}
 set_module_property DESCRIPTION {Controller: sliding mode, PD or PID; reference and measurement by register or pins.}
 set_module_property GROUP Posicast
@@ -17,16 +17,16 @@ set_module_property EDITABLE false
 # Facts for system.h and the device tree
 set_module_assignment embeddedsw.CMacro.MAGIC 0x31434d53
 set_module_assignment embeddedsw.CMacro.VERSION_MAJOR 1
-set_module_assignment embeddedsw.CMacro.VERSION_MINOR 0
+set_module_assignment embeddedsw.CMacro.VERSION_MINOR 1
 set_module_assignment embeddedsw.dts.vendor posicast
 set_module_assignment embeddedsw.dts.name sliding_mode
 set_module_assignment embeddedsw.dts.group motion
-set_module_assignment embeddedsw.dts.compatible {posicast,sliding_mode-1.0}
+set_module_assignment embeddedsw.dts.compatible {posicast,sliding_mode-1.1}
 
 foreach kind {QUARTUS_SYNTH SIM_VERILOG} {
     add_fileset $kind $kind {} {}
     set_fileset_property $kind TOP_LEVEL xy_stage_x_sliding_mode_avalon
-    add_fileset_file posicast_sliding_mode_registers_53078686.v VERILOG PATH ../rtl/posicast_sliding_mode_registers_53078686.v
+    add_fileset_file posicast_sliding_mode_registers_06f65421.v VERILOG PATH ../rtl/posicast_sliding_mode_registers_06f65421.v
     add_fileset_file posicast_sample_select_32x5.v VERILOG PATH ../rtl/posicast_sample_select_32x5.v
     add_fileset_file posicast_machine_settings_94eabf14.v VERILOG PATH ../rtl/posicast_machine_settings_94eabf14.v
     add_fileset_file posicast_ram_32x32.v VERILOG PATH ../rtl/posicast_ram_32x32.v

@@ -107,7 +107,11 @@ const SHAPER: Nets = &[
     ("refused", "table_refused"),
 ];
 
-const SETTING_BANKS: Nets = &[("bank", "law_bank"), ("row", "setting_address")];
+const SETTING_BANKS: Nets = &[
+    ("bank", "law_bank"),
+    ("row", "setting_address"),
+    ("busy", "controller_busy"),
+];
 
 const CONTROLLER: Nets = &[
     ("start", "control"),

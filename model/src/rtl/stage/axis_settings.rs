@@ -172,6 +172,13 @@ fn tables(axis: &StageAxis) -> Vec<Register> {
             vec![Field::new("setting_word", 0, 32, "mantissa and shift, or the limit")],
         ),
         register(
+            "setting_read",
+            0x26,
+            command("setting_read"),
+            "reads the word at `SETTING_ADDRESS` back, which stays until `setting_read_waits` is low",
+            vec![],
+        ),
+        register(
             "law",
             0x19,
             Access::Staged,

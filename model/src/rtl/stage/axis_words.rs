@@ -71,6 +71,7 @@ fn states() -> Vec<Register> {
                     "0 fault latch, 1 supervisor, 2 drive, 3 PLL, 4 PWM's watchdog",
                 ),
                 Field::flag("homed", 25, "by `HOMED`; not since a lost encoder, or an error of it"),
+                Field::flag("setting_read_waits", 26, "`SETTING_READ` was not served yet"),
             ],
         ),
         register(
@@ -164,6 +165,13 @@ fn states() -> Vec<Register> {
                 .with_unit("clocks"),
                 Field::new("self_test_low", 16, 16, "the same of `a_low`").with_unit("clocks"),
             ],
+        ),
+        register(
+            "setting_loaded",
+            0x3e,
+            Access::Live,
+            "what `SETTING_READ` found: 0 where nothing was written since the reset",
+            vec![Field::new("setting_loaded", 0, 32, "mantissa and shift, or the limit")],
         ),
     ]
 }

@@ -122,6 +122,12 @@ impl ComponentRandom {
                     self.write("setting_address", row | bank << 8);
                     self.write("setting", setting);
                 }
+                // Back, of any bank, in a pass and between two.
+                for read in 0..random >> 16 & 7 {
+                    self.write("setting_address", random >> (read + 20) & 0x30f);
+                    self.write("setting_read", 0);
+                    self.writes.extend([(0x40, 0); 5]);
+                }
                 self.write("law", random >> 2 & 3 | bank << 8 | random & 0x10);
                 self.write("commit", 0);
                 self.write("control", u32::from(random >> 12 & 3 != 0));

@@ -80,6 +80,12 @@ impl RegistersRandom {
         }
     }
 
+    /// Leaves the registers at these offsets to somebody else.
+    fn without(mut self, offsets: &[u64]) -> Self {
+        self.offsets.retain(|offset| !offsets.contains(offset));
+        self
+    }
+
     fn one_in(&mut self, clocks: u32) -> bool {
         self.rng.random_range(0..clocks) == 0
     }

@@ -4,6 +4,8 @@
 use posicast_model::rtl::component::Component;
 use posicast_model::rtl::registers::{Access, Register, RegisterMap};
 use posicast_model::rtl::{Direction, Port};
+use rand::{RngExt, SeedableRng};
+use rand_xoshiro::Xoshiro256PlusPlus;
 
 use super::super::table::pick;
 use super::stage_driver::{Driver, Moves, Pins, SCENES};
@@ -74,9 +76,56 @@ struct Line {
     low: u32,
 }
 
+/// Reads settings back, of any bank at any time, in clocks in which nobody else is on the bus.
+///
+/// It draws from a generator of its own: what a run reaches does not change with it.
+#[derive(Debug, Clone)]
+struct ReadBack {
+    rng: Xoshiro256PlusPlus,
+    /// Per axis: offsets of address, command and word.
+    words: Vec<[u64; 3]>,
+}
+
+impl ReadBack {
+    fn new(map: &RegisterMap, axes: &[String], seed: u64) -> Self {
+        let of_axis = |axis: &String| {
+            let offset = |name| map.register(&format!("{axis}_{name}")).map(|found| found.offset.into());
+            let [address, read, loaded] = ["setting_address", "setting_read", "setting_loaded"].map(offset);
+            Some([address?, read?, loaded?])
+        };
+        Self {
+            rng: Xoshiro256PlusPlus::seed_from_u64(seed.rotate_left(32)),
+            words: axes.iter().filter_map(of_axis).collect(),
+        }
+    }
+
+    /// The registers that nobody else uses.
+    fn own(&self) -> Vec<u64> {
+        self.words.iter().flat_map(|[_, own @ ..]| *own).collect()
+    }
+
+    fn fill(&mut self, driver: &Driver, wild: bool, inputs: &mut [u64]) {
+        let axis = self.rng.random_range(0..self.words.len());
+        let [pace, kind, data] = [50, 3, 1 << 10].map(|end| self.rng.random_range(0..end));
+        let in_use = inputs[READ] != 0 || inputs[WRITE] != 0 || driver.writes(axis);
+        // Wild traffic writes settings, and what is not its own, to the address that it finds.
+        let moves_another = wild && kind == 0;
+        if pace != 0 || in_use || moves_another {
+            return;
+        }
+        inputs[ADDRESS] = self.words[axis][kind];
+        // Row and bank.
+        inputs[WRITE_DATA] = data as u64 & 0x30f;
+        inputs[BYTE_ENABLE] = 0xf;
+        let reads = kind == 2;
+        (inputs[READ], inputs[WRITE]) = (reads.into(), (!reads).into());
+    }
+}
+
 /// A mixture of everything, without end.
 #[derive(Debug, Clone)]
 pub struct StageRandom {
+    read_back: ReadBack,
     registers: RegistersRandom,
     driver: Driver,
     tick_clocks: u32,
@@ -146,15 +195,19 @@ impl StageRandom {
             })
         };
         let map = component.map();
+        let read_back = ReadBack::new(map, axes, seed);
         Self {
-            registers: RegistersRandom::new(map, ports, seed),
+            registers: RegistersRandom::new(map, ports, seed).without(&read_back.own()),
             tick_clocks: map.register("tick_clocks").map_or(1000, |register| register.reset()),
             driver: Driver::new(map, axes, seed),
             clock: 0,
             mood_ends: 0,
             scenes: 0,
             moods: 0,
-            status: status(map),
+            status: status(map)
+                .into_iter()
+                .filter(|offset| !read_back.own().contains(offset))
+                .collect(),
             mood: Mood {
                 wild: false,
                 scene: false,
@@ -164,6 +217,7 @@ impl StageRandom {
             },
             axes: axes.iter().map(of_axis).collect(),
             lines: lines.filter_map(line).collect(),
+            read_back,
         }
     }
 
@@ -329,6 +383,7 @@ impl Stimuli for StageRandom {
         self.encoders(seen, inputs);
         self.lines(inputs);
         self.drive(seen, inputs);
+        self.read_back.fill(&self.driver, self.mood.wild, inputs);
         self.clock += 1;
     }
 }

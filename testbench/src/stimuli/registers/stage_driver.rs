@@ -169,6 +169,11 @@ impl Driver {
         std::mem::take(&mut plan.pins)
     }
 
+    /// An axis is amid a sequence of writes.
+    pub(super) fn writes(&self, axis: usize) -> bool {
+        matches!(self.axes[axis].script.front(), Some(Do::Write(..)))
+    }
+
     /// On which limit switches an axis is: bit 0 +, bit 1 −.
     pub(super) fn switches(&self, axis: usize) -> u32 {
         self.axes[axis].switches

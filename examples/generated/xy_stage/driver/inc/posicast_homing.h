@@ -4,7 +4,7 @@
  *   HOLD ─► off the switch, if it is on it ─► towards the switch ─► towards the index ─► HOLD, POSITION known
  *
  * Commands and soft limits stay in counts since reset, as COUNT has them: what is meant as a position is commanded as
- * position + posicast_origin. The searches end as a quick stop does: behind the switch there must be room for it.
+ * position + posicast_origin, and posicast_limit_travel shifts the soft limits. The searches end as a quick stop does: behind the switch there must be room for it.
  */
 #ifndef POSICAST_HOMING_H
 #define POSICAST_HOMING_H
@@ -33,5 +33,18 @@ posicast_result posicast_home(const posicast_stage *stage, uint32_t axis, const 
 
 /* COUNT at which POSITION is 0. */
 int32_t posicast_origin(const posicast_stage *stage, uint32_t axis);
+
+/*
+ * The axis is homed, and its position, Q24.8 counts, lies between these soft limits from the next tick on: writes both as counts
+ * since reset, then HOMED. With soft_limits_after_homing in the machine file there are none before. An axis that is beyond them has a
+ * fault, as has one that moves there. POSICAST_BAD_ARGUMENT where the limits do not fit their words, or low is not below high.
+ */
+posicast_result posicast_limit_travel(const posicast_stage *stage, uint32_t axis, int32_t low, int32_t high);
+
+/*
+ * Has the axis been homed, and not lost its position since? A lost encoder or an error of it ends that, as a reset does, and
+ * HOMED is not set before posicast_switch_on has forgotten that cause.
+ */
+int posicast_is_homed(const posicast_stage *stage, uint32_t axis);
 
 #endif

@@ -116,3 +116,26 @@ int32_t posicast_origin(const posicast_stage *stage, uint32_t axis)
 {
     return (int32_t)IORD_POSICAST_AXIS_ORIGIN(stage->base, axis);
 }
+
+posicast_result posicast_limit_travel(const posicast_stage *stage, uint32_t axis, int32_t low, int32_t high)
+{
+    int64_t minus, plus;
+
+    if (!is_axis(stage, axis) || low >= high)
+        return POSICAST_BAD_ARGUMENT;
+    minus = low + (int64_t)posicast_origin(stage, axis) * 256;
+    plus = high + (int64_t)posicast_origin(stage, axis) * 256;
+    if (minus < INT32_MIN || plus > INT32_MAX)
+        return POSICAST_BAD_ARGUMENT;
+    /* Not homed while one limit is the old one. */
+    IOWR_POSICAST_AXIS_HOMED(stage->base, axis, 0);
+    IOWR_POSICAST_AXIS_SOFT_LIMIT_MINUS(stage->base, axis, (uint32_t)(int32_t)minus);
+    IOWR_POSICAST_AXIS_SOFT_LIMIT_PLUS(stage->base, axis, (uint32_t)(int32_t)plus);
+    IOWR_POSICAST_AXIS_HOMED(stage->base, axis, POSICAST_AXIS_HOMED_HOMED_VALUE_MSK);
+    return posicast_wait_flags(stage);
+}
+
+int posicast_is_homed(const posicast_stage *stage, uint32_t axis)
+{
+    return is_axis(stage, axis) && (posicast_status(stage, axis) & POSICAST_AXIS_STATUS_HOMED_MSK) != 0;
+}

@@ -28,7 +28,7 @@ pub fn sliding_mode(law: u32, modulo: bool) -> Description {
     };
     let (position, velocity) = ("position", "velocity");
     let about = "Controller: sliding mode, PD or PID; reference and measurement by register or pins.";
-    Description::new("sliding_mode", about, *b"SMC1", (1, 0), vec![])
+    Description::new("sliding_mode", about, *b"SMC1", (1, 1), vec![])
         .with("snapshot", 0x08, Snapshot, "freezes the words `SNAPSHOT_...`", vec![])
         .with(
             "commit",
@@ -151,6 +151,20 @@ pub fn sliding_mode(law: u32, modulo: bool) -> Description {
             "writes a setting",
             vec![Field::new("setting_word", 0, 32, "mantissa and shift, or the limit")],
         )
+        .with(
+            "setting_read",
+            0x2a,
+            command("setting_read"),
+            "reads the word at `SETTING_ADDRESS` back, which stays until `setting_read_waits` is low",
+            vec![],
+        )
+        .with(
+            "setting_loaded",
+            0x2b,
+            Live,
+            "what `SETTING_READ` found: 0 where nothing was written since the reset",
+            vec![Field::new("setting_loaded", 0, 32, "mantissa and shift, or the limit")],
+        )
         .with_shadowed(
             "error",
             0x20,
@@ -194,6 +208,7 @@ fn status() -> Vec<Field> {
         Field::flag("overrun", 1, "a start came while a pass ran"),
         Field::flag("limited_high", 2, "the last command was cut at +limit"),
         Field::flag("limited_low", 3, "the last command was cut at -limit"),
+        Field::flag("setting_read_waits", 4, "`SETTING_READ` was not served yet"),
         Field::new(
             "saturated_high",
             8,

@@ -27,4 +27,11 @@ posicast_result posicast_load_settings(const posicast_stage *stage, uint32_t axi
 posicast_result posicast_use_settings(const posicast_stage *stage, uint32_t axis, uint32_t bank, uint32_t law,
                                       uint32_t ticks);
 
+/*
+ * Reads back what stands in bank 0 (the machine's), 1 or 2 of an axis, in use or not: a row that was not written since reset is 0.
+ * `settings->law` is the law that was written last, whatever the bank. The machine runs on. POSICAST_TIMEOUT where `ticks` are over.
+ */
+posicast_result posicast_read_settings(const posicast_stage *stage, uint32_t axis, uint32_t bank,
+                                       posicast_settings *settings, uint32_t ticks);
+
 #endif

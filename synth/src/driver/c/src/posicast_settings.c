@@ -86,3 +86,30 @@ posicast_result posicast_use_settings(const posicast_stage *stage, uint32_t axis
     IOWR_POSICAST_STAGE_COMMIT(stage->base, 1u);
     return wait_for_commit(stage, &left);
 }
+
+posicast_result posicast_read_settings(const posicast_stage *stage, uint32_t axis, uint32_t bank,
+                                       posicast_settings *settings, uint32_t ticks)
+{
+    posicast_patience left = posicast_patience_for(stage, ticks);
+    uint32_t row;
+
+    if (!is_axis(stage, axis) || bank > 2)
+        return POSICAST_BAD_ARGUMENT;
+    for (row = 0; row < POSICAST_SETTINGS; row++) {
+        posicast_result result;
+
+        IOWR_POSICAST_AXIS_SETTING_ADDRESS(stage->base, axis,
+                                           AS_FIELD(row, POSICAST_AXIS_SETTING_ADDRESS_SETTING_ROW) |
+                                               AS_FIELD(bank, POSICAST_AXIS_SETTING_ADDRESS_SETTING_BANK));
+        IOWR_POSICAST_AXIS_SETTING_READ(stage->base, axis, 0u);
+        /* The flag that the read waits rises a few clocks after the write. */
+        result = posicast_wait_flags(stage);
+        if (result == POSICAST_OK)
+            result = posicast_wait_status(stage, axis, POSICAST_AXIS_STATUS_SETTING_READ_WAITS_MSK, 0, &left);
+        if (result != POSICAST_OK)
+            return result;
+        settings->word[row] = (uint32_t)IORD_POSICAST_AXIS_SETTING_LOADED(stage->base, axis);
+    }
+    settings->law = FIELD(IORD_POSICAST_AXIS_LAW(stage->base, axis), POSICAST_AXIS_LAW_LAW);
+    return POSICAST_OK;
+}

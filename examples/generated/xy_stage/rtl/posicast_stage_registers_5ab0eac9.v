@@ -1,4 +1,4 @@
-// posicast_stage_registers_e62fd93e
+// posicast_stage_registers_5ab0eac9
 // Registers of stage: Avalon-MM agent, 32 bits, word addresses, read latency 1, no waits.
 // Commands take whole words only. Reads have no side effect; what is not mapped reads as 0.
 //
@@ -22,7 +22,7 @@
 
 `default_nettype none
 
-module posicast_stage_registers_e62fd93e (
+module posicast_stage_registers_5ab0eac9 (
     input  wire               clk,
     input  wire               rst,
     input  wire [9:0]         avs_address,
@@ -65,6 +65,8 @@ module posicast_stage_registers_e62fd93e (
     output reg                x_direct_kick,
     output reg  signed [16:0] x_direct_duty,
     output reg  [5:0]         x_low_water,
+    output reg                x_write_homed,
+    output reg                x_homed_value,
     output reg                x_segment_write,
     output reg  [1:0]         x_segment_word,
     output reg  [31:0]        x_segment_data,
@@ -100,6 +102,7 @@ module posicast_stage_registers_e62fd93e (
     input  wire               x_drive_enable,
     output reg                x_encoder_invert,
     output reg  [15:0]        x_trigger_phase,
+    output reg                x_setting_read,
     input  wire [2:0]         x_state,
     input  wire               x_can_start,
     input  wire [1:0]         x_segments_state,
@@ -117,6 +120,8 @@ module posicast_stage_registers_e62fd93e (
     input  wire [1:0]         x_table_bank,
     input  wire               x_index_armed,
     input  wire [4:0]         x_trip_causes,
+    input  wire               x_homed,
+    input  wire               x_setting_read_waits,
     input  wire [16:0]        x_causes,
     input  wire               x_segments_underrun,
     input  wire               x_segments_overflow,
@@ -158,6 +163,7 @@ module posicast_stage_registers_e62fd93e (
     input  wire signed [31:0] x_error,
     input  wire signed [31:0] x_command,
     input  wire signed [16:0] x_duty,
+    input  wire [31:0]        x_setting_loaded,
     output reg                y_enable,
     output reg                y_direct_enable,
     output reg                y_self_test,
@@ -169,6 +175,8 @@ module posicast_stage_registers_e62fd93e (
     output reg                y_direct_kick,
     output reg  signed [16:0] y_direct_duty,
     output reg  [5:0]         y_low_water,
+    output reg                y_write_homed,
+    output reg                y_homed_value,
     output reg                y_segment_write,
     output reg  [1:0]         y_segment_word,
     output reg  [31:0]        y_segment_data,
@@ -204,6 +212,7 @@ module posicast_stage_registers_e62fd93e (
     input  wire               y_drive_enable,
     output reg                y_encoder_invert,
     output reg  [15:0]        y_trigger_phase,
+    output reg                y_setting_read,
     input  wire [2:0]         y_state,
     input  wire               y_can_start,
     input  wire [1:0]         y_segments_state,
@@ -221,6 +230,8 @@ module posicast_stage_registers_e62fd93e (
     input  wire [1:0]         y_table_bank,
     input  wire               y_index_armed,
     input  wire [4:0]         y_trip_causes,
+    input  wire               y_homed,
+    input  wire               y_setting_read_waits,
     input  wire [16:0]        y_causes,
     input  wire               y_segments_underrun,
     input  wire               y_segments_overflow,
@@ -261,7 +272,8 @@ module posicast_stage_registers_e62fd93e (
     input  wire signed [31:0] y_shaped_velocity,
     input  wire signed [31:0] y_error,
     input  wire signed [31:0] y_command,
-    input  wire signed [16:0] y_duty
+    input  wire signed [16:0] y_duty,
+    input  wire [31:0]        y_setting_loaded
 );
     // Words of the window.
     localparam [9:0] MAGIC                   = 10'h00;
@@ -294,6 +306,7 @@ module posicast_stage_registers_e62fd93e (
     localparam [9:0] X_KICK                  = 10'h10c;
     localparam [9:0] X_DIRECT                = 10'h10d;
     localparam [9:0] X_FIFO_CONTROL          = 10'h10e;
+    localparam [9:0] X_HOMED                 = 10'h10f;
     localparam [9:0] X_SEGMENT               = 10'h110;
     localparam [9:0] X_TAP_ADDRESS           = 10'h114;
     localparam [9:0] X_TAP                   = 10'h115;
@@ -312,6 +325,7 @@ module posicast_stage_registers_e62fd93e (
     localparam [9:0] X_PRESET                = 10'h122;
     localparam [9:0] X_ENCODER               = 10'h124;
     localparam [9:0] X_PWM_TRIGGER           = 10'h125;
+    localparam [9:0] X_SETTING_READ          = 10'h126;
     localparam [9:0] X_STATUS                = 10'h128;
     localparam [9:0] X_CAUSES                = 10'h129;
     localparam [9:0] X_FLAGS                 = 10'h12a;
@@ -330,6 +344,7 @@ module posicast_stage_registers_e62fd93e (
     localparam [9:0] X_ERROR                 = 10'h138;
     localparam [9:0] X_COMMAND               = 10'h139;
     localparam [9:0] X_DUTY                  = 10'h13a;
+    localparam [9:0] X_SETTING_LOADED        = 10'h13e;
     localparam [9:0] X_SNAPSHOT_POSITION     = 10'h140;
     localparam [9:0] X_SNAPSHOT_VELOCITY     = 10'h141;
     localparam [9:0] Y_PWM_PERIOD_CLOCKS     = 10'h200;
@@ -344,6 +359,7 @@ module posicast_stage_registers_e62fd93e (
     localparam [9:0] Y_KICK                  = 10'h20c;
     localparam [9:0] Y_DIRECT                = 10'h20d;
     localparam [9:0] Y_FIFO_CONTROL          = 10'h20e;
+    localparam [9:0] Y_HOMED                 = 10'h20f;
     localparam [9:0] Y_SEGMENT               = 10'h210;
     localparam [9:0] Y_TAP_ADDRESS           = 10'h214;
     localparam [9:0] Y_TAP                   = 10'h215;
@@ -362,6 +378,7 @@ module posicast_stage_registers_e62fd93e (
     localparam [9:0] Y_PRESET                = 10'h222;
     localparam [9:0] Y_ENCODER               = 10'h224;
     localparam [9:0] Y_PWM_TRIGGER           = 10'h225;
+    localparam [9:0] Y_SETTING_READ          = 10'h226;
     localparam [9:0] Y_STATUS                = 10'h228;
     localparam [9:0] Y_CAUSES                = 10'h229;
     localparam [9:0] Y_FLAGS                 = 10'h22a;
@@ -380,6 +397,7 @@ module posicast_stage_registers_e62fd93e (
     localparam [9:0] Y_ERROR                 = 10'h238;
     localparam [9:0] Y_COMMAND               = 10'h239;
     localparam [9:0] Y_DUTY                  = 10'h23a;
+    localparam [9:0] Y_SETTING_LOADED        = 10'h23e;
     localparam [9:0] Y_SNAPSHOT_POSITION     = 10'h240;
     localparam [9:0] Y_SNAPSHOT_VELOCITY     = 10'h241;
 
@@ -406,6 +424,7 @@ module posicast_stage_registers_e62fd93e (
     wire write_x_kick = avs_write && avs_address == X_KICK;
     wire write_x_direct = avs_write && avs_address == X_DIRECT;
     wire write_x_fifo_control = avs_write && avs_address == X_FIFO_CONTROL;
+    wire write_x_homed = avs_write && avs_address == X_HOMED;
     wire write_x_segment = avs_write && avs_address[9:2] == X_SEGMENT[9:2];
     wire write_x_tap_address = avs_write && avs_address == X_TAP_ADDRESS;
     wire write_x_tap = avs_write && avs_address == X_TAP;
@@ -424,6 +443,7 @@ module posicast_stage_registers_e62fd93e (
     wire write_x_preset = avs_write && avs_address == X_PRESET;
     wire write_x_encoder = avs_write && avs_address == X_ENCODER;
     wire write_x_pwm_trigger = avs_write && avs_address == X_PWM_TRIGGER;
+    wire write_x_setting_read = avs_write && avs_address == X_SETTING_READ;
     wire write_x_events = avs_write && avs_address == X_EVENTS;
     wire write_y_control = avs_write && avs_address == Y_CONTROL;
     wire write_y_stop = avs_write && avs_address == Y_STOP;
@@ -432,6 +452,7 @@ module posicast_stage_registers_e62fd93e (
     wire write_y_kick = avs_write && avs_address == Y_KICK;
     wire write_y_direct = avs_write && avs_address == Y_DIRECT;
     wire write_y_fifo_control = avs_write && avs_address == Y_FIFO_CONTROL;
+    wire write_y_homed = avs_write && avs_address == Y_HOMED;
     wire write_y_segment = avs_write && avs_address[9:2] == Y_SEGMENT[9:2];
     wire write_y_tap_address = avs_write && avs_address == Y_TAP_ADDRESS;
     wire write_y_tap = avs_write && avs_address == Y_TAP;
@@ -450,6 +471,7 @@ module posicast_stage_registers_e62fd93e (
     wire write_y_preset = avs_write && avs_address == Y_PRESET;
     wire write_y_encoder = avs_write && avs_address == Y_ENCODER;
     wire write_y_pwm_trigger = avs_write && avs_address == Y_PWM_TRIGGER;
+    wire write_y_setting_read = avs_write && avs_address == Y_SETTING_READ;
     wire write_y_events = avs_write && avs_address == Y_EVENTS;
 
     reg waits;
@@ -460,10 +482,12 @@ module posicast_stage_registers_e62fd93e (
     wire allow_y_encoder = !y_drive_enable;
     wire bus_partial = !whole && (write_snapshot || write_commit || write_start
         || write_interrupt_test || write_x_stop || write_x_clear_faults || write_x_flush
-        || write_x_kick || write_x_direct || write_x_segment || write_x_tap || write_x_swap
-        || write_x_setting || write_x_index_arm || write_x_preset || write_y_stop
-        || write_y_clear_faults || write_y_flush || write_y_kick || write_y_direct || write_y_segment
-        || write_y_tap || write_y_swap || write_y_setting || write_y_index_arm || write_y_preset);
+        || write_x_kick || write_x_direct || write_x_homed || write_x_segment || write_x_tap
+        || write_x_swap || write_x_setting || write_x_index_arm || write_x_preset
+        || write_x_setting_read || write_y_stop || write_y_clear_faults || write_y_flush
+        || write_y_kick || write_y_direct || write_y_homed || write_y_segment || write_y_tap
+        || write_y_swap || write_y_setting || write_y_index_arm || write_y_preset
+        || write_y_setting_read);
     wire bus_refused = (write_x_encoder && !allow_x_encoder) || (write_y_encoder && !allow_y_encoder);
     wire bus_rejected = waits && ((write_commit && whole) || write_x_law || write_y_law);
 
@@ -712,6 +736,19 @@ module posicast_stage_registers_e62fd93e (
         end else begin
             if (write_x_fifo_control && avs_byteenable[0]) begin
                 x_low_water <= avs_writedata[5:0];
+            end
+        end
+    end
+
+    // X_HOMED: command; the host says whether the axis is homed: until then there are no soft limits, if the machine file says so
+    always @(posedge clk) begin
+        if (rst) begin
+            x_write_homed <= 1'd0;
+            x_homed_value <= 1'd0;
+        end else begin
+            x_write_homed <= write_x_homed && whole;
+            if (write_x_homed && whole) begin
+                x_homed_value <= avs_writedata[0];
             end
         end
     end
@@ -1008,6 +1045,15 @@ module posicast_stage_registers_e62fd93e (
         end
     end
 
+    // X_SETTING_READ: command; reads the word at `SETTING_ADDRESS` back, which stays until `setting_read_waits` is low
+    always @(posedge clk) begin
+        if (rst) begin
+            x_setting_read <= 1'd0;
+        end else begin
+            x_setting_read <= write_x_setting_read && whole;
+        end
+    end
+
     // X_EVENTS: sticky; what has happened since the flag was cleared
     reg flag_x_refused;
     reg flag_x_setting_refused;
@@ -1099,6 +1145,19 @@ module posicast_stage_registers_e62fd93e (
         end else begin
             if (write_y_fifo_control && avs_byteenable[0]) begin
                 y_low_water <= avs_writedata[5:0];
+            end
+        end
+    end
+
+    // Y_HOMED: command; the host says whether the axis is homed: until then there are no soft limits, if the machine file says so
+    always @(posedge clk) begin
+        if (rst) begin
+            y_write_homed <= 1'd0;
+            y_homed_value <= 1'd0;
+        end else begin
+            y_write_homed <= write_y_homed && whole;
+            if (write_y_homed && whole) begin
+                y_homed_value <= avs_writedata[0];
             end
         end
     end
@@ -1395,6 +1454,15 @@ module posicast_stage_registers_e62fd93e (
         end
     end
 
+    // Y_SETTING_READ: command; reads the word at `SETTING_ADDRESS` back, which stays until `setting_read_waits` is low
+    always @(posedge clk) begin
+        if (rst) begin
+            y_setting_read <= 1'd0;
+        end else begin
+            y_setting_read <= write_y_setting_read && whole;
+        end
+    end
+
     // Y_EVENTS: sticky; what has happened since the flag was cleared
     reg flag_y_refused;
     reg flag_y_setting_refused;
@@ -1471,7 +1539,7 @@ module posicast_stage_registers_e62fd93e (
         end else if (avs_read) begin
             case (avs_address)
                 MAGIC: read_group_0 <= 32'h45475453;
-                VERSION: read_group_0 <= 32'h00020000;
+                VERSION: read_group_0 <= 32'h00020001;
                 AXES: read_group_0 <= 32'h00000002;
                 TICK_CLOCKS: read_group_0 <= 32'h00001388;
                 CONTROL_CLOCKS: read_group_0 <= 32'h000000d2;
@@ -1532,10 +1600,10 @@ module posicast_stage_registers_e62fd93e (
             case (avs_address)
                 X_ENCODER: read_group_2 <= {31'd0, x_encoder_invert};
                 X_PWM_TRIGGER: read_group_2 <= {16'd0, x_trigger_phase};
-                X_STATUS: read_group_2 <= {7'd0, x_trip_causes, x_index_armed, x_table_bank, x_swap_pending,
-                    x_level_z, x_level_b, x_level_a, x_level_home, x_level_drive_ready, x_level_limit_minus_n,
-                    x_level_limit_plus_n, x_level_emergency_stop_n, x_pwm_running, x_direct_active,
-                    x_segments_state, x_can_start, x_state};
+                X_STATUS: read_group_2 <= {5'd0, x_setting_read_waits, x_homed, x_trip_causes, x_index_armed,
+                    x_table_bank, x_swap_pending, x_level_z, x_level_b, x_level_a, x_level_home,
+                    x_level_drive_ready, x_level_limit_minus_n, x_level_limit_plus_n, x_level_emergency_stop_n,
+                    x_pwm_running, x_direct_active, x_segments_state, x_can_start, x_state};
                 X_CAUSES: read_group_2 <= {15'd0, x_causes};
                 X_FLAGS: read_group_2 <= {7'd0, x_segments_out_of_range, x_illegal_count, x_pwm_unaligned,
                     x_pwm_saturated, x_limited_low, x_limited_high, x_controller_overrun, x_velocity_missed,
@@ -1567,6 +1635,7 @@ module posicast_stage_registers_e62fd93e (
                 X_ERROR: read_group_3 <= x_error;
                 X_COMMAND: read_group_3 <= x_command;
                 X_DUTY: read_group_3 <= {15'd0, x_duty};
+                X_SETTING_LOADED: read_group_3 <= x_setting_loaded;
                 X_SNAPSHOT_POSITION: read_group_3 <= shadow_x_user_position;
                 X_SNAPSHOT_VELOCITY: read_group_3 <= shadow_x_velocity;
                 Y_PWM_PERIOD_CLOCKS: read_group_3 <= 32'h000009c4;
@@ -1578,7 +1647,6 @@ module posicast_stage_registers_e62fd93e (
                 Y_FIFO_CONTROL: read_group_3 <= {26'd0, y_low_water};
                 Y_TAP_ADDRESS: read_group_3 <= {22'd0, y_tap_bank, 2'd0, y_tap_index};
                 Y_SETTING_ADDRESS: read_group_3 <= {22'd0, y_setting_bank, 4'd0, y_setting_row};
-                Y_LAW: read_group_3 <= {22'd0, staged_y_law_bank, 6'd0, staged_y_law};
                 default: read_group_3 <= 32'd0;
             endcase
         end
@@ -1588,6 +1656,7 @@ module posicast_stage_registers_e62fd93e (
             read_group_4 <= 32'd0;
         end else if (avs_read) begin
             case (avs_address)
+                Y_LAW: read_group_4 <= {22'd0, staged_y_law_bank, 6'd0, staged_y_law};
                 Y_SOFT_LIMIT_PLUS: read_group_4 <= y_soft_limit_plus;
                 Y_SOFT_LIMIT_MINUS: read_group_4 <= y_soft_limit_minus;
                 Y_FOLLOWING_ERROR_LIMIT: read_group_4 <= y_following_error_limit;
@@ -1598,10 +1667,10 @@ module posicast_stage_registers_e62fd93e (
                     y_index_presets, y_index_always};
                 Y_ENCODER: read_group_4 <= {31'd0, y_encoder_invert};
                 Y_PWM_TRIGGER: read_group_4 <= {16'd0, y_trigger_phase};
-                Y_STATUS: read_group_4 <= {7'd0, y_trip_causes, y_index_armed, y_table_bank, y_swap_pending,
-                    y_level_z, y_level_b, y_level_a, y_level_home, y_level_drive_ready, y_level_limit_minus_n,
-                    y_level_limit_plus_n, y_level_emergency_stop_n, y_pwm_running, y_direct_active,
-                    y_segments_state, y_can_start, y_state};
+                Y_STATUS: read_group_4 <= {5'd0, y_setting_read_waits, y_homed, y_trip_causes, y_index_armed,
+                    y_table_bank, y_swap_pending, y_level_z, y_level_b, y_level_a, y_level_home,
+                    y_level_drive_ready, y_level_limit_minus_n, y_level_limit_plus_n, y_level_emergency_stop_n,
+                    y_pwm_running, y_direct_active, y_segments_state, y_can_start, y_state};
                 Y_CAUSES: read_group_4 <= {15'd0, y_causes};
                 Y_FLAGS: read_group_4 <= {7'd0, y_segments_out_of_range, y_illegal_count, y_pwm_unaligned,
                     y_pwm_saturated, y_limited_low, y_limited_high, y_controller_overrun, y_velocity_missed,
@@ -1612,7 +1681,6 @@ module posicast_stage_registers_e62fd93e (
                 Y_SATURATIONS: read_group_4 <= {y_limited_ticks, 1'd0, y_controller_saturated_low, 1'd0,
                     y_controller_saturated_high};
                 Y_FIFO: read_group_4 <= {21'd0, y_feed_held, y_segments_empty, y_fifo_low, 1'd0, y_fifo_level};
-                Y_SELF_TEST: read_group_4 <= {y_self_test_low, y_self_test_high};
                 default: read_group_4 <= 32'd0;
             endcase
         end
@@ -1622,6 +1690,7 @@ module posicast_stage_registers_e62fd93e (
             read_group_5 <= 32'd0;
         end else if (avs_read) begin
             case (avs_address)
+                Y_SELF_TEST: read_group_5 <= {y_self_test_low, y_self_test_high};
                 Y_POSITION: read_group_5 <= y_user_position;
                 Y_COUNT: read_group_5 <= y_count;
                 Y_VELOCITY: read_group_5 <= y_velocity;
@@ -1633,6 +1702,7 @@ module posicast_stage_registers_e62fd93e (
                 Y_ERROR: read_group_5 <= y_error;
                 Y_COMMAND: read_group_5 <= y_command;
                 Y_DUTY: read_group_5 <= {15'd0, y_duty};
+                Y_SETTING_LOADED: read_group_5 <= y_setting_loaded;
                 Y_SNAPSHOT_POSITION: read_group_5 <= shadow_y_user_position;
                 Y_SNAPSHOT_VELOCITY: read_group_5 <= shadow_y_velocity;
                 default: read_group_5 <= 32'd0;
@@ -1695,6 +1765,8 @@ module posicast_stage_registers_e62fd93e (
         x_direct_kick = 1'd0;
         x_direct_duty = 17'sd0;
         x_low_water = 6'd16;
+        x_write_homed = 1'd0;
+        x_homed_value = 1'd0;
         x_segment_write = 1'd0;
         x_segment_word = 2'd0;
         x_segment_data = 32'd0;
@@ -1731,6 +1803,7 @@ module posicast_stage_registers_e62fd93e (
         x_preset_value = 32'sd0;
         x_encoder_invert = 1'd0;
         x_trigger_phase = 16'd0;
+        x_setting_read = 1'd0;
         flag_x_refused = 1'd0;
         flag_x_setting_refused = 1'd0;
         flag_x_direct_expired = 1'd0;
@@ -1745,6 +1818,8 @@ module posicast_stage_registers_e62fd93e (
         y_direct_kick = 1'd0;
         y_direct_duty = 17'sd0;
         y_low_water = 6'd16;
+        y_write_homed = 1'd0;
+        y_homed_value = 1'd0;
         y_segment_write = 1'd0;
         y_segment_word = 2'd0;
         y_segment_data = 32'd0;
@@ -1781,6 +1856,7 @@ module posicast_stage_registers_e62fd93e (
         y_preset_value = 32'sd0;
         y_encoder_invert = 1'd0;
         y_trigger_phase = 16'd0;
+        y_setting_read = 1'd0;
         flag_y_refused = 1'd0;
         flag_y_setting_refused = 1'd0;
         flag_y_direct_expired = 1'd0;

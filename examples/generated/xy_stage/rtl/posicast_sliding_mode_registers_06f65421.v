@@ -1,4 +1,4 @@
-// posicast_sliding_mode_registers_53078686
+// posicast_sliding_mode_registers_06f65421
 // Registers of sliding_mode: Avalon-MM agent, 32 bits, word addresses, read latency 1, no waits.
 // Commands take whole words only. Reads have no side effect; what is not mapped reads as 0.
 //
@@ -6,7 +6,7 @@
 
 `default_nettype none
 
-module posicast_sliding_mode_registers_53078686 (
+module posicast_sliding_mode_registers_06f65421 (
     input  wire               clk,
     input  wire               rst,
     input  wire [7:0]         avs_address,
@@ -25,6 +25,7 @@ module posicast_sliding_mode_registers_53078686 (
     input  wire               overrun,
     input  wire               limited_high,
     input  wire               limited_low,
+    input  wire               setting_read_waits,
     input  wire [6:0]         saturated_high,
     input  wire [6:0]         saturated_low,
     input  wire               setting_refused,
@@ -45,7 +46,9 @@ module posicast_sliding_mode_registers_53078686 (
     output reg  [3:0]         setting_row,
     output reg  [1:0]         setting_bank,
     output reg                setting_write,
-    output reg  [31:0]        setting_word
+    output reg  [31:0]        setting_word,
+    output reg                setting_read,
+    input  wire [31:0]        setting_loaded
 );
     // Words of the window.
     localparam [7:0] MAGIC                  = 8'h00;
@@ -74,6 +77,8 @@ module posicast_sliding_mode_registers_53078686 (
     localparam [7:0] LIMITED_TICKS          = 8'h24;
     localparam [7:0] SETTING_ADDRESS        = 8'h28;
     localparam [7:0] SETTING                = 8'h29;
+    localparam [7:0] SETTING_READ           = 8'h2a;
+    localparam [7:0] SETTING_LOADED         = 8'h2b;
     localparam [7:0] SNAPSHOT_ERROR         = 8'h30;
     localparam [7:0] SNAPSHOT_SLIDING       = 8'h31;
     localparam [7:0] SNAPSHOT_COMMAND       = 8'h32;
@@ -105,11 +110,13 @@ module posicast_sliding_mode_registers_53078686 (
     wire write_clear_flags = avs_write && avs_address == CLEAR_FLAGS;
     wire write_setting_address = avs_write && avs_address == SETTING_ADDRESS;
     wire write_setting = avs_write && avs_address == SETTING;
+    wire write_setting_read = avs_write && avs_address == SETTING_READ;
 
     reg waits;
     wire applies = waits && ends;
     wire bus_partial = !whole && (write_snapshot || write_commit || write_interrupt_test
-        || write_start || write_clear_integral || write_clear_flags || write_setting);
+        || write_start || write_clear_integral || write_clear_flags || write_setting
+        || write_setting_read);
     wire bus_rejected = waits && ((write_commit && whole) || write_law);
 
     // COMMIT: commit; law and bank of settings, together, between two passes
@@ -371,6 +378,15 @@ module posicast_sliding_mode_registers_53078686 (
         end
     end
 
+    // SETTING_READ: command; reads the word at `SETTING_ADDRESS` back, which stays until `setting_read_waits` is low
+    always @(posedge clk) begin
+        if (rst) begin
+            setting_read <= 1'd0;
+        end else begin
+            setting_read <= write_setting_read && whole;
+        end
+    end
+
     // SNAPSHOT: freezes the words `SNAPSHOT_...`
     reg signed [31:0] shadow_error;
     reg signed [31:0] shadow_sliding;
@@ -409,12 +425,12 @@ module posicast_sliding_mode_registers_53078686 (
         end else if (avs_read) begin
             case (avs_address)
                 MAGIC: read_group_0 <= 32'h31434d53;
-                VERSION: read_group_0 <= 32'h00010000;
+                VERSION: read_group_0 <= 32'h00010001;
                 COMMIT: read_group_0 <= {31'd0, waits};
                 CONTROL: read_group_0 <= {31'd0, from_pins};
                 LAW: read_group_0 <= {22'd0, staged_bank, 3'd0, staged_modulo, 2'd0, staged_law};
-                STATUS: read_group_0 <= {9'd0, saturated_low, 1'd0, saturated_high, 4'd0, limited_low,
-                    limited_high, overrun, busy};
+                STATUS: read_group_0 <= {9'd0, saturated_low, 1'd0, saturated_high, 3'd0, setting_read_waits,
+                    limited_low, limited_high, overrun, busy};
                 FLAGS: read_group_0 <= {29'd0, flag_setting_refused, flag_commit_rejected, flag_partial_write};
                 INTERRUPT_STATE: read_group_0 <= {28'd0, irq_state_limited_low, irq_state_limited_high,
                     irq_state_overrun, irq_state_valid};
@@ -423,6 +439,7 @@ module posicast_sliding_mode_registers_53078686 (
                 POSITION_REFERENCE: read_group_0 <= host_x_0;
                 VELOCITY_REFERENCE: read_group_0 <= host_x_1;
                 ACCELERATION_REFERENCE: read_group_0 <= host_x_2;
+                POSITION: read_group_0 <= host_x_3;
                 default: read_group_0 <= 32'd0;
             endcase
         end
@@ -432,7 +449,6 @@ module posicast_sliding_mode_registers_53078686 (
             read_group_1 <= 32'd0;
         end else if (avs_read) begin
             case (avs_address)
-                POSITION: read_group_1 <= host_x_3;
                 VELOCITY: read_group_1 <= host_x_4;
                 ERROR: read_group_1 <= error;
                 SLIDING: read_group_1 <= sliding;
@@ -440,6 +456,7 @@ module posicast_sliding_mode_registers_53078686 (
                 DUTY: read_group_1 <= {14'd0, duty};
                 LIMITED_TICKS: read_group_1 <= {16'd0, limited_ticks};
                 SETTING_ADDRESS: read_group_1 <= {22'd0, setting_bank, 4'd0, setting_row};
+                SETTING_LOADED: read_group_1 <= setting_loaded;
                 SNAPSHOT_ERROR: read_group_1 <= shadow_error;
                 SNAPSHOT_SLIDING: read_group_1 <= shadow_sliding;
                 SNAPSHOT_COMMAND: read_group_1 <= shadow_command;
@@ -482,6 +499,7 @@ module posicast_sliding_mode_registers_53078686 (
         setting_bank = 2'd0;
         setting_write = 1'd0;
         setting_word = 32'd0;
+        setting_read = 1'd0;
         shadow_error = 32'sd0;
         shadow_sliding = 32'sd0;
         shadow_command = 32'sd0;
