@@ -78,7 +78,7 @@ module posicast_setting_banks_94eabf14 (
     assign refused_q_next = setting_write & !loadable;
     assign write_address = write_half | {1'd0, setting_row};
 
-    // A host's read takes the place of one that is not used
+    // A host reads while the controller does not
     assign serves = ((read_waits & !served) & !busy) & !setting_write;
     assign read_waits_next = setting_read | (read_waits & !served);
     assign read_address = read_half | {1'd0, read_row};
