@@ -180,7 +180,7 @@ mod tests {
                 ..Inputs::default()
             };
             loop {
-                (inputs.row, inputs.busy) = (*clock as u8 & 15, *clock / 20 % 2 == 0);
+                (inputs.row, inputs.busy) = (*clock as u8 & 15, (*clock / 20).is_multiple_of(2));
                 let used = *clock % 20 > 1 && inputs.busy;
                 let expected = banks.word(bank, inputs.row.wrapping_sub(1) & 15);
                 let shown = banks.step(&inputs);
