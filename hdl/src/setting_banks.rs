@@ -62,7 +62,7 @@ impl Logic for SettingBanks {
             self.written.d.next = self.written.q.val() | (self.one.val() << self.write_address.val());
         }
 
-        comment!("A host reads while the controller does not");
+        comment!("A host's read takes the place of one that the controller does not use; it waits for such a clock");
         self.serves.next =
             self.read_waits.q.val() & !self.served.q.val() & !self.busy.val() & !self.setting_write.val();
         self.served.d.next = self.serves.val();

@@ -28,7 +28,7 @@ module segments_properties (
     (* peek = "u_fifo.pop" *) input wire fifo_pop,
     (* peek = "u_fifo.plays" *) input wire fifo_plays,
     (* peek = "u_fifo.flush" *) input wire fifo_flush,
-    (* peek = "u_fifo.memory_write_address" *) input wire [7:0] write_address
+    (* peek = "u_fifo.u_memory.write_address" *) input wire [7:0] write_address
 );
     reg       past_reset = 1'b1;
     reg       past_entered = 1'b0;

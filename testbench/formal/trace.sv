@@ -59,7 +59,7 @@ module trace_properties (
     (* peek = "u_memory.u_ram.write_enable" *) input wire write,
     (* peek = "u_memory.u_ram.write_address" *) input wire [`ADDRESS_BITS-1:0] write_address,
     (* peek = "u_memory.u_ram.write_data" *) input wire [31:0] write_data,
-    (* peek = "u_memory.ram_read_address" *) input wire [`ADDRESS_BITS-1:0] ram_read_address,
+    (* peek = "u_memory.u_ram.read_address" *) input wire [`ADDRESS_BITS-1:0] ram_read_address,
     (* peek = "u_memory.ram_read_data" *) input wire [31:0] ram_data,
     (* peek = "u_memory.pointer" *) input wire [`ADDRESS_BITS-1:0] pointer,
     (* peek = "u_memory.oldest" *) input wire [`ADDRESS_BITS-1:0] oldest,

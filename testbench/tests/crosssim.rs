@@ -41,7 +41,7 @@ fn crosssim_waveforms_of_both_simulators_are_equal() {
 /// The value at power-up hides it from every other run: until the second reset, or for ever.
 #[test]
 fn crosssim_a_register_without_reset_is_x_after_it() {
-    let outcome = after(&divider(), "            saturated_q <= 1'd0;\n", "");
+    let outcome = after(&divider(), "        saturated_q <= 1'd0;\n", "");
     assert_eq!(outcome.unset.result, Verdict::Different);
     let first = &outcome.unset.differences[0];
     assert_eq!(first.signal, "posicast_bench.saturated");
@@ -62,8 +62,8 @@ fn crosssim_a_wire_that_nothing_drives_is_found_in_the_waveforms() {
 /// What each simulator reads differently: here by a macro, as a bug in one of them would.
 #[test]
 fn crosssim_a_simulator_with_a_mind_of_its_own_is_found() {
-    let from = "    assign refused_q_next = start & blocked;";
-    let to = format!("`ifdef __ICARUS__\n    assign refused_q_next = start;\n`else\n{from}\n`endif");
+    let from = "        refused_q <= start & blocked;";
+    let to = format!("`ifdef __ICARUS__\n        refused_q <= start;\n`else\n{from}\n`endif");
     let outcome = after(&PartBlock::new(Part::Group(2), ""), from, &to);
     assert_eq!(outcome.verilator.result, report::Verdict::Match);
     assert_eq!(outcome.waves.result, Verdict::Different);

@@ -58,20 +58,15 @@ fn lockstep_catches_a_manual_duty_that_the_supervisor_inherits() {
 
 #[test]
 fn lockstep_catches_a_mask_that_ends_with_the_pwm() {
-    caught(
-        &block(),
-        "masked_next = next_test | tested",
-        "masked_next = next_test",
-        100_000,
-    );
+    caught(&block(), "masked <= next_test | tested", "masked <= next_test", 100_000);
 }
 
 #[test]
 fn lockstep_catches_a_drive_that_a_self_test_switches_on() {
     caught(
         &block(),
-        "drive_enable_q_next = (axis_drive_enable | next_active) & !next_test",
-        "drive_enable_q_next = axis_drive_enable | next_active",
+        "drive_enable_q <= (axis_drive_enable | next_active) & !next_test",
+        "drive_enable_q <= axis_drive_enable | next_active",
         100_000,
     );
 }

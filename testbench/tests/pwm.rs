@@ -142,7 +142,7 @@ fn lockstep_catches_a_watchdog_that_a_feed_does_not_reset() {
 #[test]
 fn lockstep_catches_a_clear_while_the_fault_stands() {
     caught(
-        "((clear_trip & !running) & latched) & over",
+        "clear_trip & !running & latched & over",
         "(clear_trip & !running) & latched",
     );
 }

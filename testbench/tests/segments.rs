@@ -35,8 +35,8 @@ fn lockstep_catches_a_stop_that_is_too_strong() {
 fn lockstep_catches_an_addend_that_is_not_sign_extended() {
     caught(
         &segments(),
-        "addend_sign = addend[7]",
-        "addend_sign = addend[6]",
+        "addend_sign        (addend[7])",
+        "addend_sign        (addend[6])",
         300_000,
     );
 }

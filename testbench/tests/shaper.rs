@@ -326,7 +326,7 @@ fn crosssim_corners_catch_what_random_stimuli_miss() {
         ("reset_empties_both_banks", "taps_2 <= 7'd0;", ""),
         (
             "start_and_strobe_across_a_pass",
-            "(done & !start) & !strobe",
+            "done & !start & !strobe",
             "done & !strobe",
         ),
     ] {

@@ -91,16 +91,16 @@ fn lockstep_catches_a_clear_that_a_sum_under_way_undoes() {
 
 #[test]
 fn lockstep_catches_an_integral_that_winds_up() {
-    caught("(enable & !cleared) & !limited_high", "enable & !cleared");
-    caught("(enable & !cleared) & !limited_low", "enable & !cleared");
+    caught("enable & !cleared & !limited_high", "enable & !cleared");
+    caught("enable & !cleared & !limited_low", "enable & !cleared");
     caught("opposes ^ setting[17]", "opposes");
 }
 
 #[test]
 fn lockstep_catches_flags_that_a_clear_swallows() {
     caught(
-        "flags_q_next = (kept | by_error) | by_sum",
-        "flags_q_next = clear_flags ? 7'd0 : (kept | by_error) | by_sum",
+        "flags_q <= kept | by_error | by_sum",
+        "flags_q <= clear_flags ? 7'd0 : kept | by_error | by_sum",
     );
 }
 

@@ -15,7 +15,6 @@ impl Logic for AtTick {
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module axis_at_tick");
-        comment!("@about A word as it stood at the last tick.");
         self.now.next = self.word_q.q.val();
         if self.tick.val() {
             self.now.next = self.word.val();

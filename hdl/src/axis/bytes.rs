@@ -15,7 +15,6 @@ impl Logic for Bytes {
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module axis_bytes");
-        comment!("@about Bytes of a word, lowest first.");
         self.low.next = self.word.val().get_bits::<8>(0);
         self.high.next = self.word.val().get_bits::<8>(16);
         if self.turn.val().get_bit(0) {

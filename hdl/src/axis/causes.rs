@@ -51,7 +51,6 @@ impl Logic for Causes {
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module axis_causes");
-        comment!("@about Sticky causes: set wins over forget.");
         self.by_emergency.next = self.no_causes.val();
         if self.emergency.val() {
             self.by_emergency.next = self.of_emergency.val();

@@ -29,7 +29,6 @@ impl Logic for Larger {
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module axis_larger");
-        comment!("@about Is it larger? Lowest byte first.");
         self.one.next = self.number.val();
         if self.inverts.val() {
             self.one.next = !self.number.val();

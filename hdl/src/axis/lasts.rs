@@ -27,7 +27,6 @@ impl Logic for Lasts {
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module axis_lasts");
-        comment!("@about Ticks against too many of them.");
         self.limit_nibbles.clk.next = self.clk.val();
         self.limit_nibbles.rst.next = self.rst.val();
         self.limit_nibbles.turn.next = self.turn.val();

@@ -15,7 +15,6 @@ impl Logic for Line {
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module single_line");
-        comment!("@about Synchroniser and filter of one line.");
         self.synchroniser.clk.next = self.clk.val();
         self.synchroniser.rst.next = self.rst.val();
         self.synchroniser.pin.next = self.pin.val();

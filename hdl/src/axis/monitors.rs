@@ -88,7 +88,6 @@ impl Logic for Monitors {
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module axis_monitors");
-        comment!("@about Limits, errors and times, at ticks.");
 
         comment!("Two rounds of four bytes, a clock between them");
         self.takes.next = self.tick.val() | (self.looks.q.val() & !self.again.q.val()) | self.turn.q.val().any();

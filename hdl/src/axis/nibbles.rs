@@ -15,7 +15,6 @@ impl Logic for Nibbles {
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module axis_nibbles");
-        comment!("@about Nibbles of half a word, lowest first.");
         self.low.next = self.word.val().get_bits::<4>(0);
         self.high.next = self.word.val().get_bits::<4>(8);
         if self.turn.val().get_bit(0) {

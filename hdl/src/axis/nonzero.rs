@@ -15,7 +15,6 @@ impl Logic for Nonzero {
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module axis_nonzero");
-        comment!("@about Is any byte other than 0?");
         self.nonzero_q.d.next = self.nonzero_q.q.val() | self.part.val().any();
         if !self.compares.val() {
             self.nonzero_q.d.next = false;

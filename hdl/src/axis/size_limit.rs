@@ -28,7 +28,6 @@ impl Logic for SizeLimit {
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module axis_size_limit");
-        comment!("@about A number's size against its limit.");
         self.number_bits.next = unsigned_cast(self.number.val());
         if self.tick.val() {
             self.negative.d.next = self.number_bits.val().get_bit(31);

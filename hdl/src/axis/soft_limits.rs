@@ -36,7 +36,6 @@ impl Logic for SoftLimits {
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module axis_soft_limits");
-        comment!("@about The shaped position, two soft limits.");
         self.reference_bytes.clk.next = self.clk.val();
         self.reference_bytes.rst.next = self.rst.val();
         self.reference_bytes.turn.next = self.turn.val();

@@ -81,7 +81,6 @@ impl Logic for States {
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module axis_states");
-        comment!("@about OFF, READY, HOLD, RUN, QUICK_STOP, FAULT.");
         self.in_off.next = self.state_q.q.val() == self.off_state.val();
         self.in_ready.next = self.state_q.q.val() == self.ready_state.val();
         self.in_hold.next = self.state_q.q.val() == self.hold_state.val();

@@ -27,7 +27,6 @@ impl Logic for TickCount {
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module axis_tick_count");
-        comment!("@about Counts ticks, and whether they are many.");
         self.nibble.next = self.count.q.val().get_bits::<4>(0);
         self.counted.next = bit_cast::<5, 4>(self.nibble.val()) + bit_cast::<5, 1>(self.carry.q.val());
         self.carry.d.next = self.no_carry.val();

@@ -31,7 +31,6 @@ impl Logic for Timer {
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module axis_timer");
-        comment!("@about Ticks of brake and shaper.");
         self.loads.next = self.load_release.val() | self.load_settle.val() | self.load_apply.val();
         self.released.next = self.no_ticks.val();
         if self.load_release.val() {

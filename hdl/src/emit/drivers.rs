@@ -4,16 +4,16 @@
 //! block of constants alone has nothing that would ever trigger it, and would stay X in an event simulator.
 
 use super::error::{Cause, EmitError};
-use super::ir::{Statement, each};
-use super::scope::{NetId, Role, Scope};
+use super::ir::{Expression, Statement, each};
+use super::scope::{Net, NetId, Role, Scope};
 use super::types::mask;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// A kernel, sorted by construct. A comment goes with the statement that follows it, and is there once.
 #[derive(Debug, Default)]
 pub(super) struct Drivers {
-    /// Inputs of registers and sub-blocks that are just another net.
-    pub(super) direct: BTreeMap<NetId, NetId>,
+    /// Inputs of registers and sub-blocks that are just another net or a short expression.
+    pub(super) direct: BTreeMap<NetId, Expression>,
     /// The comments above what wires these inputs.
     pub(super) notes: BTreeMap<NetId, Vec<String>>,
     /// Comments and assignments.
@@ -37,16 +37,12 @@ impl Drivers {
             match statement {
                 Statement::Comment(text) => comments.push(text),
                 Statement::Assign { target, ref value } if writes.get(&target) == Some(&1) => {
-                    let is_input = scope.net(target).role.is_input_below();
-                    match value.plain.filter(|_| is_input) {
-                        Some(source) => {
-                            drivers.notes.entry(target).or_default().append(&mut comments);
-                            drivers.direct.insert(target, source);
-                        }
-                        None => {
-                            drivers.continuous.extend(comments.drain(..).map(Statement::Comment));
-                            drivers.continuous.push(statement);
-                        }
+                    if is_direct(value, scope.net(target)) {
+                        drivers.notes.entry(target).or_default().append(&mut comments);
+                        drivers.direct.insert(target, value.clone());
+                    } else {
+                        drivers.continuous.extend(comments.drain(..).map(Statement::Comment));
+                        drivers.continuous.push(statement);
                     }
                 }
                 _ => {
@@ -69,8 +65,8 @@ impl Drivers {
         };
         each(&self.continuous, &mut collect);
         each(&self.procedural, &mut collect);
-        for source in self.direct.values() {
-            bits.insert(*source, u64::MAX);
+        for (id, mask) in self.direct.values().flat_map(|source| &source.reads) {
+            *bits.entry(*id).or_default() |= mask;
         }
         bits
     }
@@ -103,6 +99,20 @@ impl Drivers {
             Err(EmitError::new(path, &signal, Cause::ConstantCondition))
         }
     }
+}
+
+/// Longest expression that stands where it is used, in characters: in the connection of a sub-block's port, and behind `<=`.
+const SHORT: (usize, usize) = (40, 80);
+
+/// Does what drives this net stand where the net is used?
+fn is_direct(value: &Expression, net: &Net) -> bool {
+    let is_short = match net.role {
+        // Yosys takes no signed expression in a connection, whose own sign it loses.
+        Role::PinIn => !net.ty.signed && !value.text.contains('$') && value.text.len() <= SHORT.0,
+        Role::Next => value.text.len() <= SHORT.1,
+        _ => false,
+    };
+    net.role.is_input_below() && (value.plain.is_some() || is_short)
 }
 
 /// Bits of each net that nothing reads, as contiguous ranges `(low, width)`.

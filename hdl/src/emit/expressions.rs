@@ -261,7 +261,7 @@ impl<'a> Writer<'a> {
         Ok(match op {
             VerilogOpUnary::Not if ty == BIT => Value::closed(format!("!{operand}"), BIT),
             VerilogOpUnary::Not => Value::closed(format!("~{operand}"), ty),
-            VerilogOpUnary::Neg => Value::open(format!("-{operand}"), ty),
+            VerilogOpUnary::Neg => Value::open(format!("-{operand}"), "-", ty),
             VerilogOpUnary::All => Value::closed(format!("(&{operand})"), BIT),
             VerilogOpUnary::Any => Value::closed(format!("(|{operand})"), BIT),
             VerilogOpUnary::Xor => Value::closed(format!("(^{operand})"), BIT),
@@ -321,12 +321,14 @@ impl<'a> Writer<'a> {
             None => self.index(b)?.0,
         };
         let operand = self.values.operand(&value);
-        Ok(Value::open(format!("{operand} {} {amount}", symbol(op)), ty))
+        let symbol = symbol(op);
+        Ok(Value::open(format!("{operand} {symbol} {amount}"), symbol, ty))
     }
 
     fn operator(&mut self, left: &Value, op: &VerilogOp, right: &Value, ty: Type) -> Value {
-        let (left, right) = (self.values.operand(left), self.values.operand(right));
-        Value::open(format!("{left} {} {right}", symbol(op)), ty)
+        let symbol = symbol(op);
+        let (left, right) = (self.values.link(left, symbol), self.values.link(right, symbol));
+        Value::open(format!("{left} {symbol} {right}"), symbol, ty)
     }
 }
 

@@ -12,11 +12,11 @@
 //! - Sharing: equal sub-blocks are one module. Sub-blocks that come out different have different names, by the sizes that their
 //!   `@module` tags name; anything else is an error, so that a name stands for one content wherever it is used.
 //!
-//! A kernel names its module and describes it with comments, a leaf with the first lines of its text:
+//! A kernel names its module with a comment, and the `//!` lines of its file are what the Verilog begins with. A leaf says both in the
+//! first lines of its text:
 //!
 //! ```text
 //! comment!("@module tap_sequencer");   base name of the module; without it, the field path
-//! comment!("@about Walks the table."); header of the file
 //!
 //! // @dff 8'h05                        a register, inlined
 //! // @dff 8'h05 kept                   the same, wired by `kernel!`: the kernel says nothing of its clock and reset
@@ -44,6 +44,7 @@ mod drivers;
 mod error;
 mod expressions;
 mod flow;
+mod head;
 mod ir;
 mod leaf;
 mod library;
@@ -57,6 +58,7 @@ mod sizes;
 mod statements;
 mod types;
 mod values;
+mod wrap;
 
 pub use compose::{Instance, compose};
 pub use connect::connect;

@@ -9,7 +9,7 @@ use super::numbers;
 use super::print::{self, Lines};
 use super::scope::{NetId, Role, Scope};
 use super::statements::{comment_text, statements};
-use super::{EmitOptions, Module, flow};
+use super::{EmitOptions, Module, flow, head};
 use posicast_model::rtl::{Direction, Port};
 use rust_hdl_core::ast::VerilogStatement;
 use rust_hdl_core::prelude::Verilog;
@@ -114,11 +114,11 @@ impl Modules<'_> {
             clocking: clocking.as_ref(),
         };
         let body = writer.body(&bits_read, &children, &unread);
-        let tags = Tags::read(kernel, node)?;
+        let (tagged, about) = tagged(kernel, node)?;
         Ok(Draft {
-            tagged: tags.module,
+            tagged,
             of_machine,
-            about: tags.about,
+            about,
             body,
         })
     }
@@ -181,30 +181,20 @@ impl Modules<'_> {
     }
 }
 
-/// `comment!("@module name")` and `comment!("@about text")` at the top level of a kernel.
-#[derive(Default)]
-struct Tags {
-    module: Option<String>,
-    about: Vec<String>,
-}
-
-impl Tags {
-    fn read(kernel: &[VerilogStatement], node: &Node) -> Result<Self, EmitError> {
-        let mut tags = Self::default();
-        for statement in kernel {
-            let VerilogStatement::Comment(raw) = statement else {
-                continue;
-            };
-            let text = comment_text(raw).unwrap_or_default();
-            if let Some(name) = text.strip_prefix("@module ") {
-                let name = numbers::fill(name, node).and_then(|name| names::check_name(&name).map(|()| name));
-                tags.module = Some(name.map_err(|cause| EmitError::new(&node.path, "", cause))?);
-            } else if let Some(about) = text.strip_prefix("@about ") {
-                tags.about.push(about.to_owned());
-            }
+/// The base name of a kernel's module, which `comment!("@module name")` tells, and the head of its file.
+fn tagged(kernel: &[VerilogStatement], node: &Node) -> Result<(Option<String>, Vec<String>), EmitError> {
+    for statement in kernel {
+        let VerilogStatement::Comment(raw) = statement else {
+            continue;
+        };
+        let text = comment_text(raw).unwrap_or_default();
+        if let Some(tag) = text.strip_prefix("@module ") {
+            let name = numbers::fill(tag, node).and_then(|name| names::check_name(&name).map(|()| name));
+            let name = name.map_err(|cause| EmitError::new(&node.path, "", cause))?;
+            return Ok((Some(name), head::head(tag)));
         }
-        Ok(tags)
     }
+    Ok((None, Vec::new()))
 }
 
 /// Clock and reset of the registers.
@@ -285,9 +275,12 @@ impl Composite<'_> {
         lines.text
     }
 
-    /// The net that a sub-block's or a register's input is connected to.
+    /// What a sub-block's or a register's input is connected to.
     fn source(&self, id: NetId) -> &str {
-        &self.scope.net(*self.drivers.direct.get(&id).unwrap_or(&id)).name
+        match self.drivers.direct.get(&id) {
+            Some(source) => &source.text,
+            None => &self.scope.net(id).name,
+        }
     }
 
     /// The comments above what wires this input.
@@ -339,17 +332,14 @@ impl Composite<'_> {
         };
         let (clk, rst) = (&scope.net(clocking.clk).name, &scope.net(clocking.rst).name);
         lines.section(|lines| {
-            lines.nest(&format!("always @(posedge {clk}) begin"), "end", |lines| {
-                lines.nest(&format!("if ({rst}) begin"), "end else begin", |lines| {
-                    initial(lines, "<=")
-                });
-                lines.nest_rest("end", |lines| {
-                    for register in &scope.registers {
-                        self.notes(lines, register.next);
-                        let next = self.source(register.next);
-                        lines.line(&format!("{} <= {next};", scope.net(register.now).name));
-                    }
-                });
+            let open = format!("always @(posedge {clk}) if ({rst}) begin");
+            lines.nest(&open, "end else begin", |lines| initial(lines, "<="));
+            lines.nest_rest("end", |lines| {
+                for register in &scope.registers {
+                    self.notes(lines, register.next);
+                    let next = self.source(register.next);
+                    lines.line(&format!("{} <= {next};", scope.net(register.now).name));
+                }
             });
         });
         // Below `always @(*)`, which an event simulator must have waiting when these values arrive.

@@ -15,23 +15,25 @@ pub(super) enum Value {
     Part { net: NetId, low: u32, ty: Type },
     /// A bit pattern.
     Literal { pattern: u64, ty: Type },
-    /// Text that needs parentheses as an operand unless `closed`.
-    Text { text: String, ty: Type, closed: bool },
+    /// Text, and the operator that stands in it outside all parentheses, if there is one.
+    Text {
+        text: String,
+        ty: Type,
+        operator: Option<&'static str>,
+    },
 }
 
 impl Value {
-    /// Text with an operator outside all parentheses.
-    pub(super) fn open(text: String, ty: Type) -> Self {
-        Self::Text {
-            text,
-            ty,
-            closed: false,
-        }
+    /// Text with this operator outside all parentheses.
+    pub(super) fn open(text: String, operator: &'static str, ty: Type) -> Self {
+        let operator = Some(operator);
+        Self::Text { text, ty, operator }
     }
 
     /// Text that is an operand as it is.
     pub(super) fn closed(text: String, ty: Type) -> Self {
-        Self::Text { text, ty, closed: true }
+        let operator = None;
+        Self::Text { text, ty, operator }
     }
 
     pub(super) fn ty(&self) -> Type {
@@ -189,9 +191,18 @@ impl<'a> Values<'a> {
     pub(super) fn operand(&mut self, value: &Value) -> String {
         let text = self.text(value);
         match value {
-            Value::Text { closed: false, .. } => format!("({text})"),
+            Value::Text { operator: Some(_), .. } => format!("({text})"),
             Value::Literal { .. } if text.starts_with('-') => format!("({text})"),
             _ => text,
+        }
+    }
+
+    /// As [`operand`](Self::operand), of an operator that may be `value`'s own: a chain of one bitwise or logical operator needs no
+    /// parentheses.
+    pub(super) fn link(&mut self, value: &Value, of: &str) -> String {
+        match value {
+            Value::Text { text, operator, .. } if *operator == Some(of) && is_associative(of) => text.clone(),
+            _ => self.operand(value),
         }
     }
 
@@ -218,4 +229,8 @@ impl<'a> Values<'a> {
     pub(super) fn needs_local(&mut self, value: &Value) -> Cause {
         Cause::NeedsLocal(self.text(value))
     }
+}
+
+fn is_associative(operator: &str) -> bool {
+    matches!(operator, "&" | "|" | "^" | "&&" | "||")
 }

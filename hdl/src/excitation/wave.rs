@@ -63,7 +63,6 @@ impl Logic for Wave {
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module excitation_wave");
-        comment!("@about Angle, PRBS, amplitude times wave.");
         self.advances.next = self.phase.q.val() == self.advance_phase.val();
         self.turns.next = self.phase.q.val() == self.turn_phase.val();
         self.scales.next = self.phase.q.val() == self.scale_phase.val();

@@ -60,8 +60,6 @@ impl Logic for SerialRatio {
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module serial_ratio");
-        comment!("@about ratio * operand, rounded, less the other:");
-        comment!("@about a bit per clock, lowest first.");
 
         comment!("32 bits from bit ratio_shift on are the result");
         self.at_shift.next = self.phase.q.val().get_bits::<5>(0) == self.ratio_shift.val();

@@ -28,7 +28,6 @@ impl Logic for Decoder {
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module decoder");
-        comment!("@about Filtered levels to steps up and down.");
         self.a_before.d.next = self.level_a.val();
         self.b_before.d.next = self.level_b.val();
 

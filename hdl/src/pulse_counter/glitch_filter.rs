@@ -17,7 +17,6 @@ impl Logic for GlitchFilter {
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module glitch_filter");
-        comment!("@about A level passes after filter_clocks + 1.");
         self.left.d.next = self.left.q.val() - self.one_clock.val();
         if self.input_level.val() == self.level_q.q.val() {
             self.left.d.next = self.filter_clocks.val();

@@ -17,7 +17,6 @@ impl Logic for Line {
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module line_receiver");
-        comment!("@about Synchroniser, pair, filter of one line.");
         self.pin_synchroniser.clk.next = self.clk.val();
         self.pin_synchroniser.rst.next = self.rst.val();
         self.pin_synchroniser.pin.next = self.pin.val();

@@ -75,8 +75,6 @@ impl Logic for Velocity {
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module velocity");
-        comment!("@about What the divider gets at a tick, and what");
-        comment!("@about becomes of its quotient.");
 
         comment!("The quotient: its distance from the velocity");
         self.pending.next = self.job.q.val().any();

@@ -52,7 +52,6 @@ impl Logic for Carrier {
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module pwm_carrier${if timed _on_time_base}");
-        comment!("@about Position in the period; boundaries.");
 
         comment!("The leads: period - 32, and half of that");
         self.lead.next =

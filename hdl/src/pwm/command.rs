@@ -70,8 +70,6 @@ impl Logic for Command {
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module pwm_command");
-        comment!("@about Duty to pattern and edges: one adder that");
-        comment!("@about counts the clocks to an edge in between.");
 
         comment!("The last 32 clocks before a valley, 16 at a peak");
         self.begins_valley.next = self.step.q.val() == 16;

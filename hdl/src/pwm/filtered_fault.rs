@@ -16,7 +16,6 @@ impl Logic for FilteredFault {
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module filtered_fault");
-        comment!("@about Active when low for over filter_clocks.");
         self.synchroniser.clk.next = self.clk.val();
         self.synchroniser.rst.next = self.rst.val();
         self.synchroniser.pin.next = !self.fault_n.val();

@@ -32,8 +32,6 @@ impl Logic for Gates {
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module pwm_gates_${value a_high_off}${value a_low_off}${value b_high_off}${value b_low_off}");
-        comment!("@about The leg on its pins: a register each, then");
-        comment!("@about fault path and mask, then the polarity.");
 
         comment!("Half bridge; and the other modes from there");
         self.a_high_gate.d.next = self.high_side.val();

@@ -27,8 +27,6 @@ impl Logic for Leg {
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module pwm_leg");
-        comment!("@about Never both sides; dead time between them;");
-        comment!("@about no pulse below the minimum.");
 
         self.awake_next.next = self.awake_q.q.val();
         self.lit_next.next = self.lit_q.q.val();

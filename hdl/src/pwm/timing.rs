@@ -25,7 +25,6 @@ impl Logic for Timing {
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module pwm_timing_${value dead_time_floor}x${value minimum_pulse_floor}");
-        comment!("@about Dead time and minimum pulse, and floors.");
 
         comment!("Below: the floor has the highest bit that differs");
         self.dead_below.next = false;

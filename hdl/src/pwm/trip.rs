@@ -38,7 +38,6 @@ impl Logic for Trip {
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module pwm_trip");
-        comment!("@about Fault latch, faults, PLL, watchdog.");
 
         comment!("Without a clock: the pins, and the latch");
         self.trip_n.next = self.fault_n.val() & self.pll_locked.val();

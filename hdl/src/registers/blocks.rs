@@ -211,14 +211,16 @@ pub(super) fn declare(lines: &mut Lines, flops: &[Flop], prefix: &str) {
 
 /// A clocked block that resets `flops`, and else does what `inner` writes under the condition `otherwise`.
 pub(super) fn clocked(lines: &mut Lines, flops: &[Flop], otherwise: &str, inner: impl FnOnce(&mut Lines)) {
-    lines.nest("always @(posedge clk) begin", "end", |lines| {
-        lines.nest("if (rst) begin", &format!("end {otherwise} begin"), |lines| {
+    lines.nest(
+        "always @(posedge clk) if (rst) begin",
+        &format!("end {otherwise} begin"),
+        |lines| {
             for (ty, name, reset) in flops {
                 lines.line(&format!("{name} <= {};", ty.literal((*reset).into())));
             }
-        });
-        lines.nest_rest("end", inner);
-    });
+        },
+    );
+    lines.nest_rest("end", inner);
 }
 
 /// The registers that have a shadow, with the shadow.

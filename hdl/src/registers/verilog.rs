@@ -8,9 +8,6 @@ use crate::emit::print::{self, Lines};
 use posicast_model::rtl::Direction;
 use posicast_model::rtl::registers::{Access, Field, Register, RegisterMap, Source};
 
-/// Longest line.
-const COLUMNS: usize = 100;
-
 pub(super) fn body(map: &RegisterMap) -> String {
     let clock = ("input  wire", bits(1), "clk".to_owned());
     let groups = read_groups(map);
@@ -81,24 +78,9 @@ fn word(fields: &[Field], name: impl Fn(&Field) -> String) -> Vec<String> {
     pieces
 }
 
-/// `begin`, then the terms with the operator between them, over as many lines as they need. A comma ends a line, an
-/// operator begins one.
+/// `begin`, then the terms with the operator between them, and `end`.
 pub(super) fn joined(lines: &mut Lines, begin: &str, terms: &[String], operator: &str, end: &str) {
-    let mut line = begin.to_owned();
-    for (at, term) in terms.iter().enumerate() {
-        let separator = if at == 0 { "" } else { operator };
-        if line.len() + separator.len() + term.len() + end.len() <= COLUMNS {
-            line.push_str(separator);
-        } else if operator == ", " {
-            lines.line(&format!("{line}{}", separator.trim_end()));
-            line = "    ".to_owned();
-        } else {
-            lines.line(line.trim_end());
-            line = format!("    {}", separator.trim_start());
-        }
-        line.push_str(term);
-    }
-    lines.line(&format!("{line}{end}"));
+    lines.line(&format!("{begin}{}{end}", terms.join(operator)));
 }
 
 fn offsets(lines: &mut Lines, map: &RegisterMap) {

@@ -120,7 +120,6 @@ impl Logic for CommandFifo {
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module command_fifo");
-        comment!("@about 64 entries of 4 words; word 3 commits.");
         dff_setup!(self, clk, head, level_q, written, too_wide);
         self.memory.clk.next = self.clk.val();
 

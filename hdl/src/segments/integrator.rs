@@ -179,8 +179,6 @@ impl Logic for Integrator {
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module integrator");
-        comment!("@about a += j; v += a; p += v: exact, byte by");
-        comment!("@about byte on one adder, in 2^-32 counts.");
         dff_setup!(
             self,
             clk,

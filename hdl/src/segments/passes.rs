@@ -178,7 +178,6 @@ impl Logic for Passes {
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module passes");
-        comment!("@about Which bytes are added in which clock.");
         dff_setup!(self, clk, from_odd_q, add_acceleration_q, add_velocity_q, invert_q);
         self.later.next = self.phase.val().get_bit(5);
         self.middle.next = self.phase.val().get_bit(4);

@@ -76,10 +76,6 @@ impl<const W: usize, const P: usize, const ACC: usize, const C: usize, const H: 
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module channel_sums_${width x$0}x${width half}x${count x}_f${value fraction}${if modulo _modulo}");
-        comment!("@about y = rounded, saturated sum of products,");
-        comment!("@about channel by channel, shown together.");
-        comment!("@about A coefficient comes a clock before its");
-        comment!("@about sample, the product 4 clocks after that.");
         for i in 0..H {
             self.held[i].clock.next = self.clk.val();
             self.held[i].rst.next = self.rst.val();

@@ -54,8 +54,6 @@ impl<const W: usize, const A: usize> Logic for Handover<W, A> {
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module handover_${width position}x${words delay}_f${log2 minus_unity}");
-        comment!("@about When a swap takes effect, and how long");
-        comment!("@about two tables share the history.");
 
         comment!("How long the position has stood still");
         if self.strobe.val() {

@@ -33,10 +33,6 @@ impl<const W: usize, const A: usize, const C: usize> Logic for History<W, A, C> 
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module history_${width x$0}x${words delay}x${count x}");
-        comment!("@about The samples since the last start, in a");
-        comment!("@about ring behind its word, which also stands");
-        comment!("@about for all before: 0 if there was none.");
-        comment!("@about sample: that of delay one clock before.");
 
         comment!("A strobe adds x; a start too, and forgets");
         self.writes.next = self.strobe.val() | self.start.val();

@@ -28,7 +28,6 @@ impl<const W: usize, const P: usize, const U: usize> Logic for Product<W, P, U> 
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module product_${width sample}");
-        comment!("@about coefficient * sample, 3 clocks after both.");
 
         comment!("The lower 17 bits, or all of a short word");
         self.word.next = signed_bit_cast::<32, W>(self.sample.val());

@@ -105,10 +105,6 @@ impl<const A: usize, const T: usize, const COUNT: usize, const SUM: usize, const
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module tap_banks");
-        comment!("@about Tap tables: bank 0 is ROM, 1 and 2 load.");
-        comment!("@about Index 0 begins a table, the rest in order.");
-        comment!("@about A swap waits for the next strobe; refused");
-        comment!("@about unless the coefficients sum to 2^F.");
         self.machine_taps.clk.next = self.clk.val();
         self.loaded_taps.clk.next = self.clk.val();
 

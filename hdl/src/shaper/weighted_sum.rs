@@ -50,9 +50,6 @@ impl<const W: usize, const P: usize, const ACC: usize, const U: usize> Logic for
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module weighted_sum_${width x}x${width half}_f${value fraction}");
-        comment!("@about y = rounded, saturated sum of products.");
-        comment!("@about A coefficient comes a clock before its");
-        comment!("@about sample, the product 3 clocks after that.");
 
         comment!("Multiply and accumulate, exactly");
         self.coefficient_q.d.next = self.coefficient.val();

@@ -34,7 +34,6 @@ impl Logic for Accumulator {
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module accumulator");
-        comment!("@about A sum of products, and its words.");
 
         comment!("Add; a one below the base rounds half up");
         self.product.next = signed_bit_cast::<53, 51>(self.scaled.val());

@@ -30,7 +30,6 @@ impl Logic for Integral {
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module integral");
-        comment!("@about Integral of e, frozen against a limit.");
 
         comment!("A clear wins over a sum under way");
         if self.clear_integral.val() {

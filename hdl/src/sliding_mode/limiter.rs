@@ -50,7 +50,6 @@ impl Logic for Limiter {
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module limiter");
-        comment!("@about The command, and for how long it is cut.");
 
         comment!("held - limit, less one for a positive word");
         self.minuend.next = unsigned_cast(self.held_q.q.val());

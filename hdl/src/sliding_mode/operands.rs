@@ -58,7 +58,6 @@ impl Logic for Operands {
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module operands");
-        comment!("@about The word that a step multiplies.");
 
         comment!("Whose turn it is");
         self.takes_error.d.next = (self.step.val() == self.surface.val())

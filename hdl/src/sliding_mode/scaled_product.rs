@@ -53,8 +53,6 @@ impl Logic for ScaledProduct {
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module scaled_product");
-        comment!("@about operand * mantissa * 2^-shift");
-        comment!("@about The lowest bit is half an LSB: it rounds.");
 
         comment!("Multiply by the gain, or by one or minus one");
         self.of_gain.next = self.gain.val().get_bits::<18>(0);

@@ -90,7 +90,6 @@ impl Logic for Sequencer {
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module sequencer");
-        comment!("@about 17 steps of up to 39 clocks.");
 
         comment!("Steps of ones move nothing, but that of e");
         self.begins_pass.next = self.start.val() & !self.busy_q.q.val();

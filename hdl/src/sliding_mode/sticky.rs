@@ -19,7 +19,6 @@ impl Logic for Sticky {
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module sticky");
-        comment!("@about Sticky flags: set wins over clear.");
 
         self.kept.next = self.flags_q.q.val();
         if self.clear_flags.val() {

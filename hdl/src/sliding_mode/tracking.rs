@@ -22,7 +22,6 @@ impl Logic for Tracking {
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module tracking");
-        comment!("@about e = r - x, saturated.");
 
         comment!("e: exact modulo 2^40 LSB, or 2^32 if rotary");
         self.wide_reference.next = signed_bit_cast::<40, 32>(self.position_reference.val());

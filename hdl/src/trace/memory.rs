@@ -36,7 +36,6 @@ impl<const A: usize> Logic for TraceMemory<A> {
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module trace_memory_${words no_address}");
-        comment!("@about The words of the trace, in a ring.");
         self.ram.clk.next = self.clk.val();
 
         self.ram.write_enable.next = self.write.val();

@@ -20,7 +20,6 @@ impl Logic for SignalSelect {
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module signal_select");
-        comment!("@about One of 16 signals, a clock after select.");
 
         comment!("One of each four");
         self.low_pair[0].next = self.signal[0].val();

@@ -30,7 +30,6 @@ impl Logic for Trigger {
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module trace_trigger");
-        comment!("@about Does the trigger come with this row?");
 
         comment!("At or above: what >= says, in less logic");
         self.wide_value.next = signed_bit_cast::<33, 32>(self.value.val());

@@ -190,7 +190,6 @@ kernel!(States { rst: Bit, go: Bit => y: Bits<2>, busy: Bit, low: Signed<8> } {
     phase: Dff<Phase> = Dff::new(Phase::Hold), level: Dff<Signed<8>> = Dff::new(Signed::from(-7))
 } @ clk;
 #[hdl_gen] fn update(&mut self) {
-    comment!("@about Walks through its phases.");
     dff_setup!(self, clk, phase, level);
 
     comment!("phases in turn");

@@ -61,8 +61,8 @@ pub const INSIDE: [Inside; 13] = [
     Inside {
         name: "a limit that acts on a bounce",
         module: "axis",
-        from: "monitors_on_limit_plus = !limit_plus_line_level;",
-        to: "monitors_on_limit_plus = !limit_plus_line_level | !limit_plus_n;",
+        from: "(!limit_plus_line_level)",
+        to: "(!limit_plus_line_level | !limit_plus_n)",
     },
     Inside {
         name: "a limit whose first look is enough",

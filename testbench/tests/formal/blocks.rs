@@ -126,8 +126,8 @@ fn formal_a_share_that_begins_with_the_second_channel_is_found() {
 fn formal_a_fifo_that_writes_over_its_oldest_entry_is_found() {
     fails(
         "segments",
-        "memory_write_address = ({2'd0, slot} << 2)",
-        "memory_write_address = ({2'd0, head} << 2)",
+        "(({2'd0, slot} << 2)",
+        "(({2'd0, head} << 2)",
         "no_overwrite",
     );
 }
@@ -175,7 +175,7 @@ fn formal_lines_that_turn_back_at_once_are_found() {
 fn formal_a_test_signal_that_is_not_allowed_is_found() {
     fails(
         "excitation",
-        "(enable & allowed) & (|kind)",
+        "enable & allowed & (|kind)",
         "enable & (|kind)",
         "cut_off",
     );

@@ -16,7 +16,7 @@ fn formal_arithmetic_of_the_controller() {
 
 #[test]
 fn formal_a_sum_that_goes_on_from_the_last_one_is_found() {
-    let first = "begins_sum = (((((((sequencer_step == OF_REFERENCE)";
+    let first = "begins_sum = (sequencer_step == OF_REFERENCE)";
     fails(
         "sliding_mode",
         first,

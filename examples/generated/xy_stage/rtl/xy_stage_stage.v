@@ -338,7 +338,7 @@ module xy_stage_stage (
     wire               y_faulted;
     wire               y_index_seen;
 
-    posicast_stage_registers_5ab0eac9 u_registers (
+    posicast_stage_registers_a173a0e3 u_registers (
         .clk                         (clk),
         .rst                         (rst),
         .avs_address                 (avs_address),

@@ -535,7 +535,9 @@ module xy_stage_stage_x (
     );
 
     // Nets that nothing reads.
-    wire unused = &{1'b0, shaper_valid, shaper_busy, sliding, ends, velocity_pending, velocity_valid, negative, peak, pwm_refused, pwm_below_floor, dead_time_used, minimum_pulse_used, enabled, started, disabled};
+    wire unused = &{1'b0, shaper_valid, shaper_busy, sliding, ends, velocity_pending,
+        velocity_valid, negative, peak, pwm_refused, pwm_below_floor, dead_time_used,
+        minimum_pulse_used, enabled, started, disabled};
 endmodule
 
 `default_nettype wire

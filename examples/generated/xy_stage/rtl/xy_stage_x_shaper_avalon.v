@@ -61,7 +61,7 @@ module xy_stage_x_shaper_avalon (
     wire [1:0]         bank;
     wire               refused;
 
-    posicast_shaper_registers_56f021b6 u_registers (
+    posicast_shaper_registers_6faf999a u_registers (
         .clk             (clk),
         .rst             (rst),
         .avs_address     (avs_address),

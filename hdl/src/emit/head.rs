@@ -1,0 +1,135 @@
+//! What a module's file begins with: the head of its kernel's file, as plain text for a Verilog comment.
+//!
+//! Links and the fences of drawings go, and letters beyond ASCII, which some tools for Verilog do not read.
+
+/// `(@module tag, lines behind //!)` of every kernel; see `build.rs`.
+const HEADS: &[(&str, &str)] = include!(concat!(env!("OUT_DIR"), "/heads.rs"));
+
+/// Letters beyond ASCII in sentences, and what is written instead.
+const WORDS: [(char, &str); 12] = [
+    ('−', "-"),
+    ('·', "*"),
+    ('×', "x"),
+    ('…', "..."),
+    ('Σ', "sum of"),
+    ('∫', "integral of"),
+    ('±', "+/-"),
+    ('≥', ">="),
+    ('≤', "<="),
+    ('λ', "lambda"),
+    ('ω', "omega"),
+    ('│', "|"),
+];
+
+/// The head of the kernel whose tag this is, line by line; a paragraph is one line.
+pub(super) fn head(tag: &str) -> Vec<String> {
+    let found = HEADS.iter().find(|(name, _)| *name == tag);
+    found.map(|(_, text)| plain(text)).unwrap_or_default()
+}
+
+fn plain(text: &str) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    let (mut drawn, mut goes_on) = (false, false);
+    for line in text.lines() {
+        let line = line.strip_prefix(' ').unwrap_or(line);
+        if line.starts_with("```") {
+            (drawn, goes_on) = (!drawn, false);
+        } else if drawn {
+            lines.push(line.chars().map(drawing).collect());
+        } else {
+            let sentence = words(line);
+            let begins = sentence.is_empty() || sentence.starts_with(['-', '|', '#']);
+            match lines.last_mut() {
+                Some(last) if goes_on && !begins => {
+                    last.push(' ');
+                    last.push_str(sentence.trim_start());
+                }
+                _ => lines.push(sentence.clone()),
+            }
+            goes_on = !sentence.is_empty() && !sentence.starts_with('|');
+        }
+    }
+    lines
+}
+
+/// A line of text without links and marks.
+fn words(line: &str) -> String {
+    let mut text = String::new();
+    let mut rest = line;
+    while let Some((before, link)) = rest.split_once('[') {
+        let Some((name, after)) = link.split_once(']') else {
+            break;
+        };
+        text.push_str(before);
+        // A link has a target or is a name in backticks; other brackets are those of a word's bits.
+        let target = after.strip_prefix('(').and_then(|target| target.split_once(')'));
+        rest = match target {
+            Some((_, after)) => {
+                text.push_str(name);
+                after
+            }
+            None if name.starts_with('`') => {
+                text.push_str(name);
+                after
+            }
+            None => {
+                text.push_str(&format!("[{name}]"));
+                after
+            }
+        };
+    }
+    text.push_str(rest);
+    let mut plain = text.replace("super::", "").replace("\\|", "|");
+    for (letter, instead) in WORDS {
+        plain = plain.replace(letter, instead);
+    }
+    plain
+}
+
+/// A letter of a drawing: one for one, so that columns stay.
+fn drawing(letter: char) -> char {
+    match letter {
+        '─' | '−' => '-',
+        '‾' => '^',
+        '►' | '≥' => '>',
+        '≤' => '<',
+        '·' => '*',
+        '×' => 'x',
+        '±' => '+',
+        '…' => '~',
+        'Σ' => 'S',
+        '┤' | '├' | '└' | '│' => '|',
+        other => other,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn unit_text_is_plain_and_paragraphs_are_lines() {
+        let text = " Adds [`Two`](super::Two) words −\n of [many](x), `a[3:0]`.\n\n - one\n   thing\n - more\n\n ```text\n a ─► b\n ```";
+        let expected = [
+            "Adds `Two` words - of many, `a[3:0]`.",
+            "",
+            "- one thing",
+            "- more",
+            "",
+            "a -> b",
+        ];
+        assert_eq!(plain(text), expected);
+    }
+
+    #[test]
+    fn unit_every_kernel_has_a_head_in_ascii() {
+        assert!(HEADS.len() > 50, "{}", HEADS.len());
+        for (name, _) in HEADS {
+            let head = head(name);
+            assert!(!head.is_empty(), "{name}");
+            for line in head {
+                assert!(line.is_ascii(), "{name}: {line}");
+            }
+        }
+    }
+}
