@@ -39,20 +39,23 @@ const HEALTHY: [&str; 5] = [
 const HEALTHY_SHARED: [&str; 2] = ["emergency_stop_n", "pll_locked"];
 /// What a tick records of each axis: nets of the stage, behind the axis's name.
 const RECORDED: [&str; 4] = ["command_position", "shaped_position", "count", "error"];
+
 /// States of an axis, as `STATUS.state` has them.
 pub mod state {
+    use posicast_model::rtl::axis::State;
+
     /// Outputs off.
-    pub const OFF: u32 = 0;
+    pub const OFF: u32 = State::Off as u32;
     /// Outputs off, nothing wrong.
-    pub const READY: u32 = 1;
+    pub const READY: u32 = State::Ready as u32;
     /// Outputs on, the command stands.
-    pub const HOLD: u32 = 2;
+    pub const HOLD: u32 = State::Hold as u32;
     /// Segments play.
-    pub const RUN: u32 = 3;
+    pub const RUN: u32 = State::Run as u32;
     /// Slowing down.
-    pub const QUICK_STOP: u32 = 4;
+    pub const QUICK_STOP: u32 = State::QuickStop as u32;
     /// A cause, until it is cleared.
-    pub const FAULT: u32 = 5;
+    pub const FAULT: u32 = State::Fault as u32;
 }
 
 /// An output that differed.

@@ -1,6 +1,7 @@
 //! What was seen from the fault to the end, against what is demanded.
 
 use posicast_model::rtl::axis::{Cause, State, switching_off};
+use posicast_model::rtl::stage::axis_interrupt_bit;
 
 use super::case::Case;
 use super::expectation::{Due, Others, Reaction};
@@ -20,10 +21,6 @@ const GROUP_CLOCKS: u64 = 2;
 /// Ticks of a quick stop beside the slowing down and the settling: three at its begin, in which the command still gains
 /// speed, the state's, and two that have begun.
 const STOP_TICKS: u64 = 6;
-/// Places of an axis's interrupts.
-const STOPPING: u32 = 4;
-const FAULTED: u32 = 5;
-const INTERRUPTS_PER_AXIS: u32 = 7;
 
 /// A case on its way.
 pub(super) struct Seen<'a> {
@@ -85,9 +82,8 @@ pub(super) fn stopped(
             Some(reaction) => judge.hit(bench, observed, reaction),
             None => judge.other(bench, observed, first_stop),
         };
-        let bits = interrupts >> (INTERRUPTS_PER_AXIS * axis as u32);
         let faulted = observed.state(bench) == State::Fault as u64;
-        judge.interrupts(bits, quick, faulted);
+        judge.interrupts(interrupts, quick, faulted);
         if let (true, Some((register, field))) = (seen.case.hits(axis), seen.case.row.expects.flag) {
             let name = judge.name.clone();
             let is = bench.field(&name, register, field)?;
@@ -311,12 +307,13 @@ impl Judge<'_> {
     }
 
     fn interrupts(&mut self, bits: u32, quick: bool, faulted: bool) {
-        let is = |place: u32| bits >> place & 1 != 0;
+        let axis = self.axis;
+        let is = |name| axis_interrupt_bit(axis, name).is_some_and(|bit| bits >> bit & 1 != 0);
         if self.reaction() == Some(Reaction::Reset) {
             return;
         }
-        for (place, name, wanted) in [(STOPPING, "stopping", quick), (FAULTED, "faulted", faulted)] {
-            self.demand(is(place) == wanted, || format!("interrupt `{name}` is {}", is(place)));
+        for (name, wanted) in [("stopping", quick), ("faulted", faulted)] {
+            self.demand(is(name) == wanted, || format!("interrupt `{name}` is {}", is(name)));
         }
     }
 }

@@ -45,6 +45,18 @@ impl State {
             Self::Fault => "FAULT",
         }
     }
+
+    /// What it means for the outputs and the command, in words of the register map.
+    pub const fn meaning(self) -> &'static str {
+        match self {
+            Self::Off => "outputs off",
+            Self::Ready => "outputs off, nothing wrong",
+            Self::Hold => "outputs on, the command stands",
+            Self::Run => "segments play",
+            Self::QuickStop => "slowing down",
+            Self::Fault => "a cause, until it is cleared",
+        }
+    }
 }
 
 /// What a transition can depend on. Causes count in the clock in which they become active.

@@ -2,6 +2,7 @@
 
 use super::config::StageScale;
 use super::registers::{register, with_the_drive_off};
+use crate::rtl::axis::State;
 use crate::rtl::registers::{Access, Field, Register};
 
 /// The registers, in words of the axis's window.
@@ -33,14 +34,10 @@ pub(super) fn of_scale(scale: &StageScale) -> Vec<Register> {
 }
 
 fn states() -> Vec<Register> {
-    let states = [
-        (0, "off", "outputs off"),
-        (1, "ready", "outputs off, nothing wrong"),
-        (2, "hold", "outputs on, the command stands"),
-        (3, "run", "segments play"),
-        (4, "quick_stop", "slowing down"),
-        (5, "fault", "a cause, until it is cleared"),
-    ];
+    let names = State::ALL.map(|state| (state as u32, state.name().to_lowercase(), state.meaning()));
+    let states: Vec<_> = (names.iter())
+        .map(|(value, name, meaning)| (*value, name.as_str(), *meaning))
+        .collect();
     vec![
         register(
             "status",

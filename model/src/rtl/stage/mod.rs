@@ -27,7 +27,7 @@ mod registers;
 mod schedule;
 
 pub use self::config::{StageAxis, StageConfig, StageError, StageScale};
-pub use self::registers::{AXIS_INTERRUPTS, axis_window};
+pub use self::registers::{AXIS_INTERRUPTS, axis_interrupt_bit, axis_window};
 pub use self::schedule::Schedule;
 
 use self::axis::SHARED;

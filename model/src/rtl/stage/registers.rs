@@ -17,6 +17,12 @@ pub const AXIS_INTERRUPTS: [(&str, &str); 7] = [
     ("index_seen", "an index was latched"),
 ];
 
+/// The bit of an axis's interrupt in the interrupt registers; none where there is no interrupt of that name.
+pub fn axis_interrupt_bit(axis: usize, name: &str) -> Option<u32> {
+    let place = AXIS_INTERRUPTS.iter().position(|(interrupt, _)| *interrupt == name)?;
+    Some((axis * AXIS_INTERRUPTS.len() + place) as u32)
+}
+
 /// All registers of the stage.
 pub(super) fn stage(config: &StageConfig) -> Description {
     let about = "Stage: axes from motion segments to the pins; window 0 is the stage's, then one window per axis.";
