@@ -18,6 +18,8 @@ module xy_stage_x_tap_banks (
     input  wire [5:0]         tap_index,
     input  wire signed [17:0] tap_coefficient,
     input  wire [6:0]         tap_delay,
+    input  wire               tap_read,
+    input  wire               busy,
     input  wire               swap,
     input  wire [1:0]         swap_bank,
     input  wire               known,
@@ -32,11 +34,15 @@ module xy_stage_x_tap_banks (
     output wire [6:0]         reach,
     output wire               swap_pending,
     output wire [1:0]         bank,
-    output wire               refused
+    output wire               refused,
+    output wire signed [17:0] loaded_coefficient,
+    output wire [6:0]         loaded_delay,
+    output wire               tap_read_waits
 );
     localparam [1:0]         BANK_ROM = 2'd0;
     localparam [1:0]         BANK_1 = 2'd1;
     localparam [1:0]         BANK_2 = 2'd2;
+    localparam [1:0]         BANK_NONE = 2'd3;
     localparam [6:0]         UPPER_HALF = 7'd64;
     localparam [6:0]         ONE_TAP = 7'd1;
     localparam [6:0]         MACHINE_COUNT = 7'd5;
@@ -44,6 +50,7 @@ module xy_stage_x_tap_banks (
     localparam [6:0]         FORBIDDEN_DELAY = 7'd127;
     localparam [6:0]         NO_DELAY = 7'd0;
     localparam signed [23:0] NO_SUM = 24'sd0;
+    localparam [24:0]        NO_WORD = 25'd0;
     localparam signed [23:0] UNITY = 24'sd65536;
 
     reg  [6:0]         taps_so_far;
@@ -68,6 +75,11 @@ module xy_stage_x_tap_banks (
     reg  [6:0]         write_address;
     reg  [6:0]         read_address;
     wire [17:0]        coefficient_bits;
+    wire               serves;
+    reg  [6:0]         host_taps;
+    reg  [5:0]         read_tap;
+    reg                from_rom;
+    reg  [24:0]        read_word;
     wire [24:0]        machine_taps_data;
     wire [24:0]        loaded_taps_write_data;
     wire [24:0]        loaded_taps_read_data;
@@ -95,13 +107,21 @@ module xy_stage_x_tap_banks (
     reg  [6:0]         reach_q_next;
     reg                old_q;
     reg  [24:0]        word;
-    reg  [24:0]        word_next;
     reg                refused_q;
     reg                refused_q_next;
+    reg                read_waits;
+    wire               read_waits_next;
+    reg                served;
+    reg                served_rom;
+    wire               served_rom_next;
+    reg                served_tap;
+    wire               served_tap_next;
+    reg  [24:0]        read_back;
+    reg  [24:0]        read_back_next;
 
     xy_stage_x_machine_taps u_machine_taps (
         .clk     (clk),
-        .address (tap),
+        .address (read_tap),
         .data    (machine_taps_data)
     );
 
@@ -127,6 +147,12 @@ module xy_stage_x_tap_banks (
     assign new_sum = sum_so_far + addend;
     assign coefficient_bits = $unsigned(tap_coefficient);
     assign loaded_taps_write_data = ({18'd0, tap_delay} << 18) | {7'd0, coefficient_bits};
+
+    // A host reads a tap back while no pass runs
+    assign serves = ((read_waits & !served) & !busy) & !tap_write;
+    assign read_waits_next = tap_read | (read_waits & !served);
+    assign served_rom_next = tap_bank == BANK_ROM;
+    assign served_tap_next = (tap_bank != BANK_NONE) & (index < host_taps);
     assign coefficient = $signed(word[17:0]);
     assign delay = word[24:18];
 
@@ -136,6 +162,9 @@ module xy_stage_x_tap_banks (
     assign swap_pending = pending;
     assign bank = active;
     assign refused = refused_q;
+    assign loaded_coefficient = $signed(read_back[17:0]);
+    assign loaded_delay = read_back[24:18];
+    assign tap_read_waits = read_waits;
 
     always @(*) begin
         taps_1_next = taps_1;
@@ -150,6 +179,7 @@ module xy_stage_x_tap_banks (
         pending_next = pending;
         reach_q_next = reach_q;
         refused_q_next = refused_q;
+        read_back_next = read_back;
 
         // Writing: how far the bank addressed is loaded
         taps_so_far = taps_1;
@@ -184,6 +214,10 @@ module xy_stage_x_tap_banks (
                 sum_1_next = new_sum;
                 longest_1_next = new_longest;
             end
+        end
+        host_taps = taps_so_far;
+        if (tap_bank == BANK_ROM) begin
+            host_taps = MACHINE_COUNT;
         end
 
         // Swapping: only to a table that sums to one
@@ -255,13 +289,30 @@ module xy_stage_x_tap_banks (
         if (read_bank == BANK_1) begin
             read_address = {1'd0, tap};
         end
+        read_tap = tap;
+
+        // The host's place is that of a write
+        if (serves) begin
+            read_address = write_address;
+            read_tap = tap_index;
+        end
         word_bank = active;
         if (old_q) begin
             word_bank = previous;
         end
-        word_next = loaded_taps_read_data;
-        if (word_bank == BANK_ROM) begin
-            word_next = machine_taps_data;
+        from_rom = word_bank == BANK_ROM;
+        if (served) begin
+            from_rom = served_rom;
+        end
+        read_word = loaded_taps_read_data;
+        if (from_rom) begin
+            read_word = machine_taps_data;
+        end
+        if (served) begin
+            read_back_next = NO_WORD;
+            if (served_tap) begin
+                read_back_next = read_word;
+            end
         end
     end
 
@@ -281,6 +332,11 @@ module xy_stage_x_tap_banks (
             old_q <= 1'd0;
             word <= 25'd0;
             refused_q <= 1'd0;
+            read_waits <= 1'd0;
+            served <= 1'd0;
+            served_rom <= 1'd0;
+            served_tap <= 1'd0;
+            read_back <= 25'd0;
         end else begin
             taps_1 <= taps_1_next;
             taps_2 <= taps_2_next;
@@ -294,8 +350,13 @@ module xy_stage_x_tap_banks (
             pending <= pending_next;
             reach_q <= reach_q_next;
             old_q <= old;
-            word <= word_next;
+            word <= read_word;
             refused_q <= refused_q_next;
+            read_waits <= read_waits_next;
+            served <= serves;
+            served_rom <= served_rom_next;
+            served_tap <= served_tap_next;
+            read_back <= read_back_next;
         end
     end
 
@@ -314,6 +375,11 @@ module xy_stage_x_tap_banks (
         old_q = 1'd0;
         word = 25'd0;
         refused_q = 1'd0;
+        read_waits = 1'd0;
+        served = 1'd0;
+        served_rom = 1'd0;
+        served_tap = 1'd0;
+        read_back = 25'd0;
     end
 endmodule
 
