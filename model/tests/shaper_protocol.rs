@@ -148,6 +148,98 @@ fn unit_an_early_strobe_drops_the_pass_but_not_the_sample() {
     );
 }
 
+/// What a host reads back of a place: coefficient and delay.
+fn read(shaper: &mut Shaper, bank: u8, index: u16) -> (i32, u16) {
+    let place = Inputs {
+        tap_bank: bank,
+        tap_index: index,
+        ..Inputs::default()
+    };
+    let mut shown = clock(
+        shaper,
+        Inputs {
+            tap_read: true,
+            ..place
+        },
+    );
+    while shown.tap_read_waits {
+        shown = clock(shaper, place);
+    }
+    (shown.loaded_coefficient, shown.loaded_delay)
+}
+
+#[test]
+fn unit_taps_of_all_banks_are_read_back() {
+    let mut shaper = shaper();
+    clock(&mut shaper, write(2, 0, 2 * ONE - 1, 0));
+    clock(&mut shaper, write(2, 1, 1 - ONE, 62));
+    clock(&mut shaper, write(1, 0, -5, 7));
+    for active in [0, 2] {
+        clock(&mut shaper, swap(active));
+        sample(&mut shaper, 1000);
+        assert_eq!(shaper.outputs().bank, active);
+        assert_eq!(
+            [0, 1, 2].map(|index| read(&mut shaper, 0, index)),
+            [(ONE / 2, 0), (ONE / 2, 4), (0, 0)]
+        );
+        assert_eq!([0, 1].map(|index| read(&mut shaper, 1, index)), [(-5, 7), (0, 0)]);
+        let of_second = [(2 * ONE - 1, 0), (1 - ONE, 62), (0, 0)];
+        assert_eq!([0, 1, 2].map(|index| read(&mut shaper, 2, index)), of_second);
+        assert_eq!(read(&mut shaper, 3, 0), (0, 0));
+    }
+    // Begun anew: what was loaded behind it is no tap of the table any more.
+    clock(&mut shaper, swap(0));
+    sample(&mut shaper, 0);
+    clock(&mut shaper, write(2, 0, 3, 1));
+    assert_eq!([0, 1].map(|index| read(&mut shaper, 2, index)), [(3, 1), (0, 0)]);
+    let reset = Inputs {
+        rst: true,
+        ..Inputs::default()
+    };
+    let shown = clock(&mut shaper, reset);
+    assert_eq!(
+        (shown.loaded_coefficient, shown.loaded_delay, shown.tap_read_waits),
+        (0, 0, false)
+    );
+    assert_eq!(read(&mut shaper, 2, 0), (0, 0));
+}
+
+#[test]
+fn unit_a_read_waits_for_a_pass_and_for_a_write_and_changes_neither() {
+    let mut shaper = shaper();
+    let read = Inputs {
+        tap_read: true,
+        ..Inputs::default()
+    };
+    clock(&mut shaper, start(0));
+    clock(&mut shaper, strobe(100));
+    clock(&mut shaper, read);
+    // The strobe was clock 0: busy until `valid`, whose clock serves the read.
+    for _ in 2..pass_clocks(2) {
+        assert!(clock(&mut shaper, Inputs::default()).tap_read_waits);
+    }
+    assert_eq!((shaper.outputs().y, shaper.outputs().valid), (50, true));
+    assert!(
+        clock(&mut shaper, write(1, 0, 77, 3)).tap_read_waits,
+        "a write comes first"
+    );
+    let place = Inputs {
+        tap_bank: 1,
+        ..Inputs::default()
+    };
+    let waits = [place, Inputs::default(), Inputs::default()].map(|inputs| clock(&mut shaper, inputs).tap_read_waits);
+    assert_eq!(
+        waits,
+        [true, false, false],
+        "the word stands two clocks after the place"
+    );
+    assert_eq!(
+        (shaper.outputs().loaded_coefficient, shaper.outputs().loaded_delay),
+        (77, 3)
+    );
+    assert!(!shaper.outputs().refused);
+}
+
 #[test]
 fn unit_a_flag_that_is_set_and_cleared_at_once_is_set() {
     let mut shaper = shaper();
@@ -341,13 +433,23 @@ fn unit_raw_ports_are_the_typed_ones() {
     let mut typed = shaper();
     let mut raw = shaper();
     let config = typed.config().clone();
-    let mut shown = [0; 8];
-    for inputs in [start(-3), strobe(-4), write(1, 0, -9, 5), swap(2), Inputs::default()] {
+    let mut shown = [0; 11];
+    let read = Inputs {
+        tap_read: true,
+        tap_bank: 1,
+        ..Inputs::default()
+    };
+    let waits = Inputs {
+        tap_read: false,
+        ..read
+    };
+    let begin = [start(-3), write(1, 0, -9, 5), read, waits, waits, swap(2)];
+    for inputs in begin.into_iter().chain([strobe(-4), Inputs::default()]) {
         let bits = inputs.to_raw(&config);
         assert_eq!(Inputs::from_raw(&bits, &config).to_raw(&config), bits);
         ClockedBlock::step(&mut raw, &bits, &mut shown).unwrap();
         let expected = typed.step(&inputs);
-        let mut raw_outputs = [0; 8];
+        let mut raw_outputs = [0; 11];
         expected.write_raw(&config, &mut raw_outputs);
         assert_eq!(shown, raw_outputs);
         assert_eq!(Outputs::from_raw(&shown, &config), expected);

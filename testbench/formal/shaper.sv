@@ -6,7 +6,8 @@
 //   pass_*          running, tap, stages, done, valid and busy are those of this clock: tap i is read in clock i + 1 and no
 //                   other, its product added in clock i + 7 and no other, the result shown in clock n + 8 and no other
 //   read_in_order   the tables' address is tap i of the active bank
-//   word_of_table   the word is what the active table gave a clock before
+//   word_of_table   the word is what the active table gave a clock before, but for a host's read
+//   read_back_*     a host's read takes the tables only in clocks in which no pass does
 //   address         the ring's address is head - delay, but no farther back than the start's word; never the word that is
 //                   written
 //   age_known       head moves by one per strobe or start, which writes before it; age counts strobes since the start, or the
@@ -53,6 +54,8 @@ module shaper_properties (
     (* peek = "u_banks.loaded_taps_read_data" *) input wire [23:0] loaded_word,
     (* peek = "u_banks.machine_taps_data" *) input wire [23:0] machine_word,
     (* peek = "u_banks.word" *) input wire [23:0] word,
+    (* peek = "u_banks.serves" *) input wire serves,
+    (* peek = "u_banks.served" *) input wire served,
     (* peek = "u_history.head" *) input wire [5:0] head,
     (* peek = "u_history.age" *) input wire [5:0] age,
     (* peek = "u_history.origin" *) input wire [5:0] origin,
@@ -114,6 +117,7 @@ module shaper_properties (
     reg signed [31:0] past_y = 32'sd0;
     reg signed [55:0] past_accumulator = 56'sd0;
     reg        [49:0] past_product = 50'd0;
+    reg               past_served = 1'b0;
     reg        [1:0]  past_bank = 2'd0;
     reg        [23:0] past_loaded = 24'd0;
     reg        [23:0] past_machine = 24'd0;
@@ -139,6 +143,7 @@ module shaper_properties (
         past_y <= y;
         past_accumulator <= accumulator;
         past_product <= product;
+        past_served <= served;
         past_bank <= bank;
         past_loaded <= loaded_word;
         past_machine <= machine_word;
@@ -154,7 +159,9 @@ module shaper_properties (
     // The tables.
     always @(*) begin
         read_in_order: assert (!running | read_address == {bank != 2'd1, tap_now[5:0]});
-        word_of_table: assert (past_reset | word == (past_bank == 2'd0 ? past_machine : past_loaded));
+        word_of_table: assert (past_reset | past_served | word == (past_bank == 2'd0 ? past_machine : past_loaded));
+        read_back_serves: assert (!serves | pass == 8'd0 | valid);
+        read_back_idle: assert (!served | pass <= 8'd1);
         table_known: assert (bank != 2'd3 & upcoming != 2'd3);
         table_length: assert (taps == (bank == 2'd0 ? `MACHINE_TAPS : bank == 2'd1 ? taps_1 : taps_2));
         table_bound: assert (taps_1 <= 7'd64 & taps_2 <= 7'd64);
@@ -244,6 +251,7 @@ module shaper_properties (
         reach_valid: cover (valid);
         reach_all_machine_taps: cover (done & taps == `MACHINE_TAPS);
         reach_loaded: cover (valid & bank == 2'd1 & taps_1 == 7'd2);
+        reach_read_back: cover (served & past_word != word);
         reach_overrun: cover (overrun);
         reach_clamped: cover (saturated);
     end

@@ -10,7 +10,8 @@
 //               channel in clocks i + 4 and i + 5, and it would be added in clock i + 8. There is a boundary in clock 8 and in that
 //               after each channel's last product was added, and in no other; all results are shown in clock N + 12, and in no
 //               other
-//   read_*      the tables' address is the tap of this product, of the old or the active bank; the word is that bank's
+//   read_*      the tables' address is the tap of this product, of the old or the active bank; the word is that bank's,
+//               but for a host's read, which takes the tables only in clocks in which no pass does
 //   made_*      in a handover, m samples after the last one of the old table alone: of the position an old tap has the delay
 //               max(d, m), a new one min(d, m), and the one more is -2^F at m; of the others an old tap counts with d >= m,
 //               a new one with d < m, else as 0. Else a tap is what the table says
@@ -66,6 +67,8 @@ module shaper_motion_properties (
     (* peek = "u_banks.loaded_taps_read_data" *) input wire [23:0] loaded_word,
     (* peek = "u_banks.machine_taps_data" *) input wire [23:0] machine_word,
     (* peek = "u_banks.word" *) input wire [23:0] word,
+    (* peek = "u_banks.serves" *) input wire serves,
+    (* peek = "u_banks.served" *) input wire served,
     (* peek = "u_handover.how" *) input wire [1:0] how,
     (* peek = "u_handover.still" *) input wire [5:0] still,
     (* peek = "u_handover.newest_q" *) input wire signed [23:0] newest,
@@ -167,6 +170,7 @@ module shaper_motion_properties (
     reg               past_active = 1'b0;
     reg               past_takes = 1'b0;
     reg               past_takes_over = 1'b0;
+    reg               past_served = 1'b0;
     reg        [1:0]  past_bank = 2'd0;
     reg        [1:0]  past_upcoming = 2'd0;
     reg        [1:0]  past_read_bank = 2'd0;
@@ -189,6 +193,7 @@ module shaper_motion_properties (
         past_active <= active;
         past_takes <= takes;
         past_takes_over <= takes & how == 2'd1 & !start;
+        past_served <= served;
         past_bank <= bank;
         past_upcoming <= upcoming;
         past_read_bank <= read_bank;
@@ -213,7 +218,9 @@ module shaper_motion_properties (
     always @(*) begin
         read_in_order: assert (!asks | one_more | read_address == {read_bank != 2'd1, place_in_table[5:0]});
         read_old: assert (!asks | one_more | read_bank == (of_old ? previous : bank));
-        read_word: assert (past_reset | word == past_read);
+        read_word: assert (past_reset | past_served | word == past_read);
+        read_back_serves: assert (!serves | pass == 10'd0 | valid);
+        read_back_idle: assert (!served | pass <= 10'd1);
         read_bank_of_word: assert (!stages[0] | word_bank == past_read_bank);
         table_length: assert (taps == count(bank) & taps_1 <= 7'd64 & taps_2 <= 7'd64);
         table_length_old: assert (!active | previous_taps == count(previous));
@@ -339,6 +346,7 @@ module shaper_motion_properties (
         reach_handed_over: cover (past_active & !active & !past_start & !past_reset);
         reach_settled: cover (past_takes & how == 2'd2 & !past_start & stood >= 6'd8 & stood != 6'd63);
         reach_watched: cover (watches & pending & upcoming == watched_bank);
+        reach_read_back: cover (served & active);
         reach_overrun: cover (overrun);
     end
 endmodule

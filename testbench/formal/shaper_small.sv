@@ -10,6 +10,9 @@
 //   weights         the coefficients of every sum, of any table, are together 2^F
 //   ring_*, table_* lemmas: what memories hold is the own history since the start, and the own tables as far as loaded
 //   stage_*         lemmas: what each register of the pass holds in each clock of it
+//   read_back       a host's read finds the own table's tap of its bank and place, 0 where none is loaded, and keeps it; it waits for
+//                   no longer than a pass runs and taps are written
+//   read_*          lemmas: it takes the tables only where no pass does
 //   total_*         lemmas: the accumulator is the own sum, in the clock in which it has come so far
 //
 // Left open: other sizes; and for loaded tables the step from result and weights to constant, which is the distributive law.
@@ -24,12 +27,21 @@ module shaper_small_properties (
     input wire        [1:0]  tap_index,
     input wire        [17:0] tap_coefficient,
     input wire        [1:0]  tap_delay,
+    input wire               tap_read,
     input wire               swap,
     input wire signed [5:0]  y,
     input wire               valid,
     input wire               saturated,
+    input wire               busy,
     input wire               swap_pending,
     input wire        [1:0]  bank,
+    input wire        [17:0] loaded_coefficient,
+    input wire        [1:0]  loaded_delay,
+    input wire               tap_read_waits,
+    (* peek = "u_banks.serves" *) input wire serves,
+    (* peek = "u_banks.served" *) input wire served,
+    (* peek = "u_banks.served_rom" *) input wire served_rom,
+    (* peek = "u_banks.served_tap" *) input wire served_tap,
     (* peek = "tap" *) input wire [1:0] tap,
     (* peek = "running" *) input wire running,
     (* peek = "stages" *) input wire [5:0] stages,
@@ -195,6 +207,29 @@ module shaper_small_properties (
         pass_stages: assert (stages == stages_now);
         pass_done: assert (done == (pass == n + 4'd7));
         pass_valid: assert (valid == (pass == last));
+        pass_busy: assert (busy == (pass != 4'd0 & pass != last));
+    end
+
+    // A host's read: asked for, served, and the tap that it is for.
+    reg         waits = 1'b0;
+    reg         has_word = 1'b0;
+    reg  [19:0] host_word = 20'd0;
+    reg  [19:0] found = 20'd0;
+    wire        can_serve = waits & !has_word & !busy & !tap_write;
+    wire [79:0] host_table = tap_bank == 2'd0 ? `MACHINE_TABLE : tap_bank == 2'd1 ? table_1 : table_2;
+    wire [2:0]  host_taps = tap_bank == 2'd0 ? `MACHINE_TAPS : tap_bank == 2'd1 ? loaded_1 : tap_bank == 2'd2 ? loaded_2 : 3'd0;
+    always @(posedge clk) begin
+        waits <= !rst & (tap_read | (waits & !has_word));
+        has_word <= !rst & can_serve;
+        host_word <= {1'b0, tap_index} < host_taps ? host_table[20 * tap_index +: 20] : 20'd0;
+        if (rst) found <= 20'd0;
+        else if (has_word) found <= host_word;
+    end
+    always @(*) begin
+        read_serves: assert (serves == can_serve & served == has_word);
+        read_idle: assert (!served | pass <= 4'd1);
+        read_word: assert (!served | host_word == (!served_tap ? 20'd0 : served_rom ? machine_word : loaded_word));
+        read_back: assert ({loaded_delay, loaded_coefficient} == found & tap_read_waits == waits);
     end
 
     // What the registers of the pass hold: of tap k, in the clock of its stage.
@@ -293,6 +328,8 @@ module shaper_small_properties (
         reach_machine: cover (valid & bank == 2'd0 & y != history_0);
         reach_loaded: cover (valid & bank == 2'd1 & loaded_1 == 3'd3 & y != history_0);
         reach_constant: cover (valid & bank == 2'd0 & still & y == -6'sd5);
+        reach_read_back: cover (has_word & bank == 2'd1 & host_word == table_1[59:40] & host_word != 20'd0);
+        reach_waiting: cover (waits & busy & tap_write);
         reach_above: cover (valid & above);
         reach_below: cover (valid & below);
     end

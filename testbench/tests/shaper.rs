@@ -223,6 +223,7 @@ fn unit_directed_cases_reach_what_they_are_named_after() {
     assert!(reached("flag_clear_races").flags_cleared > 1);
     assert!(reached("illegal_writes").refused >= 9, "{}", reached("illegal_writes"));
     assert!(reached("reload_after_reset").refused > 0);
+    assert_eq!(reached("taps_read_back").taps_read_back, 5);
 }
 
 /// Position words of a move there and back with limited jerk, in steps of a smooth polynomial.
@@ -307,6 +308,20 @@ fn lockstep_catches_a_broken_address_bit() {
 #[test]
 fn lockstep_catches_a_history_that_ages_a_sample_late() {
     caught_in(standard(), "delay > age", "delay >= age");
+}
+
+#[test]
+fn lockstep_catches_a_read_back_that_goes_wrong() {
+    let motion = || for_motion(standard(), 3, false);
+    // The other bank, a tap that is not loaded, a read in a pass, one beside a write.
+    caught_in(
+        standard(),
+        "read_address = write_address;",
+        "read_address = write_address ^ 7'd64;",
+    );
+    caught_in(standard(), "(index < host_taps)", "(index <= host_taps)");
+    caught_in(motion(), "!served) & !busy", "!served)");
+    caught_in(motion(), "& !busy) & !tap_write", "& !busy)");
 }
 
 /// Faults that ten million random clocks did not show, each with the corner that shows it.

@@ -225,6 +225,16 @@ fn lockstep_catches_the_nets_of_another_axis() {
 }
 
 #[test]
+fn lockstep_catches_a_tap_of_the_other_bank() {
+    caught(
+        &block(1),
+        "read_address = write_address;",
+        "read_address = write_address ^ 7'd64;",
+        300_000,
+    );
+}
+
+#[test]
 fn lockstep_catches_a_start_of_an_axis_that_cannot() {
     caught(&block(2), "& !can_start_0)", "& 1'd0)", 300_000);
 }

@@ -128,14 +128,13 @@ fn by_bytes(lines: &mut Lines, condition: &str, fields: &[Field], prefix: &str) 
                 format!("{target} <= {};", part("avs_writedata", &taken))
             })
             .collect();
-        if !taken.is_empty() {
-            lines.nest(
-                &format!("if ({condition} && avs_byteenable[{byte}]) begin"),
-                "end",
-                |lines| {
-                    taken.iter().for_each(|line| lines.line(line));
-                },
-            );
+        let test = format!("if ({condition} && avs_byteenable[{byte}])");
+        match taken.as_slice() {
+            [] => {}
+            [one] => lines.line(&format!("{test} {one}")),
+            several => lines.nest(&format!("{test} begin"), "end", |lines| {
+                several.iter().for_each(|line| lines.line(line));
+            }),
         }
     }
 }

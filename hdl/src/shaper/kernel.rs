@@ -37,6 +37,7 @@ kernel! {
         tap_index: Bits<T>,
         tap_coefficient: Signed<18>,
         tap_delay: Bits<A>,
+        tap_read: Bit,
         swap: Bit,
         swap_bank: Bits<2>,
     }
@@ -49,6 +50,9 @@ kernel! {
         swap_pending: Bit,
         bank: Bits<2>,
         refused: Bit,
+        loaded_coefficient: Signed<18>,
+        loaded_delay: Bits<A>,
+        tap_read_waits: Bit,
     }
     parts {
         banks: TapBanks<A, T, COUNT, SUM, WORD> = TapBanks::new(config),
@@ -92,6 +96,8 @@ impl<
         self.banks.tap_index.next = self.tap_index.val();
         self.banks.tap_coefficient.next = self.tap_coefficient.val();
         self.banks.tap_delay.next = self.tap_delay.val();
+        self.banks.tap_read.next = self.tap_read.val();
+        self.banks.busy.next = self.busy_q.q.val();
         self.banks.swap.next = self.swap.val();
         self.banks.swap_bank.next = self.swap_bank.val();
         self.banks.tap.next = self.tap.q.val();
@@ -169,5 +175,8 @@ impl<
         self.swap_pending.next = self.banks.swap_pending.val();
         self.bank.next = self.banks.bank.val();
         self.refused.next = self.banks.refused.val();
+        self.loaded_coefficient.next = self.banks.loaded_coefficient.val();
+        self.loaded_delay.next = self.banks.loaded_delay.val();
+        self.tap_read_waits.next = self.banks.tap_read_waits.val();
     }
 }

@@ -46,6 +46,7 @@ kernel! {
         tap_index: Bits<T>,
         tap_coefficient: Signed<18>,
         tap_delay: Bits<A>,
+        tap_read: Bit,
         swap: Bit,
         swap_bank: Bits<2>,
         swap_how: Bits<2>,
@@ -59,6 +60,9 @@ kernel! {
         swap_pending: Bit,
         bank: Bits<2>,
         refused: Bit,
+        loaded_coefficient: Signed<18>,
+        loaded_delay: Bits<A>,
+        tap_read_waits: Bit,
     }
     parts {
         banks: TapBanks<A, T, COUNT, SUM, WORD> = TapBanks::new(config),
@@ -117,6 +121,8 @@ impl<
         self.banks.tap_index.next = self.tap_index.val();
         self.banks.tap_coefficient.next = self.tap_coefficient.val();
         self.banks.tap_delay.next = self.tap_delay.val();
+        self.banks.tap_read.next = self.tap_read.val();
+        self.banks.busy.next = self.sums.busy.val();
         self.banks.swap.next = self.swap.val();
         self.banks.swap_bank.next = self.swap_bank.val();
         self.banks.known.next = self.swap_how.val() != self.unknown_how.val();
@@ -233,5 +239,8 @@ impl<
         self.swap_pending.next = self.banks.swap_pending.val() | self.handover.active.val();
         self.bank.next = self.banks.bank.val();
         self.refused.next = self.banks.refused.val();
+        self.loaded_coefficient.next = self.banks.loaded_coefficient.val();
+        self.loaded_delay.next = self.banks.loaded_delay.val();
+        self.tap_read_waits.next = self.banks.tap_read_waits.val();
     }
 }

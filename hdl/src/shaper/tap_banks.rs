@@ -13,6 +13,8 @@
 //!   is active or about to be never changes. One that is not `known` is refused.
 //! - For a handover, `old` reads the table that was active before; `locked` refuses writes and swaps as a swap that is
 //!   pending does; `reach` is the longest delay of both tables of the last swap.
+//! - A host reads any tap back. Its read takes the tables in the first clock in which no pass is `busy` and nothing is
+//!   written; a tap that is not loaded is 0. The word goes through `word` too, where no pass uses it.
 
 use crate::prelude::*;
 use posicast_model::rtl::shaper::ShaperConfig;
@@ -33,6 +35,8 @@ kernel! {
         tap_index: Bits<T>,
         tap_coefficient: Signed<18>,
         tap_delay: Bits<A>,
+        tap_read: Bit,
+        busy: Bit,
         swap: Bit,
         swap_bank: Bits<2>,
         known: Bit,
@@ -50,6 +54,9 @@ kernel! {
         swap_pending: Bit,
         bank: Bits<2>,
         refused: Bit,
+        loaded_coefficient: Signed<18>,
+        loaded_delay: Bits<A>,
+        tap_read_waits: Bit,
     }
     parts {
         machine_taps: Rom<WORD, T> = Rom::new("machine_taps", rom_words(config)),
@@ -59,6 +66,7 @@ kernel! {
         taps_1: Bits<COUNT>, taps_2: Bits<COUNT>, sum_1: Signed<SUM>, sum_2: Signed<SUM>, longest_1: Bits<A>,
         longest_2: Bits<A>, active: Bits<2>, previous: Bits<2>, upcoming: Bits<2>, pending: Bit,
         reach_q: Bits<A>, old_q: Bit, word: Bits<WORD>, refused_q: Bit,
+        read_waits: Bit, served: Bit, served_rom: Bit, served_tap: Bit, read_back: Bits<WORD>,
     }
     wires {
         taps_so_far: Bits<COUNT>, sum_so_far: Signed<SUM>, longest_so_far: Bits<A>, index: Bits<COUNT>,
@@ -66,11 +74,13 @@ kernel! {
         new_taps: Bits<COUNT>, new_sum: Signed<SUM>, new_longest: Bits<A>, addend: Signed<SUM>,
         swap_taken: Bit, active_longest: Bits<A>, swap_longest: Bits<A>, read_bank: Bits<2>,
         word_bank: Bits<2>, write_address: Bits<COUNT>, read_address: Bits<COUNT>, coefficient_bits: Bits<18>,
+        serves: Bit, host_taps: Bits<COUNT>, read_tap: Bits<T>, from_rom: Bit, read_word: Bits<WORD>,
     }
     constants {
         bank_rom: Bits<2> = from_u64(0),
         bank_1: Bits<2> = from_u64(1),
         bank_2: Bits<2> = from_u64(2),
+        bank_none: Bits<2> = from_u64(3),
         upper_half: Bits<COUNT> = from_u64(u64::from(config.most_taps())),
         one_tap: Bits<COUNT> = from_u64(1),
         machine_count: Bits<COUNT> = from_u64(config.table().taps().len() as u64),
@@ -78,6 +88,7 @@ kernel! {
         forbidden_delay: Bits<A> = from_u64(u64::from(config.longest_delay_samples()) + 1),
         no_delay: Bits<A> = from_u64(0),
         no_sum: Signed<SUM> = from_i64(0),
+        no_word: Bits<WORD> = from_u64(0),
         unity: Signed<SUM> = from_i64(1 << config.coefficient_fraction()),
     }
 }
@@ -160,6 +171,18 @@ impl<const A: usize, const T: usize, const COUNT: usize, const SUM: usize, const
         self.loaded_taps.write_data.next =
             (bit_cast::<WORD, A>(self.tap_delay.val()) << 18) | bit_cast::<WORD, 18>(self.coefficient_bits.val());
 
+        comment!("A host reads a tap back while no pass runs");
+        self.serves.next = self.read_waits.q.val() & !self.served.q.val() & !self.busy.val() & !self.tap_write.val();
+        self.served.d.next = self.serves.val();
+        self.read_waits.d.next = self.tap_read.val() | (self.read_waits.q.val() & !self.served.q.val());
+        self.host_taps.next = self.taps_so_far.val();
+        if self.tap_bank.val() == self.bank_rom.val() {
+            self.host_taps.next = self.machine_count.val();
+        }
+        self.served_rom.d.next = self.tap_bank.val() == self.bank_rom.val();
+        self.served_tap.d.next =
+            (self.tap_bank.val() != self.bank_none.val()) & (self.index.val() < self.host_taps.val());
+
         comment!("Swapping: only to a table that sums to one");
         self.swap_taken.next = false;
         if self.swap_bank.val() == self.bank_rom.val() {
@@ -228,16 +251,33 @@ impl<const A: usize, const T: usize, const COUNT: usize, const SUM: usize, const
         if self.read_bank.val() == self.bank_1.val() {
             self.read_address.next = bit_cast::<COUNT, T>(self.tap.val());
         }
-        self.machine_taps.address.next = self.tap.val();
+        self.read_tap.next = self.tap.val();
+        comment!("The host's place is that of a write");
+        if self.serves.val() {
+            self.read_address.next = self.write_address.val();
+            self.read_tap.next = self.tap_index.val();
+        }
+        self.machine_taps.address.next = self.read_tap.val();
         self.loaded_taps.read_address.next = self.read_address.val();
         self.old_q.d.next = self.old.val();
         self.word_bank.next = self.active.q.val();
         if self.old_q.q.val() {
             self.word_bank.next = self.previous.q.val();
         }
-        self.word.d.next = self.loaded_taps.read_data.val();
-        if self.word_bank.val() == self.bank_rom.val() {
-            self.word.d.next = self.machine_taps.data.val();
+        self.from_rom.next = self.word_bank.val() == self.bank_rom.val();
+        if self.served.q.val() {
+            self.from_rom.next = self.served_rom.q.val();
+        }
+        self.read_word.next = self.loaded_taps.read_data.val();
+        if self.from_rom.val() {
+            self.read_word.next = self.machine_taps.data.val();
+        }
+        self.word.d.next = self.read_word.val();
+        if self.served.q.val() {
+            self.read_back.d.next = self.no_word.val();
+            if self.served_tap.q.val() {
+                self.read_back.d.next = self.read_word.val();
+            }
         }
         self.coefficient.next = signed_cast(self.word.q.val().get_bits::<18>(0));
         self.delay.next = self.word.q.val().get_bits::<A>(18);
@@ -248,5 +288,8 @@ impl<const A: usize, const T: usize, const COUNT: usize, const SUM: usize, const
         self.swap_pending.next = self.pending.q.val();
         self.bank.next = self.active.q.val();
         self.refused.next = self.refused_q.q.val();
+        self.loaded_coefficient.next = signed_cast(self.read_back.q.val().get_bits::<18>(0));
+        self.loaded_delay.next = self.read_back.q.val().get_bits::<A>(18);
+        self.tap_read_waits.next = self.read_waits.q.val();
     }
 }

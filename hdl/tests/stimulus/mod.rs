@@ -74,6 +74,7 @@ pub(crate) fn load(table: &TapTable, bank: u8) -> Vec<Inputs> {
 pub(crate) struct Anything {
     config: ShaperConfig,
     random: Random,
+    read_back: Random,
     until_strobe: u32,
     host: VecDeque<Inputs>,
 }
@@ -83,6 +84,7 @@ impl Anything {
         Self {
             config: config.clone(),
             random: Random(seed),
+            read_back: Random(seed.rotate_left(32)),
             until_strobe: 0,
             host: VecDeque::new(),
         }
@@ -147,6 +149,13 @@ impl Iterator for Anything {
         inputs.x_rates = [self.sample(), self.sample()];
         inputs.swap_how = self.random.word() as u8;
         inputs.clear_flags = self.random.once_in(60);
+        // A host reads back, from a generator of its own: what is drawn else stays the same.
+        inputs.tap_read = self.read_back.once_in(20);
+        if !inputs.tap_write {
+            inputs.tap_bank = self.read_back.below(4) as u8;
+            let far = self.read_back.once_in(8);
+            inputs.tap_index = self.read_back.below(if far { 256 } else { 8 }) as u16;
+        }
         inputs.strobe = self.until_strobe == 0;
         if inputs.strobe {
             let pass = self.config.pass_clocks(self.config.most_products());

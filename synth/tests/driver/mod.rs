@@ -154,6 +154,8 @@ fn unit_tables_are_loaded_and_the_pwm_tests_itself() {
     // Locked antiphase, 2500 clocks, dead time 25, duty -101: as in the tests of the stage.
     assert_eq!((said["high"], said["low"]), (1199 - 25, 2500 - (1199 - 25) - 50));
     assert_eq!((said["machine_taps"], said["bank"], said["settle"]), (1, 1, 126));
+    let back = ["read_empty", "read_back", "read_machine", "read_count"].map(|what| said[what]);
+    assert_eq!(back, [1, 1, 1, 2], "{said:?}");
     assert_eq!((said["x"], said["causes"]), (400 * 256, 0));
     assert!(said["off"] <= 1, "{said:?}");
     let at = bridge.bench.plant(0).count();

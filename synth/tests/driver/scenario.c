@@ -90,16 +90,32 @@ static void fault(posicast_stage *stage)
     result("after_fault_x", posicast_command_position(stage, X));
 }
 
+/* Whether the bank of X holds just these taps. */
+static int holds(posicast_stage *stage, uint32_t bank, const posicast_tap *taps, uint32_t count)
+{
+    posicast_tap back[8];
+    uint32_t found, tap;
+
+    need("reads a table", posicast_read_table(stage, X, bank, back, 8, &found, TICKS), POSICAST_OK);
+    for (tap = 0; tap < found && tap < count && tap < 8; tap++)
+        if (back[tap].delay_samples != taps[tap].delay_samples || back[tap].coefficient != taps[tap].coefficient)
+            return 0;
+    return found == count;
+}
+
 /* Another table while the axis moves, what is refused, and off. */
 static void tables(posicast_stage *stage)
 {
     static const posicast_tap one[] = {{0, 65536}};
-    static const posicast_tap late[] = {{0, 32768}, {126, 32768}};
+    static const posicast_tap late[] = {{0, 65636}, {126, -100}};
     static const posicast_tap wrong[] = {{0, 65535}};
     const posicast_table machine = machine_xy_stage.axis[X].table;
     posicast_table table = {one, 1, machine.coefficient_fraction};
+    posicast_tap none[1];
+    uint32_t count;
 
     result("machine_taps", (int64_t)IORD_POSICAST_AXIS_MACHINE_TAPS(stage->base, X) == machine.count);
+    result("read_empty", holds(stage, 1, one, 0));
     need("move X", posicast_queue_move(stage, X, COUNTS(400), limits_of(X)), POSICAST_OK);
     need("start X", posicast_start(stage, 1u << X), POSICAST_OK);
     need("table", posicast_load_table(stage, X, 1, &table, POSICAST_AXIS_SWAP_SWAP_HOW_HANDOVER, TICKS), POSICAST_OK);
@@ -113,6 +129,11 @@ static void tables(posicast_stage *stage)
     need("a late table", posicast_load_table(stage, X, 2, &table, POSICAST_AXIS_SWAP_SWAP_HOW_HANDOVER, TICKS),
          POSICAST_OK);
     result("settle", IORD_POSICAST_AXIS_SETTLE(stage->base, X));
+    result("read_back", holds(stage, 2, late, 2) && holds(stage, 1, one, 1));
+    result("read_machine", holds(stage, 0, machine.taps, machine.count));
+    need("reads no tap, but how many", posicast_read_table(stage, X, 2, none, 0, &count, TICKS), POSICAST_OK);
+    result("read_count", count);
+    need("bank 3", posicast_read_table(stage, X, 3, none, 1, &count, TICKS), POSICAST_BAD_ARGUMENT);
     need("the machine's", posicast_use_table(stage, X, 0, POSICAST_AXIS_SWAP_SWAP_HOW_HANDOVER, TICKS), POSICAST_OK);
     need("rest", posicast_wait_at_rest(stage, 1u << X, TICKS), POSICAST_OK);
     result("x", posicast_command_position(stage, X));

@@ -26,6 +26,8 @@ pub struct Coverage {
     pub overrun: u64,
     /// Times that `refused` rose.
     pub refused: u64,
+    /// Times that a host's read found a tap.
+    pub taps_read_back: u64,
     /// Times that a swap became pending.
     pub swaps_requested: u64,
     /// Times that `bank` became another bank than 0, or changed from one to the other.
@@ -36,13 +38,13 @@ pub struct Coverage {
     pub handovers_over: u64,
     /// Times that a sticky flag fell.
     pub flags_cleared: u64,
-    seen: Vec<[u64; 5]>,
+    seen: Vec<[u64; 6]>,
 }
 
 impl Coverage {
     /// Adds a clock.
     pub fn observe(&mut self, layout: &Layout, clock: &Clock<'_>) {
-        self.seen.resize(layout.axes.len(), [0; 5]);
+        self.seen.resize(layout.axes.len(), [0; 6]);
         let strobe = clock.inputs[layout.strobe] & 1;
         self.clocks += 1;
         self.resets += clock.inputs[layout.rst] & 1;
@@ -58,11 +60,13 @@ impl Coverage {
                 out[axis.refused],
                 out[axis.swap_pending],
                 out[axis.bank],
+                out[axis.tap_read_waits],
             ];
             let rose = |flag: usize| u64::from(now[flag] > seen[flag]);
             self.saturated += rose(0);
             self.overrun += rose(1);
             self.refused += rose(2);
+            self.taps_read_back += u64::from(now[5] < seen[5] && out[axis.loaded_coefficient] != 0);
             self.swaps_requested += rose(3);
             self.swaps += u64::from(now[4] != seen[4] && now[4] != 0);
             self.handovers += u64::from(now[3] != 0 && now[4] != seen[4]);
@@ -82,7 +86,7 @@ impl Coverage {
     }
 
     /// What happened how often, handovers left out: not every shaper has them.
-    pub fn counts(&self) -> [(&'static str, u64); 11] {
+    pub fn counts(&self) -> [(&'static str, u64); 12] {
         [
             ("resets", self.resets),
             ("strobes", self.strobes),
@@ -92,6 +96,7 @@ impl Coverage {
             ("saturated", self.saturated),
             ("overrun", self.overrun),
             ("refused", self.refused),
+            ("taps read back", self.taps_read_back),
             ("swaps requested", self.swaps_requested),
             ("swaps", self.swaps),
             ("flags cleared", self.flags_cleared),

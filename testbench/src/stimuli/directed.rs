@@ -23,6 +23,8 @@ pub enum Action {
     Tap(u64, u64, i32, i64),
     /// Writes a tap with this very coefficient: bank, index, coefficient, delay as before.
     TapExact(u64, u64, i32, i64),
+    /// `tap_read` for one clock, with the place of a tap: bank, index. A second one leaves the place until it is read.
+    Read(u64, u64),
     /// Asks for a bank.
     Swap(u64),
     /// `swap` and `strobe` in one clock, with that `x`.
@@ -37,7 +39,9 @@ pub enum Action {
 
 /// The directed cases, each with its name.
 pub fn cases() -> Vec<(&'static str, Vec<Action>)> {
-    use Action::{Clear, ClearAndStrobe, Reset, Start, StartAlone, Strobe, Swap, SwapAndStrobe, Tap, Wait, WaitIdle};
+    use Action::{
+        Clear, ClearAndStrobe, Read, Reset, Start, StartAlone, Strobe, Swap, SwapAndStrobe, Tap, Wait, WaitIdle,
+    };
     let samples = |values: &[i32]| values.iter().flat_map(|x| [Strobe(*x), WaitIdle]).collect::<Vec<_>>();
     let held = |x: i32, count: usize| samples(&vec![x; count]);
     let started = |x: i32| vec![Reset(2), Start(x), WaitIdle];
@@ -174,9 +178,26 @@ pub fn cases() -> Vec<(&'static str, Vec<Action>)> {
                 held(7, 3),
                 vec![Tap(1, 0, 256, 0), Reset(1), Tap(1, 1, 1, 1), Swap(1), Wait(1)],
                 held(7, 3),
-                halves,
+                halves.clone(),
                 vec![Swap(2), Reset(3)],
                 held(9, 3),
+            ]
+            .concat(),
+        ),
+        (
+            "taps_read_back",
+            [
+                started(0),
+                overshooting,
+                vec![Swap(1)],
+                held(3, 2),
+                halves,
+                // Of each bank, the one in use too; then where there is no tap, and in a pass, at which end the first of bank 0.
+                [(1, 1), (2, 0), (2, 1), (0, 0), (2, 2), (3, 0)]
+                    .map(|(bank, index)| [Read(bank, index), Read(bank, index), Wait(3)])
+                    .concat(),
+                vec![Strobe(90), Read(1, 0), WaitIdle, Wait(3)],
+                held(-90, 5),
             ]
             .concat(),
         ),
@@ -378,6 +399,11 @@ fn drive(axis: &Axis, action: Action, inputs: &mut [u64]) {
         }
         Action::TapExact(bank, index, coefficient, delay) => {
             write_tap(axis, bank, index, i64::from(coefficient), delay, inputs);
+        }
+        Action::Read(bank, index) => {
+            inputs[axis.tap_read] = 1;
+            inputs[axis.tap_bank] = bank;
+            inputs[axis.tap_index] = index;
         }
         Action::Swap(bank) => {
             inputs[axis.swap] = 1;

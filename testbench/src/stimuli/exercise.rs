@@ -18,6 +18,9 @@ use crate::lockstep::Clock;
 /// A tap must have been seen so often: once could be chance.
 const LEAST_TIMES: u32 = 2;
 
+/// Flags of which both levels must have been seen.
+const FLAGS: [&str; 5] = ["saturated", "overrun", "refused", "swap_pending", "tap_read_waits"];
+
 /// What each shaper of a layout has shown so far.
 #[derive(Debug, Clone)]
 pub struct ShaperExercise {
@@ -41,7 +44,7 @@ struct Shown {
     /// Results over each bank.
     results: [u32; 3],
     /// Clocks in which each flag was low, and high.
-    flags: [[bool; 2]; 4],
+    flags: [[bool; 2]; FLAGS.len()],
 }
 
 impl ShaperExercise {
@@ -59,7 +62,7 @@ impl ShaperExercise {
             samples: VecDeque::new(),
             in_pass: false,
             results: [0; 3],
-            flags: [[false; 2]; 4],
+            flags: [[false; 2]; FLAGS.len()],
         };
         Self {
             rst: layout.rst,
@@ -86,7 +89,13 @@ impl Shown {
     fn observe(&mut self, reset: bool, strobe: bool, clock: &Clock<'_>) {
         let (inputs, outputs) = (clock.inputs, clock.expected);
         let axis = &self.axis;
-        let levels = [axis.saturated, axis.overrun, axis.refused, axis.swap_pending];
+        let levels = [
+            axis.saturated,
+            axis.overrun,
+            axis.refused,
+            axis.swap_pending,
+            axis.tap_read_waits,
+        ];
         for (flag, output) in self.flags.iter_mut().zip(levels) {
             flag[usize::from(outputs[output] & 1 != 0)] = true;
         }
@@ -154,11 +163,8 @@ impl Shown {
                 missing.push(format!("a result over bank {bank}"));
             }
         }
-        for (flag, [low, high]) in ["saturated", "overrun", "refused", "swap_pending"]
-            .iter()
-            .zip(self.flags)
-        {
-            let possible = self.saturates || *flag != "saturated";
+        for (flag, [low, high]) in FLAGS.into_iter().zip(self.flags) {
+            let possible = self.saturates || flag != "saturated";
             for (level, seen) in [(0, low), (1, high)] {
                 if possible && !seen {
                     missing.push(format!("`{flag}` = {level}"));

@@ -23,6 +23,7 @@ pub struct Axis {
     pub tap_index: usize,
     pub tap_coefficient: usize,
     pub tap_delay: usize,
+    pub tap_read: usize,
     pub swap: usize,
     pub swap_bank: usize,
     /// Only of a shaper for motion.
@@ -40,6 +41,8 @@ pub struct Axis {
     pub swap_pending: usize,
     pub bank: usize,
     pub refused: usize,
+    pub loaded_coefficient: usize,
+    pub tap_read_waits: usize,
 }
 
 impl Axis {
@@ -96,6 +99,7 @@ impl Layout {
                 tap_index,
                 tap_coefficient: input("tap_coefficient")?,
                 tap_delay,
+                tap_read: input("tap_read")?,
                 swap: input("swap")?,
                 swap_bank: input("swap_bank")?,
                 swap_how: input("swap_how").ok(),
@@ -109,6 +113,8 @@ impl Layout {
                 swap_pending: output("swap_pending")?,
                 bank: output("bank")?,
                 refused: output("refused")?,
+                loaded_coefficient: output("loaded_coefficient")?,
+                tap_read_waits: output("tap_read_waits")?,
             })
         });
         let axes = axes.collect::<Result<Vec<_>, Error>>()?;

@@ -6,6 +6,7 @@
 //! - *strobes*: as fast as the pass allows, one clock earlier, one later, every clock, at random, long idle;
 //! - *commands*: noise, full-scale steps, ramps, constants, reversals;
 //! - *tables*: loaded completely and legally, then swapped in; or with one thing wrong;
+//! - *read back*: taps of any bank at any time, drawn from a generator of its own;
 //! - *everything else* at a low rate: start, clear, reset, stray writes and swaps.
 
 use rand::{Rng, RngExt, SeedableRng};
@@ -62,6 +63,8 @@ struct AxisState {
 #[derive(Debug, Clone)]
 pub struct Random {
     rng: Xoshiro256PlusPlus,
+    /// Of what a host reads back: what a run reaches does not change with it.
+    read_back: Xoshiro256PlusPlus,
     layout: Layout,
     axes: Vec<AxisState>,
     clock: u64,
@@ -85,6 +88,7 @@ impl Random {
         };
         Self {
             rng: Xoshiro256PlusPlus::seed_from_u64(seed),
+            read_back: Xoshiro256PlusPlus::seed_from_u64(seed.rotate_left(32)),
             axes: layout.axes.iter().map(state).collect(),
             layout: layout.clone(),
             clock: 0,
@@ -144,8 +148,9 @@ impl Random {
 impl Stimuli for Random {
     fn fill(&mut self, seen: &[u64], inputs: &mut [u64]) {
         // Inputs that do not count in this clock are noise, so that a block that looks at them is found out.
-        for input in inputs.iter_mut() {
-            *input = self.rng.next_u64();
+        for (at, input) in inputs.iter_mut().enumerate() {
+            let read_back = self.axes.iter().any(|state| state.axis.tap_read == at);
+            *input = if read_back { 0 } else { self.rng.next_u64() };
         }
         let reset = self.clock < 2 || one_in(&mut self.rng, 4000);
         let strobe = self.strobe_now(seen);
@@ -153,6 +158,7 @@ impl Stimuli for Random {
         inputs[self.layout.strobe] = u64::from(strobe);
         for state in &mut self.axes {
             state.fill(&mut self.rng, strobe, seen, inputs);
+            state.read_back(&mut self.read_back, inputs);
         }
         self.clock += 1;
     }
@@ -170,6 +176,18 @@ impl AxisState {
             inputs[self.axis.x] = self.word as u64;
         }
         self.load(rng, seen, inputs);
+    }
+
+    /// Asks for a tap, and names a place in the clocks in which none is written: near the beginning as a rule, since most
+    /// tables are short.
+    fn read_back(&self, rng: &mut Xoshiro256PlusPlus, inputs: &mut [u64]) {
+        inputs[self.axis.tap_read] = u64::from(one_in(rng, 20));
+        let (bank, index) = (rng.random_range(0..4), rng.random_range(0..8));
+        let far = one_in(rng, 8);
+        if inputs[self.axis.tap_write] == 0 {
+            inputs[self.axis.tap_bank] = bank;
+            inputs[self.axis.tap_index] = if far { inputs[self.axis.tap_index] } else { index };
+        }
     }
 
     fn advance_word(&mut self, rng: &mut Xoshiro256PlusPlus) {

@@ -37,8 +37,8 @@ fn formal_a_byte_that_nobody_wrote_is_found() {
 fn formal_a_write_after_its_commit_is_found() {
     fails(
         "commit",
-        "if (write_law && !waits && avs_byteenable[0]) begin",
-        "if (write_law && avs_byteenable[0]) begin",
+        "if (write_law && !waits && avs_byteenable[0])",
+        "if (write_law && avs_byteenable[0])",
         "all_at_once",
     );
 }

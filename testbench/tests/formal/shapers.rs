@@ -85,6 +85,21 @@ fn formal_a_sample_that_is_an_older_one_is_found() {
 }
 
 #[test]
+fn formal_a_tap_that_is_read_back_in_a_pass_is_found() {
+    fails("shaper_small", "& !busy", "", "read_");
+}
+
+#[test]
+fn formal_a_tap_of_the_other_bank_is_found() {
+    fails(
+        "shaper_small",
+        "read_address = write_address;",
+        "read_address = write_address ^ 3'd4;",
+        "read_word",
+    );
+}
+
+#[test]
 fn formal_an_increment_that_goes_through_both_tables_is_found() {
     fails("shaper_motion", "(old_tap == below)", "(old_tap & below)", "made_");
 }

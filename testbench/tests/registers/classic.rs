@@ -95,7 +95,7 @@ fn lockstep_a_decode_that_ignores_a_bit_is_found() {
 fn lockstep_a_byte_that_goes_with_its_neighbour_is_found() {
     finds(
         "byte enables",
-        "if (write_mode && avs_byteenable[1]) begin",
-        "if (write_mode && avs_byteenable[0]) begin",
+        "if (write_mode && avs_byteenable[1])",
+        "if (write_mode && avs_byteenable[0])",
     );
 }

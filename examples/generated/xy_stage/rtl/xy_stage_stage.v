@@ -120,6 +120,7 @@ module xy_stage_stage (
     wire               x_encoder_invert;
     wire [15:0]        x_trigger_phase;
     wire               x_setting_read;
+    wire               x_tap_read;
     wire               y_enable;
     wire               y_direct_enable;
     wire               y_self_test;
@@ -168,6 +169,7 @@ module xy_stage_stage (
     wire               y_encoder_invert;
     wire [15:0]        y_trigger_phase;
     wire               y_setting_read;
+    wire               y_tap_read;
     wire               divide;
     wire [31:0]        time_stamp;
     wire [23:0]        edge_stamp;
@@ -215,6 +217,7 @@ module xy_stage_stage (
     wire [4:0]         x_trip_causes;
     wire               x_homed;
     wire               x_setting_read_waits;
+    wire               x_tap_read_waits;
     wire [16:0]        x_causes;
     wire               x_segments_underrun;
     wire               x_segments_overflow;
@@ -247,6 +250,8 @@ module xy_stage_stage (
     wire [15:0]        x_self_test_high;
     wire [15:0]        x_self_test_low;
     wire [31:0]        x_setting_loaded;
+    wire signed [17:0] x_loaded_coefficient;
+    wire [6:0]         x_loaded_delay;
     wire signed [31:0] x_user_position;
     wire signed [31:0] x_count;
     wire signed [31:0] x_velocity;
@@ -288,6 +293,7 @@ module xy_stage_stage (
     wire [4:0]         y_trip_causes;
     wire               y_homed;
     wire               y_setting_read_waits;
+    wire               y_tap_read_waits;
     wire [16:0]        y_causes;
     wire               y_segments_underrun;
     wire               y_segments_overflow;
@@ -320,6 +326,8 @@ module xy_stage_stage (
     wire [15:0]        y_self_test_high;
     wire [15:0]        y_self_test_low;
     wire [31:0]        y_setting_loaded;
+    wire signed [17:0] y_loaded_coefficient;
+    wire [6:0]         y_loaded_delay;
     wire signed [31:0] y_user_position;
     wire signed [31:0] y_count;
     wire signed [31:0] y_velocity;
@@ -338,7 +346,7 @@ module xy_stage_stage (
     wire               y_faulted;
     wire               y_index_seen;
 
-    posicast_stage_registers_a173a0e3 u_registers (
+    posicast_stage_registers_50212744 u_registers (
         .clk                         (clk),
         .rst                         (rst),
         .avs_address                 (avs_address),
@@ -419,6 +427,7 @@ module xy_stage_stage (
         .x_encoder_invert            (x_encoder_invert),
         .x_trigger_phase             (x_trigger_phase),
         .x_setting_read              (x_setting_read),
+        .x_tap_read                  (x_tap_read),
         .x_state                     (x_state),
         .x_can_start                 (x_can_start),
         .x_segments_state            (x_segments_state),
@@ -438,6 +447,7 @@ module xy_stage_stage (
         .x_trip_causes               (x_trip_causes),
         .x_homed                     (x_homed),
         .x_setting_read_waits        (x_setting_read_waits),
+        .x_tap_read_waits            (x_tap_read_waits),
         .x_causes                    (x_causes),
         .x_segments_underrun         (x_segments_underrun),
         .x_segments_overflow         (x_segments_overflow),
@@ -480,6 +490,8 @@ module xy_stage_stage (
         .x_command                   (x_command),
         .x_duty                      (x_duty),
         .x_setting_loaded            (x_setting_loaded),
+        .x_loaded_coefficient        (x_loaded_coefficient),
+        .x_loaded_delay              (x_loaded_delay),
         .y_enable                    (y_enable),
         .y_direct_enable             (y_direct_enable),
         .y_self_test                 (y_self_test),
@@ -529,6 +541,7 @@ module xy_stage_stage (
         .y_encoder_invert            (y_encoder_invert),
         .y_trigger_phase             (y_trigger_phase),
         .y_setting_read              (y_setting_read),
+        .y_tap_read                  (y_tap_read),
         .y_state                     (y_state),
         .y_can_start                 (y_can_start),
         .y_segments_state            (y_segments_state),
@@ -548,6 +561,7 @@ module xy_stage_stage (
         .y_trip_causes               (y_trip_causes),
         .y_homed                     (y_homed),
         .y_setting_read_waits        (y_setting_read_waits),
+        .y_tap_read_waits            (y_tap_read_waits),
         .y_causes                    (y_causes),
         .y_segments_underrun         (y_segments_underrun),
         .y_segments_overflow         (y_segments_overflow),
@@ -589,7 +603,9 @@ module xy_stage_stage (
         .y_error                     (y_error),
         .y_command                   (y_command),
         .y_duty                      (y_duty),
-        .y_setting_loaded            (y_setting_loaded)
+        .y_setting_loaded            (y_setting_loaded),
+        .y_loaded_coefficient        (y_loaded_coefficient),
+        .y_loaded_delay              (y_loaded_delay)
     );
 
     posicast_time_base_5000 u_time_base (
@@ -711,6 +727,7 @@ module xy_stage_stage (
         .swap                      (x_swap),
         .swap_bank                 (x_swap_bank),
         .swap_how                  (x_swap_how),
+        .tap_read                  (x_tap_read),
         .setting_row               (x_setting_row),
         .setting_bank              (x_setting_bank),
         .setting_write             (x_setting_write),
@@ -766,6 +783,7 @@ module xy_stage_stage (
         .trip_causes               (x_trip_causes),
         .homed                     (x_homed),
         .setting_read_waits        (x_setting_read_waits),
+        .tap_read_waits            (x_tap_read_waits),
         .causes                    (x_causes),
         .segments_underrun         (x_segments_underrun),
         .segments_overflow         (x_segments_overflow),
@@ -798,6 +816,8 @@ module xy_stage_stage (
         .self_test_high            (x_self_test_high),
         .self_test_low             (x_self_test_low),
         .setting_loaded            (x_setting_loaded),
+        .loaded_coefficient        (x_loaded_coefficient),
+        .loaded_delay              (x_loaded_delay),
         .user_position             (x_user_position),
         .count                     (x_count),
         .velocity                  (x_velocity),
@@ -864,6 +884,7 @@ module xy_stage_stage (
         .swap                      (y_swap),
         .swap_bank                 (y_swap_bank),
         .swap_how                  (y_swap_how),
+        .tap_read                  (y_tap_read),
         .setting_row               (y_setting_row),
         .setting_bank              (y_setting_bank),
         .setting_write             (y_setting_write),
@@ -919,6 +940,7 @@ module xy_stage_stage (
         .trip_causes               (y_trip_causes),
         .homed                     (y_homed),
         .setting_read_waits        (y_setting_read_waits),
+        .tap_read_waits            (y_tap_read_waits),
         .causes                    (y_causes),
         .segments_underrun         (y_segments_underrun),
         .segments_overflow         (y_segments_overflow),
@@ -951,6 +973,8 @@ module xy_stage_stage (
         .self_test_high            (y_self_test_high),
         .self_test_low             (y_self_test_low),
         .setting_loaded            (y_setting_loaded),
+        .loaded_coefficient        (y_loaded_coefficient),
+        .loaded_delay              (y_loaded_delay),
         .user_position             (y_user_position),
         .count                     (y_count),
         .velocity                  (y_velocity),

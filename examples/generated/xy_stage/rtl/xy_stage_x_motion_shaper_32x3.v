@@ -40,6 +40,7 @@ module xy_stage_x_motion_shaper_32x3 (
     input  wire [5:0]         tap_index,
     input  wire signed [17:0] tap_coefficient,
     input  wire [6:0]         tap_delay,
+    input  wire               tap_read,
     input  wire               swap,
     input  wire [1:0]         swap_bank,
     input  wire [1:0]         swap_how,
@@ -52,7 +53,10 @@ module xy_stage_x_motion_shaper_32x3 (
     output wire               overrun,
     output wire               swap_pending,
     output wire [1:0]         bank,
-    output wire               refused
+    output wire               refused,
+    output wire signed [17:0] loaded_coefficient,
+    output wire [6:0]         loaded_delay,
+    output wire               tap_read_waits
 );
     localparam [5:0] FIRST_TAP = 6'd0;
     localparam [5:0] ONE_TAP = 6'd1;
@@ -80,6 +84,9 @@ module xy_stage_x_motion_shaper_32x3 (
     wire               banks_swap_pending;
     wire [1:0]         banks_bank;
     wire               banks_refused;
+    wire signed [17:0] banks_loaded_coefficient;
+    wire [6:0]         banks_loaded_delay;
+    wire               banks_tap_read_waits;
     wire               handover_take;
     wire               handover_active;
     wire [6:0]         handover_since;
@@ -114,30 +121,35 @@ module xy_stage_x_motion_shaper_32x3 (
     reg                overrun_q_next;
 
     xy_stage_x_tap_banks u_banks (
-        .clk             (clk),
-        .rst             (rst),
-        .strobe          (strobe),
-        .clear_flags     (clear_flags),
-        .tap_write       (tap_write),
-        .tap_bank        (tap_bank),
-        .tap_index       (tap_index),
-        .tap_coefficient (tap_coefficient),
-        .tap_delay       (tap_delay),
-        .swap            (swap),
-        .swap_bank       (swap_bank),
-        .known           (swap_how != UNKNOWN_HOW),
-        .take            (handover_take),
-        .locked          (handover_active),
-        .old             (old),
-        .tap             (tap),
-        .coefficient     (banks_coefficient),
-        .delay           (banks_delay),
-        .taps            (banks_taps),
-        .accepted        (banks_accepted),
-        .reach           (banks_reach),
-        .swap_pending    (banks_swap_pending),
-        .bank            (banks_bank),
-        .refused         (banks_refused)
+        .clk                (clk),
+        .rst                (rst),
+        .strobe             (strobe),
+        .clear_flags        (clear_flags),
+        .tap_write          (tap_write),
+        .tap_bank           (tap_bank),
+        .tap_index          (tap_index),
+        .tap_coefficient    (tap_coefficient),
+        .tap_delay          (tap_delay),
+        .tap_read           (tap_read),
+        .busy               (sums_busy),
+        .swap               (swap),
+        .swap_bank          (swap_bank),
+        .known              (swap_how != UNKNOWN_HOW),
+        .take               (handover_take),
+        .locked             (handover_active),
+        .old                (old),
+        .tap                (tap),
+        .coefficient        (banks_coefficient),
+        .delay              (banks_delay),
+        .taps               (banks_taps),
+        .accepted           (banks_accepted),
+        .reach              (banks_reach),
+        .swap_pending       (banks_swap_pending),
+        .bank               (banks_bank),
+        .refused            (banks_refused),
+        .loaded_coefficient (banks_loaded_coefficient),
+        .loaded_delay       (banks_loaded_delay),
+        .tap_read_waits     (banks_tap_read_waits)
     );
 
     // When a swap takes effect
@@ -226,6 +238,9 @@ module xy_stage_x_motion_shaper_32x3 (
     assign swap_pending = banks_swap_pending | handover_active;
     assign bank = banks_bank;
     assign refused = banks_refused;
+    assign loaded_coefficient = banks_loaded_coefficient;
+    assign loaded_delay = banks_loaded_delay;
+    assign tap_read_waits = banks_tap_read_waits;
 
     always @(*) begin
         tap_next = tap;

@@ -49,6 +49,7 @@ module xy_stage_x_shaper_avalon (
     wire               swap;
     wire [1:0]         swap_bank;
     wire [1:0]         swap_how;
+    wire               tap_read;
     wire               sample_strobe;
     wire               sample_start;
     wire signed [31:0] sample_x_0;
@@ -60,41 +61,48 @@ module xy_stage_x_shaper_avalon (
     wire               swap_pending;
     wire [1:0]         bank;
     wire               refused;
+    wire signed [17:0] loaded_coefficient;
+    wire [6:0]         loaded_delay;
+    wire               tap_read_waits;
 
-    posicast_shaper_registers_6faf999a u_registers (
-        .clk             (clk),
-        .rst             (rst),
-        .avs_address     (avs_address),
-        .avs_read        (avs_read),
-        .avs_write       (avs_write),
-        .avs_byteenable  (avs_byteenable),
-        .avs_writedata   (avs_writedata),
-        .avs_readdata    (avs_readdata),
-        .irq             (irq),
-        .from_pins       (from_pins),
-        .busy            (busy),
-        .swap_pending    (swap_pending),
-        .bank            (bank),
-        .saturated       (saturated),
-        .overrun         (overrun),
-        .refused         (refused),
-        .valid           (valid),
-        .host_x_0        (host_x_0),
-        .host_x_1        (host_x_1),
-        .host_x_2        (host_x_2),
-        .host_strobe     (host_strobe),
-        .host_start      (host_start),
-        .y_0             (y_0),
-        .y_1             (y_1),
-        .y_2             (y_2),
-        .tap_index       (tap_index),
-        .tap_bank        (tap_bank),
-        .tap_write       (tap_write),
-        .tap_coefficient (tap_coefficient),
-        .tap_delay       (tap_delay),
-        .swap            (swap),
-        .swap_bank       (swap_bank),
-        .swap_how        (swap_how)
+    posicast_shaper_registers_09158c06 u_registers (
+        .clk                (clk),
+        .rst                (rst),
+        .avs_address        (avs_address),
+        .avs_read           (avs_read),
+        .avs_write          (avs_write),
+        .avs_byteenable     (avs_byteenable),
+        .avs_writedata      (avs_writedata),
+        .avs_readdata       (avs_readdata),
+        .irq                (irq),
+        .from_pins          (from_pins),
+        .busy               (busy),
+        .swap_pending       (swap_pending),
+        .bank               (bank),
+        .tap_read_waits     (tap_read_waits),
+        .saturated          (saturated),
+        .overrun            (overrun),
+        .refused            (refused),
+        .valid              (valid),
+        .host_x_0           (host_x_0),
+        .host_x_1           (host_x_1),
+        .host_x_2           (host_x_2),
+        .host_strobe        (host_strobe),
+        .host_start         (host_start),
+        .y_0                (y_0),
+        .y_1                (y_1),
+        .y_2                (y_2),
+        .tap_index          (tap_index),
+        .tap_bank           (tap_bank),
+        .tap_write          (tap_write),
+        .tap_coefficient    (tap_coefficient),
+        .tap_delay          (tap_delay),
+        .swap               (swap),
+        .swap_bank          (swap_bank),
+        .swap_how           (swap_how),
+        .tap_read           (tap_read),
+        .loaded_coefficient (loaded_coefficient),
+        .loaded_delay       (loaded_delay)
     );
 
     posicast_sample_select_32x3 u_sample_select (
@@ -119,32 +127,36 @@ module xy_stage_x_shaper_avalon (
     );
 
     xy_stage_x_motion_shaper_32x3 u_shaper (
-        .clk             (clk),
-        .rst             (rst),
-        .strobe          (sample_strobe),
-        .start           (sample_start),
-        .x_0             (sample_x_0),
-        .x_1             (sample_x_1),
-        .x_2             (sample_x_2),
-        .clear_flags     (1'd1),
-        .tap_write       (tap_write),
-        .tap_bank        (tap_bank),
-        .tap_index       (tap_index),
-        .tap_coefficient (tap_coefficient),
-        .tap_delay       (tap_delay),
-        .swap            (swap),
-        .swap_bank       (swap_bank),
-        .swap_how        (swap_how),
-        .y_0             (y_0),
-        .y_1             (y_1),
-        .y_2             (y_2),
-        .valid           (valid),
-        .saturated       (saturated),
-        .busy            (busy),
-        .overrun         (overrun),
-        .swap_pending    (swap_pending),
-        .bank            (bank),
-        .refused         (refused)
+        .clk                (clk),
+        .rst                (rst),
+        .strobe             (sample_strobe),
+        .start              (sample_start),
+        .x_0                (sample_x_0),
+        .x_1                (sample_x_1),
+        .x_2                (sample_x_2),
+        .clear_flags        (1'd1),
+        .tap_write          (tap_write),
+        .tap_bank           (tap_bank),
+        .tap_index          (tap_index),
+        .tap_coefficient    (tap_coefficient),
+        .tap_delay          (tap_delay),
+        .tap_read           (tap_read),
+        .swap               (swap),
+        .swap_bank          (swap_bank),
+        .swap_how           (swap_how),
+        .y_0                (y_0),
+        .y_1                (y_1),
+        .y_2                (y_2),
+        .valid              (valid),
+        .saturated          (saturated),
+        .busy               (busy),
+        .overrun            (overrun),
+        .swap_pending       (swap_pending),
+        .bank               (bank),
+        .refused            (refused),
+        .loaded_coefficient (loaded_coefficient),
+        .loaded_delay       (loaded_delay),
+        .tap_read_waits     (tap_read_waits)
     );
 endmodule
 

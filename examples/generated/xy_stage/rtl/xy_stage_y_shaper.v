@@ -34,6 +34,7 @@ module xy_stage_y_shaper (
     input  wire [5:0]         tap_index,
     input  wire signed [17:0] tap_coefficient,
     input  wire [6:0]         tap_delay,
+    input  wire               tap_read,
     input  wire               swap,
     input  wire [1:0]         swap_bank,
     output wire signed [31:0] y,
@@ -43,7 +44,10 @@ module xy_stage_y_shaper (
     output wire               overrun,
     output wire               swap_pending,
     output wire [1:0]         bank,
-    output wire               refused
+    output wire               refused,
+    output wire signed [17:0] loaded_coefficient,
+    output wire [6:0]         loaded_delay,
+    output wire               tap_read_waits
 );
     localparam [5:0] FIRST_TAP = 6'd0;
     localparam [5:0] ONE_TAP = 6'd1;
@@ -61,6 +65,9 @@ module xy_stage_y_shaper (
     wire               banks_swap_pending;
     wire [1:0]         banks_bank;
     wire               banks_refused;
+    wire signed [17:0] banks_loaded_coefficient;
+    wire [6:0]         banks_loaded_delay;
+    wire               banks_tap_read_waits;
     wire signed [31:0] history_sample_0;
     wire               history_blank;
     wire signed [31:0] sum_y;
@@ -82,30 +89,35 @@ module xy_stage_y_shaper (
     // The tables: the word of tap, two clocks later
     // A swap has one way: all at the next strobe
     xy_stage_y_tap_banks u_banks (
-        .clk             (clk),
-        .rst             (rst),
-        .strobe          (strobe),
-        .clear_flags     (clear_flags),
-        .tap_write       (tap_write),
-        .tap_bank        (tap_bank),
-        .tap_index       (tap_index),
-        .tap_coefficient (tap_coefficient),
-        .tap_delay       (tap_delay),
-        .swap            (swap),
-        .swap_bank       (swap_bank),
-        .known           (1'd1),
-        .take            (1'd1),
-        .locked          (1'd0),
-        .old             (1'd0),
-        .tap             (tap),
-        .coefficient     (banks_coefficient),
-        .delay           (banks_delay),
-        .taps            (banks_taps),
-        .accepted        (banks_accepted),
-        .reach           (banks_reach),
-        .swap_pending    (banks_swap_pending),
-        .bank            (banks_bank),
-        .refused         (banks_refused)
+        .clk                (clk),
+        .rst                (rst),
+        .strobe             (strobe),
+        .clear_flags        (clear_flags),
+        .tap_write          (tap_write),
+        .tap_bank           (tap_bank),
+        .tap_index          (tap_index),
+        .tap_coefficient    (tap_coefficient),
+        .tap_delay          (tap_delay),
+        .tap_read           (tap_read),
+        .busy               (busy_q),
+        .swap               (swap),
+        .swap_bank          (swap_bank),
+        .known              (1'd1),
+        .take               (1'd1),
+        .locked             (1'd0),
+        .old                (1'd0),
+        .tap                (tap),
+        .coefficient        (banks_coefficient),
+        .delay              (banks_delay),
+        .taps               (banks_taps),
+        .accepted           (banks_accepted),
+        .reach              (banks_reach),
+        .swap_pending       (banks_swap_pending),
+        .bank               (banks_bank),
+        .refused            (banks_refused),
+        .loaded_coefficient (banks_loaded_coefficient),
+        .loaded_delay       (banks_loaded_delay),
+        .tap_read_waits     (banks_tap_read_waits)
     );
 
     // The samples: the one at delay, a clock later
@@ -151,6 +163,9 @@ module xy_stage_y_shaper (
     assign swap_pending = banks_swap_pending;
     assign bank = banks_bank;
     assign refused = banks_refused;
+    assign loaded_coefficient = banks_loaded_coefficient;
+    assign loaded_delay = banks_loaded_delay;
+    assign tap_read_waits = banks_tap_read_waits;
 
     always @(*) begin
         tap_next = tap;

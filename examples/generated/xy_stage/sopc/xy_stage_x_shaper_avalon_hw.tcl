@@ -4,7 +4,7 @@
 package require -exact qsys 13.0
 
 set_module_property NAME xy_stage_x_shaper_avalon
-set_module_property VERSION 1.0
+set_module_property VERSION 1.1
 set_module_property DISPLAY_NAME {shaper: xy_stage_x_shaper_avalon}
 set_module_property DESCRIPTION {Input shaper: samples by register or pins, tables loaded through registers.}
 set_module_property GROUP Posicast
@@ -17,7 +17,7 @@ set_module_property EDITABLE false
 # Facts for system.h and the device tree
 set_module_assignment embeddedsw.CMacro.MAGIC 0x52504853
 set_module_assignment embeddedsw.CMacro.VERSION_MAJOR 1
-set_module_assignment embeddedsw.CMacro.VERSION_MINOR 0
+set_module_assignment embeddedsw.CMacro.VERSION_MINOR 1
 set_module_assignment embeddedsw.CMacro.WORD_BITS 32
 set_module_assignment embeddedsw.CMacro.CHANNELS 3
 set_module_assignment embeddedsw.CMacro.RING_SAMPLES 128
@@ -28,12 +28,12 @@ set_module_assignment embeddedsw.CMacro.MODULO 0
 set_module_assignment embeddedsw.dts.vendor posicast
 set_module_assignment embeddedsw.dts.name shaper
 set_module_assignment embeddedsw.dts.group motion
-set_module_assignment embeddedsw.dts.compatible {posicast,shaper-1.0}
+set_module_assignment embeddedsw.dts.compatible {posicast,shaper-1.1}
 
 foreach kind {QUARTUS_SYNTH SIM_VERILOG} {
     add_fileset $kind $kind {} {}
     set_fileset_property $kind TOP_LEVEL xy_stage_x_shaper_avalon
-    add_fileset_file posicast_shaper_registers_6faf999a.v VERILOG PATH ../rtl/posicast_shaper_registers_6faf999a.v
+    add_fileset_file posicast_shaper_registers_09158c06.v VERILOG PATH ../rtl/posicast_shaper_registers_09158c06.v
     add_fileset_file posicast_sample_select_32x3.v VERILOG PATH ../rtl/posicast_sample_select_32x3.v
     add_fileset_file xy_stage_x_machine_taps.v VERILOG PATH ../rtl/xy_stage_x_machine_taps.v
     add_fileset_file posicast_ram_128x25.v VERILOG PATH ../rtl/posicast_ram_128x25.v

@@ -37,6 +37,26 @@ enum State {
     HandsOver { before: u8, samples: u32 },
 }
 
+/// A host's read of a tap, and what the last one found.
+#[derive(Clone, Copy)]
+struct ReadBack {
+    waits: bool,
+    /// What the tables show in this clock, if it is the host's: 0 where no tap is loaded.
+    served: Option<Tap>,
+    found: Tap,
+}
+
+const NO_TAP: Tap = Tap {
+    delay_samples: 0,
+    coefficient: 0,
+};
+
+const NOTHING_READ: ReadBack = ReadBack {
+    waits: false,
+    served: None,
+    found: NO_TAP,
+};
+
 /// Bank 0 (the machine's table, ROM) and banks 1 and 2 (RAM); which is active, which comes next.
 pub(super) struct Banks {
     rom: Vec<Tap>,
@@ -46,6 +66,7 @@ pub(super) struct Banks {
     active: u8,
     change: Option<Change>,
     refused: bool,
+    read_back: ReadBack,
     has_swap_how: bool,
 }
 
@@ -70,6 +91,7 @@ impl Banks {
             active: 0,
             change: None,
             refused: false,
+            read_back: NOTHING_READ,
             has_swap_how: config.motion().is_some(),
         }
     }
@@ -111,6 +133,22 @@ impl Banks {
         self.refused
     }
 
+    /// What a host's last read found.
+    pub(super) fn loaded_tap(&self) -> Tap {
+        self.read_back.found
+    }
+
+    /// Whether a host's read was not served yet.
+    pub(super) fn read_waits(&self) -> bool {
+        self.read_back.waits
+    }
+
+    /// Whether a clock changes something of a host's read: one that comes with it, or one that waits.
+    pub(super) fn reads(&self, tap_read: bool, busy: bool) -> bool {
+        let ReadBack { waits, served, .. } = self.read_back;
+        tap_read && !waits || waits && (served.is_some() || !busy)
+    }
+
     /// Everything that has a reset; the RAM keeps what it holds.
     pub(super) fn reset(&mut self) {
         for bank in &mut self.loadable {
@@ -120,12 +158,15 @@ impl Banks {
         self.active = 0;
         self.change = None;
         self.refused = false;
+        self.read_back = NOTHING_READ;
     }
 
     /// One clock. A write and a swap are judged by the state before the clock.
     ///
-    /// `still` are the samples since the position command changed, a start of this clock included, its strobe not.
-    pub(super) fn step(&mut self, inputs: &Inputs, still: u32) {
+    /// `still` are the samples since the position command changed, a start of this clock included, its strobe not. A pass
+    /// that is `busy` reads the tables: a host waits.
+    pub(super) fn step(&mut self, inputs: &Inputs, still: u32, busy: bool) {
+        self.read_tap(inputs, busy);
         let swap_bank = inputs.swap_bank & 3;
         let how = if self.has_swap_how {
             inputs.swap_how & 3
@@ -151,6 +192,24 @@ impl Banks {
         if inputs.swap != swap_taken || inputs.tap_write != write_taken {
             self.refused = true;
         }
+    }
+
+    /// A read takes the tables in the first clock in which no pass runs and no tap is written, and has its word in the next.
+    fn read_tap(&mut self, inputs: &Inputs, busy: bool) {
+        let ReadBack { waits, served, found } = self.read_back;
+        let serves = waits && served.is_none() && !busy && !inputs.tap_write;
+        self.read_back = ReadBack {
+            waits: inputs.tap_read || waits && served.is_none(),
+            served: serves.then(|| self.tap_at(inputs.tap_bank & 3, inputs.tap_index)),
+            found: served.unwrap_or(found),
+        };
+    }
+
+    /// The tap at that place; 0 where none is loaded.
+    fn tap_at(&self, bank: u8, index: u16) -> Tap {
+        let index = usize::from(index) & (self.loadable[0].taps.len() - 1);
+        let taps = if bank == 3 { &[] } else { self.taps(bank) };
+        taps.get(index).copied().unwrap_or(NO_TAP)
     }
 
     /// What becomes of a change in a clock; nothing once it is over.

@@ -67,6 +67,7 @@ impl Shaper {
     /// What the outputs show now.
     pub fn outputs(&self) -> Outputs {
         let [y, y_rates @ ..] = self.y;
+        let loaded = self.banks.loaded_tap();
         Outputs {
             y,
             y_rates,
@@ -77,6 +78,9 @@ impl Shaper {
             swap_pending: self.banks.pending(),
             bank: self.banks.active(),
             refused: self.banks.refused(),
+            loaded_coefficient: loaded.coefficient,
+            loaded_delay: loaded.delay_samples as u16,
+            tap_read_waits: self.banks.read_waits(),
         }
     }
 
@@ -84,7 +88,7 @@ impl Shaper {
     #[inline]
     pub fn step(&mut self, inputs: &Inputs) -> Outputs {
         let outputs = self.outputs();
-        if *inputs == Inputs::default() {
+        if *inputs == Inputs::default() && !self.banks.read_waits() {
             self.count_down();
         } else {
             self.clock(inputs);
@@ -97,6 +101,7 @@ impl Shaper {
             self.reset();
             return;
         }
+        let busy = self.clocks_left > 0;
         if inputs.clear_flags {
             self.saturated = false;
             self.overrun = false;
@@ -108,13 +113,13 @@ impl Shaper {
                 self.start(words);
             }
             self.overrun |= inputs.strobe && self.clocks_left > 0;
-            self.banks.step(inputs, self.still);
+            self.banks.step(inputs, self.still, busy);
             if inputs.strobe {
                 self.take_sample(words);
             }
         } else {
             self.count_down();
-            self.banks.step(inputs, self.still);
+            self.banks.step(inputs, self.still, busy);
         }
     }
 
@@ -227,7 +232,8 @@ impl Moore for Shaper {
     fn quiet_clocks(&self, inputs: &[u64]) -> u64 {
         let inputs = Inputs::from_raw(inputs, &self.config);
         let starts = inputs.start && !self.has_started(self.words(&inputs));
-        let acts = inputs.rst || inputs.strobe || starts || inputs.tap_write || inputs.swap;
+        let reads = self.banks.reads(inputs.tap_read, self.clocks_left > 0);
+        let acts = inputs.rst || inputs.strobe || starts || inputs.tap_write || inputs.swap || reads;
         let clears = inputs.clear_flags && (self.saturated || self.overrun || self.banks.refused());
         match self.clocks_left {
             _ if acts || clears || self.valid => 0,

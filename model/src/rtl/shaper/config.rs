@@ -238,7 +238,7 @@ impl ShaperConfig {
     /// Input and output ports.
     pub(crate) fn port_counts(&self) -> (usize, usize) {
         let how = usize::from(self.motion.is_some());
-        (11 + how + self.channels(), 7 + self.channels())
+        (12 + how + self.channels(), 10 + self.channels())
     }
 
     /// W: width of a command word in bits.

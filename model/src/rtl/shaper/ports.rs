@@ -40,6 +40,8 @@ pub struct Inputs {
     pub tap_coefficient: i32,
     /// Its delay in samples, A bits, not all ones.
     pub tap_delay: u16,
+    /// One clock: the tap at `tap_index` of `tap_bank` is to be read back.
+    pub tap_read: bool,
     /// One clock: make `swap_bank` active, at the next strobe or as `swap_how` says.
     pub swap: bool,
     /// The bank to make active, 0..=2.
@@ -69,6 +71,12 @@ pub struct Outputs {
     pub bank: u8,
     /// Sticky: a write or a swap was refused.
     pub refused: bool,
+    /// Coefficient of the tap that was read back last; 0 where no tap is loaded.
+    pub loaded_coefficient: i32,
+    /// Its delay in samples, A bits.
+    pub loaded_delay: u16,
+    /// A read was not served yet.
+    pub tap_read_waits: bool,
 }
 
 /// The ports of a shaper in the order of the Verilog's port list, without `clk`.
@@ -105,6 +113,7 @@ pub fn ports(config: &ShaperConfig) -> Vec<Port> {
             port("tap_index", Input, config.tap_index_bits(), false),
             port("tap_coefficient", Input, COEFFICIENT_BITS, true),
             port("tap_delay", Input, config.ring_address_bits(), false),
+            port("tap_read", Input, 1, false),
             port("swap", Input, 1, false),
             port("swap_bank", Input, 2, false),
         ],
@@ -118,6 +127,9 @@ pub fn ports(config: &ShaperConfig) -> Vec<Port> {
             port("swap_pending", Output, 1, false),
             port("bank", Output, 2, false),
             port("refused", Output, 1, false),
+            port("loaded_coefficient", Output, COEFFICIENT_BITS, true),
+            port("loaded_delay", Output, config.ring_address_bits(), false),
+            port("tap_read_waits", Output, 1, false),
         ],
     ]
     .concat()
@@ -145,6 +157,7 @@ impl Inputs {
             tap_index: next() as u16,
             tap_coefficient: next() as i32,
             tap_delay: next() as u16,
+            tap_read: next() & 1 != 0,
             swap: next() & 1 != 0,
             swap_bank: next() as u8,
             swap_how: config.motion().map_or(0, |_| next() as u8),
@@ -170,6 +183,7 @@ impl Inputs {
             cut(i64::from(self.tap_index), config.tap_index_bits()),
             cut(i64::from(self.tap_coefficient), COEFFICIENT_BITS),
             cut(i64::from(self.tap_delay), config.ring_address_bits()),
+            u64::from(self.tap_read),
             u64::from(self.swap),
             cut(i64::from(self.swap_bank), 2),
         ]);
@@ -199,6 +213,9 @@ impl Outputs {
             swap_pending: next() & 1 != 0,
             bank: next() as u8 & 3,
             refused: next() & 1 != 0,
+            loaded_coefficient: wrap(next() as i64, COEFFICIENT_BITS) as i32,
+            loaded_delay: next() as u16,
+            tap_read_waits: next() & 1 != 0,
             ..outputs
         }
     }
@@ -219,6 +236,9 @@ impl Outputs {
             u64::from(self.swap_pending),
             u64::from(self.bank),
             u64::from(self.refused),
+            self.loaded_coefficient as u64 & ((1 << COEFFICIENT_BITS) - 1),
+            u64::from(self.loaded_delay),
+            u64::from(self.tap_read_waits),
         ];
         for (place, value) in raw.iter_mut().zip(words.chain(flags)) {
             *place = value;

@@ -155,6 +155,13 @@ fn tables(axis: &StageAxis) -> Vec<Register> {
             maps::swap(&axis.shaper),
         ),
         register(
+            "tap_read",
+            0x27,
+            command("tap_read"),
+            "reads the tap at `TAP_ADDRESS` back, which stays until `tap_read_waits` is low",
+            vec![],
+        ),
+        register(
             "setting_address",
             0x17,
             Access::Configuration,

@@ -1,13 +1,13 @@
 //! What a host reads of an axis: its state, what went wrong, and what moves.
 
-use super::config::StageScale;
+use super::config::{StageAxis, StageScale};
 use super::registers::{register, with_the_drive_off};
 use crate::rtl::axis::State;
-use crate::rtl::registers::{Access, Field, Register};
+use crate::rtl::registers::{Access, Field, Register, maps};
 
 /// The registers, in words of the axis's window.
-pub(super) fn registers() -> Vec<Register> {
-    [states(), motion()].concat()
+pub(super) fn registers(axis: &StageAxis) -> Vec<Register> {
+    [states(), read_back(axis), motion()].concat()
 }
 
 /// Of the linear scale, where there is one: how it is read, its count, and how far the motor is from it.
@@ -69,6 +69,7 @@ fn states() -> Vec<Register> {
                 ),
                 Field::flag("homed", 25, "by `HOMED`; not since a lost encoder, or an error of it"),
                 Field::flag("setting_read_waits", 26, "`SETTING_READ` was not served yet"),
+                Field::flag("tap_read_waits", 27, "`TAP_READ` was not served yet"),
             ],
         ),
         register(
@@ -163,12 +164,24 @@ fn states() -> Vec<Register> {
                 Field::new("self_test_low", 16, 16, "the same of `a_low`").with_unit("clocks"),
             ],
         ),
+    ]
+}
+
+fn read_back(axis: &StageAxis) -> Vec<Register> {
+    vec![
         register(
             "setting_loaded",
             0x3e,
             Access::Live,
             "what `SETTING_READ` found: 0 where nothing was written since the reset",
             vec![Field::new("setting_loaded", 0, 32, "mantissa and shift, or the limit")],
+        ),
+        register(
+            "tap_loaded",
+            0x3f,
+            Access::Live,
+            "what `TAP_READ` found: 0 where no tap is loaded",
+            maps::tap_loaded(&axis.shaper),
         ),
     ]
 }

@@ -201,7 +201,7 @@ pub(super) fn register(name: &str, offset: u32, access: Access, meaning: &str, f
 /// The registers of an axis, in words of its window, without the axis's name before theirs.
 pub fn axis_window(axis: &StageAxis) -> Vec<Register> {
     let mut registers = axis_settings::registers(axis);
-    registers.extend(axis_words::registers());
+    registers.extend(axis_words::registers(axis));
     if let Some(scale) = &axis.scale {
         registers.extend(axis_words::of_scale(scale));
     }

@@ -98,6 +98,12 @@ impl ComponentRandom {
                     self.write("tap", tap);
                 }
                 self.write("swap", bank | (random >> 16 & 3) << 4);
+                // Back, of any bank, in a pass and between two.
+                for read in 0..random >> 24 & 7 {
+                    self.write("tap_address", random >> (read + 20) & 0x307);
+                    self.write("tap_read", 0);
+                    self.writes.extend([(0x40, 0); 5]);
+                }
                 for sample in 0..random >> 20 & 15 {
                     let x = self.registers.rng.next_u32();
                     for word in ["x", "x_0", "x_1", "x_2"] {

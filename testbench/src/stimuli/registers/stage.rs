@@ -76,7 +76,7 @@ struct Line {
     low: u32,
 }
 
-/// Reads settings back, of any bank at any time, in clocks in which nobody else is on the bus.
+/// Reads settings or taps back, of any bank at any time, in clocks in which nobody else is on the bus.
 ///
 /// It draws from a generator of its own: what a run reaches does not change with it.
 #[derive(Debug, Clone)]
@@ -84,18 +84,31 @@ struct ReadBack {
     rng: Xoshiro256PlusPlus,
     /// Per axis: offsets of address, command and word.
     words: Vec<[u64; 3]>,
+    /// Bits of the address that are drawn: bank, and rows that are written.
+    places: u64,
 }
 
 impl ReadBack {
-    fn new(map: &RegisterMap, axes: &[String], seed: u64) -> Self {
+    fn settings(map: &RegisterMap, axes: &[String], seed: u64) -> Self {
+        let names = ["setting_address", "setting_read", "setting_loaded"];
+        Self::new(map, axes, names, 0x30f, seed.rotate_left(32))
+    }
+
+    fn taps(map: &RegisterMap, axes: &[String], seed: u64) -> Self {
+        let names = ["tap_address", "tap_read", "tap_loaded"];
+        Self::new(map, axes, names, 0x307, seed.rotate_left(16))
+    }
+
+    fn new(map: &RegisterMap, axes: &[String], names: [&str; 3], places: u64, seed: u64) -> Self {
         let of_axis = |axis: &String| {
             let offset = |name| map.register(&format!("{axis}_{name}")).map(|found| found.offset.into());
-            let [address, read, loaded] = ["setting_address", "setting_read", "setting_loaded"].map(offset);
+            let [address, read, loaded] = names.map(offset);
             Some([address?, read?, loaded?])
         };
         Self {
-            rng: Xoshiro256PlusPlus::seed_from_u64(seed.rotate_left(32)),
+            rng: Xoshiro256PlusPlus::seed_from_u64(seed),
             words: axes.iter().filter_map(of_axis).collect(),
+            places,
         }
     }
 
@@ -108,14 +121,13 @@ impl ReadBack {
         let axis = self.rng.random_range(0..self.words.len());
         let [pace, kind, data] = [50, 3, 1 << 10].map(|end| self.rng.random_range(0..end));
         let in_use = inputs[READ] != 0 || inputs[WRITE] != 0 || driver.writes(axis);
-        // Wild traffic writes settings, and what is not its own, to the address that it finds.
+        // Wild traffic writes settings and taps, and what is not its own, to the address that it finds.
         let moves_another = wild && kind == 0;
         if pace != 0 || in_use || moves_another {
             return;
         }
         inputs[ADDRESS] = self.words[axis][kind];
-        // Row and bank.
-        inputs[WRITE_DATA] = data as u64 & 0x30f;
+        inputs[WRITE_DATA] = data as u64 & self.places;
         inputs[BYTE_ENABLE] = 0xf;
         let reads = kind == 2;
         (inputs[READ], inputs[WRITE]) = (reads.into(), (!reads).into());
@@ -125,7 +137,8 @@ impl ReadBack {
 /// A mixture of everything, without end.
 #[derive(Debug, Clone)]
 pub struct StageRandom {
-    read_back: ReadBack,
+    /// Of settings, of taps.
+    read_back: [ReadBack; 2],
     registers: RegistersRandom,
     driver: Driver,
     tick_clocks: u32,
@@ -195,19 +208,17 @@ impl StageRandom {
             })
         };
         let map = component.map();
-        let read_back = ReadBack::new(map, axes, seed);
+        let read_back = [ReadBack::settings, ReadBack::taps].map(|new| new(map, axes, seed));
+        let own: Vec<u64> = read_back.iter().flat_map(ReadBack::own).collect();
         Self {
-            registers: RegistersRandom::new(map, ports, seed).without(&read_back.own()),
+            registers: RegistersRandom::new(map, ports, seed).without(&own),
             tick_clocks: map.register("tick_clocks").map_or(1000, |register| register.reset()),
             driver: Driver::new(map, axes, seed),
             clock: 0,
             mood_ends: 0,
             scenes: 0,
             moods: 0,
-            status: status(map)
-                .into_iter()
-                .filter(|offset| !read_back.own().contains(offset))
-                .collect(),
+            status: status(map).into_iter().filter(|offset| !own.contains(offset)).collect(),
             mood: Mood {
                 wild: false,
                 scene: false,
@@ -383,7 +394,9 @@ impl Stimuli for StageRandom {
         self.encoders(seen, inputs);
         self.lines(inputs);
         self.drive(seen, inputs);
-        self.read_back.fill(&self.driver, self.mood.wild, inputs);
+        for read_back in &mut self.read_back {
+            read_back.fill(&self.driver, self.mood.wild, inputs);
+        }
         self.clock += 1;
     }
 }

@@ -136,6 +136,14 @@ posicast_result posicast_use_table(const posicast_stage *stage, uint32_t axis, u
                                    uint32_t ticks);
 
 /*
+ * Reads back the table in bank 0 (the machine's), 1 or 2 of an axis, in use or not: the first `room` taps into `taps`, and how many the
+ * bank holds into `count`, 0 where nothing was loaded since reset. A tap of coefficient and delay 0 ends it; posicast_load_table
+ * loads none. The machine runs on. POSICAST_BAD_ARGUMENT; POSICAST_TIMEOUT where `ticks` are over.
+ */
+posicast_result posicast_read_table(const posicast_stage *stage, uint32_t axis, uint32_t bank, posicast_tap *taps,
+                                    uint32_t room, uint32_t *count, uint32_t ticks);
+
+/*
  * Runs the PWM of an axis with this duty (clocks) while pins, drive and brake stay off, and counts. The axis must be READY:
  * POSICAST_WRONG_STATE. What the counts should be depends on the PWM: docs/pwm.md; both 0 is a PWM that does not run.
  */

@@ -74,3 +74,41 @@ posicast_result posicast_use_table(const posicast_stage *stage, uint32_t axis, u
         return result;
     return posicast_wait_status(stage, axis, swapped, AS_FIELD(bank, POSICAST_AXIS_STATUS_TABLE_BANK), &left);
 }
+
+posicast_result posicast_read_table(const posicast_stage *stage, uint32_t axis, uint32_t bank, posicast_tap *taps,
+                                    uint32_t room, uint32_t *count, uint32_t ticks)
+{
+    const uint32_t sign = (POSICAST_AXIS_TAP_LOADED_LOADED_COEFFICIENT_MSK >>
+                           POSICAST_AXIS_TAP_LOADED_LOADED_COEFFICIENT_OFST) / 2u + 1u;
+    posicast_patience left = posicast_patience_for(stage, ticks);
+    uint32_t tap, most;
+
+    if (!is_axis(stage, axis) || bank > 2)
+        return POSICAST_BAD_ARGUMENT;
+    most = (uint32_t)IORD_POSICAST_AXIS_MOST_TAPS(stage->base, axis);
+    for (tap = 0; tap < most; tap++) {
+        posicast_result result;
+        uint32_t word, coefficient;
+
+        IOWR_POSICAST_AXIS_TAP_ADDRESS(stage->base, axis,
+                                       AS_FIELD(tap, POSICAST_AXIS_TAP_ADDRESS_TAP_INDEX) |
+                                           AS_FIELD(bank, POSICAST_AXIS_TAP_ADDRESS_TAP_BANK));
+        IOWR_POSICAST_AXIS_TAP_READ(stage->base, axis, 0u);
+        /* The flag that the read waits rises a few clocks after the write. */
+        result = posicast_wait_flags(stage);
+        if (result == POSICAST_OK)
+            result = posicast_wait_status(stage, axis, POSICAST_AXIS_STATUS_TAP_READ_WAITS_MSK, 0, &left);
+        if (result != POSICAST_OK)
+            return result;
+        word = (uint32_t)IORD_POSICAST_AXIS_TAP_LOADED(stage->base, axis);
+        if (word == 0)
+            break;
+        if (tap >= room)
+            continue;
+        coefficient = FIELD(word, POSICAST_AXIS_TAP_LOADED_LOADED_COEFFICIENT);
+        taps[tap].delay_samples = (uint16_t)FIELD(word, POSICAST_AXIS_TAP_LOADED_LOADED_DELAY);
+        taps[tap].coefficient = (int32_t)(coefficient ^ sign) - (int32_t)sign;
+    }
+    *count = tap;
+    return POSICAST_OK;
+}

@@ -11,7 +11,7 @@ pub fn shaper(config: &ShaperConfig) -> Description {
         strobe: strobe.to_owned(),
     };
     let about = "Input shaper: samples by register or pins, tables loaded through registers.";
-    let mut description = Description::new("shaper", about, *b"SHPR", (1, 0), parameters(config))
+    let mut description = Description::new("shaper", about, *b"SHPR", (1, 1), parameters(config))
         .with(
             "control",
             0x10,
@@ -32,6 +32,7 @@ pub fn shaper(config: &ShaperConfig) -> Description {
                 Field::flag("busy", 0, "a pass runs"),
                 Field::flag("swap_pending", 1, "a swap waits, or hands over"),
                 Field::new("bank", 2, 2, "the active bank"),
+                Field::flag("tap_read_waits", 4, "`TAP_READ` was not served yet"),
             ],
         )
         .with(
@@ -84,6 +85,20 @@ pub fn shaper(config: &ShaperConfig) -> Description {
         )
         .with("tap", 0x29, command("tap_write"), "writes a tap", tap(config))
         .with("swap", 0x2a, command("swap"), "makes a bank active", swap(config))
+        .with(
+            "tap_read",
+            0x2b,
+            command("tap_read"),
+            "reads the tap at `TAP_ADDRESS` back, which stays until `tap_read_waits` is low",
+            vec![],
+        )
+        .with(
+            "tap_loaded",
+            0x2c,
+            Live,
+            "what `TAP_READ` found: 0 where no tap is loaded",
+            tap_loaded(config),
+        )
 }
 
 /// `x` and `y` of the plain shaper, else with the channel.
@@ -142,6 +157,14 @@ pub(crate) fn tap(config: &ShaperConfig) -> Vec<Field> {
             "delay, not all ones",
         )
         .with_unit("samples"),
+    ]
+}
+
+/// Fields of the register of that name: those of [`tap`].
+pub(crate) fn tap_loaded(config: &ShaperConfig) -> Vec<Field> {
+    vec![
+        Field::new("loaded_coefficient", 0, COEFFICIENT_BITS, "coefficient").fixed(config.coefficient_fraction()),
+        Field::new("loaded_delay", COEFFICIENT_BITS, config.ring_address_bits(), "delay").with_unit("samples"),
     ]
 }
 

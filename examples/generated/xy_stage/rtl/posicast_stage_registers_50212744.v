@@ -1,4 +1,4 @@
-// posicast_stage_registers_a173a0e3
+// posicast_stage_registers_50212744
 // Registers of stage: Avalon-MM agent, 32 bits, word addresses, read latency 1, no waits.
 // Commands take whole words only. Reads have no side effect; what is not mapped reads as 0.
 //
@@ -22,7 +22,7 @@
 
 `default_nettype none
 
-module posicast_stage_registers_a173a0e3 (
+module posicast_stage_registers_50212744 (
     input  wire               clk,
     input  wire               rst,
     input  wire [9:0]         avs_address,
@@ -103,6 +103,7 @@ module posicast_stage_registers_a173a0e3 (
     output reg                x_encoder_invert,
     output reg  [15:0]        x_trigger_phase,
     output reg                x_setting_read,
+    output reg                x_tap_read,
     input  wire [2:0]         x_state,
     input  wire               x_can_start,
     input  wire [1:0]         x_segments_state,
@@ -122,6 +123,7 @@ module posicast_stage_registers_a173a0e3 (
     input  wire [4:0]         x_trip_causes,
     input  wire               x_homed,
     input  wire               x_setting_read_waits,
+    input  wire               x_tap_read_waits,
     input  wire [16:0]        x_causes,
     input  wire               x_segments_underrun,
     input  wire               x_segments_overflow,
@@ -164,6 +166,8 @@ module posicast_stage_registers_a173a0e3 (
     input  wire signed [31:0] x_command,
     input  wire signed [16:0] x_duty,
     input  wire [31:0]        x_setting_loaded,
+    input  wire signed [17:0] x_loaded_coefficient,
+    input  wire [6:0]         x_loaded_delay,
     output reg                y_enable,
     output reg                y_direct_enable,
     output reg                y_self_test,
@@ -213,6 +217,7 @@ module posicast_stage_registers_a173a0e3 (
     output reg                y_encoder_invert,
     output reg  [15:0]        y_trigger_phase,
     output reg                y_setting_read,
+    output reg                y_tap_read,
     input  wire [2:0]         y_state,
     input  wire               y_can_start,
     input  wire [1:0]         y_segments_state,
@@ -232,6 +237,7 @@ module posicast_stage_registers_a173a0e3 (
     input  wire [4:0]         y_trip_causes,
     input  wire               y_homed,
     input  wire               y_setting_read_waits,
+    input  wire               y_tap_read_waits,
     input  wire [16:0]        y_causes,
     input  wire               y_segments_underrun,
     input  wire               y_segments_overflow,
@@ -273,7 +279,9 @@ module posicast_stage_registers_a173a0e3 (
     input  wire signed [31:0] y_error,
     input  wire signed [31:0] y_command,
     input  wire signed [16:0] y_duty,
-    input  wire [31:0]        y_setting_loaded
+    input  wire [31:0]        y_setting_loaded,
+    input  wire signed [17:0] y_loaded_coefficient,
+    input  wire [6:0]         y_loaded_delay
 );
     // Words of the window.
     localparam [9:0] MAGIC                   = 10'h00;
@@ -326,6 +334,7 @@ module posicast_stage_registers_a173a0e3 (
     localparam [9:0] X_ENCODER               = 10'h124;
     localparam [9:0] X_PWM_TRIGGER           = 10'h125;
     localparam [9:0] X_SETTING_READ          = 10'h126;
+    localparam [9:0] X_TAP_READ              = 10'h127;
     localparam [9:0] X_STATUS                = 10'h128;
     localparam [9:0] X_CAUSES                = 10'h129;
     localparam [9:0] X_FLAGS                 = 10'h12a;
@@ -345,6 +354,7 @@ module posicast_stage_registers_a173a0e3 (
     localparam [9:0] X_COMMAND               = 10'h139;
     localparam [9:0] X_DUTY                  = 10'h13a;
     localparam [9:0] X_SETTING_LOADED        = 10'h13e;
+    localparam [9:0] X_TAP_LOADED            = 10'h13f;
     localparam [9:0] X_SNAPSHOT_POSITION     = 10'h140;
     localparam [9:0] X_SNAPSHOT_VELOCITY     = 10'h141;
     localparam [9:0] Y_PWM_PERIOD_CLOCKS     = 10'h200;
@@ -379,6 +389,7 @@ module posicast_stage_registers_a173a0e3 (
     localparam [9:0] Y_ENCODER               = 10'h224;
     localparam [9:0] Y_PWM_TRIGGER           = 10'h225;
     localparam [9:0] Y_SETTING_READ          = 10'h226;
+    localparam [9:0] Y_TAP_READ              = 10'h227;
     localparam [9:0] Y_STATUS                = 10'h228;
     localparam [9:0] Y_CAUSES                = 10'h229;
     localparam [9:0] Y_FLAGS                 = 10'h22a;
@@ -398,6 +409,7 @@ module posicast_stage_registers_a173a0e3 (
     localparam [9:0] Y_COMMAND               = 10'h239;
     localparam [9:0] Y_DUTY                  = 10'h23a;
     localparam [9:0] Y_SETTING_LOADED        = 10'h23e;
+    localparam [9:0] Y_TAP_LOADED            = 10'h23f;
     localparam [9:0] Y_SNAPSHOT_POSITION     = 10'h240;
     localparam [9:0] Y_SNAPSHOT_VELOCITY     = 10'h241;
 
@@ -445,6 +457,7 @@ module posicast_stage_registers_a173a0e3 (
     wire write_x_encoder = avs_write && avs_address == X_ENCODER;
     wire write_x_pwm_trigger = avs_write && avs_address == X_PWM_TRIGGER;
     wire write_x_setting_read = avs_write && avs_address == X_SETTING_READ;
+    wire write_x_tap_read = avs_write && avs_address == X_TAP_READ;
     wire write_x_events = avs_write && avs_address == X_EVENTS;
     wire write_y_control = avs_write && avs_address == Y_CONTROL;
     wire write_y_stop = avs_write && avs_address == Y_STOP;
@@ -473,6 +486,7 @@ module posicast_stage_registers_a173a0e3 (
     wire write_y_encoder = avs_write && avs_address == Y_ENCODER;
     wire write_y_pwm_trigger = avs_write && avs_address == Y_PWM_TRIGGER;
     wire write_y_setting_read = avs_write && avs_address == Y_SETTING_READ;
+    wire write_y_tap_read = avs_write && avs_address == Y_TAP_READ;
     wire write_y_events = avs_write && avs_address == Y_EVENTS;
 
     reg waits;
@@ -485,10 +499,10 @@ module posicast_stage_registers_a173a0e3 (
         && (write_snapshot || write_commit || write_start || write_interrupt_test || write_x_stop
         || write_x_clear_faults || write_x_flush || write_x_kick || write_x_direct || write_x_homed
         || write_x_segment || write_x_tap || write_x_swap || write_x_setting || write_x_index_arm
-        || write_x_preset || write_x_setting_read || write_y_stop || write_y_clear_faults
-        || write_y_flush || write_y_kick || write_y_direct || write_y_homed || write_y_segment
-        || write_y_tap || write_y_swap || write_y_setting || write_y_index_arm || write_y_preset
-        || write_y_setting_read);
+        || write_x_preset || write_x_setting_read || write_x_tap_read || write_y_stop
+        || write_y_clear_faults || write_y_flush || write_y_kick || write_y_direct || write_y_homed
+        || write_y_segment || write_y_tap || write_y_swap || write_y_setting || write_y_index_arm
+        || write_y_preset || write_y_setting_read || write_y_tap_read);
     wire bus_refused = (write_x_encoder && !allow_x_encoder)
         || (write_y_encoder && !allow_y_encoder);
     wire bus_rejected = waits && ((write_commit && whole) || write_x_law || write_y_law);
@@ -1014,6 +1028,14 @@ module posicast_stage_registers_a173a0e3 (
         x_setting_read <= write_x_setting_read && whole;
     end
 
+    // X_TAP_READ: command; reads the tap at `TAP_ADDRESS` back, which stays until `tap_read_waits`
+    // is low
+    always @(posedge clk) if (rst) begin
+        x_tap_read <= 1'd0;
+    end else begin
+        x_tap_read <= write_x_tap_read && whole;
+    end
+
     // X_EVENTS: sticky; what has happened since the flag was cleared
     reg flag_x_refused;
     reg flag_x_setting_refused;
@@ -1372,6 +1394,14 @@ module posicast_stage_registers_a173a0e3 (
         y_setting_read <= write_y_setting_read && whole;
     end
 
+    // Y_TAP_READ: command; reads the tap at `TAP_ADDRESS` back, which stays until `tap_read_waits`
+    // is low
+    always @(posedge clk) if (rst) begin
+        y_tap_read <= 1'd0;
+    end else begin
+        y_tap_read <= write_y_tap_read && whole;
+    end
+
     // Y_EVENTS: sticky; what has happened since the flag was cleared
     reg flag_y_refused;
     reg flag_y_setting_refused;
@@ -1439,6 +1469,7 @@ module posicast_stage_registers_a173a0e3 (
     reg [31:0] read_group_3;
     reg [31:0] read_group_4;
     reg [31:0] read_group_5;
+    reg [31:0] read_group_6;
     always @(posedge clk) if (rst) begin
         read_group_0 <= 32'd0;
     end else if (avs_read) begin
@@ -1468,8 +1499,6 @@ module posicast_stage_registers_a173a0e3 (
             TIME_STAMP: read_group_0 <= time_stamp;
             TICK_COUNT: read_group_0 <= tick_count;
             SNAPSHOT_TIME_STAMP: read_group_0 <= shadow_time_stamp;
-            SNAPSHOT_TICK_COUNT: read_group_0 <= shadow_tick_count;
-            X_PWM_PERIOD_CLOCKS: read_group_0 <= 32'h000009c4;
             default: read_group_0 <= 32'd0;
         endcase
     end
@@ -1477,6 +1506,8 @@ module posicast_stage_registers_a173a0e3 (
         read_group_1 <= 32'd0;
     end else if (avs_read) begin
         case (avs_address)
+            SNAPSHOT_TICK_COUNT: read_group_1 <= shadow_tick_count;
+            X_PWM_PERIOD_CLOCKS: read_group_1 <= 32'h000009c4;
             X_RING_SAMPLES: read_group_1 <= 32'h00000080;
             X_MOST_TAPS: read_group_1 <= 32'h00000040;
             X_MACHINE_TAPS: read_group_1 <= 32'h00000005;
@@ -1489,11 +1520,6 @@ module posicast_stage_registers_a173a0e3 (
             X_SOFT_LIMIT_PLUS: read_group_1 <= x_soft_limit_plus;
             X_SOFT_LIMIT_MINUS: read_group_1 <= x_soft_limit_minus;
             X_FOLLOWING_ERROR_LIMIT: read_group_1 <= x_following_error_limit;
-            X_WATCHDOG: read_group_1 <= {x_off_causes, x_watchdog_ticks};
-            X_STOP_DECELERATION: read_group_1 <= {1'd0, x_stop_deceleration};
-            X_SETTLE: read_group_1 <= {16'd0, x_settle_ticks};
-            X_INDEX: read_group_1 <= {19'd0, x_velocity_m, 2'd0, x_smoothing, x_index_gate, 2'd0,
-                x_index_presets, x_index_always};
             default: read_group_1 <= 32'd0;
         endcase
     end
@@ -1501,13 +1527,18 @@ module posicast_stage_registers_a173a0e3 (
         read_group_2 <= 32'd0;
     end else if (avs_read) begin
         case (avs_address)
+            X_WATCHDOG: read_group_2 <= {x_off_causes, x_watchdog_ticks};
+            X_STOP_DECELERATION: read_group_2 <= {1'd0, x_stop_deceleration};
+            X_SETTLE: read_group_2 <= {16'd0, x_settle_ticks};
+            X_INDEX: read_group_2 <= {19'd0, x_velocity_m, 2'd0, x_smoothing, x_index_gate, 2'd0,
+                x_index_presets, x_index_always};
             X_ENCODER: read_group_2 <= {31'd0, x_encoder_invert};
             X_PWM_TRIGGER: read_group_2 <= {16'd0, x_trigger_phase};
-            X_STATUS: read_group_2 <= {5'd0, x_setting_read_waits, x_homed, x_trip_causes,
-                x_index_armed, x_table_bank, x_swap_pending, x_level_z, x_level_b, x_level_a,
-                x_level_home, x_level_drive_ready, x_level_limit_minus_n, x_level_limit_plus_n,
-                x_level_emergency_stop_n, x_pwm_running, x_direct_active, x_segments_state,
-                x_can_start, x_state};
+            X_STATUS: read_group_2 <= {4'd0, x_tap_read_waits, x_setting_read_waits, x_homed,
+                x_trip_causes, x_index_armed, x_table_bank, x_swap_pending, x_level_z, x_level_b,
+                x_level_a, x_level_home, x_level_drive_ready, x_level_limit_minus_n,
+                x_level_limit_plus_n, x_level_emergency_stop_n, x_pwm_running, x_direct_active,
+                x_segments_state, x_can_start, x_state};
             X_CAUSES: read_group_2 <= {15'd0, x_causes};
             X_FLAGS: read_group_2 <= {7'd0, x_segments_out_of_range, x_illegal_count,
                 x_pwm_unaligned, x_pwm_saturated, x_limited_low, x_limited_high,
@@ -1523,12 +1554,6 @@ module posicast_stage_registers_a173a0e3 (
                 x_fifo_level};
             X_SELF_TEST: read_group_2 <= {x_self_test_low, x_self_test_high};
             X_POSITION: read_group_2 <= x_user_position;
-            X_COUNT: read_group_2 <= x_count;
-            X_VELOCITY: read_group_2 <= x_velocity;
-            X_ORIGIN: read_group_2 <= x_origin;
-            X_INDEX_COUNT: read_group_2 <= x_index_count;
-            X_COMMAND_POSITION: read_group_2 <= x_command_position;
-            X_SHAPED_POSITION: read_group_2 <= x_shaped_position;
             default: read_group_2 <= 32'd0;
         endcase
     end
@@ -1536,22 +1561,20 @@ module posicast_stage_registers_a173a0e3 (
         read_group_3 <= 32'd0;
     end else if (avs_read) begin
         case (avs_address)
+            X_COUNT: read_group_3 <= x_count;
+            X_VELOCITY: read_group_3 <= x_velocity;
+            X_ORIGIN: read_group_3 <= x_origin;
+            X_INDEX_COUNT: read_group_3 <= x_index_count;
+            X_COMMAND_POSITION: read_group_3 <= x_command_position;
+            X_SHAPED_POSITION: read_group_3 <= x_shaped_position;
             X_SHAPED_VELOCITY: read_group_3 <= x_shaped_velocity;
             X_ERROR: read_group_3 <= x_error;
             X_COMMAND: read_group_3 <= x_command;
             X_DUTY: read_group_3 <= {15'd0, x_duty};
             X_SETTING_LOADED: read_group_3 <= x_setting_loaded;
+            X_TAP_LOADED: read_group_3 <= {7'd0, x_loaded_delay, x_loaded_coefficient};
             X_SNAPSHOT_POSITION: read_group_3 <= shadow_x_user_position;
             X_SNAPSHOT_VELOCITY: read_group_3 <= shadow_x_velocity;
-            Y_PWM_PERIOD_CLOCKS: read_group_3 <= 32'h000009c4;
-            Y_RING_SAMPLES: read_group_3 <= 32'h00000080;
-            Y_MOST_TAPS: read_group_3 <= 32'h00000040;
-            Y_MACHINE_TAPS: read_group_3 <= 32'h00000005;
-            Y_COEFFICIENT_FRACTION: read_group_3 <= 32'h00000010;
-            Y_CONTROL: read_group_3 <= {28'd0, y_self_test, 1'd0, y_direct_enable, y_enable};
-            Y_FIFO_CONTROL: read_group_3 <= {26'd0, y_low_water};
-            Y_TAP_ADDRESS: read_group_3 <= {22'd0, y_tap_bank, 2'd0, y_tap_index};
-            Y_SETTING_ADDRESS: read_group_3 <= {22'd0, y_setting_bank, 4'd0, y_setting_row};
             default: read_group_3 <= 32'd0;
         endcase
     end
@@ -1559,35 +1582,20 @@ module posicast_stage_registers_a173a0e3 (
         read_group_4 <= 32'd0;
     end else if (avs_read) begin
         case (avs_address)
+            Y_PWM_PERIOD_CLOCKS: read_group_4 <= 32'h000009c4;
+            Y_RING_SAMPLES: read_group_4 <= 32'h00000080;
+            Y_MOST_TAPS: read_group_4 <= 32'h00000040;
+            Y_MACHINE_TAPS: read_group_4 <= 32'h00000005;
+            Y_COEFFICIENT_FRACTION: read_group_4 <= 32'h00000010;
+            Y_CONTROL: read_group_4 <= {28'd0, y_self_test, 1'd0, y_direct_enable, y_enable};
+            Y_FIFO_CONTROL: read_group_4 <= {26'd0, y_low_water};
+            Y_TAP_ADDRESS: read_group_4 <= {22'd0, y_tap_bank, 2'd0, y_tap_index};
+            Y_SETTING_ADDRESS: read_group_4 <= {22'd0, y_setting_bank, 4'd0, y_setting_row};
             Y_LAW: read_group_4 <= {22'd0, staged_y_law_bank, 6'd0, staged_y_law};
             Y_SOFT_LIMIT_PLUS: read_group_4 <= y_soft_limit_plus;
             Y_SOFT_LIMIT_MINUS: read_group_4 <= y_soft_limit_minus;
             Y_FOLLOWING_ERROR_LIMIT: read_group_4 <= y_following_error_limit;
             Y_WATCHDOG: read_group_4 <= {y_off_causes, y_watchdog_ticks};
-            Y_STOP_DECELERATION: read_group_4 <= {1'd0, y_stop_deceleration};
-            Y_SETTLE: read_group_4 <= {16'd0, y_settle_ticks};
-            Y_INDEX: read_group_4 <= {19'd0, y_velocity_m, 2'd0, y_smoothing, y_index_gate, 2'd0,
-                y_index_presets, y_index_always};
-            Y_ENCODER: read_group_4 <= {31'd0, y_encoder_invert};
-            Y_PWM_TRIGGER: read_group_4 <= {16'd0, y_trigger_phase};
-            Y_STATUS: read_group_4 <= {5'd0, y_setting_read_waits, y_homed, y_trip_causes,
-                y_index_armed, y_table_bank, y_swap_pending, y_level_z, y_level_b, y_level_a,
-                y_level_home, y_level_drive_ready, y_level_limit_minus_n, y_level_limit_plus_n,
-                y_level_emergency_stop_n, y_pwm_running, y_direct_active, y_segments_state,
-                y_can_start, y_state};
-            Y_CAUSES: read_group_4 <= {15'd0, y_causes};
-            Y_FLAGS: read_group_4 <= {7'd0, y_segments_out_of_range, y_illegal_count,
-                y_pwm_unaligned, y_pwm_saturated, y_limited_low, y_limited_high,
-                y_controller_overrun, y_velocity_missed, y_encoder_disagreement, y_encoder_illegal,
-                y_table_refused, y_shaper_overrun, y_shaper_saturated, y_segment_malformed,
-                y_segment_refused, y_segments_tick_missed, y_segments_overflow,
-                y_segments_underrun};
-            Y_EVENTS: read_group_4 <= {29'd0, flag_y_direct_expired, flag_y_setting_refused,
-                flag_y_refused};
-            Y_SATURATIONS: read_group_4 <= {y_limited_ticks, 1'd0, y_controller_saturated_low, 1'd0,
-                y_controller_saturated_high};
-            Y_FIFO: read_group_4 <= {21'd0, y_feed_held, y_segments_empty, y_fifo_low, 1'd0,
-                y_fifo_level};
             default: read_group_4 <= 32'd0;
         endcase
     end
@@ -1595,26 +1603,58 @@ module posicast_stage_registers_a173a0e3 (
         read_group_5 <= 32'd0;
     end else if (avs_read) begin
         case (avs_address)
+            Y_STOP_DECELERATION: read_group_5 <= {1'd0, y_stop_deceleration};
+            Y_SETTLE: read_group_5 <= {16'd0, y_settle_ticks};
+            Y_INDEX: read_group_5 <= {19'd0, y_velocity_m, 2'd0, y_smoothing, y_index_gate, 2'd0,
+                y_index_presets, y_index_always};
+            Y_ENCODER: read_group_5 <= {31'd0, y_encoder_invert};
+            Y_PWM_TRIGGER: read_group_5 <= {16'd0, y_trigger_phase};
+            Y_STATUS: read_group_5 <= {4'd0, y_tap_read_waits, y_setting_read_waits, y_homed,
+                y_trip_causes, y_index_armed, y_table_bank, y_swap_pending, y_level_z, y_level_b,
+                y_level_a, y_level_home, y_level_drive_ready, y_level_limit_minus_n,
+                y_level_limit_plus_n, y_level_emergency_stop_n, y_pwm_running, y_direct_active,
+                y_segments_state, y_can_start, y_state};
+            Y_CAUSES: read_group_5 <= {15'd0, y_causes};
+            Y_FLAGS: read_group_5 <= {7'd0, y_segments_out_of_range, y_illegal_count,
+                y_pwm_unaligned, y_pwm_saturated, y_limited_low, y_limited_high,
+                y_controller_overrun, y_velocity_missed, y_encoder_disagreement, y_encoder_illegal,
+                y_table_refused, y_shaper_overrun, y_shaper_saturated, y_segment_malformed,
+                y_segment_refused, y_segments_tick_missed, y_segments_overflow,
+                y_segments_underrun};
+            Y_EVENTS: read_group_5 <= {29'd0, flag_y_direct_expired, flag_y_setting_refused,
+                flag_y_refused};
+            Y_SATURATIONS: read_group_5 <= {y_limited_ticks, 1'd0, y_controller_saturated_low, 1'd0,
+                y_controller_saturated_high};
+            Y_FIFO: read_group_5 <= {21'd0, y_feed_held, y_segments_empty, y_fifo_low, 1'd0,
+                y_fifo_level};
             Y_SELF_TEST: read_group_5 <= {y_self_test_low, y_self_test_high};
             Y_POSITION: read_group_5 <= y_user_position;
             Y_COUNT: read_group_5 <= y_count;
-            Y_VELOCITY: read_group_5 <= y_velocity;
-            Y_ORIGIN: read_group_5 <= y_origin;
-            Y_INDEX_COUNT: read_group_5 <= y_index_count;
-            Y_COMMAND_POSITION: read_group_5 <= y_command_position;
-            Y_SHAPED_POSITION: read_group_5 <= y_shaped_position;
-            Y_SHAPED_VELOCITY: read_group_5 <= y_shaped_velocity;
-            Y_ERROR: read_group_5 <= y_error;
-            Y_COMMAND: read_group_5 <= y_command;
-            Y_DUTY: read_group_5 <= {15'd0, y_duty};
-            Y_SETTING_LOADED: read_group_5 <= y_setting_loaded;
-            Y_SNAPSHOT_POSITION: read_group_5 <= shadow_y_user_position;
-            Y_SNAPSHOT_VELOCITY: read_group_5 <= shadow_y_velocity;
             default: read_group_5 <= 32'd0;
         endcase
     end
+    always @(posedge clk) if (rst) begin
+        read_group_6 <= 32'd0;
+    end else if (avs_read) begin
+        case (avs_address)
+            Y_VELOCITY: read_group_6 <= y_velocity;
+            Y_ORIGIN: read_group_6 <= y_origin;
+            Y_INDEX_COUNT: read_group_6 <= y_index_count;
+            Y_COMMAND_POSITION: read_group_6 <= y_command_position;
+            Y_SHAPED_POSITION: read_group_6 <= y_shaped_position;
+            Y_SHAPED_VELOCITY: read_group_6 <= y_shaped_velocity;
+            Y_ERROR: read_group_6 <= y_error;
+            Y_COMMAND: read_group_6 <= y_command;
+            Y_DUTY: read_group_6 <= {15'd0, y_duty};
+            Y_SETTING_LOADED: read_group_6 <= y_setting_loaded;
+            Y_TAP_LOADED: read_group_6 <= {7'd0, y_loaded_delay, y_loaded_coefficient};
+            Y_SNAPSHOT_POSITION: read_group_6 <= shadow_y_user_position;
+            Y_SNAPSHOT_VELOCITY: read_group_6 <= shadow_y_velocity;
+            default: read_group_6 <= 32'd0;
+        endcase
+    end
     assign avs_readdata = read_group_0 | read_group_1 | read_group_2 | read_group_3 | read_group_4
-        | read_group_5;
+        | read_group_5 | read_group_6;
 
     initial begin
         waits = 1'd0;
@@ -1708,6 +1748,7 @@ module posicast_stage_registers_a173a0e3 (
         x_encoder_invert = 1'd0;
         x_trigger_phase = 16'd0;
         x_setting_read = 1'd0;
+        x_tap_read = 1'd0;
         flag_x_refused = 1'd0;
         flag_x_setting_refused = 1'd0;
         flag_x_direct_expired = 1'd0;
@@ -1761,6 +1802,7 @@ module posicast_stage_registers_a173a0e3 (
         y_encoder_invert = 1'd0;
         y_trigger_phase = 16'd0;
         y_setting_read = 1'd0;
+        y_tap_read = 1'd0;
         flag_y_refused = 1'd0;
         flag_y_setting_refused = 1'd0;
         flag_y_direct_expired = 1'd0;
@@ -1776,6 +1818,7 @@ module posicast_stage_registers_a173a0e3 (
         read_group_3 = 32'd0;
         read_group_4 = 32'd0;
         read_group_5 = 32'd0;
+        read_group_6 = 32'd0;
         irq = 1'd0;
     end
 

@@ -1,4 +1,4 @@
-// posicast_shaper_registers_6faf999a
+// posicast_shaper_registers_09158c06
 // Registers of shaper: Avalon-MM agent, 32 bits, word addresses, read latency 1, no waits.
 // Commands take whole words only. Reads have no side effect; what is not mapped reads as 0.
 //
@@ -15,7 +15,7 @@
 
 `default_nettype none
 
-module posicast_shaper_registers_6faf999a (
+module posicast_shaper_registers_09158c06 (
     input  wire               clk,
     input  wire               rst,
     input  wire [7:0]         avs_address,
@@ -29,6 +29,7 @@ module posicast_shaper_registers_6faf999a (
     input  wire               busy,
     input  wire               swap_pending,
     input  wire [1:0]         bank,
+    input  wire               tap_read_waits,
     input  wire               saturated,
     input  wire               overrun,
     input  wire               refused,
@@ -48,7 +49,10 @@ module posicast_shaper_registers_6faf999a (
     output reg  [6:0]         tap_delay,
     output reg                swap,
     output reg  [1:0]         swap_bank,
-    output reg  [1:0]         swap_how
+    output reg  [1:0]         swap_how,
+    output reg                tap_read,
+    input  wire signed [17:0] loaded_coefficient,
+    input  wire [6:0]         loaded_delay
 );
     // Words of the window.
     localparam [7:0] MAGIC                = 8'h00;
@@ -77,6 +81,8 @@ module posicast_shaper_registers_6faf999a (
     localparam [7:0] TAP_ADDRESS          = 8'h28;
     localparam [7:0] TAP                  = 8'h29;
     localparam [7:0] SWAP                 = 8'h2a;
+    localparam [7:0] TAP_READ             = 8'h2b;
+    localparam [7:0] TAP_LOADED           = 8'h2c;
 
     // Bits that a write reaches, and what it puts there.
     wire [31:0] mask = {
@@ -100,9 +106,11 @@ module posicast_shaper_registers_6faf999a (
     wire write_tap_address = avs_write && avs_address == TAP_ADDRESS;
     wire write_tap = avs_write && avs_address == TAP;
     wire write_swap = avs_write && avs_address == SWAP;
+    wire write_tap_read = avs_write && avs_address == TAP_READ;
 
     wire bus_partial = !whole
-        && (write_interrupt_test || write_strobe || write_start || write_tap || write_swap);
+        && (write_interrupt_test || write_strobe || write_start || write_tap || write_swap
+        || write_tap_read);
 
     // CONTROL: configuration; where samples come from
     always @(posedge clk) if (rst) begin
@@ -277,6 +285,14 @@ module posicast_shaper_registers_6faf999a (
         end
     end
 
+    // TAP_READ: command; reads the tap at `TAP_ADDRESS` back, which stays until `tap_read_waits` is
+    // low
+    always @(posedge clk) if (rst) begin
+        tap_read <= 1'd0;
+    end else begin
+        tap_read <= write_tap_read && whole;
+    end
+
     always @(posedge clk) if (rst) begin
         irq <= 1'd0;
     end else begin
@@ -294,7 +310,7 @@ module posicast_shaper_registers_6faf999a (
     end else if (avs_read) begin
         case (avs_address)
             MAGIC: read_group_0 <= 32'h52504853;
-            VERSION: read_group_0 <= 32'h00010000;
+            VERSION: read_group_0 <= 32'h00010001;
             WORD_BITS: read_group_0 <= 32'h00000020;
             CHANNELS: read_group_0 <= 32'h00000003;
             RING_SAMPLES: read_group_0 <= 32'h00000080;
@@ -303,7 +319,7 @@ module posicast_shaper_registers_6faf999a (
             COEFFICIENT_FRACTION: read_group_0 <= 32'h00000010;
             MODULO: read_group_0 <= 32'h00000000;
             CONTROL: read_group_0 <= {31'd0, from_pins};
-            STATUS: read_group_0 <= {28'd0, bank, swap_pending, busy};
+            STATUS: read_group_0 <= {27'd0, tap_read_waits, bank, swap_pending, busy};
             default: read_group_0 <= 32'd0;
         endcase
     end
@@ -324,6 +340,7 @@ module posicast_shaper_registers_6faf999a (
             Y_1: read_group_1 <= y_1;
             Y_2: read_group_1 <= y_2;
             TAP_ADDRESS: read_group_1 <= {22'd0, tap_bank, 2'd0, tap_index};
+            TAP_LOADED: read_group_1 <= {7'd0, loaded_delay, loaded_coefficient};
             default: read_group_1 <= 32'd0;
         endcase
     end
@@ -356,6 +373,7 @@ module posicast_shaper_registers_6faf999a (
         swap = 1'd0;
         swap_bank = 2'd0;
         swap_how = 2'd0;
+        tap_read = 1'd0;
         read_group_0 = 32'd0;
         read_group_1 = 32'd0;
         irq = 1'd0;
