@@ -2,13 +2,13 @@
 
 use posicast_model::rtl::{
     Direction, PortList, PortRow, divider, drive_command, encoder_generator, excitation, linear_scale, pulse_counter,
-    pwm,
+    pwm, segments,
 };
 use std::error::Error;
 use std::path::Path;
 
 /// The datasheets with a derived table, and the lists that they show.
-const DATASHEETS: [(&str, PortList); 7] = [
+const DATASHEETS: [(&str, PortList); 8] = [
     ("divider", divider::PORTS),
     ("drive_command", drive_command::PORTS),
     ("encoder_generator", encoder_generator::PORTS),
@@ -16,6 +16,7 @@ const DATASHEETS: [(&str, PortList); 7] = [
     ("linear_scale", linear_scale::PORTS),
     ("pulse_counter", pulse_counter::PORTS),
     ("pwm", pwm::PORTS),
+    ("segments", segments::PORTS),
 ];
 
 const TITLE: &str = "| port | | width |";
