@@ -1,14 +1,15 @@
 //! The table of ports in a block's datasheet is what its list of ports says. `scripts/regenerate` writes it anew.
 
 use posicast_model::rtl::{
-    Direction, PortList, PortRow, divider, drive_command, encoder_generator, excitation, linear_scale, pulse_counter,
-    pwm, segments,
+    Direction, PortList, PortRow, axis, divider, drive_command, encoder_generator, excitation, linear_scale,
+    pulse_counter, pwm, segments,
 };
 use std::error::Error;
 use std::path::Path;
 
 /// The datasheets with a derived table, and the lists that they show.
-const DATASHEETS: [(&str, PortList); 8] = [
+const DATASHEETS: [(&str, PortList); 9] = [
+    ("axis", axis::PORTS),
     ("divider", divider::PORTS),
     ("drive_command", drive_command::PORTS),
     ("encoder_generator", encoder_generator::PORTS),
