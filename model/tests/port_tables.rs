@@ -1,14 +1,13 @@
 //! The table of ports in a block's datasheet is what its list of ports says. `scripts/regenerate` writes it anew.
 
 use posicast_model::rtl::{
-    Direction, PortList, PortRow, axis, divider, drive_command, encoder_generator, excitation, linear_scale,
-    pulse_counter, pwm, segments,
+    Direction, PortList, PortRow, axis, divider, drive_command, encoder_generator, excitation, linear_scale, pulse_counter, pwm, segments, sliding_mode,
 };
 use std::error::Error;
 use std::path::Path;
 
 /// The datasheets with a derived table, and the lists that they show.
-const DATASHEETS: [(&str, PortList); 9] = [
+const DATASHEETS: [(&str, PortList); 10] = [
     ("axis", axis::PORTS),
     ("divider", divider::PORTS),
     ("drive_command", drive_command::PORTS),
@@ -18,6 +17,7 @@ const DATASHEETS: [(&str, PortList); 9] = [
     ("pulse_counter", pulse_counter::PORTS),
     ("pwm", pwm::PORTS),
     ("segments", segments::PORTS),
+    ("sliding_mode", sliding_mode::PORTS),
 ];
 
 const TITLE: &str = "| port | | width |";
