@@ -1,13 +1,14 @@
 //! The table of ports in a block's datasheet is what its list of ports says. `scripts/regenerate` writes it anew.
 
 use posicast_model::rtl::{
-    Direction, PortList, PortRow, axis, divider, drive_command, encoder_generator, excitation, linear_scale, pulse_counter, pwm, segments, sliding_mode,
+    Direction, PortList, PortRow, axis, divider, drive_command, encoder_generator, excitation, linear_scale,
+    pulse_counter, pwm, segments, sliding_mode, trace,
 };
 use std::error::Error;
 use std::path::Path;
 
 /// The datasheets with a derived table, and the lists that they show.
-const DATASHEETS: [(&str, PortList); 10] = [
+const DATASHEETS: [(&str, PortList); 11] = [
     ("axis", axis::PORTS),
     ("divider", divider::PORTS),
     ("drive_command", drive_command::PORTS),
@@ -18,6 +19,7 @@ const DATASHEETS: [(&str, PortList); 10] = [
     ("pwm", pwm::PORTS),
     ("segments", segments::PORTS),
     ("sliding_mode", sliding_mode::PORTS),
+    ("trace", trace::PORTS),
 ];
 
 const TITLE: &str = "| port | | width |";
