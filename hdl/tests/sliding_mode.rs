@@ -4,7 +4,7 @@ use crate::random;
 
 use posicast_hdl::sliding_mode::{emit, simulate};
 use posicast_model::rtl::ClockedBlock;
-use posicast_model::rtl::sliding_mode::{INPUTS, OUTPUTS, Row, SlidingMode, ports};
+use posicast_model::rtl::sliding_mode::{INPUT_PORTS, OUTPUT_PORTS, Row, SlidingMode, ports};
 use random::Random;
 
 #[test]
@@ -12,8 +12,8 @@ fn lockstep_everything_at_random() {
     let mut model = SlidingMode::new();
     let mut rusthdl = simulate().unwrap();
     let mut random = Random(1);
-    let (mut expected, mut actual) = ([0; OUTPUTS], [0; OUTPUTS]);
-    let mut inputs = [0; INPUTS];
+    let (mut expected, mut actual) = ([0; OUTPUT_PORTS], [0; OUTPUT_PORTS]);
+    let mut inputs = [0; INPUT_PORTS];
     for clock in 0..30_000 {
         let mut word = || (random.word() as u32 as i32 >> random.below(32)) as u32;
         if clock % 40 == 0 {

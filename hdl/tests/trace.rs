@@ -18,7 +18,10 @@ fn lockstep(samples: u32, seed: u64, clocks: u32) -> [u64; 4] {
     for clock in 0..clocks {
         if clock % 400 == 0 {
             settings = Inputs {
-                select: std::array::from_fn(|_| random.below(16) as u8),
+                select_0: random.below(16) as u8,
+                select_1: random.below(16) as u8,
+                select_2: random.below(16) as u8,
+                select_3: random.below(16) as u8,
                 signals: random.below(4) as u8,
                 decimation: random.below(3) as u16,
                 trigger_select: random.below(16) as u8,

@@ -128,10 +128,7 @@ fn unit_a_clear_of_the_integral_drops_the_sum_under_way_and_no_other() {
             let shown = controller.step(&Inputs {
                 start: clock % CONTROL_CLOCKS == 0,
                 law: Law::Pid as u8,
-                motion: Motion {
-                    position_reference: 3 << 8,
-                    ..Motion::default()
-                },
+                position_reference: 3 << 8,
                 setting: settings.word(address),
                 clear_integral: clock == clear + CONTROL_CLOCKS,
                 ..Inputs::default()

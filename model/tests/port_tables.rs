@@ -1,14 +1,15 @@
 //! The table of ports in a block's datasheet is what its list of ports says. `scripts/regenerate` writes it anew.
 
 use posicast_model::rtl::{
-    Direction, PortList, PortRow, divider, drive_command, encoder_generator, excitation, linear_scale, pulse_counter,
-    pwm,
+    Direction, PortList, PortRow, axis, divider, drive_command, encoder_generator, excitation, linear_scale,
+    pulse_counter, pwm, segments, sliding_mode, trace,
 };
 use std::error::Error;
 use std::path::Path;
 
 /// The datasheets with a derived table, and the lists that they show.
-const DATASHEETS: [(&str, PortList); 7] = [
+const DATASHEETS: [(&str, PortList); 11] = [
+    ("axis", axis::PORTS),
     ("divider", divider::PORTS),
     ("drive_command", drive_command::PORTS),
     ("encoder_generator", encoder_generator::PORTS),
@@ -16,6 +17,9 @@ const DATASHEETS: [(&str, PortList); 7] = [
     ("linear_scale", linear_scale::PORTS),
     ("pulse_counter", pulse_counter::PORTS),
     ("pwm", pwm::PORTS),
+    ("segments", segments::PORTS),
+    ("sliding_mode", sliding_mode::PORTS),
+    ("trace", trace::PORTS),
 ];
 
 const TITLE: &str = "| port | | width |";

@@ -230,7 +230,7 @@ proptest! {
                 position: sized(3),
                 velocity: sized(4),
             };
-            let mut inputs = Inputs { start: true, law: laws[tick], modulo, motion, ..Inputs::default() };
+            let mut inputs = Inputs { start: true, law: laws[tick], modulo, ..motion.into() };
             let mut clocks = 0;
             let shown = loop {
                 let address = clocked.outputs().setting_address;

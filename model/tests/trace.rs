@@ -8,7 +8,10 @@ const SETTINGS: Inputs = Inputs {
     rst: false,
     strobe: false,
     signal: [0; SIGNALS],
-    select: [1, 15, 0, 7],
+    select_0: 1,
+    select_1: 15,
+    select_2: 0,
+    select_3: 7,
     signals: 2,
     decimation: 0,
     trigger_select: 4,
@@ -73,7 +76,7 @@ fn the_trace_is_the_rows_around_the_trigger_in_order_of_time() {
     let expected: Vec<Vec<i32>> = (490..554)
         .map(|tick| {
             SETTINGS
-                .select
+                .selects()
                 .map(|select| signals(tick)[usize::from(select)])
                 .to_vec()
         })
@@ -90,8 +93,7 @@ fn every_row_leaves_out_as_many_strobes_as_decimation_says() {
         trigger_mode: 0,
         pre_trigger: 0,
         signals: 0,
-        select: [4; 4],
-        ..SETTINGS
+        ..SETTINGS.with_selects([4; 4])
     };
     arm(&mut trace, &settings);
     (100..5000).for_each(|tick| {
@@ -267,7 +269,7 @@ proptest! {
             let count = row_signals(signals_code);
             for (row, words) in rows(&mut trace, count).into_iter().enumerate() {
                 let tick = (trigger_row - pre + row as i32) * step;
-                for (word, select) in words.into_iter().zip(settings.select) {
+                for (word, select) in words.into_iter().zip(settings.selects()) {
                     prop_assert_eq!(word, signals(tick)[usize::from(select)]);
                 }
             }

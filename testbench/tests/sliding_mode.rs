@@ -2,7 +2,7 @@
 
 use crate::support;
 
-use posicast_model::rtl::sliding_mode::{CONTROL_CLOCKS, Inputs, Motion};
+use posicast_model::rtl::sliding_mode::{CONTROL_CLOCKS, Inputs};
 use posicast_testbench::blocks::{self, SlidingModeBlock, Sources};
 use support::{assert_match, icarus_agrees, million_random_clocks};
 
@@ -39,10 +39,7 @@ fn lockstep_a_command_that_is_cut_until_its_count_stops() {
         let now = Inputs {
             rst: clock < 3,
             start: seen[6] == 0,
-            motion: Motion {
-                velocity_reference: 1 << 20,
-                ..Motion::default()
-            },
+            velocity_reference: 1 << 20,
             setting,
             ..Inputs::default()
         };

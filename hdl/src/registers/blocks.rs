@@ -49,17 +49,19 @@ pub(super) fn register_block(lines: &mut Lines, map: &RegisterMap, register: &Re
                 });
             });
         }
+        Access::Command { strobe } if fields.is_empty() => {
+            title(lines);
+            lines.line(&format!("always @(posedge clk) {strobe} <= !rst && write_{name} && whole;"));
+        }
         Access::Command { strobe } => {
             title(lines);
             clocked(lines, &flops, "else", |lines| {
                 lines.line(&format!("{strobe} <= write_{name} && whole;"));
-                if !fields.is_empty() {
-                    lines.nest(&format!("if (write_{name} && whole) begin"), "end", |lines| {
-                        for field in fields {
-                            lines.line(&format!("{} <= {};", field.name, part("avs_writedata", field)));
-                        }
-                    });
-                }
+                lines.nest(&format!("if (write_{name} && whole) begin"), "end", |lines| {
+                    for field in fields {
+                        lines.line(&format!("{} <= {};", field.name, part("avs_writedata", field)));
+                    }
+                });
             });
         }
         Access::Words { strobe, word, words } => {

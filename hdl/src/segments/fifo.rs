@@ -5,114 +5,44 @@
 
 use crate::prelude::*;
 
-#[derive(LogicBlock)]
-pub(super) struct CommandFifo {
-    pub(super) clk: Signal<In, Clock>,
-    pub(super) rst: Signal<In, Bit>,
-    pub(super) write: Signal<In, Bit>,
-    pub(super) word: Signal<In, Bits<2>>,
-    pub(super) data: Signal<In, Bits<32>>,
-    pub(super) closed: Signal<In, Bit>,
-    pub(super) plays: Signal<In, Bit>,
-    pub(super) flush: Signal<In, Bit>,
-    pub(super) pop: Signal<In, Bit>,
-    pub(super) read_word: Signal<In, Bits<2>>,
-    pub(super) level: Signal<Out, Bits<7>>,
-    pub(super) refused: Signal<Out, Bit>,
-    pub(super) malformed: Signal<Out, Bit>,
-    pub(super) read_data: Signal<Out, Bits<32>>,
+kernel! {
+    pub(super) struct CommandFifo;
 
-    memory: Ram<32, 8>,
-
-    head: Dff<Bits<6>>,
-    level_q: Dff<Bits<7>>,
-    written: Dff<Bits<3>>,
-    too_wide: Dff<Bit>,
-
-    full: Signal<Local, Bit>,
-    waiting: Signal<Local, Bits<6>>,
-    slot: Signal<Local, Bits<6>>,
-    level_step: Signal<Local, Bits<7>>,
-    refuses: Signal<Local, Bit>,
-    takes: Signal<Local, Bit>,
-    commits: Signal<Local, Bit>,
-    narrow: Signal<Local, Bit>,
-    complete: Signal<Local, Bit>,
-    well_formed: Signal<Local, Bit>,
-    upper: Signal<Local, Bits<25>>,
-    ticks: Signal<Local, Bits<24>>,
-    reserved: Signal<Local, Bits<6>>,
-    entered: Signal<Local, Bit>,
-
-    all_but_one: Constant<Bits<6>>,
-    one_less: Constant<Bits<7>>,
-    no_level: Constant<Bits<7>>,
-    one_level: Constant<Bits<7>>,
-    one_slot: Constant<Bits<6>>,
-    first_word: Constant<Bits<2>>,
-    second_word: Constant<Bits<2>>,
-    third_word: Constant<Bits<2>>,
-    last_word: Constant<Bits<2>>,
-    nothing: Constant<Bits<3>>,
-    first: Constant<Bits<3>>,
-    second: Constant<Bits<3>>,
-    third: Constant<Bits<3>>,
-    no_upper: Constant<Bits<25>>,
-    all_upper: Constant<Bits<25>>,
-}
-
-impl Default for CommandFifo {
-    fn default() -> Self {
-        Self {
-            clk: Signal::default(),
-            rst: Signal::default(),
-            write: Signal::default(),
-            word: Signal::default(),
-            data: Signal::default(),
-            closed: Signal::default(),
-            plays: Signal::default(),
-            flush: Signal::default(),
-            pop: Signal::default(),
-            read_word: Signal::default(),
-            level: Signal::default(),
-            refused: Signal::default(),
-            malformed: Signal::default(),
-            read_data: Signal::default(),
-            memory: Ram::default(),
-            head: Dff::default(),
-            level_q: Dff::default(),
-            written: Dff::default(),
-            too_wide: Dff::default(),
-            full: Signal::default(),
-            waiting: Signal::default(),
-            slot: Signal::default(),
-            level_step: Signal::default(),
-            refuses: Signal::default(),
-            takes: Signal::default(),
-            commits: Signal::default(),
-            narrow: Signal::default(),
-            complete: Signal::default(),
-            well_formed: Signal::default(),
-            upper: Signal::default(),
-            ticks: Signal::default(),
-            reserved: Signal::default(),
-            entered: Signal::default(),
-            all_but_one: Constant::new(from_u64(63)),
-            one_less: Constant::new(from_u64(u64::MAX)),
-            no_level: Constant::new(from_u64(0)),
-            one_level: Constant::new(from_u64(1)),
-            one_slot: Constant::new(from_u64(1)),
-            first_word: Constant::new(from_u64(0)),
-            second_word: Constant::new(from_u64(1)),
-            third_word: Constant::new(from_u64(2)),
-            last_word: Constant::new(from_u64(3)),
-            nothing: Constant::new(from_u64(0)),
-            first: Constant::new(from_u64(1)),
-            second: Constant::new(from_u64(2)),
-            third: Constant::new(from_u64(4)),
-            no_upper: Constant::new(from_u64(0)),
-            all_upper: Constant::new(from_u64(u64::MAX)),
-        }
+    inputs {
+        rst: Bit,
+        write: Bit,
+        word: Bits<2>,
+        data: Bits<32>,
+        closed: Bit,
+        plays: Bit,
+        flush: Bit,
+        pop: Bit,
+        read_word: Bits<2>,
+    }
+    outputs { level: Bits<7>, refused: Bit, malformed: Bit, read_data: Bits<32> }
+    parts { memory: Ram<32, 8> }
+    registers { head: Bits<6>, level_q: Bits<7>, written: Bits<3>, too_wide: Bit }
+    wires {
+        full: Bit, waiting: Bits<6>, slot: Bits<6>, level_step: Bits<7>, refuses: Bit, takes: Bit, commits: Bit,
+        narrow: Bit, complete: Bit, well_formed: Bit, upper: Bits<25>, ticks: Bits<24>, reserved: Bits<6>,
+        entered: Bit,
+    }
+    constants {
+        all_but_one: Bits<6> = from_u64(63),
+        one_less: Bits<7> = from_u64(u64::MAX),
+        no_level: Bits<7> = from_u64(0),
+        one_level: Bits<7> = from_u64(1),
+        one_slot: Bits<6> = from_u64(1),
+        first_word: Bits<2> = from_u64(0),
+        second_word: Bits<2> = from_u64(1),
+        third_word: Bits<2> = from_u64(2),
+        last_word: Bits<2> = from_u64(3),
+        nothing: Bits<3> = from_u64(0),
+        first: Bits<3> = from_u64(1),
+        second: Bits<3> = from_u64(2),
+        third: Bits<3> = from_u64(4),
+        no_upper: Bits<25> = from_u64(0),
+        all_upper: Bits<25> = from_u64(u64::MAX),
     }
 }
 
@@ -120,7 +50,6 @@ impl Logic for CommandFifo {
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module command_fifo");
-        dff_setup!(self, clk, head, level_q, written, too_wide);
         self.memory.clk.next = self.clk.val();
 
         comment!("A word, unless closed or full");

@@ -6,7 +6,6 @@ mod fifo;
 mod integrator;
 mod kernel;
 mod passes;
-mod pins;
 
 use crate::emit::{self, EmitError, EmitOptions, Header, Module, Parameter};
 use crate::simulation::{Simulated, SimulationError};

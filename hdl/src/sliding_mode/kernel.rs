@@ -30,38 +30,8 @@ use posicast_model::rtl::sliding_mode::Saturation;
 
 kernel! {
     pub(super) struct SlidingMode;
-    raw ports;
+    ports posicast_model::sliding_mode_ports;
 
-    inputs {
-        rst: Bit,
-        start: Bit,
-        law: Bits<2>,
-        modulo: Bit,
-        position_reference: Signed<32>,
-        velocity_reference: Signed<32>,
-        acceleration_reference: Signed<32>,
-        position: Signed<32>,
-        velocity: Signed<32>,
-        setting: Bits<32>,
-        clear_integral: Bit,
-        clear_flags: Bit,
-    }
-    outputs {
-        setting_address: Bits<4>,
-        error: Signed<32>,
-        sliding: Signed<32>,
-        command: Signed<32>,
-        duty: Signed<18>,
-        valid: Bit,
-        busy: Bit,
-        limited_high: Bit,
-        limited_low: Bit,
-        limited_ticks: Bits<16>,
-        saturated_high: Bits<7>,
-        saturated_low: Bits<7>,
-        overrun: Bit,
-        ends: Bit,
-    }
     parts {
         sequencer: Sequencer,
         tracking: Tracking,

@@ -17,28 +17,8 @@ use posicast_model::rtl::trace::State;
 kernel! {
     /// A address bits, R = A + 1 bits of a number of rows.
     pub(super) struct Trace<const A: usize, const R: usize>;
-    raw ports;
+    ports posicast_model::trace_ports;
 
-    inputs {
-        rst: Bit,
-        strobe: Bit,
-        signal[16]: Signed<32>,
-        select_0: Bits<4>,
-        select_1: Bits<4>,
-        select_2: Bits<4>,
-        select_3: Bits<4>,
-        signals: Bits<2>,
-        decimation: Bits<16>,
-        trigger_select: Bits<4>,
-        trigger_mode: Bits<2>,
-        trigger_level: Signed<32>,
-        trigger_event: Bit,
-        pre_trigger: Bits<11>,
-        arm: Bit,
-        halt: Bit,
-        read_address: Bits<11>,
-    }
-    outputs { data: Bits<32>, state: Bits<2>, rows: Bits<12>, trigger_row: Bits<11>, missed: Bit, done: Bit }
     parts { selector: SignalSelect, watch: Trigger, memory: TraceMemory<A> }
     registers {
         active: Bit, triggered: Bit, halting: Bit, phase: Bits<3>, signals_q: Bits<2>, pre_trigger_q: Bits<A>,

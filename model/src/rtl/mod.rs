@@ -57,23 +57,6 @@ pub struct Port {
     pub signed: bool,
 }
 
-/// Name, width and sign of a port, where a block has no `ports!` yet.
-pub(crate) type PlainRow = (&'static str, u32, bool);
-
-/// Ports from their tables: inputs, then outputs.
-pub(crate) fn ports_of(inputs: &[PlainRow], outputs: &[PlainRow]) -> Vec<Port> {
-    let port = |direction| {
-        move |&(name, width, signed): &PlainRow| Port {
-            name: name.to_owned(),
-            direction,
-            width,
-            signed,
-        }
-    };
-    let inputs = inputs.iter().map(port(Direction::Input));
-    inputs.chain(outputs.iter().map(port(Direction::Output))).collect()
-}
-
 /// Why a block could not be stepped: RustHDL's simulator did not settle, for example.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{0}")]

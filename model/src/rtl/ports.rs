@@ -30,7 +30,7 @@
 //! - the macro `posicast_model::counter_ports!`, of which `kernel!` in `hdl` makes the kernel's fields and raw ports.
 //!
 //! [`clocked_block!`] makes a model with such a list a [`ClockedBlock`](super::ClockedBlock). A Rust type of its own, an enum
-//! for example, stands behind `as` once it is a [`PortValue`].
+//! for example, stands behind `as` once it is a [`PortValue`]; `choices!` makes one of an enum.
 
 use super::{Direction, Port};
 
@@ -136,6 +136,24 @@ macro_rules! whole_numbers {
 }
 
 whole_numbers!(u8, u16, u32, u64, i32, i64);
+
+/// Makes an enum a [`PortValue`]. A pattern that none of its values has is the first one.
+macro_rules! choices {
+    ($choice:ident: $first:ident $(, $other:ident)*) => {
+        impl $crate::rtl::ports::PortValue for $choice {
+            #[inline]
+            fn from_pattern(pattern: u64, width: u32, _: bool) -> Self {
+                let pattern = pattern & (u64::MAX >> (64 - width));
+                [$(Self::$other),*].into_iter().find(|other| *other as u64 == pattern).unwrap_or(Self::$first)
+            }
+
+            #[inline]
+            fn pattern(self) -> u64 {
+                self as u64
+            }
+        }
+    };
+}
 
 /// See the [module](self).
 macro_rules! ports {
@@ -344,4 +362,4 @@ macro_rules! clocked_block {
     };
 }
 
-pub(crate) use {clocked_block, from_raw, one_or_array, optional, ports, raw, row, signed, to_raw, width};
+pub(crate) use {choices, clocked_block, from_raw, one_or_array, optional, ports, raw, row, signed, to_raw, width};

@@ -27,9 +27,8 @@ pub(crate) fn sliding_mode() -> Block {
         let row = Inputs {
             start: clock % TICK_CLOCKS == 200,
             law: LAW as u8,
-            motion: motion(clock / TICK_CLOCKS),
             setting,
-            ..Inputs::default()
+            ..motion(clock / TICK_CLOCKS).into()
         };
         // The memory of the settings answers one clock later.
         setting = settings.word(usize::from(model.step(&row).setting_address));

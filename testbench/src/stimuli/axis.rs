@@ -303,8 +303,7 @@ impl Stimuli for AxisRandom {
         } else if self.one_in(400) {
             self.registers();
         }
-        let seen = <&[u64; OUTPUT_PORTS]>::try_from(seen).ok().and_then(Outputs::from_raw);
-        let seen = seen.unwrap_or_default();
+        let seen = <&[u64; OUTPUT_PORTS]>::try_from(seen).map_or_else(|_| Outputs::default(), Outputs::from_raw);
         self.until_tick = self.until_tick.saturating_sub(1);
         self.inputs.tick = self.until_tick == 0;
         if self.inputs.tick {

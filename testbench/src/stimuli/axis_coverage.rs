@@ -6,11 +6,12 @@ use posicast_model::rtl::axis::{
     ports, switching_off,
 };
 
-/// Inputs and outputs of a clock, typed.
+/// Inputs and outputs of a clock, typed; none where `state` is no state.
 fn typed(inputs: &[u64], outputs: &[u64]) -> Option<(Inputs, Outputs)> {
     let inputs = <&[u64; INPUT_PORTS]>::try_from(inputs).ok()?;
     let outputs = <&[u64; OUTPUT_PORTS]>::try_from(outputs).ok()?;
-    Some((Inputs::from_raw(inputs), Outputs::from_raw(outputs)?))
+    let shown = Outputs::from_raw(outputs);
+    (shown.to_raw() == *outputs).then(|| (Inputs::from_raw(inputs), shown))
 }
 
 /// What happens rarely, beside states, transitions and causes.

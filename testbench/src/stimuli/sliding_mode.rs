@@ -104,7 +104,8 @@ impl SlidingModeRandom {
         self.starts += 1;
         self.inputs.law = self.rng.random_range(0..4);
         self.inputs.modulo = self.one_in(3);
-        self.inputs.motion = self.motion();
+        let motion = self.motion();
+        self.inputs.set_motion(motion);
         if self.one_in(3) {
             self.settings = std::array::from_fn(|address| self.any_setting(address));
             // A limit that some commands pass.
@@ -127,10 +128,7 @@ impl SlidingModeRandom {
         self.settings[LIMIT] = u32::MAX;
         self.inputs = Inputs {
             law: PID,
-            motion: Motion {
-                position_reference: if high { i32::MAX } else { i32::MIN },
-                ..Motion::default()
-            },
+            position_reference: if high { i32::MAX } else { i32::MIN },
             ..Inputs::default()
         };
     }
@@ -156,7 +154,8 @@ impl Stimuli for SlidingModeRandom {
             let clears = if address == Some(LIMIT as u64) { 150 } else { 5000 };
             self.inputs.clear_integral = self.one_in(clears);
             if self.one_in(500) {
-                self.inputs.motion = self.motion();
+                let motion = self.motion();
+                self.inputs.set_motion(motion);
             }
             // Any word, but for the limit: its step works with it for some clocks.
             if self.one_in(300) && address != Some(LIMIT as u64) {

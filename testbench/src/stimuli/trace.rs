@@ -87,7 +87,11 @@ impl TraceRandom {
         let rng = &mut self.rng;
         let any = rng.next_u64();
         match setting {
-            0 => self.now.select = std::array::from_fn(|place| (any >> (4 * place)) as u8 & 15),
+            0 => {
+                self.now = self
+                    .now
+                    .with_selects([0, 4, 8, 12].map(|shift| (any >> shift) as u8 & 15))
+            }
             1 => self.now.signals = any as u8 & 3,
             2 => self.now.decimation = *pick(rng, &[0, 0, 0, 1, 2, any as u16 & 15, any as u16]),
             3 => self.now.trigger_select = any as u8 & 15,

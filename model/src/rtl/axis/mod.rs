@@ -28,20 +28,18 @@
 //! ```
 
 mod cause;
-mod inputs;
 mod monitors;
-mod outputs;
+mod ports;
 mod registers;
 mod timer;
 mod transition;
 
 pub use cause::{ALWAYS_OFF, AT_ONCE, CAUSE_BITS, Cause, DOUBTFUL, HARMLESS, switching_off};
-pub use inputs::{INPUT_PORTS, Inputs};
-pub use outputs::{OUTPUT_PORTS, Outputs};
+pub use ports::{INPUT_PORTS, Inputs, OUTPUT_PORTS, Outputs, PORTS, ports};
 pub use transition::{Condition, Conditions, State, TRANSITIONS, Transition, next};
 
 use self::registers::Registers;
-use super::{ClockedBlock, FOREVER, Moore, Port, StepError, ports_of};
+use super::{FOREVER, Moore, clocked_block};
 
 /// The word that kicks the watchdog: `KICK`, in ASCII.
 pub const KICK: u32 = 0x4b49_434b;
@@ -60,7 +58,6 @@ pub const LEAST_TICK_CLOCKS: u32 = 10;
 /// The supervisor, cycle accurate at its ports.
 #[derive(Debug, Clone)]
 pub struct Axis {
-    ports: Vec<Port>,
     registers: Registers,
 }
 
@@ -74,7 +71,6 @@ impl Axis {
     /// A supervisor after reset.
     pub fn new() -> Self {
         Self {
-            ports: ports(),
             registers: Registers::default(),
         }
     }
@@ -139,29 +135,7 @@ impl Axis {
     }
 }
 
-/// The ports in the order of the Verilog's port list, without `clk`.
-pub fn ports() -> Vec<Port> {
-    ports_of(&inputs::INPUTS, &outputs::OUTPUTS)
-}
-
-impl ClockedBlock for Axis {
-    fn ports(&self) -> &[Port] {
-        &self.ports
-    }
-
-    fn step(&mut self, inputs: &[u64], outputs: &mut [u64]) -> Result<(), StepError> {
-        let (Ok(raw), OUTPUT_PORTS) = (<&[u64; INPUT_PORTS]>::try_from(inputs), outputs.len()) else {
-            return Err(StepError(format!(
-                "{} inputs and {} outputs: the axis has {INPUT_PORTS} and {OUTPUT_PORTS}",
-                inputs.len(),
-                outputs.len()
-            )));
-        };
-        let shown = Axis::step(self, &Inputs::from_raw(raw));
-        outputs.copy_from_slice(&shown.to_raw());
-        Ok(())
-    }
-}
+clocked_block!(Axis, "the axis");
 
 impl Moore for Axis {
     fn show(&self, outputs: &mut [u64]) {

@@ -5,7 +5,7 @@
 //! there [`WATCH_CLOCKS`](super::WATCH_CLOCKS) after the tick, with the state's.
 
 use super::cause::Cause;
-use super::inputs::Inputs;
+use super::ports::Inputs;
 
 /// Clocks after the tick in which a round is over: what it has found is known.
 const FIRST_ROUND: u8 = 5;

@@ -1,8 +1,8 @@
 //! What the supervisor knows, and what a clock makes of it.
 
 use super::cause::{AT_ONCE, Cause, DOUBTFUL, HARMLESS, switching_off};
-use super::inputs::Inputs;
 use super::monitors::Monitors;
+use super::ports::Inputs;
 use super::timer::{Begins, Timer};
 use super::transition::{Condition, Conditions, State, next};
 use super::{CLEAR_CLOCKS, KICK, PRIMING_CLOCKS};

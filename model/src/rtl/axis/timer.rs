@@ -1,6 +1,6 @@
 //! The timer of brake and shaper, in ticks.
 
-use super::inputs::Inputs;
+use super::ports::Inputs;
 
 /// What begins, and how long it lasts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,7 +1,7 @@
 //! The ports of the excitation.
 
 use crate::rtl::ports;
-use crate::rtl::ports::PortValue;
+use crate::rtl::ports::choices;
 
 /// What the signal is.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -20,20 +20,7 @@ pub enum Kind {
 /// Width of `duration_ticks`.
 pub const DURATION_BITS: u32 = 24;
 
-impl PortValue for Kind {
-    fn from_pattern(pattern: u64, _: u32, _: bool) -> Self {
-        match pattern & 3 {
-            1 => Self::Prbs,
-            2 => Self::Chirp,
-            3 => Self::Square,
-            _ => Self::None,
-        }
-    }
-
-    fn pattern(self) -> u64 {
-        self as u64
-    }
-}
+choices!(Kind: None, Prbs, Chirp, Square);
 
 ports! {
     excitation_ports;

@@ -46,10 +46,10 @@ pub use integrator::{
     ACCELERATION_BITS, ACCELERATION_FRACTION, FRACTION_BITS, Integrator, Overflow, POSITION_FRACTION, REACH_COUNTS,
     STAND_COUNTS, VELOCITY_BITS, VELOCITY_FRACTION,
 };
-pub use ports::{INPUT_PORTS, Inputs, OUTPUT_PORTS, Outputs, State, ports};
+pub use ports::{INPUT_PORTS, Inputs, OUTPUT_PORTS, Outputs, PORTS, State, ports};
 
 use self::fifo::{Fifo, Pointers};
-use super::{ClockedBlock, FOREVER, Moore, OutputKind, Port, StepError};
+use super::{FOREVER, Moore, OutputKind, clocked_block};
 
 /// Clocks from a tick until the next one is taken.
 pub const TICK_CLOCKS: u32 = 52;
@@ -102,7 +102,6 @@ struct Registers {
 
 /// The command FIFO, cycle accurate at its ports.
 pub struct Segments {
-    ports: Vec<Port>,
     fifo: Fifo,
     registers: Registers,
 }
@@ -111,7 +110,6 @@ impl Segments {
     /// A FIFO after reset. `seed` fills its memory: nothing may depend on what that holds.
     pub fn new(seed: u64) -> Self {
         Self {
-            ports: ports(),
             fifo: Fifo::new(seed),
             registers: Registers::default(),
         }
@@ -295,24 +293,7 @@ impl Segments {
     }
 }
 
-impl ClockedBlock for Segments {
-    fn ports(&self) -> &[Port] {
-        &self.ports
-    }
-
-    fn step(&mut self, inputs: &[u64], outputs: &mut [u64]) -> Result<(), StepError> {
-        let (Ok(raw), OUTPUT_PORTS) = (<&[u64; INPUT_PORTS]>::try_from(inputs), outputs.len()) else {
-            return Err(StepError(format!(
-                "{} inputs and {} outputs: the command FIFO has {INPUT_PORTS} and {OUTPUT_PORTS}",
-                inputs.len(),
-                outputs.len()
-            )));
-        };
-        let shown = Segments::step(self, &Inputs::from_raw(raw));
-        outputs.copy_from_slice(&shown.to_raw());
-        Ok(())
-    }
-}
+clocked_block!(Segments, "the command FIFO");
 
 /// `low` depends on `low_water`, which may change with it.
 impl Moore for Segments {

@@ -36,11 +36,11 @@ mod datapath;
 mod ports;
 mod settings;
 
-pub use ports::{INPUTS, Inputs, Law, Motion, OUTPUTS, Outputs, Saturation, ports};
+pub use ports::{INPUT_PORTS, Inputs, Law, Motion, OUTPUT_PORTS, Outputs, PORTS, Saturation, ports};
 pub use settings::{Gain, GainError, LIMIT_MAX, MANTISSA_BITS, MANTISSA_MAX, Row, SETTINGS, SHIFT_MAX, Settings};
 
 use self::datapath::{Datapath, LIMIT_STEP, STEPS, address, pass_clocks, step_clocks};
-use super::{ClockedBlock, FOREVER, Moore, Port, StepError};
+use super::{FOREVER, Moore, clocked_block};
 
 /// Clock of a step in which its operand and its setting are taken.
 const READ_PHASE: u8 = 1;
@@ -100,7 +100,7 @@ impl State {
         if self.busy {
             self.overrun |= inputs.start;
             if self.phase == READ_PHASE {
-                self.datapath.multiply(self.step, &inputs.motion, inputs.setting);
+                self.datapath.multiply(self.step, &inputs.motion(), inputs.setting);
             } else if self.phase == clocks - CLOCKS_AFTER {
                 self.datapath.settle(self.step);
             }
@@ -112,7 +112,7 @@ impl State {
             }
         } else if inputs.start {
             let law = Law::from_bits(inputs.law);
-            self.datapath.capture(law, inputs.modulo, &inputs.motion);
+            self.datapath.capture(law, inputs.modulo, &inputs.motion());
             self.busy = true;
         }
         if inputs.clear_integral {
@@ -149,24 +149,15 @@ impl State {
 }
 
 /// The controller, cycle accurate at its ports.
+#[derive(Default)]
 pub struct SlidingMode {
-    ports: Vec<Port>,
     state: State,
-}
-
-impl Default for SlidingMode {
-    fn default() -> Self {
-        Self::new()
-    }
 }
 
 impl SlidingMode {
     /// A controller after reset.
     pub fn new() -> Self {
-        Self {
-            ports: ports(),
-            state: State::default(),
-        }
+        Self::default()
     }
 
     /// What the outputs show now.
@@ -183,24 +174,7 @@ impl SlidingMode {
     }
 }
 
-impl ClockedBlock for SlidingMode {
-    fn ports(&self) -> &[Port] {
-        &self.ports
-    }
-
-    fn step(&mut self, inputs: &[u64], outputs: &mut [u64]) -> Result<(), StepError> {
-        let (Some(typed), OUTPUTS) = (Inputs::from_raw(inputs), outputs.len()) else {
-            return Err(StepError(format!(
-                "{} inputs and {} outputs: the controller has {INPUTS} and {OUTPUTS}",
-                inputs.len(),
-                outputs.len()
-            )));
-        };
-        let shown = SlidingMode::step(self, &typed);
-        outputs.copy_from_slice(&shown.to_raw());
-        Ok(())
-    }
-}
+clocked_block!(SlidingMode, "the controller");
 
 impl Moore for SlidingMode {
     fn show(&self, outputs: &mut [u64]) {
@@ -210,7 +184,7 @@ impl Moore for SlidingMode {
     }
 
     fn quiet_clocks(&self, inputs: &[u64]) -> u64 {
-        Inputs::from_raw(inputs).map_or(0, |inputs| self.state.quiet_clocks(&inputs))
+        <&[u64; INPUT_PORTS]>::try_from(inputs).map_or(0, |raw| self.state.quiet_clocks(&Inputs::from_raw(raw)))
     }
 
     fn pass(&mut self, _inputs: &[u64], clocks: u64) {

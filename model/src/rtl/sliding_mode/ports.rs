@@ -1,6 +1,6 @@
 //! The ports of the controller.
 
-use crate::rtl::{Direction, Port};
+use crate::rtl::ports;
 
 /// Which law computes the command.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -40,27 +40,6 @@ pub struct Motion {
     pub velocity: i32,
 }
 
-/// The input ports. Bits above a port's width are ignored.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct Inputs {
-    /// Synchronous reset.
-    pub rst: bool,
-    /// One clock: a tick. Ignored while a pass runs.
-    pub start: bool,
-    /// The law of this tick, 2 bits; see [`Law::from_bits`].
-    pub law: u8,
-    /// A rotary axis: references wrap modulo 2^32 LSB.
-    pub modulo: bool,
-    /// Reference and measurement.
-    pub motion: Motion,
-    /// The word at the `setting_address` of the clock before.
-    pub setting: u32,
-    /// Clears the integral.
-    pub clear_integral: bool,
-    /// Clears the sticky flags.
-    pub clear_flags: bool,
-}
-
 /// What can saturate: bits of `saturated_high` and `saturated_low`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Saturation {
@@ -87,159 +66,99 @@ impl Saturation {
     }
 }
 
-/// The output ports, all of them registers but `setting_address` and `ends`, which follow from registers.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct Outputs {
-    /// Address of a setting: its word is expected in the next clock.
-    pub setting_address: u8,
-    /// e of the last tick, Q16.16 counts.
-    pub error: i32,
-    /// s of the last tick, Q16.16 counts/T; in PD and PID too.
-    pub sliding: i32,
-    /// Q20.12 command units, within ±limit.
-    pub command: i32,
-    /// 18 bits signed, clocks of the PWM period.
-    pub duty: i32,
-    /// One clock: the outputs are those of the last `start`.
-    pub valid: bool,
-    /// A pass runs.
-    pub busy: bool,
-    /// The last command was cut at +limit.
-    pub limited_high: bool,
-    /// The last command was cut at −limit.
-    pub limited_low: bool,
-    /// For how many ticks in a row commands were cut; stops at 65,535.
-    pub limited_ticks: u16,
-    /// Sticky: what was cut at its upper end, a clock after the word; bits as in [`Saturation`].
-    pub saturated_high: u8,
-    /// Sticky: what was cut at its lower end.
-    pub saturated_low: u8,
-    /// Sticky: a start came while a pass ran, and was ignored.
-    pub overrun: bool,
-    /// One clock: the last of a pass; `valid` comes in the next, in which another pass may start. Law and settings change
-    /// with it.
-    pub ends: bool,
-}
-
-/// Number of input ports.
-pub const INPUTS: usize = 12;
-/// Number of output ports.
-pub const OUTPUTS: usize = 14;
-
-/// The ports of a controller in the order of the Verilog's port list, without `clk`.
-pub fn ports() -> Vec<Port> {
-    use Direction::{Input, Output};
-    let port = |name: &str, direction, width, signed| Port {
-        name: name.to_owned(),
-        direction,
-        width,
-        signed,
-    };
-    vec![
-        port("rst", Input, 1, false),
-        port("start", Input, 1, false),
-        port("law", Input, 2, false),
-        port("modulo", Input, 1, false),
-        port("position_reference", Input, 32, true),
-        port("velocity_reference", Input, 32, true),
-        port("acceleration_reference", Input, 32, true),
-        port("position", Input, 32, true),
-        port("velocity", Input, 32, true),
-        port("setting", Input, 32, false),
-        port("clear_integral", Input, 1, false),
-        port("clear_flags", Input, 1, false),
-        port("setting_address", Output, 4, false),
-        port("error", Output, 32, true),
-        port("sliding", Output, 32, true),
-        port("command", Output, 32, true),
-        port("duty", Output, 18, true),
-        port("valid", Output, 1, false),
-        port("busy", Output, 1, false),
-        port("limited_high", Output, 1, false),
-        port("limited_low", Output, 1, false),
-        port("limited_ticks", Output, 16, false),
-        port("saturated_high", Output, 7, false),
-        port("saturated_low", Output, 7, false),
-        port("overrun", Output, 1, false),
-        port("ends", Output, 1, false),
-    ]
-}
-
 impl Inputs {
-    /// From raw bit patterns, one per input port in port order; `None` unless there are [`INPUTS`].
-    pub fn from_raw(raw: &[u64]) -> Option<Self> {
-        let &[
-            rst,
-            start,
-            law,
-            modulo,
-            position_reference,
-            velocity_reference,
-            acceleration_reference,
-            position,
-            velocity,
-            setting,
-            clear_integral,
-            clear_flags,
-        ] = raw
-        else {
-            return None;
-        };
-        Some(Self {
-            rst: rst & 1 != 0,
-            start: start & 1 != 0,
-            law: law as u8 & 3,
-            modulo: modulo & 1 != 0,
-            motion: Motion {
-                position_reference: position_reference as i32,
-                velocity_reference: velocity_reference as i32,
-                acceleration_reference: acceleration_reference as i32,
-                position: position as i32,
-                velocity: velocity as i32,
-            },
-            setting: setting as u32,
-            clear_integral: clear_integral & 1 != 0,
-            clear_flags: clear_flags & 1 != 0,
-        })
+    /// Reference and measurement.
+    #[inline]
+    pub fn motion(&self) -> Motion {
+        Motion {
+            position_reference: self.position_reference,
+            velocity_reference: self.velocity_reference,
+            acceleration_reference: self.acceleration_reference,
+            position: self.position,
+            velocity: self.velocity,
+        }
     }
 
-    /// As raw bit patterns, one per input port in port order, each cut to its port's width.
-    pub fn to_raw(&self) -> [u64; INPUTS] {
-        [
-            u64::from(self.rst),
-            u64::from(self.start),
-            u64::from(self.law & 3),
-            u64::from(self.modulo),
-            u64::from(self.motion.position_reference as u32),
-            u64::from(self.motion.velocity_reference as u32),
-            u64::from(self.motion.acceleration_reference as u32),
-            u64::from(self.motion.position as u32),
-            u64::from(self.motion.velocity as u32),
-            u64::from(self.setting),
-            u64::from(self.clear_integral),
-            u64::from(self.clear_flags),
-        ]
+    /// Another reference and measurement.
+    pub fn set_motion(&mut self, motion: Motion) {
+        self.position_reference = motion.position_reference;
+        self.velocity_reference = motion.velocity_reference;
+        self.acceleration_reference = motion.acceleration_reference;
+        self.position = motion.position;
+        self.velocity = motion.velocity;
     }
 }
 
-impl Outputs {
-    /// As raw bit patterns, one per output port in port order.
-    pub fn to_raw(&self) -> [u64; OUTPUTS] {
-        [
-            u64::from(self.setting_address),
-            u64::from(self.error as u32),
-            u64::from(self.sliding as u32),
-            u64::from(self.command as u32),
-            u64::from(self.duty as u32 & 0x3_ffff),
-            u64::from(self.valid),
-            u64::from(self.busy),
-            u64::from(self.limited_high),
-            u64::from(self.limited_low),
-            u64::from(self.limited_ticks),
-            u64::from(self.saturated_high),
-            u64::from(self.saturated_low),
-            u64::from(self.overrun),
-            u64::from(self.ends),
-        ]
+/// Reference and measurement; everything else is 0.
+impl From<Motion> for Inputs {
+    fn from(motion: Motion) -> Self {
+        let mut inputs = Self::default();
+        inputs.set_motion(motion);
+        inputs
+    }
+}
+
+ports! {
+    sliding_mode_ports;
+
+    /// The input ports. Bits above a port's width are ignored.
+    inputs Inputs {
+        /// Synchronous reset.
+        rst: Bit as bool;
+        /// One clock: a tick. Ignored while a pass runs.
+        start: Bit as bool;
+        /// 0 sliding mode, 1 PD, 2 PID, 3 as 1; taken at `start`.
+        law: Bits(2) as u8;
+        /// Tied: a rotary axis, whose references wrap.
+        modulo: Bit as bool;
+        /// Reference r of the position; taken at `start`.
+        position_reference: Signed(32) as i32, "counts, Q24.8";
+        /// Reference dr of the velocity.
+        velocity_reference: Signed(32) as i32, "counts per tick, Q16.16";
+        /// Reference ddr of the acceleration.
+        acceleration_reference: Signed(32) as i32, "counts per tick², Q8.24";
+        /// Measured position x, live; taken at `start`.
+        position: Signed(32) as i32, "counts";
+        /// Measured velocity v.
+        velocity: Signed(32) as i32, "counts per tick, Q16.16";
+        /// The word at the `setting_address` of the clock before.
+        setting: Bits(32) as u32;
+        /// Clears Σe; wins over a sum under way, from the first clock of step 14 to the end of step 15.
+        clear_integral: Bit as bool;
+        /// Clears `saturated_high`, `saturated_low`, `overrun`.
+        clear_flags: Bit as bool;
+    }
+
+    /// The output ports, all of them registers but `setting_address` and `ends`, which follow from registers.
+    outputs Outputs {
+        /// Row of the settings: its word is expected in the next clock.
+        setting_address: Bits(4) as u8;
+        /// e: new in the clock after `start`.
+        error: Signed(32) as i32, "counts, Q16.16";
+        /// s, with every law.
+        sliding: Signed(32) as i32, "counts per tick, Q16.16";
+        /// The command, within ±limit.
+        command: Signed(32) as i32, "command units, Q20.12";
+        /// The command as clocks of the PWM period.
+        duty: Signed(18) as i32, "clocks";
+        /// One clock: all outputs are of the last `start`.
+        valid: Bit as bool;
+        /// A pass runs.
+        busy: Bit as bool;
+        /// The last command was cut at +limit.
+        limited_high: Bit as bool;
+        /// The last command was cut at −limit.
+        limited_low: Bit as bool;
+        /// For so many ticks in a row commands were cut; stops at 65,535. For a trip.
+        limited_ticks: Bits(16) as u16, "ticks";
+        /// Sticky: what was cut at its upper end: bit 0 e, 1 de, 2 s, 3 a, 4 Σe, 5 command, 6 duty. A clock after the
+        /// word that was cut, all by `valid`. Set wins over clear.
+        saturated_high: Bits(7) as u8;
+        /// Sticky: what was cut at its lower end; bits as in `saturated_high`.
+        saturated_low: Bits(7) as u8;
+        /// Sticky: a `start` came while `busy`, and was ignored. Set wins over clear.
+        overrun: Bit as bool;
+        /// One clock: the last of a pass. `valid` is high in the next, in which another pass may start.
+        ends: Bit as bool;
     }
 }

@@ -26,7 +26,7 @@
 //! // A ramp on signal 5, taken from 100 rows before it passes 1000.
 //! let mut trace = Trace::new(&TraceConfig::new(256)?);
 //! let settings = Inputs {
-//!     select: [5, 0, 0, 0],
+//!     select_0: 5,
 //!     trigger_select: 5,
 //!     trigger_mode: 1,
 //!     trigger_level: 1000,
@@ -52,11 +52,11 @@ mod config;
 mod ports;
 
 pub use config::{ROW_SIGNALS, SAMPLES, SIGNALS, TraceConfig, TraceConfigError, row_clocks, row_signals};
-pub use ports::{INPUT_PORTS, Inputs, OUTPUT_PORTS, Outputs, State, ports};
+pub use ports::{INPUT_PORTS, Inputs, OUTPUT_PORTS, Outputs, PORTS, State, ports};
 
 use std::collections::VecDeque;
 
-use super::{ClockedBlock, FOREVER, Moore, Port, StepError};
+use super::{FOREVER, Moore, clocked_block};
 
 /// What a row's clock does.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -104,7 +104,6 @@ struct Registers {
 #[derive(Debug, Clone)]
 pub struct Trace {
     config: TraceConfig,
-    ports: Vec<Port>,
     registers: Registers,
     /// Words of whole rows, the oldest first.
     words: VecDeque<u32>,
@@ -117,7 +116,6 @@ impl Trace {
     pub fn new(config: &TraceConfig) -> Self {
         Self {
             config: *config,
-            ports: ports(),
             registers: Registers::default(),
             words: VecDeque::with_capacity(config.samples() as usize + ROW_SIGNALS),
             row: [0; ROW_SIGNALS],
@@ -221,10 +219,10 @@ impl Trace {
         let taken = inputs.signal[usize::from(registers.select & 15)];
         registers.select = match phase {
             Phase::Ready => inputs.trigger_select,
-            Phase::TakeTrigger => inputs.select[0],
-            Phase::Compare => inputs.select[1],
-            Phase::Store(0) => inputs.select[2],
-            Phase::Store(_) => inputs.select[3],
+            Phase::TakeTrigger => inputs.select_0,
+            Phase::Compare => inputs.select_1,
+            Phase::Store(0) => inputs.select_2,
+            Phase::Store(_) => inputs.select_3,
         };
         match phase {
             Phase::Ready if !registers.active => {}
@@ -288,24 +286,7 @@ impl Trace {
     }
 }
 
-impl ClockedBlock for Trace {
-    fn ports(&self) -> &[Port] {
-        &self.ports
-    }
-
-    fn step(&mut self, inputs: &[u64], outputs: &mut [u64]) -> Result<(), StepError> {
-        let (Ok(raw), OUTPUT_PORTS) = (<&[u64; INPUT_PORTS]>::try_from(inputs), outputs.len()) else {
-            return Err(StepError(format!(
-                "{} inputs and {} outputs: the trace memory has {INPUT_PORTS} and {OUTPUT_PORTS}",
-                inputs.len(),
-                outputs.len()
-            )));
-        };
-        let shown = Trace::step(self, &Inputs::from_raw(raw));
-        outputs.copy_from_slice(&shown.to_raw());
-        Ok(())
-    }
-}
+clocked_block!(Trace, "the trace memory");
 
 impl Moore for Trace {
     fn show(&self, outputs: &mut [u64]) {

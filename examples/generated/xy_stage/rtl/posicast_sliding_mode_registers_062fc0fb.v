@@ -1,4 +1,4 @@
-// posicast_sliding_mode_registers_8e3727cf
+// posicast_sliding_mode_registers_062fc0fb
 // Registers of sliding_mode: Avalon-MM agent, 32 bits, word addresses, read latency 1, no waits.
 // Commands take whole words only. Reads have no side effect; what is not mapped reads as 0.
 //
@@ -6,7 +6,7 @@
 
 `default_nettype none
 
-module posicast_sliding_mode_registers_8e3727cf (
+module posicast_sliding_mode_registers_062fc0fb (
     input  wire               clk,
     input  wire               rst,
     input  wire [7:0]         avs_address,
@@ -131,9 +131,7 @@ module posicast_sliding_mode_registers_8e3727cf (
     always @(posedge clk) if (rst) begin
         from_pins <= 1'd0;
     end else begin
-        if (write_control && avs_byteenable[0]) begin
-            from_pins <= avs_writedata[0];
-        end
+        if (write_control && avs_byteenable[0]) from_pins <= avs_writedata[0];
     end
 
     // LAW: staged; what computes the command
@@ -152,9 +150,7 @@ module posicast_sliding_mode_registers_8e3727cf (
             staged_law <= avs_writedata[1:0];
             staged_modulo <= avs_writedata[4];
         end
-        if (write_law && !waits && avs_byteenable[1]) begin
-            staged_bank <= avs_writedata[9:8];
-        end
+        if (write_law && !waits && avs_byteenable[1]) staged_bank <= avs_writedata[9:8];
         if (applies) begin
             law <= staged_law;
             modulo <= staged_modulo;
@@ -223,90 +219,53 @@ module posicast_sliding_mode_registers_8e3727cf (
     always @(posedge clk) if (rst) begin
         host_x_0 <= 32'sd0;
     end else begin
-        if (write_position_reference && avs_byteenable[0]) begin
-            host_x_0[7:0] <= avs_writedata[7:0];
-        end
-        if (write_position_reference && avs_byteenable[1]) begin
-            host_x_0[15:8] <= avs_writedata[15:8];
-        end
-        if (write_position_reference && avs_byteenable[2]) begin
-            host_x_0[23:16] <= avs_writedata[23:16];
-        end
-        if (write_position_reference && avs_byteenable[3]) begin
-            host_x_0[31:24] <= avs_writedata[31:24];
-        end
+        if (write_position_reference && avs_byteenable[0]) host_x_0[7:0] <= avs_writedata[7:0];
+        if (write_position_reference && avs_byteenable[1]) host_x_0[15:8] <= avs_writedata[15:8];
+        if (write_position_reference && avs_byteenable[2]) host_x_0[23:16] <= avs_writedata[23:16];
+        if (write_position_reference && avs_byteenable[3]) host_x_0[31:24] <= avs_writedata[31:24];
     end
 
     // VELOCITY_REFERENCE: configuration; wanted
     always @(posedge clk) if (rst) begin
         host_x_1 <= 32'sd0;
     end else begin
-        if (write_velocity_reference && avs_byteenable[0]) begin
-            host_x_1[7:0] <= avs_writedata[7:0];
-        end
-        if (write_velocity_reference && avs_byteenable[1]) begin
-            host_x_1[15:8] <= avs_writedata[15:8];
-        end
-        if (write_velocity_reference && avs_byteenable[2]) begin
-            host_x_1[23:16] <= avs_writedata[23:16];
-        end
-        if (write_velocity_reference && avs_byteenable[3]) begin
-            host_x_1[31:24] <= avs_writedata[31:24];
-        end
+        if (write_velocity_reference && avs_byteenable[0]) host_x_1[7:0] <= avs_writedata[7:0];
+        if (write_velocity_reference && avs_byteenable[1]) host_x_1[15:8] <= avs_writedata[15:8];
+        if (write_velocity_reference && avs_byteenable[2]) host_x_1[23:16] <= avs_writedata[23:16];
+        if (write_velocity_reference && avs_byteenable[3]) host_x_1[31:24] <= avs_writedata[31:24];
     end
 
     // ACCELERATION_REFERENCE: configuration; wanted
     always @(posedge clk) if (rst) begin
         host_x_2 <= 32'sd0;
     end else begin
-        if (write_acceleration_reference && avs_byteenable[0]) begin
-            host_x_2[7:0] <= avs_writedata[7:0];
-        end
-        if (write_acceleration_reference && avs_byteenable[1]) begin
-            host_x_2[15:8] <= avs_writedata[15:8];
-        end
-        if (write_acceleration_reference && avs_byteenable[2]) begin
-            host_x_2[23:16] <= avs_writedata[23:16];
-        end
-        if (write_acceleration_reference && avs_byteenable[3]) begin
-            host_x_2[31:24] <= avs_writedata[31:24];
-        end
+        if (write_acceleration_reference && avs_byteenable[0]) host_x_2[7:0] <= avs_writedata[7:0];
+        if (write_acceleration_reference
+            && avs_byteenable[1]) host_x_2[15:8] <= avs_writedata[15:8];
+        if (write_acceleration_reference
+            && avs_byteenable[2]) host_x_2[23:16] <= avs_writedata[23:16];
+        if (write_acceleration_reference
+            && avs_byteenable[3]) host_x_2[31:24] <= avs_writedata[31:24];
     end
 
     // POSITION: configuration; measured
     always @(posedge clk) if (rst) begin
         host_x_3 <= 32'sd0;
     end else begin
-        if (write_position && avs_byteenable[0]) begin
-            host_x_3[7:0] <= avs_writedata[7:0];
-        end
-        if (write_position && avs_byteenable[1]) begin
-            host_x_3[15:8] <= avs_writedata[15:8];
-        end
-        if (write_position && avs_byteenable[2]) begin
-            host_x_3[23:16] <= avs_writedata[23:16];
-        end
-        if (write_position && avs_byteenable[3]) begin
-            host_x_3[31:24] <= avs_writedata[31:24];
-        end
+        if (write_position && avs_byteenable[0]) host_x_3[7:0] <= avs_writedata[7:0];
+        if (write_position && avs_byteenable[1]) host_x_3[15:8] <= avs_writedata[15:8];
+        if (write_position && avs_byteenable[2]) host_x_3[23:16] <= avs_writedata[23:16];
+        if (write_position && avs_byteenable[3]) host_x_3[31:24] <= avs_writedata[31:24];
     end
 
     // VELOCITY: configuration; measured
     always @(posedge clk) if (rst) begin
         host_x_4 <= 32'sd0;
     end else begin
-        if (write_velocity && avs_byteenable[0]) begin
-            host_x_4[7:0] <= avs_writedata[7:0];
-        end
-        if (write_velocity && avs_byteenable[1]) begin
-            host_x_4[15:8] <= avs_writedata[15:8];
-        end
-        if (write_velocity && avs_byteenable[2]) begin
-            host_x_4[23:16] <= avs_writedata[23:16];
-        end
-        if (write_velocity && avs_byteenable[3]) begin
-            host_x_4[31:24] <= avs_writedata[31:24];
-        end
+        if (write_velocity && avs_byteenable[0]) host_x_4[7:0] <= avs_writedata[7:0];
+        if (write_velocity && avs_byteenable[1]) host_x_4[15:8] <= avs_writedata[15:8];
+        if (write_velocity && avs_byteenable[2]) host_x_4[23:16] <= avs_writedata[23:16];
+        if (write_velocity && avs_byteenable[3]) host_x_4[31:24] <= avs_writedata[31:24];
     end
 
     // START: command; computes a command
@@ -335,12 +294,8 @@ module posicast_sliding_mode_registers_8e3727cf (
         setting_row <= 4'd0;
         setting_bank <= 2'd0;
     end else begin
-        if (write_setting_address && avs_byteenable[0]) begin
-            setting_row <= avs_writedata[3:0];
-        end
-        if (write_setting_address && avs_byteenable[1]) begin
-            setting_bank <= avs_writedata[9:8];
-        end
+        if (write_setting_address && avs_byteenable[0]) setting_row <= avs_writedata[3:0];
+        if (write_setting_address && avs_byteenable[1]) setting_bank <= avs_writedata[9:8];
     end
 
     // SETTING: command; writes a setting

@@ -1,4 +1,4 @@
-// posicast_stage_registers_50212744
+// posicast_stage_registers_597c08a4
 // Registers of stage: Avalon-MM agent, 32 bits, word addresses, read latency 1, no waits.
 // Commands take whole words only. Reads have no side effect; what is not mapped reads as 0.
 //
@@ -22,7 +22,7 @@
 
 `default_nettype none
 
-module posicast_stage_registers_50212744 (
+module posicast_stage_registers_597c08a4 (
     input  wire               clk,
     input  wire               rst,
     input  wire [9:0]         avs_address,
@@ -746,9 +746,7 @@ module posicast_stage_registers_50212744 (
     always @(posedge clk) if (rst) begin
         x_low_water <= 6'd16;
     end else begin
-        if (write_x_fifo_control && avs_byteenable[0]) begin
-            x_low_water <= avs_writedata[5:0];
-        end
+        if (write_x_fifo_control && avs_byteenable[0]) x_low_water <= avs_writedata[5:0];
     end
 
     // X_HOMED: command; the host says whether the axis is homed: until then there are no soft
@@ -782,12 +780,8 @@ module posicast_stage_registers_50212744 (
         x_tap_index <= 6'd0;
         x_tap_bank <= 2'd0;
     end else begin
-        if (write_x_tap_address && avs_byteenable[0]) begin
-            x_tap_index <= avs_writedata[5:0];
-        end
-        if (write_x_tap_address && avs_byteenable[1]) begin
-            x_tap_bank <= avs_writedata[9:8];
-        end
+        if (write_x_tap_address && avs_byteenable[0]) x_tap_index <= avs_writedata[5:0];
+        if (write_x_tap_address && avs_byteenable[1]) x_tap_bank <= avs_writedata[9:8];
     end
 
     // X_TAP: command; writes a tap
@@ -821,12 +815,8 @@ module posicast_stage_registers_50212744 (
         x_setting_row <= 4'd0;
         x_setting_bank <= 2'd0;
     end else begin
-        if (write_x_setting_address && avs_byteenable[0]) begin
-            x_setting_row <= avs_writedata[3:0];
-        end
-        if (write_x_setting_address && avs_byteenable[1]) begin
-            x_setting_bank <= avs_writedata[9:8];
-        end
+        if (write_x_setting_address && avs_byteenable[0]) x_setting_row <= avs_writedata[3:0];
+        if (write_x_setting_address && avs_byteenable[1]) x_setting_bank <= avs_writedata[9:8];
     end
 
     // X_SETTING: command; writes a setting
@@ -849,12 +839,8 @@ module posicast_stage_registers_50212744 (
         x_law <= 2'd1;
         x_law_bank <= 2'd0;
     end else begin
-        if (write_x_law && !waits && avs_byteenable[0]) begin
-            staged_x_law <= avs_writedata[1:0];
-        end
-        if (write_x_law && !waits && avs_byteenable[1]) begin
-            staged_x_law_bank <= avs_writedata[9:8];
-        end
+        if (write_x_law && !waits && avs_byteenable[0]) staged_x_law <= avs_writedata[1:0];
+        if (write_x_law && !waits && avs_byteenable[1]) staged_x_law_bank <= avs_writedata[9:8];
         if (applies) begin
             x_law <= staged_x_law;
             x_law_bank <= staged_x_law_bank;
@@ -865,54 +851,42 @@ module posicast_stage_registers_50212744 (
     always @(posedge clk) if (rst) begin
         x_soft_limit_plus <= 32'sd25600000;
     end else begin
-        if (write_x_soft_limit_plus && avs_byteenable[0]) begin
-            x_soft_limit_plus[7:0] <= avs_writedata[7:0];
-        end
-        if (write_x_soft_limit_plus && avs_byteenable[1]) begin
-            x_soft_limit_plus[15:8] <= avs_writedata[15:8];
-        end
-        if (write_x_soft_limit_plus && avs_byteenable[2]) begin
-            x_soft_limit_plus[23:16] <= avs_writedata[23:16];
-        end
-        if (write_x_soft_limit_plus && avs_byteenable[3]) begin
-            x_soft_limit_plus[31:24] <= avs_writedata[31:24];
-        end
+        if (write_x_soft_limit_plus
+            && avs_byteenable[0]) x_soft_limit_plus[7:0] <= avs_writedata[7:0];
+        if (write_x_soft_limit_plus
+            && avs_byteenable[1]) x_soft_limit_plus[15:8] <= avs_writedata[15:8];
+        if (write_x_soft_limit_plus
+            && avs_byteenable[2]) x_soft_limit_plus[23:16] <= avs_writedata[23:16];
+        if (write_x_soft_limit_plus
+            && avs_byteenable[3]) x_soft_limit_plus[31:24] <= avs_writedata[31:24];
     end
 
     // X_SOFT_LIMIT_MINUS: configuration; the other end
     always @(posedge clk) if (rst) begin
         x_soft_limit_minus <= -32'sd25600000;
     end else begin
-        if (write_x_soft_limit_minus && avs_byteenable[0]) begin
-            x_soft_limit_minus[7:0] <= avs_writedata[7:0];
-        end
-        if (write_x_soft_limit_minus && avs_byteenable[1]) begin
-            x_soft_limit_minus[15:8] <= avs_writedata[15:8];
-        end
-        if (write_x_soft_limit_minus && avs_byteenable[2]) begin
-            x_soft_limit_minus[23:16] <= avs_writedata[23:16];
-        end
-        if (write_x_soft_limit_minus && avs_byteenable[3]) begin
-            x_soft_limit_minus[31:24] <= avs_writedata[31:24];
-        end
+        if (write_x_soft_limit_minus
+            && avs_byteenable[0]) x_soft_limit_minus[7:0] <= avs_writedata[7:0];
+        if (write_x_soft_limit_minus
+            && avs_byteenable[1]) x_soft_limit_minus[15:8] <= avs_writedata[15:8];
+        if (write_x_soft_limit_minus
+            && avs_byteenable[2]) x_soft_limit_minus[23:16] <= avs_writedata[23:16];
+        if (write_x_soft_limit_minus
+            && avs_byteenable[3]) x_soft_limit_minus[31:24] <= avs_writedata[31:24];
     end
 
     // X_FOLLOWING_ERROR_LIMIT: configuration; largest error
     always @(posedge clk) if (rst) begin
         x_following_error_limit <= 32'd65536000;
     end else begin
-        if (write_x_following_error_limit && avs_byteenable[0]) begin
-            x_following_error_limit[7:0] <= avs_writedata[7:0];
-        end
-        if (write_x_following_error_limit && avs_byteenable[1]) begin
-            x_following_error_limit[15:8] <= avs_writedata[15:8];
-        end
-        if (write_x_following_error_limit && avs_byteenable[2]) begin
-            x_following_error_limit[23:16] <= avs_writedata[23:16];
-        end
-        if (write_x_following_error_limit && avs_byteenable[3]) begin
-            x_following_error_limit[31:24] <= avs_writedata[31:24];
-        end
+        if (write_x_following_error_limit
+            && avs_byteenable[0]) x_following_error_limit[7:0] <= avs_writedata[7:0];
+        if (write_x_following_error_limit
+            && avs_byteenable[1]) x_following_error_limit[15:8] <= avs_writedata[15:8];
+        if (write_x_following_error_limit
+            && avs_byteenable[2]) x_following_error_limit[23:16] <= avs_writedata[23:16];
+        if (write_x_following_error_limit
+            && avs_byteenable[3]) x_following_error_limit[31:24] <= avs_writedata[31:24];
     end
 
     // X_WATCHDOG: configuration; of the host, and what follows from a cause
@@ -920,48 +894,32 @@ module posicast_stage_registers_50212744 (
         x_watchdog_ticks <= 16'd5000;
         x_off_causes <= 16'd36231;
     end else begin
-        if (write_x_watchdog && avs_byteenable[0]) begin
-            x_watchdog_ticks[7:0] <= avs_writedata[7:0];
-        end
-        if (write_x_watchdog && avs_byteenable[1]) begin
-            x_watchdog_ticks[15:8] <= avs_writedata[15:8];
-        end
-        if (write_x_watchdog && avs_byteenable[2]) begin
-            x_off_causes[7:0] <= avs_writedata[23:16];
-        end
-        if (write_x_watchdog && avs_byteenable[3]) begin
-            x_off_causes[15:8] <= avs_writedata[31:24];
-        end
+        if (write_x_watchdog && avs_byteenable[0]) x_watchdog_ticks[7:0] <= avs_writedata[7:0];
+        if (write_x_watchdog && avs_byteenable[1]) x_watchdog_ticks[15:8] <= avs_writedata[15:8];
+        if (write_x_watchdog && avs_byteenable[2]) x_off_causes[7:0] <= avs_writedata[23:16];
+        if (write_x_watchdog && avs_byteenable[3]) x_off_causes[15:8] <= avs_writedata[31:24];
     end
 
     // X_STOP_DECELERATION: configuration; of a quick stop
     always @(posedge clk) if (rst) begin
         x_stop_deceleration <= 31'd1342177;
     end else begin
-        if (write_x_stop_deceleration && avs_byteenable[0]) begin
-            x_stop_deceleration[7:0] <= avs_writedata[7:0];
-        end
-        if (write_x_stop_deceleration && avs_byteenable[1]) begin
-            x_stop_deceleration[15:8] <= avs_writedata[15:8];
-        end
-        if (write_x_stop_deceleration && avs_byteenable[2]) begin
-            x_stop_deceleration[23:16] <= avs_writedata[23:16];
-        end
-        if (write_x_stop_deceleration && avs_byteenable[3]) begin
-            x_stop_deceleration[30:24] <= avs_writedata[30:24];
-        end
+        if (write_x_stop_deceleration
+            && avs_byteenable[0]) x_stop_deceleration[7:0] <= avs_writedata[7:0];
+        if (write_x_stop_deceleration
+            && avs_byteenable[1]) x_stop_deceleration[15:8] <= avs_writedata[15:8];
+        if (write_x_stop_deceleration
+            && avs_byteenable[2]) x_stop_deceleration[23:16] <= avs_writedata[23:16];
+        if (write_x_stop_deceleration
+            && avs_byteenable[3]) x_stop_deceleration[30:24] <= avs_writedata[30:24];
     end
 
     // X_SETTLE: configuration; how long a stop rings: the longest delay of the tables in use
     always @(posedge clk) if (rst) begin
         x_settle_ticks <= 16'd78;
     end else begin
-        if (write_x_settle && avs_byteenable[0]) begin
-            x_settle_ticks[7:0] <= avs_writedata[7:0];
-        end
-        if (write_x_settle && avs_byteenable[1]) begin
-            x_settle_ticks[15:8] <= avs_writedata[15:8];
-        end
+        if (write_x_settle && avs_byteenable[0]) x_settle_ticks[7:0] <= avs_writedata[7:0];
+        if (write_x_settle && avs_byteenable[1]) x_settle_ticks[15:8] <= avs_writedata[15:8];
     end
 
     // X_INDEX: configuration; what an index does, and how the velocity is measured
@@ -1012,12 +970,8 @@ module posicast_stage_registers_50212744 (
     always @(posedge clk) if (rst) begin
         x_trigger_phase <= 16'd0;
     end else begin
-        if (write_x_pwm_trigger && avs_byteenable[0]) begin
-            x_trigger_phase[7:0] <= avs_writedata[7:0];
-        end
-        if (write_x_pwm_trigger && avs_byteenable[1]) begin
-            x_trigger_phase[15:8] <= avs_writedata[15:8];
-        end
+        if (write_x_pwm_trigger && avs_byteenable[0]) x_trigger_phase[7:0] <= avs_writedata[7:0];
+        if (write_x_pwm_trigger && avs_byteenable[1]) x_trigger_phase[15:8] <= avs_writedata[15:8];
     end
 
     // X_SETTING_READ: command; reads the word at `SETTING_ADDRESS` back, which stays until
@@ -1112,9 +1066,7 @@ module posicast_stage_registers_50212744 (
     always @(posedge clk) if (rst) begin
         y_low_water <= 6'd16;
     end else begin
-        if (write_y_fifo_control && avs_byteenable[0]) begin
-            y_low_water <= avs_writedata[5:0];
-        end
+        if (write_y_fifo_control && avs_byteenable[0]) y_low_water <= avs_writedata[5:0];
     end
 
     // Y_HOMED: command; the host says whether the axis is homed: until then there are no soft
@@ -1148,12 +1100,8 @@ module posicast_stage_registers_50212744 (
         y_tap_index <= 6'd0;
         y_tap_bank <= 2'd0;
     end else begin
-        if (write_y_tap_address && avs_byteenable[0]) begin
-            y_tap_index <= avs_writedata[5:0];
-        end
-        if (write_y_tap_address && avs_byteenable[1]) begin
-            y_tap_bank <= avs_writedata[9:8];
-        end
+        if (write_y_tap_address && avs_byteenable[0]) y_tap_index <= avs_writedata[5:0];
+        if (write_y_tap_address && avs_byteenable[1]) y_tap_bank <= avs_writedata[9:8];
     end
 
     // Y_TAP: command; writes a tap
@@ -1187,12 +1135,8 @@ module posicast_stage_registers_50212744 (
         y_setting_row <= 4'd0;
         y_setting_bank <= 2'd0;
     end else begin
-        if (write_y_setting_address && avs_byteenable[0]) begin
-            y_setting_row <= avs_writedata[3:0];
-        end
-        if (write_y_setting_address && avs_byteenable[1]) begin
-            y_setting_bank <= avs_writedata[9:8];
-        end
+        if (write_y_setting_address && avs_byteenable[0]) y_setting_row <= avs_writedata[3:0];
+        if (write_y_setting_address && avs_byteenable[1]) y_setting_bank <= avs_writedata[9:8];
     end
 
     // Y_SETTING: command; writes a setting
@@ -1215,12 +1159,8 @@ module posicast_stage_registers_50212744 (
         y_law <= 2'd1;
         y_law_bank <= 2'd0;
     end else begin
-        if (write_y_law && !waits && avs_byteenable[0]) begin
-            staged_y_law <= avs_writedata[1:0];
-        end
-        if (write_y_law && !waits && avs_byteenable[1]) begin
-            staged_y_law_bank <= avs_writedata[9:8];
-        end
+        if (write_y_law && !waits && avs_byteenable[0]) staged_y_law <= avs_writedata[1:0];
+        if (write_y_law && !waits && avs_byteenable[1]) staged_y_law_bank <= avs_writedata[9:8];
         if (applies) begin
             y_law <= staged_y_law;
             y_law_bank <= staged_y_law_bank;
@@ -1231,54 +1171,42 @@ module posicast_stage_registers_50212744 (
     always @(posedge clk) if (rst) begin
         y_soft_limit_plus <= 32'sd25600000;
     end else begin
-        if (write_y_soft_limit_plus && avs_byteenable[0]) begin
-            y_soft_limit_plus[7:0] <= avs_writedata[7:0];
-        end
-        if (write_y_soft_limit_plus && avs_byteenable[1]) begin
-            y_soft_limit_plus[15:8] <= avs_writedata[15:8];
-        end
-        if (write_y_soft_limit_plus && avs_byteenable[2]) begin
-            y_soft_limit_plus[23:16] <= avs_writedata[23:16];
-        end
-        if (write_y_soft_limit_plus && avs_byteenable[3]) begin
-            y_soft_limit_plus[31:24] <= avs_writedata[31:24];
-        end
+        if (write_y_soft_limit_plus
+            && avs_byteenable[0]) y_soft_limit_plus[7:0] <= avs_writedata[7:0];
+        if (write_y_soft_limit_plus
+            && avs_byteenable[1]) y_soft_limit_plus[15:8] <= avs_writedata[15:8];
+        if (write_y_soft_limit_plus
+            && avs_byteenable[2]) y_soft_limit_plus[23:16] <= avs_writedata[23:16];
+        if (write_y_soft_limit_plus
+            && avs_byteenable[3]) y_soft_limit_plus[31:24] <= avs_writedata[31:24];
     end
 
     // Y_SOFT_LIMIT_MINUS: configuration; the other end
     always @(posedge clk) if (rst) begin
         y_soft_limit_minus <= -32'sd25600000;
     end else begin
-        if (write_y_soft_limit_minus && avs_byteenable[0]) begin
-            y_soft_limit_minus[7:0] <= avs_writedata[7:0];
-        end
-        if (write_y_soft_limit_minus && avs_byteenable[1]) begin
-            y_soft_limit_minus[15:8] <= avs_writedata[15:8];
-        end
-        if (write_y_soft_limit_minus && avs_byteenable[2]) begin
-            y_soft_limit_minus[23:16] <= avs_writedata[23:16];
-        end
-        if (write_y_soft_limit_minus && avs_byteenable[3]) begin
-            y_soft_limit_minus[31:24] <= avs_writedata[31:24];
-        end
+        if (write_y_soft_limit_minus
+            && avs_byteenable[0]) y_soft_limit_minus[7:0] <= avs_writedata[7:0];
+        if (write_y_soft_limit_minus
+            && avs_byteenable[1]) y_soft_limit_minus[15:8] <= avs_writedata[15:8];
+        if (write_y_soft_limit_minus
+            && avs_byteenable[2]) y_soft_limit_minus[23:16] <= avs_writedata[23:16];
+        if (write_y_soft_limit_minus
+            && avs_byteenable[3]) y_soft_limit_minus[31:24] <= avs_writedata[31:24];
     end
 
     // Y_FOLLOWING_ERROR_LIMIT: configuration; largest error
     always @(posedge clk) if (rst) begin
         y_following_error_limit <= 32'd65536000;
     end else begin
-        if (write_y_following_error_limit && avs_byteenable[0]) begin
-            y_following_error_limit[7:0] <= avs_writedata[7:0];
-        end
-        if (write_y_following_error_limit && avs_byteenable[1]) begin
-            y_following_error_limit[15:8] <= avs_writedata[15:8];
-        end
-        if (write_y_following_error_limit && avs_byteenable[2]) begin
-            y_following_error_limit[23:16] <= avs_writedata[23:16];
-        end
-        if (write_y_following_error_limit && avs_byteenable[3]) begin
-            y_following_error_limit[31:24] <= avs_writedata[31:24];
-        end
+        if (write_y_following_error_limit
+            && avs_byteenable[0]) y_following_error_limit[7:0] <= avs_writedata[7:0];
+        if (write_y_following_error_limit
+            && avs_byteenable[1]) y_following_error_limit[15:8] <= avs_writedata[15:8];
+        if (write_y_following_error_limit
+            && avs_byteenable[2]) y_following_error_limit[23:16] <= avs_writedata[23:16];
+        if (write_y_following_error_limit
+            && avs_byteenable[3]) y_following_error_limit[31:24] <= avs_writedata[31:24];
     end
 
     // Y_WATCHDOG: configuration; of the host, and what follows from a cause
@@ -1286,48 +1214,32 @@ module posicast_stage_registers_50212744 (
         y_watchdog_ticks <= 16'd5000;
         y_off_causes <= 16'd36231;
     end else begin
-        if (write_y_watchdog && avs_byteenable[0]) begin
-            y_watchdog_ticks[7:0] <= avs_writedata[7:0];
-        end
-        if (write_y_watchdog && avs_byteenable[1]) begin
-            y_watchdog_ticks[15:8] <= avs_writedata[15:8];
-        end
-        if (write_y_watchdog && avs_byteenable[2]) begin
-            y_off_causes[7:0] <= avs_writedata[23:16];
-        end
-        if (write_y_watchdog && avs_byteenable[3]) begin
-            y_off_causes[15:8] <= avs_writedata[31:24];
-        end
+        if (write_y_watchdog && avs_byteenable[0]) y_watchdog_ticks[7:0] <= avs_writedata[7:0];
+        if (write_y_watchdog && avs_byteenable[1]) y_watchdog_ticks[15:8] <= avs_writedata[15:8];
+        if (write_y_watchdog && avs_byteenable[2]) y_off_causes[7:0] <= avs_writedata[23:16];
+        if (write_y_watchdog && avs_byteenable[3]) y_off_causes[15:8] <= avs_writedata[31:24];
     end
 
     // Y_STOP_DECELERATION: configuration; of a quick stop
     always @(posedge clk) if (rst) begin
         y_stop_deceleration <= 31'd1342177;
     end else begin
-        if (write_y_stop_deceleration && avs_byteenable[0]) begin
-            y_stop_deceleration[7:0] <= avs_writedata[7:0];
-        end
-        if (write_y_stop_deceleration && avs_byteenable[1]) begin
-            y_stop_deceleration[15:8] <= avs_writedata[15:8];
-        end
-        if (write_y_stop_deceleration && avs_byteenable[2]) begin
-            y_stop_deceleration[23:16] <= avs_writedata[23:16];
-        end
-        if (write_y_stop_deceleration && avs_byteenable[3]) begin
-            y_stop_deceleration[30:24] <= avs_writedata[30:24];
-        end
+        if (write_y_stop_deceleration
+            && avs_byteenable[0]) y_stop_deceleration[7:0] <= avs_writedata[7:0];
+        if (write_y_stop_deceleration
+            && avs_byteenable[1]) y_stop_deceleration[15:8] <= avs_writedata[15:8];
+        if (write_y_stop_deceleration
+            && avs_byteenable[2]) y_stop_deceleration[23:16] <= avs_writedata[23:16];
+        if (write_y_stop_deceleration
+            && avs_byteenable[3]) y_stop_deceleration[30:24] <= avs_writedata[30:24];
     end
 
     // Y_SETTLE: configuration; how long a stop rings: the longest delay of the tables in use
     always @(posedge clk) if (rst) begin
         y_settle_ticks <= 16'd109;
     end else begin
-        if (write_y_settle && avs_byteenable[0]) begin
-            y_settle_ticks[7:0] <= avs_writedata[7:0];
-        end
-        if (write_y_settle && avs_byteenable[1]) begin
-            y_settle_ticks[15:8] <= avs_writedata[15:8];
-        end
+        if (write_y_settle && avs_byteenable[0]) y_settle_ticks[7:0] <= avs_writedata[7:0];
+        if (write_y_settle && avs_byteenable[1]) y_settle_ticks[15:8] <= avs_writedata[15:8];
     end
 
     // Y_INDEX: configuration; what an index does, and how the velocity is measured
@@ -1378,12 +1290,8 @@ module posicast_stage_registers_50212744 (
     always @(posedge clk) if (rst) begin
         y_trigger_phase <= 16'd0;
     end else begin
-        if (write_y_pwm_trigger && avs_byteenable[0]) begin
-            y_trigger_phase[7:0] <= avs_writedata[7:0];
-        end
-        if (write_y_pwm_trigger && avs_byteenable[1]) begin
-            y_trigger_phase[15:8] <= avs_writedata[15:8];
-        end
+        if (write_y_pwm_trigger && avs_byteenable[0]) y_trigger_phase[7:0] <= avs_writedata[7:0];
+        if (write_y_pwm_trigger && avs_byteenable[1]) y_trigger_phase[15:8] <= avs_writedata[15:8];
     end
 
     // Y_SETTING_READ: command; reads the word at `SETTING_ADDRESS` back, which stays until

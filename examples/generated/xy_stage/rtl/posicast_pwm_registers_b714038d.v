@@ -1,4 +1,4 @@
-// posicast_pwm_registers_2abb49bd
+// posicast_pwm_registers_b714038d
 // Registers of pwm: Avalon-MM agent, 32 bits, word addresses, read latency 1, no waits.
 // Commands take whole words only. Reads have no side effect; what is not mapped reads as 0.
 //
@@ -10,7 +10,7 @@
 
 `default_nettype none
 
-module posicast_pwm_registers_2abb49bd (
+module posicast_pwm_registers_b714038d (
     input  wire               clk,
     input  wire               rst,
     input  wire [7:0]         avs_address,
@@ -112,9 +112,7 @@ module posicast_pwm_registers_2abb49bd (
             from_pins <= avs_writedata[1];
             update_at_peak <= avs_writedata[2];
         end
-        if (write_control && avs_byteenable[1]) begin
-            mode <= avs_writedata[9:8];
-        end
+        if (write_control && avs_byteenable[1]) mode <= avs_writedata[9:8];
     end
 
     // FLAGS: sticky; what has happened since the flag was cleared
@@ -207,27 +205,17 @@ module posicast_pwm_registers_2abb49bd (
     always @(posedge clk) if (rst) begin
         host_x_0 <= 17'sd0;
     end else begin
-        if (write_duty && avs_byteenable[0]) begin
-            host_x_0[7:0] <= avs_writedata[7:0];
-        end
-        if (write_duty && avs_byteenable[1]) begin
-            host_x_0[15:8] <= avs_writedata[15:8];
-        end
-        if (write_duty && avs_byteenable[2]) begin
-            host_x_0[16] <= avs_writedata[16];
-        end
+        if (write_duty && avs_byteenable[0]) host_x_0[7:0] <= avs_writedata[7:0];
+        if (write_duty && avs_byteenable[1]) host_x_0[15:8] <= avs_writedata[15:8];
+        if (write_duty && avs_byteenable[2]) host_x_0[16] <= avs_writedata[16];
     end
 
     // MAX_DUTY: configuration; largest duty of either sign
     always @(posedge clk) if (rst) begin
         max_duty <= 16'd2500;
     end else begin
-        if (write_max_duty && avs_byteenable[0]) begin
-            max_duty[7:0] <= avs_writedata[7:0];
-        end
-        if (write_max_duty && avs_byteenable[1]) begin
-            max_duty[15:8] <= avs_writedata[15:8];
-        end
+        if (write_max_duty && avs_byteenable[0]) max_duty[7:0] <= avs_writedata[7:0];
+        if (write_max_duty && avs_byteenable[1]) max_duty[15:8] <= avs_writedata[15:8];
     end
 
     // PHASE: configuration; places in the period, from the valley
@@ -235,18 +223,10 @@ module posicast_pwm_registers_2abb49bd (
         phase <= 16'd0;
         trigger_phase <= 16'd0;
     end else begin
-        if (write_phase && avs_byteenable[0]) begin
-            phase[7:0] <= avs_writedata[7:0];
-        end
-        if (write_phase && avs_byteenable[1]) begin
-            phase[15:8] <= avs_writedata[15:8];
-        end
-        if (write_phase && avs_byteenable[2]) begin
-            trigger_phase[7:0] <= avs_writedata[23:16];
-        end
-        if (write_phase && avs_byteenable[3]) begin
-            trigger_phase[15:8] <= avs_writedata[31:24];
-        end
+        if (write_phase && avs_byteenable[0]) phase[7:0] <= avs_writedata[7:0];
+        if (write_phase && avs_byteenable[1]) phase[15:8] <= avs_writedata[15:8];
+        if (write_phase && avs_byteenable[2]) trigger_phase[7:0] <= avs_writedata[23:16];
+        if (write_phase && avs_byteenable[3]) trigger_phase[15:8] <= avs_writedata[31:24];
     end
 
     // SUPERVISION: configuration; how long what may last
@@ -254,12 +234,8 @@ module posicast_pwm_registers_2abb49bd (
         watchdog_periods <= 8'd0;
         filter_clocks <= 8'd0;
     end else begin
-        if (write_supervision && avs_byteenable[0]) begin
-            watchdog_periods <= avs_writedata[7:0];
-        end
-        if (write_supervision && avs_byteenable[1]) begin
-            filter_clocks <= avs_writedata[15:8];
-        end
+        if (write_supervision && avs_byteenable[0]) watchdog_periods <= avs_writedata[7:0];
+        if (write_supervision && avs_byteenable[1]) filter_clocks <= avs_writedata[15:8];
     end
 
     // FEED: command; the controller lives

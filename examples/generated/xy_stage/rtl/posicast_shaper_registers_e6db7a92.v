@@ -1,4 +1,4 @@
-// posicast_shaper_registers_09158c06
+// posicast_shaper_registers_e6db7a92
 // Registers of shaper: Avalon-MM agent, 32 bits, word addresses, read latency 1, no waits.
 // Commands take whole words only. Reads have no side effect; what is not mapped reads as 0.
 //
@@ -15,7 +15,7 @@
 
 `default_nettype none
 
-module posicast_shaper_registers_09158c06 (
+module posicast_shaper_registers_e6db7a92 (
     input  wire               clk,
     input  wire               rst,
     input  wire [7:0]         avs_address,
@@ -116,9 +116,7 @@ module posicast_shaper_registers_09158c06 (
     always @(posedge clk) if (rst) begin
         from_pins <= 1'd0;
     end else begin
-        if (write_control && avs_byteenable[0]) begin
-            from_pins <= avs_writedata[0];
-        end
+        if (write_control && avs_byteenable[0]) from_pins <= avs_writedata[0];
     end
 
     // FLAGS: sticky; what has happened since the flag was cleared
@@ -182,54 +180,30 @@ module posicast_shaper_registers_09158c06 (
     always @(posedge clk) if (rst) begin
         host_x_0 <= 32'sd0;
     end else begin
-        if (write_x_0 && avs_byteenable[0]) begin
-            host_x_0[7:0] <= avs_writedata[7:0];
-        end
-        if (write_x_0 && avs_byteenable[1]) begin
-            host_x_0[15:8] <= avs_writedata[15:8];
-        end
-        if (write_x_0 && avs_byteenable[2]) begin
-            host_x_0[23:16] <= avs_writedata[23:16];
-        end
-        if (write_x_0 && avs_byteenable[3]) begin
-            host_x_0[31:24] <= avs_writedata[31:24];
-        end
+        if (write_x_0 && avs_byteenable[0]) host_x_0[7:0] <= avs_writedata[7:0];
+        if (write_x_0 && avs_byteenable[1]) host_x_0[15:8] <= avs_writedata[15:8];
+        if (write_x_0 && avs_byteenable[2]) host_x_0[23:16] <= avs_writedata[23:16];
+        if (write_x_0 && avs_byteenable[3]) host_x_0[31:24] <= avs_writedata[31:24];
     end
 
     // X_1: configuration; the next sample
     always @(posedge clk) if (rst) begin
         host_x_1 <= 32'sd0;
     end else begin
-        if (write_x_1 && avs_byteenable[0]) begin
-            host_x_1[7:0] <= avs_writedata[7:0];
-        end
-        if (write_x_1 && avs_byteenable[1]) begin
-            host_x_1[15:8] <= avs_writedata[15:8];
-        end
-        if (write_x_1 && avs_byteenable[2]) begin
-            host_x_1[23:16] <= avs_writedata[23:16];
-        end
-        if (write_x_1 && avs_byteenable[3]) begin
-            host_x_1[31:24] <= avs_writedata[31:24];
-        end
+        if (write_x_1 && avs_byteenable[0]) host_x_1[7:0] <= avs_writedata[7:0];
+        if (write_x_1 && avs_byteenable[1]) host_x_1[15:8] <= avs_writedata[15:8];
+        if (write_x_1 && avs_byteenable[2]) host_x_1[23:16] <= avs_writedata[23:16];
+        if (write_x_1 && avs_byteenable[3]) host_x_1[31:24] <= avs_writedata[31:24];
     end
 
     // X_2: configuration; the next sample
     always @(posedge clk) if (rst) begin
         host_x_2 <= 32'sd0;
     end else begin
-        if (write_x_2 && avs_byteenable[0]) begin
-            host_x_2[7:0] <= avs_writedata[7:0];
-        end
-        if (write_x_2 && avs_byteenable[1]) begin
-            host_x_2[15:8] <= avs_writedata[15:8];
-        end
-        if (write_x_2 && avs_byteenable[2]) begin
-            host_x_2[23:16] <= avs_writedata[23:16];
-        end
-        if (write_x_2 && avs_byteenable[3]) begin
-            host_x_2[31:24] <= avs_writedata[31:24];
-        end
+        if (write_x_2 && avs_byteenable[0]) host_x_2[7:0] <= avs_writedata[7:0];
+        if (write_x_2 && avs_byteenable[1]) host_x_2[15:8] <= avs_writedata[15:8];
+        if (write_x_2 && avs_byteenable[2]) host_x_2[23:16] <= avs_writedata[23:16];
+        if (write_x_2 && avs_byteenable[3]) host_x_2[31:24] <= avs_writedata[31:24];
     end
 
     // STROBE: command; takes the sample
@@ -251,12 +225,8 @@ module posicast_shaper_registers_09158c06 (
         tap_index <= 6'd0;
         tap_bank <= 2'd0;
     end else begin
-        if (write_tap_address && avs_byteenable[0]) begin
-            tap_index <= avs_writedata[5:0];
-        end
-        if (write_tap_address && avs_byteenable[1]) begin
-            tap_bank <= avs_writedata[9:8];
-        end
+        if (write_tap_address && avs_byteenable[0]) tap_index <= avs_writedata[5:0];
+        if (write_tap_address && avs_byteenable[1]) tap_bank <= avs_writedata[9:8];
     end
 
     // TAP: command; writes a tap

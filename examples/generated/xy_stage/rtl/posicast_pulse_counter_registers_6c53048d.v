@@ -1,4 +1,4 @@
-// posicast_pulse_counter_registers_14658e79
+// posicast_pulse_counter_registers_6c53048d
 // Registers of pulse_counter: Avalon-MM agent, 32 bits, word addresses, read latency 1, no waits.
 // Commands take whole words only. Reads have no side effect; what is not mapped reads as 0.
 //
@@ -9,7 +9,7 @@
 
 `default_nettype none
 
-module posicast_pulse_counter_registers_14658e79 (
+module posicast_pulse_counter_registers_6c53048d (
     input  wire               clk,
     input  wire               rst,
     input  wire [7:0]         avs_address,
@@ -119,12 +119,8 @@ module posicast_pulse_counter_registers_14658e79 (
         invert <= 1'd0;
         differential <= 1'd0;
     end else begin
-        if (write_lines && avs_byteenable[0]) begin
-            filter_clocks <= avs_writedata[5:0];
-        end
-        if (write_lines && avs_byteenable[1]) begin
-            mode <= avs_writedata[10:8];
-        end
+        if (write_lines && avs_byteenable[0]) filter_clocks <= avs_writedata[5:0];
+        if (write_lines && avs_byteenable[1]) mode <= avs_writedata[10:8];
         if (write_lines && avs_byteenable[2]) begin
             swap <= avs_writedata[16];
             invert <= avs_writedata[17];
@@ -155,27 +151,17 @@ module posicast_pulse_counter_registers_14658e79 (
             smoothing <= avs_writedata[1:0];
             velocity_m <= avs_writedata[4];
         end
-        if (write_velocity_filter && avs_byteenable[1]) begin
-            timeout <= avs_writedata[15:8];
-        end
+        if (write_velocity_filter && avs_byteenable[1]) timeout <= avs_writedata[15:8];
     end
 
     // PRESET_VALUE: configuration; what a preset makes of the position
     always @(posedge clk) if (rst) begin
         preset_value <= 32'sd0;
     end else begin
-        if (write_preset_value && avs_byteenable[0]) begin
-            preset_value[7:0] <= avs_writedata[7:0];
-        end
-        if (write_preset_value && avs_byteenable[1]) begin
-            preset_value[15:8] <= avs_writedata[15:8];
-        end
-        if (write_preset_value && avs_byteenable[2]) begin
-            preset_value[23:16] <= avs_writedata[23:16];
-        end
-        if (write_preset_value && avs_byteenable[3]) begin
-            preset_value[31:24] <= avs_writedata[31:24];
-        end
+        if (write_preset_value && avs_byteenable[0]) preset_value[7:0] <= avs_writedata[7:0];
+        if (write_preset_value && avs_byteenable[1]) preset_value[15:8] <= avs_writedata[15:8];
+        if (write_preset_value && avs_byteenable[2]) preset_value[23:16] <= avs_writedata[23:16];
+        if (write_preset_value && avs_byteenable[3]) preset_value[31:24] <= avs_writedata[31:24];
     end
 
     // INTERRUPT_STATE: interrupt state; what has happened; write one to clear
