@@ -320,8 +320,8 @@ fn lockstep_catches_a_read_back_that_goes_wrong() {
         "read_address = write_address ^ 7'd64;",
     );
     caught_in(standard(), "(index < host_taps)", "(index <= host_taps)");
-    caught_in(motion(), "!served) & !busy", "!served)");
-    caught_in(motion(), "& !busy) & !tap_write", "& !busy)");
+    caught_in(motion(), "& !busy", "");
+    caught_in(motion(), "& !tap_write", "");
 }
 
 /// Faults that ten million random clocks did not show, each with the corner that shows it.
