@@ -51,7 +51,9 @@ pub(super) fn register_block(lines: &mut Lines, map: &RegisterMap, register: &Re
         }
         Access::Command { strobe } if fields.is_empty() => {
             title(lines);
-            lines.line(&format!("always @(posedge clk) {strobe} <= !rst && write_{name} && whole;"));
+            lines.line(&format!(
+                "always @(posedge clk) {strobe} <= !rst && write_{name} && whole;"
+            ));
         }
         Access::Command { strobe } => {
             title(lines);

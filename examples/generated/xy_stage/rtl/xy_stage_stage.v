@@ -346,7 +346,7 @@ module xy_stage_stage (
     wire               y_faulted;
     wire               y_index_seen;
 
-    posicast_stage_registers_597c08a4 u_registers (
+    posicast_stage_registers_8e3b32f0 u_registers (
         .clk                         (clk),
         .rst                         (rst),
         .avs_address                 (avs_address),

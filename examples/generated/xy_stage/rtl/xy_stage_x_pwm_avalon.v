@@ -64,7 +64,7 @@ module xy_stage_x_pwm_avalon (
     wire [9:0]         minimum_pulse_used;
     wire [3:0]         gates;
 
-    posicast_pwm_registers_b714038d u_registers (
+    posicast_pwm_registers_a6796a44 u_registers (
         .clk                (clk),
         .rst                (rst),
         .avs_address        (avs_address),

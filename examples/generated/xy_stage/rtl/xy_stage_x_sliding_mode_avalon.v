@@ -66,7 +66,7 @@ module xy_stage_x_sliding_mode_avalon (
     wire               overrun;
     wire               ends;
 
-    posicast_sliding_mode_registers_062fc0fb u_registers (
+    posicast_sliding_mode_registers_b9ede3db u_registers (
         .clk                (clk),
         .rst                (rst),
         .avs_address        (avs_address),

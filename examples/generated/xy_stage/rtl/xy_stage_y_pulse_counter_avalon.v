@@ -70,7 +70,7 @@ module xy_stage_y_pulse_counter_avalon (
     wire               saturated;
     wire               divider_overrun;
 
-    posicast_pulse_counter_registers_6c53048d u_registers (
+    posicast_pulse_counter_registers_d25a3e7e u_registers (
         .clk              (clk),
         .rst              (rst),
         .avs_address      (avs_address),

@@ -1,4 +1,4 @@
-// posicast_pulse_counter_registers_6c53048d
+// posicast_pulse_counter_registers_d25a3e7e
 // Registers of pulse_counter: Avalon-MM agent, 32 bits, word addresses, read latency 1, no waits.
 // Commands take whole words only. Reads have no side effect; what is not mapped reads as 0.
 //
@@ -9,7 +9,7 @@
 
 `default_nettype none
 
-module posicast_pulse_counter_registers_6c53048d (
+module posicast_pulse_counter_registers_d25a3e7e (
     input  wire               clk,
     input  wire               rst,
     input  wire [7:0]         avs_address,
@@ -214,25 +214,13 @@ module posicast_pulse_counter_registers_6c53048d (
     end
 
     // PRESET: command; the position becomes `PRESET_VALUE`; 0 clears it
-    always @(posedge clk) if (rst) begin
-        preset <= 1'd0;
-    end else begin
-        preset <= write_preset && whole;
-    end
+    always @(posedge clk) preset <= !rst && write_preset && whole;
 
     // INDEX_ARM: command; latches the next index
-    always @(posedge clk) if (rst) begin
-        index_arm <= 1'd0;
-    end else begin
-        index_arm <= write_index_arm && whole;
-    end
+    always @(posedge clk) index_arm <= !rst && write_index_arm && whole;
 
     // CLEAR_FLAGS: command; clears the counter's flags in `STATUS`
-    always @(posedge clk) if (rst) begin
-        clear_flags <= 1'd0;
-    end else begin
-        clear_flags <= write_clear_flags && whole;
-    end
+    always @(posedge clk) clear_flags <= !rst && write_clear_flags && whole;
 
     // FLAGS: sticky; what has happened since the flag was cleared
     reg flag_partial_write;

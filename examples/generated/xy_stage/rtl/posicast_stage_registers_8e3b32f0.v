@@ -1,4 +1,4 @@
-// posicast_stage_registers_597c08a4
+// posicast_stage_registers_8e3b32f0
 // Registers of stage: Avalon-MM agent, 32 bits, word addresses, read latency 1, no waits.
 // Commands take whole words only. Reads have no side effect; what is not mapped reads as 0.
 //
@@ -22,7 +22,7 @@
 
 `default_nettype none
 
-module posicast_stage_registers_597c08a4 (
+module posicast_stage_registers_8e3b32f0 (
     input  wire               clk,
     input  wire               rst,
     input  wire [9:0]         avs_address,
@@ -700,25 +700,13 @@ module posicast_stage_registers_597c08a4 (
     end
 
     // X_STOP: command; quick stop, then HOLD
-    always @(posedge clk) if (rst) begin
-        x_stop <= 1'd0;
-    end else begin
-        x_stop <= write_x_stop && whole;
-    end
+    always @(posedge clk) x_stop <= !rst && write_x_stop && whole;
 
     // X_CLEAR_FAULTS: command; forgets the causes that are over, and the flags of all blocks
-    always @(posedge clk) if (rst) begin
-        x_clear_faults <= 1'd0;
-    end else begin
-        x_clear_faults <= write_x_clear_faults && whole;
-    end
+    always @(posedge clk) x_clear_faults <= !rst && write_x_clear_faults && whole;
 
     // X_FLUSH: command; drops the entries that wait
-    always @(posedge clk) if (rst) begin
-        x_flush <= 1'd0;
-    end else begin
-        x_flush <= write_x_flush && whole;
-    end
+    always @(posedge clk) x_flush <= !rst && write_x_flush && whole;
 
     // X_KICK: command; of the host's watchdog
     always @(posedge clk) if (rst) begin
@@ -942,11 +930,7 @@ module posicast_stage_registers_597c08a4 (
     end
 
     // X_INDEX_ARM: command; latches the next index
-    always @(posedge clk) if (rst) begin
-        x_index_arm <= 1'd0;
-    end else begin
-        x_index_arm <= write_x_index_arm && whole;
-    end
+    always @(posedge clk) x_index_arm <= !rst && write_x_index_arm && whole;
 
     // X_PRESET: command; the user's position becomes this; the loop's count never jumps
     always @(posedge clk) if (rst) begin
@@ -976,19 +960,11 @@ module posicast_stage_registers_597c08a4 (
 
     // X_SETTING_READ: command; reads the word at `SETTING_ADDRESS` back, which stays until
     // `setting_read_waits` is low
-    always @(posedge clk) if (rst) begin
-        x_setting_read <= 1'd0;
-    end else begin
-        x_setting_read <= write_x_setting_read && whole;
-    end
+    always @(posedge clk) x_setting_read <= !rst && write_x_setting_read && whole;
 
     // X_TAP_READ: command; reads the tap at `TAP_ADDRESS` back, which stays until `tap_read_waits`
     // is low
-    always @(posedge clk) if (rst) begin
-        x_tap_read <= 1'd0;
-    end else begin
-        x_tap_read <= write_x_tap_read && whole;
-    end
+    always @(posedge clk) x_tap_read <= !rst && write_x_tap_read && whole;
 
     // X_EVENTS: sticky; what has happened since the flag was cleared
     reg flag_x_refused;
@@ -1020,25 +996,13 @@ module posicast_stage_registers_597c08a4 (
     end
 
     // Y_STOP: command; quick stop, then HOLD
-    always @(posedge clk) if (rst) begin
-        y_stop <= 1'd0;
-    end else begin
-        y_stop <= write_y_stop && whole;
-    end
+    always @(posedge clk) y_stop <= !rst && write_y_stop && whole;
 
     // Y_CLEAR_FAULTS: command; forgets the causes that are over, and the flags of all blocks
-    always @(posedge clk) if (rst) begin
-        y_clear_faults <= 1'd0;
-    end else begin
-        y_clear_faults <= write_y_clear_faults && whole;
-    end
+    always @(posedge clk) y_clear_faults <= !rst && write_y_clear_faults && whole;
 
     // Y_FLUSH: command; drops the entries that wait
-    always @(posedge clk) if (rst) begin
-        y_flush <= 1'd0;
-    end else begin
-        y_flush <= write_y_flush && whole;
-    end
+    always @(posedge clk) y_flush <= !rst && write_y_flush && whole;
 
     // Y_KICK: command; of the host's watchdog
     always @(posedge clk) if (rst) begin
@@ -1262,11 +1226,7 @@ module posicast_stage_registers_597c08a4 (
     end
 
     // Y_INDEX_ARM: command; latches the next index
-    always @(posedge clk) if (rst) begin
-        y_index_arm <= 1'd0;
-    end else begin
-        y_index_arm <= write_y_index_arm && whole;
-    end
+    always @(posedge clk) y_index_arm <= !rst && write_y_index_arm && whole;
 
     // Y_PRESET: command; the user's position becomes this; the loop's count never jumps
     always @(posedge clk) if (rst) begin
@@ -1296,19 +1256,11 @@ module posicast_stage_registers_597c08a4 (
 
     // Y_SETTING_READ: command; reads the word at `SETTING_ADDRESS` back, which stays until
     // `setting_read_waits` is low
-    always @(posedge clk) if (rst) begin
-        y_setting_read <= 1'd0;
-    end else begin
-        y_setting_read <= write_y_setting_read && whole;
-    end
+    always @(posedge clk) y_setting_read <= !rst && write_y_setting_read && whole;
 
     // Y_TAP_READ: command; reads the tap at `TAP_ADDRESS` back, which stays until `tap_read_waits`
     // is low
-    always @(posedge clk) if (rst) begin
-        y_tap_read <= 1'd0;
-    end else begin
-        y_tap_read <= write_y_tap_read && whole;
-    end
+    always @(posedge clk) y_tap_read <= !rst && write_y_tap_read && whole;
 
     // Y_EVENTS: sticky; what has happened since the flag was cleared
     reg flag_y_refused;

@@ -1,4 +1,4 @@
-// posicast_shaper_registers_e6db7a92
+// posicast_shaper_registers_a8cbfbab
 // Registers of shaper: Avalon-MM agent, 32 bits, word addresses, read latency 1, no waits.
 // Commands take whole words only. Reads have no side effect; what is not mapped reads as 0.
 //
@@ -15,7 +15,7 @@
 
 `default_nettype none
 
-module posicast_shaper_registers_e6db7a92 (
+module posicast_shaper_registers_a8cbfbab (
     input  wire               clk,
     input  wire               rst,
     input  wire [7:0]         avs_address,
@@ -207,18 +207,10 @@ module posicast_shaper_registers_e6db7a92 (
     end
 
     // STROBE: command; takes the sample
-    always @(posedge clk) if (rst) begin
-        host_strobe <= 1'd0;
-    end else begin
-        host_strobe <= write_strobe && whole;
-    end
+    always @(posedge clk) host_strobe <= !rst && write_strobe && whole;
 
     // START: command; begins anew from the sample
-    always @(posedge clk) if (rst) begin
-        host_start <= 1'd0;
-    end else begin
-        host_start <= write_start && whole;
-    end
+    always @(posedge clk) host_start <= !rst && write_start && whole;
 
     // TAP_ADDRESS: configuration; which tap `TAP` is
     always @(posedge clk) if (rst) begin
@@ -257,11 +249,7 @@ module posicast_shaper_registers_e6db7a92 (
 
     // TAP_READ: command; reads the tap at `TAP_ADDRESS` back, which stays until `tap_read_waits` is
     // low
-    always @(posedge clk) if (rst) begin
-        tap_read <= 1'd0;
-    end else begin
-        tap_read <= write_tap_read && whole;
-    end
+    always @(posedge clk) tap_read <= !rst && write_tap_read && whole;
 
     always @(posedge clk) if (rst) begin
         irq <= 1'd0;

@@ -1,4 +1,4 @@
-// posicast_pwm_registers_b714038d
+// posicast_pwm_registers_a6796a44
 // Registers of pwm: Avalon-MM agent, 32 bits, word addresses, read latency 1, no waits.
 // Commands take whole words only. Reads have no side effect; what is not mapped reads as 0.
 //
@@ -10,7 +10,7 @@
 
 `default_nettype none
 
-module posicast_pwm_registers_b714038d (
+module posicast_pwm_registers_a6796a44 (
     input  wire               clk,
     input  wire               rst,
     input  wire [7:0]         avs_address,
@@ -239,18 +239,10 @@ module posicast_pwm_registers_b714038d (
     end
 
     // FEED: command; the controller lives
-    always @(posedge clk) if (rst) begin
-        host_strobe <= 1'd0;
-    end else begin
-        host_strobe <= write_feed && whole;
-    end
+    always @(posedge clk) host_strobe <= !rst && write_feed && whole;
 
     // CLEAR_TRIP: command; forgets the causes that are over
-    always @(posedge clk) if (rst) begin
-        clear_trip <= 1'd0;
-    end else begin
-        clear_trip <= write_clear_trip && whole;
-    end
+    always @(posedge clk) clear_trip <= !rst && write_clear_trip && whole;
 
     always @(posedge clk) if (rst) begin
         irq <= 1'd0;

@@ -1,4 +1,4 @@
-// posicast_sliding_mode_registers_062fc0fb
+// posicast_sliding_mode_registers_b9ede3db
 // Registers of sliding_mode: Avalon-MM agent, 32 bits, word addresses, read latency 1, no waits.
 // Commands take whole words only. Reads have no side effect; what is not mapped reads as 0.
 //
@@ -6,7 +6,7 @@
 
 `default_nettype none
 
-module posicast_sliding_mode_registers_062fc0fb (
+module posicast_sliding_mode_registers_b9ede3db (
     input  wire               clk,
     input  wire               rst,
     input  wire [7:0]         avs_address,
@@ -269,25 +269,13 @@ module posicast_sliding_mode_registers_062fc0fb (
     end
 
     // START: command; computes a command
-    always @(posedge clk) if (rst) begin
-        host_strobe <= 1'd0;
-    end else begin
-        host_strobe <= write_start && whole;
-    end
+    always @(posedge clk) host_strobe <= !rst && write_start && whole;
 
     // CLEAR_INTEGRAL: command; at the start of motion
-    always @(posedge clk) if (rst) begin
-        clear_integral <= 1'd0;
-    end else begin
-        clear_integral <= write_clear_integral && whole;
-    end
+    always @(posedge clk) clear_integral <= !rst && write_clear_integral && whole;
 
     // CLEAR_FLAGS: command; clears the flags in `STATUS`
-    always @(posedge clk) if (rst) begin
-        clear_flags <= 1'd0;
-    end else begin
-        clear_flags <= write_clear_flags && whole;
-    end
+    always @(posedge clk) clear_flags <= !rst && write_clear_flags && whole;
 
     // SETTING_ADDRESS: configuration; which setting `SETTING` is
     always @(posedge clk) if (rst) begin
@@ -311,11 +299,7 @@ module posicast_sliding_mode_registers_062fc0fb (
 
     // SETTING_READ: command; reads the word at `SETTING_ADDRESS` back, which stays until
     // `setting_read_waits` is low
-    always @(posedge clk) if (rst) begin
-        setting_read <= 1'd0;
-    end else begin
-        setting_read <= write_setting_read && whole;
-    end
+    always @(posedge clk) setting_read <= !rst && write_setting_read && whole;
 
     // SNAPSHOT: freezes the words `SNAPSHOT_...`
     reg signed [31:0] shadow_error;
