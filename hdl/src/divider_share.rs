@@ -11,15 +11,12 @@ use posicast_model::rtl::divider_share::{MOST_CHANNELS, SHARE_CLOCKS, ports};
 kernel! {
     /// C channels.
     struct DividerShare<const C: usize>;
-    raw ports;
+    ports posicast_model::divider_share_ports;
 
-    inputs { rst: Bit, divide: Bit, steps_of[C]: Signed<18>, elapsed_of[C]: Bits<24>, done: Bit }
-    outputs { start: Bit, steps: Signed<18>, elapsed: Bits<24>, quotient_valid[C]: Bit }
     registers {
         turn: Bits<4> = from_u64(MOST_CHANNELS as u64),
-        start_q: Bit, steps_q: Signed<18>, elapsed_q: Bits<24>,
+        start_q: Bit, steps_q: Signed<18>, elapsed_q: Bits<24>, valid_q[C]: Bit,
     }
-    parts { valid_q[C]: Dff<Bit> }
     wires { is_idle: Bit, begins: Bit, next_turn: Bits<4> }
     constants {
         channel[C]: Bits<4> = |channel| from_u64(channel as u64),
@@ -35,8 +32,6 @@ impl<const C: usize> Logic for DividerShare<C> {
     fn update(&mut self) {
         comment!("@module divider_share");
         for i in 0..C {
-            self.valid_q[i].clock.next = self.clk.val();
-            self.valid_q[i].rst.next = self.rst.val();
             self.valid_q[i].d.next = self.done.val() & (self.turn.q.val() == self.channel[i].val());
         }
 

@@ -8,66 +8,17 @@ use crate::simulation::{Pins, Simulated, SimulationError};
 use posicast_model::rtl::ClockedBlock;
 use posicast_model::rtl::group::ports;
 
-/// N axes.
-#[derive(LogicBlock)]
-struct Group<const N: usize> {
-    clk: Signal<In, Clock>,
-    rst: Signal<In, Bit>,
-    start: Signal<In, Bit>,
-    start_axes: Signal<In, Bits<4>>,
-    can_start: [Signal<In, Bit>; N],
-    wants_group_stop: [Signal<In, Bit>; N],
-    emergency_stop: [Signal<In, Bit>; N],
-    feed_hold: [Signal<In, Bit>; N],
-    rests: [Signal<In, Bit>; N],
-    axis_start: [Signal<Out, Bit>; N],
-    group_stop: [Signal<Out, Bit>; N],
-    hold_feed: [Signal<Out, Bit>; N],
-    group_emergency_stop: Signal<Out, Bit>,
-    start_refused: Signal<Out, Bit>,
+kernel! {
+    /// N axes.
+    struct Group<const N: usize>;
+    ports posicast_model::group_ports;
 
-    start_q: [Dff<Bit>; N],
-    stop_q: [Dff<Bit>; N],
-    hold_q: [Dff<Bit>; N],
-    emergency_q: Dff<Bit>,
-    refused_q: Dff<Bit>,
-
-    blocked: Signal<Local, Bit>,
-    moving: Signal<Local, Bit>,
-
-    axis: [Constant<Bits<4>>; N],
-    strangers: Constant<Bits<4>>,
-    nobody: Constant<Bits<4>>,
-}
-
-impl<const N: usize> Default for Group<N> {
-    fn default() -> Self {
-        Self {
-            clk: Signal::default(),
-            rst: Signal::default(),
-            start: Signal::default(),
-            start_axes: Signal::default(),
-            can_start: std::array::from_fn(|_| Signal::default()),
-            wants_group_stop: std::array::from_fn(|_| Signal::default()),
-            emergency_stop: std::array::from_fn(|_| Signal::default()),
-            feed_hold: std::array::from_fn(|_| Signal::default()),
-            rests: std::array::from_fn(|_| Signal::default()),
-            axis_start: std::array::from_fn(|_| Signal::default()),
-            group_stop: std::array::from_fn(|_| Signal::default()),
-            hold_feed: std::array::from_fn(|_| Signal::default()),
-            group_emergency_stop: Signal::default(),
-            start_refused: Signal::default(),
-            start_q: std::array::from_fn(|_| Dff::default()),
-            stop_q: std::array::from_fn(|_| Dff::default()),
-            hold_q: std::array::from_fn(|_| Dff::default()),
-            emergency_q: Dff::default(),
-            refused_q: Dff::default(),
-            blocked: Signal::default(),
-            moving: Signal::default(),
-            axis: std::array::from_fn(|axis| Constant::new(from_u64(1 << axis))),
-            strangers: Constant::new(from_u64((0xf << N) & 0xf)),
-            nobody: Constant::new(from_u64(0)),
-        }
+    registers { start_q[N]: Bit, stop_q[N]: Bit, hold_q[N]: Bit, emergency_q: Bit, refused_q: Bit }
+    wires { blocked: Bit, moving: Bit }
+    constants {
+        axis[N]: Bits<4> = |axis| from_u64(1 << axis),
+        strangers: Bits<4> = from_u64((0xf << N) & 0xf),
+        nobody: Bits<4> = from_u64(0),
     }
 }
 
@@ -75,15 +26,6 @@ impl<const N: usize> Logic for Group<N> {
     #[hdl_gen]
     fn update(&mut self) {
         comment!("@module group");
-        dff_setup!(self, clk, emergency_q, refused_q);
-        for i in 0..N {
-            self.start_q[i].clock.next = self.clk.val();
-            self.start_q[i].rst.next = self.rst.val();
-            self.stop_q[i].clock.next = self.clk.val();
-            self.stop_q[i].rst.next = self.rst.val();
-            self.hold_q[i].clock.next = self.clk.val();
-            self.hold_q[i].rst.next = self.rst.val();
-        }
 
         comment!("All start, or none");
         self.blocked.next = (self.start_axes.val() == self.nobody.val())
@@ -132,39 +74,6 @@ impl<const N: usize> Logic for Group<N> {
         }
         self.group_emergency_stop.next = self.emergency_q.q.val();
         self.start_refused.next = self.refused_q.q.val();
-    }
-}
-
-impl<const N: usize> Pins for Group<N> {
-    fn set_clk(&mut self, level: bool) {
-        self.clk.next = level.into();
-    }
-
-    fn drive(&mut self, inputs: &[u64]) {
-        let mut values = inputs.iter().copied();
-        let mut next = || values.next().unwrap_or_default();
-        self.rst.next = next() & 1 != 0;
-        self.start.next = next() & 1 != 0;
-        self.start_axes.next = from_u64(next());
-        for lines in [
-            &mut self.can_start,
-            &mut self.wants_group_stop,
-            &mut self.emergency_stop,
-            &mut self.feed_hold,
-            &mut self.rests,
-        ] {
-            for line in lines {
-                line.next = next() & 1 != 0;
-            }
-        }
-    }
-
-    fn read(&self, outputs: &mut [u64]) {
-        let axes = self.axis_start.iter().chain(&self.group_stop).chain(&self.hold_feed);
-        let shared = [&self.group_emergency_stop, &self.start_refused];
-        for (output, line) in outputs.iter_mut().zip(axes.chain(shared)) {
-            *output = line.val().into();
-        }
     }
 }
 

@@ -36,9 +36,8 @@
 //!
 //! Sizes that must fit each other say so behind the name: `struct Product<const W: usize, const P: usize> where P == W + 18;`.
 //!
-//! Where a block's ports depend on its sizes, `raw ports;` before the sections says that the simulator needs raw ports too. Any other
-//! block's top kernel takes inputs and outputs from the block's list of ports in the model, which `ports!` makes there, and
-//! raw ports with them:
+//! A block's top kernel takes inputs and outputs from the block's list of ports in the model, which `ports!` makes there, and raw
+//! ports with them. The sizes of such a list are those of the same names here:
 //!
 //! ```text
 //! kernel! {
@@ -48,6 +47,8 @@
 //!     parts { .. }
 //! }
 //! ```
+//!
+//! Where there is no list yet, `raw ports;` before the sections says that the simulator needs raw ports too.
 
 /// See the [module](self).
 macro_rules! kernel {

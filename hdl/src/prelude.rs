@@ -6,34 +6,21 @@
 //! |---|---|
 //! | [`signed_bit_cast`] | RustHDL's, which overflows the stack on the most negative value |
 //! | `kernel!` | the struct, the constructor and the wiring of registers that a kernel would repeat |
-//! | [`Dff`], `dff_setup!` | RustHDL's `DFF` without reset; the macro of the same name also wires `rst` |
+//! | [`Dff`] | RustHDL's `DFF` without reset |
 //! | [`Ram`], [`Rom`] | RustHDL's `RAM` and `ROM` with two clocks, and without arbitrary contents |
 //! | `comment!` | nothing: `#[hdl_gen]` knows the macro, RustHDL has none |
 
 pub(crate) use crate::kernel::kernel;
 pub(crate) use crate::prim::{Dff, FaultLatch, PinRegister, Ram, Rom, RomWord, SMul, Synchroniser};
 pub(crate) use rust_hdl_core::prelude::*;
-pub(crate) use rust_hdl_macros::{LogicBlock, hdl_gen};
+pub(crate) use rust_hdl_macros::hdl_gen;
 
 /// A comment in the Verilog, nothing in the simulation. Below 50 characters: RustHDL wraps longer text.
 macro_rules! comment {
     ($($text:tt)*) => {};
 }
 
-/// Wires `clock` and `rst` of every flip-flop named and lets it keep its value: the first statement of a kernel.
-///
-/// `#[hdl_gen]` reads the invocation, not this definition: in the Verilog the reset is the emitter's work.
-macro_rules! dff_setup {
-    ($self:ident, $clk:ident, $($dff:ident),+ $(,)?) => {
-        $(
-            $self.$dff.clock.next = $self.$clk.val();
-            $self.$dff.rst.next = $self.rst.val();
-            $self.$dff.d.next = $self.$dff.q.val();
-        )+
-    };
-}
-
-pub(crate) use {comment, dff_setup};
+pub(crate) use comment;
 
 /// Sign-extends or truncates.
 ///

@@ -11,19 +11,8 @@ use posicast_model::rtl::sample_select::ports;
 kernel! {
     /// W word, C channels.
     struct SampleSelect<const W: usize, const C: usize>;
-    raw ports;
+    ports posicast_model::sample_select_ports;
 
-    inputs {
-        rst: Bit,
-        from_pins: Bit,
-        host_strobe: Bit,
-        host_start: Bit,
-        host_x[C]: Signed<W>,
-        pin_strobe: Bit,
-        pin_start: Bit,
-        pin_x[C]: Signed<W>,
-    }
-    outputs { strobe: Bit, start: Bit, x[C]: Signed<W> }
     registers { strobe_q: Bit, start_q: Bit, x_q[C]: Signed<W> }
 }
 
@@ -72,7 +61,7 @@ fn block(word_bits: u32, channels: usize) -> Box<dyn Pins> {
 /// # Errors
 /// [`SimulationError`] where RustHDL finds a fault in the block.
 pub fn simulate(word_bits: u32, channels: usize) -> Result<Box<dyn ClockedBlock>, SimulationError> {
-    let ports = ports(word_bits, channels);
+    let ports = ports(word_bits as usize, channels);
     Ok(Box::new(Simulated::new(
         "sample_select",
         block(word_bits, channels),

@@ -124,11 +124,13 @@ fn listed(list: &str) -> Vec<(String, String)> {
     let texts = sources(&model)
         .into_iter()
         .filter_map(|file| fs::read_to_string(file).ok());
-    let text = texts
-        .into_iter()
-        .find(|text| text.contains(&format!("\n    {list};\n")));
-    let text = without_comments(&text.unwrap_or_else(|| panic!("no list {list} in the model")));
-    let lists = text.split(&format!("    {list};")).nth(1).unwrap_or_default();
+    // The name stands alone, or its sizes behind it.
+    let lists = texts.into_iter().find_map(|text| {
+        [";", "("]
+            .iter()
+            .find_map(|end| Some(text.split_once(&format!("\n    {list}{end}"))?.1.to_owned()))
+    });
+    let lists = without_comments(&lists.unwrap_or_else(|| panic!("no list {list} in the model")));
     let (inputs, outputs) = lists.split_once("    outputs ").unwrap_or_default();
     let names = |entries: &str, kind: &str| -> Vec<(String, String)> {
         let entries = entries.split("\n}").next().unwrap_or_default().lines();

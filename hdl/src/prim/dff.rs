@@ -22,7 +22,7 @@ pub(crate) trait Keep {
 }
 
 impl<T: Synth> Dff<T> {
-    /// A register that its kernel wires with `dff_setup!`.
+    /// A register that its kernel wires itself.
     pub(crate) fn new(reset_value: T) -> Self {
         Self {
             clock: Signal::default(),

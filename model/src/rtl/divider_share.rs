@@ -14,36 +14,39 @@
 //! - A `divide` while divisions run is ignored: the counters then flag a missed velocity.
 
 use super::divider::{DIVISION_CLOCKS, ELAPSED_BITS, STEP_BITS};
-use super::{ClockedBlock, Direction, FOREVER, Moore, Port, StepError};
+use super::{ClockedBlock, FOREVER, Moore, Port, StepError, ports};
 
 /// Most channels: four axes, each with a scale.
 pub const MOST_CHANNELS: usize = 8;
 /// Clocks per channel.
 pub const SHARE_CLOCKS: u32 = DIVISION_CLOCKS + 1;
 
-/// The ports in the order of the Verilog's port list, without `clk`, for so many channels.
-pub fn ports(channels: usize) -> Vec<Port> {
-    use Direction::{Input, Output};
-    let port = |name: &str, direction, width, signed| Port {
-        name: name.to_owned(),
-        direction,
-        width,
-        signed,
-    };
-    let each = |name: &'static str, direction, width, signed| {
-        (0..channels).map(move |channel| port(&format!("{name}_{channel}"), direction, width, signed))
-    };
-    let mut ports = vec![port("rst", Input, 1, false), port("divide", Input, 1, false)];
-    ports.extend(each("steps_of", Input, STEP_BITS, true));
-    ports.extend(each("elapsed_of", Input, ELAPSED_BITS, false));
-    ports.extend([
-        port("done", Input, 1, false),
-        port("start", Output, 1, false),
-        port("steps", Output, STEP_BITS, true),
-        port("elapsed", Output, ELAPSED_BITS, false),
-    ]);
-    ports.extend(each("quotient_valid", Output, 1, false));
-    ports
+ports! {
+    divider_share_ports(C);
+
+    inputs {
+        /// Synchronous reset.
+        rst: Bit;
+        /// One clock: divide for all channels, one after the other.
+        divide: Bit;
+        /// Of the channel's pulse counter: the dividend.
+        steps_of[C]: Signed(18), "counts";
+        /// Of the channel's pulse counter: the divisor.
+        elapsed_of[C]: Bits(24), "clocks";
+        /// Of the divider: its `done`.
+        done: Bit;
+    }
+
+    outputs {
+        /// To the divider, one clock: its `start`.
+        start: Bit;
+        /// To the divider: its `steps`.
+        steps: Signed(18), "counts";
+        /// To the divider: its `elapsed`.
+        elapsed: Bits(24), "clocks";
+        /// One clock: the quotient of the divider is the channel's.
+        quotient_valid[C]: Bit;
+    }
 }
 
 /// The sharing, cycle accurate at its ports.

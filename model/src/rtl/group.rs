@@ -12,7 +12,7 @@
 //!   all, and go on in the same tick. A clock late.
 //! - A start of no axis, or of one that there is not, is refused.
 
-use super::{ClockedBlock, Direction, FOREVER, Moore, Port, StepError};
+use super::{ClockedBlock, FOREVER, Moore, Port, StepError, ports};
 
 /// Lists of inputs, a port per axis.
 const LISTS: usize = 5;
@@ -20,32 +20,40 @@ const LISTS: usize = 5;
 /// Most axes of a stage.
 pub const MOST_AXES: usize = 4;
 
-/// The ports in the order of the Verilog's port list, without `clk`, for so many axes.
-pub fn ports(axes: usize) -> Vec<Port> {
-    use Direction::{Input, Output};
-    let port = |name: &str, direction, width| Port {
-        name: name.to_owned(),
-        direction,
-        width,
-        signed: false,
-    };
-    let each = |name: &'static str, direction| (0..axes).map(move |axis| port(&format!("{name}_{axis}"), direction, 1));
-    let mut ports = vec![
-        port("rst", Input, 1),
-        port("start", Input, 1),
-        port("start_axes", Input, MOST_AXES as u32),
-    ];
-    ports.extend(each("can_start", Input));
-    ports.extend(each("wants_group_stop", Input));
-    ports.extend(each("emergency_stop", Input));
-    ports.extend(each("feed_hold", Input));
-    ports.extend(each("rests", Input));
-    ports.extend(each("axis_start", Output));
-    ports.extend(each("group_stop", Output));
-    ports.extend(each("hold_feed", Output));
-    ports.push(port("group_emergency_stop", Output, 1));
-    ports.push(port("start_refused", Output, 1));
-    ports
+ports! {
+    group_ports(N);
+
+    inputs {
+        /// Synchronous reset.
+        rst: Bit;
+        /// One clock: the axes in `start_axes` are to start.
+        start: Bit;
+        /// One bit per axis.
+        start_axes: Bits(4);
+        /// Of the axis: its `can_start`.
+        can_start[N]: Bit;
+        /// Of the axis: its `wants_group_stop`.
+        wants_group_stop[N]: Bit;
+        /// Of the axis: its `emergency_stop`.
+        emergency_stop[N]: Bit;
+        /// The axis is to hold its feed.
+        feed_hold[N]: Bit;
+        /// Of the axis's segments: their `rests`.
+        rests[N]: Bit;
+    }
+
+    outputs {
+        /// One clock, to the axis: its `start`.
+        axis_start[N]: Bit;
+        /// To the axis: another one wants all to stop.
+        group_stop[N]: Bit;
+        /// To the axis's segments: their `feed_hold`.
+        hold_feed[N]: Bit;
+        /// To all axes: one of them has its emergency stop.
+        group_emergency_stop: Bit;
+        /// One clock: a start that none followed.
+        start_refused: Bit;
+    }
 }
 
 /// The group, cycle accurate at its ports.

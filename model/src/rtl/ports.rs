@@ -29,6 +29,24 @@
 //!   units and meanings, which the datasheet's table is made of;
 //! - the macro `posicast_model::counter_ports!`, of which `kernel!` in `hdl` makes the kernel's fields and raw ports.
 //!
+//! Where a number of ports, or a width, is a size of the block, the sizes stand behind the list's name, the structs and the
+//! Rust types are left out, and `ports` takes the sizes. The kernel has sizes of the same names:
+//!
+//! ```text
+//! ports! {
+//!     group_ports(N);
+//!
+//!     inputs {
+//!         /// Synchronous reset.
+//!         rst: Bit;
+//!         /// Of the axis: its `can_start`.
+//!         can_start[N]: Bit;
+//!     }
+//!
+//!     outputs { ... }
+//! }
+//! ```
+//!
 //! [`clocked_block!`] makes a model with such a list a [`ClockedBlock`](super::ClockedBlock). A Rust type of its own, an enum
 //! for example, stands behind `as` once it is a [`PortValue`]; `choices!` makes one of an enum.
 
@@ -210,17 +228,55 @@ macro_rules! ports {
         $crate::rtl::ports::raw! { $inputs INPUT_PORTS $($input: $input_kind ($($input_width)?) [$($input_count)?];)* }
         $crate::rtl::ports::raw! { $outputs OUTPUT_PORTS $($output: $output_kind ($($output_width)?) [$($output_count)?];)* }
 
+        $crate::rtl::ports::list! {
+            $list
+            { $($input $([$input_count])?: $input_kind $(<$input_width>)?),* }
+            { $($output $([$output_count])?: $output_kind $(<$output_width>)?),* }
+        }
+    };
+    (
+        $list:ident($($size:ident),+);
+
+        inputs {
+            $($(#[doc = $input_meaning:literal])+
+            $input:ident $([$input_count:ident])?: $input_kind:ident $(($input_width:tt))? $(, $input_unit:literal)?;)*
+        }
+
+        outputs {
+            $($(#[doc = $output_meaning:literal])+
+            $output:ident $([$output_count:ident])?: $output_kind:ident $(($output_width:tt))? $(, $output_unit:literal)?;)*
+        }
+    ) => {
+        /// The ports in the order of the Verilog's port list, without `clk`, for these sizes.
+        #[expect(non_snake_case, reason = "a size has its name in the kernel")]
+        pub fn ports($($size: usize),+) -> Vec<$crate::rtl::Port> {
+            $crate::rtl::ports::listed(&[
+                $($crate::rtl::ports::row!(
+                    Input $input [$($input_count)?] $input_kind ($($input_width)?) [$($input_unit)?] [$($input_meaning),+]
+                ),)*
+                $($crate::rtl::ports::row!(
+                    Output $output [$($output_count)?] $output_kind ($($output_width)?) [$($output_unit)?]
+                    [$($output_meaning),+]
+                ),)*
+            ])
+        }
+
+        $crate::rtl::ports::list! {
+            $list
+            { $($input $([$input_count])?: $input_kind $(<$input_width>)?),* }
+            { $($output $([$output_count])?: $output_kind $(<$output_width>)?),* }
+        }
+    };
+}
+
+/// The block's ports, for `kernel!` of `posicast_hdl`.
+macro_rules! list {
+    ($list:ident $inputs:tt $outputs:tt) => {
         /// The block's ports, for `kernel!` of `posicast_hdl`: calls the macro `then` with them, and with what else it is given.
         #[macro_export]
         macro_rules! $list {
             ($then:ident $header:tt $sections:tt) => {
-                $then! {
-                    @ports
-                    { $($input $([$input_count])?: $input_kind $(<$input_width>)?),* }
-                    { $($output $([$output_count])?: $output_kind $(<$output_width>)?),* }
-                    $header
-                    $sections
-                }
+                $then! { @ports $inputs $outputs $header $sections }
             };
         }
     };
@@ -238,7 +294,7 @@ macro_rules! one_or_array {
 
 /// A row of `PORTS`.
 macro_rules! row {
-    ($direction:ident $name:ident [$($count:literal)?] $kind:ident $width:tt [$($unit:literal)?] [$($meaning:literal),+]) => {
+    ($direction:ident $name:ident [$($count:tt)?] $kind:ident $width:tt [$($unit:literal)?] [$($meaning:literal),+]) => {
         $crate::rtl::PortRow {
             name: stringify!($name),
             count: $crate::rtl::ports::optional!($($count)?),
@@ -255,7 +311,7 @@ macro_rules! optional {
     () => {
         None
     };
-    ($value:literal) => {
+    ($value:tt) => {
         Some($value)
     };
 }
@@ -266,6 +322,9 @@ macro_rules! width {
     };
     ($kind:ident ($width:literal)) => {
         $width
+    };
+    ($kind:ident ($size:ident)) => {
+        $size as u32
     };
 }
 
@@ -362,4 +421,6 @@ macro_rules! clocked_block {
     };
 }
 
-pub(crate) use {choices, clocked_block, from_raw, one_or_array, optional, ports, raw, row, signed, to_raw, width};
+pub(crate) use {
+    choices, clocked_block, from_raw, list, one_or_array, optional, ports, raw, row, signed, to_raw, width,
+};

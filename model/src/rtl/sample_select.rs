@@ -6,28 +6,38 @@
 //!  pin_strobe,  pin_start,  pin_x_0 … ─┘ from_pins
 //! ```
 
-use super::{ClockedBlock, Direction, FOREVER, Moore, Port, StepError};
+use super::{ClockedBlock, FOREVER, Moore, Port, StepError, ports};
 
-/// The ports in the order of the Verilog's port list, without `clk`.
-pub fn ports(word_bits: u32, channels: usize) -> Vec<Port> {
-    use Direction::{Input, Output};
-    let port = |name: String, direction, width, signed| Port {
-        name,
-        direction,
-        width,
-        signed,
-    };
-    let mut ports = vec![
-        port("rst".to_owned(), Input, 1, false),
-        port("from_pins".to_owned(), Input, 1, false),
-    ];
-    for (prefix, direction) in [("host_", Input), ("pin_", Input), ("", Output)] {
-        ports.push(port(format!("{prefix}strobe"), direction, 1, false));
-        ports.push(port(format!("{prefix}start"), direction, 1, false));
-        let words = (0..channels).map(|channel| port(format!("{prefix}x_{channel}"), direction, word_bits, true));
-        ports.extend(words);
+ports! {
+    sample_select_ports(W, C);
+
+    inputs {
+        /// Synchronous reset.
+        rst: Bit;
+        /// The samples come from pins; low: from the host.
+        from_pins: Bit;
+        /// Of the host, one clock: its words are a sample.
+        host_strobe: Bit;
+        /// Of the host: the sample is the first of a motion.
+        host_start: Bit;
+        /// Of the host: a word per channel.
+        host_x[C]: Signed(W);
+        /// As `host_strobe`, from a pin.
+        pin_strobe: Bit;
+        /// As `host_start`, from a pin.
+        pin_start: Bit;
+        /// As `host_x`, from pins.
+        pin_x[C]: Signed(W);
     }
-    ports
+
+    outputs {
+        /// One clock: the words are a sample.
+        strobe: Bit;
+        /// The sample is the first of a motion.
+        start: Bit;
+        /// A word per channel.
+        x[C]: Signed(W);
+    }
 }
 
 /// The selection, cycle accurate at its ports.
@@ -41,7 +51,7 @@ impl SampleSelect {
     /// After reset, for words of so many bits and so many channels.
     pub fn new(word_bits: u32, channels: usize) -> Self {
         Self {
-            ports: ports(word_bits, channels),
+            ports: ports(word_bits as usize, channels),
             shown: vec![0; 2 + channels],
         }
     }

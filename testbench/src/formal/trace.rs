@@ -56,7 +56,7 @@ fn select_task(channels: usize) -> Result<Task, Error> {
     ];
     let block = (
         sample_select::emit(WORD_BITS, channels, "")?,
-        select_model::ports(WORD_BITS, channels),
+        select_model::ports(WORD_BITS as usize, channels),
     );
     let size = format!("{WORD_BITS} bits, {channels} channels");
     Ok(Task::new("sample_select", &size, INDUCTION, block)
