@@ -63,7 +63,7 @@ fn lockstep_catches_a_clear_that_wins_over_a_set() {
 
 #[test]
 fn lockstep_catches_a_command_that_takes_a_part() {
-    caught("start <= write_start && whole", "start <= write_start");
+    caught("start <= !rst && write_start && whole", "start <= !rst && write_start");
 }
 
 #[test]
