@@ -79,7 +79,10 @@ impl AxisControl {
              crossover at {}",
             figure(margins.gain_margin_db(), 1, "dB"),
             figure(margins.phase_margin_deg, 0, "degrees"),
-            figure(margins.delay_margin_s.map(|time_s| 1e6 * time_s), 0, "µs"),
+            match margins.delay_margin_s {
+                Some(time_s) if time_s < 0.01 => figure(Some(1e6 * time_s), 0, "µs"),
+                time_s => figure(time_s.map(|time_s| 1e3 * time_s), 0, "ms"),
+            },
             margins.modulus_margin,
             figure(margins.crossover_hz, 2, "Hz"),
         )

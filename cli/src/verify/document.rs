@@ -137,8 +137,11 @@ impl Document<'_> {
             .blocks
             .iter()
             .any(|block| block.name == "shaper" && block.samples.is_some());
-        if report.result == Verdict::Match && self.replayed.is_none() && shapers {
-            compared.push("every tap, bank and flag of the shapers exercised".to_owned());
+        if report.result == Verdict::Match && self.replayed.is_none() {
+            compared.push(match shapers {
+                true => "every tap and bank of the shapers and every flag of all rows exercised".to_owned(),
+                false => "every flag of all rows exercised".to_owned(),
+            });
         }
         compared.extend(self.folder.map(Folder::summary));
         if let Some(missing) = self
