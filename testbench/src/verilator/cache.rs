@@ -42,7 +42,8 @@ pub(super) fn tidy(folder: &Path) {
         let name = name.to_string_lossy();
         let modified = entry.metadata().and_then(|data| data.modified());
         let age = modified.ok().and_then(|time| time.elapsed().ok()).unwrap_or_default();
-        if name.starts_with("verilator-") && name.ends_with(".so") && age > KEPT {
+        let is_ours = name.starts_with("verilator-") && (name.ends_with(".so") || name.ends_with(".o"));
+        if is_ours && age > KEPT {
             let _ = fs::remove_file(entry.path());
         } else if name.starts_with(BUILD_PREFIX) && age > ABANDONED {
             let _ = fs::remove_dir_all(entry.path());
@@ -64,14 +65,15 @@ mod tests {
             path
         };
         let old = make("verilator-1.so", 31);
+        let old_object = make("verilator-1-verilated.o", 31);
         let used = make("verilator-2.so", 31);
         let recent = make("verilator-3.so", 29);
         let foreign = make("thesis.tex", 1000);
         assert!(holds(&used) && !holds(&folder.path().join("absent.so")));
         tidy(folder.path());
         assert_eq!(
-            [old, used, recent, foreign].map(|path| path.exists()),
-            [false, true, true, true]
+            [old, old_object, used, recent, foreign].map(|path| path.exists()),
+            [false, false, true, true, true]
         );
     }
 }

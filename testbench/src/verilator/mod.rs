@@ -8,7 +8,7 @@
 //! - **Cache.** One shared object per content of the sources, ports, harness, Verilator version and flags, in
 //!   `$POSICAST_CACHE`, else `$XDG_CACHE_HOME/posicast`, else `~/.cache/posicast`, else the temporary folder. It is built
 //!   in a folder of its own and renamed when complete, so that parallel builds never see half a file. What was not used
-//!   for 30 days is removed.
+//!   for 30 days is removed. Verilator's own C++ is compiled once and kept there too.
 //! - **Random start.** Registers without a reset value and memories start at random, by the seed: what works only
 //!   because a simulator zeroes its memory does not work here.
 //! - **Versions.** Debian's Verilator 5.006 and later. `$VERILATOR` names another executable.
@@ -18,6 +18,7 @@
 mod cache;
 mod dynamic;
 mod harness;
+mod runtime;
 
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
@@ -219,6 +220,8 @@ fn compile(folder: &Path, source: &Source<'_>, counts: bool) -> Result<PathBuf, 
         "harness.cpp",
         &(harness::source_text(source.ports, &members) + coverage),
     )?;
+    let runtime = runtime::Runtime::new(folder, &runtime_hash(version()?, counts));
+    runtime.lend(work.path());
     let mut make = MAKE.command_in(work.path());
     make.args(["-s", "-f", &format!("{}.mk", harness::CLASS)])
         .args(MAKE_FLAGS);
@@ -227,6 +230,9 @@ fn compile(folder: &Path, source: &Source<'_>, counts: bool) -> Result<PathBuf, 
         .env_remove("MAKELEVEL")
         .env_remove("MFLAGS");
     MAKE.run(&mut make, "compiling the simulation")?;
+    runtime
+        .keep(work.path())
+        .map_err(Error::file(folder, "put Verilator's own objects into the cache"))?;
 
     let built = work.path().join("simulation.so");
     std::fs::rename(&built, &object).map_err(Error::file(&object, "put the simulation into the cache"))?;
@@ -237,34 +243,51 @@ fn coverage_flags(counts: bool) -> &'static [&'static str] {
     if counts { &COVERAGE_FLAGS } else { &[] }
 }
 
-/// Hash of all that the shared object depends on. Lengths go in, so that no two inputs run into each other.
+/// Hash of all that the shared object depends on.
 fn content_hash(source: &Source<'_>, contents: &[(PathBuf, Vec<u8>)], version: &str, counts: bool) -> String {
-    let mut hash = Sha256::new();
-    let mut add = |bytes: &[u8]| {
-        hash.update((bytes.len() as u64).to_le_bytes());
-        hash.update(bytes);
-    };
-    add(version.as_bytes());
-    add(harness::TEMPLATE.as_bytes());
-    add(harness::PRINT.as_bytes());
-    for flag in FLAGS.iter().chain(&MAKE_FLAGS) {
-        add(flag.as_bytes());
-    }
+    let mut hash = ContentHash::of_tools(version, counts);
+    hash.add(harness::TEMPLATE.as_bytes());
     if counts {
-        add(harness::COVERAGE.as_bytes());
-        COVERAGE_FLAGS.iter().for_each(|flag| add(flag.as_bytes()));
+        hash.add(harness::COVERAGE.as_bytes());
     }
-    add(source.top.as_bytes());
+    hash.add(source.top.as_bytes());
     for port in source.ports {
-        add(port.name.as_bytes());
-        add(&[u8::from(port.direction == Direction::Input), port.width as u8]);
+        hash.add(port.name.as_bytes());
+        hash.add(&[u8::from(port.direction == Direction::Input), port.width as u8]);
     }
     for (_, text) in contents {
-        add(text);
+        hash.add(text);
     }
-    hash.finalize()
-        .iter()
-        .take(16)
-        .map(|byte| format!("{byte:02x}"))
-        .collect()
+    hash.text()
+}
+
+/// Hash of all that Verilator's own objects depend on.
+fn runtime_hash(version: &str, counts: bool) -> String {
+    ContentHash::of_tools(version, counts).text()
+}
+
+struct ContentHash(Sha256);
+
+impl ContentHash {
+    /// Of version, flags, and what every C++ file includes.
+    fn of_tools(version: &str, counts: bool) -> Self {
+        let mut hash = Self(Sha256::new());
+        hash.add(version.as_bytes());
+        hash.add(harness::PRINT.as_bytes());
+        for flag in FLAGS.iter().chain(&MAKE_FLAGS).chain(coverage_flags(counts)) {
+            hash.add(flag.as_bytes());
+        }
+        hash
+    }
+
+    /// The length goes in, so that no two inputs run into each other.
+    fn add(&mut self, bytes: &[u8]) {
+        self.0.update((bytes.len() as u64).to_le_bytes());
+        self.0.update(bytes);
+    }
+
+    fn text(self) -> String {
+        let bytes = self.0.finalize();
+        bytes.iter().take(16).map(|byte| format!("{byte:02x}")).collect()
+    }
 }

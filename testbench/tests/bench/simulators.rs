@@ -1,6 +1,7 @@
 //! The two simulators on hand-written Verilog: values, ports, errors, cache.
 
 use std::os::unix::fs::MetadataExt;
+use std::path::PathBuf;
 
 use crate::bench::common::{COUNTER, Counter, Files, MEMORY, counter_ports, memory_ports, port};
 use posicast_model::rtl::{ClockedBlock, Direction};
@@ -187,15 +188,31 @@ fn unit_a_built_simulation_is_reused_and_parallel_builds_meet() {
         }
     });
     // A file that was built anew would be another one under the same name.
-    let objects = || -> Vec<u64> {
-        let entries = std::fs::read_dir(files.cache()).unwrap();
-        entries.map(|entry| entry.unwrap().metadata().unwrap().ino()).collect()
+    let kept = |extension: &str| -> Vec<(PathBuf, u64)> {
+        let entries = std::fs::read_dir(files.cache()).unwrap().map(Result::unwrap);
+        let entries = entries.map(|entry| (entry.path(), entry.metadata().unwrap().ino()));
+        let mut kept: Vec<_> = entries
+            .filter(|(path, _)| path.extension().is_some_and(|e| e == extension))
+            .collect();
+        kept.sort();
+        kept
     };
-    let before = objects();
-    assert_eq!(before.len(), 1);
+    let simulations = kept("so");
+    assert_eq!(simulations.len(), 1);
     Verilated::build_in(&files.cache(), &source, 3).unwrap();
-    assert_eq!(objects(), before);
-    std::fs::write(&files.files[0], COUNTER.replace("32'd0", "32'd1")).unwrap();
-    Verilated::build_in(&files.cache(), &source, 3).unwrap();
-    assert_eq!(objects().len(), 2);
+    assert_eq!(kept("so"), simulations);
+    let build_another = |reset: &str| {
+        std::fs::write(&files.files[0], COUNTER.replace("32'd0", reset)).unwrap();
+        Verilated::build_in(&files.cache(), &source, 3)
+    };
+    build_another("32'd1").unwrap();
+    assert_eq!(kept("so").len(), 2);
+    // Verilator's own C++ is not compiled again: its objects are taken as they are.
+    let runtime = kept("o");
+    assert!(!runtime.is_empty());
+    for (object, _) in &runtime {
+        std::fs::write(object, "no object").unwrap();
+    }
+    let error = build_another("32'd2").unwrap_err();
+    assert!(matches!(error, Error::ToolFailed { .. }), "{error}");
 }
