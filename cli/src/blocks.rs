@@ -117,7 +117,7 @@ fn parts(machine: &Machine, hardware: &Hardware<'_>, path: &Path) -> Result<[Par
         Part::DividerShare(axes),
         Part::Group(axes),
         Part::SampleSelect {
-            word_bits: MOTION_WORD_BITS[1],
+            word_bits: *MOTION_WORD_BITS.end(),
             channels: MOTION.channels as usize,
         },
         Part::SettingBanks(first.map_or_else(Default::default, |control| control.derived.settings)),
@@ -173,7 +173,7 @@ fn motion_shaper(shapers: &[AxisShaper]) -> Result<ShaperConfig, Failure> {
     let Some(first) = shapers.first() else {
         return Err(Failure::from(miette::miette!("the machine has no axis")));
     };
-    let bits = first.config.word_bits().max(MOTION_WORD_BITS[0]);
+    let bits = first.config.word_bits().max(*MOTION_WORD_BITS.start());
     let plain = ShaperConfig::new(bits, first.config.table().clone()).map_err(Failure::because)?;
     let all_channels = plain.clone().for_motion(MOTION);
     let config = all_channels.or_else(|_| plain.for_motion(Motion { channels: 1, ..MOTION }));

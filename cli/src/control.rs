@@ -22,7 +22,7 @@ const NYQUIST_REACH: [f64; 2] = [2.8, 1.0];
 const ONE_SIDED: &str = "a half bridge shows a negative command as 0: choose direction, full-bridge or locked-antiphase \
                          for mode in [axis.pwm], unless the axis is pushed back by something else";
 
-const ONE_CHANNEL: &str = "the shaper component has the position's channel alone: three take command words of 24 or 32 \
+const ONE_CHANNEL: &str = "the shaper component has the position's channel alone: three take command words of 18 to 32 \
                            bits and delays of at most 4094 samples; the host must give velocity and acceleration shaped";
 
 /// The controllers of a machine: `None` for an axis without.

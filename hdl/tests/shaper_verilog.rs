@@ -1,7 +1,7 @@
 //! The shaper's Verilog as text: its names, its ports, its order; what it does is tested in lock step.
 
 use posicast_hdl::shaper::emit;
-use posicast_model::rtl::shaper::{RING_ADDRESS_BITS, ShaperConfig, TAP_INDEX_BITS, WORD_BITS, ports};
+use posicast_model::rtl::shaper::{RING_ADDRESS_BITS, ShaperConfig, TAP_INDEX_BITS, ports};
 use posicast_model::taps::{Tap, TapTable};
 
 #[allow(clippy::unwrap_used, reason = "a helper that fails fails its test")]
@@ -17,7 +17,7 @@ fn config(word_bits: u32, ring: u32, index: u32) -> ShaperConfig {
 
 #[test]
 fn unit_every_size_has_the_ports_of_its_model() {
-    for word_bits in WORD_BITS {
+    for word_bits in [8, 16, 24, 32] {
         for ring in RING_ADDRESS_BITS {
             for index in TAP_INDEX_BITS {
                 let config = config(word_bits, ring, index);

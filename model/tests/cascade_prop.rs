@@ -9,10 +9,7 @@ fn cascade() -> impl Strategy<Value = CascadeConfig> {
     let any_delays = proptest::collection::vec(1u32..100, 1..=8);
     let equal_delays = (1u32..100, 1usize..=16).prop_map(|(delay, stages)| vec![delay; stages]);
     let multiples = proptest::collection::vec(prop_oneof![Just(3u32), Just(6), Just(9)], 1..=16);
-    (
-        proptest::sample::select(&WORD_BITS[..]),
-        prop_oneof![any_delays, equal_delays, multiples],
-    )
+    (WORD_BITS, prop_oneof![any_delays, equal_delays, multiples])
         .prop_map(|(word_bits, delays)| CascadeConfig::new(word_bits, delays).unwrap())
 }
 

@@ -323,7 +323,7 @@ fn unit_what_no_shaper_for_motion_can_be_is_named() {
             .to_string()
     };
     assert!(refused(32, 0, 0).contains("0 channels") && refused(32, 0, 4).contains("4 channels"));
-    assert!(refused(16, 0, 1).contains("24 or 32"));
+    assert!(refused(17, 0, 1).contains("18 to 32"));
     assert!(refused(32, 5000, 2).contains("4094"));
     let late = ShaperConfig::new(32, bypass())
         .and_then(|c| c.for_motion(motion(3)))

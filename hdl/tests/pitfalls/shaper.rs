@@ -22,13 +22,16 @@ fn for_motion(config: ShaperConfig, channels: u32, modulo: bool) -> ShaperConfig
 #[test]
 fn crosssim_shaper_equals_its_model() {
     let rows = [
-        ("small", config(16, 3, 20)),
+        ("narrow", config(8, 3, 20)),
+        ("small", config(17, 3, 20)),
         ("middle", config(24, 40, 200)),
         ("large", config(32, 77, 900)),
         ("between", of_sizes(20, 5, 3)),
         ("tiny", of_sizes(6, 4, 2)),
         ("motion", for_motion(config(32, 5, 11), 3, false)),
+        ("narrow_motion", for_motion(config(18, 70, 5000), 1, false)),
         ("rotary", for_motion(config(24, 3, 9), 1, true)),
+        ("odd_rotary", for_motion(config(21, 3, 9), 2, true)),
     ];
     let rows = rows.map(|(name, config)| {
         let mut model = Shaper::new(&config, 7);

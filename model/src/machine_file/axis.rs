@@ -98,10 +98,10 @@ fn read_modulo(table: &Table<'_, '_>, fixed_point: Option<FixedPoint>) -> bool {
     let modulo = table.boolean("modulo") == Some(true);
     let bits = fixed_point.map(|format| format.command_bits);
     if let Some(bits) = bits.filter(|bits| modulo && !MOTION_WORD_BITS.contains(bits)) {
-        let list: Vec<String> = MOTION_WORD_BITS.iter().map(u32::to_string).collect();
+        let (least, most) = (MOTION_WORD_BITS.start(), MOTION_WORD_BITS.end());
         let found = format!("modulo = true with command words of {bits} bits");
-        let allowed = format!("modulo = true with fixed_point.command_bits = {}", list.join(" or "));
-        let remedy = format!("set fixed_point.command_bits = {}", list[0]);
+        let allowed = format!("modulo = true with fixed_point.command_bits = {least} to {most}");
+        let remedy = format!("set fixed_point.command_bits = {least}");
         table.contradiction("modulo", found, allowed, remedy);
     }
     modulo

@@ -157,7 +157,7 @@ fn read_fixed_point(table: &Table<'_, '_>) -> Option<FixedPoint> {
         "coefficient_fraction",
         "digitise",
     ]);
-    let command_bits = table.one_of("command_bits", &WORD_BITS);
+    let command_bits = table.integer("command_bits", *WORD_BITS.start(), *WORD_BITS.end());
     let default = default_fixed_point(command_bits.unwrap_or(DEFAULT_COMMAND_BITS));
     let fraction = |key, default| {
         table

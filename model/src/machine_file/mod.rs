@@ -147,7 +147,7 @@ pub enum Digitise {
 /// `[fixed_point]`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct FixedPoint {
-    /// Width of a command word: 16, 24 or 32.
+    /// Width of a command word: 8 to 32.
     pub command_bits: u32,
     /// Fraction bits of position, in encoder counts.
     pub command_fraction: u32,

@@ -146,11 +146,11 @@ pub fn modulo_words(
 
 /// What makes a word fit.
 fn remedy(counts: f64, command_bits: u32, command_fraction: u32) -> String {
-    let enough = |width: &&u32| {
-        let format = WordFormat::new(**width, command_fraction);
-        **width > command_bits && format.is_ok_and(|format| format.to_word(counts).is_ok())
+    let enough = |width: &u32| {
+        let format = WordFormat::new(*width, command_fraction);
+        *width > command_bits && format.is_ok_and(|format| format.to_word(counts).is_ok())
     };
-    match WORD_BITS.iter().find(enough) {
+    match WORD_BITS.into_iter().find(enough) {
         Some(width) => format!("set command_bits = {width}, lower command_fraction, or move less far"),
         None => "lower command_fraction, or move less far".to_owned(),
     }

@@ -219,20 +219,20 @@ fn unit_blocks_that_need_each_other_say_what_to_add() {
 }
 
 #[test]
-fn unit_a_modulo_axis_wraps_and_has_words_of_24_or_32_bits() {
+fn unit_a_modulo_axis_wraps_and_has_words_of_18_bits_or_more() {
     let modulo = |bits: &str, value: &str| {
         let to = format!("1_000_000\nmodulo = {value}");
         SMALL.replace("1_000_000", &to).replace("32", bits)
     };
-    assert!(right(&modulo("32", "true")).axes[0].modulo && right(&modulo("24", "true")).axes[0].modulo);
+    assert!(right(&modulo("32", "true")).axes[0].modulo && right(&modulo("18", "true")).axes[0].modulo);
     assert!(!right(&modulo("16", "false")).axes[0].modulo && !right(SMALL).axes[0].modulo);
-    let error = wrong(&modulo("16", "true"));
+    let error = wrong(&modulo("17", "true"));
     assert_eq!(
         error.to_string(),
-        "m.toml:10: axis.modulo of axis x: found modulo = true with command words of 16 bits; allowed: modulo = true with \
-         fixed_point.command_bits = 24 or 32"
+        "m.toml:10: axis.modulo of axis x: found modulo = true with command words of 17 bits; allowed: modulo = true with \
+         fixed_point.command_bits = 18 to 32"
     );
-    assert_eq!(error.problems()[0].remedy, "set fixed_point.command_bits = 24");
+    assert_eq!(error.problems()[0].remedy, "set fixed_point.command_bits = 18");
     breaks(
         "1_000_000",
         "1_000_000\nmodulo = 1",

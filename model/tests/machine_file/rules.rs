@@ -137,7 +137,7 @@ fn unit_the_travel_fits_the_position_word_or_the_next_size_is_named() {
     let place = "m.toml:16: axis.limits.travel of axis x";
     let expected = format!(
         "{place}: found a travel of up to 50000 counts; allowed: at most 32767.99609375 counts in 24 bits \
-                            with 8 fraction bits; set fixed_point.command_bits = 32"
+                            with 8 fraction bits; set fixed_point.command_bits = 25"
     );
     assert_eq!(wrong(&limits("24", "[-0.05, 0.01]")).to_string(), expected);
     let expected = format!(

@@ -2,13 +2,14 @@
 
 use crate::taps::{Tap, TapTable, TapTableError};
 use std::collections::BTreeMap;
+use std::ops::RangeInclusive;
 
-/// Word widths that the cascade is built for.
-pub const WORD_BITS: [u32; 3] = [16, 24, 32];
-/// Sizes of a stage's ring that the cascade is built for, as bits of address: 2^6 … 2^10 and 2^12 samples.
-pub const RING_ADDRESS_BITS: [u32; 6] = [6, 7, 8, 9, 10, 12];
-/// Numbers of stages that the cascade is built for, as bits of their index: up to 4, 8 and 16 stages.
-pub const STAGE_INDEX_BITS: [u32; 3] = [2, 3, 4];
+/// Word widths that a cascade may have.
+pub const WORD_BITS: RangeInclusive<u32> = 8..=32;
+/// Sizes of a stage's ring, as bits of address: 64 … 4096 samples.
+pub const RING_ADDRESS_BITS: RangeInclusive<u32> = 6..=12;
+/// Numbers of stages, as bits of their index: up to 4, 8 and 16 stages.
+pub const STAGE_INDEX_BITS: RangeInclusive<u32> = 2..=4;
 /// Clocks of a pass beyond two per stage: the sample into the sum, and rounding.
 pub const PASS_OVERHEAD_CLOCKS: u32 = 2;
 
@@ -30,7 +31,7 @@ pub struct CascadeConfig {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum CascadeConfigError {
     /// A word width that is not in [`WORD_BITS`].
-    #[error("command words of {0} bits: the cascade is built for 16, 24 or 32")]
+    #[error("command words of {0} bits: a cascade has 8 to 32")]
     WordBits(u32),
     /// No stage, or too many.
     #[error("{0} half sums: a cascade has 1 to 16; choose a lower order or fewer modes")]
@@ -63,7 +64,7 @@ impl CascadeConfig {
         let holds = |bits: &u32| 1usize << bits >= stages;
         let smallest = STAGE_INDEX_BITS.into_iter().find(holds).filter(|_| stages > 0);
         let stage_index_bits = smallest.ok_or(CascadeConfigError::Stages(stages))?;
-        let mut ring_address_bits = RING_ADDRESS_BITS[0];
+        let mut ring_address_bits = *RING_ADDRESS_BITS.start();
         for (index, &found) in delays_samples.iter().enumerate() {
             let stage = index + 1;
             let reaches = |bits: &u32| 1u64 << bits >= u64::from(found) + 2;
@@ -150,7 +151,7 @@ mod tests {
 
     #[test]
     fn unit_the_smallest_sizes_are_chosen() {
-        for (delay, bits) in [(1, 6), (62, 6), (63, 7), (1022, 10), (1023, 12), (4094, 12)] {
+        for (delay, bits) in [(1, 6), (62, 6), (63, 7), (1022, 10), (1023, 11), (4094, 12)] {
             let config = CascadeConfig::new(32, vec![1, delay]).unwrap();
             assert_eq!(config.ring_address_bits(), bits, "delay {delay}");
         }
@@ -163,7 +164,8 @@ mod tests {
     #[test]
     fn unit_what_no_cascade_holds_is_named() {
         let error = |word, delays: Vec<u32>| CascadeConfig::new(word, delays).unwrap_err();
-        assert_eq!(error(20, vec![1]), CascadeConfigError::WordBits(20));
+        assert_eq!(error(7, vec![1]), CascadeConfigError::WordBits(7));
+        assert_eq!(error(33, vec![1]), CascadeConfigError::WordBits(33));
         assert_eq!(error(16, vec![]), CascadeConfigError::Stages(0));
         assert_eq!(error(16, vec![1; 17]), CascadeConfigError::Stages(17));
         assert_eq!(error(16, vec![5, 0]), CascadeConfigError::Delay { stage: 2, found: 0 });

@@ -1,15 +1,16 @@
 //! What is fixed when a shaper is built.
 
 use crate::taps::{Tap, TapTable};
+use std::ops::RangeInclusive;
 
-/// Word widths that the shaper is built for (16 for the stand-alone shaper).
-pub const WORD_BITS: [u32; 3] = [16, 24, 32];
-/// Ring sizes that the shaper is built for, as bits of address: 2^6 … 2^12 and 2^14 samples.
-pub const RING_ADDRESS_BITS: [u32; 8] = [6, 7, 8, 9, 10, 11, 12, 14];
-/// Table sizes that the shaper is built for, as bits of index: 64 and 256 taps. (16 would take the same memory blocks.)
-pub const TAP_INDEX_BITS: [u32; 2] = [6, 8];
-/// Word widths that a shaper for motion is built for.
-pub const MOTION_WORD_BITS: [u32; 2] = [24, 32];
+/// Word widths that a machine's shaper may have.
+pub const WORD_BITS: RangeInclusive<u32> = 8..=32;
+/// Word widths that a shaper for motion may have: a product takes two multipliers, the second for the bits above the 17th.
+pub const MOTION_WORD_BITS: RangeInclusive<u32> = 18..=32;
+/// Sizes of a machine's ring, as bits of address: 64 … 16384 samples. (Fewer would take the same memory blocks.)
+pub const RING_ADDRESS_BITS: RangeInclusive<u32> = 6..=14;
+/// Sizes of a machine's table, as bits of index: 64, 128 and 256 taps. (Fewer would take the same memory blocks.)
+pub const TAP_INDEX_BITS: RangeInclusive<u32> = 6..=8;
 /// Most channels of a shaper: position, velocity, acceleration.
 pub const CHANNELS_MAX: usize = 3;
 /// Largest ring of more than one channel, as bits of address.
@@ -36,7 +37,7 @@ pub struct Motion {
     pub modulo: bool,
 }
 
-/// What is fixed when a shaper is built: sizes from the lists above, and the table in its ROM (bank 0).
+/// What is fixed when a shaper is built: its sizes, and the table in its ROM (bank 0).
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ShaperConfig {
     word_bits: u32,
@@ -52,7 +53,7 @@ pub struct ShaperConfig {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum ShaperConfigError {
     /// A word width that is not in [`WORD_BITS`].
-    #[error("command words of {0} bits: the shaper is built for 16, 24 or 32")]
+    #[error("command words of {0} bits: the shaper has 8 to 32")]
     WordBits(u32),
     /// Sizes that no shaper can have.
     #[error(
@@ -90,7 +91,7 @@ pub enum ShaperConfigError {
     #[error("{0} channels: a shaper for motion has 1 (position), 2 (and velocity) or 3 (and acceleration)")]
     Channels(u32),
     /// A word width that is not in [`MOTION_WORD_BITS`].
-    #[error("command words of {0} bits: a shaper for motion is built for 24 or 32")]
+    #[error("command words of {0} bits: a shaper for motion has 18 to 32")]
     MotionWordBits(u32),
     /// A ring that only one channel can have.
     #[error(
@@ -145,8 +146,7 @@ impl ShaperConfig {
     }
 
     /// The shaper of just these sizes: words of `word_bits`, a ring of 2^`ring_address_bits` samples, tables of up to
-    /// 2^`tap_index_bits` taps. Machine files choose among the sizes of [`WORD_BITS`], [`RING_ADDRESS_BITS`] and
-    /// [`TAP_INDEX_BITS`]; a proof that holds the memories needs smaller ones.
+    /// 2^`tap_index_bits` taps. A proof that holds the memories needs smaller ones than [`ShaperConfig::new`] chooses.
     ///
     /// # Errors
     /// [`ShaperConfigError`] for words of other than 4 to 32 bits, a ring of other than 2^2 to 2^14 samples, a table of other
@@ -344,7 +344,7 @@ fn ring_for(delay_samples: u32) -> Result<u32, ShaperConfigError> {
         .find(reaches)
         .ok_or(ShaperConfigError::Delay {
             found: delay_samples,
-            allowed: (1 << RING_ADDRESS_BITS[RING_ADDRESS_BITS.len() - 1]) - 2,
+            allowed: (1 << RING_ADDRESS_BITS.end()) - 2,
         })
 }
 
@@ -353,7 +353,7 @@ fn index_for(taps: usize) -> Result<u32, ShaperConfigError> {
     let holds = |bits: &u32| (1usize << bits) >= taps;
     TAP_INDEX_BITS.into_iter().find(holds).ok_or(ShaperConfigError::Taps {
         found: taps,
-        allowed: 1 << TAP_INDEX_BITS[TAP_INDEX_BITS.len() - 1],
+        allowed: 1 << TAP_INDEX_BITS.end(),
     })
 }
 
@@ -378,11 +378,11 @@ mod tests {
 
     #[test]
     fn unit_the_smallest_sizes_are_chosen() {
-        for (delay, bits) in [(0, 6), (62, 6), (63, 7), (4094, 12), (4095, 14), (16382, 14)] {
+        for (delay, bits) in [(0, 6), (62, 6), (63, 7), (4094, 12), (4095, 13), (16382, 14)] {
             let config = ShaperConfig::new(32, table(1, delay)).unwrap();
             assert_eq!(config.ring_address_bits(), bits, "delay {delay}");
         }
-        for (taps, bits) in [(1, 6), (64, 6), (65, 8), (256, 8)] {
+        for (taps, bits) in [(1, 6), (64, 6), (65, 7), (129, 8), (256, 8)] {
             let config = ShaperConfig::new(32, table(taps, 300)).unwrap();
             assert_eq!(config.tap_index_bits(), bits, "{taps} taps");
         }
@@ -410,7 +410,10 @@ mod tests {
                 allowed: 256
             }
         );
-        assert_eq!(ShaperConfig::new(20, table(1, 0)), Err(ShaperConfigError::WordBits(20)));
+        for word_bits in [7, 33] {
+            let refused = ShaperConfig::new(word_bits, table(1, 0));
+            assert_eq!(refused, Err(ShaperConfigError::WordBits(word_bits)));
+        }
     }
 
     #[test]
@@ -440,7 +443,7 @@ mod tests {
     fn unit_room_only_grows() {
         let config = ShaperConfig::new(16, table(17, 100)).unwrap();
         let roomy = config.clone().with_room_for(500, 65).unwrap();
-        assert_eq!((roomy.ring_address_bits(), roomy.tap_index_bits()), (9, 8));
+        assert_eq!((roomy.ring_address_bits(), roomy.tap_index_bits()), (9, 7));
         assert_eq!(config.clone().with_room_for(0, 0).unwrap(), config);
         assert!(config.with_room_for(16383, 1).is_err());
     }
