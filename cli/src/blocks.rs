@@ -4,7 +4,7 @@ use crate::bench;
 use crate::command::{self, Words};
 use crate::design::Report;
 use crate::failure::Failure;
-use crate::hardware::failure;
+use crate::machine::of_hardware;
 use posicast_hdl::machine::AxisShaper;
 use posicast_model::hardware::{self, Hardware};
 use posicast_model::machine_file::{Axis, Machine};
@@ -165,7 +165,7 @@ fn axes(machine: &Machine, has: impl Fn(&Axis) -> bool) -> String {
 
 /// The divider for the machine's tick.
 fn divider(hardware: &Hardware<'_>, path: &Path) -> Result<DividerConfig, Failure> {
-    hardware.divider().map_err(|error| failure(&error, path))
+    hardware.divider().map_err(|error| of_hardware(&error, path))
 }
 
 /// A shaper for motion with the first axis's table, at the first size that holds it.

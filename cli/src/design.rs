@@ -8,7 +8,6 @@ use crate::compare;
 use crate::control::{self, AxisControl};
 use crate::failure::Failure;
 use crate::guards;
-use crate::hardware;
 use crate::machine;
 use crate::output::{self, Table, percent};
 use crate::plot;
@@ -97,7 +96,7 @@ impl<'a> Report<'a> {
     /// Designs the shapers of `machine`, which the file at `path` describes.
     pub(crate) fn new(machine: &'a Machine, path: &Path) -> Result<Self, Failure> {
         let design = design_machine(machine).map_err(|e| Failure::because(e).in_file(path))?;
-        let hardware = Hardware::of(machine, &design).map_err(|error| hardware::failure(&error, path))?;
+        let hardware = Hardware::of(machine, &design).map_err(|error| machine::of_hardware(&error, path))?;
         let controllers = control::of_machine(machine, &hardware);
         Ok(Self {
             machine,

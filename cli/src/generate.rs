@@ -6,10 +6,8 @@ use crate::failure::Failure;
 use crate::hardware::Built;
 use crate::machine::{self, MachineFile};
 use crate::output;
-use crate::sopc;
-use posicast_hdl::emit::Module;
+use crate::{sopc, verilog};
 use posicast_synth::package::{Committed, Package};
-use posicast_system::scratch;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
@@ -32,7 +30,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let built = Built::new(&report, &args.machine)?;
     let modules = built.modules(&args.machine)?;
     let mut package = open(args.output.as_deref(), &file)?;
-    add_sources(&mut package, &file, &modules)?;
+    verilog::add_sources(&mut package, &file, &modules)?;
     let (components, stage) = (&built.components, built.stage.as_ref());
     sopc::add(&mut package, &file.machine, board, stage, components)?;
     driver::add(&mut package, &file.machine, &modules, components, stage)?;
@@ -74,36 +72,4 @@ pub(crate) fn tell(committed: &Committed) {
 pub(crate) fn open(output: Option<&Path>, file: &MachineFile) -> Result<Package, Failure> {
     let name = &file.machine.name;
     Package::open(output.unwrap_or(Path::new(name)), name).map_err(Failure::because)
-}
-
-/// Adds the machine file and its Verilog to the folder, and returns where the Verilog stands until the folder is complete.
-pub(crate) fn add_sources(
-    package: &mut Package,
-    file: &MachineFile,
-    modules: &[Module],
-) -> Result<Vec<PathBuf>, Failure> {
-    package
-        .add("machine.toml", file.text.as_bytes())
-        .map_err(Failure::because)?;
-    let write = |module: &Module| {
-        let path = package
-            .stage(&format!("rtl/{}.v", module.name))
-            .map_err(Failure::because)?;
-        std::fs::write(&path, &module.text).map_err(Failure::because)?;
-        Ok(path)
-    };
-    modules.iter().map(write).collect()
-}
-
-/// Writes the modules into a temporary folder, for tools that read files. The folder goes when the guard is dropped.
-pub(crate) fn write_scratch(modules: &[Module]) -> Result<(Vec<PathBuf>, scratch::Folder), Failure> {
-    let folder = scratch::Folder::new(scratch::PREFIX).map_err(Failure::because)?;
-    let files: Result<Vec<_>, _> = modules
-        .iter()
-        .map(|module| {
-            let path = folder.path().join(format!("{}.v", module.name));
-            std::fs::write(&path, &module.text).map(|()| path)
-        })
-        .collect();
-    Ok((files.map_err(Failure::because)?, folder))
 }

@@ -2,7 +2,7 @@
 
 use crate::design::Report;
 use crate::failure::Failure;
-use crate::machine::at_key;
+use crate::machine::{at_key, of_hardware};
 use crate::output;
 use posicast_hdl::emit::{Module, add};
 use posicast_hdl::machine::{AxisShaper, emit_machine};
@@ -38,14 +38,9 @@ pub(crate) struct Stage {
     pub(crate) block: ComponentBlock,
 }
 
-/// The failure of a machine file, or of that in a folder, at `path`.
-pub(crate) fn failure(error: &HardwareError, path: &Path) -> Failure {
-    at_key(path, error.axis, &error.key, error)
-}
-
 /// The shaper of each axis in the top module of the machine that the file at `path` describes.
 pub(crate) fn shapers(machine: &Machine, hardware: &Hardware<'_>, path: &Path) -> Result<Vec<AxisShaper>, Failure> {
-    let configs = hardware.shapers().map_err(|error| failure(&error, path))?;
+    let configs = hardware.shapers().map_err(|error| of_hardware(&error, path))?;
     let shapers = machine.axes.iter().zip(configs);
     let shapers = shapers.map(|(axis, config)| AxisShaper {
         axis: axis.name.clone(),
@@ -59,7 +54,7 @@ impl<'a> Built<'a> {
     /// warning: then there is none.
     pub(crate) fn new(report: &Report<'a>, path: &Path) -> Result<Self, Failure> {
         let (machine, hardware) = (report.machine, &report.hardware);
-        let refused = |error: HardwareError| failure(&error, path);
+        let refused = |error: HardwareError| of_hardware(&error, path);
         let shapers = shapers(machine, hardware, path)?;
         let components = hardware.components().map_err(refused)?.into_iter().map(|one| {
             let axis = &machine.axes[one.axis].name;

@@ -1,7 +1,9 @@
 //! Reading the machine file, and saying which of its keys is to blame.
 
 use crate::failure::Failure;
+use posicast_model::hardware::HardwareError;
 use posicast_model::machine_file::{self, Machine};
+use posicast_synth::yosys::Family;
 use std::fmt;
 use std::fs::File;
 use std::io::Read;
@@ -54,6 +56,14 @@ pub(crate) fn parse(path: &Path, text: &str) -> Result<Machine, Failure> {
     machine_file::parse(&path.display().to_string(), text).map_err(Failure::input)
 }
 
+/// The family of the machine file's target.
+pub(crate) fn family(machine: &Machine) -> Result<Family, Failure> {
+    match &machine.target {
+        Some(target) => target.family.parse().map_err(Failure::because),
+        None => Ok(Family::default()),
+    }
+}
+
 /// Bad input at a key of the machine file at `path`, or of that in the folder; `axis` counts the axes from 0.
 pub(crate) fn at_key(path: &Path, axis: usize, key: &str, reason: impl fmt::Display) -> Failure {
     let file = match path.is_dir() {
@@ -64,4 +74,9 @@ pub(crate) fn at_key(path: &Path, axis: usize, key: &str, reason: impl fmt::Disp
     let text = std::fs::read_to_string(&file).unwrap_or_default();
     let line = machine_file::line_of(&text, axis, key).map_or_else(String::new, |line| format!(":{line}"));
     Failure::from(miette::miette!("{}{line}: {key}: {reason}", file.display()))
+}
+
+/// The failure of hardware that the machine file at `path`, or that in the folder, asks for.
+pub(crate) fn of_hardware(error: &HardwareError, path: &Path) -> Failure {
+    at_key(path, error.axis, &error.key, error)
 }

@@ -30,6 +30,7 @@ mod sopc;
 mod synth;
 mod tolerance;
 mod verify;
+mod verilog;
 
 use clap::{Parser, Subcommand};
 use failure::Failure;

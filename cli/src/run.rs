@@ -8,8 +8,9 @@ mod advice;
 mod checks;
 mod closed_loop;
 mod report;
+mod waves;
 
-use crate::bench::{self, Bench, Simulator};
+use crate::bench::{self, Simulator};
 use crate::blocks;
 use crate::command;
 use crate::design::{self, Report as DesignReport};
@@ -19,20 +20,11 @@ use crate::machine;
 use crate::plot;
 use crate::simulate::simulate;
 use crate::verify::DEFAULT_SEED;
-use crate::{driver, generate, output, progress, sopc, synth};
+use crate::{driver, generate, output, progress, sopc, verilog};
 use closed_loop::ClosedLoop;
-use posicast_hdl::machine::AxisShaper;
-use posicast_model::design::MachineDesign;
 use posicast_model::machine_file::Machine;
-use posicast_model::simulation::{AxisSimulation, largest_difference};
-use posicast_synth::package::Package;
 use posicast_synth::yosys::{Estimate, Yosys, YosysError};
-use posicast_testbench::blocks::{Block, MachineShapers, Sources};
-use posicast_testbench::diff::{self, Comparison, Options};
-use posicast_testbench::lockstep::TwoValued;
-use posicast_testbench::lockstep::report::Report as LockstepReport;
-use posicast_testbench::recording::Move;
-use posicast_testbench::wave::{Difference, Part, merge};
+use posicast_testbench::blocks::{Block, Sources};
 use report::Report;
 use std::path::PathBuf;
 
@@ -91,7 +83,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
 
     let package = generate::open(args.output.as_deref(), &file)?;
     let mut package = package.with_evidence().map_err(Failure::because)?;
-    let files = generate::add_sources(&mut package, &file, &modules)?;
+    let files = verilog::add_sources(&mut package, &file, &modules)?;
     sopc::add(&mut package, machine, board, stage.as_ref(), &components)?;
     driver::add(&mut package, machine, &modules, &components, stage.as_ref())?;
     let components = components.iter().chain(stage.as_ref().map(|stage| &stage.block));
@@ -99,7 +91,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let tops: Vec<&dyn Block> = std::iter::once(&top as &dyn Block).chain(components).collect();
     let all = Sources::found(files.clone());
     let sources = all.reached_by(&top).map_err(bench::failure)?;
-    let job = Job {
+    let job = waves::Job {
         machine,
         top: &top,
         sources: &sources,
@@ -194,111 +186,8 @@ fn installed_yosys() -> Result<Option<Yosys>, Failure> {
 fn estimate(yosys: &Yosys, machine: &Machine, files: &[PathBuf]) -> Result<Estimate, Failure> {
     let spinner = progress::spinner("Yosys maps the design");
     let estimate = yosys
-        .estimate(files, &machine.name, synth::family_of(machine)?)
+        .estimate(files, &machine.name, machine::family(machine)?)
         .map_err(Failure::because)?;
     spinner.finish_and_clear();
     Ok(estimate)
-}
-
-/// The waveforms of the move and what their comparison says.
-pub(crate) struct Waves {
-    /// Output samples of each axis.
-    pub(crate) samples: Vec<usize>,
-    /// Clocks of the machine that the move lasts; of these the idle ones between two passes are not recorded.
-    pub(crate) clocks: u64,
-    /// RTL against model, exact.
-    pub(crate) model: Comparison,
-    /// RTL against float design, within the bound.
-    pub(crate) float: Comparison,
-    /// Largest difference of RTL and float design per axis, in LSB.
-    pub(crate) largest_difference_lsb: Vec<f64>,
-}
-
-struct Job<'a> {
-    machine: &'a Machine,
-    top: &'a MachineShapers,
-    sources: &'a Sources,
-    simulator: Simulator,
-    seed: u64,
-}
-
-impl Job<'_> {
-    fn lockstep(&self, cycles: Option<u64>) -> Result<LockstepReport, Failure> {
-        let bench = Bench {
-            block: self.top,
-            sources: self.sources,
-            cycles,
-        };
-        bench::compare_all(&[bench], self.simulator, self.seed)
-    }
-
-    fn waves(&self, package: &mut Package, design: &MachineDesign, axes: &[AxisSimulation]) -> Result<Waves, Failure> {
-        let command = Move {
-            layout: self.top.layout(),
-            words: self.top.words(),
-            pass_clocks: self.top.pass_clocks(),
-            clock_hz: self.machine.clock.frequency_hz,
-            sample_hz: design.sample_hz,
-        };
-        let mut stage = |name: &str| {
-            package
-                .stage_evidence(&format!("wave/{name}"))
-                .map_err(Failure::because)
-        };
-        let (model_vcd, rtl_vcd, float_vcd) = (stage("model.vcd")?, stage("rtl.vcd")?, stage("float.vcd")?);
-        let merged = stage("merged.vcd")?;
-        for view in ["merged.gtkw", "merged.sucl"] {
-            stage(view)?;
-        }
-        let spinner = progress::spinner("waveforms");
-        let scope = self.machine.name.as_str();
-        let mut model = TwoValued(self.top.model(self.seed));
-        command.record(&mut model, &model_vcd, scope).map_err(bench::failure)?;
-        let device = self.simulator.device(self.top, self.sources, self.seed);
-        let mut device = device.map_err(bench::failure)?;
-        let trace = command
-            .record(device.as_mut(), &rtl_vcd, scope)
-            .map_err(bench::failure)?;
-        let word_bits = self.machine.fixed_point.command_bits;
-        let float: Vec<Vec<f64>> = axes.iter().map(|axis| axis.float_words(word_bits)).collect();
-        command
-            .record_float(&float, &trace, &float_vcd, scope)
-            .map_err(bench::failure)?;
-
-        let exact = Options {
-            require_all: true,
-            ..Options::default()
-        };
-        let mut within = Options::default();
-        let mut differences = Vec::new();
-        let names: Vec<String> = self.top.shapers().iter().map(AxisShaper::output).collect();
-        for (name, axis) in names.iter().zip(axes) {
-            within
-                .add_tolerance(&format!("{name}={}", axis.bound_lsb))
-                .map_err(bench::failure)?;
-            differences.push(Difference {
-                name,
-                minuend: (1, name),
-                subtrahend: (2, name),
-            });
-        }
-        let compare = |a, b, options: &Options| diff::compare(a, b, options, &mut |_| {}).map_err(bench::failure);
-        let waves = Waves {
-            samples: trace.shaped.iter().map(Vec::len).collect(),
-            clocks: trace.clocks,
-            model: compare(&model_vcd, &rtl_vcd, &exact)?,
-            float: compare(&rtl_vcd, &float_vcd, &within)?,
-            largest_difference_lsb: trace
-                .shaped
-                .iter()
-                .zip(&float)
-                .map(|(shaped, float)| largest_difference(shaped, float))
-                .collect(),
-        };
-        let parts = [("model", &model_vcd), ("rtl", &rtl_vcd), ("float", &float_vcd)];
-        let parts = parts.map(|(scope, path)| Part { scope, path });
-        merge(&merged, &parts, &differences).map_err(bench::failure)?;
-        spinner.finish_and_clear();
-        Ok(waves)
-    }
 }

@@ -4,7 +4,6 @@ use crate::failure::Failure;
 use crate::hardware::Stage;
 use crate::machine;
 use crate::output;
-use crate::synth;
 use posicast_model::machine_file::{Axis, Machine};
 use posicast_synth::package::Package;
 use posicast_synth::sopc::{Board, Design, Unit};
@@ -24,7 +23,7 @@ pub(crate) fn board(machine: &Machine, path: &Path) -> Result<Option<Board>, Fai
     };
     let refused = |reason: &dyn std::fmt::Display| machine::at_key(path, 0, BOARD_KEY, reason);
     let board: Board = name.parse().map_err(|error| refused(&error))?;
-    let family = synth::family_of(machine)?;
+    let family = machine::family(machine)?;
     if board.family() != family {
         let device = board.family().device().name;
         let allowed = board.family();

@@ -8,7 +8,7 @@ use crate::design::Report;
 use crate::failure::Failure;
 use crate::hardware::{Built, COMPONENT_SUFFIX, STAGE_SUFFIX};
 use crate::output::{self, Table};
-use crate::{generate, machine, progress};
+use crate::{machine, progress, verilog};
 use posicast_model::machine_file::Machine;
 use posicast_synth::package;
 use posicast_synth::yosys::{Block, Estimate, Excess, Family, Resources, Yosys, YosysError};
@@ -39,11 +39,11 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let (machine, files, _scratch) = sources(&args.source)?;
     let family = match args.family {
         Some(family) => family,
-        None => family_of(&machine)?,
+        None => machine::family(&machine)?,
     };
     let yosys = Yosys::installed().map_err(failure)?;
     let names = self::components(&files, &machine.name);
-    let clocks = Clocks::of(args, &machine.name, &names)?;
+    let clocks = Clocks::of(&args.clock, &machine.name, &names)?;
     let spinner = progress::spinner("Yosys maps the design");
     let mut estimate = yosys.estimate(&files, &machine.name, family).map_err(failure)?;
     spinner.finish_and_clear();
@@ -145,16 +145,8 @@ fn sources(source: &Path) -> Result<(Machine, Vec<PathBuf>, Option<Folder>), Fai
     let machine = machine::read(source)?.machine;
     let report = Report::new(&machine, source)?;
     let modules = Built::new(&report, source)?.modules(source)?;
-    let (files, scratch) = generate::write_scratch(&modules)?;
+    let (files, scratch) = verilog::write_scratch(&modules)?;
     Ok((machine, files, Some(scratch)))
-}
-
-/// The family of the machine file's target.
-pub(crate) fn family_of(machine: &Machine) -> Result<Family, Failure> {
-    match &machine.target {
-        Some(target) => target.family.parse().map_err(Failure::because),
-        None => Ok(Family::default()),
-    }
 }
 
 /// A table of blocks with the device's capacity, and where the figures come from.

@@ -1,6 +1,6 @@
 //! What must hold for a run to end with exit status 0.
 
-use super::Waves;
+use super::waves::Waves;
 use crate::bench::{self, Simulator};
 use crate::failure::Failure;
 use crate::tolerance::{beyond_tolerance, shaped_modes};

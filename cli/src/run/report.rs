@@ -1,8 +1,9 @@
 //! What `run` reports: a table for people, a document for programs, a picture for both.
 
+use super::advice;
 use super::checks::Check;
 use super::closed_loop::{ClosedLoop, StageDocument};
-use super::{Waves, advice};
+use super::waves::Waves;
 use crate::bench::Simulator;
 use crate::design::{self, Report as DesignReport};
 use crate::failure::Failure;

@@ -1,6 +1,5 @@
 //! `posicast synth --clock TOP`.
 
-use super::Args;
 use crate::failure::Failure;
 use crate::output::Table;
 use crate::progress;
@@ -31,22 +30,19 @@ pub(super) struct ClockEstimates {
 
 impl<'a> Clocks<'a> {
     /// None was asked for: none. Says what is missing or misspelt before anything long begins.
-    pub(super) fn of(args: &'a Args, machine: &str, components: &[String]) -> Result<Option<Self>, Failure> {
-        if args.clock.is_empty() {
+    pub(super) fn of(tops: &'a [String], machine: &str, components: &[String]) -> Result<Option<Self>, Failure> {
+        if tops.is_empty() {
             return Ok(None);
         }
         let known = || std::iter::once(machine).chain(components.iter().map(String::as_str));
-        if let Some(unknown) = args.clock.iter().find(|top| !known().any(|known| known == *top)) {
+        if let Some(unknown) = tops.iter().find(|top| !known().any(|known| known == *top)) {
             let list = known().collect::<Vec<_>>().join(", ");
             return Err(Failure::Input(miette::miette!(
                 "--clock {unknown}: there is no such top module; there are {list}"
             )));
         }
         let tool = PlaceAndRoute::installed().map_err(failure)?;
-        Ok(Some(Self {
-            tool,
-            tops: &args.clock,
-        }))
+        Ok(Some(Self { tool, tops }))
     }
 
     /// One after the other.

@@ -194,5 +194,5 @@ fn signal(raw: String, atom: &dyn Atom) -> Result<Signal, Cause> {
 /// RustHDL prints a constant as its bit pattern, also if it is signed.
 fn constant(literal: &VerilogLiteral, ty: Type) -> Result<u64, Cause> {
     let (_, value) = literal_value(literal).ok_or(Cause::WidthUnknown("a constant"))?;
-    Type::bits(ty.width).pattern(value)
+    Cause::pattern(Type::bits(ty.width), value)
 }

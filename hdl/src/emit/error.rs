@@ -28,6 +28,13 @@ impl EmitError {
     }
 }
 
+impl Cause {
+    /// `value` as a bit pattern of the type, or that it does not fit.
+    pub(super) fn pattern(place: Type, value: i128) -> Result<u64, Self> {
+        place.pattern(value).ok_or(Self::Literal { value, place })
+    }
+}
+
 /// What was found, and the remedy.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]

@@ -46,7 +46,7 @@ impl<'a> Writer<'a> {
     fn value(&mut self, tree: &Tree, want: Option<Type>) -> Result<Value, Cause> {
         if let Some(value) = self.number(tree) {
             let ty = want.ok_or(Cause::WidthUnknown("a literal"))?;
-            let pattern = ty.pattern(value)?;
+            let pattern = Cause::pattern(ty, value)?;
             return Ok(Value::Literal { pattern, ty });
         }
         match tree {
@@ -361,6 +361,6 @@ fn symbol(op: &VerilogOp) -> &'static str {
 /// `true` or `false`: RustHDL gives them one bit, and integers the width of some Rust integer, which means nothing.
 fn literal_bit(literal: &VerilogLiteral) -> Result<Value, Cause> {
     let (_, value) = literal_value(literal).ok_or(Cause::WidthUnknown("a literal"))?;
-    let pattern = BIT.pattern(value)?;
+    let pattern = Cause::pattern(BIT, value)?;
     Ok(Value::Literal { pattern, ty: BIT })
 }

@@ -198,7 +198,7 @@ impl Sizes<'_> {
         if !all().all(|(narrow, ty)| *narrow == pattern & ty.mask()) {
             let numbers: Vec<_> = found.iter().map(|pattern| i128::from(*pattern)).collect();
             let number = self.number(&numbers).map_err(|_| Cause::SizeValue(list(&numbers)))?;
-            return wanted.pattern(number);
+            return Cause::pattern(wanted, number);
         }
         if wanted.width > ty.width {
             return Err(Cause::SizeValue(format!("{pattern}, of {} bits", ty.width)));

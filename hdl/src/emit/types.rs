@@ -1,6 +1,5 @@
 //! Width and sign of a signal, and sized literals that mean exactly one bit pattern.
 
-use super::error::Cause;
 use std::fmt;
 
 /// Type of a signal or expression: 1 to 64 bits, plain bits or two's complement.
@@ -34,18 +33,14 @@ impl Type {
         mask(0, self.width)
     }
 
-    /// `value` as a bit pattern of this type.
-    pub(super) fn pattern(self, value: i128) -> Result<u64, Cause> {
+    /// `value` as a bit pattern of this type; nothing where it does not fit.
+    pub(super) fn pattern(self, value: i128) -> Option<u64> {
         let (low, high) = if self.signed {
             (-(1i128 << (self.width - 1)), (1i128 << (self.width - 1)) - 1)
         } else {
             (0, (1i128 << self.width) - 1)
         };
-        if (low..=high).contains(&value) {
-            Ok((value as u64) & self.mask())
-        } else {
-            Err(Cause::Literal { value, place: self })
-        }
+        (low..=high).contains(&value).then_some((value as u64) & self.mask())
     }
 
     /// The number that a bit pattern of this type stands for.
@@ -118,11 +113,11 @@ mod tests {
 
     #[test]
     fn unit_values_must_fit() {
-        assert_eq!(Type::bits(64).pattern(u64::MAX.into()), Ok(u64::MAX));
-        assert_eq!(Type { width: 8, signed: true }.pattern(-128), Ok(0x80));
-        assert!(Type { width: 8, signed: true }.pattern(128).is_err());
-        assert!(Type::bits(8).pattern(256).is_err());
-        assert!(Type::bits(8).pattern(-1).is_err());
+        assert_eq!(Type::bits(64).pattern(u64::MAX.into()), Some(u64::MAX));
+        assert_eq!(Type { width: 8, signed: true }.pattern(-128), Some(0x80));
+        assert_eq!(Type { width: 8, signed: true }.pattern(128), None);
+        assert_eq!(Type::bits(8).pattern(256), None);
+        assert_eq!(Type::bits(8).pattern(-1), None);
     }
 
     #[test]

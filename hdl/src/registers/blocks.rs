@@ -1,6 +1,6 @@
 //! One clocked block per register, and what it needs around it.
 
-use super::verilog::{bits, joined, part, type_of};
+use super::text::{bits, joined, part, type_of};
 use crate::emit::Type;
 use crate::emit::print::Lines;
 use posicast_model::rtl::registers::{Access, Field, Register, RegisterMap, Source};

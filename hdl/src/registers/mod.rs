@@ -7,6 +7,7 @@
 //! written from the map, and the interpreter of the same map in the model holds it in lock step.
 
 mod blocks;
+mod text;
 mod verilog;
 
 use crate::emit::names::check_name;

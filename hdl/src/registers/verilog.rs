@@ -3,6 +3,7 @@
 use super::blocks::{
     Flop, clocked, declare, flops, guarded, interrupt, register_block, shadow_flops, shadows, sticky_prefix,
 };
+use super::text::{bits, joined, part};
 use crate::emit::Type;
 use crate::emit::print::{self, Lines};
 use posicast_model::rtl::Direction;
@@ -43,26 +44,6 @@ pub(super) fn body(map: &RegisterMap) -> String {
     lines.text
 }
 
-pub(super) fn bits(width: u32) -> Type {
-    Type { width, signed: false }
-}
-
-pub(super) fn type_of(field: &Field) -> Type {
-    Type {
-        width: field.width,
-        signed: field.is_signed(),
-    }
-}
-
-/// `name[7:0]` of a word, `name[3]`, or the whole.
-pub(super) fn part(word: &str, field: &Field) -> String {
-    match (field.low, field.width) {
-        (0, 32) => word.to_owned(),
-        (low, 1) => format!("{word}[{low}]"),
-        (low, width) => format!("{word}[{}:{low}]", low + width - 1),
-    }
-}
-
 /// The fields of a register and the gaps between them, from bit 31 down, each field as `name` calls it.
 fn word(fields: &[Field], name: impl Fn(&Field) -> String) -> Vec<String> {
     let mut sorted: Vec<&Field> = fields.iter().collect();
@@ -76,11 +57,6 @@ fn word(fields: &[Field], name: impl Fn(&Field) -> String) -> Vec<String> {
     }
     pieces.extend(gap(next));
     pieces
-}
-
-/// `begin`, then the terms with the operator between them, and `end`.
-pub(super) fn joined(lines: &mut Lines, begin: &str, terms: &[String], operator: &str, end: &str) {
-    lines.line(&format!("{begin}{}{end}", terms.join(operator)));
 }
 
 fn offsets(lines: &mut Lines, map: &RegisterMap) {

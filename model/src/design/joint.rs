@@ -1,10 +1,11 @@
 //! Kinds that treat all modes of an axis together: from the keys of the machine file to their designs.
 
 use super::antisymmetric::{self, Antisymmetric, Method, Participant};
+use super::constraint::{Amplitudes, Constraint};
 use super::joint_error::JointError;
 use super::kind::Kind;
 use super::periodic::{self, Base, Periodic};
-use super::simultaneous::{self, Amplitudes, Constraint, Simultaneous};
+use super::simultaneous::{self, Simultaneous};
 use super::{DesignError, RESIDUAL_TOLERANCE, custom};
 use crate::analysis::residual_vibration;
 use crate::impulse::ImpulseSequence;

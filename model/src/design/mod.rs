@@ -11,6 +11,7 @@
 
 pub mod antisymmetric;
 pub mod bias_point;
+mod constraint;
 mod convolution;
 pub mod custom;
 mod equations;

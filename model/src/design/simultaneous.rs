@@ -18,6 +18,8 @@
 
 use nalgebra::{Complex, DMatrix, DVector};
 
+pub use super::constraint::{Amplitudes, Constraint};
+
 use super::DesignError;
 use super::joint_error::{JointError, check_distinct};
 use super::kind::Kind;
@@ -27,51 +29,6 @@ use crate::mode::Mode;
 
 /// Most modes that are solved together.
 pub const MODES_MAX: usize = 4;
-
-/// Amplitudes of the impulses.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Amplitudes {
-    /// 1, −2, 2, …: partial sums −1 and 1.
-    PartialSum,
-    /// 1, −1, 1, …: partial sums 0 and 1.
-    UnitMagnitude,
-}
-
-impl Amplitudes {
-    /// Amplitude of impulse `index`, from 0.
-    fn at(self, index: usize) -> f64 {
-        let sign = if index.is_multiple_of(2) { 1.0 } else { -1.0 };
-        match self {
-            Amplitudes::PartialSum if index > 0 => 2.0 * sign,
-            _ => sign,
-        }
-    }
-
-    fn text(self) -> &'static str {
-        match self {
-            Amplitudes::PartialSum => "1, -2, 2, ...",
-            Amplitudes::UnitMagnitude => "1, -1, 1, ...",
-        }
-    }
-}
-
-/// What must be zero at a mode.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Constraint {
-    /// The residual.
-    Zv,
-    /// The residual and its derivatives for frequency and damping.
-    Zvd,
-}
-
-impl Constraint {
-    fn equations(self) -> usize {
-        match self {
-            Constraint::Zv => 2,
-            Constraint::Zvd => 4,
-        }
-    }
-}
 
 /// A simultaneous shaper.
 #[derive(Debug, Clone, PartialEq)]

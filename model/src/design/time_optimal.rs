@@ -16,7 +16,7 @@
 
 use nalgebra::{Complex, DMatrix, DVector};
 
-use super::simultaneous::{Amplitudes, Constraint};
+use super::constraint::{Amplitudes, Constraint};
 
 /// Samples of the fastest mode's period at which sign changes are looked for.
 const SAMPLES_PER_PERIOD: f64 = 48.0;

@@ -1,6 +1,6 @@
 //! `[[axis]]` and `[[axis.mode]]`, and which of an axis's blocks need each other.
 
-use super::range::NumberRange;
+use super::range::{COUNTS_PER_UNIT, NumberRange};
 use super::table::Table;
 use super::{
     Axis, AxisMode, Clock, FixedPoint, ScaleUse, controller, drive, encoder, limits, pwm, scale, shaper, trace,
@@ -10,8 +10,6 @@ use crate::rtl::shaper::MOTION_WORD_BITS;
 
 /// Modes of an axis: with five impulses each their convolution has 390,625, far more than any table holds.
 const MAX_MODES: usize = 8;
-/// Encoder counts per metre or radian: up to a picometre per count.
-pub(super) const COUNTS_PER_UNIT: NumberRange = NumberRange::positive(1e12);
 /// A frequency before it is compared with the sample rate; below this a shaper would last for hours.
 const FREQUENCY_HZ: NumberRange = NumberRange::closed(1e-3, 1e9).unit("Hz");
 /// Damping ratio of a mode that rings.

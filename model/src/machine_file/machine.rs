@@ -1,6 +1,6 @@
 //! The tables that a machine has once: its name, `[clock]`, `[fixed_point]`, `[target]`, and the list of its axes.
 
-use super::range::NumberRange;
+use super::range::{NumberRange, RATIO_ROUNDING};
 use super::table::Table;
 use super::{Clock, Digitise, FixedPoint, Machine, Target, axis, stage};
 use crate::rtl::shaper::WORD_BITS;
@@ -12,9 +12,6 @@ const MAX_AXES: usize = 4;
 const CLOCK_HZ: NumberRange = NumberRange::positive(1e9).unit("Hz");
 /// Longest sample period in clocks: 100 Hz from 100 MHz. Simulators step through every one of them.
 const MAX_CLOCKS_PER_SAMPLE: f64 = 1e6;
-/// Relative difference from a whole number that the decimals of a frequency may leave.
-pub(super) const RATIO_ROUNDING: f64 = 1e-9;
-
 /// Reads the whole file.
 pub(super) fn read(root: &Table<'_, '_>) -> Option<Machine> {
     root.allow(&["name", "clock", "fixed_point", "target", "axis", "stage"]);

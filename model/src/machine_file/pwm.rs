@@ -4,8 +4,7 @@
 //! pulse are rounded **up**: the pins never show less than the file asks for.
 
 use super::Clock;
-use super::machine::RATIO_ROUNDING;
-use super::range::NumberRange;
+use super::range::{NumberRange, RATIO_ROUNDING};
 use super::table::Table;
 use crate::rtl::pwm::{SHORTEST_PERIOD_CLOCKS, TIME_BITS};
 

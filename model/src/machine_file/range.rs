@@ -73,6 +73,11 @@ impl fmt::Display for NumberRange {
     }
 }
 
+/// Encoder counts per metre or radian: up to a picometre per count.
+pub(super) const COUNTS_PER_UNIT: NumberRange = NumberRange::positive(1e12);
+/// Relative difference from a whole number that the decimals of a frequency may leave.
+pub(super) const RATIO_ROUNDING: f64 = 1e-9;
+
 #[cfg(test)]
 mod tests {
     use super::*;

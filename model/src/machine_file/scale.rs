@@ -1,6 +1,6 @@
 //! `[axis.scale]`: a linear scale at the load, read by a second pulse counter.
 
-use super::axis::COUNTS_PER_UNIT;
+use super::range::COUNTS_PER_UNIT;
 use super::table::Table;
 
 /// What the scale's position is for.

@@ -3,7 +3,7 @@
 //! The command of X starts with a step of `R`. A sine is no cubic, so the response is written as what it is: the steady
 //! oscillation `Re(H(jΩ)·e^{jΩt})`, and the free motion that makes the sum start at rest.
 
-use super::xy_stage::PLANTS;
+use super::plants::PLANTS;
 use crate::impulse::ImpulseSequence;
 use crate::mode::Mode;
 use crate::plant::free_motion;

@@ -1,7 +1,7 @@
 //! The papers' figures, redrawn from our shapers.
 
 use super::designs::{mode_of_omega, shaper};
-use super::{antisymmetry, contour, hybrid_ei, negative_hybrid, xy_stage};
+use super::{antisymmetry, contour, hybrid_ei, negative_hybrid, plants};
 use crate::analysis::sensitivity_curve;
 use crate::design::DesignError;
 use crate::design::kind::Kind;
@@ -203,7 +203,7 @@ pub(super) fn antisymmetry() -> Result<Vec<Figure>, DesignError> {
 /// Step responses of the X axis on plants that are off, and the radius on the way round the circle.
 pub(super) fn xy_stage() -> Result<Vec<Figure>, DesignError> {
     const KINDS: [(&str, Kind); 3] = [("unshaped", Kind::None), ("ZV", Kind::Zv), ("ZVD", Kind::Zvd)];
-    let x = &xy_stage::PLANTS[0];
+    let x = &plants::PLANTS[0];
     let mut figures = Vec::new();
     for (ratio, name) in [
         (0.9, "10 % slower than modelled"),
@@ -227,8 +227,8 @@ pub(super) fn xy_stage() -> Result<Vec<Figure>, DesignError> {
         let mut curves = vec![level("the circle", 0.0, 60.0, 0.0)];
         for (kind_name, kind) in KINDS {
             let shapers = [
-                shaper(kind, &[xy_stage::PLANTS[0].mode()])?,
-                shaper(kind, &[xy_stage::PLANTS[1].mode()])?,
+                shaper(kind, &[plants::PLANTS[0].mode()])?,
+                shaper(kind, &[plants::PLANTS[1].mode()])?,
             ];
             let points = contour::radius_errors_mm(&shapers, ratio, 0.06);
             curves.push(curve(kind_name, in_milliseconds(points)));

@@ -4,52 +4,11 @@
 //! responses lack the shares of the two modes; half each is assumed, as the paper's statements about them need.
 
 use super::designs::{amplitudes, hybrid, shaper, times_s};
+use super::negative_shapers::{MODES, NEGATIVE, PAIRS, negative, positive};
 use super::negative_statements::{self, least, most};
 use super::sheet::{Rule, Sheet};
 use crate::design::DesignError;
-use crate::design::kind::Kind;
-use crate::impulse::ImpulseSequence;
 use crate::mode::Mode;
-use crate::plant::{Plant, PlantMode};
-
-/// The two modes, by eq. (2) with undamped frequencies.
-pub(super) const MODES: [Mode; 2] = [
-    Mode {
-        frequency_hz: 76.6,
-        damping: 0.057,
-    },
-    Mode {
-        frequency_hz: 231.2,
-        damping: 0.017,
-    },
-];
-
-const NEGATIVE: [(&str, Kind); 3] = [("NZV", Kind::PsZv), ("NZVD", Kind::PsZvd), ("NEI", Kind::PsEi)];
-
-/// The six pairs of different kinds: 0 for ZV, 1 for ZVD, 2 for EI.
-pub(super) const PAIRS: [(usize, usize); 6] = [(0, 1), (0, 2), (1, 0), (1, 2), (2, 0), (2, 1)];
-/// The three pairs of one kind.
-pub(super) const PLAIN: [(usize, usize); 3] = [(0, 0), (1, 1), (2, 2)];
-
-/// The negative hybrid of a pair, with its name.
-pub(super) fn negative((first, second): (usize, usize)) -> Result<(String, ImpulseSequence), DesignError> {
-    let name = format!("{}-{}", NEGATIVE[first].0, NEGATIVE[second].0);
-    let shaper = hybrid(&[(NEGATIVE[first].1, MODES[0]), (NEGATIVE[second].1, MODES[1])])?;
-    Ok((name, shaper))
-}
-
-/// The positive hybrid of a pair, with its name.
-pub(super) fn positive((first, second): (usize, usize)) -> Result<(String, ImpulseSequence), DesignError> {
-    const POSITIVE: [(&str, Kind); 3] = [("ZV", Kind::Zv), ("ZVD", Kind::Zvd), ("EI", Kind::Ei)];
-    let name = format!("{}-{}", POSITIVE[first].0, POSITIVE[second].0);
-    let shaper = hybrid(&[(POSITIVE[first].1, MODES[0]), (POSITIVE[second].1, MODES[1])])?;
-    Ok((name, shaper))
-}
-
-/// Both modes with equal shares.
-pub(super) fn plant() -> Plant {
-    Plant::of_shares(MODES.map(|mode| PlantMode { mode, share: 0.5 }).to_vec())
-}
 
 pub(super) fn rows(sheet: &mut Sheet) -> Result<(), DesignError> {
     single_mode_times(sheet)?;

@@ -1,7 +1,7 @@
 //! What "negative-hybrid" states about its figures 2 to 8, amplitudes and robustness.
 
 use super::designs::shaper;
-use super::negative_hybrid::{MODES, PAIRS, PLAIN, negative, plant, positive};
+use super::negative_shapers::{MODES, PAIRS, PLAIN, negative, plant, positive};
 use super::sheet::Sheet;
 use crate::analysis::{insensitivity, residual_vibration};
 use crate::design::DesignError;

@@ -6,8 +6,9 @@
 //!
 //! are taken as exact, though 1e-5 has one digit. The sliding-mode controller of its chapter 4 is not compared.
 
-use super::designs::{amplitudes, mode_of_omega, shaper, times_s};
+use super::designs::{amplitudes, shaper, times_s};
 use super::identification::identify;
+use super::plants::{Identified, PLANTS};
 use super::sheet::{Rule, Sheet};
 use super::{contour, drive, sliding_mode_law};
 use crate::design::DesignError;
@@ -17,45 +18,6 @@ use crate::mode::Mode;
 use crate::plant::response::step_figures;
 use crate::plant::{Plant, PlantMode};
 use std::f64::consts::{PI, TAU};
-
-/// A plant of the thesis: `b / (a_2 s² + a_1 s + b)`.
-pub(super) struct Identified {
-    /// Name of the axis.
-    pub(super) name: &'static str,
-    second: f64,
-    first: f64,
-    zeroth: f64,
-}
-
-/// Gx and Gy.
-pub(super) const PLANTS: [Identified; 2] = [
-    Identified {
-        name: "X",
-        second: 1e-5,
-        first: 0.0026,
-        zeroth: 6.787,
-    },
-    Identified {
-        name: "Y",
-        second: 1e-5,
-        first: 0.0018,
-        zeroth: 3.4358,
-    },
-];
-
-impl Identified {
-    /// The mode of the plant.
-    pub(super) fn mode(&self) -> Mode {
-        let omega = (self.zeroth / self.second).sqrt();
-        mode_of_omega(omega, self.first / (2.0 * self.second * omega))
-    }
-
-    /// The plant on the simulated machine.
-    pub(super) fn plant(&self) -> Plant {
-        let mode = self.mode();
-        Plant::of_shares(vec![PlantMode { mode, share: 1.0 }])
-    }
-}
 
 /// Overshoot of a shaped step in percent where the plant's frequency is `ratio` times the modelled one.
 fn overshoot(plant: &Plant, shaper: &ImpulseSequence, ratio: f64) -> f64 {

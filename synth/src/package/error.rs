@@ -3,7 +3,7 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-use super::MANIFEST;
+use super::layout::MANIFEST;
 
 /// Why a folder cannot be written or read. Every variant but [`Io`](PackageError::Io) leaves it untouched.
 #[derive(Debug, thiserror::Error)]

@@ -22,8 +22,10 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
-use super::error::at;
-use super::{MANIFEST, PackageError, names, read::read_text};
+use super::error::{PackageError, at};
+use super::layout::{MANIFEST, STAGING};
+use super::names;
+use super::text::read_text;
 
 /// The file's contents.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -218,6 +220,28 @@ fn hash(path: &Path) -> Result<String, PackageError> {
 fn digits(hash: impl AsRef<[u8]>) -> String {
     let digits: String = hash.as_ref().iter().map(|byte| format!("{byte:02x}")).collect();
     format!("sha256:{digits}")
+}
+
+/// The manifest of the run before; an empty one for a folder that is missing or empty.
+pub(super) fn inspect(root: &Path) -> Result<Manifest, PackageError> {
+    let entries = match fs::read_dir(root) {
+        Ok(entries) => entries,
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(Manifest::default()),
+        Err(error) if error.kind() == std::io::ErrorKind::NotADirectory => {
+            return Err(PackageError::NotAFolder(root.to_owned()));
+        }
+        Err(error) => return Err(at("read", root)(error)),
+    };
+    if let Some(manifest) = Manifest::of(root)? {
+        return Ok(manifest);
+    }
+    for entry in entries {
+        let entry = entry.map_err(at("read", root))?;
+        if entry.file_name() != STAGING {
+            return Err(PackageError::NotOurs(root.to_owned()));
+        }
+    }
+    Ok(Manifest::default())
 }
 
 #[cfg(test)]

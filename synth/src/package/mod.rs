@@ -38,12 +38,15 @@
 //! ```
 
 mod error;
+mod layout;
 mod manifest;
 mod names;
 mod read;
 mod staging;
+mod text;
 
 pub use error::PackageError;
+pub use layout::MANIFEST;
 pub use read::{Contents, read};
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -53,11 +56,8 @@ use std::path::{Path, PathBuf};
 use posicast_system::interrupt;
 
 use error::at;
-use manifest::Manifest;
+use manifest::{Manifest, inspect};
 use staging::Staging;
-
-/// Name of the file that marks a folder as posicast's.
-pub const MANIFEST: &str = "posicast.json";
 
 /// An output folder that is being written. Nothing shows in it before [`commit`](Package::commit).
 #[derive(Debug)]
@@ -315,28 +315,6 @@ fn refuse_edited(folder: &Path, files: Vec<String>) -> Result<(), PackageError> 
         folder: folder.to_owned(),
         files,
     })
-}
-
-/// The manifest of the run before; an empty one for a folder that is missing or empty.
-fn inspect(root: &Path) -> Result<Manifest, PackageError> {
-    let entries = match fs::read_dir(root) {
-        Ok(entries) => entries,
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(Manifest::default()),
-        Err(error) if error.kind() == std::io::ErrorKind::NotADirectory => {
-            return Err(PackageError::NotAFolder(root.to_owned()));
-        }
-        Err(error) => return Err(at("read", root)(error)),
-    };
-    if let Some(manifest) = Manifest::of(root)? {
-        return Ok(manifest);
-    }
-    for entry in entries {
-        let entry = entry.map_err(at("read", root))?;
-        if entry.file_name() != staging::FOLDER {
-            return Err(PackageError::NotOurs(root.to_owned()));
-        }
-    }
-    Ok(Manifest::default())
 }
 
 #[cfg(test)]

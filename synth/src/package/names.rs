@@ -1,6 +1,7 @@
 //! Which paths lie inside an output folder.
 
-use super::{MANIFEST, PackageError, staging};
+use super::error::PackageError;
+use super::layout::{MANIFEST, STAGING};
 
 /// Accepts paths relative to the folder, parts divided by `/`, that neither leave it nor meet posicast's own files.
 pub(super) fn check(relative: &str) -> Result<(), PackageError> {
@@ -17,7 +18,7 @@ pub(super) fn check(relative: &str) -> Result<(), PackageError> {
         match part {
             "" => return refuse("is empty, absolute, or has an empty part"),
             "." | ".." => return refuse("leads out of the folder or in circles"),
-            MANIFEST | staging::FOLDER if index == 0 => return refuse("is reserved"),
+            MANIFEST | STAGING if index == 0 => return refuse("is reserved"),
             _ => {}
         }
     }

@@ -1,15 +1,12 @@
 //! Reading an output folder back: `verify DIR` and `synth DIR` work on the Verilog as it lies there.
 
-use std::fs::{self, File};
-use std::io::{ErrorKind, Read};
+use std::fs;
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-use super::error::at;
-use super::manifest::Manifest;
-use super::{PackageError, inspect};
-
-/// Largest text file that is read, in bytes: far above any machine file, far below what hurts.
-const TEXT_LIMIT_BYTES: u64 = 16 << 20;
+use super::error::{PackageError, at};
+use super::manifest::{Manifest, inspect};
+use super::text::read_text;
 
 /// What lies in an output folder.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -80,33 +77,4 @@ fn verilog_in(folder: &Path) -> Result<Vec<PathBuf>, PackageError> {
     }
     files.sort();
     Ok(files)
-}
-
-/// Text of a file of bounded size.
-pub(super) fn read_text(path: &Path) -> Result<String, PackageError> {
-    match fs::metadata(path) {
-        Ok(metadata) if metadata.is_file() => {}
-        Ok(metadata) => {
-            return Err(PackageError::WrongType {
-                path: path.to_owned(),
-                found: if metadata.is_dir() { "a folder" } else { "a device" },
-                wanted: "a file",
-            });
-        }
-        Err(error) if error.kind() == ErrorKind::NotFound => return Err(PackageError::Missing(path.to_owned())),
-        Err(error) => return Err(at("read", path)(error)),
-    }
-    let file = File::open(path).map_err(at("read", path))?;
-    let mut text = String::new();
-    let length = file
-        .take(TEXT_LIMIT_BYTES + 1)
-        .read_to_string(&mut text)
-        .map_err(at("read", path))?;
-    if length as u64 > TEXT_LIMIT_BYTES {
-        return Err(PackageError::TooLarge {
-            path: path.to_owned(),
-            limit_bytes: TEXT_LIMIT_BYTES,
-        });
-    }
-    Ok(text)
 }

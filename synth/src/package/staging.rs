@@ -7,11 +7,8 @@ use std::path::{Path, PathBuf};
 
 use posicast_system::interrupt::{self, Leftover, Listed};
 
-use super::PackageError;
-use super::error::at;
-
-/// Name of the staging folder.
-pub(super) const FOLDER: &str = ".posicast-staging";
+use super::error::{PackageError, at};
+use super::layout::STAGING;
 
 /// The claim on an output folder. Dropped, it removes the staging folder, and every folder that it had to create, unless
 /// [`keep_folder`](Staging::keep_folder) was called.
@@ -32,7 +29,7 @@ impl Staging {
                 .ancestors()
                 .take_while(|p| !p.as_os_str().is_empty() && !p.exists());
             let created: Vec<PathBuf> = missing.map(Path::to_owned).collect();
-            let path = root.join(FOLDER);
+            let path = root.join(STAGING);
             match Self::make(root, &path) {
                 Ok(lock) => {
                     let folders = created.iter().rev().cloned().map(Leftover::EmptyFolder);

@@ -12,6 +12,7 @@
 //! Blocks are the instances in the top module, each flattened; what lies between them is a row under the top's name.
 
 mod alone;
+mod count;
 mod ecp5;
 mod family;
 mod gates;
@@ -21,10 +22,10 @@ mod multiplier_registers;
 mod netlist;
 mod process;
 
+pub use count::{Block, Resources};
 pub use ecp5::TopPort;
 pub use family::{Cell, Device, Family, UnknownFamily};
 pub use gates::CELL_MODELS;
-pub use netlist::{Block, Resources};
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -259,7 +260,7 @@ impl Yosys {
             reason,
         };
         let netlist = serde_json::from_slice(&text).map_err(|e| uncountable(e.to_string()))?;
-        let blocks = netlist::blocks(&netlist, top, family).map_err(uncountable)?;
+        let blocks = count::blocks(&netlist, top, family).map_err(uncountable)?;
         let mut total = Resources::default();
         for block in &blocks {
             total += block.resources;

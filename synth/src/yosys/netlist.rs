@@ -1,65 +1,12 @@
-//! Counting a mapped netlist, as Yosys's `write_json` describes it.
-//!
-//! - Logic elements: LUTs, a bit of a carry chain being one, plus the flip-flops that cannot share a LUT's element
-//!   (`logic_elements`). Those that are a multiplier's own registers take no element (`multiplier_registers`).
-//! - ALMs: a 6-input LUT fills one, two smaller LUTs share one; one for every four flip-flops where those need more.
-//! - Memory bits and multipliers: from the sizes of the black boxes (`cells.v`), the same for every tool version.
+//! A mapped netlist, as Yosys's `write_json` writes it.
 
 use std::collections::{BTreeMap, HashMap};
-use std::ops::AddAssign;
 
-use serde::{Deserialize, Serialize};
-
-use super::family::{Cell, Family};
-use super::{logic_elements, m4k, multiplier_registers};
-
-/// What a block takes of a device.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
-pub struct Resources {
-    /// Logic cells, in the unit of the device.
-    pub cells: u64,
-    /// Flip-flops.
-    pub registers: u64,
-    /// Bits of block memory, without those that never change.
-    pub memory_bits: u64,
-    /// Multipliers of 18 × 18 bits.
-    pub multipliers: u64,
-    /// The LUTs among `cells`; not counted for Cyclone V, and no part of the document.
-    #[serde(skip)]
-    pub luts: u64,
-    /// `cells` if no register were packed with a LUT that does not drive it; as `luts`, no part of the document.
-    #[serde(skip)]
-    pub unpacked_cells: u64,
-    /// Blocks of 4,608 bits that the memory would take in Cyclone II; no part of the document.
-    #[serde(skip)]
-    pub m4k_blocks: u64,
-}
-
-impl AddAssign for Resources {
-    fn add_assign(&mut self, other: Self) {
-        self.cells = self.cells.saturating_add(other.cells);
-        self.registers = self.registers.saturating_add(other.registers);
-        self.memory_bits = self.memory_bits.saturating_add(other.memory_bits);
-        self.multipliers = self.multipliers.saturating_add(other.multipliers);
-        self.luts = self.luts.saturating_add(other.luts);
-        self.unpacked_cells = self.unpacked_cells.saturating_add(other.unpacked_cells);
-        self.m4k_blocks = self.m4k_blocks.saturating_add(other.m4k_blocks);
-    }
-}
-
-/// What one instance takes.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
-pub struct Block {
-    /// Name of the instance in the top module; the top module's own name for the logic between its instances.
-    pub name: String,
-    /// What it takes.
-    #[serde(flatten)]
-    pub resources: Resources,
-}
+use serde::Deserialize;
 
 #[derive(Debug, Deserialize)]
 pub(super) struct Netlist {
-    modules: HashMap<String, Module>,
+    pub(super) modules: HashMap<String, Module>,
 }
 
 #[derive(Debug, Deserialize)]
@@ -94,168 +41,13 @@ pub(super) enum Bit {
     Constant(String),
 }
 
-/// One row per instance in `top`, sorted by name, then one for the logic of `top` itself unless that is nothing.
-///
-/// # Errors
-/// What the netlist holds that cannot be counted.
-pub(super) fn blocks(netlist: &Netlist, top: &str, family: Family) -> Result<Vec<Block>, String> {
-    let module = netlist
-        .modules
-        .get(top)
-        .ok_or_else(|| format!("no module {top} in the netlist"))?;
-    let mut blocks = Vec::new();
-    for (name, cell) in &module.cells {
-        if let Some(inner) = netlist.design_module(&cell.kind) {
-            let resources = count(netlist, inner, family)?;
-            blocks.push(Block {
-                name: name.clone(),
-                resources,
-            });
-        }
-    }
-    let own = count(netlist, module, family)?;
-    if own != Resources::default() || blocks.is_empty() {
-        blocks.push(Block {
-            name: top.to_owned(),
-            resources: own,
-        });
-    }
-    Ok(blocks)
-}
-
 impl Netlist {
     /// The module of that name, if it is one of the design's and not a cell of the family.
-    fn design_module(&self, name: &str) -> Option<&Module> {
+    pub(super) fn design_module(&self, name: &str) -> Option<&Module> {
         let module = self.modules.get(name)?;
         let is_primitive = ["blackbox", "whitebox"]
             .iter()
             .any(|a| module.attributes.contains_key(*a));
         (!is_primitive).then_some(module)
-    }
-}
-
-/// The cells of one flat module; instances of other modules are not its own.
-fn count(netlist: &Netlist, module: &Module, family: Family) -> Result<Resources, String> {
-    let mut total = Resources::default();
-    let mut wide_luts = 0;
-    let mut half_luts = 0u64;
-    let mut luts = Vec::new();
-    let mut flip_flops = Vec::new();
-    let in_multipliers = multiplier_registers::of(module);
-    for (name, cell) in &module.cells {
-        match cell.kind.as_str() {
-            "cycloneive_lcell_comb" => luts.push(cell),
-            "dffeas" => {
-                total.registers += 1;
-                if !in_multipliers.contains(name.as_str()) {
-                    flip_flops.push(cell);
-                }
-            }
-            "MISTRAL_ALUT6" => wide_luts += 1,
-            "MISTRAL_FF" => total.registers += 1,
-            kind if kind.starts_with("MISTRAL_ALUT") => half_luts += 1,
-            "posicast_memory" => {
-                let (reads, writes) = (size(cell, "RD_PORTS")?, size(cell, "WR_PORTS")?);
-                // A block RAM has two ports; more readers than that need a copy each.
-                let copies = if reads.saturating_add(writes) <= 2 { 1 } else { reads };
-                let (words, width) = (size(cell, "SIZE")?, size(cell, "WIDTH")?);
-                let bits = words.saturating_mul(width);
-                let blocks = m4k::blocks(words, width).saturating_mul(copies);
-                total.m4k_blocks = total.m4k_blocks.saturating_add(blocks);
-                total.memory_bits = total.memory_bits.saturating_add(bits.saturating_mul(copies));
-            }
-            "posicast_multiplier" => {
-                let of_18_bits = multipliers(size(cell, "A_WIDTH")?, size(cell, "B_WIDTH")?, family);
-                total.multipliers = total.multipliers.saturating_add(of_18_bits);
-            }
-            // Inverters vanish in the LUT or flip-flop that they feed; the rest describes and costs nothing.
-            "$not" | "MISTRAL_NOT" | "GND" | "VCC" | "$scopeinfo" => {}
-            kind if netlist.design_module(kind).is_some() => {}
-            kind => return Err(format!("cell {name} of type {kind} is left, which no estimate counts")),
-        }
-    }
-    match family.device().cell {
-        Cell::LogicElement => {
-            let elements = logic_elements::count(&luts, &flip_flops);
-            total.luts = luts.len() as u64;
-            total.cells = elements.packed;
-            total.unpacked_cells = elements.unpacked;
-        }
-        Cell::AdaptiveLogicModule => {
-            total.cells = (wide_luts + half_luts.div_ceil(2)).max(total.registers.div_ceil(4));
-            total.unpacked_cells = total.cells;
-        }
-    }
-    Ok(total)
-}
-
-/// 18-bit multipliers for one product. Cyclone V can join two to one of 27 × 27 bits.
-fn multipliers(a_width: u64, b_width: u64, family: Family) -> u64 {
-    let grid = |bits: u64| a_width.div_ceil(bits).saturating_mul(b_width.div_ceil(bits));
-    match family {
-        Family::Cyclone5 => grid(18).min(grid(27).saturating_mul(2)),
-        _ => grid(18),
-    }
-}
-
-/// A size parameter: Yosys writes 32 binary digits, other versions a number.
-fn size(cell: &NetlistCell, parameter: &str) -> Result<u64, String> {
-    let value = cell.parameters.get(parameter);
-    let number = value.and_then(|v| v.as_u64().or_else(|| u64::from_str_radix(v.as_str()?, 2).ok()));
-    number.ok_or_else(|| format!("parameter {parameter} of a {} is no size: {value:?}", cell.kind))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn one(cells: serde_json::Value, family: Family) -> Result<Resources, String> {
-        let netlist = serde_json::json!({"modules": {"top": {"cells": cells}}});
-        let blocks = blocks(&serde_json::from_value(netlist).unwrap(), "top", family)?;
-        Ok(blocks[0].resources)
-    }
-
-    #[test]
-    fn unit_six_input_luts_fill_a_module() {
-        let alm = |kind| serde_json::json!({"type": kind});
-        let cells = serde_json::json!({
-            "a": alm("MISTRAL_ALUT6"), "b": alm("MISTRAL_ALUT2"), "c": alm("MISTRAL_ALUT5"), "d": alm("MISTRAL_ALUT_ARITH"),
-            "e": alm("MISTRAL_NOT"), "f": alm("MISTRAL_FF"),
-        });
-        let resources = one(cells, Family::Cyclone5).unwrap();
-        assert_eq!((resources.cells, resources.registers), (3, 1));
-    }
-
-    #[test]
-    fn unit_products_are_split_to_the_device() {
-        for (a, b, le, alm) in [
-            (18, 18, 1, 1),
-            (16, 9, 1, 1),
-            (32, 18, 2, 2),
-            (32, 32, 4, 4),
-            (27, 27, 4, 2),
-        ] {
-            assert_eq!(multipliers(a, b, Family::Cyclone2), le, "{a}×{b}");
-            assert_eq!(multipliers(a, b, Family::Cyclone5), alm, "{a}×{b}");
-        }
-    }
-
-    #[test]
-    fn unit_memories_with_many_readers_are_copied() {
-        let memory = |reads: u64| {
-            let sizes = serde_json::json!({"SIZE": "1000000", "WIDTH": 18, "RD_PORTS": reads, "WR_PORTS": 1});
-            serde_json::json!({"ram": {"type": "posicast_memory", "parameters": sizes}})
-        };
-        assert_eq!(one(memory(1), Family::Cyclone2).unwrap().memory_bits, 64 * 18);
-        assert_eq!(one(memory(2), Family::Cyclone2).unwrap().memory_bits, 2 * 64 * 18);
-        assert_eq!(one(memory(u64::MAX), Family::Cyclone2).unwrap().memory_bits, u64::MAX);
-    }
-
-    #[test]
-    fn unit_what_cannot_be_counted_is_an_error() {
-        let error = one(serde_json::json!({"u": {"type": "$_DLATCH_P_"}}), Family::Cyclone2).unwrap_err();
-        assert!(error.contains("$_DLATCH_P_"), "{error}");
-        let error = one(serde_json::json!({"u": {"type": "posicast_memory"}}), Family::Cyclone2).unwrap_err();
-        assert!(error.contains("RD_PORTS"), "{error}");
     }
 }

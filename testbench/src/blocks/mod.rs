@@ -19,6 +19,7 @@
 
 mod axis;
 mod cascade;
+mod changes;
 mod component;
 mod divider;
 mod drive_command;

@@ -8,7 +8,7 @@ use posicast_model::rtl::schedule::ScheduleConfig;
 use posicast_model::rtl::sliding_mode::Settings;
 use posicast_model::rtl::{ClockedBlock, Port};
 
-use super::component::Changes;
+use super::changes::Changes;
 use super::{Bins, Block};
 use crate::stimuli::{PartRandom, Stimuli};
 

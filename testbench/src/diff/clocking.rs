@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 
 use super::matching::{Matched, Pair};
-use super::options::{Options, Reset};
+use super::names::is_low_active;
+use super::options::{Edge, Options, Reset};
 use crate::Error;
 use crate::wave::SAMPLE_CLOCK;
 use crate::wording::counted;
@@ -21,12 +22,6 @@ pub(super) struct Clocking {
     pub(super) reset: Option<(Slots, bool)>,
     /// How they were found, or why not.
     pub(super) notes: Vec<String>,
-}
-
-/// Whether a reset's name says that it is on while 0.
-pub(super) fn is_low_active(name: &str) -> bool {
-    let name = last_part(name).to_ascii_lowercase();
-    name.ends_with("_n") || name.ends_with("resetn") || name.ends_with("rstn") || name.ends_with("_b")
 }
 
 impl Clocking {
@@ -70,8 +65,8 @@ impl Clocking {
     fn sample_at(&mut self, slots: Slots, name: &str, options: &Options) {
         self.clock = Some(slots);
         let edge = match options.edge {
-            super::Edge::Rising => "rising",
-            super::Edge::Falling => "falling",
+            Edge::Rising => "rising",
+            Edge::Falling => "falling",
         };
         self.notes.push(format!("sampled at the {edge} edges of `{name}`"));
     }

@@ -6,11 +6,12 @@
 use super::clocking::Slots;
 use super::gather::Gathering;
 use super::matching::Pair;
-use super::options::Options;
-use super::result::{Difference, Shown};
+use super::options::{Edge, Options};
+use super::result::{Difference, seconds};
 use super::rule::{Rule, View};
 use super::side::{ClockEdge, Side, slot_of};
 use super::touched::Touched;
+use super::value::Shown;
 use crate::Error;
 use crate::reader::{Kind, Value, Values};
 
@@ -228,11 +229,7 @@ impl<'a> Engine<'a> {
         while side.next_edge(&mut self.touched)?.is_some_and(within) {
             count += 1;
         }
-        let digit = if self.options.edge == super::Edge::Rising {
-            "1"
-        } else {
-            "0"
-        };
+        let digit = if self.options.edge == Edge::Rising { "1" } else { "0" };
         let shown = Shown::Bits(digit.to_owned());
         let slots = [slot_of(clock, false), slot_of(clock, true)].map(Some);
         let at = self.hot.iter().position(|hot| [hot.a, hot.b] == slots);
@@ -376,9 +373,29 @@ impl<'a> Engine<'a> {
         state.count += self.samples - since;
         state.first.get_or_insert(first);
     }
-}
 
-/// Seconds, correctly rounded.
-pub(super) fn seconds(time_fs: u128) -> f64 {
-    time_fs as f64 / 1e15
+    /// Notes what stands around the first divergence of all: the last equal sample, itself, and some behind it.
+    fn gather(&mut self, diverged: &[u32], time_fs: u128) {
+        if self.context.is_none() && !diverged.is_empty() {
+            let of = |at: usize| (self.states[at].name.clone(), self.states[at].rule.reading());
+            let mut gathering = Gathering::new(self.samples, diverged, of);
+            if let (Some((before, before_fs)), 1..) = (self.before.take(), self.samples) {
+                gathering.add(before_fs, |at| {
+                    let value = self.hot[at].a.and(self.hot[at].b).map(|_| before.get(at as u32));
+                    self.states[at].rule.shown(value, value)
+                });
+            }
+            self.context = Some(gathering);
+        }
+        if let Some((_, before_fs)) = &mut self.before {
+            *before_fs = time_fs;
+        }
+        if let Some(mut gathering) = self.context.take() {
+            gathering.add_behind(time_fs, |at| {
+                let (a, b) = self.values(at);
+                self.states[at].rule.shown(a, b)
+            });
+            self.context = Some(gathering);
+        }
+    }
 }

@@ -1,7 +1,7 @@
 //! What the engine found, as the result.
 
-use super::engine::{Engine, seconds};
-use super::result::{Comparison, Difference};
+use super::engine::Engine;
+use super::result::{Comparison, Difference, seconds};
 use crate::wording::{counted, time};
 
 impl Engine<'_> {

@@ -46,6 +46,7 @@ mod side;
 mod svg;
 mod text;
 mod touched;
+mod value;
 
 use std::path::Path;
 
@@ -56,13 +57,14 @@ pub(crate) use self::human::{value, value_and_digits};
 pub use self::junit::junit;
 use self::matching::{Matched, Pair};
 use self::names::{Filter, Names};
-pub use self::options::{Edge, Latency, Options, Reset, UnknownPolicy, parse_time_fs};
+pub use self::options::{Edge, Latency, Options, Reset, parse_time_fs};
 pub use self::picture::{show, shown_files};
 pub use self::player::{Player, PortMap, Recorded, missing};
-pub use self::result::{Comparison, Context, ContextRow, Difference, Leniency, Shown, Verdict};
+pub use self::result::{Comparison, Context, ContextRow, Difference, Leniency, Verdict};
 use self::rule::Rule;
 pub use self::rule::{Tolerance, View};
 use self::side::{Delayed, Side, slot_of};
+pub use self::value::{Shown, UnknownPolicy};
 use crate::Error;
 use crate::reader::{Declarations, Kind, Watch, Wave};
 use crate::wording::{counted, time};

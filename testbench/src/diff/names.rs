@@ -200,6 +200,12 @@ pub(super) fn canonical(path: &str) -> String {
     parts.join(".")
 }
 
+/// Whether a reset's name says that it is on while 0.
+pub(super) fn is_low_active(name: &str) -> bool {
+    let name = last_part(name).to_ascii_lowercase();
+    name.ends_with("_n") || name.ends_with("resetn") || name.ends_with("rstn") || name.ends_with("_b")
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

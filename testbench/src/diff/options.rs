@@ -1,7 +1,9 @@
 //! What to compare, when, and how strictly: the options of `posicast diff` as data, read from their texts.
 
+use super::names::is_low_active;
 use super::pattern::Pattern;
 use super::rule::{Tolerance, View};
+use super::value::UnknownPolicy;
 use crate::Error;
 use crate::wording::counted;
 
@@ -30,19 +32,6 @@ pub enum Reset {
         /// Its value while the reset is on.
         active: bool,
     },
-}
-
-/// What an unknown bit (`x`, `z`) equals.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, serde::Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum UnknownPolicy {
-    /// `x` equals `x`, `z` equals `z`, nothing else.
-    #[default]
-    Strict,
-    /// An unknown bit of either file equals anything.
-    Wildcard,
-    /// It is 0, as in two-valued simulators.
-    Zero,
 }
 
 /// How much later a signal is in the second file.
@@ -214,7 +203,7 @@ impl Options {
             None if text == "none" => Reset::Ignored,
             None if !text.is_empty() => Reset::Named {
                 name: text.to_owned(),
-                active: !super::clocking::is_low_active(text),
+                active: !is_low_active(text),
             },
             Some((name, value @ ("0" | "1"))) if !name.is_empty() => Reset::Named {
                 name: name.to_owned(),

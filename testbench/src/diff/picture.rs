@@ -10,7 +10,7 @@
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
-use super::svg::{self, Lane, Trace};
+use super::svg::{self, Lane, Trace, Window};
 use super::{Comparison, Shown};
 use crate::Error;
 use crate::reader::{Kind, Value, Values, Wave};
@@ -23,14 +23,6 @@ const BEFORE: u128 = 5;
 const BEHIND: u128 = 6;
 /// Values of a signal that a drawing holds; more could not be told apart.
 const VALUES: usize = 200;
-
-/// A stretch of time in femtoseconds.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Window {
-    pub(super) from: u128,
-    pub(super) at: u128,
-    pub(super) to: u128,
-}
 
 /// The files that [`show`] writes.
 pub fn shown_files(base: &Path) -> [PathBuf; 4] {

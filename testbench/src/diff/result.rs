@@ -3,8 +3,8 @@
 use serde::{Serialize, Serializer};
 
 use super::matching::{Matched, Pair};
-use super::rule::Rule;
-use super::{UnknownPolicy, View};
+use super::rule::{Rule, View};
+use super::value::{Shown, UnknownPolicy};
 
 /// Equal, different, or nothing to compare.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -16,28 +16,6 @@ pub enum Verdict {
     Different,
     /// Nothing was compared: exit status 2.
     Incomparable,
-}
-
-/// A value in a report.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[serde(untagged)]
-pub enum Shown {
-    /// Binary digits, most significant first, `x` and `z` included.
-    Bits(String),
-    /// A real number; as JSON, which has no other word for it, `"NaN"` where it is none.
-    Real(#[serde(serialize_with = "number_or_text")] f64),
-    /// Text, its first 64 bytes.
-    Text(String),
-    /// There is no value: the signal or the clock edge is missing, or nothing was written yet.
-    Missing,
-}
-
-fn number_or_text<S: Serializer>(real: &f64, serializer: S) -> Result<S::Ok, S::Error> {
-    if real.is_finite() {
-        serializer.serialize_f64(*real)
-    } else {
-        serializer.serialize_str(&real.to_string())
-    }
 }
 
 /// A signal that differs.
@@ -229,4 +207,9 @@ impl Comparison {
         self.first_time = differences.iter().map(|d| d.time).reduce(f64::min);
         self.differences = differences;
     }
+}
+
+/// Seconds, correctly rounded.
+pub(super) fn seconds(time_fs: u128) -> f64 {
+    time_fs as f64 / 1e15
 }

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use super::{Shown, UnknownPolicy};
+use super::value::{Shown, UnknownPolicy};
 use crate::reader::Value;
 
 /// How bits are read as a number.

@@ -2,8 +2,15 @@
 
 use std::fmt::Write as _;
 
-use super::picture::Window;
 use crate::wording::time;
+
+/// A stretch of time in femtoseconds.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Window {
+    pub(super) from: u128,
+    pub(super) at: u128,
+    pub(super) to: u128,
+}
 
 /// Values from a time on, the first at the window's beginning.
 #[derive(Debug, Clone, Default, PartialEq)]

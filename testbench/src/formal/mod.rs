@@ -19,6 +19,7 @@
 
 mod axis;
 mod blocks;
+mod list;
 mod names;
 mod shapers;
 mod stage;
@@ -26,6 +27,7 @@ mod task;
 mod tool;
 mod trace;
 
-pub use self::task::{Engine, Task, all, named};
+pub use self::list::{all, named};
+pub use self::task::{Engine, Task};
 pub(crate) use self::tool::{ABC, YOSYS, abc, asserted};
 pub use self::tool::{Outcome, Reached, SEARCHED_CLOCKS, Verdict, run, search};

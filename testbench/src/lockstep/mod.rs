@@ -22,7 +22,7 @@ use posicast_model::rtl::{ClockedBlock, Direction, Port, StepError};
 use std::ops::ControlFlow;
 
 pub use self::joined::Joined;
-use self::report::{Block, Mismatch, Report};
+use self::report::{Block, Mismatch, Report, outputs_of};
 use self::window::Window;
 use crate::Error;
 use crate::stimuli::Stimuli;
@@ -204,10 +204,6 @@ pub fn run_until(
     }
     progress(time);
     Ok(comparison.report(time))
-}
-
-fn outputs_of(ports: &[Port]) -> impl Iterator<Item = &Port> {
-    ports.iter().filter(|p| p.direction == Direction::Output)
 }
 
 /// Where a port of the model sits in the device, and which bits it has.

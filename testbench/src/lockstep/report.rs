@@ -151,7 +151,7 @@ struct Table {
 impl Mismatch {
     pub(super) fn new(ports: &[Port], own: &[String], window: &Window) -> Self {
         let (time, output) = window.mismatch;
-        let outputs: Vec<&Port> = super::outputs_of(ports).collect();
+        let outputs: Vec<&Port> = outputs_of(ports).collect();
         let port = outputs[output];
         let at = window.rows().iter().find(|row| row.time == time);
         let (expected, actual, unknown) = at.map_or((0, 0, 0), |row| {
@@ -180,7 +180,7 @@ impl Table {
             let cells = rows.iter().map(|row| number(port, row.inputs[at], 0));
             table.rows.push((port.name.clone(), cells.collect()));
         }
-        for (at, port) in super::outputs_of(ports).enumerate() {
+        for (at, port) in outputs_of(ports).enumerate() {
             if !own.contains(&port.name) {
                 continue;
             }
@@ -254,4 +254,8 @@ impl fmt::Display for Mismatch {
         }
         f.write_str(&lines.join("\n"))
     }
+}
+
+pub(super) fn outputs_of(ports: &[Port]) -> impl Iterator<Item = &Port> {
+    ports.iter().filter(|p| p.direction == Direction::Output)
 }

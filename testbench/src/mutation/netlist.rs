@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use posicast_hdl::emit::Module;
 
-use super::Mutant;
+use super::mutant::Mutant;
 use crate::Error;
 use crate::formal::YOSYS;
 

@@ -16,6 +16,7 @@
 #[cfg(test)]
 mod agreement;
 mod batch;
+mod counted;
 mod dialect;
 mod digits;
 mod feed;
@@ -34,6 +35,7 @@ use vcd::{Command, IdCode, ParseError, Parser, VarType};
 
 use self::batch::Gatherer;
 pub(crate) use self::batch::{Step, Watch};
+use self::counted::Counted;
 use self::dialect::Dialect;
 pub(crate) use self::feed::Feed;
 use self::fst::FstValues;
@@ -102,20 +104,6 @@ impl Wave {
             }),
         };
         Ok((self.declarations, feed?))
-    }
-}
-
-/// A file that knows how much of it was read.
-pub(super) struct Counted {
-    file: File,
-    bytes: u64,
-}
-
-impl Read for Counted {
-    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
-        let count = self.file.read(buffer)?;
-        self.bytes += count as u64;
-        Ok(count)
     }
 }
 

@@ -13,8 +13,8 @@ use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 
-use super::Counted;
 use super::batch::Gatherer;
+use super::counted::Counted;
 use super::digits::{digit, known_word};
 use super::header::Kind;
 use super::ids::{Ids, id_number};

@@ -4,7 +4,7 @@ use posicast_model::rtl::axis::{Cause, State};
 use posicast_model::rtl::stage::StageConfig;
 use std::fmt;
 
-use super::Shaping;
+use super::shaping::Shaping;
 use crate::Error;
 use crate::stage_bench::{StageBench, state};
 

@@ -15,6 +15,7 @@ mod expected;
 mod figures;
 mod host;
 mod moves;
+mod shaping;
 
 use posicast_model::design::design_machine;
 use posicast_model::hardware::{self, MachineStageError};
@@ -33,6 +34,7 @@ pub use expected::Expected;
 pub use figures::AxisFigures;
 pub use host::Trouble;
 pub use moves::Moved;
+pub use shaping::Shaping;
 
 use host::Host;
 
@@ -71,15 +73,6 @@ impl StageRunError {
             source: error.into(),
         }
     }
-}
-
-/// What the shapers do.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Shaping {
-    /// The machine's tap tables.
-    Shaped,
-    /// A table of one tap, loaded over the bus: the command goes through as it is.
-    Unshaped,
 }
 
 /// The comparison of model and RTL over a move.

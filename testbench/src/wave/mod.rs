@@ -29,18 +29,9 @@ use vcd::{IdCode, VarType};
 
 use self::clocking::Clocking;
 use self::output::Output;
-pub use self::output::write_text;
+pub use self::output::{SignalKind, write_text};
 pub use self::view::{Difference, Focus, Part, merge, merge_around};
 use crate::Error;
-
-/// How a signal is written.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum SignalKind {
-    /// A vector of so many bits, 1..=64.
-    Bits(u32),
-    /// A real number; its value is handed over as [`f64::to_bits`].
-    Real,
-}
 
 /// A signal of a waveform.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -6,8 +6,16 @@ use std::path::{Path, PathBuf};
 use posicast_system::output::{self, Draft, seal};
 use vcd::{IdCode, Writer};
 
-use super::SignalKind;
 use crate::Error;
+
+/// How a signal is written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SignalKind {
+    /// A vector of so many bits, 1..=64.
+    Bits(u32),
+    /// A real number; its value is handed over as [`f64::to_bits`].
+    Real,
+}
 
 pub(super) type Vcd = Writer<BufWriter<Draft>>;
 

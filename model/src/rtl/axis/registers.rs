@@ -1,11 +1,11 @@
 //! What the supervisor knows, and what a clock makes of it.
 
 use super::cause::{AT_ONCE, Cause, DOUBTFUL, HARMLESS, switching_off};
+use super::clocks::{CLEAR_CLOCKS, KICK, PRIMING_CLOCKS};
 use super::monitors::Monitors;
 use super::ports::Inputs;
 use super::timer::{Begins, Timer};
 use super::transition::{Condition, Conditions, State, next};
-use super::{CLEAR_CLOCKS, KICK, PRIMING_CLOCKS};
 use crate::rtl::pulse_counter::GlitchFilter;
 use crate::rtl::segments::{self, STAND_COUNTS};
 use crate::rtl::sliding_mode::Saturation;

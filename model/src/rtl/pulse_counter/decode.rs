@@ -1,6 +1,6 @@
 //! Levels of this clock and of the one before to steps.
 
-use super::Inputs;
+use super::ports::Inputs;
 
 /// What a clock brings.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]

@@ -1,6 +1,6 @@
 //! A line from its pins to a clean level.
 
-use super::Inputs;
+use super::ports::Inputs;
 use crate::rtl::FOREVER;
 
 /// Takes a new level once it has stood for more than `filter_clocks` clocks.

@@ -1,6 +1,6 @@
 //! Velocity by M/T: the steps of a tick over the time between the last edges before successive ticks.
 
-use super::Inputs;
+use super::ports::Inputs;
 use crate::rtl::divider::{ELAPSED_BITS, STEP_BITS};
 use crate::rtl::shaper::wrap;
 

@@ -7,13 +7,14 @@
 //! | 2 | not used, need not be written | acceleration, Q8.24 counts per tick² |
 //! | 3 | ticks, and flags; its write commits the entry | the same |
 
-use super::integrator::ACCELERATION_BITS;
 use crate::rtl::shaper::wrap;
 
 /// Words of an entry.
 pub const ENTRY_WORDS: usize = 4;
 /// Width of the ticks of an entry.
 pub const TICK_BITS: u32 = 24;
+/// Width of jerk and acceleration: Q8.32.
+pub const ACCELERATION_BITS: u32 = 40;
 /// Flag in word 3: the entry is a point.
 pub const POINT: u32 = 1 << 31;
 /// Flag in word 3: `notify` when the entry has ended.

@@ -3,12 +3,10 @@
 //! Integers in LSB of 2^−32 counts per tick³, tick², tick, and counts, so nothing is ever rounded: whoever adds the same
 //! numbers, in hardware, here or in C, gets the same position.
 
-use super::entry::Point;
+use super::entry::{ACCELERATION_BITS, Point};
 
 /// Fraction bits of jerk, acceleration, velocity and position.
 pub const FRACTION_BITS: u32 = 32;
-/// Width of jerk and acceleration: Q8.32.
-pub const ACCELERATION_BITS: u32 = 40;
 /// Width of the velocity: Q16.32.
 pub const VELOCITY_BITS: u32 = 48;
 

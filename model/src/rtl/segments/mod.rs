@@ -40,11 +40,11 @@ mod fifo;
 mod integrator;
 mod ports;
 
-pub use entry::{ENTRY_WORDS, Entry, Motion, NOTIFY, POINT, Point, RESERVED, TICK_BITS};
+pub use entry::{ACCELERATION_BITS, ENTRY_WORDS, Entry, Motion, NOTIFY, POINT, Point, RESERVED, TICK_BITS};
 pub use fifo::ENTRIES_MAX;
 pub use integrator::{
-    ACCELERATION_BITS, ACCELERATION_FRACTION, FRACTION_BITS, Integrator, Overflow, POSITION_FRACTION, REACH_COUNTS,
-    STAND_COUNTS, VELOCITY_BITS, VELOCITY_FRACTION,
+    ACCELERATION_FRACTION, FRACTION_BITS, Integrator, Overflow, POSITION_FRACTION, REACH_COUNTS, STAND_COUNTS,
+    VELOCITY_BITS, VELOCITY_FRACTION,
 };
 pub use ports::{INPUT_PORTS, Inputs, OUTPUT_PORTS, Outputs, PORTS, State, ports};
 

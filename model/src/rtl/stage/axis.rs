@@ -1,5 +1,6 @@
 //! The blocks of an axis, joined: which port is on which net, and what is tied to the machine's constants.
 
+use super::bring_up::TRACED;
 use super::config::StageAxis;
 use super::registers::{axis_window, hardware};
 use crate::rtl::Direction;
@@ -228,23 +229,6 @@ const TRACE: Nets = &[
     ("trigger_row", "trace_trigger_row"),
     ("missed", "trace_missed"),
     ("done", "trace_done"),
-];
-
-/// What can be traced: net, and what its words are.
-pub(super) const TRACED: [(&str, &str); 13] = [
-    ("command_position", "of the segments, Q24.8 counts"),
-    ("command_velocity", "of the segments, Q16.16 counts/tick"),
-    ("command_acceleration", "of the segments, Q8.24 counts/tick^2"),
-    ("shaped_position", "of the shaper, Q24.8 counts"),
-    ("shaped_velocity", "of the shaper, Q16.16 counts/tick"),
-    ("shaped_acceleration", "of the shaper, Q8.24 counts/tick^2"),
-    ("captured_position", "of the loop at the tick, counts"),
-    ("velocity", "of the motor, Q16.16 counts/tick"),
-    ("error", "e, Q16.16 counts"),
-    ("sliding", "s, Q16.16 counts/tick"),
-    ("command", "to the drive, Q20.12 command units"),
-    ("excitation_value", "added to the position, Q24.8 counts"),
-    ("deviation", "motor against scale, counts"),
 ];
 
 const AXIS: Nets = &[

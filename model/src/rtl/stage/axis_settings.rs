@@ -1,7 +1,7 @@
 //! What a host writes of an axis: what is wanted of it, tables and settings, limits, and how its encoder is read.
 
 use super::config::StageAxis;
-use super::registers::{command, register, with_the_drive_off};
+use super::register::{command, register, with_the_drive_off};
 use crate::rtl::registers::{Access, Field, Register, maps};
 
 /// The registers, in words of the axis's window, and before them what its hardware was built with.

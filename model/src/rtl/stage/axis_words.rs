@@ -1,7 +1,7 @@
 //! What a host reads of an axis: its state, what went wrong, and what moves.
 
 use super::config::{StageAxis, StageScale};
-use super::registers::{register, with_the_drive_off};
+use super::register::{register, with_the_drive_off};
 use crate::rtl::axis::State;
 use crate::rtl::registers::{Access, Field, Register, maps};
 

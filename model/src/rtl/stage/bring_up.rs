@@ -1,8 +1,24 @@
 //! Registers for bringing an axis up: trace memory, test signals, and encoder edges without a machine.
 
-use super::axis::TRACED;
-use super::registers::{command, register, with_the_drive_off};
+use super::register::{command, register, with_the_drive_off};
 use crate::rtl::registers::{Access, Field, Register};
+
+/// What can be traced: net, and what its words are.
+pub(super) const TRACED: [(&str, &str); 13] = [
+    ("command_position", "of the segments, Q24.8 counts"),
+    ("command_velocity", "of the segments, Q16.16 counts/tick"),
+    ("command_acceleration", "of the segments, Q8.24 counts/tick^2"),
+    ("shaped_position", "of the shaper, Q24.8 counts"),
+    ("shaped_velocity", "of the shaper, Q16.16 counts/tick"),
+    ("shaped_acceleration", "of the shaper, Q8.24 counts/tick^2"),
+    ("captured_position", "of the loop at the tick, counts"),
+    ("velocity", "of the motor, Q16.16 counts/tick"),
+    ("error", "e, Q16.16 counts"),
+    ("sliding", "s, Q16.16 counts/tick"),
+    ("command", "to the drive, Q20.12 command units"),
+    ("excitation_value", "added to the position, Q24.8 counts"),
+    ("deviation", "motor against scale, counts"),
+];
 
 /// Signal of the trace: what there is to choose from.
 fn signal(name: &str, low: u32, meaning: &str) -> Field {

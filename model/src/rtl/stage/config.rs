@@ -13,7 +13,7 @@ use crate::rtl::shaper::ShaperConfig;
 use crate::rtl::sliding_mode::{Law, Settings};
 use crate::rtl::trace::TraceConfig;
 
-use super::Schedule;
+use super::schedule::Schedule;
 
 /// A stage of one to four axes.
 #[derive(Debug, Clone, PartialEq)]

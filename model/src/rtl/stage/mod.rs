@@ -23,6 +23,7 @@ mod axis_settings;
 mod axis_words;
 mod bring_up;
 mod config;
+mod register;
 mod registers;
 mod schedule;
 

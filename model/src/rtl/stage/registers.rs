@@ -174,30 +174,6 @@ pub(super) fn hardware(registers: &[Register]) -> (Vec<String>, Vec<String>) {
     (driven, read)
 }
 
-/// What the loop's feedback is: written only while the axis's drive is off.
-pub(super) fn with_the_drive_off() -> Access {
-    Access::Guarded {
-        while_low: "drive_enable".to_owned(),
-    }
-}
-
-pub(super) fn command(strobe: &str) -> Access {
-    Access::Command {
-        strobe: strobe.to_owned(),
-    }
-}
-
-/// A register of an axis, without the axis's name.
-pub(super) fn register(name: &str, offset: u32, access: Access, meaning: &str, fields: Vec<Field>) -> Register {
-    Register {
-        name: name.to_owned(),
-        offset,
-        access,
-        meaning: meaning.to_owned(),
-        fields,
-    }
-}
-
 /// The registers of an axis, in words of its window, without the axis's name before theirs.
 pub fn axis_window(axis: &StageAxis) -> Vec<Register> {
     let mut registers = axis_settings::registers(axis);

@@ -1,0 +1,40 @@
+//! A machine's modules as files: in its folder, or in one that goes.
+
+use crate::failure::Failure;
+use crate::machine::MachineFile;
+use posicast_hdl::emit::Module;
+use posicast_synth::package::Package;
+use posicast_system::scratch;
+use std::path::PathBuf;
+
+/// Adds the machine file and its Verilog to the folder, and returns where the Verilog stands until the folder is complete.
+pub(crate) fn add_sources(
+    package: &mut Package,
+    file: &MachineFile,
+    modules: &[Module],
+) -> Result<Vec<PathBuf>, Failure> {
+    package
+        .add("machine.toml", file.text.as_bytes())
+        .map_err(Failure::because)?;
+    let write = |module: &Module| {
+        let path = package
+            .stage(&format!("rtl/{}.v", module.name))
+            .map_err(Failure::because)?;
+        std::fs::write(&path, &module.text).map_err(Failure::because)?;
+        Ok(path)
+    };
+    modules.iter().map(write).collect()
+}
+
+/// Writes the modules into a temporary folder, for tools that read files. The folder goes when the guard is dropped.
+pub(crate) fn write_scratch(modules: &[Module]) -> Result<(Vec<PathBuf>, scratch::Folder), Failure> {
+    let folder = scratch::Folder::new(scratch::PREFIX).map_err(Failure::because)?;
+    let files: Result<Vec<_>, _> = modules
+        .iter()
+        .map(|module| {
+            let path = folder.path().join(format!("{}.v", module.name));
+            std::fs::write(&path, &module.text).map(|()| path)
+        })
+        .collect();
+    Ok((files.map_err(Failure::because)?, folder))
+}
