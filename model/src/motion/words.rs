@@ -176,8 +176,8 @@ mod tests {
         assert_eq!(at(2_147_483_647.0, 32), Ok(vec![i64::from(i32::MAX)]));
         assert_eq!(at(-2_147_483_648.0, 32), Ok(vec![i64::from(i32::MIN)]));
         let message = |word: f64, bits| at(word, bits).unwrap_err().to_string();
-        assert!(message(32768.0, 16).contains("command_bits = 24"));
-        assert!(message(-40_000_000.0, 16).contains("command_bits = 32"));
+        assert!(message(32768.0, 16).contains("command_bits = 17"));
+        assert!(message(-40_000_000.0, 16).contains("command_bits = 27"));
         assert!(message(2_147_483_648.0, 32).contains("lower command_fraction"));
     }
 

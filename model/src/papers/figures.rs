@@ -1,7 +1,7 @@
 //! The papers' figures, redrawn from our shapers.
 
 use super::designs::{mode_of_omega, shaper};
-use super::{antisymmetry, contour, hybrid_ei, negative_hybrid, plants};
+use super::{antisymmetry, contour, hybrid_ei, negative_shapers, plants};
 use crate::analysis::sensitivity_curve;
 use crate::design::DesignError;
 use crate::design::kind::Kind;
@@ -94,7 +94,7 @@ pub(super) fn hybrid_ei() -> Result<Vec<Figure>, DesignError> {
 pub(super) fn negative_hybrid() -> Result<Vec<Figure>, DesignError> {
     type Design = fn((usize, usize)) -> Result<(String, ImpulseSequence), DesignError>;
     let figure = |title: &str, pairs: &[(usize, usize)], design: Design| -> Result<Figure, DesignError> {
-        let plant = negative_hybrid::plant();
+        let plant = negative_shapers::plant();
         let mut curves = vec![level("target", 0.0, 35.0, 1.0)];
         for pair in pairs {
             let (name, designed) = design(*pair)?;
@@ -109,12 +109,12 @@ pub(super) fn negative_hybrid() -> Result<Vec<Figure>, DesignError> {
         })
     };
     Ok(vec![
-        figure("Positive hybrids", &negative_hybrid::PAIRS, negative_hybrid::positive)?,
-        figure("Negative hybrids", &negative_hybrid::PAIRS, negative_hybrid::negative)?,
+        figure("Positive hybrids", &negative_shapers::PAIRS, negative_shapers::positive)?,
+        figure("Negative hybrids", &negative_shapers::PAIRS, negative_shapers::negative)?,
         figure(
             "One negative kind for both modes",
-            &negative_hybrid::PLAIN,
-            negative_hybrid::negative,
+            &negative_shapers::PLAIN,
+            negative_shapers::negative,
         )?,
     ])
 }

@@ -61,7 +61,7 @@ pub(super) fn identify(plant: &Plant) -> Mode {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::papers::xy_stage::PLANTS;
+    use crate::papers::plants::PLANTS;
 
     #[test]
     fn golden_coefficients_of_both_plants() {

@@ -6,7 +6,7 @@
 //!
 //! are taken as exact, though 1e-5 has one digit. The sliding-mode controller of its chapter 4 is not compared.
 
-use super::designs::{amplitudes, shaper, times_s};
+use super::designs::{amplitudes, mode_of_omega, shaper, times_s};
 use super::identification::identify;
 use super::plants::{Identified, PLANTS};
 use super::sheet::{Rule, Sheet};
@@ -14,9 +14,8 @@ use super::{contour, drive, sliding_mode_law};
 use crate::design::DesignError;
 use crate::design::kind::Kind;
 use crate::impulse::ImpulseSequence;
-use crate::mode::Mode;
+use crate::plant::Plant;
 use crate::plant::response::step_figures;
-use crate::plant::{Plant, PlantMode};
 use std::f64::consts::{PI, TAU};
 
 /// Overshoot of a shaped step in percent where the plant's frequency is `ratio` times the modelled one.

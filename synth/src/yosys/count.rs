@@ -10,7 +10,7 @@ use std::ops::AddAssign;
 use serde::Serialize;
 
 use super::family::{Cell, Family};
-use super::netlist::{Module, Netlist};
+use super::netlist::{Module, Netlist, NetlistCell};
 use super::{logic_elements, m4k, multiplier_registers};
 
 /// What a block takes of a device.

@@ -3,12 +3,12 @@
 use posicast_hdl::SimulationError;
 use posicast_hdl::component::emit;
 use posicast_hdl::emit::{EmitError, Module};
+use posicast_model::rtl::ClockedBlock;
 use posicast_model::rtl::component::Component;
-use posicast_model::rtl::{ClockedBlock, Direction, Port};
 
+use super::changes::Changes;
 use super::{Bins, Block, inside, not_in_rusthdl};
 use crate::Error;
-use crate::lockstep::Clock;
 use crate::stimuli::{ComponentRandom, Stimuli};
 
 /// A component under a name of its own.

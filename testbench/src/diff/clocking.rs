@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::matching::{Matched, Pair};
-use super::names::is_low_active;
+use super::names::{is_low_active, last_part};
 use super::options::{Edge, Options, Reset};
 use crate::Error;
 use crate::wave::SAMPLE_CLOCK;
@@ -138,8 +138,4 @@ fn named(matched: &Matched, option: &str, name: &str, fits: &impl Fn(&Pair) -> b
             names.join(" or ")
         )
     }))
-}
-
-fn last_part(path: &str) -> &str {
-    path.rsplit('.').next().unwrap_or(path)
 }

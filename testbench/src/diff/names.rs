@@ -200,6 +200,10 @@ pub(super) fn canonical(path: &str) -> String {
     parts.join(".")
 }
 
+pub(super) fn last_part(path: &str) -> &str {
+    path.rsplit('.').next().unwrap_or(path)
+}
+
 /// Whether a reset's name says that it is on while 0.
 pub(super) fn is_low_active(name: &str) -> bool {
     let name = last_part(name).to_ascii_lowercase();

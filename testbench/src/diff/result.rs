@@ -1,6 +1,6 @@
 //! The result of a comparison, as data (the contract's `diff --json`).
 
-use serde::{Serialize, Serializer};
+use serde::Serialize;
 
 use super::matching::{Matched, Pair};
 use super::rule::{Rule, View};

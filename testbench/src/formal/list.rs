@@ -8,7 +8,7 @@ use posicast_model::rtl::pwm::{ActiveLow, Mode, PwmConfig};
 use posicast_model::rtl::schedule::ScheduleConfig;
 use posicast_model::rtl::segments as segments_model;
 use posicast_model::rtl::sliding_mode as controller_model;
-use posicast_model::rtl::{Port, divider_share as share_model, group as group_model};
+use posicast_model::rtl::{divider_share as share_model, group as group_model};
 use posicast_model::rtl::{
     pulse_counter as counter_model, pwm as pwm_model, schedule as schedule_model, time_base as time_model,
 };

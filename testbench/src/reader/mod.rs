@@ -28,7 +28,7 @@ mod section;
 mod values;
 
 use std::fs::File;
-use std::io::{self, BufRead, BufReader, Read};
+use std::io::{self, BufRead, BufReader};
 use std::path::{Path, PathBuf};
 
 use vcd::{Command, IdCode, ParseError, Parser, VarType};

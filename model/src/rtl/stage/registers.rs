@@ -1,6 +1,7 @@
 //! What a host sees of a stage: a window of its own, and one per axis, all alike.
 
 use super::config::{StageAxis, StageConfig};
+use super::register::command;
 use super::{axis_settings, axis_words, bring_up};
 use crate::rtl::group::MOST_AXES;
 use crate::rtl::registers::maps;
