@@ -12,7 +12,7 @@
 use posicast_model::rtl::Port;
 use posicast_synth::yosys::{Family, Yosys, YosysError};
 use posicast_testbench::blocks::{Block, Sources, library};
-use posicast_testbench::formal::{self, Verdict};
+use posicast_testbench::formal::{self, ProofVerdict};
 use posicast_testbench::{Error, crosssim, lockstep};
 use std::collections::BTreeSet;
 use std::process::ExitCode;
@@ -95,9 +95,9 @@ fn check() -> Result<bool, Failure> {
         let folder = tempfile::tempdir()?;
         let outcome = formal::run(task, folder.path(), PROOF)?;
         let result = match &outcome.verdict {
-            Verdict::Proven if outcome.is_good() => "proven".to_owned(),
-            Verdict::Proven => "proven, but a cover is not reached".to_owned(),
-            Verdict::Counterexample {
+            ProofVerdict::Proven if outcome.is_good() => "proven".to_owned(),
+            ProofVerdict::Proven => "proven, but a cover is not reached".to_owned(),
+            ProofVerdict::Counterexample {
                 property,
                 clock,
                 waveform,
@@ -106,7 +106,7 @@ fn check() -> Result<bool, Failure> {
                 let waveform = kept.join(waveform.file_name().unwrap_or_default());
                 format!("**`{property}` fails in clock {clock}**: {}", waveform.display())
             }
-            Verdict::Unknown => "**unknown**: the engine found no answer".to_owned(),
+            ProofVerdict::Unknown => "**unknown**: the engine found no answer".to_owned(),
         };
         println!(
             "| {} | {} | {result} | {:.1} |",
@@ -126,7 +126,7 @@ fn row(block: &dyn Block, clocks: u64, yosys: &Yosys) -> Result<bool, Failure> {
     warnings.iter().for_each(|warning| eprintln!("{warning}"));
     let waves = tempfile::tempdir()?;
     let outcome = crosssim::run(block, clocks, 1, waves.path())?;
-    let matches = |report: &lockstep::report::Report| match report.mismatches() {
+    let matches = |report: &lockstep::report::LockstepReport| match report.mismatches() {
         0 => "equal".to_owned(),
         count => format!("**{count} wrong**"),
     };

@@ -8,7 +8,7 @@ use posicast_testbench::Error;
 use posicast_testbench::asynchronous;
 use posicast_testbench::blocks::{self, Block, Sources};
 use posicast_testbench::lockstep::Device;
-use posicast_testbench::lockstep::report::Report;
+use posicast_testbench::lockstep::report::LockstepReport;
 use posicast_testbench::verilator;
 use serde::Serialize;
 use std::fmt;
@@ -119,7 +119,7 @@ impl Bench<'_> {
 }
 
 /// Compares every block with its model, at most [`MOST_AT_ONCE`] at a time, and reports them in their order.
-pub(crate) fn compare_all(benches: &[Bench<'_>], simulator: Simulator, seed: u64) -> Result<Report, Failure> {
+pub(crate) fn compare_all(benches: &[Bench<'_>], simulator: Simulator, seed: u64) -> Result<LockstepReport, Failure> {
     simulator.say_sizes(benches.iter().map(|bench| bench.block));
     let fewest = |bench: &Bench<'_>| *bench.clocks(simulator).start();
     let total = benches.iter().map(fewest).fold(0, u64::saturating_add);
@@ -149,11 +149,11 @@ pub(crate) fn compare_all(benches: &[Bench<'_>], simulator: Simulator, seed: u64
     bar.finish_and_clear();
     let mut rows = done.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
     rows.sort_by_key(|(row, _)| *row);
-    let reports: Result<Vec<Report>, Error> = rows.into_iter().map(|(_, result)| result).collect();
-    Ok(Report::joined(reports.map_err(failure)?))
+    let reports: Result<Vec<LockstepReport>, Error> = rows.into_iter().map(|(_, result)| result).collect();
+    Ok(LockstepReport::joined(reports.map_err(failure)?))
 }
 
-fn compare(bench: &Bench<'_>, simulator: Simulator, seed: u64, bar: &ProgressBar) -> Result<Report, Error> {
+fn compare(bench: &Bench<'_>, simulator: Simulator, seed: u64, bar: &ProgressBar) -> Result<LockstepReport, Error> {
     bar.set_message(format!("building {} {}", bench.block.name(), bench.block.instance()));
     let seed = blocks::row_seed(bench.block, seed);
     let mut device = simulator.device(bench.block, bench.sources, seed)?;
@@ -172,7 +172,7 @@ fn compare(bench: &Bench<'_>, simulator: Simulator, seed: u64, bar: &ProgressBar
         other => other?,
     };
     Ok(match between_clocks {
-        Some(row) => Report::joined(vec![report, row]),
+        Some(row) => LockstepReport::joined(vec![report, row]),
         None => report,
     })
 }

@@ -2,24 +2,24 @@
 
 use crate::bench;
 use crate::command::{self, Words};
-use crate::design::Report;
+use crate::design::DesignReport;
 use crate::failure::Failure;
 use crate::machine::of_hardware;
 use posicast_hdl::machine::AxisShaper;
 use posicast_model::hardware::{self, Hardware};
-use posicast_model::machine_file::{Axis, Machine};
+use posicast_model::machine_file::{AxisSection, Machine};
 use posicast_model::rtl::cascade::CascadeConfig;
 use posicast_model::rtl::divider::DividerConfig;
 use posicast_model::rtl::group::MOST_AXES;
 use posicast_model::rtl::pwm::{ActiveLow, PwmConfig};
 use posicast_model::rtl::registers::RegisterMap;
 use posicast_model::rtl::schedule::ScheduleConfig;
-use posicast_model::rtl::shaper::{MOTION_WORD_BITS, Motion, ShaperConfig};
+use posicast_model::rtl::shaper::{MOTION_WORD_BITS, ShaperConfig, ShaperMotion};
 use posicast_model::rtl::trace::TraceConfig;
 use posicast_testbench::blocks::{
     AxisBlock, Block, CascadeBlock, ComponentBlock, DividerBlock, DriveCommandBlock, EncoderGeneratorBlock,
-    ExcitationBlock, LinearScaleBlock, MachineShapers, Part, PartBlock, PulseCounterBlock, PwmBlock, RegistersBlock,
-    SegmentsBlock, ShaperBlock, SlidingModeBlock, TraceBlock,
+    ExcitationBlock, LinearScaleBlock, MachineShapers, PartBlock, PulseCounterBlock, PwmBlock, RegistersBlock,
+    SegmentsBlock, ShaperBlock, SlidingModeBlock, SmallPart, TraceBlock,
 };
 use std::path::Path;
 
@@ -34,7 +34,7 @@ const TRACE_SAMPLES: u64 = 1024;
 /// Clocks from the tick to the controllers of the schedule that is compared.
 const SCHEDULE_CLOCKS: u32 = 500;
 /// The shaper for motion that is compared where no axis has one: position, velocity and acceleration share a table.
-const MOTION: Motion = Motion {
+const MOTION: ShaperMotion = ShaperMotion {
     channels: 3,
     modulo: false,
 };
@@ -46,14 +46,14 @@ pub(crate) fn shapers(machine: &Machine, shapers: Vec<AxisShaper>, words: &Words
 
 /// The other blocks: none for a machine of shapers alone, else every block of the library. `path` is the machine file.
 pub(crate) fn others(
-    report: &Report<'_>,
+    report: &DesignReport<'_>,
     shapers: &[AxisShaper],
     components: Vec<ComponentBlock>,
     path: &Path,
 ) -> Result<Vec<Box<dyn Block>>, Failure> {
     let (machine, hardware) = (report.machine, &report.hardware);
     let mut blocks: Vec<Box<dyn Block>> = Vec::new();
-    if !machine.axes.iter().any(Axis::has_loop) {
+    if !machine.axes.iter().any(AxisSection::has_loop) {
         return Ok(blocks);
     }
     let name = machine.name.as_str();
@@ -108,19 +108,19 @@ pub(crate) fn of_components(components: Vec<ComponentBlock>) -> Result<Vec<Box<d
 }
 
 /// The small blocks between others, at the machine's sizes where these do not depend on a stage.
-fn parts(machine: &Machine, hardware: &Hardware<'_>, path: &Path) -> Result<[Part; 6], Failure> {
+fn parts(machine: &Machine, hardware: &Hardware<'_>, path: &Path) -> Result<[SmallPart; 6], Failure> {
     let first = hardware.axes().iter().find_map(|axis| axis.control.as_ref());
     let axes = machine.axes.len().clamp(1, MOST_AXES);
     Ok([
-        Part::TimeBase(divider(hardware, path)?),
-        Part::Schedule(ScheduleConfig::new(SCHEDULE_CLOCKS).map_err(Failure::because)?),
-        Part::DividerShare(axes),
-        Part::Group(axes),
-        Part::SampleSelect {
+        SmallPart::TimeBase(divider(hardware, path)?),
+        SmallPart::Schedule(ScheduleConfig::new(SCHEDULE_CLOCKS).map_err(Failure::because)?),
+        SmallPart::DividerShare(axes),
+        SmallPart::Group(axes),
+        SmallPart::SampleSelect {
             word_bits: *MOTION_WORD_BITS.end(),
             channels: MOTION.channels as usize,
         },
-        Part::SettingBanks(first.map_or_else(Default::default, |control| control.derived.settings)),
+        SmallPart::SettingBanks(first.map_or_else(Default::default, |control| control.derived.settings)),
     ])
 }
 
@@ -150,7 +150,7 @@ fn pwms(machine: &Machine, path: &Path) -> Result<Vec<(PwmConfig, String)>, Fail
 }
 
 /// The names of the axes that have something, or `alone` where none has it.
-fn axes(machine: &Machine, has: impl Fn(&Axis) -> bool) -> String {
+fn axes(machine: &Machine, has: impl Fn(&AxisSection) -> bool) -> String {
     let names: Vec<&str> = machine
         .axes
         .iter()
@@ -176,6 +176,6 @@ fn motion_shaper(shapers: &[AxisShaper]) -> Result<ShaperConfig, Failure> {
     let bits = first.config.word_bits().max(*MOTION_WORD_BITS.start());
     let plain = ShaperConfig::new(bits, first.config.table().clone()).map_err(Failure::because)?;
     let all_channels = plain.clone().for_motion(MOTION);
-    let config = all_channels.or_else(|_| plain.for_motion(Motion { channels: 1, ..MOTION }));
+    let config = all_channels.or_else(|_| plain.for_motion(ShaperMotion { channels: 1, ..MOTION }));
     config.map_err(Failure::because)
 }

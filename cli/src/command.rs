@@ -3,7 +3,7 @@
 use crate::allowance::Allowance;
 use crate::failure::Failure;
 use posicast_model::design::MachineDesign;
-use posicast_model::machine_file::{Axis, Machine};
+use posicast_model::machine_file::{AxisSection, Machine};
 use posicast_model::motion::{SAMPLES_MAX, command_words, default_move, modulo_words, resample, settle_s};
 use posicast_model::rtl::shaper::wrap;
 use std::fs::File;
@@ -52,7 +52,7 @@ pub(crate) fn on_the_ports(machine: &Machine, words: &Words) -> Words {
     words.iter().map(of_axis).collect()
 }
 
-fn of_axis(axis: &Axis, error: impl std::fmt::Display) -> Failure {
+fn of_axis(axis: &AxisSection, error: impl std::fmt::Display) -> Failure {
     Failure::from(miette::miette!("command of axis `{}`: {error}", axis.name))
 }
 

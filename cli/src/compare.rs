@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use crate::output::{self, Table, percent};
-use posicast_model::compare::{Comparison, compare};
+use posicast_model::compare::{KindComparison, compare};
 use posicast_model::machine_file::Machine;
 use serde::Serialize;
 use std::fmt::Write;
@@ -25,7 +25,7 @@ pub(crate) fn band(text: &str) -> Result<f64, String> {
     }
 }
 
-fn text(machine: &Machine, band_percent: f64, comparisons: &[Comparison]) -> String {
+fn text(machine: &Machine, band_percent: f64, comparisons: &[KindComparison]) -> String {
     let mut text = format!("{}: shapers for modes off by up to ±{band_percent} %\n", machine.name);
     for comparison in comparisons {
         let _ = writeln!(text, "\naxis {}", comparison.axis);
@@ -93,7 +93,7 @@ struct MissingDocument<'a> {
 }
 
 impl<'a> Document<'a> {
-    fn new(machine: &'a Machine, band_percent: f64, comparisons: &'a [Comparison]) -> Self {
+    fn new(machine: &'a Machine, band_percent: f64, comparisons: &'a [KindComparison]) -> Self {
         let axes = comparisons.iter().map(|comparison| AxisDocument {
             name: &comparison.axis,
             kinds: comparison

@@ -6,7 +6,7 @@ use posicast_model::control::DEFAULT_MARGIN;
 use posicast_model::control::sampled::Margins;
 use posicast_model::hardware::{AxisLoop, Hardware};
 use posicast_model::machine_file::Machine;
-use posicast_model::rtl::sliding_mode::{Law, Row};
+use posicast_model::rtl::sliding_mode::{Law, SettingRow};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -138,7 +138,7 @@ impl AxisControl {
             lag_s: self.of_axis.lag_s,
             steady_error: self.of_axis.derived.steady_error,
             margins: MarginsDocument::new(&self.of_axis.derived.margins),
-            settings: Row::ALL
+            settings: SettingRow::ALL
                 .into_iter()
                 .map(|row| SettingDocument {
                     row: format!("{row:?}").to_lowercase(),

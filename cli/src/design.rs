@@ -18,8 +18,8 @@ use posicast_model::design::{
     AxisTables, ConvolutionFigures, Findings, MachineDesign, ModeFigures, convolution_figures, design_machine,
 };
 use posicast_model::hardware::{Hardware, HardwareError};
-use posicast_model::machine_file::{Axis, Machine};
-use posicast_system::output::Outputs;
+use posicast_model::machine_file::{AxisSection, Machine};
+use posicast_system::output::OutputFiles;
 use posicast_testbench::wave::write_text;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -63,13 +63,13 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     if args.compare {
         return compare::run(&machine, args.band, args.json);
     }
-    let mut outputs = Outputs::new(args.force);
+    let mut outputs = OutputFiles::new(args.force);
     outputs.input("the machine file", &args.machine);
     if let Some(path) = &args.plot {
         outputs.claim("--plot", path).map_err(Failure::because)?;
     }
     output::one_document(&outputs, args.json)?;
-    let report = Report::new(&machine, &args.machine)?;
+    let report = DesignReport::new(&machine, &args.machine)?;
     report.warn();
     if let Some(path) = &args.plot {
         let mut panels = sensitivity_panels(&machine, &report.design);
@@ -84,7 +84,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
 }
 
 /// The design of a machine together with its figures at every mode.
-pub(crate) struct Report<'a> {
+pub(crate) struct DesignReport<'a> {
     pub(crate) machine: &'a Machine,
     pub(crate) design: MachineDesign,
     /// What is built of it.
@@ -92,7 +92,7 @@ pub(crate) struct Report<'a> {
     pub(crate) controllers: Vec<Option<AxisControl>>,
 }
 
-impl<'a> Report<'a> {
+impl<'a> DesignReport<'a> {
     /// Designs the shapers of `machine`, which the file at `path` describes.
     pub(crate) fn new(machine: &'a Machine, path: &Path) -> Result<Self, Failure> {
         let design = design_machine(machine).map_err(|e| Failure::because(e).in_file(path))?;
@@ -163,7 +163,7 @@ impl<'a> Report<'a> {
 }
 
 struct AxisReport<'a> {
-    axis: &'a Axis,
+    axis: &'a AxisSection,
     tables: &'a AxisTables,
     /// Whether its delay is made equal to that of others.
     in_stage: bool,

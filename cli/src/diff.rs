@@ -2,10 +2,10 @@
 
 use crate::failure::Failure;
 use crate::{output, progress};
-use posicast_system::output::Outputs;
+use posicast_system::output::OutputFiles;
 use posicast_testbench::Error;
 use posicast_testbench::diff::{
-    self, Comparison, Edge, Options, Progress, Reset, UnknownPolicy, Verdict, parse_time_fs,
+    self, Comparison, DiffOptions, DiffVerdict, Progress, Reset, SamplingEdge, UnknownPolicy, parse_time_fs,
 };
 use posicast_testbench::wave::write_text;
 use std::path::PathBuf;
@@ -148,7 +148,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         let name = format!("{} {}", args.a.display(), args.b.display());
         write_text(path, &diff::junit(&comparison, &name)).map_err(Failure::because)?;
     }
-    if let (Some(base), Verdict::Different) = (&args.show, comparison.result)
+    if let (Some(base), DiffVerdict::Different) = (&args.show, comparison.result)
         && diff::show(base, &args.a, &args.b, &comparison).map_err(Failure::because)?
     {
         output::say(&format!(
@@ -165,8 +165,8 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
 }
 
 /// The files that are written, each of them asked for.
-fn outputs(args: &Args) -> Result<Outputs, Failure> {
-    let mut outputs = Outputs::new(args.force);
+fn outputs(args: &Args) -> Result<OutputFiles, Failure> {
+    let mut outputs = OutputFiles::new(args.force);
     outputs.input("the first file", &args.a);
     outputs.input("the second file", &args.b);
     if let Some(maps) = &args.which.map_file {
@@ -180,13 +180,13 @@ fn outputs(args: &Args) -> Result<Outputs, Failure> {
     Ok(outputs)
 }
 
-fn options(args: &Args) -> Result<Options, Failure> {
+fn options(args: &Args) -> Result<DiffOptions, Failure> {
     let Args { when, which, how, .. } = args;
-    let mut options = Options {
+    let mut options = DiffOptions {
         clock: when.clock.clone(),
         edge: match when.edge {
-            EdgeName::Rising => Edge::Rising,
-            EdgeName::Falling => Edge::Falling,
+            EdgeName::Rising => SamplingEdge::Rising,
+            EdgeName::Falling => SamplingEdge::Falling,
         },
         raw: when.raw,
         reset: Reset::Found,
@@ -203,7 +203,7 @@ fn options(args: &Args) -> Result<Options, Failure> {
             UnknownName::Zero => UnknownPolicy::Zero,
         },
         require_all: which.require_all,
-        ..Options::default()
+        ..DiffOptions::default()
     };
     if let Some(path) = &which.map_file {
         let text = std::fs::read_to_string(path);
@@ -212,15 +212,15 @@ fn options(args: &Args) -> Result<Options, Failure> {
             .add_map_file(&text)
             .map_err(|error| Failure::because(error).in_file(path))?;
     }
-    let mut add = |texts: &[String], add: fn(&mut Options, &str) -> Result<(), Error>| {
+    let mut add = |texts: &[String], add: fn(&mut DiffOptions, &str) -> Result<(), Error>| {
         texts
             .iter()
             .try_for_each(|text| add(&mut options, text).map_err(Failure::because))
     };
-    add(&which.map, Options::add_map)?;
-    add(&how.tolerance, Options::add_tolerance)?;
-    add(&how.view, Options::add_view)?;
-    add(&when.latency, Options::add_latency)?;
+    add(&which.map, DiffOptions::add_map)?;
+    add(&how.tolerance, DiffOptions::add_tolerance)?;
+    add(&how.view, DiffOptions::add_view)?;
+    add(&when.latency, DiffOptions::add_latency)?;
     if let Some(text) = &when.reset {
         options.set_reset(text).map_err(Failure::because)?;
     }
@@ -264,9 +264,9 @@ impl LateBar {
 
 fn verdict(comparison: &Comparison) -> Result<(), Failure> {
     match comparison.result {
-        Verdict::Equal => Ok(()),
-        Verdict::Different => Err(Failure::Check(comparison.differing())),
-        Verdict::Incomparable => Err(Failure::from(miette::miette!(
+        DiffVerdict::Equal => Ok(()),
+        DiffVerdict::Different => Err(Failure::Check(comparison.differing())),
+        DiffVerdict::Incomparable => Err(Failure::from(miette::miette!(
             help = "name the clock with --clock, or say with --map A=B which scope or signal is which",
             "the files have nothing in common that can be compared"
         ))),

@@ -7,7 +7,7 @@ use posicast_model::machine_file::Machine;
 use posicast_model::motion::TickLimits;
 use posicast_model::rtl::component::Component;
 use posicast_synth::core_file::{self, Core};
-use posicast_synth::driver::{self, AxisData, File, StageDriver};
+use posicast_synth::driver::{self, AxisData, DriverFile, StageDriver};
 use posicast_synth::package::Package;
 use posicast_synth::register_documents;
 use posicast_testbench::blocks::{Block, ComponentBlock};
@@ -50,7 +50,7 @@ fn core_files(machine: &Machine, modules: &[Module], stage: Option<&Stage>) -> V
     })
 }
 
-fn of_stage(machine: &Machine, stage: &Stage) -> Vec<File> {
+fn of_stage(machine: &Machine, stage: &Stage) -> Vec<DriverFile> {
     let axes = machine.axes.iter().map(|axis| AxisData {
         counts_per_unit: axis.loop_counts_per_unit(),
         limits: TickLimits::of_axis(axis, &machine.clock),

@@ -1,6 +1,6 @@
 //! `posicast generate`: the Verilog of a machine, and what Quartus needs beside it, in a folder of its own.
 
-use crate::design::Report;
+use crate::design::DesignReport;
 use crate::driver;
 use crate::failure::Failure;
 use crate::hardware::Built;
@@ -24,7 +24,7 @@ pub(crate) struct Args {
 
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let file = machine::read(&args.machine)?;
-    let report = Report::new(&file.machine, &args.machine)?;
+    let report = DesignReport::new(&file.machine, &args.machine)?;
     report.warn();
     let board = sopc::board(&file.machine, &args.machine)?;
     let built = Built::new(&report, &args.machine)?;

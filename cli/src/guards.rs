@@ -1,12 +1,12 @@
 //! What does not watch over an axis, because the machine file does not ask for it, and what can then happen.
 
 use posicast_model::control::{LostSign, lost_sign};
-use posicast_model::machine_file::{Axis, Limits, Machine};
+use posicast_model::machine_file::{AxisSection, LimitsSection, Machine};
 
 /// A guard, whether a file has it, and what can happen without.
 struct Guard {
     key: &'static str,
-    is_set: fn(&Axis, &Limits) -> bool,
+    is_set: fn(&AxisSection, &LimitsSection) -> bool,
     without: &'static str,
 }
 
@@ -37,7 +37,7 @@ const GUARDS: [Guard; 4] = [
 /// A warning for every guard that an axis with a controller lacks.
 pub(crate) fn missing(machine: &Machine) -> Vec<String> {
     let loops = machine.axes.iter().filter(|axis| axis.controller.is_some());
-    let of_axis = |axis: &'_ Axis| {
+    let of_axis = |axis: &'_ AxisSection| {
         let limits = axis.limits.unwrap_or_default();
         let absent = GUARDS.iter().filter(|guard| !(guard.is_set)(axis, &limits));
         let texts = absent.map(|guard| {
@@ -52,7 +52,7 @@ pub(crate) fn missing(machine: &Machine) -> Vec<String> {
 }
 
 /// A warning where neither the following error nor the watch of the encoder sees a feedback of the wrong sign.
-fn sign(axis: &Axis, limits: &Limits) -> Option<String> {
+fn sign(axis: &AxisSection, limits: &LimitsSection) -> Option<String> {
     let remedy = match lost_sign(axis) {
         _ if limits.following_error.is_some() => return None,
         LostSign::Watched => return None,

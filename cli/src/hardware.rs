@@ -1,6 +1,6 @@
 //! What is built for a machine, as blocks with Verilog: the shapers of its top module, its components, its stage.
 
-use crate::design::Report;
+use crate::design::DesignReport;
 use crate::failure::Failure;
 use crate::machine::{at_key, of_hardware};
 use crate::output;
@@ -52,7 +52,7 @@ pub(crate) fn shapers(machine: &Machine, hardware: &Hardware<'_>, path: &Path) -
 impl<'a> Built<'a> {
     /// The hardware of a report's machine, which the file at `path` describes. Shapers that do not suit a stage are said as a
     /// warning: then there is none.
-    pub(crate) fn new(report: &Report<'a>, path: &Path) -> Result<Self, Failure> {
+    pub(crate) fn new(report: &DesignReport<'a>, path: &Path) -> Result<Self, Failure> {
         let (machine, hardware) = (report.machine, &report.hardware);
         let refused = |error: HardwareError| of_hardware(&error, path);
         let shapers = shapers(machine, hardware, path)?;

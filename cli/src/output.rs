@@ -1,7 +1,7 @@
 //! Standard output and the files that commands write.
 
 use crate::failure::Failure;
-use posicast_system::output::Outputs;
+use posicast_system::output::OutputFiles;
 use serde::Serialize;
 use std::io::{ErrorKind, Write};
 
@@ -15,7 +15,7 @@ pub(crate) fn print(text: &str) -> Result<(), Failure> {
 }
 
 /// Prints the result of a command that writes files: on standard error where one of them is the standard output.
-pub(crate) fn print_beside(outputs: &Outputs, text: &str) -> Result<(), Failure> {
+pub(crate) fn print_beside(outputs: &OutputFiles, text: &str) -> Result<(), Failure> {
     if outputs.take_standard_output() {
         say(text.trim_end());
         return Ok(());
@@ -24,7 +24,7 @@ pub(crate) fn print_beside(outputs: &Outputs, text: &str) -> Result<(), Failure>
 }
 
 /// Refuses `--json` where a file that the command writes is the standard output.
-pub(crate) fn one_document(outputs: &Outputs, json: bool) -> Result<(), Failure> {
+pub(crate) fn one_document(outputs: &OutputFiles, json: bool) -> Result<(), Failure> {
     match json && outputs.take_standard_output() {
         false => Ok(()),
         true => Err(Failure::from(miette::miette!(

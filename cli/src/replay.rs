@@ -6,8 +6,8 @@ use crate::output;
 use posicast_model::rtl::{Direction, Port};
 use posicast_testbench::Error;
 use posicast_testbench::blocks::{Block, Sources};
-use posicast_testbench::diff::{Options, Reset};
-use posicast_testbench::lockstep::report::Report;
+use posicast_testbench::diff::{DiffOptions, Reset};
+use posicast_testbench::lockstep::report::LockstepReport;
 use posicast_testbench::replay::{Extent, Replay};
 use posicast_testbench::wording::counted;
 use serde::Serialize;
@@ -40,12 +40,12 @@ impl Recording {
         self.stimulus.as_deref()
     }
 
-    fn options(&self) -> Result<Options, Error> {
-        let mut options = Options {
+    fn options(&self) -> Result<DiffOptions, Error> {
+        let mut options = DiffOptions {
             clock: self.clock.clone(),
             roots: [self.root.clone(), None],
             reset: Reset::Found,
-            ..Options::default()
+            ..DiffOptions::default()
         };
         self.map.iter().try_for_each(|text| options.add_map(text))?;
         if let Some(text) = &self.reset {
@@ -123,7 +123,7 @@ pub(crate) fn run(
     file: &Path,
     args: &Recording,
     (simulator, seed, most_clocks): (Simulator, u64, u64),
-) -> Result<(Report, Replayed), Failure> {
+) -> Result<(LockstepReport, Replayed), Failure> {
     let options = args.options().map_err(bench::failure)?;
     let (block, sources, replay) = choose(blocks, file, &options)?;
     has_content(block, &replay, file)?;
@@ -201,7 +201,11 @@ fn has_content(block: &dyn Block, replay: &Replay, file: &Path) -> Result<(), Fa
 type Chosen<'a> = (&'a dyn Block, &'a Sources, Replay);
 
 /// The block with most ports in the file.
-fn choose<'a>(blocks: &'a [(Box<dyn Block>, Sources)], file: &Path, options: &Options) -> Result<Chosen<'a>, Failure> {
+fn choose<'a>(
+    blocks: &'a [(Box<dyn Block>, Sources)],
+    file: &Path,
+    options: &DiffOptions,
+) -> Result<Chosen<'a>, Failure> {
     let mut best: Vec<Chosen<'a>> = Vec::new();
     let mut refused = None;
     for (block, sources) in blocks {

@@ -5,8 +5,8 @@ use crate::output::{self, Table};
 use crate::plot::{self, Curve, Panel};
 use crate::progress;
 use clap::builder::PossibleValuesParser;
-use posicast_model::papers::{Figure, Paper, Row, Value, Verdict};
-use posicast_system::output::Outputs;
+use posicast_model::papers::{Figure, Paper, PaperRow, PaperVerdict, Value};
+use posicast_system::output::OutputFiles;
 use posicast_testbench::wave::write_text;
 use serde::Serialize;
 use std::fmt::Write;
@@ -36,7 +36,7 @@ pub(crate) struct Args {
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let named = args.paper.as_deref().and_then(Paper::from_name);
     let papers = named.map_or_else(|| Paper::ALL.to_vec(), |paper| vec![paper]);
-    let mut outputs = Outputs::new(args.force);
+    let mut outputs = OutputFiles::new(args.force);
     // A folder that is yet to be made holds nothing that could be replaced.
     for folder in args.plot.iter().filter(|folder| folder.is_dir()) {
         for paper in &papers {
@@ -80,13 +80,13 @@ fn fault(paper: Paper, error: &dyn std::error::Error) -> Failure {
     ))
 }
 
-type Tables = Vec<(Paper, Vec<Row>)>;
+type Tables = Vec<(Paper, Vec<PaperRow>)>;
 
 fn first_not_reproduced(tables: &Tables) -> String {
     let mut rows = tables
         .iter()
         .flat_map(|(paper, rows)| rows.iter().map(move |row| (paper, row)));
-    let first = rows.find(|(_, row)| row.verdict == Verdict::NotReproduced);
+    let first = rows.find(|(_, row)| row.verdict == PaperVerdict::NotReproduced);
     first.map_or_else(String::new, |(paper, row)| format!("{}, {}", paper.name(), row.item))
 }
 
@@ -105,10 +105,10 @@ impl Counts {
             rows.filter(|row| row.verdict == verdict).count()
         };
         Self {
-            reproduced: count(Verdict::Reproduced),
-            errata: count(Verdict::Erratum),
-            not_comparable: count(Verdict::NotComparable),
-            not_reproduced: count(Verdict::NotReproduced),
+            reproduced: count(PaperVerdict::Reproduced),
+            errata: count(PaperVerdict::Erratum),
+            not_comparable: count(PaperVerdict::NotComparable),
+            not_reproduced: count(PaperVerdict::NotReproduced),
         }
     }
 }
@@ -222,7 +222,7 @@ impl<'a> From<&'a Value> for ValueDocument<'a> {
 
 impl<'a> Document<'a> {
     fn new(tables: &'a Tables, counts: Counts) -> Self {
-        let row = |row: &'a Row| RowDocument {
+        let row = |row: &'a PaperRow| RowDocument {
             item: &row.item,
             paper: (&row.paper).into(),
             ours: row.ours.as_ref().map(ValueDocument::from),

@@ -13,7 +13,7 @@ mod waves;
 use crate::bench::{self, Simulator};
 use crate::blocks;
 use crate::command;
-use crate::design::{self, Report as DesignReport};
+use crate::design::{self, DesignReport};
 use crate::failure::Failure;
 use crate::hardware::Built;
 use crate::machine;
@@ -25,7 +25,7 @@ use closed_loop::ClosedLoop;
 use posicast_model::machine_file::Machine;
 use posicast_synth::yosys::{Estimate, Yosys, YosysError};
 use posicast_testbench::blocks::{Block, Sources};
-use report::Report;
+use report::RunReport;
 use std::path::PathBuf;
 
 /// The whole way: design, Verilog, simulation, comparison, estimate, verdict
@@ -138,7 +138,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
             plot::svg(&report::response_panels(machine, &design.design, &axes)?)?.as_bytes(),
         )
         .map_err(Failure::because)?;
-    let report = Report {
+    let report = RunReport {
         machine,
         design: &design,
         axes: &axes,

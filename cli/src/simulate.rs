@@ -1,17 +1,17 @@
 //! `posicast simulate`: a command through the bit-exact model and the float design, and on to the simulated machine.
 
 use crate::command::{self, Words};
-use crate::design::Report;
+use crate::design::DesignReport;
 use crate::failure::Failure;
 use crate::hardware;
 use crate::machine;
 use crate::output::{self, Table};
 use posicast_hdl::machine::AxisShaper;
 use posicast_model::design::MachineDesign;
-use posicast_model::machine_file::{Axis, Machine};
+use posicast_model::machine_file::{AxisSection, Machine};
 use posicast_model::plant::Plant;
 use posicast_model::simulation::{AxisSimulation, simulate_axis};
-use posicast_system::output::Outputs;
+use posicast_system::output::OutputFiles;
 use posicast_testbench::wave::{Heading, Recorder, SAMPLE_CLOCK, Signal};
 use posicast_testbench::wording::counted;
 use serde::Serialize;
@@ -47,14 +47,14 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let machine = machine::read(&args.machine)?.machine;
     let default = PathBuf::from(format!("{}.vcd", machine.name));
     let path = args.output.as_ref().unwrap_or(&default);
-    let mut outputs = Outputs::new(args.force);
+    let mut outputs = OutputFiles::new(args.force);
     outputs.input("the machine file", &args.machine);
     if let Some(command) = &args.command {
         outputs.input("the command", command);
     }
     outputs.claim("--output", path).map_err(Failure::because)?;
     output::one_document(&outputs, args.json)?;
-    let report = Report::new(&machine, &args.machine)?;
+    let report = DesignReport::new(&machine, &args.machine)?;
     let shapers = hardware::shapers(&machine, &report.hardware, &args.machine)?;
     let design = report.design;
     let words = command::words(&machine, &design, args.command.as_deref())?;
@@ -97,7 +97,7 @@ pub(crate) fn simulate(
 }
 
 /// Micrometres (or microradians) per LSB of an axis's command word.
-pub(crate) fn micro_units_per_lsb(machine: &Machine, axis: &Axis) -> f64 {
+pub(crate) fn micro_units_per_lsb(machine: &Machine, axis: &AxisSection) -> f64 {
     1e6 / (axis.loop_counts_per_unit() * f64::from(machine.fixed_point.command_fraction).exp2())
 }
 
@@ -166,7 +166,7 @@ struct AxisDocument {
 
 impl Document {
     fn new(machine: &Machine, axes: &[AxisSimulation], path: &Path) -> Self {
-        let document = |(axis, run): (&Axis, &AxisSimulation)| {
+        let document = |(axis, run): (&AxisSection, &AxisSimulation)| {
             let scale = 1e-6 * micro_units_per_lsb(machine, axis);
             AxisDocument {
                 name: axis.name.clone(),

@@ -4,7 +4,7 @@ use crate::failure::Failure;
 use crate::hardware::Stage;
 use crate::machine;
 use crate::output;
-use posicast_model::machine_file::{Axis, Machine};
+use posicast_model::machine_file::{AxisSection, Machine};
 use posicast_synth::package::Package;
 use posicast_synth::sopc::{Board, Design, Unit};
 use posicast_testbench::blocks::{Block, ComponentBlock};
@@ -54,7 +54,7 @@ pub(crate) fn add(
         .zip(&tops)
         .map(|(block, top)| unit(block, top, Vec::new()))
         .collect();
-    let is_active_low = |axis: &&Axis| axis.pwm.as_ref().is_some_and(|pwm| pwm.active_low);
+    let is_active_low = |axis: &&AxisSection| axis.pwm.as_ref().is_some_and(|pwm| pwm.active_low);
     let active_low = machine.axes.iter().filter(is_active_low);
     let design = Design {
         machine: &machine.name,

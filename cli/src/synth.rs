@@ -4,14 +4,14 @@ mod clock;
 
 use self::clock::{ClockEstimates, Clocks};
 
-use crate::design::Report;
+use crate::design::DesignReport;
 use crate::failure::Failure;
 use crate::hardware::{Built, COMPONENT_SUFFIX, STAGE_SUFFIX};
 use crate::output::{self, Table};
 use crate::{machine, progress, verilog};
 use posicast_model::machine_file::Machine;
 use posicast_synth::package;
-use posicast_synth::yosys::{Block, Estimate, Excess, Family, Resources, Yosys, YosysError};
+use posicast_synth::yosys::{BlockEstimate, Estimate, Excess, Family, Resources, Yosys, YosysError};
 use posicast_system::scratch::Folder;
 use serde::Serialize;
 use std::fmt::Write;
@@ -54,7 +54,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         let estimate = yosys.estimate(&files, &name, family).map_err(failure)?;
         spinner.finish_and_clear();
         lacks.extend(self::lacks(&estimate));
-        components.push(Block {
+        components.push(BlockEstimate {
             name,
             resources: estimate.total,
         });
@@ -102,7 +102,7 @@ struct Document<'a> {
     #[serde(flatten)]
     estimate: &'a Estimate,
     #[serde(skip_serializing_if = "<[_]>::is_empty")]
-    components: &'a [Block],
+    components: &'a [BlockEstimate],
     #[serde(skip_serializing_if = "Option::is_none")]
     clocks: Option<&'a ClockEstimates>,
 }
@@ -119,7 +119,7 @@ fn components(files: &[PathBuf], machine: &str) -> Vec<String> {
     names
 }
 
-fn components_text(components: &[Block]) -> String {
+fn components_text(components: &[BlockEstimate]) -> String {
     if components.is_empty() {
         return String::new();
     }
@@ -143,7 +143,7 @@ fn sources(source: &Path) -> Result<(Machine, Vec<PathBuf>, Option<Folder>), Fai
         return Ok((machine, contents.rtl, None));
     }
     let machine = machine::read(source)?.machine;
-    let report = Report::new(&machine, source)?;
+    let report = DesignReport::new(&machine, source)?;
     let modules = Built::new(&report, source)?.modules(source)?;
     let (files, scratch) = verilog::write_scratch(&modules)?;
     Ok((machine, files, Some(scratch)))
@@ -182,7 +182,7 @@ fn failure(error: YosysError) -> Failure {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use posicast_synth::yosys::Method;
+    use posicast_synth::yosys::EstimateMethod;
 
     #[test]
     fn unit_what_is_lacking_says_by_how_much_and_where() {
@@ -190,7 +190,7 @@ mod tests {
             cells,
             ..Resources::default()
         };
-        let block = |name: &str, cells| Block {
+        let block = |name: &str, cells| BlockEstimate {
             name: name.to_owned(),
             resources: of(cells),
         };
@@ -200,7 +200,7 @@ mod tests {
             total: of(19_000),
             device: Family::Cyclone2.device(),
             clock_mhz_estimate: None,
-            method: Method {
+            method: EstimateMethod {
                 tool: String::new(),
                 mapped_as: Family::Cyclone2.mapped_as(),
                 note: String::new(),

@@ -6,14 +6,14 @@ mod folder;
 use self::document::Document;
 use self::folder::Folder;
 use crate::bench::{self, Bench, Simulator};
-use crate::design::Report as DesignReport;
+use crate::design::DesignReport;
 use crate::failure::Failure;
 use crate::hardware::Built;
 use crate::output;
 use crate::{blocks, command, machine, replay};
 use posicast_synth::package;
 use posicast_testbench::blocks::{Block, ShortTicksBlock, Sources, StageBlock};
-use posicast_testbench::lockstep::report::{Report, Verdict};
+use posicast_testbench::lockstep::report::{LockstepReport, LockstepVerdict};
 use std::path::{Path, PathBuf};
 
 /// Compare the Verilog with the bit-exact model in every clock
@@ -90,7 +90,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         }
     };
     if job.folder.as_ref().is_some_and(Folder::fails) {
-        report.result = Verdict::Mismatch;
+        report.result = LockstepVerdict::Mismatch;
     }
     if report.samples == 0 && report.blocks.iter().any(|block| block.samples.is_some()) {
         output::say("warning: no output sample was among these clocks: compare more with --cycles");
@@ -214,7 +214,7 @@ impl Job {
             .unwrap_or(0)
     }
 
-    fn lockstep(&self, simulator: Simulator, cycles: Option<u64>, seed: u64) -> Result<Report, Failure> {
+    fn lockstep(&self, simulator: Simulator, cycles: Option<u64>, seed: u64) -> Result<LockstepReport, Failure> {
         let benches = self.blocks.iter().map(|(block, sources)| Bench {
             block: block.as_ref(),
             sources,

@@ -8,7 +8,7 @@ use crate::{
     axis, divider, divider_share, drive_command, encoder_generator, excitation, group, linear_scale, pulse_counter,
     pwm, registers, sample_select, schedule, segments, setting_banks, shaper, sliding_mode, time_base, trace,
 };
-use posicast_model::rtl::component::{Block, Component, Joined};
+use posicast_model::rtl::component::{Component, ComponentPart, JoinedBlocks};
 
 /// All Verilog modules of a component, sub-modules first, the top last. The top is called `name`; modules that hold something of
 /// a machine begin with `prefix`: of a component the machine's and axis's names, of a stage the machine's, behind which it
@@ -26,7 +26,7 @@ pub fn emit(component: &Component, name: &str, prefix: &str) -> Result<Vec<Modul
 }
 
 /// The modules of blocks joined to the module `top`, each once.
-fn joined(whole: &Joined, top: &str, prefix: &str, header: &Header) -> Result<Vec<Module>, EmitError> {
+fn joined(whole: &JoinedBlocks, top: &str, prefix: &str, header: &Header) -> Result<Vec<Module>, EmitError> {
     let mut modules: Vec<Module> = Vec::new();
     let mut tops = Vec::new();
     for block in whole.blocks() {
@@ -44,28 +44,28 @@ fn joined(whole: &Joined, top: &str, prefix: &str, header: &Header) -> Result<Ve
 }
 
 /// The modules of one block, its top last.
-fn block(block: &Block, top: &str, prefix: &str) -> Result<Vec<Module>, EmitError> {
+fn block(block: &ComponentPart, top: &str, prefix: &str) -> Result<Vec<Module>, EmitError> {
     match block {
-        Block::Registers(map) => Ok(vec![registers::emit(map, prefix)?]),
-        Block::Shaper(config) => shaper::emit(config, prefix),
-        Block::SampleSelect { word_bits, channels } => sample_select::emit(*word_bits, *channels, prefix),
-        Block::Pwm(config) => pwm::emit(config, prefix),
-        Block::SlidingMode => sliding_mode::emit(prefix),
-        Block::SettingBanks(machine) => setting_banks::emit(machine, prefix),
-        Block::PulseCounter => pulse_counter::emit(prefix),
-        Block::Divider(config) => divider::emit(config, prefix),
-        Block::TimeBase(config) => time_base::emit(config, prefix),
-        Block::Segments => segments::emit(prefix),
-        Block::Axis => axis::emit(prefix),
-        Block::DriveCommand => drive_command::emit(prefix),
-        Block::LinearScale => linear_scale::emit(prefix),
-        Block::EncoderGenerator => encoder_generator::emit(prefix),
-        Block::Excitation => excitation::emit(prefix),
-        Block::Trace(config) => trace::emit(config, prefix),
-        Block::DividerShare(channels) => divider_share::emit(*channels, prefix),
-        Block::Schedule(config) => schedule::emit(config, prefix),
-        Block::Group(axes) => group::emit(*axes, prefix),
-        Block::Joined(whole) => {
+        ComponentPart::Registers(map) => Ok(vec![registers::emit(map, prefix)?]),
+        ComponentPart::Shaper(config) => shaper::emit(config, prefix),
+        ComponentPart::SampleSelect { word_bits, channels } => sample_select::emit(*word_bits, *channels, prefix),
+        ComponentPart::Pwm(config) => pwm::emit(config, prefix),
+        ComponentPart::SlidingMode => sliding_mode::emit(prefix),
+        ComponentPart::SettingBanks(machine) => setting_banks::emit(machine, prefix),
+        ComponentPart::PulseCounter => pulse_counter::emit(prefix),
+        ComponentPart::Divider(config) => divider::emit(config, prefix),
+        ComponentPart::TimeBase(config) => time_base::emit(config, prefix),
+        ComponentPart::Segments => segments::emit(prefix),
+        ComponentPart::Axis => axis::emit(prefix),
+        ComponentPart::DriveCommand => drive_command::emit(prefix),
+        ComponentPart::LinearScale => linear_scale::emit(prefix),
+        ComponentPart::EncoderGenerator => encoder_generator::emit(prefix),
+        ComponentPart::Excitation => excitation::emit(prefix),
+        ComponentPart::Trace(config) => trace::emit(config, prefix),
+        ComponentPart::DividerShare(channels) => divider_share::emit(*channels, prefix),
+        ComponentPart::Schedule(config) => schedule::emit(config, prefix),
+        ComponentPart::Group(axes) => group::emit(*axes, prefix),
+        ComponentPart::Joined(whole) => {
             let header = Header {
                 about: format!("Axis {} of the stage, without its registers.", whole.name()),
                 parameters: Vec::new(),

@@ -4,7 +4,7 @@
 //! `<axis>_<port>`. RustHDL's sizes are types, so a machine of any sizes cannot be one RustHDL block: the top is composed
 //! from the emitted modules' port lists ([`compose`]).
 
-use crate::emit::{EmitError, Header, Instance, Module, Parameter, add, compose};
+use crate::emit::{EmitError, Header, Module, ModuleInstance, Parameter, add, compose};
 use crate::shaper;
 use posicast_model::rtl::shaper::ShaperConfig;
 
@@ -43,7 +43,7 @@ pub fn emit_machine(name: &str, shapers: &[AxisShaper]) -> Result<Vec<Module>, E
     let instances: Vec<_> = shapers
         .iter()
         .zip(&tops)
-        .map(|(shaper, module)| Instance {
+        .map(|(shaper, module)| ModuleInstance {
             name: &shaper.axis,
             module,
         })

@@ -8,7 +8,7 @@ use crate::prelude::*;
 use crate::simulation::{Simulated, SimulationError};
 use posicast_model::rtl::ClockedBlock;
 use posicast_model::rtl::setting_banks::ports;
-use posicast_model::rtl::sliding_mode::{Row, Settings};
+use posicast_model::rtl::sliding_mode::{SettingRow, Settings};
 
 kernel! {
     struct SettingBanks(machine: &Settings, rom: &str);
@@ -35,11 +35,11 @@ kernel! {
 }
 
 fn machine_rom(machine: &Settings, name: &str) -> Rom<32, 4> {
-    let word = |row: &Row| RomWord {
+    let word = |row: &SettingRow| RomWord {
         pattern: machine.word(*row as usize).into(),
         meaning: format!("{row:?}"),
     };
-    Rom::new(name, Row::ALL.iter().map(word).collect())
+    Rom::new(name, SettingRow::ALL.iter().map(word).collect())
 }
 
 impl Logic for SettingBanks {
@@ -127,7 +127,7 @@ pub fn name(machine: &Settings, prefix: &str) -> String {
 }
 
 fn of_content(base: &str, machine: &Settings) -> String {
-    let words: Vec<String> = Row::ALL
+    let words: Vec<String> = SettingRow::ALL
         .iter()
         .map(|row| machine.word(*row as usize).to_string())
         .collect();

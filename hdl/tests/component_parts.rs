@@ -2,7 +2,7 @@
 
 use crate::random;
 
-use posicast_hdl::emit::{Cause, Header, connect};
+use posicast_hdl::emit::{EmitCause, Header, connect};
 use posicast_hdl::{divider, divider_share, group, sample_select, schedule, setting_banks, time_base};
 use posicast_model::rtl::composition::{Composition, Part};
 use posicast_model::rtl::divider::DividerConfig;
@@ -100,8 +100,14 @@ fn unit_a_module_that_is_not_the_part_is_refused() {
     let divider = divider::emit(&config, "a").unwrap();
     let other = time_base::emit(&config, "a").unwrap();
     assert!(top("whole", &[&divider[0]]).is_ok());
-    assert_eq!(top("whole", &[&other[0]]), Err(Cause::PartPorts("divider".to_owned())));
-    assert_eq!(top("whole", &[]), Err(Cause::PartPorts("divider".to_owned())));
-    assert!(matches!(top("steps", &[&divider[0]]), Err(Cause::NameCollision { .. })));
-    assert!(matches!(top("module", &[&divider[0]]), Err(Cause::ReservedWord(_))));
+    assert_eq!(
+        top("whole", &[&other[0]]),
+        Err(EmitCause::PartPorts("divider".to_owned()))
+    );
+    assert_eq!(top("whole", &[]), Err(EmitCause::PartPorts("divider".to_owned())));
+    assert!(matches!(
+        top("steps", &[&divider[0]]),
+        Err(EmitCause::NameCollision { .. })
+    ));
+    assert!(matches!(top("module", &[&divider[0]]), Err(EmitCause::ReservedWord(_))));
 }

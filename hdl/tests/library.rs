@@ -11,9 +11,9 @@ use posicast_hdl::{
 use posicast_model::rtl::cascade::CascadeConfig;
 use posicast_model::rtl::component::Component;
 use posicast_model::rtl::divider::DividerConfig;
-use posicast_model::rtl::pwm::{ActiveLow, Mode, PwmConfig};
+use posicast_model::rtl::pwm::{ActiveLow, BridgeMode, PwmConfig};
 use posicast_model::rtl::schedule::ScheduleConfig;
-use posicast_model::rtl::shaper::{Motion, ShaperConfig};
+use posicast_model::rtl::shaper::{ShaperConfig, ShaperMotion};
 use posicast_model::rtl::sliding_mode::{Law, Settings};
 use posicast_model::rtl::trace::TraceConfig;
 use posicast_model::taps::{Tap, TapTable};
@@ -68,7 +68,7 @@ fn table(chance: &mut Chance) -> TapTable {
 fn shaper_config(chance: &mut Chance) -> ShaperConfig {
     let word_bits = chance.one_of(&[16, 24, 32]);
     let plain = ShaperConfig::new(word_bits, table(chance)).unwrap();
-    let motion = Motion {
+    let motion = ShaperMotion {
         channels: 1 + chance.below(3) as u32,
         modulo: chance.is(),
     };
@@ -124,7 +124,7 @@ fn machine(prefix: &str, chance: &mut Chance) -> Vec<Vec<Module>> {
     ];
     let components = [
         Component::shaper(shaper).unwrap(),
-        Component::pwm(pwm, Mode::HalfBridge, chance.one_of(&[1000, 2500])).unwrap(),
+        Component::pwm(pwm, BridgeMode::HalfBridge, chance.one_of(&[1000, 2500])).unwrap(),
         Component::pulse_counter(tick, chance.below(4) as u32, chance.is()).unwrap(),
         Component::sliding_mode(&settings, chance.one_of(&[Law::Pd, Law::Pid]), chance.is()).unwrap(),
     ];

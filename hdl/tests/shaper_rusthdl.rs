@@ -3,7 +3,7 @@
 use crate::stimulus;
 
 use posicast_model::rtl::shaper::{
-    Inputs, Motion, Outputs, RING_ADDRESS_BITS, Shaper, ShaperConfig, TAP_INDEX_BITS, pass_clocks, swap_how,
+    Inputs, Outputs, RING_ADDRESS_BITS, Shaper, ShaperConfig, ShaperMotion, TAP_INDEX_BITS, pass_clocks, swap_how,
 };
 use posicast_model::rtl::{ClockedBlock, Direction};
 use posicast_model::taps::{Tap, TapTable};
@@ -108,7 +108,7 @@ fn lockstep_motion_with_any_channels_at_random() {
     ] {
         let machine = table(&mut random, 15, taps, longest, 2);
         let config = ShaperConfig::new(word_bits, machine)
-            .and_then(|c| c.for_motion(Motion { channels, modulo }))
+            .and_then(|c| c.for_motion(ShaperMotion { channels, modulo }))
             .unwrap();
         let mut both = LockStep::new(&config);
         let mut seen = Outputs::default();
@@ -132,7 +132,7 @@ fn lockstep_motion_with_any_channels_at_random() {
 fn lockstep_motion_hands_over_sample_by_sample() {
     let config = config(32, 16, &[(0, 20_000), (7, 45_536)]);
     let config = config
-        .for_motion(Motion {
+        .for_motion(ShaperMotion {
             channels: 3,
             modulo: false,
         })
@@ -180,7 +180,7 @@ fn lockstep_the_sizes_for_motion() {
                     let modulo = ring % 2 == 0 && word_bits != 18;
                     let config = ShaperConfig::new(word_bits, machine)
                         .and_then(|c| c.with_room_for((1 << ring) - 2, 1 << index))
-                        .and_then(|c| c.for_motion(Motion { channels, modulo }))
+                        .and_then(|c| c.for_motion(ShaperMotion { channels, modulo }))
                         .unwrap();
                     let mut both = LockStep::new(&config);
                     for inputs in Anything::new(&config, u64::from(word_bits * ring * index)).take(200) {

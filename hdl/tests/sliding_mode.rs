@@ -4,7 +4,7 @@ use crate::random;
 
 use posicast_hdl::sliding_mode::{emit, simulate};
 use posicast_model::rtl::ClockedBlock;
-use posicast_model::rtl::sliding_mode::{INPUT_PORTS, OUTPUT_PORTS, Row, SlidingMode, ports};
+use posicast_model::rtl::sliding_mode::{INPUT_PORTS, OUTPUT_PORTS, SettingRow, SlidingMode, ports};
 use random::Random;
 
 #[test]
@@ -20,7 +20,7 @@ fn lockstep_everything_at_random() {
             inputs[4..9].fill_with(|| u64::from(word()));
         }
         // The limit holds still while its step works with it.
-        if expected[0] != Row::Limit as u64 {
+        if expected[0] != SettingRow::Limit as u64 {
             inputs[9] = u64::from(word()) | random.below(32) << 18;
         }
         inputs[0] = u64::from(random.once_in(5000));

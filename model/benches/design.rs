@@ -4,47 +4,50 @@
 #![allow(missing_docs, reason = "a benchmark")]
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use posicast_model::design::kind::Kind;
+use posicast_model::design::kind::ShaperKind;
 use posicast_model::design::{DesignError, bias_point, hump_ei, negative, zv};
 use posicast_model::impulse::ImpulseSequence;
 use posicast_model::mode::Mode;
 use std::hint::black_box;
 
-const KINDS: [Kind; 19] = [
-    Kind::Zv,
-    Kind::Zvd,
-    Kind::Zvdd,
-    Kind::Zvddd,
-    Kind::Mzv,
-    Kind::Ei,
-    Kind::TwoHumpEi,
-    Kind::ThreeHumpEi,
-    Kind::UmZv,
-    Kind::UmZvd,
-    Kind::UmEi,
-    Kind::PsZv,
-    Kind::PsZvd,
-    Kind::PsEi,
-    Kind::ZvEi,
-    Kind::ZvEi2,
-    Kind::ZvdEi,
-    Kind::MultiEi,
-    Kind::ChebyshevEi,
+const KINDS: [ShaperKind; 19] = [
+    ShaperKind::Zv,
+    ShaperKind::Zvd,
+    ShaperKind::Zvdd,
+    ShaperKind::Zvddd,
+    ShaperKind::Mzv,
+    ShaperKind::Ei,
+    ShaperKind::TwoHumpEi,
+    ShaperKind::ThreeHumpEi,
+    ShaperKind::UmZv,
+    ShaperKind::UmZvd,
+    ShaperKind::UmEi,
+    ShaperKind::PsZv,
+    ShaperKind::PsZvd,
+    ShaperKind::PsEi,
+    ShaperKind::ZvEi,
+    ShaperKind::ZvEi2,
+    ShaperKind::ZvdEi,
+    ShaperKind::MultiEi,
+    ShaperKind::ChebyshevEi,
 ];
 
-fn design(kind: Kind, mode: &Mode, tolerance: f64) -> Result<ImpulseSequence, DesignError> {
+fn design(kind: ShaperKind, mode: &Mode, tolerance: f64) -> Result<ImpulseSequence, DesignError> {
     match kind {
-        Kind::Zv => zv::design(kind, mode, 1),
-        Kind::Zvd => zv::design(kind, mode, 2),
-        Kind::Zvdd => zv::design(kind, mode, 3),
-        Kind::Zvddd => zv::design(kind, mode, 4),
-        Kind::Mzv => zv::design_mzv(mode),
-        Kind::Ei | Kind::TwoHumpEi | Kind::ThreeHumpEi => {
+        ShaperKind::Zv => zv::design(kind, mode, 1),
+        ShaperKind::Zvd => zv::design(kind, mode, 2),
+        ShaperKind::Zvdd => zv::design(kind, mode, 3),
+        ShaperKind::Zvddd => zv::design(kind, mode, 4),
+        ShaperKind::Mzv => zv::design_mzv(mode),
+        ShaperKind::Ei | ShaperKind::TwoHumpEi | ShaperKind::ThreeHumpEi => {
             hump_ei::design(kind, mode, tolerance).map(|found| found.impulses)
         }
-        Kind::UmZv | Kind::UmZvd | Kind::UmEi | Kind::PsZv | Kind::PsZvd | Kind::PsEi => {
-            negative::design(kind, mode, tolerance)
-        }
+        ShaperKind::UmZv
+        | ShaperKind::UmZvd
+        | ShaperKind::UmEi
+        | ShaperKind::PsZv
+        | ShaperKind::PsZvd
+        | ShaperKind::PsEi => negative::design(kind, mode, tolerance),
         _ => bias_point::design(kind, 3, mode, tolerance),
     }
 }
@@ -65,8 +68,8 @@ fn random_points() -> Vec<(f64, f64)> {
             frequency_hz: 1.0,
             damping,
         };
-        let exist = |kind: Kind| design(kind, &mode, tolerance).is_ok();
-        if [Kind::ThreeHumpEi, Kind::ZvdEi, Kind::ChebyshevEi]
+        let exist = |kind: ShaperKind| design(kind, &mode, tolerance).is_ok();
+        if [ShaperKind::ThreeHumpEi, ShaperKind::ZvdEi, ShaperKind::ChebyshevEi]
             .into_iter()
             .all(exist)
         {
@@ -89,7 +92,7 @@ fn families(criterion: &mut Criterion) {
     }
     let beyond = Mode { damping: 0.5, ..mode };
     group.bench_function("three-hump-ei, beyond its limits", |bencher| {
-        bencher.iter(|| black_box(design(Kind::ThreeHumpEi, black_box(&beyond), 0.05)));
+        bencher.iter(|| black_box(design(ShaperKind::ThreeHumpEi, black_box(&beyond), 0.05)));
     });
     group.finish();
 }

@@ -3,8 +3,8 @@
 #![allow(missing_docs, reason = "a benchmark")]
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use posicast_model::design::antisymmetric::{self, Method, Participant};
-use posicast_model::design::kind::Kind;
+use posicast_model::design::antisymmetric::{self, AntisymmetricMethod, Participant};
+use posicast_model::design::kind::ShaperKind;
 use posicast_model::design::periodic::{self, Base};
 use posicast_model::design::simultaneous::{self, Amplitudes, Constraint};
 use posicast_model::design::vibrationless;
@@ -19,7 +19,7 @@ fn designs(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("design of several modes");
     let four = [10.0, 35.0, 68.0, 124.0].map(|frequency_hz| (mode(frequency_hz, 0.0), 0.05));
     let base = Base {
-        kind: Kind::MultiEi,
+        kind: ShaperKind::MultiEi,
         order: 2,
         tolerance: 0.05,
     };
@@ -42,7 +42,7 @@ fn designs(criterion: &mut Criterion) {
         mode: mode(frequency_hz, 0.01),
         participation: 1.0,
     });
-    for method in [Method::Exact, Method::ThreeImpulse] {
+    for method in [AntisymmetricMethod::Exact, AntisymmetricMethod::ThreeImpulse] {
         group.bench_function(format!("antisymmetric, {method:?}"), |bencher| {
             bencher.iter(|| antisymmetric::design(black_box(&participants), method, 0.0));
         });

@@ -7,11 +7,11 @@
 use thiserror::Error;
 
 use crate::analysis::{tap_impulses, worst_residual};
-use crate::design::kind::Kind;
+use crate::design::kind::ShaperKind;
 use crate::design::{DesignError, design_axis};
-use crate::digitise::{TableError, digitise, quantise};
+use crate::digitise::{DigitiseError, digitise, quantise};
 use crate::impulse::PartialSums;
-use crate::machine_file::{Axis, AxisMode, Machine, ShaperChoice};
+use crate::machine_file::{AxisMode, AxisSection, Machine, ShaperChoice};
 
 /// Relative difference below which two costs are equal: kinds that are one shaper for one mode differ by rounding.
 const EQUAL: f64 = 1e-6;
@@ -51,7 +51,7 @@ pub struct Missing {
 
 /// The kinds on one axis.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Comparison {
+pub struct KindComparison {
     /// The axis's name.
     pub axis: String,
     /// The kinds that exist, shortest first.
@@ -66,14 +66,14 @@ enum CandidateError {
     #[error(transparent)]
     Design(#[from] DesignError),
     #[error(transparent)]
-    Table(#[from] TableError),
+    Table(#[from] DigitiseError),
     #[error("it has no tap table")]
     NoTable,
 }
 
 /// Compares every kind on each axis of a machine; `band` is the relative frequency error that each mode may have, such as
 /// [`DEFAULT_BAND`].
-pub fn compare(machine: &Machine, band: f64) -> Vec<Comparison> {
+pub fn compare(machine: &Machine, band: f64) -> Vec<KindComparison> {
     machine
         .axes
         .iter()
@@ -81,7 +81,7 @@ pub fn compare(machine: &Machine, band: f64) -> Vec<Comparison> {
         .collect()
 }
 
-fn compare_axis(machine: &Machine, axis: &Axis, band: f64) -> Comparison {
+fn compare_axis(machine: &Machine, axis: &AxisSection, band: f64) -> KindComparison {
     let own = axis.kind_name();
     let others = kinds_for(axis)
         .map(|kind| with_kind(axis, kind))
@@ -98,7 +98,7 @@ fn compare_axis(machine: &Machine, axis: &Axis, band: f64) -> Comparison {
     }
     mark_pareto(&mut candidates);
     candidates.sort_by(|a, b| a.duration_s.total_cmp(&b.duration_s));
-    Comparison {
+    KindComparison {
         axis: axis.name.clone(),
         candidates,
         missing,
@@ -106,22 +106,22 @@ fn compare_axis(machine: &Machine, axis: &Axis, band: f64) -> Comparison {
 }
 
 /// The kinds that can be tried without further data: without modes there is nothing but the command as it is.
-fn kinds_for(axis: &Axis) -> impl Iterator<Item = Kind> {
+fn kinds_for(axis: &AxisSection) -> impl Iterator<Item = ShaperKind> {
     let modes = !axis.modes.is_empty();
-    Kind::ALL
+    ShaperKind::ALL
         .into_iter()
         .map(|(kind, _)| kind)
-        .filter(move |kind| kind.is_built() && *kind != Kind::Custom && (modes || *kind == Kind::None))
+        .filter(move |kind| kind.is_built() && *kind != ShaperKind::Custom && (modes || *kind == ShaperKind::None))
 }
 
 /// The same axis with another kind: its tolerances stay, what belongs to the kind of the file does not.
-fn with_kind(axis: &Axis, kind: Kind) -> Axis {
+fn with_kind(axis: &AxisSection, kind: ShaperKind) -> AxisSection {
     let modes = axis.modes.iter().map(|mode| AxisMode {
         shaper: None,
         order: None,
         ..mode.clone()
     });
-    Axis {
+    AxisSection {
         shaper: Some(ShaperChoice {
             tolerance: axis.shaper.as_ref().and_then(|s| s.tolerance),
             ..ShaperChoice::of_kind(kind)
@@ -131,7 +131,7 @@ fn with_kind(axis: &Axis, kind: Kind) -> Axis {
     }
 }
 
-fn candidate(machine: &Machine, axis: &Axis, in_file: bool, band: f64) -> Result<Candidate, CandidateError> {
+fn candidate(machine: &Machine, axis: &AxisSection, in_file: bool, band: f64) -> Result<Candidate, CandidateError> {
     let sample_hz = machine.clock.sample_hz;
     let design = design_axis(axis)?;
     let digitised = digitise(&design, machine.fixed_point.digitise, sample_hz)?;
@@ -182,7 +182,7 @@ mod tests {
 
     const MODE: &str = "[[axis.mode]]\nfrequency_hz = 40\ndamping = 0.02\n";
 
-    fn find<'a>(comparison: &'a Comparison, kind: &str) -> &'a Candidate {
+    fn find<'a>(comparison: &'a KindComparison, kind: &str) -> &'a Candidate {
         comparison.candidates.iter().find(|c| c.kind == kind).unwrap()
     }
 
@@ -192,9 +192,9 @@ mod tests {
         let found = compare(&machine, 0.1).remove(0);
         let mut names: Vec<&str> = found.candidates.iter().map(|c| c.kind.as_str()).collect();
         names.extend(found.missing.iter().map(|m| m.kind.as_str()));
-        let built = Kind::ALL
+        let built = ShaperKind::ALL
             .iter()
-            .filter(|(kind, _)| kind.is_built() && *kind != Kind::Custom);
+            .filter(|(kind, _)| kind.is_built() && *kind != ShaperKind::Custom);
         assert_eq!(names.len(), built.count());
         assert!(found.candidates.iter().all(|c| c.in_file == (c.kind == "zvd")));
         assert!(found.candidates.is_sorted_by(|a, b| a.duration_s <= b.duration_s));

@@ -123,7 +123,7 @@ mod tests {
     use super::*;
     use crate::design::design_machine;
     use crate::machine_file;
-    use crate::rtl::shaper::Motion;
+    use crate::rtl::shaper::ShaperMotion;
 
     const MACHINE: &str = r#"
         name = "one"
@@ -164,7 +164,7 @@ mod tests {
         .unwrap();
         let design = design_machine(&machine).unwrap();
         let plain = ShaperConfig::new(24, design.axes[0].table.clone()).unwrap();
-        let modulo = Motion {
+        let modulo = ShaperMotion {
             channels: 1,
             modulo: true,
         };

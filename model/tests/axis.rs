@@ -1,9 +1,9 @@
 //! The supervisor of an axis: what a motion engineer expects of it, and `hold` against `step`.
 
 use posicast_model::rtl::axis::{
-    Axis, CLEAR_CLOCKS, Cause, INPUT_PORTS, Inputs, KICK, LINE_CLOCKS, Outputs, State, WATCH_CLOCKS,
+    Axis, CLEAR_CLOCKS, Cause, INPUT_PORTS, Inputs, KICK, LINE_CLOCKS, Outputs, SupervisorState, WATCH_CLOCKS,
 };
-use posicast_model::rtl::segments::{self, Entry, Motion, STAND_COUNTS, Segments};
+use posicast_model::rtl::segments::{self, Entry, EntryMotion, STAND_COUNTS, Segments};
 use proptest::prelude::*;
 
 /// Clocks per tick of these tests.
@@ -153,7 +153,7 @@ impl Bench {
     }
 
     /// Clocks until the state is reached; at most so many.
-    fn until(&mut self, state: State, at_most: u64) -> u64 {
+    fn until(&mut self, state: SupervisorState, at_most: u64) -> u64 {
         for clocks in 0..=at_most {
             if self.axis.outputs().state == state {
                 return clocks;
@@ -167,7 +167,7 @@ impl Bench {
     fn segment(&mut self, ticks: u32, jerk: i64) {
         let entry = Entry {
             ticks,
-            motion: Motion::Jerk(jerk),
+            motion: EntryMotion::Jerk(jerk),
             notify: false,
         };
         for (word, data) in (0..).zip(entry.words()) {
@@ -184,9 +184,9 @@ impl Bench {
     /// To HOLD, with the brake open.
     fn hold() -> Self {
         let mut bench = Self::new();
-        bench.until(State::Ready, 20);
+        bench.until(SupervisorState::Ready, 20);
         bench.inputs.enable = true;
-        bench.until(State::Hold, TICK_CLOCKS);
+        bench.until(SupervisorState::Hold, TICK_CLOCKS);
         bench.ticks(4);
         assert!(bench.axis.outputs().can_start);
         bench
@@ -199,10 +199,10 @@ impl Bench {
             bench.segment(ticks, jerk);
         }
         bench.inputs.start = true;
-        bench.until(State::Run, TICK_CLOCKS);
+        bench.until(SupervisorState::Run, TICK_CLOCKS);
         bench.ticks(30);
-        assert_eq!(bench.axis.outputs().state, State::Run);
-        assert_eq!(bench.segments.outputs(0).state, segments::State::Move);
+        assert_eq!(bench.axis.outputs().state, SupervisorState::Run);
+        assert_eq!(bench.segments.outputs(0).state, segments::SegmentsState::Move);
         bench
     }
 
@@ -217,7 +217,7 @@ const JERK: i64 = 1 << 26;
 #[test]
 fn off_to_hold_is_one_tick_and_takes_the_position_that_is_there() {
     let mut bench = Bench::new();
-    bench.until(State::Ready, 20);
+    bench.until(SupervisorState::Ready, 20);
     for position in [1000, 1003, 1010] {
         bench.inputs.position = position;
         bench.ticks(1);
@@ -227,7 +227,7 @@ fn off_to_hold_is_one_tick_and_takes_the_position_that_is_there() {
     }
     bench.inputs.enable = true;
     bench.inputs.position = 1017;
-    bench.until(State::Hold, TICK_CLOCKS);
+    bench.until(SupervisorState::Hold, TICK_CLOCKS);
     let shown = bench.axis.outputs();
     assert!(shown.drive_enable && shown.pwm_enable && shown.brake_release && shown.enabled);
     assert!(shown.shaper_start && !shown.segments_preset);
@@ -246,32 +246,36 @@ fn a_start_waits_for_the_brake_and_is_refused_before() {
     bench.clock();
     (bench.inputs.rst, bench.inputs.enable) = (false, true);
     bench.ticks(2);
-    assert_eq!(bench.axis.outputs().state, State::Off, "enable must be low once");
+    assert_eq!(
+        bench.axis.outputs().state,
+        SupervisorState::Off,
+        "enable must be low once"
+    );
     bench.inputs.enable = false;
-    bench.until(State::Ready, 2);
+    bench.until(SupervisorState::Ready, 2);
     bench.inputs.enable = true;
-    bench.until(State::Hold, TICK_CLOCKS);
+    bench.until(SupervisorState::Hold, TICK_CLOCKS);
     bench.segment(1, 0);
     for _ in 0..3 {
         bench.inputs.start = true;
         let shown = bench.ticks(1);
-        assert_eq!(shown.state, State::Hold);
+        assert_eq!(shown.state, SupervisorState::Hold);
     }
     bench.inputs.start = true;
-    assert!(bench.until(State::Run, TICK_CLOCKS) <= TICK_CLOCKS);
+    assert!(bench.until(SupervisorState::Run, TICK_CLOCKS) <= TICK_CLOCKS);
 }
 
 #[test]
 fn a_move_plays_and_ends_in_hold() {
     let mut bench = Bench::run(JERK);
-    bench.until(State::Hold, 60 * TICK_CLOCKS);
+    bench.until(SupervisorState::Hold, 60 * TICK_CLOCKS);
     let shown = bench.clock();
     assert!(shown.drive_enable && shown.brake_release && shown.causes == 0);
     assert_eq!(bench.segments.outputs(0).position >> 8, 20 * 20 * 20 / 64 * 2);
     // The next one does not wait for the shaped command to settle.
     bench.segment(2, 0);
     bench.inputs.start = true;
-    bench.until(State::Run, TICK_CLOCKS);
+    bench.until(SupervisorState::Run, TICK_CLOCKS);
 }
 
 #[test]
@@ -279,19 +283,19 @@ fn a_host_stop_slows_down_settles_and_comes_to_hold_with_segments_that_play_agai
     let mut bench = Bench::run(JERK);
     bench.inputs.stop = true;
     bench.clock();
-    assert_eq!(bench.axis.outputs().state, State::QuickStop);
+    assert_eq!(bench.axis.outputs().state, SupervisorState::QuickStop);
     let mut stopped_ticks = 0;
-    while bench.axis.outputs().state == State::QuickStop {
+    while bench.axis.outputs().state == SupervisorState::QuickStop {
         bench.ticks(1);
-        stopped_ticks += u64::from(bench.segments.outputs(0).state == segments::State::Stopped);
+        stopped_ticks += u64::from(bench.segments.outputs(0).state == segments::SegmentsState::Stopped);
     }
-    assert_eq!(bench.axis.outputs().state, State::Hold);
+    assert_eq!(bench.axis.outputs().state, SupervisorState::Hold);
     assert!((6..=7).contains(&stopped_ticks), "{stopped_ticks}");
     bench.ticks(2);
-    assert_eq!(bench.segments.outputs(0).state, segments::State::Hold);
+    assert_eq!(bench.segments.outputs(0).state, segments::SegmentsState::Hold);
     bench.segment(2, 0);
     bench.inputs.start = true;
-    bench.until(State::Run, TICK_CLOCKS);
+    bench.until(SupervisorState::Run, TICK_CLOCKS);
 }
 
 #[test]
@@ -306,7 +310,7 @@ fn every_line_reaches_the_pins_in_its_stated_clocks() {
                 0 => bench.inputs.emergency_stop_n = false,
                 _ => bench.inputs.drive_ready = false,
             }
-            let clocks = bench.until(State::Fault, 200);
+            let clocks = bench.until(SupervisorState::Fault, 200);
             assert_eq!(clocks, u64::from(LINE_CLOCKS) + u64::from(filter_clocks));
             let shown = bench.axis.outputs();
             assert!(!shown.drive_enable && !shown.pwm_enable && !shown.brake_release);
@@ -314,8 +318,14 @@ fn every_line_reaches_the_pins_in_its_stated_clocks() {
             assert!(shown.wants_group_stop && shown.faulted);
             assert_eq!(shown.emergency_stop, line == 0);
             // An emergency stop that lasts keeps FAULT, a drive that is not ready keeps OFF.
-            assert_eq!(bench.clear().state, [State::Fault, State::Off][line]);
-            assert_eq!(bench.ticks(2).state, [State::Fault, State::Off][line]);
+            assert_eq!(
+                bench.clear().state,
+                [SupervisorState::Fault, SupervisorState::Off][line]
+            );
+            assert_eq!(
+                bench.ticks(2).state,
+                [SupervisorState::Fault, SupervisorState::Off][line]
+            );
         }
     }
 }
@@ -325,11 +335,11 @@ fn a_quick_stop_by_a_cause_closes_the_brake_before_the_outputs_go_off() {
     let mut bench = Bench::run(JERK);
     bench.inputs.following_error_limit = 1 << 16;
     bench.inputs.error = -(1 << 16) - 2;
-    bench.until(State::QuickStop, TICK_CLOCKS + u64::from(WATCH_CLOCKS));
+    bench.until(SupervisorState::QuickStop, TICK_CLOCKS + u64::from(WATCH_CLOCKS));
     assert_eq!(bench.axis.outputs().causes, Cause::FollowingError.bit());
     assert!(bench.axis.outputs().wants_group_stop);
-    assert_eq!(bench.clear().state, State::QuickStop, "a clear is too early");
-    bench.until(State::Fault, 100 * TICK_CLOCKS);
+    assert_eq!(bench.clear().state, SupervisorState::QuickStop, "a clear is too early");
+    bench.until(SupervisorState::Fault, 100 * TICK_CLOCKS);
     let mut on_ticks = 0;
     while bench.axis.outputs().drive_enable {
         assert!(!bench.axis.outputs().brake_release);
@@ -342,11 +352,11 @@ fn a_quick_stop_by_a_cause_closes_the_brake_before_the_outputs_go_off() {
     // The tick that switched off was one with outputs on, and its error too large.
     bench.clocks(TICK_CLOCKS / 2);
     bench.inputs.error = 0;
-    assert_eq!(bench.clear().state, State::Off);
+    assert_eq!(bench.clear().state, SupervisorState::Off);
     bench.ticks(1);
-    assert_eq!(bench.axis.outputs().state, State::Off, "enable is still high");
+    assert_eq!(bench.axis.outputs().state, SupervisorState::Off, "enable is still high");
     bench.inputs.enable = false;
-    bench.until(State::Ready, 2);
+    bench.until(SupervisorState::Ready, 2);
 }
 
 #[test]
@@ -354,15 +364,15 @@ fn enable_low_ends_through_quick_stop_and_brake() {
     let mut bench = Bench::run(JERK);
     bench.inputs.enable = false;
     bench.clock();
-    assert_eq!(bench.axis.outputs().state, State::QuickStop);
-    bench.until(State::Hold, 100 * TICK_CLOCKS);
+    assert_eq!(bench.axis.outputs().state, SupervisorState::QuickStop);
+    bench.until(SupervisorState::Hold, 100 * TICK_CLOCKS);
     let mut braked = 0;
-    while bench.axis.outputs().state == State::Hold {
+    while bench.axis.outputs().state == SupervisorState::Hold {
         let shown = bench.ticks(1);
         braked += u64::from(shown.drive_enable && !shown.brake_release);
     }
     assert_eq!(braked, 5);
-    bench.until(State::Ready, 1);
+    bench.until(SupervisorState::Ready, 1);
     assert!(!bench.axis.outputs().drive_enable && bench.axis.outputs().causes == 0);
 }
 
@@ -372,18 +382,21 @@ fn a_group_stop_ends_in_hold_and_blocks_the_start_until_it_is_cleared() {
     bench.inputs.group_stop = true;
     bench.clock();
     let shown = bench.axis.outputs();
-    assert_eq!((shown.state, shown.causes), (State::QuickStop, Cause::GroupStop.bit()));
+    assert_eq!(
+        (shown.state, shown.causes),
+        (SupervisorState::QuickStop, Cause::GroupStop.bit())
+    );
     assert!(!shown.wants_group_stop);
-    bench.until(State::Hold, 100 * TICK_CLOCKS);
+    bench.until(SupervisorState::Hold, 100 * TICK_CLOCKS);
     bench.ticks(2);
     bench.inputs.start = true;
-    assert_eq!(bench.ticks(2).state, State::Hold);
+    assert_eq!(bench.ticks(2).state, SupervisorState::Hold);
     bench.inputs.group_stop = false;
     let shown = bench.clear();
-    assert_eq!((shown.state, shown.causes), (State::Hold, 0));
+    assert_eq!((shown.state, shown.causes), (SupervisorState::Hold, 0));
     bench.segment(2, 0);
     bench.inputs.start = true;
-    bench.until(State::Run, TICK_CLOCKS);
+    bench.until(SupervisorState::Run, TICK_CLOCKS);
 }
 
 #[test]
@@ -401,7 +414,14 @@ fn a_limit_blocks_its_own_direction_only() {
         }
         let state = bench.ticks(2).state;
         let cause = if plus { Cause::LimitPlus } else { Cause::LimitMinus };
-        assert_eq!(state, if trips { State::QuickStop } else { State::Run });
+        assert_eq!(
+            state,
+            if trips {
+                SupervisorState::QuickStop
+            } else {
+                SupervisorState::Run
+            }
+        );
         assert_eq!(bench.axis.outputs().causes, if trips { cause.bit() } else { 0 });
     }
 }
@@ -410,24 +430,24 @@ fn a_limit_blocks_its_own_direction_only() {
 fn behind_a_soft_limit_the_way_back_is_open() {
     let mut bench = Bench::run(JERK);
     (bench.inputs.soft_limit_plus, bench.inputs.soft_limit_minus) = (40 << 8, -1000 << 8);
-    bench.until(State::QuickStop, 30 * TICK_CLOCKS);
+    bench.until(SupervisorState::QuickStop, 30 * TICK_CLOCKS);
     assert_eq!(bench.axis.outputs().causes, Cause::SoftLimitPlus.bit());
-    bench.until(State::Fault, 100 * TICK_CLOCKS);
+    bench.until(SupervisorState::Fault, 100 * TICK_CLOCKS);
     bench.inputs.position = bench.segments.outputs(0).position >> 8;
     bench.ticks(6);
     assert!(bench.inputs.position > 40);
     bench.inputs.enable = false;
     bench.clear();
-    bench.until(State::Ready, 1);
-    for (jerk, ends) in [(-JERK, State::Run), (JERK, State::QuickStop)] {
+    bench.until(SupervisorState::Ready, 1);
+    for (jerk, ends) in [(-JERK, SupervisorState::Run), (JERK, SupervisorState::QuickStop)] {
         bench.inputs.enable = true;
-        bench.until(State::Hold, TICK_CLOCKS);
+        bench.until(SupervisorState::Hold, TICK_CLOCKS);
         bench.ticks(4);
         for (ticks, jerk) in [(20, jerk), (40, -jerk), (20, jerk)] {
             bench.segment(ticks, jerk);
         }
         bench.inputs.start = true;
-        bench.until(State::Run, TICK_CLOCKS);
+        bench.until(SupervisorState::Run, TICK_CLOCKS);
         bench.ticks(6);
         assert_eq!(bench.axis.outputs().state, ends, "jerk {jerk}");
         bench.inputs.position = 50;
@@ -527,7 +547,7 @@ fn what_lasts_too_long_trips_after_its_ticks() {
     for _ in 0..10 {
         bench.inputs.kick = true;
         bench.ticks(9);
-        assert_eq!(bench.axis.outputs().state, State::Hold);
+        assert_eq!(bench.axis.outputs().state, SupervisorState::Hold);
     }
     bench.inputs.kick_word = !KICK;
     for _ in 0..11 {
@@ -546,7 +566,7 @@ fn thresholds_of_zero_watch_nothing() {
     bench.inputs.limited_ticks = u16::MAX;
     bench.inputs.command = i32::MIN;
     let shown = bench.ticks(100);
-    assert_eq!((shown.state, shown.causes), (State::Hold, 0));
+    assert_eq!((shown.state, shown.causes), (SupervisorState::Hold, 0));
     bench.inputs.following_error_limit = i32::MAX as u32 - 1;
     assert_eq!(bench.ticks(1).causes, Cause::FollowingError.bit());
 }
@@ -658,7 +678,7 @@ fn out_of_range_the_outputs_are_refused_and_switched_off() {
         let shown = bench.axis.outputs();
         assert_eq!(
             (shown.state, shown.causes),
-            (State::Fault, Cause::Range.bit()),
+            (SupervisorState::Fault, Cause::Range.bit()),
             "{what}"
         );
         assert!(!shown.drive_enable && !shown.pwm_enable, "{what}");
@@ -668,7 +688,7 @@ fn out_of_range_the_outputs_are_refused_and_switched_off() {
         bench.ticks(3);
         assert_eq!(
             (bench.axis.outputs().state, bench.axis.outputs().causes),
-            (State::Ready, 0),
+            (SupervisorState::Ready, 0),
             "{what}"
         );
         bench.inputs.enable = true;
@@ -690,7 +710,7 @@ fn out_of_range_the_outputs_are_refused_and_switched_off() {
         (bench.inputs.saturated_high, bench.inputs.saturated_low) = (0x7e, 0x7e);
         bench.inputs.enable = true;
         let shown = bench.ticks(3);
-        assert_eq!((shown.state, shown.causes), (State::Hold, 0), "{position}");
+        assert_eq!((shown.state, shown.causes), (SupervisorState::Hold, 0), "{position}");
     }
 }
 

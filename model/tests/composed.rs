@@ -9,7 +9,7 @@ use plain::Plain;
 use posicast_model::rtl::component::Component;
 use posicast_model::rtl::composition::{Composed, Composition};
 use posicast_model::rtl::divider::DividerConfig;
-use posicast_model::rtl::pwm::Mode;
+use posicast_model::rtl::pwm::BridgeMode;
 use posicast_model::rtl::sliding_mode::Law;
 use posicast_model::rtl::{ClockedBlock, Direction, Moore, OutputKind};
 use proptest::prelude::*;
@@ -48,7 +48,7 @@ fn wholes() -> Vec<(String, Hints, Composed, Plain)> {
         Component::shaper(shaper_config()).unwrap(),
         Component::pulse_counter(counter, 3, false).unwrap(),
         Component::sliding_mode(&settings(), Law::Pid, false).unwrap(),
-        Component::pwm(pwm, Mode::HalfBridge, 100).unwrap(),
+        Component::pwm(pwm, BridgeMode::HalfBridge, 100).unwrap(),
     ];
     let fast = |(composition, blocks): Whole| Composed::new(composition, blocks);
     let component = |component: Component| {

@@ -2,7 +2,7 @@
 
 use posicast_model::control::{ControlError, ControlWarning, Derived, gains, loop_lag_s};
 use posicast_model::machine_file::{self, Drive, Machine};
-use posicast_model::rtl::sliding_mode::{Law, Motion, Row, TickController};
+use posicast_model::rtl::sliding_mode::{Law, SettingRow, TickController, TickMotion};
 use std::f64::consts::TAU;
 
 const TORQUE: &str = "mode = \"torque\"\nequivalent_mass = 64.274\nforce_constant = 475.01\ncurrent_limit_a = 2.73\n\
@@ -39,19 +39,19 @@ fn golden_the_gains_of_the_notes() {
     let derived = derive(TORQUE, SLIDING).unwrap();
     let of = |row| derived.gains.get(row);
     // The feedback's scale is a power of two and cancels.
-    let scale = of(Row::Acceleration) / of(Row::Feedback);
+    let scale = of(SettingRow::Acceleration) / of(SettingRow::Feedback);
     assert_eq!(scale.log2().fract(), 0.0);
     let expected = [
-        (Row::Surface, 0.015),
-        (Row::Boundary, 0.2),
-        (Row::Damping, 0.015 * scale),
-        (Row::Reaching, 0.005 * scale),
-        (Row::Switching, 0.04 * scale),
-        (Row::Acceleration, 13531.0172),
-        (Row::Viscous, 4.21044823),
-        (Row::Coulomb, 84.2087),
-        (Row::Limit, 2730.0),
-        (Row::Duty, 2500.0 / 3000.0),
+        (SettingRow::Surface, 0.015),
+        (SettingRow::Boundary, 0.2),
+        (SettingRow::Damping, 0.015 * scale),
+        (SettingRow::Reaching, 0.005 * scale),
+        (SettingRow::Switching, 0.04 * scale),
+        (SettingRow::Acceleration, 13531.0172),
+        (SettingRow::Viscous, 4.21044823),
+        (SettingRow::Coulomb, 84.2087),
+        (SettingRow::Limit, 2730.0),
+        (SettingRow::Duty, 2500.0 / 3000.0),
     ];
     for (row, value) in expected {
         assert!((of(row) / value - 1.0).abs() < 1e-4, "{row:?}: {} {value}", of(row));
@@ -186,7 +186,7 @@ fn unit_the_number_to_blame_for_a_gain_is_named() {
         matches!(
             lost,
             ControlError::Lost {
-                row: Row::Proportional,
+                row: SettingRow::Proportional,
                 ..
             }
         ),
@@ -250,7 +250,7 @@ fn follow(
     let (mut worst, mut jump, mut before) = (0.0f64, 0.0f64, 0.0f64);
     for tick in 0..ticks {
         let [r, dr, ddr] = reference(tick as f64 * T);
-        let motion = Motion {
+        let motion = TickMotion {
             position_reference: (r / COUNT * 256.0).round() as i32,
             velocity_reference: (dr * T / COUNT * 65_536.0).round() as i32,
             acceleration_reference: (ddr * T * T / COUNT * 16_777_216.0).round() as i32,

@@ -2,17 +2,19 @@
 
 use posicast_model::rtl::component::Component;
 use posicast_model::rtl::composition::Composed;
-use posicast_model::rtl::sliding_mode::{CONTROL_CLOCKS, Gain, Inputs, Law, Motion, Row, Settings, SlidingMode};
+use posicast_model::rtl::sliding_mode::{
+    CONTROL_CLOCKS, Gain, Inputs, Law, SettingRow, Settings, SlidingMode, TickMotion,
+};
 use posicast_model::rtl::{ClockedBlock, Direction};
 
 /// Gains of their own, so that each pair of law and bank gives a command of its own: PD by `per_count` for each count.
 fn settings(per_count: f64) -> Settings {
     let mut settings = Settings::default();
     let mut set = |row, value| settings.set_gain(row, Gain::nearest(value, row).unwrap());
-    set(Row::Proportional, per_count);
-    set(Row::Reaching, 16.0 * per_count);
-    set(Row::Surface, 1.0);
-    set(Row::Feedback, 1.0);
+    set(SettingRow::Proportional, per_count);
+    set(SettingRow::Reaching, 16.0 * per_count);
+    set(SettingRow::Surface, 1.0);
+    set(SettingRow::Feedback, 1.0);
     settings.set_limit(1 << 30);
     settings
 }
@@ -78,9 +80,9 @@ impl Bench {
 fn unit_no_pass_mixes_a_law_with_the_settings_of_another() {
     let tick = |law: Law, settings: &Settings| {
         let mut controller = posicast_model::rtl::sliding_mode::TickController::default();
-        let motion = Motion {
+        let motion = TickMotion {
             position_reference: 10 << 8,
-            ..Motion::default()
+            ..TickMotion::default()
         };
         controller.control(law, false, &motion, settings).command
     };
@@ -117,7 +119,7 @@ fn unit_no_pass_mixes_a_law_with_the_settings_of_another() {
 #[test]
 fn unit_a_clear_of_the_integral_drops_the_sum_under_way_and_no_other() {
     let mut settings = settings(0.0);
-    settings.set_gain(Row::Integral, Gain::nearest(1.0, Row::Integral).unwrap());
+    settings.set_gain(SettingRow::Integral, Gain::nearest(1.0, SettingRow::Integral).unwrap());
     // Clock of a pass in which step 14 begins, from 1 in the clock after `start`.
     let sum_begins = 454;
     for clear in 0..=CONTROL_CLOCKS {

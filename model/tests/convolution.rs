@@ -4,11 +4,11 @@ use crate::support;
 
 use posicast_model::analysis::residual_vibration;
 use posicast_model::design::{ConvolutionFigures, ConvolutionWarning, convolution_figures, design_axis};
-use posicast_model::machine_file::Axis;
+use posicast_model::machine_file::AxisSection;
 use support::{machine, shaper};
 
 /// The two modes of the robot of the negative-impulse paper, with a kind and further lines for each.
-fn robot(first: &str, second: &str) -> (Axis, ConvolutionFigures) {
+fn robot(first: &str, second: &str) -> (AxisSection, ConvolutionFigures) {
     let modes = [(76.6, 0.057, first), (231.2, 0.017, second)];
     let mut machine = machine(10_000, "modal", &shaper("zv", 0.05), &modes);
     let axis = machine.axes.remove(0);

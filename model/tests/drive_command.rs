@@ -1,6 +1,6 @@
 //! What may never happen behind the drive command, for any inputs; and its order of events, by hand.
 
-use posicast_model::rtl::axis::State;
+use posicast_model::rtl::axis::SupervisorState;
 use posicast_model::rtl::drive_command::{DUTY_MAX, DUTY_MIN, DriveCommand, Inputs, Outputs, limited, saturated};
 use proptest::prelude::*;
 
@@ -9,7 +9,7 @@ const READY: Inputs = Inputs {
     tick: false,
     controller_duty: 0,
     controller_valid: false,
-    axis_state: State::Ready as u8,
+    axis_state: SupervisorState::Ready as u8,
     axis_pwm_enable: false,
     axis_drive_enable: false,
     axis_brake_release: false,
@@ -74,7 +74,7 @@ fn unit_a_kick_in_the_last_tick_goes_on() {
 #[test]
 fn unit_it_takes_a_kick_in_ready_with_enable() {
     let off = Inputs {
-        axis_state: State::Off as u8,
+        axis_state: SupervisorState::Off as u8,
         ..KICK
     };
     let not_wanted = Inputs {
@@ -133,7 +133,7 @@ fn unit_a_limit_switch_stops_its_direction_between_ticks() {
 #[test]
 fn unit_the_supervisor_takes_over_without_a_gap_and_without_the_manual_duty() {
     let hold = Inputs {
-        axis_state: State::Hold as u8,
+        axis_state: SupervisorState::Hold as u8,
         axis_pwm_enable: true,
         axis_drive_enable: true,
         axis_brake_release: true,
@@ -169,7 +169,7 @@ fn unit_a_self_test_runs_the_pwm_alone_and_behind_its_mask() {
     };
     let tick = Inputs { tick: true, ..TEST };
     let hold = Inputs {
-        axis_state: State::Hold as u8,
+        axis_state: SupervisorState::Hold as u8,
         axis_pwm_enable: true,
         axis_drive_enable: true,
         axis_brake_release: true,

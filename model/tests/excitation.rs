@@ -1,9 +1,9 @@
 //! The excitation against what it promises.
 
-use posicast_model::rtl::excitation::{Excitation, Inputs, Kind, Outputs, TICK_CLOCKS};
+use posicast_model::rtl::excitation::{Excitation, ExcitationKind, Inputs, Outputs, TICK_CLOCKS};
 use proptest::prelude::*;
 
-fn settings(kind: Kind, amplitude: u16, period_ticks: u16, duration_ticks: u32) -> Inputs {
+fn settings(kind: ExcitationKind, amplitude: u16, period_ticks: u16, duration_ticks: u32) -> Inputs {
     Inputs {
         enable: true,
         allowed: true,
@@ -39,12 +39,12 @@ fn values(inputs: &Inputs, count: usize) -> Vec<i32> {
     shown.iter().map(|outputs| outputs.excitation_value).collect()
 }
 
-fn any_kind() -> impl Strategy<Value = Kind> {
+fn any_kind() -> impl Strategy<Value = ExcitationKind> {
     prop_oneof![
-        Just(Kind::Prbs),
-        Just(Kind::Chirp),
-        Just(Kind::Square),
-        Just(Kind::None)
+        Just(ExcitationKind::Prbs),
+        Just(ExcitationKind::Chirp),
+        Just(ExcitationKind::Square),
+        Just(ExcitationKind::None)
     ]
 }
 
@@ -79,7 +79,7 @@ proptest! {
 
     #[test]
     fn prop_a_period_is_exactly_so_many_ticks(period_ticks in 1..400u16, amplitude in 1..u16::MAX) {
-        let inputs = settings(Kind::Square, amplitude, period_ticks, 10_000);
+        let inputs = settings(ExcitationKind::Square, amplitude, period_ticks, 10_000);
         for (tick, value) in values(&inputs, 3 * usize::from(period_ticks) + 1)[1..].iter().enumerate() {
             // In the first half of a turn of 256 steps, of which the last begun one does not count.
             let place = tick as u64 * 256 / u64::from(period_ticks) % 256;
@@ -97,7 +97,7 @@ fn unit_prbs_bits_last_a_period_and_start_anew() {
         reference.push(reference[n - 15] ^ reference[n - 14]);
     }
     for period_ticks in [1, 2, 3, 7] {
-        let inputs = settings(Kind::Prbs, 777, period_ticks, 180);
+        let inputs = settings(ExcitationKind::Prbs, 777, period_ticks, 180);
         let mut excitation = armed();
         for _ in 0..2 {
             let shown = ticks(&mut excitation, &inputs, 183);
@@ -117,7 +117,7 @@ fn unit_a_chirp_rises_by_its_sweep() {
     // From one turn in 100 ticks by 1/64 of that per tick: n + n(n − 1)/128 hundredths of a turn after n ticks.
     let chirp = Inputs {
         sweep: 1024,
-        ..settings(Kind::Chirp, 64 << 8, 100, 1000)
+        ..settings(ExcitationKind::Chirp, 64 << 8, 100, 1000)
     };
     for (n, value) in values(&chirp, 300)[1..].iter().enumerate() {
         let n = n as f64;
@@ -135,7 +135,7 @@ fn unit_a_chirp_rises_by_its_sweep() {
 fn unit_what_turns_too_fast_ends() {
     let fast = Inputs {
         sweep: u16::MAX,
-        ..settings(Kind::Chirp, 1 << 8, 2, 1 << 20)
+        ..settings(ExcitationKind::Chirp, 1 << 8, 2, 1 << 20)
     };
     let shown = ticks(&mut armed(), &fast, 20);
     assert!(shown[1].excitation_active && !shown[19].excitation_active);
@@ -147,7 +147,7 @@ fn unit_what_turns_too_fast_ends() {
     // The frequency's word holds 63 times the first.
     let active = shown.iter().filter(|outputs| outputs.excitation_active).count();
     assert!((60..66).contains(&active), "{active}");
-    let none = settings(Kind::Prbs, 1 << 8, 0, 1 << 20);
+    let none = settings(ExcitationKind::Prbs, 1 << 8, 0, 1 << 20);
     assert!(
         ticks(&mut armed(), &none, 3)
             .iter()
@@ -157,7 +157,7 @@ fn unit_what_turns_too_fast_ends() {
 
 #[test]
 fn unit_it_starts_once_per_enable_and_never_without_duration() {
-    let inputs = settings(Kind::Square, 1 << 8, 4, 3);
+    let inputs = settings(ExcitationKind::Square, 1 << 8, 4, 3);
     let mut excitation = Excitation::new();
     assert!(
         ticks(&mut excitation, &inputs, 5)
@@ -203,7 +203,7 @@ fn unit_it_starts_once_per_enable_and_never_without_duration() {
 
 #[test]
 fn unit_the_position_stays_at_its_ends_or_wraps() {
-    let inputs = settings(Kind::Square, 0xffff, 1000, 100);
+    let inputs = settings(ExcitationKind::Square, 0xffff, 1000, 100);
     for (y_0, stays) in [
         (i32::MAX, i32::MAX),
         (i32::MAX - 3, i32::MAX),

@@ -5,7 +5,9 @@ use crate::support;
 use posicast_model::analysis::{StartControl, residual_vibration};
 use posicast_model::design::antisymmetric::{Swing, exact, three_impulse, two_impulse};
 use posicast_model::design::vibrationless::{gain, half_sum_cascade, optimum, robustness_index};
-use posicast_model::design::{AxisDesign, Findings, JointError, bias_point, design_axis, kind::Kind, periodic, ratios};
+use posicast_model::design::{
+    AxisDesign, Findings, JointError, bias_point, design_axis, kind::ShaperKind, periodic, ratios,
+};
 use posicast_model::impulse::{Impulse, ImpulseSequence};
 use posicast_model::mode::Mode;
 use serde_json::Value;
@@ -70,7 +72,7 @@ fn golden_periodic_search_is_complete() {
             assert_eq!(n, numbers(&expected[2]));
         }
     }
-    let base = bias_point::undamped(Kind::MultiEi, 0, 0.05).unwrap();
+    let base = bias_point::undamped(ShaperKind::MultiEi, 0, 0.05).unwrap();
     close(base.lambda, number(&cases[1]["lambda"]), 1e-12, "lambda");
 }
 

@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 
 use golden::{close, number, numbers, rows};
 use posicast_model::analysis::residual_vibration;
-use posicast_model::design::kind::Kind;
+use posicast_model::design::kind::ShaperKind;
 use posicast_model::design::{AxisDesign, bias_point, design_axis, hump_ei};
 use posicast_model::mode::Mode;
 use posicast_model::plant::Plant;
@@ -24,7 +24,7 @@ fn golden_one_two_and_three_humps() {
         damping: 0.1,
     };
     for row in rows {
-        let kind = Kind::from_name(row["kind"].as_str().unwrap()).unwrap();
+        let kind = ShaperKind::from_name(row["kind"].as_str().unwrap()).unwrap();
         let found = hump_ei::design(kind, &mode, 0.05).unwrap();
         let what = kind.name();
         let impulses = found.impulses.impulses();
@@ -49,7 +49,7 @@ fn golden_bias_point_shapers() {
     assert_eq!(rows.len(), 14);
     for row in rows {
         let name = row["kind"].as_str().unwrap();
-        let kind = Kind::from_name(name).unwrap();
+        let kind = ShaperKind::from_name(name).unwrap();
         let order = row["order"].as_u64().unwrap() as u32;
         let tolerance = number(&row["tolerance"]);
         let what = format!("{name} {order} {tolerance}");
@@ -64,7 +64,7 @@ fn golden_bias_point_shapers() {
                 );
             }
         }
-        let order = if kind == Kind::ChebyshevEi {
+        let order = if kind == ShaperKind::ChebyshevEi {
             format!("order = {order}\n")
         } else {
             String::new()

@@ -5,7 +5,7 @@ use crate::support::golden;
 
 use golden::{close, number, numbers, rows};
 use posicast_model::analysis::{insensitivity, residual_vibration};
-use posicast_model::design::kind::Kind;
+use posicast_model::design::kind::ShaperKind;
 use posicast_model::design::{design_axis, hump_ei};
 use posicast_model::digitise::digitise;
 use posicast_model::mode::Mode;
@@ -64,7 +64,7 @@ fn golden_single_mode_designs_and_figures() {
             }
         }
         if kind == "ei" {
-            let zeros = hump_ei::design(Kind::Ei, &mode, tolerance).unwrap().zeros;
+            let zeros = hump_ei::design(ShaperKind::Ei, &mode, tolerance).unwrap().zeros;
             close(zeros[0], number(&row["wlo"]), 1e-9, &what);
             close(zeros[1], number(&row["whi"]), 1e-9, &what);
         }

@@ -1,6 +1,6 @@
 //! Where the kinds with humps end: the limits that an error names divide the designs from the errors.
 
-use posicast_model::design::kind::Kind;
+use posicast_model::design::kind::ShaperKind;
 use posicast_model::design::{DesignError, hump_ei};
 use posicast_model::mode::Mode;
 
@@ -12,7 +12,7 @@ fn mode(damping: f64) -> Mode {
 }
 
 /// The largest damping for a tolerance and the largest tolerance for a damping, as an error names them.
-fn limits(kind: Kind, damping: f64, tolerance: f64) -> (f64, f64) {
+fn limits(kind: ShaperKind, damping: f64, tolerance: f64) -> (f64, f64) {
     match hump_ei::design(kind, &mode(damping), tolerance) {
         Err(DesignError::NoSolution {
             largest_damping,
@@ -27,16 +27,16 @@ fn limits(kind: Kind, damping: f64, tolerance: f64) -> (f64, f64) {
 fn unit_where_the_branch_folds_one_damping_divides_designs_from_errors() {
     // From about 0.283 on the sheet from the undamped shaper folds at 0.133; another goes on above it.
     for tolerance in [0.28, 0.2825, 0.284, 0.2856, 0.2872, 0.288] {
-        let (end, _) = limits(Kind::TwoHumpEi, 0.8, tolerance);
+        let (end, _) = limits(ShaperKind::TwoHumpEi, 0.8, tolerance);
         let expected = if tolerance < 0.2828 { 0.158 } else { 0.13 };
         assert!((end - expected).abs() < 5e-3, "{tolerance}: {end}");
         for step in 0..40 {
             let damping = 0.1 + 0.002 * f64::from(step);
-            let exists = hump_ei::design(Kind::TwoHumpEi, &mode(damping), tolerance).is_ok();
+            let exists = hump_ei::design(ShaperKind::TwoHumpEi, &mode(damping), tolerance).is_ok();
             assert_eq!(exists, damping < end, "{tolerance}: {damping} ends at {end}");
         }
         for asked in [end + 1e-4, end + 0.02, 0.6] {
-            let (other, _) = limits(Kind::TwoHumpEi, asked, tolerance);
+            let (other, _) = limits(ShaperKind::TwoHumpEi, asked, tolerance);
             assert!((other - end).abs() < 1e-5, "{tolerance}: {other} from {asked}, {end}");
         }
     }
@@ -45,10 +45,10 @@ fn unit_where_the_branch_folds_one_damping_divides_designs_from_errors() {
 #[test]
 fn unit_the_largest_tolerance_divides_designs_from_errors() {
     for (kind, damping, expected) in [
-        (Kind::Ei, 0.781, 0.0200),
-        (Kind::TwoHumpEi, 0.863, 2.59e-5),
-        (Kind::TwoHumpEi, 0.14, 0.2828),
-        (Kind::ThreeHumpEi, 0.5, 0.00647),
+        (ShaperKind::Ei, 0.781, 0.0200),
+        (ShaperKind::TwoHumpEi, 0.863, 2.59e-5),
+        (ShaperKind::TwoHumpEi, 0.14, 0.2828),
+        (ShaperKind::ThreeHumpEi, 0.5, 0.00647),
     ] {
         let (_, largest) = limits(kind, damping, 0.5);
         assert!((largest / expected - 1.0).abs() < 5e-3, "{kind} {damping}: {largest}");

@@ -3,7 +3,7 @@
 use posicast_model::analysis::residual_vibration;
 use posicast_model::design::matching::mode_lag_s;
 use posicast_model::design::{DesignError, MachineDesign, design_machine};
-use posicast_model::digitise::{DELAY_MAX_SAMPLES, TableError};
+use posicast_model::digitise::{DELAY_MAX_SAMPLES, DigitiseError};
 use posicast_model::machine_file::{self, Machine, Scale, ScaleUse};
 use proptest::prelude::*;
 
@@ -158,7 +158,7 @@ fn unit_a_delay_beyond_the_ring_is_an_error_that_names_the_slowest_axis() {
     for extra_delay_s in [1.63, 1e300, f64::INFINITY] {
         late.stage.as_mut().unwrap().extra_delay_s = extra_delay_s;
         let error = design_machine(&late).unwrap_err();
-        let DesignError::Table(TableError::MatchedDelay { slowest, found, .. }) = &error else {
+        let DesignError::Table(DigitiseError::MatchedDelay { slowest, found, .. }) = &error else {
             panic!("{error}");
         };
         assert!(slowest == "b" && *found > f64::from(DELAY_MAX_SAMPLES), "{error}");

@@ -3,18 +3,22 @@
 //! The counts are those of the notes on the papers, one row per printed number. A change of them is a change of what
 //! posicast says about a paper: it needs a reason.
 
-use posicast_model::papers::{Paper, Value, Verdict};
+use posicast_model::papers::{Paper, PaperVerdict, Value};
 
 /// Reproduced, errata, not comparable.
 fn counts(paper: Paper) -> [usize; 3] {
     let rows = paper.reproduce().unwrap();
     let faults: Vec<_> = rows
         .iter()
-        .filter(|row| row.verdict == Verdict::NotReproduced)
+        .filter(|row| row.verdict == PaperVerdict::NotReproduced)
         .collect();
     assert!(faults.is_empty(), "{faults:#?}");
-    [Verdict::Reproduced, Verdict::Erratum, Verdict::NotComparable]
-        .map(|verdict| rows.iter().filter(|row| row.verdict == verdict).count())
+    [
+        PaperVerdict::Reproduced,
+        PaperVerdict::Erratum,
+        PaperVerdict::NotComparable,
+    ]
+    .map(|verdict| rows.iter().filter(|row| row.verdict == verdict).count())
 }
 
 #[test]
@@ -48,11 +52,11 @@ fn unit_every_row_is_told_from_the_others_and_every_departure_has_its_reason() {
         let rows = paper.reproduce().unwrap();
         for (index, row) in rows.iter().enumerate() {
             assert!(rows[..index].iter().all(|other| other.item != row.item), "{}", row.item);
-            let needs_reason = matches!(row.verdict, Verdict::Erratum | Verdict::NotComparable);
+            let needs_reason = matches!(row.verdict, PaperVerdict::Erratum | PaperVerdict::NotComparable);
             assert!(!needs_reason || !row.reason.is_empty(), "{}", row.item);
             assert_eq!(
                 row.ours.is_none(),
-                row.verdict == Verdict::NotComparable,
+                row.verdict == PaperVerdict::NotComparable,
                 "{}",
                 row.item
             );
@@ -135,7 +139,7 @@ fn golden_our_numbers_of_the_errata() {
     for (paper, item, expected, tolerance) in cases {
         let (_, rows) = tables.iter().find(|(other, _)| *other == paper).unwrap();
         let row = rows.iter().find(|row| row.item.starts_with(item)).unwrap();
-        assert_eq!(row.verdict, Verdict::Erratum, "{item}");
+        assert_eq!(row.verdict, PaperVerdict::Erratum, "{item}");
         let ours = match row.ours.clone().unwrap() {
             Value::Number(number) => vec![number],
             Value::Numbers(numbers) => numbers,

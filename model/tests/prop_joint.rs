@@ -3,8 +3,8 @@
 use crate::support;
 
 use posicast_model::analysis::residual_vibration;
-use posicast_model::design::antisymmetric::{self, Method, Participant};
-use posicast_model::design::kind::Kind;
+use posicast_model::design::antisymmetric::{self, AntisymmetricMethod, Participant};
+use posicast_model::design::kind::ShaperKind;
 use posicast_model::design::periodic::{self, Base};
 use posicast_model::design::simultaneous::{self, Amplitudes, Constraint};
 use posicast_model::design::vibrationless::{EPSILON_MAX, ORDER_MAX, gain, optimum, robustness_index};
@@ -90,7 +90,7 @@ proptest! {
             let mode = mode(damped_hz / (1.0f64 - damping * damping).sqrt(), *damping);
             Participant { mode, participation: 1.0 }
         }).collect();
-        let found = antisymmetric::design(&participants, Method::Exact, 0.0).unwrap();
+        let found = antisymmetric::design(&participants, AntisymmetricMethod::Exact, 0.0).unwrap();
         prop_assert_eq!(found.classes.len(), 1);
         prop_assert!(found.classes[0].multiples.error < 1e-14);
         let impulses = found.impulses.impulses();
@@ -125,7 +125,7 @@ proptest! {
         tolerance in 0.02..0.2,
         probe in 0.0..1.0,
     ) {
-        let base = Base { kind: Kind::MultiEi, order: 2, tolerance };
+        let base = Base { kind: ShaperKind::MultiEi, order: 2, tolerance };
         let rows: Vec<_> = modes.iter().map(|m| (*m, tolerance)).collect();
         let lowest_hz = modes[0].frequency_hz / 10.0;
         let shaper = bias_point::undamped(base.kind, base.order, tolerance).unwrap();
@@ -202,10 +202,10 @@ proptest! {
         let participants: Vec<_> = modes.iter().map(|m| Participant { mode: *m, participation: number }).collect();
         let rows: Vec<_> = modes.iter().map(|m| (*m, number)).collect();
         let _ = simultaneous::design(&constraints, Amplitudes::PartialSum);
-        for method in [Method::Exact, Method::TwoImpulse, Method::ThreeImpulse] {
+        for method in [AntisymmetricMethod::Exact, AntisymmetricMethod::TwoImpulse, AntisymmetricMethod::ThreeImpulse] {
             let _ = antisymmetric::design(&participants, method, number);
         }
-        let _ = periodic::design(&rows, Base { kind: Kind::ChebyshevEi, order: 5, tolerance: number }, number);
+        let _ = periodic::design(&rows, Base { kind: ShaperKind::ChebyshevEi, order: 5, tolerance: number }, number);
         let _ = robustness_index(&frequencies, number);
     }
 }

@@ -3,24 +3,31 @@
 use std::f64::consts::PI;
 
 use posicast_model::analysis::{residual_vibration, sensitivity_curve};
-use posicast_model::design::kind::Kind;
+use posicast_model::design::kind::ShaperKind;
 use posicast_model::design::{DesignError, bias_point, hump_ei, negative, zv};
 use posicast_model::impulse::ImpulseSequence;
 use posicast_model::mode::Mode;
 use proptest::prelude::*;
 
-const HUMPS: [Kind; 3] = [Kind::Ei, Kind::TwoHumpEi, Kind::ThreeHumpEi];
-const NEGATIVE: [Kind; 6] = [Kind::UmZv, Kind::UmZvd, Kind::UmEi, Kind::PsZv, Kind::PsZvd, Kind::PsEi];
-const BIAS_POINT: [(Kind, u32); 9] = [
-    (Kind::ZvEi, 1),
-    (Kind::ZvEi2, 1),
-    (Kind::ZvdEi, 1),
-    (Kind::MultiEi, 1),
-    (Kind::ChebyshevEi, 1),
-    (Kind::ChebyshevEi, 2),
-    (Kind::ChebyshevEi, 3),
-    (Kind::ChebyshevEi, 4),
-    (Kind::ChebyshevEi, 5),
+const HUMPS: [ShaperKind; 3] = [ShaperKind::Ei, ShaperKind::TwoHumpEi, ShaperKind::ThreeHumpEi];
+const NEGATIVE: [ShaperKind; 6] = [
+    ShaperKind::UmZv,
+    ShaperKind::UmZvd,
+    ShaperKind::UmEi,
+    ShaperKind::PsZv,
+    ShaperKind::PsZvd,
+    ShaperKind::PsEi,
+];
+const BIAS_POINT: [(ShaperKind, u32); 9] = [
+    (ShaperKind::ZvEi, 1),
+    (ShaperKind::ZvEi2, 1),
+    (ShaperKind::ZvdEi, 1),
+    (ShaperKind::MultiEi, 1),
+    (ShaperKind::ChebyshevEi, 1),
+    (ShaperKind::ChebyshevEi, 2),
+    (ShaperKind::ChebyshevEi, 3),
+    (ShaperKind::ChebyshevEi, 4),
+    (ShaperKind::ChebyshevEi, 5),
 ];
 
 fn mode(damping: impl Strategy<Value = f64>) -> impl Strategy<Value = Mode> {
@@ -75,7 +82,7 @@ proptest! {
                 prop_assert!(residual <= tolerance * (1.0 + 1e-9) + 1e-13, "{} at {}", residual, ratio);
             }
         }
-        let middle = if kind == Kind::TwoHumpEi { found.zeros[1] } else { found.humps[found.humps.len() / 2] };
+        let middle = if kind == ShaperKind::TwoHumpEi { found.zeros[1] } else { found.humps[found.humps.len() / 2] };
         prop_assert_eq!(middle, 1.0);
     }
 
@@ -87,7 +94,7 @@ proptest! {
     ) {
         let shaper = negative::design(kind, &mode, tolerance).unwrap();
         let at = |ratio: f64| residual_vibration(shaper.impulses(), &mode.scaled(ratio));
-        let unity = matches!(kind, Kind::UmZv | Kind::UmZvd | Kind::UmEi);
+        let unity = matches!(kind, ShaperKind::UmZv | ShaperKind::UmZvd | ShaperKind::UmEi);
         for (index, impulse) in shaper.impulses().iter().enumerate() {
             let size = if unity || index == 0 { 1.0 } else { 2.0 };
             prop_assert_eq!(impulse.amplitude, if index % 2 == 0 { size } else { -size });
@@ -96,17 +103,17 @@ proptest! {
         prop_assert_eq!((sums.min, sums.max), (if unity { 0.0 } else { -1.0 }, 1.0));
         prop_assert_eq!(sum(&shaper), 1.0);
         let positive = match kind {
-            Kind::UmZv | Kind::PsZv => 0.5,
+            ShaperKind::UmZv | ShaperKind::PsZv => 0.5,
             _ => 1.0,
         };
         prop_assert!(shaper.duration_s() < positive * mode.damped_period_s());
         match kind {
-            Kind::UmEi | Kind::PsEi => {
+            ShaperKind::UmEi | ShaperKind::PsEi => {
                 prop_assert!((at(1.0) - tolerance).abs() < 1e-10);
                 let off = 1e-3 * tolerance.sqrt();
                 prop_assert!(at(1.0 - off) <= tolerance * (1.0 + 1e-9) && at(1.0 + off) <= tolerance * (1.0 + 1e-9));
             }
-            Kind::UmZvd | Kind::PsZvd => {
+            ShaperKind::UmZvd | ShaperKind::PsZvd => {
                 // Of second order round the mode: a hundredth of the distance, a ten-thousandth of the residual.
                 prop_assert!(at(1.0) < 1e-12);
                 prop_assert!(at(1.0 + 1e-5) < 1.1e-4 * at(1.0 + 1e-3) + 1e-12);

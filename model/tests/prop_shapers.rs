@@ -3,9 +3,9 @@
 use crate::support;
 
 use posicast_model::analysis::{insensitivity, residual_vibration, sensitivity_curve, tap_impulses};
-use posicast_model::design::kind::Kind;
+use posicast_model::design::kind::ShaperKind;
 use posicast_model::design::{MachineDesign, design_axis, design_machine, hump_ei, zv};
-use posicast_model::digitise::{TableError, digitise};
+use posicast_model::digitise::{DigitiseError, digitise};
 use posicast_model::impulse::{Impulse, ImpulseSequence};
 use posicast_model::machine_file::{Digitise, Machine};
 use posicast_model::mode::Mode;
@@ -17,7 +17,12 @@ use proptest::prelude::*;
 use support::{machine, shaper};
 
 /// Kinds that leave nothing at the mode.
-const ZERO_KINDS: [(Kind, u32); 4] = [(Kind::Zv, 1), (Kind::Zvd, 2), (Kind::Zvdd, 3), (Kind::Zvddd, 4)];
+const ZERO_KINDS: [(ShaperKind, u32); 4] = [
+    (ShaperKind::Zv, 1),
+    (ShaperKind::Zvd, 2),
+    (ShaperKind::Zvdd, 3),
+    (ShaperKind::Zvddd, 4),
+];
 
 /// A mode from a centihertz to 100 kHz.
 fn mode(damping: impl Strategy<Value = f64>) -> impl Strategy<Value = Mode> {
@@ -60,7 +65,7 @@ proptest! {
         mode in mode(0.0..0.4),
         tolerance in 0.01..0.2,
     ) {
-        let hump_ei::HumpEi { impulses, zeros, .. } = hump_ei::design(Kind::Ei, &mode, tolerance).unwrap();
+        let hump_ei::HumpEi { impulses, zeros, .. } = hump_ei::design(ShaperKind::Ei, &mode, tolerance).unwrap();
         let at = |ratio: f64| residual_vibration(impulses.impulses(), &mode.scaled(ratio));
         prop_assert!((sum(impulses.impulses()) - 1.0).abs() < 1e-14);
         prop_assert!(impulses.impulses().iter().all(|i| i.amplitude > 0.0));
@@ -81,7 +86,7 @@ proptest! {
         // Within a decade or so: beyond it, V is what is left of 1 after 2^50 or underflows.
         let second = Mode { frequency_hz: first.frequency_hz * (second.frequency_hz.log10() - 1.5).exp2(), ..second };
         let a = zv::design(family.0, &first, family.1).unwrap();
-        let b = zv::design(Kind::Zvd, &second, 2).unwrap();
+        let b = zv::design(ShaperKind::Zvd, &second, 2).unwrap();
         let both = a.convolve(&b).unwrap();
         prop_assert!((sum(both.impulses()) - 1.0).abs() < 1e-13);
         prop_assert!((both.delay_s() - a.delay_s() - b.delay_s()).abs() < 1e-12 * both.duration_s());
@@ -231,8 +236,8 @@ proptest! {
     #[test]
     fn prop_absurd_machines_end_in_tables_or_errors(
         modes in prop::collection::vec((any_number(), any_number(), any_number()), 0..5),
-        kind in prop::sample::select(Kind::ALL.to_vec()),
-        own_kind in prop::option::of(prop::sample::select(Kind::ALL.to_vec())),
+        kind in prop::sample::select(ShaperKind::ALL.to_vec()),
+        own_kind in prop::option::of(prop::sample::select(ShaperKind::ALL.to_vec())),
         tolerance in any_number(),
         sample_hz in any_number(),
         fraction in prop::option::of(any::<u32>()),
@@ -297,7 +302,7 @@ fn prop_a_slow_mode_at_a_fast_rate_is_refused_at_once() {
     assert!(
         matches!(
             error,
-            posicast_model::design::DesignError::Table(TableError::Delay { .. })
+            posicast_model::design::DesignError::Table(DigitiseError::Delay { .. })
         ),
         "{error}"
     );

@@ -1,10 +1,15 @@
 //! The PWM's model against its pin rule, its fast path, and what a motion engineer expects of it.
 
 use posicast_model::rtl::pwm::pulses::{Bridge, Half, Latched, Pattern, Timing};
-use posicast_model::rtl::pwm::{ActiveLow, Gates, Inputs, Mode, Outputs, Pwm, PwmConfig};
+use posicast_model::rtl::pwm::{ActiveLow, BridgeMode, Gates, Inputs, Outputs, Pwm, PwmConfig};
 use proptest::prelude::*;
 
-const MODES: [Mode; 4] = [Mode::Direction, Mode::HalfBridge, Mode::Unipolar, Mode::Locked];
+const MODES: [BridgeMode; 4] = [
+    BridgeMode::Direction,
+    BridgeMode::HalfBridge,
+    BridgeMode::Unipolar,
+    BridgeMode::Locked,
+];
 
 fn config() -> PwmConfig {
     PwmConfig::new(ActiveLow::default(), 1, 1).unwrap()
@@ -125,7 +130,7 @@ proptest! {
     fn prop_the_clocked_model_keeps_the_pin_rule(
         timing in timing(), at_peak: bool, commands in commands(), max_duty in prop_oneof![Just(0xffffi64), 1i64..110],
     ) {
-        let mut mode = Mode::Unipolar;
+        let mut mode = BridgeMode::Unipolar;
         let latched: Vec<Latched> = commands.into_iter().map(|(change, duty)| {
             mode = MODES.get(change).copied().unwrap_or(mode);
             Latched { mode, duty, max_duty }
@@ -139,7 +144,7 @@ proptest! {
 
     #[test]
     fn prop_pulses_and_pauses_keep_their_lengths(timing in timing(), at_peak: bool, duties in prop::collection::vec(-120i64..=120, 1..60)) {
-        for mode in [Mode::HalfBridge, Mode::Unipolar, Mode::Locked] {
+        for mode in [BridgeMode::HalfBridge, BridgeMode::Unipolar, BridgeMode::Locked] {
             let latched: Vec<_> = duties.iter().map(|&duty| Latched { mode, duty, max_duty: 0xffff }).collect();
             let shown = by_the_rule(&timing, at_peak, &latched);
             for sides in [|g: &Gates| (g.a_high, g.a_low), |g: &Gates| (g.b_high, g.b_low)] {
@@ -204,7 +209,7 @@ fn unit_the_width_is_duty_less_dead_time_down_to_none_and_up_to_full() {
     };
     let width = |duty| {
         timing.pattern(timing.width(&Latched {
-            mode: Mode::HalfBridge,
+            mode: BridgeMode::HalfBridge,
             duty,
             max_duty: 1000,
         }))
@@ -225,7 +230,7 @@ fn unit_locked_antiphase_is_balanced_at_zero() {
         minimum_pulse: 6,
     };
     let latched = [Latched {
-        mode: Mode::Locked,
+        mode: BridgeMode::Locked,
         duty: 0,
         max_duty: 100,
     }; 6];
@@ -293,7 +298,7 @@ fn unit_a_leg_that_starts_late_catches_up() {
     };
     let inputs = Inputs {
         // The low side comes first from off, and then lasts its minimum: the first pulse is late.
-        mode: Mode::Direction as u8,
+        mode: BridgeMode::Direction as u8,
         duty: 35,
         ..healthy(&timing)
     };
@@ -433,7 +438,7 @@ fn unit_a_mask_takes_the_pins_and_nothing_else() {
         minimum_pulse: 4,
     };
     let open = Inputs {
-        mode: Mode::Unipolar as u8,
+        mode: BridgeMode::Unipolar as u8,
         duty: 30,
         ..healthy(&timing)
     };

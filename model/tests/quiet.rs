@@ -15,7 +15,7 @@ use posicast_model::rtl::excitation::Excitation;
 use posicast_model::rtl::group::Group;
 use posicast_model::rtl::linear_scale::LinearScale;
 use posicast_model::rtl::pulse_counter::PulseCounter;
-use posicast_model::rtl::pwm::{Mode, Pwm};
+use posicast_model::rtl::pwm::{BridgeMode, Pwm};
 use posicast_model::rtl::registers::{RegisterBank, RegisterMap, maps};
 use posicast_model::rtl::sample_select::SampleSelect;
 use posicast_model::rtl::schedule::{Schedule, ScheduleConfig};
@@ -182,7 +182,7 @@ fn blocks() -> Vec<Tried> {
             composed(stage(TICK_CLOCKS, |axis| Box::new(composed(axis))))
         }),
         tried("a component", PWM, move || {
-            Component::pwm(pwm, Mode::HalfBridge, 100).unwrap().model(1)
+            Component::pwm(pwm, BridgeMode::HalfBridge, 100).unwrap().model(1)
         }),
     ]
 }

@@ -5,9 +5,9 @@ use posicast_model::hardware;
 use posicast_model::machine_file;
 use posicast_model::rtl::component::Component;
 use posicast_model::rtl::divider::DividerConfig;
-use posicast_model::rtl::pwm::{ActiveLow, Mode, PwmConfig};
+use posicast_model::rtl::pwm::{ActiveLow, BridgeMode, PwmConfig};
 use posicast_model::rtl::registers::markdown;
-use posicast_model::rtl::shaper::{Motion, ShaperConfig};
+use posicast_model::rtl::shaper::{ShaperConfig, ShaperMotion};
 use posicast_model::rtl::sliding_mode::{Law, Settings};
 use posicast_model::taps::{Tap, TapTable};
 use std::error::Error;
@@ -29,7 +29,7 @@ fn components() -> Result<Vec<Component>, Box<dyn Error>> {
         delay_samples,
         coefficient: 1 << 15,
     };
-    let motion = Motion {
+    let motion = ShaperMotion {
         channels: 3,
         modulo: false,
     };
@@ -37,7 +37,11 @@ fn components() -> Result<Vec<Component>, Box<dyn Error>> {
     Ok(vec![
         Component::shaper(shaper)?,
         Component::pulse_counter(DividerConfig::new(5000)?, 8, false)?,
-        Component::pwm(PwmConfig::new(ActiveLow::default(), 25, 50)?, Mode::HalfBridge, 2500)?,
+        Component::pwm(
+            PwmConfig::new(ActiveLow::default(), 25, 50)?,
+            BridgeMode::HalfBridge,
+            2500,
+        )?,
         Component::sliding_mode(&Settings::default(), Law::SlidingMode, false)?,
         stage()?,
     ])

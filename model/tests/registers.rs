@@ -3,15 +3,17 @@
 use posicast_model::rtl::ClockedBlock;
 use posicast_model::rtl::composition::{Composition, CompositionError, Part};
 use posicast_model::rtl::divider::{self, DividerConfig};
-use posicast_model::rtl::registers::{Access, Description, Field, MapError, RegisterBank, RegisterMap, Source, maps};
+use posicast_model::rtl::registers::{
+    Access, Description, Field, FlagSource, MapError, RegisterBank, RegisterMap, maps,
+};
 use posicast_model::rtl::{Direction, Port};
 use proptest::prelude::*;
 
 fn description() -> Description {
     let flags = vec![
         Field::flag("fault", 0, "from outside"),
-        Field::flag("partial_write", 1, "own").set_by(Source::PartialWrite),
-        Field::flag("commit_rejected", 2, "own").set_by(Source::CommitRejected),
+        Field::flag("partial_write", 1, "own").set_by(FlagSource::PartialWrite),
+        Field::flag("commit_rejected", 2, "own").set_by(FlagSource::CommitRejected),
     ];
     let command = Access::Command {
         strobe: "start".to_owned(),

@@ -2,8 +2,8 @@
 
 use posicast_model::motion::{TickLimits, plan_move};
 use posicast_model::rtl::segments::{
-    ENTRIES_MAX, Entry, Inputs, Integrator, LATENCY_CLOCKS, Motion, Outputs, Point, REACH_COUNTS, STAND_COUNTS,
-    Segments, State, TICK_CLOCKS,
+    ENTRIES_MAX, Entry, EntryMotion, Inputs, Integrator, LATENCY_CLOCKS, Outputs, Point, REACH_COUNTS, STAND_COUNTS,
+    Segments, SegmentsState, TICK_CLOCKS,
 };
 use proptest::prelude::*;
 
@@ -47,7 +47,7 @@ fn tick(segments: &mut Segments) -> Outputs {
 fn jerk(ticks: u32, jerk: i64) -> Entry {
     Entry {
         ticks,
-        motion: Motion::Jerk(jerk),
+        motion: EntryMotion::Jerk(jerk),
         notify: false,
     }
 }
@@ -63,14 +63,14 @@ fn a_planned_move_arrives_with_the_integrator_at_every_tick() {
     let first = tick(&mut segments);
     assert_eq!(
         (first.state, first.position),
-        (State::Move, 0),
+        (SegmentsState::Move, 0),
         "the first entry is read at the first tick"
     );
     for entry in &entries {
         for _ in 0..entry.ticks {
             match entry.motion {
-                Motion::Jerk(jerk) => expected.jerk(jerk).unwrap(),
-                Motion::Point(point) => expected = Integrator::at_point(&point),
+                EntryMotion::Jerk(jerk) => expected.jerk(jerk).unwrap(),
+                EntryMotion::Point(point) => expected = Integrator::at_point(&point),
             }
             let shown = tick(&mut segments);
             assert_eq!([shown.position, shown.velocity, shown.acceleration], expected.rounded());
@@ -80,7 +80,7 @@ fn a_planned_move_arrives_with_the_integrator_at_every_tick() {
     let rest = segments.outputs(2);
     assert_eq!(
         (rest.state, rest.position, rest.empty, rest.underrun),
-        (State::Hold, end, true, false)
+        (SegmentsState::Hold, end, true, false)
     );
 }
 
@@ -88,17 +88,17 @@ fn a_planned_move_arrives_with_the_integrator_at_every_tick() {
 fn without_an_entry_while_moving_it_stops_by_itself_and_says_so() {
     let mut segments = Segments::new(3);
     write(&mut segments, &jerk(10, 1 << 32));
-    let states: Vec<State> = (0..200).map(|_| tick(&mut segments).state).collect();
+    let states: Vec<SegmentsState> = (0..200).map(|_| tick(&mut segments).state).collect();
     let shown = segments.outputs(2);
     assert!(shown.underrun && shown.velocity == 0 && shown.acceleration == 0);
-    assert_eq!(shown.state, State::Stopped);
+    assert_eq!(shown.state, SegmentsState::Stopped);
     // v = 55 counts per tick after 10 ticks, against 1 count per tick²: 55 ticks, and one to be at rest.
-    assert_eq!(states.iter().filter(|state| **state == State::Stop).count(), 56);
+    assert_eq!(states.iter().filter(|state| **state == SegmentsState::Stop).count(), 56);
     // Nothing is taken until the host says so.
     write(&mut segments, &jerk(1, 0));
     assert!(segments.outputs(2).refused && segments.outputs(2).level == 0);
     segments.step(&Inputs { restart: true, ..QUIET });
-    assert_eq!(tick(&mut segments).state, State::Hold);
+    assert_eq!(tick(&mut segments).state, SegmentsState::Hold);
     write(&mut segments, &jerk(1, 0));
     assert_eq!(segments.outputs(2).level, 1);
 }
@@ -138,7 +138,7 @@ fn the_command_stops_before_the_end_of_its_word_and_never_wraps() {
             let shown = from(counts, &entry, &inputs, 3_000);
             let last = shown.last().unwrap();
             assert!(last.out_of_range && !last.overflow && !last.underrun);
-            assert_eq!((last.state, last.velocity), (State::Stopped, 0));
+            assert_eq!((last.state, last.velocity), (SegmentsState::Stopped, 0));
             for (before, after) in shown.iter().zip(&shown[1..]) {
                 let step = i64::from(after.position) - i64::from(before.position);
                 assert!(
@@ -205,12 +205,12 @@ fn a_feed_hold_stands_at_the_next_rest_and_keeps_the_queue() {
         );
         assert_eq!([stands.velocity, stands.acceleration], [0, 0]);
         assert_eq!(
-            (stands.held, stands.state == State::Move),
+            (stands.held, stands.state == SegmentsState::Move),
             (moves_played < 3, moves_played < 3)
         );
         assert_eq!(usize::from(stands.level), [8, 5, 2, 0][moves_played]);
         // It goes on where it stood: each tick that is left is played, and the end is exact.
-        let left = (1..40).find(|_| tick(&mut segments).state == State::Hold);
+        let left = (1..40).find(|_| tick(&mut segments).state == SegmentsState::Hold);
         assert_eq!(left, Some((4 * (3 - moves_played)).max(1)));
         assert_eq!(segments.command(), Integrator::resting_at(4));
         assert!(!segments.outputs(2).held && !segments.outputs(2).underrun);
@@ -231,7 +231,10 @@ fn a_stop_ends_a_feed_hold_and_drops_the_queue() {
         segments.hold(&QUIET, 100);
     }
     let shown = segments.outputs(2);
-    assert_eq!((shown.state, shown.level, shown.held), (State::Stopped, 0, false));
+    assert_eq!(
+        (shown.state, shown.level, shown.held),
+        (SegmentsState::Stopped, 0, false)
+    );
 }
 
 #[test]
@@ -245,7 +248,7 @@ fn a_full_fifo_refuses_and_keeps_what_it_has() {
     let shown = segments.outputs(2);
     assert!(shown.refused && shown.level == ENTRIES_MAX);
     // 1 + 2 + … + 64 ticks, and the one that reads the first.
-    let ticks = (1..4_000).find(|_| tick(&mut segments).state == State::Hold && segments.outputs(2).empty);
+    let ticks = (1..4_000).find(|_| tick(&mut segments).state == SegmentsState::Hold && segments.outputs(2).empty);
     assert_eq!(ticks, Some(64 * 65 / 2 + 1));
 }
 
@@ -264,7 +267,10 @@ fn preset_rests_anywhere_at_the_next_tick() {
     });
     segments.hold(&QUIET, 100);
     assert_eq!(segments.command(), Integrator::resting_at(-77));
-    assert_eq!((segments.outputs(0).state, segments.outputs(0).level), (State::Hold, 0));
+    assert_eq!(
+        (segments.outputs(0).state, segments.outputs(0).level),
+        (SegmentsState::Hold, 0)
+    );
 }
 
 #[test]

@@ -5,7 +5,7 @@ use crate::support;
 use posicast_model::design::design_machine;
 use posicast_model::mode::Mode;
 use posicast_model::plant::{Plant, SampledPlant};
-use posicast_model::rtl::shaper::{Motion, MotionShaper, ShaperConfig, swap_how};
+use posicast_model::rtl::shaper::{MotionShaper, ShaperConfig, ShaperMotion, swap_how};
 use posicast_model::taps::TapTable;
 
 const SAMPLE_HZ: u32 = 10_000;
@@ -38,7 +38,7 @@ fn run(old: &TapTable, new: &TapTable, how: u8, frequency_hz: f64) -> (i64, f64)
         .with_room_for(500, 64)
         .unwrap();
     let config = config
-        .for_motion(Motion {
+        .for_motion(ShaperMotion {
             channels: 1,
             modulo: false,
         })

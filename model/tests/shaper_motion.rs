@@ -1,7 +1,7 @@
 //! The shaper for commands in motion: its two models against each other, and against what a handover and a modulo axis
 //! promise.
 
-use posicast_model::rtl::shaper::{Inputs, Motion, MotionShaper, Shaper, ShaperConfig, swap_how};
+use posicast_model::rtl::shaper::{Inputs, MotionShaper, Shaper, ShaperConfig, ShaperMotion, swap_how};
 use posicast_model::taps::{Tap, TapTable};
 use proptest::prelude::*;
 use std::collections::BTreeMap;
@@ -27,7 +27,7 @@ fn complete(mut taps: BTreeMap<u32, i32>) -> Option<TapTable> {
 
 fn config(word_bits: u32, table: TapTable, channels: u32, modulo: bool) -> ShaperConfig {
     ShaperConfig::new(word_bits, table)
-        .and_then(|config| config.for_motion(Motion { channels, modulo }))
+        .and_then(|config| config.for_motion(ShaperMotion { channels, modulo }))
         .unwrap()
 }
 
@@ -311,7 +311,7 @@ fn unit_a_handover_takes_two_passes_and_refuses_what_comes_in_it() {
 #[test]
 fn unit_what_no_shaper_for_motion_can_be_is_named() {
     let bypass = || TapTable::bypass(FRACTION).unwrap();
-    let motion = |channels| Motion {
+    let motion = |channels| ShaperMotion {
         channels,
         modulo: false,
     };

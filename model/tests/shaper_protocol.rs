@@ -1,7 +1,7 @@
 //! The shaper's protocol, one rule of the datasheet per test.
 
 use posicast_model::rtl::ClockedBlock;
-use posicast_model::rtl::shaper::{Inputs, Outputs, SampleShaper, Shaper, ShaperConfig, TableError, pass_clocks};
+use posicast_model::rtl::shaper::{Inputs, LoadError, Outputs, SampleShaper, Shaper, ShaperConfig, pass_clocks};
 use posicast_model::taps::{Tap, TapTable};
 
 const ONE: i32 = 1 << 16;
@@ -462,10 +462,10 @@ fn unit_raw_ports_are_the_typed_ones() {
 fn unit_the_fast_path_refuses_what_the_hardware_cannot_hold() {
     let config = ShaperConfig::new(16, table(&[(0, ONE)])).unwrap();
     let mut fast = SampleShaper::new(&config);
-    assert!(matches!(fast.swap(&table(&[(63, ONE)])), Err(TableError::Size(_))));
+    assert!(matches!(fast.swap(&table(&[(63, ONE)])), Err(LoadError::Size(_))));
     assert!(matches!(
         fast.swap(&TapTable::bypass(15).unwrap()),
-        Err(TableError::Fraction { found: 15, allowed: 16 })
+        Err(LoadError::Fraction { found: 15, allowed: 16 })
     ));
     assert_eq!(fast.push(5), 5);
 }

@@ -2,7 +2,7 @@
 
 use posicast_model::control::{FloatController, Gains, Tracking};
 use posicast_model::rtl::sliding_mode::{
-    CONTROL_CLOCKS, Gain, Inputs, Law, Motion, Outputs, Row, Settings, SlidingMode, TickController,
+    CONTROL_CLOCKS, Gain, Inputs, Law, Outputs, SettingRow, Settings, SlidingMode, TickController, TickMotion,
 };
 use proptest::prelude::*;
 use serde_json::Value;
@@ -12,15 +12,15 @@ fn golden_gains(coefficients: &Value, clamp_ma: f64) -> Gains {
     let of = |key: &str| coefficients[key].as_f64().unwrap();
     let per_acceleration = of("gain_mA_per_count_per_T2");
     Gains::default().with(&[
-        (Row::Surface, of("cT")),
-        (Row::Boundary, 1.0 / of("phiT_counts")),
-        (Row::Damping, of("cT")),
-        (Row::Reaching, of("kT")),
-        (Row::Switching, of("epsT2_counts")),
-        (Row::Feedback, per_acceleration),
-        (Row::Acceleration, per_acceleration),
-        (Row::Viscous, of("visc_mA_per_count_per_T")),
-        (Row::Limit, clamp_ma),
+        (SettingRow::Surface, of("cT")),
+        (SettingRow::Boundary, 1.0 / of("phiT_counts")),
+        (SettingRow::Damping, of("cT")),
+        (SettingRow::Reaching, of("kT")),
+        (SettingRow::Switching, of("epsT2_counts")),
+        (SettingRow::Feedback, per_acceleration),
+        (SettingRow::Acceleration, per_acceleration),
+        (SettingRow::Viscous, of("visc_mA_per_count_per_T")),
+        (SettingRow::Limit, clamp_ma),
     ])
 }
 
@@ -37,7 +37,7 @@ fn golden_vectors_within_a_milliampere() {
     for vector in vectors {
         let of = |key: &str| vector[key].as_i64().unwrap();
         let acceleration = of("r_n") - 2 * of("r_nm1") + of("r_nm2");
-        let motion = Motion {
+        let motion = TickMotion {
             position_reference: (of("r_n") << 8) as i32,
             velocity_reference: ((of("r_n") - of("r_nm1")) << 16) as i32,
             // One vector jumps by 500 counts, which a word does not hold: it is clamped all the same.
@@ -85,28 +85,28 @@ fn moderate_gains() -> impl Strategy<Value = Gains> {
         let [derivative, proportional, integral] = linear;
         let [feedback, acceleration, velocity, viscous, coulomb] = command;
         Gains::default().with(&[
-            (Row::Surface, surface),
-            (Row::Boundary, boundary),
-            (Row::Damping, damping),
-            (Row::Reaching, reaching),
-            (Row::Switching, switching),
-            (Row::Fade, fade),
-            (Row::Derivative, derivative),
-            (Row::Proportional, proportional),
-            (Row::Integral, integral),
-            (Row::Feedback, feedback),
-            (Row::Acceleration, acceleration),
-            (Row::Velocity, velocity),
-            (Row::Viscous, viscous),
-            (Row::Coulomb, coulomb),
-            (Row::Limit, limit),
-            (Row::Duty, 0.1),
+            (SettingRow::Surface, surface),
+            (SettingRow::Boundary, boundary),
+            (SettingRow::Damping, damping),
+            (SettingRow::Reaching, reaching),
+            (SettingRow::Switching, switching),
+            (SettingRow::Fade, fade),
+            (SettingRow::Derivative, derivative),
+            (SettingRow::Proportional, proportional),
+            (SettingRow::Integral, integral),
+            (SettingRow::Feedback, feedback),
+            (SettingRow::Acceleration, acceleration),
+            (SettingRow::Velocity, velocity),
+            (SettingRow::Viscous, viscous),
+            (SettingRow::Coulomb, coulomb),
+            (SettingRow::Limit, limit),
+            (SettingRow::Duty, 0.1),
         ])
     })
 }
 
 /// e up to 20 counts, velocities up to 10 counts/T apart.
-fn moderate_motion() -> impl Strategy<Value = Motion> {
+fn moderate_motion() -> impl Strategy<Value = TickMotion> {
     let small = 20i32 << 16;
     (
         -5000..5000i32,
@@ -116,7 +116,7 @@ fn moderate_motion() -> impl Strategy<Value = Motion> {
         -(1 << 23)..1 << 23,
     )
         .prop_map(
-            |(position, error, velocity, error_rate, acceleration_reference)| Motion {
+            |(position, error, velocity, error_rate, acceleration_reference)| TickMotion {
                 position_reference: position * 256 + error,
                 velocity_reference: velocity + error_rate,
                 acceleration_reference,
@@ -126,7 +126,7 @@ fn moderate_motion() -> impl Strategy<Value = Motion> {
         )
 }
 
-fn tracking(motion: &Motion) -> Tracking {
+fn tracking(motion: &TickMotion) -> Tracking {
     let count = |value: i32| f64::from(value) / 65_536.0;
     Tracking {
         error: f64::from(motion.position_reference - motion.position * 256) / 256.0,
@@ -141,42 +141,46 @@ fn tracking(motion: &Motion) -> Tracking {
 /// `gains` are wanted, the hardware has `actual`; `integral` is ∫e in counts·T.
 fn command_bound(gains: &Gains, actual: &Gains, motion: &Tracking, law: Law, integral: f64) -> f64 {
     // Of a product: what its gain lost, times the operand, and what the operand lost, times the gain.
-    let product = |row: Row, operand: f64, lost: f64| {
+    let product = |row: SettingRow, operand: f64, lost: f64| {
         (gains.get(row) - actual.get(row)).abs() * (operand.abs() + lost) + gains.get(row).abs() * lost
     };
     let Tracking { error, error_rate, .. } = *motion;
-    let sliding = error_rate.abs() + gains.get(Row::Surface).abs() * error.abs();
-    let sliding_lost = product(Row::Surface, error, 0.0) + 0.5 / 65_536.0;
+    let sliding = error_rate.abs() + gains.get(SettingRow::Surface).abs() * error.abs();
+    let sliding_lost = product(SettingRow::Surface, error, 0.0) + 0.5 / 65_536.0;
     let fraction_lost = |row, operand, lost| product(row, operand, lost) + 1.5 / 33_554_432.0;
     let third = 3.0 * 0.5 / 16_777_216.0;
     let (feedback, feedback_lost) = match law {
         Law::SlidingMode => (
-            gains.get(Row::Damping).abs() * error_rate.abs()
-                + gains.get(Row::Reaching).abs() * sliding
-                + gains.get(Row::Switching).abs(),
-            product(Row::Damping, error_rate, 0.0)
-                + product(Row::Reaching, sliding, sliding_lost)
-                + product(Row::Switching, 1.0, fraction_lost(Row::Boundary, sliding, sliding_lost))
+            gains.get(SettingRow::Damping).abs() * error_rate.abs()
+                + gains.get(SettingRow::Reaching).abs() * sliding
+                + gains.get(SettingRow::Switching).abs(),
+            product(SettingRow::Damping, error_rate, 0.0)
+                + product(SettingRow::Reaching, sliding, sliding_lost)
+                + product(
+                    SettingRow::Switching,
+                    1.0,
+                    fraction_lost(SettingRow::Boundary, sliding, sliding_lost),
+                )
                 + third,
         ),
         _ => (
-            gains.get(Row::Derivative).abs() * error_rate.abs()
-                + gains.get(Row::Proportional).abs() * error.abs()
-                + gains.get(Row::Integral).abs() * integral.abs(),
-            product(Row::Derivative, error_rate, 0.0)
-                + product(Row::Proportional, error, 0.0)
-                + product(Row::Integral, integral, 0.0)
+            gains.get(SettingRow::Derivative).abs() * error_rate.abs()
+                + gains.get(SettingRow::Proportional).abs() * error.abs()
+                + gains.get(SettingRow::Integral).abs() * integral.abs(),
+            product(SettingRow::Derivative, error_rate, 0.0)
+                + product(SettingRow::Proportional, error, 0.0)
+                + product(SettingRow::Integral, integral, 0.0)
                 + third,
         ),
     };
-    product(Row::Feedback, feedback, feedback_lost)
-        + product(Row::Acceleration, motion.acceleration_reference, 0.0)
-        + product(Row::Velocity, motion.velocity_reference, 0.0)
-        + product(Row::Viscous, motion.velocity, 0.0)
+    product(SettingRow::Feedback, feedback, feedback_lost)
+        + product(SettingRow::Acceleration, motion.acceleration_reference, 0.0)
+        + product(SettingRow::Velocity, motion.velocity_reference, 0.0)
+        + product(SettingRow::Viscous, motion.velocity, 0.0)
         + product(
-            Row::Coulomb,
+            SettingRow::Coulomb,
             1.0,
-            fraction_lost(Row::Fade, motion.velocity_reference, 0.0),
+            fraction_lost(SettingRow::Fade, motion.velocity_reference, 0.0),
         )
         + 6.0 * 0.5 / 4096.0
 }
@@ -223,7 +227,7 @@ proptest! {
         let (mut clocked, mut fast) = (SlidingMode::new(), TickController::default());
         for (tick, word) in words.iter().enumerate() {
             let sized = |at: usize| word[at] >> (shifts[at] % 32);
-            let motion = Motion {
+            let motion = TickMotion {
                 position_reference: sized(0),
                 velocity_reference: sized(1),
                 acceleration_reference: sized(2),
@@ -253,7 +257,7 @@ proptest! {
 
     #[test]
     fn prop_e_is_the_nearest_difference(reference: i32, position: i32) {
-        let motion = Motion { position_reference: reference, position, ..Motion::default() };
+        let motion = TickMotion { position_reference: reference, position, ..TickMotion::default() };
         let error = |modulo| {
             let mut controller = TickController::default();
             i64::from(controller.control(Law::Pd, modulo, &motion, &Settings::default()).error) >> 8
@@ -272,14 +276,14 @@ proptest! {
 fn unit_at_rest_on_the_reference_nothing_is_commanded() {
     // sgn(0) = 0: neither the boundary layer nor the Coulomb term, however steep, moves anything.
     let mut settings = Settings::default();
-    for row in Row::ALL {
+    for row in SettingRow::ALL {
         settings.set_gain(row, Gain::nearest(f64::from(row.exponent() + 16).exp2(), row).unwrap());
     }
     settings.set_limit(u32::MAX);
-    let motion = Motion {
+    let motion = TickMotion {
         position_reference: -77 << 8,
         position: -77,
-        ..Motion::default()
+        ..TickMotion::default()
     };
     let shown = TickController::default().control(Law::SlidingMode, false, &motion, &settings);
     assert_eq!((shown.command, shown.duty, shown.sliding), (0, 0, 0));
@@ -287,13 +291,17 @@ fn unit_at_rest_on_the_reference_nothing_is_commanded() {
 
 #[test]
 fn unit_the_integral_freezes_against_the_limit_and_survives_a_change_of_law() {
-    let gains = Gains::default().with(&[(Row::Integral, 0.01), (Row::Feedback, 1.0), (Row::Limit, 1.0)]);
+    let gains = Gains::default().with(&[
+        (SettingRow::Integral, 0.01),
+        (SettingRow::Feedback, 1.0),
+        (SettingRow::Limit, 1.0),
+    ]);
     let settings = gains.quantise().unwrap();
     let mut controller = TickController::default();
     let mut tick = |law, error: i32| {
-        let motion = Motion {
+        let motion = TickMotion {
             position_reference: error << 8,
-            ..Motion::default()
+            ..TickMotion::default()
         };
         f64::from(controller.control(law, false, &motion, &settings).command) / 4096.0
     };

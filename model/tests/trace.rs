@@ -1,6 +1,6 @@
 //! The trace memory's model: what a motion engineer expects of it, and `hold` against `step`.
 
-use posicast_model::rtl::trace::{Inputs, Outputs, SIGNALS, State, Trace, TraceConfig, row_clocks, row_signals};
+use posicast_model::rtl::trace::{Inputs, Outputs, SIGNALS, Trace, TraceConfig, TraceState, row_clocks, row_signals};
 use proptest::prelude::*;
 
 /// Four different signals in a row, the trigger on a fifth.
@@ -64,14 +64,14 @@ fn rows(trace: &mut Trace, signals: usize) -> Vec<Vec<i32>> {
 fn the_trace_is_the_rows_around_the_trigger_in_order_of_time() {
     let mut trace = trace();
     arm(&mut trace, &SETTINGS);
-    assert_eq!(trace.outputs().state, State::Filling);
-    let states: Vec<State> = (0..600)
+    assert_eq!(trace.outputs().state, TraceState::Filling);
+    let states: Vec<TraceState> = (0..600)
         .map(|tick| strobe(&mut trace, &SETTINGS, signals(tick)).state)
         .collect();
-    assert_eq!((states[8], states[9]), (State::Filling, State::Waiting));
-    assert_eq!((states[499], states[500]), (State::Waiting, State::Taking));
+    assert_eq!((states[8], states[9]), (TraceState::Filling, TraceState::Waiting));
+    assert_eq!((states[499], states[500]), (TraceState::Waiting, TraceState::Taking));
     // 64 rows: 10 before the trigger, its own, 53 after it.
-    assert_eq!((states[552], states[553]), (State::Taking, State::Idle));
+    assert_eq!((states[552], states[553]), (TraceState::Taking, TraceState::Idle));
     assert_eq!((trace.outputs().rows, trace.outputs().trigger_row), (64, 10));
     let expected: Vec<Vec<i32>> = (490..554)
         .map(|tick| {
@@ -119,7 +119,7 @@ fn halt_ends_with_the_row_that_is_being_taken_and_says_whether_the_trigger_came(
         trace.step(&Inputs { halt: true, ..now });
         let done = (0..20).filter(|_| trace.step(&now).done).count();
         let shown = trace.outputs();
-        assert_eq!((shown.state, shown.rows, done), (State::Idle, rows_there, 0));
+        assert_eq!((shown.state, shown.rows, done), (TraceState::Idle, rows_there, 0));
         assert_eq!(shown.rows > shown.trigger_row, halted_at > 500);
         let read = rows(&mut trace, 4);
         assert_eq!(read.last().unwrap()[0], signals(halted_at)[1]);
@@ -165,9 +165,9 @@ fn an_event_is_kept_for_the_next_row() {
         ..settings
     });
     for tick in 15..20 {
-        assert_eq!(strobe(&mut trace, &settings, signals(tick)).state, State::Waiting);
+        assert_eq!(strobe(&mut trace, &settings, signals(tick)).state, TraceState::Waiting);
     }
-    assert_eq!(strobe(&mut trace, &settings, signals(20)).state, State::Taking);
+    assert_eq!(strobe(&mut trace, &settings, signals(20)).state, TraceState::Taking);
 }
 
 #[test]
@@ -191,7 +191,7 @@ fn a_level_is_passed_from_one_row_to_the_next_and_not_by_the_first() {
         arm(&mut trace, &settings);
         let came = values
             .iter()
-            .position(|&value| strobe(&mut trace, &settings, [value; SIGNALS]).state == State::Taking);
+            .position(|&value| strobe(&mut trace, &settings, [value; SIGNALS]).state == TraceState::Taking);
         assert_eq!(came, expected, "mode {trigger_mode}, {values:?}");
     }
 }
@@ -209,7 +209,7 @@ fn a_pre_trigger_that_is_too_long_leaves_one_row_for_the_trigger() {
         strobe(&mut trace, &settings, signals(tick));
     });
     let shown = trace.outputs();
-    assert_eq!((shown.state, shown.rows, shown.trigger_row), (State::Idle, 64, 63));
+    assert_eq!((shown.state, shown.rows, shown.trigger_row), (TraceState::Idle, 64, 63));
 }
 
 #[test]
@@ -257,7 +257,7 @@ proptest! {
             ..SETTINGS
         };
         arm(&mut trace, &settings);
-        let done = (0..6000).find(|&tick| strobe(&mut trace, &settings, signals(tick)).state == State::Idle);
+        let done = (0..6000).find(|&tick| strobe(&mut trace, &settings, signals(tick)).state == TraceState::Idle);
         let step = i32::from(decimation) + 1;
         let pre = i32::from(pre_trigger).min(config.rows(signals_code) as i32 - 1);
         // The first row at or above the level has none before it; a level that was passed while filling never triggers.

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use posicast_synth::yosys::{Block, Estimate, Family, Mapping, Resources, Yosys, YosysError};
+use posicast_synth::yosys::{BlockEstimate, Estimate, Family, Mapping, Resources, Yosys, YosysError};
 
 fn rtl(names: &[&str]) -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/rtl");
@@ -17,7 +17,7 @@ fn stage(family: Family) -> Estimate {
         .unwrap()
 }
 
-fn sum(blocks: &[Block]) -> Resources {
+fn sum(blocks: &[BlockEstimate]) -> Resources {
     let mut total = Resources::default();
     for block in blocks {
         total += block.resources;

@@ -1,6 +1,6 @@
 //! Which file a command may write to, and what it leaves there.
 
-use posicast_system::output::{Draft, OutputError, Outputs, is_ours, write_text};
+use posicast_system::output::{Draft, OutputError, OutputFiles, is_ours, write_text};
 use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -30,7 +30,7 @@ impl Scratch {
 }
 
 fn claim(force: bool, path: &Path) -> Result<(), OutputError> {
-    Outputs::new(force).claim("--plot", path)
+    OutputFiles::new(force).claim("--plot", path)
 }
 
 #[test]
@@ -118,7 +118,7 @@ fn unit_an_input_is_never_replaced_under_whatever_name() {
     ] {
         for force in [false, true] {
             for input in ["machine.toml", "link", "folder/../hard"] {
-                let mut outputs = Outputs::new(force);
+                let mut outputs = OutputFiles::new(force);
                 outputs.input("the machine file", &scratch.path(input));
                 let error = outputs.claim("--plot", &scratch.path(name)).unwrap_err();
                 assert!(matches!(error, OutputError::Input { .. }), "{name}: {error}");
@@ -145,7 +145,7 @@ fn unit_what_is_no_place_for_a_file_is_told() {
         claim(true, &file.join("inside")),
         Err(OutputError::Io { .. } | OutputError::NoFolder { .. })
     ));
-    let mut outputs = Outputs::new(false);
+    let mut outputs = OutputFiles::new(false);
     outputs.claim("--junit", &scratch.path("new")).unwrap();
     let again = scratch.0.path().join(".").join("new");
     assert!(matches!(

@@ -13,7 +13,7 @@ use std::{env, io, thread};
 
 use posicast_testbench::Error;
 use posicast_testbench::blocks::{ComponentBlock, Sources};
-use posicast_testbench::fault_campaign::{Bed, Report, run, run_with_rtl};
+use posicast_testbench::fault_campaign::{Bed, FaultReport, run, run_with_rtl};
 use posicast_testbench::lockstep::Device;
 
 const USAGE: &str = "fault_campaign [--cases N] [--first N] [--seed S] [--rtl N] [--threads N]";
@@ -51,7 +51,7 @@ impl Options {
     }
 }
 
-fn campaigns(options: &Options) -> Result<Vec<Report>, Box<dyn std::error::Error>> {
+fn campaigns(options: &Options) -> Result<Vec<FaultReport>, Box<dyn std::error::Error>> {
     let bed = Bed::new()?;
     let numbers = options.first..options.first.saturating_add(options.cases);
     let mut reports = vec![run(&bed, numbers, options.seed, options.threads)?];

@@ -10,7 +10,7 @@ use std::process::ExitCode;
 use std::time::Duration;
 
 use posicast_testbench::Error;
-use posicast_testbench::formal::{Outcome, Task, Verdict, all, named, run};
+use posicast_testbench::formal::{ProofOutcome, ProofVerdict, Task, all, named, run};
 
 fn main() -> ExitCode {
     match prove() {
@@ -55,15 +55,15 @@ fn prove() -> Result<bool, Error> {
     Ok(is_good)
 }
 
-fn row(task: &Task, outcome: &Outcome) -> String {
+fn row(task: &Task, outcome: &ProofOutcome) -> String {
     let result = match &outcome.verdict {
-        Verdict::Proven => "proven".to_owned(),
-        Verdict::Counterexample {
+        ProofVerdict::Proven => "proven".to_owned(),
+        ProofVerdict::Counterexample {
             property,
             clock,
             waveform,
         } => format!("`{property}` fails in clock {clock}: {}", waveform.display()),
-        Verdict::Unknown => "unknown".to_owned(),
+        ProofVerdict::Unknown => "unknown".to_owned(),
     };
     let missed: Vec<&str> = outcome
         .covers

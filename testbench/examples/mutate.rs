@@ -19,7 +19,7 @@ use std::time::Instant;
 use posicast_model::{design::design_machine, hardware, machine_file};
 use posicast_testbench::Error;
 use posicast_testbench::mutation::{
-    INSIDE, INSIDE_MARKS, MARKS, Options, Row, all, inside_table, merged, named, run, table,
+    INSIDE, INSIDE_MARKS, MARKS, MutationOptions, MutationRow, all, inside_table, merged, named, run, table,
 };
 
 fn main() -> ExitCode {
@@ -35,7 +35,7 @@ fn main() -> ExitCode {
 
 struct Arguments {
     block: Option<String>,
-    options: Options,
+    options: MutationOptions,
     write: bool,
     inside: bool,
 }
@@ -47,7 +47,7 @@ impl Arguments {
     fn read() -> Result<Self, Error> {
         let mut found = Self {
             block: None,
-            options: Options::default(),
+            options: MutationOptions::default(),
             write: false,
             inside: false,
         };
@@ -71,7 +71,7 @@ impl Arguments {
                 }
             }
         }
-        if found.write && found.options != Options::default() {
+        if found.write && found.options != MutationOptions::default() {
             return Err(Error::Option(
                 "--write keeps the table that the defaults give: leave --mutants, --seed and --clocks away".to_owned(),
             ));
@@ -107,7 +107,7 @@ fn mutate() -> Result<bool, Error> {
         let start = Instant::now();
         let name = subject.block().name();
         let fates = run(subject, &options, &folder.join(format!("{at}_{name}")))?;
-        let row = Row::new(subject, &fates);
+        let row = MutationRow::new(subject, &fates);
         eprintln!(
             "{name}, {}: {} mutants, {} by lock step, {} by a property, {} equivalent, {} unknown, {:.1} s",
             subject.size(),
@@ -134,7 +134,7 @@ fn mutate() -> Result<bool, Error> {
 }
 
 /// The named mutants, each in the stage of the example machine.
-fn mutate_inside(options: &Options, write: bool) -> Result<bool, Error> {
+fn mutate_inside(options: &MutationOptions, write: bool) -> Result<bool, Error> {
     let refused = |error: &dyn std::fmt::Display| Error::Option(format!("examples/xy-stage.toml: {error}"));
     let machine = machine_file::parse("xy-stage.toml", MACHINE).map_err(|error| refused(&error))?;
     let design = design_machine(&machine).map_err(|error| refused(&error))?;

@@ -12,7 +12,7 @@ use std::time::Duration;
 use posicast_synth::yosys::{CELL_MODELS, Yosys, YosysError};
 use posicast_testbench::blocks::{Block, Sources, library};
 use posicast_testbench::lockstep::report;
-use posicast_testbench::netlist::{Outcome, Parts, Verdict, check};
+use posicast_testbench::netlist::{EquivalenceOutcome, EquivalenceVerdict, NetlistParts, check};
 
 /// Clocks of the simulation where none are asked for.
 const CLOCKS: u64 = 100_000;
@@ -66,11 +66,11 @@ fn compare() -> Result<bool, Box<dyn Error>> {
 
 /// Prints a block's row, and says whether it is good.
 fn row(yosys: &Yosys, block: &dyn Block, clocks: u64) -> Result<bool, Box<dyn Error>> {
-    let parts = Parts::of(block.modules()?);
+    let parts = NetlistParts::of(block.modules()?);
     let (logic, kept) = (Sources::of_modules(&parts.logic)?, Sources::of_modules(&parts.kept)?);
     let netlist = yosys.netlist(logic.files(), kept.files(), &block.top())?;
     let outcome = check(block, &parts, (&netlist, CELL_MODELS), (clocks, 1), LIMIT)?;
-    let Outcome {
+    let EquivalenceOutcome {
         cells: [luts, flip_flops],
         kept,
         simulated,
@@ -79,16 +79,16 @@ fn row(yosys: &Yosys, block: &dyn Block, clocks: u64) -> Result<bool, Box<dyn Er
     } = &outcome;
     let matches = simulated
         .as_ref()
-        .is_none_or(|report| report.result == report::Verdict::Match);
+        .is_none_or(|report| report.result == report::LockstepVerdict::Match);
     let simulated = match simulated {
         None => "no".to_owned(),
         Some(report) if matches => format!("{} clocks, equal", report.cycles),
         Some(report) => format!("{} wrong values in {} clocks", report.mismatches(), report.cycles),
     };
     let proof = match verdict {
-        Verdict::Equivalent => "proven".to_owned(),
-        Verdict::Different { clock } => format!("differ in clock {clock}"),
-        Verdict::Unknown => "unknown".to_owned(),
+        EquivalenceVerdict::Equivalent => "proven".to_owned(),
+        EquivalenceVerdict::Different { clock } => format!("differ in clock {clock}"),
+        EquivalenceVerdict::Unknown => "unknown".to_owned(),
     };
     println!(
         "| {} | {} | {luts} | {flip_flops} | {kept} | {simulated} | {proof} | {:.1} |",
@@ -96,5 +96,5 @@ fn row(yosys: &Yosys, block: &dyn Block, clocks: u64) -> Result<bool, Box<dyn Er
         block.instance(),
         time.as_secs_f64()
     );
-    Ok(matches && *verdict == Verdict::Equivalent)
+    Ok(matches && *verdict == EquivalenceVerdict::Equivalent)
 }

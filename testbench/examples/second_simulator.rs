@@ -8,8 +8,8 @@ use std::process::ExitCode;
 
 use posicast_testbench::Error;
 use posicast_testbench::blocks::library;
-use posicast_testbench::crosssim::{Outcome, outputs, run};
-use posicast_testbench::diff::Verdict;
+use posicast_testbench::crosssim::{CrosssimOutcome, outputs, run};
+use posicast_testbench::diff::DiffVerdict;
 
 fn main() -> ExitCode {
     match compare() {
@@ -61,11 +61,11 @@ fn compare() -> Result<bool, Error> {
     Ok(is_good)
 }
 
-fn verdict(outcome: &Outcome, waves: &posicast_testbench::diff::Comparison) -> String {
+fn verdict(outcome: &CrosssimOutcome, waves: &posicast_testbench::diff::Comparison) -> String {
     match waves.differences.first() {
         Some(first) => format!("{} differs at {}", first.signal, waves.time(first.time)),
-        None if waves.result == Verdict::Equal && outcome.is_good() => "equal".to_owned(),
-        None if waves.result == Verdict::Equal => "equal, but not to the model, or not whole".to_owned(),
+        None if waves.result == DiffVerdict::Equal && outcome.is_good() => "equal".to_owned(),
+        None if waves.result == DiffVerdict::Equal => "equal, but not to the model, or not whole".to_owned(),
         None => waves.notes.join("; "),
     }
 }

@@ -7,7 +7,7 @@
 use crate::Error;
 use crate::blocks::{Block, Sources};
 use crate::icarus;
-use crate::lockstep::report::{self, Report};
+use crate::lockstep::report::{self, LockstepReport};
 
 /// What the instance of the row ends with.
 const INSTANCE: &str = "pulses between clocks";
@@ -16,7 +16,7 @@ const INSTANCE: &str = "pulses between clocks";
 ///
 /// # Errors
 /// [`Error::ToolMissing`] without Icarus; [`Error::ToolFailed`] where it refuses the Verilog.
-pub fn check(block: &dyn Block, sources: &Sources) -> Result<Option<Report>, Error> {
+pub fn check(block: &dyn Block, sources: &Sources) -> Result<Option<LockstepReport>, Error> {
     let Some((bench, top)) = block.asynchronous() else {
         return Ok(None);
     };
@@ -32,7 +32,7 @@ pub fn check(block: &dyn Block, sources: &Sources) -> Result<Option<Report>, Err
         findings.push("the directed test did not come to its end: no pin was ever switched on".to_owned());
     }
     let cycles: u64 = clocks.unwrap_or(1);
-    let row = report::Block {
+    let row = report::BlockReport {
         name: block.name().to_owned(),
         instance: format!("{}, {INSTANCE}", block.instance()),
         cycles,
@@ -43,13 +43,13 @@ pub fn check(block: &dyn Block, sources: &Sources) -> Result<Option<Report>, Err
         unchanged: Vec::new(),
         findings,
     };
-    Ok(Some(Report::new(cycles, vec![row])))
+    Ok(Some(LockstepReport::new(cycles, vec![row])))
 }
 
 /// The row of a test that could not be run: it says why, and is no match.
-pub fn not_run(block: &dyn Block, why: &str) -> Option<Report> {
+pub fn not_run(block: &dyn Block, why: &str) -> Option<LockstepReport> {
     block.asynchronous()?;
-    let row = report::Block {
+    let row = report::BlockReport {
         name: block.name().to_owned(),
         instance: format!("{}, {INSTANCE}", block.instance()),
         cycles: 1,
@@ -60,5 +60,5 @@ pub fn not_run(block: &dyn Block, why: &str) -> Option<Report> {
         unchanged: Vec::new(),
         findings: Vec::new(),
     };
-    Some(Report::new(1, vec![row]))
+    Some(LockstepReport::new(1, vec![row]))
 }

@@ -13,7 +13,7 @@ use std::collections::VecDeque;
 
 use posicast_model::rtl::shaper::ShaperConfig;
 
-use crate::stimuli::{Action, Directed, Fill, Layout, Motion, Random, Stimuli, cases, corners, motion_cases};
+use crate::stimuli::{Action, Directed, Fill, Layout, MotionStimuli, Random, Stimuli, cases, corners, motion_cases};
 
 /// Clocks between the strobes of the move beyond a pass: idle clocks, a handful.
 const IDLE_CLOCKS: u64 = 5;
@@ -50,7 +50,7 @@ impl<'a> Campaign<'a> {
             });
         }
         if words.iter().any(|w| !w.is_empty()) {
-            let motion = Motion::new(layout, words, u64::from(pass_clocks) + IDLE_CLOCKS);
+            let motion = MotionStimuli::new(layout, words, u64::from(pass_clocks) + IDLE_CLOCKS);
             let clocks = motion.clocks().min(cycles / 4);
             phases.push_back(Phase {
                 stimuli: Box::new(motion),

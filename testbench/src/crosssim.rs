@@ -23,9 +23,9 @@ use posicast_model::rtl::{Direction, Port};
 
 use crate::Error;
 use crate::blocks::{Block, Sources};
-use crate::diff::{self, Comparison, Options, Reset, Verdict};
+use crate::diff::{self, Comparison, DiffOptions, DiffVerdict, Reset};
 use crate::icarus::SCOPE;
-use crate::lockstep::report::{self, Report};
+use crate::lockstep::report::{self, LockstepReport};
 use crate::lockstep::{self, Clock};
 use crate::netlist::has_memory;
 use crate::wave::{Heading, Recorder};
@@ -37,13 +37,13 @@ const RESET: &str = "rst";
 
 /// What came out for a block.
 #[derive(Debug, Clone)]
-pub struct Outcome {
+pub struct CrosssimOutcome {
     /// Ports of the block.
     pub ports: usize,
     /// Verilator against the model.
-    pub verilator: Report,
+    pub verilator: LockstepReport,
     /// Icarus against the model.
-    pub icarus: Report,
+    pub icarus: LockstepReport,
     /// Icarus's waveform against Verilator's.
     pub waves: Comparison,
     /// The same without initial values, from the release of the first reset on.
@@ -52,12 +52,12 @@ pub struct Outcome {
     pub time: Duration,
 }
 
-impl Outcome {
+impl CrosssimOutcome {
     /// Whether all is equal, and all was compared: every port, in as many clocks as were run.
     pub fn is_good(&self) -> bool {
-        let matched = [&self.verilator, &self.icarus].map(|report| report.result == report::Verdict::Match);
+        let matched = [&self.verilator, &self.icarus].map(|report| report.result == report::LockstepVerdict::Match);
         let whole = |waves: &Comparison| {
-            waves.result == Verdict::Equal && waves.exact && waves.signals == self.ports as u64 + 1
+            waves.result == DiffVerdict::Equal && waves.exact && waves.signals == self.ports as u64 + 1
         };
         matched == [true; 2]
             && whole(&self.waves)
@@ -71,7 +71,7 @@ impl Outcome {
 ///
 /// # Errors
 /// As [`Sources::verilated`], [`lockstep::run`] and [`diff::compare`].
-pub fn run(block: &dyn Block, clocks: u64, seed: u64, folder: &Path) -> Result<Outcome, Error> {
+pub fn run(block: &dyn Block, clocks: u64, seed: u64, folder: &Path) -> Result<CrosssimOutcome, Error> {
     run_modules(block, &block.modules()?, clocks, seed, folder)
 }
 
@@ -85,7 +85,7 @@ pub fn run_modules(
     clocks: u64,
     seed: u64,
     folder: &Path,
-) -> Result<Outcome, Error> {
+) -> Result<CrosssimOutcome, Error> {
     let start = Instant::now();
     let bench = Bench { block, clocks, seed };
     let sources = Sources::of_modules(modules)?;
@@ -95,20 +95,20 @@ pub fn run_modules(
     let without: Vec<Module> = modules.iter().map(without_initial_values).collect();
     bench.icarus(&Sources::of_modules(&without)?, &unset)?;
 
-    let exact = Options {
+    let exact = DiffOptions {
         require_all: true,
         // The testbench's own variable.
         ignore: vec![format!("{SCOPE}.posicast_read")],
-        ..Options::default()
+        ..DiffOptions::default()
     };
-    let released = Options {
+    let released = DiffOptions {
         reset: Reset::Named {
             name: format!("{SCOPE}.{RESET}"),
             active: true,
         },
         ..exact.clone()
     };
-    Ok(Outcome {
+    Ok(CrosssimOutcome {
         ports: bench.ports().len(),
         verilator: of_verilator,
         icarus: of_icarus,
@@ -129,7 +129,7 @@ impl Bench<'_> {
         self.block.model(self.seed).ports().to_vec()
     }
 
-    fn verilated(&self, sources: &Sources, waves: &Path) -> Result<Report, Error> {
+    fn verilated(&self, sources: &Sources, waves: &Path) -> Result<LockstepReport, Error> {
         let mut device = sources.verilated(self.block, self.seed)?;
         let mut recorder = Recorder::for_ports(waves, CLOCK_HZ, &[SCOPE], &self.ports(), &Heading::default())?;
         let mut written = Ok(());
@@ -143,21 +143,25 @@ impl Bench<'_> {
         Ok(report)
     }
 
-    fn icarus(&self, sources: &Sources, waves: &Path) -> Result<Report, Error> {
+    fn icarus(&self, sources: &Sources, waves: &Path) -> Result<LockstepReport, Error> {
         let mut device = sources.icarus_recording(self.block)?;
         let report = self.lockstep(&mut device, &mut |_| {})?;
         device.finish(waves)?;
         Ok(report)
     }
 
-    fn lockstep(&self, device: &mut dyn lockstep::Device, watch: &mut dyn FnMut(&Clock<'_>)) -> Result<Report, Error> {
+    fn lockstep(
+        &self,
+        device: &mut dyn lockstep::Device,
+        watch: &mut dyn FnMut(&Clock<'_>),
+    ) -> Result<LockstepReport, Error> {
         let mut model = self.block.model(self.seed);
         let instances = self.block.instances(model.ports());
         let mut stimuli = self.block.stimuli(self.clocks, self.seed);
         // Both waveforms must be as long as each other, however much is wrong.
-        let options = lockstep::Options {
+        let options = lockstep::LockstepOptions {
             mismatch_limit: u64::MAX,
-            ..lockstep::Options::cycles(self.clocks)
+            ..lockstep::LockstepOptions::cycles(self.clocks)
         };
         lockstep::run(
             model.as_mut(),

@@ -19,7 +19,7 @@ use posicast_system::scratch;
 use crate::Error;
 use crate::lockstep::Device;
 use crate::tool::Tool;
-use crate::verilator::Source;
+use crate::verilator::VerilogSource;
 
 const ICARUS: Tool = Tool {
     name: "iverilog",
@@ -63,7 +63,7 @@ impl Icarus {
     /// # Errors
     /// [`Error::ToolMissing`] without Icarus; [`Error::ToolFailed`] where it refuses the Verilog, which includes ports
     /// that are missing or have another width.
-    pub fn build(source: &Source<'_>) -> Result<Self, Error> {
+    pub fn build(source: &VerilogSource<'_>) -> Result<Self, Error> {
         Self::start(source, "")
     }
 
@@ -71,7 +71,7 @@ impl Icarus {
     ///
     /// # Errors
     /// As [`Self::build`].
-    pub fn recording(source: &Source<'_>) -> Result<Self, Error> {
+    pub fn recording(source: &VerilogSource<'_>) -> Result<Self, Error> {
         Self::start(
             source,
             &format!("    initial begin $dumpfile(\"{WAVES}\"); $dumpvars(1, {SCOPE}); end\n"),
@@ -91,7 +91,7 @@ impl Icarus {
         Ok(())
     }
 
-    fn start(source: &Source<'_>, also: &str) -> Result<Self, Error> {
+    fn start(source: &VerilogSource<'_>, also: &str) -> Result<Self, Error> {
         let temporary = std::env::temp_dir();
         let folder = scratch::Folder::new(scratch::PREFIX);
         let folder = folder.map_err(Error::file(&temporary, "create a folder in"))?;
@@ -258,7 +258,7 @@ pub(crate) fn directed(bench: &str, top: &str, files: &[PathBuf]) -> Result<Stri
 }
 
 /// The testbench, with what else it is to do in `also`.
-fn testbench(source: &Source<'_>, also: &str) -> String {
+fn testbench(source: &VerilogSource<'_>, also: &str) -> String {
     let inputs: Vec<&Port> = source
         .ports
         .iter()

@@ -23,7 +23,7 @@ use posicast_system::scratch;
 use crate::Error;
 use crate::blocks::{self, Block, Sources};
 use crate::formal::{YOSYS, abc, asserted};
-use crate::lockstep::report::Report;
+use crate::lockstep::report::LockstepReport;
 
 /// Longest difference that is searched for, in clocks: more than a division lasts.
 const SEARCHED_CLOCKS: u32 = 150;
@@ -32,7 +32,7 @@ const COMPARING: &str = "comparing RTL and netlist";
 
 /// Whether two versions of a block do the same: its RTL and its netlist, or the block and a mutant.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Verdict {
+pub enum EquivalenceVerdict {
     /// For all inputs and for ever.
     Equivalent,
     /// Some input tells them apart in this clock after power-up, from 0.
@@ -46,14 +46,14 @@ pub enum Verdict {
 
 /// A block's Verilog, sorted.
 #[derive(Debug, Clone)]
-pub struct Parts {
+pub struct NetlistParts {
     /// What is mapped to logic elements; the top among them.
     pub logic: Vec<Module>,
     /// What is kept.
     pub kept: Vec<Module>,
 }
 
-impl Parts {
+impl NetlistParts {
     /// Sorts a block's modules.
     pub fn of(modules: Vec<Module>) -> Self {
         let is_kept = |module: &Module| has_memory(module) || module.text.contains(" <= a_q * b_q;");
@@ -73,12 +73,12 @@ pub(crate) fn has_memory(module: &Module) -> bool {
 /// As [`Sources::verilated`] and [`blocks::check`].
 pub fn simulate(
     block: &dyn Block,
-    parts: &Parts,
+    parts: &NetlistParts,
     netlist: &str,
     cell_models: &str,
     clocks: u64,
     seed: u64,
-) -> Result<Report, Error> {
+) -> Result<LockstepReport, Error> {
     let mut modules = parts.kept.clone();
     for (name, text) in [("cell_models", cell_models), ("netlist", netlist)] {
         modules.push(Module {
@@ -100,12 +100,12 @@ pub fn simulate(
 /// or kept modules that only one of them has; [`Error::File`] for the files.
 pub fn equivalent(
     top: &str,
-    parts: &Parts,
+    parts: &NetlistParts,
     netlist: &str,
     cell_models: &str,
     folder: &Path,
     limit: Duration,
-) -> Result<Verdict, Error> {
+) -> Result<EquivalenceVerdict, Error> {
     let write = |name: &str, text: &str| {
         let path = folder.join(name);
         std::fs::write(&path, text).map_err(Error::file(&path, "write"))
@@ -150,24 +150,26 @@ pub fn equivalent(
     let seconds = limit.as_secs().max(1);
     let proof = format!("read_aiger miter.aig; fold; strash; scorr; pdr -T {seconds}");
     if abc(folder, &proof, COMPARING)?.contains("Property proved") {
-        return Ok(Verdict::Equivalent);
+        return Ok(EquivalenceVerdict::Equivalent);
     }
     let search = format!("read_aiger miter.aig; fold; strash; bmc3 -F {SEARCHED_CLOCKS} -T {seconds}");
     let found = asserted(&abc(folder, &search, COMPARING)?).next();
-    Ok(found.map_or(Verdict::Unknown, |(_, clock)| Verdict::Different { clock }))
+    Ok(found.map_or(EquivalenceVerdict::Unknown, |(_, clock)| {
+        EquivalenceVerdict::Different { clock }
+    }))
 }
 
 /// What came out for a block.
 #[derive(Debug, Clone)]
-pub struct Outcome {
+pub struct EquivalenceOutcome {
     /// Logic elements that compute, and flip-flops.
     pub cells: [usize; 2],
     /// Kept modules.
     pub kept: usize,
     /// Netlist against the model; none where it was not simulated.
-    pub simulated: Option<Report>,
+    pub simulated: Option<LockstepReport>,
     /// Netlist against the RTL.
-    pub verdict: Verdict,
+    pub verdict: EquivalenceVerdict,
     /// How long it took, without the synthesis.
     pub time: Duration,
 }
@@ -178,11 +180,11 @@ pub struct Outcome {
 /// As [`simulate`] and [`equivalent`].
 pub fn check(
     block: &dyn Block,
-    parts: &Parts,
+    parts: &NetlistParts,
     (netlist, cell_models): (&str, &str),
     (clocks, seed): (u64, u64),
     limit: Duration,
-) -> Result<Outcome, Error> {
+) -> Result<EquivalenceOutcome, Error> {
     let start = Instant::now();
     let simulated = match clocks {
         0 => None,
@@ -192,7 +194,7 @@ pub fn check(
     let folder = scratch::Folder::new(scratch::PREFIX);
     let folder = folder.map_err(Error::file(&temporary, "create a folder in"))?;
     let verdict = equivalent(&block.top(), parts, netlist, cell_models, folder.path(), limit)?;
-    Ok(Outcome {
+    Ok(EquivalenceOutcome {
         cells: ["  cycloneive_lcell_comb ", "  dffeas "].map(|cell| netlist.matches(cell).count()),
         kept: parts.kept.len(),
         simulated,

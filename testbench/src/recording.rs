@@ -20,7 +20,7 @@ use posicast_model::rtl::{Direction, Port};
 
 use crate::Error;
 use crate::lockstep::Device;
-use crate::stimuli::{Axis, Layout, Motion, Stimuli};
+use crate::stimuli::{AxisLayout, Layout, MotionStimuli, Stimuli};
 use crate::wave::{Heading, Recorder, Signal};
 
 /// Idle clocks after a pass, so that each sample's output is seen to stand.
@@ -43,7 +43,7 @@ pub struct Move<'a> {
 
 /// What came out of a recorded move.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
-pub struct Trace {
+pub struct RecordedMove {
     /// Shaped words per axis, one per `valid`.
     pub shaped: Vec<Vec<i64>>,
     /// The clock of each of them, counted among those that are recorded.
@@ -66,7 +66,7 @@ impl Move<'_> {
     }
 
     /// The machine's clock that is recorded as number `recorded`.
-    fn machine_clock(&self, motion: &Motion<'_>, recorded: u64) -> u64 {
+    fn machine_clock(&self, motion: &MotionStimuli<'_>, recorded: u64) -> u64 {
         match recorded.checked_sub(motion.first_strobe()) {
             None => recorded,
             Some(moving) => {
@@ -77,7 +77,7 @@ impl Move<'_> {
     }
 
     /// What the file says about its times.
-    fn comment(&self, motion: &Motion<'_>) -> String {
+    fn comment(&self, motion: &MotionStimuli<'_>) -> String {
         let (tick, recorded) = (self.tick_clocks(), self.recorded_clocks());
         let mut text = format!(
             "clk is the machine's clock of {} MHz, and all times are true: after {} clocks of reset there is a strobe every {tick} \
@@ -100,9 +100,9 @@ impl Move<'_> {
     ///
     /// # Errors
     /// [`Error::Step`] where a simulator stops, [`Error::File`] where the file cannot be written.
-    pub fn record(&self, device: &mut dyn Device, path: &Path, scope: &str) -> Result<Trace, Error> {
+    pub fn record(&self, device: &mut dyn Device, path: &Path, scope: &str) -> Result<RecordedMove, Error> {
         let ports = device.ports().to_vec();
-        let mut motion = Motion::new(self.layout, self.words, self.recorded_clocks());
+        let mut motion = MotionStimuli::new(self.layout, self.words, self.recorded_clocks());
         let heading = Heading {
             comment: &self.comment(&motion),
             gaps: true,
@@ -111,7 +111,7 @@ impl Move<'_> {
         let mut recorder = Recorder::for_ports(path, self.clock_hz, &[scope], &ports, &heading)?;
         let outputs: Vec<&Port> = ports.iter().filter(|p| p.direction == Direction::Output).collect();
         let places = Places::new(&outputs, self.layout)?;
-        let mut trace = Trace {
+        let mut trace = RecordedMove {
             shaped: vec![Vec::new(); places.0.len()],
             valid_clocks: vec![Vec::new(); places.0.len()],
             recorded_clocks: motion.clocks(),
@@ -149,10 +149,16 @@ impl Move<'_> {
     ///
     /// # Errors
     /// [`Error::File`] where the file cannot be written.
-    pub fn record_float(&self, float: &[Vec<f64>], trace: &Trace, path: &Path, scope: &str) -> Result<(), Error> {
+    pub fn record_float(
+        &self,
+        float: &[Vec<f64>],
+        trace: &RecordedMove,
+        path: &Path,
+        scope: &str,
+    ) -> Result<(), Error> {
         let names: Vec<String> = self.layout.axes.iter().map(output_of).collect();
         let signals: Vec<Signal> = names.iter().map(|name| Signal::real(name)).collect();
-        let motion = Motion::new(self.layout, self.words, self.recorded_clocks());
+        let motion = MotionStimuli::new(self.layout, self.words, self.recorded_clocks());
         let heading = Heading {
             comment: &self.comment(&motion),
             gaps: true,
@@ -207,7 +213,7 @@ impl Places {
 }
 
 /// The output that shows the shaped position: `y`, or `y_0` of a shaper for motion.
-fn output_of(axis: &Axis) -> String {
+fn output_of(axis: &AxisLayout) -> String {
     port_of(&axis.name, if axis.swap_how.is_some() { "y_0" } else { "y" })
 }
 

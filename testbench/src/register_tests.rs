@@ -10,17 +10,17 @@
 //! | [`byte_enables`] | does a write reach the enabled bytes, for all sixteen patterns? |
 //!
 //! They know the description, and nothing of model or Verilog, so both are held to it. What hardware may change by
-//! itself (live words, flags from outside, and what is guarded by a pin) is left out unless [`Hardware::Still`] says that
+//! itself (live words, flags from outside, and what is guarded by a pin) is left out unless [`RegisterHardware::Still`] says that
 //! the pins are ours: then inputs are 0, and guards open.
 
-use posicast_model::rtl::registers::{Access, Register, RegisterMap, Source};
+use posicast_model::rtl::registers::{Access, FlagSource, Register, RegisterMap};
 use posicast_model::rtl::{ClockedBlock, Direction};
 use rand::{Rng, RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
 /// Who holds the inputs of the registers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Hardware {
+pub enum RegisterHardware {
     /// The test: a bank alone.
     Still,
     /// A block behind the bank.
@@ -44,7 +44,7 @@ pub const TESTS: [(&str, Test); 6] = [
 pub struct Host<'a> {
     map: &'a RegisterMap,
     block: &'a mut dyn ClockedBlock,
-    hardware: Hardware,
+    hardware: RegisterHardware,
     inputs: Vec<u64>,
     outputs: Vec<u64>,
     read_data: usize,
@@ -57,7 +57,11 @@ impl<'a> Host<'a> {
     ///
     /// # Errors
     /// In words, where the block cannot be stepped.
-    pub fn new(map: &'a RegisterMap, block: &'a mut dyn ClockedBlock, hardware: Hardware) -> Result<Self, String> {
+    pub fn new(
+        map: &'a RegisterMap,
+        block: &'a mut dyn ClockedBlock,
+        hardware: RegisterHardware,
+    ) -> Result<Self, String> {
         let names = |direction| -> Vec<String> {
             let ports = block.ports().iter().filter(|port| port.direction == direction);
             ports.map(|port| port.name.clone()).collect()
@@ -125,11 +129,11 @@ impl<'a> Host<'a> {
                 if register.fields.iter().all(|field| field.of(merged) >= field.minimum) {
                     self.expected[at] = merged;
                 } else {
-                    self.flag(Source::GuardRefused);
+                    self.flag(FlagSource::GuardRefused);
                 }
             }
             Access::Sticky | Access::InterruptState => self.expected[at] &= !(data & enabled),
-            access if access.whole_words() && enabled != u32::MAX => self.flag(Source::PartialWrite),
+            access if access.whole_words() && enabled != u32::MAX => self.flag(FlagSource::PartialWrite),
             Access::InterruptTest => {
                 let state = self
                     .map
@@ -144,7 +148,7 @@ impl<'a> Host<'a> {
         }
     }
 
-    fn flag(&mut self, source: Source) {
+    fn flag(&mut self, source: FlagSource) {
         for (register, expected) in self.map.registers().iter().zip(&mut self.expected) {
             if register.access.is_sticky() {
                 let own = register.fields.iter().filter(|field| field.source == source);
@@ -155,11 +159,11 @@ impl<'a> Host<'a> {
 
     /// Bits that the host can tell beforehand.
     fn certain(&self, register: &Register) -> u32 {
-        let running = self.hardware == Hardware::Running;
+        let running = self.hardware == RegisterHardware::Running;
         match &register.access {
             Access::Live | Access::Shadow { .. } | Access::Guarded { .. } if running => 0,
             Access::Sticky | Access::InterruptState if running => {
-                let outside = register.fields.iter().filter(|field| field.source == Source::Input);
+                let outside = register.fields.iter().filter(|field| field.source == FlagSource::Input);
                 !outside.fold(0, |mask, field| mask | field.mask())
             }
             _ => !0,
@@ -188,7 +192,7 @@ impl<'a> Host<'a> {
     fn keepers(&self) -> Vec<usize> {
         let keeps = |register: &Register| match register.access {
             Access::Configuration | Access::InterruptEnable | Access::Staged => true,
-            Access::Guarded { .. } => self.hardware == Hardware::Still,
+            Access::Guarded { .. } => self.hardware == RegisterHardware::Still,
             _ => false,
         };
         let registers = self.map.registers().iter().enumerate();

@@ -20,8 +20,8 @@ use posicast_model::rtl::{ClockedBlock, Direction, Port, StepError};
 
 use crate::Error;
 use crate::blocks::Block;
-use crate::diff::{Options, Player, PortMap, Recorded, missing};
-use crate::lockstep::report::Report;
+use crate::diff::{DiffOptions, Player, PortMap, Recorded, missing};
+use crate::lockstep::report::LockstepReport;
 use crate::lockstep::{self, Device, Instance};
 use crate::stimuli::Stimuli;
 
@@ -53,7 +53,7 @@ impl Replay {
     ///
     /// # Errors
     /// As [`PortMap::find`].
-    pub fn new(block: &dyn Block, path: &Path, options: &Options) -> Result<Option<Self>, Error> {
+    pub fn new(block: &dyn Block, path: &Path, options: &DiffOptions) -> Result<Option<Self>, Error> {
         let ports = block.model(0).ports().to_vec();
         let map = PortMap::find(path, &block.top(), &ports, options)?;
         Ok(map.map(|map| Self { map, ports }))
@@ -116,7 +116,13 @@ impl Replay {
     ///
     /// # Errors
     /// As [`lockstep::run`], and [`Player::next`] of a file that has changed since its [`Replay::extent`] was taken.
-    pub fn run(&self, block: &dyn Block, device: &mut dyn Device, clocks: u64, seed: u64) -> Result<Report, Error> {
+    pub fn run(
+        &self,
+        block: &dyn Block,
+        device: &mut dyn Device,
+        clocks: u64,
+        seed: u64,
+    ) -> Result<LockstepReport, Error> {
         let instances = block.instances(&self.ports);
         let of_device = self.against(block, device, &instances, clocks, seed)?;
         let outputs = missing(&self.map, &self.ports, Direction::Output);
@@ -140,7 +146,7 @@ impl Replay {
             outputs: places(&self.ports, Direction::Output),
         };
         let of_recording = self.against(block, &mut shown, &recorded, clocks, seed)?;
-        Ok(Report::joined(vec![of_device, of_recording]))
+        Ok(LockstepReport::joined(vec![of_device, of_recording]))
     }
 
     fn against(
@@ -150,7 +156,7 @@ impl Replay {
         instances: &[Instance],
         clocks: u64,
         seed: u64,
-    ) -> Result<Report, Error> {
+    ) -> Result<LockstepReport, Error> {
         let mut inputs = Inputs {
             player: self.map.play()?,
             row: vec![None; self.ports.len()],
@@ -158,7 +164,7 @@ impl Replay {
             failed: None,
         };
         let mut model = block.model(seed);
-        let options = lockstep::Options::cycles(clocks);
+        let options = lockstep::LockstepOptions::cycles(clocks);
         let report = lockstep::run(
             model.as_mut(),
             device,

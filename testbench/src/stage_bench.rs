@@ -42,20 +42,20 @@ const RECORDED: [&str; 4] = ["command_position", "shaped_position", "count", "er
 
 /// States of an axis, as `STATUS.state` has them.
 pub mod state {
-    use posicast_model::rtl::axis::State;
+    use posicast_model::rtl::axis::SupervisorState;
 
     /// Outputs off.
-    pub const OFF: u32 = State::Off as u32;
+    pub const OFF: u32 = SupervisorState::Off as u32;
     /// Outputs off, nothing wrong.
-    pub const READY: u32 = State::Ready as u32;
+    pub const READY: u32 = SupervisorState::Ready as u32;
     /// Outputs on, the command stands.
-    pub const HOLD: u32 = State::Hold as u32;
+    pub const HOLD: u32 = SupervisorState::Hold as u32;
     /// Segments play.
-    pub const RUN: u32 = State::Run as u32;
+    pub const RUN: u32 = SupervisorState::Run as u32;
     /// Slowing down.
-    pub const QUICK_STOP: u32 = State::QuickStop as u32;
+    pub const QUICK_STOP: u32 = SupervisorState::QuickStop as u32;
     /// A cause, until it is cleared.
-    pub const FAULT: u32 = State::Fault as u32;
+    pub const FAULT: u32 = SupervisorState::Fault as u32;
 }
 
 /// An output that differed.

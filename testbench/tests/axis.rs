@@ -5,7 +5,7 @@ use crate::support;
 use posicast_model::rtl::axis::Axis;
 use posicast_model::rtl::{ClockedBlock, axis};
 use posicast_testbench::blocks::{AxisBlock, Sources};
-use posicast_testbench::lockstep::{self, Instance, Options};
+use posicast_testbench::lockstep::{self, Instance, LockstepOptions};
 use posicast_testbench::stimuli::{AxisRandom, AxisSafety};
 use support::{assert_match, broken, caught, icarus_agrees, million_random_clocks};
 
@@ -59,7 +59,7 @@ fn violations(from: &str, to: &str, cycles: u64) -> Vec<String> {
         &mut device,
         &mut AxisRandom::new(3),
         &instances,
-        &Options::cycles(cycles),
+        &LockstepOptions::cycles(cycles),
         &mut |clock| safety.observe(clock.inputs, clock.actual),
         &mut |_| {},
     )

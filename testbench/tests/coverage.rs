@@ -3,10 +3,10 @@
 use posicast_model::rtl::{Direction, Port};
 use posicast_testbench::blocks::Block;
 use posicast_testbench::coverage::explanation::{all, parse};
-use posicast_testbench::coverage::point::{Kind, read};
+use posicast_testbench::coverage::point::{PointKind, read};
 use posicast_testbench::coverage::{CLOCKS, Measured, measure, measure_with, outdated, subjects};
 use posicast_testbench::stimuli::Stimuli;
-use posicast_testbench::verilator::{Source, Verilated};
+use posicast_testbench::verilator::{Verilated, VerilogSource};
 
 fn block(name: &str) -> Box<dyn Block> {
     subjects()
@@ -84,7 +84,7 @@ fn coverage_counts_what_happens_and_nothing_else() {
         port("stay", Direction::Input, 1),
         port("count", Direction::Output, 2),
     ];
-    let source = Source {
+    let source = VerilogSource {
         files: &[file],
         top: "plain",
         ports: &ports,
@@ -99,13 +99,13 @@ fn coverage_counts_what_happens_and_nothing_else() {
         let found = points.iter().find(|point| point.kind == kind && point.what == what);
         found.unwrap_or_else(|| panic!("no `{what}` in {points:?}")).count
     };
-    assert_eq!(count(Kind::Line, "if (go) begin"), 18);
-    assert_eq!(count(Kind::Line, "not if (go) begin"), 2);
-    assert_eq!(count(Kind::Line, "if (stay) begin"), 0);
-    assert_eq!(count(Kind::Line, "not if (stay) begin"), 18);
+    assert_eq!(count(PointKind::Line, "if (go) begin"), 18);
+    assert_eq!(count(PointKind::Line, "not if (go) begin"), 2);
+    assert_eq!(count(PointKind::Line, "if (stay) begin"), 0);
+    assert_eq!(count(PointKind::Line, "not if (stay) begin"), 18);
     // Its random start may be another value, once.
-    assert!((17..=19).contains(&count(Kind::Toggle, "count[0]")));
-    assert!(count(Kind::Toggle, "count[1]") <= 1);
+    assert!((17..=19).contains(&count(PointKind::Toggle, "count[0]")));
+    assert!(count(PointKind::Toggle, "count[1]") <= 1);
 
     // One that does not count says so.
     let mut plain = Verilated::build(&source, 1).unwrap();

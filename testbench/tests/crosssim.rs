@@ -3,9 +3,9 @@
 //! All blocks: the example `second_simulator`, in `scripts/verify-all`.
 
 use posicast_model::rtl::divider::DividerConfig;
-use posicast_testbench::blocks::{Block, DividerBlock, Part, PartBlock, library};
-use posicast_testbench::crosssim::{self, Outcome};
-use posicast_testbench::diff::Verdict;
+use posicast_testbench::blocks::{Block, DividerBlock, PartBlock, SmallPart, library};
+use posicast_testbench::crosssim::{self, CrosssimOutcome};
+use posicast_testbench::diff::DiffVerdict;
 use posicast_testbench::lockstep::report;
 
 const CLOCKS: u64 = 3000;
@@ -15,7 +15,7 @@ fn divider() -> DividerBlock {
 }
 
 /// The outcome with the first `from` in the block's Verilog replaced by `to`.
-fn after(block: &dyn Block, from: &str, to: &str) -> Outcome {
+fn after(block: &dyn Block, from: &str, to: &str) -> CrosssimOutcome {
     let mut modules = block.modules().unwrap();
     let found = modules.iter_mut().find(|module| module.text.contains(from));
     let module = found.unwrap_or_else(|| panic!("the Verilog no longer has `{from}`: adapt the test"));
@@ -42,7 +42,7 @@ fn crosssim_waveforms_of_both_simulators_are_equal() {
 #[test]
 fn crosssim_a_register_without_reset_is_x_after_it() {
     let outcome = after(&divider(), "        saturated_q <= 1'd0;\n", "");
-    assert_eq!(outcome.unset.result, Verdict::Different);
+    assert_eq!(outcome.unset.result, DiffVerdict::Different);
     let first = &outcome.unset.differences[0];
     assert_eq!(first.signal, "posicast_bench.saturated");
     assert!(format!("{:?}", first.b).contains('x'), "{first:?}");
@@ -55,7 +55,7 @@ fn crosssim_a_wire_that_nothing_drives_is_found_in_the_waveforms() {
     let first = &outcome.waves.differences[0];
     assert_eq!(
         (outcome.waves.result, first.signal.as_str()),
-        (Verdict::Different, "posicast_bench.busy")
+        (DiffVerdict::Different, "posicast_bench.busy")
     );
 }
 
@@ -64,8 +64,8 @@ fn crosssim_a_wire_that_nothing_drives_is_found_in_the_waveforms() {
 fn crosssim_a_simulator_with_a_mind_of_its_own_is_found() {
     let from = "        refused_q <= start & blocked;";
     let to = format!("`ifdef __ICARUS__\n        refused_q <= start;\n`else\n{from}\n`endif");
-    let outcome = after(&PartBlock::new(Part::Group(2), ""), from, &to);
-    assert_eq!(outcome.verilator.result, report::Verdict::Match);
-    assert_eq!(outcome.waves.result, Verdict::Different);
+    let outcome = after(&PartBlock::new(SmallPart::Group(2), ""), from, &to);
+    assert_eq!(outcome.verilator.result, report::LockstepVerdict::Match);
+    assert_eq!(outcome.waves.result, DiffVerdict::Different);
     assert!(!outcome.is_good());
 }

@@ -14,7 +14,7 @@ use posicast_model::rtl::axis::Cause;
 use posicast_model::rtl::component::Component;
 use posicast_testbench::Error;
 use posicast_testbench::blocks::{ComponentBlock, Sources};
-use posicast_testbench::fault_campaign::{Bed, Kind, Report, TABLE, run, run_with_rtl};
+use posicast_testbench::fault_campaign::{Bed, FaultKind, FaultReport, TABLE, run, run_with_rtl};
 use posicast_testbench::lockstep::Device;
 use posicast_testbench::stage_bench::{StageBench, Wire, state};
 
@@ -27,12 +27,12 @@ fn threads() -> usize {
 }
 
 /// The first case of a kind.
-fn number(kind: Kind) -> u64 {
+fn number(kind: FaultKind) -> u64 {
     TABLE.iter().position(|row| row.kind == kind).unwrap() as u64
 }
 
 /// One case of that kind, on a machine whose stage has another supervision than is demanded.
-fn on_a_changed_stage(kind: Kind, change: fn(&mut Supervision)) -> Report {
+fn on_a_changed_stage(kind: FaultKind, change: fn(&mut Supervision)) -> FaultReport {
     let mut bed = Bed::new().unwrap();
     // What is demanded stays as it is.
     let mut config = bed.stage.config.clone();
@@ -45,7 +45,7 @@ fn on_a_changed_stage(kind: Kind, change: fn(&mut Supervision)) -> Report {
 }
 
 #[track_caller]
-fn assert_says(report: &Report, what: &str) {
+fn assert_says(report: &FaultReport, what: &str) {
     let failures = report.failures();
     assert!(failures.iter().any(|failure| failure.contains(what)), "{failures:#?}");
 }
@@ -64,7 +64,7 @@ fn lockstep_faults_with_the_rtl_beside_the_model() {
     let block = ComponentBlock::new(bed.component.clone(), "xy_stage", "xy");
     let sources = Sources::write(&block).unwrap();
     let device = || -> Result<Box<dyn Device>, Error> { Ok(Box::new(sources.verilated(&block, 1)?)) };
-    let first = number(Kind::RawFaultOneClock);
+    let first = number(FaultKind::RawFaultOneClock);
     let report = run_with_rtl(&bed, first..first + 3, SEED, device).unwrap();
     assert_eq!(report.failures(), [""; 0], "{report}");
 }
@@ -83,7 +83,7 @@ fn unit_a_lost_encoder_is_seen_in_every_mode_of_pwm_and_encoder() {
                 limits.encoder_lost_command = drive;
             });
             let bed = bed.unwrap();
-            for kind in [Kind::EncoderLineStuck, Kind::EncoderLineStuckUnwatched] {
+            for kind in [FaultKind::EncoderLineStuck, FaultKind::EncoderLineStuckUnwatched] {
                 let cases = (0..3).map(|round| number(kind) + round * TABLE.len() as u64);
                 for case in cases {
                     let report = run(&bed, case..case + 1, SEED, 1).unwrap();
@@ -160,7 +160,10 @@ fn unit_a_wrong_sign_is_seen_by_the_watch_of_the_encoder_alone() {
         (limits.deviation, limits.saturation_s) = (None, 0.0);
     });
     let bed = bed.unwrap();
-    for kind in [Kind::EncoderReversedUnwatched, Kind::EncoderReversedInHoldUnwatched] {
+    for kind in [
+        FaultKind::EncoderReversedUnwatched,
+        FaultKind::EncoderReversedInHoldUnwatched,
+    ] {
         for case in (0..4).map(|round| number(kind) + round * TABLE.len() as u64) {
             let report = run(&bed, case..case + 1, SEED, 1).unwrap();
             assert_eq!(report.failures(), [""; 0], "{report}");
@@ -170,7 +173,10 @@ fn unit_a_wrong_sign_is_seen_by_the_watch_of_the_encoder_alone() {
 
 #[test]
 fn mutate_a_watch_of_motion_alone_does_not_see_a_wrong_sign() {
-    for kind in [Kind::EncoderReversedUnwatched, Kind::EncoderReversedInHoldUnwatched] {
+    for kind in [
+        FaultKind::EncoderReversedUnwatched,
+        FaultKind::EncoderReversedInHoldUnwatched,
+    ] {
         let report = on_a_changed_stage(kind, |watched| {
             (watched.deviation_limit, watched.saturation_ticks) = (0, 0);
             watched.watches_direction = false;
@@ -181,12 +187,12 @@ fn mutate_a_watch_of_motion_alone_does_not_see_a_wrong_sign() {
 
 #[test]
 fn mutate_a_slower_filter_is_late() {
-    let report = on_a_changed_stage(Kind::EmergencyStop, |watched| watched.filter_clocks += 1);
+    let report = on_a_changed_stage(FaultKind::EmergencyStop, |watched| watched.filter_clocks += 1);
     assert_says(&report, "1 clocks late");
 }
 
 #[test]
 fn mutate_a_longer_stop_is_late() {
-    let report = on_a_changed_stage(Kind::Stop, |watched| watched.settle_ticks += 40);
+    let report = on_a_changed_stage(FaultKind::Stop, |watched| watched.settle_ticks += 40);
     assert_says(&report, "a quick stop of");
 }

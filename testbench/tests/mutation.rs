@@ -1,18 +1,18 @@
 //! The mutation rung on small blocks: no mutant stays unknown; and it says so where stimuli see nothing.
 
 use posicast_model::{design::design_machine, hardware, machine_file};
-use posicast_testbench::blocks::{Block, Part, PartBlock};
-use posicast_testbench::mutation::{Fate, INSIDE, Mutant, Options, Subject, named, run, run_with};
+use posicast_testbench::blocks::{Block, PartBlock, SmallPart};
+use posicast_testbench::mutation::{Fate, INSIDE, Mutant, MutationOptions, Subject, named, run, run_with};
 
 fn subject(block: &str) -> Subject {
     named(block).unwrap().swap_remove(0)
 }
 
-fn options(mutants: usize) -> Options {
-    Options {
+fn options(mutants: usize) -> MutationOptions {
+    MutationOptions {
         mutants,
         clocks: 100_000,
-        ..Options::default()
+        ..MutationOptions::default()
     }
 }
 
@@ -57,7 +57,7 @@ fn mutate_equal_seeds_choose_equal_mutants_and_others_do_not() {
     let subject = subject("schedule");
     let few = |seed| {
         let folder = tempfile::tempdir().unwrap();
-        let options = Options { seed, ..options(5) };
+        let options = MutationOptions { seed, ..options(5) };
         run(&subject, &options, folder.path()).unwrap()
     };
     assert_eq!(few(1), few(1));
@@ -79,7 +79,7 @@ fn mutate_every_named_mutant_inside_the_stage_is_found() {
 #[test]
 fn mutate_a_named_mutant_whose_text_is_gone_is_an_error() {
     let mutant = INSIDE.iter().find(|mutant| mutant.module == "group").unwrap();
-    let modules = PartBlock::new(Part::Group(2), "top").modules().unwrap();
+    let modules = PartBlock::new(SmallPart::Group(2), "top").modules().unwrap();
     assert!(mutant.put_into(&modules).is_ok());
     for (text, times) in [(String::new(), "0 times"), (mutant.from.repeat(2), "2 times")] {
         let mut outdated = modules.clone();

@@ -7,13 +7,13 @@ use std::time::Duration;
 use posicast_synth::yosys::{CELL_MODELS, Yosys};
 use posicast_testbench::blocks::{Block, Sources, library};
 use posicast_testbench::lockstep::report;
-use posicast_testbench::netlist::{Outcome, Parts, Verdict, check};
+use posicast_testbench::netlist::{EquivalenceOutcome, EquivalenceVerdict, NetlistParts, check};
 
 const CLOCKS: u64 = 20_000;
 
 struct Mapped {
     block: Box<dyn Block>,
-    parts: Parts,
+    parts: NetlistParts,
     netlist: String,
 }
 
@@ -21,7 +21,7 @@ impl Mapped {
     fn new(name: &str) -> Self {
         let blocks = library().unwrap().into_iter();
         let block = blocks.into_iter().find(|block| block.name() == name).unwrap();
-        let parts = Parts::of(block.modules().unwrap());
+        let parts = NetlistParts::of(block.modules().unwrap());
         let files = |modules| Sources::of_modules(modules).unwrap();
         let (logic, kept) = (files(&parts.logic), files(&parts.kept));
         let yosys = Yosys::installed().unwrap();
@@ -29,7 +29,7 @@ impl Mapped {
         Self { block, parts, netlist }
     }
 
-    fn check(&self, clocks: u64) -> Outcome {
+    fn check(&self, clocks: u64) -> EquivalenceOutcome {
         let netlist = (self.netlist.as_str(), CELL_MODELS);
         check(
             self.block.as_ref(),
@@ -57,7 +57,7 @@ impl Mapped {
 fn netlist_is_proven_equal_to_the_rtl() {
     for (name, kept) in [("group", 0), ("divider", 0), ("pwm", 0), ("setting_banks", 2)] {
         let outcome = Mapped::new(name).check(0);
-        assert_eq!(outcome.verdict, Verdict::Equivalent, "{name}: {outcome:?}");
+        assert_eq!(outcome.verdict, EquivalenceVerdict::Equivalent, "{name}: {outcome:?}");
         assert_eq!(outcome.kept, kept, "{name}");
         assert!(outcome.cells.iter().all(|count| *count > 5), "{name}: {outcome:?}");
     }
@@ -67,7 +67,7 @@ fn netlist_is_proven_equal_to_the_rtl() {
 fn netlist_does_what_the_model_does() {
     let outcome = Mapped::new("group").check(CLOCKS);
     let report = outcome.simulated.unwrap();
-    assert_eq!((report.result, report.cycles), (report::Verdict::Match, CLOCKS));
+    assert_eq!((report.result, report.cycles), (report::LockstepVerdict::Match, CLOCKS));
 }
 
 /// One table inverted, in the way a mapper's fault would look.
@@ -83,9 +83,9 @@ fn netlist_with_a_wrong_table_is_found_by_simulation_and_proof() {
             &format!(".lut_mask(16'h{flipped:04x})"),
         )
         .check(CLOCKS);
-    assert_eq!(outcome.simulated.unwrap().result, report::Verdict::Mismatch);
+    assert_eq!(outcome.simulated.unwrap().result, report::LockstepVerdict::Mismatch);
     assert!(
-        matches!(outcome.verdict, Verdict::Different { clock } if clock < 5),
+        matches!(outcome.verdict, EquivalenceVerdict::Different { clock } if clock < 5),
         "{:?}",
         outcome.verdict
     );
@@ -98,7 +98,7 @@ fn netlist_with_a_wrong_power_up_is_found_by_the_proof() {
         .broken(".power_up(\"low\")", ".power_up(\"high\")")
         .check(0);
     assert!(
-        matches!(outcome.verdict, Verdict::Different { .. }),
+        matches!(outcome.verdict, EquivalenceVerdict::Different { .. }),
         "{:?}",
         outcome.verdict
     );

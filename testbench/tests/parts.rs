@@ -5,23 +5,23 @@ use crate::support;
 use posicast_model::rtl::divider::DividerConfig;
 use posicast_model::rtl::schedule::ScheduleConfig;
 use posicast_model::rtl::sliding_mode::Settings;
-use posicast_testbench::blocks::{Part, PartBlock};
+use posicast_testbench::blocks::{PartBlock, SmallPart};
 use support::{caught, icarus_agrees, million_random_clocks};
 
-fn bench(part: Part) -> PartBlock {
+fn bench(part: SmallPart) -> PartBlock {
     PartBlock::new(part, "alone")
 }
 
 fn schedule() -> PartBlock {
-    bench(Part::Schedule(ScheduleConfig::new(37).unwrap()))
+    bench(SmallPart::Schedule(ScheduleConfig::new(37).unwrap()))
 }
 
 fn time_base() -> PartBlock {
-    bench(Part::TimeBase(DividerConfig::new(17).unwrap()))
+    bench(SmallPart::TimeBase(DividerConfig::new(17).unwrap()))
 }
 
 fn sample_select() -> PartBlock {
-    bench(Part::SampleSelect {
+    bench(SmallPart::SampleSelect {
         word_bits: 32,
         channels: 3,
     })
@@ -29,7 +29,7 @@ fn sample_select() -> PartBlock {
 
 fn setting_banks() -> PartBlock {
     let words = std::array::from_fn(|row| 0x1234_5678u32.rotate_left(row as u32));
-    bench(Part::SettingBanks(Settings(words)))
+    bench(SmallPart::SettingBanks(Settings(words)))
 }
 
 fn agrees(block: &PartBlock) {
@@ -45,14 +45,14 @@ fn lockstep_schedule_a_million_random_clocks() {
 #[test]
 fn lockstep_divider_share_a_million_random_clocks() {
     for channels in [1, 2, 8] {
-        agrees(&bench(Part::DividerShare(channels)));
+        agrees(&bench(SmallPart::DividerShare(channels)));
     }
 }
 
 #[test]
 fn lockstep_group_a_million_random_clocks() {
-    agrees(&bench(Part::Group(2)));
-    agrees(&bench(Part::Group(4)));
+    agrees(&bench(SmallPart::Group(2)));
+    agrees(&bench(SmallPart::Group(4)));
 }
 
 #[test]
@@ -73,14 +73,14 @@ fn lockstep_setting_banks_a_million_random_clocks() {
 #[test]
 fn lockstep_catches_a_break_in_each() {
     caught(&schedule(), "if (tick) begin", "if (tick & !waits) begin", 100_000);
-    let share = bench(Part::DividerShare(2));
+    let share = bench(SmallPart::DividerShare(2));
     caught(
         &share,
         "steps_q_next = steps_of_1;",
         "steps_q_next = steps_of_0;",
         100_000,
     );
-    let group = bench(Part::Group(2));
+    let group = bench(SmallPart::Group(2));
     caught(&group, "& !can_start_1)", "& !can_start_0)", 100_000);
     caught(&setting_banks(), "read_row = setting_row;", "read_row = row;", 100_000);
     caught(&setting_banks(), "& !busy", "", 100_000);

@@ -4,10 +4,10 @@ use posicast_hdl::pwm::{emit, name};
 use posicast_model::rtl::ClockedBlock;
 use posicast_model::rtl::pwm::{ActiveLow, Pwm, PwmConfig, ports};
 use posicast_testbench::icarus::Icarus;
-use posicast_testbench::lockstep::report::{Report, Verdict};
-use posicast_testbench::lockstep::{self, Device, Instance, Options};
+use posicast_testbench::lockstep::report::{LockstepReport, LockstepVerdict};
+use posicast_testbench::lockstep::{self, Device, Instance, LockstepOptions};
 use posicast_testbench::stimuli::{GateSafety, PwmCoverage, PwmRandom};
-use posicast_testbench::verilator::{Source, Verilated, lint};
+use posicast_testbench::verilator::{Verilated, VerilogSource, lint};
 use std::path::PathBuf;
 use tempfile::TempDir;
 
@@ -19,7 +19,7 @@ struct Bench {
 }
 
 struct Outcome {
-    report: Report,
+    report: LockstepReport,
     coverage: PwmCoverage,
     violation: Option<String>,
 }
@@ -59,7 +59,7 @@ impl Bench {
             device,
             &mut PwmRandom::new(seed),
             &instances,
-            &Options::cycles(cycles),
+            &LockstepOptions::cycles(cycles),
             &mut |clock| {
                 coverage.observe(clock.inputs, clock.expected);
                 safety.observe(clock.actual);
@@ -73,8 +73,8 @@ impl Bench {
         }
     }
 
-    fn source<'a>(&'a self, ports: &'a [posicast_model::rtl::Port]) -> Source<'a> {
-        Source {
+    fn source<'a>(&'a self, ports: &'a [posicast_model::rtl::Port]) -> VerilogSource<'a> {
+        VerilogSource {
             files: &self.files,
             top: &self.top,
             ports,
@@ -91,7 +91,7 @@ fn assert_holds(outcome: &Outcome) {
     if let Some(first) = &outcome.report.blocks[0].first {
         panic!("{} mismatches\n{first}", outcome.report.blocks[0].mismatches);
     }
-    assert_eq!(outcome.report.result, Verdict::Match);
+    assert_eq!(outcome.report.result, LockstepVerdict::Match);
     assert_eq!(outcome.violation, None);
 }
 
@@ -130,7 +130,7 @@ fn crosssim_icarus_agrees_with_the_model() {
 fn caught(from: &str, to: &str) -> Outcome {
     let bench = Bench::new(plain(), from, to);
     let outcome = bench.run(&mut bench.verilated(1), 1, 600_000);
-    assert_eq!(outcome.report.result, Verdict::Mismatch, "`{to}` is not found");
+    assert_eq!(outcome.report.result, LockstepVerdict::Mismatch, "`{to}` is not found");
     outcome
 }
 

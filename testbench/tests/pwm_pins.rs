@@ -4,10 +4,11 @@
 use posicast_hdl::pwm::{emit, name};
 use posicast_model::rtl::pwm::pulses::{Bridge, Half, Latched, Timing};
 use posicast_model::rtl::pwm::{
-    ActiveLow, COMMAND_CLOCKS, Gates, INPUT_PORTS, Inputs, Mode, OUTPUT_PORTS, PwmConfig, SHORTEST_PERIOD_CLOCKS, ports,
+    ActiveLow, BridgeMode, COMMAND_CLOCKS, Gates, INPUT_PORTS, Inputs, OUTPUT_PORTS, PwmConfig, SHORTEST_PERIOD_CLOCKS,
+    ports,
 };
 use posicast_testbench::stimuli::GateSafety;
-use posicast_testbench::verilator::{Source, Verilated};
+use posicast_testbench::verilator::{Verilated, VerilogSource};
 use rand::{Rng, RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
@@ -34,7 +35,7 @@ fn verilated(from: &str, to: &str) -> Verilated {
     });
     let files: Vec<_> = files.collect();
     let ports = ports();
-    let source = Source {
+    let source = VerilogSource {
         files: &files,
         top: &name(&config, ""),
         ports: &ports,
@@ -86,7 +87,12 @@ impl Bench {
         let period = timing.period;
         let within = rng.random_range(-period - 3..=period + 3);
         let duties = [within, within, within, 0, period, -period, before.duty, -before.duty];
-        let modes = [Mode::Direction, Mode::HalfBridge, Mode::Unipolar, Mode::Locked];
+        let modes = [
+            BridgeMode::Direction,
+            BridgeMode::HalfBridge,
+            BridgeMode::Unipolar,
+            BridgeMode::Locked,
+        ];
         let changes = rng.random_range(0..40) == 0;
         Latched {
             mode: if changes {
@@ -105,7 +111,7 @@ impl Bench {
         let update_at_peak = self.rng.random_range(0..2) == 0;
         let limited = self.rng.random_range(1..=timing.period);
         let mut latched = Latched {
-            mode: Mode::HalfBridge,
+            mode: BridgeMode::HalfBridge,
             duty: 0,
             max_duty: if self.rng.random_range(0..3) == 0 {
                 limited

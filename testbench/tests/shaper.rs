@@ -3,14 +3,14 @@
 use crate::support;
 
 use posicast_hdl::machine::AxisShaper;
-use posicast_model::rtl::shaper::{Motion as ForMotion, Shaper, ShaperConfig, pass_clocks};
+use posicast_model::rtl::shaper::{Shaper, ShaperConfig, ShaperMotion as ForMotion, pass_clocks};
 use posicast_model::taps::{Tap, TapTable};
 use posicast_testbench::blocks::{Block, MachineShapers, ShaperBlock, Sources};
 use posicast_testbench::icarus::Icarus;
-use posicast_testbench::lockstep::report::{Report, Verdict};
-use posicast_testbench::lockstep::{self, Device, Options, TwoValued};
+use posicast_testbench::lockstep::report::{LockstepReport, LockstepVerdict};
+use posicast_testbench::lockstep::{self, Device, LockstepOptions, TwoValued};
 use posicast_testbench::stimuli::{
-    Action, Coverage, Directed, Layout, Motion, Random, Stimuli, cases, corners, motion_cases,
+    Action, Coverage, Directed, Layout, MotionStimuli, Random, Stimuli, cases, corners, motion_cases,
 };
 use posicast_testbench::verilator::Verilated;
 use support::{assert_match, broken, caught, icarus_agrees, million_random_clocks};
@@ -85,7 +85,7 @@ impl Bench {
         self.sources.icarus(&self.block).unwrap()
     }
 
-    fn run(&self, device: &mut dyn Device, stimuli: &mut dyn Stimuli, cycles: u64) -> (Report, Coverage) {
+    fn run(&self, device: &mut dyn Device, stimuli: &mut dyn Stimuli, cycles: u64) -> (LockstepReport, Coverage) {
         run(&self.block, self.layout(), device, stimuli, cycles)
     }
 }
@@ -97,7 +97,7 @@ fn run(
     device: &mut dyn Device,
     stimuli: &mut dyn Stimuli,
     cycles: u64,
-) -> (Report, Coverage) {
+) -> (LockstepReport, Coverage) {
     let mut model = block.model(99);
     let instances = block.instances(model.ports());
     let mut coverage = Coverage::default();
@@ -106,7 +106,7 @@ fn run(
         device,
         stimuli,
         &instances,
-        &Options::cycles(cycles),
+        &LockstepOptions::cycles(cycles),
         &mut |clock| coverage.observe(layout, clock),
         &mut |_| {},
     );
@@ -252,7 +252,7 @@ fn lockstep_real_motion_of_a_machine_with_two_axes() {
     let block = MachineShapers::new("stage", shapers.to_vec(), words).unwrap();
     let sources = Sources::write(&block).unwrap();
 
-    let mut motion = Motion::new(block.layout(), block.words(), 100);
+    let mut motion = MotionStimuli::new(block.layout(), block.words(), 100);
     let clocks = motion.clocks();
     let mut device = sources.verilated(&block, 1).unwrap();
     let (report, _) = run(&block, block.layout(), &mut device, &mut motion, clocks);
@@ -353,6 +353,10 @@ fn crosssim_corners_catch_what_random_stimuli_miss() {
         let mut directed = bench.directed(script);
         let clocks = directed.clocks(pass_clocks(bench.block.config().most_taps()));
         let (report, _) = bench.run(&mut bench.icarus(), &mut directed, clocks);
-        assert_eq!(report.result, Verdict::Mismatch, "{corner} does not find `{to}`");
+        assert_eq!(
+            report.result,
+            LockstepVerdict::Mismatch,
+            "{corner} does not find `{to}`"
+        );
     }
 }

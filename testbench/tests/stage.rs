@@ -10,16 +10,16 @@ use posicast_model::plant::axis::{AxisPlant, PlantOptions};
 use posicast_model::rtl::component::Component;
 use posicast_model::rtl::divider::DividerConfig;
 use posicast_model::rtl::linear_scale::ScaleRatio;
-use posicast_model::rtl::pwm::{ActiveLow, Mode, PwmConfig};
+use posicast_model::rtl::pwm::{ActiveLow, BridgeMode, PwmConfig};
 use posicast_model::rtl::segments::{self, Entry, NOTIFY};
-use posicast_model::rtl::shaper::{Motion, ShaperConfig};
-use posicast_model::rtl::sliding_mode::{Gain, Row};
+use posicast_model::rtl::shaper::{ShaperConfig, ShaperMotion};
+use posicast_model::rtl::sliding_mode::{Gain, SettingRow};
 use posicast_model::rtl::stage::{StageConfig, StageScale};
 use posicast_model::rtl::{ClockedBlock, Direction};
 use posicast_model::taps::{Tap, TapTable};
 use posicast_testbench::blocks::{self, Block, ComponentBlock, ShortTicksBlock, Sources, StageBlock};
 use posicast_testbench::lockstep::{Device, TwoValued};
-use posicast_testbench::register_tests::{Hardware, Host, TESTS};
+use posicast_testbench::register_tests::{Host, RegisterHardware, TESTS};
 use posicast_testbench::stage_bench::{StageBench, state};
 use support::{assert_match, caught, icarus_agrees, million_random_clocks};
 
@@ -98,13 +98,18 @@ fn lockstep_a_move_from_reset_to_standstill() {
 /// So many axes with short ticks, small tables and short times, so that much happens in a million clocks. PWM modes differ.
 fn quick(axes: usize) -> StageConfig {
     let config = stage(&machine()).config;
-    let modes = [Mode::Locked, Mode::Unipolar, Mode::HalfBridge, Mode::Direction];
+    let modes = [
+        BridgeMode::Locked,
+        BridgeMode::Unipolar,
+        BridgeMode::HalfBridge,
+        BridgeMode::Direction,
+    ];
     let half = |delay_samples| Tap {
         delay_samples,
         coefficient: 1 << 15,
     };
     let table = TapTable::new(16, vec![half(0), half(2)]).unwrap();
-    let motion = Motion {
+    let motion = ShaperMotion {
         channels: 3,
         modulo: false,
     };
@@ -132,7 +137,7 @@ fn quick(axes: usize) -> StageConfig {
         });
         axis.encoder_filter_clocks = 2;
         axis.settings
-            .set_gain(Row::Duty, Gain::nearest(0.02, Row::Duty).unwrap());
+            .set_gain(SettingRow::Duty, Gain::nearest(0.02, SettingRow::Duty).unwrap());
         axis.settings.set_limit(2000 << 12);
         let watched = &mut axis.supervision;
         (
@@ -300,7 +305,10 @@ fn unit_a_row_without_a_list_of_its_own_names_the_flags_that_stayed() {
     let block = posicast_testbench::blocks::SegmentsBlock::new("few", "alone");
     let mut twin = TwoValued(block.model(1));
     let report = blocks::judge(&block, &mut twin, 100..=100, 1, &mut |_| {}).unwrap();
-    assert_eq!(report.result, posicast_testbench::lockstep::report::Verdict::Mismatch);
+    assert_eq!(
+        report.result,
+        posicast_testbench::lockstep::report::LockstepVerdict::Mismatch
+    );
     let missing = report.not_exercised_names();
     assert!(
         missing.iter().any(|what| what == "segments alone: `overflow` = 1"),
@@ -359,7 +367,7 @@ fn lockstep_the_registers_keep_their_promises() {
     let mut model = component.model(1);
     for (name, test) in TESTS {
         for device in [&mut model as &mut dyn ClockedBlock, &mut verilated] {
-            let mut host = Host::new(component.map(), device, Hardware::Running).unwrap();
+            let mut host = Host::new(component.map(), device, RegisterHardware::Running).unwrap();
             assert_eq!(test(&mut host), Ok(()), "{name}");
         }
     }
@@ -424,7 +432,7 @@ fn unit_the_first_move_of_the_datasheet_is_what_it_says() {
                 let jerk = u64::from(words[0]) | u64::from(words[1]) << 32;
                 let entry = Entry {
                     ticks: words[3] & 0xff_ffff,
-                    motion: segments::Motion::Jerk(jerk as i64),
+                    motion: segments::EntryMotion::Jerk(jerk as i64),
                     notify: words[3] & NOTIFY != 0,
                 };
                 assert_eq!(entry.words().as_slice(), words);

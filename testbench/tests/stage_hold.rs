@@ -7,7 +7,7 @@ use posicast_model::machine_file;
 use posicast_model::motion::{TickLimits, plan_move};
 use posicast_model::plant::axis::{AxisPlant, PlantOptions};
 use posicast_model::rtl::component::Component;
-use posicast_model::rtl::segments::{Entry, Motion};
+use posicast_model::rtl::segments::{Entry, EntryMotion};
 use posicast_testbench::blocks::{ComponentBlock, Sources};
 use posicast_testbench::stage_bench::{StageBench, state};
 
@@ -78,7 +78,7 @@ fn lockstep_a_feed_hold_keeps_path_and_queue() {
     let down = plan_move(0, (-CORNER << 8) as i32, &bed.limits).unwrap();
     let dwell = Entry {
         ticks: ticks(&out),
-        motion: Motion::Jerk(0),
+        motion: EntryMotion::Jerk(0),
         notify: false,
     };
     // X rests where Y dwells, and the other way round nowhere: an axis that held by itself would lose the path.

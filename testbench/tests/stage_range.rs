@@ -10,7 +10,7 @@ use posicast_model::machine_file;
 use posicast_model::rtl::axis::Cause;
 use posicast_model::rtl::component::Component;
 use posicast_model::rtl::composition::Composed;
-use posicast_model::rtl::segments::{Entry, Motion, REACH_COUNTS, STAND_COUNTS};
+use posicast_model::rtl::segments::{Entry, EntryMotion, REACH_COUNTS, STAND_COUNTS};
 use posicast_model::rtl::{ClockedBlock, Direction};
 use posicast_testbench::stage_bench::state;
 
@@ -153,7 +153,7 @@ impl Bed {
     /// Two counts per tick outwards, for ever; what stopped it. The axis stands afterwards.
     fn run_away(&mut self) -> u32 {
         for (ticks, jerk) in [(1, 2i64 << 32), (1, -2 << 32), (1 << 20, 0)] {
-            let motion = Motion::Jerk(jerk);
+            let motion = EntryMotion::Jerk(jerk);
             let entry = Entry {
                 ticks,
                 motion,

@@ -3,8 +3,8 @@
 use posicast_model::design::design_machine;
 use posicast_model::hardware::{self, MachineStage};
 use posicast_model::machine_file::{self, Machine};
-use posicast_model::rtl::shaper::{Motion, ShaperConfig};
-use posicast_model::rtl::sliding_mode::Row;
+use posicast_model::rtl::shaper::{ShaperConfig, ShaperMotion};
+use posicast_model::rtl::sliding_mode::SettingRow;
 use posicast_model::taps::{Tap, TapTable};
 use posicast_testbench::stage_run::{Expected, Moved, Shaping, StageRun};
 
@@ -104,7 +104,7 @@ fn unit_a_broken_shaper_rings_more_than_is_allowed() {
         for (case, taps) in tables {
             let mut config = right.clone();
             let table = TapTable::new(fraction, taps).unwrap();
-            let motion = Motion {
+            let motion = ShaperMotion {
                 channels: 3,
                 modulo: false,
             };
@@ -130,7 +130,7 @@ fn wild_wrist(text: &str, factor: f64) -> (Moved, Vec<Expected>) {
     let stage = stage(&machine);
     let mut config = stage.config.clone();
     let mut gains = stage.derived[0].gains;
-    for row in [Row::Derivative, Row::Proportional, Row::Integral] {
+    for row in [SettingRow::Derivative, SettingRow::Proportional, SettingRow::Integral] {
         gains.set(row, factor * gains.get(row));
     }
     config.axes[0].settings = gains.quantise().unwrap();

@@ -4,7 +4,7 @@
 use posicast_model::control::{LostSign, lost_sign};
 use posicast_model::design::design_machine;
 use posicast_model::hardware;
-use posicast_model::machine_file::{self, Axis, Machine};
+use posicast_model::machine_file::{self, AxisSection, Machine};
 use posicast_model::motion::{TickLimits, plan_move};
 use posicast_model::plant::axis::{AxisPlant, PlantOptions};
 use posicast_model::rtl::axis::Cause;
@@ -30,7 +30,7 @@ const PATIENCE_CLOCKS: u64 = 1_000_000;
 const REST_CLOCKS: u64 = 300_000;
 
 /// The machine with something else about its axes.
-fn machine(text: &str, change: impl Fn(&mut Axis)) -> Machine {
+fn machine(text: &str, change: impl Fn(&mut AxisSection)) -> Machine {
     let mut machine = machine_file::parse("stage.toml", text).unwrap();
     machine.axes.iter_mut().for_each(change);
     machine

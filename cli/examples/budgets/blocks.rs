@@ -11,8 +11,8 @@ use posicast_model::machine_file;
 use posicast_model::rtl::cascade::CascadeConfig;
 use posicast_model::rtl::component::Component;
 use posicast_model::rtl::divider::DividerConfig;
-use posicast_model::rtl::pwm::{ActiveLow, Mode, PwmConfig};
-use posicast_model::rtl::shaper::{Motion, ShaperConfig};
+use posicast_model::rtl::pwm::{ActiveLow, BridgeMode, PwmConfig};
+use posicast_model::rtl::shaper::{ShaperConfig, ShaperMotion};
 use posicast_model::rtl::sliding_mode::{Law, Settings};
 use posicast_model::rtl::trace::TraceConfig;
 use posicast_model::taps::{Tap, TapTable};
@@ -158,7 +158,11 @@ pub(crate) fn rows() -> Result<Vec<Row>, Box<dyn Error>> {
         )?,
         bank(
             "of pwm",
-            &Component::pwm(PwmConfig::new(ActiveLow::default(), 25, 50)?, Mode::HalfBridge, 2500)?,
+            &Component::pwm(
+                PwmConfig::new(ActiveLow::default(), 25, 50)?,
+                BridgeMode::HalfBridge,
+                2500,
+            )?,
         )?,
         bank(
             "of sliding_mode",
@@ -210,7 +214,7 @@ fn cascade(word_bits: u32, stages: usize, delay_samples: u32, size: &'static str
 }
 
 /// Position, velocity and acceleration of an axis.
-const MOTION: Motion = Motion {
+const MOTION: ShaperMotion = ShaperMotion {
     channels: 3,
     modulo: false,
 };

@@ -3,7 +3,7 @@
 use crate::plot::{Curve, Panel};
 use posicast_model::analysis::{sensitivity_curve, tap_impulses};
 use posicast_model::design::{AxisTables, MachineDesign};
-use posicast_model::machine_file::{Axis, Machine};
+use posicast_model::machine_file::{AxisSection, Machine};
 
 /// Frequency ratios that the sensitivity curves show.
 const CURVE_RATIOS: (f64, f64) = (0.4, 1.6);
@@ -21,7 +21,7 @@ pub(crate) fn sensitivity_panels(machine: &Machine, design: &MachineDesign) -> V
         .collect()
 }
 
-fn sensitivity_panel(axis: &Axis, tables: &AxisTables, sample_hz: f64) -> Panel {
+fn sensitivity_panel(axis: &AxisSection, tables: &AxisTables, sample_hz: f64) -> Panel {
     let integer = tap_impulses(&tables.table, sample_hz);
     let mut curves = Vec::new();
     for mode in &axis.modes {

@@ -9,8 +9,8 @@ use posicast_model::machine_file::Machine;
 use posicast_model::simulation::AxisSimulation;
 use posicast_synth::yosys::Estimate;
 use posicast_testbench::blocks::{Block, Sources};
-use posicast_testbench::diff::{Comparison, Verdict};
-use posicast_testbench::lockstep::report::{Report, Verdict as LockstepVerdict};
+use posicast_testbench::diff::{Comparison, DiffVerdict};
+use posicast_testbench::lockstep::report::{LockstepReport, LockstepVerdict};
 use posicast_testbench::wording::counted;
 use serde::Serialize;
 
@@ -49,7 +49,7 @@ pub(crate) fn all(
     simulator: Simulator,
     machine: &Machine,
     design: &MachineDesign,
-    lockstep: &Report,
+    lockstep: &LockstepReport,
     waves: &Waves,
 ) -> Vec<Check> {
     vec![
@@ -61,7 +61,7 @@ pub(crate) fn all(
     ]
 }
 
-fn rtl_equals_model(simulator: Simulator, lockstep: &Report) -> Check {
+fn rtl_equals_model(simulator: Simulator, lockstep: &LockstepReport) -> Check {
     let first = lockstep
         .blocks
         .iter()
@@ -95,7 +95,7 @@ fn rtl_equals_model(simulator: Simulator, lockstep: &Report) -> Check {
 fn move_equals_model(waves: &Waves) -> Check {
     Check {
         name: "wave/rtl.vcd equals wave/model.vcd over the move",
-        passed: waves.model.result == Verdict::Equal && !is_empty(&waves.model),
+        passed: waves.model.result == DiffVerdict::Equal && !is_empty(&waves.model),
         detail: compared(&waves.model, waves),
     }
 }
@@ -103,7 +103,7 @@ fn move_equals_model(waves: &Waves) -> Check {
 fn within_float_bound(waves: &Waves) -> Check {
     Check {
         name: "RTL stays within the rounding bound of the float design",
-        passed: waves.float.result == Verdict::Equal && !is_empty(&waves.float),
+        passed: waves.float.result == DiffVerdict::Equal && !is_empty(&waves.float),
         detail: compared(&waves.float, waves),
     }
 }

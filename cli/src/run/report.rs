@@ -5,7 +5,7 @@ use super::checks::Check;
 use super::closed_loop::{ClosedLoop, StageDocument};
 use super::waves::Waves;
 use crate::bench::Simulator;
-use crate::design::{self, Report as DesignReport};
+use crate::design::{self, DesignReport};
 use crate::failure::Failure;
 use crate::output::{Table, percent};
 use crate::plot::{Curve, Panel};
@@ -14,20 +14,20 @@ use crate::synth;
 use posicast_model::analysis::tap_impulses;
 use posicast_model::design::{AxisTables, MachineDesign};
 use posicast_model::impulse::ImpulseSequence;
-use posicast_model::machine_file::{Axis, Machine};
+use posicast_model::machine_file::{AxisSection, Machine};
 use posicast_model::plant::Plant;
 use posicast_model::plant::response::{PlantFigures, StepFigures, plant_figures, step_response};
 use posicast_model::simulation::AxisSimulation;
 use posicast_synth::yosys::Estimate;
 use posicast_testbench::diff::Comparison;
-use posicast_testbench::lockstep::report::Report as LockstepReport;
+use posicast_testbench::lockstep::report::LockstepReport;
 use posicast_testbench::verilator;
 use serde::Serialize;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 /// Everything that a run found out.
-pub(crate) struct Report<'a> {
+pub(crate) struct RunReport<'a> {
     pub(crate) machine: &'a Machine,
     pub(crate) design: &'a DesignReport<'a>,
     pub(crate) axes: &'a [AxisSimulation],
@@ -48,7 +48,7 @@ pub(crate) struct OnPlant {
 }
 
 impl OnPlant {
-    fn new(axis: &Axis, tables: &AxisTables, sample_hz: f64) -> Result<Self, Failure> {
+    fn new(axis: &AxisSection, tables: &AxisTables, sample_hz: f64) -> Result<Self, Failure> {
         let plant = Plant::of_axis(axis).map_err(Failure::because)?;
         Ok(Self {
             shaped: plant_figures(&plant, &tap_impulses(&tables.table, sample_hz)),
@@ -73,8 +73,8 @@ fn percent_or_dash(fraction: Option<f64>) -> String {
     fraction.map_or_else(|| "-".to_owned(), percent)
 }
 
-impl Report<'_> {
-    fn rows(&self) -> impl Iterator<Item = (usize, &Axis, &AxisTables)> {
+impl RunReport<'_> {
+    fn rows(&self) -> impl Iterator<Item = (usize, &AxisSection, &AxisTables)> {
         let axes = self.machine.axes.iter().zip(&self.design.design.axes).enumerate();
         axes.map(|(index, (axis, tables))| (index, axis, tables))
     }
@@ -297,7 +297,7 @@ pub(crate) fn response_panels(
     Ok(panels)
 }
 
-fn step_panel(axis: &Axis, tables: &AxisTables, sample_hz: f64) -> Result<Panel, Failure> {
+fn step_panel(axis: &AxisSection, tables: &AxisTables, sample_hz: f64) -> Result<Panel, Failure> {
     let plant = Plant::of_axis(axis).map_err(Failure::because)?;
     let taps = tap_impulses(&tables.table, sample_hz);
     let slowest_s = axis.modes.iter().map(|m| m.mode.damped_period_s()).fold(0.0, f64::max);
@@ -323,7 +323,7 @@ fn step_panel(axis: &Axis, tables: &AxisTables, sample_hz: f64) -> Result<Panel,
 }
 
 /// The machine round its target, from shortly before the move arrives to the end.
-fn move_panel(machine: &Machine, axis: &Axis, run: &AxisSimulation) -> Panel {
+fn move_panel(machine: &Machine, axis: &AxisSection, run: &AxisSimulation) -> Panel {
     let target = run.shaped.last().map_or(0.0, |word| *word as f64);
     let micro = micro_units_per_lsb(machine, axis);
     let moving = run.shaped.iter().rposition(|word| *word as f64 != target).unwrap_or(0);

@@ -9,11 +9,11 @@ use posicast_model::machine_file::Machine;
 use posicast_model::simulation::{AxisSimulation, largest_difference};
 use posicast_synth::package::Package;
 use posicast_testbench::blocks::{Block, MachineShapers, Sources};
-use posicast_testbench::diff::{self, Comparison, Options};
+use posicast_testbench::diff::{self, Comparison, DiffOptions};
 use posicast_testbench::lockstep::TwoValued;
-use posicast_testbench::lockstep::report::Report as LockstepReport;
+use posicast_testbench::lockstep::report::LockstepReport;
 use posicast_testbench::recording::Move;
-use posicast_testbench::wave::{Difference, Part, merge};
+use posicast_testbench::wave::{DifferenceSignal, MergePart, merge};
 
 /// The waveforms of the move and what their comparison says.
 pub(super) struct Waves {
@@ -88,24 +88,24 @@ impl Job<'_> {
             .record_float(&float, &trace, &float_vcd, scope)
             .map_err(bench::failure)?;
 
-        let exact = Options {
+        let exact = DiffOptions {
             require_all: true,
-            ..Options::default()
+            ..DiffOptions::default()
         };
-        let mut within = Options::default();
+        let mut within = DiffOptions::default();
         let mut differences = Vec::new();
         let names: Vec<String> = self.top.shapers().iter().map(AxisShaper::output).collect();
         for (name, axis) in names.iter().zip(axes) {
             within
                 .add_tolerance(&format!("{name}={}", axis.bound_lsb))
                 .map_err(bench::failure)?;
-            differences.push(Difference {
+            differences.push(DifferenceSignal {
                 name,
                 minuend: (1, name),
                 subtrahend: (2, name),
             });
         }
-        let compare = |a, b, options: &Options| diff::compare(a, b, options, &mut |_| {}).map_err(bench::failure);
+        let compare = |a, b, options: &DiffOptions| diff::compare(a, b, options, &mut |_| {}).map_err(bench::failure);
         let waves = Waves {
             samples: trace.shaped.iter().map(Vec::len).collect(),
             clocks: trace.clocks,
@@ -119,7 +119,7 @@ impl Job<'_> {
                 .collect(),
         };
         let parts = [("model", &model_vcd), ("rtl", &rtl_vcd), ("float", &float_vcd)];
-        let parts = parts.map(|(scope, path)| Part { scope, path });
+        let parts = parts.map(|(scope, path)| MergePart { scope, path });
         merge(&merged, &parts, &differences).map_err(bench::failure)?;
         spinner.finish_and_clear();
         Ok(waves)

@@ -4,7 +4,7 @@ use super::folder::Folder;
 use crate::bench::Simulator;
 use crate::output::Table;
 use crate::replay::Replayed;
-use posicast_testbench::lockstep::report::{Report, Verdict};
+use posicast_testbench::lockstep::report::{LockstepReport, LockstepVerdict};
 use serde::Serialize;
 
 /// Names that the text shows of a list; JSON has all.
@@ -14,7 +14,7 @@ const SHOWN: usize = 8;
 #[derive(Serialize)]
 pub(super) struct Document<'a> {
     #[serde(flatten)]
-    pub(super) report: &'a Report,
+    pub(super) report: &'a LockstepReport,
     /// What no clock of the run exercised, though a verdict would speak of it: then there is none.
     pub(super) not_exercised: Vec<String>,
     /// Clocks that exercise all of it.
@@ -44,7 +44,7 @@ enum Files {
 impl Document<'_> {
     /// Why the command fails; nothing where all was exercised and equal.
     pub(super) fn failed(&self) -> Option<String> {
-        if self.report.result == Verdict::Match {
+        if self.report.result == LockstepVerdict::Match {
             return None;
         }
         Some(match (self.report.mismatches(), self.of_files()) {
@@ -108,7 +108,7 @@ impl Document<'_> {
     fn verdict(&self) -> String {
         let report = self.report;
         let verdict = match (report.result, report.mismatches(), self.of_files()) {
-            (Verdict::Match, ..) => "match: every output of every clock is equal to the model's".to_owned(),
+            (LockstepVerdict::Match, ..) => "match: every output of every clock is equal to the model's".to_owned(),
             (_, 1.., _) => "MISMATCH".to_owned(),
             (_, 0, Files::Contradict) => {
                 "MISMATCH: the files are not those of the machine file, though what was simulated is equal".to_owned()
@@ -137,7 +137,7 @@ impl Document<'_> {
             .blocks
             .iter()
             .any(|block| block.name == "shaper" && block.samples.is_some());
-        if report.result == Verdict::Match && self.replayed.is_none() {
+        if report.result == LockstepVerdict::Match && self.replayed.is_none() {
             compared.push(match shapers {
                 true => "every tap and bank of the shapers and every flag of all rows exercised".to_owned(),
                 false => "every flag of all rows exercised".to_owned(),

@@ -6,7 +6,7 @@ use crate::cli::support::{example, json, posicast};
 use posicast_model::rtl::divider::DividerConfig;
 use posicast_model::rtl::{Direction, Port};
 use posicast_testbench::blocks::{Block, DividerBlock};
-use posicast_testbench::lockstep::{self, Instance, Options, TwoValued};
+use posicast_testbench::lockstep::{self, Instance, LockstepOptions, TwoValued};
 use posicast_testbench::wave::{Recorder, Signal};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -31,7 +31,7 @@ fn record(path: &Path, keep: impl Fn(&Port) -> bool, mut change: impl FnMut(u64,
         &mut TwoValued(block.model(SEED)),
         block.stimuli(CLOCKS, SEED).as_mut(),
         &[Instance::whole("divider", "", &ports)],
-        &Options::cycles(CLOCKS),
+        &LockstepOptions::cycles(CLOCKS),
         &mut |clock| {
             let mut row = [clock.inputs, clock.actual].concat();
             change(clock.time, &mut row);

@@ -4,7 +4,7 @@
 
 use super::timer::Timer;
 use crate::prelude::*;
-use posicast_model::rtl::axis::State;
+use posicast_model::rtl::axis::SupervisorState;
 use posicast_model::rtl::segments;
 
 kernel! {
@@ -66,14 +66,14 @@ kernel! {
         begins_apply: Bit, stays_stop: Bit, next_on: Bit, next_closing: Bit, next_state: Bits<3>,
     }
     constants {
-        off_state: Bits<3> = from_u64(State::Off as u64),
-        ready_state: Bits<3> = from_u64(State::Ready as u64),
-        hold_state: Bits<3> = from_u64(State::Hold as u64),
-        run_state: Bits<3> = from_u64(State::Run as u64),
-        stop_state: Bits<3> = from_u64(State::QuickStop as u64),
-        fault_state: Bits<3> = from_u64(State::Fault as u64),
-        segments_hold_state: Bits<2> = from_u64(segments::State::Hold as u64),
-        segments_stopped_state: Bits<2> = from_u64(segments::State::Stopped as u64),
+        off_state: Bits<3> = from_u64(SupervisorState::Off as u64),
+        ready_state: Bits<3> = from_u64(SupervisorState::Ready as u64),
+        hold_state: Bits<3> = from_u64(SupervisorState::Hold as u64),
+        run_state: Bits<3> = from_u64(SupervisorState::Run as u64),
+        stop_state: Bits<3> = from_u64(SupervisorState::QuickStop as u64),
+        fault_state: Bits<3> = from_u64(SupervisorState::Fault as u64),
+        segments_hold_state: Bits<2> = from_u64(segments::SegmentsState::Hold as u64),
+        segments_stopped_state: Bits<2> = from_u64(segments::SegmentsState::Stopped as u64),
     }
 }
 

@@ -1,7 +1,7 @@
 //! One multiplexer for both duties, one comparison for both signs of the manual one, a counter per gate that is tested.
 
 use crate::prelude::*;
-use posicast_model::rtl::axis::State;
+use posicast_model::rtl::axis::SupervisorState;
 
 kernel! {
     pub(super) struct DriveCommand;
@@ -25,7 +25,7 @@ kernel! {
         high_more: Bits<1>, low_more: Bits<1>, high_sum: Bits<16>, low_sum: Bits<16>,
     }
     constants {
-        ready_state: Bits<3> = from_u64(State::Ready as u64),
+        ready_state: Bits<3> = from_u64(SupervisorState::Ready as u64),
         no_ticks: Bits<16> = from_u64(0),
         one_tick: Bits<16> = from_u64(1),
         no_clock: Bits<16> = from_u64(0),

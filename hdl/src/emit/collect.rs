@@ -1,6 +1,6 @@
 //! From RustHDL's object tree to ours: every block with its signals, sub-blocks and kernel, independent of RustHDL's walk.
 
-use super::error::{Cause, EmitError};
+use super::error::{EmitCause, EmitError};
 use super::types::Type;
 use rust_hdl_core::prelude::{Atom, AtomKind, Block, Probe, TypeDescriptor, TypeKind, Verilog, VerilogLiteral};
 use std::collections::BTreeMap;
@@ -63,7 +63,7 @@ pub(super) fn collect<B: Block + ?Sized>(block: &B, name: &str) -> Result<Node, 
         EmitError::new(
             name,
             "",
-            Cause::Unsupported {
+            EmitCause::Unsupported {
                 found,
                 remedy: "emit the blocks one by one",
             },
@@ -149,10 +149,10 @@ impl Probe for Collector {
     }
 }
 
-fn signal(raw: String, atom: &dyn Atom) -> Result<Signal, Cause> {
+fn signal(raw: String, atom: &dyn Atom) -> Result<Signal, EmitCause> {
     let width = atom.bits();
     if !(1..=64).contains(&width) {
-        return Err(Cause::Width(width));
+        return Err(EmitCause::Width(width));
     }
     let descriptor: TypeDescriptor = atom.descriptor();
     let signed = match descriptor.kind {
@@ -160,7 +160,7 @@ fn signal(raw: String, atom: &dyn Atom) -> Result<Signal, Cause> {
         TypeKind::Bits(_) | TypeKind::Enum(_) => false,
         TypeKind::Composite(_) => {
             let found = format!("a signal of the struct type {}", descriptor.name);
-            return Err(Cause::Unsupported {
+            return Err(EmitCause::Unsupported {
                 found,
                 remedy: "use one signal per field",
             });
@@ -177,7 +177,7 @@ fn signal(raw: String, atom: &dyn Atom) -> Result<Signal, Cause> {
         AtomKind::Constant => Kind::Constant(constant(&atom.verilog(), ty)?),
         other => {
             let found = format!("a signal of the kind {other:?}");
-            return Err(Cause::Unsupported {
+            return Err(EmitCause::Unsupported {
                 found,
                 remedy: "use In, Out, Local or Constant",
             });
@@ -192,7 +192,7 @@ fn signal(raw: String, atom: &dyn Atom) -> Result<Signal, Cause> {
 }
 
 /// RustHDL prints a constant as its bit pattern, also if it is signed.
-fn constant(literal: &VerilogLiteral, ty: Type) -> Result<u64, Cause> {
-    let (_, value) = literal_value(literal).ok_or(Cause::WidthUnknown("a constant"))?;
-    Cause::pattern(Type::bits(ty.width), value)
+fn constant(literal: &VerilogLiteral, ty: Type) -> Result<u64, EmitCause> {
+    let (_, value) = literal_value(literal).ok_or(EmitCause::WidthUnknown("a constant"))?;
+    EmitCause::pattern(Type::bits(ty.width), value)
 }

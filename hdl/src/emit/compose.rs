@@ -1,6 +1,6 @@
 //! A structural module: instances side by side, common inputs shared, every other port lifted under its instance's name.
 
-use super::error::{Cause, EmitError};
+use super::error::{EmitCause, EmitError};
 use super::names::{self, Taken};
 use super::print::{self, Lines};
 use super::types::{BIT, Type};
@@ -9,7 +9,7 @@ use posicast_model::rtl::{Direction, Port};
 
 /// One instance in a composed module.
 #[derive(Debug, Clone, Copy)]
-pub struct Instance<'a> {
+pub struct ModuleInstance<'a> {
     /// Name of the instance, for example of the axis; its ports become `<name>_<port>`.
     pub name: &'a str,
     /// What is instantiated.
@@ -28,7 +28,7 @@ pub fn compose(
     top: &str,
     header: &Header,
     shared_inputs: &[&str],
-    instances: &[Instance<'_>],
+    instances: &[ModuleInstance<'_>],
 ) -> Result<Module, EmitError> {
     let at = |signal: &str| {
         let signal = signal.to_owned();
@@ -53,7 +53,7 @@ pub fn compose(
             .take(&instance_name(instance), "an instance")
             .map_err(at(instance.name))?;
         if instance.module.name == top {
-            let cause = Cause::NameCollision {
+            let cause = EmitCause::NameCollision {
                 name: top.to_owned(),
                 other: format!("instance {}", instance.name),
             };
@@ -86,11 +86,11 @@ pub fn compose(
     })
 }
 
-fn instance_name(instance: &Instance<'_>) -> String {
+fn instance_name(instance: &ModuleInstance<'_>) -> String {
     format!("u_{}", instance.name)
 }
 
-fn lifted(instance: &Instance<'_>, port: &Port) -> String {
+fn lifted(instance: &ModuleInstance<'_>, port: &Port) -> String {
     format!("{}_{}", instance.name, port.name)
 }
 
@@ -102,7 +102,7 @@ fn port_type(port: &Port) -> Type {
 }
 
 /// The input `name`, equal in all instances that have it.
-fn shared_input(name: &str, instances: &[Instance<'_>]) -> Result<Port, Cause> {
+fn shared_input(name: &str, instances: &[ModuleInstance<'_>]) -> Result<Port, EmitCause> {
     names::check_name(name)?;
     let mut shared: Option<&Port> = None;
     for instance in instances {
@@ -110,11 +110,11 @@ fn shared_input(name: &str, instances: &[Instance<'_>]) -> Result<Port, Cause> {
             continue;
         };
         if port.direction == Direction::Output {
-            return Err(Cause::SharedOutput(name.to_owned()));
+            return Err(EmitCause::SharedOutput(name.to_owned()));
         }
         match shared {
             Some(first) if port_type(first) != port_type(port) => {
-                return Err(Cause::SharedType {
+                return Err(EmitCause::SharedType {
                     name: name.to_owned(),
                     first: port_type(first),
                     instance: instance.name.to_owned(),
@@ -124,10 +124,10 @@ fn shared_input(name: &str, instances: &[Instance<'_>]) -> Result<Port, Cause> {
             _ => shared = Some(port),
         }
     }
-    shared.cloned().ok_or_else(|| Cause::NoSuchInput(name.to_owned()))
+    shared.cloned().ok_or_else(|| EmitCause::NoSuchInput(name.to_owned()))
 }
 
-fn body(ports: &[Port], clocked: bool, shared_inputs: &[&str], instances: &[Instance<'_>]) -> String {
+fn body(ports: &[Port], clocked: bool, shared_inputs: &[&str], instances: &[ModuleInstance<'_>]) -> String {
     let clock = clocked.then(|| ("input  wire", BIT, "clk".to_owned()));
     let listed = ports.iter().map(|port| {
         let keyword = if port.direction == Direction::Input {

@@ -1,6 +1,6 @@
 //! The Verilog of a composition: its parts' modules, joined by named nets.
 
-use super::error::{Cause, EmitError};
+use super::error::{EmitCause, EmitError};
 use super::names::{self, Taken};
 use super::print::{self, Lines};
 use super::types::{BIT, Type};
@@ -28,7 +28,7 @@ pub fn connect(
     for (place, part) in composition.parts().iter().enumerate() {
         let fits = modules.get(place).is_some_and(|module| module.ports == part.ports());
         if !fits {
-            return Err(at(part.name())(Cause::PartPorts(part.name().to_owned())));
+            return Err(at(part.name())(EmitCause::PartPorts(part.name().to_owned())));
         }
     }
     let clocked = modules.iter().any(|module| module.clocked);
@@ -45,7 +45,7 @@ pub fn connect(
     })
 }
 
-fn check_names(top: &str, composition: &Composition) -> Result<(), (String, Cause)> {
+fn check_names(top: &str, composition: &Composition) -> Result<(), (String, EmitCause)> {
     let mut taken = Taken::default();
     let mut take = |name: &str, owner: &str| {
         let checked = names::check_name(name).and_then(|()| taken.take(name, owner));

@@ -3,7 +3,7 @@
 //! What is assigned once and unconditionally needs no `always`. That reads better, and it has a value from the start: a
 //! block of constants alone has nothing that would ever trigger it, and would stay X in an event simulator.
 
-use super::error::{Cause, EmitError};
+use super::error::{EmitCause, EmitError};
 use super::ir::{Expression, Statement, each};
 use super::scope::{Net, NetId, Role, Scope};
 use super::types::mask;
@@ -96,7 +96,7 @@ impl Drivers {
         if triggers {
             Ok(())
         } else {
-            Err(EmitError::new(path, &signal, Cause::ConstantCondition))
+            Err(EmitError::new(path, &signal, EmitCause::ConstantCondition))
         }
     }
 }
@@ -118,7 +118,7 @@ fn is_direct(value: &Expression, net: &Net) -> bool {
 /// Bits of each net that nothing reads, as contiguous ranges `(low, width)`.
 ///
 /// # Errors
-/// [`Cause::NeverRead`] for a Local or a register of which no bit is read.
+/// [`EmitCause::NeverRead`] for a Local or a register of which no bit is read.
 pub(super) fn unread(
     bits_read: &BTreeMap<NetId, u64>,
     path: &str,
@@ -131,7 +131,7 @@ pub(super) fn unread(
         }
         let read = bits_read.get(&id).copied().unwrap_or(0) & net.ty.mask();
         if read == 0 && matches!(net.role, Role::Local | Role::Register) {
-            return Err(EmitError::new(path, &net.raw.replace('$', "."), Cause::NeverRead));
+            return Err(EmitError::new(path, &net.raw.replace('$', "."), EmitCause::NeverRead));
         }
         let is_unread = |bit: u32| bit < net.ty.width && read & mask(bit, 1) == 0;
         let mut bit = 0;

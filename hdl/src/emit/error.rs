@@ -1,11 +1,11 @@
 //! What the emitter refuses, where, and what to write instead.
 //!
-//! An [`EmitError`] says *where* (block and signal), its [`Cause`] says *what* was found and *what to do*. Every cause is a
+//! An [`EmitError`] says *where* (block and signal), its [`EmitCause`] says *what* was found and *what to do*. Every cause is a
 //! design error of a kernel or of a call, never of a machine file: correct kernels emit for every machine.
 
 use super::types::Type;
 
-/// Why no Verilog was written: `block`, `signal`, and the [`Cause`] with its remedy.
+/// Why no Verilog was written: `block`, `signal`, and the [`EmitCause`] with its remedy.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("block `{block}`, signal `{signal}`: {cause}")]
 pub struct EmitError {
@@ -14,11 +14,11 @@ pub struct EmitError {
     /// The signal that is declared, assigned or read where the error was found; `-` where no signal is concerned.
     pub signal: String,
     /// What was found and what to do.
-    pub cause: Box<Cause>,
+    pub cause: Box<EmitCause>,
 }
 
 impl EmitError {
-    pub(crate) fn new(block: &str, signal: &str, cause: Cause) -> Self {
+    pub(crate) fn new(block: &str, signal: &str, cause: EmitCause) -> Self {
         let signal = if signal.is_empty() { "-" } else { signal };
         Self {
             block: block.to_owned(),
@@ -28,7 +28,7 @@ impl EmitError {
     }
 }
 
-impl Cause {
+impl EmitCause {
     /// `value` as a bit pattern of the type, or that it does not fit.
     pub(super) fn pattern(place: Type, value: i128) -> Result<u64, Self> {
         place.pattern(value).ok_or(Self::Literal { value, place })
@@ -38,7 +38,7 @@ impl Cause {
 /// What was found, and the remedy.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
-pub enum Cause {
+pub enum EmitCause {
     // Names.
     /// A name that is not plain lower-case snake case.
     #[error("the name `{0}` is not of the form [a-z][a-z0-9_]*; rename it")]

@@ -8,7 +8,7 @@
 //! or the target; where there is none, they are refused.
 
 use super::collect::literal_value;
-use super::error::Cause;
+use super::error::EmitCause;
 use super::ir::Expression;
 use super::paths::{self, Loops};
 use super::scope::{Role, Scope};
@@ -17,7 +17,7 @@ use super::values::{Value, Values};
 use rust_hdl_core::ast::{VerilogExpression as Tree, VerilogLiteral, VerilogOp, VerilogOpUnary};
 
 /// Writes `tree` as an expression of type `ty`.
-pub(super) fn expression(tree: &Tree, ty: Type, scope: &Scope, loops: &Loops) -> Result<Expression, Cause> {
+pub(super) fn expression(tree: &Tree, ty: Type, scope: &Scope, loops: &Loops) -> Result<Expression, EmitCause> {
     let mut writer = Writer::new(scope, loops);
     let value = writer.value(tree, Some(ty))?;
     writer.values.expect(&value, ty)?;
@@ -25,7 +25,7 @@ pub(super) fn expression(tree: &Tree, ty: Type, scope: &Scope, loops: &Loops) ->
 }
 
 /// Writes `tree`, whose type nothing else determines, and tells its type.
-pub(super) fn free_expression(tree: &Tree, scope: &Scope, loops: &Loops) -> Result<(Expression, Type), Cause> {
+pub(super) fn free_expression(tree: &Tree, scope: &Scope, loops: &Loops) -> Result<(Expression, Type), EmitCause> {
     let mut writer = Writer::new(scope, loops);
     let value = writer.value(tree, None)?;
     Ok((writer.values.finish(&value), value.ty()))
@@ -43,10 +43,10 @@ impl<'a> Writer<'a> {
     }
 
     /// `want` is the type that the surroundings need, where they say.
-    fn value(&mut self, tree: &Tree, want: Option<Type>) -> Result<Value, Cause> {
+    fn value(&mut self, tree: &Tree, want: Option<Type>) -> Result<Value, EmitCause> {
         if let Some(value) = self.number(tree) {
-            let ty = want.ok_or(Cause::WidthUnknown("a literal"))?;
-            let pattern = Cause::pattern(ty, value)?;
+            let ty = want.ok_or(EmitCause::WidthUnknown("a literal"))?;
+            let pattern = EmitCause::pattern(ty, value)?;
             return Ok(Value::Literal { pattern, ty });
         }
         match tree {
@@ -68,14 +68,14 @@ impl<'a> Writer<'a> {
         }
     }
 
-    fn signal(&mut self, name: &str) -> Result<Value, Cause> {
+    fn signal(&mut self, name: &str) -> Result<Value, EmitCause> {
         let raw = paths::resolve(name, self.loops)?;
         let found = self.values.scope.find(&raw);
-        let id = found.ok_or_else(|| Cause::UnknownSignal(name.to_owned()))?;
+        let id = found.ok_or_else(|| EmitCause::UnknownSignal(name.to_owned()))?;
         let net = self.values.scope.net(id);
         match net.role {
-            Role::RegisterClock | Role::RegisterReset => Err(Cause::ReadsSubmoduleInput(net.raw.replace('$', "."))),
-            role if role.is_input_below() => Err(Cause::ReadsSubmoduleInput(net.raw.replace('$', "."))),
+            Role::RegisterClock | Role::RegisterReset => Err(EmitCause::ReadsSubmoduleInput(net.raw.replace('$', "."))),
+            role if role.is_input_below() => Err(EmitCause::ReadsSubmoduleInput(net.raw.replace('$', "."))),
             _ => Ok(Value::Part {
                 net: id,
                 low: 0,
@@ -146,9 +146,9 @@ impl<'a> Writer<'a> {
     // Casts.
 
     /// `bit_cast::<M, N>(x)` and `bits::<M>(5)`.
-    fn cast(&mut self, inner: &Tree, bits: usize) -> Result<Value, Cause> {
+    fn cast(&mut self, inner: &Tree, bits: usize) -> Result<Value, EmitCause> {
         let width = u32::try_from(bits).ok().filter(|width| (1..=64).contains(width));
-        let ty = Type::bits(width.ok_or(Cause::Width(bits))?);
+        let ty = Type::bits(width.ok_or(EmitCause::Width(bits))?);
         if self.takes_width(inner) {
             return self.value(inner, Some(ty));
         }
@@ -158,18 +158,18 @@ impl<'a> Writer<'a> {
     }
 
     /// `signed_cast(bits)`, same width; or `signed_bit_cast::<M, N>(signed)`, whose M the tree does not tell.
-    fn signed(&mut self, inner: &Tree, want: Option<Type>) -> Result<Value, Cause> {
+    fn signed(&mut self, inner: &Tree, want: Option<Type>) -> Result<Value, EmitCause> {
         let value = self.value(inner, None)?;
         let from = value.ty();
         if !from.signed {
             return Ok(self.values.reinterpret(value, Type { signed: true, ..from }));
         }
-        let width = want.ok_or(Cause::WidthUnknown("`signed_bit_cast`"))?.width;
+        let width = want.ok_or(EmitCause::WidthUnknown("`signed_bit_cast`"))?.width;
         self.values.resize(value, Type { width, signed: true })
     }
 
     /// `unsigned_cast(signed)`, same width. What it casts is computed at its own width, so that a product is refused.
-    fn unsigned(&mut self, inner: &Tree, want: Option<Type>) -> Result<Value, Cause> {
+    fn unsigned(&mut self, inner: &Tree, want: Option<Type>) -> Result<Value, EmitCause> {
         let want = want.filter(|_| self.takes_width(inner));
         let value = self.value(inner, want.map(|ty| Type { signed: true, ..ty }))?;
         let ty = Type::bits(value.ty().width);
@@ -178,7 +178,7 @@ impl<'a> Writer<'a> {
 
     // Bits and slices.
 
-    fn bit(&mut self, inner: &Tree, index: &Tree) -> Result<Value, Cause> {
+    fn bit(&mut self, inner: &Tree, index: &Tree) -> Result<Value, EmitCause> {
         let value = self.value(inner, None)?;
         if let Some(index) = self.constant_index(index) {
             let low = self.values.check_range(&value, index, 1)?;
@@ -187,18 +187,18 @@ impl<'a> Writer<'a> {
         let (index, index_bits) = self.index(index)?;
         let width = value.ty().width;
         if 1u64.checked_shl(index_bits) != Some(width.into()) {
-            return Err(Cause::IndexRange { index_bits, width });
+            return Err(EmitCause::IndexRange { index_bits, width });
         }
         self.values.bit(&value, &index)
     }
 
-    fn slice(&mut self, inner: &Tree, width: usize, offset: &Tree) -> Result<Value, Cause> {
+    fn slice(&mut self, inner: &Tree, width: usize, offset: &Tree) -> Result<Value, EmitCause> {
         let value = self.value(inner, None)?;
         let Some(low) = self.constant_index(offset) else {
             self.index(offset)?;
             let found = "a slice at an offset that is a signal".to_owned();
             let remedy = "shift by the signal into a Local, then slice that at 0";
-            return Err(Cause::Unsupported { found, remedy });
+            return Err(EmitCause::Unsupported { found, remedy });
         };
         let low = self.values.check_range(&value, low, width)?;
         let signed = value.ty().signed;
@@ -212,14 +212,14 @@ impl<'a> Writer<'a> {
         )
     }
 
-    fn replace_bit(&mut self, inner: &Tree, index: &Tree, bit: &Tree) -> Result<Value, Cause> {
+    fn replace_bit(&mut self, inner: &Tree, index: &Tree, bit: &Tree) -> Result<Value, EmitCause> {
         let value = self.value(inner, None)?;
         let (ty, bit) = (value.ty(), self.value(bit, Some(BIT))?);
         self.values.expect(&bit, BIT)?;
         let Some(index) = self.constant_index(index) else {
             self.index(index)?;
             let found = "`replace_bit` at an index that is a signal".to_owned();
-            return Err(Cause::Unsupported {
+            return Err(EmitCause::Unsupported {
                 found,
                 remedy: "compare with each index in a loop",
             });
@@ -244,7 +244,7 @@ impl<'a> Writer<'a> {
     }
 
     /// A signal as index or shift amount: its text as an operand, and its width.
-    fn index(&mut self, tree: &Tree) -> Result<(String, u32), Cause> {
+    fn index(&mut self, tree: &Tree) -> Result<(String, u32), EmitCause> {
         let value = self.value(tree, None)?;
         let width = value.ty().width;
         self.values.expect(&value, Type::bits(width))?;
@@ -253,7 +253,7 @@ impl<'a> Writer<'a> {
 
     // Operators.
 
-    fn unary(&mut self, op: &VerilogOpUnary, inner: &Tree, want: Option<Type>) -> Result<Value, Cause> {
+    fn unary(&mut self, op: &VerilogOpUnary, inner: &Tree, want: Option<Type>) -> Result<Value, EmitCause> {
         let keeps_type = matches!(op, VerilogOpUnary::Not | VerilogOpUnary::Neg);
         let value = self.value(inner, want.filter(|_| keeps_type))?;
         let ty = value.ty();
@@ -268,7 +268,7 @@ impl<'a> Writer<'a> {
         })
     }
 
-    fn binary(&mut self, a: &Tree, op: &VerilogOp, b: &Tree, want: Option<Type>) -> Result<Value, Cause> {
+    fn binary(&mut self, a: &Tree, op: &VerilogOp, b: &Tree, want: Option<Type>) -> Result<Value, EmitCause> {
         let context = want.filter(|_| !compares(op));
         let (left, right) = if self.takes_width(a) && !self.takes_width(b) {
             let right = self.value(b, context)?;
@@ -285,7 +285,7 @@ impl<'a> Writer<'a> {
 
     /// Verilog computes a product at the width of its target, which must therefore be the full product, and its operands
     /// must be nets, which the target's width extends by their own sign.
-    fn product(&mut self, a: &Tree, b: &Tree, want: Option<Type>) -> Result<Value, Cause> {
+    fn product(&mut self, a: &Tree, b: &Tree, want: Option<Type>) -> Result<Value, EmitCause> {
         let (left, right) = (self.value(a, None)?, self.value(b, None)?);
         for operand in [&left, &right] {
             if matches!(operand, Value::Text { .. }) {
@@ -306,12 +306,12 @@ impl<'a> Writer<'a> {
         }
     }
 
-    fn shift(&mut self, a: &Tree, op: &VerilogOp, b: &Tree, want: Option<Type>) -> Result<Value, Cause> {
+    fn shift(&mut self, a: &Tree, op: &VerilogOp, b: &Tree, want: Option<Type>) -> Result<Value, EmitCause> {
         let value = self.value(a, want)?;
         let ty = value.ty();
         if ty.signed || self.takes_width(a) {
             let found = "a shift of a signed value or of a literal".to_owned();
-            return Err(Cause::Unsupported {
+            return Err(EmitCause::Unsupported {
                 found,
                 remedy: "slice a Local, or use a `Constant`",
             });
@@ -359,8 +359,8 @@ fn symbol(op: &VerilogOp) -> &'static str {
 }
 
 /// `true` or `false`: RustHDL gives them one bit, and integers the width of some Rust integer, which means nothing.
-fn literal_bit(literal: &VerilogLiteral) -> Result<Value, Cause> {
-    let (_, value) = literal_value(literal).ok_or(Cause::WidthUnknown("a literal"))?;
-    let pattern = Cause::pattern(BIT, value)?;
+fn literal_bit(literal: &VerilogLiteral) -> Result<Value, EmitCause> {
+    let (_, value) = literal_value(literal).ok_or(EmitCause::WidthUnknown("a literal"))?;
+    let pattern = EmitCause::pattern(BIT, value)?;
     Ok(Value::Literal { pattern, ty: BIT })
 }

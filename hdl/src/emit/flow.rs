@@ -4,7 +4,7 @@
 //! block once, so a reader sees the value *so far*. The two agree if, on every path, each signal is assigned before it is
 //! read and not assigned after it was read. What is not assigned on every path would be a latch.
 
-use super::error::{Cause, EmitError};
+use super::error::{EmitCause, EmitError};
 use super::ir::{Reads, Statement};
 use super::scope::{NetId, Role, Scope};
 use std::collections::BTreeSet;
@@ -16,9 +16,9 @@ pub(super) fn check(kernel: &[Statement], path: &str, scope: &Scope) -> Result<(
     for (id, net) in scope.iter() {
         if net.role.is_driven() && !state.assigned.contains(&id) {
             let cause = if state.touched.contains(&id) {
-                Cause::Latch
+                EmitCause::Latch
             } else {
-                Cause::NeverAssigned
+                EmitCause::NeverAssigned
             };
             return Err(error(path, scope, id, cause));
         }
@@ -26,7 +26,7 @@ pub(super) fn check(kernel: &[Statement], path: &str, scope: &Scope) -> Result<(
     Ok(())
 }
 
-fn error(path: &str, scope: &Scope, id: NetId, cause: Cause) -> EmitError {
+fn error(path: &str, scope: &Scope, id: NetId, cause: EmitCause) -> EmitError {
     EmitError::new(path, &scope.net(id).raw.replace('$', "."), cause)
 }
 
@@ -50,7 +50,7 @@ impl State {
     }
 }
 
-type Located<T> = Result<T, (NetId, Cause)>;
+type Located<T> = Result<T, (NetId, EmitCause)>;
 
 fn run(block: &[Statement], scope: &Scope, state: &mut State) -> Located<()> {
     for statement in block {
@@ -59,7 +59,7 @@ fn run(block: &[Statement], scope: &Scope, state: &mut State) -> Located<()> {
             Statement::Assign { target, value } => {
                 read(&value.reads, scope, state)?;
                 if state.read.contains(target) {
-                    return Err((*target, Cause::AssignedAfterRead));
+                    return Err((*target, EmitCause::AssignedAfterRead));
                 }
                 state.assigned.insert(*target);
                 state.touched.insert(*target);
@@ -95,9 +95,9 @@ fn read(reads: &Reads, scope: &Scope, state: &mut State) -> Located<()> {
         if matches!(net.role, Role::Local | Role::Output) {
             if !state.assigned.contains(id) {
                 let cause = if state.touched.contains(id) {
-                    Cause::Latch
+                    EmitCause::Latch
                 } else {
-                    Cause::ReadBeforeAssigned(net.raw.replace('$', "."))
+                    EmitCause::ReadBeforeAssigned(net.raw.replace('$', "."))
                 };
                 return Err((*id, cause));
             }

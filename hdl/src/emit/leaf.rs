@@ -14,7 +14,7 @@
 //! [`numbers`](super::numbers).
 
 use super::collect::{Kind, Node};
-use super::error::Cause;
+use super::error::EmitCause;
 use super::names;
 use super::types::Type;
 use rust_hdl_core::prelude::Verilog;
@@ -41,7 +41,7 @@ pub(super) struct RegisterTag {
 }
 
 /// The tag if `node` is a register.
-pub(super) fn register(node: &Node) -> Result<Option<RegisterTag>, Cause> {
+pub(super) fn register(node: &Node) -> Result<Option<RegisterTag>, EmitCause> {
     let Verilog::Custom(text) = &node.code else {
         return Ok(None);
     };
@@ -50,13 +50,13 @@ pub(super) fn register(node: &Node) -> Result<Option<RegisterTag>, Cause> {
     };
     let port = |name: &str, kind: Kind| {
         let found = node.ports().find(|port| port.raw == name && port.kind == kind);
-        found.ok_or_else(|| Cause::Leaf(format!("a register has no {kind:?} port `{name}`")))
+        found.ok_or_else(|| EmitCause::Leaf(format!("a register has no {kind:?} port `{name}`")))
     };
     port("clock", Kind::Input)?;
     port("rst", Kind::Input)?;
     let (next, now) = (port("d", Kind::Input)?, port("q", Kind::Output)?);
     if next.ty != now.ty || node.ports().count() != 4 {
-        return Err(Cause::Leaf(
+        return Err(EmitCause::Leaf(
             "a register has exactly clock, rst, d and q, the last two of one type".to_owned(),
         ));
     }
@@ -65,7 +65,7 @@ pub(super) fn register(node: &Node) -> Result<Option<RegisterTag>, Cause> {
         None => (literal, false),
     };
     let bad = || {
-        Cause::Leaf(format!(
+        EmitCause::Leaf(format!(
             "`{}` is no {}-bit pattern of the form 8'h05",
             literal.trim(),
             now.ty.width
@@ -89,16 +89,17 @@ pub(super) fn register_text(tag: RegisterTag, ty: Type) -> String {
 }
 
 /// The parts of a leaf's text.
-pub(super) fn parse<'a>(text: &'a str, node: &Node) -> Result<Leaf<'a>, Cause> {
+pub(super) fn parse<'a>(text: &'a str, node: &Node) -> Result<Leaf<'a>, EmitCause> {
     let mut lines = text.lines().map(str::trim_end).peekable();
     let tag = lines.next().and_then(|line| line.strip_prefix("// @leaf "));
-    let tag = tag.ok_or_else(|| Cause::Leaf("the first line is not `// @dff ..` or `// @leaf name ..`".to_owned()))?;
+    let tag =
+        tag.ok_or_else(|| EmitCause::Leaf("the first line is not `// @dff ..` or `// @leaf name ..`".to_owned()))?;
     let (base_name, list) = tag.split_once(" reg:").unwrap_or((tag, ""));
     names::check_name(base_name.trim())?;
     let regs: Vec<_> = list.split(',').map(str::trim).filter(|name| !name.is_empty()).collect();
     for name in &regs {
         if !node.ports().any(|port| port.kind == Kind::Output && port.raw == *name) {
-            return Err(Cause::Leaf(format!("`{name}` after `reg:` is not an output")));
+            return Err(EmitCause::Leaf(format!("`{name}` after `reg:` is not an output")));
         }
     }
     let of_machine = lines.next_if_eq(&"// @of_machine").is_some();

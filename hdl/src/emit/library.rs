@@ -1,7 +1,7 @@
 //! One module of a name: what several blocks, axes and packages have in common is the same file.
 
 use super::Module;
-use super::error::{Cause, EmitError};
+use super::error::{EmitCause, EmitError};
 use super::names;
 
 /// The name of the module `base` that is the same for every machine, as [`emit`](super::emit()) writes it: `posicast_BASE`, or the
@@ -25,7 +25,7 @@ pub(crate) fn digest(text: &str) -> u32 {
 /// Adds modules to those of a package, each once.
 ///
 /// # Errors
-/// [`Cause::OtherContent`] where a module of the same name is there that says something else.
+/// [`EmitCause::OtherContent`] where a module of the same name is there that says something else.
 pub fn add(modules: &mut Vec<Module>, more: Vec<Module>) -> Result<(), EmitError> {
     for module in more {
         match modules.iter().find(|there| there.name == module.name) {
@@ -35,7 +35,7 @@ pub fn add(modules: &mut Vec<Module>, more: Vec<Module>) -> Result<(), EmitError
                 return Err(EmitError::new(
                     &module.name,
                     "",
-                    Cause::OtherContent(module.name.clone()),
+                    EmitCause::OtherContent(module.name.clone()),
                 ));
             }
         }

@@ -60,9 +60,9 @@ mod types;
 mod values;
 mod wrap;
 
-pub use compose::{Instance, compose};
+pub use compose::{ModuleInstance, compose};
 pub use connect::connect;
-pub use error::{Cause, EmitError};
+pub use error::{EmitCause, EmitError};
 pub(crate) use library::digest;
 pub use library::{add, own_name, shared_name};
 pub use names::LIBRARY;

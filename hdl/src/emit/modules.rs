@@ -2,7 +2,7 @@
 
 use super::collect::{Kind, Node, Signal};
 use super::drivers::{Drivers, unread};
-use super::error::{Cause, EmitError};
+use super::error::{EmitCause, EmitError};
 use super::leaf;
 use super::names;
 use super::numbers;
@@ -64,7 +64,7 @@ impl Modules<'_> {
             Verilog::Empty | Verilog::Blackbox(_) | Verilog::Wrapper(_) => {
                 let found = "a block without kernel, a black box or a wrapper".to_owned();
                 let remedy = "write it as a leaf with `Verilog::Custom`";
-                Err(EmitError::new(&node.path, "", Cause::Unsupported { found, remedy }))
+                Err(EmitError::new(&node.path, "", EmitCause::Unsupported { found, remedy }))
             }
         }
     }
@@ -145,7 +145,7 @@ impl Modules<'_> {
     /// Takes the name for the module. It is not new where the same module has it already.
     ///
     /// # Errors
-    /// [`Cause::OtherContent`] where another module has it.
+    /// [`EmitCause::OtherContent`] where another module has it.
     fn take(&mut self, node: &Node, name: &str, draft: &Draft) -> Result<bool, EmitError> {
         let content = (draft.about.clone(), draft.body.clone());
         match self.by_name.get(name) {
@@ -154,7 +154,7 @@ impl Modules<'_> {
                 Ok(true)
             }
             Some(there) if *there == content => Ok(false),
-            Some(_) => Err(EmitError::new(&node.path, "", Cause::OtherContent(name.to_owned()))),
+            Some(_) => Err(EmitError::new(&node.path, "", EmitCause::OtherContent(name.to_owned()))),
         }
     }
 
@@ -214,7 +214,7 @@ impl Clocking {
                 .find(name)
                 .filter(|id| scope.net(*id).role == Role::Input && scope.net(*id).ty.width == 1);
             let register = &scope.net(register.now).name;
-            found.ok_or_else(|| EmitError::new(&node.path, register, Cause::MissingInput(name)))
+            found.ok_or_else(|| EmitError::new(&node.path, register, EmitCause::MissingInput(name)))
         };
         Ok(Some(Self {
             clk: input("clk")?,

@@ -1,6 +1,6 @@
 //! Which names may appear in the Verilog: lower-case snake case that no tool reserves.
 
-use super::error::Cause;
+use super::error::EmitCause;
 use std::collections::BTreeMap;
 
 /// Keywords of Verilog (IEEE 1364-2001 and -2005) and SystemVerilog (IEEE 1800-2017), annex B of each.
@@ -25,23 +25,23 @@ const RESERVED: &str = "\
     wildcard wire with within wor xnor xor";
 
 /// Checks a name that stands alone in the Verilog.
-pub(crate) fn check_name(name: &str) -> Result<(), Cause> {
+pub(crate) fn check_name(name: &str) -> Result<(), EmitCause> {
     check_form(name)?;
     if RESERVED.split(' ').any(|word| word == name) {
-        return Err(Cause::ReservedWord(name.to_owned()));
+        return Err(EmitCause::ReservedWord(name.to_owned()));
     }
     Ok(())
 }
 
 /// Checks a name that only ever is a part of one, and may be a keyword.
-pub(super) fn check_form(name: &str) -> Result<(), Cause> {
+pub(super) fn check_form(name: &str) -> Result<(), EmitCause> {
     let mut characters = name.chars();
     let plain = characters.next().is_some_and(|first| first.is_ascii_lowercase())
         && characters.all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_');
     if plain {
         Ok(())
     } else {
-        Err(Cause::BadName(name.to_owned()))
+        Err(EmitCause::BadName(name.to_owned()))
     }
 }
 
@@ -83,10 +83,10 @@ pub(super) struct Taken(BTreeMap<String, String>);
 
 impl Taken {
     /// Takes `name` for `owner`.
-    pub(super) fn take(&mut self, name: &str, owner: &str) -> Result<(), Cause> {
+    pub(super) fn take(&mut self, name: &str, owner: &str) -> Result<(), EmitCause> {
         match self.0.insert(name.to_owned(), owner.to_owned()) {
             None => Ok(()),
-            Some(other) => Err(Cause::NameCollision {
+            Some(other) => Err(EmitCause::NameCollision {
                 name: name.to_owned(),
                 other,
             }),
@@ -111,7 +111,7 @@ mod tests {
             "within",
             "accept_on",
         ] {
-            assert_eq!(check_name(word), Err(Cause::ReservedWord(word.to_owned())));
+            assert_eq!(check_name(word), Err(EmitCause::ReservedWord(word.to_owned())));
         }
     }
 
@@ -120,7 +120,7 @@ mod tests {
         assert_eq!(check_name("tap_3"), Ok(()));
         assert_eq!(check_form("small"), Ok(()));
         for bad in ["", "Tap", "3d", "_x", "a$b", "a-b", "größe"] {
-            assert_eq!(check_name(bad), Err(Cause::BadName(bad.to_owned())));
+            assert_eq!(check_name(bad), Err(EmitCause::BadName(bad.to_owned())));
         }
     }
 

@@ -13,19 +13,19 @@
 //! | `${if NAME TEXT}` | the text where that value is not 0, else nothing |
 
 use super::collect::{Kind, Node, Signal};
-use super::error::Cause;
+use super::error::EmitCause;
 use super::leaf;
 
 /// The text with its numbers, which are those of `node`.
-pub(super) fn fill(text: &str, node: &Node) -> Result<String, Cause> {
+pub(super) fn fill(text: &str, node: &Node) -> Result<String, EmitCause> {
     let mut filled = String::new();
     let mut rest = text;
     while let Some((before, from)) = rest.split_once("${") {
         let (number, after) = from
             .split_once('}')
-            .ok_or_else(|| Cause::Leaf("a `${` without `}`".to_owned()))?;
+            .ok_or_else(|| EmitCause::Leaf("a `${` without `}`".to_owned()))?;
         filled.push_str(before);
-        let wrong = || Cause::Leaf(format!("`${{{number}}}` is no number of the block, or does not fit it"));
+        let wrong = || EmitCause::Leaf(format!("`${{{number}}}` is no number of the block, or does not fit it"));
         filled.push_str(&self::number(number, node)?.ok_or_else(wrong)?);
         rest = after;
     }
@@ -33,7 +33,7 @@ pub(super) fn fill(text: &str, node: &Node) -> Result<String, Cause> {
     Ok(filled)
 }
 
-fn number(text: &str, node: &Node) -> Result<Option<String>, Cause> {
+fn number(text: &str, node: &Node) -> Result<Option<String>, EmitCause> {
     let parts: Vec<&str> = text.split_whitespace().collect();
     Ok(match parts.as_slice() {
         ["pattern", name, hex] => signal(node, name).and_then(|signal| pattern(signal, hex)),
@@ -76,7 +76,7 @@ fn count(node: &Node, array: &str) -> Option<String> {
 }
 
 /// The value of a constant, or the reset value of a register.
-fn value(node: &Node, name: &str) -> Result<Option<i128>, Cause> {
+fn value(node: &Node, name: &str) -> Result<Option<i128>, EmitCause> {
     let constant = signal(node, name).and_then(|signal| match signal.kind {
         Kind::Constant(pattern) => Some(signal.ty.value(pattern)),
         _ => None,

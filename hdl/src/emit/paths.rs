@@ -3,14 +3,14 @@
 //! An index is arithmetic of integers and loop variables with `+ - *` and parentheses. Anything else, above all a signal as
 //! index, is refused: Verilog-2001 has no array of ports or instances that a signal could select.
 
-use super::error::Cause;
+use super::error::EmitCause;
 
 /// Loop variables in scope with their present values, innermost last.
 pub(super) type Loops = [(String, i128)];
 
 /// The signal that `text` names, without a final `$next`.
-pub(super) fn resolve(text: &str, loops: &Loops) -> Result<String, Cause> {
-    let wrong_index = || Cause::ArrayIndex(text.to_owned());
+pub(super) fn resolve(text: &str, loops: &Loops) -> Result<String, EmitCause> {
+    let wrong_index = || EmitCause::ArrayIndex(text.to_owned());
     let mut resolved = String::new();
     let mut rest = text;
     while let Some(open) = rest.find('[') {

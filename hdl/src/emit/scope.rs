@@ -1,7 +1,7 @@
 //! Every net of one module: its RustHDL name, its Verilog name, its type, and who may drive and read it.
 
 use super::collect::{Kind, Node};
-use super::error::{Cause, EmitError};
+use super::error::{EmitCause, EmitError};
 use super::leaf::{self, RegisterTag};
 use super::names::{self, Taken};
 use super::types::{BIT, Type};
@@ -132,7 +132,7 @@ impl Scope {
             };
             names::check_name(&names::flatten(&signal.raw)).map_err(at(&signal.raw))?;
             if signal.kind == Kind::Input && signal.is_clock && name != "clk" {
-                return Err(at(&signal.raw)(Cause::ClockName));
+                return Err(at(&signal.raw)(EmitCause::ClockName));
             }
             scope
                 .add(signal.raw.clone(), name, signal.ty, role)
@@ -164,7 +164,7 @@ impl Scope {
         self.nets.iter().enumerate().map(|(index, net)| (NetId(index), net))
     }
 
-    fn add(&mut self, raw: String, name: String, ty: Type, role: Role) -> Result<NetId, Cause> {
+    fn add(&mut self, raw: String, name: String, ty: Type, role: Role) -> Result<NetId, EmitCause> {
         self.taken.take(&name, &raw)?;
         Ok(self.add_unnamed(raw, name, ty, role))
     }
@@ -176,7 +176,7 @@ impl Scope {
         id
     }
 
-    fn add_register(&mut self, child: &Node, tag: RegisterTag) -> Result<(), Cause> {
+    fn add_register(&mut self, child: &Node, tag: RegisterTag) -> Result<(), EmitCause> {
         let name = names::flatten(&child.raw);
         let ty = child.ports().find(|port| port.raw == "q").map_or(BIT, |port| port.ty);
         let raw = |port: &str| format!("{}${port}", child.raw);
@@ -188,7 +188,7 @@ impl Scope {
         Ok(())
     }
 
-    fn add_pins(&mut self, child: &Node, index: usize) -> Result<(), Cause> {
+    fn add_pins(&mut self, child: &Node, index: usize) -> Result<(), EmitCause> {
         let name = names::flatten(&child.raw);
         self.taken.take(&format!("u_{name}"), &child.raw)?;
         let mut nets = Vec::new();
@@ -205,7 +205,7 @@ impl Scope {
         Ok(())
     }
 
-    fn add_enums(&mut self, node: &Node) -> Result<(), Cause> {
+    fn add_enums(&mut self, node: &Node) -> Result<(), EmitCause> {
         for (type_name, values) in &node.enums {
             // As many bits as RustHDL's clog2 gives, which the signals of the type have.
             let width = values.len().max(2).next_power_of_two().trailing_zeros();

@@ -14,7 +14,7 @@
 //! Changes of the sizes from sample to sample must tell the sums apart: no two sets of sizes may change by the same sum.
 
 use super::collect::{Kind, Node};
-use super::error::{Cause, EmitError};
+use super::error::{EmitCause, EmitError};
 use super::leaf::{self, RegisterTag};
 use super::types::{Type, mask};
 use rust_hdl_core::ast::{VerilogBlockOrConditional, VerilogExpression as Tree, VerilogStatement as Statement};
@@ -25,7 +25,7 @@ pub(super) fn resolve(samples: Vec<(Vec<u32>, Node)>, wanted: &[u32]) -> Result<
     let (samples, mut nodes): (Vec<_>, Vec<_>) = samples.into_iter().unzip();
     if nodes.is_empty() || samples.iter().any(|sizes: &Vec<u32>| sizes.len() != wanted.len()) {
         let path = nodes.first().map(|node: &Node| node.path.clone()).unwrap_or_default();
-        let cause = Cause::SizesDiffer("number of sizes".to_owned());
+        let cause = EmitCause::SizesDiffer("number of sizes".to_owned());
         return Err(EmitError::new(&path, "", cause));
     }
     let first = nodes.remove(0);
@@ -46,7 +46,7 @@ impl Sizes<'_> {
         };
         let alike = |same: bool, what: &str| match same {
             true => Ok(()),
-            false => Err(Cause::SizesDiffer(what.to_owned())),
+            false => Err(EmitCause::SizesDiffer(what.to_owned())),
         };
         let all = |same: &dyn Fn(&Node) -> bool| others.iter().all(|other| same(other));
         alike(all(&|other| other.raw == node.raw), "name of a block").map_err(at(""))?;
@@ -103,7 +103,7 @@ impl Sizes<'_> {
     }
 
     /// A register's tag and its type; nothing for any other block.
-    fn register(&self, node: &Node, others: &[&Node]) -> Result<Option<(RegisterTag, Type)>, Cause> {
+    fn register(&self, node: &Node, others: &[&Node]) -> Result<Option<(RegisterTag, Type)>, EmitCause> {
         let mut found = (Vec::new(), Vec::new());
         let mut is_kept = false;
         for sample in [node].iter().chain(others) {
@@ -128,7 +128,7 @@ impl Sizes<'_> {
             match (&sample.code, &node.code) {
                 (Verilog::Combinatorial(block), Verilog::Combinatorial(_)) => blocks.push(block.clone()),
                 (Verilog::Custom(text), Verilog::Custom(first)) if text == first => {}
-                _ => return Err(error("", Cause::SizesDiffer("text of a leaf".to_owned()))),
+                _ => return Err(error("", EmitCause::SizesDiffer("text of a leaf".to_owned()))),
             }
         }
         let Some(mut kernel) = blocks.first().cloned() else {
@@ -144,7 +144,7 @@ impl Sizes<'_> {
             shapes.push(format!("{block:?}"));
         }
         if shapes.iter().any(|shape| *shape != shapes[0]) {
-            return Err(error("", Cause::SizesDiffer("kernel".to_owned())));
+            return Err(error("", EmitCause::SizesDiffer("kernel".to_owned())));
         }
         let (mut next, mut wrong) = (0, None);
         each_number(&mut kernel, "", &mut |signal, number| {
@@ -152,25 +152,25 @@ impl Sizes<'_> {
             next += 1;
             match self.number(&found).map(usize::try_from) {
                 Ok(Ok(resolved)) => *number = resolved,
-                Ok(Err(_)) => wrong = wrong.take().or(Some(error(signal, Cause::Width(0)))),
+                Ok(Err(_)) => wrong = wrong.take().or(Some(error(signal, EmitCause::Width(0)))),
                 Err(cause) => wrong = wrong.take().or(Some(error(signal, cause))),
             }
         });
         wrong.map_or(Ok(Verilog::Combinatorial(kernel)), Err)
     }
 
-    fn ty(&self, found: &[Type]) -> Result<Type, Cause> {
+    fn ty(&self, found: &[Type]) -> Result<Type, EmitCause> {
         let widths: Vec<_> = found.iter().map(|ty| i128::from(ty.width)).collect();
         let width = self.number(&widths)?;
         let in_range = u32::try_from(width).ok().filter(|width| (1..=64).contains(width));
         Ok(Type {
-            width: in_range.ok_or(Cause::Width(width.try_into().unwrap_or(0)))?,
+            width: in_range.ok_or(EmitCause::Width(width.try_into().unwrap_or(0)))?,
             signed: found[0].signed,
         })
     }
 
     /// The number that is `found` in the samples: a constant plus the sum of some of the sizes.
-    fn number(&self, found: &[i128]) -> Result<i128, Cause> {
+    fn number(&self, found: &[i128]) -> Result<i128, EmitCause> {
         let sum = |set: u32, sizes: &[u32]| -> i128 {
             let members = sizes.iter().enumerate().filter(|(index, _)| set >> index & 1 == 1);
             members.map(|(_, size)| i128::from(*size)).sum()
@@ -186,29 +186,31 @@ impl Sizes<'_> {
         });
         match (fits.next(), fits.next()) {
             (Some(number), None) => Ok(number),
-            _ => Err(Cause::SizeNumber(list(found))),
+            _ => Err(EmitCause::SizeNumber(list(found))),
         }
     }
 
     /// The pattern of a constant or reset value of type `wanted`; `found` are those of the samples.
-    fn value(&self, found: &[u64], types: &[Type], wanted: Type) -> Result<u64, Cause> {
+    fn value(&self, found: &[u64], types: &[Type], wanted: Type) -> Result<u64, EmitCause> {
         let all = || found.iter().zip(types);
         let widest = all().max_by_key(|(_, ty)| ty.width);
-        let (&pattern, &ty) = widest.ok_or_else(|| Cause::SizeValue(String::new()))?;
+        let (&pattern, &ty) = widest.ok_or_else(|| EmitCause::SizeValue(String::new()))?;
         if !all().all(|(narrow, ty)| *narrow == pattern & ty.mask()) {
             let numbers: Vec<_> = found.iter().map(|pattern| i128::from(*pattern)).collect();
-            let number = self.number(&numbers).map_err(|_| Cause::SizeValue(list(&numbers)))?;
-            return Cause::pattern(wanted, number);
+            let number = self
+                .number(&numbers)
+                .map_err(|_| EmitCause::SizeValue(list(&numbers)))?;
+            return EmitCause::pattern(wanted, number);
         }
         if wanted.width > ty.width {
-            return Err(Cause::SizeValue(format!("{pattern}, of {} bits", ty.width)));
+            return Err(EmitCause::SizeValue(format!("{pattern}, of {} bits", ty.width)));
         }
         // What is cut off are copies of one bit; of a signed value they are copies of its sign.
         let from = if wanted.signed { wanted.width - 1 } else { wanted.width };
         let rest = mask(from, ty.width - from);
         match pattern & rest {
             cut if cut == 0 || cut == rest => Ok(pattern & wanted.mask()),
-            _ => Err(Cause::Literal {
+            _ => Err(EmitCause::Literal {
                 value: pattern.into(),
                 place: wanted,
             }),

@@ -1,7 +1,7 @@
 //! Statements: a kernel's tree to the typed form of [`ir`](super::ir), loops unrolled, registers' wiring checked and dropped.
 
 use super::collect::literal_value;
-use super::error::{Cause, EmitError};
+use super::error::{EmitCause, EmitError};
 use super::expressions::{expression, free_expression};
 use super::ir::{Arm, Expression, Statement};
 use super::paths;
@@ -28,7 +28,7 @@ pub(super) fn statements(kernel: &[VerilogStatement], path: &str, scope: &Scope)
     block.extend(reader.block(kernel)?);
     for register in &scope.registers {
         if !reader.clocked.contains(&register.clock) {
-            let cause = Cause::RegisterWiring {
+            let cause = EmitCause::RegisterWiring {
                 port: "clock",
                 expected: "clk",
             };
@@ -65,7 +65,7 @@ struct Reader<'a> {
 }
 
 impl Reader<'_> {
-    fn error(&self, signal: &str, cause: Cause) -> EmitError {
+    fn error(&self, signal: &str, cause: EmitCause) -> EmitError {
         EmitError::new(self.path, &signal.replace('$', "."), cause)
     }
 
@@ -117,7 +117,7 @@ impl Reader<'_> {
         let name = if let Tree::Signal(name) = signal { name } else { "" };
         self.error(
             name,
-            Cause::Unsupported {
+            EmitCause::Unsupported {
                 found: found.to_owned(),
                 remedy,
             },
@@ -129,7 +129,7 @@ impl Reader<'_> {
             return Err(self.unsupported(target, "an assignment to an expression", "assign to a signal's `next`"));
         };
         let raw = paths::resolve(text, &self.loops).map_err(|cause| self.error(text, cause))?;
-        let unknown = || self.error(&raw, Cause::UnknownSignal(text.clone()));
+        let unknown = || self.error(&raw, EmitCause::UnknownSignal(text.clone()));
         let target = self.scope.find(&raw).ok_or_else(unknown)?;
         let net = self.scope.net(target);
         match net.role {
@@ -139,13 +139,13 @@ impl Reader<'_> {
                 Ok(None)
             }
             Role::RegisterReset => self.wire_register(&raw, value, "rst", "rst").map(|()| None),
-            Role::ClockPin if !is_signal(value, "clk") => Err(self.error(&raw, Cause::ClockWiring)),
+            Role::ClockPin if !is_signal(value, "clk") => Err(self.error(&raw, EmitCause::ClockWiring)),
             role if role.is_driven() => {
                 let value =
                     expression(value, net.ty, self.scope, &self.loops).map_err(|cause| self.error(&raw, cause))?;
                 Ok(Some(Statement::Assign { target, value }))
             }
-            role => Err(self.error(&raw, Cause::NotDrivable(role.describe()))),
+            role => Err(self.error(&raw, EmitCause::NotDrivable(role.describe()))),
         }
     }
 
@@ -160,7 +160,7 @@ impl Reader<'_> {
         if is_signal(value, expected) {
             return Ok(());
         }
-        Err(self.error(raw, Cause::RegisterWiring { port, expected }))
+        Err(self.error(raw, EmitCause::RegisterWiring { port, expected }))
     }
 
     fn conditional(&mut self, conditional: &VerilogConditional) -> Result<Statement, EmitError> {
@@ -203,7 +203,7 @@ impl Reader<'_> {
             None => (ty == BIT).then_some(2),
         };
         if Some(labels.len()) != values {
-            return Err(self.error("", Cause::MatchNotExhaustive(subject.text)));
+            return Err(self.error("", EmitCause::MatchNotExhaustive(subject.text)));
         }
         // Rust knows that there are no further values; Verilog does not, and would keep the old value for them.
         if let Some(last) = arms.last_mut() {
@@ -223,12 +223,12 @@ impl Reader<'_> {
 
     fn unroll(&mut self, turns: &VerilogLoop, block: &mut Vec<Statement>) -> Result<(), EmitError> {
         if self.scope.find(&turns.index).is_some() {
-            return Err(self.error(&turns.index, Cause::LoopVariable(turns.index.clone())));
+            return Err(self.error(&turns.index, EmitCause::LoopVariable(turns.index.clone())));
         }
         let bound = |literal| literal_value(literal).map_or(i128::MAX, |(_, value)| value);
         let (from, to) = (bound(&turns.from), bound(&turns.to));
         if to.saturating_sub(from) > MAXIMUM_TURNS {
-            return Err(self.error("", Cause::Loop { from, to }));
+            return Err(self.error("", EmitCause::Loop { from, to }));
         }
         for value in from..to {
             self.loops.push((turns.index.clone(), value));

@@ -3,7 +3,7 @@
 //! A part of a net stays a part of a net until it is written, so that a slice of a slice of a cast needs no temporary. What
 //! is text already cannot change its width any more: Verilog has no part select of an expression.
 
-use super::error::Cause;
+use super::error::EmitCause;
 use super::ir::{Expression, Reads};
 use super::scope::{NetId, Role, Scope};
 use super::types::{BIT, Type, mask};
@@ -78,7 +78,7 @@ impl<'a> Values<'a> {
     }
 
     /// Truncates, or extends by the sign of the value's type.
-    pub(super) fn resize(&mut self, value: Value, ty: Type) -> Result<Value, Cause> {
+    pub(super) fn resize(&mut self, value: Value, ty: Type) -> Result<Value, EmitCause> {
         let from = value.ty();
         if ty.width == from.width {
             return Ok(value);
@@ -107,7 +107,7 @@ impl<'a> Values<'a> {
     }
 
     /// Bits `low ..` of `value` as `ty`; they must exist.
-    pub(super) fn part(&mut self, value: Value, low: u32, ty: Type) -> Result<Value, Cause> {
+    pub(super) fn part(&mut self, value: Value, low: u32, ty: Type) -> Result<Value, EmitCause> {
         if let Some(pattern) = self.constant(&value) {
             let pattern = pattern >> low & ty.mask();
             return Ok(Value::Literal { pattern, ty });
@@ -122,7 +122,7 @@ impl<'a> Values<'a> {
     }
 
     /// The bit of `value` that the signal `index` selects. Verilog-2001 selects from nets only, not from constants.
-    pub(super) fn bit(&mut self, value: &Value, index: &str) -> Result<Value, Cause> {
+    pub(super) fn bit(&mut self, value: &Value, index: &str) -> Result<Value, EmitCause> {
         match *value {
             Value::Part { net, low: 0, ty } if ty.width == self.scope.net(net).ty.width && !self.is_constant(net) => {
                 let name = self.select(net, 0, ty.width);
@@ -133,12 +133,12 @@ impl<'a> Values<'a> {
     }
 
     /// Bits `low ..`, `width` of them, exist in `value`?
-    pub(super) fn check_range(&mut self, value: &Value, low: i128, width: usize) -> Result<u32, Cause> {
+    pub(super) fn check_range(&mut self, value: &Value, low: i128, width: usize) -> Result<u32, EmitCause> {
         let available = value.ty().width;
         let high = low.saturating_add(width as i128) - 1;
         if low < 0 || width == 0 || high >= i128::from(available) {
             let found = self.text(value);
-            return Err(Cause::OutOfRange {
+            return Err(EmitCause::OutOfRange {
                 found,
                 low,
                 high,
@@ -214,20 +214,20 @@ impl<'a> Values<'a> {
 
     // Errors that quote the value.
 
-    pub(super) fn expect(&mut self, value: &Value, expected: Type) -> Result<(), Cause> {
+    pub(super) fn expect(&mut self, value: &Value, expected: Type) -> Result<(), EmitCause> {
         if value.ty() == expected {
             return Ok(());
         }
         let found = self.text(value);
-        Err(Cause::TypeMismatch {
+        Err(EmitCause::TypeMismatch {
             found,
             found_type: value.ty(),
             expected,
         })
     }
 
-    pub(super) fn needs_local(&mut self, value: &Value) -> Cause {
-        Cause::NeedsLocal(self.text(value))
+    pub(super) fn needs_local(&mut self, value: &Value) -> EmitCause {
+        EmitCause::NeedsLocal(self.text(value))
     }
 }
 

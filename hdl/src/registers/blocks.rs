@@ -3,7 +3,7 @@
 use super::text::{bits, joined, part, type_of};
 use crate::emit::Type;
 use crate::emit::print::Lines;
-use posicast_model::rtl::registers::{Access, Field, Register, RegisterMap, Source};
+use posicast_model::rtl::registers::{Access, Field, FlagSource, Register, RegisterMap};
 
 /// A flip-flop of the bank: type, name, reset value.
 pub(super) type Flop = (Type, String, u32);
@@ -173,10 +173,10 @@ pub(super) fn sticky_prefix(register: &Register) -> &'static str {
 
 fn source(field: &Field) -> &str {
     match field.source {
-        Source::Input => &field.name,
-        Source::PartialWrite => "bus_partial",
-        Source::GuardRefused => "bus_refused",
-        Source::CommitRejected => "bus_rejected",
+        FlagSource::Input => &field.name,
+        FlagSource::PartialWrite => "bus_partial",
+        FlagSource::GuardRefused => "bus_refused",
+        FlagSource::CommitRejected => "bus_rejected",
     }
 }
 

@@ -7,7 +7,7 @@ use super::text::{bits, joined, part};
 use crate::emit::Type;
 use crate::emit::print::{self, Lines};
 use posicast_model::rtl::Direction;
-use posicast_model::rtl::registers::{Access, Field, Register, RegisterMap, Source};
+use posicast_model::rtl::registers::{Access, Field, FlagSource, Register, RegisterMap};
 
 pub(super) fn body(map: &RegisterMap) -> String {
     let clock = ("input  wire", bits(1), "clk".to_owned());
@@ -154,7 +154,7 @@ fn writes(lines: &mut Lines, map: &RegisterMap) {
 }
 
 /// Is there a flag that is set by this?
-fn is_flagged(map: &RegisterMap, source: Source) -> bool {
+fn is_flagged(map: &RegisterMap, source: FlagSource) -> bool {
     let flags = map.registers().iter().filter(|register| register.access.is_sticky());
     flags
         .flat_map(|register| &register.fields)
@@ -166,14 +166,14 @@ fn refusals(lines: &mut Lines, map: &RegisterMap) {
         let all = map.registers().iter().filter(|register| holds(&register.access));
         all.map(|register| text(&register.name)).collect()
     };
-    if is_flagged(map, Source::PartialWrite) {
+    if is_flagged(map, FlagSource::PartialWrite) {
         let terms = named(&Access::whole_words, &|name| format!("write_{name}"));
         match terms.is_empty() {
             true => lines.line("wire bus_partial = 1'd0;"),
             false => joined(lines, "wire bus_partial = !whole && (", &terms, " || ", ");"),
         }
     }
-    if is_flagged(map, Source::GuardRefused) {
+    if is_flagged(map, FlagSource::GuardRefused) {
         let terms = named(&|access| matches!(access, Access::Guarded { .. }), &|name| {
             format!("(write_{name} && !allow_{name})")
         });
@@ -182,7 +182,7 @@ fn refusals(lines: &mut Lines, map: &RegisterMap) {
             false => joined(lines, "wire bus_refused = ", &terms, " || ", ";"),
         }
     }
-    if is_flagged(map, Source::CommitRejected) {
+    if is_flagged(map, FlagSource::CommitRejected) {
         let staged = named(&|access| *access == Access::Staged, &|name| format!("write_{name}"));
         let commit = named(&|access| matches!(access, Access::Commit { .. }), &|name| {
             format!("(write_{name} && whole)")

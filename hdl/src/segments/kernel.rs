@@ -8,7 +8,7 @@
 use super::fifo::CommandFifo;
 use super::integrator::Integrator;
 use crate::prelude::*;
-use posicast_model::rtl::segments::State;
+use posicast_model::rtl::segments::SegmentsState;
 
 kernel! {
     pub(super) struct Segments;
@@ -31,10 +31,10 @@ kernel! {
     constants {
         idle_phase: Bits<6> = from_u64(0),
         one_phase: Bits<6> = from_u64(1),
-        hold_state: Bits<2> = from_u64(State::Hold as u64),
-        move_state: Bits<2> = from_u64(State::Move as u64),
-        stop_state: Bits<2> = from_u64(State::Stop as u64),
-        stopped_state: Bits<2> = from_u64(State::Stopped as u64),
+        hold_state: Bits<2> = from_u64(SegmentsState::Hold as u64),
+        move_state: Bits<2> = from_u64(SegmentsState::Move as u64),
+        stop_state: Bits<2> = from_u64(SegmentsState::Stop as u64),
+        stopped_state: Bits<2> = from_u64(SegmentsState::Stopped as u64),
         no_level: Bits<7> = from_u64(0),
     }
 }

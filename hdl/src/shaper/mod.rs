@@ -234,7 +234,7 @@ fn header(config: &ShaperConfig) -> Header {
 mod tests {
     use super::*;
     use crate::emit::emit as emit_directly;
-    use posicast_model::rtl::shaper::Motion;
+    use posicast_model::rtl::shaper::ShaperMotion;
     use posicast_model::taps::{Tap, TapTable};
 
     fn table() -> TapTable {
@@ -264,7 +264,7 @@ mod tests {
                 let mut config = config.clone();
                 if let Some(channels) = form.checked_sub(1).filter(|channels| *channels > 0) {
                     let channels = channels as u32;
-                    config = config.for_motion(Motion { channels, modulo }).unwrap();
+                    config = config.for_motion(ShaperMotion { channels, modulo }).unwrap();
                 }
                 let options = EmitOptions {
                     top: base_name(&config),

@@ -12,7 +12,7 @@ use super::memory::TraceMemory;
 use super::signal_select::SignalSelect;
 use super::trigger::Trigger;
 use crate::prelude::*;
-use posicast_model::rtl::trace::State;
+use posicast_model::rtl::trace::TraceState;
 
 kernel! {
     /// A address bits, R = A + 1 bits of a number of rows.
@@ -48,10 +48,10 @@ kernel! {
         one_row: Bits<R> = from_u64(1),
         no_strobes: Bits<16> = from_u64(0),
         one_strobe: Bits<16> = from_u64(1),
-        idle_state: Bits<2> = from_u64(State::Idle as u64),
-        filling_state: Bits<2> = from_u64(State::Filling as u64),
-        waiting_state: Bits<2> = from_u64(State::Waiting as u64),
-        taking_state: Bits<2> = from_u64(State::Taking as u64),
+        idle_state: Bits<2> = from_u64(TraceState::Idle as u64),
+        filling_state: Bits<2> = from_u64(TraceState::Filling as u64),
+        waiting_state: Bits<2> = from_u64(TraceState::Waiting as u64),
+        taking_state: Bits<2> = from_u64(TraceState::Taking as u64),
     }
 }
 

@@ -5,7 +5,7 @@
 
 use crate::pitfalls::support::{Dff, Kernel, Ram16x8, Row, emit_as, local, pairs, row, signed_bit_cast};
 use crate::pitfalls::tools;
-use posicast_hdl::emit::Cause;
+use posicast_hdl::emit::EmitCause;
 use rust_hdl_core::prelude::*;
 
 // P1, P2: constants and literals beside signed values.
@@ -305,7 +305,7 @@ fn crosssim_bench_notices_one_wrong_bit() {
 fn unit_width_changes_inside_expressions_are_refused() {
     fn check<K: Kernel>(text: &str) {
         let error = emit_as::<K>("dut").unwrap_err();
-        assert_eq!(*error.cause, Cause::NeedsLocal(text.to_owned()), "{error}");
+        assert_eq!(*error.cause, EmitCause::NeedsLocal(text.to_owned()), "{error}");
         assert_eq!(error.signal, "y");
     }
     check::<ProductNested>("a * b");
@@ -321,5 +321,5 @@ fn unit_width_changes_inside_expressions_are_refused() {
 #[test]
 fn unit_reading_a_register_input_is_refused() {
     let error = emit_as::<ReadsNext>("dut").unwrap_err();
-    assert_eq!(*error.cause, Cause::ReadsSubmoduleInput("count.d".to_owned()));
+    assert_eq!(*error.cause, EmitCause::ReadsSubmoduleInput("count.d".to_owned()));
 }

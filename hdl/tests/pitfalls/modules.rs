@@ -2,7 +2,7 @@
 
 use crate::pitfalls::support::{Dff, Ram16x8, emit_as, local, text_of};
 use crate::pitfalls::tools;
-use posicast_hdl::emit::{Cause, EmitOptions, Header, Instance, Module, Parameter, add, compose, emit};
+use posicast_hdl::emit::{EmitCause, EmitOptions, Header, Module, ModuleInstance, Parameter, add, compose, emit};
 use posicast_model::rtl::{Direction, Port};
 use rust_hdl_core::prelude::*;
 
@@ -260,10 +260,10 @@ fn unit_equal_modules_are_shared_and_named() {
 #[test]
 fn unit_different_modules_of_one_name_are_refused() {
     let error = emit(&Ambiguous::default(), &options("ambiguous", "")).unwrap_err();
-    assert_eq!(*error.cause, Cause::OtherContent("sized".to_owned()));
+    assert_eq!(*error.cause, EmitCause::OtherContent("sized".to_owned()));
     let error = emit(&Unnumbered::default(), &options("unnumbered", "")).unwrap_err();
     assert!(
-        matches!(&*error.cause, Cause::Leaf(text) if text.contains("value nothing")),
+        matches!(&*error.cause, EmitCause::Leaf(text) if text.contains("value nothing")),
         "{error}"
     );
 }
@@ -284,7 +284,10 @@ fn unit_a_package_takes_each_module_once() {
     let mut other = pair[0].clone();
     other.text.push('\n');
     let error = add(&mut package, vec![other]).unwrap_err();
-    assert_eq!(*error.cause, Cause::OtherContent("posicast_counter_by_1".to_owned()));
+    assert_eq!(
+        *error.cause,
+        EmitCause::OtherContent("posicast_counter_by_1".to_owned())
+    );
 }
 
 #[test]
@@ -392,11 +395,11 @@ fn unit_compose_shares_inputs_and_lifts_the_rest() {
         parameters: Vec::new(),
     };
     let instances = [
-        Instance {
+        ModuleInstance {
             name: "x",
             module: part,
         },
-        Instance {
+        ModuleInstance {
             name: "y",
             module: part,
         },
@@ -438,24 +441,27 @@ fn unit_compose_refuses_what_does_not_fit() {
     let refused = |top: &str, shared: &[&str], instances: &[(&str, &Module)]| {
         let instances: Vec<_> = instances
             .iter()
-            .map(|&(name, module)| Instance { name, module })
+            .map(|&(name, module)| ModuleInstance { name, module })
             .collect();
         *compose(top, &Header::default(), shared, &instances).unwrap_err().cause
     };
     let both = [("x", &wide), ("y", &narrow)];
-    assert!(matches!(refused("top", &["rst"], &both), Cause::SharedType { .. }));
-    assert_eq!(refused("top", &["strobe"], &both), Cause::NoSuchInput("strobe".into()));
-    assert_eq!(refused("top", &["b"], &both), Cause::SharedOutput("b".into()));
-    assert_eq!(refused("end", &[], &both), Cause::ReservedWord("end".into()));
-    assert_eq!(refused("top", &[], &[("X", &wide)]), Cause::BadName("X".into()));
-    assert!(matches!(refused("part", &[], &both), Cause::NameCollision { .. }));
+    assert!(matches!(refused("top", &["rst"], &both), EmitCause::SharedType { .. }));
+    assert_eq!(
+        refused("top", &["strobe"], &both),
+        EmitCause::NoSuchInput("strobe".into())
+    );
+    assert_eq!(refused("top", &["b"], &both), EmitCause::SharedOutput("b".into()));
+    assert_eq!(refused("end", &[], &both), EmitCause::ReservedWord("end".into()));
+    assert_eq!(refused("top", &[], &[("X", &wide)]), EmitCause::BadName("X".into()));
+    assert!(matches!(refused("part", &[], &both), EmitCause::NameCollision { .. }));
     assert!(matches!(
         refused("top", &[], &[("x", &wide), ("x", &wide)]),
-        Cause::NameCollision { .. }
+        EmitCause::NameCollision { .. }
     ));
     // `x_y` with the port `b` and `x` with the port `y_b` both want `x_y_b`.
     assert!(matches!(
         refused("top", &[], &[("x_y", &wide), ("x", &narrow)]),
-        Cause::NameCollision { .. }
+        EmitCause::NameCollision { .. }
     ));
 }

@@ -1,10 +1,10 @@
 //! What the emitter refuses: each kernel is legal RustHDL, and each error names block, signal and remedy.
 
 use crate::pitfalls::support::{Dff, Ram16x8, emit_as, emit_block, local, signed_bit_cast};
-use posicast_hdl::emit::{Cause, EmitOptions, Type, emit};
+use posicast_hdl::emit::{EmitCause, EmitOptions, Type, emit};
 use rust_hdl_core::prelude::*;
 
-fn refused<K: Block + Default>(signal: &str, cause: Cause) {
+fn refused<K: Block + Default>(signal: &str, cause: EmitCause) {
     let error = emit_as::<K>("refused").unwrap_err();
     assert_eq!((error.signal.as_str(), &*error.cause), (signal, &cause), "{error}");
     assert_eq!(error.block, "dut");
@@ -14,7 +14,7 @@ fn refused<K: Block + Default>(signal: &str, cause: Cause) {
 fn unsupported<K: Block + Default>(words: &str) {
     let error = emit_as::<K>("refused").unwrap_err();
     assert!(
-        matches!(&*error.cause, Cause::Unsupported { .. }) && error.to_string().contains(words),
+        matches!(&*error.cause, EmitCause::Unsupported { .. }) && error.to_string().contains(words),
         "{error}"
     );
 }
@@ -58,16 +58,16 @@ kernel!(WriteAfterReadInElse { a: Bits<8> => y: Bits<8> } { t: Signal<Local, Bit
 
 #[test]
 fn unit_order_and_completeness() {
-    refused::<LatchLocal>("t", Cause::Latch);
-    refused::<LatchOutput>("y", Cause::Latch);
-    refused::<ReadFirst>("t", Cause::ReadBeforeAssigned("t".into()));
-    refused::<WriteAgain>("t", Cause::AssignedAfterRead);
-    refused::<WriteAfterReadInBranch>("t", Cause::AssignedAfterRead);
-    refused::<WriteAfterReadInElse>("t", Cause::AssignedAfterRead);
-    refused::<NoDriver>("z", Cause::NeverAssigned);
-    refused::<NoReader>("t", Cause::NeverRead);
-    refused::<DrivesInput>("a", Cause::NotDrivable("an input"));
-    refused::<ConstantTest>("y", Cause::ConstantCondition);
+    refused::<LatchLocal>("t", EmitCause::Latch);
+    refused::<LatchOutput>("y", EmitCause::Latch);
+    refused::<ReadFirst>("t", EmitCause::ReadBeforeAssigned("t".into()));
+    refused::<WriteAgain>("t", EmitCause::AssignedAfterRead);
+    refused::<WriteAfterReadInBranch>("t", EmitCause::AssignedAfterRead);
+    refused::<WriteAfterReadInElse>("t", EmitCause::AssignedAfterRead);
+    refused::<NoDriver>("z", EmitCause::NeverAssigned);
+    refused::<NoReader>("t", EmitCause::NeverRead);
+    refused::<DrivesInput>("a", EmitCause::NotDrivable("an input"));
+    refused::<ConstantTest>("y", EmitCause::ConstantCondition);
 }
 
 // Registers.
@@ -95,24 +95,24 @@ kernel!(GatedClock { rst: Bit, a: Bits<4> => y: Bits<8> } { ram: Ram16x8 = Ram16
 
 #[test]
 fn unit_registers() {
-    refused::<GatedClock>("ram.clk", Cause::ClockWiring);
+    refused::<GatedClock>("ram.clk", EmitCause::ClockWiring);
     refused::<NoClock>(
         "r",
-        Cause::RegisterWiring {
+        EmitCause::RegisterWiring {
             port: "clock",
             expected: "clk",
         },
     );
     refused::<OtherReset>(
         "r.rst",
-        Cause::RegisterWiring {
+        EmitCause::RegisterWiring {
             port: "rst",
             expected: "rst",
         },
     );
-    refused::<NoReset>("r", Cause::MissingInput("rst"));
-    refused::<ClockOfOtherName>("clock", Cause::ClockName);
-    refused::<WritesQ>("r.q", Cause::NotDrivable("the output of a register"));
+    refused::<NoReset>("r", EmitCause::MissingInput("rst"));
+    refused::<ClockOfOtherName>("clock", EmitCause::ClockName);
+    refused::<WritesQ>("r.q", EmitCause::NotDrivable("the output of a register"));
 }
 
 // Names.
@@ -125,17 +125,17 @@ kernel!(Collision { rst: Bit => y: Bits<8> } { count: Dff<Bits<8>> = Dff::new(0.
 
 #[test]
 fn unit_names() {
-    refused::<Keyword>("initial", Cause::ReservedWord("initial".into()));
-    refused::<SystemVerilogKeyword>("logic", Cause::ReservedWord("logic".into()));
-    let taken = Cause::NameCollision {
+    refused::<Keyword>("initial", EmitCause::ReservedWord("initial".into()));
+    refused::<SystemVerilogKeyword>("logic", EmitCause::ReservedWord("logic".into()));
+    let taken = EmitCause::NameCollision {
         name: "count_next".into(),
         other: "count_next".into(),
     };
     refused::<Collision>("count", taken);
     for (top, prefix, cause) in [
-        ("module", "", Cause::ReservedWord("module".into())),
-        ("", "", Cause::BadName(String::new())),
-        ("dut", "XY stage", Cause::BadName("XY stage".into())),
+        ("module", "", EmitCause::ReservedWord("module".into())),
+        ("", "", EmitCause::BadName(String::new())),
+        ("dut", "XY stage", EmitCause::BadName("XY stage".into())),
     ] {
         let options = EmitOptions {
             top: top.into(),
@@ -182,15 +182,15 @@ kernel!(ConstantArithmeticIndex { a: Bits<16> => y: Bit } { k: Constant<Bits<4>>
 
 #[test]
 fn unit_expressions() {
-    refused::<ProductUnderCast>("y", Cause::NeedsLocal("a * b".into()));
+    refused::<ProductUnderCast>("y", EmitCause::NeedsLocal("a * b".into()));
     unsupported::<ConstantArithmeticIndex>("a slice at an offset that is a signal");
-    let index = |text: &str| Cause::ArrayIndex(text.to_owned());
-    refused::<ConstGenericValue>("y", Cause::UnknownSignal("OFFSET".into()));
+    let index = |text: &str| EmitCause::ArrayIndex(text.to_owned());
+    refused::<ConstGenericValue>("y", EmitCause::UnknownSignal("OFFSET".into()));
     refused::<SignalIndex>("y", index("v[sel$val()$index()]"));
-    refused::<SliceOfSum>("y", Cause::NeedsLocal("a + b".into()));
+    refused::<SliceOfSum>("y", EmitCause::NeedsLocal("a + b".into()));
     refused::<SliceBeyond>(
         "y",
-        Cause::OutOfRange {
+        EmitCause::OutOfRange {
             found: "a".into(),
             low: 5,
             high: 8,
@@ -200,7 +200,7 @@ fn unit_expressions() {
     unsupported::<SliceBySignal>("shift by the signal into a Local");
     refused::<ShiftBeyond>(
         "y",
-        Cause::OutOfRange {
+        EmitCause::OutOfRange {
             found: "a".into(),
             low: 8,
             high: 8,
@@ -209,34 +209,34 @@ fn unit_expressions() {
     );
     refused::<IndexTooWide>(
         "y",
-        Cause::IndexRange {
+        EmitCause::IndexRange {
             index_bits: 4,
             width: 8,
         },
     );
     refused::<LiteralTooLarge>(
         "y",
-        Cause::Literal {
+        EmitCause::Literal {
             value: 256,
             place: BITS_8,
         },
     );
-    refused::<CastsOnBothSides>("y", Cause::WidthUnknown("`signed_bit_cast`"));
+    refused::<CastsOnBothSides>("y", EmitCause::WidthUnknown("`signed_bit_cast`"));
     let bit = Type {
         width: 1,
         signed: false,
     };
     refused::<SumWithBit>(
         "y",
-        Cause::TypeMismatch {
+        EmitCause::TypeMismatch {
             found: "b".into(),
             found_type: bit,
             expected: BITS_8,
         },
     );
-    refused::<Wide>("a", Cause::Width(65));
-    refused::<LoopHidesSignal>("i", Cause::LoopVariable("i".into()));
-    refused::<LongLoop>("-", Cause::Loop { from: 0, to: 2000 });
+    refused::<Wide>("a", EmitCause::Width(65));
+    refused::<LoopHidesSignal>("i", EmitCause::LoopVariable("i".into()));
+    refused::<LongLoop>("-", EmitCause::Loop { from: 0, to: 2000 });
 }
 
 // Leaves and what is none.

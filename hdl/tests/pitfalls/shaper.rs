@@ -4,7 +4,7 @@ use crate::pitfalls::support::Row;
 use crate::pitfalls::tools;
 use crate::stimulus::{Anything, Random, table};
 use posicast_model::rtl::ClockedBlock;
-use posicast_model::rtl::shaper::{Inputs, Motion, Shaper, ShaperConfig};
+use posicast_model::rtl::shaper::{Inputs, Shaper, ShaperConfig, ShaperMotion};
 
 fn config(word_bits: u32, taps: usize, longest: u32) -> ShaperConfig {
     ShaperConfig::new(word_bits, table(&mut Random(5), 16, taps, longest, 2)).unwrap()
@@ -16,7 +16,7 @@ fn of_sizes(word_bits: u32, ring: u32, index: u32) -> ShaperConfig {
 }
 
 fn for_motion(config: ShaperConfig, channels: u32, modulo: bool) -> ShaperConfig {
-    config.for_motion(Motion { channels, modulo }).unwrap()
+    config.for_motion(ShaperMotion { channels, modulo }).unwrap()
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Kernels at sizes that are not compiled: what follows from the sizes is resolved, and what does not is refused.
 
 use crate::pitfalls::support::Dff;
-use posicast_hdl::emit::{Cause, EmitError, EmitOptions, Module, emit, emit_sized};
+use posicast_hdl::emit::{EmitCause, EmitError, EmitOptions, Module, emit, emit_sized};
 use rust_hdl_core::prelude::*;
 use rust_hdl_macros::{LogicBlock, hdl_gen};
 
@@ -93,7 +93,7 @@ fn direct<const A: usize, const B: usize, const SUM: usize, const L: usize>() ->
 }
 
 /// Refused at this signal, for this cause.
-fn refused(result: Result<Vec<Module>, EmitError>, signal: &str, cause: Cause) {
+fn refused(result: Result<Vec<Module>, EmitError>, signal: &str, cause: EmitCause) {
     let error = result.unwrap_err();
     assert_eq!(
         (error.block.as_str(), error.signal.as_str()),
@@ -116,16 +116,16 @@ fn unit_a_size_that_is_not_compiled_comes_out_as_if_it_were() {
 fn unit_a_width_that_is_no_sum_of_sizes_is_refused_at_its_signal() {
     // A + B at two of three, and at the third one more.
     let result = widths!(&[9, 9]; [12, 9, 21, 7] [11, 12, 23, 10] [10, 4, 15, 2]);
-    refused(result, "sum", Cause::SizeNumber("21, 23, 15".to_owned()));
+    refused(result, "sum", EmitCause::SizeNumber("21, 23, 15".to_owned()));
     // Twice a size.
     let result = widths!(&[9, 9]; [12, 9, 24, 7] [11, 12, 22, 10] [10, 4, 20, 2]);
-    refused(result, "sum", Cause::SizeNumber("24, 22, 20".to_owned()));
+    refused(result, "sum", EmitCause::SizeNumber("24, 22, 20".to_owned()));
     // Two samples whose sizes change alike do not tell which it is.
     let result = widths!(&[9, 9]; [12, 9, 21, 7] [11, 8, 19, 6]);
-    refused(result, "a", Cause::SizeNumber("12, 11".to_owned()));
+    refused(result, "a", EmitCause::SizeNumber("12, 11".to_owned()));
     // Wider than any signal may be.
     let result = widths!(&[60, 9]; [12, 9, 21, 7] [11, 12, 23, 10] [10, 4, 14, 2]);
-    refused(result, "sum", Cause::Width(69));
+    refused(result, "sum", EmitCause::Width(69));
 }
 
 #[test]
@@ -144,15 +144,15 @@ fn unit_a_value_that_depends_on_the_size_is_refused() {
     refused(
         with(VALUES.mask, 5, 5),
         "shift",
-        Cause::SizeValue("9, 12, 5".to_owned()),
+        EmitCause::SizeValue("9, 12, 5".to_owned()),
     );
     let values = (VALUES.mask & ((1 << 21) - 1), VALUES.mask & ((1 << 23) - 1));
     let found = format!("{}, {}, 16", values.0, values.1);
-    refused(with(1 << 4, 4, 5), "mask", Cause::SizeValue(found));
+    refused(with(1 << 4, 4, 5), "mask", EmitCause::SizeValue(found));
     let error = with(VALUES.mask, 4, 6).unwrap_err();
     assert_eq!(
         (error.block.as_str(), &*error.cause),
-        ("dut.held", &Cause::SizeValue("5, 5, 6".to_owned()))
+        ("dut.held", &EmitCause::SizeValue("5, 5, 6".to_owned()))
     );
 }
 
@@ -168,7 +168,7 @@ fn unit_a_value_that_the_wanted_width_does_not_hold_is_refused() {
         width: 13,
         signed: false,
     };
-    refused(at(&[6, 7]), "mask", Cause::Literal { value: 1 << 13, place });
+    refused(at(&[6, 7]), "mask", EmitCause::Literal { value: 1 << 13, place });
 }
 
 /// A kernel with C inputs: of another form for each C.
@@ -199,7 +199,7 @@ impl<const A: usize, const C: usize> Logic for Inputs<A, C> {
 #[test]
 fn unit_forms_that_differ_are_refused() {
     let blocks: [(&[u32], &dyn Block); 2] = [(&[8], &Inputs::<8, 2>::default()), (&[9], &Inputs::<9, 3>::default())];
-    let differs = |what: &str| Cause::SizesDiffer(what.to_owned());
+    let differs = |what: &str| EmitCause::SizesDiffer(what.to_owned());
     refused(emit_sized(&blocks, &[7], &options()), "-", differs("list of signals"));
     refused(
         emit_sized(&blocks, &[7, 8], &options()),

@@ -1,7 +1,7 @@
 //! Icarus, Verilator and Yosys on emitted modules. A tool that is missing fails the test and says so.
 
 use crate::pitfalls::support::Row;
-use posicast_hdl::emit::{Header, Instance, Module, compose};
+use posicast_hdl::emit::{Header, Module, ModuleInstance, compose};
 use posicast_model::rtl::Direction;
 use std::fmt::Write as _;
 use std::path::Path;
@@ -89,7 +89,7 @@ pub(crate) fn replay(rows: &[Row]) -> Vec<String> {
             .as_ref()
             .unwrap_or_else(|error| panic!("{}: {error}", row.name));
         write(&rtl, modules);
-        instances.push(Instance {
+        instances.push(ModuleInstance {
             name: &row.name,
             module: modules.last().unwrap(),
         });
@@ -139,7 +139,7 @@ pub(crate) fn replay(rows: &[Row]) -> Vec<String> {
     differences
 }
 
-fn widths(instance: &Instance<'_>, direction: Direction) -> u32 {
+fn widths(instance: &ModuleInstance<'_>, direction: Direction) -> u32 {
     instance
         .module
         .ports
@@ -150,7 +150,7 @@ fn widths(instance: &Instance<'_>, direction: Direction) -> u32 {
 }
 
 /// One word per vector: inputs, then outputs, most significant first.
-fn bits(row: &Row, instances: &[Instance<'_>]) -> String {
+fn bits(row: &Row, instances: &[ModuleInstance<'_>]) -> String {
     let instance = instances.iter().find(|instance| instance.name == row.name).unwrap();
     let mut text = String::new();
     for vector in &row.vectors {
@@ -168,7 +168,7 @@ fn bits(row: &Row, instances: &[Instance<'_>]) -> String {
     text
 }
 
-fn bench(rows: &[Row], instances: &[Instance<'_>], top: &Module) -> String {
+fn bench(rows: &[Row], instances: &[ModuleInstance<'_>], top: &Module) -> String {
     let mut text = "`timescale 1ns/1ns\nmodule bench;\nreg clk = 0; integer n, bad;\n".to_owned();
     for port in &top.ports {
         let kind = if port.direction == Direction::Input {
@@ -213,7 +213,7 @@ fn bench(rows: &[Row], instances: &[Instance<'_>], top: &Module) -> String {
 }
 
 /// A task that plays one row.
-fn task(row: &Row, instance: &Instance<'_>) -> String {
+fn task(row: &Row, instance: &ModuleInstance<'_>) -> String {
     let name = &row.name;
     let list = |direction: Direction| {
         let ports = instance.module.ports.iter().filter(|port| port.direction == direction);

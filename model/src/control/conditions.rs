@@ -3,8 +3,8 @@
 use super::law::Gains;
 use super::linear::{FACTORS, has_modes};
 use super::sampled::{LinearLaw, SampledLoop};
-use crate::machine_file::{Axis, Clock, Controller, Drive, DriveMode, Limits};
-use crate::rtl::sliding_mode::{Row, Settings};
+use crate::machine_file::{AxisSection, ClockSection, Controller, Drive, DriveMode, LimitsSection};
+use crate::rtl::sliding_mode::{SettingRow, Settings};
 
 /// The largest product of gains and lag.
 const GAIN_LAG_MAX: f64 = 0.5;
@@ -111,7 +111,7 @@ pub enum ControlWarning {
     #[error("the gain of row {row:?} is {actual:.4e} instead of {wanted:.4e}: its mantissa has few bits")]
     CoarseGain {
         /// The row.
-        row: Row,
+        row: SettingRow,
         /// As derived.
         wanted: f64,
         /// As quantised.
@@ -129,7 +129,7 @@ pub(super) struct Loop<'a> {
     pub(super) tick_s: f64,
     /// m per count.
     pub(super) count: f64,
-    pub(super) limits: Option<&'a Limits>,
+    pub(super) limits: Option<&'a LimitsSection>,
 }
 
 impl Loop<'_> {
@@ -270,7 +270,12 @@ impl Loop<'_> {
 }
 
 /// The first frequency between 80 and 120 % at which a loop that has the modes in it is unstable.
-pub(super) fn unstable_nearby(axis: &Axis, clock: Clock, lag_s: f64, law: &LinearLaw) -> Option<ControlWarning> {
+pub(super) fn unstable_nearby(
+    axis: &AxisSection,
+    clock: ClockSection,
+    lag_s: f64,
+    law: &LinearLaw,
+) -> Option<ControlWarning> {
     let drive = axis.drive.as_ref()?;
     if !has_modes(axis, drive) {
         return None;
@@ -321,7 +326,7 @@ pub(super) fn gain_names(controller: &Controller) -> &'static str {
 /// Gains that lost more than a thousandth to their mantissa.
 pub(super) fn coarse_gains(gains: &Gains, settings: &Settings) -> Vec<ControlWarning> {
     let actual = Gains::of_settings(settings);
-    let coarse = Row::ALL.into_iter().filter_map(|row| {
+    let coarse = SettingRow::ALL.into_iter().filter_map(|row| {
         let (wanted, actual) = (gains.get(row), actual.get(row));
         let lost = (actual - wanted).abs() > COARSE * wanted.abs();
         lost.then_some(ControlWarning::CoarseGain { row, wanted, actual })

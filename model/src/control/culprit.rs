@@ -5,8 +5,8 @@
 
 use std::fmt;
 
-use crate::machine_file::{Axis, Clock, Controller, DriveMode, ScaleUse};
-use crate::rtl::sliding_mode::Row;
+use crate::machine_file::{AxisSection, ClockSection, Controller, DriveMode, ScaleUse};
+use crate::rtl::sliding_mode::SettingRow;
 
 /// A number of the machine file that makes a gain too large or too small.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -38,13 +38,13 @@ impl fmt::Display for Culprit {
 
 /// What the gains of an axis are made of.
 pub(super) struct Numbers<'a> {
-    pub(super) axis: &'a Axis,
-    pub(super) clock: Clock,
+    pub(super) axis: &'a AxisSection,
+    pub(super) clock: ClockSection,
 }
 
 impl Numbers<'_> {
     /// The number to blame for the gain of `row`.
-    pub(super) fn culprit(&self, row: Row) -> Culprit {
+    pub(super) fn culprit(&self, row: SettingRow) -> Culprit {
         let sample = Culprit {
             key: "clock.sample_hz",
             found: self.clock.sample_hz,
@@ -62,29 +62,34 @@ impl Numbers<'_> {
     }
 
     /// Keys, values and usual values that the gain of `row` is made of.
-    fn made_of(&self, row: Row) -> Vec<(&'static str, Option<f64>, f64)> {
+    fn made_of(&self, row: SettingRow) -> Vec<(&'static str, Option<f64>, f64)> {
         let key = match self.axis.scale {
             Some(scale) if scale.usage == ScaleUse::Position => "axis.scale.counts_per_unit",
             _ => "axis.counts_per_unit",
         };
         let counts = (key, Some(self.axis.loop_counts_per_unit()), 1e6);
         let mut numbers = match row {
-            Row::Limit | Row::Duty | Row::Viscous | Row::Coulomb => Vec::new(),
+            SettingRow::Limit | SettingRow::Duty | SettingRow::Viscous | SettingRow::Coulomb => Vec::new(),
             _ => vec![counts],
         };
         let follows = matches!(
             row,
-            Row::Damping | Row::Reaching | Row::Switching | Row::Derivative | Row::Proportional | Row::Integral
+            SettingRow::Damping
+                | SettingRow::Reaching
+                | SettingRow::Switching
+                | SettingRow::Derivative
+                | SettingRow::Proportional
+                | SettingRow::Integral
         );
-        if follows || matches!(row, Row::Surface | Row::Boundary) {
+        if follows || matches!(row, SettingRow::Surface | SettingRow::Boundary) {
             numbers.extend(self.law());
         }
-        if row == Row::Fade {
+        if row == SettingRow::Fade {
             let acceleration = self.axis.limits.as_ref().and_then(|limits| limits.acceleration);
             numbers.push(("axis.limits.acceleration", acceleration, 1.0));
         }
         // The scale of the feedback is in these rows too.
-        if !matches!(row, Row::Surface | Row::Boundary) {
+        if !matches!(row, SettingRow::Surface | SettingRow::Boundary) {
             numbers.extend(self.drive(row));
         }
         numbers
@@ -125,7 +130,7 @@ impl Numbers<'_> {
         ]
     }
 
-    fn drive(&self, row: Row) -> Vec<(&'static str, Option<f64>, f64)> {
+    fn drive(&self, row: SettingRow) -> Vec<(&'static str, Option<f64>, f64)> {
         let Some(drive) = &self.axis.drive else {
             return Vec::new();
         };
@@ -141,17 +146,17 @@ impl Numbers<'_> {
                 let force = ("axis.drive.force_constant", Some(force_constant), 1.0);
                 let limit = ("axis.drive.current_limit_a", Some(current_limit_a), 1.0);
                 match row {
-                    Row::Limit => vec![limit],
-                    Row::Duty => vec![("axis.drive.full_scale_a", Some(full_scale_a), 1.0)],
-                    Row::Viscous => vec![("axis.drive.viscous", Some(drive.viscous), 1.0), force],
-                    Row::Coulomb => vec![("axis.drive.coulomb", Some(drive.coulomb), 1.0), force],
+                    SettingRow::Limit => vec![limit],
+                    SettingRow::Duty => vec![("axis.drive.full_scale_a", Some(full_scale_a), 1.0)],
+                    SettingRow::Viscous => vec![("axis.drive.viscous", Some(drive.viscous), 1.0), force],
+                    SettingRow::Coulomb => vec![("axis.drive.coulomb", Some(drive.coulomb), 1.0), force],
                     _ => vec![mass, force, limit, bandwidth],
                 }
             }
             DriveMode::Velocity { full_scale_velocity } => {
                 let velocity = ("axis.drive.full_scale_velocity", Some(full_scale_velocity), 1.0);
                 match row {
-                    Row::Limit | Row::Duty => vec![velocity],
+                    SettingRow::Limit | SettingRow::Duty => vec![velocity],
                     _ => vec![velocity, bandwidth],
                 }
             }

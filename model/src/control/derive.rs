@@ -8,8 +8,8 @@ use super::culprit::Numbers;
 use super::law::Gains;
 use super::linear::{Linear, default_linear, linear_law};
 use super::sampled::{LinearLaw, Margins, SampledLoop};
-use crate::machine_file::{Axis, Clock, Controller, Drive, DriveMode};
-use crate::rtl::sliding_mode::{Law, MANTISSA_MAX, Row, Settings};
+use crate::machine_file::{AxisSection, ClockSection, Controller, Drive, DriveMode};
+use crate::rtl::sliding_mode::{Law, MANTISSA_MAX, SettingRow, Settings};
 
 /// Command units per unit of the drive: mA per A, mm/s per m/s.
 const COMMAND_UNITS: f64 = 1000.0;
@@ -79,7 +79,7 @@ struct Units {
 ///
 /// # Errors
 /// [`ControlError`] where a table or the bandwidth is missing, a gain does not fit, or the loop is unstable on the machine.
-pub fn gains(axis: &Axis, clock: Clock, lag_s: f64) -> Result<Derived, ControlError> {
+pub fn gains(axis: &AxisSection, clock: ClockSection, lag_s: f64) -> Result<Derived, ControlError> {
     let missing = |table| ControlError::Missing {
         axis: axis.name.clone(),
         table,
@@ -118,11 +118,11 @@ pub fn gains(axis: &Axis, clock: Clock, lag_s: f64) -> Result<Derived, ControlEr
         });
     }
     let fade = closed.fade_counts_per_tick().max(LEAST_FADE);
-    let mut gains = Gains::default().with(&[(Row::Fade, 1.0 / fade)]);
+    let mut gains = Gains::default().with(&[(SettingRow::Fade, 1.0 / fade)]);
     feedback(&mut gains, controller, &linear, &drive.mode, &units);
     command(&mut gains, law, drive, &units);
     gains.set(
-        Row::Duty,
+        SettingRow::Duty,
         f64::from(pwm.period_clocks(&clock)) / full_scale(&drive.mode),
     );
     scale_feedback(&mut gains);
@@ -177,18 +177,22 @@ pub fn gains(axis: &Axis, clock: Clock, lag_s: f64) -> Result<Derived, ControlEr
 }
 
 /// The first row that the law reads, that is not 0, and that is 0 in mantissa and shift.
-fn lost(gains: &Gains, settings: &Settings, law: Law) -> Option<Row> {
+fn lost(gains: &Gains, settings: &Settings, law: Law) -> Option<SettingRow> {
     let actual = Gains::of_settings(settings);
-    let is_read = |row: &Row| match row {
-        Row::Surface | Row::Boundary | Row::Damping | Row::Reaching | Row::Switching => law == Law::SlidingMode,
-        Row::Derivative | Row::Proportional => law != Law::SlidingMode,
-        Row::Integral => law == Law::Pid,
+    let is_read = |row: &SettingRow| match row {
+        SettingRow::Surface
+        | SettingRow::Boundary
+        | SettingRow::Damping
+        | SettingRow::Reaching
+        | SettingRow::Switching => law == Law::SlidingMode,
+        SettingRow::Derivative | SettingRow::Proportional => law != Law::SlidingMode,
+        SettingRow::Integral => law == Law::Pid,
         // Nothing fades where there is no friction.
-        Row::Fade => gains.get(Row::Coulomb) != 0.0,
+        SettingRow::Fade => gains.get(SettingRow::Coulomb) != 0.0,
         _ => true,
     };
-    let is_lost = |row: &Row| gains.get(*row) != 0.0 && actual.get(*row) == 0.0;
-    Row::ALL.into_iter().find(|row| is_read(row) && is_lost(row))
+    let is_lost = |row: &SettingRow| gains.get(*row) != 0.0 && actual.get(*row) == 0.0;
+    SettingRow::ALL.into_iter().find(|row| is_read(row) && is_lost(row))
 }
 
 /// The rows of the laws: acceleration in counts/T² of a torque drive and of the sliding mode, velocity in counts/T else.
@@ -210,14 +214,14 @@ fn feedback(gains: &mut Gains, controller: &Controller, linear: &Linear, mode: &
         _ => (half, half, 0.0, 0.0),
     };
     *gains = gains.with(&[
-        (Row::Surface, c * tick_s),
-        (Row::Boundary, slope),
-        (Row::Damping, c * tick_s),
-        (Row::Reaching, k * tick_s),
-        (Row::Switching, epsilon * tick_s * tick_s / units.count),
-        (Row::Derivative, linear.derivative * order),
-        (Row::Proportional, linear.proportional * tick_s * order),
-        (Row::Integral, linear.integral * tick_s * tick_s * order),
+        (SettingRow::Surface, c * tick_s),
+        (SettingRow::Boundary, slope),
+        (SettingRow::Damping, c * tick_s),
+        (SettingRow::Reaching, k * tick_s),
+        (SettingRow::Switching, epsilon * tick_s * tick_s / units.count),
+        (SettingRow::Derivative, linear.derivative * order),
+        (SettingRow::Proportional, linear.proportional * tick_s * order),
+        (SettingRow::Integral, linear.integral * tick_s * tick_s * order),
     ]);
 }
 
@@ -234,26 +238,31 @@ fn command(gains: &mut Gains, law: Law, drive: &Drive, units: &Units) {
             let per_force = COMMAND_UNITS / force_constant;
             let per_acceleration = per_force * equivalent_mass * count / (tick_s * tick_s);
             *gains = gains.with(&[
-                (Row::Feedback, per_acceleration),
-                (Row::Acceleration, per_acceleration),
-                (Row::Viscous, per_force * drive.viscous * count / tick_s),
-                (Row::Coulomb, per_force * drive.coulomb),
-                (Row::Limit, COMMAND_UNITS * current_limit_a),
+                (SettingRow::Feedback, per_acceleration),
+                (SettingRow::Acceleration, per_acceleration),
+                (SettingRow::Viscous, per_force * drive.viscous * count / tick_s),
+                (SettingRow::Coulomb, per_force * drive.coulomb),
+                (SettingRow::Limit, COMMAND_UNITS * current_limit_a),
             ]);
         }
         DriveMode::Velocity { full_scale_velocity } => {
             let per_velocity = COMMAND_UNITS * count / tick_s;
-            gains.set(Row::Limit, COMMAND_UNITS * full_scale_velocity);
+            gains.set(SettingRow::Limit, COMMAND_UNITS * full_scale_velocity);
             match (law, drive.bandwidth_hz) {
                 (Law::SlidingMode, Some(bandwidth_hz)) => {
                     let per_acceleration = per_velocity / (TAU * bandwidth_hz * tick_s);
                     *gains = gains.with(&[
-                        (Row::Feedback, per_acceleration),
-                        (Row::Acceleration, per_acceleration),
-                        (Row::Viscous, per_velocity),
+                        (SettingRow::Feedback, per_acceleration),
+                        (SettingRow::Acceleration, per_acceleration),
+                        (SettingRow::Viscous, per_velocity),
                     ]);
                 }
-                _ => *gains = gains.with(&[(Row::Feedback, per_velocity), (Row::Velocity, per_velocity)]),
+                _ => {
+                    *gains = gains.with(&[
+                        (SettingRow::Feedback, per_velocity),
+                        (SettingRow::Velocity, per_velocity),
+                    ])
+                }
             }
         }
     }
@@ -270,24 +279,25 @@ pub(super) fn full_scale(mode: &DriveMode) -> f64 {
 
 /// Scales the feedback by a power of two: its word then holds just so much as the drive can follow, as finely as it can.
 fn scale_feedback(gains: &mut Gains) {
-    let reach = FEEDBACK_HEADROOM * gains.get(Row::Limit) / gains.get(Row::Feedback);
+    let reach = FEEDBACK_HEADROOM * gains.get(SettingRow::Limit) / gains.get(SettingRow::Feedback);
     let exponent = (FEEDBACK_RANGE / reach).log2().floor();
     let rows = [
-        Row::Damping,
-        Row::Reaching,
-        Row::Switching,
-        Row::Derivative,
-        Row::Proportional,
-        Row::Integral,
+        SettingRow::Damping,
+        SettingRow::Reaching,
+        SettingRow::Switching,
+        SettingRow::Derivative,
+        SettingRow::Proportional,
+        SettingRow::Integral,
     ];
     // A gain without room for its mantissa would be lost: the finest scale at which all fit.
-    let fits =
-        |row: &Row, scale: f64| gains.get(*row) * scale <= f64::from(MANTISSA_MAX) * f64::from(row.exponent()).exp2();
+    let fits = |row: &SettingRow, scale: f64| {
+        gains.get(*row) * scale <= f64::from(MANTISSA_MAX) * f64::from(row.exponent()).exp2()
+    };
     let scale = (0..=64).map(|step| (exponent - f64::from(step)).exp2());
     let scale = scale.into_iter().find(|scale| rows.iter().all(|row| fits(row, *scale)));
     let scale = scale.unwrap_or(1.0);
     for row in rows {
         gains.set(row, gains.get(row) * scale);
     }
-    gains.set(Row::Feedback, gains.get(Row::Feedback) / scale);
+    gains.set(SettingRow::Feedback, gains.get(SettingRow::Feedback) / scale);
 }

@@ -3,28 +3,28 @@
 //! Quantities are in counts and ticks, gains as [`Gains`] holds them. Nothing saturates here but the boundary layer, the
 //! Coulomb term and the command: the words of the hardware are wide enough, or it raises a flag.
 
-use crate::rtl::sliding_mode::{Gain, GainError, Law, Row, SETTINGS, Settings};
+use crate::rtl::sliding_mode::{Gain, GainError, Law, SETTINGS, SettingRow, Settings};
 
 /// Fraction bits of a command.
 pub const COMMAND_FRACTION: u32 = 12;
 
-/// The gains of all laws by [`Row`], and the largest command: in counts, ticks and command units.
+/// The gains of all laws by [`SettingRow`], and the largest command: in counts, ticks and command units.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Gains([f64; SETTINGS]);
 
 impl Gains {
-    /// The gain of a row; of [`Row::Limit`] the largest command.
-    pub fn get(&self, row: Row) -> f64 {
+    /// The gain of a row; of [`SettingRow::Limit`] the largest command.
+    pub fn get(&self, row: SettingRow) -> f64 {
         self.0[row as usize]
     }
 
     /// Sets the gain of a row.
-    pub fn set(&mut self, row: Row, value: f64) {
+    pub fn set(&mut self, row: SettingRow, value: f64) {
         self.0[row as usize] = value;
     }
 
     /// With other gains of some rows.
-    pub fn with(mut self, gains: &[(Row, f64)]) -> Self {
+    pub fn with(mut self, gains: &[(SettingRow, f64)]) -> Self {
         for (row, value) in gains {
             self.set(*row, *value);
         }
@@ -37,9 +37,9 @@ impl Gains {
     /// [`GainError`] for a gain that does not fit its row, or a limit that is no positive number of 31 bits.
     pub fn quantise(&self) -> Result<Settings, GainError> {
         let mut settings = Settings::default();
-        for row in Row::ALL {
+        for row in SettingRow::ALL {
             match row {
-                Row::Limit => settings.set_limit(limit_word(self.get(row))?),
+                SettingRow::Limit => settings.set_limit(limit_word(self.get(row))?),
                 _ => settings.set_gain(row, Gain::nearest(self.get(row), row)?),
             }
         }
@@ -49,8 +49,8 @@ impl Gains {
     /// What settings are worth.
     pub fn of_settings(settings: &Settings) -> Self {
         let one = f64::from(1u32 << COMMAND_FRACTION);
-        Self(Row::ALL.map(|row| match row {
-            Row::Limit => f64::from(settings.limit()) / one,
+        Self(SettingRow::ALL.map(|row| match row {
+            SettingRow::Limit => f64::from(settings.limit()) / one,
             _ => settings.gain(row).value(row),
         }))
     }
@@ -58,7 +58,7 @@ impl Gains {
 
 fn limit_word(limit: f64) -> Result<u32, GainError> {
     let one = f64::from(1u32 << COMMAND_FRACTION);
-    let (row, largest) = (Row::Limit, f64::from(crate::rtl::sliding_mode::LIMIT_MAX) / one);
+    let (row, largest) = (SettingRow::Limit, f64::from(crate::rtl::sliding_mode::LIMIT_MAX) / one);
     match limit {
         _ if !limit.is_finite() => Err(GainError::NotFinite { found: limit, row }),
         _ if !(0.0..=largest).contains(&limit) => Err(GainError::Large {
@@ -109,28 +109,30 @@ impl FloatController {
     pub fn control(&mut self, law: Law, gains: &Gains, motion: &Tracking) -> Response {
         let gain = |row| gains.get(row);
         let Tracking { error, error_rate, .. } = *motion;
-        let sliding = error_rate + gain(Row::Surface) * error;
+        let sliding = error_rate + gain(SettingRow::Surface) * error;
         let feedback = match law {
             Law::SlidingMode => {
-                let fraction = saturation(gain(Row::Boundary) * sliding);
-                gain(Row::Damping) * error_rate + gain(Row::Reaching) * sliding + gain(Row::Switching) * fraction
+                let fraction = saturation(gain(SettingRow::Boundary) * sliding);
+                gain(SettingRow::Damping) * error_rate
+                    + gain(SettingRow::Reaching) * sliding
+                    + gain(SettingRow::Switching) * fraction
             }
-            Law::Pd => gain(Row::Derivative) * error_rate + gain(Row::Proportional) * error,
+            Law::Pd => gain(SettingRow::Derivative) * error_rate + gain(SettingRow::Proportional) * error,
             Law::Pid => {
-                let linear = gain(Row::Derivative) * error_rate + gain(Row::Proportional) * error;
-                linear + gain(Row::Integral) * self.integral
+                let linear = gain(SettingRow::Derivative) * error_rate + gain(SettingRow::Proportional) * error;
+                linear + gain(SettingRow::Integral) * self.integral
             }
         };
-        let coulomb = saturation(gain(Row::Fade) * motion.velocity_reference);
-        let wanted = gain(Row::Feedback) * feedback
-            + gain(Row::Acceleration) * motion.acceleration_reference
-            + gain(Row::Velocity) * motion.velocity_reference
-            + gain(Row::Viscous) * motion.velocity
-            + gain(Row::Coulomb) * coulomb;
-        let limit = gain(Row::Limit);
+        let coulomb = saturation(gain(SettingRow::Fade) * motion.velocity_reference);
+        let wanted = gain(SettingRow::Feedback) * feedback
+            + gain(SettingRow::Acceleration) * motion.acceleration_reference
+            + gain(SettingRow::Velocity) * motion.velocity_reference
+            + gain(SettingRow::Viscous) * motion.velocity
+            + gain(SettingRow::Coulomb) * coulomb;
+        let limit = gain(SettingRow::Limit);
         let limited = i8::from(wanted > limit) - i8::from(wanted < -limit);
         // Frozen while clamped in that direction.
-        let opposes = (gain(Row::Integral) < 0.0) != (gain(Row::Feedback) < 0.0);
+        let opposes = (gain(SettingRow::Integral) < 0.0) != (gain(SettingRow::Feedback) < 0.0);
         let lowers = (error < 0.0) != opposes;
         let frozen = if lowers { limited < 0 } else { limited > 0 };
         if law == Law::Pid && !frozen {
@@ -140,7 +142,7 @@ impl FloatController {
         Response {
             sliding,
             command,
-            duty: gain(Row::Duty) * command,
+            duty: gain(SettingRow::Duty) * command,
             limited,
         }
     }

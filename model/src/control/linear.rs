@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use super::sampled::{LinearLaw, SampledLoop};
-use crate::machine_file::{Axis, Clock, Controller, Drive, DriveMode, ScaleUse};
+use crate::machine_file::{AxisSection, ClockSection, Controller, Drive, DriveMode, ScaleUse};
 
 /// The modulus margin that default gains leave on the machine of the file, and with its frequencies 10 % and 20 % off: a gain
 /// margin of at least 6 dB, and a phase margin of at least 29°.
@@ -56,14 +56,20 @@ fn of_lag(controller: &Controller, mode: &DriveMode, lag_s: f64) -> Linear {
 }
 
 /// Whether the loop has the modes in it: that of a torque drive, and that on a scale at the load.
-pub(super) fn has_modes(axis: &Axis, drive: &Drive) -> bool {
+pub(super) fn has_modes(axis: &AxisSection, drive: &Drive) -> bool {
     let on_scale = axis.scale.is_some_and(|scale| scale.usage == ScaleUse::Position);
     !axis.modes.is_empty() && (on_scale || matches!(drive.mode, DriveMode::Torque { .. }))
 }
 
 /// Gains of PD and PID: those of the file, or the defaults, which are as fast as the lag and the modes allow. Where no speed
 /// leaves the margin, which may be because of the gains in the file, they follow from the lag alone.
-pub(super) fn default_linear(axis: &Axis, clock: Clock, controller: &Controller, drive: &Drive, lag_s: f64) -> Linear {
+pub(super) fn default_linear(
+    axis: &AxisSection,
+    clock: ClockSection,
+    controller: &Controller,
+    drive: &Drive,
+    lag_s: f64,
+) -> Linear {
     let fastest = of_lag(controller, &drive.mode, lag_s);
     let given = match controller {
         Controller::SlidingMode { .. } => matches!(drive.mode, DriveMode::Velocity { .. }),

@@ -35,11 +35,11 @@ pub use derive::{Derived, gains, loop_lag_s};
 pub use law::{COMMAND_FRACTION, FloatController, Gains, Response, Tracking};
 pub use linear::DEFAULT_MARGIN;
 pub use reach::{NoTravel, TableBounds, no_travel};
-pub use schedule::{CAPTURE_CLOCKS, Schedule, ScheduleError, schedule_delay_s};
+pub use schedule::{CAPTURE_CLOCKS, ControlSchedule, ScheduleError, schedule_delay_s};
 pub use supervision::{LostSign, Supervision, lost_sign, supervision};
 pub use supervision_error::SupervisionError;
 
-use crate::rtl::sliding_mode::{GainError, Row};
+use crate::rtl::sliding_mode::{GainError, SettingRow};
 
 /// Why an axis has no gains.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -104,7 +104,7 @@ pub enum ControlError {
         /// The axis.
         axis: String,
         /// The gain.
-        row: Row,
+        row: SettingRow,
         /// As derived.
         found: f64,
         /// The smallest that is not 0.

@@ -5,7 +5,7 @@
 //! a quick stop that begins at the end.
 
 use super::supervision_error::SupervisionError;
-use crate::machine_file::Axis;
+use crate::machine_file::AxisSection;
 use crate::rtl::segments::REACH_COUNTS;
 use crate::taps::TapTable;
 
@@ -45,13 +45,13 @@ pub struct NoTravel {
 }
 
 /// A warning, where neither `travel` bounds the axis nor `modulo` lets it turn for ever.
-pub fn no_travel(axis: &Axis) -> Option<NoTravel> {
+pub fn no_travel(axis: &AxisSection) -> Option<NoTravel> {
     let bounded = axis.modulo || axis.limits.is_some_and(|limits| limits.travel.is_some());
     (!bounded).then(|| NoTravel { reach: reach(axis) })
 }
 
 /// How far the command goes from where the axis stands at reset.
-fn reach(axis: &Axis) -> f64 {
+fn reach(axis: &AxisSection) -> f64 {
     f64::from(REACH_COUNTS) / axis.loop_counts_per_unit()
 }
 
@@ -59,7 +59,7 @@ fn reach(axis: &Axis) -> f64 {
 ///
 /// # Errors
 /// [`SupervisionError::Reach`] with what it takes and what there is.
-pub(super) fn check_travel(axis: &Axis, table: &TableBounds) -> Result<(), SupervisionError> {
+pub(super) fn check_travel(axis: &AxisSection, table: &TableBounds) -> Result<(), SupervisionError> {
     let limits = axis.limits.unwrap_or_default();
     let Some([low, high]) = limits.travel.filter(|_| !axis.modulo) else {
         return Ok(());

@@ -6,7 +6,7 @@
 
 use std::fmt;
 
-use crate::machine_file::{Clock, Pwm};
+use crate::machine_file::{ClockSection, PwmSection};
 use crate::rtl::divider::DIVISION_CLOCKS;
 use crate::rtl::sliding_mode::CONTROL_CLOCKS;
 
@@ -16,7 +16,7 @@ pub const CAPTURE_CLOCKS: u32 = 4;
 
 /// The passes of one axis in a tick, one after the other, in clocks. What an axis does not have takes 0.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Schedule {
+pub struct ControlSchedule {
     capture: u32,
     divide: u32,
     shape: u32,
@@ -28,12 +28,12 @@ pub struct Schedule {
 #[error("a tick takes {schedule}, a sample lasts {available} and must last longer than that")]
 pub struct ScheduleError {
     /// What does not fit.
-    pub schedule: Schedule,
+    pub schedule: ControlSchedule,
     /// Clocks from sample to sample.
     pub available: u32,
 }
 
-impl Schedule {
+impl ControlSchedule {
     /// Of an axis whose position is measured, and not controlled.
     pub const fn measuring() -> Self {
         Self {
@@ -83,7 +83,7 @@ impl Schedule {
     }
 }
 
-impl fmt::Display for Schedule {
+impl fmt::Display for ControlSchedule {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "capture {} + divide {}", self.capture, self.divide)?;
         if self.control > 0 {
@@ -103,21 +103,21 @@ impl fmt::Display for Schedule {
 /// | half a tick | the velocity is measured over a tick |
 ///
 /// ```
-/// use posicast_model::control::{Schedule, schedule_delay_s};
-/// use posicast_model::machine_file::{Clock, Pwm, PwmMode};
+/// use posicast_model::control::{ControlSchedule, schedule_delay_s};
+/// use posicast_model::machine_file::{ClockSection, PwmSection, PwmMode};
 ///
-/// let clock = Clock { frequency_hz: 50e6, sample_hz: 10e3 };
-/// let pwm = Pwm {
+/// let clock = ClockSection { frequency_hz: 50e6, sample_hz: 10e3 };
+/// let pwm = PwmSection {
 ///     mode: PwmMode::HalfBridge,
 ///     frequency_hz: 20e3,
 ///     dead_time_s: 0.0,
 ///     minimum_pulse_s: 0.0,
 ///     active_low: false,
 /// };
-/// let delay_s = schedule_delay_s(&clock, &pwm, Schedule::controlling(38).clocks());
+/// let delay_s = schedule_delay_s(&clock, &pwm, ControlSchedule::controlling(38).clocks());
 /// assert!((delay_s - 150e-6).abs() < 1e-12);
 /// ```
-pub fn schedule_delay_s(clock: &Clock, pwm: &Pwm, schedule_clocks: u32) -> f64 {
+pub fn schedule_delay_s(clock: &ClockSection, pwm: &PwmSection, schedule_clocks: u32) -> f64 {
     let periods = schedule_clocks / pwm.period_clocks(clock).max(1) + 1;
     f64::from(periods) / pwm.frequency_hz + clock.sample_period_s()
 }
@@ -129,21 +129,21 @@ mod tests {
 
     #[test]
     fn unit_a_schedule_must_end_before_the_next_tick() {
-        let schedule = Schedule::controlling(38);
+        let schedule = ControlSchedule::controlling(38);
         assert_eq!(schedule.clocks(), 4 + 102 + 38 + 517);
         assert_eq!(schedule.fits(662), Ok(()));
         let error = schedule.fits(661).unwrap_err().to_string();
         let sum = "capture 4 + divide 102 + shape 38 + control 517 = 661 clocks, a sample lasts 661";
         assert!(error.contains(sum), "{error}");
-        assert_eq!(Schedule::measuring().clocks(), 106);
-        assert!(!Schedule::measuring().to_string().contains("control"));
+        assert_eq!(ControlSchedule::measuring().clocks(), 106);
+        assert!(!ControlSchedule::measuring().to_string().contains("control"));
         // No overflow, whatever a pass takes.
-        assert!(Schedule::controlling(u32::MAX).fits(u32::MAX).is_err());
+        assert!(ControlSchedule::controlling(u32::MAX).fits(u32::MAX).is_err());
     }
 
     #[test]
     fn unit_the_largest_sample_rate_fits_and_the_next_one_does_not() {
-        let schedule = Schedule::controlling(38);
+        let schedule = ControlSchedule::controlling(38);
         for step in [1, 50, 100, 661, 662, 2500] {
             let clocks = (50e6 / schedule.largest_sample_hz(50e6, step)).round() as u32;
             assert_eq!(u64::from(clocks) % step, 0);
@@ -155,18 +155,18 @@ mod tests {
 
     #[test]
     fn unit_a_schedule_longer_than_a_period_waits_for_a_later_boundary() {
-        let clock = Clock {
+        let clock = ClockSection {
             frequency_hz: 50e6,
             sample_hz: 50e3,
         };
-        let pwm = Pwm {
+        let pwm = PwmSection {
             mode: PwmMode::HalfBridge,
             frequency_hz: 200e3,
             dead_time_s: 0.0,
             minimum_pulse_s: 0.0,
             active_low: false,
         };
-        let delay_s = schedule_delay_s(&clock, &pwm, Schedule::controlling(38).clocks());
+        let delay_s = schedule_delay_s(&clock, &pwm, ControlSchedule::controlling(38).clocks());
         assert!((delay_s - 35e-6).abs() < 1e-12, "{delay_s}");
     }
 }

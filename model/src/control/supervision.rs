@@ -20,13 +20,13 @@
 //!
 //! So no limit is looser than the file asks for, no brake gets less time, and no filter lets more through. What a word does
 //! not hold, above or below, is an error: nothing is clamped. "Counts" are those
-//! that the loop runs on, [`Axis::loop_counts_per_unit`].
+//! that the loop runs on, [`AxisSection::loop_counts_per_unit`].
 
 use super::reach::{TableBounds, check_travel};
 use super::supervision_error::SupervisionError;
 use crate::control::derive::full_scale;
 use crate::control::law::COMMAND_FRACTION;
-use crate::machine_file::{Axis, Clock, Drive, DriveMode, Limits, Pwm};
+use crate::machine_file::{AxisSection, ClockSection, Drive, DriveMode, LimitsSection, PwmSection};
 use crate::rtl::segments::{ACCELERATION_FRACTION, POSITION_FRACTION};
 
 /// Fraction bits of the controller's error e.
@@ -119,7 +119,11 @@ impl Supervision {
 ///
 /// # Errors
 /// [`SupervisionError`] names the first value that its word does not hold, with the range that it does.
-pub fn supervision(axis: &Axis, clock: &Clock, table: TableBounds) -> Result<Supervision, SupervisionError> {
+pub fn supervision(
+    axis: &AxisSection,
+    clock: &ClockSection,
+    table: TableBounds,
+) -> Result<Supervision, SupervisionError> {
     let missing = |table| SupervisionError::Missing {
         axis: axis.name.clone(),
         table,
@@ -185,7 +189,7 @@ pub enum LostSign {
 const SLOWER: f64 = 1.2;
 
 /// Whether the words of [`supervision`] let the watch of the encoder see a wrong sign.
-pub fn lost_sign(axis: &Axis) -> LostSign {
+pub fn lost_sign(axis: &AxisSection) -> LostSign {
     let limits = axis.limits.unwrap_or_default();
     let Some(drive) = axis.drive.as_ref().filter(|_| limits.encoder_lost_s > 0.0) else {
         return LostSign::Unknown;
@@ -214,10 +218,10 @@ pub fn lost_sign(axis: &Axis) -> LostSign {
 
 /// What the words are made of.
 struct Words<'a> {
-    axis: &'a Axis,
-    clock: &'a Clock,
-    limits: Limits,
-    pwm: &'a Pwm,
+    axis: &'a AxisSection,
+    clock: &'a ClockSection,
+    limits: LimitsSection,
+    pwm: &'a PwmSection,
     drive: &'a Drive,
 }
 

@@ -24,7 +24,7 @@ use std::f64::consts::PI;
 use nalgebra::{Complex, DVector};
 
 use super::joint_error::{JointError, check_distinct, list};
-use super::kind::Kind;
+use super::kind::ShaperKind;
 use super::ratios::{self, Class, MULTIPLE_MAX};
 use super::{DesignError, newton};
 use crate::impulse::{Impulse, ImpulseSequence};
@@ -32,7 +32,7 @@ use crate::mode::Mode;
 
 /// How the impulses of a set of modes are found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Method {
+pub enum AntisymmetricMethod {
     /// Product over the distinct decay rates: no residual at any mode.
     #[default]
     Exact,
@@ -42,13 +42,13 @@ pub enum Method {
     ThreeImpulse,
 }
 
-impl Method {
+impl AntisymmetricMethod {
     /// The method of that name in the machine file.
     pub fn from_name(name: &str) -> Option<Self> {
         match name {
-            "exact" => Some(Method::Exact),
-            "two-impulse" => Some(Method::TwoImpulse),
-            "three-impulse" => Some(Method::ThreeImpulse),
+            "exact" => Some(AntisymmetricMethod::Exact),
+            "two-impulse" => Some(AntisymmetricMethod::TwoImpulse),
+            "three-impulse" => Some(AntisymmetricMethod::ThreeImpulse),
             _ => None,
         }
     }
@@ -83,7 +83,7 @@ pub struct Antisymmetric {
 /// invalid mode.
 pub fn design(
     participants: &[Participant],
-    method: Method,
+    method: AntisymmetricMethod,
     ratio_tolerance: f64,
 ) -> Result<Antisymmetric, DesignError> {
     let modes: Vec<Mode> = participants.iter().map(|p| p.mode).collect();
@@ -99,7 +99,7 @@ pub fn design(
         antisymmetric_classes(&damped_hz)?
     };
     let no_sequence = |cause| DesignError::NoSequence {
-        what: format!("shaper \"{}\"", Kind::Antisymmetric),
+        what: format!("shaper \"{}\"", ShaperKind::Antisymmetric),
         cause,
     };
     let mut impulses = ImpulseSequence::unity();
@@ -127,7 +127,11 @@ fn antisymmetric_classes(damped_hz: &[f64]) -> Result<Vec<Class>, JointError> {
     Ok(classes)
 }
 
-fn class_impulses(members: &[Participant], class: &Class, method: Method) -> Result<Vec<Impulse>, JointError> {
+fn class_impulses(
+    members: &[Participant],
+    class: &Class,
+    method: AntisymmetricMethod,
+) -> Result<Vec<Impulse>, JointError> {
     let antiperiod_s = class.multiples.antiperiod().ok_or(JointError::NoCommonDivisor {
         frequencies_hz: list(&members.iter().map(|p| p.mode.damped_frequency_hz()).collect::<Vec<_>>()),
         most: MULTIPLE_MAX,
@@ -145,9 +149,9 @@ fn class_impulses(members: &[Participant], class: &Class, method: Method) -> Res
         });
     let swings: Vec<Swing> = swings.collect();
     match method {
-        Method::Exact => Ok(exact(antiperiod_s, &decays)),
-        Method::TwoImpulse => Ok(two_impulse(antiperiod_s, &swings)),
-        Method::ThreeImpulse => three_impulse(antiperiod_s, &swings),
+        AntisymmetricMethod::Exact => Ok(exact(antiperiod_s, &decays)),
+        AntisymmetricMethod::TwoImpulse => Ok(two_impulse(antiperiod_s, &swings)),
+        AntisymmetricMethod::ThreeImpulse => three_impulse(antiperiod_s, &swings),
     }
 }
 

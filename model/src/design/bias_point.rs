@@ -35,7 +35,7 @@
 use std::f64::consts::PI;
 
 use super::DesignError;
-use super::kind::Kind;
+use super::kind::ShaperKind;
 use crate::impulse::{Impulse, ImpulseSequence};
 use crate::mode::Mode;
 
@@ -57,7 +57,7 @@ pub struct BiasPoint {
 ///
 /// # Errors
 /// [`DesignError::BiasPoint`] for a tolerance outside (0, 1), an order outside 1..=[`ORDER_MAX`], a kind of another family.
-pub fn undamped(kind: Kind, order: u32, tolerance: f64) -> Result<BiasPoint, DesignError> {
+pub fn undamped(kind: ShaperKind, order: u32, tolerance: f64) -> Result<BiasPoint, DesignError> {
     let ripple = Ripple::of(kind, order, tolerance)?;
     let edge = (ripple.factor_tolerance.recip().acosh() / f64::from(ripple.pairs)).cosh();
     let cosines = ripple.cosines((3.0 - edge) / (1.0 + edge));
@@ -73,7 +73,7 @@ pub fn undamped(kind: Kind, order: u32, tolerance: f64) -> Result<BiasPoint, Des
 /// # Errors
 /// [`DesignError::BiasPoint`] as for [`undamped`]; [`DesignError::NoSolution`] where no `V′` below 1 leaves the tolerance:
 /// from ζ .504 on at 5 % for `zv-ei`, .31 `zv-ei-2`, .28 `multi-ei`, .19 order 3, .18 `zvd-ei`, .12 order 5.
-pub fn design(kind: Kind, order: u32, mode: &Mode, tolerance: f64) -> Result<ImpulseSequence, DesignError> {
+pub fn design(kind: ShaperKind, order: u32, mode: &Mode, tolerance: f64) -> Result<ImpulseSequence, DesignError> {
     DesignError::check_mode(mode)?;
     let ripple = Ripple::of(kind, order, tolerance)?;
     let ratio = mode.half_swing_ratio();
@@ -103,13 +103,13 @@ struct Ripple {
 }
 
 impl Ripple {
-    fn of(kind: Kind, order: u32, tolerance: f64) -> Result<Self, DesignError> {
+    fn of(kind: ShaperKind, order: u32, tolerance: f64) -> Result<Self, DesignError> {
         let structure = match kind {
-            Kind::ZvEi => Some((1, 1)),
-            Kind::ZvEi2 => Some((1, 2)),
-            Kind::ZvdEi => Some((1, 4)),
-            Kind::MultiEi => Some((2, 1)),
-            Kind::ChebyshevEi if (1..=ORDER_MAX).contains(&order) => Some((order, 1)),
+            ShaperKind::ZvEi => Some((1, 1)),
+            ShaperKind::ZvEi2 => Some((1, 2)),
+            ShaperKind::ZvdEi => Some((1, 4)),
+            ShaperKind::MultiEi => Some((2, 1)),
+            ShaperKind::ChebyshevEi if (1..=ORDER_MAX).contains(&order) => Some((order, 1)),
             _ => None,
         };
         match structure {
@@ -177,16 +177,16 @@ mod tests {
     use super::*;
     use crate::analysis::residual_vibration;
 
-    const KINDS: [(Kind, u32); 9] = [
-        (Kind::ZvEi, 1),
-        (Kind::ZvEi2, 1),
-        (Kind::ZvdEi, 1),
-        (Kind::MultiEi, 1),
-        (Kind::ChebyshevEi, 1),
-        (Kind::ChebyshevEi, 2),
-        (Kind::ChebyshevEi, 3),
-        (Kind::ChebyshevEi, 4),
-        (Kind::ChebyshevEi, 5),
+    const KINDS: [(ShaperKind, u32); 9] = [
+        (ShaperKind::ZvEi, 1),
+        (ShaperKind::ZvEi2, 1),
+        (ShaperKind::ZvdEi, 1),
+        (ShaperKind::MultiEi, 1),
+        (ShaperKind::ChebyshevEi, 1),
+        (ShaperKind::ChebyshevEi, 2),
+        (ShaperKind::ChebyshevEi, 3),
+        (ShaperKind::ChebyshevEi, 4),
+        (ShaperKind::ChebyshevEi, 5),
     ];
 
     fn mode(damping: f64) -> Mode {
@@ -199,14 +199,14 @@ mod tests {
     #[test]
     fn unit_closed_forms_of_the_paper() {
         let v = 0.05f64;
-        let zv_ei = undamped(Kind::ZvEi, 1, v).unwrap();
+        let zv_ei = undamped(ShaperKind::ZvEi, 1, v).unwrap();
         for (found, expected) in zv_ei.amplitudes.iter().zip([0.2625, 0.475, 0.2625]) {
             assert!((found - expected).abs() < 1e-15);
         }
         let root = (2.0 * (v * v + v)).sqrt();
         let first = (1.0 + 3.0 * v + 2.0 * root) / 16.0;
         let second = (1.0 - v) / 4.0;
-        let multi = undamped(Kind::MultiEi, 1, v).unwrap();
+        let multi = undamped(ShaperKind::MultiEi, 1, v).unwrap();
         for (found, expected) in multi
             .amplitudes
             .iter()
@@ -214,7 +214,7 @@ mod tests {
         {
             assert!((found - expected).abs() < 1e-15);
         }
-        assert_eq!(multi, undamped(Kind::ChebyshevEi, 2, v).unwrap());
+        assert_eq!(multi, undamped(ShaperKind::ChebyshevEi, 2, v).unwrap());
     }
 
     #[test]
@@ -258,13 +258,13 @@ mod tests {
     #[test]
     fn unit_what_the_family_does_not_have_is_an_error() {
         for (kind, order, tolerance) in [
-            (Kind::Zv, 1, 0.05),
-            (Kind::ChebyshevEi, 0, 0.05),
-            (Kind::ChebyshevEi, 6, 0.05),
-            (Kind::ZvEi, 1, 0.0),
-            (Kind::ZvEi, 1, 1.0),
-            (Kind::ZvEi, 1, f64::NAN),
-            (Kind::ZvEi, 1, f64::INFINITY),
+            (ShaperKind::Zv, 1, 0.05),
+            (ShaperKind::ChebyshevEi, 0, 0.05),
+            (ShaperKind::ChebyshevEi, 6, 0.05),
+            (ShaperKind::ZvEi, 1, 0.0),
+            (ShaperKind::ZvEi, 1, 1.0),
+            (ShaperKind::ZvEi, 1, f64::NAN),
+            (ShaperKind::ZvEi, 1, f64::INFINITY),
         ] {
             assert!(matches!(
                 undamped(kind, order, tolerance),
@@ -276,7 +276,7 @@ mod tests {
             ));
         }
         // Damping at which K, or a tolerance at which 1/V, has no place in f64.
-        assert!(design(Kind::ZvEi, 1, &mode(1.0 - 1e-16), 0.05).is_err());
-        assert!(design(Kind::ChebyshevEi, 5, &mode(0.9), 1e-300).is_ok());
+        assert!(design(ShaperKind::ZvEi, 1, &mode(1.0 - 1e-16), 0.05).is_err());
+        assert!(design(ShaperKind::ChebyshevEi, 5, &mode(0.9), 1e-300).is_ok());
     }
 }

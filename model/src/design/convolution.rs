@@ -9,11 +9,11 @@
 
 use std::fmt;
 
-use super::kind::Kind;
-use super::{AxisDesign, Parts};
+use super::kind::ShaperKind;
+use super::{AxisDesign, ShaperParts};
 use crate::analysis::residual_vibration;
 use crate::impulse::PartialSums;
-use crate::machine_file::Axis;
+use crate::machine_file::AxisSection;
 use crate::mode::Mode;
 
 /// A sum or residual beyond its bound by less than this share is rounding.
@@ -38,7 +38,7 @@ pub struct CrossGain {
     /// Mode that the shaper is for, as a position in the file, from 0.
     pub shaper: usize,
     /// Kind of that shaper.
-    pub kind: Kind,
+    pub kind: ShaperKind,
     /// Mode at which its residual vibration is taken, as a position in the file, from 0.
     pub at: usize,
     /// Residual vibration there: factor by which it scales what the other shapers leave.
@@ -64,7 +64,7 @@ pub enum ConvolutionWarning {
         /// The mode.
         mode: Mode,
         /// Its kind.
-        kind: Kind,
+        kind: ShaperKind,
         /// Residual of the whole axis there.
         residual: f64,
         /// Its tolerance.
@@ -75,7 +75,7 @@ pub enum ConvolutionWarning {
 }
 
 /// The figures of `design`, which is that of `axis`.
-pub fn convolution_figures(axis: &Axis, design: &AxisDesign) -> ConvolutionFigures {
+pub fn convolution_figures(axis: &AxisSection, design: &AxisDesign) -> ConvolutionFigures {
     let partial_sums = design.impulses.partial_sums();
     let mut figures = ConvolutionFigures {
         partial_sums,
@@ -83,7 +83,7 @@ pub fn convolution_figures(axis: &Axis, design: &AxisDesign) -> ConvolutionFigur
         cross_gains: Vec::new(),
         warnings: Vec::new(),
     };
-    let Parts::PerMode(parts) = &design.parts else {
+    let ShaperParts::PerMode(parts) = &design.parts else {
         return figures;
     };
     let negative = parts

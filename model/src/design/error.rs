@@ -4,8 +4,8 @@ use thiserror::Error;
 
 use super::IMPULSES_MAX;
 use super::joint_error::JointError;
-use super::kind::Kind;
-use crate::digitise::TableError;
+use super::kind::ShaperKind;
+use crate::digitise::DigitiseError;
 use crate::impulse::ImpulseError;
 use crate::mode::Mode;
 
@@ -16,7 +16,7 @@ pub enum DesignError {
     #[error("not built in this version: {kind}")]
     NotBuilt {
         /// The kind.
-        kind: Kind,
+        kind: ShaperKind,
     },
     /// A kind per mode, and no mode.
     #[error(
@@ -38,7 +38,7 @@ pub enum DesignError {
         /// The axis.
         axis: String,
         /// The kind.
-        kind: Kind,
+        kind: ShaperKind,
         /// The mode.
         mode: Mode,
     },
@@ -57,7 +57,7 @@ pub enum DesignError {
         hz = mode.frequency_hz)]
     Tolerance {
         /// The kind.
-        kind: Kind,
+        kind: ShaperKind,
         /// The mode.
         mode: Mode,
         /// The tolerance found.
@@ -74,7 +74,7 @@ pub enum DesignError {
     )]
     BiasPoint {
         /// The kind.
-        kind: Kind,
+        kind: ShaperKind,
         /// Its order.
         order: u32,
         /// The tolerance.
@@ -87,13 +87,13 @@ pub enum DesignError {
     )]
     Damping {
         /// The kind.
-        kind: Kind,
+        kind: ShaperKind,
         /// The mode.
         mode: Mode,
         /// Largest damping of the kind.
         most: f64,
         /// A kind that takes this damping.
-        instead: Kind,
+        instead: ShaperKind,
     },
     /// Newton's method lost the solution on the way to the damping and tolerance.
     #[error(
@@ -103,7 +103,7 @@ pub enum DesignError {
     )]
     NotSolved {
         /// The kind.
-        kind: Kind,
+        kind: ShaperKind,
         /// The mode.
         mode: Mode,
         /// Share of the way, 0 to 1.
@@ -118,7 +118,7 @@ pub enum DesignError {
     )]
     NoSolution {
         /// The kind.
-        kind: Kind,
+        kind: ShaperKind,
         /// The mode.
         mode: Mode,
         /// The tolerance.
@@ -136,7 +136,7 @@ pub enum DesignError {
     )]
     Unverified {
         /// The kind.
-        kind: Kind,
+        kind: ShaperKind,
         /// The mode.
         mode: Mode,
         /// Residual of the design.
@@ -172,18 +172,18 @@ pub enum DesignError {
         /// The axis.
         axis: String,
         /// Its kind.
-        kind: Kind,
+        kind: ShaperKind,
         /// What is wrong.
         cause: Box<DesignError>,
     },
     /// A shaper without a tap table.
     #[error(transparent)]
-    Table(#[from] TableError),
+    Table(#[from] DigitiseError),
 }
 
 impl DesignError {
     /// Impulses of a kind at a mode that are no shaper.
-    pub(super) fn no_sequence(kind: Kind, mode: &Mode, cause: ImpulseError) -> Self {
+    pub(super) fn no_sequence(kind: ShaperKind, mode: &Mode, cause: ImpulseError) -> Self {
         DesignError::NoSequence {
             what: format!(
                 "shaper \"{kind}\" at mode {} Hz, damping {}",
@@ -194,7 +194,7 @@ impl DesignError {
     }
 
     /// What a design leaves, against what its kind promises.
-    pub(super) fn verify(kind: Kind, mode: &Mode, found: f64, promised: f64, accuracy: f64) -> Result<(), Self> {
+    pub(super) fn verify(kind: ShaperKind, mode: &Mode, found: f64, promised: f64, accuracy: f64) -> Result<(), Self> {
         if (found - promised).abs() <= accuracy {
             Ok(())
         } else {

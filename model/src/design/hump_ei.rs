@@ -20,7 +20,7 @@ use nalgebra::DVector;
 
 use super::DesignError;
 use super::equations::{Equations, Linearised, Point, Ratio};
-use super::kind::Kind;
+use super::kind::ShaperKind;
 use super::path::{Branch, follow};
 use crate::analysis::residual_vibration;
 use crate::impulse::{Impulse, ImpulseSequence};
@@ -57,12 +57,12 @@ pub struct HumpEi {
 /// [`DesignError::Tolerance`] outside [`TOLERANCE_MIN`]..=[`TOLERANCE_MAX`]; [`DesignError::NoSolution`] above the damping
 /// at which the solution ends, an amplitude becomes negative or two impulses meet; [`DesignError::NotBuilt`] for a kind of
 /// another family.
-pub fn design(kind: Kind, mode: &Mode, tolerance: f64) -> Result<HumpEi, DesignError> {
+pub fn design(kind: ShaperKind, mode: &Mode, tolerance: f64) -> Result<HumpEi, DesignError> {
     DesignError::check_mode(mode)?;
     let zeros = match kind {
-        Kind::Ei => 2,
-        Kind::TwoHumpEi => 3,
-        Kind::ThreeHumpEi => 4,
+        ShaperKind::Ei => 2,
+        ShaperKind::TwoHumpEi => 3,
+        ShaperKind::ThreeHumpEi => 4,
         _ => return Err(DesignError::NotBuilt { kind }),
     };
     if !(TOLERANCE_MIN..=TOLERANCE_MAX).contains(&tolerance) {
@@ -253,7 +253,7 @@ impl Branch for Path {
 mod tests {
     use super::*;
 
-    const KINDS: [Kind; 3] = [Kind::Ei, Kind::TwoHumpEi, Kind::ThreeHumpEi];
+    const KINDS: [ShaperKind; 3] = [ShaperKind::Ei, ShaperKind::TwoHumpEi, ShaperKind::ThreeHumpEi];
 
     fn mode(damping: f64) -> Mode {
         Mode {
@@ -269,10 +269,10 @@ mod tests {
         let two = (3.0 * cube_root * cube_root + 2.0 * cube_root + 3.0 * v * v) / (16.0 * cube_root);
         let three = (1.0 + 3.0 * v + 2.0 * (2.0 * (v * v + v)).sqrt()) / 16.0;
         for (kind, expected) in [
-            (Kind::Ei, vec![(1.0 + v) / 4.0, (1.0 - v) / 2.0, (1.0 + v) / 4.0]),
-            (Kind::TwoHumpEi, vec![two, 0.5 - two, 0.5 - two, two]),
+            (ShaperKind::Ei, vec![(1.0 + v) / 4.0, (1.0 - v) / 2.0, (1.0 + v) / 4.0]),
+            (ShaperKind::TwoHumpEi, vec![two, 0.5 - two, 0.5 - two, two]),
             (
-                Kind::ThreeHumpEi,
+                ShaperKind::ThreeHumpEi,
                 vec![
                     three,
                     (1.0 - v) / 4.0,
@@ -292,8 +292,12 @@ mod tests {
 
     #[test]
     fn unit_small_tolerances_approach_the_powers_of_zv() {
-        for (kind, power) in [(Kind::Ei, 2), (Kind::TwoHumpEi, 3), (Kind::ThreeHumpEi, 4)] {
-            let zv = crate::design::zv::design(Kind::Zv, &mode(0.2), power).unwrap();
+        for (kind, power) in [
+            (ShaperKind::Ei, 2),
+            (ShaperKind::TwoHumpEi, 3),
+            (ShaperKind::ThreeHumpEi, 4),
+        ] {
+            let zv = crate::design::zv::design(ShaperKind::Zv, &mode(0.2), power).unwrap();
             let found = design(kind, &mode(0.2), TOLERANCE_MIN).unwrap();
             for (a, b) in zv.impulses().iter().zip(found.impulses.impulses()) {
                 assert!(
@@ -350,9 +354,9 @@ mod tests {
     #[test]
     fn unit_short_steps_lead_to_the_same_solution() {
         for (kind, zeros, dampings) in [
-            (Kind::Ei, 2, [0.2, 0.6]),
-            (Kind::TwoHumpEi, 3, [0.2, 0.44]),
-            (Kind::ThreeHumpEi, 4, [0.1, 0.27]),
+            (ShaperKind::Ei, 2, [0.2, 0.6]),
+            (ShaperKind::TwoHumpEi, 3, [0.2, 0.44]),
+            (ShaperKind::ThreeHumpEi, 4, [0.1, 0.27]),
         ] {
             for damping in dampings {
                 let path = Path::new(zeros, damping, 0.05);

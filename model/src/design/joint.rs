@@ -1,15 +1,15 @@
 //! Kinds that treat all modes of an axis together: from the keys of the machine file to their designs.
 
-use super::antisymmetric::{self, Antisymmetric, Method, Participant};
+use super::antisymmetric::{self, Antisymmetric, AntisymmetricMethod, Participant};
 use super::constraint::{Amplitudes, Constraint};
 use super::joint_error::JointError;
-use super::kind::Kind;
+use super::kind::ShaperKind;
 use super::periodic::{self, Base, Periodic};
 use super::simultaneous::{self, Simultaneous};
 use super::{DesignError, RESIDUAL_TOLERANCE, custom};
 use crate::analysis::residual_vibration;
 use crate::impulse::ImpulseSequence;
-use crate::machine_file::{Axis, DEFAULT_CHEBYSHEV_ORDER, DEFAULT_TOLERANCE};
+use crate::machine_file::{AxisSection, DEFAULT_CHEBYSHEV_ORDER, DEFAULT_TOLERANCE};
 use crate::mode::Mode;
 
 /// What a design found out beside its impulses.
@@ -30,11 +30,11 @@ pub enum Findings {
 ///
 /// # Errors
 /// [`DesignError::JointOfAxis`] with the axis and the cause; [`DesignError::NoModes`] without modes to design for.
-pub(super) fn design(axis: &Axis, kind: Kind) -> Result<(ImpulseSequence, Findings), DesignError> {
+pub(super) fn design(axis: &AxisSection, kind: ShaperKind) -> Result<(ImpulseSequence, Findings), DesignError> {
     let given = axis.shaper.as_ref();
     match kind {
-        Kind::None => return Ok((ImpulseSequence::unity(), Findings::None)),
-        Kind::Custom => {
+        ShaperKind::None => return Ok((ImpulseSequence::unity(), Findings::None)),
+        ShaperKind::Custom => {
             let impulses = given.map_or(&[][..], |s| &s.impulses);
             return Ok((custom::design(&axis.name, impulses)?, Findings::None));
         }
@@ -47,9 +47,9 @@ pub(super) fn design(axis: &Axis, kind: Kind) -> Result<(ImpulseSequence, Findin
         });
     }
     let found = match kind {
-        Kind::Periodic => design_periodic(axis),
-        Kind::Antisymmetric => design_antisymmetric(axis),
-        Kind::Simultaneous => design_simultaneous(axis),
+        ShaperKind::Periodic => design_periodic(axis),
+        ShaperKind::Antisymmetric => design_antisymmetric(axis),
+        ShaperKind::Simultaneous => design_simultaneous(axis),
         _ => return Err(DesignError::NotBuilt { kind }),
     };
     found.map_err(|cause| DesignError::JointOfAxis {
@@ -59,10 +59,10 @@ pub(super) fn design(axis: &Axis, kind: Kind) -> Result<(ImpulseSequence, Findin
     })
 }
 
-fn design_periodic(axis: &Axis) -> Result<(ImpulseSequence, Findings), DesignError> {
+fn design_periodic(axis: &AxisSection) -> Result<(ImpulseSequence, Findings), DesignError> {
     let given = axis.shaper.as_ref();
     let base = Base {
-        kind: given.and_then(|s| s.base).unwrap_or(Kind::MultiEi),
+        kind: given.and_then(|s| s.base).unwrap_or(ShaperKind::MultiEi),
         order: given.and_then(|s| s.order).unwrap_or(DEFAULT_CHEBYSHEV_ORDER),
         tolerance: given.and_then(|s| s.tolerance).unwrap_or(DEFAULT_TOLERANCE),
     };
@@ -71,9 +71,11 @@ fn design_periodic(axis: &Axis) -> Result<(ImpulseSequence, Findings), DesignErr
     Ok((found.impulses.clone(), Findings::Periodic(found)))
 }
 
-fn design_antisymmetric(axis: &Axis) -> Result<(ImpulseSequence, Findings), DesignError> {
+fn design_antisymmetric(axis: &AxisSection) -> Result<(ImpulseSequence, Findings), DesignError> {
     let given = axis.shaper.as_ref();
-    let method = given.and_then(|s| s.method.as_deref()).and_then(Method::from_name);
+    let method = given
+        .and_then(|s| s.method.as_deref())
+        .and_then(AntisymmetricMethod::from_name);
     let method = method.unwrap_or_default();
     let ratio_tolerance = given.and_then(|s| s.ratio_tolerance).unwrap_or(0.0);
     let participants = axis.modes.iter().map(|m| Participant {
@@ -83,30 +85,30 @@ fn design_antisymmetric(axis: &Axis) -> Result<(ImpulseSequence, Findings), Desi
     let participants: Vec<Participant> = participants.collect();
     let found = antisymmetric::design(&participants, method, ratio_tolerance)?;
     // The paper's damped impulses and ratios with a tolerance leave what they leave.
-    if method == Method::Exact && ratio_tolerance == 0.0 {
-        check_zeros(Kind::Antisymmetric, &found.impulses, axis)?;
+    if method == AntisymmetricMethod::Exact && ratio_tolerance == 0.0 {
+        check_zeros(ShaperKind::Antisymmetric, &found.impulses, axis)?;
     }
     Ok((found.impulses.clone(), Findings::Antisymmetric(found)))
 }
 
-fn design_simultaneous(axis: &Axis) -> Result<(ImpulseSequence, Findings), DesignError> {
+fn design_simultaneous(axis: &AxisSection) -> Result<(ImpulseSequence, Findings), DesignError> {
     let given = axis.shaper.as_ref();
     let amplitudes = match given.and_then(|s| s.amplitude.as_deref()) {
         Some("um") => Amplitudes::UnitMagnitude,
         _ => Amplitudes::PartialSum,
     };
     let constraints = axis.modes.iter().map(|m| match axis.kind_of(m) {
-        Kind::Zv => Ok((m.mode, Constraint::Zv)),
-        Kind::Zvd => Ok((m.mode, Constraint::Zvd)),
+        ShaperKind::Zv => Ok((m.mode, Constraint::Zv)),
+        ShaperKind::Zvd => Ok((m.mode, Constraint::Zvd)),
         other => Err(JointError::Constraint(other)),
     });
     let constraints: Vec<(Mode, Constraint)> = constraints.collect::<Result<_, _>>()?;
     let found = simultaneous::design(&constraints, amplitudes)?;
-    check_zeros(Kind::Simultaneous, &found.impulses, axis)?;
+    check_zeros(ShaperKind::Simultaneous, &found.impulses, axis)?;
     Ok((found.impulses.clone(), Findings::Simultaneous(found)))
 }
 
-fn check_zeros(kind: Kind, impulses: &ImpulseSequence, axis: &Axis) -> Result<(), DesignError> {
+fn check_zeros(kind: ShaperKind, impulses: &ImpulseSequence, axis: &AxisSection) -> Result<(), DesignError> {
     for mode in axis.modes.iter().map(|m| m.mode) {
         let found = residual_vibration(impulses.impulses(), &mode);
         if found.is_nan() || found > RESIDUAL_TOLERANCE {

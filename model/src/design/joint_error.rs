@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use super::kind::Kind;
+use super::kind::ShaperKind;
 use crate::mode::Mode;
 
 /// Why the modes of an axis have no common shaper. Modes are counted from 1, in the order of the file.
@@ -20,7 +20,7 @@ pub enum JointError {
     },
     /// A base that does not repeat over the modes.
     #[error("no base \"{0}\": choose zv-ei, multi-ei or chebyshev-ei")]
-    Base(Kind),
+    Base(ShaperKind),
     /// An invalid search limit.
     #[error(
         "lowest_frequency_hz {lowest_hz} with these modes means more than {most} periods to search; \
@@ -97,7 +97,7 @@ pub enum JointError {
     },
     /// An invalid constraint.
     #[error("a mode with shaper \"{0}\": under \"simultaneous\" a mode takes zv or zvd")]
-    Constraint(Kind),
+    Constraint(ShaperKind),
     /// More than is solved for.
     #[error("{found} modes: 1 to {most} are solved together; use a kind for each mode such as \"ps-zv\"")]
     TooManyModes {

@@ -5,7 +5,7 @@ use std::fmt;
 /// Every kind of shaper that a machine file may name, in the order in which messages list them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[allow(missing_docs)] // the names are the documentation: those of `Kind::name`
-pub enum Kind {
+pub enum ShaperKind {
     Zv,
     Zvd,
     Zvdd,
@@ -34,35 +34,35 @@ pub enum Kind {
     None,
 }
 
-impl Kind {
+impl ShaperKind {
     /// All kinds with their names in the machine file.
-    pub const ALL: [(Kind, &'static str); 26] = [
-        (Kind::Zv, "zv"),
-        (Kind::Zvd, "zvd"),
-        (Kind::Zvdd, "zvdd"),
-        (Kind::Zvddd, "zvddd"),
-        (Kind::Mzv, "mzv"),
-        (Kind::Ei, "ei"),
-        (Kind::TwoHumpEi, "two-hump-ei"),
-        (Kind::ThreeHumpEi, "three-hump-ei"),
-        (Kind::UmZv, "um-zv"),
-        (Kind::UmZvd, "um-zvd"),
-        (Kind::UmEi, "um-ei"),
-        (Kind::PsZv, "ps-zv"),
-        (Kind::PsZvd, "ps-zvd"),
-        (Kind::PsEi, "ps-ei"),
-        (Kind::ZvEi, "zv-ei"),
-        (Kind::ZvEi2, "zv-ei-2"),
-        (Kind::ZvdEi, "zvd-ei"),
-        (Kind::MultiEi, "multi-ei"),
-        (Kind::ChebyshevEi, "chebyshev-ei"),
-        (Kind::Vibrationless, "vibrationless"),
-        (Kind::Antisymmetric, "antisymmetric"),
-        (Kind::Simultaneous, "simultaneous"),
-        (Kind::Periodic, "periodic"),
-        (Kind::Optimal, "optimal"),
-        (Kind::Custom, "custom"),
-        (Kind::None, "none"),
+    pub const ALL: [(ShaperKind, &'static str); 26] = [
+        (ShaperKind::Zv, "zv"),
+        (ShaperKind::Zvd, "zvd"),
+        (ShaperKind::Zvdd, "zvdd"),
+        (ShaperKind::Zvddd, "zvddd"),
+        (ShaperKind::Mzv, "mzv"),
+        (ShaperKind::Ei, "ei"),
+        (ShaperKind::TwoHumpEi, "two-hump-ei"),
+        (ShaperKind::ThreeHumpEi, "three-hump-ei"),
+        (ShaperKind::UmZv, "um-zv"),
+        (ShaperKind::UmZvd, "um-zvd"),
+        (ShaperKind::UmEi, "um-ei"),
+        (ShaperKind::PsZv, "ps-zv"),
+        (ShaperKind::PsZvd, "ps-zvd"),
+        (ShaperKind::PsEi, "ps-ei"),
+        (ShaperKind::ZvEi, "zv-ei"),
+        (ShaperKind::ZvEi2, "zv-ei-2"),
+        (ShaperKind::ZvdEi, "zvd-ei"),
+        (ShaperKind::MultiEi, "multi-ei"),
+        (ShaperKind::ChebyshevEi, "chebyshev-ei"),
+        (ShaperKind::Vibrationless, "vibrationless"),
+        (ShaperKind::Antisymmetric, "antisymmetric"),
+        (ShaperKind::Simultaneous, "simultaneous"),
+        (ShaperKind::Periodic, "periodic"),
+        (ShaperKind::Optimal, "optimal"),
+        (ShaperKind::Custom, "custom"),
+        (ShaperKind::None, "none"),
     ];
 
     /// The name in the machine file.
@@ -82,31 +82,31 @@ impl Kind {
     pub fn is_built(self) -> bool {
         matches!(
             self,
-            Kind::Zv
-                | Kind::Zvd
-                | Kind::Zvdd
-                | Kind::Zvddd
-                | Kind::Mzv
-                | Kind::Ei
-                | Kind::TwoHumpEi
-                | Kind::ThreeHumpEi
-                | Kind::UmZv
-                | Kind::UmZvd
-                | Kind::UmEi
-                | Kind::PsZv
-                | Kind::PsZvd
-                | Kind::PsEi
-                | Kind::ZvEi
-                | Kind::ZvEi2
-                | Kind::ZvdEi
-                | Kind::MultiEi
-                | Kind::ChebyshevEi
-                | Kind::Vibrationless
-                | Kind::Antisymmetric
-                | Kind::Simultaneous
-                | Kind::Periodic
-                | Kind::Custom
-                | Kind::None
+            ShaperKind::Zv
+                | ShaperKind::Zvd
+                | ShaperKind::Zvdd
+                | ShaperKind::Zvddd
+                | ShaperKind::Mzv
+                | ShaperKind::Ei
+                | ShaperKind::TwoHumpEi
+                | ShaperKind::ThreeHumpEi
+                | ShaperKind::UmZv
+                | ShaperKind::UmZvd
+                | ShaperKind::UmEi
+                | ShaperKind::PsZv
+                | ShaperKind::PsZvd
+                | ShaperKind::PsEi
+                | ShaperKind::ZvEi
+                | ShaperKind::ZvEi2
+                | ShaperKind::ZvdEi
+                | ShaperKind::MultiEi
+                | ShaperKind::ChebyshevEi
+                | ShaperKind::Vibrationless
+                | ShaperKind::Antisymmetric
+                | ShaperKind::Simultaneous
+                | ShaperKind::Periodic
+                | ShaperKind::Custom
+                | ShaperKind::None
         )
     }
 
@@ -114,12 +114,17 @@ impl Kind {
     pub fn treats_modes_together(self) -> bool {
         matches!(
             self,
-            Kind::Periodic | Kind::Simultaneous | Kind::Antisymmetric | Kind::Optimal | Kind::Custom | Kind::None
+            ShaperKind::Periodic
+                | ShaperKind::Simultaneous
+                | ShaperKind::Antisymmetric
+                | ShaperKind::Optimal
+                | ShaperKind::Custom
+                | ShaperKind::None
         )
     }
 }
 
-impl fmt::Display for Kind {
+impl fmt::Display for ShaperKind {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(self.name())
     }

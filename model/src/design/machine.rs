@@ -4,7 +4,7 @@ use super::matching::{self, AxisDelay, StageDelay};
 use super::{AxisDesign, DesignError, design_axis};
 use crate::analysis::{Insensitivity, insensitivity, residual_vibration, residual_vibration_at, tap_impulses};
 use crate::digitise::{Digitised, digitise, quantise, quantising_error};
-use crate::machine_file::{Axis, Machine};
+use crate::machine_file::{AxisSection, Machine};
 use crate::mode::Mode;
 use crate::taps::TapTable;
 
@@ -104,7 +104,7 @@ impl AxisTables {
     }
 
     /// The figures at every mode of the axis that was designed, in the order of the file.
-    pub fn mode_figures(&self, axis: &Axis, sample_hz: f64) -> Vec<ModeFigures> {
+    pub fn mode_figures(&self, axis: &AxisSection, sample_hz: f64) -> Vec<ModeFigures> {
         let continuous = self.design.impulses.impulses();
         let real = self.digitised.impulses(sample_hz);
         let integer = tap_impulses(&self.table, sample_hz);

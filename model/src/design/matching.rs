@@ -15,8 +15,8 @@
 //! What rounding the coefficients leaves is the mismatch that is reported: with `e_i = c_i/2^F − a_i`, whose sum is 0, at most
 //! `½·(d_n − d_1)·Σ|e_i|` samples per axis.
 
-use crate::digitise::{Digitised, TableError};
-use crate::machine_file::{Axis, DriveMode, Machine, ScaleUse};
+use crate::digitise::{DigitiseError, Digitised};
+use crate::machine_file::{AxisSection, DriveMode, Machine, ScaleUse};
 use crate::taps::TapTable;
 
 /// What the delay of an axis is made of, in seconds, from the command to the load under a ramp.
@@ -88,7 +88,7 @@ impl StageDelay {
 }
 
 /// Lag of the modes of an axis at low frequencies, `Σ 2ζ/ω`, in seconds; 0 where the loop holds the load itself.
-pub fn mode_lag_s(axis: &Axis) -> f64 {
+pub fn mode_lag_s(axis: &AxisSection) -> f64 {
     let torque = axis
         .drive
         .is_some_and(|drive| matches!(drive.mode, DriveMode::Torque { .. }));
@@ -103,8 +103,11 @@ pub fn mode_lag_s(axis: &Axis) -> f64 {
 /// The taps of all axes, equally late where the machine has `[stage]`, as they are where it has none.
 ///
 /// # Errors
-/// [`TableError::MatchedDelay`] where a ring buffer cannot hold the delay that an axis is missing.
-pub(super) fn matched(machine: &Machine, digitised: &[Digitised]) -> Result<Vec<(Digitised, AxisDelay)>, TableError> {
+/// [`DigitiseError::MatchedDelay`] where a ring buffer cannot hold the delay that an axis is missing.
+pub(super) fn matched(
+    machine: &Machine,
+    digitised: &[Digitised],
+) -> Result<Vec<(Digitised, AxisDelay)>, DigitiseError> {
     let sample_hz = machine.clock.sample_hz;
     let own: Vec<AxisDelay> = machine
         .axes
@@ -133,7 +136,7 @@ pub(super) fn matched(machine: &Machine, digitised: &[Digitised]) -> Result<Vec<
     axes.map(|((axis, taps), own)| {
         let added_s = total_s - own.designed_s();
         let added_samples = added_s * sample_hz;
-        let later = taps.delayed(added_samples).ok_or_else(|| TableError::MatchedDelay {
+        let later = taps.delayed(added_samples).ok_or_else(|| DigitiseError::MatchedDelay {
             axis: axis.name.clone(),
             slowest: slowest_axis.name.clone(),
             added_samples,

@@ -41,9 +41,9 @@ pub use matching::{AxisDelay, StageDelay};
 
 use crate::analysis::residual_vibration;
 use crate::impulse::ImpulseSequence;
-use crate::machine_file::{Axis, AxisMode};
+use crate::machine_file::{AxisMode, AxisSection};
 use crate::mode::Mode;
-use kind::Kind;
+use kind::ShaperKind;
 
 /// Most impulses that a convolution may grow to: a tap table holds 256, so more is a slip in the machine file.
 pub const IMPULSES_MAX: usize = 4096;
@@ -61,16 +61,16 @@ pub struct AxisDesign {
     /// The impulses of the whole axis.
     pub impulses: ImpulseSequence,
     /// What the impulses are made of: digitising needs it.
-    pub parts: Parts,
+    pub parts: ShaperParts,
     /// What else the design found out.
     pub findings: Findings,
 }
 
 /// What an axis's impulses are made of.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Parts {
+pub enum ShaperParts {
     /// One shaper per mode, in the order of the file; the axis has their convolution.
-    PerMode(Vec<Part>),
+    PerMode(Vec<ShaperPart>),
     /// One shaper for all modes.
     Joint {
         /// The first mode of the file, if there is one: at its pole the impulses are digitised.
@@ -80,11 +80,11 @@ pub enum Parts {
 
 /// The shaper of one mode.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Part {
+pub struct ShaperPart {
     /// The mode that it is designed for.
     pub mode: Mode,
     /// Its kind.
-    pub kind: Kind,
+    pub kind: ShaperKind,
     /// Its impulses.
     pub impulses: ImpulseSequence,
 }
@@ -93,12 +93,12 @@ pub struct Part {
 ///
 /// # Errors
 /// [`DesignError`] where a kind is not built, does not exist for a mode, or is given what it cannot take.
-pub fn design_axis(axis: &Axis) -> Result<AxisDesign, DesignError> {
+pub fn design_axis(axis: &AxisSection) -> Result<AxisDesign, DesignError> {
     let (impulses, parts, findings) = match axis.joint_kind() {
         Some(kind) => {
             let reference = axis.modes.first().map(|m| m.mode);
             let (impulses, findings) = joint::design(axis, kind)?;
-            (impulses, Parts::Joint { reference }, findings)
+            (impulses, ShaperParts::Joint { reference }, findings)
         }
         None => {
             let (impulses, parts) = per_mode(axis)?;
@@ -115,7 +115,7 @@ pub fn design_axis(axis: &Axis) -> Result<AxisDesign, DesignError> {
 }
 
 /// One shaper per mode, and their convolution.
-fn per_mode(axis: &Axis) -> Result<(ImpulseSequence, Parts), DesignError> {
+fn per_mode(axis: &AxisSection) -> Result<(ImpulseSequence, ShaperParts), DesignError> {
     if axis.modes.is_empty() {
         return Err(DesignError::NoModes {
             axis: axis.name.clone(),
@@ -137,45 +137,45 @@ fn per_mode(axis: &Axis) -> Result<(ImpulseSequence, Parts), DesignError> {
             what: format!("axis {}: the convolution of its modes' shapers", axis.name),
             cause,
         })?;
-        parts.push(Part {
+        parts.push(ShaperPart {
             mode: axis_mode.mode,
             kind: axis.kind_of(axis_mode),
             impulses,
         });
     }
-    Ok((whole, Parts::PerMode(parts)))
+    Ok((whole, ShaperParts::PerMode(parts)))
 }
 
 /// The impulses of one mode's shaper, checked at its mode.
-fn mode_impulses(axis: &Axis, axis_mode: &AxisMode) -> Result<ImpulseSequence, DesignError> {
+fn mode_impulses(axis: &AxisSection, axis_mode: &AxisMode) -> Result<ImpulseSequence, DesignError> {
     let kind = axis.kind_of(axis_mode);
     let mode = axis_mode.mode;
     let (impulses, promised) = match kind {
-        Kind::None => return Ok(ImpulseSequence::unity()),
-        Kind::Zv => (zv::design(kind, &mode, 1)?, 0.0),
-        Kind::Zvd => (zv::design(kind, &mode, 2)?, 0.0),
-        Kind::Zvdd => (zv::design(kind, &mode, 3)?, 0.0),
-        Kind::Zvddd => (zv::design(kind, &mode, 4)?, 0.0),
-        Kind::Mzv => (zv::design_mzv(&mode)?, 0.0),
-        Kind::UmZv | Kind::UmZvd | Kind::PsZv | Kind::PsZvd => {
+        ShaperKind::None => return Ok(ImpulseSequence::unity()),
+        ShaperKind::Zv => (zv::design(kind, &mode, 1)?, 0.0),
+        ShaperKind::Zvd => (zv::design(kind, &mode, 2)?, 0.0),
+        ShaperKind::Zvdd => (zv::design(kind, &mode, 3)?, 0.0),
+        ShaperKind::Zvddd => (zv::design(kind, &mode, 4)?, 0.0),
+        ShaperKind::Mzv => (zv::design_mzv(&mode)?, 0.0),
+        ShaperKind::UmZv | ShaperKind::UmZvd | ShaperKind::PsZv | ShaperKind::PsZvd => {
             (negative::design(kind, &mode, axis.tolerance_of(axis_mode))?, 0.0)
         }
-        Kind::UmEi | Kind::PsEi => {
+        ShaperKind::UmEi | ShaperKind::PsEi => {
             let tolerance = axis.tolerance_of(axis_mode);
             (negative::design(kind, &mode, tolerance)?, tolerance)
         }
-        Kind::Ei | Kind::TwoHumpEi | Kind::ThreeHumpEi => {
+        ShaperKind::Ei | ShaperKind::TwoHumpEi | ShaperKind::ThreeHumpEi => {
             let tolerance = axis.tolerance_of(axis_mode);
-            let promised = if kind == Kind::TwoHumpEi { 0.0 } else { tolerance };
+            let promised = if kind == ShaperKind::TwoHumpEi { 0.0 } else { tolerance };
             (hump_ei::design(kind, &mode, tolerance)?.impulses, promised)
         }
-        Kind::ZvEi | Kind::ZvEi2 | Kind::ZvdEi | Kind::MultiEi | Kind::ChebyshevEi => {
+        ShaperKind::ZvEi | ShaperKind::ZvEi2 | ShaperKind::ZvdEi | ShaperKind::MultiEi | ShaperKind::ChebyshevEi => {
             let tolerance = axis.tolerance_of(axis_mode);
             let order = axis.order_of(axis_mode);
             (bias_point::design(kind, order, &mode, tolerance)?, tolerance)
         }
         // The cascade promises a band, not a residual: damping is left out of its design, and reported.
-        Kind::Vibrationless => return vibrationless::design(&mode, axis.order_of(axis_mode), axis.epsilon()),
+        ShaperKind::Vibrationless => return vibrationless::design(&mode, axis.order_of(axis_mode), axis.epsilon()),
         // What serves all modes of an axis cannot be one mode's share of a convolution.
         _ if kind.treats_modes_together() => {
             return Err(DesignError::JointKindOfOneMode {

@@ -22,7 +22,7 @@ use nalgebra::DVector;
 use super::DesignError;
 use super::equations::{Equations, Linearised, Point, Ratio};
 use super::hump_ei::TOLERANCE_MIN;
-use super::kind::Kind;
+use super::kind::ShaperKind;
 use super::path::{Branch, PRECISE, follow};
 use crate::analysis::residual_vibration;
 use crate::impulse::{Impulse, ImpulseSequence};
@@ -45,7 +45,7 @@ const VERIFIED: f64 = 1e-9;
 /// # Errors
 /// [`DesignError::Damping`] above [`DAMPING_MAX`]; [`DesignError::Tolerance`] below 1e-6 or from [`TOLERANCE_BELOW`] on;
 /// [`DesignError::NotBuilt`] for a kind of another family.
-pub fn design(kind: Kind, mode: &Mode, tolerance: f64) -> Result<ImpulseSequence, DesignError> {
+pub fn design(kind: ShaperKind, mode: &Mode, tolerance: f64) -> Result<ImpulseSequence, DesignError> {
     DesignError::check_mode(mode)?;
     let Some(family) = Family::of(kind) else {
         return Err(DesignError::NotBuilt { kind });
@@ -114,7 +114,7 @@ struct Family {
     /// Times in periods but the first, then the zeros of an EI at 5 %: close enough for Newton's method to find all digits.
     undamped: &'static [f64],
     /// The kind with positive amplitudes that does the same.
-    positive: Kind,
+    positive: ShaperKind,
 }
 
 const UM_3: &[f64] = &[1.0, -1.0, 1.0];
@@ -123,33 +123,33 @@ const PS_3: &[f64] = &[1.0, -2.0, 2.0];
 const PS_5: &[f64] = &[1.0, -2.0, 2.0, -2.0, 2.0];
 
 impl Family {
-    fn of(kind: Kind) -> Option<Self> {
+    fn of(kind: ShaperKind) -> Option<Self> {
         let (condition, amplitudes, undamped, positive): (_, _, &[f64], _) = match kind {
-            Kind::UmZv => (Condition::Zero, UM_3, &[0.1667, 0.3333], Kind::Zv),
-            Kind::PsZv => (Condition::Zero, PS_3, &[0.2098, 0.2902], Kind::Zv),
-            Kind::UmZvd => (
+            ShaperKind::UmZv => (Condition::Zero, UM_3, &[0.1667, 0.3333], ShaperKind::Zv),
+            ShaperKind::PsZv => (Condition::Zero, PS_3, &[0.2098, 0.2902], ShaperKind::Zv),
+            ShaperKind::UmZvd => (
                 Condition::StationaryZero,
                 UM_5,
                 &[0.08951, 0.36623, 0.64296, 0.73247],
-                Kind::Zvd,
+                ShaperKind::Zvd,
             ),
-            Kind::PsZvd => (
+            ShaperKind::PsZvd => (
                 Condition::StationaryZero,
                 PS_5,
                 &[0.15241, 0.27740, 0.63131, 0.67895],
-                Kind::Zvd,
+                ShaperKind::Zvd,
             ),
-            Kind::UmEi => (
+            ShaperKind::UmEi => (
                 Condition::Hump,
                 UM_5,
                 &[0.09408, 0.36837, 0.64266, 0.73673, 0.87037, 1.12276],
-                Kind::Ei,
+                ShaperKind::Ei,
             ),
-            Kind::PsEi => (
+            ShaperKind::PsEi => (
                 Condition::Hump,
                 PS_5,
                 &[0.15668, 0.28118, 0.63434, 0.68416, 0.87241, 1.11969],
-                Kind::Ei,
+                ShaperKind::Ei,
             ),
             _ => return None,
         };
@@ -226,7 +226,14 @@ impl Branch for Path<'_> {
 mod tests {
     use super::*;
 
-    const KINDS: [Kind; 6] = [Kind::UmZv, Kind::UmZvd, Kind::UmEi, Kind::PsZv, Kind::PsZvd, Kind::PsEi];
+    const KINDS: [ShaperKind; 6] = [
+        ShaperKind::UmZv,
+        ShaperKind::UmZvd,
+        ShaperKind::UmEi,
+        ShaperKind::PsZv,
+        ShaperKind::PsZvd,
+        ShaperKind::PsEi,
+    ];
 
     fn mode(damping: f64) -> Mode {
         Mode {
@@ -243,15 +250,15 @@ mod tests {
         };
         let acos = |cosine: f64| cosine.acos() / std::f64::consts::TAU;
         for (kind, expected) in [
-            (Kind::UmZv, [1.0 / 6.0, 1.0 / 3.0]),
-            (Kind::PsZv, [acos(0.25), acos(-0.25)]),
+            (ShaperKind::UmZv, [1.0 / 6.0, 1.0 / 3.0]),
+            (ShaperKind::PsZv, [acos(0.25), acos(-0.25)]),
         ] {
             for (found, expected) in times(kind).iter().zip(expected) {
                 assert!((found - expected).abs() < 1e-15, "{kind}");
             }
         }
         // Unit amplitudes without damping are symmetric.
-        let [a, b, c, d] = times(Kind::UmZvd)[..] else {
+        let [a, b, c, d] = times(ShaperKind::UmZvd)[..] else {
             panic!("five impulses");
         };
         assert!((2.0 * b - d).abs() < 1e-14 && (a + c - d).abs() < 1e-14);
@@ -296,14 +303,14 @@ mod tests {
             );
         }
         for tolerance in [0.0, -0.1, 1e-7, 0.5, 0.9, f64::NAN, f64::INFINITY] {
-            for kind in [Kind::UmEi, Kind::PsEi] {
+            for kind in [ShaperKind::UmEi, ShaperKind::PsEi] {
                 assert!(matches!(
                     design(kind, &mode(0.1), tolerance),
                     Err(DesignError::Tolerance { .. })
                 ));
             }
             // The others have no tolerance.
-            assert!(design(Kind::PsZv, &mode(0.1), tolerance).is_ok());
+            assert!(design(ShaperKind::PsZv, &mode(0.1), tolerance).is_ok());
         }
     }
 }

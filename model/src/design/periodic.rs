@@ -17,7 +17,7 @@
 use super::DesignError;
 use super::bias_point::{self, BiasPoint};
 use super::joint_error::{JointError, check_distinct};
-use super::kind::Kind;
+use super::kind::ShaperKind;
 use crate::analysis::residual_vibration;
 use crate::impulse::{Impulse, ImpulseSequence};
 use crate::mode::Mode;
@@ -29,7 +29,7 @@ pub const MULTIPLES_MAX: u32 = 16_384;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Base {
     /// `zv-ei`, `multi-ei` or `chebyshev-ei`.
-    pub kind: Kind,
+    pub kind: ShaperKind,
     /// Zero pairs of `chebyshev-ei`.
     pub order: u32,
     /// Residual at the edge of the width.
@@ -70,7 +70,10 @@ pub fn design(modes: &[(Mode, f64)], base: Base, lowest_hz: f64) -> Result<Perio
     let plain: Vec<Mode> = modes.iter().map(|(mode, _)| *mode).collect();
     plain.iter().try_for_each(DesignError::check_mode)?;
     check_distinct(&plain)?;
-    if !matches!(base.kind, Kind::ZvEi | Kind::MultiEi | Kind::ChebyshevEi) {
+    if !matches!(
+        base.kind,
+        ShaperKind::ZvEi | ShaperKind::MultiEi | ShaperKind::ChebyshevEi
+    ) {
         return Err(JointError::Base(base.kind).into());
     }
     let BiasPoint { amplitudes, lambda, .. } = bias_point::undamped(base.kind, base.order, base.tolerance)?;
@@ -84,7 +87,7 @@ pub fn design(modes: &[(Mode, f64)], base: Base, lowest_hz: f64) -> Result<Perio
         amplitude,
     });
     let impulses = ImpulseSequence::new(impulses.collect()).map_err(|cause| DesignError::NoSequence {
-        what: format!("shaper \"{}\" at {system_hz} Hz", Kind::Periodic),
+        what: format!("shaper \"{}\" at {system_hz} Hz", ShaperKind::Periodic),
         cause,
     })?;
     for &(mode, tolerance) in modes {

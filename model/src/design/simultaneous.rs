@@ -22,7 +22,7 @@ pub use super::constraint::{Amplitudes, Constraint};
 
 use super::DesignError;
 use super::joint_error::{JointError, check_distinct};
-use super::kind::Kind;
+use super::kind::ShaperKind;
 use super::time_optimal::Problem;
 use crate::impulse::{Impulse, ImpulseSequence};
 use crate::mode::Mode;
@@ -80,7 +80,7 @@ pub fn design(modes: &[(Mode, Constraint)], amplitudes: Amplitudes) -> Result<Si
     let impulses = ImpulseSequence::new([first].into_iter().chain(later).collect());
     Ok(Simultaneous {
         impulses: impulses.map_err(|cause| DesignError::NoSequence {
-            what: format!("shaper \"{}\"", Kind::Simultaneous),
+            what: format!("shaper \"{}\"", ShaperKind::Simultaneous),
             cause,
         })?,
         is_time_optimal,

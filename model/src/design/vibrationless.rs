@@ -23,7 +23,7 @@ use std::f64::consts::PI;
 use nalgebra::DVector;
 
 use super::joint_error::JointError;
-use super::kind::Kind;
+use super::kind::ShaperKind;
 use super::{DesignError, newton};
 use crate::impulse::{Impulse, ImpulseSequence};
 use crate::mode::Mode;
@@ -35,7 +35,7 @@ pub const EPSILON_MIN: f64 = 1e-6;
 
 /// Frequencies of a half-sum cascade, as ratios to the mode's.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Cascade {
+pub struct VibrationlessCascade {
     /// `r_1 < … < r_n`.
     pub ratios: Vec<f64>,
     /// Robustness index: `2|P| ≤ ε` on `1 ± Δ`.
@@ -88,7 +88,7 @@ pub fn design(mode: &Mode, order: u32, epsilon: f64) -> Result<ImpulseSequence, 
         .iter()
         .map(|ratio| 0.5 / (ratio * mode.damped_frequency_hz()));
     half_sum_cascade(&half_sums.collect::<Vec<_>>())
-        .map_err(|cause| DesignError::no_sequence(Kind::Vibrationless, mode, cause))
+        .map_err(|cause| DesignError::no_sequence(ShaperKind::Vibrationless, mode, cause))
 }
 
 /// Impulses of half sums with these delays in seconds: `2^n` of weight `2^−n`, coincident ones merged.
@@ -106,7 +106,7 @@ pub fn half_sum_cascade(delays_s: &[f64]) -> Result<ImpulseSequence, crate::impu
 ///
 /// # Errors
 /// [`JointError::Vibrationless`] for an order outside 1..=[`ORDER_MAX`] or an `ε` that no family reaches.
-pub fn optimum(order: u32, epsilon: f64) -> Result<Cascade, JointError> {
+pub fn optimum(order: u32, epsilon: f64) -> Result<VibrationlessCascade, JointError> {
     let largest = EPSILON_MAX[(order.clamp(1, ORDER_MAX) - 1) as usize];
     let refused = || JointError::Vibrationless {
         order,
@@ -120,7 +120,7 @@ pub fn optimum(order: u32, epsilon: f64) -> Result<Cascade, JointError> {
     }
     if order == 1 {
         let index = 2.0 / PI * (epsilon / 2.0).asin();
-        return Ok(Cascade {
+        return Ok(VibrationlessCascade {
             ratios: vec![1.0],
             index,
         });
@@ -260,7 +260,7 @@ impl Family {
     }
 
     /// Follows the family from a seed to `epsilon`, in steps of its logarithm that halve where there is no way on.
-    fn follow(mut self, seed: &Seed, epsilon: f64, above: Above) -> Option<Cascade> {
+    fn follow(mut self, seed: &Seed, epsilon: f64, above: Above) -> Option<VibrationlessCascade> {
         // An exchange must not be missed; without one, the way is smooth.
         let first_step: f64 = match above {
             Above::Exchanged => 0.1,
@@ -286,7 +286,7 @@ impl Family {
                 }
                 let mut ratios: Vec<f64> = solution.iter().copied().collect();
                 let index = ratios.pop()?;
-                return Some(Cascade { ratios, index });
+                return Some(VibrationlessCascade { ratios, index });
             }
         }
     }

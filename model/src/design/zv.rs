@@ -19,7 +19,7 @@
 use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
 
 use super::DesignError;
-use super::kind::Kind;
+use super::kind::ShaperKind;
 use crate::impulse::{Impulse, ImpulseSequence};
 use crate::mode::Mode;
 
@@ -27,7 +27,7 @@ use crate::mode::Mode;
 ///
 /// # Errors
 /// [`DesignError::Mode`] for an invalid mode, [`DesignError::NoSequence`] where times leave the range of `f64`.
-pub fn design(kind: Kind, mode: &Mode, factors: u32) -> Result<ImpulseSequence, DesignError> {
+pub fn design(kind: ShaperKind, mode: &Mode, factors: u32) -> Result<ImpulseSequence, DesignError> {
     DesignError::check_mode(mode)?;
     let weights = binomial_weights(factors, mode.half_swing_ratio());
     evenly_spaced(kind, mode, &weights, mode.damped_period_s() / 2.0)
@@ -42,11 +42,16 @@ pub fn design_mzv(mode: &Mode) -> Result<ImpulseSequence, DesignError> {
     let ratio = mode.half_swing_ratio().powf(0.75);
     let outer = 1.0 - FRAC_1_SQRT_2;
     let weights = [outer, (SQRT_2 - 1.0) * ratio, outer * ratio * ratio];
-    evenly_spaced(Kind::Mzv, mode, &weights, 0.375 * mode.damped_period_s())
+    evenly_spaced(ShaperKind::Mzv, mode, &weights, 0.375 * mode.damped_period_s())
 }
 
 /// Impulses `spacing_s` apart with amplitudes in proportion to `weights`.
-fn evenly_spaced(kind: Kind, mode: &Mode, weights: &[f64], spacing_s: f64) -> Result<ImpulseSequence, DesignError> {
+fn evenly_spaced(
+    kind: ShaperKind,
+    mode: &Mode,
+    weights: &[f64],
+    spacing_s: f64,
+) -> Result<ImpulseSequence, DesignError> {
     let sum: f64 = weights.iter().sum();
     let impulses = weights.iter().enumerate().map(|(index, weight)| Impulse {
         time_s: index as f64 * spacing_s,
@@ -79,7 +84,7 @@ mod tests {
             frequency_hz: 2.0,
             damping: 0.0,
         };
-        let zvddd = design(Kind::Zvddd, &mode, 4).unwrap();
+        let zvddd = design(ShaperKind::Zvddd, &mode, 4).unwrap();
         let amplitudes: Vec<f64> = zvddd.impulses().iter().map(|i| i.amplitude * 16.0).collect();
         assert_eq!(amplitudes, [1.0, 4.0, 6.0, 4.0, 1.0]);
         assert_eq!(zvddd.duration_s(), 1.0);
@@ -97,7 +102,10 @@ mod tests {
             (1.0, f64::NAN),
         ] {
             let mode = Mode { frequency_hz, damping };
-            assert!(matches!(design(Kind::Zv, &mode, 1), Err(DesignError::Mode { .. })));
+            assert!(matches!(
+                design(ShaperKind::Zv, &mode, 1),
+                Err(DesignError::Mode { .. })
+            ));
         }
         // Legal numbers whose period has no place in f64.
         for frequency_hz in [f64::MAX, f64::MIN_POSITIVE / 1e10] {
@@ -106,7 +114,7 @@ mod tests {
                 damping: 0.0,
             };
             assert!(matches!(
-                design(Kind::Zv, &mode, 1),
+                design(ShaperKind::Zv, &mode, 1),
                 Err(DesignError::NoSequence { .. })
             ));
         }

@@ -11,7 +11,7 @@ pub const TAPS_MAX: usize = 256;
 
 /// Why a shaper has no tap table. Every message says what was found, what is allowed, and what to do.
 #[derive(Debug, Clone, PartialEq, Error)]
-pub enum TableError {
+pub enum DigitiseError {
     /// Longer than any ring buffer.
     #[error(
         "axis {axis}: the shaper lasts {duration_s} s, {found} samples at {sample_hz} Hz; the ring buffer holds at most \

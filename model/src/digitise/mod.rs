@@ -17,11 +17,11 @@ mod quantise;
 use std::collections::BTreeMap;
 use std::fmt;
 
-pub use error::{DELAY_MAX_SAMPLES, TAPS_MAX, TableError};
+pub use error::{DELAY_MAX_SAMPLES, DigitiseError, TAPS_MAX};
 pub use quantise::{quantise, quantising_error};
 
-use crate::design::kind::Kind;
-use crate::design::{AxisDesign, Parts};
+use crate::design::kind::ShaperKind;
+use crate::design::{AxisDesign, ShaperParts};
 use crate::impulse::{Impulse, ImpulseSequence};
 use crate::machine_file::Digitise;
 use crate::mode::Mode;
@@ -37,7 +37,7 @@ pub struct RealTap {
 
 /// How the impulses of an axis came onto the sample grid.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Method {
+pub enum DigitiseMethod {
     /// Two taps per impulse, exact at the pole of the mode that the impulse belongs to.
     Modal,
     /// Two taps per impulse, exact at the pole of the axis's first mode: the impulses serve all modes together.
@@ -48,13 +48,13 @@ pub enum Method {
     Nearest,
 }
 
-impl fmt::Display for Method {
+impl fmt::Display for DigitiseMethod {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
-            Method::Modal => "modal",
-            Method::ModalAtFirstMode => "modal at the first mode",
-            Method::Linear => "linear",
-            Method::Nearest => "nearest",
+            DigitiseMethod::Modal => "modal",
+            DigitiseMethod::ModalAtFirstMode => "modal at the first mode",
+            DigitiseMethod::Linear => "linear",
+            DigitiseMethod::Nearest => "nearest",
         })
     }
 }
@@ -63,7 +63,7 @@ impl fmt::Display for Method {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Digitised {
     /// The method that was used; not always the one asked for ([`digitise`]).
-    pub method_used: Method,
+    pub method_used: DigitiseMethod,
     /// The taps, delays strictly increasing, weights not zero and with sum 1.
     pub taps: Vec<RealTap>,
 }
@@ -128,24 +128,24 @@ impl Digitised {
 /// and without a mode becomes `linear`: [`Digitised::method_used`] says so.
 ///
 /// # Errors
-/// [`TableError::Delay`] for a shaper longer than the largest ring buffer, before anything is allocated;
-/// [`TableError::Nyquist`] for a mode that the sample rate cannot carry; [`TableError::NoUnitSum`] where the taps of a part
+/// [`DigitiseError::Delay`] for a shaper longer than the largest ring buffer, before anything is allocated;
+/// [`DigitiseError::Nyquist`] for a mode that the sample rate cannot carry; [`DigitiseError::NoUnitSum`] where the taps of a part
 /// cancel.
-pub fn digitise(design: &AxisDesign, how: Digitise, sample_hz: f64) -> Result<Digitised, TableError> {
+pub fn digitise(design: &AxisDesign, how: Digitise, sample_hz: f64) -> Result<Digitised, DigitiseError> {
     let whole = || vec![(&design.impulses, None)];
     let (method_used, sequences) = match (how, &design.parts) {
-        (Digitise::Linear, _) => (Method::Linear, whole()),
-        (Digitise::Nearest, _) => (Method::Nearest, whole()),
-        (Digitise::Modal, Parts::PerMode(parts)) => {
+        (Digitise::Linear, _) => (DigitiseMethod::Linear, whole()),
+        (Digitise::Nearest, _) => (DigitiseMethod::Nearest, whole()),
+        (Digitise::Modal, ShaperParts::PerMode(parts)) => {
             // Without a shaper, a mode has no say in the grid.
-            let shaped = parts.iter().filter(|p| p.kind != Kind::None);
+            let shaped = parts.iter().filter(|p| p.kind != ShaperKind::None);
             let sequences: Vec<_> = shaped.map(|p| (&p.impulses, Some(p.mode))).collect();
-            (Method::Modal, sequences)
+            (DigitiseMethod::Modal, sequences)
         }
-        (Digitise::Modal, Parts::Joint { reference: Some(mode) }) => {
-            (Method::ModalAtFirstMode, vec![(&design.impulses, Some(*mode))])
+        (Digitise::Modal, ShaperParts::Joint { reference: Some(mode) }) => {
+            (DigitiseMethod::ModalAtFirstMode, vec![(&design.impulses, Some(*mode))])
         }
-        (Digitise::Modal, Parts::Joint { reference: None }) => (Method::Linear, whole()),
+        (Digitise::Modal, ShaperParts::Joint { reference: None }) => (DigitiseMethod::Linear, whole()),
     };
     check_delay(design, sequences.iter().map(|(impulses, _)| *impulses), sample_hz)?;
     let mut whole = BTreeMap::from([(0, 1.0)]);
@@ -186,12 +186,12 @@ fn check_delay<'a>(
     design: &AxisDesign,
     sequences: impl Iterator<Item = &'a ImpulseSequence>,
     sample_hz: f64,
-) -> Result<(), TableError> {
+) -> Result<(), DigitiseError> {
     let samples: f64 = sequences.map(|s| grid::last_sample(s, sample_hz)).sum();
     if samples <= f64::from(DELAY_MAX_SAMPLES) {
         return Ok(());
     }
-    Err(TableError::Delay {
+    Err(DigitiseError::Delay {
         axis: design.name.clone(),
         found: samples,
         duration_s: design.impulses.duration_s(),
@@ -204,16 +204,16 @@ fn part(
     axis: &str,
     impulses: &ImpulseSequence,
     mode: Option<Mode>,
-    method: Method,
+    method: DigitiseMethod,
     sample_hz: f64,
-) -> Result<BTreeMap<u32, f64>, TableError> {
+) -> Result<BTreeMap<u32, f64>, DigitiseError> {
     let mut taps: BTreeMap<u32, f64> = BTreeMap::new();
     for impulse in impulses.impulses() {
         let placed = match (method, mode) {
-            (Method::Nearest, _) => grid::nearest(impulse, sample_hz),
-            (Method::Modal | Method::ModalAtFirstMode, Some(mode)) => {
+            (DigitiseMethod::Nearest, _) => grid::nearest(impulse, sample_hz),
+            (DigitiseMethod::Modal | DigitiseMethod::ModalAtFirstMode, Some(mode)) => {
                 if mode.omega_damped() >= std::f64::consts::PI * sample_hz {
-                    return Err(TableError::Nyquist {
+                    return Err(DigitiseError::Nyquist {
                         axis: axis.to_owned(),
                         frequency_hz: mode.frequency_hz,
                         sample_hz,
@@ -233,7 +233,7 @@ fn part(
         taps.values_mut().for_each(|weight| *weight /= sum);
         Ok(taps)
     } else {
-        Err(TableError::NoUnitSum {
+        Err(DigitiseError::NoUnitSum {
             axis: axis.to_owned(),
             sum,
         })
@@ -254,7 +254,7 @@ fn convolve(a: &BTreeMap<u32, f64>, b: &BTreeMap<u32, f64>) -> BTreeMap<u32, f64
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::design::{Findings, Part};
+    use crate::design::{Findings, ShaperPart};
 
     fn custom(pairs: &[(f64, f64)], reference: Option<Mode>) -> AxisDesign {
         let impulses = pairs.iter().map(|&(time_s, amplitude)| Impulse { time_s, amplitude });
@@ -262,7 +262,7 @@ mod tests {
             name: "x".into(),
             kind: "custom".into(),
             impulses: ImpulseSequence::new(impulses.collect()).unwrap(),
-            parts: Parts::Joint { reference },
+            parts: ShaperParts::Joint { reference },
             findings: Findings::None,
         }
     }
@@ -275,10 +275,10 @@ mod tests {
         };
         let pairs = [(0.0, 0.5), (0.0104, 0.5)];
         let method = |reference, how| digitise(&custom(&pairs, reference), how, 1000.0).unwrap().method_used;
-        assert_eq!(method(None, Digitise::Modal), Method::Linear);
-        assert_eq!(method(Some(mode), Digitise::Modal), Method::ModalAtFirstMode);
-        assert_eq!(method(Some(mode), Digitise::Linear), Method::Linear);
-        assert_eq!(method(Some(mode), Digitise::Nearest), Method::Nearest);
+        assert_eq!(method(None, Digitise::Modal), DigitiseMethod::Linear);
+        assert_eq!(method(Some(mode), Digitise::Modal), DigitiseMethod::ModalAtFirstMode);
+        assert_eq!(method(Some(mode), Digitise::Linear), DigitiseMethod::Linear);
+        assert_eq!(method(Some(mode), Digitise::Nearest), DigitiseMethod::Nearest);
         let linear = digitise(&custom(&pairs, None), Digitise::Modal, 1000.0).unwrap();
         let taps: Vec<_> = linear.taps.iter().map(|t| t.delay_samples).collect();
         assert_eq!(taps, [0, 10, 11]);
@@ -299,7 +299,7 @@ mod tests {
     fn unit_a_shaper_longer_than_any_ring_is_refused_before_it_is_built() {
         for last_s in [1e300, 1e9, 16.383] {
             let error = digitise(&custom(&[(0.0, 0.5), (last_s, 0.5)], None), Digitise::Linear, 1000.0).unwrap_err();
-            assert!(matches!(error, TableError::Delay { .. }), "{error}");
+            assert!(matches!(error, DigitiseError::Delay { .. }), "{error}");
         }
         let longest = digitise(&custom(&[(0.0, 0.5), (16.382, 0.5)], None), Digitise::Linear, 1000.0).unwrap();
         assert_eq!(longest.taps.last().unwrap().delay_samples, DELAY_MAX_SAMPLES);
@@ -313,7 +313,7 @@ mod tests {
         };
         let design = custom(&[(0.0, 0.5), (0.0015, 0.5)], Some(mode));
         let error = digitise(&design, Digitise::Modal, 1000.0).unwrap_err();
-        assert!(matches!(error, TableError::Nyquist { .. }), "{error}");
+        assert!(matches!(error, DigitiseError::Nyquist { .. }), "{error}");
         assert!(digitise(&design, Digitise::Linear, 1000.0).is_ok());
     }
 
@@ -347,7 +347,7 @@ mod tests {
     fn unit_amplitudes_out_of_all_proportion_are_an_error() {
         let design = custom(&[(0.0, 1e8 + 1.0), (0.0015, -1e8)], None);
         let error = digitise(&design, Digitise::Linear, 1000.0).unwrap_err();
-        assert!(matches!(error, TableError::NoUnitSum { .. }), "{error}");
+        assert!(matches!(error, DigitiseError::NoUnitSum { .. }), "{error}");
     }
 
     #[test]
@@ -356,21 +356,21 @@ mod tests {
             frequency_hz,
             damping: 0.05,
         };
-        let part = |frequency_hz| Part {
+        let part = |frequency_hz| ShaperPart {
             mode: mode(frequency_hz),
-            kind: Kind::Zv,
-            impulses: crate::design::zv::design(Kind::Zv, &mode(frequency_hz), 1).unwrap(),
+            kind: ShaperKind::Zv,
+            impulses: crate::design::zv::design(ShaperKind::Zv, &mode(frequency_hz), 1).unwrap(),
         };
         let (first, second) = (part(77.0), part(231.0));
         let design = AxisDesign {
             name: "x".into(),
             kind: "zv".into(),
             impulses: first.impulses.convolve(&second.impulses).unwrap(),
-            parts: Parts::PerMode(vec![first, second]),
+            parts: ShaperParts::PerMode(vec![first, second]),
             findings: Findings::None,
         };
         let taps = digitise(&design, Digitise::Modal, 2000.0).unwrap();
-        assert_eq!(taps.method_used, Method::Modal);
+        assert_eq!(taps.method_used, DigitiseMethod::Modal);
         for frequency_hz in [77.0, 231.0] {
             let residual = crate::analysis::residual_vibration(&taps.impulses(2000.0), &mode(frequency_hz));
             assert!(residual < 1e-14, "{residual}");

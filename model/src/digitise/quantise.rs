@@ -8,7 +8,7 @@
 //! is a constant of the hardware, shared by all axes. Without a wish it is the largest up to 16 at which every *rounded*
 //! coefficient of all tables lies in 18 bits.
 
-use super::{Digitised, RealTap, TAPS_MAX, TableError};
+use super::{DigitiseError, Digitised, RealTap, TAPS_MAX};
 use crate::taps::{COEFFICIENT_FRACTION_MAX, COEFFICIENT_MAX, COEFFICIENT_MIN, Tap, TapTable};
 
 /// Values this close to a whole number, and fractions this close to each other, are equal: weights that are equal on paper
@@ -18,14 +18,14 @@ const EQUAL: f64 = 1e-9;
 /// Rounds the taps of all axes of a machine, given with the axes' names, to tables with one `F`.
 ///
 /// # Errors
-/// [`TableError::Fraction`] if the coefficients do not fit with the `F` asked for; it names the largest that does.
-/// [`TableError::Weight`] if none does. [`TableError::Taps`] for more taps than a table holds.
-pub fn quantise(axes: &[(&str, &Digitised)], fraction: Option<u32>) -> Result<Vec<TapTable>, TableError> {
+/// [`DigitiseError::Fraction`] if the coefficients do not fit with the `F` asked for; it names the largest that does.
+/// [`DigitiseError::Weight`] if none does. [`DigitiseError::Taps`] for more taps than a table holds.
+pub fn quantise(axes: &[(&str, &Digitised)], fraction: Option<u32>) -> Result<Vec<TapTable>, DigitiseError> {
     let largest = largest_fraction(axes)?;
     let fraction = match fraction {
         None => largest,
         Some(requested) if (1..=largest).contains(&requested) => requested,
-        Some(requested) => return Err(TableError::Fraction { requested, largest }),
+        Some(requested) => return Err(DigitiseError::Fraction { requested, largest }),
     };
     axes.iter()
         .map(|(axis, digitised)| {
@@ -39,12 +39,12 @@ pub fn quantise(axes: &[(&str, &Digitised)], fraction: Option<u32>) -> Result<Ve
                 })
                 .collect();
             if taps.len() > TAPS_MAX {
-                return Err(TableError::Taps {
+                return Err(DigitiseError::Taps {
                     axis: (*axis).to_owned(),
                     found: taps.len(),
                 });
             }
-            TapTable::new(fraction, taps).map_err(|cause| TableError::Table {
+            TapTable::new(fraction, taps).map_err(|cause| DigitiseError::Table {
                 axis: (*axis).to_owned(),
                 cause,
             })
@@ -53,7 +53,7 @@ pub fn quantise(axes: &[(&str, &Digitised)], fraction: Option<u32>) -> Result<Ve
 }
 
 /// The largest `F` at which every rounded coefficient fits.
-fn largest_fraction(axes: &[(&str, &Digitised)]) -> Result<u32, TableError> {
+fn largest_fraction(axes: &[(&str, &Digitised)]) -> Result<u32, DigitiseError> {
     let range = i64::from(COEFFICIENT_MIN)..=i64::from(COEFFICIENT_MAX);
     let fits = |taps: &[RealTap], fraction| integers(taps, fraction).iter().all(|c| range.contains(c));
     let mut largest = COEFFICIENT_FRACTION_MAX;
@@ -61,7 +61,7 @@ fn largest_fraction(axes: &[(&str, &Digitised)]) -> Result<u32, TableError> {
         while !fits(&digitised.taps, largest) {
             if largest == 1 {
                 let weights = digitised.taps.iter().map(|t| t.weight);
-                return Err(TableError::Weight {
+                return Err(DigitiseError::Weight {
                     axis: (*axis).to_owned(),
                     weight: weights.fold(0.0, |most: f64, w| if w.abs() > most.abs() { w } else { most }),
                 });
@@ -122,7 +122,7 @@ pub fn quantising_error(digitised: &Digitised, table: &TapTable) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::digitise::Method;
+    use crate::digitise::DigitiseMethod;
 
     fn digitised(weights: &[f64]) -> Digitised {
         let taps = weights.iter().enumerate().map(|(delay, &weight)| RealTap {
@@ -130,12 +130,12 @@ mod tests {
             weight,
         });
         Digitised {
-            method_used: Method::Linear,
+            method_used: DigitiseMethod::Linear,
             taps: taps.collect(),
         }
     }
 
-    fn table(weights: &[f64], fraction: Option<u32>) -> Result<TapTable, TableError> {
+    fn table(weights: &[f64], fraction: Option<u32>) -> Result<TapTable, DigitiseError> {
         quantise(&[("x", &digitised(weights))], fraction).map(|mut tables| tables.remove(0))
     }
 
@@ -194,14 +194,14 @@ mod tests {
     fn unit_what_does_not_fit_names_what_does() {
         assert_eq!(
             table(&[5.0, -4.0], Some(16)),
-            Err(TableError::Fraction {
+            Err(DigitiseError::Fraction {
                 requested: 16,
                 largest: 14
             })
         );
         assert!(matches!(
             table(&[0.5, 0.5], Some(0)),
-            Err(TableError::Fraction { largest: 16, .. })
+            Err(DigitiseError::Fraction { largest: 16, .. })
         ));
         for weight in [70_000.0, -70_000.0, 1e300, f64::MAX, f64::INFINITY, f64::NAN] {
             assert!(table(&[weight, 1.0 - weight], None).is_err(), "{weight}");
@@ -213,7 +213,7 @@ mod tests {
         let weights = vec![1.0 / 257.0; 257];
         assert!(matches!(
             table(&weights, None),
-            Err(TableError::Taps { found: 257, .. })
+            Err(DigitiseError::Taps { found: 257, .. })
         ));
     }
 

@@ -2,16 +2,16 @@
 
 use super::{HardwareError, PERIOD_KEY, SAMPLE_KEY, pwm_config, pwm_mode};
 use crate::control::{
-    Derived, NoTravel, Schedule, Supervision, gains, loop_lag_s, no_travel, schedule_delay_s, supervision,
+    ControlSchedule, Derived, NoTravel, Supervision, gains, loop_lag_s, no_travel, schedule_delay_s, supervision,
 };
 use crate::design::AxisTables;
-use crate::machine_file::{Axis, Machine, PwmMode};
+use crate::machine_file::{AxisSection, Machine, PwmMode};
 use crate::rtl::component::{Component, ComponentError};
 use crate::rtl::divider::DividerConfig;
-use crate::rtl::shaper::{Motion, ShaperConfig};
+use crate::rtl::shaper::{ShaperConfig, ShaperMotion};
 
 /// The shaper of a modulo axis in the top module: its position wraps.
-const MODULO: Motion = Motion {
+const MODULO: ShaperMotion = ShaperMotion {
     channels: 1,
     modulo: true,
 };
@@ -56,7 +56,7 @@ impl AxisHardware {
     pub(super) fn of(
         machine: &Machine,
         index: usize,
-        axis: &Axis,
+        axis: &AxisSection,
         tables: &AxisTables,
         of_stage: Option<(f64, Derived)>,
     ) -> Result<Self, HardwareError> {
@@ -68,7 +68,7 @@ impl AxisHardware {
     /// The components of the axis.
     pub(super) fn components(
         &self,
-        axis: &Axis,
+        axis: &AxisSection,
         machine: &Machine,
         divider: impl Fn() -> Result<DividerConfig, HardwareError>,
     ) -> Result<Vec<Component>, HardwareError> {
@@ -100,7 +100,12 @@ impl AxisHardware {
 }
 
 /// The shaper of an axis in the machine's top module, or why it cannot be built, or the axis not run at the sample rate.
-fn shaper(machine: &Machine, index: usize, axis: &Axis, tables: &AxisTables) -> Result<ShaperConfig, HardwareError> {
+fn shaper(
+    machine: &Machine,
+    index: usize,
+    axis: &AxisSection,
+    tables: &AxisTables,
+) -> Result<ShaperConfig, HardwareError> {
     let unfit = |key: &str, reason: String| HardwareError::new(index, key, format!("axis `{}`: {reason}", axis.name));
     let plain = ShaperConfig::new(machine.fixed_point.command_bits, tables.table.clone());
     let config = match axis.modulo {
@@ -125,12 +130,12 @@ fn shaper(machine: &Machine, index: usize, axis: &Axis, tables: &AxisTables) -> 
 
 /// The shaper of an axis as a component: one with a controller shapes velocity and acceleration too, and can change its
 /// table while it moves, as far as words and ring allow.
-fn component_shaper(axis: &Axis, top: &ShaperConfig) -> ShaperConfig {
+fn component_shaper(axis: &AxisSection, top: &ShaperConfig) -> ShaperConfig {
     if axis.controller.is_none() {
         return top.clone();
     }
     let channels = |channels| {
-        let motion = Motion {
+        let motion = ShaperMotion {
             channels,
             modulo: axis.modulo,
         };
@@ -140,11 +145,11 @@ fn component_shaper(axis: &Axis, top: &ShaperConfig) -> ShaperConfig {
 }
 
 /// What an axis does in a tick; nothing that must be in time where its position is not measured.
-fn schedule(axis: &Axis, top: &ShaperConfig) -> Option<Schedule> {
+fn schedule(axis: &AxisSection, top: &ShaperConfig) -> Option<ControlSchedule> {
     let shaper = component_shaper(axis, top);
     match (&axis.controller, &axis.encoder) {
-        (Some(_), _) => Some(Schedule::controlling(shaper.pass_clocks(shaper.most_products()))),
-        (None, Some(_)) => Some(Schedule::measuring()),
+        (Some(_), _) => Some(ControlSchedule::controlling(shaper.pass_clocks(shaper.most_products()))),
+        (None, Some(_)) => Some(ControlSchedule::measuring()),
         (None, None) => None,
     }
 }
@@ -153,7 +158,7 @@ fn schedule(axis: &Axis, top: &ShaperConfig) -> Option<Schedule> {
 fn control(
     machine: &Machine,
     index: usize,
-    axis: &Axis,
+    axis: &AxisSection,
     tables: &AxisTables,
     top: Option<&ShaperConfig>,
     of_stage: Option<(f64, Derived)>,
@@ -167,7 +172,7 @@ fn control(
         None => {
             // Without a shaper there is no hardware: its pass counts nothing.
             let shape_clocks = component.as_ref().map_or(0, |c| c.pass_clocks(c.most_products()));
-            let schedule = Schedule::controlling(shape_clocks);
+            let schedule = ControlSchedule::controlling(shape_clocks);
             let lag_s = loop_lag_s(drive, schedule_delay_s(&machine.clock, pwm, schedule.clocks()));
             let derived =
                 gains(axis, machine.clock, lag_s).map_err(|error| HardwareError::new(index, &error.key(), &error))?;

@@ -37,13 +37,13 @@ const PERIOD_KEY: &str = "axis.pwm.frequency_hz";
 pub struct Hardware<'a> {
     machine: &'a Machine,
     axes: Vec<AxisHardware>,
-    stage: Result<Option<Stage>, HardwareError>,
+    stage: Result<Option<StageHardware>, HardwareError>,
     without_stage: Option<String>,
 }
 
 /// The stage of a machine.
 #[derive(Debug, Clone)]
-pub struct Stage {
+pub struct StageHardware {
     /// Its settings, and what was derived for its axes.
     pub of_machine: MachineStage,
     /// The stage behind its registers.
@@ -85,7 +85,7 @@ impl<'a> Hardware<'a> {
     ///
     /// # Errors
     /// [`HardwareError`] where the machine file asks of it what cannot be.
-    pub fn stage(&self) -> Result<Option<&Stage>, HardwareError> {
+    pub fn stage(&self) -> Result<Option<&StageHardware>, HardwareError> {
         self.stage.as_ref().map(Option::as_ref).map_err(Clone::clone)
     }
 
@@ -118,7 +118,7 @@ impl<'a> Hardware<'a> {
     /// [`HardwareError`] for a block that the machine file asks for and that cannot be.
     pub fn components(&self) -> Result<Vec<AxisComponent>, HardwareError> {
         let mut components = Vec::new();
-        if !self.machine.axes.iter().any(crate::machine_file::Axis::has_loop) {
+        if !self.machine.axes.iter().any(crate::machine_file::AxisSection::has_loop) {
             return Ok(components);
         }
         for (index, (axis, built)) in self.machine.axes.iter().zip(&self.axes).enumerate() {
@@ -138,9 +138,9 @@ fn complete_stage(
     machine: &Machine,
     design: &MachineDesign,
     reason: &mut Option<String>,
-) -> Result<Option<Stage>, HardwareError> {
+) -> Result<Option<StageHardware>, HardwareError> {
     // A machine of shapers alone has words and delays that a stage does not; it wants none.
-    if !machine.axes.iter().all(crate::machine_file::Axis::has_loop) {
+    if !machine.axes.iter().all(crate::machine_file::AxisSection::has_loop) {
         return Ok(None);
     }
     let of_machine = match stage(machine, design) {
@@ -156,7 +156,7 @@ fn complete_stage(
         }
     };
     match Component::stage(&of_machine.config) {
-        Ok(component) => Ok(Some(Stage { of_machine, component })),
+        Ok(component) => Ok(Some(StageHardware { of_machine, component })),
         Err(error @ (StageError::Axes(_) | StageError::Channels { .. })) => {
             *reason = Some(error.to_string());
             Ok(None)

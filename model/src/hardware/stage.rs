@@ -4,12 +4,12 @@ use crate::control::{
     ControlError, Derived, Supervision, SupervisionError, gains, loop_lag_s, schedule_delay_s, supervision,
 };
 use crate::design::MachineDesign;
-use crate::machine_file::{Axis, Clock, Encoder, Machine, Pwm, PwmMode, ScaleUse};
+use crate::machine_file::{AxisSection, ClockSection, Encoder, Machine, PwmMode, PwmSection, ScaleUse};
 use crate::rtl::divider::{DividerConfig, DividerConfigError};
 use crate::rtl::linear_scale::{ScaleRatio, ScaleRatioError};
-use crate::rtl::pwm::{ActiveLow, Mode, PwmConfig, PwmConfigError};
-use crate::rtl::shaper::{Motion, ShaperConfig, ShaperConfigError};
-use crate::rtl::stage::{Schedule, StageAxis, StageConfig, StageScale};
+use crate::rtl::pwm::{ActiveLow, BridgeMode, PwmConfig, PwmConfigError};
+use crate::rtl::shaper::{ShaperConfig, ShaperConfigError, ShaperMotion};
+use crate::rtl::stage::{StageAxis, StageConfig, StageScale, StageSchedule};
 use crate::rtl::trace::{TraceConfig, TraceConfigError};
 
 /// A stage, and what was derived for its axes.
@@ -117,7 +117,7 @@ pub fn stage(machine: &Machine, design: &MachineDesign) -> Result<Option<Machine
         else {
             return Ok(None);
         };
-        let motion = Motion {
+        let motion = ShaperMotion {
             channels: 3,
             modulo: axis.modulo,
         };
@@ -140,7 +140,7 @@ pub fn stage(machine: &Machine, design: &MachineDesign) -> Result<Option<Machine
     let on_scale = axes
         .iter()
         .any(|parts| parts.scale.is_some_and(|scale| scale.closes_loop));
-    let used_clocks = Schedule::of(&shapers, on_scale).duty_clocks();
+    let used_clocks = StageSchedule::of(&shapers, on_scale).duty_clocks();
     let (mut lags_s, mut derived, mut built) = (Vec::new(), Vec::new(), Vec::new());
     for (index, parts) in axes.into_iter().enumerate() {
         let delay_s = schedule_delay_s(&machine.clock, parts.pwm, used_clocks);
@@ -163,8 +163,8 @@ pub fn stage(machine: &Machine, design: &MachineDesign) -> Result<Option<Machine
 }
 
 struct Parts<'a> {
-    axis: &'a Axis,
-    pwm: &'a Pwm,
+    axis: &'a AxisSection,
+    pwm: &'a PwmSection,
     encoder: Encoder,
     shaper: ShaperConfig,
     supervision: Supervision,
@@ -173,7 +173,7 @@ struct Parts<'a> {
     config: PwmConfig,
 }
 
-fn scale(axis: &Axis) -> Result<Option<StageScale>, ScaleRatioError> {
+fn scale(axis: &AxisSection) -> Result<Option<StageScale>, ScaleRatioError> {
     let Some(scale) = &axis.scale else {
         return Ok(None);
     };
@@ -190,13 +190,13 @@ fn scale(axis: &Axis) -> Result<Option<StageScale>, ScaleRatioError> {
     }))
 }
 
-fn trace(axis: &Axis) -> Result<Option<TraceConfig>, TraceConfigError> {
+fn trace(axis: &AxisSection) -> Result<Option<TraceConfig>, TraceConfigError> {
     let samples = axis.trace.map(|trace| u64::from(trace.samples));
     samples.map(TraceConfig::new).transpose()
 }
 
 impl Parts<'_> {
-    fn build(self, derived: &Derived, clock: &Clock) -> StageAxis {
+    fn build(self, derived: &Derived, clock: &ClockSection) -> StageAxis {
         StageAxis {
             name: self.axis.name.clone(),
             shaper: self.shaper,
@@ -216,12 +216,12 @@ impl Parts<'_> {
 }
 
 /// The mode's register value.
-pub fn pwm_mode(mode: PwmMode) -> Mode {
+pub fn pwm_mode(mode: PwmMode) -> BridgeMode {
     match mode {
-        PwmMode::Direction => Mode::Direction,
-        PwmMode::HalfBridge => Mode::HalfBridge,
-        PwmMode::FullBridge => Mode::Unipolar,
-        PwmMode::LockedAntiphase => Mode::Locked,
+        PwmMode::Direction => BridgeMode::Direction,
+        PwmMode::HalfBridge => BridgeMode::HalfBridge,
+        PwmMode::FullBridge => BridgeMode::Unipolar,
+        PwmMode::LockedAntiphase => BridgeMode::Locked,
     }
 }
 
@@ -229,7 +229,7 @@ pub fn pwm_mode(mode: PwmMode) -> Mode {
 ///
 /// # Errors
 /// [`PwmConfigError`] for a dead time or minimum pulse of more than 1023 clocks.
-pub fn pwm_config(pwm: &Pwm, clock: &Clock) -> Result<PwmConfig, PwmConfigError> {
+pub fn pwm_config(pwm: &PwmSection, clock: &ClockSection) -> Result<PwmConfig, PwmConfigError> {
     let low = pwm.active_low;
     let active_low = ActiveLow {
         a_high: low,

@@ -3,7 +3,8 @@
 use super::range::{COUNTS_PER_UNIT, NumberRange};
 use super::table::Table;
 use super::{
-    Axis, AxisMode, Clock, FixedPoint, ScaleUse, controller, drive, encoder, limits, pwm, scale, shaper, trace,
+    AxisMode, AxisSection, ClockSection, FixedPoint, ScaleUse, controller, drive, encoder, limits, pwm, scale, shaper,
+    trace,
 };
 use crate::mode::Mode;
 use crate::rtl::shaper::MOTION_WORD_BITS;
@@ -22,9 +23,9 @@ const PARTICIPATION: NumberRange = NumberRange::closed(0.0, 1e9);
 pub(super) fn read(
     table: &Table<'_, '_>,
     name: Option<String>,
-    clock: Option<Clock>,
+    clock: Option<ClockSection>,
     fixed_point: Option<FixedPoint>,
-) -> Option<Axis> {
+) -> Option<AxisSection> {
     table.allow(&[
         "name",
         "counts_per_unit",
@@ -67,7 +68,7 @@ pub(super) fn read(
         Some(choice) => Some(choice?.1),
         None => None,
     };
-    Some(Axis {
+    Some(AxisSection {
         name: name?,
         counts_per_unit: counts_per_unit?,
         modulo,
@@ -141,7 +142,7 @@ fn check_needs(axis: &Table<'_, '_>) {
 }
 
 /// Reads the modes, each with its table; `None` where one of them is refused.
-fn read_modes<'r, 't>(axis: &Table<'r, 't>, clock: Option<Clock>) -> Option<Vec<(Table<'r, 't>, AxisMode)>> {
+fn read_modes<'r, 't>(axis: &Table<'r, 't>, clock: Option<ClockSection>) -> Option<Vec<(Table<'r, 't>, AxisMode)>> {
     let tables = axis.tables("mode", MAX_MODES);
     // All are read before the first refusal ends it: every mode's problems are to be shown.
     let modes: Vec<Option<(Table, AxisMode)>> = tables
@@ -161,7 +162,7 @@ fn read_modes<'r, 't>(axis: &Table<'r, 't>, clock: Option<Clock>) -> Option<Vec<
     Some(modes)
 }
 
-fn read_mode(table: &Table<'_, '_>, clock: Option<Clock>) -> Option<AxisMode> {
+fn read_mode(table: &Table<'_, '_>, clock: Option<ClockSection>) -> Option<AxisMode> {
     let keys = [
         "frequency_hz",
         "damped_frequency_hz",
@@ -194,7 +195,7 @@ fn read_mode(table: &Table<'_, '_>, clock: Option<Clock>) -> Option<AxisMode> {
 ///
 /// It must lie below half the sample rate: then so does the damped frequency, where the ringing and the pole are, and
 /// `ω_d·T_s < π`, without which two taps cannot place an impulse between two samples.
-fn read_frequency(table: &Table<'_, '_>, damping: Option<f64>, clock: Option<Clock>) -> Option<f64> {
+fn read_frequency(table: &Table<'_, '_>, damping: Option<f64>, clock: Option<ClockSection>) -> Option<f64> {
     let (undamped, damped) = ("frequency_hz", "damped_frequency_hz");
     let key = match (table.has(undamped), table.has(damped)) {
         (true, true) => {

@@ -38,14 +38,14 @@ pub struct Problem {
     /// Which of several tables, such as `axis x, mode 2`; empty where there is only one.
     pub place: String,
     /// What was found and what is allowed.
-    pub cause: Cause,
+    pub cause: ProblemCause,
     /// What to do.
     pub remedy: String,
 }
 
 /// What is wrong, with what was found and what is allowed instead.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-pub enum Cause {
+pub enum ProblemCause {
     /// The text is no TOML.
     #[error("found a TOML syntax error: {0}; allowed: TOML as of https://toml.io")]
     Syntax(String),
@@ -123,20 +123,20 @@ pub enum Cause {
     },
 }
 
-impl Cause {
+impl ProblemCause {
     /// The cause in two or three words, for the mark in a listing of the source.
     fn label(&self) -> &'static str {
         match self {
-            Cause::Syntax(_) => "no TOML",
-            Cause::Empty { .. } => "empty",
-            Cause::UnknownKey { .. } => "unknown key",
-            Cause::MissingKey { .. } => "key missing here",
-            Cause::WrongType { .. } => "wrong type",
-            Cause::OutOfRange { .. } => "out of range",
-            Cause::NotAChoice { .. } => "not in the list",
-            Cause::Duplicate { .. } => "not unique",
-            Cause::Inconsistent { .. } => "contradiction",
-            Cause::NotBuilt { .. } => "not built",
+            ProblemCause::Syntax(_) => "no TOML",
+            ProblemCause::Empty { .. } => "empty",
+            ProblemCause::UnknownKey { .. } => "unknown key",
+            ProblemCause::MissingKey { .. } => "key missing here",
+            ProblemCause::WrongType { .. } => "wrong type",
+            ProblemCause::OutOfRange { .. } => "out of range",
+            ProblemCause::NotAChoice { .. } => "not in the list",
+            ProblemCause::Duplicate { .. } => "not unique",
+            ProblemCause::Inconsistent { .. } => "contradiction",
+            ProblemCause::NotBuilt { .. } => "not built",
         }
     }
 }

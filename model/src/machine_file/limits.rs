@@ -55,10 +55,10 @@ const DEFAULT_LOST_COMMAND: f64 = 0.5;
 /// Largest manual duty, where the file does not say.
 const DEFAULT_DIRECT_DUTY: f64 = 0.1;
 
-/// `[axis.limits]`, in the units of the file: metres (or radians) and seconds. [`Limits::default`] is an axis without the
+/// `[axis.limits]`, in the units of the file: metres (or radians) and seconds. [`LimitsSection::default`] is an axis without the
 /// table.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Limits {
+pub struct LimitsSection {
     /// Largest velocity, m/s.
     pub velocity: Option<f64>,
     /// Largest acceleration, m/s².
@@ -99,7 +99,7 @@ pub struct Limits {
     pub excitation: Option<f64>,
 }
 
-impl Default for Limits {
+impl Default for LimitsSection {
     fn default() -> Self {
         Self {
             velocity: None,
@@ -153,13 +153,13 @@ const SUPERVISED: [&str; 15] = [
 ];
 
 /// Reads the limits of an axis; `word` is counts per unit of the loop and the format that the travel must fit, where both are valid.
-pub(super) fn read(axis: &Table<'_, '_>, table: &Table<'_, '_>, word: Option<(f64, FixedPoint)>) -> Limits {
+pub(super) fn read(axis: &Table<'_, '_>, table: &Table<'_, '_>, word: Option<(f64, FixedPoint)>) -> LimitsSection {
     let keys: Vec<&str> = OF_MOVES.into_iter().chain(SUPERVISED).collect();
     table.allow(&keys);
     check_needs(axis, table);
-    let default = Limits::default();
+    let default = LimitsSection::default();
     let seconds = |key| table.number(key, SECONDS).unwrap_or(0.0);
-    Limits {
+    LimitsSection {
         velocity: table.number("velocity", MOTION),
         acceleration: table.number("acceleration", MOTION),
         jerk: table.number("jerk", MOTION),

@@ -2,7 +2,7 @@
 
 use super::range::{NumberRange, RATIO_ROUNDING};
 use super::table::Table;
-use super::{Clock, Digitise, FixedPoint, Machine, Target, axis, stage};
+use super::{ClockSection, Digitise, FixedPoint, Machine, Target, axis, stage};
 use crate::rtl::shaper::WORD_BITS;
 use crate::taps::COEFFICIENT_FRACTION_MAX;
 
@@ -36,7 +36,11 @@ pub(super) fn read(root: &Table<'_, '_>) -> Option<Machine> {
     })
 }
 
-fn read_axes(root: &Table<'_, '_>, clock: Option<Clock>, fixed_point: Option<FixedPoint>) -> Option<Vec<super::Axis>> {
+fn read_axes(
+    root: &Table<'_, '_>,
+    clock: Option<ClockSection>,
+    fixed_point: Option<FixedPoint>,
+) -> Option<Vec<super::AxisSection>> {
     let mut lines: Vec<(String, usize)> = Vec::new();
     let mut axes = Some(Vec::new());
     for (index, table) in root.tables("axis", MAX_AXES).into_iter().enumerate() {
@@ -72,7 +76,7 @@ fn clash(one: &str, other: &str) -> bool {
         .any(|(of_ports, of_shaper)| *of_ports == "u" && ["x", "y"].contains(of_shaper))
 }
 
-fn read_clock(table: &Table<'_, '_>) -> Option<Clock> {
+fn read_clock(table: &Table<'_, '_>) -> Option<ClockSection> {
     table.allow(&["frequency_hz", "sample_hz"]);
     let frequency_hz = table.required_number("frequency_hz", CLOCK_HZ);
     let sample_hz = table.required_number("sample_hz", CLOCK_HZ);
@@ -100,7 +104,7 @@ fn read_clock(table: &Table<'_, '_>) -> Option<Clock> {
         );
         return None;
     }
-    Some(Clock {
+    Some(ClockSection {
         frequency_hz,
         sample_hz,
     })

@@ -51,17 +51,17 @@ mod trace;
 pub use controller::Controller;
 pub use drive::{Drive, DriveMode};
 pub use encoder::Encoder;
-pub use error::{Cause, MAX_PROBLEMS, Problem, SpecError};
-pub use limits::Limits;
+pub use error::{MAX_PROBLEMS, Problem, ProblemCause, SpecError};
+pub use limits::LimitsSection;
 pub use place::line_of;
-pub use pwm::{Pwm, PwmMode};
+pub use pwm::{PwmMode, PwmSection};
 pub use scale::{Scale, ScaleUse};
-pub use stage::Stage;
-pub use trace::Trace;
+pub use stage::StageSection;
+pub use trace::TraceSection;
 
 use toml::de::DeTable;
 
-use crate::design::kind::Kind;
+use crate::design::kind::ShaperKind;
 use crate::mode::Mode;
 use reader::Reader;
 use table::Table;
@@ -81,12 +81,12 @@ pub fn parse(file_name: &str, text: &str) -> Result<Machine, SpecError> {
     let machine = match DeTable::parse(text) {
         Err(error) => {
             let span = error.span().unwrap_or(text.len()..text.len());
-            let cause = Cause::Syntax(error.message().to_owned());
+            let cause = ProblemCause::Syntax(error.message().to_owned());
             whole_file(span, cause, "correct the syntax at the mark")
         }
         Ok(document) if document.get_ref().is_empty() => {
             let allowed = "the keys name, [clock] and [[axis]]".to_owned();
-            let cause = Cause::Empty { allowed };
+            let cause = ProblemCause::Empty { allowed };
             whole_file(0..0, cause, "start from one of the files in examples/")
         }
         Ok(document) => machine::read(&Table::root(&reader, document.get_ref())),
@@ -100,27 +100,27 @@ pub struct Machine {
     /// Verilog names derive from it: `[a-z][a-z0-9_]*`, no keyword.
     pub name: String,
     /// Clock and sample tick.
-    pub clock: Clock,
+    pub clock: ClockSection,
     /// Number formats and digitising.
     pub fixed_point: FixedPoint,
     /// Device, for synthesis.
     pub target: Option<Target>,
     /// One to four axes, names unique.
-    pub axes: Vec<Axis>,
+    pub axes: Vec<AxisSection>,
     /// What concerns all axes.
-    pub stage: Option<Stage>,
+    pub stage: Option<StageSection>,
 }
 
 /// `[clock]`.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Clock {
+pub struct ClockSection {
     /// Fabric clock in Hz.
     pub frequency_hz: f64,
     /// Sample tick in Hz; divides `frequency_hz`.
     pub sample_hz: f64,
 }
 
-impl Clock {
+impl ClockSection {
     /// Fabric clocks per sample: exact, validation made sure.
     pub fn clocks_per_sample(&self) -> u32 {
         (self.frequency_hz / self.sample_hz).round() as u32
@@ -172,7 +172,7 @@ pub struct Target {
 
 /// `[[axis]]`.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Axis {
+pub struct AxisSection {
     /// Name, unique in the machine; Verilog names derive from it.
     pub name: String,
     /// Encoder counts per metre (or radian).
@@ -186,17 +186,17 @@ pub struct Axis {
     /// `[axis.encoder]`.
     pub encoder: Option<Encoder>,
     /// `[axis.pwm]`.
-    pub pwm: Option<Pwm>,
+    pub pwm: Option<PwmSection>,
     /// `[axis.drive]`; only with `[axis.pwm]`.
     pub drive: Option<Drive>,
     /// `[axis.controller]`; only with encoder, PWM and drive.
     pub controller: Option<Controller>,
     /// `[axis.limits]`.
-    pub limits: Option<Limits>,
+    pub limits: Option<LimitsSection>,
     /// `[axis.scale]`; only with an encoder.
     pub scale: Option<Scale>,
     /// `[axis.trace]`; only with a controller.
-    pub trace: Option<Trace>,
+    pub trace: Option<TraceSection>,
 }
 
 /// Residual that an EI kind tolerates where the file gives no tolerance.
@@ -208,7 +208,7 @@ pub(crate) const DEFAULT_CHEBYSHEV_ORDER: u32 = 3;
 /// Frequencies per mode of `vibrationless` where the file gives no order.
 const DEFAULT_VIBRATIONLESS_ORDER: u32 = 2;
 
-impl Axis {
+impl AxisSection {
     /// Whether the axis has more than a shaper.
     pub fn has_loop(&self) -> bool {
         self.encoder.is_some() || self.pwm.is_some() || self.controller.is_some()
@@ -225,16 +225,16 @@ impl Axis {
 
     /// The kind that treats all modes of this axis together, or `None` where each mode has a shaper of its own and the
     /// axis gets their convolution.
-    pub fn joint_kind(&self) -> Option<Kind> {
+    pub fn joint_kind(&self) -> Option<ShaperKind> {
         let kind = self.shaper.as_ref()?.kind;
         kind.treats_modes_together().then_some(kind)
     }
 
     /// Kind of a mode's shaper: the mode's own, else, under `simultaneous`, `zv`, else the axis's.
-    pub fn kind_of(&self, mode: &AxisMode) -> Kind {
-        let axis_kind = self.shaper.as_ref().map_or(Kind::None, |s| s.kind);
-        let inherited = if axis_kind == Kind::Simultaneous {
-            Kind::Zv
+    pub fn kind_of(&self, mode: &AxisMode) -> ShaperKind {
+        let axis_kind = self.shaper.as_ref().map_or(ShaperKind::None, |s| s.kind);
+        let inherited = if axis_kind == ShaperKind::Simultaneous {
+            ShaperKind::Zv
         } else {
             axis_kind
         };
@@ -252,8 +252,8 @@ impl Axis {
     pub fn order_of(&self, mode: &AxisMode) -> u32 {
         let of_axis = self.shaper.as_ref().and_then(|s| s.order);
         mode.order.or(of_axis).unwrap_or(match self.kind_of(mode) {
-            Kind::ChebyshevEi => DEFAULT_CHEBYSHEV_ORDER,
-            Kind::Vibrationless => DEFAULT_VIBRATIONLESS_ORDER,
+            ShaperKind::ChebyshevEi => DEFAULT_CHEBYSHEV_ORDER,
+            ShaperKind::Vibrationless => DEFAULT_VIBRATIONLESS_ORDER,
             _ => 1,
         })
     }
@@ -291,7 +291,7 @@ impl Axis {
 #[derive(Debug, Clone, PartialEq)]
 pub struct ShaperChoice {
     /// Kind.
-    pub kind: Kind,
+    pub kind: ShaperKind,
     /// Residual that an EI kind tolerates at the mode, in (0, 1); default 0.05.
     pub tolerance: Option<f64>,
     /// Zero pairs of `chebyshev-ei`, frequencies per mode of `vibrationless`: 1..=5.
@@ -299,7 +299,7 @@ pub struct ShaperChoice {
     /// Residual bound of `vibrationless`.
     pub epsilon: Option<f64>,
     /// Base shaper of `periodic`.
-    pub base: Option<Kind>,
+    pub base: Option<ShaperKind>,
     /// Search limit of `periodic` in Hz.
     pub lowest_frequency_hz: Option<f64>,
     /// Amplitudes of `simultaneous`: `ps` or `um`.
@@ -314,7 +314,7 @@ pub struct ShaperChoice {
 
 impl ShaperChoice {
     /// A kind with every other key left out.
-    pub fn of_kind(kind: Kind) -> Self {
+    pub fn of_kind(kind: ShaperKind) -> Self {
         Self {
             kind,
             tolerance: None,
@@ -336,7 +336,7 @@ pub struct AxisMode {
     /// Frequency and damping.
     pub mode: Mode,
     /// The mode's own kind, instead of the axis's.
-    pub shaper: Option<Kind>,
+    pub shaper: Option<ShaperKind>,
     /// The mode's own tolerance, instead of the axis's.
     pub tolerance: Option<f64>,
     /// The mode's own order, instead of the axis's.

@@ -3,7 +3,7 @@
 //! The file has seconds, the hardware counts clocks. The period is a whole number of clocks exactly. Dead time and minimum
 //! pulse are rounded **up**: the pins never show less than the file asks for.
 
-use super::Clock;
+use super::ClockSection;
 use super::range::{NumberRange, RATIO_ROUNDING};
 use super::table::Table;
 use crate::rtl::pwm::{SHORTEST_PERIOD_CLOCKS, TIME_BITS};
@@ -32,7 +32,7 @@ pub enum PwmMode {
 
 /// `[axis.pwm]`.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Pwm {
+pub struct PwmSection {
     /// How the duty drives the pins.
     pub mode: PwmMode,
     /// PWM frequency in Hz: it divides the clock, and the sample tick divides it.
@@ -55,37 +55,37 @@ impl PwmMode {
     ];
 }
 
-impl Pwm {
+impl PwmSection {
     /// Clocks of a PWM period: exact, validation made sure.
-    pub fn period_clocks(&self, clock: &Clock) -> u32 {
+    pub fn period_clocks(&self, clock: &ClockSection) -> u32 {
         (clock.frequency_hz / self.frequency_hz).round() as u32
     }
 
     /// Dead time in clocks, rounded up.
-    pub fn dead_time_clocks(&self, clock: &Clock) -> u32 {
+    pub fn dead_time_clocks(&self, clock: &ClockSection) -> u32 {
         clocks_up(self.dead_time_s, clock)
     }
 
     /// Shortest pulse in clocks, rounded up.
-    pub fn minimum_pulse_clocks(&self, clock: &Clock) -> u32 {
+    pub fn minimum_pulse_clocks(&self, clock: &ClockSection) -> u32 {
         clocks_up(self.minimum_pulse_s, clock)
     }
 }
 
 /// The smallest whole number of clocks that lasts at least `seconds`; the last digits of decimals such as `500e-9`, which
 /// binary fractions only come near, add no clock.
-fn clocks_up(seconds: f64, clock: &Clock) -> u32 {
+fn clocks_up(seconds: f64, clock: &ClockSection) -> u32 {
     let clocks = seconds * clock.frequency_hz;
     (clocks * (1.0 - RATIO_ROUNDING)).ceil() as u32
 }
 
 /// Reads the table; `None` where a value is refused. Without a valid clock its checks are left out.
-pub(super) fn read(table: &Table<'_, '_>, clock: Option<Clock>) -> Option<Pwm> {
+pub(super) fn read(table: &Table<'_, '_>, clock: Option<ClockSection>) -> Option<PwmSection> {
     table.allow(&["mode", "frequency_hz", "dead_time_s", "minimum_pulse_s", "active_low"]);
     let mode = table.required_choice("mode", &PwmMode::ALL.map(|(_, name)| name));
     let mode = PwmMode::ALL.into_iter().find(|(_, name)| Some(*name) == mode);
     let frequency_hz = table.required_number("frequency_hz", FREQUENCY_HZ);
-    let pwm = Pwm {
+    let pwm = PwmSection {
         mode: mode.map_or(PwmMode::Direction, |(mode, _)| mode),
         frequency_hz: frequency_hz?,
         dead_time_s: table.number("dead_time_s", SHORT_S).unwrap_or(0.0),
@@ -102,7 +102,7 @@ pub(super) fn read(table: &Table<'_, '_>, clock: Option<Clock>) -> Option<Pwm> {
 
 /// A PWM period is a whole number of clocks, and a sample a whole number of PWM periods: of the frequencies that are
 /// both, the message names the nearest.
-fn check_frequency(table: &Table<'_, '_>, pwm_hz: f64, clock: &Clock) {
+fn check_frequency(table: &Table<'_, '_>, pwm_hz: f64, clock: &ClockSection) {
     let clocks_per_sample = clock.clocks_per_sample();
     let frequencies = (1..=clocks_per_sample)
         .filter(|periods| clocks_per_sample.is_multiple_of(*periods))
@@ -111,7 +111,7 @@ fn check_frequency(table: &Table<'_, '_>, pwm_hz: f64, clock: &Clock) {
         return;
     };
     if (nearest - pwm_hz).abs() > RATIO_ROUNDING * pwm_hz {
-        let Clock {
+        let ClockSection {
             frequency_hz,
             sample_hz,
         } = clock;
@@ -125,7 +125,7 @@ fn check_frequency(table: &Table<'_, '_>, pwm_hz: f64, clock: &Clock) {
 
 /// A period has room for both sides' dead time and minimum pulse, and for a clock more: a leg that is late once, after a turn
 /// or a start, catches up only where a side lasts longer than the minimum. The hardware has at least a clock of each.
-fn check_pulse(table: &Table<'_, '_>, pwm: &Pwm, clock: &Clock) {
+fn check_pulse(table: &Table<'_, '_>, pwm: &PwmSection, clock: &ClockSection) {
     let least = |clocks: u32| u64::from(clocks.max(1));
     let clocks = 2 * (least(pwm.dead_time_clocks(clock)) + least(pwm.minimum_pulse_clocks(clock)));
     let period = pwm.period_clocks(clock);
@@ -143,7 +143,7 @@ fn check_pulse(table: &Table<'_, '_>, pwm: &Pwm, clock: &Clock) {
 }
 
 /// What the hardware's counters hold: the period, the dead time and the shortest pulse, in clocks.
-fn check_counters(table: &Table<'_, '_>, pwm: &Pwm, clock: &Clock) {
+fn check_counters(table: &Table<'_, '_>, pwm: &PwmSection, clock: &ClockSection) {
     let shortest_hz = clock.frequency_hz / f64::from(PERIOD_CLOCKS_MAX);
     let period = pwm.period_clocks(clock);
     if !(PERIOD_CLOCKS_MIN..=PERIOD_CLOCKS_MAX).contains(&period) {
@@ -170,7 +170,7 @@ mod tests {
 
     #[test]
     fn unit_short_times_are_rounded_up_to_clocks() {
-        let clock = Clock {
+        let clock = ClockSection {
             frequency_hz: 50e6,
             sample_hz: 10e3,
         };

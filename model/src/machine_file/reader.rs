@@ -5,7 +5,7 @@
 use std::cell::{Cell, RefCell};
 use std::ops::Range;
 
-use super::error::{Cause, MAX_PROBLEMS, Problem, SpecError};
+use super::error::{MAX_PROBLEMS, Problem, ProblemCause, SpecError};
 
 /// Longest piece of the file that a message repeats, in characters.
 const MAX_QUOTE: usize = 48;
@@ -60,7 +60,7 @@ impl<'t> Reader<'t> {
         span: Range<usize>,
         key: String,
         place: &str,
-        cause: Cause,
+        cause: ProblemCause,
         remedy: String,
     ) -> Problem {
         Problem {

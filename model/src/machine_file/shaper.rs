@@ -2,8 +2,8 @@
 
 use super::range::NumberRange;
 use super::table::Table;
-use super::{AxisMode, Clock, ShaperChoice};
-use crate::design::kind::Kind;
+use super::{AxisMode, ClockSection, ShaperChoice};
+use crate::design::kind::ShaperKind;
 
 /// Residual that a shaper tolerates.
 pub(super) const TOLERANCE: NumberRange = NumberRange::positive(1.0).open_above();
@@ -19,24 +19,24 @@ const SUM_ROUNDING: f64 = 1e-9;
 const MAX_ORDER: u32 = 5;
 
 /// The kinds that have an order.
-const ORDER_KINDS: &[Kind] = &[Kind::ChebyshevEi, Kind::Vibrationless];
+const ORDER_KINDS: &[ShaperKind] = &[ShaperKind::ChebyshevEi, ShaperKind::Vibrationless];
 /// The keys that serve some kinds only, with those kinds.
-const KEYS_OF_KINDS: [(&str, &[Kind]); 7] = [
+const KEYS_OF_KINDS: [(&str, &[ShaperKind]); 7] = [
     ("order", ORDER_KINDS),
-    ("epsilon", &[Kind::Vibrationless]),
-    ("base", &[Kind::Periodic]),
-    ("lowest_frequency_hz", &[Kind::Periodic]),
-    ("amplitude", &[Kind::Simultaneous]),
-    ("method", &[Kind::Antisymmetric]),
-    ("ratio_tolerance", &[Kind::Antisymmetric]),
+    ("epsilon", &[ShaperKind::Vibrationless]),
+    ("base", &[ShaperKind::Periodic]),
+    ("lowest_frequency_hz", &[ShaperKind::Periodic]),
+    ("amplitude", &[ShaperKind::Simultaneous]),
+    ("method", &[ShaperKind::Antisymmetric]),
+    ("ratio_tolerance", &[ShaperKind::Antisymmetric]),
 ];
 
 /// Reads a kind of shaper by name. A kind that is known and not built counts as read.
-pub(super) fn kind(table: &Table<'_, '_>, key: &str) -> Option<Kind> {
-    let built = names(Kind::is_built);
+pub(super) fn kind(table: &Table<'_, '_>, key: &str) -> Option<ShaperKind> {
+    let built = names(ShaperKind::is_built);
     let name = table.text(key, built.join(", "))?;
-    let Some(kind) = Kind::from_name(name) else {
-        return table.choice(key, &built).and_then(Kind::from_name);
+    let Some(kind) = ShaperKind::from_name(name) else {
+        return table.choice(key, &built).and_then(ShaperKind::from_name);
     };
     if !kind.is_built() {
         table.not_built(key, kind.name(), Some(built.join(", ")), "choose a kind of the list");
@@ -44,8 +44,8 @@ pub(super) fn kind(table: &Table<'_, '_>, key: &str) -> Option<Kind> {
     Some(kind)
 }
 
-fn names(wanted: impl Fn(Kind) -> bool) -> Vec<&'static str> {
-    Kind::ALL
+fn names(wanted: impl Fn(ShaperKind) -> bool) -> Vec<&'static str> {
+    ShaperKind::ALL
         .iter()
         .filter(|(kind, _)| wanted(*kind))
         .map(|(_, name)| *name)
@@ -58,7 +58,7 @@ pub(super) fn order(table: &Table<'_, '_>) -> Option<u32> {
 }
 
 /// Reads `[axis.shaper]`.
-pub(super) fn read(table: &Table<'_, '_>, clock: Option<Clock>) -> Option<ShaperChoice> {
+pub(super) fn read(table: &Table<'_, '_>, clock: Option<ClockSection>) -> Option<ShaperChoice> {
     table.allow(&[
         "kind",
         "tolerance",
@@ -71,14 +71,14 @@ pub(super) fn read(table: &Table<'_, '_>, clock: Option<Clock>) -> Option<Shaper
         "ratio_tolerance",
         "impulses",
     ]);
-    table.require("kind", names(Kind::is_built).join(", "));
+    table.require("kind", names(ShaperKind::is_built).join(", "));
     let kind = kind(table, "kind");
-    let bases = [Kind::ZvEi, Kind::MultiEi, Kind::ChebyshevEi].map(Kind::name);
+    let bases = [ShaperKind::ZvEi, ShaperKind::MultiEi, ShaperKind::ChebyshevEi].map(ShaperKind::name);
     let half_sample_hz = clock.map_or(1e9, |c| c.sample_hz / 2.0);
     let lowest = NumberRange::positive(half_sample_hz).open_above().unit("Hz");
     let (tolerance, order) = (table.number("tolerance", TOLERANCE), order(table));
     let epsilon = table.number("epsilon", TOLERANCE);
-    let base = table.choice("base", &bases).and_then(Kind::from_name);
+    let base = table.choice("base", &bases).and_then(ShaperKind::from_name);
     let lowest_frequency_hz = table.number("lowest_frequency_hz", lowest);
     let amplitude = table.choice("amplitude", &["ps", "um"]).map(str::to_owned);
     let method = table
@@ -100,9 +100,9 @@ pub(super) fn read(table: &Table<'_, '_>, clock: Option<Clock>) -> Option<Shaper
     })
 }
 
-fn read_impulses(table: &Table<'_, '_>, kind: Kind) -> Option<Vec<(f64, f64)>> {
+fn read_impulses(table: &Table<'_, '_>, kind: ShaperKind) -> Option<Vec<(f64, f64)>> {
     let key = "impulses";
-    if kind != Kind::Custom {
+    if kind != ShaperKind::Custom {
         if table.has(key) {
             let found = format!("impulses with kind = \"{kind}\"");
             table.contradiction(
@@ -158,7 +158,7 @@ pub(super) fn check(
     modes: &[(Table<'_, '_>, AxisMode)],
 ) {
     let kind = shaper.map(|(_, choice)| choice.kind);
-    if !axis.has("mode") && !matches!(kind, Some(Kind::Custom | Kind::None)) {
+    if !axis.has("mode") && !matches!(kind, Some(ShaperKind::Custom | ShaperKind::None)) {
         let allowed = "at least one [[axis.mode]], except with kind custom or none";
         let remedy = "add [[axis.mode]] with frequency_hz and damping, or choose kind \"custom\" or \"none\"";
         axis.contradiction("mode", "an axis without modes", allowed, remedy);
@@ -181,9 +181,9 @@ pub(super) fn check(
     }
     if let Some((table, choice)) = shaper {
         let own_kinds = modes.iter().filter_map(|(_, mode)| mode.shaper);
-        let used: Vec<Kind> = own_kinds.chain([choice.kind]).collect();
+        let used: Vec<ShaperKind> = own_kinds.chain([choice.kind]).collect();
         // The base of `periodic` has the order of its own kind.
-        let used: Vec<Kind> = used.into_iter().chain(choice.base).collect();
+        let used: Vec<ShaperKind> = used.into_iter().chain(choice.base).collect();
         for (key, kinds) in KEYS_OF_KINDS {
             check_key(table, key, kinds, &used);
         }
@@ -191,7 +191,7 @@ pub(super) fn check(
 }
 
 /// Checks a mode's own kind: it must serve one mode, and the axis's kind must leave room for it.
-fn check_own_shaper(table: &Table<'_, '_>, axis_kind: Option<Kind>, mode: &AxisMode) {
+fn check_own_shaper(table: &Table<'_, '_>, axis_kind: Option<ShaperKind>, mode: &AxisMode) {
     let Some(own) = mode.shaper else {
         return;
     };
@@ -207,11 +207,11 @@ fn check_own_shaper(table: &Table<'_, '_>, axis_kind: Option<Kind>, mode: &AxisM
         return;
     }
     match axis_kind.filter(|kind| kind.treats_modes_together()) {
-        Some(Kind::Simultaneous) if !matches!(own, Kind::Zv | Kind::Zvd) => {
+        Some(ShaperKind::Simultaneous) if !matches!(own, ShaperKind::Zv | ShaperKind::Zvd) => {
             let found = format!("shaper = \"{own}\" under kind = \"simultaneous\"");
             table.contradiction("shaper", found, "zv, zvd", "choose one of the list");
         }
-        Some(Kind::Simultaneous) | None => {}
+        Some(ShaperKind::Simultaneous) | None => {}
         Some(joint) => {
             let found = format!("shaper = \"{own}\" under kind = \"{joint}\", which would ignore it");
             let allowed = format!("no `shaper` in a mode under kind = \"{joint}\"");
@@ -226,7 +226,7 @@ fn check_own_shaper(table: &Table<'_, '_>, axis_kind: Option<Kind>, mode: &AxisM
 }
 
 /// Checks that one of the kinds in use takes a key, if the key is there.
-fn check_key(table: &Table<'_, '_>, key: &str, takers: &[Kind], used: &[Kind]) {
+fn check_key(table: &Table<'_, '_>, key: &str, takers: &[ShaperKind], used: &[ShaperKind]) {
     if table.has(key) && !used.iter().any(|kind| takers.contains(kind)) {
         let used: Vec<&str> = used.iter().map(|kind| kind.name()).collect();
         let takers: Vec<&str> = takers.iter().map(|kind| kind.name()).collect();

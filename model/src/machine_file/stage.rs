@@ -10,7 +10,7 @@ const SPEED: NumberRange = NumberRange::positive(1e9).unit("m/s");
 
 /// `[stage]`.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Stage {
+pub struct StageSection {
     /// Delay that every axis gets beyond that of the slowest, s. Default 0.
     pub extra_delay_s: f64,
     /// Speed at which the mismatch of the axes is reported, m/s.
@@ -18,9 +18,9 @@ pub struct Stage {
 }
 
 /// Reads the table.
-pub(super) fn read(table: &Table<'_, '_>) -> Stage {
+pub(super) fn read(table: &Table<'_, '_>) -> StageSection {
     table.allow(&["extra_delay_s", "contour_speed"]);
-    Stage {
+    StageSection {
         extra_delay_s: table.number("extra_delay_s", SHORT_S).unwrap_or(0.0),
         contour_speed: table.number("contour_speed", SPEED),
     }

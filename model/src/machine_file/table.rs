@@ -9,7 +9,7 @@ use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use super::error::Cause;
+use super::error::ProblemCause;
 use super::names::{NAME_RULE, is_name, nearest};
 use super::range::NumberRange;
 use super::reader::Reader;
@@ -76,7 +76,7 @@ impl<'r, 't> Table<'r, 't> {
     }
 
     /// Records a problem at a key's value, or at the header where the key is absent.
-    pub(super) fn report(&self, key: &str, cause: Cause, remedy: impl Into<String>) {
+    pub(super) fn report(&self, key: &str, cause: ProblemCause, remedy: impl Into<String>) {
         let reader = self.reader;
         let problem = reader.problem(self.span_of(key), self.dotted(key), &self.place, cause, remedy.into());
         reader.report(problem);
@@ -86,7 +86,7 @@ impl<'r, 't> Table<'r, 't> {
     pub(super) fn refuse(&self, key: &str, allowed: impl Display, remedy: impl Into<String>) {
         let found = self.quote(key);
         let allowed = allowed.to_string();
-        self.report(key, Cause::OutOfRange { found, allowed }, remedy);
+        self.report(key, ProblemCause::OutOfRange { found, allowed }, remedy);
     }
 
     /// Records keys that contradict each other.
@@ -98,7 +98,7 @@ impl<'r, 't> Table<'r, 't> {
         remedy: impl Into<String>,
     ) {
         let (found, allowed) = (found.into(), allowed.into());
-        self.report(key, Cause::Inconsistent { found, allowed }, remedy);
+        self.report(key, ProblemCause::Inconsistent { found, allowed }, remedy);
     }
 
     /// Records a value that an earlier table already has.
@@ -106,7 +106,7 @@ impl<'r, 't> Table<'r, 't> {
         let (found, allowed) = (self.quote(key), allowed.to_owned());
         self.report(
             key,
-            Cause::Duplicate {
+            ProblemCause::Duplicate {
                 found,
                 first_line,
                 allowed,
@@ -118,7 +118,7 @@ impl<'r, 't> Table<'r, 't> {
     /// Records something that the file asks for and that this version does not build: an error once all else is right.
     pub(super) fn not_built(&self, key: &str, name: &str, allowed: Option<String>, remedy: &str) {
         let name = name.to_owned();
-        let cause = Cause::NotBuilt { name, allowed };
+        let cause = ProblemCause::NotBuilt { name, allowed };
         let reader = self.reader;
         let problem = reader.problem(
             self.span_of(key),
@@ -143,7 +143,7 @@ impl<'r, 't> Table<'r, 't> {
             };
             let found = self.reader.quote(key.span());
             let allowed = keys.join(", ");
-            let cause = Cause::UnknownKey {
+            let cause = ProblemCause::UnknownKey {
                 found: found.clone(),
                 allowed,
             };
@@ -158,12 +158,12 @@ impl<'r, 't> Table<'r, 't> {
         if !self.has(key) {
             let allowed = allowed.to_string();
             let remedy = format!("add `{key}`");
-            self.report(key, Cause::MissingKey { allowed }, remedy);
+            self.report(key, ProblemCause::MissingKey { allowed }, remedy);
         }
     }
 
     fn wrong_type(&self, key: &str, value: &Spanned<DeValue<'_>>, allowed: impl Display) {
-        let cause = Cause::WrongType {
+        let cause = ProblemCause::WrongType {
             found_type: value.get_ref().type_str(),
             found: self.reader.quote(value.span()),
             allowed: allowed.to_string(),
@@ -266,7 +266,7 @@ impl<'r, 't> Table<'r, 't> {
                 None => "choose one of the list".to_owned(),
             };
             let found = self.quote(key);
-            self.report(key, Cause::NotAChoice { found, allowed: list }, remedy);
+            self.report(key, ProblemCause::NotAChoice { found, allowed: list }, remedy);
         }
         word
     }
@@ -296,7 +296,7 @@ impl<'r, 't> Table<'r, 't> {
                     None => "choose of the list".to_owned(),
                 };
                 let found = self.reader.quote(element.span());
-                self.report(key, Cause::NotAChoice { found, allowed: list }, remedy);
+                self.report(key, ProblemCause::NotAChoice { found, allowed: list }, remedy);
                 return None;
             };
             chosen.push(*meaning);

@@ -5,16 +5,16 @@ use crate::rtl::trace::SAMPLES;
 
 /// `[axis.trace]`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Trace {
+pub struct TraceSection {
     /// Samples that it holds of each signal: 256, 512, 1024 or 2048.
     pub samples: u32,
 }
 
 /// Reads the table; `None` where a value is refused.
-pub(super) fn read(table: &Table<'_, '_>) -> Option<Trace> {
+pub(super) fn read(table: &Table<'_, '_>) -> Option<TraceSection> {
     let list = SAMPLES.map(|samples| samples.to_string()).join(", ");
     table.allow(&["samples"]);
     table.require("samples", list);
     let samples = table.one_of("samples", &SAMPLES)?;
-    Some(Trace { samples })
+    Some(TraceSection { samples })
 }

@@ -13,7 +13,7 @@
 //! says exactly where the target is.
 
 use super::{Profile, ProfileError, TickLimits};
-use crate::rtl::segments::{ACCELERATION_BITS, Entry, FRACTION_BITS, Motion, POSITION_FRACTION, Point, TICK_BITS};
+use crate::rtl::segments::{ACCELERATION_BITS, Entry, EntryMotion, FRACTION_BITS, POSITION_FRACTION, Point, TICK_BITS};
 use crate::rtl::word::{WordError, WordFormat};
 use std::collections::BTreeMap;
 
@@ -95,7 +95,7 @@ pub fn plan_move(start: i64, end: i32, limits: &TickLimits) -> Result<Vec<Entry>
     };
     entries.push(Entry {
         ticks: 1,
-        motion: Motion::Point(target),
+        motion: EntryMotion::Point(target),
         notify: true,
     });
     Ok(entries)
@@ -191,7 +191,7 @@ fn segments(moves: &[(Stretches, i64)]) -> Vec<Entry> {
             jerk += change;
             Entry {
                 ticks: (end - start) as u32,
-                motion: Motion::Jerk(jerk),
+                motion: EntryMotion::Jerk(jerk),
                 notify: false,
             }
         })
@@ -246,7 +246,7 @@ pub fn plan_circle(
             };
             Ok(Entry {
                 ticks: 1,
-                motion: Motion::Point(point(offset + now, velocity, acceleration)?),
+                motion: EntryMotion::Point(point(offset + now, velocity, acceleration)?),
                 notify: tick == ticks,
             })
         });
@@ -281,12 +281,12 @@ mod tests {
         for entry in entries {
             for _ in 0..entry.ticks {
                 match entry.motion {
-                    Motion::Jerk(jerk) => {
+                    EntryMotion::Jerk(jerk) => {
                         at.jerk(jerk).unwrap();
                         let found = [at.velocity, at.acceleration, jerk];
                         largest = [0, 1, 2].map(|k: usize| largest[k].max(found[k].abs()));
                     }
-                    Motion::Point(point) => *at = Integrator::at_point(&point),
+                    EntryMotion::Point(point) => *at = Integrator::at_point(&point),
                 }
             }
         }
@@ -343,7 +343,7 @@ mod tests {
                 nearly[..],
                 [Entry {
                     ticks: 1,
-                    motion: Motion::Point(_),
+                    motion: EntryMotion::Point(_),
                     ..
                 }]
             ),
@@ -365,8 +365,8 @@ mod tests {
         let [x, y] = plan_circle([0, 0], radius, 2.0, &stage()).unwrap();
         assert_eq!(x.len(), y.len());
         let counts = |entry: &Entry| match entry.motion {
-            Motion::Point(point) => f64::from(point.position) / 256.0,
-            Motion::Jerk(_) => f64::NAN,
+            EntryMotion::Point(point) => f64::from(point.position) / 256.0,
+            EntryMotion::Jerk(_) => f64::NAN,
         };
         for (x, y) in x.iter().zip(&y) {
             let distance = (counts(x) + radius).hypot(counts(y));
@@ -375,10 +375,10 @@ mod tests {
         for entries in [&x, &y] {
             let last = entries.last().unwrap();
             let rest = Point::default();
-            assert_eq!((last.motion, last.notify), (Motion::Point(rest), true));
+            assert_eq!((last.motion, last.notify), (EntryMotion::Point(rest), true));
             // Velocities are the differences of the positions, to their rounding.
             for pair in entries[..entries.len() - 1].windows(2) {
-                let [Motion::Point(before), Motion::Point(now)] = [pair[0].motion, pair[1].motion] else {
+                let [EntryMotion::Point(before), EntryMotion::Point(now)] = [pair[0].motion, pair[1].motion] else {
                     panic!("only points are planned");
                 };
                 let step = f64::from(now.position - before.position) / 256.0;

@@ -10,7 +10,7 @@
 
 use thiserror::Error;
 
-use crate::machine_file::Limits;
+use crate::machine_file::LimitsSection;
 
 /// Most samples of a move: an hour and a half at 2 kHz, and 80 MB.
 pub const SAMPLES_MAX: usize = 10_000_000;
@@ -201,7 +201,7 @@ impl Profile {
 ///
 /// # Errors
 /// As [`Profile::new`].
-pub fn default_move(limits: Option<&Limits>) -> Result<Profile, ProfileError> {
+pub fn default_move(limits: Option<&LimitsSection>) -> Result<Profile, ProfileError> {
     let (start, end) = match limits.and_then(|l| l.travel) {
         None => (0.0, DEFAULT_DISTANCE),
         Some([low, high]) => within(low, high),
@@ -211,8 +211,8 @@ pub fn default_move(limits: Option<&Limits>) -> Result<Profile, ProfileError> {
 }
 
 /// Velocity, acceleration and jerk that a move may ask for: the file's, or the defaults.
-pub(super) fn motion_limits(limits: Option<&Limits>) -> [f64; 3] {
-    let of = |limit: fn(&Limits) -> Option<f64>, default| limits.and_then(limit).unwrap_or(default);
+pub(super) fn motion_limits(limits: Option<&LimitsSection>) -> [f64; 3] {
+    let of = |limit: fn(&LimitsSection) -> Option<f64>, default| limits.and_then(limit).unwrap_or(default);
     [
         of(|l| l.velocity, DEFAULT_VELOCITY),
         of(|l| l.acceleration, DEFAULT_ACCELERATION),
@@ -298,11 +298,11 @@ mod tests {
 
     #[test]
     fn unit_default_move_stays_within_the_travel() {
-        let limits = |low, high| Limits {
+        let limits = |low, high| LimitsSection {
             travel: Some([low, high]),
-            ..Limits::default()
+            ..LimitsSection::default()
         };
-        let ends = |l: Option<Limits>| {
+        let ends = |l: Option<LimitsSection>| {
             let profile = default_move(l.as_ref()).unwrap();
             (profile.position(0.0), profile.position(1e9))
         };

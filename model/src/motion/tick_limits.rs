@@ -1,7 +1,7 @@
 //! What a move may ask for, in counts and ticks: the units of the motion commands.
 
 use super::profile::motion_limits;
-use crate::machine_file::{Axis, Clock};
+use crate::machine_file::{AxisSection, ClockSection};
 
 /// Limits in counts and ticks.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -25,7 +25,7 @@ impl TickLimits {
     }
 
     /// Of an axis: those of its file, else 0.25 m/s, 8 m/s², 400 m/s³.
-    pub fn of_axis(axis: &Axis, clock: &Clock) -> Self {
+    pub fn of_axis(axis: &AxisSection, clock: &ClockSection) -> Self {
         let [velocity, acceleration, jerk] = motion_limits(axis.limits.as_ref());
         Self::new(
             velocity,

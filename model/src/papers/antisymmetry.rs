@@ -5,7 +5,7 @@ use super::minors::{Equation, minors_divisor};
 use super::sheet::{Rule, Sheet};
 use crate::analysis::pole_sum;
 use crate::design::DesignError;
-use crate::design::kind::Kind;
+use crate::design::kind::ShaperKind;
 use crate::design::ratios::{common_divisor, partition};
 use crate::impulse::Impulse;
 use crate::machine_file::ShaperChoice;
@@ -36,7 +36,7 @@ pub(super) fn example_modes(damping: f64) -> [Mode; 2] {
 pub(super) fn antisymmetric(method: &str, modes: &[Mode]) -> Result<Vec<Impulse>, DesignError> {
     let choice = ShaperChoice {
         method: Some(method.into()),
-        ..ShaperChoice::of_kind(Kind::Antisymmetric)
+        ..ShaperChoice::of_kind(ShaperKind::Antisymmetric)
     };
     chosen(choice, modes).map(|designed| designed.impulses().to_vec())
 }
@@ -89,8 +89,8 @@ fn test(sheet: &mut Sheet) -> Result<(), DesignError> {
     let counts = [
         antisymmetric("two-impulse", &modes)?.len(),
         antisymmetric("three-impulse", &modes)?.len(),
-        shaper(Kind::Zv, &modes)?.impulses().len(),
-        shaper(Kind::Zvd, &modes)?.impulses().len(),
+        shaper(ShaperKind::Zv, &modes)?.impulses().len(),
+        shaper(ShaperKind::Zvd, &modes)?.impulses().len(),
     ];
     sheet.equal(
         "section 3: impulses, two and three per set; classical",
@@ -231,7 +231,7 @@ fn damped(sheet: &mut Sheet) -> Result<(), DesignError> {
 /// Section 4.3: three impulses against the nine of the classical method.
 fn effectiveness(sheet: &mut Sheet) -> Result<(), DesignError> {
     let modes = example_modes(DAMPING);
-    let classical = shaper(Kind::Zvd, &modes)?;
+    let classical = shaper(ShaperKind::Zvd, &modes)?;
     sheet.equal(
         "section 4.3: impulses of the classical method",
         "9",
@@ -314,7 +314,7 @@ mod tests {
         assert!((peak_ratio(&two, &modes) - 0.055_302_5).abs() < 1e-5);
         let three = with_times(THREE_PRINTED.to_vec(), &[PI / 2.0, PI]);
         assert!((peak_ratio(&three, &modes) - 0.005_433_1).abs() < 1e-5);
-        let nine = shaper(Kind::Zvd, &modes).unwrap();
+        let nine = shaper(ShaperKind::Zvd, &modes).unwrap();
         let nine = on_grid(amplitudes(&nine), &times_s(&nine));
         assert!((peak_ratio(&nine, &modes) - 0.008_480_2).abs() < 1e-5);
     }

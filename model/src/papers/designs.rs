@@ -1,15 +1,15 @@
 //! Shapers for the papers' examples, through the same door as those of a machine file.
 
-use crate::design::kind::Kind;
+use crate::design::kind::ShaperKind;
 use crate::design::{DesignError, design_axis};
 use crate::impulse::ImpulseSequence;
-use crate::machine_file::{Axis, AxisMode, ShaperChoice};
+use crate::machine_file::{AxisMode, AxisSection, ShaperChoice};
 use crate::mode::Mode;
 use std::f64::consts::TAU;
 
 /// An axis with these modes, all shaped as `shaper` says.
-pub(super) fn axis(shaper: ShaperChoice, modes: &[Mode]) -> Axis {
-    Axis {
+pub(super) fn axis(shaper: ShaperChoice, modes: &[Mode]) -> AxisSection {
+    AxisSection {
         name: "paper".into(),
         counts_per_unit: 1.0,
         modulo: false,
@@ -25,7 +25,7 @@ pub(super) fn axis(shaper: ShaperChoice, modes: &[Mode]) -> Axis {
     }
 }
 
-fn axis_mode(mode: Mode, shaper: Option<Kind>) -> AxisMode {
+fn axis_mode(mode: Mode, shaper: Option<ShaperKind>) -> AxisMode {
     AxisMode {
         mode,
         shaper,
@@ -44,7 +44,7 @@ pub(super) fn mode_of_omega(omega: f64, damping: f64) -> Mode {
 }
 
 /// The shaper of one kind for these modes; the tolerance is the default, 5 %.
-pub(super) fn shaper(kind: Kind, modes: &[Mode]) -> Result<ImpulseSequence, DesignError> {
+pub(super) fn shaper(kind: ShaperKind, modes: &[Mode]) -> Result<ImpulseSequence, DesignError> {
     chosen(ShaperChoice::of_kind(kind), modes)
 }
 
@@ -54,11 +54,11 @@ pub(super) fn chosen(shaper: ShaperChoice, modes: &[Mode]) -> Result<ImpulseSequ
 }
 
 /// The convolution of one shaper per mode.
-pub(super) fn hybrid(parts: &[(Kind, Mode)]) -> Result<ImpulseSequence, DesignError> {
-    let axis = Axis {
+pub(super) fn hybrid(parts: &[(ShaperKind, Mode)]) -> Result<ImpulseSequence, DesignError> {
+    let axis = AxisSection {
         shaper: None,
         modes: parts.iter().map(|(kind, mode)| axis_mode(*mode, Some(*kind))).collect(),
-        ..axis(ShaperChoice::of_kind(Kind::None), &[])
+        ..axis(ShaperChoice::of_kind(ShaperKind::None), &[])
     };
     design_axis(&axis).map(|design| design.impulses)
 }

@@ -4,7 +4,7 @@ use super::designs::{mode_of_omega, shaper};
 use super::{antisymmetry, contour, hybrid_ei, negative_shapers, plants};
 use crate::analysis::sensitivity_curve;
 use crate::design::DesignError;
-use crate::design::kind::Kind;
+use crate::design::kind::ShaperKind;
 use crate::design::vibrationless::{gain, optimum};
 use crate::impulse::{Impulse, ImpulseSequence};
 use crate::plant::response::step_response;
@@ -61,7 +61,7 @@ fn spaced(low: f64, high: f64) -> impl Iterator<Item = f64> {
 /// Sensitivity curves of the five hybrids, and the periodicity on which the shaper for many modes rests.
 pub(super) fn hybrid_ei() -> Result<Vec<Figure>, DesignError> {
     let mode = mode_of_omega(20.0, 0.0);
-    let sensitivity = |kind: Kind, high: f64| -> Result<Vec<(f64, f64)>, DesignError> {
+    let sensitivity = |kind: ShaperKind, high: f64| -> Result<Vec<(f64, f64)>, DesignError> {
         let designed = shaper(kind, &[mode])?;
         let points = sensitivity_curve(designed.impulses(), &mode, 0.0, high, POINTS);
         Ok(points
@@ -75,8 +75,8 @@ pub(super) fn hybrid_ei() -> Result<Vec<Figure>, DesignError> {
     }
     let far = vec![
         level("5 %", 0.0, 9.2, 5.0),
-        curve("EI", sensitivity(Kind::ZvEi, 8.0)?),
-        curve("Multi-EI", sensitivity(Kind::MultiEi, 8.0)?),
+        curve("EI", sensitivity(ShaperKind::ZvEi, 8.0)?),
+        curve("Multi-EI", sensitivity(ShaperKind::MultiEi, 8.0)?),
     ];
     let figure = |title: &str, curves| Figure {
         title: title.into(),
@@ -190,7 +190,7 @@ pub(super) fn antisymmetry() -> Result<Vec<Figure>, DesignError> {
                     "three impulses",
                     response(&antisymmetry::antisymmetric("three-impulse", &modes)?),
                 ),
-                curve("classical, four", response(shaper(Kind::Zv, &modes)?.impulses())),
+                curve("classical, four", response(shaper(ShaperKind::Zv, &modes)?.impulses())),
             ],
         })
     };
@@ -202,7 +202,11 @@ pub(super) fn antisymmetry() -> Result<Vec<Figure>, DesignError> {
 
 /// Step responses of the X axis on plants that are off, and the radius on the way round the circle.
 pub(super) fn xy_stage() -> Result<Vec<Figure>, DesignError> {
-    const KINDS: [(&str, Kind); 3] = [("unshaped", Kind::None), ("ZV", Kind::Zv), ("ZVD", Kind::Zvd)];
+    const KINDS: [(&str, ShaperKind); 3] = [
+        ("unshaped", ShaperKind::None),
+        ("ZV", ShaperKind::Zv),
+        ("ZVD", ShaperKind::Zvd),
+    ];
     let x = &plants::PLANTS[0];
     let mut figures = Vec::new();
     for (ratio, name) in [

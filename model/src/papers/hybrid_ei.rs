@@ -8,7 +8,7 @@ use super::sheet::{Rule, Sheet};
 use crate::analysis::residual_vibration;
 use crate::design::DesignError;
 use crate::design::bias_point::{self, BiasPoint};
-use crate::design::kind::Kind;
+use crate::design::kind::ShaperKind;
 use crate::design::periodic;
 use crate::impulse::{Impulse, ImpulseSequence};
 use std::f64::consts::PI;
@@ -16,12 +16,12 @@ use std::f64::consts::PI;
 const TOLERANCE: f64 = 0.05;
 
 /// The columns of Table 1: name, kind (of ZVD by Zvd).
-pub(super) const TABLE_1: [(&str, Kind); 5] = [
-    ("ZVD", Kind::Zvd),
-    ("EI", Kind::ZvEi),
-    ("ZV-EI", Kind::ZvEi2),
-    ("Multi-EI", Kind::MultiEi),
-    ("ZVD-EI", Kind::ZvdEi),
+pub(super) const TABLE_1: [(&str, ShaperKind); 5] = [
+    ("ZVD", ShaperKind::Zvd),
+    ("EI", ShaperKind::ZvEi),
+    ("ZV-EI", ShaperKind::ZvEi2),
+    ("Multi-EI", ShaperKind::MultiEi),
+    ("ZVD-EI", ShaperKind::ZvdEi),
 ];
 
 /// The modes of the four-mode example in rad/s.
@@ -29,15 +29,15 @@ const OMEGAS: [f64; 4] = [10.0, 35.0, 68.0, 124.0];
 /// Lowest `ω_sys` that is looked for, in rad/s.
 const LOWEST: f64 = 1.0;
 
-fn base(kind: Kind) -> Result<BiasPoint, DesignError> {
+fn base(kind: ShaperKind) -> Result<BiasPoint, DesignError> {
     bias_point::undamped(kind, 1, TOLERANCE)
 }
 
 /// One-sided relative width at 5 %.
-fn lambda(kind: Kind) -> Result<f64, DesignError> {
+fn lambda(kind: ShaperKind) -> Result<f64, DesignError> {
     match kind {
         // V = cos²(ωT/2)
-        Kind::Zvd => Ok(2.0 / PI * TOLERANCE.sqrt().asin()),
+        ShaperKind::Zvd => Ok(2.0 / PI * TOLERANCE.sqrt().asin()),
         _ => base(kind).map(|b| b.lambda),
     }
 }
@@ -53,7 +53,7 @@ pub(super) fn rows(sheet: &mut Sheet) -> Result<(), DesignError> {
 
 /// Equations (6) to (20).
 fn single_hybrids(sheet: &mut Sheet) -> Result<(), DesignError> {
-    let ei = base(Kind::ZvEi)?;
+    let ei = base(ShaperKind::ZvEi)?;
     sheet.equal(
         "eqs (6), (7): amplitudes of ZV-EI",
         [".2625", ".475", ".2625"],
@@ -64,14 +64,14 @@ fn single_hybrids(sheet: &mut Sheet) -> Result<(), DesignError> {
     let root = TOLERANCE.sqrt();
     let k = (1.0 - root) / (1.0 + root);
     let scale = (1.0 + root) * (1.0 + root) / 16.0;
-    let second = base(Kind::ZvEi2)?;
+    let second = base(ShaperKind::ZvEi2)?;
     sheet.formula(
         "eq (20): amplitudes of the second-order ZV-EI",
         [1.0, 4.0 * k, 2.0 + 4.0 * k * k, 4.0 * k, 1.0].map(|a| scale * a),
         second.amplitudes,
     );
     let mode = mode_of_omega(20.0, 0.0);
-    let left = residual_vibration(shaper(Kind::ZvEi2, &[mode])?.impulses(), &mode);
+    let left = residual_vibration(shaper(ShaperKind::ZvEi2, &[mode])?.impulses(), &mode);
     sheet.equal("eq (20): residual at ω_sys", ".05", left);
     Ok(())
 }
@@ -85,7 +85,7 @@ fn constant_for_impulse(sheet: &mut Sheet, item: &str, paper: &str, amplitude: O
 
 /// Equations (23) to (27): Multi-EI.
 fn multi(sheet: &mut Sheet) -> Result<(), DesignError> {
-    let multi = base(Kind::MultiEi)?;
+    let multi = base(ShaperKind::MultiEi)?;
     // Zeros at θ = (1 − α)π: x = cos απ = −cos θ.
     let mut cosines: Vec<f64> = multi.zeros_theta.iter().map(|theta| -theta.cos()).collect();
     cosines.sort_by(|a, b| b.total_cmp(a));
@@ -106,7 +106,7 @@ fn multi(sheet: &mut Sheet) -> Result<(), DesignError> {
     constant_for_impulse(sheet, "eq (26): first term of H(t)", "0.1124", multi.amplitudes.first());
     sheet.equal("eq (27): cosine of the edge", ".0567", (PI * multi.lambda).cos());
 
-    let wide = bias_point::undamped(Kind::MultiEi, 1, 0.1)?;
+    let wide = bias_point::undamped(ShaperKind::MultiEi, 1, 0.1)?;
     let alpha = |theta: &f64| 1.0 - theta / PI;
     let beta = wide.zeros_theta.iter().map(alpha).fold(0.0, f64::max);
     let least = wide.amplitudes.iter().copied().fold(f64::INFINITY, f64::min);
@@ -133,7 +133,7 @@ fn widths(sheet: &mut Sheet) -> Result<(), DesignError> {
             100.0 * lambda,
         );
     }
-    let of_multi = 100.0 * lambda(Kind::MultiEi)?;
+    let of_multi = 100.0 * lambda(ShaperKind::MultiEi)?;
     sheet.erratum(
         "text: one-sided width of Multi-EI, %",
         "48.4",
@@ -152,7 +152,11 @@ fn widths(sheet: &mut Sheet) -> Result<(), DesignError> {
 /// Table 2: residuals of ZVD, EI and Multi-EI for `ω_sys = 20 rad/s`.
 fn sensitivities(sheet: &mut Sheet) -> Result<(), DesignError> {
     const SYSTEM: f64 = 20.0;
-    const KINDS: [(&str, Kind); 3] = [("ZVD", Kind::Zvd), ("EI", Kind::ZvEi), ("Multi-EI", Kind::MultiEi)];
+    const KINDS: [(&str, ShaperKind); 3] = [
+        ("ZVD", ShaperKind::Zvd),
+        ("EI", ShaperKind::ZvEi),
+        ("Multi-EI", ShaperKind::MultiEi),
+    ];
     // Frequency, then per shaper the printed percentage and whether it is right.
     type Line = (f64, [(&'static str, bool); 3]);
     const TABLE_2: [Line; 5] = [
@@ -175,7 +179,7 @@ fn sensitivities(sheet: &mut Sheet) -> Result<(), DesignError> {
             }
         }
     }
-    let multi = base(Kind::MultiEi)?;
+    let multi = base(ShaperKind::MultiEi)?;
     let zero = multi.zeros_theta.iter().fold(0.0, |most: f64, theta| most.max(*theta)) / PI * SYSTEM;
     sheet.erratum(
         "Table 2: label of row 3 in rad/s",
@@ -246,7 +250,7 @@ fn intersections(sheet: &mut Sheet) -> Result<(), DesignError> {
 
 /// Section 4: the chosen shaper and the cascade on the four-mode plant.
 fn four_modes(sheet: &mut Sheet) -> Result<(), DesignError> {
-    let cascade = hybrid(&OMEGAS.map(|omega| (Kind::ZvEi, mode_of_omega(omega, 0.0))))?;
+    let cascade = hybrid(&OMEGAS.map(|omega| (ShaperKind::ZvEi, mode_of_omega(omega, 0.0))))?;
     sheet.by_rule(
         "text: duration of the EI cascade is 4π over, rad/s",
         "13.22",
@@ -254,7 +258,7 @@ fn four_modes(sheet: &mut Sheet) -> Result<(), DesignError> {
         Rule::RoundedUp,
         "rounded up in print",
     );
-    let chosen = shaper(Kind::MultiEi, &[mode_of_omega(13.5, 0.0)])?;
+    let chosen = shaper(ShaperKind::MultiEi, &[mode_of_omega(13.5, 0.0)])?;
     let counts = [cascade.impulses().len() as f64, amplitudes(&chosen).len() as f64];
     sheet.equal("text: impulses of the EI cascade and of Multi-EI", ["81", "5"], counts);
     for (damping, note) in [
@@ -292,7 +296,7 @@ mod tests {
 
     #[test]
     fn golden_four_mode_plant() {
-        let chosen = shaper(Kind::MultiEi, &[mode_of_omega(13.5, 0.0)]).unwrap();
+        let chosen = shaper(ShaperKind::MultiEi, &[mode_of_omega(13.5, 0.0)]).unwrap();
         for (damping, expected) in [(0.0, 0.047_037_967_865_039_4), (0.01, 0.043_928_023_015_192_79)] {
             let found = four_mode_deviation(&chosen, damping);
             assert!((found - expected).abs() < 1e-6, "{found}");

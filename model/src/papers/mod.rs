@@ -9,7 +9,7 @@
 //! | `xy-stage` | a thesis on an XY stage: drive, identification, ZV and ZVD |
 //!
 //! Every row holds the paper's own number, which is the only thing that is typed in, and ours, which the library computes
-//! as the row is made. [`Verdict`] and [`Rule`] say how the two become a verdict.
+//! as the row is made. [`PaperVerdict`] and [`Rule`] say how the two become a verdict.
 
 mod antisymmetry;
 mod chain;
@@ -31,7 +31,7 @@ mod vibrationless;
 mod xy_stage;
 
 pub use figures::{Figure, FigureCurve};
-pub use row::{Row, Value, Verdict};
+pub use row::{PaperRow, PaperVerdict, Value};
 pub use sheet::Rule;
 
 use crate::design::DesignError;
@@ -93,7 +93,7 @@ impl Paper {
     ///
     /// # Errors
     /// [`DesignError`] if a shaper of the paper cannot be designed: a fault of posicast.
-    pub fn reproduce(self) -> Result<Vec<Row>, DesignError> {
+    pub fn reproduce(self) -> Result<Vec<PaperRow>, DesignError> {
         let mut sheet = Sheet::default();
         match self {
             Paper::HybridEi => hybrid_ei::rows(&mut sheet)?,

@@ -2,7 +2,7 @@
 
 use super::designs::hybrid;
 use crate::design::DesignError;
-use crate::design::kind::Kind;
+use crate::design::kind::ShaperKind;
 use crate::impulse::ImpulseSequence;
 use crate::mode::Mode;
 use crate::plant::{Plant, PlantMode};
@@ -19,7 +19,11 @@ pub(super) const MODES: [Mode; 2] = [
     },
 ];
 
-pub(super) const NEGATIVE: [(&str, Kind); 3] = [("NZV", Kind::PsZv), ("NZVD", Kind::PsZvd), ("NEI", Kind::PsEi)];
+pub(super) const NEGATIVE: [(&str, ShaperKind); 3] = [
+    ("NZV", ShaperKind::PsZv),
+    ("NZVD", ShaperKind::PsZvd),
+    ("NEI", ShaperKind::PsEi),
+];
 
 /// The six pairs of different kinds: 0 for ZV, 1 for ZVD, 2 for EI.
 pub(super) const PAIRS: [(usize, usize); 6] = [(0, 1), (0, 2), (1, 0), (1, 2), (2, 0), (2, 1)];
@@ -35,7 +39,8 @@ pub(super) fn negative((first, second): (usize, usize)) -> Result<(String, Impul
 
 /// The positive hybrid of a pair, with its name.
 pub(super) fn positive((first, second): (usize, usize)) -> Result<(String, ImpulseSequence), DesignError> {
-    const POSITIVE: [(&str, Kind); 3] = [("ZV", Kind::Zv), ("ZVD", Kind::Zvd), ("EI", Kind::Ei)];
+    const POSITIVE: [(&str, ShaperKind); 3] =
+        [("ZV", ShaperKind::Zv), ("ZVD", ShaperKind::Zvd), ("EI", ShaperKind::Ei)];
     let name = format!("{}-{}", POSITIVE[first].0, POSITIVE[second].0);
     let shaper = hybrid(&[(POSITIVE[first].1, MODES[0]), (POSITIVE[second].1, MODES[1])])?;
     Ok((name, shaper))

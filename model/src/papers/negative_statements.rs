@@ -5,7 +5,7 @@ use super::negative_shapers::{MODES, PAIRS, PLAIN, negative, plant, positive};
 use super::sheet::Sheet;
 use crate::analysis::{insensitivity, residual_vibration};
 use crate::design::DesignError;
-use crate::design::kind::Kind;
+use crate::design::kind::ShaperKind;
 use crate::impulse::ImpulseSequence;
 use crate::mode::Mode;
 use crate::motion::Trajectory;
@@ -185,9 +185,9 @@ fn properties(sheet: &mut Sheet) -> Result<(), DesignError> {
         damping: 0.0,
     };
     for (name, negative, positive) in [
-        ("NZV", Kind::PsZv, Kind::Zv),
-        ("NZVD", Kind::PsZvd, Kind::Zvd),
-        ("NEI", Kind::PsEi, Kind::Ei),
+        ("NZV", ShaperKind::PsZv, ShaperKind::Zv),
+        ("NZVD", ShaperKind::PsZvd, ShaperKind::Zvd),
+        ("NEI", ShaperKind::PsEi, ShaperKind::Ei),
     ] {
         let width = |kind| -> Result<f64, DesignError> {
             let designed = shaper(kind, &[undamped])?;

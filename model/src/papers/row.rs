@@ -4,7 +4,7 @@ use std::fmt;
 
 /// How a row ends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Verdict {
+pub enum PaperVerdict {
     /// The paper's number is ours, to its printed digits.
     Reproduced,
     /// The paper's number is wrong; the reason says why.
@@ -15,13 +15,13 @@ pub enum Verdict {
     NotReproduced,
 }
 
-impl fmt::Display for Verdict {
+impl fmt::Display for PaperVerdict {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.pad(match self {
-            Verdict::Reproduced => "reproduced",
-            Verdict::Erratum => "erratum",
-            Verdict::NotComparable => "not comparable",
-            Verdict::NotReproduced => "not reproduced",
+            PaperVerdict::Reproduced => "reproduced",
+            PaperVerdict::Erratum => "erratum",
+            PaperVerdict::NotComparable => "not comparable",
+            PaperVerdict::NotReproduced => "not reproduced",
         })
     }
 }
@@ -57,7 +57,7 @@ impl<const N: usize> From<[f64; N]> for Value {
 
 /// One line of a paper's table.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Row {
+pub struct PaperRow {
     /// Where in the paper, and what.
     pub item: String,
     /// The paper's numbers.
@@ -67,12 +67,12 @@ pub struct Row {
     /// Ours; `None` if there is nothing to compare with.
     pub ours: Option<Value>,
     /// The verdict.
-    pub verdict: Verdict,
+    pub verdict: PaperVerdict,
     /// Why it is an erratum or not comparable, or what the agreement rests on; empty where there is nothing to say.
     pub reason: String,
 }
 
-impl Row {
+impl PaperRow {
     /// Largest difference, ours minus the paper's; `None` for statements.
     pub fn difference(&self) -> Option<f64> {
         let (paper, ours) = (numbers(&self.paper), numbers(self.ours.as_ref()?));

@@ -11,9 +11,9 @@
 //! | [`Rule::AtMost`] | or more: it is a bound |
 //!
 //! A row is entered as one that agrees, or as an erratum with its reason. What is entered as agreeing and does not, and an
-//! erratum that agrees after all, are [`Verdict::NotReproduced`]: then posicast has changed, not the paper.
+//! erratum that agrees after all, are [`PaperVerdict::NotReproduced`]: then posicast has changed, not the paper.
 
-use super::row::{Row, Value, Verdict, numbers};
+use super::row::{PaperRow, PaperVerdict, Value, numbers};
 
 /// What counts as equal.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -102,12 +102,12 @@ impl Printed {
 /// The rows of one paper as they are entered.
 #[derive(Default)]
 pub(super) struct Sheet {
-    rows: Vec<Row>,
+    rows: Vec<PaperRow>,
 }
 
 impl Sheet {
     /// The rows.
-    pub(super) fn into_rows(self) -> Vec<Row> {
+    pub(super) fn into_rows(self) -> Vec<PaperRow> {
         self.rows
     }
 
@@ -127,9 +127,9 @@ impl Sheet {
     ) {
         let (printed, ours) = (printed.into(), ours.into());
         let verdict = if printed.equals(&ours, rule) {
-            Verdict::Reproduced
+            PaperVerdict::Reproduced
         } else {
-            Verdict::NotReproduced
+            PaperVerdict::NotReproduced
         };
         self.enter(item, &printed, Some(ours), verdict, note);
     }
@@ -145,9 +145,9 @@ impl Sheet {
         let (printed, ours) = (printed.into(), ours.into());
         let finite = numbers(&ours).iter().all(|n| n.is_finite());
         let verdict = if finite && !printed.equals(&ours, Rule::Rounded) {
-            Verdict::Erratum
+            PaperVerdict::Erratum
         } else {
-            Verdict::NotReproduced
+            PaperVerdict::NotReproduced
         };
         self.enter(item, &printed, Some(ours), verdict, reason);
     }
@@ -162,16 +162,16 @@ impl Sheet {
     ) {
         let (printed, ours) = (printed.into(), ours.into());
         let verdict = if printed.equals(&ours, Rule::AtMost) {
-            Verdict::NotReproduced
+            PaperVerdict::NotReproduced
         } else {
-            Verdict::Erratum
+            PaperVerdict::Erratum
         };
         self.enter(item, &printed, Some(ours), verdict, reason);
     }
 
     /// A number of the paper that nothing can be held against.
     pub(super) fn not_comparable(&mut self, item: impl Into<String>, printed: impl Into<Printed>, reason: &str) {
-        self.enter(item, &printed.into(), None, Verdict::NotComparable, reason);
+        self.enter(item, &printed.into(), None, PaperVerdict::NotComparable, reason);
     }
 
     /// Numbers for which the paper has a formula, evaluated as it stands there: equal to rounding.
@@ -184,15 +184,15 @@ impl Sheet {
                 .iter()
                 .zip(&found)
                 .all(|(a, b)| (a - b).abs() <= ROUNDING * a.abs().max(1.0));
-        self.rows.push(Row {
+        self.rows.push(PaperRow {
             item: item.into(),
             printed: "its formula".into(),
             paper,
             ours: Some(ours),
             verdict: if equal {
-                Verdict::Reproduced
+                PaperVerdict::Reproduced
             } else {
-                Verdict::NotReproduced
+                PaperVerdict::NotReproduced
             },
             reason: "the paper gives a formula; evaluated".into(),
         });
@@ -201,9 +201,9 @@ impl Sheet {
     /// A statement of the paper that our figures bear out, if `holds`.
     pub(super) fn claim(&mut self, item: impl Into<String>, paper: &str, ours: String, holds: bool) {
         let verdict = if holds {
-            Verdict::Reproduced
+            PaperVerdict::Reproduced
         } else {
-            Verdict::NotReproduced
+            PaperVerdict::NotReproduced
         };
         self.statement(item, paper, Some(ours), verdict, "");
     }
@@ -211,16 +211,16 @@ impl Sheet {
     /// A statement of the paper that our figures refute, unless it `holds` after all.
     pub(super) fn refuted(&mut self, item: impl Into<String>, paper: &str, ours: String, holds: bool, reason: &str) {
         let verdict = if holds {
-            Verdict::NotReproduced
+            PaperVerdict::NotReproduced
         } else {
-            Verdict::Erratum
+            PaperVerdict::Erratum
         };
         self.statement(item, paper, Some(ours), verdict, reason);
     }
 
     /// A statement of the paper that nothing can be held against.
     pub(super) fn unjudged(&mut self, item: impl Into<String>, paper: &str, reason: &str) {
-        self.statement(item, paper, None, Verdict::NotComparable, reason);
+        self.statement(item, paper, None, PaperVerdict::NotComparable, reason);
     }
 
     fn statement(
@@ -228,10 +228,10 @@ impl Sheet {
         item: impl Into<String>,
         paper: &str,
         ours: Option<String>,
-        verdict: Verdict,
+        verdict: PaperVerdict,
         reason: &str,
     ) {
-        self.rows.push(Row {
+        self.rows.push(PaperRow {
             item: item.into(),
             paper: Value::Text(paper.into()),
             printed: paper.into(),
@@ -246,10 +246,10 @@ impl Sheet {
         item: impl Into<String>,
         printed: &Printed,
         ours: Option<Value>,
-        verdict: Verdict,
+        verdict: PaperVerdict,
         reason: &str,
     ) {
-        self.rows.push(Row {
+        self.rows.push(PaperRow {
             item: item.into(),
             paper: printed.value(),
             printed: printed.text(),
@@ -302,19 +302,23 @@ mod tests {
             sheet.into_rows().iter().map(|row| row.verdict).collect::<Vec<_>>()
         };
         let as_agreed = [
-            Verdict::Reproduced,
-            Verdict::Erratum,
-            Verdict::Erratum,
-            Verdict::Reproduced,
-            Verdict::Reproduced,
+            PaperVerdict::Reproduced,
+            PaperVerdict::Erratum,
+            PaperVerdict::Erratum,
+            PaperVerdict::Reproduced,
+            PaperVerdict::Reproduced,
         ];
         assert_eq!(verdicts(0.19972), as_agreed);
         for changed in [0.2124, 0.1, f64::NAN] {
             let found = verdicts(changed);
-            assert!(found.contains(&Verdict::NotReproduced), "{changed}: {found:?}");
-            assert!(!found.contains(&Verdict::Reproduced), "{changed}: {found:?}");
+            assert!(found.contains(&PaperVerdict::NotReproduced), "{changed}: {found:?}");
+            assert!(!found.contains(&PaperVerdict::Reproduced), "{changed}: {found:?}");
         }
-        assert_eq!(verdicts(0.2124)[1], Verdict::NotReproduced, "an erratum that agrees");
+        assert_eq!(
+            verdicts(0.2124)[1],
+            PaperVerdict::NotReproduced,
+            "an erratum that agrees"
+        );
     }
 
     #[test]

@@ -12,7 +12,7 @@ use super::plants::{Identified, PLANTS};
 use super::sheet::{Rule, Sheet};
 use super::{contour, drive, sliding_mode_law};
 use crate::design::DesignError;
-use crate::design::kind::Kind;
+use crate::design::kind::ShaperKind;
 use crate::impulse::ImpulseSequence;
 use crate::plant::Plant;
 use crate::plant::response::step_figures;
@@ -52,7 +52,7 @@ fn shapers(sheet: &mut Sheet, identified: &Identified) -> Result<(), DesignError
         Rule::Within(1.5),
         approximate,
     );
-    let (zv, zvd) = (shaper(Kind::Zv, &[mode])?, shaper(Kind::Zvd, &[mode])?);
+    let (zv, zvd) = (shaper(ShaperKind::Zv, &[mode])?, shaper(ShaperKind::Zvd, &[mode])?);
     let k = (-mode.damping * PI / (1.0 - mode.damping * mode.damping).sqrt()).exp();
     let sum = (1.0 + k) * (1.0 + k);
     sheet.formula(
@@ -100,7 +100,7 @@ fn example(sheet: &mut Sheet) -> Result<(), DesignError> {
     let logarithm = (0.03f64 / 0.02).ln();
     let damping = logarithm / PI.hypot(logarithm);
     let mode = mode_of_omega(TAU / (1.0 - damping * damping).sqrt(), damping);
-    let zv = shaper(Kind::Zv, &[mode])?;
+    let zv = shaper(ShaperKind::Zv, &[mode])?;
     let steps_mm: Vec<f64> = amplitudes(&zv).iter().map(|a| 0.05 * a).collect();
     sheet.equal("section 3.2.3: steps of the example in mm", ["0.03", "0.02"], steps_mm);
     sheet.equal("section 3.2.3: time between them in s", "0.5", zv.duration_s());
@@ -109,7 +109,7 @@ fn example(sheet: &mut Sheet) -> Result<(), DesignError> {
 
 /// Figure 3-10: a circle of 10 mm at 100 mm/s (assumed: the thesis gives neither), from a standing start.
 fn circle(sheet: &mut Sheet) -> Result<(), DesignError> {
-    let kinds = [Kind::None, Kind::Zv, Kind::Zvd];
+    let kinds = [ShaperKind::None, ShaperKind::Zv, ShaperKind::Zvd];
     let mut outside = Vec::new();
     for kind in kinds {
         let shapers = [shaper(kind, &[PLANTS[0].mode()])?, shaper(kind, &[PLANTS[1].mode()])?];

@@ -21,7 +21,7 @@ pub mod response;
 use nalgebra::{Matrix2, Vector2};
 use thiserror::Error;
 
-use crate::machine_file::Axis;
+use crate::machine_file::AxisSection;
 use crate::mode::Mode;
 use crate::motion::Cubic;
 
@@ -75,7 +75,7 @@ impl Plant {
     ///
     /// # Errors
     /// As [`Plant::new`].
-    pub fn of_axis(axis: &Axis) -> Result<Self, PlantError> {
+    pub fn of_axis(axis: &AxisSection) -> Result<Self, PlantError> {
         let modes: Vec<_> = axis.modes.iter().map(|m| (m.mode, m.participation)).collect();
         Self::new(&modes)
     }

@@ -1,12 +1,12 @@
 //! Errors of one key: syntax, unknown, missing, wrong type, out of range, no such word, bad or double name.
 
 use crate::machine_file::files::{SMALL, breaks, built_kinds, wrong};
-use posicast_model::machine_file::Cause;
+use posicast_model::machine_file::ProblemCause;
 
 #[test]
 fn unit_text_that_is_no_toml_names_the_line() {
     let error = wrong(&SMALL.replace("name = \"x\"", "name = \"x"));
-    assert!(matches!(error.problems()[0].cause, Cause::Syntax(_)));
+    assert!(matches!(error.problems()[0].cause, ProblemCause::Syntax(_)));
     assert!(
         error.to_string().starts_with("m.toml:8: found a TOML syntax error: "),
         "{error}"

@@ -1,6 +1,6 @@
 //! The files that the tests read and break.
 
-use posicast_model::design::kind::Kind;
+use posicast_model::design::kind::ShaperKind;
 use posicast_model::machine_file::{self, Machine, SpecError};
 
 pub(crate) const XY_STAGE: &str = include_str!("../../../examples/xy-stage.toml");
@@ -29,8 +29,10 @@ damping = 0.1
 "#;
 
 /// The names of the kinds that this version builds, as messages list them.
-pub(crate) fn built_kinds(wanted: impl Fn(Kind) -> bool) -> String {
-    let built = Kind::ALL.iter().filter(|(kind, _)| kind.is_built() && wanted(*kind));
+pub(crate) fn built_kinds(wanted: impl Fn(ShaperKind) -> bool) -> String {
+    let built = ShaperKind::ALL
+        .iter()
+        .filter(|(kind, _)| kind.is_built() && wanted(*kind));
     built.map(|(_, name)| *name).collect::<Vec<_>>().join(", ")
 }
 

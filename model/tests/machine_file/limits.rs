@@ -1,7 +1,7 @@
 //! `[axis.limits]`, `[axis.scale]`, `[axis.trace]` and `[stage]`: what they yield, what they refuse.
 
 use crate::machine_file::files::{EVERYTHING, SMALL, right, wrong};
-use posicast_model::machine_file::{Limits, Scale, ScaleUse, Stage, Trace};
+use posicast_model::machine_file::{LimitsSection, Scale, ScaleUse, StageSection, TraceSection};
 use posicast_model::rtl::axis::{ALWAYS_OFF, Cause};
 
 #[track_caller]
@@ -14,7 +14,7 @@ fn case(from: &str, to: &str, expected: &str) {
 fn unit_every_key_yields_its_value() {
     let machine = right(EVERYTHING);
     let axis = &machine.axes[0];
-    let expected = Limits {
+    let expected = LimitsSection {
         velocity: Some(0.25),
         acceleration: Some(8.0),
         jerk: Some(400.0),
@@ -42,8 +42,8 @@ fn unit_every_key_yields_its_value() {
         invert: false,
     };
     assert_eq!(axis.scale, Some(scale));
-    assert_eq!(axis.trace, Some(Trace { samples: 1024 }));
-    let stage = Stage {
+    assert_eq!(axis.trace, Some(TraceSection { samples: 1024 }));
+    let stage = StageSection {
         extra_delay_s: 0.0,
         contour_speed: Some(0.1),
     };
@@ -53,17 +53,17 @@ fn unit_every_key_yields_its_value() {
 #[test]
 fn unit_what_is_left_out_has_its_default() {
     let machine = right(&format!("{SMALL}[axis.limits]\n"));
-    assert_eq!(machine.axes[0].limits, Some(Limits::default()));
+    assert_eq!(machine.axes[0].limits, Some(LimitsSection::default()));
     assert_eq!((machine.axes[0].scale, machine.axes[0].trace), (None, None));
     assert_eq!(machine.stage, None);
     // Bits 0 and 1 always; drive lost, following error, deviation, encoder lost and in error, schedule.
-    assert_eq!(Limits::default().off_causes, 0b1000_1101_1000_0111);
+    assert_eq!(LimitsSection::default().off_causes, 0b1000_1101_1000_0111);
     let monitor = right(&EVERYTHING.replace("use = \"monitor\"\n", "")).axes[0].scale;
     assert_eq!(monitor.unwrap().usage, ScaleUse::Monitor);
     let position = right(&EVERYTHING.replace("\"monitor\"", "\"position\"")).axes[0].scale;
     assert_eq!(position.unwrap().usage, ScaleUse::Position);
     let stage = right(&format!("{SMALL}[stage]\n")).stage;
-    let nothing = Stage {
+    let nothing = StageSection {
         extra_delay_s: 0.0,
         contour_speed: None,
     };

@@ -1,11 +1,11 @@
 //! Kinds that this version knows and does not build.
 
 use crate::machine_file::files::{SMALL, breaks, built_kinds, right, wrong};
-use posicast_model::design::kind::Kind;
+use posicast_model::design::kind::ShaperKind;
 
 #[test]
 fn unit_a_kind_that_is_not_built_is_refused_by_name() {
-    for (kind, name) in Kind::ALL.iter().filter(|(kind, _)| !kind.is_built()) {
+    for (kind, name) in ShaperKind::ALL.iter().filter(|(kind, _)| !kind.is_built()) {
         let expected = format!(
             "m.toml:11: axis.shaper.kind of axis x: not built in this version: {name}; allowed: {}",
             built_kinds(|_| true)

@@ -1,7 +1,7 @@
 //! What a right file yields: the examples, defaults, and the effective values of each mode.
 
 use crate::machine_file::files::{CUSTOM_SHAPER, GANTRY, ROBOT_JOINT, SMALL, XY_STAGE, right};
-use posicast_model::design::kind::Kind;
+use posicast_model::design::kind::ShaperKind;
 use posicast_model::machine_file::Digitise;
 
 #[test]
@@ -36,14 +36,14 @@ fn unit_each_mode_has_its_effective_kind_and_tolerance() {
     let axis = &gantry.axes[0];
     assert_eq!(
         axis.modes.iter().map(|m| axis.kind_of(m)).collect::<Vec<_>>(),
-        [Kind::Ei, Kind::Zv]
+        [ShaperKind::Ei, ShaperKind::Zv]
     );
     assert_eq!(axis.kind_name(), "ei+zv");
     assert_eq!(axis.joint_kind(), None);
 
     let custom = right(CUSTOM_SHAPER);
     let axis = &custom.axes[0];
-    assert_eq!(axis.joint_kind(), Some(Kind::Custom));
+    assert_eq!(axis.joint_kind(), Some(ShaperKind::Custom));
     assert_eq!(axis.kind_name(), "custom");
     assert_eq!(axis.shaper.as_ref().unwrap().impulses[3], (0.06, 0.25));
     assert_eq!(custom.fixed_point.digitise, Digitise::Nearest);

@@ -1,16 +1,16 @@
 //! An axis of an example, from entries of the command FIFO to the machine and back.
 
-use posicast_model::control::{Derived, Schedule, gains, loop_lag_s, schedule_delay_s};
+use posicast_model::control::{ControlSchedule, Derived, gains, loop_lag_s, schedule_delay_s};
 use posicast_model::design::design_machine;
-use posicast_model::design::kind::Kind;
+use posicast_model::design::kind::ShaperKind;
 use posicast_model::machine_file::{self, Machine, ShaperChoice};
 use posicast_model::plant::axis::{AxisMotion, AxisPlant, DrivePins, PlantOptions};
 use posicast_model::rtl::divider::{DIVISION_CLOCKS, DividerConfig};
 use posicast_model::rtl::pulse_counter::{self, PulseCounter};
 use posicast_model::rtl::pwm::{self, ActiveLow, Pwm, PwmConfig};
-use posicast_model::rtl::segments::{Entry, Integrator, Motion as Segment};
-use posicast_model::rtl::shaper::{Motion, MotionShaper, ShaperConfig};
-use posicast_model::rtl::sliding_mode::{self, Row, TickController};
+use posicast_model::rtl::segments::{Entry, EntryMotion as Segment, Integrator};
+use posicast_model::rtl::shaper::{MotionShaper, ShaperConfig, ShaperMotion};
+use posicast_model::rtl::sliding_mode::{self, SettingRow, TickController};
 
 pub(crate) const VELOCITY: &str = include_str!("../../../examples/xy-stage.toml");
 pub(crate) const TORQUE: &str = include_str!("../../../examples/xy-stage-torque.toml");
@@ -22,7 +22,7 @@ pub(crate) fn machine(text: &str, shaped: bool) -> Machine {
     let mut machine = machine_file::parse("example.toml", text).unwrap_or_else(|error| panic!("{error:?}"));
     if !shaped {
         for axis in &mut machine.axes {
-            axis.shaper = Some(ShaperChoice::of_kind(Kind::None));
+            axis.shaper = Some(ShaperChoice::of_kind(ShaperKind::None));
         }
     }
     machine
@@ -71,7 +71,7 @@ pub(crate) struct Chain {
 impl Chain {
     pub(crate) fn new(machine: &Machine, axis: usize, frequency_factor: f64, pace: Pace) -> Self {
         let table = design_machine(machine).unwrap().axes[axis].table.clone();
-        let channels = Motion {
+        let channels = ShaperMotion {
             channels: 3,
             modulo: false,
         };
@@ -80,7 +80,7 @@ impl Chain {
         let (pwm, drive) = (axis.pwm.unwrap(), axis.drive.unwrap());
         let periods = (clock.clocks_per_sample(), pwm.period_clocks(&clock) as i32);
         assert_eq!(periods, (TICK_CLOCKS, PERIOD_CLOCKS));
-        let schedule = Schedule::controlling(shaper.pass_clocks(shaper.most_products()));
+        let schedule = ControlSchedule::controlling(shaper.pass_clocks(shaper.most_products()));
         let lag_s = loop_lag_s(&drive, schedule_delay_s(&clock, &pwm, schedule.clocks()));
         let derived = gains(axis, clock, lag_s).unwrap();
         assert_eq!(derived.warnings, []);
@@ -128,12 +128,12 @@ impl Chain {
     /// With the feedback `factor` times as strong.
     pub(crate) fn with_feedback(mut self, factor: f64) -> Self {
         let rows = [
-            Row::Damping,
-            Row::Reaching,
-            Row::Switching,
-            Row::Derivative,
-            Row::Proportional,
-            Row::Integral,
+            SettingRow::Damping,
+            SettingRow::Reaching,
+            SettingRow::Switching,
+            SettingRow::Derivative,
+            SettingRow::Proportional,
+            SettingRow::Integral,
         ];
         let gains = &mut self.derived.gains;
         for row in rows {
@@ -248,7 +248,7 @@ impl Chain {
 
     fn control(&mut self, shaped: [i32; 3], position: i32, velocity: i32) {
         let [position_reference, velocity_reference, acceleration_reference] = shaped;
-        let motion = sliding_mode::Motion {
+        let motion = sliding_mode::TickMotion {
             position_reference,
             velocity_reference,
             acceleration_reference,

@@ -7,8 +7,8 @@ use posicast_model::rtl::pulse_counter::PulseCounter;
 use posicast_model::rtl::pwm::{ActiveLow, Pwm, PwmConfig};
 use posicast_model::rtl::segments::Segments;
 use posicast_model::rtl::setting_banks::SettingBanks;
-use posicast_model::rtl::shaper::{Motion, Shaper, ShaperConfig};
-use posicast_model::rtl::sliding_mode::{Gain, Row, Settings, SlidingMode};
+use posicast_model::rtl::shaper::{Shaper, ShaperConfig, ShaperMotion};
+use posicast_model::rtl::sliding_mode::{Gain, SettingRow, Settings, SlidingMode};
 use posicast_model::rtl::time_base::TimeBase;
 use posicast_model::rtl::{Direction, Moore, Port};
 use posicast_model::taps::{Tap, TapTable};
@@ -62,7 +62,7 @@ pub(crate) fn shaper_config() -> ShaperConfig {
         coefficient,
     };
     let taps = [(0, 40_000), (3, 20_000), (5, 5536)].map(tap).to_vec();
-    let motion = Motion {
+    let motion = ShaperMotion {
         channels: 2,
         modulo: false,
     };
@@ -72,7 +72,10 @@ pub(crate) fn shaper_config() -> ShaperConfig {
 
 pub(crate) fn settings() -> Settings {
     let mut settings = Settings::default();
-    settings.set_gain(Row::Derivative, Gain::nearest(3.0, Row::Derivative).unwrap());
+    settings.set_gain(
+        SettingRow::Derivative,
+        Gain::nearest(3.0, SettingRow::Derivative).unwrap(),
+    );
     settings.set_limit(1000 << 12);
     settings
 }

@@ -1,6 +1,6 @@
 //! The part of the driver that is the same for every machine: C that stands in `c/`, as it is compiled.
 
-use super::{File, file};
+use super::{DriverFile, file};
 
 /// Path below the driver's folder, and text.
 type Fixed = (&'static str, &'static str);
@@ -42,7 +42,7 @@ const BRING_UP: [Fixed; 2] = [
     ("src/posicast_bring_up.c", include_str!("c/src/posicast_bring_up.c")),
 ];
 
-pub(super) fn files(with_bring_up: bool) -> Vec<File> {
+pub(super) fn files(with_bring_up: bool) -> Vec<DriverFile> {
     let bring_up = BRING_UP.iter().filter(|_| with_bring_up);
     CORE.iter()
         .chain(bring_up)

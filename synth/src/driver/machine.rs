@@ -1,13 +1,13 @@
 //! The machine's tap tables, limits and controllers, in C.
 
-use super::{AxisData, File, StageDriver, file};
+use super::{AxisData, DriverFile, StageDriver, file};
 use posicast_model::rtl::segments::{ACCELERATION_BITS, FRACTION_BITS, VELOCITY_BITS};
-use posicast_model::rtl::sliding_mode::{Row, Settings};
+use posicast_model::rtl::sliding_mode::{SettingRow, Settings};
 use posicast_model::rtl::stage::StageAxis;
 use std::fmt::Write;
 
 /// `machine_NAME.h` and `machine_NAME.c`.
-pub(super) fn files(driver: &StageDriver<'_>) -> Vec<File> {
+pub(super) fn files(driver: &StageDriver<'_>) -> Vec<DriverFile> {
     let name = driver.machine;
     vec![
         file(&format!("inc/machine_{name}.h"), header(driver)),
@@ -80,8 +80,8 @@ fn of_axis(text: &mut String, axis: &StageAxis, data: &AxisData) {
 
 /// A line per row.
 fn words(settings: &Settings) -> String {
-    let line = |row: Row| format!("            {:#x}u, /* {row:?} */\n", settings.word(row as usize));
-    Row::ALL.map(line).concat()
+    let line = |row: SettingRow| format!("            {:#x}u, /* {row:?} */\n", settings.word(row as usize));
+    SettingRow::ALL.map(line).concat()
 }
 
 /// A limit in LSB of the integrator: cut, so that no move is faster, at least 1, and what the word holds.

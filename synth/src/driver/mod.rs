@@ -30,7 +30,7 @@ pub const FOLDER: &str = "driver";
 
 /// A file to be written.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct File {
+pub struct DriverFile {
     /// Its path in the output folder, with `/` between the parts.
     pub path: String,
     /// Its contents.
@@ -64,7 +64,7 @@ pub struct AxisData {
 }
 
 /// The driver of a stage.
-pub fn stage_files(driver: &StageDriver<'_>) -> Vec<File> {
+pub fn stage_files(driver: &StageDriver<'_>) -> Vec<DriverFile> {
     let mut files = fixed::files(driver.config.axes.iter().any(|axis| axis.bring_up.is_some()));
     files.push(file("inc/posicast_stage_regs.h", stage_registers::header(driver)));
     files.extend(machine::files(driver));
@@ -74,12 +74,12 @@ pub fn stage_files(driver: &StageDriver<'_>) -> Vec<File> {
 }
 
 /// The macros of a component's registers, under the name of its top module.
-pub fn component_header(top: &str, map: &RegisterMap) -> File {
+pub fn component_header(top: &str, map: &RegisterMap) -> DriverFile {
     file(&format!("inc/{top}_regs.h"), registers::header(top, map))
 }
 
-fn file(path: &str, text: String) -> File {
-    File {
+fn file(path: &str, text: String) -> DriverFile {
+    DriverFile {
         path: format!("{FOLDER}/{path}"),
         text,
     }

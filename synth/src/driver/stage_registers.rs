@@ -10,9 +10,9 @@ use posicast_model::rtl::group::MOST_AXES;
 use posicast_model::rtl::registers::{Field, Register, RegisterMap, WINDOW_WORDS};
 use posicast_model::rtl::segments::{
     ACCELERATION_BITS, ACCELERATION_FRACTION, ENTRIES_MAX, ENTRY_WORDS, FRACTION_BITS, NOTIFY, POINT,
-    POSITION_FRACTION, State, TICK_BITS, VELOCITY_BITS, VELOCITY_FRACTION,
+    POSITION_FRACTION, SegmentsState, TICK_BITS, VELOCITY_BITS, VELOCITY_FRACTION,
 };
-use posicast_model::rtl::sliding_mode::{MANTISSA_BITS, Row, SETTINGS, SHIFT_MAX};
+use posicast_model::rtl::sliding_mode::{MANTISSA_BITS, SETTINGS, SHIFT_MAX, SettingRow};
 use posicast_model::rtl::stage::AXIS_INTERRUPTS;
 use std::fmt::Write;
 
@@ -68,7 +68,7 @@ fn numbers(text: &mut String, map: &RegisterMap) {
         ("KICK_WORD", KICK),
         // That can wait beside the one that plays.
         ("FIFO_ENTRIES", u32::from(ENTRIES_MAX) - 1),
-        ("SEGMENTS_STOP", State::Stop as u32),
+        ("SEGMENTS_STOP", SegmentsState::Stop as u32),
         ("ENTRY_WORDS", ENTRY_WORDS as u32),
         ("ENTRY_POINT", POINT),
         ("ENTRY_NOTIFY", NOTIFY),
@@ -98,7 +98,7 @@ fn numbers(text: &mut String, map: &RegisterMap) {
 /// Rows of a controller's settings, and the word of a gain.
 fn settings(text: &mut String) {
     text.push_str("\n/* Settings of a controller by row: docs/sliding_mode.md. A gain is mantissa * 2^-shift, the mantissa in the lowest bits. */\n");
-    for row in Row::ALL {
+    for row in SettingRow::ALL {
         let name = format!("{row:?}").to_uppercase();
         let _ = writeln!(text, "#define POSICAST_SETTING_{name} {}u", row as u32);
     }

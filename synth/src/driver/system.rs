@@ -1,6 +1,6 @@
 //! What a system needs to find the driver: `_sw.tcl` and macros for the HAL, the overlay of a device tree.
 
-use super::{FOLDER, File, StageDriver, file};
+use super::{DriverFile, FOLDER, StageDriver, file};
 use posicast_model::rtl::registers::RegisterMap;
 
 /// Name in device trees, before the version of the register map: as the component for Platform Designer has it.
@@ -19,7 +19,7 @@ fn version(map: &RegisterMap) -> String {
 }
 
 /// `others`: the rest of the driver, which a system compiles.
-pub(super) fn files(driver: &StageDriver<'_>, others: &[File]) -> Vec<File> {
+pub(super) fn files(driver: &StageDriver<'_>, others: &[DriverFile]) -> Vec<DriverFile> {
     let top = driver.top;
     let hal = file(&format!("HAL/inc/{top}.h"), hal_header(top));
     let compiled = others.iter().chain([&hal]);

@@ -49,7 +49,7 @@ pub struct Design<'a> {
 
 /// A file of the package.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct File {
+pub struct ProjectFile {
     /// Path in the folder, with `/`.
     pub path: String,
     /// Contents.
@@ -85,9 +85,9 @@ impl Design<'_> {
     ///
     /// # Errors
     /// [`SopcError`] for a stage that a board has no pins for.
-    pub fn files(&self) -> Result<Vec<File>, SopcError> {
+    pub fn files(&self) -> Result<Vec<ProjectFile>, SopcError> {
         let mut files = Vec::new();
-        let mut add = |path: String, text: String| files.push(File { path, text });
+        let mut add = |path: String, text: String| files.push(ProjectFile { path, text });
         for unit in self.units() {
             add(format!("sopc/{}_hw.tcl", unit.top), hw_tcl::text(unit));
         }

@@ -49,7 +49,7 @@ impl AddAssign for Resources {
 
 /// What one instance takes.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
-pub struct Block {
+pub struct BlockEstimate {
     /// Name of the instance in the top module; the top module's own name for the logic between its instances.
     pub name: String,
     /// What it takes.
@@ -61,7 +61,7 @@ pub struct Block {
 ///
 /// # Errors
 /// What the netlist holds that cannot be counted.
-pub(super) fn blocks(netlist: &Netlist, top: &str, family: Family) -> Result<Vec<Block>, String> {
+pub(super) fn blocks(netlist: &Netlist, top: &str, family: Family) -> Result<Vec<BlockEstimate>, String> {
     let module = netlist
         .modules
         .get(top)
@@ -70,7 +70,7 @@ pub(super) fn blocks(netlist: &Netlist, top: &str, family: Family) -> Result<Vec
     for (name, cell) in &module.cells {
         if let Some(inner) = netlist.design_module(&cell.kind) {
             let resources = count(netlist, inner, family)?;
-            blocks.push(Block {
+            blocks.push(BlockEstimate {
                 name: name.clone(),
                 resources,
             });
@@ -78,7 +78,7 @@ pub(super) fn blocks(netlist: &Netlist, top: &str, family: Family) -> Result<Vec
     }
     let own = count(netlist, module, family)?;
     if own != Resources::default() || blocks.is_empty() {
-        blocks.push(Block {
+        blocks.push(BlockEstimate {
             name: top.to_owned(),
             resources: own,
         });

@@ -34,7 +34,7 @@ pub enum Cell {
 
 /// What a device holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-pub struct Device {
+pub struct FpgaDevice {
     /// Order code.
     pub name: &'static str,
     /// Unit of `cells`.
@@ -77,7 +77,7 @@ impl Family {
 
     /// The device that an estimate is measured against: that of the family's most used board. Capacities as in the
     /// device handbooks and in Quartus's fitter reports.
-    pub fn device(self) -> Device {
+    pub fn device(self) -> FpgaDevice {
         match self {
             // DE1. 52 M4K blocks of 4,608 bits.
             Self::Cyclone2 => logic_elements("EP2C20F484C7", 18_752, 239_616, 26),
@@ -88,7 +88,7 @@ impl Family {
             // DE10-Lite. 182 M9K blocks.
             Self::Max10 => logic_elements("10M50DAF484C7G", 49_760, 1_677_312, 144),
             // DE1-SoC. 397 M10K blocks of 10,240 bits; 87 DSP blocks of two 18-bit multipliers each.
-            Self::Cyclone5 => Device {
+            Self::Cyclone5 => FpgaDevice {
                 name: "5CSEMA5F31C6",
                 cell: Cell::AdaptiveLogicModule,
                 cells: 32_070,
@@ -108,8 +108,8 @@ impl Family {
     }
 }
 
-fn logic_elements(name: &'static str, cells: u64, memory_bits: u64, multipliers: u64) -> Device {
-    Device {
+fn logic_elements(name: &'static str, cells: u64, memory_bits: u64, multipliers: u64) -> FpgaDevice {
+    FpgaDevice {
         name,
         cell: Cell::LogicElement,
         cells,

@@ -22,9 +22,9 @@ mod multiplier_registers;
 mod netlist;
 mod process;
 
-pub use count::{Block, Resources};
+pub use count::{BlockEstimate, Resources};
 pub use ecp5::TopPort;
-pub use family::{Cell, Device, Family, UnknownFamily};
+pub use family::{Cell, Family, FpgaDevice, UnknownFamily};
 pub use gates::CELL_MODELS;
 
 use std::fs;
@@ -40,20 +40,20 @@ pub struct Estimate {
     /// The family that was asked for.
     pub family: Family,
     /// One row per block.
-    pub blocks: Vec<Block>,
+    pub blocks: Vec<BlockEstimate>,
     /// Their sum.
     pub total: Resources,
     /// What a device of the family holds.
-    pub device: Device,
+    pub device: FpgaDevice,
     /// Highest clock in MHz, where [`clock`](crate::clock) was asked for it.
     pub clock_mhz_estimate: Option<f64>,
     /// Where the figures come from.
-    pub method: Method,
+    pub method: EstimateMethod,
 }
 
 /// Where an estimate's figures come from.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
-pub struct Method {
+pub struct EstimateMethod {
     /// Name and version of the tool.
     pub tool: String,
     /// The tool's target: another family where it has none of its own.
@@ -275,13 +275,13 @@ impl Yosys {
         })
     }
 
-    fn method(&self, family: Family) -> Method {
+    fn method(&self, family: Family) -> EstimateMethod {
         let mapped_as = family.mapped_as();
         let stand_in = match family {
             Family::Cyclone4e | Family::Cyclone5 => String::new(),
             _ => format!(", {family} estimated as {mapped_as}"),
         };
-        Method {
+        EstimateMethod {
             tool: self.version.clone(),
             mapped_as,
             note: format!("estimate before place and route{stand_in}; memory bits and multipliers counted from sizes"),

@@ -1,7 +1,7 @@
 //! The integrator and the planner in C against the model's arithmetic.
 
 use crate::driver::support::{Driver, beside};
-use posicast_model::rtl::segments::{ACCELERATION_BITS, Entry, Integrator, Motion, Point};
+use posicast_model::rtl::segments::{ACCELERATION_BITS, Entry, EntryMotion, Integrator, Point};
 use std::io::Write;
 use std::process::{Command, Stdio};
 
@@ -35,10 +35,10 @@ fn shown(fits: bool, at: &Integrator) -> Vec<i64> {
 }
 
 /// One tick of an entry.
-fn play(at: &mut Integrator, motion: &Motion) -> bool {
+fn play(at: &mut Integrator, motion: &EntryMotion) -> bool {
     match motion {
-        Motion::Jerk(jerk) => at.jerk(*jerk).is_ok(),
-        Motion::Point(point) => {
+        EntryMotion::Jerk(jerk) => at.jerk(*jerk).is_ok(),
+        EntryMotion::Point(point) => {
             *at = Integrator::at_point(point);
             true
         }
@@ -92,13 +92,13 @@ fn prop_the_integrator_in_c_gives_the_integers_of_the_model() {
                 }
                 continue;
             }
-            2 => Motion::Point(Point {
+            2 => EntryMotion::Point(Point {
                 position: numbers.signed(32) as i32,
                 velocity: numbers.signed(32) as i32,
                 acceleration: numbers.signed(32) as i32,
             }),
-            3 if case % 2 == 0 => Motion::Jerk([(1 << 39) - 1, -(1 << 39)][numbers.next() as usize % 2]),
-            _ => Motion::Jerk(numbers.signed(ACCELERATION_BITS)),
+            3 if case % 2 == 0 => EntryMotion::Jerk([(1 << 39) - 1, -(1 << 39)][numbers.next() as usize % 2]),
+            _ => EntryMotion::Jerk(numbers.signed(ACCELERATION_BITS)),
         };
         let [w0, w1, w2, w3] = Entry {
             ticks: ticks as u32,

@@ -5,7 +5,7 @@ mod integers;
 mod support;
 
 use bridge::{Bridge, INDEX_AT};
-use posicast_model::rtl::sliding_mode::{Gain, Row};
+use posicast_model::rtl::sliding_mode::{Gain, SettingRow};
 use std::path::PathBuf;
 use std::process::Command;
 use support::{Driver, STRICT, beside, machine, run, stage, traced_machine};
@@ -172,8 +172,8 @@ fn unit_settings_change_between_two_ticks() {
     assert_eq!((said["causes"], said["unchanged"]), (0, 0x1_ffff), "{said:?}");
     let back = ["read_back", "read_machine", "read_unwritten"].map(|what| said[what]);
     assert_eq!(back, [1, 1, 0], "{said:?}");
-    let value = Gain::from_word(said["gain"] as u32).value(Row::Proportional);
-    let wanted = Gain::nearest(1.5 * value, Row::Proportional).unwrap();
+    let value = Gain::from_word(said["gain"] as u32).value(SettingRow::Proportional);
+    let wanted = Gain::nearest(1.5 * value, SettingRow::Proportional).unwrap();
     assert_eq!(Gain::from_word(said["gain_3_2"] as u32), wanted);
 }
 

@@ -101,9 +101,9 @@ impl Driver {
 
 /// A component beside the stage.
 pub(crate) fn pwm() -> Component {
-    use posicast_model::rtl::pwm::{ActiveLow, Mode, PwmConfig};
+    use posicast_model::rtl::pwm::{ActiveLow, BridgeMode, PwmConfig};
     let config = PwmConfig::new(ActiveLow::default(), 25, 50).unwrap();
-    Component::pwm(config, Mode::HalfBridge, 2500).unwrap()
+    Component::pwm(config, BridgeMode::HalfBridge, 2500).unwrap()
 }
 
 /// A file beside this one.

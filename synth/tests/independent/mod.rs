@@ -7,7 +7,7 @@ use posicast_model::design::design_machine;
 use posicast_model::hardware;
 use posicast_model::machine_file;
 use posicast_model::rtl::component::Component;
-use posicast_model::rtl::pwm::{ActiveLow, Mode, PwmConfig};
+use posicast_model::rtl::pwm::{ActiveLow, BridgeMode, PwmConfig};
 use posicast_model::rtl::registers::{Access, Field, RegisterMap};
 use posicast_synth::core_file::{self, Core};
 use posicast_synth::register_documents;
@@ -54,7 +54,7 @@ fn stage() -> Component {
 
 fn pwm() -> Component {
     let config = PwmConfig::new(ActiveLow::default(), 25, 50).unwrap();
-    Component::pwm(config, Mode::HalfBridge, 2500).unwrap()
+    Component::pwm(config, BridgeMode::HalfBridge, 2500).unwrap()
 }
 
 /// Writes text below a folder.

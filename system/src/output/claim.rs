@@ -73,13 +73,13 @@ pub enum OutputError {
 
 /// What a command reads and writes.
 #[derive(Debug, Clone, Default)]
-pub struct Outputs {
+pub struct OutputFiles {
     force: bool,
     inputs: Vec<(&'static str, PathBuf)>,
     claimed: Vec<(String, Target)>,
 }
 
-impl Outputs {
+impl OutputFiles {
     /// Of a command that reads nothing yet. With `force` it replaces files that posicast did not write; never its inputs.
     pub fn new(force: bool) -> Self {
         Self {

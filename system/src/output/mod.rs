@@ -1,7 +1,7 @@
 //! A file under a name that a user gave.
 //!
 //! ```text
-//!  Outputs::claim   before the work: may this name be written?      no: OutputError, exit status 2
+//!  OutputFiles::claim   before the work: may this name be written?      no: OutputError, exit status 2
 //!  Draft            while the work is done: a temporary file beside the name
 //!  Draft::put       at the end: sealed and renamed, complete or not at all
 //! ```
@@ -17,9 +17,9 @@
 //! # let path = folder.path().join("plot.svg");
 //! # let machine = folder.path().join("machine.toml");
 //! # std::fs::write(&machine, "")?;
-//! use posicast_system::output::{self, Outputs};
+//! use posicast_system::output::{self, OutputFiles};
 //!
-//! let mut outputs = Outputs::new(false);
+//! let mut outputs = OutputFiles::new(false);
 //! outputs.input("the machine file", &machine);
 //! outputs.claim("--plot", &path)?;
 //! assert!(outputs.claim("--plot", &machine).is_err());
@@ -33,6 +33,6 @@ mod draft;
 pub mod seal;
 mod target;
 
-pub use claim::{OutputError, Outputs};
+pub use claim::{OutputError, OutputFiles};
 pub use draft::{Draft, write_text};
 pub use seal::is_ours;

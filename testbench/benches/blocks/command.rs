@@ -4,7 +4,9 @@ use crate::{Block, CLOCKS, TICK_CLOCKS, TICKS, hold};
 use posicast_hdl::{cascade, segments, shaper};
 use posicast_model::rtl::cascade::{self as cascade_model, Cascade, CascadeConfig, SampleCascade};
 use posicast_model::rtl::segments::{self as segments_model, ENTRY_WORDS, Entry, Segments};
-use posicast_model::rtl::shaper::{self as shaper_model, Motion, MotionShaper, SampleShaper, Shaper, ShaperConfig};
+use posicast_model::rtl::shaper::{
+    self as shaper_model, MotionShaper, SampleShaper, Shaper, ShaperConfig, ShaperMotion,
+};
 use posicast_model::taps::{Tap, TapTable};
 use std::hint::black_box;
 
@@ -51,7 +53,7 @@ pub(crate) fn shaper() -> Block {
 
 /// Position, velocity and acceleration, one sample per tick.
 pub(crate) fn shaper_in_motion() -> Block {
-    let motion = Motion {
+    let motion = ShaperMotion {
         channels: 3,
         modulo: false,
     };
@@ -112,7 +114,7 @@ pub(crate) fn segments() -> Block {
         let jerk = [1i64, -1, -1, 1][tick as usize % 4] << 30;
         let entry = Entry {
             ticks: 1,
-            motion: segments_model::Motion::Jerk(jerk),
+            motion: segments_model::EntryMotion::Jerk(jerk),
             notify: false,
         };
         let word = (100..100 + ENTRY_WORDS as u64)

@@ -3,22 +3,28 @@
 use crate::{Block, CLOCKS, TICK_CLOCKS, TICKS, hold};
 use posicast_hdl::{pwm, sliding_mode};
 use posicast_model::rtl::pwm::{self as pwm_model, ActiveLow, Pwm, PwmConfig};
-use posicast_model::rtl::sliding_mode::{Gain, Inputs, Law, Motion, Row, Settings, SlidingMode, TickController};
+use posicast_model::rtl::sliding_mode::{
+    Gain, Inputs, Law, SettingRow, Settings, SlidingMode, TickController, TickMotion,
+};
 use std::hint::black_box;
 
 /// Sliding mode, a pass per tick.
 pub(crate) fn sliding_mode() -> Block {
     let mut settings = Settings::default();
-    for (row, gain) in [(Row::Proportional, 0.5), (Row::Derivative, 3.0), (Row::Feedback, 1.0)] {
+    for (row, gain) in [
+        (SettingRow::Proportional, 0.5),
+        (SettingRow::Derivative, 3.0),
+        (SettingRow::Feedback, 1.0),
+    ] {
         settings.set_gain(row, Gain::nearest(gain, row).unwrap());
     }
     settings.set_limit(1000 << 12);
-    let motion = |tick: u64| Motion {
+    let motion = |tick: u64| TickMotion {
         position_reference: (tick as i32 * 300) << 8,
         velocity_reference: 300 << 16,
         position: tick as i32 * 299,
         velocity: 299 << 16,
-        ..Motion::default()
+        ..TickMotion::default()
     };
     let mut model = SlidingMode::new();
     let mut setting = 0;

@@ -22,7 +22,7 @@ mod measurement;
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use posicast_hdl::emit::Module;
 use posicast_model::rtl::{ClockedBlock, Direction};
-use posicast_testbench::verilator::{Source, Verilated};
+use posicast_testbench::verilator::{Verilated, VerilogSource};
 use std::hint::black_box;
 use std::path::PathBuf;
 use std::time::Duration;
@@ -110,7 +110,7 @@ fn verilated(block: &Block) -> Verilated {
         path
     };
     let files: Vec<PathBuf> = block.modules.iter().map(write).collect();
-    let source = Source {
+    let source = VerilogSource {
         files: &files,
         top: &block.modules.last().unwrap().name,
         ports: block.model.ports(),

@@ -5,7 +5,7 @@ use crate::{TICK_CLOCKS, Whole, stage};
 use posicast_hdl::component::emit;
 use posicast_model::rtl::component::Component;
 use posicast_model::rtl::divider::DividerConfig;
-use posicast_model::rtl::pwm::Mode;
+use posicast_model::rtl::pwm::BridgeMode;
 use posicast_model::rtl::registers::RegisterMap;
 use posicast_model::rtl::sliding_mode::Law;
 
@@ -58,7 +58,7 @@ pub(crate) fn all() -> [Whole; 4] {
         ),
         whole(
             "pwm",
-            Component::pwm(axis.pwm, Mode::Unipolar, 2500).unwrap(),
+            Component::pwm(axis.pwm, BridgeMode::Unipolar, 2500).unwrap(),
             &[
                 ("clear_trip", "", 0),
                 ("control", "from_pins", 1),

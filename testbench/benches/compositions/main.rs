@@ -23,7 +23,7 @@ use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use posicast_hdl::emit::Module;
 use posicast_model::rtl::composition::Composed;
 use posicast_model::rtl::{ClockedBlock, Direction, Moore, OutputKind};
-use posicast_testbench::verilator::{Source, Verilated};
+use posicast_testbench::verilator::{Verilated, VerilogSource};
 use std::hint::black_box;
 use std::path::PathBuf;
 use std::time::Duration;
@@ -159,7 +159,7 @@ fn verilated(whole: &Whole) -> Verilated {
         path
     };
     let files: Vec<PathBuf> = whole.modules.iter().map(write).collect();
-    let source = Source {
+    let source = VerilogSource {
         files: &files,
         top: &whole.modules.last().unwrap().name,
         ports: whole.model.ports(),

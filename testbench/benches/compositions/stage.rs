@@ -7,7 +7,7 @@ use posicast_model::design::design_machine;
 use posicast_model::hardware;
 use posicast_model::machine_file;
 use posicast_model::rtl::component::Component;
-use posicast_model::rtl::segments::{Entry, Motion};
+use posicast_model::rtl::segments::{Entry, EntryMotion};
 use posicast_model::rtl::stage::StageConfig;
 use std::collections::HashMap;
 
@@ -40,7 +40,7 @@ fn writes(component: &Component) -> HashMap<u64, (u64, u64)> {
             let jerk = [1i64, -1, -1, 1][tick as usize % 4] << 20;
             let entry = Entry {
                 ticks: 1,
-                motion: Motion::Jerk(jerk),
+                motion: EntryMotion::Jerk(jerk),
                 notify: false,
             };
             for (place, word) in (0..).zip(entry.words()) {

@@ -18,7 +18,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Instant;
 
-use posicast_testbench::diff::{self, Options, Verdict};
+use posicast_testbench::diff::{self, DiffOptions, DiffVerdict};
 
 const RUNS: usize = 3;
 
@@ -81,8 +81,8 @@ fn run(how: &str, a: &Path, b: &Path) {
     let start = Instant::now();
     let differs = match how {
         "posicast" => {
-            let result = diff::compare(a, b, &Options::default(), &mut |_| {}).unwrap();
-            result.result == Verdict::Different
+            let result = diff::compare(a, b, &DiffOptions::default(), &mut |_| {}).unwrap();
+            result.result == DiffVerdict::Different
         }
         _ => probe::differs(a, b),
     };

@@ -3,9 +3,9 @@
 //! Stimuli made for a block get to corners that traffic on the bus hardly ever sets up, and a block alone shows at its ports
 //! what a stage shows only on request, or not at all.
 
-use posicast_model::rtl::component::{Block as Part, Component};
+use posicast_model::rtl::component::{Component, ComponentPart as Part};
 
-use super::part::Part as Small;
+use super::part::SmallPart as Small;
 use super::{
     AxisBlock, Block, DividerBlock, DriveCommandBlock, EncoderGeneratorBlock, ExcitationBlock, LinearScaleBlock,
     PartBlock, PulseCounterBlock, PwmBlock, RegistersBlock, SegmentsBlock, ShaperBlock, SlidingModeBlock, TraceBlock,

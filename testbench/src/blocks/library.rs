@@ -12,9 +12,9 @@ use posicast_model::rtl::cascade::CascadeConfig;
 use posicast_model::rtl::component::Component;
 use posicast_model::rtl::divider::DividerConfig;
 use posicast_model::rtl::linear_scale::ScaleRatio;
-use posicast_model::rtl::pwm::{ActiveLow, Mode, PwmConfig};
+use posicast_model::rtl::pwm::{ActiveLow, BridgeMode, PwmConfig};
 use posicast_model::rtl::schedule::ScheduleConfig;
-use posicast_model::rtl::shaper::{Motion, ShaperConfig};
+use posicast_model::rtl::shaper::{ShaperConfig, ShaperMotion};
 use posicast_model::rtl::sliding_mode::{Law, Settings};
 use posicast_model::rtl::stage::{StageAxis, StageConfig, StageScale};
 use posicast_model::rtl::trace::TraceConfig;
@@ -22,8 +22,8 @@ use posicast_model::taps::{Tap, TapTable};
 
 use super::{
     AxisBlock, Block, CascadeBlock, ComponentBlock, DividerBlock, DriveCommandBlock, EncoderGeneratorBlock,
-    ExcitationBlock, LinearScaleBlock, MachineShapers, Part, PartBlock, PulseCounterBlock, PwmBlock, RegistersBlock,
-    SegmentsBlock, ShaperBlock, SlidingModeBlock, StageBlock, TraceBlock,
+    ExcitationBlock, LinearScaleBlock, MachineShapers, PartBlock, PulseCounterBlock, PwmBlock, RegistersBlock,
+    SegmentsBlock, ShaperBlock, SlidingModeBlock, SmallPart, StageBlock, TraceBlock,
 };
 use crate::Error;
 
@@ -34,7 +34,7 @@ const PERIOD_CLOCKS: u32 = 2500;
 /// Clocks of a PWM period in the stage.
 const STAGE_PERIOD_CLOCKS: u32 = 80;
 /// Position, velocity and acceleration.
-const MOTION: Motion = Motion {
+const MOTION: ShaperMotion = ShaperMotion {
     channels: 3,
     modulo: false,
 };
@@ -76,21 +76,21 @@ pub fn library() -> Result<Vec<Box<dyn Block>>, Error> {
         Box::new(ExcitationBlock::new("", "alone")),
     ];
     let parts = [
-        Part::TimeBase(tick),
-        Part::Schedule(ScheduleConfig::new(500).map_err(refused)?),
-        Part::DividerShare(2),
-        Part::Group(2),
-        Part::SampleSelect {
+        SmallPart::TimeBase(tick),
+        SmallPart::Schedule(ScheduleConfig::new(500).map_err(refused)?),
+        SmallPart::DividerShare(2),
+        SmallPart::Group(2),
+        SmallPart::SampleSelect {
             word_bits: 32,
             channels: 3,
         },
-        Part::SettingBanks(Settings::default()),
+        SmallPart::SettingBanks(Settings::default()),
     ];
     blocks.extend(parts.map(|part| Box::new(PartBlock::new(part, "")) as Box<dyn Block>));
     let components = [
         Component::shaper(motion.clone()),
         Component::pulse_counter(tick, 8, false),
-        Component::pwm(pwm, Mode::HalfBridge, PERIOD_CLOCKS),
+        Component::pwm(pwm, BridgeMode::HalfBridge, PERIOD_CLOCKS),
         Component::sliding_mode(&Settings::default(), Law::SlidingMode, false),
     ];
     for component in components {
@@ -129,7 +129,7 @@ pub(crate) fn stage() -> Result<StageConfig, Error> {
             law: Law::SlidingMode,
             modulo: false,
             pwm: PwmConfig::new(ActiveLow::default(), 2, 3).map_err(refused)?,
-            pwm_mode: Mode::Unipolar,
+            pwm_mode: BridgeMode::Unipolar,
             pwm_period_clocks: STAGE_PERIOD_CLOCKS,
             encoder_filter_clocks: 2,
             encoder_invert: false,

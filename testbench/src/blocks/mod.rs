@@ -51,7 +51,7 @@ pub use self::excitation::ExcitationBlock;
 pub use self::library::library;
 pub(crate) use self::library::stage as library_stage;
 pub use self::linear_scale::LinearScaleBlock;
-pub use self::part::{Part, PartBlock};
+pub use self::part::{PartBlock, SmallPart};
 pub use self::pulse_counter::PulseCounterBlock;
 pub use self::pwm::PwmBlock;
 pub use self::registers::RegistersBlock;
@@ -70,8 +70,8 @@ use posicast_model::rtl::{ClockedBlock, Port};
 use std::ops::{ControlFlow, RangeInclusive};
 
 use crate::Error;
-use crate::lockstep::report::Report;
-use crate::lockstep::{self, Clock, Device, Instance, Options};
+use crate::lockstep::report::LockstepReport;
+use crate::lockstep::{self, Clock, Device, Instance, LockstepOptions};
 use crate::stimuli::Stimuli;
 
 /// Clocks between two looks of [`judge`] at what is still missing.
@@ -185,7 +185,7 @@ pub trait Exercise {
 #[derive(Debug, Clone)]
 pub struct Run {
     /// Whether it matched.
-    pub report: Report,
+    pub report: LockstepReport,
     /// What it reached: names and counts.
     pub coverage: Vec<(String, u64)>,
 }
@@ -248,7 +248,7 @@ pub fn check(
     cycles: u64,
     seed: u64,
     progress: &mut dyn FnMut(u64),
-) -> Result<Report, Error> {
+) -> Result<LockstepReport, Error> {
     let mut stimuli = block.stimuli(cycles, seed);
     let mut to_the_end = |_: &Clock<'_>| ControlFlow::Continue(());
     run(
@@ -272,7 +272,7 @@ pub fn judge(
     clocks: RangeInclusive<u64>,
     seed: u64,
     progress: &mut dyn FnMut(u64),
-) -> Result<Report, Error> {
+) -> Result<LockstepReport, Error> {
     let fewest = *clocks.start();
     let mut stimuli = block.stimuli(fewest, seed);
     let mut exercise = block.exercise();
@@ -308,10 +308,10 @@ fn run(
     (cycles, seed): (u64, u64),
     watch: &mut dyn FnMut(&Clock<'_>) -> ControlFlow<()>,
     progress: &mut dyn FnMut(u64),
-) -> Result<Report, Error> {
+) -> Result<LockstepReport, Error> {
     let mut model = block.model(seed);
     let instances = block.instances(model.ports());
-    let options = Options::cycles(cycles);
+    let options = LockstepOptions::cycles(cycles);
     lockstep::run_until(model.as_mut(), device, stimuli, &instances, &options, watch, progress)
 }
 

@@ -2,7 +2,7 @@
 
 use posicast_hdl::emit::{EmitError, Module};
 use posicast_hdl::{SimulationError, divider_share, group, sample_select, schedule, setting_banks, time_base};
-use posicast_model::rtl::component::Block as Model;
+use posicast_model::rtl::component::ComponentPart as Model;
 use posicast_model::rtl::divider::DividerConfig;
 use posicast_model::rtl::schedule::ScheduleConfig;
 use posicast_model::rtl::sliding_mode::Settings;
@@ -14,7 +14,7 @@ use crate::stimuli::{PartRandom, Stimuli};
 
 /// A block that joins others.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Part {
+pub enum SmallPart {
     /// When the controllers start.
     Schedule(ScheduleConfig),
     /// One divider for so many pulse counters.
@@ -37,7 +37,7 @@ pub enum Part {
 /// One of them, with its own name, under inputs of every pace.
 #[derive(Debug, Clone)]
 pub struct PartBlock {
-    part: Part,
+    part: SmallPart,
     model: Model,
     prefix: String,
     instance: String,
@@ -45,23 +45,23 @@ pub struct PartBlock {
 
 impl PartBlock {
     /// The module `PREFIX_NAME`.
-    pub fn new(part: Part, prefix: &str) -> Self {
+    pub fn new(part: SmallPart, prefix: &str) -> Self {
         let (model, instance) = match part {
-            Part::Schedule(config) => {
+            SmallPart::Schedule(config) => {
                 let clocks = format!("{} clocks to control", config.control_clocks());
                 (Model::Schedule(config), clocks)
             }
-            Part::DividerShare(channels) => (Model::DividerShare(channels), format!("{channels} channels")),
-            Part::Group(axes) => (Model::Group(axes), format!("{axes} axes")),
-            Part::TimeBase(config) => {
+            SmallPart::DividerShare(channels) => (Model::DividerShare(channels), format!("{channels} channels")),
+            SmallPart::Group(axes) => (Model::Group(axes), format!("{axes} axes")),
+            SmallPart::TimeBase(config) => {
                 let clocks = format!("{} clocks per tick", config.tick_clocks());
                 (Model::TimeBase(config), clocks)
             }
-            Part::SampleSelect { word_bits, channels } => (
+            SmallPart::SampleSelect { word_bits, channels } => (
                 Model::SampleSelect { word_bits, channels },
                 format!("{channels} x {word_bits} bits"),
             ),
-            Part::SettingBanks(settings) => (Model::SettingBanks(Box::new(settings)), "alone".to_owned()),
+            SmallPart::SettingBanks(settings) => (Model::SettingBanks(Box::new(settings)), "alone".to_owned()),
         };
         Self {
             part,
@@ -96,24 +96,24 @@ impl Block for PartBlock {
     fn modules(&self) -> Result<Vec<Module>, EmitError> {
         let prefix = self.prefix.as_str();
         match &self.part {
-            Part::Schedule(config) => schedule::emit(config, prefix),
-            Part::DividerShare(channels) => divider_share::emit(*channels, prefix),
-            Part::Group(axes) => group::emit(*axes, prefix),
-            Part::TimeBase(config) => time_base::emit(config, prefix),
-            Part::SampleSelect { word_bits, channels } => sample_select::emit(*word_bits, *channels, prefix),
-            Part::SettingBanks(settings) => setting_banks::emit(settings, prefix),
+            SmallPart::Schedule(config) => schedule::emit(config, prefix),
+            SmallPart::DividerShare(channels) => divider_share::emit(*channels, prefix),
+            SmallPart::Group(axes) => group::emit(*axes, prefix),
+            SmallPart::TimeBase(config) => time_base::emit(config, prefix),
+            SmallPart::SampleSelect { word_bits, channels } => sample_select::emit(*word_bits, *channels, prefix),
+            SmallPart::SettingBanks(settings) => setting_banks::emit(settings, prefix),
         }
     }
 
     fn top(&self) -> String {
         let prefix = self.prefix.as_str();
         match &self.part {
-            Part::Schedule(config) => schedule::name(config, prefix),
-            Part::DividerShare(channels) => divider_share::name(*channels, prefix),
-            Part::Group(axes) => group::name(*axes, prefix),
-            Part::TimeBase(config) => time_base::name(config, prefix),
-            Part::SampleSelect { word_bits, channels } => sample_select::name(*word_bits, *channels, prefix),
-            Part::SettingBanks(settings) => setting_banks::name(settings, prefix),
+            SmallPart::Schedule(config) => schedule::name(config, prefix),
+            SmallPart::DividerShare(channels) => divider_share::name(*channels, prefix),
+            SmallPart::Group(axes) => group::name(*axes, prefix),
+            SmallPart::TimeBase(config) => time_base::name(config, prefix),
+            SmallPart::SampleSelect { word_bits, channels } => sample_select::name(*word_bits, *channels, prefix),
+            SmallPart::SettingBanks(settings) => setting_banks::name(settings, prefix),
         }
     }
 
@@ -123,12 +123,12 @@ impl Block for PartBlock {
 
     fn simulate(&self) -> Result<Box<dyn ClockedBlock>, SimulationError> {
         match &self.part {
-            Part::Schedule(config) => schedule::simulate(config),
-            Part::DividerShare(channels) => divider_share::simulate(*channels),
-            Part::Group(axes) => group::simulate(*axes),
-            Part::TimeBase(config) => time_base::simulate(config),
-            Part::SampleSelect { word_bits, channels } => sample_select::simulate(*word_bits, *channels),
-            Part::SettingBanks(settings) => setting_banks::simulate(settings),
+            SmallPart::Schedule(config) => schedule::simulate(config),
+            SmallPart::DividerShare(channels) => divider_share::simulate(*channels),
+            SmallPart::Group(axes) => group::simulate(*axes),
+            SmallPart::TimeBase(config) => time_base::simulate(config),
+            SmallPart::SampleSelect { word_bits, channels } => sample_select::simulate(*word_bits, *channels),
+            SmallPart::SettingBanks(settings) => setting_banks::simulate(settings),
         }
     }
 

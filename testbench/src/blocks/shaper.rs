@@ -4,13 +4,13 @@ use posicast_hdl::SimulationError;
 use posicast_hdl::emit::{EmitError, Module};
 use posicast_hdl::machine::{AxisShaper, emit_machine};
 use posicast_hdl::shaper::{emit, simulate, simulated_as};
-use posicast_model::rtl::shaper::{Motion, Shaper, ShaperConfig, ports};
+use posicast_model::rtl::shaper::{Shaper, ShaperConfig, ShaperMotion, ports};
 use posicast_model::rtl::{ClockedBlock, Port};
 
 use super::{Bins, Block, Exercise, named};
 use crate::Error;
 use crate::campaign::Campaign;
-use crate::lockstep::{Clock, Instance, Joined};
+use crate::lockstep::{Clock, Instance, SideBySide};
 use crate::stimuli::{Coverage, Layout, ShaperExercise, Stimuli};
 
 /// A shaper that stands alone.
@@ -175,7 +175,7 @@ impl Block for MachineShapers {
     fn simulate(&self) -> Result<Box<dyn ClockedBlock>, SimulationError> {
         let block = |s: &AxisShaper| Ok((s.axis.clone(), simulate(&s.config)?));
         let blocks = self.shapers.iter().map(block).collect::<Result<_, _>>()?;
-        Ok(Box::new(Joined::new(blocks)))
+        Ok(Box::new(SideBySide::new(blocks)))
     }
 
     fn simulated_as(&self) -> Option<String> {
@@ -230,13 +230,13 @@ impl Exercise for OfInstances {
     }
 }
 
-fn joined(shapers: &[AxisShaper], seed: u64) -> Joined {
+fn joined(shapers: &[AxisShaper], seed: u64) -> SideBySide {
     let block = |(index, s): (usize, &AxisShaper)| {
         // Each memory starts with other contents: nothing may depend on them.
         let block: Box<dyn ClockedBlock> = Box::new(Shaper::new(&s.config, seed.wrapping_add(index as u64)));
         (s.axis.clone(), block)
     };
-    Joined::new(shapers.iter().enumerate().map(block).collect())
+    SideBySide::new(shapers.iter().enumerate().map(block).collect())
 }
 
 /// The places of the ports are the layout's; what can happen depends on what is built.
@@ -251,7 +251,7 @@ impl<'a> OfLayout<'a> {
     fn new(layout: &'a Layout, configs: impl IntoIterator<Item = &'a ShaperConfig>) -> Self {
         let motions: Vec<_> = configs.into_iter().map(ShaperConfig::motion).collect();
         // A position that wraps never saturates.
-        let wraps = |motion: &Option<Motion>| motion.is_some_and(|motion| motion.modulo && motion.channels == 1);
+        let wraps = |motion: &Option<ShaperMotion>| motion.is_some_and(|motion| motion.modulo && motion.channels == 1);
         Self {
             layout,
             saturates: !motions.iter().all(wraps),

@@ -47,7 +47,7 @@ impl ShortTicksBlock {
     /// would have other modules with short ones.
     ///
     /// # Errors
-    /// As [`Component::stage`].
+    /// As `Component::stage`.
     pub fn new(config: &StageConfig, top: &str) -> Result<Option<Self>, StageError> {
         let Some(short) = shortened(config) else {
             return Ok(None);

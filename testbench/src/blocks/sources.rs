@@ -11,7 +11,7 @@ use super::Block;
 use crate::Error;
 use crate::icarus::Icarus;
 use crate::lockstep::{Device, TwoValued};
-use crate::verilator::{self, Source, Verilated};
+use crate::verilator::{self, Verilated, VerilogSource};
 
 /// The Verilog files of a block: written to a folder that goes with this value, or found in one that stays.
 #[derive(Debug)]
@@ -153,9 +153,13 @@ impl Sources {
         verilator::lint(&self.files, &block.top())
     }
 
-    fn with_source<T>(&self, block: &dyn Block, build: impl Fn(&Source<'_>) -> Result<T, Error>) -> Result<T, Error> {
+    fn with_source<T>(
+        &self,
+        block: &dyn Block,
+        build: impl Fn(&VerilogSource<'_>) -> Result<T, Error>,
+    ) -> Result<T, Error> {
         let ports: Vec<Port> = block.model(0).ports().to_vec();
-        build(&Source {
+        build(&VerilogSource {
             files: &self.files,
             top: &block.top(),
             ports: &ports,

@@ -10,7 +10,7 @@
 
 use std::fmt;
 
-use super::point::Point;
+use super::point::CoveragePoint;
 use crate::Error;
 
 /// The table, as it stands in the project.
@@ -28,7 +28,7 @@ pub struct Hole {
 }
 
 impl Hole {
-    pub(super) fn of_point(point: &Point) -> Self {
+    pub(super) fn of_point(point: &CoveragePoint) -> Self {
         Self {
             module: point.module.clone(),
             kind: point.kind.name(),

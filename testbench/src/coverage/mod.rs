@@ -25,7 +25,7 @@ use crate::Error;
 use crate::blocks::{self, Block, PwmBlock, Sources, library};
 use crate::stimuli::Stimuli;
 use explanation::{Explanation, Hole};
-use point::{Kind, Point};
+use point::{CoveragePoint, PointKind};
 
 /// Clocks of a measurement: those of the explanations, for with fewer there are other holes.
 pub const CLOCKS: u64 = 1_000_000;
@@ -116,7 +116,7 @@ pub fn measure_with<'a>(
     let (run, mut points) = run(clocks)?;
     for (point, before) in points.iter_mut().zip(&beginning) {
         // A line is run or not, whatever nets begin with; Verilator runs what depends on no input only once.
-        if point.kind == Kind::Toggle {
+        if point.kind == PointKind::Toggle {
             point.count -= before.count.min(point.count);
         }
     }
@@ -124,7 +124,7 @@ pub fn measure_with<'a>(
 }
 
 impl Measured {
-    fn new(block: &dyn Block, run: &blocks::Run, points: &[Point]) -> Self {
+    fn new(block: &dyn Block, run: &blocks::Run, points: &[CoveragePoint]) -> Self {
         let share = |kind| {
             let of_kind = points.iter().filter(|point| point.kind == kind);
             Share {
@@ -142,8 +142,8 @@ impl Measured {
         Self {
             block: block.name().to_owned(),
             instance: block.instance().to_owned(),
-            lines: share(Kind::Line),
-            toggles: share(Kind::Toggle),
+            lines: share(PointKind::Line),
+            toggles: share(PointKind::Toggle),
             bins: Share {
                 reached: run.coverage.len() - missed.len(),
                 all: run.coverage.len(),

@@ -13,11 +13,11 @@ use crate::Error;
 
 /// Something of a module that may happen, and how often it did.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Point {
+pub struct CoveragePoint {
     /// The module, as in the Verilog.
     pub module: String,
     /// Line or toggle.
-    pub kind: Kind,
+    pub kind: PointKind,
     /// Of a line: its text in the Verilog. Of a toggle: the net, with its bit if it has several.
     pub what: String,
     /// How often.
@@ -26,14 +26,14 @@ pub struct Point {
 
 /// What is counted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Kind {
+pub enum PointKind {
     /// The body that begins in a line was run.
     Line,
     /// A bit of a net changed, up or down.
     Toggle,
 }
 
-impl Kind {
+impl PointKind {
     /// Its name in the table of holes.
     pub fn name(self) -> &'static str {
         match self {
@@ -48,7 +48,7 @@ impl Kind {
 ///
 /// # Errors
 /// [`Error::File`] where a file cannot be read, [`Error::Option`] where a line is not as above.
-pub fn read(path: &Path, files: &[PathBuf]) -> Result<Vec<Point>, Error> {
+pub fn read(path: &Path, files: &[PathBuf]) -> Result<Vec<CoveragePoint>, Error> {
     let text = std::fs::read_to_string(path).map_err(Error::file(path, "read what Verilator counted in"))?;
     let mut verilog = Verilog {
         files,
@@ -63,7 +63,7 @@ pub fn read(path: &Path, files: &[PathBuf]) -> Result<Vec<Point>, Error> {
     Ok(points)
 }
 
-fn point(line: &str, verilog: &mut Verilog<'_>) -> Result<Point, Error> {
+fn point(line: &str, verilog: &mut Verilog<'_>) -> Result<CoveragePoint, Error> {
     let strange = || Error::Option(format!("`{line}` is no line of Verilator's coverage file"));
     let (keys, count) = line
         .strip_prefix("C '")
@@ -78,13 +78,13 @@ fn point(line: &str, verilog: &mut Verilog<'_>) -> Result<Point, Error> {
     };
     let (page, module) = value("page")?.split_once('/').ok_or_else(strange)?;
     let kind = match page {
-        "v_toggle" => Kind::Toggle,
-        "v_line" | "v_branch" => Kind::Line,
+        "v_toggle" => PointKind::Toggle,
+        "v_line" | "v_branch" => PointKind::Line,
         _ => return Err(strange()),
     };
     let what = match kind {
-        Kind::Toggle => value("o")?.to_owned(),
-        Kind::Line => {
+        PointKind::Toggle => value("o")?.to_owned(),
+        PointKind::Line => {
             let number = value("l")?.parse().map_err(|_| strange())?;
             let text = verilog.line(Path::new(value("f")?), number)?;
             // Where the condition of an `if` stands for its other branch.
@@ -94,7 +94,7 @@ fn point(line: &str, verilog: &mut Verilog<'_>) -> Result<Point, Error> {
             }
         }
     };
-    Ok(Point {
+    Ok(CoveragePoint {
         module: module.to_owned(),
         kind,
         what,

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::matching::{Matched, Pair};
 use super::names::{is_low_active, last_part};
-use super::options::{Edge, Options, Reset};
+use super::options::{DiffOptions, Reset, SamplingEdge};
 use crate::Error;
 use crate::wave::SAMPLE_CLOCK;
 use crate::wording::counted;
@@ -26,7 +26,7 @@ pub(super) struct Clocking {
 
 impl Clocking {
     /// `fits` says whether a pair has one bit in both files.
-    pub(super) fn find(matched: &Matched, options: &Options, fits: impl Fn(&Pair) -> bool) -> Result<Self, Error> {
+    pub(super) fn find(matched: &Matched, options: &DiffOptions, fits: impl Fn(&Pair) -> bool) -> Result<Self, Error> {
         let mut clocking = Self {
             clock: None,
             reset: None,
@@ -62,16 +62,21 @@ impl Clocking {
         Ok(clocking)
     }
 
-    fn sample_at(&mut self, slots: Slots, name: &str, options: &Options) {
+    fn sample_at(&mut self, slots: Slots, name: &str, options: &DiffOptions) {
         self.clock = Some(slots);
         let edge = match options.edge {
-            Edge::Rising => "rising",
-            Edge::Falling => "falling",
+            SamplingEdge::Rising => "rising",
+            SamplingEdge::Falling => "falling",
         };
         self.notes.push(format!("sampled at the {edge} edges of `{name}`"));
     }
 
-    fn find_reset(&mut self, matched: &Matched, options: &Options, fits: &impl Fn(&Pair) -> bool) -> Result<(), Error> {
+    fn find_reset(
+        &mut self,
+        matched: &Matched,
+        options: &DiffOptions,
+        fits: &impl Fn(&Pair) -> bool,
+    ) -> Result<(), Error> {
         let (slots, name, active) = match &options.reset {
             Reset::Ignored => return Ok(()),
             Reset::Named { name, active } => {

@@ -6,7 +6,7 @@
 use super::clocking::Slots;
 use super::gather::Gathering;
 use super::matching::Pair;
-use super::options::{Edge, Options};
+use super::options::{DiffOptions, SamplingEdge};
 use super::result::{Difference, seconds};
 use super::rule::{Rule, View};
 use super::side::{ClockEdge, Side, slot_of};
@@ -63,7 +63,7 @@ pub(super) struct Engine<'a> {
     pub(super) hot: Vec<Hot>,
     pub(super) states: Vec<State>,
     touched: Touched,
-    options: &'a Options,
+    options: &'a DiffOptions,
     pub(super) samples: u64,
     total_bytes: Option<u64>,
     /// A value per pair, as it was when the pair was equal last; until the first difference.
@@ -84,7 +84,7 @@ impl<'a> Engine<'a> {
         a: Side,
         b: Side,
         pairs: Vec<(Pair, Rule)>,
-        options: &'a Options,
+        options: &'a DiffOptions,
         total_bytes: Option<u64>,
     ) -> Self {
         let mut before = Values::default();
@@ -229,7 +229,11 @@ impl<'a> Engine<'a> {
         while side.next_edge(&mut self.touched)?.is_some_and(within) {
             count += 1;
         }
-        let digit = if self.options.edge == Edge::Rising { "1" } else { "0" };
+        let digit = if self.options.edge == SamplingEdge::Rising {
+            "1"
+        } else {
+            "0"
+        };
         let shown = Shown::Bits(digit.to_owned());
         let slots = [slot_of(clock, false), slot_of(clock, true)].map(Some);
         let at = self.hot.iter().position(|hot| [hot.a, hot.b] == slots);

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use super::human::value_and_digits;
-use super::{Comparison, Difference, Verdict};
+use super::{Comparison, DiffVerdict, Difference};
 use crate::wording::counted;
 
 /// The document. `name` is that of the suite, such as the two files' names.
@@ -21,7 +21,7 @@ pub fn junit(comparison: &Comparison, name: &str) -> String {
         .into_iter()
         .filter(|signal| by_signal.contains_key(signal.as_str()))
         .collect();
-    let incomparable = comparison.result == Verdict::Incomparable;
+    let incomparable = comparison.result == DiffVerdict::Incomparable;
     let tests = if incomparable {
         1
     } else {

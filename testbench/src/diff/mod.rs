@@ -11,7 +11,7 @@
 //! - **Names.** Maps first. Then full names; if nothing has the same full name, the scopes that all signals of a file share
 //!   are stripped, as few as give the most pairs. What is still alone meets by its canonical name (`a$b`, `a__b`, `A.B`),
 //!   where there is one candidate. A vector that one file writes bit by bit meets the whole of the other.
-//! - **Partners.** A signal without a partner is listed, never silently left out; with [`Options::require_all`] it is a
+//! - **Partners.** A signal without a partner is listed, never silently left out; with [`DiffOptions::require_all`] it is a
 //!   difference.
 //! - **Clock.** With a clock, values are those just before its edge, so that registers of both sides compare the same
 //!   whether their file shows changes at the edge or after it. Edges are paired by their number behind the release of
@@ -57,10 +57,10 @@ pub(crate) use self::human::{value, value_and_digits};
 pub use self::junit::junit;
 use self::matching::{Matched, Pair};
 use self::names::{Filter, Names};
-pub use self::options::{Edge, Latency, Options, Reset, parse_time_fs};
+pub use self::options::{DiffOptions, Latency, Reset, SamplingEdge, parse_time_fs};
 pub use self::picture::{show, shown_files};
 pub use self::player::{Player, PortMap, Recorded, missing};
-pub use self::result::{Comparison, Context, ContextRow, Difference, Leniency, Verdict};
+pub use self::result::{Comparison, Context, ContextRow, DiffVerdict, Difference, Leniency};
 use self::rule::Rule;
 pub use self::rule::{Tolerance, View};
 use self::side::{Delayed, Side, slot_of};
@@ -74,7 +74,12 @@ use crate::wording::{counted, time};
 /// # Errors
 /// [`Error::File`] and [`Error::Vcd`] for files that cannot be read to their end; [`Error::Option`] for options that do
 /// not fit these files.
-pub fn compare(a: &Path, b: &Path, options: &Options, progress: &mut dyn FnMut(Progress)) -> Result<Comparison, Error> {
+pub fn compare(
+    a: &Path,
+    b: &Path,
+    options: &DiffOptions,
+    progress: &mut dyn FnMut(Progress),
+) -> Result<Comparison, Error> {
     let mut waves = [Wave::open(a)?, Wave::open(b)?];
     let plan = Plan::new(&mut waves, options)?;
     let widths = widths(&plan.matched, &waves);
@@ -119,7 +124,7 @@ struct Plan {
 }
 
 impl Plan {
-    fn new([wave_a, wave_b]: &mut [Wave; 2], options: &Options) -> Result<Self, Error> {
+    fn new([wave_a, wave_b]: &mut [Wave; 2], options: &DiffOptions) -> Result<Self, Error> {
         let filter = Filter::new(&options.only, &options.ignore)?;
         let [root_a, root_b] = &options.roots;
         let a = Names::new(&mut wave_a.declarations, root_a.as_deref(), &filter, "first")?;
@@ -165,7 +170,7 @@ impl Plan {
     }
 
     /// Starts to read both files.
-    fn start(self, [wave_a, wave_b]: [Wave; 2], options: &Options) -> Result<Engine<'_>, Error> {
+    fn start(self, [wave_a, wave_b]: [Wave; 2], options: &DiffOptions) -> Result<Engine<'_>, Error> {
         let total_bytes = wave_a.bytes().zip(wave_b.bytes()).map(|(a, b)| a + b);
         let Self {
             names,
@@ -194,7 +199,7 @@ impl Plan {
             let of_b = at == 1;
             let watch = clocking.clock.map(|clock| Watch {
                 slot: slot_of(clock, of_b),
-                falling: options.edge == Edge::Falling,
+                falling: options.edge == SamplingEdge::Falling,
             });
             let (declarations, feed) = wave.play(watch)?;
             let Declarations { kinds, unit_fs, .. } = declarations;
@@ -235,7 +240,11 @@ fn widths(matched: &Matched, [a, b]: &[Wave; 2]) -> Vec<Option<[u32; 2]>> {
 }
 
 /// The rule of each pair. `kinds` gives those of its two signals.
-fn rules(matched: &Matched, options: &Options, kinds: impl Fn(&Pair) -> [Option<Kind>; 2]) -> Result<Vec<Rule>, Error> {
+fn rules(
+    matched: &Matched,
+    options: &DiffOptions,
+    kinds: impl Fn(&Pair) -> [Option<Kind>; 2],
+) -> Result<Vec<Rule>, Error> {
     let width = |pair: &Pair| {
         let bits = |kind: &Option<Kind>| match kind {
             Some(Kind::Bits(width)) => Some(*width),
@@ -278,7 +287,7 @@ fn rules(matched: &Matched, options: &Options, kinds: impl Fn(&Pair) -> [Option<
     Ok(rules)
 }
 
-fn latencies(matched: &Matched, options: &Options, sampled: bool) -> Result<Vec<Option<Latency>>, Error> {
+fn latencies(matched: &Matched, options: &DiffOptions, sampled: bool) -> Result<Vec<Option<Latency>>, Error> {
     let mut latencies = vec![None; matched.pairs.len()];
     for (signal, latency) in &options.latencies {
         match (latency, sampled) {

@@ -9,7 +9,7 @@ use crate::wording::counted;
 
 /// Which edge of the clock samples.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub enum Edge {
+pub enum SamplingEdge {
     /// 0 to 1.
     #[default]
     Rising,
@@ -45,18 +45,18 @@ pub enum Latency {
 
 /// What to compare, and how strictly.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Options {
+pub struct DiffOptions {
     /// Name of the clock in the first file: full, or its end where that is unique.
     pub clock: Option<String>,
     /// The edge of the clock at which both files are sampled.
-    pub edge: Edge,
+    pub edge: SamplingEdge,
     /// Compare at every change, even if there is a clock.
     pub raw: bool,
     /// From which sample on to compare.
     pub reset: Reset,
     /// Times of the first file in femtoseconds between which to compare, both included.
     pub start_fs: Option<u128>,
-    /// See [`Options::start_fs`].
+    /// See [`DiffOptions::start_fs`].
     pub end_fs: Option<u128>,
     /// Without clock: a difference that lasts no longer is none.
     pub time_tolerance_fs: u128,
@@ -82,7 +82,7 @@ pub struct Options {
     pub require_all: bool,
 }
 
-impl Options {
+impl DiffOptions {
     /// Adds a `--map`.
     ///
     /// # Errors
@@ -111,7 +111,7 @@ impl Options {
     /// Adds the maps of a file: one `A=B` a line; empty lines and lines that begin with `#` say nothing.
     ///
     /// # Errors
-    /// As [`Options::add_map`], with the line.
+    /// As [`DiffOptions::add_map`], with the line.
     pub fn add_map_file(&mut self, text: &str) -> Result<(), Error> {
         for (number, line) in (1..).zip(text.lines()) {
             let line = line.trim();
@@ -264,7 +264,7 @@ mod tests {
 
     #[test]
     fn unit_wrong_texts_are_errors_and_change_nothing() {
-        let mut options = Options::default();
+        let mut options = DiffOptions::default();
         for map in ["", "a", "=b", "a=", "a=b=c", "a*=b", "*a*b*c*d*e*f*g*h*i=b"] {
             assert!(options.add_map(map).is_err(), "{map}");
         }
@@ -289,12 +289,12 @@ mod tests {
         );
         assert_eq!(options.maps.len(), 1);
         options.maps.clear();
-        assert_eq!(options, Options::default());
+        assert_eq!(options, DiffOptions::default());
     }
 
     #[test]
     fn unit_a_low_active_reset_is_known_by_its_name() {
-        let mut options = Options::default();
+        let mut options = DiffOptions::default();
         for (text, active) in [
             ("rst", true),
             ("top.rst_n", false),

@@ -14,7 +14,7 @@ use super::svg::{self, Lane, Trace, Window};
 use super::{Comparison, Shown};
 use crate::Error;
 use crate::reader::{Kind, Value, Values, Wave};
-use crate::wave::{Difference, Focus, Part, merge_around, write_text};
+use crate::wave::{DifferenceSignal, Focus, MergePart, merge_around, write_text};
 
 /// Signals that are shown, the earliest first.
 const SIGNALS: usize = 8;
@@ -86,11 +86,11 @@ pub fn show(base: &Path, a: &Path, b: &Path, comparison: &Comparison) -> Result<
         let traced = |lane: &Lane| lane.signal == signal && !lane.a.values.is_empty() && !lane.b.values.is_empty();
         d.is_some_and(|d| matches!(d.a, Shown::Bits(_) | Shown::Real(_))) && lanes.iter().any(traced)
     };
-    let differences: Vec<Difference<'_>> = shown
+    let differences: Vec<DifferenceSignal<'_>> = shown
         .iter()
         .zip(&leaves)
         .filter(|((name, _), _)| numeric(name))
-        .map(|((a, b), leaf)| Difference {
+        .map(|((a, b), leaf)| DifferenceSignal {
             name: leaf,
             minuend: (0, a),
             subtrahend: (1, b),
@@ -104,7 +104,7 @@ pub fn show(base: &Path, a: &Path, b: &Path, comparison: &Comparison) -> Result<
         time_fs: window.at,
         span_fs: window.to - window.from,
     };
-    let parts = [Part { scope: "a", path: a }, Part { scope: "b", path: b }];
+    let parts = [MergePart { scope: "a", path: a }, MergePart { scope: "b", path: b }];
     merge_around(&base.with_extension("vcd"), &parts, &differences, Some(&focus))?;
     Ok(true)
 }

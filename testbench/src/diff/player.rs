@@ -8,7 +8,7 @@ use posicast_model::rtl::{Direction, Port};
 use super::clocking::{Clocking, Slots};
 use super::matching::{Matched, Pair};
 use super::names::{Filter, Group, Names};
-use super::options::Options;
+use super::options::DiffOptions;
 use super::side::Side;
 use super::touched::Touched;
 use crate::Error;
@@ -35,7 +35,7 @@ pub struct PortMap {
     groups: Vec<Group>,
     clock: Slots,
     reset: Option<(Slots, bool)>,
-    options: Options,
+    options: DiffOptions,
     /// How clock and reset were found.
     pub notes: Vec<String>,
     /// Signals of the file that are no port.
@@ -48,7 +48,7 @@ impl PortMap {
     /// # Errors
     /// [`Error::Option`] where there is no clock, an option fits nothing, or a signal has not the width of its port;
     /// [`Error::File`] and [`Error::Vcd`] for a file that cannot be read, or is none that can be read again, such as a pipe.
-    pub fn find(path: &Path, top: &str, ports: &[Port], options: &Options) -> Result<Option<Self>, Error> {
+    pub fn find(path: &Path, top: &str, ports: &[Port], options: &DiffOptions) -> Result<Option<Self>, Error> {
         let mut wave = Wave::open(path)?;
         if wave.bytes().is_none() {
             let pipe = std::io::Error::other("it is no regular file, and must be read several times; save it first");
@@ -132,7 +132,7 @@ impl PortMap {
         )?;
         let (declarations, feed) = wave.play(Some(Watch {
             slot: self.clock[0],
-            falling: self.options.edge == super::Edge::Falling,
+            falling: self.options.edge == super::SamplingEdge::Falling,
         }))?;
         let groups: Vec<&Group> = self.groups.iter().collect();
         let Declarations { kinds, unit_fs, .. } = declarations;

@@ -9,7 +9,7 @@ use super::value::{Shown, UnknownPolicy};
 /// Equal, different, or nothing to compare.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Verdict {
+pub enum DiffVerdict {
     /// Every compared value was equal, and every signal had a partner or was left out on demand.
     Equal,
     /// At least one was not.
@@ -96,7 +96,7 @@ pub struct Leniency {
 #[derive(Debug, Clone, Serialize)]
 pub struct Comparison {
     /// The verdict.
-    pub result: Verdict,
+    pub result: DiffVerdict,
     /// Signals compared: those that both files have.
     pub signals: u64,
     /// Clock edges, or times of change, at which they were compared.
@@ -168,7 +168,7 @@ impl Comparison {
             .collect();
         let only_widths = !lenient.iter().any(|l| l.tolerance.is_some() || l.latency.is_some());
         Self {
-            result: Verdict::Incomparable,
+            result: DiffVerdict::Incomparable,
             signals: 0,
             samples: 0,
             differences: Vec::new(),
@@ -189,7 +189,7 @@ impl Comparison {
     }
 
     pub(super) fn incomparable(&mut self, why: &str) {
-        self.result = Verdict::Incomparable;
+        self.result = DiffVerdict::Incomparable;
         self.notes.push(why.to_owned());
     }
 
@@ -200,9 +200,9 @@ impl Comparison {
             return;
         }
         self.result = if differences.is_empty() {
-            Verdict::Equal
+            DiffVerdict::Equal
         } else {
-            Verdict::Different
+            DiffVerdict::Different
         };
         self.first_time = differences.iter().map(|d| d.time).reduce(f64::min);
         self.differences = differences;

@@ -3,7 +3,7 @@
 use std::fmt;
 
 use super::human::{value, value_and_digits};
-use super::{Comparison, Context, Difference, Leniency, UnknownPolicy, Verdict};
+use super::{Comparison, Context, DiffVerdict, Difference, Leniency, UnknownPolicy};
 use crate::wording::{counted, time, times};
 
 /// Lines of one kind that the text shows before it counts the rest.
@@ -19,9 +19,9 @@ impl fmt::Display for Comparison {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let samples = counted(self.samples, "sample");
         match self.result {
-            Verdict::Different => write!(f, "different: {}, compared at {samples}", self.differing())?,
-            Verdict::Equal => write!(f, "{}: {} at {samples}", self.equal(), counted(self.signals, "signal"))?,
-            Verdict::Incomparable => write!(f, "incomparable: {} at {samples}", counted(self.signals, "signal"))?,
+            DiffVerdict::Different => write!(f, "different: {}, compared at {samples}", self.differing())?,
+            DiffVerdict::Equal => write!(f, "{}: {} at {samples}", self.equal(), counted(self.signals, "signal"))?,
+            DiffVerdict::Incomparable => write!(f, "incomparable: {} at {samples}", counted(self.signals, "signal"))?,
         }
         for note in &self.notes {
             write!(f, "\n  {note}")?;

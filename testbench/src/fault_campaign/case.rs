@@ -4,7 +4,7 @@ use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
 use super::expectation::{Hit, Lasts};
-use super::kind::{Row, TABLE};
+use super::kind::{FaultRow, TABLE};
 
 /// Most counts of a move; least are half of it.
 const MOST_COUNTS: i64 = 300;
@@ -17,7 +17,7 @@ pub struct Case {
     /// Its place in the campaign.
     pub number: u64,
     /// Kind and what is demanded.
-    pub row: &'static Row,
+    pub row: &'static FaultRow,
     /// The axes that are hit, a bit each.
     pub axes: u32,
     /// Counts of the move of both axes.

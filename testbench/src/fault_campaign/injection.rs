@@ -2,10 +2,10 @@
 
 use posicast_model::plant::axis::EncoderPins;
 use posicast_model::rtl::axis::KICK;
-use posicast_model::rtl::segments::{Entry, Motion, Point};
+use posicast_model::rtl::segments::{Entry, EntryMotion, Point};
 
 use super::case::Case;
-use super::kind::Kind;
+use super::kind::FaultKind;
 use crate::Error;
 use crate::stage_bench::{StageBench, Wire};
 
@@ -22,7 +22,7 @@ const NO_SETTINGS: u32 = 1 | 3 << 8;
 /// The entry after which the velocity does not fit.
 const OVERFLOWING: Entry = Entry {
     ticks: 100,
-    motion: Motion::Jerk(HUGE_JERK),
+    motion: EntryMotion::Jerk(HUGE_JERK),
     notify: false,
 };
 
@@ -35,10 +35,10 @@ const FAR_COUNTS: i32 = 4_000_000;
 pub(super) fn last_entry(case: &Case, axis: usize) -> Option<Entry> {
     let side = case.counts[axis].signum() as i32;
     match case.row.kind {
-        Kind::Overflow => Some(OVERFLOWING),
-        Kind::OutOfRange => Some(Entry {
+        FaultKind::Overflow => Some(OVERFLOWING),
+        FaultKind::OutOfRange => Some(Entry {
             ticks: 1,
-            motion: Motion::Point(Point {
+            motion: EntryMotion::Point(Point {
                 position: (side * FAR_COUNTS) << 8,
                 velocity: 0,
                 acceleration: 0,
@@ -53,23 +53,23 @@ pub(super) fn last_entry(case: &Case, axis: usize) -> Option<Entry> {
 fn line(case: &Case, axis: usize) -> Option<(&'static str, u64)> {
     let forward = case.counts[axis] > 0;
     Some(match case.row.kind {
-        Kind::RawFault | Kind::RawFaultOneClock => ("fault_n", 0),
-        Kind::DriveFault | Kind::DriveFaultGlitch => ("drive_fault_n", 0),
-        Kind::DriveNotReady | Kind::DriveReadyGlitch => ("drive_ready", 0),
-        Kind::LimitAhead | Kind::LimitGlitch if forward => ("limit_plus_n", 0),
-        Kind::LimitAhead | Kind::LimitGlitch => ("limit_minus_n", 0),
-        Kind::LimitBehind if forward => ("limit_minus_n", 0),
-        Kind::LimitBehind => ("limit_plus_n", 0),
-        Kind::Home => ("home", 1),
+        FaultKind::RawFault | FaultKind::RawFaultOneClock => ("fault_n", 0),
+        FaultKind::DriveFault | FaultKind::DriveFaultGlitch => ("drive_fault_n", 0),
+        FaultKind::DriveNotReady | FaultKind::DriveReadyGlitch => ("drive_ready", 0),
+        FaultKind::LimitAhead | FaultKind::LimitGlitch if forward => ("limit_plus_n", 0),
+        FaultKind::LimitAhead | FaultKind::LimitGlitch => ("limit_minus_n", 0),
+        FaultKind::LimitBehind if forward => ("limit_minus_n", 0),
+        FaultKind::LimitBehind => ("limit_plus_n", 0),
+        FaultKind::Home => ("home", 1),
         _ => return None,
     })
 }
 
 /// The shared line of a kind that is one; low is the fault.
-fn shared_line(kind: Kind) -> Option<&'static str> {
+fn shared_line(kind: FaultKind) -> Option<&'static str> {
     match kind {
-        Kind::EmergencyStop | Kind::EmergencyStopGlitch => Some("emergency_stop_n"),
-        Kind::PllUnlocked => Some("pll_locked"),
+        FaultKind::EmergencyStop | FaultKind::EmergencyStopGlitch => Some("emergency_stop_n"),
+        FaultKind::PllUnlocked => Some("pll_locked"),
         _ => None,
     }
 }
@@ -80,8 +80,8 @@ pub(super) fn begin(bench: &mut StageBench, case: &Case) -> Result<(), Error> {
         return bench.set(line, 0);
     }
     match case.row.kind {
-        Kind::Reset => return bench.set("rst", 1),
-        Kind::StartAgain => return bench.write("start", 3),
+        FaultKind::Reset => return bench.set("rst", 1),
+        FaultKind::StartAgain => return bench.write("start", 3),
         _ => {}
     }
     for axis in case.hit_axes() {
@@ -91,7 +91,7 @@ pub(super) fn begin(bench: &mut StageBench, case: &Case) -> Result<(), Error> {
             None => begin_at(bench, case, axis, &name)?,
         }
     }
-    if case.row.kind == Kind::NoGains {
+    if case.row.kind == FaultKind::NoGains {
         bench.write("commit", 0)?;
     }
     Ok(())
@@ -102,81 +102,81 @@ fn begin_at(bench: &mut StageBench, case: &Case, axis: usize, name: &str) -> Res
     let register = |register: &str| format!("{name}_{register}");
     let lines = bench.plant(axis).encoder();
     match case.row.kind {
-        Kind::EncoderIllegal => bench.force_encoder(axis, Some(inverted(lines))),
-        Kind::EncoderGlitch => {
+        FaultKind::EncoderIllegal => bench.force_encoder(axis, Some(inverted(lines))),
+        FaultKind::EncoderGlitch => {
             let a = case.choice & 1 != 0;
             let (a, b) = (lines.a ^ a, lines.b ^ !a);
             bench.force_encoder(axis, Some(EncoderPins { a, b, ..lines }));
         }
-        Kind::EncoderStuck => bench.force_encoder(axis, Some(lines)),
-        Kind::EncoderDisconnected => bench.force_encoder(axis, Some(EncoderPins::default())),
-        Kind::EncoderLineStuck => bench.break_wire(axis, Some(stuck(case, lines))),
-        Kind::EncoderLineStuckUnwatched => {
+        FaultKind::EncoderStuck => bench.force_encoder(axis, Some(lines)),
+        FaultKind::EncoderDisconnected => bench.force_encoder(axis, Some(EncoderPins::default())),
+        FaultKind::EncoderLineStuck => bench.break_wire(axis, Some(stuck(case, lines))),
+        FaultKind::EncoderLineStuckUnwatched => {
             bench.write(&register("following_error_limit"), 0)?;
             bench.break_wire(axis, Some(stuck(case, lines)));
         }
-        Kind::EncoderReversed => bench.break_wire(axis, Some(Wire::AInverted)),
-        Kind::EncoderReversedUnwatched => {
+        FaultKind::EncoderReversed => bench.break_wire(axis, Some(Wire::AInverted)),
+        FaultKind::EncoderReversedUnwatched => {
             bench.write(&register("following_error_limit"), 0)?;
             bench.break_wire(axis, Some(Wire::AInverted));
         }
-        Kind::EncoderReversedInHold => reverse_and_push(bench, case, axis),
-        Kind::EncoderReversedInHoldUnwatched => {
+        FaultKind::EncoderReversedInHold => reverse_and_push(bench, case, axis),
+        FaultKind::EncoderReversedInHoldUnwatched => {
             bench.write(&register("following_error_limit"), 0)?;
             reverse_and_push(bench, case, axis);
         }
-        Kind::ScaleStuck => bench.force_scale(axis, Some(bench.plant(axis).scale())),
-        Kind::ScaleIllegal => bench.force_scale(axis, Some(inverted(bench.plant(axis).scale()))),
-        Kind::Jam => bench.jam(axis, true),
-        Kind::JamWithoutFollowingError => {
+        FaultKind::ScaleStuck => bench.force_scale(axis, Some(bench.plant(axis).scale())),
+        FaultKind::ScaleIllegal => bench.force_scale(axis, Some(inverted(bench.plant(axis).scale()))),
+        FaultKind::Jam => bench.jam(axis, true),
+        FaultKind::JamWithoutFollowingError => {
             bench.write(&register("following_error_limit"), 0)?;
             bench.jam(axis, true);
         }
-        Kind::HostSilent => {
+        FaultKind::HostSilent => {
             bench.write(&register("kick"), KICK)?;
             bench.write(&register("watchdog"), WATCHDOG_TICKS | u32::from(case.off_causes) << 16)?;
             bench.write(&register("kick"), KICK ^ (1 << (case.choice % 32)))?;
         }
-        Kind::Flush => bench.write(&register("flush"), 0)?,
-        Kind::OutOfRange => bench.write(&register("following_error_limit"), 0)?,
-        Kind::Overflow => {
+        FaultKind::Flush => bench.write(&register("flush"), 0)?,
+        FaultKind::OutOfRange => bench.write(&register("following_error_limit"), 0)?,
+        FaultKind::Overflow => {
             bench.write(&register("following_error_limit"), 0)?;
             bench.write(&register("stop_deceleration"), 0)?;
         }
-        Kind::Malformed => malformed(bench, name)?,
-        Kind::FifoFull => {
+        FaultKind::Malformed => malformed(bench, name)?,
+        FaultKind::FifoFull => {
             let still = Entry {
                 ticks: 1,
-                motion: Motion::Jerk(0),
+                motion: EntryMotion::Jerk(0),
                 notify: false,
             };
             for _ in 0..MANY_ENTRIES {
                 bench.segment(name, &still)?;
             }
         }
-        Kind::SoftLimit => {
+        FaultKind::SoftLimit => {
             let at = bench.net(&register("shaped_position"))? as u32;
             let side = if case.counts[axis] > 0 { "plus" } else { "minus" };
             bench.write(&register(&format!("soft_limit_{side}")), at)?;
         }
-        Kind::Stop => bench.write(&register("stop"), 0)?,
-        Kind::Disable => bench.write(&register("control"), 0)?,
-        Kind::SettingRefused => {
+        FaultKind::Stop => bench.write(&register("stop"), 0)?,
+        FaultKind::Disable => bench.write(&register("control"), 0)?,
+        FaultKind::SettingRefused => {
             for bank in [0, 3] {
                 bench.write(&register("setting_address"), (case.choice % 16) | (bank << 8))?;
                 bench.write(&register("setting"), case.choice)?;
             }
         }
-        Kind::NoGains => bench.write(&register("law"), NO_SETTINGS)?,
-        Kind::TableHandover => {
+        FaultKind::NoGains => bench.write(&register("law"), NO_SETTINGS)?,
+        FaultKind::TableHandover => {
             let one = 1 << bench.read(&register("coefficient_fraction"))?;
             bench.write(&register("tap_address"), 1 << 8)?;
             bench.write(&register("tap"), one)?;
             bench.write(&register("swap"), SWAP_TO_1)?;
         }
-        Kind::PresetOrigin => bench.write(&register("preset"), case.choice)?,
-        Kind::ClearFaults => bench.write(&register("clear_faults"), 0)?,
-        Kind::DirectMode => {
+        FaultKind::PresetOrigin => bench.write(&register("preset"), case.choice)?,
+        FaultKind::ClearFaults => bench.write(&register("clear_faults"), 0)?,
+        FaultKind::DirectMode => {
             bench.write(&register("control"), 0b11)?;
             bench.write(&register("direct"), case.choice & 0x1_ffff)?;
         }
@@ -222,7 +222,7 @@ fn malformed(bench: &mut StageBench, name: &str) -> Result<(), Error> {
 /// Takes away what does not end by itself. `way_back`: a limit stays, since the way back must be open on it.
 pub(super) fn end(bench: &mut StageBench, case: &Case, way_back: bool) -> Result<(), Error> {
     let kind = case.row.kind;
-    if kind == Kind::Reset {
+    if kind == FaultKind::Reset {
         return bench.set("rst", 0);
     }
     if let Some(line) = shared_line(kind) {
@@ -232,7 +232,7 @@ pub(super) fn end(bench: &mut StageBench, case: &Case, way_back: bool) -> Result
         let name = bench.axes()[axis].clone();
         let register = |register: &str| format!("{name}_{register}");
         match line(case, axis) {
-            Some(_) if way_back && kind == Kind::LimitAhead => {}
+            Some(_) if way_back && kind == FaultKind::LimitAhead => {}
             Some((line, level)) => bench.set(&register(line), 1 - level)?,
             None => {}
         }
@@ -241,13 +241,13 @@ pub(super) fn end(bench: &mut StageBench, case: &Case, way_back: bool) -> Result
         bench.force_scale(axis, None);
         bench.jam(axis, false);
         match kind {
-            Kind::DirectMode => bench.write(&register("control"), 1)?,
-            Kind::HostSilent => bench.write(&register("watchdog"), u32::from(case.off_causes) << 16)?,
-            Kind::NoGains => bench.write(&register("law"), 1)?,
+            FaultKind::DirectMode => bench.write(&register("control"), 1)?,
+            FaultKind::HostSilent => bench.write(&register("watchdog"), u32::from(case.off_causes) << 16)?,
+            FaultKind::NoGains => bench.write(&register("law"), 1)?,
             _ => {}
         }
     }
-    if kind == Kind::NoGains {
+    if kind == FaultKind::NoGains {
         bench.write("commit", 0)?;
     }
     Ok(())

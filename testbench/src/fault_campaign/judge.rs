@@ -1,6 +1,6 @@
 //! What was seen from the fault to the end, against what is demanded.
 
-use posicast_model::rtl::axis::{Cause, State, switching_off};
+use posicast_model::rtl::axis::{Cause, SupervisorState, switching_off};
 use posicast_model::rtl::stage::axis_interrupt_bit;
 
 use super::case::Case;
@@ -82,7 +82,7 @@ pub(super) fn stopped(
             Some(reaction) => judge.hit(bench, observed, reaction),
             None => judge.other(bench, observed, first_stop),
         };
-        let faulted = observed.state(bench) == State::Fault as u64;
+        let faulted = observed.state(bench) == SupervisorState::Fault as u64;
         judge.interrupts(interrupts, quick, faulted);
         if let (true, Some((register, field))) = (seen.case.hits(axis), seen.case.row.expects.flag) {
             let name = judge.name.clone();
@@ -118,13 +118,13 @@ impl Judge<'_> {
             }
             Reaction::Fault => self.fault(bench, observed),
             Reaction::Reset => {
-                self.in_time(observed, State::Off as u64);
+                self.in_time(observed, SupervisorState::Off as u64);
                 self.off(observed, None);
                 self.causes(observed.causes(bench), 0);
                 false
             }
             Reaction::Halt | Reaction::Disable => {
-                let change = self.in_time(observed, State::QuickStop as u64);
+                let change = self.in_time(observed, SupervisorState::QuickStop as u64);
                 self.stands(observed, change);
                 self.causes(observed.causes(bench), 0);
                 true
@@ -142,7 +142,7 @@ impl Judge<'_> {
         let causes = observed.causes(bench);
         self.demand(causes == 0, || format!("causes {causes:#x}"));
         let change = observed.change.map(|change| change.state);
-        let ended = change == Some(State::Hold as u64);
+        let ended = change == Some(SupervisorState::Hold as u64);
         self.demand(ended, || format!("RUN ended in state {change:?}"));
         self.demand(observed.drive_off.is_none(), || "the drive was disabled".to_owned());
     }
@@ -162,7 +162,10 @@ impl Judge<'_> {
             self.demand(stays, || "it did not stay in HOLD".to_owned());
             return false;
         }
-        let Some(change) = observed.change.filter(|change| change.state == State::QuickStop as u64) else {
+        let Some(change) = observed
+            .change
+            .filter(|change| change.state == SupervisorState::QuickStop as u64)
+        else {
             self.demand(false, || "no group stop".to_owned());
             return false;
         };
@@ -193,7 +196,11 @@ impl Judge<'_> {
         let known = change.causes & (expects.causes | expects.also | group) != 0;
         self.demand(known, || format!("causes {:#x} when it stopped", change.causes));
         let cut = switching_off(change.causes, self.seen.case.off_causes) != 0;
-        let wanted = if cut { State::Fault } else { State::QuickStop };
+        let wanted = if cut {
+            SupervisorState::Fault
+        } else {
+            SupervisorState::QuickStop
+        };
         self.in_time(observed, wanted as u64);
         if cut {
             self.off(observed, Some(change));

@@ -8,7 +8,7 @@ use super::machine::{FILTER_CLOCKS, TICK_CLOCKS};
 /// A kind of fault.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[expect(missing_docs, reason = "the table says what each is")]
-pub enum Kind {
+pub enum FaultKind {
     EmergencyStop,
     EmergencyStopGlitch,
     PllUnlocked,
@@ -57,9 +57,9 @@ pub enum Kind {
 
 /// A row of the table.
 #[derive(Debug, Clone, Copy)]
-pub struct Row {
+pub struct FaultRow {
     /// The kind of the fault.
-    pub kind: Kind,
+    pub kind: FaultKind,
     /// Its name in reports.
     pub name: &'static str,
     /// What is injected.
@@ -91,8 +91,8 @@ const SHORT: Lasts = Lasts::Clocks(1, FILTER_CLOCKS);
 /// While the command moves fast enough for an error to grow.
 const IN_MOTION: [u64; 2] = [15, 50];
 
-const fn row(kind: Kind, name: &'static str, injected: &'static str, expects: Expectation) -> Row {
-    Row {
+const fn row(kind: FaultKind, name: &'static str, injected: &'static str, expects: Expectation) -> FaultRow {
+    FaultRow {
         kind,
         name,
         injected,
@@ -110,9 +110,9 @@ const fn fault(cause: Cause, due: Due) -> Expectation {
 }
 
 /// All kinds.
-pub const TABLE: [Row; 44] = [
+pub const TABLE: [FaultRow; 44] = [
     row(
-        Kind::EmergencyStop,
+        FaultKind::EmergencyStop,
         "emergency stop",
         "`emergency_stop_n` low, for longer than the filter or for good",
         Expectation {
@@ -123,7 +123,7 @@ pub const TABLE: [Row; 44] = [
         },
     ),
     row(
-        Kind::EmergencyStopGlitch,
+        FaultKind::EmergencyStopGlitch,
         "emergency stop, glitch",
         "the same, no longer than the filter",
         Expectation {
@@ -133,7 +133,7 @@ pub const TABLE: [Row; 44] = [
         },
     ),
     row(
-        Kind::PllUnlocked,
+        FaultKind::PllUnlocked,
         "PLL unlocked",
         "`pll_locked` low, from one clock on",
         Expectation {
@@ -144,7 +144,7 @@ pub const TABLE: [Row; 44] = [
         },
     ),
     row(
-        Kind::RawFault,
+        FaultKind::RawFault,
         "raw fault",
         "`fault_n` low",
         Expectation {
@@ -154,7 +154,7 @@ pub const TABLE: [Row; 44] = [
         },
     ),
     row(
-        Kind::RawFaultOneClock,
+        FaultKind::RawFaultOneClock,
         "raw fault, one clock",
         "`fault_n` low for one clock",
         Expectation {
@@ -164,7 +164,7 @@ pub const TABLE: [Row; 44] = [
         },
     ),
     row(
-        Kind::DriveFault,
+        FaultKind::DriveFault,
         "drive's fault",
         "`drive_fault_n` low, for longer than the filter or for good",
         Expectation {
@@ -173,7 +173,7 @@ pub const TABLE: [Row; 44] = [
         },
     ),
     row(
-        Kind::DriveFaultGlitch,
+        FaultKind::DriveFaultGlitch,
         "drive's fault, glitch",
         "the same, no longer than the filter",
         Expectation {
@@ -182,7 +182,7 @@ pub const TABLE: [Row; 44] = [
         },
     ),
     row(
-        Kind::DriveNotReady,
+        FaultKind::DriveNotReady,
         "drive not ready",
         "`drive_ready` low, for longer than the filter or for good",
         Expectation {
@@ -191,7 +191,7 @@ pub const TABLE: [Row; 44] = [
         },
     ),
     row(
-        Kind::DriveReadyGlitch,
+        FaultKind::DriveReadyGlitch,
         "drive not ready, glitch",
         "the same, no longer than the filter",
         Expectation {
@@ -200,7 +200,7 @@ pub const TABLE: [Row; 44] = [
         },
     ),
     row(
-        Kind::LimitAhead,
+        FaultKind::LimitAhead,
         "limit switch ahead",
         "the limit switch in the direction of motion, for more than a tick or for good; the way back stays open",
         Expectation {
@@ -215,7 +215,7 @@ pub const TABLE: [Row; 44] = [
         },
     ),
     row(
-        Kind::LimitBehind,
+        FaultKind::LimitBehind,
         "limit switch behind",
         "the limit switch of the other direction",
         Expectation {
@@ -225,7 +225,7 @@ pub const TABLE: [Row; 44] = [
         },
     ),
     row(
-        Kind::LimitGlitch,
+        FaultKind::LimitGlitch,
         "limit switch, glitch",
         "the limit switch ahead, no longer than the filter",
         Expectation {
@@ -234,7 +234,7 @@ pub const TABLE: [Row; 44] = [
         },
     ),
     row(
-        Kind::Home,
+        FaultKind::Home,
         "home",
         "`home` high or low, for any time",
         Expectation {
@@ -243,7 +243,7 @@ pub const TABLE: [Row; 44] = [
         },
     ),
     row(
-        Kind::EncoderIllegal,
+        FaultKind::EncoderIllegal,
         "encoder, illegal transition",
         "A and B inverted together",
         Expectation {
@@ -255,7 +255,7 @@ pub const TABLE: [Row; 44] = [
         },
     ),
     row(
-        Kind::EncoderGlitch,
+        FaultKind::EncoderGlitch,
         "encoder, glitch",
         "A or B inverted, no longer than the filter",
         Expectation {
@@ -264,7 +264,7 @@ pub const TABLE: [Row; 44] = [
         },
     ),
     row(
-        Kind::EncoderStuck,
+        FaultKind::EncoderStuck,
         "encoder stuck",
         "A and B stay as they are",
         Expectation {
@@ -277,7 +277,7 @@ pub const TABLE: [Row; 44] = [
         },
     ),
     row(
-        Kind::EncoderLineStuck,
+        FaultKind::EncoderLineStuck,
         "encoder, one line stuck",
         "A or B stays as it is: the count dithers by one",
         Expectation {
@@ -290,7 +290,7 @@ pub const TABLE: [Row; 44] = [
         },
     ),
     row(
-        Kind::EncoderLineStuckUnwatched,
+        FaultKind::EncoderLineStuckUnwatched,
         "encoder, one line stuck, error not watched",
         "the same with `following_error_limit` 0",
         Expectation {
@@ -303,7 +303,7 @@ pub const TABLE: [Row; 44] = [
         },
     ),
     row(
-        Kind::EncoderDisconnected,
+        FaultKind::EncoderDisconnected,
         "encoder disconnected",
         "A, B and Z low",
         Expectation {
@@ -316,7 +316,7 @@ pub const TABLE: [Row; 44] = [
         },
     ),
     row(
-        Kind::EncoderReversed,
+        FaultKind::EncoderReversed,
         "encoder reversed",
         "the wires of A exchanged in the move: the loop runs away",
         Expectation {
@@ -327,7 +327,7 @@ pub const TABLE: [Row; 44] = [
         },
     ),
     row(
-        Kind::EncoderReversedUnwatched,
+        FaultKind::EncoderReversedUnwatched,
         "encoder reversed, error not watched",
         "the same with `following_error_limit` 0",
         Expectation {
@@ -340,7 +340,7 @@ pub const TABLE: [Row; 44] = [
         },
     ),
     row(
-        Kind::EncoderReversedInHold,
+        FaultKind::EncoderReversedInHold,
         "encoder reversed in HOLD",
         "the wires of A exchanged in HOLD, and the axis 3 counts away",
         Expectation {
@@ -353,7 +353,7 @@ pub const TABLE: [Row; 44] = [
         },
     ),
     row(
-        Kind::EncoderReversedInHoldUnwatched,
+        FaultKind::EncoderReversedInHoldUnwatched,
         "encoder reversed in HOLD, error not watched",
         "the same with `following_error_limit` 0",
         Expectation {
@@ -366,7 +366,7 @@ pub const TABLE: [Row; 44] = [
         },
     ),
     row(
-        Kind::ScaleStuck,
+        FaultKind::ScaleStuck,
         "scale stuck",
         "A and B of the scale stay as they are",
         Expectation {
@@ -375,7 +375,7 @@ pub const TABLE: [Row; 44] = [
         },
     ),
     row(
-        Kind::ScaleIllegal,
+        FaultKind::ScaleIllegal,
         "scale, illegal transition",
         "A and B of the scale inverted together",
         Expectation {
@@ -384,7 +384,7 @@ pub const TABLE: [Row; 44] = [
         },
     ),
     row(
-        Kind::Jam,
+        FaultKind::Jam,
         "jam",
         "the axis stands still",
         Expectation {
@@ -394,7 +394,7 @@ pub const TABLE: [Row; 44] = [
         },
     ),
     row(
-        Kind::JamWithoutFollowingError,
+        FaultKind::JamWithoutFollowingError,
         "jam, error not watched",
         "the same with `following_error_limit` 0",
         Expectation {
@@ -405,13 +405,13 @@ pub const TABLE: [Row; 44] = [
         },
     ),
     row(
-        Kind::HostSilent,
+        FaultKind::HostSilent,
         "host silent",
         "`watchdog_ticks` 5, one kick, then kicks with a wrong word",
         fault(Cause::Watchdog, Due::Ticks { clocks: 2, ticks: 6 }),
     ),
     row(
-        Kind::Flush,
+        FaultKind::Flush,
         "FIFO underrun",
         "`flush` in motion: nothing follows the entry that plays",
         Expectation {
@@ -421,7 +421,7 @@ pub const TABLE: [Row; 44] = [
         },
     ),
     row(
-        Kind::Overflow,
+        FaultKind::Overflow,
         "segments' overflow",
         "a velocity that does not fit, without monitors and with a stop at once",
         Expectation {
@@ -431,7 +431,7 @@ pub const TABLE: [Row; 44] = [
         },
     ),
     row(
-        Kind::OutOfRange,
+        FaultKind::OutOfRange,
         "out of range",
         "a point so far away that e does not fit its word, without monitors",
         Expectation {
@@ -440,7 +440,7 @@ pub const TABLE: [Row; 44] = [
         },
     ),
     row(
-        Kind::Malformed,
+        FaultKind::Malformed,
         "malformed entry",
         "an entry without ticks, one with words missing, and one with a reserved flag",
         Expectation {
@@ -449,7 +449,7 @@ pub const TABLE: [Row; 44] = [
         },
     ),
     row(
-        Kind::FifoFull,
+        FaultKind::FifoFull,
         "FIFO full",
         "70 entries that stand still",
         Expectation {
@@ -459,7 +459,7 @@ pub const TABLE: [Row; 44] = [
         },
     ),
     row(
-        Kind::SoftLimit,
+        FaultKind::SoftLimit,
         "soft limit",
         "`soft_limit_plus` or `_minus` moved to where the axis is",
         Expectation {
@@ -470,7 +470,7 @@ pub const TABLE: [Row; 44] = [
         },
     ),
     row(
-        Kind::Stop,
+        FaultKind::Stop,
         "stop",
         "`stop` of the host",
         Expectation {
@@ -480,7 +480,7 @@ pub const TABLE: [Row; 44] = [
         },
     ),
     row(
-        Kind::Disable,
+        FaultKind::Disable,
         "disable",
         "`enable` low in the move",
         Expectation {
@@ -490,7 +490,7 @@ pub const TABLE: [Row; 44] = [
         },
     ),
     row(
-        Kind::Reset,
+        FaultKind::Reset,
         "reset",
         "`rst` for 1 to 40 clocks",
         Expectation {
@@ -504,7 +504,7 @@ pub const TABLE: [Row; 44] = [
         },
     ),
     row(
-        Kind::SettingRefused,
+        FaultKind::SettingRefused,
         "settings of garbage",
         "random settings for the bank in use, and for one that there is not",
         Expectation {
@@ -513,7 +513,7 @@ pub const TABLE: [Row; 44] = [
         },
     ),
     row(
-        Kind::NoGains,
+        FaultKind::NoGains,
         "settings all 0",
         "the law's bank 3 committed: the drive is told to stand",
         Expectation {
@@ -523,25 +523,25 @@ pub const TABLE: [Row; 44] = [
         },
     ),
     row(
-        Kind::TableHandover,
+        FaultKind::TableHandover,
         "another tap table",
         "a table of one tap is loaded, and swapped to by handover",
         NOTHING,
     ),
     row(
-        Kind::PresetOrigin,
+        FaultKind::PresetOrigin,
         "preset of the position",
         "the user's position becomes another; the loop's count does not",
         NOTHING,
     ),
     row(
-        Kind::ClearFaults,
+        FaultKind::ClearFaults,
         "clear_faults",
         "`clear_faults` with nothing to clear",
         NOTHING,
     ),
     row(
-        Kind::StartAgain,
+        FaultKind::StartAgain,
         "start again",
         "`start` of both axes in the move",
         Expectation {
@@ -550,7 +550,7 @@ pub const TABLE: [Row; 44] = [
         },
     ),
     row(
-        Kind::DirectMode,
+        FaultKind::DirectMode,
         "direct mode",
         "a manual duty in the move",
         Expectation {

@@ -11,7 +11,7 @@
 
 use posicast_model::design::design_machine;
 use posicast_model::hardware::{self, MachineStage};
-use posicast_model::machine_file::{self, Axis, Limits, Machine, Scale, ScaleUse};
+use posicast_model::machine_file::{self, AxisSection, LimitsSection, Machine, Scale, ScaleUse};
 use posicast_model::plant::axis::{AxisPlant, PlantOptions};
 use posicast_model::rtl::component::Component;
 
@@ -62,7 +62,7 @@ impl Bed {
     ///
     /// # Errors
     /// [`CampaignError::Machine`] if that is no machine.
-    pub fn of(change: impl Fn(&mut Axis)) -> Result<Self, CampaignError> {
+    pub fn of(change: impl Fn(&mut AxisSection)) -> Result<Self, CampaignError> {
         let failed = |reason: String| CampaignError::Machine(reason);
         let mut machine = machine_file::parse("xy-stage.toml", EXAMPLE).map_err(|error| failed(error.to_string()))?;
         machine.clock.sample_hz = SAMPLE_HZ;
@@ -111,8 +111,8 @@ impl Bed {
 }
 
 /// Every monitor.
-fn limits(of_example: Limits) -> Limits {
-    Limits {
+fn limits(of_example: LimitsSection) -> LimitsSection {
+    LimitsSection {
         acceleration: Some(800.0),
         jerk: Some(400_000.0),
         travel: Some([-0.01, 0.01]),

@@ -34,10 +34,10 @@ mod run;
 pub use case::Case;
 pub use expectation::{Due, Expectation, Hit, Lasts, Others, Reaction, Seen};
 pub use judge::Figures;
-pub use kind::{Kind, Row, TABLE};
+pub use kind::{FaultKind, FaultRow, TABLE};
 pub use machine::{Bed, TICK_CLOCKS};
-pub use report::{KindFigures, Report};
-pub use run::{Outcome, run_case};
+pub use report::{FaultReport, KindFigures};
+pub use run::{FaultOutcome, run_case};
 
 use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -74,8 +74,8 @@ pub enum CampaignError {
 ///
 /// # Errors
 /// [`CampaignError`] of the first case that could not be run.
-pub fn run(bed: &Bed, cases: Range<u64>, seed: u64, threads: usize) -> Result<Report, CampaignError> {
-    let (next, report) = (AtomicU64::new(cases.start), Mutex::new(Report::new(seed)));
+pub fn run(bed: &Bed, cases: Range<u64>, seed: u64, threads: usize) -> Result<FaultReport, CampaignError> {
+    let (next, report) = (AtomicU64::new(cases.start), Mutex::new(FaultReport::new(seed)));
     let work = || -> Result<(), CampaignError> {
         loop {
             let number = next.fetch_add(1, Ordering::Relaxed);
@@ -104,8 +104,8 @@ pub fn run_with_rtl(
     cases: Range<u64>,
     seed: u64,
     mut device: impl FnMut() -> Result<Box<dyn Device>, Error>,
-) -> Result<Report, CampaignError> {
-    let mut report = Report::new(seed);
+) -> Result<FaultReport, CampaignError> {
+    let mut report = FaultReport::new(seed);
     for number in cases {
         report.add(&run_case(bed, &Case::new(number, seed), Some(device()?))?);
     }

@@ -1,7 +1,7 @@
 //! What is seen of an axis from the fault on, and in which clock.
 
 use posicast_model::control::Supervision;
-use posicast_model::rtl::axis::State;
+use posicast_model::rtl::axis::SupervisorState;
 
 use super::expectation::Seen;
 use super::machine::{LOST_TICKS, SATURATION_TICKS};
@@ -46,7 +46,7 @@ pub(super) struct Observation {
     axis: usize,
     probes: Probes,
     /// The state in which the fault finds it.
-    from: State,
+    from: SupervisorState,
     lost_command: u32,
     deviation_limit: u32,
     still: Still,
@@ -77,7 +77,12 @@ struct Still {
 
 impl Observation {
     /// Of an axis in this state.
-    pub(super) fn new(bench: &StageBench, axis: usize, watched: &Supervision, from: State) -> Result<Self, Error> {
+    pub(super) fn new(
+        bench: &StageBench,
+        axis: usize,
+        watched: &Supervision,
+        from: SupervisorState,
+    ) -> Result<Self, Error> {
         let name = &bench.axes()[axis];
         let probe = |net: &str| bench.probe(&format!("{name}_{net}"));
         Ok(Self {
@@ -141,7 +146,7 @@ impl Observation {
                 travel: self.travel[0].max(self.travel[1]),
             });
         }
-        if self.change.is_some() && state != State::QuickStop as u64 && self.stood.is_none() {
+        if self.change.is_some() && state != SupervisorState::QuickStop as u64 && self.stood.is_none() {
             self.stood = Some(now);
         }
         if tick {

@@ -3,7 +3,7 @@
 use std::fmt;
 
 use super::kind::TABLE;
-use super::run::Outcome;
+use super::run::FaultOutcome;
 
 /// Failures that are shown in words.
 const MOST_SHOWN: usize = 20;
@@ -25,13 +25,13 @@ pub struct KindFigures {
 
 /// A campaign's outcome.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Report {
+pub struct FaultReport {
     seed: u64,
     kinds: Vec<KindFigures>,
     failures: Vec<String>,
 }
 
-impl Report {
+impl FaultReport {
     /// Of no case.
     pub(super) fn new(seed: u64) -> Self {
         Self {
@@ -42,7 +42,7 @@ impl Report {
     }
 
     /// One more case.
-    pub(super) fn add(&mut self, outcome: &Outcome) {
+    pub(super) fn add(&mut self, outcome: &FaultOutcome) {
         let place = (outcome.case.number % TABLE.len() as u64) as usize;
         let kind = &mut self.kinds[place];
         kind.cases += 1;
@@ -73,7 +73,7 @@ impl Report {
     }
 }
 
-impl fmt::Display for Report {
+impl fmt::Display for FaultReport {
     /// A table in Markdown, and the first failures.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(

@@ -1,7 +1,7 @@
 //! One case, from reset to the small move after the fault.
 
 use posicast_model::motion::{TickLimits, plan_move};
-use posicast_model::rtl::axis::{State, WATCH_CLOCKS};
+use posicast_model::rtl::axis::{SupervisorState, WATCH_CLOCKS};
 use posicast_model::rtl::segments::Entry;
 
 use super::CampaignError;
@@ -9,7 +9,7 @@ use super::case::Case;
 use super::expectation::{Due, Reaction};
 use super::injection::{begin, end, last_entry};
 use super::judge::{self, Figures, Seen};
-use super::kind::Kind;
+use super::kind::FaultKind;
 use super::machine::{Bed, FILTER_CLOCKS, TICK_CLOCKS};
 use super::observation::Observation;
 use crate::Error;
@@ -43,7 +43,7 @@ const INTERRUPTS: u32 = 0b11_0000 | 0b11_0000 << 7;
 
 /// What came of a case.
 #[derive(Debug, Clone)]
-pub struct Outcome {
+pub struct FaultOutcome {
     /// The case.
     pub case: Case,
     /// Figures of the axes that were hit.
@@ -56,7 +56,7 @@ pub struct Outcome {
 ///
 /// # Errors
 /// [`CampaignError`] if it cannot be run. What is not as demanded is in the outcome.
-pub fn run_case(bed: &Bed, case: &Case, device: Option<Box<dyn Device>>) -> Result<Outcome, CampaignError> {
+pub fn run_case(bed: &Bed, case: &Case, device: Option<Box<dyn Device>>) -> Result<FaultOutcome, CampaignError> {
     let bench = bed.bench(device, case.number)?;
     let mut running = Running {
         bed,
@@ -70,7 +70,7 @@ pub fn run_case(bed: &Bed, case: &Case, device: Option<Box<dyn Device>>) -> Resu
         kind: case.row.name,
         error,
     })?;
-    Ok(Outcome {
+    Ok(FaultOutcome {
         case: *case,
         figures: running.figures,
         failures: running.failures,
@@ -212,15 +212,15 @@ impl Running<'_> {
     fn run_run_to_fault(&mut self, ticks: u64) -> Result<Vec<Observation>, Error> {
         let mut axes = Vec::new();
         let from = if self.case.row.expects.in_hold {
-            State::Hold
+            SupervisorState::Hold
         } else {
-            State::Run
+            SupervisorState::Run
         };
         for axis in 0..2 {
             let watched = &self.bed.stage.config.axes[axis].supervision;
             axes.push(Observation::new(&self.bench, axis, watched, from)?);
         }
-        if let Kind::Overflow | Kind::OutOfRange = self.case.row.kind {
+        if let FaultKind::Overflow | FaultKind::OutOfRange = self.case.row.kind {
             return Ok(axes);
         }
         let whole = ticks * self.case.when / 10_000;
@@ -232,7 +232,7 @@ impl Running<'_> {
             self.bench.clocks(TICK_CLOCKS)?;
             axes.iter_mut().for_each(|axis| axis.follow_command(&self.bench));
         }
-        if let Kind::EncoderIllegal | Kind::ScaleIllegal = self.case.row.kind {
+        if let FaultKind::EncoderIllegal | FaultKind::ScaleIllegal = self.case.row.kind {
             self.wait_for_still_encoders()?;
         }
         Ok(axes)

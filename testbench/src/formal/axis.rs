@@ -3,7 +3,7 @@
 
 use posicast_hdl::{axis, drive_command};
 use posicast_model::rtl::axis::{
-    self as model, ALWAYS_OFF, CAUSE_BITS, Cause, Condition, HARMLESS, KICK, State, TRANSITIONS, Transition,
+    self as model, ALWAYS_OFF, CAUSE_BITS, Cause, Condition, HARMLESS, KICK, SupervisorState, TRANSITIONS, Transition,
 };
 use posicast_model::rtl::{drive_command as command_model, segments};
 
@@ -45,7 +45,7 @@ pub(super) fn tasks() -> Result<Vec<Task>, Error> {
 
 /// States, causes and the transition table, all from the model.
 fn macros() -> Vec<(String, String)> {
-    let mut macros: Vec<(String, String)> = State::ALL
+    let mut macros: Vec<(String, String)> = SupervisorState::ALL
         .map(|state| (state.name().to_owned(), format!("3'd{}", state as u8)))
         .into();
     macros.extend(Cause::ALL.map(|cause| {
@@ -55,14 +55,14 @@ fn macros() -> Vec<(String, String)> {
         )
     }));
     let counts = |counts: i32| format!("32'sd{counts}");
-    let segments = |state: segments::State| format!("2'd{}", state as u8);
+    let segments = |state: segments::SegmentsState| format!("2'd{}", state as u8);
     let others = [
         ("ALWAYS_OFF", format!("{CAUSE_BITS}'d{ALWAYS_OFF}")),
         ("HARMLESS", format!("{CAUSE_BITS}'d{HARMLESS}")),
         ("KICK", format!("32'd{KICK}")),
         ("STAND_COUNTS", counts(segments::STAND_COUNTS)),
-        ("SEGMENTS_HOLD", segments(segments::State::Hold)),
-        ("SEGMENTS_STOPPED", segments(segments::State::Stopped)),
+        ("SEGMENTS_HOLD", segments(segments::SegmentsState::Hold)),
+        ("SEGMENTS_STOPPED", segments(segments::SegmentsState::Stopped)),
         ("ALLOWED(from, to)", allowed()),
         ("NEXT(from)", next()),
     ];

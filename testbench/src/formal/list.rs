@@ -4,7 +4,7 @@ use posicast_hdl::emit::Module;
 use posicast_hdl::{divider_share, group, pulse_counter, pwm, registers, schedule, segments, sliding_mode, time_base};
 use posicast_model::rtl::component::Component;
 use posicast_model::rtl::divider::DividerConfig;
-use posicast_model::rtl::pwm::{ActiveLow, Mode, PwmConfig};
+use posicast_model::rtl::pwm::{ActiveLow, BridgeMode, PwmConfig};
 use posicast_model::rtl::schedule::ScheduleConfig;
 use posicast_model::rtl::segments as segments_model;
 use posicast_model::rtl::sliding_mode as controller_model;
@@ -132,7 +132,7 @@ fn pwm(config: PwmConfig, size: &str) -> Result<Task, Error> {
 /// The bank of the PWM's component: fields of every kind, an interrupt, byte enables.
 fn registers_task() -> Result<Task, Error> {
     let config = PwmConfig::new(ActiveLow::default(), 25, 50).map_err(refused)?;
-    let component = Component::pwm(config, Mode::Unipolar, 2500).map_err(refused)?;
+    let component = Component::pwm(config, BridgeMode::Unipolar, 2500).map_err(refused)?;
     let block = (
         vec![registers::emit(component.map(), "")?],
         component.map().ports().to_vec(),

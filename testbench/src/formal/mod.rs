@@ -30,4 +30,4 @@ mod trace;
 pub use self::list::{all, named};
 pub use self::task::{Engine, Task};
 pub(crate) use self::tool::{ABC, YOSYS, abc, asserted};
-pub use self::tool::{Outcome, Reached, SEARCHED_CLOCKS, Verdict, run, search};
+pub use self::tool::{ProofOutcome, ProofVerdict, Reached, SEARCHED_CLOCKS, run, search};

@@ -3,7 +3,7 @@
 use posicast_hdl::emit::Module;
 use posicast_hdl::shaper;
 use posicast_model::rtl::Port;
-use posicast_model::rtl::shaper::{Motion, ShaperConfig, ports};
+use posicast_model::rtl::shaper::{ShaperConfig, ShaperMotion, ports};
 use posicast_model::taps::{COEFFICIENT_BITS, Tap, TapTable};
 
 use super::task::{INDUCTION, Task, part, refused};
@@ -89,7 +89,7 @@ fn channel_sums(modulo: bool) -> Result<Task, Error> {
 /// All channels, the smallest words and memories.
 fn motion_config(modulo: bool) -> Result<ShaperConfig, Error> {
     let table = table(16, &[(0, 20_000), (3, 30_000), (7, 15_536)])?;
-    let motion = Motion { channels: 3, modulo };
+    let motion = ShaperMotion { channels: 3, modulo };
     let config = ShaperConfig::new(24, table).and_then(|config| config.for_motion(motion));
     config.map_err(refused)
 }

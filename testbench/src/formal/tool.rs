@@ -30,7 +30,7 @@ pub(crate) const ABC: Tool = Tool {
 
 /// What is known of a task's assertions.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Verdict {
+pub enum ProofVerdict {
     /// All hold, for all inputs and for ever.
     Proven,
     /// One does not hold.
@@ -57,9 +57,9 @@ pub struct Reached {
 
 /// A task that has been tried.
 #[derive(Debug, Clone)]
-pub struct Outcome {
+pub struct ProofOutcome {
     /// What is known.
-    pub verdict: Verdict,
+    pub verdict: ProofVerdict,
     /// Assertions in the property file.
     pub assertions: usize,
     /// Its covers.
@@ -68,10 +68,10 @@ pub struct Outcome {
     pub time: Duration,
 }
 
-impl Outcome {
+impl ProofOutcome {
     /// Proven, with all covers reached.
     pub fn is_good(&self) -> bool {
-        self.verdict == Verdict::Proven && self.covers.iter().all(|cover| cover.clock.is_some())
+        self.verdict == ProofVerdict::Proven && self.covers.iter().all(|cover| cover.clock.is_some())
     }
 }
 
@@ -80,7 +80,7 @@ impl Outcome {
 /// # Errors
 /// [`Error::ToolMissing`] without Yosys or its ABC; [`Error::ToolFailed`] where Yosys refuses a property file, for example
 /// because a peek is no longer in the block; [`Error::File`] where the folder cannot be written.
-pub fn run(task: &Task, folder: &Path, limit: Duration) -> Result<Outcome, Error> {
+pub fn run(task: &Task, folder: &Path, limit: Duration) -> Result<ProofOutcome, Error> {
     let start = Instant::now();
     std::fs::create_dir_all(folder).map_err(Error::file(folder, "create"))?;
     let bench = Bench { task, folder, limit };
@@ -92,11 +92,11 @@ pub fn run(task: &Task, folder: &Path, limit: Duration) -> Result<Outcome, Error
         Engine::Induction { clocks } => bench.induction(clocks)?,
     };
     let verdict = if is_proven {
-        Verdict::Proven
+        ProofVerdict::Proven
     } else {
         bench.counterexample(&asserts)?
     };
-    Ok(Outcome {
+    Ok(ProofOutcome {
         verdict,
         assertions: asserts.len(),
         covers: bench.covers(covers)?,
@@ -105,11 +105,11 @@ pub fn run(task: &Task, folder: &Path, limit: Duration) -> Result<Outcome, Error
 }
 
 /// Searches for a counterexample without trying the proof first: for a block that was broken on purpose, of which the proof
-/// would only find late that it cannot be. [`Verdict::Unknown`] where there is none in the clocks that are searched.
+/// would only find late that it cannot be. [`ProofVerdict::Unknown`] where there is none in the clocks that are searched.
 ///
 /// # Errors
 /// As [`run`].
-pub fn search(task: &Task, folder: &Path, limit: Duration) -> Result<Verdict, Error> {
+pub fn search(task: &Task, folder: &Path, limit: Duration) -> Result<ProofVerdict, Error> {
     std::fs::create_dir_all(folder).map_err(Error::file(folder, "create"))?;
     let bench = Bench { task, folder, limit };
     bench.prepare()?;
@@ -208,15 +208,15 @@ impl Bench<'_> {
         Ok(text(&output).contains("Induction step proven: SUCCESS!"))
     }
 
-    fn counterexample(&self, asserts: &[String]) -> Result<Verdict, Error> {
+    fn counterexample(&self, asserts: &[String]) -> Result<ProofVerdict, Error> {
         let commands = format!(
             "read_aiger asserts.aig; fold; strash; bmc3 -F {SEARCHED_CLOCKS} -T {}; write_cex -a counterexample.txt",
             self.seconds()
         );
         let Some((output, clock)) = asserted(&self.abc(&commands)?).next() else {
-            return Ok(Verdict::Unknown);
+            return Ok(ProofVerdict::Unknown);
         };
-        Ok(Verdict::Counterexample {
+        Ok(ProofVerdict::Counterexample {
             property: asserts.get(output).cloned().unwrap_or_default(),
             clock,
             waveform: self.waveform(output)?,

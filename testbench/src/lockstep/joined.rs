@@ -17,12 +17,12 @@ struct Member {
 }
 
 /// Blocks side by side. Ports: `rst`, `strobe`, then for every axis its other ports as `<axis>_<port>`.
-pub struct Joined {
+pub struct SideBySide {
     ports: Vec<Port>,
     members: Vec<Member>,
 }
 
-impl Joined {
+impl SideBySide {
     /// Joins the blocks of the named axes. A shared input appears if at least one block has it.
     pub fn new(axes: Vec<(String, Box<dyn ClockedBlock>)>) -> Self {
         let mut ports: Vec<Port> = Vec::new();
@@ -86,7 +86,7 @@ impl Joined {
     }
 }
 
-impl ClockedBlock for Joined {
+impl ClockedBlock for SideBySide {
     fn ports(&self) -> &[Port] {
         &self.ports
     }

@@ -9,7 +9,7 @@
 //! - A block is a set of outputs with a name ([`Instance`]): the report has one entry for each, `axis` by axis.
 //! - Ports are matched by name; model and device must have the same ones, their order may differ.
 //! - The run goes on after a mismatch, so that the report says how much is wrong, and ends early only after
-//!   [`Options::mismatch_limit`] wrong values: after that nothing new is learnt.
+//!   [`LockstepOptions::mismatch_limit`] wrong values: after that nothing new is learnt.
 //! - The first mismatch of each block keeps the clocks around it with all ports, ready to be printed
 //!   ([`report::Mismatch`]).
 //! - `time` counts clocks since the start of the run, which begins with a reset.
@@ -21,8 +21,8 @@ mod window;
 use posicast_model::rtl::{ClockedBlock, Direction, Port, StepError};
 use std::ops::ControlFlow;
 
-pub use self::joined::Joined;
-use self::report::{Block, Mismatch, Report, outputs_of};
+pub use self::joined::SideBySide;
+use self::report::{BlockReport, LockstepReport, Mismatch, outputs_of};
 use self::window::Window;
 use crate::Error;
 use crate::stimuli::Stimuli;
@@ -92,7 +92,7 @@ impl Instance {
 
 /// How long, and how much to keep.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Options {
+pub struct LockstepOptions {
     /// Clocks to compare.
     pub cycles: u64,
     /// Clocks to keep before and after the first mismatch.
@@ -101,7 +101,7 @@ pub struct Options {
     pub mismatch_limit: u64,
 }
 
-impl Options {
+impl LockstepOptions {
     /// So many clocks, with a window of 6 clocks each side and at most a million wrong values.
     pub fn cycles(cycles: u64) -> Self {
         Self {
@@ -136,10 +136,10 @@ pub fn run(
     device: &mut dyn Device,
     stimuli: &mut dyn Stimuli,
     instances: &[Instance],
-    options: &Options,
+    options: &LockstepOptions,
     watch: &mut dyn FnMut(&Clock<'_>),
     progress: &mut dyn FnMut(u64),
-) -> Result<Report, Error> {
+) -> Result<LockstepReport, Error> {
     let mut to_the_end = |clock: &Clock<'_>| {
         watch(clock);
         ControlFlow::Continue(())
@@ -156,10 +156,10 @@ pub fn run_until(
     device: &mut dyn Device,
     stimuli: &mut dyn Stimuli,
     instances: &[Instance],
-    options: &Options,
+    options: &LockstepOptions,
     watch: &mut dyn FnMut(&Clock<'_>) -> ControlFlow<()>,
     progress: &mut dyn FnMut(u64),
-) -> Result<Report, Error> {
+) -> Result<LockstepReport, Error> {
     let ports = model.ports().to_vec();
     let wiring = Wiring::new(&ports, device.ports())?;
     let mut comparison = Comparison::new(&ports, instances, options)?;
@@ -273,7 +273,7 @@ struct Comparison {
 }
 
 impl Comparison {
-    fn new(ports: &[Port], instances: &[Instance], options: &Options) -> Result<Self, Error> {
+    fn new(ports: &[Port], instances: &[Instance], options: &LockstepOptions) -> Result<Self, Error> {
         let outputs: Vec<&Port> = outputs_of(ports).collect();
         let find = |name: &String| {
             let at = outputs.iter().position(|p| p.name == *name);
@@ -320,9 +320,9 @@ impl Comparison {
         }
     }
 
-    fn report(self, cycles: u64) -> Report {
+    fn report(self, cycles: u64) -> LockstepReport {
         let ports = self.ports;
-        let blocks = self.watched.into_iter().map(|watched| Block {
+        let blocks = self.watched.into_iter().map(|watched| BlockReport {
             name: watched.instance.block,
             first: watched
                 .first
@@ -335,6 +335,6 @@ impl Comparison {
             unchanged: Vec::new(),
             findings: Vec::new(),
         });
-        Report::new(cycles, blocks.collect())
+        LockstepReport::new(cycles, blocks.collect())
     }
 }

@@ -11,7 +11,7 @@ use crate::diff::{Shown, View, value, value_and_digits};
 /// Match or mismatch.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Verdict {
+pub enum LockstepVerdict {
     /// Every value of every clock was equal.
     Match,
     /// At least one was not.
@@ -20,25 +20,29 @@ pub enum Verdict {
 
 /// A whole run. Serialises to `verify --json`.
 #[derive(Debug, Clone, Serialize)]
-pub struct Report {
+pub struct LockstepReport {
     /// The verdict over all blocks. A run of no clocks is a mismatch: it shows nothing; nor does one that has not
-    /// exercised all it should ([`Block::not_exercised`]).
-    pub result: Verdict,
+    /// exercised all it should ([`BlockReport::not_exercised`]).
+    pub result: LockstepVerdict,
     /// Clocks compared.
     pub cycles: u64,
     /// Output samples compared, over all blocks: clocks in which the model's `valid` was high.
     pub samples: u64,
     /// One entry per instance.
-    pub blocks: Vec<Block>,
+    pub blocks: Vec<BlockReport>,
 }
 
-impl Report {
+impl LockstepReport {
     /// From the blocks of one run.
-    pub fn new(cycles: u64, blocks: Vec<Block>) -> Self {
-        let holds = |block: &Block| block.mismatches == 0 && block.not_exercised.is_empty();
+    pub fn new(cycles: u64, blocks: Vec<BlockReport>) -> Self {
+        let holds = |block: &BlockReport| block.mismatches == 0 && block.not_exercised.is_empty();
         let equal = cycles > 0 && !blocks.is_empty() && blocks.iter().all(holds);
         Self {
-            result: if equal { Verdict::Match } else { Verdict::Mismatch },
+            result: if equal {
+                LockstepVerdict::Match
+            } else {
+                LockstepVerdict::Mismatch
+            },
             cycles,
             samples: blocks.iter().filter_map(|b| b.samples).sum(),
             blocks,
@@ -46,12 +50,12 @@ impl Report {
     }
 
     /// Several runs as one: their blocks after one another, clocks and samples added.
-    pub fn joined(reports: Vec<Report>) -> Self {
+    pub fn joined(reports: Vec<LockstepReport>) -> Self {
         let cycles = reports.iter().map(|r| r.cycles).fold(0, u64::saturating_add);
-        let equal = !reports.is_empty() && reports.iter().all(|r| r.result == Verdict::Match);
+        let equal = !reports.is_empty() && reports.iter().all(|r| r.result == LockstepVerdict::Match);
         let mut all = Self::new(cycles, reports.into_iter().flat_map(|r| r.blocks).collect());
         if !equal {
-            all.result = Verdict::Mismatch;
+            all.result = LockstepVerdict::Mismatch;
         }
         all
     }
@@ -83,7 +87,7 @@ impl Report {
 
     /// What was not exercised, each behind the name of its row.
     pub fn not_exercised_names(&self) -> Vec<String> {
-        let of_block = |block: &Block| -> Vec<String> {
+        let of_block = |block: &BlockReport| -> Vec<String> {
             let name = |what: &String| format!("{} {}: {what}", block.name, block.instance);
             block.not_exercised.iter().map(name).collect()
         };
@@ -98,7 +102,7 @@ impl Report {
 
 /// One instance of a block.
 #[derive(Debug, Clone, Serialize)]
-pub struct Block {
+pub struct BlockReport {
     /// The block's name.
     pub name: String,
     /// The axis, or the size.

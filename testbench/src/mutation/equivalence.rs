@@ -6,7 +6,7 @@ use super::Mutant;
 use super::netlist::Netlist;
 use crate::Error;
 use crate::formal::{ABC, asserted};
-use crate::netlist::Verdict;
+use crate::netlist::EquivalenceVerdict;
 
 /// Most bits of memories that become registers.
 const MOST_MEMORY_BITS: u32 = 8192;
@@ -38,7 +38,7 @@ impl Without {
 ///
 /// First without memories and multipliers; where that is no proof, with the multipliers, then with the memories too, as
 /// registers that begin as 0 in both. The module of the mutant always stays.
-pub(super) fn compare(netlist: &Netlist<'_>, mutant: &Mutant, limit: Duration) -> Result<Verdict, Error> {
+pub(super) fn compare(netlist: &Netlist<'_>, mutant: &Mutant, limit: Duration) -> Result<EquivalenceVerdict, Error> {
     let mut ways = vec![Without::MemoriesAndProducts];
     if netlist.multiplies() {
         ways.push(Without::Memories);
@@ -46,11 +46,11 @@ pub(super) fn compare(netlist: &Netlist<'_>, mutant: &Mutant, limit: Duration) -
     if (1..=MOST_MEMORY_BITS).contains(&netlist.memory_bits()) {
         ways.push(Without::Nothing);
     }
-    let mut verdict = Verdict::Unknown;
+    let mut verdict = EquivalenceVerdict::Unknown;
     for without in ways {
         netlist.yosys("miter", &miter(netlist.top(), mutant, without))?;
         verdict = prove(netlist, limit)?;
-        if verdict == Verdict::Equivalent {
+        if verdict == EquivalenceVerdict::Equivalent {
             break;
         }
     }
@@ -58,7 +58,7 @@ pub(super) fn compare(netlist: &Netlist<'_>, mutant: &Mutant, limit: Duration) -
 }
 
 /// What is known of `miter.aig`.
-fn prove(netlist: &Netlist<'_>, limit: Duration) -> Result<Verdict, Error> {
+fn prove(netlist: &Netlist<'_>, limit: Duration) -> Result<EquivalenceVerdict, Error> {
     // What is equal in both, by induction over signals, is merged; what is left is small, mostly nothing. Counters that
     // never get far are quick with BDDs, and slow with PDR, which needs a clause for each value.
     let at = |name: &str| netlist.folder().join(name);
@@ -84,13 +84,13 @@ fn prove(netlist: &Netlist<'_>, limit: Duration) -> Result<Verdict, Error> {
             .iter()
             .any(|proof| said.contains(proof))
         {
-            return Ok(Verdict::Equivalent);
+            return Ok(EquivalenceVerdict::Equivalent);
         }
         if let Some((_, clock)) = asserted(&said).next() {
-            return Ok(Verdict::Different { clock });
+            return Ok(EquivalenceVerdict::Different { clock });
         }
     }
-    Ok(Verdict::Unknown)
+    Ok(EquivalenceVerdict::Unknown)
 }
 
 /// The script that writes `miter.aig`, whose one output says that an output differs.

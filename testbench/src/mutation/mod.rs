@@ -32,18 +32,18 @@ pub use self::inside::{Found, INSIDE, INSIDE_MARKS, Inside, inside_table};
 pub use self::mutant::Mutant;
 pub use self::simulation::{Kill, StimuliOf};
 pub use self::subject::{Subject, all, named};
-pub use self::table::{MARKS, Row, merged, table};
+pub use self::table::{MARKS, MutationRow, merged, table};
 
 use std::path::Path;
 use std::time::Duration;
 
 use self::netlist::Netlist;
 use crate::Error;
-use crate::netlist::Verdict;
+use crate::netlist::EquivalenceVerdict;
 
 /// How many mutants, and how hard each is tried.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Options {
+pub struct MutationOptions {
     /// Mutants per block, at most: a small block may have fewer places for them.
     pub mutants: usize,
     /// Chooses them.
@@ -56,7 +56,7 @@ pub struct Options {
     pub proof: Duration,
 }
 
-impl Default for Options {
+impl Default for MutationOptions {
     /// What `docs/verification.md` shows: a run of the blocks' lock-step tests.
     fn default() -> Self {
         Self {
@@ -90,7 +90,7 @@ pub enum Fate {
 /// # Errors
 /// [`Error::ToolMissing`] without Yosys, its ABC or Verilator; [`Error::ToolFailed`] where one of them refuses the block;
 /// [`Error::Unlike`] where the netlist without a mutant does not match the model; [`Error::File`] for the folder.
-pub fn run(subject: &Subject, options: &Options, folder: &Path) -> Result<Vec<(Mutant, Fate)>, Error> {
+pub fn run(subject: &Subject, options: &MutationOptions, folder: &Path) -> Result<Vec<(Mutant, Fate)>, Error> {
     let block = subject.block();
     run_with(subject, options, folder, &mut |clocks, seed| {
         block.stimuli(clocks, seed)
@@ -103,7 +103,7 @@ pub fn run(subject: &Subject, options: &Options, folder: &Path) -> Result<Vec<(M
 /// As [`run`].
 pub fn run_with<'a>(
     subject: &'a Subject,
-    options: &Options,
+    options: &MutationOptions,
     folder: &Path,
     stimuli: StimuliOf<'a, '_>,
 ) -> Result<Vec<(Mutant, Fate)>, Error> {
@@ -124,11 +124,16 @@ pub fn run_with<'a>(
 }
 
 /// Equivalent, broken by a property, or unknown.
-fn survivor(subject: &Subject, netlist: &Netlist<'_>, mutant: &Mutant, options: &Options) -> Result<Fate, Error> {
+fn survivor(
+    subject: &Subject,
+    netlist: &Netlist<'_>,
+    mutant: &Mutant,
+    options: &MutationOptions,
+) -> Result<Fate, Error> {
     let differs = match equivalence::compare(netlist, mutant, options.proof)? {
-        Verdict::Equivalent => return Ok(Fate::Equivalent),
-        Verdict::Different { clock } => Some(clock),
-        Verdict::Unknown => None,
+        EquivalenceVerdict::Equivalent => return Ok(Fate::Equivalent),
+        EquivalenceVerdict::Different { clock } => Some(clock),
+        EquivalenceVerdict::Unknown => None,
     };
     let broken = properties::broken(subject, netlist, mutant, options.proof)?;
     Ok(broken.map_or(Fate::Unknown { differs }, Fate::Property))

@@ -5,7 +5,7 @@ use std::time::Duration;
 use super::netlist::Netlist;
 use super::{Mutant, Subject};
 use crate::Error;
-use crate::formal::{self, Verdict};
+use crate::formal::{self, ProofVerdict};
 
 /// A property that the mutant breaks: none where the block has no property file at this size.
 pub(super) fn broken(
@@ -22,7 +22,7 @@ pub(super) fn broken(
         let mut task = task.clone();
         task.modules.clone_from(&modules);
         let folder = netlist.folder().join(format!("properties_{}_{at}", mutant.number));
-        if let Verdict::Counterexample { property, .. } = formal::run(&task, &folder, limit)?.verdict {
+        if let ProofVerdict::Counterexample { property, .. } = formal::run(&task, &folder, limit)?.verdict {
             return Ok(Some(property));
         }
     }

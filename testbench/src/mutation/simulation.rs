@@ -4,12 +4,12 @@ use std::path::{Path, PathBuf};
 
 use posicast_model::rtl::{ClockedBlock, Direction, Port};
 
-use super::Options;
+use super::MutationOptions;
 use super::netlist::{SELECT, SELECT_BITS};
 use crate::Error;
 use crate::blocks::Block;
 use crate::stimuli::Stimuli;
-use crate::verilator::{Source, Verilated};
+use crate::verilator::{Verilated, VerilogSource};
 
 /// Clocks of the first piece: most mutants do not live longer.
 const FIRST_PIECE: u64 = 64;
@@ -105,7 +105,7 @@ pub(super) fn run<'a>(
     block: &'a dyn Block,
     verilog: &Path,
     mutants: usize,
-    options: &Options,
+    options: &MutationOptions,
     stimuli: StimuliOf<'a, '_>,
 ) -> Result<Vec<Option<Kill>>, Error> {
     let mut kills = vec![None; mutants];
@@ -164,7 +164,7 @@ fn device(block: &dyn Block, files: &[PathBuf], seed: u64) -> Result<Verilated, 
         signed: false,
     });
     Verilated::build(
-        &Source {
+        &VerilogSource {
             files,
             top: &block.top(),
             ports: &ports,

@@ -3,9 +3,9 @@
 use posicast_model::rtl::cascade::CascadeConfig;
 use posicast_model::rtl::component::Component;
 use posicast_model::rtl::divider::DividerConfig;
-use posicast_model::rtl::pwm::{ActiveLow, Mode, PwmConfig};
+use posicast_model::rtl::pwm::{ActiveLow, BridgeMode, PwmConfig};
 use posicast_model::rtl::schedule::ScheduleConfig;
-use posicast_model::rtl::shaper::{Motion, ShaperConfig};
+use posicast_model::rtl::shaper::{ShaperConfig, ShaperMotion};
 use posicast_model::rtl::sliding_mode::Settings;
 use posicast_model::rtl::trace::TraceConfig;
 use posicast_model::taps::{Tap, TapTable};
@@ -13,8 +13,8 @@ use posicast_model::taps::{Tap, TapTable};
 use crate::Error;
 use crate::blocks::{
     AxisBlock, Block, CascadeBlock, DividerBlock, DriveCommandBlock, EncoderGeneratorBlock, ExcitationBlock,
-    LinearScaleBlock, Part, PartBlock, PulseCounterBlock, PwmBlock, RegistersBlock, SegmentsBlock, ShaperBlock,
-    SlidingModeBlock, TraceBlock,
+    LinearScaleBlock, PartBlock, PulseCounterBlock, PwmBlock, RegistersBlock, SegmentsBlock, ShaperBlock,
+    SlidingModeBlock, SmallPart, TraceBlock,
 };
 use crate::formal::{self, Task};
 
@@ -119,26 +119,26 @@ fn blocks() -> Result<Vec<OfSize>, Error> {
         (Box::new(ExcitationBlock::new("", alone)), "32 bits"),
         (Box::new(EncoderGeneratorBlock::new("", alone)), "32 bits"),
         (
-            part(Part::Schedule(ScheduleConfig::new(37).map_err(refused)?)),
+            part(SmallPart::Schedule(ScheduleConfig::new(37).map_err(refused)?)),
             "control after 37 clocks",
         ),
-        (part(Part::DividerShare(2)), "2 channels"),
-        (part(Part::Group(2)), "2 axes"),
+        (part(SmallPart::DividerShare(2)), "2 channels"),
+        (part(SmallPart::Group(2)), "2 axes"),
         (
-            part(Part::TimeBase(DividerConfig::new(17).map_err(refused)?)),
+            part(SmallPart::TimeBase(DividerConfig::new(17).map_err(refused)?)),
             "17 clocks per tick",
         ),
         (
-            part(Part::SampleSelect {
+            part(SmallPart::SampleSelect {
                 word_bits: 32,
                 channels: 3,
             }),
             "3 channels of 32 bits",
         ),
-        (part(Part::SettingBanks(Settings::default())), "settings of 0"),
+        (part(SmallPart::SettingBanks(Settings::default())), "settings of 0"),
     ];
     let pwm = PwmConfig::new(ActiveLow::default(), 25, 50).map_err(refused)?;
-    let component = Component::pwm(pwm, Mode::Unipolar, 2500).map_err(refused)?;
+    let component = Component::pwm(pwm, BridgeMode::Unipolar, 2500).map_err(refused)?;
     let bank = RegistersBlock::new(component.map().clone(), "");
     blocks.push((Box::new(bank), "bank of pwm"));
     Ok(blocks)
@@ -155,7 +155,7 @@ fn shaper(channels: Option<u32>) -> Result<ShaperConfig, Error> {
     match channels {
         None => Ok(config),
         Some(channels) => config
-            .for_motion(Motion {
+            .for_motion(ShaperMotion {
                 channels,
                 modulo: false,
             })

@@ -20,7 +20,7 @@ const LATE_CLOCKS: u64 = 10_000;
 
 /// A block's line, and its mutants that are unknown.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct Row {
+pub struct MutationRow {
     /// The block's name.
     pub block: String,
     /// Which of its sizes.
@@ -39,7 +39,7 @@ pub struct Row {
     pub unknown: Vec<String>,
 }
 
-impl Row {
+impl MutationRow {
     /// Counts.
     pub fn new(subject: &Subject, fates: &[(Mutant, Fate)]) -> Self {
         let mut row = Self {
@@ -110,8 +110,8 @@ impl Row {
 }
 
 /// Rows, their sum, and the list of what is unknown.
-pub fn table(rows: &[Row]) -> String {
-    let sum = |count: fn(&Row) -> usize| rows.iter().map(count).sum::<usize>();
+pub fn table(rows: &[MutationRow]) -> String {
+    let sum = |count: fn(&MutationRow) -> usize| rows.iter().map(count).sum::<usize>();
     let mut text = HEAD.to_owned();
     for row in rows {
         let _ = writeln!(text, "{}", row.cells());
@@ -138,19 +138,19 @@ pub fn table(rows: &[Row]) -> String {
 }
 
 /// The table of these subjects: with these rows, and with those of `old` where there is none.
-pub fn merged(old: &str, rows: &[Row], subjects: &[Subject]) -> String {
+pub fn merged(old: &str, rows: &[MutationRow], subjects: &[Subject]) -> String {
     let old = on_page(old);
     let of = |subject: &Subject| {
         let mut found = rows.iter().chain(&old);
         found.find(|row| row.is_of(subject)).cloned()
     };
-    let rows: Vec<Row> = subjects.iter().filter_map(of).collect();
+    let rows: Vec<MutationRow> = subjects.iter().filter_map(of).collect();
     table(&rows)
 }
 
 /// The rows of a table as [`table`] writes it.
-fn on_page(text: &str) -> Vec<Row> {
-    let mut rows: Vec<Row> = text.lines().filter_map(Row::parse).collect();
+fn on_page(text: &str) -> Vec<MutationRow> {
+    let mut rows: Vec<MutationRow> = text.lines().filter_map(MutationRow::parse).collect();
     for row in &mut rows {
         let mark = row.mark();
         let unknown = text
@@ -165,8 +165,8 @@ fn on_page(text: &str) -> Vec<Row> {
 mod tests {
     use super::*;
 
-    fn row(block: &str, unknown: &[&str]) -> Row {
-        Row {
+    fn row(block: &str, unknown: &[&str]) -> MutationRow {
+        MutationRow {
             block: block.to_owned(),
             size: "2 axes".to_owned(),
             mutants: 60,

@@ -1,9 +1,9 @@
 //! A circle of two axes, point by point: what unequal delays bend.
 
-use posicast_model::machine_file::{Axis, Machine};
+use posicast_model::machine_file::{AxisSection, Machine};
 use posicast_model::motion::{TickLimits, plan_circle};
 use posicast_model::plant::axis::{ErrorFigures, contour_error};
-use posicast_model::rtl::segments::{Entry, Motion};
+use posicast_model::rtl::segments::{Entry, EntryMotion};
 
 use super::host::{Host, Trouble};
 use super::{StageRun, StageRunError, moves};
@@ -68,7 +68,7 @@ impl Circle {
         if x.modulo || y.modulo {
             return None;
         }
-        let per_s = |axis: &Axis| {
+        let per_s = |axis: &AxisSection| {
             let limits = TickLimits::of_axis(axis, &machine.clock);
             let [unit, hz] = [axis.loop_counts_per_unit(), machine.clock.sample_hz];
             [
@@ -82,7 +82,7 @@ impl Circle {
         let wanted = machine.stage.and_then(|stage| stage.contour_speed);
         let speed = wanted.unwrap_or(PART_OF_VELOCITY * velocity).min(velocity);
         let towards_centre = PART_OF_ACCELERATION * acceleration;
-        let travel = |axis: &Axis| {
+        let travel = |axis: &AxisSection| {
             let travel = axis.limits.and_then(|limits| limits.travel);
             travel.map_or([f64::INFINITY; 2], |[low, high]| [-low, high].map(|room| room.max(0.0)))
         };
@@ -116,16 +116,16 @@ impl Circle {
             let start = host.command(index)?;
             let (entries, sign) = if index == 0 { (x, self.side as i32) } else { (y, 1) };
             let placed = entries.into_iter().map(|entry| match entry.motion {
-                Motion::Point(mut point) => {
+                EntryMotion::Point(mut point) => {
                     point.position = start.saturating_add(sign * point.position);
                     point.velocity *= sign;
                     point.acceleration *= sign;
                     Entry {
-                        motion: Motion::Point(point),
+                        motion: EntryMotion::Point(point),
                         ..entry
                     }
                 }
-                Motion::Jerk(_) => entry,
+                EntryMotion::Jerk(_) => entry,
             });
             Ok::<Vec<Entry>, StageRunError>(placed.collect())
         };

@@ -3,11 +3,11 @@
 //! witnesses against each other. `docs/closed-loop.md` derives the bounds.
 
 use posicast_model::control::Derived;
-use posicast_model::control::sampled::{Limits, SampledLoop};
+use posicast_model::control::sampled::{FollowLimits, SampledLoop};
 use posicast_model::design::design_machine;
 use posicast_model::hardware;
-use posicast_model::machine_file::{Axis, DriveMode, Machine, PwmMode};
-use posicast_model::rtl::segments::{Integrator, Motion};
+use posicast_model::machine_file::{AxisSection, DriveMode, Machine, PwmMode};
+use posicast_model::rtl::segments::{EntryMotion, Integrator};
 use posicast_model::taps::TapTable;
 
 use super::figures::{self, AxisFigures};
@@ -117,7 +117,7 @@ pub(super) fn too_smooth(run: &StageRun<'_>) -> Result<Vec<bool>, StageRunError>
 
 fn expected(
     machine: &Machine,
-    axis: &Axis,
+    axis: &AxisSection,
     derived: &Derived,
     sampled: &SampledLoop,
     table: &TapTable,
@@ -132,8 +132,8 @@ fn expected(
         for _ in 0..entry.ticks {
             match entry.motion {
                 // What does not fit is a plan that the stage refuses.
-                Motion::Jerk(jerk) => drop(at.jerk(jerk)),
-                Motion::Point(point) => at = Integrator::at_point(&point),
+                EntryMotion::Jerk(jerk) => drop(at.jerk(jerk)),
+                EntryMotion::Point(point) => at = Integrator::at_point(&point),
             }
             commands.push(at.rounded().map(f64::from));
         }
@@ -147,7 +147,7 @@ fn expected(
     ];
     let references = shaped(&commands, table, scales);
     let (input, push) = pushes(machine, axis);
-    let free = Limits {
+    let free = FollowLimits {
         input,
         disturbance: 0.0,
     };
@@ -166,7 +166,7 @@ fn expected(
     let friction = match push > 0.0 {
         false => 0.0,
         true => {
-            let pushed = Limits {
+            let pushed = FollowLimits {
                 input: f64::INFINITY,
                 disturbance: push,
             };
@@ -185,7 +185,7 @@ fn expected(
 }
 
 /// Largest input of the loop's plant, and what friction and the bridge take from it.
-fn pushes(machine: &Machine, axis: &Axis) -> (f64, f64) {
+fn pushes(machine: &Machine, axis: &AxisSection) -> (f64, f64) {
     let (Some(drive), Some(pwm)) = (axis.drive, axis.pwm) else {
         return (f64::INFINITY, 0.0);
     };

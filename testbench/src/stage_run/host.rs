@@ -1,6 +1,6 @@
 //! The program that works the stage's registers.
 
-use posicast_model::rtl::axis::{Cause, State};
+use posicast_model::rtl::axis::{Cause, SupervisorState};
 use posicast_model::rtl::stage::StageConfig;
 use std::fmt;
 
@@ -34,7 +34,7 @@ pub struct Trouble {
 
 impl fmt::Display for Trouble {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let state = State::from_value(self.state.into()).map_or("no state", State::name);
+        let state = SupervisorState::from_value(self.state.into()).map_or("no state", SupervisorState::name);
         let causes = Cause::ALL.into_iter().filter(|cause| self.causes & cause.bit() != 0);
         let causes: Vec<&str> = causes.map(Cause::name).collect();
         write!(

@@ -19,7 +19,7 @@ mod shaping;
 
 use posicast_model::design::design_machine;
 use posicast_model::hardware::{self, MachineStageError};
-use posicast_model::machine_file::{Machine, Stage};
+use posicast_model::machine_file::{Machine, StageSection};
 use posicast_model::motion::{PlanError, ProfileError};
 use posicast_model::plant::axis::{AxisPlant, AxisPlantError, PlantOptions};
 use posicast_model::rtl::component::Component;
@@ -132,7 +132,7 @@ impl<'a> StageRun<'a> {
     /// # Errors
     /// [`StageRunError::Design`] where a table cannot hold the delay that is missing; [`StageRunError::MachineStage`].
     pub fn with_delays(machine: &'a Machine, equal: bool, seed: u64) -> Result<Option<Self>, StageRunError> {
-        let own = machine.stage.unwrap_or(Stage {
+        let own = machine.stage.unwrap_or(StageSection {
             extra_delay_s: 0.0,
             contour_speed: None,
         });

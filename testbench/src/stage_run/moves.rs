@@ -1,6 +1,6 @@
 //! The move that all axes make at once.
 
-use posicast_model::machine_file::{Axis, Machine};
+use posicast_model::machine_file::{AxisSection, Machine};
 use posicast_model::motion::{TickLimits, default_move, plan_move, settle_s};
 use posicast_model::rtl::segments::Entry;
 
@@ -50,7 +50,7 @@ struct Plan {
 /// acceleration from tick to tick.
 pub(super) fn plan_axis(
     machine: &Machine,
-    axis: &Axis,
+    axis: &AxisSection,
     harsh: bool,
     start: i32,
 ) -> Result<(Vec<Entry>, i32), StageRunError> {

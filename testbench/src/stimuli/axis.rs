@@ -4,8 +4,8 @@
 
 use std::ops::Range;
 
-use posicast_model::rtl::axis::{HARMLESS, Inputs, KICK, LEAST_TICK_CLOCKS, OUTPUT_PORTS, Outputs, State};
-use posicast_model::rtl::segments::{STAND_COUNTS, State as Segments};
+use posicast_model::rtl::axis::{HARMLESS, Inputs, KICK, LEAST_TICK_CLOCKS, OUTPUT_PORTS, Outputs, SupervisorState};
+use posicast_model::rtl::segments::{STAND_COUNTS, SegmentsState as Segments};
 use rand::{Rng, RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
@@ -69,7 +69,7 @@ impl AxisRandom {
     }
 
     /// An axis that stays on, with a host that no longer kicks.
-    fn calm(&mut self, state: State) {
+    fn calm(&mut self, state: SupervisorState) {
         // Not a beat in which a bit that turns over in every clock would never show.
         // Nor one that begins too soon after a tick before.
         let least = u64::from(LEAST_TICK_CLOCKS);
@@ -77,7 +77,7 @@ impl AxisRandom {
         let inputs = &self.inputs;
         self.inputs = Inputs {
             tick: ticks,
-            enable: inputs.enable || !matches!(state, State::Off | State::Fault),
+            enable: inputs.enable || !matches!(state, SupervisorState::Off | SupervisorState::Fault),
             clear_faults: inputs.clear_faults,
             watchdog_ticks: CALM_TICKS,
             kick_word: KICK,
@@ -196,7 +196,7 @@ impl AxisRandom {
         [.., inputs.drive_ready, inputs.home] = quiet;
     }
 
-    fn host(&mut self, state: State) {
+    fn host(&mut self, state: SupervisorState) {
         let pace = self.mood.request_pace;
         let (stop, clear) = (self.one_in(pace * 6), self.one_in(50));
         let toggles = self.one_in(pace * 4);
@@ -206,7 +206,7 @@ impl AxisRandom {
         inputs.enable = if toggles { !inputs.enable } else { inputs.enable };
         let (back, start) = (self.one_in(20), self.one_in(10));
         if back {
-            self.inputs.enable = !matches!(state, State::Off | State::Fault);
+            self.inputs.enable = !matches!(state, SupervisorState::Off | SupervisorState::Fault);
         }
         self.inputs.start = start;
         self.inputs.write_homed = self.one_in(100);

@@ -2,8 +2,8 @@
 
 use posicast_model::rtl::Direction;
 use posicast_model::rtl::axis::{
-    AT_ONCE, CAUSE_BITS, Cause, HARMLESS, INPUT_PORTS, Inputs, LINE_CLOCKS, OUTPUT_PORTS, Outputs, State, TRANSITIONS,
-    ports, switching_off,
+    AT_ONCE, CAUSE_BITS, Cause, HARMLESS, INPUT_PORTS, Inputs, LINE_CLOCKS, OUTPUT_PORTS, Outputs, SupervisorState,
+    TRANSITIONS, ports, switching_off,
 };
 
 /// Inputs and outputs of a clock, typed; none where `state` is no state.
@@ -61,12 +61,12 @@ impl AxisCoverage {
         }
         let harmless = shown.causes & !HARMLESS == 0;
         let special = match (before.state, shown.state) {
-            (State::Run, State::QuickStop) if harmless && inputs.stop => 0,
-            (State::Run, State::QuickStop) if harmless && !inputs.enable => 1,
-            (State::Run, State::QuickStop) if harmless => 2,
-            (State::Hold, State::Fault) if shown.drive_enable => 3,
-            (State::QuickStop, State::Fault) if shown.drive_enable => 4,
-            (State::Fault, State::Fault) if before.drive_enable && !shown.drive_enable => 5,
+            (SupervisorState::Run, SupervisorState::QuickStop) if harmless && inputs.stop => 0,
+            (SupervisorState::Run, SupervisorState::QuickStop) if harmless && !inputs.enable => 1,
+            (SupervisorState::Run, SupervisorState::QuickStop) if harmless => 2,
+            (SupervisorState::Hold, SupervisorState::Fault) if shown.drive_enable => 3,
+            (SupervisorState::QuickStop, SupervisorState::Fault) if shown.drive_enable => 4,
+            (SupervisorState::Fault, SupervisorState::Fault) if before.drive_enable && !shown.drive_enable => 5,
             _ => return,
         };
         self.special[special] += 1;
@@ -78,7 +78,8 @@ impl AxisCoverage {
         let outputs = ports.iter().filter(|port| port.direction == Direction::Output);
         let one_bit = outputs.zip(self.levels).filter(|(port, _)| port.width == 1);
         let levels = one_bit.map(|(port, count)| (port.name.clone(), count));
-        let states = State::ALL.map(|state| (state.name().to_owned(), self.changes[state as usize][state as usize]));
+        let states =
+            SupervisorState::ALL.map(|state| (state.name().to_owned(), self.changes[state as usize][state as usize]));
         let mut transitions: Vec<_> = TRANSITIONS.iter().map(|row| (row.from, row.to)).collect();
         transitions.dedup();
         let transitions = transitions.into_iter().map(|(from, to)| {
@@ -151,20 +152,23 @@ impl AxisSafety {
     fn pins(&mut self, shown: &Outputs) {
         let Outputs { state, .. } = *shown;
         let (on, released) = (shown.drive_enable, shown.brake_release);
-        let is_on = matches!(state, State::Hold | State::Run | State::QuickStop);
-        let moves = matches!(state, State::Run | State::QuickStop);
+        let is_on = matches!(
+            state,
+            SupervisorState::Hold | SupervisorState::Run | SupervisorState::QuickStop
+        );
+        let moves = matches!(state, SupervisorState::Run | SupervisorState::QuickStop);
         let rules = [
             (on != shown.pwm_enable, "drive and PWM differ"),
             (
-                on && matches!(state, State::Off | State::Ready),
+                on && matches!(state, SupervisorState::Off | SupervisorState::Ready),
                 "outputs on in OFF or READY",
             ),
             (is_on && !on, "outputs off in HOLD, RUN or QUICK_STOP"),
             (released && !on, "brake released with the outputs off"),
-            (released && state == State::Fault, "brake released in FAULT"),
+            (released && state == SupervisorState::Fault, "brake released in FAULT"),
             (moves && !released, "motion against the brake"),
             (
-                shown.segments_enable != (state == State::Run),
+                shown.segments_enable != (state == SupervisorState::Run),
                 "segments play outside of RUN",
             ),
             (shown.segments_preset == on, "command and position apart while off"),
@@ -217,15 +221,20 @@ impl AxisSafety {
         let cut = switching_off(lines, inputs.off_causes) != 0
             || switching_off(stand, inputs.off_causes & self.off_causes) != 0;
         let at_once = inputs.pwm_tripped || inputs.group_emergency_stop;
-        let is_off = !shown.drive_enable && matches!(to, State::Fault | State::Off);
+        let is_off = !shown.drive_enable && matches!(to, SupervisorState::Fault | SupervisorState::Off);
         if (cut || at_once) && !is_off {
             self.violated("outputs on a clock after a cause that switches off");
         }
         let acts = lines | stand;
-        if acts & !HARMLESS != 0 && matches!(to, State::Ready | State::Hold | State::Run) {
+        if acts & !HARMLESS != 0
+            && matches!(
+                to,
+                SupervisorState::Ready | SupervisorState::Hold | SupervisorState::Run
+            )
+        {
             self.violated("a cause without a stop");
         }
-        if acts != 0 && to == State::Run {
+        if acts != 0 && to == SupervisorState::Run {
             self.violated("RUN with a cause");
         }
     }

@@ -3,7 +3,7 @@
 
 use posicast_model::taps::{COEFFICIENT_MAX, COEFFICIENT_MIN};
 
-use super::{Action, Axis};
+use super::{Action, AxisLayout};
 use Action::{Clear, Reset, Start, StartAlone, Strobe, StrobeExact, Swap, Tap, TapExact, Wait, WaitIdle};
 
 /// Rings up to this size are filled: a larger one takes more clocks than a corner is worth.
@@ -12,7 +12,7 @@ const FILLED_RING_BITS: u32 = 9;
 const PASS_SPAN: u32 = 18;
 
 /// The corner cases of a shaper with the sizes of `axis`, each with its name.
-pub fn corners(axis: &Axis) -> Vec<(&'static str, Vec<Action>)> {
+pub fn corners(axis: &AxisLayout) -> Vec<(&'static str, Vec<Action>)> {
     let mut cases = vec![
         ("rounding", rounding(axis)),
         ("largest_products", largest_products(axis)),
@@ -37,7 +37,7 @@ fn started() -> Vec<Action> {
 }
 
 /// Sums just below, at and above one half of an LSB, of both signs.
-fn rounding(axis: &Axis) -> Vec<Action> {
+fn rounding(axis: &AxisLayout) -> Vec<Action> {
     let half = 1 << (axis.coefficient_fraction - 1);
     let samples = [1, 1, 0, 0, -1, -1, 0, 0]
         .map(|word| [StrobeExact(word), WaitIdle])
@@ -53,7 +53,7 @@ fn rounding(axis: &Axis) -> Vec<Action> {
 }
 
 /// The extreme coefficients times the extreme words.
-fn largest_products(axis: &Axis) -> Vec<Action> {
+fn largest_products(axis: &AxisLayout) -> Vec<Action> {
     let one = 1 << axis.coefficient_fraction;
     let samples = [-256, -256, 256, 256, -256, 0].map(|x| [Strobe(x), WaitIdle]).concat();
     let mut script = started();
@@ -69,7 +69,7 @@ fn largest_products(axis: &Axis) -> Vec<Action> {
 }
 
 /// Tables whose sum is one plus or minus a power of two: none may become active.
-fn sums_beside_one(axis: &Axis) -> Vec<Action> {
+fn sums_beside_one(axis: &AxisLayout) -> Vec<Action> {
     let one = 1i64 << axis.coefficient_fraction;
     let mut script = started();
     for bit in 0..i64::BITS - 2 {
@@ -132,7 +132,7 @@ fn across_a_pass() -> Vec<Action> {
 }
 
 /// The longest legal delay, from an empty ring to one that has gone round.
-fn longest_delay(axis: &Axis) -> Vec<Action> {
+fn longest_delay(axis: &AxisLayout) -> Vec<Action> {
     let mut script = started();
     script.extend([Tap(1, 0, 128, 0), Tap(1, 1, 128, -2), Swap(1)]);
     for sample in 0..(1i64 << axis.ring_address_bits) + 8 {

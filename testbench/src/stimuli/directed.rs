@@ -1,6 +1,6 @@
 //! Scripts: the cases that one thinks of, by name.
 
-use super::{Axis, Layout, Stimuli};
+use super::{AxisLayout, Layout, Stimuli};
 
 /// One step of a script. All axes do the same, each at its own full scale.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -372,7 +372,7 @@ impl Stimuli for Directed {
 }
 
 /// The words of all channels: a different part of `x` 256ths of full scale each.
-fn command(axis: &Axis, x: i32, inputs: &mut [u64]) {
+fn command(axis: &AxisLayout, x: i32, inputs: &mut [u64]) {
     let word = |x: i32| {
         let word = i128::from(axis.largest_word()) * i128::from(x) / 256;
         word.clamp(-i128::from(axis.largest_word()) - 1, i128::from(axis.largest_word())) as i64 as u64
@@ -384,7 +384,7 @@ fn command(axis: &Axis, x: i32, inputs: &mut [u64]) {
     }
 }
 
-fn drive(axis: &Axis, action: Action, inputs: &mut [u64]) {
+fn drive(axis: &AxisLayout, action: Action, inputs: &mut [u64]) {
     match action {
         Action::Strobe(x) => command(axis, x, inputs),
         Action::StrobeExact(word) => inputs[axis.x..axis.x + axis.channels].fill(word as u64),
@@ -430,7 +430,7 @@ fn drive(axis: &Axis, action: Action, inputs: &mut [u64]) {
     }
 }
 
-fn write_tap(axis: &Axis, bank: u64, index: u64, coefficient: i64, delay: i64, inputs: &mut [u64]) {
+fn write_tap(axis: &AxisLayout, bank: u64, index: u64, coefficient: i64, delay: i64, inputs: &mut [u64]) {
     inputs[axis.tap_write] = 1;
     inputs[axis.tap_bank] = bank;
     inputs[axis.tap_index] = index;

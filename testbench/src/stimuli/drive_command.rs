@@ -3,7 +3,7 @@
 
 use std::ops::Range;
 
-use posicast_model::rtl::axis::State;
+use posicast_model::rtl::axis::SupervisorState;
 use posicast_model::rtl::drive_command::{DUTY_BITS, INPUT_PORTS, OUTPUT_PORTS};
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -66,12 +66,19 @@ impl DriveCommandRandom {
 
     fn new_mood(&mut self) {
         let rng = &mut self.rng;
-        let states = [State::Ready, State::Ready, State::Ready, State::Hold, State::Run].map(|state| state as u64);
+        let states = [
+            SupervisorState::Ready,
+            SupervisorState::Ready,
+            SupervisorState::Ready,
+            SupervisorState::Hold,
+            SupervisorState::Run,
+        ]
+        .map(|state| state as u64);
         let any_state = rng.random_range(0..8);
         let state = *pick(rng, &[states[0], states[1], states[2], states[3], states[4], any_state]);
         let on = matches!(
-            State::from_value(state),
-            Some(State::Hold | State::Run | State::QuickStop)
+            SupervisorState::from_value(state),
+            Some(SupervisorState::Hold | SupervisorState::Run | SupervisorState::QuickStop)
         );
         // Now and then what no supervisor says.
         let outputs = [(); 3].map(|()| on != (rng.random_range(0..12) == 0));
@@ -148,7 +155,7 @@ impl Stimuli for DriveCommandRandom {
         inputs[18] = rng.random_range(0..16);
         if LONG_TEST.contains(&self.clock) {
             let valley = u64::from(is_long_valley(self.clock));
-            (inputs[0], inputs[4], inputs[12]) = (0, State::Ready as u64, 1);
+            (inputs[0], inputs[4], inputs[12]) = (0, SupervisorState::Ready as u64, 1);
             (inputs[13], inputs[14]) = (1, 65_535);
             (inputs[17], inputs[18], inputs[19]) = (1, 3, valley);
         }
@@ -223,7 +230,7 @@ impl DriveCommandCoverage {
         let limit = limit as i64;
         let [masked, was_masked] = [shown[8], before[8]].map(|value| value == 1);
         let [self_test, valley] = [inputs[17], inputs[19]].map(|value| value == 1);
-        let flagged = state == State::Ready as u64 && enable == 1;
+        let flagged = state == SupervisorState::Ready as u64 && enable == 1;
         let ended = running && was_active && !active;
         [
             !running,
@@ -239,8 +246,8 @@ impl DriveCommandCoverage {
             held && duty_before > 0 && duty == 0 && plus_ok == 0,
             held && duty_before < 0 && duty == 0 && minus_ok == 0,
             shown[7] == 1,
-            ended && state != State::Ready as u64,
-            ended && state == State::Ready as u64 && enable == 0,
+            ended && state != SupervisorState::Ready as u64,
+            ended && state == SupervisorState::Ready as u64 && enable == 0,
             ended && on,
             running && active && masked && !was_masked,
             ended && was_masked && !self_test && flagged,

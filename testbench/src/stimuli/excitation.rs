@@ -2,7 +2,7 @@
 //! `allowed`, a reset or another kind; positions at the ends of their word; ticks far apart, and now and then too close;
 //! settings that change while a signal runs.
 
-use posicast_model::rtl::excitation::{INPUT_PORTS, Inputs, Kind, OUTPUT_PORTS, TICK_CLOCKS, TURN_STEPS};
+use posicast_model::rtl::excitation::{ExcitationKind, INPUT_PORTS, Inputs, OUTPUT_PORTS, TICK_CLOCKS, TURN_STEPS};
 use rand::{Rng, RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
@@ -11,7 +11,12 @@ use super::table::pick;
 use crate::lockstep::Clock;
 
 /// Values of `kind`, in the order of its bits.
-const KINDS: [Kind; 4] = [Kind::None, Kind::Prbs, Kind::Chirp, Kind::Square];
+const KINDS: [ExcitationKind; 4] = [
+    ExcitationKind::None,
+    ExcitationKind::Prbs,
+    ExcitationKind::Chirp,
+    ExcitationKind::Square,
+];
 /// Place of `excitation_active` among the outputs.
 const ACTIVE: usize = 5;
 
@@ -191,8 +196,8 @@ impl ExcitationCoverage {
                     *ticks += 1;
                 }
                 let turned = value.signum() * value_before.signum() < 0;
-                self.prbs_changes += u64::from(before.kind == Kind::Prbs && turned);
-                self.zero_crossings += u64::from(before.kind == Kind::Chirp && turned);
+                self.prbs_changes += u64::from(before.kind == ExcitationKind::Prbs && turned);
+                self.zero_crossings += u64::from(before.kind == ExcitationKind::Chirp && turned);
             }
         }
         self.before = Some((inputs, active == 1, value));

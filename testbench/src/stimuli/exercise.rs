@@ -12,7 +12,7 @@ use std::collections::VecDeque;
 use posicast_model::rtl::shaper::{ShaperConfig, wrap};
 use posicast_model::taps::Tap;
 
-use super::{Axis, Layout};
+use super::{AxisLayout, Layout};
 use crate::lockstep::Clock;
 
 /// A tap must have been seen so often: once could be chance.
@@ -31,7 +31,7 @@ pub struct ShaperExercise {
 
 #[derive(Debug, Clone)]
 struct Shown {
-    axis: Axis,
+    axis: AxisLayout,
     taps: Vec<Tap>,
     /// Times that each tap was seen.
     seen: Vec<u32>,
@@ -50,7 +50,7 @@ struct Shown {
 impl ShaperExercise {
     /// The shapers of these configurations, in the order of the layout.
     pub fn new<'a>(layout: &Layout, configs: impl IntoIterator<Item = &'a ShaperConfig>) -> Self {
-        let shown = |(axis, config): (&Axis, &ShaperConfig)| Shown {
+        let shown = |(axis, config): (&AxisLayout, &ShaperConfig)| Shown {
             axis: axis.clone(),
             taps: config.table().taps().to_vec(),
             seen: vec![0; config.table().taps().len()],

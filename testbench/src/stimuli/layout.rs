@@ -7,7 +7,7 @@ use crate::Error;
 /// The ports of one shaper: places among the inputs and the outputs, and the widths that stimuli depend on.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[allow(missing_docs)] // places, named after the ports
-pub struct Axis {
+pub struct AxisLayout {
     /// The axis; empty for a shaper that stands alone.
     pub name: String,
     /// `F` of the tables that are loaded.
@@ -45,7 +45,7 @@ pub struct Axis {
     pub tap_read_waits: usize,
 }
 
-impl Axis {
+impl AxisLayout {
     /// Largest command word; the smallest is `-largest - 1`.
     pub fn largest_word(&self) -> i64 {
         (1 << (self.word_bits.clamp(2, 63) - 1)) - 1
@@ -60,7 +60,7 @@ pub struct Layout {
     /// Place of `strobe` among the inputs.
     pub strobe: usize,
     /// The shapers, in the order of the ports.
-    pub axes: Vec<Axis>,
+    pub axes: Vec<AxisLayout>,
     /// Number of inputs.
     pub inputs: usize,
 }
@@ -87,7 +87,7 @@ impl Layout {
                 input("tap_delay")?,
             );
             let channels = (1..3).take_while(|channel| input(&format!("x_{channel}")).is_ok());
-            Ok(Axis {
+            Ok(AxisLayout {
                 name: prefix.trim_end_matches('_').to_owned(),
                 coefficient_fraction: coefficient_fraction.clamp(1, 16),
                 start: input("start")?,

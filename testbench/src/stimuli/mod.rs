@@ -3,7 +3,7 @@
 //! - [`Fill`] fills the delay line, a sample per pass, until every tap has been seen.
 //! - [`Directed`] plays scripts: the cases that one thinks of ([`cases`]), and the corners of each size ([`corners`]).
 //! - [`Random`] mixes everything, seeded: the cases that one does not think of.
-//! - [`Motion`] strobes real command words at a steady rate.
+//! - [`MotionStimuli`] strobes real command words at a steady rate.
 //! - [`ShaperExercise`] says which tap, bank or flag a run has not shown.
 //! - [`Coverage`] counts what a run reached, so that a test can insist on it.
 //!
@@ -48,9 +48,9 @@ pub use self::encoder_generator::{EncoderGeneratorCoverage, EncoderGeneratorRand
 pub use self::excitation::{ExcitationCoverage, ExcitationRandom};
 pub use self::exercise::ShaperExercise;
 pub use self::fill::Fill;
-pub use self::layout::{Axis, Layout};
+pub use self::layout::{AxisLayout, Layout};
 pub use self::linear_scale::{LinearScaleCoverage, LinearScaleRandom};
-pub use self::motion::Motion;
+pub use self::motion::MotionStimuli;
 pub use self::part::PartRandom;
 pub use self::pulse_counter::{PulseCounterCoverage, PulseCounterRandom};
 pub use self::pwm::{GateSafety, PwmCoverage, PwmRandom};

@@ -5,7 +5,7 @@ use super::{Layout, Stimuli};
 /// A reset, then one strobe every `clocks_per_sample` clocks; `start` with the first. Each word stands until the next, the
 /// last one for ever.
 #[derive(Debug, Clone)]
-pub struct Motion<'a> {
+pub struct MotionStimuli<'a> {
     layout: Layout,
     words: &'a [Vec<i64>],
     clocks_per_sample: u64,
@@ -15,7 +15,7 @@ pub struct Motion<'a> {
 /// Clocks of reset before the first strobe.
 const RESET_CLOCKS: u64 = 2;
 
-impl<'a> Motion<'a> {
+impl<'a> MotionStimuli<'a> {
     /// `words` holds one sequence of command words per axis of the layout; a missing or empty one stands still at 0.
     pub fn new(layout: &Layout, words: &'a [Vec<i64>], clocks_per_sample: u64) -> Self {
         Self {
@@ -38,7 +38,7 @@ impl<'a> Motion<'a> {
     }
 }
 
-impl Stimuli for Motion<'_> {
+impl Stimuli for MotionStimuli<'_> {
     fn fill(&mut self, _seen: &[u64], inputs: &mut [u64]) {
         inputs.fill(0);
         let clock = self.clock;

@@ -13,7 +13,7 @@ use rand::{Rng, RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
 use super::table::{Table, pick};
-use super::{Axis, Layout, Stimuli};
+use super::{AxisLayout, Layout, Stimuli};
 
 /// When the next strobe comes, relative to the length of a pass.
 #[derive(Debug, Clone, Copy)]
@@ -52,7 +52,7 @@ enum Loading {
 
 #[derive(Debug, Clone)]
 struct AxisState {
-    axis: Axis,
+    axis: AxisLayout,
     course: Course,
     word: i64,
     loading: Loading,
@@ -79,7 +79,7 @@ pub struct Random {
 impl Random {
     /// Equal seeds give equal inputs for equal outputs.
     pub fn new(layout: &Layout, seed: u64) -> Self {
-        let state = |axis: &Axis| AxisState {
+        let state = |axis: &AxisLayout| AxisState {
             axis: axis.clone(),
             course: Course::Noise,
             word: 0,

@@ -1,7 +1,9 @@
 //! Inputs for the command FIFO, seeded: whole entries and single words, well formed and not; moves that end at rest and
 //! such that do not; ticks at every pace; requests, resets, and stops of every size.
 
-use posicast_model::rtl::segments::{Entry, INPUT_PORTS, LATENCY_CLOCKS, Motion, POINT, Point, State, TICK_CLOCKS};
+use posicast_model::rtl::segments::{
+    Entry, EntryMotion, INPUT_PORTS, LATENCY_CLOCKS, POINT, Point, SegmentsState, TICK_CLOCKS,
+};
 use rand::{Rng, RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use std::collections::VecDeque;
@@ -101,7 +103,7 @@ impl SegmentsRandom {
         // What waits and what plays goes: at the next tick, with the first of these.
         self.presets = true;
         for _ in 0..8 {
-            let motion = Motion::Jerk(jerk);
+            let motion = EntryMotion::Jerk(jerk);
             let words = (0..).zip(
                 Entry {
                     ticks: 30,
@@ -131,7 +133,7 @@ impl SegmentsRandom {
             let notify = self.rng.random_range(0..3) == 0;
             self.push(&Entry {
                 ticks,
-                motion: Motion::Jerk(jerk),
+                motion: EntryMotion::Jerk(jerk),
                 notify,
             });
         }
@@ -154,7 +156,7 @@ impl SegmentsRandom {
         let ticks = self.ticks();
         self.push(&Entry {
             ticks,
-            motion: Motion::Point(point),
+            motion: EntryMotion::Point(point),
             notify: rests,
         });
         if self.rng.random_range(0..2) == 0 {
@@ -162,7 +164,7 @@ impl SegmentsRandom {
             let jerk = self.rng.random_range(0..256);
             self.push(&Entry {
                 ticks: 1,
-                motion: Motion::Jerk(jerk),
+                motion: EntryMotion::Jerk(jerk),
                 notify: false,
             });
         }
@@ -171,7 +173,7 @@ impl SegmentsRandom {
     fn push(&mut self, entry: &Entry) {
         let words = (0..).zip(entry.words()).map(|(word, data)| (word, u64::from(data)));
         self.words.extend(words);
-        if let (Motion::Jerk(_), 0) = (entry.motion, self.rng.random_range(0..2)) {
+        if let (EntryMotion::Jerk(_), 0) = (entry.motion, self.rng.random_range(0..2)) {
             let unused = self.words.len() - 2;
             self.words.remove(unused);
         }
@@ -182,7 +184,7 @@ impl SegmentsRandom {
         let jerk = self.jerk();
         let good = Entry {
             ticks: 3,
-            motion: Motion::Jerk(jerk),
+            motion: EntryMotion::Jerk(jerk),
             notify: false,
         };
         let mut words = good.words();
@@ -209,7 +211,7 @@ impl SegmentsRandom {
             14 => {
                 let entry = Entry {
                     ticks: self.ticks(),
-                    motion: Motion::Jerk(self.jerk()),
+                    motion: EntryMotion::Jerk(self.jerk()),
                     notify: true,
                 };
                 self.push(&entry);
@@ -338,13 +340,13 @@ impl SegmentsCoverage {
         else {
             return;
         };
-        let is = |wanted: State| u64::from(state == wanted as u64);
-        let stopped = u64::from(self.state == State::Stop as u64) & is(State::Stopped);
+        let is = |wanted: SegmentsState| u64::from(state == wanted as u64);
+        let stopped = u64::from(self.state == SegmentsState::Stop as u64) & is(SegmentsState::Stopped);
         let seen = [
-            is(State::Hold),
-            is(State::Move),
-            is(State::Stop),
-            is(State::Stopped),
+            is(SegmentsState::Hold),
+            is(SegmentsState::Move),
+            is(SegmentsState::Stop),
+            is(SegmentsState::Stopped),
             u64::from(level == 64),
             low,
             empty,

@@ -2,7 +2,7 @@
 //! every size and at the ends of each word, gains of every size, arbitrary settings, laws that change at any tick, starts at
 //! the pace of a pass and in any clock, inputs that change during a pass, clears and resets.
 
-use posicast_model::rtl::sliding_mode::{CONTROL_CLOCKS, Inputs, Motion, Row, SETTINGS, Saturation, ports};
+use posicast_model::rtl::sliding_mode::{CONTROL_CLOCKS, Inputs, SETTINGS, Saturation, SettingRow, TickMotion, ports};
 use posicast_model::rtl::{Direction, Port};
 use rand::{Rng, RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -13,7 +13,7 @@ use super::table::pick;
 /// Ticks of the largest e until the integral is at an end: from 0, and from the other end.
 const WIND_UP_TICKS: [u64; 2] = [260, 520];
 /// The limit's address; the other settings are gains.
-const LIMIT: usize = Row::Limit as usize;
+const LIMIT: usize = SettingRow::Limit as usize;
 /// Law that integrates.
 const PID: u8 = 2;
 
@@ -75,13 +75,13 @@ impl SlidingModeRandom {
     }
 
     /// References and measurements: unrelated, or close to each other, or just at the end of e and de.
-    fn motion(&mut self) -> Motion {
+    fn motion(&mut self) -> TickMotion {
         let (position, velocity) = (self.word(), self.word());
         let near = self.word() >> self.rng.random_range(0..24);
         let edge = *pick(&mut self.rng, &[1 << 23, -(1 << 23), 0]) + self.rng.random_range(-2..=2);
         let offset = *pick(&mut self.rng, &[near, edge]);
         let rate = *pick(&mut self.rng, &[near, i32::MAX, i32::MIN]);
-        let mut motion = Motion {
+        let mut motion = TickMotion {
             position_reference: position.wrapping_mul(256).wrapping_add(offset),
             velocity_reference: velocity.wrapping_add(rate).wrapping_add(self.rng.random_range(-2..=2)),
             acceleration_reference: self.word(),
@@ -123,8 +123,8 @@ impl SlidingModeRandom {
         self.starts += 1;
         let high = self.starts <= WIND_UP_TICKS[0];
         self.settings = [0; SETTINGS];
-        self.settings[Row::Integral as usize] = 1;
-        self.settings[Row::Feedback as usize] = 1 | 1 << 18;
+        self.settings[SettingRow::Integral as usize] = 1;
+        self.settings[SettingRow::Feedback as usize] = 1 | 1 << 18;
         self.settings[LIMIT] = u32::MAX;
         self.inputs = Inputs {
             law: PID,

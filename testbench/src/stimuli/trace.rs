@@ -1,7 +1,7 @@
 //! Inputs for the trace memory, seeded: every mode of the trigger, every number of signals, strobes at every pace, signals
 //! that wander about the level; arms and halts in every state, settings that change meanwhile, all addresses read.
 
-use posicast_model::rtl::trace::{Inputs, ROW_SIGNALS, State, TraceConfig, row_clocks};
+use posicast_model::rtl::trace::{Inputs, ROW_SIGNALS, TraceConfig, TraceState, row_clocks};
 use rand::{Rng, RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
@@ -152,7 +152,7 @@ impl Stimuli for TraceRandom {
             let setting = self.rng.random_range(0..SETTINGS);
             self.change(setting);
         }
-        let is_idle = seen.get(1) == Some(&(State::Idle as u64));
+        let is_idle = seen.get(1) == Some(&(TraceState::Idle as u64));
         let samples = self.config.samples();
         let rng = &mut self.rng;
         // Time enough to read it all, mostly.
@@ -231,17 +231,17 @@ impl TraceCoverage {
         let before = std::mem::replace(&mut self.before, inputs);
         let state_before = std::mem::replace(&mut self.state, state);
         let samples = u64::from(self.config.samples());
-        let was = |wanted: State| state_before == wanted as u64;
-        let halted = state == State::Idle as u64 && done == 0 && !before.rst;
-        let triggered = state == State::Taking as u64 && !was(State::Taking);
+        let was = |wanted: TraceState| state_before == wanted as u64;
+        let halted = state == TraceState::Idle as u64 && done == 0 && !before.rst;
+        let triggered = state == TraceState::Taking as u64 && !was(TraceState::Taking);
         let triggered_by = |mode| triggered && before.trigger_mode == mode;
-        let idle = state == State::Idle as u64 && was(State::Idle);
+        let idle = state == TraceState::Idle as u64 && was(TraceState::Idle);
         let beyond = u64::from(before.read_address) >= rows * ROW_SIGNALS as u64;
         let seen = [
-            state == State::Idle as u64,
-            state == State::Filling as u64,
-            state == State::Waiting as u64,
-            state == State::Taking as u64,
+            state == TraceState::Idle as u64,
+            state == TraceState::Filling as u64,
+            state == TraceState::Waiting as u64,
+            state == TraceState::Taking as u64,
             done == 1 && rows == samples,
             done == 1 && rows == samples / 2,
             done == 1 && rows == samples / 4,
@@ -249,17 +249,17 @@ impl TraceCoverage {
             triggered_by(1),
             triggered_by(2),
             triggered_by(3),
-            halted && was(State::Filling),
-            halted && was(State::Waiting),
-            halted && was(State::Taking),
-            before.arm && was(State::Filling),
-            before.arm && was(State::Waiting),
-            before.arm && was(State::Taking),
+            halted && was(TraceState::Filling),
+            halted && was(TraceState::Waiting),
+            halted && was(TraceState::Taking),
+            before.arm && was(TraceState::Filling),
+            before.arm && was(TraceState::Waiting),
+            before.arm && was(TraceState::Taking),
             inputs.arm && usize::from(inputs.pre_trigger) >= self.config.rows(inputs.signals),
             missed == 1,
             data != 0,
             idle && rows > 0 && beyond,
-            before.rst && state_before != State::Idle as u64,
+            before.rst && state_before != TraceState::Idle as u64,
         ];
         for (count, seen) in self.counts.iter_mut().zip(seen) {
             *count += u64::from(seen);

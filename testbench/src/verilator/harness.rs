@@ -7,7 +7,7 @@ use std::fmt::Write as _;
 
 use posicast_model::rtl::{Direction, Port};
 
-use super::Source;
+use super::VerilogSource;
 use crate::Error;
 
 /// Name of the class that Verilator writes.
@@ -164,7 +164,7 @@ fn verilog_name(member: &str) -> String {
 }
 
 /// The C++ member of each port in the order of `source.ports`; an error that lists all that differs.
-pub(super) fn members(source: &Source<'_>, declared: &[Declared]) -> Result<Vec<String>, Error> {
+pub(super) fn members(source: &VerilogSource<'_>, declared: &[Declared]) -> Result<Vec<String>, Error> {
     let mut problems = Vec::new();
     let mut members = Vec::with_capacity(source.ports.len());
     let clock = Port {

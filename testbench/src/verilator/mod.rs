@@ -65,7 +65,7 @@ const COVERAGE_FLAGS: [&str; 4] = ["--coverage-line", "--coverage-toggle", "--co
 
 /// What is to be simulated.
 #[derive(Debug, Clone)]
-pub struct Source<'a> {
+pub struct VerilogSource<'a> {
     /// The Verilog files, in any order.
     pub files: &'a [PathBuf],
     /// Name of the top module; it has a port `clk`.
@@ -87,7 +87,7 @@ impl Verilated {
     /// # Errors
     /// [`Error::ToolMissing`] without Verilator, make or a compiler; [`Error::ToolFailed`] where one of them refuses the
     /// Verilog; [`Error::Ports`] where the ports are not the expected ones; [`Error::File`] for files and cache.
-    pub fn build(source: &Source<'_>, seed: u64) -> Result<Self, Error> {
+    pub fn build(source: &VerilogSource<'_>, seed: u64) -> Result<Self, Error> {
         Self::build_in(&cache::folder(), source, seed)
     }
 
@@ -95,7 +95,7 @@ impl Verilated {
     ///
     /// # Errors
     /// As [`Verilated::build`].
-    pub fn counting(source: &Source<'_>, seed: u64) -> Result<Self, Error> {
+    pub fn counting(source: &VerilogSource<'_>, seed: u64) -> Result<Self, Error> {
         Self::build_with(&cache::folder(), source, seed, true)
     }
 
@@ -103,11 +103,11 @@ impl Verilated {
     ///
     /// # Errors
     /// As [`Verilated::build`].
-    pub fn build_in(cache: &Path, source: &Source<'_>, seed: u64) -> Result<Self, Error> {
+    pub fn build_in(cache: &Path, source: &VerilogSource<'_>, seed: u64) -> Result<Self, Error> {
         Self::build_with(cache, source, seed, false)
     }
 
-    fn build_with(cache: &Path, source: &Source<'_>, seed: u64, counts: bool) -> Result<Self, Error> {
+    fn build_with(cache: &Path, source: &VerilogSource<'_>, seed: u64, counts: bool) -> Result<Self, Error> {
         if let Some(port) = source.ports.iter().find(|p| !(1..=64).contains(&p.width)) {
             return Err(Error::Unlike(format!(
                 "port `{}` has {} bits; a port has 1 to 64",
@@ -178,7 +178,7 @@ pub fn version() -> Result<&'static str, Error> {
     Ok(VERSION.get_or_init(|| text(&output).trim().to_owned()))
 }
 
-fn compile(folder: &Path, source: &Source<'_>, counts: bool) -> Result<PathBuf, Error> {
+fn compile(folder: &Path, source: &VerilogSource<'_>, counts: bool) -> Result<PathBuf, Error> {
     let mut contents = Vec::with_capacity(source.files.len());
     for file in source.files {
         let text = std::fs::read(file).map_err(Error::file(file, "read the Verilog"))?;
@@ -244,7 +244,7 @@ fn coverage_flags(counts: bool) -> &'static [&'static str] {
 }
 
 /// Hash of all that the shared object depends on.
-fn content_hash(source: &Source<'_>, contents: &[(PathBuf, Vec<u8>)], version: &str, counts: bool) -> String {
+fn content_hash(source: &VerilogSource<'_>, contents: &[(PathBuf, Vec<u8>)], version: &str, counts: bool) -> String {
     let mut hash = ContentHash::of_tools(version, counts);
     hash.add(harness::TEMPLATE.as_bytes());
     if counts {

@@ -30,7 +30,7 @@ use vcd::{IdCode, VarType};
 use self::clocking::Clocking;
 use self::output::Output;
 pub use self::output::{SignalKind, write_text};
-pub use self::view::{Difference, Focus, Part, merge, merge_around};
+pub use self::view::{DifferenceSignal, Focus, MergePart, merge, merge_around};
 use crate::Error;
 
 /// A signal of a waveform.

@@ -23,7 +23,7 @@ use crate::reader::{Feed, Kind, Named, Step, Value, Values, Wave};
 
 /// One of the waveforms.
 #[derive(Debug, Clone, Copy)]
-pub struct Part<'a> {
+pub struct MergePart<'a> {
     /// Scope in the merged file: `model`, `rtl`, `float`.
     pub scope: &'a str,
     /// The VCD.
@@ -32,7 +32,7 @@ pub struct Part<'a> {
 
 /// A signal `difference.<name>` = value of one signal minus that of another, as a real number; words are signed, bits are not.
 #[derive(Debug, Clone, Copy)]
-pub struct Difference<'a> {
+pub struct DifferenceSignal<'a> {
     /// Name of the new signal.
     pub name: &'a str,
     /// Part (its place in the list) and signal, full or without the scopes that all signals of its file share.
@@ -71,7 +71,7 @@ struct Open {
 }
 
 impl Open {
-    fn new(part: &Part<'_>, only: Option<&HashSet<String>>) -> Result<Self, Error> {
+    fn new(part: &MergePart<'_>, only: Option<&HashSet<String>>) -> Result<Self, Error> {
         let (declarations, feed) = Wave::open(part.path)?.play(None)?;
         let mut names = declarations.names;
         if let Some(only) = only {
@@ -129,7 +129,7 @@ struct Subtraction {
 ///
 /// # Errors
 /// [`Error::File`] and [`Error::Vcd`] as for reading each part; [`Error::Option`] where a difference names no signal.
-pub fn merge(path: &Path, parts: &[Part<'_>], differences: &[Difference<'_>]) -> Result<(), Error> {
+pub fn merge(path: &Path, parts: &[MergePart<'_>], differences: &[DifferenceSignal<'_>]) -> Result<(), Error> {
     merge_around(path, parts, differences, None)
 }
 
@@ -139,8 +139,8 @@ pub fn merge(path: &Path, parts: &[Part<'_>], differences: &[Difference<'_>]) ->
 /// As [`merge`].
 pub fn merge_around(
     path: &Path,
-    parts: &[Part<'_>],
-    differences: &[Difference<'_>],
+    parts: &[MergePart<'_>],
+    differences: &[DifferenceSignal<'_>],
     focus: Option<&Focus>,
 ) -> Result<(), Error> {
     let only = |at: usize| focus.and_then(|focus| focus.signals.get(at));
@@ -246,7 +246,7 @@ fn declare(output: &mut Output, part: &mut Open) -> Result<(), Error> {
 fn subtractions(
     output: &mut Output,
     parts: &[Open],
-    differences: &[Difference<'_>],
+    differences: &[DifferenceSignal<'_>],
 ) -> Result<Vec<Subtraction>, Error> {
     if differences.is_empty() {
         return Ok(Vec::new());
@@ -295,7 +295,7 @@ const GTKWAVE_WIDTH: f64 = 4.6;
 fn write_views(
     path: &Path,
     parts: &[Open],
-    differences: &[Difference<'_>],
+    differences: &[DifferenceSignal<'_>],
     end: u64,
     spot: Option<[u64; 2]>,
 ) -> Result<(), Error> {

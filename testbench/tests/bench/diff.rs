@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use posicast_testbench::Error;
-use posicast_testbench::diff::{self, Comparison, Options, Shown, Verdict};
+use posicast_testbench::diff::{self, Comparison, DiffOptions, DiffVerdict, Shown};
 use posicast_testbench::wave::{Recorder, Signal};
 use proptest::prelude::*;
 use tempfile::TempDir;
@@ -36,14 +36,14 @@ impl Two {
         ["a.vcd", "b.vcd"].map(|name| self.folder.path().join(name))
     }
 
-    fn compare(&self, options: &Options) -> Result<Comparison, Error> {
+    fn compare(&self, options: &DiffOptions) -> Result<Comparison, Error> {
         let [a, b] = self.paths();
         diff::compare(&a, &b, options, &mut |_| {})
     }
 }
 
-fn options(maps: &[&str], tolerances: &[&str]) -> Options {
-    let mut options = Options::default();
+fn options(maps: &[&str], tolerances: &[&str]) -> DiffOptions {
+    let mut options = DiffOptions::default();
     maps.iter().for_each(|map| options.add_map(map).unwrap());
     tolerances.iter().for_each(|lsb| options.add_tolerance(lsb).unwrap());
     options
@@ -58,10 +58,10 @@ fn unit_registers_compare_the_same_at_and_after_the_edge() {
         "#0 0c b1 y #5000 1c #6000 b10 y #10000 0c #15000 1c #16000 b11 y #20000 0c #25000 1c",
     );
     let b = b.replace("1 ns", "1ps");
-    let result = Two::new(&a, &b).compare(&Options::default()).unwrap();
+    let result = Two::new(&a, &b).compare(&DiffOptions::default()).unwrap();
     assert_eq!(
         (result.result, result.signals, result.samples),
-        (Verdict::Equal, 2, 3),
+        (DiffVerdict::Equal, 2, 3),
         "{result}"
     );
     assert_eq!(result.first_time, None);
@@ -78,7 +78,7 @@ fn unit_the_first_difference_and_the_count_are_reported() {
         "t",
         "#0 0c b1 y #5 1c b11111110 y #10 0c #15 1c #20 0c b1 y #25 1c bx y #30 0c #35 1c",
     );
-    let result = Two::new(&a, &b).compare(&Options::default()).unwrap();
+    let result = Two::new(&a, &b).compare(&DiffOptions::default()).unwrap();
     let document = serde_json::to_string(&result).unwrap();
     assert!(
         document.starts_with(r#"{"result":"different","signals":2,"samples":4,"differences":[{"signal":"t.y","time":1.5e-8,"a":"00000001","b":"11111110","count":2,"persistent":true}],"first_time":1.5e-8,"exact":true,"#),
@@ -105,8 +105,8 @@ fn unit_unknown_bits_equal_only_themselves() {
     let with = |digit: char| clocked("t", &format!("#0 0c b1{digit} y #5 1c"));
     for a in ['0', '1', 'x', 'z'] {
         for b in ['0', '1', 'x', 'z'] {
-            let result = Two::new(&with(a), &with(b)).compare(&Options::default()).unwrap();
-            assert_eq!(result.result == Verdict::Equal, a == b, "{a} {b}");
+            let result = Two::new(&with(a), &with(b)).compare(&DiffOptions::default()).unwrap();
+            assert_eq!(result.result == DiffVerdict::Equal, a == b, "{a} {b}");
         }
     }
 }
@@ -116,8 +116,8 @@ fn unit_missing_edges_are_a_difference_of_the_clock() {
     let a = clocked("t", "#0 0c b1 y #5 1c #10 0c #15 1c #20 0c #25 1c");
     let b = clocked("t", "#0 0c b1 y #5 1c #10 0c");
     for (a, b, swapped) in [(&a, &b, false), (&b, &a, true)] {
-        let result = Two::new(a, b).compare(&Options::default()).unwrap();
-        assert_eq!((result.result, result.samples), (Verdict::Different, 1));
+        let result = Two::new(a, b).compare(&DiffOptions::default()).unwrap();
+        assert_eq!((result.result, result.samples), (DiffVerdict::Different, 1));
         let clock = &result.differences[0];
         assert_eq!((clock.signal.as_str(), clock.time, clock.count), ("t.clk", 1.5e-8, 2));
         assert_eq!(clock.a == Shown::Missing, swapped);
@@ -130,20 +130,20 @@ fn unit_signals_without_partner_are_listed_or_differ_on_demand() {
     let b = a
         .replace("$upscope", "$var wire 2 z z $end $upscope")
         .replace("b1 y", "b1 y b10 z");
-    let all = Options {
+    let all = DiffOptions {
         require_all: true,
-        ..Options::default()
+        ..DiffOptions::default()
     };
     let result = Two::new(&a, &b).compare(&all).unwrap();
-    assert_eq!((result.result, result.signals), (Verdict::Different, 2));
+    assert_eq!((result.result, result.signals), (DiffVerdict::Different, 2));
     let alone = &result.differences[0];
     assert_eq!(
         (alone.signal.as_str(), &alone.a, &alone.b),
         ("t.z", &Shown::Missing, &Shown::Bits("10".to_owned()))
     );
     assert_eq!(result.only_in_b, ["t.z"]);
-    let result = Two::new(&a, &b).compare(&Options::default()).unwrap();
-    assert_eq!((result.result, result.only_in_b.len()), (Verdict::Equal, 1));
+    let result = Two::new(&a, &b).compare(&DiffOptions::default()).unwrap();
+    assert_eq!((result.result, result.only_in_b.len()), (DiffVerdict::Equal, 1));
 }
 
 #[test]
@@ -153,12 +153,12 @@ fn unit_nothing_in_common_is_incomparable() {
     let no_edge = clocked("t", "#0 0c b1 y");
     for (b, samples) in [(&only_clock, 0), (&no_edge, 0), (&text("", ""), 0)] {
         for (a, b) in [(&a, b), (b, &a)] {
-            let result = Two::new(a, b).compare(&Options::default()).unwrap();
+            let result = Two::new(a, b).compare(&DiffOptions::default()).unwrap();
             let expected = if *b == no_edge || *a == no_edge {
                 // Both have no common sample, but one has edges that the other lacks.
-                (Verdict::Incomparable, samples)
+                (DiffVerdict::Incomparable, samples)
             } else {
-                (Verdict::Incomparable, 0)
+                (DiffVerdict::Incomparable, 0)
             };
             assert_eq!((result.result, result.samples), expected, "{result}");
             assert!(result.differences.is_empty());
@@ -171,18 +171,18 @@ fn unit_without_a_clock_every_change_counts() {
     let variables = "$scope module t $end $var wire 8 y y $end $var real 64 r r $end $upscope $end";
     let a = text(variables, "#0 b1 y r1.5 r #10 b10 y #20 r2.5 r #30 b0 y");
     let b = text(variables, "#0 b1 y r1.5 r #10 b10 y #21 r2.5 r #30 b0 y");
-    let result = Two::new(&a, &b).compare(&Options::default()).unwrap();
-    assert_eq!((result.result, result.samples), (Verdict::Different, 5));
+    let result = Two::new(&a, &b).compare(&DiffOptions::default()).unwrap();
+    assert_eq!((result.result, result.samples), (DiffVerdict::Different, 5));
     let late = &result.differences[0];
     assert_eq!((late.signal.as_str(), late.time, late.count), ("t.r", 2e-8, 1));
     assert_eq!((&late.a, &late.b), (&Shown::Real(2.5), &Shown::Real(1.5)));
     assert_eq!(
         Two::new(&a, &b).compare(&options(&[], &["r=1"])).unwrap().result,
-        Verdict::Equal
+        DiffVerdict::Equal
     );
     assert_eq!(
         Two::new(&a, &b).compare(&options(&[], &["1"])).unwrap().result,
-        Verdict::Equal
+        DiffVerdict::Equal
     );
 }
 
@@ -191,15 +191,15 @@ fn unit_reals_compare_with_vectors_as_signed_numbers() {
     let vector = clocked("rtl", "#0 0c b11111100 y #5 1c b11 y #10 0c #15 1c");
     let real = clocked("float", "#0 0c r-4.25 y #5 1c r3 y #10 0c #15 1c").replace("wire 8 y y [7:0]", "real 64 y y");
     let two = Two::new(&vector, &real);
-    let exact = two.compare(&Options::default()).unwrap();
+    let exact = two.compare(&DiffOptions::default()).unwrap();
     assert_eq!(
         (exact.result, exact.differences[0].count),
-        (Verdict::Different, 1),
+        (DiffVerdict::Different, 1),
         "{exact}"
     );
     assert_eq!(
         two.compare(&options(&["rtl=float"], &["0.25"])).unwrap().result,
-        Verdict::Equal
+        DiffVerdict::Equal
     );
 }
 
@@ -208,14 +208,14 @@ fn unit_widths_extend_with_zeros_or_with_a_tolerance_by_sign() {
     let narrow = clocked("t", "#0 0c b11111111 y #5 1c");
     let wide = |digits: &str| clocked("t", &format!("#0 0c b{digits} y #5 1c")).replace("8 y y [7:0]", "70 y y");
     let (unsigned, signed) = (wide("11111111"), wide(&"1".repeat(70)));
-    let verdict = |b: &str, options: &Options| Two::new(&narrow, b).compare(options).unwrap().result;
-    assert_eq!(verdict(&unsigned, &Options::default()), Verdict::Equal);
-    assert_eq!(verdict(&signed, &Options::default()), Verdict::Different);
-    assert_eq!(verdict(&unsigned, &options(&[], &["y=0"])), Verdict::Different);
-    assert_eq!(verdict(&signed, &options(&[], &["0"])), Verdict::Equal);
+    let verdict = |b: &str, options: &DiffOptions| Two::new(&narrow, b).compare(options).unwrap().result;
+    assert_eq!(verdict(&unsigned, &DiffOptions::default()), DiffVerdict::Equal);
+    assert_eq!(verdict(&signed, &DiffOptions::default()), DiffVerdict::Different);
+    assert_eq!(verdict(&unsigned, &options(&[], &["y=0"])), DiffVerdict::Different);
+    assert_eq!(verdict(&signed, &options(&[], &["0"])), DiffVerdict::Equal);
     let far_bit = wide(&format!("1{}11111111", "0".repeat(61)));
-    assert_eq!(verdict(&far_bit, &Options::default()), Verdict::Different);
-    let shown = Two::new(&narrow, &signed).compare(&Options::default()).unwrap();
+    assert_eq!(verdict(&far_bit, &DiffOptions::default()), DiffVerdict::Different);
+    let shown = Two::new(&narrow, &signed).compare(&DiffOptions::default()).unwrap();
     assert_eq!(
         shown.differences[0].a,
         Shown::Bits(format!("{}{}", "0".repeat(62), "1".repeat(8)))
@@ -227,13 +227,13 @@ fn unit_clock_options() {
     let two_clocks =
         clocked("t", "#0 0c 0d b1 y #5 1c #10 0c 1d").replace("$var wire 8", "$var wire 1 d clock $end $var wire 8");
     let two = Two::new(&two_clocks, &two_clocks);
-    let raw = two.compare(&Options::default()).unwrap();
-    assert_eq!((raw.result, raw.samples), (Verdict::Equal, 3));
+    let raw = two.compare(&DiffOptions::default()).unwrap();
+    assert_eq!((raw.result, raw.samples), (DiffVerdict::Equal, 3));
     assert!(raw.notes[0].contains("2 candidates"), "{raw}");
     let with = |clock: &str| {
-        two.compare(&Options {
+        two.compare(&DiffOptions {
             clock: Some(clock.to_owned()),
-            ..Options::default()
+            ..DiffOptions::default()
         })
     };
     assert_eq!(with("t.clock").unwrap().samples, 1);
@@ -246,11 +246,11 @@ fn unit_clock_options() {
 #[test]
 fn unit_wrong_options_are_errors() {
     let a = clocked("t", "#0 0c b1 y #5 1c");
-    let mut unknown = Options::default();
+    let mut unknown = DiffOptions::default();
     unknown.add_tolerance("nothing=1").unwrap();
     assert!(matches!(Two::new(&a, &a).compare(&unknown), Err(Error::Option(_))));
     let wide = a.replace("8 y y [7:0]", "129 y y");
-    let mut too_wide = Options::default();
+    let mut too_wide = DiffOptions::default();
     too_wide.add_tolerance("y=1").unwrap();
     assert!(matches!(
         Two::new(&wide, &wide).compare(&too_wide),
@@ -292,8 +292,8 @@ proptest! {
         let folder = tempfile::tempdir().unwrap();
         let [a, b] = ["a.vcd", "b.vcd"].map(|name| folder.path().join(name));
         record(&a, clock, &rows);
-        let itself = diff::compare(&a, &a, &Options::default(), &mut |_| {}).unwrap();
-        prop_assert_eq!(itself.result, Verdict::Equal);
+        let itself = diff::compare(&a, &a, &DiffOptions::default(), &mut |_| {}).unwrap();
+        prop_assert_eq!(itself.result, DiffVerdict::Equal);
         prop_assert_eq!(itself.signals, 5);
         if clock {
             prop_assert_eq!(itself.samples, rows.len() as u64);
@@ -303,7 +303,7 @@ proptest! {
         let row = at.index(rows.len());
         flipped[row][signal] ^= 1 << bit.index(WIDTHS[signal] as usize);
         record(&b, clock, &flipped);
-        let there = diff::compare(&a, &b, &Options::default(), &mut |_| {}).unwrap();
+        let there = diff::compare(&a, &b, &DiffOptions::default(), &mut |_| {}).unwrap();
         prop_assert_eq!(there.differences.len(), 1);
         let found = &there.differences[0];
         prop_assert_eq!(&found.signal, &format!("top.dut.s{}", WIDTHS[signal]));
@@ -313,7 +313,7 @@ proptest! {
         // Without clock, a step has two times of change, and the last one a third.
         prop_assert_eq!(found.count, if clock { 1 } else { 2 + u64::from(row + 1 == rows.len()) });
 
-        let back = diff::compare(&b, &a, &Options::default(), &mut |_| {}).unwrap();
+        let back = diff::compare(&b, &a, &DiffOptions::default(), &mut |_| {}).unwrap();
         prop_assert_eq!(back.differences.len(), 1);
         prop_assert_eq!((&back.differences[0].a, &back.differences[0].b), (&found.b, &found.a));
         prop_assert_eq!((back.samples, back.first_time), (there.samples, there.first_time));

@@ -5,7 +5,7 @@
 
 use std::path::{Path, PathBuf};
 
-use posicast_testbench::diff::{self, Options, Verdict};
+use posicast_testbench::diff::{self, DiffOptions, DiffVerdict};
 use proptest::prelude::*;
 
 fn recordings(extension: &str) -> Vec<Vec<u8>> {
@@ -60,13 +60,13 @@ fn damaged(mut content: Vec<u8>, damage: &[(prop::sample::Index, usize, Vec<u8>)
     content
 }
 
-fn survives(content: &[u8], options: &Options) -> Result<(), TestCaseError> {
+fn survives(content: &[u8], options: &DiffOptions) -> Result<(), TestCaseError> {
     let file = tempfile::NamedTempFile::new().unwrap();
     std::fs::write(file.path(), content).unwrap();
     if let Ok(result) = diff::compare(file.path(), file.path(), options, &mut |_| {}) {
         prop_assert_ne!(
             result.result,
-            Verdict::Different,
+            DiffVerdict::Different,
             "a file differs from itself: {}",
             result
         );
@@ -93,7 +93,7 @@ proptest! {
             content.extend(&other[cut[1].index(other.len())..]);
         }
         let content = damaged(content, &damage);
-        survives(&content, &Options { raw, glitch_fs: u128::from(raw) * 3_000_000, ..Options::default() })?;
+        survives(&content, &DiffOptions { raw, glitch_fs: u128::from(raw) * 3_000_000, ..DiffOptions::default() })?;
     }
 }
 
@@ -103,7 +103,7 @@ fn unit_fsts_cut_anywhere_are_errors() {
         for end in (0..content.len()).step_by(23) {
             let file = tempfile::NamedTempFile::new().unwrap();
             std::fs::write(file.path(), &content[..end]).unwrap();
-            let result = diff::compare(file.path(), file.path(), &Options::default(), &mut |_| {});
+            let result = diff::compare(file.path(), file.path(), &DiffOptions::default(), &mut |_| {});
             assert!(result.is_err(), "{end} of {}: {}", content.len(), result.unwrap());
         }
     }

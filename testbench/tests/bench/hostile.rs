@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use posicast_testbench::Error;
-use posicast_testbench::diff::{self, Options, Verdict};
+use posicast_testbench::diff::{self, DiffOptions, DiffVerdict};
 use proptest::prelude::*;
 
 const GOOD: &str = "$date today $end\n$timescale 1 ns $end\n$scope module t $end\n$var wire 1 c clk $end\n\
@@ -11,7 +11,7 @@ const GOOD: &str = "$date today $end\n$timescale 1 ns $end\n$scope module t $end
     #0\n$dumpvars\n0c\nb1 y\nr1.5 r\n$end\n#5\n1c\nb10 y\n#10\n0c\n#15\n1c\n";
 
 fn compare(path: &Path) -> Result<diff::Comparison, Error> {
-    diff::compare(path, path, &Options::default(), &mut |_| {})
+    diff::compare(path, path, &DiffOptions::default(), &mut |_| {})
 }
 
 /// The error of a file with this content.
@@ -32,14 +32,14 @@ fn unit_a_file_cut_in_the_middle_of_a_line_is_never_equal_to_the_whole() {
     for end in 0..GOOD.len() {
         let cut = &GOOD[..end];
         std::fs::write(&part, cut).unwrap();
-        let result = diff::compare(&whole, &part, &Options::default(), &mut |_| {});
+        let result = diff::compare(&whole, &part, &DiffOptions::default(), &mut |_| {});
         let in_header = !cut.contains("$enddefinitions $end");
         let in_dump = cut.contains("$dumpvars") && !cut.contains("1.5 r\n$end");
         match result {
             Err(error) => assert!(!error.to_string().is_empty()),
             Ok(_) if in_header || in_dump => panic!("{end}: no error"),
             Ok(result) => assert_eq!(
-                result.result == Verdict::Equal,
+                result.result == DiffVerdict::Equal,
                 end + 1 == GOOD.len(),
                 "{end}: {result}"
             ),
@@ -56,10 +56,10 @@ fn unit_the_last_line_needs_no_line_break_but_a_file_that_ends_early_without_one
         path
     };
     let whole = file("whole.vcd", GOOD);
-    let compared = |other: std::path::PathBuf| diff::compare(&whole, &other, &Options::default(), &mut |_| {});
+    let compared = |other: std::path::PathBuf| diff::compare(&whole, &other, &DiffOptions::default(), &mut |_| {});
     assert_eq!(
         compared(file("same.vcd", GOOD.trim_end())).unwrap().result,
-        Verdict::Equal
+        DiffVerdict::Equal
     );
     let early = GOOD.find("#15").unwrap();
     let message = compared(file("early.vcd", GOOD[..early].trim_end()))
@@ -101,7 +101,7 @@ fn unit_control_characters_are_space_and_no_endless_word() {
     let file = tempfile::NamedTempFile::new().unwrap();
     let content = GOOD.replacen("#5\n", "$comment \u{1} x\u{b} \0 $end\u{1}\n#5\n", 1);
     std::fs::write(file.path(), content).unwrap();
-    assert_eq!(compare(file.path()).unwrap().result, Verdict::Equal);
+    assert_eq!(compare(file.path()).unwrap().result, DiffVerdict::Equal);
 }
 
 #[test]

@@ -4,9 +4,9 @@ use crate::bench::common::{COUNTER, Counter, Files, counter_ports};
 use posicast_model::rtl::{ClockedBlock, Port};
 use posicast_testbench::Error;
 use posicast_testbench::icarus::Icarus;
-use posicast_testbench::lockstep::report::{Report, Verdict};
-use posicast_testbench::lockstep::{self, Device, Instance, Joined, Options, TwoValued};
-use posicast_testbench::verilator::{Source, Verilated};
+use posicast_testbench::lockstep::report::{LockstepReport, LockstepVerdict};
+use posicast_testbench::lockstep::{self, Device, Instance, LockstepOptions, SideBySide, TwoValued};
+use posicast_testbench::verilator::{Verilated, VerilogSource};
 
 /// Reset in the first two clocks, then steps of `clock mod 7 − 3`.
 fn steps() -> impl FnMut(&[u64], &mut [u64]) {
@@ -17,7 +17,7 @@ fn steps() -> impl FnMut(&[u64], &mut [u64]) {
     }
 }
 
-fn against(device: &mut dyn Device, cycles: u64) -> Report {
+fn against(device: &mut dyn Device, cycles: u64) -> LockstepReport {
     let instances = [Instance::whole("counter", "one", &counter_ports())];
     let mut model = Counter::new();
     lockstep::run(
@@ -25,7 +25,7 @@ fn against(device: &mut dyn Device, cycles: u64) -> Report {
         device,
         &mut steps(),
         &instances,
-        &Options::cycles(cycles),
+        &LockstepOptions::cycles(cycles),
         &mut |_| {},
         &mut |_| {},
     )
@@ -35,7 +35,7 @@ fn against(device: &mut dyn Device, cycles: u64) -> Report {
 fn verilated(verilog: &str) -> Verilated {
     let files = Files::new(verilog);
     let ports = counter_ports();
-    let source = Source {
+    let source = VerilogSource {
         files: &files.files,
         top: "counter",
         ports: &ports,
@@ -48,7 +48,7 @@ fn lockstep_equal_verilog_matches() {
     let report = against(&mut verilated(COUNTER), 100_000);
     assert_eq!(
         (report.result, report.cycles, report.mismatches()),
-        (Verdict::Match, 100_000, 0)
+        (LockstepVerdict::Match, 100_000, 0)
     );
     assert!(report.blocks[0].first.is_none());
 }
@@ -57,7 +57,7 @@ fn lockstep_equal_verilog_matches() {
 fn lockstep_catches_one_wrong_bit_and_shows_the_clocks_around_it() {
     // The sign extension is cut: wrong from the first negative step on.
     let report = against(&mut verilated(&COUNTER.replace("{23{a__step[8]}}", "{23{1'b0}}")), 1000);
-    assert_eq!(report.result, Verdict::Mismatch);
+    assert_eq!(report.result, LockstepVerdict::Mismatch);
     let first = report.blocks[0].first.as_ref().unwrap();
     assert_eq!((first.signal.as_str(), first.time), ("count", 10));
     assert_eq!(first.expected, "00000000000000000000000000000010");
@@ -80,9 +80,9 @@ moving          0  0  1   0   0   1     0     0     1     0     0     1      0";
 fn lockstep_ends_early_when_everything_is_wrong() {
     let mut device = verilated(&COUNTER.replace("assign moving =", "assign moving = !"));
     let instances = [Instance::whole("counter", "one", &counter_ports())];
-    let options = Options {
+    let options = LockstepOptions {
         mismatch_limit: 50,
-        ..Options::cycles(u64::MAX)
+        ..LockstepOptions::cycles(u64::MAX)
     };
     let mut model = Counter::new();
     let report = lockstep::run(
@@ -103,7 +103,7 @@ fn lockstep_an_undriven_output_is_a_mismatch_under_icarus() {
     let undriven = COUNTER.replace("assign moving = strobe && a__step != 0;", "");
     let files = Files::new(&undriven);
     let ports = counter_ports();
-    let source = Source {
+    let source = VerilogSource {
         files: &files.files,
         top: "counter",
         ports: &ports,
@@ -124,7 +124,7 @@ fn lockstep_other_ports_are_refused() {
     other.ports.pop();
     let instances = [Instance::whole("counter", "one", &counter_ports())];
     let mut run = |device: &mut dyn Device| {
-        let options = Options::cycles(1);
+        let options = LockstepOptions::cycles(1);
         lockstep::run(
             &mut model,
             device,
@@ -151,7 +151,7 @@ fn lockstep_joined_models_share_reset_and_strobe() {
             .map(|axis| (axis.to_owned(), Box::new(Counter::new()) as Box<dyn ClockedBlock>))
             .into()
     };
-    let joined = Joined::new(axes());
+    let joined = SideBySide::new(axes());
     let names: Vec<&str> = joined.ports().iter().map(|p| p.name.as_str()).collect();
     let expected = [
         "rst",
@@ -178,7 +178,7 @@ fn lockstep_joined_models_share_reset_and_strobe() {
     let files = Files::new(&top);
     let (mut ports, y) = (joined.ports()[..2].to_vec(), joined.ports()[5..].to_vec());
     ports.extend(y.into_iter().chain(joined.ports()[2..5].to_vec()));
-    let source = Source {
+    let source = VerilogSource {
         files: &files.files,
         top: "top",
         ports: &ports,
@@ -191,7 +191,7 @@ fn lockstep_joined_models_share_reset_and_strobe() {
         clock += 1;
         inputs.copy_from_slice(&[u64::from(clock == 1), 1, clock % 5, 500]);
     };
-    let options = Options::cycles(1000);
+    let options = LockstepOptions::cycles(1000);
     let mut calls = Vec::new();
     let report = lockstep::run(
         &mut model,

@@ -1,7 +1,7 @@
 //! What the options of `diff` do: when, which, how.
 
 use posicast_testbench::Error;
-use posicast_testbench::diff::{self, Comparison, Options, Shown, UnknownPolicy, Verdict, junit};
+use posicast_testbench::diff::{self, Comparison, DiffOptions, DiffVerdict, Shown, UnknownPolicy, junit};
 
 /// A clock, a reset and a byte: rising edges at 5, 15, 25 … ns; each word of `values` stands from one edge to the next.
 fn clocked(values: &[&str], reset_clocks: usize) -> String {
@@ -15,7 +15,7 @@ fn clocked(values: &[&str], reset_clocks: usize) -> String {
     text
 }
 
-fn compare(a: &str, b: &str, options: &Options) -> Result<Comparison, Error> {
+fn compare(a: &str, b: &str, options: &DiffOptions) -> Result<Comparison, Error> {
     let folder = tempfile::tempdir().unwrap();
     let paths = ["a.vcd", "b.vcd"].map(|name| folder.path().join(name));
     std::fs::write(&paths[0], a).unwrap();
@@ -23,13 +23,13 @@ fn compare(a: &str, b: &str, options: &Options) -> Result<Comparison, Error> {
     diff::compare(&paths[0], &paths[1], options, &mut |_| {})
 }
 
-fn verdict(a: &str, b: &str, options: &Options) -> (Verdict, u64) {
+fn verdict(a: &str, b: &str, options: &DiffOptions) -> (DiffVerdict, u64) {
     let result = compare(a, b, options).unwrap();
     (result.result, result.samples)
 }
 
-fn with(set: impl FnOnce(&mut Options)) -> Options {
-    let mut options = Options::default();
+fn with(set: impl FnOnce(&mut DiffOptions)) -> DiffOptions {
+    let mut options = DiffOptions::default();
     set(&mut options);
     options
 }
@@ -39,18 +39,18 @@ fn unit_each_side_starts_behind_its_own_reset() {
     let a = clocked(&["0", "1", "10", "11"], 1);
     let b = clocked(&["111", "110", "101", "1", "10", "11"], 3);
     let reset = with(|o| o.set_reset("rst").unwrap());
-    assert_eq!(verdict(&a, &b, &reset), (Verdict::Equal, 3));
+    assert_eq!(verdict(&a, &b, &reset), (DiffVerdict::Equal, 3));
     assert_eq!(
         verdict(&a, &b, &with(|o| o.reset = diff::Reset::Found)),
-        (Verdict::Equal, 3)
+        (DiffVerdict::Equal, 3)
     );
-    assert_eq!(verdict(&a, &b, &Options::default()).0, Verdict::Different);
+    assert_eq!(verdict(&a, &b, &DiffOptions::default()).0, DiffVerdict::Different);
     let text = compare(&a, &b, &reset).unwrap().to_string();
     assert!(text.contains("1 edge of the first file, 3 of the second"), "{text}");
     assert!(compare(&a, &b, &with(|o| o.set_reset("nothing").unwrap())).is_err());
     // Never released: nothing was compared, and that is no success.
     let never = clocked(&["0"; 3], 9);
-    assert_eq!(verdict(&never, &never, &reset), (Verdict::Incomparable, 0));
+    assert_eq!(verdict(&never, &never, &reset), (DiffVerdict::Incomparable, 0));
 }
 
 #[test]
@@ -60,9 +60,9 @@ fn unit_the_falling_edge_samples_on_demand() {
     let b = a
         .replace("b1 y #15 1c", "#15 b1 y 1c")
         .replace("b10 y #25 1c", "#25 b10 y 1c");
-    let falling = with(|o| o.edge = diff::Edge::Falling);
-    assert_eq!(verdict(&a, &b, &Options::default()).0, Verdict::Different);
-    assert_eq!(verdict(&a, &b, &falling), (Verdict::Equal, 2));
+    let falling = with(|o| o.edge = diff::SamplingEdge::Falling);
+    assert_eq!(verdict(&a, &b, &DiffOptions::default()).0, DiffVerdict::Different);
+    assert_eq!(verdict(&a, &b, &falling), (DiffVerdict::Equal, 2));
 }
 
 #[test]
@@ -71,16 +71,16 @@ fn unit_start_and_end_bound_what_is_compared() {
     let b = clocked(&["1", "1", "10", "0"], 0);
     let ns = 1_000_000;
     let between = |from: u128, to: u128| with(|o| (o.start_fs, o.end_fs) = (Some(from * ns), Some(to * ns)));
-    assert_eq!(verdict(&a, &b, &between(15, 25)), (Verdict::Equal, 2));
-    assert_eq!(verdict(&a, &b, &between(5, 25)).0, Verdict::Different);
-    assert_eq!(verdict(&a, &b, &between(15, 35)).0, Verdict::Different);
-    assert_eq!(verdict(&a, &b, &between(100, 200)), (Verdict::Incomparable, 0));
-    let raw = |mut options: Options| {
+    assert_eq!(verdict(&a, &b, &between(15, 25)), (DiffVerdict::Equal, 2));
+    assert_eq!(verdict(&a, &b, &between(5, 25)).0, DiffVerdict::Different);
+    assert_eq!(verdict(&a, &b, &between(15, 35)).0, DiffVerdict::Different);
+    assert_eq!(verdict(&a, &b, &between(100, 200)), (DiffVerdict::Incomparable, 0));
+    let raw = |mut options: DiffOptions| {
         options.raw = true;
         verdict(&a, &b, &options).0
     };
-    assert_eq!(raw(between(10, 29)), Verdict::Equal);
-    assert_eq!(raw(between(10, 30)), Verdict::Different);
+    assert_eq!(raw(between(10, 29)), DiffVerdict::Equal);
+    assert_eq!(raw(between(10, 30)), DiffVerdict::Different);
 }
 
 #[test]
@@ -88,10 +88,10 @@ fn unit_a_latency_compares_a_later_sample() {
     let a = clocked(&["1", "10", "11", "100", "101", "110"], 0);
     let b = clocked(&["0", "0", "1", "10", "11", "100"], 0);
     let latency = |text: &str| with(|o| o.add_latency(text).unwrap());
-    assert_eq!(verdict(&a, &b, &latency("y=2")), (Verdict::Equal, 6));
-    assert_eq!(verdict(&b, &a, &latency("y=-2")).0, Verdict::Equal);
+    assert_eq!(verdict(&a, &b, &latency("y=2")), (DiffVerdict::Equal, 6));
+    assert_eq!(verdict(&b, &a, &latency("y=-2")).0, DiffVerdict::Equal);
     for wrong in ["y=1", "y=3", "y=-2"] {
-        assert_eq!(verdict(&a, &b, &latency(wrong)).0, Verdict::Different, "{wrong}");
+        assert_eq!(verdict(&a, &b, &latency(wrong)).0, DiffVerdict::Different, "{wrong}");
     }
     assert!(compare(&a, &b, &latency("y=20ns")).is_err());
     assert!(compare(&a, &b, &latency("z=2")).is_err());
@@ -100,7 +100,7 @@ fn unit_a_latency_compares_a_later_sample() {
         o.add_latency("y=20ns").unwrap();
     });
     let result = compare(&a, &b, &raw).unwrap();
-    assert_eq!((result.result, result.exact), (Verdict::Equal, false), "{result}");
+    assert_eq!((result.result, result.exact), (DiffVerdict::Equal, false), "{result}");
     assert!(result.to_string().contains("equal within the tolerances below") && result.to_string().contains("later"));
 }
 
@@ -112,8 +112,8 @@ fn unit_raw_with_time_tolerance_and_glitch_filter() {
     let (straight, late) = (bit("#10 1y #50 0y"), bit("#13 1y #49 0y"));
     let ns = 1_000_000;
     let tolerance = |t: u128| with(|o| o.time_tolerance_fs = t * ns);
-    assert_eq!(verdict(&straight, &late, &tolerance(3)).0, Verdict::Equal);
-    assert_eq!(verdict(&straight, &late, &tolerance(2)).0, Verdict::Different);
+    assert_eq!(verdict(&straight, &late, &tolerance(3)).0, DiffVerdict::Equal);
+    assert_eq!(verdict(&straight, &late, &tolerance(2)).0, DiffVerdict::Different);
     let text = compare(&straight, &late, &tolerance(3)).unwrap().to_string();
     assert!(
         text.contains("no longer than the time tolerance and not counted: 2 differences"),
@@ -122,7 +122,7 @@ fn unit_raw_with_time_tolerance_and_glitch_filter() {
 
     let glitches = bit("#5 1y #7 0y #10 1y #30 0y #31 1y #50 0y");
     let glitch = |t: u128| with(|o| o.glitch_fs = t * ns);
-    assert_eq!(verdict(&straight, &glitches, &glitch(3)).0, Verdict::Equal);
+    assert_eq!(verdict(&straight, &glitches, &glitch(3)).0, DiffVerdict::Equal);
     let kept = compare(&straight, &glitches, &glitch(2)).unwrap();
     assert_eq!(
         (kept.differences[0].time, kept.differences[0].persistent),
@@ -133,11 +133,11 @@ fn unit_raw_with_time_tolerance_and_glitch_filter() {
         format!("$timescale 1 ns $end $var wire 8 y y $end $enddefinitions $end #0 b0 y {changes} #100 b0 y\n")
     };
     let (at_once, in_steps) = (steps("#7 b10 y"), steps("#5 b1 y #7 b10 y"));
-    assert_eq!(verdict(&at_once, &in_steps, &glitch(3)).0, Verdict::Equal);
+    assert_eq!(verdict(&at_once, &in_steps, &glitch(3)).0, DiffVerdict::Equal);
     // What never becomes equal again is not forgiven.
     let end = "$timescale 1 ns $end $var wire 1 y y $end $enddefinitions $end #0 0y #10 1y\n";
     let other = end.replace("#10 1y", "#10 0y");
-    assert_eq!(verdict(end, &other, &tolerance(1000)).0, Verdict::Different);
+    assert_eq!(verdict(end, &other, &tolerance(1000)).0, DiffVerdict::Different);
     let clocked = clocked(&["0"; 3], 0);
     assert!(compare(&clocked, &clocked, &tolerance(3)).is_err(), "there is a clock");
 }
@@ -146,9 +146,9 @@ fn unit_raw_with_time_tolerance_and_glitch_filter() {
 fn unit_unknown_bits_by_policy_and_in_the_report() {
     let (a, b) = (clocked(&["1x01", "z0", "1"], 0), clocked(&["1101", "0", "1"], 0));
     for (policy, expected) in [
-        (UnknownPolicy::Strict, Verdict::Different),
-        (UnknownPolicy::Wildcard, Verdict::Equal),
-        (UnknownPolicy::Zero, Verdict::Different),
+        (UnknownPolicy::Strict, DiffVerdict::Different),
+        (UnknownPolicy::Wildcard, DiffVerdict::Equal),
+        (UnknownPolicy::Zero, DiffVerdict::Different),
     ] {
         let result = compare(&a, &b, &with(|o| o.unknown = policy)).unwrap();
         assert_eq!(result.result, expected, "{result}");
@@ -157,7 +157,7 @@ fn unit_unknown_bits_by_policy_and_in_the_report() {
     let zero = with(|o| o.unknown = UnknownPolicy::Zero);
     assert_eq!(
         verdict(&clocked(&["x1"], 0), &clocked(&["1"], 0), &zero).0,
-        Verdict::Equal
+        DiffVerdict::Equal
     );
 }
 
@@ -182,18 +182,24 @@ fn unit_views_read_vectors_as_numbers_with_a_fraction() {
     );
     assert_eq!(
         verdict(&vector, &real, &view("y=q3.4", Some("y=0.02abs"))).0,
-        Verdict::Equal
+        DiffVerdict::Equal
     );
     assert_eq!(
         verdict(&vector, &real, &view("y=q3.4", Some("y=0.5lsb"))).0,
-        Verdict::Equal
+        DiffVerdict::Equal
     );
-    assert_eq!(verdict(&vector, &real, &view("y=q3.4", Some("y=5%"))).0, Verdict::Equal);
+    assert_eq!(
+        verdict(&vector, &real, &view("y=q3.4", Some("y=5%"))).0,
+        DiffVerdict::Equal
+    );
     assert_eq!(
         verdict(&vector, &real, &view("y=q3.4", Some("y=1%"))).0,
-        Verdict::Different
+        DiffVerdict::Different
     );
-    assert_eq!(verdict(&vector, &real, &view("y=unsigned", None)).0, Verdict::Different);
+    assert_eq!(
+        verdict(&vector, &real, &view("y=unsigned", None)).0,
+        DiffVerdict::Different
+    );
 }
 
 #[test]
@@ -219,8 +225,8 @@ fn unit_roots_filters_and_patterns_choose_signals() {
     mapped.add_map("?=q_?").unwrap();
     assert_eq!(compare(&a, &b, &mapped).unwrap().signals, 3);
     let nothing = compare(&a, &b, &root(&["y"])).unwrap();
-    assert_eq!(nothing.result, Verdict::Incomparable);
-    let mut wrong = Options::default();
+    assert_eq!(nothing.result, DiffVerdict::Incomparable);
+    let mut wrong = DiffOptions::default();
     wrong.roots[1] = Some("nowhere".to_owned());
     assert!(compare(&a, &b, &wrong).is_err());
 }
@@ -232,7 +238,7 @@ fn unit_text_is_compared_as_text() {
             "$var string 1 s state $end $var event 1 e e $end $enddefinitions $end #0 sIDLE s #5 s{word} s 1e #9 sIDLE s\n"
         )
     };
-    let result = compare(&text("RUN"), &text("STOP"), &Options::default()).unwrap();
+    let result = compare(&text("RUN"), &text("STOP"), &DiffOptions::default()).unwrap();
     let first = &result.differences[0];
     assert_eq!(
         (&first.a, &first.b),
@@ -243,14 +249,14 @@ fn unit_text_is_compared_as_text() {
         (1, false, &["e".to_owned()][..])
     );
     assert_eq!(
-        verdict(&text("RUN"), &text("RUN"), &Options::default()).0,
-        Verdict::Equal
+        verdict(&text("RUN"), &text("RUN"), &DiffOptions::default()).0,
+        DiffVerdict::Equal
     );
     let long = "A".repeat(100);
     let (x, y) = (text(&format!("{long}X")), text(&format!("{long}Y")));
     assert_eq!(
-        verdict(&x, &y, &Options::default()).0,
-        Verdict::Different,
+        verdict(&x, &y, &DiffOptions::default()).0,
+        DiffVerdict::Different,
         "beyond what is shown"
     );
 }
@@ -259,7 +265,7 @@ fn unit_text_is_compared_as_text() {
 fn unit_the_context_shows_the_last_equal_sample_and_what_follows() {
     let a = clocked(&["0", "1", "10", "11", "100", "101"], 0);
     let b = clocked(&["0", "1", "110", "11", "100", "101"], 0);
-    let result = compare(&a, &b, &Options::default()).unwrap();
+    let result = compare(&a, &b, &DiffOptions::default()).unwrap();
     let context = result.context.as_ref().unwrap();
     assert_eq!((context.sample, context.times.len()), (2, 5));
     let row = &context.rows[0];
@@ -288,7 +294,7 @@ fn unit_a_difference_is_shown_in_files_that_open_there() {
     let at = |name: &str| folder.path().join(name);
     std::fs::write(at("a.vcd"), clocked(&["0", "1", "10", "11", "100"], 0)).unwrap();
     std::fs::write(at("b.vcd"), clocked(&["0", "1", "110", "11", "100"], 0)).unwrap();
-    let result = diff::compare(&at("a.vcd"), &at("b.vcd"), &Options::default(), &mut |_| {}).unwrap();
+    let result = diff::compare(&at("a.vcd"), &at("b.vcd"), &DiffOptions::default(), &mut |_| {}).unwrap();
     assert!(diff::show(&at("first"), &at("a.vcd"), &at("b.vcd"), &result).unwrap());
     let read = |name: &str| std::fs::read_to_string(at(name)).unwrap();
     let vcd = read("first.vcd");
@@ -305,6 +311,6 @@ fn unit_a_difference_is_shown_in_files_that_open_there() {
         svg.contains("first divergence, 25 ns") && svg.contains(">06<") && svg.contains("class=\"bad\""),
         "{svg}"
     );
-    let same = diff::compare(&at("a.vcd"), &at("a.vcd"), &Options::default(), &mut |_| {}).unwrap();
+    let same = diff::compare(&at("a.vcd"), &at("a.vcd"), &DiffOptions::default(), &mut |_| {}).unwrap();
     assert!(!diff::show(&at("none"), &at("a.vcd"), &at("a.vcd"), &same).unwrap() && !at("none.vcd").exists());
 }

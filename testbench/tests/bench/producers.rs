@@ -3,7 +3,7 @@
 
 use std::path::{Path, PathBuf};
 
-use posicast_testbench::diff::{self, Comparison, Options, Reset, Verdict};
+use posicast_testbench::diff::{self, Comparison, DiffOptions, DiffVerdict, Reset};
 
 fn fixture(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -11,17 +11,17 @@ fn fixture(name: &str) -> PathBuf {
         .join(name)
 }
 
-fn compare(a: &str, b: &str, options: &Options) -> Comparison {
+fn compare(a: &str, b: &str, options: &DiffOptions) -> Comparison {
     diff::compare(&fixture(a), &fixture(b), options, &mut |_| {}).unwrap()
 }
 
 /// The counter's ports behind its reset, by the clock of the bench. The top scope is that of the first file.
-fn ports(top: &str) -> Options {
-    let mut options = Options {
+fn ports(top: &str) -> DiffOptions {
+    let mut options = DiffOptions {
         clock: Some(format!("{top}clk")),
         // GHDL's clock runs for one edge more.
         end_fs: Some(400_000_000),
-        ..Options::default()
+        ..DiffOptions::default()
     };
     options.set_reset(&format!("{top}rst")).unwrap();
     for port in ["clk", "rst", "dut.enable", "dut.count", "dut.wide", "dut.gray"] {
@@ -50,7 +50,7 @@ fn golden_every_producer_recorded_the_same_counter() {
         };
         for b in files {
             let result = compare(a, b, &ports(top));
-            assert_eq!(result.result, Verdict::Equal, "{a} {b}: {result}");
+            assert_eq!(result.result, DiffVerdict::Equal, "{a} {b}: {result}");
             assert!(result.samples >= 36, "{a} {b}: {result}");
             let compared = |port: &str| result.compared.iter().any(|(name, _)| name.contains(port));
             assert!(
@@ -68,7 +68,7 @@ fn golden_what_is_not_recorded_is_not_compared() {
         ("icarus_dumpoff.vcd", "icarus.vcd"),
     ] {
         let sampled = compare(a, b, &ports("tb."));
-        assert_eq!((sampled.result, sampled.samples), (Verdict::Equal, 27), "{sampled}");
+        assert_eq!((sampled.result, sampled.samples), (DiffVerdict::Equal, 27), "{sampled}");
         assert!(
             sampled
                 .to_string()
@@ -78,26 +78,26 @@ fn golden_what_is_not_recorded_is_not_compared() {
         let raw = compare(
             a,
             b,
-            &Options {
+            &DiffOptions {
                 raw: true,
-                ..Options::default()
+                ..DiffOptions::default()
             },
         );
-        assert_eq!(raw.result, Verdict::Equal, "{raw}");
+        assert_eq!(raw.result, DiffVerdict::Equal, "{raw}");
         assert!(raw.to_string().contains("not recorded"), "{raw}");
     }
 }
 
 #[test]
 fn golden_simulators_meet_on_all_signals_but_what_only_one_writes() {
-    let mut options = Options {
+    let mut options = DiffOptions {
         clock: Some("tb.clk".to_owned()),
         reset: Reset::Found,
-        ..Options::default()
+        ..DiffOptions::default()
     };
     let whole = compare("icarus.vcd", "verilator.vcd", &options);
     // Icarus names `flag$bit` and `odd.name` with the backslash of their escape, and writes no array.
-    assert_eq!(whole.result, Verdict::Equal, "{whole}");
+    assert_eq!(whole.result, DiffVerdict::Equal, "{whole}");
     assert_eq!(
         whole.only_in_b,
         ["TOP.tb.dut.history[0]", "TOP.tb.dut.history[1]"],
@@ -107,6 +107,6 @@ fn golden_simulators_meet_on_all_signals_but_what_only_one_writes() {
     options.require_all = true;
     assert_eq!(
         compare("icarus.vcd", "verilator.vcd", &options).result,
-        Verdict::Different
+        DiffVerdict::Different
     );
 }

@@ -6,9 +6,9 @@ use posicast_hdl::machine::AxisShaper;
 use posicast_model::rtl::shaper::ShaperConfig;
 use posicast_model::taps::{Tap, TapTable};
 use posicast_testbench::blocks::{Block, MachineShapers};
-use posicast_testbench::diff::{self, Comparison, Options, Verdict};
+use posicast_testbench::diff::{self, Comparison, DiffOptions, DiffVerdict};
 use posicast_testbench::lockstep::TwoValued;
-use posicast_testbench::recording::{Move, Trace};
+use posicast_testbench::recording::{Move, RecordedMove};
 
 use crate::bench::waves::{read, times_of_ones};
 
@@ -32,7 +32,7 @@ fn machine() -> MachineShapers {
 }
 
 /// The move with the passes recorded, or with all clocks.
-fn record(top: &MachineShapers, path: &Path, all_clocks: bool) -> Trace {
+fn record(top: &MachineShapers, path: &Path, all_clocks: bool) -> RecordedMove {
     let command = Move {
         layout: top.layout(),
         words: top.words(),
@@ -43,7 +43,7 @@ fn record(top: &MachineShapers, path: &Path, all_clocks: bool) -> Trace {
     command.record(&mut TwoValued(top.model(1)), path, "stage").unwrap()
 }
 
-fn compare(a: &Path, b: &Path, options: &Options) -> Comparison {
+fn compare(a: &Path, b: &Path, options: &DiffOptions) -> Comparison {
     diff::compare(a, b, options, &mut |_| {}).unwrap()
 }
 
@@ -98,14 +98,18 @@ fn unit_nothing_happens_in_the_clocks_that_are_left_out() {
     let all = record(&top, &at("all.vcd"), true);
     assert_eq!(passes.shaped, all.shaped);
     assert!(all.recorded_clocks > 50 * passes.recorded_clocks);
-    let options = Options {
+    let options = DiffOptions {
         raw: true,
         require_all: true,
         ignore: vec!["stage.clk".to_owned(), "stage.recording".to_owned()],
-        ..Options::default()
+        ..DiffOptions::default()
     };
     let compared = compare(&at("passes.vcd"), &at("all.vcd"), &options);
-    assert_eq!((compared.result, compared.exact), (Verdict::Equal, true), "{compared}");
+    assert_eq!(
+        (compared.result, compared.exact),
+        (DiffVerdict::Equal, true),
+        "{compared}"
+    );
     assert!(compared.samples > 2 * SAMPLES as u64 && compared.signals > 10);
 }
 
@@ -128,13 +132,13 @@ fn unit_a_difference_between_recorded_moves_is_found_wherever_it_is() {
         let other = format!("{}0{}", &text[..change], &text[change + 1..]);
         std::fs::write(at("b.vcd"), other).unwrap();
         for clock in [None, Some("stage.clk".to_owned())] {
-            let options = Options {
+            let options = DiffOptions {
                 clock,
                 require_all: true,
-                ..Options::default()
+                ..DiffOptions::default()
             };
             let compared = compare(&at("a.vcd"), &at("b.vcd"), &options);
-            assert_eq!(compared.result, Verdict::Different, "{line} at byte {change}");
+            assert_eq!(compared.result, DiffVerdict::Different, "{line} at byte {change}");
             assert_eq!(
                 (compared.differences.len(), compared.samples),
                 (1, trace.recorded_clocks)

@@ -7,7 +7,7 @@ use crate::bench::common::{COUNTER, Counter, Files, MEMORY, counter_ports, memor
 use posicast_model::rtl::{ClockedBlock, Direction};
 use posicast_testbench::Error;
 use posicast_testbench::icarus::Icarus;
-use posicast_testbench::verilator::{self, Source, Verilated};
+use posicast_testbench::verilator::{self, Verilated, VerilogSource};
 use rand::{Rng, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
@@ -28,7 +28,7 @@ fn same_as_model(device: &mut dyn ClockedBlock, clocks: usize) {
 fn crosssim_both_simulators_count_as_the_model_does() {
     let files = Files::new(COUNTER);
     let ports = counter_ports();
-    let source = Source {
+    let source = VerilogSource {
         files: &files.files,
         top: "counter",
         ports: &ports,
@@ -42,7 +42,7 @@ fn crosssim_both_simulators_count_as_the_model_does() {
 fn unit_memory_starts_at_random_by_seed_and_keeps_64_bits() {
     let files = Files::new(MEMORY);
     let ports = memory_ports();
-    let source = Source {
+    let source = VerilogSource {
         files: &files.files,
         top: "memory",
         ports: &ports,
@@ -76,7 +76,7 @@ fn unit_other_ports_are_named() {
     ports[2].width = 10;
     ports[3].direction = Direction::Input;
     ports[4].name = "absent".to_owned();
-    let source = Source {
+    let source = VerilogSource {
         files: &files.files,
         top: "counter",
         ports: &ports,
@@ -93,14 +93,14 @@ fn unit_other_ports_are_named() {
 
     let mut ports = counter_ports();
     ports[2].width = 10;
-    let source = Source {
+    let source = VerilogSource {
         ports: &ports,
         ..source
     };
     assert!(matches!(Icarus::build(&source), Err(Error::Ports { .. })));
 
     let ports = [port("wide", Direction::Input, 65, false)];
-    let source = Source {
+    let source = VerilogSource {
         ports: &ports,
         ..source
     };
@@ -110,7 +110,7 @@ fn unit_other_ports_are_named() {
 #[test]
 fn unit_broken_and_missing_verilog_is_an_error_with_the_reason() {
     let files = Files::new("module counter(input wire clk);\n  nonsense here\nendmodule\n");
-    let source = Source {
+    let source = VerilogSource {
         files: &files.files,
         top: "counter",
         ports: &[],
@@ -126,7 +126,7 @@ fn unit_broken_and_missing_verilog_is_an_error_with_the_reason() {
     assert!(left.is_empty(), "a failed build leaves {left:?}");
 
     let nowhere = [files.folder.path().join("absent.v")];
-    let source = Source {
+    let source = VerilogSource {
         files: &nowhere,
         ..source
     };
@@ -145,7 +145,7 @@ fn unit_verilog_that_stops_or_never_settles_is_a_step_error() {
         port("stop", Direction::Input, 1, false),
         port("q", Direction::Output, 1, false),
     ];
-    let source = Source {
+    let source = VerilogSource {
         files: &files.files,
         top: "stops",
         ports: &ports,
@@ -162,7 +162,7 @@ fn unit_verilog_that_stops_or_never_settles_is_a_step_error() {
     let loops = "module loops(input wire clk, input wire stop, output wire q);
         wire a; assign a = ~q & stop; assign q = a; endmodule";
     let files = Files::new(loops);
-    let source = Source {
+    let source = VerilogSource {
         files: &files.files,
         top: "loops",
         ports: &ports,
@@ -176,7 +176,7 @@ fn unit_verilog_that_stops_or_never_settles_is_a_step_error() {
 fn unit_a_built_simulation_is_reused_and_parallel_builds_meet() {
     let files = Files::new(COUNTER);
     let ports = counter_ports();
-    let source = Source {
+    let source = VerilogSource {
         files: &files.files,
         top: "counter",
         ports: &ports,

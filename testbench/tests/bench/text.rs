@@ -1,6 +1,6 @@
 //! The result of a comparison as people read it: numbers, units, at most 100 columns; and what stays for programs.
 
-use posicast_testbench::diff::{self, Comparison, Options, Verdict};
+use posicast_testbench::diff::{self, Comparison, DiffOptions, DiffVerdict};
 
 /// A file with a clock of 20 ns, words of these widths, and these values of each word, clock by clock.
 fn vcd(timescale: &str, ticks_per_ns: u64, widths: &[u32], rows: &[&[i64]], scope: &str) -> String {
@@ -21,7 +21,7 @@ fn vcd(timescale: &str, ticks_per_ns: u64, widths: &[u32], rows: &[&[i64]], scop
     text
 }
 
-fn compare(a: &str, b: &str, options: &Options) -> Comparison {
+fn compare(a: &str, b: &str, options: &DiffOptions) -> Comparison {
     let folder = tempfile::tempdir().unwrap();
     let [a_path, b_path] = ["a.vcd", "b.vcd"].map(|name| folder.path().join(name));
     std::fs::write(&a_path, a).unwrap();
@@ -35,7 +35,7 @@ const B: [&[i64]; 4] = [&[1223547, 3, 5], &[1223549, 3, 5], &[-2, 3, 5], &[-2, 3
 #[test]
 fn golden_one_signal_of_four_differs() {
     let file = |rows| vcd("1 ns", 1, &[32, 8, 32], rows, "stage");
-    let result = compare(&file(&A), &file(&B), &Options::default());
+    let result = compare(&file(&A), &file(&B), &DiffOptions::default());
     assert_eq!(
         result.to_string(),
         "different: 1 of 4 signals differs, compared at 4 samples
@@ -64,7 +64,7 @@ differing signals, the earliest first
 
     let mut two = B;
     two[3] = &[-2, 3, 6];
-    let result = compare(&file(&A), &file(&two), &Options::default());
+    let result = compare(&file(&A), &file(&two), &DiffOptions::default());
     assert!(
         result
             .to_string()
@@ -76,7 +76,7 @@ differing signals, the earliest first
 #[test]
 fn unit_a_view_shows_the_value_in_its_format() {
     let file = |rows| vcd("1 ns", 1, &[32, 8, 32], rows, "stage");
-    let mut options = Options::default();
+    let mut options = DiffOptions::default();
     options.add_view("word0=q23.8").unwrap();
     let text = compare(&file(&A), &file(&B), &options).to_string();
     assert!(
@@ -101,7 +101,7 @@ fn unit_the_text_fits_100_columns() {
     let mut b: [&[i64]; 4] = [&[i64::MIN, -3, 5]; 4];
     b[0] = A[0];
     for view in [None, Some("*word*=q60"), Some("*word*=signed")] {
-        let mut options = Options::default();
+        let mut options = DiffOptions::default();
         view.iter().for_each(|view| options.add_view(view).unwrap());
         let text = compare(&file(&A), &file(&b), &options).to_string();
         assert!(text.contains("2 of 4 signals differ"), "{text}");
@@ -114,8 +114,8 @@ fn unit_the_text_fits_100_columns() {
 #[test]
 fn unit_widths_that_differ_are_named() {
     let file = |width| vcd("1 ns", 1, &[width, 8], &[&[7, 3], &[8, 3]], "stage");
-    let result = compare(&file(32), &file(33), &Options::default());
-    assert_eq!((result.result, result.exact), (Verdict::Equal, false));
+    let result = compare(&file(32), &file(33), &DiffOptions::default());
+    assert_eq!((result.result, result.exact), (DiffVerdict::Equal, false));
     let text = result.to_string();
     assert!(
         text.starts_with("equal, but for the widths below: 3 signals at 2 samples\n"),
@@ -127,7 +127,7 @@ fn unit_widths_that_differ_are_named() {
     );
     let document = serde_json::to_value(&result).unwrap();
     assert_eq!(document["lenient"][0]["widths"], serde_json::json!([32, 33]));
-    let mut options = Options::default();
+    let mut options = DiffOptions::default();
     options.add_view("word0=signed").unwrap();
     let text = compare(&file(32), &file(33), &options).to_string();
     assert!(text.contains("extended with its sign"), "{text}");
@@ -135,7 +135,7 @@ fn unit_widths_that_differ_are_named() {
     let text = compare(&file(32), &file(33), &options).to_string();
     assert!(text.starts_with("equal within the tolerances below"), "{text}");
 
-    let exact = compare(&file(32), &file(32), &Options::default());
+    let exact = compare(&file(32), &file(32), &DiffOptions::default());
     assert!(
         exact.exact && exact.to_string().starts_with("equal: 3 signals at 2 samples"),
         "{exact}"
@@ -145,9 +145,9 @@ fn unit_widths_that_differ_are_named() {
 #[test]
 fn unit_what_only_one_file_has_is_counted_by_itself() {
     let file = |widths: &[u32]| vcd("1 ns", 1, widths, &[&[7, 3, 4], &[8, 3, 4]], "stage");
-    let options = Options {
+    let options = DiffOptions {
         require_all: true,
-        ..Options::default()
+        ..DiffOptions::default()
     };
     let result = compare(&file(&[32]), &file(&[32, 8, 8]), &options);
     assert_eq!(

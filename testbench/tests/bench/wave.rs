@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use posicast_testbench::Error;
-use posicast_testbench::diff::{self, Options, Verdict};
-use posicast_testbench::wave::{self, Difference, Focus, Heading, Part, Recorder, Signal};
+use posicast_testbench::diff::{self, DiffOptions, DiffVerdict};
+use posicast_testbench::wave::{self, DifferenceSignal, Focus, Heading, MergePart, Recorder, Signal};
 
 use crate::bench::waves::{read, times_of_ones, unit_and_times};
 
@@ -129,7 +129,7 @@ fn unit_sessions_name_times_in_the_unit_of_their_file() {
         );
         std::fs::write(at("a.vcd"), text).unwrap();
         let path = at("a.vcd");
-        let part = |scope| Part { scope, path: &path };
+        let part = |scope| MergePart { scope, path: &path };
         let parts = [part("a"), part("b")];
         let focus = Focus {
             signals: vec![["t.y".to_owned()].into(); 2],
@@ -179,7 +179,7 @@ fn unit_a_divergence_at_either_end_of_a_file_is_in_view() {
     let rows: Vec<[u64; 1]> = (0..1000).map(|row| [row & 1]).collect();
     let rows: Vec<&[u64]> = rows.iter().map(<[u64; 1]>::as_slice).collect();
     record(&at("a.vcd"), &["t"], &[Signal::bits("y", 1)], &rows);
-    let part = Part {
+    let part = MergePart {
         scope: "a",
         path: &at("a.vcd"),
     };
@@ -243,16 +243,16 @@ fn unit_the_merged_view_holds_all_parts_and_their_difference() {
         &[&[real(9.75)], &[real(-1.0)], &[real(12.5)]],
     );
     let parts = [
-        Part {
+        MergePart {
             scope: "rtl",
             path: &at("rtl.vcd"),
         },
-        Part {
+        MergePart {
             scope: "float",
             path: &at("float.vcd"),
         },
     ];
-    let difference = Difference {
+    let difference = DifferenceSignal {
         name: "y",
         minuend: (0, "y"),
         subtrahend: (1, "stage.y"),
@@ -266,15 +266,15 @@ fn unit_the_merged_view_holds_all_parts_and_their_difference() {
         ["r9.75e0 %", "r2.5e-1 &", "r-1e0 %", "r0e0 &", "r1.25e1 %", "r-5e-1 &"],
         "{text}"
     );
-    let options = Options {
+    let options = DiffOptions {
         maps: vec![("stage".to_owned(), "rtl".to_owned())],
         clock: Some("stage.clk".to_owned()),
-        ..Options::default()
+        ..DiffOptions::default()
     };
     let compared = diff::compare(&at("rtl.vcd"), &at("merged.vcd"), &options, &mut |_| {}).unwrap();
     assert_eq!(
         (compared.result, compared.signals, compared.samples),
-        (Verdict::Equal, 3, 3),
+        (DiffVerdict::Equal, 3, 3),
         "{compared}"
     );
 
@@ -290,7 +290,7 @@ fn unit_the_merged_view_holds_all_parts_and_their_difference() {
         "{surfer}"
     );
 
-    let wrong = Difference {
+    let wrong = DifferenceSignal {
         minuend: (7, "y"),
         ..difference
     };

@@ -8,7 +8,7 @@ mod supervisor;
 
 use std::time::Duration;
 
-use posicast_testbench::formal::{Task, Verdict, named, run, search};
+use posicast_testbench::formal::{ProofVerdict, Task, named, run, search};
 
 const LIMIT: Duration = Duration::from_secs(120);
 
@@ -26,7 +26,7 @@ pub(crate) fn fails(name: &str, from: &str, to: &str, expected: &str) {
     let task = broken(name, from, to);
     let folder = tempfile::tempdir().unwrap();
     match search(&task, folder.path(), LIMIT).unwrap() {
-        Verdict::Counterexample { property, waveform, .. } => {
+        ProofVerdict::Counterexample { property, waveform, .. } => {
             assert!(property.starts_with(expected), "`{to}`: {property}");
             assert!(std::fs::metadata(waveform).unwrap().len() > 1000, "no waveform");
         }
@@ -40,7 +40,7 @@ pub(crate) fn fails(name: &str, from: &str, to: &str, expected: &str) {
 pub(crate) fn is_no_longer_proven(name: &str, from: &str, to: &str) {
     let folder = tempfile::tempdir().unwrap();
     let outcome = run(&broken(name, from, to), folder.path(), LIMIT).unwrap();
-    assert_ne!(outcome.verdict, Verdict::Proven, "`{to}`");
+    assert_ne!(outcome.verdict, ProofVerdict::Proven, "`{to}`");
 }
 
 #[track_caller]

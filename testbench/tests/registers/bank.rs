@@ -4,7 +4,7 @@ use crate::registers::everything::everything;
 use crate::registers::support::{Bench, assert_match};
 use posicast_hdl::registers::emit;
 use posicast_model::rtl::registers::RegisterBank;
-use posicast_testbench::lockstep::report::Verdict;
+use posicast_testbench::lockstep::report::LockstepVerdict;
 use posicast_testbench::stimuli::{RegistersCoverage, RegistersRandom};
 
 fn bench(from: &str, to: &str) -> Bench {
@@ -50,7 +50,7 @@ fn caught(from: &str, to: &str) {
         100_000,
         &mut |_| {},
     );
-    assert_eq!(report.result, Verdict::Mismatch, "`{to}` is not found");
+    assert_eq!(report.result, LockstepVerdict::Mismatch, "`{to}` is not found");
 }
 
 #[test]

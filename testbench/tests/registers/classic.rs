@@ -7,10 +7,10 @@ use posicast_hdl::component::emit;
 use posicast_model::rtl::ClockedBlock;
 use posicast_model::rtl::component::Component;
 use posicast_model::rtl::registers::{RegisterBank, RegisterMap};
-use posicast_testbench::register_tests::{Hardware, Host, TESTS};
+use posicast_testbench::register_tests::{Host, RegisterHardware, TESTS};
 
 /// The names of the tests that find something.
-fn failing(map: &RegisterMap, block: &mut dyn ClockedBlock, hardware: Hardware) -> Vec<String> {
+fn failing(map: &RegisterMap, block: &mut dyn ClockedBlock, hardware: RegisterHardware) -> Vec<String> {
     let mut failing = Vec::new();
     for (name, test) in TESTS {
         let mut host = Host::new(map, block, hardware).unwrap();
@@ -25,17 +25,17 @@ fn bank(from: &str, to: &str) -> Vec<String> {
     let map = everything();
     let modules = vec![posicast_hdl::registers::emit(&map, "").unwrap()];
     let bench = Bench::new("registers", modules, from, to);
-    failing(&map, &mut bench.verilated(), Hardware::Still)
+    failing(&map, &mut bench.verilated(), RegisterHardware::Still)
 }
 
 fn component(component: &Component) {
     assert_eq!(
-        failing(component.map(), &mut component.model(1), Hardware::Running),
+        failing(component.map(), &mut component.model(1), RegisterHardware::Running),
         [""; 0]
     );
     let bench = Bench::new(component.name(), emit(component, "alone", "alone").unwrap(), "", "");
     assert_eq!(
-        failing(component.map(), &mut bench.verilated(), Hardware::Running),
+        failing(component.map(), &mut bench.verilated(), RegisterHardware::Running),
         [""; 0]
     );
 }
@@ -44,7 +44,7 @@ fn component(component: &Component) {
 fn unit_the_model_of_a_bank_keeps_its_promises() {
     let map = everything();
     let mut model = RegisterBank::new(&map);
-    assert_eq!(failing(&map, &mut model, Hardware::Still), [""; 0]);
+    assert_eq!(failing(&map, &mut model, RegisterHardware::Still), [""; 0]);
 }
 
 #[test]

@@ -4,11 +4,11 @@ use crate::registers::support::{Bench, assert_match};
 use posicast_hdl::component::emit;
 use posicast_model::rtl::component::Component;
 use posicast_model::rtl::divider::DividerConfig;
-use posicast_model::rtl::pwm::{ActiveLow, Mode, PwmConfig};
-use posicast_model::rtl::shaper::{Motion, ShaperConfig};
-use posicast_model::rtl::sliding_mode::{Gain, Law, Row, Settings};
+use posicast_model::rtl::pwm::{ActiveLow, BridgeMode, PwmConfig};
+use posicast_model::rtl::shaper::{ShaperConfig, ShaperMotion};
+use posicast_model::rtl::sliding_mode::{Gain, Law, SettingRow, Settings};
 use posicast_model::taps::{Tap, TapTable};
-use posicast_testbench::lockstep::report::Verdict;
+use posicast_testbench::lockstep::report::LockstepVerdict;
 use posicast_testbench::stimuli::ComponentRandom;
 
 pub(crate) fn pulse_counter() -> Component {
@@ -20,16 +20,19 @@ pub(crate) fn pwm() -> Component {
         a_low: true,
         ..ActiveLow::default()
     };
-    Component::pwm(PwmConfig::new(active_low, 4, 3).unwrap(), Mode::HalfBridge, 60).unwrap()
+    Component::pwm(PwmConfig::new(active_low, 4, 3).unwrap(), BridgeMode::HalfBridge, 60).unwrap()
 }
 
 pub(crate) fn sliding_mode() -> Component {
     let mut settings = Settings::default();
-    for (row, value) in Row::ALL.into_iter().zip([0.1, 0.5, 0.2, 0.3, 0.7, 0.4, 0.9, 0.6, 0.8]) {
+    for (row, value) in SettingRow::ALL
+        .into_iter()
+        .zip([0.1, 0.5, 0.2, 0.3, 0.7, 0.4, 0.9, 0.6, 0.8])
+    {
         settings.set_gain(row, Gain::nearest(value, row).unwrap());
     }
     settings.set_limit(1000 << 12);
-    settings.set_gain(Row::Duty, Gain::nearest(0.25, Row::Duty).unwrap());
+    settings.set_gain(SettingRow::Duty, Gain::nearest(0.25, SettingRow::Duty).unwrap());
     Component::sliding_mode(&settings, Law::Pid, true).unwrap()
 }
 
@@ -42,7 +45,7 @@ pub(crate) fn shaper(word_bits: u32, channels: Option<u32>) -> Component {
     let mut config = ShaperConfig::new(word_bits, table).unwrap();
     if let Some(channels) = channels {
         let modulo = channels == 2;
-        config = config.for_motion(Motion { channels, modulo }).unwrap();
+        config = config.for_motion(ShaperMotion { channels, modulo }).unwrap();
     }
     Component::shaper(config).unwrap()
 }
@@ -110,7 +113,7 @@ fn caught(component: &Component, from: &str, to: &str) {
         200_000,
         &mut |_| {},
     );
-    assert_eq!(report.result, Verdict::Mismatch, "`{to}` is not found");
+    assert_eq!(report.result, LockstepVerdict::Mismatch, "`{to}` is not found");
 }
 
 #[test]

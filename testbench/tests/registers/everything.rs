@@ -1,6 +1,6 @@
 //! A map with every kind of access, and fields at every kind of place.
 
-use posicast_model::rtl::registers::{Access, Description, Field, RegisterMap, Source};
+use posicast_model::rtl::registers::{Access, Description, Field, FlagSource, RegisterMap};
 
 pub(crate) fn everything() -> RegisterMap {
     RegisterMap::new(description()).unwrap()
@@ -123,9 +123,9 @@ fn description() -> Description {
         vec![
             Field::flag("fault", 0, "from outside"),
             Field::flag("overrun", 9, "from outside"),
-            Field::flag("partial_write", 16, "own").set_by(Source::PartialWrite),
-            Field::flag("guard_refused", 17, "own").set_by(Source::GuardRefused),
-            Field::flag("commit_rejected", 18, "own").set_by(Source::CommitRejected),
+            Field::flag("partial_write", 16, "own").set_by(FlagSource::PartialWrite),
+            Field::flag("guard_refused", 17, "own").set_by(FlagSource::GuardRefused),
+            Field::flag("commit_rejected", 18, "own").set_by(FlagSource::CommitRejected),
         ],
     )
     .with_interrupts(
@@ -133,7 +133,7 @@ fn description() -> Description {
         vec![
             Field::flag("tick", 0, "a tick"),
             Field::flag("fault", 2, "from outside"),
-            Field::flag("lost_write", 31, "own").set_by(Source::PartialWrite),
+            Field::flag("lost_write", 31, "own").set_by(FlagSource::PartialWrite),
         ],
     )
     .with(

@@ -3,10 +3,10 @@
 use posicast_hdl::emit::Module;
 use posicast_model::rtl::{ClockedBlock, Port};
 use posicast_testbench::icarus::Icarus;
-use posicast_testbench::lockstep::report::{Report, Verdict};
-use posicast_testbench::lockstep::{self, Clock, Device, Instance, Options};
+use posicast_testbench::lockstep::report::{LockstepReport, LockstepVerdict};
+use posicast_testbench::lockstep::{self, Clock, Device, Instance, LockstepOptions};
 use posicast_testbench::stimuli::Stimuli;
-use posicast_testbench::verilator::{Source, Verilated, lint};
+use posicast_testbench::verilator::{Verilated, VerilogSource, lint};
 use std::path::PathBuf;
 use tempfile::TempDir;
 
@@ -40,8 +40,8 @@ impl Bench {
         }
     }
 
-    fn source(&self) -> Source<'_> {
-        Source {
+    fn source(&self) -> VerilogSource<'_> {
+        VerilogSource {
             files: &self.files,
             top: &self.top,
             ports: &self.ports,
@@ -67,16 +67,16 @@ impl Bench {
         stimuli: &mut dyn Stimuli,
         cycles: u64,
         watch: &mut dyn FnMut(&Clock<'_>),
-    ) -> Report {
+    ) -> LockstepReport {
         let instances = [Instance::whole(&self.name, "alone", model.ports())];
-        let options = Options::cycles(cycles);
+        let options = LockstepOptions::cycles(cycles);
         lockstep::run(model, device, stimuli, &instances, &options, watch, &mut |_| {}).unwrap()
     }
 }
 
-pub(crate) fn assert_match(report: &Report) {
+pub(crate) fn assert_match(report: &LockstepReport) {
     if let Some(first) = &report.blocks[0].first {
         panic!("{} mismatches\n{first}", report.blocks[0].mismatches);
     }
-    assert_eq!(report.result, Verdict::Match);
+    assert_eq!(report.result, LockstepVerdict::Match);
 }

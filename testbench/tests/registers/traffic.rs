@@ -9,10 +9,10 @@ use posicast_model::machine_file;
 use posicast_model::rtl::Direction;
 use posicast_model::rtl::component::Component;
 use posicast_model::rtl::divider::DividerConfig;
-use posicast_model::rtl::pwm::{ActiveLow, Mode, PwmConfig};
+use posicast_model::rtl::pwm::{ActiveLow, BridgeMode, PwmConfig};
 use posicast_model::rtl::registers::RegisterMap;
 use posicast_testbench::blocks::{Block, ComponentBlock, Sources, StageBlock};
-use posicast_testbench::lockstep::{self, Clock, Instance, Options};
+use posicast_testbench::lockstep::{self, Clock, Instance, LockstepOptions};
 use posicast_testbench::stimuli::{ReadPromises, Stimuli};
 use posicast_testbench::verilator::Verilated;
 use proptest::prelude::*;
@@ -195,7 +195,7 @@ impl Bed {
             reached.on += u64::from(pins.iter().any(|pins| pins.is_on(clock)));
         };
         let instances = [Instance::whole(self.block.name(), "traffic", &ports)];
-        let options = Options::cycles(cycles);
+        let options = LockstepOptions::cycles(cycles);
         let report = lockstep::run(
             model.as_mut(),
             &mut self.device(seed),
@@ -271,7 +271,7 @@ fn prop_traffic_on_the_components_breaks_nothing() {
 #[test]
 fn prop_traffic_on_the_pwm_leaves_the_pins_safe() {
     let config = PwmConfig::new(ActiveLow::default(), 4, 3).unwrap();
-    let bed = component(Component::pwm(config, Mode::HalfBridge, 60).unwrap(), 4);
+    let bed = component(Component::pwm(config, BridgeMode::HalfBridge, 60).unwrap(), 4);
     let reached = holds(&bed, 16, 8_000);
     assert!(reached.on > 100 && reached.reads > 10_000, "{reached:?}");
 }
@@ -328,7 +328,7 @@ fn prop_traffic_finds_what_is_broken() {
     };
     broken(component(components::sliding_mode(), 0), "written[0]", "1'd1");
     let config = PwmConfig::new(ActiveLow::default(), 4, 3).unwrap();
-    let pwm = component(Component::pwm(config, Mode::HalfBridge, 60).unwrap(), 4);
+    let pwm = component(Component::pwm(config, BridgeMode::HalfBridge, 60).unwrap(), 4);
     broken(pwm, "lasts = dead_time;", "lasts = 10'd1;");
 }
 

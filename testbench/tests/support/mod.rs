@@ -2,17 +2,17 @@
 
 use posicast_hdl::emit::Module;
 use posicast_testbench::blocks::{self, Block, Run, Sources};
-use posicast_testbench::lockstep::report::{Report, Verdict};
+use posicast_testbench::lockstep::report::{LockstepReport, LockstepVerdict};
 
 /// Insists on a match, and shows the first mismatch.
 #[track_caller]
-pub(crate) fn assert_match(report: &Report, what: &str) {
+pub(crate) fn assert_match(report: &LockstepReport, what: &str) {
     for block in &report.blocks {
         if let Some(first) = &block.first {
             panic!("{what}, {}: {} mismatches\n{first}", block.instance, block.mismatches);
         }
     }
-    assert_eq!(report.result, Verdict::Match, "{what}");
+    assert_eq!(report.result, LockstepVerdict::Match, "{what}");
 }
 
 /// Lint clean; a million random clocks equal; every bin hit `least` times and more.
@@ -41,7 +41,7 @@ pub(crate) fn caught(block: &dyn Block, from: &str, to: &str, cycles: u64) {
     let sources = Sources::of_modules(&broken(block, from, to)).unwrap();
     let mut device = sources.verilated(block, 1).unwrap();
     let report = blocks::check(block, &mut device, cycles, 1, &mut |_| {}).unwrap();
-    assert_eq!(report.result, Verdict::Mismatch, "`{to}` is not found");
+    assert_eq!(report.result, LockstepVerdict::Mismatch, "`{to}` is not found");
     let first = report.blocks[0].first.as_ref().unwrap();
     assert_eq!(first.expected.len(), first.actual.len());
     assert_ne!(first.expected, first.actual);

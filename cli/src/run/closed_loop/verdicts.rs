@@ -3,7 +3,7 @@
 use super::report::micro;
 use super::{ClosedLoop, MOVES};
 use crate::run::checks::{Check, NOT_EXERCISED};
-use posicast_model::machine_file::Axis;
+use posicast_model::machine_file::AxisSection;
 use posicast_testbench::stage_run::{AxisFigures, Compared, Expected, Moved, Shaping};
 use posicast_testbench::wording::counted;
 
@@ -49,7 +49,7 @@ impl ClosedLoop<'_> {
     }
 
     /// Figures of every move of every axis, and what they should be. Empty for a move that was not made.
-    fn figures(&self) -> impl Iterator<Item = (String, &Axis, &AxisFigures, &Expected)> {
+    fn figures(&self) -> impl Iterator<Item = (String, &AxisSection, &AxisFigures, &Expected)> {
         let moves = self.moves().into_iter().zip(&self.expected).zip(MOVES);
         moves.flat_map(move |((moved, expected), (shaping, factor))| {
             let name = match (shaping, factor) {

@@ -6,7 +6,7 @@ use super::{LinearLaw, SampledLoop};
 
 /// Largest input of the plant, either way: an acceleration of a torque drive, a velocity of a velocity drive.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Limits {
+pub struct FollowLimits {
     /// In m/s² or m/s.
     pub input: f64,
     /// Added to every input: what friction, or a load, takes.
@@ -26,7 +26,7 @@ pub struct Followed {
 
 impl SampledLoop {
     /// Follows references of position, velocity and acceleration in m and s, from rest at 0.
-    pub fn follow(&self, law: &LinearLaw, limits: &Limits, references: &[[f64; 3]]) -> Vec<Followed> {
+    pub fn follow(&self, law: &LinearLaw, limits: &FollowLimits, references: &[[f64; 3]]) -> Vec<Followed> {
         let zero = Complex::from(0.0);
         let mut states = vec![zero; self.poles.len()];
         // The newest input first.

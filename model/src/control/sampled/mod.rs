@@ -21,10 +21,10 @@ use std::f64::consts::TAU;
 
 use nalgebra::Complex;
 
-use crate::machine_file::{Axis, Clock, Drive, DriveMode, Pwm, ScaleUse};
+use crate::machine_file::{AxisSection, ClockSection, Drive, DriveMode, PwmSection, ScaleUse};
 use crate::plant::Plant;
 
-pub use follow::{Followed, Limits};
+pub use follow::{FollowLimits, Followed};
 pub use margins::{Margins, NyquistPoint};
 
 /// Friction of a frictionless mass, 1/T: two poles at 0 have no partial fractions.
@@ -99,7 +99,7 @@ struct Term {
 impl SampledLoop {
     /// The plant of an axis whose modes are at `frequency_factor` times their frequencies, in a loop of this lag
     /// ([`super::loop_lag_s`]). `None` for an axis without PWM or drive, or with invalid participations.
-    pub fn new(axis: &Axis, clock: Clock, lag_s: f64, frequency_factor: f64) -> Option<Self> {
+    pub fn new(axis: &AxisSection, clock: ClockSection, lag_s: f64, frequency_factor: f64) -> Option<Self> {
         let (drive, pwm) = (axis.drive.as_ref()?, axis.pwm.as_ref()?);
         let plant = Plant::of_axis(axis).ok()?.scaled(frequency_factor);
         let tick_s = clock.sample_period_s();
@@ -153,7 +153,7 @@ struct Delay {
 }
 
 impl Delay {
-    fn new(drive: &Drive, pwm: &Pwm, tick_s: f64, lag_s: f64) -> Self {
+    fn new(drive: &Drive, pwm: &PwmSection, tick_s: f64, lag_s: f64) -> Self {
         let of_drive_s = drive
             .bandwidth_hz
             .map_or(0.0, |bandwidth_hz| 1.0 / (TAU * bandwidth_hz));
@@ -211,7 +211,7 @@ struct PlantTerms {
 }
 
 impl PlantTerms {
-    fn new(axis: &Axis, drive: &Drive, plant: &Plant, tick_s: f64) -> Self {
+    fn new(axis: &AxisSection, drive: &Drive, plant: &Plant, tick_s: f64) -> Self {
         let mut poles = vec![Complex::from(0.0)];
         let mut rigid = vec![0];
         if let DriveMode::Torque { equivalent_mass, .. } = drive.mode {

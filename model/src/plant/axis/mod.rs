@@ -68,7 +68,7 @@ use self::encoder::Encoder;
 use self::modes::LoadModes;
 use self::pins::PinMean;
 use super::{Plant, PlantError};
-use crate::machine_file::{Axis, Clock, Drive, DriveMode};
+use crate::machine_file::{AxisSection, ClockSection, Drive, DriveMode};
 
 /// Longest cell of the grid, s: little beside a tick and beside the period of any mode.
 const CELL_S: f64 = 2e-6;
@@ -198,7 +198,7 @@ impl AxisPlant {
     ///
     /// # Errors
     /// [`AxisPlantError`] for an axis without PWM or drive, for invalid options, and for speeds beyond a count per clock.
-    pub fn new(axis: &Axis, clock: &Clock, options: &PlantOptions) -> Result<Self, AxisPlantError> {
+    pub fn new(axis: &AxisSection, clock: &ClockSection, options: &PlantOptions) -> Result<Self, AxisPlantError> {
         let name = || axis.name.clone();
         let missing = |table| AxisPlantError::Missing { axis: name(), table };
         let pwm = axis.pwm.as_ref().ok_or_else(|| missing("pwm"))?;
@@ -340,14 +340,20 @@ impl AxisPlant {
 }
 
 /// The longest cell that divides a period of the PWM.
-fn cell_clocks(clock: &Clock, period_clocks: u32) -> u32 {
+fn cell_clocks(clock: &ClockSection, period_clocks: u32) -> u32 {
     let longest = ((clock.frequency_hz * CELL_S) as u32).clamp(1, period_clocks);
     let divides = |cell: &u32| period_clocks.is_multiple_of(*cell);
     (1..=longest).rev().find(divides).unwrap_or(1)
 }
 
 /// Whether an encoder of so many counts per unit can follow.
-fn check(axis: &Axis, drive: &Drive, clock: &Clock, counts_per_unit: f64, position: f64) -> Result<(), AxisPlantError> {
+fn check(
+    axis: &AxisSection,
+    drive: &Drive,
+    clock: &ClockSection,
+    counts_per_unit: f64,
+    position: f64,
+) -> Result<(), AxisPlantError> {
     let counts = position * counts_per_unit;
     if counts.is_nan() || counts.abs() > COUNTS_MAX {
         return Err(AxisPlantError::Position {

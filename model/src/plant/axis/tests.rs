@@ -225,7 +225,7 @@ fn unit_an_index_is_a_count_wide() {
 #[test]
 fn unit_what_is_no_plant_is_named() {
     let machine = machine(TORQUE, GX);
-    let of = |change: &dyn Fn(&mut Axis), options: PlantOptions| {
+    let of = |change: &dyn Fn(&mut AxisSection), options: PlantOptions| {
         let mut axis = machine.axes[0].clone();
         change(&mut axis);
         AxisPlant::new(&axis, &machine.clock, &options).unwrap_err().to_string()

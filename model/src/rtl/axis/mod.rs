@@ -14,17 +14,17 @@
 //! [`Axis::step`] is one clock; [`Axis::hold`] is many with the same inputs, and skips those that change nothing.
 //!
 //! ```
-//! use posicast_model::rtl::axis::{Axis, Inputs, State};
+//! use posicast_model::rtl::axis::{Axis, Inputs, SupervisorState};
 //!
 //! let mut axis = Axis::new();
 //! let good = Inputs { emergency_stop_n: true, drive_ready: true, ..Inputs::default() };
 //! axis.hold(&good, 20);
-//! assert_eq!(axis.outputs().state, State::Ready);
+//! assert_eq!(axis.outputs().state, SupervisorState::Ready);
 //! axis.step(&Inputs { enable: true, tick: true, ..good });
-//! assert_eq!((axis.outputs().state, axis.outputs().pwm_enable), (State::Hold, true));
+//! assert_eq!((axis.outputs().state, axis.outputs().pwm_enable), (SupervisorState::Hold, true));
 //! // The emergency stop's wire breaks: five clocks without a filter.
 //! axis.hold(&Inputs { emergency_stop_n: false, enable: true, ..good }, 4);
-//! assert_eq!((axis.outputs().state, axis.outputs().pwm_enable), (State::Fault, false));
+//! assert_eq!((axis.outputs().state, axis.outputs().pwm_enable), (SupervisorState::Fault, false));
 //! ```
 
 mod cause;
@@ -38,7 +38,7 @@ mod transition;
 pub use cause::{ALWAYS_OFF, AT_ONCE, CAUSE_BITS, Cause, DOUBTFUL, HARMLESS, switching_off};
 pub use clocks::{CLEAR_CLOCKS, KICK, LEAST_TICK_CLOCKS, LINE_CLOCKS, PRIMING_CLOCKS, WATCH_CLOCKS};
 pub use ports::{INPUT_PORTS, Inputs, OUTPUT_PORTS, Outputs, PORTS, ports};
-pub use transition::{Condition, Conditions, State, TRANSITIONS, Transition, next};
+pub use transition::{Condition, Conditions, SupervisorState, TRANSITIONS, Transition, next};
 
 use self::registers::Registers;
 use super::{FOREVER, Moore, clocked_block};
@@ -76,7 +76,7 @@ impl Axis {
             brake_release: registers.released,
             pwm_enable: registers.on,
             pwm_trip_n: !registers.tripping,
-            segments_enable: registers.state == State::Run,
+            segments_enable: registers.state == SupervisorState::Run,
             segments_preset: !registers.on,
             segments_quick_stop: pulses.quick_stop,
             segments_restart: pulses.restart,

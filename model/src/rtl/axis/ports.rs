@@ -1,10 +1,10 @@
 //! The ports of the axis's supervisor.
 
-use super::transition::State;
+use super::transition::SupervisorState;
 use crate::rtl::ports;
 use crate::rtl::ports::choices;
 
-choices!(State: Off, Ready, Hold, Run, QuickStop, Fault);
+choices!(SupervisorState: Off, Ready, Hold, Run, QuickStop, Fault);
 
 ports! {
     axis_ports;
@@ -134,7 +134,7 @@ ports! {
     /// The output ports, all of them registers or functions of registers.
     outputs Outputs {
         /// What the axis is doing: 0 OFF, 1 READY, 2 HOLD, 3 RUN, 4 QUICK_STOP, 5 FAULT.
-        state: Bits(3) as State;
+        state: Bits(3) as SupervisorState;
         /// Sticky: what went wrong. See *Causes*.
         causes: Bits(17) as u32;
         /// To the drive.

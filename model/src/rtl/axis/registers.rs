@@ -5,7 +5,7 @@ use super::clocks::{CLEAR_CLOCKS, KICK, PRIMING_CLOCKS};
 use super::monitors::Monitors;
 use super::ports::Inputs;
 use super::timer::{Begins, Timer};
-use super::transition::{Condition, Conditions, State, next};
+use super::transition::{Condition, Conditions, SupervisorState, next};
 use crate::rtl::pulse_counter::GlitchFilter;
 use crate::rtl::segments::{self, STAND_COUNTS};
 use crate::rtl::sliding_mode::Saturation;
@@ -48,7 +48,7 @@ pub(super) struct Registers {
     /// Clocks since the reset, at most [`PRIMING_CLOCKS`].
     primed: u8,
     pub(super) monitors: Monitors,
-    pub(super) state: State,
+    pub(super) state: SupervisorState,
     pub(super) causes: u32,
     /// A position left the range of its word, as of the clock before.
     out_of_range: bool,
@@ -79,7 +79,7 @@ impl Default for Registers {
             lines: Default::default(),
             primed: 0,
             monitors: Monitors::default(),
-            state: State::Off,
+            state: SupervisorState::Off,
             causes: 0,
             out_of_range: false,
             forgot: false,
@@ -143,7 +143,8 @@ impl Registers {
     }
 
     pub(super) fn wants_group_stop(&self) -> bool {
-        self.state == State::Fault || (self.state == State::QuickStop && self.causes & !HARMLESS != 0)
+        self.state == SupervisorState::Fault
+            || (self.state == SupervisorState::QuickStop && self.causes & !HARMLESS != 0)
     }
 
     pub(super) fn clock(&mut self, inputs: &Inputs) {
@@ -222,10 +223,10 @@ impl Registers {
         let group_stop = inputs.group_stop && !self.wants_group_stop();
         // Not what has still to act.
         let may_forget = match self.state {
-            State::Off => true,
-            State::Ready | State::Hold | State::Run => self.causes & !HARMLESS == 0,
-            State::QuickStop => false,
-            State::Fault => !self.on,
+            SupervisorState::Off => true,
+            SupervisorState::Ready | SupervisorState::Hold | SupervisorState::Run => self.causes & !HARMLESS == 0,
+            SupervisorState::QuickStop => false,
+            SupervisorState::Fault => !self.on,
         };
         let forgets = self.clear_left == 1 && may_forget;
         let kept = if forgets { 0 } else { self.causes };
@@ -235,11 +236,11 @@ impl Registers {
         let seen = self.causes | at_once | (active & HARMLESS);
         let cut = self.cuts || switching_off(at_once, inputs.off_causes) != 0;
         let fault = seen & !HARMLESS != 0;
-        let segments_hold = inputs.segments_state == segments::State::Hold as u8;
-        let stopped = inputs.segments_state == segments::State::Stopped as u8;
+        let segments_hold = inputs.segments_state == segments::SegmentsState::Hold as u8;
+        let stopped = inputs.segments_state == segments::SegmentsState::Stopped as u8;
         let elapsed = self.timer.elapsed();
         let opened = !self.opening || elapsed;
-        let able = self.state == State::Hold && opened && !self.closing && segments_hold;
+        let able = self.state == SupervisorState::Hold && opened && !self.closing && segments_hold;
         let wants_start = (inputs.start || self.start_waits) && !inputs.stop;
         let conditions = Conditions::default()
             .with(Condition::Cut, cut)
@@ -266,15 +267,15 @@ impl Registers {
             able,
             stopped,
             timed_out: inputs.tick && elapsed,
-            closes: self.state == State::Hold && inputs.tick && elapsed && !inputs.enable && !self.closing,
+            closes: self.state == SupervisorState::Hold && inputs.tick && elapsed && !inputs.enable && !self.closing,
             conditions,
         }
     }
 
-    fn pulses(&self, inputs: &Inputs, now: &Now, after: State) -> Pulses {
-        use State::{Fault, Hold, Off, QuickStop, Ready, Run};
+    fn pulses(&self, inputs: &Inputs, now: &Now, after: SupervisorState) -> Pulses {
+        use SupervisorState::{Fault, Hold, Off, QuickStop, Ready, Run};
         let before = self.state;
-        let plays = inputs.segments_state <= segments::State::Move as u8;
+        let plays = inputs.segments_state <= segments::SegmentsState::Move as u8;
         let steady = inputs.enable && !now.group_stop && now.seen == 0;
         Pulses {
             quick_stop: after == QuickStop && plays,
@@ -292,8 +293,8 @@ impl Registers {
     }
 
     /// The timer begins with a state, and counts ticks; in QUICK_STOP those after the segments' stop.
-    fn run_timer(&mut self, inputs: &Inputs, now: &Now, after: State) {
-        use State::{Fault, Hold, QuickStop, Ready, Run};
+    fn run_timer(&mut self, inputs: &Inputs, now: &Now, after: SupervisorState) {
+        use SupervisorState::{Fault, Hold, QuickStop, Ready, Run};
         let before = self.state;
         let counts = inputs.tick && (before != QuickStop || now.stopped);
         let begins = match (before, after) {
@@ -308,8 +309,8 @@ impl Registers {
     }
 
     /// Outputs and brake.
-    fn switch(&mut self, now: &Now, after: State) {
-        use State::{Fault, Hold, QuickStop, Ready};
+    fn switch(&mut self, now: &Now, after: SupervisorState) {
+        use SupervisorState::{Fault, Hold, QuickStop, Ready};
         let before = self.state;
         (self.on, self.closing) = match (before, after) {
             _ if now.cut || (self.closing && now.timed_out) => (false, false),
@@ -332,7 +333,7 @@ mod tests {
     }
 
     /// Registers and inputs of a case, and the conditions that they mean.
-    fn situation(state: State, case: u32) -> (Registers, Inputs, Conditions) {
+    fn situation(state: SupervisorState, case: u32) -> (Registers, Inputs, Conditions) {
         let drive_ready = is(case, 0);
         let (cut, quick, group) = (is(case, 1), is(case, 2), is(case, 3));
         let (elapsed, opening, closing, on) = (is(case, 4), is(case, 5), is(case, 6), is(case, 7));
@@ -367,7 +368,7 @@ mod tests {
             ..Inputs::default()
         };
         // Whose own stop it is does not see it.
-        let wants = state == State::Fault || (state == State::QuickStop && quick);
+        let wants = state == SupervisorState::Fault || (state == SupervisorState::QuickStop && quick);
         let seen_group = group && !wants;
         let any = cut || quick || (on && seen_group);
         let hold = segments_state == 0;
@@ -381,7 +382,7 @@ mod tests {
             inputs.tick,
             seen_group,
             inputs.stop,
-            inputs.start && !inputs.stop && state == State::Hold && brake_open && hold,
+            inputs.start && !inputs.stop && state == SupervisorState::Hold && brake_open && hold,
             hold && inputs.segments_empty,
             segments_state == 3,
             elapsed,
@@ -397,7 +398,7 @@ mod tests {
 
     #[test]
     fn unit_the_clocked_model_follows_the_table_in_every_situation() {
-        for state in State::ALL {
+        for state in SupervisorState::ALL {
             for case in 0..1 << 16 {
                 let (mut registers, mut inputs, conditions) = situation(state, case);
                 // Drive lost is a cause of its own: here it is one that does not switch off.

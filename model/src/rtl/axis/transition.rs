@@ -2,7 +2,7 @@
 
 /// What the axis is doing: the value of the port `state`.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub enum State {
+pub enum SupervisorState {
     /// Outputs off, not ready.
     #[default]
     Off = 0,
@@ -18,7 +18,7 @@ pub enum State {
     Fault = 5,
 }
 
-impl State {
+impl SupervisorState {
     /// All, in the order of their values.
     pub const ALL: [Self; 6] = [
         Self::Off,
@@ -159,9 +159,9 @@ impl Conditions {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Transition {
     /// Where it begins.
-    pub from: State,
+    pub from: SupervisorState,
     /// Where it leads.
-    pub to: State,
+    pub to: SupervisorState,
     /// In words, as in the datasheet.
     pub why: &'static str,
     needs: u16,
@@ -169,7 +169,13 @@ pub struct Transition {
 }
 
 impl Transition {
-    const fn new(from: State, to: State, needs: &[Condition], forbids: &[Condition], why: &'static str) -> Self {
+    const fn new(
+        from: SupervisorState,
+        to: SupervisorState,
+        needs: &[Condition],
+        forbids: &[Condition],
+        why: &'static str,
+    ) -> Self {
         Self {
             from,
             to,
@@ -190,7 +196,7 @@ impl Transition {
     }
 
     #[inline]
-    fn applies(&self, state: State, conditions: Conditions) -> bool {
+    fn applies(&self, state: SupervisorState, conditions: Conditions) -> bool {
         self.from == state && conditions.0 & self.needs == self.needs && conditions.0 & self.forbids == 0
     }
 }
@@ -208,7 +214,7 @@ const fn bits(conditions: &[Condition]) -> u16 {
 /// All transitions. Of the rows of a state, the first that applies is taken; if none does, the state stays.
 pub const TRANSITIONS: [Transition; 19] = {
     use Condition as C;
-    use State::{Fault, Hold, Off, QuickStop, Ready, Run};
+    use SupervisorState::{Fault, Hold, Off, QuickStop, Ready, Run};
     [
         Transition::new(
             Off,
@@ -288,7 +294,7 @@ pub const TRANSITIONS: [Transition; 19] = {
 
 /// The state after this clock.
 #[inline]
-pub fn next(state: State, conditions: Conditions) -> State {
+pub fn next(state: SupervisorState, conditions: Conditions) -> SupervisorState {
     let taken = TRANSITIONS.iter().find(|row| row.applies(state, conditions));
     taken.map_or(state, |row| row.to)
 }
@@ -298,40 +304,42 @@ mod tests {
     use super::*;
 
     /// The same in other words: branches instead of rows.
-    fn in_branches(state: State, conditions: Conditions) -> State {
+    fn in_branches(state: SupervisorState, conditions: Conditions) -> SupervisorState {
         use Condition as C;
         let is = |condition| conditions.has(condition);
         let at_rest = is(C::Tick) && is(C::Stopped) && is(C::Elapsed);
         match state {
-            State::Off if is(C::DriveReady) && !is(C::Cause) && !is(C::Enable) => State::Ready,
-            State::Ready if is(C::Fault) => State::Fault,
-            State::Ready if !is(C::DriveReady) => State::Off,
-            State::Ready if is(C::Tick) && is(C::Enable) && !is(C::GroupStop) => State::Hold,
-            State::Fault if is(C::Cleared) => State::Off,
-            State::Off | State::Ready | State::Fault => state,
-            _ if is(C::Cut) => State::Fault,
-            State::Hold if is(C::Fault) && is(C::Closing) => State::Fault,
-            State::Hold if is(C::Fault) => State::QuickStop,
-            State::Hold if is(C::Tick) => {
+            SupervisorState::Off if is(C::DriveReady) && !is(C::Cause) && !is(C::Enable) => SupervisorState::Ready,
+            SupervisorState::Ready if is(C::Fault) => SupervisorState::Fault,
+            SupervisorState::Ready if !is(C::DriveReady) => SupervisorState::Off,
+            SupervisorState::Ready if is(C::Tick) && is(C::Enable) && !is(C::GroupStop) => SupervisorState::Hold,
+            SupervisorState::Fault if is(C::Cleared) => SupervisorState::Off,
+            SupervisorState::Off | SupervisorState::Ready | SupervisorState::Fault => state,
+            _ if is(C::Cut) => SupervisorState::Fault,
+            SupervisorState::Hold if is(C::Fault) && is(C::Closing) => SupervisorState::Fault,
+            SupervisorState::Hold if is(C::Fault) => SupervisorState::QuickStop,
+            SupervisorState::Hold if is(C::Tick) => {
                 let may_run = is(C::Enable) && !is(C::Cause) && !is(C::GroupStop) && !is(C::Stop);
                 match (is(C::Closing) && is(C::Elapsed), is(C::Start) && may_run) {
-                    (true, _) => State::Off,
-                    (false, true) => State::Run,
-                    (false, false) => State::Hold,
+                    (true, _) => SupervisorState::Off,
+                    (false, true) => SupervisorState::Run,
+                    (false, false) => SupervisorState::Hold,
                 }
             }
-            State::Run if is(C::Fault) || is(C::Stop) || is(C::GroupStop) || !is(C::Enable) => State::QuickStop,
-            State::Run if is(C::Tick) && is(C::Done) => State::Hold,
-            State::QuickStop if at_rest && is(C::Fault) => State::Fault,
-            State::QuickStop if at_rest => State::Hold,
-            State::Hold | State::Run | State::QuickStop => state,
+            SupervisorState::Run if is(C::Fault) || is(C::Stop) || is(C::GroupStop) || !is(C::Enable) => {
+                SupervisorState::QuickStop
+            }
+            SupervisorState::Run if is(C::Tick) && is(C::Done) => SupervisorState::Hold,
+            SupervisorState::QuickStop if at_rest && is(C::Fault) => SupervisorState::Fault,
+            SupervisorState::QuickStop if at_rest => SupervisorState::Hold,
+            SupervisorState::Hold | SupervisorState::Run | SupervisorState::QuickStop => state,
         }
     }
 
     #[test]
     fn unit_the_table_is_what_the_branches_say_in_every_case() {
         let mut taken = [0; TRANSITIONS.len()];
-        for state in State::ALL {
+        for state in SupervisorState::ALL {
             for bits in 0..1 << Condition::ALL.len() {
                 let conditions = Conditions(bits);
                 assert_eq!(

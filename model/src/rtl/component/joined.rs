@@ -24,7 +24,7 @@ use crate::rtl::trace::{Trace, TraceConfig};
 
 /// A block in a component, with what it is built from.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Block {
+pub enum ComponentPart {
     /// The register bank.
     Registers(Box<RegisterMap>),
     /// The shaper.
@@ -69,10 +69,10 @@ pub enum Block {
     /// What so many axes have to do with each other.
     Group(usize),
     /// Blocks joined to one.
-    Joined(Box<Joined>),
+    Joined(Box<JoinedBlocks>),
 }
 
-impl Block {
+impl ComponentPart {
     /// Its name, as in the Verilog.
     pub fn name(&self) -> &str {
         match self {
@@ -141,14 +141,14 @@ impl Block {
 
 /// Blocks joined to one, each the part of a composition.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Joined {
+pub struct JoinedBlocks {
     name: String,
-    blocks: Vec<Block>,
+    blocks: Vec<ComponentPart>,
     composition: Composition,
 }
 
 /// Puts the ports of a block on other nets than those of their names.
-type Rewire<'a> = Box<dyn Fn(&Block, Part) -> Part + 'a>;
+type Rewire<'a> = Box<dyn Fn(&ComponentPart, Part) -> Part + 'a>;
 
 /// What is not connected by name alone, and the ports of the whole.
 pub(crate) struct Wiring<'a> {
@@ -157,10 +157,15 @@ pub(crate) struct Wiring<'a> {
     pub(crate) outputs: Vec<String>,
 }
 
-impl Joined {
+impl JoinedBlocks {
     /// Joins the blocks, each under the name of its part.
-    pub(crate) fn new(name: &str, blocks: Vec<(String, Block)>, wiring: Wiring<'_>) -> Result<Self, CompositionError> {
-        let part = |(name, block): &(String, Block)| (wiring.part)(block, Part::new(name, block.model(0).ports()));
+    pub(crate) fn new(
+        name: &str,
+        blocks: Vec<(String, ComponentPart)>,
+        wiring: Wiring<'_>,
+    ) -> Result<Self, CompositionError> {
+        let part =
+            |(name, block): &(String, ComponentPart)| (wiring.part)(block, Part::new(name, block.model(0).ports()));
         let parts = blocks.iter().map(part).collect();
         let inputs: Vec<&str> = wiring.inputs.iter().map(String::as_str).collect();
         let outputs: Vec<&str> = wiring.outputs.iter().map(String::as_str).collect();
@@ -177,7 +182,7 @@ impl Joined {
     }
 
     /// Its blocks, in the order of the composition's parts.
-    pub fn blocks(&self) -> impl Iterator<Item = &Block> {
+    pub fn blocks(&self) -> impl Iterator<Item = &ComponentPart> {
         self.blocks.iter()
     }
 
@@ -196,7 +201,7 @@ impl Joined {
     fn flattened(&self, seed: u64) -> (Composition, Vec<Box<dyn Moore>>) {
         let (mut inner, mut models) = (Vec::new(), Vec::new());
         for block in &self.blocks {
-            if let Block::Joined(joined) = block {
+            if let ComponentPart::Joined(joined) = block {
                 let (composition, blocks) = joined.flattened(seed);
                 inner.push(Some(composition));
                 models.extend(blocks);

@@ -33,12 +33,12 @@ mod shaper;
 mod sliding_mode;
 
 pub(crate) use self::joined::Wiring;
-pub use self::joined::{Block, Joined};
+pub use self::joined::{ComponentPart, JoinedBlocks};
 
 use super::Moore;
 use super::composition::{Composed, Composition, CompositionError};
 use super::divider::{DIVISION_CLOCKS, DividerConfig};
-use super::pwm::{Mode, PwmConfig};
+use super::pwm::{BridgeMode, PwmConfig};
 use super::registers::{Description, MapError, RegisterMap};
 use super::shaper::ShaperConfig;
 use super::sliding_mode::{Law, Settings};
@@ -59,7 +59,7 @@ const BUS_OUTPUTS: [&str; 2] = ["avs_readdata", "irq"];
 #[derive(Debug, Clone, PartialEq)]
 pub struct Component {
     map: RegisterMap,
-    joined: Joined,
+    joined: JoinedBlocks,
 }
 
 /// Why there is no such component.
@@ -92,11 +92,11 @@ impl Component {
     /// [`ComponentError`] never, for a `config` that could be made.
     pub fn shaper(config: ShaperConfig) -> Result<Self, ComponentError> {
         let blocks = vec![
-            Block::SampleSelect {
+            ComponentPart::SampleSelect {
                 word_bits: config.word_bits(),
                 channels: config.channels(),
             },
-            Block::Shaper(Box::new(config.clone())),
+            ComponentPart::Shaper(Box::new(config.clone())),
         ];
         let wiring = shaper::wiring(&config);
         Self::new(super::registers::maps::shaper(&config), blocks, wiring)
@@ -114,7 +114,11 @@ impl Component {
         if filter_clocks > 63 {
             return Err(ComponentError::Filter(filter_clocks));
         }
-        let blocks = vec![Block::TimeBase(divider), Block::PulseCounter, Block::Divider(divider)];
+        let blocks = vec![
+            ComponentPart::TimeBase(divider),
+            ComponentPart::PulseCounter,
+            ComponentPart::Divider(divider),
+        ];
         let map = super::registers::maps::pulse_counter(&divider, filter_clocks, invert);
         Self::new(map, blocks, pulse_counter::wiring())
     }
@@ -125,12 +129,12 @@ impl Component {
     /// [`ComponentError`] never.
     pub fn sliding_mode(settings: &Settings, law: Law, modulo: bool) -> Result<Self, ComponentError> {
         let blocks = vec![
-            Block::SampleSelect {
+            ComponentPart::SampleSelect {
                 word_bits: 32,
                 channels: sliding_mode::MOTION.len(),
             },
-            Block::SettingBanks(Box::new(*settings)),
-            Block::SlidingMode,
+            ComponentPart::SettingBanks(Box::new(*settings)),
+            ComponentPart::SlidingMode,
         ];
         let map = super::registers::maps::sliding_mode(law as u32, modulo);
         Self::new(map, blocks, sliding_mode::wiring())
@@ -140,22 +144,22 @@ impl Component {
     ///
     /// # Errors
     /// [`ComponentError`] for periods other than 2 to 65,536 clocks.
-    pub fn pwm(config: PwmConfig, mode: Mode, period_clocks: u32) -> Result<Self, ComponentError> {
+    pub fn pwm(config: PwmConfig, mode: BridgeMode, period_clocks: u32) -> Result<Self, ComponentError> {
         if !(2..=65_536).contains(&period_clocks) {
             return Err(ComponentError::Period(period_clocks));
         }
         let blocks = vec![
-            Block::SampleSelect {
+            ComponentPart::SampleSelect {
                 word_bits: pwm::DUTY_BITS,
                 channels: 1,
             },
-            Block::Pwm(config),
+            ComponentPart::Pwm(config),
         ];
         let map = super::registers::maps::pwm(&config, mode, period_clocks);
         Self::new(map, blocks, pwm::wiring())
     }
 
-    fn new(description: Description, blocks: Vec<Block>, wiring: Wiring) -> Result<Self, ComponentError> {
+    fn new(description: Description, blocks: Vec<ComponentPart>, wiring: Wiring) -> Result<Self, ComponentError> {
         let name = description.name.clone();
         let blocks = blocks.into_iter().map(|block| (block.name().to_owned(), block));
         Self::joined(RegisterMap::new(description)?, &name, blocks.collect(), wiring)
@@ -165,10 +169,10 @@ impl Component {
     pub(super) fn joined(
         map: RegisterMap,
         name: &str,
-        blocks: Vec<(String, Block)>,
+        blocks: Vec<(String, ComponentPart)>,
         wiring: Wiring,
     ) -> Result<Self, ComponentError> {
-        let bank = ("registers".to_owned(), Block::Registers(Box::new(map.clone())));
+        let bank = ("registers".to_owned(), ComponentPart::Registers(Box::new(map.clone())));
         let blocks = [vec![bank], blocks].concat();
         let bus = |pins: &[&str], more: Vec<String>| {
             let pins = pins.iter().map(|pin| (*pin).to_owned());
@@ -181,7 +185,7 @@ impl Component {
         };
         Ok(Self {
             map,
-            joined: Joined::new(name, blocks, wiring)?,
+            joined: JoinedBlocks::new(name, blocks, wiring)?,
         })
     }
 
@@ -196,7 +200,7 @@ impl Component {
     }
 
     /// Its blocks, the bank first.
-    pub fn blocks(&self) -> impl Iterator<Item = &Block> {
+    pub fn blocks(&self) -> impl Iterator<Item = &ComponentPart> {
         self.joined.blocks()
     }
 
@@ -206,7 +210,7 @@ impl Component {
     }
 
     /// Its blocks, joined.
-    pub fn whole(&self) -> &Joined {
+    pub fn whole(&self) -> &JoinedBlocks {
         &self.joined
     }
 

@@ -1,6 +1,6 @@
 //! The pulse counter: the time base says when, the divider divides what the counter shows, one clock after each tick.
 
-use super::{Block, Wiring};
+use super::{ComponentPart, Wiring};
 
 /// Conduit pins.
 const INPUTS: [&str; 6] = ["a", "b", "z", "a_n", "b_n", "z_n"];
@@ -9,8 +9,8 @@ const OUTPUTS: [&str; 4] = ["tick", "position", "velocity", "velocity_valid"];
 pub(super) fn wiring() -> Wiring<'static> {
     Wiring {
         part: Box::new(|block, part| match block {
-            Block::PulseCounter => part.on("time_stamp", "edge_stamp"),
-            Block::Divider(_) => part
+            ComponentPart::PulseCounter => part.on("time_stamp", "edge_stamp"),
+            ComponentPart::Divider(_) => part
                 .on("start", "divide")
                 .on("done", "quotient_valid")
                 .on("busy", "divider_busy")

@@ -4,7 +4,7 @@
 //! Its `clear_flags` is tied high. A flag is then high as long as what it tells of, and the bank keeps it.
 
 use super::super::composition::Part;
-use super::{Block, Wiring};
+use super::{ComponentPart, Wiring};
 
 /// Conduit pins.
 const INPUTS: [&str; 6] = ["feed", "duty", "sync", "fault_n", "pll_locked", "filtered_fault_n"];
@@ -22,9 +22,9 @@ pub(super) fn wiring() -> Wiring<'static> {
     }
 }
 
-fn part(block: &Block, part: Part) -> Part {
+fn part(block: &ComponentPart, part: Part) -> Part {
     match block {
-        Block::SampleSelect { .. } => part
+        ComponentPart::SampleSelect { .. } => part
             .on("pin_strobe", "feed")
             .on("pin_x_0", "duty")
             .on("strobe", "selected_feed")
@@ -32,7 +32,7 @@ fn part(block: &Block, part: Part) -> Part {
             .tied("host_start", 0)
             .tied("pin_start", 0)
             .on("start", "no_start"),
-        Block::Pwm(_) => part
+        ComponentPart::Pwm(_) => part
             .on("feed", "selected_feed")
             .on("duty", "selected_duty")
             .tied("clear_flags", 1)

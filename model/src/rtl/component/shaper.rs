@@ -5,7 +5,7 @@
 use super::super::composition::Part;
 use super::super::registers::maps::word_name;
 use super::super::shaper::ShaperConfig;
-use super::{Block, Wiring};
+use super::{ComponentPart, Wiring};
 
 pub(super) fn wiring(config: &ShaperConfig) -> Wiring<'static> {
     let strobes = ["strobe", "start"].map(str::to_owned);
@@ -22,11 +22,11 @@ fn words(config: &ShaperConfig, name: &str) -> Vec<String> {
 }
 
 /// `xs`: the pins of the words, and the shaper's ports.
-fn rewire(xs: Vec<String>) -> impl Fn(&Block, Part) -> Part {
+fn rewire(xs: Vec<String>) -> impl Fn(&ComponentPart, Part) -> Part {
     move |block, part| {
         let words = xs.iter().enumerate();
         match block {
-            Block::SampleSelect { .. } => {
+            ComponentPart::SampleSelect { .. } => {
                 let part = part
                     .on("pin_strobe", "strobe")
                     .on("pin_start", "start")
@@ -37,7 +37,7 @@ fn rewire(xs: Vec<String>) -> impl Fn(&Block, Part) -> Part {
                         .on(&format!("x_{channel}"), &format!("sample_x_{channel}"))
                 })
             }
-            Block::Shaper(_) => {
+            ComponentPart::Shaper(_) => {
                 let part = part
                     .on("strobe", "sample_strobe")
                     .on("start", "sample_start")

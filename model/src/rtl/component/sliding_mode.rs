@@ -1,7 +1,7 @@
 //! The controller: its motion comes from registers or pins, one clock later; its settings from the active bank.
 
 use super::super::composition::Part;
-use super::{Block, Wiring};
+use super::{ComponentPart, Wiring};
 
 /// What a tick is about: pins of the component, and ports of the controller.
 pub(super) const MOTION: [&str; 5] = [
@@ -22,10 +22,10 @@ pub(super) fn wiring() -> Wiring<'static> {
     }
 }
 
-fn part(block: &Block, part: Part) -> Part {
+fn part(block: &ComponentPart, part: Part) -> Part {
     let motion = MOTION.iter().enumerate();
     match block {
-        Block::SampleSelect { .. } => {
+        ComponentPart::SampleSelect { .. } => {
             let part = part
                 .on("pin_strobe", "start")
                 .on("strobe", "selected_start")
@@ -37,8 +37,8 @@ fn part(block: &Block, part: Part) -> Part {
                     .on(&format!("x_{channel}"), &format!("selected_{name}"))
             })
         }
-        Block::SettingBanks(_) => part.on("row", "setting_address"),
-        Block::SlidingMode => motion.fold(part.on("start", "selected_start"), |part, (_, name)| {
+        ComponentPart::SettingBanks(_) => part.on("row", "setting_address"),
+        ComponentPart::SlidingMode => motion.fold(part.on("start", "selected_start"), |part, (_, name)| {
             part.on(name, &format!("selected_{name}"))
         }),
         _ => part,

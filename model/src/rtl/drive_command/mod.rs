@@ -23,12 +23,12 @@
 //! ```
 //!
 //! ```
-//! use posicast_model::rtl::axis::State;
+//! use posicast_model::rtl::axis::SupervisorState;
 //! use posicast_model::rtl::drive_command::{DriveCommand, Inputs};
 //!
 //! let mut command = DriveCommand::new();
 //! let inputs = Inputs {
-//!     axis_state: State::Ready as u8,
+//!     axis_state: SupervisorState::Ready as u8,
 //!     limit_plus_ok: true,
 //!     limit_minus_ok: true,
 //!     direct_enable: true,
@@ -42,7 +42,7 @@
 //! command.step(&Inputs { tick: true, ..inputs }); // the sign turns: 0 for a tick
 //! command.step(&Inputs { tick: true, direct_kick: true, ..inputs });
 //! assert_eq!(command.outputs().duty, -300);
-//! command.step(&Inputs { axis_state: State::Off as u8, ..inputs });
+//! command.step(&Inputs { axis_state: SupervisorState::Off as u8, ..inputs });
 //! assert_eq!((command.outputs().duty, command.outputs().pwm_enable), (0, false));
 //! ```
 
@@ -52,7 +52,7 @@ pub use ports::{
     CONTROLLER_DUTY_BITS, DUTY_BITS, DUTY_MAX, DUTY_MIN, INPUT_PORTS, Inputs, OUTPUT_PORTS, Outputs, PORTS, ports,
 };
 
-use super::axis::State;
+use super::axis::SupervisorState;
 use super::shaper::wrap;
 use super::{Moore, clocked_block, quiet_at_rest};
 
@@ -115,7 +115,7 @@ impl DriveCommand {
             return shown;
         }
         let test_changes = shown.direct_active && inputs.self_test != shown.mask_pins;
-        let permitted = inputs.axis_state == State::Ready as u8 && inputs.direct_enable && !test_changes;
+        let permitted = inputs.axis_state == SupervisorState::Ready as u8 && inputs.direct_enable && !test_changes;
         let expires = inputs.tick && self.ticks_left == 1;
         let direct = permitted
             && if inputs.direct_kick {

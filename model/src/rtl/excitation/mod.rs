@@ -28,10 +28,10 @@
 //! ```
 //!
 //! ```
-//! use posicast_model::rtl::excitation::{Excitation, Inputs, Kind, TICK_CLOCKS};
+//! use posicast_model::rtl::excitation::{Excitation, Inputs, ExcitationKind, TICK_CLOCKS};
 //!
 //! // A square of 10 counts, 2 ticks high, 2 low.
-//! let square = Inputs { enable: true, allowed: true, kind: Kind::Square, amplitude: 10 << 8, amplitude_limit: 20 << 8,
+//! let square = Inputs { enable: true, allowed: true, kind: ExcitationKind::Square, amplitude: 10 << 8, amplitude_limit: 20 << 8,
 //!     period_ticks: 4, duration_ticks: 5, ..Inputs::default() };
 //! let mut excitation = Excitation::new();
 //! excitation.step(&Inputs { enable: false, ..square });
@@ -47,7 +47,7 @@
 mod ports;
 mod wave;
 
-pub use ports::{DURATION_BITS, INPUT_PORTS, Inputs, Kind, OUTPUT_PORTS, Outputs, PORTS, ports};
+pub use ports::{DURATION_BITS, ExcitationKind, INPUT_PORTS, Inputs, OUTPUT_PORTS, Outputs, PORTS, ports};
 pub use wave::{FREQUENCY_BITS, FREQUENCY_FRACTION, PRBS_BITS, TURN_STEPS};
 
 use self::wave::{SCALE_CLOCKS, Wave};
@@ -169,7 +169,7 @@ impl Excitation {
     }
 
     fn control(&mut self, inputs: &Inputs) {
-        let wanted = inputs.enable && inputs.allowed && inputs.kind != Kind::None;
+        let wanted = inputs.enable && inputs.allowed && inputs.kind != ExcitationKind::None;
         let ended = self.signal.ticks == inputs.duration_ticks;
         self.shown.excitation_done = false;
         if self.shown.excitation_active {

@@ -5,7 +5,7 @@ use crate::rtl::ports::choices;
 
 /// What the signal is.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub enum Kind {
+pub enum ExcitationKind {
     /// None; 0.
     #[default]
     None,
@@ -20,7 +20,7 @@ pub enum Kind {
 /// Width of `duration_ticks`.
 pub const DURATION_BITS: u32 = 24;
 
-choices!(Kind: None, Prbs, Chirp, Square);
+choices!(ExcitationKind: None, Prbs, Chirp, Square);
 
 ports! {
     excitation_ports;
@@ -42,7 +42,7 @@ ports! {
         /// The axis is in HOLD or RUN, and nothing is wrong.
         allowed: Bit as bool;
         /// 0 none, 1 PRBS, 2 chirp (a triangle), 3 square.
-        kind: Bits(2) as Kind;
+        kind: Bits(2) as ExcitationKind;
         /// Q8.8 counts: 0 to 255.996.
         amplitude: Bits(16) as u16, "counts, Q8.8";
         /// Largest amplitude, Q8.8 counts; tied, from the machine file.

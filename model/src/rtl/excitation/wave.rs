@@ -1,6 +1,6 @@
 //! The wave: an angle that turns once in a period, the bits of the PRBS, and their size.
 
-use super::ports::{Inputs, Kind};
+use super::ports::{ExcitationKind, Inputs};
 
 /// Fraction bits of the frequency, in first frequencies.
 pub const FREQUENCY_FRACTION: u32 = 16;
@@ -59,7 +59,7 @@ impl Wave {
         self.frequency += u32::from(inputs.sweep);
         let overflows = self.frequency >> FREQUENCY_BITS != 0;
         self.frequency &= (1 << FREQUENCY_BITS) - 1;
-        if inputs.kind == Kind::Chirp && overflows {
+        if inputs.kind == ExcitationKind::Chirp && overflows {
             Err(TooFast)
         } else {
             Ok(())
@@ -67,8 +67,8 @@ impl Wave {
     }
 
     /// In every clock: only a chirp keeps its frequency.
-    pub(super) fn keep_frequency(&mut self, kind: Kind) {
-        if kind != Kind::Chirp {
+    pub(super) fn keep_frequency(&mut self, kind: ExcitationKind) {
+        if kind != ExcitationKind::Chirp {
             self.frequency = FIRST_FREQUENCY;
         }
     }
@@ -90,9 +90,9 @@ impl Wave {
         if turned_twice { Err(TooFast) } else { Ok(true) }
     }
 
-    fn is_negative(&self, kind: Kind) -> bool {
+    fn is_negative(&self, kind: ExcitationKind) -> bool {
         match kind {
-            Kind::Prbs => self.noise >> (PRBS_BITS - 1) & 1 != 0,
+            ExcitationKind::Prbs => self.noise >> (PRBS_BITS - 1) & 1 != 0,
             _ => self.angle & 0x80 != 0,
         }
     }
@@ -104,7 +104,7 @@ impl Wave {
         let quarter = self.angle & 0x3f ^ if self.angle & 0x40 != 0 { 0x3f } else { 0 };
         // Half a step more, so that the steps around 0 are equal to the others.
         let bits = u16::from(quarter) << 10 | 1 << 9;
-        let adds = inputs.kind != Kind::Chirp || bits >> clock & 1 != 0;
+        let adds = inputs.kind != ExcitationKind::Chirp || bits >> clock & 1 != 0;
         let amplitude = i32::from(inputs.amplitude.min(inputs.amplitude_limit));
         let addend = if adds { amplitude } else { 0 };
         if self.is_negative(inputs.kind) {
@@ -127,7 +127,7 @@ mod tests {
     fn unit_a_square_is_exactly_the_amplitude() {
         for amplitude in [0, 1, 2, 3, 255, 256, 0x7fff, 0x8000, 0xffff] {
             let inputs = Inputs {
-                kind: Kind::Square,
+                kind: ExcitationKind::Square,
                 amplitude,
                 amplitude_limit: u16::MAX,
                 ..Inputs::default()
@@ -146,7 +146,7 @@ mod tests {
     fn unit_the_triangle_is_straight_and_odd() {
         // 64 · 256: every step is 256, and half of it at the ends.
         let inputs = Inputs {
-            kind: Kind::Chirp,
+            kind: ExcitationKind::Chirp,
             amplitude: u16::MAX,
             amplitude_limit: 64 << 8,
             ..Inputs::default()
@@ -185,7 +185,7 @@ mod tests {
             ..Wave::default()
         };
         for (n, one) in reference.iter().enumerate() {
-            assert_eq!(!wave.is_negative(Kind::Prbs), *one, "bit {n}");
+            assert_eq!(!wave.is_negative(ExcitationKind::Prbs), *one, "bit {n}");
             wave.turned = false;
             wave.angle = 255;
             assert_eq!(wave.turn(0), Ok(true));

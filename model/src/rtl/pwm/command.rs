@@ -3,7 +3,7 @@
 //! The accumulator holds four times the clocks from the edge and counts them, so that its sign is the level. In the 16 clocks
 //! before a boundary it computes the next half's instead. The table of steps is in `posicast_hdl::pwm`'s `command`.
 
-use super::ports::{Inputs, Mode};
+use super::ports::{BridgeMode, Inputs};
 
 /// The step in which a valley's command is read; a peak's is read in step 0.
 const READ_STEP: u8 = 16;
@@ -38,7 +38,7 @@ pub(super) struct Command {
     /// The half that is computed, and then counted, has the rise.
     pub(super) rises: bool,
     takes: bool,
-    pub(super) mode: Mode,
+    pub(super) mode: BridgeMode,
     duty: i32,
     /// 19 bits.
     pub(super) accumulator: i32,
@@ -126,7 +126,7 @@ impl Command {
             (self.rises, self.takes) = (begins_valley, taking);
         }
         if taking {
-            (self.mode, self.duty) = (Mode::from_register(inputs.mode), inputs.duty);
+            (self.mode, self.duty) = (BridgeMode::from_register(inputs.mode), inputs.duty);
         }
         self.step = match (around.valley_lead, around.peak_lead, self.step) {
             (true, ..) => 1,
@@ -156,7 +156,7 @@ impl Command {
     }
 
     fn one_sided(&self) -> bool {
-        self.mode == Mode::HalfBridge && self.duty < 0
+        self.mode == BridgeMode::HalfBridge && self.duty < 0
     }
 
     /// The duty, limited; its size where the mode has no use for the sign.
@@ -167,7 +167,7 @@ impl Command {
             self.duty.abs()
         };
         match self.mode {
-            Mode::Locked => size * self.duty.signum(),
+            BridgeMode::Locked => size * self.duty.signum(),
             _ => size,
         }
     }
@@ -197,7 +197,7 @@ impl Command {
             (3, _) => (-period - 1, Fate::Seen),
             (4, _) => load,
             (5, _) => match self.mode {
-                Mode::Locked => (period, Fate::Kept),
+                BridgeMode::Locked => (period, Fate::Kept),
                 _ => load,
             },
             (6, true) | (12 | 13, false) => (-dead, Fate::Kept),

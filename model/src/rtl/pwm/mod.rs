@@ -46,7 +46,7 @@ mod quiet;
 mod trip;
 
 pub use config::{ActiveLow, PwmConfig, PwmConfigError, TIME_BITS};
-pub use ports::{Gates, INPUT_PORTS, Inputs, Mode, OUTPUT_PORTS, Outputs, PORTS, ports};
+pub use ports::{BridgeMode, Gates, INPUT_PORTS, Inputs, OUTPUT_PORTS, Outputs, PORTS, ports};
 
 use self::command::{Command, Surroundings};
 use self::leg::{Leg, Want};
@@ -86,7 +86,7 @@ struct State {
     minimum_pulse: u16,
     command: Command,
     /// Latched at the last boundary with an update.
-    mode: Mode,
+    mode: BridgeMode,
     negative: bool,
     pattern: Pattern,
     leg: Leg,
@@ -124,7 +124,7 @@ impl State {
             dead_time: config.dead_time_floor_clocks(),
             minimum_pulse: config.minimum_pulse_floor_clocks(),
             command: Command::default(),
-            mode: Mode::default(),
+            mode: BridgeMode::default(),
             negative: false,
             pattern: Pattern::Off,
             leg: Leg::default(),
@@ -254,7 +254,7 @@ impl State {
             (_, Pattern::Low, _) | (_, Pattern::Pulse, false) => Want::Low,
             (_, Pattern::High, _) | (_, Pattern::Pulse, true) => Want::High,
         };
-        let low_first = state.mode == Mode::Direction;
+        let low_first = state.mode == BridgeMode::Direction;
         state.leg.clock(want, low_first, state.dead_time, state.minimum_pulse);
         state.gates = Gates::of(state.mode, state.negative, state.leg.awake(), state.leg.sides());
 

@@ -5,7 +5,7 @@ use crate::rtl::ports::PortValue;
 
 /// What the four pins do.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub enum Mode {
+pub enum BridgeMode {
     /// `a_high` is the PWM of |duty|, `b_high` its direction (on is negative); the others are off.
     #[default]
     Direction,
@@ -17,7 +17,7 @@ pub enum Mode {
     Locked,
 }
 
-impl Mode {
+impl BridgeMode {
     /// From the register's value, 2 bits.
     #[inline]
     pub fn from_register(value: u8) -> Self {
@@ -52,7 +52,7 @@ impl Gates {
     /// What a leg, and the rest of the bridge, are in a mode. `leg` is the leg that switches: its high side, its low side.
     /// `awake`: its first dead time is over.
     #[inline]
-    pub(super) fn of(mode: Mode, negative: bool, awake: bool, leg: (bool, bool)) -> Self {
+    pub(super) fn of(mode: BridgeMode, negative: bool, awake: bool, leg: (bool, bool)) -> Self {
         let (high, low) = leg;
         let gates = |a_high, a_low, b_high, b_low| Self {
             a_high,
@@ -61,11 +61,11 @@ impl Gates {
             b_low,
         };
         match (mode, negative) {
-            (Mode::Direction, _) => gates(high, false, awake && negative, false),
-            (Mode::HalfBridge, _) => gates(high, low, false, false),
-            (Mode::Unipolar, false) => gates(high, low, false, awake),
-            (Mode::Unipolar, true) => gates(false, awake, high, low),
-            (Mode::Locked, _) => gates(high, low, low, high),
+            (BridgeMode::Direction, _) => gates(high, false, awake && negative, false),
+            (BridgeMode::HalfBridge, _) => gates(high, low, false, false),
+            (BridgeMode::Unipolar, false) => gates(high, low, false, awake),
+            (BridgeMode::Unipolar, true) => gates(false, awake, high, low),
+            (BridgeMode::Locked, _) => gates(high, low, low, high),
         }
     }
 }

@@ -19,11 +19,11 @@
 //! boundary before which the low side is on: then the legs change over, and no pin moves.
 //!
 //! ```
-//! use posicast_model::rtl::pwm::Mode;
+//! use posicast_model::rtl::pwm::BridgeMode;
 //! use posicast_model::rtl::pwm::pulses::{Bridge, Half, Latched, Timing};
 //!
 //! let timing = Timing { period: 100, dead_time: 4, minimum_pulse: 6 };
-//! let latched = Latched { mode: Mode::HalfBridge, duty: 41, max_duty: 100 };
+//! let latched = Latched { mode: BridgeMode::HalfBridge, duty: 41, max_duty: 100 };
 //! let mut bridge = Bridge::default();
 //! let mut edges = |half, latched| -> Vec<i64> {
 //!     bridge.half(&timing, half, latched).iter().map(|edge| edge.clock).collect()
@@ -35,7 +35,7 @@
 //! assert_eq!(edges(Half::Falling, None), [19, 23]);
 //! ```
 
-use super::ports::{Gates, Mode};
+use super::ports::{BridgeMode, Gates};
 
 /// What is taken while the outputs are off, in clocks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -52,7 +52,7 @@ pub struct Timing {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Latched {
     /// What the pins do.
-    pub mode: Mode,
+    pub mode: BridgeMode,
     /// Clocks, signed.
     pub duty: i64,
     /// Largest |duty|.
@@ -70,7 +70,7 @@ pub enum Half {
 
 /// A change of the gates.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Edge {
+pub struct PulseEdge {
     /// Clocks since the boundary.
     pub clock: i64,
     /// The gates from this clock on.
@@ -104,7 +104,7 @@ enum Leg {
 /// A bridge at a boundary: all that one half hands to the next. The default is one that is off.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Bridge {
-    mode: Mode,
+    mode: BridgeMode,
     negative: bool,
     pattern: Option<Pattern>,
     leg: Leg,
@@ -128,9 +128,9 @@ impl Timing {
     pub fn width(&self, latched: &Latched) -> i64 {
         let duty = latched.duty.clamp(-latched.max_duty, latched.max_duty);
         let of_leg = match latched.mode {
-            Mode::Direction | Mode::Unipolar => duty.abs(),
-            Mode::HalfBridge => duty.max(0),
-            Mode::Locked => (self.period + duty).div_euclid(2),
+            BridgeMode::Direction | BridgeMode::Unipolar => duty.abs(),
+            BridgeMode::HalfBridge => duty.max(0),
+            BridgeMode::Locked => (self.period + duty).div_euclid(2),
         };
         of_leg - self.dead_time
     }
@@ -138,7 +138,7 @@ impl Timing {
 
 impl Bridge {
     /// The edges of half a period. `latched`: what is taken at its boundary; none, and the last values hold.
-    pub fn half(&mut self, timing: &Timing, half: Half, latched: Option<&Latched>) -> Vec<Edge> {
+    pub fn half(&mut self, timing: &Timing, half: Half, latched: Option<&Latched>) -> Vec<PulseEdge> {
         if let Some(latched) = latched {
             self.pattern = Some(self.take(timing, latched));
         }
@@ -192,7 +192,7 @@ impl Bridge {
         let pattern = timing.pattern(timing.width(latched));
         let changes_mode = self.pattern.is_some() && latched.mode != self.mode;
         self.mode = latched.mode;
-        let has_direction = matches!(latched.mode, Mode::Direction | Mode::Unipolar);
+        let has_direction = matches!(latched.mode, BridgeMode::Direction | BridgeMode::Unipolar);
         let turns = has_direction && pattern != Pattern::Low && (latched.duty < 0) != self.negative;
         let may_turn = match self.leg {
             Leg::Off | Leg::Dead { high: None, .. } => true,
@@ -208,7 +208,7 @@ impl Bridge {
     }
 
     /// Wants a side on in a span of time.
-    fn drive(&mut self, timing: &Timing, span: std::ops::Range<i64>, wants_high: bool, edges: &mut Vec<Edge>) {
+    fn drive(&mut self, timing: &Timing, span: std::ops::Range<i64>, wants_high: bool, edges: &mut Vec<PulseEdge>) {
         if span.is_empty() {
             return;
         }
@@ -223,7 +223,7 @@ impl Bridge {
         loop {
             let (at, leg) = match self.leg {
                 Leg::Dead { until, high } => {
-                    let high = high.unwrap_or(wants_high && self.mode != Mode::Direction);
+                    let high = high.unwrap_or(wants_high && self.mode != BridgeMode::Direction);
                     (until, Leg::On { since: until, high })
                 }
                 Leg::On { since, high } if high != wants_high => {
@@ -244,7 +244,7 @@ impl Bridge {
     }
 
     /// Notes the gates from a clock on, if they differ.
-    fn show(&mut self, clock: i64, edges: &mut Vec<Edge>) {
+    fn show(&mut self, clock: i64, edges: &mut Vec<PulseEdge>) {
         let (awake, sides) = match self.leg {
             Leg::Off | Leg::Dead { high: None, .. } => (false, (false, false)),
             Leg::Dead { .. } => (true, (false, false)),
@@ -253,7 +253,7 @@ impl Bridge {
         let gates = Gates::of(self.mode, self.negative, awake, sides);
         if gates != self.gates {
             self.gates = gates;
-            edges.push(Edge { clock, gates });
+            edges.push(PulseEdge { clock, gates });
         }
     }
 }

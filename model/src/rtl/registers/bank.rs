@@ -3,7 +3,7 @@
 mod plan;
 
 use self::plan::{Plan, plan};
-use super::description::{Access, Source};
+use super::description::{Access, FlagSource};
 use super::map::RegisterMap;
 use crate::rtl::{ClockedBlock, Direction, FOREVER, Moore, Port, StepError};
 
@@ -264,10 +264,10 @@ impl RegisterBank {
             let set = plan.wires.iter().fold(0, |word, wire| word | wire.bits(inputs));
             let own = plan.own_flags.iter().fold(0, |word, flag| {
                 let happened = match flag.source {
-                    Source::PartialWrite => refusals.partial,
-                    Source::GuardRefused => refusals.guard,
-                    Source::CommitRejected => refusals.commit,
-                    Source::Input => false,
+                    FlagSource::PartialWrite => refusals.partial,
+                    FlagSource::GuardRefused => refusals.guard,
+                    FlagSource::CommitRejected => refusals.commit,
+                    FlagSource::Input => false,
                 };
                 word | if happened { flag.bit } else { 0 }
             });

@@ -1,6 +1,8 @@
 //! Does a description hold together?
 
-use super::description::{Access, Description, Field, Format, MOST_WINDOWS, Register, Source, WINDOW_WORDS, WORD_BITS};
+use super::description::{
+    Access, Description, Field, FlagSource, Format, MOST_WINDOWS, Register, WINDOW_WORDS, WORD_BITS,
+};
 use super::error::MapError;
 
 /// Names that the bank's Verilog has for itself.
@@ -213,7 +215,7 @@ fn access(register: &Register, registers: &[Register]) -> Result<(), MapError> {
     }
     let may_choose = register.access.is_sticky();
     if !may_choose && !matches!(register.access, Access::InterruptEnable | Access::InterruptTest) {
-        let chosen = register.fields.iter().any(|field| field.source != Source::Input);
+        let chosen = register.fields.iter().any(|field| field.source != FlagSource::Input);
         if chosen {
             return wrong("only flags have a source");
         }
@@ -229,7 +231,7 @@ fn together(registers: &[Register]) -> Result<(), MapError> {
     let guarded = count(&|a| matches!(a, Access::Guarded { .. }));
     let whole_words = count(&Access::whole_words);
     let interrupts = count(&|a| *a == Access::InterruptState);
-    let has_flag = |source: Source| {
+    let has_flag = |source: FlagSource| {
         let flags = registers
             .iter()
             .filter(|r| r.access.is_sticky())
@@ -273,19 +275,19 @@ fn together(registers: &[Register]) -> Result<(), MapError> {
         (
             "command",
             whole_words,
-            Source::PartialWrite,
+            FlagSource::PartialWrite,
             "a flag set by `PartialWrite` is needed",
         ),
         (
             "guarded",
             guarded,
-            Source::GuardRefused,
+            FlagSource::GuardRefused,
             "a flag set by `GuardRefused` is needed",
         ),
         (
             "staged",
             staged,
-            Source::CommitRejected,
+            FlagSource::CommitRejected,
             "a flag set by `CommitRejected` is needed",
         ),
     ] {

@@ -75,7 +75,7 @@ pub enum Access {
         /// How many words: 2, 4, … 64.
         words: u32,
     },
-    /// Each field is a sticky flag of one bit: set while its [`Source`] is high, cleared by writing one; set wins.
+    /// Each field is a sticky flag of one bit: set while its [`FlagSource`] is high, cleared by writing one; set wins.
     Sticky,
     /// A whole word of any value asks for a commit, which the next `tick` applies: all staged registers at once. Its one
     /// field reads as one while a commit waits.
@@ -111,7 +111,7 @@ pub struct Field {
     /// How its bits are a number.
     pub format: Format,
     /// Of flags: what sets it.
-    pub source: Source,
+    pub source: FlagSource,
     /// Of guarded fields: the smallest value that a write may give, unsigned.
     pub minimum: u32,
 }
@@ -147,7 +147,7 @@ pub struct Choice {
 
 /// What sets a flag.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Source {
+pub enum FlagSource {
     /// The input of the field's name.
     Input,
     /// A write of a part of a word that only takes whole words.
@@ -277,7 +277,7 @@ impl Field {
             meaning: meaning.to_owned(),
             unit: String::new(),
             format: Format::Unsigned,
-            source: Source::Input,
+            source: FlagSource::Input,
             minimum: 0,
         }
     }
@@ -332,7 +332,7 @@ impl Field {
 
     /// Set by this.
     #[must_use]
-    pub fn set_by(mut self, source: Source) -> Self {
+    pub fn set_by(mut self, source: FlagSource) -> Self {
         self.source = source;
         self
     }

@@ -1,6 +1,6 @@
 //! A description that holds together, and the ports of its bank.
 
-use super::description::{Access, Description, Field, Register, Source, WINDOW_WORDS};
+use super::description::{Access, Description, Field, FlagSource, Register, WINDOW_WORDS};
 use super::error::MapError;
 use crate::rtl::{Direction, Port};
 
@@ -126,7 +126,7 @@ fn ports(description: &Description) -> Result<Vec<Port>, MapError> {
         match &register.access {
             Access::Live => add(&mut ports, register, fields.map(|field| field_port(field, Input)))?,
             Access::Sticky | Access::InterruptState => {
-                let from_input = fields.filter(|field| field.source == Source::Input);
+                let from_input = fields.filter(|field| field.source == FlagSource::Input);
                 add(&mut ports, register, from_input.map(|field| field_port(field, Input)))?;
             }
             Access::Guarded { while_low } => {

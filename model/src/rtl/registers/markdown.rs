@@ -1,6 +1,6 @@
 //! A register map as Markdown: the generated part of `docs/registers.md`.
 
-use super::description::{Access, Field, Format, Register, Source};
+use super::description::{Access, Field, FlagSource, Format, Register};
 use super::map::RegisterMap;
 use std::fmt::Write;
 
@@ -129,10 +129,10 @@ fn format(field: &Field) -> String {
 
 fn meaning(field: &Field) -> String {
     let own = match field.source {
-        Source::Input => "",
-        Source::PartialWrite => "; set by a write of a part of a whole word",
-        Source::GuardRefused => "; set by a refused write of a guarded register",
-        Source::CommitRejected => "; set by a commit or staged write while a commit waits",
+        FlagSource::Input => "",
+        FlagSource::PartialWrite => "; set by a write of a part of a whole word",
+        FlagSource::GuardRefused => "; set by a refused write of a guarded register",
+        FlagSource::CommitRejected => "; set by a commit or staged write while a commit waits",
     };
     let least = match field.minimum {
         0 => String::new(),

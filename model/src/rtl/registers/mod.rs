@@ -41,7 +41,7 @@ mod markdown;
 
 pub use bank::RegisterBank;
 pub use description::{
-    Access, Choice, Description, Field, Format, MOST_WINDOWS, Register, Source, WINDOW_WORDS, WORD_BITS,
+    Access, Choice, Description, Field, FlagSource, Format, MOST_WINDOWS, Register, WINDOW_WORDS, WORD_BITS,
 };
 pub use error::MapError;
 pub use map::RegisterMap;

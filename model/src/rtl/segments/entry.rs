@@ -24,7 +24,7 @@ pub const RESERVED: u32 = !(POINT | NOTIFY | ((1 << TICK_BITS) - 1));
 
 /// What an entry commands for its ticks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Motion {
+pub enum EntryMotion {
     /// A constant jerk, Q8.32 counts per tick³, 40 bits.
     Jerk(i64),
     /// A state, taken at once and held.
@@ -48,7 +48,7 @@ pub struct Entry {
     /// For so many ticks, 1 to 2^24 − 1.
     pub ticks: u32,
     /// The motion of the segment.
-    pub motion: Motion,
+    pub motion: EntryMotion,
     /// Tell the host when it has ended.
     pub notify: bool,
 }
@@ -58,8 +58,8 @@ impl Entry {
     pub fn words(&self) -> [u32; ENTRY_WORDS] {
         let notify = if self.notify { NOTIFY } else { 0 };
         match self.motion {
-            Motion::Jerk(jerk) => [jerk as u32, (jerk >> 32) as u32, 0, self.ticks | notify],
-            Motion::Point(point) => [
+            EntryMotion::Jerk(jerk) => [jerk as u32, (jerk >> 32) as u32, 0, self.ticks | notify],
+            EntryMotion::Point(point) => [
                 point.position as u32,
                 point.velocity as u32,
                 point.acceleration as u32,
@@ -72,14 +72,14 @@ impl Entry {
     pub(super) fn from_words(words: &[u32; ENTRY_WORDS]) -> Self {
         let [first, second, third, last] = *words;
         let motion = if last & POINT != 0 {
-            Motion::Point(Point {
+            EntryMotion::Point(Point {
                 position: first as i32,
                 velocity: second as i32,
                 acceleration: third as i32,
             })
         } else {
             let jerk = u64::from(first) | u64::from(second) << 32;
-            Motion::Jerk(wrap(jerk as i64, ACCELERATION_BITS))
+            EntryMotion::Jerk(wrap(jerk as i64, ACCELERATION_BITS))
         };
         Self {
             ticks: last & ((1 << TICK_BITS) - 1),
@@ -101,15 +101,15 @@ mod tests {
 
     #[test]
     fn unit_words_and_back() {
-        let point = Motion::Point(Point {
+        let point = EntryMotion::Point(Point {
             position: -1,
             velocity: i32::MAX,
             acceleration: i32::MIN,
         });
         for motion in [
-            Motion::Jerk(-1),
-            Motion::Jerk((1 << 39) - 1),
-            Motion::Jerk(-(1 << 39)),
+            EntryMotion::Jerk(-1),
+            EntryMotion::Jerk((1 << 39) - 1),
+            EntryMotion::Jerk(-(1 << 39)),
             point,
         ] {
             for notify in [false, true] {
@@ -121,7 +121,7 @@ mod tests {
                 let words = entry.words();
                 assert_eq!(Entry::from_words(&words), entry);
                 assert_eq!(words[3] & RESERVED, 0);
-                assert!(matches!(motion, Motion::Point(_)) || !too_wide(words[1]));
+                assert!(matches!(motion, EntryMotion::Point(_)) || !too_wide(words[1]));
             }
         }
         assert!(too_wide(0x80) && too_wide(0xffff_ff7f) && !too_wide(0x7f) && !too_wide(0xffff_ff80));

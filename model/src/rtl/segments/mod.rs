@@ -16,13 +16,13 @@
 //! ```
 //!
 //! ```
-//! use posicast_model::rtl::segments::{Entry, Inputs, Motion, Segments, State};
+//! use posicast_model::rtl::segments::{Entry, Inputs, EntryMotion, Segments, SegmentsState};
 //!
 //! // There and back in 4 ticks of jerk j, −j, −j, j: it ends at rest, 2·j further.
 //! let jerk = 1i64 << 32;
 //! let mut segments = Segments::new(1);
 //! for (ticks, jerk) in [(1, jerk), (2, -jerk), (1, jerk)] {
-//!     let entry = Entry { ticks, motion: Motion::Jerk(jerk), notify: false };
+//!     let entry = Entry { ticks, motion: EntryMotion::Jerk(jerk), notify: false };
 //!     for (word, data) in (0..).zip(entry.words()) {
 //!         segments.step(&Inputs { write: true, word, data, ..Inputs::default() });
 //!     }
@@ -32,7 +32,7 @@
 //!     segments.hold(&Inputs { enable: true, ..Inputs::default() }, 100);
 //! }
 //! let shown = segments.outputs(0);
-//! assert_eq!((shown.position, shown.velocity, shown.state), (2 << 8, 0, State::Hold));
+//! assert_eq!((shown.position, shown.velocity, shown.state), (2 << 8, 0, SegmentsState::Hold));
 //! ```
 
 mod entry;
@@ -40,13 +40,13 @@ mod fifo;
 mod integrator;
 mod ports;
 
-pub use entry::{ACCELERATION_BITS, ENTRY_WORDS, Entry, Motion, NOTIFY, POINT, Point, RESERVED, TICK_BITS};
+pub use entry::{ACCELERATION_BITS, ENTRY_WORDS, Entry, EntryMotion, NOTIFY, POINT, Point, RESERVED, TICK_BITS};
 pub use fifo::ENTRIES_MAX;
 pub use integrator::{
     ACCELERATION_FRACTION, FRACTION_BITS, Integrator, Overflow, POSITION_FRACTION, REACH_COUNTS, STAND_COUNTS,
     VELOCITY_BITS, VELOCITY_FRACTION,
 };
-pub use ports::{INPUT_PORTS, Inputs, OUTPUT_PORTS, Outputs, PORTS, State, ports};
+pub use ports::{INPUT_PORTS, Inputs, OUTPUT_PORTS, Outputs, PORTS, SegmentsState, ports};
 
 use self::fifo::{Fifo, Pointers};
 use super::{FOREVER, Moore, OutputKind, clocked_block};
@@ -160,8 +160,8 @@ impl Segments {
         let level = self.fifo.level();
         self.begin_clock(inputs);
         if inputs.write {
-            let closed = matches!(shown.state, State::Stop | State::Stopped);
-            let plays = shown.state == State::Move;
+            let closed = matches!(shown.state, SegmentsState::Stop | SegmentsState::Stopped);
+            let plays = shown.state == SegmentsState::Move;
             let written = self.fifo.write(inputs.word, inputs.data, closed, plays);
             self.registers.shown.refused |= written.refused;
             self.registers.shown.malformed |= written.malformed;
@@ -202,17 +202,17 @@ impl Segments {
         let stands = !inputs.modulo && registers.at.leaves(STAND_COUNTS);
         registers.stop_deceleration = if stands { 0 } else { inputs.stop_deceleration };
         let Outputs { state, rests, held, .. } = &mut registers.shown;
-        *held = inputs.feed_hold && *rests && *state == State::Move;
+        *held = inputs.feed_hold && *rests && *state == SegmentsState::Move;
         let mut flush = requests.flush;
         if requests.preset {
             registers.at = Integrator::resting_at(inputs.preset_position);
-            (*state, flush, *held) = (State::Hold, true, false);
+            (*state, flush, *held) = (SegmentsState::Hold, true, false);
         } else {
-            let stops = requests.quick_stop || (!inputs.enable && *state == State::Move);
+            let stops = requests.quick_stop || (!inputs.enable && *state == SegmentsState::Move);
             match *state {
-                State::Move if stops => (*state, flush, *held) = (State::Stop, true, false),
-                State::Hold if stops => (*state, flush) = (State::Stopped, true),
-                State::Stopped if requests.restart && !stops => *state = State::Hold,
+                SegmentsState::Move if stops => (*state, flush, *held) = (SegmentsState::Stop, true, false),
+                SegmentsState::Hold if stops => (*state, flush) = (SegmentsState::Stopped, true),
+                SegmentsState::Stopped if requests.restart && !stops => *state = SegmentsState::Hold,
                 _ => {}
             }
         }
@@ -233,15 +233,17 @@ impl Segments {
         *overflowed = false;
         match (shown.state, playing.map(|entry| entry.motion)) {
             _ if shown.held => {}
-            (State::Move, Some(Motion::Jerk(jerk))) => *overflowed = at.jerk(jerk).is_err(),
-            (State::Move, Some(Motion::Point(point))) => *at = Integrator::at_point(&point),
-            (State::Stop, _) => at.stop(i64::from(*stop_deceleration) << (FRACTION_BITS - ACCELERATION_FRACTION)),
+            (SegmentsState::Move, Some(EntryMotion::Jerk(jerk))) => *overflowed = at.jerk(jerk).is_err(),
+            (SegmentsState::Move, Some(EntryMotion::Point(point))) => *at = Integrator::at_point(&point),
+            (SegmentsState::Stop, _) => {
+                at.stop(i64::from(*stop_deceleration) << (FRACTION_BITS - ACCELERATION_FRACTION))
+            }
             _ => {}
         }
     }
 
     /// The outputs of this tick, and what the next one does.
-    fn decide(&mut self, state: State, entry_waits: bool, inputs: &Inputs) {
+    fn decide(&mut self, state: SegmentsState, entry_waits: bool, inputs: &Inputs) {
         let Registers {
             phase,
             at,
@@ -258,7 +260,7 @@ impl Segments {
         let leaves = !inputs.modulo && at.leaves(REACH_COUNTS) && !at.at_rest();
         match (state, playing.as_mut()) {
             _ if shown.held => {}
-            (State::Move, Some(entry)) => {
+            (SegmentsState::Move, Some(entry)) => {
                 entry.ticks -= 1;
                 let ended = entry.ticks == 0;
                 shown.notify = ended && entry.notify && !*overflowed && !leaves;
@@ -266,21 +268,21 @@ impl Segments {
                     shown.overflow |= *overflowed;
                     shown.out_of_range |= !*overflowed && leaves;
                     shown.underrun |= !*overflowed && !leaves;
-                    shown.state = State::Stop;
+                    shown.state = SegmentsState::Stop;
                     self.fifo.flush();
                 } else if ended && entry_waits {
                     next_is_read = true;
                 } else if ended {
-                    shown.state = State::Hold;
+                    shown.state = SegmentsState::Hold;
                     shown.done = true;
                 }
             }
-            (State::Stop, _) if at.at_rest() => {
-                shown.state = State::Stopped;
+            (SegmentsState::Stop, _) if at.at_rest() => {
+                shown.state = SegmentsState::Stopped;
                 shown.done = true;
             }
-            (State::Hold, _) if *enabled && inputs.enable && entry_waits => {
-                shown.state = State::Move;
+            (SegmentsState::Hold, _) if *enabled && inputs.enable && entry_waits => {
+                shown.state = SegmentsState::Move;
                 next_is_read = true;
             }
             _ => {}

@@ -5,7 +5,7 @@ use crate::rtl::ports::choices;
 
 /// What the block is doing.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub enum State {
+pub enum SegmentsState {
     /// At rest, waiting for an entry; 0.
     #[default]
     Hold,
@@ -17,7 +17,7 @@ pub enum State {
     Stopped,
 }
 
-choices!(State: Hold, Move, Stop, Stopped);
+choices!(SegmentsState: Hold, Move, Stop, Stopped);
 
 ports! {
     segments_ports;
@@ -69,7 +69,7 @@ ports! {
         /// One clock: the three are those of this tick.
         valid: Bit as bool;
         /// 0 hold, 1 move, 2 stop, 3 stopped.
-        state: Bits(2) as State;
+        state: Bits(2) as SegmentsState;
         /// Entries that wait, 0 to 64.
         level: Bits(7) as u8, "entries";
         /// At most `low_water` entries wait.

@@ -17,12 +17,12 @@ pub const CHANNELS_MAX: usize = 3;
 const SHARED_RING_ADDRESS_BITS_MAX: u32 = 12;
 /// Clocks of a pass beyond one per tap: table (two), ring, multiplier (three), accumulator, rounding.
 pub const PASS_OVERHEAD_CLOCKS: u32 = 8;
-/// Clocks of a pass for [`Motion`] beyond that: handover, choice of the channel's sample. Between two channels is one more.
+/// Clocks of a pass for [`ShaperMotion`] beyond that: handover, choice of the channel's sample. Between two channels is one more.
 pub const MOTION_OVERHEAD_CLOCKS: u32 = 2;
 
 /// Clocks from a strobe to its `valid`, and the smallest distance of two strobes without `overrun`.
 ///
-/// `products` are the taps of the table; for [`Motion`] see [`ShaperConfig::pass_clocks`].
+/// `products` are the taps of the table; for [`ShaperMotion`] see [`ShaperConfig::pass_clocks`].
 pub fn pass_clocks(products: u32) -> u32 {
     products.saturating_add(PASS_OVERHEAD_CLOCKS)
 }
@@ -30,7 +30,7 @@ pub fn pass_clocks(products: u32) -> u32 {
 /// What a shaper for commands in motion has beyond the plain one: channels that share the table and the multiplier, a
 /// `swap_how` that can hand over while moving, and positions that wrap.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Motion {
+pub struct ShaperMotion {
     /// 1 to 3: position, velocity, acceleration.
     pub channels: u32,
     /// A rotary axis: the position is counted modulo 2^W and never saturates.
@@ -46,7 +46,7 @@ pub struct ShaperConfig {
     table: TapTable,
     /// Of the machine's table, and of those to load as far as they were announced.
     largest_taps: u32,
-    motion: Option<Motion>,
+    motion: Option<ShaperMotion>,
 }
 
 /// Why no shaper can be built.
@@ -184,7 +184,7 @@ impl ShaperConfig {
     /// # Errors
     /// [`ShaperConfigError`] for other than 1 to 3 channels, a width that is not in [`MOTION_WORD_BITS`], and a ring above
     /// 2^12 samples with more than one channel.
-    pub fn for_motion(mut self, motion: Motion) -> Result<Self, ShaperConfigError> {
+    pub fn for_motion(mut self, motion: ShaperMotion) -> Result<Self, ShaperConfigError> {
         if !(1..=CHANNELS_MAX as u32).contains(&motion.channels) {
             return Err(ShaperConfigError::Channels(motion.channels));
         }
@@ -221,7 +221,7 @@ impl ShaperConfig {
     }
 
     /// What it has for commands in motion; nothing in the plain shaper.
-    pub fn motion(&self) -> Option<Motion> {
+    pub fn motion(&self) -> Option<ShaperMotion> {
         self.motion
     }
 
@@ -298,7 +298,7 @@ impl ShaperConfig {
     /// Clocks from a strobe to its `valid`, and the smallest distance of two strobes without `overrun`, where a pass has so
     /// many products: for motion [`MOTION_OVERHEAD_CLOCKS`] more than [`pass_clocks`], and one between two channels.
     pub fn pass_clocks(&self, products: u32) -> u32 {
-        let overhead = |motion: Motion| MOTION_OVERHEAD_CLOCKS + motion.channels - 1;
+        let overhead = |motion: ShaperMotion| MOTION_OVERHEAD_CLOCKS + motion.channels - 1;
         let of_motion = self.motion.map_or(0, overhead);
         pass_clocks(products).saturating_add(of_motion)
     }

@@ -7,7 +7,7 @@
 //! | [`ShaperConfig`] | what is fixed when a shaper is built: word width, sizes of its memories, the table in its ROM |
 //! | [`Shaper`] | cycle accurate at the ports, one [`Shaper::step`] per clock, from typed [`Inputs`] to typed [`Outputs`] |
 //! | [`SampleShaper`] | the same samples without the clocks: one [`SampleShaper::push`] per sample |
-//! | [`Motion`] | what a shaper for commands in motion has more: channels that share a table, handover, modulo axes |
+//! | [`ShaperMotion`] | what a shaper for commands in motion has more: channels that share a table, handover, modulo axes |
 //! | [`MotionShaper`] | its samples without the clocks |
 //!
 //! ```text
@@ -54,13 +54,13 @@ mod tables;
 
 pub use clocked::Shaper;
 pub use config::{
-    CHANNELS_MAX, MOTION_OVERHEAD_CLOCKS, MOTION_WORD_BITS, Motion, PASS_OVERHEAD_CLOCKS, PassError, RING_ADDRESS_BITS,
-    ShaperConfig, ShaperConfigError, TAP_INDEX_BITS, WORD_BITS, pass_clocks,
+    CHANNELS_MAX, MOTION_OVERHEAD_CLOCKS, MOTION_WORD_BITS, PASS_OVERHEAD_CLOCKS, PassError, RING_ADDRESS_BITS,
+    ShaperConfig, ShaperConfigError, ShaperMotion, TAP_INDEX_BITS, WORD_BITS, pass_clocks,
 };
 pub(crate) use memory::Arbitrary;
 pub use motion::MotionShaper;
 pub use ports::{Inputs, Outputs, ports, swap_how};
-pub use sample::{SampleShaper, TableError};
+pub use sample::{LoadError, SampleShaper};
 
 use tables::Tables;
 

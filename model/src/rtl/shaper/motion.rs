@@ -3,7 +3,7 @@
 use super::config::{CHANNELS_MAX, ShaperConfig};
 use super::finish;
 use super::ports::swap_how;
-use super::sample::{TableError, loadable};
+use super::sample::{LoadError, loadable};
 use super::tables::Tables;
 use super::wrap;
 use crate::taps::TapTable;
@@ -81,8 +81,8 @@ impl MotionShaper {
     /// way is forgotten, a handover cut short: the hardware refuses that, see [`Self::changes`].
     ///
     /// # Errors
-    /// [`TableError`] where the shaper that was built cannot hold it; the table stays as it was.
-    pub fn swap(&mut self, table: &TapTable, how: u8) -> Result<(), TableError> {
+    /// [`LoadError`] where the shaper that was built cannot hold it; the table stays as it was.
+    pub fn swap(&mut self, table: &TapTable, how: u8) -> Result<(), LoadError> {
         loadable(&self.config, table)?;
         self.change = Some(Change {
             table: table.clone(),

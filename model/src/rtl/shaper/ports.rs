@@ -81,7 +81,7 @@ pub struct Outputs {
 
 /// The ports of a shaper in the order of the Verilog's port list, without `clk`.
 ///
-/// The plain shaper's words are `x` and `y`; those of a shaper for [motion](super::Motion) are `x_0`, `y_0` and so on, one
+/// The plain shaper's words are `x` and `y`; those of a shaper for [motion](super::ShaperMotion) are `x_0`, `y_0` and so on, one
 /// per channel, and it has `swap_how`.
 pub fn ports(config: &ShaperConfig) -> Vec<Port> {
     use Direction::{Input, Output};

@@ -6,7 +6,7 @@ use crate::taps::TapTable;
 
 /// Why a table cannot be loaded into a shaper.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
-pub enum TableError {
+pub enum LoadError {
     /// A table of another `F`.
     #[error("the table has {found} fraction bits, the shaper is built for {allowed}: digitise it with that many")]
     Fraction {
@@ -67,8 +67,8 @@ impl SampleShaper {
     /// Makes another table active from the next sample on; the history stays.
     ///
     /// # Errors
-    /// [`TableError`] where the shaper that was built cannot hold it; the table stays as it was.
-    pub fn swap(&mut self, table: &TapTable) -> Result<(), TableError> {
+    /// [`LoadError`] where the shaper that was built cannot hold it; the table stays as it was.
+    pub fn swap(&mut self, table: &TapTable) -> Result<(), LoadError> {
         loadable(&self.config, table)?;
         self.taps = offsets(table);
         Ok(())
@@ -81,13 +81,13 @@ impl SampleShaper {
 }
 
 /// Whether a shaper of `config` can load `table`.
-pub(super) fn loadable(config: &ShaperConfig, table: &TapTable) -> Result<(), TableError> {
+pub(super) fn loadable(config: &ShaperConfig, table: &TapTable) -> Result<(), LoadError> {
     let allowed = config.coefficient_fraction();
     let found = table.coefficient_fraction();
     if found != allowed {
-        return Err(TableError::Fraction { found, allowed });
+        return Err(LoadError::Fraction { found, allowed });
     }
-    config.holds(table.taps()).map_err(TableError::Size)
+    config.holds(table.taps()).map_err(LoadError::Size)
 }
 
 fn offsets(table: &TapTable) -> Vec<(usize, i64)> {

@@ -3,8 +3,8 @@
 //! A step is `accumulator := base + round(operand · mantissa · 2^−shift)`, then perhaps a word takes the accumulator,
 //! saturated. `multiply` and `settle` are the clocks of a step at which something happens.
 
-use super::ports::{Law, Motion, Saturation};
-use super::settings::{Gain, LIMIT_MAX, Row};
+use super::ports::{Law, Saturation, TickMotion};
+use super::settings::{Gain, LIMIT_MAX, SettingRow};
 
 /// Steps of a pass.
 pub(super) const STEPS: u8 = 17;
@@ -65,22 +65,22 @@ pub(super) struct Datapath {
 pub(super) fn address(step: u8, law: Law) -> u8 {
     let linear = law != Law::SlidingMode;
     let row = match step {
-        4 => Row::Boundary,
-        5 if linear => Row::Integral,
-        5 => Row::Switching,
-        6 if linear => Row::Proportional,
-        6 => Row::Reaching,
-        7 if linear => Row::Derivative,
-        7 => Row::Damping,
-        8 => Row::Fade,
-        9 => Row::Coulomb,
-        10 => Row::Feedback,
-        11 => Row::Acceleration,
-        12 => Row::Velocity,
-        13 => Row::Viscous,
-        LIMIT_STEP => Row::Limit,
-        16 => Row::Duty,
-        _ => Row::Surface,
+        4 => SettingRow::Boundary,
+        5 if linear => SettingRow::Integral,
+        5 => SettingRow::Switching,
+        6 if linear => SettingRow::Proportional,
+        6 => SettingRow::Reaching,
+        7 if linear => SettingRow::Derivative,
+        7 => SettingRow::Damping,
+        8 => SettingRow::Fade,
+        9 => SettingRow::Coulomb,
+        10 => SettingRow::Feedback,
+        11 => SettingRow::Acceleration,
+        12 => SettingRow::Velocity,
+        13 => SettingRow::Viscous,
+        LIMIT_STEP => SettingRow::Limit,
+        16 => SettingRow::Duty,
+        _ => SettingRow::Surface,
     };
     row as u8
 }
@@ -153,7 +153,7 @@ impl Datapath {
 
     /// The clock of `start`: e.
     #[inline]
-    pub(super) fn capture(&mut self, law: Law, modulo: bool, motion: &Motion) {
+    pub(super) fn capture(&mut self, law: Law, modulo: bool, motion: &TickMotion) {
         self.law = law;
         let position = i64::from(motion.position) << 8;
         let difference = i64::from(motion.position_reference) - position;
@@ -164,7 +164,7 @@ impl Datapath {
     }
 
     /// What a step multiplies.
-    fn operand(&self, step: u8, motion: &Motion) -> i32 {
+    fn operand(&self, step: u8, motion: &TickMotion) -> i32 {
         let sliding_mode = self.law == Law::SlidingMode;
         match step {
             0 | 8 | 12 => motion.velocity_reference,
@@ -186,7 +186,7 @@ impl Datapath {
 
     /// The clock in which a step takes what it multiplies, and reads its setting.
     #[inline]
-    pub(super) fn multiply(&mut self, step: u8, motion: &Motion, setting: u32) {
+    pub(super) fn multiply(&mut self, step: u8, motion: &TickMotion, setting: u32) {
         let operand = i64::from(self.operand(step, motion));
         let gain = Gain::from_word(setting);
         let (mantissa, shift) = match step {

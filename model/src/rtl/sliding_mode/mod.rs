@@ -16,18 +16,18 @@
 //! |---|---|
 //! | [`SlidingMode`] | cycle accurate at its ports, one [`SlidingMode::step`] per clock |
 //! | [`TickController`] | the fast path: one [`TickController::control`] per tick |
-//! | [`Settings`], [`Gain`], [`Row`] | gains and limit as the words that the hardware reads |
+//! | [`Settings`], [`Gain`], [`SettingRow`] | gains and limit as the words that the hardware reads |
 //!
 //! ```
-//! use posicast_model::rtl::sliding_mode::{Gain, Law, Motion, Row, Settings, TickController};
+//! use posicast_model::rtl::sliding_mode::{Gain, Law, TickMotion, SettingRow, Settings, TickController};
 //!
 //! // PD with P = 0.5 and D = 0: half a unit of command per count.
 //! let mut settings = Settings::default();
-//! settings.set_gain(Row::Proportional, Gain::nearest(0.5, Row::Proportional)?);
-//! settings.set_gain(Row::Feedback, Gain::nearest(1.0, Row::Feedback)?);
+//! settings.set_gain(SettingRow::Proportional, Gain::nearest(0.5, SettingRow::Proportional)?);
+//! settings.set_gain(SettingRow::Feedback, Gain::nearest(1.0, SettingRow::Feedback)?);
 //! settings.set_limit(1000 << 12);
 //! let mut controller = TickController::default();
-//! let motion = Motion { position_reference: 7 << 8, position: 3, ..Motion::default() };
+//! let motion = TickMotion { position_reference: 7 << 8, position: 3, ..TickMotion::default() };
 //! assert_eq!(controller.control(Law::Pd, false, &motion, &settings).command, 2 << 12);
 //! # Ok::<(), posicast_model::rtl::sliding_mode::GainError>(())
 //! ```
@@ -36,8 +36,10 @@ mod datapath;
 mod ports;
 mod settings;
 
-pub use ports::{INPUT_PORTS, Inputs, Law, Motion, OUTPUT_PORTS, Outputs, PORTS, Saturation, ports};
-pub use settings::{Gain, GainError, LIMIT_MAX, MANTISSA_BITS, MANTISSA_MAX, Row, SETTINGS, SHIFT_MAX, Settings};
+pub use ports::{INPUT_PORTS, Inputs, Law, OUTPUT_PORTS, Outputs, PORTS, Saturation, TickMotion, ports};
+pub use settings::{
+    Gain, GainError, LIMIT_MAX, MANTISSA_BITS, MANTISSA_MAX, SETTINGS, SHIFT_MAX, SettingRow, Settings,
+};
 
 use self::datapath::{Datapath, LIMIT_STEP, STEPS, address, pass_clocks, step_clocks};
 use super::{FOREVER, Moore, clocked_block};
@@ -204,7 +206,7 @@ pub struct TickController {
 
 impl TickController {
     /// One tick. The settings are those in the memory during the pass, `motion` holds still meanwhile.
-    pub fn control(&mut self, law: Law, modulo: bool, motion: &Motion, settings: &Settings) -> Outputs {
+    pub fn control(&mut self, law: Law, modulo: bool, motion: &TickMotion, settings: &Settings) -> Outputs {
         self.datapath.capture(law, modulo, motion);
         self.datapath.raise_flags();
         for step in 0..STEPS {

@@ -27,7 +27,7 @@ impl Law {
 
 /// What a tick is about: what the shaper wants and the pulse counter sees.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct Motion {
+pub struct TickMotion {
     /// r: Q24.8 counts.
     pub position_reference: i32,
     /// dr: Q16.16 counts/T.
@@ -69,8 +69,8 @@ impl Saturation {
 impl Inputs {
     /// Reference and measurement.
     #[inline]
-    pub fn motion(&self) -> Motion {
-        Motion {
+    pub fn motion(&self) -> TickMotion {
+        TickMotion {
             position_reference: self.position_reference,
             velocity_reference: self.velocity_reference,
             acceleration_reference: self.acceleration_reference,
@@ -80,7 +80,7 @@ impl Inputs {
     }
 
     /// Another reference and measurement.
-    pub fn set_motion(&mut self, motion: Motion) {
+    pub fn set_motion(&mut self, motion: TickMotion) {
         self.position_reference = motion.position_reference;
         self.velocity_reference = motion.velocity_reference;
         self.acceleration_reference = motion.acceleration_reference;
@@ -90,8 +90,8 @@ impl Inputs {
 }
 
 /// Reference and measurement; everything else is 0.
-impl From<Motion> for Inputs {
-    fn from(motion: Motion) -> Self {
+impl From<TickMotion> for Inputs {
+    fn from(motion: TickMotion) -> Self {
         let mut inputs = Self::default();
         inputs.set_motion(motion);
         inputs

@@ -13,7 +13,7 @@ pub const LIMIT_MAX: u32 = (1 << 31) - 1;
 
 /// What stands at which address. All but `Limit` are gains.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Row {
+pub enum SettingRow {
     /// Sliding mode: c·T of `s = c·e + de`.
     Surface = 0,
     /// Sliding mode: slope 1/φ of the boundary layer.
@@ -48,7 +48,7 @@ pub enum Row {
     Integral = 15,
 }
 
-impl Row {
+impl SettingRow {
     /// All rows, by address.
     pub const ALL: [Self; SETTINGS] = [
         Self::Surface,
@@ -86,8 +86,8 @@ impl Row {
     }
 }
 
-impl Row {
-    /// The smallest gain of the row that is not 0; of [`Row::Limit`] an LSB of the command.
+impl SettingRow {
+    /// The smallest gain of the row that is not 0; of [`SettingRow::Limit`] an LSB of the command.
     pub fn smallest(self) -> f64 {
         match self {
             Self::Limit => f64::exp2(-12.0),
@@ -112,7 +112,7 @@ pub enum GainError {
         /// The gain.
         found: f64,
         /// Its row.
-        row: Row,
+        row: SettingRow,
         /// Largest gain of the row.
         largest: f64,
     },
@@ -122,13 +122,13 @@ pub enum GainError {
         /// The gain.
         found: f64,
         /// Its row.
-        row: Row,
+        row: SettingRow,
     },
 }
 
 impl GainError {
     /// The row that it is about.
-    pub fn row(&self) -> Row {
+    pub fn row(&self) -> SettingRow {
         match *self {
             Self::Large { row, .. } | Self::NotFinite { row, .. } => row,
         }
@@ -139,17 +139,17 @@ impl Gain {
     /// The gain of `row` nearest to `value`: the largest shift at which the mantissa fits its 18 bits.
     ///
     /// ```
-    /// use posicast_model::rtl::sliding_mode::{Gain, Row};
+    /// use posicast_model::rtl::sliding_mode::{Gain, SettingRow};
     ///
-    /// let gain = Gain::nearest(13531.0172, Row::Feedback)?;
+    /// let gain = Gain::nearest(13531.0172, SettingRow::Feedback)?;
     /// assert_eq!((gain.mantissa(), gain.shift()), (108248, 15)); // 108248 · 2^(12 − 15)
-    /// assert_eq!(gain.value(Row::Feedback), 13531.0);
+    /// assert_eq!(gain.value(SettingRow::Feedback), 13531.0);
     /// # Ok::<(), posicast_model::rtl::sliding_mode::GainError>(())
     /// ```
     ///
     /// # Errors
     /// [`GainError`] if it is too large for the row, or not finite.
-    pub fn nearest(value: f64, row: Row) -> Result<Self, GainError> {
+    pub fn nearest(value: f64, row: SettingRow) -> Result<Self, GainError> {
         if !value.is_finite() {
             return Err(GainError::NotFinite { found: value, row });
         }
@@ -177,7 +177,7 @@ impl Gain {
     }
 
     /// What it is worth in `row`.
-    pub fn value(self, row: Row) -> f64 {
+    pub fn value(self, row: SettingRow) -> f64 {
         f64::from(self.mantissa) * f64::exp2(f64::from(row.exponent() - self.shift as i32))
     }
 
@@ -206,23 +206,23 @@ impl Settings {
     }
 
     /// The gain of a row.
-    pub fn gain(&self, row: Row) -> Gain {
+    pub fn gain(&self, row: SettingRow) -> Gain {
         Gain::from_word(self.0[row as usize])
     }
 
     /// Sets the gain of a row.
-    pub fn set_gain(&mut self, row: Row, gain: Gain) {
+    pub fn set_gain(&mut self, row: SettingRow, gain: Gain) {
         self.0[row as usize] = gain.to_word();
     }
 
     /// The largest command, Q19.12.
     pub fn limit(&self) -> u32 {
-        self.0[Row::Limit as usize] & LIMIT_MAX
+        self.0[SettingRow::Limit as usize] & LIMIT_MAX
     }
 
     /// Sets the largest command, Q19.12; what does not fit 31 bits becomes the largest that does.
     pub fn set_limit(&mut self, limit: u32) {
-        self.0[Row::Limit as usize] = limit.min(LIMIT_MAX);
+        self.0[SettingRow::Limit as usize] = limit.min(LIMIT_MAX);
     }
 }
 
@@ -232,7 +232,7 @@ mod tests {
 
     #[test]
     fn unit_a_row_stands_at_its_address() {
-        for (address, row) in Row::ALL.into_iter().enumerate() {
+        for (address, row) in SettingRow::ALL.into_iter().enumerate() {
             assert_eq!(row as usize, address);
         }
     }
@@ -250,23 +250,26 @@ mod tests {
     #[test]
     fn unit_the_nearest_gain_is_within_half_a_mantissa() {
         for value in [0.015, -0.005, 4.210_448, 1e-12, -3e-7, 0.0] {
-            let gain = Gain::nearest(value, Row::Surface).unwrap();
+            let gain = Gain::nearest(value, SettingRow::Surface).unwrap();
             let half = 0.5 * f64::exp2(-f64::from(gain.shift()));
-            assert!((gain.value(Row::Surface) - value).abs() <= half, "{value}: {gain:?}");
+            assert!(
+                (gain.value(SettingRow::Surface) - value).abs() <= half,
+                "{value}: {gain:?}"
+            );
         }
         // Rounds up to a mantissa that no longer fits: one shift less.
-        let gain = Gain::nearest(131_071.6, Row::Surface);
+        let gain = Gain::nearest(131_071.6, SettingRow::Surface);
         assert!(matches!(gain, Err(GainError::Large { .. })), "{gain:?}");
-        assert_eq!(Gain::nearest(131_071.4, Row::Surface).unwrap().shift(), 0);
-        assert_eq!(Gain::nearest(131_071.6 / 2.0, Row::Surface).unwrap().shift(), 0);
+        assert_eq!(Gain::nearest(131_071.4, SettingRow::Surface).unwrap().shift(), 0);
+        assert_eq!(Gain::nearest(131_071.6 / 2.0, SettingRow::Surface).unwrap().shift(), 0);
         for value in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
             assert!(matches!(
-                Gain::nearest(value, Row::Surface),
+                Gain::nearest(value, SettingRow::Surface),
                 Err(GainError::NotFinite { .. })
             ));
         }
         assert!(matches!(
-            Gain::nearest(f64::MAX, Row::Duty),
+            Gain::nearest(f64::MAX, SettingRow::Duty),
             Err(GainError::Large { .. })
         ));
     }

@@ -4,7 +4,7 @@ use super::bring_up::TRACED;
 use super::config::StageAxis;
 use super::registers::{axis_window, hardware};
 use crate::rtl::Direction;
-use crate::rtl::component::{Block, Joined, Wiring};
+use crate::rtl::component::{ComponentPart, JoinedBlocks, Wiring};
 use crate::rtl::composition::{CompositionError, Part};
 use crate::rtl::trace::SIGNALS;
 
@@ -252,27 +252,31 @@ pub(super) fn input_pins(axis: &StageAxis) -> Vec<&'static str> {
 /// Joins the blocks of an axis. The whole has the axis's name; its ports are the nets that registers, stage and pins need.
 ///
 /// `tick_clocks`: from tick to tick, for the PWM's watchdog.
-pub(super) fn join(axis: &StageAxis, tick_clocks: u32) -> Result<Joined, CompositionError> {
+pub(super) fn join(axis: &StageAxis, tick_clocks: u32) -> Result<JoinedBlocks, CompositionError> {
     let mut blocks = vec![
-        Block::Segments,
-        Block::Shaper(Box::new(axis.shaper.clone())),
-        Block::SettingBanks(Box::new(axis.settings)),
-        Block::SlidingMode,
-        Block::PulseCounter,
-        Block::DriveCommand,
-        Block::Pwm(axis.pwm.on_time_base()),
-        Block::Axis,
+        ComponentPart::Segments,
+        ComponentPart::Shaper(Box::new(axis.shaper.clone())),
+        ComponentPart::SettingBanks(Box::new(axis.settings)),
+        ComponentPart::SlidingMode,
+        ComponentPart::PulseCounter,
+        ComponentPart::DriveCommand,
+        ComponentPart::Pwm(axis.pwm.on_time_base()),
+        ComponentPart::Axis,
     ];
     if let Some(trace) = axis.bring_up {
-        blocks.extend([Block::EncoderGenerator, Block::Excitation, Block::Trace(trace)]);
+        blocks.extend([
+            ComponentPart::EncoderGenerator,
+            ComponentPart::Excitation,
+            ComponentPart::Trace(trace),
+        ]);
     }
-    let mut blocks: Vec<(String, Block)> = blocks
+    let mut blocks: Vec<(String, ComponentPart)> = blocks
         .into_iter()
         .map(|block| (block.name().to_owned(), block))
         .collect();
     if axis.scale.is_some() {
-        blocks.push((SCALE_COUNTER.to_owned(), Block::PulseCounter));
-        blocks.push(("linear_scale".to_owned(), Block::LinearScale));
+        blocks.push((SCALE_COUNTER.to_owned(), ComponentPart::PulseCounter));
+        blocks.push(("linear_scale".to_owned(), ComponentPart::LinearScale));
     }
     let (driven, read) = hardware(&axis_window(axis));
     let names = |lists: &[&[&str]]| -> Vec<String> {
@@ -290,20 +294,20 @@ pub(super) fn join(axis: &StageAxis, tick_clocks: u32) -> Result<Joined, Composi
         inputs,
         outputs,
     };
-    Joined::new(&axis.name, blocks, wiring)
+    JoinedBlocks::new(&axis.name, blocks, wiring)
 }
 
-fn wire(axis: &StageAxis, tick_clocks: u32, block: &Block, part: Part) -> Part {
+fn wire(axis: &StageAxis, tick_clocks: u32, block: &ComponentPart, part: Part) -> Part {
     let on_scale = axis.scale.is_some_and(|scale| scale.closes_loop);
     let loop_position = if on_scale { "loop_position" } else { "count" };
     let watched = &axis.supervision;
     match block {
-        Block::Segments => on(part, SEGMENTS)
+        ComponentPart::Segments => on(part, SEGMENTS)
             .tied("modulo", axis.modulo.into())
             .on("preset_position", loop_position),
-        Block::Shaper(_) => on(part, SHAPER),
-        Block::SettingBanks(_) => on(part, SETTING_BANKS),
-        Block::SlidingMode => on(part, CONTROLLER)
+        ComponentPart::Shaper(_) => on(part, SHAPER),
+        ComponentPart::SettingBanks(_) => on(part, SETTING_BANKS),
+        ComponentPart::SlidingMode => on(part, CONTROLLER)
             .tied("modulo", axis.modulo.into())
             .on("velocity", if on_scale { "loop_velocity" } else { "velocity" })
             .on(
@@ -313,18 +317,18 @@ fn wire(axis: &StageAxis, tick_clocks: u32, block: &Block, part: Part) -> Part {
                     None => "shaped_position",
                 },
             ),
-        Block::PulseCounter if part.name() == SCALE_COUNTER => scale_counter(axis, part),
-        Block::PulseCounter => {
+        ComponentPart::PulseCounter if part.name() == SCALE_COUNTER => scale_counter(axis, part),
+        ComponentPart::PulseCounter => {
             let part = counter(axis, on(part, PULSE_COUNTER)).on("position", "user_position");
             match axis.bring_up {
                 Some(_) => part.on("a", "counter_a").on("b", "counter_b").on("z", "counter_z"),
                 None => part,
             }
         }
-        Block::DriveCommand => on(part, DRIVE_COMMAND)
+        ComponentPart::DriveCommand => on(part, DRIVE_COMMAND)
             .tied("direct_hold_ticks", watched.direct_hold_ticks.into())
             .tied("direct_limit", watched.direct_limit.into()),
-        Block::Pwm(config) => {
+        ComponentPart::Pwm(config) => {
             let period = u64::from(axis.pwm_period_clocks & 0xffff);
             let watchdog = (WATCHDOG_TICKS * tick_clocks / axis.pwm_period_clocks.max(1)).clamp(1, 255);
             on(part, PWM)
@@ -338,24 +342,24 @@ fn wire(axis: &StageAxis, tick_clocks: u32, block: &Block, part: Part) -> Part {
                 .tied("watchdog_periods", watchdog.into())
                 .tied("filter_clocks", watched.filter_clocks.into())
         }
-        Block::Axis => supervisor(axis, part)
+        ComponentPart::Axis => supervisor(axis, part)
             .tied("modulo", axis.modulo.into())
             .on("position", loop_position),
-        Block::LinearScale => match axis.scale {
+        ComponentPart::LinearScale => match axis.scale {
             Some(scale) => on(part, LINEAR_SCALE)
                 .tied("ratio_mantissa", u64::from(scale.ratio.mantissa() as u32 & 0x3_ffff))
                 .tied("ratio_shift", scale.ratio.shift().into())
                 .tied("use_scale", on_scale.into()),
             None => part,
         },
-        Block::EncoderGenerator => on(part, GENERATOR)
+        ComponentPart::EncoderGenerator => on(part, GENERATOR)
             .tied("pin_a_n", 0)
             .tied("pin_b_n", 0)
             .tied("pin_z_n", 0),
-        Block::Excitation => on(part, EXCITATION)
+        ComponentPart::Excitation => on(part, EXCITATION)
             .tied("amplitude_limit", watched.excitation_limit.into())
             .tied("modulo", axis.modulo.into()),
-        Block::Trace(_) => trace(axis, on(part, TRACE)),
+        ComponentPart::Trace(_) => trace(axis, on(part, TRACE)),
         _ => part,
     }
 }

@@ -2,7 +2,7 @@
 
 use super::config::{StageAxis, StageScale};
 use super::register::{register, with_the_drive_off};
-use crate::rtl::axis::State;
+use crate::rtl::axis::SupervisorState;
 use crate::rtl::registers::{Access, Field, Register, maps};
 
 /// The registers, in words of the axis's window.
@@ -34,7 +34,7 @@ pub(super) fn of_scale(scale: &StageScale) -> Vec<Register> {
 }
 
 fn states() -> Vec<Register> {
-    let names = State::ALL.map(|state| (state as u32, state.name().to_lowercase(), state.meaning()));
+    let names = SupervisorState::ALL.map(|state| (state as u32, state.name().to_lowercase(), state.meaning()));
     let states: Vec<_> = (names.iter())
         .map(|(value, name, meaning)| (*value, name.as_str(), *meaning))
         .collect();

@@ -6,14 +6,14 @@ use crate::rtl::composition::CompositionError;
 use crate::rtl::divider::DividerConfig;
 use crate::rtl::group::MOST_AXES;
 use crate::rtl::linear_scale::ScaleRatio;
-use crate::rtl::pwm::{Mode, PwmConfig};
+use crate::rtl::pwm::{BridgeMode, PwmConfig};
 use crate::rtl::registers::MapError;
 use crate::rtl::schedule::{ScheduleConfig, ScheduleConfigError};
 use crate::rtl::shaper::ShaperConfig;
 use crate::rtl::sliding_mode::{Law, Settings};
 use crate::rtl::trace::TraceConfig;
 
-use super::schedule::Schedule;
+use super::schedule::StageSchedule;
 
 /// A stage of one to four axes.
 #[derive(Debug, Clone, PartialEq)]
@@ -40,7 +40,7 @@ pub struct StageAxis {
     /// What is fixed in its PWM.
     pub pwm: PwmConfig,
     /// The PWM's mode.
-    pub pwm_mode: Mode,
+    pub pwm_mode: BridgeMode,
     /// The PWM's period in clocks: 2 to 65,536, and a divisor of the tick.
     pub pwm_period_clocks: u32,
     /// Pulses of up to so many clocks on an encoder's line are ignored, 0 to 63.
@@ -89,7 +89,7 @@ pub enum StageError {
     #[error("a tick of {available} clocks is too short: {schedule}; choose a lower sample rate or a faster clock")]
     Schedule {
         /// What is done, with its clocks.
-        schedule: Schedule,
+        schedule: StageSchedule,
         /// Clocks of a tick.
         available: u32,
     },
@@ -121,13 +121,13 @@ pub enum StageError {
 
 impl StageConfig {
     /// What is done in a tick.
-    pub fn timing(&self) -> Schedule {
+    pub fn timing(&self) -> StageSchedule {
         let shapers: Vec<&ShaperConfig> = self.axes.iter().map(|axis| &axis.shaper).collect();
         let scaled = self
             .axes
             .iter()
             .any(|axis| axis.scale.is_some_and(|scale| scale.closes_loop));
-        Schedule::of(&shapers, scaled)
+        StageSchedule::of(&shapers, scaled)
     }
 
     pub(super) fn schedule(&self) -> Result<ScheduleConfig, StageError> {

@@ -29,10 +29,10 @@ mod schedule;
 
 pub use self::config::{StageAxis, StageConfig, StageError, StageScale};
 pub use self::registers::{AXIS_INTERRUPTS, axis_interrupt_bit, axis_window};
-pub use self::schedule::Schedule;
+pub use self::schedule::StageSchedule;
 
 use self::axis::SHARED;
-use super::component::{Block, Component, Wiring};
+use super::component::{Component, ComponentPart, Wiring};
 use super::composition::Part;
 use super::registers::RegisterMap;
 
@@ -48,14 +48,17 @@ impl Component {
         config.check()?;
         let map = RegisterMap::new(registers::stage(config))?;
         let mut blocks = vec![
-            Block::TimeBase(config.tick),
-            Block::Schedule(config.schedule()?),
-            Block::DividerShare(config.axes.len()),
-            Block::Divider(config.tick),
-            Block::Group(config.axes.len()),
+            ComponentPart::TimeBase(config.tick),
+            ComponentPart::Schedule(config.schedule()?),
+            ComponentPart::DividerShare(config.axes.len()),
+            ComponentPart::Divider(config.tick),
+            ComponentPart::Group(config.axes.len()),
         ];
         for axis in &config.axes {
-            blocks.push(Block::Joined(Box::new(axis::join(axis, config.tick.tick_clocks())?)));
+            blocks.push(ComponentPart::Joined(Box::new(axis::join(
+                axis,
+                config.tick.tick_clocks(),
+            )?)));
         }
         let blocks = blocks.into_iter().map(|block| (block.name().to_owned(), block));
         let wiring = Wiring {
@@ -76,16 +79,16 @@ fn pins(config: &StageConfig, shared: &[&str], of_axis: fn(&StageAxis) -> Vec<&'
     pins
 }
 
-fn wire(config: &StageConfig, block: &Block, part: Part) -> Part {
+fn wire(config: &StageConfig, block: &ComponentPart, part: Part) -> Part {
     match block {
-        Block::Divider(_) => part
+        ComponentPart::Divider(_) => part
             .on("busy", "divider_busy")
             .on("saturated", "divider_saturated")
             .on("overrun", "divider_overrun")
             .on("start", "divider_start")
             .on("done", "divider_done")
             .tied("clear_flags", 1),
-        Block::DividerShare(_) => {
+        ComponentPart::DividerShare(_) => {
             let part = part.on("start", "divider_start").on("done", "divider_done");
             config.axes.iter().enumerate().fold(part, |part, (channel, axis)| {
                 let net = |name: &str| format!("{}_{name}", axis.name);
@@ -94,7 +97,7 @@ fn wire(config: &StageConfig, block: &Block, part: Part) -> Part {
                     .on(&format!("quotient_valid_{channel}"), &net("quotient_valid"))
             })
         }
-        Block::Group(_) => config.axes.iter().enumerate().fold(part, |part, (index, axis)| {
+        ComponentPart::Group(_) => config.axes.iter().enumerate().fold(part, |part, (index, axis)| {
             let each = [
                 "can_start",
                 "wants_group_stop",
@@ -109,7 +112,7 @@ fn wire(config: &StageConfig, block: &Block, part: Part) -> Part {
                 part.on(&format!("{port}_{index}"), &format!("{}_{port}", axis.name))
             })
         }),
-        Block::Joined(joined) => {
+        ComponentPart::Joined(joined) => {
             let ports = part.ports().to_vec();
             let own = ports.iter().filter(|port| !SHARED.contains(&port.name.as_str()));
             own.fold(part, |part, port| {

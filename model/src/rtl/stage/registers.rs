@@ -5,7 +5,7 @@ use super::register::command;
 use super::{axis_settings, axis_words, bring_up};
 use crate::rtl::group::MOST_AXES;
 use crate::rtl::registers::maps;
-use crate::rtl::registers::{Access, Description, Field, Register, Source, WINDOW_WORDS};
+use crate::rtl::registers::{Access, Description, Field, FlagSource, Register, WINDOW_WORDS};
 
 /// What an axis can interrupt for: name, meaning. Bit `7 · axis + place` of the interrupt registers.
 pub const AXIS_INTERRUPTS: [(&str, &str); 7] = [
@@ -78,10 +78,10 @@ pub(super) fn stage(config: &StageConfig) -> Description {
             "what has happened since the flag was cleared",
             vec![
                 maps::partial_write(0),
-                Field::flag("commit_rejected", 1, "a write was ignored").set_by(Source::CommitRejected),
+                Field::flag("commit_rejected", 1, "a write was ignored").set_by(FlagSource::CommitRejected),
                 Field::flag("start_refused", 2, "an axis could not start, so none did"),
                 Field::flag("guard_refused", 3, "a write was ignored: the drive of its axis was on")
-                    .set_by(Source::GuardRefused),
+                    .set_by(FlagSource::GuardRefused),
             ],
         )
         .with_interrupts(0x0c, interrupts(config))

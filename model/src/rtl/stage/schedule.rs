@@ -23,14 +23,14 @@ const OUTPUT_CLOCKS: u32 = 2;
 ///       └─► generate ─► shape ────────────────────────────────────┘
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Schedule {
+pub struct StageSchedule {
     divide: u32,
     /// The last velocity in counts of the scale.
     scale: u32,
     shape: u32,
 }
 
-impl Schedule {
+impl StageSchedule {
     /// Of axes with these shapers; `on_scale`: the loop of one runs on its scale.
     pub fn of(shapers: &[&ShaperConfig], on_scale: bool) -> Self {
         let passes = shapers.iter().map(|shaper| shaper.pass_clocks(shaper.most_products()));
@@ -52,7 +52,7 @@ impl Schedule {
     }
 }
 
-impl fmt::Display for Schedule {
+impl fmt::Display for StageSchedule {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(
             f,

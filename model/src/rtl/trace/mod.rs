@@ -21,7 +21,7 @@
 //! ```
 //!
 //! ```
-//! use posicast_model::rtl::trace::{Inputs, State, Trace, TraceConfig};
+//! use posicast_model::rtl::trace::{Inputs, TraceState, Trace, TraceConfig};
 //!
 //! // A ramp on signal 5, taken from 100 rows before it passes 1000.
 //! let mut trace = Trace::new(&TraceConfig::new(256)?);
@@ -40,7 +40,7 @@
 //!     trace.hold(&now, 20);
 //! }
 //! let shown = trace.outputs();
-//! assert_eq!((shown.state, shown.rows, shown.trigger_row), (State::Idle, 256, 100));
+//! assert_eq!((shown.state, shown.rows, shown.trigger_row), (TraceState::Idle, 256, 100));
 //! let word = |read_address| Inputs { read_address, ..settings };
 //! trace.step(&word(100));
 //! assert_eq!(trace.step(&word(255)).data, 1000);
@@ -52,7 +52,7 @@ mod config;
 mod ports;
 
 pub use config::{ROW_SIGNALS, SAMPLES, SIGNALS, TraceConfig, TraceConfigError, row_clocks, row_signals};
-pub use ports::{INPUT_PORTS, Inputs, OUTPUT_PORTS, Outputs, PORTS, State, ports};
+pub use ports::{INPUT_PORTS, Inputs, OUTPUT_PORTS, Outputs, PORTS, TraceState, ports};
 
 use std::collections::VecDeque;
 
@@ -131,10 +131,10 @@ impl Trace {
     pub fn outputs(&self) -> Outputs {
         let registers = &self.registers;
         let state = match (registers.active, registers.triggered) {
-            (false, _) => State::Idle,
-            (true, true) => State::Taking,
-            (true, false) if self.waits() => State::Waiting,
-            (true, false) => State::Filling,
+            (false, _) => TraceState::Idle,
+            (true, true) => TraceState::Taking,
+            (true, false) if self.waits() => TraceState::Waiting,
+            (true, false) => TraceState::Filling,
         };
         Outputs {
             data: registers.data,

@@ -6,7 +6,7 @@ use crate::rtl::ports::choices;
 
 /// What the block is doing.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub enum State {
+pub enum TraceState {
     /// Nothing: never armed, complete or halted. The only state in which words can be read; 0.
     #[default]
     Idle,
@@ -18,7 +18,7 @@ pub enum State {
     Taking,
 }
 
-choices!(State: Idle, Filling, Waiting, Taking);
+choices!(TraceState: Idle, Filling, Waiting, Taking);
 
 impl Inputs {
     /// Which signals a row has, in its order.
@@ -84,7 +84,7 @@ ports! {
         /// The word at the `read_address` of the clock before; 0 where the trace has none, or was being taken.
         data: Bits(32) as u32;
         /// 0 idle, 1 filling, 2 waiting, 3 taking.
-        state: Bits(2) as State;
+        state: Bits(2) as TraceState;
         /// Rows that are there, 0 to 2048.
         rows: Bits(12) as u16, "rows";
         /// The row of the trigger: `pre_trigger` as it was taken. It has come when `rows` is larger.

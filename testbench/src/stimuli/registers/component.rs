@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 
 use posicast_model::rtl::Direction;
-use posicast_model::rtl::component::{Block, Component};
+use posicast_model::rtl::component::{Component, ComponentPart};
 use posicast_model::rtl::registers::RegisterMap;
 use posicast_model::rtl::shaper::ShaperConfig;
 use rand::Rng;
@@ -43,9 +43,9 @@ impl ComponentRandom {
     /// Equal seeds give equal inputs for equal outputs.
     pub fn new(component: &Component, seed: u64) -> Self {
         let core = component.blocks().find_map(|block| match block {
-            Block::Shaper(config) => Some(Core::Shaper(config.clone(), Table::with_capacity(256))),
-            Block::SlidingMode => Some(Core::SlidingMode),
-            Block::Pwm(_) => {
+            ComponentPart::Shaper(config) => Some(Core::Shaper(config.clone(), Table::with_capacity(256))),
+            ComponentPart::SlidingMode => Some(Core::SlidingMode),
+            ComponentPart::Pwm(_) => {
                 let place = |name: &str| {
                     let ports = component.composition().ports().iter();
                     let mut inputs = ports.filter(|port| port.direction == Direction::Input);
@@ -55,7 +55,9 @@ impl ComponentRandom {
                     .zip(place("fault_n"))
                     .map(|(sync, fault_n)| Core::Pwm { sync, fault_n })
             }
-            Block::PulseCounter => Some(Core::PulseCounter(Box::new(PulseCounterRandom::new(seed)), vec![0; 26])),
+            ComponentPart::PulseCounter => {
+                Some(Core::PulseCounter(Box::new(PulseCounterRandom::new(seed)), vec![0; 26]))
+            }
             _ => None,
         });
         Self {

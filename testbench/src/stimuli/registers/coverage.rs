@@ -1,7 +1,7 @@
 //! What a run of a bank reached.
 
 use posicast_model::rtl::Direction;
-use posicast_model::rtl::registers::{Access, RegisterMap, Source};
+use posicast_model::rtl::registers::{Access, FlagSource, RegisterMap};
 
 use super::{ADDRESS, BUS_INPUTS, BYTE_ENABLE, READ, WRITE, WRITE_DATA};
 
@@ -173,7 +173,7 @@ impl RegistersCoverage {
             registers
                 .flat_map(|r| r.fields.iter().map(move |f| (r, f)))
                 .any(|(register, field)| {
-                    field.source != Source::Input
+                    field.source != FlagSource::Input
                         && name == format!("{}.{}: set and cleared in one clock", register.name, field.name)
                 })
         };

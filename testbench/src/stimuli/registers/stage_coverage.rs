@@ -4,7 +4,7 @@
 //! are looked at in every clock.
 
 use posicast_model::rtl::ClockedBlock;
-use posicast_model::rtl::axis::{Cause, State, TRANSITIONS};
+use posicast_model::rtl::axis::{Cause, SupervisorState, TRANSITIONS};
 use posicast_model::rtl::component::Component;
 use posicast_model::rtl::composition::Composed;
 use posicast_model::rtl::registers::{Access, RegisterMap, WINDOW_WORDS};
@@ -93,7 +93,7 @@ impl StageCoverage {
     fn axis(&mut self, map: &RegisterMap, window: u32, axis: &str, axes: usize) {
         let net = |name: &str| format!("{axis}_{name}");
         let alone = axes == 1;
-        for state in State::ALL {
+        for state in SupervisorState::ALL {
             let name = format!("{axis} {}", state.name());
             self.bin(&name, &net("state"), Counts::Level(7, state as u64));
         }

@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 
 use posicast_model::rtl::axis::KICK;
 use posicast_model::rtl::registers::RegisterMap;
-use posicast_model::rtl::segments::{Entry, Motion, Point};
+use posicast_model::rtl::segments::{Entry, EntryMotion, Point};
 use posicast_model::taps::COEFFICIENT_MAX;
 use rand::{Rng, RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -289,12 +289,12 @@ impl Driver {
         self.flush(axis);
         if self.one_in(2) {
             // More than the sums hold.
-            self.entry(axis, 3, Motion::Jerk((1 << 38) - 1), false);
+            self.entry(axis, 3, EntryMotion::Jerk((1 << 38) - 1), false);
         }
         // At rest there, or on the way out of the position's word.
         let leaves = i32::from(self.one_in(2));
         for position in [i32::MAX, i32::MIN, i32::MAX, 0] {
-            let motion = Motion::Point(Point {
+            let motion = EntryMotion::Point(Point {
                 position,
                 velocity: leaves * position.signum(),
                 acceleration: 0,
@@ -356,7 +356,7 @@ impl Driver {
         self.tell(axis, "control", leave);
     }
 
-    fn entry(&mut self, axis: usize, ticks: u32, motion: Motion, notify: bool) {
+    fn entry(&mut self, axis: usize, ticks: u32, motion: EntryMotion, notify: bool) {
         let name = format!("{}_segment", self.axes[axis].name);
         let base = self.map.register(&name).map_or(0, |register| register.offset);
         let entry = Entry { ticks, motion, notify };
@@ -371,7 +371,7 @@ impl Driver {
         let jerk = any >> self.rng.random_range(6..26);
         for (ticks, jerk) in [(ticks, jerk), (2 * ticks, -jerk), (ticks, jerk)] {
             let notify = self.one_in(2);
-            self.entry(axis, ticks, Motion::Jerk(jerk), notify);
+            self.entry(axis, ticks, EntryMotion::Jerk(jerk), notify);
         }
     }
 
@@ -387,11 +387,11 @@ impl Driver {
         match self.below(24) {
             0..=2 => self.point(axis),
             // Does not end at rest.
-            3..=6 => self.entry(axis, 2, Motion::Jerk(1 << 28), true),
+            3..=6 => self.entry(axis, 2, EntryMotion::Jerk(1 << 28), true),
             // An entry of no ticks is none.
-            7 => self.entry(axis, 0, Motion::Jerk(1), true),
+            7 => self.entry(axis, 0, EntryMotion::Jerk(1), true),
             // More than the FIFO holds.
-            8 => (0..70).for_each(|_| self.entry(axis, 1, Motion::Jerk(0), false)),
+            8 => (0..70).for_each(|_| self.entry(axis, 1, EntryMotion::Jerk(0), false)),
             _ => {}
         }
         self.start(axis);
@@ -402,7 +402,7 @@ impl Driver {
     fn point(&mut self, axis: usize) {
         let any = self.rng.next_u32() as i32;
         let (velocity, acceleration) = self.pick(&[(0, 0), (0, 0), (any >> 4, any >> 9)]);
-        let motion = Motion::Point(Point {
+        let motion = EntryMotion::Point(Point {
             position: self.pick(&[any >> 20, any >> 12, any]),
             velocity,
             acceleration,

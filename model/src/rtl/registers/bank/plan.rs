@@ -1,7 +1,7 @@
 //! A register as the interpreter wants it: places of inputs instead of names.
 
 use crate::rtl::Direction;
-use crate::rtl::registers::{Access, Field, Register, RegisterMap, Source};
+use crate::rtl::registers::{Access, Field, FlagSource, Register, RegisterMap};
 
 /// Where a field's bits are among the inputs.
 #[derive(Debug, Clone, Copy)]
@@ -24,7 +24,7 @@ impl Wire {
 /// A flag that the bank sets by itself.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct OwnFlag {
-    pub(super) source: Source,
+    pub(super) source: FlagSource,
     pub(super) bit: u32,
 }
 
@@ -62,8 +62,8 @@ pub(super) fn plan(map: &RegisterMap, at: usize) -> Plan {
     };
     let access = &register.access;
     let wired = access.is_sticky() || *access == Access::Live;
-    let from_input = register.fields.iter().filter(|field| field.source == Source::Input);
-    let own = register.fields.iter().filter(|field| field.source != Source::Input);
+    let from_input = register.fields.iter().filter(|field| field.source == FlagSource::Input);
+    let own = register.fields.iter().filter(|field| field.source != FlagSource::Input);
     let minima = register.fields.iter().filter(|field| field.minimum > 0);
     Plan {
         mask: register.mask(),

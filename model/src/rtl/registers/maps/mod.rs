@@ -11,9 +11,9 @@ pub use shaper::shaper;
 pub(crate) use shaper::{swap, tap, tap_address, tap_loaded, word_name};
 pub use sliding_mode::sliding_mode;
 
-use super::{Field, Source};
+use super::{Field, FlagSource};
 
 /// The flag that every map with commands has.
 pub(crate) fn partial_write(low: u32) -> Field {
-    Field::flag("partial_write", low, "a write was ignored").set_by(Source::PartialWrite)
+    Field::flag("partial_write", low, "a write was ignored").set_by(FlagSource::PartialWrite)
 }

@@ -1,10 +1,10 @@
 //! Registers of the stand-alone PWM.
 
-use super::super::{Access, Description, Field, Source};
-use crate::rtl::pwm::{Mode, PwmConfig, TIME_BITS};
+use super::super::{Access, Description, Field, FlagSource};
+use crate::rtl::pwm::{BridgeMode, PwmConfig, TIME_BITS};
 
 /// The map of a PWM that has this mode and period after reset. `period_clocks` is 2 to 65,536.
-pub fn pwm(config: &PwmConfig, mode: Mode, period_clocks: u32) -> Description {
+pub fn pwm(config: &PwmConfig, mode: BridgeMode, period_clocks: u32) -> Description {
     use Access::{Configuration, Live, Sticky};
     let command = |strobe: &str| Access::Command {
         strobe: strobe.to_owned(),
@@ -57,7 +57,7 @@ pub fn pwm(config: &PwmConfig, mode: Mode, period_clocks: u32) -> Description {
                 ),
                 Field::flag("unaligned", 3, "`sync` came at another phase while running"),
                 super::partial_write(4),
-                Field::flag("guard_refused", 5, "a write was ignored").set_by(Source::GuardRefused),
+                Field::flag("guard_refused", 5, "a write was ignored").set_by(FlagSource::GuardRefused),
             ],
         )
         .with_interrupts(
@@ -145,7 +145,7 @@ pub fn pwm(config: &PwmConfig, mode: Mode, period_clocks: u32) -> Description {
         )
 }
 
-fn control(mode: Mode) -> Vec<Field> {
+fn control(mode: BridgeMode) -> Vec<Field> {
     let modes = [
         (0, "direction", "PWM and direction"),
         (1, "half_bridge", "leg A"),

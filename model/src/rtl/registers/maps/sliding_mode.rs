@@ -1,6 +1,6 @@
 //! Registers of the stand-alone controller.
 
-use super::super::{Access, Description, Field, Source};
+use super::super::{Access, Description, Field, FlagSource};
 
 /// The map of a controller with its settings in banks. `law` and `modulo` are after reset what the machine wants.
 pub fn sliding_mode(law: u32, modulo: bool) -> Description {
@@ -67,7 +67,7 @@ pub fn sliding_mode(law: u32, modulo: bool) -> Description {
             "what has happened since the flag was cleared",
             vec![
                 super::partial_write(0),
-                Field::flag("commit_rejected", 1, "a write was ignored").set_by(Source::CommitRejected),
+                Field::flag("commit_rejected", 1, "a write was ignored").set_by(FlagSource::CommitRejected),
                 Field::flag(
                     "setting_refused",
                     2,

@@ -5,7 +5,7 @@
 //! rounds that alternate between causes that stop the axis and causes that switch it off.
 
 use posicast_model::rtl::axis::KICK;
-use posicast_model::rtl::segments::{Motion, Point};
+use posicast_model::rtl::segments::{EntryMotion, Point};
 use rand::Rng;
 
 use super::{Do, Driver, Moves};
@@ -109,10 +109,10 @@ impl Driver {
     fn goes(&mut self, axis: usize, jerk: i64, back: bool) {
         let some = self.rng_jerk(jerk);
         let jerk = if back { -some } else { some };
-        self.entry(axis, 1, Motion::Jerk(jerk), false);
-        self.entry(axis, 1, Motion::Jerk(0), true);
-        self.entry(axis, 1, Motion::Jerk(-jerk), false);
-        self.entry(axis, 40, Motion::Jerk(0), false);
+        self.entry(axis, 1, EntryMotion::Jerk(jerk), false);
+        self.entry(axis, 1, EntryMotion::Jerk(0), true);
+        self.entry(axis, 1, EntryMotion::Jerk(-jerk), false);
+        self.entry(axis, 40, EntryMotion::Jerk(0), false);
     }
 
     /// Of this size, with noise in the bits below.
@@ -238,7 +238,7 @@ impl Driver {
     fn runs_dry(&mut self, axis: usize) {
         self.company(axis);
         let jerk = self.rng_jerk(SLOW << 1);
-        self.entry(axis, 2, Motion::Jerk(jerk), true);
+        self.entry(axis, 2, EntryMotion::Jerk(jerk), true);
         self.set_off(axis);
         self.ticks(axis, 8);
     }
@@ -246,16 +246,16 @@ impl Driver {
     /// 64 entries and more while it holds, and the same while one plays.
     fn fills_the_fifo(&mut self, axis: usize) {
         for _ in 0..65 {
-            self.entry(axis, 3, Motion::Jerk(0), false);
+            self.entry(axis, 3, EntryMotion::Jerk(0), false);
         }
         self.set_off(axis);
         self.ticks(axis, 1);
         for _ in 0..2 {
-            self.entry(axis, 1, Motion::Jerk(1), false);
+            self.entry(axis, 1, EntryMotion::Jerk(1), false);
         }
         self.ticks(axis, 2);
         for _ in 0..2 {
-            self.entry(axis, 1, Motion::Jerk(1), false);
+            self.entry(axis, 1, EntryMotion::Jerk(1), false);
         }
         let low_water = 50 + self.below(14);
         self.tell(axis, "fifo_control", low_water);
@@ -318,7 +318,7 @@ impl Driver {
     /// Sums that leave the integrator's words, upwards and downwards.
     fn overflows(&mut self, axis: usize) {
         for jerk in [JERK_MAX, -JERK_MAX] {
-            self.entry(axis, 4, Motion::Jerk(jerk), false);
+            self.entry(axis, 4, EntryMotion::Jerk(jerk), false);
             self.set_off(axis);
             self.ticks(axis, 5);
             self.bring_up(axis);
@@ -328,7 +328,7 @@ impl Driver {
     /// Held while it plays a rest, with a move to come, which then goes on.
     fn holds_the_feed(&mut self, axis: usize) {
         self.company(axis);
-        self.entry(axis, 3, Motion::Jerk(0), false);
+        self.entry(axis, 3, EntryMotion::Jerk(0), false);
         self.there_and_back(axis, 1);
         self.set_off(axis);
         self.ticks(axis, 1);
@@ -350,7 +350,7 @@ impl Driver {
         self.company(axis);
         // At the end of the range, and not at rest.
         let position = if self.is_odd(axis) { i32::MIN } else { i32::MAX };
-        let motion = Motion::Point(Point {
+        let motion = EntryMotion::Point(Point {
             position,
             velocity: position.signum() << 16,
             acceleration: 0,
