@@ -2,5 +2,6 @@
 #![cfg(test)]
 
 mod cli;
+mod names;
 mod reproduce;
 mod suites;

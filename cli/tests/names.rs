@@ -1,0 +1,44 @@
+//! Names that the crates share.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+/// Every block has its `Inputs` and `Outputs`, which its ports are made into.
+const OF_EVERY_BLOCK: [&str; 2] = ["Inputs", "Outputs"];
+
+fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            sources(&path, found);
+        } else if path.extension().is_some_and(|extension| extension == "rs") {
+            found.push(path);
+        }
+    }
+}
+
+#[test]
+fn unit_a_public_type_name_has_one_meaning() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let mut files = Vec::new();
+    for package in ["system", "model", "hdl", "testbench", "synth"] {
+        sources(&root.join(package).join("src"), &mut files);
+    }
+    let mut places: BTreeMap<String, Vec<PathBuf>> = BTreeMap::new();
+    for file in files {
+        let text = std::fs::read_to_string(&file).unwrap();
+        for line in text.lines() {
+            let words: Vec<&str> = line.split_whitespace().take(3).collect();
+            if let ["pub", "struct" | "enum" | "trait" | "type", name] = words[..] {
+                let name = name.split(|c: char| !c.is_alphanumeric()).next().unwrap_or_default();
+                // A macro's `$name` is no name.
+                if !name.is_empty() {
+                    places.entry(name.to_owned()).or_default().push(file.clone());
+                }
+            }
+        }
+    }
+    assert!(places.len() > 300, "{} types found", places.len());
+    places.retain(|name, files| files.len() > 1 && !OF_EVERY_BLOCK.contains(&name.as_str()));
+    assert!(places.is_empty(), "{places:#?}");
+}
