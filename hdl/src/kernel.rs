@@ -47,8 +47,6 @@
 //!     parts { .. }
 //! }
 //! ```
-//!
-//! Where there is no list yet, `raw ports;` before the sections says that the simulator needs raw ports too.
 
 /// See the [module](self).
 macro_rules! kernel {
@@ -62,26 +60,6 @@ macro_rules! kernel {
     ) => {
         $($list)::+! {
             kernel
-            {
-                $(#[$about])*
-                $seen struct $name $(<$(const $size: usize),+>)? $(($($argument: $of),+))?
-                    $(where $condition)?;
-            }
-            { $($sections)* }
-        }
-    };
-    // With raw ports, and no list.
-    (
-        $(#[$about:meta])*
-        $seen:vis struct $name:ident $(<$(const $size:ident: usize),+ $(,)?>)? $(($($argument:ident: $of:ty),+ $(,)?))?
-            $(where $condition:expr)?;
-        raw ports;
-        inputs $inputs:tt
-        outputs $outputs:tt
-        $($sections:tt)*
-    ) => {
-        $crate::kernel::kernel! {
-            @ports $inputs $outputs
             {
                 $(#[$about])*
                 $seen struct $name $(<$(const $size: usize),+>)? $(($($argument: $of),+))?

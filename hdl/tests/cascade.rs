@@ -23,7 +23,7 @@ fn sizes() -> impl Iterator<Item = CascadeConfig> {
 fn lockstep(config: &CascadeConfig, seed: u64, clocks: u32) {
     let mut model = Cascade::new(config, seed);
     let mut rusthdl = simulate(config).unwrap();
-    assert_eq!(rusthdl.ports(), ports(config));
+    assert_eq!(rusthdl.ports(), ports(config.word_bits() as usize));
     let mut random = Random(seed);
     let mut until_strobe = 0;
     let pass = u64::from(pass_clocks(config.stages()));
@@ -46,8 +46,10 @@ fn lockstep(config: &CascadeConfig, seed: u64, clocks: u32) {
             clear_flags: random.once_in(20),
         };
         let mut shown = [0; 4];
-        rusthdl.step(&inputs.to_raw(config), &mut shown).unwrap();
-        let actual = Outputs::from_raw(&shown, config);
+        rusthdl
+            .step(&inputs.to_raw(config.word_bits() as usize), &mut shown)
+            .unwrap();
+        let actual = Outputs::from_raw(&shown, config.word_bits() as usize);
         assert_eq!(actual, model.step(&inputs), "clock {clock}, {inputs:?}, {config:?}");
     }
 }
@@ -77,7 +79,7 @@ fn unit_every_size_has_the_ports_of_its_model() {
         let modules = emit(&config, "stage_x").unwrap();
         let top = modules.last().unwrap();
         assert_eq!(top.name, "stage_x_cascade");
-        assert_eq!(top.ports, ports(&config));
+        assert_eq!(top.ports, ports(config.word_bits() as usize));
         assert!(
             top.clocked
                 && modules

@@ -1,9 +1,10 @@
 //! The table of ports in a block's datasheet is what its list of ports says. `scripts/regenerate` writes it anew.
 
 use posicast_model::rtl::{
-    Direction, PortList, PortRow, axis, divider, drive_command, encoder_generator, excitation, linear_scale,
-    pulse_counter, pwm, segments, sliding_mode, trace,
+    Direction, PortList, SizedPortRow, axis, cascade, divider, drive_command, encoder_generator, excitation,
+    linear_scale, pulse_counter, pwm, segments, shaper, sliding_mode, trace,
 };
+use std::collections::BTreeMap;
 use std::error::Error;
 use std::path::Path;
 
@@ -22,51 +23,91 @@ const DATASHEETS: [(&str, PortList); 11] = [
     ("trace", trace::PORTS),
 ];
 
+/// Those of blocks with sizes.
+const SIZED: [(&str, &[SizedPortRow]); 3] = [
+    ("cascade", cascade::PORTS),
+    ("shaper", shaper::plain::PORTS),
+    ("shaper", shaper::moving::PORTS),
+];
+
 const TITLE: &str = "| port | | width |";
 
 /// A row of the table.
-fn row(row: &PortRow) -> String {
-    let name = match row.count {
-        Some(count) => format!("`{0}_0` … `{0}_{1}`", row.name, count - 1),
-        None => format!("`{}`", row.name),
-    };
-    let direction = match row.direction {
+fn row(name: &str, direction: Direction, width: &str, signed: bool, unit: &str, meaning: &[&str]) -> String {
+    let direction = match direction {
         Direction::Input => "in",
         Direction::Output => "out",
     };
-    let signed = if row.signed { ", signed" } else { "" };
-    let meaning: Vec<_> = row.meaning.iter().map(|line| line.trim()).collect();
+    let signed = if signed { ", signed" } else { "" };
+    let meaning: Vec<_> = meaning.iter().map(|line| line.trim()).collect();
     let meaning = meaning
         .join(" ")
         .replace('|', "\\|")
         .replace("[`", "`")
         .replace("`]", "`");
-    let unit = if row.unit.is_empty() {
+    let unit = if unit.is_empty() {
         String::new()
     } else {
-        format!("{} ", row.unit)
+        format!("{unit} ")
     };
-    format!("| {name} | {direction} | {}{signed} | {unit}| {meaning} |\n", row.width)
+    format!("| {name} | {direction} | {width}{signed} | {unit}| {meaning} |\n")
 }
 
-fn table(list: PortList) -> String {
+fn table(rows: impl Iterator<Item = String>) -> String {
     let head = format!("{TITLE} unit | meaning |\n|---|---|---|---|---|\n| `clk` | in | 1 | | Clock. |\n");
-    head + &list.iter().map(row).collect::<String>()
+    head + &rows.collect::<String>()
 }
 
-/// `datasheet` with its table of ports from the list.
-fn with_table(datasheet: &str, list: PortList) -> Option<String> {
-    let (before, from) = datasheet.split_once(TITLE)?;
-    let (_, after) = from.split_once("\n\n")?;
-    Some(format!("{before}{}\n{after}", table(list)))
+fn fixed(list: PortList) -> String {
+    table(list.iter().map(|port| {
+        let name = match port.count {
+            Some(count) => format!("`{0}_0` … `{0}_{1}`", port.name, count - 1),
+            None => format!("`{}`", port.name),
+        };
+        let width = port.width.to_string();
+        row(&name, port.direction, &width, port.signed, port.unit, port.meaning)
+    }))
+}
+
+fn sized(list: &[SizedPortRow]) -> String {
+    table(list.iter().map(|port| {
+        let name = match port.count {
+            Some(count) => format!("`{0}_0` … `{0}_`({count} − 1)", port.name),
+            None => format!("`{}`", port.name),
+        };
+        row(&name, port.direction, port.width, port.signed, port.unit, port.meaning)
+    }))
+}
+
+/// `datasheet` with each of its tables of ports, which have as many `tables`, from its list.
+fn with_tables(datasheet: &str, tables: &[String]) -> Option<String> {
+    let mut parts = datasheet.split(TITLE);
+    let mut derived = parts.next()?.to_owned();
+    for table in tables {
+        let (_, after) = parts.next()?.split_once("\n\n")?;
+        derived += &format!("{table}\n{after}");
+    }
+    parts.next().is_none().then_some(derived)
 }
 
 #[test]
 fn golden_the_tables_of_ports_are_what_the_lists_say() -> Result<(), Box<dyn Error>> {
+    let mut tables: BTreeMap<&str, Vec<String>> = BTreeMap::new();
     for (block, list) in DATASHEETS {
+        tables.entry(block).or_default().push(fixed(list));
+    }
+    for (block, list) in SIZED {
+        tables.entry(block).or_default().push(sized(list));
+    }
+    for (block, tables) in tables {
         let file = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../docs/{block}.md"));
         let committed = std::fs::read_to_string(&file)?;
-        let derived = with_table(&committed, list).ok_or_else(|| format!("docs/{block}.md has no table of ports"))?;
+        let derived = with_tables(&committed, &tables).ok_or_else(|| {
+            format!(
+                "docs/{block}.md has not {} tables that begin with {TITLE}",
+                tables.len()
+            )
+        })?;
         if std::env::var_os("POSICAST_REGENERATE").is_some() {
             std::fs::write(&file, &derived)?;
         } else {

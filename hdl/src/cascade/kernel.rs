@@ -23,10 +23,8 @@ kernel! {
     pub(super) struct Cascade<const W: usize, const S: usize, const A: usize, const I: usize, const ADDRESS: usize>
         (config: &CascadeConfig)
         where S > W && ADDRESS == A + I;
-    raw ports;
+    ports posicast_model::cascade_ports;
 
-    inputs { rst: Bit, strobe: Bit, start: Bit, x: Signed<W>, clear_flags: Bit }
-    outputs { y: Signed<W>, valid: Bit, busy: Bit, overrun: Bit }
     parts {
         delays: Rom<A, I> = delays_rom(config),
         rings: Ram<S, ADDRESS>,

@@ -50,7 +50,7 @@ pub fn simulate(config: &CascadeConfig) -> Result<Box<dyn ClockedBlock>, Simulat
     Ok(Box::new(Simulated::new(
         "cascade",
         (holding.build)(config),
-        ports(config),
+        ports(config.word_bits() as usize),
     )?))
 }
 

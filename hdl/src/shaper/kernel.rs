@@ -24,36 +24,8 @@ kernel! {
         const COUNT: usize, const SUM: usize, const WORD: usize, const U: usize>
         (config: &ShaperConfig)
         where P == W + 18 && ACC == P + T;
-    raw ports;
+    ports posicast_model::shaper_ports;
 
-    inputs {
-        rst: Bit,
-        strobe: Bit,
-        start: Bit,
-        x: Signed<W>,
-        clear_flags: Bit,
-        tap_write: Bit,
-        tap_bank: Bits<2>,
-        tap_index: Bits<T>,
-        tap_coefficient: Signed<18>,
-        tap_delay: Bits<A>,
-        tap_read: Bit,
-        swap: Bit,
-        swap_bank: Bits<2>,
-    }
-    outputs {
-        y: Signed<W>,
-        valid: Bit,
-        saturated: Bit,
-        busy: Bit,
-        overrun: Bit,
-        swap_pending: Bit,
-        bank: Bits<2>,
-        refused: Bit,
-        loaded_coefficient: Signed<18>,
-        loaded_delay: Bits<A>,
-        tap_read_waits: Bit,
-    }
     parts {
         banks: TapBanks<A, T, COUNT, SUM, WORD> = TapBanks::new(config),
         history: History<W, A, 1> = History::new(config),

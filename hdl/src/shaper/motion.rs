@@ -33,37 +33,8 @@ kernel! {
         const COUNT: usize, const SUM: usize, const WORD: usize, const C: usize, const H: usize>
         (config: &ShaperConfig)
         where P == W + 18 && ACC == P + T + 1 && C <= 3 && H + 1 == C;
-    raw ports;
+    ports posicast_model::motion_shaper_ports;
 
-    inputs {
-        rst: Bit,
-        strobe: Bit,
-        start: Bit,
-        x[C]: Signed<W>,
-        clear_flags: Bit,
-        tap_write: Bit,
-        tap_bank: Bits<2>,
-        tap_index: Bits<T>,
-        tap_coefficient: Signed<18>,
-        tap_delay: Bits<A>,
-        tap_read: Bit,
-        swap: Bit,
-        swap_bank: Bits<2>,
-        swap_how: Bits<2>,
-    }
-    outputs {
-        y[C]: Signed<W>,
-        valid: Bit,
-        saturated: Bit,
-        busy: Bit,
-        overrun: Bit,
-        swap_pending: Bit,
-        bank: Bits<2>,
-        refused: Bit,
-        loaded_coefficient: Signed<18>,
-        loaded_delay: Bits<A>,
-        tap_read_waits: Bit,
-    }
     parts {
         banks: TapBanks<A, T, COUNT, SUM, WORD> = TapBanks::new(config),
         handover: Handover<W, A> = Handover::new(config),

@@ -47,6 +47,8 @@
 //! }
 //! ```
 //!
+//! Where only widths are sizes, the structs and Rust types may stand there too; `from_raw` and `to_raw` then take the sizes.
+//!
 //! [`clocked_block!`] makes a model with such a list a [`ClockedBlock`](super::ClockedBlock). A Rust type of its own, an enum
 //! for example, stands behind `as` once it is a [`PortValue`]; `choices!` makes one of an enum.
 
@@ -63,6 +65,25 @@ pub struct PortRow {
     pub direction: Direction,
     /// Width in bits, 1..=64.
     pub width: u32,
+    /// Two's complement?
+    pub signed: bool,
+    /// Unit; empty where there is none.
+    pub unit: &'static str,
+    /// The lines of the entry's documentation.
+    pub meaning: &'static [&'static str],
+}
+
+/// A port of a list with sizes, as the datasheet shows it: as [`PortRow`], with the names of sizes for numbers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct SizedPortRow {
+    /// Name, as in the Verilog; of an array without its index.
+    pub name: &'static str,
+    /// The size that is the number of ports, if it is an array.
+    pub count: Option<&'static str>,
+    /// Direction.
+    pub direction: Direction,
+    /// Width in bits: a number, or the name of a size.
+    pub width: &'static str,
     /// Two's complement?
     pub signed: bool,
     /// Unit; empty where there is none.
@@ -225,13 +246,58 @@ macro_rules! ports {
             $crate::rtl::ports::listed(PORTS)
         }
 
-        $crate::rtl::ports::raw! { $inputs INPUT_PORTS $($input: $input_kind ($($input_width)?) [$($input_count)?];)* }
-        $crate::rtl::ports::raw! { $outputs OUTPUT_PORTS $($output: $output_kind ($($output_width)?) [$($output_count)?];)* }
+        $crate::rtl::ports::raw! { $inputs INPUT_PORTS () $($input: $input_kind ($($input_width)?) [$($input_count)?];)* }
+        $crate::rtl::ports::raw! { $outputs OUTPUT_PORTS () $($output: $output_kind ($($output_width)?) [$($output_count)?];)* }
 
         $crate::rtl::ports::list! {
             $list
             { $($input $([$input_count])?: $input_kind $(<$input_width>)?),* }
             { $($output $([$output_count])?: $output_kind $(<$output_width>)?),* }
+        }
+    };
+    (
+        $list:ident($($size:ident),+);
+
+        $(#[$of_inputs:meta])*
+        inputs $inputs:ident {
+            $($(#[doc = $input_meaning:literal])+
+            $input:ident: $input_kind:ident $(($input_width:tt))? as $input_type:ty $(, $input_unit:literal)?;)*
+        }
+
+        $(#[$of_outputs:meta])*
+        outputs $outputs:ident {
+            $($(#[doc = $output_meaning:literal])+
+            $output:ident: $output_kind:ident $(($output_width:tt))? as $output_type:ty $(, $output_unit:literal)?;)*
+        }
+    ) => {
+        $(#[$of_inputs])*
+        #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+        pub struct $inputs {
+            $($(#[doc = $input_meaning])+
+            pub $input: $input_type,)*
+        }
+
+        $(#[$of_outputs])*
+        #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+        pub struct $outputs {
+            $($(#[doc = $output_meaning])+
+            pub $output: $output_type,)*
+        }
+
+        /// Number of input ports, without `clk`.
+        pub const INPUT_PORTS: usize = [$(stringify!($input)),*].len();
+        /// Number of output ports.
+        pub const OUTPUT_PORTS: usize = [$(stringify!($output)),*].len();
+
+        $crate::rtl::ports::raw! { $inputs INPUT_PORTS ($($size),+) $($input: $input_kind ($($input_width)?) [];)* }
+        $crate::rtl::ports::raw! { $outputs OUTPUT_PORTS ($($size),+) $($output: $output_kind ($($output_width)?) [];)* }
+
+        $crate::rtl::ports::ports! {
+            $list($($size),+);
+
+            inputs { $($(#[doc = $input_meaning])+ $input: $input_kind $(($input_width))? $(, $input_unit)?;)* }
+
+            outputs { $($(#[doc = $output_meaning])+ $output: $output_kind $(($output_width))? $(, $output_unit)?;)* }
         }
     };
     (
@@ -247,6 +313,17 @@ macro_rules! ports {
             $output:ident $([$output_count:ident])?: $output_kind:ident $(($output_width:tt))? $(, $output_unit:literal)?;)*
         }
     ) => {
+        /// The ports with their units and meanings, in terms of the sizes.
+        pub const PORTS: &[$crate::rtl::SizedPortRow] = &[
+            $($crate::rtl::ports::sized_row!(
+                Input $input [$($input_count)?] $input_kind ($($input_width)?) [$($input_unit)?] [$($input_meaning),+]
+            ),)*
+            $($crate::rtl::ports::sized_row!(
+                Output $output [$($output_count)?] $output_kind ($($output_width)?) [$($output_unit)?]
+                [$($output_meaning),+]
+            ),)*
+        ];
+
         /// The ports in the order of the Verilog's port list, without `clk`, for these sizes.
         #[expect(non_snake_case, reason = "a size has its name in the kernel")]
         pub fn ports($($size: usize),+) -> Vec<$crate::rtl::Port> {
@@ -307,11 +384,38 @@ macro_rules! row {
     };
 }
 
+/// A row of `PORTS` of a list with sizes.
+macro_rules! sized_row {
+    (
+        $direction:ident $name:ident [$($count:ident)?] $kind:ident ($($width:tt)?) [$($unit:literal)?]
+        [$($meaning:literal),+]
+    ) => {
+        $crate::rtl::SizedPortRow {
+            name: stringify!($name),
+            count: $crate::rtl::ports::optional!($(stringify!($count))?),
+            direction: $crate::rtl::Direction::$direction,
+            width: $crate::rtl::ports::width_text!($($width)?),
+            signed: $crate::rtl::ports::signed!($kind),
+            unit: concat!("" $(, $unit)?),
+            meaning: &[$($meaning),+],
+        }
+    };
+}
+
+macro_rules! width_text {
+    () => {
+        "1"
+    };
+    ($width:tt) => {
+        stringify!($width)
+    };
+}
+
 macro_rules! optional {
     () => {
         None
     };
-    ($value:tt) => {
+    ($value:expr) => {
         Some($value)
     };
 }
@@ -339,11 +443,12 @@ macro_rules! signed {
 
 /// Raw bit patterns of a struct of ports, both ways.
 macro_rules! raw {
-    ($ports:ident $number:ident $($name:ident: $kind:ident $width:tt [$($count:literal)?];)*) => {
+    ($ports:ident $number:ident ($($size:ident),*) $($name:ident: $kind:ident $width:tt [$($count:literal)?];)*) => {
         impl $ports {
             /// From raw bit patterns, one per port in port order; bits above a port's width are ignored.
             #[inline]
-            pub fn from_raw(raw: &[u64; $number]) -> Self {
+            #[allow(non_snake_case, reason = "a size has its name in the kernel")]
+            pub fn from_raw(raw: &[u64; $number] $(, $size: usize)*) -> Self {
                 let mut next = 0;
                 let mut pattern = || {
                     next += 1;
@@ -356,7 +461,8 @@ macro_rules! raw {
 
             /// As raw bit patterns, one per port in port order, each cut to its port's width.
             #[inline]
-            pub fn to_raw(&self) -> [u64; $number] {
+            #[allow(non_snake_case, reason = "a size has its name in the kernel")]
+            pub fn to_raw(&self $(, $size: usize)*) -> [u64; $number] {
                 let mut raw = [0; $number];
                 let mut next = 0;
                 let mut put = |pattern: u64, width: u32| {
@@ -422,5 +528,6 @@ macro_rules! clocked_block {
 }
 
 pub(crate) use {
-    choices, clocked_block, from_raw, list, one_or_array, optional, ports, raw, row, signed, to_raw, width,
+    choices, clocked_block, from_raw, list, one_or_array, optional, ports, raw, row, signed, sized_row, to_raw, width,
+    width_text,
 };

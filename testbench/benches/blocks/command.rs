@@ -95,7 +95,7 @@ pub(crate) fn cascade() -> Block {
             x: if strobe(clock) { command(clock / TICK_CLOCKS) } else { 0 },
             ..cascade_model::Inputs::default()
         };
-        inputs.to_raw(&config)
+        inputs.to_raw(config.word_bits() as usize)
     };
     let mut fast = SampleCascade::new(&config);
     Block {

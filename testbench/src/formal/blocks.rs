@@ -175,7 +175,10 @@ fn cascade_task(word_bits: u32, delays_samples: Vec<u32>) -> Result<Task, Error>
             format!("6'd{}", cascade_model::pass_clocks(config.stages())),
         ),
     ];
-    let block = (cascade::emit(&config, "")?, cascade_model::ports(&config));
+    let block = (
+        cascade::emit(&config, "")?,
+        cascade_model::ports(config.word_bits() as usize),
+    );
     let size = format!("{word_bits} bits, {} stages, contents left out", config.stages());
     Ok(Task::new("cascade", &size, INDUCTION, block).properties(&macros, include_str!("../../formal/cascade.sv")))
 }

@@ -2,104 +2,37 @@
 
 use super::config::{CascadeConfig, pass_clocks};
 use super::rounded;
+use crate::rtl::ports::ports;
 use crate::rtl::shaper::{Arbitrary, wrap};
-use crate::rtl::{ClockedBlock, Direction, Port, StepError};
+use crate::rtl::{ClockedBlock, Port, StepError};
 
-/// The input ports. Bits above a port's width are ignored.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct Inputs {
-    /// Synchronous reset.
-    pub rst: bool,
-    /// One clock: `x` is a new sample; ignored while a pass runs.
-    pub strobe: bool,
-    /// One clock: begin anew, all samples before now count as `x`.
-    pub start: bool,
-    /// Command word, W bits.
-    pub x: i64,
-    /// Clears `overrun`.
-    pub clear_flags: bool,
-}
+ports! {
+    cascade_ports(W);
 
-/// The output ports, all of them registers.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct Outputs {
-    /// Shaped command, W bits; holds between samples.
-    pub y: i64,
-    /// One clock: `y` is new.
-    pub valid: bool,
-    /// A pass runs.
-    pub busy: bool,
-    /// Sticky: a strobe came while a pass ran, and its sample was lost.
-    pub overrun: bool,
-}
-
-/// The ports of a cascade in the order of the Verilog's port list, without `clk`.
-pub fn ports(config: &CascadeConfig) -> Vec<Port> {
-    use Direction::{Input, Output};
-    let port = |name: &str, direction, width, signed| Port {
-        name: name.to_owned(),
-        direction,
-        width,
-        signed,
-    };
-    let word = config.word_bits();
-    vec![
-        port("rst", Input, 1, false),
-        port("strobe", Input, 1, false),
-        port("start", Input, 1, false),
-        port("x", Input, word, true),
-        port("clear_flags", Input, 1, false),
-        port("y", Output, word, true),
-        port("valid", Output, 1, false),
-        port("busy", Output, 1, false),
-        port("overrun", Output, 1, false),
-    ]
-}
-
-impl Inputs {
-    /// From raw bit patterns, one per input port in port order.
-    pub fn from_raw(raw: &[u64; 5]) -> Self {
-        let [rst, strobe, start, x, clear_flags] = *raw;
-        Self {
-            rst: rst & 1 != 0,
-            strobe: strobe & 1 != 0,
-            start: start & 1 != 0,
-            x: x as i64,
-            clear_flags: clear_flags & 1 != 0,
-        }
+    /// The input ports. Bits above a port's width are ignored.
+    inputs Inputs {
+        /// Synchronous reset, active high.
+        rst: Bit as bool;
+        /// For one clock: `x` is the next sample; ignored while a pass runs.
+        strobe: Bit as bool;
+        /// For one clock: begin anew, all samples before now count as `x`.
+        start: Bit as bool;
+        /// Command word.
+        x: Signed(W) as i64;
+        /// Clears `overrun`.
+        clear_flags: Bit as bool;
     }
 
-    /// As raw bit patterns, one per input port in port order, each cut to its port's width.
-    pub fn to_raw(&self, config: &CascadeConfig) -> [u64; 5] {
-        [
-            u64::from(self.rst),
-            u64::from(self.strobe),
-            u64::from(self.start),
-            self.x as u64 & ((1 << config.word_bits()) - 1),
-            u64::from(self.clear_flags),
-        ]
-    }
-}
-
-impl Outputs {
-    /// From raw bit patterns, one per output port in port order.
-    pub fn from_raw(raw: &[u64; 4], config: &CascadeConfig) -> Self {
-        Self {
-            y: wrap(raw[0] as i64, config.word_bits()),
-            valid: raw[1] & 1 != 0,
-            busy: raw[2] & 1 != 0,
-            overrun: raw[3] & 1 != 0,
-        }
-    }
-
-    /// As raw bit patterns, one per output port in port order.
-    pub fn to_raw(&self, config: &CascadeConfig) -> [u64; 4] {
-        [
-            self.y as u64 & ((1 << config.word_bits()) - 1),
-            u64::from(self.valid),
-            u64::from(self.busy),
-            u64::from(self.overrun),
-        ]
+    /// The output ports, all of them registers.
+    outputs Outputs {
+        /// Shaped command; holds between samples.
+        y: Signed(W) as i64;
+        /// For one clock: `y` is new.
+        valid: Bit as bool;
+        /// A pass runs.
+        busy: Bit as bool;
+        /// Sticky: a strobe came while a pass ran, and its sample was lost. Set wins over `clear_flags` in the same clock.
+        overrun: Bit as bool;
     }
 }
 
@@ -131,7 +64,7 @@ impl Cascade {
         let sample = |word: u64| wrap(word as i64, config.sum_bits());
         let mut ring = |_| contents.by_ref().take(ring_samples).map(sample).collect();
         Self {
-            ports: ports(config),
+            ports: ports(config.word_bits() as usize),
             rings: (0..config.stages()).map(&mut ring).collect(),
             head: 0,
             age: 0,
@@ -228,15 +161,16 @@ impl ClockedBlock for Cascade {
     }
 
     fn step(&mut self, inputs: &[u64], outputs: &mut [u64]) -> Result<(), StepError> {
-        let (Ok(raw), 4) = (<&[u64; 5]>::try_from(inputs), outputs.len()) else {
+        let (Ok(raw), OUTPUT_PORTS) = (<&[u64; INPUT_PORTS]>::try_from(inputs), outputs.len()) else {
             return Err(StepError(format!(
-                "{} inputs and {} outputs: the cascade has 5 and 4",
+                "{} inputs and {} outputs: the cascade has {INPUT_PORTS} and {OUTPUT_PORTS}",
                 inputs.len(),
                 outputs.len()
             )));
         };
-        let shown = Cascade::step(self, &Inputs::from_raw(raw));
-        outputs.copy_from_slice(&shown.to_raw(&self.config));
+        let word_bits = self.config.word_bits() as usize;
+        let shown = Cascade::step(self, &Inputs::from_raw(raw, word_bits));
+        outputs.copy_from_slice(&shown.to_raw(word_bits));
         Ok(())
     }
 }

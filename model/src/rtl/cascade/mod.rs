@@ -43,7 +43,7 @@ mod clocked;
 mod config;
 mod sample;
 
-pub use clocked::{Cascade, Inputs, Outputs, ports};
+pub use clocked::{Cascade, INPUT_PORTS, Inputs, OUTPUT_PORTS, Outputs, PORTS, ports};
 pub use config::{
     CascadeConfig, CascadeConfigError, PASS_OVERHEAD_CLOCKS, RING_ADDRESS_BITS, STAGE_INDEX_BITS, WORD_BITS,
     pass_clocks,

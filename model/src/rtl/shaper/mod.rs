@@ -59,7 +59,7 @@ pub use config::{
 };
 pub(crate) use memory::Arbitrary;
 pub use motion::MotionShaper;
-pub use ports::{Inputs, Outputs, ports, swap_how};
+pub use ports::{Inputs, Outputs, moving, plain, ports, swap_how};
 pub use sample::{LoadError, SampleShaper};
 
 use tables::Tables;

@@ -2,7 +2,7 @@
 
 use super::config::ShaperConfig;
 use super::wrap;
-use crate::rtl::{Direction, Port};
+use crate::rtl::Port;
 use crate::taps::COEFFICIENT_BITS;
 
 /// `swap_how`: when a swap takes effect. 3 is refused.
@@ -79,60 +79,142 @@ pub struct Outputs {
     pub tap_read_waits: bool,
 }
 
+/// The ports of the plain shaper: words of W bits, T bits of a tap's index, A bits of a delay.
+pub mod plain {
+    use crate::rtl::ports::ports;
+
+    ports! {
+        shaper_ports(W, T, A);
+
+        inputs {
+            /// Synchronous reset, active high.
+            rst: Bit;
+            /// For one clock: the next sample of the command.
+            strobe: Bit;
+            /// For one clock: begin anew, all samples before now count as the command of now.
+            start: Bit;
+            /// Command word.
+            x: Signed(W);
+            /// Clears `saturated`, `overrun`, `refused`.
+            clear_flags: Bit;
+            /// For one clock: one tap for a loadable bank.
+            tap_write: Bit;
+            /// The bank it is for, 1 or 2.
+            tap_bank: Bits(2);
+            /// Its place in the table: 0 begins a table, then one after the other.
+            tap_index: Bits(T);
+            /// Its coefficient.
+            tap_coefficient: Signed(18), "2^−F";
+            /// Its delay, 0 … 2^A − 2.
+            tap_delay: Bits(A), "samples";
+            /// For one clock: the tap at `tap_index` of `tap_bank`, of any bank, is to be read back.
+            tap_read: Bit;
+            /// For one clock: make `swap_bank` active.
+            swap: Bit;
+            /// The bank to make active, 0 to 2.
+            swap_bank: Bits(2);
+        }
+
+        outputs {
+            /// Shaped command; holds between samples.
+            y: Signed(W);
+            /// For one clock: the shaped command is new.
+            valid: Bit;
+            /// Sticky: some output was clamped.
+            saturated: Bit;
+            /// A pass over the table runs.
+            busy: Bit;
+            /// Sticky: a strobe came while a pass ran.
+            overrun: Bit;
+            /// A swap waits, or hands over.
+            swap_pending: Bit;
+            /// The active bank.
+            bank: Bits(2);
+            /// Sticky: a write or a swap was refused.
+            refused: Bit;
+            /// Coefficient of the tap that was read back last; 0 where no tap is loaded.
+            loaded_coefficient: Signed(18), "2^−F";
+            /// Its delay.
+            loaded_delay: Bits(A), "samples";
+            /// A read was not served yet.
+            tap_read_waits: Bit;
+        }
+    }
+}
+
+/// Those of a shaper for [motion](super::ShaperMotion): a word per channel, and `swap_how`.
+pub mod moving {
+    use crate::rtl::ports::ports;
+
+    ports! {
+        motion_shaper_ports(C, W, T, A);
+
+        inputs {
+            /// Synchronous reset, active high.
+            rst: Bit;
+            /// For one clock: the next sample of the command.
+            strobe: Bit;
+            /// For one clock: begin anew, all samples before now count as the command of now.
+            start: Bit;
+            /// Command words: position, velocity, acceleration.
+            x[C]: Signed(W);
+            /// Clears `saturated`, `overrun`, `refused`.
+            clear_flags: Bit;
+            /// For one clock: one tap for a loadable bank.
+            tap_write: Bit;
+            /// The bank it is for, 1 or 2.
+            tap_bank: Bits(2);
+            /// Its place in the table: 0 begins a table, then one after the other.
+            tap_index: Bits(T);
+            /// Its coefficient.
+            tap_coefficient: Signed(18), "2^−F";
+            /// Its delay, 0 … 2^A − 2.
+            tap_delay: Bits(A), "samples";
+            /// For one clock: the tap at `tap_index` of `tap_bank`, of any bank, is to be read back.
+            tap_read: Bit;
+            /// For one clock: make `swap_bank` active.
+            swap: Bit;
+            /// The bank to make active, 0 to 2.
+            swap_bank: Bits(2);
+            /// When the swap takes effect: 0 at once, 1 by handover, 2 when settled; 3 is refused.
+            swap_how: Bits(2);
+        }
+
+        outputs {
+            /// Shaped commands; they hold between samples.
+            y[C]: Signed(W);
+            /// For one clock: the shaped command is new.
+            valid: Bit;
+            /// Sticky: some output was clamped.
+            saturated: Bit;
+            /// A pass over the table runs.
+            busy: Bit;
+            /// Sticky: a strobe came while a pass ran.
+            overrun: Bit;
+            /// A swap waits, or hands over.
+            swap_pending: Bit;
+            /// The active bank.
+            bank: Bits(2);
+            /// Sticky: a write or a swap was refused.
+            refused: Bit;
+            /// Coefficient of the tap that was read back last; 0 where no tap is loaded.
+            loaded_coefficient: Signed(18), "2^−F";
+            /// Its delay.
+            loaded_delay: Bits(A), "samples";
+            /// A read was not served yet.
+            tap_read_waits: Bit;
+        }
+    }
+}
+
 /// The ports of a shaper in the order of the Verilog's port list, without `clk`.
-///
-/// The plain shaper's words are `x` and `y`; those of a shaper for [motion](super::ShaperMotion) are `x_0`, `y_0` and so on, one
-/// per channel, and it has `swap_how`.
 pub fn ports(config: &ShaperConfig) -> Vec<Port> {
-    use Direction::{Input, Output};
-    let port = |name: &str, direction, width, signed| Port {
-        name: name.to_owned(),
-        direction,
-        width,
-        signed,
-    };
-    let word = config.word_bits();
-    let words = |name: &str, direction| match config.motion() {
-        None => vec![port(name, direction, word, true)],
-        Some(motion) => (0..motion.channels)
-            .map(|channel| port(&format!("{name}_{channel}"), direction, word, true))
-            .collect(),
-    };
-    let how = config.motion().map(|_| port("swap_how", Input, 2, false));
-    [
-        vec![
-            port("rst", Input, 1, false),
-            port("strobe", Input, 1, false),
-            port("start", Input, 1, false),
-        ],
-        words("x", Input),
-        vec![
-            port("clear_flags", Input, 1, false),
-            port("tap_write", Input, 1, false),
-            port("tap_bank", Input, 2, false),
-            port("tap_index", Input, config.tap_index_bits(), false),
-            port("tap_coefficient", Input, COEFFICIENT_BITS, true),
-            port("tap_delay", Input, config.ring_address_bits(), false),
-            port("tap_read", Input, 1, false),
-            port("swap", Input, 1, false),
-            port("swap_bank", Input, 2, false),
-        ],
-        how.into_iter().collect(),
-        words("y", Output),
-        vec![
-            port("valid", Output, 1, false),
-            port("saturated", Output, 1, false),
-            port("busy", Output, 1, false),
-            port("overrun", Output, 1, false),
-            port("swap_pending", Output, 1, false),
-            port("bank", Output, 2, false),
-            port("refused", Output, 1, false),
-            port("loaded_coefficient", Output, COEFFICIENT_BITS, true),
-            port("loaded_delay", Output, config.ring_address_bits(), false),
-            port("tap_read_waits", Output, 1, false),
-        ],
-    ]
-    .concat()
+    let [word, index, delay] =
+        [config.word_bits(), config.tap_index_bits(), config.ring_address_bits()].map(|bits| bits as usize);
+    match config.motion() {
+        None => plain::ports(word, index, delay),
+        Some(motion) => moving::ports(motion.channels as usize, word, index, delay),
+    }
 }
 
 impl Inputs {
