@@ -93,7 +93,7 @@ pub fn simulate(channels: usize) -> Result<Box<dyn ClockedBlock>, SimulationErro
     )?))
 }
 
-/// The name of the module that [`emit`] writes last.
+/// The name of the module that [`emit()`] writes last.
 pub fn name(channels: usize, prefix: &str) -> String {
     emit::shared_name(prefix, &base_name(channels))
 }

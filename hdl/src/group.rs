@@ -94,7 +94,7 @@ pub fn simulate(axes: usize) -> Result<Box<dyn ClockedBlock>, SimulationError> {
     Ok(Box::new(Simulated::new("group", block(axes), ports(axes))?))
 }
 
-/// The name of the module that [`emit`] writes last.
+/// The name of the module that [`emit()`] writes last.
 pub fn name(axes: usize, prefix: &str) -> String {
     emit::shared_name(prefix, &base_name(axes))
 }

@@ -69,7 +69,7 @@ pub fn simulate(word_bits: u32, channels: usize) -> Result<Box<dyn ClockedBlock>
     )?))
 }
 
-/// The name of the module that [`emit`] writes last.
+/// The name of the module that [`emit()`] writes last.
 pub fn name(word_bits: u32, channels: usize, prefix: &str) -> String {
     emit::shared_name(prefix, &base_name(word_bits, channels))
 }

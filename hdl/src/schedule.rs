@@ -54,7 +54,7 @@ pub fn simulate(config: &ScheduleConfig) -> Result<Box<dyn ClockedBlock>, Simula
     Ok(Box::new(Simulated::new("schedule", block, ports())?))
 }
 
-/// The name of the module that [`emit`] writes last.
+/// The name of the module that [`emit()`] writes last.
 pub fn name(config: &ScheduleConfig, prefix: &str) -> String {
     emit::shared_name(prefix, &base_name(config))
 }

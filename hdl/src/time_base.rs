@@ -56,7 +56,7 @@ pub fn simulate(divider: &DividerConfig) -> Result<Box<dyn ClockedBlock>, Simula
     Ok(Box::new(Simulated::new("time_base", block, ports())?))
 }
 
-/// The name of the module that [`emit`] writes last.
+/// The name of the module that [`emit()`] writes last.
 pub fn name(divider: &DividerConfig, prefix: &str) -> String {
     emit::shared_name(prefix, &base_name(divider))
 }

@@ -3,7 +3,7 @@
 //! The datasheet is `docs/cascade.md`, the reference `posicast_model::rtl::cascade`.
 //!
 //! One kernel serves all sizes. It is compiled at three, from which the emitter writes any: see
-//! [`compiled`](crate::compiled).
+//! `compiled`.
 
 mod kernel;
 

@@ -19,7 +19,7 @@ pub fn simulate(config: &DividerConfig) -> Result<Box<dyn ClockedBlock>, Simulat
     Ok(Box::new(Simulated::new("divider", block, ports())?))
 }
 
-/// The name of the module that [`emit`] writes last.
+/// The name of the module that [`emit()`] writes last.
 pub fn name(config: &DividerConfig, prefix: &str) -> String {
     emit::shared_name(prefix, &base_name(config))
 }

@@ -97,7 +97,7 @@ impl Module {
     }
 }
 
-/// What [`emit`] needs to know beside the block.
+/// What [`emit()`] needs to know beside the block.
 #[derive(Debug, Clone, Default)]
 pub struct EmitOptions {
     /// Base name of the top module; a size that the block has is in it.
@@ -146,7 +146,7 @@ pub fn emit<B: Block + ?Sized>(block: &B, options: &EmitOptions) -> Result<Vec<M
 /// same sum, and at least one more, which all must fit.
 ///
 /// # Errors
-/// As [`emit`], and for what does not follow from the sizes.
+/// As [`emit()`], and for what does not follow from the sizes.
 pub fn emit_sized<B: Block + ?Sized>(
     samples: &[(&[u32], &B)],
     wanted: &[u32],

@@ -26,7 +26,7 @@ pub fn simulate(config: &PwmConfig) -> Result<Box<dyn ClockedBlock>, SimulationE
     Ok(Box::new(Simulated::new("pwm", block, ports())?))
 }
 
-/// The name of the module that [`emit`] writes last.
+/// The name of the module that [`emit()`] writes last.
 pub fn name(config: &PwmConfig, prefix: &str) -> String {
     emit::shared_name(prefix, &base_name(config))
 }

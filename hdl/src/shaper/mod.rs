@@ -3,7 +3,7 @@
 //! The datasheet is `docs/shaper.md`, the reference `posicast_model::rtl::shaper`.
 //!
 //! One kernel serves all sizes, and a second one all shapers for commands in motion: with channels, handover and modulo
-//! axes. Each is compiled at three sizes, from which the emitter writes any: see [`compiled`](crate::compiled). What changes the
+//! axes. Each is compiled at three sizes, from which the emitter writes any: see `compiled`. What changes the
 //! form of a kernel has a set of three of its own: one or two multipliers, one to three channels. Sizes are equal between the
 //! sets wherever they can be, so that the parts are compiled once.
 
@@ -146,7 +146,7 @@ fn simulated(config: &ShaperConfig) -> Option<&'static Compiled<ShaperConfig>> {
     compiled::holding(kernel(config), &sizes(config), wraps)
 }
 
-/// The name of the module that [`emit`] writes last: it holds a machine's table.
+/// The name of the module that [`emit()`] writes last: it holds a machine's table.
 pub fn name(config: &ShaperConfig, prefix: &str) -> String {
     emit::own_name(prefix, &base_name(config))
 }

@@ -27,7 +27,7 @@ pub fn simulate(config: &TraceConfig) -> Result<Box<dyn ClockedBlock>, Simulatio
     Ok(Box::new(Simulated::new("trace", block(config), ports())?))
 }
 
-/// The name of the module that [`emit`] writes last.
+/// The name of the module that [`emit()`] writes last.
 pub fn name(config: &TraceConfig, prefix: &str) -> String {
     emit::shared_name(prefix, &base_name(config))
 }

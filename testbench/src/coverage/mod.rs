@@ -11,7 +11,7 @@
 //! - **Toggle**: a bit of a net changed. Memories have no toggles.
 //! - **Bins** are what the block's bench counts: saturation at each side, every flag, every state ([`Bins`](crate::blocks::Bins)).
 //! - Toggles in the first clocks are not counted: there all nets leave their random start.
-//! - A hole without an [explanation](explanation) is an error, and so is an explanation that no longer fits any hole.
+//! - A hole without an [explanation] is an error, and so is an explanation that no longer fits any hole.
 //! - A module that stands in a block several times is counted once, all its instances together.
 
 pub mod explanation;

@@ -42,8 +42,8 @@ pub enum Seen {
     FollowingError,
     /// |motor − scale| above its limit.
     Deviation,
-    /// The command was cut for [`SATURATION_TICKS`](super::machine::SATURATION_TICKS), or there was no count under a command
-    /// for [`LOST_TICKS`](super::machine::LOST_TICKS).
+    /// The command was cut for `SATURATION_TICKS`, or there was no count under a command
+    /// for `LOST_TICKS`.
     Stuck,
     /// [`Stuck`](Self::Stuck) or [`Deviation`](Self::Deviation).
     Lost,
@@ -78,7 +78,7 @@ pub enum Due {
         /// Ticks.
         ticks: u64,
     },
-    /// [`Seen::clocks`] after it is seen.
+    /// `Seen::clocks` after it is seen.
     Seen(Seen),
 }
 

@@ -14,6 +14,11 @@ pub const SEARCHED_CLOCKS: u32 = 60;
 /// Clocks in which a cover must be reached: a pass of the controller, and some.
 const COVERED_CLOCKS: u32 = 540;
 
+/// Name of the file with the assertions, and how they are left over.
+const ASSERTS: (&str, &str) = ("asserts", "delete t:$cover");
+/// The same of the covers.
+const COVERS: (&str, &str) = ("covers", "delete t:$assert\ntechmap -map reached.v");
+
 pub(crate) const YOSYS: Tool = Tool {
     name: "yosys",
     variable: "POSICAST_YOSYS",
@@ -84,7 +89,7 @@ pub fn run(task: &Task, folder: &Path, limit: Duration) -> Result<ProofOutcome, 
     let start = Instant::now();
     std::fs::create_dir_all(folder).map_err(Error::file(folder, "create"))?;
     let bench = Bench { task, folder, limit };
-    bench.prepare()?;
+    bench.prepare(&[ASSERTS, COVERS])?;
     let (asserts, covers) = (bench.names("asserts.txt")?, bench.names("covers.txt")?);
     let is_proven = match task.engine {
         _ if asserts.is_empty() => false,
@@ -112,7 +117,7 @@ pub fn run(task: &Task, folder: &Path, limit: Duration) -> Result<ProofOutcome, 
 pub fn search(task: &Task, folder: &Path, limit: Duration) -> Result<ProofVerdict, Error> {
     std::fs::create_dir_all(folder).map_err(Error::file(folder, "create"))?;
     let bench = Bench { task, folder, limit };
-    bench.prepare()?;
+    bench.prepare(&[ASSERTS])?;
     bench.counterexample(&bench.names("asserts.txt")?)
 }
 
@@ -123,8 +128,8 @@ struct Bench<'a> {
 }
 
 impl Bench<'_> {
-    /// Writes the Verilog, and what the engines read.
-    fn prepare(&self) -> Result<(), Error> {
+    /// Writes the Verilog, and what the engines read: a file for each of `kinds`.
+    fn prepare(&self, kinds: &[(&str, &str)]) -> Result<(), Error> {
         let mut script = String::new();
         for module in &self.task.modules {
             let file = format!("{}.v", module.name);
@@ -172,10 +177,7 @@ impl Bench<'_> {
              write_ilang design.il\ndesign -save whole\n",
         );
         let bits = "delete -output\ntechmap\nopt -fast\ndffunmap\nabc -g AND -fast\nopt_clean\n";
-        for (name, only) in [
-            ("asserts", "delete t:$cover"),
-            ("covers", "delete t:$assert\ntechmap -map reached.v"),
-        ] {
+        for (name, only) in kinds {
             let _ = write!(
                 script,
                 "design -load whole\n{only}\n{bits}tee -o {name}.txt select -list t:$assert\n\

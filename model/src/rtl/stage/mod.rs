@@ -15,7 +15,7 @@
 //! `posicast_hdl::component`. What the machine file fixes is tied to constants; what a host may want to change while the
 //! machine runs are registers, with the machine's values after reset.
 //!
-//! Nothing but wiring is in this folder: [`axis`](mod@axis) joins the blocks of an axis, [`registers`] says what a host sees.
+//! Nothing but wiring is in this folder: `axis` joins the blocks of an axis, `registers` says what a host sees.
 //! The datasheet is `docs/stage.md`.
 
 mod axis;
