@@ -114,7 +114,7 @@ impl AxisControl {
         let mut curves = vec![
             Curve::reference("real axis", vec![(-reach_x, 0.0), (reach_x, 0.0)]),
             Curve::reference("distance 1 from 0", circle(0.0, 1.0)),
-            Curve::reference(
+            Curve::limit(
                 format!("distance {DEFAULT_MARGIN} from −1"),
                 circle(-1.0, DEFAULT_MARGIN),
             ),
@@ -128,6 +128,7 @@ impl AxisControl {
             x_label: "real part".into(),
             y_label: "imaginary part".into(),
             curves,
+            ..Panel::default()
         }
     }
 

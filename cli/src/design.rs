@@ -66,6 +66,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let mut outputs = OutputFiles::new(args.force);
     outputs.input("the machine file", &args.machine);
     if let Some(path) = &args.plot {
+        plot::check_name("--plot", path)?;
         outputs.claim("--plot", path).map_err(Failure::because)?;
     }
     output::one_document(&outputs, args.json)?;

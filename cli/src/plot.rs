@@ -1,39 +1,90 @@
-//! SVG pictures of curves that the model computed: a stack of panels, each with named curves.
+//! SVG pictures of curves that the model computed: a stack of panels, each with a legend above its curves.
+
+mod legend;
 
 use crate::failure::Failure;
+use legend::Legend;
+use plotters::coord::Shift;
+use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
+use std::path::Path;
+
+type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
+type Drawn = Result<(), Box<dyn std::error::Error>>;
+
+/// How a curve is drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Look {
+    /// Grey: what the others are compared with.
+    Reference,
+    /// A colour of its own, which no other curve of the panel has.
+    Own,
+    /// Dashed, in the colour of the curve before: another form of the same.
+    Dashed,
+    /// Dashed and dark red: a level that is not to be passed.
+    Limit,
+}
 
 /// A named curve.
 pub(crate) struct Curve {
-    /// Name in the legend.
-    pub(crate) name: String,
+    name: String,
     /// Points `(x, y)` in order of x.
-    pub(crate) points: Vec<(f64, f64)>,
-    /// Drawn thin and grey: a reference beside the curves that matter.
-    pub(crate) reference: bool,
+    points: Vec<(f64, f64)>,
+    look: Look,
 }
 
 impl Curve {
-    /// A curve.
+    fn of(look: Look, name: impl Into<String>, points: Vec<(f64, f64)>) -> Self {
+        let name = name.into();
+        Self { name, points, look }
+    }
+
+    /// A curve that matters.
     pub(crate) fn new(name: impl Into<String>, points: Vec<(f64, f64)>) -> Self {
-        Self {
-            name: name.into(),
-            points,
-            reference: false,
-        }
+        Self::of(Look::Own, name, points)
+    }
+
+    /// Another form of the curve before it.
+    pub(crate) fn beside(name: impl Into<String>, points: Vec<(f64, f64)>) -> Self {
+        Self::of(Look::Dashed, name, points)
     }
 
     /// A curve to compare with.
     pub(crate) fn reference(name: impl Into<String>, points: Vec<(f64, f64)>) -> Self {
-        Self {
-            name: name.into(),
-            points,
-            reference: true,
-        }
+        Self::of(Look::Reference, name, points)
+    }
+
+    /// A level that is not to be passed.
+    pub(crate) fn limit(name: impl Into<String>, points: Vec<(f64, f64)>) -> Self {
+        Self::of(Look::Limit, name, points)
     }
 }
 
+/// A range of values in which the curves are to stay.
+pub(crate) struct Band {
+    /// Name in the legend.
+    pub(crate) name: String,
+    /// Its least and its largest value.
+    pub(crate) range: (f64, f64),
+}
+
+impl Band {
+    fn holds_all(&self, low: f64, high: f64) -> bool {
+        self.range.0 <= low && high <= self.range.1
+    }
+}
+
+/// A place on the horizontal axis where something happens.
+pub(crate) struct Mark {
+    /// What happens.
+    pub(crate) name: String,
+    /// Where.
+    pub(crate) at: f64,
+}
+
 /// One diagram.
+#[derive(Default)]
 pub(crate) struct Panel {
     /// Heading.
     pub(crate) title: String,
@@ -43,18 +94,55 @@ pub(crate) struct Panel {
     pub(crate) y_label: String,
     /// Curves.
     pub(crate) curves: Vec<Curve>,
+    /// What is shown of the vertical axis; all, where there is none. What lies beyond is cut.
+    pub(crate) y_range: Option<(f64, f64)>,
+    /// Drawn under the curves.
+    pub(crate) band: Option<Band>,
+    /// Drawn as vertical lines.
+    pub(crate) marks: Vec<Mark>,
 }
 
-const PANEL_SIZE: (u32, u32) = (900, 380);
-// Colours that stay apart for colour-blind readers (Okabe and Ito).
-const COLOURS: [RGBColor; 6] = [
+const PANEL_SIZE: (u32, u32) = (900, 400);
+/// Room round a chart and its legend, in pixels.
+const MARGIN: i32 = 16;
+const TITLE_SIZE: i32 = 18;
+const TEXT_SIZE: i32 = 13;
+// Colours that stay apart for colour-blind readers (Okabe and Ito; their yellow, which is faint on white, is left out), one for
+// each mode that an axis may have.
+const COLOURS: [RGBColor; 8] = [
     RGBColor(0, 114, 178),
     RGBColor(213, 94, 0),
     RGBColor(0, 158, 115),
     RGBColor(204, 121, 167),
     RGBColor(230, 159, 0),
     RGBColor(86, 180, 233),
+    RGBColor(0, 0, 0),
+    RGBColor(120, 81, 169),
 ];
+const GREY: RGBColor = RGBColor(140, 140, 140);
+const DARK_RED: RGBColor = RGBColor(170, 0, 0);
+const BAND: RGBColor = RGBColor(222, 240, 222);
+const GRID: RGBColor = RGBColor(225, 225, 225);
+/// A dash and the gap after it, in pixels.
+const DASH: (i32, i32) = (7, 5);
+
+/// Refuses a file for a picture whose name says that it is to be no SVG.
+pub(crate) fn check_name(option: &str, path: &Path) -> Result<(), Failure> {
+    let extension = path
+        .extension()
+        .map(|extension| extension.to_string_lossy().to_lowercase());
+    match extension.as_deref() {
+        None | Some("svg") => Ok(()),
+        Some(other) => Err(Failure::from(miette::miette!(
+            help = format!(
+                "name it `{}`; `rsvg-convert` and any browser make other formats of it",
+                path.with_extension("svg").display()
+            ),
+            "{option} `{}`: pictures are written as SVG, not as {other}",
+            path.display()
+        ))),
+    }
+}
 
 /// The panels below each other as one SVG document.
 pub(crate) fn svg(panels: &[Panel]) -> Result<String, Failure> {
@@ -63,7 +151,7 @@ pub(crate) fn svg(panels: &[Panel]) -> Result<String, Failure> {
     Ok(text)
 }
 
-fn draw(panels: &[Panel], text: &mut String) -> Result<(), Box<dyn std::error::Error>> {
+fn draw(panels: &[Panel], text: &mut String) -> Drawn {
     let count = panels.len().max(1);
     let root = SVGBackend::with_string(text, (PANEL_SIZE.0, PANEL_SIZE.1 * count as u32)).into_drawing_area();
     root.fill(&WHITE)?;
@@ -74,49 +162,137 @@ fn draw(panels: &[Panel], text: &mut String) -> Result<(), Box<dyn std::error::E
     Ok(())
 }
 
-fn draw_panel(
-    area: &DrawingArea<SVGBackend<'_>, plotters::coord::Shift>,
-    panel: &Panel,
-) -> Result<(), Box<dyn std::error::Error>> {
+fn draw_panel(area: &Area<'_>, panel: &Panel) -> Drawn {
     let points = || panel.curves.iter().flat_map(|c| c.points.iter());
-    let (x_low, x_high) = span(points().map(|p| p.0));
-    let (y_low, y_high) = span(points().map(|p| p.1));
-    let margin = 0.05 * (y_high - y_low);
-    let mut chart = ChartBuilder::on(area)
-        .caption(&panel.title, ("sans-serif", 20))
-        .margin(12)
-        .x_label_area_size(42)
-        .y_label_area_size(64)
-        .build_cartesian_2d(x_low..x_high, (y_low - margin)..(y_high + margin))?;
+    let (x_low, x_high) = span(points().map(|p| p.0).chain(panel.marks.iter().map(|mark| mark.at)));
+    let (y_low, y_high) = panel.y_range.unwrap_or_else(|| {
+        let (low, high) = span(points().map(|p| p.1));
+        let margin = 0.05 * (high - low);
+        (low - margin, high + margin)
+    });
+    let looks = looks(&panel.curves);
+    let legend = Legend::new(
+        panel,
+        &looks,
+        (y_low, y_high),
+        area.dim_in_pixel().0 as i32 - 2 * MARGIN,
+    );
+    area.draw(&Text::new(
+        panel.title.clone(),
+        (MARGIN, MARGIN),
+        ("sans-serif", TITLE_SIZE).into_font(),
+    ))?;
+    let first_row = MARGIN + TITLE_SIZE + 10;
+    legend.draw(area, (MARGIN, first_row))?;
+    let (_, below) = area.split_vertically(first_row + legend.height());
+    let mut chart = ChartBuilder::on(&below)
+        .margin(8)
+        .margin_right(32)
+        .x_label_area_size(44)
+        .y_label_area_size(76)
+        .build_cartesian_2d(x_low..x_high, y_low..y_high)?;
+    if let Some(band) = &panel.band {
+        let (low, high) = (band.range.0.max(y_low), band.range.1.min(y_high));
+        if low < high && !band.holds_all(y_low, y_high) {
+            chart.draw_series(std::iter::once(Rectangle::new(
+                [(x_low, low), (x_high, high)],
+                BAND.filled(),
+            )))?;
+        }
+    }
     chart
         .configure_mesh()
         .x_desc(&panel.x_label)
         .y_desc(&panel.y_label)
+        .axis_desc_style(("sans-serif", TEXT_SIZE))
+        .label_style(("sans-serif", TEXT_SIZE))
         .x_label_formatter(&|value| axis_label(*value))
         .y_label_formatter(&|value| axis_label(*value))
-        .light_line_style(WHITE)
+        .bold_line_style(GRID)
+        .max_light_lines(0)
         .draw()?;
-    for (index, curve) in panel.curves.iter().enumerate() {
-        let style = curve_style(curve, index);
-        chart
-            .draw_series(LineSeries::new(curve.points.iter().copied(), style))?
-            .label(&curve.name)
-            .legend(move |(x, y)| PathElement::new(vec![(x, y), (x + 22, y)], style));
+    // What matters most lies on top: the first of the coloured curves over the others, levels over all.
+    let mut order: Vec<_> = panel.curves.iter().zip(looks).rev().collect();
+    order.sort_by_key(|(curve, _)| curve.look);
+    for (curve, (style, is_dashed)) in order {
+        for part in cut(&curve.points, y_low, y_high) {
+            draw_line(&mut chart, part, style, is_dashed)?;
+        }
     }
-    chart
-        .configure_series_labels()
-        .position(SeriesLabelPosition::UpperRight)
-        .background_style(WHITE.mix(0.85))
-        .border_style(BLACK.mix(0.3))
-        .draw()?;
+    for mark in &panel.marks {
+        draw_line(
+            &mut chart,
+            vec![(mark.at, y_low), (mark.at, y_high)],
+            DARK_RED.stroke_width(1),
+            true,
+        )?;
+    }
     Ok(())
 }
 
-fn curve_style(curve: &Curve, index: usize) -> ShapeStyle {
-    if curve.reference {
-        RGBColor(150, 150, 150).stroke_width(1)
+fn draw_line(chart: &mut Chart<'_, '_>, points: Vec<(f64, f64)>, style: ShapeStyle, is_dashed: bool) -> Drawn {
+    if is_dashed {
+        chart.draw_series(DashedLineSeries::new(points, DASH.0, DASH.1, style))?;
     } else {
-        COLOURS[index % COLOURS.len()].stroke_width(2)
+        chart.draw_series(LineSeries::new(points, style))?;
+    }
+    Ok(())
+}
+
+/// Colour and width of each curve, and whether it is dashed.
+fn looks(curves: &[Curve]) -> Vec<(ShapeStyle, bool)> {
+    let mut next = 0;
+    let mut colour = COLOURS[0];
+    let look = |curve: &Curve| match curve.look {
+        Look::Own => {
+            colour = COLOURS[next % COLOURS.len()];
+            next += 1;
+            (colour.stroke_width(2), false)
+        }
+        Look::Dashed => (colour.stroke_width(1), true),
+        Look::Reference => (GREY.stroke_width(1), false),
+        Look::Limit => (DARK_RED.stroke_width(1), true),
+    };
+    curves.iter().map(look).collect()
+}
+
+/// The parts of a curve between `low` and `high`, each up to where it crosses one of them.
+fn cut(points: &[(f64, f64)], low: f64, high: f64) -> Vec<Vec<(f64, f64)>> {
+    let is_inside = |(_, y): &(f64, f64)| (low..=high).contains(y);
+    let crossing = |inside: (f64, f64), outside: (f64, f64)| {
+        let level = outside.1.clamp(low, high);
+        let part = (level - inside.1) / (outside.1 - inside.1);
+        (inside.0 + part * (outside.0 - inside.0), level)
+    };
+    let mut parts: Vec<Vec<(f64, f64)>> = Vec::new();
+    let mut before: Option<(f64, f64)> = None;
+    for &point in points.iter().filter(|(_, y)| y.is_finite()) {
+        match (before.filter(|before| !is_inside(before)), is_inside(&point)) {
+            (Some(outside), true) => parts.push(vec![crossing(point, outside), point]),
+            (None, true) if before.is_none() => parts.push(vec![point]),
+            (None, inside) => {
+                if let (Some(part), Some(before)) = (parts.last_mut(), before) {
+                    part.push(if inside { point } else { crossing(before, point) });
+                }
+            }
+            (Some(_), false) => {}
+        }
+        before = Some(point);
+    }
+    parts
+}
+
+/// `value` with so many significant digits, without zeros behind them.
+pub(crate) fn significant(value: f64, digits: i32) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return value.to_string();
+    }
+    let unit = 10f64.powi(value.abs().log10().floor() as i32 + 1 - digits);
+    let decimals = (-unit.log10().floor()).max(0.0) as usize;
+    let text = format!("{:.decimals$}", (value / unit).round() * unit);
+    match text.contains('.') {
+        true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
+        false => text,
     }
 }
 
@@ -145,7 +321,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_panel_shows_its_title_and_every_curve() {
+    fn unit_a_panel_shows_its_title_every_curve_the_band_and_the_mark() {
         let panel = Panel {
             title: "Residual".into(),
             x_label: "f / f0".into(),
@@ -154,21 +330,58 @@ mod tests {
                 Curve::new("shaped", vec![(0.0, 1.0), (1.0, 0.0)]),
                 Curve::reference("flat", vec![(0.0, 0.5), (1.0, 0.5)]),
             ],
+            band: Some(Band {
+                name: "one count".into(),
+                range: (0.2, 0.4),
+            }),
+            marks: vec![Mark {
+                name: "trip".into(),
+                at: 0.7,
+            }],
+            ..Panel::default()
         };
         let svg = svg(&[panel]).ok().unwrap();
-        for text in ["Residual", "shaped", "flat", "f / f0"] {
+        for text in ["Residual", "shaped", "flat", "f / f0", "one count", "trip"] {
             assert!(svg.contains(text), "{text}");
         }
     }
 
     #[test]
-    fn an_axis_label_is_short_and_zero_has_no_sign() {
+    fn unit_eight_curves_have_eight_colours_and_a_dashed_one_has_its_neighbours() {
+        let curve = |_| [Curve::new("", Vec::new()), Curve::beside("", Vec::new())];
+        let curves: Vec<_> = (0..8).flat_map(curve).collect();
+        let mut colours: Vec<_> = looks(&curves).iter().map(|(style, _)| style.color.rgb()).collect();
+        assert!(colours.chunks(2).all(|pair| pair[0] == pair[1]));
+        colours.sort_unstable();
+        colours.dedup();
+        assert_eq!(colours.len(), 8);
+    }
+
+    #[test]
+    fn unit_a_curve_is_cut_where_it_leaves_the_range() {
+        let points = [(0.0, -1.0), (1.0, 1.0), (2.0, 3.0), (3.0, 3.0), (4.0, 1.0)];
+        let parts = cut(&points, 0.0, 2.0);
+        assert_eq!(
+            parts,
+            [vec![(0.5, 0.0), (1.0, 1.0), (1.5, 2.0)], vec![(3.5, 2.0), (4.0, 1.0)]]
+        );
+        assert_eq!(cut(&points, -1.0, 3.0), [points.to_vec()]);
+    }
+
+    #[test]
+    fn unit_a_number_has_the_digits_that_it_deserves() {
+        let texts = [0.18, 131.117, 1234.5, -0.004_567, 10.0, 0.0].map(|value| significant(value, 3));
+        assert_eq!(texts, ["0.18", "131", "1230", "-0.00457", "10", "0"]);
+    }
+
+    #[test]
+    fn unit_an_axis_label_is_short_and_zero_has_no_sign() {
         let labels = [-0.0, 0.1 + 0.2, -1.5, 12000.0].map(axis_label);
         assert_eq!(labels, ["0", "0.3", "-1.5", "12000"]);
     }
 
     #[test]
-    fn empty_and_constant_curves_still_have_a_span() {
+    fn unit_empty_and_constant_curves_still_have_a_span() {
         assert_eq!(span([].into_iter()), (0.0, 1.0));
         assert_eq!(span([f64::NAN, 2.0].into_iter()), (1.5, 2.5));
     }

@@ -265,6 +265,7 @@ fn draw(folder: &Path, paper: Paper, figures: Vec<Figure>) -> Result<(), Failure
                     false => Curve::new(curve.name, curve.points),
                 })
                 .collect(),
+            ..Panel::default()
         })
         .collect();
     write_text(&picture(folder, paper), &plot::svg(&panels)?).map_err(Failure::because)

@@ -7,6 +7,7 @@
 mod advice;
 mod checks;
 mod closed_loop;
+mod pictures;
 mod report;
 mod waves;
 
@@ -135,7 +136,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     package
         .add_evidence(
             "plots/response.svg",
-            plot::svg(&report::response_panels(machine, &design.design, &axes)?)?.as_bytes(),
+            plot::svg(&pictures::response_panels(machine, &design.design, &axes)?)?.as_bytes(),
         )
         .map_err(Failure::because)?;
     let report = RunReport {

@@ -1,6 +1,6 @@
 //! Sensitivity curves: the residual over the mode's true frequency.
 
-use crate::plot::{Curve, Panel};
+use crate::plot::{Curve, Panel, significant};
 use posicast_model::analysis::{sensitivity_curve, tap_impulses};
 use posicast_model::design::{AxisTables, MachineDesign};
 use posicast_model::machine_file::{AxisSection, Machine};
@@ -17,11 +17,11 @@ pub(crate) fn sensitivity_panels(machine: &Machine, design: &MachineDesign) -> V
         .zip(&design.axes)
         .filter(|(axis, _)| !axis.modes.is_empty());
     panels
-        .map(|(axis, tables)| sensitivity_panel(axis, tables, design.sample_hz))
+        .map(|(axis, tables)| sensitivity_panel(&machine.name, axis, tables, design.sample_hz))
         .collect()
 }
 
-fn sensitivity_panel(axis: &AxisSection, tables: &AxisTables, sample_hz: f64) -> Panel {
+fn sensitivity_panel(machine: &str, axis: &AxisSection, tables: &AxisTables, sample_hz: f64) -> Panel {
     let integer = tap_impulses(&tables.table, sample_hz);
     let mut curves = Vec::new();
     for mode in &axis.modes {
@@ -32,20 +32,28 @@ fn sensitivity_panel(axis: &AxisSection, tables: &AxisTables, sample_hz: f64) ->
                 .map(|(ratio, residual)| (ratio, 100.0 * residual))
                 .collect::<Vec<_>>()
         };
-        let name = format!("{:.1} Hz", mode.mode.frequency_hz);
-        curves.push(Curve::new(format!("{name}, quantised"), curve(&integer)));
-        curves.push(Curve::reference(
-            format!("{name}, impulses"),
+        let name = format!("{} Hz", significant(mode.mode.frequency_hz, 4));
+        curves.push(Curve::new(format!("{name}, integer taps"), curve(&integer)));
+        curves.push(Curve::beside(
+            format!("{name}, impulses before rounding"),
             curve(tables.design.impulses.impulses()),
         ));
-        let tolerance = 100.0 * axis.tolerance_of(mode);
+    }
+    let mut tolerances: Vec<f64> = axis.modes.iter().map(|mode| 100.0 * axis.tolerance_of(mode)).collect();
+    tolerances.sort_by(f64::total_cmp);
+    tolerances.dedup();
+    for tolerance in tolerances {
         let line = vec![(CURVE_RATIOS.0, tolerance), (CURVE_RATIOS.1, tolerance)];
-        curves.push(Curve::reference(format!("{name}, tolerance"), line));
+        curves.push(Curve::limit(format!("tolerance {} %", significant(tolerance, 3)), line));
     }
     Panel {
-        title: format!("axis {}: residual vibration of {}", axis.name, tables.design.kind),
+        title: format!(
+            "{machine}, axis {}: residual vibration of {}",
+            axis.name, tables.design.kind
+        ),
         x_label: "frequency of the mode / design frequency".into(),
         y_label: "residual vibration, %".into(),
         curves,
+        ..Panel::default()
     }
 }

@@ -8,7 +8,6 @@ use crate::bench::Simulator;
 use crate::design::{self, DesignReport};
 use crate::failure::Failure;
 use crate::output::{Table, percent};
-use crate::plot::{Curve, Panel};
 use crate::simulate::micro_units_per_lsb;
 use crate::synth;
 use posicast_model::analysis::tap_impulses;
@@ -16,7 +15,7 @@ use posicast_model::design::{AxisTables, MachineDesign};
 use posicast_model::impulse::ImpulseSequence;
 use posicast_model::machine_file::{AxisSection, Machine};
 use posicast_model::plant::Plant;
-use posicast_model::plant::response::{PlantFigures, StepFigures, plant_figures, step_response};
+use posicast_model::plant::response::{PlantFigures, StepFigures, plant_figures};
 use posicast_model::simulation::AxisSimulation;
 use posicast_synth::yosys::Estimate;
 use posicast_testbench::diff::Comparison;
@@ -274,75 +273,6 @@ fn entries(root: &Path, files: &[PathBuf]) -> Vec<String> {
         }
     }
     entries
-}
-
-/// Duration that a step response shows, in shaper durations.
-const SHOWN_DURATIONS: f64 = 4.0;
-const RESPONSE_POINTS: usize = 1200;
-
-/// Step responses and the end of the move, two panels per axis.
-pub(crate) fn response_panels(
-    machine: &Machine,
-    design: &MachineDesign,
-    axes: &[AxisSimulation],
-) -> Result<Vec<Panel>, Failure> {
-    let mut panels = Vec::new();
-    for ((axis, tables), run) in machine.axes.iter().zip(&design.axes).zip(axes) {
-        if axis.modes.is_empty() {
-            continue;
-        }
-        panels.push(step_panel(axis, tables, design.sample_hz)?);
-        panels.push(move_panel(machine, axis, run));
-    }
-    Ok(panels)
-}
-
-fn step_panel(axis: &AxisSection, tables: &AxisTables, sample_hz: f64) -> Result<Panel, Failure> {
-    let plant = Plant::of_axis(axis).map_err(Failure::because)?;
-    let taps = tap_impulses(&tables.table, sample_hz);
-    let slowest_s = axis.modes.iter().map(|m| m.mode.damped_period_s()).fold(0.0, f64::max);
-    let duration_s = SHOWN_DURATIONS * tables.design.impulses.duration_s().max(slowest_s);
-    let curve = |plant: &Plant, impulses: &[_]| {
-        let points = step_response(plant, impulses, duration_s, RESPONSE_POINTS);
-        points
-            .into_iter()
-            .map(|(time_s, position)| (1e3 * time_s, position))
-            .collect::<Vec<_>>()
-    };
-    Ok(Panel {
-        title: format!("axis {}: step response with {}", axis.name, tables.design.kind),
-        x_label: "time, ms".into(),
-        y_label: "position / step".into(),
-        curves: vec![
-            Curve::reference("unshaped", curve(&plant, ImpulseSequence::unity().impulses())),
-            Curve::new("shaped", curve(&plant, &taps)),
-            Curve::new("shaped, machine 10 % slower", curve(&plant.scaled(0.9), &taps)),
-            Curve::new("shaped, machine 10 % faster", curve(&plant.scaled(1.1), &taps)),
-        ],
-    })
-}
-
-/// The machine round its target, from shortly before the move arrives to the end.
-fn move_panel(machine: &Machine, axis: &AxisSection, run: &AxisSimulation) -> Panel {
-    let target = run.shaped.last().map_or(0.0, |word| *word as f64);
-    let micro = micro_units_per_lsb(machine, axis);
-    let moving = run.shaped.iter().rposition(|word| *word as f64 != target).unwrap_or(0);
-    let from = moving.saturating_sub((run.shaped.len() - moving) / 8);
-    let deviation = |positions: &[f64]| {
-        let points = positions.iter().enumerate().skip(from);
-        points
-            .map(|(n, position)| (1e3 * n as f64 / machine.clock.sample_hz, (position - target) * micro))
-            .collect::<Vec<_>>()
-    };
-    Panel {
-        title: format!("axis {}: arrival of the move", axis.name),
-        x_label: "time, ms".into(),
-        y_label: "deviation from target, µm or µrad".into(),
-        curves: vec![
-            Curve::reference("unshaped", deviation(&run.position_unshaped)),
-            Curve::new("shaped", deviation(&run.position)),
-        ],
-    }
 }
 
 /// `run --json` and `report.json`.

@@ -55,6 +55,24 @@ fn cli_design_draws_the_sensitivity_of_every_axis() {
 }
 
 #[test]
+fn cli_design_writes_no_svg_into_a_file_of_another_kind() {
+    let folder = tempfile::tempdir().unwrap();
+    let plot = folder.path().join("sensitivity.png");
+    let mut design = posicast();
+    design
+        .arg("design")
+        .arg(example("xy-stage.toml"))
+        .arg("--plot")
+        .arg(&plot);
+    let said = String::from_utf8(design.assert().code(2).get_output().stderr.clone()).unwrap();
+    assert!(
+        said.contains("pictures are written as SVG, not as png") && said.contains("sensitivity.svg"),
+        "{said}"
+    );
+    assert!(!plot.exists());
+}
+
+#[test]
 fn cli_design_and_generate_warn_of_a_controller_that_is_too_fast() {
     let text = std::fs::read_to_string(example("xy-stage.toml")).unwrap();
     let gains = "kind = \"pd\"\nproportional = 4000.0\n";

@@ -195,7 +195,7 @@ fn cli_run_closes_the_loop_in_verilog_and_model() {
 fn cli_run_without_verilator_runs_the_loop_in_the_model_and_a_fault_is_exit_status_1() {
     // Nothing follows so closely: the first move is a fault.
     let text = quick().replace("following_error = 0.0005", "following_error = 1e-6");
-    let (status, document, said, _folder) = run(&text, &["--simulator", "rusthdl"]);
+    let (status, document, said, folder) = run(&text, &["--simulator", "rusthdl"]);
     assert_eq!((status, &document["result"]), (Some(1), &"fail".into()), "{said}");
     assert!(said.contains("the closed loop runs in the bit-exact model"), "{said}");
     assert!(document["stage"]["side_by_side"].is_null());
@@ -206,6 +206,17 @@ fn cli_run_without_verilator_runs_the_loop_in_the_model_and_a_fault_is_exit_stat
         details[0].contains("FAULT") && details[0].contains("following-error"),
         "{details:?}"
     );
+    for (name, title) in [
+        ("move", "axis y: position"),
+        ("vibration", "until the run was given up"),
+    ] {
+        let svg = std::fs::read_to_string(folder.path().join(format!("out/plots/stage-{name}.svg"))).unwrap();
+        assert!(
+            svg.contains(title) && svg.contains("axis x in FAULT: following-error"),
+            "{name}"
+        );
+        assert!(svg.matches("<polyline").count() > 4, "{name}: no curves");
+    }
 }
 
 /// Name and detail of each check that failed.

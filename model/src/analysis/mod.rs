@@ -9,10 +9,12 @@ mod band;
 mod command;
 mod insensitivity;
 mod residual;
+mod settling;
 mod start_control;
 
 pub use band::{SensitivityGrid, sensitivity_grid, worst_residual};
 pub use command::{CommandFigures, Quantity, command_figures};
 pub use insensitivity::{INSENSITIVITY_LIMIT, Insensitivity, insensitivity};
 pub use residual::{pole_sum, residual_vibration, residual_vibration_at, sensitivity_curve, tap_impulses};
+pub use settling::settled_from;
 pub use start_control::{StartControl, StartFigures};

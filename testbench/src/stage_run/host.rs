@@ -32,11 +32,30 @@ pub struct Trouble {
     pub causes: u32,
 }
 
+impl Trouble {
+    fn state_name(&self) -> &'static str {
+        SupervisorState::from_value(self.state.into()).map_or("no state", SupervisorState::name)
+    }
+
+    fn cause_names(&self) -> Vec<&'static str> {
+        let causes = Cause::ALL.into_iter().filter(|cause| self.causes & cause.bit() != 0);
+        causes.map(Cause::name).collect()
+    }
+
+    /// Axis, state and causes, for a picture.
+    pub fn in_short(&self) -> String {
+        format!(
+            "{} in {}: {}",
+            self.axis,
+            self.state_name(),
+            self.cause_names().join(", ")
+        )
+    }
+}
+
 impl fmt::Display for Trouble {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let state = SupervisorState::from_value(self.state.into()).map_or("no state", SupervisorState::name);
-        let causes = Cause::ALL.into_iter().filter(|cause| self.causes & cause.bit() != 0);
-        let causes: Vec<&str> = causes.map(Cause::name).collect();
+        let (state, causes) = (self.state_name(), self.cause_names());
         write!(
             f,
             "axis {} should have {}, and was in {state} in clock {}",

@@ -1,0 +1,125 @@
+//! The shapers on the simulated machine, as pictures.
+
+use crate::failure::Failure;
+use crate::plot::{Band, Curve, Panel, significant};
+use crate::simulate::micro_units_per_lsb;
+use posicast_model::analysis::{settled_from, tap_impulses};
+use posicast_model::design::{AxisTables, MachineDesign};
+use posicast_model::impulse::ImpulseSequence;
+use posicast_model::machine_file::{AxisSection, Machine};
+use posicast_model::plant::Plant;
+use posicast_model::plant::response::step_response;
+use posicast_model::simulation::AxisSimulation;
+
+/// Duration that a step response shows, in shaper durations.
+const SHOWN_DURATIONS: f64 = 4.0;
+const RESPONSE_POINTS: usize = 1200;
+/// Part of a step within which a response has settled.
+const SETTLED: f64 = 0.02;
+
+/// Step responses and the end of the move, two panels per axis.
+pub(crate) fn response_panels(
+    machine: &Machine,
+    design: &MachineDesign,
+    axes: &[AxisSimulation],
+) -> Result<Vec<Panel>, Failure> {
+    let mut panels = Vec::new();
+    for ((axis, tables), run) in machine.axes.iter().zip(&design.axes).zip(axes) {
+        if axis.modes.is_empty() {
+            continue;
+        }
+        panels.push(step_panel(&machine.name, axis, tables, design.sample_hz)?);
+        panels.push(move_panel(machine, axis, tables, run));
+    }
+    Ok(panels)
+}
+
+/// `name`, and when the deviations at these times, in ms, have settled to ± `band`.
+pub(super) fn with_settling(name: &str, deviations: &[(f64, f64)], band: f64) -> String {
+    let values: Vec<f64> = deviations.iter().map(|point| point.1).collect();
+    match settled_from(&values, band).map(|first| (first, deviations[first].0)) {
+        Some((0, _)) => format!("{name}: settled throughout"),
+        Some((_, time_ms)) => format!("{name}: settled at {} ms", significant(time_ms, 3)),
+        None => format!("{name}: settles later"),
+    }
+}
+
+fn step_panel(machine: &str, axis: &AxisSection, tables: &AxisTables, sample_hz: f64) -> Result<Panel, Failure> {
+    let plant = Plant::of_axis(axis).map_err(Failure::because)?;
+    let taps = tap_impulses(&tables.table, sample_hz);
+    let slowest_s = axis.modes.iter().map(|m| m.mode.damped_period_s()).fold(0.0, f64::max);
+    let duration_s = SHOWN_DURATIONS * tables.design.impulses.duration_s().max(slowest_s);
+    let curve = |plant: &Plant, impulses: &[_], name: &str| {
+        let points = step_response(plant, impulses, duration_s, RESPONSE_POINTS);
+        let points: Vec<_> = points
+            .into_iter()
+            .map(|(time_s, position)| (1e3 * time_s, position))
+            .collect();
+        let deviations: Vec<_> = points
+            .iter()
+            .map(|(time_ms, position)| (*time_ms, position - 1.0))
+            .collect();
+        (with_settling(name, &deviations, SETTLED), points)
+    };
+    let (unshaped, points) = curve(&plant, ImpulseSequence::unity().impulses(), "unshaped");
+    let machines = [
+        ("shaped", 1.0),
+        ("machine 10 % slower", 0.9),
+        ("machine 10 % faster", 1.1),
+    ];
+    let shaped = machines.map(|(name, factor)| {
+        let (name, points) = curve(&plant.scaled(factor), &taps, name);
+        Curve::new(name, points)
+    });
+    Ok(Panel {
+        title: format!(
+            "{machine}, axis {}: step response with {}",
+            axis.name, tables.design.kind
+        ),
+        x_label: "time, ms".into(),
+        y_label: "position / step".into(),
+        curves: std::iter::once(Curve::reference(unshaped, points))
+            .chain(shaped)
+            .collect(),
+        band: Some(Band {
+            name: format!("±{} % of the step", 100.0 * SETTLED),
+            range: (1.0 - SETTLED, 1.0 + SETTLED),
+        }),
+        ..Panel::default()
+    })
+}
+
+/// The machine round its target, from when the unshaped command comes to its end. The deviations after the shaped command's end
+/// say how much of the vertical axis is shown.
+fn move_panel(machine: &Machine, axis: &AxisSection, tables: &AxisTables, run: &AxisSimulation) -> Panel {
+    let micro = micro_units_per_lsb(machine, axis);
+    let count = 1e6 / axis.loop_counts_per_unit();
+    let target = run.shaped.last().map_or(0.0, |word| *word as f64);
+    let moving = run.shaped.iter().rposition(|word| *word as f64 != target);
+    let arrived = moving.map_or(0, |last| last + 1);
+    let from = arrived.saturating_sub(tables.table.longest_delay_samples() as usize);
+    let deviation = |positions: &[f64], from: usize| {
+        let points = positions.iter().enumerate().skip(from);
+        points
+            .map(|(n, position)| (1e3 * n as f64 / machine.clock.sample_hz, (position - target) * micro))
+            .collect::<Vec<_>>()
+    };
+    let [unshaped, shaped] = [&run.position_unshaped, &run.position].map(|positions| deviation(positions, from));
+    let later = [&run.position_unshaped, &run.position].map(|positions| deviation(positions, arrived));
+    let largest = later.iter().flatten().map(|point| point.1.abs()).fold(0.0, f64::max);
+    Panel {
+        title: format!("{}, axis {}: arrival of the move", machine.name, axis.name),
+        x_label: "time, ms".into(),
+        y_label: "deviation from target, µm or µrad".into(),
+        curves: vec![
+            Curve::reference(with_settling("unshaped", &unshaped, count), unshaped),
+            Curve::new(with_settling("shaped", &shaped, count), shaped),
+        ],
+        y_range: (largest > 0.0).then_some((-1.1 * largest, 1.1 * largest)),
+        band: Some(Band {
+            name: "±1 count".into(),
+            range: (-count, count),
+        }),
+        ..Panel::default()
+    }
+}
