@@ -4,6 +4,7 @@ use crate::design::DesignReport;
 use crate::driver;
 use crate::failure::Failure;
 use crate::hardware::Built;
+use crate::kit;
 use crate::machine::{self, MachineFile};
 use crate::output;
 use crate::{sopc, verilog};
@@ -31,6 +32,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let modules = built.modules(&args.machine)?;
     let mut package = open(args.output.as_deref(), &file)?;
     verilog::add_sources(&mut package, &file, &modules)?;
+    kit::add(&mut package, &kit::files(&file.machine, &modules, &built))?;
     let (components, stage) = (&built.components, built.stage.as_ref());
     sopc::add(&mut package, &file.machine, board, stage, components)?;
     driver::add(&mut package, &file.machine, &modules, components, stage)?;

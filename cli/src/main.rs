@@ -17,6 +17,7 @@ mod failure;
 mod generate;
 mod guards;
 mod hardware;
+mod kit;
 mod machine;
 mod output;
 mod plot;

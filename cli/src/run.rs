@@ -17,6 +17,7 @@ use crate::command;
 use crate::design::{self, DesignReport};
 use crate::failure::Failure;
 use crate::hardware::Built;
+use crate::kit;
 use crate::machine;
 use crate::plot;
 use crate::simulate::simulate;
@@ -74,6 +75,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let yosys = installed_yosys()?;
     let axes = simulate(machine, &design.design, &built.shapers, &words)?;
     let modules = built.modules(&args.machine)?;
+    let kit = kit::files(machine, &modules, &built);
     let Built {
         shapers,
         components,
@@ -85,6 +87,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let package = generate::open(args.output.as_deref(), &file)?;
     let mut package = package.with_evidence().map_err(Failure::because)?;
     let files = verilog::add_sources(&mut package, &file, &modules)?;
+    kit::add(&mut package, &kit)?;
     sopc::add(&mut package, machine, board, stage.as_ref(), &components)?;
     driver::add(&mut package, machine, &modules, &components, stage.as_ref())?;
     let components = components.iter().chain(stage.as_ref().map(|stage| &stage.block));

@@ -1,5 +1,6 @@
 //! What leaves posicast for a device: the output folder ([`package`]), what of it is opened in Quartus ([`sopc`]), the C driver
-//! ([`driver`]), the documents of the registers ([`register_documents`]), and the estimates of what its Verilog costs ([`yosys`])
+//! ([`driver`]), the documents of the registers ([`register_documents`]), what takes the shapers
+//! into a design of one's own ([`kit`]), and the estimates of what its Verilog costs ([`yosys`])
 //! and how fast it is ([`clock`]).
 //!
 //! Folder and estimates do not know how the files came to be: they take bytes and file names. The others are written from the
@@ -8,6 +9,7 @@
 pub mod clock;
 pub mod core_file;
 pub mod driver;
+pub mod kit;
 pub mod package;
 pub mod register_documents;
 pub mod sopc;

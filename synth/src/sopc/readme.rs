@@ -13,8 +13,8 @@ pub(super) fn text(design: &Design<'_>, projects: &[(Board, Vec<Pin>)]) -> Strin
     contents(&mut text, design);
     if design.units().next().is_none() {
         text.push_str(
-            "\nThe machine has shapers alone: no component with registers, so nothing for Platform Designer. Instantiate the top \
-             module in a design of your own.\n",
+            "\nThe machine has shapers alone: no component with registers, so nothing for Platform Designer. `kit/README.md` \
+             says how the top module goes into a design of your own.\n",
         );
         return text;
     }
@@ -53,10 +53,16 @@ to overwrite a file that was edited, and says which.
 |---|---|
 | `machine.toml` | the machine file that everything comes from |
 | `rtl/` | Verilog-2001, one module per file |
+| `filelist.f`, `{machine}.qip` | these files for simulators, and for Quartus |
 ",
         machine = design.machine,
         posicast = env!("CARGO_PKG_VERSION"),
     );
+    if design.units().next().is_none() {
+        text.push_str(
+            "| `kit/` | for a design of your own: template of an instance, strobe, example with bench, scripts for Lattice and AMD |\n",
+        );
+    }
     if design.units().next().is_some() {
         text.push_str("| `sopc/*_hw.tcl` | components for Platform Designer (Qsys) |\n");
     }

