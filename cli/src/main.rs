@@ -18,6 +18,7 @@ mod generate;
 mod guards;
 mod hardware;
 mod machine;
+mod new;
 mod output;
 mod plot;
 mod progress;
@@ -26,7 +27,6 @@ mod reproduce;
 mod run;
 mod simulate;
 mod sopc;
-
 mod synth;
 mod tolerance;
 mod verify;
@@ -39,6 +39,7 @@ use std::process::ExitCode;
 
 const EXAMPLES: &str = "\
 Examples:
+  posicast new stage.toml                             a machine file to start from
   posicast run examples/xy-stage.toml -o xy_stage     the whole way, with a verdict
   posicast design examples/xy-stage.toml --plot x.svg impulses, residuals and the tap table
   posicast verify examples/xy-stage.toml --cycles 10000000
@@ -56,6 +57,7 @@ struct Cli {
 
 #[derive(Subcommand)]
 enum Command {
+    New(new::Args),
     Run(run::Args),
     Design(design::Args),
     Generate(generate::Args),
@@ -81,6 +83,7 @@ fn main() -> ExitCode {
         output::say(&format!("warning: a signal will not clean up: {error}"));
     }
     let result = match command {
+        Command::New(args) => new::run(&args),
         Command::Run(args) => run::run(&args),
         Command::Design(args) => design::run(&args),
         Command::Generate(args) => generate::run(&args),

@@ -12,6 +12,7 @@ mod diff;
 mod folder;
 mod fuzz;
 mod hardware;
+mod new;
 mod outputs;
 mod replay;
 #[cfg(target_os = "linux")]
