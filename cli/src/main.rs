@@ -25,6 +25,7 @@ mod progress;
 mod replay;
 mod reproduce;
 mod run;
+mod schema;
 mod simulate;
 mod sopc;
 mod synth;
@@ -68,6 +69,7 @@ enum Command {
     #[command(hide = true)]
     Identify(NotBuilt),
     Reproduce(reproduce::Args),
+    Schema(schema::Args),
 }
 
 /// Arguments of a command that this version does not build: anything.
@@ -93,6 +95,7 @@ fn main() -> ExitCode {
         Command::Synth(args) => synth::run(&args),
         Command::Identify(_) => Err(Failure::not_built("identify")),
         Command::Reproduce(args) => reproduce::run(&args),
+        Command::Schema(args) => schema::run(&args),
     };
     interrupt::done();
     match result {

@@ -15,5 +15,6 @@ mod hardware;
 mod new;
 mod outputs;
 mod replay;
+mod schema;
 #[cfg(target_os = "linux")]
 mod signals;
