@@ -12,6 +12,7 @@ mod compare;
 mod control;
 mod design;
 mod diff;
+mod doctor;
 mod driver;
 mod failure;
 mod generate;
@@ -69,6 +70,7 @@ enum Command {
     #[command(hide = true)]
     Identify(NotBuilt),
     Reproduce(reproduce::Args),
+    Doctor(doctor::Args),
     Schema(schema::Args),
 }
 
@@ -95,6 +97,7 @@ fn main() -> ExitCode {
         Command::Synth(args) => synth::run(&args),
         Command::Identify(_) => Err(Failure::not_built("identify")),
         Command::Reproduce(args) => reproduce::run(&args),
+        Command::Doctor(args) => doctor::run(&args),
         Command::Schema(args) => schema::run(&args),
     };
     interrupt::done();

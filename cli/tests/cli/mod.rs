@@ -9,6 +9,7 @@ mod verify;
 mod bad_input;
 mod design;
 mod diff;
+mod doctor;
 mod folder;
 mod fuzz;
 mod hardware;
