@@ -9,6 +9,7 @@ mod bench;
 mod blocks;
 mod command;
 mod compare;
+mod completions;
 mod control;
 mod design;
 mod diff;
@@ -19,6 +20,7 @@ mod generate;
 mod guards;
 mod hardware;
 mod machine;
+mod man;
 mod new;
 mod output;
 mod plot;
@@ -34,7 +36,7 @@ mod tolerance;
 mod verify;
 mod verilog;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 use failure::Failure;
 use posicast_system::interrupt;
 use std::process::ExitCode;
@@ -51,7 +53,7 @@ Exit status: 0 all checks hold, 1 a check failed, 2 bad usage or input, 3 a need
 
 /// From a machine's modes to verified input-shaper hardware
 #[derive(Parser)]
-#[command(name = "posicast", version, after_help = EXAMPLES)]
+#[command(name = "posicast", version = env!("POSICAST_VERSION"), after_help = EXAMPLES)]
 struct Cli {
     #[command(subcommand)]
     command: Command,
@@ -72,6 +74,8 @@ enum Command {
     Reproduce(reproduce::Args),
     Doctor(doctor::Args),
     Schema(schema::Args),
+    Completions(completions::Args),
+    Man(man::Args),
 }
 
 /// Arguments of a command that this version does not build: anything.
@@ -99,6 +103,8 @@ fn main() -> ExitCode {
         Command::Reproduce(args) => reproduce::run(&args),
         Command::Doctor(args) => doctor::run(&args),
         Command::Schema(args) => schema::run(&args),
+        Command::Completions(args) => completions::run(&args, &mut Cli::command()),
+        Command::Man(args) => man::run(&args, Cli::command()),
     };
     interrupt::done();
     match result {

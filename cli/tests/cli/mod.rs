@@ -7,6 +7,7 @@ mod verdict;
 mod verify;
 
 mod bad_input;
+mod completions;
 mod design;
 mod diff;
 mod doctor;
