@@ -66,8 +66,8 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let mut outputs = OutputFiles::new(args.force);
     outputs.input("the machine file", &args.machine);
     if let Some(path) = &args.plot {
-        plot::check_name("--plot", path)?;
         outputs.claim("--plot", path).map_err(Failure::because)?;
+        plot::check_name("--plot", path)?;
     }
     output::one_document(&outputs, args.json)?;
     let report = DesignReport::new(&machine, &args.machine)?;

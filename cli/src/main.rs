@@ -9,9 +9,11 @@ mod bench;
 mod blocks;
 mod command;
 mod compare;
+mod completions;
 mod control;
 mod design;
 mod diff;
+mod doctor;
 mod driver;
 mod failure;
 mod generate;
@@ -19,27 +21,30 @@ mod guards;
 mod hardware;
 mod kit;
 mod machine;
+mod man;
+mod new;
 mod output;
 mod plot;
 mod progress;
 mod replay;
 mod reproduce;
 mod run;
+mod schema;
 mod simulate;
 mod sopc;
-
 mod synth;
 mod tolerance;
 mod verify;
 mod verilog;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 use failure::Failure;
 use posicast_system::interrupt;
 use std::process::ExitCode;
 
 const EXAMPLES: &str = "\
 Examples:
+  posicast new stage.toml                             a machine file to start from
   posicast run examples/xy-stage.toml -o xy_stage     the whole way, with a verdict
   posicast design examples/xy-stage.toml --plot x.svg impulses, residuals and the tap table
   posicast verify examples/xy-stage.toml --cycles 10000000
@@ -49,7 +54,7 @@ Exit status: 0 all checks hold, 1 a check failed, 2 bad usage or input, 3 a need
 
 /// From a machine's modes to verified input-shaper hardware
 #[derive(Parser)]
-#[command(name = "posicast", version, after_help = EXAMPLES)]
+#[command(name = "posicast", version = env!("POSICAST_VERSION"), after_help = EXAMPLES)]
 struct Cli {
     #[command(subcommand)]
     command: Command,
@@ -57,6 +62,7 @@ struct Cli {
 
 #[derive(Subcommand)]
 enum Command {
+    New(new::Args),
     Run(run::Args),
     Design(design::Args),
     Generate(generate::Args),
@@ -67,6 +73,10 @@ enum Command {
     #[command(hide = true)]
     Identify(NotBuilt),
     Reproduce(reproduce::Args),
+    Doctor(doctor::Args),
+    Schema(schema::Args),
+    Completions(completions::Args),
+    Man(man::Args),
 }
 
 /// Arguments of a command that this version does not build: anything.
@@ -82,6 +92,7 @@ fn main() -> ExitCode {
         output::say(&format!("warning: a signal will not clean up: {error}"));
     }
     let result = match command {
+        Command::New(args) => new::run(&args),
         Command::Run(args) => run::run(&args),
         Command::Design(args) => design::run(&args),
         Command::Generate(args) => generate::run(&args),
@@ -91,6 +102,10 @@ fn main() -> ExitCode {
         Command::Synth(args) => synth::run(&args),
         Command::Identify(_) => Err(Failure::not_built("identify")),
         Command::Reproduce(args) => reproduce::run(&args),
+        Command::Doctor(args) => doctor::run(&args),
+        Command::Schema(args) => schema::run(&args),
+        Command::Completions(args) => completions::run(&args, &mut Cli::command()),
+        Command::Man(args) => man::run(&args, Cli::command()),
     };
     interrupt::done();
     match result {

@@ -126,14 +126,18 @@ const GRID: RGBColor = RGBColor(225, 225, 225);
 /// A dash and the gap after it, in pixels.
 const DASH: (i32, i32) = (7, 5);
 
-/// Refuses a file for a picture whose name says that it is to be no SVG.
+/// Pictures that are no SVG, by the ends of their names.
+const OTHER_FORMATS: [&str; 11] = [
+    "png", "jpg", "jpeg", "gif", "webp", "bmp", "tif", "tiff", "pdf", "ps", "eps",
+];
+
+/// Refuses a file for a picture whose name says that it is a picture of another kind.
 pub(crate) fn check_name(option: &str, path: &Path) -> Result<(), Failure> {
     let extension = path
         .extension()
         .map(|extension| extension.to_string_lossy().to_lowercase());
     match extension.as_deref() {
-        None | Some("svg") => Ok(()),
-        Some(other) => Err(Failure::from(miette::miette!(
+        Some(other) if OTHER_FORMATS.contains(&other) => Err(Failure::from(miette::miette!(
             help = format!(
                 "name it `{}`; `rsvg-convert` and any browser make other formats of it",
                 path.with_extension("svg").display()
@@ -141,6 +145,7 @@ pub(crate) fn check_name(option: &str, path: &Path) -> Result<(), Failure> {
             "{option} `{}`: pictures are written as SVG, not as {other}",
             path.display()
         ))),
+        _ => Ok(()),
     }
 }
 

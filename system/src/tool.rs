@@ -32,6 +32,32 @@ pub fn executables(variable: &str, names: &[&str]) -> Vec<PathBuf> {
     }
 }
 
+/// The file that would run under this name: itself where it has a folder, else the first in the search path. Nothing is started.
+pub fn located(program: &Path) -> Option<PathBuf> {
+    let plain = program.components().count() == 1;
+    let path = std::env::var_os("PATH").unwrap_or_default();
+    let mut found = match plain {
+        true => std::env::split_paths(&path)
+            .map(|folder| folder.join(program))
+            .collect(),
+        false => vec![program.to_owned()],
+    };
+    found.retain(|file| runs(file));
+    found.into_iter().next()
+}
+
+#[cfg(unix)]
+fn runs(file: &Path) -> bool {
+    use std::os::unix::fs::PermissionsExt;
+    file.metadata()
+        .is_ok_and(|found| found.is_file() && found.permissions().mode() & 0o111 != 0)
+}
+
+#[cfg(not(unix))]
+fn runs(file: &Path) -> bool {
+    file.is_file() || file.with_extension("exe").is_file()
+}
+
 /// A command without standard input.
 pub fn command(program: impl AsRef<OsStr>) -> Command {
     let mut command = Command::new(program);
@@ -115,6 +141,22 @@ mod tests {
             "{kept}"
         );
         assert_eq!(last_lines("one\n\n", 20), "one");
+    }
+
+    #[test]
+    fn unit_a_program_is_located_without_being_started() {
+        let shell = located(Path::new("sh")).unwrap();
+        assert!(shell.is_absolute() && shell.ends_with("sh"), "{}", shell.display());
+        assert_eq!(located(&shell).as_deref(), Some(shell.as_path()));
+        for nothing in [
+            "posicast-no-such-program",
+            "/no/such/program",
+            "/etc/passwd",
+            "/tmp",
+            "",
+        ] {
+            assert_eq!(located(Path::new(nothing)), None, "{nothing}");
+        }
     }
 
     #[test]

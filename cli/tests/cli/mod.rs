@@ -7,13 +7,17 @@ mod verdict;
 mod verify;
 
 mod bad_input;
+mod completions;
 mod design;
 mod diff;
+mod doctor;
 mod folder;
 mod fuzz;
 mod hardware;
 mod kit;
+mod new;
 mod outputs;
 mod replay;
+mod schema;
 #[cfg(target_os = "linux")]
 mod signals;

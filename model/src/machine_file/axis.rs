@@ -1,5 +1,6 @@
 //! `[[axis]]` and `[[axis.mode]]`, and which of an axis's blocks need each other.
 
+use super::key::{Default, Key, Values};
 use super::range::{COUNTS_PER_UNIT, NumberRange};
 use super::table::Table;
 use super::{
@@ -18,6 +19,83 @@ const DAMPING: NumberRange = NumberRange::closed(0.0, 1.0).open_above();
 /// Weights of the modes.
 const PARTICIPATION: NumberRange = NumberRange::closed(0.0, 1e9);
 
+/// The keys of `[[axis]]`.
+pub(super) const KEYS: &[Key] = &[
+    Key::new("name", Values::Name, "Name of the axis, unique in the machine.").required(),
+    Key::new(
+        "counts_per_unit",
+        Values::Number(COUNTS_PER_UNIT),
+        "Encoder counts per metre or radian.",
+    )
+    .required(),
+    Key::switch(
+        "modulo",
+        "The position counts on across the word's end: a rotary axis without an end.",
+    ),
+    Key::new(
+        "shaper",
+        Values::Table(shaper::KEYS),
+        "One shaper for the axis; absent where every mode has `shaper`.",
+    ),
+    Key::new(
+        "mode",
+        Values::Tables(MODE_KEYS, MAX_MODES),
+        "The modes of vibration; none is allowed with kind custom or none.",
+    ),
+    Key::new(
+        "encoder",
+        Values::Table(encoder::KEYS),
+        "Reads the position from an encoder.",
+    ),
+    Key::new("scale", Values::Table(scale::KEYS), "Reads a linear scale at the load."),
+    Key::new("pwm", Values::Table(pwm::KEYS), "Drives the pins."),
+    Key::new(
+        "drive",
+        Values::Table(drive::KEYS),
+        "What the duty of the PWM commands.",
+    ),
+    Key::new("controller", Values::Table(controller::KEYS), "Closes the loop."),
+    Key::new(
+        "limits",
+        Values::Table(limits::KEYS),
+        "What moves may ask for, and what the supervisor of the axis watches.",
+    ),
+    Key::new("trace", Values::Table(trace::KEYS), "Records signals of the loop."),
+];
+
+/// The keys of `[[axis.mode]]`.
+const MODE_KEYS: &[Key] = &[
+    Key::new(
+        "frequency_hz",
+        Values::Number(FREQUENCY_HZ),
+        "Undamped natural frequency in Hz, below half of `sample_hz`.",
+    ),
+    Key::new(
+        "damped_frequency_hz",
+        Values::Number(FREQUENCY_HZ),
+        "In place of `frequency_hz`: the frequency of the ringing, f·√(1−ζ²).",
+    )
+    .instead_of("frequency_hz"),
+    Key::new("damping", Values::Number(DAMPING), "Damping ratio ζ.").required(),
+    Key::new(
+        "shaper",
+        Values::Word(shaper::of_modes),
+        "Kind of shaper for this mode, instead of the axis's.",
+    ),
+    Key::new(
+        "tolerance",
+        Values::Number(shaper::TOLERANCE),
+        "As in [axis.shaper], for this mode; else the axis's.",
+    ),
+    shaper::ORDER,
+    Key::new(
+        "participation",
+        Values::Number(PARTICIPATION),
+        "Weight of the mode in what the tool does; only ratios count.",
+    )
+    .default(Default::Number(1.0)),
+];
+
 /// Reads one axis under a name that was read before. Without a valid clock or number format the checks that need them
 /// are left out.
 pub(super) fn read(
@@ -26,20 +104,7 @@ pub(super) fn read(
     clock: Option<ClockSection>,
     fixed_point: Option<FixedPoint>,
 ) -> Option<AxisSection> {
-    table.allow(&[
-        "name",
-        "counts_per_unit",
-        "modulo",
-        "shaper",
-        "mode",
-        "encoder",
-        "scale",
-        "pwm",
-        "drive",
-        "controller",
-        "limits",
-        "trace",
-    ]);
+    table.allow(KEYS);
     let counts_per_unit = table.required_number("counts_per_unit", COUNTS_PER_UNIT);
     let choice = table
         .table("shaper")
@@ -106,28 +171,41 @@ fn read_modulo(table: &Table<'_, '_>, fixed_point: Option<FixedPoint>) -> bool {
     modulo
 }
 
+/// A block of an axis that others must be there for.
+pub(super) struct Need {
+    pub(super) block: &'static str,
+    pub(super) others: &'static [&'static str],
+    allowed: &'static str,
+}
+
+/// Which blocks of an axis cannot work without others.
+pub(super) const NEEDS: [Need; 4] = [
+    Need {
+        block: "scale",
+        others: &["encoder"],
+        allowed: "a scale with [axis.encoder], the motor's, which it is compared with",
+    },
+    Need {
+        block: "drive",
+        others: &["pwm"],
+        allowed: "a drive with its [axis.pwm], which commands it",
+    },
+    Need {
+        block: "controller",
+        others: &["encoder", "pwm", "drive"],
+        allowed: "a controller with [axis.encoder], [axis.pwm] and [axis.drive]: the position, the pins, and what they command",
+    },
+    Need {
+        block: "trace",
+        others: &["controller"],
+        allowed: "a trace with [axis.controller], whose loop it records",
+    },
+];
+
 /// Checks that every block finds the others that it cannot work without.
 fn check_needs(axis: &Table<'_, '_>) {
-    let needs: [(&str, &[&str], &str); 4] = [
-        (
-            "scale",
-            &["encoder"],
-            "a scale with [axis.encoder], the motor's, which it is compared with",
-        ),
-        ("drive", &["pwm"], "a drive with its [axis.pwm], which commands it"),
-        (
-            "controller",
-            &["encoder", "pwm", "drive"],
-            "a controller with [axis.encoder], [axis.pwm] and [axis.drive]: the position, the pins, and what they command",
-        ),
-        (
-            "trace",
-            &["controller"],
-            "a trace with [axis.controller], whose loop it records",
-        ),
-    ];
-    for (block, needed, allowed) in needs {
-        let missing: Vec<String> = needed
+    for Need { block, others, allowed } in NEEDS {
+        let missing: Vec<String> = others
             .iter()
             .filter(|other| !axis.has(other))
             .map(|other| format!("[axis.{other}]"))
@@ -163,16 +241,7 @@ fn read_modes<'r, 't>(axis: &Table<'r, 't>, clock: Option<ClockSection>) -> Opti
 }
 
 fn read_mode(table: &Table<'_, '_>, clock: Option<ClockSection>) -> Option<AxisMode> {
-    let keys = [
-        "frequency_hz",
-        "damped_frequency_hz",
-        "damping",
-        "shaper",
-        "tolerance",
-        "order",
-        "participation",
-    ];
-    table.allow(&keys);
+    table.allow(MODE_KEYS);
     let damping = table.required_number("damping", DAMPING);
     let frequency = read_frequency(table, damping, clock);
     let kind = shaper::kind(table, "shaper");

@@ -1,5 +1,6 @@
 //! `[axis.controller]`: the law that turns the error of the position into the drive's command.
 
+use super::key::{Key, Values};
 use super::range::NumberRange;
 use super::table::Table;
 
@@ -41,6 +42,50 @@ pub enum Controller {
     },
 }
 
+/// The laws.
+const KINDS: [&str; 3] = ["sliding-mode", "pd", "pid"];
+
+/// The keys of the table.
+pub(super) const KEYS: &[Key] = &[
+    Key::new("kind", Values::Word(|| KINDS.to_vec()), "The law.").required(),
+    Key::new(
+        "c",
+        Values::Number(POSITIVE),
+        "Slope of the sliding line, in 1/s. `sliding-mode` needs it.",
+    ),
+    Key::new(
+        "k",
+        Values::Number(NOT_NEGATIVE),
+        "Rate at which the distance from the line decays, in 1/s. `sliding-mode` needs it.",
+    ),
+    Key::new(
+        "epsilon",
+        Values::Number(NOT_NEGATIVE),
+        "Strength of the switching term, in m/s². `sliding-mode` needs it.",
+    ),
+    Key::new(
+        "boundary",
+        Values::Number(POSITIVE),
+        "Half width of the boundary layer, in m/s. `sliding-mode` needs it.",
+    ),
+    Key::new(
+        "proportional",
+        Values::Number(POSITIVE),
+        "Command per error of `pd` and `pid`: 1/s of a velocity drive, 1/s² of a torque drive. Else it follows from the loop.",
+    ),
+    Key::new(
+        "derivative",
+        Values::Number(POSITIVE),
+        "Command per rate of the error of `pd` and `pid`: a number of a velocity drive, 1/s of a torque drive. Else it follows \
+         from the loop.",
+    ),
+    Key::new(
+        "integral",
+        Values::Number(POSITIVE),
+        "Command per integrated error of `pid`: 1/s² of a velocity drive, 1/s³ of a torque drive. Else it follows from the loop.",
+    ),
+];
+
 /// Each key of a law, and the kinds that have it.
 const GAINS: [(&str, &[&str]); 7] = [
     ("c", &["sliding-mode"]),
@@ -54,10 +99,8 @@ const GAINS: [(&str, &[&str]); 7] = [
 
 /// Reads the table; `None` where a value is refused.
 pub(super) fn read(table: &Table<'_, '_>) -> Option<Controller> {
-    let mut keys = vec!["kind"];
-    keys.extend(GAINS.map(|(key, _)| key));
-    table.allow(&keys);
-    let kind = table.required_choice("kind", &["sliding-mode", "pd", "pid"]);
+    table.allow(KEYS);
+    let kind = table.required_choice("kind", &KINDS);
     let gain = |key| {
         let range = match key {
             "k" | "epsilon" => NOT_NEGATIVE,

@@ -1,5 +1,6 @@
 //! `[axis.drive]`: what the PWM's duty means to the power stage behind it.
 
+use super::key::{Key, Values};
 use super::range::NumberRange;
 use super::table::Table;
 
@@ -42,21 +43,56 @@ pub struct Drive {
     pub coulomb: f64,
 }
 
+/// What full duty commands.
+const MODES: [&str; 2] = ["torque", "velocity"];
+
+/// The keys of the table.
+pub(super) const KEYS: &[Key] = &[
+    Key::new(
+        "mode",
+        Values::Word(|| MODES.to_vec()),
+        "What full duty commands: a current, and by it a torque, or a velocity.",
+    )
+    .required(),
+    Key::new(
+        "equivalent_mass",
+        Values::Number(POSITIVE),
+        "Moved mass in kg, or inertia in kg·m², as the motor feels it. `torque` needs it.",
+    ),
+    Key::new(
+        "force_constant",
+        Values::Number(POSITIVE),
+        "Force per current in N/A, or torque in N·m/A. `torque` needs it.",
+    ),
+    Key::new(
+        "current_limit_a",
+        Values::Number(POSITIVE),
+        "Most current that is asked for, in A; at most `full_scale_a`. `torque` needs it.",
+    ),
+    Key::new(
+        "full_scale_a",
+        Values::Number(POSITIVE),
+        "Current at full duty, in A. `torque` needs it.",
+    ),
+    Key::new(
+        "full_scale_velocity",
+        Values::Number(POSITIVE),
+        "Velocity at full duty, in m/s. `velocity` needs it.",
+    ),
+    Key::new(
+        "bandwidth_hz",
+        Values::Number(POSITIVE),
+        "How fast the drive follows its command, in Hz.",
+    ),
+    Key::or_zero("viscous", NOT_NEGATIVE, "Viscous friction in N·s/m."),
+    Key::or_zero("coulomb", NOT_NEGATIVE, "Coulomb friction in N."),
+];
+
 /// Reads the table; `None` where a value is refused.
 pub(super) fn read(table: &Table<'_, '_>) -> Option<Drive> {
     let (current, velocity) = ("full_scale_a", "full_scale_velocity");
-    table.allow(&[
-        "mode",
-        "equivalent_mass",
-        "force_constant",
-        "current_limit_a",
-        current,
-        velocity,
-        "bandwidth_hz",
-        "viscous",
-        "coulomb",
-    ]);
-    let mode = table.required_choice("mode", &["torque", "velocity"]);
+    table.allow(KEYS);
+    let mode = table.required_choice("mode", &MODES);
     let positive = [
         "equivalent_mass",
         "force_constant",

@@ -1,5 +1,6 @@
 //! `[axis.encoder]`: the pulse counter that reads the axis's position.
 
+use super::key::{Default, Key, Values};
 use super::table::Table;
 use crate::rtl::pulse_counter::FILTER_CLOCKS_MAX;
 
@@ -15,9 +16,24 @@ pub struct Encoder {
     pub invert: bool,
 }
 
+/// The keys of the table.
+pub(super) const KEYS: &[Key] = &[
+    Key::new(
+        "filter_clocks",
+        Values::Integer(0, FILTER_CLOCKS_MAX),
+        "Pulses of up to so many clocks are ignored, on every line. 0: no filter.",
+    )
+    .default(Default::Integer(0)),
+    Key::switch("index", "The encoder has an index line."),
+    Key::switch(
+        "invert",
+        "The lines count down where a positive command moves the axis up.",
+    ),
+];
+
 /// Reads the table; `None` where a value is refused.
 pub(super) fn read(table: &Table<'_, '_>) -> Option<Encoder> {
-    table.allow(&["filter_clocks", "index", "invert"]);
+    table.allow(KEYS);
     let filter_clocks = match table.has("filter_clocks") {
         true => table.integer("filter_clocks", 0, FILTER_CLOCKS_MAX)?,
         false => 0,

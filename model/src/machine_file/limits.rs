@@ -4,6 +4,7 @@
 //! what those do not hold. `docs/machine-file.md` has every key with its default.
 
 use super::FixedPoint;
+use super::key::{Default as Absent, Key, Values};
 use super::range::NumberRange;
 use super::table::Table;
 use crate::rtl::axis::{ALWAYS_OFF, Cause};
@@ -131,31 +132,111 @@ fn word_of(causes: impl IntoIterator<Item = Cause>) -> u16 {
     causes.into_iter().fold(ALWAYS_OFF, |word, cause| word | cause.bit()) as u16
 }
 
-/// Keys of what moves may ask for: the tools use them without a supervisor.
-const OF_MOVES: [&str; 4] = ["velocity", "acceleration", "jerk", "travel"];
-/// Keys of the supervisor.
-const SUPERVISED: [&str; 15] = [
-    "soft_limits_after_homing",
-    "stop_deceleration",
-    "following_error",
-    "deviation",
-    "saturation_s",
-    "encoder_lost_s",
-    "encoder_lost_command",
-    "watchdog_s",
-    "brake_release_s",
-    "brake_apply_s",
-    "line_filter_s",
-    "off",
-    "direct_duty",
-    "direct_hold_s",
-    "excitation",
+/// The keys of the table: of what moves may ask for, which the tools use without a supervisor, then those of the supervisor.
+pub(super) const KEYS: &[Key] = &[
+    Key::new(
+        "velocity",
+        Values::Number(MOTION),
+        "Most velocity that a move may ask for, in m/s.",
+    ),
+    Key::new(
+        "acceleration",
+        Values::Number(MOTION),
+        "Most acceleration that a move may ask for, in m/s².",
+    ),
+    Key::new(
+        "jerk",
+        Values::Number(MOTION),
+        "Most jerk that a move may ask for, in m/s³.",
+    ),
+    Key::new(
+        "travel",
+        Values::Pair(POSITION),
+        "[low, high] of the position in m: soft limits of an axis with a controller.",
+    ),
+    Key::switch(
+        "soft_limits_after_homing",
+        "`travel` stops the hardware only once the host has homed the axis.",
+    ),
+    Key::new(
+        "stop_deceleration",
+        Values::Number(MOTION),
+        "Deceleration of a quick stop, in m/s²; else `acceleration`.",
+    ),
+    Key::new(
+        "following_error",
+        Values::Number(MOTION),
+        "Largest distance of the position from the shaped command, in m; else it is not watched.",
+    ),
+    Key::new(
+        "deviation",
+        Values::Number(MOTION),
+        "Largest distance of the motor from the scale, in m; needs [axis.scale].",
+    ),
+    Key::or_zero(
+        "saturation_s",
+        SECONDS,
+        "How long the controller's command may be clamped, in s. 0: not watched.",
+    ),
+    Key::or_zero(
+        "encoder_lost_s",
+        SECONDS,
+        "How long the encoder may stand still, or go the wrong way, under a command, in s. 0: not watched.",
+    ),
+    Key::new(
+        "encoder_lost_command",
+        Values::Number(PART_BELOW),
+        "Part of full scale above which a command must move the encoder; needs `encoder_lost_s`.",
+    )
+    .default(Absent::Number(DEFAULT_LOST_COMMAND)),
+    Key::or_zero(
+        "watchdog_s",
+        SECONDS,
+        "How long the host may be silent, in s. 0: no watchdog.",
+    ),
+    Key::or_zero(
+        "brake_release_s",
+        SECONDS,
+        "Time in s from releasing the brake until it is open.",
+    ),
+    Key::or_zero(
+        "brake_apply_s",
+        SECONDS,
+        "Time in s from applying the brake until it holds.",
+    ),
+    Key::or_zero(
+        "line_filter_s",
+        SECONDS,
+        "Pulses of up to so long, in s, on the lines (emergency stop, limit switches, home, drive ready) are ignored.",
+    ),
+    Key::new(
+        "off",
+        Values::Words(|| CHOICES.map(Cause::name).to_vec()),
+        "Causes that switch the outputs off at once; the others lead to a quick stop. It replaces the whole default.",
+    ),
+    Key::new(
+        "direct_duty",
+        Values::Number(PART),
+        "Bring-up: largest manual duty, as a part of full duty.",
+    )
+    .default(Absent::Number(DEFAULT_DIRECT_DUTY)),
+    Key::new(
+        "direct_hold_s",
+        Values::Number(LASTING),
+        "Bring-up: how long a manual duty stands without being asked for again, in s.",
+    ),
+    Key::new(
+        "excitation",
+        Values::Number(MOTION),
+        "Bring-up: largest amplitude of test signals, in m.",
+    ),
 ];
+/// How many of them are of moves.
+const OF_MOVES: usize = 4;
 
 /// Reads the limits of an axis; `word` is counts per unit of the loop and the format that the travel must fit, where both are valid.
 pub(super) fn read(axis: &Table<'_, '_>, table: &Table<'_, '_>, word: Option<(f64, FixedPoint)>) -> LimitsSection {
-    let keys: Vec<&str> = OF_MOVES.into_iter().chain(SUPERVISED).collect();
-    table.allow(&keys);
+    table.allow(KEYS);
     check_needs(axis, table);
     let default = LimitsSection::default();
     let seconds = |key| table.number(key, SECONDS).unwrap_or(0.0);
@@ -188,7 +269,8 @@ pub(super) fn read(axis: &Table<'_, '_>, table: &Table<'_, '_>, word: Option<(f6
 
 /// Checks that what is to be supervised is there.
 fn check_needs(axis: &Table<'_, '_>, table: &Table<'_, '_>) {
-    for key in SUPERVISED.into_iter().filter(|key| table.has(key)) {
+    let supervised = KEYS.iter().skip(OF_MOVES).map(|key| key.name);
+    for key in supervised.filter(|key| table.has(key)) {
         if !axis.has("controller") {
             let allowed = format!("{key} on an axis with [axis.controller], which has a supervisor");
             need(table, key, "[axis.controller]", allowed);

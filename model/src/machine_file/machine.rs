@@ -1,5 +1,6 @@
 //! The tables that a machine has once: its name, `[clock]`, `[fixed_point]`, `[target]`, and the list of its axes.
 
+use super::key::{Default, Key, Values};
 use super::range::{NumberRange, RATIO_ROUNDING};
 use super::table::Table;
 use super::{ClockSection, Digitise, FixedPoint, Machine, Target, axis, stage};
@@ -12,9 +13,94 @@ const MAX_AXES: usize = 4;
 const CLOCK_HZ: NumberRange = NumberRange::positive(1e9).unit("Hz");
 /// Longest sample period in clocks: 100 Hz from 100 MHz. Simulators step through every one of them.
 const MAX_CLOCKS_PER_SAMPLE: f64 = 1e6;
+/// Device families.
+const FAMILIES: [&str; 5] = ["cyclone2", "cyclone4e", "cyclone10lp", "cyclone5", "max10"];
+/// How an impulse between two samples becomes taps.
+const DIGITISE: [&str; 3] = ["modal", "linear", "nearest"];
+
+/// The keys of the whole file.
+pub(super) const KEYS: &[Key] = &[
+    Key::new(
+        "name",
+        Values::Name,
+        "The top module; file and Verilog names derive from it. No keyword of Verilog, no name of a hardware block.",
+    )
+    .required(),
+    Key::new("clock", Values::Table(CLOCK_KEYS), "Clock and sample tick.").required(),
+    Key::new("fixed_point", Values::Table(FIXED_POINT_KEYS), "Number formats."),
+    Key::new(
+        "target",
+        Values::Table(TARGET_KEYS),
+        "Device, for the synthesis estimate.",
+    ),
+    Key::new("axis", Values::Tables(axis::KEYS, MAX_AXES), "The axes.").required(),
+    Key::new(
+        "stage",
+        Values::Table(stage::KEYS),
+        "What concerns all axes. With this table, empty or not, the delays of all axes are made equal.",
+    ),
+];
+
+const CLOCK_KEYS: &[Key] = &[
+    Key::new("frequency_hz", Values::Number(CLOCK_HZ), "Fabric clock in Hz.").required(),
+    Key::new(
+        "sample_hz",
+        Values::Number(CLOCK_HZ),
+        "Sample tick in Hz, one shaped position per tick: it divides `frequency_hz`.",
+    )
+    .required(),
+];
+
+/// Fraction bits of the widest word; of a narrower one they are fewer.
+const FRACTION: Values = Values::Integer(0, *WORD_BITS.end() - 1);
+
+const FIXED_POINT_KEYS: &[Key] = &[
+    Key::new(
+        "command_bits",
+        Values::Integer(*WORD_BITS.start(), *WORD_BITS.end()),
+        "Width of a command word: 18 and more for a shaper for motion, 32 for a stage.",
+    )
+    .default(Default::Integer(DEFAULT_COMMAND_BITS)),
+    Key::new("command_fraction", FRACTION, "Fraction bits of position, in counts; below `command_bits`.")
+        .default(Default::Integer(DEFAULT_POSITION_FRACTION)),
+    Key::new(
+        "velocity_fraction",
+        FRACTION,
+        "Fraction bits of velocity, in counts per sample; below `command_bits`.",
+    )
+    .default(Default::Integer(DEFAULT_VELOCITY_FRACTION)),
+    Key::new(
+        "acceleration_fraction",
+        FRACTION,
+        "Fraction bits of acceleration, in counts per sample²; below `command_bits`.",
+    )
+    .default(Default::Integer(DEFAULT_ACCELERATION_FRACTION)),
+    Key::new(
+        "coefficient_fraction",
+        Values::Integer(1, COEFFICIENT_FRACTION_MAX),
+        "Fraction bits of the 18-bit coefficients; else the most at which every coefficient fits.",
+    ),
+    Key::new(
+        "digitise",
+        Values::Word(|| DIGITISE.to_vec()),
+        "How an impulse between two samples becomes taps: modal (two, exact at the mode's pole), linear (two, by distance), \
+         nearest (one).",
+    )
+    .default(Default::Word("modal")),
+];
+
+const TARGET_KEYS: &[Key] = &[
+    Key::new("family", Values::Word(|| FAMILIES.to_vec()), "Device family.").required(),
+    Key::new(
+        "board",
+        Values::Text("^[a-z0-9_-]{1,32}$"),
+        "Board; `posicast generate` knows de1 and de1soc.",
+    ),
+];
+
 /// Reads the whole file.
 pub(super) fn read(root: &Table<'_, '_>) -> Option<Machine> {
-    root.allow(&["name", "clock", "fixed_point", "target", "axis", "stage"]);
+    root.allow(KEYS);
     let name = root.required_name("name");
     root.require("clock", "a table [clock] with frequency_hz and sample_hz");
     let clock = root.table("clock").and_then(|table| read_clock(&table));
@@ -77,7 +163,7 @@ fn clash(one: &str, other: &str) -> bool {
 }
 
 fn read_clock(table: &Table<'_, '_>) -> Option<ClockSection> {
-    table.allow(&["frequency_hz", "sample_hz"]);
+    table.allow(CLOCK_KEYS);
     let frequency_hz = table.required_number("frequency_hz", CLOCK_HZ);
     let sample_hz = table.required_number("sample_hz", CLOCK_HZ);
     let (frequency_hz, sample_hz) = (frequency_hz?, sample_hz?);
@@ -150,14 +236,7 @@ fn default_fixed_point(command_bits: u32) -> FixedPoint {
 }
 
 fn read_fixed_point(table: &Table<'_, '_>) -> Option<FixedPoint> {
-    table.allow(&[
-        "command_bits",
-        "command_fraction",
-        "velocity_fraction",
-        "acceleration_fraction",
-        "coefficient_fraction",
-        "digitise",
-    ]);
+    table.allow(FIXED_POINT_KEYS);
     let command_bits = table.integer("command_bits", *WORD_BITS.start(), *WORD_BITS.end());
     let default = default_fixed_point(command_bits.unwrap_or(DEFAULT_COMMAND_BITS));
     let fraction = |key, default| {
@@ -165,7 +244,7 @@ fn read_fixed_point(table: &Table<'_, '_>) -> Option<FixedPoint> {
             .integer(key, 0, command_bits.unwrap_or(DEFAULT_COMMAND_BITS) - 1)
             .unwrap_or(default)
     };
-    let digitise = match table.choice("digitise", &["modal", "linear", "nearest"]) {
+    let digitise = match table.choice("digitise", &DIGITISE) {
         Some("linear") => Digitise::Linear,
         Some("nearest") => Digitise::Nearest,
         _ => Digitise::Modal,
@@ -182,9 +261,8 @@ fn read_fixed_point(table: &Table<'_, '_>) -> Option<FixedPoint> {
 
 fn read_target(table: &Table<'_, '_>) -> Option<Target> {
     const BOARD: &str = "1 to 32 of the characters a-z, 0-9, _ and -";
-    table.allow(&["family", "board"]);
-    let families = ["cyclone2", "cyclone4e", "cyclone10lp", "cyclone5", "max10"];
-    let family = table.required_choice("family", &families);
+    table.allow(TARGET_KEYS);
+    let family = table.required_choice("family", &FAMILIES);
     let board = table.text("board", BOARD);
     let plain = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_' || c == '-';
     if board.is_some_and(|b| b.is_empty() || b.len() > 32 || !b.chars().all(plain)) {

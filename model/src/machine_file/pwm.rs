@@ -4,6 +4,7 @@
 //! pulse are rounded **up**: the pins never show less than the file asks for.
 
 use super::ClockSection;
+use super::key::{Key, Values};
 use super::range::{NumberRange, RATIO_ROUNDING};
 use super::table::Table;
 use crate::rtl::pwm::{SHORTEST_PERIOD_CLOCKS, TIME_BITS};
@@ -79,9 +80,39 @@ fn clocks_up(seconds: f64, clock: &ClockSection) -> u32 {
     (clocks * (1.0 - RATIO_ROUNDING)).ceil() as u32
 }
 
+/// The keys of the table.
+pub(super) const KEYS: &[Key] = &[
+    Key::new(
+        "mode",
+        Values::Word(|| PwmMode::ALL.map(|(_, name)| name).to_vec()),
+        "How the duty drives the pins.",
+    )
+    .required(),
+    Key::new(
+        "frequency_hz",
+        Values::Number(FREQUENCY_HZ),
+        "PWM frequency in Hz: it divides the clock, and is a multiple of `sample_hz`.",
+    )
+    .required(),
+    Key::or_zero(
+        "dead_time_s",
+        SHORT_S,
+        "Time in s for which both switches of a leg are off. It is rounded up to clocks.",
+    ),
+    Key::or_zero(
+        "minimum_pulse_s",
+        SHORT_S,
+        "Shorter pulses, in s, are left out. It is rounded up to clocks.",
+    ),
+    Key::switch(
+        "active_low",
+        "A pin is on when it is low; fixed when the hardware is built.",
+    ),
+];
+
 /// Reads the table; `None` where a value is refused. Without a valid clock its checks are left out.
 pub(super) fn read(table: &Table<'_, '_>, clock: Option<ClockSection>) -> Option<PwmSection> {
-    table.allow(&["mode", "frequency_hz", "dead_time_s", "minimum_pulse_s", "active_low"]);
+    table.allow(KEYS);
     let mode = table.required_choice("mode", &PwmMode::ALL.map(|(_, name)| name));
     let mode = PwmMode::ALL.into_iter().find(|(_, name)| Some(*name) == mode);
     let frequency_hz = table.required_number("frequency_hz", FREQUENCY_HZ);

@@ -45,6 +45,16 @@ impl NumberRange {
         Self { unit, ..self }
     }
 
+    /// The lower end, and whether it is allowed.
+    pub(super) const fn low(&self) -> (f64, bool) {
+        (self.low, self.low_included)
+    }
+
+    /// The upper end, and whether it is allowed.
+    pub(super) const fn high(&self) -> (f64, bool) {
+        (self.high, self.high_included)
+    }
+
     /// Whether the number lies inside; NaN and the infinities never do.
     pub(super) fn contains(&self, value: f64) -> bool {
         let above = if self.low_included {

@@ -1,5 +1,6 @@
 //! `[axis.scale]`: a linear scale at the load, read by a second pulse counter.
 
+use super::key::{Default, Key, Values};
 use super::range::COUNTS_PER_UNIT;
 use super::table::Table;
 
@@ -29,9 +30,29 @@ pub struct Scale {
     pub invert: bool,
 }
 
+/// The keys of the table.
+pub(super) const KEYS: &[Key] = &[
+    Key::new(
+        "counts_per_unit",
+        Values::Number(COUNTS_PER_UNIT),
+        "Counts per metre (or radian) of the scale; the encoder's are the axis's.",
+    )
+    .required(),
+    Key::new(
+        "use",
+        Values::Word(|| ScaleUse::ALL.map(|(_, name)| name).to_vec()),
+        "monitor: compared with the motor's position. position: the loop's position, with the velocity from the motor.",
+    )
+    .default(Default::Word("monitor")),
+    Key::switch(
+        "invert",
+        "The scale counts down where the encoder, with its own `invert`, counts up.",
+    ),
+];
+
 /// Reads the table of an axis; `None` where a value is refused.
 pub(super) fn read(axis: &Table<'_, '_>, table: &Table<'_, '_>) -> Option<Scale> {
-    table.allow(&["counts_per_unit", "use", "invert"]);
+    table.allow(KEYS);
     let counts_per_unit = table.required_number("counts_per_unit", COUNTS_PER_UNIT);
     let word = table.choice("use", &ScaleUse::ALL.map(|(_, name)| name));
     let usage = ScaleUse::ALL.into_iter().find(|(_, name)| Some(*name) == word);

@@ -1,8 +1,9 @@
 //! `[axis.shaper]`, and what it and the modes' own `shaper` keys must agree on.
 
+use super::key::{Default, Key, Values};
 use super::range::NumberRange;
 use super::table::Table;
-use super::{AxisMode, ClockSection, ShaperChoice};
+use super::{AxisMode, ClockSection, DEFAULT_EPSILON, DEFAULT_TOLERANCE, ShaperChoice};
 use crate::design::kind::ShaperKind;
 
 /// Residual that a shaper tolerates.
@@ -17,6 +18,73 @@ const MAX_IMPULSES: usize = 256;
 const SUM_ROUNDING: f64 = 1e-9;
 /// Zero pairs, or frequencies per mode.
 const MAX_ORDER: u32 = 5;
+/// Search limit of `periodic` before it is compared with the sample rate.
+const LOWEST_HZ: f64 = 1e9;
+/// Amplitudes of `simultaneous`.
+const AMPLITUDES: [&str; 2] = ["ps", "um"];
+/// Methods of `antisymmetric`.
+const METHODS: [&str; 3] = ["exact", "two-impulse", "three-impulse"];
+/// Base shapers of `periodic`.
+const BASES: [ShaperKind; 3] = [ShaperKind::ZvEi, ShaperKind::MultiEi, ShaperKind::ChebyshevEi];
+
+/// The keys of the table.
+pub(super) const KEYS: &[Key] = &[
+    Key::new("kind", Values::Word(|| names(ShaperKind::is_built)), "Kind of shaper.").required(),
+    Key::new(
+        "tolerance",
+        Values::Number(TOLERANCE),
+        "Residual that an EI kind leaves at the mode, and the level at which every insensitivity is measured.",
+    )
+    .default(Default::Number(DEFAULT_TOLERANCE)),
+    ORDER,
+    Key::new(
+        "epsilon",
+        Values::Number(TOLERANCE),
+        "Bound of the residual of `vibrationless`.",
+    )
+    .default(Default::Number(DEFAULT_EPSILON)),
+    Key::new(
+        "base",
+        Values::Word(|| BASES.map(ShaperKind::name).to_vec()),
+        "The shaper that `periodic` repeats.",
+    )
+    .default(Default::Word("multi-ei")),
+    Key::new(
+        "lowest_frequency_hz",
+        Values::Number(NumberRange::positive(LOWEST_HZ).open_above()),
+        "End of the search of `periodic`, in Hz; else a tenth of the lowest mode.",
+    ),
+    Key::new(
+        "amplitude",
+        Values::Word(|| AMPLITUDES.to_vec()),
+        "Amplitudes of the impulses of `simultaneous`: ps is 1, −2, 2, …; um is 1, −1, 1, ….",
+    )
+    .default(Default::Word("ps")),
+    Key::new(
+        "method",
+        Values::Word(|| METHODS.to_vec()),
+        "How `antisymmetric` is solved.",
+    )
+    .default(Default::Word("exact")),
+    Key::new(
+        "ratio_tolerance",
+        Values::Number(RATIO_TOLERANCE),
+        "Relative error of a ratio of frequencies that counts as odd, of `antisymmetric`.",
+    )
+    .default(Default::Number(0.0)),
+    Key::new(
+        "impulses",
+        Values::Pairs(IMPULSE, MAX_IMPULSES),
+        "Impulses of `custom`, [time_s, amplitude]: first time 0, times increasing, sum of the amplitudes 1.",
+    ),
+];
+
+/// `order`, of a shaper and of a mode.
+pub(super) const ORDER: Key = Key::new(
+    "order",
+    Values::Integer(1, MAX_ORDER),
+    "Zero pairs of `chebyshev-ei` (else 3), frequencies per mode of `vibrationless` (else 2).",
+);
 
 /// The kinds that have an order.
 const ORDER_KINDS: &[ShaperKind] = &[ShaperKind::ChebyshevEi, ShaperKind::Vibrationless];
@@ -44,12 +112,18 @@ pub(super) fn kind(table: &Table<'_, '_>, key: &str) -> Option<ShaperKind> {
     Some(kind)
 }
 
+/// The names of the kinds that are wanted.
 fn names(wanted: impl Fn(ShaperKind) -> bool) -> Vec<&'static str> {
     ShaperKind::ALL
         .iter()
         .filter(|(kind, _)| wanted(*kind))
         .map(|(_, name)| *name)
         .collect()
+}
+
+/// The kinds that serve one mode.
+pub(super) fn of_modes() -> Vec<&'static str> {
+    names(|kind| kind.is_built() && !kind.treats_modes_together())
 }
 
 /// Reads `order`.
@@ -59,31 +133,19 @@ pub(super) fn order(table: &Table<'_, '_>) -> Option<u32> {
 
 /// Reads `[axis.shaper]`.
 pub(super) fn read(table: &Table<'_, '_>, clock: Option<ClockSection>) -> Option<ShaperChoice> {
-    table.allow(&[
-        "kind",
-        "tolerance",
-        "order",
-        "epsilon",
-        "base",
-        "lowest_frequency_hz",
-        "amplitude",
-        "method",
-        "ratio_tolerance",
-        "impulses",
-    ]);
+    table.allow(KEYS);
     table.require("kind", names(ShaperKind::is_built).join(", "));
     let kind = kind(table, "kind");
-    let bases = [ShaperKind::ZvEi, ShaperKind::MultiEi, ShaperKind::ChebyshevEi].map(ShaperKind::name);
-    let half_sample_hz = clock.map_or(1e9, |c| c.sample_hz / 2.0);
+    let half_sample_hz = clock.map_or(LOWEST_HZ, |c| c.sample_hz / 2.0);
     let lowest = NumberRange::positive(half_sample_hz).open_above().unit("Hz");
     let (tolerance, order) = (table.number("tolerance", TOLERANCE), order(table));
     let epsilon = table.number("epsilon", TOLERANCE);
-    let base = table.choice("base", &bases).and_then(ShaperKind::from_name);
+    let base = table
+        .choice("base", &BASES.map(ShaperKind::name))
+        .and_then(ShaperKind::from_name);
     let lowest_frequency_hz = table.number("lowest_frequency_hz", lowest);
-    let amplitude = table.choice("amplitude", &["ps", "um"]).map(str::to_owned);
-    let method = table
-        .choice("method", &["exact", "two-impulse", "three-impulse"])
-        .map(str::to_owned);
+    let amplitude = table.choice("amplitude", &AMPLITUDES).map(str::to_owned);
+    let method = table.choice("method", &METHODS).map(str::to_owned);
     let ratio_tolerance = table.number("ratio_tolerance", RATIO_TOLERANCE);
     let kind = kind?;
     Some(ShaperChoice {
@@ -197,7 +259,7 @@ fn check_own_shaper(table: &Table<'_, '_>, axis_kind: Option<ShaperKind>, mode: 
     };
     if own.treats_modes_together() {
         let found = format!("shaper = \"{own}\", which serves an axis and not one mode");
-        let allowed = names(|k| k.is_built() && !k.treats_modes_together()).join(", ");
+        let allowed = of_modes().join(", ");
         table.contradiction(
             "shaper",
             found,

@@ -1,5 +1,6 @@
 //! `[stage]`: what concerns all axes. Where it is there, their delays are made equal ([`crate::design::matching`]).
 
+use super::key::{Key, Values};
 use super::range::NumberRange;
 use super::table::Table;
 
@@ -17,9 +18,23 @@ pub struct StageSection {
     pub contour_speed: Option<f64>,
 }
 
+/// The keys of the table.
+pub(super) const KEYS: &[Key] = &[
+    Key::or_zero(
+        "extra_delay_s",
+        SHORT_S,
+        "Delay in s that every axis gets beyond that of the slowest, for what is slower than the axes.",
+    ),
+    Key::new(
+        "contour_speed",
+        Values::Number(SPEED),
+        "Speed in m/s at which the remaining mismatch of the axes is reported; else the smallest `velocity` of the axes.",
+    ),
+];
+
 /// Reads the table.
 pub(super) fn read(table: &Table<'_, '_>) -> StageSection {
-    table.allow(&["extra_delay_s", "contour_speed"]);
+    table.allow(KEYS);
     StageSection {
         extra_delay_s: table.number("extra_delay_s", SHORT_S).unwrap_or(0.0),
         contour_speed: table.number("contour_speed", SPEED),

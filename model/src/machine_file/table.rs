@@ -10,6 +10,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::error::ProblemCause;
+use super::key::Key;
 use super::names::{NAME_RULE, is_name, nearest};
 use super::range::NumberRange;
 use super::reader::Reader;
@@ -131,13 +132,14 @@ impl<'r, 't> Table<'r, 't> {
     }
 
     /// Refuses every key that is not in the list.
-    pub(super) fn allow(&self, keys: &[&str]) {
+    pub(super) fn allow(&self, keys: &[Key]) {
+        let keys: Vec<&str> = keys.iter().map(|key| key.name).collect();
         let unknown = self
             .entries
             .keys()
             .filter(|key| !keys.contains(&key.get_ref().as_ref()));
         for key in unknown {
-            let remedy = match nearest(key.get_ref(), keys) {
+            let remedy = match nearest(key.get_ref(), &keys) {
                 Some(near) => format!("did you mean `{near}`? Else remove the key"),
                 None => "remove the key, or move it to the table that it belongs to".to_owned(),
             };

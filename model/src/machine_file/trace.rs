@@ -1,5 +1,6 @@
 //! `[axis.trace]`: the memory that records signals of the axis's loop.
 
+use super::key::{Key, Values};
 use super::table::Table;
 use crate::rtl::trace::SAMPLES;
 
@@ -10,10 +11,18 @@ pub struct TraceSection {
     pub samples: u32,
 }
 
+/// The keys of the table.
+pub(super) const KEYS: &[Key] = &[Key::new(
+    "samples",
+    Values::OneOf(&SAMPLES),
+    "Samples that the memory holds of each signal.",
+)
+.required()];
+
 /// Reads the table; `None` where a value is refused.
 pub(super) fn read(table: &Table<'_, '_>) -> Option<TraceSection> {
     let list = SAMPLES.map(|samples| samples.to_string()).join(", ");
-    table.allow(&["samples"]);
+    table.allow(KEYS);
     table.require("samples", list);
     let samples = table.one_of("samples", &SAMPLES)?;
     Some(TraceSection { samples })

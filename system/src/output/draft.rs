@@ -107,7 +107,8 @@ impl Write for Draft {
 }
 
 /// Writes a text with a seal, complete or not at all. The seal is a comment of XML where the text begins with `<`, of GTKWave's
-/// session files where it begins with `[`, else a second line that begins with `#`.
+/// session files where it begins with `[`, of JSON (the key `$comment`) where it begins with `{`, of man pages where it begins
+/// with `.`, else a second line that begins with `#`.
 ///
 /// # Errors
 /// As [`Draft::new`] and [`Draft::put`].

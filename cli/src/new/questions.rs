@@ -1,0 +1,224 @@
+//! The questions of `posicast new`, and what their answers change.
+//!
+//! Every answer is put into the file, and the file checked: what does not fit is said at once, and asked again.
+
+use super::template::{At, Draft, MachineKind, quoted};
+use crate::design::DesignReport;
+use crate::failure::Failure;
+use crate::hardware;
+use std::io::{BufRead, Read, Write};
+use std::path::Path;
+
+/// Units of a linear axis, and how many of them are a metre.
+const LENGTHS: [(&str, f64); 3] = [("m", 1.0), ("mm", 1e3), ("um", 1e6)];
+/// Units of a rotary axis, and how many of them are a radian.
+const ANGLES: [(&str, f64); 4] = [
+    ("rad", 1.0),
+    ("mrad", 1e3),
+    ("deg", 180.0 / std::f64::consts::PI),
+    ("rev", 0.5 / std::f64::consts::PI),
+];
+/// Longest answer that is read: no terminal sends a longer line.
+const ANSWER_BYTES: u64 = 4096;
+
+/// Where questions are asked and answered.
+pub(crate) struct Questions<R, W> {
+    answers: R,
+    terminal: W,
+    ended: bool,
+}
+
+impl<R: BufRead, W: Write> Questions<R, W> {
+    /// Asks on `terminal`, reads from `answers`.
+    pub(crate) fn new(answers: R, terminal: W) -> Self {
+        Self {
+            answers,
+            terminal,
+            ended: false,
+        }
+    }
+
+    /// Asks for everything, and makes the file that `path` will hold.
+    pub(crate) fn draft(&mut self, path: &Path) -> Result<Draft, Failure> {
+        self.say("Enter takes the value in brackets; all can be changed in the file later.\n")?;
+        let kinds = MachineKind::ALL.map(|(_, name)| name);
+        let kind = self.word("Kind of machine", &kinds, "gantry")?;
+        let kind = MachineKind::ALL.into_iter().find(|(_, name)| *name == kind);
+        let kind = kind.map_or(MachineKind::Gantry, |(kind, _)| kind);
+        let mut draft = Draft::new(kind, path);
+        let name = draft.name().to_owned();
+        draft = self.change(&draft, "Name of the machine", &name, |draft, answer| {
+            Ok(draft.with(At::Top, "name", &quoted(answer)))
+        })?;
+        let axes = draft.machine().map_err(Failure::input)?.axes;
+        for (index, axis) in axes.iter().enumerate() {
+            let units: &[(&str, f64)] = if kind.turns() { &ANGLES } else { &LENGTHS };
+            let names: Vec<&str> = units.iter().map(|(name, _)| *name).collect();
+            let unit = self.word(&format!("Axis {}: unit of its position", axis.name), &names, names[0])?;
+            let per_unit = units
+                .iter()
+                .find(|(name, _)| *name == unit)
+                .map_or(1.0, |(_, many)| *many);
+            let default = (axis.counts_per_unit / per_unit).to_string();
+            let question = format!("Axis {}: counts per {unit}", axis.name);
+            draft = self.change(&draft, &question, &default, |draft, answer| {
+                let counts = number(answer)? * per_unit;
+                Ok(draft.with(At::Axis(index), "counts_per_unit", &counts.to_string()))
+            })?;
+            for (key, what) in [
+                ("frequency_hz", "frequency of its first mode, Hz"),
+                ("damping", "damping ratio of this mode"),
+            ] {
+                let default = draft.value(At::FirstMode(index), key).to_owned();
+                let question = format!("Axis {}: {what}", axis.name);
+                draft = self.change(&draft, &question, &default, |draft, answer| {
+                    Ok(draft.with(At::FirstMode(index), key, &number(answer)?.to_string()))
+                })?;
+            }
+        }
+        Ok(draft)
+    }
+
+    /// The file with an answer in it; asked again until it fits.
+    fn change(
+        &mut self,
+        draft: &Draft,
+        question: &str,
+        default: &str,
+        put: impl Fn(&Draft, &str) -> Result<Draft, String>,
+    ) -> Result<Draft, Failure> {
+        loop {
+            let answer = self.ask(question, default)?;
+            if answer == default {
+                return Ok(draft.clone());
+            }
+            let changed = put(draft, &answer).and_then(|changed| fits(&changed).map(|()| changed));
+            match changed {
+                Ok(changed) => return Ok(changed),
+                Err(problem) => self.say(&format!("  {problem}\n"))?,
+            }
+        }
+    }
+
+    /// One of a list of words.
+    fn word(&mut self, question: &str, words: &[&str], default: &str) -> Result<String, Failure> {
+        let list = words.join(", ");
+        loop {
+            let answer = self.ask(&format!("{question}: {list}"), default)?;
+            if words.contains(&answer.as_str()) {
+                return Ok(answer);
+            }
+            self.say(&format!("  found `{}`; allowed: {list}\n", answer.escape_debug()))?;
+        }
+    }
+
+    /// An answer; the default where it is empty, and for all questions after the end of the input.
+    fn ask(&mut self, question: &str, default: &str) -> Result<String, Failure> {
+        if self.ended {
+            return Ok(default.to_owned());
+        }
+        self.say(&format!("{question} [{default}]: "))?;
+        let mut line = Vec::new();
+        let read = (&mut self.answers).take(ANSWER_BYTES).read_until(b'\n', &mut line);
+        if read.map_err(Failure::because)? == 0 {
+            self.ended = true;
+            self.say("\n")?;
+        }
+        match String::from_utf8_lossy(&line).trim() {
+            "" => Ok(default.to_owned()),
+            answer => Ok(answer.to_owned()),
+        }
+    }
+
+    fn say(&mut self, text: &str) -> Result<(), Failure> {
+        let said = self
+            .terminal
+            .write_all(text.as_bytes())
+            .and_then(|()| self.terminal.flush());
+        said.map_err(Failure::because)
+    }
+}
+
+/// A finite number.
+fn number(answer: &str) -> Result<f64, String> {
+    let number = answer.parse::<f64>().ok().filter(|number| number.is_finite());
+    number.ok_or_else(|| format!("found `{}`; allowed: a number, such as 47.5", answer.escape_debug()))
+}
+
+/// Whether the file can be built; else the problems, with what to do.
+fn fits(draft: &Draft) -> Result<(), String> {
+    let machine = draft.machine().map_err(|error| {
+        let lines = error
+            .problems()
+            .iter()
+            .map(|p| format!("{}: {}; {}", p.key, p.cause, p.remedy));
+        lines.collect::<Vec<_>>().join("\n  ")
+    })?;
+    let path = Path::new("answer");
+    let built = DesignReport::new(&machine, path)
+        .and_then(|report| hardware::shapers(&machine, &report.hardware, path).map(drop));
+    built.map_err(|failure| match failure {
+        Failure::Input(report) | Failure::MissingTool(report) => report.to_string(),
+        Failure::Check(line) => line,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn answered(answers: &str) -> (Draft, String) {
+        let mut terminal = Vec::new();
+        let draft = Questions::new(answers.as_bytes(), &mut terminal).draft(Path::new("mill.toml"));
+        let draft = draft.map_err(|_| "failed").unwrap();
+        (draft, String::from_utf8(terminal).unwrap())
+    }
+
+    #[test]
+    fn unit_answers_are_in_the_file_in_its_own_unit() {
+        let (draft, said) = answered("joint\nshoulder\nrev\n10000\n7.5\n0.02\n");
+        let machine = draft.machine().unwrap();
+        assert_eq!((machine.name.as_str(), machine.axes.len()), ("shoulder", 1));
+        let axis = &machine.axes[0];
+        assert!((axis.counts_per_unit - 10_000.0 / std::f64::consts::TAU).abs() < 1e-9);
+        assert_eq!(
+            (axis.modes[0].mode.frequency_hz, axis.modes[0].mode.damping),
+            (7.5, 0.02)
+        );
+        assert!(said.contains("Axis elbow: counts per rev [1048575.6"), "{said}");
+    }
+
+    #[test]
+    fn unit_enter_and_the_end_of_the_input_take_the_defaults() {
+        for answers in ["", "\n\n", "gantry\n", "\n\n\n\n\n\n\n\n\n\n\n\n"] {
+            let (draft, _) = answered(answers);
+            assert_eq!(
+                draft.text(),
+                Draft::new(MachineKind::Gantry, Path::new("mill.toml")).text()
+            );
+        }
+    }
+
+    #[test]
+    fn unit_what_does_not_fit_is_said_and_asked_again() {
+        let (draft, said) = answered("lathe\ncrane\nwire\nhoist\nkm\nmm\nmany\n20\n1e9\n0.25\n1.5\n0.02\n");
+        for message in [
+            "found `lathe`; allowed: printer, gantry, joint, crane",
+            "name: found \"wire\"; allowed: [a-z]",
+            "found `km`; allowed: m, mm, um",
+            "found `many`; allowed: a number",
+            "axis.mode.frequency_hz: found 1000000000; allowed: below 50 Hz",
+            "axis.mode.damping: found 1.5; allowed: at least 0, below 1",
+        ] {
+            assert!(said.contains(message), "{message} is not in\n{said}");
+        }
+        let machine = draft.machine().unwrap();
+        let axis = &machine.axes[0];
+        assert_eq!(machine.name, "hoist");
+        assert_eq!(axis.counts_per_unit, 20_000.0);
+        assert_eq!(
+            (axis.modes[0].mode.frequency_hz, axis.modes[0].mode.damping),
+            (0.25, 0.02)
+        );
+    }
+}

@@ -1,0 +1,36 @@
+//! `posicast schema`: the machine file's JSON Schema, for editors.
+
+use crate::failure::Failure;
+use crate::output;
+use posicast_model::machine_file;
+use posicast_system::output::{self as files, OutputFiles};
+use std::path::PathBuf;
+
+/// The JSON Schema of the machine file, for editors that complete and check TOML
+#[derive(clap::Args)]
+#[command(after_help = "\
+Example:
+  posicast schema -o posicast-machine.schema.json
+
+Machine files that `posicast new` writes name a file posicast-machine.schema.json beside them. Editors with Taplo (Even Better
+TOML) then complete keys, show what they mean and mark what is out of range. Of what keys must agree on the schema knows
+little: `posicast design` checks everything.")]
+pub(crate) struct Args {
+    /// Write it here [default: standard output]
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<PathBuf>,
+    /// Replace a file that posicast did not write, or that was changed since
+    #[arg(long, requires = "output")]
+    force: bool,
+}
+
+pub(crate) fn run(args: &Args) -> Result<(), Failure> {
+    let text = output::json_text(&machine_file::schema())?;
+    let Some(path) = &args.output else {
+        return output::print(&text);
+    };
+    OutputFiles::new(args.force)
+        .claim("--output", path)
+        .map_err(Failure::because)?;
+    files::write_text(path, &text).map_err(Failure::because)
+}

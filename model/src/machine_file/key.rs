@@ -1,0 +1,103 @@
+//! The keys of a table of the machine file, as data: name, allowed values, default, meaning.
+//!
+//! A reader gives its list to [`Table::allow`](super::table::Table::allow), which refuses every other key; [`super::schema`] writes
+//! the same list as JSON Schema. The ranges are the constants that the reader checks with.
+
+use super::range::NumberRange;
+
+/// A key of a table.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Key {
+    pub(super) name: &'static str,
+    pub(super) values: Values,
+    /// Whether a file without it is refused.
+    pub(super) required: bool,
+    pub(super) default: Option<Default>,
+    /// Another key that stands in its place: a table has one of the two.
+    pub(super) instead_of: Option<&'static str>,
+    /// Meaning and unit, in a sentence.
+    pub(super) about: &'static str,
+}
+
+/// What a key may be.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Values {
+    /// A number; integers count as numbers.
+    Number(NumberRange),
+    /// A whole number, from the first to the second.
+    Integer(u32, u32),
+    /// A whole number of this list.
+    OneOf(&'static [u32]),
+    /// True or false.
+    Boolean,
+    /// A name that can stand in Verilog and in C.
+    Name,
+    /// A text that matches a regular expression.
+    Text(&'static str),
+    /// A word of this list.
+    Word(fn() -> Vec<&'static str>),
+    /// A list of such words, which may be empty.
+    Words(fn() -> Vec<&'static str>),
+    /// `[low, high]`.
+    Pair(NumberRange),
+    /// A list of 1 to so many pairs of numbers.
+    Pairs(NumberRange, usize),
+    /// A table.
+    Table(&'static [Key]),
+    /// 1 to so many tables.
+    Tables(&'static [Key], usize),
+}
+
+/// The value of a key that is absent.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Default {
+    Number(f64),
+    Integer(u32),
+    Boolean(bool),
+    Word(&'static str),
+}
+
+impl Key {
+    /// A key that may be absent, and then has no value.
+    pub(super) const fn new(name: &'static str, values: Values, about: &'static str) -> Self {
+        Self {
+            name,
+            values,
+            required: false,
+            default: None,
+            instead_of: None,
+            about,
+        }
+    }
+
+    /// The same, which every such table has.
+    pub(super) const fn required(self) -> Self {
+        Self { required: true, ..self }
+    }
+
+    /// The same, with the value that it has where it is absent.
+    pub(super) const fn default(self, value: Default) -> Self {
+        Self {
+            default: Some(value),
+            ..self
+        }
+    }
+
+    /// The same, in the place of another key: a table has one of the two.
+    pub(super) const fn instead_of(self, other: &'static str) -> Self {
+        Self {
+            instead_of: Some(other),
+            ..self
+        }
+    }
+
+    /// A switch that is off where it is absent.
+    pub(super) const fn switch(name: &'static str, about: &'static str) -> Self {
+        Self::new(name, Values::Boolean, about).default(Default::Boolean(false))
+    }
+
+    /// A number that is 0 where it is absent.
+    pub(super) const fn or_zero(name: &'static str, range: NumberRange, about: &'static str) -> Self {
+        Self::new(name, Values::Number(range), about).default(Default::Number(0.0))
+    }
+}
