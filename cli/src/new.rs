@@ -68,7 +68,8 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let outputs = claim(&args.file, args.force)?;
     let asks = stdin().is_terminal() && stderr().is_terminal();
     let draft = match args.kind.kind() {
-        None if asks => Questions::new(stdin().lock(), stderr().lock()).draft(&args.file)?,
+        // Standard error is not locked: a signal that ends the questions says so there.
+        None if asks => Questions::new(stdin().lock(), stderr()).draft(&args.file)?,
         kind => Draft::new(kind.unwrap_or(MachineKind::Gantry), &args.file),
     };
     let (file, text) = (args.file.display(), draft.text());

@@ -148,10 +148,13 @@ fn number(answer: &str) -> Result<f64, String> {
 /// Whether the file can be built; else the problems, with what to do.
 fn fits(draft: &Draft) -> Result<(), String> {
     let machine = draft.machine().map_err(|error| {
-        let lines = error
-            .problems()
-            .iter()
-            .map(|p| format!("{}: {}; {}", p.key, p.cause, p.remedy));
+        let lines = error.problems().iter().map(|problem| {
+            let cause = problem.cause.to_string();
+            match cause.contains(&problem.remedy) {
+                true => format!("{}: {cause}", problem.key),
+                false => format!("{}: {cause}; {}", problem.key, problem.remedy),
+            }
+        });
         lines.collect::<Vec<_>>().join("\n  ")
     })?;
     let path = Path::new("answer");
