@@ -2,6 +2,7 @@
 
 use super::range::NumberRange;
 use super::table::Table;
+use crate::unit::AxisUnit;
 
 /// Gains that must be there and pull.
 const POSITIVE: NumberRange = NumberRange::positive(1e12);
@@ -53,17 +54,19 @@ const GAINS: [(&str, &[&str]); 7] = [
 ];
 
 /// Reads the table; `None` where a value is refused.
-pub(super) fn read(table: &Table<'_, '_>) -> Option<Controller> {
+pub(super) fn read(table: &Table<'_, '_>, unit: AxisUnit) -> Option<Controller> {
     let mut keys = vec!["kind"];
     keys.extend(GAINS.map(|(key, _)| key));
     table.allow(&keys);
     let kind = table.required_choice("kind", &["sliding-mode", "pd", "pid"]);
     let gain = |key| {
-        let range = match key {
-            "k" | "epsilon" => NOT_NEGATIVE,
-            _ => POSITIVE,
-        };
-        table.number(key, range)
+        // The others are rates, and numbers: the same in every unit.
+        match key {
+            "epsilon" => table.quantity(key, NOT_NEGATIVE, unit),
+            "boundary" => table.quantity(key, POSITIVE, unit),
+            "k" => table.number(key, NOT_NEGATIVE),
+            _ => table.number(key, POSITIVE),
+        }
     };
     let [c, k, epsilon, boundary, proportional, derivative, integral] = GAINS.map(|(key, _)| gain(key));
     let kind = kind?;

@@ -2,6 +2,7 @@
 
 use super::range::NumberRange;
 use super::table::Table;
+use crate::unit::AxisUnit;
 
 /// What must be there to divide by.
 const POSITIVE: NumberRange = NumberRange::positive(1e12);
@@ -43,7 +44,7 @@ pub struct Drive {
 }
 
 /// Reads the table; `None` where a value is refused.
-pub(super) fn read(table: &Table<'_, '_>) -> Option<Drive> {
+pub(super) fn read(table: &Table<'_, '_>, unit: AxisUnit) -> Option<Drive> {
     let (current, velocity) = ("full_scale_a", "full_scale_velocity");
     table.allow(&[
         "mode",
@@ -62,7 +63,6 @@ pub(super) fn read(table: &Table<'_, '_>) -> Option<Drive> {
         "force_constant",
         "current_limit_a",
         current,
-        velocity,
         "bandwidth_hz",
     ];
     let [
@@ -70,9 +70,9 @@ pub(super) fn read(table: &Table<'_, '_>) -> Option<Drive> {
         force_constant,
         current_limit_a,
         full_scale_a,
-        full_scale_velocity,
         bandwidth_hz,
     ] = positive.map(|key| table.number(key, POSITIVE));
+    let full_scale_velocity = table.quantity(velocity, POSITIVE, unit);
     let viscous = table.number("viscous", NOT_NEGATIVE).unwrap_or(0.0);
     let coulomb = table.number("coulomb", NOT_NEGATIVE).unwrap_or(0.0);
     let torque = mode? == "torque";

@@ -2,6 +2,7 @@
 
 use super::range::COUNTS_PER_UNIT;
 use super::table::Table;
+use crate::unit::AxisUnit;
 
 /// What the scale's position is for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -21,7 +22,7 @@ impl ScaleUse {
 /// `[axis.scale]`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Scale {
-    /// Counts per metre (or radian) of the scale; those of the motor's encoder are the axis's.
+    /// Counts per m or rad of the scale; those of the motor's encoder are the axis's.
     pub counts_per_unit: f64,
     /// What it is for. Default: to be compared.
     pub usage: ScaleUse,
@@ -30,9 +31,9 @@ pub struct Scale {
 }
 
 /// Reads the table of an axis; `None` where a value is refused.
-pub(super) fn read(axis: &Table<'_, '_>, table: &Table<'_, '_>) -> Option<Scale> {
+pub(super) fn read(axis: &Table<'_, '_>, table: &Table<'_, '_>, unit: AxisUnit) -> Option<Scale> {
     table.allow(&["counts_per_unit", "use", "invert"]);
-    let counts_per_unit = table.required_number("counts_per_unit", COUNTS_PER_UNIT);
+    let counts_per_unit = table.required_counts("counts_per_unit", COUNTS_PER_UNIT, unit);
     let word = table.choice("use", &ScaleUse::ALL.map(|(_, name)| name));
     let usage = ScaleUse::ALL.into_iter().find(|(_, name)| Some(*name) == word);
     let usage = usage.map_or(ScaleUse::default(), |(usage, _)| usage);

@@ -8,4 +8,5 @@ mod not_built;
 mod prop;
 mod report;
 mod rules;
+mod units;
 mod values;
