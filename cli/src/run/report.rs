@@ -7,9 +7,9 @@ use super::waves::Waves;
 use crate::bench::Simulator;
 use crate::design::{self, DesignReport};
 use crate::failure::Failure;
-use crate::output::{Table, percent};
+use crate::output::{Table, UnitDocument, percent};
 use crate::plot::{Curve, Panel};
-use crate::simulate::micro_units_per_lsb;
+use crate::simulate::si_per_lsb;
 use crate::synth;
 use posicast_model::analysis::tap_impulses;
 use posicast_model::design::{AxisTables, MachineDesign};
@@ -176,20 +176,22 @@ impl RunReport<'_> {
                 percent_or_dash(worst(&plant.shaped.minus_10_percent)),
                 percent_or_dash(worst(&plant.shaped.plus_10_percent)),
             ]);
-            let micro = micro_units_per_lsb(self.machine, axis);
+            let per_lsb = si_per_lsb(self.machine, axis);
+            let ringing = [self.axes[index].vibration_unshaped, self.axes[index].vibration];
+            let [ringing_unshaped, ringing_shaped] = axis.unit.show_all(ringing.map(|lsb| lsb * per_lsb));
             overshoots.row([
                 axis.name.clone(),
                 percent(plant.unshaped.nominal.overshoot),
                 percent(plant.shaped.nominal.overshoot),
                 percent(plant.shaped.minus_10_percent.overshoot),
                 percent(plant.shaped.plus_10_percent.overshoot),
-                format!("{:.4}", self.axes[index].vibration_unshaped * micro),
-                format!("{:.4}", self.axes[index].vibration * micro),
+                ringing_unshaped,
+                ringing_shaped,
             ]);
         }
         format!(
             "Residual vibration of a step, worst mode, % of unshaped\n{}\n\
-             Overshoot of a step, %; ringing after the move, millionths of the unit\n{}",
+             Overshoot of a step, %; ringing after the move\n{}",
             residuals.text("  "),
             overshoots.text("  ")
         )
@@ -226,12 +228,13 @@ impl RunReport<'_> {
     pub(crate) fn json(&self) -> Document<'_> {
         let axes = self.rows().map(|(index, axis, _)| {
             let plant = &self.plants[index];
-            let micro = 1e-6 * micro_units_per_lsb(self.machine, axis);
+            let per_lsb = si_per_lsb(self.machine, axis);
             AxisDocument {
                 name: axis.name.clone(),
+                unit: UnitDocument::new(axis.unit),
                 plant: PlantDocument::new(plant),
-                residual_displacement_unshaped: self.axes[index].vibration_unshaped * micro,
-                residual_displacement: self.axes[index].vibration * micro,
+                residual_displacement_unshaped: self.axes[index].vibration_unshaped * per_lsb,
+                residual_displacement: self.axes[index].vibration * per_lsb,
                 samples: self.waves.samples[index],
                 largest_difference_lsb: self.waves.largest_difference_lsb[index],
                 bound_lsb: self.axes[index].bound_lsb,
@@ -325,19 +328,26 @@ fn step_panel(axis: &AxisSection, tables: &AxisTables, sample_hz: f64) -> Result
 /// The machine round its target, from shortly before the move arrives to the end.
 fn move_panel(machine: &Machine, axis: &AxisSection, run: &AxisSimulation) -> Panel {
     let target = run.shaped.last().map_or(0.0, |word| *word as f64);
-    let micro = micro_units_per_lsb(machine, axis);
+    let per_lsb = si_per_lsb(machine, axis);
     let moving = run.shaped.iter().rposition(|word| *word as f64 != target).unwrap_or(0);
     let from = moving.saturating_sub((run.shaped.len() - moving) / 8);
+    let off = |position: &f64| (position - target) * per_lsb;
+    let shown = [&run.position, &run.position_unshaped];
+    let unit = axis.unit.for_largest(
+        shown
+            .into_iter()
+            .flat_map(|positions| positions.iter().skip(from).map(off)),
+    );
     let deviation = |positions: &[f64]| {
         let points = positions.iter().enumerate().skip(from);
         points
-            .map(|(n, position)| (1e3 * n as f64 / machine.clock.sample_hz, (position - target) * micro))
+            .map(|(n, position)| (1e3 * n as f64 / machine.clock.sample_hz, unit.of(off(position))))
             .collect::<Vec<_>>()
     };
     Panel {
         title: format!("axis {}: arrival of the move", axis.name),
         x_label: "time, ms".into(),
-        y_label: "deviation from target, µm or µrad".into(),
+        y_label: format!("deviation from target, {}", unit.symbol()),
         curves: vec![
             Curve::reference("unshaped", deviation(&run.position_unshaped)),
             Curve::new("shaped", deviation(&run.position)),
@@ -366,6 +376,8 @@ pub(crate) struct Document<'a> {
 #[derive(Serialize)]
 struct AxisDocument {
     name: String,
+    #[serde(flatten)]
+    unit: UnitDocument,
     plant: PlantDocument,
     residual_displacement_unshaped: f64,
     residual_displacement: f64,

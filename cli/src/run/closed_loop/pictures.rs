@@ -22,11 +22,14 @@ impl ClosedLoop<'_> {
             ),
         ];
         if let Some(circles) = &self.circles {
-            let curve = |name: &str, circled: &Circled| {
-                let micro = |(degrees, distance): (f64, f64)| (degrees, 1e6 * distance);
-                (name.to_owned(), circled.distances().into_iter().map(micro).collect())
-            };
             let matched = circles.matched.as_ref().ok();
+            let all = std::iter::once(&circles.apart).chain(matched);
+            let distances = all.flat_map(Circled::distances).map(|(_, distance)| distance);
+            let unit = self.circle_unit().for_largest(distances);
+            let curve = |name: &str, circled: &Circled| {
+                let shown = |(degrees, distance): (f64, f64)| (degrees, unit.of(distance));
+                (name.to_owned(), circled.distances().into_iter().map(shown).collect())
+            };
             let matched = matched.map(|circled| curve("delays made equal", circled));
             let apart = curve("each shaper with its own delay", &circles.apart);
             let shaped = std::iter::once(apart).chain(matched);
@@ -34,7 +37,7 @@ impl ClosedLoop<'_> {
             let panel = Panel {
                 title: "circle: how far the load is outside of it".into(),
                 x_label: "direction from the centre, degrees".into(),
-                y_label: "distance, millionths of the unit".into(),
+                y_label: format!("distance, {}", unit.symbol()),
                 curves,
             };
             pictures.push(("plots/stage-circle.svg", vec![panel]));
@@ -57,31 +60,39 @@ impl ClosedLoop<'_> {
 
     fn position(&self, axis: usize) -> Panel {
         let of_axis = &self.machine.axes[axis];
-        let thousandths = 1e3 / of_axis.loop_counts_per_unit();
+        let count = 1.0 / of_axis.loop_counts_per_unit();
         let samples = self.samples(&self.shaped, axis);
+        let unit = of_axis
+            .unit
+            .for_largest(samples.iter().map(|sample| sample.command * count));
+        let per_count = unit.of(count);
         Panel {
             title: format!("axis {}: position", of_axis.name),
             x_label: "time, ms".into(),
-            y_label: "position, thousandths of the unit".into(),
+            y_label: format!("position, {}", unit.symbol()),
             curves: vec![
-                Curve::reference("command", self.points(samples, |sample| sample.command * thousandths)),
-                Curve::new("shaped", self.points(samples, |sample| sample.shaped * thousandths)),
-                Curve::new("load", self.points(samples, |sample| 1e3 * sample.load)),
+                Curve::reference("command", self.points(samples, |sample| sample.command * per_count)),
+                Curve::new("shaped", self.points(samples, |sample| sample.shaped * per_count)),
+                Curve::new("load", self.points(samples, |sample| unit.of(sample.load))),
             ],
         }
     }
 
     fn error(&self, axis: usize) -> Panel {
         let of_axis = &self.machine.axes[axis];
-        let millionths = 1e6 / of_axis.loop_counts_per_unit();
+        let count = 1.0 / of_axis.loop_counts_per_unit();
         let samples = self.samples(&self.shaped, axis);
+        let unit = of_axis
+            .unit
+            .for_largest(samples.iter().map(|sample| sample.error * count));
+        let per_count = unit.of(count);
         Panel {
             title: format!("axis {}: what the controller sees of the error", of_axis.name),
             x_label: "time, ms".into(),
-            y_label: "error, millionths of the unit".into(),
+            y_label: format!("error, {}", unit.symbol()),
             curves: vec![Curve::new(
                 "error",
-                self.points(samples, |sample| sample.error * millionths),
+                self.points(samples, |sample| sample.error * per_count),
             )],
         }
     }
@@ -93,12 +104,15 @@ impl ClosedLoop<'_> {
             ("shaped, machine 10 % slower", &self.slower),
             ("shaped, machine 10 % faster", &self.faster),
         ];
+        let of_axis = &self.machine.axes[axis];
+        let all = runs.iter().flat_map(|(_, moved)| moved.ringing(axis));
+        let unit = of_axis.unit.for_largest(all);
         let curves = runs.into_iter().enumerate().map(|(index, (name, moved))| {
             let ringing = moved.ringing(axis);
             let per_ms = self.machine.clock.sample_hz / 1e3;
             let points = ringing.iter().enumerate();
             let points = points
-                .map(|(tick, metres)| (tick as f64 / per_ms, 1e6 * metres))
+                .map(|(tick, position)| (tick as f64 / per_ms, unit.of(*position)))
                 .collect();
             match index {
                 0 => Curve::reference(name, points),
@@ -106,9 +120,9 @@ impl ClosedLoop<'_> {
             }
         });
         Panel {
-            title: format!("axis {}: the load after its move", self.machine.axes[axis].name),
+            title: format!("axis {}: the load after its move", of_axis.name),
             x_label: "time since the command came to its end, ms".into(),
-            y_label: "from its place of rest, millionths".into(),
+            y_label: format!("from its place of rest, {}", unit.symbol()),
             curves: curves.collect(),
         }
     }
