@@ -23,17 +23,21 @@ pub(crate) fn words(machine: &Machine, design: &MachineDesign, path: Option<&Pat
     for (index, (axis, tables)) in machine.axes.iter().zip(&design.axes).enumerate() {
         let shaper_s = tables.design.impulses.duration_s() + tables.delay.added_s;
         let settle = settle_s(shaper_s, axis.modes.iter().map(|m| m.mode));
-        let positions = match &points {
-            Some(points) => resample(&points[index], sample_hz, settle).map_err(|e| of_axis(axis, e))?,
+        let (positions, counts_per_unit) = match &points {
+            Some(points) => (
+                resample(&points[index], sample_hz, settle).map_err(|e| of_axis(axis, e))?,
+                axis.loop_counts_per_file_unit(),
+            ),
             None => {
                 let profile = default_move(axis.limits.as_ref()).map_err(|e| of_axis(axis, e))?;
-                profile.samples(sample_hz, settle).map_err(|e| of_axis(axis, e))?
+                let positions = profile.samples(sample_hz, settle).map_err(|e| of_axis(axis, e))?;
+                (positions, axis.loop_counts_per_unit())
             }
         };
         let (bits, fraction) = (machine.fixed_point.command_bits, machine.fixed_point.command_fraction);
         let of_positions = match axis.modulo {
-            true => modulo_words(&positions, axis.loop_counts_per_unit(), bits, fraction, &tables.table),
-            false => command_words(&positions, axis.loop_counts_per_unit(), bits, fraction),
+            true => modulo_words(&positions, counts_per_unit, bits, fraction, &tables.table),
+            false => command_words(&positions, counts_per_unit, bits, fraction),
         };
         words.push(of_positions.map_err(|e| of_axis(axis, e))?);
     }
@@ -56,7 +60,7 @@ fn of_axis(axis: &AxisSection, error: impl std::fmt::Display) -> Failure {
     Failure::from(miette::miette!("command of axis `{}`: {error}", axis.name))
 }
 
-/// The points `(time_s, position)` of every axis: columns `time_s` and either `position` for all axes or one per axis.
+/// The points `(time_s, position)` of every axis, positions in its unit: columns `time_s` and either `position` for all axes or one per axis.
 fn read(machine: &Machine, path: &Path) -> Result<Vec<Vec<(f64, f64)>>, Failure> {
     let refused = |found: String| {
         Failure::from(miette::miette!(

@@ -7,12 +7,14 @@ use posicast_model::control::sampled::Margins;
 use posicast_model::hardware::{AxisLoop, Hardware};
 use posicast_model::machine_file::Machine;
 use posicast_model::rtl::sliding_mode::{Law, SettingRow};
+use posicast_model::unit::{AxisUnit, show_seconds};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
 /// The controller of one axis, as it is shown.
 pub(crate) struct AxisControl {
     pub(crate) axis: String,
+    pub(crate) unit: AxisUnit,
     pub(crate) of_axis: AxisLoop,
 }
 
@@ -31,6 +33,7 @@ pub(crate) fn of_machine(machine: &Machine, hardware: &Hardware<'_>) -> Vec<Opti
     let controls = axes.map(|(axis, built)| {
         built.control.clone().map(|of_axis| AxisControl {
             axis: axis.name.clone(),
+            unit: axis.unit,
             of_axis,
         })
     });
@@ -60,10 +63,10 @@ impl AxisControl {
     /// A line for people.
     pub(crate) fn text(&self) -> String {
         format!(
-            "  controller {}: loop lag {:.1} µs, friction leaves {:.3} µ of error\n  {}\n",
+            "  controller {}: loop lag {}, friction leaves {} of error\n  {}\n",
             self.law(),
-            1e6 * self.of_axis.lag_s,
-            1e6 * self.of_axis.derived.steady_error,
+            show_seconds(self.of_axis.lag_s, 4),
+            self.unit.show(self.of_axis.derived.steady_error, 3),
             self.margins_text()
         )
     }
@@ -79,9 +82,9 @@ impl AxisControl {
              crossover at {}",
             figure(margins.gain_margin_db(), 1, "dB"),
             figure(margins.phase_margin_deg, 0, "degrees"),
-            match margins.delay_margin_s {
-                Some(time_s) if time_s < 0.01 => figure(Some(1e6 * time_s), 0, "µs"),
-                time_s => figure(time_s.map(|time_s| 1e3 * time_s), 0, "ms"),
+            match margins.delay_margin_s.filter(|time_s| time_s.is_finite()) {
+                Some(time_s) => show_seconds(time_s, 3),
+                None => "without limit".to_owned(),
             },
             margins.modulus_margin,
             figure(margins.crossover_hz, 2, "Hz"),

@@ -9,7 +9,7 @@ use crate::control::{self, AxisControl};
 use crate::failure::Failure;
 use crate::guards;
 use crate::machine;
-use crate::output::{self, Table, percent};
+use crate::output::{self, Table, UnitDocument, percent};
 use crate::plot;
 use crate::tolerance::beyond_tolerance;
 use posicast_model::analysis::INSENSITIVITY_LIMIT;
@@ -159,7 +159,7 @@ impl<'a> DesignReport<'a> {
             text.push('\n');
             text += &axis.text(self.design.sample_hz);
         }
-        text + &delay::text(&self.design)
+        text + &delay::text(self.machine, &self.design)
     }
 }
 
@@ -182,6 +182,7 @@ impl AxisReport<'_> {
         let findings = &self.tables.design.findings;
         AxisDocument {
             name: self.axis.name.clone(),
+            unit: UnitDocument::new(self.axis.unit),
             kind: self.tables.design.kind.clone(),
             solutions: match findings {
                 Findings::Periodic(found) => Some(found.solutions.iter().map(SolutionDocument::new).collect()),

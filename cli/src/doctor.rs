@@ -20,7 +20,7 @@ const VERSION_LENGTH: usize = 32;
 #[command(after_help = "\
 A variable such as VERILATOR or POSICAST_YOSYS names another executable; the table shows which one is set.
 
-Exit status: 0 what `posicast run` needs is here, 3 something of that is missing or does not start.")]
+Exit status: 0 what `posicast run` needs is here, 1 something of that is missing or does not start.")]
 pub(crate) struct Args {
     /// Print one JSON document on standard output
     #[arg(long)]
@@ -44,7 +44,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         return Ok(());
     }
     let remedies: Vec<&str> = lacking.iter().map(|f| f.install).collect();
-    Err(Failure::missing_tool(format!(
+    Err(Failure::Check(format!(
         "`posicast run` needs {}: {}",
         missing.join(", "),
         remedies.join("; ")

@@ -52,7 +52,8 @@ fn core_files(machine: &Machine, modules: &[Module], stage: Option<&Stage>) -> V
 
 fn of_stage(machine: &Machine, stage: &Stage) -> Vec<DriverFile> {
     let axes = machine.axes.iter().map(|axis| AxisData {
-        counts_per_unit: axis.loop_counts_per_unit(),
+        unit: axis.unit,
+        counts_per_unit: axis.loop_counts_per_file_unit(),
         limits: TickLimits::of_axis(axis, &machine.clock),
     });
     driver::stage_files(&StageDriver {

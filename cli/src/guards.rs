@@ -70,8 +70,8 @@ fn sign(axis: &AxisSection, limits: &LimitsSection) -> Option<String> {
     };
     Some(format!(
         "axis `{}` does not notice a wrong feedback sign (`invert` of [axis.encoder]), with which it runs away at full command until \
-         it is 32,768 counts off, {:.3e} m: {remedy}",
+         it is 32,768 counts off, {}: {remedy}",
         axis.name,
-        32_768.0 / axis.loop_counts_per_unit()
+        axis.unit.show(32_768.0 / axis.loop_counts_per_unit(), 3)
     ))
 }

@@ -1,6 +1,7 @@
 //! Standard output and the files that commands write.
 
 use crate::failure::Failure;
+use posicast_model::unit::AxisUnit;
 use posicast_system::output::OutputFiles;
 use serde::Serialize;
 use std::io::{ErrorKind, Write};
@@ -50,6 +51,30 @@ pub(crate) fn json_text(document: &impl Serialize) -> Result<String, Failure> {
 pub(crate) fn say(line: &str) {
     // A message that cannot be shown must not stop the work.
     let _ = writeln!(std::io::stderr(), "{line}");
+}
+
+/// The unit of an axis in a JSON document, whose figures are in `si_unit` whatever the machine file's is.
+#[derive(Clone, Copy, Serialize)]
+pub(crate) struct UnitDocument {
+    unit: &'static str,
+    si_unit: &'static str,
+    #[serde(skip)]
+    of_axis: AxisUnit,
+}
+
+impl UnitDocument {
+    pub(crate) fn new(of_axis: AxisUnit) -> Self {
+        Self {
+            unit: of_axis.name(),
+            si_unit: of_axis.si_name(),
+            of_axis,
+        }
+    }
+
+    /// The unit itself, for the figures that people read.
+    pub(crate) fn of_axis(&self) -> AxisUnit {
+        self.of_axis
+    }
 }
 
 /// A fraction as percent, with as many digits as tell it from zero.

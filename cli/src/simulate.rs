@@ -5,7 +5,7 @@ use crate::design::DesignReport;
 use crate::failure::Failure;
 use crate::hardware;
 use crate::machine;
-use crate::output::{self, Table};
+use crate::output::{self, Table, UnitDocument};
 use posicast_hdl::machine::AxisShaper;
 use posicast_model::design::MachineDesign;
 use posicast_model::machine_file::{AxisSection, Machine};
@@ -32,7 +32,7 @@ pub(crate) struct Args {
     /// Waveform to write [default: ./NAME.vcd]
     #[arg(short, long, value_name = "FILE.vcd")]
     output: Option<PathBuf>,
-    /// Command: a CSV file with columns time_s,position [default: a jerk-limited 5 mm move]
+    /// Command: a CSV file with columns time_s,position, in the axis's unit [default: a jerk-limited 5 mm move]
     #[arg(long, value_name = "FILE.csv")]
     command: Option<PathBuf>,
     /// Replace a file that posicast did not write, or that was changed since; never one that this command reads
@@ -96,9 +96,9 @@ pub(crate) fn simulate(
     .collect()
 }
 
-/// Micrometres (or microradians) per LSB of an axis's command word.
-pub(crate) fn micro_units_per_lsb(machine: &Machine, axis: &AxisSection) -> f64 {
-    1e6 / (axis.loop_counts_per_unit() * f64::from(machine.fixed_point.command_fraction).exp2())
+/// Metres (or radians) per LSB of an axis's command word.
+pub(crate) fn si_per_lsb(machine: &Machine, axis: &AxisSection) -> f64 {
+    1.0 / (axis.loop_counts_per_unit() * f64::from(machine.fixed_point.command_fraction).exp2())
 }
 
 fn write_wave(machine: &Machine, words: &Words, axes: &[AxisSimulation], path: &Path) -> Result<(), Failure> {
@@ -158,6 +158,8 @@ struct Document {
 #[derive(Serialize)]
 struct AxisDocument {
     name: String,
+    #[serde(flatten)]
+    unit: UnitDocument,
     largest_difference_lsb: f64,
     bound_lsb: f64,
     residual_displacement_unshaped: f64,
@@ -167,9 +169,10 @@ struct AxisDocument {
 impl Document {
     fn new(machine: &Machine, axes: &[AxisSimulation], path: &Path) -> Self {
         let document = |(axis, run): (&AxisSection, &AxisSimulation)| {
-            let scale = 1e-6 * micro_units_per_lsb(machine, axis);
+            let scale = si_per_lsb(machine, axis);
             AxisDocument {
                 name: axis.name.clone(),
+                unit: UnitDocument::new(axis.unit),
                 largest_difference_lsb: run.largest_difference_lsb(),
                 bound_lsb: run.bound_lsb,
                 residual_displacement_unshaped: run.vibration_unshaped * scale,
@@ -194,16 +197,18 @@ impl Document {
         ];
         let mut table = Table::new(&headings);
         for axis in &self.axes {
+            let ringing = [axis.residual_displacement_unshaped, axis.residual_displacement];
+            let [unshaped, shaped] = axis.unit.of_axis().show_all(ringing);
             table.row([
                 axis.name.clone(),
-                format!("{:.4} µ", axis.residual_displacement_unshaped * 1e6),
-                format!("{:.4} µ", axis.residual_displacement * 1e6),
+                unshaped,
+                shaped,
                 format!("{:.3} LSB", axis.largest_difference_lsb),
                 format!("{:.3} LSB", axis.bound_lsb),
             ]);
         }
         format!(
-            "{}: {}; ringing after the command's end, in millionths of the machine file's unit\n{}{}\n",
+            "{}: {}; ringing after the command's end\n{}{}\n",
             self.name,
             counted(self.samples as u64, "sample"),
             table.text(""),

@@ -25,3 +25,4 @@ pub mod plant;
 pub mod rtl;
 pub mod simulation;
 pub mod taps;
+pub mod unit;

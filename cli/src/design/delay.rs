@@ -2,11 +2,13 @@
 
 use crate::output::Table;
 use posicast_model::design::{AxisDelay, MachineDesign, StageDelay};
+use posicast_model::machine_file::Machine;
+use posicast_model::unit::{AxisUnit, show_seconds};
 use serde::Serialize;
 use std::fmt::Write;
 
 /// What the delay of an axis is made of, and what is left between the axes; nothing without `[stage]`.
-pub(super) fn text(design: &MachineDesign) -> String {
+pub(super) fn text(machine: &Machine, design: &MachineDesign) -> String {
     let Some(stage) = &design.stage else {
         return String::new();
     };
@@ -35,13 +37,16 @@ pub(super) fn text(design: &MachineDesign) -> String {
         stage.total_s * 1e3,
         table.text("  ")
     );
-    let _ = match (stage.mismatch_um(), stage.contour_speed) {
-        (Some(mismatch_um), Some(speed)) => writeln!(
+    let unit = machine.axes.first().map_or(AxisUnit::default(), |axis| axis.unit);
+    let mismatch = show_seconds(stage.mismatch_s, 3);
+    let _ = match stage.contour_speed {
+        Some(speed) => writeln!(
             text,
-            "  mismatch {:.2} ns, {mismatch_um:.2e} µm at {speed} m/s",
-            stage.mismatch_s * 1e9
+            "  mismatch {mismatch}, {} at {}",
+            unit.show(stage.mismatch_s * speed, 3),
+            unit.show_round(speed, "/s")
         ),
-        _ => writeln!(text, "  mismatch {:.2} ns", stage.mismatch_s * 1e9),
+        None => writeln!(text, "  mismatch {mismatch}"),
     };
     text
 }

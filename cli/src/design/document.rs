@@ -2,6 +2,7 @@
 
 use super::delay::{DelayDocument, StageDocument};
 use crate::control::ControlDocument;
+use crate::output::UnitDocument;
 use posicast_model::design::periodic::Solution;
 use posicast_model::design::ratios::Class;
 use serde::Serialize;
@@ -18,6 +19,8 @@ pub(crate) struct Document {
 #[derive(Serialize)]
 pub(super) struct AxisDocument {
     pub(super) name: String,
+    #[serde(flatten)]
+    pub(super) unit: UnitDocument,
     pub(super) kind: String,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) solutions: Option<Vec<SolutionDocument>>,

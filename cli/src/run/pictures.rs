@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use crate::plot::{Band, Curve, Panel, significant};
-use crate::simulate::micro_units_per_lsb;
+use crate::simulate::si_per_lsb;
 use posicast_model::analysis::{settled_from, tap_impulses};
 use posicast_model::design::{AxisTables, MachineDesign};
 use posicast_model::impulse::ImpulseSequence;
@@ -92,25 +92,29 @@ fn step_panel(machine: &str, axis: &AxisSection, tables: &AxisTables, sample_hz:
 /// The machine round its target, from when the unshaped command comes to its end. The deviations after the shaped command's end
 /// say how much of the vertical axis is shown.
 fn move_panel(machine: &Machine, axis: &AxisSection, tables: &AxisTables, run: &AxisSimulation) -> Panel {
-    let micro = micro_units_per_lsb(machine, axis);
-    let count = 1e6 / axis.loop_counts_per_unit();
     let target = run.shaped.last().map_or(0.0, |word| *word as f64);
     let moving = run.shaped.iter().rposition(|word| *word as f64 != target);
     let arrived = moving.map_or(0, |last| last + 1);
     let from = arrived.saturating_sub(tables.table.longest_delay_samples() as usize);
-    let deviation = |positions: &[f64], from: usize| {
+    let per_lsb = si_per_lsb(machine, axis);
+    let off = |position: &f64| (position - target) * per_lsb;
+    let both = [&run.position_unshaped, &run.position];
+    let later = both
+        .iter()
+        .flat_map(|positions| positions.iter().skip(arrived).map(off));
+    let largest = later.map(f64::abs).fold(0.0, f64::max);
+    let unit = axis.unit.for_size(largest);
+    let [unshaped, shaped] = both.map(|positions| {
         let points = positions.iter().enumerate().skip(from);
         points
-            .map(|(n, position)| (1e3 * n as f64 / machine.clock.sample_hz, (position - target) * micro))
+            .map(|(n, position)| (1e3 * n as f64 / machine.clock.sample_hz, unit.of(off(position))))
             .collect::<Vec<_>>()
-    };
-    let [unshaped, shaped] = [&run.position_unshaped, &run.position].map(|positions| deviation(positions, from));
-    let later = [&run.position_unshaped, &run.position].map(|positions| deviation(positions, arrived));
-    let largest = later.iter().flatten().map(|point| point.1.abs()).fold(0.0, f64::max);
+    });
+    let (count, largest) = (unit.of(1.0 / axis.loop_counts_per_unit()), unit.of(largest));
     Panel {
         title: format!("{}, axis {}: arrival of the move", machine.name, axis.name),
         x_label: "time, ms".into(),
-        y_label: "deviation from target, µm or µrad".into(),
+        y_label: format!("deviation from target, {}", unit.symbol()),
         curves: vec![
             Curve::reference(with_settling("unshaped", &unshaped, count), unshaped),
             Curve::new(with_settling("shaped", &shaped, count), shaped),

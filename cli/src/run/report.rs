@@ -7,8 +7,8 @@ use super::waves::Waves;
 use crate::bench::Simulator;
 use crate::design::{self, DesignReport};
 use crate::failure::Failure;
-use crate::output::{Table, percent};
-use crate::simulate::micro_units_per_lsb;
+use crate::output::{Table, UnitDocument, percent};
+use crate::simulate::si_per_lsb;
 use crate::synth;
 use posicast_model::analysis::tap_impulses;
 use posicast_model::design::{AxisTables, MachineDesign};
@@ -175,20 +175,22 @@ impl RunReport<'_> {
                 percent_or_dash(worst(&plant.shaped.minus_10_percent)),
                 percent_or_dash(worst(&plant.shaped.plus_10_percent)),
             ]);
-            let micro = micro_units_per_lsb(self.machine, axis);
+            let per_lsb = si_per_lsb(self.machine, axis);
+            let ringing = [self.axes[index].vibration_unshaped, self.axes[index].vibration];
+            let [ringing_unshaped, ringing_shaped] = axis.unit.show_all(ringing.map(|lsb| lsb * per_lsb));
             overshoots.row([
                 axis.name.clone(),
                 percent(plant.unshaped.nominal.overshoot),
                 percent(plant.shaped.nominal.overshoot),
                 percent(plant.shaped.minus_10_percent.overshoot),
                 percent(plant.shaped.plus_10_percent.overshoot),
-                format!("{:.4}", self.axes[index].vibration_unshaped * micro),
-                format!("{:.4}", self.axes[index].vibration * micro),
+                ringing_unshaped,
+                ringing_shaped,
             ]);
         }
         format!(
             "Residual vibration of a step, worst mode, % of unshaped\n{}\n\
-             Overshoot of a step, %; ringing after the move, millionths of the unit\n{}",
+             Overshoot of a step, %; ringing after the move\n{}",
             residuals.text("  "),
             overshoots.text("  ")
         )
@@ -225,12 +227,13 @@ impl RunReport<'_> {
     pub(crate) fn json(&self) -> Document<'_> {
         let axes = self.rows().map(|(index, axis, _)| {
             let plant = &self.plants[index];
-            let micro = 1e-6 * micro_units_per_lsb(self.machine, axis);
+            let per_lsb = si_per_lsb(self.machine, axis);
             AxisDocument {
                 name: axis.name.clone(),
+                unit: UnitDocument::new(axis.unit),
                 plant: PlantDocument::new(plant),
-                residual_displacement_unshaped: self.axes[index].vibration_unshaped * micro,
-                residual_displacement: self.axes[index].vibration * micro,
+                residual_displacement_unshaped: self.axes[index].vibration_unshaped * per_lsb,
+                residual_displacement: self.axes[index].vibration * per_lsb,
                 samples: self.waves.samples[index],
                 largest_difference_lsb: self.waves.largest_difference_lsb[index],
                 bound_lsb: self.axes[index].bound_lsb,
@@ -296,6 +299,8 @@ pub(crate) struct Document<'a> {
 #[derive(Serialize)]
 struct AxisDocument {
     name: String,
+    #[serde(flatten)]
+    unit: UnitDocument,
     plant: PlantDocument,
     residual_displacement_unshaped: f64,
     residual_displacement: f64,

@@ -133,12 +133,12 @@ fn cli_a_gain_that_the_hardware_does_not_hold_names_its_key_and_line() {
     let cases = [
         (
             with("full_scale_velocity = 0.5 ", "full_scale_velocity = 1e-300 "),
-            "machine.toml:42: axis.drive.full_scale_velocity: ",
+            "machine.toml:43: axis.drive.full_scale_velocity: ",
             "= 1e-300: raise it",
         ),
         (
             with("kind = \"pd\" ", "proportional = 1e-300\nkind = \"pd\" "),
-            "machine.toml:45: axis.controller.proportional: ",
+            "machine.toml:46: axis.controller.proportional: ",
             "it would be 0",
         ),
         (

@@ -149,7 +149,7 @@ fn cli_design_makes_the_axes_of_a_stage_equally_late_and_says_what_is_left() {
     let text = posicast().arg("design").arg(&file).assert().success();
     let text = String::from_utf8_lossy(&text.get_output().stdout).into_owned();
     assert!(
-        text.contains("stage: every axis 4.65") && text.contains("µm at 0.1 m/s"),
+        text.contains("stage: every axis 4.65") && text.contains(" nm at 100 mm/s"),
         "{text}"
     );
     let plain = posicast()

@@ -59,7 +59,7 @@ fn all_that_run_needs_is_enough() {
 fn what_run_lacks_is_named_with_its_package() {
     let folder = programs(&["make", "g++", "yosys"]);
     let output = doctor(folder.path()).arg("--json").output().unwrap();
-    assert_eq!(output.status.code(), Some(3));
+    assert_eq!(output.status.code(), Some(1));
     let said = String::from_utf8(output.stderr).unwrap();
     assert_eq!(said, "error: `posicast run` needs verilator: apt install verilator\n");
     let document = json(&output.stdout);
@@ -91,7 +91,7 @@ fn a_variable_names_another_executable() {
         .env("POSICAST_YOSYS", "/no/yosys")
         .output()
         .unwrap();
-    assert_eq!(output.status.code(), Some(3));
+    assert_eq!(output.status.code(), Some(1));
 }
 
 #[test]
@@ -100,7 +100,7 @@ fn a_tool_that_does_not_start_is_missing() {
     std::fs::write(folder.path().join("g++"), "#!/bin/sh\nexit 1\n").unwrap();
     let output = doctor(folder.path()).output().unwrap();
     let table = String::from_utf8(output.stdout).unwrap();
-    assert_eq!(output.status.code(), Some(3));
+    assert_eq!(output.status.code(), Some(1));
     assert!(table.contains("does not start"), "{table}");
 }
 

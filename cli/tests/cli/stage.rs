@@ -3,6 +3,8 @@
 #![cfg(test)] // lets clippy see that this is test code
 
 use crate::cli::support::{example, json, posicast, scratch};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
 
 /// The XY stage with some text replaced, once.
 fn changed(from: &str, to: &str) -> String {
@@ -33,6 +35,84 @@ fn cli_generate_writes_the_stage_and_verify_of_the_folder_compares_it() {
     let rows = document["blocks"].as_array().unwrap();
     let instances: Vec<&str> = rows.iter().map(|row| row["instance"].as_str().unwrap()).collect();
     assert_eq!(instances, ["x, y, Avalon", "x, y, Avalon, 730 clocks per tick"]);
+}
+
+/// The XY stage with the figures of its axes in mm.
+fn in_millimetres() -> String {
+    let text = std::fs::read_to_string(example("xy-stage.toml")).unwrap();
+    let figures = [
+        ("unit = \"m\"", "unit = \"mm\""),
+        ("counts_per_unit = 1_000_000", "counts_per_unit = 1_000"),
+        ("full_scale_velocity = 0.5", "full_scale_velocity = 500"),
+        ("\nvelocity = 0.25", "\nvelocity = 250"),
+        ("\nacceleration = 8.0", "\nacceleration = 8_000"),
+        ("\njerk = 400.0", "\njerk = 400_000"),
+        ("travel = [-0.1, 0.1]", "travel = [-100, 100]"),
+        ("following_error = 0.001", "following_error = 1"),
+    ];
+    figures.iter().fold(text, |text, (metres, millimetres)| {
+        assert_eq!(text.matches(metres).count(), 2, "{metres}");
+        text.replace(metres, millimetres)
+    })
+}
+
+#[test]
+fn cli_a_file_in_millimetres_gives_the_hardware_of_the_file_in_metres() {
+    let folder = tempfile::tempdir().unwrap();
+    let (_scratch, millimetres) = scratch(&in_millimetres());
+    let files = [("m", example("xy-stage.toml")), ("mm", millimetres)];
+    let mut packages = files.into_iter().map(|(unit, file)| {
+        let output = folder.path().join(unit);
+        posicast()
+            .arg("generate")
+            .arg(file)
+            .arg("-o")
+            .arg(&output)
+            .assert()
+            .success();
+        let mut texts = BTreeMap::new();
+        for part in ["rtl", "sopc", "sim", "doc"] {
+            texts_below(&output.join(part), &output, &mut texts);
+        }
+        let document = json(&std::fs::read(output.join("report.json")).unwrap());
+        let driver = std::fs::read_to_string(output.join("driver/src/machine_xy_stage.c")).unwrap();
+        (texts, document, driver)
+    });
+    let ((texts, metres, _), (texts_of_millimetres, millimetres, driver)) =
+        (packages.next().unwrap(), packages.next().unwrap());
+    assert!(texts.len() > 90);
+    assert_eq!(texts, texts_of_millimetres);
+    assert!(driver.contains("1000.0, /* counts per mm */"));
+    for (of_metres, of_millimetres) in axes(&metres).iter().zip(axes(&millimetres)) {
+        assert_eq!((&of_metres["unit"], &of_metres["si_unit"]), (&"m".into(), &"m".into()));
+        assert_eq!(
+            (&of_millimetres["unit"], &of_millimetres["si_unit"]),
+            (&"mm".into(), &"m".into())
+        );
+        for part in ["impulses", "quantised", "control"] {
+            assert!(!of_metres[part].is_null());
+            assert_eq!(of_metres[part], of_millimetres[part], "{part}");
+        }
+    }
+}
+
+/// Every file below a folder, by its place below another.
+fn texts_below(folder: &Path, root: &Path, texts: &mut BTreeMap<PathBuf, Vec<u8>>) {
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        match path.is_dir() {
+            true => texts_below(&path, root, texts),
+            false => {
+                let place = path.strip_prefix(root).unwrap().to_owned();
+                texts.insert(place, std::fs::read(&path).unwrap());
+            }
+        }
+    }
+}
+
+fn axes(document: &serde_json::Value) -> &Vec<serde_json::Value> {
+    let design = document.get("design").unwrap_or(document);
+    design["axes"].as_array().unwrap()
 }
 
 #[test]

@@ -5,6 +5,7 @@ use super::linear::{FACTORS, has_modes};
 use super::sampled::{LinearLaw, SampledLoop};
 use crate::machine_file::{AxisSection, ClockSection, Controller, Drive, DriveMode, LimitsSection};
 use crate::rtl::sliding_mode::{SettingRow, Settings};
+use crate::unit::{AxisUnit, show_seconds};
 
 /// The largest product of gains and lag.
 const GAIN_LAG_MAX: f64 = 0.5;
@@ -13,22 +14,30 @@ const COARSE: f64 = 1e-3;
 /// Largest reference velocity in counts/T, and acceleration in counts/T².
 const WORD_MAX: [f64; 2] = [32_768.0, 128.0];
 
-/// A condition that does not hold. Everything is in the units of the machine file.
+/// A condition that does not hold. Everything is in m (or rad) and s; `unit` is that of the file, which the text has.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum ControlWarning {
     /// The switching term does not overcome friction.
     #[error(
-        "epsilon = {epsilon} m/s² does not overcome friction, which decelerates by {disturbance} m/s²: raise epsilon"
+        "epsilon = {} does not overcome friction, which decelerates by {}: raise epsilon",
+        .unit.as_in_file(*.epsilon, "/s²"), .unit.as_in_file(*.disturbance, "/s²")
     )]
     WeakSwitching {
+        /// Of the axis.
+        unit: AxisUnit,
         /// ε.
         epsilon: f64,
         /// Coulomb friction over mass.
         disturbance: f64,
     },
     /// The switching term alone is more than the drive gives.
-    #[error("epsilon = {epsilon} m/s² alone takes {needed_a} A of {limit_a} A: the command saturates; lower epsilon")]
+    #[error(
+        "epsilon = {} alone takes {needed_a:.3} A of {limit_a} A: the command saturates; lower epsilon",
+        .unit.as_in_file(*.epsilon, "/s²")
+    )]
     SwitchingSaturates {
+        /// Of the axis.
+        unit: AxisUnit,
         /// ε.
         epsilon: f64,
         /// Current that it takes.
@@ -37,7 +46,7 @@ pub enum ControlWarning {
         limit_a: f64,
     },
     /// Gains too high for the lag of the loop.
-    #[error("{what}·lag = {found} with a lag of {lag_s} s, and must not exceed {allowed}: lower the gains or the lag")]
+    #[error("{what}·lag = {found:.3} with a lag of {}, and must not exceed {allowed}: lower the gains or the lag", show_seconds(*.lag_s, 3))]
     GainTimesLag {
         /// The gains that count.
         what: &'static str,
@@ -75,9 +84,12 @@ pub enum ControlWarning {
     },
     /// The acceleration limit asks for more than the drive gives.
     #[error(
-        "an acceleration of {acceleration} m/s² takes {needed_a} A of {limit_a} A: lower the limit of the acceleration"
+        "an acceleration of {} takes {needed_a:.3} A of {limit_a} A: lower the limit of the acceleration",
+        .unit.as_in_file(*.acceleration, "/s²")
     )]
     Acceleration {
+        /// Of the axis.
+        unit: AxisUnit,
         /// Of [axis.limits].
         acceleration: f64,
         /// Current with friction.
@@ -87,9 +99,12 @@ pub enum ControlWarning {
     },
     /// The velocity limit is more than full scale.
     #[error(
-        "a velocity limit of {velocity} m/s exceeds the drive's full scale of {full_scale} m/s: lower one, or raise the other"
+        "a velocity limit of {} exceeds the drive's full scale of {}: lower one, or raise the other",
+        .unit.as_in_file(*.velocity, "/s"), .unit.as_in_file(*.full_scale, "/s")
     )]
     Velocity {
+        /// Of the axis.
+        unit: AxisUnit,
         /// Of [axis.limits].
         velocity: f64,
         /// Of the drive.
@@ -121,6 +136,7 @@ pub enum ControlWarning {
 
 /// What the conditions are about.
 pub(super) struct Loop<'a> {
+    pub(super) unit: AxisUnit,
     pub(super) controller: &'a Controller,
     pub(super) drive: &'a Drive,
     /// Sum of the closed loop's poles of PD and PID, 1/s.
@@ -194,10 +210,16 @@ impl Loop<'_> {
         else {
             return Vec::new();
         };
+        let unit = self.unit;
         let disturbance = self.drive.coulomb / equivalent_mass;
         let needed_a = equivalent_mass * epsilon / force_constant;
-        let weak = (epsilon <= disturbance).then_some(ControlWarning::WeakSwitching { epsilon, disturbance });
+        let weak = (epsilon <= disturbance).then_some(ControlWarning::WeakSwitching {
+            unit,
+            epsilon,
+            disturbance,
+        });
         let saturates = (needed_a >= limit_a).then_some(ControlWarning::SwitchingSaturates {
+            unit,
             epsilon,
             needed_a,
             limit_a,
@@ -219,6 +241,7 @@ impl Loop<'_> {
                 let friction = self.drive.coulomb + self.drive.viscous * limits.velocity.unwrap_or(0.0);
                 let needed_a = (equivalent_mass * acceleration + friction) / force_constant;
                 (needed_a > limit_a).then_some(ControlWarning::Acceleration {
+                    unit: self.unit,
                     acceleration,
                     needed_a,
                     limit_a,
@@ -227,6 +250,7 @@ impl Loop<'_> {
             DriveMode::Velocity { full_scale_velocity } => {
                 let velocity = limits.velocity?;
                 (velocity > full_scale_velocity).then_some(ControlWarning::Velocity {
+                    unit: self.unit,
                     velocity,
                     full_scale: full_scale_velocity,
                 })

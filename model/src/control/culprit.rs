@@ -55,10 +55,29 @@ impl Numbers<'_> {
             let found = found.filter(|value| *value > 0.0)?;
             Some(Culprit { key, found, usual })
         });
-        given.fold(sample, |worst, next| match next.decades() > worst.decades() {
+        let worst = given.fold(sample, |worst, next| match next.decades() > worst.decades() {
             true => next,
             false => worst,
-        })
+        });
+        self.in_file(worst)
+    }
+
+    /// The same in the file's unit.
+    fn in_file(&self, culprit: Culprit) -> Culprit {
+        let unit = self.axis.unit;
+        let of_file = |figure| match culprit.key {
+            "axis.counts_per_unit" | "axis.scale.counts_per_unit" => unit.counts_in_file(figure),
+            "axis.limits.acceleration"
+            | "axis.controller.epsilon"
+            | "axis.controller.boundary"
+            | "axis.drive.full_scale_velocity" => unit.in_file(figure),
+            _ => figure,
+        };
+        Culprit {
+            key: culprit.key,
+            found: of_file(culprit.found),
+            usual: of_file(culprit.usual),
+        }
     }
 
     /// Keys, values and usual values that the gain of `row` is made of.

@@ -101,6 +101,7 @@ pub fn gains(axis: &AxisSection, clock: ClockSection, lag_s: f64) -> Result<Deri
     };
     let linear = default_linear(axis, clock, controller, drive, lag_s);
     let closed = Loop {
+        unit: axis.unit,
         controller,
         linear_poles: match drive.mode {
             DriveMode::Torque { .. } => linear.derivative,

@@ -1,4 +1,4 @@
-//! Where the position word ends, in the units of the machine file.
+//! Where the position word ends.
 //!
 //! Commands are Q24.8 counts, and 0 is where the axis stands at reset: an encoder that only counts does not know better. So
 //! either end of the travel may be a whole travel away from 0, and the shaped command further by the shaper's overshoot and by
@@ -8,6 +8,7 @@ use super::supervision_error::SupervisionError;
 use crate::machine_file::AxisSection;
 use crate::rtl::segments::REACH_COUNTS;
 use crate::taps::TapTable;
+use crate::unit::AxisUnit;
 
 /// What the words of a supervisor depend on in a shaper's table.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -36,18 +37,24 @@ impl From<&TapTable> for TableBounds {
 /// An axis whose file does not say how far it goes, and the position word's end that it may then meet.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[error(
-    "no travel in [axis.limits]: the position word reaches {reach} m to either side of where the axis stands at reset; a \
-     command further on stops before its end (cause segments), a count beyond it switches off (cause range): give travel"
+    "no travel in [axis.limits]: the position word reaches {} to either side of where the axis stands at reset; a \
+     command further on stops before its end (cause segments), a count beyond it switches off (cause range): give travel",
+    .unit.as_in_file(*.reach, "")
 )]
 pub struct NoTravel {
-    /// How far the word reaches.
+    /// Of the axis.
+    pub unit: AxisUnit,
+    /// How far the word reaches, in m or rad.
     pub reach: f64,
 }
 
 /// A warning, where neither `travel` bounds the axis nor `modulo` lets it turn for ever.
 pub fn no_travel(axis: &AxisSection) -> Option<NoTravel> {
     let bounded = axis.modulo || axis.limits.is_some_and(|limits| limits.travel.is_some());
-    (!bounded).then(|| NoTravel { reach: reach(axis) })
+    (!bounded).then(|| NoTravel {
+        unit: axis.unit,
+        reach: reach(axis),
+    })
 }
 
 /// How far the command goes from where the axis stands at reset.
@@ -76,10 +83,11 @@ pub(super) fn check_travel(axis: &AxisSection, table: &TableBounds) -> Result<()
     }
     Err(SupervisionError::Reach {
         axis: axis.name.clone(),
+        unit: axis.unit,
         low,
         high,
         taken,
         reach,
-        counts_per_unit: axis.loop_counts_per_unit(),
+        counts_per_unit: axis.loop_counts_per_file_unit(),
     })
 }

@@ -229,20 +229,14 @@ struct Words<'a> {
 struct Value {
     key: &'static str,
     found: f64,
-    unit: &'static str,
+    unit: String,
     /// LSB per unit.
     scale: f64,
 }
 
 impl Words<'_> {
     /// `word` as an integer if it lies in the range, else the error that says so in the file's unit.
-    fn fitting(
-        &self,
-        value: &Value,
-        word: f64,
-        range: [u32; 2],
-        reason: &'static str,
-    ) -> Result<u32, SupervisionError> {
+    fn fitting(&self, value: Value, word: f64, range: [u32; 2], reason: &'static str) -> Result<u32, SupervisionError> {
         let [smallest, largest] = range.map(f64::from);
         // NaN and the infinities are in no range.
         if (smallest..=largest).contains(&word) {
@@ -259,7 +253,7 @@ impl Words<'_> {
         })
     }
 
-    fn ticks(&self, value: &Value, ticks: f64, smallest: u32) -> Result<u16, SupervisionError> {
+    fn ticks(&self, value: Value, ticks: f64, smallest: u32) -> Result<u16, SupervisionError> {
         let reason = "which are ticks of 16 bits";
         self.fitting(value, ticks, [smallest, u32::from(u16::MAX)], reason)
             .map(|ticks| ticks as u16)
@@ -269,15 +263,27 @@ impl Words<'_> {
         Value {
             key,
             found,
-            unit: "s",
+            unit: "s".to_owned(),
             scale: self.clock.sample_hz,
+        }
+    }
+
+    /// A figure in m (or rad), or that per s²: it is shown in the file's unit.
+    fn quantity(&self, key: &'static str, found: f64, per: &str, scale: f64) -> Value {
+        let unit = self.axis.unit;
+        Value {
+            key,
+            found: unit.in_file(found),
+            unit: format!("{unit}{per}"),
+            scale: unit.to_si(scale),
         }
     }
 
     /// Ticks that last at least so long.
     fn ticks_up(&self, key: &'static str, seconds: f64) -> Result<u16, SupervisionError> {
         let value = self.seconds(key, seconds);
-        self.ticks(&value, up(seconds * value.scale), 0)
+        let ticks = up(seconds * value.scale);
+        self.ticks(value, ticks, 0)
     }
 
     /// Ticks that last at most so long: one or more, or 0 for 0.
@@ -286,17 +292,18 @@ impl Words<'_> {
             return Ok(0);
         }
         let value = self.seconds(key, seconds);
-        self.ticks(&value, down(seconds * value.scale), 1)
+        let ticks = down(seconds * value.scale);
+        self.ticks(value, ticks, 1)
     }
 
     fn settle_ticks(&self, longest_delay_samples: u32) -> Result<u16, SupervisionError> {
         let value = Value {
             key: "axis.shaper",
             found: f64::from(longest_delay_samples),
-            unit: "samples of delay",
+            unit: "samples of delay".to_owned(),
             scale: 1.0,
         };
-        self.ticks(&value, value.found, 0)
+        self.ticks(value, f64::from(longest_delay_samples), 0)
     }
 
     /// Lower and upper, rounded inwards.
@@ -305,17 +312,17 @@ impl Words<'_> {
             return Ok([0, 0]);
         };
         let scale = self.axis.loop_counts_per_unit() * f64::from(1u32 << POSITION_FRACTION);
-        let largest = f64::from(SIZE_MAX);
+        let (unit, largest) = (self.axis.unit, f64::from(SIZE_MAX));
         let words = [up(low * scale), down(high * scale)];
         for (found, word) in [low, high].into_iter().zip(words) {
             if word.abs() > largest || !word.is_finite() {
                 return Err(SupervisionError::Range {
                     axis: self.axis.name.clone(),
                     key: "axis.limits.travel",
-                    found,
-                    unit: "m",
-                    smallest: readable(-largest / scale, f64::ceil),
-                    largest: readable(largest / scale, f64::floor),
+                    found: unit.in_file(found),
+                    unit: unit.to_string(),
+                    smallest: readable(unit.from_si(-largest / scale), f64::ceil),
+                    largest: readable(unit.from_si(largest / scale), f64::floor),
                     reason: "the command's positions of 24 bits of counts",
                 });
             }
@@ -324,6 +331,7 @@ impl Words<'_> {
         if minus > plus || (minus, plus) == (0, 0) {
             return Err(SupervisionError::Travel {
                 axis: self.axis.name.clone(),
+                unit,
                 low,
                 high,
                 count: 1.0 / self.axis.loop_counts_per_unit(),
@@ -347,13 +355,9 @@ impl Words<'_> {
         largest: u32,
         reason: &'static str,
     ) -> Result<u32, SupervisionError> {
-        let value = Value {
-            key,
-            found,
-            unit: "m",
-            scale: self.axis.loop_counts_per_unit() * f64::from(1u32 << fraction),
-        };
-        self.fitting(&value, down(found * value.scale), [1, largest], reason)
+        let scale = self.axis.loop_counts_per_unit() * f64::from(1u32 << fraction);
+        let value = self.quantity(key, found, "", scale);
+        self.fitting(value, down(found * scale), [1, largest], reason)
     }
 
     fn lost_command(&self) -> Result<u32, SupervisionError> {
@@ -373,22 +377,28 @@ impl Words<'_> {
         let value = Value {
             key: "axis.limits.encoder_lost_command",
             found: self.limits.encoder_lost_command,
-            unit: "of full scale",
+            unit: "of full scale".to_owned(),
             scale,
         };
         let reason = "what the controller commands at most";
-        self.fitting(&value, down(value.found * scale), [0, largest as u32], reason)
+        self.fitting(
+            value,
+            down(self.limits.encoder_lost_command * scale),
+            [0, largest as u32],
+            reason,
+        )
     }
 
     fn filter_clocks(&self) -> Result<u8, SupervisionError> {
         let value = Value {
             key: "axis.limits.line_filter_s",
             found: self.limits.line_filter_s,
-            unit: "s",
+            unit: "s".to_owned(),
             scale: self.clock.frequency_hz,
         };
         let reason = "which are up to 63 clocks";
-        self.fitting(&value, up(value.found * value.scale), [0, FILTER_CLOCKS_MAX], reason)
+        let clocks = up(value.found * value.scale);
+        self.fitting(value, clocks, [0, FILTER_CLOCKS_MAX], reason)
             .map(|clocks| clocks as u8)
     }
 
@@ -399,14 +409,10 @@ impl Words<'_> {
             (None, None) => return Ok(0),
         };
         let per_tick = self.axis.loop_counts_per_unit() / self.clock.sample_hz.powi(2);
-        let value = Value {
-            key,
-            found,
-            unit: "m/s²",
-            scale: per_tick * f64::from(1u32 << ACCELERATION_FRACTION),
-        };
+        let scale = per_tick * f64::from(1u32 << ACCELERATION_FRACTION);
+        let value = self.quantity(key, found, "/s²", scale);
         let reason = "with which a quick stop can slow down, in counts per tick²";
-        self.fitting(&value, down(found * value.scale), [1, DECELERATION_MAX], reason)
+        self.fitting(value, down(found * scale), [1, DECELERATION_MAX], reason)
     }
 
     fn direct_limit(&self) -> u16 {

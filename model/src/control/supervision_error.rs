@@ -1,5 +1,7 @@
 //! Why an axis has no words for its supervisor: the value of the file, and the range that its word holds.
 
+use crate::unit::AxisUnit;
+
 /// Why an axis has no words for its supervisor.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum SupervisionError {
@@ -21,7 +23,7 @@ pub enum SupervisionError {
         /// The value found.
         found: f64,
         /// Its unit.
-        unit: &'static str,
+        unit: String,
         /// Smallest value that the word holds.
         smallest: f64,
         /// Largest value that it holds.
@@ -31,13 +33,16 @@ pub enum SupervisionError {
     },
     /// A travel that the position word does not hold wherever the axis stands at reset.
     #[error(
-        "axis {axis}: found a travel from {low} to {high} m, which takes {taken} m with shaper and stop; allowed: at most {reach} m \
-         at {counts_per_unit} counts per m, since the count is 0 where the axis stands at reset, at either end perhaps; shorten \
-         the travel, or lower the counts_per_unit that the loop runs on"
+        "axis {axis}: found a travel from {} to {} {unit}, which takes {} with shaper and stop; allowed: at most {} \
+         at {counts_per_unit} counts per {unit}, since the count is 0 where the axis stands at reset, at either end perhaps; shorten \
+         the travel, or lower the counts_per_unit that the loop runs on",
+        .unit.in_file(*.low), .unit.in_file(*.high), .unit.as_in_file(*.taken, ""), .unit.as_in_file(*.reach, "")
     )]
     Reach {
         /// The axis.
         axis: String,
+        /// Its unit; the other figures are in m or rad.
+        unit: AxisUnit,
         /// Lower end.
         low: f64,
         /// Upper end.
@@ -46,19 +51,24 @@ pub enum SupervisionError {
         taken: f64,
         /// What the word holds to one side.
         reach: f64,
-        /// Counts of the loop per unit.
+        /// Counts of the loop per unit of the file.
         counts_per_unit: f64,
     },
     /// A travel of which rounding inwards leaves nothing, or limits of 0, which switch the limits off.
-    #[error("axis {axis}: found a travel from {low} to {high} m; allowed: one that is wider than a count, {count} m")]
+    #[error(
+        "axis {axis}: found a travel from {} to {} {unit}; allowed: one that is wider than a count, {} {unit}",
+        .unit.in_file(*.low), .unit.in_file(*.high), .unit.in_file(*.count)
+    )]
     Travel {
         /// The axis.
         axis: String,
+        /// Its unit; the other figures are in m or rad.
+        unit: AxisUnit,
         /// Lower end.
         low: f64,
         /// Upper end.
         high: f64,
-        /// Metres per count.
+        /// Of one count.
         count: f64,
     },
 }

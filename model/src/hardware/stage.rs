@@ -182,7 +182,9 @@ fn scale(axis: &AxisSection) -> Result<Option<StageScale>, ScaleRatioError> {
         true => ScaleRatio::new,
         false => ScaleRatio::for_monitor,
     };
-    let ratio = ratio(axis.counts_per_unit, scale.counts_per_unit)?;
+    let [motor, of_scale] =
+        [axis.counts_per_unit, scale.counts_per_unit].map(|counts| axis.unit.counts_in_file(counts));
+    let ratio = ratio(motor, of_scale)?;
     Ok(Some(StageScale {
         ratio,
         closes_loop,

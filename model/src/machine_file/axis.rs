@@ -9,6 +9,7 @@ use super::{
 };
 use crate::mode::Mode;
 use crate::rtl::shaper::MOTION_WORD_BITS;
+use crate::unit::AxisUnit;
 
 /// Modes of an axis: with five impulses each their convolution has 390,625, far more than any table holds.
 const MAX_MODES: usize = 8;
@@ -24,10 +25,16 @@ pub(super) const KEYS: &[Key] = &[
     Key::new("name", Values::Name, "Name of the axis, unique in the machine.").required(),
     Key::new(
         "counts_per_unit",
-        Values::Number(COUNTS_PER_UNIT),
-        "Encoder counts per metre or radian.",
+        Values::Counts(COUNTS_PER_UNIT),
+        "Encoder counts per unit of the axis.",
     )
     .required(),
+    Key::new(
+        "unit",
+        Values::Word(|| AxisUnit::ALL.map(|(_, name)| name).to_vec()),
+        "What the figures of the axis are in, its counts among them.",
+    )
+    .default(Default::Word("m")),
     Key::switch(
         "modulo",
         "The position counts on across the word's end: a rotary axis without an end.",
@@ -105,7 +112,8 @@ pub(super) fn read(
     fixed_point: Option<FixedPoint>,
 ) -> Option<AxisSection> {
     table.allow(KEYS);
-    let counts_per_unit = table.required_number("counts_per_unit", COUNTS_PER_UNIT);
+    let unit = read_unit(table);
+    let counts_per_unit = table.required_counts("counts_per_unit", COUNTS_PER_UNIT, unit);
     let choice = table
         .table("shaper")
         .map(|t| shaper::read(&t, clock).map(|choice| (t, choice)));
@@ -117,9 +125,9 @@ pub(super) fn read(
     let modulo = read_modulo(table, fixed_point);
     let encoder = table.table("encoder").map(|t| encoder::read(&t));
     let pwm = table.table("pwm").map(|t| pwm::read(&t, clock));
-    let drive = table.table("drive").map(|t| drive::read(&t));
-    let controller = table.table("controller").map(|t| controller::read(&t));
-    let scale = table.table("scale").map(|t| scale::read(table, &t));
+    let drive = table.table("drive").map(|t| drive::read(&t, unit));
+    let controller = table.table("controller").map(|t| controller::read(&t, unit));
+    let scale = table.table("scale").map(|t| scale::read(table, &t, unit));
     let trace = table.table("trace").map(|t| trace::read(&t));
     let loop_counts_per_unit = match scale {
         Some(Some(scale)) if scale.usage == ScaleUse::Position => Some(scale.counts_per_unit),
@@ -127,7 +135,7 @@ pub(super) fn read(
     };
     // The position of a modulo axis wraps: any travel fits.
     let word = loop_counts_per_unit.zip(fixed_point).filter(|_| !modulo);
-    let limits = table.table("limits").map(|t| limits::read(table, &t, word));
+    let limits = table.table("limits").map(|t| limits::read(table, &t, word, unit));
     check_needs(table);
     let shaper = match choice {
         Some(choice) => Some(choice?.1),
@@ -135,6 +143,7 @@ pub(super) fn read(
     };
     Some(AxisSection {
         name: name?,
+        unit,
         counts_per_unit: counts_per_unit?,
         modulo,
         shaper,
@@ -155,6 +164,13 @@ fn not_refused<T>(read: Option<Option<T>>) -> Option<Option<T>> {
         Some(value) => value.map(Some),
         None => Some(None),
     }
+}
+
+/// The unit of the axis's figures; metres where the file has none, or one that is refused.
+fn read_unit(table: &Table<'_, '_>) -> AxisUnit {
+    let word = table.choice("unit", &AxisUnit::ALL.map(|(_, name)| name));
+    let unit = AxisUnit::ALL.into_iter().find(|(_, name)| Some(*name) == word);
+    unit.map_or(AxisUnit::default(), |(unit, _)| unit)
 }
 
 /// Whether the axis is rotary: its shaper is then the one for motion, which not every word width has.

@@ -3,6 +3,7 @@
 use super::key::{Key, Values};
 use super::range::NumberRange;
 use super::table::Table;
+use crate::unit::AxisUnit;
 
 /// Gains that must be there and pull.
 const POSITIVE: NumberRange = NumberRange::positive(1e12);
@@ -60,13 +61,13 @@ pub(super) const KEYS: &[Key] = &[
     ),
     Key::new(
         "epsilon",
-        Values::Number(NOT_NEGATIVE),
-        "Strength of the switching term, in m/s². `sliding-mode` needs it.",
+        Values::Quantity(NOT_NEGATIVE),
+        "Strength of the switching term, in the axis's unit/s². `sliding-mode` needs it.",
     ),
     Key::new(
         "boundary",
-        Values::Number(POSITIVE),
-        "Half width of the boundary layer, in m/s. `sliding-mode` needs it.",
+        Values::Quantity(POSITIVE),
+        "Half width of the boundary layer, in the axis's unit/s. `sliding-mode` needs it.",
     ),
     Key::new(
         "proportional",
@@ -98,15 +99,17 @@ const GAINS: [(&str, &[&str]); 7] = [
 ];
 
 /// Reads the table; `None` where a value is refused.
-pub(super) fn read(table: &Table<'_, '_>) -> Option<Controller> {
+pub(super) fn read(table: &Table<'_, '_>, unit: AxisUnit) -> Option<Controller> {
     table.allow(KEYS);
     let kind = table.required_choice("kind", &KINDS);
     let gain = |key| {
-        let range = match key {
-            "k" | "epsilon" => NOT_NEGATIVE,
-            _ => POSITIVE,
-        };
-        table.number(key, range)
+        // The others are rates, and numbers: the same in every unit.
+        match key {
+            "epsilon" => table.quantity(key, NOT_NEGATIVE, unit),
+            "boundary" => table.quantity(key, POSITIVE, unit),
+            "k" => table.number(key, NOT_NEGATIVE),
+            _ => table.number(key, POSITIVE),
+        }
     };
     let [c, k, epsilon, boundary, proportional, derivative, integral] = GAINS.map(|(key, _)| gain(key));
     let kind = kind?;

@@ -3,6 +3,7 @@
 use super::key::{Key, Values};
 use super::range::NumberRange;
 use super::table::Table;
+use crate::unit::AxisUnit;
 
 /// What must be there to divide by.
 const POSITIVE: NumberRange = NumberRange::positive(1e12);
@@ -25,7 +26,7 @@ pub enum DriveMode {
     },
     /// A velocity, which a stiff drive keeps.
     Velocity {
-        /// Velocity at full duty, in m/s.
+        /// Velocity at full duty, in the axis's unit/s.
         full_scale_velocity: f64,
     },
 }
@@ -76,8 +77,8 @@ pub(super) const KEYS: &[Key] = &[
     ),
     Key::new(
         "full_scale_velocity",
-        Values::Number(POSITIVE),
-        "Velocity at full duty, in m/s. `velocity` needs it.",
+        Values::Quantity(POSITIVE),
+        "Velocity at full duty, in the axis's unit/s. `velocity` needs it.",
     ),
     Key::new(
         "bandwidth_hz",
@@ -89,7 +90,7 @@ pub(super) const KEYS: &[Key] = &[
 ];
 
 /// Reads the table; `None` where a value is refused.
-pub(super) fn read(table: &Table<'_, '_>) -> Option<Drive> {
+pub(super) fn read(table: &Table<'_, '_>, unit: AxisUnit) -> Option<Drive> {
     let (current, velocity) = ("full_scale_a", "full_scale_velocity");
     table.allow(KEYS);
     let mode = table.required_choice("mode", &MODES);
@@ -98,7 +99,6 @@ pub(super) fn read(table: &Table<'_, '_>) -> Option<Drive> {
         "force_constant",
         "current_limit_a",
         current,
-        velocity,
         "bandwidth_hz",
     ];
     let [
@@ -106,9 +106,9 @@ pub(super) fn read(table: &Table<'_, '_>) -> Option<Drive> {
         force_constant,
         current_limit_a,
         full_scale_a,
-        full_scale_velocity,
         bandwidth_hz,
     ] = positive.map(|key| table.number(key, POSITIVE));
+    let full_scale_velocity = table.quantity(velocity, POSITIVE, unit);
     let viscous = table.number("viscous", NOT_NEGATIVE).unwrap_or(0.0);
     let coulomb = table.number("coulomb", NOT_NEGATIVE).unwrap_or(0.0);
     let torque = mode? == "torque";

@@ -24,6 +24,10 @@ pub(super) struct Key {
 pub(super) enum Values {
     /// A number; integers count as numbers.
     Number(NumberRange),
+    /// A length or angle of the axis, or what is made of one and time, in the axis's unit. The range is in m or rad.
+    Quantity(NumberRange),
+    /// Counts per unit of the axis. The range is per m or rad.
+    Counts(NumberRange),
     /// A whole number, from the first to the second.
     Integer(u32, u32),
     /// A whole number of this list.
@@ -38,7 +42,7 @@ pub(super) enum Values {
     Word(fn() -> Vec<&'static str>),
     /// A list of such words, which may be empty.
     Words(fn() -> Vec<&'static str>),
-    /// `[low, high]`.
+    /// `[low, high]` in the axis's unit. The range is in m or rad.
     Pair(NumberRange),
     /// A list of 1 to so many pairs of numbers.
     Pairs(NumberRange, usize),

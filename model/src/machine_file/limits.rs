@@ -1,6 +1,6 @@
 //! `[axis.limits]`: what a move may ask for, and what the supervisor of the axis watches and does.
 //!
-//! Values are in the units of the file. [`crate::control::supervision`] turns them into the words of the hardware, and refuses
+//! Values are in m, rad and s; the file has them in the axis's unit. [`crate::control::supervision`] turns them into the words of the hardware, and refuses
 //! what those do not hold. `docs/machine-file.md` has every key with its default.
 
 use super::FixedPoint;
@@ -9,9 +9,10 @@ use super::range::NumberRange;
 use super::table::Table;
 use crate::rtl::axis::{ALWAYS_OFF, Cause};
 use crate::rtl::shaper::WORD_BITS;
+use crate::unit::AxisUnit;
 
 /// Positions.
-const POSITION: NumberRange = NumberRange::closed(-1e9, 1e9).unit("m or rad");
+const POSITION: NumberRange = NumberRange::closed(-1e9, 1e9);
 /// Velocity, acceleration and jerk, and distances: far above any machine, finite when multiplied with each other.
 const MOTION: NumberRange = NumberRange::positive(1e9);
 /// Times of the brake and of what lasts too long; 0 where there is none.
@@ -56,7 +57,7 @@ const DEFAULT_LOST_COMMAND: f64 = 0.5;
 /// Largest manual duty, where the file does not say.
 const DEFAULT_DIRECT_DUTY: f64 = 0.1;
 
-/// `[axis.limits]`, in the units of the file: metres (or radians) and seconds. [`LimitsSection::default`] is an axis without the
+/// `[axis.limits]`, in m (or rad) and s. [`LimitsSection::default`] is an axis without the
 /// table.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LimitsSection {
@@ -136,23 +137,23 @@ fn word_of(causes: impl IntoIterator<Item = Cause>) -> u16 {
 pub(super) const KEYS: &[Key] = &[
     Key::new(
         "velocity",
-        Values::Number(MOTION),
-        "Most velocity that a move may ask for, in m/s.",
+        Values::Quantity(MOTION),
+        "Most velocity that a move may ask for, in the axis's unit/s.",
     ),
     Key::new(
         "acceleration",
-        Values::Number(MOTION),
-        "Most acceleration that a move may ask for, in m/s².",
+        Values::Quantity(MOTION),
+        "Most acceleration that a move may ask for, in the axis's unit/s².",
     ),
     Key::new(
         "jerk",
-        Values::Number(MOTION),
-        "Most jerk that a move may ask for, in m/s³.",
+        Values::Quantity(MOTION),
+        "Most jerk that a move may ask for, in the axis's unit/s³.",
     ),
     Key::new(
         "travel",
         Values::Pair(POSITION),
-        "[low, high] of the position in m: soft limits of an axis with a controller.",
+        "[low, high] of the position in the axis's unit: soft limits of an axis with a controller.",
     ),
     Key::switch(
         "soft_limits_after_homing",
@@ -160,18 +161,18 @@ pub(super) const KEYS: &[Key] = &[
     ),
     Key::new(
         "stop_deceleration",
-        Values::Number(MOTION),
-        "Deceleration of a quick stop, in m/s²; else `acceleration`.",
+        Values::Quantity(MOTION),
+        "Deceleration of a quick stop, in the axis's unit/s²; else `acceleration`.",
     ),
     Key::new(
         "following_error",
-        Values::Number(MOTION),
-        "Largest distance of the position from the shaped command, in m; else it is not watched.",
+        Values::Quantity(MOTION),
+        "Largest distance of the position from the shaped command, in the axis's unit; else it is not watched.",
     ),
     Key::new(
         "deviation",
-        Values::Number(MOTION),
-        "Largest distance of the motor from the scale, in m; needs [axis.scale].",
+        Values::Quantity(MOTION),
+        "Largest distance of the motor from the scale, in the axis's unit; needs [axis.scale].",
     ),
     Key::or_zero(
         "saturation_s",
@@ -227,28 +228,34 @@ pub(super) const KEYS: &[Key] = &[
     ),
     Key::new(
         "excitation",
-        Values::Number(MOTION),
-        "Bring-up: largest amplitude of test signals, in m.",
+        Values::Quantity(MOTION),
+        "Bring-up: largest amplitude of test signals, in the axis's unit.",
     ),
 ];
 /// How many of them are of moves.
 const OF_MOVES: usize = 4;
 
 /// Reads the limits of an axis; `word` is counts per unit of the loop and the format that the travel must fit, where both are valid.
-pub(super) fn read(axis: &Table<'_, '_>, table: &Table<'_, '_>, word: Option<(f64, FixedPoint)>) -> LimitsSection {
+pub(super) fn read(
+    axis: &Table<'_, '_>,
+    table: &Table<'_, '_>,
+    word: Option<(f64, FixedPoint)>,
+    unit: AxisUnit,
+) -> LimitsSection {
     table.allow(KEYS);
     check_needs(axis, table);
     let default = LimitsSection::default();
+    let quantity = |key| table.quantity(key, MOTION, unit);
     let seconds = |key| table.number(key, SECONDS).unwrap_or(0.0);
     LimitsSection {
-        velocity: table.number("velocity", MOTION),
-        acceleration: table.number("acceleration", MOTION),
-        jerk: table.number("jerk", MOTION),
-        travel: read_travel(table, word),
+        velocity: quantity("velocity"),
+        acceleration: quantity("acceleration"),
+        jerk: quantity("jerk"),
+        travel: read_travel(table, word, unit),
         soft_limits_after_homing: table.boolean("soft_limits_after_homing").unwrap_or(false),
-        stop_deceleration: table.number("stop_deceleration", MOTION),
-        following_error: table.number("following_error", MOTION),
-        deviation: table.number("deviation", MOTION),
+        stop_deceleration: quantity("stop_deceleration"),
+        following_error: quantity("following_error"),
+        deviation: quantity("deviation"),
         saturation_s: seconds("saturation_s"),
         encoder_lost_s: seconds("encoder_lost_s"),
         encoder_lost_command: table
@@ -263,7 +270,7 @@ pub(super) fn read(axis: &Table<'_, '_>, table: &Table<'_, '_>, word: Option<(f6
             .map_or(default.off_causes, word_of),
         direct_duty: table.number("direct_duty", PART).unwrap_or(default.direct_duty),
         direct_hold_s: table.number("direct_hold_s", LASTING),
-        excitation: table.number("excitation", MOTION),
+        excitation: quantity("excitation"),
     }
 }
 
@@ -294,8 +301,10 @@ fn need(table: &Table<'_, '_>, key: &str, missing: &str, allowed: String) {
 }
 
 /// Reads the travel, and checks that the word holds it.
-fn read_travel(table: &Table<'_, '_>, word: Option<(f64, FixedPoint)>) -> Option<[f64; 2]> {
-    let travel = table.numbers::<2>("travel", POSITION)?;
+fn read_travel(table: &Table<'_, '_>, word: Option<(f64, FixedPoint)>, unit: AxisUnit) -> Option<[f64; 2]> {
+    let travel = table
+        .numbers::<2>("travel", POSITION.times(unit.per_si()).unit(unit.symbol()))?
+        .map(|position| unit.to_si(position));
     if travel[0] >= travel[1] {
         table.refuse("travel", "[low, high] with low below high", "exchange the two limits");
     } else if let Some((counts_per_unit, format)) = word {

@@ -41,6 +41,7 @@ mod machine;
 mod names;
 mod place;
 mod pwm;
+mod quantity;
 mod range;
 mod reader;
 mod scale;
@@ -66,6 +67,7 @@ use toml::de::DeTable;
 
 use crate::design::kind::ShaperKind;
 use crate::mode::Mode;
+use crate::unit::AxisUnit;
 use reader::Reader;
 use table::Table;
 
@@ -178,7 +180,9 @@ pub struct Target {
 pub struct AxisSection {
     /// Name, unique in the machine; Verilog names derive from it.
     pub name: String,
-    /// Encoder counts per metre (or radian).
+    /// The unit of its figures in the file; here all are in m, rad and s.
+    pub unit: AxisUnit,
+    /// Encoder counts per m or rad.
     pub counts_per_unit: f64,
     /// Whether the position counts on across the word's end, modulo `2^command_bits`: a rotary axis.
     pub modulo: bool,
@@ -217,13 +221,18 @@ impl AxisSection {
         self.encoder.is_some() || self.pwm.is_some() || self.controller.is_some()
     }
 
-    /// Counts per metre (or radian) of the counter that the position loop runs on: commands, errors and distances of the
+    /// Counts per m or rad of the counter that the position loop runs on: commands, errors and distances of the
     /// hardware are in its counts. The encoder's, or the scale's where that is the position.
     pub fn loop_counts_per_unit(&self) -> f64 {
         match self.scale {
             Some(scale) if scale.usage == ScaleUse::Position => scale.counts_per_unit,
             _ => self.counts_per_unit,
         }
+    }
+
+    /// The same per unit of the file.
+    pub fn loop_counts_per_file_unit(&self) -> f64 {
+        self.unit.counts_in_file(self.loop_counts_per_unit())
     }
 
     /// The kind that treats all modes of this axis together, or `None` where each mode has a shaper of its own and the

@@ -40,6 +40,22 @@ impl NumberRange {
         }
     }
 
+    /// The same in units of which there are `factor` for one.
+    pub(super) fn times(self, factor: f64) -> Self {
+        Self {
+            low: self.low * factor,
+            high: self.high * factor,
+            ..self
+        }
+    }
+
+    /// What holds a number of the range in whatever unit an axis has: a millionth, or a million of them, is the most.
+    pub(super) fn in_any_unit(self) -> Self {
+        let wider = self.times(1e6);
+        let low = if self.low > 0.0 { self.low * 1e-6 } else { wider.low };
+        Self { low, ..wider }
+    }
+
     /// The same in a unit.
     pub(super) const fn unit(self, unit: &'static str) -> Self {
         Self { unit, ..self }
@@ -83,7 +99,7 @@ impl fmt::Display for NumberRange {
     }
 }
 
-/// Encoder counts per metre or radian: up to a picometre per count.
+/// Counts per m or rad: up to a picometre per count.
 pub(super) const COUNTS_PER_UNIT: NumberRange = NumberRange::positive(1e12);
 /// Relative difference from a whole number that the decimals of a frequency may leave.
 pub(super) const RATIO_ROUNDING: f64 = 1e-9;
@@ -101,5 +117,9 @@ mod tests {
         assert_eq!(frequency.to_string(), "above 0, at most 10 Hz");
         assert!(!frequency.contains(0.0) && frequency.contains(10.0));
         assert!(!frequency.contains(f64::NAN) && !frequency.contains(f64::INFINITY));
+        assert_eq!(
+            frequency.times(1e3).unit("mHz").to_string(),
+            "above 0, at most 10000 mHz"
+        );
     }
 }

@@ -3,6 +3,7 @@
 use super::key::{Default, Key, Values};
 use super::range::COUNTS_PER_UNIT;
 use super::table::Table;
+use crate::unit::AxisUnit;
 
 /// What the scale's position is for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -22,7 +23,7 @@ impl ScaleUse {
 /// `[axis.scale]`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Scale {
-    /// Counts per metre (or radian) of the scale; those of the motor's encoder are the axis's.
+    /// Counts per m or rad of the scale; those of the motor's encoder are the axis's.
     pub counts_per_unit: f64,
     /// What it is for. Default: to be compared.
     pub usage: ScaleUse,
@@ -34,8 +35,8 @@ pub struct Scale {
 pub(super) const KEYS: &[Key] = &[
     Key::new(
         "counts_per_unit",
-        Values::Number(COUNTS_PER_UNIT),
-        "Counts per metre (or radian) of the scale; the encoder's are the axis's.",
+        Values::Counts(COUNTS_PER_UNIT),
+        "Counts of the scale per unit of the axis; the encoder's are the axis's.",
     )
     .required(),
     Key::new(
@@ -51,9 +52,9 @@ pub(super) const KEYS: &[Key] = &[
 ];
 
 /// Reads the table of an axis; `None` where a value is refused.
-pub(super) fn read(axis: &Table<'_, '_>, table: &Table<'_, '_>) -> Option<Scale> {
+pub(super) fn read(axis: &Table<'_, '_>, table: &Table<'_, '_>, unit: AxisUnit) -> Option<Scale> {
     table.allow(KEYS);
-    let counts_per_unit = table.required_number("counts_per_unit", COUNTS_PER_UNIT);
+    let counts_per_unit = table.required_counts("counts_per_unit", COUNTS_PER_UNIT, unit);
     let word = table.choice("use", &ScaleUse::ALL.map(|(_, name)| name));
     let usage = ScaleUse::ALL.into_iter().find(|(_, name)| Some(*name) == word);
     let usage = usage.map_or(ScaleUse::default(), |(usage, _)| usage);

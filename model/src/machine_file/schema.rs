@@ -69,6 +69,7 @@ fn property(key: &Key) -> Value {
 fn values(values: Values) -> Map<String, Value> {
     let schema = match values {
         Values::Number(range) => return number(range),
+        Values::Quantity(range) | Values::Counts(range) => return number(range.in_any_unit()),
         Values::Table(keys) => return table(keys),
         Values::Integer(low, high) => json!({ "type": "integer", "minimum": low, "maximum": high }),
         Values::OneOf(list) => json!({ "type": "integer", "enum": list }),
@@ -79,7 +80,7 @@ fn values(values: Values) -> Map<String, Value> {
         Values::Text(pattern) => json!({ "type": "string", "pattern": pattern }),
         Values::Word(words) => json!({ "type": "string", "enum": words() }),
         Values::Words(words) => json!({ "type": "array", "items": { "type": "string", "enum": words() } }),
-        Values::Pair(range) => pair(range),
+        Values::Pair(range) => pair(range.in_any_unit()),
         Values::Pairs(range, most) => json!({ "type": "array", "minItems": 1, "maxItems": most, "items": pair(range) }),
         Values::Tables(keys, most) => json!({ "type": "array", "minItems": 1, "maxItems": most, "items": table(keys) }),
     };

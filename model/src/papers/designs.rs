@@ -5,12 +5,14 @@ use crate::design::{DesignError, design_axis};
 use crate::impulse::ImpulseSequence;
 use crate::machine_file::{AxisMode, AxisSection, ShaperChoice};
 use crate::mode::Mode;
+use crate::unit::AxisUnit;
 use std::f64::consts::TAU;
 
 /// An axis with these modes, all shaped as `shaper` says.
 pub(super) fn axis(shaper: ShaperChoice, modes: &[Mode]) -> AxisSection {
     AxisSection {
         name: "paper".into(),
+        unit: AxisUnit::default(),
         counts_per_unit: 1.0,
         modulo: false,
         shaper: Some(shaper),

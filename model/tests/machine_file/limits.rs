@@ -75,32 +75,32 @@ fn unit_values_out_of_range_are_refused_with_their_place() {
     case(
         "\"monitor\"",
         "\"both\"",
-        "m.toml:39: axis.scale.use of axis x: found \"both\"; allowed: monitor, position",
+        "m.toml:40: axis.scale.use of axis x: found \"both\"; allowed: monitor, position",
     );
-    let expected = "m.toml:38: axis.scale.counts_per_unit of axis x: found 0; allowed: above 0, at most 1000000000000";
+    let expected = "m.toml:39: axis.scale.counts_per_unit of axis x: found 0; allowed: above 0, at most 1000000000000";
     case("= 10_000_000", "= 0", expected);
     case(
         "1024",
         "1000",
-        "m.toml:87: axis.trace.samples of axis x: found 1000; allowed: 256, 512, 1024, 2048",
+        "m.toml:88: axis.trace.samples of axis x: found 1000; allowed: 256, 512, 1024, 2048",
     );
     case(
         "1024",
         "1000000000000",
-        "m.toml:87: axis.trace.samples of axis x: found 1000000000000; allowed: 256, 512, 1024, 2048",
+        "m.toml:88: axis.trace.samples of axis x: found 1000000000000; allowed: 256, 512, 1024, 2048",
     );
-    let expected = "m.toml:91: stage.contour_speed: found 0; allowed: above 0, at most 1000000000 m/s";
+    let expected = "m.toml:92: stage.contour_speed: found 0; allowed: above 0, at most 1000000000 m/s";
     case("contour_speed = 0.1", "contour_speed = 0", expected);
-    let expected = "m.toml:90: stage.extra_delay_s: found 1.1; allowed: at least 0, at most 1 s";
+    let expected = "m.toml:91: stage.extra_delay_s: found 1.1; allowed: at least 0, at most 1 s";
     case("extra_delay_s = 0.0", "extra_delay_s = 1.1", expected);
-    let expected = "m.toml:70: axis.limits.following_error of axis x: found the boolean true; allowed: a number, above 0, at \
+    let expected = "m.toml:71: axis.limits.following_error of axis x: found the boolean true; allowed: a number, above 0, at \
                     most 1000000000";
     case("following_error = 0.001", "following_error = true", expected);
-    let expected = "m.toml:77: axis.limits.encoder_lost_command of axis x: found 1; allowed: at least 0, below 1";
+    let expected = "m.toml:78: axis.limits.encoder_lost_command of axis x: found 1; allowed: at least 0, below 1";
     case("encoder_lost_command = 0.25", "encoder_lost_command = 1", expected);
-    let expected = "m.toml:78: axis.limits.watchdog_s of axis x: found 61; allowed: at least 0, at most 60 s";
+    let expected = "m.toml:79: axis.limits.watchdog_s of axis x: found 61; allowed: at least 0, at most 60 s";
     case("watchdog_s = 0.5", "watchdog_s = 61", expected);
-    let expected = "m.toml:82: axis.limits.direct_hold_s of axis x: found 0; allowed: above 0, at most 60 s";
+    let expected = "m.toml:83: axis.limits.direct_hold_s of axis x: found 0; allowed: above 0, at most 60 s";
     case("direct_hold_s = 0.1", "direct_hold_s = 0", expected);
 }
 
@@ -112,7 +112,7 @@ fn unit_causes_that_switch_off_are_words_of_a_list() {
     assert_eq!(both.unwrap().off_causes, 0b1000_0000_0000_0111);
     let names = "drive-lost, limit-plus, limit-minus, soft-limit-plus, soft-limit-minus, following-error, deviation, \
                  saturation, encoder-lost, encoder-error, segments, watchdog, schedule";
-    let place = "m.toml:80: axis.limits.off of axis x: found";
+    let place = "m.toml:81: axis.limits.off of axis x: found";
     for wrong_word in ["\"watch-dog\"", "7", "\"emergency-stop\"", "\"group-stop\""] {
         let error = wrong(&off(&format!("[\"deviation\", {wrong_word}]")));
         assert_eq!(error.to_string(), format!("{place} {wrong_word}; allowed: {names}"));
@@ -169,13 +169,13 @@ fn unit_what_needs_another_block_says_which() {
         assert_eq!(error.problems()[0].remedy, remedy);
     }
     let scale = "[axis.scale]\ncounts_per_unit = 10_000_000\nuse = \"monitor\"\n";
-    let expected = "m.toml:71: axis.limits.deviation of axis x: found deviation without [axis.scale]; allowed: deviation on \
+    let expected = "m.toml:72: axis.limits.deviation of axis x: found deviation without [axis.scale]; allowed: deviation on \
                     an axis with [axis.scale], from which the motor may deviate";
     case(scale, "", expected);
-    let expected = "m.toml:76: axis.limits.encoder_lost_command of axis x: found encoder_lost_command without encoder_lost_s; \
+    let expected = "m.toml:77: axis.limits.encoder_lost_command of axis x: found encoder_lost_command without encoder_lost_s; \
                     allowed: encoder_lost_command with encoder_lost_s, which switches the monitor on";
     case("encoder_lost_s = 0.02\n", "", expected);
-    let expected = "m.toml:83: axis.limits.soft_limits_after_homing of axis x: found soft_limits_after_homing without travel; \
+    let expected = "m.toml:84: axis.limits.soft_limits_after_homing of axis x: found soft_limits_after_homing without travel; \
                     allowed: soft_limits_after_homing with travel, which are the soft limits";
     case("travel = [-0.1, 0.1]\n", "", expected);
     let alone = |table: &str| wrong(&format!("{SMALL}{table}")).to_string();

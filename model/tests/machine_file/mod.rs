@@ -9,4 +9,5 @@ mod prop;
 mod report;
 mod rules;
 mod schema;
+mod units;
 mod values;

@@ -62,12 +62,13 @@ fn of_axis(text: &mut String, axis: &StageAxis, data: &AxisData) {
     let limits = &data.limits;
     let _ = write!(
         text,
-        "    {{\n        \"{name}\",\n        {counts:?}, /* counts per unit */\n        \
+        "    {{\n        \"{name}\",\n        {counts:?}, /* counts per {unit} */\n        \
          /* velocity, acceleration, jerk: counts per tick, tick^2, tick^3, in LSB of 2^-32 */\n        \
          {{INT64_C({velocity}), INT64_C({acceleration}), INT64_C({jerk})}},\n        \
          {{taps_of_{name}, {taps}, {fraction}}},\n        {{{law}u, {{\n{words}        }}}},\n    }},\n",
         name = axis.name,
         counts = data.counts_per_unit,
+        unit = data.unit.name(),
         velocity = lsb(limits.velocity, VELOCITY_BITS),
         acceleration = lsb(limits.acceleration, ACCELERATION_BITS),
         jerk = lsb(limits.jerk, ACCELERATION_BITS),

@@ -24,6 +24,7 @@ mod system;
 use posicast_model::motion::TickLimits;
 use posicast_model::rtl::registers::RegisterMap;
 use posicast_model::rtl::stage::StageConfig;
+use posicast_model::unit::AxisUnit;
 
 /// Folder of the driver in the output folder.
 pub const FOLDER: &str = "driver";
@@ -57,6 +58,8 @@ pub struct StageDriver<'a> {
 /// What the driver knows of an axis beside its hardware.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AxisData {
+    /// Of its figures in the machine file.
+    pub unit: AxisUnit,
     /// Counts of its loop per unit of the machine file.
     pub counts_per_unit: f64,
     /// What its moves may ask for.

@@ -50,7 +50,8 @@ impl Driver {
             .axes
             .iter()
             .map(|axis| AxisData {
-                counts_per_unit: axis.loop_counts_per_unit(),
+                unit: axis.unit,
+                counts_per_unit: axis.loop_counts_per_file_unit(),
                 limits: TickLimits::of_axis(axis, &machine.clock),
             })
             .collect();

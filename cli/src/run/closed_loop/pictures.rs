@@ -3,6 +3,7 @@
 use super::ClosedLoop;
 use crate::plot::{Band, Curve, Mark, Panel};
 use crate::run::pictures::with_settling;
+use posicast_model::unit::ShownUnit;
 use posicast_testbench::stage_bench::AxisSample;
 use posicast_testbench::stage_run::{Circled, Moved};
 
@@ -23,11 +24,14 @@ impl ClosedLoop<'_> {
             ),
         ];
         if let Some(circles) = &self.circles {
-            let curve = |name: &str, circled: &Circled| {
-                let micro = |(degrees, distance): (f64, f64)| (degrees, 1e6 * distance);
-                (name.to_owned(), circled.distances().into_iter().map(micro).collect())
-            };
             let matched = circles.matched.as_ref().ok();
+            let all = std::iter::once(&circles.apart).chain(matched);
+            let distances = all.flat_map(Circled::distances).map(|(_, distance)| distance);
+            let unit = self.circle_unit().for_largest(distances);
+            let curve = |name: &str, circled: &Circled| {
+                let shown = |(degrees, distance): (f64, f64)| (degrees, unit.of(distance));
+                (name.to_owned(), circled.distances().into_iter().map(shown).collect())
+            };
             let matched = matched.map(|circled| curve("delays made equal", circled));
             let apart = curve("each shaper with its own delay", &circles.apart);
             let shaped = std::iter::once(apart).chain(matched);
@@ -35,7 +39,7 @@ impl ClosedLoop<'_> {
             let panel = Panel {
                 title: format!("{}, circle: how far the load is outside of it", self.machine.name),
                 x_label: "direction from the centre, degrees".into(),
-                y_label: "distance, millionths of the unit".into(),
+                y_label: format!("distance, {}", unit.symbol()),
                 curves,
                 ..Panel::default()
             };
@@ -77,16 +81,20 @@ impl ClosedLoop<'_> {
 
     fn position(&self, axis: usize) -> Panel {
         let of_axis = &self.machine.axes[axis];
-        let thousandths = 1e3 / of_axis.loop_counts_per_unit();
+        let count = 1.0 / of_axis.loop_counts_per_unit();
         let samples = self.samples(&self.shaped, axis);
+        let unit = of_axis
+            .unit
+            .for_largest(samples.iter().map(|sample| sample.command * count));
+        let per_count = unit.of(count);
         Panel {
             title: self.title(axis, "position"),
             x_label: "time, ms".into(),
-            y_label: "position, thousandths of the unit".into(),
+            y_label: format!("position, {}", unit.symbol()),
             curves: vec![
-                Curve::reference("command", self.points(samples, |sample| sample.command * thousandths)),
-                Curve::new("shaped", self.points(samples, |sample| sample.shaped * thousandths)),
-                Curve::new("load", self.points(samples, |sample| 1e3 * sample.load)),
+                Curve::reference("command", self.points(samples, |sample| sample.command * per_count)),
+                Curve::new("shaped", self.points(samples, |sample| sample.shaped * per_count)),
+                Curve::new("load", self.points(samples, |sample| unit.of(sample.load))),
             ],
             marks: self.trips([("trip", &self.shaped)]),
             ..Panel::default()
@@ -95,24 +103,28 @@ impl ClosedLoop<'_> {
 
     fn error(&self, axis: usize) -> Panel {
         let of_axis = &self.machine.axes[axis];
-        let millionths = 1e6 / of_axis.loop_counts_per_unit();
+        let count = 1.0 / of_axis.loop_counts_per_unit();
         let samples = self.samples(&self.shaped, axis);
+        let unit = of_axis
+            .unit
+            .for_largest(samples.iter().map(|sample| sample.error * count));
+        let per_count = unit.of(count);
         Panel {
             title: self.title(axis, "what the controller sees of the error"),
             x_label: "time, ms".into(),
-            y_label: "error, millionths of the unit".into(),
+            y_label: format!("error, {}", unit.symbol()),
             curves: vec![Curve::new(
                 "error",
-                self.points(samples, |sample| sample.error * millionths),
+                self.points(samples, |sample| sample.error * per_count),
             )],
-            band: Some(self.one_count(axis)),
+            band: Some(self.one_count(axis, unit)),
             marks: self.trips([("trip", &self.shaped)]),
             ..Panel::default()
         }
     }
 
-    fn one_count(&self, axis: usize) -> Band {
-        let count = 1e6 / self.machine.axes[axis].loop_counts_per_unit();
+    fn one_count(&self, axis: usize, unit: ShownUnit) -> Band {
+        let count = unit.of(1.0 / self.machine.axes[axis].loop_counts_per_unit());
         Band {
             name: "±1 count".into(),
             range: (-count, count),
@@ -134,11 +146,13 @@ impl ClosedLoop<'_> {
             return self.until_the_trip(axis);
         }
         let per_ms = self.machine.clock.sample_hz / 1e3;
-        let band = self.one_count(axis);
+        let all = self.runs().into_iter().flat_map(|(_, moved)| moved.ringing(axis));
+        let unit = self.machine.axes[axis].unit.for_largest(all);
+        let band = self.one_count(axis, unit);
         let curves = self.runs().into_iter().enumerate().map(|(index, (name, moved))| {
             let points = moved.ringing(axis).into_iter().enumerate();
             let points: Vec<_> = points
-                .map(|(tick, metres)| (tick as f64 / per_ms, 1e6 * metres))
+                .map(|(tick, position)| (tick as f64 / per_ms, unit.of(position)))
                 .collect();
             let name = with_settling(name, &points, band.range.1);
             match index {
@@ -149,7 +163,7 @@ impl ClosedLoop<'_> {
         Panel {
             title: self.title(axis, "the load after its move"),
             x_label: "time since the command came to its end, ms".into(),
-            y_label: "from its place of rest, millionths".into(),
+            y_label: format!("from its place of rest, {}", unit.symbol()),
             curves: curves.collect(),
             band: Some(band),
             ..Panel::default()
@@ -157,10 +171,14 @@ impl ClosedLoop<'_> {
     }
 
     fn until_the_trip(&self, axis: usize) -> Panel {
-        let per_unit = self.machine.axes[axis].loop_counts_per_unit();
-        let curves = self.runs().into_iter().enumerate().map(|(index, (name, moved))| {
-            let samples = self.samples(moved, axis);
-            let points = self.points(samples, |sample| 1e6 * (sample.load - sample.shaped / per_unit));
+        let of_axis = &self.machine.axes[axis];
+        let off = |sample: &AxisSample| sample.load - sample.shaped / of_axis.loop_counts_per_unit();
+        let runs = self.runs().map(|(name, moved)| (name, self.samples(moved, axis)));
+        let unit = of_axis
+            .unit
+            .for_largest(runs.iter().flat_map(|(_, samples)| samples.iter().map(off)));
+        let curves = runs.into_iter().enumerate().map(|(index, (name, samples))| {
+            let points = self.points(samples, |sample| unit.of(off(sample)));
             match index {
                 0 => Curve::reference(name, points),
                 _ => Curve::new(name, points),
@@ -169,7 +187,7 @@ impl ClosedLoop<'_> {
         Panel {
             title: self.title(axis, "the load about its command, until the run was given up"),
             x_label: "time, ms".into(),
-            y_label: "load less command, millionths".into(),
+            y_label: format!("load less command, {}", unit.symbol()),
             curves: curves.collect(),
             marks: self.trips(self.runs()),
             ..Panel::default()

@@ -1,16 +1,12 @@
 //! What the closed loop did, for people and for programs.
 
 use super::{Circles, ClosedLoop};
-use crate::output::Table;
+use crate::output::{Table, UnitDocument};
 use posicast_model::plant::axis::ErrorFigures;
+use posicast_model::unit::AxisUnit;
 use posicast_testbench::stage_run::{Circled, Compared, Moved};
 use serde::Serialize;
 use std::fmt::Write;
-
-/// Millionths, with as many digits as a count is worth.
-pub(super) fn micro(value: f64) -> String {
-    format!("{:.2}", 1e6 * value)
-}
 
 impl ClosedLoop<'_> {
     /// The section for people.
@@ -19,7 +15,7 @@ impl ClosedLoop<'_> {
             "axis",
             ">tracking, peak",
             ">rms",
-            ">rests off by",
+            ">rest error",
             ">ringing unshaped",
             ">shaped",
             ">machine -10 %",
@@ -39,10 +35,10 @@ impl ClosedLoop<'_> {
                 ringing(&self.slower),
                 ringing(&self.faster),
             ];
-            table.row(std::iter::once(axis.name.clone()).chain(numbers.map(micro)));
+            table.row(std::iter::once(axis.name.clone()).chain(axis.unit.show_all(numbers)));
         }
         let mut text = format!(
-            "Closed loop: the default move of all axes at once on the simulated machine; millionths of the unit\n{}",
+            "Closed loop: the default move of all axes at once on the simulated machine\n{}",
             table.text("  ")
         );
         if let Some(circles) = &self.circles {
@@ -55,9 +51,11 @@ impl ClosedLoop<'_> {
     }
 
     fn circles_text(&self, circles: &Circles) -> String {
+        let unit = self.circle_unit();
         let mut table = Table::new(&["tap tables", ">distance from the circle, peak", ">rms"]);
         let mut row = |name: &str, circled: &Circled| {
-            table.row([name.to_owned(), micro(circled.error.peak), micro(circled.error.rms)]);
+            let [peak, rms] = unit.show_all([circled.error.peak, circled.error.rms]);
+            table.row([name.to_owned(), peak, rms]);
         };
         row("each with its own delay", &circles.apart);
         if let Ok(matched) = &circles.matched {
@@ -71,16 +69,21 @@ impl ClosedLoop<'_> {
             .map(|axis| axis.name.as_str())
             .collect();
         let mut text = format!(
-            "\nCircle of axes {}, radius {} at {} per s; millionths of the unit\n{}",
+            "\nCircle of axes {}, radius {} at {}\n{}",
             names.join(" and "),
-            rounded(circles.circle.radius),
-            rounded(circles.circle.speed),
+            unit.show_round(circles.circle.radius, ""),
+            unit.show_round(circles.circle.speed, "/s"),
             table.text("  ")
         );
         if let Err(reason) = &circles.matched {
             let _ = writeln!(text, "  delays cannot be made equal: {reason}");
         }
         text
+    }
+
+    /// The unit of the circle: that of the axis which is named first.
+    pub(super) fn circle_unit(&self) -> AxisUnit {
+        self.machine.axes.first().map_or(AxisUnit::default(), |axis| axis.unit)
     }
 
     /// `stage` in `run --json` and `report.json`.
@@ -95,6 +98,7 @@ impl ClosedLoop<'_> {
                     let figures = self.shaped.axes.get(index);
                     AxisDocument {
                         name: axis.name.clone(),
+                        unit: UnitDocument::new(axis.unit),
                         tracking: figures.map(|figures| figures.tracking.into()),
                         offset: figures.map(|figures| figures.offset),
                         residual_unshaped: residual(&self.unshaped, index),
@@ -118,11 +122,6 @@ impl ClosedLoop<'_> {
             },
         }
     }
-}
-
-/// A length or speed with three digits.
-fn rounded(value: f64) -> f64 {
-    format!("{value:.2e}").parse().unwrap_or(value)
 }
 
 /// `stage` in `report.json`. Lengths in m or rad.
@@ -169,6 +168,8 @@ struct FirstDocument {
 #[derive(Serialize)]
 struct AxisDocument {
     name: String,
+    #[serde(flatten)]
+    unit: UnitDocument,
     tracking: Option<ErrorDocument>,
     offset: Option<f64>,
     residual_unshaped: Option<f64>,

@@ -1,6 +1,5 @@
 //! What must hold in the closed loop. `docs/closed-loop.md` derives the bounds.
 
-use super::report::micro;
 use super::{ClosedLoop, MOVES};
 use crate::run::checks::{Check, NOT_EXERCISED};
 use posicast_model::machine_file::AxisSection;
@@ -68,9 +67,9 @@ impl ClosedLoop<'_> {
         let mut short = axes.filter(|(_, expected)| !expected.moves());
         short.next().map(|(axis, expected)| {
             format!(
-                "{NOT_EXERCISED}axis {}: its move of {} µ is {:.1} counts, and below 100 it is the encoder's steps that move",
+                "{NOT_EXERCISED}axis {}: its move of {} is {:.1} counts, and below 100 it is the encoder's steps that move",
                 axis.name,
-                micro(expected.distance),
+                axis.unit.show(expected.distance, 3),
                 expected.counts
             )
         })
@@ -79,13 +78,14 @@ impl ClosedLoop<'_> {
     /// The error of every move stays below what lag, content of the move, friction and counts make of it.
     fn follows(&self) -> Check {
         let (mut compared, mut worst) = (0, None);
-        for (name, _, found, expected) in self.figures() {
+        for (name, axis, found, expected) in self.figures() {
             compared += 1;
             let (peak, allowed) = (found.tracking.peak, expected.tracking_allowed());
             if peak.is_nan() || peak > allowed {
                 worst.get_or_insert_with(|| {
-                    let [found, allowed, float] = [peak, allowed, expected.figures.tracking.peak].map(micro);
-                    format!("{name}: {found} µ of error, {float} µ expected of its loop, {allowed} µ allowed")
+                    let figures = [peak, allowed, expected.figures.tracking.peak];
+                    let [found, allowed, float] = axis.unit.show_all(figures);
+                    format!("{name}: {found} of error, {float} expected of its loop, {allowed} allowed")
                 });
             }
         }
@@ -109,11 +109,12 @@ impl ClosedLoop<'_> {
         let part = |found: &AxisFigures, expected: &Expected| found.tracking.peak / expected.tracking_allowed();
         let moves = self
             .figures()
-            .map(|(name, _, found, expected)| (part(found, expected), name, found, expected));
+            .map(|(name, axis, found, expected)| (part(found, expected), name, axis, found, expected));
         let tightest = moves.max_by(|a, b| a.0.total_cmp(&b.0));
-        tightest.map_or_else(String::new, |(_, name, found, expected)| {
-            let [found, allowed] = [found.tracking.peak, expected.tracking_allowed()].map(micro);
-            format!("{name}: {found} of {allowed} µ")
+        tightest.map_or_else(String::new, |(_, name, axis, found, expected)| {
+            let figures = [found.tracking.peak, expected.tracking_allowed()];
+            let [found, allowed] = axis.unit.show_all(figures);
+            format!("{name}: {found} of {allowed}")
         })
     }
 
@@ -132,10 +133,10 @@ impl ClosedLoop<'_> {
                 continue;
             };
             let [found, allowed, without] = [shaped.residual.peak, expected.ringing_allowed(), unshaped.residual.peak];
-            let figures = [found, expected.figures.residual.peak, allowed, without].map(micro);
-            let [of_shaper, of_design, most, bare_found] = figures;
+            let figures = [found, expected.figures.residual.peak, allowed, without];
+            let [of_shaper, of_design, most, bare_found] = axis.unit.show_all(figures);
             let text = format!(
-                "axis {}: {of_shaper} µ with its shaper, {of_design} µ expected of its design, {most} µ allowed, {bare_found} µ without",
+                "axis {}: {of_shaper} with its shaper, {of_design} expected of its design, {most} allowed, {bare_found} without",
                 axis.name
             );
             if found.is_nan() || found > allowed || without.is_nan() || without > bare.ringing_allowed() {
@@ -183,18 +184,18 @@ impl ClosedLoop<'_> {
     fn limited(&self) -> Option<Check> {
         let limited = self.figures().filter_map(|(name, axis, found, _)| {
             let limit = axis.limits?.following_error?;
-            Some((name, found.tracking.peak, limit))
+            Some((name, axis.unit, found.tracking.peak, limit))
         });
         let limited: Vec<_> = limited.collect();
-        let beyond = limited.iter().find(|(_, peak, limit)| peak.is_nan() || peak > limit);
+        let beyond = limited.iter().find(|(_, _, peak, limit)| peak.is_nan() || peak > limit);
         (!limited.is_empty()).then(|| Check {
             name: "the axes follow within their following_error",
             passed: beyond.is_none(),
             detail: beyond.map_or_else(
                 || format!("{} moves of an axis", limited.len()),
-                |(name, peak, limit)| {
-                    let (found, allowed) = (micro(*peak), micro(*limit));
-                    format!("{name}: {found} µ, {allowed} µ allowed")
+                |(name, unit, peak, limit)| {
+                    let [found, allowed] = unit.show_all([*peak, *limit]);
+                    format!("{name}: {found}, {allowed} allowed")
                 },
             ),
         })

@@ -20,7 +20,7 @@ static const posicast_tap taps_of_y[] = {
 static const posicast_axis_machine axes[] = {
     {
         "x",
-        1000000.0, /* counts per unit */
+        1000000.0, /* counts per m */
         /* velocity, acceleration, jerk: counts per tick, tick^2, tick^3, in LSB of 2^-32 */
         {INT64_C(107374182400), INT64_C(343597383), INT64_C(1717986)},
         {taps_of_x, 5, 16},
@@ -45,7 +45,7 @@ static const posicast_axis_machine axes[] = {
     },
     {
         "y",
-        1000000.0, /* counts per unit */
+        1000000.0, /* counts per m */
         /* velocity, acceleration, jerk: counts per tick, tick^2, tick^3, in LSB of 2^-32 */
         {INT64_C(107374182400), INT64_C(343597383), INT64_C(1717986)},
         {taps_of_y, 5, 16},

@@ -29,7 +29,7 @@ typedef struct {
 /* An axis. */
 typedef struct {
     const char *name;
-    /* Of the loop, per unit of the machine file: metre, or radian. */
+    /* Of the loop, per unit of the axis in the machine file. */
     double counts_per_unit;
     posicast_limits limits;
     /* The table that is in bank 0. */

@@ -1,0 +1,377 @@
+//! The unit of an axis: what the figures of its `[[axis]]` are in, and how a figure is written for people.
+//!
+//! ```text
+//! file's figure · unit = SI figure (m or rad, what everything in this crate computes with) ─► "1.38 µm"
+//! ```
+//!
+//! A figure is shown in the finest of the unit's family that leaves a number before the point: a linear axis has nm, µm, mm
+//! and m, a rotary one µrad, mrad and rad, or m° and °; revolutions have no smaller unit. A figure that the file gave keeps the
+//! file's unit, so that the reader finds it there.
+//!
+//! ```
+//! use posicast_model::unit::AxisUnit;
+//! assert_eq!(AxisUnit::Millimetre.to_si(250.0), 0.25);
+//! assert_eq!(AxisUnit::Millimetre.show(1.384e-6, 3), "1.38 µm");
+//! assert_eq!(AxisUnit::Millimetre.as_in_file(1.5e-6, "/s"), "0.0015 mm/s");
+//! ```
+
+use std::f64::consts::{PI, TAU};
+use std::fmt;
+
+/// Digits of a figure of the file: what conversion to SI and back rounds is below them.
+const FILE_DIGITS: usize = 7;
+/// Figures smaller than this part of the smallest unit are written as powers of ten.
+const LEAST: f64 = 1e-3;
+
+/// The unit of an axis, `unit` of `[[axis]]`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum AxisUnit {
+    /// m.
+    #[default]
+    Metre,
+    /// mm.
+    Millimetre,
+    /// µm.
+    Micrometre,
+    /// rad.
+    Radian,
+    /// mrad.
+    Milliradian,
+    /// Degrees.
+    Degree,
+    /// Whole turns.
+    Revolution,
+}
+
+/// A unit that figures are shown in: its sign, and how many of it are one SI unit.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ShownUnit {
+    symbol: &'static str,
+    per_si: f64,
+}
+
+const LENGTHS: [ShownUnit; 4] = [
+    ShownUnit::new("nm", 1e9),
+    ShownUnit::new("µm", 1e6),
+    ShownUnit::new("mm", 1e3),
+    ShownUnit::new("m", 1.0),
+];
+const ANGLES: [ShownUnit; 3] = [
+    ShownUnit::new("µrad", 1e6),
+    ShownUnit::new("mrad", 1e3),
+    ShownUnit::new("rad", 1.0),
+];
+const DEGREES: [ShownUnit; 2] = [ShownUnit::new("m°", 180e3 / PI), ShownUnit::new("°", 180.0 / PI)];
+const REVOLUTIONS: [ShownUnit; 1] = [ShownUnit::new("rev", 1.0 / TAU)];
+
+impl AxisUnit {
+    /// Every unit with its name in the machine file.
+    pub const ALL: [(Self, &str); 7] = [
+        (Self::Metre, "m"),
+        (Self::Millimetre, "mm"),
+        (Self::Micrometre, "um"),
+        (Self::Radian, "rad"),
+        (Self::Milliradian, "mrad"),
+        (Self::Degree, "deg"),
+        (Self::Revolution, "rev"),
+    ];
+
+    /// Its name in the machine file and in JSON.
+    pub fn name(self) -> &'static str {
+        Self::ALL
+            .into_iter()
+            .find(|(unit, _)| *unit == self)
+            .map_or("", |(_, name)| name)
+    }
+
+    /// How it is written for people.
+    pub fn symbol(self) -> &'static str {
+        match self {
+            Self::Micrometre => "µm",
+            Self::Degree => "°",
+            other => other.name(),
+        }
+    }
+
+    /// The unit that figures are computed in: `m` or `rad`.
+    pub fn si_name(self) -> &'static str {
+        match self {
+            Self::Metre | Self::Millimetre | Self::Micrometre => "m",
+            Self::Radian | Self::Milliradian | Self::Degree | Self::Revolution => "rad",
+        }
+    }
+
+    /// How many of it are one m or rad.
+    pub fn per_si(self) -> f64 {
+        match self {
+            Self::Metre | Self::Radian => 1.0,
+            Self::Millimetre | Self::Milliradian => 1e3,
+            Self::Micrometre => 1e6,
+            Self::Degree => 180.0 / PI,
+            Self::Revolution => 1.0 / TAU,
+        }
+    }
+
+    /// A length or angle of the file in m or rad; also a velocity, acceleration or jerk.
+    pub fn to_si(self, figure: f64) -> f64 {
+        // A quotient of what the file says is rounded once: 0.1 mm is the 0.0001 m that a file in m would say.
+        figure / self.per_si()
+    }
+
+    /// A length or angle in m or rad in this unit.
+    pub fn from_si(self, figure: f64) -> f64 {
+        figure * self.per_si()
+    }
+
+    /// The same without what the conversion rounds: the figure that stands in the file.
+    pub fn in_file(self, figure: f64) -> f64 {
+        self.without_rounding(self.from_si(figure))
+    }
+
+    /// Counts per m or rad as counts per unit of the file.
+    pub fn counts_in_file(self, counts: f64) -> f64 {
+        self.without_rounding(self.to_si(counts))
+    }
+
+    /// A figure without its last digits, which a conversion to another unit and back may change.
+    fn without_rounding(self, figure: f64) -> f64 {
+        match self.per_si() == 1.0 {
+            true => figure,
+            false => format!("{figure:.13e}").parse().unwrap_or(figure),
+        }
+    }
+
+    /// A figure of the file, with its unit: as it stands there. `per` is what follows the unit: `/s²` of an acceleration.
+    pub fn as_in_file(self, figure: f64, per: &str) -> String {
+        let number = trimmed(self.from_si(figure), FILE_DIGITS);
+        format!("{number}{}{}{per}", self.space(), self.symbol())
+    }
+
+    /// A figure in m or rad with `digits` significant digits, in the unit of its size.
+    pub fn show(self, figure: f64, digits: usize) -> String {
+        self.for_size(figure).show(figure, digits)
+    }
+
+    /// The same for a round figure, such as a speed that was chosen: zeros at its end are left out. `per` follows the unit.
+    pub fn show_round(self, figure: f64, per: &str) -> String {
+        let unit = self.for_size(figure);
+        format!("{}{}{}{per}", trimmed(unit.of(figure), 3), unit.space(), unit.symbol)
+    }
+
+    /// The unit that shows a figure of this size, in m or rad, with a number before the point.
+    pub fn for_size(self, figure: f64) -> ShownUnit {
+        let family: &[ShownUnit] = match self {
+            Self::Metre | Self::Millimetre | Self::Micrometre => &LENGTHS,
+            Self::Radian | Self::Milliradian => &ANGLES,
+            Self::Degree => &DEGREES,
+            Self::Revolution => &REVOLUTIONS,
+        };
+        let fits = |unit: &&ShownUnit| (figure * unit.per_si).abs() >= 1.0;
+        let largest_that_fits = family.iter().rev().find(fits);
+        // Nothing, and what is no number, is not finer than a machine moves.
+        let otherwise = match (figure == 0.0 || !figure.is_finite(), family) {
+            (true, [_, middle, _, _]) => *middle,
+            _ => family[0],
+        };
+        largest_that_fits
+            .copied()
+            .filter(|_| figure.is_finite())
+            .unwrap_or(otherwise)
+    }
+
+    /// One unit for figures that stand side by side: that of the largest.
+    pub fn for_largest(self, figures: impl IntoIterator<Item = f64>) -> ShownUnit {
+        self.for_size(figures.into_iter().map(f64::abs).fold(0.0, f64::max))
+    }
+
+    /// Figures in m or rad that stand side by side, with three significant digits: all in one unit, except those that would be
+    /// less than a thousandth of it.
+    pub fn show_all<const N: usize>(self, figures: [f64; N]) -> [String; N] {
+        let unit = self.for_largest(figures);
+        figures.map(|figure| match unit.of(figure).abs() < LEAST && figure != 0.0 {
+            true => self.show(figure, 3),
+            false => unit.show(figure, 3),
+        })
+    }
+
+    fn space(self) -> &'static str {
+        space(self.symbol())
+    }
+}
+
+impl fmt::Display for AxisUnit {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.symbol())
+    }
+}
+
+impl ShownUnit {
+    const fn new(symbol: &'static str, per_si: f64) -> Self {
+        Self { symbol, per_si }
+    }
+
+    /// How it is written.
+    pub fn symbol(self) -> &'static str {
+        self.symbol
+    }
+
+    /// The number of a figure in m or rad.
+    pub fn of(self, figure: f64) -> f64 {
+        figure * self.per_si
+    }
+
+    /// A figure in m or rad with `digits` significant digits and the unit.
+    pub fn show(self, figure: f64, digits: usize) -> String {
+        format!(
+            "{}{}{}",
+            significant(self.of(figure), digits),
+            self.space(),
+            self.symbol
+        )
+    }
+
+    fn space(self) -> &'static str {
+        space(self.symbol)
+    }
+}
+
+/// A time with `digits` significant digits, as people write it: `152 µs`, `1.35 ms`, `30.0 s`.
+pub fn show_seconds(time_s: f64, digits: usize) -> String {
+    let units = [("ns", 1e9), ("µs", 1e6), ("ms", 1e3), ("s", 1.0)];
+    let fits = |(_, per_s): &&(&str, f64)| time_s.abs() * per_s >= 1.0;
+    let (symbol, per_s) = units
+        .iter()
+        .rev()
+        .find(fits)
+        .unwrap_or(&units[usize::from(time_s == 0.0) * 3]);
+    format!("{} {symbol}", significant(time_s * per_s, digits))
+}
+
+/// The degree's ring stands at its number.
+fn space(symbol: &str) -> &'static str {
+    match symbol {
+        "°" => "",
+        _ => " ",
+    }
+}
+
+/// A number with so many significant digits: no fewer before the point than it has.
+fn significant(value: f64, digits: usize) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return value.abs().to_string();
+    }
+    if value.abs() < LEAST {
+        return format!("{value:.*e}", digits.saturating_sub(1));
+    }
+    // Rounded first: 9.996 has one digit more before the point.
+    let rounded: f64 = format!("{value:.*e}", digits.saturating_sub(1))
+        .parse()
+        .unwrap_or(value);
+    let before_the_point = rounded.abs().log10().floor() as i32 + 1;
+    let after = usize::try_from(digits as i32 - before_the_point).unwrap_or(0);
+    format!("{value:.after$}")
+}
+
+/// The same without zeros at its end.
+fn trimmed(value: f64, digits: usize) -> String {
+    let rounded: f64 = format!("{value:.*e}", digits.saturating_sub(1))
+        .parse()
+        .unwrap_or(value);
+    match rounded.abs() {
+        size if size != 0.0 && !(LEAST / 1e3..1e12).contains(&size) => format!("{rounded:e}"),
+        _ => rounded.to_string(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn unit_a_figure_of_the_file_becomes_the_si_figure_that_an_engineer_would_write() {
+        for (unit, figure, si) in [
+            (AxisUnit::Metre, 0.25, 0.25),
+            (AxisUnit::Millimetre, 0.1, 1e-4),
+            (AxisUnit::Millimetre, 250.0, 0.25),
+            (AxisUnit::Micrometre, 50.0, 50e-6),
+            (AxisUnit::Radian, 3.0, 3.0),
+            (AxisUnit::Milliradian, 2.5, 2.5e-3),
+            (AxisUnit::Degree, 180.0, PI),
+            (AxisUnit::Revolution, 1.0, TAU),
+        ] {
+            assert_eq!(unit.to_si(figure), si, "{figure} {unit}");
+            assert!((unit.from_si(si) - figure).abs() <= 1e-12 * figure, "{figure} {unit}");
+        }
+    }
+
+    #[test]
+    fn unit_figures_are_shown_in_the_unit_of_their_size() {
+        for (unit, figure, text) in [
+            (AxisUnit::Metre, 1.384e-6, "1.38 µm"),
+            (AxisUnit::Millimetre, 1.384e-6, "1.38 µm"),
+            (AxisUnit::Metre, 0.18e-6, "180 nm"),
+            (AxisUnit::Metre, 784e-6, "784 µm"),
+            (AxisUnit::Metre, -0.005, "-5.00 mm"),
+            (AxisUnit::Metre, 1234.5, "1234 m"),
+            (AxisUnit::Metre, 0.0, "0 µm"),
+            (AxisUnit::Metre, f64::NAN, "NaN µm"),
+            (AxisUnit::Metre, 9.996e-6, "10.0 µm"),
+            (AxisUnit::Metre, 2e-13, "2.00e-4 nm"),
+            (AxisUnit::Radian, 1e-7, "0.100 µrad"),
+            (AxisUnit::Milliradian, 2e-5, "20.0 µrad"),
+            (AxisUnit::Radian, 3.0, "3.00 rad"),
+            (AxisUnit::Degree, 0.5_f64.to_radians(), "500 m°"),
+            (AxisUnit::Degree, 12.34_f64.to_radians(), "12.3°"),
+            (AxisUnit::Revolution, TAU / 8.0, "0.125 rev"),
+        ] {
+            assert_eq!(unit.show(figure, 3), text);
+        }
+        assert_eq!(AxisUnit::Metre.show_round(0.1, "/s"), "100 mm/s");
+        assert_eq!(AxisUnit::Degree.show_round(PI, "/s"), "180°/s");
+    }
+
+    #[test]
+    fn unit_figures_side_by_side_have_the_unit_of_the_largest() {
+        let texts = AxisUnit::Metre.show_all([0.18e-6, 0.0203e-6, f64::NAN, 0.0, 4.04e-10, 11.42e-6]);
+        assert_eq!(
+            texts,
+            ["0.180 µm", "0.0203 µm", "NaN µm", "0 µm", "0.404 nm", "11.4 µm"]
+        );
+    }
+
+    #[test]
+    fn unit_times_are_shown_in_the_unit_of_their_size() {
+        for (time_s, text) in [
+            (152.4e-6, "152 µs"),
+            (1.354e-3, "1.35 ms"),
+            (30.0, "30.0 s"),
+            (107e-9, "107 ns"),
+            (0.0, "0 s"),
+        ] {
+            assert_eq!(show_seconds(time_s, 3), text);
+        }
+    }
+
+    #[test]
+    fn unit_figures_of_the_file_are_shown_as_they_stand_there() {
+        for (unit, figure, text) in [
+            (AxisUnit::Metre, 0.0001, "0.0001 m"),
+            (AxisUnit::Millimetre, 0.3, "300 mm"),
+            (AxisUnit::Micrometre, 4.000_1, "4000100 µm"),
+            (AxisUnit::Degree, 90.0_f64.to_radians(), "90°"),
+            (AxisUnit::Metre, 1e15, "1e15 m"),
+            (AxisUnit::Metre, 1e-9, "1e-9 m"),
+        ] {
+            assert_eq!(unit.as_in_file(figure, ""), text);
+        }
+        assert_eq!(AxisUnit::Millimetre.as_in_file(4.0, "/s²"), "4000 mm/s²");
+    }
+
+    #[test]
+    fn unit_every_unit_has_a_name_of_its_own() {
+        for (index, (unit, name)) in AxisUnit::ALL.iter().enumerate() {
+            assert_eq!(unit.name(), *name);
+            assert!(AxisUnit::ALL[..index].iter().all(|(_, other)| other != name));
+        }
+    }
+}
