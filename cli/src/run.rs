@@ -43,7 +43,7 @@ pub(crate) struct Args {
     /// Output folder: new, empty, or written by posicast before [default: ./NAME]
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
-    /// Command: a CSV file with columns time_s,position, in the axis's unit [default: a jerk-limited 5 mm move]
+    /// Command: a CSV file with columns time_s,position, in the axis's unit [default: a jerk-limited move of 5 mm or 5 mrad]
     #[arg(long, value_name = "FILE.csv")]
     command: Option<PathBuf>,
     /// Simulator [default: verilator; rusthdl, the weaker check, where Verilator is missing]

@@ -32,7 +32,7 @@ pub(crate) struct Args {
     /// Waveform to write [default: ./NAME.vcd]
     #[arg(short, long, value_name = "FILE.vcd")]
     output: Option<PathBuf>,
-    /// Command: a CSV file with columns time_s,position, in the axis's unit [default: a jerk-limited 5 mm move]
+    /// Command: a CSV file with columns time_s,position, in the axis's unit [default: a jerk-limited move of 5 mm or 5 mrad]
     #[arg(long, value_name = "FILE.csv")]
     command: Option<PathBuf>,
     /// Replace a file that posicast did not write, or that was changed since; never one that this command reads

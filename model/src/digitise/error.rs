@@ -3,6 +3,7 @@
 use thiserror::Error;
 
 use crate::taps::{COEFFICIENT_FRACTION_MAX, COEFFICIENT_MAX, COEFFICIENT_MIN, TapTableError};
+use crate::unit::show_seconds;
 
 /// Longest delay in samples: the largest ring buffer, 2^14 words, less the two that writing and reading need.
 pub const DELAY_MAX_SAMPLES: u32 = (1 << 14) - 2;
@@ -14,8 +15,9 @@ pub const TAPS_MAX: usize = 256;
 pub enum DigitiseError {
     /// Longer than any ring buffer.
     #[error(
-        "axis {axis}: the shaper lasts {duration_s} s, {found} samples at {sample_hz} Hz; the ring buffer holds at most \
-         {DELAY_MAX_SAMPLES}: lower sample_hz, or use a shorter kind"
+        "axis {axis}: the shaper lasts {}, {found} samples at {sample_hz} Hz; the ring buffer holds at most \
+         {DELAY_MAX_SAMPLES}: lower sample_hz, or use a shorter kind",
+        show_seconds(*.duration_s, 4)
     )]
     Delay {
         /// The axis.

@@ -11,6 +11,7 @@
 use thiserror::Error;
 
 use crate::machine_file::LimitsSection;
+use crate::unit::show_seconds;
 
 /// Most samples of a move: an hour and a half at 2 kHz, and 80 MB.
 pub const SAMPLES_MAX: usize = 10_000_000;
@@ -43,8 +44,9 @@ pub enum ProfileError {
     },
     /// More samples than anyone wants.
     #[error(
-        "a move of {duration_s} s has {samples:e} samples at {sample_hz} Hz; at most {SAMPLES_MAX}: \
-         raise the limits, shorten the move, or lower sample_hz"
+        "a move of {} has {samples:.3e} samples at {sample_hz} Hz; at most {SAMPLES_MAX}: \
+         raise the limits, shorten the move, or lower sample_hz",
+        show_seconds(*.duration_s, 3)
     )]
     TooLong {
         /// Duration of move and settling time.
