@@ -1,9 +1,10 @@
-//! What `generate` adds for designs of one's own: file lists, and for machines of shapers alone an integration kit.
+//! What `generate` adds for designs of one's own: file lists, datasheets, and for machines of shapers alone an integration kit.
 
 use crate::failure::Failure;
 use crate::hardware::Built;
 use posicast_hdl::emit::Module;
 use posicast_model::machine_file::Machine;
+use posicast_synth::datasheets::{self, BuiltBlocks};
 use posicast_synth::kit::{self, Kit, KitShaper};
 use posicast_synth::package::Package;
 
@@ -18,14 +19,20 @@ pub(crate) fn files(machine: &Machine, modules: &[Module], built: &Built<'_>) ->
             config: &shaper.config,
         })
         .collect();
-    kit::files(&Kit {
+    let datasheets = datasheets::files(match (&built.stage, built.components.is_empty()) {
+        (Some(_), _) => BuiltBlocks::Stage,
+        (None, false) => BuiltBlocks::Components,
+        (None, true) => BuiltBlocks::Shapers,
+    });
+    let kit = kit::files(&Kit {
         machine: &machine.name,
         clock_hz: machine.clock.frequency_hz,
         sample_clocks: machine.clock.clocks_per_sample(),
         command_fraction: machine.fixed_point.command_fraction,
         files: &files,
         shapers: &shapers,
-    })
+    });
+    kit.into_iter().chain(datasheets).collect()
 }
 
 /// Adds the files to the folder.

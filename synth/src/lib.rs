@@ -1,5 +1,5 @@
 //! What leaves posicast for a device: the output folder ([`package`]), what of it is opened in Quartus ([`sopc`]), the C driver
-//! ([`driver`]), the documents of the registers ([`register_documents`]), what takes the shapers
+//! ([`driver`]), the documents of the registers ([`register_documents`]) and the datasheets ([`datasheets`]), what takes the shapers
 //! into a design of one's own ([`kit`]), and the estimates of what its Verilog costs ([`yosys`])
 //! and how fast it is ([`clock`]).
 //!
@@ -8,6 +8,7 @@
 
 pub mod clock;
 pub mod core_file;
+pub mod datasheets;
 pub mod driver;
 pub mod kit;
 pub mod package;

@@ -6,7 +6,7 @@ use crate::cli::support::{json, one_axis, posicast, scratch};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-/// One axis with a component on the bus: a package with `sopc/`, `driver/` and `doc/`.
+/// One axis with a component on the bus: a package with `sopc/`, `driver/` and `docs/`.
 fn machine(frequency_hz: &str) -> String {
     let text = one_axis(
         "kind = \"zv\"",
@@ -77,7 +77,7 @@ fn cli_generate_and_run_share_a_folder_without_loss() {
     let bench = Bench::new();
     assert_eq!(bench.generate(), "");
     let generated = snapshot(&bench.output());
-    for part in ["sopc", "driver", "doc", "README.md", "rtl", "one.core"] {
+    for part in ["sopc", "driver", "docs", "README.md", "rtl", "one.core"] {
         assert!(bench.output().join(part).exists(), "{part}");
     }
 

@@ -71,7 +71,7 @@ fn cli_a_file_in_millimetres_gives_the_hardware_of_the_file_in_metres() {
             .assert()
             .success();
         let mut texts = BTreeMap::new();
-        for part in ["rtl", "sopc", "sim", "doc"] {
+        for part in ["rtl", "sopc", "sim", "docs"] {
             texts_below(&output.join(part), &output, &mut texts);
         }
         let document = json(&std::fs::read(output.join("report.json")).unwrap());

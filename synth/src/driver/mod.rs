@@ -5,6 +5,7 @@
 //! driver/inc, src/posicast_*     the core: bare metal, C99, the same for every machine
 //! driver/inc, src/machine_NAME.* the machine's tap tables and limits
 //! driver/TOP_sw.tcl, HAL/        for the HAL of Nios II and Nios V, with the enhanced interrupt API
+//! driver/bare_metal/             a program without an operating system: first moves, and its Makefile
 //! driver/linux/                  user space over UIO, and the overlay of the device tree
 //! ```
 //!
@@ -14,6 +15,7 @@
 //!
 //! `docs/driver.md` says how a program uses it.
 
+mod bare_metal;
 mod fixed;
 mod machine;
 mod macros;
@@ -71,6 +73,7 @@ pub fn stage_files(driver: &StageDriver<'_>) -> Vec<DriverFile> {
     let mut files = fixed::files(driver.config.axes.iter().any(|axis| axis.bring_up.is_some()));
     files.push(file("inc/posicast_stage_regs.h", stage_registers::header(driver)));
     files.extend(machine::files(driver));
+    files.extend(bare_metal::files(driver));
     let system = system::files(driver, &files);
     files.extend(system);
     files

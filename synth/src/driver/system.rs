@@ -1,6 +1,6 @@
 //! What a system needs to find the driver: `_sw.tcl` and macros for the HAL, the overlay of a device tree.
 
-use super::{DriverFile, FOLDER, StageDriver, file};
+use super::{DriverFile, FOLDER, StageDriver, bare_metal, file};
 use posicast_model::rtl::registers::RegisterMap;
 
 /// Name in device trees, before the version of the register map: as the component for Platform Designer has it.
@@ -33,7 +33,7 @@ fn sw_tcl<'a>(driver: &StageDriver<'_>, paths: impl Iterator<Item = &'a str>) ->
     let (top, version) = (driver.top, version(driver.map));
     let inside = paths.filter_map(|path| path.strip_prefix(FOLDER)?.strip_prefix('/'));
     let mut lines: Vec<String> = inside
-        .filter(|path| !path.starts_with("linux/"))
+        .filter(|path| !path.starts_with("linux/") && !path.starts_with(bare_metal::FOLDER))
         .map(|path| match path.ends_with(".c") {
             true => format!("add_sw_property c_source {path}"),
             false => format!("add_sw_property include_source {path}"),

@@ -2,9 +2,9 @@
 //!
 //! | file | format | for |
 //! |---|---|---|
-//! | `doc/TOP.md` | Markdown | people |
-//! | `doc/TOP.rdl` | SystemRDL 2.0 | PeakRDL and its kin: HTML, UVM, IP-XACT |
-//! | `doc/TOP.svd` | CMSIS-SVD 1.3 | debuggers, and generators of register access in C and Rust |
+//! | `docs/TOP.md` | Markdown | people |
+//! | `docs/TOP.rdl` | SystemRDL 2.0 | PeakRDL and its kin: HTML, UVM, IP-XACT |
+//! | `docs/TOP.svd` | CMSIS-SVD 1.3 | debuggers, and generators of register access in C and Rust |
 //!
 //! All three come from the one [`RegisterMap`]. IP-XACT is not written: PeakRDL makes it from the SystemRDL, and it would say
 //! nothing that the other two do not.
@@ -14,10 +14,9 @@
 mod svd;
 mod systemrdl;
 
+use crate::datasheets::FOLDER;
 use posicast_model::rtl::registers::{Access, Field, Register, RegisterMap, markdown};
 
-/// Folder of the documents in the output folder.
-pub const FOLDER: &str = "doc";
 /// Bytes of a word.
 const WORD_BYTES: u32 = 4;
 

@@ -28,6 +28,7 @@ mod unit;
 
 pub use board::{Board, UnknownBoard};
 pub use hw_tcl::compatible;
+pub(crate) use system::STAGE_BASE;
 pub use unit::Unit;
 
 /// What the package of a machine is made from.

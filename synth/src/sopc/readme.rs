@@ -60,7 +60,8 @@ to overwrite a file that was edited, and says which.
     );
     if design.units().next().is_none() {
         text.push_str(
-            "| `kit/` | for a design of your own: template of an instance, strobe, example with bench, scripts for Lattice and AMD |\n",
+            "| `kit/` | for a design of your own: template of an instance, strobe, example with bench, scripts for Lattice and AMD |\n\
+             | `docs/` | the shaper's datasheet |\n",
         );
     }
     if design.units().next().is_some() {
@@ -76,7 +77,7 @@ to overwrite a file that was edited, and says which.
         let _ = writeln!(
             text,
             "| `driver/` | C: headers of the registers; of a stage also the driver, for bare metal, HAL and Linux |\n\
-             | `doc/` | the registers as Markdown, SystemRDL and SVD |"
+             | `docs/` | the datasheets of the blocks; the registers as Markdown, SystemRDL and SVD |"
         );
     }
     let _ = writeln!(text, "| `{}.core` | the Verilog for FuseSoC |", design.machine);

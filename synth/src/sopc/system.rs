@@ -17,7 +17,7 @@ use super::unit::Unit;
 /// Instance of the stage; in `system.h` its facts begin with it.
 pub(super) const STAGE: &str = "stage";
 /// Where the stage stands on the bus. Its span is at most 8 KiB.
-pub(super) const STAGE_BASE: u32 = 0x0002_0000;
+pub(crate) const STAGE_BASE: u32 = 0x0002_0000;
 /// The memory: program and data from address 0 on.
 const MEMORY_BASE: u32 = 0;
 const DEBUG_BASE: u32 = 0x0003_0000;

@@ -6,6 +6,7 @@ mod support;
 
 use bridge::{Bridge, INDEX_AT};
 use posicast_model::rtl::sliding_mode::{Gain, SettingRow};
+use std::cell::Cell;
 use std::path::PathBuf;
 use std::process::Command;
 use support::{Driver, STRICT, beside, machine, run, stage, traced_machine};
@@ -83,6 +84,46 @@ fn unit_the_overlay_is_one() {
     run(Command::new("dtc")
         .args(["-@", "-I", "dts", "-O", "dtb", "-o", "/dev/null"])
         .arg(overlay));
+}
+
+/// The program without an operating system builds as its Makefile says.
+#[test]
+fn unit_the_bare_metal_program_builds() {
+    let driver = Driver::of(traced_machine());
+    let folder = driver.path().join("bare_metal");
+    run(Command::new("make").arg("-C").arg(&folder));
+    assert!(folder.join("xy_stage.elf").is_file());
+    compile(
+        Command::new("gcc").args(STRICT).arg("-ffreestanding"),
+        &driver,
+        &[folder.join("main.c")],
+    );
+}
+
+/// Each axis goes there and back, and is off at the end.
+#[test]
+fn lockstep_the_bare_metal_program_moves_every_axis() {
+    let driver = Driver::write();
+    let mut bridge = Bridge::new(&driver, "bare_metal.c", false);
+    let farthest = [Cell::new(0), Cell::new(0)];
+    let said = bridge.talk_beside(&[], |bench| {
+        for (axis, farthest) in farthest.iter().enumerate() {
+            farthest.set(bench.plant(axis).count().max(farthest.get()));
+        }
+    });
+    assert_eq!(
+        (said["ended"], said["causes_x"], said["causes_y"]),
+        (0, 0, 0),
+        "{said:?}"
+    );
+    assert_eq!((said["command_x"], said["command_y"]), (0, 0), "{said:?}");
+    for (axis, farthest) in farthest.iter().enumerate() {
+        let at = bridge.bench.plant(axis).count();
+        assert!(
+            at.abs() <= 1 && (99..=101).contains(&farthest.get()),
+            "{at}, {farthest:?}"
+        );
+    }
 }
 
 /// `alt_sys_init` and an interrupt, on headers that stand for the HAL's.

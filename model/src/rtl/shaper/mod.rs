@@ -48,6 +48,8 @@ mod clocked;
 mod config;
 mod memory;
 mod motion;
+pub mod moving;
+pub mod plain;
 mod ports;
 mod sample;
 mod tables;
@@ -59,7 +61,7 @@ pub use config::{
 };
 pub(crate) use memory::Arbitrary;
 pub use motion::MotionShaper;
-pub use ports::{Inputs, Outputs, moving, plain, ports, swap_how};
+pub use ports::{Inputs, Outputs, ports, swap_how};
 pub use sample::{LoadError, SampleShaper};
 
 use tables::Tables;
