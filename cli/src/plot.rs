@@ -83,6 +83,35 @@ pub(crate) struct Mark {
     pub(crate) at: f64,
 }
 
+/// How a picture shows times: in µs, ms or s, by how long it is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct TimeAxis {
+    per_s: f64,
+    pub(crate) symbol: &'static str,
+}
+
+impl TimeAxis {
+    /// That of a picture of so many seconds.
+    pub(crate) fn lasting(duration_s: f64) -> Self {
+        let (per_s, symbol) = match duration_s {
+            short if short < 2e-3 => (1e6, "µs"),
+            short if short < 2.0 => (1e3, "ms"),
+            _ => (1.0, "s"),
+        };
+        Self { per_s, symbol }
+    }
+
+    /// A time in its unit.
+    pub(crate) fn of(self, time_s: f64) -> f64 {
+        time_s * self.per_s
+    }
+
+    /// What it shows, with its unit.
+    pub(crate) fn label(self, what: &str) -> String {
+        format!("{what}, {}", self.symbol)
+    }
+}
+
 /// One diagram.
 #[derive(Default)]
 pub(crate) struct Panel {
@@ -377,6 +406,13 @@ mod tests {
     fn unit_a_number_has_the_digits_that_it_deserves() {
         let texts = [0.18, 131.117, 1234.5, -0.004_567, 10.0, 0.0].map(|value| significant(value, 3));
         assert_eq!(texts, ["0.18", "131", "1230", "-0.00457", "10", "0"]);
+    }
+
+    #[test]
+    fn unit_a_long_picture_shows_seconds() {
+        let labels = [0.001, 0.3, 30.0].map(|duration_s| TimeAxis::lasting(duration_s).label("time"));
+        assert_eq!(labels, ["time, µs", "time, ms", "time, s"]);
+        assert_eq!(TimeAxis::lasting(0.3).of(0.25), 250.0);
     }
 
     #[test]

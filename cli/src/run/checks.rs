@@ -177,7 +177,7 @@ fn residual_within_tolerance(machine: &Machine, design: &MachineDesign) -> Check
         detail: match (beyond.first(), modes) {
             (Some(text), _) => text.clone(),
             (None, 0) => format!("{NOT_EXERCISED}no axis has a shaper for a mode"),
-            (None, modes) => format!("{modes} modes"),
+            (None, modes) => counted(modes as u64, "mode"),
         },
     }
 }

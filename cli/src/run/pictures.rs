@@ -1,7 +1,7 @@
 //! The shapers on the simulated machine, as pictures.
 
 use crate::failure::Failure;
-use crate::plot::{Band, Curve, Panel, significant};
+use crate::plot::{Band, Curve, Panel, TimeAxis, significant};
 use crate::simulate::si_per_lsb;
 use posicast_model::analysis::{settled_from, tap_impulses};
 use posicast_model::design::{AxisTables, MachineDesign};
@@ -34,12 +34,12 @@ pub(crate) fn response_panels(
     Ok(panels)
 }
 
-/// `name`, and when the deviations at these times, in ms, have settled to ± `band`.
-pub(super) fn with_settling(name: &str, deviations: &[(f64, f64)], band: f64) -> String {
+/// `name`, and when the deviations at these times, in the unit of `time`, have settled to ± `band`.
+pub(super) fn with_settling(name: &str, deviations: &[(f64, f64)], band: f64, time: TimeAxis) -> String {
     let values: Vec<f64> = deviations.iter().map(|point| point.1).collect();
     match settled_from(&values, band).map(|first| (first, deviations[first].0)) {
         Some((0, _)) => format!("{name}: settled throughout"),
-        Some((_, time_ms)) => format!("{name}: settled at {} ms", significant(time_ms, 3)),
+        Some((_, at)) => format!("{name}: settled at {} {}", significant(at, 3), time.symbol),
         None => format!("{name}: settles later"),
     }
 }
@@ -49,17 +49,15 @@ fn step_panel(machine: &str, axis: &AxisSection, tables: &AxisTables, sample_hz:
     let taps = tap_impulses(&tables.table, sample_hz);
     let slowest_s = axis.modes.iter().map(|m| m.mode.damped_period_s()).fold(0.0, f64::max);
     let duration_s = SHOWN_DURATIONS * tables.design.impulses.duration_s().max(slowest_s);
+    let time = TimeAxis::lasting(duration_s);
     let curve = |plant: &Plant, impulses: &[_], name: &str| {
         let points = step_response(plant, impulses, duration_s, RESPONSE_POINTS);
         let points: Vec<_> = points
             .into_iter()
-            .map(|(time_s, position)| (1e3 * time_s, position))
+            .map(|(time_s, position)| (time.of(time_s), position))
             .collect();
-        let deviations: Vec<_> = points
-            .iter()
-            .map(|(time_ms, position)| (*time_ms, position - 1.0))
-            .collect();
-        (with_settling(name, &deviations, SETTLED), points)
+        let deviations: Vec<_> = points.iter().map(|(at, position)| (*at, position - 1.0)).collect();
+        (with_settling(name, &deviations, SETTLED, time), points)
     };
     let (unshaped, points) = curve(&plant, ImpulseSequence::unity().impulses(), "unshaped");
     let machines = [
@@ -76,7 +74,7 @@ fn step_panel(machine: &str, axis: &AxisSection, tables: &AxisTables, sample_hz:
             "{machine}, axis {}: step response with {}",
             axis.name, tables.design.kind
         ),
-        x_label: "time, ms".into(),
+        x_label: time.label("time"),
         y_label: "position / step".into(),
         curves: std::iter::once(Curve::reference(unshaped, points))
             .chain(shaped)
@@ -104,20 +102,21 @@ fn move_panel(machine: &Machine, axis: &AxisSection, tables: &AxisTables, run: &
         .flat_map(|positions| positions.iter().skip(arrived).map(off));
     let largest = later.map(f64::abs).fold(0.0, f64::max);
     let unit = axis.unit.for_size(largest);
+    let time = TimeAxis::lasting(run.shaped.len() as f64 / machine.clock.sample_hz);
     let [unshaped, shaped] = both.map(|positions| {
         let points = positions.iter().enumerate().skip(from);
         points
-            .map(|(n, position)| (1e3 * n as f64 / machine.clock.sample_hz, unit.of(off(position))))
+            .map(|(n, position)| (time.of(n as f64 / machine.clock.sample_hz), unit.of(off(position))))
             .collect::<Vec<_>>()
     });
     let (count, largest) = (unit.of(1.0 / axis.loop_counts_per_unit()), unit.of(largest));
     Panel {
         title: format!("{}, axis {}: arrival of the move", machine.name, axis.name),
-        x_label: "time, ms".into(),
+        x_label: time.label("time"),
         y_label: format!("deviation from target, {}", unit.symbol()),
         curves: vec![
-            Curve::reference(with_settling("unshaped", &unshaped, count), unshaped),
-            Curve::new(with_settling("shaped", &shaped, count), shaped),
+            Curve::reference(with_settling("unshaped", &unshaped, count, time), unshaped),
+            Curve::new(with_settling("shaped", &shaped, count, time), shaped),
         ],
         y_range: (largest > 0.0).then_some((-1.1 * largest, 1.1 * largest)),
         band: Some(Band {

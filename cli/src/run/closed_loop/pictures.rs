@@ -1,7 +1,7 @@
 //! The closed loop as pictures.
 
 use super::ClosedLoop;
-use crate::plot::{Band, Curve, Mark, Panel};
+use crate::plot::{Band, Curve, Mark, Panel, TimeAxis};
 use crate::run::pictures::with_settling;
 use posicast_model::unit::ShownUnit;
 use posicast_testbench::stage_bench::AxisSample;
@@ -52,24 +52,35 @@ impl ClosedLoop<'_> {
         moved.samples.get(axis).map_or(&[], Vec::as_slice)
     }
 
-    /// Points over the time since the start, ms.
+    /// How the pictures of the move show time.
+    fn time(&self) -> TimeAxis {
+        let samples = self.runs().into_iter().flat_map(|(_, moved)| moved.samples.first());
+        let ticks = samples.map(Vec::len).max().unwrap_or(0);
+        TimeAxis::lasting(self.seconds(ticks))
+    }
+
+    fn seconds(&self, ticks: usize) -> f64 {
+        ticks as f64 / self.machine.clock.sample_hz
+    }
+
+    /// Points over the time since the start.
     fn points(&self, samples: &[AxisSample], value: impl Fn(&AxisSample) -> f64) -> Vec<(f64, f64)> {
-        let per_ms = self.machine.clock.sample_hz / 1e3;
+        let time = self.time();
         let points = samples.iter().enumerate();
         points
-            .map(|(tick, sample)| (tick as f64 / per_ms, value(sample)))
+            .map(|(tick, sample)| (time.of(self.seconds(tick)), value(sample)))
             .collect()
     }
 
-    /// Where a run was given up, in ms after its start.
+    /// Where a run was given up.
     fn trips<'a>(&self, runs: impl IntoIterator<Item = (&'a str, &'a Moved)>) -> Vec<Mark> {
-        let per_ms = self.machine.clock.sample_hz / 1e3;
+        let time = self.time();
         let trip = |(name, moved): (&str, &Moved)| {
             let trouble = moved.trouble.as_ref()?;
             let ticks = moved.samples.first().map_or(0, Vec::len);
             Some(Mark {
                 name: format!("{name}: axis {}", trouble.in_short()),
-                at: ticks as f64 / per_ms,
+                at: time.of(self.seconds(ticks)),
             })
         };
         runs.into_iter().filter_map(trip).collect()
@@ -89,7 +100,7 @@ impl ClosedLoop<'_> {
         let per_count = unit.of(count);
         Panel {
             title: self.title(axis, "position"),
-            x_label: "time, ms".into(),
+            x_label: self.time().label("time"),
             y_label: format!("position, {}", unit.symbol()),
             curves: vec![
                 Curve::reference("command", self.points(samples, |sample| sample.command * per_count)),
@@ -111,7 +122,7 @@ impl ClosedLoop<'_> {
         let per_count = unit.of(count);
         Panel {
             title: self.title(axis, "what the controller sees of the error"),
-            x_label: "time, ms".into(),
+            x_label: self.time().label("time"),
             y_label: format!("error, {}", unit.symbol()),
             curves: vec![Curve::new(
                 "error",
@@ -145,16 +156,16 @@ impl ClosedLoop<'_> {
         if self.runs().iter().any(|(_, moved)| moved.trouble.is_some()) {
             return self.until_the_trip(axis);
         }
-        let per_ms = self.machine.clock.sample_hz / 1e3;
+        let time = self.time();
         let all = self.runs().into_iter().flat_map(|(_, moved)| moved.ringing(axis));
         let unit = self.machine.axes[axis].unit.for_largest(all);
         let band = self.one_count(axis, unit);
         let curves = self.runs().into_iter().enumerate().map(|(index, (name, moved))| {
             let points = moved.ringing(axis).into_iter().enumerate();
             let points: Vec<_> = points
-                .map(|(tick, position)| (tick as f64 / per_ms, unit.of(position)))
+                .map(|(tick, position)| (time.of(self.seconds(tick)), unit.of(position)))
                 .collect();
-            let name = with_settling(name, &points, band.range.1);
+            let name = with_settling(name, &points, band.range.1, time);
             match index {
                 0 => Curve::reference(name, points),
                 _ => Curve::new(name, points),
@@ -162,7 +173,7 @@ impl ClosedLoop<'_> {
         });
         Panel {
             title: self.title(axis, "the load after its move"),
-            x_label: "time since the command came to its end, ms".into(),
+            x_label: time.label("time since the command came to its end"),
             y_label: format!("from its place of rest, {}", unit.symbol()),
             curves: curves.collect(),
             band: Some(band),
@@ -186,7 +197,7 @@ impl ClosedLoop<'_> {
         });
         Panel {
             title: self.title(axis, "the load about its command, until the run was given up"),
-            x_label: "time, ms".into(),
+            x_label: self.time().label("time"),
             y_label: format!("load less command, {}", unit.symbol()),
             curves: curves.collect(),
             marks: self.trips(self.runs()),
