@@ -35,13 +35,29 @@ pub(crate) enum Simulator {
     Rusthdl,
 }
 
+/// Whether this program is linked statically, and can load no library.
+const IS_STATIC: bool = cfg!(target_feature = "crt-static");
+
 impl Simulator {
     /// The simulator that was asked for, else the best that is installed.
     ///
     /// A Verilator that `$VERILATOR` names, or that fails, is no Verilator that is not installed: that is an error.
     pub(crate) fn choose(asked: Option<Self>) -> Result<Self, Failure> {
+        if IS_STATIC && asked == Some(Self::Verilator) {
+            return Err(Failure::from(miette::miette!(
+                help = "use --simulator icarus, or a posicast that is linked dynamically: cargo install --path cli --locked",
+                "this posicast is linked statically and cannot load what Verilator builds"
+            )));
+        }
         if let Some(simulator) = asked {
             return Ok(simulator);
+        }
+        if IS_STATIC {
+            output::say(
+                "note: this posicast is linked statically and cannot load what Verilator builds: Icarus simulates the Verilog, on \
+                 fewer clocks.",
+            );
+            return Ok(Self::Icarus);
         }
         match verilator::version() {
             Ok(_) => Ok(Self::Verilator),
