@@ -22,6 +22,7 @@ mod hardware;
 mod kit;
 mod machine;
 mod man;
+mod moves;
 mod new;
 mod output;
 mod plot;
