@@ -149,3 +149,40 @@ fn cli_generate_removes_evidence_of_another_machine_file_and_says_so() {
     );
     assert_eq!(snapshot(&bench.output()), before);
 }
+
+#[test]
+fn cli_generate_says_in_three_lines_what_went_where_and_lists_the_files_if_asked_to() {
+    let bench = Bench::new();
+    let said = |words: &[&str]| {
+        let assert = bench
+            .posicast(&[&["generate", "machine.toml"], words].concat())
+            .success();
+        String::from_utf8(assert.get_output().stdout.clone()).unwrap()
+    };
+    let summary = said(&[]);
+    let files = snapshot(&bench.output());
+    let lines: Vec<&str> = summary.lines().collect();
+    assert_eq!(lines.len(), 3, "{summary}");
+    assert!(
+        lines[0].starts_with(&format!("{} files in one: ", files.len())),
+        "{summary}"
+    );
+    assert!(
+        lines[0].contains("rtl/ (") && lines[0].contains("README.md"),
+        "{summary}"
+    );
+    assert_eq!(lines[1], "top module: one (the shapers)");
+    assert!(lines[2].starts_with("next: read one/README.md"), "{summary}");
+    let listed = said(&["--verbose"]);
+    let listed: Vec<&Path> = listed.lines().map(Path::new).collect();
+    assert_eq!(listed.len(), files.len());
+    assert!(
+        files
+            .keys()
+            .all(|file| listed.contains(&Path::new("one").join(file).as_path()))
+    );
+    let document = json(said(&["--json"]).as_bytes());
+    assert_eq!((&document["name"], &document["folder"]), (&"one".into(), &"one".into()));
+    assert_eq!(document["top"], serde_json::json!(["one"]));
+    assert_eq!(document["files"].as_array().unwrap().len(), files.len());
+}
