@@ -9,6 +9,7 @@ mod checks;
 mod closed_loop;
 mod pictures;
 mod report;
+mod summary;
 mod waves;
 
 use crate::bench::{self, Simulator};
@@ -56,8 +57,14 @@ pub(crate) struct Args {
     /// Seed of the random stimuli
     #[arg(long, default_value_t = DEFAULT_SEED)]
     seed: u64,
+    /// Print all tables and every check
+    #[arg(short, long)]
+    verbose: bool,
+    /// Print the verdict alone, and what failed
+    #[arg(short, long, conflicts_with = "verbose")]
+    quiet: bool,
     /// Print one JSON document on standard output
-    #[arg(long)]
+    #[arg(long, conflicts_with_all = ["verbose", "quiet"])]
     json: bool,
 }
 
@@ -169,7 +176,11 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     if args.json {
         output::print_json(&document)?
     } else {
-        output::print(&report.text(&root, &committed.files))?
+        output::print_styled(&match (args.verbose, args.quiet) {
+            (true, _) => report.text(&root, &committed.files),
+            (false, true) => report.quiet(),
+            (false, false) => report.summary(&root, &committed.files),
+        })?
     }
     let failed: Vec<_> = checks.iter().filter(|c| !c.passed).map(|c| c.name).collect();
     if failed.is_empty() {

@@ -108,7 +108,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     if args.json {
         output::print_json(&document)?
     } else {
-        output::print(&document.text())?
+        output::print_styled(&document.text())?
     }
     match document.failed() {
         None => Ok(()),

@@ -186,3 +186,57 @@ fn cli_generate_says_in_three_lines_what_went_where_and_lists_the_files_if_asked
     assert_eq!(document["top"], serde_json::json!(["one"]));
     assert_eq!(document["files"].as_array().unwrap().len(), files.len());
 }
+
+#[test]
+fn cli_run_says_the_result_in_some_lines_and_all_of_it_if_asked_to() {
+    let bench = Bench::new();
+    let said = |words: &[&str]| {
+        let words = [&["run", "machine.toml", "--simulator", "icarus"], words].concat();
+        let run = posicast()
+            .current_dir(bench.folder.path())
+            .args(words)
+            .output()
+            .unwrap();
+        (run.status.code(), String::from_utf8(run.stdout).unwrap())
+    };
+    let (status, summary) = said(&[]);
+    assert_eq!(status, Some(0), "{summary}");
+    assert!((6..=12).contains(&summary.lines().count()), "{summary}");
+    for part in [
+        "one: ",
+        "  x     zv",
+        "\nchecks: ",
+        " ok\n",
+        " files written to one: ",
+        "PASS: the Verilog",
+    ] {
+        assert!(summary.contains(part), "{part:?} in {summary}");
+    }
+    assert!(
+        !summary.contains('\u{1b}') && !summary.contains("ok      "),
+        "{summary}"
+    );
+    let (_, verbose) = said(&["--verbose"]);
+    assert!(
+        verbose.contains("RTL against model and float design") && verbose.contains("ok      RTL equals"),
+        "{verbose}"
+    );
+    let (_, quiet) = said(&["--quiet"]);
+    assert_eq!(quiet, "PASS: the Verilog computes what was designed.\n");
+    let (_, coloured) = said(&["--quiet", "--color", "always"]);
+    assert_eq!(
+        coloured,
+        "\u{1b}[1m\u{1b}[32mPASS\u{1b}[0m: the Verilog computes what was designed.\n"
+    );
+    // A command that stands still compares nothing: the check that says so is shown, however little is asked for.
+    std::fs::write(bench.folder.path().join("still.csv"), "time_s,position\n0,0\n0.01,0\n").unwrap();
+    for asked in [&[][..], &["--quiet"]] {
+        let (status, failed) = said(&[&["--command", "still.csv"], asked].concat());
+        assert_eq!(status, Some(1), "{failed}");
+        assert!(
+            failed.contains("FAILED  the command moves every axis: ") && failed.contains("likely cause"),
+            "{failed}"
+        );
+        assert!(failed.contains("FAIL: do not put this Verilog"), "{failed}");
+    }
+}

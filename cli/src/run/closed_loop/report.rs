@@ -54,6 +54,17 @@ impl ClosedLoop<'_> {
         text
     }
 
+    /// What the load of an axis rings without its shaper and with it, in m or rad; nothing where a move was not made.
+    pub(crate) fn ringing(&self, axis: usize) -> Option<[f64; 2]> {
+        let of = |moved: &Moved| Some(moved.axes.get(axis)?.residual.peak);
+        Some([of(&self.unshaped)?, of(&self.shaped)?])
+    }
+
+    /// Largest error of an axis during its move, in m or rad.
+    pub(crate) fn tracking_peak(&self, axis: usize) -> Option<f64> {
+        Some(self.shaped.axes.get(axis)?.tracking.peak)
+    }
+
     /// How far and how fast each axis moves.
     fn moves_text(&self) -> String {
         let axes = self.machine.axes.iter().zip(self.moves);
