@@ -1,10 +1,10 @@
-//! The command that a machine is given: from a CSV file, or the default move.
+//! The command that a machine is given: from a CSV file, or a move of each axis.
 
 use crate::allowance::Allowance;
 use crate::failure::Failure;
 use posicast_model::design::MachineDesign;
 use posicast_model::machine_file::{AxisSection, Machine};
-use posicast_model::motion::{SAMPLES_MAX, command_words, default_move, modulo_words, resample, settle_s};
+use posicast_model::motion::{AxisMove, SAMPLES_MAX, command_words, modulo_words, resample, settle_s};
 use posicast_model::rtl::shaper::wrap;
 use std::fs::File;
 use std::path::Path;
@@ -15,12 +15,18 @@ const LINE_BYTES: u64 = 1 << 16;
 /// Command words per axis, all of one length; of a modulo axis with their whole turns.
 pub(crate) type Words = Vec<Vec<i64>>;
 
-/// The words of the command in the CSV file `path`, or of the default move.
-pub(crate) fn words(machine: &Machine, design: &MachineDesign, path: Option<&Path>) -> Result<Words, Failure> {
+/// The words of the command in the CSV file `path`, or of the moves of the axes.
+pub(crate) fn words(
+    machine: &Machine,
+    design: &MachineDesign,
+    path: Option<&Path>,
+    moves: &[AxisMove],
+) -> Result<Words, Failure> {
     let points = path.map(|path| read(machine, path)).transpose()?;
     let sample_hz = machine.clock.sample_hz;
     let mut words = Words::new();
-    for (index, (axis, tables)) in machine.axes.iter().zip(&design.axes).enumerate() {
+    let axes = machine.axes.iter().zip(&design.axes).zip(moves);
+    for (index, ((axis, tables), of)) in axes.enumerate() {
         let shaper_s = tables.design.impulses.duration_s() + tables.delay.added_s;
         let settle = settle_s(shaper_s, axis.modes.iter().map(|m| m.mode));
         let (positions, counts_per_unit) = match &points {
@@ -29,7 +35,7 @@ pub(crate) fn words(machine: &Machine, design: &MachineDesign, path: Option<&Pat
                 axis.loop_counts_per_file_unit(),
             ),
             None => {
-                let profile = default_move(axis.limits.as_ref()).map_err(|e| of_axis(axis, e))?;
+                let profile = of.profile(axis).map_err(|e| of_axis(axis, e))?;
                 let positions = profile.samples(sample_hz, settle).map_err(|e| of_axis(axis, e))?;
                 (positions, axis.loop_counts_per_unit())
             }

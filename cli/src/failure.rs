@@ -1,5 +1,6 @@
 //! Why a command did not end with exit status 0, and how that is said.
 
+use crate::style;
 use miette::Diagnostic;
 use std::fmt;
 use std::io::{IsTerminal, Write};
@@ -58,7 +59,7 @@ impl Failure {
         let mut err = std::io::stderr().lock();
         // Nothing sensible is left to do where standard error cannot be written.
         let _ = match &self {
-            Self::Check(line) => writeln!(err, "posicast: {line}"),
+            Self::Check(line) => writeln!(anstream::stderr(), "posicast: {}", style::bad(line)),
             Self::Input(report) | Self::MissingTool(report) if err.is_terminal() => writeln!(err, "{report:?}"),
             Self::Input(report) | Self::MissingTool(report) => write_plain(&mut err, report),
         };

@@ -3,24 +3,36 @@
 use crate::design::DesignReport;
 use crate::driver;
 use crate::failure::Failure;
-use crate::hardware::Built;
+use crate::hardware::{Built, STAGE_SUFFIX};
 use crate::kit;
 use crate::machine::{self, MachineFile};
 use crate::output;
 use crate::{sopc, verilog};
+use posicast_model::machine_file::Machine;
 use posicast_synth::package::{Committed, Package};
-use std::fmt::Write;
+use posicast_testbench::wording::counted;
+use serde::Serialize;
 use std::path::{Path, PathBuf};
 
 /// Write the machine's Verilog, its components and its Quartus projects into a folder
 #[derive(clap::Args)]
-#[command(after_help = "Example:\n  posicast generate examples/xy-stage.toml -o xy_stage")]
+#[command(after_help = "\
+Example:
+  posicast generate examples/xy-stage.toml -o xy_stage
+
+It says how many files went where, which modules are the top ones, and what to do next.")]
 pub(crate) struct Args {
     /// Machine file
     machine: PathBuf,
     /// Output folder: new, empty, or written by posicast before [default: ./NAME]
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
+    /// List every file that was written
+    #[arg(short, long)]
+    verbose: bool,
+    /// Print one JSON document on standard output: name, folder, top modules, files
+    #[arg(long, conflicts_with = "verbose")]
+    json: bool,
 }
 
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
@@ -39,13 +51,80 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     package
         .add("report.json", output::json_text(&report.json())?.as_bytes())
         .map_err(Failure::because)?;
+    let folder = package.root().to_owned();
     let committed = package.commit().map_err(Failure::because)?;
     tell(&committed);
-    let mut text = String::new();
-    for path in &committed.files {
-        let _ = writeln!(text, "{}", path.display());
+    let document = Document::new(&file.machine, stage.is_some(), &folder, &committed.files);
+    if args.json {
+        return output::print_json(&document);
     }
-    output::print(&text)
+    output::print(&match args.verbose {
+        true => committed
+            .files
+            .iter()
+            .map(|path| format!("{}\n", path.display()))
+            .collect(),
+        false => document.text(&folder),
+    })
+}
+
+/// `generate --json`.
+#[derive(Serialize)]
+struct Document {
+    name: String,
+    folder: String,
+    top: Vec<String>,
+    files: Vec<String>,
+}
+
+impl Document {
+    fn new(machine: &Machine, has_stage: bool, folder: &Path, files: &[PathBuf]) -> Self {
+        let name = &machine.name;
+        let relative = |path: &PathBuf| path.strip_prefix(folder).unwrap_or(path).display().to_string();
+        Self {
+            name: name.clone(),
+            folder: folder.display().to_string(),
+            top: std::iter::once(name.clone())
+                .chain(has_stage.then(|| format!("{name}{STAGE_SUFFIX}")))
+                .collect(),
+            files: files.iter().map(relative).collect(),
+        }
+    }
+
+    /// How many files went where, the top modules, and what to do next.
+    fn text(&self, folder: &Path) -> String {
+        let files: Vec<PathBuf> = self.files.iter().map(|file| folder.join(file)).collect();
+        let top = match self.top.as_slice() {
+            [shapers, stage] => format!("top modules: {shapers} (the shapers), {stage} (the whole stage)"),
+            _ => format!("top module: {} (the shapers)", self.top.join(", ")),
+        };
+        format!(
+            "{} in {}: {}\n{top}\nnext: read {}; `posicast verify {}` compares this Verilog with its model\n",
+            counted(files.len() as u64, "file"),
+            folder.display(),
+            entries(folder, &files).join(", "),
+            folder.join("README.md").display(),
+            folder.display(),
+        )
+    }
+}
+
+/// What the files make the folder hold: folders with a `/` and how many files are in them, then files by their names.
+pub(crate) fn entries(root: &Path, files: &[PathBuf]) -> Vec<String> {
+    let (mut folders, mut alone): (Vec<(String, usize)>, Vec<String>) = (Vec::new(), Vec::new());
+    for file in files {
+        let mut parts = file.strip_prefix(root).unwrap_or(file).iter();
+        let first = parts.next().unwrap_or_default().to_string_lossy().into_owned();
+        if parts.next().is_none() {
+            alone.push(first);
+        } else if let Some((_, count)) = folders.iter_mut().find(|(name, _)| *name == first) {
+            *count += 1;
+        } else {
+            folders.push((first, 1));
+        }
+    }
+    let folders = folders.into_iter().map(|(name, count)| format!("{name}/ ({count})"));
+    folders.chain(alone).collect()
 }
 
 /// Says on standard error which files of an earlier run went, and which of its evidence stayed.

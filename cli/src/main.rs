@@ -22,6 +22,7 @@ mod hardware;
 mod kit;
 mod machine;
 mod man;
+mod moves;
 mod new;
 mod output;
 mod plot;
@@ -32,6 +33,7 @@ mod run;
 mod schema;
 mod simulate;
 mod sopc;
+mod style;
 mod synth;
 mod tolerance;
 mod verify;
@@ -58,6 +60,9 @@ Exit status: 0 all checks hold, 1 a check failed, 2 bad usage or input, 3 a need
 struct Cli {
     #[command(subcommand)]
     command: Command,
+    /// When to use colours
+    #[arg(long, global = true, value_name = "WHEN", default_value = "auto")]
+    color: style::When,
 }
 
 #[derive(Subcommand)]
@@ -87,7 +92,8 @@ struct NotBuilt {
 }
 
 fn main() -> ExitCode {
-    let command = Cli::parse().command;
+    let Cli { command, color } = Cli::parse();
+    style::set(color);
     if let Err(error) = interrupt::listen() {
         output::say(&format!("warning: a signal will not clean up: {error}"));
     }

@@ -1,6 +1,9 @@
 //! Standard output and the files that commands write.
 
 use crate::failure::Failure;
+use crate::style;
+use anstream::adapter::strip_str;
+use anstream::{AutoStream, ColorChoice};
 use posicast_model::unit::AxisUnit;
 use posicast_system::output::OutputFiles;
 use serde::Serialize;
@@ -12,6 +15,15 @@ pub(crate) fn print(text: &str) -> Result<(), Failure> {
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(Failure::because(error)),
         _ => Ok(()),
+    }
+}
+
+/// Prints text whose verdicts have a colour, which is left out where nobody sees it.
+pub(crate) fn print_styled(text: &str) -> Result<(), Failure> {
+    let colours = AutoStream::choice(&std::io::stdout()) != ColorChoice::Never;
+    match colours {
+        true => print(text),
+        false => print(&strip_str(text).to_string()),
     }
 }
 
@@ -50,7 +62,7 @@ pub(crate) fn json_text(document: &impl Serialize) -> Result<String, Failure> {
 /// Says something beside the result on standard error.
 pub(crate) fn say(line: &str) {
     // A message that cannot be shown must not stop the work.
-    let _ = writeln!(std::io::stderr(), "{line}");
+    let _ = writeln!(anstream::stderr(), "{}", style::message(line));
 }
 
 /// The unit of an axis in a JSON document, whose figures are in `si_unit` whatever the machine file's is.

@@ -1,21 +1,38 @@
-//! Progress of long work: a bar on a terminal, nothing in a pipe.
+//! Progress of long work: a bar with the time that is left on a terminal, nothing in a pipe.
 
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
+use std::fmt::Write;
 use std::io::IsTerminal;
 use std::time::Duration;
 
+/// How often the times are drawn again.
+const TICK: Duration = Duration::from_millis(200);
+
 /// A bar over `length` steps of `what`; it appears on standard error only if that is a terminal.
 pub(crate) fn bar(what: &str, length: u64) -> ProgressBar {
-    let style = ProgressStyle::with_template("{msg} {wide_bar} {human_pos}/{human_len} {eta}");
-    decorated(ProgressBar::with_draw_target(Some(length), target()), what, style)
+    let style = ProgressStyle::with_template("{msg} {wide_bar} {human_pos}/{human_len} {elapsed}, {left}");
+    let style = style.map(|style| style.with_key("left", left));
+    let bar = decorated(ProgressBar::with_draw_target(Some(length), target()), what, style);
+    // The time goes on where a step takes long.
+    bar.enable_steady_tick(TICK);
+    bar
 }
 
 /// A spinner for work whose length is not known.
 pub(crate) fn spinner(what: &str) -> ProgressBar {
     let style = ProgressStyle::with_template("{spinner} {msg} {elapsed}");
     let spinner = decorated(ProgressBar::with_draw_target(None, target()), what, style);
-    spinner.enable_steady_tick(Duration::from_millis(200));
+    spinner.enable_steady_tick(TICK);
     spinner
+}
+
+/// The time that is left, by the pace so far; before the first step nobody knows it.
+fn left(state: &ProgressState, text: &mut dyn Write) {
+    // What cannot be written is not drawn.
+    let _ = match state.pos() {
+        0 => text.write_str("time left unknown yet"),
+        _ => write!(text, "about {:#} left", HumanDuration(state.eta())),
+    };
 }
 
 fn target() -> ProgressDrawTarget {

@@ -9,6 +9,7 @@ mod checks;
 mod closed_loop;
 mod pictures;
 mod report;
+mod summary;
 mod waves;
 
 use crate::bench::{self, Simulator};
@@ -19,6 +20,7 @@ use crate::failure::Failure;
 use crate::hardware::Built;
 use crate::kit;
 use crate::machine;
+use crate::moves::MotionArgs;
 use crate::plot;
 use crate::simulate::simulate;
 use crate::verify::DEFAULT_SEED;
@@ -33,8 +35,9 @@ use std::path::PathBuf;
 /// The whole way: design, Verilog, simulation, comparison, estimate, verdict
 #[derive(clap::Args)]
 #[command(after_help = "\
-Example:
+Examples:
   posicast run examples/xy-stage.toml -o xy_stage
+  posicast run examples/xy-stage.toml --move x=0.04,y=-0.02 --speed 0.1
 
 Exit status: 0 all checks hold, 1 a check failed (the folder holds the evidence), 2 bad input, 3 a named tool is missing.")]
 pub(crate) struct Args {
@@ -43,9 +46,8 @@ pub(crate) struct Args {
     /// Output folder: new, empty, or written by posicast before [default: ./NAME]
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
-    /// Command: a CSV file with columns time_s,position, in the axis's unit [default: a jerk-limited move of 5 mm or 5 mrad]
-    #[arg(long, value_name = "FILE.csv")]
-    command: Option<PathBuf>,
+    #[command(flatten)]
+    motion: MotionArgs,
     /// Simulator [default: verilator; rusthdl, the weaker check, where Verilator is missing]
     #[arg(long)]
     simulator: Option<Simulator>,
@@ -55,8 +57,14 @@ pub(crate) struct Args {
     /// Seed of the random stimuli
     #[arg(long, default_value_t = DEFAULT_SEED)]
     seed: u64,
+    /// Print all tables and every check
+    #[arg(short, long)]
+    verbose: bool,
+    /// Print the verdict alone, and what failed
+    #[arg(short, long, conflicts_with = "verbose")]
+    quiet: bool,
     /// Print one JSON document on standard output
-    #[arg(long)]
+    #[arg(long, conflicts_with_all = ["verbose", "quiet"])]
     json: bool,
 }
 
@@ -67,10 +75,12 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     design.warn();
     let board = sopc::board(machine, &args.machine)?;
     let built = Built::new(&design, &args.machine)?;
-    let words = command::words(machine, &design.design, args.command.as_deref())?;
+    let moves = args.motion.moves(machine, built.stage.is_some())?;
+    let command = args.motion.command.as_deref();
+    let words = command::words(machine, &design.design, command, &moves)?;
     let simulator = Simulator::choose(args.simulator)?;
     if built.stage.is_some() {
-        closed_loop::announce(simulator, args.command.is_some());
+        closed_loop::announce(simulator, command.is_some());
     }
     let yosys = installed_yosys()?;
     let axes = simulate(machine, &design.design, &built.shapers, &words)?;
@@ -109,6 +119,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let closed_loop = stage.as_ref().map(|stage| {
         let job = closed_loop::Job {
             machine,
+            moves: &moves,
             path: &args.machine,
             stage,
             sources: &all,
@@ -165,7 +176,11 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     if args.json {
         output::print_json(&document)?
     } else {
-        output::print(&report.text(&root, &committed.files))?
+        output::print_styled(&match (args.verbose, args.quiet) {
+            (true, _) => report.text(&root, &committed.files),
+            (false, true) => report.quiet(),
+            (false, false) => report.summary(&root, &committed.files),
+        })?
     }
     let failed: Vec<_> = checks.iter().filter(|c| !c.passed).map(|c| c.name).collect();
     if failed.is_empty() {

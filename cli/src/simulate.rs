@@ -5,6 +5,7 @@ use crate::design::DesignReport;
 use crate::failure::Failure;
 use crate::hardware;
 use crate::machine;
+use crate::moves::MotionArgs;
 use crate::output::{self, Table, UnitDocument};
 use posicast_hdl::machine::AxisShaper;
 use posicast_model::design::MachineDesign;
@@ -22,6 +23,7 @@ use std::path::{Path, PathBuf};
 #[command(after_help = "\
 Examples:
   posicast simulate examples/xy-stage.toml -o move.vcd
+  posicast simulate examples/xy-stage.toml --move 0.04
   posicast simulate examples/xy-stage.toml --command moves.csv
 
 The waveform holds, per axis and in LSB of the command word: command x, shaped y, float design y_float, and the
@@ -32,9 +34,8 @@ pub(crate) struct Args {
     /// Waveform to write [default: ./NAME.vcd]
     #[arg(short, long, value_name = "FILE.vcd")]
     output: Option<PathBuf>,
-    /// Command: a CSV file with columns time_s,position, in the axis's unit [default: a jerk-limited move of 5 mm or 5 mrad]
-    #[arg(long, value_name = "FILE.csv")]
-    command: Option<PathBuf>,
+    #[command(flatten)]
+    motion: MotionArgs,
     /// Replace a file that posicast did not write, or that was changed since; never one that this command reads
     #[arg(long)]
     force: bool,
@@ -49,15 +50,16 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let path = args.output.as_ref().unwrap_or(&default);
     let mut outputs = OutputFiles::new(args.force);
     outputs.input("the machine file", &args.machine);
-    if let Some(command) = &args.command {
+    if let Some(command) = &args.motion.command {
         outputs.input("the command", command);
     }
     outputs.claim("--output", path).map_err(Failure::because)?;
     output::one_document(&outputs, args.json)?;
+    let moves = args.motion.moves(&machine, false)?;
     let report = DesignReport::new(&machine, &args.machine)?;
     let shapers = hardware::shapers(&machine, &report.hardware, &args.machine)?;
     let design = report.design;
-    let words = command::words(&machine, &design, args.command.as_deref())?;
+    let words = command::words(&machine, &design, args.motion.command.as_deref(), &moves)?;
     let axes = simulate(&machine, &design, &shapers, &words)?;
     write_wave(&machine, &words, &axes, path)?;
     let document = Document::new(&machine, &axes, path);

@@ -10,7 +10,7 @@ use crate::design::DesignReport;
 use crate::failure::Failure;
 use crate::hardware::Built;
 use crate::output;
-use crate::{blocks, command, machine, replay};
+use crate::{blocks, command, machine, moves, replay};
 use posicast_synth::package;
 use posicast_testbench::blocks::{Block, ShortTicksBlock, Sources, StageBlock};
 use posicast_testbench::lockstep::report::{LockstepReport, LockstepVerdict};
@@ -108,7 +108,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     if args.json {
         output::print_json(&document)?
     } else {
-        output::print(&document.text())?
+        output::print_styled(&document.text())?
     }
     match document.failed() {
         None => Ok(()),
@@ -135,7 +135,7 @@ impl Job {
         };
         let report = DesignReport::new(&machine, source)?;
         // A move that does not fit the words is an error of `run`; a lock step has its other stimuli.
-        let words = command::words(&machine, &report.design, None).unwrap_or_default();
+        let words = command::words(&machine, &report.design, None, &moves::by_default(&machine)).unwrap_or_default();
         let built = Built::new(&report, source)?;
         let compared = match &folder {
             Some(contents) => {

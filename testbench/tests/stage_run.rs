@@ -3,6 +3,7 @@
 use posicast_model::design::design_machine;
 use posicast_model::hardware::{self, MachineStage};
 use posicast_model::machine_file::{self, Machine};
+use posicast_model::motion::AxisMove;
 use posicast_model::rtl::shaper::{ShaperConfig, ShaperMotion};
 use posicast_model::rtl::sliding_mode::SettingRow;
 use posicast_model::taps::{Tap, TapTable};
@@ -124,7 +125,7 @@ fn unit_a_broken_shaper_rings_more_than_is_allowed() {
     }
 }
 
-/// A wrist whose gains are so many times those of its file.
+/// A wrist that turns by 5 mrad, and whose gains are so many times those of its file.
 fn wild_wrist(text: &str, factor: f64) -> (Moved, Vec<Expected>) {
     let machine = machine(text);
     let stage = stage(&machine);
@@ -134,7 +135,11 @@ fn wild_wrist(text: &str, factor: f64) -> (Moved, Vec<Expected>) {
         gains.set(row, factor * gains.get(row));
     }
     config.axes[0].settings = gains.quantise().unwrap();
-    let run = StageRun::new(&machine, &config, 1).unwrap();
+    let short = AxisMove {
+        distance: 0.005,
+        velocity: 3.0,
+    };
+    let run = StageRun::with_moves(&machine, &config, 1, &[short]).unwrap();
     let moved = run.moved(Shaping::Shaped, 1.0).unwrap();
     (moved, run.expected(Shaping::Shaped, 1.0).unwrap())
 }

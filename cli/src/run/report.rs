@@ -1,8 +1,8 @@
 //! What `run` reports: a table for people, a document for programs, a picture for both.
 
-use super::advice;
 use super::checks::Check;
 use super::closed_loop::{ClosedLoop, StageDocument};
+use super::summary;
 use super::waves::Waves;
 use crate::bench::Simulator;
 use crate::design::{self, DesignReport};
@@ -22,7 +22,6 @@ use posicast_testbench::diff::Comparison;
 use posicast_testbench::lockstep::report::LockstepReport;
 use posicast_testbench::verilator;
 use serde::Serialize;
-use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 /// Everything that a run found out.
@@ -73,33 +72,19 @@ fn percent_or_dash(fraction: Option<f64>) -> String {
 }
 
 impl RunReport<'_> {
-    fn rows(&self) -> impl Iterator<Item = (usize, &AxisSection, &AxisTables)> {
+    pub(super) fn rows(&self) -> impl Iterator<Item = (usize, &AxisSection, &AxisTables)> {
         let axes = self.machine.axes.iter().zip(&self.design.design.axes).enumerate();
         axes.map(|(index, (axis, tables))| (index, axis, tables))
     }
 
-    fn sample_hz(&self) -> f64 {
+    pub(super) fn sample_hz(&self) -> f64 {
         self.design.design.sample_hz
     }
 
-    /// The text for people, with the verdict last.
+    /// All tables and checks, with the verdict last.
     pub(crate) fn text(&self, root: &Path, files: &[PathBuf]) -> String {
-        let clock = &self.machine.clock;
-        let tool = match self.simulator {
-            Simulator::Verilator => verilator::version().map_or_else(|_| self.simulator.to_string(), str::to_owned),
-            Simulator::Icarus => "Icarus Verilog".to_owned(),
-            Simulator::Rusthdl => {
-                "RustHDL's simulator: the weaker check, the Verilog itself was not simulated".to_owned()
-            }
-        };
-        let mut text = format!(
-            "{}: {} MHz clock, {} Hz samples, coefficients with {} fraction bits\nsimulator: {tool}; seed {}\n\n",
-            self.machine.name,
-            clock.frequency_hz / 1e6,
-            clock.sample_hz,
-            self.design.design.coefficient_fraction,
-            self.seed,
-        );
+        let mut text = self.heading();
+        text.push('\n');
         text += &self.shapers_text();
         text.push('\n');
         text += &self.comparison_text();
@@ -112,30 +97,21 @@ impl RunReport<'_> {
             text += &synth::text(estimate);
         }
         text.push('\n');
-        for check in self.checks {
-            let _ = writeln!(text, "{}  {}: {}", check.verdict(), check.name, check.detail);
-            if !check.passed {
-                text += &advice::text(check.name);
+        text += &self.checks_text(|_| true);
+        text.push('\n');
+        text += &summary::folder(root, files);
+        text + &self.verdict()
+    }
+
+    /// The simulator, in words.
+    pub(super) fn tool(&self) -> String {
+        match self.simulator {
+            Simulator::Verilator => verilator::version().map_or_else(|_| self.simulator.to_string(), str::to_owned),
+            Simulator::Icarus => "Icarus Verilog".to_owned(),
+            Simulator::Rusthdl => {
+                "RustHDL's simulator: the weaker check, the Verilog itself was not simulated".to_owned()
             }
         }
-        let _ = writeln!(
-            text,
-            "\n{} files written to {}: {}",
-            files.len(),
-            root.display(),
-            entries(root, files).join(", ")
-        );
-        text += match (self.checks.iter().all(|c| c.passed), self.simulator) {
-            (false, _) => "FAIL: do not put this Verilog into a machine.\n",
-            (true, Simulator::Rusthdl) => {
-                "PASS, by the weaker check: the RustHDL description computes what was designed; its Verilog was not simulated.\n"
-            }
-            (true, _) => "PASS: the Verilog computes what was designed.\n",
-        };
-        if self.checks.iter().any(Check::is_open) {
-            text += "What is marked open was not exercised by this run: it is neither right nor wrong.\n";
-        }
-        text
     }
 
     fn shapers_text(&self) -> String {
@@ -258,24 +234,6 @@ impl RunReport<'_> {
             checks: self.checks,
         }
     }
-}
-
-/// What the files make the folder hold: files by their names, folders with a `/`.
-fn entries(root: &Path, files: &[PathBuf]) -> Vec<String> {
-    let mut entries = Vec::new();
-    for file in files {
-        let mut parts = file.strip_prefix(root).unwrap_or(file).iter();
-        let first = parts.next().unwrap_or_default().to_string_lossy();
-        let entry = if parts.next().is_some() {
-            format!("{first}/")
-        } else {
-            first.into_owned()
-        };
-        if !entries.contains(&entry) {
-            entries.push(entry);
-        }
-    }
-    entries
 }
 
 /// `run --json` and `report.json`.

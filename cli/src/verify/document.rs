@@ -4,6 +4,7 @@ use super::folder::Folder;
 use crate::bench::Simulator;
 use crate::output::Table;
 use crate::replay::Replayed;
+use crate::style;
 use posicast_testbench::lockstep::report::{LockstepReport, LockstepVerdict};
 use serde::Serialize;
 
@@ -101,7 +102,7 @@ impl Document<'_> {
         }
         text += &self.folder.map_or_else(String::new, Folder::text);
         text += &self.replayed.map_or_else(String::new, Replayed::text);
-        text + &self.verdict() + "\n"
+        text + &style::message(&self.verdict()) + "\n"
     }
 
     /// The last line.

@@ -149,3 +149,94 @@ fn cli_generate_removes_evidence_of_another_machine_file_and_says_so() {
     );
     assert_eq!(snapshot(&bench.output()), before);
 }
+
+#[test]
+fn cli_generate_says_in_three_lines_what_went_where_and_lists_the_files_if_asked_to() {
+    let bench = Bench::new();
+    let said = |words: &[&str]| {
+        let assert = bench
+            .posicast(&[&["generate", "machine.toml"], words].concat())
+            .success();
+        String::from_utf8(assert.get_output().stdout.clone()).unwrap()
+    };
+    let summary = said(&[]);
+    let files = snapshot(&bench.output());
+    let lines: Vec<&str> = summary.lines().collect();
+    assert_eq!(lines.len(), 3, "{summary}");
+    assert!(
+        lines[0].starts_with(&format!("{} files in one: ", files.len())),
+        "{summary}"
+    );
+    assert!(
+        lines[0].contains("rtl/ (") && lines[0].contains("README.md"),
+        "{summary}"
+    );
+    assert_eq!(lines[1], "top module: one (the shapers)");
+    assert!(lines[2].starts_with("next: read one/README.md"), "{summary}");
+    let listed = said(&["--verbose"]);
+    let listed: Vec<&Path> = listed.lines().map(Path::new).collect();
+    assert_eq!(listed.len(), files.len());
+    assert!(
+        files
+            .keys()
+            .all(|file| listed.contains(&Path::new("one").join(file).as_path()))
+    );
+    let document = json(said(&["--json"]).as_bytes());
+    assert_eq!((&document["name"], &document["folder"]), (&"one".into(), &"one".into()));
+    assert_eq!(document["top"], serde_json::json!(["one"]));
+    assert_eq!(document["files"].as_array().unwrap().len(), files.len());
+}
+
+#[test]
+fn cli_run_says_the_result_in_some_lines_and_all_of_it_if_asked_to() {
+    let bench = Bench::new();
+    let said = |words: &[&str]| {
+        let words = [&["run", "machine.toml", "--simulator", "icarus"], words].concat();
+        let run = posicast()
+            .current_dir(bench.folder.path())
+            .args(words)
+            .output()
+            .unwrap();
+        (run.status.code(), String::from_utf8(run.stdout).unwrap())
+    };
+    let (status, summary) = said(&[]);
+    assert_eq!(status, Some(0), "{summary}");
+    assert!((6..=12).contains(&summary.lines().count()), "{summary}");
+    for part in [
+        "one: ",
+        "  x     zv",
+        "\nchecks: ",
+        " ok\n",
+        " files written to one: ",
+        "PASS: the Verilog",
+    ] {
+        assert!(summary.contains(part), "{part:?} in {summary}");
+    }
+    assert!(
+        !summary.contains('\u{1b}') && !summary.contains("ok      "),
+        "{summary}"
+    );
+    let (_, verbose) = said(&["--verbose"]);
+    assert!(
+        verbose.contains("RTL against model and float design") && verbose.contains("ok      RTL equals"),
+        "{verbose}"
+    );
+    let (_, quiet) = said(&["--quiet"]);
+    assert_eq!(quiet, "PASS: the Verilog computes what was designed.\n");
+    let (_, coloured) = said(&["--quiet", "--color", "always"]);
+    assert_eq!(
+        coloured,
+        "\u{1b}[1m\u{1b}[32mPASS\u{1b}[0m: the Verilog computes what was designed.\n"
+    );
+    // A command that stands still compares nothing: the check that says so is shown, however little is asked for.
+    std::fs::write(bench.folder.path().join("still.csv"), "time_s,position\n0,0\n0.01,0\n").unwrap();
+    for asked in [&[][..], &["--quiet"]] {
+        let (status, failed) = said(&[&["--command", "still.csv"], asked].concat());
+        assert_eq!(status, Some(1), "{failed}");
+        assert!(
+            failed.contains("FAILED  the command moves every axis: ") && failed.contains("likely cause"),
+            "{failed}"
+        );
+        assert!(failed.contains("FAIL: do not put this Verilog"), "{failed}");
+    }
+}

@@ -1,7 +1,7 @@
 //! Motion commands: a jerk-limited move, its samples, and the integer words that the hardware gets.
 //!
 //! - [`Profile`]: a point-to-point move in up to seven segments, as fast as the limits allow;
-//! - [`default_move`]: the 5 mm move that `run` and `simulate` use where no command file is given;
+//! - [`AxisMove`]: the move that `run` and `simulate` use where no command file is given: how far, and how fast;
 //! - [`Trajectory`]: steps, ramps, trapezoids and such moves as cubics of time, which a shaper keeps exact;
 //! - [`resample`]: a command given as points in time, on the sample grid;
 //! - [`command_words`]: positions to Q`command_fraction` counts, half up; what does not fit is an error;
@@ -12,6 +12,7 @@
 //! The planner works in counts and ticks. All else has positions in the unit of the machine file (metres, or radians) and
 //! times in seconds.
 
+mod axis_move;
 mod command;
 mod planner;
 mod profile;
@@ -19,9 +20,10 @@ mod tick_limits;
 mod trajectory;
 mod words;
 
+pub use axis_move::{AxisMove, AxisMoveError};
 pub use command::{PointsError, resample, settle_s};
 pub use planner::{POINTS_MAX, PlanError, plan_circle, plan_move, plan_to_and_fro};
-pub use profile::{Profile, ProfileError, SAMPLES_MAX, default_move};
+pub use profile::{Profile, ProfileError, SAMPLES_MAX};
 pub use tick_limits::TickLimits;
 pub use trajectory::{Cubic, Jump, Piece, Trajectory};
 pub use words::{CommandError, command_words, modulo_words};

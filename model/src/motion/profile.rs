@@ -16,9 +16,7 @@ use crate::unit::show_seconds;
 /// Most samples of a move: an hour and a half at 2 kHz, and 80 MB.
 pub const SAMPLES_MAX: usize = 10_000_000;
 
-/// Distance of the default move.
-const DEFAULT_DISTANCE: f64 = 0.005;
-/// Limits of the default move where the axis has none, in m/s, m/s², m/s³.
+/// Limits of a move where the axis has none, in m/s, m/s², m/s³.
 const DEFAULT_VELOCITY: f64 = 0.25;
 const DEFAULT_ACCELERATION: f64 = 8.0;
 const DEFAULT_JERK: f64 = 400.0;
@@ -198,20 +196,6 @@ impl Profile {
     }
 }
 
-/// The move that is run where no command is given: 5 mm with the limits of the axis, else 0.25 m/s, 8 m/s², 400 m/s³.
-/// It starts at 0 (or at the end of the travel that is nearest) and stays within the travel.
-///
-/// # Errors
-/// As [`Profile::new`].
-pub fn default_move(limits: Option<&LimitsSection>) -> Result<Profile, ProfileError> {
-    let (start, end) = match limits.and_then(|l| l.travel) {
-        None => (0.0, DEFAULT_DISTANCE),
-        Some([low, high]) => within(low, high),
-    };
-    let [velocity, acceleration, jerk] = motion_limits(limits);
-    Profile::new(start, end, velocity, acceleration, jerk)
-}
-
 /// Velocity, acceleration and jerk that a move may ask for: the file's, or the defaults.
 pub(super) fn motion_limits(limits: Option<&LimitsSection>) -> [f64; 3] {
     let of = |limit: fn(&LimitsSection) -> Option<f64>, default| limits.and_then(limit).unwrap_or(default);
@@ -220,18 +204,6 @@ pub(super) fn motion_limits(limits: Option<&LimitsSection>) -> [f64; 3] {
         of(|l| l.acceleration, DEFAULT_ACCELERATION),
         of(|l| l.jerk, DEFAULT_JERK),
     ]
-}
-
-/// Start and end of the default move in a travel: towards the side with room for it, or with more room.
-fn within(low: f64, high: f64) -> (f64, f64) {
-    let start = 0.0f64.max(low).min(high);
-    let (down, up) = (start - low, high - start);
-    let end = if up >= DEFAULT_DISTANCE || up >= down {
-        start + up.min(DEFAULT_DISTANCE)
-    } else {
-        start - down.min(DEFAULT_DISTANCE)
-    };
-    (start, end)
 }
 
 #[cfg(test)]
@@ -296,21 +268,5 @@ mod tests {
         assert!(matches!(creep.samples(1e6, 0.0), Err(ProfileError::TooLong { .. })));
         let sudden = Profile::new(0.0, 1e-300, 1e300, 1e300, 1e300).unwrap();
         assert!(sudden.samples(1e4, 0.001).unwrap().iter().all(|p| p.is_finite()));
-    }
-
-    #[test]
-    fn unit_default_move_stays_within_the_travel() {
-        let limits = |low, high| LimitsSection {
-            travel: Some([low, high]),
-            ..LimitsSection::default()
-        };
-        let ends = |l: Option<LimitsSection>| {
-            let profile = default_move(l.as_ref()).unwrap();
-            (profile.position(0.0), profile.position(1e9))
-        };
-        assert_eq!(ends(None), (0.0, 0.005));
-        assert_eq!(ends(Some(limits(-0.1, 0.1))), (0.0, 0.005));
-        assert_eq!(ends(Some(limits(-0.1, 0.0))), (0.0, -0.005));
-        assert_eq!(ends(Some(limits(0.5, 0.501))), (0.5, 0.501));
     }
 }

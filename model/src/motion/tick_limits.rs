@@ -1,5 +1,6 @@
 //! What a move may ask for, in counts and ticks: the units of the motion commands.
 
+use super::axis_move::AxisMove;
 use super::profile::motion_limits;
 use crate::machine_file::{AxisSection, ClockSection};
 
@@ -29,6 +30,18 @@ impl TickLimits {
         let [velocity, acceleration, jerk] = motion_limits(axis.limits.as_ref());
         Self::new(
             velocity,
+            acceleration,
+            jerk,
+            axis.loop_counts_per_unit(),
+            clock.sample_hz,
+        )
+    }
+
+    /// The same for a move of an axis, which may be slower than its limit.
+    pub fn of_move(axis: &AxisSection, clock: &ClockSection, of: &AxisMove) -> Self {
+        let [_, acceleration, jerk] = motion_limits(axis.limits.as_ref());
+        Self::new(
+            of.velocity,
             acceleration,
             jerk,
             axis.loop_counts_per_unit(),

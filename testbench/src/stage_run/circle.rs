@@ -58,15 +58,57 @@ pub struct Circled {
     radius: f64,
 }
 
+/// Why a machine drives no circle.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum NoCircle {
+    /// Less than two axes.
+    #[error("it takes two axes, and the machine has one")]
+    OneAxis,
+    /// An axis that turns round and round.
+    #[error("axis {0} is modulo: it turns round and round")]
+    Modulo(String),
+    /// No radius that the encoders see fits the travel.
+    #[error(
+        "the travel of axes {x} and {y} has room for a radius of {room}, and {least} is the least that their encoders tell"
+    )]
+    NoRoom {
+        /// The first axis.
+        x: String,
+        /// The second.
+        y: String,
+        /// Largest radius.
+        room: String,
+        /// Least radius.
+        least: String,
+    },
+    /// At their limits the axes go round a circle that the encoders do not see.
+    #[error(
+        "at the limits of axes {x} and {y} its radius is {radius}, and {least} is the least that their encoders tell"
+    )]
+    TooSmall {
+        /// The first axis.
+        x: String,
+        /// The second.
+        y: String,
+        /// The radius.
+        radius: String,
+        /// Least radius.
+        least: String,
+    },
+}
+
 impl Circle {
-    /// A circle that suits the limits of the machine; none with less than two axes, with axes that turn round and round, or
-    /// without room.
-    pub fn of_machine(machine: &Machine) -> Option<Self> {
+    /// A circle that suits the limits of the machine.
+    ///
+    /// # Errors
+    /// [`NoCircle`] where there is none.
+    pub fn of_machine(machine: &Machine) -> Result<Self, NoCircle> {
         let [x, y, ..] = machine.axes.as_slice() else {
-            return None;
+            return Err(NoCircle::OneAxis);
         };
-        if x.modulo || y.modulo {
-            return None;
+        let of_axes = [x, y];
+        if let Some(axis) = of_axes.into_iter().find(|axis| axis.modulo) {
+            return Err(NoCircle::Modulo(axis.name.clone()));
         }
         let per_s = |axis: &AxisSection| {
             let limits = TickLimits::of_axis(axis, &machine.clock);
@@ -88,7 +130,8 @@ impl Circle {
         };
         let ([left, right], [below, above]) = (travel(x), travel(y));
         let room = PART_OF_TRAVEL * (left.max(right) / 2.0).min(below.min(above));
-        let radius = (speed * speed / towards_centre).min(room);
+        let towards_speed = speed * speed / towards_centre;
+        let radius = towards_speed.min(room);
         let circle = Self {
             radius,
             speed: speed.min((towards_centre * radius).sqrt()),
@@ -96,8 +139,26 @@ impl Circle {
             jerk,
             side: if right > left { -1.0 } else { 1.0 },
         };
-        let counts = radius * x.loop_counts_per_unit().min(y.loop_counts_per_unit());
-        (counts >= LEAST_RADIUS_COUNTS).then_some(circle)
+        let least = LEAST_RADIUS_COUNTS / x.loop_counts_per_unit().min(y.loop_counts_per_unit());
+        if radius >= least {
+            return Ok(circle);
+        }
+        let [x_name, y_name] = of_axes.map(|axis| axis.name.clone());
+        let [radius, least] = [radius, least].map(|length| x.unit.show_round(length, ""));
+        Err(match room < towards_speed {
+            true => NoCircle::NoRoom {
+                x: x_name,
+                y: y_name,
+                room: radius,
+                least,
+            },
+            false => NoCircle::TooSmall {
+                x: x_name,
+                y: y_name,
+                radius,
+                least,
+            },
+        })
     }
 
     /// The points of both axes, from where they stand.

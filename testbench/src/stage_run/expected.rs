@@ -7,7 +7,7 @@ use posicast_model::control::sampled::{FollowLimits, SampledLoop};
 use posicast_model::design::design_machine;
 use posicast_model::hardware;
 use posicast_model::machine_file::{AxisSection, DriveMode, Machine, PwmMode};
-use posicast_model::rtl::segments::{EntryMotion, Integrator};
+use posicast_model::rtl::segments::{Entry, EntryMotion, Integrator};
 use posicast_model::taps::TapTable;
 
 use super::figures::{self, AxisFigures};
@@ -88,9 +88,10 @@ pub(super) fn of_move(
     };
     let ticks = moves::settle_ticks(run);
     let axes = machine.axes.iter().zip(&design.axes);
-    let loops = stage.derived.iter().zip(&stage.lags_s).zip(&run.harsh);
-    let mut moves = Vec::new();
-    for ((axis, tables), ((derived, lag_s), harsh)) in axes.zip(loops) {
+    let loops = stage.derived.iter().zip(&stage.lags_s);
+    let moves = run.moves.iter().zip(&run.harsh);
+    let mut expectations = Vec::new();
+    for (((axis, tables), (derived, lag_s)), (of, harsh)) in axes.zip(loops).zip(moves) {
         let table = match shaping {
             Shaping::Shaped => tables.table.clone(),
             Shaping::Unshaped => TapTable::bypass(tables.table.coefficient_fraction())
@@ -98,12 +99,13 @@ pub(super) fn of_move(
         };
         let sampled = SampledLoop::new(axis, machine.clock, *lag_s, frequency_factor);
         let sampled = sampled.unwrap_or_else(|| derived.sampled.clone());
-        moves.push(expected(machine, axis, derived, &sampled, &table, ticks, *harsh)?);
+        let planned = moves::plan_axis(machine, axis, of, *harsh, 0)?;
+        expectations.push(expected(machine, axis, derived, &sampled, &table, ticks, planned));
     }
-    Ok(moves)
+    Ok(expectations)
 }
 
-/// The axes whose default move would not exercise their shaper clearly.
+/// The axes whose move would not exercise their shaper clearly.
 pub(super) fn too_smooth(run: &StageRun<'_>) -> Result<Vec<bool>, StageRunError> {
     let (shaped, unshaped) = (
         of_move(run, Shaping::Shaped, 1.0)?,
@@ -122,10 +124,9 @@ fn expected(
     sampled: &SampledLoop,
     table: &TapTable,
     settle_ticks: u64,
-    harsh: bool,
-) -> Result<Expected, StageRunError> {
+    (entries, end): (Vec<Entry>, i32),
+) -> Expected {
     let unit = axis.loop_counts_per_unit();
-    let (entries, end) = moves::plan_axis(machine, axis, harsh, 0)?;
     let mut at = Integrator::default();
     let mut commands = Vec::new();
     for entry in &entries {
@@ -175,13 +176,13 @@ fn expected(
             errors.iter().fold(0.0f64, |peak, at| peak.max(at.error.abs()))
         }
     };
-    Ok(Expected {
+    Expected {
         distance: f64::from(end) / scales[0],
         counts: f64::from(end) / 256.0,
         figures: figures::of_move(&samples, unit),
         friction,
         count: 1.0 / unit,
-    })
+    }
 }
 
 /// Largest input of the loop's plant, and what friction and the bridge take from it.

@@ -20,7 +20,7 @@ mod shaping;
 use posicast_model::design::design_machine;
 use posicast_model::hardware::{self, MachineStageError};
 use posicast_model::machine_file::{Machine, StageSection};
-use posicast_model::motion::{PlanError, ProfileError};
+use posicast_model::motion::{AxisMove, PlanError};
 use posicast_model::plant::axis::{AxisPlant, AxisPlantError, PlantOptions};
 use posicast_model::rtl::component::Component;
 use posicast_model::rtl::stage::{StageConfig, StageError};
@@ -29,7 +29,7 @@ use crate::Error;
 use crate::lockstep::Device;
 use crate::stage_bench::{StageBench, StageMismatch};
 
-pub use circle::{Circle, Circled};
+pub use circle::{Circle, Circled, NoCircle};
 pub use expected::Expected;
 pub use figures::AxisFigures;
 pub use host::Trouble;
@@ -66,15 +66,6 @@ pub enum StageRunError {
     Design(Box<dyn std::error::Error + Send + Sync>),
 }
 
-impl StageRunError {
-    pub(crate) fn profile(axis: &str) -> impl Fn(ProfileError) -> Self {
-        move |error| Self::Plan {
-            axis: axis.to_owned(),
-            source: error.into(),
-        }
-    }
-}
-
 /// The comparison of model and RTL over a move.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Compared {
@@ -97,21 +88,43 @@ pub struct StageRun<'a> {
     config: StageConfig,
     component: Component,
     seed: u64,
+    /// Of each axis.
+    moves: Vec<AxisMove>,
     /// Of each axis, whether its move has its acceleration from tick to tick, because a smoother one would not exercise its shaper.
     harsh: Vec<bool>,
 }
 
 impl<'a> StageRun<'a> {
-    /// A stage with this configuration, of `machine`. `seed` gives the arbitrary contents of memories.
+    /// A stage with this configuration, of `machine`, whose axes make their default moves. `seed` gives the arbitrary contents of
+    /// memories.
     ///
     /// # Errors
     /// [`StageRunError::Stage`] where the configuration is none.
     pub fn new(machine: &'a Machine, config: &StageConfig, seed: u64) -> Result<Self, StageRunError> {
+        Self::with_moves(machine, config, seed, &[])
+    }
+
+    /// The same with a move for each axis, in their order; an axis beyond their end makes its default move.
+    ///
+    /// # Errors
+    /// As [`StageRun::new`].
+    pub fn with_moves(
+        machine: &'a Machine,
+        config: &StageConfig,
+        seed: u64,
+        moves: &[AxisMove],
+    ) -> Result<Self, StageRunError> {
+        let axes = machine.axes.iter().enumerate();
+        let moves = axes.map(|(index, axis)| {
+            let given = moves.get(index).copied();
+            given.unwrap_or_else(|| AxisMove::of_axis(axis, &machine.fixed_point))
+        });
         let mut run = Self {
             machine,
             config: config.clone(),
             component: Component::stage(config)?,
             seed,
+            moves: moves.collect(),
             harsh: vec![false; machine.axes.len()],
         };
         // A machine of which nothing can be expected says so where it is moved.

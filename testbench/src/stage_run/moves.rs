@@ -1,7 +1,7 @@
 //! The move that all axes make at once.
 
 use posicast_model::machine_file::{AxisSection, Machine};
-use posicast_model::motion::{TickLimits, default_move, plan_move, settle_s};
+use posicast_model::motion::{AxisMove, TickLimits, plan_move, settle_s};
 use posicast_model::rtl::segments::Entry;
 
 use super::figures::{self, AxisFigures};
@@ -9,8 +9,8 @@ use super::host::{Host, Trouble};
 use super::{Shaping, StageRun, StageRunError};
 use crate::stage_bench::AxisSample;
 
-/// Most clocks that model and RTL are compared in: half a minute of Verilator.
-const COMPARED_CLOCKS: u64 = 12_000_000;
+/// Most clocks that model and RTL are compared in: a minute of Verilator.
+const COMPARED_CLOCKS: u64 = 24_000_000;
 /// Longest time in which a machine is watched after its shaped command has come to its end, s.
 const LONGEST_SETTLE_S: f64 = 2.0;
 /// Ticks beyond the plan and the shapers after which a move is over.
@@ -46,21 +46,20 @@ struct Plan {
     ticks: u64,
 }
 
-/// The default move of an axis from `start` (Q24.8 counts) on: its entries, and where it ends. A `harsh` one has its whole
-/// acceleration from tick to tick.
+/// The move of an axis from `start` (Q24.8 counts) on: its entries, and where it ends. A `harsh` one has its whole acceleration from
+/// tick to tick.
 pub(super) fn plan_axis(
     machine: &Machine,
     axis: &AxisSection,
+    of: &AxisMove,
     harsh: bool,
     start: i32,
 ) -> Result<(Vec<Entry>, i32), StageRunError> {
-    let mut limits = TickLimits::of_axis(axis, &machine.clock);
+    let mut limits = TickLimits::of_move(axis, &machine.clock, of);
     if harsh {
         limits.jerk = limits.acceleration;
     }
-    let profile = default_move(axis.limits.as_ref()).map_err(StageRunError::profile(&axis.name))?;
-    let distance = profile.position(profile.duration_s()) - profile.position(0.0);
-    let words = distance * axis.loop_counts_per_unit() * f64::from(1u32 << WORD_FRACTION);
+    let words = of.distance * axis.loop_counts_per_unit() * f64::from(1u32 << WORD_FRACTION);
     // A distance beyond the words ends at the last word; counting so finely, the axis is refused as a plant.
     let end = start.saturating_add(words.round() as i32);
     let exact = i64::from(start) << (EXACT_FRACTION - WORD_FRACTION);
@@ -71,12 +70,12 @@ pub(super) fn plan_axis(
     Ok((entries?, end))
 }
 
-/// The default move of each axis, from where it stands.
+/// The move of each axis, from where it stands.
 fn plan(run: &StageRun<'_>, host: &mut Host<'_>) -> Result<Vec<Plan>, StageRunError> {
     let mut plans = Vec::new();
     for (index, axis) in run.machine.axes.iter().enumerate() {
         let start = host.command(index)?;
-        let (entries, _) = plan_axis(run.machine, axis, run.harsh[index], start)?;
+        let (entries, _) = plan_axis(run.machine, axis, &run.moves[index], run.harsh[index], start)?;
         let ticks = entries.iter().map(|entry| u64::from(entry.ticks)).sum();
         plans.push(Plan { entries, ticks });
     }

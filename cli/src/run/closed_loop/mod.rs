@@ -9,6 +9,7 @@ use crate::failure::Failure;
 use crate::hardware::Stage;
 use crate::progress;
 use posicast_model::machine_file::Machine;
+use posicast_model::motion::AxisMove;
 use posicast_testbench::blocks::Sources;
 use posicast_testbench::stage_run::{Circle, Circled, Compared, Expected, Moved, Shaping, StageRun, StageRunError};
 use std::path::Path;
@@ -33,6 +34,7 @@ const MOVES: [(Shaping, f64); 4] = [
 /// What the closed loop did.
 pub(crate) struct ClosedLoop<'a> {
     machine: &'a Machine,
+    moves: &'a [AxisMove],
     stage: &'a Stage,
     /// Beside the Verilog; none without Verilator.
     compared: Option<Compared>,
@@ -44,7 +46,8 @@ pub(crate) struct ClosedLoop<'a> {
     expected: [Vec<Expected>; 4],
     /// By axis, whether its move has its acceleration from tick to tick.
     harsh: Vec<bool>,
-    circles: Option<Circles>,
+    /// The circles; the reason where there are none.
+    circles: Result<Circles, String>,
 }
 
 /// The circle of the first two axes.
@@ -74,6 +77,7 @@ enum Done {
 /// The machine file, its hardware, and what runs it.
 pub(crate) struct Job<'a> {
     pub(crate) machine: &'a Machine,
+    pub(crate) moves: &'a [AxisMove],
     pub(crate) path: &'a Path,
     pub(crate) stage: &'a Stage,
     pub(crate) sources: &'a Sources,
@@ -85,11 +89,13 @@ impl<'a> Job<'a> {
     /// Runs everything.
     pub(crate) fn run(&self) -> Result<ClosedLoop<'a>, Failure> {
         let refused = |error| failure(error, self.path);
-        let own = StageRun::new(self.machine, &self.stage.of_machine.config, self.seed).map_err(refused)?;
-        let circle = Circle::of_machine(self.machine);
-        let delays = |equal| match circle {
-            Some(_) => StageRun::with_delays(self.machine, equal, self.seed).map_err(|error| error.to_string()),
-            None => Ok(None),
+        let own = StageRun::with_moves(self.machine, &self.stage.of_machine.config, self.seed, self.moves)
+            .map_err(refused)?;
+        let circle = Circle::of_machine(self.machine).map_err(|reason| reason.to_string());
+        let delays = |equal| {
+            circle.clone()?;
+            let run = StageRun::with_delays(self.machine, equal, self.seed).map_err(|error| error.to_string())?;
+            run.ok_or_else(|| "its tap tables make no stage".to_owned())
         };
         let (apart, matched) = (delays(false), delays(true));
 
@@ -97,16 +103,14 @@ impl<'a> Job<'a> {
         if self.simulator == Simulator::Verilator {
             tasks.push(Task::Compare);
         }
-        let rounds = [&apart, &matched]
-            .into_iter()
-            .flat_map(|run| run.as_ref().ok()?.as_ref());
+        let rounds = apart.iter().chain(apart.as_ref().ok().and(matched.as_ref().ok()));
         tasks.extend(rounds.map(Task::Circle));
         let mut expected = [const { Vec::new() }; 4];
         for (expected, (shaping, factor)) in expected.iter_mut().zip(MOVES) {
             *expected = own.expected(shaping, factor).map_err(refused)?;
         }
         tasks.extend(MOVES.map(|(shaping, factor)| Task::Move(shaping, factor)));
-        let done = self.all(&own, circle, &tasks).map_err(refused)?;
+        let done = self.all(&own, circle.as_ref().ok().copied(), &tasks).map_err(refused)?;
 
         let (mut compared, mut moves, mut circles) = (None, Vec::new(), Vec::new());
         for done in done {
@@ -118,21 +122,21 @@ impl<'a> Job<'a> {
         }
         let lost = || Failure::from(miette::miette!("a run of the closed loop is missing"));
         let [shaped, unshaped, slower, faster] = moves.try_into().map_err(|_| lost())?;
-        let mut circles = circles.into_iter();
-        let circles = match (circle, circles.next()) {
-            (Some(circle), Some(apart)) => Some(Circles {
+        let mut circled = circles.into_iter();
+        let circles = match (circle, apart) {
+            (Ok(circle), Ok(_)) => Ok(Circles {
                 circle,
-                apart,
-                matched: match (circles.next(), matched) {
-                    (Some(circled), _) => Ok(circled),
-                    (None, Err(reason)) => Err(reason),
-                    (None, Ok(_)) => return Err(lost()),
+                apart: circled.next().ok_or_else(lost)?,
+                matched: match matched {
+                    Ok(_) => Ok(circled.next().ok_or_else(lost)?),
+                    Err(reason) => Err(reason),
                 },
             }),
-            _ => None,
+            (Err(reason), _) | (_, Err(reason)) => Err(reason),
         };
         Ok(ClosedLoop {
             machine: self.machine,
+            moves: self.moves,
             stage: self.stage,
             compared,
             shaped,
@@ -208,6 +212,8 @@ pub(crate) fn announce(simulator: Simulator, has_command: bool) {
         );
     }
     if has_command {
-        crate::output::say("note: --command is for the shapers; the closed loop makes the default move of each axis.");
+        crate::output::say(
+            "note: --command is for the shapers; the closed loop makes the move of each axis that --move tells, else its default.",
+        );
     }
 }

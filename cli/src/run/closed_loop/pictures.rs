@@ -23,7 +23,7 @@ impl ClosedLoop<'_> {
                 axes().map(|axis| self.vibration(axis)).collect(),
             ),
         ];
-        if let Some(circles) = &self.circles {
+        if let Ok(circles) = &self.circles {
             let matched = circles.matched.as_ref().ok();
             let all = std::iter::once(&circles.apart).chain(matched);
             let distances = all.flat_map(Circled::distances).map(|(_, distance)| distance);

@@ -38,16 +38,44 @@ impl ClosedLoop<'_> {
             table.row(std::iter::once(axis.name.clone()).chain(axis.unit.show_all(numbers)));
         }
         let mut text = format!(
-            "Closed loop: the default move of all axes at once on the simulated machine\n{}",
+            "Closed loop: all axes move at once on the simulated machine, {}\n{}",
+            self.moves_text(),
             table.text("  ")
         );
-        if let Some(circles) = &self.circles {
-            text += &self.circles_text(circles);
+        match &self.circles {
+            Ok(circles) => text += &self.circles_text(circles),
+            Err(reason) => {
+                let _ = writeln!(text, "\nNo circle is driven: {reason}");
+            }
         }
         let schedule = self.stage.of_machine.config.timing();
         let tick = self.stage.of_machine.config.tick.tick_clocks();
         let _ = writeln!(text, "\nSchedule of a tick of {tick} clocks\n  {schedule}");
         text
+    }
+
+    /// What the load of an axis rings without its shaper and with it, in m or rad; nothing where a move was not made.
+    pub(crate) fn ringing(&self, axis: usize) -> Option<[f64; 2]> {
+        let of = |moved: &Moved| Some(moved.axes.get(axis)?.residual.peak);
+        Some([of(&self.unshaped)?, of(&self.shaped)?])
+    }
+
+    /// Largest error of an axis during its move, in m or rad.
+    pub(crate) fn tracking_peak(&self, axis: usize) -> Option<f64> {
+        Some(self.shaped.axes.get(axis)?.tracking.peak)
+    }
+
+    /// How far and how fast each axis moves.
+    fn moves_text(&self) -> String {
+        let axes = self.machine.axes.iter().zip(self.moves);
+        let texts = axes.map(|(axis, of)| {
+            let (distance, speed) = (
+                axis.unit.show_round(of.distance, ""),
+                axis.unit.show_round(of.velocity, "/s"),
+            );
+            format!("{} by {distance} at up to {speed}", axis.name)
+        });
+        texts.collect::<Vec<_>>().join(", ")
     }
 
     fn circles_text(&self, circles: &Circles) -> String {
@@ -108,7 +136,7 @@ impl ClosedLoop<'_> {
                     }
                 })
                 .collect(),
-            circle: self.circles.as_ref().map(|circles| CircleDocument {
+            circle: self.circles.as_ref().ok().map(|circles| CircleDocument {
                 axes: self.machine.axes.iter().take(2).map(|axis| axis.name.clone()).collect(),
                 radius: circles.circle.radius,
                 speed: circles.circle.speed,

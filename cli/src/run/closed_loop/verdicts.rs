@@ -32,9 +32,9 @@ impl ClosedLoop<'_> {
             .chain(circles.map(|circled| circled.trouble.as_ref()));
         let runs = of_runs.clone().count();
         let circles = match &self.circles {
-            Some(circles) if circles.matched.is_ok() => "",
-            Some(_) => "; no circle with equal delays, which the tables do not hold",
-            None => "; no circle: it takes two axes that do not turn round and round, and room",
+            Ok(circles) if circles.matched.is_ok() => String::new(),
+            Ok(_) => "; no circle with equal delays, which the tables do not hold".to_owned(),
+            Err(reason) => format!("; no circle: {reason}"),
         };
         let trouble = of_runs.find_map(|trouble| trouble);
         Check {

@@ -1,0 +1,143 @@
+//! What the axes do in a simulation: a command file, or a move of each axis that the command line may change.
+
+use crate::failure::Failure;
+use posicast_model::machine_file::{AxisSection, Machine};
+use posicast_model::motion::{AxisMove, AxisMoveError};
+use std::path::PathBuf;
+use std::str::FromStr;
+
+/// `--command`, `--move` and `--speed`.
+#[derive(clap::Args)]
+pub(crate) struct MotionArgs {
+    /// Command: a CSV file with columns time_s,position, in the axis's unit [default: a move of each axis]
+    #[arg(long, value_name = "FILE.csv")]
+    pub(crate) command: Option<PathBuf>,
+    /// Distance of the move, in the axis's unit: 40, or x=40,y=-20 [default: what reaches the velocity limit, at least 5 mm or 5 mrad, at most half of the travel]
+    #[arg(long = "move", value_name = "DISTANCE", allow_negative_numbers = true)]
+    distance: Option<PerAxis>,
+    /// Speed of the move, in the axis's unit per second: 100, or x=100,y=50 [default: the velocity limit]
+    #[arg(long, value_name = "SPEED", allow_negative_numbers = true)]
+    speed: Option<PerAxis>,
+}
+
+impl MotionArgs {
+    /// The move of each axis. With a command file they are those of the closed loop alone.
+    pub(crate) fn moves(&self, machine: &Machine, closed_loop: bool) -> Result<Vec<AxisMove>, Failure> {
+        for (option, figures) in [("--move", &self.distance), ("--speed", &self.speed)] {
+            let Some(figures) = figures else {
+                continue;
+            };
+            if self.command.is_some() && !closed_loop {
+                return Err(Failure::from(miette::miette!(
+                    help = format!("leave out {option}, or --command"),
+                    "{option}: the command file says how the axes move"
+                )));
+            }
+            figures.only_for(machine, option)?;
+        }
+        let of = |figures: &Option<PerAxis>, axis: &AxisSection| figures.as_ref().and_then(|figures| figures.of(axis));
+        let axes = machine.axes.iter();
+        axes.map(|axis| {
+            let (distance, speed) = (of(&self.distance, axis), of(&self.speed, axis));
+            AxisMove::new(axis, &machine.fixed_point, distance, speed).map_err(|error| {
+                let option = match error {
+                    AxisMoveError::Still { .. } | AxisMoveError::TooFast { .. } => "--speed",
+                    _ => "--move",
+                };
+                Failure::from(miette::miette!("{option}, axis `{}`: {error}", axis.name))
+            })
+        })
+        .collect()
+    }
+}
+
+/// The move of each axis that is not told another.
+pub(crate) fn by_default(machine: &Machine) -> Vec<AxisMove> {
+    let axes = machine.axes.iter();
+    axes.map(|axis| AxisMove::of_axis(axis, &machine.fixed_point)).collect()
+}
+
+/// A figure for every axis, or one for each that is named.
+#[derive(Debug, Clone, PartialEq)]
+enum PerAxis {
+    /// The same for all.
+    All(f64),
+    /// By the names of the axes.
+    Named(Vec<(String, f64)>),
+}
+
+impl PerAxis {
+    /// The figure for an axis, if there is one.
+    fn of(&self, axis: &AxisSection) -> Option<f64> {
+        match self {
+            Self::All(figure) => Some(*figure),
+            Self::Named(figures) => figures
+                .iter()
+                .find(|(name, _)| *name == axis.name)
+                .map(|(_, figure)| *figure),
+        }
+    }
+
+    /// Refuses the name of an axis that the machine does not have.
+    fn only_for(&self, machine: &Machine, option: &str) -> Result<(), Failure> {
+        let Self::Named(figures) = self else {
+            return Ok(());
+        };
+        let names: Vec<&str> = machine.axes.iter().map(|axis| axis.name.as_str()).collect();
+        match figures.iter().find(|(name, _)| !names.contains(&name.as_str())) {
+            None => Ok(()),
+            Some((name, _)) => Err(Failure::from(miette::miette!(
+                help = format!("the axes are {}", names.join(", ")),
+                "{option}: there is no axis `{name}`"
+            ))),
+        }
+    }
+}
+
+impl FromStr for PerAxis {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let number = |text: &str| {
+            let figure = text.trim().parse::<f64>();
+            figure.map_err(|_| format!("`{text}` is not a number; write 40 for every axis, or x=40,y=20"))
+        };
+        if !text.contains('=') {
+            return number(text).map(Self::All);
+        }
+        let mut figures: Vec<(String, f64)> = Vec::new();
+        for part in text.split(',') {
+            let (name, figure) = part
+                .split_once('=')
+                .ok_or_else(|| format!("`{part}` names no axis; write x=40,y=20"))?;
+            let name = name.trim().to_owned();
+            if figures.iter().any(|(other, _)| *other == name) {
+                return Err(format!("axis `{name}` is named twice"));
+            }
+            figures.push((name, number(figure)?));
+        }
+        Ok(Self::Named(figures))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn unit_a_figure_is_for_all_axes_or_for_those_that_are_named() {
+        assert_eq!("-4e-3".parse(), Ok(PerAxis::All(-0.004)));
+        let named = PerAxis::Named(vec![("x".to_owned(), 40.0), ("y".to_owned(), -20.0)]);
+        assert_eq!("x=40, y=-20".parse(), Ok(named));
+        for (text, said) in [
+            ("", "is not a number"),
+            ("5mm", "`5mm` is not a number"),
+            ("x=1,2", "`2` names no axis"),
+            ("x=1,x=2", "axis `x` is named twice"),
+            ("x=", "is not a number"),
+        ] {
+            let refused = text.parse::<PerAxis>().unwrap_err();
+            assert!(refused.contains(said), "{text}: {refused}");
+        }
+    }
+}

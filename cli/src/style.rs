@@ -1,0 +1,81 @@
+//! Colour of what people read on a terminal: of verdicts, and of the word that a message begins with.
+//!
+//! Text carries its colours as escape sequences; [`print_styled`](crate::output::print_styled) and [`say`](crate::output::say) leave them out
+//! where nobody sees them: in a pipe or a file, with `NO_COLOR`, on a terminal that has none, or by `--color`.
+
+use anstream::ColorChoice;
+use anstyle::{AnsiColor, Style};
+use clap::ValueEnum;
+
+const GREEN: Style = AnsiColor::Green.on_default();
+const BOLD_GREEN: Style = GREEN.bold();
+const RED: Style = AnsiColor::Red.on_default().bold();
+const YELLOW: Style = AnsiColor::Yellow.on_default();
+
+/// `--color`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum When {
+    /// On a terminal, unless NO_COLOR is set
+    Auto,
+    /// In a pipe too
+    Always,
+    /// Nowhere
+    Never,
+}
+
+/// Says when there are colours.
+pub(crate) fn set(when: When) {
+    let choice = match when {
+        When::Auto => ColorChoice::Auto,
+        When::Always => ColorChoice::Always,
+        When::Never => ColorChoice::Never,
+    };
+    choice.write_global();
+    if when == When::Never {
+        // Fails where a hook is set already; then that one stays.
+        let plain = || miette::GraphicalReportHandler::new_themed(miette::GraphicalTheme::unicode_nocolor());
+        let _ = miette::set_hook(Box::new(move |_| Box::new(plain())));
+    }
+}
+
+/// What holds.
+pub(crate) fn good(text: &str) -> String {
+    styled(GREEN, text)
+}
+
+/// That all holds.
+pub(crate) fn passed(text: &str) -> String {
+    styled(BOLD_GREEN, text)
+}
+
+/// What does not hold.
+pub(crate) fn bad(text: &str) -> String {
+    styled(RED, text)
+}
+
+/// What may not be as it should.
+pub(crate) fn doubtful(text: &str) -> String {
+    styled(YELLOW, text)
+}
+
+/// How the line of a message or of a verdict begins, and its colour.
+const BEGINNINGS: [(&str, Style); 5] = [
+    ("warning:", YELLOW),
+    ("error:", RED),
+    ("match:", BOLD_GREEN),
+    ("MISMATCH", RED),
+    ("NO VERDICT", YELLOW),
+];
+
+/// A line whose beginning says how things are, with that in colour.
+pub(crate) fn message(line: &str) -> String {
+    let known = BEGINNINGS.iter().find(|(beginning, _)| line.starts_with(beginning));
+    known.map_or_else(
+        || line.to_owned(),
+        |(beginning, style)| styled(*style, beginning) + &line[beginning.len()..],
+    )
+}
+
+fn styled(style: Style, text: &str) -> String {
+    format!("{style}{text}{style:#}")
+}
