@@ -48,6 +48,9 @@ pub(crate) struct Args {
     output: Option<PathBuf>,
     #[command(flatten)]
     motion: MotionArgs,
+    /// Radius of the circle of the closed loop, in the unit of the first axis [default: what the limits of the axes suit]
+    #[arg(long, allow_negative_numbers = true)]
+    radius: Option<f64>,
     /// Simulator [default: verilator; rusthdl, the weaker check, where Verilator is missing]
     #[arg(long)]
     simulator: Option<Simulator>,
@@ -76,6 +79,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let board = sopc::board(machine, &args.machine)?;
     let built = Built::new(&design, &args.machine)?;
     let moves = args.motion.moves(machine, built.stage.is_some())?;
+    let circle = closed_loop::circle(machine, args.radius, built.stage.is_some())?;
     let command = args.motion.command.as_deref();
     let words = command::words(machine, &design.design, command, &moves)?;
     let simulator = Simulator::choose(args.simulator)?;
@@ -120,6 +124,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         let job = closed_loop::Job {
             machine,
             moves: &moves,
+            circle: circle.clone(),
             path: &args.machine,
             stage,
             sources: &all,

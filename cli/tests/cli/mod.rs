@@ -15,6 +15,7 @@ mod folder;
 mod fuzz;
 mod hardware;
 mod kit;
+mod moves;
 mod new;
 mod outputs;
 mod replay;

@@ -211,7 +211,7 @@ fn cli_a_torque_drive_whose_wrong_sign_nothing_sees_is_warned_of() {
 }
 
 /// The XY stage, quick to simulate: a slower clock, and limits at which the move is short.
-fn quick() -> String {
+pub(super) fn quick() -> String {
     let text = std::fs::read_to_string(example("xy-stage.toml")).unwrap();
     text.replace("frequency_hz = 50_000_000", "frequency_hz = 10_000_000")
         .replace("following_error = 0.001", "following_error = 0.0005")
@@ -221,7 +221,7 @@ fn quick() -> String {
 }
 
 /// `run --json` of a machine: exit status, document and what was said.
-fn run(text: &str, arguments: &[&str]) -> (Option<i32>, serde_json::Value, String, tempfile::TempDir) {
+pub(super) fn run(text: &str, arguments: &[&str]) -> (Option<i32>, serde_json::Value, String, tempfile::TempDir) {
     let (folder, file) = scratch(text);
     let output = folder.path().join("out");
     let mut run = posicast();
@@ -297,56 +297,6 @@ fn cli_run_without_verilator_runs_the_loop_in_the_model_and_a_fault_is_exit_stat
         );
         assert!(svg.matches("<polyline").count() > 4, "{name}: no curves");
     }
-}
-
-#[test]
-fn cli_run_moves_each_axis_as_far_and_as_fast_as_it_is_told() {
-    let told = ["--simulator", "rusthdl", "--move", "x=4e-3,y=-3e-3", "--speed", "0.2"];
-    let (status, document, said, _folder) = run(&quick(), &told);
-    assert_eq!(status, Some(0), "{said} {document}");
-    let checks = document["checks"].as_array().unwrap();
-    let moved = |check: &&serde_json::Value| check["name"] == "the command moves every axis";
-    let detail = &checks.iter().find(moved).unwrap()["detail"];
-    assert_eq!(detail, "x by 4000 counts, y by 3000 counts");
-}
-
-#[test]
-fn cli_a_move_that_cannot_be_is_refused_with_its_option_and_a_remedy() {
-    let folder = tempfile::tempdir().unwrap();
-    let command = folder.path().join("command.csv");
-    std::fs::write(&command, "time_s,position\n0,0\n0.1,0.01\n").unwrap();
-    let command = command.to_str().unwrap();
-    let cases: [(&[&str], &str); 8] = [
-        (
-            &["--move", "0"],
-            "--move, axis `x`: a move of 0 moves nothing: give a distance in m",
-        ),
-        (
-            &["--move", "y=-0.3"],
-            "--move, axis `y`: a move of -0.3 m goes from 0 m to -0.3 m, beyond the travel of -0.1 m to 0.1 m: give",
-        ),
-        (&["--move", "1e-9"], "less than one: give at least 0.000001 m"),
-        (&["--move", "z=1"], "--move: there is no axis `z`"),
-        (&["--move", "far"], "`far` is not a number"),
-        (
-            &["--speed", "0.3"],
-            "--speed, axis `x`: a speed of 0.3 m/s is above the axis's velocity limit of 0.25 m/s",
-        ),
-        (&["--speed", "-1"], "--speed, axis `x`: a speed of -1 moves nothing"),
-        (
-            &["--command", command, "--move", "0.01"],
-            "--move: the command file says how the axes move",
-        ),
-    ];
-    for (arguments, expected) in cases {
-        let mut simulate = posicast();
-        simulate.arg("simulate").arg(example("xy-stage.toml")).args(arguments);
-        let refused = simulate.current_dir(folder.path()).output().unwrap();
-        let said = String::from_utf8_lossy(&refused.stderr).into_owned();
-        assert_eq!((refused.status.code(), refused.stdout.len()), (Some(2), 0), "{said}");
-        assert!(said.contains(expected), "{arguments:?}: {said}");
-    }
-    assert!(!folder.path().join("xy_stage.vcd").exists());
 }
 
 /// Name and detail of each check that failed.

@@ -19,6 +19,8 @@ const PART_ALONG_PATH: f64 = 0.5;
 const PART_OF_SPEED: f64 = 0.5;
 /// The same of the room in the travel.
 const PART_OF_TRAVEL: f64 = 0.9;
+/// Counts that the position's words reach.
+const LARGEST_COUNTS: u32 = 1 << 23;
 /// Least radius in counts, below which steps of the encoders are all that is seen.
 const LEAST_RADIUS_COUNTS: f64 = 100.0;
 /// Entries that a FIFO holds beside those that it may still have when it calls itself low.
@@ -81,10 +83,20 @@ pub enum NoCircle {
         /// Least radius.
         least: String,
     },
-    /// At their limits the axes go round a circle that the encoders do not see.
-    #[error(
-        "at the limits of axes {x} and {y} its radius is {radius}, and {least} is the least that their encoders tell"
-    )]
+    /// A radius that was asked for does not fit the travel.
+    #[error("the travel of axes {x} and {y} has room for a radius of {room}, less than {radius}")]
+    TooLarge {
+        /// The first axis.
+        x: String,
+        /// The second.
+        y: String,
+        /// The radius.
+        radius: String,
+        /// Largest radius.
+        room: String,
+    },
+    /// A radius that the encoders do not see: of the limits of the axes, or asked for.
+    #[error("its radius is {radius}, and {least} is the least that the encoders of axes {x} and {y} tell")]
     TooSmall {
         /// The first axis.
         x: String,
@@ -103,6 +115,18 @@ impl Circle {
     /// # Errors
     /// [`NoCircle`] where there is none.
     pub fn of_machine(machine: &Machine) -> Result<Self, NoCircle> {
+        Self::fitting(machine, None)
+    }
+
+    /// The same with a radius in m, or rad.
+    ///
+    /// # Errors
+    /// [`NoCircle`], also where the radius does not fit.
+    pub fn with_radius(machine: &Machine, radius: f64) -> Result<Self, NoCircle> {
+        Self::fitting(machine, Some(radius))
+    }
+
+    fn fitting(machine: &Machine, asked: Option<f64>) -> Result<Self, NoCircle> {
         let [x, y, ..] = machine.axes.as_slice() else {
             return Err(NoCircle::OneAxis);
         };
@@ -129,9 +153,10 @@ impl Circle {
             travel.map_or([f64::INFINITY; 2], |[low, high]| [-low, high].map(|room| room.max(0.0)))
         };
         let ([left, right], [below, above]) = (travel(x), travel(y));
-        let room = PART_OF_TRAVEL * (left.max(right) / 2.0).min(below.min(above));
+        let of_words = f64::from(LARGEST_COUNTS) / x.loop_counts_per_unit().max(y.loop_counts_per_unit());
+        let room = PART_OF_TRAVEL * (left.max(right).min(of_words) / 2.0).min(below.min(above));
         let towards_speed = speed * speed / towards_centre;
-        let radius = towards_speed.min(room);
+        let radius = asked.unwrap_or(towards_speed.min(room));
         let circle = Self {
             radius,
             speed: speed.min((towards_centre * radius).sqrt()),
@@ -140,19 +165,26 @@ impl Circle {
             side: if right > left { -1.0 } else { 1.0 },
         };
         let least = LEAST_RADIUS_COUNTS / x.loop_counts_per_unit().min(y.loop_counts_per_unit());
-        if radius >= least {
+        if radius >= least && radius <= room {
             return Ok(circle);
         }
+        let (too_large, no_room) = (radius > room, room < least);
         let [x_name, y_name] = of_axes.map(|axis| axis.name.clone());
-        let [radius, least] = [radius, least].map(|length| x.unit.show_round(length, ""));
-        Err(match room < towards_speed {
-            true => NoCircle::NoRoom {
+        let [radius, room, least] = [radius, room, least].map(|length| x.unit.show_round(length, ""));
+        Err(match (no_room, too_large) {
+            (true, _) => NoCircle::NoRoom {
                 x: x_name,
                 y: y_name,
-                room: radius,
+                room,
                 least,
             },
-            false => NoCircle::TooSmall {
+            (false, true) => NoCircle::TooLarge {
+                x: x_name,
+                y: y_name,
+                radius,
+                room,
+            },
+            (false, false) => NoCircle::TooSmall {
                 x: x_name,
                 y: y_name,
                 radius,

@@ -78,6 +78,8 @@ enum Done {
 pub(crate) struct Job<'a> {
     pub(crate) machine: &'a Machine,
     pub(crate) moves: &'a [AxisMove],
+    /// The circle; the reason where there is none.
+    pub(crate) circle: Result<Circle, String>,
     pub(crate) path: &'a Path,
     pub(crate) stage: &'a Stage,
     pub(crate) sources: &'a Sources,
@@ -91,7 +93,7 @@ impl<'a> Job<'a> {
         let refused = |error| failure(error, self.path);
         let own = StageRun::with_moves(self.machine, &self.stage.of_machine.config, self.seed, self.moves)
             .map_err(refused)?;
-        let circle = Circle::of_machine(self.machine).map_err(|reason| reason.to_string());
+        let circle = self.circle.clone();
         let delays = |equal| {
             circle.clone()?;
             let run = StageRun::with_delays(self.machine, equal, self.seed).map_err(|error| error.to_string())?;
@@ -193,6 +195,29 @@ impl<'a> Job<'a> {
                 None => None,
             },
         })
+    }
+}
+
+/// The circle of a run, with the radius that `--radius` gives in the unit of the first axis. None is a reason for the report, unless one
+/// was asked for.
+pub(crate) fn circle(
+    machine: &Machine,
+    radius: Option<f64>,
+    has_stage: bool,
+) -> Result<Result<Circle, String>, Failure> {
+    let refused = |reason: String| {
+        Failure::from(miette::miette!(
+            help = "leave out --radius, or give one that fits",
+            "--radius: no circle is driven: {reason}"
+        ))
+    };
+    match (radius, machine.axes.first()) {
+        (Some(_), _) if !has_stage => Err(refused("the machine has no stage".to_owned())),
+        (Some(radius), Some(axis)) => {
+            let circle = Circle::with_radius(machine, axis.unit.to_si(radius));
+            circle.map(Ok).map_err(|reason| refused(reason.to_string()))
+        }
+        _ => Ok(Circle::of_machine(machine).map_err(|reason| reason.to_string())),
     }
 }
 
