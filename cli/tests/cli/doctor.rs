@@ -61,7 +61,10 @@ fn what_run_lacks_is_named_with_its_package() {
     let output = doctor(folder.path()).arg("--json").output().unwrap();
     assert_eq!(output.status.code(), Some(1));
     let said = String::from_utf8(output.stderr).unwrap();
-    assert_eq!(said, "posicast: `posicast run` needs verilator: apt install verilator\n");
+    assert_eq!(
+        said,
+        "posicast: `posicast run` needs verilator: apt install verilator\n"
+    );
     let document = json(&output.stdout);
     assert_eq!(document["ready"], false);
     assert_eq!(document["missing"], serde_json::json!(["verilator"]));

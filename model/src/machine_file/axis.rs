@@ -1,5 +1,6 @@
 //! `[[axis]]` and `[[axis.mode]]`, and which of an axis's blocks need each other.
 
+use super::hint::{self, KILO};
 use super::key::{Default, Key, Values};
 use super::range::{COUNTS_PER_UNIT, NumberRange};
 use super::table::Table;
@@ -9,7 +10,7 @@ use super::{
 };
 use crate::mode::Mode;
 use crate::rtl::shaper::MOTION_WORD_BITS;
-use crate::unit::AxisUnit;
+use crate::unit::{AxisUnit, short};
 
 /// Modes of an axis: with five impulses each their convolution has 390,625, far more than any table holds.
 const MAX_MODES: usize = 8;
@@ -17,6 +18,10 @@ const MAX_MODES: usize = 8;
 const FREQUENCY_HZ: NumberRange = NumberRange::closed(1e-3, 1e9).unit("Hz");
 /// Damping ratio of a mode that rings.
 const DAMPING: NumberRange = NumberRange::closed(0.0, 1.0).open_above();
+/// Where the figures of a mode come from.
+pub(super) const MEASURE: &str = "docs/modes.md says how to measure frequency and damping";
+/// A sample rate below this is most likely given in kHz.
+const LIKELY_SAMPLE_HZ: f64 = 100.0;
 /// Weights of the modes.
 const PARTICIPATION: NumberRange = NumberRange::closed(0.0, 1e9);
 
@@ -223,15 +228,23 @@ fn check_needs(axis: &Table<'_, '_>) {
     for Need { block, others, allowed } in NEEDS {
         let missing: Vec<String> = others
             .iter()
-            .filter(|other| !axis.has(other))
+            .filter(|other| axis.lacks(other))
             .map(|other| format!("[axis.{other}]"))
             .collect();
         if axis.has(block) && !missing.is_empty() {
-            let missing = missing.join(" and ");
+            let missing = listed(&missing);
             let found = format!("[axis.{block}] without {missing}");
             let remedy = format!("add {missing}, or remove [axis.{block}]");
             axis.contradiction(block, found, allowed, remedy);
         }
+    }
+}
+
+/// `a, b and c`.
+fn listed(words: &[String]) -> String {
+    match words {
+        [first @ .., last] if !first.is_empty() => format!("{} and {last}", first.join(", ")),
+        words => words.concat(),
     }
 }
 
@@ -258,7 +271,9 @@ fn read_modes<'r, 't>(axis: &Table<'r, 't>, clock: Option<ClockSection>) -> Opti
 
 fn read_mode(table: &Table<'_, '_>, clock: Option<ClockSection>) -> Option<AxisMode> {
     table.allow(MODE_KEYS);
-    let damping = table.required_number("damping", DAMPING);
+    let remedy = format!("add `damping`, the part of critical damping: a steel frame has 0.005 to 0.05; {MEASURE}");
+    table.require_with("damping", DAMPING, remedy);
+    let damping = table.number("damping", DAMPING);
     let frequency = read_frequency(table, damping, clock);
     let kind = shaper::kind(table, "shaper");
     let tolerance = table.number("tolerance", shaper::TOLERANCE);
@@ -289,10 +304,11 @@ fn read_frequency(table: &Table<'_, '_>, damping: Option<f64>, clock: Option<Clo
             return None;
         }
         (false, false) => {
-            table.require(
-                undamped,
-                format_args!("{FREQUENCY_HZ}, or damped_frequency_hz in its place"),
-            );
+            // Whichever of the two is misspelt is there.
+            if table.lacks(undamped) && table.lacks(damped) {
+                let allowed = format!("{FREQUENCY_HZ}, or damped_frequency_hz in its place");
+                table.require_with(undamped, allowed, format!("add `frequency_hz`; {MEASURE}"));
+            }
             return None;
         }
         (true, false) => undamped,
@@ -307,19 +323,27 @@ fn read_frequency(table: &Table<'_, '_>, damping: Option<f64>, clock: Option<Clo
     let half = clock?.sample_hz / 2.0;
     if frequency_hz >= half {
         let converted = if key == damped {
-            format!(", an undamped frequency of {frequency_hz} Hz")
+            format!(", an undamped frequency of {} Hz", short(frequency_hz))
         } else {
             String::new()
         };
         let found = format!("{}{converted}", table.quote(key));
-        let allowed = format!("below {half} Hz, half of clock.sample_hz");
-        table.contradiction(
-            key,
-            found,
-            allowed,
-            "raise clock.sample_hz above twice the mode's frequency, or leave the mode out",
-        );
+        let allowed = format!("below {} Hz, half of clock.sample_hz", short(half));
+        table.contradiction(key, found, allowed, above_half_remedy(frequency_hz, 2.0 * half));
         return None;
     }
     Some(frequency_hz)
+}
+
+/// What to do about a mode that the samples cannot follow.
+fn above_half_remedy(mode_hz: f64, sample_hz: f64) -> String {
+    let right = |hz: f64| sample_hz < LIKELY_SAMPLE_HZ && hz > 2.0 * mode_hz;
+    let otherwise = format!(
+        "raise clock.sample_hz above {} Hz, twice the mode's frequency, or leave the mode out",
+        short(2.0 * mode_hz)
+    );
+    match hint::in_other_unit("clock.sample_hz", sample_hz, &KILO, right) {
+        Some(hint) => format!("{hint}; else {otherwise}"),
+        None => otherwise,
+    }
 }

@@ -3,6 +3,7 @@
 mod blocks;
 mod errors;
 mod files;
+mod hints;
 mod limits;
 mod not_built;
 mod prop;
