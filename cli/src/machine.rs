@@ -105,11 +105,11 @@ pub(crate) fn of_design(machine: &Machine, error: &DesignError, path: &Path) -> 
     );
     let mode = mode.map_or_else(String::new, |mode| format!(", mode {}", mode + 1));
     let name = &machine.axes[axis].name;
-    let message = format!(
-        "{}{}: {key} of axis {name}{mode}: {error}",
-        file.display(),
-        line_of(&file, axis, &indexed)
-    );
+    let reason = error.to_string();
+    // The place says which axis it is.
+    let reason = reason.strip_prefix(&format!("axis {name}: ")).unwrap_or(&reason);
+    let line = line_of(&file, axis, &indexed);
+    let message = format!("{}{line}: {key} of axis {name}{mode}: {reason}", file.display());
     Failure::from(match remedy {
         Some(remedy) => miette::miette!(help = remedy, "{message}"),
         None => miette::miette!("{message}"),
