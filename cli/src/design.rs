@@ -29,8 +29,8 @@ use std::path::{Path, PathBuf};
 use delay::{DelayDocument, StageDocument};
 pub(crate) use document::Document;
 use document::{
-    AxisDocument, ClassDocument, CrossGainDocument, ImpulseDocument, ModeDocument, QuantisedDocument, ResidualDocument,
-    SolutionDocument, TapDocument,
+    AxisDocument, ClassDocument, CrossGainDocument, FreeDocument, ImpulseDocument, ModeDocument, QuantisedDocument,
+    ResidualDocument, SolutionDocument, TapDocument,
 };
 pub(crate) use sensitivity::sensitivity_panels;
 
@@ -228,9 +228,14 @@ impl AxisReport<'_> {
             modes: self
                 .modes
                 .iter()
-                .map(|m| ModeDocument {
+                .zip(&self.axis.modes)
+                .map(|(m, of_file)| ModeDocument {
                     frequency_hz: m.mode.frequency_hz,
                     damping: m.mode.damping,
+                    free: of_file.free.map(|free| FreeDocument {
+                        frequency_hz: free.frequency_hz,
+                        damping: free.damping,
+                    }),
                     residual: m.residual,
                     insensitivity: m.insensitivity.map(|i| (i.low, i.high)),
                 })
@@ -372,7 +377,21 @@ impl AxisReport<'_> {
                 range,
             ]);
         }
-        format!("\n{}", table.text("  "))
+        let mut text = format!("\n{}", table.text("  "));
+        for (index, mode) in self.axis.modes.iter().enumerate() {
+            if let Some(free) = mode.free {
+                let _ = writeln!(
+                    text,
+                    "  mode {}: measured with the motor free at {:.3} Hz, damping {:.4}; designed for the motor held, {:.3} Hz and {:.4}",
+                    index + 1,
+                    free.frequency_hz,
+                    free.damping,
+                    mode.mode.frequency_hz,
+                    mode.mode.damping,
+                );
+            }
+        }
+        text
     }
 }
 

@@ -39,6 +39,7 @@ mod hint;
 mod key;
 mod limits;
 mod machine;
+mod mode;
 mod names;
 mod place;
 mod pwm;
@@ -353,8 +354,10 @@ impl ShaperChoice {
 /// `[[axis.mode]]`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AxisMode {
-    /// Frequency and damping.
+    /// Frequency and damping with the motor held: what the shaper is for.
     pub mode: Mode,
+    /// The mode as the file gives it, where that was measured with the motor free and converted to `mode`.
+    pub free: Option<Mode>,
     /// The mode's own kind, instead of the axis's.
     pub shaper: Option<ShaperKind>,
     /// The mode's own tolerance, instead of the axis's.

@@ -229,7 +229,7 @@ pub(super) fn check(
         let allowed = "at least one [[axis.mode]], except with kind custom or none";
         let remedy = format!(
             "add [[axis.mode]] with frequency_hz and damping, or choose kind \"custom\" or \"none\"; {}",
-            super::axis::MEASURE
+            super::mode::MEASURE
         );
         axis.contradiction("mode", "an axis without modes", allowed, remedy);
     } else if kind.is_none() && axis.lacks("shaper") && modes.iter().any(|(_, mode)| mode.shaper.is_none()) {
