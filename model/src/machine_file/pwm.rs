@@ -125,11 +125,10 @@ pub(super) fn read(table: &Table<'_, '_>, clock: Option<ClockSection>) -> Option
         minimum_pulse_s: table.number("minimum_pulse_s", SHORT_S).unwrap_or(0.0),
         active_low: table.boolean("active_low").unwrap_or(false),
     };
-    if let Some(clock) = clock {
-        if check_frequency(table, pwm.frequency_hz, &clock) {
-            check_pulse(table, &pwm, &clock);
-            check_counters(table, &pwm, &clock);
-        }
+    // What follows of a refused period would be told of the wrong one.
+    if let Some(clock) = clock.filter(|clock| check_frequency(table, pwm.frequency_hz, clock)) {
+        check_pulse(table, &pwm, &clock);
+        check_counters(table, &pwm, &clock);
     }
     mode.map(|_| pwm)
 }
