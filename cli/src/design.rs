@@ -11,6 +11,7 @@ use crate::guards;
 use crate::machine;
 use crate::output::{self, Table, UnitDocument, percent};
 use crate::plot;
+use crate::sopc;
 use crate::tolerance::beyond_tolerance;
 use posicast_model::analysis::INSENSITIVITY_LIMIT;
 use posicast_model::design::ratios::Class;
@@ -19,6 +20,7 @@ use posicast_model::design::{
 };
 use posicast_model::hardware::{Hardware, HardwareError};
 use posicast_model::machine_file::{AxisSection, Machine};
+use posicast_model::unit::counted;
 use posicast_system::output::OutputFiles;
 use posicast_testbench::wave::write_text;
 use std::fmt::Write;
@@ -27,8 +29,8 @@ use std::path::{Path, PathBuf};
 use delay::{DelayDocument, StageDocument};
 pub(crate) use document::Document;
 use document::{
-    AxisDocument, ClassDocument, CrossGainDocument, ImpulseDocument, ModeDocument, QuantisedDocument, ResidualDocument,
-    SolutionDocument, TapDocument,
+    AxisDocument, ClassDocument, CrossGainDocument, FreeDocument, ImpulseDocument, ModeDocument, QuantisedDocument,
+    ResidualDocument, SolutionDocument, TapDocument,
 };
 pub(crate) use sensitivity::sensitivity_panels;
 
@@ -70,6 +72,8 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         plot::check_name("--plot", path)?;
     }
     output::one_document(&outputs, args.json)?;
+    // What `generate` would refuse is said here too.
+    sopc::board(&machine, &args.machine)?;
     let report = DesignReport::new(&machine, &args.machine)?;
     report.warn();
     if let Some(path) = &args.plot {
@@ -96,7 +100,7 @@ pub(crate) struct DesignReport<'a> {
 impl<'a> DesignReport<'a> {
     /// Designs the shapers of `machine`, which the file at `path` describes.
     pub(crate) fn new(machine: &'a Machine, path: &Path) -> Result<Self, Failure> {
-        let design = design_machine(machine).map_err(|e| Failure::because(e).in_file(path))?;
+        let design = design_machine(machine).map_err(|error| machine::of_design(machine, &error, path))?;
         let hardware = Hardware::of(machine, &design).map_err(|error| machine::of_hardware(&error, path))?;
         let controllers = control::of_machine(machine, &hardware);
         Ok(Self {
@@ -148,9 +152,9 @@ impl<'a> DesignReport<'a> {
     fn text(&self) -> String {
         let clock = &self.machine.clock;
         let mut text = format!(
-            "{}: {} axes, {} MHz clock, {} Hz samples, coefficients with {} fraction bits\n",
+            "{}: {}, {} MHz clock, {} Hz samples, coefficients with {} fraction bits\n",
             self.machine.name,
-            self.machine.axes.len(),
+            counted(self.machine.axes.len(), "axis", "axes"),
             clock.frequency_hz / 1e6,
             clock.sample_hz,
             self.design.coefficient_fraction,
@@ -224,9 +228,14 @@ impl AxisReport<'_> {
             modes: self
                 .modes
                 .iter()
-                .map(|m| ModeDocument {
+                .zip(&self.axis.modes)
+                .map(|(m, of_file)| ModeDocument {
                     frequency_hz: m.mode.frequency_hz,
                     damping: m.mode.damping,
+                    free: of_file.free.map(|free| FreeDocument {
+                        frequency_hz: free.frequency_hz,
+                        damping: free.damping,
+                    }),
                     residual: m.residual,
                     insensitivity: m.insensitivity.map(|i| (i.low, i.high)),
                 })
@@ -265,10 +274,10 @@ impl AxisReport<'_> {
         let sums = impulses.partial_sums();
         let _ = writeln!(
             text,
-            "axis {}: {}, {} impulses, duration {:.4} ms, delay {:.4} ms, partial sums {:.4} … {:.4}",
+            "axis {}: {}, {}, duration {:.4} ms, delay {:.4} ms, partial sums {:.4} … {:.4}",
             self.axis.name,
             self.tables.design.kind,
-            impulses.impulses().len(),
+            counted(impulses.impulses().len(), "impulse", "impulses"),
             impulses.duration_s() * 1e3,
             impulses.delay_s() * 1e3,
             sums.min,
@@ -289,8 +298,8 @@ impl AxisReport<'_> {
         let taps = self.tables.table.taps();
         let _ = writeln!(
             text,
-            "\n  {} taps at {sample_hz} Hz, digitised {}, sum {}",
-            taps.len(),
+            "\n  {} at {sample_hz} Hz, digitised {}, sum {}",
+            counted(taps.len(), "tap", "taps"),
             self.tables.digitised.method_used,
             taps.iter().map(|t| i64::from(t.coefficient)).sum::<i64>(),
         );
@@ -368,7 +377,21 @@ impl AxisReport<'_> {
                 range,
             ]);
         }
-        format!("\n{}", table.text("  "))
+        let mut text = format!("\n{}", table.text("  "));
+        for (index, mode) in self.axis.modes.iter().enumerate() {
+            if let Some(free) = mode.free {
+                let _ = writeln!(
+                    text,
+                    "  mode {}: measured with the motor free at {:.3} Hz, damping {:.4}; designed for the motor held, {:.3} Hz and {:.4}",
+                    index + 1,
+                    free.frequency_hz,
+                    free.damping,
+                    mode.mode.frequency_hz,
+                    mode.mode.damping,
+                );
+            }
+        }
+        text
     }
 }
 

@@ -33,7 +33,7 @@ impl Failure {
         match self {
             Self::Input(report) => {
                 let help = report.help().map(|help| help.to_string());
-                let message = format!("{}: {report}", path.display());
+                let message = format!("{}: {}", path.display(), with_causes(&report));
                 Self::Input(match help {
                     Some(help) => miette::miette!(help = help, "{message}"),
                     None => miette::miette!("{message}"),
@@ -72,6 +72,23 @@ impl Failure {
 }
 
 fn write_plain(err: &mut impl Write, report: &miette::Report) -> std::io::Result<()> {
+    writeln!(err, "error: {}", with_causes(report))?;
+    write_help(err, report.help())?;
+    for related in report.related().into_iter().flatten() {
+        writeln!(err, "error: {related}")?;
+        write_help(err, related.help())?;
+    }
+    Ok(())
+}
+
+/// Each line of a help as one of its own that a log can be searched for.
+fn write_help(err: &mut impl Write, help: Option<Box<dyn fmt::Display + '_>>) -> std::io::Result<()> {
+    let help = help.map_or_else(String::new, |help| help.to_string());
+    help.lines().try_for_each(|line| writeln!(err, "help: {line}"))
+}
+
+/// A message with those of its causes.
+fn with_causes(report: &miette::Report) -> String {
     let mut message = report.to_string();
     for cause in report.chain().skip(1) {
         let cause = cause.to_string();
@@ -81,17 +98,7 @@ fn write_plain(err: &mut impl Write, report: &miette::Report) -> std::io::Result
             message.push_str(&cause);
         }
     }
-    writeln!(err, "error: {message}")?;
-    if let Some(help) = report.help() {
-        writeln!(err, "help: {help}")?;
-    }
-    for related in report.related().into_iter().flatten() {
-        writeln!(err, "error: {related}")?;
-        if let Some(help) = related.help() {
-            writeln!(err, "help: {help}")?;
-        }
-    }
-    Ok(())
+    message
 }
 
 impl From<miette::Report> for Failure {

@@ -1,13 +1,14 @@
 //! Reading the machine file, and saying which of its keys is to blame.
 
 use crate::failure::Failure;
+use posicast_model::design::{DesignBlame, DesignError, blame};
 use posicast_model::hardware::HardwareError;
 use posicast_model::machine_file::{self, Machine};
 use posicast_synth::yosys::Family;
 use std::fmt;
 use std::fs::File;
 use std::io::Read;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// A machine file is a page of text; anything far beyond is some other file named by mistake.
 const LARGEST_FILE_BYTES: u64 = 1 << 20;
@@ -25,7 +26,7 @@ pub(crate) fn read(path: &Path) -> Result<MachineFile, Failure> {
     let name = path.display().to_string();
     let unreadable = |found: &dyn std::fmt::Display| {
         Failure::from(miette::miette!(
-            help = "name a machine file, such as examples/xy-stage.toml",
+            help = "name a machine file, such as examples/xy-stage.toml; `posicast new FILE` writes one",
             "cannot read the machine file `{name}`: {found}"
         ))
     };
@@ -66,14 +67,53 @@ pub(crate) fn family(machine: &Machine) -> Result<Family, Failure> {
 
 /// Bad input at a key of the machine file at `path`, or of that in the folder; `axis` counts the axes from 0.
 pub(crate) fn at_key(path: &Path, axis: usize, key: &str, reason: impl fmt::Display) -> Failure {
-    let file = match path.is_dir() {
+    let file = file_of(path);
+    let line = line_of(&file, axis, key);
+    Failure::from(miette::miette!("{}{line}: {key}: {reason}", file.display()))
+}
+
+/// `:LINE` of a key, as it follows the file's name.
+fn line_of(file: &Path, axis: usize, key: &str) -> String {
+    // The file was read before; where it is gone, the key must do.
+    let text = std::fs::read_to_string(file).unwrap_or_default();
+    machine_file::line_of(&text, axis, key).map_or_else(String::new, |line| format!(":{line}"))
+}
+
+/// The machine file, where `path` may be the folder that it is in.
+fn file_of(path: &Path) -> PathBuf {
+    match path.is_dir() {
         true => path.join("machine.toml"),
         false => path.to_owned(),
+    }
+}
+
+/// The failure of a design that the machine file at `path`, or that in the folder, asks for.
+pub(crate) fn of_design(machine: &Machine, error: &DesignError, path: &Path) -> Failure {
+    let file = file_of(path);
+    let Some(DesignBlame {
+        axis,
+        mode,
+        key,
+        remedy,
+    }) = blame(machine, error)
+    else {
+        return Failure::from(miette::miette!("{}: {error}", file.display()));
     };
-    // The file was read before; where it is gone, the key must do.
-    let text = std::fs::read_to_string(&file).unwrap_or_default();
-    let line = machine_file::line_of(&text, axis, key).map_or_else(String::new, |line| format!(":{line}"));
-    Failure::from(miette::miette!("{}{line}: {key}: {reason}", file.display()))
+    let indexed = mode.map_or_else(
+        || key.clone(),
+        |mode| key.replacen("axis.mode", &format!("axis.mode[{mode}]"), 1),
+    );
+    let mode = mode.map_or_else(String::new, |mode| format!(", mode {}", mode + 1));
+    let name = &machine.axes[axis].name;
+    let reason = error.to_string();
+    // The place says which axis it is.
+    let reason = reason.strip_prefix(&format!("axis {name}: ")).unwrap_or(&reason);
+    let line = line_of(&file, axis, &indexed);
+    let message = format!("{}{line}: {key} of axis {name}{mode}: {reason}", file.display());
+    Failure::from(match remedy {
+        Some(remedy) => miette::miette!(help = remedy, "{message}"),
+        None => miette::miette!("{message}"),
+    })
 }
 
 /// The failure of hardware that the machine file at `path`, or that in the folder, asks for.

@@ -11,6 +11,7 @@ use crate::failure::Failure;
 use crate::hardware::Built;
 use crate::output;
 use crate::{blocks, command, machine, moves, replay};
+use posicast_model::spelling::did_you_mean;
 use posicast_synth::package;
 use posicast_testbench::blocks::{Block, ShortTicksBlock, Sources, StageBlock};
 use posicast_testbench::lockstep::report::{LockstepReport, LockstepVerdict};
@@ -230,8 +231,10 @@ fn choose(blocks: Vec<Box<dyn Block>>, names: &[String], source: &Path) -> Resul
     known.sort_unstable();
     known.dedup();
     if let Some(unknown) = names.iter().find(|name| !known.contains(name)) {
+        let names: Vec<&str> = known.iter().map(String::as_str).collect();
+        let near = did_you_mean(unknown, &names, '`').map_or_else(String::new, |question| format!("{question} Else "));
         return Err(Failure::from(miette::miette!(
-            help = format!("choose from: {}", known.join(", ")),
+            help = format!("{near}choose from: {}", known.join(", ")),
             "--block {unknown}: `{}` has no block of this name",
             source.display()
         )));

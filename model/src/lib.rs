@@ -24,5 +24,6 @@ pub mod papers;
 pub mod plant;
 pub mod rtl;
 pub mod simulation;
+pub mod spelling;
 pub mod taps;
 pub mod unit;

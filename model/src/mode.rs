@@ -42,6 +42,23 @@ impl Mode {
         (-PI * self.damping / (1.0 - self.damping * self.damping).sqrt()).exp()
     }
 
+    /// What a mode of two masses with a spring between them becomes where the first, the motor, is held instead of free: frequency and
+    /// damping are both multiplied by `√(m_motor / (m_motor + m_load))`.
+    ///
+    /// ```text
+    /// held  ω² = k/m_load,  2ζω = c/m_load      free  ω² = k/μ,  2ζω = c/μ,  μ = m_motor·m_load/(m_motor + m_load)
+    /// ω_held/ω_free = √(μ/m_load) = r,   ζ_held/ζ_free = (μ/m_load)/r = r
+    /// ```
+    ///
+    /// The damper is beside the spring; friction to the ground is not in it.
+    pub fn with_motor_held(&self, motor_mass: f64, load_mass: f64) -> Self {
+        let ratio = (motor_mass / (motor_mass + load_mass)).sqrt();
+        Self {
+            frequency_hz: self.frequency_hz * ratio,
+            damping: self.damping * ratio,
+        }
+    }
+
     /// The same mode with its frequency multiplied by `ratio`, damping as it is: a machine that is off from its model.
     pub fn scaled(&self, ratio: f64) -> Self {
         Self {

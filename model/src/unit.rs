@@ -247,6 +247,19 @@ pub fn show_seconds(time_s: f64, digits: usize) -> String {
     format!("{} {symbol}", significant(time_s * per_s, digits))
 }
 
+/// A number for a message: a whole one as it is, another with six significant digits at most.
+pub fn short(value: f64) -> String {
+    match value.fract() == 0.0 && value.abs() < 1e15 {
+        true => value.to_string(),
+        false => trimmed(value, 6),
+    }
+}
+
+/// A number of things: `1 tap`, `2 taps`.
+pub fn counted(number: usize, one: &str, several: &str) -> String {
+    format!("{number} {}", if number == 1 { one } else { several })
+}
+
 /// The degree's ring stands at its number.
 fn space(symbol: &str) -> &'static str {
     match symbol {
@@ -365,6 +378,21 @@ mod tests {
             assert_eq!(unit.as_in_file(figure, ""), text);
         }
         assert_eq!(AxisUnit::Millimetre.as_in_file(4.0, "/s²"), "4000 mm/s²");
+    }
+
+    #[test]
+    fn unit_numbers_of_messages_are_short_and_grammatical() {
+        for (value, text) in [
+            (131.117_015_808_451, "131.117"),
+            (50e6, "50000000"),
+            (1_234.567_89, "1234.57"),
+            (0.000_012_5, "0.0000125"),
+            (f64::INFINITY, "inf"),
+        ] {
+            assert_eq!(short(value), text);
+        }
+        assert_eq!(counted(1, "axis", "axes"), "1 axis");
+        assert_eq!(counted(0, "tap", "taps"), "0 taps");
     }
 
     #[test]

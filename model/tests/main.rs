@@ -20,6 +20,7 @@ mod hump_limits;
 mod linear_scale;
 mod machine_file;
 mod matching;
+mod motor_held;
 mod papers;
 mod plant_in_loop;
 mod port_tables;

@@ -157,6 +157,47 @@ fn cli_a_gain_that_the_hardware_does_not_hold_names_its_key_and_line() {
 }
 
 #[test]
+fn cli_a_mode_in_kilohertz_names_its_line_and_the_question() {
+    let machine = one_axis("kind = \"zvd\"", "frequency_hz = 0.030\ndamping = 0.1");
+    let words = [
+        "machine.toml:11: axis.mode.frequency_hz of axis x, mode 1: ",
+        "lasts 33.50 s",
+        "help: 0.03 kHz? Frequencies are in Hz: write `frequency_hz = 30`",
+    ];
+    refused(&["design"], &machine, &words);
+    refused(&["generate"], &machine, &words);
+}
+
+#[test]
+fn cli_too_many_taps_say_what_fits() {
+    let modes = "frequency_hz = 20.0\ndamping = 0.1\n[[axis.mode]]\nfrequency_hz = 31.0\ndamping = 0.1\n\
+                 [[axis.mode]]\nfrequency_hz = 47.0\ndamping = 0.05";
+    let words = [
+        "machine.toml:8: axis.shaper of axis x: ",
+        "help: each of these fits",
+        "clock.sample_hz = ",
+    ];
+    refused(&["design"], &one_axis("kind = \"three-hump-ei\"", modes), &words);
+}
+
+#[test]
+fn cli_every_problem_has_its_remedy_in_a_pipe() {
+    let machine = one_axis("kind = \"zdv\"", "frequency_hz = 100.0\ndamping = 5");
+    let words = [
+        "help: line 9: did you mean \"zvd\"?",
+        "help: line 12: percent? 5 % is 0.05",
+    ];
+    refused(&["design"], &machine, &words);
+}
+
+#[test]
+fn cli_one_thing_is_said_in_the_singular() {
+    let (_folder, file) = scratch(&one_axis("kind = \"none\"", MODE));
+    let design = posicast().arg("design").arg(&file).assert().success();
+    design.stdout(predicate::str::contains("one: 1 axis, 50 MHz").and(predicate::str::contains("1 tap at 10000 Hz")));
+}
+
+#[test]
 fn cli_what_is_not_built_yet_says_so() {
     refused(
         &["design"],

@@ -173,3 +173,20 @@ fn cli_design_names_key_and_line_of_a_limit_that_its_word_does_not_hold() {
         format!("machine.toml:{line}: axis.limits.watchdog_s: axis x: found 6.6 s; allowed: 0.0001 to 6.5535 s");
     assert!(said.contains(&expected), "{said}");
 }
+
+#[test]
+fn cli_design_says_that_a_free_mode_was_converted() {
+    let mode = "frequency_hz = 60.0\ndamping = 0.03\nmeasured = \"free\"\nmotor_mass = 2.0\nload_mass = 2.0";
+    let (_folder, file) = scratch(&one_axis("kind = \"zvd\"", mode));
+    let text = posicast().arg("design").arg(&file).assert().success();
+    text.stdout(predicates::str::contains(
+        "mode 1: measured with the motor free at 60.000 Hz, damping 0.0300; designed for the motor held, 42.426 Hz and 0.0212",
+    ));
+    let output = posicast().arg("design").arg(&file).arg("--json").assert().success();
+    let mode = &json(&output.get_output().stdout)["axes"][0]["modes"][0];
+    assert_eq!(
+        (mode["free"]["frequency_hz"].as_f64(), mode["free"]["damping"].as_f64()),
+        (Some(60.0), Some(0.03))
+    );
+    assert!((mode["frequency_hz"].as_f64().unwrap() - 42.426_406_871).abs() < 1e-6);
+}

@@ -1,6 +1,6 @@
 //! Why an axis has no words for its supervisor: the value of the file, and the range that its word holds.
 
-use crate::unit::AxisUnit;
+use crate::unit::{AxisUnit, short};
 
 /// Why an axis has no words for its supervisor.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -14,7 +14,10 @@ pub enum SupervisionError {
         table: &'static str,
     },
     /// A value that its word does not hold.
-    #[error("axis {axis}: found {found} {unit}; allowed: {smallest} to {largest} {unit}, {reason}")]
+    #[error(
+        "axis {axis}: found {} {unit}; allowed: {} to {} {unit}, {reason}: give it a value in this range",
+        short(*found), short(*smallest), short(*largest)
+    )]
     Range {
         /// The axis.
         axis: String,

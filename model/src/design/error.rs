@@ -8,6 +8,7 @@ use super::kind::ShaperKind;
 use crate::digitise::DigitiseError;
 use crate::impulse::ImpulseError;
 use crate::mode::Mode;
+use crate::unit::short;
 
 /// Why a machine has no shapers. Every message names the axis or the mode, what is allowed, and what to do.
 #[derive(Debug, Clone, PartialEq, Error)]
@@ -32,7 +33,7 @@ pub enum DesignError {
     #[error(
         "axis {axis}, mode {hz} Hz: shaper \"{kind}\" treats all modes of an axis together; name it in [axis.shaper], \
          or give this mode a kind for one mode, such as zv, zvd or ei",
-        hz = mode.frequency_hz
+        hz = short(mode.frequency_hz)
     )]
     JointKindOfOneMode {
         /// The axis.
@@ -45,7 +46,7 @@ pub enum DesignError {
     /// A frequency or damping that no mode has.
     #[error(
         "mode {hz} Hz with damping {damping}: the frequency must be positive and finite, the damping in [0, 1)",
-        hz = mode.frequency_hz, damping = mode.damping
+        hz = short(mode.frequency_hz), damping = short(mode.damping)
     )]
     Mode {
         /// The mode.
@@ -54,7 +55,7 @@ pub enum DesignError {
     /// A tolerance that no EI shaper has.
     #[error("shaper \"{kind}\" at mode {hz} Hz: tolerance {tolerance} is none that it is solved for: take one above {least:e} and below {most}, \
          or \"zv\" or \"zvd\", which need none",
-        hz = mode.frequency_hz)]
+        hz = short(mode.frequency_hz))]
     Tolerance {
         /// The kind.
         kind: ShaperKind,
@@ -83,7 +84,7 @@ pub enum DesignError {
     /// A damping beyond those that the kind is solved for.
     #[error(
         "shaper \"{kind}\" takes a damping of 0 to {most}; the mode at {hz} Hz has {damping}: use \"{instead}\" for this mode",
-        hz = mode.frequency_hz, damping = mode.damping
+        hz = short(mode.frequency_hz), damping = short(mode.damping)
     )]
     Damping {
         /// The kind.
@@ -99,7 +100,7 @@ pub enum DesignError {
     #[error(
         "shaper \"{kind}\" at mode {hz} Hz, damping {damping}: no solution found beyond {percent:.0} % of the way from the \
          undamped shaper; use \"zv\" or \"zvd\" for this mode",
-        hz = mode.frequency_hz, damping = mode.damping, percent = 100.0 * reached
+        hz = short(mode.frequency_hz), damping = short(mode.damping), percent = 100.0 * reached
     )]
     NotSolved {
         /// The kind.
@@ -114,7 +115,7 @@ pub enum DesignError {
         "shaper \"{kind}\" with tolerance {tolerance} exists up to damping {}; the mode at {hz} Hz has \
          {damping}{}use \"zv\" or \"zvd\" for this mode",
         rounded_down(*largest_damping), tolerance_limit(*largest_tolerance),
-        hz = mode.frequency_hz, damping = mode.damping
+        hz = short(mode.frequency_hz), damping = short(mode.damping)
     )]
     NoSolution {
         /// The kind.
@@ -132,7 +133,7 @@ pub enum DesignError {
     #[error(
         "shaper \"{kind}\" at mode {hz} Hz, damping {damping}: its residual is {found:e} instead of {promised}; \
          the mode is too extreme to compute with",
-        hz = mode.frequency_hz, damping = mode.damping
+        hz = short(mode.frequency_hz), damping = short(mode.damping)
     )]
     Unverified {
         /// The kind.
@@ -187,7 +188,8 @@ impl DesignError {
         DesignError::NoSequence {
             what: format!(
                 "shaper \"{kind}\" at mode {} Hz, damping {}",
-                mode.frequency_hz, mode.damping
+                short(mode.frequency_hz),
+                short(mode.damping)
             ),
             cause,
         }

@@ -4,12 +4,13 @@ use thiserror::Error;
 
 use super::kind::ShaperKind;
 use crate::mode::Mode;
+use crate::unit::{short, show_seconds};
 
 /// Why the modes of an axis have no common shaper. Modes are counted from 1, in the order of the file.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum JointError {
     /// Two modes that are one.
-    #[error("modes {first} and {second} coincide at {hz} Hz: leave one of them out", hz = mode.frequency_hz)]
+    #[error("modes {first} and {second} coincide at {hz} Hz: leave one of them out", hz = short(mode.frequency_hz))]
     Coincident {
         /// Position of the first.
         first: usize,
@@ -23,8 +24,9 @@ pub enum JointError {
     Base(ShaperKind),
     /// An invalid search limit.
     #[error(
-        "lowest_frequency_hz {lowest_hz} with these modes means more than {most} periods to search; \
-         raise lowest_frequency_hz to {least_hz} or above"
+        "lowest_frequency_hz {lowest} with these modes means more than {most} periods to search; \
+         raise lowest_frequency_hz to {least} or above",
+        lowest = short(*lowest_hz), least = short(*least_hz)
     )]
     SearchRange {
         /// The limit found.
@@ -36,9 +38,10 @@ pub enum JointError {
     },
     /// No frequency whose odd multiples come near enough to every mode.
     #[error(
-        "no periodic solution above lowest_frequency_hz {lowest_hz}: no frequency has odd multiples within {lambda:.4} of it \
+        "no periodic solution above lowest_frequency_hz {lowest}: no frequency has odd multiples within {lambda:.4} of it \
          of every mode; use a wider base (\"chebyshev-ei\" with order 5), a larger tolerance, a smaller \
-         lowest_frequency_hz, or a kind for each mode such as \"zv\""
+         lowest_frequency_hz, or a kind for each mode such as \"zv\"",
+        lowest = short(*lowest_hz)
     )]
     NoPeriodicSolution {
         /// The search limit.
@@ -50,7 +53,7 @@ pub enum JointError {
     #[error(
         "the mode at {hz} Hz, damping {damping}, keeps a residual of {found:.6}, above its tolerance {tolerance}: the \
          amplitudes are those of undamped modes; raise the tolerance, or use a kind for each mode such as \"zvd\"",
-        hz = mode.frequency_hz, damping = mode.damping
+        hz = short(mode.frequency_hz), damping = short(mode.damping)
     )]
     AboveTolerance {
         /// The mode.
@@ -74,9 +77,10 @@ pub enum JointError {
     },
     /// No two modes share an antiperiod.
     #[error(
-        "no antisymmetry: the damped frequencies {frequencies_hz} Hz are {multiples} times {divisor_hz} Hz, and no two of \
+        "no antisymmetry: the damped frequencies {frequencies_hz} Hz are {multiples} times {divisor} Hz, and no two of \
          these multiples hold the same power of two; use a kind for each mode such as \"zv\", or set ratio_tolerance so \
-         that nearby odd multiples count"
+         that nearby odd multiples count",
+        divisor = short(*divisor_hz)
     )]
     NoAntisymmetry {
         /// The frequencies, as text.
@@ -88,8 +92,9 @@ pub enum JointError {
     },
     /// Newton's method found no three impulses.
     #[error(
-        "the equations of method \"three-impulse\" have no solution with ordered impulses near the antiperiod {antiperiod_s} s: \
-         use method \"exact\""
+        "the equations of method \"three-impulse\" have no solution with ordered impulses near the antiperiod of {antiperiod}: \
+         use method \"exact\"",
+        antiperiod = show_seconds(*antiperiod_s, 4)
     )]
     ThreeImpulse {
         /// Antiperiod.
@@ -170,6 +175,6 @@ pub(super) fn check_distinct(modes: &[Mode]) -> Result<(), JointError> {
 
 /// Frequencies as messages list them.
 pub(super) fn list(values: &[f64]) -> String {
-    let texts: Vec<String> = values.iter().map(f64::to_string).collect();
+    let texts: Vec<String> = values.iter().map(|value| short(*value)).collect();
     texts.join(", ")
 }

@@ -11,6 +11,7 @@
 
 pub mod antisymmetric;
 pub mod bias_point;
+mod blame;
 mod constraint;
 mod convolution;
 pub mod custom;
@@ -32,6 +33,7 @@ mod time_optimal;
 pub mod vibrationless;
 pub mod zv;
 
+pub use blame::{DesignBlame, blame};
 pub use convolution::{ConvolutionFigures, ConvolutionWarning, CrossGain, convolution_figures};
 pub use error::DesignError;
 pub use joint::Findings;

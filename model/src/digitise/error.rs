@@ -3,7 +3,7 @@
 use thiserror::Error;
 
 use crate::taps::{COEFFICIENT_FRACTION_MAX, COEFFICIENT_MAX, COEFFICIENT_MIN, TapTableError};
-use crate::unit::show_seconds;
+use crate::unit::{short, show_seconds};
 
 /// Longest delay in samples: the largest ring buffer, 2^14 words, less the two that writing and reading need.
 pub const DELAY_MAX_SAMPLES: u32 = (1 << 14) - 2;
@@ -31,9 +31,10 @@ pub enum DigitiseError {
     },
     /// Too long once it is as late as the slowest axis.
     #[error(
-        "axis {axis}: to be as late as axis {slowest} and [stage] extra_delay_s, it needs {added_samples} more samples of delay, \
-         which reach {found} samples back at {sample_hz} Hz; the ring buffer holds at most {DELAY_MAX_SAMPLES}: lower \
-         stage.extra_delay_s, give axis {slowest} a shorter kind, lower sample_hz, or leave the table [stage] out"
+        "axis {axis}: to be as late as axis {slowest} and [stage] extra_delay_s, it needs {} more samples of delay, \
+         which reach {found:.0} samples back at {sample_hz} Hz; the ring buffer holds at most {DELAY_MAX_SAMPLES}: lower \
+         stage.extra_delay_s, give axis {slowest} a shorter kind, lower sample_hz, or leave the table [stage] out",
+        short(*added_samples)
     )]
     MatchedDelay {
         /// The axis.
@@ -49,8 +50,8 @@ pub enum DigitiseError {
     },
     /// More taps than the largest table.
     #[error(
-        "axis {axis}: {found} taps; a table holds at most {TAPS_MAX}: use shorter kinds, fewer modes, \
-         or digitise = \"nearest\""
+        "axis {axis}: {found} taps; a table holds at most {TAPS_MAX}: use a lower sample_hz, shorter kinds, fewer modes under one \
+         shaper, or digitise = \"nearest\""
     )]
     Taps {
         /// The axis.
@@ -60,8 +61,9 @@ pub enum DigitiseError {
     },
     /// A mode faster than the samples can follow.
     #[error(
-        "axis {axis}: a mode of {frequency_hz} Hz cannot be shaped with {sample_hz} samples per second; \
-         sample_hz must be more than twice the mode's frequency"
+        "axis {axis}: a mode of {} Hz cannot be shaped with {sample_hz} samples per second; \
+         sample_hz must be more than twice the mode's frequency",
+        short(*frequency_hz)
     )]
     Nyquist {
         /// The axis.
@@ -73,8 +75,9 @@ pub enum DigitiseError {
     },
     /// Taps that cancel, or numbers out of all proportion.
     #[error(
-        "axis {axis}: on the sample grid the amplitudes sum to {sum}, too little to scale to 1; raise sample_hz, \
-         or use digitise = \"linear\""
+        "axis {axis}: on the sample grid the amplitudes sum to {}, too little to scale to 1; raise sample_hz, \
+         or use digitise = \"linear\"",
+        short(*sum)
     )]
     NoUnitSum {
         /// The axis.
@@ -84,8 +87,9 @@ pub enum DigitiseError {
     },
     /// A coefficient that 18 bits cannot hold even with one fraction bit.
     #[error(
-        "axis {axis}: a tap has the weight {weight}; coefficients of {COEFFICIENT_MIN} to {COEFFICIENT_MAX} with at least \
-         one fraction bit reach ±65535: use smaller amplitudes or a higher sample_hz"
+        "axis {axis}: a tap has the weight {}; coefficients of {COEFFICIENT_MIN} to {COEFFICIENT_MAX} with at least \
+         one fraction bit reach ±65535: use smaller amplitudes or a higher sample_hz",
+        short(*weight)
     )]
     Weight {
         /// The axis.

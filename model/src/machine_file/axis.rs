@@ -1,24 +1,14 @@
-//! `[[axis]]` and `[[axis.mode]]`, and which of an axis's blocks need each other.
+//! `[[axis]]`, and which of an axis's blocks need each other.
 
 use super::key::{Default, Key, Values};
-use super::range::{COUNTS_PER_UNIT, NumberRange};
+use super::range::COUNTS_PER_UNIT;
 use super::table::Table;
 use super::{
-    AxisMode, AxisSection, ClockSection, FixedPoint, ScaleUse, controller, drive, encoder, limits, pwm, scale, shaper,
+    AxisSection, ClockSection, FixedPoint, ScaleUse, controller, drive, encoder, limits, mode, pwm, scale, shaper,
     trace,
 };
-use crate::mode::Mode;
 use crate::rtl::shaper::MOTION_WORD_BITS;
 use crate::unit::AxisUnit;
-
-/// Modes of an axis: with five impulses each their convolution has 390,625, far more than any table holds.
-const MAX_MODES: usize = 8;
-/// A frequency before it is compared with the sample rate; below this a shaper would last for hours.
-const FREQUENCY_HZ: NumberRange = NumberRange::closed(1e-3, 1e9).unit("Hz");
-/// Damping ratio of a mode that rings.
-const DAMPING: NumberRange = NumberRange::closed(0.0, 1.0).open_above();
-/// Weights of the modes.
-const PARTICIPATION: NumberRange = NumberRange::closed(0.0, 1e9);
 
 /// The keys of `[[axis]]`.
 pub(super) const KEYS: &[Key] = &[
@@ -46,7 +36,7 @@ pub(super) const KEYS: &[Key] = &[
     ),
     Key::new(
         "mode",
-        Values::Tables(MODE_KEYS, MAX_MODES),
+        Values::Tables(mode::KEYS, mode::MAX_MODES),
         "The modes of vibration; none is allowed with kind custom or none.",
     ),
     Key::new(
@@ -70,39 +60,6 @@ pub(super) const KEYS: &[Key] = &[
     Key::new("trace", Values::Table(trace::KEYS), "Records signals of the loop."),
 ];
 
-/// The keys of `[[axis.mode]]`.
-const MODE_KEYS: &[Key] = &[
-    Key::new(
-        "frequency_hz",
-        Values::Number(FREQUENCY_HZ),
-        "Undamped natural frequency in Hz, below half of `sample_hz`.",
-    ),
-    Key::new(
-        "damped_frequency_hz",
-        Values::Number(FREQUENCY_HZ),
-        "In place of `frequency_hz`: the frequency of the ringing, f·√(1−ζ²).",
-    )
-    .instead_of("frequency_hz"),
-    Key::new("damping", Values::Number(DAMPING), "Damping ratio ζ.").required(),
-    Key::new(
-        "shaper",
-        Values::Word(shaper::of_modes),
-        "Kind of shaper for this mode, instead of the axis's.",
-    ),
-    Key::new(
-        "tolerance",
-        Values::Number(shaper::TOLERANCE),
-        "As in [axis.shaper], for this mode; else the axis's.",
-    ),
-    shaper::ORDER,
-    Key::new(
-        "participation",
-        Values::Number(PARTICIPATION),
-        "Weight of the mode in what the tool does; only ratios count.",
-    )
-    .default(Default::Number(1.0)),
-];
-
 /// Reads one axis under a name that was read before. Without a valid clock or number format the checks that need them
 /// are left out.
 pub(super) fn read(
@@ -117,7 +74,11 @@ pub(super) fn read(
     let choice = table
         .table("shaper")
         .map(|t| shaper::read(&t, clock).map(|choice| (t, choice)));
-    let modes = read_modes(table, clock);
+    let kind = choice
+        .as_ref()
+        .and_then(|choice| choice.as_ref())
+        .map(|(_, choice)| choice.kind);
+    let modes = mode::read_all(table, clock, kind);
     // A shaper that was refused is not compared with the modes: what it lacks would be reported twice.
     if let Some(modes) = modes.as_ref().filter(|_| !matches!(choice, Some(None))) {
         shaper::check(table, choice.as_ref().and_then(Option::as_ref), modes);
@@ -223,11 +184,11 @@ fn check_needs(axis: &Table<'_, '_>) {
     for Need { block, others, allowed } in NEEDS {
         let missing: Vec<String> = others
             .iter()
-            .filter(|other| !axis.has(other))
+            .filter(|other| axis.lacks(other))
             .map(|other| format!("[axis.{other}]"))
             .collect();
         if axis.has(block) && !missing.is_empty() {
-            let missing = missing.join(" and ");
+            let missing = listed(&missing);
             let found = format!("[axis.{block}] without {missing}");
             let remedy = format!("add {missing}, or remove [axis.{block}]");
             axis.contradiction(block, found, allowed, remedy);
@@ -235,91 +196,10 @@ fn check_needs(axis: &Table<'_, '_>) {
     }
 }
 
-/// Reads the modes, each with its table; `None` where one of them is refused.
-fn read_modes<'r, 't>(axis: &Table<'r, 't>, clock: Option<ClockSection>) -> Option<Vec<(Table<'r, 't>, AxisMode)>> {
-    let tables = axis.tables("mode", MAX_MODES);
-    // All are read before the first refusal ends it: every mode's problems are to be shown.
-    let modes: Vec<Option<(Table, AxisMode)>> = tables
-        .into_iter()
-        .enumerate()
-        .map(|(index, table)| {
-            let table = table.at(format!("{}, mode {}", axis.place(), index + 1));
-            read_mode(&table, clock).map(|mode| (table, mode))
-        })
-        .collect();
-    let modes: Vec<(Table, AxisMode)> = modes.into_iter().collect::<Option<_>>()?;
-    if !modes.is_empty() && modes.iter().all(|(_, mode)| mode.participation == 0.0) {
-        let found = "participation 0 in every mode";
-        let remedy = "give the mode that is seen most a participation of 1";
-        axis.contradiction("mode", found, "at least one mode with a participation above 0", remedy);
+/// `a, b and c`.
+fn listed(words: &[String]) -> String {
+    match words {
+        [first @ .., last] if !first.is_empty() => format!("{} and {last}", first.join(", ")),
+        words => words.concat(),
     }
-    Some(modes)
-}
-
-fn read_mode(table: &Table<'_, '_>, clock: Option<ClockSection>) -> Option<AxisMode> {
-    table.allow(MODE_KEYS);
-    let damping = table.required_number("damping", DAMPING);
-    let frequency = read_frequency(table, damping, clock);
-    let kind = shaper::kind(table, "shaper");
-    let tolerance = table.number("tolerance", shaper::TOLERANCE);
-    let order = shaper::order(table);
-    let participation = table.number("participation", PARTICIPATION).unwrap_or(1.0);
-    Some(AxisMode {
-        mode: Mode {
-            frequency_hz: frequency?,
-            damping: damping?,
-        },
-        shaper: kind,
-        tolerance,
-        order,
-        participation,
-    })
-}
-
-/// The undamped natural frequency in Hz, from the one of the two keys that the file gives.
-///
-/// It must lie below half the sample rate: then so does the damped frequency, where the ringing and the pole are, and
-/// `ω_d·T_s < π`, without which two taps cannot place an impulse between two samples.
-fn read_frequency(table: &Table<'_, '_>, damping: Option<f64>, clock: Option<ClockSection>) -> Option<f64> {
-    let (undamped, damped) = ("frequency_hz", "damped_frequency_hz");
-    let key = match (table.has(undamped), table.has(damped)) {
-        (true, true) => {
-            let found = "both frequency_hz and damped_frequency_hz";
-            table.contradiction(damped, found, "one of the two", "remove one of them");
-            return None;
-        }
-        (false, false) => {
-            table.require(
-                undamped,
-                format_args!("{FREQUENCY_HZ}, or damped_frequency_hz in its place"),
-            );
-            return None;
-        }
-        (true, false) => undamped,
-        (false, true) => damped,
-    };
-    let given = table.number(key, FREQUENCY_HZ)?;
-    let frequency_hz = if key == damped {
-        given / (1.0 - damping? * damping?).sqrt()
-    } else {
-        given
-    };
-    let half = clock?.sample_hz / 2.0;
-    if frequency_hz >= half {
-        let converted = if key == damped {
-            format!(", an undamped frequency of {frequency_hz} Hz")
-        } else {
-            String::new()
-        };
-        let found = format!("{}{converted}", table.quote(key));
-        let allowed = format!("below {half} Hz, half of clock.sample_hz");
-        table.contradiction(
-            key,
-            found,
-            allowed,
-            "raise clock.sample_hz above twice the mode's frequency, or leave the mode out",
-        );
-        return None;
-    }
-    Some(frequency_hz)
 }

@@ -6,7 +6,8 @@
 //! stage.toml:23: axis.mode.damping of axis x, mode 1: found 1.2; allowed: at least 0, below 1
 //! ```
 //!
-//! As a [`miette::Diagnostic`] it adds the source with a mark at each place, and the remedies as help. A handler should
+//! As a [`miette::Diagnostic`] it adds the source with a mark at each place, and the remedies as help, each with the line that it is
+//! for where there are several. A handler should
 //! not wrap lines: the plain text is meant to be searched.
 
 use std::fmt;
@@ -201,12 +202,22 @@ impl Diagnostic for SpecError {
     }
 
     fn help<'e>(&'e self) -> Option<Box<dyn fmt::Display + 'e>> {
-        let mut remedies: Vec<&str> = Vec::new();
+        let mut remedies: Vec<(&str, Vec<String>)> = Vec::new();
         for problem in &self.problems {
-            if !remedies.contains(&problem.remedy.as_str()) {
-                remedies.push(&problem.remedy);
+            let line = problem.line.to_string();
+            match remedies.iter_mut().find(|(remedy, _)| *remedy == problem.remedy) {
+                Some((_, lines)) if lines.contains(&line) => {}
+                Some((_, lines)) => lines.push(line),
+                None => remedies.push((&problem.remedy, vec![line])),
             }
         }
-        Some(Box::new(remedies.join("\n")))
+        let with_lines = |(remedy, lines): &(&str, Vec<String>)| match lines.as_slice() {
+            [line] => format!("line {line}: {remedy}"),
+            lines => format!("lines {}: {remedy}", lines.join(", ")),
+        };
+        Some(Box::new(match remedies.as_slice() {
+            [(remedy, _)] => (*remedy).to_owned(),
+            several => several.iter().map(with_lines).collect::<Vec<_>>().join("\n"),
+        }))
     }
 }

@@ -36,8 +36,6 @@ pub(super) enum Values {
     Boolean,
     /// A name that can stand in Verilog and in C.
     Name,
-    /// A text that matches a regular expression.
-    Text(&'static str),
     /// A word of this list.
     Word(fn() -> Vec<&'static str>),
     /// A list of such words, which may be empty.

@@ -1,11 +1,15 @@
 //! The tables that a machine has once: its name, `[clock]`, `[fixed_point]`, `[target]`, and the list of its axes.
 
+use super::error::ProblemCause;
+use super::hint::{self, KILO, MEGA_OR_KILO};
 use super::key::{Default, Key, Values};
 use super::range::{NumberRange, RATIO_ROUNDING};
 use super::table::Table;
 use super::{ClockSection, Digitise, FixedPoint, Machine, Target, axis, stage};
 use crate::rtl::shaper::WORD_BITS;
+use crate::spelling::same_letters;
 use crate::taps::COEFFICIENT_FRACTION_MAX;
+use crate::unit::short;
 
 /// Axes that one stage drives.
 const MAX_AXES: usize = 4;
@@ -13,8 +17,12 @@ const MAX_AXES: usize = 4;
 const CLOCK_HZ: NumberRange = NumberRange::positive(1e9).unit("Hz");
 /// Longest sample period in clocks: 100 Hz from 100 MHz. Simulators step through every one of them.
 const MAX_CLOCKS_PER_SAMPLE: f64 = 1e6;
-/// Device families.
-const FAMILIES: [&str; 5] = ["cyclone2", "cyclone4e", "cyclone10lp", "cyclone5", "max10"];
+/// Fewest clocks per sample of any machine: a pass over one tap.
+const LEAST_CLOCKS_PER_SAMPLE: f64 = 9.0;
+/// Device families, of [`Target::family`].
+pub const FAMILIES: [&str; 5] = ["cyclone2", "cyclone4e", "cyclone10lp", "cyclone5", "max10"];
+/// Boards that projects are made for, of [`Target::board`].
+pub const BOARDS: [&str; 2] = ["de1", "de1soc"];
 /// How an impulse between two samples becomes taps.
 const DIGITISE: [&str; 3] = ["modal", "linear", "nearest"];
 
@@ -93,8 +101,8 @@ const TARGET_KEYS: &[Key] = &[
     Key::new("family", Values::Word(|| FAMILIES.to_vec()), "Device family.").required(),
     Key::new(
         "board",
-        Values::Text("^[a-z0-9_-]{1,32}$"),
-        "Board; `posicast generate` knows de1 and de1soc.",
+        Values::Word(|| BOARDS.to_vec()),
+        "Board, of this family; without it `posicast generate` writes projects for all that it knows.",
     ),
 ];
 
@@ -168,10 +176,27 @@ fn read_clock(table: &Table<'_, '_>) -> Option<ClockSection> {
     let sample_hz = table.required_number("sample_hz", CLOCK_HZ);
     let (frequency_hz, sample_hz) = (frequency_hz?, sample_hz?);
     let ratio = frequency_hz / sample_hz;
+    if ratio < 1.0 - RATIO_ROUNDING {
+        let right = |hz: f64| CLOCK_HZ.contains(hz) && hz >= sample_hz * LEAST_CLOCKS_PER_SAMPLE;
+        if let Some(hint) = hint::in_other_unit("frequency_hz", frequency_hz, &MEGA_OR_KILO, right) {
+            let allowed = format!(
+                "at least clock.sample_hz = {} Hz: a sample lasts a clock or more",
+                short(sample_hz)
+            );
+            table.refuse("frequency_hz", allowed, hint);
+            return None;
+        }
+    }
     if ratio > MAX_CLOCKS_PER_SAMPLE * (1.0 + RATIO_ROUNDING) {
         let least = frequency_hz / MAX_CLOCKS_PER_SAMPLE;
-        let allowed = format!("at least {least} Hz, a sample of at most {MAX_CLOCKS_PER_SAMPLE} clocks");
-        table.refuse("sample_hz", allowed, "raise sample_hz, or lower the clock");
+        let allowed = format!(
+            "at least {} Hz, a sample of at most {MAX_CLOCKS_PER_SAMPLE} clocks",
+            short(least)
+        );
+        let right = |hz: f64| divides(frequency_hz, hz);
+        let hint = hint::in_other_unit("sample_hz", sample_hz, &KILO, right);
+        let otherwise = format!("raise sample_hz to {} Hz or more, or lower the clock", short(least));
+        table.refuse("sample_hz", allowed, hint.unwrap_or(otherwise));
         return None;
     }
     let whole = ratio.round();
@@ -180,9 +205,10 @@ fn read_clock(table: &Table<'_, '_>) -> Option<ClockSection> {
         let whole = nearest_whole_divisor(frequency_hz, sample_hz).filter(|hz| *hz != nearest);
         let also = whole.map(|hz| format!(", in whole hertz {hz}")).unwrap_or_default();
         let allowed = format!(
-            "what divides clock.frequency_hz = {frequency_hz} Hz a whole number of times; the nearest is {nearest}{also}"
+            "what divides clock.frequency_hz = {frequency_hz} Hz a whole number of times; the nearest is {}{also}",
+            exact(nearest)
         );
-        let choice = whole.unwrap_or(nearest);
+        let choice = whole.map_or_else(|| exact(nearest), hint::written);
         table.refuse(
             "sample_hz",
             allowed,
@@ -194,6 +220,18 @@ fn read_clock(table: &Table<'_, '_>) -> Option<ClockSection> {
         frequency_hz,
         sample_hz,
     })
+}
+
+/// Whether a clock goes into a sample so many times, and no more than a sample may have.
+fn divides(frequency_hz: f64, sample_hz: f64) -> bool {
+    let ratio = frequency_hz / sample_hz;
+    (1.0..=MAX_CLOCKS_PER_SAMPLE).contains(&ratio) && (ratio - ratio.round()).abs() <= RATIO_ROUNDING * ratio
+}
+
+/// A frequency with no more digits than it takes to divide the clock.
+fn exact(hz: f64) -> String {
+    let rounded: f64 = format!("{hz:.11e}").parse().unwrap_or(hz);
+    rounded.to_string()
 }
 
 /// The frequency nearest to `wanted_hz` that goes into `frequency_hz` a whole number of times.
@@ -260,17 +298,20 @@ fn read_fixed_point(table: &Table<'_, '_>) -> Option<FixedPoint> {
 }
 
 fn read_target(table: &Table<'_, '_>) -> Option<Target> {
-    const BOARD: &str = "1 to 32 of the characters a-z, 0-9, _ and -";
     table.allow(TARGET_KEYS);
     let family = table.required_choice("family", &FAMILIES);
-    let board = table.text("board", BOARD);
-    let plain = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_' || c == '-';
-    if board.is_some_and(|b| b.is_empty() || b.len() > 32 || !b.chars().all(plain)) {
-        table.refuse(
-            "board",
-            BOARD,
-            "write the board's name in small letters, such as \"de1\"",
-        );
+    let board = table.text("board", BOARDS.join(", "));
+    if let Some(unknown) = board.filter(|board| !BOARDS.contains(board)) {
+        // Another number is another board, and not a misspelling.
+        let meant = BOARDS.iter().find(|known| same_letters(known, unknown));
+        let remedy = match meant {
+            Some(known) => format!("did you mean \"{known}\"?"),
+            None => {
+                "leave `board` out: there are then projects for all known boards, to start from for yours".to_owned()
+            }
+        };
+        let (found, allowed) = (table.quote("board"), BOARDS.join(", "));
+        table.report("board", ProblemCause::NotAChoice { found, allowed }, remedy);
     }
     Some(Target {
         family: family?.to_owned(),

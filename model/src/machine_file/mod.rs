@@ -35,9 +35,11 @@ mod controller;
 mod drive;
 mod encoder;
 mod error;
+mod hint;
 mod key;
 mod limits;
 mod machine;
+mod mode;
 mod names;
 mod place;
 mod pwm;
@@ -56,6 +58,7 @@ pub use drive::{Drive, DriveMode};
 pub use encoder::Encoder;
 pub use error::{MAX_PROBLEMS, Problem, ProblemCause, SpecError};
 pub use limits::LimitsSection;
+pub use machine::{BOARDS, FAMILIES};
 pub use place::line_of;
 pub use pwm::{PwmMode, PwmSection};
 pub use scale::{Scale, ScaleUse};
@@ -86,13 +89,19 @@ pub fn parse(file_name: &str, text: &str) -> Result<Machine, SpecError> {
     let machine = match DeTable::parse(text) {
         Err(error) => {
             let span = error.span().unwrap_or(text.len()..text.len());
-            let cause = ProblemCause::Syntax(error.message().to_owned());
-            whole_file(span, cause, "correct the syntax at the mark")
+            let line = reader.quote(reader.line_span(span.start));
+            let remedy = hint::of_syntax(error.message(), &line);
+            let cause = ProblemCause::Syntax(format!("{}, in `{}`", error.message(), line.trim()));
+            whole_file(span, cause, &remedy)
         }
         Ok(document) if document.get_ref().is_empty() => {
             let allowed = "the keys name, [clock] and [[axis]]".to_owned();
             let cause = ProblemCause::Empty { allowed };
-            whole_file(0..0, cause, "start from one of the files in examples/")
+            whole_file(
+                0..0,
+                cause,
+                "`posicast new FILE` writes a file to start from; examples/ has others",
+            )
         }
         Ok(document) => machine::read(&Table::root(&reader, document.get_ref())),
     };
@@ -169,9 +178,9 @@ pub struct FixedPoint {
 /// `[target]`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Target {
-    /// Device family: cyclone2, cyclone4e, cyclone10lp, cyclone5, max10.
+    /// Device family, one of [`FAMILIES`].
     pub family: String,
-    /// Board, such as `de1`.
+    /// Board, one of [`BOARDS`].
     pub board: Option<String>,
 }
 
@@ -345,8 +354,10 @@ impl ShaperChoice {
 /// `[[axis.mode]]`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AxisMode {
-    /// Frequency and damping.
+    /// Frequency and damping with the motor held: what the shaper is for.
     pub mode: Mode,
+    /// The mode as the file gives it, where that was measured with the motor free and converted to `mode`.
+    pub free: Option<Mode>,
     /// The mode's own kind, instead of the axis's.
     pub shaper: Option<ShaperKind>,
     /// The mode's own tolerance, instead of the axis's.

@@ -1,4 +1,4 @@
-//! Names that become Verilog identifiers, and the nearest of the allowed words.
+//! Names that become Verilog identifiers.
 
 /// Longest name of a machine or of an axis, in characters: names are joined to longer ones in Verilog and in C.
 pub(super) const MAX_NAME_LENGTH: usize = 64;
@@ -54,29 +54,20 @@ pub(super) fn is_name(name: &str) -> bool {
         && !KEYWORDS.split_whitespace().any(|keyword| keyword == name)
 }
 
-/// The allowed word that `found` is most likely a misspelling of: at most one change in three letters.
-pub(super) fn nearest<'w>(found: &str, allowed: &[&'w str]) -> Option<&'w str> {
-    if found.len() > MAX_NAME_LENGTH {
-        return None;
-    }
-    let (changes, word) = allowed.iter().map(|word| (edits(found, word), *word)).min()?;
-    (changes <= word.len().div_ceil(3)).then_some(word)
-}
-
-/// Levenshtein distance: letters to insert, delete or replace.
-fn edits(from: &str, to: &str) -> usize {
-    let to: Vec<char> = to.chars().collect();
-    let mut row: Vec<usize> = (0..=to.len()).collect();
-    for (i, a) in from.chars().enumerate() {
-        let mut diagonal = row[0];
-        row[0] = i + 1;
-        for (j, b) in to.iter().enumerate() {
-            let replaced = diagonal + usize::from(a != *b);
-            diagonal = row[j + 1];
-            row[j + 1] = replaced.min(row[j] + 1).min(diagonal + 1);
+/// The name that a refused one becomes in small letters, with `_` in place of what is not allowed; nothing where that is
+/// none either.
+pub(super) fn mended(name: &str) -> Option<String> {
+    let plain = |c: char| {
+        if c.is_ascii_alphanumeric() {
+            c.to_ascii_lowercase()
+        } else {
+            '_'
         }
-    }
-    row[to.len()]
+    };
+    let small: String = name.trim().chars().map(plain).collect();
+    [small.clone(), format!("my_{small}")]
+        .into_iter()
+        .find(|name| is_name(name) && !small.is_empty())
 }
 
 #[cfg(test)]
@@ -108,12 +99,11 @@ mod tests {
     }
 
     #[test]
-    fn unit_nearest_word_is_found_and_far_ones_are_not() {
-        let keys = ["frequency_hz", "damping", "shaper"];
-        assert_eq!(nearest("dampng", &keys), Some("damping"));
-        assert_eq!(nearest("frequenzy", &keys), Some("frequency_hz"));
-        assert_eq!(nearest("wibble", &keys), None);
-        assert_eq!(nearest(&"damping".repeat(1000), &keys), None);
-        assert_eq!(edits("kitten", "sitting"), 3);
+    fn unit_a_refused_name_is_mended_where_it_can_be() {
+        assert_eq!(mended("XY-Stage").as_deref(), Some("xy_stage"));
+        assert_eq!(mended("2slide").as_deref(), Some("my_2slide"));
+        assert_eq!(mended("wire").as_deref(), Some("my_wire"));
+        assert_eq!(mended(""), None);
+        assert_eq!(mended(&"x".repeat(65)), None);
     }
 }

@@ -4,7 +4,8 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 /// Line of a key's value, from 1; of a key that is absent the line of its table. `key` is dotted, such as
-/// `axis.drive.bandwidth_hz`; `axis` counts the tables `[[axis]]` from 0. Nothing where the text has no such table.
+/// `axis.drive.bandwidth_hz`, with the index of the table where it is not that of the axis, from 0: `axis.mode[1].damping`; `axis`
+/// counts the tables `[[axis]]` from 0. Nothing where the text has no such table.
 ///
 /// ```
 /// use posicast_model::machine_file::line_of;
@@ -19,10 +20,14 @@ pub fn line_of(text: &str, axis: usize, key: &str) -> Option<usize> {
     let mut table = root.get_ref();
     let mut start = None;
     for part in key.split('.') {
-        let Some(value) = table.get(part) else {
+        let (name, index) = part
+            .strip_suffix(']')
+            .and_then(|part| part.split_once('['))
+            .unwrap_or((part, ""));
+        let Some(value) = table.get(name) else {
             break;
         };
-        let value = element(value, axis)?;
+        let value = element(value, index.parse().unwrap_or(axis))?;
         start = Some(value.span().start);
         match value.get_ref().as_table() {
             Some(inner) => table = inner,
@@ -57,6 +62,17 @@ mod tests {
         assert_eq!(line(1, "axis.drive.mode"), Some(11));
         assert_eq!(line(1, "axis.drive.bandwidth_hz"), Some(10));
         assert_eq!(line(0, "axis.drive.bandwidth_hz"), Some(6));
+    }
+
+    #[test]
+    fn unit_the_modes_of_an_axis_have_lines_of_their_own() {
+        let text =
+            "[[axis]]\n[[axis.mode]]\ndamping = 0\n[[axis.mode]]\ndamping = 1\n[[axis]]\n[[axis.mode]]\ndamping = 2\n";
+        let line = |axis, key| line_of(text, axis, key);
+        assert_eq!(line(0, "axis.mode[0].damping"), Some(3));
+        assert_eq!(line(0, "axis.mode[1].damping"), Some(5));
+        assert_eq!(line(1, "axis.mode[0].damping"), Some(8));
+        assert_eq!(line(1, "axis.mode[1].damping"), None);
     }
 
     #[test]

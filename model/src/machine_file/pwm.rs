@@ -4,10 +4,12 @@
 //! pulse are rounded **up**: the pins never show less than the file asks for.
 
 use super::ClockSection;
+use super::hint::{self, KILO};
 use super::key::{Key, Values};
 use super::range::{NumberRange, RATIO_ROUNDING};
 use super::table::Table;
 use crate::rtl::pwm::{SHORTEST_PERIOD_CLOCKS, TIME_BITS};
+use crate::unit::{short, show_seconds};
 
 /// Dead time and minimum pulse.
 const SHORT_S: NumberRange = NumberRange::closed(0.0, 1.0).unit("s");
@@ -123,8 +125,8 @@ pub(super) fn read(table: &Table<'_, '_>, clock: Option<ClockSection>) -> Option
         minimum_pulse_s: table.number("minimum_pulse_s", SHORT_S).unwrap_or(0.0),
         active_low: table.boolean("active_low").unwrap_or(false),
     };
-    if let Some(clock) = clock {
-        check_frequency(table, pwm.frequency_hz, &clock);
+    // What follows of a refused period would be told of the wrong one.
+    if let Some(clock) = clock.filter(|clock| check_frequency(table, pwm.frequency_hz, clock)) {
         check_pulse(table, &pwm, &clock);
         check_counters(table, &pwm, &clock);
     }
@@ -132,16 +134,18 @@ pub(super) fn read(table: &Table<'_, '_>, clock: Option<ClockSection>) -> Option
 }
 
 /// A PWM period is a whole number of clocks, and a sample a whole number of PWM periods: of the frequencies that are
-/// both, the message names the nearest.
-fn check_frequency(table: &Table<'_, '_>, pwm_hz: f64, clock: &ClockSection) {
+/// both, the message names the nearest. Whether it is one.
+fn check_frequency(table: &Table<'_, '_>, pwm_hz: f64, clock: &ClockSection) -> bool {
     let clocks_per_sample = clock.clocks_per_sample();
-    let frequencies = (1..=clocks_per_sample)
-        .filter(|periods| clocks_per_sample.is_multiple_of(*periods))
-        .map(|periods| f64::from(periods) * clock.sample_hz);
-    let Some(nearest) = frequencies.min_by(|a, b| (a - pwm_hz).abs().total_cmp(&(b - pwm_hz).abs())) else {
-        return;
+    let frequencies = || {
+        let periods = (1..=clocks_per_sample).filter(|periods| clocks_per_sample.is_multiple_of(*periods));
+        periods.map(|periods| f64::from(periods) * clock.sample_hz)
     };
-    if (nearest - pwm_hz).abs() > RATIO_ROUNDING * pwm_hz {
+    let is = |frequency_hz: f64, wanted_hz: f64| (frequency_hz - wanted_hz).abs() <= RATIO_ROUNDING * wanted_hz;
+    let Some(nearest) = frequencies().min_by(|a, b| (a - pwm_hz).abs().total_cmp(&(b - pwm_hz).abs())) else {
+        return true;
+    };
+    if !is(nearest, pwm_hz) {
         let ClockSection {
             frequency_hz,
             sample_hz,
@@ -150,8 +154,13 @@ fn check_frequency(table: &Table<'_, '_>, pwm_hz: f64, clock: &ClockSection) {
             "what divides clock.frequency_hz = {frequency_hz} Hz and is a multiple of clock.sample_hz = {sample_hz} Hz; \
              the nearest is {nearest}"
         );
-        table.refuse("frequency_hz", allowed, format!("write `frequency_hz = {nearest}`"));
+        let right = |hz: f64| pwm_hz < *sample_hz && frequencies().any(|frequency_hz| is(frequency_hz, hz));
+        let hint = hint::in_other_unit("frequency_hz", pwm_hz, &KILO, right);
+        let otherwise = format!("write `frequency_hz = {}`", hint::written(nearest));
+        table.refuse("frequency_hz", allowed, hint.unwrap_or(otherwise));
+        return false;
     }
+    true
 }
 
 /// A period has room for both sides' dead time and minimum pulse, and for a clock more: a leg that is late once, after a turn
@@ -179,7 +188,10 @@ fn check_counters(table: &Table<'_, '_>, pwm: &PwmSection, clock: &ClockSection)
     let period = pwm.period_clocks(clock);
     if !(PERIOD_CLOCKS_MIN..=PERIOD_CLOCKS_MAX).contains(&period) {
         let found = format!("a period of {period} clocks");
-        let allowed = format!("{PERIOD_CLOCKS_MIN} to {PERIOD_CLOCKS_MAX} clocks: from {shortest_hz} Hz on");
+        let allowed = format!(
+            "{PERIOD_CLOCKS_MIN} to {PERIOD_CLOCKS_MAX} clocks: from {} Hz on",
+            short(shortest_hz)
+        );
         table.contradiction("frequency_hz", found, allowed, "choose a frequency in this range");
     }
     for (key, clocks) in [
@@ -189,7 +201,10 @@ fn check_counters(table: &Table<'_, '_>, pwm: &PwmSection, clock: &ClockSection)
         if clocks > TIME_CLOCKS_MAX {
             let longest_s = f64::from(TIME_CLOCKS_MAX) / clock.frequency_hz;
             let found = format!("{} s, {clocks} clocks", table.quote(key));
-            let allowed = format!("at most {longest_s} s, the {TIME_CLOCKS_MAX} clocks that the hardware counts to");
+            let allowed = format!(
+                "at most {}, the {TIME_CLOCKS_MAX} clocks that the hardware counts to",
+                show_seconds(longest_s, 4)
+            );
             table.contradiction(key, found, allowed, "shorten it, or lower the clock");
         }
     }

@@ -61,6 +61,11 @@ impl NumberRange {
         Self { unit, ..self }
     }
 
+    /// The name of its unit; empty where it has none.
+    pub(super) const fn unit_name(&self) -> &'static str {
+        self.unit
+    }
+
     /// The lower end, and whether it is allowed.
     pub(super) const fn low(&self) -> (f64, bool) {
         (self.low, self.low_included)
@@ -91,11 +96,20 @@ impl fmt::Display for NumberRange {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let low = if self.low_included { "at least" } else { "above" };
         let high = if self.high_included { "at most" } else { "below" };
-        write!(f, "{low} {}, {high} {}", self.low, self.high)?;
+        write!(f, "{low} {}, {high} {}", end(self.low), end(self.high))?;
         match self.unit {
             "" => Ok(()),
             unit => write!(f, " {unit}"),
         }
+    }
+}
+
+/// An end of a range, as people write it: `1e9` and not its ten digits.
+fn end(value: f64) -> String {
+    let (plain, power) = (value.to_string(), format!("{value:e}"));
+    match plain.len() > 7 && power.len() < plain.len() {
+        true => power,
+        false => plain,
     }
 }
 

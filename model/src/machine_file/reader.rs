@@ -54,6 +54,13 @@ impl<'t> Reader<'t> {
         1 + self.line_ends.partition_point(|end| *end < offset)
     }
 
+    /// The bytes of the line that a byte of the file is in, without its end.
+    pub(super) fn line_span(&self, offset: usize) -> Range<usize> {
+        let index = self.line(offset) - 1;
+        let start = if index == 0 { 0 } else { self.line_ends[index - 1] + 1 };
+        start..self.line_ends.get(index).copied().unwrap_or(self.text.len())
+    }
+
     /// A problem at a place of the file.
     pub(super) fn problem(
         &self,

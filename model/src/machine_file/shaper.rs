@@ -5,6 +5,7 @@ use super::range::NumberRange;
 use super::table::Table;
 use super::{AxisMode, ClockSection, DEFAULT_EPSILON, DEFAULT_TOLERANCE, ShaperChoice};
 use crate::design::kind::ShaperKind;
+use crate::unit::short;
 
 /// Residual that a shaper tolerates.
 pub(super) const TOLERANCE: NumberRange = NumberRange::positive(1.0).open_above();
@@ -187,7 +188,7 @@ fn read_impulses(table: &Table<'_, '_>, kind: ShaperKind) -> Option<Vec<(f64, f6
         .collect();
     let first_s = impulses.first()?.0;
     if first_s != 0.0 {
-        let found = format!("a first impulse at {first_s} s");
+        let found = format!("a first impulse at {} s", short(first_s));
         table.contradiction(
             key,
             found,
@@ -196,7 +197,11 @@ fn read_impulses(table: &Table<'_, '_>, kind: ShaperKind) -> Option<Vec<(f64, f6
         );
     }
     if let Some(pair) = impulses.windows(2).find(|p| p[1].0 <= p[0].0) {
-        let found = format!("an impulse at {} s after one at {} s", pair[1].0, pair[0].0);
+        let found = format!(
+            "an impulse at {} s after one at {} s",
+            short(pair[1].0),
+            short(pair[0].0)
+        );
         table.contradiction(
             key,
             found,
@@ -220,18 +225,21 @@ pub(super) fn check(
     modes: &[(Table<'_, '_>, AxisMode)],
 ) {
     let kind = shaper.map(|(_, choice)| choice.kind);
-    if !axis.has("mode") && !matches!(kind, Some(ShaperKind::Custom | ShaperKind::None)) {
+    if axis.lacks("mode") && !matches!(kind, Some(ShaperKind::Custom | ShaperKind::None)) {
         let allowed = "at least one [[axis.mode]], except with kind custom or none";
-        let remedy = "add [[axis.mode]] with frequency_hz and damping, or choose kind \"custom\" or \"none\"";
+        let remedy = format!(
+            "add [[axis.mode]] with frequency_hz and damping, or choose kind \"custom\" or \"none\"; {}",
+            super::mode::MEASURE
+        );
         axis.contradiction("mode", "an axis without modes", allowed, remedy);
-    } else if kind.is_none() && modes.iter().any(|(_, mode)| mode.shaper.is_none()) {
+    } else if kind.is_none() && axis.lacks("shaper") && modes.iter().any(|(_, mode)| mode.shaper.is_none()) {
         let found = "no [axis.shaper], and a mode without `shaper`";
         let allowed = "[axis.shaper], or `shaper` in every [[axis.mode]]";
         axis.contradiction(
             "shaper",
             found,
             allowed,
-            "add [axis.shaper] with `kind`, or give every mode a `shaper`",
+            "add [axis.shaper] with `kind = \"zvd\"`, or another kind, or give every mode a `shaper`",
         );
     }
     for (table, mode) in modes {

@@ -3,6 +3,9 @@
 //! A getter returns `None` where the key is absent and where its value is refused; the refusal is recorded in the
 //! [`Reader`], which then ends in an error whatever became of the value.
 
+mod unknown;
+
+use std::cell::RefCell;
 use std::fmt::Display;
 use std::ops::Range;
 
@@ -10,10 +13,11 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::error::ProblemCause;
-use super::key::Key;
-use super::names::{NAME_RULE, is_name, nearest};
+use super::hint;
+use super::names::{NAME_RULE, is_name, mended};
 use super::range::NumberRange;
 use super::reader::Reader;
+use crate::spelling::did_you_mean;
 
 /// One table of the file.
 pub(super) struct Table<'r, 't> {
@@ -22,6 +26,8 @@ pub(super) struct Table<'r, 't> {
     header: Range<usize>,
     path: String,
     place: String,
+    /// Keys that are absent because the file has them misspelt, which is said already.
+    misspelt: RefCell<Vec<&'static str>>,
 }
 
 impl<'r, 't> Table<'r, 't> {
@@ -33,6 +39,7 @@ impl<'r, 't> Table<'r, 't> {
             header: 0..0,
             path: String::new(),
             place: String::new(),
+            misspelt: RefCell::default(),
         }
     }
 
@@ -131,46 +138,15 @@ impl<'r, 't> Table<'r, 't> {
         reader.report_not_built(problem);
     }
 
-    /// Refuses every key that is not in the list.
-    pub(super) fn allow(&self, keys: &[Key]) {
-        let keys: Vec<&str> = keys.iter().map(|key| key.name).collect();
-        let unknown = self
-            .entries
-            .keys()
-            .filter(|key| !keys.contains(&key.get_ref().as_ref()));
-        for key in unknown {
-            let remedy = match nearest(key.get_ref(), &keys) {
-                Some(near) => format!("did you mean `{near}`? Else remove the key"),
-                None => "remove the key, or move it to the table that it belongs to".to_owned(),
-            };
-            let found = self.reader.quote(key.span());
-            let allowed = keys.join(", ");
-            let cause = ProblemCause::UnknownKey {
-                found: found.clone(),
-                allowed,
-            };
-            let dotted = self.dotted(&found);
-            let problem = self.reader.problem(key.span(), dotted, &self.place, cause, remedy);
-            self.reader.report(problem);
-        }
-    }
-
-    /// Records that a key is missing, if it is.
-    pub(super) fn require(&self, key: &str, allowed: impl Display) {
-        if !self.has(key) {
-            let allowed = allowed.to_string();
-            let remedy = format!("add `{key}`");
-            self.report(key, ProblemCause::MissingKey { allowed }, remedy);
-        }
-    }
-
     fn wrong_type(&self, key: &str, value: &Spanned<DeValue<'_>>, allowed: impl Display) {
+        let allowed = allowed.to_string();
         let cause = ProblemCause::WrongType {
             found_type: value.get_ref().type_str(),
             found: self.reader.quote(value.span()),
-            allowed: allowed.to_string(),
+            allowed: allowed.clone(),
         };
-        self.report(key, cause, format!("write `{key}` as the type that is allowed"));
+        let remedy = hint::of_type(key, value.get_ref(), &allowed, &self.dotted(key));
+        self.report(key, cause, remedy);
     }
 
     /// A number in a range; integers count as numbers.
@@ -181,7 +157,7 @@ impl<'r, 't> Table<'r, 't> {
             return None;
         };
         if !range.contains(number) {
-            self.refuse(key, range, format!("give `{key}` a value in this range"));
+            self.refuse(key, range, hint::of_number(key, number, range));
             return None;
         }
         Some(number)
@@ -251,7 +227,10 @@ impl<'r, 't> Table<'r, 't> {
         self.require(key, NAME_RULE);
         let name = self.text(key, NAME_RULE)?;
         if !is_name(name) {
-            self.refuse(key, NAME_RULE, "choose another name");
+            let remedy = mended(name).map_or("choose another name".to_owned(), |name| {
+                format!("choose another name, such as `{key} = \"{name}\"`")
+            });
+            self.refuse(key, NAME_RULE, remedy);
             return None;
         }
         Some(name.to_owned())
@@ -263,10 +242,7 @@ impl<'r, 't> Table<'r, 't> {
         let text = self.text(key, &list)?;
         let word = words.iter().find(|word| **word == text).copied();
         if word.is_none() {
-            let remedy = match nearest(text, words) {
-                Some(near) => format!("did you mean \"{near}\"?"),
-                None => "choose one of the list".to_owned(),
-            };
+            let remedy = did_you_mean(text, words, '"').unwrap_or("choose one of the list".to_owned());
             let found = self.quote(key);
             self.report(key, ProblemCause::NotAChoice { found, allowed: list }, remedy);
         }
@@ -293,10 +269,8 @@ impl<'r, 't> Table<'r, 't> {
             let text = element.get_ref().as_str();
             let word = words.iter().find(|(name, _)| Some(*name) == text);
             let Some((_, meaning)) = word else {
-                let remedy = match text.and_then(|text| nearest(text, &names)) {
-                    Some(near) => format!("did you mean \"{near}\"?"),
-                    None => "choose of the list".to_owned(),
-                };
+                let near = text.and_then(|text| did_you_mean(text, &names, '"'));
+                let remedy = near.unwrap_or("choose of the list".to_owned());
                 let found = self.reader.quote(element.span());
                 self.report(key, ProblemCause::NotAChoice { found, allowed: list }, remedy);
                 return None;
@@ -388,6 +362,7 @@ impl<'r, 't> Table<'r, 't> {
             header,
             path: self.dotted(key),
             place: self.place.clone(),
+            misspelt: RefCell::default(),
         }
     }
 }

@@ -30,6 +30,7 @@ pub(super) fn axis(shaper: ShaperChoice, modes: &[Mode]) -> AxisSection {
 fn axis_mode(mode: Mode, shaper: Option<ShaperKind>) -> AxisMode {
     AxisMode {
         mode,
+        free: None,
         shaper,
         tolerance: None,
         order: None,

@@ -3,7 +3,9 @@
 mod blocks;
 mod errors;
 mod files;
+mod hints;
 mod limits;
+mod modes;
 mod not_built;
 mod prop;
 mod report;

@@ -23,7 +23,7 @@ fn unit_the_diagnostic_marks_the_place_and_says_what_to_do() {
     assert_eq!((label.len(), label.label()), (1, Some("out of range")));
     assert_eq!(
         error.help().unwrap().to_string(),
-        "give `damping` a value in this range"
+        "percent? 7 % is 0.07; else give `damping` a value in this range"
     );
     let mut picture = String::new();
     let handler = miette::GraphicalReportHandler::new().with_wrap_lines(false);

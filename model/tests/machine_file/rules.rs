@@ -15,8 +15,8 @@ fn unit_the_sample_rate_divides_the_clock_and_the_message_names_the_nearest() {
         }
     };
     case("10_001", "10000");
-    case("15_000", "15001.500150015001, in whole hertz 15625");
-    case("9_999", "9998.000399920016, in whole hertz 10000");
+    case("15_000", "15001.50015, in whole hertz 15625");
+    case("9_999", "9998.00039992, in whole hertz 10000");
     case("60_000_000", "50000000");
     case("30_000_000", "25000000");
     let expected = "m.toml:4: clock.sample_hz: found 10; allowed: at least 50 Hz, a sample of at most 1000000 clocks";
@@ -32,7 +32,7 @@ fn unit_a_mode_at_or_above_half_the_sample_rate_is_refused() {
     }
     right(&SMALL.replace("40.0", "4999.9"));
     let expected = "m.toml:13: axis.mode.damped_frequency_hz of axis x, mode 1: found 4990, an undamped frequency of \
-                    5015.138698143468 Hz; allowed: below 5000 Hz, half of clock.sample_hz";
+                    5015.14 Hz; allowed: below 5000 Hz, half of clock.sample_hz";
     breaks("frequency_hz = 40.0", "damped_frequency_hz = 4990", expected);
 }
 
@@ -46,7 +46,7 @@ fn unit_one_of_the_two_frequencies_is_given() {
         expected,
     );
     let expected = "m.toml:12: axis.mode.frequency_hz of axis x, mode 1: found no such key; allowed: at least 0.001, at most \
-                    1000000000 Hz, or damped_frequency_hz in its place";
+                    1e9 Hz, or damped_frequency_hz in its place";
     breaks("frequency_hz = 40.0\n", "", expected);
 }
 

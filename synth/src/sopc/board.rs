@@ -170,6 +170,7 @@ static DE1_SOC: Facts = Facts {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use posicast_model::machine_file::BOARDS;
     use std::collections::BTreeSet;
 
     #[test]
@@ -177,6 +178,7 @@ mod tests {
         for board in Board::ALL {
             assert_eq!(board.name().parse(), Ok(board));
         }
+        assert_eq!(Board::ALL.map(Board::name), BOARDS, "those of the machine file");
         let error = "de2".parse::<Board>().unwrap_err().to_string();
         assert!(error.contains("de1 (cyclone2), de1soc (cyclone5)"), "{error}");
     }

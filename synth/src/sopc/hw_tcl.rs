@@ -75,7 +75,7 @@ set_module_property EDITABLE false
         about = map.about().lines().collect::<Vec<_>>().join(" "),
         posicast = env!("CARGO_PKG_VERSION"),
         version = unit.version(),
-        display = word(&format!("{}: {}", unit.component.name(), unit.top)),
+        display = word(&format!("{}: {}", unit.title(), unit.top)),
         description = word(map.about()),
     );
 }

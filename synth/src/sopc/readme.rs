@@ -95,12 +95,13 @@ fn components(text: &mut String, design: &Design<'_>) {
     for unit in design.units() {
         let _ = writeln!(
             text,
-            "| `{}` | `{}` {}, {} bytes | {} |",
+            "| `{}` | `{}` {}, {} bytes | {}{} |",
             unit.top,
             unit.component.name(),
             unit.version(),
             unit.span_bytes(),
             unit.component.map().about().lines().collect::<Vec<_>>().join(" "),
+            unit.law().map_or_else(String::new, |law| format!(" This one: {law}.")),
         );
     }
     text.push_str(

@@ -12,7 +12,7 @@
 //! Every port is in one interface. The rule reads the ports of the model's composition, which are those of the Verilog.
 
 use posicast_model::rtl::component::Component;
-use posicast_model::rtl::registers::{Access, Field};
+use posicast_model::rtl::registers::{Access, Field, Format};
 use posicast_model::rtl::{Direction, Port};
 
 /// A component of the package.
@@ -137,6 +137,31 @@ impl Unit<'_> {
         let register = self.component.map().register(register);
         let field = register.and_then(|register| register.fields.iter().find(|other| other.name == field));
         field.map_or(0, |field| field.reset)
+    }
+
+    /// The law that a controller has after reset, as people call it: the name of its module says `sliding_mode`, whatever the law.
+    pub(super) fn law(&self) -> Option<String> {
+        if self.component.name() != "sliding_mode" {
+            return None;
+        }
+        let fields = &self.component.map().register("law")?.fields;
+        let law = fields.iter().find(|field| field.name == "law")?;
+        let Format::Enumeration(laws) = &law.format else {
+            return None;
+        };
+        let name = &laws.iter().find(|choice| choice.value == law.reset)?.name;
+        Some(match name.as_str() {
+            "sliding_mode" => "sliding mode".to_owned(),
+            short => short.to_uppercase(),
+        })
+    }
+
+    /// What it is called where people choose it: its block, of a controller its law.
+    pub(super) fn title(&self) -> String {
+        match self.law() {
+            Some(law) => format!("controller ({law})"),
+            None => self.component.name().to_owned(),
+        }
     }
 
     /// Version of the register map, `MAJOR.MINOR`.

@@ -3,6 +3,8 @@
 use std::fmt;
 use std::str::FromStr;
 
+use posicast_model::machine_file::FAMILIES;
+use posicast_model::spelling::did_you_mean;
 use serde::{Serialize, Serializer};
 
 /// A device family, under its name in the machine file.
@@ -51,8 +53,11 @@ pub struct FpgaDevice {
 
 /// A family that nobody knows.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("unknown device family {0:?}: cyclone2, cyclone4e, cyclone10lp, cyclone5 or max10")]
-pub struct UnknownFamily(pub String);
+#[error("unknown device family {found:?}; known: {}{}", FAMILIES.join(", "), question(.found))]
+pub struct UnknownFamily {
+    /// The name found.
+    pub found: String,
+}
 
 impl Family {
     /// All families.
@@ -119,12 +124,17 @@ fn logic_elements(name: &'static str, cells: u64, memory_bits: u64, multipliers:
     }
 }
 
+/// The question after a name that is nearly right.
+fn question(found: &str) -> String {
+    did_you_mean(found, &FAMILIES, '"').map_or_else(String::new, |question| format!("; {question}"))
+}
+
 impl FromStr for Family {
     type Err = UnknownFamily;
 
     fn from_str(name: &str) -> Result<Self, UnknownFamily> {
         let found = Self::ALL.into_iter().find(|family| family.name() == name);
-        found.ok_or_else(|| UnknownFamily(name.to_owned()))
+        found.ok_or_else(|| UnknownFamily { found: name.to_owned() })
     }
 }
 
@@ -149,6 +159,9 @@ mod tests {
         for family in Family::ALL {
             assert_eq!(family.name().parse(), Ok(family));
         }
+        assert_eq!(Family::ALL.map(Family::name), FAMILIES, "those of the machine file");
+        let error = "CycloneV".parse::<Family>().unwrap_err();
+        assert!(error.to_string().ends_with("did you mean \"cyclone5\"?"), "{error}");
         let error = "stratix".parse::<Family>().unwrap_err();
         assert!(error.to_string().contains("cyclone10lp"), "{error}");
     }

@@ -5,7 +5,7 @@ package require -exact qsys 13.0
 
 set_module_property NAME xy_stage_x_sliding_mode_avalon
 set_module_property VERSION 1.1
-set_module_property DISPLAY_NAME {sliding_mode: xy_stage_x_sliding_mode_avalon}
+set_module_property DISPLAY_NAME {controller (PD): xy_stage_x_sliding_mode_avalon}
 set_module_property DESCRIPTION {Controller: sliding mode, PD or PID; reference and measurement by register or pins.}
 set_module_property GROUP Posicast
 set_module_property AUTHOR posicast

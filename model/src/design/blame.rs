@@ -1,0 +1,275 @@
+//! Which key of the machine file an impossible design comes from, and which change makes it possible.
+//!
+//! A shaper that is too long, or has too many taps, is designed again with one thing changed at a time: a lower sample rate,
+//! a kind of shaper that is shorter, a lower order, another way of digitising. What then fits is proposed, with its figure.
+
+use super::{DesignError, JointError, design_axis};
+use crate::design::kind::ShaperKind;
+use crate::digitise::{DELAY_MAX_SAMPLES, DigitiseError, TAPS_MAX, digitise, quantise};
+use crate::machine_file::{AxisSection, Digitise, Machine};
+use crate::mode::Mode;
+use crate::unit::short;
+
+/// A mode below this is most likely given in kHz.
+const UNLIKELY_HZ: f64 = 1.0;
+/// Sample rates above so many times the fastest mode are proposed: below, its ringing is hardly sampled.
+const SAMPLES_PER_PERIOD: f64 = 8.0;
+/// Sample rates that are tried, at most: each is a design.
+const MOST_RATES: usize = 24;
+/// Kinds that are tried in the place of a longer one, the least sensitive first.
+const SHORTER_KINDS: [ShaperKind; 4] = [ShaperKind::TwoHumpEi, ShaperKind::Zvd, ShaperKind::Ei, ShaperKind::Zv];
+
+/// What to blame for a design that cannot be.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct DesignBlame {
+    /// Index of the axis, from 0.
+    pub axis: usize,
+    /// Index of its mode, from 0, where it is one's key.
+    pub mode: Option<usize>,
+    /// The dotted key.
+    pub key: String,
+    /// What makes it possible, where that was found.
+    pub remedy: Option<String>,
+}
+
+/// The key that an error of this machine's design comes from; nothing where no axis of it is concerned.
+pub fn blame(machine: &Machine, error: &DesignError) -> Option<DesignBlame> {
+    let of_axis = |name: &str| machine.axes.iter().position(|axis| axis.name == name);
+    let shaper = |axis: usize| DesignBlame {
+        axis,
+        mode: None,
+        key: "axis.shaper".to_owned(),
+        remedy: None,
+    };
+    let at_mode = |mode: &Mode, key: &str| {
+        let (axis, index) = place_of(machine, mode)?;
+        Some(DesignBlame {
+            mode: Some(index),
+            key: format!("axis.mode.{key}"),
+            ..shaper(axis)
+        })
+    };
+    match error {
+        DesignError::Table(DigitiseError::Taps { axis, .. }) | DesignError::TooManyImpulses { axis, .. } => {
+            let axis = of_axis(axis)?;
+            Some(DesignBlame {
+                remedy: what_fits(machine, axis),
+                ..shaper(axis)
+            })
+        }
+        DesignError::Table(DigitiseError::Delay { axis, .. }) => too_long(machine, of_axis(axis)?),
+        DesignError::Table(DigitiseError::Nyquist { axis, .. }) => Some(DesignBlame {
+            key: "axis.mode".to_owned(),
+            ..shaper(of_axis(axis)?)
+        }),
+        DesignError::Table(DigitiseError::MatchedDelay { axis, .. }) => Some(DesignBlame {
+            key: "stage.extra_delay_s".to_owned(),
+            ..shaper(of_axis(axis)?)
+        }),
+        DesignError::Table(DigitiseError::Fraction { .. }) => Some(DesignBlame {
+            key: "fixed_point.coefficient_fraction".to_owned(),
+            ..shaper(0)
+        }),
+        DesignError::Table(
+            DigitiseError::NoUnitSum { axis, .. }
+            | DigitiseError::Weight { axis, .. }
+            | DigitiseError::Table { axis, .. },
+        )
+        | DesignError::NoModes { axis, .. } => Some(shaper(of_axis(axis)?)),
+        DesignError::JointOfAxis { axis, cause, .. } => {
+            let axis = of_axis(axis)?;
+            let (mode, key) = match cause.as_ref() {
+                DesignError::Joint(JointError::Coincident { second, .. }) => (second.checked_sub(1), "axis.mode"),
+                DesignError::Joint(JointError::SearchRange { .. }) => (None, "axis.shaper.lowest_frequency_hz"),
+                _ => (None, "axis.shaper"),
+            };
+            Some(DesignBlame {
+                mode,
+                key: key.to_owned(),
+                ..shaper(axis)
+            })
+        }
+        DesignError::JointKindOfOneMode { mode, .. } => at_mode(mode, "shaper"),
+        DesignError::Tolerance { mode, .. } => at_mode(mode, "tolerance"),
+        DesignError::Mode { mode }
+        | DesignError::Damping { mode, .. }
+        | DesignError::NotSolved { mode, .. }
+        | DesignError::NoSolution { mode, .. }
+        | DesignError::Unverified { mode, .. } => at_mode(mode, "damping"),
+        DesignError::NotBuilt { .. }
+        | DesignError::BiasPoint { .. }
+        | DesignError::NoSequence { .. }
+        | DesignError::Joint(_) => None,
+    }
+}
+
+/// Axis and index of the first mode that is this one.
+fn place_of(machine: &Machine, mode: &Mode) -> Option<(usize, usize)> {
+    let axes = machine.axes.iter().enumerate();
+    let mut places = axes.filter_map(|(axis, section)| {
+        let index = section.modes.iter().position(|other| other.mode == *mode)?;
+        Some((axis, index))
+    });
+    places.next()
+}
+
+/// A shaper that lasts longer than any ring buffer: that of a mode far too slow, or of too many samples.
+fn too_long(machine: &Machine, axis: usize) -> Option<DesignBlame> {
+    let section = &machine.axes[axis];
+    let slowest = section.modes.iter().enumerate();
+    let slowest = slowest.min_by(|a, b| a.1.mode.frequency_hz.total_cmp(&b.1.mode.frequency_hz));
+    let Some((index, mode)) = slowest.filter(|_| section.kind_name() != ShaperKind::Custom.name()) else {
+        return Some(DesignBlame {
+            axis,
+            mode: None,
+            key: "axis.shaper.impulses".to_owned(),
+            remedy: rate_that_fits(machine, axis).map(|(text, _)| text),
+        });
+    };
+    let hz = mode.mode.frequency_hz;
+    let in_khz = (hz < UNLIKELY_HZ && hz * 1e3 < machine.clock.sample_hz / 2.0).then(|| {
+        let (found, meant) = (short(hz), short(hz * 1e3));
+        format!("{found} kHz? Frequencies are in Hz: write `frequency_hz = {meant}`")
+    });
+    let rate = rate_that_fits(machine, axis).map(|(text, _)| text);
+    let remedies: Vec<String> = [in_khz, rate].into_iter().flatten().collect();
+    Some(DesignBlame {
+        axis,
+        mode: Some(index),
+        key: "axis.mode.frequency_hz".to_owned(),
+        remedy: (!remedies.is_empty()).then(|| remedies.join("; else ")),
+    })
+}
+
+/// The changes with which an axis of too many taps fits a table, each alone.
+fn what_fits(machine: &Machine, axis: usize) -> Option<String> {
+    let section = &machine.axes[axis];
+    let mut found: Vec<String> = rate_that_fits(machine, axis)
+        .map(|(text, taps)| format!("{text} ({taps} taps)"))
+        .into_iter()
+        .collect();
+    if let Some((order, taps)) = lower_order(machine, section) {
+        found.push(format!("order = {order} ({taps} taps)"));
+    }
+    let kind = SHORTER_KINDS.into_iter().find_map(|kind| {
+        let changed = with_kind(section, kind)?;
+        Some((kind, taps(&changed, machine.fixed_point.digitise, machine)?))
+    });
+    if let Some((kind, taps)) = kind {
+        found.push(format!("kind = \"{kind}\" for all modes ({taps} taps)"));
+    }
+    if machine.fixed_point.digitise != Digitise::Nearest
+        && let Some(taps) = taps(section, Digitise::Nearest, machine)
+    {
+        found.push(format!("digitise = \"nearest\" ({taps} taps)"));
+    }
+    (!found.is_empty()).then(|| format!("each of these fits a table of {TAPS_MAX}: {}", found.join("; ")))
+}
+
+/// The largest lower sample rate, in whole hertz, at which an axis has a table, with its taps.
+fn rate_that_fits(machine: &Machine, axis: usize) -> Option<(String, usize)> {
+    let section = &machine.axes[axis];
+    let fastest_hz = section
+        .modes
+        .iter()
+        .map(|mode| mode.mode.frequency_hz)
+        .fold(0.0, f64::max);
+    let duration_s = design_axis(section).ok()?.impulses.duration_s();
+    let longest_hz = f64::from(DELAY_MAX_SAMPLES) / duration_s;
+    let now = machine.clock.clocks_per_sample();
+    let pwm = machine.axes.iter().filter_map(|axis| axis.pwm.as_ref());
+    let pwm: Vec<f64> = pwm.map(|pwm| pwm.frequency_hz).collect();
+    let rates = (now + 1..=1_000_000).map(|clocks| machine.clock.frequency_hz / f64::from(clocks));
+    let rates = rates
+        .filter(|hz| hz.fract() == 0.0 && *hz <= longest_hz && pwm.iter().all(|pwm| pwm % hz == 0.0))
+        .take_while(|hz| *hz > SAMPLES_PER_PERIOD * fastest_hz);
+    rates.take(MOST_RATES).find_map(|sample_hz| {
+        let mut slower = machine.clone();
+        slower.clock.sample_hz = sample_hz;
+        let taps = taps(section, machine.fixed_point.digitise, &slower)?;
+        Some((format!("clock.sample_hz = {sample_hz}"), taps))
+    })
+}
+
+/// The largest lower order that fits, of the axis's shaper.
+fn lower_order(machine: &Machine, section: &AxisSection) -> Option<(u32, usize)> {
+    let order = section.modes.iter().map(|mode| section.order_of(mode)).max()?;
+    (1..order).rev().find_map(|order| {
+        let mut changed = section.clone();
+        changed.shaper.as_mut()?.order = Some(order);
+        changed.modes.iter_mut().for_each(|mode| mode.order = None);
+        Some((order, taps(&changed, machine.fixed_point.digitise, machine)?))
+    })
+}
+
+/// The axis with one kind for all its modes; nothing where it has that, or no modes.
+fn with_kind(section: &AxisSection, kind: ShaperKind) -> Option<AxisSection> {
+    let is_new = section.modes.iter().any(|mode| section.kind_of(mode) != kind);
+    let mut changed = section.clone();
+    changed.shaper.as_mut()?.kind = kind;
+    changed.modes.iter_mut().for_each(|mode| mode.shaper = None);
+    is_new.then_some(changed)
+}
+
+/// Taps of an axis at a machine's sample rate, if a table holds them.
+fn taps(section: &AxisSection, how: Digitise, machine: &Machine) -> Option<usize> {
+    let design = design_axis(section).ok()?;
+    let digitised = digitise(&design, how, machine.clock.sample_hz).ok()?;
+    let tables = quantise(
+        &[(section.name.as_str(), &digitised)],
+        machine.fixed_point.coefficient_fraction,
+    )
+    .ok()?;
+    tables.first().map(|table| table.taps().len())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::design::design_machine;
+    use crate::machine_file::parse;
+
+    fn blamed(shaper: &str, modes: &[(f64, f64)]) -> DesignBlame {
+        let modes: Vec<String> = modes
+            .iter()
+            .map(|(hz, damping)| format!("[[axis.mode]]\nfrequency_hz = {hz}\ndamping = {damping}\n"))
+            .collect();
+        let text = format!(
+            "name = \"m\"\n[clock]\nfrequency_hz = 50_000_000\nsample_hz = 10_000\n[[axis]]\nname = \"x\"\n\
+             counts_per_unit = 1000\n[axis.shaper]\n{shaper}\n{}",
+            modes.concat()
+        );
+        let machine = parse("m.toml", &text).unwrap();
+        blame(&machine, &design_machine(&machine).unwrap_err()).unwrap()
+    }
+
+    #[test]
+    fn unit_a_mode_in_kilohertz_is_asked_for() {
+        let blame = blamed("kind = \"zvd\"", &[(100.0, 0.1), (0.03, 0.1)]);
+        assert_eq!((blame.mode, blame.key.as_str()), (Some(1), "axis.mode.frequency_hz"));
+        let remedy = blame.remedy.unwrap();
+        assert!(
+            remedy.starts_with("0.03 kHz? Frequencies are in Hz: write `frequency_hz = 30`"),
+            "{remedy}"
+        );
+    }
+
+    #[test]
+    fn unit_too_many_taps_get_changes_that_fit() {
+        let modes = [(20.0, 0.1), (31.0, 0.1), (47.0, 0.05)];
+        let blame = blamed("kind = \"three-hump-ei\"", &modes);
+        assert_eq!(blame.key, "axis.shaper");
+        let remedy = blame.remedy.unwrap();
+        for change in ["clock.sample_hz = ", "kind = \"two-hump-ei\"", "digitise = \"nearest\""] {
+            assert!(remedy.contains(change), "{remedy}");
+        }
+        let blame = blamed("kind = \"chebyshev-ei\"\norder = 5", &modes[..2]);
+        assert!(blame.remedy.is_some_and(|remedy| remedy.contains("order = ")));
+    }
+
+    #[test]
+    fn unit_a_damping_that_a_kind_does_not_take_is_blamed_on_its_mode() {
+        let blame = blamed("kind = \"ps-zv\"", &[(50.0, 0.1), (80.0, 0.6)]);
+        assert_eq!((blame.mode, blame.key.as_str()), (Some(1), "axis.mode.damping"));
+    }
+}

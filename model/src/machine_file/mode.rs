@@ -1,0 +1,231 @@
+//! `[[axis.mode]]`: frequency and damping of a mode, and with the motor held or free it was measured.
+//!
+//! A shaper on the reference of a position loop is for the mode that rings while the loop holds the motor. One that was measured with the motor
+//! free is converted, which takes the two masses; without them nothing says which shaper is right, and the file is refused.
+
+use super::hint::{self, KILO};
+use super::key::{Default, Key, Values};
+use super::range::NumberRange;
+use super::table::Table;
+use super::{AxisMode, ClockSection, shaper};
+use crate::design::kind::ShaperKind;
+use crate::mode::Mode;
+use crate::unit::short;
+
+/// Modes of an axis: with five impulses each their convolution has 390,625, far more than any table holds.
+pub(super) const MAX_MODES: usize = 8;
+/// A frequency before it is compared with the sample rate; below this a shaper would last for hours.
+const FREQUENCY_HZ: NumberRange = NumberRange::closed(1e-3, 1e9).unit("Hz");
+/// Damping ratio of a mode that rings.
+const DAMPING: NumberRange = NumberRange::closed(0.0, 1.0).open_above();
+/// Weights of the modes.
+const PARTICIPATION: NumberRange = NumberRange::closed(0.0, 1e9);
+/// Masses in kg, or inertias in kg·m².
+const MASS: NumberRange = NumberRange::positive(1e12);
+/// Where the figures of a mode come from.
+pub(super) const MEASURE: &str = "docs/modes.md says how to measure frequency and damping";
+/// A sample rate below this is most likely given in kHz.
+const LIKELY_SAMPLE_HZ: f64 = 100.0;
+/// How a mode was measured.
+const MOTOR_HELD: &str = "motor_held";
+const FREE: &str = "free";
+const MEASURED: [&str; 2] = [MOTOR_HELD, FREE];
+/// The keys of the frequency.
+const UNDAMPED: &str = "frequency_hz";
+const DAMPED: &str = "damped_frequency_hz";
+/// The masses that a conversion takes.
+const MASSES: [&str; 2] = ["motor_mass", "load_mass"];
+
+/// The keys of the table.
+pub(super) const KEYS: &[Key] = &[
+    Key::new(
+        "frequency_hz",
+        Values::Number(FREQUENCY_HZ),
+        "Undamped natural frequency in Hz, below half of `sample_hz`.",
+    ),
+    Key::new(
+        "damped_frequency_hz",
+        Values::Number(FREQUENCY_HZ),
+        "In place of `frequency_hz`: the frequency of the ringing, f·√(1−ζ²).",
+    )
+    .instead_of("frequency_hz"),
+    Key::new("damping", Values::Number(DAMPING), "Damping ratio ζ.").required(),
+    Key::new(
+        "measured",
+        Values::Word(|| MEASURED.to_vec()),
+        "Whether the motor was held, as by a position loop, or free, when the mode was measured: a free one is converted.",
+    )
+    .default(Default::Word(MOTOR_HELD)),
+    Key::new(
+        MASSES[0],
+        Values::Number(MASS),
+        "Mass of the motor's side in kg, or inertia in kg·m²: converts a mode that was measured free.",
+    ),
+    Key::new(
+        MASSES[1],
+        Values::Number(MASS),
+        "Mass of the load in kg, or inertia in kg·m², at the coordinate of the motor's.",
+    ),
+    Key::new(
+        "shaper",
+        Values::Word(shaper::of_modes),
+        "Kind of shaper for this mode, instead of the axis's.",
+    ),
+    Key::new(
+        "tolerance",
+        Values::Number(shaper::TOLERANCE),
+        "As in [axis.shaper], for this mode; else the axis's.",
+    ),
+    shaper::ORDER,
+    Key::new(
+        "participation",
+        Values::Number(PARTICIPATION),
+        "Weight of the mode in what the tool does; only ratios count.",
+    )
+    .default(Default::Number(1.0)),
+];
+
+/// Reads the modes of an axis whose shaper is of this kind, each with its table; `None` where one of them is refused.
+pub(super) fn read_all<'r, 't>(
+    axis: &Table<'r, 't>,
+    clock: Option<ClockSection>,
+    kind: Option<ShaperKind>,
+) -> Option<Vec<(Table<'r, 't>, AxisMode)>> {
+    let tables = axis.tables("mode", MAX_MODES);
+    // All are read before the first refusal ends it: every mode's problems are to be shown.
+    let modes: Vec<Option<(Table, AxisMode)>> = tables
+        .into_iter()
+        .enumerate()
+        .map(|(index, table)| {
+            let table = table.at(format!("{}, mode {}", axis.place(), index + 1));
+            read(&table, clock, kind).map(|mode| (table, mode))
+        })
+        .collect();
+    let modes: Vec<(Table, AxisMode)> = modes.into_iter().collect::<Option<_>>()?;
+    if !modes.is_empty() && modes.iter().all(|(_, mode)| mode.participation == 0.0) {
+        let found = "participation 0 in every mode";
+        let remedy = "give the mode that is seen most a participation of 1";
+        axis.contradiction("mode", found, "at least one mode with a participation above 0", remedy);
+    }
+    Some(modes)
+}
+
+fn read(table: &Table<'_, '_>, clock: Option<ClockSection>, axis_kind: Option<ShaperKind>) -> Option<AxisMode> {
+    table.allow(KEYS);
+    let remedy = format!("add `damping`, the part of critical damping: a steel frame has 0.005 to 0.05; {MEASURE}");
+    table.require_with("damping", DAMPING, remedy);
+    let damping = table.number("damping", DAMPING);
+    let given = read_frequency(table, damping);
+    let masses = read_masses(table, axis_kind);
+    let kind = shaper::kind(table, "shaper");
+    let tolerance = table.number("tolerance", shaper::TOLERANCE);
+    let order = shaper::order(table);
+    let participation = table.number("participation", PARTICIPATION).unwrap_or(1.0);
+    let given = Mode {
+        frequency_hz: given?,
+        damping: damping?,
+    };
+    let (mode, free) = match masses? {
+        Some([motor, load]) => (given.with_motor_held(motor, load), Some(given)),
+        None => (given, None),
+    };
+    check_below_half(table, &mode, clock?)?;
+    Some(AxisMode {
+        mode,
+        free,
+        shaper: kind,
+        tolerance,
+        order,
+        participation,
+    })
+}
+
+/// The masses that convert a mode which was measured free; `Some(None)` where it is to be taken as it is, `None` where that cannot be
+/// said.
+fn read_masses(table: &Table<'_, '_>, axis_kind: Option<ShaperKind>) -> Option<Option<[f64; 2]>> {
+    let [motor, load] = MASSES.map(|key| table.number(key, MASS));
+    let measured = table.choice("measured", &MEASURED);
+    let missing: Vec<&str> = MASSES.into_iter().filter(|key| table.lacks(key)).collect();
+    if table.lacks("measured") && missing.len() < MASSES.len() {
+        let found = "a mass without `measured`";
+        let allowed =
+            "masses with measured = \"free\", which they convert; without `measured` the mode is taken as it is";
+        let present = MASSES.into_iter().find(|key| table.has(key)).unwrap_or(MASSES[0]);
+        let remedy = "add `measured = \"free\"`, or `measured = \"motor_held\"`; docs/modes.md says which";
+        table.contradiction(present, found, allowed, remedy);
+        return None;
+    }
+    // The impulses of these kinds are what they are, whatever the modes.
+    let changes_shaper = !matches!(axis_kind, Some(ShaperKind::Custom | ShaperKind::None));
+    if measured != Some(FREE) || (!changes_shaper && missing.len() == MASSES.len()) {
+        return Some(None);
+    }
+    if !missing.is_empty() {
+        let keys = missing.join(" and ");
+        let found = format!("measured = \"free\" without {keys}");
+        let allowed = "\"free\" with motor_mass and load_mass, which convert the mode to that of a held motor; else \"motor_held\"";
+        let remedy = format!(
+            "add {keys} (kg, of a rotary axis kg·m²), or measure with the position loop on, which holds the motor; \
+             docs/modes.md says why the two differ"
+        );
+        table.contradiction("measured", found, allowed, remedy);
+        return None;
+    }
+    Some(Some([motor?, load?]))
+}
+
+/// The undamped natural frequency in Hz, from the one of the two keys that the file gives.
+fn read_frequency(table: &Table<'_, '_>, damping: Option<f64>) -> Option<f64> {
+    match (table.has(UNDAMPED), table.has(DAMPED)) {
+        (true, true) => {
+            let found = "both frequency_hz and damped_frequency_hz";
+            table.contradiction(DAMPED, found, "one of the two", "remove one of them");
+            None
+        }
+        (true, false) => table.number(UNDAMPED, FREQUENCY_HZ),
+        (false, true) => {
+            let given = table.number(DAMPED, FREQUENCY_HZ)?;
+            Some(given / (1.0 - damping? * damping?).sqrt())
+        }
+        (false, false) => {
+            // Whichever of the two is misspelt is there.
+            if table.lacks(UNDAMPED) && table.lacks(DAMPED) {
+                let allowed = format!("{FREQUENCY_HZ}, or damped_frequency_hz in its place");
+                table.require_with(UNDAMPED, allowed, format!("add `frequency_hz`; {MEASURE}"));
+            }
+            None
+        }
+    }
+}
+
+/// A mode must lie below half the sample rate: then so does the damped frequency, where the ringing and the pole are, and
+/// `ω_d·T_s < π`, without which two taps cannot place an impulse between two samples.
+fn check_below_half(table: &Table<'_, '_>, mode: &Mode, clock: ClockSection) -> Option<()> {
+    let (half, hz) = (clock.sample_hz / 2.0, mode.frequency_hz);
+    if hz < half {
+        return Some(());
+    }
+    let key = if table.has(UNDAMPED) { UNDAMPED } else { DAMPED };
+    let converted = match (table.has("measured"), key == DAMPED) {
+        (false, true) => format!(", an undamped frequency of {} Hz", short(hz)),
+        (true, _) => format!(", with the motor held {} Hz", short(hz)),
+        (false, false) => String::new(),
+    };
+    let found = format!("{}{converted}", table.quote(key));
+    let allowed = format!("below {} Hz, half of clock.sample_hz", short(half));
+    table.contradiction(key, found, allowed, above_half_remedy(hz, clock.sample_hz));
+    None
+}
+
+/// What to do about a mode that the samples cannot follow.
+fn above_half_remedy(mode_hz: f64, sample_hz: f64) -> String {
+    let right = |hz: f64| sample_hz < LIKELY_SAMPLE_HZ && hz > 2.0 * mode_hz;
+    let otherwise = format!(
+        "raise clock.sample_hz above {} Hz, twice the mode's frequency, or leave the mode out",
+        short(2.0 * mode_hz)
+    );
+    match hint::in_other_unit("clock.sample_hz", sample_hz, &KILO, right) {
+        Some(hint) => format!("{hint}; else {otherwise}"),
+        None => otherwise,
+    }
+}
