@@ -1,6 +1,6 @@
 //! Why an axis has no words for its supervisor: the value of the file, and the range that its word holds.
 
-use crate::unit::{AxisUnit, short};
+use crate::unit::AxisUnit;
 
 /// Why an axis has no words for its supervisor.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -14,10 +14,7 @@ pub enum SupervisionError {
         table: &'static str,
     },
     /// A value that its word does not hold.
-    #[error(
-        "axis {axis}: found {} {unit}; allowed: {} to {} {unit}, {reason}: give it a value in this range",
-        short(*found), short(*smallest), short(*largest)
-    )]
+    #[error("axis {axis}: found {found} {unit}; allowed: {smallest} to {largest} {unit}, {reason}")]
     Range {
         /// The axis.
         axis: String,
