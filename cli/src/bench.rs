@@ -35,6 +35,21 @@ pub(crate) enum Simulator {
     Rusthdl,
 }
 
+/// A number of clocks as people write it: `1000000`, `1_000_000` or `1e6`.
+pub(crate) fn clocks(text: &str) -> Result<u64, String> {
+    const LARGEST: f64 = 1e18;
+    let plain = text.replace('_', "");
+    let whole = plain.parse().ok();
+    let number = plain
+        .parse()
+        .ok()
+        .filter(|number: &f64| number.fract() == 0.0 && (1.0..=LARGEST).contains(number));
+    let clocks = whole.or_else(|| number.map(|number| number as u64));
+    clocks
+        .filter(|clocks| *clocks > 0)
+        .ok_or_else(|| "allowed: a whole number of clocks from 1 on, such as 1000000, 1_000_000 or 1e6".to_owned())
+}
+
 /// Whether this program is linked statically, and can load no library.
 const IS_STATIC: bool = cfg!(target_feature = "crt-static");
 
@@ -204,5 +219,20 @@ pub(crate) fn failure(error: Error) -> Failure {
         Failure::missing_tool(error)
     } else {
         Failure::because(error)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::clocks;
+
+    #[test]
+    fn unit_clocks_are_read_as_people_write_them() {
+        for text in ["1000000", "1_000_000", "1e6"] {
+            assert_eq!(clocks(text), Ok(1_000_000));
+        }
+        for text in ["0", "-1", "1.5", "many", "", "1e30", "nan"] {
+            assert!(clocks(text).is_err(), "{text}");
+        }
     }
 }

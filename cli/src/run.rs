@@ -55,7 +55,7 @@ pub(crate) struct Args {
     #[arg(long)]
     simulator: Option<Simulator>,
     /// Clocks of the lock step [default: 1000000 with verilator, 20000 with icarus and rusthdl]
-    #[arg(long, value_parser = clap::value_parser!(u64).range(1..))]
+    #[arg(long, value_parser = crate::bench::clocks)]
     cycles: Option<u64>,
     /// Seed of the random stimuli
     #[arg(long, default_value_t = DEFAULT_SEED)]

@@ -38,7 +38,7 @@ pub(crate) struct Args {
     blocks: Vec<String>,
     /// Clocks to compare in every row, with --stimulus at most [default: 1000000 with verilator, 20000 with icarus and
     /// rusthdl, and more where it takes more to see every tap, bank and flag]
-    #[arg(long, value_parser = clap::value_parser!(u64).range(1..))]
+    #[arg(long, value_parser = crate::bench::clocks)]
     cycles: Option<u64>,
     /// Seed of the random stimuli
     #[arg(long, default_value_t = DEFAULT_SEED)]
