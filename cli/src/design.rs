@@ -20,9 +20,9 @@ use posicast_model::design::{
 };
 use posicast_model::hardware::{Hardware, HardwareError};
 use posicast_model::machine_file::{AxisSection, Machine};
-use posicast_model::unit::counted;
 use posicast_system::output::OutputFiles;
 use posicast_testbench::wave::write_text;
+use posicast_testbench::wording::counted;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
@@ -154,7 +154,7 @@ impl<'a> DesignReport<'a> {
         let mut text = format!(
             "{}: {}, {} MHz clock, {} Hz samples, coefficients with {} fraction bits\n",
             self.machine.name,
-            counted(self.machine.axes.len(), "axis", "axes"),
+            counted(self.machine.axes.len() as u64, "axis"),
             clock.frequency_hz / 1e6,
             clock.sample_hz,
             self.design.coefficient_fraction,
@@ -277,7 +277,7 @@ impl AxisReport<'_> {
             "axis {}: {}, {}, duration {:.4} ms, delay {:.4} ms, partial sums {:.4} … {:.4}",
             self.axis.name,
             self.tables.design.kind,
-            counted(impulses.impulses().len(), "impulse", "impulses"),
+            counted(impulses.impulses().len() as u64, "impulse"),
             impulses.duration_s() * 1e3,
             impulses.delay_s() * 1e3,
             sums.min,
@@ -299,7 +299,7 @@ impl AxisReport<'_> {
         let _ = writeln!(
             text,
             "\n  {} at {sample_hz} Hz, digitised {}, sum {}",
-            counted(taps.len(), "tap", "taps"),
+            counted(taps.len() as u64, "tap"),
             self.tables.digitised.method_used,
             taps.iter().map(|t| i64::from(t.coefficient)).sum::<i64>(),
         );

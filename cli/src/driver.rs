@@ -2,6 +2,7 @@
 
 use crate::failure::Failure;
 use crate::hardware::Stage;
+use crate::verilog;
 use posicast_hdl::emit::Module;
 use posicast_model::machine_file::Machine;
 use posicast_model::motion::TickLimits;
@@ -40,7 +41,7 @@ pub(crate) fn add(
 }
 
 fn core_files(machine: &Machine, modules: &[Module], stage: Option<&Stage>) -> Vec<(String, String)> {
-    let files: Vec<String> = modules.iter().map(|module| format!("rtl/{}.v", module.name)).collect();
+    let files: Vec<String> = modules.iter().map(verilog::path).collect();
     let component: Option<&Component> = stage.map(|stage| stage.block.component());
     core_file::files(&Core {
         machine: &machine.name,

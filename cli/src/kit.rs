@@ -2,6 +2,7 @@
 
 use crate::failure::Failure;
 use crate::hardware::Built;
+use crate::verilog;
 use posicast_hdl::emit::Module;
 use posicast_model::machine_file::Machine;
 use posicast_synth::datasheets::{self, BuiltBlocks};
@@ -10,20 +11,19 @@ use posicast_synth::package::Package;
 
 /// The files, as path in the folder and text.
 pub(crate) fn files(machine: &Machine, modules: &[Module], built: &Built<'_>) -> Vec<(String, String)> {
-    let files: Vec<String> = modules.iter().map(|module| format!("rtl/{}.v", module.name)).collect();
-    let has_shapers_alone = built.components.is_empty() && built.stage.is_none();
-    let shapers = built.shapers.iter().filter(|_| has_shapers_alone);
+    let files: Vec<String> = modules.iter().map(verilog::path).collect();
+    let blocks = match (&built.stage, built.components.is_empty()) {
+        (Some(_), _) => BuiltBlocks::Stage,
+        (None, false) => BuiltBlocks::Components,
+        (None, true) => BuiltBlocks::Shapers,
+    };
+    let shapers = built.shapers.iter().filter(|_| blocks == BuiltBlocks::Shapers);
     let shapers: Vec<KitShaper<'_>> = shapers
         .map(|shaper| KitShaper {
             axis: &shaper.axis,
             config: &shaper.config,
         })
         .collect();
-    let datasheets = datasheets::files(match (&built.stage, built.components.is_empty()) {
-        (Some(_), _) => BuiltBlocks::Stage,
-        (None, false) => BuiltBlocks::Components,
-        (None, true) => BuiltBlocks::Shapers,
-    });
     let kit = kit::files(&Kit {
         machine: &machine.name,
         clock_hz: machine.clock.frequency_hz,
@@ -32,7 +32,7 @@ pub(crate) fn files(machine: &Machine, modules: &[Module], built: &Built<'_>) ->
         files: &files,
         shapers: &shapers,
     });
-    kit.into_iter().chain(datasheets).collect()
+    kit.into_iter().chain(datasheets::files(blocks)).collect()
 }
 
 /// Adds the files to the folder.

@@ -7,6 +7,7 @@ use legend::Legend;
 use plotters::coord::Shift;
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
+use posicast_model::unit::{ShownUnit, time_unit};
 use std::path::Path;
 
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
@@ -83,33 +84,14 @@ pub(crate) struct Mark {
     pub(crate) at: f64,
 }
 
-/// How a picture shows times: in µs, ms or s, by how long it is.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct TimeAxis {
-    per_s: f64,
-    pub(crate) symbol: &'static str,
+/// How a picture of so many seconds shows times: in the unit that gives it two at least.
+pub(crate) fn time_axis(duration_s: f64) -> ShownUnit {
+    time_unit(duration_s / 2.0)
 }
 
-impl TimeAxis {
-    /// That of a picture of so many seconds.
-    pub(crate) fn lasting(duration_s: f64) -> Self {
-        let (per_s, symbol) = match duration_s {
-            short if short < 2e-3 => (1e6, "µs"),
-            short if short < 2.0 => (1e3, "ms"),
-            _ => (1.0, "s"),
-        };
-        Self { per_s, symbol }
-    }
-
-    /// A time in its unit.
-    pub(crate) fn of(self, time_s: f64) -> f64 {
-        time_s * self.per_s
-    }
-
-    /// What it shows, with its unit.
-    pub(crate) fn label(self, what: &str) -> String {
-        format!("{what}, {}", self.symbol)
-    }
+/// What an axis shows, with its unit.
+pub(crate) fn label(what: &str, unit: ShownUnit) -> String {
+    format!("{what}, {}", unit.symbol())
 }
 
 /// One diagram.
@@ -316,20 +298,6 @@ fn cut(points: &[(f64, f64)], low: f64, high: f64) -> Vec<Vec<(f64, f64)>> {
     parts
 }
 
-/// `value` with so many significant digits, without zeros behind them.
-pub(crate) fn significant(value: f64, digits: i32) -> String {
-    if value == 0.0 || !value.is_finite() {
-        return value.to_string();
-    }
-    let unit = 10f64.powi(value.abs().log10().floor() as i32 + 1 - digits);
-    let decimals = (-unit.log10().floor()).max(0.0) as usize;
-    let text = format!("{:.decimals$}", (value / unit).round() * unit);
-    match text.contains('.') {
-        true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
-        false => text,
-    }
-}
-
 /// A number on an axis: without the digits that only binary fractions have, and never "-0".
 fn axis_label(value: f64) -> String {
     let rounded = (value * 1e6).round() / 1e6;
@@ -403,16 +371,10 @@ mod tests {
     }
 
     #[test]
-    fn unit_a_number_has_the_digits_that_it_deserves() {
-        let texts = [0.18, 131.117, 1234.5, -0.004_567, 10.0, 0.0].map(|value| significant(value, 3));
-        assert_eq!(texts, ["0.18", "131", "1230", "-0.00457", "10", "0"]);
-    }
-
-    #[test]
     fn unit_a_long_picture_shows_seconds() {
-        let labels = [0.001, 0.3, 30.0].map(|duration_s| TimeAxis::lasting(duration_s).label("time"));
+        let labels = [0.001, 0.3, 30.0].map(|duration_s| label("time", time_axis(duration_s)));
         assert_eq!(labels, ["time, µs", "time, ms", "time, s"]);
-        assert_eq!(TimeAxis::lasting(0.3).of(0.25), 250.0);
+        assert_eq!(time_axis(0.3).of(0.25), 250.0);
     }
 
     #[test]

@@ -7,6 +7,11 @@ use posicast_synth::package::Package;
 use posicast_system::scratch;
 use std::path::PathBuf;
 
+/// Where a module stands in the folder.
+pub(crate) fn path(module: &Module) -> String {
+    format!("rtl/{}.v", module.name)
+}
+
 /// Adds the machine file and its Verilog to the folder, and returns where the Verilog stands until the folder is complete.
 pub(crate) fn add_sources(
     package: &mut Package,
@@ -17,9 +22,7 @@ pub(crate) fn add_sources(
         .add("machine.toml", file.text.as_bytes())
         .map_err(Failure::because)?;
     let write = |module: &Module| {
-        let path = package
-            .stage(&format!("rtl/{}.v", module.name))
-            .map_err(Failure::because)?;
+        let path = package.stage(&path(module)).map_err(Failure::because)?;
         std::fs::write(&path, &module.text).map_err(Failure::because)?;
         Ok(path)
     };

@@ -1,31 +1,16 @@
 //! Names that the crates share.
 
+use crate::cli::support::rust_sources;
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Every block has its `Inputs` and `Outputs`, which its ports are made into.
 const OF_EVERY_BLOCK: [&str; 2] = ["Inputs", "Outputs"];
 
-fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
-    for entry in std::fs::read_dir(folder).unwrap() {
-        let path = entry.unwrap().path();
-        if path.is_dir() {
-            sources(&path, found);
-        } else if path.extension().is_some_and(|extension| extension == "rs") {
-            found.push(path);
-        }
-    }
-}
-
 #[test]
 fn unit_a_public_type_name_has_one_meaning() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
-    let mut files = Vec::new();
-    for package in ["system", "model", "hdl", "testbench", "synth"] {
-        sources(&root.join(package).join("src"), &mut files);
-    }
     let mut places: BTreeMap<String, Vec<PathBuf>> = BTreeMap::new();
-    for file in files {
+    for file in rust_sources(&["system", "model", "hdl", "testbench", "synth"]) {
         let text = std::fs::read_to_string(&file).unwrap();
         for line in text.lines() {
             let words: Vec<&str> = line.split_whitespace().take(3).collect();

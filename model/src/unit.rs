@@ -62,6 +62,12 @@ const ANGLES: [ShownUnit; 3] = [
     ShownUnit::new("rad", 1.0),
 ];
 const DEGREES: [ShownUnit; 2] = [ShownUnit::new("m°", 180e3 / PI), ShownUnit::new("°", 180.0 / PI)];
+const TIMES: [ShownUnit; 4] = [
+    ShownUnit::new("ns", 1e9),
+    ShownUnit::new("µs", 1e6),
+    ShownUnit::new("ms", 1e3),
+    ShownUnit::new("s", 1.0),
+];
 const REVOLUTIONS: [ShownUnit; 1] = [ShownUnit::new("rev", 1.0 / TAU)];
 
 impl AxisUnit {
@@ -235,16 +241,16 @@ impl ShownUnit {
     }
 }
 
+/// The unit that shows a time of this size with a number before the point; of no time, seconds.
+pub fn time_unit(time_s: f64) -> ShownUnit {
+    let fits = |unit: &&ShownUnit| (time_s * unit.per_si).abs() >= 1.0;
+    let largest_that_fits = TIMES.iter().rev().find(fits);
+    *largest_that_fits.unwrap_or(&TIMES[if time_s == 0.0 { 3 } else { 0 }])
+}
+
 /// A time with `digits` significant digits, as people write it: `152 µs`, `1.35 ms`, `30.0 s`.
 pub fn show_seconds(time_s: f64, digits: usize) -> String {
-    let units = [("ns", 1e9), ("µs", 1e6), ("ms", 1e3), ("s", 1.0)];
-    let fits = |(_, per_s): &&(&str, f64)| time_s.abs() * per_s >= 1.0;
-    let (symbol, per_s) = units
-        .iter()
-        .rev()
-        .find(fits)
-        .unwrap_or(&units[usize::from(time_s == 0.0) * 3]);
-    format!("{} {symbol}", significant(time_s * per_s, digits))
+    time_unit(time_s).show(time_s, digits)
 }
 
 /// A number for a message: a whole one as it is, another with six significant digits at most.
@@ -253,11 +259,6 @@ pub fn short(value: f64) -> String {
         true => value.to_string(),
         false => trimmed(value, 6),
     }
-}
-
-/// A number of things: `1 tap`, `2 taps`.
-pub fn counted(number: usize, one: &str, several: &str) -> String {
-    format!("{number} {}", if number == 1 { one } else { several })
 }
 
 /// The degree's ring stands at its number.
@@ -285,8 +286,8 @@ fn significant(value: f64, digits: usize) -> String {
     format!("{value:.after$}")
 }
 
-/// The same without zeros at its end.
-fn trimmed(value: f64, digits: usize) -> String {
+/// A number with so many significant digits at most: zeros at its end are left out.
+pub fn trimmed(value: f64, digits: usize) -> String {
     let rounded: f64 = format!("{value:.*e}", digits.saturating_sub(1))
         .parse()
         .unwrap_or(value);
@@ -366,6 +367,12 @@ mod tests {
     }
 
     #[test]
+    fn unit_a_number_has_the_digits_that_it_deserves() {
+        let texts = [0.18, 131.117, 1234.5, -0.004_567, 10.0, 0.0].map(|value| trimmed(value, 3));
+        assert_eq!(texts, ["0.18", "131", "1230", "-0.00457", "10", "0"]);
+    }
+
+    #[test]
     fn unit_figures_of_the_file_are_shown_as_they_stand_there() {
         for (unit, figure, text) in [
             (AxisUnit::Metre, 0.0001, "0.0001 m"),
@@ -391,8 +398,6 @@ mod tests {
         ] {
             assert_eq!(short(value), text);
         }
-        assert_eq!(counted(1, "axis", "axes"), "1 axis");
-        assert_eq!(counted(0, "tap", "taps"), "0 taps");
     }
 
     #[test]

@@ -1,9 +1,12 @@
 //! Counted things and times in sentences for people.
 
-/// A number of things: `1 signal`, `2 signals`, `0 matches`.
+/// A number of things: `1 signal`, `2 signals`, `0 matches`, `2 axes`.
 pub fn counted(count: u64, noun: &str) -> String {
     if count == 1 {
         return format!("1 {noun}");
+    }
+    if let Some(stem) = noun.strip_suffix("is") {
+        return format!("{count} {stem}es");
     }
     let hisses = ["s", "x", "ch", "sh"].iter().any(|end| noun.ends_with(end));
     format!("{count} {noun}{}", if hisses { "es" } else { "s" })
@@ -51,6 +54,9 @@ mod tests {
         assert_eq!(text(0), "0 signals, 0 mismatches");
         assert_eq!(text(1), "1 signal, 1 mismatch");
         assert_eq!(text(2), "2 signals, 2 mismatches");
+        assert_eq!(counted(1, "axis"), "1 axis");
+        assert_eq!(counted(2, "axis"), "2 axes");
+        assert_eq!(counted(0, "tap"), "0 taps");
     }
 
     #[test]

@@ -1,9 +1,10 @@
 //! Sensitivity curves: the residual over the mode's true frequency.
 
-use crate::plot::{Curve, Panel, significant};
+use crate::plot::{Curve, Panel};
 use posicast_model::analysis::{sensitivity_curve, tap_impulses};
 use posicast_model::design::{AxisTables, MachineDesign};
 use posicast_model::machine_file::{AxisSection, Machine};
+use posicast_model::unit::trimmed;
 
 /// Frequency ratios that the sensitivity curves show.
 const CURVE_RATIOS: (f64, f64) = (0.4, 1.6);
@@ -32,7 +33,7 @@ fn sensitivity_panel(machine: &str, axis: &AxisSection, tables: &AxisTables, sam
                 .map(|(ratio, residual)| (ratio, 100.0 * residual))
                 .collect::<Vec<_>>()
         };
-        let name = format!("{} Hz", significant(mode.mode.frequency_hz, 4));
+        let name = format!("{} Hz", trimmed(mode.mode.frequency_hz, 4));
         curves.push(Curve::new(format!("{name}, integer taps"), curve(&integer)));
         curves.push(Curve::beside(
             format!("{name}, impulses before rounding"),
@@ -44,7 +45,7 @@ fn sensitivity_panel(machine: &str, axis: &AxisSection, tables: &AxisTables, sam
     tolerances.dedup();
     for tolerance in tolerances {
         let line = vec![(CURVE_RATIOS.0, tolerance), (CURVE_RATIOS.1, tolerance)];
-        curves.push(Curve::limit(format!("tolerance {} %", significant(tolerance, 3)), line));
+        curves.push(Curve::limit(format!("tolerance {} %", trimmed(tolerance, 3)), line));
     }
     Panel {
         title: format!(

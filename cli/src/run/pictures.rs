@@ -1,7 +1,7 @@
 //! The shapers on the simulated machine, as pictures.
 
 use crate::failure::Failure;
-use crate::plot::{Band, Curve, Panel, TimeAxis, significant};
+use crate::plot::{Band, Curve, Panel, label, time_axis};
 use crate::simulate::si_per_lsb;
 use posicast_model::analysis::{settled_from, tap_impulses};
 use posicast_model::design::{AxisTables, MachineDesign};
@@ -10,6 +10,7 @@ use posicast_model::machine_file::{AxisSection, Machine};
 use posicast_model::plant::Plant;
 use posicast_model::plant::response::step_response;
 use posicast_model::simulation::AxisSimulation;
+use posicast_model::unit::{ShownUnit, trimmed};
 
 /// Duration that a step response shows, in shaper durations.
 const SHOWN_DURATIONS: f64 = 4.0;
@@ -35,11 +36,11 @@ pub(crate) fn response_panels(
 }
 
 /// `name`, and when the deviations at these times, in the unit of `time`, have settled to ± `band`.
-pub(super) fn with_settling(name: &str, deviations: &[(f64, f64)], band: f64, time: TimeAxis) -> String {
+pub(super) fn with_settling(name: &str, deviations: &[(f64, f64)], band: f64, time: ShownUnit) -> String {
     let values: Vec<f64> = deviations.iter().map(|point| point.1).collect();
     match settled_from(&values, band).map(|first| (first, deviations[first].0)) {
         Some((0, _)) => format!("{name}: settled throughout"),
-        Some((_, at)) => format!("{name}: settled at {} {}", significant(at, 3), time.symbol),
+        Some((_, at)) => format!("{name}: settled at {} {}", trimmed(at, 3), time.symbol()),
         None => format!("{name}: settles later"),
     }
 }
@@ -49,7 +50,7 @@ fn step_panel(machine: &str, axis: &AxisSection, tables: &AxisTables, sample_hz:
     let taps = tap_impulses(&tables.table, sample_hz);
     let slowest_s = axis.modes.iter().map(|m| m.mode.damped_period_s()).fold(0.0, f64::max);
     let duration_s = SHOWN_DURATIONS * tables.design.impulses.duration_s().max(slowest_s);
-    let time = TimeAxis::lasting(duration_s);
+    let time = time_axis(duration_s);
     let curve = |plant: &Plant, impulses: &[_], name: &str| {
         let points = step_response(plant, impulses, duration_s, RESPONSE_POINTS);
         let points: Vec<_> = points
@@ -74,7 +75,7 @@ fn step_panel(machine: &str, axis: &AxisSection, tables: &AxisTables, sample_hz:
             "{machine}, axis {}: step response with {}",
             axis.name, tables.design.kind
         ),
-        x_label: time.label("time"),
+        x_label: label("time", time),
         y_label: "position / step".into(),
         curves: std::iter::once(Curve::reference(unshaped, points))
             .chain(shaped)
@@ -102,7 +103,7 @@ fn move_panel(machine: &Machine, axis: &AxisSection, tables: &AxisTables, run: &
         .flat_map(|positions| positions.iter().skip(arrived).map(off));
     let largest = later.map(f64::abs).fold(0.0, f64::max);
     let unit = axis.unit.for_size(largest);
-    let time = TimeAxis::lasting(run.shaped.len() as f64 / machine.clock.sample_hz);
+    let time = time_axis(run.shaped.len() as f64 / machine.clock.sample_hz);
     let [unshaped, shaped] = both.map(|positions| {
         let points = positions.iter().enumerate().skip(from);
         points
@@ -112,8 +113,8 @@ fn move_panel(machine: &Machine, axis: &AxisSection, tables: &AxisTables, run: &
     let (count, largest) = (unit.of(1.0 / axis.loop_counts_per_unit()), unit.of(largest));
     Panel {
         title: format!("{}, axis {}: arrival of the move", machine.name, axis.name),
-        x_label: time.label("time"),
-        y_label: format!("deviation from target, {}", unit.symbol()),
+        x_label: label("time", time),
+        y_label: label("deviation from target", unit),
         curves: vec![
             Curve::reference(with_settling("unshaped", &unshaped, count, time), unshaped),
             Curve::new(with_settling("shaped", &shaped, count, time), shaped),

@@ -2,9 +2,9 @@
 
 #![cfg(unix)]
 
-use crate::cli::support::{json, posicast};
+use crate::cli::support::{json, posicast, rust_sources};
 use std::os::unix::fs::PermissionsExt;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// A folder with programs that say a version.
 fn programs(names: &[&str]) -> tempfile::TempDir {
@@ -107,33 +107,14 @@ fn a_tool_that_does_not_start_is_missing() {
     assert!(table.contains("does not start"), "{table}");
 }
 
-/// The sources of the crates that call tools.
-fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
-    for entry in std::fs::read_dir(folder).unwrap() {
-        let path = entry.unwrap().path();
-        match path.is_dir() {
-            true => sources(&path, found),
-            false => found.push(path),
-        }
-    }
-}
-
 #[test]
 fn every_variable_that_names_a_tool_is_in_the_table() {
     let output = doctor(Path::new("/nowhere")).arg("--json").output().unwrap();
     let document = json(&output.stdout);
     let tools = document["tools"].as_array().unwrap();
     let known: Vec<&str> = tools.iter().filter_map(|tool| tool["variable"].as_str()).collect();
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
-    let mut files = Vec::new();
-    for package in ["testbench", "synth"] {
-        sources(&root.join(package).join("src"), &mut files);
-    }
     let mut called = Vec::new();
-    for file in files
-        .iter()
-        .filter(|file| file.extension().is_some_and(|end| end == "rs"))
-    {
+    for file in rust_sources(&["testbench", "synth"]) {
         let text = std::fs::read_to_string(file).unwrap();
         for mark in ["variable: \"", "executables(\""] {
             called.extend(

@@ -2,7 +2,7 @@
 
 mod sopc;
 mod stage;
-mod support;
+pub(crate) mod support;
 mod verdict;
 mod verify;
 

@@ -3,7 +3,7 @@
 #![cfg(test)] // lets clippy see that this is test code
 
 use assert_cmd::Command;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// The program, in a folder of its own.
 pub(crate) fn posicast() -> Command {
@@ -34,4 +34,23 @@ pub(crate) fn one_axis(shaper: &str, mode: &str) -> String {
 /// The JSON document on standard output.
 pub(crate) fn json(output: &[u8]) -> serde_json::Value {
     serde_json::from_slice(output).unwrap()
+}
+
+/// The Rust files of these packages of the workspace, without their tests.
+pub(crate) fn rust_sources(packages: &[&str]) -> Vec<PathBuf> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let files = packages
+        .iter()
+        .flat_map(|package| files_below(&root.join(package).join("src")));
+    let rust = files.filter(|file| file.extension().is_some_and(|extension| extension == "rs"));
+    rust.collect()
+}
+
+fn files_below(folder: &Path) -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+    let files = entries.map(|path| match path.is_dir() {
+        true => files_below(&path),
+        false => vec![path],
+    });
+    files.flatten().collect()
 }

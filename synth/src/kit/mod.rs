@@ -87,7 +87,7 @@ impl Kit<'_> {
     }
 }
 
-/// The files, as path in the output folder and text. No machine has an empty list.
+/// The files, as path in the output folder and text.
 pub fn files(kit: &Kit<'_>) -> Vec<(String, String)> {
     let machine = kit.machine;
     let mut files = vec![

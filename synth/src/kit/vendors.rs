@@ -4,11 +4,6 @@ use std::fmt::Write;
 
 use super::Kit;
 
-/// What the clock is called in constraints.
-fn period_ns(kit: &Kit<'_>) -> f64 {
-    1e9 / kit.clock_hz
-}
-
 /// The Verilog for a Quartus project.
 pub(super) fn qip(kit: &Kit<'_>) -> String {
     let line = |file: &String| {
@@ -93,5 +88,8 @@ report_utilization -file {machine}_utilization.txt
 
 /// Its constraints.
 pub(super) fn xdc(kit: &Kit<'_>) -> String {
-    format!("create_clock -period {:.3} -name clk [get_ports clk]\n", period_ns(kit))
+    format!(
+        "create_clock -period {:.3} -name clk [get_ports clk]\n",
+        1e9 / kit.clock_hz
+    )
 }

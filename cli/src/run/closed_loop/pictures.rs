@@ -1,7 +1,7 @@
 //! The closed loop as pictures.
 
 use super::ClosedLoop;
-use crate::plot::{Band, Curve, Mark, Panel, TimeAxis};
+use crate::plot::{Band, Curve, Mark, Panel, label, time_axis};
 use crate::run::pictures::with_settling;
 use posicast_model::unit::ShownUnit;
 use posicast_testbench::stage_bench::AxisSample;
@@ -39,7 +39,7 @@ impl ClosedLoop<'_> {
             let panel = Panel {
                 title: format!("{}, circle: how far the load is outside of it", self.machine.name),
                 x_label: "direction from the centre, degrees".into(),
-                y_label: format!("distance, {}", unit.symbol()),
+                y_label: label("distance", unit),
                 curves,
                 ..Panel::default()
             };
@@ -53,10 +53,10 @@ impl ClosedLoop<'_> {
     }
 
     /// How the pictures of the move show time.
-    fn time(&self) -> TimeAxis {
+    fn time(&self) -> ShownUnit {
         let samples = self.runs().into_iter().flat_map(|(_, moved)| moved.samples.first());
         let ticks = samples.map(Vec::len).max().unwrap_or(0);
-        TimeAxis::lasting(self.seconds(ticks))
+        time_axis(self.seconds(ticks))
     }
 
     fn seconds(&self, ticks: usize) -> f64 {
@@ -100,8 +100,8 @@ impl ClosedLoop<'_> {
         let per_count = unit.of(count);
         Panel {
             title: self.title(axis, "position"),
-            x_label: self.time().label("time"),
-            y_label: format!("position, {}", unit.symbol()),
+            x_label: label("time", self.time()),
+            y_label: label("position", unit),
             curves: vec![
                 Curve::reference("command", self.points(samples, |sample| sample.command * per_count)),
                 Curve::new("shaped", self.points(samples, |sample| sample.shaped * per_count)),
@@ -122,8 +122,8 @@ impl ClosedLoop<'_> {
         let per_count = unit.of(count);
         Panel {
             title: self.title(axis, "what the controller sees of the error"),
-            x_label: self.time().label("time"),
-            y_label: format!("error, {}", unit.symbol()),
+            x_label: label("time", self.time()),
+            y_label: label("error", unit),
             curves: vec![Curve::new(
                 "error",
                 self.points(samples, |sample| sample.error * per_count),
@@ -173,8 +173,8 @@ impl ClosedLoop<'_> {
         });
         Panel {
             title: self.title(axis, "the load after its move"),
-            x_label: time.label("time since the command came to its end"),
-            y_label: format!("from its place of rest, {}", unit.symbol()),
+            x_label: label("time since the command came to its end", time),
+            y_label: label("from its place of rest", unit),
             curves: curves.collect(),
             band: Some(band),
             ..Panel::default()
@@ -197,8 +197,8 @@ impl ClosedLoop<'_> {
         });
         Panel {
             title: self.title(axis, "the load about its command, until the run was given up"),
-            x_label: self.time().label("time"),
-            y_label: format!("load less command, {}", unit.symbol()),
+            x_label: label("time", self.time()),
+            y_label: label("load less command", unit),
             curves: curves.collect(),
             marks: self.trips(self.runs()),
             ..Panel::default()
