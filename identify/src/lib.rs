@@ -1,0 +1,16 @@
+//! Vibration modes from what a machine did.
+//!
+//! ```text
+//! log (CSV) ─► log ─┬─► sweep      accelerometer, driven by a known sweep ─┐
+//!                   ├─► position   time, command, response                ─┼─► FoundMode with its uncertainty ─► recommend
+//!                   └─► trace      what the stage recorded of itself      ─┘
+//! ```
+//!
+//! Every method says how surely it knows a mode ([`FoundMode::frequency_sd_hz`]), and what it cannot tell and why.
+
+pub mod found;
+pub mod position;
+pub mod signal;
+
+pub use found::{FoundMode, Interval};
+pub use signal::PositionLog;

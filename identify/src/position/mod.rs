@@ -1,0 +1,1 @@
+//! Modes from a position log: time, command, response.
