@@ -19,6 +19,7 @@ mod failure;
 mod generate;
 mod guards;
 mod hardware;
+mod identify;
 mod kit;
 mod machine;
 mod man;
@@ -40,7 +41,6 @@ mod verify;
 mod verilog;
 
 use clap::{CommandFactory, Parser, Subcommand};
-use failure::Failure;
 use posicast_system::interrupt;
 use std::process::ExitCode;
 
@@ -75,20 +75,12 @@ enum Command {
     Verify(verify::Args),
     Diff(Box<diff::Args>),
     Synth(synth::Args),
-    #[command(hide = true)]
-    Identify(NotBuilt),
+    Identify(identify::Args),
     Reproduce(reproduce::Args),
     Doctor(doctor::Args),
     Schema(schema::Args),
     Completions(completions::Args),
     Man(man::Args),
-}
-
-/// Arguments of a command that this version does not build: anything.
-#[derive(clap::Args)]
-struct NotBuilt {
-    #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
-    _rest: Vec<String>,
 }
 
 fn main() -> ExitCode {
@@ -106,7 +98,7 @@ fn main() -> ExitCode {
         Command::Verify(args) => verify::run(&args),
         Command::Diff(args) => diff::run(&args),
         Command::Synth(args) => synth::run(&args),
-        Command::Identify(_) => Err(Failure::not_built("identify")),
+        Command::Identify(args) => identify::run(&args),
         Command::Reproduce(args) => reproduce::run(&args),
         Command::Doctor(args) => doctor::run(&args),
         Command::Schema(args) => schema::run(&args),

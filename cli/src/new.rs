@@ -13,7 +13,7 @@ use questions::Questions;
 use std::io::{IsTerminal, stderr, stdin};
 use std::path::Path;
 use std::path::PathBuf;
-use template::{Draft, MachineKind};
+pub(crate) use template::{Draft, MachineKind};
 
 /// Write a commented machine file for a kind of machine, to start from
 #[derive(clap::Args)]
@@ -37,7 +37,7 @@ pub(crate) struct Args {
 
 #[derive(clap::Args)]
 #[group(multiple = false)]
-struct KindFlags {
+pub(crate) struct KindFlags {
     /// 3D printer: two belt axes without encoders
     #[arg(long)]
     printer: bool,
@@ -53,7 +53,7 @@ struct KindFlags {
 }
 
 impl KindFlags {
-    fn kind(&self) -> Option<MachineKind> {
+    pub(crate) fn kind(&self) -> Option<MachineKind> {
         let flags = [
             (self.printer, MachineKind::Printer),
             (self.gantry, MachineKind::Gantry),

@@ -76,6 +76,14 @@ impl Band {
     }
 }
 
+/// A range of the horizontal axis.
+pub(crate) struct Range {
+    /// Name in the legend.
+    pub(crate) name: String,
+    /// Its ends.
+    pub(crate) ends: (f64, f64),
+}
+
 /// A place on the horizontal axis where something happens.
 pub(crate) struct Mark {
     /// What happens.
@@ -109,6 +117,8 @@ pub(crate) struct Panel {
     pub(crate) y_range: Option<(f64, f64)>,
     /// Drawn under the curves.
     pub(crate) band: Option<Band>,
+    /// Drawn under the curves from bottom to top.
+    pub(crate) x_ranges: Vec<Range>,
     /// Drawn as vertical lines.
     pub(crate) marks: Vec<Mark>,
 }
@@ -215,6 +225,13 @@ fn draw_panel(area: &Area<'_>, panel: &Panel) -> Drawn {
                 BAND.filled(),
             )))?;
         }
+    }
+    for range in &panel.x_ranges {
+        // However narrow, it is seen.
+        let thin = 0.001 * (x_high - x_low);
+        let (low, high) = (range.ends.0 - thin, range.ends.1 + thin);
+        let corners = [(low.max(x_low), y_low), (high.min(x_high), y_high)];
+        chart.draw_series(std::iter::once(Rectangle::new(corners, BAND.filled())))?;
     }
     chart
         .configure_mesh()

@@ -9,8 +9,14 @@
 //! Every method says how surely it knows a mode ([`FoundMode::frequency_sd_hz`]), and what it cannot tell and why.
 
 pub mod found;
+pub mod log;
+pub mod modal;
 pub mod position;
+pub mod recommend;
 pub mod signal;
+pub mod spectrum;
+pub mod sweep;
+pub mod synthetic;
 
 pub use found::{FoundMode, Interval};
-pub use signal::PositionLog;
+pub use signal::{AccelerationLog, PositionLog};

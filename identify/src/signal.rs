@@ -10,3 +10,37 @@ pub struct PositionLog {
     /// Response at each sample, before the command of that sample acts; as many as there are commands, where there are any.
     pub response: Vec<f64>,
 }
+
+/// What an accelerometer on an axis saw.
+#[derive(Debug, Clone, PartialEq)]
+pub struct AccelerationLog {
+    /// Time between samples in seconds.
+    pub sample_s: f64,
+    /// The directions of the sensor, each with its name and its acceleration in m/s²; all have equally many samples.
+    pub directions: Vec<(String, Vec<f64>)>,
+}
+
+impl AccelerationLog {
+    /// Writes the log as printer firmware does: `#time,NAME,…` in s and mm/s².
+    ///
+    /// # Errors
+    /// What the writer says.
+    pub fn write_csv(&self, out: &mut impl std::io::Write) -> std::io::Result<()> {
+        let names: Vec<&str> = self.directions.iter().map(|(name, _)| name.as_str()).collect();
+        writeln!(out, "#time,{}", names.join(","))?;
+        let samples = self
+            .directions
+            .iter()
+            .map(|(_, record)| record.len())
+            .min()
+            .unwrap_or(0);
+        for n in 0..samples {
+            write!(out, "{:.6}", n as f64 * self.sample_s)?;
+            for (_, record) in &self.directions {
+                write!(out, ",{:.3}", 1e3 * record[n])?;
+            }
+            writeln!(out)?;
+        }
+        Ok(())
+    }
+}

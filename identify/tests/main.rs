@@ -1,2 +1,5 @@
 //! The tests of `posicast-identify`, in one program: linking is most of what a program of its own would cost.
 #![cfg(test)]
+
+mod log;
+mod sweep;

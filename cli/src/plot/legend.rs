@@ -38,6 +38,7 @@ impl Legend {
             true => (Sample::Nothing, format!("{}: more than is shown", band.name)),
             false => (Sample::Band, band.name.clone()),
         });
+        let band = band.chain(panel.x_ranges.iter().map(|range| (Sample::Band, range.name.clone())));
         let marks = panel.marks.iter();
         let marks = marks.map(|mark| (Sample::Line(DARK_RED.stroke_width(1), true), mark.name.clone()));
         let mut entries: Vec<Entry> = Vec::new();

@@ -204,11 +204,6 @@ fn cli_what_is_not_built_yet_says_so() {
         &one_axis("kind = \"optimal\"", MODE),
         &["not built in this version: optimal"],
     );
-    posicast()
-        .args(["identify", "log.csv"])
-        .assert()
-        .code(2)
-        .stderr(predicate::str::contains("not built in this version: identify"));
 }
 
 #[test]

@@ -14,6 +14,7 @@ mod doctor;
 mod folder;
 mod fuzz;
 mod hardware;
+mod identify;
 mod kit;
 mod moves;
 mod new;

@@ -150,45 +150,63 @@ fn per_mode(axis: &AxisSection) -> Result<(ImpulseSequence, ShaperParts), Design
 
 /// The impulses of one mode's shaper, checked at its mode.
 fn mode_impulses(axis: &AxisSection, axis_mode: &AxisMode) -> Result<ImpulseSequence, DesignError> {
-    let kind = axis.kind_of(axis_mode);
-    let mode = axis_mode.mode;
+    let (kind, mode) = (axis.kind_of(axis_mode), axis_mode.mode);
+    // What serves all modes of an axis cannot be one mode's share of a convolution.
+    if kind.treats_modes_together() && kind != ShaperKind::None {
+        return Err(DesignError::JointKindOfOneMode {
+            axis: axis.name.clone(),
+            kind,
+            mode,
+        });
+    }
+    let settings = ModeSettings {
+        tolerance: axis.tolerance_of(axis_mode),
+        order: axis.order_of(axis_mode),
+        epsilon: axis.epsilon(),
+    };
+    design_mode(kind, &mode, &settings)
+}
+
+/// What a shaper of one mode is designed to, beside the mode.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ModeSettings {
+    /// Residual that the kinds with a tolerance promise.
+    pub tolerance: f64,
+    /// Order of the kinds that have one.
+    pub order: u32,
+    /// Residual in the band of `vibrationless`.
+    pub epsilon: f64,
+}
+
+/// The shaper of one mode by itself, checked at the mode.
+///
+/// # Errors
+/// [`DesignError`] where the kind is not built or treats modes together, does not exist for the mode, or misses what it promises.
+pub fn design_mode(kind: ShaperKind, mode: &Mode, settings: &ModeSettings) -> Result<ImpulseSequence, DesignError> {
+    let tolerance = settings.tolerance;
     let (impulses, promised) = match kind {
         ShaperKind::None => return Ok(ImpulseSequence::unity()),
-        ShaperKind::Zv => (zv::design(kind, &mode, 1)?, 0.0),
-        ShaperKind::Zvd => (zv::design(kind, &mode, 2)?, 0.0),
-        ShaperKind::Zvdd => (zv::design(kind, &mode, 3)?, 0.0),
-        ShaperKind::Zvddd => (zv::design(kind, &mode, 4)?, 0.0),
-        ShaperKind::Mzv => (zv::design_mzv(&mode)?, 0.0),
+        ShaperKind::Zv => (zv::design(kind, mode, 1)?, 0.0),
+        ShaperKind::Zvd => (zv::design(kind, mode, 2)?, 0.0),
+        ShaperKind::Zvdd => (zv::design(kind, mode, 3)?, 0.0),
+        ShaperKind::Zvddd => (zv::design(kind, mode, 4)?, 0.0),
+        ShaperKind::Mzv => (zv::design_mzv(mode)?, 0.0),
         ShaperKind::UmZv | ShaperKind::UmZvd | ShaperKind::PsZv | ShaperKind::PsZvd => {
-            (negative::design(kind, &mode, axis.tolerance_of(axis_mode))?, 0.0)
+            (negative::design(kind, mode, tolerance)?, 0.0)
         }
-        ShaperKind::UmEi | ShaperKind::PsEi => {
-            let tolerance = axis.tolerance_of(axis_mode);
-            (negative::design(kind, &mode, tolerance)?, tolerance)
-        }
+        ShaperKind::UmEi | ShaperKind::PsEi => (negative::design(kind, mode, tolerance)?, tolerance),
         ShaperKind::Ei | ShaperKind::TwoHumpEi | ShaperKind::ThreeHumpEi => {
-            let tolerance = axis.tolerance_of(axis_mode);
             let promised = if kind == ShaperKind::TwoHumpEi { 0.0 } else { tolerance };
-            (hump_ei::design(kind, &mode, tolerance)?.impulses, promised)
+            (hump_ei::design(kind, mode, tolerance)?.impulses, promised)
         }
         ShaperKind::ZvEi | ShaperKind::ZvEi2 | ShaperKind::ZvdEi | ShaperKind::MultiEi | ShaperKind::ChebyshevEi => {
-            let tolerance = axis.tolerance_of(axis_mode);
-            let order = axis.order_of(axis_mode);
-            (bias_point::design(kind, order, &mode, tolerance)?, tolerance)
+            (bias_point::design(kind, settings.order, mode, tolerance)?, tolerance)
         }
         // The cascade promises a band, not a residual: damping is left out of its design, and reported.
-        ShaperKind::Vibrationless => return vibrationless::design(&mode, axis.order_of(axis_mode), axis.epsilon()),
-        // What serves all modes of an axis cannot be one mode's share of a convolution.
-        _ if kind.treats_modes_together() => {
-            return Err(DesignError::JointKindOfOneMode {
-                axis: axis.name.clone(),
-                kind,
-                mode,
-            });
-        }
+        ShaperKind::Vibrationless => return vibrationless::design(mode, settings.order, settings.epsilon),
         _ => return Err(DesignError::NotBuilt { kind }),
     };
-    let found = residual_vibration(impulses.impulses(), &mode);
-    DesignError::verify(kind, &mode, found, promised, RESIDUAL_TOLERANCE)?;
+    let found = residual_vibration(impulses.impulses(), mode);
+    DesignError::verify(kind, mode, found, promised, RESIDUAL_TOLERANCE)?;
     Ok(impulses)
 }

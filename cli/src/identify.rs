@@ -1,0 +1,152 @@
+//! `posicast identify`: modes from a measured log, and on to a machine file.
+
+mod document;
+mod excitation;
+mod findings;
+mod machine_file;
+mod pictures;
+mod text;
+
+use crate::failure::Failure;
+use crate::new::{KindFlags, MachineKind};
+use crate::output;
+use crate::plot;
+use excitation::ExcitationFlags;
+use findings::Findings;
+use posicast_identify::log::{self, Reading};
+use posicast_identify::recommend::Judgement;
+use posicast_system::output::{self as files, OutputFiles};
+use posicast_testbench::wave::write_text;
+use std::fs::File;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+/// Modes from a measured log, with their uncertainty, shapers for them, and a machine file
+#[derive(clap::Args)]
+#[command(after_help = "\
+Examples:
+  posicast identify raw_data_x.csv                    an accelerometer's log of a printer's resonance test
+  posicast identify raw_data_x.csv --plot x.svg -o printer.toml
+  posicast identify raw_data_y.csv --machine printer.toml --axis y -o both.toml
+  posicast identify step.csv --json                   columns time,command,response
+
+The columns of a log, and what each method needs: docs/identify.md")]
+pub(crate) struct Args {
+    /// Log in CSV: time,accel_x,accel_y,accel_z in s and mm/s², or time,command,response
+    log: PathBuf,
+    /// Print one JSON document on standard output
+    #[arg(long)]
+    json: bool,
+    /// Write a machine file with the modes found and the first shaper of the list
+    #[arg(short, long, value_name = "MACHINE")]
+    output: Option<PathBuf>,
+    /// Take this machine file and put the modes into the axis that --axis names, instead of starting from a template
+    #[arg(long, value_name = "MACHINE", requires = "output", conflicts_with_all = ["printer", "gantry", "joint", "crane"])]
+    machine: Option<PathBuf>,
+    /// Name of the axis in the machine file; else that of the sensor's direction, or the first
+    #[arg(long, value_name = "NAME", requires = "output")]
+    axis: Option<String>,
+    #[command(flatten)]
+    kind: KindFlags,
+    /// Draw the fit, the shapers and the ringing into this SVG file
+    #[arg(long, value_name = "FILE.svg")]
+    plot: Option<PathBuf>,
+    #[command(flatten)]
+    excitation: ExcitationFlags,
+    /// Jump of the acceleration by which shapers are judged, in m/s² or rad/s²
+    #[arg(long, value_name = "M/S2", default_value = "5", value_parser = excitation::positive)]
+    acceleration: f64,
+    /// Change of the frequencies in percent that a shaper must stand beside what the log leaves open
+    #[arg(long, value_name = "PERCENT", default_value = "5", value_parser = crate::compare::band)]
+    margin: f64,
+    /// Replace a file that posicast did not write, or that was changed since; never one that this command reads
+    #[arg(long)]
+    force: bool,
+}
+
+pub(crate) fn run(args: &Args) -> Result<(), Failure> {
+    let mut outputs = OutputFiles::new(args.force);
+    outputs.input("the log", &args.log);
+    if let Some(machine) = &args.machine {
+        outputs.input("--machine", machine);
+    }
+    for (option, path) in [("-o", &args.output), ("--plot", &args.plot)] {
+        if let Some(path) = path {
+            outputs.claim(option, path).map_err(Failure::because)?;
+        }
+    }
+    if let Some(path) = &args.plot {
+        plot::check_name("--plot", path)?;
+    }
+    output::one_document(&outputs, args.json)?;
+    let reading = read(&args.log)?;
+    let judgement = Judgement {
+        acceleration: args.acceleration,
+        margin: args.margin / 100.0,
+        ..Judgement::default()
+    };
+    let findings = Findings::of(reading, &args.excitation, &judgement).map_err(|error| error.in_file(&args.log))?;
+    let machine = match &args.output {
+        Some(path) if !findings.modes.is_empty() => Some((path, machine_text(args, path, &findings)?)),
+        _ => None,
+    };
+    if let Some(path) = &args.plot {
+        write_text(path, &plot::svg(&pictures::panels(&findings))?).map_err(Failure::because)?;
+    }
+    if let Some((path, text)) = &machine {
+        files::write_text(path, text).map_err(Failure::because)?;
+    }
+    if args.json {
+        output::print_json(&document::Document::new(&findings))?;
+    } else {
+        let written = machine.as_ref().map(|(path, _)| path.as_path());
+        output::print_beside(&outputs, &text::text(&args.log, &findings, written))?;
+    }
+    match findings.modes.is_empty() {
+        false => Ok(()),
+        true => Err(Failure::Check(format!(
+            "{}: no mode was found{}",
+            args.log.display(),
+            if args.output.is_some() {
+                ", and no machine file written"
+            } else {
+                ""
+            }
+        ))),
+    }
+}
+
+/// Largest log: three hours at 3,200 samples per second.
+const LARGEST_LOG_BYTES: u64 = 1 << 31;
+
+fn read(path: &Path) -> Result<Reading, Failure> {
+    let unreadable = |found: &dyn std::fmt::Display| {
+        Failure::from(miette::miette!(
+            help = "name a log in CSV, with a header such as time,accel_x,accel_y,accel_z or time,command,response",
+            "cannot read the log `{}`: {found}",
+            path.display()
+        ))
+    };
+    let file = File::open(path).map_err(|error| unreadable(&error))?;
+    let mut text = Vec::new();
+    // A device or a pipe may go on for ever.
+    let limit = file.take(LARGEST_LOG_BYTES + 1).read_to_end(&mut text);
+    if limit.map_err(|error| unreadable(&error))? as u64 > LARGEST_LOG_BYTES {
+        return Err(unreadable(&format!("it goes on after {LARGEST_LOG_BYTES} bytes")));
+    }
+    log::read(&text).map_err(|error| Failure::because(error).in_file(path))
+}
+
+fn machine_text(args: &Args, path: &Path, findings: &Findings) -> Result<String, Failure> {
+    match &args.machine {
+        Some(machine) => machine_file::into_existing(machine, args.axis.as_deref(), findings),
+        None => {
+            let kind = args.kind.kind().unwrap_or(if findings.is_slow() {
+                MachineKind::Crane
+            } else {
+                MachineKind::Printer
+            });
+            machine_file::from_template(kind, path, args.axis.as_deref(), findings)
+        }
+    }
+}

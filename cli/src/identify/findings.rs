@@ -1,0 +1,141 @@
+//! What a log tells, whichever way it was found.
+
+use super::excitation::ExcitationFlags;
+use crate::failure::Failure;
+use posicast_identify::log::{Log, Reading};
+use posicast_identify::modal::ResponsePoint;
+use posicast_identify::recommend::{Judgement, Recommendation, recommend};
+use posicast_identify::sweep::{self, FoundInSweep, Sweep, SweepError};
+use posicast_identify::{AccelerationLog, FoundMode};
+use posicast_model::unit::trimmed;
+
+/// What was measured beside what the modes make of it: for the pictures.
+pub(super) enum Evidence {
+    /// A transfer function, and the fitted one at its points.
+    Transfer {
+        points: Vec<ResponsePoint>,
+        fitted: Vec<(f64, f64)>,
+    },
+}
+
+/// Modes, shapers for them, and where they come from.
+pub(super) struct Findings {
+    pub(super) rows: usize,
+    pub(super) sample_s: f64,
+    /// What the log is, in words.
+    pub(super) source: String,
+    /// How the modes were found, in words.
+    pub(super) method: String,
+    /// Name of the method in the JSON document.
+    pub(super) method_name: &'static str,
+    /// The axis that the log says it is of.
+    pub(super) axis: Option<String>,
+    pub(super) modes: Vec<FoundMode>,
+    pub(super) recommended: Vec<Recommendation>,
+    pub(super) judgement: Judgement,
+    /// What is wrong with the log, and what it cannot tell.
+    pub(super) remarks: Vec<String>,
+    pub(super) evidence: Evidence,
+}
+
+impl Findings {
+    /// Finds the modes of a log.
+    pub(super) fn of(reading: Reading, flags: &ExcitationFlags, judgement: &Judgement) -> Result<Self, Failure> {
+        let remarks = reading.remarks.iter().map(ToString::to_string).collect();
+        let mut findings = match &reading.log {
+            Log::Acceleration(log) => of_acceleration(log, &flags.sweep)?,
+            Log::Position(_) => return Err(Failure::not_built("position logs")),
+        };
+        let found = std::mem::replace(&mut findings.remarks, remarks);
+        findings.remarks.extend(found);
+        findings.rows = reading.rows;
+        findings.judgement = *judgement;
+        findings.recommended = recommend(&findings.modes, judgement);
+        Ok(findings)
+    }
+
+    /// Whether a machine of these modes takes its time.
+    pub(super) fn is_slow(&self) -> bool {
+        const SLOW_HZ: f64 = 2.0;
+        self.modes.iter().any(|found| found.mode.frequency_hz < SLOW_HZ)
+    }
+}
+
+fn of_acceleration(log: &AccelerationLog, sweep: &Sweep) -> Result<Findings, Failure> {
+    let found = sweep::identify(log, sweep).map_err(|error| {
+        let help = match error {
+            SweepError::Unrelated(_) | SweepError::Unlike(_) => {
+                "--sweep describes another sweep; --output-only looks for modes without knowing the excitation"
+            }
+            SweepError::Description(_) => "--sweep START:END:RATE:ACCEL, for example 5:135:1:60",
+            SweepError::Short { .. } | SweepError::Empty => "log the whole resonance test, from rest to rest",
+        };
+        Failure::from(miette::miette!(help = help, "{error}"))
+    })?;
+    let description = format!(
+        "sweep of {} … {} Hz at {} Hz/s and {} mm/s² per Hz, begun {} s after the first sample",
+        trimmed(sweep.start_hz, 4),
+        trimmed(sweep.end_hz, 4),
+        trimmed(sweep.rate_hz_per_s, 4),
+        trimmed(1e3 * sweep.acceleration_per_hz, 4),
+        trimmed(found.start_s, 5),
+    );
+    Ok(Findings {
+        rows: 0,
+        sample_s: log.sample_s,
+        source: format!("accelerometer, direction {}", found.direction),
+        method: format!(
+            "transfer function of a {description}; it explains {:.2} % of the log in its band",
+            100.0 * found.transfer.explained
+        ),
+        method_name: "sweep",
+        axis: axis_of(&found.direction),
+        modes: found.modes.clone(),
+        recommended: Vec::new(),
+        judgement: Judgement::default(),
+        remarks: remarks(&found, sweep),
+        evidence: Evidence::Transfer {
+            fitted: found
+                .transfer
+                .points
+                .iter()
+                .zip(&found.fitted)
+                .map(|(point, value)| (point.frequency_hz, value.norm()))
+                .collect(),
+            points: found.transfer.points,
+        },
+    })
+}
+
+/// `accel_x` is the log of axis `x`.
+fn axis_of(direction: &str) -> Option<String> {
+    let letter = direction.strip_prefix("accel_")?.chars().next()?;
+    Some(letter.to_string())
+}
+
+fn remarks(found: &FoundInSweep, sweep: &Sweep) -> Vec<String> {
+    /// Square of what is left over the noise's from which the fit is not all that is there.
+    const LEFT_OVER: f64 = 4.0;
+    let mut remarks = Vec::new();
+    if found.reduced_square > LEFT_OVER {
+        remarks.push(format!(
+            "the modes leave {:.1} times as much of the transfer function as its noise would: it has something that no linear \
+             mode explains, such as play or stick; the intervals are widened for it",
+            found.reduced_square.sqrt()
+        ));
+    }
+    if found.modes.is_empty() {
+        remarks.push(format!(
+            "between {} and {} Hz the sensor follows the sweep without a resonance that could be told from noise",
+            trimmed(sweep.start_hz, 4),
+            trimmed(sweep.end_hz, 4)
+        ));
+    } else {
+        remarks.push(format!(
+            "modes below {} Hz and above {} Hz are not in this sweep, nor is one with less than 3 % of the displacement told",
+            trimmed(sweep.start_hz, 4),
+            trimmed(sweep.end_hz, 4)
+        ));
+    }
+    remarks
+}

@@ -1,0 +1,141 @@
+//! A machine file with the modes that were found.
+
+use super::findings::Findings;
+use crate::failure::Failure;
+use crate::machine;
+use crate::new::{Draft, MachineKind};
+use posicast_model::machine_file;
+use posicast_model::unit::trimmed;
+use std::path::Path;
+use toml_edit::{ArrayOfTables, DocumentMut, Item, Table, value};
+
+/// Digits of a frequency and of a damping ratio: more than any log tells.
+const DIGITS: usize = 6;
+
+/// The template with the one axis that was measured.
+pub(super) fn from_template(
+    kind: MachineKind,
+    path: &Path,
+    axis: Option<&str>,
+    findings: &Findings,
+) -> Result<String, Failure> {
+    let draft = Draft::new(kind, path);
+    let mut document = parsed(draft.text(), path)?;
+    let axes = axes(&mut document, path)?;
+    let wanted = axis.or(findings.axis.as_deref());
+    let index = wanted.and_then(|name| position(axes, name)).unwrap_or(0);
+    let mut measured = axes.iter().nth(index).cloned().unwrap_or_default();
+    if let Some(name) = wanted {
+        put(&mut measured, "name", name.into());
+    }
+    fill(&mut measured, findings);
+    let mut only = ArrayOfTables::new();
+    only.push(measured);
+    document.insert("axis", Item::ArrayOfTables(only));
+    checked(document.to_string(), path)
+}
+
+/// An existing machine file, with the modes in one of its axes.
+pub(super) fn into_existing(path: &Path, axis: Option<&str>, findings: &Findings) -> Result<String, Failure> {
+    let text = machine::read(path)?.text;
+    let mut document = parsed(&text, path)?;
+    let axes = axes(&mut document, path)?;
+    let names: Vec<String> = (0..axes.len()).filter_map(|n| name(axes, n)).collect();
+    let wanted = axis.or(findings.axis.as_deref());
+    let index = match wanted {
+        Some(wanted) => position(axes, wanted),
+        None if axes.len() == 1 => Some(0),
+        None => None,
+    };
+    let Some(target) = index.and_then(|index| axes.get_mut(index)) else {
+        let what = wanted.map_or("the log does not say which axis it is of".into(), |wanted| {
+            format!("there is no axis \"{wanted}\"")
+        });
+        return Err(Failure::from(miette::miette!(
+            help = format!("--axis names the axis that the log is of: {}", names.join(", ")),
+            "{}: {what}",
+            path.display()
+        )));
+    };
+    fill(target, findings);
+    checked(document.to_string(), path)
+}
+
+fn parsed(text: &str, path: &Path) -> Result<DocumentMut, Failure> {
+    text.parse()
+        .map_err(|error: toml_edit::TomlError| Failure::from(miette::miette!("{}: {error}", path.display())))
+}
+
+fn axes<'a>(document: &'a mut DocumentMut, path: &Path) -> Result<&'a mut ArrayOfTables, Failure> {
+    let axes = document.get_mut("axis").and_then(Item::as_array_of_tables_mut);
+    axes.ok_or_else(|| {
+        Failure::from(miette::miette!(
+            help = "write each axis as a table of its own: [[axis]]",
+            "{}: the axes are not written as tables",
+            path.display()
+        ))
+    })
+}
+
+fn name(axes: &ArrayOfTables, index: usize) -> Option<String> {
+    axes.get(index)?.get("name")?.as_str().map(str::to_owned)
+}
+
+fn position(axes: &ArrayOfTables, wanted: &str) -> Option<usize> {
+    (0..axes.len()).find(|&index| name(axes, index).as_deref() == Some(wanted))
+}
+
+/// Replaces a value and keeps the comment behind it.
+fn put(table: &mut Table, key: &str, new: toml_edit::Value) {
+    let decor = table.get(key).and_then(Item::as_value).map(|old| old.decor().clone());
+    let mut new = new;
+    if let Some(decor) = decor {
+        *new.decor_mut() = decor;
+    }
+    table.insert(key, Item::Value(new));
+}
+
+/// Puts modes and shaper into an axis.
+fn fill(axis: &mut Table, findings: &Findings) {
+    let mut modes = ArrayOfTables::new();
+    for found in &findings.modes {
+        let mut mode = Table::new();
+        let (frequency, damping) = (found.frequency_interval_hz(), found.damping_interval());
+        mode.insert(
+            "frequency_hz",
+            noted(found.mode.frequency_hz, frequency.low, frequency.high),
+        );
+        mode.insert("damping", noted(found.mode.damping, damping.low, damping.high));
+        if findings.modes.len() > 1 {
+            mode.insert("participation", value(rounded(found.participation)));
+        }
+        modes.push(mode);
+    }
+    axis.insert("mode", Item::ArrayOfTables(modes));
+    if let Some(best) = findings.recommended.first() {
+        let mut shaper = Table::new();
+        shaper.insert("kind", value(best.kind.name()));
+        if best.kind.name().ends_with("ei") {
+            shaper.insert("tolerance", value(findings.judgement.tolerance));
+        }
+        axis.insert("shaper", Item::Table(shaper));
+    }
+}
+
+fn rounded(number: f64) -> f64 {
+    trimmed(number, DIGITS).parse().unwrap_or(number)
+}
+
+/// A number with its interval in a comment.
+fn noted(number: f64, low: f64, high: f64) -> Item {
+    let mut item = toml_edit::Value::from(rounded(number));
+    let comment = format!("  # measured: 95 % interval {} … {}", trimmed(low, 5), trimmed(high, 5));
+    item.decor_mut().set_suffix(comment);
+    Item::Value(item)
+}
+
+/// The text, if posicast reads it as a machine file.
+fn checked(text: String, path: &Path) -> Result<String, Failure> {
+    machine_file::parse(&path.display().to_string(), &text).map_err(Failure::input)?;
+    Ok(text)
+}

@@ -1,0 +1,118 @@
+//! The pictures of `identify`: the fit, the shapers over the frequency, and the ringing.
+
+use super::findings::{Evidence, Findings};
+use crate::plot::{Curve, Panel, Range, label, time_axis};
+use posicast_identify::recommend::{Recommendation, deflection};
+use posicast_model::analysis::sensitivity_curve;
+use posicast_model::impulse::ImpulseSequence;
+use posicast_model::unit::{AxisUnit, trimmed};
+
+/// Shapers that are drawn.
+const SHAPERS: usize = 4;
+/// Frequencies that the curves of the shapers show, relative to a mode's.
+const RATIOS: (f64, f64) = (0.5, 1.5);
+const POINTS: usize = 601;
+
+pub(super) fn panels(findings: &Findings) -> Vec<Panel> {
+    let mut panels = vec![evidence(findings)];
+    if let Some(best) = findings.recommended.first() {
+        panels.extend((0..findings.modes.len()).map(|mode| shapers(findings, mode)));
+        panels.push(ringing(findings, best));
+    }
+    panels
+}
+
+fn evidence(findings: &Findings) -> Panel {
+    let Evidence::Transfer { points, fitted } = &findings.evidence;
+    let measured = points
+        .iter()
+        .map(|point| (point.frequency_hz, point.value.norm()))
+        .collect();
+    let residual = points
+        .iter()
+        .zip(fitted)
+        .map(|(point, (_, fit))| (point.frequency_hz, (point.value.norm() - fit).abs()));
+    Panel {
+        title: format!("{}: acceleration of the sensor over that of the axis", findings.source),
+        x_label: "frequency, Hz".into(),
+        y_label: "ratio".into(),
+        curves: vec![
+            Curve::reference("measured", measured),
+            Curve::new("modes", fitted.clone()),
+            Curve::new("what they leave", residual.collect()),
+        ],
+        x_ranges: intervals(findings),
+        ..Panel::default()
+    }
+}
+
+/// The 95 % intervals of the frequencies.
+fn intervals(findings: &Findings) -> Vec<Range> {
+    let range = |low: f64, high: f64| Range {
+        name: "95 % interval of the frequency".into(),
+        ends: (low, high),
+    };
+    let of_modes = findings.modes.iter().map(|found| found.frequency_interval_hz());
+    of_modes.map(|interval| range(interval.low, interval.high)).collect()
+}
+
+fn shapers(findings: &Findings, mode: usize) -> Panel {
+    let found = &findings.modes[mode];
+    let frequency_hz = found.mode.frequency_hz;
+    let curve = |shaper: &Recommendation| {
+        let points = sensitivity_curve(shaper.impulses.impulses(), &found.mode, RATIOS.0, RATIOS.1, POINTS);
+        let points = points
+            .into_iter()
+            .map(|(ratio, residual)| (ratio * frequency_hz, 100.0 * residual));
+        Curve::new(shaper.kind.name(), points.collect())
+    };
+    let enough = 100.0 * findings.judgement.enough;
+    let mut curves: Vec<Curve> = findings.recommended.iter().take(SHAPERS).map(curve).collect();
+    curves.push(Curve::limit(
+        format!("{} %", trimmed(enough, 3)),
+        vec![(RATIOS.0 * frequency_hz, enough), (RATIOS.1 * frequency_hz, enough)],
+    ));
+    let interval = found.frequency_interval_hz();
+    let margin = findings.judgement.margin * frequency_hz;
+    Panel {
+        title: format!("mode of {} Hz: what the shapers leave of it", trimmed(frequency_hz, 4)),
+        x_label: "true frequency of the mode, Hz".into(),
+        y_label: "residual vibration, %".into(),
+        curves,
+        x_ranges: vec![Range {
+            name: "interval and margin".into(),
+            ends: (interval.low - margin, interval.high + margin),
+        }],
+        ..Panel::default()
+    }
+}
+
+fn ringing(findings: &Findings, best: &Recommendation) -> Panel {
+    /// Periods of the slowest mode that are shown.
+    const PERIODS: f64 = 12.0;
+    let slowest = findings
+        .modes
+        .iter()
+        .map(|found| found.mode.frequency_hz)
+        .fold(f64::INFINITY, f64::min);
+    let duration_s = best.impulses.duration_s() + PERIODS / slowest;
+    let acceleration = findings.judgement.acceleration;
+    let of = |impulses: &ImpulseSequence| deflection(&findings.modes, impulses, acceleration, duration_s, POINTS);
+    let (unshaped, shaped) = (of(&ImpulseSequence::unity()), of(&best.impulses));
+    let largest = unshaped.iter().map(|(_, x)| x.abs()).fold(0.0, f64::max);
+    let (time, length) = (time_axis(duration_s), AxisUnit::Metre.for_size(largest));
+    let scaled = |points: Vec<(f64, f64)>| points.into_iter().map(|(t, x)| (time.of(t), length.of(x))).collect();
+    Panel {
+        title: format!(
+            "deflection after a jump of the acceleration by {} m/s²",
+            trimmed(acceleration, 4)
+        ),
+        x_label: label("time", time),
+        y_label: label("deflection", length),
+        curves: vec![
+            Curve::reference("without a shaper", scaled(unshaped)),
+            Curve::new(best.kind.name(), scaled(shaped)),
+        ],
+        ..Panel::default()
+    }
+}

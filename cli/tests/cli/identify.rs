@@ -1,0 +1,147 @@
+//! `posicast identify`: from a log to modes, a machine file and a run; and what it refuses.
+
+use crate::cli::support::posicast;
+use posicast_identify::sweep::Sweep;
+use posicast_identify::synthetic::{KnownMode, Sensor, known, resonance_test};
+use std::path::Path;
+use std::process::Output;
+
+/// A resonance test of 13 s.
+const SWEEP: &str = "5:135:10:60";
+
+fn write_log(file: &Path, modes: &[KnownMode]) {
+    let sweep = Sweep {
+        rate_hz_per_s: 10.0,
+        ..Sweep::default()
+    };
+    let log = resonance_test(modes, &sweep, &Sensor::default(), 1);
+    let mut text = Vec::new();
+    log.write_csv(&mut text).unwrap();
+    std::fs::write(file, text).unwrap();
+}
+
+fn identify(folder: &Path, words: &[&str]) -> (Option<i32>, String, String) {
+    let Output { status, stdout, stderr } = posicast()
+        .current_dir(folder)
+        .arg("identify")
+        .args(words)
+        .output()
+        .unwrap();
+    let text = |bytes| String::from_utf8(bytes).unwrap();
+    (status.code(), text(stdout), text(stderr))
+}
+
+#[test]
+fn cli_a_printers_log_becomes_a_machine_that_generates_hardware() {
+    let folder = tempfile::tempdir().unwrap();
+    write_log(
+        &folder.path().join("x.csv"),
+        &[known(44.0, 0.05, 0.8), known(71.0, 0.04, 0.2)],
+    );
+    let words = ["x.csv", "--sweep", SWEEP, "-o", "head.toml", "--plot", "x.svg"];
+    let (status, said, problems) = identify(folder.path(), &words);
+    assert_eq!((status, problems.as_str()), (Some(0), ""), "{said}");
+    assert!(
+        said.contains("head.toml written") && said.contains("direction accel_x"),
+        "{said}"
+    );
+    let machine = std::fs::read_to_string(folder.path().join("head.toml")).unwrap();
+    let machine = posicast_model::machine_file::parse("head.toml", &machine).unwrap();
+    assert_eq!(
+        (machine.name.as_str(), machine.axes.len(), machine.axes[0].name.as_str()),
+        ("head", 1, "x")
+    );
+    for (mode, truth) in machine.axes[0].modes.iter().zip([(44.0, 0.05, 0.8), (71.0, 0.04, 0.2)]) {
+        assert!((mode.mode.frequency_hz / truth.0 - 1.0).abs() < 0.01);
+        assert!((mode.mode.damping / truth.1 - 1.0).abs() < 0.15);
+        assert!((mode.participation - truth.2).abs() < 0.03);
+    }
+    let picture = std::fs::read_to_string(folder.path().join("x.svg")).unwrap();
+    assert!(picture.contains("measured") && picture.contains("interval and margin"));
+    let generated = posicast()
+        .current_dir(folder.path())
+        .args(["generate", "head.toml"])
+        .output()
+        .unwrap();
+    assert_eq!(generated.status.code(), Some(0));
+}
+
+#[test]
+fn cli_the_document_has_modes_and_shapers() {
+    let folder = tempfile::tempdir().unwrap();
+    write_log(&folder.path().join("y.csv"), &[known(60.0, 0.05, 1.0)]);
+    let (status, said, _) = identify(folder.path(), &["y.csv", "--sweep", SWEEP, "--json"]);
+    assert_eq!(status, Some(0));
+    let document: serde_json::Value = serde_json::from_str(&said).unwrap();
+    let mode = &document["modes"][0];
+    assert!((mode["frequency_hz"].as_f64().unwrap() - 60.0).abs() < 0.6);
+    for key in ["damping", "participation", "frequency_sd_hz", "damping_sd"] {
+        assert!(mode[key].as_f64().unwrap() > 0.0, "{key}");
+    }
+    let first = &document["recommended"][0];
+    assert!(first["kind"].is_string() && first["duration_s"].as_f64().unwrap() > 0.0);
+    assert!(first["residual_displacement_m"].as_f64().unwrap() < first["unshaped_displacement_m"].as_f64().unwrap());
+}
+
+#[test]
+fn cli_modes_go_into_an_axis_of_a_machine_that_is_there_and_nothing_else_changes() {
+    let folder = tempfile::tempdir().unwrap();
+    write_log(&folder.path().join("log.csv"), &[known(60.0, 0.05, 1.0)]);
+    posicast()
+        .current_dir(folder.path())
+        .args(["new", "--printer", "old.toml"])
+        .output()
+        .unwrap();
+    let old = std::fs::read_to_string(folder.path().join("old.toml")).unwrap();
+    let base = ["log.csv", "--sweep", SWEEP, "--machine", "old.toml", "-o"];
+    let (status, _, problems) = identify(folder.path(), &[&base[..], &["new.toml", "--axis", "y"]].concat());
+    assert_eq!(status, Some(0), "{problems}");
+    let new = std::fs::read_to_string(folder.path().join("new.toml")).unwrap();
+    let parsed = |text: &str| posicast_model::machine_file::parse("m", text).unwrap();
+    let (before, after) = (parsed(&old), parsed(&new));
+    assert_eq!(before.axes[0], after.axes[0]);
+    assert!((after.axes[1].modes[0].mode.frequency_hz - 60.0).abs() < 0.6);
+    // Comments stay, but for those of the lines that were replaced.
+    let comments = |text: &str| text.matches('#').count();
+    assert!(comments(&new) + 6 > comments(&old), "{new}");
+    for (words, expected) in [
+        (&["new2.toml", "--axis", "z"][..], "there is no axis \"z\""),
+        (&["old.toml", "--axis", "y"][..], "an input is never replaced"),
+    ] {
+        let (status, said, problems) = identify(folder.path(), &[&base[..], words].concat());
+        assert_eq!((status, said.as_str()), (Some(2), ""));
+        assert!(problems.contains(expected), "{problems}");
+    }
+    assert_eq!(std::fs::read_to_string(folder.path().join("old.toml")).unwrap(), old);
+}
+
+#[test]
+fn cli_a_log_that_says_nothing_fails_and_writes_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    write_log(&folder.path().join("rigid.csv"), &[]);
+    let words = ["rigid.csv", "--sweep", SWEEP, "-o", "machine.toml"];
+    let (status, said, problems) = identify(folder.path(), &words);
+    assert_eq!(status, Some(1), "{said}");
+    assert!(
+        problems.contains("no mode was found, and no machine file written"),
+        "{problems}"
+    );
+    assert!(!folder.path().join("machine.toml").exists());
+    for (log, expected) in [
+        ("time,accel_x\n", "0 rows"),
+        ("", "the log is empty"),
+        ("1,2,3\n", "line 1 is the first"),
+    ] {
+        std::fs::write(folder.path().join("bad.csv"), log).unwrap();
+        let (status, said, problems) = identify(folder.path(), &["bad.csv", "--json"]);
+        assert_eq!((status, said.as_str()), (Some(2), ""));
+        assert!(
+            problems.contains("bad.csv") && problems.contains(expected),
+            "{problems}"
+        );
+    }
+    // Another sweep than the log's.
+    let (status, _, problems) = identify(folder.path(), &["rigid.csv", "--sweep", "5:135:3:60"]);
+    assert_eq!(status, Some(2), "{problems}");
+    assert!(problems.contains("--sweep describes another sweep"), "{problems}");
+}

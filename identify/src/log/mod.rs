@@ -1,0 +1,314 @@
+//! Reading a log: which columns it has, whether its time is uniform, and what of its samples cannot be believed.
+//!
+//! | columns | is |
+//! |---|---|
+//! | `time`, `accel_x`, `accel_y`, `accel_z` (any of them) | an accelerometer log as 3D-printer firmware writes it: s and mm/s² |
+//! | `time`, `command`, `response` | a position log: what an axis was told, and what it did, in one unit |
+//! | `time`, `response` | a free decay |
+//!
+//! Names may carry a unit: `time_ms`, `command_mm`, `response_um`, `accel_x_m_s2`. A `#` before the first name is no part of it.
+
+mod columns;
+mod time;
+
+use crate::signal::{AccelerationLog, PositionLog};
+use columns::{Column, Meaning};
+use thiserror::Error;
+
+/// A log that was read.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Log {
+    /// From an accelerometer.
+    Acceleration(AccelerationLog),
+    /// Command and response of an axis.
+    Position(PositionLog),
+}
+
+/// A log, and what is to be said of it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Reading {
+    /// The log.
+    pub log: Log,
+    /// Rows that it was made from.
+    pub rows: usize,
+    /// What is wrong with it and was mended or left.
+    pub remarks: Vec<Remark>,
+}
+
+/// Why a log cannot be read. Lines count from 1, the header included.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum LogError {
+    /// Nothing is in it.
+    #[error("the log is empty: it needs a header with the names of its columns, and rows of numbers")]
+    Empty,
+    /// The first line has numbers.
+    #[error(
+        "line {line} is the first and has no names of columns: put `time,command,response` or `time,accel_x,accel_y,accel_z` before it"
+    )]
+    NoHeader {
+        /// The line.
+        line: u64,
+    },
+    /// A column that is needed is not there.
+    #[error("there is no column `{missing}`: the columns are {}", .found.join(", "))]
+    Missing {
+        /// What is missing.
+        missing: &'static str,
+        /// What is there.
+        found: Vec<String>,
+    },
+    /// Two columns mean the same.
+    #[error("the columns `{0}` and `{1}` mean the same: leave one out")]
+    Twice(String, String),
+    /// A row has another number of fields.
+    #[error("line {line} has {found} fields, the header {expected}")]
+    Fields {
+        /// The line.
+        line: u64,
+        /// Fields of the header.
+        expected: usize,
+        /// Fields of the line.
+        found: usize,
+    },
+    /// A field that is no finite number.
+    #[error(
+        "line {line}, column `{column}`: `{text}` is no finite number; cut the rows that the sensor did not deliver"
+    )]
+    Number {
+        /// The line.
+        line: u64,
+        /// The column.
+        column: String,
+        /// What stands there.
+        text: String,
+    },
+    /// Time goes back or stands still.
+    #[error(
+        "line {line}: the time {time_s} s is not after {before_s} s of the line before; sort the rows by time, or cut the log where it starts anew"
+    )]
+    Unsorted {
+        /// The line.
+        line: u64,
+        /// Its time in seconds.
+        time_s: f64,
+        /// The time before it in seconds.
+        before_s: f64,
+    },
+    /// Too few rows for anything.
+    #[error("the log has {rows} rows: {least} are needed at least")]
+    Rows {
+        /// Rows with numbers.
+        rows: usize,
+        /// Rows that are needed.
+        least: usize,
+    },
+    /// A column in which nothing happens.
+    #[error("column `{column}` has the value {value} in every row: the sensor is dead, or not connected")]
+    Dead {
+        /// The column.
+        column: String,
+        /// Its only value.
+        value: f64,
+    },
+}
+
+/// What is wrong with a log that can be read all the same.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum Remark {
+    /// Rows are missing; the longest part without a gap was taken.
+    #[error(
+        "rows are missing after line {line}: {gap_s:.4} s without a sample; the {kept} rows from line {from} to {to} were used, the longest part without a gap"
+    )]
+    Gap {
+        /// Line before the first gap.
+        line: u64,
+        /// Its length in seconds.
+        gap_s: f64,
+        /// First line that was used.
+        from: u64,
+        /// Last line that was used.
+        to: u64,
+        /// Rows that were used.
+        kept: usize,
+    },
+    /// The samples are not equally far apart; they were interpolated.
+    #[error("the times of the samples are off a uniform grid by up to {:.0} % of a sample (line {line}): they were interpolated linearly, which weakens what is near half the rate of {rate_hz:.0} samples per second", 100.0 * .worst)]
+    Irregular {
+        /// Line that is off most.
+        line: u64,
+        /// By how many samples.
+        worst: f64,
+        /// Rate of the grid in Hz.
+        rate_hz: f64,
+    },
+    /// A column stands at its largest or smallest value again and again.
+    #[error(
+        "column `{column}` stands at {value} in {samples} samples, first in line {line}: the sensor is saturated there, and damping and participation come out wrong; use a larger range or less acceleration"
+    )]
+    Saturated {
+        /// The column.
+        column: String,
+        /// The value.
+        value: f64,
+        /// Samples at it.
+        samples: usize,
+        /// First line of them.
+        line: u64,
+    },
+    /// A direction of an accelerometer in which nothing happens.
+    #[error(
+        "column `{column}` has the value {value} in every row and was left out: this direction of the sensor is dead, or not connected"
+    )]
+    DeadDirection {
+        /// The column.
+        column: String,
+        /// Its only value.
+        value: f64,
+    },
+    /// A column that nothing is known of.
+    #[error("column `{0}` was not used: its name says nothing to posicast")]
+    Unknown(String),
+}
+
+/// Least rows of a log.
+const LEAST_ROWS: usize = 32;
+
+/// Reads a log from the text of its file.
+///
+/// # Errors
+/// [`LogError`], with the line and the column.
+pub fn read(text: &[u8]) -> Result<Reading, LogError> {
+    let table = columns::read(text)?;
+    if table.times_s.len() < LEAST_ROWS {
+        return Err(LogError::Rows {
+            rows: table.times_s.len(),
+            least: LEAST_ROWS,
+        });
+    }
+    let mut remarks: Vec<Remark> = table.unknown.iter().cloned().map(Remark::Unknown).collect();
+    let grid = time::grid(&table, &mut remarks)?;
+    if grid.range().len() < LEAST_ROWS {
+        return Err(LogError::Rows {
+            rows: grid.range().len(),
+            least: LEAST_ROWS,
+        });
+    }
+    let mut columns = table.columns;
+    for column in &mut columns {
+        column.values = grid.of(&column.values);
+    }
+    let rows = columns.first().map_or(0, |column| column.values.len());
+    for column in &columns {
+        remarks.extend(saturated(column, &table.lines[grid.range()]));
+    }
+    let accelerometer = columns.iter().any(|column| column.meaning == Meaning::Acceleration);
+    let log = if accelerometer {
+        Log::Acceleration(acceleration(columns, grid.sample_s, &mut remarks)?)
+    } else {
+        Log::Position(position(columns, grid.sample_s)?)
+    };
+    Ok(Reading { log, rows, remarks })
+}
+
+fn acceleration(columns: Vec<Column>, sample_s: f64, remarks: &mut Vec<Remark>) -> Result<AccelerationLog, LogError> {
+    let mut directions = Vec::new();
+    let mut last_dead = None;
+    for column in columns {
+        match dead(&column.values) {
+            Some(value) => {
+                remarks.push(Remark::DeadDirection {
+                    column: column.name.clone(),
+                    value,
+                });
+                last_dead = Some(LogError::Dead {
+                    column: column.name,
+                    value,
+                });
+            }
+            None => directions.push((column.name, column.values)),
+        }
+    }
+    match last_dead {
+        Some(error) if directions.is_empty() => Err(error),
+        _ => Ok(AccelerationLog { sample_s, directions }),
+    }
+}
+
+fn position(columns: Vec<Column>, sample_s: f64) -> Result<PositionLog, LogError> {
+    let names: Vec<String> = columns.iter().map(|column| column.name.clone()).collect();
+    let mut log = PositionLog {
+        sample_s,
+        command: Vec::new(),
+        response: Vec::new(),
+    };
+    for column in columns {
+        if column.meaning == Meaning::Command {
+            log.command = column.values;
+        } else if let Some(value) = dead(&column.values) {
+            return Err(LogError::Dead {
+                column: column.name,
+                value,
+            });
+        } else {
+            log.response = column.values;
+        }
+    }
+    if log.response.is_empty() {
+        return Err(LogError::Missing {
+            missing: "response",
+            found: names,
+        });
+    }
+    Ok(log)
+}
+
+/// The only value of a column that has one.
+fn dead(values: &[f64]) -> Option<f64> {
+    let first = *values.first()?;
+    values.iter().all(|value| *value == first).then_some(first)
+}
+
+/// Samples in a row at an extreme that are no chance.
+const ROW_AT_EXTREME: usize = 4;
+
+/// Runs at the largest or smallest value of a response, far from where it rests.
+fn saturated(column: &Column, lines: &[u64]) -> Option<Remark> {
+    if column.meaning == Meaning::Command || dead(&column.values).is_some() {
+        return None;
+    }
+    let values = &column.values;
+    let rest = values.iter().sum::<f64>() / values.len() as f64;
+    let (low, high) = values
+        .iter()
+        .fold((f64::MAX, f64::MIN), |(low, high), v| (low.min(*v), high.max(*v)));
+    // A response that rests at its extreme, as before a step, is not saturated: a clipped one leaves and comes back.
+    let extremes = [high, low].map(|value| (value, runs(values, value)));
+    let (value, runs) = extremes
+        .into_iter()
+        .filter(|(value, _)| (value - rest).abs() > 0.25 * (high - low))
+        .max_by_key(|(_, runs)| runs.len())?;
+    let samples: usize = runs.iter().map(|(_, length)| length).sum();
+    (runs.len() >= 3).then(|| Remark::Saturated {
+        column: column.name.clone(),
+        value,
+        samples,
+        line: lines.get(runs[0].0).copied().unwrap_or_default(),
+    })
+}
+
+/// Begin and length of each run of a value.
+fn runs(values: &[f64], value: f64) -> Vec<(usize, usize)> {
+    let mut runs = Vec::new();
+    let mut length = 0;
+    for (n, v) in values.iter().chain([&f64::NAN]).enumerate() {
+        if *v == value {
+            length += 1;
+        } else {
+            if length >= ROW_AT_EXTREME {
+                runs.push((n - length, length));
+            }
+            length = 0;
+        }
+    }
+    runs
+}

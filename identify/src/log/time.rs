@@ -1,0 +1,116 @@
+//! A uniform grid of time from the times of the rows.
+
+use super::columns::Table;
+use super::{LogError, Remark};
+use std::ops::Range;
+
+/// Steps longer than so many are a gap.
+const GAP: f64 = 1.5;
+/// Samples that are off by less than so many of them stay where they are.
+const REGULAR: f64 = 0.1;
+
+/// Rows that are used, and where on a uniform grid they are.
+pub(super) struct Grid {
+    pub(super) sample_s: f64,
+    range: Range<usize>,
+    /// Where they are not regular: for each sample of the grid the row before it, and how far it is on the way to the next.
+    between: Option<Vec<(usize, f64)>>,
+}
+
+impl Grid {
+    /// The rows that are used.
+    pub(super) fn range(&self) -> Range<usize> {
+        self.range.clone()
+    }
+
+    /// Values of all rows on the grid.
+    pub(super) fn of(&self, values: &[f64]) -> Vec<f64> {
+        let values = &values[self.range.clone()];
+        match &self.between {
+            None => values.to_vec(),
+            Some(places) => places
+                .iter()
+                .map(|&(row, part)| values[row] + part * (values[(row + 1).min(values.len() - 1)] - values[row]))
+                .collect(),
+        }
+    }
+}
+
+/// The grid of a log; what was mended goes to `remarks`.
+pub(super) fn grid(table: &Table, remarks: &mut Vec<Remark>) -> Result<Grid, LogError> {
+    let times = &table.times_s;
+    for row in 1..times.len() {
+        if times[row] <= times[row - 1] {
+            return Err(LogError::Unsorted {
+                line: table.lines[row],
+                time_s: times[row],
+                before_s: times[row - 1],
+            });
+        }
+    }
+    let range = without_gaps(table, remarks);
+    let used = &times[range.clone()];
+    let sample_s = (used[used.len() - 1] - used[0]) / (used.len() - 1) as f64;
+    let off = |row: usize| (used[row] - used[0]) / sample_s - row as f64;
+    let worst = (0..used.len())
+        .max_by(|a, b| off(*a).abs().total_cmp(&off(*b).abs()))
+        .unwrap_or(0);
+    if off(worst).abs() <= REGULAR {
+        return Ok(Grid {
+            sample_s,
+            range,
+            between: None,
+        });
+    }
+    remarks.push(Remark::Irregular {
+        line: table.lines[range.start + worst],
+        worst: off(worst).abs(),
+        rate_hz: 1.0 / sample_s,
+    });
+    let mut row = 0;
+    let between = (0..used.len()).map(|n| {
+        let at = used[0] + n as f64 * sample_s;
+        while row + 2 < used.len() && used[row + 1] <= at {
+            row += 1;
+        }
+        (row, ((at - used[row]) / (used[row + 1] - used[row])).clamp(0.0, 1.0))
+    });
+    Ok(Grid {
+        sample_s,
+        between: Some(between.collect()),
+        range,
+    })
+}
+
+/// The longest part without a gap.
+fn without_gaps(table: &Table, remarks: &mut Vec<Remark>) -> Range<usize> {
+    let times = &table.times_s;
+    let mut steps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let middle = steps.len() / 2;
+    let (_, usual, _) = steps.select_nth_unstable_by(middle, f64::total_cmp);
+    let usual = *usual;
+    let gaps: Vec<usize> = (1..times.len())
+        .filter(|&row| times[row] - times[row - 1] > GAP * usual)
+        .collect();
+    // Gaps in every other step are no gaps: the log is irregular all through.
+    if gaps.is_empty() || gaps.len() > times.len() / 20 {
+        return 0..times.len();
+    }
+    let ends: Vec<usize> = gaps.iter().copied().chain([times.len()]).collect();
+    let mut begin = 0;
+    let mut longest = 0..0;
+    for end in ends {
+        if end - begin > longest.len() {
+            longest = begin..end;
+        }
+        begin = end;
+    }
+    remarks.push(Remark::Gap {
+        line: table.lines[gaps[0] - 1],
+        gap_s: times[gaps[0]] - times[gaps[0] - 1],
+        from: table.lines[longest.start],
+        to: table.lines[longest.end - 1],
+        kept: longest.len(),
+    });
+    longest
+}

@@ -1,0 +1,57 @@
+//! Several modes in one measured transfer function.
+//!
+//! ```text
+//! H(f) = e^{−j2πfτ} · ( D + E·f² + Σ_k (a_k + j·b_k·r_k) / (1 − r_k² + 2jζ_k·r_k) ),     r_k = f/f_k
+//! ```
+//!
+//! `a_k` is the share of mode `k` in the static displacement, `D` and `E` are what the axis itself and modes above the band do,
+//! `τ` is the time by which the response is later than was assumed. Weighted least squares, separable: for given frequencies,
+//! damping ratios and `τ` the other unknowns follow linearly (Golub and Pereyra 1973, in the form of Kaufman 1975).
+//!
+//! With [`Phase::Free`] the coefficients are complex and the rest is a polynomial with complex coefficients: the poles are then found
+//! whatever the phase of the excitation.
+
+mod fit;
+mod select;
+
+pub(crate) use fit::{Fit, Phase, refine, square};
+pub(crate) use select::{grown, select};
+
+use nalgebra::Complex;
+
+/// A measured value of a transfer function: its mean over a little of the frequencies.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ResponsePoint {
+    /// Mean frequency in Hz.
+    pub frequency_hz: f64,
+    /// Standard deviation of the frequencies in Hz over which the value is a mean.
+    pub spread_hz: f64,
+    /// The value.
+    pub value: Complex<f64>,
+    /// Standard deviation of the real part, and of the imaginary part.
+    pub deviation: f64,
+}
+
+impl ResponsePoint {
+    /// Two frequencies in Hz, the mean over which is that over the point's up to the third power of their spread.
+    fn nodes_hz(&self) -> [f64; 2] {
+        [self.frequency_hz - self.spread_hz, self.frequency_hz + self.spread_hz]
+    }
+}
+
+/// The same values on fewer points: each the mean of `joined` neighbours.
+pub(crate) fn thinned(points: &[ResponsePoint], joined: usize) -> Vec<ResponsePoint> {
+    let mean = |group: &[ResponsePoint]| {
+        let weight = |point: &ResponsePoint| point.deviation.powi(-2);
+        let whole: f64 = group.iter().map(weight).sum();
+        let frequency_hz = group.iter().map(|p| weight(p) * p.frequency_hz).sum::<f64>() / whole;
+        let spread = |p: &ResponsePoint| p.spread_hz.powi(2) + (p.frequency_hz - frequency_hz).powi(2);
+        ResponsePoint {
+            frequency_hz,
+            spread_hz: (group.iter().map(|p| weight(p) * spread(p)).sum::<f64>() / whole).sqrt(),
+            value: group.iter().map(|p| p.value * weight(p)).sum::<Complex<f64>>() / whole,
+            deviation: whole.sqrt().recip(),
+        }
+    };
+    points.chunks(joined.max(1)).map(mean).collect()
+}

@@ -1,0 +1,86 @@
+//! How many modes there are: one more as long as it explains more than noise would.
+
+use super::ResponsePoint;
+use super::fit::{Fit, Gains, Phase, Pole, refine};
+
+/// Most poles that are looked for.
+const MOST: usize = 8;
+/// Damping ratios at which a further pole is looked for.
+const TRIED_DAMPING: [f64; 3] = [0.01, 0.04, 0.15];
+/// Distance of the frequencies at which it is looked for.
+const TRIED_STEP: f64 = 1.015;
+/// Every how many points the search looks at.
+const STRIDE: usize = 3;
+/// Poles closer than this may be one that has to be split.
+const NEAR: f64 = 0.2;
+/// Square that a further pole must explain, in variances of the noise: far above what six unknowns explain by chance.
+const LEAST_GAIN: f64 = 80.0;
+
+/// Poles that explain the points, one after the other. `None` where there are too few points for any.
+pub(crate) fn select(points: &[ResponsePoint], phase: Phase) -> Option<Fit> {
+    Some(grown(points, refine(points, &[], phase)?))
+}
+
+/// A fit with the further poles that the points ask for.
+pub(crate) fn grown(points: &[ResponsePoint], fit: Fit) -> Fit {
+    let (mut kept, mut fit, mut idle) = (fit.clone(), fit, 0);
+    while fit.poles.len() < MOST && idle < 2 {
+        let Some(next) = with_one_more(points, &fit) else { break };
+        // A pole that explains little may open the way for the next, which explains much.
+        let better = kept.square - next.square
+            > LEAST_GAIN * next.reduced_square().max(1.0) * (next.poles.len() - kept.poles.len()) as f64;
+        fit = next;
+        if better {
+            kept = fit.clone();
+            idle = 0;
+        } else {
+            idle += 1;
+        }
+    }
+    kept
+}
+
+fn with_one_more(points: &[ResponsePoint], fit: &Fit) -> Option<Fit> {
+    let (gain, found) = strongest(points, fit)?;
+    // The gain is what the pole explains at least: it may be a few times that.
+    if gain * (STRIDE as f64) < 0.25 * LEAST_GAIN * fit.reduced_square().max(1.0) {
+        return None;
+    }
+    let mut starts = vec![added(&fit.poles, found)];
+    for (k, pole) in fit.poles.iter().enumerate() {
+        if (pole.frequency_hz / found.frequency_hz).ln().abs() < NEAR {
+            let mut split = fit.poles.clone();
+            let at = |factor: f64| Pole {
+                frequency_hz: pole.frequency_hz * factor,
+                damping: 0.5 * pole.damping,
+            };
+            split[k] = at(0.97);
+            split.push(at(1.03));
+            starts.push(split);
+        }
+    }
+    let fits = starts.iter().filter_map(|start| refine(points, start, fit.phase));
+    fits.min_by(|a, b| a.square.total_cmp(&b.square))
+}
+
+fn added(poles: &[Pole], pole: Pole) -> Vec<Pole> {
+    let mut poles = poles.to_vec();
+    poles.push(pole);
+    poles
+}
+
+/// The pole that explains most of what a fit leaves.
+fn strongest(points: &[ResponsePoint], fit: &Fit) -> Option<(f64, Pole)> {
+    let gains = Gains::new(points, fit, STRIDE);
+    let (low, high) = (points.first()?.frequency_hz, points.last()?.frequency_hz);
+    let steps = ((high / low).ln() / TRIED_STEP.ln()) as i32;
+    let tried = (0..=steps).flat_map(|step| {
+        TRIED_DAMPING.map(|damping| Pole {
+            frequency_hz: low * TRIED_STEP.powi(step),
+            damping,
+        })
+    });
+    tried
+        .map(|pole| (gains.of(&pole), pole))
+        .max_by(|a, b| a.0.total_cmp(&b.0))
+}

@@ -1,0 +1,266 @@
+//! Modes from an accelerometer log of a resonance test.
+//!
+//! The log does not say what moved the axis. It is known by its description ([`Sweep`]): what of it is not told, the time at which it
+//! began and the order of its quarter periods, is found by trying.
+
+mod excitation;
+mod transfer;
+
+pub use excitation::{QuarterOrder, Rise, Sweep, SweptAcceleration};
+pub use transfer::{Band, Transfer};
+
+use crate::found::FoundMode;
+use crate::modal::{self, Fit, Phase};
+use crate::signal::AccelerationLog;
+use nalgebra::Complex;
+use posicast_model::mode::Mode;
+use thiserror::Error;
+use transfer::{Analyser, Lines};
+
+/// What an accelerometer log tells.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FoundInSweep {
+    /// The modes, by frequency.
+    pub modes: Vec<FoundMode>,
+    /// Name of the direction of the sensor that was used.
+    pub direction: String,
+    /// Time of the first sample at which the sweep begins, in seconds; negative where the log begins later.
+    pub start_s: f64,
+    /// Order of the quarter periods that fits the log.
+    pub order: QuarterOrder,
+    /// Way of rising that fits the log.
+    pub rise: Rise,
+    /// The measured transfer function.
+    pub transfer: Transfer,
+    /// The fitted one, at the same points.
+    pub fitted: Vec<Complex<f64>>,
+    /// Square of what the fit leaves over the noise's, 1 where noise alone is left.
+    pub reduced_square: f64,
+}
+
+/// Why a log tells no modes by a sweep.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum SweepError {
+    /// Too few samples.
+    #[error("the log has {samples} samples, {seconds:.2} s: a sweep needs 2 s at least")]
+    Short {
+        /// Samples.
+        samples: usize,
+        /// Their time in seconds.
+        seconds: f64,
+    },
+    /// The description of the sweep is none.
+    #[error("a sweep from {} to {} Hz at {} Hz/s with {} m/s² per Hz is not possible: all must be finite and above 0, the second frequency above the first and below half the rate of the samples", .0.start_hz, .0.end_hz, .0.rate_hz_per_s, .0.acceleration_per_hz)]
+    Description(Sweep),
+    /// No direction follows the sweep.
+    #[error("no direction of the sensor follows the sweep: it explains {:.1} % of the log at most", 100.0 * .0)]
+    Unrelated(f64),
+    /// The log follows the sweep in a way that no modes do.
+    #[error("modes tell {:.0} % of how the sensor follows this sweep: it was another one, or the machine is far from linear", 100.0 * .0)]
+    Unlike(f64),
+    /// A transfer function that fixes no mode.
+    #[error("the log fixes no transfer function in the band of the sweep")]
+    Empty,
+}
+
+/// Margin of the band beside the sweep's own, relative.
+const MARGIN: f64 = 0.02;
+/// Least share of the power that the sweep must explain.
+const LEAST_EXPLAINED: f64 = 0.2;
+/// Least share of the transfer function's power that the modes must explain.
+const LEAST_TOLD: f64 = 0.8;
+/// Sharpness of the impulse response below which the order of the quarters is doubted.
+const SHARP: f64 = 30.0;
+
+/// Finds the modes that the sweep shows.
+///
+/// # Errors
+/// [`SweepError`].
+pub fn identify(log: &AccelerationLog, sweep: &Sweep) -> Result<FoundInSweep, SweepError> {
+    let samples = log.directions.iter().map(|(_, record)| record.len()).min().unwrap_or(0);
+    let seconds = samples as f64 * log.sample_s;
+    if seconds < 2.0 {
+        return Err(SweepError::Short { samples, seconds });
+    }
+    check(sweep, log.sample_s)?;
+    let band = Band {
+        low_hz: sweep.start_hz * (1.0 + MARGIN),
+        high_hz: sweep.end_hz * (1.0 - MARGIN),
+    };
+    let mut analyser = Analyser::new(samples, log.sample_s, band);
+    let (direction, response) = strongest(log, &mut analyser).ok_or(SweepError::Empty)?;
+    let begun = begin(&mut analyser, &response, sweep).ok_or(SweepError::Empty)?;
+    let smooth = placed(&mut analyser, &begun, begun.start_s, seconds);
+    let rough = transfer::transfer(&response, &smooth, None);
+    if rough.explained < LEAST_EXPLAINED {
+        return Err(SweepError::Unrelated(rough.explained));
+    }
+    let timed = timed(&rough).ok_or(SweepError::Empty)?;
+    let Phase::Delay(late_s) = timed.phase else {
+        return Err(SweepError::Empty);
+    };
+    // What folds is known only once the begin is known to less than a sample.
+    let start_s = begun.start_s + late_s;
+    let smooth = placed(&mut analyser, &begun, start_s, seconds);
+    let sampled = analyser.sampled(&begun.excitation, start_s);
+    // A real axis is pushed when the sweep says; a simulated one often only from the next sample on, and is pushed by all that
+    // the samples fold.
+    let between = transfer::transfer(&response, &smooth, Some(&sampled.beside(&smooth)));
+    let on_samples = transfer::transfer(&response, &sampled, None);
+    let transfer = match on_samples.explained > between.explained {
+        true => on_samples,
+        false => between,
+    };
+    let start = modal::refine(&transfer.points, &timed.poles, Phase::Delay(0.0)).ok_or(SweepError::Empty)?;
+    let fit = modal::grown(&transfer.points, start);
+    let told = told(&transfer, &fit);
+    if told < LEAST_TOLD {
+        return Err(SweepError::Unlike(told));
+    }
+    Ok(FoundInSweep {
+        modes: modes(&fit, &band),
+        direction,
+        start_s: start_s
+            + if let Phase::Delay(late_s) = fit.phase {
+                late_s
+            } else {
+                0.0
+            },
+        order: begun.order,
+        rise: begun.rise,
+        reduced_square: fit.reduced_square(),
+        fitted: fit.values,
+        transfer,
+    })
+}
+
+fn check(sweep: &Sweep, sample_s: f64) -> Result<(), SweepError> {
+    let values = [
+        sweep.start_hz,
+        sweep.end_hz,
+        sweep.rate_hz_per_s,
+        sweep.acceleration_per_hz,
+        sample_s,
+    ];
+    let possible = values.iter().all(|value| value.is_finite() && *value > 0.0)
+        && sweep.end_hz > sweep.start_hz
+        && sweep.end_hz < 0.5 / sample_s;
+    // A sweep of more periods than this is a slip, and would fill the memory.
+    let periods = (sweep.end_hz + sweep.start_hz) / 2.0 * (sweep.end_hz - sweep.start_hz) / sweep.rate_hz_per_s;
+    if possible && periods < 1e7 {
+        Ok(())
+    } else {
+        Err(SweepError::Description(*sweep))
+    }
+}
+
+/// The direction with the most power in the band.
+fn strongest(log: &AccelerationLog, analyser: &mut Analyser) -> Option<(String, Lines)> {
+    log.directions
+        .iter()
+        .map(|(name, record)| (name.clone(), analyser.lines(record)))
+        .max_by(|a, b| a.1.power().total_cmp(&b.1.power()))
+}
+
+/// A sweep whose begin is known to a few milliseconds.
+struct Begun {
+    excitation: SweptAcceleration,
+    /// Lines of the excitation begun at the first sample.
+    lines: Lines,
+    order: QuarterOrder,
+    rise: Rise,
+    start_s: f64,
+}
+
+fn begin(analyser: &mut Analyser, response: &Lines, sweep: &Sweep) -> Option<Begun> {
+    let mut best: Option<(f64, Begun)> = None;
+    for order in QuarterOrder::ALL {
+        for rise in Rise::ALL {
+            let excitation = SweptAcceleration::new(sweep, order, rise);
+            let lines = analyser.excitation(&excitation, 0.0);
+            let (start_s, sharpness) = transfer::delay(response, &lines);
+            let begun = Begun {
+                excitation,
+                lines,
+                order,
+                rise,
+                start_s,
+            };
+            if sharpness > SHARP {
+                return Some(begun);
+            }
+            if best.as_ref().is_none_or(|(best, _)| sharpness > *best) {
+                best = Some((sharpness, begun));
+            }
+        }
+    }
+    best.map(|(_, begun)| begun)
+}
+
+/// Lines of the sweep begun at `start_s`, in a log of so many seconds.
+fn placed(analyser: &mut Analyser, begun: &Begun, start_s: f64, seconds: f64) -> Lines {
+    if start_s >= 0.0 && start_s + begun.excitation.duration_s() <= seconds {
+        analyser.later(&begun.lines, start_s)
+    } else {
+        analyser.excitation(&begun.excitation, start_s)
+    }
+}
+
+/// Poles without a word about the phase, then the delay that goes with them.
+fn timed(transfer: &Transfer) -> Option<Fit> {
+    const TRIED_S: f64 = 0.25e-3;
+    const TRIED: i32 = 60;
+    // Start values are looked for: a third of the points says as much in a third of the time.
+    let points = &modal::thinned(&transfer.points, 3);
+    let free = modal::select(points, Phase::Free)?;
+    let delays = (-TRIED..=TRIED).map(|n| f64::from(n) * TRIED_S);
+    let (_, delay_s) = delays
+        .filter_map(|delay_s| Some((modal::square(points, &free.poles, Phase::Delay(delay_s))?, delay_s)))
+        .min_by(|a, b| a.0.total_cmp(&b.0))?;
+    modal::refine(points, &free.poles, Phase::Delay(delay_s))
+}
+
+/// Share of the transfer function's power, over its noise's, that a fit explains.
+fn told(transfer: &Transfer, fit: &Fit) -> f64 {
+    let weighted = |value: Complex<f64>, deviation: f64| (value / deviation).norm_sqr();
+    let points = || transfer.points.iter().zip(&fit.values);
+    let whole: f64 = points().map(|(p, _)| weighted(p.value, p.deviation)).sum();
+    let left: f64 = points()
+        .map(|(p, fitted)| weighted(p.value - fitted, p.deviation))
+        .sum();
+    1.0 - left / whole
+}
+
+/// Damping ratio from which a pole is no vibration but a slope of the transfer function.
+const NO_VIBRATION: f64 = 0.5;
+/// Share of the displacement below which a mode is not told.
+const LEAST_SHARE: f64 = 0.03;
+/// Deviations by which a share must exceed zero.
+const SIGNIFICANT: f64 = 6.0;
+
+fn modes(fit: &Fit, band: &Band) -> Vec<FoundMode> {
+    let told = |k: &usize| {
+        let pole = &fit.poles[*k];
+        let (share, deviation) = fit.shares[*k];
+        let inside = pole.frequency_hz > band.low_hz && pole.frequency_hz < band.high_hz;
+        inside && pole.damping < NO_VIBRATION && share > SIGNIFICANT * deviation
+    };
+    let mut told: Vec<usize> = (0..fit.poles.len()).filter(told).collect();
+    let whole: f64 = told.iter().map(|k| fit.shares[*k].0).sum();
+    told.retain(|k| fit.shares[*k].0 >= LEAST_SHARE * whole);
+    let whole: f64 = told.iter().map(|k| fit.shares[*k].0).sum();
+    let mut modes: Vec<FoundMode> = told
+        .iter()
+        .map(|&k| FoundMode {
+            mode: Mode {
+                frequency_hz: fit.poles[k].frequency_hz,
+                damping: fit.poles[k].damping,
+            },
+            participation: fit.shares[k].0 / whole,
+            frequency_sd_hz: fit.deviations[k].0,
+            damping_sd: fit.deviations[k].1,
+        })
+        .collect();
+    modes.sort_by(|a, b| a.mode.frequency_hz.total_cmp(&b.mode.frequency_hz));
+    modes
+}

@@ -1,0 +1,146 @@
+//! Logs of machines whose modes are known: what methods are tried on.
+//!
+//! A machine with modes under a resonance test is simulated exactly from event to event, by closed forms that no method here
+//! uses.
+
+use crate::signal::AccelerationLog;
+use crate::sweep::{QuarterOrder, Rise, Sweep, SweptAcceleration};
+use nalgebra::{Matrix2, Vector2};
+use posicast_model::mode::Mode;
+use posicast_model::plant::free_motion;
+use rand::RngExt;
+use rand_xoshiro::Xoshiro256PlusPlus;
+use rand_xoshiro::rand_core::SeedableRng;
+
+/// A mode of the machine and its share in the displacement.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct KnownMode {
+    /// Frequency and damping.
+    pub mode: Mode,
+    /// Share in the static displacement; what the shares lack of one is rigid.
+    pub share: f64,
+}
+
+/// A mode by frequency in Hz, damping ratio and share.
+pub fn known(frequency_hz: f64, damping: f64, share: f64) -> KnownMode {
+    KnownMode {
+        mode: Mode { frequency_hz, damping },
+        share,
+    }
+}
+
+/// How a log was taken.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sensor {
+    /// Time between samples in seconds.
+    pub sample_s: f64,
+    /// Time from the first sample to the begin of the sweep.
+    pub start_s: f64,
+    /// Time from the end of the sweep to the last sample.
+    pub rest_s: f64,
+    /// Standard deviation of its noise in m/s².
+    pub noise: f64,
+    /// Quantisation step in m/s²; 0 for none.
+    pub step: f64,
+    /// Whether the machine is pushed only from the next sample on, as simulations on a grid do it.
+    pub held: bool,
+}
+
+impl Default for Sensor {
+    fn default() -> Self {
+        Self {
+            sample_s: 1.0 / 3200.0,
+            start_s: 0.437_21,
+            rest_s: 0.3,
+            noise: 0.2,
+            step: 0.037,
+            held: false,
+        }
+    }
+}
+
+/// Normally distributed numbers by Box and Muller.
+pub struct Noise(Xoshiro256PlusPlus);
+
+impl Noise {
+    /// The same for the same seed.
+    pub fn new(seed: u64) -> Self {
+        Self(Xoshiro256PlusPlus::seed_from_u64(seed))
+    }
+
+    /// The next one, of variance 1.
+    pub fn draw(&mut self) -> f64 {
+        let (a, b): (f64, f64) = (self.0.random(), self.0.random());
+        (-2.0 * (1.0 - a).ln()).sqrt() * (std::f64::consts::TAU * b).cos()
+    }
+}
+
+/// One mode under a piecewise constant acceleration of its base: `d″ + 2ζωd′ + ω²d = −u`.
+struct Moving {
+    truth: KnownMode,
+    state: Vector2<f64>,
+}
+
+impl Moving {
+    fn advance(&mut self, seconds: f64, base: f64) {
+        let rest = Vector2::new(-base / (self.truth.mode.omega() * self.truth.mode.omega()), 0.0);
+        let motion: Matrix2<f64> = free_motion(&self.truth.mode, seconds);
+        self.state = motion * (self.state - rest) + rest;
+    }
+
+    /// The acceleration relative to the base.
+    fn acceleration(&self, base: f64) -> f64 {
+        let mode = &self.truth.mode;
+        -base - 2.0 * mode.decay() * self.state.y - mode.omega() * mode.omega() * self.state.x
+    }
+}
+
+/// The log of one direction, beside one that is at rest.
+pub fn resonance_test(truths: &[KnownMode], sweep: &Sweep, sensor: &Sensor, seed: u64) -> AccelerationLog {
+    let excitation = SweptAcceleration::new(sweep, QuarterOrder::Mirrored, Rise::HalfPeriod);
+    let seconds = sensor.start_s + excitation.duration_s() + sensor.rest_s;
+    let samples = (seconds / sensor.sample_s) as usize;
+    let mut moving: Vec<Moving> = truths
+        .iter()
+        .map(|&truth| Moving {
+            truth,
+            state: Vector2::zeros(),
+        })
+        .collect();
+    let mut noise = Noise::new(seed);
+    let (mut along, mut across) = (Vec::with_capacity(samples), Vec::with_capacity(samples));
+    let quantised = |x: f64| {
+        if sensor.step > 0.0 {
+            (x / sensor.step).round() * sensor.step
+        } else {
+            x
+        }
+    };
+    let mut now_s = -sensor.start_s;
+    let mut pieces = excitation.pieces().peekable();
+    let mut base = 0.0;
+    for n in 0..samples {
+        let at_s = n as f64 * sensor.sample_s - sensor.start_s;
+        while let Some((begin_s, acceleration)) = pieces.next_if(|(begin_s, _)| *begin_s <= at_s) {
+            let begin_s = if sensor.held { at_s } else { begin_s };
+            for mode in &mut moving {
+                mode.advance(begin_s - now_s, base);
+            }
+            (now_s, base) = (begin_s, acceleration);
+        }
+        for mode in &mut moving {
+            mode.advance(at_s - now_s, base);
+        }
+        now_s = at_s;
+        let relative: f64 = moving
+            .iter()
+            .map(|mode| mode.truth.share * mode.acceleration(base))
+            .sum();
+        along.push(quantised(base + relative + sensor.noise * noise.draw()));
+        across.push(quantised(9.81 + sensor.noise * noise.draw()));
+    }
+    AccelerationLog {
+        sample_s: sensor.sample_s,
+        directions: vec![("accel_x".into(), along), ("accel_z".into(), across)],
+    }
+}

@@ -1,0 +1,130 @@
+//! Reading logs, the good and the bad.
+
+use posicast_identify::log::{self, Log, LogError, Remark};
+use posicast_identify::sweep::Sweep;
+use posicast_identify::synthetic::{Sensor, known, resonance_test};
+
+fn rows(header: &str, row: impl Fn(usize) -> String) -> String {
+    let rows: Vec<String> = (0..100).map(row).collect();
+    format!("{header}\n{}\n", rows.join("\n"))
+}
+
+fn error(text: &str) -> String {
+    log::read(text.as_bytes()).unwrap_err().to_string()
+}
+
+#[test]
+fn unit_a_written_log_is_read_back() {
+    let sweep = Sweep {
+        end_hz: 10.0,
+        ..Sweep::default()
+    };
+    let written = resonance_test(&[known(7.0, 0.05, 1.0)], &sweep, &Sensor::default(), 1);
+    let mut text = Vec::new();
+    written.write_csv(&mut text).unwrap();
+    let reading = log::read(&text).unwrap();
+    assert_eq!(reading.remarks, []);
+    let Log::Acceleration(read) = reading.log else { panic!() };
+    assert!((read.sample_s - written.sample_s).abs() < 1e-9);
+    for ((name, read), (written_name, written)) in read.directions.iter().zip(&written.directions) {
+        assert_eq!(name, written_name);
+        assert_eq!(read.len(), written.len());
+        assert!(read.iter().zip(written).all(|(a, b)| (a - b).abs() < 1e-6));
+    }
+}
+
+#[test]
+fn unit_units_separators_and_other_columns_are_understood() {
+    let text = rows("# bench 7\ntime_ms;temperature;command_mm;Response_um", |n| {
+        format!("{n};21;{};{}", n / 50, n * n % 17)
+    });
+    let reading = log::read(text.as_bytes()).unwrap();
+    assert_eq!(reading.remarks, [Remark::Unknown("temperature".into())]);
+    let Log::Position(log) = reading.log else { panic!() };
+    assert!((log.sample_s - 1e-3).abs() < 1e-15);
+    assert_eq!(log.command[50], 1e-3);
+    assert!((log.response[5] - 8e-6).abs() < 1e-15);
+}
+
+#[test]
+fn unit_what_is_wrong_is_said_with_its_line_and_column() {
+    let good = |n: usize| format!("{},{},{}", n as f64 * 0.01, n / 50, n % 7);
+    let with = |line: usize, bad: &str| {
+        rows("time,command,response", |n| {
+            if n + 2 == line { bad.to_owned() } else { good(n) }
+        })
+    };
+    for (text, expected) in [
+        (String::new(), "the log is empty"),
+        ("0,1,2\n0.1,2,3\n".into(), "line 1 is the first and has no names"),
+        (
+            rows("clock,response", good),
+            "no column `time`: the columns are clock, response",
+        ),
+        (rows("time,command", good), "no column `response`"),
+        (
+            rows("time,response,position", good),
+            "`response` and `position` mean the same",
+        ),
+        (with(30, "0.28,0"), "line 30 has 2 fields, the header 3"),
+        (with(30, "0.28,0,nan"), "line 30, column `response`: `nan`"),
+        (with(30, "0.28,,5"), "line 30, column `command`: ``"),
+        (with(30, "0.27,0,5"), "line 30: the time 0.27 s is not after 0.27 s"),
+        (
+            rows("time,response", |n| format!("{n},3")),
+            "column `response` has the value 3 in every row",
+        ),
+        ("time,response\n0,1\n1,2\n".into(), "2 rows: 32 are needed"),
+    ] {
+        assert!(error(&text).contains(expected), "{expected}: {}", error(&text));
+    }
+    assert!(matches!(log::read(b"\xff\xfe\n"), Err(LogError::Missing { .. })));
+}
+
+#[test]
+fn unit_gaps_irregular_times_dead_and_saturated_columns_are_mended_and_said() {
+    let gap = rows("time,response", |n| {
+        format!("{},{}", if n < 30 { n } else { n + 10 }, n % 7)
+    });
+    let reading = log::read(gap.as_bytes()).unwrap();
+    assert_eq!(reading.rows, 70);
+    assert!(matches!(
+        reading.remarks[..],
+        [Remark::Gap {
+            line: 31,
+            from: 32,
+            to: 101,
+            kept: 70,
+            ..
+        }]
+    ));
+
+    let irregular = rows("time,response", |n| {
+        format!("{},{}", n as f64 + 0.3 * (n as f64).sin(), n)
+    });
+    let reading = log::read(irregular.as_bytes()).unwrap();
+    assert!(matches!(reading.remarks[..], [Remark::Irregular { .. }]));
+    let Log::Position(log) = reading.log else { panic!() };
+    // A ramp over the row is, interpolated, one over the time but for 0.3 rows that it swings, and 0.3 by which the end is off.
+    assert!(
+        log.response
+            .iter()
+            .enumerate()
+            .all(|(n, x)| (x - n as f64).abs() < 0.65)
+    );
+
+    let flat = rows("time,accel_x,accel_y", |n| {
+        format!("{n},9.8,{}", (20.0 * (0.2 * n as f64).sin()).clamp(-15.0, 15.0))
+    });
+    let reading = log::read(flat.as_bytes()).unwrap();
+    assert!(
+        matches!(
+            reading.remarks[..],
+            [Remark::Saturated { .. }, Remark::DeadDirection { .. }]
+        ),
+        "{:?}",
+        reading.remarks
+    );
+    let Log::Acceleration(log) = reading.log else { panic!() };
+    assert_eq!(log.directions.len(), 1);
+}

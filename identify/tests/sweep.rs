@@ -1,0 +1,154 @@
+//! Modes from accelerometer logs, against machines whose modes are known.
+
+use posicast_identify::sweep::{self, Sweep, SweepError};
+use posicast_identify::synthetic::{KnownMode, Noise, Sensor, known, resonance_test};
+use posicast_identify::{AccelerationLog, FoundMode};
+
+/// Relative errors that are allowed.
+const FREQUENCY: f64 = 0.01;
+const DAMPING: f64 = 0.15;
+
+/// A sweep of 13 s: what is checked on many logs.
+fn quick() -> Sweep {
+    Sweep {
+        rate_hz_per_s: 10.0,
+        ..Sweep::default()
+    }
+}
+
+fn check(truths: &[KnownMode], found: &[FoundMode]) {
+    assert_eq!(truths.len(), found.len(), "{truths:#?} {found:#?}");
+    for (truth, found) in truths.iter().zip(found) {
+        let frequency = found.mode.frequency_hz / truth.mode.frequency_hz - 1.0;
+        let damping = found.mode.damping / truth.mode.damping - 1.0;
+        assert!(
+            frequency.abs() < FREQUENCY && damping.abs() < DAMPING,
+            "{truth:#?} {found:#?}"
+        );
+        let whole: f64 = truths.iter().map(|truth| truth.share).sum();
+        assert!(
+            (found.participation - truth.share / whole).abs() < 0.03,
+            "{truth:#?} {found:#?}"
+        );
+    }
+}
+
+#[test]
+fn unit_the_modes_of_a_printers_log_are_found() {
+    // One; two; a pair 8 % apart; a weak one beside a strong one; four; behind a rigid part of 30 %.
+    let machines = [
+        vec![known(44.3, 0.053, 1.0)],
+        vec![known(35.0, 0.03, 0.7), known(72.0, 0.05, 0.3)],
+        vec![known(50.0, 0.04, 0.5), known(54.0, 0.05, 0.5)],
+        vec![known(28.0, 0.02, 0.88), known(61.0, 0.06, 0.12)],
+        vec![
+            known(23.0, 0.05, 0.4),
+            known(41.0, 0.03, 0.3),
+            known(68.0, 0.06, 0.2),
+            known(101.0, 0.02, 0.1),
+        ],
+        vec![known(39.0, 0.1, 0.4), known(90.0, 0.012, 0.3)],
+    ];
+    for (n, truths) in machines.iter().enumerate() {
+        let sensor = Sensor {
+            // As a simulation on a grid does it, too.
+            held: n % 2 == 1,
+            ..Sensor::default()
+        };
+        let log = resonance_test(truths, &Sweep::default(), &sensor, n as u64);
+        let found = sweep::identify(&log, &Sweep::default()).unwrap();
+        check(truths, &found.modes);
+        assert_eq!(found.direction, "accel_x");
+        assert!((found.start_s - sensor.start_s).abs() < 2e-3, "{}", found.start_s);
+    }
+}
+
+#[test]
+fn unit_stated_intervals_hold_the_truth() {
+    let (mut modes, mut frequencies, mut dampings) = (0, 0, 0);
+    for seed in 0..200u32 {
+        let truths = [known(31.0, 0.04, 0.6), known(58.0, 0.03, 0.4)];
+        let sensor = Sensor {
+            sample_s: 1.0 / 1600.0,
+            noise: 0.4,
+            start_s: 0.1 + 1e-3 * f64::from(seed),
+            ..Sensor::default()
+        };
+        let log = resonance_test(&truths, &quick(), &sensor, seed.into());
+        let found = sweep::identify(&log, &quick()).unwrap();
+        check(&truths, &found.modes);
+        for (truth, found) in truths.iter().zip(&found.modes) {
+            modes += 1;
+            frequencies += usize::from(found.frequency_interval_hz().holds(truth.mode.frequency_hz));
+            dampings += usize::from(found.damping_interval().holds(truth.mode.damping));
+        }
+    }
+    let least = modes * 9 / 10;
+    assert!(
+        frequencies >= least && dampings >= least,
+        "{frequencies} and {dampings} of {modes}"
+    );
+}
+
+#[test]
+fn unit_no_mode_is_invented() {
+    // A rigid axis; and one whose only mode carries next to nothing.
+    for truths in [vec![], vec![known(60.0, 0.03, 0.0005)]] {
+        let log = resonance_test(&truths, &quick(), &Sensor::default(), 3);
+        let found = sweep::identify(&log, &quick()).unwrap();
+        assert!(found.modes.len() <= truths.len(), "{:#?}", found.modes);
+        assert!(found.transfer.explained > 0.9);
+    }
+}
+
+#[test]
+fn unit_a_log_of_something_else_is_refused() {
+    let mut noise = Noise::new(7);
+    let record = (0..40_000).map(|_| noise.draw()).collect();
+    let log = AccelerationLog {
+        sample_s: 1.0 / 3200.0,
+        directions: vec![("accel_x".into(), record)],
+    };
+    assert!(matches!(sweep::identify(&log, &quick()), Err(SweepError::Unrelated(_))));
+    let short = AccelerationLog {
+        directions: vec![("accel_x".into(), vec![1.0; 100])],
+        ..log.clone()
+    };
+    assert!(matches!(
+        sweep::identify(&short, &quick()),
+        Err(SweepError::Short { .. })
+    ));
+    for wrong in [
+        Sweep { end_hz: 4.0, ..quick() },
+        Sweep {
+            rate_hz_per_s: 0.0,
+            ..quick()
+        },
+        Sweep {
+            end_hz: 1700.0,
+            ..quick()
+        },
+        Sweep {
+            start_hz: f64::NAN,
+            ..quick()
+        },
+        Sweep {
+            rate_hz_per_s: 1e-9,
+            ..quick()
+        },
+    ] {
+        assert!(matches!(sweep::identify(&log, &wrong), Err(SweepError::Description(_))));
+    }
+}
+
+#[test]
+fn unit_a_log_that_begins_in_the_sweep_still_tells_the_modes_that_it_saw() {
+    let truths = [known(60.0, 0.04, 1.0)];
+    let mut log = resonance_test(&truths, &quick(), &Sensor::default(), 5);
+    for (_, record) in &mut log.directions {
+        record.drain(..3200 * 2);
+    }
+    let found = sweep::identify(&log, &quick()).unwrap();
+    check(&truths, &found.modes);
+    assert!(found.start_s < -1.5, "{}", found.start_s);
+}
