@@ -9,6 +9,7 @@ mod controller_commit;
 mod convolution;
 mod divider;
 mod drive_command;
+mod drive_train;
 mod encoder_generator;
 mod excitation;
 mod golden_joint;
