@@ -6,6 +6,7 @@ mod cascade_prop;
 mod composed;
 mod control;
 mod controller_commit;
+mod controllers;
 mod convolution;
 mod divider;
 mod drive_command;

@@ -165,7 +165,7 @@ fn motor(sheet: &mut Sheet) {
 }
 
 /// The winding of the motor, Table 2-2.
-const WINDING: Winding = Winding {
+pub(super) const WINDING: Winding = Winding {
     inductance_h: 0.05,
     resistance_ohm: 1.0,
     back_emf: 0.18,
