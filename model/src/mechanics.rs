@@ -96,6 +96,17 @@ pub struct ScrewDrive {
     pub table_mass: f64,
     /// Damping ratio of the table on the screw while the motor is held: at least 0, below 1. No data sheet has it.
     pub damping: f64,
+    /// What the simulated machine has in the place of a mode; `None`: the mode.
+    pub stiction: Option<Stiction>,
+}
+
+/// Friction of a simulated table that sticks, beside the Coulomb and viscous friction of `[axis.drive]`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stiction {
+    /// Dry friction at rest, N: at least that while it slides.
+    pub breakaway: f64,
+    /// Stribeck velocity over which the one becomes the other, m/s. Above 0.
+    pub stribeck_velocity: f64,
 }
 
 impl ScrewDrive {
@@ -132,6 +143,24 @@ impl ScrewDrive {
         2.0 * self.damping * (self.stiffness() * self.table_mass).sqrt()
     }
 
+    /// The same with its frequencies times this factor, as a machine that is off from its file: stiffness by its square, damping ratio as it is.
+    pub fn with_frequency_factor(&self, factor: f64) -> Self {
+        let square = factor * factor;
+        // The lengths make the screw softer, and the inertia of a longer one is taken back.
+        let longer = Self {
+            screw_length_m: self.screw_length_m / square,
+            loaded_length_m: self.loaded_length_m / square,
+            coupling_stiffness: self.coupling_stiffness * square,
+            nut_stiffness: self.nut_stiffness * square,
+            bearing_stiffness: self.bearing_stiffness * square,
+            ..*self
+        };
+        Self {
+            motor_inertia: self.motor_inertia + self.turning_inertia() - longer.turning_inertia(),
+            ..longer
+        }
+    }
+
     /// The table on the screw while the motor is held: what rings in front of a stiff velocity drive.
     pub fn held_mode(&self) -> Mode {
         Mode::of_spring(self.stiffness(), self.relative_damping(), self.table_mass)
@@ -166,6 +195,7 @@ mod tests {
             motor_inertia: 0.0364e-4,
             table_mass,
             damping,
+            stiction: None,
         })
     }
 

@@ -41,6 +41,7 @@ mod shaper_prop;
 mod shaper_protocol;
 mod sliding_mode;
 mod stage;
+mod stiction;
 mod supervision;
 mod support;
 mod trace;

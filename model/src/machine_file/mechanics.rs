@@ -3,11 +3,11 @@
 //! The mode follows ([`crate::mechanics`]): of a velocity drive, and of an axis without a drive, the table on the screw while the motor is
 //! held; of a torque drive, motor against table.
 
-use super::key::{Key, Values};
+use super::key::{Default, Key, Values};
 use super::range::NumberRange;
 use super::table::Table;
 use super::{AxisMode, ClockSection, mode};
-use crate::mechanics::{SHEAR_MODULUS, ScrewDrive, torsional_stiffness};
+use crate::mechanics::{SHEAR_MODULUS, ScrewDrive, Stiction, torsional_stiffness};
 use crate::unit::AxisUnit;
 
 /// Lengths: a micrometre in the place of a metre is a slip of the unit.
@@ -20,6 +20,14 @@ const TORSION: NumberRange = NumberRange::closed(1e-3, 1e9).unit("N·m/rad");
 const INERTIA: NumberRange = NumberRange::closed(1e-12, 1e3).unit("kg·m²");
 /// Mass of a table.
 const MASS: NumberRange = NumberRange::closed(1e-3, 1e6).unit("kg");
+/// Friction at rest.
+const FORCE: NumberRange = NumberRange::closed(0.0, 1e9).unit("N");
+/// Stribeck velocity.
+const VELOCITY: NumberRange = NumberRange::positive(1e3).unit("m/s");
+/// Stribeck velocity where the file has none: the XY stage's.
+const DEFAULT_STRIBECK: f64 = 0.005;
+const BREAKAWAY: &str = "breakaway";
+const STRIBECK: &str = "stribeck_velocity";
 /// The name of the table.
 const TABLE: &str = "mechanics";
 /// Diameter and length of a coupling, of which neither says anything alone.
@@ -77,6 +85,17 @@ pub(super) const KEYS: &[Key] = &[
         "Damping ratio ζ of the table on the screw, with the motor held.",
     )
     .required(),
+    Key::new(
+        BREAKAWAY,
+        Values::Number(FORCE),
+        "Friction of the table at rest in N: the simulated machine then is motor and table with friction that sticks.",
+    ),
+    Key::new(
+        STRIBECK,
+        Values::Number(VELOCITY),
+        "Velocity in m/s over which friction falls from `breakaway` to `coulomb`.",
+    )
+    .default(Default::Number(DEFAULT_STRIBECK)),
 ];
 
 /// Reads the mode that follows from the table, with the table, and what is in it; `None` where one of its values is refused.
@@ -106,6 +125,7 @@ pub(super) fn read<'r, 't>(
     let inertia = table.required_number("motor_inertia", INERTIA);
     let mass = table.required_number("table_mass", MASS);
     let damping = table.required_number(DAMPING, mode::DAMPING);
+    let stiction = read_stiction(axis, &table);
     let screw = ScrewDrive {
         lead_m: lead?,
         screw_diameter_m: diameter?,
@@ -117,9 +137,57 @@ pub(super) fn read<'r, 't>(
         motor_inertia: inertia?,
         table_mass: mass?,
         damping: damping?,
+        stiction: stiction?,
     };
     let mode = read_mode(axis, &table, &screw, clock?)?;
     Some((table, mode, screw))
+}
+
+/// Friction that sticks; `Some(None)` where the file has none.
+fn read_stiction(axis: &Table<'_, '_>, table: &Table<'_, '_>) -> Option<Option<Stiction>> {
+    let breakaway = table.number(BREAKAWAY, FORCE);
+    let stribeck_velocity = table.number(STRIBECK, VELOCITY).unwrap_or(DEFAULT_STRIBECK);
+    if table.lacks(BREAKAWAY) {
+        if table.has(STRIBECK) {
+            let found = "stribeck_velocity without breakaway";
+            let remedy = "add `breakaway`, or remove `stribeck_velocity`";
+            table.contradiction(STRIBECK, found, "the two together", remedy);
+            return None;
+        }
+        return Some(None);
+    }
+    let breakaway = breakaway?;
+    // Both are looked up again where the drive is read, with what is wrong about them.
+    let drive = axis.table("drive");
+    let has_bandwidth = drive.as_ref().is_some_and(|drive| drive.has("bandwidth_hz"));
+    if !(axis.has_word("drive", "mode", "torque") && has_bandwidth) {
+        let found = "breakaway without a torque drive that has a bandwidth";
+        let allowed =
+            "breakaway with mode = \"torque\" and bandwidth_hz in [axis.drive]; a velocity drive overcomes friction";
+        table.contradiction(
+            BREAKAWAY,
+            found,
+            allowed,
+            "remove `breakaway`, or complete [axis.drive]",
+        );
+        return None;
+    }
+    let coulomb = drive.and_then(|drive| drive.number_if_any("coulomb")).unwrap_or(0.0);
+    if coulomb > breakaway {
+        let found = format!("a friction of {breakaway} N at rest");
+        let allowed = format!("at least drive.coulomb = {coulomb} N");
+        table.contradiction(
+            BREAKAWAY,
+            found,
+            allowed,
+            "raise `breakaway`: what sticks takes more than what slides",
+        );
+        return None;
+    }
+    Some(Some(Stiction {
+        breakaway,
+        stribeck_velocity,
+    }))
 }
 
 /// Torsional stiffness of the coupling; infinite where the file has none.

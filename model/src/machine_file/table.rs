@@ -78,6 +78,11 @@ impl<'r, 't> Table<'r, 't> {
         found == Some(word)
     }
 
+    /// The number under a key, if it is one. Reports nothing.
+    pub(super) fn number_if_any(&self, key: &str) -> Option<f64> {
+        as_number(self.value(key)?.get_ref())
+    }
+
     /// Line of a key's value, or of the header where the key is absent.
     pub(super) fn line_of(&self, key: &str) -> usize {
         self.reader.line(self.span_of(key).start)

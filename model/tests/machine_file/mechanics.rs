@@ -136,3 +136,29 @@ fn unit_mechanics_that_cannot_be_are_refused_by_their_key() {
         "{error}"
     );
 }
+
+#[test]
+fn unit_friction_that_sticks_needs_a_drive_that_feels_it() {
+    let with_drive = |keys: &str, drive: &str| with(&format!("{SCREW}{keys}{TORQUE}{drive}"));
+    let drive = "bandwidth_hz = 1000.0\ncoulomb = 40.0\n";
+    let machine = right(&with_drive("breakaway = 60\n", drive));
+    let stiction = machine.axes[0].mechanics.unwrap().stiction.unwrap();
+    assert_eq!((stiction.breakaway, stiction.stribeck_velocity), (60.0, 0.005));
+    for (keys, drive, expected) in [
+        (
+            "stribeck_velocity = 0.01\n",
+            drive,
+            "stribeck_velocity without breakaway",
+        ),
+        ("breakaway = 30\n", drive, "at least drive.coulomb = 40 N"),
+        (
+            "breakaway = 60\n",
+            "coulomb = 40.0\n",
+            "without a torque drive that has a bandwidth",
+        ),
+    ] {
+        let error = wrong(&with_drive(keys, drive));
+        assert_eq!(error.problems().len(), 1, "{error}");
+        assert!(error.to_string().contains(expected), "{error}");
+    }
+}
