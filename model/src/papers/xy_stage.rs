@@ -171,7 +171,7 @@ fn controller(sheet: &mut Sheet) {
         "chapter 4: surface slope c of the sliding mode",
         "150",
         format!(
-            "with c = {SLOPE}/s, ε = 4 m/s² and φ = 0.02 m/s it slides: |s| at most {:.1} mm/s, |e| at most {}, no limit reached",
+            "ε = 4 m/s², φ = 0.02 m/s: |s| at most {:.1} mm/s, |e| {}",
             1e3 * layer.surface_peak,
             micrometres(layer.error_peak)
         ),
@@ -183,9 +183,7 @@ fn controller(sheet: &mut Sheet) {
     sheet.claim(
         "chapter 4: reaching rate k of the sliding mode",
         "50",
-        format!(
-            "with k = {RATE}/s it slides as above: c + k + ε/φ times the lag of the loop is {lags:.2}, where 0.5 is the most"
-        ),
+        format!("slides as above; (c + k + ε/φ) · lag is {lags:.2}, at most 0.5 is good"),
         lags < 0.5 && layer.limited == 0.0 && layer.chatter < 5.0,
     );
     let [si, millimetres, sign] = [
@@ -198,7 +196,7 @@ fn controller(sheet: &mut Sheet) {
         "chapter 4: reaching gain ε of the sliding mode",
         "150",
         format!(
-            "in m/s² the current is at its limit in {:.0} % of the ticks; in mm/s² it never slides, and leaves {}",
+            "m/s²: at its limit {:.0} % of the time; mm/s²: never slides, |e| {}",
             100.0 * si.limited,
             micrometres(millimetres.error_peak)
         ),
@@ -223,7 +221,7 @@ fn controller(sheet: &mut Sheet) {
         "chapter 4: sliding mode removes the error",
         "it does",
         format!(
-            "{} are left with a boundary layer, {} with the sign, whose command then moves by {:.0} A/s in the place of {:.0}",
+            "{} with a layer; {} with the sign, and {:.0} A/s of chatter, not {:.0}",
             micrometres(layer.error_peak),
             micrometres(sign.error_peak),
             sign.chatter,
