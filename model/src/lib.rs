@@ -18,6 +18,7 @@ pub mod digitise;
 pub mod hardware;
 pub mod impulse;
 pub mod machine_file;
+pub mod mechanics;
 pub mod mode;
 pub mod motion;
 pub mod papers;

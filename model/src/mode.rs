@@ -59,6 +59,15 @@ impl Mode {
         }
     }
 
+    /// A mass on a spring with a damper beside it: `ω² = k/m`, `2ζω = c/m`. Mass in kg, above 0; stiffness in N/m, above 0; damping in N·s/m.
+    pub fn of_spring(stiffness: f64, damping: f64, mass: f64) -> Self {
+        let omega = (stiffness / mass).sqrt();
+        Self {
+            frequency_hz: omega / TAU,
+            damping: damping / (2.0 * mass * omega),
+        }
+    }
+
     /// The same mode with its frequency multiplied by `ratio`, damping as it is: a machine that is off from its model.
     pub fn scaled(&self, ratio: f64) -> Self {
         Self {

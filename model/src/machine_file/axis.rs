@@ -4,8 +4,8 @@ use super::key::{Default, Key, Values};
 use super::range::COUNTS_PER_UNIT;
 use super::table::Table;
 use super::{
-    AxisSection, ClockSection, FixedPoint, ScaleUse, controller, drive, encoder, limits, mode, pwm, scale, shaper,
-    trace,
+    AxisSection, ClockSection, FixedPoint, ScaleUse, controller, drive, encoder, limits, mechanics, mode, pwm, scale,
+    shaper, trace,
 };
 use crate::rtl::shaper::MOTION_WORD_BITS;
 use crate::unit::AxisUnit;
@@ -38,6 +38,11 @@ pub(super) const KEYS: &[Key] = &[
         "mode",
         Values::Tables(mode::KEYS, mode::MAX_MODES),
         "The modes of vibration; none is allowed with kind custom or none.",
+    ),
+    Key::new(
+        "mechanics",
+        Values::Table(mechanics::KEYS),
+        "A ball screw by its data sheets, in place of `[[axis.mode]]`: the mode follows.",
     ),
     Key::new(
         "encoder",
@@ -78,7 +83,13 @@ pub(super) fn read(
         .as_ref()
         .and_then(|choice| choice.as_ref())
         .map(|(_, choice)| choice.kind);
-    let modes = mode::read_all(table, clock, kind);
+    let screw = table.has("mechanics").then(|| mechanics::read(table, clock, unit));
+    let given = mode::read_all(table, clock, kind);
+    let (modes, mechanics) = match screw {
+        None => (given, None),
+        Some(None) => (None, None),
+        Some(Some((screw_table, mode, screw))) => (given.map(|_| vec![(screw_table, mode)]), Some(screw)),
+    };
     // A shaper that was refused is not compared with the modes: what it lacks would be reported twice.
     if let Some(modes) = modes.as_ref().filter(|_| !matches!(choice, Some(None))) {
         shaper::check(table, choice.as_ref().and_then(Option::as_ref), modes);
@@ -109,6 +120,7 @@ pub(super) fn read(
         modulo,
         shaper,
         modes: modes?.into_iter().map(|(_, mode)| mode).collect(),
+        mechanics,
         encoder: not_refused(encoder)?,
         pwm: not_refused(pwm)?,
         drive: not_refused(drive)?,

@@ -39,6 +39,7 @@ mod hint;
 mod key;
 mod limits;
 mod machine;
+mod mechanics;
 mod mode;
 mod names;
 mod place;
@@ -69,6 +70,7 @@ pub use trace::TraceSection;
 use toml::de::DeTable;
 
 use crate::design::kind::ShaperKind;
+use crate::mechanics::ScrewDrive;
 use crate::mode::Mode;
 use crate::unit::AxisUnit;
 use reader::Reader;
@@ -199,6 +201,8 @@ pub struct AxisSection {
     pub shaper: Option<ShaperChoice>,
     /// Modes in the order of the file; empty only for `custom` and `none`.
     pub modes: Vec<AxisMode>,
+    /// `[axis.mechanics]`, from which the only mode then follows.
+    pub mechanics: Option<ScrewDrive>,
     /// `[axis.encoder]`.
     pub encoder: Option<Encoder>,
     /// `[axis.pwm]`.

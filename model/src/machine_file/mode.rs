@@ -17,7 +17,7 @@ pub(super) const MAX_MODES: usize = 8;
 /// A frequency before it is compared with the sample rate; below this a shaper would last for hours.
 const FREQUENCY_HZ: NumberRange = NumberRange::closed(1e-3, 1e9).unit("Hz");
 /// Damping ratio of a mode that rings.
-const DAMPING: NumberRange = NumberRange::closed(0.0, 1.0).open_above();
+pub(super) const DAMPING: NumberRange = NumberRange::closed(0.0, 1.0).open_above();
 /// Weights of the modes.
 const PARTICIPATION: NumberRange = NumberRange::closed(0.0, 1e9);
 /// Masses in kg, or inertias in kg·m².

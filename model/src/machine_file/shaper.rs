@@ -225,7 +225,7 @@ pub(super) fn check(
     modes: &[(Table<'_, '_>, AxisMode)],
 ) {
     let kind = shaper.map(|(_, choice)| choice.kind);
-    if axis.lacks("mode") && !matches!(kind, Some(ShaperKind::Custom | ShaperKind::None)) {
+    if axis.lacks("mode") && axis.lacks("mechanics") && !matches!(kind, Some(ShaperKind::Custom | ShaperKind::None)) {
         let allowed = "at least one [[axis.mode]], except with kind custom or none";
         let remedy = format!(
             "add [[axis.mode]] with frequency_hz and damping, or choose kind \"custom\" or \"none\"; {}",

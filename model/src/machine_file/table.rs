@@ -69,6 +69,20 @@ impl<'r, 't> Table<'r, 't> {
         self.value(key).is_some()
     }
 
+    /// Whether a table inside this one has this word under a key. Reports nothing.
+    pub(super) fn has_word(&self, table: &str, key: &str, word: &str) -> bool {
+        let inner = self.value(table).and_then(|value| value.get_ref().as_table());
+        let found = inner
+            .and_then(|entries| entries.get(key))
+            .and_then(|value| value.get_ref().as_str());
+        found == Some(word)
+    }
+
+    /// The number under a key, if it is one. Reports nothing.
+    pub(super) fn number_if_any(&self, key: &str) -> Option<f64> {
+        as_number(self.value(key)?.get_ref())
+    }
+
     /// Line of a key's value, or of the header where the key is absent.
     pub(super) fn line_of(&self, key: &str) -> usize {
         self.reader.line(self.span_of(key).start)

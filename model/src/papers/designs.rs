@@ -17,6 +17,7 @@ pub(super) fn axis(shaper: ShaperChoice, modes: &[Mode]) -> AxisSection {
         modulo: false,
         shaper: Some(shaper),
         modes: modes.iter().map(|mode| axis_mode(*mode, None)).collect(),
+        mechanics: None,
         encoder: None,
         pwm: None,
         drive: None,

@@ -4,14 +4,14 @@
 //! (= kN/mm) or N·mm/rad, as each item says.
 
 use super::sheet::{Rule, Sheet};
+use crate::mechanics::{
+    DENSITY, SHEAR_MODULUS, YOUNGS_MODULUS, axial_stiffness, in_series, preloaded_nut, shaft_inertia, torsion_at_table,
+    torsional_stiffness,
+};
 use crate::mode::Mode;
-use nalgebra::{Complex, Matrix5};
-use std::f64::consts::{PI, TAU};
+use crate::plant::drive_train::{Amplifier, DriveTrain, Winding};
+use std::f64::consts::TAU;
 
-/// Shear modulus of steel, N/mm².
-const SHEAR_MODULUS: f64 = 81e3;
-/// Young's modulus of steel, N/mm².
-const YOUNGS_MODULUS: f64 = 207e3;
 /// Lead of the screws, mm per turn.
 const LEAD_MM: f64 = 5.0;
 /// Diameter of the screws, mm.
@@ -27,30 +27,19 @@ const BEARINGS: [f64; 2] = [133.4873, 140.3455];
 /// Rated torque of the motors, mN·m, at 3,000 turns a minute and 0.91 A.
 const RATED_TORQUE: f64 = 318.0;
 
-/// Polar area moment of a round shaft, mm⁴.
-fn polar_moment(diameter_mm: f64) -> f64 {
-    PI * diameter_mm.powi(4) / 32.0
-}
-
 /// Torsional stiffness of a round shaft, N·mm/rad.
 fn torsion(diameter_mm: f64, length_mm: f64) -> f64 {
-    SHEAR_MODULUS * polar_moment(diameter_mm) / length_mm
+    torsional_stiffness(SHEAR_MODULUS, diameter_mm / 1e3, length_mm / 1e3) * 1e3
 }
 
 /// Tensile stiffness of a screw, N/µm.
 fn tension(length_mm: f64) -> f64 {
-    YOUNGS_MODULUS * (PI * SCREW_MM * SCREW_MM / 4.0) / length_mm / 1e3
+    axial_stiffness(YOUNGS_MODULUS, SCREW_MM / 1e3, length_mm / 1e3) / 1e6
 }
 
-/// A torsional stiffness seen at the table, N/µm: divided by the square of the screw's lead per radian.
+/// A torsional stiffness in N·mm/rad as the table feels it, N/µm.
 fn at_table(torsion: f64) -> f64 {
-    let lead_per_radian_mm = LEAD_MM / TAU;
-    torsion / (lead_per_radian_mm * lead_per_radian_mm) / 1e3
-}
-
-/// Springs one after the other.
-fn in_series(stiffnesses: &[f64]) -> f64 {
-    1.0 / stiffnesses.iter().map(|k| 1.0 / k).sum::<f64>()
+    torsion_at_table(torsion / 1e3, LEAD_MM / 1e3) / 1e6
 }
 
 /// Tables 2-1 to 2-3.
@@ -75,7 +64,7 @@ pub(super) fn rows(sheet: &mut Sheet) {
         "computed with 340 mm, the length of X",
     );
 
-    let nut = 0.8 * 250.0;
+    let nut = preloaded_nut(250.0);
     sheet.equal("eq (2-28): K_N in N/µm", "200", nut);
     let preloads = LOAD_RATINGS.map(|rating| 0.1 * rating);
     sheet.equal(
@@ -175,37 +164,34 @@ fn motor(sheet: &mut Sheet) {
     );
 }
 
-/// Modes of the drive with two masses, motor and table, in its velocity loop (eq. 2-18), lowest frequency first.
-///
-/// States: current, motor angle and speed, table position and speed. Damping of the screw acts on the relative speed.
+/// The winding of the motor, Table 2-2.
+pub(super) const WINDING: Winding = Winding {
+    inductance_h: 0.05,
+    resistance_ohm: 1.0,
+    back_emf: 0.18,
+};
+
+/// The X axis without friction and limits, as the thesis computes with it: its own stiffness, mass and damping of 1e-5 s² and 0.0026 s.
+pub(super) fn x_axis(amplifier: Amplifier) -> DriveTrain {
+    DriveTrain {
+        torque_constant: 0.378,
+        motor_inertia: 0.0364e-4 + shaft_inertia(DENSITY, SCREW_MM / 1e3, SCREWS_MM[0] / 1e3),
+        load_mass: 50.0,
+        lead_per_radian: LEAD_MM / TAU / 1e3,
+        stiffness: 33.9357e6,
+        damping: 5.0 * 0.0026 * 1e6,
+        ..DriveTrain::rigid(amplifier)
+    }
+}
+
+/// Modes of the X axis in its velocity loop (eq. 2-18), lowest frequency first.
 fn velocity_loop_modes() -> Vec<Mode> {
-    let (torque_constant, back_emf, inductance, resistance) = (0.378, 0.18, 0.05, 1.0);
-    let (current_gain, velocity_gain) = (2.0, 30.0);
-    // Rotor and screw of X: 12 mm steel of 7,800 kg/m³, 340 mm long.
-    let screw_radius = SCREW_MM / 2e3;
-    let screw_mass = 7.8e3 * PI * screw_radius * screw_radius * SCREWS_MM[0] / 1e3;
-    let inertia = 0.0364e-4 + screw_mass * screw_radius * screw_radius / 2.0;
-    let (mass, stiffness, damping) = (50.0, 33.9357e6, 5.0 * 0.0026 * 1e6);
-    let lead = LEAD_MM / TAU / 1e3;
-    #[rustfmt::skip]
-    let matrix = Matrix5::new(
-        -(current_gain + resistance) / inductance, 0.0, -(back_emf + current_gain * velocity_gain) / inductance, 0.0, 0.0,
-        0.0, 0.0, 1.0, 0.0, 0.0,
-        torque_constant / inertia, -lead * lead * stiffness / inertia, -lead * lead * damping / inertia, lead * stiffness / inertia, lead * damping / inertia,
-        0.0, 0.0, 0.0, 0.0, 1.0,
-        0.0, lead * stiffness / mass, lead * damping / mass, -stiffness / mass, -damping / mass,
-    );
-    let poles = matrix.complex_eigenvalues();
-    let mut modes: Vec<Mode> = poles
-        .iter()
-        .filter(|pole: &&Complex<f64>| pole.im > 0.0)
-        .map(|pole| Mode {
-            frequency_hz: pole.norm() / TAU,
-            damping: -pole.re / pole.norm(),
-        })
-        .collect();
-    modes.sort_by(|a, b| a.frequency_hz.total_cmp(&b.frequency_hz));
-    modes
+    let amplifier = Amplifier::Velocity {
+        winding: WINDING,
+        current_gain: 2.0,
+        velocity_gain: 30.0,
+    };
+    x_axis(amplifier).modes()
 }
 
 /// That the identified plant is the mode which the velocity loop leaves to the table.
@@ -236,8 +222,8 @@ mod tests {
         ];
         assert_eq!(found.len(), expected.len());
         for (found, (hz, damping)) in found.iter().zip(expected) {
-            assert!((found.frequency_hz / hz - 1.0).abs() < 1e-6, "{found:?}");
-            assert!((found.damping - damping).abs() < 1e-6, "{found:?}");
+            assert!((found.frequency_hz / hz - 1.0).abs() < 1e-10, "{found:?}");
+            assert!((found.damping - damping).abs() < 1e-10, "{found:?}");
         }
     }
 }

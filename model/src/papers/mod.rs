@@ -14,6 +14,7 @@
 mod antisymmetry;
 mod chain;
 mod contour;
+pub mod controllers;
 mod designs;
 mod drive;
 mod figures;

@@ -205,7 +205,7 @@ impl Sheet {
         } else {
             PaperVerdict::NotReproduced
         };
-        self.statement(item, paper, Some(ours), verdict, "");
+        self.statement(item, paper, ours, verdict, "");
     }
 
     /// A statement of the paper that our figures refute, unless it `holds` after all.
@@ -215,27 +215,15 @@ impl Sheet {
         } else {
             PaperVerdict::Erratum
         };
-        self.statement(item, paper, Some(ours), verdict, reason);
+        self.statement(item, paper, ours, verdict, reason);
     }
 
-    /// A statement of the paper that nothing can be held against.
-    pub(super) fn unjudged(&mut self, item: impl Into<String>, paper: &str, reason: &str) {
-        self.statement(item, paper, None, PaperVerdict::NotComparable, reason);
-    }
-
-    fn statement(
-        &mut self,
-        item: impl Into<String>,
-        paper: &str,
-        ours: Option<String>,
-        verdict: PaperVerdict,
-        reason: &str,
-    ) {
+    fn statement(&mut self, item: impl Into<String>, paper: &str, ours: String, verdict: PaperVerdict, reason: &str) {
         self.rows.push(PaperRow {
             item: item.into(),
             paper: Value::Text(paper.into()),
             printed: paper.into(),
-            ours: ours.map(Value::Text),
+            ours: Some(Value::Text(ours)),
             verdict,
             reason: reason.into(),
         });

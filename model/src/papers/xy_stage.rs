@@ -4,8 +4,9 @@
 //! Gx = 6.787 / (1e-5 s² + 0.0026 s + 6.787)       Gy = 3.4358 / (1e-5 s² + 0.0018 s + 3.4358)
 //! ```
 //!
-//! are taken as exact, though 1e-5 has one digit. The sliding-mode controller of its chapter 4 is not compared.
+//! are taken as exact, though 1e-5 has one digit. The controllers of chapter 4 run on the whole drive ([`super::controllers`]).
 
+use super::controllers::{ControllerCase, LOOP_LAG_S, RATE, SLOPE};
 use super::designs::{amplitudes, mode_of_omega, shaper, times_s};
 use super::identification::identify;
 use super::plants::{Identified, PLANTS};
@@ -162,20 +163,71 @@ fn identified(sheet: &mut Sheet, plant: &Identified) {
     );
 }
 
-/// Chapter 4.
+/// Chapter 4: its parameters and its claims on the whole drive, under friction ([`super::controllers`]).
 fn controller(sheet: &mut Sheet) {
-    const LATER: &str = "the controller comes with the motion blocks";
-    sheet.not_comparable("chapter 4: surface slope c of the sliding mode", "150", LATER);
-    sheet.not_comparable("chapter 4: reaching rate k of the sliding mode", "50", LATER);
-    sheet.not_comparable(
+    let layer = ControllerCase::LAYER.float();
+    let micrometres = |metres: f64| format!("{:.1} µm", 1e6 * metres);
+    sheet.claim(
+        "chapter 4: surface slope c of the sliding mode",
+        "150",
+        format!(
+            "ε = 4 m/s², φ = 0.02 m/s: |s| at most {:.1} mm/s, |e| {}",
+            1e3 * layer.surface_peak,
+            micrometres(layer.error_peak)
+        ),
+        // Within the layer, and e no more than s lets it be.
+        layer.surface_peak < 0.02 && layer.error_peak <= layer.surface_peak / SLOPE && layer.limited == 0.0,
+    );
+    // Section 8.2 of the notes: the gain within the layer times the lags of the loop.
+    let lags = (SLOPE + RATE + 4.0 / 0.02) * LOOP_LAG_S;
+    sheet.claim(
+        "chapter 4: reaching rate k of the sliding mode",
+        "50",
+        format!("slides as above; (c + k + ε/φ) · lag is {lags:.2}, at most 0.5 is good"),
+        lags < 0.5 && layer.limited == 0.0 && layer.chatter < 5.0,
+    );
+    let [si, millimetres, sign] = [
+        ControllerCase::SIGN_150_SI,
+        ControllerCase::SIGN_150_MM,
+        ControllerCase::SIGN,
+    ]
+    .map(|case| case.float());
+    sheet.refuted(
         "chapter 4: reaching gain ε of the sliding mode",
         "150",
+        format!(
+            "m/s²: at its limit {:.0} % of the time; mm/s²: never slides, |e| {}",
+            100.0 * si.limited,
+            micrometres(millimetres.error_peak)
+        ),
+        // Half of the time within the limit, and the line reached.
+        si.limited < 0.5 || millimetres.crossings > 10.0,
         "the thesis gives no unit, and either reading is no controller: 15 g, or less than the friction",
     );
-    sheet.unjudged(
+    let pid = ControllerCase::PID_FORWARD.float();
+    sheet.claim(
         "chapter 4: sliding mode follows better than PID under friction",
         "it does",
-        LATER,
+        format!(
+            "|e| at most {}, with PID {}; rms {}, with PID {}",
+            micrometres(layer.error_peak),
+            micrometres(pid.error_peak),
+            micrometres(layer.error_rms),
+            micrometres(pid.error_rms)
+        ),
+        layer.error_peak < pid.error_peak / 5.0 && layer.error_rms < pid.error_rms / 3.0,
     );
-    sheet.unjudged("chapter 4: sliding mode removes the error", "it does", LATER);
+    sheet.refuted(
+        "chapter 4: sliding mode removes the error",
+        "it does",
+        format!(
+            "{} with a layer; {} with the sign, and {:.0} A/s of chatter, not {:.0}",
+            micrometres(layer.error_peak),
+            micrometres(sign.error_peak),
+            sign.chatter,
+            layer.chatter
+        ),
+        layer.error_peak < 1e-6 || (sign.error_peak < 1e-6 && sign.chatter < 10.0 * layer.chatter),
+        "within a layer d/(c (k + ε/φ)) remains; with the sign the command chatters at the mode of the drive",
+    );
 }

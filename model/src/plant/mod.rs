@@ -16,6 +16,7 @@
 //! witnesses for one shaper.
 
 pub mod axis;
+pub mod drive_train;
 pub mod response;
 
 use nalgebra::{Matrix2, Vector2};

@@ -5,6 +5,7 @@ mod errors;
 mod files;
 mod hints;
 mod limits;
+mod mechanics;
 mod modes;
 mod not_built;
 mod prop;

@@ -6,7 +6,9 @@ use std::f64::consts::TAU;
 
 use super::friction::{Slide, Sliding};
 use super::pins::Command;
+use super::two_mass::TwoMass;
 use crate::machine_file::{Drive, DriveMode};
+use crate::mechanics::{ScrewDrive, Stiction};
 
 /// `y' = ω (u − y)`, or `y = u` for a drive without a stated bandwidth.
 #[derive(Debug, Clone, PartialEq)]
@@ -61,6 +63,7 @@ enum Kind {
         acceleration_per_a: f64,
         sliding: Sliding,
     },
+    Screw(Box<TwoMass>),
 }
 
 impl Driven {
@@ -92,17 +95,49 @@ impl Driven {
         }
     }
 
+    /// The same with motor and table on their screw, and friction that sticks.
+    pub(super) fn with_stiction(self, drive: &Drive, screw: &ScrewDrive, stiction: &Stiction) -> Self {
+        match TwoMass::new(drive, screw, stiction, self.cell_s, self.position) {
+            Some(two_mass) => Self {
+                kind: Kind::Screw(Box::new(two_mass)),
+                ..self
+            },
+            None => self,
+        }
+    }
+
+    /// Where the load is, and the amplitude with which it rings, where it is no matter of modes.
+    pub(super) fn load(&self) -> Option<(f64, f64)> {
+        match &self.kind {
+            Kind::Screw(two_mass) => Some(two_mass.load()),
+            _ => None,
+        }
+    }
+
+    /// Puts it all so far away.
+    pub(super) fn displace(&mut self, distance: f64) {
+        self.position += distance;
+        if let Kind::Screw(two_mass) = &mut self.kind {
+            two_mass.displace(distance);
+        }
+    }
+
     /// What the drive gives now: current in A, or velocity in m/s.
     pub(super) fn output(&self) -> f64 {
         match &self.kind {
             Kind::Velocity { velocity, .. } => velocity.state,
             Kind::Torque { current, .. } => current.state,
+            Kind::Screw(two_mass) => two_mass.current_a(),
         }
     }
 
     /// One cell.
     pub(super) fn cell(&mut self, command: &Command) {
         let travel = match &mut self.kind {
+            Kind::Screw(two_mass) => {
+                (self.position, self.velocity) = two_mass.cell(command);
+                return;
+            }
             Kind::Velocity { full_scale, velocity } => {
                 let wanted = if command.enabled {
                     command.share * *full_scale

@@ -58,6 +58,7 @@ mod figures;
 mod friction;
 mod modes;
 mod pins;
+mod two_mass;
 
 pub use encoder::EncoderPins;
 pub use figures::{ErrorFigures, contour_error, residual_vibration, tracking_error};
@@ -224,13 +225,26 @@ impl AxisPlant {
         let is_reversed = axis.encoder.as_ref().is_some_and(|encoder| encoder.invert);
         let is_scale_reversed = axis.scale.is_some_and(|scale| scale.invert);
         let has_index = axis.encoder.as_ref().is_some_and(|encoder| encoder.index);
+        let driven = Driven::new(drive, cell_s, options.position);
+        // Motor and table with friction that sticks have their mode in them.
+        let screw = axis.mechanics.as_ref();
+        let (driven, plant) = match screw.and_then(|screw| screw.stiction.map(|stiction| (screw, stiction))) {
+            Some((screw, stiction)) => {
+                let softer = screw.with_frequency_factor(factor);
+                (
+                    driven.with_stiction(drive, &softer, &stiction),
+                    Plant::of_shares(Vec::new()),
+                )
+            }
+            None => (driven, plant),
+        };
         Ok(Self {
             cell_clocks,
             cell_s,
             passed: 0,
             pins: PinMean::new(pwm.mode, pwm.active_low, cell_clocks, period_clocks / cell_clocks),
             command: 0.0,
-            driven: Driven::new(drive, cell_s, options.position),
+            driven,
             modes: LoadModes::new(&plant.scaled(factor), cell_s, stiff),
             encoder_at: options
                 .encoder_at
@@ -267,7 +281,7 @@ impl AxisPlant {
     /// Puts the whole axis so many counts of the encoder away from where it is, as a hand or a shock does. The lines follow in
     /// the cell after the present one.
     pub fn displace(&mut self, counts: f64) {
-        self.driven.position += self.encoder.length(counts);
+        self.driven.displace(self.encoder.length(counts));
     }
 
     fn end_cell(&mut self) {
@@ -288,7 +302,9 @@ impl AxisPlant {
     }
 
     fn load(&self) -> f64 {
-        self.driven.position + self.modes.deflection()
+        self.driven
+            .load()
+            .map_or_else(|| self.driven.position + self.modes.deflection(), |(load, _)| load)
     }
 
     /// The encoder's lines in the clock to come.
@@ -327,7 +343,10 @@ impl AxisPlant {
             position: self.driven.position,
             velocity: self.driven.velocity,
             load: self.load(),
-            vibration: self.modes.vibration(self.driven.velocity),
+            vibration: self.driven.load().map_or_else(
+                || self.modes.vibration(self.driven.velocity),
+                |(_, amplitude)| amplitude,
+            ),
             command: self.command,
             drive: self.driven.output(),
         }

@@ -1,0 +1,256 @@
+//! Chapter 4 of the thesis on the XY stage: sliding mode, PD and PID on the drive with its screw, under Stribeck friction.
+//!
+//! ```text
+//! r = 10 mm · sin(2π 2 Hz t), 10 kHz, from rest; figures of 0.5 to 1.5 s
+//! e = r − x      s = c e + e′ (+ c_i ∫e)      i* = (M a + b v + F̂_c sgn r′)/k_f
+//! sliding mode   a = r″ + c e′ (+ c_i e) + ε sat(s/φ) + k s           sgn where φ is 0
+//! PD, PID        a = k_p e + k_d e′ (+ k_i ∫e) (+ r″),  k_p = c k, k_d = c + k,  b = 0
+//! ```
+//!
+//! The law is that of section 8.2 of the notes, for a fast current loop: eq (4-11) has no relative degree to stand on. The plant is the X axis
+//! of [`crate::plant::drive_train`] with assumed friction and limits. [`ControllerCase::float`] runs the law in floating point,
+//! [`ControllerCase::bit_exact`] the hardware's [`TickController`](crate::rtl::sliding_mode::TickController) in its place.
+
+mod exact;
+mod float;
+mod run;
+
+pub use run::ControllerFigures;
+
+use super::drive::x_axis;
+use crate::plant::drive_train::{Amplifier, Contact, DriveTrain, Friction, Stribeck, Winding};
+use std::f64::consts::TAU;
+
+/// Slope c of the sliding line, 1/s: the thesis's.
+pub(super) const SLOPE: f64 = 150.0;
+/// Reaching rate k, 1/s: the thesis's.
+pub(super) const RATE: f64 = 50.0;
+/// Integral gain of PID, 1/s³.
+const PID_INTEGRAL: f64 = 2e5;
+/// Integral slope of the sliding mode, 1/s².
+const SLIDING_INTEGRAL: f64 = 7500.0;
+/// Bandwidth of the tuned current loop, rad/s.
+const CURRENT_LOOP: f64 = TAU * 1000.0;
+/// Lag of the loop at 10 kHz, s: the current loop's, and half a tick for which the command is held.
+pub(super) const LOOP_LAG_S: f64 = 1.0 / CURRENT_LOOP + 50e-6;
+/// Largest current, A: three times the rated.
+const CURRENT_LIMIT_A: f64 = 2.73;
+/// Largest voltage, V.
+const VOLTAGE_LIMIT_V: f64 = 282.0;
+/// Viscous friction of the table, N·s/m, which the laws of the sliding mode know.
+const VISCOUS: f64 = 200.0;
+
+/// A law with its gains.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum ControllerLaw {
+    /// PD, or PID where it has an integral gain in 1/s³.
+    Linear {
+        /// Integral gain k_i, 1/s³; 0: PD.
+        integral: f64,
+        /// Whether r″ is fed forward.
+        acceleration: bool,
+    },
+    /// Sliding mode.
+    Sliding {
+        /// Reaching gain ε, m/s².
+        epsilon: f64,
+        /// Boundary layer φ, m/s; 0: the sign.
+        boundary: f64,
+        /// Integral slope c_i, 1/s²; 0: none.
+        integral: f64,
+        /// Whether Coulomb friction is fed forward by the sign of r′.
+        coulomb: bool,
+    },
+}
+
+/// A row of the comparison: a law, and what it runs on.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ControllerCase {
+    /// What the row is called.
+    pub name: &'static str,
+    /// The law.
+    pub law: ControllerLaw,
+    /// The mass of the table over that which the law knows.
+    pub mass_factor: f64,
+    /// Period of the controller, s.
+    pub tick_s: f64,
+    /// Resolution of the scale in m, the velocity then being its difference through a 300 Hz filter; `None`: ideal feedback.
+    pub scale_m: Option<f64>,
+    /// Inductance of the winding in H of a drive without a current loop; `None`: with one.
+    pub voltage_mode_h: Option<f64>,
+}
+
+const fn case(name: &'static str, law: ControllerLaw) -> ControllerCase {
+    ControllerCase {
+        name,
+        law,
+        mass_factor: 1.0,
+        tick_s: 1e-4,
+        scale_m: None,
+        voltage_mode_h: None,
+    }
+}
+
+const fn linear(integral: f64, acceleration: bool) -> ControllerLaw {
+    ControllerLaw::Linear { integral, acceleration }
+}
+
+const fn sliding(epsilon: f64, boundary: f64) -> ControllerLaw {
+    ControllerLaw::Sliding {
+        epsilon,
+        boundary,
+        integral: 0.0,
+        coulomb: false,
+    }
+}
+
+impl ControllerCase {
+    /// PD as fast as the sliding mode.
+    pub const PD: Self = case("PD", linear(0.0, false));
+    /// The same with r″ fed forward.
+    pub const PD_FORWARD: Self = case("PD + r″", linear(0.0, true));
+    /// PID with r″ fed forward.
+    pub const PID_FORWARD: Self = case("PID + r″", linear(PID_INTEGRAL, true));
+    /// The thesis's ε of 150, read in m/s².
+    pub const SIGN_150_SI: Self = case("sliding mode, sgn, ε = 150 m/s²", sliding(150.0, 0.0));
+    /// The thesis's ε of 150, read in mm/s².
+    pub const SIGN_150_MM: Self = case("sliding mode, sgn, ε = 150 mm/s²", sliding(0.15, 0.0));
+    /// An ε above friction, with the sign.
+    pub const SIGN: Self = case("sliding mode, sgn, ε = 4 m/s²", sliding(4.0, 0.0));
+    /// The same with a boundary layer.
+    pub const LAYER: Self = case("sliding mode, ε = 4 m/s², φ = 0.02 m/s", sliding(4.0, 0.02));
+
+    /// All rows, in the order of the notes.
+    pub const ALL: [Self; 24] = [
+        Self::PD,
+        Self::PD_FORWARD,
+        case("PID", linear(PID_INTEGRAL, false)),
+        Self::PID_FORWARD,
+        Self::SIGN_150_SI,
+        Self::SIGN_150_MM,
+        Self::SIGN,
+        case("sliding mode, ε = 4 m/s², φ = 0.005 m/s", sliding(4.0, 0.005)),
+        Self::LAYER,
+        case("sliding mode, ε = 4 m/s², φ = 0.05 m/s", sliding(4.0, 0.05)),
+        case("sliding mode, ε = 4 m/s², φ = 0.1 m/s", sliding(4.0, 0.1)),
+        case("sliding mode, ε = 150 m/s², φ = 0.5 m/s", sliding(150.0, 0.5)),
+        case("sliding mode, ε = 150 m/s², φ = 1 m/s", sliding(150.0, 1.0)),
+        case(
+            "sliding mode, φ = 0.02 m/s, Coulomb fed forward",
+            ControllerLaw::Sliding {
+                epsilon: 4.0,
+                boundary: 0.02,
+                integral: 0.0,
+                coulomb: true,
+            },
+        ),
+        case(
+            "integral sliding mode, φ = 0.02 m/s",
+            ControllerLaw::Sliding {
+                epsilon: 4.0,
+                boundary: 0.02,
+                integral: SLIDING_INTEGRAL,
+                coulomb: false,
+            },
+        ),
+        Self {
+            mass_factor: 1.5,
+            ..case("sliding mode, φ = 0.02 m/s, table 50 % heavier", sliding(4.0, 0.02))
+        },
+        Self {
+            mass_factor: 1.5,
+            ..case("PD + r″, table 50 % heavier", linear(0.0, true))
+        },
+        Self {
+            tick_s: 1e-3,
+            ..case("sliding mode, φ = 0.02 m/s, 1 kHz", sliding(4.0, 0.02))
+        },
+        Self {
+            tick_s: 1e-3,
+            ..case("sliding mode, sgn, ε = 4 m/s², 1 kHz", sliding(4.0, 0.0))
+        },
+        Self {
+            scale_m: Some(1e-6),
+            ..case("sliding mode, φ = 0.05 m/s, scale of 1 µm", sliding(4.0, 0.05))
+        },
+        Self {
+            scale_m: Some(1e-7),
+            ..case("sliding mode, φ = 0.05 m/s, scale of 0.1 µm", sliding(4.0, 0.05))
+        },
+        Self {
+            scale_m: Some(1e-6),
+            ..case("sliding mode, sgn, ε = 4 m/s², scale of 1 µm", sliding(4.0, 0.0))
+        },
+        Self {
+            voltage_mode_h: Some(0.05),
+            ..case("sliding mode, φ = 0.02 m/s, no current loop, 50 mH", sliding(4.0, 0.02))
+        },
+        Self {
+            voltage_mode_h: Some(0.001),
+            ..case("sliding mode, φ = 0.02 m/s, no current loop, 1 mH", sliding(4.0, 0.02))
+        },
+    ];
+
+    /// The plant.
+    fn train(&self) -> DriveTrain {
+        let amplifier = match self.voltage_mode_h {
+            None => Amplifier::TunedCurrent {
+                bandwidth_rad_s: CURRENT_LOOP,
+            },
+            Some(inductance_h) => Amplifier::Voltage {
+                winding: Winding {
+                    inductance_h,
+                    ..super::drive::WINDING
+                },
+                gain: 1.0,
+            },
+        };
+        let nominal = nominal(amplifier);
+        DriveTrain {
+            load_mass: self.mass_factor * nominal.load_mass,
+            ..nominal
+        }
+    }
+
+    /// The law in floating point; the figures of its steady part.
+    pub fn float(&self) -> ControllerFigures {
+        run::run(self, &mut float::FloatLaw::new(self))
+    }
+
+    /// The hardware's controller in its place, bit for bit; `None` for a law that it has not, and for a drive without current loop.
+    ///
+    /// Its counts are those of the scale; in the place of ideal feedback it has counts of 10 nm, or 100 nm at 1 kHz, and
+    /// the true velocity.
+    pub fn bit_exact(&self) -> Option<ControllerFigures> {
+        let mut law = exact::ExactLaw::new(self)?;
+        Some(run::run(self, &mut law))
+    }
+}
+
+/// The X axis with friction and limits, which the thesis does not give: section 7 of the notes assumes them.
+fn nominal(amplifier: Amplifier) -> DriveTrain {
+    DriveTrain {
+        current_limit_a: CURRENT_LIMIT_A,
+        voltage_limit_v: VOLTAGE_LIMIT_V,
+        motor_friction: Friction {
+            stribeck: Stribeck {
+                coulomb: 0.010,
+                breakaway: 0.015,
+                velocity: 2.0,
+                viscous: 2e-5,
+            },
+            rest_velocity: 0.05,
+        },
+        load_friction: Friction {
+            stribeck: Stribeck {
+                coulomb: 40.0,
+                breakaway: 60.0,
+                velocity: 0.005,
+                viscous: VISCOUS,
+            },
+            rest_velocity: 1e-4,
+        },
+        contact: Contact::Smooth,
+        ..x_axis(amplifier)
+    }
+}
