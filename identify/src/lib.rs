@@ -13,6 +13,7 @@ pub mod log;
 pub mod modal;
 pub mod position;
 pub mod recommend;
+mod separable;
 pub mod signal;
 pub mod spectrum;
 pub mod sweep;

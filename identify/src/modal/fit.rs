@@ -1,7 +1,8 @@
 //! The separable least-squares fit of poles to points.
 
 use super::ResponsePoint;
-use nalgebra::{Cholesky, Complex, DMatrix, DVector, Dyn};
+use crate::separable::{self, Separable};
+use nalgebra::{Complex, DMatrix, DVector};
 use std::f64::consts::TAU;
 
 /// A pole pair in the making.
@@ -33,7 +34,6 @@ impl Phase {
 const DAMPING: (f64, f64) = (2e-4, 2.0);
 /// Terms of the complex polynomial that stands for all but the modes.
 const FREE_TERMS: i32 = 5;
-const ITERATIONS: usize = 60;
 
 /// Poles that fit the points, and how well.
 #[derive(Debug, Clone)]
@@ -126,209 +126,141 @@ fn weighted(points: &[ResponsePoint]) -> DVector<f64> {
     })
 }
 
-fn top_hz(points: &[ResponsePoint]) -> f64 {
-    points.last().map_or(1.0, |point| point.frequency_hz)
+/// Poles behind points. Unknowns: `ln f` and `ln ζ` of each pole, and the delay where the phase is known.
+struct Poles<'a> {
+    points: &'a [ResponsePoint],
+    measured: DVector<f64>,
+    is_free: bool,
+    top_hz: f64,
 }
 
-/// Cholesky with columns scaled to one.
-struct Gram {
-    factor: Cholesky<f64, Dyn>,
-    scale: DVector<f64>,
-}
-
-impl Gram {
-    fn new(gram: &DMatrix<f64>) -> Option<Self> {
-        let scale = gram.diagonal().map(|square| 1.0 / square.sqrt().max(f64::MIN_POSITIVE));
-        let mut scaled = DMatrix::from_fn(gram.nrows(), gram.ncols(), |r, c| gram[(r, c)] * scale[r] * scale[c]);
-        for n in 0..scaled.nrows() {
-            scaled[(n, n)] += 1e-13;
+impl<'a> Poles<'a> {
+    fn new(points: &'a [ResponsePoint], phase: Phase) -> Self {
+        Self {
+            points,
+            measured: weighted(points),
+            is_free: phase == Phase::Free,
+            top_hz: points.last().map_or(1.0, |point| point.frequency_hz),
         }
-        scaled.cholesky().map(|factor| Self { factor, scale })
     }
 
-    fn solve(&self, right: &DMatrix<f64>) -> DMatrix<f64> {
-        let scaled = DMatrix::from_fn(right.nrows(), right.ncols(), |r, c| right[(r, c)] * self.scale[r]);
-        let solved = self.factor.solve(&scaled);
-        DMatrix::from_fn(right.nrows(), right.ncols(), |r, c| solved[(r, c)] * self.scale[r])
+    fn unknowns(&self, poles: &[Pole], phase: Phase) -> Vec<f64> {
+        let of_poles = poles
+            .iter()
+            .flat_map(|pole| [pole.frequency_hz.ln(), pole.damping.ln()]);
+        let delay = (!self.is_free).then(|| phase.delay_s());
+        of_poles.chain(delay).collect()
     }
 
-    fn solve_one(&self, right: &DVector<f64>) -> DVector<f64> {
-        let solved = self.factor.solve(&right.component_mul(&self.scale));
-        solved.component_mul(&self.scale)
-    }
-}
-
-/// The linear part of a fit at given poles and delay.
-struct Linear {
-    basis: DMatrix<f64>,
-    gram: Gram,
-    coefficients: DVector<f64>,
-    residual: DVector<f64>,
-}
-
-/// Solves the linear unknowns; `None` where the points do not fix them.
-fn linear(points: &[ResponsePoint], measured: &DVector<f64>, poles: &[Pole], phase: Phase) -> Option<Linear> {
-    let top = top_hz(points);
-    let basis = stacked(points, width(poles, phase), |frequency_hz, row| {
-        columns(poles, phase, frequency_hz, top, row);
-    });
-    let gram = Gram::new(&basis.tr_mul(&basis))?;
-    let coefficients = gram.solve_one(&basis.tr_mul(measured));
-    let residual = measured - &basis * &coefficients;
-    residual.norm_squared().is_finite().then_some(Linear {
-        basis,
-        gram,
-        coefficients,
-        residual,
-    })
-}
-
-impl Linear {
-    fn values(&self, points: &[ResponsePoint]) -> Vec<Complex<f64>> {
-        let fitted = &self.basis * &self.coefficients;
-        let value =
-            |(n, point): (usize, &ResponsePoint)| Complex::new(fitted[n], fitted[points.len() + n]) * point.deviation;
-        points.iter().enumerate().map(value).collect()
+    fn poles(&self, unknowns: &[f64]) -> (Vec<Pole>, Phase) {
+        let (pairs, rest) = unknowns.as_chunks::<2>();
+        let poles = pairs.iter().map(|[frequency, damping]| Pole {
+            frequency_hz: frequency.exp(),
+            damping: damping.exp(),
+        });
+        let phase = rest.first().map_or(Phase::Free, |delay_s| Phase::Delay(*delay_s));
+        (poles.collect(), phase)
     }
 
     /// Complex coefficients of a pole: still, and with the velocity.
-    fn of_pole(&self, pole: usize, phase: Phase) -> (Complex<f64>, Complex<f64>) {
-        let at = |column: usize| match phase {
-            Phase::Delay(_) => Complex::new(self.coefficients[column], 0.0),
-            Phase::Free => Complex::new(
-                self.coefficients[column],
-                self.coefficients[column + self.coefficients.len() / 2],
-            ),
+    fn of_pole(&self, coefficients: &DVector<f64>, pole: usize) -> (Complex<f64>, Complex<f64>) {
+        let half = coefficients.len() / 2;
+        let at = |column: usize| match self.is_free {
+            true => Complex::new(coefficients[column], coefficients[column + half]),
+            false => Complex::new(coefficients[column], 0.0),
         };
         (at(2 * pole), at(2 * pole + 1))
     }
 
-    /// Weighted derivatives of the fitted values by `ln f` and `ln ζ` of each pole and by the delay, without what the linear
-    /// unknowns take over.
-    fn slopes(&self, points: &[ResponsePoint], poles: &[Pole], phase: Phase) -> DMatrix<f64> {
-        let delays = usize::from(matches!(phase, Phase::Delay(_)));
-        let (top, mut values) = (top_hz(points), Vec::new());
-        let slopes = stacked(points, 2 * poles.len() + delays, |frequency_hz, row| {
+    fn values(&self, fitted: &DVector<f64>) -> Vec<Complex<f64>> {
+        let value = |(n, point): (usize, &ResponsePoint)| {
+            Complex::new(fitted[n], fitted[self.points.len() + n]) * point.deviation
+        };
+        self.points.iter().enumerate().map(value).collect()
+    }
+}
+
+impl Separable for Poles<'_> {
+    fn measured(&self) -> &DVector<f64> {
+        &self.measured
+    }
+
+    fn basis(&self, unknowns: &[f64]) -> DMatrix<f64> {
+        let (poles, phase) = self.poles(unknowns);
+        stacked(self.points, width(&poles, phase), |frequency_hz, row| {
+            columns(&poles, phase, frequency_hz, self.top_hz, row);
+        })
+    }
+
+    fn slopes(&self, unknowns: &[f64], _: &DMatrix<f64>, coefficients: &DVector<f64>) -> DMatrix<f64> {
+        let (poles, phase) = self.poles(unknowns);
+        let mut values = Vec::new();
+        stacked(self.points, unknowns.len(), |frequency_hz, row| {
             let turn = Complex::from_polar(1.0, -TAU * frequency_hz * phase.delay_s());
             for (k, pole) in poles.iter().enumerate() {
                 let (below, ratio) = denominator(pole, frequency_hz);
-                let (still, moving) = self.of_pole(k, phase);
+                let (still, moving) = self.of_pole(coefficients, k);
                 let above = still + I * moving * ratio;
                 let by_ratio =
                     I * moving / below - above * Complex::new(-2.0 * ratio, 2.0 * pole.damping) / (below * below);
                 row.push(-by_ratio * ratio * turn);
                 row.push(-above * I * (2.0 * ratio * pole.damping) / (below * below) * turn);
             }
-            if delays > 0 {
+            if !self.is_free {
                 values.clear();
-                columns(poles, phase, frequency_hz, top, &mut values);
-                let value: Complex<f64> = values.iter().zip(&self.coefficients).map(|(v, c)| v * c).sum();
+                columns(&poles, phase, frequency_hz, self.top_hz, &mut values);
+                let value: Complex<f64> = values.iter().zip(coefficients).map(|(v, c)| v * c).sum();
                 row.push(-I * TAU * frequency_hz * value);
             }
-        });
-        let shared = self.gram.solve(&self.basis.tr_mul(&slopes));
-        slopes - &self.basis * shared
-    }
-}
-
-fn stepped(poles: &[Pole], phase: Phase, step: &DVector<f64>) -> (Vec<Pole>, Phase) {
-    let poles: Vec<Pole> = poles
-        .iter()
-        .enumerate()
-        .map(|(k, pole)| Pole {
-            frequency_hz: pole.frequency_hz * step[2 * k].clamp(-0.2, 0.2).exp(),
-            damping: (pole.damping * step[2 * k + 1].clamp(-1.0, 1.0).exp()).clamp(DAMPING.0, DAMPING.1),
         })
-        .collect();
-    let phase = match phase {
-        Phase::Free => Phase::Free,
-        Phase::Delay(delay_s) => Phase::Delay(delay_s + step[2 * poles.len()]),
-    };
-    (poles, phase)
+    }
+
+    fn stepped(&self, unknowns: &[f64], step: &DVector<f64>) -> Vec<f64> {
+        let mut unknowns = unknowns.to_vec();
+        let (pairs, rest) = unknowns.as_chunks_mut::<2>();
+        for (k, [frequency, damping]) in pairs.iter_mut().enumerate() {
+            *frequency += step[2 * k].clamp(-0.2, 0.2);
+            *damping = (*damping + step[2 * k + 1].clamp(-1.0, 1.0)).clamp(DAMPING.0.ln(), DAMPING.1.ln());
+        }
+        for (delay_s, step) in rest.iter_mut().zip(step.iter().skip(2 * pairs.len())) {
+            *delay_s += step;
+        }
+        unknowns
+    }
 }
 
 /// What is left of the points with exactly these poles and this phase: the square of the residuals over their deviations.
 pub(crate) fn square(points: &[ResponsePoint], poles: &[Pole], phase: Phase) -> Option<f64> {
-    linear(points, &weighted(points), poles, phase).map(|linear| linear.residual.norm_squared())
+    let problem = Poles::new(points, phase);
+    separable::square(&problem, &problem.unknowns(poles, phase))
 }
 
-/// The best fit near the given poles: Levenberg and Marquardt's method. `None` where the points do not fix the unknowns.
+/// The best fit near the given poles. `None` where the points do not fix the unknowns.
 pub(crate) fn refine(points: &[ResponsePoint], poles: &[Pole], phase: Phase) -> Option<Fit> {
-    let measured = weighted(points);
-    let (mut poles, mut phase) = (poles.to_vec(), phase);
-    let mut now = linear(points, &measured, &poles, phase)?;
-    let mut slopes = now.slopes(points, &poles, phase);
-    let mut damping = 1e-3;
-    for _ in 0..ITERATIONS {
-        let gram = slopes.tr_mul(&slopes);
-        if gram.is_empty() {
-            break;
-        }
-        let mut stiff = gram.clone();
-        for n in 0..gram.nrows() {
-            stiff[(n, n)] *= 1.0 + damping;
-        }
-        let step = Gram::new(&stiff)?.solve_one(&slopes.tr_mul(&now.residual));
-        let (tried, tried_phase) = stepped(&poles, phase, &step);
-        let square = now.residual.norm_squared();
-        match linear(points, &measured, &tried, tried_phase) {
-            Some(better) if better.residual.norm_squared() < square => {
-                let gain = square - better.residual.norm_squared();
-                (poles, phase, now) = (tried, tried_phase, better);
-                slopes = now.slopes(points, &poles, phase);
-                damping = (damping * 0.2).max(1e-9);
-                if gain < 1e-6 * square {
-                    break;
-                }
-            }
-            _ => {
-                damping *= 8.0;
-                if damping > 1e6 {
-                    break;
-                }
-            }
-        }
-    }
-    Some(finished(points, poles, phase, &now, &slopes))
-}
-
-fn finished(points: &[ResponsePoint], poles: Vec<Pole>, phase: Phase, now: &Linear, slopes: &DMatrix<f64>) -> Fit {
-    let square = now.residual.norm_squared();
-    let freedoms = (now.residual.len() as f64 - now.coefficients.len() as f64 - slopes.ncols() as f64).max(1.0);
+    let problem = Poles::new(points, phase);
+    let solution = separable::refine(&problem, &problem.unknowns(poles, phase))?;
+    let (poles, phase) = problem.poles(&solution.unknowns);
     // What the noise of the points does not explain is taken as more noise.
-    let scale = (square / freedoms).max(1.0);
-    let covariance = Gram::new(&slopes.tr_mul(slopes))
-        .map(|gram| gram.solve(&DMatrix::identity(slopes.ncols(), slopes.ncols())) * scale);
-    let deviation = |n: usize| covariance.as_ref().map_or(f64::INFINITY, |c| c[(n, n)].max(0.0).sqrt());
-    let deviations = poles
-        .iter()
-        .enumerate()
-        .map(|(k, pole)| {
-            (
-                pole.frequency_hz * deviation(2 * k),
-                pole.damping * deviation(2 * k + 1),
-            )
-        })
-        .collect();
-    let width = now.coefficients.len();
-    let of_linear = now.gram.solve(&DMatrix::identity(width, width)) * scale;
-    let shares = (0..poles.len())
-        .map(|k| {
-            (
-                now.of_pole(k, phase).0.norm(),
-                of_linear[(2 * k, 2 * k)].max(0.0).sqrt(),
-            )
-        })
-        .collect();
-    Fit {
-        values: now.values(points),
+    let row = solution.reduced_square().max(1.0).sqrt();
+    let deviations = poles.iter().enumerate().map(|(k, pole)| {
+        (
+            pole.frequency_hz * solution.deviation(2 * k, row),
+            pole.damping * solution.deviation(2 * k + 1, row),
+        )
+    });
+    let shares = (0..poles.len()).map(|k| {
+        let (still, _) = problem.of_pole(&solution.coefficients, k);
+        (still.norm(), solution.linear_deviation(2 * k, row))
+    });
+    Some(Fit {
+        values: problem.values(&solution.fitted),
+        deviations: deviations.collect(),
+        shares: shares.collect(),
+        square: solution.square,
+        freedoms: solution.freedoms,
         poles,
         phase,
-        shares,
-        deviations,
-        square,
-        freedoms,
-    }
+    })
 }
 
 /// How much the square of the residuals falls at least if a pole is added to a fit.

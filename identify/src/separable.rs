@@ -1,0 +1,181 @@
+//! Least squares in which some unknowns are linear: for given values of the others they follow by themselves (Golub and Pereyra
+//! 1973, in the form of Kaufman 1975). The others are found by Levenberg and Marquardt's method.
+
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
+
+/// What is fitted: `measured ≈ basis(unknowns) · coefficients`, each row over its standard deviation.
+pub(crate) trait Separable {
+    /// The measured values.
+    fn measured(&self) -> &DVector<f64>;
+
+    /// A column for each coefficient.
+    fn basis(&self, unknowns: &[f64]) -> DMatrix<f64>;
+
+    /// Derivatives of `basis · coefficients` by each unknown, the coefficients fixed.
+    fn slopes(&self, unknowns: &[f64], basis: &DMatrix<f64>, coefficients: &DVector<f64>) -> DMatrix<f64>;
+
+    /// The unknowns after a step, within their ranges.
+    fn stepped(&self, unknowns: &[f64], step: &DVector<f64>) -> Vec<f64>;
+}
+
+/// Unknowns that fit best, and how well.
+#[derive(Debug, Clone)]
+pub(crate) struct Solution {
+    pub(crate) unknowns: Vec<f64>,
+    pub(crate) coefficients: DVector<f64>,
+    /// The fitted values.
+    pub(crate) fitted: DVector<f64>,
+    /// Sum of squares of what is left.
+    pub(crate) square: f64,
+    /// Values less unknowns and coefficients.
+    pub(crate) freedoms: f64,
+    /// Covariance of the unknowns and of the coefficients at fixed unknowns, for rows of variance 1; `None` where the rows do not fix
+    /// them.
+    covariance: Option<DMatrix<f64>>,
+    linear_covariance: DMatrix<f64>,
+}
+
+impl Solution {
+    /// Square per degree of freedom.
+    pub(crate) fn reduced_square(&self) -> f64 {
+        self.square / self.freedoms
+    }
+
+    /// Standard deviation of an unknown where each row has that of `row`.
+    pub(crate) fn deviation(&self, unknown: usize, row: f64) -> f64 {
+        let variance = self.covariance.as_ref().map(|c| c[(unknown, unknown)].max(0.0));
+        variance.map_or(f64::INFINITY, |variance| row * variance.sqrt())
+    }
+
+    /// Standard deviation of a coefficient at fixed unknowns, likewise.
+    pub(crate) fn linear_deviation(&self, coefficient: usize, row: f64) -> f64 {
+        row * self.linear_covariance[(coefficient, coefficient)].max(0.0).sqrt()
+    }
+}
+
+const ITERATIONS: usize = 60;
+/// Relative gain below which a step is the last.
+const SETTLED: f64 = 1e-6;
+
+/// A symmetric matrix of products, its columns scaled to one before it is factored.
+pub(crate) struct Gram {
+    factor: Cholesky<f64, Dyn>,
+    scale: DVector<f64>,
+}
+
+impl Gram {
+    /// Of columns; `None` where they are not independent, or no numbers.
+    pub(crate) fn of(columns: &DMatrix<f64>) -> Option<Self> {
+        Self::new(&columns.tr_mul(columns))
+    }
+
+    pub(crate) fn new(products: &DMatrix<f64>) -> Option<Self> {
+        let scale = products
+            .diagonal()
+            .map(|square| 1.0 / square.sqrt().max(f64::MIN_POSITIVE));
+        let mut scaled = DMatrix::from_fn(products.nrows(), products.ncols(), |r, c| {
+            products[(r, c)] * scale[r] * scale[c]
+        });
+        for n in 0..scaled.nrows() {
+            scaled[(n, n)] += 1e-14;
+        }
+        scaled.cholesky().map(|factor| Self { factor, scale })
+    }
+
+    pub(crate) fn solve(&self, right: &DMatrix<f64>) -> DMatrix<f64> {
+        let scaled = DMatrix::from_fn(right.nrows(), right.ncols(), |r, c| right[(r, c)] * self.scale[r]);
+        let solved = self.factor.solve(&scaled);
+        DMatrix::from_fn(right.nrows(), right.ncols(), |r, c| solved[(r, c)] * self.scale[r])
+    }
+
+    pub(crate) fn solve_one(&self, right: &DVector<f64>) -> DVector<f64> {
+        let solved = self.factor.solve(&right.component_mul(&self.scale));
+        solved.component_mul(&self.scale)
+    }
+
+    pub(crate) fn inverse(&self) -> DMatrix<f64> {
+        let size = self.scale.len();
+        self.solve(&DMatrix::identity(size, size))
+    }
+}
+
+/// The linear part at given unknowns.
+struct Linear {
+    basis: DMatrix<f64>,
+    gram: Gram,
+    coefficients: DVector<f64>,
+    residual: DVector<f64>,
+}
+
+fn linear(problem: &impl Separable, unknowns: &[f64]) -> Option<Linear> {
+    let basis = problem.basis(unknowns);
+    let gram = Gram::of(&basis)?;
+    let coefficients = gram.solve_one(&basis.tr_mul(problem.measured()));
+    let residual = problem.measured() - &basis * &coefficients;
+    residual.norm_squared().is_finite().then_some(Linear {
+        basis,
+        gram,
+        coefficients,
+        residual,
+    })
+}
+
+/// Slopes without what the coefficients take over.
+fn slopes(problem: &impl Separable, unknowns: &[f64], now: &Linear) -> DMatrix<f64> {
+    let slopes = problem.slopes(unknowns, &now.basis, &now.coefficients);
+    let shared = now.gram.solve(&now.basis.tr_mul(&slopes));
+    slopes - &now.basis * shared
+}
+
+/// What is left with exactly these unknowns: the sum of squares.
+pub(crate) fn square(problem: &impl Separable, unknowns: &[f64]) -> Option<f64> {
+    linear(problem, unknowns).map(|linear| linear.residual.norm_squared())
+}
+
+/// The best fit near the given unknowns; `None` where the rows do not fix the coefficients.
+pub(crate) fn refine(problem: &impl Separable, start: &[f64]) -> Option<Solution> {
+    let mut unknowns = start.to_vec();
+    let mut now = linear(problem, &unknowns)?;
+    let mut here = slopes(problem, &unknowns, &now);
+    let mut damping = 1e-3;
+    for _ in 0..ITERATIONS {
+        let products = here.tr_mul(&here);
+        if products.is_empty() {
+            break;
+        }
+        let mut stiff = products.clone();
+        for n in 0..products.nrows() {
+            stiff[(n, n)] *= 1.0 + damping;
+        }
+        let Some(gram) = Gram::new(&stiff) else { break };
+        let tried = problem.stepped(&unknowns, &gram.solve_one(&here.tr_mul(&now.residual)));
+        let square = now.residual.norm_squared();
+        match linear(problem, &tried) {
+            Some(better) if better.residual.norm_squared() < square => {
+                let gain = square - better.residual.norm_squared();
+                (unknowns, now) = (tried, better);
+                here = slopes(problem, &unknowns, &now);
+                damping = (damping * 0.2).max(1e-9);
+                if gain < SETTLED * square {
+                    break;
+                }
+            }
+            _ => {
+                damping *= 8.0;
+                if damping > 1e6 {
+                    break;
+                }
+            }
+        }
+    }
+    let freedoms = now.residual.len() as f64 - (now.coefficients.len() + unknowns.len()) as f64;
+    Some(Solution {
+        fitted: &now.basis * &now.coefficients,
+        square: now.residual.norm_squared(),
+        freedoms: freedoms.max(1.0),
+        covariance: Gram::of(&here).map(|gram| gram.inverse()),
+        linear_covariance: now.gram.inverse(),
+        unknowns,
+        coefficients: now.coefficients,
+    })
+}
