@@ -48,11 +48,6 @@ impl Failure {
         Self::MissingTool(miette::miette!("{message}"))
     }
 
-    /// A command that is known but not built yet.
-    pub(crate) fn not_built(name: &str) -> Self {
-        Self::Input(miette::miette!("not built in this version: {name}"))
-    }
-
     /// Says on standard error what stopped the command: with a picture of the place on a terminal, in plain lines in a
     /// pipe, so that a log can be searched for them.
     pub(crate) fn report(self) -> ExitCode {

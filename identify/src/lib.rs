@@ -11,6 +11,7 @@
 pub mod found;
 pub mod log;
 pub mod modal;
+pub mod output_only;
 pub mod position;
 pub mod recommend;
 mod separable;

@@ -78,7 +78,8 @@ pub fn recommend(modes: &[FoundMode], judgement: &Judgement) -> Vec<Recommendati
         .iter()
         .filter_map(|&kind| judged(modes, kind, judgement))
         .collect();
-    let enough = |r: &Recommendation| r.ratio() <= judgement.enough;
+    // A kind with a tolerance leaves all of it: the ends of an interval may not turn the scale.
+    let enough = |r: &Recommendation| r.ratio() <= 1.02 * judgement.enough;
     tried.sort_by(|a, b| {
         let order = enough(b).cmp(&enough(a));
         order.then_with(|| {

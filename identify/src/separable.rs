@@ -33,6 +33,9 @@ pub(crate) struct Solution {
     /// them.
     covariance: Option<DMatrix<f64>>,
     linear_covariance: DMatrix<f64>,
+    /// Slopes by the unknowns, without what the coefficients take over, and what is left, row by row.
+    slopes: DMatrix<f64>,
+    residual: DVector<f64>,
 }
 
 impl Solution {
@@ -45,6 +48,29 @@ impl Solution {
     pub(crate) fn deviation(&self, unknown: usize, row: f64) -> f64 {
         let variance = self.covariance.as_ref().map(|c| c[(unknown, unknown)].max(0.0));
         variance.map_or(f64::INFINITY, |variance| row * variance.sqrt())
+    }
+
+    /// Standard deviation of an unknown where what is left of neighbouring rows is alike: from the sums of slopes times residuals
+    /// over `blocks` stretches of rows, which are independent where a stretch is longer than the memory of the noise.
+    pub(crate) fn deviation_with_memory(&self, unknown: usize, blocks: usize) -> f64 {
+        let (Some(covariance), rows) = (&self.covariance, self.residual.len()) else {
+            return f64::INFINITY;
+        };
+        let length = rows.div_ceil(blocks.max(2));
+        let variance: f64 = (0..rows)
+            .step_by(length)
+            .map(|begin| {
+                let length = length.min(rows - begin);
+                let score = self
+                    .slopes
+                    .rows(begin, length)
+                    .tr_mul(&self.residual.rows(begin, length));
+                covariance.row(unknown).transpose().dot(&score).powi(2)
+            })
+            .sum();
+        // Few stretches show less than there is, as few values do of a variance.
+        let count = rows.div_ceil(length) as f64;
+        (variance * count / (count - 2.0).max(1.0)).sqrt()
     }
 
     /// Standard deviation of a coefficient at fixed unknowns, likewise.
@@ -177,5 +203,7 @@ pub(crate) fn refine(problem: &impl Separable, start: &[f64]) -> Option<Solution
         linear_covariance: now.gram.inverse(),
         unknowns,
         coefficients: now.coefficients,
+        slopes: here,
+        residual: now.residual,
     })
 }

@@ -2,4 +2,5 @@
 #![cfg(test)]
 
 mod log;
+mod position;
 mod sweep;

@@ -4,9 +4,11 @@ use super::excitation::ExcitationFlags;
 use crate::failure::Failure;
 use posicast_identify::log::{Log, Reading};
 use posicast_identify::modal::ResponsePoint;
+use posicast_identify::output_only;
+use posicast_identify::position::{self, FoundInPosition, PositionError};
 use posicast_identify::recommend::{Judgement, Recommendation, recommend};
 use posicast_identify::sweep::{self, FoundInSweep, Sweep, SweepError};
-use posicast_identify::{AccelerationLog, FoundMode};
+use posicast_identify::{AccelerationLog, FoundMode, PositionLog};
 use posicast_model::unit::trimmed;
 
 /// What was measured beside what the modes make of it: for the pictures.
@@ -16,6 +18,25 @@ pub(super) enum Evidence {
         points: Vec<ResponsePoint>,
         fitted: Vec<(f64, f64)>,
     },
+    /// A response over time, and what the modes make of it.
+    Response {
+        /// What the response is.
+        name: &'static str,
+        row_s: f64,
+        measured: Vec<f64>,
+        fitted: Vec<f64>,
+    },
+}
+
+impl Evidence {
+    fn response(name: &'static str, found: &FoundInPosition) -> Self {
+        Self::Response {
+            name,
+            row_s: found.row_s,
+            measured: found.response.clone(),
+            fitted: found.fitted.clone(),
+        }
+    }
 }
 
 /// Modes, shapers for them, and where they come from.
@@ -43,8 +64,9 @@ impl Findings {
     pub(super) fn of(reading: Reading, flags: &ExcitationFlags, judgement: &Judgement) -> Result<Self, Failure> {
         let remarks = reading.remarks.iter().map(ToString::to_string).collect();
         let mut findings = match &reading.log {
-            Log::Acceleration(log) => of_acceleration(log, &flags.sweep)?,
-            Log::Position(_) => return Err(Failure::not_built("position logs")),
+            Log::Acceleration(log) if flags.output_only => of_output(log)?,
+            Log::Acceleration(log) => of_sweep(log, &flags.sweep)?,
+            Log::Position(log) => of_position(log)?,
         };
         let found = std::mem::replace(&mut findings.remarks, remarks);
         findings.remarks.extend(found);
@@ -61,7 +83,7 @@ impl Findings {
     }
 }
 
-fn of_acceleration(log: &AccelerationLog, sweep: &Sweep) -> Result<Findings, Failure> {
+fn of_sweep(log: &AccelerationLog, sweep: &Sweep) -> Result<Findings, Failure> {
     let found = sweep::identify(log, sweep).map_err(|error| {
         let help = match error {
             SweepError::Unrelated(_) | SweepError::Unlike(_) => {
@@ -105,6 +127,69 @@ fn of_acceleration(log: &AccelerationLog, sweep: &Sweep) -> Result<Findings, Fai
             points: found.transfer.points,
         },
     })
+}
+
+fn of_output(log: &AccelerationLog) -> Result<Findings, Failure> {
+    let found = output_only::identify(log).map_err(of_position_error)?;
+    let mut remarks: Vec<String> = vec![
+        "the excitation was taken as even over the frequencies: what it has of its own, such as a fan, looks like a mode here, and \
+         shares are rough"
+            .into(),
+    ];
+    if found.modes.is_empty() {
+        remarks.push("nothing in the log decays as a mode would".into());
+    }
+    Ok(Findings {
+        rows: 0,
+        sample_s: log.sample_s,
+        source: format!("accelerometer, direction {}", found.direction),
+        method: "decay of the correlation of the response with itself, the excitation not known".into(),
+        method_name: "output-only",
+        axis: axis_of(&found.direction),
+        evidence: Evidence::response("correlation of the acceleration with itself", &found.decay),
+        modes: found.modes,
+        recommended: Vec::new(),
+        judgement: Judgement::default(),
+        remarks,
+    })
+}
+
+fn of_position(log: &PositionLog) -> Result<Findings, Failure> {
+    let found = position::identify(log).map_err(of_position_error)?;
+    let (source, method_name) = match found.is_forced {
+        true => ("command and response", "output-error"),
+        false => ("response", "decay"),
+    };
+    let driven = match found.is_forced {
+        true => "modes under the command, held between samples",
+        false => "modes that decay freely",
+    };
+    let remarks = found.remarks.iter().map(ToString::to_string).collect();
+    Ok(Findings {
+        rows: 0,
+        sample_s: log.sample_s,
+        source: source.into(),
+        method: format!(
+            "{driven}, fitted to {}; they leave {:.2e} (root mean square, in the response's SI unit)",
+            match found.decimation {
+                1 => "every sample".into(),
+                joined => format!("means of {joined} samples"),
+            },
+            found.noise,
+        ),
+        method_name,
+        axis: None,
+        evidence: Evidence::response("response", &found),
+        modes: found.modes,
+        recommended: Vec::new(),
+        judgement: Judgement::default(),
+        remarks,
+    })
+}
+
+fn of_position_error(error: PositionError) -> Failure {
+    let help = "log longer, from before the command moves until the machine is at rest";
+    Failure::from(miette::miette!(help = help, "{error}"))
 }
 
 /// `accel_x` is the log of axis `x`.

@@ -2,6 +2,7 @@
 
 use super::findings::{Evidence, Findings};
 use crate::plot::{Curve, Panel, Range, label, time_axis};
+use posicast_identify::modal::ResponsePoint;
 use posicast_identify::recommend::{Recommendation, deflection};
 use posicast_model::analysis::sensitivity_curve;
 use posicast_model::impulse::ImpulseSequence;
@@ -23,12 +24,20 @@ pub(super) fn panels(findings: &Findings) -> Vec<Panel> {
 }
 
 fn evidence(findings: &Findings) -> Panel {
-    let Evidence::Transfer { points, fitted } = &findings.evidence;
-    let measured = points
-        .iter()
-        .map(|point| (point.frequency_hz, point.value.norm()))
-        .collect();
-    let residual = points
+    match &findings.evidence {
+        Evidence::Transfer { points, fitted } => transfer(findings, points, fitted),
+        Evidence::Response {
+            name,
+            row_s,
+            measured,
+            fitted,
+        } => response(name, *row_s, measured, fitted),
+    }
+}
+
+fn transfer(findings: &Findings, points: &[ResponsePoint], fitted: &[(f64, f64)]) -> Panel {
+    let measured = points.iter().map(|point| (point.frequency_hz, point.value.norm()));
+    let left = points
         .iter()
         .zip(fitted)
         .map(|(point, (_, fit))| (point.frequency_hz, (point.value.norm() - fit).abs()));
@@ -37,11 +46,33 @@ fn evidence(findings: &Findings) -> Panel {
         x_label: "frequency, Hz".into(),
         y_label: "ratio".into(),
         curves: vec![
-            Curve::reference("measured", measured),
-            Curve::new("modes", fitted.clone()),
-            Curve::new("what they leave", residual.collect()),
+            Curve::reference("measured", measured.collect()),
+            Curve::new("modes", fitted.to_vec()),
+            Curve::new("what they leave", left.collect()),
         ],
         x_ranges: intervals(findings),
+        ..Panel::default()
+    }
+}
+
+fn response(name: &str, row_s: f64, measured: &[f64], fitted: &[f64]) -> Panel {
+    let time = time_axis(row_s * measured.len() as f64);
+    let over_time = |values: &mut dyn Iterator<Item = f64>| {
+        values
+            .enumerate()
+            .map(|(n, value)| (time.of(n as f64 * row_s), value))
+            .collect::<Vec<_>>()
+    };
+    let mut left = measured.iter().zip(fitted).map(|(measured, fitted)| measured - fitted);
+    Panel {
+        title: format!("{name}: measured, and what the modes make of it"),
+        x_label: label("time", time),
+        y_label: "unit of the log".into(),
+        curves: vec![
+            Curve::reference("measured", over_time(&mut measured.iter().copied())),
+            Curve::new("modes", over_time(&mut fitted.iter().copied())),
+            Curve::new("what they leave", over_time(&mut left)),
+        ],
         ..Panel::default()
     }
 }

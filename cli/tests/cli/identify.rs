@@ -116,6 +116,76 @@ fn cli_modes_go_into_an_axis_of_a_machine_that_is_there_and_nothing_else_changes
 }
 
 #[test]
+fn cli_a_step_and_a_decay_become_machines() {
+    let folder = tempfile::tempdir().unwrap();
+    let (frequency_hz, damping) = (0.45f64, 0.01f64);
+    let omega = std::f64::consts::TAU * frequency_hz;
+    // A load that swings after the trolley has stopped; and the trolley's step before it.
+    let swing = |t: f64| (-damping * omega * t).exp() * (omega * (1.0 - damping * damping).sqrt() * t).cos();
+    let decay: String = (0..1000)
+        .map(|n| format!("{},{}\n", f64::from(n) * 0.02, swing(f64::from(n) * 0.02)))
+        .collect();
+    let step: String = (-50..950)
+        .map(|n| {
+            let t = f64::from(n) * 0.02;
+            let sine = damping / (1.0 - damping * damping).sqrt() * (-damping * omega * t).exp();
+            let sine = sine * (omega * (1.0 - damping * damping).sqrt() * t).sin();
+            let (command, response) = if n < 0 {
+                (0.0, 0.0)
+            } else {
+                (1.0, 1.0 - swing(t) - sine)
+            };
+            format!("{},{command},{response}\n", t + 1.0)
+        })
+        .collect();
+    for (name, header, rows) in [
+        ("decay", "time,response", decay),
+        ("step", "time,command,response", step),
+    ] {
+        let log = format!("{name}.csv");
+        std::fs::write(folder.path().join(&log), format!("{header}\n{rows}")).unwrap();
+        let machine = format!("{name}.toml");
+        let (status, said, problems) = identify(folder.path(), &[&log, "-o", &machine, "--json"]);
+        assert_eq!(status, Some(0), "{problems}");
+        let document: serde_json::Value = serde_json::from_str(&said).unwrap();
+        let found = &document["modes"][0];
+        assert!(
+            (found["frequency_hz"].as_f64().unwrap() - frequency_hz).abs() < 1e-6,
+            "{found}"
+        );
+        assert!((found["damping"].as_f64().unwrap() - damping).abs() < 1e-6, "{found}");
+        // A slow machine is a crane.
+        let text = std::fs::read_to_string(folder.path().join(&machine)).unwrap();
+        assert!(text.contains("crane"), "{text}");
+        let generated = posicast()
+            .current_dir(folder.path())
+            .args(["generate", &machine])
+            .output()
+            .unwrap();
+        assert_eq!(generated.status.code(), Some(0));
+    }
+}
+
+#[test]
+fn cli_without_knowing_the_excitation_the_spectrum_still_tells_a_mode() {
+    let folder = tempfile::tempdir().unwrap();
+    write_log(&folder.path().join("log.csv"), &[known(60.0, 0.05, 1.0)]);
+    let (status, said, _) = identify(folder.path(), &["log.csv", "--output-only", "--json"]);
+    assert_eq!(status, Some(0), "{said}");
+    let document: serde_json::Value = serde_json::from_str(&said).unwrap();
+    assert!(
+        (document["modes"][0]["frequency_hz"].as_f64().unwrap() / 60.0 - 1.0).abs() < 0.02,
+        "{said}"
+    );
+    assert!(
+        document["remarks"][0]
+            .as_str()
+            .unwrap()
+            .contains("even over the frequencies")
+    );
+}
+
+#[test]
 fn cli_a_log_that_says_nothing_fails_and_writes_nothing() {
     let folder = tempfile::tempdir().unwrap();
     write_log(&folder.path().join("rigid.csv"), &[]);

@@ -1,1 +1,304 @@
-//! Modes from a position log: time, command, response.
+//! Modes from a position log: time, command, response; or the free decay of a response.
+//!
+//! The output error of modes under a held command ([`HeldModes`](held)) is made as small as it can be: unbiased under noise of the
+//! sensor, exact without it, for steps, decays, pseudo-random commands and chirps alike. [`arx`] has the models of equations (2-1) to
+//! (2-4) of the XY stage: what they find is set beside it.
+
+pub mod arx;
+mod held;
+pub mod recursive;
+mod search;
+
+use crate::found::FoundMode;
+use crate::signal::PositionLog;
+use held::HeldModes;
+use posicast_model::mode::Mode;
+use search::{Found, search};
+use thiserror::Error;
+
+/// What a position log tells.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FoundInPosition {
+    /// The modes, by frequency.
+    pub modes: Vec<FoundMode>,
+    /// Whether the command drove them; else they decay.
+    pub is_forced: bool,
+    /// Samples in a row of the fit: the fastest mode has 4 to 15 rows per period, where the log has so many samples.
+    pub decimation: usize,
+    /// Time of the first row in seconds from the first sample, and between rows.
+    pub row_s: f64,
+    /// The rows of the response.
+    pub response: Vec<f64>,
+    /// What modes and command make of them.
+    pub fitted: Vec<f64>,
+    /// Root mean square of what is left.
+    pub noise: f64,
+    /// What the log cannot tell.
+    pub remarks: Vec<PositionRemark>,
+}
+
+/// Why a position log cannot be looked at.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum PositionError {
+    /// Too few samples.
+    #[error("the log has {0} samples: modes need {LEAST_SAMPLES} at least")]
+    Short(usize),
+    /// Command and response of different lengths, or values that are no numbers.
+    #[error(
+        "the log has {commands} commands and {responses} responses: there must be as many, all finite, or no commands at all"
+    )]
+    Uneven {
+        /// Commands.
+        commands: usize,
+        /// Responses.
+        responses: usize,
+    },
+    /// The time between samples is none.
+    #[error("{0} s between samples is not possible")]
+    Sample(f64),
+}
+
+/// What a position log cannot tell, and why.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum PositionRemark {
+    /// The command stands still, and nothing decays.
+    #[error(
+        "the command does not move and the response does not ring: nothing excited a mode; log a step, a pseudo-random command, or a stop"
+    )]
+    NoExcitation,
+    /// The command moves, and the response follows without ringing.
+    #[error(
+        "the response follows the command without a mode that could be told from noise of {noise:.3e} (root mean square, in the unit of the response)"
+    )]
+    NoRinging {
+        /// Root mean square of what is left.
+        noise: f64,
+    },
+    /// Little of a mode is in the log.
+    #[error("the log shows {periods:.1} periods of the mode at {frequency_hz:.4} Hz: log three at least")]
+    FewPeriods {
+        /// The mode's frequency in Hz.
+        frequency_hz: f64,
+        /// Periods in the log.
+        periods: f64,
+    },
+    /// A mode has few samples in a period.
+    #[error(
+        "the mode at {frequency_hz:.4} Hz has {samples:.1} samples in a period: one above half the rate of the samples would look the same"
+    )]
+    FewSamples {
+        /// The mode's frequency in Hz.
+        frequency_hz: f64,
+        /// Samples per period.
+        samples: f64,
+    },
+    /// The command decays without forcing: shares are those of the decay.
+    #[error("the command does not move in this log: the shares are those of the amplitudes at its first sample")]
+    Free,
+    /// Another method found something else.
+    #[error(
+        "least squares with instruments (ARX) finds {frequency_hz:.4} Hz and a damping ratio of {damping:.3} instead: the log does not fix this mode"
+    )]
+    Differs {
+        /// Its frequency in Hz.
+        frequency_hz: f64,
+        /// Its damping ratio.
+        damping: f64,
+    },
+    /// The mode moved during the log.
+    #[error(
+        "the frequency moves from {from_hz:.4} to {to_hz:.4} Hz during the log: one mode for all of it is an average; log where the machine works, or a part at a time"
+    )]
+    Moves {
+        /// Frequency in the first half in Hz.
+        from_hz: f64,
+        /// Frequency in the second half in Hz.
+        to_hz: f64,
+    },
+}
+
+/// Least samples of a log.
+pub const LEAST_SAMPLES: usize = 24;
+/// Rows in which modes are looked for.
+const SEARCH_ROWS: usize = 3000;
+/// Rows per period of the fastest mode in the last fit, where the log has so many.
+const ROWS_PER_PERIOD: f64 = 8.0;
+/// Most rows of the last fit.
+const MOST_ROWS: usize = 30_000;
+/// Damping ratio from which a pole is no vibration.
+const NO_VIBRATION: f64 = 0.6;
+/// Share of the displacement below which a mode is not told.
+const LEAST_SHARE: f64 = 0.03;
+/// Standard deviation of a mode's damping and of its frequency, relative to them, beyond which the log does not fix it.
+const VAGUE_DAMPING: f64 = 0.4;
+const VAGUE_FREQUENCY: f64 = 0.03;
+/// Stretches of a log that tell how much the memory of its noise adds to the variance: so many times as long as a mode rings, which
+/// noise may do likewise, and in such numbers.
+const MEMORY: f64 = 4.0;
+const STRETCHES: (f64, f64) = (6.0, 40.0);
+
+/// Finds the modes of a log.
+///
+/// # Errors
+/// [`PositionError`].
+pub fn identify(log: &PositionLog) -> Result<FoundInPosition, PositionError> {
+    check(log)?;
+    let samples = log.response.len();
+    let coarse = samples.div_ceil(SEARCH_ROWS);
+    let problem = |range, decimation| HeldModes::new(&log.command, &log.response, log.sample_s, range, decimation);
+    let mut found = search(&problem(0..samples, coarse));
+    if coarse > 1 {
+        // What is too fast for the rows of the whole log is looked for where the command first moves.
+        let first = log.command.windows(2).position(|pair| pair[0] != pair[1]).unwrap_or(0);
+        let begin = first.min(samples - SEARCH_ROWS);
+        let fast = search(&problem(begin..begin + SEARCH_ROWS, 1));
+        let slow = found
+            .as_ref()
+            .map_or(0, |found| told(&problem(0..samples, coarse), found).len());
+        if fast
+            .as_ref()
+            .is_some_and(|fast| told(&problem(begin..begin + SEARCH_ROWS, 1), fast).len() > slow)
+        {
+            found = fast;
+        }
+    }
+    let modes = found.map_or(Vec::new(), |found| found.modes);
+    let fastest = modes.iter().map(|mode| mode.frequency_hz).fold(0.0, f64::max);
+    let wanted = match fastest > 0.0 {
+        true => (1.0 / (fastest * log.sample_s * ROWS_PER_PERIOD)).round() as usize,
+        false => coarse,
+    };
+    let decimation = wanted.clamp(samples.div_ceil(MOST_ROWS), (samples / LEAST_SAMPLES).max(1));
+    let last = problem(0..samples, decimation);
+    let solution =
+        crate::separable::refine(&last, &HeldModes::unknowns(&modes)).ok_or(PositionError::Short(samples))?;
+    let found = Found {
+        modes: HeldModes::modes(&solution.unknowns),
+        solution,
+    };
+    let modes = told(&last, &found);
+    let noise = found.solution.reduced_square().sqrt();
+    let remarks = remarks(log, &last, &modes, noise);
+    Ok(FoundInPosition {
+        is_forced: last.is_forced(),
+        decimation,
+        row_s: last.row_s(),
+        response: crate::separable::Separable::measured(&last).iter().copied().collect(),
+        fitted: found.solution.fitted.iter().copied().collect(),
+        noise,
+        remarks,
+        modes,
+    })
+}
+
+fn check(log: &PositionLog) -> Result<(), PositionError> {
+    let (commands, responses) = (log.command.len(), log.response.len());
+    let finite = log.command.iter().chain(&log.response).all(|value| value.is_finite());
+    if !(log.sample_s > 0.0 && log.sample_s.is_finite()) {
+        return Err(PositionError::Sample(log.sample_s));
+    }
+    if !finite || (commands != 0 && commands != responses) {
+        return Err(PositionError::Uneven { commands, responses });
+    }
+    if responses < LEAST_SAMPLES {
+        return Err(PositionError::Short(responses));
+    }
+    Ok(())
+}
+
+/// The modes of a fit that are vibrations and are fixed by it.
+fn told(problem: &HeldModes<'_>, found: &Found) -> Vec<FoundMode> {
+    let solution = &found.solution;
+    let row = solution.reduced_square().sqrt();
+    let width = problem.per_mode();
+    let seconds = problem.row_s() * problem.len() as f64;
+    let deviation = |n: usize, mode: &Mode| {
+        let stretches = (seconds * mode.decay() / MEMORY).clamp(STRETCHES.0, STRETCHES.1);
+        let with_memory = solution.deviation_with_memory(n, stretches as usize);
+        solution.deviation(n, row).max(with_memory)
+    };
+    let all: Vec<(FoundMode, f64)> = found
+        .modes
+        .iter()
+        .enumerate()
+        .map(|(k, &mode)| {
+            let coefficients: Vec<f64> = solution.coefficients.rows(width * k, width).iter().copied().collect();
+            let found = FoundMode {
+                mode,
+                participation: 0.0,
+                frequency_sd_hz: mode.frequency_hz * deviation(2 * k, &mode),
+                damping_sd: mode.damping * deviation(2 * k + 1, &mode),
+            };
+            (found, problem.strength(&mode, &coefficients))
+        })
+        .collect();
+    let is_vibration = |found: &FoundMode| {
+        found.mode.damping < NO_VIBRATION
+            && found.damping_sd < VAGUE_DAMPING * found.mode.damping.max(0.01)
+            && found.frequency_sd_hz < VAGUE_FREQUENCY * found.mode.frequency_hz
+            && found.mode.frequency_hz * seconds > 1.0
+    };
+    let mut kept: Vec<(FoundMode, f64)> = all.into_iter().filter(|(found, _)| is_vibration(found)).collect();
+    let whole: f64 = kept.iter().map(|(_, strength)| strength).sum();
+    kept.retain(|(_, strength)| *strength >= LEAST_SHARE * whole);
+    let whole: f64 = kept.iter().map(|(_, strength)| strength).sum();
+    let mut modes: Vec<FoundMode> = kept
+        .into_iter()
+        .map(|(found, strength)| FoundMode {
+            participation: strength / whole,
+            ..found
+        })
+        .collect();
+    modes.sort_by(|a, b| a.mode.frequency_hz.total_cmp(&b.mode.frequency_hz));
+    modes
+}
+
+fn remarks(log: &PositionLog, problem: &HeldModes<'_>, modes: &[FoundMode], noise: f64) -> Vec<PositionRemark> {
+    const FEW_PERIODS: f64 = 3.0;
+    const FEW_SAMPLES: f64 = 3.0;
+    let mut remarks = Vec::new();
+    if modes.is_empty() {
+        remarks.push(match problem.is_forced() {
+            true => PositionRemark::NoRinging { noise },
+            false => PositionRemark::NoExcitation,
+        });
+        return remarks;
+    }
+    if !problem.is_forced() && modes.len() > 1 {
+        remarks.push(PositionRemark::Free);
+    }
+    let seconds = log.sample_s * log.response.len() as f64;
+    for found in modes {
+        let frequency_hz = found.mode.frequency_hz;
+        let (periods, samples) = (seconds * frequency_hz, 1.0 / (frequency_hz * log.sample_s));
+        if periods < FEW_PERIODS {
+            remarks.push(PositionRemark::FewPeriods { frequency_hz, periods });
+        }
+        if samples < FEW_SAMPLES {
+            remarks.push(PositionRemark::FewSamples { frequency_hz, samples });
+        }
+    }
+    if let [only] = modes {
+        remarks.extend(beside(log, &only.mode));
+    }
+    remarks
+}
+
+/// What the models of the XY stage say of a log with one mode, where it is something else.
+fn beside(log: &PositionLog, mode: &Mode) -> Option<PositionRemark> {
+    const FREQUENCY: f64 = 0.05;
+    const DAMPING: f64 = 0.5;
+    let differs = |other: &Mode| {
+        (other.frequency_hz / mode.frequency_hz - 1.0).abs() > FREQUENCY
+            || (other.damping - mode.damping).abs() > DAMPING * mode.damping + 0.01
+    };
+    let decimated = arx::decimated(log, mode.frequency_hz);
+    let other = arx::with_instruments(&decimated, 2).ok()?.modes();
+    match other[..] {
+        [other] if differs(&other) => Some(PositionRemark::Differs {
+            frequency_hz: other.frequency_hz,
+            damping: other.damping,
+        }),
+        _ => None,
+    }
+}

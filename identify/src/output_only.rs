@@ -1,0 +1,141 @@
+//! Modes from an accelerometer log whose excitation is not known.
+//!
+//! Under an excitation that is even over the frequencies, and goes on for long, the autocorrelation of a response decays as the machine
+//! does when it is let go (James, Carne and Lauffer 1995): the modes are those of this decay. What the excitation has of its own, such
+//! as a fan, looks like a mode, and shares are rough: where the sweep is known, [`crate::sweep`] tells more.
+
+use crate::found::FoundMode;
+use crate::position::{self, FoundInPosition, PositionError};
+use crate::signal::{AccelerationLog, PositionLog};
+use crate::spectrum::{Transform, fast_length};
+
+/// What the correlation of an accelerometer log tells.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FoundInOutput {
+    /// The modes, by frequency.
+    pub modes: Vec<FoundMode>,
+    /// Name of the direction of the sensor that was used.
+    pub direction: String,
+    /// The decay of the correlation, and what the modes make of it.
+    pub decay: FoundInPosition,
+}
+
+/// Longest lag in seconds, and as a part of the log.
+const LONGEST_LAG_S: f64 = 2.0;
+const LONGEST_PART: usize = 10;
+
+/// Finds the modes of the direction that moves most.
+///
+/// # Errors
+/// [`PositionError`] where the log is too short.
+pub fn identify(log: &AccelerationLog) -> Result<FoundInOutput, PositionError> {
+    let variance = |record: &[f64]| {
+        let mean = record.iter().sum::<f64>() / record.len().max(1) as f64;
+        record.iter().map(|x| (x - mean).powi(2)).sum::<f64>()
+    };
+    let strongest = log
+        .directions
+        .iter()
+        .max_by(|a, b| variance(&a.1).total_cmp(&variance(&b.1)));
+    let (direction, record) = strongest.ok_or(PositionError::Short(0))?;
+    let lags = ((LONGEST_LAG_S / log.sample_s) as usize).min(record.len() / LONGEST_PART);
+    let correlation = correlation(record, lags);
+    let decay = position::identify(&PositionLog {
+        sample_s: log.sample_s,
+        command: Vec::new(),
+        // Noise of the sensor is in the first value alone.
+        response: correlation.get(1..).unwrap_or_default().to_vec(),
+    })?;
+    // Of a mode that even acceleration drives, the square of the share is to the power as ζ/ω.
+    let share = |found: &FoundMode| (found.participation * found.mode.damping / found.mode.omega()).sqrt();
+    let whole: f64 = decay.modes.iter().map(share).sum();
+    let modes = decay.modes.iter().map(|found| FoundMode {
+        participation: share(found) / whole,
+        ..*found
+    });
+    Ok(FoundInOutput {
+        modes: modes.collect(),
+        direction: direction.clone(),
+        decay,
+    })
+}
+
+/// Mean products of a record, without its mean, with itself 0 to `lags` samples later.
+fn correlation(record: &[f64], lags: usize) -> Vec<f64> {
+    let mean = record.iter().sum::<f64>() / record.len().max(1) as f64;
+    let centred: Vec<f64> = record.iter().map(|x| x - mean).collect();
+    // Zeros behind the record keep its end from meeting its begin.
+    let length = fast_length(record.len() + lags + 1);
+    let mut transform = Transform::new(length);
+    let mut lines = transform.forward(&centred);
+    for line in &mut lines {
+        *line = (*line * line.conj()) / length as f64;
+    }
+    let products = transform.inverse(&lines);
+    (0..=lags)
+        .map(|lag| products[lag] / (record.len() - lag) as f64)
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::synthetic::Noise;
+    use nalgebra::Vector2;
+    use posicast_model::mode::Mode;
+    use posicast_model::plant::free_motion;
+
+    /// The acceleration of modes that white noise pushes.
+    fn shaken(modes: &[Mode], samples: usize, sample_s: f64) -> Vec<f64> {
+        let mut noise = Noise::new(3);
+        let mut states = vec![Vector2::zeros(); modes.len()];
+        let motions: Vec<_> = modes.iter().map(|mode| free_motion(mode, sample_s)).collect();
+        (0..samples)
+            .map(|_| {
+                let push = noise.draw();
+                let mut sum = 0.0;
+                for ((mode, motion), state) in modes.iter().zip(&motions).zip(&mut states) {
+                    state.y += push;
+                    *state = motion * *state;
+                    sum += mode.omega().powi(2) * state.x + 2.0 * mode.decay() * state.y;
+                }
+                sum + 20.0 * noise.draw()
+            })
+            .collect()
+    }
+
+    #[test]
+    fn unit_modes_that_noise_shakes_are_found() {
+        let truths = [(31.0, 0.03), (72.0, 0.02)].map(|(frequency_hz, damping)| Mode { frequency_hz, damping });
+        let log = AccelerationLog {
+            sample_s: 1e-3,
+            directions: vec![
+                ("accel_x".into(), shaken(&truths, 200_000, 1e-3)),
+                ("accel_y".into(), vec![0.1; 200_000]),
+            ],
+        };
+        let found = identify(&log).unwrap();
+        assert_eq!(
+            (found.direction.as_str(), found.modes.len()),
+            ("accel_x", 2),
+            "{:#?}",
+            found.modes
+        );
+        for (found, truth) in found.modes.iter().zip(truths) {
+            assert!(
+                (found.mode.frequency_hz / truth.frequency_hz - 1.0).abs() < 0.01,
+                "{found:?}"
+            );
+            assert!((found.mode.damping / truth.damping - 1.0).abs() < 0.2, "{found:?}");
+            assert!((found.participation - 0.5).abs() < 0.15, "{found:?}");
+        }
+    }
+
+    #[test]
+    fn unit_the_correlation_of_a_sine_is_its_cosine() {
+        let sine: Vec<f64> = (0..10_000).map(|n| (0.1 * f64::from(n)).sin()).collect();
+        for (lag, value) in correlation(&sine, 100).iter().enumerate() {
+            assert!((value - 0.5 * (0.1 * lag as f64).cos()).abs() < 1e-3);
+        }
+    }
+}

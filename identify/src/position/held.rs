@@ -1,0 +1,209 @@
+//! Modes under a command that is held between samples, in closed form at the samples.
+//!
+//! ```text
+//! p = −ζω + jω√(1−ζ²)      w(k+1) = e^{pT}·w(k) + ((e^{pT} − 1)/p)·u(k)        forced, from rest
+//!                          v(k)   = e^{pTk}                                     free
+//! y(k) = Σ modes (α·Re w + β·Im w + γ·Re v + δ·Im v) + rigid·u(k) + late·u(k−1) + offset
+//! ```
+//!
+//! This is the zero-order hold without approximation. Rows are means over `decimation` samples, of the response and of these columns
+//! alike, so that nothing of the relation is lost.
+
+use crate::separable::Separable;
+use nalgebra::{Complex, DMatrix, DVector};
+use posicast_model::mode::Mode;
+use std::ops::Range;
+
+/// A log on the way to its modes. Unknowns: `ln f` and `ln ζ` of each mode.
+pub(super) struct HeldModes<'a> {
+    command: Option<&'a [f64]>,
+    sample_s: f64,
+    decimation: usize,
+    measured: DVector<f64>,
+}
+
+/// Range of damping ratios that a fit walks in.
+const DAMPING: (f64, f64) = (1e-5, 0.98);
+/// Relative step of the derivatives.
+const STEP: f64 = 1e-6;
+
+impl<'a> HeldModes<'a> {
+    /// The samples of a log in `range`, in rows of `decimation`. The command is left out where it does not move in it.
+    pub(super) fn new(
+        command: &'a [f64],
+        response: &[f64],
+        sample_s: f64,
+        range: Range<usize>,
+        decimation: usize,
+    ) -> Self {
+        let response = &response[range.clone()];
+        let command = command.get(range).filter(|command| moves(command));
+        let rows = response.len() / decimation;
+        let mut this = Self {
+            command,
+            sample_s,
+            decimation,
+            measured: DVector::zeros(rows),
+        };
+        this.measured = DVector::from_vec(this.rows(response.iter().copied()));
+        this
+    }
+
+    /// Whether a command drives the modes.
+    pub(super) fn is_forced(&self) -> bool {
+        self.command.is_some()
+    }
+
+    /// Time between rows in seconds.
+    pub(super) fn row_s(&self) -> f64 {
+        self.sample_s * self.decimation as f64
+    }
+
+    /// How many rows there are.
+    pub(super) fn len(&self) -> usize {
+        self.measured.len()
+    }
+
+    /// Coefficients of a mode: two of the forced motion, where there is one, and two of the free motion.
+    pub(super) fn per_mode(&self) -> usize {
+        if self.is_forced() { 4 } else { 2 }
+    }
+
+    fn rows(&self, samples: impl Iterator<Item = f64>) -> Vec<f64> {
+        let mut rows = Vec::with_capacity(self.len());
+        let (mut sum, mut count) = (0.0, 0);
+        for sample in samples {
+            sum += sample;
+            count += 1;
+            if count == self.decimation {
+                rows.push(sum / self.decimation as f64);
+                (sum, count) = (0.0, 0);
+                if rows.len() == self.len() {
+                    break;
+                }
+            }
+        }
+        rows
+    }
+
+    fn samples(&self) -> usize {
+        self.len() * self.decimation
+    }
+
+    /// The columns of one mode.
+    pub(super) fn mode_columns(&self, mode: &Mode) -> DMatrix<f64> {
+        let pole = Complex::new(-mode.decay(), mode.omega_damped());
+        let turn = (pole * self.sample_s).exp();
+        let mut columns = Vec::with_capacity(self.per_mode() * self.len());
+        if let Some(command) = self.command {
+            let push = (turn - 1.0) / pole * mode.omega();
+            let first = command[0];
+            let mut state = Complex::new(0.0, 0.0);
+            let mut states = Vec::with_capacity(self.samples());
+            // About the first command: what it has done before the log is in the free motion.
+            for command in &command[..self.samples()] {
+                states.push(state);
+                state = turn * state + push * (command - first);
+            }
+            columns.extend(self.rows(states.iter().map(|state| state.re)));
+            columns.extend(self.rows(states.iter().map(|state| state.im)));
+        }
+        let mut free = Complex::new(1.0, 0.0);
+        let states: Vec<Complex<f64>> = (0..self.samples())
+            .map(|_| {
+                let now = free;
+                free *= turn;
+                now
+            })
+            .collect();
+        columns.extend(self.rows(states.iter().map(|state| state.re)));
+        columns.extend(self.rows(states.iter().map(|state| state.im)));
+        DMatrix::from_vec(self.len(), self.per_mode(), columns)
+    }
+
+    /// The columns of all but the modes.
+    fn rest_columns(&self) -> DMatrix<f64> {
+        let mut columns = Vec::new();
+        if let Some(command) = self.command {
+            let first = command[0];
+            let late = std::iter::once(first).chain(command.iter().copied());
+            columns.extend(self.rows(command.iter().map(|u| u - first)));
+            columns.extend(self.rows(late.map(|u| u - first)));
+        }
+        columns.extend(std::iter::repeat_n(1.0, self.len()));
+        DMatrix::from_vec(self.len(), columns.len() / self.len().max(1), columns)
+    }
+
+    /// Static gain of a forced mode, or the amplitude of a free one at the first sample, from its coefficients.
+    pub(super) fn strength(&self, mode: &Mode, coefficients: &[f64]) -> f64 {
+        match coefficients {
+            [along, across, ..] if self.is_forced() => {
+                let pole = Complex::new(-mode.decay(), mode.omega_damped());
+                let still = -Complex::from(mode.omega()) / pole;
+                (along * still.re + across * still.im).abs()
+            }
+            [along, across, ..] => along.hypot(*across),
+            _ => 0.0,
+        }
+    }
+
+    /// Modes of unknowns.
+    pub(super) fn modes(unknowns: &[f64]) -> Vec<Mode> {
+        let (pairs, _) = unknowns.as_chunks::<2>();
+        let mode = |[frequency, damping]: &[f64; 2]| Mode {
+            frequency_hz: frequency.exp(),
+            damping: damping.exp(),
+        };
+        pairs.iter().map(mode).collect()
+    }
+
+    /// Unknowns of modes.
+    pub(super) fn unknowns(modes: &[Mode]) -> Vec<f64> {
+        let pair = |mode: &Mode| [mode.frequency_hz.ln(), mode.damping.max(DAMPING.0).ln()];
+        modes.iter().flat_map(pair).collect()
+    }
+}
+
+impl Separable for HeldModes<'_> {
+    fn measured(&self) -> &DVector<f64> {
+        &self.measured
+    }
+
+    fn basis(&self, unknowns: &[f64]) -> DMatrix<f64> {
+        let mut columns = Vec::new();
+        for mode in Self::modes(unknowns) {
+            columns.extend_from_slice(self.mode_columns(&mode).as_slice());
+        }
+        columns.extend_from_slice(self.rest_columns().as_slice());
+        DMatrix::from_vec(self.len(), columns.len() / self.len().max(1), columns)
+    }
+
+    fn slopes(&self, unknowns: &[f64], basis: &DMatrix<f64>, coefficients: &DVector<f64>) -> DMatrix<f64> {
+        let width = self.per_mode();
+        let mut slopes = DMatrix::zeros(self.len(), unknowns.len());
+        for n in 0..unknowns.len() {
+            let mut moved = unknowns.to_vec();
+            moved[n] += STEP;
+            let first = n / 2 * width;
+            let change = self.mode_columns(&Self::modes(&moved)[n / 2]) - basis.columns(first, width);
+            slopes.set_column(n, &(change * coefficients.rows(first, width) / STEP));
+        }
+        slopes
+    }
+
+    fn stepped(&self, unknowns: &[f64], step: &DVector<f64>) -> Vec<f64> {
+        let highest = (0.5 / self.sample_s).ln();
+        let mut unknowns = unknowns.to_vec();
+        let (pairs, _) = unknowns.as_chunks_mut::<2>();
+        for (k, [frequency, damping]) in pairs.iter_mut().enumerate() {
+            *frequency = (*frequency + step[2 * k].clamp(-0.2, 0.2)).min(highest);
+            *damping = (*damping + step[2 * k + 1].clamp(-1.0, 1.0)).clamp(DAMPING.0.ln(), DAMPING.1.ln());
+        }
+        unknowns
+    }
+}
+
+/// Whether a command changes.
+pub(super) fn moves(command: &[f64]) -> bool {
+    command.windows(2).any(|pair| pair[0] != pair[1])
+}
