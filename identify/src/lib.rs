@@ -21,4 +21,4 @@ pub mod sweep;
 pub mod synthetic;
 
 pub use found::{FoundMode, Interval};
-pub use signal::{AccelerationLog, PositionLog};
+pub use signal::{AccelerationLog, Between, PositionLog};

@@ -6,7 +6,7 @@
 
 use crate::found::FoundMode;
 use crate::position::{self, FoundInPosition, PositionError};
-use crate::signal::{AccelerationLog, PositionLog};
+use crate::signal::{AccelerationLog, Between, PositionLog};
 use crate::spectrum::{Transform, fast_length};
 
 /// What the correlation of an accelerometer log tells.
@@ -43,6 +43,7 @@ pub fn identify(log: &AccelerationLog) -> Result<FoundInOutput, PositionError> {
     let decay = position::identify(&PositionLog {
         sample_s: log.sample_s,
         command: Vec::new(),
+        between: Between::Held,
         // Noise of the sensor is in the first value alone.
         response: correlation.get(1..).unwrap_or_default().to_vec(),
     })?;

@@ -1,12 +1,24 @@
 //! Logs on a uniform grid of time, free of files and of units.
 
+/// What a command does between two samples.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Between {
+    /// It is held (zero-order hold), as a digital controller's.
+    #[default]
+    Held,
+    /// It goes straight to the next: a motion that was measured.
+    Straight,
+}
+
 /// What an axis was told and what it did, sampled together.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PositionLog {
     /// Time between samples in seconds.
     pub sample_s: f64,
-    /// Command, held constant from each sample to the next (zero-order hold), in any unit; empty where the log has none.
+    /// Command in any unit; empty where the log has none.
     pub command: Vec<f64>,
+    /// What the command does between samples.
+    pub between: Between,
     /// Response at each sample, before the command of that sample acts; as many as there are commands, where there are any.
     pub response: Vec<f64>,
 }

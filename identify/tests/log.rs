@@ -1,5 +1,6 @@
 //! Reading logs, the good and the bad.
 
+use posicast_identify::Between;
 use posicast_identify::log::{self, Log, LogError, Remark};
 use posicast_identify::sweep::Sweep;
 use posicast_identify::synthetic::{Sensor, known, resonance_test};
@@ -44,6 +45,20 @@ fn unit_units_separators_and_other_columns_are_understood() {
     assert!((log.sample_s - 1e-3).abs() < 1e-15);
     assert_eq!(log.command[50], 1e-3);
     assert!((log.response[5] - 8e-6).abs() < 1e-15);
+}
+
+#[test]
+fn unit_a_trace_of_the_stage_is_the_scale_behind_the_motor() {
+    let text = rows("time_s,captured_position,deviation", |n| {
+        format!("{},{},{}", n as f64 * 1e-4, n, n % 3)
+    });
+    let Log::Position(log) = log::read(text.as_bytes()).unwrap().log else {
+        panic!()
+    };
+    assert_eq!(
+        (log.command[5], log.response[5], log.between),
+        (5.0, 3.0, Between::Straight)
+    );
 }
 
 #[test]

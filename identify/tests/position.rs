@@ -4,7 +4,7 @@ use posicast_identify::position::arx::{self, ArxError};
 use posicast_identify::position::recursive::RecursiveArx;
 use posicast_identify::position::{self, FoundInPosition, PositionError, PositionRemark};
 use posicast_identify::synthetic::Noise;
-use posicast_identify::{FoundMode, PositionLog};
+use posicast_identify::{Between, FoundMode, PositionLog};
 use posicast_model::mode::Mode;
 use posicast_model::plant::{Plant, SampledPlant};
 use proptest::prelude::*;
@@ -62,6 +62,7 @@ fn log(modes: &[(Mode, f64)], command: &[f64], sample_s: f64, noise: f64, seed: 
     });
     PositionLog {
         sample_s,
+        between: Between::Held,
         response: response.collect(),
         command: command.to_vec(),
     }
@@ -145,6 +146,7 @@ fn unit_a_free_decay_tells_frequency_and_damping() {
         };
         let log = PositionLog {
             sample_s,
+            between: Between::Held,
             command: Vec::new(),
             response: (0..800).map(ring).collect(),
         };
@@ -222,6 +224,7 @@ fn unit_no_mode_is_invented() {
         let is_forced = command.first() != command.last();
         let log = PositionLog {
             sample_s: 1e-3,
+            between: Between::Held,
             command,
             response,
         };
@@ -231,6 +234,23 @@ fn unit_no_mode_is_invented() {
         let expected = matches!(found.remarks[0], PositionRemark::NoRinging { .. }) == is_forced;
         assert!(expected, "{:?}", found.remarks);
     }
+}
+
+#[test]
+fn unit_a_motion_that_was_measured_drives_the_mode_straight_from_sample_to_sample() {
+    // A motor that moves smoothly, and the scale behind a mode: 20 times finer than the log, so that nothing is held.
+    let truth = stage()[0];
+    let fine_s = 1e-5;
+    let motor: Vec<f64> = chirp(20_000, fine_s, 20.0, 250.0);
+    let fine = log(&[(truth, 1.0)], &motor, fine_s, 0.0, 0);
+    let every = |signal: &[f64]| signal.iter().step_by(20).copied().collect::<Vec<f64>>();
+    let coarse = PositionLog {
+        sample_s: 20.0 * fine_s,
+        between: Between::Straight,
+        command: every(&fine.command),
+        response: every(&fine.response),
+    };
+    check(&position::identify(&coarse).unwrap(), &[(truth, 1.0)], 0.002, 0.02);
 }
 
 #[test]
@@ -349,7 +369,7 @@ proptest! {
         sample_s in prop_oneof![Just(1e-9), Just(1e-3), Just(1e6)],
     ) {
         let (command, response): (Vec<f64>, Vec<f64>) = pairs.into_iter().unzip();
-        let log = PositionLog { sample_s, command, response };
+        let log = PositionLog { sample_s, between: Between::Held, command, response };
         if let Ok(found) = position::identify(&log) {
             for mode in found.modes {
                 prop_assert!(mode.mode.frequency_hz > 0.0 && mode.participation.is_finite());

@@ -9,6 +9,8 @@ pub(super) enum Meaning {
     Time,
     Command,
     Response,
+    /// Of the motor against the scale.
+    Deviation,
     Acceleration,
 }
 
@@ -47,7 +49,7 @@ const LENGTH_UNITS: [(&str, f64); 6] = [
     ("counts", 1.0),
 ];
 
-const KNOWN: [Known; 4] = [
+const KNOWN: [Known; 5] = [
     Known {
         meaning: Meaning::Time,
         names: &["time", "t"],
@@ -62,7 +64,13 @@ const KNOWN: [Known; 4] = [
     },
     Known {
         meaning: Meaning::Response,
-        names: &["response", "position", "measured", "output", "y"],
+        names: &["response", "captured_position", "position", "measured", "output", "y"],
+        units: &LENGTH_UNITS,
+        plain: 1.0,
+    },
+    Known {
+        meaning: Meaning::Deviation,
+        names: &["deviation"],
         units: &LENGTH_UNITS,
         plain: 1.0,
     },

@@ -5,13 +5,14 @@
 //! | `time`, `accel_x`, `accel_y`, `accel_z` (any of them) | an accelerometer log as 3D-printer firmware writes it: s and mm/s² |
 //! | `time`, `command`, `response` | a position log: what an axis was told, and what it did, in one unit |
 //! | `time`, `response` | a free decay |
+//! | `time`, `captured_position`, `deviation` | a trace of the stage: motor, and motor against scale; the scale moves as the motor drives it |
 //!
 //! Names may carry a unit: `time_ms`, `command_mm`, `response_um`, `accel_x_m_s2`. A `#` before the first name is no part of it.
 
 mod columns;
 mod time;
 
-use crate::signal::{AccelerationLog, PositionLog};
+use crate::signal::{AccelerationLog, Between, PositionLog};
 use columns::{Column, Meaning};
 use thiserror::Error;
 
@@ -239,11 +240,15 @@ fn position(columns: Vec<Column>, sample_s: f64) -> Result<PositionLog, LogError
     let mut log = PositionLog {
         sample_s,
         command: Vec::new(),
+        between: Between::Held,
         response: Vec::new(),
     };
+    let mut deviation = None;
     for column in columns {
         if column.meaning == Meaning::Command {
             log.command = column.values;
+        } else if column.meaning == Meaning::Deviation {
+            deviation = Some(column.values);
         } else if let Some(value) = dead(&column.values) {
             return Err(LogError::Dead {
                 column: column.name,
@@ -252,6 +257,17 @@ fn position(columns: Vec<Column>, sample_s: f64) -> Result<PositionLog, LogError
         } else {
             log.response = column.values;
         }
+    }
+    if let Some(deviation) = deviation {
+        // The motor was measured, not commanded: between samples it goes on moving.
+        log.between = Between::Straight;
+        log.command = std::mem::take(&mut log.response);
+        log.response = log
+            .command
+            .iter()
+            .zip(&deviation)
+            .map(|(motor, deviation)| motor - deviation)
+            .collect();
     }
     if log.response.is_empty() {
         return Err(LogError::Missing {

@@ -93,6 +93,7 @@ pub fn decimated(log: &PositionLog, frequency_hz: f64) -> PositionLog {
     };
     PositionLog {
         sample_s: log.sample_s * joined as f64,
+        between: log.between,
         command: means(&log.command),
         response: means(&log.response),
     }

@@ -3,6 +3,7 @@
 //! ```text
 //! p = −ζω + jω√(1−ζ²)      w(k+1) = e^{pT}·w(k) + ((e^{pT} − 1)/p)·u(k)        forced, from rest
 //!                          v(k)   = e^{pTk}                                     free
+//!                          … + ((e^{pT} − 1 − pT)/(p²T))·(u(k+1) − u(k))       where it goes straight to the next
 //! y(k) = Σ modes (α·Re w + β·Im w + γ·Re v + δ·Im v) + rigid·u(k) + late·u(k−1) + offset
 //! ```
 //!
@@ -10,6 +11,7 @@
 //! alike, so that nothing of the relation is lost.
 
 use crate::separable::Separable;
+use crate::signal::{Between, PositionLog};
 use nalgebra::{Complex, DMatrix, DVector};
 use posicast_model::mode::Mode;
 use std::ops::Range;
@@ -17,6 +19,7 @@ use std::ops::Range;
 /// A log on the way to its modes. Unknowns: `ln f` and `ln ζ` of each mode.
 pub(super) struct HeldModes<'a> {
     command: Option<&'a [f64]>,
+    between: Between,
     sample_s: f64,
     decimation: usize,
     measured: DVector<f64>,
@@ -29,19 +32,14 @@ const STEP: f64 = 1e-6;
 
 impl<'a> HeldModes<'a> {
     /// The samples of a log in `range`, in rows of `decimation`. The command is left out where it does not move in it.
-    pub(super) fn new(
-        command: &'a [f64],
-        response: &[f64],
-        sample_s: f64,
-        range: Range<usize>,
-        decimation: usize,
-    ) -> Self {
-        let response = &response[range.clone()];
-        let command = command.get(range).filter(|command| moves(command));
+    pub(super) fn new(log: &'a PositionLog, range: Range<usize>, decimation: usize) -> Self {
+        let response = &log.response[range.clone()];
+        let command = log.command.get(range).filter(|command| moves(command));
         let rows = response.len() / decimation;
         let mut this = Self {
             command,
-            sample_s,
+            between: log.between,
+            sample_s: log.sample_s,
             decimation,
             measured: DVector::zeros(rows),
         };
@@ -97,13 +95,18 @@ impl<'a> HeldModes<'a> {
         let mut columns = Vec::with_capacity(self.per_mode() * self.len());
         if let Some(command) = self.command {
             let push = (turn - 1.0) / pole * mode.omega();
+            let bend = match self.between {
+                Between::Held => Complex::new(0.0, 0.0),
+                Between::Straight => (turn - 1.0 - pole * self.sample_s) / (pole * pole * self.sample_s) * mode.omega(),
+            };
             let first = command[0];
             let mut state = Complex::new(0.0, 0.0);
             let mut states = Vec::with_capacity(self.samples());
             // About the first command: what it has done before the log is in the free motion.
-            for command in &command[..self.samples()] {
+            for (n, now) in command[..self.samples()].iter().enumerate() {
                 states.push(state);
-                state = turn * state + push * (command - first);
+                let next = command.get(n + 1).unwrap_or(now);
+                state = turn * state + push * (now - first) + bend * (next - now);
             }
             columns.extend(self.rows(states.iter().map(|state| state.re)));
             columns.extend(self.rows(states.iter().map(|state| state.im)));

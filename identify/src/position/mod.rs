@@ -10,7 +10,7 @@ pub mod recursive;
 mod search;
 
 use crate::found::FoundMode;
-use crate::signal::PositionLog;
+use crate::signal::{Between, PositionLog};
 use held::HeldModes;
 use posicast_model::mode::Mode;
 use search::{Found, search};
@@ -145,7 +145,7 @@ pub fn identify(log: &PositionLog) -> Result<FoundInPosition, PositionError> {
     check(log)?;
     let samples = log.response.len();
     let coarse = samples.div_ceil(SEARCH_ROWS);
-    let problem = |range, decimation| HeldModes::new(&log.command, &log.response, log.sample_s, range, decimation);
+    let problem = |range, decimation| HeldModes::new(log, range, decimation);
     let mut found = search(&problem(0..samples, coarse));
     if coarse > 1 {
         // What is too fast for the rows of the whole log is looked for where the command first moves.
@@ -278,7 +278,8 @@ fn remarks(log: &PositionLog, problem: &HeldModes<'_>, modes: &[FoundMode], nois
             remarks.push(PositionRemark::FewSamples { frequency_hz, samples });
         }
     }
-    if let [only] = modes {
+    // The models of the stage know held commands only.
+    if let ([only], Between::Held) = (modes, log.between) {
         remarks.extend(beside(log, &only.mode));
     }
     remarks
