@@ -104,15 +104,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     }
     match findings.modes.is_empty() {
         false => Ok(()),
-        true => Err(Failure::Check(format!(
-            "{}: no mode was found{}",
-            args.log.display(),
-            if args.output.is_some() {
-                ", and no machine file written"
-            } else {
-                ""
-            }
-        ))),
+        true => Err(none_found(&args.log, args.output.is_some())),
     }
 }
 
@@ -137,15 +129,33 @@ fn read(path: &Path) -> Result<Reading, Failure> {
     log::read(&text).map_err(|error| Failure::because(error).in_file(path))
 }
 
+/// Writes a machine file with the modes of a log, found with what is known by default.
+pub(crate) fn new_machine(
+    log: &Path,
+    file: &Path,
+    kind: Option<MachineKind>,
+    outputs: &OutputFiles,
+) -> Result<(), Failure> {
+    let flags = ExcitationFlags::default();
+    let findings = Findings::of(read(log)?, &flags, &Judgement::default()).map_err(|error| error.in_file(log))?;
+    if findings.modes.is_empty() {
+        return Err(none_found(log, true));
+    }
+    let text = machine_file::from_template(kind.unwrap_or(findings.kind()), file, None, &findings)?;
+    files::write_text(file, text.as_str()).map_err(Failure::because)?;
+    output::print_beside(outputs, &text::text(log, &findings, Some(file)))
+}
+
+fn none_found(log: &Path, wanted: bool) -> Failure {
+    let but = if wanted { ", and no machine file written" } else { "" };
+    Failure::Check(format!("{}: no mode was found{but}", log.display()))
+}
+
 fn machine_text(args: &Args, path: &Path, findings: &Findings) -> Result<String, Failure> {
     match &args.machine {
         Some(machine) => machine_file::into_existing(machine, args.axis.as_deref(), findings),
         None => {
-            let kind = args.kind.kind().unwrap_or(if findings.is_slow() {
-                MachineKind::Crane
-            } else {
-                MachineKind::Printer
-            });
+            let kind = args.kind.kind().unwrap_or(findings.kind());
             machine_file::from_template(kind, path, args.axis.as_deref(), findings)
         }
     }

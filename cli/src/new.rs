@@ -7,6 +7,7 @@ mod questions;
 mod template;
 
 use crate::failure::Failure;
+use crate::identify;
 use crate::output;
 use posicast_system::output::{self as files, OutputError, OutputFiles};
 use questions::Questions;
@@ -21,6 +22,8 @@ pub(crate) use template::{Draft, MachineKind};
 Examples:
   posicast new stage.toml                asks a few questions on a terminal
   posicast new --crane crane.toml        asks nothing
+  posicast new --from-log x.csv head.toml
+                                         with the modes of a measured log
   posicast schema -o posicast-machine.schema.json
                                          beside it: editors then complete and check the file
 
@@ -30,6 +33,9 @@ pub(crate) struct Args {
     file: PathBuf,
     #[command(flatten)]
     kind: KindFlags,
+    /// Take modes and shaper from a measured log, as `posicast identify` finds them; the axis that it is of alone
+    #[arg(long, value_name = "LOG")]
+    from_log: Option<PathBuf>,
     /// Replace FILE if posicast wrote it and nobody has changed it since
     #[arg(long)]
     force: bool,
@@ -65,7 +71,11 @@ impl KindFlags {
 }
 
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
-    let outputs = claim(&args.file, args.force)?;
+    let mut outputs = claim(&args.file, args.force)?;
+    if let Some(log) = &args.from_log {
+        outputs.input("--from-log", log);
+        return identify::new_machine(log, &args.file, args.kind.kind(), &outputs);
+    }
     let asks = stdin().is_terminal() && stderr().is_terminal();
     let draft = match args.kind.kind() {
         // Standard error is not locked: a signal that ends the questions says so there.

@@ -79,9 +79,24 @@ impl Solution {
     }
 }
 
-const ITERATIONS: usize = 60;
-/// Relative gain below which a step is the last.
-const SETTLED: f64 = 1e-6;
+/// How long a fit is followed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Effort {
+    /// Until it is clear how much it explains.
+    Rough,
+    /// Until it does not move.
+    Full,
+}
+
+impl Effort {
+    /// Most steps, and the relative gain below which a step is the last.
+    fn limits(self) -> (usize, f64) {
+        match self {
+            Self::Rough => (25, 1e-3),
+            Self::Full => (60, 1e-6),
+        }
+    }
+}
 
 /// A symmetric matrix of products, its columns scaled to one before it is factored.
 pub(crate) struct Gram {
@@ -159,12 +174,13 @@ pub(crate) fn square(problem: &impl Separable, unknowns: &[f64]) -> Option<f64> 
 }
 
 /// The best fit near the given unknowns; `None` where the rows do not fix the coefficients.
-pub(crate) fn refine(problem: &impl Separable, start: &[f64]) -> Option<Solution> {
+pub(crate) fn refine(problem: &impl Separable, start: &[f64], effort: Effort) -> Option<Solution> {
+    let (steps, settled) = effort.limits();
     let mut unknowns = start.to_vec();
     let mut now = linear(problem, &unknowns)?;
     let mut here = slopes(problem, &unknowns, &now);
     let mut damping = 1e-3;
-    for _ in 0..ITERATIONS {
+    for _ in 0..steps {
         let products = here.tr_mul(&here);
         if products.is_empty() {
             break;
@@ -182,7 +198,7 @@ pub(crate) fn refine(problem: &impl Separable, start: &[f64]) -> Option<Solution
                 (unknowns, now) = (tried, better);
                 here = slopes(problem, &unknowns, &now);
                 damping = (damping * 0.2).max(1e-9);
-                if gain < SETTLED * square {
+                if gain < settled * square {
                     break;
                 }
             }

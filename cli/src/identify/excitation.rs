@@ -2,7 +2,7 @@
 
 use posicast_identify::sweep::Sweep;
 
-#[derive(clap::Args)]
+#[derive(clap::Args, Default)]
 pub(super) struct ExcitationFlags {
     /// Sweep of the resonance test: first and last frequency in Hz, Hz per second, mm/s² per Hz
     #[arg(long, value_name = "START:END:RATE:ACCEL", default_value = "5:135:1:60", value_parser = sweep)]

@@ -2,11 +2,13 @@
 
 use super::excitation::ExcitationFlags;
 use crate::failure::Failure;
+use crate::new::MachineKind;
 use posicast_identify::log::{Log, Reading};
 use posicast_identify::modal::ResponsePoint;
 use posicast_identify::output_only;
 use posicast_identify::position::{self, FoundInPosition, PositionError};
 use posicast_identify::recommend::{Judgement, Recommendation, recommend};
+use posicast_identify::spectrum::{PowerSpectrum, welch};
 use posicast_identify::sweep::{self, FoundInSweep, Sweep, SweepError};
 use posicast_identify::{AccelerationLog, FoundMode, PositionLog};
 use posicast_model::unit::trimmed;
@@ -57,6 +59,8 @@ pub(super) struct Findings {
     /// What is wrong with the log, and what it cannot tell.
     pub(super) remarks: Vec<String>,
     pub(super) evidence: Evidence,
+    /// Power spectrum of what an accelerometer saw.
+    pub(super) spectrum: Option<PowerSpectrum>,
 }
 
 impl Findings {
@@ -76,10 +80,13 @@ impl Findings {
         Ok(findings)
     }
 
-    /// Whether a machine of these modes takes its time.
-    pub(super) fn is_slow(&self) -> bool {
+    /// The template for a machine of these modes.
+    pub(super) fn kind(&self) -> MachineKind {
         const SLOW_HZ: f64 = 2.0;
-        self.modes.iter().any(|found| found.mode.frequency_hz < SLOW_HZ)
+        match self.modes.iter().any(|found| found.mode.frequency_hz < SLOW_HZ) {
+            true => MachineKind::Crane,
+            false => MachineKind::Printer,
+        }
     }
 }
 
@@ -126,6 +133,7 @@ fn of_sweep(log: &AccelerationLog, sweep: &Sweep) -> Result<Findings, Failure> {
                 .collect(),
             points: found.transfer.points,
         },
+        spectrum: spectrum(log, &found.direction),
     })
 }
 
@@ -151,7 +159,15 @@ fn of_output(log: &AccelerationLog) -> Result<Findings, Failure> {
         recommended: Vec::new(),
         judgement: Judgement::default(),
         remarks,
+        spectrum: spectrum(log, &found.direction),
     })
+}
+
+/// The spectrum of a direction, about half a hertz apart.
+fn spectrum(log: &AccelerationLog, direction: &str) -> Option<PowerSpectrum> {
+    const SEGMENT_S: f64 = 2.0;
+    let (_, record) = log.directions.iter().find(|(name, _)| name == direction)?;
+    Some(welch(record, log.sample_s, (SEGMENT_S / log.sample_s) as usize))
 }
 
 fn of_position(log: &PositionLog) -> Result<Findings, Failure> {
@@ -184,6 +200,7 @@ fn of_position(log: &PositionLog) -> Result<Findings, Failure> {
         recommended: Vec::new(),
         judgement: Judgement::default(),
         remarks,
+        spectrum: None,
     })
 }
 

@@ -1,9 +1,10 @@
 //! The pictures of `identify`: the fit, the shapers over the frequency, and the ringing.
 
 use super::findings::{Evidence, Findings};
-use crate::plot::{Curve, Panel, Range, label, time_axis};
+use crate::plot::{Curve, Mark, Panel, Range, label, time_axis};
 use posicast_identify::modal::ResponsePoint;
 use posicast_identify::recommend::{Recommendation, deflection};
+use posicast_identify::spectrum::PowerSpectrum;
 use posicast_model::analysis::sensitivity_curve;
 use posicast_model::impulse::ImpulseSequence;
 use posicast_model::unit::{AxisUnit, trimmed};
@@ -15,12 +16,49 @@ const RATIOS: (f64, f64) = (0.5, 1.5);
 const POINTS: usize = 601;
 
 pub(super) fn panels(findings: &Findings) -> Vec<Panel> {
-    let mut panels = vec![evidence(findings)];
+    let mut panels: Vec<Panel> = findings
+        .spectrum
+        .iter()
+        .map(|power| spectrum(findings, power))
+        .collect();
+    panels.push(evidence(findings));
     if let Some(best) = findings.recommended.first() {
         panels.extend((0..findings.modes.len()).map(|mode| shapers(findings, mode)));
         panels.push(ringing(findings, best));
     }
     panels
+}
+
+/// What the sensor saw, up to half as much again as the highest mode, or as the sweep.
+fn spectrum(findings: &Findings, power: &PowerSpectrum) -> Panel {
+    const LEAST_HZ: f64 = 150.0;
+    let highest = findings
+        .modes
+        .iter()
+        .map(|found| found.mode.frequency_hz)
+        .fold(LEAST_HZ, f64::max);
+    let lines = (1.5 * highest / power.resolution_hz) as usize;
+    let amplitudes = power.density.iter().take(lines).enumerate().skip(1);
+    Panel {
+        title: format!("{}: spectrum of the whole log", findings.source),
+        x_label: "frequency, Hz".into(),
+        y_label: "m/s² per √Hz".into(),
+        curves: vec![Curve::new(
+            format!("mean of {} segments (Welch)", power.segments),
+            amplitudes
+                .map(|(line, density)| (power.frequency_hz(line), density.sqrt()))
+                .collect(),
+        )],
+        marks: findings
+            .modes
+            .iter()
+            .map(|found| Mark {
+                name: "mode".into(),
+                at: found.mode.frequency_hz,
+            })
+            .collect(),
+        ..Panel::default()
+    }
 }
 
 fn evidence(findings: &Findings) -> Panel {

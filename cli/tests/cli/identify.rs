@@ -167,6 +167,38 @@ fn cli_a_step_and_a_decay_become_machines() {
 }
 
 #[test]
+fn cli_new_from_a_log_writes_the_same_machine_and_replaces_none() {
+    let folder = tempfile::tempdir().unwrap();
+    let rows: String = (0..500)
+        .map(|n| {
+            let t = 1e-3 * f64::from(n);
+            format!("{t},{}\n", (-6.0 * t).exp() * (190.0 * t).cos())
+        })
+        .collect();
+    std::fs::write(folder.path().join("stop.csv"), format!("time,response\n{rows}")).unwrap();
+    let new = || {
+        let mut command = posicast();
+        command
+            .current_dir(folder.path())
+            .args(["new", "--from-log", "stop.csv", "head.toml"]);
+        command.output().unwrap().status.code()
+    };
+    assert_eq!(new(), Some(0));
+    let written = std::fs::read_to_string(folder.path().join("head.toml")).unwrap();
+    assert_eq!(identify(folder.path(), &["stop.csv", "-o", "other.toml"]).0, Some(0));
+    let other = std::fs::read_to_string(folder.path().join("other.toml")).unwrap();
+    let modes = |text: &str| {
+        text.lines()
+            .filter(|line| line.contains("measured"))
+            .map(str::to_owned)
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(modes(&written), modes(&other));
+    assert_eq!(modes(&written).len(), 2);
+    assert_eq!(new(), Some(2), "it is there already");
+}
+
+#[test]
 fn cli_without_knowing_the_excitation_the_spectrum_still_tells_a_mode() {
     let folder = tempfile::tempdir().unwrap();
     write_log(&folder.path().join("log.csv"), &[known(60.0, 0.05, 1.0)]);

@@ -1,7 +1,7 @@
 //! The separable least-squares fit of poles to points.
 
 use super::ResponsePoint;
-use crate::separable::{self, Separable};
+use crate::separable::{self, Effort, Separable};
 use nalgebra::{Complex, DMatrix, DVector};
 use std::f64::consts::TAU;
 
@@ -236,9 +236,9 @@ pub(crate) fn square(points: &[ResponsePoint], poles: &[Pole], phase: Phase) -> 
 }
 
 /// The best fit near the given poles. `None` where the points do not fix the unknowns.
-pub(crate) fn refine(points: &[ResponsePoint], poles: &[Pole], phase: Phase) -> Option<Fit> {
+pub(crate) fn refine(points: &[ResponsePoint], poles: &[Pole], phase: Phase, effort: Effort) -> Option<Fit> {
     let problem = Poles::new(points, phase);
-    let solution = separable::refine(&problem, &problem.unknowns(poles, phase))?;
+    let solution = separable::refine(&problem, &problem.unknowns(poles, phase), effort)?;
     let (poles, phase) = problem.poles(&solution.unknowns);
     // What the noise of the points does not explain is taken as more noise.
     let row = solution.reduced_square().max(1.0).sqrt();

@@ -2,6 +2,7 @@
 
 use super::ResponsePoint;
 use super::fit::{Fit, Gains, Phase, Pole, refine};
+use crate::separable::Effort;
 
 /// Most poles that are looked for.
 const MOST: usize = 8;
@@ -18,7 +19,7 @@ const LEAST_GAIN: f64 = 80.0;
 
 /// Poles that explain the points, one after the other. `None` where there are too few points for any.
 pub(crate) fn select(points: &[ResponsePoint], phase: Phase) -> Option<Fit> {
-    Some(grown(points, refine(points, &[], phase)?))
+    Some(grown(points, refine(points, &[], phase, Effort::Rough)?))
 }
 
 /// A fit with the further poles that the points ask for.
@@ -59,7 +60,9 @@ fn with_one_more(points: &[ResponsePoint], fit: &Fit) -> Option<Fit> {
             starts.push(split);
         }
     }
-    let fits = starts.iter().filter_map(|start| refine(points, start, fit.phase));
+    let fits = starts
+        .iter()
+        .filter_map(|start| refine(points, start, fit.phase, Effort::Rough));
     fits.min_by(|a, b| a.square.total_cmp(&b.square))
 }
 

@@ -10,6 +10,7 @@ pub mod recursive;
 mod search;
 
 use crate::found::FoundMode;
+use crate::separable::{self, Effort, Separable};
 use crate::signal::{Between, PositionLog};
 use held::HeldModes;
 use posicast_model::mode::Mode;
@@ -171,7 +172,7 @@ pub fn identify(log: &PositionLog) -> Result<FoundInPosition, PositionError> {
     let decimation = wanted.clamp(samples.div_ceil(MOST_ROWS), (samples / LEAST_SAMPLES).max(1));
     let last = problem(0..samples, decimation);
     let solution =
-        crate::separable::refine(&last, &HeldModes::unknowns(&modes)).ok_or(PositionError::Short(samples))?;
+        separable::refine(&last, &HeldModes::unknowns(&modes), Effort::Full).ok_or(PositionError::Short(samples))?;
     let found = Found {
         modes: HeldModes::modes(&solution.unknowns),
         solution,
@@ -183,7 +184,7 @@ pub fn identify(log: &PositionLog) -> Result<FoundInPosition, PositionError> {
         is_forced: last.is_forced(),
         decimation,
         row_s: last.row_s(),
-        response: crate::separable::Separable::measured(&last).iter().copied().collect(),
+        response: last.measured().iter().copied().collect(),
         fitted: found.solution.fitted.iter().copied().collect(),
         noise,
         remarks,

@@ -1,7 +1,7 @@
 //! How many modes a log has: one more as long as it explains more than noise would.
 
 use super::held::HeldModes;
-use crate::separable::{Gram, Separable, Solution, refine};
+use crate::separable::{Effort, Gram, Separable, Solution, refine};
 use nalgebra::{DMatrix, DVector};
 use posicast_model::mode::Mode;
 
@@ -26,7 +26,7 @@ pub(super) struct Found {
 
 /// Modes that explain the rows, one after the other. `None` where there are too few rows for any.
 pub(super) fn search(problem: &HeldModes<'_>) -> Option<Found> {
-    let mut kept = refine(problem, &[])?;
+    let mut kept = refine(problem, &[], Effort::Rough)?;
     let mut now = kept.clone();
     let mut idle = 0;
     let power = problem.measured().variance() * problem.len() as f64;
@@ -72,7 +72,7 @@ fn with_one_more(problem: &HeldModes<'_>, fit: &Solution) -> Option<Solution> {
     }
     let fits = starts
         .iter()
-        .filter_map(|modes| refine(problem, &HeldModes::unknowns(modes)));
+        .filter_map(|modes| refine(problem, &HeldModes::unknowns(modes), Effort::Rough));
     fits.min_by(|a, b| a.square.total_cmp(&b.square))
 }
 

@@ -11,6 +11,7 @@ pub use transfer::{Band, Transfer};
 
 use crate::found::FoundMode;
 use crate::modal::{self, Fit, Phase};
+use crate::separable::Effort;
 use crate::signal::AccelerationLog;
 use nalgebra::Complex;
 use posicast_model::mode::Mode;
@@ -111,8 +112,10 @@ pub fn identify(log: &AccelerationLog, sweep: &Sweep) -> Result<FoundInSweep, Sw
         true => on_samples,
         false => between,
     };
-    let start = modal::refine(&transfer.points, &timed.poles, Phase::Delay(0.0)).ok_or(SweepError::Empty)?;
-    let fit = modal::grown(&transfer.points, start);
+    let points = &transfer.points;
+    let start = modal::refine(points, &timed.poles, Phase::Delay(0.0), Effort::Rough).ok_or(SweepError::Empty)?;
+    let grown = modal::grown(points, start);
+    let fit = modal::refine(points, &grown.poles, grown.phase, Effort::Full).ok_or(SweepError::Empty)?;
     let told = told(&transfer, &fit);
     if told < LEAST_TOLD {
         return Err(SweepError::Unlike(told));
@@ -217,7 +220,7 @@ fn timed(transfer: &Transfer) -> Option<Fit> {
     let (_, delay_s) = delays
         .filter_map(|delay_s| Some((modal::square(points, &free.poles, Phase::Delay(delay_s))?, delay_s)))
         .min_by(|a, b| a.0.total_cmp(&b.0))?;
-    modal::refine(points, &free.poles, Phase::Delay(delay_s))
+    modal::refine(points, &free.poles, Phase::Delay(delay_s), Effort::Full)
 }
 
 /// Share of the transfer function's power, over its noise's, that a fit explains.
