@@ -17,15 +17,32 @@ pub(crate) struct Pole {
 pub(crate) enum Phase {
     /// Nothing: every coefficient is complex.
     Free,
-    /// All coefficients are real behind a delay of about this many seconds.
-    Delay(f64),
+    /// All coefficients are real behind about this lateness.
+    Late(Lateness),
+}
+
+/// How late a response is: `delay_s` at all frequencies, and by `bend_s` more for each multiple of the highest frequency, since a clock
+/// that is off is off the more, the later in a sweep a frequency comes.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(crate) struct Lateness {
+    pub(crate) delay_s: f64,
+    pub(crate) bend_s: f64,
+}
+
+impl Lateness {
+    /// `e^{−j2πf(delay + bend·f/top)}`.
+    fn turn(&self, frequency_hz: f64, top_hz: f64) -> Complex<f64> {
+        let late_s = self.delay_s + self.bend_s * frequency_hz / top_hz;
+        Complex::from_polar(1.0, -TAU * frequency_hz * late_s)
+    }
 }
 
 impl Phase {
-    fn delay_s(self) -> f64 {
+    /// The lateness, none where nothing is known.
+    pub(crate) fn lateness(self) -> Lateness {
         match self {
-            Self::Free => 0.0,
-            Self::Delay(delay_s) => delay_s,
+            Self::Free => Lateness::default(),
+            Self::Late(lateness) => lateness,
         }
     }
 }
@@ -69,7 +86,7 @@ fn denominator(pole: &Pole, frequency_hz: f64) -> (Complex<f64>, f64) {
 
 /// Values of the linear unknowns' columns at one frequency.
 fn columns(poles: &[Pole], phase: Phase, frequency_hz: f64, top_hz: f64, row: &mut Vec<Complex<f64>>) {
-    let turn = Complex::from_polar(1.0, -TAU * frequency_hz * phase.delay_s());
+    let turn = phase.lateness().turn(frequency_hz, top_hz);
     for pole in poles {
         let (below, ratio) = denominator(pole, frequency_hz);
         let still = turn / below;
@@ -77,7 +94,7 @@ fn columns(poles: &[Pole], phase: Phase, frequency_hz: f64, top_hz: f64, row: &m
     }
     let relative = frequency_hz / top_hz;
     match phase {
-        Phase::Delay(_) => row.extend([turn, turn * relative * relative]),
+        Phase::Late(_) => row.extend([turn, turn * relative * relative]),
         Phase::Free => {
             row.extend((0..FREE_TERMS).map(|power| Complex::new((2.0 * relative - 1.0).powi(power), 0.0)));
             for column in 0..row.len() {
@@ -90,7 +107,7 @@ fn columns(poles: &[Pole], phase: Phase, frequency_hz: f64, top_hz: f64, row: &m
 /// How many linear unknowns there are.
 fn width(poles: &[Pole], phase: Phase) -> usize {
     match phase {
-        Phase::Delay(_) => 2 * poles.len() + 2,
+        Phase::Late(_) => 2 * poles.len() + 2,
         Phase::Free => 2 * (2 * poles.len() + FREE_TERMS as usize),
     }
 }
@@ -126,7 +143,12 @@ fn weighted(points: &[ResponsePoint]) -> DVector<f64> {
     })
 }
 
-/// Poles behind points. Unknowns: `ln f` and `ln ζ` of each pole, and the delay where the phase is known.
+/// The highest frequency.
+fn top_hz(points: &[ResponsePoint]) -> f64 {
+    points.last().map_or(1.0, |point| point.frequency_hz)
+}
+
+/// Poles behind points. Unknowns: `ln f` and `ln ζ` of each pole, and delay and bend where the phase is known.
 struct Poles<'a> {
     points: &'a [ResponsePoint],
     measured: DVector<f64>,
@@ -140,7 +162,7 @@ impl<'a> Poles<'a> {
             points,
             measured: weighted(points),
             is_free: phase == Phase::Free,
-            top_hz: points.last().map_or(1.0, |point| point.frequency_hz),
+            top_hz: top_hz(points),
         }
     }
 
@@ -148,17 +170,24 @@ impl<'a> Poles<'a> {
         let of_poles = poles
             .iter()
             .flat_map(|pole| [pole.frequency_hz.ln(), pole.damping.ln()]);
-        let delay = (!self.is_free).then(|| phase.delay_s());
-        of_poles.chain(delay).collect()
+        let Lateness { delay_s, bend_s } = phase.lateness();
+        let late = [delay_s, bend_s];
+        of_poles.chain(late.into_iter().filter(|_| !self.is_free)).collect()
     }
 
     fn poles(&self, unknowns: &[f64]) -> (Vec<Pole>, Phase) {
-        let (pairs, rest) = unknowns.as_chunks::<2>();
+        let (pairs, _) = unknowns.as_chunks::<2>();
+        let (phase, pairs) = match pairs {
+            [of_poles @ .., [delay_s, bend_s]] if !self.is_free => {
+                let (delay_s, bend_s) = (*delay_s, *bend_s);
+                (Phase::Late(Lateness { delay_s, bend_s }), of_poles)
+            }
+            all => (Phase::Free, all),
+        };
         let poles = pairs.iter().map(|[frequency, damping]| Pole {
             frequency_hz: frequency.exp(),
             damping: damping.exp(),
         });
-        let phase = rest.first().map_or(Phase::Free, |delay_s| Phase::Delay(*delay_s));
         (poles.collect(), phase)
     }
 
@@ -196,7 +225,7 @@ impl Separable for Poles<'_> {
         let (poles, phase) = self.poles(unknowns);
         let mut values = Vec::new();
         stacked(self.points, unknowns.len(), |frequency_hz, row| {
-            let turn = Complex::from_polar(1.0, -TAU * frequency_hz * phase.delay_s());
+            let turn = phase.lateness().turn(frequency_hz, self.top_hz);
             for (k, pole) in poles.iter().enumerate() {
                 let (below, ratio) = denominator(pole, frequency_hz);
                 let (still, moving) = self.of_pole(coefficients, k);
@@ -210,20 +239,25 @@ impl Separable for Poles<'_> {
                 values.clear();
                 columns(&poles, phase, frequency_hz, self.top_hz, &mut values);
                 let value: Complex<f64> = values.iter().zip(coefficients).map(|(v, c)| v * c).sum();
-                row.push(-I * TAU * frequency_hz * value);
+                let by_delay = -I * TAU * frequency_hz * value;
+                row.extend([by_delay, by_delay * (frequency_hz / self.top_hz)]);
             }
         })
     }
 
     fn stepped(&self, unknowns: &[f64], step: &DVector<f64>) -> Vec<f64> {
         let mut unknowns = unknowns.to_vec();
-        let (pairs, rest) = unknowns.as_chunks_mut::<2>();
-        for (k, [frequency, damping]) in pairs.iter_mut().enumerate() {
-            *frequency += step[2 * k].clamp(-0.2, 0.2);
-            *damping = (*damping + step[2 * k + 1].clamp(-1.0, 1.0)).clamp(DAMPING.0.ln(), DAMPING.1.ln());
-        }
-        for (delay_s, step) in rest.iter_mut().zip(step.iter().skip(2 * pairs.len())) {
-            *delay_s += step;
+        let (pairs, _) = unknowns.as_chunks_mut::<2>();
+        let poles = if self.is_free { pairs.len() } else { pairs.len() - 1 };
+        for (k, [first, second]) in pairs.iter_mut().enumerate() {
+            let (by_first, by_second) = (step[2 * k], step[2 * k + 1]);
+            if k < poles {
+                *first += by_first.clamp(-0.2, 0.2);
+                *second = (*second + by_second.clamp(-1.0, 1.0)).clamp(DAMPING.0.ln(), DAMPING.1.ln());
+            } else {
+                *first += by_first;
+                *second += by_second;
+            }
         }
         unknowns
     }
@@ -275,7 +309,7 @@ impl<'a> Gains<'a> {
     /// Gains over a fit, judged from every `stride`-th point.
     pub(super) fn new(points: &'a [ResponsePoint], fit: &Fit, stride: usize) -> Self {
         let chosen: Vec<usize> = (0..points.len()).step_by(stride).collect();
-        let delay_s = fit.phase.delay_s();
+        let (late, top) = (fit.phase.lateness(), top_hz(points));
         Self {
             residual: chosen
                 .iter()
@@ -283,7 +317,7 @@ impl<'a> Gains<'a> {
                 .collect(),
             turns: chosen
                 .iter()
-                .map(|&n| Complex::from_polar(1.0 / points[n].deviation, -TAU * points[n].frequency_hz * delay_s))
+                .map(|&n| late.turn(points[n].frequency_hz, top) / points[n].deviation)
                 .collect(),
             points: chosen.iter().map(|&n| &points[n]).collect(),
             free: fit.phase == Phase::Free,

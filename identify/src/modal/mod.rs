@@ -5,7 +5,7 @@
 //! ```
 //!
 //! `a_k` is the share of mode `k` in the static displacement, `D` and `E` are what the axis itself and modes above the band do,
-//! `τ` is the time by which the response is later than was assumed. Weighted least squares, separable: for given frequencies,
+//! `τ` is the time by which the response is later than was assumed; it may grow with the frequency, since clocks drift. Weighted least squares, separable: for given frequencies,
 //! damping ratios and `τ` the other unknowns follow linearly (Golub and Pereyra 1973, in the form of Kaufman 1975).
 //!
 //! With [`Phase::Free`] the coefficients are complex and the rest is a polynomial with complex coefficients: the poles are then found
@@ -14,7 +14,7 @@
 mod fit;
 mod select;
 
-pub(crate) use fit::{Fit, Phase, refine, square};
+pub(crate) use fit::{Fit, Lateness, Phase, refine, square};
 pub(crate) use select::{grown, select};
 
 use nalgebra::Complex;

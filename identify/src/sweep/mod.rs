@@ -10,7 +10,7 @@ pub use excitation::{QuarterOrder, Rise, Sweep, SweptAcceleration};
 pub use transfer::{Band, Transfer};
 
 use crate::found::FoundMode;
-use crate::modal::{self, Fit, Phase};
+use crate::modal::{self, Fit, Lateness, Phase, ResponsePoint};
 use crate::separable::Effort;
 use crate::signal::AccelerationLog;
 use nalgebra::Complex;
@@ -27,6 +27,8 @@ pub struct FoundInSweep {
     pub direction: String,
     /// Time of the first sample at which the sweep begins, in seconds; negative where the log begins later.
     pub start_s: f64,
+    /// By how much the log's clock is slower than that of the sweep, relative: 1e-4 is 10 ms in 100 s.
+    pub clock_error: f64,
     /// Order of the quarter periods that fits the log.
     pub order: QuarterOrder,
     /// Way of rising that fits the log.
@@ -97,11 +99,9 @@ pub fn identify(log: &AccelerationLog, sweep: &Sweep) -> Result<FoundInSweep, Sw
         return Err(SweepError::Unrelated(rough.explained));
     }
     let timed = timed(&rough).ok_or(SweepError::Empty)?;
-    let Phase::Delay(late_s) = timed.phase else {
-        return Err(SweepError::Empty);
-    };
+    let Lateness { delay_s, bend_s } = timed.phase.lateness();
     // What folds is known only once the begin is known to less than a sample.
-    let start_s = begun.start_s + late_s;
+    let start_s = begun.start_s + delay_s;
     let smooth = placed(&mut analyser, &begun, start_s, seconds);
     let sampled = analyser.sampled(&begun.excitation, start_s);
     // A real axis is pushed when the sweep says; a simulated one often only from the next sample on, and is pushed by all that
@@ -113,7 +113,9 @@ pub fn identify(log: &AccelerationLog, sweep: &Sweep) -> Result<FoundInSweep, Sw
         false => between,
     };
     let points = &transfer.points;
-    let start = modal::refine(points, &timed.poles, Phase::Delay(0.0), Effort::Rough).ok_or(SweepError::Empty)?;
+    let top_hz = points.last().map_or(1.0, |point| point.frequency_hz);
+    let rest = Phase::Late(Lateness { delay_s: 0.0, bend_s });
+    let start = modal::refine(points, &timed.poles, rest, Effort::Rough).ok_or(SweepError::Empty)?;
     let grown = modal::grown(points, start);
     let fit = modal::refine(points, &grown.poles, grown.phase, Effort::Full).ok_or(SweepError::Empty)?;
     let told = told(&transfer, &fit);
@@ -123,12 +125,8 @@ pub fn identify(log: &AccelerationLog, sweep: &Sweep) -> Result<FoundInSweep, Sw
     Ok(FoundInSweep {
         modes: modes(&fit, &band),
         direction,
-        start_s: start_s
-            + if let Phase::Delay(late_s) = fit.phase {
-                late_s
-            } else {
-                0.0
-            },
+        start_s: start_s + fit.phase.lateness().delay_s,
+        clock_error: 2.0 * fit.phase.lateness().bend_s * sweep.rate_hz_per_s / top_hz,
         order: begun.order,
         rise: begun.rise,
         reduced_square: fit.reduced_square(),
@@ -209,18 +207,49 @@ fn placed(analyser: &mut Analyser, begun: &Begun, start_s: f64, seconds: f64) ->
     }
 }
 
-/// Poles without a word about the phase, then the delay that goes with them.
+/// Poles without a word about the phase, then the lateness that goes with them.
 fn timed(transfer: &Transfer) -> Option<Fit> {
     const TRIED_S: f64 = 0.25e-3;
     const TRIED: i32 = 60;
+    /// Times what poles alone leave, beyond which a delay is not all that is wrong with the phase.
+    const BENT: f64 = 3.0;
     // Start values are looked for: a third of the points says as much in a third of the time.
     let points = &modal::thinned(&transfer.points, 3);
     let free = modal::select(points, Phase::Free)?;
-    let delays = (-TRIED..=TRIED).map(|n| f64::from(n) * TRIED_S);
-    let (_, delay_s) = delays
-        .filter_map(|delay_s| Some((modal::square(points, &free.poles, Phase::Delay(delay_s))?, delay_s)))
-        .min_by(|a, b| a.0.total_cmp(&b.0))?;
-    modal::refine(points, &free.poles, Phase::Delay(delay_s), Effort::Full)
+    let delays = (-TRIED..=TRIED).map(|n| Lateness {
+        delay_s: f64::from(n) * TRIED_S,
+        bend_s: 0.0,
+    });
+    let delayed = modal::refine(points, &free.poles, best(points, &free, delays)?, Effort::Full)?;
+    if delayed.square < BENT * free.square {
+        return Some(delayed);
+    }
+    let bent = modal::refine(points, &free.poles, bent(points, &free)?, Effort::Full)?;
+    Some(if bent.square < delayed.square { bent } else { delayed })
+}
+
+/// The lateness that explains most.
+fn best(points: &[ResponsePoint], free: &Fit, tried: impl Iterator<Item = Lateness>) -> Option<Phase> {
+    let squares = tried.filter_map(|late| {
+        let phase = Phase::Late(late);
+        Some((modal::square(points, &free.poles, phase)?, phase))
+    });
+    squares.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, phase)| phase)
+}
+
+/// The lateness of a log whose clock is not that of the sweep: up to a tenth of a percent.
+fn bent(points: &[ResponsePoint], free: &Fit) -> Option<Phase> {
+    const STEP_S: f64 = 0.5e-3;
+    const BENDS: i32 = 130;
+    const DELAYS: i32 = 30;
+    // What was taken for the begin is right for the middle of the band: there the lateness is next to nothing.
+    let tried = (-BENDS..=BENDS).flat_map(|bend| {
+        (-DELAYS..=DELAYS).map(move |delay| Lateness {
+            delay_s: STEP_S * f64::from(delay - bend),
+            bend_s: STEP_S * f64::from(bend),
+        })
+    });
+    best(&modal::thinned(points, 3), free, tried)
 }
 
 /// Share of the transfer function's power, over its noise's, that a fit explains.
