@@ -152,3 +152,19 @@ fn unit_a_log_that_begins_in_the_sweep_still_tells_the_modes_that_it_saw() {
     check(&truths, &found.modes);
     assert!(found.start_s < -1.5, "{}", found.start_s);
 }
+
+#[test]
+fn unit_a_clock_that_drifts_is_set_by_the_sweep() {
+    let truths = [known(38.0, 0.04, 0.7), known(66.0, 0.05, 0.3)];
+    for error in [-2e-4, 1e-4, 5e-4] {
+        let mut log = resonance_test(&truths, &Sweep::default(), &Sensor::default(), 5);
+        log.sample_s *= 1.0 + error;
+        let found = sweep::identify(&log, &Sweep::default()).unwrap();
+        check(&truths, &found.modes);
+        assert!(
+            (found.clock_error - error).abs() < 2e-5,
+            "{error} {}",
+            found.clock_error
+        );
+    }
+}

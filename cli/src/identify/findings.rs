@@ -93,7 +93,7 @@ impl Findings {
 fn of_sweep(log: &AccelerationLog, sweep: &Sweep) -> Result<Findings, Failure> {
     let found = sweep::identify(log, sweep).map_err(|error| {
         let help = match error {
-            SweepError::Unrelated(_) | SweepError::Unlike(_) => {
+            SweepError::Unrelated(_) | SweepError::Unlike(_) | SweepError::Drifts(_) => {
                 "--sweep describes another sweep; --output-only looks for modes without knowing the excitation"
             }
             SweepError::Description(_) => "--sweep START:END:RATE:ACCEL, for example 5:135:1:60",
@@ -224,6 +224,13 @@ fn remarks(found: &FoundInSweep, sweep: &Sweep) -> Vec<String> {
             "the modes leave {:.1} times as much of the transfer function as its noise would: it has something that no linear \
              mode explains, such as play or stick; the intervals are widened for it",
             found.reduced_square.sqrt()
+        ));
+    }
+    if found.clock_error != 0.0 {
+        remarks.push(format!(
+            "the clock of the log runs {} % {} than that of the sweep; frequencies are by the sweep's",
+            trimmed(100.0 * found.clock_error.abs(), 3),
+            if found.clock_error > 0.0 { "faster" } else { "slower" }
         ));
     }
     if found.modes.is_empty() {

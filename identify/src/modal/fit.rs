@@ -31,7 +31,7 @@ pub(crate) struct Lateness {
 
 impl Lateness {
     /// `e^{−j2πf(delay + bend·f/top)}`.
-    fn turn(&self, frequency_hz: f64, top_hz: f64) -> Complex<f64> {
+    pub(crate) fn turn(&self, frequency_hz: f64, top_hz: f64) -> Complex<f64> {
         let late_s = self.delay_s + self.bend_s * frequency_hz / top_hz;
         Complex::from_polar(1.0, -TAU * frequency_hz * late_s)
     }

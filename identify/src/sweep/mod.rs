@@ -27,7 +27,7 @@ pub struct FoundInSweep {
     pub direction: String,
     /// Time of the first sample at which the sweep begins, in seconds; negative where the log begins later.
     pub start_s: f64,
-    /// By how much the log's clock is slower than that of the sweep, relative: 1e-4 is 10 ms in 100 s.
+    /// By how much the log's clock runs faster than that of the sweep, relative: 1e-4 is 10 ms in 100 s. 0 where it was taken as it is.
     pub clock_error: f64,
     /// Order of the quarter periods that fits the log.
     pub order: QuarterOrder,
@@ -61,6 +61,9 @@ pub enum SweepError {
     /// The log follows the sweep in a way that no modes do.
     #[error("modes tell {:.0} % of how the sensor follows this sweep: it was another one, or the machine is far from linear", 100.0 * .0)]
     Unlike(f64),
+    /// The clock of the log does not settle.
+    #[error("the clock of the log seems {:.3} % off that of this sweep: it was another sweep, or times are missing", 100.0 * .0)]
+    Drifts(f64),
     /// A transfer function that fixes no mode.
     #[error("the log fixes no transfer function in the band of the sweep")]
     Empty,
@@ -86,22 +89,70 @@ pub fn identify(log: &AccelerationLog, sweep: &Sweep) -> Result<FoundInSweep, Sw
         return Err(SweepError::Short { samples, seconds });
     }
     check(sweep, log.sample_s)?;
+    let mut clock = 1.0;
+    for pass in 1..=PASSES {
+        match followed(log, sweep, samples, log.sample_s / clock, pass == 1)? {
+            Pass::Drifts(error) if pass < PASSES => clock *= 1.0 + error,
+            Pass::Drifts(error) => return Err(SweepError::Drifts(clock * (1.0 + error) - 1.0)),
+            Pass::Ended(found) => {
+                return Ok(FoundInSweep {
+                    clock_error: clock - 1.0,
+                    ..*found
+                });
+            }
+        }
+    }
+    Err(SweepError::Empty)
+}
+
+/// Most times that a log is followed, each with its clock set anew, and the bend in seconds from which that is done: the fit makes good
+/// what is less.
+const PASSES: usize = 5;
+const BEND_S: f64 = 3e-3;
+
+/// A log followed with one clock.
+enum Pass {
+    /// Its clock is off by so much, relative.
+    Drifts(f64),
+    Ended(Box<FoundInSweep>),
+}
+
+fn followed(
+    log: &AccelerationLog,
+    sweep: &Sweep,
+    samples: usize,
+    sample_s: f64,
+    is_first: bool,
+) -> Result<Pass, SweepError> {
+    let seconds = samples as f64 * sample_s;
     let band = Band {
         low_hz: sweep.start_hz * (1.0 + MARGIN),
         high_hz: sweep.end_hz * (1.0 - MARGIN),
     };
-    let mut analyser = Analyser::new(samples, log.sample_s, band);
+    // A clock that is fast by ε sees f ε·f/rate late, and takes it for f/(1 + ε), which should have come as much earlier: the group delay, which
+    // is twice the bend.
+    let error = |bend_s: f64| bend_s * sweep.rate_hz_per_s / band.high_hz;
+    let mut analyser = Analyser::new(samples, sample_s, band);
     let (direction, response) = strongest(log, &mut analyser).ok_or(SweepError::Empty)?;
     let begun = begin(&mut analyser, &response, sweep).ok_or(SweepError::Empty)?;
     let smooth = placed(&mut analyser, &begun, begun.start_s, seconds);
+    if is_first {
+        let bend_s = transfer::bend(&response, &smooth, band.high_hz);
+        if bend_s.abs() > BEND_S {
+            return Ok(Pass::Drifts(error(bend_s)));
+        }
+    }
     let rough = transfer::transfer(&response, &smooth, None);
     if rough.explained < LEAST_EXPLAINED {
         return Err(SweepError::Unrelated(rough.explained));
     }
     let timed = timed(&rough).ok_or(SweepError::Empty)?;
-    let Lateness { delay_s, bend_s } = timed.phase.lateness();
+    let late = timed.phase.lateness();
+    if late.bend_s.abs() > BEND_S {
+        return Ok(Pass::Drifts(error(late.bend_s)));
+    }
     // What folds is known only once the begin is known to less than a sample.
-    let start_s = begun.start_s + delay_s;
+    let start_s = begun.start_s + late.delay_s;
     let smooth = placed(&mut analyser, &begun, start_s, seconds);
     let sampled = analyser.sampled(&begun.excitation, start_s);
     // A real axis is pushed when the sweep says; a simulated one often only from the next sample on, and is pushed by all that
@@ -113,8 +164,7 @@ pub fn identify(log: &AccelerationLog, sweep: &Sweep) -> Result<FoundInSweep, Sw
         false => between,
     };
     let points = &transfer.points;
-    let top_hz = points.last().map_or(1.0, |point| point.frequency_hz);
-    let rest = Phase::Late(Lateness { delay_s: 0.0, bend_s });
+    let rest = Phase::Late(Lateness::default());
     let start = modal::refine(points, &timed.poles, rest, Effort::Rough).ok_or(SweepError::Empty)?;
     let grown = modal::grown(points, start);
     let fit = modal::refine(points, &grown.poles, grown.phase, Effort::Full).ok_or(SweepError::Empty)?;
@@ -122,17 +172,17 @@ pub fn identify(log: &AccelerationLog, sweep: &Sweep) -> Result<FoundInSweep, Sw
     if told < LEAST_TOLD {
         return Err(SweepError::Unlike(told));
     }
-    Ok(FoundInSweep {
+    Ok(Pass::Ended(Box::new(FoundInSweep {
         modes: modes(&fit, &band),
         direction,
         start_s: start_s + fit.phase.lateness().delay_s,
-        clock_error: 2.0 * fit.phase.lateness().bend_s * sweep.rate_hz_per_s / top_hz,
+        clock_error: 0.0,
         order: begun.order,
         rise: begun.rise,
         reduced_square: fit.reduced_square(),
         fitted: fit.values,
         transfer,
-    })
+    })))
 }
 
 fn check(sweep: &Sweep, sample_s: f64) -> Result<(), SweepError> {
@@ -211,8 +261,6 @@ fn placed(analyser: &mut Analyser, begun: &Begun, start_s: f64, seconds: f64) ->
 fn timed(transfer: &Transfer) -> Option<Fit> {
     const TRIED_S: f64 = 0.25e-3;
     const TRIED: i32 = 60;
-    /// Times what poles alone leave, beyond which a delay is not all that is wrong with the phase.
-    const BENT: f64 = 3.0;
     // Start values are looked for: a third of the points says as much in a third of the time.
     let points = &modal::thinned(&transfer.points, 3);
     let free = modal::select(points, Phase::Free)?;
@@ -220,12 +268,7 @@ fn timed(transfer: &Transfer) -> Option<Fit> {
         delay_s: f64::from(n) * TRIED_S,
         bend_s: 0.0,
     });
-    let delayed = modal::refine(points, &free.poles, best(points, &free, delays)?, Effort::Full)?;
-    if delayed.square < BENT * free.square {
-        return Some(delayed);
-    }
-    let bent = modal::refine(points, &free.poles, bent(points, &free)?, Effort::Full)?;
-    Some(if bent.square < delayed.square { bent } else { delayed })
+    modal::refine(points, &free.poles, best(points, &free, delays)?, Effort::Full)
 }
 
 /// The lateness that explains most.
@@ -235,21 +278,6 @@ fn best(points: &[ResponsePoint], free: &Fit, tried: impl Iterator<Item = Latene
         Some((modal::square(points, &free.poles, phase)?, phase))
     });
     squares.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, phase)| phase)
-}
-
-/// The lateness of a log whose clock is not that of the sweep: up to a tenth of a percent.
-fn bent(points: &[ResponsePoint], free: &Fit) -> Option<Phase> {
-    const STEP_S: f64 = 0.5e-3;
-    const BENDS: i32 = 130;
-    const DELAYS: i32 = 30;
-    // What was taken for the begin is right for the middle of the band: there the lateness is next to nothing.
-    let tried = (-BENDS..=BENDS).flat_map(|bend| {
-        (-DELAYS..=DELAYS).map(move |delay| Lateness {
-            delay_s: STEP_S * f64::from(delay - bend),
-            bend_s: STEP_S * f64::from(bend),
-        })
-    });
-    best(&modal::thinned(points, 3), free, tried)
 }
 
 /// Share of the transfer function's power, over its noise's, that a fit explains.

@@ -8,7 +8,7 @@
 //! it is what the samples of the excitation have beside its means.
 
 use super::excitation::SweptAcceleration;
-use crate::modal::ResponsePoint;
+use crate::modal::{Lateness, ResponsePoint};
 use crate::spectrum::{Transform, fast_length};
 use nalgebra::Complex;
 
@@ -104,12 +104,11 @@ impl Analyser {
         self.lines(&samples)
     }
 
-    /// Lines of an excitation from those of one that began `later_s` earlier. Right where the log holds the whole of both.
-    pub(super) fn later(&self, lines: &Lines, later_s: f64) -> Lines {
-        let turned =
-            lines.values.iter().enumerate().map(|(n, line)| {
-                line * Complex::from_polar(1.0, -std::f64::consts::TAU * lines.frequency_hz(n) * later_s)
-            });
+    /// Lines of an excitation from those of one that began `delay_s` earlier. Right where the log holds the whole of both.
+    pub(super) fn later(&self, lines: &Lines, delay_s: f64) -> Lines {
+        let late = Lateness { delay_s, bend_s: 0.0 };
+        let turned = lines.values.iter().enumerate();
+        let turned = turned.map(|(n, line)| line * late.turn(lines.frequency_hz(n), self.band.high_hz));
         Lines {
             values: turned.collect(),
             ..*lines
@@ -152,6 +151,47 @@ pub(super) fn delay(response: &Lines, excitation: &Lines) -> (f64, f64) {
         late_s
     };
     (late_s, largest.1 / square.sqrt().max(f64::MIN_POSITIVE))
+}
+
+/// How much later each multiple of the highest frequency is, in seconds: what a clock that drifts against that of the sweep does. The
+/// delay is known to be about right for the middle of the band.
+pub(super) fn bend(response: &Lines, excitation: &Lines, high_hz: f64) -> f64 {
+    /// Distance of the frequencies that are looked at, and of the bends.
+    const RESOLUTION_HZ: f64 = 0.25;
+    const STEP_S: f64 = 0.4e-3;
+    const STEPS: i32 = 240;
+    let joined = ((RESOLUTION_HZ / response.resolution_hz) as usize).max(1);
+    let lines: Vec<usize> = (0..response.values.len()).step_by(joined).collect();
+    let phases: Vec<(f64, Complex<f64>)> = lines
+        .windows(2)
+        .map(|pair| {
+            let cross = (pair[0]..pair[1]).map(|n| response.values[n] * excitation.values[n].conj());
+            let sum: Complex<f64> = cross.sum();
+            let middle = (pair[0] + pair[1]) / 2;
+            (response.frequency_hz(middle), sum / sum.norm().max(f64::MIN_POSITIVE))
+        })
+        .collect();
+    let length = fast_length(4 * phases.len());
+    let mut transform = Transform::new(length);
+    let mut sharpness = |bend_s: f64| {
+        let bent = Lateness {
+            delay_s: -bend_s,
+            bend_s,
+        };
+        let straight = phases
+            .iter()
+            .map(|(frequency_hz, phase)| phase * bent.turn(*frequency_hz, high_hz).conj());
+        let impulse = transform.inverse(&straight.collect::<Vec<_>>());
+        impulse.iter().map(|x| x.abs()).fold(0.0, f64::max)
+    };
+    let straight = sharpness(0.0);
+    let tried = (-STEPS..=STEPS).map(|step| STEP_S * f64::from(step));
+    let best = tried
+        .map(|bend_s| (sharpness(bend_s), bend_s))
+        .max_by(|a, b| a.0.total_cmp(&b.0));
+    // A little sharper is chance, and modes are not quite straight.
+    best.filter(|(sharpest, _)| *sharpest > 1.15 * straight)
+        .map_or(0.0, |(_, bend_s)| bend_s)
 }
 
 /// A transfer function with its noise.
