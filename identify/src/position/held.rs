@@ -57,6 +57,11 @@ impl<'a> HeldModes<'a> {
         self.sample_s * self.decimation as f64
     }
 
+    /// Samples in a row.
+    pub(super) fn decimation(&self) -> usize {
+        self.decimation
+    }
+
     /// How many rows there are.
     pub(super) fn len(&self) -> usize {
         self.measured.len()
