@@ -129,7 +129,7 @@ const MOST_ROWS: usize = 30_000;
 /// Damping ratio from which a pole is no vibration.
 const NO_VIBRATION: f64 = 0.6;
 /// Share of the displacement below which a mode is not told.
-const LEAST_SHARE: f64 = 0.03;
+const LEAST_SHARE: f64 = 0.05;
 /// Standard deviation of a mode's damping and of its frequency, relative to them, beyond which the log does not fix it.
 const VAGUE_DAMPING: f64 = 0.4;
 const VAGUE_FREQUENCY: f64 = 0.03;
