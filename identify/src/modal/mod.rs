@@ -8,7 +8,7 @@
 //! `τ` is the time by which the response is later than was assumed; it may grow with the frequency, since clocks drift. Weighted least squares, separable: for given frequencies,
 //! damping ratios and `τ` the other unknowns follow linearly (Golub and Pereyra 1973, in the form of Kaufman 1975).
 //!
-//! With [`Phase::Free`] the coefficients are complex and the rest is a polynomial with complex coefficients: the poles are then found
+//! Where the phase is not known the coefficients are complex and the rest is a polynomial with complex coefficients: the poles are then found
 //! whatever the phase of the excitation.
 
 mod fit;

@@ -1,6 +1,6 @@
 //! Modes from a position log: time, command, response; or the free decay of a response.
 //!
-//! The output error of modes under a held command ([`HeldModes`](held)) is made as small as it can be: unbiased under noise of the
+//! The output error of modes under a held command is made as small as it can be: unbiased under noise of the
 //! sensor, exact without it, for steps, decays, pseudo-random commands and chirps alike. [`arx`] has the models of equations (2-1) to
 //! (2-4) of the XY stage: what they find is set beside it.
 
