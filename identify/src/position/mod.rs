@@ -6,13 +6,15 @@
 
 pub mod arx;
 mod held;
+mod memory;
 pub mod recursive;
 mod search;
 
 use crate::found::FoundMode;
-use crate::separable::{self, Effort, Separable};
+use crate::separable::Separable;
 use crate::signal::{Between, PositionLog};
 use held::HeldModes;
+use memory::beside_noise;
 use posicast_model::mode::Mode;
 use search::{Found, search};
 use thiserror::Error;
@@ -147,12 +149,12 @@ pub fn identify(log: &PositionLog) -> Result<FoundInPosition, PositionError> {
     let samples = log.response.len();
     let coarse = samples.div_ceil(SEARCH_ROWS);
     let problem = |range, decimation| HeldModes::new(log, range, decimation);
-    let mut found = search(&problem(0..samples, coarse));
+    let mut found = search(&problem(0..samples, coarse), &[]);
     if coarse > 1 {
         // What is too fast for the rows of the whole log is looked for where the command first moves.
         let first = log.command.windows(2).position(|pair| pair[0] != pair[1]).unwrap_or(0);
         let begin = first.min(samples - SEARCH_ROWS);
-        let fast = search(&problem(begin..begin + SEARCH_ROWS, 1));
+        let fast = search(&problem(begin..begin + SEARCH_ROWS, 1), &[]);
         let slow = found
             .as_ref()
             .map_or(0, |found| told(&problem(0..samples, coarse), found).len());
@@ -171,21 +173,18 @@ pub fn identify(log: &PositionLog) -> Result<FoundInPosition, PositionError> {
     };
     let decimation = wanted.clamp(samples.div_ceil(MOST_ROWS), (samples / LEAST_SAMPLES).max(1));
     let last = problem(0..samples, decimation);
-    let solution =
-        separable::refine(&last, &HeldModes::unknowns(&modes), Effort::Full).ok_or(PositionError::Short(samples))?;
-    let found = Found {
-        modes: HeldModes::modes(&solution.unknowns),
-        solution,
-    };
-    let modes = told(&last, &found);
-    let noise = found.solution.reduced_square().sqrt();
+    let (fitted_rows, found) = beside_noise(last.clone(), &modes).ok_or(PositionError::Short(samples))?;
+    let modes = told(&fitted_rows, &found);
+    let solution = &found.solution;
+    let fitted = last.basis(&solution.unknowns) * &solution.coefficients;
+    let noise = ((last.measured() - &fitted).norm_squared() / solution.freedoms).sqrt();
     let remarks = remarks(log, &last, &modes, noise);
     Ok(FoundInPosition {
         is_forced: last.is_forced(),
         decimation,
         row_s: last.row_s(),
         response: last.measured().iter().copied().collect(),
-        fitted: found.solution.fitted.iter().copied().collect(),
+        fitted: fitted.iter().copied().collect(),
         noise,
         remarks,
         modes,
