@@ -48,6 +48,27 @@ fn unit_units_separators_and_other_columns_are_understood() {
 }
 
 #[test]
+fn unit_what_spreadsheets_make_of_a_log_is_read() {
+    let one = |n: usize| (n as f64 * 0.001, n / 50, n * n % 17);
+    let plain = rows("time,command_mm,response_mm", |n| {
+        format!("{:.3},{},{}", one(n).0, one(n).1, one(n).2)
+    });
+    let commas = rows("Time; Command [mm]; Response (mm)", |n| {
+        format!("{:.3};{};{}", one(n).0, one(n).1, one(n).2).replace('.', ",")
+    });
+    let ended = rows("time,command_mm,response_mm", |n| {
+        format!("{:.3},{},{},", one(n).0, one(n).1, one(n).2)
+    });
+    let lines = rows("time,command_mm,response_mm", |n| {
+        format!("{:.3},{},{}\r", one(n).0, one(n).1, one(n).2)
+    });
+    let expected = log::read(plain.as_bytes()).unwrap();
+    for other in [commas, ended, lines] {
+        assert_eq!(log::read(other.as_bytes()).unwrap(), expected, "{}", &other[..80]);
+    }
+}
+
+#[test]
 fn unit_a_trace_of_the_stage_is_the_scale_behind_the_motor() {
     let text = rows("time_s,captured_position,deviation", |n| {
         format!("{},{},{}", n as f64 * 1e-4, n, n % 3)

@@ -98,6 +98,21 @@ fn unit_without_noise_every_command_gives_the_mode_to_rounding() {
 }
 
 #[test]
+fn unit_units_change_nothing() {
+    let truths = [(stage()[1], 1.0)];
+    for unit in [1e-300, 1e-9, 1e6, 1e300] {
+        let mut log = log(&truths, &step(400), 0.5e-3, 0.001, 1);
+        log.command
+            .iter_mut()
+            .chain(&mut log.response)
+            .for_each(|value| *value *= unit);
+        let found = position::identify(&log).unwrap();
+        check(&found, &truths, 0.01, 0.15);
+        assert!((found.noise / unit / 0.001 - 1.0).abs() < 0.5, "{unit} {}", found.noise);
+    }
+}
+
+#[test]
 fn unit_with_noise_of_one_percent_the_mode_is_within_the_figures_of_the_notes() {
     for truth in stage() {
         // Ever more samples per period: what destroys plain least squares.
@@ -325,6 +340,32 @@ fn unit_forgetting_follows_a_mode_that_moves() {
             "{found:?}"
         );
     }
+}
+
+#[test]
+fn unit_a_mode_that_moves_during_a_log_is_said() {
+    let command = pseudo_random(2000, 2);
+    let [mut first, second] = [100.0, 104.0].map(|hz| log(&[(mode(hz, 0.05), 1.0)], &command, 1e-3, 0.01, hz as u64));
+    let steady = position::identify(&first).unwrap();
+    assert!(
+        !steady.remarks.iter().any(|r| matches!(r, PositionRemark::Moves { .. })),
+        "{:?}",
+        steady.remarks
+    );
+    first.response.truncate(1000);
+    first.response.extend(&second.response[1000..]);
+    let found = position::identify(&first).unwrap();
+    let moves = found.remarks.iter().find_map(|remark| match remark {
+        PositionRemark::Moves { from_hz, to_hz } => Some((*from_hz, *to_hz)),
+        _ => None,
+    });
+    let Some((from_hz, to_hz)) = moves else {
+        panic!("{found:?}")
+    };
+    assert!(
+        (from_hz - 100.0).abs() < 0.5 && (to_hz - 104.0).abs() < 0.5,
+        "{from_hz} {to_hz}"
+    );
 }
 
 #[test]

@@ -168,3 +168,14 @@ fn unit_a_clock_that_drifts_is_set_by_the_sweep() {
         );
     }
 }
+
+#[test]
+fn unit_a_log_that_is_mostly_noise_tells_what_it_can() {
+    let truths = [known(45.0, 0.05, 1.0)];
+    let sensor = Sensor {
+        noise: 15.0,
+        ..Sensor::default()
+    };
+    let log = resonance_test(&truths, &Sweep::default(), &sensor, 5);
+    check(&truths, &sweep::identify(&log, &Sweep::default()).unwrap().modes);
+}

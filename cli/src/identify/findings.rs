@@ -93,7 +93,7 @@ impl Findings {
 fn of_sweep(log: &AccelerationLog, sweep: &Sweep) -> Result<Findings, Failure> {
     let found = sweep::identify(log, sweep).map_err(|error| {
         let help = match error {
-            SweepError::Unrelated(_) | SweepError::Unlike(_) | SweepError::Drifts(_) => {
+            SweepError::Unrelated(_) | SweepError::Unlike(_) => {
                 "--sweep describes another sweep; --output-only looks for modes without knowing the excitation"
             }
             SweepError::Description(_) => "--sweep START:END:RATE:ACCEL, for example 5:135:1:60",
@@ -241,7 +241,7 @@ fn remarks(found: &FoundInSweep, sweep: &Sweep) -> Vec<String> {
         ));
     } else {
         remarks.push(format!(
-            "modes below {} Hz and above {} Hz are not in this sweep, nor is one with less than 3 % of the displacement told",
+            "modes below {} Hz and above {} Hz are not in this sweep, nor is one with less than 5 % of the displacement told",
             trimmed(sweep.start_hz, 4),
             trimmed(sweep.end_hz, 4)
         ));

@@ -138,7 +138,9 @@ pub(super) fn read(text: &[u8]) -> Result<Table, LogError> {
         if record.get(0).is_some_and(|first| first.starts_with(b"#")) {
             continue;
         }
-        if record.len() != header.len() {
+        // Some writers end every line with a separator.
+        let has_more = record.iter().skip(header.len()).any(|field| !field.is_empty());
+        if record.len() < header.len() || has_more {
             return Err(LogError::Fields {
                 line,
                 expected: header.len(),
@@ -166,30 +168,36 @@ fn line(record: &ByteRecord) -> u64 {
 }
 
 fn names(record: &ByteRecord) -> Vec<String> {
-    let plain = |name: &[u8]| {
-        String::from_utf8_lossy(name)
-            .trim_start_matches('#')
-            .trim()
-            .to_lowercase()
-    };
-    record.iter().map(plain).collect()
+    record
+        .iter()
+        .map(|name| plain(&String::from_utf8_lossy(name)))
+        .collect()
 }
 
+/// A name without what writers put around it: `Command [mm]` is `command_mm`.
+fn plain(name: &str) -> String {
+    let name = name.trim_start_matches('#').trim().to_lowercase();
+    let words = name
+        .split([' ', '[', ']', '(', ')', '_'])
+        .filter(|word| !word.is_empty());
+    words.collect::<Vec<_>>().join("_")
+}
+
+/// A finite number, with a point or, between other separators, a comma.
 fn number(field: &[u8]) -> Option<f64> {
-    let value: f64 = std::str::from_utf8(field).ok()?.parse().ok()?;
+    let text = std::str::from_utf8(field).ok()?;
+    let value: f64 = text.parse().or_else(|_| text.replace(',', ".").parse()).ok()?;
     value.is_finite().then_some(value)
 }
 
-/// Comma, semicolon or tabulator, whichever the first lines have most of.
+/// Semicolon or tabulator, if the first lines have one; else comma, which may stand in numbers beside the others.
 fn separator(text: &[u8]) -> u8 {
     const LOOKED_AT: usize = 16;
-    let lines = || text.split(|byte| *byte == b'\n').take(LOOKED_AT).flatten();
-    let count = |separator: u8| lines().filter(|byte| **byte == separator).count();
-    let separators = [b'\t', b';', b','];
-    separators
-        .into_iter()
-        .max_by_key(|separator| count(*separator))
-        .unwrap_or(b',')
+    let has = |separator: &u8| {
+        let mut lines = text.split(|byte| *byte == b'\n').take(LOOKED_AT);
+        lines.any(|line| !line.starts_with(b"#") && line.contains(separator))
+    };
+    [b';', b'\t'].into_iter().find(has).unwrap_or(b',')
 }
 
 /// A field that is used, the column it goes to (none: the time), and its factor.

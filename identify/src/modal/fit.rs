@@ -61,6 +61,8 @@ pub(crate) struct Fit {
     pub(crate) shares: Vec<(f64, f64)>,
     /// Of each pole: standard deviations of frequency in Hz and of damping.
     pub(crate) deviations: Vec<(f64, f64)>,
+    /// Standard deviation of the bend of the lateness in seconds; infinite where nothing is known of the phase.
+    pub(crate) bend_deviation_s: f64,
     /// Sum of squares of the residuals over their standard deviations.
     pub(crate) square: f64,
     /// Values less unknowns.
@@ -289,6 +291,10 @@ pub(crate) fn refine(points: &[ResponsePoint], poles: &[Pole], phase: Phase, eff
     Some(Fit {
         values: problem.values(&solution.fitted),
         deviations: deviations.collect(),
+        bend_deviation_s: match phase {
+            Phase::Late(_) => solution.deviation(2 * poles.len() + 1, row),
+            Phase::Free => f64::INFINITY,
+        },
         shares: shares.collect(),
         square: solution.square,
         freedoms: solution.freedoms,

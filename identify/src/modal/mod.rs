@@ -15,7 +15,7 @@ mod fit;
 mod select;
 
 pub(crate) use fit::{Fit, Lateness, Phase, refine, square};
-pub(crate) use select::{grown, select};
+pub(crate) use select::{grown, pruned, select};
 
 use nalgebra::Complex;
 

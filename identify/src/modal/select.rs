@@ -41,6 +41,23 @@ pub(crate) fn grown(points: &[ResponsePoint], fit: Fit) -> Fit {
     kept
 }
 
+/// A fit without the poles that it can do without: what one of them explains beside the others, noise might explain as well.
+pub(crate) fn pruned(points: &[ResponsePoint], fit: Fit) -> Fit {
+    let mut kept = fit;
+    loop {
+        let without = (0..kept.poles.len()).filter_map(|k| {
+            let mut poles = kept.poles.clone();
+            poles.remove(k);
+            refine(points, &poles, kept.phase, Effort::Full)
+        });
+        let best = without.min_by(|a, b| a.square.total_cmp(&b.square));
+        match best {
+            Some(best) if best.square - kept.square < LEAST_GAIN * kept.reduced_square().max(1.0) => kept = best,
+            _ => return kept,
+        }
+    }
+}
+
 fn with_one_more(points: &[ResponsePoint], fit: &Fit) -> Option<Fit> {
     let (gain, found) = strongest(points, fit)?;
     // The gain is what the pole explains at least: it may be a few times that.

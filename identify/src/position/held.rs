@@ -61,6 +61,14 @@ impl<'a> HeldModes<'a> {
         }
     }
 
+    /// These rows beside the same noise as those of another problem.
+    pub(super) fn with_memory_of(self, other: &HeldModes<'_>) -> Self {
+        match &other.memory {
+            Some(memory) => self.whitened(memory.clone()),
+            None => self,
+        }
+    }
+
     /// Columns of rows, each without what the past of the noise tells.
     fn columns(&self, columns: Vec<f64>) -> DMatrix<f64> {
         let rows = self.len();
@@ -82,6 +90,11 @@ impl<'a> HeldModes<'a> {
     /// Time between rows in seconds.
     pub(super) fn row_s(&self) -> f64 {
         self.sample_s * self.decimation as f64
+    }
+
+    /// Samples in a row.
+    pub(super) fn decimation(&self) -> usize {
+        self.decimation
     }
 
     /// How many rows there are.

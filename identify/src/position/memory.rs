@@ -45,7 +45,8 @@ impl NoiseMemory {
             let cross: f64 = pairs().map(|(f, b)| f * b).sum();
             let power: f64 = pairs().map(|(f, b)| f * f + b * b).sum();
             let reflection = -2.0 * cross / power;
-            if !(reflection.abs() < 1.0) {
+            // Not so of silence, where it is no number.
+            if reflection.is_nan() || reflection.abs() >= 1.0 {
                 break;
             }
             let (old_forward, old_backward) = (forward.clone(), backward.clone());

@@ -11,7 +11,7 @@ pub mod recursive;
 mod search;
 
 use crate::found::FoundMode;
-use crate::separable::Separable;
+use crate::separable::{self, Effort, Separable};
 use crate::signal::{Between, PositionLog};
 use held::HeldModes;
 use memory::beside_noise;
@@ -131,7 +131,7 @@ const MOST_ROWS: usize = 30_000;
 /// Damping ratio from which a pole is no vibration.
 const NO_VIBRATION: f64 = 0.6;
 /// Share of the displacement below which a mode is not told.
-const LEAST_SHARE: f64 = 0.03;
+const LEAST_SHARE: f64 = 0.05;
 /// Standard deviation of a mode's damping and of its frequency, relative to them, beyond which the log does not fix it.
 const VAGUE_DAMPING: f64 = 0.4;
 const VAGUE_FREQUENCY: f64 = 0.03;
@@ -146,6 +146,37 @@ const STRETCHES: (f64, f64) = (6.0, 40.0);
 /// [`PositionError`].
 pub fn identify(log: &PositionLog) -> Result<FoundInPosition, PositionError> {
     check(log)?;
+    let (response_unit, command_unit) = (largest(&log.response), largest(&log.command));
+    let in_units = |values: &[f64], unit: f64| values.iter().map(|value| value / unit).collect::<Vec<f64>>();
+    let found = of_size_one(&PositionLog {
+        command: in_units(&log.command, command_unit),
+        response: in_units(&log.response, response_unit),
+        ..*log
+    })?;
+    let in_log = |values: Vec<f64>| values.iter().map(|value| value * response_unit).collect();
+    let mut remarks = found.remarks;
+    for remark in &mut remarks {
+        if let PositionRemark::NoRinging { noise } = remark {
+            *noise *= response_unit;
+        }
+    }
+    Ok(FoundInPosition {
+        response: in_log(found.response),
+        fitted: in_log(found.fitted),
+        noise: found.noise * response_unit,
+        remarks,
+        ..found
+    })
+}
+
+/// The largest value of a signal; 1 where there is none.
+fn largest(values: &[f64]) -> f64 {
+    let largest = values.iter().map(|value| value.abs()).fold(0.0, f64::max);
+    if largest > 0.0 { largest } else { 1.0 }
+}
+
+/// The modes of a log whose largest command and response are 1: its squares are numbers, whatever its units.
+fn of_size_one(log: &PositionLog) -> Result<FoundInPosition, PositionError> {
     let samples = log.response.len();
     let coarse = samples.div_ceil(SEARCH_ROWS);
     let problem = |range, decimation| HeldModes::new(log, range, decimation);
@@ -178,7 +209,7 @@ pub fn identify(log: &PositionLog) -> Result<FoundInPosition, PositionError> {
     let solution = &found.solution;
     let fitted = last.basis(&solution.unknowns) * &solution.coefficients;
     let noise = ((last.measured() - &fitted).norm_squared() / solution.freedoms).sqrt();
-    let remarks = remarks(log, &last, &modes, noise);
+    let remarks = remarks(log, &fitted_rows, &modes, noise);
     Ok(FoundInPosition {
         is_forced: last.is_forced(),
         decimation,
@@ -278,11 +309,31 @@ fn remarks(log: &PositionLog, problem: &HeldModes<'_>, modes: &[FoundMode], nois
             remarks.push(PositionRemark::FewSamples { frequency_hz, samples });
         }
     }
+    remarks.extend(moved(log, problem, modes));
     // The models of the stage know held commands only.
     if let ([only], Between::Held) = (modes, log.between) {
         remarks.extend(beside(log, &only.mode));
     }
     remarks
+}
+
+/// Whether the strongest mode is another in the first half of a log than in the second.
+fn moved(log: &PositionLog, problem: &HeldModes<'_>, modes: &[FoundMode]) -> Option<PositionRemark> {
+    const DEVIATIONS: f64 = 5.0;
+    const LEAST: f64 = 0.005;
+    let strongest = (0..modes.len()).max_by(|a, b| modes[*a].participation.total_cmp(&modes[*b].participation))?;
+    let start = HeldModes::unknowns(&modes.iter().map(|found| found.mode).collect::<Vec<_>>());
+    let middle = log.response.len() / 2;
+    let in_part = |range| {
+        let part = HeldModes::new(log, range, problem.decimation()).with_memory_of(problem);
+        let solution = separable::refine(&part, &start, Effort::Full)?;
+        let deviation = solution.deviation(2 * strongest, solution.reduced_square().sqrt());
+        Some((HeldModes::modes(&solution.unknowns)[strongest].frequency_hz, deviation))
+    };
+    let ((from_hz, from_sd), (to_hz, to_sd)) = (in_part(0..middle)?, in_part(middle..log.response.len())?);
+    let far = (to_hz / from_hz).ln().abs();
+    let is_certain = far > LEAST && far > DEVIATIONS * from_sd.hypot(to_sd);
+    is_certain.then_some(PositionRemark::Moves { from_hz, to_hz })
 }
 
 /// What the models of the XY stage say of a log with one mode, where it is something else.
