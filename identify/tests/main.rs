@@ -3,4 +3,5 @@
 
 mod log;
 mod position;
+mod position_noise;
 mod sweep;

@@ -10,6 +10,7 @@
 //! This is the zero-order hold without approximation. Rows are means over `decimation` samples, of the response and of these columns
 //! alike, so that nothing of the relation is lost.
 
+use super::memory::NoiseMemory;
 use crate::separable::Separable;
 use crate::signal::{Between, PositionLog};
 use nalgebra::{Complex, DMatrix, DVector};
@@ -17,12 +18,15 @@ use posicast_model::mode::Mode;
 use std::ops::Range;
 
 /// A log on the way to its modes. Unknowns: `ln f` and `ln ζ` of each mode.
+#[derive(Debug, Clone)]
 pub(super) struct HeldModes<'a> {
     command: Option<&'a [f64]>,
     between: Between,
     sample_s: f64,
     decimation: usize,
     measured: DVector<f64>,
+    /// Of the noise, which rows and columns are without.
+    memory: Option<NoiseMemory>,
 }
 
 /// Range of damping ratios that a fit walks in.
@@ -42,9 +46,40 @@ impl<'a> HeldModes<'a> {
             sample_s: log.sample_s,
             decimation,
             measured: DVector::zeros(rows),
+            memory: None,
         };
         this.measured = DVector::from_vec(this.rows(response.iter().copied()));
         this
+    }
+
+    /// The same rows without what the past of the noise tells of them.
+    pub(super) fn whitened(&self, memory: NoiseMemory) -> Self {
+        Self {
+            measured: DVector::from_vec(memory.whitened(self.measured.as_slice())),
+            memory: Some(memory),
+            ..self.clone()
+        }
+    }
+
+    /// These rows beside the same noise as those of another problem.
+    pub(super) fn with_memory_of(self, other: &HeldModes<'_>) -> Self {
+        match &other.memory {
+            Some(memory) => self.whitened(memory.clone()),
+            None => self,
+        }
+    }
+
+    /// Columns of rows, each without what the past of the noise tells.
+    fn columns(&self, columns: Vec<f64>) -> DMatrix<f64> {
+        let rows = self.len();
+        let columns = match &self.memory {
+            None => columns,
+            Some(memory) => columns
+                .chunks_exact(rows.max(1))
+                .flat_map(|column| memory.whitened(column))
+                .collect(),
+        };
+        DMatrix::from_vec(rows, columns.len() / rows.max(1), columns)
     }
 
     /// Whether a command drives the modes.
@@ -126,7 +161,7 @@ impl<'a> HeldModes<'a> {
             .collect();
         columns.extend(self.rows(states.iter().map(|state| state.re)));
         columns.extend(self.rows(states.iter().map(|state| state.im)));
-        DMatrix::from_vec(self.len(), self.per_mode(), columns)
+        self.columns(columns)
     }
 
     /// The columns of all but the modes.
@@ -139,7 +174,7 @@ impl<'a> HeldModes<'a> {
             columns.extend(self.rows(late.map(|u| u - first)));
         }
         columns.extend(std::iter::repeat_n(1.0, self.len()));
-        DMatrix::from_vec(self.len(), columns.len() / self.len().max(1), columns)
+        self.columns(columns)
     }
 
     /// Static gain of a forced mode, or the amplitude of a free one at the first sample, from its coefficients.

@@ -6,6 +6,7 @@
 
 pub mod arx;
 mod held;
+mod memory;
 pub mod recursive;
 mod search;
 
@@ -13,6 +14,7 @@ use crate::found::FoundMode;
 use crate::separable::{self, Effort, Separable};
 use crate::signal::{Between, PositionLog};
 use held::HeldModes;
+use memory::beside_noise;
 use posicast_model::mode::Mode;
 use search::{Found, search};
 use thiserror::Error;
@@ -178,12 +180,12 @@ fn of_size_one(log: &PositionLog) -> Result<FoundInPosition, PositionError> {
     let samples = log.response.len();
     let coarse = samples.div_ceil(SEARCH_ROWS);
     let problem = |range, decimation| HeldModes::new(log, range, decimation);
-    let mut found = search(&problem(0..samples, coarse));
+    let mut found = search(&problem(0..samples, coarse), &[]);
     if coarse > 1 {
         // What is too fast for the rows of the whole log is looked for where the command first moves.
         let first = log.command.windows(2).position(|pair| pair[0] != pair[1]).unwrap_or(0);
         let begin = first.min(samples - SEARCH_ROWS);
-        let fast = search(&problem(begin..begin + SEARCH_ROWS, 1));
+        let fast = search(&problem(begin..begin + SEARCH_ROWS, 1), &[]);
         let slow = found
             .as_ref()
             .map_or(0, |found| told(&problem(0..samples, coarse), found).len());
@@ -202,21 +204,18 @@ fn of_size_one(log: &PositionLog) -> Result<FoundInPosition, PositionError> {
     };
     let decimation = wanted.clamp(samples.div_ceil(MOST_ROWS), (samples / LEAST_SAMPLES).max(1));
     let last = problem(0..samples, decimation);
-    let solution =
-        separable::refine(&last, &HeldModes::unknowns(&modes), Effort::Full).ok_or(PositionError::Short(samples))?;
-    let found = Found {
-        modes: HeldModes::modes(&solution.unknowns),
-        solution,
-    };
-    let modes = told(&last, &found);
-    let noise = found.solution.reduced_square().sqrt();
-    let remarks = remarks(log, &last, &modes, noise);
+    let (fitted_rows, found) = beside_noise(last.clone(), &modes).ok_or(PositionError::Short(samples))?;
+    let modes = told(&fitted_rows, &found);
+    let solution = &found.solution;
+    let fitted = last.basis(&solution.unknowns) * &solution.coefficients;
+    let noise = ((last.measured() - &fitted).norm_squared() / solution.freedoms).sqrt();
+    let remarks = remarks(log, &fitted_rows, &modes, noise);
     Ok(FoundInPosition {
         is_forced: last.is_forced(),
         decimation,
         row_s: last.row_s(),
         response: last.measured().iter().copied().collect(),
-        fitted: found.solution.fitted.iter().copied().collect(),
+        fitted: fitted.iter().copied().collect(),
         noise,
         remarks,
         modes,
@@ -326,7 +325,7 @@ fn moved(log: &PositionLog, problem: &HeldModes<'_>, modes: &[FoundMode]) -> Opt
     let start = HeldModes::unknowns(&modes.iter().map(|found| found.mode).collect::<Vec<_>>());
     let middle = log.response.len() / 2;
     let in_part = |range| {
-        let part = HeldModes::new(log, range, problem.decimation());
+        let part = HeldModes::new(log, range, problem.decimation()).with_memory_of(problem);
         let solution = separable::refine(&part, &start, Effort::Full)?;
         let deviation = solution.deviation(2 * strongest, solution.reduced_square().sqrt());
         Some((HeldModes::modes(&solution.unknowns)[strongest].frequency_hz, deviation))

@@ -14,9 +14,9 @@ const TRIED_STEP: f64 = 1.03;
 /// Modes closer than this may be one that has to be split.
 const NEAR: f64 = 0.2;
 /// Square that a further mode must explain, in variances of the noise: far above what its six unknowns explain by chance.
-const LEAST_GAIN: f64 = 60.0;
+pub(super) const LEAST_GAIN: f64 = 60.0;
 /// Share of the response's power below which what is left is rounding.
-const ROUNDING: f64 = 1e-20;
+pub(super) const ROUNDING: f64 = 1e-20;
 
 /// Modes and the fit that they are from.
 pub(super) struct Found {
@@ -24,9 +24,9 @@ pub(super) struct Found {
     pub(super) solution: Solution,
 }
 
-/// Modes that explain the rows, one after the other. `None` where there are too few rows for any.
-pub(super) fn search(problem: &HeldModes<'_>) -> Option<Found> {
-    let mut kept = refine(problem, &[], Effort::Rough)?;
+/// Modes that explain the rows, one after the other, beside those that are known. `None` where there are too few rows for any.
+pub(super) fn search(problem: &HeldModes<'_>, known: &[Mode]) -> Option<Found> {
+    let mut kept = refine(problem, &HeldModes::unknowns(known), Effort::Rough)?;
     let mut now = kept.clone();
     let mut idle = 0;
     let power = problem.measured().variance() * problem.len() as f64;
