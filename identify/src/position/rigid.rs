@@ -3,9 +3,10 @@
 
 use super::held::HeldModes;
 use super::search::{Found, LEAST_GAIN};
-use crate::separable::{Effort, Separable, refine};
+use crate::separable::{Effort, refine};
 use crate::signal::PositionLog;
 use nalgebra::DVector;
+use posicast_model::mode::Mode;
 
 /// Longest delay in samples that is tried.
 const LONGEST_DELAY: usize = 64;
@@ -17,7 +18,12 @@ const LONGEST_DELAY: usize = 64;
 /// ```
 ///
 /// The first rows, whose command is before the log, count neither here nor there.
-pub(super) fn rigid_delay(log: &PositionLog, decimation: usize, found: &Found, residual: &DVector<f64>) -> Option<usize> {
+pub(super) fn rigid_delay(
+    log: &PositionLog,
+    decimation: usize,
+    found: &Found,
+    residual: &DVector<f64>,
+) -> Option<usize> {
     let modes = found.modes.len();
     let longest = LONGEST_DELAY.min(log.response.len() / 8);
     if modes == 0 || log.command.is_empty() {
@@ -76,6 +82,17 @@ pub(super) fn onset(response: &[f64]) -> usize {
         .windows(2)
         .position(|pair| (pair[1] - pair[0]) * way <= 0.0);
     begin + turn.unwrap_or(0)
+}
+
+/// Whether a mode of a fit is a tone: it keeps its amplitude, where nothing drives it, or has no damping at all.
+pub(super) fn is_tone(mode: &Mode, is_forced: bool, seconds: f64) -> bool {
+    /// Damping ratio that no machine has, and decrease of the amplitude in a log that tells a decay.
+    const UNDAMPED: f64 = 1e-4;
+    const DECREASE: f64 = 0.1;
+    match is_forced {
+        true => mode.damping < UNDAMPED,
+        false => mode.decay() * seconds < DECREASE,
+    }
 }
 
 #[cfg(test)]
