@@ -3,5 +3,6 @@
 
 mod log;
 mod position;
+mod position_bad;
 mod position_noise;
 mod sweep;

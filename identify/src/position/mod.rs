@@ -8,6 +8,7 @@ pub mod arx;
 mod held;
 mod memory;
 pub mod recursive;
+mod rigid;
 mod search;
 
 use crate::found::FoundMode;
@@ -16,7 +17,8 @@ use crate::signal::{Between, PositionLog};
 use held::HeldModes;
 use memory::beside_noise;
 use posicast_model::mode::Mode;
-use search::{Found, search};
+use rigid::{is_tone, onset, rigid_delay};
+use search::{Found, LEAST_GAIN, search};
 use thiserror::Error;
 
 /// What a position log tells.
@@ -56,6 +58,16 @@ pub enum PositionError {
         /// Responses.
         responses: usize,
     },
+    /// The response never changes.
+    #[error(
+        "the response is {value:e} in all {samples} samples: the sensor is dead, not connected, or coarser than the motion"
+    )]
+    Dead {
+        /// The value.
+        value: f64,
+        /// Samples.
+        samples: usize,
+    },
     /// The time between samples is none.
     #[error("{0} s between samples is not possible")]
     Sample(f64),
@@ -76,6 +88,41 @@ pub enum PositionRemark {
     NoRinging {
         /// Root mean square of what is left.
         noise: f64,
+    },
+    /// The command moves, and the response follows as a whole, some samples late.
+    #[error(
+        "the response is the command, {samples} samples late: the axis is rigid, or the response is not measured behind what rings"
+    )]
+    Late {
+        /// Samples of delay.
+        samples: usize,
+    },
+    /// Too little of a mode is in the log to tell it.
+    #[error(
+        "the log is {seconds:.4} s long and shows {periods:.2} periods of something at about {frequency_hz:.4} Hz: log {:.4} s at least, three periods",
+        3.0 / frequency_hz
+    )]
+    TooShort {
+        /// Length of the log in seconds.
+        seconds: f64,
+        /// Periods in it.
+        periods: f64,
+        /// Its frequency in Hz, roughly.
+        frequency_hz: f64,
+    },
+    /// What rings does not decay.
+    #[error(
+        "the response has a tone of {frequency_hz:.4} Hz that does not decay in the log: something drives it, and a mode that rings as long cannot be told from it"
+    )]
+    Tone {
+        /// Its frequency in Hz.
+        frequency_hz: f64,
+    },
+    /// Samples before the ring were left out.
+    #[error("the first {samples} samples, before the response begins to ring, are left out")]
+    Onset {
+        /// Samples left out.
+        samples: usize,
     },
     /// Little of a mode is in the log.
     #[error("the log shows {periods:.1} periods of the mode at {frequency_hz:.4} Hz: log three at least")]
@@ -135,6 +182,8 @@ const LEAST_SHARE: f64 = 0.05;
 /// Standard deviation of a mode's damping and of its frequency, relative to them, beyond which the log does not fix it.
 const VAGUE_DAMPING: f64 = 0.4;
 const VAGUE_FREQUENCY: f64 = 0.03;
+/// Periods of a mode in a log that tells it.
+const ONE_PERIOD: f64 = 1.0;
 /// Stretches of a log that tell how much the memory of its noise adds to the variance: so many times as long as a mode rings, which
 /// noise may do likewise, and in such numbers.
 const MEMORY: f64 = 4.0;
@@ -177,6 +226,19 @@ fn largest(values: &[f64]) -> f64 {
 
 /// The modes of a log whose largest command and response are 1: its squares are numbers, whatever its units.
 fn of_size_one(log: &PositionLog) -> Result<FoundInPosition, PositionError> {
+    let begin = match held::moves(&log.command) {
+        true => 0,
+        false => onset(&log.response),
+    };
+    if begin > 0 && log.response.len() >= begin + LEAST_SAMPLES {
+        let mut found = of_size_one(&PositionLog {
+            command: Vec::new(),
+            response: log.response[begin..].to_vec(),
+            ..*log
+        })?;
+        found.remarks.push(PositionRemark::Onset { samples: begin });
+        return Ok(found);
+    }
     let samples = log.response.len();
     let coarse = samples.div_ceil(SEARCH_ROWS);
     let problem = |range, decimation| HeldModes::new(log, range, decimation);
@@ -209,7 +271,18 @@ fn of_size_one(log: &PositionLog) -> Result<FoundInPosition, PositionError> {
     let solution = &found.solution;
     let fitted = last.basis(&solution.unknowns) * &solution.coefficients;
     let noise = ((last.measured() - &fitted).norm_squared() / solution.freedoms).sqrt();
-    let remarks = remarks(log, &fitted_rows, &modes, noise);
+    let residual = last.measured() - &fitted;
+    let late = match modes[..] {
+        [] => None,
+        _ => rigid_delay(log, decimation, &found, &residual),
+    };
+    let (modes, remarks) = match late {
+        Some(samples) => (Vec::new(), vec![PositionRemark::Late { samples }]),
+        None => {
+            let remarks = remarks(log, &fitted_rows, &found, &modes, noise);
+            (modes, remarks)
+        }
+    };
     Ok(FoundInPosition {
         is_forced: last.is_forced(),
         decimation,
@@ -233,6 +306,12 @@ fn check(log: &PositionLog) -> Result<(), PositionError> {
     }
     if responses < LEAST_SAMPLES {
         return Err(PositionError::Short(responses));
+    }
+    if log.response.iter().all(|value| *value == log.response[0]) {
+        return Err(PositionError::Dead {
+            value: log.response[0],
+            samples: responses,
+        });
     }
     Ok(())
 }
@@ -267,7 +346,8 @@ fn told(problem: &HeldModes<'_>, found: &Found) -> Vec<FoundMode> {
         found.mode.damping < NO_VIBRATION
             && found.damping_sd < VAGUE_DAMPING * found.mode.damping.max(0.01)
             && found.frequency_sd_hz < VAGUE_FREQUENCY * found.mode.frequency_hz
-            && found.mode.frequency_hz * seconds > 1.0
+            && found.mode.frequency_hz * seconds > ONE_PERIOD
+            && !is_tone(&found.mode, problem.is_forced(), seconds)
     };
     let mut kept: Vec<(FoundMode, f64)> = all.into_iter().filter(|(found, _)| is_vibration(found)).collect();
     let whole: f64 = kept.iter().map(|(_, strength)| strength).sum();
@@ -284,15 +364,45 @@ fn told(problem: &HeldModes<'_>, found: &Found) -> Vec<FoundMode> {
     modes
 }
 
-fn remarks(log: &PositionLog, problem: &HeldModes<'_>, modes: &[FoundMode], noise: f64) -> Vec<PositionRemark> {
+/// Why what a fit found is no mode.
+fn not_told(problem: &HeldModes<'_>, found: &Found) -> Vec<PositionRemark> {
+    /// Periods that are more than a drift.
+    const SOME_OF_A_PERIOD: f64 = 0.3;
+    let seconds = problem.row_s() * problem.len() as f64;
+    let mut remarks: Vec<PositionRemark> = Vec::new();
+    for mode in &found.modes {
+        let (frequency_hz, periods) = (mode.frequency_hz, seconds * mode.frequency_hz);
+        let is_known = |remark: &PositionRemark| matches!(remark, PositionRemark::Tone { frequency_hz: other } if seconds * (other - frequency_hz).abs() < 1.0);
+        if mode.damping < NO_VIBRATION && (SOME_OF_A_PERIOD..=ONE_PERIOD).contains(&periods) {
+            remarks.push(PositionRemark::TooShort {
+                seconds,
+                periods,
+                frequency_hz,
+            });
+        } else if periods > ONE_PERIOD && is_tone(mode, problem.is_forced(), seconds) && !remarks.iter().any(is_known) {
+            remarks.push(PositionRemark::Tone { frequency_hz });
+        }
+    }
+    remarks
+}
+
+fn remarks(
+    log: &PositionLog,
+    problem: &HeldModes<'_>,
+    found: &Found,
+    modes: &[FoundMode],
+    noise: f64,
+) -> Vec<PositionRemark> {
     const FEW_PERIODS: f64 = 3.0;
     const FEW_SAMPLES: f64 = 3.0;
-    let mut remarks = Vec::new();
+    let mut remarks = not_told(problem, found);
     if modes.is_empty() {
-        remarks.push(match problem.is_forced() {
-            true => PositionRemark::NoRinging { noise },
-            false => PositionRemark::NoExcitation,
-        });
+        if remarks.is_empty() {
+            remarks.push(match problem.is_forced() {
+                true => PositionRemark::NoRinging { noise },
+                false => PositionRemark::NoExcitation,
+            });
+        }
         return remarks;
     }
     if !problem.is_forced() && modes.len() > 1 {
@@ -327,6 +437,12 @@ fn moved(log: &PositionLog, problem: &HeldModes<'_>, modes: &[FoundMode]) -> Opt
     let in_part = |range| {
         let part = HeldModes::new(log, range, problem.decimation()).with_memory_of(problem);
         let solution = separable::refine(&part, &start, Effort::Full)?;
+        // A part in which nothing rings fits noise, at any frequency and as surely as it likes.
+        let still = separable::refine(&part, &[], Effort::Rough)?;
+        let explained = (still.square - solution.square) / solution.reduced_square();
+        if explained < 2.0 * LEAST_GAIN * modes.len() as f64 {
+            return None;
+        }
         let deviation = solution.deviation(2 * strongest, solution.reduced_square().sqrt());
         Some((HeldModes::modes(&solution.unknowns)[strongest].frequency_hz, deviation))
     };

@@ -1,0 +1,111 @@
+//! Logs without a mode that look as if they had one: a rigid axis behind a delay, a tone that does not decay; and the quiet rows
+//! before a blow.
+
+use super::held::HeldModes;
+use super::search::{Found, LEAST_GAIN};
+use crate::separable::{Effort, refine};
+use crate::signal::PositionLog;
+use nalgebra::DVector;
+use posicast_model::mode::Mode;
+
+/// Longest delay in samples that is tried.
+const LONGEST_DELAY: usize = 64;
+
+/// The delay in samples of an axis that follows its command as a whole, where that explains a log as well as modes do.
+///
+/// ```text
+/// y(k) = g·u(k−delay) + h·u(k−delay−1) + offset
+/// ```
+///
+/// The first rows, whose command is before the log, count neither here nor there.
+pub(super) fn rigid_delay(
+    log: &PositionLog,
+    decimation: usize,
+    found: &Found,
+    residual: &DVector<f64>,
+) -> Option<usize> {
+    let modes = found.modes.len();
+    let longest = LONGEST_DELAY.min(log.response.len() / 8);
+    if modes == 0 || log.command.is_empty() {
+        return None;
+    }
+    let delays = (1..=longest).filter_map(|delay| {
+        let late = PositionLog {
+            sample_s: log.sample_s,
+            between: log.between,
+            command: log.command[..log.command.len() - delay].to_vec(),
+            response: log.response[delay..].to_vec(),
+        };
+        let problem = HeldModes::new(&late, 0..late.response.len(), decimation);
+        if !problem.is_forced() {
+            return None;
+        }
+        let square = refine(&problem, &[], Effort::Rough)?.square;
+        Some((square / problem.len() as f64, delay))
+    });
+    let (variance, delay) = delays.min_by(|a, b| a.0.total_cmp(&b.0))?;
+    let first = longest / decimation + 1;
+    let rows = residual.len().saturating_sub(first).max(1);
+    let left = residual.iter().skip(first).map(|x| x * x).sum::<f64>() / rows as f64;
+    let explained = rows as f64 * (variance / left).ln();
+    let is_rigid = explained.is_nan() || explained < LEAST_GAIN * modes as f64;
+    is_rigid.then_some(delay)
+}
+
+/// The sample at which a response that was quiet before begins to ring: 0 where it rings from the first on.
+pub(super) fn onset(response: &[f64]) -> usize {
+    /// Share of the largest distance from the first samples that is a beginning, and that is quiet.
+    const BEGINS: f64 = 0.3;
+    const IS_QUIET: f64 = 0.06;
+    /// Quiet samples by which a beginning is told, and most of the log that they may be.
+    const QUIET: usize = 16;
+    const MOST: f64 = 0.75;
+    let Some(first) = response.get(..QUIET) else {
+        return 0;
+    };
+    let level = first.iter().sum::<f64>() / QUIET as f64;
+    let farthest = response.iter().map(|y| (y - level).abs()).fold(0.0, f64::max);
+    let Some(begin) = response.iter().position(|y| (y - level).abs() > BEGINS * farthest) else {
+        return 0;
+    };
+    let quiet = &response[..begin * 3 / 4];
+    let square: f64 = quiet.iter().map(|y| (y - level).powi(2)).sum();
+    let is_quiet = begin >= QUIET
+        && (begin as f64) < MOST * response.len() as f64
+        && (square / quiet.len() as f64).sqrt() < IS_QUIET * farthest;
+    if !is_quiet {
+        return 0;
+    }
+    // From the first turn on the machine is left to itself.
+    let way = (response[begin] - level).signum();
+    let turn = response[begin..]
+        .windows(2)
+        .position(|pair| (pair[1] - pair[0]) * way <= 0.0);
+    begin + turn.unwrap_or(0)
+}
+
+/// Whether a mode of a fit is a tone: it keeps its amplitude, where nothing drives it, or has no damping at all.
+pub(super) fn is_tone(mode: &Mode, is_forced: bool, seconds: f64) -> bool {
+    /// Damping ratio that no machine has, and decrease of the amplitude in a log that tells a decay.
+    const UNDAMPED: f64 = 1e-4;
+    const DECREASE: f64 = 0.1;
+    match is_forced {
+        true => mode.damping < UNDAMPED,
+        false => mode.decay() * seconds < DECREASE,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn unit_a_ring_begins_where_it_is_struck() {
+        let ring = |n: usize| (-0.01 * n as f64).exp() * (0.2 * n as f64).cos();
+        let from_the_first: Vec<f64> = (0..500).map(ring).collect();
+        assert_eq!(onset(&from_the_first), 0);
+        let struck: Vec<f64> = (0..500).map(|n| if n < 100 { 0.0 } else { ring(n - 100) }).collect();
+        assert_eq!(onset(&struck), 100);
+        assert_eq!((onset(&[1.0; 100]), onset(&[]), onset(&[0.0; 5])), (0, 0, 0));
+    }
+}
