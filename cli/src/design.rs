@@ -2,6 +2,7 @@
 
 mod delay;
 mod document;
+mod family;
 mod sensitivity;
 
 use crate::compare;
@@ -32,6 +33,7 @@ use document::{
     AxisDocument, ClassDocument, CrossGainDocument, FreeDocument, ImpulseDocument, ModeDocument, QuantisedDocument,
     ResidualDocument, SolutionDocument, TapDocument,
 };
+use family::FamilyReport;
 pub(crate) use sensitivity::sensitivity_panels;
 
 /// Impulses, residuals, insensitivity and tap table of every axis
@@ -78,6 +80,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     report.warn();
     if let Some(path) = &args.plot {
         let mut panels = sensitivity_panels(&machine, &report.design);
+        panels.extend(report.family_panels());
         panels.extend(report.controllers.iter().flatten().map(AxisControl::nyquist));
         write_text(path, &plot::svg(&panels)?).map_err(Failure::because)?;
     }
@@ -117,6 +120,9 @@ impl<'a> DesignReport<'a> {
         for warning in tables.into_iter().chain(guards::missing(self.machine)) {
             output::say(&format!("warning: {warning}"));
         }
+        for warning in self.families().filter_map(|family| family.warning()) {
+            output::say(&format!("warning: {warning}"));
+        }
         self.controllers.iter().flatten().for_each(AxisControl::warn);
     }
 
@@ -135,7 +141,19 @@ impl<'a> DesignReport<'a> {
                 modes: tables.mode_figures(axis, self.design.sample_hz),
                 convolution: convolution_figures(axis, &tables.design),
                 misfit: built.shaper.as_ref().err(),
+                family: self.families().find(|family| std::ptr::eq(family.axis, axis)),
             })
+    }
+
+    /// The axes whose modes move, with their tables.
+    fn families(&self) -> impl Iterator<Item = FamilyReport<'_>> {
+        let axes = self.machine.axes.iter().enumerate();
+        axes.filter_map(|(index, axis)| FamilyReport::new(axis, self.design.family_of(index), self.design.sample_hz))
+    }
+
+    /// The residual over what the modes move with, of each axis whose modes move.
+    pub(crate) fn family_panels(&self) -> impl Iterator<Item = plot::Panel> {
+        self.families().map(|family| family.panel(&self.machine.name))
     }
 
     /// The JSON document of the command line's contract.
@@ -177,6 +195,8 @@ struct AxisReport<'a> {
     /// Why its shaper cannot be built, or not run at the sample rate.
     misfit: Option<&'a HardwareError>,
     control: Option<&'a AxisControl>,
+    /// Its tables, where its modes move.
+    family: Option<FamilyReport<'a>>,
 }
 
 impl AxisReport<'_> {
@@ -245,16 +265,7 @@ impl AxisReport<'_> {
                 coefficient_fraction,
                 digitise: self.tables.digitised.method_used.to_string(),
                 fits: self.misfit.is_none(),
-                taps: self
-                    .tables
-                    .table
-                    .taps()
-                    .iter()
-                    .map(|t| TapDocument {
-                        delay_samples: t.delay_samples,
-                        coefficient: t.coefficient,
-                    })
-                    .collect(),
+                taps: TapDocument::of(&self.tables.table),
                 modes: self
                     .modes
                     .iter()
@@ -263,6 +274,7 @@ impl AxisReport<'_> {
                     })
                     .collect(),
             },
+            family: self.family.as_ref().map(FamilyReport::json),
             delay: self.in_stage.then(|| DelayDocument::new(&self.tables.delay)),
             control: self.control.map(AxisControl::json),
         }
@@ -312,6 +324,9 @@ impl AxisReport<'_> {
             ]);
         }
         text += &table.text("  ");
+        if let Some(family) = &self.family {
+            text += &family.text();
+        }
         if let Some(reason) = self.misfit {
             let _ = writeln!(text, "  does not fit: {reason}");
         }

@@ -8,7 +8,7 @@ use posicast_model::machine_file::Machine;
 use posicast_model::motion::TickLimits;
 use posicast_model::rtl::component::Component;
 use posicast_synth::core_file::{self, Core};
-use posicast_synth::driver::{self, AxisData, DriverFile, StageDriver};
+use posicast_synth::driver::{self, AxisData, AxisFamily, DriverFile, StageDriver};
 use posicast_synth::package::Package;
 use posicast_synth::register_documents;
 use posicast_testbench::blocks::{Block, ComponentBlock};
@@ -64,5 +64,6 @@ fn of_stage(machine: &Machine, stage: &Stage) -> Vec<DriverFile> {
         config: &stage.of_machine.config,
         tick_hz: machine.clock.sample_hz,
         axes: &axes.collect::<Vec<_>>(),
+        families: &AxisFamily::of_machine(machine, &stage.of_machine.families),
     })
 }

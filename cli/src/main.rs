@@ -10,6 +10,7 @@ mod blocks;
 mod command;
 mod compare;
 mod completions;
+mod contour;
 mod control;
 mod design;
 mod diff;

@@ -21,6 +21,21 @@ pub(crate) struct MotionArgs {
 }
 
 impl MotionArgs {
+    /// The speed along a contour, in the unit of the first axis per second.
+    pub(crate) fn along_contour(&self) -> Result<Option<f64>, Failure> {
+        let refused =
+            |option: &str, found: &str| Failure::from(miette::miette!(help = "leave it out", "{option}: {found}"));
+        match (&self.distance, &self.speed) {
+            (Some(_), _) => Err(refused("--move", "the contour says where the axes go")),
+            (None, Some(PerAxis::Named(_))) => Err(refused(
+                "--speed",
+                "a contour has one speed, along its path: give a number",
+            )),
+            (None, Some(PerAxis::All(speed))) => Ok(Some(*speed)),
+            (None, None) => Ok(None),
+        }
+    }
+
     /// The move of each axis. With a command file they are those of the closed loop alone.
     pub(crate) fn moves(&self, machine: &Machine, closed_loop: bool) -> Result<Vec<AxisMove>, Failure> {
         for (option, figures) in [("--move", &self.distance), ("--speed", &self.speed)] {

@@ -15,12 +15,13 @@ mod waves;
 use crate::bench::{self, Simulator};
 use crate::blocks;
 use crate::command;
+use crate::contour::ContourArgs;
 use crate::design::{self, DesignReport};
 use crate::failure::Failure;
 use crate::hardware::Built;
 use crate::kit;
 use crate::machine;
-use crate::moves::MotionArgs;
+use crate::moves::{self, MotionArgs};
 use crate::plot;
 use crate::simulate::simulate;
 use crate::verify::DEFAULT_SEED;
@@ -38,6 +39,7 @@ use std::path::PathBuf;
 Examples:
   posicast run examples/xy-stage.toml -o xy_stage
   posicast run examples/xy-stage.toml --move x=0.04,y=-0.02 --speed 0.1
+  posicast run examples/xy-stage.toml --contour part.gcode
 
 Exit status: 0 all checks hold, 1 a check failed (the folder holds the evidence), 2 bad input, 3 a named tool is missing.")]
 pub(crate) struct Args {
@@ -51,6 +53,9 @@ pub(crate) struct Args {
     /// Radius of the circle of the closed loop, in the unit of the first axis [default: what the limits of the axes suit]
     #[arg(long, allow_negative_numbers = true)]
     radius: Option<f64>,
+    /// Path of the closed loop in the place of the circle: circle, square, a CSV file of points x,y, or a G-code file, from where the axes stand at reset; --radius and --speed count for it
+    #[arg(long, value_name = "SHAPE|FILE", conflicts_with = "command")]
+    contour: Option<String>,
     /// Simulator [default: verilator; rusthdl, the weaker check, where Verilator is missing]
     #[arg(long)]
     simulator: Option<Simulator>,
@@ -78,8 +83,16 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     design.warn();
     let board = sopc::board(machine, &args.machine)?;
     let built = Built::new(&design, &args.machine)?;
-    let moves = args.motion.moves(machine, built.stage.is_some())?;
-    let circle = closed_loop::circle(machine, args.radius, built.stage.is_some())?;
+    let moves = match args.contour {
+        Some(_) => moves::by_default(machine),
+        None => args.motion.moves(machine, built.stage.is_some())?,
+    };
+    let path = ContourArgs::of_run(args.contour.as_deref(), args.radius);
+    let contour = closed_loop::contour(machine, path.as_ref(), &args.motion, built.stage.is_some())?;
+    let circle = match &contour {
+        Some(_) => Err("--contour drives another path".to_owned()),
+        None => closed_loop::circle(machine, args.radius, built.stage.is_some())?,
+    };
     let command = args.motion.command.as_deref();
     let words = command::words(machine, &design.design, command, &moves)?;
     let simulator = Simulator::choose(args.simulator)?;
@@ -125,6 +138,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
             machine,
             moves: &moves,
             circle: circle.clone(),
+            contour: contour.as_ref(),
             path: &args.machine,
             stage,
             sources: &all,
@@ -146,11 +160,10 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
             .add_evidence(name, picture.as_bytes())
             .map_err(Failure::because)?;
     }
+    let mut sensitivity = design::sensitivity_panels(machine, &design.design);
+    sensitivity.extend(design.family_panels());
     package
-        .add_evidence(
-            "plots/sensitivity.svg",
-            plot::svg(&design::sensitivity_panels(machine, &design.design))?.as_bytes(),
-        )
+        .add_evidence("plots/sensitivity.svg", plot::svg(&sensitivity)?.as_bytes())
         .map_err(Failure::because)?;
     package
         .add_evidence(

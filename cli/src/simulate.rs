@@ -1,12 +1,14 @@
 //! `posicast simulate`: a command through the bit-exact model and the float design, and on to the simulated machine.
 
 use crate::command::{self, Words};
+use crate::contour::{self, ContourArgs};
 use crate::design::DesignReport;
 use crate::failure::Failure;
 use crate::hardware;
 use crate::machine;
 use crate::moves::MotionArgs;
 use crate::output::{self, Table, UnitDocument};
+use crate::plot;
 use posicast_hdl::machine::AxisShaper;
 use posicast_model::design::MachineDesign;
 use posicast_model::machine_file::{AxisSection, Machine};
@@ -25,6 +27,8 @@ Examples:
   posicast simulate examples/xy-stage.toml -o move.vcd
   posicast simulate examples/xy-stage.toml --move 0.04
   posicast simulate examples/xy-stage.toml --command moves.csv
+  posicast simulate examples/xy-stage.toml --contour circle --radius 0.01 --speed 0.1 --plot circle.svg
+  posicast simulate examples/xy-stage.toml --contour part.gcode
 
 The waveform holds, per axis and in LSB of the command word: command x, shaped y, float design y_float, and the
 machine's position with and without shaping. The words of a modulo axis wrap; the machine's position counts on.")]
@@ -32,10 +36,12 @@ pub(crate) struct Args {
     /// Machine file
     machine: PathBuf,
     /// Waveform to write [default: ./NAME.vcd]
-    #[arg(short, long, value_name = "FILE.vcd")]
+    #[arg(short, long, value_name = "FILE.vcd", conflicts_with = "contour")]
     output: Option<PathBuf>,
     #[command(flatten)]
     motion: MotionArgs,
+    #[command(flatten)]
+    contour: ContourArgs,
     /// Replace a file that posicast did not write, or that was changed since; never one that this command reads
     #[arg(long)]
     force: bool,
@@ -46,6 +52,9 @@ pub(crate) struct Args {
 
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let machine = machine::read(&args.machine)?.machine;
+    if args.contour.contour.is_some() {
+        return along_contour(args, &machine);
+    }
     let default = PathBuf::from(format!("{}.vcd", machine.name));
     let path = args.output.as_ref().unwrap_or(&default);
     let mut outputs = OutputFiles::new(args.force);
@@ -75,6 +84,27 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
             axis.name
         ))),
     }
+}
+
+/// A path of two axes instead of a wave.
+fn along_contour(args: &Args, machine: &Machine) -> Result<(), Failure> {
+    let mut outputs = OutputFiles::new(args.force);
+    outputs.input("the machine file", &args.machine);
+    if let Some(path) = args.contour.file() {
+        outputs.input("--contour", path);
+    }
+    if let Some(path) = &args.contour.plot {
+        outputs.claim("--plot", path).map_err(Failure::because)?;
+        plot::check_name("--plot", path)?;
+    }
+    output::one_document(&outputs, args.json)?;
+    contour::run(
+        &args.contour,
+        machine,
+        args.motion.along_contour()?,
+        &outputs,
+        args.json,
+    )
 }
 
 /// All axes of a machine under their words.

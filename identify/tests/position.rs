@@ -24,7 +24,7 @@ fn stage() -> [Mode; 2] {
 }
 
 /// Bits of a maximum-length sequence of ±1, `x^10 + x^7 + 1`, each held for `held` samples.
-fn pseudo_random(samples: usize, held: usize) -> Vec<f64> {
+pub(crate) fn pseudo_random(samples: usize, held: usize) -> Vec<f64> {
     let mut register = 1u32;
     let mut bits = Vec::new();
     while bits.len() < samples {

@@ -158,3 +158,35 @@ fn unit_a_step_that_has_died_away_by_half_of_the_log_is_not_said_to_move() {
         sampled = SampledPlant::new(&Plant::new(&[(truth, 1.0)]).unwrap(), 1e-3, 0.0);
     }
 }
+
+#[test]
+fn unit_flat_tops_do_not_bias_a_mode() {
+    let truth = Mode {
+        frequency_hz: 50.0,
+        damping: 0.1,
+    };
+    for (limit, seed) in [(1.1, 1), (0.9, 2), (0.9, 3)] {
+        let mut sampled = SampledPlant::new(&Plant::new(&[(truth, 1.0)]).unwrap(), 1e-3, 0.0);
+        let command = pseudo_random(2000);
+        let mut at = 0.0;
+        let clean: Vec<f64> = command
+            .iter()
+            .map(|u| std::mem::replace(&mut at, sampled.step(*u)))
+            .collect();
+        let mut response = noisy(clean.into_iter(), 0.005, seed);
+        response.iter_mut().for_each(|y| *y = y.clamp(-limit, limit));
+        let found = identify(&log(command, response));
+        let [only] = found.modes[..] else {
+            panic!("{limit}: {:?} {:?}", found.modes, found.remarks)
+        };
+        let (frequency, damping) = (only.mode.frequency_hz - 50.0, only.mode.damping - 0.1);
+        assert!(
+            frequency.abs() < 0.5 && frequency.abs() < 3.0 * only.frequency_sd_hz,
+            "{only:?}"
+        );
+        assert!(
+            damping.abs() < 0.015 && damping.abs() < 3.0 * only.damping_sd,
+            "{only:?}"
+        );
+    }
+}

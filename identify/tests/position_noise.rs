@@ -1,5 +1,6 @@
 //! Position logs whose noise has a memory: no mode is made of it, and the modes that are there are as sure as stated.
 
+use crate::position::pseudo_random;
 use posicast_identify::position::{self, FoundInPosition, PositionRemark};
 use posicast_identify::synthetic::Noise;
 use posicast_identify::{Between, PositionLog};
@@ -16,19 +17,6 @@ const GY_MODE: Mode = Mode {
     frequency_hz: 93.289_780_8,
     damping: 0.153_542_487_340_88,
 };
-
-/// Bits of a maximum-length sequence of ±1, `x^10 + x^7 + 1`, each held for `held` samples.
-fn pseudo_random(samples: usize, held: usize) -> Vec<f64> {
-    let mut register = 1u32;
-    let mut bits = Vec::new();
-    while bits.len() < samples {
-        let bit = (register >> 9 ^ register >> 6) & 1;
-        register = (register << 1 | bit) & 0x3ff;
-        bits.extend(std::iter::repeat_n(if bit == 1 { 1.0 } else { -1.0 }, held));
-    }
-    bits.truncate(samples);
-    bits
-}
 
 fn log(command: Vec<f64>, response: Vec<f64>, sample_s: f64) -> PositionLog {
     PositionLog {

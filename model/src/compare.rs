@@ -115,7 +115,7 @@ fn kinds_for(axis: &AxisSection) -> impl Iterator<Item = ShaperKind> {
 }
 
 /// The same axis with another kind: its tolerances stay, what belongs to the kind of the file does not.
-fn with_kind(axis: &AxisSection, kind: ShaperKind) -> AxisSection {
+pub(crate) fn with_kind(axis: &AxisSection, kind: ShaperKind) -> AxisSection {
     let modes = axis.modes.iter().map(|mode| AxisMode {
         shaper: None,
         order: None,

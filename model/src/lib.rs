@@ -12,6 +12,7 @@
 
 pub mod analysis;
 pub mod compare;
+pub mod contour;
 pub mod control;
 pub mod design;
 pub mod digitise;

@@ -4,6 +4,7 @@
 mod axis;
 mod cascade_prop;
 mod composed;
+mod contour;
 mod control;
 mod controller_commit;
 mod controllers;
@@ -13,6 +14,7 @@ mod drive_command;
 mod drive_train;
 mod encoder_generator;
 mod excitation;
+mod family;
 mod golden_joint;
 mod golden_kinds;
 mod golden_shapers;

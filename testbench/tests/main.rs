@@ -13,6 +13,7 @@ mod excitation;
 mod fault_campaign;
 mod formal;
 mod linear_scale;
+mod moving_modes;
 mod mutation;
 mod netlist;
 mod parts;

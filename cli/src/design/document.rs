@@ -1,10 +1,12 @@
 //! `design --json`: the document of the command line's contract.
 
 use super::delay::{DelayDocument, StageDocument};
+use super::family::FamilyDocument;
 use crate::control::ControlDocument;
 use crate::output::UnitDocument;
 use posicast_model::design::periodic::Solution;
 use posicast_model::design::ratios::Class;
+use posicast_model::taps::TapTable;
 use serde::Serialize;
 
 /// `design --json`: the command line's contract.
@@ -38,6 +40,8 @@ pub(super) struct AxisDocument {
     pub(super) warnings: Vec<String>,
     pub(super) modes: Vec<ModeDocument>,
     pub(super) quantised: QuantisedDocument,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) family: Option<FamilyDocument>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) delay: Option<DelayDocument>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -126,8 +130,20 @@ pub(super) struct QuantisedDocument {
 
 #[derive(Serialize)]
 pub(super) struct TapDocument {
-    pub(super) delay_samples: u32,
-    pub(super) coefficient: i32,
+    delay_samples: u32,
+    coefficient: i32,
+}
+
+impl TapDocument {
+    /// The taps of a table.
+    pub(super) fn of(table: &TapTable) -> Vec<Self> {
+        let taps = table.taps().iter();
+        taps.map(|tap| Self {
+            delay_samples: tap.delay_samples,
+            coefficient: tap.coefficient,
+        })
+        .collect()
+    }
 }
 
 #[derive(Serialize)]

@@ -8,6 +8,7 @@ mod verify;
 
 mod bad_input;
 mod completions;
+mod contour;
 mod design;
 mod diff;
 mod doctor;

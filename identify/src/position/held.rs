@@ -27,6 +27,8 @@ pub(super) struct HeldModes<'a> {
     measured: DVector<f64>,
     /// Of the noise, which rows and columns are without.
     memory: Option<NoiseMemory>,
+    /// Rows that do not count, where there are any: zero in all columns.
+    clipped: Vec<bool>,
 }
 
 /// Range of damping ratios that a fit walks in.
@@ -47,9 +49,37 @@ impl<'a> HeldModes<'a> {
             decimation,
             measured: DVector::zeros(rows),
             memory: None,
+            clipped: Vec::new(),
         };
         this.measured = DVector::from_vec(this.rows(response.iter().copied()));
         this
+    }
+
+    /// The rows that hold none of the samples that `clipped` names; the modes move on beneath them.
+    pub(super) fn without(mut self, clipped: &[bool]) -> Self {
+        if clipped.contains(&true) {
+            let rows = clipped.chunks_exact(self.decimation).map(|row| row.contains(&true));
+            self.clipped = rows.take(self.len()).collect();
+            let mut measured = self.measured.as_slice().to_vec();
+            self.zero_clipped(&mut measured);
+            self.measured = DVector::from_vec(measured);
+        }
+        self
+    }
+
+    /// Makes the rows that do not count zero, in one column after the other.
+    pub(super) fn zero_clipped(&self, columns: &mut [f64]) {
+        for (value, clipped) in columns.iter_mut().zip(self.clipped.iter().cycle()) {
+            if *clipped {
+                *value = 0.0;
+            }
+        }
+    }
+
+    /// Share of the rows that count.
+    pub(super) fn counted(&self) -> f64 {
+        let clipped = self.clipped.iter().filter(|clipped| **clipped).count();
+        1.0 - clipped as f64 / self.len().max(1) as f64
     }
 
     /// The same rows without what the past of the noise tells of them.
@@ -70,8 +100,9 @@ impl<'a> HeldModes<'a> {
     }
 
     /// Columns of rows, each without what the past of the noise tells.
-    fn columns(&self, columns: Vec<f64>) -> DMatrix<f64> {
+    fn columns(&self, mut columns: Vec<f64>) -> DMatrix<f64> {
         let rows = self.len();
+        self.zero_clipped(&mut columns);
         let columns = match &self.memory {
             None => columns,
             Some(memory) => columns

@@ -17,7 +17,7 @@ use crate::signal::{Between, PositionLog};
 use held::HeldModes;
 use memory::beside_noise;
 use posicast_model::mode::Mode;
-use rigid::{is_tone, onset, rigid_delay};
+use rigid::{clipped, is_tone, onset, rigid_delay};
 use search::{Found, LEAST_GAIN, search};
 use thiserror::Error;
 
@@ -241,7 +241,10 @@ fn of_size_one(log: &PositionLog) -> Result<FoundInPosition, PositionError> {
     }
     let samples = log.response.len();
     let coarse = samples.div_ceil(SEARCH_ROWS);
-    let problem = |range, decimation| HeldModes::new(log, range, decimation);
+    let clipped = clipped(&log.response);
+    let problem = |range: std::ops::Range<usize>, decimation| {
+        HeldModes::new(log, range.clone(), decimation).without(&clipped[range])
+    };
     let mut found = search(&problem(0..samples, coarse), &[]);
     if coarse > 1 {
         // What is too fast for the rows of the whole log is looked for where the command first moves.
@@ -266,14 +269,17 @@ fn of_size_one(log: &PositionLog) -> Result<FoundInPosition, PositionError> {
     };
     let decimation = wanted.clamp(samples.div_ceil(MOST_ROWS), (samples / LEAST_SAMPLES).max(1));
     let last = problem(0..samples, decimation);
-    let (fitted_rows, found) = beside_noise(last.clone(), &modes).ok_or(PositionError::Short(samples))?;
+    let (fitted_rows, found) = beside_noise(last, &modes).ok_or(PositionError::Short(samples))?;
     let modes = told(&fitted_rows, &found);
+    let last = HeldModes::new(log, 0..samples, decimation);
     let solution = &found.solution;
     let fitted = last.basis(&solution.unknowns) * &solution.coefficients;
-    let noise = ((last.measured() - &fitted).norm_squared() / solution.freedoms).sqrt();
-    let residual = last.measured() - &fitted;
+    let mut residual = last.measured() - &fitted;
+    fitted_rows.zero_clipped(residual.as_mut_slice());
+    let noise = (residual.norm_squared() / solution.freedoms / fitted_rows.counted()).sqrt();
     let late = match modes[..] {
         [] => None,
+        _ if fitted_rows.counted() < 1.0 => None,
         _ => rigid_delay(log, decimation, &found, &residual),
     };
     let (modes, remarks) = match late {
@@ -319,7 +325,7 @@ fn check(log: &PositionLog) -> Result<(), PositionError> {
 /// The modes of a fit that are vibrations and are fixed by it.
 fn told(problem: &HeldModes<'_>, found: &Found) -> Vec<FoundMode> {
     let solution = &found.solution;
-    let row = solution.reduced_square().sqrt();
+    let row = (solution.reduced_square() / problem.counted()).sqrt();
     let width = problem.per_mode();
     let seconds = problem.row_s() * problem.len() as f64;
     let deviation = |n: usize, mode: &Mode| {

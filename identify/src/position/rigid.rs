@@ -1,5 +1,5 @@
 //! Logs without a mode that look as if they had one: a rigid axis behind a delay, a tone that does not decay; and the quiet rows
-//! before a blow.
+//! before a blow, and the flat tops of a sensor at its end.
 
 use super::held::HeldModes;
 use super::search::{Found, LEAST_GAIN};
@@ -82,6 +82,30 @@ pub(super) fn onset(response: &[f64]) -> usize {
         .windows(2)
         .position(|pair| (pair[1] - pair[0]) * way <= 0.0);
     begin + turn.unwrap_or(0)
+}
+
+/// The samples of a response that stand at its extremes again and again: what was beyond is not in the log. None where there are
+/// no such samples, or where they are most of the log, as with an axis that goes back and forth between two places.
+pub(super) fn clipped(response: &[f64]) -> Vec<bool> {
+    /// Samples in a row that are no chance, such rows, and the share of a log that they may be.
+    const LEAST: usize = 4;
+    const RUNS: usize = 3;
+    const MOST: f64 = 0.6;
+    let (low, high) = response
+        .iter()
+        .fold((f64::MAX, f64::MIN), |(low, high), y| (low.min(*y), high.max(*y)));
+    let mut clipped = Vec::new();
+    let mut runs = 0;
+    for run in response.chunk_by(|a, b| a == b) {
+        let is_clipped = run[0] == low || run[0] == high;
+        runs += usize::from(is_clipped && run.len() >= LEAST);
+        clipped.extend(std::iter::repeat_n(is_clipped, run.len()));
+    }
+    let samples = clipped.iter().filter(|clipped| **clipped).count() as f64;
+    match runs >= RUNS && samples < MOST * response.len() as f64 {
+        true => clipped,
+        false => vec![false; response.len()],
+    }
 }
 
 /// Whether a mode of a fit is a tone: it keeps its amplitude, where nothing drives it, or has no damping at all.

@@ -5,6 +5,7 @@
 //! a quick stop that begins at the end.
 
 use super::supervision_error::SupervisionError;
+use crate::design::TableFamily;
 use crate::machine_file::AxisSection;
 use crate::rtl::segments::REACH_COUNTS;
 use crate::taps::TapTable;
@@ -31,6 +32,18 @@ impl From<&TapTable> for TableBounds {
             longest_delay_samples: table.longest_delay_samples(),
             farthest: (farthest as f64 / unit).max(1.0),
         }
+    }
+}
+
+impl TableBounds {
+    /// What holds for every table that an axis uses: its own, and those of its family.
+    pub fn of_axis(own: &TapTable, family: Option<&TableFamily>) -> Self {
+        let members = family.iter().flat_map(|family| &family.members);
+        let members = members.map(|member| Self::from(&member.tables.table));
+        members.fold(Self::from(own), |all, one| Self {
+            longest_delay_samples: all.longest_delay_samples.max(one.longest_delay_samples),
+            farthest: all.farthest.max(one.farthest),
+        })
     }
 }
 

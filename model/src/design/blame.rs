@@ -89,6 +89,18 @@ pub fn blame(machine: &Machine, error: &DesignError) -> Option<DesignBlame> {
                 ..shaper(axis)
             })
         }
+        DesignError::FamilyGap { axis, .. } => Some(DesignBlame {
+            key: "axis.family.values".to_owned(),
+            remedy: Some("leave `values` out, and as many tables are made as are needed".to_owned()),
+            ..shaper(of_axis(axis)?)
+        }),
+        DesignError::FamilySize { axis, .. } | DesignError::FamilyUncovered { axis, .. } => Some(DesignBlame {
+            remedy: Some(
+                "choose a kind with a wider insensitivity, such as \"ei\" or \"two-hump-ei\", or raise `tolerance`"
+                    .to_owned(),
+            ),
+            ..shaper(of_axis(axis)?)
+        }),
         DesignError::JointKindOfOneMode { mode, .. } => at_mode(mode, "shaper"),
         DesignError::Tolerance { mode, .. } => at_mode(mode, "tolerance"),
         DesignError::Mode { mode }

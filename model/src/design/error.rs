@@ -177,6 +177,40 @@ pub enum DesignError {
         /// What is wrong.
         cause: Box<DesignError>,
     },
+    /// A family whose tables leave out a part of the range.
+    #[error(
+        "axis {axis}: no table keeps the residual within the tolerance from {low} to {high}; {needed} tables cover all points: {values}"
+    )]
+    FamilyGap {
+        /// The axis.
+        axis: String,
+        /// Where the tables below end.
+        low: String,
+        /// Where the tables above begin.
+        high: String,
+        /// Tables that cover the range.
+        needed: usize,
+        /// What to write.
+        values: String,
+    },
+    /// A family of more tables than a driver is to hold.
+    #[error("axis {axis}: more than {most} tables would be needed to cover all points")]
+    FamilySize {
+        /// The axis.
+        axis: String,
+        /// Most tables.
+        most: usize,
+    },
+    /// A table of a family that leaves too much at its own value.
+    #[error(
+        "axis {axis}: at {value} the table that is designed for just this value leaves more than the tolerance, or hardly less"
+    )]
+    FamilyUncovered {
+        /// The axis.
+        axis: String,
+        /// Value of the variable.
+        value: String,
+    },
     /// A shaper without a tap table.
     #[error(transparent)]
     Table(#[from] DigitiseError),

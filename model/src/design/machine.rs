@@ -1,5 +1,6 @@
 //! All axes of a machine, from the machine file to tap tables with one `F`.
 
+use super::family::{self, TableFamily};
 use super::matching::{self, AxisDelay, StageDelay};
 use super::{AxisDesign, DesignError, design_axis};
 use crate::analysis::{Insensitivity, insensitivity, residual_vibration, residual_vibration_at, tap_impulses};
@@ -17,6 +18,8 @@ pub struct MachineDesign {
     pub coefficient_fraction: u32,
     /// One entry per axis, in the order of the file.
     pub axes: Vec<AxisTables>,
+    /// The tables of each axis whose modes move; the nominal one of each is the axis's own.
+    pub families: Vec<TableFamily>,
     /// What is left between the axes' delays, where the file has `[stage]`.
     pub stage: Option<StageDelay>,
 }
@@ -59,34 +62,62 @@ pub struct ModeFigures {
 /// that no hardware holds.
 pub fn design_machine(machine: &Machine) -> Result<MachineDesign, DesignError> {
     let sample_hz = machine.clock.sample_hz;
+    let how = machine.fixed_point.digitise;
     let mut designs = Vec::with_capacity(machine.axes.len());
-    let mut digitised = Vec::with_capacity(machine.axes.len());
+    let mut families = Vec::with_capacity(machine.axes.len());
     for axis in &machine.axes {
         let design = design_axis(axis)?;
-        digitised.push(digitise(&design, machine.fixed_point.digitise, sample_hz)?);
-        designs.push(design);
+        let digitised = digitise(&design, how, sample_hz)?;
+        designs.push((axis, design, digitised));
+        families.push(family::candidates(axis, how, sample_hz)?);
     }
-    let matched = matching::matched(machine, &digitised)?;
-    let named = designs.iter().map(|design| design.name.as_str());
-    let named: Vec<_> = named.zip(matched.iter().map(|(taps, _)| taps)).collect();
-    let tables = quantise(&named, machine.fixed_point.coefficient_fraction)?;
-    let coefficient_fraction = tables.first().map_or(0, TapTable::coefficient_fraction);
-    let axes = designs.into_iter().zip(matched).zip(tables);
-    let axes: Vec<AxisTables> = axes
-        .map(|((design, (digitised, delay)), table)| AxisTables {
-            delay: delay.of_table(&digitised, &table, sample_hz),
-            design,
-            digitised,
-            table,
-        })
+    // The tables of the axes first, then those of the families: one F serves all, and one delay.
+    let members = families.iter().flat_map(|(candidates, _)| candidates);
+    let members = members.map(|candidate| (&candidate.section, &candidate.design, &candidate.digitised));
+    let all: Vec<_> = designs
+        .iter()
+        .map(|(axis, design, digitised)| (*axis, design, digitised))
+        .chain(members)
         .collect();
+    let digitised: Vec<_> = all.iter().map(|(axis, _, digitised)| (*axis, *digitised)).collect();
+    let matched = matching::matched(machine, &digitised)?;
+    let named = all
+        .iter()
+        .zip(&matched)
+        .map(|((axis, ..), (taps, _))| (axis.name.as_str(), taps));
+    let rounded = quantise(&named.collect::<Vec<_>>(), machine.fixed_point.coefficient_fraction)?;
+    let coefficient_fraction = rounded.first().map_or(0, TapTable::coefficient_fraction);
+    let tables = all.into_iter().zip(matched).zip(rounded);
+    let mut tables = tables.map(|(((_, design, _), (digitised, delay)), table)| AxisTables {
+        delay: delay.of_table(&digitised, &table, sample_hz),
+        design: design.clone(),
+        digitised,
+        table,
+    });
+    let axes: Vec<AxisTables> = tables.by_ref().take(machine.axes.len()).collect();
+    let mut made = Vec::new();
+    for ((index, axis), (candidates, needed)) in machine.axes.iter().enumerate().zip(&families) {
+        let members = candidates.iter().map(|candidate| candidate.value).zip(tables.by_ref());
+        let members: Vec<(f64, AxisTables)> = members.collect();
+        if let Some(family) = &axis.family {
+            made.push(family::of_tables(index, axis, family, members, *needed, sample_hz)?);
+        }
+    }
     let delays: Vec<AxisDelay> = axes.iter().map(|axis| axis.delay).collect();
     Ok(MachineDesign {
         sample_hz,
         coefficient_fraction,
         stage: StageDelay::of_machine(machine, &delays),
         axes,
+        families: made,
     })
+}
+
+impl MachineDesign {
+    /// The family of an axis, where its modes move.
+    pub fn family_of(&self, axis: usize) -> Option<&TableFamily> {
+        self.families.iter().find(|family| family.axis == axis)
+    }
 }
 
 impl AxisTables {

@@ -100,19 +100,18 @@ pub fn mode_lag_s(axis: &AxisSection) -> f64 {
     modes.map(|mode| 2.0 * mode.damping / mode.omega()).sum()
 }
 
-/// The taps of all axes, equally late where the machine has `[stage]`, as they are where it has none.
+/// The taps of all axes, and of what else an axis may use in their place, equally late where the machine has `[stage]`, as they are
+/// where it has none.
 ///
 /// # Errors
 /// [`DigitiseError::MatchedDelay`] where a ring buffer cannot hold the delay that an axis is missing.
 pub(super) fn matched(
     machine: &Machine,
-    digitised: &[Digitised],
+    tables: &[(&AxisSection, &Digitised)],
 ) -> Result<Vec<(Digitised, AxisDelay)>, DigitiseError> {
     let sample_hz = machine.clock.sample_hz;
-    let own: Vec<AxisDelay> = machine
-        .axes
+    let own: Vec<AxisDelay> = tables
         .iter()
-        .zip(digitised)
         .map(|(axis, taps)| AxisDelay {
             shaper_s: taps.mean_delay_samples() / sample_hz,
             mode_lag_s: mode_lag_s(axis),
@@ -122,33 +121,35 @@ pub(super) fn matched(
         })
         .collect();
     let Some(stage) = machine.stage else {
-        return Ok(digitised.iter().cloned().zip(own).collect());
+        let digitised = tables.iter().map(|(_, digitised)| (*digitised).clone());
+        return Ok(digitised.zip(own).collect());
     };
     let slowest = own
         .iter()
-        .zip(&machine.axes)
+        .zip(tables)
         .max_by(|(a, _), (b, _)| a.designed_s().total_cmp(&b.designed_s()));
-    let Some((slowest, slowest_axis)) = slowest else {
+    let Some((slowest, (slowest_axis, _))) = slowest else {
         return Ok(Vec::new());
     };
     let total_s = slowest.designed_s() + stage.extra_delay_s;
-    let axes = machine.axes.iter().zip(digitised).zip(&own);
-    axes.map(|((axis, taps), own)| {
-        let added_s = total_s - own.designed_s();
-        let added_samples = added_s * sample_hz;
-        let later = taps.delayed(added_samples).ok_or_else(|| DigitiseError::MatchedDelay {
-            axis: axis.name.clone(),
-            slowest: slowest_axis.name.clone(),
-            added_samples,
-            found: taps.taps.last().map_or(0.0, |tap| f64::from(tap.delay_samples)) + added_samples.ceil(),
-            sample_hz,
-        })?;
-        let delay = AxisDelay {
-            added_samples,
-            added_s,
-            ..*own
-        };
-        Ok((later, delay))
-    })
-    .collect()
+    let tables = tables.iter().zip(&own);
+    tables
+        .map(|((axis, taps), own)| {
+            let added_s = total_s - own.designed_s();
+            let added_samples = added_s * sample_hz;
+            let later = taps.delayed(added_samples).ok_or_else(|| DigitiseError::MatchedDelay {
+                axis: axis.name.clone(),
+                slowest: slowest_axis.name.clone(),
+                added_samples,
+                found: taps.taps.last().map_or(0.0, |tap| f64::from(tap.delay_samples)) + added_samples.ceil(),
+                sample_hz,
+            })?;
+            let delay = AxisDelay {
+                added_samples,
+                added_s,
+                ..*own
+            };
+            Ok((later, delay))
+        })
+        .collect()
 }

@@ -4,7 +4,7 @@
 //! Axis ─► design_axis ─► AxisDesign (float, exact) ─► digitise ─► quantise ─► TapTable     design_machine does all axes
 //! ```
 //!
-//! One file per family. For one mode: [`zv`], [`hump_ei`], [`negative`], [`bias_point`], [`vibrationless`]; for all modes of
+//! One file per kind of design. For one mode: [`zv`], [`hump_ei`], [`negative`], [`bias_point`], [`vibrationless`]; for all modes of
 //! an axis together: [`periodic`], [`simultaneous`], [`antisymmetric`], [`custom`]. Every design is checked by its own
 //! residual before it is returned: what leaves this module does at the mode what its kind promises, or is an error that
 //! says where the kind ends.
@@ -17,6 +17,7 @@ mod convolution;
 pub mod custom;
 mod equations;
 mod error;
+pub mod family;
 pub mod hump_ei;
 mod joint;
 mod joint_error;
@@ -36,6 +37,7 @@ pub mod zv;
 pub use blame::{DesignBlame, blame};
 pub use convolution::{ConvolutionFigures, ConvolutionWarning, CrossGain, convolution_figures};
 pub use error::DesignError;
+pub use family::{FamilyMember, TableFamily};
 pub use joint::Findings;
 pub use joint_error::JointError;
 pub use machine::{AxisTables, MachineDesign, ModeFigures, design_machine};

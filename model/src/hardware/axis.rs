@@ -2,19 +2,17 @@
 
 use super::{HardwareError, PERIOD_KEY, SAMPLE_KEY, pwm_config, pwm_mode};
 use crate::control::{
-    ControlSchedule, Derived, NoTravel, Supervision, gains, loop_lag_s, no_travel, schedule_delay_s, supervision,
+    ControlSchedule, Derived, NoTravel, Supervision, TableBounds, gains, loop_lag_s, no_travel, schedule_delay_s,
+    supervision,
 };
-use crate::design::AxisTables;
+use crate::design::{AxisTables, TableFamily};
 use crate::machine_file::{AxisSection, Machine, PwmMode};
 use crate::rtl::component::{Component, ComponentError};
 use crate::rtl::divider::DividerConfig;
-use crate::rtl::shaper::{ShaperConfig, ShaperMotion};
+use crate::rtl::shaper::{ShaperConfig, ShaperConfigError, ShaperMotion};
 
-/// The shaper of a modulo axis in the top module: its position wraps.
-const MODULO: ShaperMotion = ShaperMotion {
-    channels: 1,
-    modulo: true,
-};
+/// The tap table of an axis, and the family that it is of where the axis's modes move.
+type Tables<'a> = (&'a AxisTables, Option<&'a TableFamily>);
 
 /// What is built for an axis.
 #[derive(Debug, Clone)]
@@ -57,7 +55,7 @@ impl AxisHardware {
         machine: &Machine,
         index: usize,
         axis: &AxisSection,
-        tables: &AxisTables,
+        tables: Tables<'_>,
         of_stage: Option<(f64, Derived)>,
     ) -> Result<Self, HardwareError> {
         let shaper = shaper(machine, index, axis, tables);
@@ -104,12 +102,17 @@ fn shaper(
     machine: &Machine,
     index: usize,
     axis: &AxisSection,
-    tables: &AxisTables,
+    tables: Tables<'_>,
 ) -> Result<ShaperConfig, HardwareError> {
     let unfit = |key: &str, reason: String| HardwareError::new(index, key, format!("axis `{}`: {reason}", axis.name));
-    let plain = ShaperConfig::new(machine.fixed_point.command_bits, tables.table.clone());
-    let config = match axis.modulo {
-        true => plain.and_then(|config| config.for_motion(MODULO)),
+    let plain = of_axis(machine.fixed_point.command_bits, tables);
+    // The position of a modulo axis wraps, and a family is handed over while it moves.
+    let motion = ShaperMotion {
+        channels: 1,
+        modulo: axis.modulo,
+    };
+    let config = match axis.modulo || axis.family.is_some() {
+        true => plain.and_then(|config| config.for_motion(motion)),
         false => plain,
     };
     let config = config.map_err(|error| unfit("axis.shaper", error.to_string()))?;
@@ -126,6 +129,18 @@ fn shaper(
         unfit(SAMPLE_KEY, format!("{error}; allowed: up to {largest_hz} Hz"))
     })?;
     Ok(config)
+}
+
+/// A plain shaper with room for all tables of an axis.
+///
+/// # Errors
+/// [`ShaperConfigError`] where it is beyond the sizes of the hardware.
+pub(super) fn of_axis(word_bits: u32, (own, family): Tables<'_>) -> Result<ShaperConfig, ShaperConfigError> {
+    let plain = ShaperConfig::new(word_bits, own.table.clone())?;
+    match family {
+        Some(family) => plain.with_room_for(family.longest_delay_samples(), family.most_taps()),
+        None => Ok(plain),
+    }
 }
 
 /// The shaper of an axis as a component: one with a controller shapes velocity and acceleration too, and can change its
@@ -159,7 +174,7 @@ fn control(
     machine: &Machine,
     index: usize,
     axis: &AxisSection,
-    tables: &AxisTables,
+    tables: Tables<'_>,
     top: Option<&ShaperConfig>,
     of_stage: Option<(f64, Derived)>,
 ) -> Result<Option<AxisLoop>, HardwareError> {
@@ -179,8 +194,10 @@ fn control(
             (lag_s, derived)
         }
     };
-    let supervision = supervision(axis, &machine.clock, (&tables.table).into())
-        .map_err(|error| HardwareError::new(index, error.key(), &error))?;
+    let (own, family) = tables;
+    let bounds = TableBounds::of_axis(&own.table, family);
+    let supervision =
+        supervision(axis, &machine.clock, bounds).map_err(|error| HardwareError::new(index, error.key(), &error))?;
     Ok(Some(AxisLoop {
         lag_s,
         derived,

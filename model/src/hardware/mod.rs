@@ -66,7 +66,7 @@ impl<'a> Hardware<'a> {
         let axes = machine.axes.iter().zip(&design.axes).enumerate();
         let axes = axes.map(|(index, (axis, tables))| {
             let derived = of_stage.map(|stage| (stage.lags_s[index], stage.derived[index].clone()));
-            AxisHardware::of(machine, index, axis, tables, derived)
+            AxisHardware::of(machine, index, axis, (tables, design.family_of(index)), derived)
         });
         Ok(Self {
             machine,

@@ -1,9 +1,10 @@
 //! The stage of a machine: what its file says of the axes, as the hardware is built from it.
 
+use super::axis::of_axis;
 use crate::control::{
-    ControlError, Derived, Supervision, SupervisionError, gains, loop_lag_s, schedule_delay_s, supervision,
+    ControlError, Derived, Supervision, SupervisionError, TableBounds, gains, loop_lag_s, schedule_delay_s, supervision,
 };
-use crate::design::MachineDesign;
+use crate::design::{MachineDesign, TableFamily};
 use crate::machine_file::{AxisSection, ClockSection, Encoder, Machine, PwmMode, PwmSection, ScaleUse};
 use crate::rtl::divider::{DividerConfig, DividerConfigError};
 use crate::rtl::linear_scale::{ScaleRatio, ScaleRatioError};
@@ -21,6 +22,8 @@ pub struct MachineStage {
     pub lags_s: Vec<f64>,
     /// Controller of each axis.
     pub derived: Vec<Derived>,
+    /// The tap tables of the axes whose modes move.
+    pub families: Vec<TableFamily>,
 }
 
 impl MachineStage {
@@ -121,9 +124,10 @@ pub fn stage(machine: &Machine, design: &MachineDesign) -> Result<Option<Machine
             channels: 3,
             modulo: axis.modulo,
         };
-        let shaper = ShaperConfig::new(machine.fixed_point.command_bits, tables.table.clone());
+        let family = design.family_of(index);
+        let shaper = of_axis(machine.fixed_point.command_bits, (tables, family));
         let shaper = shaper.and_then(|plain| plain.for_motion(motion));
-        let watched = supervision(axis, &machine.clock, (&tables.table).into());
+        let watched = supervision(axis, &machine.clock, TableBounds::of_axis(&tables.table, family));
         axes.push(Parts {
             axis,
             pwm,
@@ -159,6 +163,7 @@ pub fn stage(machine: &Machine, design: &MachineDesign) -> Result<Option<Machine
         config: StageConfig { tick, axes: built },
         lags_s,
         derived,
+        families: design.families.clone(),
     }))
 }
 

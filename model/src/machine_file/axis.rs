@@ -4,8 +4,8 @@ use super::key::{Default, Key, Values};
 use super::range::COUNTS_PER_UNIT;
 use super::table::Table;
 use super::{
-    AxisSection, ClockSection, FixedPoint, ScaleUse, controller, drive, encoder, limits, mechanics, mode, pwm, scale,
-    shaper, trace,
+    AxisSection, ClockSection, FixedPoint, ScaleUse, controller, drive, encoder, limits, mechanics, mode, moving, pwm,
+    scale, shaper, trace,
 };
 use crate::rtl::shaper::MOTION_WORD_BITS;
 use crate::unit::AxisUnit;
@@ -43,6 +43,11 @@ pub(super) const KEYS: &[Key] = &[
         "mechanics",
         Values::Table(mechanics::KEYS),
         "A ball screw by its data sheets, in place of `[[axis.mode]]`: the mode follows.",
+    ),
+    Key::new(
+        "family",
+        Values::Table(moving::KEYS),
+        "Which tap tables an axis gets whose modes move.",
     ),
     Key::new(
         "encoder",
@@ -85,11 +90,12 @@ pub(super) fn read(
         .map(|(_, choice)| choice.kind);
     let screw = table.has("mechanics").then(|| mechanics::read(table, clock, unit));
     let given = mode::read_all(table, clock, kind);
-    let (modes, mechanics) = match screw {
+    let (mut modes, mechanics) = match screw {
         None => (given, None),
         Some(None) => (None, None),
         Some(Some((screw_table, mode, screw))) => (given.map(|_| vec![(screw_table, mode)]), Some(screw)),
     };
+    let family = modes.as_mut().and_then(|modes| moving::read_family(table, modes, unit));
     // A shaper that was refused is not compared with the modes: what it lacks would be reported twice.
     if let Some(modes) = modes.as_ref().filter(|_| !matches!(choice, Some(None))) {
         shaper::check(table, choice.as_ref().and_then(Option::as_ref), modes);
@@ -109,6 +115,9 @@ pub(super) fn read(
     let word = loop_counts_per_unit.zip(fixed_point).filter(|_| !modulo);
     let limits = table.table("limits").map(|t| limits::read(table, &t, word, unit));
     check_needs(table);
+    if let Some(family) = family.as_ref().and_then(Option::as_ref) {
+        moving::check(table, family, kind, limits.as_ref(), modulo, unit);
+    }
     let shaper = match choice {
         Some(choice) => Some(choice?.1),
         None => None,
@@ -121,6 +130,7 @@ pub(super) fn read(
         shaper,
         modes: modes?.into_iter().map(|(_, mode)| mode).collect(),
         mechanics,
+        family: family?,
         encoder: not_refused(encoder)?,
         pwm: not_refused(pwm)?,
         drive: not_refused(drive)?,

@@ -15,6 +15,8 @@ pub(super) struct Key {
     pub(super) default: Option<Default>,
     /// Another key that stands in its place: a table has one of the two.
     pub(super) instead_of: Option<&'static str>,
+    /// Another key that cannot be without this one.
+    pub(super) needed_by: Option<&'static str>,
     /// Meaning and unit, in a sentence.
     pub(super) about: &'static str,
 }
@@ -44,6 +46,10 @@ pub(super) enum Values {
     Pair(NumberRange),
     /// A list of 1 to so many pairs of numbers.
     Pairs(NumberRange, usize),
+    /// A list of 1 to so many rows, whose numbers lie in these ranges.
+    Rows(&'static [NumberRange], usize),
+    /// A list of 1 to so many numbers.
+    Numbers(NumberRange, usize),
     /// A table.
     Table(&'static [Key]),
     /// 1 to so many tables.
@@ -68,6 +74,7 @@ impl Key {
             required: false,
             default: None,
             instead_of: None,
+            needed_by: None,
             about,
         }
     }
@@ -89,6 +96,14 @@ impl Key {
     pub(super) const fn instead_of(self, other: &'static str) -> Self {
         Self {
             instead_of: Some(other),
+            ..self
+        }
+    }
+
+    /// The same, without which another key cannot be.
+    pub(super) const fn needed_by(self, other: &'static str) -> Self {
+        Self {
+            needed_by: Some(other),
             ..self
         }
     }

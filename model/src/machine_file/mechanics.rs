@@ -246,5 +246,6 @@ fn read_mode(axis: &Table<'_, '_>, table: &Table<'_, '_>, screw: &ScrewDrive, cl
         tolerance: None,
         order: None,
         participation: 1.0,
+        points: Vec::new(),
     })
 }

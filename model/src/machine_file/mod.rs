@@ -41,6 +41,7 @@ mod limits;
 mod machine;
 mod mechanics;
 mod mode;
+mod moving;
 mod names;
 mod place;
 mod pwm;
@@ -60,6 +61,8 @@ pub use encoder::Encoder;
 pub use error::{MAX_PROBLEMS, Problem, ProblemCause, SpecError};
 pub use limits::LimitsSection;
 pub use machine::{BOARDS, FAMILIES};
+pub(crate) use moving::MAX_TABLES;
+pub use moving::{FamilySection, ModePoint};
 pub use place::line_of;
 pub use pwm::{PwmMode, PwmSection};
 pub use scale::{Scale, ScaleUse};
@@ -203,6 +206,8 @@ pub struct AxisSection {
     pub modes: Vec<AxisMode>,
     /// `[axis.mechanics]`, from which the only mode then follows.
     pub mechanics: Option<ScrewDrive>,
+    /// What the modes move with; absent where none has `points`. The modes are those at its nominal value.
+    pub family: Option<FamilySection>,
     /// `[axis.encoder]`.
     pub encoder: Option<Encoder>,
     /// `[axis.pwm]`.
@@ -370,4 +375,6 @@ pub struct AxisMode {
     pub order: Option<u32>,
     /// Share of the mode in the axis's response; only ratios count. Default 1.
     pub participation: f64,
+    /// Where a mode that moves is for which value of the variable, in increasing order; empty for one that does not move.
+    pub points: Vec<ModePoint>,
 }

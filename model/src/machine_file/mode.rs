@@ -7,7 +7,7 @@ use super::hint::{self, KILO};
 use super::key::{Default, Key, Values};
 use super::range::NumberRange;
 use super::table::Table;
-use super::{AxisMode, ClockSection, shaper};
+use super::{AxisMode, ClockSection, moving, shaper};
 use crate::design::kind::ShaperKind;
 use crate::mode::Mode;
 use crate::unit::short;
@@ -15,7 +15,7 @@ use crate::unit::short;
 /// Modes of an axis: with five impulses each their convolution has 390,625, far more than any table holds.
 pub(super) const MAX_MODES: usize = 8;
 /// A frequency before it is compared with the sample rate; below this a shaper would last for hours.
-const FREQUENCY_HZ: NumberRange = NumberRange::closed(1e-3, 1e9).unit("Hz");
+pub(super) const FREQUENCY_HZ: NumberRange = NumberRange::closed(1e-3, 1e9).unit("Hz");
 /// Damping ratio of a mode that rings.
 pub(super) const DAMPING: NumberRange = NumberRange::closed(0.0, 1.0).open_above();
 /// Weights of the modes.
@@ -49,7 +49,9 @@ pub(super) const KEYS: &[Key] = &[
         "In place of `frequency_hz`: the frequency of the ringing, f·√(1−ζ²).",
     )
     .instead_of("frequency_hz"),
-    Key::new("damping", Values::Number(DAMPING), "Damping ratio ζ.").required(),
+    Key::new("damping", Values::Number(DAMPING), "Damping ratio ζ.").needed_by("frequency_hz"),
+    moving::KEYS_OF_MODE[0],
+    moving::KEYS_OF_MODE[1],
     Key::new(
         "measured",
         Values::Word(|| MEASURED.to_vec()),
@@ -112,15 +114,48 @@ pub(super) fn read_all<'r, 't>(
 
 fn read(table: &Table<'_, '_>, clock: Option<ClockSection>, axis_kind: Option<ShaperKind>) -> Option<AxisMode> {
     table.allow(KEYS);
+    let kind = shaper::kind(table, "shaper");
+    let tolerance = table.number("tolerance", shaper::TOLERANCE);
+    let order = shaper::order(table);
+    let participation = table.number("participation", PARTICIPATION).unwrap_or(1.0);
+    let (mode, free, points) = if table.has(moving::POINTS) {
+        let points = moving::read_points(table, clock)?;
+        (points.first()?.mode, None, points)
+    } else {
+        if table.has(moving::MOVES_WITH) {
+            let remedy = format!(
+                "add `{} = [[value, frequency_hz, damping], …]`, or remove `{}`",
+                moving::POINTS,
+                moving::MOVES_WITH
+            );
+            let allowed = "the points of a mode that moves beside the name of what it moves with";
+            table.contradiction(moving::MOVES_WITH, "a variable without `points`", allowed, remedy);
+        }
+        let (mode, free) = read_fixed(table, clock, axis_kind)?;
+        (mode, free, Vec::new())
+    };
+    Some(AxisMode {
+        mode,
+        free,
+        shaper: kind,
+        tolerance,
+        order,
+        participation,
+        points,
+    })
+}
+
+/// A mode that does not move, with the motor held, and as it was measured where that was with the motor free.
+fn read_fixed(
+    table: &Table<'_, '_>,
+    clock: Option<ClockSection>,
+    axis_kind: Option<ShaperKind>,
+) -> Option<(Mode, Option<Mode>)> {
     let remedy = format!("add `damping`, the part of critical damping: a steel frame has 0.005 to 0.05; {MEASURE}");
     table.require_with("damping", DAMPING, remedy);
     let damping = table.number("damping", DAMPING);
     let given = read_frequency(table, damping);
     let masses = read_masses(table, axis_kind);
-    let kind = shaper::kind(table, "shaper");
-    let tolerance = table.number("tolerance", shaper::TOLERANCE);
-    let order = shaper::order(table);
-    let participation = table.number("participation", PARTICIPATION).unwrap_or(1.0);
     let given = Mode {
         frequency_hz: given?,
         damping: damping?,
@@ -130,14 +165,7 @@ fn read(table: &Table<'_, '_>, clock: Option<ClockSection>, axis_kind: Option<Sh
         None => (given, None),
     };
     check_below_half(table, &mode, clock?)?;
-    Some(AxisMode {
-        mode,
-        free,
-        shaper: kind,
-        tolerance,
-        order,
-        participation,
-    })
+    Some((mode, free))
 }
 
 /// The masses that convert a mode which was measured free; `Some(None)` where it is to be taken as it is, `None` where that cannot be
@@ -190,7 +218,7 @@ fn read_frequency(table: &Table<'_, '_>, damping: Option<f64>) -> Option<f64> {
         (false, false) => {
             // Whichever of the two is misspelt is there.
             if table.lacks(UNDAMPED) && table.lacks(DAMPED) {
-                let allowed = format!("{FREQUENCY_HZ}, or damped_frequency_hz in its place");
+                let allowed = format!("{FREQUENCY_HZ}, or damped_frequency_hz or points in its place");
                 table.require_with(UNDAMPED, allowed, format!("add `frequency_hz`; {MEASURE}"));
             }
             None

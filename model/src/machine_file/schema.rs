@@ -38,12 +38,18 @@ fn table(keys: &[Key]) -> Map<String, Value> {
     }
     let needs = NEEDS.iter().filter(|need| properties.contains_key(need.block));
     let needs: Map<String, Value> = needs.map(|need| (need.block.to_owned(), json!(need.others))).collect();
+    let needed = keys
+        .iter()
+        .filter_map(|key| Some((key.needed_by?.to_owned(), json!([key.name]))));
+    let needs: Map<String, Value> = needs.into_iter().chain(needed).collect();
     if !needs.is_empty() {
         schema.insert("dependencies".to_owned(), Value::Object(needs));
     }
-    for (key, other) in keys.iter().filter_map(|key| Some((key.name, key.instead_of?))) {
-        let one = json!([{ "required": [other] }, { "required": [key] }]);
-        schema.insert("oneOf".to_owned(), one);
+    if let Some(other) = keys.iter().find_map(|key| key.instead_of) {
+        let others = keys.iter().filter(|key| key.instead_of == Some(other));
+        let one = std::iter::once(other).chain(others.map(|key| key.name));
+        let one: Vec<Value> = one.map(|key| json!({ "required": [key] })).collect();
+        schema.insert("oneOf".to_owned(), json!(one));
     }
     schema.insert("additionalProperties".to_owned(), json!(false));
     schema.insert("properties".to_owned(), Value::Object(properties));
@@ -81,6 +87,14 @@ fn values(values: Values) -> Map<String, Value> {
         Values::Words(words) => json!({ "type": "array", "items": { "type": "string", "enum": words() } }),
         Values::Pair(range) => pair(range.in_any_unit()),
         Values::Pairs(range, most) => json!({ "type": "array", "minItems": 1, "maxItems": most, "items": pair(range) }),
+        Values::Rows(ranges, most) => {
+            let numbers: Vec<Map<String, Value>> = ranges.iter().map(|range| number(*range)).collect();
+            let row = json!({ "type": "array", "minItems": ranges.len(), "maxItems": ranges.len(), "items": numbers });
+            json!({ "type": "array", "minItems": 1, "maxItems": most, "items": row })
+        }
+        Values::Numbers(range, most) => {
+            json!({ "type": "array", "minItems": 1, "maxItems": most, "items": number(range) })
+        }
         Values::Tables(keys, most) => json!({ "type": "array", "minItems": 1, "maxItems": most, "items": table(keys) }),
     };
     match schema {

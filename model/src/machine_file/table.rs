@@ -304,6 +304,21 @@ impl<'r, 't> Table<'r, 't> {
         numbers
     }
 
+    /// A list of 1 to `most` numbers in a range.
+    pub(super) fn list(&self, key: &str, range: NumberRange, most: usize) -> Option<Vec<f64>> {
+        let value = self.value(key)?;
+        let array = value
+            .get_ref()
+            .as_array()
+            .filter(|array| (1..=most).contains(&array.len()));
+        let numbers = array.and_then(|array| array.iter().map(|number| as_number(number.get_ref())).collect());
+        let numbers = numbers.filter(|numbers: &Vec<f64>| numbers.iter().all(|number| range.contains(*number)));
+        if numbers.is_none() {
+            self.wrong_type(key, value, format_args!("a list of 1 to {most} numbers, each {range}"));
+        }
+        numbers
+    }
+
     /// A list of lists of `N` numbers in a range each; `names` names the numbers.
     pub(super) fn rows<const N: usize>(
         &self,
@@ -313,7 +328,8 @@ impl<'r, 't> Table<'r, 't> {
         most: usize,
     ) -> Option<Vec<[f64; N]>> {
         let value = self.value(key)?;
-        let allowed = format!("a list of 1 to {most} pairs [{names}], each number {range}");
+        let kind = if N == 2 { "pairs" } else { "rows" };
+        let allowed = format!("a list of 1 to {most} {kind} [{names}], each number {range}");
         let Some(array) = value
             .get_ref()
             .as_array()

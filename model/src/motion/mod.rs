@@ -6,7 +6,7 @@
 //! - [`resample`]: a command given as points in time, on the sample grid;
 //! - [`command_words`]: positions to Q`command_fraction` counts, half up; what does not fit is an error;
 //! - [`modulo_words`]: the same for a modulo axis, with whole turns;
-//! - [`plan_move`], [`plan_to_and_fro`], [`plan_circle`]: moves as entries of the command FIFO;
+//! - [`plan_move`], [`plan_to_and_fro`], [`plan_circle`], [`plan_places`]: moves as entries of the command FIFO;
 //! - [`TickLimits`]: what those may ask for.
 //!
 //! The planner works in counts and ticks. All else has positions in the unit of the machine file (metres, or radians) and
@@ -22,7 +22,8 @@ mod words;
 
 pub use axis_move::{AxisMove, AxisMoveError};
 pub use command::{PointsError, resample, settle_s};
-pub use planner::{POINTS_MAX, PlanError, plan_circle, plan_move, plan_to_and_fro};
+pub use planner::{POINTS_MAX, PlanError, plan_circle, plan_move, plan_places, plan_to_and_fro};
+pub(crate) use profile::motion_limits;
 pub use profile::{Profile, ProfileError, SAMPLES_MAX};
 pub use tick_limits::TickLimits;
 pub use trajectory::{Cubic, Jump, Piece, Trajectory};

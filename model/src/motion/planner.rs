@@ -227,12 +227,33 @@ pub fn plan_circle(
         let points = ticks as usize;
         return Err(PlanError::Points { points });
     }
-    let position = WordFormat::new(32, POSITION_FRACTION)?;
     let place = |tick: i64| {
         let angle = profile.position(tick as f64) / radius_counts;
         [radius_counts * (angle.cos() - 1.0), radius_counts * angle.sin()]
     };
-    let ticks = ticks as i64;
+    points(start, ticks as i64, place)
+}
+
+/// A path by its places in counts from `start` (Q24.8, both axes), the first of which is where it begins at rest: a point per tick and axis
+/// for each place after it, at rest at the last.
+///
+/// # Errors
+/// [`PlanError`] for more places than [`POINTS_MAX`], and for points that do not fit.
+pub fn plan_places(start: [i32; 2], places: &[[f64; 2]]) -> Result<[Vec<Entry>; 2], PlanError> {
+    if places.len() > POINTS_MAX {
+        return Err(PlanError::Points { points: places.len() });
+    }
+    let place = |tick: i64| {
+        let at = places.get(tick.max(0) as usize).or(places.last());
+        at.copied().unwrap_or_default()
+    };
+    points(start, places.len().saturating_sub(1) as i64, place)
+}
+
+/// A point per tick and axis, for the ticks from 1 to `ticks`, of a path whose place at a tick, 0 and those before it too, `place` gives in
+/// counts from `start`.
+fn points(start: [i32; 2], ticks: i64, place: impl Fn(i64) -> [f64; 2]) -> Result<[Vec<Entry>; 2], PlanError> {
+    let position = WordFormat::new(32, POSITION_FRACTION)?;
     let of_axis = |axis: usize| {
         let offset = position.to_counts(i64::from(start[axis]));
         let at = |tick: i64| place(tick)[axis];

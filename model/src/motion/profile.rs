@@ -197,7 +197,7 @@ impl Profile {
 }
 
 /// Velocity, acceleration and jerk that a move may ask for: the file's, or the defaults.
-pub(super) fn motion_limits(limits: Option<&LimitsSection>) -> [f64; 3] {
+pub(crate) fn motion_limits(limits: Option<&LimitsSection>) -> [f64; 3] {
     let of = |limit: fn(&LimitsSection) -> Option<f64>, default| limits.and_then(limit).unwrap_or(default);
     [
         of(|l| l.velocity, DEFAULT_VELOCITY),

@@ -18,6 +18,7 @@ pub(super) fn axis(shaper: ShaperChoice, modes: &[Mode]) -> AxisSection {
         shaper: Some(shaper),
         modes: modes.iter().map(|mode| axis_mode(*mode, None)).collect(),
         mechanics: None,
+        family: None,
         encoder: None,
         pwm: None,
         drive: None,
@@ -36,6 +37,7 @@ fn axis_mode(mode: Mode, shaper: Option<ShaperKind>) -> AxisMode {
         tolerance: None,
         order: None,
         participation: 1.0,
+        points: Vec::new(),
     }
 }
 

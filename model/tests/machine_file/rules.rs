@@ -46,7 +46,7 @@ fn unit_one_of_the_two_frequencies_is_given() {
         expected,
     );
     let expected = "m.toml:12: axis.mode.frequency_hz of axis x, mode 1: found no such key; allowed: at least 0.001, at most \
-                    1e9 Hz, or damped_frequency_hz in its place";
+                    1e9 Hz, or damped_frequency_hz or points in its place";
     breaks("frequency_hz = 40.0\n", "", expected);
 }
 

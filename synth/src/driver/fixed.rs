@@ -42,10 +42,18 @@ const BRING_UP: [Fixed; 2] = [
     ("src/posicast_bring_up.c", include_str!("c/src/posicast_bring_up.c")),
 ];
 
-pub(super) fn files(with_bring_up: bool) -> Vec<DriverFile> {
+/// Where the modes of an axis move.
+const FAMILY: [Fixed; 2] = [
+    ("inc/posicast_family.h", include_str!("c/inc/posicast_family.h")),
+    ("src/posicast_family.c", include_str!("c/src/posicast_family.c")),
+];
+
+pub(super) fn files(with_bring_up: bool, with_family: bool) -> Vec<DriverFile> {
     let bring_up = BRING_UP.iter().filter(|_| with_bring_up);
+    let family = FAMILY.iter().filter(|_| with_family);
     CORE.iter()
         .chain(bring_up)
+        .chain(family)
         .map(|(path, text)| file(path, (*text).to_owned()))
         .collect()
 }

@@ -1,6 +1,6 @@
 //! The machine's tap tables, limits and controllers, in C.
 
-use super::{AxisData, DriverFile, StageDriver, file};
+use super::{AxisData, DriverFile, StageDriver, family, file};
 use posicast_model::rtl::segments::{ACCELERATION_BITS, FRACTION_BITS, VELOCITY_BITS};
 use posicast_model::rtl::sliding_mode::{SettingRow, Settings};
 use posicast_model::rtl::stage::StageAxis;
@@ -20,7 +20,12 @@ fn header(driver: &StageDriver<'_>) -> String {
     let upper = name.to_uppercase();
     let mut text = format!(
         "/* What the machine file says of {name}. Written by posicast. */\n#ifndef MACHINE_{upper}_H\n#define MACHINE_{upper}_H\n\n\
-         #include \"posicast_machine.h\"\n\n/* Axes, as the driver counts them. */\n"
+         #include \"{}\"\n\n/* Axes, as the driver counts them. */\n",
+        if driver.families.is_empty() {
+            "posicast_machine.h"
+        } else {
+            "posicast_family.h"
+        }
     );
     for (index, axis) in driver.config.axes.iter().enumerate() {
         let _ = writeln!(
@@ -29,7 +34,11 @@ fn header(driver: &StageDriver<'_>) -> String {
             axis.name.to_uppercase()
         );
     }
-    let _ = write!(text, "\nextern const posicast_machine machine_{name};\n\n#endif\n");
+    let families = family::declarations(driver);
+    let _ = write!(
+        text,
+        "\nextern const posicast_machine machine_{name};\n{families}\n#endif\n"
+    );
     text
 }
 
@@ -39,11 +48,7 @@ fn source(driver: &StageDriver<'_>) -> String {
         "/* Tap tables, limits and controllers of {name}. Written by posicast. */\n#include \"machine_{name}.h\"\n"
     );
     for axis in &driver.config.axes {
-        let _ = write!(text, "\nstatic const posicast_tap taps_of_{}[] = {{\n", axis.name);
-        for tap in axis.shaper.table().taps() {
-            let _ = writeln!(text, "    {{{}, {}}},", tap.delay_samples, tap.coefficient);
-        }
-        text.push_str("};\n");
+        family::taps(&mut text, &format!("taps_of_{}", axis.name), axis.shaper.table());
     }
     text.push_str("\nstatic const posicast_axis_machine axes[] = {\n");
     for (axis, data) in driver.config.axes.iter().zip(driver.axes) {
@@ -55,7 +60,7 @@ fn source(driver: &StageDriver<'_>) -> String {
         driver.tick_hz,
         driver.config.axes.len(),
     );
-    text
+    text + &family::definitions(driver)
 }
 
 fn of_axis(text: &mut String, axis: &StageAxis, data: &AxisData) {

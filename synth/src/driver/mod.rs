@@ -16,12 +16,15 @@
 //! `docs/driver.md` says how a program uses it.
 
 mod bare_metal;
+mod family;
 mod fixed;
 mod machine;
 mod macros;
 mod registers;
 mod stage_registers;
 mod system;
+
+pub use family::AxisFamily;
 
 use posicast_model::motion::TickLimits;
 use posicast_model::rtl::registers::RegisterMap;
@@ -55,6 +58,8 @@ pub struct StageDriver<'a> {
     pub tick_hz: f64,
     /// Of each axis of the stage, in its order.
     pub axes: &'a [AxisData],
+    /// The tables of the axes whose modes move.
+    pub families: &'a [AxisFamily<'a>],
 }
 
 /// What the driver knows of an axis beside its hardware.
@@ -70,7 +75,8 @@ pub struct AxisData {
 
 /// The driver of a stage.
 pub fn stage_files(driver: &StageDriver<'_>) -> Vec<DriverFile> {
-    let mut files = fixed::files(driver.config.axes.iter().any(|axis| axis.bring_up.is_some()));
+    let with_bring_up = driver.config.axes.iter().any(|axis| axis.bring_up.is_some());
+    let mut files = fixed::files(with_bring_up, !driver.families.is_empty());
     files.push(file("inc/posicast_stage_regs.h", stage_registers::header(driver)));
     files.extend(machine::files(driver));
     files.extend(bare_metal::files(driver));

@@ -5,7 +5,7 @@ use posicast_model::hardware::{self, MachineStage};
 use posicast_model::machine_file::{self, Machine};
 use posicast_model::motion::TickLimits;
 use posicast_model::rtl::component::Component;
-use posicast_synth::driver::{AxisData, FOLDER, StageDriver, component_header, stage_files};
+use posicast_synth::driver::{AxisData, AxisFamily, FOLDER, StageDriver, component_header, stage_files};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -62,6 +62,7 @@ impl Driver {
             config: &stage.config,
             tick_hz: machine.clock.sample_hz,
             axes: &axes,
+            families: &AxisFamily::of_machine(&machine, &stage.families),
         });
         files.push(component_header("xy_stage_pwm_avalon", pwm().map()));
         let folder = tempfile::tempdir().unwrap();

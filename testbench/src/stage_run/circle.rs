@@ -267,8 +267,17 @@ fn write(
     Ok(())
 }
 
-/// Streams the points of both axes, refilling as the FIFOs ask for it.
-fn stream(host: &mut Host<'_>, paths: &[Vec<Entry>; 2]) -> Result<Option<Trouble>, StageRunError> {
+/// Streams the points of both axes, refilling as the FIFOs ask for it, and waits for their end.
+pub(super) fn stream(host: &mut Host<'_>, paths: &[Vec<Entry>; 2]) -> Result<Option<Trouble>, StageRunError> {
+    stream_some(host, paths, true)
+}
+
+/// The same; where the points are `whole`, it waits for their end, else it ends once all are written.
+pub(super) fn stream_some(
+    host: &mut Host<'_>,
+    paths: &[Vec<Entry>; 2],
+    whole: bool,
+) -> Result<Option<Trouble>, StageRunError> {
     let mut written = [0, 0];
     for axis in 0..2 {
         write(host, paths, &mut written, axis, FIRST_FILL)?;
@@ -281,7 +290,7 @@ fn stream(host: &mut Host<'_>, paths: &[Vec<Entry>; 2]) -> Result<Option<Trouble
         host.pass(LOOK_TICKS * host.tick_clocks())?;
         for axis in 0..2 {
             if host.state(axis)? != state::RUN {
-                return Ok(Some(host.trouble(axis, "played the circle")?));
+                return Ok(Some(host.trouble(axis, "played the path")?));
             }
             let name = host.config.axes[axis].name.clone();
             if host.bench.field(&name, "fifo", "fifo_low")? != 0 {
@@ -289,7 +298,10 @@ fn stream(host: &mut Host<'_>, paths: &[Vec<Entry>; 2]) -> Result<Option<Trouble
             }
         }
     }
-    Ok(host.arrive(SPARE_TICKS)?)
+    match whole {
+        true => Ok(host.arrive(SPARE_TICKS)?),
+        false => Ok(None),
+    }
 }
 
 /// The circle in the model.

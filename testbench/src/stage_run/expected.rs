@@ -4,9 +4,9 @@
 
 use posicast_model::control::Derived;
 use posicast_model::control::sampled::{FollowLimits, SampledLoop};
-use posicast_model::design::design_machine;
+use posicast_model::design::{TableFamily, design_machine};
 use posicast_model::hardware;
-use posicast_model::machine_file::{AxisSection, DriveMode, Machine, PwmMode};
+use posicast_model::machine_file::{AxisSection, DriveMode, FamilySection, Machine, PwmMode};
 use posicast_model::rtl::segments::{Entry, EntryMotion, Integrator};
 use posicast_model::taps::TapTable;
 
@@ -44,6 +44,8 @@ pub struct Expected {
     pub figures: AxisFigures,
     /// Error that the whole of Coulomb friction, and what the bridge loses to dead time and minimum pulse, make as a step.
     pub friction: f64,
+    /// What the hand-overs between tap tables may add, of an axis whose modes move with its position.
+    pub handover: f64,
     /// A count of the loop.
     pub count: f64,
 }
@@ -51,13 +53,13 @@ pub struct Expected {
 impl Expected {
     /// Largest error that the loop may have: what is expected, friction and the encoder's steps, and at most half of the move.
     pub fn tracking_allowed(&self) -> f64 {
-        let expected = (1.0 + MODEL_PART) * self.figures.tracking.peak + self.friction;
+        let expected = (1.0 + MODEL_PART) * self.figures.tracking.peak + self.friction + self.handover;
         (expected + TRACKING_COUNTS * self.count).min(MOVE_PART * self.distance.abs())
     }
 
     /// Most that the load may ring.
     pub fn ringing_allowed(&self) -> f64 {
-        (1.0 + MODEL_PART) * self.figures.residual.peak + self.friction + RINGING_COUNTS * self.count
+        (1.0 + MODEL_PART) * self.figures.residual.peak + self.friction + self.handover + RINGING_COUNTS * self.count
     }
 
     /// Whether the move is long enough to say something.
@@ -87,20 +89,33 @@ pub(super) fn of_move(
         return Ok(Vec::new());
     };
     let ticks = moves::settle_ticks(run);
-    let axes = machine.axes.iter().zip(&design.axes);
+    let axes = machine.axes.iter().enumerate().zip(&design.axes);
     let loops = stage.derived.iter().zip(&stage.lags_s);
     let moves = run.moves.iter().zip(&run.harsh);
     let mut expectations = Vec::new();
-    for (((axis, tables), (derived, lag_s)), (of, harsh)) in axes.zip(loops).zip(moves) {
+    for ((((index, axis), tables), (derived, lag_s)), (of, harsh)) in axes.zip(loops).zip(moves) {
+        let planned = moves::plan_axis(machine, axis, of, *harsh, 0)?;
+        let commands = commands(&planned, ticks);
+        // A mode that moves with the position is where it rings in the end, and so is the table.
+        let family = run.families.iter().find(|family| family.axis == index);
+        let along = family.filter(|_| axis.family.as_ref().is_some_and(FamilySection::is_position));
+        let handed =
+            along.map(|family| handed_over(family, axis, &commands, machine.clock.sample_hz, frequency_factor));
+        let (at_end, table, handover) = match (&handed, shaping) {
+            (Some(handed), Shaping::Shaped) => (Some(axis.at_value(handed.end)), handed.table, handed.most),
+            (Some(handed), Shaping::Unshaped) => (Some(axis.at_value(handed.end)), &tables.table, 0.0),
+            (None, _) => (None, &tables.table, 0.0),
+        };
         let table = match shaping {
-            Shaping::Shaped => tables.table.clone(),
-            Shaping::Unshaped => TapTable::bypass(tables.table.coefficient_fraction())
+            Shaping::Shaped => table.clone(),
+            Shaping::Unshaped => TapTable::bypass(table.coefficient_fraction())
                 .map_err(|error| StageRunError::Design(Box::new(error)))?,
         };
-        let sampled = SampledLoop::new(axis, machine.clock, *lag_s, frequency_factor);
+        let sampled = SampledLoop::new(at_end.as_ref().unwrap_or(axis), machine.clock, *lag_s, frequency_factor);
         let sampled = sampled.unwrap_or_else(|| derived.sampled.clone());
-        let planned = moves::plan_axis(machine, axis, of, *harsh, 0)?;
-        expectations.push(expected(machine, axis, derived, &sampled, &table, ticks, planned));
+        let mut expected = expected(machine, axis, derived, &sampled, &table, &commands, planned.1);
+        expected.handover = handover;
+        expectations.push(expected);
     }
     Ok(expectations)
 }
@@ -117,19 +132,63 @@ pub(super) fn too_smooth(run: &StageRun<'_>) -> Result<Vec<bool>, StageRunError>
         .collect())
 }
 
-fn expected(
-    machine: &Machine,
+/// What becomes of an axis's tables on a move.
+struct HandedOver<'a> {
+    /// Where the move ends.
+    end: f64,
+    /// The table there.
+    table: &'a TapTable,
+    /// Most that the beginning, through the first table, and the hand-overs leave ringing ([`posicast_model::design::family`]).
+    most: f64,
+}
+
+/// The tables of a move of the axis by its command.
+fn handed_over<'a>(
+    family: &'a TableFamily,
     axis: &AxisSection,
-    derived: &Derived,
-    sampled: &SampledLoop,
-    table: &TapTable,
-    settle_ticks: u64,
-    (entries, end): (Vec<Entry>, i32),
-) -> Expected {
+    commands: &[[f64; 3]],
+    sample_hz: f64,
+    frequency_factor: f64,
+) -> HandedOver<'a> {
+    let scales = scales(axis, sample_hz);
+    let modes = |value: f64| {
+        let modes = axis.modes.iter();
+        modes.map(move |mode| mode.at(value).scaled(frequency_factor))
+    };
+    let (mut now, mut most) = (family.choose(family.nominal, 0.0), 0.0);
+    for command in commands {
+        let value = command[0] / scales[0];
+        let next = family.choose(now, value);
+        let pairs = if now < next { now..next } else { next..now };
+        let velocity = (command[1] / scales[1]).abs();
+        let added = pairs
+            .flat_map(|pair| modes(value).map(move |mode| family.handover_bound_s(pair, pair + 1, &mode, sample_hz)));
+        most += velocity * added.sum::<f64>();
+        now = next;
+    }
+    let end = commands.last().map_or(0.0, |last| last[0] / scales[0]);
+    HandedOver {
+        end,
+        table: &family.members[now].tables.table,
+        most,
+    }
+}
+
+/// Words of position, velocity and acceleration per m or rad, and s.
+fn scales(axis: &AxisSection, sample_hz: f64) -> [f64; 3] {
     let unit = axis.loop_counts_per_unit();
+    [
+        256.0 * unit,
+        65_536.0 * unit / sample_hz,
+        16_777_216.0 * unit / sample_hz.powi(2),
+    ]
+}
+
+/// The command words of a move in every tick, and of standstill after it.
+fn commands((entries, end): &(Vec<Entry>, i32), settle_ticks: u64) -> Vec<[f64; 3]> {
     let mut at = Integrator::default();
     let mut commands = Vec::new();
-    for entry in &entries {
+    for entry in entries {
         for _ in 0..entry.ticks {
             match entry.motion {
                 // What does not fit is a plan that the stage refuses.
@@ -139,14 +198,23 @@ fn expected(
             commands.push(at.rounded().map(f64::from));
         }
     }
-    let last = [f64::from(end), 0.0, 0.0];
+    let last = [f64::from(*end), 0.0, 0.0];
     commands.extend((0..settle_ticks).map(|_| last));
-    let scales = [
-        256.0 * unit,
-        65_536.0 * unit / machine.clock.sample_hz,
-        16_777_216.0 * unit / machine.clock.sample_hz.powi(2),
-    ];
-    let references = shaped(&commands, table, scales);
+    commands
+}
+
+fn expected(
+    machine: &Machine,
+    axis: &AxisSection,
+    derived: &Derived,
+    sampled: &SampledLoop,
+    table: &TapTable,
+    commands: &[[f64; 3]],
+    end: i32,
+) -> Expected {
+    let unit = axis.loop_counts_per_unit();
+    let scales = scales(axis, machine.clock.sample_hz);
+    let references = shaped(commands, table, scales);
     let (input, push) = pushes(machine, axis);
     let free = FollowLimits {
         input,
@@ -181,6 +249,7 @@ fn expected(
         counts: f64::from(end) / 256.0,
         figures: figures::of_move(&samples, unit),
         friction,
+        handover: 0.0,
         count: 1.0 / unit,
     }
 }

@@ -5,6 +5,7 @@ use posicast_model::rtl::stage::StageConfig;
 use std::fmt;
 
 use super::shaping::Shaping;
+use super::tables::AxisTables;
 use crate::Error;
 use crate::stage_bench::{StageBench, state};
 
@@ -75,10 +76,14 @@ pub(super) struct Host<'a> {
     /// Clocks between kicks, where an axis has a watchdog.
     kick_clocks: Option<u64>,
     kicked: u64,
+    /// Of the axes whose modes move with their position.
+    tables: Vec<AxisTables>,
+    /// Hand-overs from table to table.
+    pub(super) handovers: u64,
 }
 
 impl<'a> Host<'a> {
-    pub(super) fn new(bench: StageBench, config: &'a StageConfig) -> Self {
+    pub(super) fn new(bench: StageBench, config: &'a StageConfig, tables: Vec<AxisTables>) -> Self {
         let tick = u64::from(config.tick.tick_clocks());
         let ticks = config
             .axes
@@ -90,6 +95,8 @@ impl<'a> Host<'a> {
             config,
             kick_clocks: shortest.map(|ticks| (ticks * tick / 2).max(1)),
             kicked: 0,
+            tables,
+            handovers: 0,
         }
     }
 
@@ -105,8 +112,17 @@ impl<'a> Host<'a> {
             if left == 0 {
                 return Ok(());
             }
+            // Tables follow the position from tick to tick.
+            let left = match self.tables.is_empty() {
+                true => left,
+                false => {
+                    self.follow()?;
+                    left.min(self.tick_clocks())
+                }
+            };
             let Some(pause) = self.kick_clocks else {
-                return self.bench.clocks(left);
+                self.bench.clocks(left)?;
+                continue;
             };
             let due = (self.kicked + pause).saturating_sub(self.bench.now());
             if due == 0 {
@@ -117,6 +133,14 @@ impl<'a> Host<'a> {
             }
             self.bench.clocks(left.min(due))?;
         }
+    }
+
+    /// Hands over to the tables for where the commands are.
+    fn follow(&mut self) -> Result<(), Error> {
+        for tables in &mut self.tables {
+            self.handovers += u64::from(tables.follow(&mut self.bench)?);
+        }
+        Ok(())
     }
 
     /// The axis's state, from the inside: a bus would tell the same a little later.

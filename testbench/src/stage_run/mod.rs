@@ -11,13 +11,16 @@
 //! result, with its [`Trouble`]; an error is what could not be run at all.
 
 mod circle;
+mod contour;
 mod expected;
 mod figures;
 mod host;
 mod moves;
 mod shaping;
+mod tables;
 
-use posicast_model::design::design_machine;
+use posicast_model::contour::{Contour, ContourError};
+use posicast_model::design::{MachineDesign, TableFamily, design_machine};
 use posicast_model::hardware::{self, MachineStageError};
 use posicast_model::machine_file::{Machine, StageSection};
 use posicast_model::motion::{AxisMove, PlanError};
@@ -30,6 +33,7 @@ use crate::lockstep::Device;
 use crate::stage_bench::{StageBench, StageMismatch};
 
 pub use circle::{Circle, Circled, NoCircle};
+pub use contour::Contoured;
 pub use expected::Expected;
 pub use figures::AxisFigures;
 pub use host::Trouble;
@@ -37,6 +41,7 @@ pub use moves::Moved;
 pub use shaping::Shaping;
 
 use host::Host;
+use tables::AxisTables;
 
 /// Why a run could not be made.
 #[derive(Debug, thiserror::Error)]
@@ -61,6 +66,9 @@ pub enum StageRunError {
     /// The hardware, from the machine file.
     #[error(transparent)]
     MachineStage(#[from] MachineStageError),
+    /// A contour.
+    #[error("the contour: {0}")]
+    Contour(Box<ContourError>),
     /// The tap tables of the same machine with, or without, `[stage]`.
     #[error("the axes with and without equal delays: {0}")]
     Design(Box<dyn std::error::Error + Send + Sync>),
@@ -90,6 +98,8 @@ pub struct StageRun<'a> {
     seed: u64,
     /// Of each axis.
     moves: Vec<AxisMove>,
+    /// Of the axes whose modes move.
+    families: Vec<TableFamily>,
     /// Of each axis, whether its move has its acceleration from tick to tick, because a smoother one would not exercise its shaper.
     harsh: Vec<bool>,
 }
@@ -114,6 +124,21 @@ impl<'a> StageRun<'a> {
         seed: u64,
         moves: &[AxisMove],
     ) -> Result<Self, StageRunError> {
+        let moving = machine.axes.iter().any(|axis| axis.family.is_some());
+        let families = match moving {
+            true => designed(machine)?.families,
+            false => Vec::new(),
+        };
+        Self::with_families(machine, config, seed, moves, families)
+    }
+
+    fn with_families(
+        machine: &'a Machine,
+        config: &StageConfig,
+        seed: u64,
+        moves: &[AxisMove],
+        families: Vec<TableFamily>,
+    ) -> Result<Self, StageRunError> {
         let axes = machine.axes.iter().enumerate();
         let moves = axes.map(|(index, axis)| {
             let given = moves.get(index).copied();
@@ -125,6 +150,7 @@ impl<'a> StageRun<'a> {
             component: Component::stage(config)?,
             seed,
             moves: moves.collect(),
+            families,
             harsh: vec![false; machine.axes.len()],
         };
         // A machine of which nothing can be expected says so where it is moved.
@@ -132,6 +158,13 @@ impl<'a> StageRun<'a> {
             run.harsh.splice(..harsh.len(), harsh);
         }
         Ok(run)
+    }
+
+    /// The same with a host that leaves every axis on the table of its ROM.
+    #[must_use]
+    pub fn with_one_table(mut self) -> Self {
+        self.families.clear();
+        self
     }
 
     /// Whether the move of an axis has its whole acceleration from tick to tick: its limited jerk would excite its modes too little to
@@ -153,9 +186,11 @@ impl<'a> StageRun<'a> {
             stage: equal.then_some(own),
             ..machine.clone()
         };
-        let design = design_machine(&other).map_err(|error| StageRunError::Design(Box::new(error)))?;
+        let design = designed(&other)?;
         let stage = hardware::stage(&other, &design)?;
-        stage.map(|stage| Self::new(machine, &stage.config, seed)).transpose()
+        stage
+            .map(|stage| Self::with_families(machine, &stage.config, seed, &[], design.families))
+            .transpose()
     }
 
     /// Moves model and `device` side by side, from reset to standstill: every output of every clock is compared.
@@ -163,16 +198,9 @@ impl<'a> StageRun<'a> {
     /// # Errors
     /// [`StageRunError`] where that cannot be run.
     pub fn side_by_side(&self, device: Box<dyn Device>) -> Result<Compared, StageRunError> {
-        let mut host = self.host(1.0, Some(device))?;
+        let mut host = self.host(1.0, Some(device), Shaping::Shaped)?;
         let (trouble, whole) = moves::compare(self, &mut host)?;
-        let (mismatches, first) = host.bench.mismatches();
-        Ok(Compared {
-            clocks: host.bench.now(),
-            whole,
-            mismatches,
-            first: first.cloned(),
-            trouble,
-        })
+        Ok(compared(&host, trouble, whole))
     }
 
     /// The move in the model alone, on a machine whose modes are at `frequency_factor` times their frequencies.
@@ -180,7 +208,7 @@ impl<'a> StageRun<'a> {
     /// # Errors
     /// [`StageRunError`] where that cannot be run.
     pub fn moved(&self, shaping: Shaping, frequency_factor: f64) -> Result<Moved, StageRunError> {
-        moves::measure(self, self.host(frequency_factor, None)?, shaping)
+        moves::measure(self, self.host(frequency_factor, None, shaping)?, shaping)
     }
 
     /// What the move should come to, by axis, from the machine file alone.
@@ -196,10 +224,34 @@ impl<'a> StageRun<'a> {
     /// # Errors
     /// [`StageRunError`] where that cannot be run.
     pub fn circle(&self, circle: &Circle) -> Result<Circled, StageRunError> {
-        circle::measure(self, self.host(1.0, None)?, circle)
+        circle::measure(self, self.host(1.0, None, Shaping::Shaped)?, circle)
     }
 
-    fn host(&self, frequency_factor: f64, device: Option<Box<dyn Device>>) -> Result<Host<'_>, StageRunError> {
+    /// The contour in the model alone, from where both axes stand at reset.
+    ///
+    /// # Errors
+    /// [`StageRunError`] where that cannot be run.
+    pub fn contour(&self, contour: &Contour) -> Result<Contoured, StageRunError> {
+        let host = self.host(1.0, None, Shaping::Shaped)?;
+        contour::measure(self, host, contour, &designed(self.machine)?)
+    }
+
+    /// Drives model and `device` side by side along a contour, or the part of it that is compared in a minute or so.
+    ///
+    /// # Errors
+    /// [`StageRunError`] where that cannot be run.
+    pub fn contour_side_by_side(&self, device: Box<dyn Device>, contour: &Contour) -> Result<Compared, StageRunError> {
+        let mut host = self.host(1.0, Some(device), Shaping::Shaped)?;
+        let (trouble, whole) = contour::compare(self, &mut host, contour)?;
+        Ok(compared(&host, trouble, whole))
+    }
+
+    fn host(
+        &self,
+        frequency_factor: f64,
+        device: Option<Box<dyn Device>>,
+        shaping: Shaping,
+    ) -> Result<Host<'_>, StageRunError> {
         let options = PlantOptions {
             frequency_factor,
             ..PlantOptions::default()
@@ -207,6 +259,29 @@ impl<'a> StageRun<'a> {
         let plant = |axis| AxisPlant::new(axis, &self.machine.clock, &options);
         let plants = self.machine.axes.iter().map(plant).collect::<Result<_, _>>()?;
         let bench = StageBench::new(&self.config, &self.component, plants, device, self.seed)?;
-        Ok(Host::new(bench, &self.config))
+        let families = match shaping {
+            Shaping::Shaped => self.families.as_slice(),
+            Shaping::Unshaped => &[],
+        };
+        let tables = families.iter().filter_map(|family| {
+            let axis = self.machine.axes.get(family.axis)?;
+            AxisTables::new(axis, family)
+        });
+        Ok(Host::new(bench, &self.config, tables.collect()))
     }
+}
+
+fn compared(host: &Host<'_>, trouble: Option<Trouble>, whole: bool) -> Compared {
+    let (mismatches, first) = host.bench.mismatches();
+    Compared {
+        clocks: host.bench.now(),
+        whole,
+        mismatches,
+        first: first.cloned(),
+        trouble,
+    }
+}
+
+fn designed(machine: &Machine) -> Result<MachineDesign, StageRunError> {
+    design_machine(machine).map_err(|error| StageRunError::Design(Box::new(error)))
 }

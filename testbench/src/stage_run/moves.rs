@@ -1,5 +1,6 @@
 //! The move that all axes make at once.
 
+use posicast_model::design::TableFamily;
 use posicast_model::machine_file::{AxisSection, Machine};
 use posicast_model::motion::{AxisMove, TickLimits, plan_move, settle_s};
 use posicast_model::rtl::segments::Entry;
@@ -28,6 +29,8 @@ pub struct Moved {
     pub axes: Vec<AxisFigures>,
     /// Each tick from the start on, by axis: of motion, then of standstill.
     pub samples: Vec<Vec<AxisSample>>,
+    /// Hand-overs from one tap table to another, of axes whose modes move with their position.
+    pub handovers: u64,
     /// What the stage did not do.
     pub trouble: Option<Trouble>,
 }
@@ -106,12 +109,13 @@ fn begin(run: &StageRun<'_>, host: &mut Host<'_>, shaping: Shaping) -> Result<Re
 
 /// Ticks that the longest shaper goes on for.
 fn shaper_ticks(run: &StageRun<'_>) -> u64 {
-    let delays = run
+    let own = run
         .config
         .axes
         .iter()
         .map(|axis| axis.shaper.table().longest_delay_samples());
-    delays.max().unwrap_or(0).into()
+    let families = run.families.iter().map(TableFamily::longest_delay_samples);
+    own.chain(families).max().unwrap_or(0).into()
 }
 
 /// Ticks in which a machine is watched after its commands have come to their end: the shapers' tail, and settling.
@@ -158,6 +162,7 @@ pub(super) fn measure(run: &StageRun<'_>, mut host: Host<'_>, shaping: Shaping) 
         axes: axes
             .map(|(samples, axis)| figures::of_move(samples, axis.loop_counts_per_unit()))
             .collect(),
+        handovers: host.handovers,
         samples,
         trouble,
     })

@@ -1,5 +1,6 @@
 //! The closed loop of a run: the stage on its simulated machine, in Verilator beside the model, and in the model alone.
 
+mod contours;
 mod pictures;
 mod report;
 mod verdicts;
@@ -11,12 +12,18 @@ use crate::progress;
 use posicast_model::machine_file::Machine;
 use posicast_model::motion::AxisMove;
 use posicast_testbench::blocks::Sources;
-use posicast_testbench::stage_run::{Circle, Circled, Compared, Expected, Moved, Shaping, StageRun, StageRunError};
+use posicast_testbench::lockstep::Device;
+use posicast_testbench::stage_run::{
+    Circle, Circled, Compared, Contoured, Expected, Moved, Shaping, StageRun, StageRunError,
+};
 use std::path::Path;
 use std::sync::Mutex;
 use std::thread;
 
+pub(crate) use contours::{NamedContour, contour};
 pub(crate) use report::StageDocument;
+
+use contours::Contours;
 
 /// Runs at a time: one may be Verilator's, which takes as long as the others together.
 const AT_ONCE: usize = 2;
@@ -48,6 +55,8 @@ pub(crate) struct ClosedLoop<'a> {
     harsh: Vec<bool>,
     /// The circles; the reason where there are none.
     circles: Result<Circles, String>,
+    /// The path of `--contour`.
+    contours: Option<Contours<'a>>,
 }
 
 /// The circle of the first two axes.
@@ -65,6 +74,8 @@ enum Task<'a> {
     Compare,
     Move(Shaping, f64),
     Circle(&'a StageRun<'a>),
+    Contour(&'a StageRun<'a>),
+    CompareContour,
 }
 
 /// What came of it.
@@ -72,6 +83,8 @@ enum Done {
     Compared(Compared),
     Moved(Moved),
     Circled(Circled),
+    Contoured(Contoured),
+    ContourCompared(Compared),
 }
 
 /// The machine file, its hardware, and what runs it.
@@ -80,6 +93,8 @@ pub(crate) struct Job<'a> {
     pub(crate) moves: &'a [AxisMove],
     /// The circle; the reason where there is none.
     pub(crate) circle: Result<Circle, String>,
+    /// The path of `--contour`.
+    pub(crate) contour: Option<&'a NamedContour>,
     pub(crate) path: &'a Path,
     pub(crate) stage: &'a Stage,
     pub(crate) sources: &'a Sources,
@@ -95,7 +110,9 @@ impl<'a> Job<'a> {
             .map_err(refused)?;
         let circle = self.circle.clone();
         let delays = |equal| {
-            circle.clone()?;
+            if self.contour.is_none() {
+                circle.clone()?;
+            }
             let run = StageRun::with_delays(self.machine, equal, self.seed).map_err(|error| error.to_string())?;
             run.ok_or_else(|| "its tap tables make no stage".to_owned())
         };
@@ -106,7 +123,15 @@ impl<'a> Job<'a> {
             tasks.push(Task::Compare);
         }
         let rounds = apart.iter().chain(apart.as_ref().ok().and(matched.as_ref().ok()));
-        tasks.extend(rounds.map(Task::Circle));
+        match self.contour {
+            None => tasks.extend(rounds.map(Task::Circle)),
+            Some(_) => {
+                tasks.extend(rounds.map(Task::Contour));
+                if self.simulator == Simulator::Verilator {
+                    tasks.push(Task::CompareContour);
+                }
+            }
+        }
         let mut expected = [const { Vec::new() }; 4];
         for (expected, (shaping, factor)) in expected.iter_mut().zip(MOVES) {
             *expected = own.expected(shaping, factor).map_err(refused)?;
@@ -115,15 +140,32 @@ impl<'a> Job<'a> {
         let done = self.all(&own, circle.as_ref().ok().copied(), &tasks).map_err(refused)?;
 
         let (mut compared, mut moves, mut circles) = (None, Vec::new(), Vec::new());
+        let (mut contours, mut contour_compared) = (Vec::new(), None);
         for done in done {
             match done {
                 Done::Compared(result) => compared = Some(result),
                 Done::Moved(result) => moves.push(result),
                 Done::Circled(result) => circles.push(result),
+                Done::Contoured(result) => contours.push(result),
+                Done::ContourCompared(result) => contour_compared = Some(result),
             }
         }
         let lost = || Failure::from(miette::miette!("a run of the closed loop is missing"));
         let [shaped, unshaped, slower, faster] = moves.try_into().map_err(|_| lost())?;
+        let mut contoured = contours.into_iter();
+        let contours = match (self.contour, &apart) {
+            (None, _) => None,
+            (Some(_), Err(reason)) => return Err(Failure::from(miette::miette!("--contour: {reason}"))),
+            (Some(path), Ok(_)) => Some(Contours {
+                path,
+                compared: contour_compared,
+                apart: contoured.next().ok_or_else(lost)?,
+                matched: match &matched {
+                    Ok(_) => Ok(contoured.next().ok_or_else(lost)?),
+                    Err(reason) => Err(reason.clone()),
+                },
+            }),
+        };
         let mut circled = circles.into_iter();
         let circles = match (circle, apart) {
             (Ok(circle), Ok(_)) => Ok(Circles {
@@ -148,6 +190,7 @@ impl<'a> Job<'a> {
             expected,
             harsh: (0..self.machine.axes.len()).map(|axis| own.is_harsh(axis)).collect(),
             circles,
+            contours,
         })
     }
 
@@ -182,14 +225,27 @@ impl<'a> Job<'a> {
         results.into_iter().map(|(_, result)| result).collect()
     }
 
+    /// The stage's Verilog.
+    fn device(&self) -> Result<Box<dyn Device>, StageRunError> {
+        let sources = self.sources.reached_by(&self.stage.block)?;
+        Ok(self.simulator.device(&self.stage.block, &sources, self.seed)?)
+    }
+
     fn one(&self, own: &StageRun<'_>, circle: Option<Circle>, task: Task<'_>) -> Result<Option<Done>, StageRunError> {
         Ok(match task {
-            Task::Compare => {
-                let sources = self.sources.reached_by(&self.stage.block)?;
-                let device = self.simulator.device(&self.stage.block, &sources, self.seed)?;
-                Some(Done::Compared(own.side_by_side(device)?))
-            }
+            Task::Compare => Some(Done::Compared(own.side_by_side(self.device()?)?)),
             Task::Move(shaping, factor) => Some(Done::Moved(own.moved(shaping, factor)?)),
+            Task::Contour(run) => match self.contour {
+                Some(path) => Some(Done::Contoured(run.contour(&path.contour)?)),
+                None => None,
+            },
+            Task::CompareContour => match self.contour {
+                Some(path) => {
+                    let device = self.device()?;
+                    Some(Done::ContourCompared(own.contour_side_by_side(device, &path.contour)?))
+                }
+                None => None,
+            },
             Task::Circle(run) => match circle {
                 Some(circle) => Some(Done::Circled(run.circle(&circle)?)),
                 None => None,

@@ -23,6 +23,9 @@ impl ClosedLoop<'_> {
                 axes().map(|axis| self.vibration(axis)).collect(),
             ),
         ];
+        if let Some(panel) = self.contours.as_ref().and_then(|contours| contours.panel(self.machine)) {
+            pictures.push(("plots/stage-contour.svg", vec![panel]));
+        }
         if let Ok(circles) = &self.circles {
             let matched = circles.matched.as_ref().ok();
             let all = std::iter::once(&circles.apart).chain(matched);

@@ -1,5 +1,6 @@
 //! What the closed loop did, for people and for programs.
 
+use super::contours::{ContourDocument, Contours};
 use super::{Circles, ClosedLoop};
 use crate::output::{Table, UnitDocument};
 use posicast_model::plant::axis::ErrorFigures;
@@ -42,9 +43,10 @@ impl ClosedLoop<'_> {
             self.moves_text(),
             table.text("  ")
         );
-        match &self.circles {
-            Ok(circles) => text += &self.circles_text(circles),
-            Err(reason) => {
+        match (&self.contours, &self.circles) {
+            (Some(contours), _) => text += &contours.text(self.machine),
+            (None, Ok(circles)) => text += &self.circles_text(circles),
+            (None, Err(reason)) => {
                 let _ = writeln!(text, "\nNo circle is driven: {reason}");
             }
         }
@@ -143,6 +145,7 @@ impl ClosedLoop<'_> {
                 own_delays: circles.apart.error.into(),
                 equal_delays: circles.matched.as_ref().ok().map(|circled| circled.error.into()),
             }),
+            contour: self.contours.as_ref().map(Contours::json),
             schedule: ScheduleDocument {
                 tick_clocks: config.tick.tick_clocks(),
                 control_clocks: config.timing().control_clocks(),
@@ -158,6 +161,8 @@ pub(crate) struct StageDocument {
     side_by_side: Option<SideBySideDocument>,
     axes: Vec<AxisDocument>,
     circle: Option<CircleDocument>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    contour: Option<ContourDocument>,
     schedule: ScheduleDocument,
 }
 

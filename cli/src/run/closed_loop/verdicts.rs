@@ -1,5 +1,6 @@
 //! What must hold in the closed loop. `docs/closed-loop.md` derives the bounds.
 
+use super::contours::Contours;
 use super::{ClosedLoop, MOVES};
 use crate::run::checks::{Check, NOT_EXERCISED};
 use posicast_model::machine_file::AxisSection;
@@ -9,7 +10,12 @@ use posicast_testbench::wording::counted;
 impl ClosedLoop<'_> {
     /// What must hold.
     pub(crate) fn checks(&self) -> Vec<Check> {
-        let mut checks = Vec::from_iter(self.compared.as_ref().map(equals_model));
+        let moved = self
+            .compared
+            .as_ref()
+            .map(|compared| equals_model(compared, "the move to standstill"));
+        let mut checks = Vec::from_iter(moved);
+        checks.extend(self.contours.as_ref().and_then(Contours::check));
         checks.push(self.without_trouble());
         checks.push(self.follows());
         checks.extend(self.calmer());
@@ -29,10 +35,12 @@ impl ClosedLoop<'_> {
         let of_moves = self.moves().map(|moved| moved.trouble.as_ref());
         let mut of_runs = of_moves
             .into_iter()
-            .chain(circles.map(|circled| circled.trouble.as_ref()));
+            .chain(circles.map(|circled| circled.trouble.as_ref()))
+            .chain(self.contours.iter().flat_map(Contours::troubles));
         let runs = of_runs.clone().count();
         let circles = match &self.circles {
             Ok(circles) if circles.matched.is_ok() => String::new(),
+            Err(_) if self.contours.is_some() => String::new(),
             Ok(_) => "; no circle with equal delays, which the tables do not hold".to_owned(),
             Err(reason) => format!("; no circle: {reason}"),
         };
@@ -135,8 +143,16 @@ impl ClosedLoop<'_> {
             let [found, allowed, without] = [shaped.residual.peak, expected.ringing_allowed(), unshaped.residual.peak];
             let figures = [found, expected.figures.residual.peak, allowed, without];
             let [of_shaper, of_design, most, bare_found] = axis.unit.show_all(figures);
+            let handed = match expected.handover > 0.0 {
+                true => format!(
+                    ", {} for {}",
+                    axis.unit.show(expected.handover, 3),
+                    counted(self.shaped.handovers, "hand-over")
+                ),
+                false => String::new(),
+            };
             let text = format!(
-                "axis {}: {of_shaper} with its shaper, {of_design} expected of its design, {most} allowed, {bare_found} without",
+                "axis {}: {of_shaper} with its shaper, {of_design} expected of its design, {most} allowed{handed}, {bare_found} without",
                 axis.name
             );
             if found.is_nan() || found > allowed || without.is_nan() || without > bare.ringing_allowed() {
@@ -202,10 +218,11 @@ impl ClosedLoop<'_> {
     }
 }
 
-fn equals_model(compared: &Compared) -> Check {
+/// `end`: what a whole comparison comes to.
+pub(super) fn equals_model(compared: &Compared, end: &str) -> Check {
     let reach = match compared.whole {
-        true => "from reset over switch-on and the move to standstill",
-        false => "from reset on, not to the end of the move",
+        true => format!("from reset over switch-on to {end}"),
+        false => format!("from reset on, not to {end}"),
     };
     let detail = match (&compared.first, &compared.trouble) {
         (Some(first), _) => format!(

@@ -245,7 +245,7 @@ impl AxisPlant {
             pins: PinMean::new(pwm.mode, pwm.active_low, cell_clocks, period_clocks / cell_clocks),
             command: 0.0,
             driven,
-            modes: LoadModes::new(&plant.scaled(factor), cell_s, stiff),
+            modes: LoadModes::new(&plant.scaled(factor), cell_s, stiff).along(axis, factor, options.position),
             encoder_at: options
                 .encoder_at
                 .unwrap_or(if stiff { Coordinate::Driven } else { Coordinate::Load }),
@@ -288,7 +288,8 @@ impl AxisPlant {
         let command = self.pins.take();
         let before = self.driven.position;
         self.driven.cell(&command);
-        self.modes.cell((self.driven.position - before) / self.cell_s);
+        self.modes
+            .cell((self.driven.position - before) / self.cell_s, self.driven.position);
         self.command = command.share;
         self.passed = 0;
         let load = self.load();

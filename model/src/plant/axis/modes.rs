@@ -8,11 +8,16 @@
 //! y = x + Σ share_k · d_k
 //! ```
 //!
-//! Within a cell of the grid `x` is a ramp, under which both have one closed form: a free oscillation about `−lag·w`.
+//! Within a cell of the grid `x` is a ramp, under which both have one closed form: a free oscillation about `−lag·w`. The frequency of a mode
+//! that moves with the position stays while `x` goes 1/4096 of the range of its points.
 
 use nalgebra::{Matrix2, Vector2};
 
 use super::super::{Plant, PlantMode, free_amplitude, free_motion};
+use crate::machine_file::AxisSection;
+
+/// Steps of the position, over the range of the points of a moving mode, in which its frequency stays.
+const STEPS: f64 = 4096.0;
 
 #[derive(Debug, Clone, PartialEq)]
 struct LoadMode {
@@ -26,7 +31,23 @@ struct LoadMode {
 
 /// All modes of an axis.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct LoadModes(Vec<LoadMode>);
+pub(super) struct LoadModes {
+    modes: Vec<LoadMode>,
+    cell_s: f64,
+    trails: bool,
+    path: Option<Path>,
+}
+
+/// Where the modes of an axis are along its position.
+#[derive(Debug, Clone, PartialEq)]
+struct Path {
+    axis: AxisSection,
+    /// All frequencies times this.
+    factor: f64,
+    /// The position that the modes are for now.
+    at: f64,
+    step: f64,
+}
 
 impl LoadModes {
     /// At rest. `trails`: the modes of a velocity drive, which trail a ramp.
@@ -34,20 +55,52 @@ impl LoadModes {
         let modes = plant.modes().iter().map(|of| LoadMode {
             of: *of,
             cell: free_motion(&of.mode, cell_s),
-            lag_s: if trails {
-                2.0 * of.mode.damping / of.mode.omega()
-            } else {
-                0.0
-            },
+            lag_s: lag_s(of, trails),
             distance: 0.0,
             velocity: 0.0,
         });
-        Self(modes.collect())
+        Self {
+            modes: modes.collect(),
+            cell_s,
+            trails,
+            path: None,
+        }
     }
 
-    /// A cell in which the driven coordinate moves at this velocity.
-    pub(super) fn cell(&mut self, velocity: f64) {
-        for mode in &mut self.0 {
+    /// The same with modes that move with the position, if those of the axis do.
+    pub(super) fn along(mut self, axis: &AxisSection, factor: f64, position: f64) -> Self {
+        if let Some(family) = axis.family.as_ref().filter(|family| family.is_position()) {
+            self.path = Some(Path {
+                axis: axis.clone(),
+                factor,
+                at: f64::INFINITY,
+                step: (family.range[1] - family.range[0]) / STEPS,
+            });
+            self.follow(position);
+        }
+        self
+    }
+
+    /// Takes the modes of a position, where it is a step from the last.
+    fn follow(&mut self, position: f64) {
+        let Some(path) = &mut self.path else {
+            return;
+        };
+        if (position - path.at).abs() < path.step {
+            return;
+        }
+        path.at = position;
+        for (mode, of_axis) in self.modes.iter_mut().zip(&path.axis.modes) {
+            mode.of.mode = of_axis.at(position).scaled(path.factor);
+            mode.cell = free_motion(&mode.of.mode, self.cell_s);
+            mode.lag_s = lag_s(&mode.of, self.trails);
+        }
+    }
+
+    /// A cell in which the driven coordinate comes to `position` at this velocity.
+    pub(super) fn cell(&mut self, velocity: f64, position: f64) {
+        self.follow(position);
+        for mode in &mut self.modes {
             let rest = -mode.lag_s * velocity;
             let moved = mode.cell * Vector2::new(mode.distance - rest, mode.velocity - velocity);
             (mode.distance, mode.velocity) = (moved.x + rest, moved.y + velocity);
@@ -56,14 +109,24 @@ impl LoadModes {
 
     /// Distance of the load from the driven coordinate.
     pub(super) fn deflection(&self) -> f64 {
-        self.0.iter().fold(0.0, |sum, mode| sum + mode.of.share * mode.distance)
+        self.modes
+            .iter()
+            .fold(0.0, |sum, mode| sum + mode.of.share * mode.distance)
     }
 
     /// Sum of the amplitudes with which the modes ring, if the driven coordinate keeps its velocity from now on.
     pub(super) fn vibration(&self, velocity: f64) -> f64 {
-        self.0.iter().fold(0.0, |sum, mode| {
+        self.modes.iter().fold(0.0, |sum, mode| {
             let state = Vector2::new(mode.distance + mode.lag_s * velocity, mode.velocity - velocity);
             sum + mode.of.share.abs() * free_amplitude(&mode.of.mode, &state)
         })
+    }
+}
+
+/// How long a mode trails a ramp.
+fn lag_s(of: &PlantMode, trails: bool) -> f64 {
+    match trails {
+        true => 2.0 * of.mode.damping / of.mode.omega(),
+        false => 0.0,
     }
 }

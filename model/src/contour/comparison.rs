@@ -1,0 +1,94 @@
+//! Shapers on a contour: each kind, with the axes' own delays and with equal ones, on machines whose modes are off.
+
+use super::ContourError;
+use super::follow::{FollowedContour, follow};
+use super::plan::Contour;
+use crate::compare::with_kind;
+use crate::design::design_machine;
+use crate::design::kind::ShaperKind;
+use crate::machine_file::{AxisSection, Machine, StageSection};
+use crate::plant::axis::ErrorFigures;
+
+/// Frequencies of the machine's modes, as parts of those that the shapers are designed for.
+pub const FREQUENCY_FACTORS: [f64; 5] = [0.8, 0.9, 1.0, 1.1, 1.2];
+/// Place of the factor 1.
+const NOMINAL: usize = 2;
+/// Kinds that are compared with the machine's own.
+const KINDS: [ShaperKind; 4] = [ShaperKind::None, ShaperKind::Zv, ShaperKind::Zvd, ShaperKind::Ei];
+
+/// A shaper on a contour.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ContourRow {
+    /// Its kind, on all axes; of the machine's own the kinds of the axes, joined by a comma where they differ.
+    pub kind: String,
+    /// Whether it is what the machine file says.
+    pub in_file: bool,
+    /// Whether the axes have equal delays.
+    pub matched: bool,
+    /// Distance from the path, by [`FREQUENCY_FACTORS`]; or why the axes have no such tables.
+    pub errors: Result<[ErrorFigures; 5], String>,
+    /// How the machine goes whose modes are where they should be.
+    pub nominal: Option<FollowedContour>,
+}
+
+/// Compares the machine's own shapers with others.
+///
+/// # Errors
+/// [`ContourError`] where the machine cannot drive the contour at all.
+pub fn compare(machine: &Machine, contour: &Contour) -> Result<Vec<ContourRow>, ContourError> {
+    let own: Vec<String> = machine.axes.iter().take(2).map(AxisSection::kind_name).collect();
+    let own_kind = if own.iter().all(|kind| *kind == own[0]) {
+        own[0].clone()
+    } else {
+        own.join(", ")
+    };
+    let of_file = (own_kind.clone(), machine.clone(), true);
+    let others = KINDS.into_iter().filter(|kind| kind.name() != own_kind).map(|kind| {
+        let axes = machine.axes.iter().map(|axis| with_kind(axis, kind));
+        let other = Machine {
+            axes: axes.collect(),
+            ..machine.clone()
+        };
+        (kind.name().to_owned(), other, false)
+    });
+    let mut rows = Vec::new();
+    for (kind, machine, in_file) in std::iter::once(of_file).chain(others) {
+        for matched in [false, true] {
+            rows.push(row(&machine, contour, kind.clone(), in_file, matched)?);
+        }
+    }
+    Ok(rows)
+}
+
+fn row(
+    machine: &Machine,
+    contour: &Contour,
+    kind: String,
+    in_file: bool,
+    matched: bool,
+) -> Result<ContourRow, ContourError> {
+    let equal = machine.stage.unwrap_or(StageSection {
+        extra_delay_s: 0.0,
+        contour_speed: None,
+    });
+    let machine = Machine {
+        stage: matched.then_some(equal),
+        ..machine.clone()
+    };
+    let (errors, nominal) = match design_machine(&machine) {
+        Err(reason) => (Err(reason.to_string()), None),
+        Ok(design) => {
+            let follow = |factor: &f64| follow(&machine, &design, contour, *factor);
+            let followed: Vec<FollowedContour> = FREQUENCY_FACTORS.iter().map(follow).collect::<Result<_, _>>()?;
+            let errors = std::array::from_fn(|factor| followed[factor].error);
+            (Ok(errors), followed.into_iter().nth(NOMINAL))
+        }
+    };
+    Ok(ContourRow {
+        kind,
+        in_file,
+        matched,
+        errors,
+        nominal,
+    })
+}

@@ -1,0 +1,29 @@
+//! Contours of two axes: where a machine goes beside the path that it is told, and by how much.
+//!
+//! ```text
+//! circle, square, points, G-code ─► Stroke ─► Contour ─► Plan ─► tap tables ─► modes ─► distance from the path
+//!                                   lines,    runs        samples    (design)    (plant)    along its normal
+//!                                   arcs      without a   in time
+//!                                             stop
+//! ```
+//!
+//! - [`Stroke`]: a line or an arc, with the speed that it is asked for;
+//! - [`shapes`] and [`gcode`]: strokes of a circle, a square, a list of points, a program;
+//! - [`Contour`]: the strokes as runs between stops, within the limits of both axes;
+//! - [`follow`]: the machine under it, and its error; [`compare`]: that of each kind of shaper.
+//!
+//! Lengths are in m, or rad, of the first two axes; times in s.
+
+mod comparison;
+mod error;
+mod follow;
+pub mod gcode;
+mod plan;
+pub mod shapes;
+mod stroke;
+
+pub use comparison::{ContourRow, FREQUENCY_FACTORS, compare};
+pub use error::ContourError;
+pub use follow::{FollowedContour, command, follow, judged};
+pub use plan::{Contour, ContourLimits, ContourSample};
+pub use stroke::{PlanePoint, Shape, Stroke};

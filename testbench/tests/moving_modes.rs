@@ -1,0 +1,56 @@
+//! An arm whose mode moves with its position, in the closed loop: the figures of `docs/moving-modes.md`.
+
+use posicast_model::design::{TableFamily, design_machine};
+use posicast_model::hardware;
+use posicast_model::machine_file::{self, Machine};
+use posicast_model::motion::AxisMove;
+use posicast_testbench::stage_run::{Moved, Shaping, StageRun};
+
+const ARM: &str = include_str!("../../examples/telescope-arm.toml");
+/// m.
+const DISTANCE: f64 = 0.3;
+
+fn machine(text: &str) -> Machine {
+    machine_file::parse("telescope-arm.toml", text).unwrap_or_else(|error| panic!("{error:?}"))
+}
+
+fn run(machine: &Machine) -> StageRun<'_> {
+    let stage = hardware::stage(machine, &design_machine(machine).unwrap());
+    let of = AxisMove {
+        distance: DISTANCE,
+        ..AxisMove::of_axis(&machine.axes[0], &machine.fixed_point)
+    };
+    StageRun::with_moves(machine, &stage.unwrap().unwrap().config, 1, &[of]).unwrap()
+}
+
+fn ringing_um(moved: &Moved) -> f64 {
+    assert_eq!(moved.trouble, None);
+    1e6 * moved.axes[0].residual.peak
+}
+
+/// Handed over on the way, the load rings within what the design says of the hand-overs; with the ROM's table alone it rings as of a
+/// frequency that is off by a quarter.
+#[test]
+fn lockstep_tables_are_handed_over_while_the_mode_moves() {
+    let machine = machine(ARM);
+    let family: TableFamily = design_machine(&machine).unwrap().families.remove(0);
+    let own = run(&machine);
+    let shaped = own.moved(Shaping::Shaped, 1.0).unwrap();
+    let expected = &own.expected(Shaping::Shaped, 1.0).unwrap()[0];
+    let one_table = own.clone().with_one_table().moved(Shaping::Shaped, 1.0).unwrap();
+    let unshaped = own.moved(Shaping::Unshaped, 1.0).unwrap();
+    let figures = [&shaped, &one_table, &unshaped].map(ringing_um);
+    println!(
+        "{figures:?} um, {} hand-overs, at most {}",
+        shaped.handovers,
+        1e6 * expected.handover
+    );
+    let last = family.choose(0, DISTANCE) as u64;
+    assert_eq!(
+        (shaped.handovers, one_table.handovers, unshaped.handovers),
+        (last, 0, 0)
+    );
+    let [handed_over, kept, bare] = figures;
+    assert!(handed_over <= 1e6 * expected.ringing_allowed(), "{figures:?}");
+    assert!(3.0 * handed_over < kept && kept < bare, "{figures:?}");
+}
