@@ -3,13 +3,13 @@
 use crate::failure::Failure;
 use crate::{output, progress};
 use posicast_system::output::OutputFiles;
-use posicast_testbench::Error;
-use posicast_testbench::diff::{
-    self, Comparison, DiffOptions, DiffVerdict, Progress, Reset, SamplingEdge, UnknownPolicy, parse_time_fs,
-};
-use posicast_testbench::wave::write_text;
+use posicast_testbench::wave::{SealedFiles, write_text};
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
+use wavecmp::WaveError;
+use wavecmp::diff::{
+    self, Comparison, DiffOptions, DiffVerdict, Progress, Reset, SamplingEdge, UnknownPolicy, parse_time_fs,
+};
 
 /// Compare two waveforms (VCD or FST), sampled at the clock
 #[derive(clap::Args)]
@@ -149,7 +149,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         write_text(path, &diff::junit(&comparison, &name)).map_err(Failure::because)?;
     }
     if let (Some(base), DiffVerdict::Different) = (&args.show, comparison.result)
-        && diff::show(base, &args.a, &args.b, &comparison).map_err(Failure::because)?
+        && diff::show(&SealedFiles, base, &args.a, &args.b, &comparison).map_err(Failure::because)?
     {
         output::say(&format!(
             "shown in {}",
@@ -212,7 +212,7 @@ fn options(args: &Args) -> Result<DiffOptions, Failure> {
             .add_map_file(&text)
             .map_err(|error| Failure::because(error).in_file(path))?;
     }
-    let mut add = |texts: &[String], add: fn(&mut DiffOptions, &str) -> Result<(), Error>| {
+    let mut add = |texts: &[String], add: fn(&mut DiffOptions, &str) -> Result<(), WaveError>| {
         texts
             .iter()
             .try_for_each(|text| add(&mut options, text).map_err(Failure::because))

@@ -6,12 +6,13 @@ use crate::output;
 use posicast_model::rtl::{Direction, Port};
 use posicast_testbench::Error;
 use posicast_testbench::blocks::{Block, Sources};
-use posicast_testbench::diff::{DiffOptions, Reset};
 use posicast_testbench::lockstep::report::LockstepReport;
 use posicast_testbench::replay::{Extent, Replay};
 use posicast_testbench::wording::counted;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
+use wavecmp::WaveError;
+use wavecmp::diff::{DiffOptions, Reset};
 
 /// Which file, and how its names are read.
 #[derive(clap::Args)]
@@ -222,7 +223,7 @@ fn choose<'a>(
                 }
             }
             // A map that this block has no port for: another may.
-            Err(error @ Error::Option(_)) => refused = refused.or(Some(error)),
+            Err(error @ Error::Wave(WaveError::Option(_))) => refused = refused.or(Some(error)),
             Err(error) => return Err(bench::failure(error)),
         }
     }

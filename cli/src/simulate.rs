@@ -15,10 +15,11 @@ use posicast_model::machine_file::{AxisSection, Machine};
 use posicast_model::plant::Plant;
 use posicast_model::simulation::{AxisSimulation, simulate_axis};
 use posicast_system::output::OutputFiles;
-use posicast_testbench::wave::{Heading, Recorder, SAMPLE_CLOCK, Signal};
+use posicast_testbench::wave::{Heading, Recorder, Signal};
 use posicast_testbench::wording::counted;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
+use wavecmp::diff::SAMPLE_CLOCK;
 
 /// Run a command through the bit-exact model and the float design, on the simulated machine
 #[derive(clap::Args)]

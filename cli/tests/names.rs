@@ -10,7 +10,7 @@ const OF_EVERY_BLOCK: [&str; 2] = ["Inputs", "Outputs"];
 #[test]
 fn unit_a_public_type_name_has_one_meaning() {
     let mut places: BTreeMap<String, Vec<PathBuf>> = BTreeMap::new();
-    for file in rust_sources(&["system", "model", "identify", "hdl", "testbench", "synth"]) {
+    for file in rust_sources(&["system", "model", "identify", "hdl", "waves", "testbench", "synth"]) {
         let text = std::fs::read_to_string(&file).unwrap();
         for line in text.lines() {
             let words: Vec<&str> = line.split_whitespace().take(3).collect();

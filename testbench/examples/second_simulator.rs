@@ -9,7 +9,7 @@ use std::process::ExitCode;
 use posicast_testbench::Error;
 use posicast_testbench::blocks::library;
 use posicast_testbench::crosssim::{CrosssimOutcome, outputs, run};
-use posicast_testbench::diff::DiffVerdict;
+use wavecmp::diff::DiffVerdict;
 
 fn main() -> ExitCode {
     match compare() {
@@ -61,7 +61,7 @@ fn compare() -> Result<bool, Error> {
     Ok(is_good)
 }
 
-fn verdict(outcome: &CrosssimOutcome, waves: &posicast_testbench::diff::Comparison) -> String {
+fn verdict(outcome: &CrosssimOutcome, waves: &wavecmp::diff::Comparison) -> String {
     match waves.differences.first() {
         Some(first) => format!("{} differs at {}", first.signal, waves.time(first.time)),
         None if waves.result == DiffVerdict::Equal && outcome.is_good() => "equal".to_owned(),

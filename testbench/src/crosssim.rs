@@ -23,12 +23,12 @@ use posicast_model::rtl::{Direction, Port};
 
 use crate::Error;
 use crate::blocks::{Block, Sources};
-use crate::diff::{self, Comparison, DiffOptions, DiffVerdict, Reset};
 use crate::icarus::SCOPE;
 use crate::lockstep::report::{self, LockstepReport};
 use crate::lockstep::{self, Clock};
 use crate::netlist::has_memory;
 use crate::wave::{Heading, Recorder};
+use wavecmp::diff::{self, Comparison, DiffOptions, DiffVerdict, Reset};
 
 /// The clock of the waveforms: Icarus's testbench has two steps of 1 ns per clock.
 const CLOCK_HZ: f64 = 500e6;

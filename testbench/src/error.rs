@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use posicast_hdl::SimulationError;
 use posicast_hdl::emit::EmitError;
 use posicast_model::rtl::StepError;
+use wavecmp::WaveError;
 
 /// Why a comparison could not be made. That something *differs* is a result, never an error.
 #[derive(Debug, thiserror::Error)]
@@ -72,17 +73,10 @@ pub enum Error {
         /// What it says.
         source: StepError,
     },
-    /// A waveform file that is damaged, or beyond what can be compared in bounded memory.
-    #[error("{}: {place}: {problem}", .path.display())]
-    Vcd {
-        /// The file.
-        path: PathBuf,
-        /// `line N`, or `byte N` at the end of a truncated file.
-        place: String,
-        /// What was found, what is allowed, what to do.
-        problem: String,
-    },
-    /// An option that does not fit the files it is used with.
+    /// A waveform cannot be read, or compared.
+    #[error(transparent)]
+    Wave(#[from] WaveError),
+    /// An option, or an argument, that does not fit.
     #[error("{0}")]
     Option(String),
 }

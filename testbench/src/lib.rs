@@ -24,7 +24,7 @@
 //! - [`replay`] plays a recording into model and RTL.
 //! - [`ladder`] puts the results of all rungs into one table.
 //! - [`mutation`] puts faults into the blocks, and finds out which checks notice.
-//! - [`wave`] writes waveforms; [`diff`] compares two of them.
+//! - [`wave`] writes waveforms; the crate `wavecmp` compares two of them.
 //! - [`wording`] counts things and writes times for people.
 
 pub mod asynchronous;
@@ -32,7 +32,6 @@ pub mod blocks;
 pub mod campaign;
 pub mod coverage;
 pub mod crosssim;
-pub mod diff;
 mod error;
 pub mod fault_campaign;
 pub mod formal;
@@ -42,7 +41,6 @@ pub mod lockstep;
 pub mod mutation;
 pub mod netlist;
 pub mod page;
-mod reader;
 pub mod recording;
 pub mod register_tests;
 pub mod replay;
@@ -52,6 +50,6 @@ pub mod stimuli;
 mod tool;
 pub mod verilator;
 pub mod wave;
-pub mod wording;
 
 pub use error::{BlockError, Error};
+pub use wavecmp::wording;

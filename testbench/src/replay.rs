@@ -20,10 +20,12 @@ use posicast_model::rtl::{ClockedBlock, Direction, Port, StepError};
 
 use crate::Error;
 use crate::blocks::Block;
-use crate::diff::{DiffOptions, Player, PortMap, Recorded, missing};
 use crate::lockstep::report::LockstepReport;
 use crate::lockstep::{self, Device, Instance};
 use crate::stimuli::Stimuli;
+use wavecmp::WaveError;
+use wavecmp::diff::DiffOptions;
+use wavecmp::sample::{Player, PortMap, Recorded, WantedSignal};
 
 /// What the rows of the recording are called, behind the instance.
 const RECORDED: &str = "recorded";
@@ -55,7 +57,8 @@ impl Replay {
     /// As [`PortMap::find`].
     pub fn new(block: &dyn Block, path: &Path, options: &DiffOptions) -> Result<Option<Self>, Error> {
         let ports = block.model(0).ports().to_vec();
-        let map = PortMap::find(path, &block.top(), &ports, options)?;
+        let wanted: Vec<WantedSignal> = ports.iter().map(wanted).collect();
+        let map = PortMap::find(path, &block.top(), &wanted, options)?;
         Ok(map.map(|map| Self { map, ports }))
     }
 
@@ -175,10 +178,25 @@ impl Replay {
             &mut |_| {},
         );
         match inputs.failed {
-            Some(error) => Err(error),
+            Some(error) => Err(error.into()),
             None => report,
         }
     }
+}
+
+fn wanted(port: &Port) -> WantedSignal {
+    WantedSignal {
+        name: port.name.clone(),
+        width: port.width,
+    }
+}
+
+/// The ports of one direction that a file has not.
+fn missing(map: &PortMap, ports: &[Port], direction: Direction) -> Vec<String> {
+    let of = ports.iter().enumerate().filter(|(_, port)| port.direction == direction);
+    of.filter(|(at, _)| !map.has(*at))
+        .map(|(_, port)| port.name.clone())
+        .collect()
 }
 
 /// Places of the ports of one direction.
@@ -192,7 +210,7 @@ struct Inputs {
     player: Player,
     row: Vec<Option<Recorded>>,
     places: Vec<usize>,
-    failed: Option<Error>,
+    failed: Option<WaveError>,
 }
 
 impl Stimuli for Inputs {

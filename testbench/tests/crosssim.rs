@@ -5,8 +5,8 @@
 use posicast_model::rtl::divider::DividerConfig;
 use posicast_testbench::blocks::{Block, DividerBlock, PartBlock, SmallPart, library};
 use posicast_testbench::crosssim::{self, CrosssimOutcome};
-use posicast_testbench::diff::DiffVerdict;
 use posicast_testbench::lockstep::report;
+use wavecmp::diff::DiffVerdict;
 
 const CLOCKS: u64 = 3000;
 

@@ -9,10 +9,10 @@ use posicast_model::machine_file::Machine;
 use posicast_model::simulation::AxisSimulation;
 use posicast_synth::yosys::Estimate;
 use posicast_testbench::blocks::{Block, Sources};
-use posicast_testbench::diff::{Comparison, DiffVerdict};
 use posicast_testbench::lockstep::report::{LockstepReport, LockstepVerdict};
 use posicast_testbench::wording::counted;
 use serde::Serialize;
+use wavecmp::diff::{Comparison, DiffVerdict};
 
 /// One check and how it went.
 #[derive(Debug, Clone, Serialize)]

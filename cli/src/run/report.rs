@@ -18,11 +18,11 @@ use posicast_model::plant::Plant;
 use posicast_model::plant::response::{PlantFigures, StepFigures, plant_figures};
 use posicast_model::simulation::AxisSimulation;
 use posicast_synth::yosys::Estimate;
-use posicast_testbench::diff::Comparison;
 use posicast_testbench::lockstep::report::LockstepReport;
 use posicast_testbench::verilator;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
+use wavecmp::diff::Comparison;
 
 /// Everything that a run found out.
 pub(crate) struct RunReport<'a> {

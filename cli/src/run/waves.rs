@@ -9,11 +9,12 @@ use posicast_model::machine_file::Machine;
 use posicast_model::simulation::{AxisSimulation, largest_difference};
 use posicast_synth::package::Package;
 use posicast_testbench::blocks::{Block, MachineShapers, Sources};
-use posicast_testbench::diff::{self, Comparison, DiffOptions};
 use posicast_testbench::lockstep::TwoValued;
 use posicast_testbench::lockstep::report::LockstepReport;
 use posicast_testbench::recording::Move;
-use posicast_testbench::wave::{DifferenceSignal, MergePart, merge};
+use posicast_testbench::wave::merge;
+use wavecmp::diff::{self, Comparison, DiffOptions};
+use wavecmp::merge::{DifferenceSignal, MergePart};
 
 /// The waveforms of the move and what their comparison says.
 pub(super) struct Waves {
@@ -98,14 +99,14 @@ impl Job<'_> {
         for (name, axis) in names.iter().zip(axes) {
             within
                 .add_tolerance(&format!("{name}={}", axis.bound_lsb))
-                .map_err(bench::failure)?;
+                .map_err(Failure::because)?;
             differences.push(DifferenceSignal {
                 name,
                 minuend: (1, name),
                 subtrahend: (2, name),
             });
         }
-        let compare = |a, b, options: &DiffOptions| diff::compare(a, b, options, &mut |_| {}).map_err(bench::failure);
+        let compare = |a, b, options: &DiffOptions| diff::compare(a, b, options, &mut |_| {}).map_err(Failure::because);
         let waves = Waves {
             samples: trace.shaped.iter().map(Vec::len).collect(),
             clocks: trace.clocks,

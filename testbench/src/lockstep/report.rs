@@ -6,7 +6,7 @@ use posicast_model::rtl::{Direction, Port};
 use serde::Serialize;
 
 use super::window::{Row, Window};
-use crate::diff::{Shown, View, value, value_and_digits};
+use wavecmp::diff::{Shown, View, value, value_and_digits};
 
 /// Match or mismatch.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]

@@ -1,4 +1,4 @@
-//! Writes waveforms: one VCD per run, and one that shows several side by side.
+//! Writes waveforms: one VCD per run. [`merge`] makes one that shows several side by side.
 //!
 //! ```text
 //!            ┌─ step 0 ─┐┌─ step 1 ─┐┌─ step 2 ─┐
@@ -20,7 +20,6 @@
 
 mod clocking;
 mod output;
-mod view;
 
 use std::path::Path;
 
@@ -29,8 +28,7 @@ use vcd::{IdCode, VarType};
 
 use self::clocking::Clocking;
 use self::output::Output;
-pub use self::output::{SignalKind, write_text};
-pub use self::view::{DifferenceSignal, Focus, MergePart, merge, merge_around};
+pub use self::output::{SealedFiles, SignalKind, merge, write_text};
 use crate::Error;
 
 /// A signal of a waveform.
@@ -70,9 +68,6 @@ pub struct Heading<'a> {
     /// Whether clocks may be [left out](Recorder::skip_to): the file then has the signal `recording`.
     pub gaps: bool,
 }
-
-/// Name of a clock that rises once a sample: not to be taken for that of the hardware.
-pub const SAMPLE_CLOCK: &str = "sample_clk";
 
 /// Name of the signal that is 0 while the clock is not recorded.
 const RECORDING: &str = "recording";

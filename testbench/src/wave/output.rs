@@ -5,6 +5,9 @@ use std::path::{Path, PathBuf};
 
 use posicast_system::output::{self, Draft, seal};
 use vcd::{IdCode, Writer};
+use wavecmp::WaveError;
+use wavecmp::files::{Fill, OutputSink};
+use wavecmp::merge::{DifferenceSignal, MergePart};
 
 use crate::Error;
 
@@ -54,6 +57,30 @@ impl Output {
 /// [`Error::File`] if it cannot be written.
 pub fn write_text(path: &Path, text: &str) -> Result<(), Error> {
     output::write_text(path, text).map_err(Error::file(path, "write"))
+}
+
+/// Files with posicast's seal, complete or not at all.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct SealedFiles;
+
+impl OutputSink for SealedFiles {
+    fn mark(&self) -> String {
+        seal::blank()
+    }
+
+    fn write(&self, path: &Path, fill: &mut Fill<'_>) -> Result<(), WaveError> {
+        let mut draft = Draft::new(path).map_err(WaveError::file(path, "create"))?;
+        fill(&mut draft)?;
+        draft.put().map_err(WaveError::file(path, "write"))
+    }
+}
+
+/// Several waveforms side by side in `path`, with posicast's seal ([`wavecmp::merge::merge`]).
+///
+/// # Errors
+/// [`Error::Wave`] for a part that cannot be read, a difference that names no signal, or a file that cannot be written.
+pub fn merge(path: &Path, parts: &[MergePart<'_>], differences: &[DifferenceSignal<'_>]) -> Result<(), Error> {
+    Ok(wavecmp::merge::merge(&SealedFiles, path, parts, differences)?)
 }
 
 /// Writes one change. Reals with an exponent: written out, the large ones are longer than readers take.

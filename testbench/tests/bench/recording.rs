@@ -6,9 +6,9 @@ use posicast_hdl::machine::AxisShaper;
 use posicast_model::rtl::shaper::ShaperConfig;
 use posicast_model::taps::{Tap, TapTable};
 use posicast_testbench::blocks::{Block, MachineShapers};
-use posicast_testbench::diff::{self, Comparison, DiffOptions, DiffVerdict};
 use posicast_testbench::lockstep::TwoValued;
 use posicast_testbench::recording::{Move, RecordedMove};
+use wavecmp::diff::{self, Comparison, DiffOptions, DiffVerdict};
 
 use crate::bench::waves::{read, times_of_ones};
 

@@ -3,8 +3,9 @@
 use std::path::Path;
 
 use posicast_testbench::Error;
-use posicast_testbench::diff::{self, DiffOptions, DiffVerdict};
-use posicast_testbench::wave::{self, DifferenceSignal, Focus, Heading, MergePart, Recorder, Signal};
+use posicast_testbench::wave::{self, Heading, Recorder, SealedFiles, Signal};
+use wavecmp::diff::{self, DiffOptions, DiffVerdict};
+use wavecmp::merge::{DifferenceSignal, Focus, MergePart, merge_around};
 
 use crate::bench::waves::{read, times_of_ones, unit_and_times};
 
@@ -137,7 +138,7 @@ fn unit_sessions_name_times_in_the_unit_of_their_file() {
             span_fs: 100_000_000_000,
         };
         for focus in [None, Some(&focus)] {
-            wave::merge_around(&at("merged.vcd"), &parts, &[], focus).unwrap();
+            merge_around(&SealedFiles, &at("merged.vcd"), &parts, &[], focus).unwrap();
             let (unit_fs, _) = unit_and_times(&at("merged.vcd"));
             let ms = |units: f64| units * unit_fs as f64 * 1e-12;
             let changes = &read(&at("merged.vcd")).1["a.y"];
@@ -189,7 +190,7 @@ fn unit_a_divergence_at_either_end_of_a_file_is_in_view() {
             time_fs: time_ns * 1_000_000,
             span_fs: 220_000_000,
         };
-        wave::merge_around(&at("first.vcd"), &[part], &[], Some(&focus)).unwrap();
+        merge_around(&SealedFiles, &at("first.vcd"), &[part], &[], Some(&focus)).unwrap();
         let text = std::fs::read_to_string(at("first.vcd")).unwrap();
         let end: f64 = text
             .lines()

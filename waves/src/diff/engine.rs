@@ -1,0 +1,405 @@
+//! Compares what changed, at the samples or at every change.
+//!
+//! The cost of a sample is the number of signals that changed since the last one: a pair that did not change stays as
+//! equal or as different as it was, and its count is added up when that ends.
+
+use super::clocking::Slots;
+use super::gather::Gathering;
+use super::matching::Pair;
+use super::options::{DiffOptions, SamplingEdge};
+use super::result::{Difference, seconds};
+use super::rule::{Rule, View};
+use super::side::{ClockEdge, Side, slot_of};
+use super::touched::Touched;
+use super::value::Shown;
+use crate::WaveError;
+use crate::reader::{Kind, Value, Values};
+
+const PROGRESS_SAMPLES: u64 = 1 << 14;
+
+/// How far a comparison has come.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Progress {
+    /// Samples compared.
+    pub samples: u64,
+    /// Bytes read, of both files.
+    pub bytes: u64,
+    /// Length of both files; `None` where one is a pipe.
+    pub total_bytes: Option<u64>,
+}
+
+#[derive(Debug, Clone)]
+pub(super) struct First {
+    pub(super) time_fs: u128,
+    pub(super) a: Shown,
+    pub(super) b: Shown,
+    pub(super) a_number: Option<f64>,
+    pub(super) b_number: Option<f64>,
+}
+
+/// What a comparison of words needs, close together.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Hot {
+    pub(super) a: Option<u32>,
+    pub(super) b: Option<u32>,
+    /// Two words on either side, equal if they are.
+    plain: bool,
+    different: bool,
+}
+
+#[derive(Debug)]
+pub(super) struct State {
+    pub(super) name: String,
+    pub(super) rule: Rule,
+    /// Sample and time since which it differs, with what it then was.
+    pub(super) since: Option<(u64, First)>,
+    pub(super) count: u64,
+    pub(super) first: Option<First>,
+}
+
+pub(super) struct Engine<'a> {
+    pub(super) a: Side,
+    pub(super) b: Side,
+    pub(super) hot: Vec<Hot>,
+    pub(super) states: Vec<State>,
+    touched: Touched,
+    options: &'a DiffOptions,
+    pub(super) samples: u64,
+    total_bytes: Option<u64>,
+    /// A value per pair, as it was when the pair was equal last; until the first difference.
+    pub(super) before: Option<(Values, u128)>,
+    pub(super) context: Option<Gathering>,
+    /// Edges of the clock that the other file does not have.
+    pub(super) surplus: Option<Difference>,
+    /// First time at which paired edges lie at different times.
+    pub(super) shifted_fs: Option<u128>,
+    /// Samples that one file does not record.
+    pub(super) unrecorded: u64,
+    /// Differences that did not last as long as the time tolerance.
+    pub(super) forgiven: u64,
+}
+
+impl<'a> Engine<'a> {
+    pub(super) fn new(
+        a: Side,
+        b: Side,
+        pairs: Vec<(Pair, Rule)>,
+        options: &'a DiffOptions,
+        total_bytes: Option<u64>,
+    ) -> Self {
+        let mut before = Values::default();
+        let mut hot = Vec::new();
+        let mut states = Vec::new();
+        for (pair, rule) in pairs {
+            let kinds = [
+                pair.a.map(|slot| a.values.kind(slot)),
+                pair.b.map(|slot| b.values.kind(slot)),
+            ];
+            let plain = rule.is_plain()
+                && match kinds {
+                    [Some(Kind::Bits(a)), Some(Kind::Bits(b))] => a == b && a <= 64,
+                    _ => false,
+                };
+            before.add(kinds.into_iter().flatten().next().unwrap_or(Kind::Event));
+            hot.push(Hot {
+                a: pair.a,
+                b: pair.b,
+                plain,
+                different: false,
+            });
+            states.push(State {
+                name: pair.name,
+                rule,
+                since: None,
+                count: 0,
+                first: None,
+            });
+        }
+        Self {
+            a,
+            b,
+            touched: Touched::new(states.len()),
+            hot,
+            states,
+            options,
+            samples: 0,
+            total_bytes,
+            before: Some((before, 0)),
+            context: None,
+            surplus: None,
+            shifted_fs: None,
+            unrecorded: 0,
+            forgiven: 0,
+        }
+    }
+
+    /// These pairs are not compared before a delayed value has arrived.
+    pub(super) fn wait_for(&mut self, pairs: impl Iterator<Item = u32>) {
+        for pair in pairs {
+            self.touched.waiting[pair as usize] = true;
+        }
+    }
+
+    /// Compares at the edges of the clock.
+    pub(super) fn at_edges(&mut self, clock: Slots, progress: &mut dyn FnMut(Progress)) -> Result<(), WaveError> {
+        self.a.start()?;
+        self.b.start()?;
+        let mut last: Option<[u128; 2]> = None;
+        let mut period_fs = 0;
+        loop {
+            let mut a = self.a.next_edge(&mut self.touched)?;
+            let mut b = self.b.next_edge(&mut self.touched)?;
+            if let (Some(edge_a), Some(edge_b)) = (a, b)
+                && edge_a.gap != edge_b.gap
+            {
+                (a, b) = self.meet_again(edge_a, edge_b, last, period_fs)?;
+            }
+            let (a, b) = match (a, b) {
+                (Some(a), Some(b)) => (a, b),
+                (None, None) => return Ok(()),
+                (Some(edge), None) => {
+                    self.b.cut_off()?;
+                    return self.count_surplus(clock, edge, true);
+                }
+                (None, Some(edge)) => {
+                    self.a.cut_off()?;
+                    return self.count_surplus(clock, edge, false);
+                }
+            };
+            if a.time_fs != b.time_fs && self.shifted_fs.is_none() {
+                self.shifted_fs = Some(a.time_fs);
+            }
+            if let Some([last_a, _]) = last
+                && !a.gap
+            {
+                period_fs = a.time_fs - last_a;
+            }
+            last = Some([a.time_fs, b.time_fs]);
+            if self.options.end_fs.is_some_and(|end| a.time_fs > end) {
+                return Ok(());
+            }
+            let sample = u128::from(self.samples);
+            for side in [&mut self.a, &mut self.b] {
+                side.pend(sample)?;
+                side.release(sample, &mut self.touched);
+            }
+            if self.options.start_fs.is_none_or(|start| a.time_fs >= start) {
+                self.compare(a.time_fs, progress);
+            }
+        }
+    }
+
+    /// After a stretch that one file does not record, edges meet by their time, as far apart as they were before.
+    fn meet_again(
+        &mut self,
+        mut a: ClockEdge,
+        mut b: ClockEdge,
+        last: Option<[u128; 2]>,
+        period_fs: u128,
+    ) -> Result<(Option<ClockEdge>, Option<ClockEdge>), WaveError> {
+        // In a common time: each file's own, plus where the other stood at the last common edge.
+        let [last_a, last_b] = last.unwrap_or_default();
+        loop {
+            let (time_a, time_b) = (a.time_fs + last_b, b.time_fs + last_a);
+            if time_a.abs_diff(time_b) <= period_fs / 2 {
+                return Ok((Some(a), Some(b)));
+            }
+            self.unrecorded += 1;
+            let behind = if time_a < time_b {
+                (&mut self.a, &mut a)
+            } else {
+                (&mut self.b, &mut b)
+            };
+            match behind.0.next_edge(&mut self.touched)? {
+                Some(edge) => *behind.1 = edge,
+                // The rest of the other file has no partner that could have been recorded.
+                None => return Ok((None, None)),
+            }
+        }
+    }
+
+    /// One file has more edges than the other: a difference of the clock, from the first edge that is alone.
+    fn count_surplus(&mut self, clock: Slots, edge: ClockEdge, of_a: bool) -> Result<(), WaveError> {
+        let within = |edge: ClockEdge| self.options.end_fs.is_none_or(|end| edge.time_fs <= end);
+        if !within(edge) {
+            return Ok(());
+        }
+        let side = if of_a { &mut self.a } else { &mut self.b };
+        let mut count = 1;
+        while side.next_edge(&mut self.touched)?.is_some_and(within) {
+            count += 1;
+        }
+        let digit = if self.options.edge == SamplingEdge::Rising {
+            "1"
+        } else {
+            "0"
+        };
+        let shown = Shown::Bits(digit.to_owned());
+        let slots = [slot_of(clock, false), slot_of(clock, true)].map(Some);
+        let at = self.hot.iter().position(|hot| [hot.a, hot.b] == slots);
+        self.surplus = Some(Difference {
+            signal: at.map_or_else(String::new, |at| self.states[at].name.clone()),
+            time: seconds(edge.time_fs),
+            a: if of_a { shown.clone() } else { Shown::Missing },
+            b: if of_a { Shown::Missing } else { shown },
+            count,
+            persistent: true,
+            a_number: None,
+            b_number: None,
+            view: View::Bits,
+        });
+        Ok(())
+    }
+
+    /// Compares at every time at which something changes.
+    pub(super) fn at_changes(&mut self, progress: &mut dyn FnMut(Progress)) -> Result<(), WaveError> {
+        self.a.start()?;
+        self.b.start()?;
+        let glitch_fs = self.options.glitch_fs;
+        while let Some(time) = [self.a.next_time(), self.b.next_time()].into_iter().flatten().min() {
+            // With a glitch filter, a value comes into effect when it has lasted; it began before.
+            let began = time.saturating_sub(glitch_fs);
+            if self.options.end_fs.is_some_and(|end| began > end) {
+                return Ok(());
+            }
+            let in_a = self.a.next_time() == Some(time) && self.a.advance_to(time, &mut self.touched)?;
+            let in_b = self.b.next_time() == Some(time) && self.b.advance_to(time, &mut self.touched)?;
+            let wanted = self.options.start_fs.is_none_or(|start| began >= start);
+            if (in_a || in_b) && wanted {
+                if self.a.is_off() || self.b.is_off() {
+                    self.unrecorded += 1;
+                } else {
+                    self.compare(began, progress);
+                }
+            }
+            match (self.a.has_ended(), self.b.has_ended()) {
+                (true, true) => {
+                    self.a.forget_delayed();
+                    self.b.forget_delayed();
+                }
+                (false, true) => self.b.cut_off()?,
+                (true, false) => self.a.cut_off()?,
+                (false, false) => {}
+            }
+        }
+        Ok(())
+    }
+
+    fn compare(&mut self, time_fs: u128, progress: &mut dyn FnMut(Progress)) {
+        let Self {
+            a,
+            b,
+            hot,
+            states,
+            touched,
+            before,
+            ..
+        } = self;
+        let mut diverged: Vec<u32> = Vec::new();
+        let mut ended: Vec<u32> = Vec::new();
+        let is_waiting = std::mem::take(&mut touched.waiting);
+        touched.drain(|at| {
+            if is_waiting[at as usize] {
+                return;
+            }
+            let pair = hot[at as usize];
+            let equal = match (pair.a, pair.b) {
+                (Some(slot_a), Some(slot_b)) if pair.plain => {
+                    let (words_a, words_b) = (a.values.words(slot_a), b.values.words(slot_b));
+                    words_a == words_b
+                }
+                (Some(slot_a), Some(slot_b)) => states[at as usize]
+                    .rule
+                    .equal(a.values.get(slot_a), b.values.get(slot_b)),
+                _ => false,
+            };
+            if equal && let (Some((before, _)), Some(slot)) = (before.as_mut(), pair.a) {
+                before.set(at, a.values.words(slot));
+            }
+            if equal == pair.different {
+                if equal { ended.push(at) } else { diverged.push(at) }
+            }
+        });
+        touched.waiting = is_waiting;
+        for at in ended {
+            self.end(at as usize, time_fs);
+        }
+        // In the order of the file, so that the report does not depend on the order of the changes.
+        diverged.sort_unstable();
+        for at in &diverged {
+            self.begin(*at as usize, time_fs);
+        }
+        self.gather(&diverged, time_fs);
+        self.samples += 1;
+        if self.samples.is_multiple_of(PROGRESS_SAMPLES) {
+            progress(Progress {
+                samples: self.samples,
+                bytes: self.a.bytes() + self.b.bytes(),
+                total_bytes: self.total_bytes,
+            });
+        }
+    }
+
+    pub(super) fn values(&self, at: usize) -> (Option<Value<'_>>, Option<Value<'_>>) {
+        let pair = self.hot[at];
+        (
+            pair.a.map(|slot| self.a.values.get(slot)),
+            pair.b.map(|slot| self.b.values.get(slot)),
+        )
+    }
+
+    fn begin(&mut self, at: usize, time_fs: u128) {
+        let (a, b) = self.values(at);
+        let rule = self.states[at].rule;
+        let (a_number, b_number) = (rule.number(a), rule.number(b));
+        let (a, b) = rule.shown(a, b);
+        let first = First {
+            time_fs,
+            a,
+            b,
+            a_number,
+            b_number,
+        };
+        self.hot[at].different = true;
+        self.states[at].since = Some((self.samples, first));
+    }
+
+    fn end(&mut self, at: usize, time_fs: u128) {
+        self.hot[at].different = false;
+        let state = &mut self.states[at];
+        let Some((since, first)) = state.since.take() else {
+            return;
+        };
+        if time_fs - first.time_fs <= self.options.time_tolerance_fs {
+            self.forgiven += 1;
+            return;
+        }
+        state.count += self.samples - since;
+        state.first.get_or_insert(first);
+    }
+
+    /// Notes what stands around the first divergence of all: the last equal sample, itself, and some behind it.
+    fn gather(&mut self, diverged: &[u32], time_fs: u128) {
+        if self.context.is_none() && !diverged.is_empty() {
+            let of = |at: usize| (self.states[at].name.clone(), self.states[at].rule.reading());
+            let mut gathering = Gathering::new(self.samples, diverged, of);
+            if let (Some((before, before_fs)), 1..) = (self.before.take(), self.samples) {
+                gathering.add(before_fs, |at| {
+                    let value = self.hot[at].a.and(self.hot[at].b).map(|_| before.get(at as u32));
+                    self.states[at].rule.shown(value, value)
+                });
+            }
+            self.context = Some(gathering);
+        }
+        if let Some((_, before_fs)) = &mut self.before {
+            *before_fs = time_fs;
+        }
+        if let Some(mut gathering) = self.context.take() {
+            gathering.add_behind(time_fs, |at| {
+                let (a, b) = self.values(at);
+                self.states[at].rule.shown(a, b)
+            });
+            self.context = Some(gathering);
+        }
+    }
+}

@@ -1,0 +1,321 @@
+//! Compares two waveforms.
+//!
+//! ```text
+//!  A ─► reader thread ─┐  signals paired by name        ┌─ with a clock: k-th edge of A behind reset with the k-th of B,
+//!   (VCD, FST)         ├─► (roots, filters, maps) ─► when ┤  values just before the edge
+//!  B ─► reader thread ─┘                                └─ without: at every time at which something changes
+//!                                                           └─► equal? by each signal's rule ─► result, text, JUnit, views
+//! ```
+//!
+//! # Rules
+//! - **Names.** Maps first. Then full names; if nothing has the same full name, the scopes that all signals of a file share
+//!   are stripped, as few as give the most pairs. What is still alone meets by its canonical name (`a$b`, `a__b`, `A.B`),
+//!   where there is one candidate. A vector that one file writes bit by bit meets the whole of the other.
+//! - **Partners.** A signal without a partner is listed, never silently left out; with [`DiffOptions::require_all`] it is a
+//!   difference.
+//! - **Clock.** With a clock, values are those just before its edge, so that registers of both sides compare the same
+//!   whether their file shows changes at the edge or after it. Edges are paired by their number behind the release of
+//!   reset, not by their time; that the times differ is a note, that the numbers differ is a difference of the clock.
+//! - **Recording.** What one file does not record (`$dumpoff`) is not compared; behind it, edges meet by time again.
+//! - **Unknown bits.** By [`UnknownPolicy`]. A signal without a value yet is `x`.
+//! - **Widths.** The narrower is extended with zeros, as VCD does; with its sign in a signed view. The result names both widths,
+//!   and is then not exact.
+//! - **Tolerance.** See [`Tolerance`]; without a [`View`], bits are then signed numbers. A real against a vector is compared
+//!   as number, exactly if there is no tolerance. A tolerance for all signals leaves single bits and text alone.
+//! - **Nothing compared** is `incomparable`: no common signal beside the clock, or no sample.
+//!
+//! Both files are read once and at the same time; memory depends on the number of signals and their widths, not on the
+//! length. Only [`show`] reads them again, when it is asked for.
+
+mod clocking;
+mod delay;
+mod engine;
+mod finish;
+mod gather;
+mod human;
+mod junit;
+mod matching;
+mod names;
+mod options;
+mod pattern;
+mod picture;
+mod result;
+mod rule;
+pub mod sample;
+mod side;
+mod svg;
+mod text;
+mod touched;
+mod value;
+
+use std::path::Path;
+
+use self::clocking::Clocking;
+pub use self::clocking::SAMPLE_CLOCK;
+use self::engine::Engine;
+pub use self::engine::Progress;
+pub use self::human::{value, value_and_digits};
+pub use self::junit::junit;
+use self::matching::{Matched, Pair};
+use self::names::{Filter, Names};
+pub use self::options::{DiffOptions, Latency, Reset, SamplingEdge, parse_time_fs};
+pub use self::picture::{show, shown_files};
+pub use self::result::{Comparison, Context, ContextRow, DiffVerdict, Difference, Leniency};
+use self::rule::Rule;
+pub use self::rule::{Tolerance, View};
+use self::side::{Delayed, Side, slot_of};
+pub use self::value::{Shown, UnknownPolicy};
+use crate::WaveError;
+use crate::reader::{Declarations, Kind, Watch, Wave};
+use crate::wording::{counted, time};
+
+/// Compares file `a` with file `b`. `progress` is called now and then.
+///
+/// # Errors
+/// [`WaveError::File`] and [`WaveError::Damaged`] for files that cannot be read to their end; [`WaveError::Option`] for options that do
+/// not fit these files.
+pub fn compare(
+    a: &Path,
+    b: &Path,
+    options: &DiffOptions,
+    progress: &mut dyn FnMut(Progress),
+) -> Result<Comparison, WaveError> {
+    let mut waves = [Wave::open(a)?, Wave::open(b)?];
+    let plan = Plan::new(&mut waves, options)?;
+    let widths = widths(&plan.matched, &waves);
+    let mut comparison = Comparison::new(&plan.matched, &plan.rules, &plan.latency_texts(), &widths);
+    comparison.unknown = options.unknown;
+    let strict = options.unknown == UnknownPolicy::Strict && options.time_tolerance_fs == 0 && options.glitch_fs == 0;
+    comparison.exact &= strict;
+    comparison.only_widths &= strict;
+    comparison.unit_fs = waves.iter().map(|wave| wave.declarations.unit_fs).min().unwrap_or(1);
+    comparison.notes.clone_from(&plan.clocking.notes);
+    comparison.signals = comparison.compared.len() as u64;
+    let clock = plan.clocking.clock;
+    let is_clock = |pair: &Pair| clock.is_some_and(|[a, b]| (pair.a, pair.b) == (Some(a), Some(b)));
+    comparison.clock = plan
+        .matched
+        .pairs
+        .iter()
+        .find(|pair| is_clock(pair))
+        .and_then(Pair::names);
+    let common = plan.matched.pairs.iter().filter(|p| p.a.is_some() && p.b.is_some());
+    if common.filter(|pair| !is_clock(pair)).count() == 0 {
+        comparison.incomparable("the files have no signal in common; say with --map A=B which belong together");
+        return Ok(comparison);
+    }
+    let mut engine = plan.start(waves, options)?;
+    match clock {
+        Some(clock) => engine.at_edges(clock, progress)?,
+        None => engine.at_changes(progress)?,
+    }
+    engine.finish(&mut comparison);
+    Ok(comparison)
+}
+
+/// What belongs together, and how it is compared.
+struct Plan {
+    names: [Names; 2],
+    matched: Matched,
+    clocking: Clocking,
+    /// Of each pair.
+    rules: Vec<Rule>,
+    latencies: Vec<Option<Latency>>,
+}
+
+impl Plan {
+    fn new([wave_a, wave_b]: &mut [Wave; 2], options: &DiffOptions) -> Result<Self, WaveError> {
+        let filter = Filter::new(&options.only, &options.ignore)?;
+        let [root_a, root_b] = &options.roots;
+        let a = Names::new(&mut wave_a.declarations, root_a.as_deref(), &filter, "first")?;
+        let b = Names::new(&mut wave_b.declarations, root_b.as_deref(), &filter, "second")?;
+        let (a_kinds, b_kinds) = (&wave_a.declarations.kinds, &wave_b.declarations.kinds);
+        let mut matched = Matched::new(&a, &b, &options.maps)?;
+        let is_event = |kinds: &[Kind], slot: u32| kinds[slot as usize] == Kind::Event;
+        matched.leave_out(|slot| is_event(a_kinds, slot), |slot| is_event(b_kinds, slot));
+        let clocking = Clocking::find(&matched, options, |pair| {
+            let one_bit = |kinds: &[Kind], slot: Option<u32>| slot.is_some_and(|s| kinds[s as usize] == Kind::Bits(1));
+            one_bit(a_kinds, pair.a) && one_bit(b_kinds, pair.b)
+        })?;
+        let sampled = clocking.clock.is_some();
+        if sampled && (options.time_tolerance_fs > 0 || options.glitch_fs > 0) {
+            return Err(WaveError::Option(
+                "--time-tolerance and --glitch are for files that are compared at every change: add --raw".to_owned(),
+            ));
+        }
+        let rules = rules(&matched, options, |pair| {
+            let kind = |kinds: &[Kind], slot: Option<u32>| slot.map(|s| kinds[s as usize]);
+            [kind(a_kinds, pair.a), kind(b_kinds, pair.b)]
+        })?;
+        Ok(Self {
+            latencies: latencies(&matched, options, sampled)?,
+            names: [a, b],
+            matched,
+            clocking,
+            rules,
+        })
+    }
+
+    fn latency_texts(&self) -> Vec<Option<String>> {
+        let text = |latency: &Latency| match latency {
+            Latency::Samples(samples) if *samples < 0 => format!("-{}", counted(samples.unsigned_abs(), "sample")),
+            Latency::Samples(samples) => counted(samples.unsigned_abs(), "sample"),
+            Latency::Femtoseconds(fs) if *fs < 0 => format!("-{}", time(fs.unsigned_abs())),
+            Latency::Femtoseconds(fs) => time(fs.unsigned_abs()),
+        };
+        self.latencies
+            .iter()
+            .map(|latency| latency.as_ref().map(text))
+            .collect()
+    }
+
+    /// Starts to read both files.
+    fn start(self, [wave_a, wave_b]: [Wave; 2], options: &DiffOptions) -> Result<Engine<'_>, WaveError> {
+        let total_bytes = wave_a.bytes().zip(wave_b.bytes()).map(|(a, b)| a + b);
+        let Self {
+            names,
+            matched,
+            clocking,
+            rules,
+            latencies,
+        } = self;
+        let wanted = |pair: &Pair| options.require_all || (pair.a.is_some() && pair.b.is_some());
+        let chosen = matched.pairs.into_iter().zip(rules).zip(latencies);
+        let chosen: Vec<((Pair, Rule), Option<Latency>)> = chosen.filter(|((pair, _), _)| wanted(pair)).collect();
+        let (mut pairs, latencies): (Vec<(Pair, Rule)>, Vec<Option<Latency>>) = chosen.into_iter().unzip();
+        let mut delays: [Vec<Delayed>; 2] = Default::default();
+        for (pair, latency) in (0..).zip(latencies) {
+            let by = match latency {
+                None => continue,
+                Some(Latency::Samples(by)) => i128::from(by),
+                Some(Latency::Femtoseconds(by)) => by,
+            };
+            // What comes later in the second file is held back in the first.
+            let by_abs = by.unsigned_abs();
+            delays[usize::from(by < 0)].push(Delayed { by: by_abs, pair });
+        }
+        let mut sides = Vec::new();
+        for (at, wave) in [wave_a, wave_b].into_iter().enumerate() {
+            let of_b = at == 1;
+            let watch = clocking.clock.map(|clock| Watch {
+                slot: slot_of(clock, of_b),
+                falling: options.edge == SamplingEdge::Falling,
+            });
+            let (declarations, feed) = wave.play(watch)?;
+            let Declarations { kinds, unit_fs, .. } = declarations;
+            let groups: Vec<_> = matched.groups[at]
+                .iter()
+                .map(|group| &names[at].groups[*group])
+                .collect();
+            let slot = |pair: &mut Pair| if of_b { pair.b } else { pair.a };
+            let mut slots: Vec<Option<u32>> = pairs.iter_mut().map(|(pair, _)| slot(pair)).collect();
+            let mut side = Side::new(feed, &kinds, unit_fs, &groups, &mut slots, &delays[at]);
+            for ((pair, _), slot) in pairs.iter_mut().zip(slots) {
+                *(if of_b { &mut pair.b } else { &mut pair.a }) = slot;
+            }
+            if let Some((reset, active)) = clocking.reset {
+                side.wait_for_release(slot_of(reset, of_b), active);
+            }
+            if options.glitch_fs > 0 {
+                side.without_glitches(options.glitch_fs, &kinds);
+            }
+            sides.push(side);
+        }
+        let [side_a, side_b] =
+            <[Side; 2]>::try_from(sides).map_err(|_| WaveError::Option("two files are compared".to_owned()))?;
+        let mut engine = Engine::new(side_a, side_b, pairs, options, total_bytes);
+        engine.wait_for(delays.iter().flatten().map(|delay| delay.pair));
+        Ok(engine)
+    }
+}
+
+/// Of each pair of vectors their widths, where they differ.
+fn widths(matched: &Matched, [a, b]: &[Wave; 2]) -> Vec<Option<[u32; 2]>> {
+    let width = |wave: &Wave, slot: Option<u32>| match wave.declarations.kinds[slot? as usize] {
+        Kind::Bits(width) => Some(width),
+        Kind::Real | Kind::Text | Kind::Event => None,
+    };
+    let widths = |pair: &Pair| Some([width(a, pair.a)?, width(b, pair.b)?]).filter(|[a, b]| a != b);
+    matched.pairs.iter().map(widths).collect()
+}
+
+/// The rule of each pair. `kinds` gives those of its two signals.
+fn rules(
+    matched: &Matched,
+    options: &DiffOptions,
+    kinds: impl Fn(&Pair) -> [Option<Kind>; 2],
+) -> Result<Vec<Rule>, WaveError> {
+    let width = |pair: &Pair| {
+        let bits = |kind: &Option<Kind>| match kind {
+            Some(Kind::Bits(width)) => Some(*width),
+            _ => None,
+        };
+        kinds(pair).iter().filter_map(bits).max()
+    };
+    let is_text = |pair: &Pair| kinds(pair).contains(&Some(Kind::Text));
+    let for_all = options.tolerances.iter().rev().find(|(signal, _)| signal.is_none());
+    let mut rules: Vec<Rule> = matched
+        .pairs
+        .iter()
+        .map(|pair| {
+            let fits = !is_text(pair) && width(pair).is_none_or(|bits| (2..=127).contains(&bits));
+            Rule {
+                tolerance: for_all.filter(|_| fits).map(|(_, tolerance)| *tolerance),
+                unknown: options.unknown,
+                ..Rule::default()
+            }
+        })
+        .collect();
+    for (signal, view) in &options.views {
+        for at in meant(matched, "--view", signal)? {
+            rules[at].view = *view;
+        }
+    }
+    for (signal, tolerance) in &options.tolerances {
+        let Some(signal) = signal else { continue };
+        for at in meant(matched, "--tolerance", signal)? {
+            rules[at].tolerance = Some(*tolerance);
+            let widest = rules[at].view.widest();
+            if let Some(bits) = width(&matched.pairs[at]).filter(|bits| *bits > widest) {
+                return Err(WaveError::Option(format!(
+                    "--tolerance {signal}={tolerance}: {bits} bits are too many for a number; a tolerance needs at most \
+                     {widest}"
+                )));
+            }
+        }
+    }
+    Ok(rules)
+}
+
+fn latencies(matched: &Matched, options: &DiffOptions, sampled: bool) -> Result<Vec<Option<Latency>>, WaveError> {
+    let mut latencies = vec![None; matched.pairs.len()];
+    for (signal, latency) in &options.latencies {
+        match (latency, sampled) {
+            (Latency::Samples(_), true) | (Latency::Femtoseconds(_), false) => {}
+            (Latency::Samples(samples), false) => {
+                return Err(WaveError::Option(format!(
+                    "--latency {signal}={samples}: samples need a clock; give a time, such as 20ns, or name the clock"
+                )));
+            }
+            (Latency::Femtoseconds(_), true) => {
+                return Err(WaveError::Option(format!(
+                    "--latency {signal}: with a clock, give the number of samples, or add --raw"
+                )));
+            }
+        }
+        for at in meant(matched, "--latency", signal)? {
+            latencies[at] = Some(*latency);
+        }
+    }
+    Ok(latencies)
+}
+
+fn meant(matched: &Matched, option: &str, signal: &str) -> Result<Vec<usize>, WaveError> {
+    let meant = matched.meant(signal)?;
+    if meant.is_empty() {
+        return Err(WaveError::Option(format!(
+            "{option} {signal}: the first file has no signal that fits"
+        )));
+    }
+    Ok(meant)
+}

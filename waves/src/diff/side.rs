@@ -1,0 +1,391 @@
+//! One of the two files while it is compared: its values now, and which pairs a change touches.
+//!
+//! ```text
+//!              ┌─────────────────────────► values of the file ──┬──► pairs
+//!  feed ─► step┤                              │    │            │
+//!              └─► settle (no glitches) ──────┘    ├─► whole of ┘ a vector that is written in parts
+//!                                                  └─► delay line ─► value as it was N samples, or a time, ago ──► pairs
+//! ```
+
+use std::collections::VecDeque;
+
+use super::clocking::Slots;
+use super::delay::DelayLine;
+use super::names::Group;
+use super::touched::{Lists, Touched};
+use crate::WaveError;
+use crate::reader::{Feed, Kind, Step, Values};
+
+/// Words that all delay lines of a file may hold together.
+const DELAYED_WORDS: usize = 1 << 21;
+/// Changes that may be held back until it is known whether they are glitches.
+const HELD_CHANGES: usize = 1 << 20;
+
+/// Part of a vector: where its bits go.
+#[derive(Debug, Clone, Copy)]
+struct PartOf {
+    whole: u32,
+    width: u32,
+    low: u32,
+}
+
+/// Holds values back until they have lasted.
+#[derive(Debug)]
+struct Settle {
+    width_fs: u128,
+    /// The value to come, and when it began; by slot.
+    next: Values,
+    since: Vec<Option<u128>>,
+    queue: VecDeque<(u128, u32)>,
+}
+
+/// An edge of the clock.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct ClockEdge {
+    pub(super) time_fs: u128,
+    /// Since the edge before, nothing was recorded for a while.
+    pub(super) gap: bool,
+}
+
+/// One of the two files.
+pub(super) struct Side {
+    feed: Feed,
+    pub(super) values: Values,
+    unit_fs: u128,
+    step: Option<Step>,
+    pairs: Lists,
+    /// Empty where no slot needs it.
+    parts: Vec<Vec<PartOf>>,
+    /// By slot: line and place in its slots.
+    delayed: Vec<Vec<(u32, u32)>>,
+    lines: Vec<DelayLine>,
+    settle: Option<Settle>,
+    /// The reset's slot and its value while it is on, until it has been released.
+    reset: Option<(u32, bool)>,
+    /// Edges before the reset's release.
+    pub(super) held_in_reset: u64,
+    /// The step at hand is an edge that was returned: it has not been taken in yet.
+    at_edge: bool,
+    off: bool,
+    gap: bool,
+}
+
+/// A delayed signal: by how much, its slot, and the pair that looks at it.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Delayed {
+    pub(super) by: u128,
+    pub(super) pair: u32,
+}
+
+impl Side {
+    /// `slots` are those of the pairs, in their order. Returns the slots that the pairs are to look at: delayed pairs get
+    /// one of their own.
+    pub(super) fn new(
+        feed: Feed,
+        kinds: &[Kind],
+        unit_fs: u64,
+        groups: &[&Group],
+        slots: &mut [Option<u32>],
+        delays: &[Delayed],
+    ) -> Self {
+        let mut values = Values::new(kinds);
+        let mut parts = Vec::new();
+        if !groups.is_empty() {
+            parts = vec![Vec::new(); kinds.len()];
+            for group in groups {
+                for (slot, width, low) in &group.parts {
+                    parts[*slot as usize].push(PartOf {
+                        whole: group.slot,
+                        width: *width,
+                        low: *low,
+                    });
+                }
+            }
+        }
+        let mut lines: Vec<DelayLine> = Vec::new();
+        let mut delayed = Vec::new();
+        if !delays.is_empty() {
+            delayed = vec![Vec::new(); kinds.len()];
+        }
+        for delay in delays {
+            let Some(source) = slots[delay.pair as usize] else {
+                continue;
+            };
+            let shown = values.add(kinds[source as usize]);
+            slots[delay.pair as usize] = Some(shown);
+            let line = match lines.iter().position(|line| line.by == delay.by) {
+                Some(line) => line,
+                None => {
+                    lines.push(DelayLine::new(delay.by));
+                    lines.len() - 1
+                }
+            };
+            let place = lines[line].slots.len() as u32;
+            delayed[source as usize].push((line as u32, place));
+            lines[line].slots.push((source, shown));
+            lines[line].is_changed.push(false);
+            lines[line].mark(place);
+        }
+        let entries: Vec<(u32, u32)> = (0..)
+            .zip(slots.iter())
+            .filter_map(|(pair, slot)| Some(((*slot)?, pair)))
+            .collect();
+        let pairs = Lists::new(kinds.len() + delays.len(), &entries);
+        Self {
+            feed,
+            values,
+            unit_fs: u128::from(unit_fs),
+            step: None,
+            pairs,
+            parts,
+            delayed,
+            lines,
+            settle: None,
+            reset: None,
+            held_in_reset: 0,
+            at_edge: false,
+            off: false,
+            gap: false,
+        }
+    }
+
+    pub(super) fn wait_for_release(&mut self, reset: u32, active: bool) {
+        self.reset = Some((reset, active));
+    }
+
+    /// Takes values that last shorter than this out.
+    pub(super) fn without_glitches(&mut self, width_fs: u128, kinds: &[Kind]) {
+        self.settle = Some(Settle {
+            width_fs,
+            next: Values::new(kinds),
+            since: vec![None; kinds.len()],
+            queue: VecDeque::new(),
+        });
+    }
+
+    /// Whether the file records nothing at the moment.
+    pub(super) fn is_off(&self) -> bool {
+        self.off
+    }
+
+    pub(super) fn bytes(&self) -> u64 {
+        self.feed.bytes()
+    }
+
+    pub(super) fn cut_off(&self) -> Result<(), WaveError> {
+        self.feed.cut_off()
+    }
+
+    /// Reads the first step.
+    pub(super) fn start(&mut self) -> Result<(), WaveError> {
+        self.step = self.feed.next_step()?;
+        Ok(())
+    }
+
+    /// Goes on to the next edge of the clock behind the reset's release; then the values are those just before it.
+    ///
+    /// Edges are marked by the reader: a step is looked at only to take its changes in.
+    pub(super) fn next_edge(&mut self, touched: &mut Touched) -> Result<Option<ClockEdge>, WaveError> {
+        while let Some(step) = self.step {
+            if step.edge && !std::mem::take(&mut self.at_edge) {
+                if self.reset.is_none_or(|reset| self.is_released(reset)) {
+                    self.reset = None;
+                    self.at_edge = true;
+                    let gap = std::mem::take(&mut self.gap);
+                    let time_fs = u128::from(step.time) * self.unit_fs;
+                    return Ok(Some(ClockEdge { time_fs, gap }));
+                }
+                self.held_in_reset += 1;
+            }
+            self.off = step.off;
+            self.gap |= step.off;
+            self.take_in(touched);
+            self.step = self.feed.next_step()?;
+        }
+        Ok(None)
+    }
+
+    fn is_released(&self, (slot, active): (u32, bool)) -> bool {
+        *self.values.words(slot) == [u64::from(!active), 0]
+    }
+
+    /// Time of the next step, or of a value that comes into effect.
+    pub(super) fn next_time(&self) -> Option<u128> {
+        let step = self.step.map(|step| u128::from(step.time) * self.unit_fs);
+        let settled = self
+            .settle
+            .as_ref()
+            .and_then(|settle| Some(settle.queue.front()?.0 + settle.width_fs));
+        let lines = self.lines.iter().filter_map(|line| Some(line.queue.front()?.0)).min();
+        [step, settled, lines].into_iter().flatten().min()
+    }
+
+    /// Both files have ended: what would come into effect later has nothing to be compared with.
+    pub(super) fn forget_delayed(&mut self) {
+        for line in &mut self.lines {
+            line.queue.clear();
+            line.words.clear();
+        }
+    }
+
+    /// Whether the file has ended.
+    pub(super) fn has_ended(&self) -> bool {
+        self.step.is_none()
+    }
+
+    /// Takes in all that happens at this time, which must not lie behind [`Side::next_time`]. Whether anything did.
+    pub(super) fn advance_to(&mut self, time_fs: u128, touched: &mut Touched) -> Result<bool, WaveError> {
+        let mut happened = self.take_in_settled(time_fs, touched);
+        if let Some(step) = self.step
+            && u128::from(step.time) * self.unit_fs == time_fs
+        {
+            self.off = step.off;
+            if self.settle.is_some() {
+                self.hold_back(time_fs)?;
+            } else {
+                self.take_in(touched);
+                happened = true;
+            }
+            self.step = self.feed.next_step()?;
+        }
+        self.pend(time_fs)?;
+        Ok(self.release(time_fs, touched) | happened)
+    }
+
+    fn take_in(&mut self, touched: &mut Touched) {
+        let plain = self.parts.is_empty() && self.lines.is_empty();
+        for (slot, words) in self.feed.changes() {
+            if !self.values.set(slot, words) {
+                continue;
+            }
+            for pair in self.pairs.get(slot) {
+                touched.touch(*pair);
+            }
+            if !plain {
+                let derived = Derived {
+                    pairs: &self.pairs,
+                    parts: &self.parts,
+                    delayed: &self.delayed,
+                };
+                derived.follow(slot, &mut self.values, &mut self.lines, touched);
+            }
+        }
+    }
+
+    fn hold_back(&mut self, time_fs: u128) -> Result<(), WaveError> {
+        let Some(settle) = &mut self.settle else { return Ok(()) };
+        for (slot, words) in self.feed.changes() {
+            settle.next.set(slot, words);
+            settle.since[slot as usize] = Some(time_fs);
+            settle.queue.push_back((time_fs, slot));
+        }
+        if settle.queue.len() > HELD_CHANGES {
+            return Err(WaveError::Option(format!(
+                "--glitch: {} changes within one glitch, and at most {HELD_CHANGES} are held back; give a shorter time",
+                settle.queue.len()
+            )));
+        }
+        Ok(())
+    }
+
+    /// Takes in the values that have lasted long enough.
+    fn take_in_settled(&mut self, time_fs: u128, touched: &mut Touched) -> bool {
+        let Some(settle) = &mut self.settle else { return false };
+        let mut happened = false;
+        while let Some((since, slot)) = settle.queue.front().copied()
+            && since + settle.width_fs <= time_fs
+        {
+            settle.queue.pop_front();
+            // Another value came since: this one did not last.
+            if settle.since[slot as usize] != Some(since) {
+                continue;
+            }
+            happened = true;
+            if self.values.set(slot, settle.next.words(slot)) {
+                for pair in self.pairs.get(slot) {
+                    touched.touch(*pair);
+                }
+                let derived = Derived {
+                    pairs: &self.pairs,
+                    parts: &self.parts,
+                    delayed: &self.delayed,
+                };
+                derived.follow(slot, &mut self.values, &mut self.lines, touched);
+            }
+        }
+        happened
+    }
+
+    /// Puts what changed since the last time into the delay lines. `now` counts samples, or femtoseconds.
+    pub(super) fn pend(&mut self, now: u128) -> Result<(), WaveError> {
+        for line in &mut self.lines {
+            for place in line.changed.drain(..) {
+                line.is_changed[place as usize] = false;
+                let (source, shown) = line.slots[place as usize];
+                line.queue.push_back((now + line.by, shown));
+                line.words.extend(self.values.words(source));
+            }
+        }
+        let held: usize = self.lines.iter().map(|line| line.words.len()).sum();
+        if held > DELAYED_WORDS {
+            return Err(WaveError::Option(format!(
+                "--latency: {held} words of delayed values, and at most {DELAYED_WORDS} are held back; give a shorter \
+                 latency, or delay fewer signals"
+            )));
+        }
+        Ok(())
+    }
+
+    /// Brings delayed values into effect. Whether there were any.
+    pub(super) fn release(&mut self, now: u128, touched: &mut Touched) -> bool {
+        let mut happened = false;
+        for line in &mut self.lines {
+            while let Some((due, shown)) = line.queue.front().copied()
+                && due <= now
+            {
+                line.queue.pop_front();
+                happened = true;
+                let count = self.values.words(shown).len();
+                let words: Vec<u64> = line.words.drain(..count).collect();
+                self.values.set(shown, &words);
+                for pair in self.pairs.get(shown) {
+                    touched.waiting[*pair as usize] = false;
+                    touched.touch(*pair);
+                }
+            }
+        }
+        happened
+    }
+}
+
+/// What follows from a slot's value.
+struct Derived<'a> {
+    pairs: &'a Lists,
+    parts: &'a [Vec<PartOf>],
+    delayed: &'a [Vec<(u32, u32)>],
+}
+
+impl Derived<'_> {
+    fn follow(&self, slot: u32, values: &mut Values, lines: &mut [DelayLine], touched: &mut Touched) {
+        for (line, place) in self.delayed.get(slot as usize).into_iter().flatten() {
+            lines[*line as usize].mark(*place);
+        }
+        for part in self.parts.get(slot as usize).into_iter().flatten() {
+            for bit in 0..part.width {
+                let words = values.words(slot);
+                let half = words.len() / 2;
+                let digit = [0, half].map(|from| words[from + bit as usize / 64] >> (bit % 64) & 1);
+                values.set_bit(part.whole, part.low + bit, digit);
+            }
+            for pair in self.pairs.get(part.whole) {
+                touched.touch(*pair);
+            }
+            self.follow(part.whole, values, lines, touched);
+        }
+    }
+}
+
+/// The slot of a side.
+pub(super) fn slot_of(slots: Slots, of_b: bool) -> u32 {
+    slots[usize::from(of_b)]
+}

@@ -1,0 +1,410 @@
+//! Several waveforms side by side in one file, with their differences, and the files that open it in a viewer.
+//!
+//! ```text
+//!  model.vcd ─┐            merged.vcd:  model.…  rtl.…  float.…  difference.…
+//!  rtl.vcd   ─┼─► merge ─► merged.gtkw: opens it in GTKWave   (gtkwave merged.gtkw)
+//!  float.vcd ─┘            merged.sucl: opens it in Surfer    (surfer -c merged.sucl)
+//! ```
+//!
+//! Each part keeps its signals under a scope of its name, below the scopes that they do not all share. All are on one time
+//! axis, in the finest of their units of time (ten or a hundred of a unit count as that unit). The times of the viewers' files
+//! are in that unit, too.
+
+use std::collections::HashSet;
+use std::io::{self, BufWriter, Write};
+use std::path::Path;
+
+use vcd::{IdCode, VarType, Writer};
+
+use crate::WaveError;
+use crate::files::{OutputSink, write_error, write_text};
+use crate::reader::{Feed, Kind, Named, Step, Value, Values, Wave};
+use crate::unit::unit_for;
+
+/// One of the waveforms.
+#[derive(Debug, Clone, Copy)]
+pub struct MergePart<'a> {
+    /// Scope in the merged file: `model`, `rtl`, `float`.
+    pub scope: &'a str,
+    /// The VCD.
+    pub path: &'a Path,
+}
+
+/// A signal `difference.<name>` = value of one signal minus that of another, as a real number; words are signed, bits are not.
+#[derive(Debug, Clone, Copy)]
+pub struct DifferenceSignal<'a> {
+    /// Name of the new signal.
+    pub name: &'a str,
+    /// Part (its place in the list) and signal, full or without the scopes that all signals of its file share.
+    pub minuend: (usize, &'a str),
+    /// The same for what is subtracted.
+    pub subtrahend: (usize, &'a str),
+}
+
+/// What a merged file is about: some signals, and a time at which the viewers open it.
+#[derive(Debug, Clone)]
+pub struct Focus {
+    /// Full names, of each part; the others are left out.
+    pub signals: Vec<HashSet<String>>,
+    /// The time.
+    pub time_fs: u128,
+    /// How much of the time around it is in view.
+    pub span_fs: u128,
+}
+
+type Vcd<'a> = Writer<BufWriter<&'a mut dyn Write>>;
+
+/// The writer, with the name of its file for messages.
+struct Output<'a> {
+    path: &'a Path,
+    vcd: Vcd<'a>,
+}
+
+impl<'a> Output<'a> {
+    fn new(path: &'a Path, out: &'a mut dyn Write) -> Self {
+        let vcd = Writer::new(BufWriter::with_capacity(1 << 16, out));
+        Self { path, vcd }
+    }
+
+    fn write<T>(&mut self, action: impl FnOnce(&mut Vcd<'a>) -> io::Result<T>) -> Result<T, WaveError> {
+        action(&mut self.vcd).map_err(write_error(self.path))
+    }
+}
+
+/// With an exponent: written out, large numbers are longer than readers take.
+fn write_real(vcd: &mut Vcd<'_>, id: IdCode, value: f64) -> io::Result<()> {
+    writeln!(vcd.writer(), "r{value:e} {id}")
+}
+
+/// Scope of the differences.
+const DIFFERENCE: &str = "difference";
+
+struct Open {
+    scope: String,
+    names: Vec<Named>,
+    feed: Feed,
+    now: Values,
+    unit_fs: u64,
+    step: Option<Step>,
+    /// Name below the shared scopes, and slot.
+    signals: Vec<(String, u32)>,
+    /// Id in the merged file, by slot.
+    ids: Vec<Option<IdCode>>,
+    /// How often each slot was given a value.
+    values: Vec<u64>,
+}
+
+impl Open {
+    fn new(part: &MergePart<'_>, only: Option<&HashSet<String>>) -> Result<Self, WaveError> {
+        let (declarations, feed) = Wave::open(part.path)?.play(None)?;
+        let mut names = declarations.names;
+        if let Some(only) = only {
+            names.retain(|named| only.contains(&named.path));
+        }
+        let now = Values::new(&declarations.kinds);
+        let shared = names.first().map_or(0, |first| {
+            let shares = |top: &str| names.iter().all(|named| named.path.starts_with(top));
+            let ends = first.path.match_indices('.').map(|(at, _)| at + 1);
+            ends.take_while(|end| shares(&first.path[..*end])).last().unwrap_or(0)
+        });
+        let mut signals: Vec<(String, u32)> = names
+            .iter()
+            .filter(|named| matches!(now.kind(named.slot), Kind::Bits(_) | Kind::Real))
+            .map(|named| (named.path[shared..].to_owned(), named.slot))
+            .collect();
+        // By scope, so that each scope is opened once; within a scope in the order of the file.
+        signals.sort_by(|(a, _), (b, _)| scope_of(a).cmp(scope_of(b)));
+        Ok(Self {
+            scope: part.scope.to_owned(),
+            ids: vec![None; declarations.kinds.len()],
+            values: vec![0; declarations.kinds.len()],
+            signals,
+            names,
+            feed,
+            now,
+            unit_fs: declarations.unit_fs,
+            step: None,
+        })
+    }
+
+    fn next_fs(&self) -> Option<u128> {
+        Some(u128::from(self.step?.time) * u128::from(self.unit_fs))
+    }
+
+    fn find(&self, name: &str) -> Option<u32> {
+        let full = self.names.iter().find(|named| named.path == name);
+        let short = self.signals.iter().find(|(short, _)| short == name);
+        full.map(|named| named.slot).or(short.map(|(_, slot)| *slot))
+    }
+}
+
+fn scope_of(name: &str) -> &str {
+    name.rsplit_once('.').map_or("", |(scope, _)| scope)
+}
+
+struct Subtraction {
+    id: IdCode,
+    minuend: (usize, u32),
+    subtrahend: (usize, u32),
+    last: Option<u64>,
+}
+
+/// Writes `path` (a `.vcd`) and beside it the `.gtkw` and `.sucl` of the same name.
+///
+/// # Errors
+/// [`WaveError::File`] and [`WaveError::Damaged`] as for reading each part; [`WaveError::Option`] where a difference names no signal.
+pub fn merge(
+    sink: &dyn OutputSink,
+    path: &Path,
+    parts: &[MergePart<'_>],
+    differences: &[DifferenceSignal<'_>],
+) -> Result<(), WaveError> {
+    merge_around(sink, path, parts, differences, None)
+}
+
+/// As [`merge`], with what `focus` is about.
+///
+/// # Errors
+/// As [`merge`].
+pub fn merge_around(
+    sink: &dyn OutputSink,
+    path: &Path,
+    parts: &[MergePart<'_>],
+    differences: &[DifferenceSignal<'_>],
+    focus: Option<&Focus>,
+) -> Result<(), WaveError> {
+    let only = |at: usize| focus.and_then(|focus| focus.signals.get(at));
+    let opened = parts.iter().enumerate().map(|(at, part)| Open::new(part, only(at)));
+    let mut parts = opened.collect::<Result<Vec<_>, WaveError>>()?;
+    let (unit, unit_fs) = unit_for(parts.iter().map(|p| p.unit_fs).min().unwrap_or(1_000_000));
+    let mark = sink.mark();
+    let mut end = 0;
+    let spot = focus.map(|focus| [focus.time_fs, focus.span_fs].map(|fs| (fs / u128::from(unit_fs)) as u64));
+    sink.write(path, &mut |out| {
+        let mut output = Output::new(path, out);
+        output.write(|vcd| {
+            vcd.version(concat!("wavecmp ", env!("CARGO_PKG_VERSION")))?;
+            vcd.comment(&mark)?;
+            vcd.timescale(1, unit)
+        })?;
+        for part in &mut parts {
+            declare(&mut output, part)?;
+        }
+        let mut subtractions = subtractions(&mut output, &parts, differences)?;
+        output.write(|vcd| vcd.enddefinitions())?;
+        end = changes(&mut output, &mut parts, &mut subtractions, unit_fs)?;
+        // Viewers show no time behind the last one of the file: GTKWave then opens at the beginning instead.
+        let room = spot.map(|[time, span]| time.saturating_add(span));
+        if let Some(room) = room.filter(|room| *room > end) {
+            output.write(|vcd| vcd.timestamp(room))?;
+            end = room;
+        }
+        output.write(|vcd| vcd.flush())
+    })?;
+    write_views(sink, path, &parts, differences, end, spot)
+}
+
+/// All that changes in the parts, in the order of time; the last time.
+fn changes(
+    output: &mut Output<'_>,
+    parts: &mut [Open],
+    subtractions: &mut [Subtraction],
+    unit_fs: u64,
+) -> Result<u64, WaveError> {
+    for part in &mut *parts {
+        part.step = part.feed.next_step()?;
+    }
+    let mut end = 0;
+    while let Some(time_fs) = parts.iter().filter_map(Open::next_fs).min() {
+        let time = u64::try_from(time_fs / u128::from(unit_fs));
+        let time =
+            time.map_err(|_| WaveError::Option(format!("{time_fs} fs do not fit the merged file's timescale")))?;
+        output.write(|vcd| vcd.timestamp(time))?;
+        end = time;
+        for part in &mut *parts {
+            if part.next_fs() != Some(time_fs) {
+                continue;
+            }
+            for (slot, words) in part.feed.changes() {
+                if part.now.set(slot, words) {
+                    part.values[slot as usize] += 1;
+                    write_value(output, part.ids[slot as usize], part.now.get(slot))?;
+                }
+            }
+            part.step = part.feed.next_step()?;
+        }
+        for subtraction in &mut *subtractions {
+            let value = |(part, slot): (usize, u32)| number(parts[part].now.get(slot));
+            let (Some(a), Some(b)) = (value(subtraction.minuend), value(subtraction.subtrahend)) else {
+                continue;
+            };
+            let difference = a - b;
+            if subtraction.last.replace(difference.to_bits()) != Some(difference.to_bits()) {
+                output.write(|vcd| write_real(vcd, subtraction.id, difference))?;
+            }
+        }
+    }
+    Ok(end)
+}
+
+fn number(value: Value<'_>) -> Option<f64> {
+    match value {
+        Value::Real(real) => real,
+        Value::Bits { width: 1, .. } => value.integer(false).map(|n| n as f64),
+        bits => bits.integer(true).map(|n| n as f64),
+    }
+}
+
+/// The part's scopes and signals.
+fn declare(output: &mut Output<'_>, part: &mut Open) -> Result<(), WaveError> {
+    let (now, ids) = (&part.now, &mut part.ids);
+    output.write(|vcd| {
+        vcd.add_module(&part.scope)?;
+        let mut open: Vec<&str> = Vec::new();
+        for (name, slot) in &part.signals {
+            let scope: Vec<&str> = scope_of(name).split('.').filter(|s| !s.is_empty()).collect();
+            let common = open.iter().zip(&scope).take_while(|(a, b)| a == b).count();
+            for _ in common..open.len() {
+                vcd.upscope()?;
+            }
+            open.truncate(common);
+            for inner in &scope[common..] {
+                vcd.add_module(inner)?;
+                open.push(inner);
+            }
+            let (var_type, width) = match now.kind(*slot) {
+                Kind::Bits(width) => (VarType::Wire, width),
+                Kind::Real | Kind::Text | Kind::Event => (VarType::Real, 64),
+            };
+            let reference = name.rsplit('.').next().unwrap_or(name);
+            let id = &mut ids[*slot as usize];
+            match *id {
+                Some(id) => vcd.var_def(var_type, width, id, reference, None)?,
+                None => *id = Some(vcd.add_var(var_type, width, reference, None)?),
+            }
+        }
+        for _ in 0..=open.len() {
+            vcd.upscope()?;
+        }
+        Ok(())
+    })
+}
+
+fn subtractions(
+    output: &mut Output<'_>,
+    parts: &[Open],
+    differences: &[DifferenceSignal<'_>],
+) -> Result<Vec<Subtraction>, WaveError> {
+    if differences.is_empty() {
+        return Ok(Vec::new());
+    }
+    output.write(|vcd| vcd.add_module(DIFFERENCE))?;
+    let find = |(part, name): (usize, &str)| {
+        let slot = parts.get(part).and_then(|open| open.find(name));
+        slot.map(|slot| (part, slot))
+            .ok_or_else(|| WaveError::Option(format!("difference: part {part} has no signal `{name}`")))
+    };
+    let made = differences.iter().map(|difference| {
+        Ok(Subtraction {
+            minuend: find(difference.minuend)?,
+            subtrahend: find(difference.subtrahend)?,
+            id: output.write(|vcd| vcd.add_var(VarType::Real, 64, difference.name, None))?,
+            last: None,
+        })
+    });
+    let made = made.collect::<Result<Vec<_>, WaveError>>()?;
+    output.write(|vcd| vcd.upscope())?;
+    Ok(made)
+}
+
+fn write_value(output: &mut Output<'_>, id: Option<IdCode>, value: Value<'_>) -> Result<(), WaveError> {
+    let Some(id) = id else { return Ok(()) };
+    output.write(|vcd| match value {
+        Value::Bits { width: 1, .. } => writeln!(vcd.writer(), "{}{id}", value.digits(1, false)),
+        Value::Bits { width, .. } => writeln!(vcd.writer(), "b{} {id}", value.digits(width, false)),
+        Value::Real(Some(real)) => write_real(vcd, id, real),
+        Value::Real(None) | Value::Text(_) | Value::Event => Ok(()),
+    })
+}
+
+/// GTKWave's formats: right-aligned binary, signed decimal, that as a step curve, and a row more for the curve above.
+const GTKWAVE_BIT: &str = "@28";
+const GTKWAVE_SIGNED: &str = "@420";
+const GTKWAVE_CURVE: &str = "@8420";
+const GTKWAVE_ROOM: &str = "@20000\n-\n@20000\n-\n";
+/// Vectors from this width on are numbers that one looks at as a curve.
+const CURVE_BITS: u32 = 16;
+/// Width of GTKWave's waves, in units of the 200 pixels that its zoom counts in, so that all of the time is in view.
+const GTKWAVE_WIDTH: f64 = 4.6;
+
+/// The views show what moves: a signal that never changes is found in the viewer's tree. They open at a spot and the time
+/// around it, or show all.
+fn write_views(
+    sink: &dyn OutputSink,
+    path: &Path,
+    parts: &[Open],
+    differences: &[DifferenceSignal<'_>],
+    end: u64,
+    spot: Option<[u64; 2]>,
+) -> Result<(), WaveError> {
+    let file = path
+        .file_name()
+        .map(|name| name.to_string_lossy().into_owned())
+        .unwrap_or_default();
+    let shown = spot.map_or(end, |[_, span]| span);
+    let zoom = (GTKWAVE_WIDTH / shown.max(1) as f64).log2();
+    let mut gtkwave = format!("[dumpfile] \"{file}\"\n[size] 1400 900\n");
+    match spot {
+        Some([time, span]) => {
+            let start = time.saturating_sub(span / 2);
+            gtkwave.push_str(&format!("[timestart] {start}\n*{zoom:.6} {time}\n"));
+        }
+        None => gtkwave.push_str(&format!("*{zoom:.6} -1\n")),
+    }
+    let mut surfer = format!("load_file {file}\n");
+    let mut heading = |gtkwave: &mut String, scope: &str| {
+        gtkwave.push_str(&format!("@200\n-{scope}\n"));
+        surfer.push_str(&format!("divider_add {scope}\nscope_add {scope}\n"));
+    };
+    for part in parts {
+        heading(&mut gtkwave, &part.scope);
+        let moves = |slot: &u32| spot.is_some() || part.values[*slot as usize] > 1;
+        for (name, slot) in part.signals.iter().filter(|(_, slot)| moves(slot)) {
+            let line = match part.now.kind(*slot) {
+                Kind::Bits(1) => format!("{GTKWAVE_BIT}\n{}.{name}\n", part.scope),
+                Kind::Bits(width) if width >= CURVE_BITS => {
+                    format!(
+                        "{GTKWAVE_CURVE}\n{}.{name}[{}:0]\n{GTKWAVE_ROOM}",
+                        part.scope,
+                        width - 1
+                    )
+                }
+                Kind::Bits(width) => format!("{GTKWAVE_SIGNED}\n{}.{name}[{}:0]\n", part.scope, width - 1),
+                Kind::Real | Kind::Text | Kind::Event => {
+                    format!("{GTKWAVE_CURVE}\n{}.{name}\n{GTKWAVE_ROOM}", part.scope)
+                }
+            };
+            gtkwave.push_str(&line);
+        }
+    }
+    if !differences.is_empty() {
+        heading(&mut gtkwave, DIFFERENCE);
+    }
+    for difference in differences {
+        gtkwave.push_str(&format!(
+            "{GTKWAVE_CURVE}\n{DIFFERENCE}.{}\n{GTKWAVE_ROOM}",
+            difference.name
+        ));
+    }
+    surfer.push_str("zoom_fit\n");
+    if let Some([time, span]) = spot {
+        // Each halves the time in view; the cursor's place in it comes last.
+        let halvings = (end.max(1) as f64 / span.max(1) as f64).log2().floor().max(0.0) as usize;
+        surfer.push_str(&format!(
+            "cursor_set {time}\n{}goto_cursor\n",
+            "zoom_in\n".repeat(halvings)
+        ));
+    }
+    write_text(sink, &path.with_extension("gtkw"), &gtkwave)?;
+    write_text(sink, &path.with_extension("sucl"), &surfer)
+}

@@ -1,0 +1,161 @@
+//! A thread that reads a file ahead, and what it hands over.
+//!
+//! ```text
+//!  reading thread ──► full batches (at most 3) ──► comparing thread
+//!        ▲                                              │
+//!        └──────────────── empty batches ◄──────────────┘
+//! ```
+//!
+//! The batches go round, so that nothing is allocated on the way, and a reader that is faster than the comparison waits.
+
+use std::path::{Path, PathBuf};
+use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
+use std::thread;
+
+use super::batch::{Batch, Gatherer, Step};
+use super::section::{Ended, truncated};
+use crate::WaveError;
+
+const BATCHES: usize = 3;
+
+enum Message {
+    Batch(Batch),
+    Ended { unterminated: bool },
+    Failed(WaveError),
+}
+
+/// The steps of a file, in order.
+pub(crate) struct Feed {
+    path: PathBuf,
+    full: Receiver<Message>,
+    empty: SyncSender<Batch>,
+    batch: Batch,
+    /// The step at hand, and where its changes start.
+    step: usize,
+    first: usize,
+    started: bool,
+    ended: bool,
+    unterminated: bool,
+}
+
+impl Feed {
+    /// Starts `read` in a thread of its own; it hands its batches to the function that it is given, which says whether
+    /// somebody still listens.
+    pub(super) fn start<F>(path: &Path, mut gatherer: Gatherer, read: F) -> Result<Self, WaveError>
+    where
+        F: FnOnce(&mut Gatherer, &mut dyn FnMut(&mut Gatherer) -> bool) -> Result<Ended, WaveError> + Send + 'static,
+    {
+        let (send_full, full) = sync_channel(BATCHES);
+        let (empty, take_empty) = sync_channel::<Batch>(BATCHES + 1);
+        for _ in 0..BATCHES {
+            // There is room for all of them.
+            let _ = empty.send(Batch::default());
+        }
+        let work = move || {
+            let mut hand_over = |gatherer: &mut Gatherer| match take_empty.recv() {
+                Ok(empty) => send_full.send(Message::Batch(gatherer.take(empty))).is_ok(),
+                Err(_) => false,
+            };
+            let end = match read(&mut gatherer, &mut hand_over) {
+                Ok(Ended::Unheard) => return,
+                Ok(Ended::File { unterminated }) => Message::Ended { unterminated },
+                Err(error) => Message::Failed(error),
+            };
+            if hand_over(&mut gatherer) {
+                // Nobody may listen any more.
+                let _ = send_full.send(end);
+            }
+        };
+        let name = format!("read {}", path.display());
+        let spawned = thread::Builder::new().name(name).spawn(work);
+        spawned.map_err(WaveError::file(path, "start a thread to read"))?;
+        Ok(Self {
+            path: path.to_owned(),
+            full,
+            empty,
+            batch: Batch::default(),
+            step: 0,
+            first: 0,
+            started: false,
+            ended: false,
+            unterminated: false,
+        })
+    }
+
+    /// Goes to the next step and returns it; `None` at the end of the file.
+    ///
+    /// # Errors
+    /// What the reader ran into behind the steps it has handed over.
+    #[inline]
+    pub(crate) fn next_step(&mut self) -> Result<Option<Step>, WaveError> {
+        if self.started
+            && let Some(step) = self.batch.steps.get(self.step)
+        {
+            self.first = step.end;
+            self.step += 1;
+        }
+        self.started = true;
+        loop {
+            if let Some(step) = self.batch.steps.get(self.step) {
+                return Ok(Some(*step));
+            }
+            if self.ended {
+                return Ok(None);
+            }
+            self.next_batch()?;
+        }
+    }
+
+    fn next_batch(&mut self) -> Result<(), WaveError> {
+        match self.full.recv() {
+            Ok(Message::Batch(batch)) => {
+                let used = std::mem::replace(&mut self.batch, batch);
+                // The first one, which never held anything, is one too many; so is one that the reader no longer takes.
+                let _ = self.empty.try_send(used);
+                (self.step, self.first) = (0, 0);
+            }
+            Ok(Message::Ended { unterminated }) => (self.ended, self.unterminated) = (true, unterminated),
+            Ok(Message::Failed(error)) => {
+                self.ended = true;
+                return Err(error);
+            }
+            // The thread is gone without a word: the crate that reads FST gave up on a file that it did not expect.
+            Err(_) => {
+                self.ended = true;
+                return Err(WaveError::Damaged {
+                    path: self.path.clone(),
+                    place: format!("behind byte {}", self.batch.bytes),
+                    problem: "the file is damaged, or of a kind that cannot be read".to_owned(),
+                });
+            }
+        }
+        Ok(())
+    }
+
+    /// The changes of the step at hand: slot and words.
+    #[inline]
+    pub(crate) fn changes(&self) -> impl Iterator<Item = (u32, &[u64])> {
+        let end = self.batch.steps.get(self.step).map_or(self.first, |step| step.end);
+        let words = &self.batch.words;
+        let changes = &self.batch.changes;
+        (self.first..end).map(move |at| {
+            let change = changes[at];
+            let to = changes.get(at + 1).map_or(words.len(), |next| next.word as usize);
+            (change.slot, &words[change.word as usize..to])
+        })
+    }
+
+    /// Bytes of the file that were read so far.
+    pub(crate) fn bytes(&self) -> u64 {
+        self.batch.bytes
+    }
+
+    /// What is wrong with a file that has nothing more to say while another goes on: nothing, unless its last line is cut.
+    pub(crate) fn cut_off(&self) -> Result<(), WaveError> {
+        if self.unterminated {
+            let inside = "before the other, in a line without line break";
+            return Err(truncated(&self.path, self.batch.bytes.saturating_sub(1), inside));
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,212 @@
+//! Reads waveforms in steps of time, in bounded memory, whatever the file holds.
+//!
+//! ```text
+//!            ┌─ declarations: dialect ─► crate `vcd` ─► header ─┐          a thread per file         the caller's
+//!  x.vcd ────┤                                                  ├─► Wave ─►  section │ fst ─► batches ─► Feed ─► Values
+//!  x.fst ────┴─ declarations: crate `fst-reader` ───────────────┘                                       step by step
+//! ```
+//!
+//! Declarations are read by the crate `vcd`, value changes by [`section`]: the crate makes a string of each, and streams at
+//! a quarter of the speed. Tests hold the two, and `wellen`, against each other on every fixture.
+//!
+//! Limits, so that a hostile file cannot eat the memory: 2^18 signals, 2^24 bits of all signals together, 32 MiB of names,
+//! scopes 256 deep, 1 MiB for a word of the declarations, 32 MiB for one change. Beyond them, and for a file that ends in
+//! the middle of something, the answer is an error with the place.
+
+#[cfg(test)]
+mod agreement;
+mod batch;
+mod counted;
+mod dialect;
+mod digits;
+mod feed;
+mod fst;
+mod header;
+mod ids;
+mod put;
+mod section;
+mod values;
+
+use std::fs::File;
+use std::io::{self, BufRead, BufReader};
+use std::path::{Path, PathBuf};
+
+use vcd::{Command, IdCode, ParseError, Parser, VarType};
+
+use self::batch::Gatherer;
+pub(crate) use self::batch::{Step, Watch};
+use self::counted::Counted;
+use self::dialect::Dialect;
+pub(crate) use self::feed::Feed;
+use self::fst::FstValues;
+pub(crate) use self::header::{Declarations, Kind, Named};
+use self::ids::Ids;
+use self::section::{Section, truncated};
+pub(crate) use self::values::{Value, Values};
+use crate::WaveError;
+
+/// Some writers begin a text file with it.
+const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
+
+enum Rest {
+    Vcd(Box<Section>),
+    Fst(Box<FstValues>),
+}
+
+/// A waveform file whose declarations have been read.
+pub(crate) struct Wave {
+    path: PathBuf,
+    pub(crate) declarations: Declarations,
+    rest: Rest,
+    bytes: Option<u64>,
+}
+
+impl Wave {
+    /// Opens a VCD or an FST, told apart by how it begins, and reads its declarations.
+    pub(crate) fn open(path: &Path) -> Result<Self, WaveError> {
+        let file = File::open(path).map_err(WaveError::file(path, "open"))?;
+        let data = file.metadata().map_err(WaveError::file(path, "read"))?;
+        if data.is_dir() {
+            let folder = io::Error::from(io::ErrorKind::IsADirectory);
+            return Err(WaveError::file(path, "read")(folder));
+        }
+        let mut input = BufReader::with_capacity(1 << 16, Counted { file, bytes: 0 });
+        let beginning = input.fill_buf().map_err(WaveError::file(path, "read"))?;
+        let (declarations, rest) = if fst::is_fst(beginning) {
+            let (declarations, values) = fst::open(path)?;
+            (declarations, Rest::Fst(Box::new(values)))
+        } else {
+            let (declarations, ids) = read_declarations(path, &mut input)?;
+            (declarations, Rest::Vcd(Box::new(Section::new(path, input, ids))))
+        };
+        Ok(Self {
+            path: path.to_owned(),
+            declarations,
+            rest,
+            bytes: data.is_file().then_some(data.len()),
+        })
+    }
+
+    /// Length of the file; `None` for a pipe.
+    pub(crate) fn bytes(&self) -> Option<u64> {
+        self.bytes
+    }
+
+    /// Starts to read the values in a thread of its own, and marks the edges of a clock.
+    pub(crate) fn play(self, watch: Option<Watch>) -> Result<(Declarations, Feed), WaveError> {
+        let gatherer = Gatherer::new(self.declarations.kinds.clone(), watch);
+        let feed = match self.rest {
+            Rest::Vcd(mut section) => Feed::start(&self.path, gatherer, move |gatherer, hand_over| {
+                section.read(gatherer, hand_over)
+            }),
+            Rest::Fst(values) => Feed::start(&self.path, gatherer, move |gatherer, hand_over| {
+                values.read(gatherer, hand_over)
+            }),
+        };
+        Ok((self.declarations, feed?))
+    }
+}
+
+/// Reads a VCD up to the value changes.
+fn read_declarations(path: &Path, input: &mut BufReader<Counted>) -> Result<(Declarations, Ids), WaveError> {
+    if input.buffer().starts_with(BYTE_ORDER_MARK) {
+        input.consume(BYTE_ORDER_MARK.len());
+    }
+    let mut parser = Parser::new(Dialect::new(input));
+    let read = declarations(&mut parser);
+    let line = parser.line();
+    read.map_err(|stop| match stop {
+        Stop::Cut(inside) => truncated(path, input.get_ref().bytes, inside),
+        Stop::Wrong(problem) => WaveError::Damaged {
+            path: path.to_owned(),
+            place: format!("line {line}"),
+            problem,
+        },
+    })
+}
+
+/// Why the declarations could not be read.
+enum Stop {
+    Wrong(String),
+    Cut(&'static str),
+}
+
+impl From<String> for Stop {
+    fn from(what: String) -> Self {
+        Self::Wrong(what)
+    }
+}
+
+fn declarations<R: BufRead>(parser: &mut Parser<R>) -> Result<(Declarations, Ids), Stop> {
+    let mut declarations = Declarations::new(1_000_000);
+    let mut ids = Ids::default();
+    loop {
+        let command = match parser.next() {
+            None => return Err(Stop::Cut("before $enddefinitions")),
+            Some(Ok(command)) => command,
+            Some(Err(cause)) if cause.kind() == io::ErrorKind::UnexpectedEof => {
+                return Err(Stop::Cut("in the middle of a command"));
+            }
+            Some(Err(cause)) => {
+                let parse: Option<&ParseError> = cause.get_ref().and_then(|e| e.downcast_ref());
+                return Err(Stop::Wrong(match parse {
+                    Some(parse) => format!("{}: this is no VCD, or it is damaged", parse.kind()),
+                    None => cause.to_string(),
+                }));
+            }
+        };
+        match command {
+            Command::Enddefinitions => break,
+            Command::Timescale(number, unit) => {
+                let exponent = match unit {
+                    vcd::TimescaleUnit::S => 15,
+                    vcd::TimescaleUnit::MS => 12,
+                    vcd::TimescaleUnit::US => 9,
+                    vcd::TimescaleUnit::NS => 6,
+                    vcd::TimescaleUnit::PS => 3,
+                    vcd::TimescaleUnit::FS => 0,
+                };
+                if ![1, 10, 100].contains(&number) {
+                    return Err(format!("timescale {number} {unit}: the number is 1, 10 or 100").into());
+                }
+                declarations.unit_fs = u64::from(number) * 10u64.pow(exponent);
+            }
+            Command::ScopeDef(_, name) => declarations.enter(&name)?,
+            Command::Upscope => declarations.leave()?,
+            Command::VarDef(var_type, width, id, name, _) => {
+                declare(&mut declarations, &mut ids, var_type, width, id, &name)?;
+            }
+            _ => return Err("a value before $enddefinitions: the file is damaged".to_owned().into()),
+        }
+    }
+    declarations.finish()?;
+    Ok((declarations, ids))
+}
+
+fn declare(
+    declarations: &mut Declarations,
+    ids: &mut Ids,
+    var_type: VarType,
+    width: u32,
+    id: IdCode,
+    name: &str,
+) -> Result<(), String> {
+    let kind = match var_type {
+        VarType::Real => Kind::Real,
+        VarType::String => Kind::Text,
+        VarType::Event => Kind::Event,
+        _ => Kind::Bits(width),
+    };
+    let id = id.to_string();
+    let number = Ids::number(&id).ok_or_else(|| format!("`{id}` is too long for an id code: 9 characters at most"))?;
+    let slot = match ids.get(number) {
+        Some(slot) if declarations.kinds[slot as usize] == kind => slot,
+        Some(_) => return Err(format!("`{id}` is declared twice, with different widths or types")),
+        None => {
+            let slot = declarations.add_slot(kind, name)?;
+            ids.insert(number, slot);
+            slot
+        }
+    };
+    declarations.add_name(name, slot)
+}

@@ -1,0 +1,397 @@
+//! The value changes of a VCD, byte by byte: the part where all of the time goes.
+//!
+//! ```text
+//!  #25              time                          1!   0"   x#      one digit and an id code
+//!  b1010 $          digits and an id code         r2.5 %  sword &   a real number, a text
+//!  $dumpoff … $end  blocks around changes         $comment … $end   nothing
+//! ```
+//!
+//! Nothing is allocated per change: digits go into words eight at a time, id codes are numbers that index a table. The
+//! buffer is refilled when a command is not all in it, and grows only for a command that is longer than it.
+
+use std::fs::File;
+use std::io::{self, BufRead, BufReader, Read};
+use std::path::{Path, PathBuf};
+
+use super::batch::Gatherer;
+use super::counted::Counted;
+use super::digits::{digit, known_word};
+use super::header::Kind;
+use super::ids::{Ids, id_number};
+use super::put::{put_digits, put_real, put_text, shown};
+use crate::WaveError;
+
+const BUFFER_BYTES: usize = 1 << 18;
+/// Bytes that one command may have: a vector of 2^24 bits, twice over.
+const COMMAND_BYTES: usize = 1 << 25;
+
+/// What the reading ended with.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Ended {
+    /// The file is at its end; whether its last line lacks the line break, so that it may have been cut off.
+    File { unterminated: bool },
+    /// Nobody listens any more.
+    Unheard,
+}
+
+enum Pause {
+    /// A command goes on behind the buffer.
+    More,
+    Stop,
+}
+
+/// What is wrong at a place in the buffer.
+struct Fault {
+    at: usize,
+    what: String,
+}
+
+/// The value changes of a file.
+pub(super) struct Section {
+    path: PathBuf,
+    input: Counted,
+    ids: Ids,
+    buffer: Vec<u8>,
+    /// The unread part of the buffer, and where the buffer begins in the file.
+    from: usize,
+    to: usize,
+    start: u64,
+    last_byte: u8,
+    at_end: bool,
+    in_dump: bool,
+    in_comment: bool,
+}
+
+impl Section {
+    /// Goes on behind the declarations.
+    pub(super) fn new(path: &Path, input: BufReader<Counted>, ids: Ids) -> Self {
+        let mut buffer = input.buffer().to_vec();
+        let to = buffer.len();
+        let start = input.get_ref().bytes - to as u64;
+        let last_byte = buffer.last().copied().unwrap_or(b'\n');
+        buffer.resize(to.max(BUFFER_BYTES), 0);
+        Self {
+            path: path.to_owned(),
+            input: input.into_inner(),
+            ids,
+            buffer,
+            from: 0,
+            to,
+            start,
+            last_byte,
+            at_end: false,
+            in_dump: false,
+            in_comment: false,
+        }
+    }
+
+    /// Reads to the end. `hand_over` takes full batches, and says whether to go on.
+    pub(super) fn read(
+        &mut self,
+        gatherer: &mut Gatherer,
+        hand_over: &mut dyn FnMut(&mut Gatherer) -> bool,
+    ) -> Result<Ended, WaveError> {
+        loop {
+            let pause = self.parse(gatherer, hand_over);
+            match pause.map_err(|fault| self.problem(&fault))? {
+                Pause::Stop => return Ok(Ended::Unheard),
+                Pause::More if self.at_end => break,
+                Pause::More => self.fill()?,
+            }
+            gatherer.batch.bytes = self.start + self.from as u64;
+        }
+        if self.from < self.to {
+            return Err(self.truncated("in the middle of a command"));
+        }
+        if self.in_dump || self.in_comment {
+            return Err(self.truncated(if self.in_dump {
+                "inside a $dump block"
+            } else {
+                "inside a $comment"
+            }));
+        }
+        gatherer.end_step();
+        let unterminated = self.last_byte != b'\n';
+        Ok(Ended::File { unterminated })
+    }
+
+    fn fill(&mut self) -> Result<(), WaveError> {
+        self.buffer.copy_within(self.from..self.to, 0);
+        self.start += self.from as u64;
+        self.to -= self.from;
+        self.from = 0;
+        if self.to == self.buffer.len() {
+            if self.to >= COMMAND_BYTES {
+                return Err(self.problem(&Fault {
+                    at: 0,
+                    what: format!(
+                        "one command is longer than {COMMAND_BYTES} bytes: the file is damaged, or a signal is too wide \
+                         to compare; leave it out when dumping"
+                    ),
+                }));
+            }
+            self.buffer.resize(2 * self.to, 0);
+        }
+        let count = loop {
+            match self.input.read(&mut self.buffer[self.to..]) {
+                Err(cause) if cause.kind() == io::ErrorKind::Interrupted => {}
+                other => break other.map_err(WaveError::file(&self.path, "read"))?,
+            }
+        };
+        self.to += count;
+        if count > 0 {
+            self.last_byte = self.buffer[self.to - 1];
+        } else {
+            // A last line that is complete but for its line break counts.
+            self.at_end = true;
+            self.buffer[self.to] = b'\n';
+            self.to += 1;
+        }
+        Ok(())
+    }
+
+    /// Takes all commands that are whole in the buffer.
+    fn parse(
+        &mut self,
+        gatherer: &mut Gatherer,
+        hand_over: &mut dyn FnMut(&mut Gatherer) -> bool,
+    ) -> Result<Pause, Fault> {
+        let data = &self.buffer[..self.to];
+        loop {
+            let at = skip_space(data, self.from);
+            self.from = at;
+            let Some(first) = data.get(at).copied() else {
+                return Ok(Pause::More);
+            };
+            if self.in_comment {
+                let Some(end) = word_end(data, at) else {
+                    return Ok(Pause::More);
+                };
+                self.in_comment = !data[at..end].ends_with(b"$end");
+                self.from = end;
+                continue;
+            }
+            match first {
+                b'b' | b'B' => {
+                    let Some((word, digits_end)) = leading_word(data, at + 1) else {
+                        return Ok(Pause::More);
+                    };
+                    let id_at = skip_space(data, digits_end);
+                    let (number, end) = id_number(data, id_at);
+                    if end >= data.len() {
+                        return Ok(Pause::More);
+                    }
+                    let slot = slot(&self.ids, number, data, id_at, end)?;
+                    let digits = &data[at + 1..digits_end];
+                    match (word, gatherer.kind(slot)) {
+                        (Some(word), Kind::Bits(width)) if digits.len() as u32 <= width && width <= 64 => {
+                            gatherer.put_word(slot, word, 0);
+                        }
+                        _ => put_digits(gatherer, slot, digits).map_err(|what| Fault { at, what })?,
+                    }
+                    self.from = end;
+                }
+                b'#' => {
+                    let Some(end) = word_end(data, at + 1) else {
+                        return Ok(Pause::More);
+                    };
+                    let time = number(&data[at + 1..end]).ok_or_else(|| Fault {
+                        at,
+                        what: format!("`{}` is no time", shown(&data[at..end])),
+                    })?;
+                    if time < gatherer.time() {
+                        let before = gatherer.time();
+                        return Err(Fault {
+                            at,
+                            what: format!(
+                                "time goes back from #{before} to #{time}: times must rise; the file is damaged, or two \
+                                 were joined"
+                            ),
+                        });
+                    }
+                    self.from = end;
+                    if gatherer.advance(time) && !hand_over(gatherer) {
+                        return Ok(Pause::Stop);
+                    }
+                }
+                b'r' | b'R' | b's' | b'S' => {
+                    let Some(word_to) = word_end(data, at + 1) else {
+                        return Ok(Pause::More);
+                    };
+                    let id_at = skip_space(data, word_to);
+                    let (number, end) = id_number(data, id_at);
+                    if end >= data.len() {
+                        return Ok(Pause::More);
+                    }
+                    let slot = slot(&self.ids, number, data, id_at, end)?;
+                    let word = &data[at + 1..word_to];
+                    let put = if first.eq_ignore_ascii_case(&b'r') {
+                        put_real
+                    } else {
+                        put_text
+                    };
+                    put(gatherer, slot, word).map_err(|what| Fault { at, what })?;
+                    self.from = end;
+                }
+                b'$' => {
+                    let Some(end) = word_end(data, at) else {
+                        return Ok(Pause::More);
+                    };
+                    match &data[at..end] {
+                        b"$comment" => self.in_comment = true,
+                        b"$end" => self.in_dump = false,
+                        b"$dumpvars" | b"$dumpall" => self.in_dump = true,
+                        b"$dumpon" => {
+                            self.in_dump = true;
+                            gatherer.off(false);
+                        }
+                        b"$dumpoff" => {
+                            self.in_dump = true;
+                            gatherer.off(true);
+                        }
+                        word => {
+                            let what = format!(
+                                "`{}`, a declaration after $enddefinitions: the file is damaged",
+                                shown(word)
+                            );
+                            return Err(Fault { at, what });
+                        }
+                    }
+                    self.from = end;
+                }
+                byte => {
+                    let Some(digit) = digit(byte) else {
+                        let what = format!(
+                            "unexpected character `{}`: this is no VCD, or it is damaged",
+                            shown(&[byte])
+                        );
+                        return Err(Fault { at, what });
+                    };
+                    // IEEE 1364 has no space between the digit and the id code, some writers do.
+                    let id_at = skip_space(data, at + 1);
+                    let (number, end) = id_number(data, id_at);
+                    if end >= data.len() {
+                        return Ok(Pause::More);
+                    }
+                    let slot = slot(&self.ids, number, data, id_at, end)?;
+                    if gatherer.kind(slot) == Kind::Bits(1) {
+                        gatherer.put_word(slot, u64::from(digit & 1), u64::from(digit >> 1));
+                    } else {
+                        put_digits(gatherer, slot, &[byte]).map_err(|what| Fault { at, what })?;
+                    }
+                    self.from = end;
+                }
+            }
+        }
+    }
+
+    fn problem(&self, fault: &Fault) -> WaveError {
+        let byte = self.start + fault.at as u64;
+        WaveError::Damaged {
+            path: self.path.clone(),
+            place: line_of(&self.path, byte).map_or_else(|| format!("byte {byte}"), |line| format!("line {line}")),
+            problem: fault.what.clone(),
+        }
+    }
+
+    fn truncated(&self, inside: &str) -> WaveError {
+        // The line break that was put behind the file is not the file's.
+        truncated(&self.path, self.start + self.to as u64 - u64::from(self.at_end), inside)
+    }
+}
+
+pub(super) fn truncated(path: &Path, byte: u64, inside: &str) -> WaveError {
+    WaveError::Damaged {
+        path: path.to_owned(),
+        place: format!("byte {byte}"),
+        problem: format!(
+            "the file ends {inside}: it was cut off, or its writer is still running; write it again \
+             (a complete file ends with a line break)"
+        ),
+    }
+}
+
+/// The line of a byte, counted only now that it is asked for; `None` where the file cannot be read again.
+fn line_of(path: &Path, byte: u64) -> Option<u64> {
+    let file = File::open(path).ok()?;
+    if !file.metadata().ok()?.is_file() {
+        return None;
+    }
+    let mut reader = BufReader::new(file.take(byte));
+    let mut line = 1;
+    loop {
+        let buffer = reader.fill_buf().ok()?;
+        if buffer.is_empty() {
+            return Some(line);
+        }
+        line += buffer.iter().filter(|b| **b == b'\n').count() as u64;
+        let count = buffer.len();
+        reader.consume(count);
+    }
+}
+
+/// End of the word at `at`; `None` if the data ends in it.
+#[inline]
+fn word_end(data: &[u8], at: usize) -> Option<usize> {
+    let length = data.get(at..)?.iter().position(|byte| *byte <= b' ')?;
+    Some(at + length)
+}
+
+/// End of the space at `at`. Control characters are space as in [`word_end`], or a word could be empty for ever.
+#[inline]
+fn skip_space(data: &[u8], mut at: usize) -> usize {
+    while let Some(0..=b' ') = data.get(at) {
+        at += 1;
+    }
+    at
+}
+
+/// The end of the digits at `at`, and their number if all are known and at most 64; `None` if the data ends in them.
+#[inline]
+fn leading_word(data: &[u8], at: usize) -> Option<(Option<u64>, usize)> {
+    let mut end = at;
+    let mut word = 0u64;
+    while let Some(eight) = data.get(end..end + 8).and_then(known_word) {
+        word = word << 8 | eight;
+        end += 8;
+    }
+    while let Some(bit @ 0..=1) = data.get(end).map(|byte| byte ^ b'0') {
+        word = word << 1 | u64::from(bit);
+        end += 1;
+    }
+    match data.get(end) {
+        Some(0..=b' ') if end > at && end - at <= 64 => Some((Some(word), end)),
+        _ => Some((None, word_end(data, end)?)),
+    }
+}
+
+fn number(digits: &[u8]) -> Option<u64> {
+    if digits.is_empty() {
+        return None;
+    }
+    digits.iter().try_fold(0u64, |number, byte| {
+        let digit = byte.wrapping_sub(b'0');
+        if digit > 9 {
+            return None;
+        }
+        number.checked_mul(10)?.checked_add(u64::from(digit))
+    })
+}
+
+#[inline]
+fn slot(ids: &Ids, number: Option<u64>, data: &[u8], at: usize, end: usize) -> Result<u32, Fault> {
+    number.and_then(|number| ids.get(number)).ok_or_else(|| {
+        let what = if at == end {
+            format!(
+                "unexpected character `{}`: an id code was expected",
+                shown(&data[at..at + 1])
+            )
+        } else {
+            format!(
+                "a change of `{}`, which was never declared: the file is damaged",
+                shown(&data[at..end])
+            )
+        };
+        Fault { at, what }
+    })
+}

@@ -1,0 +1,112 @@
+//! Recordings of one counter by several tools are equal to each other. The reader itself is tested on them beside `vcd` and
+//! `wellen`, in `src/reader/agreement.rs`.
+
+use std::path::{Path, PathBuf};
+
+use wavecmp::diff::{self, Comparison, DiffOptions, DiffVerdict, Reset};
+
+fn fixture(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("tests/fixtures/waves")
+        .join(name)
+}
+
+fn compare(a: &str, b: &str, options: &DiffOptions) -> Comparison {
+    diff::compare(&fixture(a), &fixture(b), options, &mut |_| {}).unwrap()
+}
+
+/// The counter's ports behind its reset, by the clock of the bench. The top scope is that of the first file.
+fn ports(top: &str) -> DiffOptions {
+    let mut options = DiffOptions {
+        clock: Some(format!("{top}clk")),
+        // GHDL's clock runs for one edge more.
+        end_fs: Some(400_000_000),
+        ..DiffOptions::default()
+    };
+    options.set_reset(&format!("{top}rst")).unwrap();
+    for port in ["clk", "rst", "dut.enable", "dut.count", "dut.wide", "dut.gray"] {
+        options.only.push(port.to_owned());
+    }
+    options
+}
+
+#[test]
+fn golden_every_producer_recorded_the_same_counter() {
+    let files = [
+        "verilator.vcd",
+        "icarus.vcd",
+        "icarus.fst",
+        "ghdl.vcd",
+        "ghdl.fst",
+        "rusthdl.vcd",
+        "modelsim_style.vcd",
+    ];
+    for a in files {
+        let top = match a {
+            "rusthdl.vcd" => "uut.",
+            // GHDL leaves the top scope out of an FST.
+            "ghdl.fst" => "",
+            _ => "tb.",
+        };
+        for b in files {
+            let result = compare(a, b, &ports(top));
+            assert_eq!(result.result, DiffVerdict::Equal, "{a} {b}: {result}");
+            assert!(result.samples >= 36, "{a} {b}: {result}");
+            let compared = |port: &str| result.compared.iter().any(|(name, _)| name.contains(port));
+            assert!(
+                ["dut.count", "dut.wide", "dut.gray"].into_iter().all(compared),
+                "{a} {b}: {result}"
+            );
+        }
+    }
+}
+
+#[test]
+fn golden_what_is_not_recorded_is_not_compared() {
+    for (a, b) in [
+        ("icarus.vcd", "icarus_dumpoff.vcd"),
+        ("icarus_dumpoff.vcd", "icarus.vcd"),
+    ] {
+        let sampled = compare(a, b, &ports("tb."));
+        assert_eq!((sampled.result, sampled.samples), (DiffVerdict::Equal, 27), "{sampled}");
+        assert!(
+            sampled
+                .to_string()
+                .contains("not recorded in one file ($dumpoff) and not compared: 10 samples"),
+            "{sampled}"
+        );
+        let raw = compare(
+            a,
+            b,
+            &DiffOptions {
+                raw: true,
+                ..DiffOptions::default()
+            },
+        );
+        assert_eq!(raw.result, DiffVerdict::Equal, "{raw}");
+        assert!(raw.to_string().contains("not recorded"), "{raw}");
+    }
+}
+
+#[test]
+fn golden_simulators_meet_on_all_signals_but_what_only_one_writes() {
+    let mut options = DiffOptions {
+        clock: Some("tb.clk".to_owned()),
+        reset: Reset::Found,
+        ..DiffOptions::default()
+    };
+    let whole = compare("icarus.vcd", "verilator.vcd", &options);
+    // Icarus names `flag$bit` and `odd.name` with the backslash of their escape, and writes no array.
+    assert_eq!(whole.result, DiffVerdict::Equal, "{whole}");
+    assert_eq!(
+        whole.only_in_b,
+        ["TOP.tb.dut.history[0]", "TOP.tb.dut.history[1]"],
+        "{whole}"
+    );
+    assert!(whole.only_in_a.is_empty() && whole.not_compared.len() == 1, "{whole}");
+    options.require_all = true;
+    assert_eq!(
+        compare("icarus.vcd", "verilator.vcd", &options).result,
+        DiffVerdict::Different
+    );
+}
