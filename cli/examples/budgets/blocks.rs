@@ -49,8 +49,8 @@ pub(crate) fn rows() -> Result<Vec<Row>, Box<dyn Error>> {
                 luts: 450,
                 flip_flops: 300,
             }),
-            note: "Flip-flops: 13 are for differential pairs (three more synchronisers, a filter) and go where `differential` \
-                   is tied low. LUT: a third is the one-pole filter.",
+            note: "13 flip-flops are for differential pairs (three more synchronisers, a filter); they disappear if \
+                   `differential` is tied low. A third of the LUTs is the one-pole filter.",
         },
         Row {
             block: "divider",
@@ -60,7 +60,7 @@ pub(crate) fn rows() -> Result<Vec<Row>, Box<dyn Error>> {
                 luts: 200,
                 flip_flops: 150,
             }),
-            note: "The 35-bit register and the remainder choose between two or three sources.",
+            note: "The 35-bit register and the remainder select between two or three sources.",
         },
         Row {
             block: "pwm",
@@ -70,8 +70,9 @@ pub(crate) fn rows() -> Result<Vec<Row>, Box<dyn Error>> {
                 luts: 300,
                 flip_flops: 220,
             }),
-            note: "One adder of 19 bits works for duty, limits and edges in turn, with what it adds 161 LUT; 97 compare positions \
-                   with period, phase and trigger; the rest is fault path, leg and times.",
+            note: "One adder of 19 bits computes duty, limits and edges in turn; with its operand selection it takes \
+                   161 LUT. 97 LUT compare positions with period, phase and trigger. The rest is fault path, leg and \
+                   times.",
         },
         Row {
             block: "sliding_mode",
@@ -92,43 +93,45 @@ pub(crate) fn rows() -> Result<Vec<Row>, Box<dyn Error>> {
             size: "",
             modules: axis::emit("")?,
             budget: None,
-            note: "Words of 32 bits are compared byte by byte, in turn: two soft limits, three sizes against their limits.",
+            note: "Words of 32 bits are compared byte by byte, one after the other: two soft limits, and three \
+                   magnitudes with their limits.",
         },
         Row {
             block: "drive_command",
             size: "nothing tied",
             modules: drive_command::emit("")?,
             budget: None,
-            note: "Two counters and two results are the self-test's.",
+            note: "Two counters and two results belong to the self-test.",
         },
         Row {
             block: "linear_scale",
             size: "nothing tied",
             modules: linear_scale::emit("")?,
             budget: None,
-            note: "Tied, 269 LE with the loop on the scale, 194 as a monitor. Six registers of 32 bits.",
+            note: "With the machine's constants tied, it takes 269 LE with the loop on the scale, and 194 as a monitor. \
+                   It has six registers of 32 bits.",
         },
         Row {
             block: "trace",
             size: "1024 samples",
             modules: trace::emit(&TraceConfig::new(1024)?, "")?,
             budget: None,
-            note: "320 LUT choose one of 16 signals of 32 bits; signals that are tied go.",
+            note: "320 LUT select one of 16 signals of 32 bits; signals that are tied disappear.",
         },
         Row {
             block: "encoder_generator",
             size: "",
             modules: encoder_generator::emit("")?,
             budget: None,
-            note: "The sum of 64 bits; without `generated_count` a synthesiser keeps 34 of them.",
+            note: "Most of it is the sum of 64 bits; if `generated_count` is not used, a synthesiser keeps 34 of them.",
         },
         Row {
             block: "excitation",
             size: "",
             modules: excitation::emit("")?,
             budget: None,
-            note: "The references of velocity and acceleration are 64 registers and nothing else. Without these, and with \
-                   `amplitude_limit` and `modulo` tied, 333 LE are left.",
+            note: "The references of velocity and acceleration are 64 registers without logic. Without these, and with \
+                   `amplitude_limit` and `modulo` tied, it takes 333 LE.",
         },
         Row {
             block: "shaper",

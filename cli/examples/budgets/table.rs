@@ -15,19 +15,19 @@ pub(crate) fn page(tool: &str, measured: &[Measured]) -> String {
     let device = Family::Cyclone2.device();
     let mut text = format!(
         "# Area\n\n\
-         What the blocks take of an {} ({} LE, {} M4K blocks, {} multipliers). **An estimate by {tool}**, before place and\n\
-         route; [synthesis](synthesis.md) tells how it comes about. Written by\n\n\
+         This page lists what each block takes of an {} ({} LE, {} M4K blocks, {} multipliers). The figures are **an estimate by\n\
+         {tool}**, before place and route; [synthesis](synthesis.md) explains how they are made. The page is written by\n\n\
          ```\n\
          cargo run --release -p posicast --example budgets -- --write\n\
          ```\n\n\
-         Without `--write` the command compares, and fails where a figure has grown.\n\n\
-         - **LUT**: logic, with a logic element's carry chain and synchronous clear. **LUT by Yosys alone** is without both,\n  \
-         which `synth_intel -family cycloneive` does not map: sums and resets are in it as logic.\n\
-         - **LE**: LUT and the flip-flops that cannot be packed: no LUT drives them, no multiplier has them built in, and no LUT\n  \
-         of three inputs or fewer is left to share its element with them. **LE unpacked** is without that sharing: Quartus does as\n  \
-         much of it as a design needs to fit, so in a device with room its figure is nearer to this one.\n\
-         - **M4K**: counted by the shape of the ports. **18×18**: multipliers by the width of their operands.\n\
-         - **budget**: LUT + flip-flops, where there is one. The note tells what is above it (⚠), or what takes most.\n\n\
+         Without `--write` the command compares, and fails if a figure has grown.\n\n\
+         - **LUT**: logic, mapped with the carry chain and the synchronous clear of a logic element. **LUT by Yosys alone** is without both,\n  \
+         because `synth_intel -family cycloneive` does not map them: sums and resets then count as logic.\n\
+         - **LE**: the LUTs, and the flip-flops that cannot be packed. A flip-flop is packed if a LUT drives it, if a multiplier has it built\n  \
+         in, or if a LUT of at most three inputs is left to share its element with it. **LE unpacked** is without that sharing. Quartus\n  \
+         shares only as much as a design needs to fit, so in a device with room its figure is nearer to this one.\n\
+         - **M4K**: counted by the shape of the ports. **18×18**: multipliers, counted by the width of their operands.\n\
+         - **budget**: LUT + flip-flops, for blocks that have one. The note says what exceeds it (⚠), or what takes most.\n\n\
          {HEAD}",
         device.name, device.cells, M4K_BLOCKS, device.multipliers
     );
@@ -53,8 +53,8 @@ pub(crate) fn page(tool: &str, measured: &[Measured]) -> String {
     let _ = write!(
         text,
         "\n## The XY stage\n\n\
-         Against the budget of {cells} LE (55 %), 18 M4K and 8 multipliers. `whole` is everything, with registers, flattened: what\n\
-         is tied to the machine file is folded away, so it takes less than its blocks do alone.\n\n\
+         The budget is {cells} LE (55 %), 18 M4K and 8 multipliers. `whole` is the complete stage with registers, flattened. Constants of the\n\
+         machine file are folded, so it takes less than its blocks do alone.\n\n\
          | | LE | of the device | M4K | 18×18 | LE unpacked | of the device |\n|---|---|---|---|---|---|---|\n"
     );
     for one in measured.iter().filter(|one| one.row.block == blocks::STAGE) {
