@@ -16,9 +16,9 @@ use std::path::Path;
 const HEAD: &str = "\
 # Registers of the components
 
-Written from the register maps by `scripts/regenerate`; [registers.md](registers.md) says what the kinds of access do.
-Parameters and widths are those of an example: a shaper of 32 bits for three channels with a table of two taps, ticks of 5000
-clocks, a PWM of 20 kHz at 50 MHz. `X_1`, `X_2`, `Y_1` and `Y_2` are there only in a shaper with so many channels, `swap_how` only in
+This page lists all registers. `scripts/regenerate` writes it from the register maps; [registers.md](registers.md) explains the kinds of
+access. Parameters and widths are those of an example: a shaper of 32 bits for three channels with a table of two taps, ticks of 5000
+clocks, a PWM of 20 kHz at 50 MHz. `X_1`, `X_2`, `Y_1` and `Y_2` exist only in a shaper with that many channels, and `swap_how` only in
 one that is built for motion, which can hand over; the plain shaper has `X` and `Y` in their place. The [stage](stage.md) is that of
 `examples/xy-stage.toml`.
 
