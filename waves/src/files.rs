@@ -6,7 +6,7 @@ use std::path::Path;
 use crate::WaveError;
 
 /// What writes the content of a file.
-pub type Fill<'a> = dyn FnMut(&mut dyn Write) -> Result<(), WaveError> + 'a;
+pub type WriteContent<'a> = dyn FnMut(&mut dyn Write) -> Result<(), WaveError> + 'a;
 
 /// Puts files in their places.
 pub trait OutputSink {
@@ -18,7 +18,7 @@ pub trait OutputSink {
     /// # Errors
     /// Those of `fill`, after which nothing is there that was not before; [`WaveError::File`] where the file cannot be
     /// written.
-    fn write(&self, path: &Path, fill: &mut Fill<'_>) -> Result<(), WaveError>;
+    fn write(&self, path: &Path, fill: &mut WriteContent<'_>) -> Result<(), WaveError>;
 }
 
 /// Writes a text with the sink's mark in a comment.

@@ -4,7 +4,7 @@ use std::io::Write;
 use std::path::Path;
 
 use wavecmp::WaveError;
-use wavecmp::files::{Fill, OutputSink};
+use wavecmp::files::{OutputSink, WriteContent};
 
 /// Files that are just written.
 pub(crate) struct PlainFiles;
@@ -14,7 +14,7 @@ impl OutputSink for PlainFiles {
         "written by a test".to_owned()
     }
 
-    fn write(&self, path: &Path, fill: &mut Fill<'_>) -> Result<(), WaveError> {
+    fn write(&self, path: &Path, fill: &mut WriteContent<'_>) -> Result<(), WaveError> {
         let mut content = Vec::new();
         fill(&mut content)?;
         std::fs::write(path, content).map_err(WaveError::file(path, "write"))

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use posicast_system::output::{self, Draft, seal};
 use vcd::{IdCode, Writer};
 use wavecmp::WaveError;
-use wavecmp::files::{Fill, OutputSink};
+use wavecmp::files::{OutputSink, WriteContent};
 use wavecmp::merge::{DifferenceSignal, MergePart};
 
 use crate::Error;
@@ -68,7 +68,7 @@ impl OutputSink for SealedFiles {
         seal::blank()
     }
 
-    fn write(&self, path: &Path, fill: &mut Fill<'_>) -> Result<(), WaveError> {
+    fn write(&self, path: &Path, fill: &mut WriteContent<'_>) -> Result<(), WaveError> {
         let mut draft = Draft::new(path).map_err(WaveError::file(path, "create"))?;
         fill(&mut draft)?;
         draft.put().map_err(WaveError::file(path, "write"))
