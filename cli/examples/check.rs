@@ -4,14 +4,14 @@
 //! cargo run -p posicast --example check -- BLOCK [--clocks N]
 //! ```
 //!
-//! The instances of the block are those of `testbench/src/blocks/library.rs`. Each is linted, run for N clocks (20,000) in
+//! The instances of the block are those of the registry (`testbench/src/blocks/registry.rs`), at the sizes of `library.rs`. Each is linted, run for N clocks (20,000) in
 //! Verilator and in Icarus beside its model, which are compared with each other too, and measured by Yosys; then the proofs
 //! of the block are run. Exit status: 0 all holds, 1 not so, 2 bad usage, 3 a tool is missing.
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "it is a program")]
 
 use posicast_model::rtl::Port;
 use posicast_synth::yosys::{Family, Yosys, YosysError};
-use posicast_testbench::blocks::{Block, Sources, library};
+use posicast_testbench::blocks::{self, Block, Sources, library};
 use posicast_testbench::formal::{self, ProofVerdict};
 use posicast_testbench::{Error, crosssim, lockstep};
 use std::collections::BTreeSet;
@@ -68,7 +68,7 @@ fn check() -> Result<bool, Failure> {
     let mut blocks = library()?;
     let known: BTreeSet<String> = blocks.iter().map(|block| block.name().to_owned()).collect();
     blocks.retain(|block| block.name() == name);
-    let mut proofs = formal::all()?;
+    let mut proofs = blocks::proofs()?;
     proofs.retain(|task| task.name == name || task.name.starts_with(&format!("{name}_")));
     if blocks.is_empty() && proofs.is_empty() {
         let known: Vec<String> = known.into_iter().collect();

@@ -6,33 +6,16 @@ use crate::design::DesignReport;
 use crate::failure::Failure;
 use crate::machine::of_hardware;
 use posicast_hdl::machine::AxisShaper;
-use posicast_model::hardware::{self, Hardware};
+use posicast_model::hardware;
 use posicast_model::machine_file::{AxisSection, Machine};
-use posicast_model::rtl::cascade::CascadeConfig;
-use posicast_model::rtl::divider::DividerConfig;
 use posicast_model::rtl::group::MOST_AXES;
 use posicast_model::rtl::pwm::{ActiveLow, PwmConfig};
-use posicast_model::rtl::registers::RegisterMap;
-use posicast_model::rtl::schedule::ScheduleConfig;
 use posicast_model::rtl::shaper::{MOTION_WORD_BITS, ShaperConfig, ShaperMotion};
-use posicast_model::rtl::trace::TraceConfig;
-use posicast_testbench::blocks::{
-    AxisBlock, Block, CascadeBlock, ComponentBlock, DividerBlock, DriveCommandBlock, EncoderGeneratorBlock,
-    ExcitationBlock, LinearScaleBlock, MachineShapers, PartBlock, PulseCounterBlock, PwmBlock, RegistersBlock,
-    SegmentsBlock, ShaperBlock, SlidingModeBlock, SmallPart, TraceBlock,
-};
+use posicast_testbench::blocks::{BenchSizes, Block, ComponentBlock, MachineShapers, benches};
 use std::path::Path;
 
-/// Delays of the cascade that is compared where no machine asks for one, in samples.
-const CASCADE_DELAYS_SAMPLES: [u32; 4] = [26, 31, 38, 62];
-/// Its word.
-const CASCADE_WORD_BITS: u32 = 32;
 /// Dead time and minimum pulse of the PWM that is compared where no axis has one.
 const PWM_FLOORS_CLOCKS: [u64; 2] = [2, 1];
-/// Words of the trace memory that is compared.
-const TRACE_SAMPLES: u64 = 1024;
-/// Clocks from the tick to the controllers of the schedule that is compared.
-const SCHEDULE_CLOCKS: u32 = 500;
 /// The shaper for motion that is compared where no axis has one: position, velocity and acceleration share a table.
 const MOTION: ShaperMotion = ShaperMotion {
     channels: 3,
@@ -52,48 +35,23 @@ pub(crate) fn others(
     path: &Path,
 ) -> Result<Vec<Box<dyn Block>>, Failure> {
     let (machine, hardware) = (report.machine, &report.hardware);
-    let mut blocks: Vec<Box<dyn Block>> = Vec::new();
     if !machine.axes.iter().any(AxisSection::has_loop) {
-        return Ok(blocks);
+        return Ok(Vec::new());
     }
-    let name = machine.name.as_str();
-    let with_encoder = axes(machine, |axis| axis.encoder.is_some());
-    let with_controller = axes(machine, |axis| axis.controller.is_some());
-    blocks.push(Box::new(PulseCounterBlock::new(name, &with_encoder)));
-    blocks.push(Box::new(DividerBlock::new(divider(hardware, path)?, name)));
-    for (config, axes) in pwms(machine, path)? {
-        blocks.push(Box::new(PwmBlock::new(config, name, &axes)));
-    }
-    blocks.push(Box::new(SlidingModeBlock::new(name, &with_controller)));
-    blocks.push(Box::new(
-        ShaperBlock::new(motion_shaper(shapers)?, name, "motion").map_err(bench::failure)?,
-    ));
-    let cascade = CascadeConfig::new(CASCADE_WORD_BITS, CASCADE_DELAYS_SAMPLES.to_vec()).map_err(Failure::because)?;
-    blocks.push(Box::new(CascadeBlock::new(cascade, name)));
-    blocks.push(Box::new(SegmentsBlock::new(name, "alone")));
-    blocks.push(Box::new(AxisBlock::new(name, "alone")));
-    blocks.push(Box::new(DriveCommandBlock::new(name, "alone")));
-    let trace = TraceConfig::new(TRACE_SAMPLES).map_err(Failure::because)?;
-    blocks.push(Box::new(TraceBlock::new(trace, name)));
-    blocks.push(Box::new(LinearScaleBlock::new(name, "alone")));
-    blocks.push(Box::new(EncoderGeneratorBlock::new(name, "alone")));
-    blocks.push(Box::new(ExcitationBlock::new(name, "alone")));
-    for part in parts(machine, hardware, path)? {
-        blocks.push(Box::new(PartBlock::new(part, name)));
-    }
-    let mut maps: Vec<&RegisterMap> = Vec::new();
-    for map in components.iter().map(|component| component.component().map()) {
-        if !maps.iter().any(|other| other.name() == map.name()) {
-            maps.push(map);
-        }
-    }
-    for map in maps {
-        blocks.push(Box::new(RegistersBlock::new(map.clone(), name)));
-    }
-    for component in components {
-        blocks.push(Box::new(component));
-    }
-    Ok(blocks)
+    let first = hardware.axes().iter().find_map(|axis| axis.control.as_ref());
+    let sizes = BenchSizes {
+        prefix: machine.name.clone(),
+        with_encoder: axes(machine, |axis| axis.encoder.is_some()),
+        with_controller: axes(machine, |axis| axis.controller.is_some()),
+        tick: hardware.divider().map_err(|error| of_hardware(&error, path))?,
+        pwms: pwms(machine, path)?,
+        motion: motion_shaper(shapers)?,
+        axes: machine.axes.len().clamp(1, MOST_AXES),
+        settings: first.map_or_else(Default::default, |control| control.derived.settings),
+        components,
+        stage: None,
+    };
+    benches(&sizes).map_err(bench::failure)
 }
 
 /// What a folder holds beside the machine's top: each component, through its bus and its pins, and the blocks in it, each alone.
@@ -105,23 +63,6 @@ pub(crate) fn of_components(components: Vec<ComponentBlock>) -> Result<Vec<Box<d
         blocks.extend(inner);
     }
     Ok(blocks)
-}
-
-/// The small blocks between others, at the machine's sizes where these do not depend on a stage.
-fn parts(machine: &Machine, hardware: &Hardware<'_>, path: &Path) -> Result<[SmallPart; 6], Failure> {
-    let first = hardware.axes().iter().find_map(|axis| axis.control.as_ref());
-    let axes = machine.axes.len().clamp(1, MOST_AXES);
-    Ok([
-        SmallPart::TimeBase(divider(hardware, path)?),
-        SmallPart::Schedule(ScheduleConfig::new(SCHEDULE_CLOCKS).map_err(Failure::because)?),
-        SmallPart::DividerShare(axes),
-        SmallPart::Group(axes),
-        SmallPart::SampleSelect {
-            word_bits: *MOTION_WORD_BITS.end(),
-            channels: MOTION.channels as usize,
-        },
-        SmallPart::SettingBanks(first.map_or_else(Default::default, |control| control.derived.settings)),
-    ])
 }
 
 /// The PWMs of the machine, each with the axes that have one like it; one of its own where no axis has any.
@@ -161,11 +102,6 @@ fn axes(machine: &Machine, has: impl Fn(&AxisSection) -> bool) -> String {
         [] => "alone".to_owned(),
         names => names.join(", "),
     }
-}
-
-/// The divider for the machine's tick.
-fn divider(hardware: &Hardware<'_>, path: &Path) -> Result<DividerConfig, Failure> {
-    hardware.divider().map_err(|error| of_hardware(&error, path))
 }
 
 /// A shaper for motion with the first axis's table, at the first size that holds it.

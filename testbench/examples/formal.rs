@@ -10,7 +10,8 @@ use std::process::ExitCode;
 use std::time::Duration;
 
 use posicast_testbench::Error;
-use posicast_testbench::formal::{ProofOutcome, ProofVerdict, Task, all, named, run};
+use posicast_testbench::blocks::{proofs, proofs_named};
+use posicast_testbench::formal::{ProofOutcome, ProofVerdict, Task, run};
 
 fn main() -> ExitCode {
     match prove() {
@@ -27,10 +28,10 @@ fn prove() -> Result<bool, Error> {
     let blocks: Vec<String> = std::env::args().skip(1).collect();
     let mut tasks = Vec::new();
     for block in &blocks {
-        tasks.extend(named(block)?);
+        tasks.extend(proofs_named(block)?);
     }
     if blocks.is_empty() {
-        tasks = all()?;
+        tasks = proofs()?;
     }
     let seconds = std::env::var("POSICAST_FORMAL_SECONDS")
         .ok()

@@ -19,7 +19,7 @@ use std::time::Instant;
 use posicast_model::{design::design_machine, hardware, machine_file};
 use posicast_testbench::Error;
 use posicast_testbench::mutation::{
-    INSIDE, INSIDE_MARKS, MARKS, MutationOptions, MutationRow, all, inside_table, merged, named, run, table,
+    INSIDE, INSIDE_MARKS, MARKS, MutationOptions, MutationRow, all, hunt, inside_table, merged, named, run, table,
 };
 
 fn main() -> ExitCode {
@@ -143,7 +143,7 @@ fn mutate_inside(options: &MutationOptions, write: bool) -> Result<bool, Error> 
     let mut fates = Vec::new();
     for mutant in INSIDE {
         let start = Instant::now();
-        let found = mutant.hunt(&stage.config, "xy_stage_stage", options.clocks, options.seed)?;
+        let found = hunt(&mutant, &stage.config, "xy_stage_stage", options.clocks, options.seed)?;
         let by = found
             .as_ref()
             .map_or("NOT FOUND".to_owned(), |found| format!("{found:?}"));

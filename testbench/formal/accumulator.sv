@@ -11,17 +11,7 @@
 //   sides         cut says whether an end was passed, negative which
 //   sign          negative is the word's sign
 module accumulator_properties (
-    input wire               clk,
-    input wire               rst,
-    input wire               empty,
-    input wire               add,
-    input wire               check,
-    input wire signed [50:0] scaled,
-    input wire               as_fraction,
-    input wire               as_duty,
-    input wire signed [31:0] word,
-    input wire               cut,
-    input wire               negative,
+    `PORTS,
     (* peek = "sum_q" *) input wire signed [51:0] sum
 );
     localparam signed [63:0] LARGEST_TERM = 64'sd1 <<< 49;

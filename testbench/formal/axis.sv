@@ -18,17 +18,7 @@
 //
 // That it is the right row for its conditions: axis_table. Causes: axis_causes, axis_monitors, axis_lines. Times: axis_brake.
 module axis_properties (
-    input wire        clk,
-    input wire        rst,
-    input wire        clear_faults,
-    input wire [2:0]  state,
-    input wire [16:0] causes,
-    input wire        drive_enable,
-    input wire        brake_release,
-    input wire        pwm_enable,
-    input wire        segments_enable,
-    input wire        segments_preset,
-    input wire        shaper_start
+    `PORTS
 );
     reg        past_reset = 1'b1;
     reg [2:0]  past_state = `OFF;

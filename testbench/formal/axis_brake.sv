@@ -17,21 +17,7 @@
 //   applied_settled     in HOLD the brake is applied only after the time of its release, or settle_ticks ticks since RUN
 //   exact_elapsed       the time is over: as many ticks have come since it began as its delay had, a clock ago or earlier
 module axis_brake_properties (
-    input wire        clk,
-    input wire        rst,
-    input wire        tick,
-    input wire        enable,
-    input wire [15:0] brake_release_ticks,
-    input wire [15:0] brake_apply_ticks,
-    input wire [15:0] settle_ticks,
-    input wire [1:0]  segments_state,
-    input wire [2:0]  state,
-    input wire [16:0] causes,
-    input wire        drive_enable,
-    input wire        brake_release,
-    input wire        pwm_enable,
-    input wire        enabled,
-    input wire        stopping,
+    `PORTS,
     (* peek = "u_states.cut" *) input wire cut,
     (* peek = "u_states.fault" *) input wire fault,
     (* peek = "u_states.any_cause" *) input wire any_cause,

@@ -12,20 +12,7 @@
 //   drive_lost_*   in the same time, with outputs on, a drive that is no longer ready is a cause; and if off_causes says so in
 //                  that clock, the outputs are off
 module axis_lines_properties (
-    input wire        clk,
-    input wire        rst,
-    input wire        emergency_stop_n,
-    input wire        drive_ready,
-    input wire [5:0]  filter_clocks,
-    input wire [15:0] off_causes,
-    input wire [2:0]  state,
-    input wire [16:0] causes,
-    input wire        drive_enable,
-    input wire        brake_release,
-    input wire        pwm_enable,
-    input wire        pwm_trip_n,
-    input wire        level_emergency_stop_n,
-    input wire        level_drive_ready,
+    `PORTS,
     (* peek = "primed" *) input wire [3:0] primed,
     (* peek = "u_emergency_stop_line.u_synchroniser.synchroniser_first" *) input wire stop_first,
     (* peek = "u_emergency_stop_line.u_synchroniser.synchroniser_second" *) input wire stop_second,

@@ -16,16 +16,7 @@
 //                      are what is written to the rings, all of them always do: nothing overflows
 //   result_...         y is the sum plus 2^(STAGES - 1), shifted down by STAGES, exact; x after a start; and holds else
 module cascade_properties (
-    input wire                    clk,
-    input wire                    rst,
-    input wire                    strobe,
-    input wire                    start,
-    input wire signed [`WORD-1:0] x,
-    input wire                    clear_flags,
-    input wire signed [`WORD-1:0] y,
-    input wire                    valid,
-    input wire                    busy,
-    input wire                    overrun,
+    `PORTS,
     (* peek = "running" *) input wire running,
     (* peek = "adding" *) input wire adding,
     (* peek = "finish" *) input wire finish,

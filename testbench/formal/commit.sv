@@ -15,16 +15,7 @@
 // A commit waits from the clock after its write, of the whole word, to the first clock with a tick. Part of a word commits
 // nothing. Left open: what a block makes of its settings.
 module commit_properties (
-    input wire                      clk,
-    input wire                      rst,
-    input wire [`ADDRESS_BITS-1:0]  avs_address,
-    input wire                      avs_read,
-    input wire                      avs_write,
-    input wire [3:0]                avs_byteenable,
-    input wire [31:0]               avs_writedata,
-    input wire [31:0]               avs_readdata,
-    input wire                      `TICK,
-    `FIELDS,
+    `PORTS,
     (* peek = "flag_commit_rejected" *) input wire rejected
 );
     localparam WIDTH = 32 * `REGISTERS;

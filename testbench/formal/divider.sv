@@ -15,28 +15,18 @@
 // of |steps|, and whole * divisor the sum 2 (2 (...) + divisor) + ... over the bits of whole, highest first, both kept here.
 //   known_...          invariants: what the registers hold in each clock of a division
 module divider_properties (
-    input wire               clk,
-    input wire               rst,
-    input wire               start,
-    input wire signed [17:0] steps,
-    input wire [23:0]        elapsed,
-    input wire               clear_flags,
-    input wire signed [31:0] quotient,
-    input wire               done,
-    input wire               busy,
-    input wire               saturated,
-    input wire               overrun,
-    (* peek = "phase" *)      input wire [6:0]  phase,
-    (* peek = "product" *)    input wire [34:0] product,
-    (* peek = "remainder" *)  input wire [23:0] remainder,
-    (* peek = "divisor" *)    input wire [23:0] divisor,
-    (* peek = "negative" *)   input wire negative,
+    `PORTS,
+    (* peek = "phase" *) input wire [6:0] phase,
+    (* peek = "product" *) input wire [34:0] product,
+    (* peek = "remainder" *) input wire [23:0] remainder,
+    (* peek = "divisor" *) input wire [23:0] divisor,
+    (* peek = "negative" *) input wire negative,
     (* peek = "turns_over" *) input wire turns_over,
-    (* peek = "too_large" *)  input wire too_large,
-    (* peek = "downward" *)   input wire downward,
-    (* peek = "last_pass" *)  input wire last_pass,
-    (* peek = "fits" *)       input wire fits,
-    (* peek = "subtracts" *)  input wire subtracts
+    (* peek = "too_large" *) input wire too_large,
+    (* peek = "downward" *) input wire downward,
+    (* peek = "last_pass" *) input wire last_pass,
+    (* peek = "fits" *) input wire fits,
+    (* peek = "subtracts" *) input wire subtracts
 );
     // Clocks since the start that was taken; 0: none runs, DIVISION_CLOCKS: done.
     reg  [6:0] since = 7'd0;

@@ -11,12 +11,7 @@
 //   begins            idle, `divide` starts the first in the next clock
 //   rests             after the last one nothing starts without `divide`
 module divider_share_properties (
-    input wire clk,
-    input wire rst,
-    input wire divide,
-    input wire done,
-    input wire start,
-    `PER_CHANNEL
+    `PORTS
 );
     wire [7:0] valid = `VALID;
 

@@ -18,30 +18,13 @@
 //
 // Left open: where the index goes when index_every changes.
 module encoder_generator_properties (
-    input wire               clk,
-    input wire               rst,
-    input wire               loop_back,
-    input wire signed [31:0] rate,
-    input wire [15:0]        index_every,
-    input wire               pin_a,
-    input wire               pin_b,
-    input wire               pin_z,
-    input wire               pin_a_n,
-    input wire               pin_b_n,
-    input wire               pin_z_n,
-    input wire               a,
-    input wire               b,
-    input wire               z,
-    input wire               a_n,
-    input wire               b_n,
-    input wire               z_n,
-    input wire signed [31:0] generated_count,
-    (* peek = "sum" *)    input wire signed [63:0] sum,
+    `PORTS,
+    (* peek = "sum" *) input wire signed [63:0] sum,
     (* peek = "period" *) input wire [13:0] period,
     (* peek = "line_a" *) input wire line_a,
     (* peek = "line_b" *) input wire line_b,
     (* peek = "line_z" *) input wire line_z,
-    (* peek = "moved" *)  input wire moved
+    (* peek = "moved" *) input wire moved
 );
     // The sum of the rates, and the counts of the last three clocks.
     reg  [63:0] total = 64'd0;

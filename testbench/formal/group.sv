@@ -9,13 +9,7 @@
 //   holds            a feed hold: all that are to hold are held a clock after all of them rest; else none is
 //   emergency        an emergency stop of one is one of all
 module group_properties (
-    input wire       clk,
-    input wire       rst,
-    input wire       start,
-    input wire [3:0] start_axes,
-    input wire       group_emergency_stop,
-    input wire       start_refused,
-    `PER_AXIS
+    `PORTS
 );
     wire [`AXES-1:0] starting = `AXIS_START;
     wire [`AXES-1:0] stopped = `GROUP_STOP;

@@ -10,9 +10,7 @@
 //
 // That all three change in the same clock is proven of the register bank: commit.sv.
 module law_and_bank_properties (
-    input wire       clk,
-    input wire       rst,
-    input wire       valid,
+    `PORTS,
     (* peek = "u_sliding_mode.start" *) input wire start,
     (* peek = "u_sliding_mode.busy" *) input wire busy,
     (* peek = "u_sliding_mode.law" *) input wire [1:0] law,

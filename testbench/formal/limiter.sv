@@ -15,20 +15,7 @@
 //   in_a_row          limited_ticks: so many `count` in a row found a cut; stays at its end
 //   known_*           invariants
 module limiter_properties (
-    input wire               clk,
-    input wire               rst,
-    input wire               keep,
-    input wire               take,
-    input wire               count,
-    input wire [30:0]        limit,
-    input wire signed [31:0] word,
-    input wire               cut,
-    input wire               negative,
-    input wire signed [31:0] held,
-    input wire signed [31:0] command,
-    input wire               limited_high,
-    input wire               limited_low,
-    input wire [15:0]        limited_ticks,
+    `PORTS,
     (* peek = "inverted" *) input wire inverted,
     (* peek = "compares" *) input wire compares,
     (* peek = "returns" *) input wire returns,

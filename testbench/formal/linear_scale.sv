@@ -23,20 +23,7 @@
 //
 // What the multiplier makes of the bits is in serial_ratio.sv.
 module linear_scale_properties (
-    input wire               clk,
-    input wire               rst,
-    input wire               tick,
-    input wire signed [31:0] motor_position,
-    input wire signed [31:0] scale_position,
-    input wire signed [31:0] motor_velocity,
-    input wire               velocity_valid,
-    input wire               align,
-    input wire [4:0]         ratio_shift,
-    input wire               use_scale,
-    input wire signed [31:0] deviation,
-    input wire               deviation_valid,
-    input wire signed [31:0] position,
-    input wire signed [31:0] velocity,
+    `PORTS,
     (* peek = "positions_wait" *) input wire positions_wait,
     (* peek = "velocity_waits" *) input wire velocity_waits,
     (* peek = "runs" *) input wire runs,

@@ -7,16 +7,7 @@
 //   other_unheard  a strobe or start that the other source gives does nothing
 //   reset_is_quiet 0 after a reset, words too
 module sample_select_properties (
-    input wire clk,
-    input wire rst,
-    input wire from_pins,
-    input wire host_strobe,
-    input wire host_start,
-    input wire pin_strobe,
-    input wire pin_start,
-    input wire strobe,
-    input wire start,
-    `WORD_PORTS
+    `PORTS
 );
     localparam BITS = `WORD_BITS * `CHANNELS;
 

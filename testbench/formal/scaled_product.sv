@@ -11,14 +11,7 @@
 //
 // Not proven here: that the two multipliers' products make the operand's with the mantissa (lock step).
 module scaled_product_properties (
-    input wire               clk,
-    input wire               rst,
-    input wire               read,
-    input wire               load,
-    input wire               shift,
-    input wire               unit,
-    input wire [22:0]        gain,
-    input wire signed [50:0] scaled,
+    `PORTS,
     (* peek = "product" *) input wire [49:0] product,
     (* peek = "left" *) input wire [4:0] still_left
 );

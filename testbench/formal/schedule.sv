@@ -3,10 +3,7 @@
 // Proven for all inputs in every clock, resets included; nothing is assumed. A tick that comes before the one before it has
 // led to `control` takes its place, as the stage's registers make impossible: the last one counts.
 module schedule_properties (
-    input wire clk,
-    input wire rst,
-    input wire tick,
-    input wire control,
+    `PORTS,
     (* peek = "since" *) input wire [16:0] since,
     (* peek = "waits" *) input wire waits
 );

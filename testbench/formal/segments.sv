@@ -16,8 +16,7 @@
 // With pointers, in_one and out_one each slot is filled once and emptied once per turn: so nothing is lost or repeated.
 // Not proven here: which words of the entry the integrator reads, and what it makes of them: lock step.
 module segments_properties (
-    input wire       clk,
-    input wire       rst,
+    `PORTS,
     (* peek = "u_fifo.head" *) input wire [5:0] head,
     (* peek = "u_fifo.slot" *) input wire [5:0] free,
     (* peek = "u_fifo.level_q" *) input wire [6:0] entries,
@@ -51,18 +50,18 @@ module segments_properties (
     wire [5:0] distance = free - oldest;
     wire [5:0] slot = write_address[7:2];
     wire [5:0] behind_oldest = slot - oldest;
-    wire [6:0] held = entries + {6'd0, fifo_plays};
+    wire [6:0] filled = entries + {6'd0, fifo_plays};
     wire [5:0] free_moved = free - past_free;
     wire [5:0] head_moved = head - past_head;
     always @(*) begin
-        level_bound: assert (held <= 7'd64);
+        level_bound: assert (filled <= 7'd64);
         pointers: assert (entries[5:0] == distance);
         in_one: assert (past_reset | past_flush | free_moved == {5'd0, past_entered});
         flush_empties: assert (!past_flush | past_reset | (entries == 7'd0 & free == oldest));
         out_one: assert (past_reset | past_flush | head_moved == {5'd0, past_pop});
         no_overwrite: assert (!fifo_takes | ({1'b0, behind_oldest} >= entries & entries != 7'd64 & !(fifo_plays & slot == head)));
         never_from_empty: assert (!fifo_pop | entries != 7'd0);
-        refused_when_full: assert (!(fifo_write & held == 7'd64) | (fifo_refused & !fifo_takes & !fifo_entered));
+        refused_when_full: assert (!(fifo_write & filled == 7'd64) | (fifo_refused & !fifo_takes & !fifo_entered));
         accounted: assert (entries == count);
     end
 

@@ -13,14 +13,7 @@
 // crosses the second is 2^17 - 2^15 counts before the end of the word. Not proven here: the sums themselves, and that such a stop has
 // a velocity of 0 after its tick: lock step.
 module segments_range_properties (
-    input wire       clk,
-    input wire       rst,
-    input wire       modulo,
-    input wire       clear_flags,
-    input wire [1:0] state,
-    input wire       overflow,
-    input wire       out_of_range,
-    input wire [6:0] level,
+    `PORTS,
     (* peek = "idle" *) input wire idle,
     (* peek = "phase" *) input wire [5:0] phase,
     (* peek = "held_q" *) input wire feed_held,

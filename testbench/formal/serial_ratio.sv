@@ -13,36 +13,19 @@
 //
 // No product is written with `*`: it is the sum of the mantissa * 2^k over the operand's bits, the highest one subtracted.
 module serial_ratio_properties (
-    input wire               clk,
-    input wire               rst,
-    input wire               runs,
-    input wire               of_position,
-    input wire               use_scale,
-    input wire signed [17:0] ratio_mantissa,
-    input wire [4:0]         ratio_shift,
-    input wire               operand_bit,
-    input wire               operand_reference_bit,
-    input wire               other_bit,
-    input wire               other_reference_bit,
-    input wire               takes_operand,
-    input wire               takes_other,
-    input wire               moves,
-    input wire               result_bit,
-    input wire               last,
-    input wire               overflows,
-    input wire               negative,
-    (* peek = "phase" *)          input wire [5:0] phase,
-    (* peek = "partial" *)        input wire signed [17:0] partial,
+    `PORTS,
+    (* peek = "phase" *) input wire [5:0] phase,
+    (* peek = "partial" *) input wire signed [17:0] partial,
     (* peek = "operand_borrow" *) input wire operand_borrow,
-    (* peek = "held_operand" *)   input wire held_operand,
-    (* peek = "other_borrow" *)   input wire other_borrow,
-    (* peek = "held_other" *)     input wire held_other,
-    (* peek = "round_up" *)       input wire round_up,
-    (* peek = "borrow" *)         input wire borrow,
-    (* peek = "begun_q" *)        input wire begun,
-    (* peek = "ended_q" *)        input wire ended,
-    (* peek = "overflow" *)       input wire overflow,
-    (* peek = "highest" *)        input wire highest
+    (* peek = "held_operand" *) input wire held_operand,
+    (* peek = "other_borrow" *) input wire other_borrow,
+    (* peek = "held_other" *) input wire held_other,
+    (* peek = "round_up" *) input wire round_up,
+    (* peek = "borrow" *) input wire borrow,
+    (* peek = "begun_q" *) input wire begun,
+    (* peek = "ended_q" *) input wire ended,
+    (* peek = "overflow" *) input wire overflow,
+    (* peek = "highest" *) input wire highest
 );
     // A pass is fair as long as what has to stay does.
     reg               was_fair = 1'b1;

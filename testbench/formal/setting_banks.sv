@@ -17,30 +17,17 @@
 //   loaded_is_word     that word is the one that was read from the host's bank and row, by the same rules
 //   loaded_stays       it changes for no other reason
 module setting_banks_properties (
-    input wire        clk,
-    input wire        rst,
-    input wire        setting_write,
-    input wire [1:0]  setting_bank,
-    input wire [3:0]  setting_row,
-    input wire [31:0] setting_word,
-    input wire [1:0]  bank,
-    input wire [3:0]  row,
-    input wire        busy,
-    input wire        setting_read,
-    input wire [31:0] setting,
-    input wire        setting_refused,
-    input wire [31:0] setting_loaded,
-    input wire        setting_read_waits,
-    (* peek = "serves" *)                          input wire        serves,
-    (* peek = "served" *)                          input wire        served,
-    (* peek = "u_loaded_settings.write_enable" *)  input wire        taken,
-    (* peek = "u_loaded_settings.write_address" *) input wire [4:0]  write_address,
-    (* peek = "u_loaded_settings.write_data" *)    input wire [31:0] write_data,
-    (* peek = "u_loaded_settings.read_address" *)  input wire [4:0]  read_address,
-    (* peek = "u_loaded_settings.read_data" *)     input wire [31:0] read_data,
-    (* peek = "u_machine_settings.address" *)      input wire [3:0]  machine_address,
-    (* peek = "u_machine_settings.data" *)         input wire [31:0] machine_word,
-    (* peek = "written" *)                         input wire [31:0] written
+    `PORTS,
+    (* peek = "serves" *) input wire serves,
+    (* peek = "served" *) input wire served,
+    (* peek = "u_loaded_settings.write_enable" *) input wire taken,
+    (* peek = "u_loaded_settings.write_address" *) input wire [4:0] write_address,
+    (* peek = "u_loaded_settings.write_data" *) input wire [31:0] write_data,
+    (* peek = "u_loaded_settings.read_address" *) input wire [4:0] read_address,
+    (* peek = "u_loaded_settings.read_data" *) input wire [31:0] read_data,
+    (* peek = "u_machine_settings.address" *) input wire [3:0] machine_address,
+    (* peek = "u_machine_settings.data" *) input wire [31:0] machine_word,
+    (* peek = "written" *) input wire [31:0] written
 );
     // Which rows of banks 1 and 2 were written since the reset.
     reg  [31:0] rows = 32'd0;

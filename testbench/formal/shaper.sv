@@ -24,18 +24,7 @@
 // partial products make coefficient times sample (their sum is shown), that memories keep what is written: at small sizes both are
 // in shaper_small.
 module shaper_properties (
-    input wire               clk,
-    input wire               rst,
-    input wire               strobe,
-    input wire               start,
-    input wire signed [31:0] x,
-    input wire               clear_flags,
-    input wire signed [31:0] y,
-    input wire               valid,
-    input wire               saturated,
-    input wire               busy,
-    input wire               overrun,
-    input wire        [1:0]  bank,
+    `PORTS,
     (* peek = "tap" *) input wire [5:0] tap,
     (* peek = "running" *) input wire running,
     (* peek = "stages" *) input wire [5:0] stages,

@@ -15,22 +15,7 @@
 //
 // That never both sides of a leg are on is proven of the PWM alone.
 module stage_axis_properties (
-    input wire       clk,
-    input wire       rst,
-    input wire       emergency_stop_n,
-    input wire       group_emergency_stop,
-    input wire       fault_n,
-    input wire       pll_locked,
-    input wire       a_high,
-    input wire       a_low,
-    input wire       b_high,
-    input wire       b_low,
-    input wire       drive_enable,
-    input wire       brake_release,
-    input wire       direct_active,
-    input wire [2:0] state,
-    input wire       level_emergency_stop_n,
-    input wire [16:0] causes,
+    `PORTS,
     (* peek = "u_axis.primed" *) input wire [3:0] primed,
     (* peek = "u_axis.u_emergency_stop_line.u_synchroniser.synchroniser_first" *) input wire first,
     (* peek = "u_axis.u_emergency_stop_line.u_synchroniser.synchroniser_second" *) input wire second,

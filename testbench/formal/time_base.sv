@@ -10,13 +10,7 @@
 //   ticks_count        the tick count is one more with every tick, in its clock, and 0 after a reset
 //   known_phase        an invariant
 module time_base_properties (
-    input wire        clk,
-    input wire        rst,
-    input wire        tick,
-    input wire        divide,
-    input wire [31:0] time_stamp,
-    input wire [23:0] edge_stamp,
-    input wire [31:0] tick_count,
+    `PORTS,
     (* peek = "phase" *) input wire [16:0] phase
 );
     // Clocks since the last tick or reset.

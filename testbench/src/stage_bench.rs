@@ -22,10 +22,11 @@ use posicast_model::rtl::component::Component;
 use posicast_model::rtl::composition::Composed;
 use posicast_model::rtl::segments::Entry;
 use posicast_model::rtl::stage::StageConfig;
-use posicast_model::rtl::{ClockedBlock, Direction, StepError};
+use posicast_model::rtl::{Direction, Port, StepError};
 
 use crate::Error;
-use crate::lockstep::Device;
+use crate::lockstep::report::Mismatch;
+use crate::lockstep::{Device, Instance, Lockstep, LockstepOptions};
 
 /// Lines that are high while all is well.
 const HEALTHY: [&str; 5] = [
@@ -56,19 +57,6 @@ pub mod state {
     pub const QUICK_STOP: u32 = SupervisorState::QuickStop as u32;
     /// A cause, until it is cleared.
     pub const FAULT: u32 = SupervisorState::Fault as u32;
-}
-
-/// An output that differed.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct StageMismatch {
-    /// Clocks since the start.
-    pub clock: u64,
-    /// The output.
-    pub signal: String,
-    /// What the model shows.
-    pub expected: u64,
-    /// What the device shows.
-    pub actual: u64,
 }
 
 /// An axis at a tick.
@@ -136,25 +124,39 @@ fn stopped(clock: u64) -> impl Fn(StepError) -> Error {
     move |source| Error::Step { clock, source }
 }
 
+/// The RTL beside the model.
+struct Beside {
+    lockstep: Lockstep,
+    device: Box<dyn Device>,
+}
+
+impl Beside {
+    fn new(ports: &[Port], device: Box<dyn Device>) -> Result<Self, Error> {
+        let stage = [Instance::whole("stage", "with its machine", ports)];
+        // The clocks are those of the bench, so none end it.
+        let options = LockstepOptions::cycles(u64::MAX);
+        Ok(Self {
+            lockstep: Lockstep::new(ports, device.ports(), &stage, &options)?,
+            device,
+        })
+    }
+}
+
 /// A stage, its machine and its host.
 pub struct StageBench {
     component: Component,
     axes: Vec<String>,
     model: Composed,
-    device: Option<Box<dyn Device>>,
+    compared: Option<Beside>,
     plants: Vec<AxisPlant>,
     places: Vec<Places>,
     input_names: Vec<String>,
     output_names: Vec<String>,
     inputs: Vec<u64>,
     outputs: Vec<u64>,
-    actual: Vec<u64>,
-    unknown: Vec<u64>,
     tick: usize,
     read_data: usize,
     now: u64,
-    mismatches: u64,
-    first: Option<StageMismatch>,
     samples: Option<Vec<Vec<AxisSample>>>,
     faults: Vec<Fault>,
     shown: Vec<DrivePins>,
@@ -182,13 +184,7 @@ impl StageBench {
             )));
         }
         let ports = component.composition().ports();
-        if let Some(device) = device.as_ref().filter(|device| device.ports() != ports) {
-            let found = device.ports().len();
-            return Err(Error::Unlike(format!(
-                "the stage has {} ports, the device {found}",
-                ports.len()
-            )));
-        }
+        let compared = device.map(|device| Beside::new(ports, device)).transpose()?;
         let names = |direction| -> Vec<String> {
             let ports = ports.iter().filter(|port| port.direction == direction);
             ports.map(|port| port.name.clone()).collect()
@@ -225,19 +221,15 @@ impl StageBench {
             watched: vec![Watched::default(); axes.len()],
             inputs: vec![0; input_names.len()],
             outputs: vec![0; output_names.len()],
-            actual: vec![0; output_names.len()],
-            unknown: vec![0; output_names.len()],
             component: component.clone(),
             axes,
             model,
-            device,
+            compared,
             plants,
             places,
             input_names,
             output_names,
             now: 0,
-            mismatches: 0,
-            first: None,
             samples: None,
         };
         for line in HEALTHY_SHARED {
@@ -322,8 +314,12 @@ impl StageBench {
     }
 
     /// Outputs that differed, and the first of them.
-    pub fn mismatches(&self) -> (u64, Option<&StageMismatch>) {
-        (self.mismatches, self.first.as_ref())
+    pub fn mismatches(&self) -> (u64, Option<Mismatch>) {
+        let report = self.compared.as_ref().map(|compared| compared.lockstep.report());
+        let blocks = report.into_iter().flat_map(|report| report.blocks);
+        blocks.fold((0, None), |(count, first), block| {
+            (count + block.mismatches, first.or(block.first))
+        })
     }
 
     /// Drives an input that is neither an encoder's nor the bus's: `x_limit_plus_n`, from the next clock on.
@@ -400,8 +396,12 @@ impl StageBench {
                     (self.inputs[a], self.inputs[b]) = (pins.a.into(), pins.b.into());
                 }
             }
-            let passed = match self.device {
-                Some(_) => self.step()?,
+            let passed = match &mut self.compared {
+                Some(Beside { lockstep, device }) => {
+                    lockstep.clock(&mut self.model, device.as_mut(), &mut self.inputs)?;
+                    self.outputs.copy_from_slice(lockstep.expected());
+                    1
+                }
                 None => {
                     let quiet = self.plants.iter().map(AxisPlant::quiet_clocks);
                     let most = quiet.min().unwrap_or(1).clamp(1, end - self.now);
@@ -432,36 +432,6 @@ impl StageBench {
             self.now += passed;
         }
         Ok(())
-    }
-
-    /// One clock of model and device.
-    fn step(&mut self) -> Result<u64, Error> {
-        let stopped = stopped(self.now);
-        self.model.step(&self.inputs, &mut self.outputs).map_err(&stopped)?;
-        if let Some(device) = &mut self.device {
-            let stepped = device.step(&self.inputs, &mut self.actual, &mut self.unknown);
-            stepped.map_err(&stopped)?;
-        }
-        if self.actual != self.outputs || self.unknown.iter().any(|unknown| *unknown != 0) {
-            self.note_mismatch();
-        }
-        Ok(1)
-    }
-
-    fn note_mismatch(&mut self) {
-        for (at, name) in self.output_names.iter().enumerate() {
-            let (expected, actual) = (self.outputs[at], self.actual[at]);
-            if expected == actual && self.unknown[at] == 0 {
-                continue;
-            }
-            self.mismatches += 1;
-            self.first.get_or_insert_with(|| StageMismatch {
-                clock: self.now,
-                signal: name.clone(),
-                expected,
-                actual,
-            });
-        }
     }
 
     fn sample(&mut self) {

@@ -4,7 +4,7 @@ use crate::support;
 
 use posicast_model::rtl::axis::Axis;
 use posicast_model::rtl::{ClockedBlock, axis};
-use posicast_testbench::blocks::{AxisBlock, Sources};
+use posicast_testbench::blocks::{AxisBlock, Block, Sources};
 use posicast_testbench::lockstep::{self, Instance, LockstepOptions};
 use posicast_testbench::stimuli::{AxisRandom, AxisSafety};
 use support::{assert_match, broken, caught, icarus_agrees, million_random_clocks};
@@ -49,7 +49,7 @@ fn crosssim_icarus_agrees_with_the_model() {
 
 /// Runs the Verilog, with `from` replaced by `to`, and gives what was violated.
 fn violations(from: &str, to: &str, cycles: u64) -> Vec<String> {
-    let sources = Sources::of_modules(&broken(&block(), from, to)).unwrap();
+    let sources = Sources::of_modules(&broken(&block().modules().unwrap(), from, to)).unwrap();
     let mut device = sources.verilated(&block(), 3).unwrap();
     let mut model = Axis::new();
     let mut safety = AxisSafety::default();

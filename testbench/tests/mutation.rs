@@ -2,7 +2,7 @@
 
 use posicast_model::{design::design_machine, hardware, machine_file};
 use posicast_testbench::blocks::{Block, PartBlock, SmallPart};
-use posicast_testbench::mutation::{Fate, INSIDE, Mutant, MutationOptions, Subject, named, run, run_with};
+use posicast_testbench::mutation::{Fate, INSIDE, Mutant, MutationOptions, Subject, hunt, named, run, run_with};
 
 fn subject(block: &str) -> Subject {
     named(block).unwrap().swap_remove(0)
@@ -71,14 +71,14 @@ fn mutate_every_named_mutant_inside_the_stage_is_found() {
     let stage = hardware::stage(&machine, &design_machine(&machine).unwrap());
     let config = stage.unwrap().unwrap().config;
     for mutant in INSIDE {
-        let found = mutant.hunt(&config, "xy_stage_stage", 1_000_000, 1).unwrap();
+        let found = hunt(&mutant, &config, "xy_stage_stage", 1_000_000, 1).unwrap();
         assert!(found.is_some(), "not found: {}", mutant.name);
     }
 }
 
 #[test]
 fn mutate_a_named_mutant_whose_text_is_gone_is_an_error() {
-    let mutant = INSIDE.iter().find(|mutant| mutant.module == "group").unwrap();
+    let mutant = INSIDE.iter().find(|mutant| mutant.module == Some("group")).unwrap();
     let modules = PartBlock::new(SmallPart::Group(2), "top").modules().unwrap();
     assert!(mutant.put_into(&modules).is_ok());
     for (text, times) in [(String::new(), "0 times"), (mutant.from.repeat(2), "2 times")] {

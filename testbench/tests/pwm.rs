@@ -1,21 +1,20 @@
 //! The PWM's Verilog against its bit-exact model, every output in every clock, with the gates watched.
 
+use crate::support::broken;
 use posicast_hdl::pwm::{emit, name};
 use posicast_model::rtl::ClockedBlock;
 use posicast_model::rtl::pwm::{ActiveLow, Pwm, PwmConfig, ports};
+use posicast_testbench::blocks::Sources;
 use posicast_testbench::icarus::Icarus;
 use posicast_testbench::lockstep::report::{LockstepReport, LockstepVerdict};
 use posicast_testbench::lockstep::{self, Device, Instance, LockstepOptions};
 use posicast_testbench::stimuli::{GateSafety, PwmCoverage, PwmRandom};
 use posicast_testbench::verilator::{Verilated, VerilogSource, lint};
-use std::path::PathBuf;
-use tempfile::TempDir;
 
 struct Bench {
     config: PwmConfig,
     top: String,
-    files: Vec<PathBuf>,
-    _folder: TempDir,
+    sources: Sources,
 }
 
 struct Outcome {
@@ -31,21 +30,11 @@ fn plain() -> PwmConfig {
 impl Bench {
     /// With the first `from` in the Verilog replaced by `to`.
     fn new(config: PwmConfig, from: &str, to: &str) -> Self {
-        let mut modules = emit(&config, "").unwrap();
-        let found = modules.iter_mut().find(|module| module.text.contains(from));
-        let module = found.unwrap_or_else(|| panic!("the Verilog no longer has `{from}`: adapt the test"));
-        module.text = module.text.replacen(from, to, 1);
-        let folder = tempfile::tempdir().unwrap();
-        let file = |module: &posicast_hdl::emit::Module| {
-            let path = folder.path().join(format!("{}.v", module.name));
-            std::fs::write(&path, &module.text).unwrap();
-            path
-        };
+        let modules = broken(&emit(&config, "").unwrap(), from, to);
         Self {
             config,
             top: name(&config, ""),
-            files: modules.iter().map(file).collect(),
-            _folder: folder,
+            sources: Sources::of_modules(&modules).unwrap(),
         }
     }
 
@@ -75,7 +64,7 @@ impl Bench {
 
     fn source<'a>(&'a self, ports: &'a [posicast_model::rtl::Port]) -> VerilogSource<'a> {
         VerilogSource {
-            files: &self.files,
+            files: self.sources.files(),
             top: &self.top,
             ports,
         }
@@ -98,7 +87,7 @@ fn assert_holds(outcome: &Outcome) {
 #[test]
 fn lockstep_a_million_random_clocks() {
     let bench = Bench::new(plain(), "", "");
-    assert_eq!(lint(&bench.files, &bench.top).unwrap(), [""; 0]);
+    assert_eq!(lint(bench.sources.files(), &bench.top).unwrap(), [""; 0]);
     for seed in 1..=2 {
         let outcome = bench.run(&mut bench.verilated(seed), seed, 1_000_000);
         assert_holds(&outcome);
@@ -114,7 +103,7 @@ fn lockstep_other_polarities_and_floors() {
         ..ActiveLow::default()
     };
     let bench = Bench::new(PwmConfig::new(active_low, 1, 7).unwrap(), "", "");
-    assert_eq!(lint(&bench.files, &bench.top).unwrap(), [""; 0]);
+    assert_eq!(lint(bench.sources.files(), &bench.top).unwrap(), [""; 0]);
     assert_holds(&bench.run(&mut bench.verilated(3), 3, 1_000_000));
 }
 

@@ -1,5 +1,6 @@
 //! The PWM's fault path in an event simulator: pulses shorter than a clock, which a cycle simulation cannot see.
 
+use crate::support::broken;
 use posicast_hdl::pwm::{emit, name};
 use posicast_model::rtl::pwm::{ActiveLow, PwmConfig};
 use std::process::Command;
@@ -8,10 +9,7 @@ use std::process::Command;
 fn said(from: &str, to: &str) -> String {
     let folder = tempfile::tempdir().unwrap();
     let config = PwmConfig::new(ActiveLow::default(), 1, 1).unwrap();
-    let mut modules = emit(&config, "").unwrap();
-    let found = modules.iter_mut().find(|module| module.text.contains(from));
-    let module = found.unwrap_or_else(|| panic!("the Verilog no longer has `{from}`: adapt the test"));
-    module.text = module.text.replacen(from, to, 1);
+    let modules = broken(&emit(&config, "").unwrap(), from, to);
     let mut files = vec![folder.path().join("pwm_fault.v")];
     let bench = include_str!("pwm_fault.v").replace("pwm dut", &format!("{} dut", name(&config, "")));
     std::fs::write(&files[0], bench).unwrap();

@@ -1,12 +1,14 @@
 //! The PWM's Verilog against the pin rule alone, over a million periods: every edge on the pins is that of
 //! `posicast_model::rtl::pwm::pulses`, a function of what is latched at the boundary. The clocked model is not asked.
 
+use crate::support::broken;
 use posicast_hdl::pwm::{emit, name};
 use posicast_model::rtl::pwm::pulses::{Bridge, Half, Latched, Timing};
 use posicast_model::rtl::pwm::{
     ActiveLow, BridgeMode, COMMAND_CLOCKS, Gates, INPUT_PORTS, Inputs, OUTPUT_PORTS, PwmConfig, SHORTEST_PERIOD_CLOCKS,
     ports,
 };
+use posicast_testbench::blocks::Sources;
 use posicast_testbench::stimuli::GateSafety;
 use posicast_testbench::verilator::{Verilated, VerilogSource};
 use rand::{Rng, RngExt, SeedableRng};
@@ -23,20 +25,10 @@ const SHORTEST_PERIOD: i64 = SHORTEST_PERIOD_CLOCKS as i64;
 /// The PWM under Verilator, with the first `from` in the Verilog replaced by `to`.
 fn verilated(from: &str, to: &str) -> Verilated {
     let config = PwmConfig::new(ActiveLow::default(), 1, 1).unwrap();
-    let mut modules = emit(&config, "").unwrap();
-    let found = modules.iter_mut().find(|module| module.text.contains(from));
-    let module = found.unwrap_or_else(|| panic!("the Verilog no longer has `{from}`: adapt the test"));
-    module.text = module.text.replacen(from, to, 1);
-    let folder = tempfile::tempdir().unwrap();
-    let files = modules.iter().map(|module| {
-        let path = folder.path().join(format!("{}.v", module.name));
-        std::fs::write(&path, &module.text).unwrap();
-        path
-    });
-    let files: Vec<_> = files.collect();
+    let sources = Sources::of_modules(&broken(&emit(&config, "").unwrap(), from, to)).unwrap();
     let ports = ports();
     let source = VerilogSource {
-        files: &files,
+        files: sources.files(),
         top: &name(&config, ""),
         ports: &ports,
     };

@@ -61,7 +61,7 @@ impl Bench {
     /// With the first `from` in the Verilog replaced by `to`.
     fn broken(config: ShaperConfig, from: &str, to: &str) -> Self {
         let block = ShaperBlock::new(config, "", "alone").unwrap();
-        let sources = Sources::of_modules(&broken(&block, from, to)).unwrap();
+        let sources = Sources::of_modules(&broken(&block.modules().unwrap(), from, to)).unwrap();
         Self { block, sources }
     }
 

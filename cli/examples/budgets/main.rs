@@ -9,19 +9,18 @@
 //! where growth is meant, `--write` makes it part of the change. Smaller figures pass. Needs Yosys; takes some seconds.
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "its purpose")]
 
-mod blocks;
 mod table;
 
-use blocks::Row;
 use posicast_hdl::emit::Module;
 use posicast_synth::yosys::{Family, Mapping, Resources, Yosys};
+use posicast_testbench::blocks::{AreaRow, areas};
 use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 /// A row's figures.
 struct Measured {
-    row: Row,
+    row: AreaRow,
     resources: Resources,
     /// LUTs where Yosys alone maps: no carry chain, no synchronous clear. Not of the whole stage: it takes minutes.
     luts_by_yosys: Option<u64>,
@@ -35,7 +34,7 @@ fn main() -> Result<ExitCode, Box<dyn Error>> {
     };
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/area.md");
     let yosys = Yosys::installed()?;
-    let measured: Result<Vec<_>, _> = blocks::rows()?.into_iter().map(|row| measure(&yosys, row)).collect();
+    let measured: Result<Vec<_>, _> = areas()?.into_iter().map(|row| measure(&yosys, row)).collect();
     let page = table::page(yosys.version(), &measured?);
     print!("{page}");
     if write {
@@ -53,7 +52,7 @@ fn main() -> Result<ExitCode, Box<dyn Error>> {
     Ok(ExitCode::FAILURE)
 }
 
-fn measure(yosys: &Yosys, row: Row) -> Result<Measured, Box<dyn Error>> {
+fn measure(yosys: &Yosys, row: AreaRow) -> Result<Measured, Box<dyn Error>> {
     let folder = tempfile::tempdir()?;
     let write = |module: &Module| {
         let path = folder.path().join(format!("{}.v", module.name));
@@ -68,7 +67,7 @@ fn measure(yosys: &Yosys, row: Row) -> Result<Measured, Box<dyn Error>> {
         let yosys = yosys.clone().with_mapping(mapping);
         yosys.estimate_alone(&files, top, ports, Family::Cyclone2)
     };
-    let by_yosys = (row.block != blocks::STAGE).then(|| estimate(Mapping::Luts));
+    let by_yosys = (row.block != table::STAGE).then(|| estimate(Mapping::Luts));
     Ok(Measured {
         resources: estimate(Mapping::LogicElement)?.total,
         luts_by_yosys: by_yosys.transpose()?.map(|estimate| estimate.total.luts),

@@ -1,6 +1,6 @@
 //! The page `docs/area.md`, and what has grown since it was written.
 
-use crate::{Measured, blocks};
+use crate::Measured;
 use posicast_synth::yosys::{Family, Resources};
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -9,6 +9,9 @@ const HEAD: &str =
     "| block | size | LUT | flip-flops | LE | M4K | 18×18 | LE unpacked | LUT by Yosys alone | budget | note |
 |---|---|---|---|---|---|---|---|---|---|---|
 ";
+
+/// The name of the row of the whole stage.
+pub(crate) const STAGE: &str = "stage";
 
 /// The whole page.
 pub(crate) fn page(tool: &str, measured: &[Measured]) -> String {
@@ -57,7 +60,7 @@ pub(crate) fn page(tool: &str, measured: &[Measured]) -> String {
          machine file are folded, so it takes less than its blocks do alone.\n\n\
          | | LE | of the device | M4K | 18×18 | LE unpacked | of the device |\n|---|---|---|---|---|---|---|\n"
     );
-    for one in measured.iter().filter(|one| one.row.block == blocks::STAGE) {
+    for one in measured.iter().filter(|one| one.row.block == STAGE) {
         let Resources {
             cells: taken,
             unpacked_cells: unpacked,

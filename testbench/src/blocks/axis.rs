@@ -6,12 +6,27 @@ use posicast_hdl::emit::{EmitError, Module, shared_name};
 use posicast_model::rtl::ClockedBlock;
 use posicast_model::rtl::axis::Axis;
 
-use super::{Bins, Block};
+use super::registry::{AreaRow, RegistryRow, one, small};
+use super::{Bins, Block, proofs};
 use crate::lockstep::Clock;
 use crate::stimuli::{AxisCoverage, AxisRandom, Stimuli};
 
 /// Clocks after which the stimuli have driven every flag, and every named mutant of `mutation::INSIDE` shows.
 const LEAST_CLOCKS: u64 = 30_000;
+
+/// Its row in the registry.
+pub(super) const ROW: RegistryRow = RegistryRow {
+    name: "axis",
+    benches: |sizes| Ok(one(AxisBlock::new(&sizes.prefix, "alone"))),
+    small: || Ok(small(AxisBlock::new("", "alone"), "all inputs")),
+    proofs: proofs::axis::tasks,
+    areas: || {
+        Ok(vec![AreaRow::new("", emit("")?).note(
+            "Words of 32 bits are compared byte by byte, one after the other: two soft limits, and three \
+                 magnitudes with their limits.",
+        )])
+    },
+};
 
 /// The supervisor of an axis, which has one size: what it does is in registers.
 #[derive(Debug, Clone)]

@@ -7,9 +7,21 @@ use posicast_model::rtl::ClockedBlock;
 use posicast_model::rtl::component::Component;
 
 use super::changes::Changes;
-use super::{Bins, Block, inside, not_in_rusthdl};
+use super::registry::RegistryRow;
+use super::{Bins, Block, inside, not_in_rusthdl, proofs};
 use crate::Error;
 use crate::stimuli::{ComponentRandom, Stimuli};
+
+/// Its row in the registry.
+pub(super) const ROW: RegistryRow = RegistryRow {
+    name: "component",
+    benches: |sizes| {
+        let components = sizes.components.iter().cloned();
+        Ok(components.map(|block| Box::new(block) as Box<dyn Block>).collect())
+    },
+    proofs: || Ok(vec![proofs::sliding_mode::law_and_bank()?]),
+    ..RegistryRow::EMPTY
+};
 
 /// A component under a name of its own.
 #[derive(Debug, Clone)]

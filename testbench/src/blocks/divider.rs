@@ -4,11 +4,32 @@ use posicast_hdl::SimulationError;
 use posicast_hdl::divider::{emit, simulate};
 use posicast_hdl::emit::{EmitError, Module};
 use posicast_model::rtl::ClockedBlock;
-use posicast_model::rtl::divider::{Divider, DividerConfig};
+use posicast_model::rtl::divider::{DIVISION_CLOCKS, Divider, DividerConfig, ports};
 
+use super::registry::{AreaRow, RegistryRow, one, small};
 use super::{Bins, Block, named};
+use crate::Error;
+use crate::formal::{INDUCTION, Task, refused};
 use crate::lockstep::Clock;
 use crate::stimuli::{DividerCoverage, DividerRandom, Stimuli};
+
+/// Its row in the registry.
+pub(super) const ROW: RegistryRow = RegistryRow {
+    name: "divider",
+    benches: |sizes| Ok(one(DividerBlock::new(sizes.tick, &sizes.prefix))),
+    small: || {
+        let ticks = DividerConfig::new(97).map_err(refused)?;
+        Ok(small(DividerBlock::new(ticks, ""), "97 clocks per tick"))
+    },
+    proofs: || [5000, 131_071].map(proof).into_iter().collect(),
+    areas: || {
+        let modules = emit(&DividerConfig::new(5000).map_err(refused)?, "")?;
+        let row = AreaRow::new("5000 clocks per tick", modules).budget(200, 150);
+        Ok(vec![row.note(
+            "The 35-bit register and the remainder select between two or three sources.",
+        )])
+    },
+};
 
 /// The divider for ticks of one length.
 #[derive(Debug, Clone)]
@@ -79,4 +100,15 @@ impl Bins for DividerCoverage {
     fn counts(&self) -> Vec<(String, u64)> {
         named(self.counts())
     }
+}
+
+fn proof(tick_clocks: u64) -> Result<Task, Error> {
+    let config = DividerConfig::new(tick_clocks).map_err(refused)?;
+    let macros = [
+        ("TICK_CLOCKS", format!("17'd{tick_clocks}")),
+        ("DIVISION_CLOCKS", format!("7'd{DIVISION_CLOCKS}")),
+    ];
+    let size = format!("{tick_clocks} clocks per tick, full width");
+    Ok(Task::new("divider", &size, INDUCTION, (emit(&config, "")?, ports()))
+        .properties(&macros, include_str!("../../formal/divider.sv")))
 }

@@ -4,11 +4,33 @@ use posicast_hdl::SimulationError;
 use posicast_hdl::drive_command::{emit, simulate};
 use posicast_hdl::emit::{EmitError, Module, shared_name};
 use posicast_model::rtl::ClockedBlock;
-use posicast_model::rtl::drive_command::DriveCommand;
+use posicast_model::rtl::drive_command::{DriveCommand, ports};
 
-use super::{Bins, Block, named};
+use super::registry::{AreaRow, RegistryRow, one, small};
+use super::{Bins, Block, named, proofs};
+use crate::formal::{INDUCTION, Task};
 use crate::lockstep::Clock;
 use crate::stimuli::{DriveCommandCoverage, DriveCommandRandom, Stimuli};
+
+/// Its row in the registry.
+pub(super) const ROW: RegistryRow = RegistryRow {
+    name: "drive_command",
+    benches: |sizes| Ok(one(DriveCommandBlock::new(&sizes.prefix, "alone"))),
+    small: || Ok(small(DriveCommandBlock::new("", "alone"), "nothing tied")),
+    proofs: || {
+        let block = (emit("")?, ports());
+        let task = Task::new("drive_command", "all inputs", INDUCTION, block);
+        Ok(vec![
+            task.macros(&proofs::axis::macros())
+                .properties(&[], include_str!("../../formal/drive_command.sv")),
+        ])
+    },
+    areas: || {
+        Ok(vec![
+            AreaRow::new("nothing tied", emit("")?).note("Two counters and two results belong to the self-test."),
+        ])
+    },
+};
 
 /// The drive command, which has one size.
 #[derive(Debug, Clone)]

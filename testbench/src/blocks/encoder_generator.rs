@@ -4,11 +4,32 @@ use posicast_hdl::SimulationError;
 use posicast_hdl::emit::{EmitError, Module, shared_name};
 use posicast_hdl::encoder_generator::{emit, simulate};
 use posicast_model::rtl::ClockedBlock;
-use posicast_model::rtl::encoder_generator::EncoderGenerator;
+use posicast_model::rtl::encoder_generator::{EncoderGenerator, ports};
 
+use super::registry::{AreaRow, RegistryRow, one, small};
 use super::{Bins, Block, named};
+use crate::formal::{INDUCTION, Task};
 use crate::lockstep::Clock;
 use crate::stimuli::{EncoderGeneratorCoverage, EncoderGeneratorRandom, Stimuli};
+
+/// Its row in the registry.
+pub(super) const ROW: RegistryRow = RegistryRow {
+    name: "encoder_generator",
+    benches: |sizes| Ok(one(EncoderGeneratorBlock::new(&sizes.prefix, "alone"))),
+    small: || Ok(small(EncoderGeneratorBlock::new("", "alone"), "32 bits")),
+    proofs: || {
+        let task = Task::new("encoder_generator", "all rates", INDUCTION, (emit("")?, ports()));
+        Ok(vec![
+            task.properties(&[], include_str!("../../formal/encoder_generator.sv")),
+        ])
+    },
+    areas: || {
+        Ok(vec![AreaRow::new("", emit("")?).note(
+            "Most of it is the sum of 64 bits; if `generated_count` is not used, a synthesiser keeps 34 of \
+                 them.",
+        )])
+    },
+};
 
 /// The internal encoder, which has one size.
 #[derive(Debug, Clone)]

@@ -4,11 +4,30 @@ use posicast_hdl::SimulationError;
 use posicast_hdl::emit::{EmitError, Module, shared_name};
 use posicast_hdl::excitation::{emit, simulate};
 use posicast_model::rtl::ClockedBlock;
-use posicast_model::rtl::excitation::Excitation;
+use posicast_model::rtl::excitation::{Excitation, ports};
 
+use super::registry::{AreaRow, RegistryRow, one, small};
 use super::{Bins, Block, named};
+use crate::formal::{INDUCTION, Task};
 use crate::lockstep::Clock;
 use crate::stimuli::{ExcitationCoverage, ExcitationRandom, Stimuli};
+
+/// Its row in the registry.
+pub(super) const ROW: RegistryRow = RegistryRow {
+    name: "excitation",
+    benches: |sizes| Ok(one(ExcitationBlock::new(&sizes.prefix, "alone"))),
+    small: || Ok(small(ExcitationBlock::new("", "alone"), "32 bits")),
+    proofs: || {
+        let task = Task::new("excitation", "all signals", INDUCTION, (emit("")?, ports()));
+        Ok(vec![task.properties(&[], include_str!("../../formal/excitation.sv"))])
+    },
+    areas: || {
+        Ok(vec![AreaRow::new("", emit("")?).note(
+            "The references of velocity and acceleration are 64 registers without logic. Without these, and \
+                 with `amplitude_limit` and `modulo` tied, it takes 333 LE.",
+        )])
+    },
+};
 
 /// The excitation, which has one size.
 #[derive(Debug, Clone)]

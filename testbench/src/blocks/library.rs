@@ -4,28 +4,23 @@
 //! blocks that join others, each component through its bus, its register bank alone, and a stage. Sizes are those of the
 //! example stage where they matter for what is reached; the whole stage has short ticks, so that a run sees many.
 //!
-//! A new kind of block is a line here; a test of the command line insists that every name of `verify` is among them.
+//! The kinds of blocks are those of the registry; a test of the command line insists that every name of `verify` is among them.
 
 use posicast_hdl::machine::AxisShaper;
 use posicast_model::control::Supervision;
-use posicast_model::rtl::cascade::CascadeConfig;
 use posicast_model::rtl::component::Component;
 use posicast_model::rtl::divider::DividerConfig;
 use posicast_model::rtl::linear_scale::ScaleRatio;
 use posicast_model::rtl::pwm::{ActiveLow, BridgeMode, PwmConfig};
-use posicast_model::rtl::schedule::ScheduleConfig;
-use posicast_model::rtl::shaper::{ShaperConfig, ShaperMotion};
+use posicast_model::rtl::shaper::ShaperConfig;
 use posicast_model::rtl::sliding_mode::{Law, Settings};
 use posicast_model::rtl::stage::{StageAxis, StageConfig, StageScale};
 use posicast_model::rtl::trace::TraceConfig;
-use posicast_model::taps::{Tap, TapTable};
 
-use super::{
-    AxisBlock, Block, CascadeBlock, ComponentBlock, DividerBlock, DriveCommandBlock, EncoderGeneratorBlock,
-    ExcitationBlock, LinearScaleBlock, MachineShapers, PartBlock, PulseCounterBlock, PwmBlock, RegistersBlock,
-    SegmentsBlock, ShaperBlock, SlidingModeBlock, SmallPart, StageBlock, TraceBlock,
-};
+use super::shaper::{MOTION, tap_table};
+use super::{BenchSizes, Block, ComponentBlock, MachineShapers, benches};
 use crate::Error;
+use crate::formal::refused;
 
 /// Clocks per tick of the blocks that have one.
 const TICK_CLOCKS: u64 = 5000;
@@ -33,11 +28,6 @@ const TICK_CLOCKS: u64 = 5000;
 const PERIOD_CLOCKS: u32 = 2500;
 /// Clocks of a PWM period in the stage.
 const STAGE_PERIOD_CLOCKS: u32 = 80;
-/// Position, velocity and acceleration.
-const MOTION: ShaperMotion = ShaperMotion {
-    channels: 3,
-    modulo: false,
-};
 /// Dead time and minimum pulse that a host cannot go below, in clocks.
 const FLOORS_CLOCKS: [u64; 2] = [25, 50];
 
@@ -46,9 +36,6 @@ const FLOORS_CLOCKS: [u64; 2] = [25, 50];
 /// # Errors
 /// [`Error::Option`] where a size is refused: one of this file's, so a fault of the project.
 pub fn library() -> Result<Vec<Box<dyn Block>>, Error> {
-    let [dead_time, minimum_pulse] = FLOORS_CLOCKS;
-    let pwm = PwmConfig::new(ActiveLow::default(), dead_time, minimum_pulse).map_err(refused)?;
-    let tick = DividerConfig::new(TICK_CLOCKS).map_err(refused)?;
     let axis = |axis: &str, delays| -> Result<AxisShaper, Error> {
         Ok(AxisShaper {
             axis: axis.to_owned(),
@@ -56,71 +43,55 @@ pub fn library() -> Result<Vec<Box<dyn Block>>, Error> {
         })
     };
     let shapers = vec![axis("x", [38, 39, 77, 78])?, axis("y", [31, 32, 63, 64])?];
+    let mut blocks: Vec<Box<dyn Block>> = vec![Box::new(MachineShapers::new("machine", shapers, Vec::new())?)];
+    blocks.extend(benches(&library_sizes()?)?);
+    Ok(blocks)
+}
+
+/// The sizes of the library.
+///
+/// # Errors
+/// As [`library`].
+pub fn library_sizes() -> Result<BenchSizes, Error> {
+    let [dead_time, minimum_pulse] = FLOORS_CLOCKS;
+    let pwm = PwmConfig::new(ActiveLow::default(), dead_time, minimum_pulse).map_err(refused)?;
+    let tick = DividerConfig::new(TICK_CLOCKS).map_err(refused)?;
     let motion = shaper([38, 39, 77, 78])?.for_motion(MOTION).map_err(refused)?;
-    let cascade = CascadeConfig::new(32, vec![26, 31, 38, 62]).map_err(refused)?;
-    let trace = TraceConfig::new(1024).map_err(refused)?;
-    let mut blocks: Vec<Box<dyn Block>> = vec![
-        Box::new(MachineShapers::new("machine", shapers, Vec::new())?),
-        Box::new(PulseCounterBlock::new("", "alone")),
-        Box::new(DividerBlock::new(tick, "")),
-        Box::new(PwmBlock::new(pwm, "", "alone")),
-        Box::new(SlidingModeBlock::new("", "alone")),
-        Box::new(ShaperBlock::new(motion.clone(), "", "motion")?),
-        Box::new(CascadeBlock::new(cascade, "")),
-        Box::new(SegmentsBlock::new("", "alone")),
-        Box::new(AxisBlock::new("", "alone")),
-        Box::new(DriveCommandBlock::new("", "alone")),
-        Box::new(TraceBlock::new(trace, "")),
-        Box::new(LinearScaleBlock::new("", "alone")),
-        Box::new(EncoderGeneratorBlock::new("", "alone")),
-        Box::new(ExcitationBlock::new("", "alone")),
-    ];
-    let parts = [
-        SmallPart::TimeBase(tick),
-        SmallPart::Schedule(ScheduleConfig::new(500).map_err(refused)?),
-        SmallPart::DividerShare(2),
-        SmallPart::Group(2),
-        SmallPart::SampleSelect {
-            word_bits: 32,
-            channels: 3,
-        },
-        SmallPart::SettingBanks(Settings::default()),
-    ];
-    blocks.extend(parts.map(|part| Box::new(PartBlock::new(part, "")) as Box<dyn Block>));
     let components = [
         Component::shaper(motion.clone()),
         Component::pulse_counter(tick, 8, false),
         Component::pwm(pwm, BridgeMode::HalfBridge, PERIOD_CLOCKS),
         Component::sliding_mode(&Settings::default(), Law::SlidingMode, false),
     ];
-    for component in components {
-        let component = component.map_err(refused)?;
-        blocks.push(Box::new(RegistersBlock::new(component.map().clone(), component.name())));
+    let component = |component: Component| {
         let top = format!("{}_avalon", component.name());
-        blocks.push(Box::new(ComponentBlock::new(component, &top, "alone")));
-    }
-    blocks.push(Box::new(StageBlock::new(&stage()?, "stage").map_err(refused)?));
-    Ok(blocks)
-}
-
-fn refused(error: impl std::fmt::Display) -> Error {
-    Error::Option(format!("the library's sizes: {error}"))
+        ComponentBlock::new(component, &top, "alone")
+    };
+    let components = components.map(|made| made.map(component).map_err(refused));
+    let alone = "alone".to_owned();
+    Ok(BenchSizes {
+        prefix: String::new(),
+        with_encoder: alone.clone(),
+        with_controller: alone.clone(),
+        tick,
+        pwms: vec![(pwm, alone)],
+        motion,
+        axes: 2,
+        settings: Settings::default(),
+        components: components.into_iter().collect::<Result<_, _>>()?,
+        stage: Some(stage()?),
+    })
 }
 
 /// Three impulses, two taps each but the first: ZVD, in the manner of the example stage.
 fn shaper(delays: [u32; 4]) -> Result<ShaperConfig, Error> {
     let coefficients = [25431, 12000, 18787, 4000, 5318];
-    let delays = std::iter::once(0).chain(delays);
-    let taps = delays.zip(coefficients).map(|(delay_samples, coefficient)| Tap {
-        delay_samples,
-        coefficient,
-    });
-    let table = TapTable::new(16, taps.collect()).map_err(refused)?;
-    ShaperConfig::new(32, table).map_err(refused)
+    let taps: Vec<(u32, i32)> = std::iter::once(0).chain(delays).zip(coefficients).collect();
+    ShaperConfig::new(32, tap_table(16, &taps)?).map_err(refused)
 }
 
 /// Two axes: one with trace memory and test signals, one whose loop is on a linear scale.
-pub(crate) fn stage() -> Result<StageConfig, Error> {
+pub(super) fn stage() -> Result<StageConfig, Error> {
     let axis = |name: &str| -> Result<StageAxis, Error> {
         Ok(StageAxis {
             name: name.to_owned(),

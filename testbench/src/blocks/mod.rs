@@ -15,7 +15,7 @@
 //! # Ok::<(), posicast_testbench::Error>(())
 //! ```
 //!
-//! A new block adds a file here that implements [`Block`]; nothing else has to know it.
+//! A new block adds a file here that implements [`Block`] and has a row in the registry: all rungs take it from there.
 
 mod axis;
 mod cascade;
@@ -30,9 +30,11 @@ mod levels;
 mod library;
 mod linear_scale;
 mod part;
+mod proofs;
 mod pulse_counter;
 mod pwm;
 mod registers;
+mod registry;
 mod segments;
 mod shaper;
 mod short_ticks;
@@ -48,13 +50,15 @@ pub use self::divider::DividerBlock;
 pub use self::drive_command::DriveCommandBlock;
 pub use self::encoder_generator::EncoderGeneratorBlock;
 pub use self::excitation::ExcitationBlock;
-pub use self::library::library;
-pub(crate) use self::library::stage as library_stage;
+pub use self::library::{library, library_sizes};
 pub use self::linear_scale::LinearScaleBlock;
 pub use self::part::{PartBlock, SmallPart};
 pub use self::pulse_counter::PulseCounterBlock;
 pub use self::pwm::PwmBlock;
 pub use self::registers::RegistersBlock;
+pub use self::registry::{
+    AreaBudget, AreaRow, BenchSizes, SmallBench, areas, benches, proofs, proofs_named, small_benches,
+};
 pub use self::segments::SegmentsBlock;
 pub use self::shaper::{MachineShapers, ShaperBlock};
 pub use self::short_ticks::ShortTicksBlock;

@@ -5,12 +5,95 @@ use posicast_hdl::{SimulationError, divider_share, group, sample_select, schedul
 use posicast_model::rtl::component::ComponentPart as Model;
 use posicast_model::rtl::divider::DividerConfig;
 use posicast_model::rtl::schedule::ScheduleConfig;
+use posicast_model::rtl::shaper::MOTION_WORD_BITS;
 use posicast_model::rtl::sliding_mode::Settings;
 use posicast_model::rtl::{ClockedBlock, Port};
 
 use super::changes::Changes;
-use super::{Bins, Block};
+use super::registry::{RegistryRow, one, small};
+use super::shaper::MOTION;
+use super::{Bins, Block, proofs};
+use crate::formal::refused;
 use crate::stimuli::{PartRandom, Stimuli};
+
+/// Their rows in the registry.
+pub(super) const TIME_BASE: RegistryRow = RegistryRow {
+    name: "time_base",
+    benches: |sizes| Ok(one(PartBlock::new(SmallPart::TimeBase(sizes.tick), &sizes.prefix))),
+    small: || {
+        let ticks = DividerConfig::new(17).map_err(refused)?;
+        Ok(small(
+            PartBlock::new(SmallPart::TimeBase(ticks), ""),
+            "17 clocks per tick",
+        ))
+    },
+    proofs: || {
+        let begins = [(17, "32'd0"), (127, "32'd0"), (17, "32'hfffffff0")];
+        begins
+            .map(|(ticks, begin)| proofs::part::time_base(ticks, begin))
+            .into_iter()
+            .collect()
+    },
+    ..RegistryRow::EMPTY
+};
+pub(super) const SCHEDULE: RegistryRow = RegistryRow {
+    name: "schedule",
+    benches: |sizes| {
+        let config = ScheduleConfig::new(500).map_err(refused)?;
+        Ok(one(PartBlock::new(SmallPart::Schedule(config), &sizes.prefix)))
+    },
+    small: || {
+        let config = ScheduleConfig::new(37).map_err(refused)?;
+        Ok(small(
+            PartBlock::new(SmallPart::Schedule(config), ""),
+            "control after 37 clocks",
+        ))
+    },
+    proofs: || [2, 400].map(proofs::part::schedule).into_iter().collect(),
+    ..RegistryRow::EMPTY
+};
+pub(super) const DIVIDER_SHARE: RegistryRow = RegistryRow {
+    name: "divider_share",
+    benches: |sizes| Ok(one(PartBlock::new(SmallPart::DividerShare(sizes.axes), &sizes.prefix))),
+    small: || Ok(small(PartBlock::new(SmallPart::DividerShare(2), ""), "2 channels")),
+    proofs: || [1, 2, 3, 8].map(proofs::part::divider_share).into_iter().collect(),
+    ..RegistryRow::EMPTY
+};
+pub(super) const GROUP: RegistryRow = RegistryRow {
+    name: "group",
+    benches: |sizes| Ok(one(PartBlock::new(SmallPart::Group(sizes.axes), &sizes.prefix))),
+    small: || Ok(small(PartBlock::new(SmallPart::Group(2), ""), "2 axes")),
+    proofs: || [2, 4].map(proofs::part::group).into_iter().collect(),
+    ..RegistryRow::EMPTY
+};
+pub(super) const SAMPLE_SELECT: RegistryRow = RegistryRow {
+    name: "sample_select",
+    benches: |sizes| Ok(one(PartBlock::new(WIDE_SAMPLES, &sizes.prefix))),
+    small: || Ok(small(PartBlock::new(WIDE_SAMPLES, ""), "3 channels of 32 bits")),
+    proofs: || [1, 3].map(proofs::part::sample_select).into_iter().collect(),
+    ..RegistryRow::EMPTY
+};
+pub(super) const SETTING_BANKS: RegistryRow = RegistryRow {
+    name: "setting_banks",
+    benches: |sizes| {
+        Ok(one(PartBlock::new(
+            SmallPart::SettingBanks(sizes.settings),
+            &sizes.prefix,
+        )))
+    },
+    small: || {
+        let part = SmallPart::SettingBanks(Settings::default());
+        Ok(small(PartBlock::new(part, ""), "settings of 0"))
+    },
+    proofs: || Ok(vec![proofs::part::setting_banks()?]),
+    ..RegistryRow::EMPTY
+};
+
+/// Position, velocity and acceleration in the widest words.
+const WIDE_SAMPLES: SmallPart = SmallPart::SampleSelect {
+    word_bits: *MOTION_WORD_BITS.end(),
+    channels: MOTION.channels as usize,
+};
 
 /// A block that joins others.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -4,11 +4,33 @@ use posicast_hdl::SimulationError;
 use posicast_hdl::emit::{EmitError, Module, shared_name};
 use posicast_hdl::pulse_counter::{emit, simulate};
 use posicast_model::rtl::ClockedBlock;
-use posicast_model::rtl::pulse_counter::PulseCounter;
+use posicast_model::rtl::pulse_counter::{PulseCounter, ports};
 
+use super::registry::{AreaRow, RegistryRow, one, small};
 use super::{Bins, Block};
+use crate::formal::{INDUCTION, Task};
 use crate::lockstep::Clock;
 use crate::stimuli::{PulseCounterCoverage, PulseCounterRandom, Stimuli};
+
+/// Its row in the registry.
+pub(super) const ROW: RegistryRow = RegistryRow {
+    name: "pulse_counter",
+    benches: |sizes| Ok(one(PulseCounterBlock::new(&sizes.prefix, &sizes.with_encoder))),
+    small: || Ok(small(PulseCounterBlock::new("", "alone"), "32-bit count")),
+    proofs: || {
+        let block = (emit("")?, ports());
+        let task = Task::new("pulse_counter", "32-bit count", INDUCTION, block);
+        Ok(vec![
+            task.properties(&[], include_str!("../../formal/pulse_counter.sv")),
+        ])
+    },
+    areas: || {
+        Ok(vec![AreaRow::new("all features", emit("")?).budget(450, 300).note(
+            "13 flip-flops are for differential pairs (three more synchronisers, a filter); they disappear \
+                 if `differential` is tied low. A third of the LUTs is the one-pole filter.",
+        )])
+    },
+};
 
 /// The pulse counter, which has one size: what it does is in registers.
 #[derive(Debug, Clone)]

@@ -4,11 +4,54 @@ use posicast_hdl::SimulationError;
 use posicast_hdl::emit::{EmitError, Module};
 use posicast_hdl::registers::emit;
 use posicast_model::rtl::ClockedBlock;
+use posicast_model::rtl::component::{Component, ComponentError};
+use posicast_model::rtl::divider::DividerConfig;
+use posicast_model::rtl::pwm::{ActiveLow, BridgeMode, PwmConfig};
 use posicast_model::rtl::registers::{RegisterBank, RegisterMap};
+use posicast_model::rtl::sliding_mode::{Law, Settings};
 
-use super::{Bins, Block, not_in_rusthdl};
+use super::registry::{AreaRow, RegistryRow, small};
+use super::{Bins, Block, not_in_rusthdl, proofs, shaper};
+use crate::Error;
+use crate::formal::refused;
 use crate::lockstep::Clock;
 use crate::stimuli::{RegistersCoverage, RegistersRandom, Stimuli};
+
+/// Its row in the registry: the bank of each component.
+pub(super) const ROW: RegistryRow = RegistryRow {
+    name: "registers",
+    benches: |sizes| {
+        let mut maps: Vec<&RegisterMap> = Vec::new();
+        for map in sizes.components.iter().map(|component| component.component().map()) {
+            if !maps.iter().any(|other| other.name() == map.name()) {
+                maps.push(map);
+            }
+        }
+        let bench = |map: &RegisterMap| -> Box<dyn Block> { Box::new(RegistersBlock::new(map.clone(), map.name())) };
+        Ok(maps.into_iter().map(bench).collect())
+    },
+    small: || {
+        let map = pwm_component()?.map().clone();
+        Ok(small(RegistersBlock::new(map, ""), "bank of pwm"))
+    },
+    proofs: proofs::registers::tasks,
+    areas: || {
+        let motion = shaper::area_config()?.for_motion(shaper::MOTION);
+        let pwm = PwmConfig::new(ActiveLow::default(), 25, 50).map_err(refused)?;
+        Ok(vec![
+            area("of shaper, 3 channels", Component::shaper(motion.map_err(refused)?))?,
+            area(
+                "of pulse_counter",
+                Component::pulse_counter(DividerConfig::new(5000).map_err(refused)?, 8, false),
+            )?,
+            area("of pwm", Component::pwm(pwm, BridgeMode::HalfBridge, 2500))?,
+            area(
+                "of sliding_mode",
+                Component::sliding_mode(&Settings::default(), Law::SlidingMode, false),
+            )?,
+        ])
+    },
+};
 
 /// A register bank without the block behind it.
 #[derive(Debug, Clone)]
@@ -83,4 +126,15 @@ impl Bins for RegistersCoverage {
     fn counts(&self) -> Vec<(String, u64)> {
         self.counts()
     }
+}
+
+/// The component whose bank has fields of every kind, an interrupt, byte enables.
+pub(super) fn pwm_component() -> Result<Component, Error> {
+    let config = PwmConfig::new(ActiveLow::default(), 25, 50).map_err(refused)?;
+    Component::pwm(config, BridgeMode::Unipolar, 2500).map_err(refused)
+}
+
+fn area(size: &'static str, component: Result<Component, ComponentError>) -> Result<AreaRow, Error> {
+    let modules = vec![emit(component.map_err(refused)?.map(), "")?];
+    Ok(AreaRow::new(size, modules))
 }

@@ -4,14 +4,26 @@ use posicast_hdl::SimulationError;
 use posicast_hdl::emit::{EmitError, Module, shared_name};
 use posicast_hdl::segments::{emit, simulate};
 use posicast_model::rtl::ClockedBlock;
-use posicast_model::rtl::segments::Segments;
+use posicast_model::rtl::segments::{REACH_COUNTS, STAND_COUNTS, Segments, ports};
 
+use super::registry::{AreaRow, RegistryRow, one, small};
 use super::{Bins, Block};
+use crate::Error;
+use crate::formal::{Engine, INDUCTION, Task};
 use crate::lockstep::Clock;
 use crate::stimuli::{SegmentsCoverage, SegmentsRandom, Stimuli};
 
 /// Clocks after which the stimuli have driven every flag, and every named mutant of `mutation::INSIDE` shows.
 const LEAST_CLOCKS: u64 = 60_000;
+
+/// Its row in the registry.
+pub(super) const ROW: RegistryRow = RegistryRow {
+    name: "segments",
+    benches: |sizes| Ok(one(SegmentsBlock::new(&sizes.prefix, "alone"))),
+    small: || Ok(small(SegmentsBlock::new("", "alone"), "64 entries")),
+    proofs,
+    areas: || Ok(vec![AreaRow::new("64 entries", emit("")?)]),
+};
 
 /// The command FIFO, which has one size.
 #[derive(Debug, Clone)]
@@ -76,4 +88,20 @@ impl Bins for SegmentsCoverage {
     fn counts(&self) -> Vec<(String, u64)> {
         self.counts().map(|(name, count)| (name.to_owned(), count)).collect()
     }
+}
+
+fn proofs() -> Result<Vec<Task>, Error> {
+    let block = (emit("")?, ports());
+    let counts = |counts: i32| format!("24'sd{counts}");
+    // The ends of the position's word.
+    let range = [
+        ("REACH_COUNTS", counts(REACH_COUNTS)),
+        ("STAND_COUNTS", counts(STAND_COUNTS)),
+    ];
+    Ok(vec![
+        Task::new("segments", "64 entries", Engine::Pdr, block.clone())
+            .properties(&[], include_str!("../../formal/segments.sv")),
+        Task::new("segments_range", "any position", INDUCTION, block)
+            .properties(&range, include_str!("../../formal/segments_range.sv")),
+    ])
 }

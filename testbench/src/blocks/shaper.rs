@@ -6,12 +6,41 @@ use posicast_hdl::machine::{AxisShaper, emit_machine};
 use posicast_hdl::shaper::{emit, simulate, simulated_as};
 use posicast_model::rtl::shaper::{Shaper, ShaperConfig, ShaperMotion, ports};
 use posicast_model::rtl::{ClockedBlock, Port};
+use posicast_model::taps::{Tap, TapTable};
 
-use super::{Bins, Block, Exercise, named};
+use super::registry::{AreaRow, RegistryRow, one, small};
+use super::{Bins, Block, Exercise, named, proofs};
 use crate::Error;
 use crate::campaign::Campaign;
+use crate::formal::refused;
 use crate::lockstep::{Clock, Instance, SideBySide};
 use crate::stimuli::{Coverage, Layout, ShaperExercise, Stimuli};
+
+/// Its row in the registry.
+pub(super) const ROW: RegistryRow = RegistryRow {
+    name: "shaper",
+    benches: |sizes| Ok(one(ShaperBlock::new(sizes.motion.clone(), &sizes.prefix, "motion")?)),
+    small: || {
+        let (plain, motion) = (small_config(None)?, small_config(Some(3))?);
+        let mut blocks = small(ShaperBlock::new(plain, "", "alone")?, "24 bits, 5 taps");
+        blocks.extend(small(ShaperBlock::new(motion, "", "alone")?, "the same for motion"));
+        Ok(blocks)
+    },
+    proofs: proofs::shaper::tasks,
+    areas: || {
+        let (plain, motion) = (area_config()?, area_config()?.for_motion(MOTION).map_err(refused)?);
+        Ok(vec![
+            AreaRow::new("plain, 32 bits, ring 128", emit(&plain, "")?),
+            AreaRow::new("motion, 3 channels, 32 bits, ring 128", emit(&motion, "")?),
+        ])
+    },
+};
+
+/// Position, velocity and acceleration.
+pub(super) const MOTION: ShaperMotion = ShaperMotion {
+    channels: 3,
+    modulo: false,
+};
 
 /// A shaper that stands alone.
 #[derive(Debug, Clone)]
@@ -275,4 +304,29 @@ impl Bins for OfLayout<'_> {
         }
         counts
     }
+}
+
+/// Three impulses, two of them on two taps each; with rates for so many channels.
+fn small_config(channels: Option<u32>) -> Result<ShaperConfig, Error> {
+    let taps = [(0, 400), (5, 280), (6, 180), (11, 110), (12, 54)];
+    let config = ShaperConfig::new(24, tap_table(10, &taps)?).map_err(refused)?;
+    match channels {
+        None => Ok(config),
+        Some(channels) => config.for_motion(ShaperMotion { channels, ..MOTION }).map_err(refused),
+    }
+}
+
+/// Six taps: ZVD digitised with two taps per impulse, 79 samples long.
+pub(super) fn area_config() -> Result<ShaperConfig, Error> {
+    let taps = [(0, 25431), (38, 12000), (39, 18787), (77, 4000), (78, 5317), (79, 1)];
+    ShaperConfig::new(32, tap_table(16, &taps)?).map_err(refused)
+}
+
+/// Taps of delay and coefficient.
+pub(super) fn tap_table(fraction: u32, taps: &[(u32, i32)]) -> Result<TapTable, Error> {
+    let taps = taps.iter().map(|&(delay_samples, coefficient)| Tap {
+        delay_samples,
+        coefficient,
+    });
+    TapTable::new(fraction, taps.collect()).map_err(refused)
 }

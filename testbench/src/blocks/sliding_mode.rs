@@ -6,12 +6,22 @@ use posicast_hdl::sliding_mode::{emit, simulate};
 use posicast_model::rtl::ClockedBlock;
 use posicast_model::rtl::sliding_mode::SlidingMode;
 
-use super::{Bins, Block};
+use super::registry::{AreaRow, RegistryRow, one, small};
+use super::{Bins, Block, proofs};
 use crate::lockstep::Clock;
 use crate::stimuli::{SlidingModeCoverage, SlidingModeRandom, Stimuli};
 
 /// A run of so many clocks has room for the ticks that wind the integral up, and as many besides.
 const LONG_CLOCKS: u64 = 2 * SlidingModeRandom::WIND_UP_CLOCKS;
+
+/// Its row in the registry.
+pub(super) const ROW: RegistryRow = RegistryRow {
+    name: "sliding_mode",
+    benches: |sizes| Ok(one(SlidingModeBlock::new(&sizes.prefix, &sizes.with_controller))),
+    small: || Ok(small(SlidingModeBlock::new("", "alone"), "all laws")),
+    proofs: proofs::sliding_mode::tasks,
+    areas: || Ok(vec![AreaRow::new("all laws", emit("")?)]),
+};
 
 /// The controller, which has one size: what it does is in its settings.
 #[derive(Debug, Clone)]

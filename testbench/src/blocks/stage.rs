@@ -3,14 +3,35 @@
 use posicast_hdl::SimulationError;
 use posicast_hdl::component::emit;
 use posicast_hdl::emit::{EmitError, Module};
+use posicast_model::design::design_machine;
 use posicast_model::rtl::ClockedBlock;
 use posicast_model::rtl::component::Component;
 use posicast_model::rtl::stage::{StageConfig, StageError};
+use posicast_model::{hardware, machine_file};
 
-use super::{Bins, Block, inside, not_in_rusthdl};
+use super::registry::{AreaRow, RegistryRow, one};
+use super::{Bins, Block, inside, not_in_rusthdl, proofs};
 use crate::Error;
+use crate::formal::refused;
 use crate::lockstep::Clock;
 use crate::stimuli::{StageCoverage, StageRandom, Stimuli};
+
+/// Its row in the registry.
+pub(super) const ROW: RegistryRow = RegistryRow {
+    name: "stage",
+    benches: |sizes| match &sizes.stage {
+        None => Ok(Vec::new()),
+        Some(config) => Ok(one(StageBlock::new(config, "stage").map_err(refused)?)),
+    },
+    proofs: proofs::stage::tasks,
+    areas: || {
+        Ok(vec![
+            area("XY, whole", "")?,
+            area("XY, traces of 256 samples", "[axis.trace]\nsamples = 256\n\n")?,
+        ])
+    },
+    ..RegistryRow::EMPTY
+};
 
 /// A stage under a name of its own.
 #[derive(Debug, Clone)]
@@ -107,4 +128,22 @@ impl Bins for StageCoverage {
     fn counts(&self) -> Vec<(String, u64)> {
         self.counts()
     }
+}
+
+/// The stage of the example machine, flattened: what is tied to the machine file is folded. `traces` is written before the
+/// controller of each axis.
+fn area(size: &'static str, traces: &str) -> Result<AreaRow, Error> {
+    let component = Component::stage(&example(traces)?).map_err(refused)?;
+    Ok(AreaRow::new(size, emit(&component, "xy_stage", "xy")?))
+}
+
+/// The stage of the example machine, with this text before the controller of each axis.
+pub(super) fn example(before_controllers: &str) -> Result<StageConfig, Error> {
+    let controller = "[axis.controller]";
+    let text = include_str!("../../machines/xy-stage.toml");
+    let text = text.replace(controller, &format!("{before_controllers}{controller}"));
+    let machine = machine_file::parse("xy-stage.toml", &text).map_err(refused)?;
+    let designs = design_machine(&machine).map_err(refused)?;
+    let stage = hardware::stage(&machine, &designs).map_err(refused)?;
+    Ok(stage.ok_or_else(|| refused("the example has no stage"))?.config)
 }

@@ -4,11 +4,36 @@ use posicast_hdl::SimulationError;
 use posicast_hdl::emit::{EmitError, Module};
 use posicast_hdl::trace::{emit, simulate};
 use posicast_model::rtl::ClockedBlock;
-use posicast_model::rtl::trace::{Trace, TraceConfig};
+use posicast_model::rtl::trace::{SIGNALS, Trace, TraceConfig, ports};
 
+use super::registry::{AreaRow, RegistryRow, one, small};
 use super::{Bins, Block};
+use crate::Error;
+use crate::formal::{INDUCTION, Task, refused};
 use crate::lockstep::Clock;
 use crate::stimuli::{Stimuli, TraceCoverage, TraceRandom};
+
+/// Its row in the registry.
+pub(super) const ROW: RegistryRow = RegistryRow {
+    name: "trace",
+    benches: |sizes| {
+        let config = TraceConfig::new(1024).map_err(refused)?;
+        Ok(one(TraceBlock::new(config, &sizes.prefix)))
+    },
+    small: || {
+        let config = TraceConfig::new(256).map_err(refused)?;
+        Ok(small(TraceBlock::new(config, ""), "256 samples"))
+    },
+    // The smallest memory and the largest.
+    proofs: || [256, 2048].map(proof).into_iter().collect(),
+    areas: || {
+        let modules = emit(&TraceConfig::new(1024).map_err(refused)?, "")?;
+        let row = AreaRow::new("1024 samples", modules);
+        Ok(vec![row.note(
+            "320 LUT select one of 16 signals of 32 bits; signals that are tied disappear.",
+        )])
+    },
+};
 
 /// The trace memory of one size.
 #[derive(Debug, Clone)]
@@ -81,4 +106,17 @@ impl Bins for TraceCoverage {
     fn counts(&self) -> Vec<(String, u64)> {
         self.counts().map(|(name, count)| (name.to_owned(), count)).collect()
     }
+}
+
+fn proof(samples: u64) -> Result<Task, Error> {
+    let config = TraceConfig::new(samples).map_err(refused)?;
+    let signals: Vec<String> = (0..SIGNALS).rev().map(|signal| format!("signal_{signal}")).collect();
+    let macros = [
+        ("SAMPLES", format!("12'd{samples}")),
+        ("ADDRESS_BITS", config.address_bits().to_string()),
+        ("ALL_SIGNALS", format!("{{{}}}", signals.join(", "))),
+    ];
+    let block = (emit(&config, "")?, ports());
+    Ok(Task::new("trace", &format!("{samples} words"), INDUCTION, block)
+        .properties(&macros, include_str!("../../formal/trace.sv")))
 }

@@ -448,9 +448,9 @@ impl Running<'_> {
             self.demand(lost <= 1, || format!("{name}: the counter was away by {lost} counts"));
         }
         let (mismatches, first) = self.bench.mismatches();
-        let first = first.cloned();
         self.demand(mismatches == 0, || {
-            format!("RTL and model differ {mismatches} times, first {first:?}")
+            let first = first.map_or_else(String::new, |first| first.to_string());
+            format!("RTL and model differ {mismatches} times: {first}")
         });
     }
 }

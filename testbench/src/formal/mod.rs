@@ -8,26 +8,20 @@
 //!                          └────► covers.aig ──► abc bmc3 ───────► clocks until each cover is reached
 //! ```
 //!
-//! A property file holds one module, `NAME_properties`. Its inputs are any of the block's ports, by name, and registers inside
-//! of the block, which the attribute `peek` names: `(* peek = "u_leg.timer" *) input wire [9:0] leg_timer`. The top written
-//! here leaves all inputs of the block free in every clock, resets included, and joins both. Rows start at power-up, where
+//! A property file holds one module, `NAME_properties`. Its inputs are the block's ports, for which the macro `PORTS` stands, and
+//! registers inside of the block, which the attribute `peek` names: `(* peek = "u_leg.timer" *) input wire [9:0] leg_timer`. The
+//! top written here leaves all inputs of the block free in every clock, resets included, and joins both. Rows start at power-up, where
 //! every register has its reset value. Block RAM is left out but where a task keeps it: what is read from it is anything, in every
 //! clock; so are products and whole blocks where a task says so.
 //!
 //! Two engines, both unbounded: [`Engine::Pdr`] finds its invariants itself; [`Engine::Induction`] needs them among the
 //! properties. What either does not prove is searched for a counterexample of at most [`SEARCHED_CLOCKS`].
 
-mod axis;
-mod blocks;
-mod list;
 mod names;
-mod shapers;
-mod stage;
 mod task;
 mod tool;
-mod trace;
 
-pub use self::list::{all, named};
 pub use self::task::{Engine, Task};
+pub(crate) use self::task::{INDUCTION, part, refused};
 pub(crate) use self::tool::{ABC, YOSYS, abc, asserted};
 pub use self::tool::{ProofOutcome, ProofVerdict, Reached, SEARCHED_CLOCKS, run, search};

@@ -33,24 +33,34 @@ pub(super) fn peeks(text: &str) -> Vec<Peek> {
     text.lines().filter_map(line).collect()
 }
 
+/// The ports of a block as inputs behind another one: `, input wire [9:0] steps, …`.
+pub(super) fn as_inputs(ports: &[Port]) -> String {
+    ports
+        .iter()
+        .map(|port| format!(", input wire {}", declared(port)))
+        .collect()
+}
+
+/// A port with its sign and width: `signed [9:0] steps`.
+fn declared(port: &Port) -> String {
+    let signed = if port.signed { "signed " } else { "" };
+    let range = match port.width {
+        1 => String::new(),
+        width => format!("[{}:0] ", width - 1),
+    };
+    format!("{signed}{range}{}", port.name)
+}
+
 /// `formal_top`: the block and its properties, with every input of the block free.
 pub(super) fn formal_top(top: &str, properties: &str, ports: &[Port], peeks: &[Peek]) -> String {
-    let kind = |port: &Port| {
-        let signed = if port.signed { "signed " } else { "" };
-        let range = match port.width {
-            1 => String::new(),
-            width => format!("[{}:0] ", width - 1),
-        };
-        format!("{signed}{range}{}", port.name)
-    };
     let of = |direction| ports.iter().filter(move |port| port.direction == direction);
     let mut text = String::from("module formal_top (\n    input wire clk");
     for port in of(Direction::Input) {
-        let _ = write!(text, ",\n    input wire {}", kind(port));
+        let _ = write!(text, ",\n    input wire {}", declared(port));
     }
     text.push_str("\n);\n");
     for port in of(Direction::Output) {
-        let _ = writeln!(text, "    wire {};", kind(port));
+        let _ = writeln!(text, "    wire {};", declared(port));
     }
     for peek in peeks {
         let _ = writeln!(text, "    (* keep *) wire {} {};", peek.kind, peek.name);

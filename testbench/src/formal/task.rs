@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use posicast_hdl::emit::Module;
 use posicast_model::rtl::Port;
 
+use super::names::as_inputs;
 use crate::Error;
 
 /// How a task is proven. Both proofs are unbounded.
@@ -20,7 +21,7 @@ pub enum Engine {
 }
 
 /// What proofs by induction take: invariants stated so that one clock leads to the next.
-pub(super) const INDUCTION: Engine = Engine::Induction { clocks: 1 };
+pub(crate) const INDUCTION: Engine = Engine::Induction { clocks: 1 };
 
 impl Engine {
     /// Its name in a table.
@@ -43,20 +44,20 @@ pub struct Task {
     pub engine: Engine,
     /// The block's Verilog, the top last. Tests change it.
     pub modules: Vec<Module>,
-    pub(super) top: String,
-    pub(super) ports: Vec<Port>,
-    pub(super) properties: String,
+    pub(crate) top: String,
+    pub(crate) ports: Vec<Port>,
+    pub(crate) properties: String,
     /// Whether multipliers are left out: what they give is anything, in every clock.
-    pub(super) leaves_products_open: bool,
+    pub(crate) leaves_products_open: bool,
     /// Whether memories are in the proof, each word a register; else what is read from one is anything, in every clock.
-    pub(super) keeps_memories: bool,
+    pub(crate) keeps_memories: bool,
     /// Registers that begin with another value than 0, with that value. For counters that nothing loads: what comes after
     /// more clocks than can be searched.
-    pub(super) begins: Vec<(&'static str, &'static str)>,
+    pub(crate) begins: Vec<(&'static str, &'static str)>,
 }
 
 impl Task {
-    pub(super) fn new(
+    pub(crate) fn new(
         name: &'static str,
         size: &str,
         engine: Engine,
@@ -76,22 +77,35 @@ impl Task {
         }
     }
 
-    /// With a property file, after macros for this size.
-    pub(super) fn properties(mut self, macros: &[(&str, String)], text: &str) -> Self {
+    /// With more macros.
+    pub(crate) fn macros(mut self, macros: &[(String, String)]) -> Self {
         for (name, value) in macros {
             let _ = writeln!(self.properties, "`define {name} {value}");
         }
+        self
+    }
+
+    /// With a property file, after macros for this size and `PORTS`, all ports of the block as inputs.
+    pub(crate) fn properties(mut self, macros: &[(&str, String)], text: &str) -> Self {
+        for (name, value) in macros {
+            let _ = writeln!(self.properties, "`define {name} {value}");
+        }
+        let _ = writeln!(
+            self.properties,
+            "`define PORTS input wire clk{}",
+            as_inputs(&self.ports)
+        );
         self.properties.push_str(text);
         self
     }
 }
 
-pub(super) fn refused(error: impl std::fmt::Display) -> Error {
+pub(crate) fn refused(error: impl std::fmt::Display) -> Error {
     Error::Option(error.to_string())
 }
 
 /// A module of a block as a block of its own.
-pub(super) fn part(mut modules: Vec<Module>, name: &str) -> Result<(Vec<Module>, Vec<Port>), Error> {
+pub(crate) fn part(mut modules: Vec<Module>, name: &str) -> Result<(Vec<Module>, Vec<Port>), Error> {
     let at = modules.iter().position(|module| module.is(name));
     let part = modules.remove(at.ok_or_else(|| refused(format!("the block has no `{name}`")))?);
     let ports = part.ports.clone();

@@ -160,50 +160,107 @@ pub fn run_until(
     watch: &mut dyn FnMut(&Clock<'_>) -> ControlFlow<()>,
     progress: &mut dyn FnMut(u64),
 ) -> Result<LockstepReport, Error> {
-    let ports = model.ports().to_vec();
-    let wiring = Wiring::new(&ports, device.ports())?;
-    let mut comparison = Comparison::new(&ports, instances, options)?;
-
-    let mut inputs = vec![0; wiring.inputs.len()];
-    let mut device_inputs = inputs.clone();
-    let mut expected = vec![0; wiring.outputs.len()];
-    let (mut actual, mut unknown) = (expected.clone(), expected.clone());
-    let (mut raw_actual, mut raw_unknown) = (expected.clone(), expected.clone());
-    let mut time = 0;
-    while time < options.cycles && comparison.wrong_values < options.mismatch_limit {
-        stimuli.fill(&expected, &mut inputs);
-        for (input, port) in inputs.iter_mut().zip(&wiring.inputs) {
-            *input &= port.mask;
-        }
-        let failed = |source| Error::Step { clock: time, source };
-        model.step(&inputs, &mut expected).map_err(failed)?;
-        for (value, port) in inputs.iter().zip(&wiring.inputs) {
-            device_inputs[port.device] = *value;
-        }
-        device
-            .step(&device_inputs, &mut raw_actual, &mut raw_unknown)
-            .map_err(failed)?;
-        for (at, port) in wiring.outputs.iter().enumerate() {
-            actual[at] = raw_actual[port.device];
-            unknown[at] = raw_unknown[port.device];
-        }
-        comparison.clock(time, &inputs, &expected, &actual, &unknown);
+    let mut both = Lockstep::new(model.ports(), device.ports(), instances, options)?;
+    let mut inputs = vec![0; both.wiring.inputs.len()];
+    while both.time < options.cycles && both.comparison.wrong_values < options.mismatch_limit {
+        stimuli.fill(&both.expected, &mut inputs);
+        both.clock(model, device, &mut inputs)?;
         let goes_on = watch(&Clock {
-            time,
+            time: both.time - 1,
             inputs: &inputs,
-            expected: &expected,
-            actual: &actual,
+            expected: &both.expected,
+            actual: &both.actual,
         });
-        time += 1;
         if goes_on.is_break() {
             break;
         }
-        if time.is_multiple_of(PROGRESS_CLOCKS) {
-            progress(time);
+        if both.time.is_multiple_of(PROGRESS_CLOCKS) {
+            progress(both.time);
         }
     }
-    progress(time);
-    Ok(comparison.report(time))
+    progress(both.time);
+    Ok(both.report())
+}
+
+/// A lock step, clock by clock: for who makes inputs of more than stimuli, as a bench with a simulated machine does.
+pub struct Lockstep {
+    wiring: Wiring,
+    comparison: Comparison,
+    time: u64,
+    expected: Vec<u64>,
+    actual: Vec<u64>,
+    unknown: Vec<u64>,
+    /// What the device takes and shows, in its own order.
+    device_inputs: Vec<u64>,
+    device_outputs: Vec<u64>,
+    device_unknown: Vec<u64>,
+}
+
+impl Lockstep {
+    /// Of a model and a device with these ports.
+    ///
+    /// # Errors
+    /// [`Error::Unlike`] if the ports differ or an instance names no output.
+    pub fn new(
+        model: &[Port],
+        device: &[Port],
+        instances: &[Instance],
+        options: &LockstepOptions,
+    ) -> Result<Self, Error> {
+        let wiring = Wiring::new(model, device)?;
+        let outputs = vec![0; wiring.outputs.len()];
+        Ok(Self {
+            comparison: Comparison::new(model, instances, options)?,
+            time: 0,
+            expected: outputs.clone(),
+            actual: outputs.clone(),
+            unknown: outputs.clone(),
+            device_inputs: vec![0; wiring.inputs.len()],
+            device_outputs: outputs.clone(),
+            device_unknown: outputs,
+            wiring,
+        })
+    }
+
+    /// One clock of both. Of `inputs`, in the order of the model, bits beyond a port's width are cleared.
+    ///
+    /// # Errors
+    /// [`Error::Step`] where a simulator stops.
+    pub fn clock(
+        &mut self,
+        model: &mut dyn ClockedBlock,
+        device: &mut dyn Device,
+        inputs: &mut [u64],
+    ) -> Result<(), Error> {
+        let time = self.time;
+        let failed = |source| Error::Step { clock: time, source };
+        for (input, port) in inputs.iter_mut().zip(&self.wiring.inputs) {
+            *input &= port.mask;
+            self.device_inputs[port.device] = *input;
+        }
+        model.step(inputs, &mut self.expected).map_err(failed)?;
+        device
+            .step(&self.device_inputs, &mut self.device_outputs, &mut self.device_unknown)
+            .map_err(failed)?;
+        for (at, port) in self.wiring.outputs.iter().enumerate() {
+            self.actual[at] = self.device_outputs[port.device];
+            self.unknown[at] = self.device_unknown[port.device];
+        }
+        self.comparison
+            .clock(time, inputs, &self.expected, &self.actual, &self.unknown);
+        self.time += 1;
+        Ok(())
+    }
+
+    /// What the model showed in the last clock.
+    pub fn expected(&self) -> &[u64] {
+        &self.expected
+    }
+
+    /// What was compared so far.
+    pub fn report(&self) -> LockstepReport {
+        self.comparison.report(self.time)
+    }
 }
 
 /// Where a port of the model sits in the device, and which bits it has.
@@ -320,14 +377,11 @@ impl Comparison {
         }
     }
 
-    fn report(self, cycles: u64) -> LockstepReport {
-        let ports = self.ports;
-        let blocks = self.watched.into_iter().map(|watched| BlockReport {
-            name: watched.instance.block,
-            first: watched
-                .first
-                .map(|window| Mismatch::new(&ports, &watched.instance.outputs, &window)),
-            instance: watched.instance.name,
+    fn report(&self, cycles: u64) -> LockstepReport {
+        let blocks = self.watched.iter().map(|watched| BlockReport {
+            name: watched.instance.block.clone(),
+            first: (watched.first.as_ref()).map(|window| Mismatch::new(&self.ports, &watched.instance.outputs, window)),
+            instance: watched.instance.name.clone(),
             cycles,
             samples: watched.valid.map(|_| watched.samples),
             mismatches: watched.mismatches,

@@ -127,7 +127,7 @@ pub struct BlockReport {
 }
 
 /// The first wrong value of a block, with the clocks around it. `Display` draws the table.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Mismatch {
     /// Clocks since the start of the run.
     pub time: u64,
@@ -145,7 +145,7 @@ pub struct Mismatch {
     table: Table,
 }
 
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 struct Table {
     times: Vec<u64>,
     /// Name and cells; the block's own outputs twice, model above device, where they differ.
@@ -153,6 +153,11 @@ struct Table {
 }
 
 impl Mismatch {
+    /// What the model says and what the device shows, as people read it.
+    pub fn shown(&self) -> [&str; 2] {
+        self.shown.each_ref().map(String::as_str)
+    }
+
     pub(super) fn new(ports: &[Port], own: &[String], window: &Window) -> Self {
         let (time, output) = window.mismatch;
         let outputs: Vec<&Port> = outputs_of(ports).collect();

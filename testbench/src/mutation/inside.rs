@@ -11,9 +11,9 @@
 
 use std::fmt::Write as _;
 
-use posicast_hdl::emit::Module;
 use posicast_model::rtl::stage::StageConfig;
 
+use super::NamedMutant;
 use crate::Error;
 use crate::asynchronous;
 use crate::blocks::{self, Block, ShortTicksBlock, Sources, StageBlock};
@@ -25,96 +25,83 @@ pub const INSIDE_MARKS: Marks = Marks {
     end: "<!-- end of mutants inside the stage -->",
 };
 
-/// One of them.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Inside {
-    /// What the fault does, in words.
-    pub name: &'static str,
-    /// What the module is called, without a size; several of these all get the fault.
-    pub module: &'static str,
-    /// What is there once.
-    pub from: &'static str,
-    /// And what is put there.
-    pub to: &'static str,
-}
-
 /// All of them.
-pub const INSIDE: [Inside; 13] = [
-    Inside {
+pub const INSIDE: [NamedMutant<'static>; 13] = [
+    NamedMutant {
         name: "the velocity's timeout a step late",
-        module: "velocity",
+        module: Some("velocity"),
         from: "recent = interval[23:16] < timeout;",
         to: "recent = interval[23:16] <= timeout;",
     },
-    Inside {
+    NamedMutant {
         name: "a handover that ends a sample early",
-        module: "handover",
+        module: Some("handover"),
         from: "if (since_q == reach) begin",
         to: "if (next_since == reach) begin",
     },
-    Inside {
+    NamedMutant {
         name: "a negative overflow of the integrator unseen",
-        module: "integrator",
+        module: Some("integrator"),
         from: "unfit = turned_sign & (augend[7] == addend[7]);",
         to: "unfit = (turned_sign & (augend[7] == addend[7])) & !augend[7];",
     },
-    Inside {
+    NamedMutant {
         name: "a limit that acts on a bounce",
-        module: "axis",
+        module: Some("axis"),
         from: "(!limit_plus_line_level)",
         to: "(!limit_plus_line_level | !limit_plus_n)",
     },
-    Inside {
+    NamedMutant {
         name: "a limit whose first look is enough",
-        module: "axis_monitors",
+        module: Some("axis_monitors"),
         from: "found_next = shown & found;",
         to: "found_next = shown | found;",
     },
-    Inside {
+    NamedMutant {
         name: "a cause of the upper byte that cuts",
-        module: "axis_causes",
+        module: Some("axis_causes"),
         from: "cutting_now = now & off;",
         to: "cutting_now = (now & off) | (now & 16'd4096);",
     },
-    Inside {
+    NamedMutant {
         name: "a cause of the upper byte that is told to cut and does not",
-        module: "axis_causes",
+        module: Some("axis_causes"),
         from: "cutting_now = now & off;",
         to: "cutting_now = (now & off) & 16'd255;",
     },
-    Inside {
+    NamedMutant {
         name: "the asynchronous fault latch made synchronous",
-        module: "fault_latch",
+        module: Some("fault_latch"),
         from: "always @(posedge clk or negedge trip_n) begin",
         to: "always @(posedge clk) begin",
     },
-    Inside {
+    NamedMutant {
         name: "a 64th entry beside the one that plays",
-        module: "command_fifo",
+        module: Some("command_fifo"),
         from: "full = level_q[6] | (plays & (waiting == ALL_BUT_ONE));",
         to: "full = level_q[6];",
     },
-    Inside {
+    NamedMutant {
         name: "the group's emergency stop ignored by an axis",
-        module: "axis",
+        module: Some("axis"),
         from: "emergency = own_emergency | group_emergency_stop;",
         to: "emergency = own_emergency;",
     },
-    Inside {
+    NamedMutant {
         name: "the group's emergency stop not passed on",
-        module: "group",
+        module: Some("group"),
         from: "if (emergency_stop_1) begin",
         to: "if (1'd0 & emergency_stop_1) begin",
     },
-    Inside {
+    NamedMutant {
         name: "a group stop not passed on",
-        module: "group",
+        module: Some("group"),
         from: "if (wants_group_stop_1 & (AXIS_0 != AXIS_1)) begin",
         to: "if (1'd0 & wants_group_stop_1) begin",
     },
-    Inside {
+    NamedMutant {
         name: "`stop_deceleration` above bit 23 ignored",
-        module: "integrator",
+        module: Some("integrator"),
         from: "deceleration = {9'd0, stop_deceleration} << 8;",
         to: "deceleration = {16'd0, stop_deceleration[23:0]} << 8;",
     },
@@ -129,66 +116,45 @@ pub struct Found {
     pub clock: Option<u64>,
 }
 
-impl Inside {
-    /// These modules with the fault in them.
-    ///
-    /// # Errors
-    /// [`Error::Option`] where no module has that name, or its text is not there exactly once.
-    pub fn put_into(&self, modules: &[Module]) -> Result<Vec<Module>, Error> {
-        let mut modules = modules.to_vec();
-        let mut found = false;
-        for module in modules.iter_mut().filter(|module| module.is(self.module)) {
-            let times = module.text.matches(self.from).count();
-            if times != 1 {
-                let text = format!("`{}` is {times} times in `{}`", self.from, module.name);
-                return Err(self.outdated(text));
-            }
-            module.text = module.text.replacen(self.from, self.to, 1);
-            found = true;
+/// Looks for a mutant with the rows of the folder's check that reach its module, the blocks inside the stage first; `None`
+/// where all of them match.
+///
+/// # Errors
+/// As [`NamedMutant::put_into`], and what a simulator says.
+pub fn hunt(
+    mutant: &NamedMutant<'_>,
+    config: &StageConfig,
+    top: &str,
+    clocks: u64,
+    seed: u64,
+) -> Result<Option<Found>, Error> {
+    let stage = StageBlock::new(config, top).map_err(|error| Error::Option(error.to_string()))?;
+    let modules = stage.modules()?;
+    let mutated = mutant.put_into(&modules)?;
+    let changed: Vec<String> = (modules.iter().zip(&mutated))
+        .filter(|(before, after)| before != after)
+        .map(|(module, _)| format!("{}.v", module.name))
+        .collect();
+    let broken = Sources::of_modules(&mutated)?;
+    let mut rows = stage.inner()?;
+    rows.push(Box::new(stage));
+    let short = ShortTicksBlock::new(config, top).map_err(|error| Error::Option(error.to_string()))?;
+    rows.extend(short.map(|block| Box::new(block) as Box<dyn Block>));
+    for row in rows {
+        let sources = broken.reached_by(row.as_ref())?;
+        if !sources
+            .files()
+            .iter()
+            .any(|file| changed.iter().any(|changed| file.ends_with(changed)))
+        {
+            continue;
         }
-        match found {
-            true => Ok(modules),
-            false => Err(self.outdated(format!("there is no module `{}`", self.module))),
+        let sources = row.adapted(sources)?;
+        if let Some(found) = look(row.as_ref(), &sources, clocks.max(row.least_clocks()), seed)? {
+            return Ok(Some(found));
         }
     }
-
-    fn outdated(&self, why: String) -> Error {
-        Error::Option(format!("the mutant `{}` cannot be put in: {why}", self.name))
-    }
-
-    /// Looks for it with the rows of the folder's check that reach the module, the blocks inside the stage first; `None`
-    /// where all of them match.
-    ///
-    /// # Errors
-    /// As [`Self::put_into`], and what a simulator says.
-    pub fn hunt(&self, config: &StageConfig, top: &str, clocks: u64, seed: u64) -> Result<Option<Found>, Error> {
-        let stage = StageBlock::new(config, top).map_err(|error| Error::Option(error.to_string()))?;
-        let modules = stage.modules()?;
-        let broken = Sources::of_modules(&self.put_into(&modules)?)?;
-        let changed: Vec<String> = (modules.iter())
-            .filter(|module| module.is(self.module))
-            .map(|module| format!("{}.v", module.name))
-            .collect();
-        let mut rows = stage.inner()?;
-        rows.push(Box::new(stage));
-        let short = ShortTicksBlock::new(config, top).map_err(|error| Error::Option(error.to_string()))?;
-        rows.extend(short.map(|block| Box::new(block) as Box<dyn Block>));
-        for row in rows {
-            let sources = broken.reached_by(row.as_ref())?;
-            if !sources
-                .files()
-                .iter()
-                .any(|file| changed.iter().any(|changed| file.ends_with(changed)))
-            {
-                continue;
-            }
-            let sources = row.adapted(sources)?;
-            if let Some(found) = look(row.as_ref(), &sources, clocks.max(row.least_clocks()), seed)? {
-                return Ok(Some(found));
-            }
-        }
-        Ok(None)
-    }
+    Ok(None)
 }
 
 /// The row's lock step, and its test between clocks.
@@ -210,7 +176,7 @@ fn look(row: &dyn Block, sources: &Sources, clocks: u64, seed: u64) -> Result<Op
 }
 
 /// The mutants and what found them, as the table of `docs/verification.md`.
-pub fn inside_table(fates: &[(Inside, Option<Found>)]) -> String {
+pub fn inside_table(fates: &[(NamedMutant<'_>, Option<Found>)]) -> String {
     let mut text = "| mutant | module | found by | first wrong clock |\n|---|---|---|---|\n".to_owned();
     for (mutant, found) in fates {
         let (row, clock) = match found {
@@ -223,7 +189,12 @@ pub fn inside_table(fates: &[(Inside, Option<Found>)]) -> String {
             }
         };
         // Writing to a `String` cannot fail.
-        let _ = writeln!(text, "| {} | `{}` | {row} | {clock} |", mutant.name, mutant.module);
+        let _ = writeln!(
+            text,
+            "| {} | `{}` | {row} | {clock} |",
+            mutant.name,
+            mutant.module.unwrap_or("any")
+        );
     }
     let count = fates.iter().filter(|(_, found)| found.is_some()).count();
     let _ = writeln!(text, "\n{count} of {} found.", fates.len());

@@ -19,6 +19,7 @@
 //! - What is not equivalent may still break a property of `testbench/formal`, where the block has a file there.
 //! - The rest is *unknown*: each is listed. Where a search finds how to tell it from the block, the stimuli have a hole.
 
+mod by_name;
 mod equivalence;
 mod inside;
 mod mutant;
@@ -28,7 +29,8 @@ mod simulation;
 mod subject;
 mod table;
 
-pub use self::inside::{Found, INSIDE, INSIDE_MARKS, Inside, inside_table};
+pub use self::by_name::NamedMutant;
+pub use self::inside::{Found, INSIDE, INSIDE_MARKS, hunt, inside_table};
 pub use self::mutant::Mutant;
 pub use self::simulation::{Kill, StimuliOf};
 pub use self::subject::{Subject, all, named};

@@ -1,22 +1,8 @@
 //! The blocks that get mutants.
 
-use posicast_model::rtl::cascade::CascadeConfig;
-use posicast_model::rtl::component::Component;
-use posicast_model::rtl::divider::DividerConfig;
-use posicast_model::rtl::pwm::{ActiveLow, BridgeMode, PwmConfig};
-use posicast_model::rtl::schedule::ScheduleConfig;
-use posicast_model::rtl::shaper::{ShaperConfig, ShaperMotion};
-use posicast_model::rtl::sliding_mode::Settings;
-use posicast_model::rtl::trace::TraceConfig;
-use posicast_model::taps::{Tap, TapTable};
-
 use crate::Error;
-use crate::blocks::{
-    AxisBlock, Block, CascadeBlock, DividerBlock, DriveCommandBlock, EncoderGeneratorBlock, ExcitationBlock,
-    LinearScaleBlock, PartBlock, PulseCounterBlock, PwmBlock, RegistersBlock, SegmentsBlock, ShaperBlock,
-    SlidingModeBlock, SmallPart, TraceBlock,
-};
-use crate::formal::{self, Task};
+use crate::blocks::{self, Block, SmallBench};
+use crate::formal::Task;
 
 /// A block at one size, and what is proven of it.
 pub struct Subject {
@@ -42,16 +28,13 @@ impl Subject {
     }
 }
 
-/// A block, and which of its sizes it has.
-type OfSize = (Box<dyn Block>, &'static str);
-
 /// All of them.
 ///
 /// # Errors
 /// [`Error::Block`] where a block cannot be written as Verilog.
 pub fn all() -> Result<Vec<Subject>, Error> {
-    let tasks = formal::all()?;
-    let subject = |(block, size): OfSize| {
+    let tasks = blocks::proofs()?;
+    let subject = |SmallBench { block, size }| {
         let modules = block.modules()?;
         Ok(Subject {
             tasks: tasks.iter().filter(|task| task.modules == modules).cloned().collect(),
@@ -59,7 +42,7 @@ pub fn all() -> Result<Vec<Subject>, Error> {
             size,
         })
     };
-    blocks()?.into_iter().map(subject).collect()
+    blocks::small_benches()?.into_iter().map(subject).collect()
 }
 
 /// Those of a block.
@@ -76,89 +59,4 @@ pub fn named(name: &str) -> Result<Vec<Subject>, Error> {
         )));
     }
     Ok(all.into_iter().filter(|subject| subject.block.name() == name).collect())
-}
-
-fn refused(error: impl std::fmt::Display) -> Error {
-    Error::Option(error.to_string())
-}
-
-/// A small size of each: enough for every path, and mutants of wide words that only repeat each other are few.
-fn blocks() -> Result<Vec<OfSize>, Error> {
-    let alone = "alone";
-    let pwm = PwmConfig::new(ActiveLow::default(), 2, 1).map_err(refused)?;
-    let ticks = DividerConfig::new(97).map_err(refused)?;
-    let part = |part| -> Box<dyn Block> { Box::new(PartBlock::new(part, "")) };
-    let mut blocks: Vec<OfSize> = vec![
-        (Box::new(PulseCounterBlock::new("", alone)), "32-bit count"),
-        (Box::new(DividerBlock::new(ticks, "")), "97 clocks per tick"),
-        (
-            Box::new(PwmBlock::new(pwm, "", alone)),
-            "16-bit period, all active high",
-        ),
-        (Box::new(SlidingModeBlock::new("", alone)), "all laws"),
-        (Box::new(ShaperBlock::new(shaper(None)?, "", alone)?), "24 bits, 5 taps"),
-        (
-            Box::new(ShaperBlock::new(shaper(Some(3))?, "", alone)?),
-            "the same for motion",
-        ),
-        (
-            Box::new(CascadeBlock::new(
-                CascadeConfig::new(16, vec![7, 3, 12]).map_err(refused)?,
-                "",
-            )),
-            "16 bits, 3 stages",
-        ),
-        (Box::new(SegmentsBlock::new("", alone)), "64 entries"),
-        (Box::new(AxisBlock::new("", alone)), "all inputs"),
-        (Box::new(DriveCommandBlock::new("", alone)), "nothing tied"),
-        (Box::new(LinearScaleBlock::new("", alone)), "nothing tied"),
-        (
-            Box::new(TraceBlock::new(TraceConfig::new(256).map_err(refused)?, "")),
-            "256 samples",
-        ),
-        (Box::new(ExcitationBlock::new("", alone)), "32 bits"),
-        (Box::new(EncoderGeneratorBlock::new("", alone)), "32 bits"),
-        (
-            part(SmallPart::Schedule(ScheduleConfig::new(37).map_err(refused)?)),
-            "control after 37 clocks",
-        ),
-        (part(SmallPart::DividerShare(2)), "2 channels"),
-        (part(SmallPart::Group(2)), "2 axes"),
-        (
-            part(SmallPart::TimeBase(DividerConfig::new(17).map_err(refused)?)),
-            "17 clocks per tick",
-        ),
-        (
-            part(SmallPart::SampleSelect {
-                word_bits: 32,
-                channels: 3,
-            }),
-            "3 channels of 32 bits",
-        ),
-        (part(SmallPart::SettingBanks(Settings::default())), "settings of 0"),
-    ];
-    let pwm = PwmConfig::new(ActiveLow::default(), 25, 50).map_err(refused)?;
-    let component = Component::pwm(pwm, BridgeMode::Unipolar, 2500).map_err(refused)?;
-    let bank = RegistersBlock::new(component.map().clone(), "");
-    blocks.push((Box::new(bank), "bank of pwm"));
-    Ok(blocks)
-}
-
-/// Three impulses, two of them on two taps each; with rates for so many channels.
-fn shaper(channels: Option<u32>) -> Result<ShaperConfig, Error> {
-    let taps = [(0, 400), (5, 280), (6, 180), (11, 110), (12, 54)].map(|(delay_samples, coefficient)| Tap {
-        delay_samples,
-        coefficient,
-    });
-    let table = TapTable::new(10, taps.to_vec()).map_err(refused)?;
-    let config = ShaperConfig::new(24, table).map_err(refused)?;
-    match channels {
-        None => Ok(config),
-        Some(channels) => config
-            .for_motion(ShaperMotion {
-                channels,
-                modulo: false,
-            })
-            .map_err(refused),
-    }
 }

@@ -30,7 +30,8 @@ use posicast_model::rtl::stage::{StageConfig, StageError};
 
 use crate::Error;
 use crate::lockstep::Device;
-use crate::stage_bench::{StageBench, StageMismatch};
+use crate::lockstep::report::Mismatch;
+use crate::stage_bench::StageBench;
 
 pub use circle::{Circle, Circled, NoCircle};
 pub use contour::Contoured;
@@ -84,7 +85,7 @@ pub struct Compared {
     /// Outputs that differed, clock by clock.
     pub mismatches: u64,
     /// The first.
-    pub first: Option<StageMismatch>,
+    pub first: Option<Mismatch>,
     /// What the stage did not do.
     pub trouble: Option<Trouble>,
 }
@@ -277,7 +278,7 @@ fn compared(host: &Host<'_>, trouble: Option<Trouble>, whole: bool) -> Compared 
         clocks: host.bench.now(),
         whole,
         mismatches,
-        first: first.cloned(),
+        first,
         trouble,
     }
 }

@@ -6,16 +6,18 @@ mod controller;
 mod shapers;
 mod supervisor;
 
+use crate::support;
 use std::time::Duration;
 
-use posicast_testbench::formal::{ProofVerdict, Task, named, run, search};
+use posicast_testbench::blocks::proofs_named;
+use posicast_testbench::formal::{ProofVerdict, Task, run, search};
 
 const LIMIT: Duration = Duration::from_secs(120);
 
 #[track_caller]
 pub(crate) fn proven(name: &str, size: usize) {
     let folder = tempfile::tempdir().unwrap();
-    let outcome = run(&named(name).unwrap()[size], folder.path(), LIMIT).unwrap();
+    let outcome = run(&proofs_named(name).unwrap()[size], folder.path(), LIMIT).unwrap();
     assert!(outcome.is_good(), "{outcome:?}");
     assert!(outcome.assertions > 1 && !outcome.covers.is_empty(), "{outcome:?}");
 }
@@ -45,9 +47,7 @@ pub(crate) fn is_no_longer_proven(name: &str, from: &str, to: &str) {
 
 #[track_caller]
 fn broken(name: &str, from: &str, to: &str) -> Task {
-    let mut task = named(name).unwrap().swap_remove(0);
-    let found = task.modules.iter_mut().find(|module| module.text.contains(from));
-    let module = found.unwrap_or_else(|| panic!("the Verilog no longer has `{from}`: adapt the test"));
-    module.text = module.text.replacen(from, to, 1);
+    let mut task = proofs_named(name).unwrap().swap_remove(0);
+    task.modules = support::broken(&task.modules, from, to);
     task
 }

@@ -8,7 +8,7 @@ use posicast_testbench::lockstep::report::LockstepVerdict;
 use posicast_testbench::stimuli::{RegistersCoverage, RegistersRandom};
 
 fn bench(from: &str, to: &str) -> Bench {
-    Bench::new("registers", vec![emit(&everything(), "").unwrap()], from, to)
+    Bench::new("registers", &[emit(&everything(), "").unwrap()], from, to)
 }
 
 #[test]

@@ -24,7 +24,7 @@ fn failing(map: &RegisterMap, block: &mut dyn ClockedBlock, hardware: RegisterHa
 fn bank(from: &str, to: &str) -> Vec<String> {
     let map = everything();
     let modules = vec![posicast_hdl::registers::emit(&map, "").unwrap()];
-    let bench = Bench::new("registers", modules, from, to);
+    let bench = Bench::new("registers", &modules, from, to);
     failing(&map, &mut bench.verilated(), RegisterHardware::Still)
 }
 
@@ -33,7 +33,7 @@ fn component(component: &Component) {
         failing(component.map(), &mut component.model(1), RegisterHardware::Running),
         [""; 0]
     );
-    let bench = Bench::new(component.name(), emit(component, "alone", "alone").unwrap(), "", "");
+    let bench = Bench::new(component.name(), &emit(component, "alone", "alone").unwrap(), "", "");
     assert_eq!(
         failing(component.map(), &mut bench.verilated(), RegisterHardware::Running),
         [""; 0]

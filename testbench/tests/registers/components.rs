@@ -51,7 +51,7 @@ pub(crate) fn shaper(word_bits: u32, channels: Option<u32>) -> Component {
 }
 
 fn bench(component: &Component, from: &str, to: &str) -> Bench {
-    Bench::new(component.name(), emit(component, "alone", "alone").unwrap(), from, to)
+    Bench::new(component.name(), &emit(component, "alone", "alone").unwrap(), from, to)
 }
 
 fn lockstep(component: &Component, cycles: u64) {

@@ -1,48 +1,38 @@
 //! Verilog on disk, perhaps broken on purpose, and a run of it beside a model.
 
+use crate::support::broken;
 use posicast_hdl::emit::Module;
 use posicast_model::rtl::{ClockedBlock, Port};
+use posicast_testbench::blocks::Sources;
 use posicast_testbench::icarus::Icarus;
 use posicast_testbench::lockstep::report::{LockstepReport, LockstepVerdict};
 use posicast_testbench::lockstep::{self, Clock, Device, Instance, LockstepOptions};
 use posicast_testbench::stimuli::Stimuli;
 use posicast_testbench::verilator::{Verilated, VerilogSource, lint};
-use std::path::PathBuf;
-use tempfile::TempDir;
 
 pub(crate) struct Bench {
     name: String,
     top: String,
     ports: Vec<Port>,
-    files: Vec<PathBuf>,
-    _folder: TempDir,
+    sources: Sources,
 }
 
 impl Bench {
     /// `modules`, the top last, with the first `from` replaced by `to`.
-    pub(crate) fn new(name: &str, mut modules: Vec<Module>, from: &str, to: &str) -> Self {
-        let found = modules.iter_mut().find(|module| module.text.contains(from));
-        let module = found.unwrap_or_else(|| panic!("the Verilog no longer has `{from}`: adapt the test"));
-        module.text = module.text.replacen(from, to, 1);
-        let folder = tempfile::tempdir().unwrap();
-        let file = |module: &Module| {
-            let path = folder.path().join(format!("{}.v", module.name));
-            std::fs::write(&path, &module.text).unwrap();
-            path
-        };
+    pub(crate) fn new(name: &str, modules: &[Module], from: &str, to: &str) -> Self {
+        let modules = broken(modules, from, to);
         let top = modules.last().unwrap();
         Self {
             name: name.to_owned(),
             top: top.name.clone(),
             ports: top.ports.clone(),
-            files: modules.iter().map(file).collect(),
-            _folder: folder,
+            sources: Sources::of_modules(&modules).unwrap(),
         }
     }
 
     fn source(&self) -> VerilogSource<'_> {
         VerilogSource {
-            files: &self.files,
+            files: self.sources.files(),
             top: &self.top,
             ports: &self.ports,
         }
@@ -57,7 +47,7 @@ impl Bench {
     }
 
     pub(crate) fn assert_clean(&self) {
-        assert_eq!(lint(&self.files, &self.top).unwrap(), [""; 0]);
+        assert_eq!(lint(self.sources.files(), &self.top).unwrap(), [""; 0]);
     }
 
     pub(crate) fn run(

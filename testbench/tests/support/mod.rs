@@ -3,6 +3,7 @@
 use posicast_hdl::emit::Module;
 use posicast_testbench::blocks::{self, Block, Run, Sources};
 use posicast_testbench::lockstep::report::{LockstepReport, LockstepVerdict};
+use posicast_testbench::mutation::NamedMutant;
 
 /// Insists on a match, and shows the first mismatch.
 #[track_caller]
@@ -35,10 +36,10 @@ pub(crate) fn icarus_agrees(block: &dyn Block) {
     assert_match(&report, "Icarus");
 }
 
-/// Replaces the first `from` in the block's Verilog by `to`, and insists on a mismatch within so many clocks.
+/// Puts a mutant into the block's Verilog, the first `from` replaced by `to`, and insists on a mismatch within so many clocks.
 #[track_caller]
 pub(crate) fn caught(block: &dyn Block, from: &str, to: &str, cycles: u64) {
-    let sources = Sources::of_modules(&broken(block, from, to)).unwrap();
+    let sources = Sources::of_modules(&broken(&block.modules().unwrap(), from, to)).unwrap();
     let mut device = sources.verilated(block, 1).unwrap();
     let report = blocks::check(block, &mut device, cycles, 1, &mut |_| {}).unwrap();
     assert_eq!(report.result, LockstepVerdict::Mismatch, "`{to}` is not found");
@@ -52,12 +53,14 @@ pub(crate) fn caught(block: &dyn Block, from: &str, to: &str, cycles: u64) {
     );
 }
 
-/// The block's Verilog with the first `from` replaced by `to`.
+/// The Verilog with a mutant in it, which has the name of the test: the first `from` replaced by `to`.
 #[track_caller]
-pub(crate) fn broken(block: &dyn Block, from: &str, to: &str) -> Vec<Module> {
-    let mut modules = block.modules().unwrap();
-    let found = modules.iter_mut().find(|module| module.text.contains(from));
-    let module = found.unwrap_or_else(|| panic!("the Verilog no longer has `{from}`: adapt the test"));
-    module.text = module.text.replacen(from, to, 1);
-    modules
+pub(crate) fn broken(modules: &[Module], from: &str, to: &str) -> Vec<Module> {
+    let test = std::thread::current();
+    let name = test.name().unwrap_or("of a test");
+    let module = None;
+    let mutant = NamedMutant { name, module, from, to };
+    mutant
+        .put_into(modules)
+        .unwrap_or_else(|error| panic!("{error}: adapt the test"))
 }

@@ -5,6 +5,7 @@ use super::{Circles, ClosedLoop};
 use crate::output::{Table, UnitDocument};
 use posicast_model::plant::axis::ErrorFigures;
 use posicast_model::unit::AxisUnit;
+use posicast_testbench::lockstep::report::Mismatch;
 use posicast_testbench::stage_run::{Circled, Compared, Moved};
 use serde::Serialize;
 use std::fmt::Write;
@@ -171,7 +172,7 @@ struct SideBySideDocument {
     clocks: u64,
     whole: bool,
     mismatches: u64,
-    first: Option<FirstDocument>,
+    first: Option<Mismatch>,
 }
 
 impl SideBySideDocument {
@@ -180,22 +181,9 @@ impl SideBySideDocument {
             clocks: compared.clocks,
             whole: compared.whole,
             mismatches: compared.mismatches,
-            first: compared.first.as_ref().map(|first| FirstDocument {
-                time: first.clock,
-                signal: first.signal.clone(),
-                expected: format!("{:b}", first.expected),
-                actual: format!("{:b}", first.actual),
-            }),
+            first: compared.first.clone(),
         }
     }
-}
-
-#[derive(Serialize)]
-struct FirstDocument {
-    time: u64,
-    signal: String,
-    expected: String,
-    actual: String,
 }
 
 #[derive(Serialize)]

@@ -225,15 +225,16 @@ pub(super) fn equals_model(compared: &Compared, end: &str) -> Check {
         false => format!("from reset on, not to {end}"),
     };
     let detail = match (&compared.first, &compared.trouble) {
-        (Some(first), _) => format!(
-            "{} differs first in clock {}: expected {:#x}, found {:#x}; {} in {} clocks",
-            first.signal,
-            first.clock,
-            first.expected,
-            first.actual,
-            counted(compared.mismatches, "difference"),
-            compared.clocks
-        ),
+        (Some(first), _) => {
+            let [expected, found] = first.shown();
+            format!(
+                "{} differs first in clock {}: expected {expected}, found {found}; {} in {} clocks",
+                first.signal,
+                first.time,
+                counted(compared.mismatches, "difference"),
+                compared.clocks
+            )
+        }
         (None, Some(trouble)) => trouble.to_string(),
         (None, None) => format!("{} clocks, {reach}, no mismatch", compared.clocks),
     };

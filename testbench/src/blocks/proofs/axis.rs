@@ -1,50 +1,39 @@
-//! The proofs of the supervisor of an axis, one block with a property file for each of its subjects; of what stands between
-//! it and the drive; and of both and the PWM as a stage wires them.
+//! The proofs of the supervisor of an axis, one block with a property file for each of its subjects.
 
-use posicast_hdl::{axis, drive_command};
+use posicast_hdl::axis;
 use posicast_model::rtl::axis::{
     self as model, ALWAYS_OFF, CAUSE_BITS, Cause, Condition, HARMLESS, KICK, SupervisorState, TRANSITIONS, Transition,
 };
-use posicast_model::rtl::{drive_command as command_model, segments};
+use posicast_model::rtl::segments;
 
-use super::stage;
-use super::task::{Engine, INDUCTION, Task};
 use crate::Error;
+use crate::formal::{Engine, INDUCTION, Task};
 
 /// All of them.
-pub(super) fn tasks() -> Result<Vec<Task>, Error> {
+pub(in crate::blocks) fn tasks() -> Result<Vec<Task>, Error> {
     let block = (axis::emit("")?, model::ports());
     let macros = macros();
-    let macros: Vec<(&str, String)> = macros
-        .iter()
-        .map(|(name, value)| (name.as_str(), value.clone()))
-        .collect();
-    let task = |name, engine, text| Task::new(name, "all inputs", engine, block.clone()).properties(&macros, text);
-    let mut tasks = vec![
-        task("axis", Engine::Pdr, include_str!("../../formal/axis.sv")),
-        task("axis_table", INDUCTION, include_str!("../../formal/axis_table.sv")),
-        task("axis_causes", INDUCTION, include_str!("../../formal/axis_causes.sv")),
-        task("axis_brake", INDUCTION, include_str!("../../formal/axis_brake.sv")),
+    let task = |name, engine, text| {
+        Task::new(name, "all inputs", engine, block.clone())
+            .macros(&macros)
+            .properties(&[], text)
+    };
+    Ok(vec![
+        task("axis", Engine::Pdr, include_str!("../../../formal/axis.sv")),
+        task("axis_table", INDUCTION, include_str!("../../../formal/axis_table.sv")),
+        task("axis_causes", INDUCTION, include_str!("../../../formal/axis_causes.sv")),
+        task("axis_brake", INDUCTION, include_str!("../../../formal/axis_brake.sv")),
         task(
             "axis_monitors",
             INDUCTION,
-            include_str!("../../formal/axis_monitors.sv"),
+            include_str!("../../../formal/axis_monitors.sv"),
         ),
-        task("axis_lines", INDUCTION, include_str!("../../formal/axis_lines.sv")),
-        Task::new(
-            "drive_command",
-            "all inputs",
-            INDUCTION,
-            (drive_command::emit("")?, command_model::ports()),
-        )
-        .properties(&macros, include_str!("../../formal/drive_command.sv")),
-    ];
-    tasks.extend(stage::tasks(&macros)?);
-    Ok(tasks)
+        task("axis_lines", INDUCTION, include_str!("../../../formal/axis_lines.sv")),
+    ])
 }
 
 /// States, causes and the transition table, all from the model.
-fn macros() -> Vec<(String, String)> {
+pub(in crate::blocks) fn macros() -> Vec<(String, String)> {
     let mut macros: Vec<(String, String)> = SupervisorState::ALL
         .map(|state| (state.name().to_owned(), format!("3'd{}", state as u8)))
         .into();

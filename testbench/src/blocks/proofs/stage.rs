@@ -5,9 +5,10 @@ use posicast_hdl::emit::Module;
 use posicast_model::rtl::component::Component;
 use posicast_model::rtl::stage::StageAxis;
 
-use super::task::{INDUCTION, Task, refused};
+use super::axis;
 use crate::Error;
-use crate::blocks::library_stage;
+use crate::blocks::library::stage;
+use crate::formal::{INDUCTION, Task, refused};
 
 /// Blocks of an axis that only say where it should be and where it is: left out, so that they say anything.
 const LEFT_OUT: [&str; 8] = [
@@ -22,8 +23,8 @@ const LEFT_OUT: [&str; 8] = [
 ];
 
 /// The axes of the stage that the other rungs of verification take: one with what bring-up needs, one with a linear scale.
-pub(super) fn tasks(macros: &[(&str, String)]) -> Result<Vec<Task>, Error> {
-    let stage = library_stage()?;
+pub(in crate::blocks) fn tasks() -> Result<Vec<Task>, Error> {
+    let stage = stage()?;
     let component = Component::stage(&stage).map_err(refused)?;
     let mut modules = component::emit(&component, "stage", "stage")?;
     for block in LEFT_OUT {
@@ -32,23 +33,21 @@ pub(super) fn tasks(macros: &[(&str, String)]) -> Result<Vec<Task>, Error> {
             return Err(refused(format!("the stage has no block `{block}`")));
         }
     }
-    stage.axes.iter().map(|axis| task(axis, &modules, macros)).collect()
+    stage.axes.iter().map(|axis| task(axis, &modules)).collect()
 }
 
 /// `modules` are those of the stage, sub-modules first.
-fn task(axis: &StageAxis, modules: &[Module], macros: &[(&str, String)]) -> Result<Task, Error> {
+fn task(axis: &StageAxis, modules: &[Module]) -> Result<Task, Error> {
     let name = format!("stage_{}", axis.name);
     let at = modules.iter().position(|module| module.name == name);
     let at = at.ok_or_else(|| refused(format!("the stage has no `{name}`")))?;
     let filter_clocks = axis.supervision.filter_clocks;
-    let mut macros = macros.to_vec();
-    macros.push(("FILTER_CLOCKS", format!("7'd{filter_clocks}")));
+    let filter = [("FILTER_CLOCKS", format!("7'd{filter_clocks}"))];
     let size = format!("axis {}, lines filtered for {filter_clocks} clocks", axis.name);
     let block = (modules[..=at].to_vec(), modules[at].ports.clone());
-    Ok(
-        Task::new("stage_axis", &size, INDUCTION, block)
-            .properties(&macros, include_str!("../../formal/stage_axis.sv")),
-    )
+    Ok(Task::new("stage_axis", &size, INDUCTION, block)
+        .macros(&axis::macros())
+        .properties(&filter, include_str!("../../../formal/stage_axis.sv")))
 }
 
 /// Nothing is left in it but its ports: its outputs are anything, in every clock. Without a wire Yosys would take it for a

@@ -4,13 +4,14 @@ use posicast_hdl::emit::Module;
 use posicast_hdl::shaper;
 use posicast_model::rtl::Port;
 use posicast_model::rtl::shaper::{ShaperConfig, ShaperMotion, ports};
-use posicast_model::taps::{COEFFICIENT_BITS, Tap, TapTable};
+use posicast_model::taps::COEFFICIENT_BITS;
 
-use super::task::{INDUCTION, Task, part, refused};
 use crate::Error;
+use crate::blocks::shaper::tap_table as table;
+use crate::formal::{INDUCTION, Task, part, refused};
 
 /// All of them.
-pub(super) fn tasks() -> Result<Vec<Task>, Error> {
+pub(in crate::blocks) fn tasks() -> Result<Vec<Task>, Error> {
     Ok(vec![
         plain()?,
         small()?,
@@ -18,15 +19,6 @@ pub(super) fn tasks() -> Result<Vec<Task>, Error> {
         channel_sums(true)?,
         channel_sums(false)?,
     ])
-}
-
-/// Taps of delay and coefficient.
-fn table(fraction: u32, taps: &[(u32, i32)]) -> Result<TapTable, Error> {
-    let taps = taps.iter().map(|&(delay_samples, coefficient)| Tap {
-        delay_samples,
-        coefficient,
-    });
-    TapTable::new(fraction, taps.collect()).map_err(refused)
 }
 
 /// The plain shaper with the smallest memories; delays have 6 bits, the rest of a tap's word is its coefficient.
@@ -38,7 +30,7 @@ fn plain() -> Result<Task, Error> {
     ];
     let block = (shaper::emit(&config, "")?, ports(&config));
     let task = Task::new("shaper", "32 bits, 64 samples, 64 taps", INDUCTION, block)
-        .properties(&macros, include_str!("../../formal/shaper.sv"));
+        .properties(&macros, include_str!("../../../formal/shaper.sv"));
     Ok(Task {
         leaves_products_open: true,
         ..task
@@ -61,7 +53,7 @@ fn small() -> Result<Task, Error> {
     ];
     let block = (shaper::emit(&config, "")?, ports(&config));
     let task = Task::new("shaper_small", "6 bits, 4 samples, 4 taps", INDUCTION, block)
-        .properties(&macros, include_str!("../../formal/shaper_small.sv"));
+        .properties(&macros, include_str!("../../../formal/shaper_small.sv"));
     Ok(Task {
         keeps_memories: true,
         ..task
@@ -72,7 +64,7 @@ fn small() -> Result<Task, Error> {
 fn motion() -> Result<Task, Error> {
     let config = motion_config(true)?;
     let block = (shaper::emit(&config, "")?, ports(&config));
-    let text = include_str!("../../formal/shaper_motion.sv");
+    let text = include_str!("../../../formal/shaper_motion.sv");
     let size = "3 channels, 64 samples, 64 taps";
     Ok(of_motion("shaper_motion", size, &config, block, text))
 }
@@ -81,7 +73,7 @@ fn motion() -> Result<Task, Error> {
 fn channel_sums(modulo: bool) -> Result<Task, Error> {
     let config = motion_config(modulo)?;
     let block = part(shaper::emit(&config, "")?, "channel_sums")?;
-    let text = include_str!("../../formal/channel_sums.sv");
+    let text = include_str!("../../../formal/channel_sums.sv");
     let size = if modulo { "24 bits, position wraps" } else { "24 bits" };
     Ok(of_motion("channel_sums", size, &config, block, text))
 }

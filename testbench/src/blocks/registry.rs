@@ -1,0 +1,246 @@
+//! The registry: one row for each kind of block, from which all rungs of the verification ladder take it.
+//!
+//! | a row's | is taken by |
+//! |---|---|
+//! | [`benches`](RegistryRow::benches) | `posicast verify`, the second simulator, netlists, coverage |
+//! | [`small`](RegistryRow::small) | mutants |
+//! | [`proofs`](RegistryRow::proofs) | the formal proofs |
+//! | [`areas`](RegistryRow::areas) | `docs/area.md` |
+//!
+//! A new block has its row in the file of its bench, and a line in [`REGISTRY`].
+
+use posicast_hdl::emit::Module;
+use posicast_model::rtl::divider::DividerConfig;
+use posicast_model::rtl::pwm::PwmConfig;
+use posicast_model::rtl::shaper::ShaperConfig;
+use posicast_model::rtl::sliding_mode::Settings;
+use posicast_model::rtl::stage::StageConfig;
+
+use super::{
+    Block, ComponentBlock, axis, cascade, component, divider, drive_command, encoder_generator, excitation,
+    linear_scale, part, pulse_counter, pwm, registers, segments, shaper, sliding_mode, stage, trace,
+};
+use crate::Error;
+use crate::formal::Task;
+
+/// Every kind of block, in the order of `posicast verify`.
+const REGISTRY: [RegistryRow; 22] = [
+    pulse_counter::ROW,
+    divider::ROW,
+    pwm::ROW,
+    sliding_mode::ROW,
+    shaper::ROW,
+    cascade::ROW,
+    segments::ROW,
+    axis::ROW,
+    drive_command::ROW,
+    trace::ROW,
+    linear_scale::ROW,
+    encoder_generator::ROW,
+    excitation::ROW,
+    part::TIME_BASE,
+    part::SCHEDULE,
+    part::DIVIDER_SHARE,
+    part::GROUP,
+    part::SAMPLE_SELECT,
+    part::SETTING_BANKS,
+    registers::ROW,
+    component::ROW,
+    stage::ROW,
+];
+
+/// Blocks on their benches.
+pub(super) type Benches = Vec<Box<dyn Block>>;
+
+/// A kind of block.
+pub(super) struct RegistryRow {
+    /// Its name everywhere. Components and stages have names of their own.
+    pub(super) name: &'static str,
+    /// Its benches around a machine: one, or one for each that the machine has.
+    pub(super) benches: fn(&BenchSizes) -> Result<Benches, Error>,
+    /// A small size, with what it is called: enough for every path, and mutants of wide words that only repeat each other are
+    /// few.
+    pub(super) small: fn() -> Result<Vec<SmallBench>, Error>,
+    /// What is proven of it.
+    pub(super) proofs: fn() -> Result<Vec<Task>, Error>,
+    /// The sizes whose area is watched.
+    pub(super) areas: fn() -> Result<Vec<AreaRow>, Error>,
+}
+
+impl RegistryRow {
+    /// A row of nothing, for `..RegistryRow::EMPTY`.
+    pub(super) const EMPTY: Self = Self {
+        name: "",
+        benches: |_| Ok(Vec::new()),
+        small: || Ok(Vec::new()),
+        proofs: || Ok(Vec::new()),
+        areas: || Ok(Vec::new()),
+    };
+}
+
+/// The sizes of benches: those of a machine, or of the [`library`](super::library()).
+#[derive(Debug, Clone)]
+pub struct BenchSizes {
+    /// What the names of modules begin with: the machine's name, or nothing.
+    pub prefix: String,
+    /// The axes that have an encoder, or `alone`.
+    pub with_encoder: String,
+    /// The axes that have a controller, or `alone`.
+    pub with_controller: String,
+    /// Clocks per tick.
+    pub tick: DividerConfig,
+    /// The PWMs, each with its axes.
+    pub pwms: Vec<(PwmConfig, String)>,
+    /// The shaper for motion.
+    pub motion: ShaperConfig,
+    /// Number of axes.
+    pub axes: usize,
+    /// Settings of a controller.
+    pub settings: Settings,
+    /// The components.
+    pub components: Vec<ComponentBlock>,
+    /// The stage, where it is compared among the rest.
+    pub stage: Option<StageConfig>,
+}
+
+/// A block at a size, and what the size is called.
+pub struct SmallBench {
+    /// The block.
+    pub block: Box<dyn Block>,
+    /// Its size, for a table.
+    pub size: &'static str,
+}
+
+/// A block at a size whose area is watched.
+#[derive(Debug, Clone)]
+pub struct AreaRow {
+    /// The block's name everywhere.
+    pub block: &'static str,
+    /// Its size, where it has several.
+    pub size: &'static str,
+    /// Its Verilog, the top last.
+    pub modules: Vec<Module>,
+    /// What it may take, by the hardware's specification, where that says it.
+    pub budget: Option<AreaBudget>,
+    /// Why it takes more than its budget; for one that does not, what takes most.
+    pub note: &'static str,
+}
+
+/// What a block may take.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct AreaBudget {
+    /// Look-up tables.
+    pub luts: u64,
+    /// Flip-flops.
+    pub flip_flops: u64,
+}
+
+impl AreaRow {
+    /// The block is that of the row.
+    pub(super) fn new(size: &'static str, modules: Vec<Module>) -> Self {
+        Self {
+            block: "",
+            size,
+            modules,
+            budget: None,
+            note: "",
+        }
+    }
+
+    pub(super) fn budget(self, luts: u64, flip_flops: u64) -> Self {
+        let budget = Some(AreaBudget { luts, flip_flops });
+        Self { budget, ..self }
+    }
+
+    pub(super) fn note(self, note: &'static str) -> Self {
+        Self { note, ..self }
+    }
+}
+
+/// The single bench of a row.
+pub(super) fn one(block: impl Block + 'static) -> Benches {
+    vec![Box::new(block)]
+}
+
+/// The single small size of a row.
+pub(super) fn small(block: impl Block + 'static, size: &'static str) -> Vec<SmallBench> {
+    let block = Box::new(block);
+    vec![SmallBench { block, size }]
+}
+
+/// Every kind of block around a machine of these sizes.
+///
+/// # Errors
+/// [`Error::Option`] where a size is refused, [`Error::Unlike`] where a shaper lacks a port that its stimuli drive.
+pub fn benches(sizes: &BenchSizes) -> Result<Vec<Box<dyn Block>>, Error> {
+    joined(|row| (row.benches)(sizes))
+}
+
+/// Every kind of block that gets mutants, each at a small size.
+///
+/// # Errors
+/// As [`benches`].
+pub fn small_benches() -> Result<Vec<SmallBench>, Error> {
+    joined(|row| (row.small)())
+}
+
+/// All proofs.
+///
+/// # Errors
+/// [`Error::Block`] where a block cannot be written as Verilog.
+pub fn proofs() -> Result<Vec<Task>, Error> {
+    joined(|row| (row.proofs)())
+}
+
+/// The proofs with this property file.
+///
+/// # Errors
+/// As [`proofs`], and [`Error::Option`] where there are none.
+pub fn proofs_named(name: &str) -> Result<Vec<Task>, Error> {
+    let all = proofs()?;
+    let names: Vec<&str> = all.iter().map(|task| task.name).collect();
+    if !names.contains(&name) {
+        let names = names.join(", ");
+        return Err(Error::Option(format!(
+            "no proofs for `{name}`: there are some for {names}"
+        )));
+    }
+    Ok(all.into_iter().filter(|task| task.name == name).collect())
+}
+
+/// All sizes whose area is watched.
+///
+/// # Errors
+/// As [`proofs`].
+pub fn areas() -> Result<Vec<AreaRow>, Error> {
+    joined(|row| {
+        let of_row = |area| AreaRow {
+            block: row.name,
+            ..area
+        };
+        Ok((row.areas)()?.into_iter().map(of_row).collect())
+    })
+}
+
+fn joined<T>(of: impl Fn(&RegistryRow) -> Result<Vec<T>, Error>) -> Result<Vec<T>, Error> {
+    let lists: Result<Vec<Vec<T>>, Error> = REGISTRY.iter().map(of).collect();
+    Ok(lists?.into_iter().flatten().collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::blocks::library_sizes;
+
+    /// Each row makes blocks of its own name, for every rung; what joins blocks has names of its own.
+    #[test]
+    fn unit_a_row_is_of_one_block() {
+        let sizes = library_sizes().unwrap();
+        for row in REGISTRY.iter().filter(|row| !matches!(row.name, "component" | "stage")) {
+            let mut benches = (row.benches)(&sizes).unwrap();
+            assert!(!benches.is_empty(), "{} has no bench", row.name);
+            benches.extend((row.small)().unwrap().into_iter().map(|small| small.block));
+            assert!(benches.iter().all(|bench| bench.name() == row.name), "{}", row.name);
+        }
+    }
+}
