@@ -20,6 +20,7 @@ pub fn emit(component: &Component, name: &str, prefix: &str) -> Result<Vec<Modul
     let map = component.map();
     let header = Header {
         about: format!("{}\nAvalon-MM agent avs_*: see docs/registers.md.", map.about()),
+        ports: Vec::new(),
         parameters: registers::parameters(map),
     };
     joined(component.whole(), name, prefix, &header)
@@ -68,6 +69,7 @@ fn block(block: &ComponentPart, top: &str, prefix: &str) -> Result<Vec<Module>, 
         ComponentPart::Joined(whole) => {
             let header = Header {
                 about: format!("Axis {} of the stage, without its registers.", whole.name()),
+                ports: Vec::new(),
                 parameters: Vec::new(),
             };
             let of_axis = |owner: &str| format!("{owner}_{}", whole.name());

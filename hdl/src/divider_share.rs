@@ -5,8 +5,8 @@
 use crate::emit::{self, EmitError, EmitOptions, Header, Module, Parameter};
 use crate::prelude::*;
 use crate::simulation::{Pins, Simulated, SimulationError};
-use posicast_model::rtl::ClockedBlock;
-use posicast_model::rtl::divider_share::{MOST_CHANNELS, SHARE_CLOCKS, ports};
+use posicast_model::rtl::divider_share::{MOST_CHANNELS, PORTS, SHARE_CLOCKS, ports};
+use posicast_model::rtl::{ClockedBlock, port_notes};
 
 kernel! {
     /// C channels.
@@ -116,7 +116,8 @@ pub fn emit(channels: usize, prefix: &str) -> Result<Vec<Module>, EmitError> {
         top: base_name(channels),
         prefix: prefix.to_owned(),
         header: Header {
-            about: "One divider for all pulse counters: their divisions one after the other.".to_owned(),
+            about: String::new(),
+            ports: port_notes(PORTS),
             parameters: vec![
                 parameter("channels", channels.to_string(), "pulse counters"),
                 parameter("share_clocks", SHARE_CLOCKS.to_string(), "clocks per channel"),

@@ -1,12 +1,13 @@
-//! What the axes of a stage have to do with each other: common start, group stop, emergency stop.
+//! What the axes of a stage have to do with each other: common start, group stop, emergency stop. They start in one clock, and
+//! one that stops for a fault stops all.
 //!
 //! The reference is `posicast_model::rtl::group`.
 
 use crate::emit::{self, EmitError, EmitOptions, Header, Module, Parameter};
 use crate::prelude::*;
 use crate::simulation::{Pins, Simulated, SimulationError};
-use posicast_model::rtl::ClockedBlock;
-use posicast_model::rtl::group::ports;
+use posicast_model::rtl::group::{PORTS, ports};
+use posicast_model::rtl::{ClockedBlock, port_notes};
 
 kernel! {
     /// N axes.
@@ -112,7 +113,8 @@ pub fn emit(axes: usize, prefix: &str) -> Result<Vec<Module>, EmitError> {
         top: base_name(axes),
         prefix: prefix.to_owned(),
         header: Header {
-            about: "Axes of a stage: they start in one clock, and one that stops for a fault stops all.".to_owned(),
+            about: String::new(),
+            ports: port_notes(PORTS),
             parameters: vec![Parameter {
                 name: "axes".to_owned(),
                 value: axes.to_string(),

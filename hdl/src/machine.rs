@@ -58,6 +58,7 @@ pub fn emit_machine(name: &str, shapers: &[AxisShaper]) -> Result<Vec<Module>, E
     });
     let header = Header {
         about: format!("Input shapers of {name}. `strobe` is high for one clock per sample."),
+        ports: Vec::new(),
         parameters: parameters.collect(),
     };
     modules.push(compose(name, &header, &SHARED_INPUTS, &instances)?);

@@ -5,8 +5,8 @@
 use crate::emit::{self, EmitError, EmitOptions, Header, Module};
 use crate::prelude::*;
 use crate::simulation::{Pins, Simulated, SimulationError};
-use posicast_model::rtl::ClockedBlock;
-use posicast_model::rtl::sample_select::ports;
+use posicast_model::rtl::sample_select::{PORTS, ports};
+use posicast_model::rtl::{ClockedBlock, port_notes};
 
 kernel! {
     /// W word, C channels.
@@ -87,7 +87,8 @@ pub fn emit(word_bits: u32, channels: usize, prefix: &str) -> Result<Vec<Module>
         top: base_name(word_bits, channels),
         prefix: prefix.to_owned(),
         header: Header {
-            about: "Samples from the host's registers or from pins, a clock late.".to_owned(),
+            about: String::new(),
+            ports: port_notes(PORTS),
             parameters: Vec::new(),
         },
     };

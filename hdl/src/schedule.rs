@@ -8,8 +8,8 @@
 use crate::emit::{self, EmitError, EmitOptions, Header, Module, Parameter};
 use crate::prelude::*;
 use crate::simulation::{Simulated, SimulationError};
-use posicast_model::rtl::ClockedBlock;
-use posicast_model::rtl::schedule::{ScheduleConfig, ports};
+use posicast_model::rtl::schedule::{PORTS, ScheduleConfig, ports};
+use posicast_model::rtl::{ClockedBlock, port_notes};
 
 kernel! {
     struct Schedule(config: &ScheduleConfig);
@@ -72,7 +72,8 @@ pub fn emit(config: &ScheduleConfig, prefix: &str) -> Result<Vec<Module>, EmitEr
         top: base_name(config),
         prefix: prefix.to_owned(),
         header: Header {
-            about: "Schedule: the controllers start a fixed number of clocks after each tick.".to_owned(),
+            about: String::new(),
+            ports: port_notes(PORTS),
             parameters: vec![Parameter {
                 name: "control_clocks".to_owned(),
                 value: config.control_clocks().to_string(),

@@ -1,14 +1,15 @@
 //! The settings of a controller that stands alone: bank 0 a ROM with the machine's, banks 1 and 2 to be loaded.
 //!
 //! The reference is `posicast_model::rtl::setting_banks`. Which rows were written since the reset is kept in flip-flops,
-//! since a memory has no reset: others read as 0.
+//! since a memory has no reset: others read as 0. A
+//! host reads any row back while the controller is not busy.
 
 use crate::emit::{self, EmitError, EmitOptions, Header, LIBRARY, Module, digest, shared_name};
 use crate::prelude::*;
 use crate::simulation::{Simulated, SimulationError};
-use posicast_model::rtl::ClockedBlock;
-use posicast_model::rtl::setting_banks::ports;
+use posicast_model::rtl::setting_banks::{PORTS, ports};
 use posicast_model::rtl::sliding_mode::{SettingRow, Settings};
+use posicast_model::rtl::{ClockedBlock, port_notes};
 
 kernel! {
     struct SettingBanks(machine: &Settings, rom: &str);
@@ -148,10 +149,8 @@ pub fn emit(machine: &Settings, prefix: &str) -> Result<Vec<Module>, EmitError> 
         // What holds a machine's contents begins with the prefix: here the names say which contents.
         prefix: if prefix.is_empty() { "" } else { LIBRARY }.to_owned(),
         header: Header {
-            about: "Settings of a controller: bank 0 is the machine's, banks 1 and 2 can be loaded.\n\
-                    A row that was not written since the reset reads as 0.\n\
-                    A host reads any row back while the controller is not busy."
-                .to_owned(),
+            about: String::new(),
+            ports: port_notes(PORTS),
             parameters: Vec::new(),
         },
     };

@@ -1,13 +1,14 @@
 //! The time base of a component that stands alone: ticks at a fixed distance, a clock counter, a tick counter.
+//! `divide` is high in the clock after each tick.
 //!
 //! The reference is `posicast_model::rtl::time_base`.
 
 use crate::emit::{self, EmitError, EmitOptions, Header, Module, Parameter};
 use crate::prelude::*;
 use crate::simulation::{Simulated, SimulationError};
-use posicast_model::rtl::ClockedBlock;
 use posicast_model::rtl::divider::DividerConfig;
-use posicast_model::rtl::time_base::ports;
+use posicast_model::rtl::time_base::{PORTS, ports};
+use posicast_model::rtl::{ClockedBlock, port_notes};
 
 kernel! {
     struct TimeBase(divider: &DividerConfig);
@@ -74,9 +75,8 @@ pub fn emit(divider: &DividerConfig, prefix: &str) -> Result<Vec<Module>, EmitEr
         top: base_name(divider),
         prefix: prefix.to_owned(),
         header: Header {
-            about: "Time base: a tick every so many clocks, a counter of clocks, a counter of ticks.\n\
-                    divide is high in the clock after each tick."
-                .to_owned(),
+            about: String::new(),
+            ports: port_notes(PORTS),
             parameters: vec![Parameter {
                 name: "tick_clocks".to_owned(),
                 value: divider.tick_clocks().to_string(),

@@ -33,7 +33,7 @@ fn lockstep_catches_outputs_that_stay_on_beyond_ready() {
 
 #[test]
 fn lockstep_catches_a_limit_that_is_an_lsb_too_wide() {
-    caught(&block(), "odd = ONE_BIT", "odd = NO_BIT", 300_000);
+    caught(&block(), "odd = 17'd1", "odd = 17'd0", 300_000);
 }
 
 #[test]

@@ -256,7 +256,7 @@ fn lockstep_catches_divisions_in_another_order() {
 
 #[test]
 fn lockstep_catches_controllers_that_start_a_clock_early() {
-    caught(&block(1), "(since == LAST)", "(since + ONE == LAST)", 300_000);
+    caught(&block(1), "(since == LAST)", "(since + 17'd1 == LAST)", 300_000);
 }
 
 #[test]

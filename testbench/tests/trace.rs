@@ -56,7 +56,7 @@ fn lockstep_catches_words_that_were_not_written() {
 fn lockstep_catches_rows_that_are_not_dropped_while_waiting() {
     caught(
         &trace(256),
-        "oldest_next = oldest + ONE_WORD",
+        "oldest_next = oldest + 8'd1",
         "oldest_next = oldest",
         300_000,
     );

@@ -21,8 +21,8 @@ mod timer;
 use crate::emit::{self, EmitError, EmitOptions, Header, Module, Parameter};
 use crate::simulation::{Simulated, SimulationError};
 use kernel::Axis;
-use posicast_model::rtl::ClockedBlock;
-use posicast_model::rtl::axis::{CLEAR_CLOCKS, LINE_CLOCKS, WATCH_CLOCKS, ports};
+use posicast_model::rtl::axis::{CLEAR_CLOCKS, LINE_CLOCKS, PORTS, WATCH_CLOCKS, ports};
+use posicast_model::rtl::{ClockedBlock, port_notes};
 
 /// The supervisor in RustHDL's own simulator.
 ///
@@ -52,6 +52,7 @@ pub fn emit(prefix: &str) -> Result<Vec<Module>, EmitError> {
             about: "Supervisor of an axis: OFF, READY, HOLD, RUN, QUICK_STOP, FAULT.\n\
                     Every cause ends in a stop: outputs off at once, or a quick stop and then the brake."
                 .to_owned(),
+            ports: port_notes(PORTS),
             parameters: vec![
                 parameter(
                     "line_clocks",

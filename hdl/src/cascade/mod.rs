@@ -11,8 +11,8 @@ use crate::compiled::{self, Compiled};
 use crate::emit::{EmitError, EmitOptions, Header, Module, Parameter};
 use crate::simulation::{Simulated, SimulationError};
 use kernel::Cascade;
-use posicast_model::rtl::ClockedBlock;
-use posicast_model::rtl::cascade::{CascadeConfig, pass_clocks, ports};
+use posicast_model::rtl::cascade::{CascadeConfig, PORTS, pass_clocks, ports};
+use posicast_model::rtl::{ClockedBlock, port_notes};
 
 /// The cascade with words of W bits, sums of S, rings of 2^A samples and 2^I stages.
 macro_rules! cascade {
@@ -97,6 +97,7 @@ fn header(config: &CascadeConfig) -> Header {
         about: "Cascade of half sums: y_k[n] = y_(k-1)[n] + y_(k-1)[n - d_k], y = (y_N + 2^(N-1)) >> N\n\
                 strobe: x is a sample; start: begin anew, all samples before are x. Two clocks per stage."
             .to_owned(),
+        ports: port_notes(PORTS),
         parameters: vec![
             parameter("word_bits", config.word_bits(), "x and y, two's complement"),
             parameter("stages", stages, "N; their delays stand in the ROM"),

@@ -7,8 +7,8 @@ mod kernel;
 use crate::emit::{self, EmitError, EmitOptions, Header, Module, Parameter};
 use crate::simulation::{Simulated, SimulationError};
 use kernel::Divider;
-use posicast_model::rtl::ClockedBlock;
-use posicast_model::rtl::divider::{DIVISION_CLOCKS, DividerConfig, ports};
+use posicast_model::rtl::divider::{DIVISION_CLOCKS, DividerConfig, PORTS, ports};
+use posicast_model::rtl::{ClockedBlock, port_notes};
 
 /// The divider in RustHDL's own simulator.
 ///
@@ -47,6 +47,7 @@ pub fn emit(config: &DividerConfig, prefix: &str) -> Result<Vec<Module>, EmitErr
             about: "Velocity: quotient = steps * tick_clocks * 2^16 / elapsed, toward zero, in Q16.16\n\
                     elapsed = 0 stands for one tick. One division at a time, always as long."
                 .to_owned(),
+            ports: port_notes(PORTS),
             parameters: vec![
                 parameter("tick_clocks", config.tick_clocks(), "clocks per tick"),
                 parameter("division_clocks", DIVISION_CLOCKS, "from start to done"),

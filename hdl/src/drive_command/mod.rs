@@ -7,8 +7,8 @@ mod kernel;
 use crate::emit::{self, EmitError, EmitOptions, Header, Module};
 use crate::simulation::{Simulated, SimulationError};
 use kernel::DriveCommand;
-use posicast_model::rtl::ClockedBlock;
-use posicast_model::rtl::drive_command::ports;
+use posicast_model::rtl::drive_command::{PORTS, ports};
+use posicast_model::rtl::{ClockedBlock, port_notes};
 
 /// The drive command in RustHDL's own simulator.
 ///
@@ -33,6 +33,7 @@ pub fn emit(prefix: &str) -> Result<Vec<Module>, EmitError> {
             about: "What the PWM is told: the controller's duty, saturated, while the supervisor wants it;\n\
                     in direct mode, in READY and while it is kicked, a manual duty with a limit; else nothing."
                 .to_owned(),
+            ports: port_notes(PORTS),
             parameters: Vec::new(),
         },
     };

@@ -10,6 +10,7 @@
 use super::collect::literal_value;
 use super::error::EmitCause;
 use super::ir::Expression;
+use super::names;
 use super::paths::{self, Loops};
 use super::scope::{Role, Scope};
 use super::types::{BIT, Type};
@@ -75,6 +76,9 @@ impl<'a> Writer<'a> {
         let net = self.values.scope.net(id);
         match net.role {
             Role::RegisterClock | Role::RegisterReset => Err(EmitCause::ReadsSubmoduleInput(net.raw.replace('$', "."))),
+            Role::Constant(pattern) if names::says_its_value(&net.name, pattern) => {
+                Ok(Value::Literal { pattern, ty: net.ty })
+            }
             role if role.is_input_below() => Err(EmitCause::ReadsSubmoduleInput(net.raw.replace('$', "."))),
             _ => Ok(Value::Part {
                 net: id,

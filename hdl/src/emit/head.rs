@@ -6,13 +6,12 @@
 const HEADS: &[(&str, &str)] = include!(concat!(env!("OUT_DIR"), "/heads.rs"));
 
 /// Letters beyond ASCII in sentences, and what is written instead.
-const WORDS: [(char, &str); 12] = [
+const WORDS: [(char, &str); 11] = [
     ('−', "-"),
     ('·', "*"),
     ('×', "x"),
     ('…', "..."),
     ('Σ', "sum of"),
-    ('∫', "integral of"),
     ('±', "+/-"),
     ('≥', ">="),
     ('≤', "<="),
@@ -37,7 +36,7 @@ fn plain(text: &str) -> Vec<String> {
         } else if drawn {
             lines.push(line.chars().map(drawing).collect());
         } else {
-            let sentence = words(line);
+            let sentence = plain_words(line);
             let begins = sentence.is_empty() || sentence.starts_with(['-', '|', '#']);
             match lines.last_mut() {
                 Some(last) if goes_on && !begins => {
@@ -53,7 +52,7 @@ fn plain(text: &str) -> Vec<String> {
 }
 
 /// A line of text without links and marks.
-fn words(line: &str) -> String {
+pub(super) fn plain_words(line: &str) -> String {
     let mut text = String::new();
     let mut rest = line;
     while let Some((before, link)) = rest.split_once('[') {
@@ -80,6 +79,9 @@ fn words(line: &str) -> String {
     }
     text.push_str(rest);
     let mut plain = text.replace("super::", "").replace("\\|", "|");
+    plain = plain
+        .replace('∫', "integral of ")
+        .replace("integral of  ", "integral of ");
     for (letter, instead) in WORDS {
         plain = plain.replace(letter, instead);
     }

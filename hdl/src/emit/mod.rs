@@ -68,7 +68,7 @@ pub use library::{add, own_name, shared_name};
 pub use names::LIBRARY;
 pub use types::Type;
 
-use posicast_model::rtl::Port;
+use posicast_model::rtl::{Port, PortNote};
 use rust_hdl_core::prelude::Block;
 
 /// One Verilog module, one file `NAME.v`.
@@ -116,6 +116,8 @@ pub struct Header {
     pub about: String,
     /// What it was built with.
     pub parameters: Vec<Parameter>,
+    /// What its ports are for.
+    pub ports: Vec<PortNote>,
 }
 
 /// A row of the header's table.

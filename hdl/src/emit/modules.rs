@@ -10,7 +10,7 @@ use super::print::{self, Lines};
 use super::scope::{NetId, Role, Scope};
 use super::statements::{comment_text, statements};
 use super::{EmitOptions, Module, flow, head};
-use posicast_model::rtl::{Direction, Port};
+use posicast_model::rtl::{Direction, Port, PortNote};
 use rust_hdl_core::ast::VerilogStatement;
 use rust_hdl_core::prelude::Verilog;
 use std::collections::{BTreeMap, BTreeSet};
@@ -47,7 +47,7 @@ pub(super) fn modules(top: &Node, options: &EmitOptions) -> Result<Vec<Module>, 
         by_name: BTreeMap::new(),
         untagged: BTreeMap::new(),
     };
-    let draft = modules.draft(top)?;
+    let draft = modules.draft(top, &options.header.ports)?;
     let top_name = names::module_name(&options.prefix, draft.of_machine, &options.top);
     modules.take(top, &top_name, &draft)?;
     let about: Vec<_> = draft.about.iter().map(String::as_str).collect();
@@ -57,10 +57,10 @@ pub(super) fn modules(top: &Node, options: &EmitOptions) -> Result<Vec<Module>, 
 }
 
 impl Modules<'_> {
-    fn draft(&mut self, node: &Node) -> Result<Draft, EmitError> {
+    fn draft(&mut self, node: &Node, notes: &[PortNote]) -> Result<Draft, EmitError> {
         match &node.code {
-            Verilog::Combinatorial(kernel) => self.composite(node, kernel),
-            Verilog::Custom(text) => self.leaf(node, text),
+            Verilog::Combinatorial(kernel) => self.composite(node, kernel, notes),
+            Verilog::Custom(text) => self.leaf(node, text, notes),
             Verilog::Empty | Verilog::Blackbox(_) | Verilog::Wrapper(_) => {
                 let found = "a block without kernel, a black box or a wrapper".to_owned();
                 let remedy = "write it as a leaf with `Verilog::Custom`";
@@ -69,7 +69,7 @@ impl Modules<'_> {
         }
     }
 
-    fn leaf(&self, node: &Node, text: &str) -> Result<Draft, EmitError> {
+    fn leaf(&self, node: &Node, text: &str, notes: &[PortNote]) -> Result<Draft, EmitError> {
         let wrong = |cause| EmitError::new(&node.path, "", cause);
         let text = numbers::fill(text, node).map_err(wrong)?;
         let leaf = leaf::parse(&text, node).map_err(wrong)?;
@@ -78,7 +78,7 @@ impl Modules<'_> {
             checked.map_err(|cause| EmitError::new(&node.path, &port.raw, cause))?;
         }
         let mut lines = Lines::default();
-        let ports = print::ports(node, &|port| leaf.regs.contains(&port.raw.as_str()));
+        let ports = print::ports(node, &|port| leaf.regs.contains(&port.raw.as_str()), notes);
         lines.nest(ports.trim_end(), "endmodule", |lines| {
             leaf.body.iter().for_each(|line| lines.line(line))
         });
@@ -90,7 +90,7 @@ impl Modules<'_> {
         })
     }
 
-    fn composite(&mut self, node: &Node, kernel: &[VerilogStatement]) -> Result<Draft, EmitError> {
+    fn composite(&mut self, node: &Node, kernel: &[VerilogStatement], notes: &[PortNote]) -> Result<Draft, EmitError> {
         let scope = Scope::new(node)?;
         let typed = statements(kernel, &node.path, &scope)?;
         flow::check(&typed, &node.path, &scope)?;
@@ -113,7 +113,7 @@ impl Modules<'_> {
             drivers: &drivers,
             clocking: clocking.as_ref(),
         };
-        let body = writer.body(&bits_read, &children, &unread);
+        let body = writer.body(&bits_read, &children, &unread, notes);
         let (tagged, about) = tagged(kernel, node)?;
         Ok(Draft {
             tagged,
@@ -125,7 +125,7 @@ impl Modules<'_> {
 
     /// Writes the module of a sub-block, unless it is there, and gives its name, and whether it is a machine's.
     fn child(&mut self, node: &Node) -> Result<(String, bool), EmitError> {
-        let draft = self.draft(node)?;
+        let draft = self.draft(node, &[])?;
         let from_path = || node.path.split('.').skip(1).collect::<Vec<_>>().join("_");
         let base = match &draft.tagged {
             Some(tagged) => tagged.clone(),
@@ -237,12 +237,18 @@ struct Composite<'a> {
 }
 
 impl Composite<'_> {
-    fn body(&self, bits_read: &BTreeMap<NetId, u64>, children: &[String], unread: &[(NetId, u32, u32)]) -> String {
+    fn body(
+        &self,
+        bits_read: &BTreeMap<NetId, u64>,
+        children: &[String],
+        unread: &[(NetId, u32, u32)],
+        notes: &[PortNote],
+    ) -> String {
         let (scope, drivers) = (self.scope, self.drivers);
         let variables = drivers.procedural_targets();
         let is_variable = |port: &Signal| scope.find(&port.raw).is_some_and(|id| variables.contains(&id));
         let mut lines = Lines::default();
-        let ports = print::ports(self.node, &is_variable);
+        let ports = print::ports(self.node, &is_variable, notes);
         lines.nest(ports.trim_end(), "endmodule", |lines| {
             let start = lines.text.len();
             lines.section(|lines| self.constants(lines, bits_read));

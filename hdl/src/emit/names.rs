@@ -94,6 +94,20 @@ impl Taken {
     }
 }
 
+/// What a constant of 0 is called where its name says no more.
+const NOTHING: [&str; 6] = ["NO", "NONE", "NOTHING", "NOBODY", "NIL", "ZERO"];
+
+/// Whether the name of a constant says no more than its value: 0 that is `NO_CLOCKS`, 1 that is `ONE_TICK`, 2 that is `CHANNEL_2`.
+/// Such a constant is written as a literal.
+pub(super) fn says_its_value(name: &str, value: u64) -> bool {
+    let first = name.split('_').next().unwrap_or_default();
+    match value {
+        0 if NOTHING.contains(&first) => true,
+        1 if first == "ONE" => true,
+        _ => name.rsplit_once('_').is_some_and(|(_, last)| last == value.to_string()),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -122,6 +136,20 @@ mod tests {
         for bad in ["", "Tap", "3d", "_x", "a$b", "a-b", "größe"] {
             assert_eq!(check_name(bad), Err(EmitCause::BadName(bad.to_owned())));
         }
+    }
+
+    #[test]
+    fn unit_a_name_that_says_its_value_is_told_from_one_that_says_more() {
+        let says = [("NO_CLOCKS", 0), ("NOTHING", 0), ("ONE_TICK", 1), ("CHANNEL_2", 2)];
+        assert!(says.iter().all(|(name, value)| says_its_value(name, *value)));
+        let more = [
+            ("NO_CLOCKS", 3),
+            ("ONE_TICK", 2),
+            ("FIRST_TAP", 0),
+            ("AXIS_0", 1),
+            ("NORTH", 0),
+        ];
+        assert!(!more.iter().any(|(name, value)| says_its_value(name, *value)));
     }
 
     #[test]

@@ -6,7 +6,8 @@ use super::names;
 use super::scope::{NetId, Scope};
 use super::types::Type;
 use super::wrap::wrapped;
-use super::{Header, Parameter};
+use super::{Header, Parameter, head};
+use posicast_model::rtl::PortNote;
 use std::fmt::Write;
 
 /// What kernels are described in.
@@ -104,10 +105,15 @@ pub(super) fn part_header(name: &str, about: &[&str]) -> String {
 
 /// Header of a design's top.
 pub(super) fn top_header(name: &str, about: &[&str], header_data: &Header) -> String {
-    let about: Vec<_> = std::iter::once(header_data.about.as_str())
-        .chain(about.iter().copied())
-        .collect();
-    header(name, &about, &header_data.parameters, RUSTHDL)
+    let mut paragraphs: Vec<&str> = about.to_vec();
+    if !header_data.about.is_empty() {
+        let between: &[&str] = if about.is_empty() { &[] } else { &[""] };
+        paragraphs.splice(
+            0..0,
+            [header_data.about.as_str()].into_iter().chain(between.iter().copied()),
+        );
+    }
+    header(name, &paragraphs, &header_data.parameters, RUSTHDL)
 }
 
 /// Header of a file that is not made from a kernel: a register bank, a composition.
@@ -116,7 +122,7 @@ pub(crate) fn data_header(name: &str, header_data: &Header, made_from: &str) -> 
 }
 
 /// The port list of a node, with `is_reg` telling which outputs are variables.
-pub(super) fn ports(node: &Node, is_reg: &dyn Fn(&Signal) -> bool) -> String {
+pub(super) fn ports(node: &Node, is_reg: &dyn Fn(&Signal) -> bool, notes: &[PortNote]) -> String {
     let ports = node.ports().map(|port| {
         let keyword = match port.kind {
             Kind::Input => "input  wire",
@@ -125,24 +131,68 @@ pub(super) fn ports(node: &Node, is_reg: &dyn Fn(&Signal) -> bool) -> String {
         };
         (keyword, port.ty, names::flatten(&port.raw))
     });
-    port_list(&ports.collect::<Vec<_>>())
+    noted_port_list(&ports.collect::<Vec<_>>(), notes)
 }
 
 /// `(…);` with one port per line: keyword, type, name.
 pub(crate) fn port_list(ports: &[(&str, Type, String)]) -> String {
+    noted_port_list(ports, &[])
+}
+
+/// The same, with what the ports are for behind them.
+fn noted_port_list(ports: &[(&str, Type, String)], notes: &[PortNote]) -> String {
     if ports.is_empty() {
         return "();\n".to_owned();
     }
     let width = ports.iter().map(|(_, ty, _)| ty.declaration().len()).max().unwrap_or(0);
-    let lines = ports.iter().map(|(keyword, ty, name)| {
-        let declaration = ty.declaration();
-        if width == 0 {
-            format!("    {keyword} {name}")
-        } else {
-            format!("    {keyword} {declaration:width$} {name}")
+    let codes: Vec<String> = (ports.iter().enumerate())
+        .map(|(at, (keyword, ty, name))| {
+            let declaration = ty.declaration();
+            let space = if width == 0 { "" } else { " " };
+            let comma = if at + 1 < ports.len() { "," } else { "" };
+            format!("    {keyword} {declaration:width$}{space}{name}{comma}")
+        })
+        .collect();
+    let column = codes.iter().map(String::len).max().unwrap_or(0) + 2;
+    let lines =
+        codes.iter().zip(ports).map(
+            |(code, (_, _, name))| match notes.iter().find(|note| note.port == *name) {
+                None => code.clone(),
+                Some(note) => noted(code, column, &head::plain_words(&note.text)),
+            },
+        );
+    format!("(\n{}\n);\n", lines.collect::<Vec<_>>().join("\n"))
+}
+
+/// Longest line of a port with its note.
+const COLUMNS: usize = 100;
+
+/// `code` with a comment from `column` on. One that is too long is cut behind its first clause; if that is, it goes on below.
+fn noted(code: &str, column: usize, text: &str) -> String {
+    let room = COLUMNS.saturating_sub(column + "// ".len());
+    let clause = text.split_once("; ").filter(|_| text.len() > room);
+    let text = clause.map_or_else(
+        || text.to_owned(),
+        |(clause, rest)| match rest.rfind(" [").filter(|_| rest.ends_with(']')) {
+            Some(unit) => format!("{clause}{}", &rest[unit..]),
+            None => clause.to_owned(),
+        },
+    );
+    let mut lines = vec![String::new()];
+    for word in text.split_whitespace() {
+        match lines.last_mut() {
+            Some(line) if line.is_empty() || line.len() + 1 + word.len() <= room => {
+                if !line.is_empty() {
+                    line.push(' ');
+                }
+                line.push_str(word);
+            }
+            _ => lines.push(word.to_owned()),
         }
-    });
-    format!("(\n{}\n);\n", lines.collect::<Vec<_>>().join(",\n"))
+    }
+    let codes = std::iter::once(code).chain(std::iter::repeat(""));
+    let lines = codes.zip(lines).map(|(code, text)| format!("{code:column$}// {text}"));
+    lines.collect::<Vec<_>>().join("\n")
 }
 
 /// Declarations `keyword type name;`, names in one column.

@@ -3,15 +3,19 @@
 /// Longest line that is not wrapped.
 const COLUMNS: usize = 100;
 
-/// `line`, or where it is too long several lines; those after the first are indented by four more, in an item of a list by two.
+/// `line`, or where it is too long several lines; those after the first are indented by four more, in an item of a list by two; in a comment as its
+/// text is.
 pub(super) fn wrapped(line: &str) -> String {
     let mut rest = line.to_owned();
     let code = line.trim_start();
     let indent = &line[..line.len() - code.len()];
-    let lead = match code.starts_with("//") {
-        true if code.starts_with("// - ") => format!("{indent}//   "),
-        true => format!("{indent}// "),
-        false => format!("{indent}    "),
+    let lead = match code.strip_prefix("//") {
+        // As the text of the comment is: that of a drawing is indented.
+        Some(text) => {
+            let spaces = text.len() - text.trim_start().len() + if text.starts_with(" - ") { 2 } else { 0 };
+            format!("{indent}//{}", " ".repeat(spaces))
+        }
+        None => format!("{indent}    "),
     };
     let mut lines = Vec::new();
     while rest.chars().count() > COLUMNS {
@@ -110,6 +114,11 @@ mod tests {
         );
         let words: Vec<&str> = text.split_whitespace().filter(|word| *word != "//").collect();
         assert_eq!(words.len(), 40);
+        let drawn = wrapped(&format!("//          {}", ["word"; 40].join(" ")));
+        assert!(
+            drawn.lines().all(|line| line.starts_with("//          word")),
+            "{drawn}"
+        );
         let table = format!("// name  {}", ["value"; 40].join(" "));
         assert_eq!(wrapped(&table), table);
     }

@@ -7,8 +7,8 @@ mod kernel;
 use crate::emit::{self, EmitError, EmitOptions, Header, Module, Parameter};
 use crate::simulation::{Simulated, SimulationError};
 use kernel::EncoderGenerator;
-use posicast_model::rtl::ClockedBlock;
-use posicast_model::rtl::encoder_generator::{LATENCY_CLOCKS, RATE_FRACTION, ports};
+use posicast_model::rtl::encoder_generator::{LATENCY_CLOCKS, PORTS, RATE_FRACTION, ports};
+use posicast_model::rtl::{ClockedBlock, port_notes};
 
 /// The internal encoder in RustHDL's own simulator.
 ///
@@ -38,6 +38,7 @@ pub fn emit(prefix: &str) -> Result<Vec<Module>, EmitError> {
             about: "Internal encoder: A, B and Z at a set rate, in the place of the pins while loop_back is high.\n\
                     The synchronisers of the pulse counter must follow."
                 .to_owned(),
+            ports: port_notes(PORTS),
             parameters: vec![
                 parameter(
                     "rate_fraction",

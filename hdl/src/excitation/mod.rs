@@ -8,8 +8,8 @@ mod wave;
 use crate::emit::{self, EmitError, EmitOptions, Header, Module, Parameter};
 use crate::simulation::{Simulated, SimulationError};
 use kernel::Excitation;
-use posicast_model::rtl::ClockedBlock;
-use posicast_model::rtl::excitation::{LATENCY_CLOCKS, TICK_CLOCKS, ports};
+use posicast_model::rtl::excitation::{LATENCY_CLOCKS, PORTS, TICK_CLOCKS, ports};
+use posicast_model::rtl::{ClockedBlock, port_notes};
 
 /// The excitation in RustHDL's own simulator.
 ///
@@ -39,6 +39,7 @@ pub fn emit(prefix: &str) -> Result<Vec<Module>, EmitError> {
             about: "Excitation: PRBS, chirp or square on the position reference, behind the shaper.\n\
                     Ends by itself; 0 in the tick after enable or allowed falls."
                 .to_owned(),
+            ports: port_notes(PORTS),
             parameters: vec![
                 parameter("latency_clocks", LATENCY_CLOCKS, "from valid to reference_valid"),
                 parameter(

@@ -8,8 +8,8 @@ mod serial_ratio;
 use crate::emit::{self, EmitError, EmitOptions, Header, Module, Parameter};
 use crate::simulation::{Simulated, SimulationError};
 use kernel::LinearScale;
-use posicast_model::rtl::ClockedBlock;
-use posicast_model::rtl::linear_scale::{LATENCY_CLOCKS, ports};
+use posicast_model::rtl::linear_scale::{LATENCY_CLOCKS, PORTS, ports};
+use posicast_model::rtl::{ClockedBlock, port_notes};
 
 /// The linear scale in RustHDL's own simulator.
 ///
@@ -34,6 +34,7 @@ pub fn emit(prefix: &str) -> Result<Vec<Module>, EmitError> {
             about: "Motor against linear scale: deviation since align, position and velocity of the loop's counter.\n\
                     One product of a bit per clock at a time, in the registers of deviation and velocity."
                 .to_owned(),
+            ports: port_notes(PORTS),
             parameters: vec![Parameter {
                 name: "latency_clocks".to_owned(),
                 value: LATENCY_CLOCKS.to_string(),

@@ -12,8 +12,8 @@ use crate::emit::{self, EmitError, EmitOptions, Header, Module};
 use crate::simulation::{Simulated, SimulationError};
 pub(crate) use glitch_filter::GlitchFilter;
 use kernel::PulseCounter;
-use posicast_model::rtl::ClockedBlock;
-use posicast_model::rtl::pulse_counter::ports;
+use posicast_model::rtl::pulse_counter::{PORTS, ports};
+use posicast_model::rtl::{ClockedBlock, port_notes};
 
 /// The pulse counter in RustHDL's own simulator.
 ///
@@ -38,6 +38,7 @@ pub fn emit(prefix: &str) -> Result<Vec<Module>, EmitError> {
             about: "Pulse counter: encoder or scale signals to position, index and velocity.\n\
                     The count never jumps: a preset moves the origin, position = count - origin."
                 .to_owned(),
+            ports: port_notes(PORTS),
             parameters: Vec::new(),
         },
     };

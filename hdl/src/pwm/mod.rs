@@ -14,8 +14,8 @@ mod trip;
 use crate::emit::{self, EmitError, EmitOptions, Header, Module, Parameter};
 use crate::simulation::{Simulated, SimulationError};
 use kernel::Pwm;
-use posicast_model::rtl::ClockedBlock;
-use posicast_model::rtl::pwm::{PwmConfig, ports};
+use posicast_model::rtl::pwm::{PORTS, PwmConfig, ports};
+use posicast_model::rtl::{ClockedBlock, port_notes};
 
 /// The PWM in RustHDL's own simulator.
 ///
@@ -72,6 +72,7 @@ pub fn emit(config: &PwmConfig, prefix: &str) -> Result<Vec<Module>, EmitError> 
             about: "PWM: a duty to the gates of a bridge, with dead time, minimum pulse, fault path and watchdog.\n\
                     fault_n and pll_locked switch the pins off without a clock."
                 .to_owned(),
+            ports: port_notes(PORTS),
             parameters: vec![
                 parameter("active low pins", low, "on at low, off at high"),
                 parameter(

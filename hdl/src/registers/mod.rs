@@ -31,6 +31,7 @@ pub fn emit(map: &RegisterMap, prefix: &str) -> Result<Module, EmitError> {
              Commands take whole words only. Reads have no side effect; what is not mapped reads as 0.",
             map.name()
         ),
+        ports: Vec::new(),
         parameters: parameters(map),
     };
     Ok(Module {

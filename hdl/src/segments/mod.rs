@@ -10,8 +10,8 @@ mod passes;
 use crate::emit::{self, EmitError, EmitOptions, Header, Module, Parameter};
 use crate::simulation::{Simulated, SimulationError};
 use kernel::Segments;
-use posicast_model::rtl::ClockedBlock;
-use posicast_model::rtl::segments::{ENTRIES_MAX, LATENCY_CLOCKS, TICK_CLOCKS, ports};
+use posicast_model::rtl::segments::{ENTRIES_MAX, LATENCY_CLOCKS, PORTS, TICK_CLOCKS, ports};
+use posicast_model::rtl::{ClockedBlock, port_notes};
 
 /// The command FIFO in RustHDL's own simulator.
 ///
@@ -41,6 +41,7 @@ pub fn emit(prefix: &str) -> Result<Vec<Module>, EmitError> {
             about: "Motion commands: a FIFO of segments of constant jerk, integrated exactly at every tick.\n\
                     Without an entry while moving: a quick stop."
                 .to_owned(),
+            ports: port_notes(PORTS),
             parameters: vec![
                 parameter("entries", u32::from(ENTRIES_MAX), "with the one that plays"),
                 parameter("latency_clocks", LATENCY_CLOCKS, "from tick to valid"),

@@ -21,8 +21,8 @@ use crate::emit::{self, EmitError, EmitOptions, Header, Module, Parameter};
 use crate::simulation::{Simulated, SimulationError};
 use kernel::Shaper;
 use motion::MotionShaper;
-use posicast_model::rtl::ClockedBlock;
-use posicast_model::rtl::shaper::{ShaperConfig, ports};
+use posicast_model::rtl::shaper::{ShaperConfig, moving, plain, ports};
+use posicast_model::rtl::{ClockedBlock, port_notes};
 
 /// The plain shaper with words of W bits, a ring of 2^A samples, tables of 2^T taps, and U of the [`Shaper`].
 macro_rules! shaper {
@@ -224,8 +224,13 @@ fn header(config: &ShaperConfig) -> Header {
             "from strobe to valid in bank 0",
         ),
     ];
+    let ports = match config.motion() {
+        None => port_notes(plain::PORTS),
+        Some(_) => port_notes(moving::PORTS),
+    };
     Header {
         about,
+        ports,
         parameters: [parameters, of_motion].concat(),
     }
 }

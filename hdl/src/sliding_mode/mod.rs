@@ -27,8 +27,8 @@ mod tracking;
 use crate::emit::{self, EmitError, EmitOptions, Header, Module, Parameter};
 use crate::simulation::{Simulated, SimulationError};
 use kernel::SlidingMode;
-use posicast_model::rtl::ClockedBlock;
-use posicast_model::rtl::sliding_mode::{CONTROL_CLOCKS, ports};
+use posicast_model::rtl::sliding_mode::{CONTROL_CLOCKS, PORTS, ports};
+use posicast_model::rtl::{ClockedBlock, port_notes};
 
 /// The controller in RustHDL's own simulator.
 ///
@@ -53,6 +53,7 @@ pub fn emit(prefix: &str) -> Result<Vec<Module>, EmitError> {
             about: "Controller: reference and measurement to the drive's command, by sliding mode, PD or PID.\n\
                     Each step reads its gain at setting_address: the word comes in the next clock, as from a block RAM."
                 .to_owned(),
+            ports: port_notes(PORTS),
             parameters: vec![Parameter {
                 name: "control_clocks".to_owned(),
                 value: CONTROL_CLOCKS.to_string(),

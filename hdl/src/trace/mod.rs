@@ -13,8 +13,8 @@ mod trigger;
 use crate::emit::{self, EmitError, EmitOptions, Header, Module, Parameter};
 use crate::simulation::{Pins, Simulated, SimulationError};
 use kernel::Trace;
-use posicast_model::rtl::ClockedBlock;
-use posicast_model::rtl::trace::{TraceConfig, ports, row_clocks};
+use posicast_model::rtl::trace::{PORTS, TraceConfig, ports, row_clocks};
+use posicast_model::rtl::{ClockedBlock, port_notes};
 
 /// What the port `signals` says for a row of four, the longest.
 const FOUR_SIGNALS: u8 = 2;
@@ -55,6 +55,7 @@ pub fn emit(config: &TraceConfig, prefix: &str) -> Result<Vec<Module>, EmitError
             about: "Trace memory: up to four of 16 signals, row by row, around a trigger.\n\
                     arm begins; the words are read by address, in order of time, when it is over."
                 .to_owned(),
+            ports: port_notes(PORTS),
             parameters: vec![
                 parameter("samples", config.samples(), "words; a row has 1, 2 or 4"),
                 parameter(

@@ -211,6 +211,7 @@ fn options(top: &str, prefix: &str) -> EmitOptions {
         meaning: meaning.into(),
     };
     let header = Header {
+        ports: Vec::new(),
         about: "Two counters.\nNothing else.".into(),
         parameters: vec![
             parameter("word_bits", "8", "width of a count"),
@@ -391,6 +392,7 @@ fn unit_compose_shares_inputs_and_lifts_the_rest() {
     let module = emit_as::<Pair>("part").unwrap();
     let part = module.last().unwrap();
     let header = Header {
+        ports: Vec::new(),
         about: "Both axes.".into(),
         parameters: Vec::new(),
     };

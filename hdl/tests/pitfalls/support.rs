@@ -110,6 +110,7 @@ pub(crate) fn emit_as<K: Block + Default>(name: &str) -> Result<Vec<Module>, Emi
 /// Emits `block` as `NAME_dut`; all its modules bear the name, so that kernels do not meet.
 pub(crate) fn emit_block<B: Block>(block: &B, name: &str) -> Result<Vec<Module>, EmitError> {
     let header = Header {
+        ports: Vec::new(),
         about: "A kernel of the emitter's tests.".to_owned(),
         parameters: Vec::new(),
     };

@@ -95,6 +95,7 @@ pub(crate) fn replay(rows: &[Row]) -> Vec<String> {
         });
     }
     let header = Header {
+        ports: Vec::new(),
         about: "Every kernel of the emitter's tests.".to_owned(),
         parameters: Vec::new(),
     };

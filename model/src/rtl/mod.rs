@@ -32,7 +32,7 @@ pub mod word;
 
 pub(crate) use moore::quiet_at_rest;
 pub use moore::{FOREVER, Moore, OutputKind};
-pub use ports::{PortList, PortRow, SizedPortRow};
+pub use ports::{DescribedPort, PortList, PortNote, PortRow, SizedPortRow, port_notes};
 pub(crate) use ports::{clocked_block, ports};
 
 /// Direction of a port, seen from the block.

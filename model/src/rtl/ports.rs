@@ -95,6 +95,51 @@ pub struct SizedPortRow {
 /// All ports of a block, inputs first, in the order of the Verilog's port list, without `clk`.
 pub type PortList = &'static [PortRow];
 
+/// What a port is for, as a comment beside it says it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct PortNote {
+    /// The port; of an array the first.
+    pub port: String,
+    /// The first sentence of its meaning, and its unit in brackets where that does not name it.
+    pub text: String,
+}
+
+/// A row of a list, with or without sizes.
+pub trait DescribedPort {
+    /// What it is for.
+    fn note(&self) -> PortNote;
+}
+
+impl DescribedPort for PortRow {
+    fn note(&self) -> PortNote {
+        note(self.name, self.count.is_some(), self.meaning, self.unit)
+    }
+}
+
+impl DescribedPort for SizedPortRow {
+    fn note(&self) -> PortNote {
+        note(self.name, self.count.is_some(), self.meaning, self.unit)
+    }
+}
+
+fn note(name: &str, is_array: bool, meaning: &[&str], unit: &str) -> PortNote {
+    let meaning: Vec<&str> = meaning.iter().map(|line| line.trim()).collect();
+    let meaning = meaning.join(" ");
+    let sentence = meaning.split(". ").next().unwrap_or_default().trim_end_matches('.');
+    PortNote {
+        port: format!("{name}{}", if is_array { "_0" } else { "" }),
+        text: match sentence.to_lowercase().contains(unit) {
+            true => sentence.to_owned(),
+            false => format!("{sentence} [{unit}]"),
+        },
+    }
+}
+
+/// What the ports of a list are for, in its order.
+pub fn port_notes(list: &[impl DescribedPort]) -> Vec<PortNote> {
+    list.iter().map(DescribedPort::note).collect()
+}
+
 impl PortRow {
     /// Ports that the row stands for.
     const fn ports(&self) -> usize {

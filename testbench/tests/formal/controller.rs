@@ -42,5 +42,5 @@ fn formal_a_product_that_is_cut_instead_of_rounded_is_found() {
 
 #[test]
 fn formal_a_limit_that_is_passed_by_an_lsb_is_found() {
-    fails("limiter", "borrow = ONE_BORROW", "borrow = NO_BORROW", "known_over");
+    fails("limiter", "borrow = 33'd1", "borrow = 33'd0", "known_over");
 }

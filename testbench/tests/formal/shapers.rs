@@ -36,7 +36,12 @@ fn formal_a_product_that_is_subtracted_is_found() {
 
 #[test]
 fn formal_a_pass_that_ends_a_tap_early_is_found() {
-    fails("shaper", "ONE_MORE = 7'd1", "ONE_MORE = 7'd2", "pass_");
+    fails(
+        "shaper",
+        "tap_number = {1'd0, tap} + 7'd1",
+        "tap_number = {1'd0, tap} + 7'd2",
+        "pass_",
+    );
 }
 
 #[test]
@@ -48,8 +53,8 @@ fn formal_a_sample_of_the_wrong_side_is_found() {
 fn formal_a_swap_to_a_bank_that_does_not_sum_to_one_is_found() {
     fails(
         "shaper",
-        "(swap_bank == BANK_1) & (sum_1 == UNITY)",
-        "(swap_bank == BANK_1)",
+        "(swap_bank == 2'd1) & (sum_1 == UNITY)",
+        "(swap_bank == 2'd1)",
         "table_to_come",
     );
 }

@@ -28,11 +28,10 @@ module posicast_accumulator (
     output wire               cut,
     output wire               negative
 );
-    localparam signed [51:0] NOTHING = 52'sd0;
-    localparam [52:0]        HALF = 53'd1;
-    localparam [31:0]        LARGEST_WORD = 32'd2147483647;
-    localparam [31:0]        LARGEST_FRACTION = 32'd33554431;
-    localparam [31:0]        LARGEST_DUTY = 32'd131071;
+    localparam [52:0] HALF = 53'd1;
+    localparam [31:0] LARGEST_WORD = 32'd2147483647;
+    localparam [31:0] LARGEST_FRACTION = 32'd33554431;
+    localparam [31:0] LARGEST_DUTY = 32'd131071;
 
     wire [51:0]        base;
     wire signed [52:0] product;
@@ -83,7 +82,7 @@ module posicast_accumulator (
             sum_q_next = $signed(total[52:1]);
         end
         if (empty) begin
-            sum_q_next = NOTHING;
+            sum_q_next = 52'sd0;
         end
         largest = LARGEST_WORD;
         if (as_fraction) begin

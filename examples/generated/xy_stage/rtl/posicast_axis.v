@@ -1,6 +1,7 @@
 // posicast_axis
 // Supervisor of an axis: OFF, READY, HOLD, RUN, QUICK_STOP, FAULT.
 // Every cause ends in a stop: outputs off at once, or a quick stop and then the brake.
+//
 // Lines, causes, states: what they say to each other, and to the pins.
 //
 // An edge at a line reaches the state after `filter_clocks` + 4 clocks: synchroniser 2, filter
@@ -17,99 +18,123 @@
 
 module posicast_axis (
     input  wire               clk,
-    input  wire               rst,
-    input  wire               tick,
-    input  wire               emergency_stop_n,
-    input  wire               limit_plus_n,
-    input  wire               limit_minus_n,
-    input  wire               drive_ready,
-    input  wire               home,
-    input  wire [5:0]         filter_clocks,
-    input  wire               enable,
-    input  wire               start,
-    input  wire               stop,
-    input  wire               clear_faults,
-    input  wire               kick,
-    input  wire [31:0]        kick_word,
-    input  wire               write_homed,
-    input  wire               homed_value,
-    input  wire               group_stop,
-    input  wire               group_emergency_stop,
-    input  wire [15:0]        off_causes,
-    input  wire [15:0]        brake_release_ticks,
-    input  wire [15:0]        brake_apply_ticks,
-    input  wire [15:0]        settle_ticks,
-    input  wire signed [31:0] soft_limit_plus,
-    input  wire signed [31:0] soft_limit_minus,
-    input  wire               limits_after_homing,
-    input  wire [31:0]        following_error_limit,
-    input  wire [31:0]        deviation_limit,
-    input  wire [15:0]        saturation_ticks,
-    input  wire [31:0]        lost_command,
-    input  wire [15:0]        lost_ticks,
-    input  wire               watches_direction,
-    input  wire [15:0]        watchdog_ticks,
-    input  wire               modulo,
-    input  wire signed [31:0] position,
-    input  wire signed [31:0] deviation,
-    input  wire [1:0]         segments_state,
-    input  wire               segments_empty,
-    input  wire               segments_valid,
-    input  wire               segments_underrun,
-    input  wire               segments_overflow,
-    input  wire               segments_tick_missed,
-    input  wire               segments_out_of_range,
-    input  wire signed [31:0] command_velocity,
-    input  wire signed [31:0] reference_position,
-    input  wire signed [31:0] reference_velocity,
-    input  wire               shaper_saturated,
-    input  wire               shaper_overrun,
-    input  wire signed [31:0] error,
-    input  wire signed [31:0] command,
-    input  wire [15:0]        limited_ticks,
-    input  wire [6:0]         saturated_high,
-    input  wire [6:0]         saturated_low,
-    input  wire               controller_overrun,
-    input  wire               pwm_tripped,
-    input  wire               encoder_illegal,
-    input  wire               encoder_disagreement,
-    input  wire               velocity_missed,
-    input  wire               scale_illegal,
-    input  wire               scale_disagreement,
-    output wire [2:0]         state,
-    output wire [16:0]        causes,
-    output wire               drive_enable,
-    output wire               brake_release,
-    output wire               pwm_enable,
-    output wire               pwm_trip_n,
-    output wire               segments_enable,
-    output wire               segments_preset,
-    output wire               segments_quick_stop,
-    output wire               segments_restart,
-    output wire               shaper_start,
-    output wire               clear_integral,
-    output wire               clear_sources,
-    output wire               wants_group_stop,
-    output wire               emergency_stop,
-    output wire               can_start,
-    output wire               homed,
-    output wire signed [31:0] captured_position,
-    output wire               level_emergency_stop_n,
-    output wire               level_limit_plus_n,
-    output wire               level_limit_minus_n,
-    output wire               level_drive_ready,
-    output wire               level_home,
-    output wire               enabled,
-    output wire               started,
-    output wire               stopping,
-    output wire               halted,
-    output wire               disabled,
-    output wire               faulted,
-    output wire               refused
+    input  wire               rst,                     // Synchronous reset
+    input  wire               tick,                    // One clock: the tick
+    input  wire               emergency_stop_n,        // Line, any time: low, or a broken wire, is
+                                                       // an emergency stop
+    input  wire               limit_plus_n,            // Line, any time: low, or a broken wire, is
+                                                       // on the limit switch +
+    input  wire               limit_minus_n,           // Line, any time: low, or a broken wire, is
+                                                       // on the limit switch -
+    input  wire               drive_ready,             // Line, any time: low, or a broken wire, is
+                                                       // not ready
+    input  wire               home,                    // Line, any time: the home switch
+    input  wire [5:0]         filter_clocks,           // Pulses of up to so many clocks on a line
+                                                       // are ignored
+    input  wire               enable,                  // Outputs on
+    input  wire               start,                   // One clock: at the next tick from HOLD to
+                                                       // RUN
+    input  wire               stop,                    // One clock: quick stop, then HOLD
+    input  wire               clear_faults,            // One clock: forget the causes that are
+                                                       // over, eight clocks later
+    input  wire               kick,                    // One clock: `kick_word` is for the watchdog
+    input  wire [31:0]        kick_word,               // Only `0x4b49434b`, in ASCII `KICK`, counts
+    input  wire               write_homed,             // One clock: `homed_value` is for `homed`
+    input  wire               homed_value,             // The position's origin is known, and the
+                                                       // soft limits are for it
+    input  wire               group_stop,              // Another axis wants all to stop
+    input  wire               group_emergency_stop,    // Another axis has its emergency stop
+    input  wire [15:0]        off_causes,              // Per cause: 1 outputs off, 0 quick stop
+    input  wire [15:0]        brake_release_ticks,     // Ticks from HOLD until the brake is open
+    input  wire [15:0]        brake_apply_ticks,       // Ticks from applying the brake until it
+                                                       // holds
+    input  wire [15:0]        settle_ticks,            // Ticks from the command's standstill to
+                                                       // that of the shaped command: the shaper's
+                                                       // longest delay
+    input  wire signed [31:0] soft_limit_plus,         // Upper soft limit [counts, Q24.8]
+    input  wire signed [31:0] soft_limit_minus,        // Lower soft limit [counts, Q24.8]
+    input  wire               limits_after_homing,     // Tied: no soft limits unless `homed`
+    input  wire [31:0]        following_error_limit,   // Largest following error [counts, Q16.16]
+    input  wire [31:0]        deviation_limit,         // Largest deviation, in its unit
+    input  wire [15:0]        saturation_ticks,        // Longest saturation, in ticks in a row
+    input  wire [31:0]        lost_command,            // The command above which the position must
+                                                       // move [command units, Q20.12]
+    input  wire [15:0]        lost_ticks,              // Ticks without a motion the command's way
+    input  wire               watches_direction,       // Tied: a motion against the command is as
+                                                       // none, so that a feedback of the wrong sign
+                                                       // is found
+    input  wire [15:0]        watchdog_ticks,          // Ticks without a kick; 0: no watchdog
+    input  wire               modulo,                  // Tied: a rotary axis, whose positions wrap
+    input  wire signed [31:0] position,                // Measured; live [counts]
+    input  wire signed [31:0] deviation,               // Motor against scale; read at the tick
+    input  wire [1:0]         segments_state,          // Of `segments`: its `state`
+    input  wire               segments_empty,          // Of `segments`: its `empty`
+    input  wire               segments_valid,          // Of `segments`: its `valid`
+    input  wire               segments_underrun,       // Of `segments`: its `underrun`
+    input  wire               segments_overflow,       // Of `segments`: its `overflow`
+    input  wire               segments_tick_missed,    // Of `segments`: its `tick_missed`
+    input  wire               segments_out_of_range,   // Of `segments`: its `out_of_range`
+    input  wire signed [31:0] command_velocity,        // Of `segments`: its `velocity` [counts per
+                                                       // tick, Q16.16]
+    input  wire signed [31:0] reference_position,      // Of the shaper: `y_0` [counts, Q24.8]
+    input  wire signed [31:0] reference_velocity,      // Of the shaper: `y_1` [counts per tick,
+                                                       // Q16.16]
+    input  wire               shaper_saturated,        // Of the shaper: its `saturated`
+    input  wire               shaper_overrun,          // Of the shaper: its `overrun`
+    input  wire signed [31:0] error,                   // Of the controller: e [counts, Q16.16]
+    input  wire signed [31:0] command,                 // Of the controller: its `command` [command
+                                                       // units, Q20.12]
+    input  wire [15:0]        limited_ticks,           // Of the controller: its `limited_ticks`
+    input  wire [6:0]         saturated_high,          // Of the controller: its `saturated_high`
+    input  wire [6:0]         saturated_low,           // The same, at the lower end
+    input  wire               controller_overrun,      // Of the controller: its `overrun`
+    input  wire               pwm_tripped,             // Of the PWM: its `tripped`
+    input  wire               encoder_illegal,         // Of the pulse counter: its `illegal`
+    input  wire               encoder_disagreement,    // Of the pulse counter: its `disagreement`
+    input  wire               velocity_missed,         // Of the pulse counter: its
+                                                       // `velocity_missed`
+    input  wire               scale_illegal,           // Of the scale's pulse counter: its
+                                                       // `illegal`
+    input  wire               scale_disagreement,      // Of the scale's pulse counter: its
+                                                       // `disagreement`
+    output wire [2:0]         state,                   // What the axis is doing: 0 OFF, 1 READY, 2
+                                                       // HOLD, 3 RUN, 4 QUICK_STOP, 5 FAULT
+    output wire [16:0]        causes,                  // Sticky: what went wrong
+    output wire               drive_enable,            // To the drive
+    output wire               brake_release,           // To the brake: high opens it
+    output wire               pwm_enable,              // To the PWM
+    output wire               pwm_trip_n,              // To the PWM's filtered fault: low is an
+                                                       // emergency stop
+    output wire               segments_enable,         // To `segments`: its `enable`
+    output wire               segments_preset,         // To `segments`: its `preset`
+    output wire               segments_quick_stop,     // To `segments`: its `quick_stop`
+    output wire               segments_restart,        // To `segments`: its `restart`
+    output wire               shaper_start,            // To the shaper: its `start`
+    output wire               clear_integral,          // To the controller; as `shaper_start`
+    output wire               clear_sources,           // One clock after `clear_faults`: to the
+                                                       // flags and the trip that causes come from
+    output wire               wants_group_stop,        // To the stage: a fault, or a quick stop
+                                                       // because of one
+    output wire               emergency_stop,          // To the stage: this axis's own line
+    output wire               can_start,               // A `start` would lead to RUN at the next
+                                                       // tick
+    output wire               homed,                   // The host has homed the axis, and its
+                                                       // position has not been in doubt since then
+    output wire signed [31:0] captured_position,       // The position at the last tick [counts]
+    output wire               level_emergency_stop_n,  // Filtered line
+    output wire               level_limit_plus_n,      // Filtered line
+    output wire               level_limit_minus_n,     // Filtered line
+    output wire               level_drive_ready,       // Filtered line
+    output wire               level_home,              // Filtered line
+    output wire               enabled,                 // One clock: READY to HOLD
+    output wire               started,                 // One clock: HOLD to RUN
+    output wire               stopping,                // One clock: to QUICK_STOP
+    output wire               halted,                  // One clock: RUN or QUICK_STOP to HOLD
+    output wire               disabled,                // One clock: HOLD to OFF
+    output wire               faulted,                 // One clock: to FAULT
+    output wire               refused                  // One clock: a `start` that led to nothing
 );
     localparam [3:0]  FIRST_CLOCK = 4'd1;
-    localparam [3:0]  NO_CLOCKS = 4'd0;
-    localparam [3:0]  ONE_CLOCK = 4'd1;
     localparam [3:0]  TWO_CLOCKS = 4'd2;
     localparam [3:0]  CLEAR_CLOCKS = 4'd8;
     localparam [16:0] DOUBTFUL_CAUSES = 17'd3072;
@@ -370,8 +395,8 @@ module posicast_axis (
         if (write_homed) begin
             is_homed = homed_value;
         end
-        if (clear_left != NO_CLOCKS) begin
-            clear_left_next = clear_left - ONE_CLOCK;
+        if (clear_left != 4'd0) begin
+            clear_left_next = clear_left - 4'd1;
         end
         if (clear_faults) begin
             clear_left_next = CLEAR_CLOCKS;

@@ -30,7 +30,6 @@ module posicast_axis_causes (
     output wire        cut,
     output wire        had_fault
 );
-    localparam [16:0] NO_CAUSES = 17'd0;
     localparam [16:0] OF_EMERGENCY = 17'd1;
     localparam [16:0] OF_TRIPPED = 17'd2;
     localparam [16:0] OF_DRIVE_LOST = 17'd4;
@@ -86,41 +85,41 @@ module posicast_axis_causes (
     assign causes = causes_q;
 
     always @(*) begin
-        by_emergency = NO_CAUSES;
+        by_emergency = 17'd0;
         if (emergency) begin
             by_emergency = OF_EMERGENCY;
         end
-        by_tripped = NO_CAUSES;
+        by_tripped = 17'd0;
         if (tripped) begin
             by_tripped = OF_TRIPPED;
         end
-        by_drive_lost = NO_CAUSES;
+        by_drive_lost = 17'd0;
         if (drive_lost) begin
             by_drive_lost = OF_DRIVE_LOST;
         end
-        by_out_of_range = NO_CAUSES;
+        by_out_of_range = 17'd0;
         if (out_of_range) begin
             by_out_of_range = OF_OUT_OF_RANGE;
         end
-        by_encoder_error = NO_CAUSES;
+        by_encoder_error = 17'd0;
         if (encoder_error) begin
             by_encoder_error = OF_ENCODER_ERROR;
         end
-        by_segments_failed = NO_CAUSES;
+        by_segments_failed = 17'd0;
         if (segments_failed) begin
             by_segments_failed = OF_SEGMENTS_FAILED;
         end
-        by_group_stops = NO_CAUSES;
+        by_group_stops = 17'd0;
         if (group_stops) begin
             by_group_stops = OF_GROUP_STOPS;
         end
-        by_late = NO_CAUSES;
+        by_late = 17'd0;
         if (late) begin
             by_late = OF_LATE;
         end
         kept = causes_q;
         if (forget) begin
-            kept = NO_CAUSES;
+            kept = 17'd0;
         end
     end
 

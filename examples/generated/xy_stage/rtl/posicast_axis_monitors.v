@@ -40,8 +40,6 @@ module posicast_axis_monitors (
     output reg  [16:0]        causes,
     output wire signed [31:0] captured_position
 );
-    localparam [1:0]  ONE_TURN = 2'd1;
-    localparam [16:0] NO_CAUSES = 17'd0;
     localparam [16:0] OF_LIMIT_PLUS = 17'd8;
     localparam [16:0] OF_LIMIT_MINUS = 17'd16;
     localparam [16:0] OF_SOFT_PLUS = 17'd32;
@@ -280,7 +278,7 @@ module posicast_axis_monitors (
         still_backward_next = still_backward;
         found_next = found;
         if (takes) begin
-            turn_next = turn + ONE_TURN;
+            turn_next = turn + 2'd1;
         end
         if (looks) begin
             again_next = !again;
@@ -316,39 +314,39 @@ module posicast_axis_monitors (
         end
 
         // The causes of this tick
-        by_limit_plus = NO_CAUSES;
+        by_limit_plus = 17'd0;
         if (limit_plus) begin
             by_limit_plus = OF_LIMIT_PLUS;
         end
-        by_limit_minus = NO_CAUSES;
+        by_limit_minus = 17'd0;
         if (limit_minus) begin
             by_limit_minus = OF_LIMIT_MINUS;
         end
-        by_soft_plus = NO_CAUSES;
+        by_soft_plus = 17'd0;
         if (soft_plus) begin
             by_soft_plus = OF_SOFT_PLUS;
         end
-        by_soft_minus = NO_CAUSES;
+        by_soft_minus = 17'd0;
         if (soft_minus) begin
             by_soft_minus = OF_SOFT_MINUS;
         end
-        by_error_trip = NO_CAUSES;
+        by_error_trip = 17'd0;
         if (error_limit_exceeds) begin
             by_error_trip = OF_ERROR_TRIP;
         end
-        by_deviation_trip = NO_CAUSES;
+        by_deviation_trip = 17'd0;
         if (deviations_exceeds) begin
             by_deviation_trip = OF_DEVIATION_TRIP;
         end
-        by_saturation_trip = NO_CAUSES;
+        by_saturation_trip = 17'd0;
         if (saturating_lasts) begin
             by_saturation_trip = OF_SATURATION_TRIP;
         end
-        by_lost_trip = NO_CAUSES;
+        by_lost_trip = 17'd0;
         if (still_lasts) begin
             by_lost_trip = OF_LOST_TRIP;
         end
-        by_watchdog_trip = NO_CAUSES;
+        by_watchdog_trip = 17'd0;
         if (unkicked_lasts) begin
             by_watchdog_trip = OF_WATCHDOG_TRIP;
         end
@@ -358,7 +356,7 @@ module posicast_axis_monitors (
                 found_next = shown & found;
             end
         end
-        causes = NO_CAUSES;
+        causes = 17'd0;
         if (tells) begin
             causes = found;
         end

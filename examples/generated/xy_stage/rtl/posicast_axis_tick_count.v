@@ -15,10 +15,6 @@ module posicast_axis_tick_count (
     input  wire [15:0] limit,
     output wire        lasts
 );
-    localparam [15:0] NOTHING = 16'd0;
-    localparam        NO_CARRY = 1'd0;
-    localparam        ONE = 1'd1;
-
     wire [3:0]  nibble;
     wire [4:0]  counted;
     wire        against_lasts;
@@ -46,19 +42,19 @@ module posicast_axis_tick_count (
 
     always @(*) begin
         count_next = count;
-        carry_next = NO_CARRY;
+        carry_next = 1'd0;
         if (compares) begin
             count_next = ({12'd0, counted[3:0]} << 12) | (count >> 4);
             carry_next = counted[4];
         end
         if (tick) begin
-            carry_next = ONE;
+            carry_next = 1'd1;
         end
 
         // A carry out of the highest: more than any limit
         endless_next = endless | ((|carry) & !compares);
         if (clears) begin
-            count_next = NOTHING;
+            count_next = 16'd0;
             endless_next = 1'd0;
         end
     end

@@ -20,7 +20,6 @@ module posicast_axis_timer (
     input  wire [15:0] settle_ticks,
     output wire        elapsed
 );
-    localparam [15:0] NO_TICKS = 16'd0;
     localparam [15:0] MINUS_ONE = 16'd65535;
 
     wire        loads;
@@ -45,27 +44,27 @@ module posicast_axis_timer (
 
     always @(*) begin
         left_next = left;
-        released = NO_TICKS;
+        released = 16'd0;
         if (load_release) begin
             released = brake_release_ticks;
         end
-        settled = NO_TICKS;
+        settled = 16'd0;
         if (load_settle) begin
             settled = settle_ticks;
         end
-        applied = NO_TICKS;
+        applied = 16'd0;
         if (load_apply) begin
             applied = brake_apply_ticks;
         end
         less_one = MINUS_ONE;
         if (loads) begin
-            less_one = NO_TICKS;
+            less_one = 16'd0;
         end
         if (loads | (counts & !at_zero)) begin
             left_next = sum[15:0];
         end
         if (clears) begin
-            left_next = NO_TICKS;
+            left_next = 16'd0;
         end
     end
 

@@ -48,15 +48,12 @@ module posicast_channel_sums_32x57x3_f16 (
     output wire               saturated
 );
     localparam signed [56:0] HALF = 57'sd32768;
-    localparam signed [31:0] NO_SAMPLE = 32'sd0;
     localparam [56:0]        SIGN_MASK = 57'h1ff800000000000;
     localparam [56:0]        ALL_CLEAR = 57'd0;
     localparam [31:0]        Y_MAX = 32'd2147483647;
     localparam [31:0]        Y_MIN = 32'd2147483648;
-    localparam [31:0]        NO_RESULT = 32'd0;
     localparam               MODULO = 1'd0;
     localparam [1:0]         FIRST_CHANNEL = 2'd0;
-    localparam [1:0]         ONE_CHANNEL = 2'd1;
     localparam [1:0]         LAST_CHANNEL = 2'd2;
     localparam [1:0]         NO_CHANNEL = 2'd3;
 
@@ -167,7 +164,7 @@ module posicast_channel_sums_32x57x3_f16 (
             sample_q_next = sample_2;
         end
         if (blank_read) begin
-            sample_q_next = NO_SAMPLE;
+            sample_q_next = 32'sd0;
         end
 
         // A position that wraps: the way to the newest
@@ -190,7 +187,7 @@ module posicast_channel_sums_32x57x3_f16 (
             held_below_0_next = below;
         end
         if (boundary & (channel == 2'd0) & beyond) begin
-            held_0_next = NO_RESULT;
+            held_0_next = 32'd0;
         end
         if (boundary & (channel == 2'd1)) begin
             held_1_next = result;
@@ -198,11 +195,11 @@ module posicast_channel_sums_32x57x3_f16 (
             held_below_1_next = below;
         end
         if (boundary & (channel == 2'd1) & beyond) begin
-            held_1_next = NO_RESULT;
+            held_1_next = 32'd0;
         end
         if (boundary) begin
             clamped_next = (clamped | beyond) & !before_first;
-            channel_next = channel + ONE_CHANNEL;
+            channel_next = channel + 2'd1;
         end
 
         // All outputs in one clock

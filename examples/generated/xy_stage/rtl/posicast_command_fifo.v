@@ -27,18 +27,13 @@ module posicast_command_fifo (
 );
     localparam [5:0]  ALL_BUT_ONE = 6'd63;
     localparam [6:0]  ONE_LESS = 7'd127;
-    localparam [6:0]  NO_LEVEL = 7'd0;
-    localparam [6:0]  ONE_LEVEL = 7'd1;
-    localparam [5:0]  ONE_SLOT = 6'd1;
     localparam [1:0]  FIRST_WORD = 2'd0;
     localparam [1:0]  SECOND_WORD = 2'd1;
     localparam [1:0]  THIRD_WORD = 2'd2;
     localparam [1:0]  LAST_WORD = 2'd3;
-    localparam [2:0]  NOTHING = 3'd0;
     localparam [2:0]  FIRST = 3'd1;
     localparam [2:0]  SECOND = 3'd2;
     localparam [2:0]  THIRD = 3'd4;
-    localparam [24:0] NO_UPPER = 25'd0;
     localparam [24:0] ALL_UPPER = 25'd33554431;
 
     wire        full;
@@ -80,7 +75,7 @@ module posicast_command_fifo (
     assign full = level_q[6] | (plays & (waiting == ALL_BUT_ONE));
     assign refuses = closed | full;
     assign takes = write & !refuses;
-    assign slot = (head + waiting) + ONE_SLOT;
+    assign slot = (head + waiting) + 6'd1;
 
     // The last word commits a whole entry
     assign ticks = data[23:0];
@@ -94,7 +89,7 @@ module posicast_command_fifo (
 
     // Which words are there, and a jerk too wide
     assign upper = data[31:7];
-    assign narrow = (upper == NO_UPPER) | (upper == ALL_UPPER);
+    assign narrow = (upper == 25'd0) | (upper == ALL_UPPER);
     assign read_data = memory_read_data;
     assign level = level_q;
 
@@ -116,22 +111,22 @@ module posicast_command_fifo (
             end
         end
         if (write & (word == LAST_WORD)) begin
-            written_next = NOTHING;
+            written_next = 3'd0;
             too_wide_next = 1'd0;
         end
 
         // One in, one out
-        level_step = ONE_LEVEL;
+        level_step = 7'd1;
         if (pop) begin
-            head_next = head + ONE_SLOT;
+            head_next = head + 6'd1;
             level_step = ONE_LESS;
         end
         if (entered != pop) begin
             level_q_next = level_q + level_step;
         end
         if (flush) begin
-            level_q_next = NO_LEVEL;
-            written_next = NOTHING;
+            level_q_next = 7'd0;
+            written_next = 3'd0;
             too_wide_next = 1'd0;
         end
     end

@@ -1,13 +1,14 @@
 // posicast_divider_5000
 // Velocity: quotient = steps * tick_clocks * 2^16 / elapsed, toward zero, in Q16.16
 // elapsed = 0 stands for one tick. One division at a time, always as long.
+//
 // Shift and add, shift and subtract, shift and negate: one bit per clock in one register.
 //
 // phase  27 ~  44   product = { partial sum (17), what is left of steps (18) } moves down: T is added where the lowest bit
 //                   of |steps| is set
 // phase  45 ~  95   product moves up: |steps| * T leaves at the top into the remainder; quotient bits enter at the bottom,
 //                   and leave as the 16 fraction bits: zeros, or the quotient is clamped and what
-// follows does not matter
+//                   follows does not matter
 // phase  96 ~ 127   product moves down once more: the quotient's bits enter at the top, negated or not
 //
 // The lowest bit comes first wherever a number is negated, so that takes no adder: after the lowest
@@ -25,28 +26,23 @@
 
 module posicast_divider_5000 (
     input  wire               clk,
-    input  wire               rst,
-    input  wire               start,
-    input  wire signed [17:0] steps,
-    input  wire [23:0]        elapsed,
-    input  wire               clear_flags,
-    output wire signed [31:0] quotient,
-    output wire               done,
-    output wire               busy,
-    output wire               saturated,
-    output wire               overrun
+    input  wire               rst,          // Synchronous reset, active high
+    input  wire               start,        // For one clock: divide `steps` by `elapsed`
+    input  wire signed [17:0] steps,        // Counts
+    input  wire [23:0]        elapsed,      // Clocks that they took; 0 stands for one tick
+    input  wire               clear_flags,  // Clears `overrun`
+    output wire signed [31:0] quotient,     // Counts per tick, Q16.16 [counts per tick, Q16.16]
+    output wire               done,         // For one clock: `quotient` is new
+    output wire               busy,         // A division runs
+    output wire               saturated,    // `quotient` was clamped; holds with it
+    output wire               overrun       // Sticky: a `start` came while `busy`, and was ignored
 );
     localparam [6:0]  FIRST_PHASE = 7'd27;
-    localparam [6:0]  ONE_PHASE = 7'd1;
     localparam [6:0]  DIVIDE_PHASE = 7'd45;
     localparam [6:0]  FITS_PHASE = 7'd65;
     localparam [6:0]  SIGN_PHASE = 7'd96;
-    localparam [23:0] NO_CLOCKS = 24'd0;
     localparam [23:0] TICK_CLOCKS = 24'd5000;
     localparam [17:0] TICK_ADDEND = 18'd5000;
-    localparam [17:0] NO_ADDEND = 18'd0;
-    localparam        NO_BIT = 1'd0;
-    localparam        ONE_BIT = 1'd1;
 
     reg  [6:0]         next_phase;
     wire               magnitude_bit;
@@ -118,26 +114,26 @@ module posicast_divider_5000 (
         turns_over_next = downward & (turns_over | product[0]);
 
         // Multiply: add T, or not, and shift down
-        addend = NO_ADDEND;
-        entering = NO_BIT;
+        addend = 18'd0;
+        entering = 1'd0;
         if (magnitude_bit) begin
             if (last_pass) begin
-                entering = ONE_BIT;
+                entering = 1'd1;
             end else begin
                 addend = TICK_ADDEND;
             end
         end
 
         // Divide: a bit into the remainder; subtract
-        next_bit = NO_BIT;
+        next_bit = 1'd0;
         if (!downward) begin
             next_bit = product[34];
         end
 
         // Beyond 31 bits: all ones
-        kept_bit = NO_BIT;
+        kept_bit = 1'd0;
         if (fits & (subtracts | too_large)) begin
-            kept_bit = ONE_BIT;
+            kept_bit = 1'd1;
         end
 
         // One phase per clock; between divisions,
@@ -154,7 +150,7 @@ module posicast_divider_5000 (
         end
         next_phase = phase;
         if (busy_q) begin
-            next_phase = phase + ONE_PHASE;
+            next_phase = phase + 7'd1;
         end
 
         // Too large; while it multiplies, 0 is too small
@@ -169,7 +165,7 @@ module posicast_divider_5000 (
         end
 
         // A start, unless a division runs
-        one_tick = NO_CLOCKS;
+        one_tick = 24'd0;
         if (!(|elapsed)) begin
             one_tick = TICK_CLOCKS;
         end
@@ -180,7 +176,7 @@ module posicast_divider_5000 (
             busy_q_next = 1'd1;
             next_phase = FIRST_PHASE;
             product_next = {17'd0, steps};
-            remainder_next = NO_CLOCKS;
+            remainder_next = 24'd0;
             divisor_next = elapsed | one_tick;
             negative_next = steps[17];
             turns_over_next = 1'd0;

@@ -1,5 +1,4 @@
 // posicast_divider_share_2
-// One divider for all pulse counters: their divisions one after the other.
 // One divider for all pulse counters of a stage: their divisions one after the other, in a fixed
 // order.
 //
@@ -15,25 +14,26 @@
 
 module posicast_divider_share_2 (
     input  wire               clk,
-    input  wire               rst,
-    input  wire               divide,
-    input  wire signed [17:0] steps_of_0,
+    input  wire               rst,               // Synchronous reset
+    input  wire               divide,            // One clock: divide for all channels, one after
+                                                 // the other
+    input  wire signed [17:0] steps_of_0,        // Of the channel's pulse counter: the dividend
+                                                 // [counts]
     input  wire signed [17:0] steps_of_1,
-    input  wire [23:0]        elapsed_of_0,
+    input  wire [23:0]        elapsed_of_0,      // Of the channel's pulse counter: the divisor
+                                                 // [clocks]
     input  wire [23:0]        elapsed_of_1,
-    input  wire               done,
-    output wire               start,
-    output wire signed [17:0] steps,
-    output wire [23:0]        elapsed,
-    output wire               quotient_valid_0,
+    input  wire               done,              // Of the divider: its `done`
+    output wire               start,             // To the divider, one clock: its `start`
+    output wire signed [17:0] steps,             // To the divider: its `steps` [counts]
+    output wire [23:0]        elapsed,           // To the divider: its `elapsed` [clocks]
+    output wire               quotient_valid_0,  // One clock: the quotient of the divider is the
+                                                 // channel's
     output wire               quotient_valid_1
 );
-    localparam [3:0] CHANNEL_0 = 4'd0;
-    localparam [3:0] CHANNEL_1 = 4'd1;
     localparam [3:0] FIRST_CHANNEL = 4'd0;
     localparam [3:0] LAST_CHANNEL = 4'd1;
     localparam [3:0] IDLE = 4'd8;
-    localparam [3:0] ONE = 4'd1;
 
     wire               is_idle;
     reg                begins;
@@ -60,7 +60,7 @@ module posicast_divider_share_2 (
         turn_next = turn;
         steps_q_next = steps_q;
         elapsed_q_next = elapsed_q;
-        next_turn = turn + ONE;
+        next_turn = turn + 4'd1;
         begins = done & (turn != LAST_CHANNEL);
         if (is_idle) begin
             next_turn = FIRST_CHANNEL;
@@ -72,11 +72,11 @@ module posicast_divider_share_2 (
         if (begins) begin
             turn_next = next_turn;
         end
-        if (begins & (next_turn == CHANNEL_0)) begin
+        if (begins & (next_turn == 4'd0)) begin
             steps_q_next = steps_of_0;
             elapsed_q_next = elapsed_of_0;
         end
-        if (begins & (next_turn == CHANNEL_1)) begin
+        if (begins & (next_turn == 4'd1)) begin
             steps_q_next = steps_of_1;
             elapsed_q_next = elapsed_of_1;
         end
@@ -95,8 +95,8 @@ module posicast_divider_share_2 (
         start_q <= begins;
         steps_q <= steps_q_next;
         elapsed_q <= elapsed_q_next;
-        valid_q_0 <= done & (turn == CHANNEL_0);
-        valid_q_1 <= done & (turn == CHANNEL_1);
+        valid_q_0 <= done & (turn == 4'd0);
+        valid_q_1 <= done & (turn == 4'd1);
     end
 
     initial begin

@@ -1,6 +1,7 @@
 // posicast_drive_command
 // What the PWM is told: the controller's duty, saturated, while the supervisor wants it;
 // in direct mode, in READY and while it is kicked, a manual duty with a limit; else nothing.
+//
 // One multiplexer for both duties, one comparison for both signs of the manual one, a counter per
 // gate that is tested.
 //
@@ -10,48 +11,50 @@
 
 module posicast_drive_command (
     input  wire               clk,
-    input  wire               rst,
-    input  wire               tick,
-    input  wire signed [17:0] controller_duty,
-    input  wire               controller_valid,
-    input  wire [2:0]         axis_state,
-    input  wire               axis_pwm_enable,
-    input  wire               axis_drive_enable,
-    input  wire               axis_brake_release,
-    input  wire               axis_pwm_trip_n,
-    input  wire               drive_fault_n,
-    input  wire               limit_plus_ok,
-    input  wire               limit_minus_ok,
-    input  wire               direct_enable,
-    input  wire               direct_kick,
-    input  wire [15:0]        direct_hold_ticks,
-    input  wire signed [16:0] direct_duty,
-    input  wire [15:0]        direct_limit,
-    input  wire               self_test,
-    input  wire [3:0]         gates,
-    input  wire               valley,
-    output wire signed [16:0] duty,
-    output wire               feed,
-    output wire               pwm_enable,
-    output wire               drive_enable,
-    output wire               brake_release,
-    output reg  [1:0]         filtered_fault_n,
-    output wire               direct_active,
-    output wire               direct_expired,
-    output wire               mask_pins,
-    output wire [15:0]        self_test_high,
-    output wire [15:0]        self_test_low
+    input  wire               rst,                 // Synchronous reset
+    input  wire               tick,                // One clock: the tick
+    input  wire signed [17:0] controller_duty,     // Of sliding_mode: its `duty`, clocks of the PWM
+    input  wire               controller_valid,    // One clock: `controller_duty` is new
+    input  wire [2:0]         axis_state,          // Of the supervisor, axis: its `state`
+    input  wire               axis_pwm_enable,     // Of the supervisor: its `pwm_enable`
+    input  wire               axis_drive_enable,   // Of the supervisor: its `drive_enable`
+    input  wire               axis_brake_release,  // Of the supervisor: its `brake_release`
+    input  wire               axis_pwm_trip_n,     // Of the supervisor: its `pwm_trip_n`
+    input  wire               drive_fault_n,       // Pin, any time: low, or a broken wire, is a
+                                                   // fault of the drive
+    input  wire               limit_plus_ok,       // The supervisor's `level_limit_plus_n`: low is
+                                                   // on the switch
+    input  wire               limit_minus_ok,      // The supervisor's `level_limit_minus_n`: low is
+                                                   // on the switch
+    input  wire               direct_enable,       // Direct mode is wanted
+    input  wire               direct_kick,         // One clock: direct mode for `direct_hold_ticks`
+                                                   // from now on
+    input  wire [15:0]        direct_hold_ticks,   // Tied: ticks per kick; 0: never
+    input  wire signed [16:0] direct_duty,         // Manual duty, clocks of the PWM
+    input  wire [15:0]        direct_limit,        // Tied: largest |manual duty| [clocks]
+    input  wire               self_test,           // Direct mode is the self-test
+    input  wire [3:0]         gates,               // Of the PWM: its `gates`
+    input  wire               valley,              // Of the PWM: its `valley`
+    output wire signed [16:0] duty,                // To the PWM [clocks]
+    output wire               feed,                // One clock, with each duty taken: to the PWM's
+                                                   // watchdog
+    output wire               pwm_enable,          // To the PWM's `enable`
+    output wire               drive_enable,        // To the drive
+    output wire               brake_release,       // To the brake: high opens it
+    output reg  [1:0]         filtered_fault_n,    // To the PWM: bit 0 the supervisor's trip, bit 1
+                                                   // the drive's fault
+    output wire               direct_active,       // Direct mode: the outputs are on by it
+    output wire               direct_expired,      // One clock: direct mode ended since its time
+                                                   // ran out
+    output wire               mask_pins,           // To the PWM: its pins are off
+    output wire [15:0]        self_test_high,      // Clocks that `a_high` was on in the last whole
+                                                   // period of a self-test
+    output wire [15:0]        self_test_low        // The same of `a_low` [clocks]
 );
     localparam [2:0]  READY_STATE = 3'd1;
-    localparam [15:0] NO_TICKS = 16'd0;
-    localparam [15:0] ONE_TICK = 16'd1;
-    localparam [15:0] NO_CLOCK = 16'd0;
     localparam        NOT_ON = 1'd0;
-    localparam [16:0] NOTHING = 17'd0;
     localparam [16:0] MOST = 17'd65535;
     localparam [16:0] LEAST = 17'd65536;
-    localparam [16:0] ONE_BIT = 17'd1;
-    localparam [16:0] NO_BIT = 17'd0;
     localparam [1:0]  BOTH_FAULTS = 2'd0;
     localparam [1:0]  FAULT_OF_DRIVE = 2'd1;
     localparam [1:0]  FAULT_OF_AXIS = 2'd2;
@@ -126,8 +129,8 @@ module posicast_drive_command (
     assign permitted = (axis_state == READY_STATE) & direct_enable & !test_changes;
 
     // Ticks since the kick; bit 0 is kept inverted
-    assign counted = ticks ^ ONE_TICK;
-    assign more = counted + ONE_TICK;
+    assign counted = ticks ^ 16'd1;
+    assign more = counted + 16'd1;
     assign last_tick = tick & (counted == hold_ticks);
 
     // Self-test: pins masked, drive and brake off; the
@@ -171,12 +174,12 @@ module posicast_drive_command (
         next_active = permitted & active & !last_tick;
         expired_next = permitted & active & last_tick;
         if (tick) begin
-            ticks_next = more ^ ONE_TICK;
+            ticks_next = more ^ 16'd1;
         end
         if (direct_kick) begin
             next_active = permitted & (|direct_hold_ticks);
             expired_next = 1'd0;
-            ticks_next = NO_TICKS;
+            ticks_next = 16'd0;
             hold_ticks_next = direct_hold_ticks;
         end
         taken = controller_valid;
@@ -187,10 +190,10 @@ module posicast_drive_command (
             bound = LEAST;
         end
         direct_size = direct_bits[15:0];
-        odd = NO_BIT;
+        odd = 17'd0;
         if (negative) begin
             direct_size = ~direct_bits[15:0];
-            odd = ONE_BIT;
+            odd = 17'd1;
         end
         if (active) begin
             taken = tick;
@@ -198,7 +201,7 @@ module posicast_drive_command (
             saturates = twice_size > (limit << 1);
             bound = limit;
             if (negative) begin
-                bound = NOTHING - limit;
+                bound = 17'd0 - limit;
             end
         end
         if (taken) begin
@@ -218,7 +221,7 @@ module posicast_drive_command (
             on_switch = !limit_minus_ok;
         end
         if (silent) begin
-            duty_q_next = NOTHING;
+            duty_q_next = 17'd0;
         end
         filtered_fault_n = BOTH_FAULTS;
         if (axis_trip_n_q) begin
@@ -250,8 +253,8 @@ module posicast_drive_command (
         high_clocks_next = high_sum;
         low_clocks_next = low_sum;
         if (valley | !masked) begin
-            high_clocks_next = NO_CLOCK;
-            low_clocks_next = NO_CLOCK;
+            high_clocks_next = 16'd0;
+            low_clocks_next = 16'd0;
         end
         if (valley & masked) begin
             high_result_next = high_sum;

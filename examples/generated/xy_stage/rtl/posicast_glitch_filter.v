@@ -17,9 +17,6 @@ module posicast_glitch_filter (
     input  wire [5:0] filter_clocks,
     output wire       level
 );
-    localparam [5:0] NO_CLOCKS = 6'd0;
-    localparam [5:0] ONE_CLOCK = 6'd1;
-
     reg        level_q;
     reg        level_q_next;
     reg  [5:0] left;
@@ -29,11 +26,11 @@ module posicast_glitch_filter (
 
     always @(*) begin
         level_q_next = level_q;
-        left_next = left - ONE_CLOCK;
+        left_next = left - 6'd1;
         if (input_level == level_q) begin
             left_next = filter_clocks;
         end
-        if (!ready | (left == NO_CLOCKS)) begin
+        if (!ready | (left == 6'd0)) begin
             level_q_next = input_level;
             left_next = filter_clocks;
         end

@@ -1,6 +1,6 @@
 // posicast_group_2
-// Axes of a stage: they start in one clock, and one that stops for a fault stops all.
 // What the axes of a stage have to do with each other: common start, group stop, emergency stop.
+// They start in one clock, and one that stops for a fault stops all.
 //
 // The reference is `posicast_model::rtl::group`.
 //
@@ -13,32 +13,31 @@
 
 module posicast_group_2 (
     input  wire       clk,
-    input  wire       rst,
-    input  wire       start,
-    input  wire [3:0] start_axes,
-    input  wire       can_start_0,
+    input  wire       rst,                   // Synchronous reset
+    input  wire       start,                 // One clock: the axes in `start_axes` are to start
+    input  wire [3:0] start_axes,            // One bit per axis
+    input  wire       can_start_0,           // Of the axis: its `can_start`
     input  wire       can_start_1,
-    input  wire       wants_group_stop_0,
+    input  wire       wants_group_stop_0,    // Of the axis: its `wants_group_stop`
     input  wire       wants_group_stop_1,
-    input  wire       emergency_stop_0,
+    input  wire       emergency_stop_0,      // Of the axis: its `emergency_stop`
     input  wire       emergency_stop_1,
-    input  wire       feed_hold_0,
+    input  wire       feed_hold_0,           // The axis is to hold its feed
     input  wire       feed_hold_1,
-    input  wire       rests_0,
+    input  wire       rests_0,               // Of the axis's segments: their `rests`
     input  wire       rests_1,
-    output wire       axis_start_0,
+    output wire       axis_start_0,          // One clock, to the axis: its `start`
     output wire       axis_start_1,
-    output wire       group_stop_0,
+    output wire       group_stop_0,          // To the axis: another one wants all to stop
     output wire       group_stop_1,
-    output wire       hold_feed_0,
+    output wire       hold_feed_0,           // To the axis's segments: their `feed_hold`
     output wire       hold_feed_1,
-    output wire       group_emergency_stop,
-    output wire       start_refused
+    output wire       group_emergency_stop,  // To all axes: one of them has its emergency stop
+    output wire       start_refused          // One clock: a start that none followed
 );
     localparam [3:0] AXIS_0 = 4'd1;
     localparam [3:0] AXIS_1 = 4'd2;
     localparam [3:0] STRANGERS = 4'd12;
-    localparam [3:0] NOBODY = 4'd0;
 
     reg  blocked;
     reg  moving;
@@ -65,11 +64,11 @@ module posicast_group_2 (
 
     always @(*) begin
         // All start, or none
-        blocked = (start_axes == NOBODY) | ((start_axes & STRANGERS) != NOBODY);
-        if (((start_axes & AXIS_0) != NOBODY) & !can_start_0) begin
+        blocked = (start_axes == 4'd0) | ((start_axes & STRANGERS) != 4'd0);
+        if (((start_axes & AXIS_0) != 4'd0) & !can_start_0) begin
             blocked = 1'd1;
         end
-        if (((start_axes & AXIS_1) != NOBODY) & !can_start_1) begin
+        if (((start_axes & AXIS_1) != 4'd0) & !can_start_1) begin
             blocked = 1'd1;
         end
 
@@ -116,8 +115,8 @@ module posicast_group_2 (
         emergency_q <= 1'd0;
         refused_q <= 1'd0;
     end else begin
-        start_q_0 <= start & !blocked & ((start_axes & AXIS_0) != NOBODY);
-        start_q_1 <= start & !blocked & ((start_axes & AXIS_1) != NOBODY);
+        start_q_0 <= start & !blocked & ((start_axes & AXIS_0) != 4'd0);
+        start_q_1 <= start & !blocked & ((start_axes & AXIS_1) != 4'd0);
         stop_q_0 <= stop_q_0_next;
         stop_q_1 <= stop_q_1_next;
         hold_q_0 <= feed_hold_0 & !moving;

@@ -41,9 +41,7 @@ module posicast_handover_32x128_f16 (
     localparam [1:0]         HANDS_OVER = 2'd1;
     localparam [1:0]         WHEN_SETTLED = 2'd2;
     localparam [6:0]         MOVED = 7'd0;
-    localparam [6:0]         ONE_SAMPLE = 7'd1;
     localparam [6:0]         FOR_EVER = 7'd127;
-    localparam signed [17:0] NO_COEFFICIENT = 18'sd0;
     localparam signed [17:0] MINUS_UNITY = -18'sd65536;
 
     wire               settled;
@@ -76,7 +74,7 @@ module posicast_handover_32x128_f16 (
     assign take = (how != WHEN_SETTLED) | settled;
 
     // From the first sample of the new table on
-    assign next_since = since_q + ONE_SAMPLE;
+    assign next_since = since_q + 7'd1;
     assign begins = strobe & swap_pending & (how == HANDS_OVER);
     assign below = tap_delay < since_q;
     assign foreign = active_q & (old_tap == below);
@@ -101,7 +99,7 @@ module posicast_handover_32x128_f16 (
             if (position != newest_q) begin
                 still_next = MOVED;
             end else if (still != FOR_EVER) begin
-                still_next = still + ONE_SAMPLE;
+                still_next = still + 7'd1;
             end
         end
         if (start) begin
@@ -120,8 +118,8 @@ module posicast_handover_32x128_f16 (
             end
         end
         if (begins) begin
-            since_q_next = ONE_SAMPLE;
-            active_q_next = reach >= ONE_SAMPLE;
+            since_q_next = 7'd1;
+            active_q_next = reach >= 7'd1;
         end
         if (start) begin
             active_q_next = 1'd0;
@@ -132,7 +130,7 @@ module posicast_handover_32x128_f16 (
             delay_q_next = since_q;
         end
         if (foreign & !position_tap) begin
-            coefficient_q_next = NO_COEFFICIENT;
+            coefficient_q_next = 18'sd0;
         end
         if (correction) begin
             coefficient_q_next = MINUS_UNITY;

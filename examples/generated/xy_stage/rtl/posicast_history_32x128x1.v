@@ -27,8 +27,6 @@ module posicast_history_32x128x1 (
     output wire signed [31:0] sample_0,
     output wire               blank
 );
-    localparam [6:0] ONE_SAMPLE = 7'd1;
-    localparam [6:0] NO_AGE = 7'd0;
     localparam [6:0] FULL_AGE = 7'd127;
 
     wire        writes;
@@ -59,7 +57,7 @@ module posicast_history_32x128x1 (
 
     // A strobe adds x; a start too, and forgets
     assign writes = strobe | start;
-    assign next_head = head + ONE_SAMPLE;
+    assign next_head = head + 7'd1;
 
     // The sample that lies delay samples back
     assign before_start = delay > age;
@@ -78,10 +76,10 @@ module posicast_history_32x128x1 (
             begun_next = 1'd1;
         end
         if (strobe & begun & (age != FULL_AGE)) begin
-            age_next = age + ONE_SAMPLE;
+            age_next = age + 7'd1;
         end
         if (start) begin
-            age_next = NO_AGE;
+            age_next = 7'd0;
             started_next = 1'd1;
         end
         if (start | (strobe & !begun)) begin

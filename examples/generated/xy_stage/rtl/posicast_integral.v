@@ -1,5 +1,5 @@
 // posicast_integral
-// integral ofe, Q24.8: the word that holds the sum of it and e, at `settle`; frozen while e would
+// integral of e, Q24.8: the word that holds the sum of it and e, at `settle`; frozen while e would
 // push a command further that is cut already.
 //
 // `open` is the clock before the sum begins. A clear after it, before the word is taken, wins: that
@@ -24,8 +24,6 @@ module posicast_integral (
     output wire signed [31:0] value,
     output wire               takes
 );
-    localparam signed [31:0] NOTHING = 32'sd0;
-
     wire               lowers;
     reg                grows;
     reg  signed [31:0] integral_q;
@@ -57,7 +55,7 @@ module posicast_integral (
             integral_q_next = word;
         end
         if (clear_integral) begin
-            integral_q_next = NOTHING;
+            integral_q_next = 32'sd0;
         end
     end
 

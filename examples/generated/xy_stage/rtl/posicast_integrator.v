@@ -34,16 +34,9 @@ module posicast_integrator (
     output wire               reads_flags,
     output wire               ends
 );
-    localparam [7:0]  NIL = 8'd0;
     localparam [4:0]  FULL_REACH = 5'd31;
-    localparam [4:0]  NO_REACH = 5'd0;
     localparam [9:0]  CARRY_IN = 10'd1;
     localparam [32:0] HALF = 33'd1;
-    localparam [32:0] NO_HALF = 33'd0;
-    localparam [55:0] NO_POSITION = 56'd0;
-    localparam [47:0] NO_VELOCITY = 48'd0;
-    localparam [39:0] NO_ACCELERATION = 40'd0;
-    localparam [23:0] NO_TICKS = 24'd0;
 
     reg  [7:0]  entry_byte;
     reg  [7:0]  augend;
@@ -232,7 +225,7 @@ module posicast_integrator (
             entry_byte = entry_half[15:8];
         end
         if (blank) begin
-            entry_byte = NIL;
+            entry_byte = 8'd0;
         end
 
         // One adder of a byte
@@ -246,7 +239,7 @@ module posicast_integrator (
                 augend = ticks[7:0];
             end
         end
-        chosen = NIL;
+        chosen = 8'd0;
         if (passes_add_acceleration) begin
             chosen = exact_acceleration[7:0];
         end
@@ -263,7 +256,7 @@ module posicast_integrator (
         end
         past_reach = outwards & (reach_bits == FULL_REACH);
         if (below) begin
-            past_reach = outwards & (reach_bits == NO_REACH);
+            past_reach = outwards & (reach_bits == 5'd0);
         end
         carry_next = wide_sum[9];
         if (passes_first) begin
@@ -301,7 +294,7 @@ module posicast_integrator (
             end
         end
         if (preset | starts_point | (brakes & stands) | passes_clear_acceleration) begin
-            exact_acceleration_next = NO_ACCELERATION;
+            exact_acceleration_next = 40'd0;
         end
 
         // Velocity
@@ -313,7 +306,7 @@ module posicast_integrator (
             exact_velocity_next = (exact_velocity >> 8) | ({40'd0, velocity_byte} << 40);
         end
         if (preset | passes_clear_velocity) begin
-            exact_velocity_next = NO_VELOCITY;
+            exact_velocity_next = 48'd0;
         end
         if (passes_turn_position) begin
             exact_position_next = (exact_position >> 8) | ({48'd0, sum} << 48);
@@ -322,7 +315,7 @@ module posicast_integrator (
             exact_position_next = {32'd0, preset_bits} << 32;
         end
         if (passes_clear_position) begin
-            exact_position_next = NO_POSITION;
+            exact_position_next = 56'd0;
         end
 
         // Ticks of the entry: up to 0, from -ticks
@@ -330,17 +323,17 @@ module posicast_integrator (
             ticks_next = (ticks >> 8) | ({16'd0, sum} << 16);
         end
         if (passes_clear_ticks) begin
-            ticks_next = NO_TICKS;
+            ticks_next = 24'd0;
         end
 
         // Each rounded once, half up, without wrapping
         velocity_half = HALF;
         if (velocity_ends) begin
-            velocity_half = NO_HALF;
+            velocity_half = 33'd0;
         end
         acceleration_half = HALF;
         if (acceleration_ends) begin
-            acceleration_half = NO_HALF;
+            acceleration_half = 33'd0;
         end
     end
 

@@ -34,13 +34,6 @@ module posicast_limiter (
     output wire               limited_low,
     output wire [15:0]        limited_ticks
 );
-    localparam [32:0]        NO_BORROW = 33'd0;
-    localparam [32:0]        ONE_BORROW = 33'd1;
-    localparam [31:0]        NONE = 32'd0;
-    localparam signed [31:0] NOTHING = 32'sd0;
-    localparam [15:0]        NO_TICKS = 16'd0;
-    localparam [15:0]        ONE_TICK = 16'd1;
-
     wire [31:0]        minuend;
     reg  [32:0]        borrow;
     wire [32:0]        margin;
@@ -82,13 +75,13 @@ module posicast_limiter (
         high_q_next = high_q;
         low_q_next = low_q;
         ticks_next = ticks;
-        borrow = NO_BORROW;
+        borrow = 33'd0;
         if (!negative) begin
-            borrow = ONE_BORROW;
+            borrow = 33'd1;
         end
-        inverts = NONE;
+        inverts = 32'd0;
         if (take | !negative) begin
-            inverts = ~NONE;
+            inverts = ~32'd0;
         end
 
         // Twice less the limit, once inverted: its size
@@ -106,7 +99,7 @@ module posicast_limiter (
             over_next = cut | !margin[32];
         end
         if (returns & over) begin
-            held_q_next = NOTHING;
+            held_q_next = 32'sd0;
         end
         if (decides) begin
             command_q_next = held_q;
@@ -116,10 +109,10 @@ module posicast_limiter (
 
         // Ticks in a row
         if (count & !(&ticks)) begin
-            ticks_next = ticks + ONE_TICK;
+            ticks_next = ticks + 16'd1;
         end
         if (count & !high_q & !low_q) begin
-            ticks_next = NO_TICKS;
+            ticks_next = 16'd0;
         end
     end
 

@@ -24,24 +24,23 @@ module posicast_operands (
     input  wire signed [31:0] word,
     output wire signed [31:0] operand
 );
-    localparam [31:0] NOTHING = 32'd0;
-    localparam [4:0]  OF_REFERENCE = 5'd0;
-    localparam [4:0]  OF_VELOCITY = 5'd1;
-    localparam [4:0]  RATE_AGAIN = 5'd2;
-    localparam [4:0]  SURFACE = 5'd3;
-    localparam [4:0]  BOUNDARY = 5'd4;
-    localparam [4:0]  ON_REST = 5'd5;
-    localparam [4:0]  ON_ERROR = 5'd6;
-    localparam [4:0]  ON_RATE = 5'd7;
-    localparam [4:0]  FADE = 5'd8;
-    localparam [4:0]  COULOMB = 5'd9;
-    localparam [4:0]  ON_FEEDBACK = 5'd10;
-    localparam [4:0]  ON_ACCELERATION = 5'd11;
-    localparam [4:0]  ON_REFERENCE = 5'd12;
-    localparam [4:0]  ON_VELOCITY = 5'd13;
-    localparam [4:0]  LIMIT = 5'd14;
-    localparam [4:0]  TO_SUM = 5'd15;
-    localparam [4:0]  TO_DUTY = 5'd16;
+    localparam [4:0] OF_REFERENCE = 5'd0;
+    localparam [4:0] OF_VELOCITY = 5'd1;
+    localparam [4:0] RATE_AGAIN = 5'd2;
+    localparam [4:0] SURFACE = 5'd3;
+    localparam [4:0] BOUNDARY = 5'd4;
+    localparam [4:0] ON_REST = 5'd5;
+    localparam [4:0] ON_ERROR = 5'd6;
+    localparam [4:0] ON_RATE = 5'd7;
+    localparam [4:0] FADE = 5'd8;
+    localparam [4:0] COULOMB = 5'd9;
+    localparam [4:0] ON_FEEDBACK = 5'd10;
+    localparam [4:0] ON_ACCELERATION = 5'd11;
+    localparam [4:0] ON_REFERENCE = 5'd12;
+    localparam [4:0] ON_VELOCITY = 5'd13;
+    localparam [4:0] LIMIT = 5'd14;
+    localparam [4:0] TO_SUM = 5'd15;
+    localparam [4:0] TO_DUTY = 5'd16;
 
     wire [23:0] error_bits;
     reg  [31:0] from_error;
@@ -71,35 +70,35 @@ module posicast_operands (
         | from_acceleration | from_velocity | from_word);
 
     always @(*) begin
-        from_error = NOTHING;
+        from_error = 32'd0;
         if (takes_error) begin
             from_error = {8'd0, error_bits} << 8;
         end
-        from_sliding = NOTHING;
+        from_sliding = 32'd0;
         if (takes_sliding) begin
             from_sliding = $unsigned(sliding);
         end
-        from_held = NOTHING;
+        from_held = 32'd0;
         if (takes_held) begin
             from_held = $unsigned(held);
         end
-        from_integral = NOTHING;
+        from_integral = 32'd0;
         if (takes_integral) begin
             from_integral = $unsigned(integral);
         end
-        from_reference = NOTHING;
+        from_reference = 32'd0;
         if (takes_reference) begin
             from_reference = $unsigned(velocity_reference);
         end
-        from_acceleration = NOTHING;
+        from_acceleration = 32'd0;
         if (takes_acceleration) begin
             from_acceleration = $unsigned(acceleration_reference);
         end
-        from_velocity = NOTHING;
+        from_velocity = 32'd0;
         if (takes_velocity) begin
             from_velocity = $unsigned(velocity);
         end
-        from_word = NOTHING;
+        from_word = 32'd0;
         if (takes_word) begin
             from_word = $unsigned(word);
         end

@@ -58,10 +58,6 @@ module posicast_passes (
 );
     localparam [5:0] JERK_PHASE = 6'd5;
     localparam [5:0] SPEED_PHASE = 6'd14;
-    localparam [1:0] WORD_0 = 2'd0;
-    localparam [1:0] WORD_1 = 2'd1;
-    localparam [1:0] WORD_2 = 2'd2;
-    localparam [1:0] WORD_3 = 2'd3;
 
     wire later;
     wire middle;
@@ -162,18 +158,18 @@ module posicast_passes (
         | (speeds & points & from_third) | (travels & points & from_fourth) | reads);
 
     always @(*) begin
-        read_word = WORD_0;
+        read_word = 2'd0;
         if (points) begin
             if (speeds) begin
-                read_word = WORD_1;
+                read_word = 2'd1;
             end else if (!later) begin
-                read_word = WORD_2;
+                read_word = 2'd2;
             end
         end else if (!later & fifth_ahead) begin
-            read_word = WORD_1;
+            read_word = 2'd1;
         end
         if (last_word) begin
-            read_word = WORD_3;
+            read_word = 2'd3;
         end
     end
 

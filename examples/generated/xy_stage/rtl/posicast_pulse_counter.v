@@ -1,6 +1,7 @@
 // posicast_pulse_counter
 // Pulse counter: encoder or scale signals to position, index and velocity.
 // The count never jumps: a preset moves the origin, position = count - origin.
+//
 // Lines to steps, steps to the count, the index latch, and the velocity: all that the pulse counter
 // shows.
 //
@@ -13,59 +14,64 @@
 
 module posicast_pulse_counter (
     input  wire               clk,
-    input  wire               rst,
-    input  wire               a,
-    input  wire               b,
-    input  wire               z,
-    input  wire               a_n,
-    input  wire               b_n,
-    input  wire               z_n,
-    input  wire               differential,
-    input  wire [5:0]         filter_clocks,
-    input  wire [2:0]         mode,
-    input  wire               swap,
-    input  wire               invert,
-    input  wire               index_arm,
-    input  wire               index_always,
-    input  wire               index_presets,
-    input  wire [3:0]         index_gate,
-    input  wire               preset,
-    input  wire signed [31:0] preset_value,
-    input  wire               clear_flags,
-    input  wire               tick,
-    input  wire [23:0]        time_stamp,
-    input  wire               velocity_m,
-    input  wire [1:0]         smoothing,
-    input  wire [7:0]         timeout,
-    input  wire               quotient_valid,
-    input  wire signed [31:0] quotient,
-    output wire signed [31:0] count,
-    output wire signed [31:0] origin,
-    output wire signed [31:0] position,
-    output wire signed [31:0] index_count,
-    output wire               index_seen,
-    output wire               index_armed,
-    output wire [7:0]         illegal_count,
-    output wire               illegal,
-    output wire               disagreement,
-    output wire               level_a,
-    output wire               level_b,
-    output wire               level_z,
-    output wire signed [17:0] steps,
-    output wire [23:0]        elapsed,
-    output wire               velocity_pending,
-    output wire signed [31:0] velocity,
-    output wire               velocity_valid,
-    output wire               velocity_missed
+    input  wire               rst,               // Synchronous reset
+    input  wire               a,                 // Line A, or step, or up; any time
+    input  wire               b,                 // Line B, or direction (high is up), or down
+    input  wire               z,                 // Index line; any time
+    input  wire               a_n,               // Complement of A, used if `differential`
+    input  wire               b_n,               // Complement of B, used if `differential`
+    input  wire               z_n,               // Complement of Z, used if `differential`
+    input  wire               differential,      // The lines are pairs
+    input  wire [5:0]         filter_clocks,     // Pulses of up to so many clocks are ignored
+    input  wire [2:0]         mode,              // 0 quadrature x4, 1 x2, 2 x1, 3 step and
+                                                 // direction, 4 up and down, else none
+    input  wire               swap,              // Exchanges A and B
+    input  wire               invert,            // Reverses the direction
+    input  wire               index_arm,         // One clock: latch the next index
+    input  wire               index_always,      // Latch every index
+    input  wire               index_presets,     // A latched index also presets
+    input  wire [3:0]         index_gate,        // Bit 0: only while A is as bit 1
+    input  wire               preset,            // One clock: the position becomes `preset_value`,
+                                                 // shown 2 clocks later
+    input  wire signed [31:0] preset_value,      // What a preset makes of the position [counts]
+    input  wire               clear_flags,       // Clears `illegal`, `illegal_count`,
+                                                 // `disagreement`, `velocity_missed`
+    input  wire               tick,              // One clock: the sample tick
+    input  wire [23:0]        time_stamp,        // The stage's clock counter, lowest 24 bits
+                                                 // [clocks]
+    input  wire               velocity_m,        // Velocity by M alone: counts per tick
+    input  wire [1:0]         smoothing,         // K of the one-pole filter with coefficient 2^-k,
+                                                 // 0 to 3
+    input  wire [7:0]         timeout,           // Without an edge for so many times 65,536 clocks,
+                                                 // the velocity is 0
+    input  wire               quotient_valid,    // One clock: `quotient` is that of `steps` and
+                                                 // `elapsed`
+    input  wire signed [31:0] quotient,          // From the divider, Q16.16 counts per tick [counts
+                                                 // per tick, Q16.16]
+    output wire signed [31:0] count,             // Steps since reset, modulo 2^32 [counts]
+    output wire signed [31:0] origin,            // The count at which the position is 0 [counts]
+    output wire signed [31:0] position,          // `count - origin` [counts]
+    output wire signed [31:0] index_count,       // The count at the index [counts]
+    output wire               index_seen,        // One clock, the one in which `index_count` is
+                                                 // new: an index was latched
+    output wire               index_armed,       // The next index will be latched
+    output wire [7:0]         illegal_count,     // Transitions in which A and B changed together
+    output wire               illegal,           // Sticky: there was one
+    output wire               disagreement,      // Sticky: a pair was equal for longer than the
+                                                 // filter
+    output wire               level_a,           // Filtered A
+    output wire               level_b,           // Filtered B
+    output wire               level_z,           // Filtered Z
+    output wire signed [17:0] steps,             // For the divider: counts
+    output wire [23:0]        elapsed,           // For the divider: clocks; 0 is one tick
+    output wire               velocity_pending,  // A tick waits for its quotient
+    output wire signed [31:0] velocity,          // Q16.16 counts per tick [counts per tick, Q16.16]
+    output wire               velocity_valid,    // One clock: `velocity` is that of the last tick
+    output wire               velocity_missed    // Sticky: a tick came while one waited
 );
-    localparam [1:0]         NO_HALF = 2'd0;
-    localparam [1:0]         ONE_HALF = 2'd1;
     localparam [1:0]         LAST_CLOCK = 2'd2;
-    localparam signed [31:0] NO_COUNT = 32'sd0;
     localparam signed [31:0] COUNT_UP = 32'sd1;
     localparam signed [31:0] COUNT_DOWN = -32'sd1;
-    localparam [3:0]         NO_ILLEGAL = 4'd0;
-    localparam [3:0]         ONE_ILLEGAL = 4'd1;
 
     wire               ready;
     reg  [1:0]         first_half;
@@ -241,14 +247,14 @@ module posicast_pulse_counter (
 
         // After reset, levels are taken as they are for
         // four clocks: 00, 01, 11, 10
-        first_half = NO_HALF;
+        first_half = 2'd0;
         if (!priming[1]) begin
-            first_half = ONE_HALF;
+            first_half = 2'd1;
         end
         if (priming == LAST_CLOCK) begin
             ready_q_next = 1'd1;
         end
-        change = NO_COUNT;
+        change = 32'sd0;
         if (decoder_step) begin
             change = COUNT_DOWN;
             if (decoder_up) begin
@@ -264,16 +270,16 @@ module posicast_pulse_counter (
             disagreement_q_next = 1'd1;
         end
         if (counts_illegal) begin
-            illegal_low_next = illegal_low + ONE_ILLEGAL;
+            illegal_low_next = illegal_low + 4'd1;
         end
         if (counts_illegal & low_full) begin
-            illegal_high_next = illegal_high + ONE_ILLEGAL;
+            illegal_high_next = illegal_high + 4'd1;
         end
         if (clear_flags) begin
-            illegal_low_next = NO_ILLEGAL;
-            illegal_high_next = NO_ILLEGAL;
+            illegal_low_next = 4'd0;
+            illegal_high_next = 4'd0;
             if (decoder_illegal) begin
-                illegal_low_next = ONE_ILLEGAL;
+                illegal_low_next = 4'd1;
             end
         end
 

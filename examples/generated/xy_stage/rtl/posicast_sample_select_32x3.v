@@ -1,5 +1,4 @@
 // posicast_sample_select_32x3
-// Samples from the host's registers or from pins, a clock late.
 // Where the samples of a stand-alone shaper come from: the host's registers, or pins. One clock
 // late.
 //
@@ -11,21 +10,21 @@
 
 module posicast_sample_select_32x3 (
     input  wire               clk,
-    input  wire               rst,
-    input  wire               from_pins,
-    input  wire               host_strobe,
-    input  wire               host_start,
-    input  wire signed [31:0] host_x_0,
+    input  wire               rst,          // Synchronous reset
+    input  wire               from_pins,    // The samples come from pins; low: from the host
+    input  wire               host_strobe,  // Of the host, one clock: its words are a sample
+    input  wire               host_start,   // Of the host: the sample is the first of a motion
+    input  wire signed [31:0] host_x_0,     // Of the host: a word per channel
     input  wire signed [31:0] host_x_1,
     input  wire signed [31:0] host_x_2,
-    input  wire               pin_strobe,
-    input  wire               pin_start,
-    input  wire signed [31:0] pin_x_0,
+    input  wire               pin_strobe,   // As `host_strobe`, from a pin
+    input  wire               pin_start,    // As `host_start`, from a pin
+    input  wire signed [31:0] pin_x_0,      // As `host_x`, from pins
     input  wire signed [31:0] pin_x_1,
     input  wire signed [31:0] pin_x_2,
-    output wire               strobe,
-    output wire               start,
-    output wire signed [31:0] x_0,
+    output wire               strobe,       // One clock: the words are a sample
+    output wire               start,        // The sample is the first of a motion
+    output wire signed [31:0] x_0,          // A word per channel
     output wire signed [31:0] x_1,
     output wire signed [31:0] x_2
 );

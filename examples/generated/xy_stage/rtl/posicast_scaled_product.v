@@ -32,11 +32,8 @@ module posicast_scaled_product (
     input  wire [22:0]        gain,
     output wire signed [50:0] scaled
 );
-    localparam [17:0] NO_UNIT = 18'd0;
-    localparam [17:0] ONE = 18'd1;
     localparam [17:0] MINUS_ONE = 18'd262143;
     localparam [4:0]  EIGHT = 5'd8;
-    localparam [4:0]  ONE_BIT = 5'd1;
 
     reg  [17:0]        of_gain;
     reg  [17:0]        of_unit;
@@ -102,11 +99,11 @@ module posicast_scaled_product (
 
         // Multiply by the gain, or by one or minus one
         of_gain = gain[17:0];
-        of_unit = NO_UNIT;
+        of_unit = 18'd0;
         distance = gain[22:18];
         if (unit) begin
-            of_gain = NO_UNIT;
-            of_unit = ONE;
+            of_gain = 18'd0;
+            of_unit = 18'd1;
             distance = EIGHT;
         end
         if (minus) begin
@@ -114,7 +111,7 @@ module posicast_scaled_product (
         end
         if (shift & (|left)) begin
             shifter_next = $signed({{1{by_one[49]}}, by_one});
-            left_next = left - ONE_BIT;
+            left_next = left - 5'd1;
         end
         if (load) begin
             shifter_next = $signed({1'd0, product} << 1);

@@ -1,5 +1,4 @@
 // posicast_schedule_210
-// Schedule: the controllers start a fixed number of clocks after each tick.
 // When the controllers of a stage start: a fixed number of clocks after each tick.
 //
 // The reference is `posicast_model::rtl::schedule`.
@@ -16,12 +15,10 @@
 
 module posicast_schedule_210 (
     input  wire clk,
-    input  wire rst,
-    input  wire tick,
-    output wire control
+    input  wire rst,     // Synchronous reset
+    input  wire tick,    // One clock: the tick
+    output wire control  // One clock: the controllers start
 );
-    localparam [16:0] NONE = 17'd0;
-    localparam [16:0] ONE = 17'd1;
     localparam [16:0] LAST = 17'd208;
     localparam [16:0] USED = 17'd255;
 
@@ -37,12 +34,12 @@ module posicast_schedule_210 (
 
     always @(*) begin
         waits_next = waits;
-        since_next = (since + ONE) & USED;
+        since_next = (since + 17'd1) & USED;
         if (ends) begin
             waits_next = 1'd0;
         end
         if (tick) begin
-            since_next = NONE;
+            since_next = 17'd0;
             waits_next = 1'd1;
         end
     end

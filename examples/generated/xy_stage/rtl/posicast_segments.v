@@ -1,6 +1,7 @@
 // posicast_segments
 // Motion commands: a FIFO of segments of constant jerk, integrated exactly at every tick.
 // Without an entry while moving: a quick stop.
+//
 // Ticks, states and flags; the FIFO and the integrator do the rest.
 //
 // phase 0            1 ~ 43          44               45 ~ 51
@@ -17,48 +18,64 @@
 
 module posicast_segments (
     input  wire               clk,
-    input  wire               rst,
-    input  wire               tick,
-    input  wire               enable,
-    input  wire               write,
-    input  wire [1:0]         word,
-    input  wire [31:0]        data,
-    input  wire               flush,
-    input  wire               quick_stop,
-    input  wire               restart,
-    input  wire               preset,
-    input  wire signed [31:0] preset_position,
-    input  wire [30:0]        stop_deceleration,
-    input  wire [5:0]         low_water,
-    input  wire               clear_flags,
-    input  wire               modulo,
-    input  wire               feed_hold,
-    output wire signed [31:0] position,
-    output wire signed [31:0] velocity,
-    output wire signed [31:0] acceleration,
-    output wire               valid,
-    output wire [1:0]         state,
-    output wire [6:0]         level,
-    output wire               low,
-    output wire               empty,
-    output wire               notify,
-    output wire               done,
-    output wire               underrun,
-    output wire               overflow,
-    output wire               refused,
-    output wire               malformed,
-    output wire               tick_missed,
-    output wire               out_of_range,
-    output wire               rests,
-    output wire               held
+    input  wire               rst,                // Synchronous reset
+    input  wire               tick,               // One clock: the tick
+    input  wire               enable,             // At a tick: entries are played
+    input  wire               write,              // One clock: `data` is `word` of the entry that
+                                                  // is being written
+    input  wire [1:0]         word,               // 0 to 3; 3 commits the entry
+    input  wire [31:0]        data,               // The word
+    input  wire               flush,              // One clock: at the next tick drop all entries
+                                                  // that wait
+    input  wire               quick_stop,         // One clock: at the next tick drop all entries
+                                                  // and stop
+    input  wire               restart,            // One clock: at the next tick leave the state
+                                                  // `stopped`
+    input  wire               preset,             // One clock: at the next tick rest at
+                                                  // `preset_position`, without entries
+    input  wire signed [31:0] preset_position,    // The position of a preset, taken at that tick
+                                                  // [counts]
+    input  wire [30:0]        stop_deceleration,  // Deceleration of a quick stop [counts per
+                                                  // tick², Q7.24]
+    input  wire [5:0]         low_water,          // `low` while at most so many entries wait
+    input  wire               clear_flags,        // Clears the sticky flags
+    input  wire               modulo,             // Tied: a rotary axis, whose position wraps
+    input  wire               feed_hold,          // At a tick: a command that rests stays where it
+                                                  // is, and the entry that plays keeps its ticks
+    output wire signed [31:0] position,           // Position of the command [counts, Q24.8]
+    output wire signed [31:0] velocity,           // Velocity of the command [counts per tick,
+                                                  // Q16.16]
+    output wire signed [31:0] acceleration,       // Acceleration of the command [counts per tick²,
+                                                  // Q8.24]
+    output wire               valid,              // One clock: the three are those of this tick
+    output wire [1:0]         state,              // 0 hold, 1 move, 2 stop, 3 stopped
+    output wire [6:0]         level,              // Entries that wait, 0 to 64
+    output wire               low,                // At most `low_water` entries wait
+    output wire               empty,              // None waits
+    output wire               notify,             // One clock: an entry with this flag has ended
+    output wire               done,               // One clock: a move has ended at rest with no
+                                                  // entry left, or a quick stop is at rest
+    output wire               underrun,           // Sticky: no entry was there while moving
+    output wire               overflow,           // Sticky: acceleration or velocity did not fit
+    output wire               refused,            // Sticky: a word was written while the FIFO held
+                                                  // 64 entries, the one that plays included, or in
+                                                  // a quick stop
+    output wire               malformed,          // Sticky: an entry was dropped: words missing, no
+                                                  // ticks, reserved flags, or a jerk of more than
+                                                  // 40 bits
+    output wire               tick_missed,        // Sticky: a tick came while one was being played,
+                                                  // and was left out
+    output wire               out_of_range,       // Sticky: the command came near an end of the
+                                                  // position's word, and stopped
+    output wire               rests,              // Velocity and acceleration are 0, exactly, since
+                                                  // the last `valid`
+    output wire               held                // The last tick was not played: a feed hold
 );
     localparam [5:0] IDLE_PHASE = 6'd0;
-    localparam [5:0] ONE_PHASE = 6'd1;
     localparam [1:0] HOLD_STATE = 2'd0;
     localparam [1:0] MOVE_STATE = 2'd1;
     localparam [1:0] STOP_STATE = 2'd2;
     localparam [1:0] STOPPED_STATE = 2'd3;
-    localparam [6:0] NO_LEVEL = 7'd0;
 
     wire               flush_now;
     wire               quick_stop_now;
@@ -188,7 +205,7 @@ module posicast_segments (
     assign moves = state_q == MOVE_STATE;
     assign stops = state_q == STOP_STATE;
     assign stopped = state_q == STOPPED_STATE;
-    assign waiting = fifo_level != NO_LEVEL;
+    assign waiting = fifo_level != 7'd0;
 
     // Requests wait for the tick
     assign flush_now = flush | wants_flush;
@@ -266,7 +283,7 @@ module posicast_segments (
         drops = 1'd0;
         held_now = held_q;
         if (!idle | tick) begin
-            phase_next = phase + ONE_PHASE;
+            phase_next = phase + 6'd1;
         end
         if (!idle & tick) begin
             tick_missed_q_next = 1'd1;

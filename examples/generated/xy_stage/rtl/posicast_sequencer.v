@@ -39,7 +39,6 @@ module posicast_sequencer (
     output wire       ends
 );
     localparam [4:0] FIRST_STEP = 5'd0;
-    localparam [4:0] ONE_STEP = 5'd1;
     localparam [4:0] OF_SUM = 5'd15;
     localparam [4:0] OF_SURFACE = 5'd3;
     localparam [4:0] OF_BOUNDARY = 5'd4;
@@ -55,7 +54,6 @@ module posicast_sequencer (
     localparam [4:0] OF_LIMIT = 5'd14;
     localparam [4:0] OF_DUTY = 5'd16;
     localparam [5:0] FIRST_PHASE = 6'd0;
-    localparam [5:0] ONE_PHASE = 6'd1;
     localparam [5:0] READ_PHASE = 6'd1;
     localparam [5:0] EMPTY_PHASE = 6'd2;
     localparam [5:0] LOAD_PHASE = 6'd3;
@@ -142,13 +140,13 @@ module posicast_sequencer (
         end
         valid_q_next = 1'd0;
         if (busy_q) begin
-            phase_next = phase + ONE_PHASE;
+            phase_next = phase + 6'd1;
             if (moves_enough) begin
                 phase_next = ADD_PHASE;
             end
             if (last_phase) begin
                 phase_next = FIRST_PHASE;
-                step_q_next = step_q + ONE_STEP;
+                step_q_next = step_q + 5'd1;
                 if (last_step) begin
                     step_q_next = FIRST_STEP;
                     busy_q_next = 1'd0;

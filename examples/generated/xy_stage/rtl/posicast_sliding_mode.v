@@ -2,6 +2,7 @@
 // Controller: reference and measurement to the drive's command, by sliding mode, PD or PID.
 // Each step reads its gain at setting_address: the word comes in the next clock, as from a block
 // RAM.
+//
 // The controller: what a step multiplies, and what becomes of its sum.
 //
 // | step | operand | times | sum so far | taken by |
@@ -30,32 +31,47 @@
 
 module posicast_sliding_mode (
     input  wire               clk,
-    input  wire               rst,
-    input  wire               start,
-    input  wire [1:0]         law,
-    input  wire               modulo,
-    input  wire signed [31:0] position_reference,
-    input  wire signed [31:0] velocity_reference,
-    input  wire signed [31:0] acceleration_reference,
-    input  wire signed [31:0] position,
-    input  wire signed [31:0] velocity,
-    input  wire [31:0]        setting,
-    input  wire               clear_integral,
-    input  wire               clear_flags,
-    output wire [3:0]         setting_address,
-    output wire signed [31:0] error,
-    output wire signed [31:0] sliding,
-    output wire signed [31:0] command,
-    output wire signed [17:0] duty,
-    output wire               valid,
-    output wire               busy,
-    output wire               limited_high,
-    output wire               limited_low,
-    output wire [15:0]        limited_ticks,
-    output wire [6:0]         saturated_high,
-    output wire [6:0]         saturated_low,
-    output wire               overrun,
-    output wire               ends
+    input  wire               rst,                     // Synchronous reset
+    input  wire               start,                   // One clock: a tick
+    input  wire [1:0]         law,                     // 0 sliding mode, 1 PD, 2 PID, 3 as 1
+    input  wire               modulo,                  // Tied: a rotary axis, whose references wrap
+    input  wire signed [31:0] position_reference,      // Reference r of the position [counts,
+                                                       // Q24.8]
+    input  wire signed [31:0] velocity_reference,      // Reference dr of the velocity [counts per
+                                                       // tick, Q16.16]
+    input  wire signed [31:0] acceleration_reference,  // Reference ddr of the acceleration [counts
+                                                       // per tick², Q8.24]
+    input  wire signed [31:0] position,                // Measured position x, live [counts]
+    input  wire signed [31:0] velocity,                // Measured velocity v [counts per tick,
+                                                       // Q16.16]
+    input  wire [31:0]        setting,                 // The word at the `setting_address` of the
+                                                       // clock before
+    input  wire               clear_integral,          // Clears sum ofe
+    input  wire               clear_flags,             // Clears `saturated_high`, `saturated_low`,
+                                                       // `overrun`
+    output wire [3:0]         setting_address,         // Row of the settings: its word is expected
+                                                       // in the next clock
+    output wire signed [31:0] error,                   // e: new in the clock after `start` [counts,
+                                                       // Q16.16]
+    output wire signed [31:0] sliding,                 // s, with every law [counts per tick,
+                                                       // Q16.16]
+    output wire signed [31:0] command,                 // The command, within +/-limit [command
+                                                       // units, Q20.12]
+    output wire signed [17:0] duty,                    // The command as clocks of the PWM period
+    output wire               valid,                   // One clock: all outputs are of the last
+                                                       // `start`
+    output wire               busy,                    // A pass runs
+    output wire               limited_high,            // The last command was cut at +limit
+    output wire               limited_low,             // The last command was cut at -limit
+    output wire [15:0]        limited_ticks,           // For so many ticks in a row commands were
+                                                       // cut
+    output wire [6:0]         saturated_high,          // Sticky: what was cut at its upper end: bit
+                                                       // 0 e, 1 de, 2 s, 3 a, 4 sum ofe, 5 command,
+                                                       // 6 duty
+    output wire [6:0]         saturated_low,           // Sticky: what was cut at its lower end
+    output wire               overrun,                 // Sticky: a `start` came while `busy`, and
+                                                       // was ignored
+    output wire               ends                     // One clock: the last of a pass
 );
     localparam [4:0] OF_REFERENCE = 5'd0;
     localparam [4:0] OF_VELOCITY = 5'd1;
@@ -71,7 +87,6 @@ module posicast_sliding_mode (
     localparam [4:0] LIMIT = 5'd14;
     localparam [4:0] TO_SUM = 5'd15;
     localparam [4:0] DUTY_STEP = 5'd16;
-    localparam [6:0] NO_FLAGS = 7'd0;
     localparam [6:0] OF_RATE = 7'd2;
     localparam [6:0] OF_SLIDING = 7'd4;
     localparam [6:0] OF_FEEDBACK = 7'd8;
@@ -320,7 +335,7 @@ module posicast_sliding_mode (
         if (settles & to_duty) begin
             duty_q_next = $signed(accumulator_word[17:0]);
         end
-        what = NO_FLAGS;
+        what = 7'd0;
         if (sequencer_marks) begin
             if (sequencer_step == OF_VELOCITY) begin
                 what = OF_RATE;

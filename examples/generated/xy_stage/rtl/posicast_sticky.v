@@ -16,7 +16,6 @@ module posicast_sticky (
     input  wire       is_cut,
     output wire [6:0] flags
 );
-    localparam [6:0] NOTHING = 7'd0;
     localparam [6:0] OF_ERROR = 7'd1;
 
     reg  [6:0] kept;
@@ -29,13 +28,13 @@ module posicast_sticky (
     always @(*) begin
         kept = flags_q;
         if (clear_flags) begin
-            kept = NOTHING;
+            kept = 7'd0;
         end
-        by_error = NOTHING;
+        by_error = 7'd0;
         if (tracking_error) begin
             by_error = OF_ERROR;
         end
-        by_sum = NOTHING;
+        by_sum = 7'd0;
         if (is_cut) begin
             by_sum = what;
         end

@@ -1,8 +1,6 @@
 // posicast_time_base_5000
-// Time base: a tick every so many clocks, a counter of clocks, a counter of ticks.
-// divide is high in the clock after each tick.
 // The time base of a component that stands alone: ticks at a fixed distance, a clock counter, a
-// tick counter.
+// tick counter. `divide` is high in the clock after each tick.
 //
 // The reference is `posicast_model::rtl::time_base`.
 //
@@ -15,18 +13,16 @@
 
 module posicast_time_base_5000 (
     input  wire        clk,
-    input  wire        rst,
-    output wire        tick,
-    output wire        divide,
-    output wire [31:0] time_stamp,
-    output wire [23:0] edge_stamp,
-    output wire [31:0] tick_count
+    input  wire        rst,         // Synchronous reset
+    output wire        tick,        // One clock: the tick
+    output wire        divide,      // One clock, after each tick: a divider may start
+    output wire [31:0] time_stamp,  // Clocks since the reset, modulo 2^32
+    output wire [23:0] edge_stamp,  // The lowest 24 bits of `time_stamp` [clocks]
+    output wire [31:0] tick_count   // Ticks since the reset, modulo 2^32
 );
     localparam [16:0] FIRST_PHASE = 17'd0;
-    localparam [16:0] ONE_PHASE = 17'd1;
     localparam [16:0] LAST_PHASE = 17'd4999;
     localparam [16:0] USED_PHASE = 17'd8191;
-    localparam [31:0] ONE_COUNT = 32'd1;
 
     reg  [16:0] phase;
     reg  [16:0] phase_next;
@@ -47,12 +43,12 @@ module posicast_time_base_5000 (
         tick_count_q_next = tick_count_q;
 
         // The bits that a tick has not go at synthesis
-        phase_next = (phase + ONE_PHASE) & USED_PHASE;
+        phase_next = (phase + 17'd1) & USED_PHASE;
         tick_q_next = 1'd0;
         if (phase == LAST_PHASE) begin
             phase_next = FIRST_PHASE;
             tick_q_next = 1'd1;
-            tick_count_q_next = tick_count_q + ONE_COUNT;
+            tick_count_q_next = tick_count_q + 32'd1;
         end
     end
 
@@ -66,7 +62,7 @@ module posicast_time_base_5000 (
         phase <= phase_next;
         tick_q <= tick_q_next;
         divide_q <= tick_q;
-        time_stamp_q <= time_stamp_q + ONE_COUNT;
+        time_stamp_q <= time_stamp_q + 32'd1;
         tick_count_q <= tick_count_q_next;
     end
 

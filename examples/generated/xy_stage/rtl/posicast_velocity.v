@@ -38,20 +38,12 @@ module posicast_velocity (
     output wire               velocity_missed,
     output wire signed [31:0] velocity
 );
-    localparam [4:0]         NO_CARRY = 5'd0;
-    localparam [4:0]         ONE_CARRY = 5'd1;
-    localparam [23:0]        NO_ELAPSED = 24'd0;
-    localparam [17:0]        ONE_UP = 18'd1;
-    localparam [18:0]        NO_BORROW = 19'd0;
-    localparam [18:0]        ONE_BORROW = 19'd1;
-    localparam [17:0]        NO_STEPS = 18'd0;
     localparam [1:0]         IDLE = 2'd0;
     localparam [1:0]         MEASURED = 2'd1;
     localparam [1:0]         BOUND = 2'd2;
     localparam [1:0]         HALT = 2'd3;
     localparam [35:0]        ROUNDING = 36'd3;
     localparam signed [34:0] REST = 35'sd3;
-    localparam [35:0]        ONE = 36'd1;
 
     reg  [4:0]         last_carry;
     wire [4:0]         last_high;
@@ -115,7 +107,7 @@ module posicast_velocity (
 
     // Twice the distance, times 2^-k
     assign wide_difference = $signed({{1{difference[35]}}, difference});
-    assign resolved = (($unsigned(wide_smoothed) << 1) | ONE) + scaled;
+    assign resolved = (($unsigned(wide_smoothed) << 1) | 36'd1) + scaled;
     assign shrunk = resolved[35:1];
     assign within_bound = (job == BOUND) & (difference[35] == smoothed[34]);
     assign last_high = time_stamp[23:19] - last_carry;
@@ -175,17 +167,17 @@ module posicast_velocity (
 
         // The last edge, less than 2^18 clocks ago: its
         // high bits are those of the time, or one less
-        last_carry = NO_CARRY;
+        last_carry = 5'd0;
         if (last_low[18] & !time_stamp[18]) begin
-            last_carry = ONE_CARRY;
+            last_carry = 5'd1;
         end
-        borrow = NO_BORROW;
+        borrow = 19'd0;
         if (waits & smoothed[34]) begin
-            borrow = ONE_BORROW;
+            borrow = 19'd1;
         end
-        one_count = NO_STEPS;
+        one_count = 18'd0;
         if (waits) begin
-            one_count = ONE_UP;
+            one_count = 18'd1;
         end
 
         // A tick
@@ -214,10 +206,10 @@ module posicast_velocity (
             elapsed_q_next = interval;
         end
         if (tick & velocity_m) begin
-            elapsed_q_next = NO_ELAPSED;
+            elapsed_q_next = 24'd0;
         end
         if (tick & lost) begin
-            steps_q_next = NO_STEPS;
+            steps_q_next = 18'd0;
         end
 
         // Time of the last edge; after a tick without: now

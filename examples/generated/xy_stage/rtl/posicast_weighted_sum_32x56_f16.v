@@ -31,7 +31,6 @@ module posicast_weighted_sum_32x56_f16 (
     output wire signed [31:0] y,
     output wire               saturated
 );
-    localparam signed [17:0] NO_COEFFICIENT = 18'sd0;
     localparam signed [55:0] HALF = 56'sd32768;
     localparam [55:0]        SIGN_MASK = 56'hff800000000000;
     localparam [55:0]        ALL_CLEAR = 56'd0;
@@ -73,7 +72,7 @@ module posicast_weighted_sum_32x56_f16 (
         // Multiply and accumulate, exactly
         coefficient_q_next = coefficient;
         if (blank) begin
-            coefficient_q_next = NO_COEFFICIENT;
+            coefficient_q_next = 18'sd0;
         end
         if (add) begin
             accumulator_next = accumulator + wide_product;

@@ -56,17 +56,11 @@ module xy_stage_x_tap_banks (
     output wire               tap_read_waits
 );
     localparam [1:0]         BANK_ROM = 2'd0;
-    localparam [1:0]         BANK_1 = 2'd1;
-    localparam [1:0]         BANK_2 = 2'd2;
     localparam [1:0]         BANK_NONE = 2'd3;
     localparam [6:0]         UPPER_HALF = 7'd64;
-    localparam [6:0]         ONE_TAP = 7'd1;
     localparam [6:0]         MACHINE_COUNT = 7'd5;
     localparam [6:0]         MACHINE_LONGEST = 7'd78;
     localparam [6:0]         FORBIDDEN_DELAY = 7'd127;
-    localparam [6:0]         NO_DELAY = 7'd0;
-    localparam signed [23:0] NO_SUM = 24'sd0;
-    localparam [24:0]        NO_WORD = 25'd0;
     localparam signed [23:0] UNITY = 24'sd65536;
 
     reg  [6:0]         taps_so_far;
@@ -150,13 +144,13 @@ module xy_stage_x_tap_banks (
     assign begins = !(|tap_index);
 
     // Taken in sequence, into a bank at rest
-    assign loadable = (tap_bank == BANK_1) | (tap_bank == BANK_2);
+    assign loadable = (tap_bank == 2'd1) | (tap_bank == 2'd2);
     assign free = !(pending | locked);
     assign at_rest = (tap_bank != active) & free & !swap;
     assign in_reach = tap_delay != FORBIDDEN_DELAY;
     assign index = {1'd0, tap_index};
     assign addend = $signed({{6{tap_coefficient[17]}}, tap_coefficient});
-    assign new_taps = index + ONE_TAP;
+    assign new_taps = index + 7'd1;
     assign new_sum = sum_so_far + addend;
     assign coefficient_bits = $unsigned(tap_coefficient);
     assign loaded_taps_write_data = ({18'd0, tap_delay} << 18) | {7'd0, coefficient_bits};
@@ -196,15 +190,15 @@ module xy_stage_x_tap_banks (
         sum_so_far = sum_1;
         longest_so_far = longest_1;
         write_address = {1'd0, tap_index};
-        if (tap_bank == BANK_2) begin
+        if (tap_bank == 2'd2) begin
             taps_so_far = taps_2;
             sum_so_far = sum_2;
             longest_so_far = longest_2;
             write_address = {1'd0, tap_index} | UPPER_HALF;
         end
         if (begins) begin
-            sum_so_far = NO_SUM;
-            longest_so_far = NO_DELAY;
+            sum_so_far = 24'sd0;
+            longest_so_far = 7'd0;
         end
         write_taken = 1'd0;
         if (begins | (index == taps_so_far)) begin
@@ -215,7 +209,7 @@ module xy_stage_x_tap_banks (
             new_longest = tap_delay;
         end
         if (write_taken) begin
-            if (tap_bank == BANK_2) begin
+            if (tap_bank == 2'd2) begin
                 taps_2_next = new_taps;
                 sum_2_next = new_sum;
                 longest_2_next = new_longest;
@@ -235,10 +229,10 @@ module xy_stage_x_tap_banks (
         if (swap_bank == BANK_ROM) begin
             swap_taken = swap & free & known;
         end
-        if ((swap_bank == BANK_1) & (sum_1 == UNITY)) begin
+        if ((swap_bank == 2'd1) & (sum_1 == UNITY)) begin
             swap_taken = swap & free & known;
         end
-        if ((swap_bank == BANK_2) & (sum_2 == UNITY)) begin
+        if ((swap_bank == 2'd2) & (sum_2 == UNITY)) begin
             swap_taken = swap & free & known;
         end
         if (strobe & pending & take) begin
@@ -253,14 +247,14 @@ module xy_stage_x_tap_banks (
 
         // How far back the tables of a swap reach
         active_longest = longest_1;
-        if (active == BANK_2) begin
+        if (active == 2'd2) begin
             active_longest = longest_2;
         end
         if (active == BANK_ROM) begin
             active_longest = MACHINE_LONGEST;
         end
         swap_longest = longest_1;
-        if (swap_bank == BANK_2) begin
+        if (swap_bank == 2'd2) begin
             swap_longest = longest_2;
         end
         if (swap_bank == BANK_ROM) begin
@@ -287,7 +281,7 @@ module xy_stage_x_tap_banks (
             read_bank = previous;
         end
         taps = taps_1;
-        if (read_bank == BANK_2) begin
+        if (read_bank == 2'd2) begin
             taps = taps_2;
         end
         if (read_bank == BANK_ROM) begin
@@ -296,7 +290,7 @@ module xy_stage_x_tap_banks (
 
         // Bank 1 is the lower half, all others the upper
         read_address = {1'd0, tap} | UPPER_HALF;
-        if (read_bank == BANK_1) begin
+        if (read_bank == 2'd1) begin
             read_address = {1'd0, tap};
         end
         read_tap = tap;
@@ -319,7 +313,7 @@ module xy_stage_x_tap_banks (
             read_word = machine_taps_data;
         end
         if (served) begin
-            read_back_next = NO_WORD;
+            read_back_next = 25'd0;
             if (served_tap) begin
                 read_back_next = read_word;
             end

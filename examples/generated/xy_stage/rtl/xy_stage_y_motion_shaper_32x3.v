@@ -2,6 +2,7 @@
 // Input shaper: y[n] = saturate( (sum of c_i * x[n - d_i] + 2^(F-1)) >> F )
 // strobe: x is a sample; start: begin anew, all samples before are x. One tap per clock.
 // x_0: position, x_1: velocity, x_2: acceleration. swap_how: 0 at once, 1 handover, 2 when settled.
+//
 // The pass over the taps, one per clock.
 //
 // tap -> tap_banks -> delay -----> history -> sample ------> weighted_sum -----------------> y
@@ -28,44 +29,46 @@
 
 module xy_stage_y_motion_shaper_32x3 (
     input  wire               clk,
-    input  wire               rst,
-    input  wire               strobe,
-    input  wire               start,
-    input  wire signed [31:0] x_0,
+    input  wire               rst,                 // Synchronous reset, active high
+    input  wire               strobe,              // For one clock: the next sample of the command
+    input  wire               start,               // For one clock: begin anew, all samples before
+                                                   // now count as the command of now
+    input  wire signed [31:0] x_0,                 // Command words: position, velocity,
+                                                   // acceleration
     input  wire signed [31:0] x_1,
     input  wire signed [31:0] x_2,
-    input  wire               clear_flags,
-    input  wire               tap_write,
-    input  wire [1:0]         tap_bank,
-    input  wire [5:0]         tap_index,
-    input  wire signed [17:0] tap_coefficient,
-    input  wire [6:0]         tap_delay,
-    input  wire               tap_read,
-    input  wire               swap,
-    input  wire [1:0]         swap_bank,
-    input  wire [1:0]         swap_how,
-    output wire signed [31:0] y_0,
+    input  wire               clear_flags,         // Clears `saturated`, `overrun`, `refused`
+    input  wire               tap_write,           // For one clock: one tap for a loadable bank
+    input  wire [1:0]         tap_bank,            // The bank it is for, 1 or 2
+    input  wire [5:0]         tap_index,           // Its place in the table: 0 begins a table, then
+                                                   // one after the other
+    input  wire signed [17:0] tap_coefficient,     // Its coefficient [2^-F]
+    input  wire [6:0]         tap_delay,           // Its delay, 0 ... 2^A - 2 [samples]
+    input  wire               tap_read,            // For one clock: the tap at `tap_index` of
+                                                   // `tap_bank`, of any bank, is to be read back
+    input  wire               swap,                // For one clock: make `swap_bank` active
+    input  wire [1:0]         swap_bank,           // The bank to make active, 0 to 2
+    input  wire [1:0]         swap_how,            // When the swap takes effect: 0 at once, 1 by
+                                                   // handover, 2 when settled
+    output wire signed [31:0] y_0,                 // Shaped commands; they hold between samples
     output wire signed [31:0] y_1,
     output wire signed [31:0] y_2,
-    output wire               valid,
-    output wire               saturated,
-    output wire               busy,
-    output wire               overrun,
-    output wire               swap_pending,
-    output wire [1:0]         bank,
-    output wire               refused,
-    output wire signed [17:0] loaded_coefficient,
-    output wire [6:0]         loaded_delay,
-    output wire               tap_read_waits
+    output wire               valid,               // For one clock: the shaped command is new
+    output wire               saturated,           // Sticky: some output was clamped
+    output wire               busy,                // A pass over the table runs
+    output wire               overrun,             // Sticky: a strobe came while a pass ran
+    output wire               swap_pending,        // A swap waits, or hands over
+    output wire [1:0]         bank,                // The active bank
+    output wire               refused,             // Sticky: a write or a swap was refused
+    output wire signed [17:0] loaded_coefficient,  // Coefficient of the tap that was read back last
+                                                   // [2^-F]
+    output wire [6:0]         loaded_delay,        // Its delay [samples]
+    output wire               tap_read_waits       // A read was not served yet
 );
     localparam [5:0] FIRST_TAP = 6'd0;
-    localparam [5:0] ONE_TAP = 6'd1;
-    localparam [6:0] ONE_MORE = 7'd1;
     localparam [1:0] FIRST_CHANNEL = 2'd0;
-    localparam [1:0] ONE_CHANNEL = 2'd1;
     localparam [1:0] LAST_CHANNEL = 2'd2;
     localparam [1:0] NO_CHANNEL = 2'd3;
-    localparam [8:0] NO_STAGE = 9'd0;
     localparam [8:0] FIRST_STAGE = 9'd1;
     localparam [8:0] SECOND_STAGE = 9'd2;
     localparam [1:0] UNKNOWN_HOW = 2'd3;
@@ -224,7 +227,7 @@ module xy_stage_y_motion_shaper_32x3 (
     assign old = handover_active & !second;
 
     // A product per clock; after a channel none
-    assign tap_number = {1'd0, tap} + ONE_MORE;
+    assign tap_number = {1'd0, tap} + 7'd1;
     assign table_ends = tap_number == banks_taps;
 
     // Outputs
@@ -253,7 +256,7 @@ module xy_stage_y_motion_shaper_32x3 (
         ends = 1'd0;
         lasts_next = lasts << 1;
         if (running & !lasts[0]) begin
-            tap_next = tap + ONE_TAP;
+            tap_next = tap + 6'd1;
             if (correcting) begin
                 ends = 1'd1;
             end else if (table_ends) begin
@@ -272,17 +275,17 @@ module xy_stage_y_motion_shaper_32x3 (
             tap_next = FIRST_TAP;
             second_next = 1'd0;
             correcting_next = 1'd0;
-            channel_next = channel + ONE_CHANNEL;
+            channel_next = channel + 2'd1;
             if (channel == LAST_CHANNEL) begin
                 running_next = 1'd0;
             end
         end
         if (lasts[4]) begin
-            sample_channel_next = sample_channel + ONE_CHANNEL;
+            sample_channel_next = sample_channel + 2'd1;
         end
 
         // A start or a strobe cuts off what runs
-        begin_lasts = NO_STAGE;
+        begin_lasts = 9'd0;
         if (strobe) begin
             begin_lasts = SECOND_STAGE;
         end

@@ -1,6 +1,7 @@
 // xy_stage_y_shaper
 // Input shaper: y[n] = saturate( (sum of c_i * x[n - d_i] + 2^(F-1)) >> F )
 // strobe: x is a sample; start: begin anew, all samples before are x. One tap per clock.
+//
 // The pass over the taps, one per clock.
 //
 // tap -> tap_banks -> delay -----> history -> sample ------> weighted_sum -----------------> y
@@ -24,35 +25,36 @@
 
 module xy_stage_y_shaper (
     input  wire               clk,
-    input  wire               rst,
-    input  wire               strobe,
-    input  wire               start,
-    input  wire signed [31:0] x,
-    input  wire               clear_flags,
-    input  wire               tap_write,
-    input  wire [1:0]         tap_bank,
-    input  wire [5:0]         tap_index,
-    input  wire signed [17:0] tap_coefficient,
-    input  wire [6:0]         tap_delay,
-    input  wire               tap_read,
-    input  wire               swap,
-    input  wire [1:0]         swap_bank,
-    output wire signed [31:0] y,
-    output wire               valid,
-    output wire               saturated,
-    output wire               busy,
-    output wire               overrun,
-    output wire               swap_pending,
-    output wire [1:0]         bank,
-    output wire               refused,
-    output wire signed [17:0] loaded_coefficient,
-    output wire [6:0]         loaded_delay,
-    output wire               tap_read_waits
+    input  wire               rst,                 // Synchronous reset, active high
+    input  wire               strobe,              // For one clock: the next sample of the command
+    input  wire               start,               // For one clock: begin anew, all samples before
+                                                   // now count as the command of now
+    input  wire signed [31:0] x,                   // Command word
+    input  wire               clear_flags,         // Clears `saturated`, `overrun`, `refused`
+    input  wire               tap_write,           // For one clock: one tap for a loadable bank
+    input  wire [1:0]         tap_bank,            // The bank it is for, 1 or 2
+    input  wire [5:0]         tap_index,           // Its place in the table: 0 begins a table, then
+                                                   // one after the other
+    input  wire signed [17:0] tap_coefficient,     // Its coefficient [2^-F]
+    input  wire [6:0]         tap_delay,           // Its delay, 0 ... 2^A - 2 [samples]
+    input  wire               tap_read,            // For one clock: the tap at `tap_index` of
+                                                   // `tap_bank`, of any bank, is to be read back
+    input  wire               swap,                // For one clock: make `swap_bank` active
+    input  wire [1:0]         swap_bank,           // The bank to make active, 0 to 2
+    output wire signed [31:0] y,                   // Shaped command; holds between samples
+    output wire               valid,               // For one clock: the shaped command is new
+    output wire               saturated,           // Sticky: some output was clamped
+    output wire               busy,                // A pass over the table runs
+    output wire               overrun,             // Sticky: a strobe came while a pass ran
+    output wire               swap_pending,        // A swap waits, or hands over
+    output wire [1:0]         bank,                // The active bank
+    output wire               refused,             // Sticky: a write or a swap was refused
+    output wire signed [17:0] loaded_coefficient,  // Coefficient of the tap that was read back last
+                                                   // [2^-F]
+    output wire [6:0]         loaded_delay,        // Its delay [samples]
+    output wire               tap_read_waits       // A read was not served yet
 );
     localparam [5:0] FIRST_TAP = 6'd0;
-    localparam [5:0] ONE_TAP = 6'd1;
-    localparam [6:0] ONE_MORE = 7'd1;
-    localparam [5:0] NO_STAGE = 6'd0;
     localparam [5:0] FIRST_STAGE = 6'd1;
 
     wire [6:0]         tap_number;
@@ -152,7 +154,7 @@ module xy_stage_y_shaper (
     assign finish = done & !start & !strobe;
 
     // One tap per clock, up to the last of the table
-    assign tap_number = {1'd0, tap} + ONE_MORE;
+    assign tap_number = {1'd0, tap} + 7'd1;
 
     // Outputs
     assign y = sum_y;
@@ -178,7 +180,7 @@ module xy_stage_y_shaper (
             if (tap_number == banks_taps) begin
                 running_next = 1'd0;
             end else begin
-                tap_next = tap + ONE_TAP;
+                tap_next = tap + 6'd1;
             end
         end
         done_next = stages[5] & !stages[4];
@@ -189,7 +191,7 @@ module xy_stage_y_shaper (
         // A start or a strobe cuts off what runs
         if (start | strobe) begin
             running_next = 1'd0;
-            stages_next = NO_STAGE;
+            stages_next = 6'd0;
             done_next = 1'd0;
             busy_q_next = 1'd0;
         end
