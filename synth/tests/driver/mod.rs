@@ -4,7 +4,7 @@ mod bridge;
 mod family;
 mod identify;
 mod integers;
-mod support;
+pub(crate) mod support;
 
 use bridge::{Bridge, INDEX_AT};
 use posicast_model::rtl::sliding_mode::{Gain, SettingRow};
