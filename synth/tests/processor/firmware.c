@@ -1,10 +1,11 @@
 /*
- * A program for the core beside the stage: on, home, a move of two axes, a move with a fault in it, recovery. The core sleeps while the
+ * A program for the core beside the stage: on, home, a move of two axes, a move with a fault in it, recovery, a path that is computed on the way. The core sleeps while the
  * driver waits, and wakes by the stage's interrupts. What it finds goes to the console, as "= name value"; "> step" begins a step.
  */
 #include "machine_slide.h"
 #include "posicast_driver.h"
 #include "posicast_homing.h"
+#include "posicast_stream.h"
 
 #define X MACHINE_SLIDE_AXIS_X
 #define Y MACHINE_SLIDE_AXIS_Y
@@ -187,6 +188,53 @@ static void fault(void)
     positions("x_again", "y_again");
 }
 
+/* Faster for so many periods, and slower for as many; each of so many ticks, and one that stands. */
+#define RAMP 5
+#define PERIOD 100
+#define AHEAD 2
+/* Q16.16 counts per tick in a period: 0.02. The way is RAMP^2 * PERIOD * 0.02 = 50 counts. */
+#define FASTER 1311
+
+static void point_after(posicast_stream_point *point, int32_t sign, int32_t period)
+{
+    const int32_t faster = period <= RAMP ? FASTER : period <= 2 * RAMP ? -FASTER : 0;
+    const int32_t before = point->velocity;
+
+    point->velocity += sign * faster;
+    point->position += (before + point->velocity) * PERIOD / 2 / 256;
+}
+
+static void path(void)
+{
+    static posicast_stream stream;
+    posicast_stream_point point[2] = {{0, 0}, {0, 0}};
+    uint32_t first_tick = 0;
+    int32_t period;
+
+    point[X].position = posicast_command_position(&stage, X);
+    point[Y].position = posicast_command_position(&stage, Y);
+    need("a stream", posicast_stream_open(&stream, &stage, BOTH, POSICAST_STREAM_CUBIC, 20), POSICAST_OK);
+    for (period = 1; period <= 2 * RAMP + 1; period++) {
+        while (period > AHEAD && ticks_seen - first_tick < (uint32_t)((period - AHEAD - 1) * PERIOD))
+            sleep(0);
+        point_after(&point[X], 1, period);
+        point_after(&point[Y], -1, period);
+        if (period == RAMP)
+            step("a point");
+        need("a point", posicast_stream_write(&stream, point, PERIOD), POSICAST_OK);
+        if (period == RAMP)
+            step("");
+        if (period == AHEAD) {
+            need("start the stream", posicast_stream_start(&stream), POSICAST_OK);
+            first_tick = ticks_seen;
+        }
+    }
+    need("the end", posicast_wait_at_rest(&stage, BOTH, TICKS), POSICAST_OK);
+    result("path_x", posicast_command_position(&stage, X) - point[X].position);
+    result("path_y", posicast_command_position(&stage, Y) - point[Y].position);
+    result("late", (int32_t)(stream.axis[X].late_ticks + stream.axis[Y].late_ticks));
+}
+
 int main(void)
 {
     mark_stack();
@@ -201,6 +249,7 @@ int main(void)
     homing();
     move();
     fault();
+    path();
     step("ten ticks");
     need("ten ticks", posicast_wait_ticks(&stage, 10), POSICAST_OK);
     step("off");

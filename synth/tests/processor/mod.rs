@@ -7,7 +7,7 @@ use posicast_model::machine_file;
 use system::{Firmware, HOME_FROM, INDEX_AT, Outcome, Step, System};
 
 /// Enough for the slowest bridge; the program takes about two thirds of it.
-const MOST_CLOCKS: u64 = 3_000_000;
+const MOST_CLOCKS: u64 = 4_000_000;
 
 fn driver() -> Driver {
     Driver::of(machine_file::parse("machine.toml", include_str!("machine.toml")).unwrap())
@@ -50,7 +50,19 @@ fn check(system: &System, outcome: &Outcome) {
     assert!((1..100).contains(&outcome.longest_latency), "{outcome:#?}");
     near("x_again", -60 - said("origin"));
     near("y_again", 40);
-    for (axis, wanted) in [-60, 40].into_iter().enumerate() {
+    // Points of a path, met to the last bit, none of them late: 50 counts there, 50 back.
+    assert_eq!(
+        (said("path_x"), said("path_y"), said("late")),
+        (0, 0, 0),
+        "{outcome:#?}"
+    );
+    let a_point = outcome.steps.iter().find(|step| step.name == "a point").unwrap();
+    assert_eq!(
+        a_point.reads + a_point.writes - a_point.in_interrupt,
+        2 * 6,
+        "{a_point:?}"
+    );
+    for (axis, wanted) in [-10, -10].into_iter().enumerate() {
         assert!(
             (system.count(axis) - wanted).abs() <= 1,
             "{axis}: {}",
@@ -107,7 +119,7 @@ fn prop_a_riscv_works_the_stage_through_its_driver_however_slow_its_bus() {
     let firmware = Firmware::build(&driver);
     // What a small memory has room for; the compiler's version decides about some hundred bytes.
     assert!(
-        firmware.text < 14_000 && firmware.data < 256,
+        firmware.text < 20_000 && firmware.data < 256,
         "{} {}",
         firmware.text,
         firmware.data

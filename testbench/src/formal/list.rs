@@ -63,7 +63,7 @@ pub fn all() -> Result<Vec<Task>, Error> {
         Task::new(
             "segments",
             "64 entries",
-            Engine::Pdr,
+            INDUCTION,
             (segments::emit("")?, segments_model::ports()),
         )
         .properties(&[], include_str!("../../formal/segments.sv")),

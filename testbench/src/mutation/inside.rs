@@ -91,8 +91,8 @@ pub const INSIDE: [Inside; 13] = [
     Inside {
         name: "a 64th entry beside the one that plays",
         module: "command_fifo",
-        from: "full = level_q[6] | (plays & (waiting == ALL_BUT_ONE));",
-        to: "full = level_q[6];",
+        from: "full = held[6] | (plays & (behind == ALL_BUT_ONE));",
+        to: "full = held[6];",
     },
     Inside {
         name: "the group's emergency stop ignored by an axis",

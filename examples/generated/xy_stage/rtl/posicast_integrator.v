@@ -1,5 +1,6 @@
 // posicast_integrator
-// `a += j; v += a; p += v`, a quick stop and a point, byte by byte on one adder.
+// `a += j; v += a; p += v`, a quick stop, a point, a cubic and an extrapolation, byte by byte on
+// one adder.
 //
 // Each register turns past the adder, lowest byte first, as `passes` says; what is written is the
 // sum. Outputs are rounded from the registers at rest.
@@ -18,6 +19,9 @@ module posicast_integrator (
     input  wire               moves,
     input  wire               held,
     input  wire               points,
+    input  wire               loads,
+    input  wire               short_jerk,
+    input  wire               extrapolates,
     input  wire               modulo,
     input  wire signed [31:0] preset_position,
     input  wire [30:0]        stop_deceleration,
@@ -30,6 +34,7 @@ module posicast_integrator (
     output wire               overflowed,
     output wire               leaves,
     output wire               entry_ends,
+    output wire [7:0]         ticks_after,
     output wire               decides,
     output wire               reads_flags,
     output wire               ends
@@ -63,7 +68,7 @@ module posicast_integrator (
     wire [5:0]  upper_bits;
     wire [4:0]  reach_bits;
     wire        stand_bit;
-    wire        starts_point;
+    wire        starts_anew;
     wire [31:0] preset_word;
     wire [23:0] preset_bits;
     reg  [7:0]  velocity_byte;
@@ -134,6 +139,9 @@ module posicast_integrator (
         .moves              (moves),
         .held               (held),
         .points             (points),
+        .loads              (loads),
+        .short_jerk         (short_jerk),
+        .extrapolates       (extrapolates),
         .jerk_failed        (jerk_failed),
         .speed_failed       (speed_failed),
         .moving             (moving),
@@ -190,7 +198,7 @@ module posicast_integrator (
 
     // Acceleration: a stop's begins at its tick
     assign deceleration = {9'd0, stop_deceleration} << 8;
-    assign starts_point = takes_tick & points & !brakes;
+    assign starts_anew = takes_tick & (loads | extrapolates) & !brakes;
 
     // Position: what is above is never seen
     assign preset_word = $unsigned(preset_position);
@@ -207,6 +215,9 @@ module posicast_integrator (
     assign overflowed = passes_failed;
     assign leaves = past_reach & moving;
     assign entry_ends = carry;
+
+    // Counted on from the end of an entry
+    assign ticks_after = ticks[7:0];
     assign decides = passes_decides;
     assign reads_flags = passes_reads_flags;
     assign ends = passes_ends;
@@ -300,7 +311,7 @@ module posicast_integrator (
                 exact_acceleration_next = ~deceleration;
             end
         end
-        if (preset | starts_point | (brakes & stands) | passes_clear_acceleration) begin
+        if (preset | starts_anew | (brakes & stands) | passes_clear_acceleration) begin
             exact_acceleration_next = NO_ACCELERATION;
         end
 
