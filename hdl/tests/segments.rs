@@ -4,7 +4,7 @@ use crate::random;
 
 use posicast_hdl::segments::{emit, simulate};
 use posicast_model::rtl::ClockedBlock;
-use posicast_model::rtl::segments::{OUTPUT_PORTS, POINT, Segments, ports};
+use posicast_model::rtl::segments::{CUBIC, INPUT_PORTS, MORE, OUTPUT_PORTS, POINT, Segments, ports};
 use random::Random;
 
 #[test]
@@ -18,6 +18,7 @@ fn lockstep_everything_at_random() {
         let word = clock % 4;
         let data = match word {
             3 if random.once_in(3) => u64::from(POINT) + 1 + random.below(3),
+            3 if random.once_in(2) => u64::from(CUBIC) + random.below(2) * u64::from(MORE) + 1 + random.below(3),
             3 => 1 + random.below(5),
             _ => random.word() >> (32 + random.below(32)),
         };
@@ -38,6 +39,7 @@ fn lockstep_everything_at_random() {
             u64::from(random.once_in(50)),
             u64::from(random.once_in(2)),
             u64::from(random.once_in(4)),
+            random.below(4),
         ];
         ClockedBlock::step(&mut model, &inputs, &mut expected).unwrap();
         rusthdl.step(&inputs, &mut actual).unwrap();
@@ -45,6 +47,30 @@ fn lockstep_everything_at_random() {
         moved += u64::from(expected[4] == 1);
     }
     assert!(moved > 3000, "{moved} clocks in a move");
+}
+
+/// A cubic of two ticks, and nothing after it: three ticks more at its velocity, then the stop.
+#[test]
+fn lockstep_an_entry_that_is_missing() {
+    let mut model = Segments::new(5);
+    let mut rusthdl = simulate().unwrap();
+    let (mut expected, mut actual) = ([0; OUTPUT_PORTS], [0; OUTPUT_PORTS]);
+    let words = [7, 1 << 16, 1 << 20, u64::from(CUBIC) + 2];
+    for clock in 0..600 {
+        let mut inputs = [0; INPUT_PORTS];
+        inputs[0] = u64::from(clock < 2);
+        inputs[1] = u64::from(clock % 60 == 59);
+        inputs[2] = 1;
+        if let Some(word) = (10..14).position(|at| at == clock) {
+            [inputs[3], inputs[4], inputs[5]] = [1, word as u64, words[word]];
+        }
+        (inputs[11], inputs[16]) = (1 << 24, 3);
+        ClockedBlock::step(&mut model, &inputs, &mut expected).unwrap();
+        rusthdl.step(&inputs, &mut actual).unwrap();
+        assert_eq!(actual, expected, "clock {clock}");
+    }
+    // Stopped, by an underrun.
+    assert_eq!([expected[18], expected[4], expected[10]], [3, 3, 1]);
 }
 
 #[test]

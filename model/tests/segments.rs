@@ -2,8 +2,8 @@
 
 use posicast_model::motion::{TickLimits, plan_move};
 use posicast_model::rtl::segments::{
-    ENTRIES_MAX, Entry, EntryMotion, Inputs, Integrator, LATENCY_CLOCKS, Outputs, Point, REACH_COUNTS, STAND_COUNTS,
-    Segments, SegmentsState, TICK_CLOCKS,
+    CUBIC, Cubic, ENTRIES_MAX, ENTRY_WORDS, Entry, EntryMotion, Inputs, Integrator, LATENCY_CLOCKS, Outputs, Point,
+    REACH_COUNTS, STAND_COUNTS, Segments, SegmentsState, TICK_CLOCKS,
 };
 use proptest::prelude::*;
 
@@ -24,10 +24,15 @@ const QUIET: Inputs = Inputs {
     clear_flags: false,
     modulo: false,
     feed_hold: false,
+    extrapolation: 0,
 };
 
 fn write(segments: &mut Segments, entry: &Entry) {
-    for (word, data) in (0..).zip(entry.words()) {
+    write_words(segments, entry.words());
+}
+
+fn write_words(segments: &mut Segments, words: [u32; ENTRY_WORDS]) {
+    for (word, data) in (0..).zip(words) {
         segments.step(&Inputs {
             write: true,
             word,
@@ -39,9 +44,25 @@ fn write(segments: &mut Segments, entry: &Entry) {
 
 /// One tick; what the outputs show after it.
 fn tick(segments: &mut Segments) -> Outputs {
-    segments.step(&Inputs { tick: true, ..QUIET });
-    segments.hold(&QUIET, 100);
-    segments.outputs(QUIET.low_water)
+    tick_with(segments, &QUIET)
+}
+
+fn tick_with(segments: &mut Segments, inputs: &Inputs) -> Outputs {
+    segments.step(&Inputs { tick: true, ..*inputs });
+    segments.hold(inputs, 100);
+    segments.outputs(inputs.low_water)
+}
+
+fn cubic(ticks: u32, velocity: i32, acceleration: i32, jerk: i32) -> Entry {
+    Entry {
+        ticks,
+        motion: EntryMotion::Cubic(Cubic {
+            jerk,
+            velocity,
+            acceleration,
+        }),
+        notify: false,
+    }
 }
 
 fn jerk(ticks: u32, jerk: i64) -> Entry {
@@ -67,11 +88,8 @@ fn a_planned_move_arrives_with_the_integrator_at_every_tick() {
         "the first entry is read at the first tick"
     );
     for entry in &entries {
-        for _ in 0..entry.ticks {
-            match entry.motion {
-                EntryMotion::Jerk(jerk) => expected.jerk(jerk).unwrap(),
-                EntryMotion::Point(point) => expected = Integrator::at_point(&point),
-            }
+        for nth in 0..entry.ticks {
+            expected.play(&entry.motion, nth == 0).unwrap();
             let shown = tick(&mut segments);
             assert_eq!([shown.position, shown.velocity, shown.acceleration], expected.rounded());
             assert_eq!(segments.command(), expected);
@@ -101,6 +119,134 @@ fn without_an_entry_while_moving_it_stops_by_itself_and_says_so() {
     assert_eq!(tick(&mut segments).state, SegmentsState::Hold);
     write(&mut segments, &jerk(1, 0));
     assert_eq!(segments.outputs(2).level, 1);
+}
+
+/// Every cubic begins where the one before has ended, and plays as its closed form says.
+#[test]
+fn cubics_go_on_from_the_present_position() {
+    let entries = [
+        cubic(10, 70_000, -900, 5_000),
+        cubic(7, -20_000, 4_000, i32::MIN),
+        cubic(2, 0, 0, 0),
+    ];
+    let mut segments = Segments::new(3);
+    entries.iter().for_each(|entry| write(&mut segments, entry));
+    tick(&mut segments);
+    let mut end = 0;
+    for entry in &entries {
+        let EntryMotion::Cubic(cubic) = entry.motion else {
+            unreachable!()
+        };
+        let n = i64::from(entry.ticks);
+        let (v, a, j) = (
+            i64::from(cubic.velocity) << 16,
+            i64::from(cubic.acceleration) << 8,
+            i64::from(cubic.jerk),
+        );
+        for _ in 0..n {
+            tick(&mut segments);
+        }
+        end += n * v + n * (n - 1) / 2 * a + (n - 1) * n * (n + 1) / 6 * j;
+        assert_eq!(segments.command().position, end);
+        assert_eq!(segments.command().velocity, v + (n - 1) * a + n * (n - 1) / 2 * j);
+    }
+    assert_eq!(segments.outputs(2).state, SegmentsState::Hold);
+}
+
+#[test]
+fn a_late_entry_finds_the_axis_at_its_velocity_and_a_missing_one_stops_it() {
+    let patient = Inputs {
+        extrapolation: 3,
+        ..QUIET
+    };
+    let mut segments = Segments::new(3);
+    write(&mut segments, &cubic(4, 3 << 16, 1 << 20, 0));
+    for _ in 0..5 {
+        tick_with(&mut segments, &patient);
+    }
+    let end = segments.command();
+    assert_eq!(
+        (segments.outputs(2).late_ticks, segments.outputs(2).state),
+        (1, SegmentsState::Move)
+    );
+    // Two late ticks; then the entry that was missing goes on from there.
+    for late in 1..=2 {
+        let shown = tick_with(&mut segments, &patient);
+        assert_eq!(segments.command().position, end.position + late * end.velocity);
+        assert_eq!(
+            (segments.command().velocity, shown.acceleration, shown.underrun),
+            (end.velocity, 0, false)
+        );
+        if late == 1 {
+            write(&mut segments, &cubic(1, 1 << 16, 0, 0));
+        }
+    }
+    tick_with(&mut segments, &patient);
+    assert_eq!(segments.command().position, end.position + 2 * end.velocity + (1 << 32));
+    assert_eq!(segments.outputs(2).late_ticks, 3);
+    // Nothing comes: three ticks at this velocity, then the quick stop.
+    let shown: Vec<Outputs> = (0..5).map(|_| tick_with(&mut segments, &patient)).collect();
+    let states = shown.iter().map(|shown| (shown.state, shown.underrun, shown.velocity));
+    let (moves, stops) = (SegmentsState::Move, SegmentsState::Stop);
+    let velocity = 1 << 16;
+    assert_eq!(
+        states.collect::<Vec<_>>(),
+        [
+            (moves, false, velocity),
+            (moves, false, velocity),
+            (stops, true, velocity),
+            (stops, true, 0),
+            (SegmentsState::Stopped, true, 0)
+        ]
+    );
+    assert_eq!(shown[4].late_ticks, 5);
+}
+
+#[test]
+fn a_batch_is_taken_whole_or_not_at_all() {
+    let entries = [jerk(1, 5), cubic(2, 7, 0, 0), jerk(1, -5)];
+    let batch = Entry::batch(&entries);
+    let mut segments = Segments::new(3);
+    for words in &batch[..2] {
+        write_words(&mut segments, *words);
+        assert_eq!(
+            tick(&mut segments).state,
+            SegmentsState::Hold,
+            "a batch that is not whole plays"
+        );
+    }
+    write_words(&mut segments, batch[2]);
+    assert_eq!(segments.outputs(2).level, 3);
+    // One that is malformed takes those before and after it along; the next entry is taken again.
+    let mut wrong = batch.clone();
+    wrong[1][3] |= 1 << 31;
+    assert!(wrong[1][3] & CUBIC != 0);
+    for words in wrong.into_iter().chain([jerk(1, 0).words()]) {
+        write_words(&mut segments, words);
+    }
+    assert_eq!((segments.outputs(2).level, segments.outputs(2).malformed), (4, true));
+    // A flush in its middle drops the rest of it too.
+    write_words(&mut segments, batch[0]);
+    segments.step(&Inputs { flush: true, ..QUIET });
+    assert_eq!(tick_with(&mut segments, &Inputs { enable: false, ..QUIET }).level, 0);
+    write_words(&mut segments, batch[1]);
+    write_words(&mut segments, batch[2]);
+    assert_eq!(segments.outputs(2).level, 0);
+    // Half of one, left behind: after a preset the next entry is taken as it is.
+    write_words(&mut segments, batch[0]);
+    segments.step(&Inputs { preset: true, ..QUIET });
+    tick_with(&mut segments, &Inputs { enable: false, ..QUIET });
+    write(&mut segments, &jerk(1, 0));
+    assert_eq!(segments.outputs(2).level, 1);
+    segments.step(&Inputs { flush: true, ..QUIET });
+    tick_with(&mut segments, &Inputs { enable: false, ..QUIET });
+    // Of 63 and two none is kept.
+    for _ in 0..63 {
+        write(&mut segments, &jerk(1, 0));
+    }
+    write_words(&mut segments, batch[0]);
+    write_words(&mut segments, batch[2]);
+    assert_eq!((segments.outputs(2).level, segments.outputs(2).refused), (63, true));
 }
 
 /// Rests at so many counts; then what the ticks show while `entry` plays.
@@ -299,7 +445,7 @@ fn inputs() -> impl Strategy<Value = Inputs> {
             enable: !requests[1],
             write,
             word,
-            data: if word == 3 { data & 7 } else { data >> shift },
+            data: if word == 3 { data & 0x3000_0007 } else { data >> shift },
             flush: requests[2],
             quick_stop: requests[3],
             restart: requests[4],
@@ -310,6 +456,7 @@ fn inputs() -> impl Strategy<Value = Inputs> {
             clear_flags: false,
             modulo: data & 1 != 0,
             feed_hold: data & 2 != 0,
+            extrapolation: shift as u8,
         },
     )
 }

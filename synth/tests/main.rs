@@ -5,4 +5,5 @@ mod clock;
 mod driver;
 mod independent;
 mod package;
+mod processor;
 mod yosys;

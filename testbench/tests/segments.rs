@@ -62,6 +62,31 @@ fn lockstep_catches_an_underrun_that_holds_its_speed() {
 }
 
 #[test]
+fn lockstep_catches_a_batch_that_is_taken_by_parts() {
+    caught(&segments(), "stages = entered & more", "stages = 1'd0", 300_000);
+}
+
+#[test]
+fn lockstep_catches_a_jerk_of_a_cubic_without_its_sign() {
+    caught(
+        &segments(),
+        "invert_q_next = addend_sign",
+        "invert_q_next = 1'd0",
+        300_000,
+    );
+}
+
+#[test]
+fn lockstep_catches_an_extrapolation_without_an_end() {
+    caught(
+        &segments(),
+        "in_time = integrator_ticks_after < extrapolation",
+        "in_time = 1'd1",
+        300_000,
+    );
+}
+
+#[test]
 fn lockstep_catches_an_acceleration_that_wraps() {
     caught(
         &segments(),

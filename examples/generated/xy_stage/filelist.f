@@ -61,7 +61,7 @@ rtl/xy_stage_y_shaper_avalon.v
 rtl/xy_stage_y_pulse_counter_avalon.v
 rtl/xy_stage_y_pwm_avalon.v
 rtl/xy_stage_y_sliding_mode_avalon.v
-rtl/posicast_stage_registers_8e3b32f0.v
+rtl/posicast_stage_registers_07d7cdfd.v
 rtl/posicast_schedule_210.v
 rtl/posicast_divider_share_2.v
 rtl/posicast_group_2.v

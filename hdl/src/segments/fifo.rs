@@ -1,7 +1,8 @@
 //! The entries that wait: 64 of 4 words in block RAM, and the pointers.
 //!
 //! `pop` makes the oldest entry the one that plays: its slot, `head`, is read in every tick, and is free again at the next
-//! `pop` or once nothing plays. The slots after it wait, and a word goes into the first one after those; word 3 commits it.
+//! `pop` or once nothing plays. The slots after it wait, those after them are a batch in the making, and a word goes into the first one
+//! after those; word 3 commits it, or stages it for its batch.
 
 use crate::prelude::*;
 
@@ -16,16 +17,17 @@ kernel! {
         closed: Bit,
         plays: Bit,
         flush: Bit,
+        anew: Bit,
         pop: Bit,
         read_word: Bits<2>,
     }
     outputs { level: Bits<7>, refused: Bit, malformed: Bit, read_data: Bits<32> }
     parts { memory: Ram<32, 8> }
-    registers { head: Bits<6>, level_q: Bits<7>, written: Bits<3>, too_wide: Bit }
+    registers { head: Bits<6>, level_q: Bits<7>, staged: Bits<7>, spoilt: Bit, written: Bits<3>, too_wide: Bit }
     wires {
-        full: Bit, waiting: Bits<6>, slot: Bits<6>, level_step: Bits<7>, refuses: Bit, takes: Bit, commits: Bit,
-        narrow: Bit, complete: Bit, well_formed: Bit, upper: Bits<25>, ticks: Bits<24>, reserved: Bits<6>,
-        entered: Bit,
+        full: Bit, held: Bits<7>, behind: Bits<6>, slot: Bits<6>, level_step: Bits<7>, refuses: Bit, takes: Bit, commits: Bit,
+        narrow: Bit, complete: Bit, well_formed: Bit, upper: Bits<25>, ticks: Bits<24>, reserved: Bits<4>,
+        three_words: Bit, two_kinds: Bit, more: Bit, ends: Bit, entered: Bit, stages: Bit, released: Bit, spoils: Bit,
     }
     constants {
         all_but_one: Bits<6> = from_u64(63),
@@ -53,27 +55,34 @@ impl Logic for CommandFifo {
         self.memory.clk.next = self.clk.val();
 
         comment!("A word, unless closed or full");
-        self.waiting.next = self.level_q.q.val().get_bits::<6>(0);
+        self.held.next = self.level_q.q.val() + self.staged.q.val();
+        self.behind.next = self.held.val().get_bits::<6>(0);
         self.full.next =
-            self.level_q.q.val().get_bit(6) | (self.plays.val() & (self.waiting.val() == self.all_but_one.val()));
+            self.held.val().get_bit(6) | (self.plays.val() & (self.behind.val() == self.all_but_one.val()));
         self.refuses.next = self.closed.val() | self.full.val();
         self.takes.next = self.write.val() & !self.refuses.val();
-        self.slot.next = self.head.q.val() + self.waiting.val() + self.one_slot.val();
+        self.slot.next = self.head.q.val() + self.behind.val() + self.one_slot.val();
         self.memory.write_enable.next = self.takes.val();
         self.memory.write_address.next = (bit_cast::<8, 6>(self.slot.val()) << 2) | bit_cast::<8, 2>(self.word.val());
         self.memory.write_data.next = self.data.val();
 
         comment!("The last word commits a whole entry");
         self.ticks.next = self.data.val().get_bits::<24>(0);
-        self.reserved.next = self.data.val().get_bits::<6>(24);
+        self.reserved.next = self.data.val().get_bits::<4>(24);
+        self.more.next = self.data.val().get_bit(28);
+        self.three_words.next = self.data.val().get_bit(29) | self.data.val().get_bit(31);
+        self.two_kinds.next = self.data.val().get_bit(29) & self.data.val().get_bit(31);
         self.complete.next = self.written.q.val().get_bit(0)
             & self.written.q.val().get_bit(1)
-            & (self.written.q.val().get_bit(2) | !self.data.val().get_bit(31));
+            & (self.written.q.val().get_bit(2) | !self.three_words.val());
         self.well_formed.next = self.complete.val()
-            & (!self.too_wide.q.val() | self.data.val().get_bit(31))
+            & (!self.too_wide.q.val() | self.three_words.val())
+            & !self.two_kinds.val()
             & self.ticks.val().any()
-            & !self.reserved.val().any();
-        self.commits.next = self.takes.val() & (self.word.val() == self.last_word.val());
+            & !self.reserved.val().any()
+            & !self.spoilt.q.val();
+        self.ends.next = self.write.val() & (self.word.val() == self.last_word.val());
+        self.commits.next = self.ends.val() & !self.refuses.val();
         self.entered.next = self.commits.val() & self.well_formed.val();
         self.refused.next = self.write.val() & self.refuses.val();
         self.malformed.next = self.commits.val() & !self.well_formed.val();
@@ -93,22 +102,45 @@ impl Logic for CommandFifo {
                 self.written.d.next = self.written.q.val() | self.third.val();
             }
         }
-        if self.write.val() & (self.word.val() == self.last_word.val()) {
+        if self.ends.val() {
             self.written.d.next = self.nothing.val();
             self.too_wide.d.next = false;
         }
 
-        comment!("One in, one out");
-        self.level_step.next = self.one_level.val();
+        comment!("A batch waits for its last entry; one that is");
+        comment!("dropped takes the others with it");
+        self.stages.next = self.entered.val() & self.more.val();
+        self.released.next = self.entered.val() & !self.more.val();
+        self.spoils.next = self.spoilt.q.val();
+        if self.ends.val() {
+            self.staged.d.next = self.no_level.val();
+            self.spoils.next = !self.entered.val() & self.more.val();
+        }
+        if self.stages.val() {
+            self.staged.d.next = self.staged.q.val() + self.one_level.val();
+        }
+        self.spoilt.d.next = self.spoils.val();
+
+        comment!("Some in, one out");
+        self.level_step.next = self.no_level.val();
+        if self.released.val() {
+            self.level_step.next = self.staged.q.val() + self.one_level.val();
+        }
         if self.pop.val() {
             self.head.d.next = self.head.q.val() + self.one_slot.val();
             self.level_step.next = self.one_less.val();
+            if self.released.val() {
+                self.level_step.next = self.staged.q.val();
+            }
         }
-        if self.entered.val() != self.pop.val() {
-            self.level_q.d.next = self.level_q.q.val() + self.level_step.val();
-        }
+        self.level_q.d.next = self.level_q.q.val() + self.level_step.val();
         if self.flush.val() {
             self.level_q.d.next = self.no_level.val();
+            self.staged.d.next = self.no_level.val();
+            self.spoilt.d.next = self.spoils.val() | self.stages.val() | (self.staged.q.val().any() & !self.ends.val());
+            if self.anew.val() {
+                self.spoilt.d.next = false;
+            }
             self.written.d.next = self.nothing.val();
             self.too_wide.d.next = false;
         }

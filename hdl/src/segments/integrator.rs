@@ -1,4 +1,4 @@
-//! `a += j; v += a; p += v`, a quick stop and a point, byte by byte on one adder.
+//! `a += j; v += a; p += v`, a quick stop, a point, a cubic and an extrapolation, byte by byte on one adder.
 //!
 //! Each register turns past the adder, lowest byte first, as `passes` says; what is written is the sum. Outputs are rounded
 //! from the registers at rest.
@@ -18,6 +18,9 @@ kernel! {
         moves: Bit,
         held: Bit,
         points: Bit,
+        loads: Bit,
+        short_jerk: Bit,
+        extrapolates: Bit,
         modulo: Bit,
         preset_position: Signed<32>,
         stop_deceleration: Bits<31>,
@@ -32,6 +35,7 @@ kernel! {
         overflowed: Bit,
         leaves: Bit,
         entry_ends: Bit,
+        ticks_after: Bits<8>,
         decides: Bit,
         reads_flags: Bit,
         ends: Bit,
@@ -46,7 +50,7 @@ kernel! {
         entry_byte: Bits<8>, augend: Bits<8>, addend: Bits<8>, chosen: Bits<8>, wide_sum: Bits<10>,
         sum: Bits<8>, unfit: Bit, turned_sign: Bit, gathered: Bits<8>, shifted_addend: Bits<10>, backwards: Bit,
         below: Bit, outwards: Bit, past_reach: Bit, stands: Bit, upper_bits: Bits<6>, reach_bits: Bits<5>,
-        stand_bit: Bit, starts_point: Bit, preset_word: Bits<32>, preset_bits: Bits<24>, velocity_byte: Bits<8>,
+        stand_bit: Bit, starts_anew: Bit, preset_word: Bits<32>, preset_bits: Bits<24>, velocity_byte: Bits<8>,
         acceleration_byte: Bits<8>, deceleration: Bits<40>, position_sum: Bits<33>, velocity_sum: Bits<33>,
         acceleration_sum: Bits<33>, velocity_half: Bits<33>, acceleration_half: Bits<33>,
     }
@@ -74,6 +78,9 @@ impl Logic for Integrator {
         self.passes.moves.next = self.moves.val();
         self.passes.held.next = self.held.val();
         self.passes.points.next = self.points.val();
+        self.passes.loads.next = self.loads.val();
+        self.passes.short_jerk.next = self.short_jerk.val();
+        self.passes.extrapolates.next = self.extrapolates.val();
         self.passes.jerk_failed.next = self.jerk_failed.q.val();
         self.passes.speed_failed.next = self.speed_failed.q.val();
         self.passes.moving.next = self.moving.q.val();
@@ -181,9 +188,10 @@ impl Logic for Integrator {
                 self.exact_acceleration.d.next = !self.deceleration.val();
             }
         }
-        self.starts_point.next = self.takes_tick.val() & self.points.val() & !self.brakes.val();
+        self.starts_anew.next =
+            self.takes_tick.val() & (self.loads.val() | self.extrapolates.val()) & !self.brakes.val();
         if self.preset.val()
-            | self.starts_point.val()
+            | self.starts_anew.val()
             | (self.brakes.val() & self.stands.val())
             | self.passes.clear_acceleration.val()
         {
@@ -250,6 +258,8 @@ impl Logic for Integrator {
         self.overflowed.next = self.passes.failed.val();
         self.leaves.next = self.past_reach.val() & self.moving.q.val();
         self.entry_ends.next = self.carry.q.val();
+        comment!("Counted on from the end of an entry");
+        self.ticks_after.next = self.ticks.q.val().get_bits::<8>(0);
         self.decides.next = self.passes.decides.val();
         self.reads_flags.next = self.passes.reads_flags.val();
         self.ends.next = self.passes.ends.val();

@@ -19,14 +19,14 @@ kernel! {
         phase: Bits<6>,
         idle: Bit = true,
         state_q: Bits<2>, wants_flush: Bit, wants_quick_stop: Bit, wants_restart: Bit, wants_preset: Bit,
-        enabled: Bit, point: Bit, notifies: Bit, position_q: Signed<32>, velocity_q: Signed<32>,
+        enabled: Bit, point: Bit, cubic: Bit, first: Bit, extrapolates: Bit, late_q: Bits<8>, notifies: Bit, position_q: Signed<32>, velocity_q: Signed<32>,
         acceleration_q: Signed<32>, valid_q: Bit, notify_q: Bit, done_q: Bit, underrun_q: Bit, overflow_q: Bit,
         refused_q: Bit, malformed_q: Bit, tick_missed_q: Bit, out_of_range_q: Bit, rests_q: Bit, held_q: Bit,
     }
     wires {
         flush_now: Bit, quick_stop_now: Bit, restart_now: Bit, preset_now: Bit, takes_tick: Bit, moves: Bit,
         plays: Bit, held_now: Bit, stops: Bit, stopped: Bit, waiting: Bit, points: Bit, to_stop: Bit,
-        reads: Bit, drops: Bit,
+        reads: Bit, drops: Bit, ends: Bit, in_time: Bit,
     }
     constants {
         idle_phase: Bits<6> = from_u64(0),
@@ -36,6 +36,7 @@ kernel! {
         stop_state: Bits<2> = from_u64(SegmentsState::Stop as u64),
         stopped_state: Bits<2> = from_u64(SegmentsState::Stopped as u64),
         no_level: Bits<7> = from_u64(0),
+        one_late: Bits<8> = from_u64(1),
     }
 }
 
@@ -127,7 +128,7 @@ impl Logic for Segments {
         comment!("The sums, and the entry that they take");
         self.held_q.d.next = self.held_now.val();
         self.plays.next = self.moves.val() & !self.held_now.val();
-        self.points.next = self.plays.val() & self.point.q.val();
+        self.points.next = self.plays.val() & self.point.q.val() & !self.extrapolates.q.val();
         self.integrator.phase.next = self.phase.q.val();
         self.integrator.takes_tick.next = self.takes_tick.val();
         self.integrator.preset.next = self.takes_tick.val() & self.preset_now.val();
@@ -137,6 +138,9 @@ impl Logic for Segments {
         self.integrator.held.next = self.held_now.val();
         self.integrator.modulo.next = self.modulo.val();
         self.integrator.points.next = self.points.val();
+        self.integrator.loads.next = self.points.val() | (self.plays.val() & self.cubic.q.val() & self.first.q.val());
+        self.integrator.short_jerk.next = self.plays.val() & self.cubic.q.val() & !self.first.q.val();
+        self.integrator.extrapolates.next = self.plays.val() & self.extrapolates.q.val();
         self.integrator.preset_position.next = self.preset_position.val();
         self.integrator.stop_deceleration.next = self.stop_deceleration.val();
         self.integrator.read_data.next = self.fifo.read_data.val();
@@ -144,6 +148,8 @@ impl Logic for Segments {
 
         comment!("Outputs, and what the next tick does");
         self.reads.next = false;
+        self.ends.next = self.integrator.entry_ends.val() | self.extrapolates.q.val();
+        self.in_time.next = self.integrator.ticks_after.val() < self.extrapolation.val();
         if self.integrator.decides.val() {
             self.position_q.d.next = self.integrator.position.val();
             self.velocity_q.d.next = self.integrator.velocity.val();
@@ -151,6 +157,7 @@ impl Logic for Segments {
             self.valid_q.d.next = true;
             self.rests_q.d.next = self.integrator.at_rest.val();
             if self.plays.val() {
+                self.first.d.next = false;
                 if self.integrator.overflowed.val() | self.integrator.leaves.val() {
                     if self.integrator.overflowed.val() {
                         self.overflow_q.d.next = true;
@@ -160,8 +167,8 @@ impl Logic for Segments {
                     self.state_q.d.next = self.stop_state.val();
                     self.drops.next = true;
                 } else {
-                    if self.integrator.entry_ends.val() {
-                        self.notify_q.d.next = self.notifies.q.val();
+                    if self.ends.val() {
+                        self.notify_q.d.next = self.notifies.q.val() & !self.extrapolates.q.val();
                         if self.waiting.val() {
                             self.reads.next = true;
                         } else {
@@ -169,9 +176,14 @@ impl Logic for Segments {
                                 self.state_q.d.next = self.hold_state.val();
                                 self.done_q.d.next = true;
                             } else {
-                                self.underrun_q.d.next = true;
-                                self.state_q.d.next = self.stop_state.val();
-                                self.drops.next = true;
+                                if self.in_time.val() {
+                                    self.extrapolates.d.next = true;
+                                    self.late_q.d.next = self.late_q.q.val() + self.one_late.val();
+                                } else {
+                                    self.underrun_q.d.next = true;
+                                    self.state_q.d.next = self.stop_state.val();
+                                    self.drops.next = true;
+                                }
                             }
                         }
                     }
@@ -189,7 +201,10 @@ impl Logic for Segments {
                 self.state_q.d.next = self.move_state.val();
                 self.reads.next = true;
             }
-            if !self.reads.val() {
+            if self.reads.val() {
+                self.first.d.next = true;
+                self.extrapolates.d.next = false;
+            } else {
                 self.phase.d.next = self.idle_phase.val();
                 self.idle.d.next = true;
             }
@@ -200,6 +215,7 @@ impl Logic for Segments {
         if self.integrator.reads_flags.val() {
             self.notifies.d.next = self.fifo.read_data.val().get_bit(30);
             self.point.d.next = self.fifo.read_data.val().get_bit(31);
+            self.cubic.d.next = self.fifo.read_data.val().get_bit(29);
         }
         if self.integrator.ends.val() {
             self.phase.d.next = self.idle_phase.val();
@@ -213,6 +229,7 @@ impl Logic for Segments {
         self.fifo.closed.next = self.stops.val() | self.stopped.val();
         self.fifo.plays.next = self.moves.val();
         self.fifo.flush.next = self.drops.val();
+        self.fifo.anew.next = self.takes_tick.val() & self.preset_now.val();
 
         comment!("Outputs");
         self.position.next = self.position_q.q.val();
@@ -233,5 +250,6 @@ impl Logic for Segments {
         self.out_of_range.next = self.out_of_range_q.q.val();
         self.rests.next = self.rests_q.q.val();
         self.held.next = self.held_q.q.val();
+        self.late_ticks.next = self.late_q.q.val();
     }
 }

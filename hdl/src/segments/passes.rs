@@ -7,6 +7,9 @@
 //!          (point: w2)  at)   not fit, at rest (point: w1) (point: w0)                  entry
 //! ```
 //!
+//! The first tick of a cubic is a point's, but for the position; its others have a jerk of four bytes, whose sign makes the fifth. An extrapolated tick has
+//! no entry.
+//!
 //! The first clock of a pass clears what is to be loaded and sets the carry; a turn of a register leaves it as it was, but
 //! for what is written. Words of an entry come two clocks after their address, bytes of it one clock after theirs.
 
@@ -21,6 +24,9 @@ kernel! {
         moves: Bit,
         held: Bit,
         points: Bit,
+        loads: Bit,
+        short_jerk: Bit,
+        extrapolates: Bit,
         jerk_failed: Bit,
         speed_failed: Bit,
         moving: Bit,
@@ -63,7 +69,7 @@ kernel! {
         later: Bit, middle: Bit, odd: Bit, slot_0: Bit, slot_1: Bit, slot_2: Bit, any_slot: Bit,
         accelerates: Bit, corrects: Bit, speeds: Bit, travels: Bit, counts: Bit, reads: Bit, fails: Bit,
         subtracts: Bit, comes_to_rest: Bit, sums: Bit, widens: Bit, one_later: Bit, two_later: Bit,
-        last_word: Bit, from_third: Bit, from_fourth: Bit, fifth_ahead: Bit,
+        last_word: Bit, from_third: Bit, from_fourth: Bit, fifth_ahead: Bit, ends_jerk: Bit,
     }
     constants {
         jerk_phase: Bits<6> = from_u64(5),
@@ -94,7 +100,7 @@ impl Logic for Passes {
         self.reads.next = self.later.val() & self.middle.val();
 
         comment!("What did not fit, and a stop's last tick");
-        self.fails.next = self.moves.val() & !self.points.val() & (self.jerk_failed.val() | self.speed_failed.val());
+        self.fails.next = self.moves.val() & !self.loads.val() & (self.jerk_failed.val() | self.speed_failed.val());
         self.failed.next = self.fails.val();
         self.comes_to_rest.next = !self.moves.val() & self.speed_failed.val();
         self.subtracts.next = self.jerk_failed.val() | self.comes_to_rest.val();
@@ -120,7 +126,7 @@ impl Logic for Passes {
         self.first.next = !self.any_slot.val();
         self.clear_acceleration.next = self.corrects.val() & !self.any_slot.val() & self.comes_to_rest.val();
         self.clear_velocity.next =
-            self.speeds.val() & !self.any_slot.val() & (self.points.val() | (!self.moves.val() & !self.moving.val()));
+            self.speeds.val() & !self.any_slot.val() & (self.loads.val() | (!self.moves.val() & !self.moving.val()));
         self.clear_position.next = self.travels.val() & !self.any_slot.val() & self.points.val();
         self.clear_ticks.next = self.reads.val() & !self.any_slot.val();
         self.carry.next =
@@ -129,18 +135,25 @@ impl Logic for Passes {
         comment!("The addend, a clock ahead");
         self.sums.next = !self.fails.val() & !self.points.val();
         self.add_acceleration_q.d.next = (!self.later.val() & self.odd.val())
-            & (!self.middle.val() | self.sums.val())
+            & (!self.middle.val() | (!self.fails.val() & !self.loads.val()))
             & !(self.slot_2.val() & (self.slot_1.val() | self.slot_0.val()));
         self.add_velocity_q.d.next = ((self.corrects.val() & self.comes_to_rest.val())
             | (self.travels.val() & self.sums.val()))
             & !(self.slot_2.val() & self.slot_1.val());
-        self.widens.next = !self.points.val()
+        self.ends_jerk.next = self.short_jerk.val()
+            & (self.accelerates.val() | self.corrects.val())
             & self.slot_2.val()
-            & ((!self.later.val() & !self.slot_1.val() & self.slot_0.val())
-                | (self.later.val() & self.slot_1.val() & !self.slot_0.val()));
+            & !self.slot_1.val()
+            & !self.slot_0.val();
+        self.widens.next = self.slot_2.val()
+            & ((!self.later.val() & !self.loads.val() & !self.slot_1.val() & self.slot_0.val())
+                | (self.later.val() & !self.points.val() & self.slot_1.val() & !self.slot_0.val()));
         self.invert_q.d.next = (self.corrects.val() & self.subtracts.val())
             | self.reads.val()
             | (self.widens.val() & self.addend_sign.val());
+        if self.ends_jerk.val() {
+            self.invert_q.d.next = self.addend_sign.val();
+        }
         self.add_acceleration.next = self.add_acceleration_q.q.val();
         self.add_velocity.next = self.add_velocity_q.q.val();
         self.invert.next = self.invert_q.q.val();
@@ -161,7 +174,7 @@ impl Logic for Passes {
             self.later.val() & ((self.odd.val() & self.slot_1.val()) | (self.middle.val() & !self.slot_1.val()));
         self.reads_flags.next = self.reads.val() & !self.slot_1.val();
         self.read_word.next = self.word_0.val();
-        if self.points.val() {
+        if self.loads.val() {
             if self.speeds.val() {
                 self.read_word.next = self.word_1.val();
             } else {
@@ -178,13 +191,16 @@ impl Logic for Passes {
             self.read_word.next = self.word_3.val();
         }
         comment!("a, v and p of a point: 1, 2, 3 bytes later");
-        self.one_later.next = self.points.val() & !self.middle.val() & !self.odd.val();
-        self.two_later.next = self.points.val() & (self.speeds.val() | self.travels.val());
+        self.one_later.next = self.loads.val() & !self.middle.val() & !self.odd.val();
+        self.two_later.next = self.loads.val() & (self.speeds.val() | self.travels.val());
         self.read_byte_0.next = self.slot_0.val() ^ self.one_later.val();
         self.read_byte_1.next = self.slot_1.val() ^ self.two_later.val() ^ (self.one_later.val() & !self.slot_0.val());
-        self.blank.next = !((self.accelerates.val() & (!self.points.val() | self.any_slot.val()))
-            | (self.corrects.val() & self.jerk_failed.val())
-            | (self.speeds.val() & self.points.val() & self.from_third.val())
+        self.blank.next = !((self.accelerates.val()
+            & (!self.loads.val() | self.any_slot.val())
+            & !self.ends_jerk.val()
+            & !self.extrapolates.val())
+            | (self.corrects.val() & self.jerk_failed.val() & !self.ends_jerk.val())
+            | (self.speeds.val() & self.loads.val() & self.from_third.val())
             | (self.travels.val() & self.points.val() & self.from_fourth.val())
             | self.reads.val());
     }

@@ -300,14 +300,11 @@ mod tests {
     fn play(at: &mut Integrator, entries: &[Entry]) -> [i64; 3] {
         let mut largest = [0; 3];
         for entry in entries {
-            for _ in 0..entry.ticks {
-                match entry.motion {
-                    EntryMotion::Jerk(jerk) => {
-                        at.jerk(jerk).unwrap();
-                        let found = [at.velocity, at.acceleration, jerk];
-                        largest = [0, 1, 2].map(|k: usize| largest[k].max(found[k].abs()));
-                    }
-                    EntryMotion::Point(point) => *at = Integrator::at_point(&point),
+            for tick in 0..entry.ticks {
+                at.play(&entry.motion, tick == 0).unwrap();
+                if let EntryMotion::Jerk(jerk) = entry.motion {
+                    let found = [at.velocity, at.acceleration, jerk];
+                    largest = [0, 1, 2].map(|k: usize| largest[k].max(found[k].abs()));
                 }
             }
         }
@@ -387,7 +384,7 @@ mod tests {
         assert_eq!(x.len(), y.len());
         let counts = |entry: &Entry| match entry.motion {
             EntryMotion::Point(point) => f64::from(point.position) / 256.0,
-            EntryMotion::Jerk(_) => f64::NAN,
+            EntryMotion::Jerk(_) | EntryMotion::Cubic(_) => f64::NAN,
         };
         for (x, y) in x.iter().zip(&y) {
             let distance = (counts(x) + radius).hypot(counts(y));

@@ -8,7 +8,7 @@ use posicast_model::plant::axis::{AxisMotion, AxisPlant, DrivePins, PlantOptions
 use posicast_model::rtl::divider::{DIVISION_CLOCKS, DividerConfig};
 use posicast_model::rtl::pulse_counter::{self, PulseCounter};
 use posicast_model::rtl::pwm::{self, ActiveLow, Pwm, PwmConfig};
-use posicast_model::rtl::segments::{Entry, EntryMotion as Segment, Integrator};
+use posicast_model::rtl::segments::{Entry, Integrator};
 use posicast_model::rtl::shaper::{MotionShaper, ShaperConfig, ShaperMotion};
 use posicast_model::rtl::sliding_mode::{self, SettingRow, TickController};
 
@@ -157,13 +157,11 @@ impl Chain {
         let mut at = Integrator::default();
         let ticks = entries
             .iter()
-            .flat_map(|entry| (0..entry.ticks).map(|_| Some(entry.motion)));
+            .flat_map(|entry| (0..entry.ticks).map(|tick| Some((entry.motion, tick == 0))));
         let ticks = ticks.chain((0..settle_ticks).map(|_| None));
-        let samples = ticks.map(|segment| {
-            match segment {
-                Some(Segment::Jerk(jerk)) => at.jerk(jerk).unwrap(),
-                Some(Segment::Point(point)) => at = Integrator::at_point(&point),
-                None => {}
+        let samples = ticks.map(|played| {
+            if let Some((motion, is_first)) = played {
+                at.play(&motion, is_first).unwrap();
             }
             let shaped = self.shaper.push(at.rounded().map(i64::from)).map(|word| word as i32);
             let machine = self.plant.motion();
@@ -173,7 +171,7 @@ impl Chain {
             }
             Sample {
                 reference: f64::from(shaped[0]) / 256.0,
-                ended: segment.is_none(),
+                ended: played.is_none(),
                 machine,
             }
         });

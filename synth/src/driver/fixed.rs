@@ -6,7 +6,7 @@ use super::{DriverFile, file};
 type Fixed = (&'static str, &'static str);
 
 /// Every stage's.
-const CORE: [Fixed; 21] = [
+const CORE: [Fixed; 23] = [
     ("inc/posicast_io.h", include_str!("c/inc/posicast_io.h")),
     ("inc/posicast_machine.h", include_str!("c/inc/posicast_machine.h")),
     ("inc/posicast_plan.h", include_str!("c/inc/posicast_plan.h")),
@@ -15,11 +15,13 @@ const CORE: [Fixed; 21] = [
     ("inc/posicast_driver.h", include_str!("c/inc/posicast_driver.h")),
     ("inc/posicast_homing.h", include_str!("c/inc/posicast_homing.h")),
     ("inc/posicast_settings.h", include_str!("c/inc/posicast_settings.h")),
+    ("inc/posicast_stream.h", include_str!("c/inc/posicast_stream.h")),
     ("src/posicast_plan.c", include_str!("c/src/posicast_plan.c")),
     ("src/posicast_segments.c", include_str!("c/src/posicast_segments.c")),
     ("src/posicast_driver.c", include_str!("c/src/posicast_driver.c")),
     ("src/posicast_homing.c", include_str!("c/src/posicast_homing.c")),
     ("src/posicast_settings.c", include_str!("c/src/posicast_settings.c")),
+    ("src/posicast_stream.c", include_str!("c/src/posicast_stream.c")),
     ("src/posicast_tables.c", include_str!("c/src/posicast_tables.c")),
     ("src/posicast_wait.c", include_str!("c/src/posicast_wait.c")),
     ("src/posicast_wait.h", include_str!("c/src/posicast_wait.h")),

@@ -9,7 +9,7 @@ use posicast_model::rtl::axis::{Cause, KICK};
 use posicast_model::rtl::group::MOST_AXES;
 use posicast_model::rtl::registers::{Field, Register, RegisterMap, WINDOW_WORDS};
 use posicast_model::rtl::segments::{
-    ACCELERATION_BITS, ACCELERATION_FRACTION, ENTRIES_MAX, ENTRY_WORDS, FRACTION_BITS, NOTIFY, POINT,
+    ACCELERATION_BITS, ACCELERATION_FRACTION, CUBIC, ENTRIES_MAX, ENTRY_WORDS, FRACTION_BITS, MORE, NOTIFY, POINT,
     POSITION_FRACTION, SegmentsState, TICK_BITS, VELOCITY_BITS, VELOCITY_FRACTION,
 };
 use posicast_model::rtl::sliding_mode::{MANTISSA_BITS, SETTINGS, SHIFT_MAX, SettingRow};
@@ -61,7 +61,7 @@ pub(super) fn header(driver: &StageDriver<'_>) -> String {
 
 /// What is counted in windows, entries and bits.
 fn numbers(text: &mut String, map: &RegisterMap) {
-    let numbers: [(&str, u32); 17] = [
+    let numbers: [(&str, u32); 19] = [
         ("AXES_MAX", MOST_AXES as u32),
         ("WINDOW_WORDS", WINDOW_WORDS),
         ("STAGE_BYTES", 4 * map.words()),
@@ -72,6 +72,8 @@ fn numbers(text: &mut String, map: &RegisterMap) {
         ("ENTRY_WORDS", ENTRY_WORDS as u32),
         ("ENTRY_POINT", POINT),
         ("ENTRY_NOTIFY", NOTIFY),
+        ("ENTRY_CUBIC", CUBIC),
+        ("ENTRY_MORE", MORE),
         ("TICKS_MAX", (1 << TICK_BITS) - 1),
         ("FRACTION_BITS", FRACTION_BITS),
         ("ACCELERATION_BITS", ACCELERATION_BITS),

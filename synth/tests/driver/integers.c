@@ -1,7 +1,8 @@
 /*
  * The arithmetic of the driver, without registers. From standard input:
  *   m start end velocity acceleration jerk   plans a move: prints the result, the entries, and where they lead
- *   e w0 w1 w2 w3 ticks                      plays an entry on: prints where that leads, tick by tick
+ *   e w0 w1 w2 w3 ticks                      plays an entry: prints where that leads, tick by tick
+ *   p position velocity ticks order          a point of a stream: prints the result, the entry, and where it leads
  *   s deceleration ticks                     the same of a stop
  *   0 position                               rests there
  */
@@ -9,6 +10,22 @@
 #include <stdio.h>
 
 #include "posicast_plan.h"
+#include "posicast_stream.h"
+
+/* The stream's arithmetic stands beside what does touch registers. */
+uint32_t posicast_read(uintptr_t base, uint32_t word)
+{
+    (void)base;
+    (void)word;
+    return 0;
+}
+
+void posicast_write(uintptr_t base, uint32_t word, uint32_t data)
+{
+    (void)base;
+    (void)word;
+    (void)data;
+}
 
 static void show(int fits, const posicast_integrator *at)
 {
@@ -45,6 +62,26 @@ static void plan(posicast_integrator *at)
     }
 }
 
+static void stream(posicast_integrator *at)
+{
+    posicast_stream_point point;
+    posicast_entry entry;
+    posicast_result result;
+    uint32_t ticks, order;
+    int fits;
+
+    if (scanf("%" SCNd32 " %" SCNd32 " %" SCNu32 " %" SCNu32, &point.position, &point.velocity, &ticks, &order) != 4)
+        return;
+    result = posicast_stream_entry(at, &point, ticks, (posicast_stream_order)order, &entry);
+    printf("%d\n", result);
+    if (result != POSICAST_OK)
+        return;
+    printf("%" PRIu32 " %" PRIu32 " %" PRIu32 " %" PRIu32 "\n", entry.words[0], entry.words[1], entry.words[2],
+           entry.words[3]);
+    fits = posicast_play(at, &entry);
+    show(fits, at);
+}
+
 int main(void)
 {
     posicast_integrator at = posicast_resting_at(0);
@@ -60,7 +97,9 @@ int main(void)
             plan(&at);
         } else if (kind == 'e' && scanf("%" SCNu32 " %" SCNu32 " %" SCNu32 " %" SCNu32 " %" SCNu32, &entry.words[0],
                                         &entry.words[1], &entry.words[2], &entry.words[3], &ticks) == 5) {
-            while (ticks-- > 0) {
+            fits = posicast_begin(&at, &entry);
+            show(fits, &at);
+            while (--ticks > 0) {
                 fits = posicast_integrate(&at, &entry);
                 show(fits, &at);
             }
@@ -69,6 +108,8 @@ int main(void)
                 posicast_integrate_stop(&at, deceleration);
                 show(1, &at);
             }
+        } else if (kind == 'p') {
+            stream(&at);
         } else if (kind == '0' && scanf("%" SCNd32, &position) == 1) {
             at = posicast_resting_at(position);
         }

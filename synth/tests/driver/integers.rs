@@ -1,13 +1,13 @@
 //! The integrator and the planner in C against the model's arithmetic.
 
 use crate::driver::support::{Driver, beside};
-use posicast_model::rtl::segments::{ACCELERATION_BITS, Entry, EntryMotion, Integrator, Point};
+use posicast_model::rtl::segments::{ACCELERATION_BITS, CUBIC, Cubic, Entry, EntryMotion, Integrator, Point};
 use std::io::Write;
 use std::process::{Command, Stdio};
 
 /// What the program says to these lines, in numbers.
 fn answers(driver: &Driver, input: &str) -> Vec<Vec<i64>> {
-    let program = driver.program("integers", &[], &[beside("integers.c")]);
+    let program = driver.program("integers", &["-DPOSICAST_ACCESS_FUNCTIONS"], &[beside("integers.c")]);
     let mut child = Command::new(program)
         .stdin(Stdio::piped())
         .stdout(Stdio::piped())
@@ -32,17 +32,6 @@ fn shown(fits: bool, at: &Integrator) -> Vec<i64> {
         words.to_vec(),
     ]
     .concat()
-}
-
-/// One tick of an entry.
-fn play(at: &mut Integrator, motion: &EntryMotion) -> bool {
-    match motion {
-        EntryMotion::Jerk(jerk) => at.jerk(*jerk).is_ok(),
-        EntryMotion::Point(point) => {
-            *at = Integrator::at_point(point);
-            true
-        }
-    }
 }
 
 /// A generator of numbers that are small, large and at the ends.
@@ -97,6 +86,11 @@ fn prop_the_integrator_in_c_gives_the_integers_of_the_model() {
                 velocity: numbers.signed(32) as i32,
                 acceleration: numbers.signed(32) as i32,
             }),
+            4 => EntryMotion::Cubic(Cubic {
+                jerk: numbers.signed(32) as i32,
+                velocity: numbers.signed(32) as i32,
+                acceleration: numbers.signed(32) as i32,
+            }),
             3 if case % 2 == 0 => EntryMotion::Jerk([(1 << 39) - 1, -(1 << 39)][numbers.next() as usize % 2]),
             _ => EntryMotion::Jerk(numbers.signed(ACCELERATION_BITS)),
         };
@@ -107,8 +101,8 @@ fn prop_the_integrator_in_c_gives_the_integers_of_the_model() {
         }
         .words();
         input += &format!("e {w0} {w1} {w2} {w3} {ticks}\n");
-        for _ in 0..ticks {
-            let fits = play(&mut at, &motion);
+        for tick in 0..ticks {
+            let fits = at.play(&motion, tick == 0).is_ok();
             overflows += u32::from(!fits);
             ends += u32::from(at.rounded().contains(&i32::MAX));
             expected.push(shown(fits, &at));
@@ -199,6 +193,72 @@ fn prop_a_plan_in_c_ends_at_rest_on_target_within_its_limits() {
     }
     assert_eq!(lines.next(), None);
     assert!(too_long < 10, "{too_long}");
+}
+
+/// Points of a path that a controller computes, through entries that the model plays: each is met, with its velocity where that was asked
+/// for, and a cubic begins as the one before has ended.
+#[test]
+fn prop_a_stream_meets_its_points_and_a_cubic_does_not_jump() {
+    let period = 10;
+    // 0.1 m/s at 1 um per count and 10 kHz, up and down at 5 Hz: up to 3 counts per tick.
+    let way = |time: f64| 1000.0 * (1.0 - (std::f64::consts::TAU * time / 2000.0).cos());
+    let velocity = |time: f64| 1000.0 * std::f64::consts::TAU / 2000.0 * (std::f64::consts::TAU * time / 2000.0).sin();
+    let end = 200;
+    let points: Vec<(i32, i32)> = (1..=end)
+        .map(|nth| f64::from((nth * period).min(2000)))
+        .map(|time| {
+            (
+                (256.0 * way(time)).round() as i32,
+                (65_536.0 * velocity(time)).round() as i32,
+            )
+        })
+        .chain([(0, 0)])
+        .collect();
+    for order in 0..3 {
+        let lines = points
+            .iter()
+            .map(|(position, velocity)| format!("p {position} {velocity} {period} {order}\n"));
+        let found = answers(&Driver::write(), &("0 0\n".to_owned() + &lines.collect::<String>()));
+        assert_eq!(found.len(), 3 * points.len());
+        let mut at = Integrator::default();
+        let mut largest_jump = 0;
+        for (said, (position, velocity)) in found.chunks(3).zip(&points) {
+            assert_eq!(said[0], [0]);
+            let words = said[1].iter().map(|word| *word as u32 as i32);
+            let [jerk, first, acceleration, _] = words.collect::<Vec<_>>().try_into().unwrap();
+            assert_eq!(said[1][3], i64::from(CUBIC) + i64::from(period));
+            let before = at;
+            let cubic = Cubic {
+                jerk,
+                velocity: first,
+                acceleration,
+            };
+            for tick in 0..period {
+                at.play(&EntryMotion::Cubic(cubic), tick == 0).unwrap();
+            }
+            assert_eq!(said[2], shown(true, &at));
+            let missed = at.position - (i64::from(*position) << 24);
+            assert!(missed.abs() <= i64::from(period) << 15, "{order}: {missed}");
+            // The last velocity, within what rounding the first one and the acceleration adds: 2^-16 counts per tick.
+            let slower = at.velocity - (i64::from(*velocity) << 16);
+            assert!(order == 0 || slower.abs() <= 1 << 16, "{order}: {slower}");
+            // From the end of one entry to the beginning of the next, beyond what the acceleration says.
+            let jump = (i64::from(first) << 16) - before.velocity - (i64::from(acceleration) << 8);
+            largest_jump = largest_jump.max(jump.abs());
+        }
+        assert_eq!(at.velocity, 0, "{order}: at rest at the end");
+        // A line jumps by what the path's velocity changes in a period; a cubic by its rounding.
+        assert_eq!(order == 2, largest_jump <= 1 << 16, "{order}: {largest_jump}");
+    }
+}
+
+#[test]
+fn unit_points_that_no_entry_reaches_are_refused() {
+    // No ticks, too many; farther than a velocity's word, more than an acceleration's. Across the end of the word it is not far.
+    let input = "p 0 0 0 0\np 0 0 257 0\np 2000000000 0 1 0\np 0 2147483647 2 2\n0 -2147482648\np 2147482647 0 2 0\n";
+    let found = answers(&Driver::write(), input);
+    let results: Vec<&[i64]> = found[..5].iter().map(Vec::as_slice).collect();
+    assert_eq!(results, [[3], [3], [3], [3], [0]]);
 }
 
 #[test]

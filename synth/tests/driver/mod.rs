@@ -4,7 +4,7 @@ mod bridge;
 mod family;
 mod identify;
 mod integers;
-mod support;
+pub(crate) mod support;
 
 use bridge::{Bridge, INDEX_AT};
 use posicast_model::rtl::sliding_mode::{Gain, SettingRow};
@@ -187,6 +187,36 @@ fn lockstep_a_program_moves_the_stage_and_handles_a_fault() {
     );
     assert_eq!((said["named"], said["interrupt"]), (1, 1));
     assert_eq!(bridge.bench.mismatches(), (0, None));
+}
+
+/// A circle of a point per millisecond, three of them ahead; once the program is late, once it does not come back.
+#[test]
+fn unit_a_stream_is_worth_its_bus() {
+    let driver = Driver::write();
+    let mut bridge = Bridge::new(&driver, "stream.c", false);
+    let said = bridge.talk(&[]);
+    // Two axes: at most 16 accesses each per millisecond were to be; it is 4 writes and 2 reads.
+    assert_eq!(said["most_accesses"], 2 * 6 + 1, "{said:?}");
+    // Late by all that was not ahead: both axes by the same, and then back on the path to its end, to the last bit.
+    assert!(
+        (5..=20).contains(&said["late_x"]) && said["late_x"] == said["late_y"],
+        "{said:?}"
+    );
+    assert_eq!(
+        (said["turned_to_x"], said["turned_to_y"], said["turn_causes"]),
+        (0, 0, 0),
+        "{said:?}"
+    );
+    assert_eq!(said["went_on_to_x"], 256, "{said:?}");
+    // Points too early: what the FIFO holds. A point that one axis cannot reach is written for none.
+    assert_eq!((said["written_early"], said["level_after_far"]), (63, 0), "{said:?}");
+    // 25 ticks at 0.18 counts each, and a stop of less than a count: the cause is that of the segments.
+    assert_eq!(
+        (said["missing_causes"] & 1 << 12, said["named"], said["causes_after"]),
+        (1 << 12, 1, 0),
+        "{said:?}"
+    );
+    assert!((4 * 256..6 * 256).contains(&said["beyond"]), "{said:?}");
 }
 
 #[test]

@@ -19,10 +19,14 @@
 #define COUNTS(n) ((int32_t)(n) * 256)
 #define TICKS 2000u
 
+/* So many so far. */
+static uint32_t accesses;
+
 uint32_t posicast_read(uintptr_t base, uint32_t word)
 {
     uint32_t data;
 
+    accesses++;
     printf("r %" PRIu32 "\n", word);
     if (base != BASE || fflush(stdout) != 0 || scanf("%" SCNu32, &data) != 1)
         exit(3);
@@ -33,6 +37,7 @@ void posicast_write(uintptr_t base, uint32_t word, uint32_t data)
 {
     if (base != BASE)
         exit(3);
+    accesses++;
     printf("w %" PRIu32 " %" PRIu32 "\n", word, data);
 }
 

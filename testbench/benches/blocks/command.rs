@@ -124,7 +124,7 @@ pub(crate) fn segments() -> Block {
         let tick = u64::from(clock == 0 && tick > 0);
         // rst, tick, enable, write, word, data, then settings.
         let word = word.unwrap_or(0) as u64;
-        [0, tick, 1, write, word, data, 0, 0, 0, 0, 0, 1 << 24, 0, 0, 0, 0]
+        [0, tick, 1, write, word, data, 0, 0, 0, 0, 0, 1 << 24, 0, 0, 0, 0, 0]
     };
     let typed = |clock| segments_model::Inputs::from_raw(&input(clock));
     let events = hold((0..CLOCKS).map(typed));

@@ -9,7 +9,7 @@ use posicast_model::rtl::segments::{REACH_COUNTS, STAND_COUNTS, Segments, ports}
 use super::registry::{AreaRow, RegistryRow, one, small};
 use super::{Bins, Block};
 use crate::Error;
-use crate::formal::{Engine, INDUCTION, Task};
+use crate::formal::{INDUCTION, Task};
 use crate::lockstep::Clock;
 use crate::stimuli::{SegmentsCoverage, SegmentsRandom, Stimuli};
 
@@ -99,7 +99,7 @@ fn proofs() -> Result<Vec<Task>, Error> {
         ("STAND_COUNTS", counts(STAND_COUNTS)),
     ];
     Ok(vec![
-        Task::new("segments", "64 entries", Engine::Pdr, block.clone())
+        Task::new("segments", "64 entries", INDUCTION, block.clone())
             .properties(&[], include_str!("../../formal/segments.sv")),
         Task::new("segments_range", "any position", INDUCTION, block)
             .properties(&range, include_str!("../../formal/segments_range.sv")),

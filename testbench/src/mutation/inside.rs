@@ -78,8 +78,8 @@ pub const INSIDE: [NamedMutant<'static>; 13] = [
     NamedMutant {
         name: "a 64th entry beside the one that plays",
         module: Some("command_fifo"),
-        from: "full = level_q[6] | (plays & (waiting == ALL_BUT_ONE));",
-        to: "full = level_q[6];",
+        from: "full = held[6] | (plays & (behind == ALL_BUT_ONE));",
+        to: "full = held[6];",
     },
     NamedMutant {
         name: "the group's emergency stop ignored by an axis",

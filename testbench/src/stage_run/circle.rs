@@ -218,7 +218,7 @@ impl Circle {
                         ..entry
                     }
                 }
-                EntryMotion::Jerk(_) => entry,
+                EntryMotion::Jerk(_) | EntryMotion::Cubic(_) => entry,
             });
             Ok::<Vec<Entry>, StageRunError>(placed.collect())
         };

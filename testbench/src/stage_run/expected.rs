@@ -7,7 +7,7 @@ use posicast_model::control::sampled::{FollowLimits, SampledLoop};
 use posicast_model::design::{TableFamily, design_machine};
 use posicast_model::hardware;
 use posicast_model::machine_file::{AxisSection, DriveMode, FamilySection, Machine, PwmMode};
-use posicast_model::rtl::segments::{Entry, EntryMotion, Integrator};
+use posicast_model::rtl::segments::{Entry, Integrator};
 use posicast_model::taps::TapTable;
 
 use super::figures::{self, AxisFigures};
@@ -189,12 +189,9 @@ fn commands((entries, end): &(Vec<Entry>, i32), settle_ticks: u64) -> Vec<[f64; 
     let mut at = Integrator::default();
     let mut commands = Vec::new();
     for entry in entries {
-        for _ in 0..entry.ticks {
-            match entry.motion {
-                // What does not fit is a plan that the stage refuses.
-                EntryMotion::Jerk(jerk) => drop(at.jerk(jerk)),
-                EntryMotion::Point(point) => at = Integrator::at_point(&point),
-            }
+        for tick in 0..entry.ticks {
+            // What does not fit is a plan that the stage refuses.
+            let _ = at.play(&entry.motion, tick == 0);
             commands.push(at.rounded().map(f64::from));
         }
     }

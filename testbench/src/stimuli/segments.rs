@@ -2,7 +2,7 @@
 //! such that do not; ticks at every pace; requests, resets, and stops of every size.
 
 use posicast_model::rtl::segments::{
-    Entry, EntryMotion, INPUT_PORTS, LATENCY_CLOCKS, POINT, Point, SegmentsState, TICK_CLOCKS,
+    CUBIC, Cubic, Entry, EntryMotion, INPUT_PORTS, LATENCY_CLOCKS, MORE, POINT, Point, SegmentsState, TICK_CLOCKS,
 };
 use rand::{Rng, RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -47,6 +47,7 @@ struct Mood {
     modulo: u64,
     /// Feed hold: never, always, or about every other tick.
     hold_pace: u32,
+    extrapolation: u64,
 }
 
 /// A mixture of everything, without end.
@@ -90,13 +91,14 @@ impl SegmentsRandom {
             low_water: rng.random_range(0..64),
             modulo: rng.random_range(0..2),
             hold_pace: *pick(rng, &[0, 0, 0, 1, 60, 60]),
+            extrapolation: *pick(rng, &[0, 0, 1, 2, 5, 255]),
         };
     }
 
     /// Out of the words of the sums, soon and for certain, and from there a stop with the upper bits of the deceleration.
     fn overflow(&mut self, jerk: i64) {
         self.mood.enable = true;
-        (self.mood.modulo, self.mood.hold_pace) = (0, 0);
+        (self.mood.modulo, self.mood.hold_pace, self.mood.extrapolation) = (0, 0, 0);
         self.mood.stop_deceleration |= 1 << 30;
         (self.mood.write_pace, self.mood.tick_pace, self.mood.request_pace) = (5, TICK_CLOCKS, 500_000);
         self.words.clear();
@@ -170,6 +172,36 @@ impl SegmentsRandom {
         }
     }
 
+    /// A cubic: long or short, slow or so fast that it overflows; it seldom ends at rest.
+    fn cubic(&mut self) -> Entry {
+        let rng = &mut self.rng;
+        let mut word = || rng.next_u64() as i32 >> rng.random_range(0..32);
+        let motion = EntryMotion::Cubic(Cubic {
+            jerk: word(),
+            velocity: word(),
+            acceleration: word(),
+        });
+        Entry {
+            ticks: self.ticks(),
+            motion,
+            notify: self.rng.random_range(0..3) == 0,
+        }
+    }
+
+    /// Some entries that are taken together, or one of them is wrong.
+    fn push_batch(&mut self) {
+        let entries: Vec<Entry> = (0..self.rng.random_range(1..5)).map(|_| self.cubic()).collect();
+        let mut batch = Entry::batch(&entries);
+        if self.rng.random_range(0..3) == 0 {
+            let wrong = self.rng.random_range(0..batch.len());
+            batch[wrong][3] ^= *pick(&mut self.rng, &[POINT, 1 << 24, MORE]);
+        }
+        for words in batch {
+            self.words
+                .extend((0..).zip(words).map(|(word, data)| (word, u64::from(data))));
+        }
+    }
+
     fn push(&mut self, entry: &Entry) {
         let words = (0..).zip(entry.words()).map(|(word, data)| (word, u64::from(data)));
         self.words.extend(words);
@@ -193,7 +225,7 @@ impl SegmentsRandom {
             0 => words[1] ^= 1 << self.rng.random_range(7..32),
             1 => words[3] |= 1 << self.rng.random_range(24..30),
             2 => words[3] = 0,
-            3 => words[3] |= POINT,
+            3 => words[3] |= *pick(&mut self.rng, &[POINT, CUBIC, POINT | CUBIC]),
             _ => {}
         }
         for (word, data) in (0..).zip(words) {
@@ -204,9 +236,14 @@ impl SegmentsRandom {
     }
 
     fn refill(&mut self) {
-        match self.rng.random_range(0..16) {
+        match self.rng.random_range(0..20) {
             0..=8 => self.push_move(),
             9..=11 => self.push_point(),
+            16..=17 => self.push_batch(),
+            18..=19 => {
+                let cubic = self.cubic();
+                self.push(&cubic);
+            }
             12..=13 => self.push_malformed(),
             14 => {
                 let entry = Entry {
@@ -280,6 +317,7 @@ impl Stimuli for SegmentsRandom {
             u64::from(self.rng.random_range(0..100) == 0),
             mood.modulo,
             u64::from(self.feed_hold),
+            mood.extrapolation,
         ];
         self.clock += 1;
     }
@@ -290,10 +328,11 @@ impl Stimuli for SegmentsRandom {
 pub struct SegmentsCoverage {
     counts: [u64; NAMES.len()],
     state: u64,
+    late_ticks: u64,
 }
 
 /// What is counted.
-const NAMES: [&str; 18] = [
+const NAMES: [&str; 19] = [
     "hold",
     "move",
     "stop",
@@ -312,6 +351,7 @@ const NAMES: [&str; 18] = [
     "out_of_range",
     "rests",
     "held",
+    "late",
 ];
 
 impl SegmentsCoverage {
@@ -336,6 +376,7 @@ impl SegmentsCoverage {
             out_of_range,
             rests,
             held,
+            late_ticks,
         ] = outputs
         else {
             return;
@@ -361,11 +402,12 @@ impl SegmentsCoverage {
             out_of_range,
             rests,
             held,
+            u64::from(late_ticks != self.late_ticks),
         ];
         for (count, seen) in self.counts.iter_mut().zip(seen) {
             *count += seen;
         }
-        self.state = state;
+        (self.state, self.late_ticks) = (state, late_ticks);
     }
 
     /// The counts, by name.

@@ -2,8 +2,8 @@
 create_driver xy_stage_stage_driver
 
 set_sw_property hw_class_name xy_stage_stage
-set_sw_property version 2.1
-set_sw_property min_compatible_hw_version 2.1
+set_sw_property version 2.2
+set_sw_property min_compatible_hw_version 2.2
 set_sw_property bsp_subdirectory drivers
 set_sw_property auto_initialize true
 set_sw_property isr_preemption_supported true
@@ -16,6 +16,7 @@ add_sw_property c_source src/posicast_homing.c
 add_sw_property c_source src/posicast_plan.c
 add_sw_property c_source src/posicast_segments.c
 add_sw_property c_source src/posicast_settings.c
+add_sw_property c_source src/posicast_stream.c
 add_sw_property c_source src/posicast_tables.c
 add_sw_property c_source src/posicast_wait.c
 add_sw_property include_source HAL/inc/posicast_stage_hal.h
@@ -30,6 +31,7 @@ add_sw_property include_source inc/posicast_result.h
 add_sw_property include_source inc/posicast_segments.h
 add_sw_property include_source inc/posicast_settings.h
 add_sw_property include_source inc/posicast_stage_regs.h
+add_sw_property include_source inc/posicast_stream.h
 add_sw_property include_source src/posicast_wait.h
 add_sw_property include_directory inc
 add_sw_property include_directory HAL/inc

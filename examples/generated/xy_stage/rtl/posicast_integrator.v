@@ -1,5 +1,6 @@
 // posicast_integrator
-// `a += j; v += a; p += v`, a quick stop and a point, byte by byte on one adder.
+// `a += j; v += a; p += v`, a quick stop, a point, a cubic and an extrapolation, byte by byte on
+// one adder.
 //
 // Each register turns past the adder, lowest byte first, as `passes` says; what is written is the
 // sum. Outputs are rounded from the registers at rest.
@@ -18,6 +19,9 @@ module posicast_integrator (
     input  wire               moves,
     input  wire               held,
     input  wire               points,
+    input  wire               loads,
+    input  wire               short_jerk,
+    input  wire               extrapolates,
     input  wire               modulo,
     input  wire signed [31:0] preset_position,
     input  wire [30:0]        stop_deceleration,
@@ -30,13 +34,21 @@ module posicast_integrator (
     output wire               overflowed,
     output wire               leaves,
     output wire               entry_ends,
+    output wire [7:0]         ticks_after,
     output wire               decides,
     output wire               reads_flags,
     output wire               ends
 );
+    localparam [7:0]  NIL = 8'd0;
     localparam [4:0]  FULL_REACH = 5'd31;
+    localparam [4:0]  NO_REACH = 5'd0;
     localparam [9:0]  CARRY_IN = 10'd1;
     localparam [32:0] HALF = 33'd1;
+    localparam [32:0] NO_HALF = 33'd0;
+    localparam [55:0] NO_POSITION = 56'd0;
+    localparam [47:0] NO_VELOCITY = 48'd0;
+    localparam [39:0] NO_ACCELERATION = 40'd0;
+    localparam [23:0] NO_TICKS = 24'd0;
 
     reg  [7:0]  entry_byte;
     reg  [7:0]  augend;
@@ -56,7 +68,7 @@ module posicast_integrator (
     wire [5:0]  upper_bits;
     wire [4:0]  reach_bits;
     wire        stand_bit;
-    wire        starts_point;
+    wire        starts_anew;
     wire [31:0] preset_word;
     wire [23:0] preset_bits;
     reg  [7:0]  velocity_byte;
@@ -127,6 +139,9 @@ module posicast_integrator (
         .moves              (moves),
         .held               (held),
         .points             (points),
+        .loads              (loads),
+        .short_jerk         (short_jerk),
+        .extrapolates       (extrapolates),
         .jerk_failed        (jerk_failed),
         .speed_failed       (speed_failed),
         .moving             (moving),
@@ -183,7 +198,7 @@ module posicast_integrator (
 
     // Acceleration: a stop's begins at its tick
     assign deceleration = {9'd0, stop_deceleration} << 8;
-    assign starts_point = takes_tick & points & !brakes;
+    assign starts_anew = takes_tick & (loads | extrapolates) & !brakes;
 
     // Position: what is above is never seen
     assign preset_word = $unsigned(preset_position);
@@ -200,6 +215,9 @@ module posicast_integrator (
     assign overflowed = passes_failed;
     assign leaves = past_reach & moving;
     assign entry_ends = carry;
+
+    // Counted on from the end of an entry
+    assign ticks_after = ticks[7:0];
     assign decides = passes_decides;
     assign reads_flags = passes_reads_flags;
     assign ends = passes_ends;
@@ -225,7 +243,7 @@ module posicast_integrator (
             entry_byte = entry_half[15:8];
         end
         if (blank) begin
-            entry_byte = 8'd0;
+            entry_byte = NIL;
         end
 
         // One adder of a byte
@@ -239,7 +257,7 @@ module posicast_integrator (
                 augend = ticks[7:0];
             end
         end
-        chosen = 8'd0;
+        chosen = NIL;
         if (passes_add_acceleration) begin
             chosen = exact_acceleration[7:0];
         end
@@ -256,7 +274,7 @@ module posicast_integrator (
         end
         past_reach = outwards & (reach_bits == FULL_REACH);
         if (below) begin
-            past_reach = outwards & (reach_bits == 5'd0);
+            past_reach = outwards & (reach_bits == NO_REACH);
         end
         carry_next = wide_sum[9];
         if (passes_first) begin
@@ -293,8 +311,8 @@ module posicast_integrator (
                 exact_acceleration_next = ~deceleration;
             end
         end
-        if (preset | starts_point | (brakes & stands) | passes_clear_acceleration) begin
-            exact_acceleration_next = 40'd0;
+        if (preset | starts_anew | (brakes & stands) | passes_clear_acceleration) begin
+            exact_acceleration_next = NO_ACCELERATION;
         end
 
         // Velocity
@@ -306,7 +324,7 @@ module posicast_integrator (
             exact_velocity_next = (exact_velocity >> 8) | ({40'd0, velocity_byte} << 40);
         end
         if (preset | passes_clear_velocity) begin
-            exact_velocity_next = 48'd0;
+            exact_velocity_next = NO_VELOCITY;
         end
         if (passes_turn_position) begin
             exact_position_next = (exact_position >> 8) | ({48'd0, sum} << 48);
@@ -315,7 +333,7 @@ module posicast_integrator (
             exact_position_next = {32'd0, preset_bits} << 32;
         end
         if (passes_clear_position) begin
-            exact_position_next = 56'd0;
+            exact_position_next = NO_POSITION;
         end
 
         // Ticks of the entry: up to 0, from -ticks
@@ -323,17 +341,17 @@ module posicast_integrator (
             ticks_next = (ticks >> 8) | ({16'd0, sum} << 16);
         end
         if (passes_clear_ticks) begin
-            ticks_next = 24'd0;
+            ticks_next = NO_TICKS;
         end
 
         // Each rounded once, half up, without wrapping
         velocity_half = HALF;
         if (velocity_ends) begin
-            velocity_half = 33'd0;
+            velocity_half = NO_HALF;
         end
         acceleration_half = HALF;
         if (acceleration_ends) begin
-            acceleration_half = 33'd0;
+            acceleration_half = NO_HALF;
         end
     end
 

@@ -6,6 +6,9 @@
 // goes to  a         (looked  a, if it did     v           p           ticks    outputs ticks of the next
 //          (point: w2)  at)   not fit, at rest (point: w1) (point: w0)                  entry
 //
+// The first tick of a cubic is a point's, but for the position; its others have a jerk of four
+// bytes, whose sign makes the fifth. An extrapolated tick has no entry.
+//
 // The first clock of a pass clears what is to be loaded and sets the carry; a turn of a register
 // leaves it as it was, but for what is written. Words of an entry come two clocks after their
 // address, bytes of it one clock after theirs.
@@ -21,6 +24,9 @@ module posicast_passes (
     input  wire       moves,
     input  wire       held,
     input  wire       points,
+    input  wire       loads,
+    input  wire       short_jerk,
+    input  wire       extrapolates,
     input  wire       jerk_failed,
     input  wire       speed_failed,
     input  wire       moving,
@@ -58,6 +64,10 @@ module posicast_passes (
 );
     localparam [5:0] JERK_PHASE = 6'd5;
     localparam [5:0] SPEED_PHASE = 6'd14;
+    localparam [1:0] WORD_0 = 2'd0;
+    localparam [1:0] WORD_1 = 2'd1;
+    localparam [1:0] WORD_2 = 2'd2;
+    localparam [1:0] WORD_3 = 2'd3;
 
     wire later;
     wire middle;
@@ -83,10 +93,12 @@ module posicast_passes (
     wire from_third;
     wire from_fourth;
     wire fifth_ahead;
+    wire ends_jerk;
     reg  from_odd_q;
     reg  add_acceleration_q;
     reg  add_velocity_q;
     reg  invert_q;
+    reg  invert_q_next;
 
     assign later = phase[5];
     assign middle = phase[4];
@@ -103,7 +115,7 @@ module posicast_passes (
     assign reads = later & middle;
 
     // What did not fit, and a stop's last tick
-    assign fails = moves & !points & (jerk_failed | speed_failed);
+    assign fails = moves & !loads & (jerk_failed | speed_failed);
     assign failed = fails;
     assign comes_to_rest = !moves & speed_failed;
     assign subtracts = jerk_failed | comes_to_rest;
@@ -123,14 +135,16 @@ module posicast_passes (
     // Before the first byte: 0, and the carry
     assign first = !any_slot;
     assign clear_acceleration = corrects & !any_slot & comes_to_rest;
-    assign clear_velocity = speeds & !any_slot & (points | (!moves & !moving));
+    assign clear_velocity = speeds & !any_slot & (loads | (!moves & !moving));
     assign clear_position = travels & !any_slot & points;
     assign clear_ticks = reads & !any_slot;
     assign carry = (corrects & subtracts) | (counts & !held) | reads;
 
     // The addend, a clock ahead
     assign sums = !fails & !points;
-    assign widens = !points & slot_2 & ((!later & !slot_1 & slot_0) | (later & slot_1 & !slot_0));
+    assign ends_jerk = short_jerk & (accelerates | corrects) & slot_2 & !slot_1 & !slot_0;
+    assign widens = slot_2
+        & ((!later & !loads & !slot_1 & slot_0) | (later & !points & slot_1 & !slot_0));
     assign add_acceleration = add_acceleration_q;
     assign add_velocity = add_velocity_q;
     assign invert = invert_q;
@@ -150,26 +164,31 @@ module posicast_passes (
     assign reads_flags = reads & !slot_1;
 
     // a, v and p of a point: 1, 2, 3 bytes later
-    assign one_later = points & !middle & !odd;
-    assign two_later = points & (speeds | travels);
+    assign one_later = loads & !middle & !odd;
+    assign two_later = loads & (speeds | travels);
     assign read_byte_0 = slot_0 ^ one_later;
     assign read_byte_1 = slot_1 ^ two_later ^ (one_later & !slot_0);
-    assign blank = !((accelerates & (!points | any_slot)) | (corrects & jerk_failed)
-        | (speeds & points & from_third) | (travels & points & from_fourth) | reads);
+    assign blank = !((accelerates & (!loads | any_slot) & !ends_jerk & !extrapolates)
+        | (corrects & jerk_failed & !ends_jerk) | (speeds & loads & from_third)
+        | (travels & points & from_fourth) | reads);
 
     always @(*) begin
-        read_word = 2'd0;
-        if (points) begin
+        invert_q_next = (corrects & subtracts) | reads | (widens & addend_sign);
+        if (ends_jerk) begin
+            invert_q_next = addend_sign;
+        end
+        read_word = WORD_0;
+        if (loads) begin
             if (speeds) begin
-                read_word = 2'd1;
+                read_word = WORD_1;
             end else if (!later) begin
-                read_word = 2'd2;
+                read_word = WORD_2;
             end
         end else if (!later & fifth_ahead) begin
-            read_word = 2'd1;
+            read_word = WORD_1;
         end
         if (last_word) begin
-            read_word = 2'd3;
+            read_word = WORD_3;
         end
     end
 
@@ -180,9 +199,10 @@ module posicast_passes (
         invert_q <= 1'd0;
     end else begin
         from_odd_q <= odd | reads;
-        add_acceleration_q <= !later & odd & (!middle | sums) & !(slot_2 & (slot_1 | slot_0));
+        add_acceleration_q <= !later & odd & (!middle | (!fails & !loads))
+            & !(slot_2 & (slot_1 | slot_0));
         add_velocity_q <= ((corrects & comes_to_rest) | (travels & sums)) & !(slot_2 & slot_1);
-        invert_q <= (corrects & subtracts) | reads | (widens & addend_sign);
+        invert_q <= invert_q_next;
     end
 
     initial begin

@@ -1,7 +1,6 @@
 // posicast_segments
 // Motion commands: a FIFO of segments of constant jerk, integrated exactly at every tick.
-// Without an entry while moving: a quick stop.
-//
+// Without an entry while moving: on for `extrapolation` ticks, then a quick stop.
 // Ticks, states and flags; the FIFO and the integrator do the rest.
 //
 // phase 0            1 ~ 43          44               45 ~ 51
@@ -18,64 +17,51 @@
 
 module posicast_segments (
     input  wire               clk,
-    input  wire               rst,                // Synchronous reset
-    input  wire               tick,               // One clock: the tick
-    input  wire               enable,             // At a tick: entries are played
-    input  wire               write,              // One clock: `data` is `word` of the entry that
-                                                  // is being written
-    input  wire [1:0]         word,               // 0 to 3; 3 commits the entry
-    input  wire [31:0]        data,               // The word
-    input  wire               flush,              // One clock: at the next tick drop all entries
-                                                  // that wait
-    input  wire               quick_stop,         // One clock: at the next tick drop all entries
-                                                  // and stop
-    input  wire               restart,            // One clock: at the next tick leave the state
-                                                  // `stopped`
-    input  wire               preset,             // One clock: at the next tick rest at
-                                                  // `preset_position`, without entries
-    input  wire signed [31:0] preset_position,    // The position of a preset, taken at that tick
-                                                  // [counts]
-    input  wire [30:0]        stop_deceleration,  // Deceleration of a quick stop [counts per
-                                                  // tick², Q7.24]
-    input  wire [5:0]         low_water,          // `low` while at most so many entries wait
-    input  wire               clear_flags,        // Clears the sticky flags
-    input  wire               modulo,             // Tied: a rotary axis, whose position wraps
-    input  wire               feed_hold,          // At a tick: a command that rests stays where it
-                                                  // is, and the entry that plays keeps its ticks
-    output wire signed [31:0] position,           // Position of the command [counts, Q24.8]
-    output wire signed [31:0] velocity,           // Velocity of the command [counts per tick,
-                                                  // Q16.16]
-    output wire signed [31:0] acceleration,       // Acceleration of the command [counts per tick²,
-                                                  // Q8.24]
-    output wire               valid,              // One clock: the three are those of this tick
-    output wire [1:0]         state,              // 0 hold, 1 move, 2 stop, 3 stopped
-    output wire [6:0]         level,              // Entries that wait, 0 to 64
-    output wire               low,                // At most `low_water` entries wait
-    output wire               empty,              // None waits
-    output wire               notify,             // One clock: an entry with this flag has ended
-    output wire               done,               // One clock: a move has ended at rest with no
-                                                  // entry left, or a quick stop is at rest
-    output wire               underrun,           // Sticky: no entry was there while moving
-    output wire               overflow,           // Sticky: acceleration or velocity did not fit
-    output wire               refused,            // Sticky: a word was written while the FIFO held
-                                                  // 64 entries, the one that plays included, or in
-                                                  // a quick stop
-    output wire               malformed,          // Sticky: an entry was dropped: words missing, no
-                                                  // ticks, reserved flags, or a jerk of more than
-                                                  // 40 bits
-    output wire               tick_missed,        // Sticky: a tick came while one was being played,
-                                                  // and was left out
-    output wire               out_of_range,       // Sticky: the command came near an end of the
-                                                  // position's word, and stopped
-    output wire               rests,              // Velocity and acceleration are 0, exactly, since
-                                                  // the last `valid`
-    output wire               held                // The last tick was not played: a feed hold
+    input  wire               rst,
+    input  wire               tick,
+    input  wire               enable,
+    input  wire               write,
+    input  wire [1:0]         word,
+    input  wire [31:0]        data,
+    input  wire               flush,
+    input  wire               quick_stop,
+    input  wire               restart,
+    input  wire               preset,
+    input  wire signed [31:0] preset_position,
+    input  wire [30:0]        stop_deceleration,
+    input  wire [5:0]         low_water,
+    input  wire               clear_flags,
+    input  wire               modulo,
+    input  wire               feed_hold,
+    input  wire [7:0]         extrapolation,
+    output wire signed [31:0] position,
+    output wire signed [31:0] velocity,
+    output wire signed [31:0] acceleration,
+    output wire               valid,
+    output wire [1:0]         state,
+    output wire [6:0]         level,
+    output wire               low,
+    output wire               empty,
+    output wire               notify,
+    output wire               done,
+    output wire               underrun,
+    output wire               overflow,
+    output wire               refused,
+    output wire               malformed,
+    output wire               tick_missed,
+    output wire               out_of_range,
+    output wire               rests,
+    output wire               held,
+    output wire [7:0]         late_ticks
 );
     localparam [5:0] IDLE_PHASE = 6'd0;
+    localparam [5:0] ONE_PHASE = 6'd1;
     localparam [1:0] HOLD_STATE = 2'd0;
     localparam [1:0] MOVE_STATE = 2'd1;
     localparam [1:0] STOP_STATE = 2'd2;
     localparam [1:0] STOPPED_STATE = 2'd3;
+    localparam [6:0] NO_LEVEL = 7'd0;
+    localparam [7:0] ONE_LATE = 8'd1;
 
     wire               flush_now;
     wire               quick_stop_now;
@@ -92,6 +78,8 @@ module posicast_segments (
     wire               to_stop;
     reg                reads;
     reg                drops;
+    wire               ends;
+    wire               in_time;
     wire [6:0]         fifo_level;
     wire               fifo_refused;
     wire               fifo_malformed;
@@ -105,6 +93,7 @@ module posicast_segments (
     wire               integrator_overflowed;
     wire               integrator_leaves;
     wire               integrator_entry_ends;
+    wire [7:0]         integrator_ticks_after;
     wire               integrator_decides;
     wire               integrator_reads_flags;
     wire               integrator_ends;
@@ -126,6 +115,14 @@ module posicast_segments (
     reg                enabled_next;
     reg                point;
     reg                point_next;
+    reg                cubic;
+    reg                cubic_next;
+    reg                first;
+    reg                first_next;
+    reg                extrapolates;
+    reg                extrapolates_next;
+    reg  [7:0]         late_q;
+    reg  [7:0]         late_q_next;
     reg                notifies;
     reg                notifies_next;
     reg  signed [31:0] position_q;
@@ -167,6 +164,7 @@ module posicast_segments (
         .closed    (stops | stopped),
         .plays     (moves),
         .flush     (drops),
+        .anew      (takes_tick & preset_now),
         .pop       (reads),
         .read_word (integrator_read_word),
         .level     (fifo_level),
@@ -185,6 +183,9 @@ module posicast_segments (
         .moves             (plays),
         .held              (held_now),
         .points            (points),
+        .loads             (points | (plays & cubic & first)),
+        .short_jerk        (plays & cubic & !first),
+        .extrapolates      (plays & extrapolates),
         .modulo            (modulo),
         .preset_position   (preset_position),
         .stop_deceleration (stop_deceleration),
@@ -197,6 +198,7 @@ module posicast_segments (
         .overflowed        (integrator_overflowed),
         .leaves            (integrator_leaves),
         .entry_ends        (integrator_entry_ends),
+        .ticks_after       (integrator_ticks_after),
         .decides           (integrator_decides),
         .reads_flags       (integrator_reads_flags),
         .ends              (integrator_ends)
@@ -205,7 +207,7 @@ module posicast_segments (
     assign moves = state_q == MOVE_STATE;
     assign stops = state_q == STOP_STATE;
     assign stopped = state_q == STOPPED_STATE;
-    assign waiting = fifo_level != 7'd0;
+    assign waiting = fifo_level != NO_LEVEL;
 
     // Requests wait for the tick
     assign flush_now = flush | wants_flush;
@@ -217,8 +219,10 @@ module posicast_segments (
     assign takes_tick = tick & idle;
     assign to_stop = moves & (quick_stop_now | !enable);
     assign plays = moves & !held_now;
-    assign points = plays & point;
+    assign points = plays & point & !extrapolates;
     assign integrator_brakes = takes_tick & !preset_now & (stops | to_stop);
+    assign ends = integrator_entry_ends | extrapolates;
+    assign in_time = integrator_ticks_after < extrapolation;
 
     // Outputs
     assign position = position_q;
@@ -239,6 +243,7 @@ module posicast_segments (
     assign out_of_range = out_of_range_q;
     assign rests = rests_q;
     assign held = held_q;
+    assign late_ticks = late_q;
 
     always @(*) begin
         phase_next = phase;
@@ -246,6 +251,10 @@ module posicast_segments (
         state_q_next = state_q;
         enabled_next = enabled;
         point_next = point;
+        cubic_next = cubic;
+        first_next = first;
+        extrapolates_next = extrapolates;
+        late_q_next = late_q;
         notifies_next = notifies;
         position_q_next = position_q;
         velocity_q_next = velocity_q;
@@ -283,7 +292,7 @@ module posicast_segments (
         drops = 1'd0;
         held_now = held_q;
         if (!idle | tick) begin
-            phase_next = phase + 6'd1;
+            phase_next = phase + ONE_PHASE;
         end
         if (!idle & tick) begin
             tick_missed_q_next = 1'd1;
@@ -326,6 +335,7 @@ module posicast_segments (
             valid_q_next = 1'd1;
             rests_q_next = integrator_at_rest;
             if (plays) begin
+                first_next = 1'd0;
                 if (integrator_overflowed | integrator_leaves) begin
                     if (integrator_overflowed) begin
                         overflow_q_next = 1'd1;
@@ -334,13 +344,16 @@ module posicast_segments (
                     end
                     state_q_next = STOP_STATE;
                     drops = 1'd1;
-                end else if (integrator_entry_ends) begin
-                    notify_q_next = notifies;
+                end else if (ends) begin
+                    notify_q_next = notifies & !extrapolates;
                     if (waiting) begin
                         reads = 1'd1;
                     end else if (integrator_at_rest) begin
                         state_q_next = HOLD_STATE;
                         done_q_next = 1'd1;
+                    end else if (in_time) begin
+                        extrapolates_next = 1'd1;
+                        late_q_next = late_q + ONE_LATE;
                     end else begin
                         underrun_q_next = 1'd1;
                         state_q_next = STOP_STATE;
@@ -356,7 +369,10 @@ module posicast_segments (
                 state_q_next = MOVE_STATE;
                 reads = 1'd1;
             end
-            if (!reads) begin
+            if (reads) begin
+                first_next = 1'd1;
+                extrapolates_next = 1'd0;
+            end else begin
                 phase_next = IDLE_PHASE;
                 idle_next = 1'd1;
             end
@@ -364,6 +380,7 @@ module posicast_segments (
         if (integrator_reads_flags) begin
             notifies_next = fifo_read_data[30];
             point_next = fifo_read_data[31];
+            cubic_next = fifo_read_data[29];
         end
         if (integrator_ends) begin
             phase_next = IDLE_PHASE;
@@ -381,6 +398,10 @@ module posicast_segments (
         wants_preset <= 1'd0;
         enabled <= 1'd0;
         point <= 1'd0;
+        cubic <= 1'd0;
+        first <= 1'd0;
+        extrapolates <= 1'd0;
+        late_q <= 8'd0;
         notifies <= 1'd0;
         position_q <= 32'sd0;
         velocity_q <= 32'sd0;
@@ -406,6 +427,10 @@ module posicast_segments (
         wants_preset <= wants_preset_next;
         enabled <= enabled_next;
         point <= point_next;
+        cubic <= cubic_next;
+        first <= first_next;
+        extrapolates <= extrapolates_next;
+        late_q <= late_q_next;
         notifies <= notifies_next;
         position_q <= position_q_next;
         velocity_q <= velocity_q_next;
@@ -434,6 +459,10 @@ module posicast_segments (
         wants_preset = 1'd0;
         enabled = 1'd0;
         point = 1'd0;
+        cubic = 1'd0;
+        first = 1'd0;
+        extrapolates = 1'd0;
+        late_q = 8'd0;
         notifies = 1'd0;
         position_q = 32'sd0;
         velocity_q = 32'sd0;

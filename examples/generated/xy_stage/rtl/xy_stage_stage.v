@@ -83,6 +83,7 @@ module xy_stage_stage (
     wire               x_direct_kick;
     wire signed [16:0] x_direct_duty;
     wire [5:0]         x_low_water;
+    wire [7:0]         x_extrapolation;
     wire               x_write_homed;
     wire               x_homed_value;
     wire               x_segment_write;
@@ -132,6 +133,7 @@ module xy_stage_stage (
     wire               y_direct_kick;
     wire signed [16:0] y_direct_duty;
     wire [5:0]         y_low_water;
+    wire [7:0]         y_extrapolation;
     wire               y_write_homed;
     wire               y_homed_value;
     wire               y_segment_write;
@@ -247,6 +249,7 @@ module xy_stage_stage (
     wire               x_fifo_low;
     wire               x_segments_empty;
     wire               x_feed_held;
+    wire [7:0]         x_late_ticks;
     wire [15:0]        x_self_test_high;
     wire [15:0]        x_self_test_low;
     wire [31:0]        x_setting_loaded;
@@ -323,6 +326,7 @@ module xy_stage_stage (
     wire               y_fifo_low;
     wire               y_segments_empty;
     wire               y_feed_held;
+    wire [7:0]         y_late_ticks;
     wire [15:0]        y_self_test_high;
     wire [15:0]        y_self_test_low;
     wire [31:0]        y_setting_loaded;
@@ -346,7 +350,7 @@ module xy_stage_stage (
     wire               y_faulted;
     wire               y_index_seen;
 
-    posicast_stage_registers_8e3b32f0 u_registers (
+    posicast_stage_registers_07d7cdfd u_registers (
         .clk                         (clk),
         .rst                         (rst),
         .avs_address                 (avs_address),
@@ -389,6 +393,7 @@ module xy_stage_stage (
         .x_direct_kick               (x_direct_kick),
         .x_direct_duty               (x_direct_duty),
         .x_low_water                 (x_low_water),
+        .x_extrapolation             (x_extrapolation),
         .x_write_homed               (x_write_homed),
         .x_homed_value               (x_homed_value),
         .x_segment_write             (x_segment_write),
@@ -476,6 +481,7 @@ module xy_stage_stage (
         .x_fifo_level                (x_fifo_level),
         .x_segments_empty            (x_segments_empty),
         .x_feed_held                 (x_feed_held),
+        .x_late_ticks                (x_late_ticks),
         .x_self_test_high            (x_self_test_high),
         .x_self_test_low             (x_self_test_low),
         .x_user_position             (x_user_position),
@@ -503,6 +509,7 @@ module xy_stage_stage (
         .y_direct_kick               (y_direct_kick),
         .y_direct_duty               (y_direct_duty),
         .y_low_water                 (y_low_water),
+        .y_extrapolation             (y_extrapolation),
         .y_write_homed               (y_write_homed),
         .y_homed_value               (y_homed_value),
         .y_segment_write             (y_segment_write),
@@ -590,6 +597,7 @@ module xy_stage_stage (
         .y_fifo_level                (y_fifo_level),
         .y_segments_empty            (y_segments_empty),
         .y_feed_held                 (y_feed_held),
+        .y_late_ticks                (y_late_ticks),
         .y_self_test_high            (y_self_test_high),
         .y_self_test_low             (y_self_test_low),
         .y_user_position             (y_user_position),
@@ -716,6 +724,7 @@ module xy_stage_stage (
         .direct_kick               (x_direct_kick),
         .direct_duty               (x_direct_duty),
         .low_water                 (x_low_water),
+        .extrapolation             (x_extrapolation),
         .segment_write             (x_segment_write),
         .segment_word              (x_segment_word),
         .segment_data              (x_segment_data),
@@ -813,6 +822,7 @@ module xy_stage_stage (
         .fifo_low                  (x_fifo_low),
         .segments_empty            (x_segments_empty),
         .feed_held                 (x_feed_held),
+        .late_ticks                (x_late_ticks),
         .self_test_high            (x_self_test_high),
         .self_test_low             (x_self_test_low),
         .setting_loaded            (x_setting_loaded),
@@ -873,6 +883,7 @@ module xy_stage_stage (
         .direct_kick               (y_direct_kick),
         .direct_duty               (y_direct_duty),
         .low_water                 (y_low_water),
+        .extrapolation             (y_extrapolation),
         .segment_write             (y_segment_write),
         .segment_word              (y_segment_word),
         .segment_data              (y_segment_data),
@@ -970,6 +981,7 @@ module xy_stage_stage (
         .fifo_low                  (y_fifo_low),
         .segments_empty            (y_segments_empty),
         .feed_held                 (y_feed_held),
+        .late_ticks                (y_late_ticks),
         .self_test_high            (y_self_test_high),
         .self_test_low             (y_self_test_low),
         .setting_loaded            (y_setting_loaded),

@@ -41,6 +41,7 @@ module xy_stage_stage_x (
     input  wire               direct_kick,
     input  wire signed [16:0] direct_duty,
     input  wire [5:0]         low_water,
+    input  wire [7:0]         extrapolation,
     input  wire               segment_write,
     input  wire [1:0]         segment_word,
     input  wire [31:0]        segment_data,
@@ -138,6 +139,7 @@ module xy_stage_stage_x (
     output wire               fifo_low,
     output wire               segments_empty,
     output wire               feed_held,
+    output wire [7:0]         late_ticks,
     output wire [15:0]        self_test_high,
     output wire [15:0]        self_test_low,
     output wire [31:0]        setting_loaded,
@@ -223,6 +225,7 @@ module xy_stage_stage_x (
         .clear_flags       (clear_sources),
         .modulo            (1'd0),
         .feed_hold         (hold_feed),
+        .extrapolation     (extrapolation),
         .position          (command_position),
         .velocity          (command_velocity),
         .acceleration      (command_acceleration),
@@ -240,7 +243,8 @@ module xy_stage_stage_x (
         .tick_missed       (segments_tick_missed),
         .out_of_range      (segments_out_of_range),
         .rests             (rests),
-        .held              (feed_held)
+        .held              (feed_held),
+        .late_ticks        (late_ticks)
     );
 
     xy_stage_x_motion_shaper_32x3 u_shaper (

@@ -76,7 +76,7 @@ module xy_stage_stage_bench;
         repeat (4) @(negedge clk);
         rst = 0;
         expect_word(0, 32'h45475453); // MAGIC
-        expect_word(1, 32'h00020001); // VERSION
+        expect_word(1, 32'h00020002); // VERSION
         expect_word(2, 32'h00000002); // AXES
         expect_word(3, 32'h00001388); // TICK_CLOCKS
         expect_word(4, 32'h000000d2); // CONTROL_CLOCKS

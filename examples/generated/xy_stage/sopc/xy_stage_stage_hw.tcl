@@ -4,7 +4,7 @@
 package require -exact qsys 13.0
 
 set_module_property NAME xy_stage_stage
-set_module_property VERSION 2.1
+set_module_property VERSION 2.2
 set_module_property DISPLAY_NAME {stage: xy_stage_stage}
 set_module_property DESCRIPTION {Stage: axes from motion segments to the pins; window 0 is the stage's, then one window per axis.}
 set_module_property GROUP Posicast
@@ -17,7 +17,7 @@ set_module_property EDITABLE false
 # Facts for system.h and the device tree
 set_module_assignment embeddedsw.CMacro.MAGIC 0x45475453
 set_module_assignment embeddedsw.CMacro.VERSION_MAJOR 2
-set_module_assignment embeddedsw.CMacro.VERSION_MINOR 1
+set_module_assignment embeddedsw.CMacro.VERSION_MINOR 2
 set_module_assignment embeddedsw.CMacro.AXES 2
 set_module_assignment embeddedsw.CMacro.TICK_CLOCKS 5000
 set_module_assignment embeddedsw.CMacro.CONTROL_CLOCKS 210
@@ -35,12 +35,12 @@ set_module_assignment embeddedsw.CMacro.Y_COEFFICIENT_FRACTION 16
 set_module_assignment embeddedsw.dts.vendor posicast
 set_module_assignment embeddedsw.dts.name stage
 set_module_assignment embeddedsw.dts.group motion
-set_module_assignment embeddedsw.dts.compatible {posicast,stage-2.1}
+set_module_assignment embeddedsw.dts.compatible {posicast,stage-2.2}
 
 foreach kind {QUARTUS_SYNTH SIM_VERILOG} {
     add_fileset $kind $kind {} {}
     set_fileset_property $kind TOP_LEVEL xy_stage_stage
-    add_fileset_file posicast_stage_registers_8e3b32f0.v VERILOG PATH ../rtl/posicast_stage_registers_8e3b32f0.v
+    add_fileset_file posicast_stage_registers_07d7cdfd.v VERILOG PATH ../rtl/posicast_stage_registers_07d7cdfd.v
     add_fileset_file posicast_time_base_5000.v VERILOG PATH ../rtl/posicast_time_base_5000.v
     add_fileset_file posicast_schedule_210.v VERILOG PATH ../rtl/posicast_schedule_210.v
     add_fileset_file posicast_divider_share_2.v VERILOG PATH ../rtl/posicast_divider_share_2.v

@@ -1,11 +1,11 @@
 //! Entries of the command FIFO, as the words that a host writes.
 //!
-//! | word | segment | point |
-//! |---|---|---|
-//! | 0 | jerk, lower 32 of 40 bits (Q8.32 counts per tick³) | position, Q24.8 counts |
-//! | 1 | jerk, upper 8 bits, sign extended to 32 | velocity, Q16.16 counts per tick |
-//! | 2 | not used, need not be written | acceleration, Q8.24 counts per tick² |
-//! | 3 | ticks, and flags; its write commits the entry | the same |
+//! | word | segment | point | cubic |
+//! |---|---|---|---|
+//! | 0 | jerk, lower 32 of 40 bits (Q8.32 counts per tick³) | position, Q24.8 counts | jerk, Q0.32 counts per tick³ |
+//! | 1 | jerk, upper 8 bits, sign extended to 32 | velocity, Q16.16 counts per tick | velocity, as of a point |
+//! | 2 | not used, need not be written | acceleration, Q8.24 counts per tick² | acceleration, as of a point |
+//! | 3 | ticks, and flags; its write commits the entry | the same | the same |
 
 use crate::rtl::shaper::wrap;
 
@@ -19,8 +19,12 @@ pub const ACCELERATION_BITS: u32 = 40;
 pub const POINT: u32 = 1 << 31;
 /// Flag in word 3: `notify` when the entry has ended.
 pub const NOTIFY: u32 = 1 << 30;
+/// Flag in word 3: the entry is a cubic; never together with [`POINT`].
+pub const CUBIC: u32 = 1 << 29;
+/// Flag in word 3: the entry waits for the rest of its batch, which ends with the first entry without this flag.
+pub const MORE: u32 = 1 << 28;
 /// Bits of word 3 that must be 0.
-pub const RESERVED: u32 = !(POINT | NOTIFY | ((1 << TICK_BITS) - 1));
+pub const RESERVED: u32 = !(POINT | NOTIFY | CUBIC | MORE | ((1 << TICK_BITS) - 1));
 
 /// What an entry commands for its ticks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -29,6 +33,8 @@ pub enum EntryMotion {
     Jerk(i64),
     /// A state, taken at once and held.
     Point(Point),
+    /// A path that goes on from the present position.
+    Cubic(Cubic),
 }
 
 /// A state of the command, as its words.
@@ -39,6 +45,18 @@ pub struct Point {
     /// Q16.16 counts per tick.
     pub velocity: i32,
     /// Q8.24 counts per tick².
+    pub acceleration: i32,
+}
+
+/// A polynomial of third order from wherever the command is, so that no such entry makes the position jump. The first tick takes velocity and
+/// acceleration, and moves by that velocity; each further one adds the jerk, as a segment does.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Cubic {
+    /// Q0.32 counts per tick³.
+    pub jerk: i32,
+    /// Of the first tick, Q16.16 counts per tick.
+    pub velocity: i32,
+    /// Of the first tick, Q8.24 counts per tick².
     pub acceleration: i32,
 }
 
@@ -65,7 +83,24 @@ impl Entry {
                 point.acceleration as u32,
                 self.ticks | notify | POINT,
             ],
+            EntryMotion::Cubic(cubic) => [
+                cubic.jerk as u32,
+                cubic.velocity as u32,
+                cubic.acceleration as u32,
+                self.ticks | notify | CUBIC,
+            ],
         }
+    }
+
+    /// The words of a batch: all of these entries are taken, or none.
+    pub fn batch(entries: &[Self]) -> Vec<[u32; ENTRY_WORDS]> {
+        let mut words: Vec<_> = entries.iter().map(Self::words).collect();
+        if let Some((_, all_but_last)) = words.split_last_mut() {
+            for entry in all_but_last {
+                entry[ENTRY_WORDS - 1] |= MORE;
+            }
+        }
+        words
     }
 
     /// What the words mean to the hardware, which looks at the lower 40 bits of a jerk.
@@ -74,6 +109,12 @@ impl Entry {
         let motion = if last & POINT != 0 {
             EntryMotion::Point(Point {
                 position: first as i32,
+                velocity: second as i32,
+                acceleration: third as i32,
+            })
+        } else if last & CUBIC != 0 {
+            EntryMotion::Cubic(Cubic {
+                jerk: first as i32,
                 velocity: second as i32,
                 acceleration: third as i32,
             })
@@ -106,7 +147,13 @@ mod tests {
             velocity: i32::MAX,
             acceleration: i32::MIN,
         });
+        let cubic = EntryMotion::Cubic(Cubic {
+            jerk: i32::MIN,
+            velocity: -1,
+            acceleration: i32::MAX,
+        });
         for motion in [
+            cubic,
             EntryMotion::Jerk(-1),
             EntryMotion::Jerk((1 << 39) - 1),
             EntryMotion::Jerk(-(1 << 39)),
@@ -121,7 +168,9 @@ mod tests {
                 let words = entry.words();
                 assert_eq!(Entry::from_words(&words), entry);
                 assert_eq!(words[3] & RESERVED, 0);
-                assert!(matches!(motion, EntryMotion::Point(_)) || !too_wide(words[1]));
+                assert!(!matches!(motion, EntryMotion::Jerk(_)) || !too_wide(words[1]));
+                let batch = Entry::batch(&[entry, entry]);
+                assert_eq!([batch[0][3], batch[1][3]], [words[3] | MORE, words[3]]);
             }
         }
         assert!(too_wide(0x80) && too_wide(0xffff_ff7f) && !too_wide(0x7f) && !too_wide(0xffff_ff80));

@@ -1,8 +1,8 @@
 //! The memory of the command FIFO and what may be written into it.
 
-use super::entry::{ENTRY_WORDS, Entry, POINT, RESERVED, TICK_BITS, too_wide};
+use super::entry::{CUBIC, ENTRY_WORDS, Entry, MORE, POINT, RESERVED, TICK_BITS, too_wide};
 
-/// Entries that are held: those that wait, and the one that plays.
+/// Entries that are held: those that wait, those of a batch that is being written, and the one that plays.
 pub const ENTRIES_MAX: u8 = 64;
 const SLOTS: usize = ENTRIES_MAX as usize;
 
@@ -13,12 +13,15 @@ pub(super) struct Written {
     pub(super) malformed: bool,
 }
 
-/// Pointers and what is known of the entry that is being written.
+/// Pointers and what is known of the entry and the batch that are being written.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(super) struct Pointers {
     head: u8,
-    tail: u8,
     level: u8,
+    /// Entries of the batch that is being written, in the slots after those that wait.
+    staged: u8,
+    /// An entry of the batch was dropped: so is the rest of it.
+    spoilt: bool,
     /// Words 0 to 2 of the entry were written.
     written: [bool; ENTRY_WORDS - 1],
     /// Word 1 is no sign extension of 8 bits.
@@ -52,16 +55,24 @@ impl Fifo {
         self.pointers = Pointers::default();
     }
 
-    /// Drops all entries that wait, and the one that is being written.
+    /// Drops all entries that wait, and the one that is being written; of a batch that has begun also what is still to come.
     pub(super) fn flush(&mut self) {
         self.pointers = Pointers {
             head: self.pointers.head,
-            tail: self.pointers.head,
+            spoilt: self.pointers.spoilt || self.pointers.staged > 0,
             ..Pointers::default()
         };
     }
 
-    /// Takes one word of the entry that is being written; word 3 commits it.
+    /// The same, and nothing is left of a batch that has begun: the entries to come are new ones.
+    pub(super) fn begin_anew(&mut self) {
+        self.pointers = Pointers {
+            head: self.pointers.head,
+            ..Pointers::default()
+        };
+    }
+
+    /// Takes one word of the entry that is being written; word 3 commits it, or keeps it for its batch.
     pub(super) fn write(&mut self, word: u8, data: u32, closed: bool, plays: bool) -> Written {
         let pointers = &mut self.pointers;
         let before = (pointers.written, pointers.too_wide);
@@ -70,13 +81,18 @@ impl Fifo {
         if is_last {
             (pointers.written, pointers.too_wide) = Default::default();
         }
-        if closed || pointers.level + u8::from(plays) == ENTRIES_MAX {
+        let more = data & MORE != 0;
+        if closed || pointers.level + pointers.staged + u8::from(plays) == ENTRIES_MAX {
+            if is_last {
+                (pointers.staged, pointers.spoilt) = (0, more);
+            }
             return Written {
                 refused: true,
                 malformed: false,
             };
         }
-        self.words[usize::from(pointers.tail)][at] = data;
+        let slot = pointers.head + pointers.level + pointers.staged;
+        self.words[usize::from(slot % ENTRIES_MAX)][at] = data;
         if let Some(written) = pointers.written.get_mut(at) {
             *written = true;
             if at == 1 {
@@ -85,17 +101,23 @@ impl Fifo {
             return Written::default();
         }
         let ([first, second, third], jerk_too_wide) = before;
-        let complete = if data & POINT != 0 {
-            first && second && third
-        } else {
-            first && second && !jerk_too_wide
-        };
+        let complete = first
+            && second
+            && match data & (POINT | CUBIC) {
+                0 => !jerk_too_wide,
+                POINT | CUBIC => third,
+                _ => false,
+            };
         let ticks = data & ((1 << TICK_BITS) - 1);
-        let malformed = !complete || ticks == 0 || data & RESERVED != 0;
-        if !malformed {
-            pointers.tail = (pointers.tail + 1) % ENTRIES_MAX;
-            pointers.level += 1;
-        }
+        let malformed = !complete || ticks == 0 || data & RESERVED != 0 || pointers.spoilt;
+        (pointers.staged, pointers.spoilt) = match (malformed, more) {
+            (true, _) => (0, more),
+            (false, true) => (pointers.staged + 1, false),
+            (false, false) => {
+                pointers.level += pointers.staged + 1;
+                (0, false)
+            }
+        };
         Written {
             refused: false,
             malformed,

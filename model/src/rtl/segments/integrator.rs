@@ -1,9 +1,9 @@
-//! Exact integration of one tick: `a += j; v += a; p += v`.
+//! Exact integration of one tick: `a += j; v += a; p += v`; the first tick of a point or a cubic, and what comes where entries are missing.
 //!
 //! Integers in LSB of 2^−32 counts per tick³, tick², tick, and counts, so nothing is ever rounded: whoever adds the same
 //! numbers, in hardware, here or in C, gets the same position.
 
-use super::entry::{ACCELERATION_BITS, Point};
+use super::entry::{ACCELERATION_BITS, Cubic, EntryMotion, Point};
 
 /// Fraction bits of jerk, acceleration, velocity and position.
 pub const FRACTION_BITS: u32 = 32;
@@ -47,6 +47,20 @@ impl Integrator {
         }
     }
 
+    /// One tick of an entry, its first one or another.
+    ///
+    /// # Errors
+    /// As [`jerk`](Self::jerk).
+    pub fn play(&mut self, motion: &EntryMotion, is_first: bool) -> Result<(), Overflow> {
+        match motion {
+            EntryMotion::Jerk(jerk) => self.jerk(*jerk)?,
+            EntryMotion::Point(point) => *self = Self::at_point(point),
+            EntryMotion::Cubic(cubic) if is_first => self.begin_cubic(cubic),
+            EntryMotion::Cubic(cubic) => self.jerk(cubic.jerk.into())?,
+        }
+        Ok(())
+    }
+
     /// Exactly at a point.
     pub fn at_point(point: &Point) -> Self {
         Self {
@@ -54,6 +68,19 @@ impl Integrator {
             velocity: i64::from(point.velocity) << (FRACTION_BITS - VELOCITY_FRACTION),
             acceleration: i64::from(point.acceleration) << (FRACTION_BITS - ACCELERATION_FRACTION),
         }
+    }
+
+    /// The first tick of a cubic. The others are those of its jerk.
+    fn begin_cubic(&mut self, cubic: &Cubic) {
+        self.velocity = i64::from(cubic.velocity) << (FRACTION_BITS - VELOCITY_FRACTION);
+        self.acceleration = i64::from(cubic.acceleration) << (FRACTION_BITS - ACCELERATION_FRACTION);
+        self.position = self.position.wrapping_add(self.velocity);
+    }
+
+    /// One tick without an entry: on at the same velocity.
+    pub fn extrapolate(&mut self) {
+        self.acceleration = 0;
+        self.position = self.position.wrapping_add(self.velocity);
     }
 
     /// One tick with this jerk (Q8.32).
@@ -134,6 +161,36 @@ mod tests {
         assert_eq!(at.acceleration, n * jerk);
         assert_eq!(at.velocity, jerk * n * (n + 1) / 2);
         assert_eq!(at.position, jerk * (n * (n + 1) * (n + 2) / 6));
+    }
+
+    #[test]
+    fn unit_a_cubic_is_its_closed_form_and_goes_on_straight() {
+        // p = n·v + a·n(n−1)/2 + j·(n−1)n(n+1)/6 from the present position, whatever the velocity was before.
+        let cubic = Cubic {
+            jerk: -77,
+            velocity: 1_234,
+            acceleration: 56,
+        };
+        let (start, n) = (9i64 << 32, 10i64);
+        let mut at = Integrator {
+            position: start,
+            velocity: -5,
+            acceleration: 3,
+        };
+        for tick in 0..n {
+            at.play(&EntryMotion::Cubic(cubic), tick == 0).unwrap();
+        }
+        let (v, a, j) = (1_234i64 << 16, 56i64 << 8, -77i64);
+        assert_eq!(at.acceleration, a + (n - 1) * j);
+        assert_eq!(at.velocity, v + (n - 1) * a + j * (n - 1) * n / 2);
+        assert_eq!(
+            at.position,
+            start + n * v + a * n * (n - 1) / 2 + j * (n - 1) * n * (n + 1) / 6
+        );
+        let before = at;
+        at.extrapolate();
+        assert_eq!((at.velocity, at.acceleration), (before.velocity, 0));
+        assert_eq!(at.position, before.position + before.velocity);
     }
 
     #[test]

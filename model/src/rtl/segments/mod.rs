@@ -4,8 +4,8 @@
 //!
 //! | part | what it is |
 //! |---|---|
-//! | [`Entry`] | what a host writes: a segment `{ticks, jerk}`, or a point held for some ticks |
-//! | [`Integrator`] | `a += j; v += a; p += v`, and the quick stop |
+//! | [`Entry`] | what a host writes: a segment `{ticks, jerk}`, a point held for some ticks, or a cubic |
+//! | [`Integrator`] | `a += j; v += a; p += v`, the extrapolation where entries are missing, and the quick stop |
 //! | [`Segments`] | FIFO, states and integrator, cycle accurate at its ports |
 //!
 //! A tick takes [`TICK_CLOCKS`], always the same ones:
@@ -40,7 +40,9 @@ mod fifo;
 mod integrator;
 mod ports;
 
-pub use entry::{ACCELERATION_BITS, ENTRY_WORDS, Entry, EntryMotion, NOTIFY, POINT, Point, RESERVED, TICK_BITS};
+pub use entry::{
+    ACCELERATION_BITS, CUBIC, Cubic, ENTRY_WORDS, Entry, EntryMotion, MORE, NOTIFY, POINT, Point, RESERVED, TICK_BITS,
+};
 pub use fifo::ENTRIES_MAX;
 pub use integrator::{
     ACCELERATION_FRACTION, FRACTION_BITS, Integrator, Overflow, POSITION_FRACTION, REACH_COUNTS, STAND_COUNTS,
@@ -97,6 +99,10 @@ struct Registers {
     at: Integrator,
     overflowed: bool,
     playing: Option<Entry>,
+    /// The entry that plays has not begun.
+    is_first: bool,
+    /// The entry that plays has ended, and none came: so many ticks that were played since.
+    extrapolated: Option<u8>,
     shown: Outputs,
 }
 
@@ -206,7 +212,7 @@ impl Segments {
         let mut flush = requests.flush;
         if requests.preset {
             registers.at = Integrator::resting_at(inputs.preset_position);
-            (*state, flush, *held) = (SegmentsState::Hold, true, false);
+            (*state, *held) = (SegmentsState::Hold, false);
         } else {
             let stops = requests.quick_stop || (!inputs.enable && *state == SegmentsState::Move);
             match *state {
@@ -216,7 +222,9 @@ impl Segments {
                 _ => {}
             }
         }
-        if flush {
+        if requests.preset {
+            self.fifo.begin_anew();
+        } else if flush {
             self.fifo.flush();
         }
     }
@@ -225,16 +233,21 @@ impl Segments {
         let Registers {
             at,
             playing,
+            is_first,
+            extrapolated,
             shown,
             overflowed,
             stop_deceleration,
             ..
         } = &mut self.registers;
         *overflowed = false;
-        match (shown.state, playing.map(|entry| entry.motion)) {
+        match (shown.state, playing) {
             _ if shown.held => {}
-            (SegmentsState::Move, Some(EntryMotion::Jerk(jerk))) => *overflowed = at.jerk(jerk).is_err(),
-            (SegmentsState::Move, Some(EntryMotion::Point(point))) => *at = Integrator::at_point(&point),
+            (SegmentsState::Move, _) if extrapolated.is_some() => at.extrapolate(),
+            (SegmentsState::Move, Some(entry)) => {
+                *overflowed = at.play(&entry.motion, *is_first).is_err();
+                *is_first = false;
+            }
             (SegmentsState::Stop, _) => {
                 at.stop(i64::from(*stop_deceleration) << (FRACTION_BITS - ACCELERATION_FRACTION))
             }
@@ -248,6 +261,8 @@ impl Segments {
             phase,
             at,
             playing,
+            is_first,
+            extrapolated,
             shown,
             enabled,
             overflowed,
@@ -261,15 +276,20 @@ impl Segments {
         match (state, playing.as_mut()) {
             _ if shown.held => {}
             (SegmentsState::Move, Some(entry)) => {
-                entry.ticks -= 1;
+                let passed = extrapolated.map(|ticks| ticks + 1);
+                entry.ticks = entry.ticks.saturating_sub(1);
                 let ended = entry.ticks == 0;
-                shown.notify = ended && entry.notify && !*overflowed && !leaves;
-                if *overflowed || leaves || (ended && !entry_waits && !at.at_rest()) {
+                shown.notify = ended && passed.is_none() && entry.notify && !*overflowed && !leaves;
+                let is_missing = ended && !entry_waits && !at.at_rest();
+                if *overflowed || leaves || (is_missing && passed.unwrap_or(0) >= inputs.extrapolation) {
                     shown.overflow |= *overflowed;
                     shown.out_of_range |= !*overflowed && leaves;
                     shown.underrun |= !*overflowed && !leaves;
                     shown.state = SegmentsState::Stop;
                     self.fifo.flush();
+                } else if is_missing {
+                    *extrapolated = Some(passed.unwrap_or(0));
+                    shown.late_ticks = shown.late_ticks.wrapping_add(1);
                 } else if ended && entry_waits {
                     next_is_read = true;
                 } else if ended {
@@ -289,6 +309,7 @@ impl Segments {
         }
         if next_is_read {
             *playing = Some(self.fifo.pop());
+            (*is_first, *extrapolated) = (true, None);
         } else {
             *phase = IDLE;
         }
@@ -348,7 +369,14 @@ impl Moore for Segments {
     fn ignores(&self, input: &str) -> bool {
         matches!(
             input,
-            "enable" | "word" | "data" | "preset_position" | "stop_deceleration" | "modulo" | "feed_hold"
+            "enable"
+                | "word"
+                | "data"
+                | "preset_position"
+                | "stop_deceleration"
+                | "modulo"
+                | "feed_hold"
+                | "extrapolation"
         )
     }
 }

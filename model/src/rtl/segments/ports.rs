@@ -56,6 +56,8 @@ ports! {
         modulo: Bit as bool;
         /// At a tick: a command that rests stays where it is, and the entry that plays keeps its ticks.
         feed_hold: Bit as bool;
+        /// So many ticks may pass at the last velocity where entries are missing, before the quick stop; 0: none.
+        extrapolation: Bits(8) as u8, "ticks";
     }
 
     /// The output ports, all of them registers or comparisons of registers.
@@ -80,14 +82,15 @@ ports! {
         notify: Bit as bool;
         /// One clock: a move has ended at rest with no entry left, or a quick stop is at rest.
         done: Bit as bool;
-        /// Sticky: no entry was there while moving.
+        /// Sticky: no entry was there while moving, and the extrapolation, if any, was over.
         underrun: Bit as bool;
         /// Sticky: acceleration or velocity did not fit.
         overflow: Bit as bool;
         /// Sticky: a word was written while the FIFO held 64 entries, the one that plays included, or in a quick
         /// stop.
         refused: Bit as bool;
-        /// Sticky: an entry was dropped: words missing, no ticks, reserved flags, or a jerk of more than 40 bits.
+        /// Sticky: an entry was dropped: words missing, no ticks, reserved flags, a jerk of more than 40 bits, or another entry of
+        /// its batch was.
         malformed: Bit as bool;
         /// Sticky: a tick came while one was being played, and was left out.
         tick_missed: Bit as bool;
@@ -97,5 +100,7 @@ ports! {
         rests: Bit as bool;
         /// The last tick was not played: a feed hold.
         held: Bit as bool;
+        /// Ticks since reset that were extrapolated, modulo 2^8.
+        late_ticks: Bits(8) as u8, "ticks";
     }
 }

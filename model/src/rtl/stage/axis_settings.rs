@@ -104,8 +104,17 @@ fn commands() -> Vec<Register> {
             "fifo_control",
             0x0e,
             Access::Configuration,
-            "when the FIFO is low",
-            vec![Field::new("low_water", 0, 6, "entries").with_reset(16)],
+            "when the FIFO is low, and how long a move goes on without entries",
+            vec![
+                Field::new("low_water", 0, 6, "entries").with_reset(16),
+                Field::new(
+                    "extrapolation",
+                    8,
+                    8,
+                    "at the last velocity where entries are missing, then a quick stop",
+                )
+                .with_unit("ticks"),
+            ],
         ),
         register(
             "segment",

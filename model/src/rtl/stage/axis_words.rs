@@ -146,6 +146,13 @@ fn states() -> Vec<Register> {
                 Field::flag("fifo_low", 8, "at most `low_water`"),
                 Field::flag("segments_empty", 9, "none"),
                 Field::flag("feed_held", 10, "a feed hold keeps the command where it rests"),
+                Field::new(
+                    "late_ticks",
+                    16,
+                    8,
+                    "ticks since reset that were extrapolated, modulo 2^8",
+                )
+                .with_unit("ticks"),
             ],
         ),
         register(

@@ -46,7 +46,7 @@ pub(super) fn stage(config: &StageConfig) -> Description {
         )
         .with_unit("clocks"),
     ];
-    let mut description = Description::new("stage", about, *b"STGE", (2, 1), parameters)
+    let mut description = Description::new("stage", about, *b"STGE", (2, 2), parameters)
         .with_windows(config.axes.len() as u32 + 1)
         .with(
             "snapshot",

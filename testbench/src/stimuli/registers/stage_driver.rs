@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 
 use posicast_model::rtl::axis::KICK;
 use posicast_model::rtl::registers::RegisterMap;
-use posicast_model::rtl::segments::{Entry, EntryMotion, Point};
+use posicast_model::rtl::segments::{Cubic, ENTRY_WORDS, Entry, EntryMotion, Point};
 use posicast_model::taps::COEFFICIENT_MAX;
 use rand::{Rng, RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -357,10 +357,13 @@ impl Driver {
     }
 
     fn entry(&mut self, axis: usize, ticks: u32, motion: EntryMotion, notify: bool) {
+        self.write_entry(axis, Entry { ticks, motion, notify }.words());
+    }
+
+    fn write_entry(&mut self, axis: usize, words: [u32; ENTRY_WORDS]) {
         let name = format!("{}_segment", self.axes[axis].name);
         let base = self.map.register(&name).map_or(0, |register| register.offset);
-        let entry = Entry { ticks, motion, notify };
-        let words = (base..).zip(entry.words());
+        let words = (base..).zip(words);
         let writes = words.map(|(offset, word)| Do::Write(offset, word));
         self.axes[axis].script.extend(writes);
     }
@@ -388,6 +391,7 @@ impl Driver {
             0..=2 => self.point(axis),
             // Does not end at rest.
             3..=6 => self.entry(axis, 2, EntryMotion::Jerk(1 << 28), true),
+            9..=11 => self.batch(axis),
             // An entry of no ticks is none.
             7 => self.entry(axis, 0, EntryMotion::Jerk(1), true),
             // More than the FIFO holds.
@@ -397,6 +401,28 @@ impl Driver {
         self.start(axis);
         let ticks = self.below(10);
         self.ticks(axis, ticks);
+    }
+
+    /// Cubics that are taken together, the last one at a standstill; now and then one of them is wrong.
+    fn batch(&mut self, axis: usize) {
+        let any = self.rng.next_u32() as i32;
+        let cubic = |velocity, acceleration, jerk| Entry {
+            ticks: 2,
+            motion: EntryMotion::Cubic(Cubic {
+                jerk,
+                velocity,
+                acceleration,
+            }),
+            notify: false,
+        };
+        let moves = cubic(any >> 12, any << 7 >> 9, any << 9 >> 5);
+        let mut words = Entry::batch(&[moves, moves, cubic(0, 0, 0)]);
+        if self.one_in(4) {
+            words[1][3] |= 1 << 24;
+        }
+        for words in words {
+            self.write_entry(axis, words);
+        }
     }
 
     fn point(&mut self, axis: usize) {
@@ -521,7 +547,7 @@ impl Driver {
         self.tell(axis, "index_arm", 0);
         let preset = any >> 16;
         self.tell(axis, "preset", preset);
-        let low_water = any & 0x3f;
-        self.tell(axis, "fifo_control", low_water);
+        let extrapolation = self.pick(&[0, 0, 1, 3, 255]);
+        self.tell(axis, "fifo_control", extrapolation << 8 | any & 0x3f);
     }
 }

@@ -15,15 +15,6 @@ static void clear_faults(const posicast_stage *stage, uint32_t axis)
     IOWR_POSICAST_AXIS_CLEAR_FAULTS(stage->base, axis, 0);
 }
 
-/* Entries stay in the FIFO in HOLD and RUN alone. The stop of the segments follows that of the axis a tick later. */
-static int keeps_entries(const posicast_stage *stage, uint32_t axis)
-{
-    const uint32_t word = posicast_status(stage, axis);
-
-    return (state_of(word) == POSICAST_AXIS_STATUS_STATE_HOLD || state_of(word) == POSICAST_AXIS_STATUS_STATE_RUN) &&
-           FIELD(word, POSICAST_AXIS_STATUS_SEGMENTS_STATE) < POSICAST_SEGMENTS_STOP;
-}
-
 /* Until an axis is READY. It forgets only what is over, and only with its outputs off: so it is told again and again. */
 static posicast_result wait_ready(const posicast_stage *stage, uint32_t axis, posicast_patience *left)
 {
@@ -166,29 +157,39 @@ posicast_result posicast_switch_off(const posicast_stage *stage, uint32_t axes, 
 
 posicast_result posicast_write_entry(const posicast_stage *stage, uint32_t axis, const posicast_entry *entry)
 {
+    return posicast_write_entries(stage, axis, entry, 1);
+}
+
+posicast_result posicast_write_entries(const posicast_stage *stage, uint32_t axis, const posicast_entry *entries,
+                                       uint32_t count)
+{
     const uint32_t refusals = POSICAST_AXIS_FLAGS_SEGMENT_REFUSED_MSK | POSICAST_AXIS_FLAGS_SEGMENT_MALFORMED_MSK;
-    uint32_t word, before;
+    uint32_t place, before;
     posicast_result result;
 
-    if (!is_axis(stage, axis) || posicast_entry_ticks(entry) == 0)
+    if (!is_axis(stage, axis) || count == 0 || count > POSICAST_FIFO_ENTRIES)
         return POSICAST_BAD_ARGUMENT;
-    if (FIELD(IORD_POSICAST_AXIS_FIFO(stage->base, axis), POSICAST_AXIS_FIFO_FIFO_LEVEL) >= POSICAST_FIFO_ENTRIES)
+    for (place = 0; place < count; place++) {
+        if (posicast_entry_ticks(&entries[place]) == 0)
+            return POSICAST_BAD_ARGUMENT;
+    }
+    if (FIELD(IORD_POSICAST_AXIS_FIFO(stage->base, axis), POSICAST_AXIS_FIFO_FIFO_LEVEL) + count > POSICAST_FIFO_ENTRIES)
         return POSICAST_FULL;
-    if (!keeps_entries(stage, axis))
+    if (!keeps_entries(posicast_status(stage, axis)))
         return POSICAST_REFUSED;
     before = posicast_flags(stage, axis);
-    for (word = 0; word < POSICAST_ENTRY_WORDS; word++)
-        IOWR_POSICAST_AXIS_SEGMENT(stage->base, axis, word, entry->words[word]);
-    /* Level and flags are then those after this entry. */
+    for (place = 0; place < count; place++)
+        posicast_put_entry(stage, axis, &entries[place], place + 1 < count);
+    /* Level and flags are then those after these entries. */
     result = posicast_refused_since(stage, axis, refusals, before);
-    return result == POSICAST_OK && !keeps_entries(stage, axis) ? POSICAST_REFUSED : result;
+    return result == POSICAST_OK && !keeps_entries(posicast_status(stage, axis)) ? POSICAST_REFUSED : result;
 }
 
 posicast_result posicast_queue_move(const posicast_stage *stage, uint32_t axis, int32_t end,
                                     const posicast_limits *limits)
 {
     posicast_entry entries[POSICAST_PLAN_ROOM];
-    uint32_t count, place;
+    uint32_t count;
     posicast_result result;
 
     if (!is_axis(stage, axis))
@@ -198,9 +199,7 @@ posicast_result posicast_queue_move(const posicast_stage *stage, uint32_t axis, 
         return POSICAST_WRONG_STATE;
     result = posicast_plan_move(posicast_command_position(stage, axis), end, limits, entries, POSICAST_PLAN_ROOM,
                                 &count);
-    for (place = 0; place < count && result == POSICAST_OK; place++)
-        result = posicast_write_entry(stage, axis, &entries[place]);
-    return result;
+    return result == POSICAST_OK && count > 0 ? posicast_write_entries(stage, axis, entries, count) : result;
 }
 
 posicast_result posicast_start(const posicast_stage *stage, uint32_t axes)

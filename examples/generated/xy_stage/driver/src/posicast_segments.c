@@ -64,6 +64,17 @@ posicast_entry posicast_point(posicast_motion at, uint32_t ticks, uint32_t flags
     return entry;
 }
 
+posicast_entry posicast_cubic(int32_t velocity, int32_t acceleration, int32_t jerk, uint32_t ticks, uint32_t flags)
+{
+    posicast_entry entry;
+
+    entry.words[0] = (uint32_t)jerk;
+    entry.words[1] = (uint32_t)velocity;
+    entry.words[2] = (uint32_t)acceleration;
+    entry.words[3] = ticks | flags | POSICAST_ENTRY_CUBIC;
+    return entry;
+}
+
 uint32_t posicast_entry_ticks(const posicast_entry *entry)
 {
     return entry->words[3] & POSICAST_TICKS_MAX;
@@ -79,8 +90,19 @@ posicast_integrator posicast_resting_at(int32_t position)
     return at;
 }
 
+int posicast_begin(posicast_integrator *at, const posicast_entry *entry)
+{
+    if (!(entry->words[3] & POSICAST_ENTRY_CUBIC))
+        return posicast_integrate(at, entry);
+    at->velocity = extended((int32_t)entry->words[1], POSICAST_VELOCITY_FRACTION);
+    at->acceleration = extended((int32_t)entry->words[2], POSICAST_ACCELERATION_FRACTION);
+    at->position = wrapping_sum(at->position, at->velocity);
+    return 1;
+}
+
 int posicast_integrate(posicast_integrator *at, const posicast_entry *entry)
 {
+    const int is_cubic = (entry->words[3] & POSICAST_ENTRY_CUBIC) != 0;
     int64_t sum;
 
     if (entry->words[3] & POSICAST_ENTRY_POINT) {
@@ -89,7 +111,7 @@ int posicast_integrate(posicast_integrator *at, const posicast_entry *entry)
         at->acceleration = extended((int32_t)entry->words[2], POSICAST_ACCELERATION_FRACTION);
         return 1;
     }
-    sum = at->acceleration + jerk_of(entry);
+    sum = at->acceleration + (is_cubic ? (int64_t)(int32_t)entry->words[0] : jerk_of(entry));
     if (!fits(sum, POSICAST_ACCELERATION_BITS))
         return 0;
     at->acceleration = sum;
@@ -99,6 +121,22 @@ int posicast_integrate(posicast_integrator *at, const posicast_entry *entry)
     at->velocity = sum;
     at->position = wrapping_sum(at->position, at->velocity);
     return 1;
+}
+
+int posicast_play(posicast_integrator *at, const posicast_entry *entry)
+{
+    int fits = posicast_begin(at, entry);
+    uint32_t left = posicast_entry_ticks(entry);
+
+    while (fits && --left > 0)
+        fits = posicast_integrate(at, entry);
+    return fits;
+}
+
+void posicast_extrapolate(posicast_integrator *at)
+{
+    at->acceleration = 0;
+    at->position = wrapping_sum(at->position, at->velocity);
 }
 
 void posicast_integrate_stop(posicast_integrator *at, int64_t deceleration)

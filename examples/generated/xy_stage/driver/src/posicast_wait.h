@@ -34,6 +34,18 @@ uint32_t posicast_flags(const posicast_stage *stage, uint32_t axis);
 /* Whether writes since `before` was read have set one of these flags, which stay until faults are cleared. */
 posicast_result posicast_refused_since(const posicast_stage *stage, uint32_t axis, uint32_t refusals, uint32_t before);
 
+/* The words of an entry; `more`: it is taken with those that follow, or not at all. A segment needs no word 2. */
+static inline void posicast_put_entry(const posicast_stage *stage, uint32_t axis, const posicast_entry *entry, int more)
+{
+    const uint32_t last = entry->words[3] | (more ? POSICAST_ENTRY_MORE : 0u);
+
+    IOWR_POSICAST_AXIS_SEGMENT(stage->base, axis, 0, entry->words[0]);
+    IOWR_POSICAST_AXIS_SEGMENT(stage->base, axis, 1, entry->words[1]);
+    if (last & (POSICAST_ENTRY_POINT | POSICAST_ENTRY_CUBIC))
+        IOWR_POSICAST_AXIS_SEGMENT(stage->base, axis, 2, entry->words[2]);
+    IOWR_POSICAST_AXIS_SEGMENT(stage->base, axis, 3, last);
+}
+
 static inline uint32_t posicast_status(const posicast_stage *stage, uint32_t axis)
 {
     return (uint32_t)IORD_POSICAST_AXIS_STATUS(stage->base, axis);
@@ -57,6 +69,13 @@ static inline int has(uint32_t axes, uint32_t axis)
 static inline uint32_t state_of(uint32_t word)
 {
     return FIELD(word, POSICAST_AXIS_STATUS_STATE);
+}
+
+/* Of a word of STATUS: entries stay in the FIFO in HOLD and RUN alone. The stop of the segments follows that of the axis a tick later. */
+static inline int keeps_entries(uint32_t word)
+{
+    return (state_of(word) == POSICAST_AXIS_STATUS_STATE_HOLD || state_of(word) == POSICAST_AXIS_STATUS_STATE_RUN) &&
+           FIELD(word, POSICAST_AXIS_STATUS_SEGMENTS_STATE) < POSICAST_SEGMENTS_STOP;
 }
 
 #endif

@@ -39,14 +39,27 @@ posicast_entry posicast_segment(int64_t jerk, uint32_t ticks, uint32_t flags);
 /* A state, taken at once and held for so many ticks. `flags`: 0 or POSICAST_ENTRY_NOTIFY. */
 posicast_entry posicast_point(posicast_motion at, uint32_t ticks, uint32_t flags);
 
+/*
+ * A path of third order from wherever the command then is, for so many ticks: the first one takes velocity (Q16.16) and acceleration (Q8.24) and
+ * moves by that velocity, each further one adds the jerk (Q0.32). No such entry makes the position jump.
+ */
+posicast_entry posicast_cubic(int32_t velocity, int32_t acceleration, int32_t jerk, uint32_t ticks, uint32_t flags);
+
 /* Ticks of an entry. */
 uint32_t posicast_entry_ticks(const posicast_entry *entry);
 
 /* At rest at this command position, Q24.8 counts. */
 posicast_integrator posicast_resting_at(int32_t position);
 
-/* One tick of an entry. 0 where a sum does not fit its word: there the hardware flags an overflow and stops. */
+/* The first tick of an entry, and another one; only of a cubic do they differ. 0 where a sum does not fit its word: there the hardware flags an overflow and stops. */
+int posicast_begin(posicast_integrator *at, const posicast_entry *entry);
 int posicast_integrate(posicast_integrator *at, const posicast_entry *entry);
+
+/* All ticks of an entry. */
+int posicast_play(posicast_integrator *at, const posicast_entry *entry);
+
+/* One tick without an entry: on at the same velocity, as FIFO_CONTROL.extrapolation allows it. */
+void posicast_extrapolate(posicast_integrator *at);
 
 /* One tick of a quick stop with this deceleration, Q8.32; 0: at once. */
 void posicast_integrate_stop(posicast_integrator *at, int64_t deceleration);

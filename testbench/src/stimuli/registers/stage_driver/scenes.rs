@@ -238,6 +238,8 @@ impl Driver {
     fn runs_dry(&mut self, axis: usize) {
         self.company(axis);
         let jerk = self.rng_jerk(SLOW << 1);
+        let extrapolation = self.pick(&[0, 0, 2]);
+        self.tell(axis, "fifo_control", extrapolation << 8);
         self.entry(axis, 2, EntryMotion::Jerk(jerk), true);
         self.set_off(axis);
         self.ticks(axis, 8);

@@ -1,4 +1,4 @@
-// posicast_stage_registers_8e3b32f0
+// posicast_stage_registers_07d7cdfd
 // Registers of stage: Avalon-MM agent, 32 bits, word addresses, read latency 1, no waits.
 // Commands take whole words only. Reads have no side effect; what is not mapped reads as 0.
 //
@@ -22,7 +22,7 @@
 
 `default_nettype none
 
-module posicast_stage_registers_8e3b32f0 (
+module posicast_stage_registers_07d7cdfd (
     input  wire               clk,
     input  wire               rst,
     input  wire [9:0]         avs_address,
@@ -65,6 +65,7 @@ module posicast_stage_registers_8e3b32f0 (
     output reg                x_direct_kick,
     output reg  signed [16:0] x_direct_duty,
     output reg  [5:0]         x_low_water,
+    output reg  [7:0]         x_extrapolation,
     output reg                x_write_homed,
     output reg                x_homed_value,
     output reg                x_segment_write,
@@ -152,6 +153,7 @@ module posicast_stage_registers_8e3b32f0 (
     input  wire [6:0]         x_fifo_level,
     input  wire               x_segments_empty,
     input  wire               x_feed_held,
+    input  wire [7:0]         x_late_ticks,
     input  wire [15:0]        x_self_test_high,
     input  wire [15:0]        x_self_test_low,
     input  wire signed [31:0] x_user_position,
@@ -179,6 +181,7 @@ module posicast_stage_registers_8e3b32f0 (
     output reg                y_direct_kick,
     output reg  signed [16:0] y_direct_duty,
     output reg  [5:0]         y_low_water,
+    output reg  [7:0]         y_extrapolation,
     output reg                y_write_homed,
     output reg                y_homed_value,
     output reg                y_segment_write,
@@ -266,6 +269,7 @@ module posicast_stage_registers_8e3b32f0 (
     input  wire [6:0]         y_fifo_level,
     input  wire               y_segments_empty,
     input  wire               y_feed_held,
+    input  wire [7:0]         y_late_ticks,
     input  wire [15:0]        y_self_test_high,
     input  wire [15:0]        y_self_test_low,
     input  wire signed [31:0] y_user_position,
@@ -730,11 +734,14 @@ module posicast_stage_registers_8e3b32f0 (
         end
     end
 
-    // X_FIFO_CONTROL: configuration; when the FIFO is low
+    // X_FIFO_CONTROL: configuration; when the FIFO is low, and how long a move goes on without
+    // entries
     always @(posedge clk) if (rst) begin
         x_low_water <= 6'd16;
+        x_extrapolation <= 8'd0;
     end else begin
         if (write_x_fifo_control && avs_byteenable[0]) x_low_water <= avs_writedata[5:0];
+        if (write_x_fifo_control && avs_byteenable[1]) x_extrapolation <= avs_writedata[15:8];
     end
 
     // X_HOMED: command; the host says whether the axis is homed: until then there are no soft
@@ -1026,11 +1033,14 @@ module posicast_stage_registers_8e3b32f0 (
         end
     end
 
-    // Y_FIFO_CONTROL: configuration; when the FIFO is low
+    // Y_FIFO_CONTROL: configuration; when the FIFO is low, and how long a move goes on without
+    // entries
     always @(posedge clk) if (rst) begin
         y_low_water <= 6'd16;
+        y_extrapolation <= 8'd0;
     end else begin
         if (write_y_fifo_control && avs_byteenable[0]) y_low_water <= avs_writedata[5:0];
+        if (write_y_fifo_control && avs_byteenable[1]) y_extrapolation <= avs_writedata[15:8];
     end
 
     // Y_HOMED: command; the host says whether the axis is homed: until then there are no soft
@@ -1335,7 +1345,7 @@ module posicast_stage_registers_8e3b32f0 (
     end else if (avs_read) begin
         case (avs_address)
             MAGIC: read_group_0 <= 32'h45475453;
-            VERSION: read_group_0 <= 32'h00020001;
+            VERSION: read_group_0 <= 32'h00020002;
             AXES: read_group_0 <= 32'h00000002;
             TICK_CLOCKS: read_group_0 <= 32'h00001388;
             CONTROL_CLOCKS: read_group_0 <= 32'h000000d2;
@@ -1373,7 +1383,7 @@ module posicast_stage_registers_8e3b32f0 (
             X_MACHINE_TAPS: read_group_1 <= 32'h00000005;
             X_COEFFICIENT_FRACTION: read_group_1 <= 32'h00000010;
             X_CONTROL: read_group_1 <= {28'd0, x_self_test, 1'd0, x_direct_enable, x_enable};
-            X_FIFO_CONTROL: read_group_1 <= {26'd0, x_low_water};
+            X_FIFO_CONTROL: read_group_1 <= {16'd0, x_extrapolation, 2'd0, x_low_water};
             X_TAP_ADDRESS: read_group_1 <= {22'd0, x_tap_bank, 2'd0, x_tap_index};
             X_SETTING_ADDRESS: read_group_1 <= {22'd0, x_setting_bank, 4'd0, x_setting_row};
             X_LAW: read_group_1 <= {22'd0, staged_x_law_bank, 6'd0, staged_x_law};
@@ -1410,8 +1420,8 @@ module posicast_stage_registers_8e3b32f0 (
                 flag_x_refused};
             X_SATURATIONS: read_group_2 <= {x_limited_ticks, 1'd0, x_controller_saturated_low, 1'd0,
                 x_controller_saturated_high};
-            X_FIFO: read_group_2 <= {21'd0, x_feed_held, x_segments_empty, x_fifo_low, 1'd0,
-                x_fifo_level};
+            X_FIFO: read_group_2 <= {8'd0, x_late_ticks, 5'd0, x_feed_held, x_segments_empty,
+                x_fifo_low, 1'd0, x_fifo_level};
             X_SELF_TEST: read_group_2 <= {x_self_test_low, x_self_test_high};
             X_POSITION: read_group_2 <= x_user_position;
             default: read_group_2 <= 32'd0;
@@ -1448,7 +1458,7 @@ module posicast_stage_registers_8e3b32f0 (
             Y_MACHINE_TAPS: read_group_4 <= 32'h00000005;
             Y_COEFFICIENT_FRACTION: read_group_4 <= 32'h00000010;
             Y_CONTROL: read_group_4 <= {28'd0, y_self_test, 1'd0, y_direct_enable, y_enable};
-            Y_FIFO_CONTROL: read_group_4 <= {26'd0, y_low_water};
+            Y_FIFO_CONTROL: read_group_4 <= {16'd0, y_extrapolation, 2'd0, y_low_water};
             Y_TAP_ADDRESS: read_group_4 <= {22'd0, y_tap_bank, 2'd0, y_tap_index};
             Y_SETTING_ADDRESS: read_group_4 <= {22'd0, y_setting_bank, 4'd0, y_setting_row};
             Y_LAW: read_group_4 <= {22'd0, staged_y_law_bank, 6'd0, staged_y_law};
@@ -1485,8 +1495,8 @@ module posicast_stage_registers_8e3b32f0 (
                 flag_y_refused};
             Y_SATURATIONS: read_group_5 <= {y_limited_ticks, 1'd0, y_controller_saturated_low, 1'd0,
                 y_controller_saturated_high};
-            Y_FIFO: read_group_5 <= {21'd0, y_feed_held, y_segments_empty, y_fifo_low, 1'd0,
-                y_fifo_level};
+            Y_FIFO: read_group_5 <= {8'd0, y_late_ticks, 5'd0, y_feed_held, y_segments_empty,
+                y_fifo_low, 1'd0, y_fifo_level};
             Y_SELF_TEST: read_group_5 <= {y_self_test_low, y_self_test_high};
             Y_POSITION: read_group_5 <= y_user_position;
             Y_COUNT: read_group_5 <= y_count;
@@ -1569,6 +1579,7 @@ module posicast_stage_registers_8e3b32f0 (
         x_direct_kick = 1'd0;
         x_direct_duty = 17'sd0;
         x_low_water = 6'd16;
+        x_extrapolation = 8'd0;
         x_write_homed = 1'd0;
         x_homed_value = 1'd0;
         x_segment_write = 1'd0;
@@ -1623,6 +1634,7 @@ module posicast_stage_registers_8e3b32f0 (
         y_direct_kick = 1'd0;
         y_direct_duty = 17'sd0;
         y_low_water = 6'd16;
+        y_extrapolation = 8'd0;
         y_write_homed = 1'd0;
         y_homed_value = 1'd0;
         y_segment_write = 1'd0;

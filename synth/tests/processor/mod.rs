@@ -1,0 +1,133 @@
+//! The driver on a RISC-V beside the stage: a core executes the unmodified C, takes the stage's interrupts, and moves the machine.
+
+mod system;
+
+use crate::driver::support::Driver;
+use posicast_model::machine_file;
+use system::{Firmware, HOME_FROM, INDEX_AT, Outcome, Step, System};
+
+/// Enough for the slowest bridge; the program takes about two thirds of it.
+const MOST_CLOCKS: u64 = 4_000_000;
+
+fn driver() -> Driver {
+    Driver::of(machine_file::parse("machine.toml", include_str!("machine.toml")).unwrap())
+}
+
+/// The home switch of X is pressed from a count on. In the step "fault" its drive fails half way, and is mended later.
+fn run(system: &mut System, firmware: &Firmware, seed: u16) -> Outcome {
+    system.run(firmware, seed, MOST_CLOCKS, &mut |system, step| {
+        let count = system.count(0);
+        system.set("x_home", count >= HOME_FROM);
+        match step {
+            "fault" if count < 15 => system.set("x_drive_fault_n", false),
+            "mend" => system.set("x_drive_fault_n", true),
+            _ => {}
+        }
+    })
+}
+
+fn check(system: &System, outcome: &Outcome) {
+    let said = |name: &str| outcome.results[name];
+    // Homed by the index, to the count: it is position 1000.
+    assert_eq!(said("origin"), INDEX_AT - 1000, "{outcome:#?}");
+    assert_eq!(said("home_events"), 1 << 6);
+    // The shaped command ends on the commanded count, and the machine within one of it.
+    let near = |name: &str, wanted: i64| assert!((said(name) - wanted).abs() <= 1, "{name}: {outcome:#?}");
+    near("x_moved", 90 - said("origin"));
+    near("y_moved", -70);
+    // Each axis tells the core once that it is there.
+    assert_eq!(said("move_events"), 1 << 1 | 1 << 8);
+    // X has a fault: PWM tripped. Y is stopped with it: group stop.
+    assert_eq!((said("fault_causes_x"), said("fault_causes_y")), (1 << 1, 1 << 14));
+    // Each says so to the core; the stop of Y is over before that of X is forgotten.
+    assert_eq!(said("fault_events"), 1 << 5 | 1 << 8 | 1 << 11);
+    let stopped_at = said("stopped_at") / 256;
+    assert!((-60..90).contains(&stopped_at), "{stopped_at}");
+    // Forgotten, and the move taken up again.
+    assert_eq!(said("left_causes"), 0);
+    // The core was woken at every tick, and never for nothing. Once it is asked it comes within an instruction and a bus access.
+    assert!(said("ticks") > 500 && said("nothing") == 0, "{outcome:#?}");
+    assert!((1..100).contains(&outcome.longest_latency), "{outcome:#?}");
+    near("x_again", -60 - said("origin"));
+    near("y_again", 40);
+    // Points of a path, met to the last bit, none of them late: 50 counts there, 50 back.
+    assert_eq!(
+        (said("path_x"), said("path_y"), said("late")),
+        (0, 0, 0),
+        "{outcome:#?}"
+    );
+    let a_point = outcome.steps.iter().find(|step| step.name == "a point").unwrap();
+    assert_eq!(
+        a_point.reads + a_point.writes - a_point.in_interrupt,
+        2 * 6,
+        "{a_point:?}"
+    );
+    for (axis, wanted) in [-10, -10].into_iter().enumerate() {
+        assert!(
+            (system.count(axis) - wanted).abs() <= 1,
+            "{axis}: {}",
+            system.count(axis)
+        );
+    }
+}
+
+/// Seeds of the bridge's waits: one, or with `PROPTEST_CASES` one for each of so many cases, 0 (no waits) among them.
+fn seeds() -> impl Iterator<Item = u16> {
+    let wanted = std::env::var("PROPTEST_CASES")
+        .ok()
+        .and_then(|cases| cases.parse().ok());
+    let cases = wanted.map_or(1, |cases: u32| cases.div_ceil(CASES_PER_RUN));
+    let another = |seed: u16| seed.wrapping_mul(25_173).wrapping_add(13_849);
+    let drawn = std::iter::successors(Some(0xace1), move |seed| Some(another(*seed)));
+    let without_waits = (cases > 1).then_some(0);
+    without_waits.into_iter().chain(drawn).take(cases as usize)
+}
+
+/// With `PROPTEST_CASES` that many other cases cost about as much as a run.
+const CASES_PER_RUN: u32 = 100;
+
+/// The tables of `docs/driver.md`, from this run.
+fn show(firmware: &Firmware, outcome: &Outcome) {
+    println!(
+        "{} bytes of program, {} of variables, {} of stack",
+        firmware.text, firmware.data, outcome.results["stack"]
+    );
+    for (name, bytes) in &firmware.files {
+        println!("{name}: {bytes}");
+    }
+    println!("step: clocks, ticks, reads, writes, those of interrupts among them");
+    for step in outcome.steps.iter().filter(|step| !step.name.is_empty()) {
+        let Step {
+            name,
+            clocks,
+            ticks,
+            reads,
+            writes,
+            in_interrupt,
+        } = step;
+        println!("{name}: {clocks}, {ticks}, {reads}, {writes}, {in_interrupt}");
+    }
+    println!(
+        "{} clocks, {} outputs compared; from the line to the core at most {} clocks",
+        outcome.clocks, outcome.compared, outcome.longest_latency
+    );
+}
+
+#[test]
+fn prop_a_riscv_works_the_stage_through_its_driver_however_slow_its_bus() {
+    let driver = driver();
+    let firmware = Firmware::build(&driver);
+    // What a small memory has room for; the compiler's version decides about some hundred bytes.
+    assert!(
+        firmware.text < 20_000 && firmware.data < 256,
+        "{} {}",
+        firmware.text,
+        firmware.data
+    );
+    for seed in seeds() {
+        let mut system = System::new(&driver);
+        let outcome = run(&mut system, &firmware, seed);
+        show(&firmware, &outcome);
+        check(&system, &outcome);
+    }
+}
