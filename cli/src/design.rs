@@ -20,7 +20,9 @@ use posicast_model::design::{
     AxisTables, ConvolutionFigures, Findings, MachineDesign, ModeFigures, convolution_figures, design_machine,
 };
 use posicast_model::hardware::{Hardware, HardwareError};
-use posicast_model::machine_file::{AxisSection, Machine};
+use posicast_model::machine_file::{AxisSection, DriveMode, Machine};
+use posicast_model::mode::Mode;
+use posicast_model::unit::trimmed;
 use posicast_system::output::OutputFiles;
 use posicast_testbench::wave::write_text;
 use posicast_testbench::wording::counted;
@@ -30,8 +32,8 @@ use std::path::{Path, PathBuf};
 use delay::{DelayDocument, StageDocument};
 pub(crate) use document::Document;
 use document::{
-    AxisDocument, ClassDocument, CrossGainDocument, FreeDocument, ImpulseDocument, ModeDocument, QuantisedDocument,
-    ResidualDocument, SolutionDocument, TapDocument,
+    AxisDocument, ClassDocument, CrossGainDocument, FreeDocument, ImpulseDocument, MechanicsDocument, ModeDocument,
+    QuantisedDocument, ResidualDocument, SolutionDocument, TapDocument,
 };
 use family::FamilyReport;
 pub(crate) use sensitivity::sensitivity_panels;
@@ -252,6 +254,10 @@ impl AxisReport<'_> {
                 .map(|(m, of_file)| ModeDocument {
                     frequency_hz: m.mode.frequency_hz,
                     damping: m.mode.damping,
+                    mechanics: self
+                        .axis
+                        .mechanics
+                        .map(|screw| MechanicsDocument::new(&screw, self.is_motor_free())),
                     free: of_file.free.map(|free| FreeDocument {
                         frequency_hz: free.frequency_hz,
                         damping: free.damping,
@@ -362,6 +368,37 @@ impl AxisReport<'_> {
         text
     }
 
+    /// Whether the drive leaves the motor free to swing against the load.
+    fn is_motor_free(&self) -> bool {
+        let drive = self.axis.drive.as_ref();
+        drive.is_some_and(|drive| matches!(drive.mode, DriveMode::Torque { .. }))
+    }
+
+    /// Where the mode of `[axis.mechanics]` comes from.
+    fn mechanics_text(&self) -> String {
+        let Some(screw) = &self.axis.mechanics else {
+            return String::new();
+        };
+        let between = format!(
+            "mode 1: from [axis.mechanics], {} N/µm between motor and table, table {} kg, motor and screw {} kg·m² ({} kg at the table)",
+            trimmed(screw.stiffness() / 1e6, 4),
+            trimmed(screw.table_mass, 4),
+            trimmed(screw.turning_inertia(), 4),
+            trimmed(screw.motor_mass(), 4),
+        );
+        let mode = |mode: Mode| format!("{:.3} Hz and {:.4}", mode.frequency_hz, mode.damping);
+        match self.is_motor_free() {
+            true => format!(
+                "  {between}; the motor free, as behind a torque drive; held it would be {}\n",
+                mode(screw.held_mode())
+            ),
+            false => format!(
+                "  {between}; the motor held; free it would be {}\n",
+                mode(screw.free_mode())
+            ),
+        }
+    }
+
     fn modes_text(&self) -> String {
         if self.modes.is_empty() {
             return "\n  no modes given: no residual to state\n".to_owned();
@@ -392,7 +429,7 @@ impl AxisReport<'_> {
                 range,
             ]);
         }
-        let mut text = format!("\n{}", table.text("  "));
+        let mut text = format!("\n{}{}", table.text("  "), self.mechanics_text());
         for (index, mode) in self.axis.modes.iter().enumerate() {
             if let Some(free) = mode.free {
                 let _ = writeln!(

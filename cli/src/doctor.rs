@@ -4,6 +4,7 @@ mod tools;
 
 use crate::failure::Failure;
 use crate::output::{self, Table};
+use crate::style;
 use posicast_system::tool::{self, Ended};
 use serde::Serialize;
 use std::path::Path;
@@ -38,7 +39,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
             tools: &found,
         })?;
     } else {
-        output::print(&text(&found))?;
+        output::print_styled(&text(&found))?;
     }
     if missing.is_empty() {
         return Ok(());
@@ -138,7 +139,12 @@ fn text(found: &[Finding]) -> String {
         let mut table = Table::new(&["tool", "version", "for", "install"]);
         for finding in found.iter().filter(|f| f.need == need) {
             let install = if finding.works { "" } else { finding.install };
-            let cells = [finding.tool, &finding.state(), finding.purpose, install];
+            let state = match (finding.works, need) {
+                (true, _) => style::good(&finding.state()),
+                (false, Need::Run) => style::bad(&finding.state()),
+                (false, _) => style::doubtful(&finding.state()),
+            };
+            let cells = [finding.tool, &state, finding.purpose, install];
             table.row(cells.map(str::to_owned));
         }
         text += &format!("{heading}\n{}\n", table.text("  "));

@@ -99,6 +99,11 @@ pub(crate) fn percent(fraction: f64) -> String {
     }
 }
 
+/// Characters of a cell that are seen: escape sequences of colours are not.
+fn seen(cell: &str) -> usize {
+    strip_str(cell).to_string().chars().count()
+}
+
 /// A table for people: columns as wide as their widest cell, numbers right-aligned by the caller's choice.
 pub(crate) struct Table {
     right: Vec<bool>,
@@ -123,19 +128,13 @@ impl Table {
 
     /// The text, each line indented.
     pub(crate) fn text(&self, indent: &str) -> String {
-        let width = |column: usize| {
-            self.rows
-                .iter()
-                .filter_map(|r| r.get(column))
-                .map(|c| c.chars().count())
-                .max()
-        };
+        let width = |column: usize| self.rows.iter().filter_map(|r| r.get(column)).map(|c| seen(c)).max();
         let widths: Vec<usize> = (0..self.right.len()).map(|c| width(c).unwrap_or(0)).collect();
         let mut text = String::new();
         for row in &self.rows {
             let mut line = indent.to_owned();
             for ((cell, width), right) in row.iter().zip(&widths).zip(&self.right) {
-                let padding = " ".repeat(width.saturating_sub(cell.chars().count()));
+                let padding = " ".repeat(width.saturating_sub(seen(cell)));
                 line += &if *right {
                     format!("{padding}{cell}  ")
                 } else {

@@ -4,6 +4,7 @@ use crate::failure::Failure;
 use crate::output::{self, Table};
 use crate::plot::{self, Curve, Panel};
 use crate::progress;
+use crate::style;
 use clap::builder::PossibleValuesParser;
 use posicast_model::papers::{Figure, Paper, PaperRow, PaperVerdict, Value};
 use posicast_system::output::OutputFiles;
@@ -61,7 +62,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     if args.json {
         output::print_json(&Document::new(&tables, counts))?;
     } else {
-        output::print(&text(&tables, counts))?;
+        output::print_styled(&text(&tables, counts))?;
     }
     match counts.not_reproduced {
         0 => Ok(()),
@@ -124,7 +125,7 @@ fn text(tables: &Tables, counts: Counts) -> String {
                 row.printed.clone(),
                 row.ours.as_ref().map_or_else(|| "–".into(), value_text),
                 row.difference().map_or_else(String::new, difference_text),
-                row.verdict.to_string(),
+                verdict_text(row.verdict),
                 row.reason.clone(),
             ]);
         }
@@ -137,10 +138,23 @@ fn text(tables: &Tables, counts: Counts) -> String {
         counts.reproduced, counts.errata, counts.not_comparable
     );
     if counts.not_reproduced > 0 {
-        let _ = write!(text, ", {} NOT REPRODUCED", counts.not_reproduced);
+        let _ = write!(
+            text,
+            ", {}",
+            style::bad(&format!("{} NOT REPRODUCED", counts.not_reproduced))
+        );
     }
     text.push('\n');
     text
+}
+
+fn verdict_text(verdict: PaperVerdict) -> String {
+    let text = verdict.to_string();
+    match verdict {
+        PaperVerdict::Reproduced => style::good(&text),
+        PaperVerdict::NotReproduced => style::bad(&text),
+        PaperVerdict::Erratum | PaperVerdict::NotComparable => style::doubtful(&text),
+    }
 }
 
 fn value_text(value: &Value) -> String {

@@ -3,7 +3,7 @@
 //! ```text
 //! log (CSV) ─► log ─┬─► sweep      accelerometer, driven by a known sweep ─┐
 //!                   ├─► position   time, command, response                ─┼─► FoundMode with its uncertainty ─► recommend
-//!                   └─► trace      what the stage recorded of itself      ─┘
+//!                   └─► position::motor   drive and its own motor          ─┘
 //! ```
 //!
 //! Every method says how surely it knows a mode ([`FoundMode::frequency_sd_hz`]), and what it cannot tell and why.
@@ -21,4 +21,4 @@ pub mod sweep;
 pub mod synthetic;
 
 pub use found::{FoundMode, Interval};
-pub use signal::{AccelerationLog, Between, PositionLog};
+pub use signal::{AccelerationLog, Between, DriveLog, PositionLog};

@@ -53,30 +53,44 @@ impl Solution {
     /// Standard deviation of an unknown where what is left of neighbouring rows is alike: from the sums of slopes times residuals
     /// over `blocks` stretches of rows, which are independent where a stretch is longer than the memory of the noise.
     pub(crate) fn deviation_with_memory(&self, unknown: usize, blocks: usize) -> f64 {
-        let (Some(covariance), rows) = (&self.covariance, self.residual.len()) else {
+        let Some(covariance) = &self.covariance else {
             return f64::INFINITY;
         };
-        let length = rows.div_ceil(blocks.max(2));
-        let variance: f64 = (0..rows)
-            .step_by(length)
-            .map(|begin| {
-                let length = length.min(rows - begin);
-                let score = self
-                    .slopes
-                    .rows(begin, length)
-                    .tr_mul(&self.residual.rows(begin, length));
-                covariance.row(unknown).transpose().dot(&score).powi(2)
-            })
-            .sum();
-        // Few stretches show less than there is, as few values do of a variance.
-        let count = rows.div_ceil(length) as f64;
-        (variance * count / (count - 2.0).max(1.0)).sqrt()
+        deviation_over_stretches(
+            &self.slopes,
+            &self.residual,
+            &covariance.column(unknown).into_owned(),
+            blocks,
+        )
     }
 
     /// Standard deviation of a coefficient at fixed unknowns, likewise.
     pub(crate) fn linear_deviation(&self, coefficient: usize, row: f64) -> f64 {
         row * self.linear_covariance[(coefficient, coefficient)].max(0.0).sqrt()
     }
+}
+
+/// Standard deviation of a combination of parameters: their covariance times its gradient is `direction`, in which each of so many
+/// stretches of rows pulls by its slopes times its residual.
+pub(crate) fn deviation_over_stretches(
+    slopes: &DMatrix<f64>,
+    residual: &DVector<f64>,
+    direction: &DVector<f64>,
+    stretches: usize,
+) -> f64 {
+    let rows = residual.len();
+    let length = rows.div_ceil(stretches.max(2));
+    let variance: f64 = (0..rows)
+        .step_by(length)
+        .map(|begin| {
+            let length = length.min(rows - begin);
+            let pull = slopes.rows(begin, length).tr_mul(&residual.rows(begin, length));
+            direction.dot(&pull).powi(2)
+        })
+        .sum();
+    // Few stretches show less than there is, as few values do of a variance.
+    let count = rows.div_ceil(length) as f64;
+    (variance * count / (count - 2.0).max(1.0)).sqrt()
 }
 
 /// How long a fit is followed.

@@ -23,6 +23,17 @@ pub struct PositionLog {
     pub response: Vec<f64>,
 }
 
+/// What a drive was told and where its own motor went, sampled together.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DriveLog {
+    /// Time between samples in seconds.
+    pub sample_s: f64,
+    /// Command of the drive, of its torque, force, current, duty or velocity, in any unit; held between samples.
+    pub drive: Vec<f64>,
+    /// Position of the motor at each sample, in any unit.
+    pub position: Vec<f64>,
+}
+
 /// What an accelerometer on an axis saw.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AccelerationLog {

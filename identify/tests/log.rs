@@ -69,6 +69,88 @@ fn unit_what_spreadsheets_make_of_a_log_is_read() {
 }
 
 #[test]
+fn unit_what_oscilloscopes_and_other_programs_write_is_read() {
+    let one = |n: usize| [n as f64 * 0.001, (n / 50) as f64, (n * n % 17) as f64];
+    let with = |header: &str, separator: &str, factors: [f64; 3]| {
+        rows(header, |n| {
+            let fields = one(n)
+                .into_iter()
+                .zip(factors)
+                .map(|(value, factor)| format!("{}", value * factor));
+            fields.collect::<Vec<_>>().join(separator)
+        })
+    };
+    let plain = with("time,command,response", ",", [1.0; 3]);
+    let Log::Position(expected) = log::read(plain.as_bytes()).unwrap().log else {
+        panic!()
+    };
+    for text in [
+        // A line of units below the names, with an empty one; a preamble; a spreadsheet's first line; spaces; other names.
+        with("Time,Setpoint,Actual position\n(ms),(mm),(um)\n", ",", [1e3, 1e3, 1e6]),
+        with(
+            "Model,TDS2024\n\"Record length\",100\n\nTIME,Reference,Feedback",
+            ",",
+            [1.0; 3],
+        ),
+        with(
+            "sep=|\nTime [s]|Commanded position [m]|Encoder [mm]",
+            "|",
+            [1.0, 1.0, 1e3],
+        ),
+        with("time  command  response", "   ", [1.0; 3]),
+        with("Timestamp/ms;Target/mm;Actual/µm", ";", [1e3, 1e3, 1e6]),
+        with("seconds,time,ref,position", ",", [1.0; 3]).replace("seconds,", ""),
+    ] {
+        let reading = log::read(text.as_bytes()).unwrap_or_else(|error| panic!("{}: {error}", &text[..60]));
+        assert_eq!(reading.remarks, [], "{}", &text[..60]);
+        let Log::Position(log) = reading.log else { panic!() };
+        let close = |a: &[f64], b: &[f64]| a.len() == b.len() && a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-9);
+        assert!(
+            close(&log.command, &expected.command) && close(&log.response, &expected.response),
+            "{}",
+            &text[..60]
+        );
+    }
+    let wide: Vec<u8> = format!("\u{feff}{}", plain.replace(',', "\t"))
+        .encode_utf16()
+        .flat_map(u16::to_le_bytes)
+        .collect();
+    assert_eq!(log::read(&wide).unwrap().log, Log::Position(expected));
+    for header in [
+        "Time (s),Acceleration X (g),Acceleration Y (g)",
+        "t,ax_g,ay_g",
+        "time,x_accel_g,acc_y_g",
+    ] {
+        let Log::Acceleration(log) = log::read(with(header, ",", [1.0; 3]).as_bytes()).unwrap().log else {
+            panic!()
+        };
+        let names: Vec<&str> = log.directions.iter().map(|(name, _)| name.as_str()).collect();
+        assert_eq!(names, ["accel_x_g", "accel_y_g"], "{header}");
+        assert!((log.directions[0].1[50] - 9.806_65).abs() < 1e-12);
+    }
+}
+
+#[test]
+fn unit_a_drive_and_its_motor_are_told_from_a_command_and_its_response() {
+    let text = |header: &str| {
+        rows(header, |n| {
+            format!("{},{},{},{}", n as f64 * 1e-3, n % 7, n * n % 13, n % 3)
+        })
+    };
+    let drive = log::read(text("time,torque_Nm,position,noise").as_bytes()).unwrap();
+    let Log::Drive(log) = drive.log else { panic!() };
+    assert_eq!((log.drive[5], log.position[5], log.sample_s), (5.0, 12.0, 1e-3));
+    assert_eq!(drive.remarks, [Remark::Unknown("noise".into())]);
+    let both = log::read(text("time,current_a,position,command").as_bytes()).unwrap();
+    assert!(matches!(both.log, Log::Position(_)));
+    assert!(
+        matches!(&both.remarks[..], [Remark::Beside { column, .. }] if column == "current_a"),
+        "{:?}",
+        both.remarks
+    );
+}
+
+#[test]
 fn unit_a_trace_of_the_stage_is_the_scale_behind_the_motor() {
     let text = rows("time_s,captured_position,deviation", |n| {
         format!("{},{},{}", n as f64 * 1e-4, n, n % 3)
@@ -114,7 +196,8 @@ fn unit_what_is_wrong_is_said_with_its_line_and_column() {
     ] {
         assert!(error(&text).contains(expected), "{expected}: {}", error(&text));
     }
-    assert!(matches!(log::read(b"\xff\xfe\n"), Err(LogError::Missing { .. })));
+    assert_eq!(log::read(b"\xff\xfe\n"), Err(LogError::Empty));
+    assert_eq!(log::read(b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR"), Err(LogError::Binary));
 }
 
 #[test]

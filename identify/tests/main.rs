@@ -2,6 +2,7 @@
 #![cfg(test)]
 
 mod log;
+mod motor;
 mod position;
 mod position_bad;
 mod position_noise;

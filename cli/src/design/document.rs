@@ -6,6 +6,7 @@ use crate::control::ControlDocument;
 use crate::output::UnitDocument;
 use posicast_model::design::periodic::Solution;
 use posicast_model::design::ratios::Class;
+use posicast_model::mechanics::ScrewDrive;
 use posicast_model::taps::TapTable;
 use serde::Serialize;
 
@@ -108,8 +109,34 @@ pub(super) struct ModeDocument {
     /// As it was measured with the motor free.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) free: Option<FreeDocument>,
+    /// What `[axis.mechanics]` makes it from.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) mechanics: Option<MechanicsDocument>,
     pub(super) residual: f64,
     pub(super) insensitivity: Option<(f64, Option<f64>)>,
+}
+
+/// A mode from data sheets.
+#[derive(Serialize)]
+pub(super) struct MechanicsDocument {
+    /// Whether the motor is `held` or `free` in this mode.
+    motor: &'static str,
+    stiffness_n_per_m: f64,
+    table_mass_kg: f64,
+    turning_inertia_kg_m2: f64,
+    motor_mass_kg: f64,
+}
+
+impl MechanicsDocument {
+    pub(super) fn new(screw: &ScrewDrive, is_motor_free: bool) -> Self {
+        Self {
+            motor: if is_motor_free { "free" } else { "held" },
+            stiffness_n_per_m: screw.stiffness(),
+            table_mass_kg: screw.table_mass,
+            turning_inertia_kg_m2: screw.turning_inertia(),
+            motor_mass_kg: screw.motor_mass(),
+        }
+    }
 }
 
 #[derive(Serialize)]

@@ -6,11 +6,11 @@ use crate::new::MachineKind;
 use posicast_identify::log::{Log, Reading};
 use posicast_identify::modal::ResponsePoint;
 use posicast_identify::output_only;
-use posicast_identify::position::{self, FoundInPosition, PositionError};
+use posicast_identify::position::{self, FoundInPosition, PositionError, motor};
 use posicast_identify::recommend::{Judgement, Recommendation, recommend};
 use posicast_identify::spectrum::{PowerSpectrum, welch};
 use posicast_identify::sweep::{self, FoundInSweep, Sweep, SweepError};
-use posicast_identify::{AccelerationLog, FoundMode, PositionLog};
+use posicast_identify::{AccelerationLog, DriveLog, FoundMode, PositionLog};
 use posicast_model::unit::trimmed;
 
 /// What was measured beside what the modes make of it: for the pictures.
@@ -51,6 +51,8 @@ pub(super) struct Findings {
     pub(super) method: String,
     /// Name of the method in the JSON document.
     pub(super) method_name: &'static str,
+    /// Whether the modes are known to be those with the motor held.
+    pub(super) is_motor_held: bool,
     /// The axis that the log says it is of.
     pub(super) axis: Option<String>,
     pub(super) modes: Vec<FoundMode>,
@@ -71,6 +73,7 @@ impl Findings {
             Log::Acceleration(log) if flags.output_only => of_output(log)?,
             Log::Acceleration(log) => of_sweep(log, &flags.sweep)?,
             Log::Position(log) => of_position(log)?,
+            Log::Drive(log) => of_motor(log)?,
         };
         let found = std::mem::replace(&mut findings.remarks, remarks);
         findings.remarks.extend(found);
@@ -118,6 +121,7 @@ fn of_sweep(log: &AccelerationLog, sweep: &Sweep) -> Result<Findings, Failure> {
             100.0 * found.transfer.explained
         ),
         method_name: "sweep",
+        is_motor_held: false,
         axis: axis_of(&found.direction),
         modes: found.modes.clone(),
         recommended: Vec::new(),
@@ -153,6 +157,7 @@ fn of_output(log: &AccelerationLog) -> Result<Findings, Failure> {
         source: format!("accelerometer, direction {}", found.direction),
         method: "decay of the correlation of the response with itself, the excitation not known".into(),
         method_name: "output-only",
+        is_motor_held: false,
         axis: axis_of(&found.direction),
         evidence: Evidence::response("correlation of the acceleration with itself", &found.decay),
         modes: found.modes,
@@ -194,9 +199,36 @@ fn of_position(log: &PositionLog) -> Result<Findings, Failure> {
             found.noise,
         ),
         method_name,
+        is_motor_held: false,
         axis: None,
         evidence: Evidence::response("response", &found),
         modes: found.modes,
+        recommended: Vec::new(),
+        judgement: Judgement::default(),
+        remarks,
+        spectrum: None,
+    })
+}
+
+/// A drive and its own motor: modes with the motor held.
+fn of_motor(log: &DriveLog) -> Result<Findings, Failure> {
+    let found = motor::identify(log).map_err(of_position_error)?;
+    let acts = if found.is_force { "force" } else { "velocity" };
+    let remarks = found.held.remarks.iter().map(ToString::to_string).collect();
+    Ok(Findings {
+        rows: 0,
+        sample_s: log.sample_s,
+        source: "drive and its motor".into(),
+        method: format!(
+            "modes with the motor held: the zeros of the motor's motion, which follows the drive's command as a {acts}, {} samples late; \
+             they leave {:.2e} (root mean square, in the position's SI unit)",
+            found.delay, found.held.noise,
+        ),
+        method_name: "motor",
+        is_motor_held: true,
+        axis: None,
+        evidence: Evidence::response("motor", &found.held),
+        modes: found.held.modes,
         recommended: Vec::new(),
         judgement: Judgement::default(),
         remarks,
@@ -218,6 +250,8 @@ fn axis_of(direction: &str) -> Option<String> {
 fn remarks(found: &FoundInSweep, sweep: &Sweep) -> Vec<String> {
     /// Square of what is left over the noise's from which the fit is not all that is there.
     const LEFT_OVER: f64 = 4.0;
+    /// Part by which clocks differ that is told: less moves no mode.
+    const TOLD_CLOCK: f64 = 1e-5;
     let mut remarks = Vec::new();
     if found.reduced_square > LEFT_OVER {
         remarks.push(format!(
@@ -226,7 +260,7 @@ fn remarks(found: &FoundInSweep, sweep: &Sweep) -> Vec<String> {
             found.reduced_square.sqrt()
         ));
     }
-    if found.clock_error != 0.0 {
+    if found.clock_error.abs() > TOLD_CLOCK {
         remarks.push(format!(
             "the clock of the log runs {} % {} than that of the sweep; frequencies are by the sweep's",
             trimmed(100.0 * found.clock_error.abs(), 3),

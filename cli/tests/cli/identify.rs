@@ -3,6 +3,7 @@
 use crate::cli::support::posicast;
 use posicast_identify::sweep::Sweep;
 use posicast_identify::synthetic::{KnownMode, Sensor, known, resonance_test};
+use posicast_model::plant::drive_train::{Amplifier, DriveTrain, DriveTrainPlant, quantised};
 use std::path::Path;
 use std::process::Output;
 
@@ -246,4 +247,52 @@ fn cli_a_log_that_says_nothing_fails_and_writes_nothing() {
     let (status, _, problems) = identify(folder.path(), &["rigid.csv", "--sweep", "5:135:3:60"]);
     assert_eq!(status, Some(2), "{problems}");
     assert!(problems.contains("--sweep describes another sweep"), "{problems}");
+}
+
+#[test]
+fn cli_a_drive_and_its_motor_become_a_machine_with_the_motor_held() {
+    // X of the XY stage behind its current loop, shaken by a loop on its motor.
+    let train = DriveTrain {
+        torque_constant: 0.378,
+        motor_inertia: 9.038_814e-6,
+        load_mass: 50.0,
+        lead_per_radian: 0.005 / std::f64::consts::TAU,
+        stiffness: 33.9357e6,
+        damping: 1.3e4,
+        ..DriveTrain::rigid(Amplifier::TunedCurrent {
+            bandwidth_rad_s: 6283.0,
+        })
+    };
+    let mut plant = DriveTrainPlant::new(train, 1e-4);
+    let (mut before, mut register, mut bit) = (0.0, 1u32, 1.0);
+    let mut text = String::from("Time (ms),Current (A),Position (um)\n");
+    for tick in 0..1000 {
+        if tick % 8 == 0 {
+            let next = (register >> 9 ^ register >> 6) & 1;
+            register = (register << 1 | next) & 0x3ff;
+            bit = f64::from(next) * 2.0 - 1.0;
+        }
+        let x = quantised(train.lead_per_radian * plant.state().angle, 1e-7);
+        let current = 4e3 * (200e-6 * bit - x) - 30.0 * (x - before) / 1e-4;
+        before = x;
+        text += &format!("{:.1},{current},{:.1}\n", f64::from(tick) * 0.1, 1e6 * x);
+        plant.hold(current);
+    }
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("drive.csv"), text).unwrap();
+    let (status, said, problems) = identify(folder.path(), &["drive.csv", "-o", "x.toml"]);
+    assert_eq!(status, Some(0), "{said}{problems}");
+    assert!(
+        said.contains("modes with the motor held") && said.contains("with the motor free"),
+        "{said}"
+    );
+    let machine = std::fs::read_to_string(folder.path().join("x.toml")).unwrap();
+    assert!(machine.contains("measured = \"motor_held\""), "{machine}");
+    let machine = posicast_model::machine_file::parse("x.toml", &machine).unwrap();
+    let (found, truth) = (machine.axes[0].modes[0].mode, train.held_mode());
+    assert!(
+        (found.frequency_hz / truth.frequency_hz - 1.0).abs() < 0.01,
+        "{found:?}"
+    );
+    assert!((found.damping / truth.damping - 1.0).abs() < 0.15, "{found:?}");
 }

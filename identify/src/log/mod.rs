@@ -5,6 +5,7 @@
 //! | `time`, `accel_x`, `accel_y`, `accel_z` (any of them) | an accelerometer log as 3D-printer firmware writes it: s and mm/s² |
 //! | `time`, `command`, `response` | a position log: what an axis was told, and what it did, in one unit |
 //! | `time`, `response` | a free decay |
+//! | `time`, `drive_command`, `position` | what a drive was told, and where its own motor went |
 //! | `time`, `captured_position`, `deviation` | a trace of the stage: motor, and motor against scale; the scale moves as the motor drives it |
 //!
 //! Names may carry a unit: `time_ms`, `command_mm`, `response_um`, `accel_x_m_s2`. A `#` before the first name is no part of it.
@@ -12,7 +13,7 @@
 mod columns;
 mod time;
 
-use crate::signal::{AccelerationLog, Between, PositionLog};
+use crate::signal::{AccelerationLog, Between, DriveLog, PositionLog};
 use columns::{Column, Meaning};
 use thiserror::Error;
 
@@ -23,6 +24,8 @@ pub enum Log {
     Acceleration(AccelerationLog),
     /// Command and response of an axis.
     Position(PositionLog),
+    /// A drive and its own motor.
+    Drive(DriveLog),
 }
 
 /// A log, and what is to be said of it.
@@ -42,6 +45,9 @@ pub enum LogError {
     /// Nothing is in it.
     #[error("the log is empty: it needs a header with the names of its columns, and rows of numbers")]
     Empty,
+    /// It has bytes that no text has.
+    #[error("this is no text: a log is a file of comma-separated values, with a header and rows of numbers")]
+    Binary,
     /// The first line has numbers.
     #[error(
         "line {line} is the first and has no names of columns: put `time,command,response` or `time,accel_x,accel_y,accel_z` before it"
@@ -51,7 +57,10 @@ pub enum LogError {
         line: u64,
     },
     /// A column that is needed is not there.
-    #[error("there is no column `{missing}`: the columns are {}", .found.join(", "))]
+    #[error(
+        "there is no column `{missing}`: the columns are {}; name them in the header as posicast knows them: `time` with `command` and `response`, `drive_command` and `position`, or `accel_x`",
+        .found.join(", ")
+    )]
     Missing {
         /// What is missing.
         missing: &'static str,
@@ -169,6 +178,16 @@ pub enum Remark {
     /// A column that nothing is known of.
     #[error("column `{0}` was not used: its name says nothing to posicast")]
     Unknown(String),
+    /// A column of another kind of log.
+    #[error(
+        "column `{column}` was not used: the log was taken as {taken}; leave other columns out to have it taken otherwise"
+    )]
+    Beside {
+        /// The column.
+        column: String,
+        /// What the log was taken as.
+        taken: &'static str,
+    },
 }
 
 /// Least rows of a log.
@@ -186,7 +205,7 @@ pub fn read(text: &[u8]) -> Result<Reading, LogError> {
             least: LEAST_ROWS,
         });
     }
-    let mut remarks: Vec<Remark> = table.unknown.iter().cloned().map(Remark::Unknown).collect();
+    let mut remarks = table.remarks.clone();
     let grid = time::grid(&table, &mut remarks)?;
     if grid.range().len() < LEAST_ROWS {
         return Err(LogError::Rows {
@@ -206,7 +225,7 @@ pub fn read(text: &[u8]) -> Result<Reading, LogError> {
     let log = if accelerometer {
         Log::Acceleration(acceleration(columns, grid.sample_s, &mut remarks)?)
     } else {
-        Log::Position(position(columns, grid.sample_s)?)
+        position(columns, grid.sample_s)?
     };
     Ok(Reading { log, rows, remarks })
 }
@@ -235,7 +254,7 @@ fn acceleration(columns: Vec<Column>, sample_s: f64, remarks: &mut Vec<Remark>) 
     }
 }
 
-fn position(columns: Vec<Column>, sample_s: f64) -> Result<PositionLog, LogError> {
+fn position(columns: Vec<Column>, sample_s: f64) -> Result<Log, LogError> {
     let names: Vec<String> = columns.iter().map(|column| column.name.clone()).collect();
     let mut log = PositionLog {
         sample_s,
@@ -243,12 +262,14 @@ fn position(columns: Vec<Column>, sample_s: f64) -> Result<PositionLog, LogError
         between: Between::Held,
         response: Vec::new(),
     };
-    let mut deviation = None;
+    let (mut deviation, mut drive) = (None, None);
     for column in columns {
         if column.meaning == Meaning::Command {
             log.command = column.values;
         } else if column.meaning == Meaning::Deviation {
             deviation = Some(column.values);
+        } else if column.meaning == Meaning::Drive {
+            drive = Some(column.values);
         } else if let Some(value) = dead(&column.values) {
             return Err(LogError::Dead {
                 column: column.name,
@@ -275,7 +296,14 @@ fn position(columns: Vec<Column>, sample_s: f64) -> Result<PositionLog, LogError
             found: names,
         });
     }
-    Ok(log)
+    Ok(match drive {
+        Some(drive) => Log::Drive(DriveLog {
+            sample_s,
+            drive,
+            position: log.response,
+        }),
+        None => Log::Position(log),
+    })
 }
 
 /// The only value of a column that has one.
@@ -289,7 +317,7 @@ const ROW_AT_EXTREME: usize = 4;
 
 /// Runs at the largest or smallest value of a response, far from where it rests.
 fn saturated(column: &Column, lines: &[u64]) -> Option<Remark> {
-    if column.meaning == Meaning::Command || dead(&column.values).is_some() {
+    if matches!(column.meaning, Meaning::Command | Meaning::Drive) || dead(&column.values).is_some() {
         return None;
     }
     let values = &column.values;

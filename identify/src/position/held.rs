@@ -7,6 +7,8 @@
 //! y(k) = Σ modes (α·Re w + β·Im w + γ·Re v + δ·Im v) + rigid·u(k) + late·u(k−1) + offset
 //! ```
 //!
+//! A motor that its drive pushes also moves as a rigid body ([`RigidBody`]): its position has the integrals of the command too.
+//!
 //! This is the zero-order hold without approximation. Rows are means over `decimation` samples, of the response and of these columns
 //! alike, so that nothing of the relation is lost.
 
@@ -29,6 +31,58 @@ pub(super) struct HeldModes<'a> {
     memory: Option<NoiseMemory>,
     /// Rows that do not count, where there are any: zero in all columns.
     clipped: Vec<bool>,
+    body: Option<RigidBody>,
+}
+
+/// How a motor moves as a whole: `1/s` and `1/(s(s + rate))` of its drive's command.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct RigidBody {
+    /// Rate in 1/s at which viscous friction takes its velocity.
+    pub(super) rate: f64,
+}
+
+impl RigidBody {
+    /// Samples of the command that act at once, or nearly so: what is faster than the samples, such as a current loop.
+    pub(super) const TAPS: usize = 4;
+
+    /// Columns of a held input: its integral; and that behind `1/(s + rate)`.
+    fn moved(&self, input: &[f64], sample_s: f64) -> [Vec<f64>; 2] {
+        let kept = (-self.rate * sample_s).exp();
+        let [first, second] = [
+            decay_integral(self.rate, sample_s),
+            decay_integral_twice(self.rate, sample_s),
+        ];
+        let (mut once, mut velocity, mut position) = (0.0, 0.0, 0.0);
+        let mut columns = [Vec::with_capacity(input.len()), Vec::with_capacity(input.len())];
+        for now in input {
+            columns[0].push(once);
+            columns[1].push(position);
+            once += sample_s * now;
+            position += first * velocity + second * now;
+            velocity = kept * velocity + first * now;
+        }
+        columns
+    }
+}
+
+/// `(1 − e^{−at})/a`.
+fn decay_integral(rate: f64, time_s: f64) -> f64 {
+    let decays = rate * time_s;
+    if decays == 0.0 {
+        time_s
+    } else {
+        -(-decays).exp_m1() / rate
+    }
+}
+
+/// `(t − (1 − e^{−at})/a)/a`.
+fn decay_integral_twice(rate: f64, time_s: f64) -> f64 {
+    let decays = rate * time_s;
+    if decays < 1e-4 {
+        // The difference would be rounding.
+        return time_s * time_s * (0.5 - decays / 6.0);
+    }
+    (time_s - decay_integral(rate, time_s)) / rate
 }
 
 /// Range of damping ratios that a fit walks in.
@@ -50,6 +104,7 @@ impl<'a> HeldModes<'a> {
             measured: DVector::zeros(rows),
             memory: None,
             clipped: Vec::new(),
+            body: None,
         };
         this.measured = DVector::from_vec(this.rows(response.iter().copied()));
         this
@@ -65,6 +120,19 @@ impl<'a> HeldModes<'a> {
             self.measured = DVector::from_vec(measured);
         }
         self
+    }
+
+    /// The same for a motor that moves as a whole.
+    pub(super) fn with_body(self, body: RigidBody) -> Self {
+        Self {
+            body: Some(body),
+            ..self
+        }
+    }
+
+    /// Whether it is a motor that moves as a whole.
+    pub(super) fn has_body(&self) -> bool {
+        self.body.is_some()
     }
 
     /// Makes the rows that do not count zero, in one column after the other.
@@ -198,6 +266,9 @@ impl<'a> HeldModes<'a> {
     /// The columns of all but the modes.
     fn rest_columns(&self) -> DMatrix<f64> {
         let mut columns = Vec::new();
+        if let (Some(command), Some(body)) = (self.command, self.body) {
+            return self.columns(self.body_columns(command, body));
+        }
         if let Some(command) = self.command {
             let first = command[0];
             let late = std::iter::once(first).chain(command.iter().copied());
@@ -206,6 +277,25 @@ impl<'a> HeldModes<'a> {
         }
         columns.extend(std::iter::repeat_n(1.0, self.len()));
         self.columns(columns)
+    }
+
+    /// Those of a motor: taps of the command and its integrals, and the motion of before the log with a force that stays.
+    fn body_columns(&self, command: &[f64], body: RigidBody) -> Vec<f64> {
+        let samples = self.samples();
+        let command: Vec<f64> = command[..samples].iter().map(|u| u - command[0]).collect();
+        let mut columns = Vec::new();
+        for late in 0..RigidBody::TAPS {
+            let before = std::iter::repeat_n(0.0, late);
+            columns.extend(self.rows(before.chain(command.iter().copied())));
+        }
+        for column in body.moved(&command, self.sample_s) {
+            columns.extend(self.rows(column.into_iter()));
+        }
+        let time = |n: usize| n as f64 * self.sample_s;
+        columns.extend(std::iter::repeat_n(1.0, self.len()));
+        columns.extend(self.rows((0..samples).map(|n| decay_integral(body.rate, time(n)))));
+        columns.extend(self.rows((0..samples).map(|n| decay_integral_twice(body.rate, time(n)))));
+        columns
     }
 
     /// Static gain of a forced mode, or the amplitude of a free one at the first sample, from its coefficients.

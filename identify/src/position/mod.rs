@@ -7,6 +7,7 @@
 pub mod arx;
 mod held;
 mod memory;
+pub mod motor;
 pub mod recursive;
 mod rigid;
 mod search;
@@ -83,7 +84,7 @@ pub enum PositionRemark {
     NoExcitation,
     /// The command moves, and the response follows without ringing.
     #[error(
-        "the response follows the command without a mode that could be told from noise of {noise:.3e} (root mean square, in the unit of the response)"
+        "the response follows the command without a mode that could be told from noise of {noise:.3e} (root mean square, in the unit of the response): a smooth move excites little, so log a step, a pseudo-random command or a sudden stop"
     )]
     NoRinging {
         /// Root mean square of what is left.
@@ -145,6 +146,36 @@ pub enum PositionRemark {
     /// The command decays without forcing: shares are those of the decay.
     #[error("the command does not move in this log: the shares are those of the amplitudes at its first sample")]
     Free,
+    /// A drive whose command does not move.
+    #[error(
+        "the command of the drive does not move: nothing excited a mode; shake the axis with a pseudo-random test signal while you log"
+    )]
+    NoDrive,
+    /// A motor under a force that nothing swings at.
+    #[error(
+        "the motor moves as a rigid mass: no load swings at it strongly enough to be told from noise; shake it harder or log longer, or measure at the load"
+    )]
+    RigidMotor,
+    /// A motor under dry friction.
+    #[error(
+        "the motor turns round in the log: where dry friction is more than a small part of the drive's force, it looks like damping; let the axis move one way while you shake it"
+    )]
+    TurnsRound,
+    /// A motor that follows its velocity.
+    #[error(
+        "the motor follows the velocity that its drive was told, whatever its load does: such a drive hides what rings; log the torque or current in the place of the velocity, or measure at the load"
+    )]
+    StiffDrive,
+    /// What rings while nothing holds the motor.
+    #[error(
+        "with the motor free, motor and load swing against each other at {frequency_hz:.4} Hz with a damping ratio of {damping:.3}; a shaper in front of a position loop is for the modes with the motor held"
+    )]
+    MotorFree {
+        /// Its frequency in Hz.
+        frequency_hz: f64,
+        /// Its damping ratio.
+        damping: f64,
+    },
     /// Another method found something else.
     #[error(
         "least squares with instruments (ARX) finds {frequency_hz:.4} Hz and a damping ratio of {damping:.3} instead: the log does not fix this mode"
@@ -322,6 +353,11 @@ fn check(log: &PositionLog) -> Result<(), PositionError> {
     Ok(())
 }
 
+/// Stretches of a log in which something decays.
+fn stretches(decay: f64, seconds: f64) -> usize {
+    (seconds * decay / MEMORY).clamp(STRETCHES.0, STRETCHES.1) as usize
+}
+
 /// The modes of a fit that are vibrations and are fixed by it.
 fn told(problem: &HeldModes<'_>, found: &Found) -> Vec<FoundMode> {
     let solution = &found.solution;
@@ -329,8 +365,7 @@ fn told(problem: &HeldModes<'_>, found: &Found) -> Vec<FoundMode> {
     let width = problem.per_mode();
     let seconds = problem.row_s() * problem.len() as f64;
     let deviation = |n: usize, mode: &Mode| {
-        let stretches = (seconds * mode.decay() / MEMORY).clamp(STRETCHES.0, STRETCHES.1);
-        let with_memory = solution.deviation_with_memory(n, stretches as usize);
+        let with_memory = solution.deviation_with_memory(n, stretches(mode.decay(), seconds));
         solution.deviation(n, row).max(with_memory)
     };
     let all: Vec<(FoundMode, f64)> = found
@@ -438,15 +473,18 @@ fn moved(log: &PositionLog, problem: &HeldModes<'_>, modes: &[FoundMode]) -> Opt
     const DEVIATIONS: f64 = 5.0;
     const LEAST: f64 = 0.005;
     let strongest = (0..modes.len()).max_by(|a, b| modes[*a].participation.total_cmp(&modes[*b].participation))?;
-    let start = HeldModes::unknowns(&modes.iter().map(|found| found.mode).collect::<Vec<_>>());
+    let mut others: Vec<Mode> = modes.iter().map(|found| found.mode).collect();
+    let start = HeldModes::unknowns(&others);
+    others.remove(strongest);
+    let others = HeldModes::unknowns(&others);
     let middle = log.response.len() / 2;
     let in_part = |range| {
         let part = HeldModes::new(log, range, problem.decimation()).with_memory_of(problem);
         let solution = separable::refine(&part, &start, Effort::Full)?;
-        // A part in which nothing rings fits noise, at any frequency and as surely as it likes.
-        let still = separable::refine(&part, &[], Effort::Rough)?;
+        // A part in which it does not ring fits noise, at any frequency and as surely as it likes.
+        let still = separable::refine(&part, &others, Effort::Full)?;
         let explained = (still.square - solution.square) / solution.reduced_square();
-        if explained < 2.0 * LEAST_GAIN * modes.len() as f64 {
+        if explained < 2.0 * LEAST_GAIN {
             return None;
         }
         let deviation = solution.deviation(2 * strongest, solution.reduced_square().sqrt());

@@ -7,8 +7,11 @@ use posicast_model::mode::Mode;
 
 /// Most modes that are looked for.
 const MOST: usize = 6;
-/// Damping ratios at which a further mode is looked for.
-const TRIED_DAMPING: [f64; 2] = [0.015, 0.08];
+/// Damping ratios at which a further mode is looked for; the last only beside a motor, whose modes a drive damps.
+const TRIED_DAMPING: [f64; 3] = [0.015, 0.08, 0.3];
+/// Periods in the log of the slowest mode that is looked for; beside a motor, whose motion as a whole is as slow.
+const LEAST_PERIODS: f64 = 2.0;
+const LEAST_PERIODS_OF_MOTOR: f64 = 4.0;
 /// Distance of the frequencies at which it is looked for.
 const TRIED_STEP: f64 = 1.03;
 /// Modes closer than this may be one that has to be split.
@@ -81,10 +84,15 @@ fn strongest(problem: &HeldModes<'_>, fit: &Solution) -> Option<(f64, Mode)> {
     let basis = problem.basis(&fit.unknowns);
     let gram = Gram::of(&basis)?;
     let residual = problem.measured() - &fit.fitted;
-    let (lowest, highest) = (2.0 / (problem.row_s() * problem.len() as f64), 0.45 / problem.row_s());
+    let (least_periods, damping) = match problem.has_body() {
+        true => (LEAST_PERIODS_OF_MOTOR, &TRIED_DAMPING[..]),
+        false => (LEAST_PERIODS, &TRIED_DAMPING[..2]),
+    };
+    let seconds = problem.row_s() * problem.len() as f64;
+    let (lowest, highest) = (least_periods / seconds, 0.45 / problem.row_s());
     let steps = ((highest / lowest).ln() / TRIED_STEP.ln()) as i32;
     let tried = (0..=steps).flat_map(|step| {
-        TRIED_DAMPING.map(|damping| Mode {
+        damping.iter().map(move |&damping| Mode {
             frequency_hz: lowest * TRIED_STEP.powi(step),
             damping,
         })

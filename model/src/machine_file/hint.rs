@@ -127,9 +127,48 @@ pub(super) fn of_syntax(message: &str, line: &str) -> String {
     "correct the syntax of this line; docs/machine-file.md has every key with an example".to_owned()
 }
 
+/// The line, from 1, that has the key or the table of the line at `place` already. `None` where neither is written plainly.
+pub(super) fn first_of_its_name(text: &str, place: usize) -> Option<usize> {
+    let before = text.get(..place)?.matches('\n').count();
+    let lines: Vec<&str> = text.lines().map(str::trim).collect();
+    let is_header = |line: &&str| line.starts_with('[');
+    let key = |line: &str| line.split_once('=').map(|(key, _)| key.trim().to_owned());
+    // With one bracket or two.
+    let table = |line: &str| {
+        let header = line.split('#').next().unwrap_or_default().trim();
+        header.trim_matches(['[', ']']).trim().to_owned()
+    };
+    let repeated = *lines.get(before)?;
+    let earlier = &lines[..before];
+    let found = match is_header(&repeated) {
+        true => earlier
+            .iter()
+            .rposition(|line| is_header(line) && table(line) == table(repeated)),
+        false => {
+            let begin = earlier.iter().rposition(is_header).map_or(0, |at| at + 1);
+            let name = key(repeated)?;
+            let at = earlier[begin..]
+                .iter()
+                .position(|line| key(line).as_ref() == Some(&name));
+            at.map(|at| begin + at)
+        }
+    };
+    found.map(|at| at + 1)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn unit_what_stands_twice_is_found_where_it_stood_first() {
+        let text = "name = \"m\"\n# damping = 1\n[a]\ndamping = 1\n[[b]]\ndamping = 2  # here\nx = 1\ndamping = 3\n[[a]] # again\n";
+        let at = |line: usize| text.lines().take(line - 1).map(|line| line.len() + 1).sum::<usize>();
+        assert_eq!(first_of_its_name(text, at(8)), Some(6));
+        assert_eq!(first_of_its_name(text, at(9)), Some(3));
+        assert_eq!(first_of_its_name(text, at(7)), None);
+        assert_eq!(first_of_its_name(text, 10_000), None);
+    }
 
     #[test]
     fn unit_numbers_are_written_as_in_a_machine_file() {

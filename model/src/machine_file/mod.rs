@@ -96,7 +96,12 @@ pub fn parse(file_name: &str, text: &str) -> Result<Machine, SpecError> {
             let span = error.span().unwrap_or(text.len()..text.len());
             let line = reader.quote(reader.line_span(span.start));
             let remedy = hint::of_syntax(error.message(), &line);
-            let cause = ProblemCause::Syntax(format!("{}, in `{}`", error.message(), line.trim()));
+            let first = match error.message().contains("duplicate key") {
+                true => hint::first_of_its_name(text, span.start),
+                false => None,
+            };
+            let first = first.map_or_else(String::new, |first| format!(", which line {first} has already"));
+            let cause = ProblemCause::Syntax(format!("{}{first}, in `{}`", error.message(), line.trim()));
             whole_file(span, cause, &remedy)
         }
         Ok(document) if document.get_ref().is_empty() => {

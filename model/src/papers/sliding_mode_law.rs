@@ -42,6 +42,22 @@ fn bracket(state: &State) -> f64 {
     voltage * TORQUE / (MASS * resistance * LEAD)
 }
 
+/// Voltage in V that eq. (4-11) asks for an acceleration in m/s², in this state of rad/s, m and m/s, with the coefficients of x3 and x4 as
+/// they are printed. Friction, which the law leaves to `ε`, is not in it.
+pub(super) fn voltage(acceleration: f64, motor_speed: f64, position: f64, velocity: f64) -> f64 {
+    let (inductance, resistance) = WINDING;
+    let of_both = bracket(&State {
+        acceleration,
+        motor_speed,
+        ..State::default()
+    });
+    let printed_velocity = inductance * STIFFNESS / (MASS * resistance) + 1.0;
+    (of_both + PRINTED_POSITION * position + printed_velocity * velocity) * MASS * resistance * LEAD / TORQUE
+}
+
+/// Coefficient of x3 in eq. (4-11) as printed, 1/s²: 2K/m.
+const PRINTED_POSITION: f64 = 2.0 * STIFFNESS / MASS;
+
 /// The coefficients of eq. (4-11) that are wrong.
 pub(super) fn rows(sheet: &mut Sheet) {
     let position = bracket(&State {

@@ -204,6 +204,18 @@ fn controller(sheet: &mut Sheet) {
         si.limited < 0.5 || millimetres.crossings > 10.0,
         "the thesis gives no unit, and either reading is no controller: 15 g, or less than the friction",
     );
+    let printed = ControllerCase::EQUATION_PRINTED.float();
+    sheet.refuted(
+        "eq (4-11), as printed: the voltage that makes the stage follow",
+        "it does",
+        format!(
+            "at its limit {:.0} % of the time, |e| {:.2} m of a radius of 0.01 m",
+            100.0 * printed.limited,
+            printed.error_peak
+        ),
+        printed.error_peak < 1e-3,
+        "two of its coefficients are wrong (above): it runs away",
+    );
     let pid = ControllerCase::PID_FORWARD.float();
     sheet.claim(
         "chapter 4: sliding mode follows better than PID under friction",

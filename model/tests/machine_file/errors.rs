@@ -15,7 +15,7 @@ fn unit_text_that_is_no_toml_names_the_line() {
     assert!(
         twice
             .to_string()
-            .starts_with("m.toml:2: found a TOML syntax error: duplicate key"),
+            .starts_with("m.toml:2: found a TOML syntax error: duplicate key, which line 1 has already, in `name"),
         "{twice}"
     );
 }

@@ -87,6 +87,7 @@ fn gains(law: &ControllerLaw, count_m: f64, tick_s: f64) -> Option<(sliding_mode
             ]);
             (integral == 0.0).then_some((sliding_mode::Law::SlidingMode, gains))
         }
+        ControllerLaw::Equation { .. } => None,
     }
 }
 

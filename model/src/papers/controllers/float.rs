@@ -3,6 +3,7 @@
 use super::run::{Law, Seen};
 use super::{CURRENT_LIMIT_A, CURRENT_LOOP, ControllerCase, ControllerLaw, RATE, SLOPE, VISCOUS, nominal};
 use crate::papers::drive::WINDING;
+use crate::papers::sliding_mode_law;
 use crate::plant::drive_train::{Amplifier, DriveTrain};
 
 /// A law with its integral.
@@ -46,7 +47,7 @@ impl Law for FloatLaw {
     fn surface(&self, error: f64, rate: f64) -> f64 {
         let integral = match self.law {
             ControllerLaw::Sliding { integral, .. } => integral,
-            ControllerLaw::Linear { .. } => 0.0,
+            ControllerLaw::Linear { .. } | ControllerLaw::Equation { .. } => 0.0,
         };
         SLOPE * error + rate + integral * self.integral
     }
@@ -78,6 +79,10 @@ impl Law for FloatLaw {
                     seen.reference[2] + SLOPE * rate + integral * error + reaching,
                     VISCOUS * seen.velocity + forward,
                 )
+            }
+            ControllerLaw::Equation { epsilon, boundary } => {
+                let wanted = seen.reference[2] + SLOPE * rate + epsilon * switched(sliding, boundary) + RATE * sliding;
+                return sliding_mode_law::voltage(wanted, seen.motor_speed, seen.position, seen.velocity);
             }
         };
         let force = self.known.equivalent_mass() * acceleration + friction;

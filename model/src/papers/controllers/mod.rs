@@ -61,6 +61,14 @@ pub enum ControllerLaw {
         /// Whether Coulomb friction is fed forward by the sign of r′.
         coulomb: bool,
     },
+    /// Equation (4-11) as it is printed, for a drive without a current loop: a sliding mode that the thesis derives with the motor's inertia
+    /// left out.
+    Equation {
+        /// Reaching gain ε, m/s².
+        epsilon: f64,
+        /// Boundary layer φ, m/s.
+        boundary: f64,
+    },
 }
 
 /// A row of the comparison: a law, and what it runs on.
@@ -104,6 +112,18 @@ const fn sliding(epsilon: f64, boundary: f64) -> ControllerLaw {
     }
 }
 
+const EQUATION: ControllerLaw = ControllerLaw::Equation {
+    epsilon: 4.0,
+    boundary: 0.02,
+};
+
+const fn without_current_loop(name: &'static str, law: ControllerLaw, inductance_h: f64) -> ControllerCase {
+    ControllerCase {
+        voltage_mode_h: Some(inductance_h),
+        ..case(name, law)
+    }
+}
+
 impl ControllerCase {
     /// PD as fast as the sliding mode.
     pub const PD: Self = case("PD", linear(0.0, false));
@@ -120,8 +140,11 @@ impl ControllerCase {
     /// The same with a boundary layer.
     pub const LAYER: Self = case("sliding mode, ε = 4 m/s², φ = 0.02 m/s", sliding(4.0, 0.02));
 
+    /// Equation (4-11) as it is printed.
+    pub const EQUATION_PRINTED: Self = without_current_loop("equation (4-11) as printed, 50 mH", EQUATION, 0.05);
+
     /// All rows, in the order of the notes.
-    pub const ALL: [Self; 24] = [
+    pub const ALL: [Self; 27] = [
         Self::PD,
         Self::PD_FORWARD,
         case("PID", linear(PID_INTEGRAL, false)),
@@ -181,14 +204,27 @@ impl ControllerCase {
             scale_m: Some(1e-6),
             ..case("sliding mode, sgn, ε = 4 m/s², scale of 1 µm", sliding(4.0, 0.0))
         },
-        Self {
-            voltage_mode_h: Some(0.05),
-            ..case("sliding mode, φ = 0.02 m/s, no current loop, 50 mH", sliding(4.0, 0.02))
-        },
-        Self {
-            voltage_mode_h: Some(0.001),
-            ..case("sliding mode, φ = 0.02 m/s, no current loop, 1 mH", sliding(4.0, 0.02))
-        },
+        without_current_loop(
+            "sliding mode, φ = 0.02 m/s, no current loop, 50 mH",
+            sliding(4.0, 0.02),
+            0.05,
+        ),
+        without_current_loop(
+            "sliding mode, φ = 0.02 m/s, no current loop, 5 mH",
+            sliding(4.0, 0.02),
+            0.005,
+        ),
+        without_current_loop(
+            "sliding mode, φ = 0.02 m/s, no current loop, 1 mH",
+            sliding(4.0, 0.02),
+            0.001,
+        ),
+        without_current_loop(
+            "sliding mode, φ = 0.02 m/s, no current loop, 0.2 mH",
+            sliding(4.0, 0.02),
+            0.0002,
+        ),
+        Self::EQUATION_PRINTED,
     ];
 
     /// The plant.

@@ -17,6 +17,8 @@ pub(super) struct Seen {
     pub(super) reference: [f64; 3],
     pub(super) position: f64,
     pub(super) velocity: f64,
+    /// Of the motor, rad/s.
+    pub(super) motor_speed: f64,
 }
 
 /// What computes a command each tick.
@@ -101,6 +103,7 @@ pub(super) fn run(case: &ControllerCase, law: &mut impl Law) -> ControllerFigure
             reference,
             position: feedback.position,
             velocity: feedback.velocity,
+            motor_speed: state.speed,
         };
         let surface = law.surface(reference[0] - seen.position, reference[1] - seen.velocity);
         let command = law.command(&seen);
