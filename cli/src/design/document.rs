@@ -1,5 +1,6 @@
 //! `design --json`: the document of the command line's contract.
 
+use super::certificate::CertificateDocument;
 use super::delay::{DelayDocument, StageDocument};
 use super::family::FamilyDocument;
 use crate::control::ControlDocument;
@@ -40,6 +41,8 @@ pub(super) struct AxisDocument {
     pub(super) warnings: Vec<String>,
     pub(super) modes: Vec<ModeDocument>,
     pub(super) quantised: QuantisedDocument,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) certificate: Option<CertificateDocument>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) family: Option<FamilyDocument>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -149,4 +152,7 @@ impl TapDocument {
 #[derive(Serialize)]
 pub(super) struct ResidualDocument {
     pub(super) residual: f64,
+    /// Upper bound over the whole band of the mode.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) certified_residual: Option<f64>,
 }
