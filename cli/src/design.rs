@@ -4,6 +4,7 @@ mod certificate;
 mod delay;
 mod document;
 mod family;
+mod front;
 mod sensitivity;
 
 use crate::compare;
@@ -36,6 +37,7 @@ use document::{
     ResidualDocument, SolutionDocument, TapDocument,
 };
 use family::FamilyReport;
+use front::FrontReport;
 pub(crate) use sensitivity::sensitivity_panels;
 
 /// Impulses, residuals, insensitivity and tap table of every axis
@@ -59,6 +61,9 @@ pub(crate) struct Args {
     /// Certify what the integer taps of every axis leave at most, over the whole bands of its modes
     #[arg(long, conflicts_with = "compare")]
     certify: bool,
+    /// Show what more duration buys an optimal shaper: fewer taps, less residual, at what delay
+    #[arg(long, conflicts_with = "compare")]
+    front: bool,
     /// Compare every kind of shaper on each axis instead: duration, worst residual, taps
     #[arg(long, conflicts_with = "plot")]
     compare: bool,
@@ -84,16 +89,25 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let mut report = DesignReport::new(&machine, &args.machine)?;
     report.certify = args.certify;
     report.warn();
+    let fronts = if args.front {
+        front::of_axes(&report)?
+    } else {
+        Vec::new()
+    };
     if let Some(path) = &args.plot {
         let mut panels = sensitivity_panels(&machine, &report.design);
         panels.extend(report.family_panels());
+        panels.extend(fronts.iter().flat_map(|front| front.panels(&machine.name)));
         panels.extend(report.controllers.iter().flatten().map(AxisControl::nyquist));
         write_text(path, &plot::svg(&panels)?).map_err(Failure::because)?;
     }
     if args.json {
-        output::print_json(&report.json())
+        let mut document = report.json();
+        document.fronts = fronts.iter().map(FrontReport::json).collect();
+        output::print_json(&document)
     } else {
-        output::print_beside(&outputs, &report.text())
+        let fronts: String = fronts.iter().map(FrontReport::text).collect();
+        output::print_beside(&outputs, &(report.text() + &fronts))
     }
 }
 
@@ -173,6 +187,7 @@ impl<'a> DesignReport<'a> {
         Document {
             name: self.machine.name.clone(),
             axes,
+            fronts: Vec::new(),
             stage: self.design.stage.as_ref().map(StageDocument::new),
         }
     }

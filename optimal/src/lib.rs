@@ -25,6 +25,7 @@
 
 mod band;
 mod cone;
+mod front;
 mod integer;
 mod prefer;
 mod program;
@@ -32,6 +33,7 @@ mod refine;
 mod search;
 
 pub use band::Band;
+pub use front::{FrontPoint, front};
 pub use integer::round_taps;
 pub use search::{Shortest, shortest};
 

@@ -146,6 +146,20 @@ fn leave_out(request: &Request, mut taps: Vec<Tap>, points: &mut Points, level: 
     }
 }
 
+/// The taps that a request of few of them gets at a duration; `None` where it does not hold.
+pub(crate) fn fewest_at(
+    request: &Request,
+    samples: u32,
+    points: &mut Points,
+) -> Result<Option<Vec<Tap>>, OptimalError> {
+    let all: Vec<u32> = (0..=samples).collect();
+    points.prune();
+    match refine(request, &all, points, Objective::Ratio, 1.0)? {
+        Refined::Within(held) => preferred(request, held, points).map(Some),
+        Refined::Beyond(_) => Ok(None),
+    }
+}
+
 /// The shortest duration found at which the budget of taps is met, and its taps.
 fn within_budget(request: &Request, least: u32, points: &mut Points) -> Result<Vec<Tap>, OptimalError> {
     let few = Request {
@@ -155,12 +169,9 @@ fn within_budget(request: &Request, least: u32, points: &mut Points) -> Result<V
     let longest = request.longest_samples.min(least.saturating_mul(BUDGET_REACH));
     let mut fewest = (usize::MAX, least);
     let mut attempt = |samples: u32, points: &mut Points| -> Result<Option<Vec<Tap>>, OptimalError> {
-        let all: Vec<u32> = (0..=samples).collect();
-        points.prune();
-        let Refined::Within(held) = refine(&few, &all, points, Objective::Ratio, 1.0)? else {
+        let Some(taps) = fewest_at(&few, samples, points)? else {
             return Ok(None);
         };
-        let taps = preferred(&few, held, points)?;
         if taps.len() < fewest.0 {
             fewest = (taps.len(), samples);
         }

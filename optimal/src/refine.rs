@@ -91,6 +91,28 @@ pub(crate) fn refine(
     Ok(Refined::Beyond(None))
 }
 
+/// How near the least ratio is found.
+const NEAR: f64 = 1e-4;
+
+/// The least largest ratio of residual to tolerance over the bands, on chosen samples.
+pub(crate) fn least_ratio(request: &Request, samples: &[u32], points: &mut Points) -> Result<f64, OptimalError> {
+    let mut least = f64::INFINITY;
+    for _ in 0..ROUNDS {
+        points.prune();
+        let Some(found) = solve_once(request, samples, points, Objective::Ratio, 1.0)? else {
+            break;
+        };
+        let bound = lower_bound(request, samples, &points.points, &found.weights).ratio;
+        let peaks = peaks(request, &found.taps);
+        least = least.min(peaks.first().map_or(0.0, |peak| peak.0));
+        if least <= bound * (1.0 + NEAR) + NEAR * NEAR {
+            break;
+        }
+        points.join(&peaks, bound);
+    }
+    Ok(least)
+}
+
 /// Solves once at the points as they are, and lets the peaks of what was found join them: a step of a search that ends with [`refine`].
 pub(crate) fn step(
     request: &Request,

@@ -1,7 +1,7 @@
 //! Which of the shortest is taken, and what a budget of taps costs.
 
 use crate::support::{SIGNED, TWO_MODES, four_modes, request, residual, worst_ratio};
-use posicast_optimal::{Band, OptimalError, Prefer, Request, Shortest, shortest};
+use posicast_optimal::{Band, OptimalError, Prefer, Request, Shortest, front, shortest};
 
 fn one_mode() -> Request {
     request(200.0, &[(1.0, 0.0)], 0.05, 0.2)
@@ -122,4 +122,24 @@ fn unit_a_finer_grid_is_never_longer() {
     };
     let (coarse, fine) = (duration_s(200.0), duration_s(400.0));
     assert!(fine <= coarse && fine > coarse - 1.0 / 200.0 - 1e-12, "{fine} {coarse}");
+}
+
+#[test]
+fn unit_more_duration_buys_fewer_taps_or_less_residual() {
+    let request = request(400.0, &four_modes(), 0.05, 0.0);
+    let least = shortest(&request).unwrap().least_samples;
+    let points = front(&request, &[least, least + 16, least + 40]).unwrap();
+    assert!(points.windows(2).all(|pair| pair[1].least_ratio <= pair[0].least_ratio));
+    // At the least duration, the tolerance is needed; a quarter more needs much less of it.
+    assert!(
+        (0.9..=1.0 + 1e-6).contains(&points[0].least_ratio),
+        "{}",
+        points[0].least_ratio
+    );
+    assert!(points[2].least_ratio < 0.5 * points[0].least_ratio);
+    for point in &points {
+        assert_eq!(point.taps.last().unwrap().0, point.samples);
+        assert!(worst_ratio(&request, &point.taps) <= 1.0 + 1e-6);
+    }
+    assert!(front(&request, &[least - 1]).is_err());
 }

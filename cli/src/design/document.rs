@@ -3,6 +3,7 @@
 use super::certificate::CertificateDocument;
 use super::delay::{DelayDocument, StageDocument};
 use super::family::FamilyDocument;
+use super::front::FrontDocument;
 use crate::control::ControlDocument;
 use crate::output::UnitDocument;
 use posicast_model::design::periodic::Solution;
@@ -15,6 +16,8 @@ use serde::Serialize;
 pub(crate) struct Document {
     pub(super) name: String,
     pub(super) axes: Vec<AxisDocument>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub(super) fronts: Vec<FrontDocument>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) stage: Option<StageDocument>,
 }

@@ -103,3 +103,56 @@ fn cli_run_takes_an_optimal_shaper_to_rtl_and_measures_the_corners() {
         "{corners}"
     );
 }
+
+#[test]
+fn cli_the_front_says_what_more_duration_buys() {
+    let folder = tempfile::tempdir().unwrap();
+    let plot = folder.path().join("front.svg");
+    let mut design = posicast();
+    design.arg("design").arg(example("optimal-arm.toml"));
+    design.args(["--front", "--json", "--plot"]).arg(&plot);
+    let document = json(&design.assert().success().get_output().stdout);
+    let durations = document["fronts"][0]["durations"].as_array().unwrap();
+    assert!(durations.len() >= 5);
+    let of = |index: usize, key: &str| durations[index][key].as_f64().unwrap();
+    assert_eq!(of(0, "duration_s"), document["axes"][0]["duration_s"].as_f64().unwrap());
+    let last = durations.len() - 1;
+    assert!(of(last, "least_residual") < 0.5 * of(0, "least_residual"));
+    assert!(of(0, "least_residual") <= 0.05 * (1.0 + 1e-6));
+    assert!(
+        std::fs::read_to_string(&plot)
+            .unwrap()
+            .contains("fewest taps found against duration")
+    );
+    let mut other = posicast();
+    other.arg("design").arg(example("xy-stage.toml")).arg("--front");
+    other
+        .assert()
+        .code(2)
+        .stderr(predicate::str::contains("no axis of the machine has an optimal shaper"));
+}
+
+#[test]
+fn cli_reproduce_beyond_sets_the_shortest_beside_the_papers() {
+    let mut reproduce = posicast();
+    reproduce.args(["reproduce", "--beyond", "--json"]);
+    let document = json(&reproduce.assert().success().get_output().stdout);
+    let rows = document["beyond"].as_array().unwrap();
+    // Computed independently: one mode by insensitivity, four modes by uncertainty, the robot's two.
+    let expected = [
+        0.890, 1.005, 1.520, 2.000, 0.3975, 0.5325, 0.6575, 0.7575, 7.80e-3, 4.90e-3, 4.85e-3,
+    ];
+    assert_eq!(rows.len(), expected.len());
+    for (row, expected) in rows.iter().zip(expected) {
+        let (optimal_s, sample_s) = (row["optimal_s"].as_f64().unwrap(), row["sample_s"].as_f64().unwrap());
+        assert!((optimal_s - expected).abs() < 1.5 * sample_s, "{row}");
+        assert_eq!(row["proven"], true, "{row}");
+        for other in ["paper", "closed_form"] {
+            // One step of the grid is what a closed form in continuous time may be ahead.
+            let shorter = row[other]["duration_s"]
+                .as_f64()
+                .is_some_and(|duration_s| duration_s < optimal_s - sample_s);
+            assert!(!shorter, "{row}");
+        }
+    }
+}

@@ -18,6 +18,7 @@ pub mod custom;
 mod equations;
 mod error;
 pub mod family;
+pub mod front;
 pub mod hump_ei;
 mod joint;
 mod joint_error;
