@@ -1,8 +1,10 @@
 //! `posicast design`: impulses, residuals, insensitivity and the tap table of every axis.
 
+mod certificate;
 mod delay;
 mod document;
 mod family;
+mod front;
 mod sensitivity;
 
 use crate::compare;
@@ -29,6 +31,7 @@ use posicast_testbench::wording::counted;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
+use certificate::CertificateReport;
 use delay::{DelayDocument, StageDocument};
 pub(crate) use document::Document;
 use document::{
@@ -36,6 +39,7 @@ use document::{
     QuantisedDocument, ResidualDocument, SolutionDocument, TapDocument,
 };
 use family::FamilyReport;
+use front::FrontReport;
 pub(crate) use sensitivity::sensitivity_panels;
 
 /// Impulses, residuals, insensitivity and tap table of every axis
@@ -56,6 +60,12 @@ pub(crate) struct Args {
     /// Replace a file that posicast did not write, or that was changed since; never one that this command reads
     #[arg(long, requires = "plot")]
     force: bool,
+    /// Certify what the integer taps of every axis leave at most, over the whole bands of its modes
+    #[arg(long, conflicts_with = "compare")]
+    certify: bool,
+    /// Show what more duration buys an optimal shaper: fewer taps, less residual, at what delay
+    #[arg(long, conflicts_with = "compare")]
+    front: bool,
     /// Compare every kind of shaper on each axis instead: duration, worst residual, taps
     #[arg(long, conflicts_with = "plot")]
     compare: bool,
@@ -78,18 +88,28 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     output::one_document(&outputs, args.json)?;
     // What `generate` would refuse is said here too.
     sopc::board(&machine, &args.machine)?;
-    let report = DesignReport::new(&machine, &args.machine)?;
+    let mut report = DesignReport::new(&machine, &args.machine)?;
+    report.certify = args.certify;
     report.warn();
+    let fronts = if args.front {
+        front::of_axes(&report)?
+    } else {
+        Vec::new()
+    };
     if let Some(path) = &args.plot {
         let mut panels = sensitivity_panels(&machine, &report.design);
         panels.extend(report.family_panels());
+        panels.extend(fronts.iter().flat_map(|front| front.panels(&machine.name)));
         panels.extend(report.controllers.iter().flatten().map(AxisControl::nyquist));
         write_text(path, &plot::svg(&panels)?).map_err(Failure::because)?;
     }
     if args.json {
-        output::print_json(&report.json())
+        let mut document = report.json();
+        document.fronts = fronts.iter().map(FrontReport::json).collect();
+        output::print_json(&document)
     } else {
-        output::print_beside(&outputs, &report.text())
+        let fronts: String = fronts.iter().map(FrontReport::text).collect();
+        output::print_beside(&outputs, &(report.text() + &fronts))
     }
 }
 
@@ -100,6 +120,8 @@ pub(crate) struct DesignReport<'a> {
     /// What is built of it.
     pub(crate) hardware: Hardware<'a>,
     pub(crate) controllers: Vec<Option<AxisControl>>,
+    /// Whether every axis is certified, and not just those of `optimal`.
+    certify: bool,
 }
 
 impl<'a> DesignReport<'a> {
@@ -113,6 +135,7 @@ impl<'a> DesignReport<'a> {
             design,
             hardware,
             controllers,
+            certify: false,
         })
     }
 
@@ -138,6 +161,7 @@ impl<'a> DesignReport<'a> {
             .map(|(((axis, tables), control), built)| AxisReport {
                 axis,
                 tables,
+                certificate: CertificateReport::new(axis, tables, self.design.sample_hz, self.certify),
                 in_stage: self.design.stage.is_some(),
                 control: control.as_ref(),
                 modes: tables.mode_figures(axis, self.design.sample_hz),
@@ -165,6 +189,7 @@ impl<'a> DesignReport<'a> {
         Document {
             name: self.machine.name.clone(),
             axes,
+            fronts: Vec::new(),
             stage: self.design.stage.as_ref().map(StageDocument::new),
         }
     }
@@ -190,6 +215,8 @@ impl<'a> DesignReport<'a> {
 struct AxisReport<'a> {
     axis: &'a AxisSection,
     tables: &'a AxisTables,
+    /// What is certified of it, where that is asked for.
+    certificate: Option<CertificateReport<'a>>,
     /// Whether its delay is made equal to that of others.
     in_stage: bool,
     modes: Vec<ModeFigures>,
@@ -275,11 +302,14 @@ impl AxisReport<'_> {
                 modes: self
                     .modes
                     .iter()
-                    .map(|m| ResidualDocument {
+                    .enumerate()
+                    .map(|(index, m)| ResidualDocument {
                         residual: m.residual_quantised,
+                        certified_residual: self.certificate.as_ref().and_then(|c| c.residual(index)),
                     })
                     .collect(),
             },
+            certificate: self.certificate.as_ref().map(CertificateReport::json),
             family: self.family.as_ref().map(FamilyReport::json),
             delay: self.in_stage.then(|| DelayDocument::new(&self.tables.delay)),
             control: self.control.map(AxisControl::json),
@@ -330,6 +360,9 @@ impl AxisReport<'_> {
             ]);
         }
         text += &table.text("  ");
+        if let Some(certificate) = &self.certificate {
+            text += &certificate.text();
+        }
         if let Some(family) = &self.family {
             text += &family.text();
         }
@@ -451,7 +484,8 @@ impl AxisReport<'_> {
 fn findings_text(findings: &Findings) -> String {
     let mut text = String::new();
     match findings {
-        Findings::None => {}
+        // Its certificate says what was found.
+        Findings::None | Findings::Optimal(_) => {}
         Findings::Periodic(found) => {
             let _ = writeln!(text, "\n  periodic at {:.6} Hz; all solutions:", found.system_hz);
             let mut table = Table::new(&["", ">from Hz", ">to Hz", "odd multiples"]);

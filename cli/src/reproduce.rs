@@ -1,5 +1,7 @@
 //! `posicast reproduce`: the source papers' tables, printed beside ours.
 
+mod beyond;
+
 use crate::failure::Failure;
 use crate::output::{self, Table};
 use crate::plot::{self, Curve, Panel};
@@ -16,13 +18,16 @@ use std::path::{Path, PathBuf};
 /// The source papers' tables beside ours, with a verdict per row
 #[derive(clap::Args)]
 #[command(
-    after_help = "Examples:\n  posicast reproduce vibrationless\n  posicast reproduce --plot figures\n\n\
+    after_help = "Examples:\n  posicast reproduce vibrationless\n  posicast reproduce --plot figures\n  posicast reproduce --beyond\n\n\
                   Exit status 1: a row that is agreed on as reproduced, or as an erratum, is not that any more."
 )]
 pub(crate) struct Args {
     /// Paper; without it all of them
     #[arg(value_parser = PossibleValuesParser::new(Paper::ALL.map(Paper::name)))]
     paper: Option<String>,
+    /// Compare the papers' examples with the shortest closed form and the shortest shaper there is, instead
+    #[arg(long, conflicts_with_all = ["paper", "plot"])]
+    beyond: bool,
     /// Print one JSON document on standard output
     #[arg(long)]
     json: bool,
@@ -35,6 +40,9 @@ pub(crate) struct Args {
 }
 
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
+    if args.beyond {
+        return beyond::run(args.json);
+    }
     let named = args.paper.as_deref().and_then(Paper::from_name);
     let papers = named.map_or_else(|| Paper::ALL.to_vec(), |paper| vec![paper]);
     let mut outputs = OutputFiles::new(args.force);

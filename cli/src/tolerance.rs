@@ -1,6 +1,7 @@
 //! Whether the integer tap tables keep the tolerance that the machine file asks for.
 
-use posicast_model::design::MachineDesign;
+use posicast_model::certify::{ModeCertificate, certify_axis};
+use posicast_model::design::{Findings, MachineDesign};
 use posicast_model::machine_file::Machine;
 
 /// Part of a tolerance by which the integer taps may exceed it: an impulse between two samples becomes two taps, which moves the
@@ -19,6 +20,22 @@ pub(crate) fn beyond_tolerance(machine: &Machine, design: &MachineDesign) -> Vec
     let mut beyond = Vec::new();
     for (axis, tables) in machine.axes.iter().zip(&design.axes) {
         if tables.design.impulses.impulses().len() < 2 {
+            continue;
+        }
+        if matches!(tables.design.findings, Findings::Optimal(_)) {
+            let certificate = certify_axis(axis, tables, design.sample_hz);
+            let above = |mode: &&ModeCertificate| mode.residual.bound > mode.tolerance * (1.0 + BETWEEN_SAMPLES);
+            beyond.extend(certificate.modes.iter().filter(above).map(|mode| {
+                format!(
+                    "axis {}, mode of {:.3} … {:.3} Hz: the integer taps leave up to {:.4} % of the vibration in the band, {:.4} % is the \
+                     tolerance; leave coefficient_fraction out, or allow a longer shaper with fewer taps",
+                    axis.name,
+                    mode.band.frequency_hz[0],
+                    mode.band.frequency_hz[1],
+                    100.0 * mode.residual.bound,
+                    100.0 * mode.tolerance
+                )
+            }));
             continue;
         }
         for mode in tables.mode_figures(axis, design.sample_hz) {

@@ -8,8 +8,8 @@ use thiserror::Error;
 
 use crate::analysis::{tap_impulses, worst_residual};
 use crate::design::kind::ShaperKind;
-use crate::design::{DesignError, design_axis};
-use crate::digitise::{DigitiseError, digitise, quantise};
+use crate::design::{DesignError, design_axis, optimal};
+use crate::digitise::{DigitiseError, digitise};
 use crate::impulse::PartialSums;
 use crate::machine_file::{AxisMode, AxisSection, Machine, ShaperChoice};
 
@@ -133,10 +133,9 @@ pub(crate) fn with_kind(axis: &AxisSection, kind: ShaperKind) -> AxisSection {
 
 fn candidate(machine: &Machine, axis: &AxisSection, in_file: bool, band: f64) -> Result<Candidate, CandidateError> {
     let sample_hz = machine.clock.sample_hz;
-    let design = design_axis(axis)?;
+    let design = design_axis(axis, sample_hz)?;
     let digitised = digitise(&design, machine.fixed_point.digitise, sample_hz)?;
-    let named = [(axis.name.as_str(), &digitised)];
-    let tables = quantise(&named, machine.fixed_point.coefficient_fraction)?;
+    let tables = optimal::tables(&[(&design, &digitised)], machine.fixed_point.coefficient_fraction)?;
     let table = tables.first().ok_or(CandidateError::NoTable)?;
     let taps = tap_impulses(table, sample_hz);
     let residuals = axis.modes.iter().map(|mode| worst_residual(&taps, &mode.mode, band));

@@ -11,6 +11,7 @@
 //! ```
 
 pub mod analysis;
+pub mod certify;
 pub mod compare;
 pub mod contour;
 pub mod control;

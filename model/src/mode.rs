@@ -76,3 +76,28 @@ impl Mode {
         }
     }
 }
+
+/// A mode that is not known exactly: every frequency and damping ratio within these.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ModeBand {
+    /// Lowest and highest undamped natural frequency in Hz.
+    pub frequency_hz: [f64; 2],
+    /// Lowest and highest damping ratio.
+    pub damping: [f64; 2],
+}
+
+impl ModeBand {
+    /// The corners of the band, each once.
+    pub fn corners(&self) -> Vec<Mode> {
+        let mut corners: Vec<Mode> = Vec::with_capacity(4);
+        for frequency_hz in self.frequency_hz {
+            for damping in self.damping {
+                let corner = Mode { frequency_hz, damping };
+                if !corners.contains(&corner) {
+                    corners.push(corner);
+                }
+            }
+        }
+        corners
+    }
+}

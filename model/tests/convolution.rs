@@ -12,7 +12,7 @@ fn robot(first: &str, second: &str) -> (AxisSection, ConvolutionFigures) {
     let modes = [(76.6, 0.057, first), (231.2, 0.017, second)];
     let mut machine = machine(10_000, "modal", &shaper("zv", 0.05), &modes);
     let axis = machine.axes.remove(0);
-    let figures = convolution_figures(&axis, &design_axis(&axis).unwrap());
+    let figures = convolution_figures(&axis, &design_axis(&axis, 10_000.0).unwrap());
     (axis, figures)
 }
 
@@ -43,7 +43,10 @@ fn unit_negative_hybrids_are_warned_of_with_their_gain() {
 #[test]
 fn unit_the_remedy_of_the_warning_works() {
     let (axis, figures) = robot("shaper = \"ps-zv\"", "shaper = \"ps-ei\"\ntolerance = 0.0146");
-    let residual = residual_vibration(design_axis(&axis).unwrap().impulses.impulses(), &axis.modes[1].mode);
+    let residual = residual_vibration(
+        design_axis(&axis, 10_000.0).unwrap().impulses.impulses(),
+        &axis.modes[1].mode,
+    );
     assert!((0.0499..=0.05).contains(&residual), "{residual}");
     // The residual is still held against the mode's own tolerance, now the smaller one: nothing is hidden.
     assert_eq!(figures.warnings.len(), 2);
@@ -68,7 +71,7 @@ fn unit_positive_hybrids_and_one_negative_shaper_raise_no_warning() {
 fn unit_kinds_for_the_whole_axis_have_no_cross_gains() {
     let machine = machine(10_000, "modal", "kind = \"none\"", &[(10.0, 0.1, ""), (30.0, 0.1, "")]);
     let axis = &machine.axes[0];
-    let figures = convolution_figures(axis, &design_axis(axis).unwrap());
+    let figures = convolution_figures(axis, &design_axis(axis, 10_000.0).unwrap());
     assert!(figures.cross_gains.is_empty() && figures.warnings.is_empty());
     assert_eq!(figures.peak_command, 1.0);
 }

@@ -81,7 +81,7 @@ fn golden_periodic_machine_repeats_multi_ei_at_the_upper_end() {
     let modes = [10.0, 35.0, 68.0, 124.0];
     let rows: Vec<_> = modes.iter().map(|omega| (omega / TAU, 0.0, "")).collect();
     let shaper = "kind = \"periodic\"\nlowest_frequency_hz = 0.16";
-    let design = design_axis(&machine(1000, "modal", shaper, &rows).axes[0]).unwrap();
+    let design = design_axis(&machine(1000, "modal", shaper, &rows).axes[0], 1e3).unwrap();
     let high = number(&golden("periodic")[1]["intervals_lo_hi_n"][0][1]);
     let expected: Vec<f64> = (0..5).map(|k| f64::from(k) * PI / high).collect();
     all_close(&times(design.impulses.impulses()), &expected, 1e-9, "times");
@@ -106,7 +106,7 @@ fn golden_simultaneous_solutions_of_the_robot_are_reached_and_optimal() {
         let (first, second) = (own(parts[1]), own(parts[2]));
         let shaper = format!("kind = \"simultaneous\"\namplitude = \"{}\"", parts[0]);
         let rows = [(76.6, 0.057, &first[..]), (231.2, 0.017, &second[..])];
-        let design = design_axis(&machine(10_000, "modal", &shaper, &rows).axes[0]).unwrap();
+        let design = design_axis(&machine(10_000, "modal", &shaper, &rows).axes[0], 1e4).unwrap();
         let impulses = design.impulses.impulses();
         assert_eq!(amplitudes(impulses), numbers(&row["A"]), "{name}");
         assert!(is_time_optimal(&design), "{name}");
@@ -128,7 +128,7 @@ fn golden_simultaneous_unit_magnitude_lasts_as_long_as_published() {
         let own = [first, second].map(|kind| format!("shaper = \"{kind}\""));
         let rows = [(76.6, 0.057, &own[0][..]), (231.2, 0.017, &own[1][..])];
         let shaper = "kind = \"simultaneous\"\namplitude = \"um\"";
-        let design = design_axis(&machine(10_000, "modal", shaper, &rows).axes[0]).unwrap();
+        let design = design_axis(&machine(10_000, "modal", shaper, &rows).axes[0], 1e4).unwrap();
         close(design.impulses.duration_s(), expected_s, 0.5e-6, first);
         assert!(is_time_optimal(&design), "{first}, {second}");
         let sums = design.impulses.partial_sums();
@@ -271,7 +271,7 @@ fn golden_antisymmetric_damped_impulses() {
 #[test]
 fn golden_antisymmetric_machine_takes_two_impulses_per_class() {
     let design = |shaper: &str, modes: &[(f64, f64, &str)]| {
-        design_axis(&machine(1000, "modal", shaper, modes).axes[0])
+        design_axis(&machine(1000, "modal", shaper, modes).axes[0], 1e3)
             .unwrap()
             .impulses
     };

@@ -71,7 +71,7 @@ fn golden_bias_point_shapers() {
         };
         let lines = format!("kind = \"{name}\"\n{order}tolerance = {tolerance}");
         let machine = machine(10_000, "modal", &lines, &[(25.0, 0.0, "")]);
-        let design = design_axis(&machine.axes[0]).unwrap();
+        let design = design_axis(&machine.axes[0], machine.clock.sample_hz).unwrap();
         let impulses = design.impulses.impulses();
         let amplitudes = numbers(&row["amplitudes"]);
         assert_eq!(impulses.len(), amplitudes.len(), "{what}");
@@ -98,7 +98,10 @@ fn robot(name: &str) -> (AxisDesign, Plant) {
     let modes = [(76.6, 0.057, kinds[0].as_str()), (231.2, 0.017, kinds[1].as_str())];
     let machine = machine(10_000, "modal", &shaper("zv", 0.05), &modes);
     let axis = &machine.axes[0];
-    (design_axis(axis).unwrap(), Plant::of_axis(axis).unwrap())
+    (
+        design_axis(axis, machine.clock.sample_hz).unwrap(),
+        Plant::of_axis(axis).unwrap(),
+    )
 }
 
 #[test]

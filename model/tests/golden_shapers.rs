@@ -28,7 +28,7 @@ fn golden_single_mode_designs_and_figures() {
             &shaper(&kind, tolerance),
             &[(frequency_hz, damping, "")],
         );
-        let design = design_axis(&machine.axes[0]).unwrap();
+        let design = design_axis(&machine.axes[0], machine.clock.sample_hz).unwrap();
         assert_eq!(design.kind, kind);
         let impulses = design.impulses.impulses();
 
@@ -93,7 +93,7 @@ fn golden_digitised_taps_and_their_residual() {
             &shaper(&kind, 0.05),
             &[(frequency_hz, damping, "")],
         );
-        let design = design_axis(&machine.axes[0]).unwrap();
+        let design = design_axis(&machine.axes[0], machine.clock.sample_hz).unwrap();
         let digitised = digitise(&design, machine.fixed_point.digitise, sample_hz).unwrap();
         assert_eq!(digitised.method_used.to_string(), how);
         let delays: Vec<f64> = digitised.taps.iter().map(|t| f64::from(t.delay_samples)).collect();

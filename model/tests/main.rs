@@ -25,6 +25,7 @@ mod linear_scale;
 mod machine_file;
 mod matching;
 mod motor_held;
+mod optimal;
 mod papers;
 mod plant_in_loop;
 mod port_tables;

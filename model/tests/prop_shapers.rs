@@ -173,7 +173,7 @@ proptest! {
     ) {
         let modes: Vec<_> = modes.into_iter().map(|(f, z): (f64, f64)| (f, z, "")).collect();
         let machine = machine(10_000, "modal", &shaper(kind, 0.05), &modes);
-        let design = design_axis(&machine.axes[0]).unwrap();
+        let design = design_axis(&machine.axes[0], machine.clock.sample_hz).unwrap();
         let taps = digitise(&design, Digitise::Modal, 10_000.0).unwrap().impulses(10_000.0);
         for axis_mode in &machine.axes[0].modes {
             prop_assert!(residual_vibration(&taps, &axis_mode.mode) < 1e-10);

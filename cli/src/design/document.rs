@@ -1,7 +1,9 @@
 //! `design --json`: the document of the command line's contract.
 
+use super::certificate::CertificateDocument;
 use super::delay::{DelayDocument, StageDocument};
 use super::family::FamilyDocument;
+use super::front::FrontDocument;
 use crate::control::ControlDocument;
 use crate::output::UnitDocument;
 use posicast_model::design::periodic::Solution;
@@ -15,6 +17,8 @@ use serde::Serialize;
 pub(crate) struct Document {
     pub(super) name: String,
     pub(super) axes: Vec<AxisDocument>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub(super) fronts: Vec<FrontDocument>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) stage: Option<StageDocument>,
 }
@@ -41,6 +45,8 @@ pub(super) struct AxisDocument {
     pub(super) warnings: Vec<String>,
     pub(super) modes: Vec<ModeDocument>,
     pub(super) quantised: QuantisedDocument,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) certificate: Option<CertificateDocument>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) family: Option<FamilyDocument>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -176,4 +182,7 @@ impl TapDocument {
 #[derive(Serialize)]
 pub(super) struct ResidualDocument {
     pub(super) residual: f64,
+    /// Upper bound over the whole band of the mode.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) certified_residual: Option<f64>,
 }

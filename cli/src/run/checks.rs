@@ -3,8 +3,10 @@
 use super::waves::Waves;
 use crate::bench::{self, Simulator};
 use crate::failure::Failure;
+use crate::output::percent;
 use crate::tolerance::{beyond_tolerance, shaped_modes};
-use posicast_model::design::MachineDesign;
+use posicast_model::certify::{certify_axis, measure_corners};
+use posicast_model::design::{Findings, MachineDesign};
 use posicast_model::machine_file::Machine;
 use posicast_model::simulation::AxisSimulation;
 use posicast_synth::yosys::Estimate;
@@ -13,6 +15,9 @@ use posicast_testbench::lockstep::report::{LockstepReport, LockstepVerdict};
 use posicast_testbench::wording::counted;
 use serde::Serialize;
 use wavecmp::diff::{Comparison, DiffVerdict};
+
+/// Rounding of a residual that is measured on the simulated plant.
+const MEASURED_ROUNDING: f64 = 1e-9;
 
 /// One check and how it went.
 #[derive(Debug, Clone, Serialize)]
@@ -59,6 +64,9 @@ pub(crate) fn all(
         residual_within_rounding(machine, design),
         residual_within_tolerance(machine, design),
     ]
+    .into_iter()
+    .chain(residual_at_corners(machine, design))
+    .collect()
 }
 
 fn rtl_equals_model(simulator: Simulator, lockstep: &LockstepReport) -> Check {
@@ -180,6 +188,57 @@ fn residual_within_tolerance(machine: &Machine, design: &MachineDesign) -> Check
             (None, modes) => counted(modes as u64, "mode"),
         },
     }
+}
+
+/// With each mode at each corner of its band, a step on the simulated plant leaves no more than is certified; no check where no shaper is made for
+/// bands.
+fn residual_at_corners(machine: &Machine, design: &MachineDesign) -> Option<Check> {
+    let axes = machine.axes.iter().zip(&design.axes);
+    let optimal = axes.filter(|(_, tables)| matches!(tables.design.findings, Findings::Optimal(_)));
+    let (mut corners, mut worst, mut beyond) = (0, None::<(f64, f64)>, None);
+    for (axis, tables) in optimal {
+        let certificate = certify_axis(axis, tables, design.sample_hz);
+        let figures = match measure_corners(axis, tables, &certificate, design.sample_hz) {
+            Ok(figures) => figures,
+            Err(error) => {
+                beyond.get_or_insert_with(|| format!("axis {}: {error}", axis.name));
+                continue;
+            }
+        };
+        for figure in figures {
+            corners += 1;
+            let (measured, certified) = (figure.measured, figure.certified);
+            if worst.is_none_or(|(most, _)| measured > most) {
+                worst = Some((measured, certified));
+            }
+            if measured > certified + MEASURED_ROUNDING {
+                beyond.get_or_insert_with(|| {
+                    format!(
+                        "axis {}, mode {} at {:.3} Hz, damping {:.4}: {} % measured, {} % certified",
+                        axis.name,
+                        figure.index + 1,
+                        figure.corner.frequency_hz,
+                        figure.corner.damping,
+                        percent(measured),
+                        percent(certified)
+                    )
+                });
+            }
+        }
+    }
+    let (measured, certified) = worst.unwrap_or_default();
+    (corners > 0 || beyond.is_some()).then(|| Check {
+        name: "at the corners of the modes' bands the simulated plant keeps the certified residual",
+        passed: beyond.is_none(),
+        detail: beyond.unwrap_or_else(|| {
+            format!(
+                "{}, largest residual of a step {} %, {} % certified",
+                counted(corners, "corner"),
+                percent(measured),
+                percent(certified)
+            )
+        }),
+    })
 }
 
 /// Rounding the taps may raise the residual by no more than `Σ |c_i/2^F − a_i|`.

@@ -198,11 +198,14 @@ fn cli_one_thing_is_said_in_the_singular() {
 }
 
 #[test]
-fn cli_what_is_not_built_yet_says_so() {
+fn cli_what_optimal_cannot_do_names_the_key_and_what_would_help() {
     refused(
         &["design"],
-        &one_axis("kind = \"optimal\"", MODE),
-        &["not built in this version: optimal"],
+        &one_axis(
+            "kind = \"optimal\"\ntaps = 2",
+            "frequency_hz = 40\ndamping = 0.01\nfrequency_band = 0.2\n",
+        ),
+        &["axis.shaper.taps", "with 2 taps", "allow `taps = "],
     );
 }
 

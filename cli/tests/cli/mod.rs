@@ -19,6 +19,7 @@ mod identify;
 mod kit;
 mod moves;
 mod new;
+mod optimal;
 mod outputs;
 mod replay;
 mod schema;

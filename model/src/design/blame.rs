@@ -3,12 +3,13 @@
 //! A shaper that is too long, or has too many taps, is designed again with one thing changed at a time: a lower sample rate,
 //! a kind of shaper that is shorter, a lower order, another way of digitising. What then fits is proposed, with its figure.
 
-use super::{DesignError, JointError, design_axis};
+use super::{DesignError, JointError, design_axis, optimal};
 use crate::design::kind::ShaperKind;
-use crate::digitise::{DELAY_MAX_SAMPLES, DigitiseError, TAPS_MAX, digitise, quantise};
+use crate::digitise::{DELAY_MAX_SAMPLES, DigitiseError, TAPS_MAX, digitise};
 use crate::machine_file::{AxisSection, Digitise, Machine};
 use crate::mode::Mode;
 use crate::unit::short;
+use posicast_optimal::OptimalError;
 
 /// A mode below this is most likely given in kHz.
 const UNLIKELY_HZ: f64 = 1.0;
@@ -78,6 +79,9 @@ pub fn blame(machine: &Machine, error: &DesignError) -> Option<DesignBlame> {
         | DesignError::NoModes { axis, .. } => Some(shaper(of_axis(axis)?)),
         DesignError::JointOfAxis { axis, cause, .. } => {
             let axis = of_axis(axis)?;
+            if let DesignError::Joint(JointError::Optimal(cause)) = cause.as_ref() {
+                return Some(of_optimal(machine, axis, cause));
+            }
             let (mode, key) = match cause.as_ref() {
                 DesignError::Joint(JointError::Coincident { second, .. }) => (second.checked_sub(1), "axis.mode"),
                 DesignError::Joint(JointError::SearchRange { .. }) => (None, "axis.shaper.lowest_frequency_hz"),
@@ -112,6 +116,45 @@ pub fn blame(machine: &Machine, error: &DesignError) -> Option<DesignBlame> {
         | DesignError::BiasPoint { .. }
         | DesignError::NoSequence { .. }
         | DesignError::Joint(_) => None,
+    }
+}
+
+/// What keeps `optimal` from a shaper, and what would help.
+fn of_optimal(machine: &Machine, axis: usize, error: &OptimalError) -> DesignBlame {
+    let (mode, key, remedy) = match error {
+        OptimalError::Band { band, .. } => (
+            Some(*band),
+            "axis.mode.frequency_band",
+            "narrow the band, or raise clock.sample_hz".to_owned(),
+        ),
+        OptimalError::Tolerance { band, .. } => (
+            Some(*band),
+            "axis.mode.tolerance",
+            "choose another tolerance".to_owned(),
+        ),
+        OptimalError::TooLong { .. } => {
+            let slower = short(machine.clock.sample_hz / 2.0);
+            let remedy = format!(
+                "raise `tolerance`, narrow `frequency_band` and `damping_band`, allow `command = [-1, 1]`, or lower clock.sample_hz, for \
+                 example to {slower}: the longest shaper then lasts twice as long"
+            );
+            (None, "axis.shaper", remedy)
+        }
+        OptimalError::TapBudget { fewest, .. } => {
+            let remedy = format!("allow `taps = {fewest}`, raise `tolerance`, or narrow the bands");
+            (None, "axis.shaper.taps", remedy)
+        }
+        OptimalError::Solver { .. } => (
+            None,
+            "axis.shaper",
+            "raise a tolerance that is very small, or leave out a mode that is nearly another".to_owned(),
+        ),
+    };
+    DesignBlame {
+        axis,
+        mode,
+        key: key.to_owned(),
+        remedy: Some(remedy),
     }
 }
 
@@ -186,7 +229,10 @@ fn rate_that_fits(machine: &Machine, axis: usize) -> Option<(String, usize)> {
         .iter()
         .map(|mode| mode.mode.frequency_hz)
         .fold(0.0, f64::max);
-    let duration_s = design_axis(section).ok()?.impulses.duration_s();
+    let duration_s = design_axis(section, machine.clock.sample_hz)
+        .ok()?
+        .impulses
+        .duration_s();
     let longest_hz = f64::from(DELAY_MAX_SAMPLES) / duration_s;
     let now = machine.clock.clocks_per_sample();
     let pwm = machine.axes.iter().filter_map(|axis| axis.pwm.as_ref());
@@ -225,13 +271,9 @@ fn with_kind(section: &AxisSection, kind: ShaperKind) -> Option<AxisSection> {
 
 /// Taps of an axis at a machine's sample rate, if a table holds them.
 fn taps(section: &AxisSection, how: Digitise, machine: &Machine) -> Option<usize> {
-    let design = design_axis(section).ok()?;
+    let design = design_axis(section, machine.clock.sample_hz).ok()?;
     let digitised = digitise(&design, how, machine.clock.sample_hz).ok()?;
-    let tables = quantise(
-        &[(section.name.as_str(), &digitised)],
-        machine.fixed_point.coefficient_fraction,
-    )
-    .ok()?;
+    let tables = optimal::tables(&[(&design, &digitised)], machine.fixed_point.coefficient_fraction).ok()?;
     tables.first().map(|table| table.taps().len())
 }
 

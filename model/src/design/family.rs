@@ -357,7 +357,7 @@ impl Search<'_> {
     /// The table for a value.
     fn at(&self, value: f64) -> Result<Candidate, DesignError> {
         let section = self.axis.at_value(value);
-        let design = design_axis(&section)?;
+        let design = design_axis(&section, self.sample_hz)?;
         let digitised = digitise(&design, self.how, self.sample_hz)?;
         let impulses = digitised.impulses(self.sample_hz);
         let covers = covered(self.axis, self.family, &impulses, value, 0.0);

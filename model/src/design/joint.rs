@@ -4,6 +4,7 @@ use super::antisymmetric::{self, Antisymmetric, AntisymmetricMethod, Participant
 use super::constraint::{Amplitudes, Constraint};
 use super::joint_error::JointError;
 use super::kind::ShaperKind;
+use super::optimal::{self, Optimal};
 use super::periodic::{self, Base, Periodic};
 use super::simultaneous::{self, Simultaneous};
 use super::{DesignError, RESIDUAL_TOLERANCE, custom};
@@ -24,13 +25,19 @@ pub enum Findings {
     Antisymmetric(Antisymmetric),
     /// Whether the impulses of `simultaneous` are proven to be the shortest.
     Simultaneous(Simultaneous),
+    /// What `optimal` was designed for, and why nothing is shorter.
+    Optimal(Optimal),
 }
 
 /// Designs the shaper of an axis whose kind serves all modes, and checks it at every mode where the kind promises a zero.
 ///
 /// # Errors
 /// [`DesignError::JointOfAxis`] with the axis and the cause; [`DesignError::NoModes`] without modes to design for.
-pub(super) fn design(axis: &AxisSection, kind: ShaperKind) -> Result<(ImpulseSequence, Findings), DesignError> {
+pub(super) fn design(
+    axis: &AxisSection,
+    kind: ShaperKind,
+    sample_hz: f64,
+) -> Result<(ImpulseSequence, Findings), DesignError> {
     let given = axis.shaper.as_ref();
     match kind {
         ShaperKind::None => return Ok((ImpulseSequence::unity(), Findings::None)),
@@ -50,6 +57,9 @@ pub(super) fn design(axis: &AxisSection, kind: ShaperKind) -> Result<(ImpulseSeq
         ShaperKind::Periodic => design_periodic(axis),
         ShaperKind::Antisymmetric => design_antisymmetric(axis),
         ShaperKind::Simultaneous => design_simultaneous(axis),
+        ShaperKind::Optimal => {
+            optimal::design(axis, sample_hz).map(|(impulses, found)| (impulses, Findings::Optimal(found)))
+        }
         _ => return Err(DesignError::NotBuilt { kind }),
     };
     found.map_err(|cause| DesignError::JointOfAxis {

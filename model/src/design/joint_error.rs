@@ -139,6 +139,9 @@ pub enum JointError {
         /// Largest bound that is solved.
         largest: f64,
     },
+    /// No shortest shaper.
+    #[error(transparent)]
+    Optimal(#[from] posicast_optimal::OptimalError),
     /// A start control without a length.
     #[error("a start of {0} s: its length must be a positive, finite number")]
     StartLength(f64),

@@ -105,6 +105,7 @@ impl ShaperKind {
                 | ShaperKind::Antisymmetric
                 | ShaperKind::Simultaneous
                 | ShaperKind::Periodic
+                | ShaperKind::Optimal
                 | ShaperKind::Custom
                 | ShaperKind::None
         )

@@ -2,9 +2,9 @@
 
 use super::family::{self, TableFamily};
 use super::matching::{self, AxisDelay, StageDelay};
-use super::{AxisDesign, DesignError, design_axis};
+use super::{AxisDesign, DesignError, design_axis, optimal};
 use crate::analysis::{Insensitivity, insensitivity, residual_vibration, residual_vibration_at, tap_impulses};
-use crate::digitise::{Digitised, digitise, quantise, quantising_error};
+use crate::digitise::{Digitised, digitise, quantising_error};
 use crate::machine_file::{AxisSection, Machine};
 use crate::mode::Mode;
 use crate::taps::TapTable;
@@ -66,7 +66,7 @@ pub fn design_machine(machine: &Machine) -> Result<MachineDesign, DesignError> {
     let mut designs = Vec::with_capacity(machine.axes.len());
     let mut families = Vec::with_capacity(machine.axes.len());
     for axis in &machine.axes {
-        let design = design_axis(axis)?;
+        let design = design_axis(axis, sample_hz)?;
         let digitised = digitise(&design, how, sample_hz)?;
         designs.push((axis, design, digitised));
         families.push(family::candidates(axis, how, sample_hz)?);
@@ -81,11 +81,11 @@ pub fn design_machine(machine: &Machine) -> Result<MachineDesign, DesignError> {
         .collect();
     let digitised: Vec<_> = all.iter().map(|(axis, _, digitised)| (*axis, *digitised)).collect();
     let matched = matching::matched(machine, &digitised)?;
-    let named = all
+    let shapers = all
         .iter()
         .zip(&matched)
-        .map(|((axis, ..), (taps, _))| (axis.name.as_str(), taps));
-    let rounded = quantise(&named.collect::<Vec<_>>(), machine.fixed_point.coefficient_fraction)?;
+        .map(|((_, design, _), (taps, _))| (*design, taps));
+    let rounded = optimal::tables(&shapers.collect::<Vec<_>>(), machine.fixed_point.coefficient_fraction)?;
     let coefficient_fraction = rounded.first().map_or(0, TapTable::coefficient_fraction);
     let tables = all.into_iter().zip(matched).zip(rounded);
     let mut tables = tables.map(|(((_, design, _), (digitised, delay)), table)| AxisTables {

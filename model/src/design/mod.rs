@@ -5,7 +5,7 @@
 //! ```
 //!
 //! One file per kind of design. For one mode: [`zv`], [`hump_ei`], [`negative`], [`bias_point`], [`vibrationless`]; for all modes of
-//! an axis together: [`periodic`], [`simultaneous`], [`antisymmetric`], [`custom`]. Every design is checked by its own
+//! an axis together: [`periodic`], [`simultaneous`], [`antisymmetric`], [`optimal`], [`custom`]. Every design is checked by its own
 //! residual before it is returned: what leaves this module does at the mode what its kind promises, or is an error that
 //! says where the kind ends.
 
@@ -18,6 +18,7 @@ pub mod custom;
 mod equations;
 mod error;
 pub mod family;
+pub mod front;
 pub mod hump_ei;
 mod joint;
 mod joint_error;
@@ -26,6 +27,7 @@ mod machine;
 pub mod matching;
 pub mod negative;
 mod newton;
+pub mod optimal;
 mod path;
 pub mod periodic;
 pub mod ratios;
@@ -93,15 +95,15 @@ pub struct ShaperPart {
     pub impulses: ImpulseSequence,
 }
 
-/// Designs the shaper of one axis.
+/// Designs the shaper of one axis for samples at `sample_hz`: `optimal` has its impulses on them, the others do not look at them.
 ///
 /// # Errors
 /// [`DesignError`] where a kind is not built, does not exist for a mode, or is given what it cannot take.
-pub fn design_axis(axis: &AxisSection) -> Result<AxisDesign, DesignError> {
+pub fn design_axis(axis: &AxisSection, sample_hz: f64) -> Result<AxisDesign, DesignError> {
     let (impulses, parts, findings) = match axis.joint_kind() {
         Some(kind) => {
             let reference = axis.modes.first().map(|m| m.mode);
-            let (impulses, findings) = joint::design(axis, kind)?;
+            let (impulses, findings) = joint::design(axis, kind, sample_hz)?;
             (impulses, ShaperParts::Joint { reference }, findings)
         }
         None => {

@@ -21,7 +21,7 @@ pub use error::{DELAY_MAX_SAMPLES, DigitiseError, TAPS_MAX};
 pub use quantise::{quantise, quantising_error};
 
 use crate::design::kind::ShaperKind;
-use crate::design::{AxisDesign, ShaperParts};
+use crate::design::{AxisDesign, Findings, ShaperParts};
 use crate::impulse::{Impulse, ImpulseSequence};
 use crate::machine_file::Digitise;
 use crate::mode::Mode;
@@ -46,6 +46,8 @@ pub enum DigitiseMethod {
     Linear,
     /// One tap per impulse, at the nearest sample.
     Nearest,
+    /// The impulses were designed on the samples.
+    OnSamples,
 }
 
 impl fmt::Display for DigitiseMethod {
@@ -55,6 +57,7 @@ impl fmt::Display for DigitiseMethod {
             DigitiseMethod::ModalAtFirstMode => "modal at the first mode",
             DigitiseMethod::Linear => "linear",
             DigitiseMethod::Nearest => "nearest",
+            DigitiseMethod::OnSamples => "as designed, on the samples",
         })
     }
 }
@@ -134,6 +137,7 @@ impl Digitised {
 pub fn digitise(design: &AxisDesign, how: Digitise, sample_hz: f64) -> Result<Digitised, DigitiseError> {
     let whole = || vec![(&design.impulses, None)];
     let (method_used, sequences) = match (how, &design.parts) {
+        _ if matches!(design.findings, Findings::Optimal(_)) => (DigitiseMethod::OnSamples, whole()),
         (Digitise::Linear, _) => (DigitiseMethod::Linear, whole()),
         (Digitise::Nearest, _) => (DigitiseMethod::Nearest, whole()),
         (Digitise::Modal, ShaperParts::PerMode(parts)) => {
@@ -210,7 +214,7 @@ fn part(
     let mut taps: BTreeMap<u32, f64> = BTreeMap::new();
     for impulse in impulses.impulses() {
         let placed = match (method, mode) {
-            (DigitiseMethod::Nearest, _) => grid::nearest(impulse, sample_hz),
+            (DigitiseMethod::Nearest | DigitiseMethod::OnSamples, _) => grid::nearest(impulse, sample_hz),
             (DigitiseMethod::Modal | DigitiseMethod::ModalAtFirstMode, Some(mode)) => {
                 if mode.omega_damped() >= std::f64::consts::PI * sample_hz {
                     return Err(DigitiseError::Nyquist {
@@ -254,7 +258,7 @@ fn convolve(a: &BTreeMap<u32, f64>, b: &BTreeMap<u32, f64>) -> BTreeMap<u32, f64
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::design::{Findings, ShaperPart};
+    use crate::design::ShaperPart;
 
     fn custom(pairs: &[(f64, f64)], reference: Option<Mode>) -> AxisDesign {
         let impulses = pairs.iter().map(|&(time_s, amplitude)| Impulse { time_s, amplitude });

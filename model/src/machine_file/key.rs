@@ -42,6 +42,10 @@ pub(super) enum Values {
     Word(fn() -> Vec<&'static str>),
     /// A list of such words, which may be empty.
     Words(fn() -> Vec<&'static str>),
+    /// A word of this list, or `[low, high]`.
+    WordOrPair(fn() -> Vec<&'static str>, NumberRange),
+    /// `[low, high]`, plain numbers.
+    PlainPair(NumberRange),
     /// `[low, high]` in the axis's unit. The range is in m or rad.
     Pair(NumberRange),
     /// A list of 1 to so many pairs of numbers.

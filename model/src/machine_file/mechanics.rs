@@ -245,6 +245,8 @@ fn read_mode(axis: &Table<'_, '_>, table: &Table<'_, '_>, screw: &ScrewDrive, cl
         shaper: None,
         tolerance: None,
         order: None,
+        frequency_band: None,
+        damping_band: None,
         participation: 1.0,
         points: Vec::new(),
     })

@@ -74,8 +74,9 @@ use toml::de::DeTable;
 
 use crate::design::kind::ShaperKind;
 use crate::mechanics::ScrewDrive;
-use crate::mode::Mode;
+use crate::mode::{Mode, ModeBand};
 use crate::unit::AxisUnit;
+use posicast_optimal::{Command, Prefer};
 use reader::Reader;
 use table::Table;
 
@@ -343,6 +344,12 @@ pub struct ShaperChoice {
     pub method: Option<String>,
     /// Tolerance of the frequency ratios of `antisymmetric`.
     pub ratio_tolerance: Option<f64>,
+    /// What the shaped command may do, of `optimal`.
+    pub command: Option<Command>,
+    /// Most taps, of `optimal`.
+    pub taps: Option<u32>,
+    /// Which of the shortest shapers `optimal` takes.
+    pub prefer: Option<Prefer>,
     /// Impulses of `custom`, as `(time_s, amplitude)`.
     pub impulses: Vec<(f64, f64)>,
 }
@@ -360,6 +367,9 @@ impl ShaperChoice {
             amplitude: None,
             method: None,
             ratio_tolerance: None,
+            command: None,
+            taps: None,
+            prefer: None,
             impulses: Vec::new(),
         }
     }
@@ -378,8 +388,25 @@ pub struct AxisMode {
     pub tolerance: Option<f64>,
     /// The mode's own order, instead of the axis's.
     pub order: Option<u32>,
+    /// By how much the frequency may be off, relative and to either side.
+    pub frequency_band: Option<f64>,
+    /// Lowest and highest damping ratio that the mode may have.
+    pub damping_band: Option<[f64; 2]>,
     /// Share of the mode in the axis's response; only ratios count. Default 1.
     pub participation: f64,
     /// Where a mode that moves is for which value of the variable, in increasing order; empty for one that does not move.
     pub points: Vec<ModePoint>,
+}
+
+impl AxisMode {
+    /// The frequencies and damping ratios that the mode may have: just its own where the file gives no band. The own ones always belong to it.
+    pub fn band(&self) -> ModeBand {
+        let Mode { frequency_hz, damping } = self.mode;
+        let band = self.frequency_band.unwrap_or(0.0);
+        let [low, high] = self.damping_band.unwrap_or([damping; 2]);
+        ModeBand {
+            frequency_hz: [frequency_hz * (1.0 - band), frequency_hz * (1.0 + band)],
+            damping: [low.min(damping), high.max(damping)],
+        }
+    }
 }

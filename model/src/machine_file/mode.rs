@@ -33,6 +33,9 @@ const MEASURED: [&str; 2] = [MOTOR_HELD, FREE];
 /// The keys of the frequency.
 const UNDAMPED: &str = "frequency_hz";
 const DAMPED: &str = "damped_frequency_hz";
+/// The uncertainty of a mode.
+const FREQUENCY_BAND: &str = "frequency_band";
+const DAMPING_BAND: &str = "damping_band";
 /// The masses that a conversion takes.
 const MASSES: [&str; 2] = ["motor_mass", "load_mass"];
 
@@ -79,6 +82,17 @@ pub(super) const KEYS: &[Key] = &[
         "As in [axis.shaper], for this mode; else the axis's.",
     ),
     shaper::ORDER,
+    Key::new(
+        FREQUENCY_BAND,
+        Values::Number(DAMPING),
+        "By how much the frequency may be off, relative and to either side: 0.1 is ±10 %. `optimal` is designed for all of it.",
+    )
+    .default(Default::Number(0.0)),
+    Key::new(
+        DAMPING_BAND,
+        Values::PlainPair(DAMPING),
+        "[low, high], the damping ratios that the mode may have; else just `damping`.",
+    ),
     Key::new(
         "participation",
         Values::Number(PARTICIPATION),
@@ -134,7 +148,14 @@ fn read(table: &Table<'_, '_>, clock: Option<ClockSection>, axis_kind: Option<Sh
         let (mode, free) = read_fixed(table, clock, axis_kind)?;
         (mode, free, Vec::new())
     };
+    let frequency_band = table.number(FREQUENCY_BAND, DAMPING);
+    if let Some(band) = frequency_band {
+        check_band_below_half(table, &mode, band, clock?)?;
+    }
+    let damping_band = read_damping_band(table, &mode)?;
     Some(AxisMode {
+        frequency_band,
+        damping_band,
         mode,
         free,
         shaper: kind,
@@ -242,6 +263,42 @@ fn check_below_half(table: &Table<'_, '_>, mode: &Mode, clock: ClockSection) -> 
     let found = format!("{}{converted}", table.quote(key));
     let allowed = format!("below {} Hz, half of clock.sample_hz", short(half));
     table.contradiction(key, found, allowed, above_half_remedy(hz, clock.sample_hz));
+    None
+}
+
+/// The whole band of a mode lies below half the sample rate.
+fn check_band_below_half(table: &Table<'_, '_>, mode: &Mode, band: f64, clock: ClockSection) -> Option<()> {
+    let (half, high_hz) = (clock.sample_hz / 2.0, mode.frequency_hz * (1.0 + band));
+    if high_hz < half {
+        return Some(());
+    }
+    let most = half / mode.frequency_hz - 1.0;
+    let found = format!("{band}, a band up to {} Hz", short(high_hz));
+    let allowed = format!("a band that ends below {} Hz, half of clock.sample_hz", short(half));
+    let remedy = format!("choose a band below {}, or raise clock.sample_hz", short(most));
+    table.contradiction(FREQUENCY_BAND, found, allowed, remedy);
+    None
+}
+
+/// The band of the damping; `Some(None)` where there is none. It holds the damping itself, which of a mode that moves is not one number.
+fn read_damping_band(table: &Table<'_, '_>, mode: &Mode) -> Option<Option<[f64; 2]>> {
+    if !table.has(DAMPING_BAND) {
+        return Some(None);
+    }
+    let [low, high] = table.numbers::<2>(DAMPING_BAND, DAMPING)?;
+    let moves = table.has(moving::POINTS);
+    if low <= high && (moves || (low <= mode.damping && mode.damping <= high)) {
+        return Some(Some([low, high]));
+    }
+    let allowed = match moves {
+        true => "[low, high], low at most high".to_owned(),
+        false => format!("[low, high] with the damping of {} between them", short(mode.damping)),
+    };
+    table.refuse(
+        DAMPING_BAND,
+        allowed,
+        "give the lowest and the highest damping ratio that was measured",
+    );
     None
 }
 

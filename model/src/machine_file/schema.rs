@@ -85,6 +85,8 @@ fn values(values: Values) -> Map<String, Value> {
         }),
         Values::Word(words) => json!({ "type": "string", "enum": words() }),
         Values::Words(words) => json!({ "type": "array", "items": { "type": "string", "enum": words() } }),
+        Values::WordOrPair(words, range) => json!({ "anyOf": [{ "type": "string", "enum": words() }, pair(range)] }),
+        Values::PlainPair(range) => pair(range),
         Values::Pair(range) => pair(range.in_any_unit()),
         Values::Pairs(range, most) => json!({ "type": "array", "minItems": 1, "maxItems": most, "items": pair(range) }),
         Values::Rows(ranges, most) => {

@@ -5,7 +5,9 @@ use super::range::NumberRange;
 use super::table::Table;
 use super::{AxisMode, ClockSection, DEFAULT_EPSILON, DEFAULT_TOLERANCE, ShaperChoice};
 use crate::design::kind::ShaperKind;
+use crate::digitise::TAPS_MAX;
 use crate::unit::short;
+use posicast_optimal::{Command, Prefer};
 
 /// Residual that a shaper tolerates.
 pub(super) const TOLERANCE: NumberRange = NumberRange::positive(1.0).open_above();
@@ -25,8 +27,22 @@ const LOWEST_HZ: f64 = 1e9;
 const AMPLITUDES: [&str; 2] = ["ps", "um"];
 /// Methods of `antisymmetric`.
 const METHODS: [&str; 3] = ["exact", "two-impulse", "three-impulse"];
+/// What a command behind `optimal` may do, in a word.
+const POSITIVE: &str = "positive";
+/// Bounds of a shaped step, in steps.
+const SUMS: NumberRange = NumberRange::closed(-1000.0, 1000.0);
+/// Which of the shortest shapers `optimal` takes.
+const PREFERENCES: [(&str, Prefer); 3] = [
+    ("fewest-taps", Prefer::FewestTaps),
+    ("least-residual", Prefer::LeastResidual),
+    ("least-delay", Prefer::LeastDelay),
+];
 /// Base shapers of `periodic`.
 const BASES: [ShaperKind; 3] = [ShaperKind::ZvEi, ShaperKind::MultiEi, ShaperKind::ChebyshevEi];
+
+const COMMAND: &str = "command";
+const TAPS: &str = "taps";
+const PREFER: &str = "prefer";
 
 /// The keys of the table.
 pub(super) const KEYS: &[Key] = &[
@@ -74,6 +90,24 @@ pub(super) const KEYS: &[Key] = &[
     )
     .default(Default::Number(0.0)),
     Key::new(
+        COMMAND,
+        Values::WordOrPair(|| vec![POSITIVE], SUMS),
+        "What a step may do behind `optimal`: `positive`, only rise; or [low, high], stay between these multiples of itself.",
+    )
+    .default(Default::Word(POSITIVE)),
+    Key::new(
+        TAPS,
+        Values::Integer(2, TAPS_MAX as u32),
+        "Most taps of `optimal`: met by a longer duration where it must be.",
+    )
+    .default(Default::Integer(TAPS_MAX as u32)),
+    Key::new(
+        PREFER,
+        Values::Word(|| PREFERENCES.map(|(name, _)| name).to_vec()),
+        "Which of the shortest shapers `optimal` takes.",
+    )
+    .default(Default::Word("fewest-taps")),
+    Key::new(
         "impulses",
         Values::Pairs(IMPULSE, MAX_IMPULSES),
         "Impulses of `custom`, [time_s, amplitude]: first time 0, times increasing, sum of the amplitudes 1.",
@@ -90,7 +124,10 @@ pub(super) const ORDER: Key = Key::new(
 /// The kinds that have an order.
 const ORDER_KINDS: &[ShaperKind] = &[ShaperKind::ChebyshevEi, ShaperKind::Vibrationless];
 /// The keys that serve some kinds only, with those kinds.
-const KEYS_OF_KINDS: [(&str, &[ShaperKind]); 7] = [
+const KEYS_OF_KINDS: [(&str, &[ShaperKind]); 10] = [
+    (COMMAND, &[ShaperKind::Optimal]),
+    (TAPS, &[ShaperKind::Optimal]),
+    (PREFER, &[ShaperKind::Optimal]),
     ("order", ORDER_KINDS),
     ("epsilon", &[ShaperKind::Vibrationless]),
     ("base", &[ShaperKind::Periodic]),
@@ -148,8 +185,15 @@ pub(super) fn read(table: &Table<'_, '_>, clock: Option<ClockSection>) -> Option
     let amplitude = table.choice("amplitude", &AMPLITUDES).map(str::to_owned);
     let method = table.choice("method", &METHODS).map(str::to_owned);
     let ratio_tolerance = table.number("ratio_tolerance", RATIO_TOLERANCE);
+    let command = read_command(table);
+    let taps = table.integer(TAPS, 2, TAPS_MAX as u32);
+    let prefer = table.choice(PREFER, &PREFERENCES.map(|(name, _)| name));
+    let prefer = PREFERENCES.into_iter().find(|(name, _)| Some(*name) == prefer);
     let kind = kind?;
     Some(ShaperChoice {
+        command,
+        taps,
+        prefer: prefer.map(|(_, prefer)| prefer),
         kind,
         tolerance,
         order,
@@ -161,6 +205,24 @@ pub(super) fn read(table: &Table<'_, '_>, clock: Option<ClockSection>) -> Option
         ratio_tolerance,
         impulses: read_impulses(table, kind).unwrap_or_default(),
     })
+}
+
+/// `"positive"`, or the bounds of the partial sums; 1, where a step ends, lies within them.
+fn read_command(table: &Table<'_, '_>) -> Option<Command> {
+    if table.has_text(COMMAND) {
+        return table.choice(COMMAND, &[POSITIVE]).map(|_| Command::Positive);
+    }
+    let [low, high] = table.numbers::<2>(COMMAND, SUMS)?;
+    if low < high && low <= 1.0 && high >= 1.0 {
+        return Some(Command::PartialSums { low, high });
+    }
+    let allowed = "[low, high] with low below high, low at most 1 and high at least 1, where a step ends";
+    table.refuse(
+        COMMAND,
+        allowed,
+        "such as `command = [-1, 1]`, or `command = \"positive\"`",
+    );
+    None
 }
 
 fn read_impulses(table: &Table<'_, '_>, kind: ShaperKind) -> Option<Vec<(f64, f64)>> {

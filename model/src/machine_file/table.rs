@@ -78,6 +78,11 @@ impl<'r, 't> Table<'r, 't> {
         found == Some(word)
     }
 
+    /// Whether a text is under a key. Reports nothing.
+    pub(super) fn has_text(&self, key: &str) -> bool {
+        self.value(key).is_some_and(|value| value.get_ref().as_str().is_some())
+    }
+
     /// The number under a key, if it is one. Reports nothing.
     pub(super) fn number_if_any(&self, key: &str) -> Option<f64> {
         as_number(self.value(key)?.get_ref())

@@ -8,6 +8,9 @@ use crate::mode::Mode;
 use crate::unit::AxisUnit;
 use std::f64::consts::TAU;
 
+/// The papers' shapers are in continuous time: none looks at the samples.
+const SAMPLE_HZ: f64 = 1.0;
+
 /// An axis with these modes, all shaped as `shaper` says.
 pub(super) fn axis(shaper: ShaperChoice, modes: &[Mode]) -> AxisSection {
     AxisSection {
@@ -36,6 +39,8 @@ fn axis_mode(mode: Mode, shaper: Option<ShaperKind>) -> AxisMode {
         shaper,
         tolerance: None,
         order: None,
+        frequency_band: None,
+        damping_band: None,
         participation: 1.0,
         points: Vec::new(),
     }
@@ -56,7 +61,7 @@ pub(super) fn shaper(kind: ShaperKind, modes: &[Mode]) -> Result<ImpulseSequence
 
 /// The shaper that a choice gives for these modes.
 pub(super) fn chosen(shaper: ShaperChoice, modes: &[Mode]) -> Result<ImpulseSequence, DesignError> {
-    design_axis(&axis(shaper, modes)).map(|design| design.impulses)
+    design_axis(&axis(shaper, modes), SAMPLE_HZ).map(|design| design.impulses)
 }
 
 /// The convolution of one shaper per mode.
@@ -66,7 +71,7 @@ pub(super) fn hybrid(parts: &[(ShaperKind, Mode)]) -> Result<ImpulseSequence, De
         modes: parts.iter().map(|(kind, mode)| axis_mode(*mode, Some(*kind))).collect(),
         ..axis(ShaperChoice::of_kind(ShaperKind::None), &[])
     };
-    design_axis(&axis).map(|design| design.impulses)
+    design_axis(&axis, SAMPLE_HZ).map(|design| design.impulses)
 }
 
 /// Amplitudes of a shaper in order of time.

@@ -12,6 +12,7 @@
 //! as the row is made. [`PaperVerdict`] and [`Rule`] say how the two become a verdict.
 
 mod antisymmetry;
+mod beyond;
 mod chain;
 mod contour;
 pub mod controllers;
@@ -31,6 +32,7 @@ mod sliding_mode_law;
 mod vibrationless;
 mod xy_stage;
 
+pub use beyond::{BeyondRow, beyond};
 pub use figures::{Figure, FigureCurve};
 pub use row::{PaperRow, PaperVerdict, Value};
 pub use sheet::Rule;

@@ -34,7 +34,7 @@ fn unit_an_unknown_key_lists_the_allowed_ones_and_suggests_the_nearest() {
     assert_eq!(
         error.to_string(),
         "m.toml:15: axis.mode.dampng of axis x, mode 1: found the unknown key dampng; allowed: frequency_hz, \
-         damped_frequency_hz, damping, points, moves_with, measured, motor_mass, load_mass, shaper, tolerance, order, participation"
+         damped_frequency_hz, damping, points, moves_with, measured, motor_mass, load_mass, shaper, tolerance, order, frequency_band, damping_band, participation"
     );
     assert_eq!(
         error.problems()[0].remedy,

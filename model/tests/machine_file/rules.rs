@@ -152,3 +152,52 @@ fn unit_the_travel_fits_the_position_word_or_the_next_size_is_named() {
         Some([-0.03, 0.03])
     );
 }
+
+#[test]
+fn unit_a_command_is_positive_or_has_bounds_round_its_end() {
+    let optimal = |more: &str| SMALL.replace("\"zvd\"", &format!("\"optimal\"\n{more}"));
+    for right_one in [
+        "command = \"positive\"",
+        "command = [-1, 1]",
+        "command = [0, 1.2]",
+        "taps = 256",
+        "prefer = \"least-delay\"",
+    ] {
+        right(&optimal(right_one));
+    }
+    let place = "m.toml:12: axis.shaper.command of axis x";
+    for (command, found) in [
+        ("[0.5, 0.9]", "[0.5, 0.9]"),
+        ("[1.1, 2]", "[1.1, 2]"),
+        ("[1, 1]", "[1, 1]"),
+    ] {
+        let expected = format!(
+            "{place}: found {found}; allowed: [low, high] with low below high, low at most 1 and high at least 1, where a step ends"
+        );
+        assert_eq!(wrong(&optimal(&format!("command = {command}"))).to_string(), expected);
+    }
+    let expected = format!("{place}: found \"negative\"; allowed: positive");
+    assert_eq!(wrong(&optimal("command = \"negative\"")).to_string(), expected);
+    let expected = "m.toml:12: axis.shaper.taps of axis x: found 1; allowed: a whole number, 2 to 256";
+    assert_eq!(wrong(&optimal("taps = 1")).to_string(), expected);
+    let expected = "m.toml:12: axis.shaper.taps of axis x: found taps with kind zvd; allowed: taps with kind optimal";
+    assert_eq!(
+        wrong(&SMALL.replace("\"zvd\"", "\"zvd\"\ntaps = 4")).to_string(),
+        expected
+    );
+}
+
+#[test]
+fn unit_the_bands_of_a_mode_hold_it_and_end_below_half_the_sample_rate() {
+    let banded = |more: &str| SMALL.replace("damping = 0.1", &format!("damping = 0.1\n{more}"));
+    right(&banded("frequency_band = 0.2\ndamping_band = [0.05, 0.1]"));
+    let expected = "m.toml:15: axis.mode.damping_band of axis x, mode 1: found [0.2, 0.3]; allowed: [low, high] with the damping of \
+                    0.1 between them";
+    assert_eq!(wrong(&banded("damping_band = [0.2, 0.3]")).to_string(), expected);
+    let expected = "m.toml:15: axis.mode.frequency_band of axis x, mode 1: found 1; allowed: at least 0, below 1";
+    assert_eq!(wrong(&banded("frequency_band = 1")).to_string(), expected);
+    let high = banded("frequency_band = 0.3").replace("40.0", "4000");
+    let expected = "m.toml:15: axis.mode.frequency_band of axis x, mode 1: found 0.3, a band up to 5200 Hz; allowed: a band that ends \
+                    below 5000 Hz, half of clock.sample_hz";
+    assert_eq!(wrong(&high).to_string(), expected);
+}

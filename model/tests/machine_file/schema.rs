@@ -53,6 +53,9 @@ fn everything_with(path: &[String], value: toml::Value) -> toml::Table {
 
 /// Values that the schema refuses for a key.
 fn refused(key: &Value) -> Vec<toml::Value> {
+    if let Some(forms) = key["anyOf"].as_array() {
+        return forms.iter().flat_map(refused).collect();
+    }
     let number = |name: &str| key[name].as_f64();
     let mut values = match key["type"].as_str().unwrap() {
         "boolean" => vec![toml::Value::Integer(1)],

@@ -1,0 +1,217 @@
+//! The proof that no shorter shaper exists, checked.
+//!
+//! Let a shaper of the samples `0…N` leave `c_p = Σ a_i z_p^(N−i)` at a point `p` of a band, with `z_p = e^(−p)`. For any weights `y_p`
+//!
+//! ```text
+//! Σ Re(ȳ_p c_p) ≤ Σ |y_p| |c_p| ≤ Σ |y_p| tolerance_p · max |c_p|/tolerance_p
+//! ```
+//!
+//! and the left side is `Σ a_i h_i` with `h_i = Σ Re(ȳ_p z_p^(N−i))`. Amplitudes of sum 1 that are not negative have `Σ a_i h_i ≥ min h_i`. With partial sums `s_i`
+//! of which the last is 1, `Σ a_i h_i = h_N + Σ s_i (h_i − h_{i+1})`, and each term is least at a bound of `s_i`. So
+//! the least left side over all that the command may do, divided by `Σ |y_p| tolerance_p`, is a lower bound of the largest ratio of residual to
+//! tolerance. Above 1 it says that every shaper of `N` samples breaks a tolerance, and with it every shorter one: it would be one of `N`
+//! samples whose last amplitudes are 0, and what rings only decays.
+//!
+//! This is Farkas' lemma. The weights come from the solver's dual solution; where they come from does not matter here.
+
+use super::{UNIT, exponential_error};
+use crate::mode::Mode;
+use posicast_optimal::{Command, LowerBound, Request};
+
+/// A bound that was checked.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CheckedBound {
+    /// Duration in samples of the shapers that it is about.
+    pub samples: u32,
+    /// Every one of them leaves at least so many times the tolerance somewhere in a band.
+    pub ratio: f64,
+    /// Points of the bands that prove it.
+    pub points: usize,
+}
+
+/// Why weights prove nothing.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum ShorterError {
+    /// A point that is in no band, or has no number for a weight.
+    #[error("point {} of the proof is not in a band of the modes, or its weight is no number", index + 1)]
+    Point {
+        /// Index of the point.
+        index: usize,
+    },
+    /// A bound that excludes nothing.
+    #[error(
+        "the proof bounds the residual of every shaper of {samples} samples to at least {ratio:.9} of a tolerance only, which excludes none"
+    )]
+    Loose {
+        /// Duration.
+        samples: u32,
+        /// The bound.
+        ratio: f64,
+    },
+}
+
+/// Checks that no shaper of `proof.samples` samples or fewer holds what `request` asks for.
+///
+/// # Errors
+/// [`ShorterError`].
+pub fn check_shorter(request: &Request, proof: &LowerBound) -> Result<CheckedBound, ShorterError> {
+    let gains = Gains::of(request, proof)?;
+    let least = match request.command {
+        Command::Positive => {
+            let gains = gains.values.iter().map(|(gain, error)| gain - error);
+            gains.fold(f64::INFINITY, f64::min)
+        }
+        Command::PartialSums { low, high } => gains.least_over_sums(low, high),
+    };
+    let ratio = least / gains.norm * (1.0 - 8.0 * UNIT);
+    if ratio > 1.0 {
+        Ok(CheckedBound {
+            samples: proof.samples,
+            ratio,
+            points: proof.points.len(),
+        })
+    } else {
+        Err(ShorterError::Loose {
+            samples: proof.samples,
+            ratio,
+        })
+    }
+}
+
+/// `h_i` with a bound of its error, and `Σ |y_p| tolerance_p`, rounded up.
+struct Gains {
+    values: Vec<(f64, f64)>,
+    norm: f64,
+}
+
+impl Gains {
+    fn of(request: &Request, proof: &LowerBound) -> Result<Self, ShorterError> {
+        let mut values = vec![(0.0, 0.0); proof.samples as usize + 1];
+        let mut norm = 0.0;
+        // Each sum below rounds once per point.
+        let adding = 4.0 * (proof.points.len() as f64 + 1.0) * UNIT;
+        for (index, point) in proof.points.iter().enumerate() {
+            let [re, im] = point.weight;
+            let within = |value: f64, [low, high]: [f64; 2]| low <= value && value <= high;
+            let band = request
+                .bands
+                .get(point.band)
+                .filter(|band| within(point.frequency_hz, band.frequency_hz) && within(point.damping, band.damping));
+            let Some(band) = band.filter(|_| re.is_finite() && im.is_finite()) else {
+                return Err(ShorterError::Point { index });
+            };
+            let size = re.hypot(im) * (1.0 + 4.0 * UNIT);
+            norm += size * band.tolerance;
+            let mode = Mode {
+                frequency_hz: point.frequency_hz,
+                damping: point.damping,
+            };
+            let (decay, turn) = (
+                mode.decay() / request.sample_hz,
+                mode.omega_damped() / request.sample_hz,
+            );
+            let radius = mode.omega() / request.sample_hz;
+            for (sample, (gain, error)) in (0..=proof.samples).rev().zip(values.iter_mut()) {
+                let remaining = f64::from(sample);
+                let (sin, cos) = (turn * remaining).sin_cos();
+                *gain += (-decay * remaining).exp() * (re * cos - im * sin);
+                *error += size * (exponential_error(radius * remaining) + adding);
+            }
+        }
+        norm *= 1.0 + adding;
+        Ok(Self { values, norm })
+    }
+
+    /// Least `h_N + Σ s_i (h_i − h_{i+1})` with every `s_i` within the bounds.
+    fn least_over_sums(&self, low: f64, high: f64) -> f64 {
+        let (mut least, mut size) = (0.0, 0.0);
+        for pair in self.values.windows(2) {
+            let [(gain, error), (next, next_error)] = [pair[0], pair[1]];
+            let (step, spread) = (gain - next, (error + next_error) * (1.0 + 4.0 * UNIT));
+            let terms = [low, high].map(|bound| bound * step - bound.abs() * spread);
+            let term = terms[0].min(terms[1]);
+            least += term;
+            size += term.abs() + bound_size(low, high) * step.abs();
+        }
+        let last = self.values.last().map_or(0.0, |(gain, error)| gain - error);
+        let rounding = 4.0 * (self.values.len() as f64 + 1.0) * UNIT * (size + last.abs());
+        least + last - rounding
+    }
+}
+
+fn bound_size(low: f64, high: f64) -> f64 {
+    low.abs().max(high.abs())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use posicast_optimal::{Band, Prefer, WeightedPoint};
+
+    /// One undamped mode of 4 samples per period, exactly known, amplitudes not negative.
+    fn request(tolerance: f64) -> Request {
+        Request {
+            sample_hz: 4.0,
+            bands: vec![Band {
+                frequency_hz: [1.0; 2],
+                damping: [0.0; 2],
+                tolerance,
+            }],
+            command: Command::Positive,
+            prefer: Prefer::default(),
+            most_taps: 256,
+            longest_samples: 100,
+            delay_samples: None,
+        }
+    }
+
+    fn proof(samples: u32, frequency_hz: f64) -> LowerBound {
+        LowerBound {
+            samples,
+            points: vec![WeightedPoint {
+                band: 0,
+                frequency_hz,
+                damping: 0.0,
+                // Along the bisector of 1 and e^(−jπ/2).
+                weight: [0.5f64.sqrt(), -(0.5f64.sqrt())],
+            }],
+            ratio: 9.9,
+        }
+    }
+
+    #[test]
+    fn unit_two_samples_leave_the_side_of_a_square() {
+        // Amplitudes a and 1 − a at a quarter of a period: |a + j(1 − a)| ≥ 1/√2.
+        let found = check_shorter(&request(0.05), &proof(1, 1.0)).unwrap();
+        let exact = 0.5f64.sqrt() / 0.05;
+        assert!(
+            found.ratio <= exact && found.ratio > exact * (1.0 - 1e-13),
+            "{found:?} {exact}"
+        );
+        // With half a period, zv holds, and the same weights prove nothing.
+        let loose = check_shorter(&request(0.05), &proof(2, 1.0)).unwrap_err();
+        assert!(matches!(loose, ShorterError::Loose { samples: 2, .. }), "{loose}");
+        assert!(check_shorter(&request(0.71), &proof(1, 1.0)).is_err());
+    }
+
+    #[test]
+    fn unit_a_point_beside_the_band_is_no_proof() {
+        let error = check_shorter(&request(0.05), &proof(1, 1.0 + 1e-12)).unwrap_err();
+        assert_eq!(error, ShorterError::Point { index: 0 });
+        let mut no_band = proof(1, 1.0);
+        no_band.points[0].band = 1;
+        assert!(check_shorter(&request(0.05), &no_band).is_err());
+    }
+
+    #[test]
+    fn unit_sums_between_bounds_reach_less() {
+        // s_0 within −1 … 1, s_1 = 1: |s_0 + (1 − s_0)(−j)·…| is least at s_0 = ½, as without negative ones.
+        let signed = Request {
+            command: Command::PartialSums { low: -1.0, high: 1.0 },
+            ..request(0.05)
+        };
+        let found = check_shorter(&signed, &proof(1, 1.0)).unwrap();
+        let exact = 0.5f64.sqrt() / 0.05;
+        assert!((found.ratio - exact).abs() < 1e-11, "{found:?}");
+    }
+}

@@ -1,0 +1,114 @@
+//! `optimal`: the shortest shaper that there is on the sample grid, for modes that are not known exactly.
+//!
+//! The mathematics is in the crate `posicast_optimal`: a cone program per duration, bisection over the durations, the dual solution as the
+//! proof. Here the machine file's modes become its bands, its taps become impulses, and its rounding replaces that by largest remainder:
+//! units move between taps until the residual of the *integer* table is within every tolerance over the whole bands.
+
+use super::{AxisDesign, DesignError, Findings, JointError};
+use crate::digitise::{DELAY_MAX_SAMPLES, Digitised, TAPS_MAX, quantise};
+use crate::impulse::{Impulse, ImpulseSequence};
+use crate::machine_file::AxisSection;
+use crate::taps::{Tap, TapTable};
+use posicast_optimal::{Band, Command, LowerBound, Request, round_taps, shortest};
+
+/// What the design of `optimal` found beside its impulses.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Optimal {
+    /// What was asked for.
+    pub request: Request,
+    /// Least duration in samples, whatever the number of taps.
+    pub least_samples: u32,
+    /// Why one sample less does not do.
+    pub shorter: Option<LowerBound>,
+}
+
+/// What the machine file asks for.
+pub fn request(axis: &AxisSection, sample_hz: f64) -> Request {
+    let given = axis.shaper.as_ref();
+    let bands = axis.modes.iter().map(|mode| {
+        let band = mode.band();
+        Band {
+            frequency_hz: band.frequency_hz,
+            damping: band.damping,
+            tolerance: axis.tolerance_of(mode),
+        }
+    });
+    Request {
+        sample_hz,
+        bands: bands.collect(),
+        command: given.and_then(|shaper| shaper.command).unwrap_or(Command::Positive),
+        prefer: given.and_then(|shaper| shaper.prefer).unwrap_or_default(),
+        most_taps: given
+            .and_then(|shaper| shaper.taps)
+            .map_or(TAPS_MAX, |taps| taps as usize),
+        longest_samples: DELAY_MAX_SAMPLES,
+        delay_samples: None,
+    }
+}
+
+/// Designs the shaper of an axis.
+///
+/// # Errors
+/// [`DesignError::Mode`] for a mode that rings at no frequency; [`JointError::Optimal`] where the bands have no shaper.
+pub fn design(axis: &AxisSection, sample_hz: f64) -> Result<(ImpulseSequence, Optimal), DesignError> {
+    for mode in &axis.modes {
+        DesignError::check_mode(&mode.mode)?;
+    }
+    let request = request(axis, sample_hz);
+    let found = shortest(&request).map_err(JointError::from)?;
+    let impulses = found.taps.iter().map(|&(sample, amplitude)| Impulse {
+        time_s: f64::from(sample) / sample_hz,
+        amplitude,
+    });
+    let impulses = ImpulseSequence::new(impulses.collect()).map_err(|cause| DesignError::NoSequence {
+        what: format!("axis {}: shaper \"optimal\"", axis.name),
+        cause,
+    })?;
+    let findings = Optimal {
+        request,
+        least_samples: found.least_samples,
+        shorter: found.shorter,
+    };
+    Ok((impulses, findings))
+}
+
+/// The integer tables of shapers with one `F`: by largest remainder, those of `optimal` by their residual.
+///
+/// # Errors
+/// Those of [`quantise`].
+pub(crate) fn tables(
+    shapers: &[(&AxisDesign, &Digitised)],
+    fraction: Option<u32>,
+) -> Result<Vec<TapTable>, DesignError> {
+    let named: Vec<(&str, &Digitised)> = shapers
+        .iter()
+        .map(|(design, digitised)| (design.name.as_str(), *digitised))
+        .collect();
+    let rounded = quantise(&named, fraction)?;
+    let tables = rounded
+        .into_iter()
+        .zip(shapers)
+        .map(|(table, (design, digitised))| match &design.findings {
+            Findings::Optimal(found) => by_residual(&found.request, digitised, &table).unwrap_or(table),
+            _ => table,
+        });
+    Ok(tables.collect())
+}
+
+/// The table whose residual is within the tolerances; `None` where it does not fit the coefficients.
+fn by_residual(request: &Request, digitised: &Digitised, rounded: &TapTable) -> Option<TapTable> {
+    let taps: Vec<(u32, f64)> = digitised
+        .taps
+        .iter()
+        .map(|tap| (tap.delay_samples, tap.weight))
+        .collect();
+    let fraction = rounded.coefficient_fraction();
+    let units = round_taps(request, &taps, fraction);
+    let taps = units.into_iter().map(|(delay_samples, units)| {
+        Some(Tap {
+            delay_samples,
+            coefficient: i32::try_from(units).ok()?,
+        })
+    });
+    TapTable::new(fraction, taps.collect::<Option<_>>()?).ok()
+}

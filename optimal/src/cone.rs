@@ -1,0 +1,111 @@
+//! A cone program as rows, and the solver behind it.
+//!
+//! ```text
+//! minimise ½ Σ q_j x_j² + Σ c_j x_j     so that     A x + s = b,  s in a product of cones
+//! ```
+
+use clarabel::algebra::CscMatrix;
+use clarabel::solver::{DefaultSettingsBuilder, DefaultSolver, IPSolver, SolverStatus, SupportedConeT};
+
+/// A cone program under construction. Rows of one cone follow each other; the cones are given in the order of [`Rows`].
+#[derive(Debug, Default)]
+pub(crate) struct ConeProgram {
+    linear: Vec<f64>,
+    squares: Vec<f64>,
+    rows: Vec<usize>,
+    columns: Vec<usize>,
+    values: Vec<f64>,
+    right: Vec<f64>,
+    cones: Vec<SupportedConeT<f64>>,
+}
+
+/// What a solver found.
+#[derive(Debug, Clone)]
+pub(crate) struct Solution {
+    pub(crate) x: Vec<f64>,
+    /// Multipliers of the rows.
+    pub(crate) z: Vec<f64>,
+}
+
+/// Why there is no solution.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Unsolved {
+    /// There is none.
+    Infeasible,
+    /// The solver ended early, and says this.
+    Stopped(String),
+}
+
+impl ConeProgram {
+    /// Another variable with these coefficients in the objective, and its index.
+    pub(crate) fn variable(&mut self, linear: f64, square: f64) -> usize {
+        self.linear.push(linear);
+        self.squares.push(square);
+        self.linear.len() - 1
+    }
+
+    /// A row `Σ coefficient · x ≤ right`, `= right`, or one of a second-order cone.
+    fn row(&mut self, terms: impl IntoIterator<Item = (usize, f64)>, right: f64) {
+        let row = self.right.len();
+        for (column, value) in terms {
+            self.rows.push(row);
+            self.columns.push(column);
+            self.values.push(value);
+        }
+        self.right.push(right);
+    }
+
+    /// `Σ coefficient · x = right`.
+    pub(crate) fn equal(&mut self, terms: impl IntoIterator<Item = (usize, f64)>, right: f64) {
+        self.row(terms, right);
+        self.cones.push(SupportedConeT::ZeroConeT(1));
+    }
+
+    /// `Σ coefficient · x ≤ right`.
+    pub(crate) fn at_most(&mut self, terms: impl IntoIterator<Item = (usize, f64)>, right: f64) {
+        self.row(terms, right);
+        match self.cones.last_mut() {
+            Some(SupportedConeT::NonnegativeConeT(rows)) => *rows += 1,
+            _ => self.cones.push(SupportedConeT::NonnegativeConeT(1)),
+        }
+    }
+
+    /// `|(b_1 − row_1, b_2 − row_2)| ≤ b_0 − row_0`. The index of the first of the three rows is returned.
+    pub(crate) fn cone(&mut self, three: [(Vec<(usize, f64)>, f64); 3]) -> usize {
+        let first = self.right.len();
+        for (terms, right) in three {
+            self.row(terms, right);
+        }
+        self.cones.push(SupportedConeT::SecondOrderConeT(3));
+        first
+    }
+
+    pub(crate) fn solve(self) -> Result<Solution, Unsolved> {
+        let (columns, rows) = (self.linear.len(), self.right.len());
+        let on_diagonal: Vec<usize> = (0..columns).filter(|j| self.squares[*j] != 0.0).collect();
+        let squares: Vec<f64> = on_diagonal.iter().map(|j| self.squares[*j]).collect();
+        let quadratic = CscMatrix::new_from_triplets(columns, columns, on_diagonal.clone(), on_diagonal, squares);
+        let matrix = CscMatrix::new_from_triplets(rows, columns, self.rows, self.columns, self.values);
+        let settings = DefaultSettingsBuilder::default()
+            .verbose(false)
+            .max_threads(1)
+            .presolve_enable(false)
+            .tol_gap_abs(1e-9)
+            .tol_gap_rel(1e-9)
+            .tol_feas(1e-9)
+            .build()
+            .map_err(|error| Unsolved::Stopped(error.to_string()))?;
+        let mut solver = DefaultSolver::new(&quadratic, &self.linear, &matrix, &self.right, &self.cones, settings)
+            .map_err(|error| Unsolved::Stopped(error.to_string()))?;
+        solver.solve();
+        match solver.solution.status {
+            // Progress that stalls near the end leaves a point that the caller judges by its own arithmetic.
+            SolverStatus::Solved | SolverStatus::AlmostSolved | SolverStatus::InsufficientProgress => Ok(Solution {
+                x: solver.solution.x,
+                z: solver.solution.z,
+            }),
+            SolverStatus::PrimalInfeasible | SolverStatus::AlmostPrimalInfeasible => Err(Unsolved::Infeasible),
+            other => Err(Unsolved::Stopped(format!("{other:?}"))),
+        }
+    }
+}

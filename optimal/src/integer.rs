@@ -1,0 +1,175 @@
+//! Rounding to integers, and moving units between taps until the residual is within the tolerances again.
+//!
+//! Amplitudes that may not be negative are rounded by largest remainder, partial sums that have bounds by themselves: so what the command may
+//! do holds for the integers too, and their sum is exactly `2^F`. If the residual of the integers is then beyond a tolerance somewhere in a
+//! band, one unit after the other moves from a tap to another, the best of all such moves each time.
+
+use crate::band::Point;
+use crate::refine::peaks;
+use crate::{Command, Request, Tap};
+use num_complex::Complex64;
+
+/// Moves of one unit that are made at most.
+const MOVES: usize = 400;
+/// Times that the bands are searched for new peaks.
+const SEARCHES: usize = 12;
+/// Between more taps than this, units move to near ones only.
+const MANY_TAPS: usize = 48;
+/// How near.
+const NEAR: usize = 6;
+
+/// A tap of whole units of `2^−F`.
+type Units = (u32, i64);
+
+/// Rounds amplitudes of sum 1 to integers of sum `2^F`. None of them is 0, and the last stays.
+pub fn round_taps(request: &Request, taps: &[Tap], fraction: u32) -> Vec<(u32, i64)> {
+    let unity = 1i64 << fraction;
+    let mut units = match request.command {
+        Command::Positive => by_remainder(taps, unity),
+        Command::PartialSums { low, high } => by_sums(taps, unity, low, high),
+    };
+    units.retain(|(_, units)| *units != 0);
+    let mut points: Vec<Point> = Vec::new();
+    let mut best = units.clone();
+    let mut least = f64::INFINITY;
+    for _ in 0..SEARCHES {
+        let found = peaks(request, &as_taps(&units, unity));
+        let worst = found.first().map_or(0.0, |peak| peak.0);
+        if worst < least {
+            (least, best) = (worst, units.clone());
+        }
+        if worst <= 1.0 {
+            break;
+        }
+        points.extend(
+            found
+                .iter()
+                .filter(|(ratio, _)| *ratio > 0.9 * worst)
+                .map(|(_, point)| *point),
+        );
+        if !improve(request, &mut units, &points, unity) {
+            break;
+        }
+    }
+    best
+}
+
+fn as_taps(units: &[Units], unity: i64) -> Vec<Tap> {
+    let taps = units.iter();
+    taps.map(|(sample, units)| (*sample, *units as f64 / unity as f64))
+        .collect()
+}
+
+/// Floor, then one more for the largest remainders; every tap has at least a unit.
+fn by_remainder(taps: &[Tap], unity: i64) -> Vec<Units> {
+    let exact = |tap: &Tap| tap.1 * unity as f64;
+    let mut units: Vec<Units> = taps.iter().map(|tap| (tap.0, exact(tap).floor() as i64)).collect();
+    let missing = unity - units.iter().map(|(_, units)| units).sum::<i64>();
+    let mut order: Vec<usize> = (0..taps.len()).collect();
+    let remainder = |index: &usize| exact(&taps[*index]) - exact(&taps[*index]).floor();
+    order.sort_by(|a, b| remainder(b).total_cmp(&remainder(a)));
+    for index in order.iter().cycle().take(missing.clamp(0, taps.len() as i64) as usize) {
+        units[*index].1 += 1;
+    }
+    units
+}
+
+/// Each partial sum to the nearest integer within the bounds; the last is `2^F`.
+fn by_sums(taps: &[Tap], unity: i64, low: f64, high: f64) -> Vec<Units> {
+    let (low, high) = ((low * unity as f64).ceil() as i64, (high * unity as f64).floor() as i64);
+    let (mut sum, mut before) = (0.0, 0);
+    let last = taps.len().saturating_sub(1);
+    let mut units = Vec::with_capacity(taps.len());
+    for (index, tap) in taps.iter().enumerate() {
+        sum += tap.1;
+        let rounded = match index == last {
+            true => unity,
+            false => ((sum * unity as f64).round() as i64).clamp(low, high),
+        };
+        units.push((tap.0, rounded - before));
+        before = rounded;
+    }
+    units
+}
+
+/// Moves units until the worst of the points is within its tolerance, or nothing helps; whether anything moved.
+fn improve(request: &Request, units: &mut [Units], points: &[Point], unity: i64) -> bool {
+    let last = units.last().map_or(0, |tap| tap.0);
+    // What a unit of each tap is at each point, in units of its tolerance.
+    let shares: Vec<Vec<Complex64>> = units
+        .iter()
+        .map(|(sample, _)| {
+            let share =
+                |point: &Point| point.z(request.sample_hz).powu(last - sample) / (point.tolerance * unity as f64);
+            points.iter().map(share).collect()
+        })
+        .collect();
+    let mut sums: Vec<Complex64> = (0..points.len())
+        .map(|point| {
+            units
+                .iter()
+                .zip(&shares)
+                .map(|((_, units), share)| share[point] * *units as f64)
+                .sum()
+        })
+        .collect();
+    let mut now = excess(sums.iter().copied());
+    let mut moved = false;
+    for _ in 0..MOVES {
+        if now == 0.0 {
+            break;
+        }
+        let mut best: Option<(f64, usize, usize)> = None;
+        for from in 0..units.len() {
+            for to in 0..units.len() {
+                if from == to || (units.len() > MANY_TAPS && from.abs_diff(to) > NEAR) {
+                    continue;
+                }
+                let after = sums.iter().zip(shares[to].iter().zip(&shares[from]));
+                let found = excess(after.map(|(sum, (to, from))| sum + to - from));
+                if found < best.map_or(now, |(least, ..)| least) && may_move(request, units, from, to, unity) {
+                    best = Some((found, from, to));
+                }
+            }
+        }
+        let Some((found, from, to)) = best else {
+            break;
+        };
+        units[from].1 -= 1;
+        units[to].1 += 1;
+        for (sum, (to, from)) in sums.iter_mut().zip(shares[to].iter().zip(&shares[from])) {
+            *sum += to - from;
+        }
+        (now, moved) = (found, true);
+    }
+    moved
+}
+
+/// How far ratios of residual to tolerance lie above 1: 0 if none does.
+///
+/// A sum of squares and not the largest: at the largest alone, most moves are worse for one of two equal peaks, and a search would end there.
+fn excess(ratios: impl Iterator<Item = Complex64>) -> f64 {
+    ratios.map(|ratio| (ratio.norm_sqr() - 1.0).max(0.0).powi(2)).sum()
+}
+
+/// Whether a unit may move: no tap vanishes, and the command stays within its bounds.
+fn may_move(request: &Request, units: &[Units], from: usize, to: usize, unity: i64) -> bool {
+    match request.command {
+        Command::Positive => units[from].1 > 1,
+        Command::PartialSums { low, high } => {
+            let between = from.min(to)..from.max(to);
+            let change = if from < to { -1 } else { 1 };
+            let mut sum = 0;
+            let sums = units.iter().enumerate().map(|(index, (_, units))| {
+                sum += units;
+                (index, sum)
+            });
+            units[from].1 != 1
+                && units[to].1 != -1
+                && sums.filter(|(index, _)| between.contains(index)).all(|(_, sum)| {
+                    let moved = (sum + change) as f64 / unity as f64;
+                    low <= moved && moved <= high
+                })
+        }
+    }
+}

@@ -1,0 +1,177 @@
+//! The shortest input shaper there is on a sample grid, by cone programming.
+//!
+//! A shaper of `N` samples has one amplitude `a_i` per sample `0…N`, with sum 1. At a mode of angular frequency `ω` and damping ratio `ζ`
+//! it leaves, measured at its last sample,
+//!
+//! ```text
+//! V(p) = |Σ a_i z^(N−i)|,   z = e^(−p),   p = ω(ζ + j√(1−ζ²))/sample_hz
+//! ```
+//!
+//! which is the modulus of a linear function of the amplitudes: `V(p) ≤ tolerance` is a second-order cone. A band of frequency and damping is a
+//! cone at each of its points. What the command may do is linear too ([`Command`]). So for one `N` the least residual is a cone
+//! program, and the least `N` at which it is within the tolerance is found by bisection: what `N` samples hold, `N + 1` hold as well.
+//!
+//! ```text
+//! bands ─► search: bisection over N ─► refine: worst points of the bands join the program ─► program ─► cone solver
+//!            │
+//!            ├─► LowerBound: the multipliers of N − 1, with which plain arithmetic proves that no shorter shaper exists
+//!            └─► prefer: fewest taps, least residual or least delay at that N
+//! ```
+//!
+//! `V` is the modulus of an analytic function of `p`, so its maximum over a band lies on the band's edge ([`Band`]): only four curves are
+//! searched. Rounding to integers is [`round_taps`].
+//!
+//! The crate knows neither machine files nor hardware. The proofs are checked elsewhere, by code that shares nothing with this.
+
+mod band;
+mod cone;
+mod front;
+mod integer;
+mod prefer;
+mod program;
+mod refine;
+mod search;
+
+pub use band::Band;
+pub use front::{FrontPoint, front};
+pub use integer::round_taps;
+pub use search::{Shortest, shortest};
+
+/// What a command that passes the shaper may do.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Command {
+    /// No amplitude is negative: the shaped command moves forward only, between the ends of the command.
+    Positive,
+    /// The partial sums of the amplitudes, which are the shaped unit step, stay within these bounds.
+    PartialSums {
+        /// Lower bound, at most 1.
+        low: f64,
+        /// Upper bound, at least 1.
+        high: f64,
+    },
+}
+
+/// Which of the shapers of least duration is chosen.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Prefer {
+    /// Few taps. The search is by reweighting and by leaving out taps one by one: it finds few, and does not prove that no fewer do.
+    #[default]
+    FewestTaps,
+    /// The least mean square of the residual over the bands.
+    LeastResidual,
+    /// The least mean delay `Σ a_i i`.
+    LeastDelay,
+}
+
+/// What is to be designed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Request {
+    /// Samples per second.
+    pub sample_hz: f64,
+    /// The modes with their uncertainty and tolerances; at least one.
+    pub bands: Vec<Band>,
+    /// What the command may do.
+    pub command: Command,
+    /// What is preferred among the shortest.
+    pub prefer: Prefer,
+    /// Most taps.
+    pub most_taps: usize,
+    /// Longest duration that is tried, in samples.
+    pub longest_samples: u32,
+    /// Mean delay in samples that the shaper is to have, where it must arrive with others.
+    pub delay_samples: Option<f64>,
+}
+
+/// A tap: the amplitude at a sample.
+pub type Tap = (u32, f64);
+
+/// A lower bound of what every shaper of `samples` samples leaves: weights of the residuals at some points of the bands.
+///
+/// With `c_p` the sum `Σ a_i z_p^(N−i)` and weights `y_p`, of which `Σ tolerance_p |y_p| = 1`, the largest ratio of a residual to its tolerance is at
+/// least `Re Σ ȳ_p c_p`; and that is at least its minimum over all amplitudes that the command allows, which is found sample by sample.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LowerBound {
+    /// `N`.
+    pub samples: u32,
+    /// The points.
+    pub points: Vec<WeightedPoint>,
+    /// Lower bound of the largest ratio of residual to tolerance, as the solver found it.
+    pub ratio: f64,
+}
+
+/// A point of a band, with its weight in a [`LowerBound`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct WeightedPoint {
+    /// Index of the band.
+    pub band: usize,
+    /// Undamped natural frequency in Hz.
+    pub frequency_hz: f64,
+    /// Damping ratio.
+    pub damping: f64,
+    /// Real and imaginary part of `y`.
+    pub weight: [f64; 2],
+}
+
+/// Why there is no shaper.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum OptimalError {
+    /// A band that reaches 0 Hz or half the sample rate, or the damping of a mode that does not ring.
+    #[error(
+        "the band of mode {} reaches from {low_hz} to {high_hz} Hz: it must lie above 0 and below {half_sample_hz} Hz, half the sample rate",
+        band + 1
+    )]
+    Band {
+        /// Index of the band.
+        band: usize,
+        /// Its lowest frequency.
+        low_hz: f64,
+        /// Its highest frequency.
+        high_hz: f64,
+        /// Half the sample rate.
+        half_sample_hz: f64,
+    },
+    /// A tolerance that is none.
+    #[error("the tolerance {tolerance} of mode {} must lie above 0 and below 1", band + 1)]
+    Tolerance {
+        /// Index of the band.
+        band: usize,
+        /// The tolerance.
+        tolerance: f64,
+    },
+    /// Nothing within the longest duration.
+    #[error(
+        "no shaper of up to {longest_samples} samples ({:.6} s) stays within the tolerances: the best leaves {ratio:.4} times what is allowed",
+        f64::from(*longest_samples) / sample_hz
+    )]
+    TooLong {
+        /// The longest duration that was tried.
+        longest_samples: u32,
+        /// Sample rate.
+        sample_hz: f64,
+        /// Least of the largest ratios of residual to tolerance.
+        ratio: f64,
+    },
+    /// A tap budget that is not met.
+    #[error(
+        "no shaper of up to {longest_samples} samples was found with {budget} taps: the fewest found is {fewest}, with a duration of {samples} \
+         samples"
+    )]
+    TapBudget {
+        /// Taps allowed.
+        budget: usize,
+        /// Fewest taps found.
+        fewest: usize,
+        /// Duration at which they were.
+        samples: u32,
+        /// The longest duration that was tried.
+        longest_samples: u32,
+    },
+    /// The solver ended without a solution.
+    #[error("the cone program of {samples} samples did not converge: {status}")]
+    Solver {
+        /// Duration.
+        samples: u32,
+        /// What the solver says.
+        status: String,
+    },
+}

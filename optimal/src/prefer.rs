@@ -1,0 +1,218 @@
+//! Which of the shapers of least duration: few taps, least residual, least delay.
+//!
+//! Few taps is no convex aim. The amplitudes of one program weigh those of the next, so that small ones become smaller (reweighted L1); what is
+//! left without them is solved again on the samples that remain, and then they are left out one by one as long as the rest holds.
+
+use crate::band::Point;
+use crate::program::Objective;
+use crate::refine::{Points, Refined, SLACK, refine, significant, step};
+use crate::{OptimalError, Prefer, Request, Tap};
+
+/// Residual that is left for rounding to integers, of each tolerance, where the duration allows it: with two dozen taps of 16 fraction bits, the units
+/// of the last place add up to about this.
+const ROUNDING: f64 = 8e-5;
+/// Largest part of a tolerance that is left for rounding.
+const MOST_ROUNDING: f64 = 0.02;
+/// Rounds of reweighting.
+const REWEIGHTS: i32 = 6;
+/// Amplitudes below this are to vanish in reweighting.
+const NOTHING: f64 = 1e-3;
+/// Amplitudes below this are none.
+const NONE: f64 = 1e-5;
+/// A budget of taps is looked for up to so many times the least duration.
+const BUDGET_REACH: u32 = 4;
+
+/// The taps of the preferred shaper of at least as many samples as those that were found to hold, within the budget of taps.
+pub(crate) fn choose(request: &Request, held: Vec<Tap>, points: &mut Points) -> Result<Vec<Tap>, OptimalError> {
+    let least = held.last().map_or(0, |tap| tap.0);
+    let taps = preferred(request, held, points)?;
+    match taps.len() <= request.most_taps {
+        true => Ok(taps),
+        false => within_budget(request, least, points),
+    }
+}
+
+/// The levels of the tolerances that are tried: room for rounding first, all of them last.
+fn levels(request: &Request) -> [f64; 4] {
+    let tolerance = request
+        .bands
+        .iter()
+        .fold(f64::INFINITY, |least, band| least.min(band.tolerance));
+    let room = (ROUNDING / tolerance).min(MOST_ROUNDING);
+    [1.0 - room, 1.0 - room / 4.0, 1.0, 1.0 + SLACK / 2.0]
+}
+
+/// The preferred taps at a duration, from amplitudes on all its samples that hold.
+fn preferred(request: &Request, held: Vec<Tap>, points: &mut Points) -> Result<Vec<Tap>, OptimalError> {
+    let spread = spread(request, held.last().map_or(0, |tap| tap.0));
+    for level in levels(request) {
+        let found = match request.prefer {
+            Prefer::FewestTaps => fewest_taps(request, &held, points, level)?,
+            Prefer::LeastResidual => pruned(request, &held, points, Objective::Squares(&spread), level)?,
+            Prefer::LeastDelay => pruned(request, &held, points, Objective::Delay, level)?,
+        };
+        if let Some(taps) = found {
+            return Ok(taps);
+        }
+    }
+    Ok(significant(&held))
+}
+
+fn spread(request: &Request, samples: u32) -> Vec<Point> {
+    let bands = request.bands.iter().enumerate();
+    bands
+        .flat_map(|(index, band)| band.spread_points(index, samples, request.sample_hz))
+        .collect()
+}
+
+/// The samples of the taps that are not nothing, with the first and the last.
+fn support(taps: &[Tap], least: f64) -> Vec<u32> {
+    let ends = [taps.first(), taps.last()].map(|tap| tap.map(|tap| tap.0));
+    let kept = taps
+        .iter()
+        .filter(|tap| tap.1.abs() > least || ends.contains(&Some(tap.0)));
+    kept.map(|tap| tap.0).collect()
+}
+
+/// An objective on all samples of `taps`, then once more on those that have an amplitude; `None` where the level does not hold.
+fn pruned(
+    request: &Request,
+    held: &[Tap],
+    points: &mut Points,
+    objective: Objective<'_>,
+    level: f64,
+) -> Result<Option<Vec<Tap>>, OptimalError> {
+    let samples: Vec<u32> = held.iter().map(|tap| tap.0).collect();
+    let Refined::Within(found) = refine(request, &samples, points, objective, level)? else {
+        return Ok(None);
+    };
+    match refine(request, &support(&found, NONE), points, objective, level)? {
+        Refined::Within(few) => Ok(Some(few)),
+        Refined::Beyond(_) => Ok(Some(significant(&found))),
+    }
+}
+
+/// Few taps, from amplitudes on all samples that hold; `None` where the level does not hold.
+fn fewest_taps(
+    request: &Request,
+    held: &[Tap],
+    points: &mut Points,
+    level: f64,
+) -> Result<Option<Vec<Tap>>, OptimalError> {
+    let samples: Vec<u32> = held.iter().map(|tap| tap.0).collect();
+    let mut taps = held.to_vec();
+    let mut supports = vec![support(held, NONE)];
+    for round in 0..REWEIGHTS {
+        let floor = 0.03 * 0.3f64.powi(round);
+        let weights: Vec<f64> = taps.iter().map(|tap| floor / (tap.1.abs() + floor)).collect();
+        let Some(found) = step(request, &samples, points, Objective::Weighted(&weights), level)? else {
+            break;
+        };
+        taps = found;
+        let kept = support(&taps, NOTHING);
+        let settled = supports.last() == Some(&kept);
+        supports.push(kept);
+        if settled {
+            break;
+        }
+    }
+    supports.dedup();
+    for kept in supports.iter().rev() {
+        points.prune();
+        if let Refined::Within(found) = refine(request, kept, points, Objective::Ratio, level)? {
+            return leave_out(request, found, points, level).map(Some);
+        }
+    }
+    Ok(None)
+}
+
+/// Leaves out taps as long as the others hold, the smallest first. One that cannot be left out of many cannot be left out of fewer: each is tried
+/// once.
+fn leave_out(request: &Request, mut taps: Vec<Tap>, points: &mut Points, level: f64) -> Result<Vec<Tap>, OptimalError> {
+    let ends = [taps.first(), taps.last()].map(|tap| tap.map(|tap| tap.0));
+    let mut tried: Vec<u32> = ends.into_iter().flatten().collect();
+    loop {
+        let untried = taps.iter().filter(|tap| !tried.contains(&tap.0));
+        let Some(&(smallest, _)) = untried.min_by(|a, b| a.1.abs().total_cmp(&b.1.abs())) else {
+            return Ok(taps);
+        };
+        tried.push(smallest);
+        let rest = taps.iter().map(|tap| tap.0).filter(|sample| *sample != smallest);
+        let rest: Vec<u32> = rest.collect();
+        points.prune();
+        if let Refined::Within(found) = refine(request, &rest, points, Objective::Ratio, level)? {
+            taps = found;
+        }
+    }
+}
+
+/// The taps that a request of few of them gets at a duration; `None` where it does not hold.
+pub(crate) fn fewest_at(
+    request: &Request,
+    samples: u32,
+    points: &mut Points,
+) -> Result<Option<Vec<Tap>>, OptimalError> {
+    let all: Vec<u32> = (0..=samples).collect();
+    points.prune();
+    match refine(request, &all, points, Objective::Ratio, 1.0)? {
+        Refined::Within(held) => preferred(request, held, points).map(Some),
+        Refined::Beyond(_) => Ok(None),
+    }
+}
+
+/// The shortest duration found at which the budget of taps is met, and its taps.
+fn within_budget(request: &Request, least: u32, points: &mut Points) -> Result<Vec<Tap>, OptimalError> {
+    let few = Request {
+        prefer: Prefer::FewestTaps,
+        ..request.clone()
+    };
+    let longest = request.longest_samples.min(least.saturating_mul(BUDGET_REACH));
+    let mut fewest = (usize::MAX, least);
+    let mut attempt = |samples: u32, points: &mut Points| -> Result<Option<Vec<Tap>>, OptimalError> {
+        let Some(taps) = fewest_at(&few, samples, points)? else {
+            return Ok(None);
+        };
+        if taps.len() < fewest.0 {
+            fewest = (taps.len(), samples);
+        }
+        Ok((taps.len() <= request.most_taps).then_some(taps))
+    };
+    let (mut low, mut high) = (least, least);
+    let mut step = least.div_ceil(64).max(1);
+    let mut found = loop {
+        if let Some(taps) = attempt(high, points)? {
+            break taps;
+        }
+        if high == longest {
+            return Err(OptimalError::TapBudget {
+                budget: request.most_taps,
+                fewest: fewest.0,
+                samples: fewest.1,
+                longest_samples: longest,
+            });
+        }
+        low = high;
+        high = high.saturating_add(step).min(longest);
+        step *= 2;
+    };
+    while high - low > 1 {
+        let middle = low + (high - low) / 2;
+        match attempt(middle, points)? {
+            Some(taps) => (high, found) = (middle, taps),
+            None => low = middle,
+        }
+    }
+    let spread = spread(request, high);
+    let objective = match request.prefer {
+        Prefer::FewestTaps => return Ok(found),
+        Prefer::LeastResidual => Objective::Squares(&spread),
+        Prefer::LeastDelay => Objective::Delay,
+    };
+    for level in levels(request) {
+        let samples: Vec<u32> = found.iter().map(|tap| tap.0).collect();
+        if let Refined::Within(taps) = refine(request, &samples, points, objective, level)? {
+            return Ok(taps);
+        }
+    }
+    Ok(found)
+}

@@ -1,0 +1,218 @@
+//! The cone program of a shaper on chosen samples, at chosen points of the bands.
+//!
+//! With [`Command::Positive`] the variables are the amplitudes. With [`Command::PartialSums`] they are the partial sums `s_j`, so that a bound is a bound
+//! of one variable: `a_j = s_j − s_{j−1}`, the last sum is 1.
+
+use crate::band::Point;
+use crate::cone::{ConeProgram, Solution, Unsolved};
+use crate::{Command, Request, Tap};
+use num_complex::Complex64;
+
+/// What is least.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Objective<'a> {
+    /// The largest ratio of residual to tolerance; nothing bounds it.
+    Ratio,
+    /// `Σ weight |a|`, one weight per sample.
+    Weighted(&'a [f64]),
+    /// `Σ a_i i`.
+    Delay,
+    /// The mean square of the ratios at these points.
+    Squares(&'a [Point]),
+}
+
+/// A shaper on chosen samples.
+pub(crate) struct Program<'a> {
+    pub(crate) request: &'a Request,
+    /// Samples that may have an amplitude, in order; the last is the duration.
+    pub(crate) samples: &'a [u32],
+    pub(crate) points: &'a [Point],
+    /// Most that a ratio of residual to tolerance may be, where the ratio is not the objective.
+    pub(crate) level: f64,
+}
+
+/// What a program found.
+pub(crate) struct Found {
+    /// One amplitude per sample, with sum 1 and within the command's bounds.
+    pub(crate) taps: Vec<Tap>,
+    /// Weights of the points, as of a [`LowerBound`](crate::LowerBound), not yet of sum 1.
+    pub(crate) weights: Vec<Complex64>,
+}
+
+/// A linear function of the variables.
+type Terms = Vec<(usize, f64)>;
+
+impl Program<'_> {
+    /// The variables of the amplitudes are the first ones.
+    fn variables(&self) -> usize {
+        match self.request.command {
+            Command::Positive => self.samples.len(),
+            Command::PartialSums { .. } => self.samples.len() - 1,
+        }
+    }
+
+    /// `Σ factor_j a_j` as terms of the variables, and a constant.
+    fn combined<T>(&self, factors: &[T]) -> (Vec<(usize, T)>, T)
+    where
+        T: Copy + std::ops::Sub<Output = T> + Default,
+    {
+        match self.request.command {
+            Command::Positive => (factors.iter().copied().enumerate().collect(), T::default()),
+            Command::PartialSums { .. } => {
+                let terms = factors.windows(2).map(|pair| pair[0] - pair[1]).enumerate();
+                (terms.collect(), factors.last().copied().unwrap_or_default())
+            }
+        }
+    }
+
+    /// Real and imaginary part of the residual at a point in units of its tolerance, each as terms and a constant.
+    fn residual(&self, point: &Point) -> [(Terms, f64); 2] {
+        let powers = powers(self.samples, point.z(self.request.sample_hz));
+        let (terms, constant) = self.combined(&powers);
+        let part = |of: fn(&Complex64) -> f64| {
+            let terms = terms.iter().map(|(j, value)| (*j, of(value) / point.tolerance));
+            (terms.collect(), of(&constant) / point.tolerance)
+        };
+        [part(|value| value.re), part(|value| value.im)]
+    }
+
+    pub(crate) fn solve(&self, objective: Objective<'_>) -> Result<Found, Unsolved> {
+        let mut program = ConeProgram::default();
+        let delays: Vec<f64> = self.samples.iter().map(|sample| f64::from(*sample)).collect();
+        let (delay_terms, delay_constant) = self.combined(&delays);
+        let of_delay = |sign: f64| {
+            let mut linear = vec![0.0; self.variables()];
+            for (j, value) in &delay_terms {
+                linear[*j] = sign * value;
+            }
+            linear
+        };
+        let linear = match (objective, self.request.command) {
+            (Objective::Delay, _) => of_delay(1.0),
+            (Objective::Weighted(weights), Command::Positive) => weights.to_vec(),
+            _ => vec![0.0; self.variables()],
+        };
+        let scale = linear.iter().fold(0.0f64, |most, value| most.max(value.abs())).max(1.0);
+        for value in linear {
+            program.variable(value / scale, 0.0);
+        }
+        self.bounds(&mut program);
+        if let Some(delay) = self.request.delay_samples {
+            let scale = delays.last().copied().unwrap_or(1.0).max(1.0);
+            let terms = delay_terms.iter().map(|(j, value)| (*j, value / scale));
+            program.equal(terms.collect::<Terms>(), (delay - delay_constant) / scale);
+        }
+        let ratio = match objective {
+            Objective::Ratio => Some(program.variable(1.0, 0.0)),
+            _ => None,
+        };
+        match objective {
+            Objective::Weighted(weights) => self.magnitudes(&mut program, weights),
+            Objective::Squares(points) => {
+                let square = 2.0 / points.len().max(1) as f64;
+                for (terms, constant) in points.iter().flat_map(|point| self.residual(point)) {
+                    let value = program.variable(0.0, square);
+                    program.equal(terms.into_iter().chain([(value, -1.0)]), -constant);
+                }
+            }
+            _ => {}
+        }
+        let negative = |(terms, constant): (Terms, f64)| {
+            let terms = terms.into_iter().map(|(j, value)| (j, -value)).collect::<Terms>();
+            (terms, constant)
+        };
+        let rows: Vec<usize> = self
+            .points
+            .iter()
+            .map(|point| {
+                let [re, im] = self.residual(point);
+                let most = match ratio {
+                    Some(ratio) => (vec![(ratio, -1.0)], 0.0),
+                    None => (Vec::new(), self.level),
+                };
+                program.cone([most, negative(re), negative(im)])
+            })
+            .collect();
+        let solution = program.solve()?;
+        let weights = rows.iter().zip(self.points).map(|(row, point)| {
+            let [re, im] = [1, 2].map(|part| -solution.z[row + part] / point.tolerance);
+            Complex64::new(re, im)
+        });
+        Ok(Found {
+            weights: weights.collect(),
+            taps: self.taps(&solution),
+        })
+    }
+
+    /// What the command may do.
+    fn bounds(&self, program: &mut ConeProgram) {
+        match self.request.command {
+            Command::Positive => {
+                program.equal((0..self.variables()).map(|j| (j, 1.0)), 1.0);
+                for j in 0..self.variables() {
+                    program.at_most([(j, -1.0)], 0.0);
+                }
+            }
+            Command::PartialSums { low, high } => {
+                for j in 0..self.variables() {
+                    program.at_most([(j, 1.0)], high);
+                    program.at_most([(j, -1.0)], -low);
+                }
+            }
+        }
+    }
+
+    /// `Σ weight |a|` of amplitudes that may be negative: a variable at least as large as each of them and as its negative.
+    fn magnitudes(&self, program: &mut ConeProgram, weights: &[f64]) {
+        if self.request.command == Command::Positive {
+            return;
+        }
+        let scale = weights.iter().fold(1.0f64, |most, value| most.max(*value));
+        let last = self.samples.len() - 1;
+        for (j, weight) in weights.iter().enumerate() {
+            let size = program.variable(weight / scale, 0.0);
+            for sign in [1.0, -1.0] {
+                let own = (j < last).then_some((j, sign));
+                let before = j.checked_sub(1).map(|before| (before, -sign));
+                let constant = if j == last { sign } else { 0.0 };
+                program.at_most(own.into_iter().chain(before).chain([(size, -1.0)]), -constant);
+            }
+        }
+    }
+
+    /// The amplitudes of a solution, put within the bounds that the solver keeps only nearly.
+    fn taps(&self, solution: &Solution) -> Vec<Tap> {
+        let x = &solution.x[..self.variables()];
+        let amplitudes: Vec<f64> = match self.request.command {
+            Command::Positive => {
+                let clipped: Vec<f64> = x.iter().map(|value| value.max(0.0)).collect();
+                let sum: f64 = clipped.iter().sum();
+                clipped.iter().map(|value| value / sum).collect()
+            }
+            Command::PartialSums { low, high } => {
+                let sums = x.iter().map(|value| value.clamp(low, high)).chain([1.0]);
+                let mut before = 0.0;
+                sums.map(|sum| {
+                    let amplitude = sum - before;
+                    before = sum;
+                    amplitude
+                })
+                .collect()
+            }
+        };
+        self.samples.iter().copied().zip(amplitudes).collect()
+    }
+}
+
+/// `z^(N−i)` for each sample `i` of a list whose last is `N`.
+pub(crate) fn powers(samples: &[u32], z: Complex64) -> Vec<Complex64> {
+    let mut powers = vec![Complex64::new(1.0, 0.0); samples.len()];
+    for index in (1..samples.len()).rev() {
+        let step = match samples[index] - samples[index - 1] {
+            1 => z,
+            gap => z.powu(gap),
+        };
+        powers[index - 1] = powers[index] * step;
+    }
+    powers
+}

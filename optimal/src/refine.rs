@@ -1,0 +1,218 @@
+//! From points to bands: solve, find the worst points of the whole bands, let them join, solve again.
+
+use crate::band::Point;
+use crate::cone::Unsolved;
+use crate::program::{Found, Objective, Program, powers};
+use crate::{Command, LowerBound, OptimalError, Request, Tap, WeightedPoint};
+use num_complex::Complex64;
+
+/// Slack of a tolerance, as of every insensitivity.
+pub(crate) const SLACK: f64 = 1e-6;
+/// Rounds after which the points are taken for enough; each adds the peaks of the round before, and a handful do.
+const ROUNDS: usize = 40;
+/// Weights below this part of all have no say in a bound.
+const IDLE: f64 = 1e-7;
+
+/// What holds on chosen samples.
+pub(crate) enum Refined {
+    /// These amplitudes are within every tolerance times the level, over the whole bands.
+    Within(Vec<Tap>),
+    /// Nothing is; with the proof, where the ratio was the objective.
+    Beyond(Option<LowerBound>),
+}
+
+/// The points that the bands are seen at.
+#[derive(Debug, Clone)]
+pub(crate) struct Points {
+    points: Vec<Point>,
+    /// Whether the last program needed the point.
+    used: Vec<bool>,
+}
+
+impl Points {
+    pub(crate) fn new(request: &Request) -> Self {
+        let bands = request.bands.iter().enumerate();
+        let points: Vec<Point> = bands.flat_map(|(index, band)| band.first_points(index)).collect();
+        Self {
+            used: vec![true; points.len()],
+            points,
+        }
+    }
+
+    /// Forgets the points that the last program did not need: those of another duration lie elsewhere.
+    pub(crate) fn prune(&mut self) {
+        let mut used = self.used.iter();
+        self.points.retain(|_| used.next().copied().unwrap_or(true));
+        self.used = vec![true; self.points.len()];
+    }
+
+    /// Lets the peaks above a level join.
+    fn join(&mut self, peaks: &[(f64, Point)], level: f64) {
+        let above = peaks.iter().filter(|(ratio, _)| *ratio > level * (1.0 + 0.1 * SLACK));
+        for (_, point) in above {
+            self.points.push(*point);
+            self.used.push(true);
+        }
+    }
+}
+
+/// Solves on `samples` for an objective, with as many points as it takes.
+pub(crate) fn refine(
+    request: &Request,
+    samples: &[u32],
+    points: &mut Points,
+    objective: Objective<'_>,
+    level: f64,
+) -> Result<Refined, OptimalError> {
+    let limit = (level * (1.0 + SLACK)).min(1.0 + SLACK);
+    let mut last = f64::INFINITY;
+    for _ in 0..ROUNDS {
+        let Some(found) = solve_once(request, samples, points, objective, level)? else {
+            return Ok(Refined::Beyond(None));
+        };
+        if matches!(objective, Objective::Ratio) && request.delay_samples.is_none() {
+            let bound = lower_bound(request, samples, &points.points, &found.weights);
+            if bound.ratio > level {
+                return Ok(Refined::Beyond(Some(bound)));
+            }
+        }
+        let peaks = peaks(request, &found.taps);
+        let worst = peaks.first().map_or(0.0, |peak| peak.0);
+        if worst <= limit {
+            return Ok(Refined::Within(found.taps));
+        }
+        // Peaks that come no nearer: the solver is as accurate as it gets.
+        if worst >= last && worst <= level * (1.0 + 10.0 * SLACK) {
+            break;
+        }
+        last = worst;
+        points.join(&peaks, level);
+    }
+    Ok(Refined::Beyond(None))
+}
+
+/// How near the least ratio is found.
+const NEAR: f64 = 1e-4;
+
+/// The least largest ratio of residual to tolerance over the bands, on chosen samples.
+pub(crate) fn least_ratio(request: &Request, samples: &[u32], points: &mut Points) -> Result<f64, OptimalError> {
+    let mut least = f64::INFINITY;
+    for _ in 0..ROUNDS {
+        points.prune();
+        let Some(found) = solve_once(request, samples, points, Objective::Ratio, 1.0)? else {
+            break;
+        };
+        let bound = lower_bound(request, samples, &points.points, &found.weights).ratio;
+        let peaks = peaks(request, &found.taps);
+        least = least.min(peaks.first().map_or(0.0, |peak| peak.0));
+        if least <= bound * (1.0 + NEAR) + NEAR * NEAR {
+            break;
+        }
+        points.join(&peaks, bound);
+    }
+    Ok(least)
+}
+
+/// Solves once at the points as they are, and lets the peaks of what was found join them: a step of a search that ends with [`refine`].
+pub(crate) fn step(
+    request: &Request,
+    samples: &[u32],
+    points: &mut Points,
+    objective: Objective<'_>,
+    level: f64,
+) -> Result<Option<Vec<Tap>>, OptimalError> {
+    let Some(found) = solve_once(request, samples, points, objective, level)? else {
+        return Ok(None);
+    };
+    points.prune();
+    points.join(&peaks(request, &found.taps), level);
+    Ok(Some(found.taps))
+}
+
+/// One program; `None` where it has no solution.
+fn solve_once(
+    request: &Request,
+    samples: &[u32],
+    points: &mut Points,
+    objective: Objective<'_>,
+    level: f64,
+) -> Result<Option<Found>, OptimalError> {
+    let program = Program {
+        request,
+        samples,
+        points: &points.points,
+        level,
+    };
+    match program.solve(objective) {
+        Ok(found) => {
+            let shares = found.weights.iter().zip(&points.points);
+            let shares: Vec<f64> = shares.map(|(weight, point)| weight.norm() * point.tolerance).collect();
+            let all: f64 = shares.iter().sum();
+            points.used = shares.iter().map(|share| *share > IDLE * all).collect();
+            Ok(Some(found))
+        }
+        Err(Unsolved::Infeasible) => Ok(None),
+        Err(Unsolved::Stopped(status)) => Err(OptimalError::Solver {
+            samples: samples.last().copied().unwrap_or(0),
+            status,
+        }),
+    }
+}
+
+/// The peaks of all bands, highest first.
+pub(crate) fn peaks(request: &Request, taps: &[Tap]) -> Vec<(f64, Point)> {
+    let taps: Vec<Tap> = significant(taps);
+    let bands = request.bands.iter().enumerate();
+    let mut peaks: Vec<(f64, Point)> = bands
+        .flat_map(|(index, band)| band.peaks(index, &taps, request.sample_hz))
+        .collect();
+    peaks.sort_by(|a, b| b.0.total_cmp(&a.0));
+    peaks
+}
+
+/// The taps without those of no amplitude, but with the last: there the residual is measured.
+pub(crate) fn significant(taps: &[Tap]) -> Vec<Tap> {
+    let last = taps.last().map(|tap| tap.0);
+    let kept = taps.iter().filter(|tap| tap.1.abs() > 1e-13 || Some(tap.0) == last);
+    kept.copied().collect()
+}
+
+/// The bound that the weights of a program prove, for amplitudes on its samples.
+fn lower_bound(request: &Request, samples: &[u32], points: &[Point], weights: &[Complex64]) -> LowerBound {
+    let weighted = weights.iter().zip(points);
+    let all: f64 = weighted
+        .clone()
+        .map(|(weight, point)| weight.norm() * point.tolerance)
+        .sum();
+    let kept: Vec<(Complex64, &Point)> = weighted
+        .filter(|(weight, point)| weight.norm() * point.tolerance > IDLE * all)
+        .map(|(weight, point)| (*weight, point))
+        .collect();
+    let all: f64 = kept.iter().map(|(weight, point)| weight.norm() * point.tolerance).sum();
+    let mut gains = vec![0.0; samples.len()];
+    for (weight, point) in &kept {
+        let weight = weight.conj() / all;
+        for (gain, power) in gains.iter_mut().zip(powers(samples, point.z(request.sample_hz))) {
+            *gain += (weight * power).re;
+        }
+    }
+    let ratio = match request.command {
+        Command::Positive => gains.iter().copied().fold(f64::INFINITY, f64::min),
+        Command::PartialSums { low, high } => {
+            let steps = gains.windows(2).map(|pair| pair[0] - pair[1]);
+            let least: f64 = steps.map(|step| (low * step).min(high * step)).sum();
+            least + gains.last().copied().unwrap_or(0.0)
+        }
+    };
+    let points = kept.iter().map(|(weight, point)| WeightedPoint {
+        band: point.band,
+        frequency_hz: point.frequency_hz,
+        damping: point.damping,
+        weight: [weight.re / all, weight.im / all],
+    });
+    LowerBound {
+        samples: samples.last().copied().unwrap_or(0),
+        points: points.collect(),
+        ratio,
+    }
+}

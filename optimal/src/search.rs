@@ -1,0 +1,161 @@
+//! The least duration: bisection over the samples, on a coarse grid first.
+//!
+//! What a coarse grid holds, the full one holds too, so the coarse one gives an upper bound at a fraction of the work. A shaper of `N` samples
+//! is one of `N + 1` whose last amplitude is 0, and what rings only decays: if `N` holds, `N + 1` does.
+
+use crate::prefer;
+use crate::program::Objective;
+use crate::refine::{Points, Refined, refine};
+use crate::{LowerBound, OptimalError, Request, Tap};
+
+/// The shortest shaper, and the proof that it is that.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Shortest {
+    /// Its taps, in order, with sum 1.
+    pub taps: Vec<Tap>,
+    /// Least duration in samples, whatever the number of taps.
+    pub least_samples: u32,
+    /// Why nothing shorter exists: for one sample less than `least_samples`. `None` where that is 0 samples.
+    pub shorter: Option<LowerBound>,
+}
+
+/// Samples that a coarse grid has about.
+const COARSE: u32 = 64;
+/// A coarse grid has at least so many samples per period of the highest mode.
+const SAMPLES_PER_PERIOD: f64 = 8.0;
+
+/// Designs the shortest shaper.
+///
+/// # Errors
+/// [`OptimalError`].
+pub fn shortest(request: &Request) -> Result<Shortest, OptimalError> {
+    check(request)?;
+    let mut points = Points::new(request);
+    let Least { held, shorter } = least(request, &mut points)?;
+    Ok(Shortest {
+        least_samples: held.last().map_or(0, |tap| tap.0),
+        taps: prefer::choose(request, held, &mut points)?,
+        shorter,
+    })
+}
+
+fn check(request: &Request) -> Result<(), OptimalError> {
+    let half_sample_hz = request.sample_hz / 2.0;
+    for (index, band) in request.bands.iter().enumerate() {
+        let [low_hz, high_hz] = band.frequency_hz;
+        let rings = band.damping.iter().all(|damping| (0.0..1.0).contains(damping));
+        if !(0.0 < band.tolerance && band.tolerance < 1.0) {
+            return Err(OptimalError::Tolerance {
+                band: index,
+                tolerance: band.tolerance,
+            });
+        }
+        if !(low_hz > 0.0 && low_hz <= high_hz && high_hz < half_sample_hz && rings) {
+            return Err(OptimalError::Band {
+                band: index,
+                low_hz,
+                high_hz,
+                half_sample_hz,
+            });
+        }
+    }
+    Ok(())
+}
+
+/// The samples of a grid that end at `last`, every `step`.
+fn grid(last: u32, step: u32) -> Vec<u32> {
+    (0..=last)
+        .rev()
+        .step_by(step as usize)
+        .collect::<Vec<_>>()
+        .into_iter()
+        .rev()
+        .collect()
+}
+
+/// Looks whether a duration holds.
+fn holds(request: &Request, samples: u32, step: u32, points: &mut Points) -> Result<Refined, OptimalError> {
+    points.prune();
+    refine(request, &grid(samples, step), points, Objective::Ratio, 1.0)
+}
+
+/// The least duration.
+struct Least {
+    /// Amplitudes on all its samples that hold.
+    held: Vec<Tap>,
+    /// Why one sample less does not.
+    shorter: Option<LowerBound>,
+}
+
+fn least(request: &Request, points: &mut Points) -> Result<Least, OptimalError> {
+    let longest = request.longest_samples;
+    let frequencies = || request.bands.iter().map(|band| band.frequency_hz);
+    let lowest_hz = frequencies().fold(f64::INFINITY, |least, [low, _]| least.min(low));
+    let highest_hz = frequencies().fold(0.0f64, |most, [_, high]| most.max(high));
+    let widest = (request.sample_hz / (SAMPLES_PER_PERIOD * highest_hz)).clamp(1.0, 1e6) as u32;
+    let step_of = |samples: u32| (samples / COARSE).clamp(1, widest);
+    // Upwards from half a period of the lowest frequency, on coarse grids.
+    let first = (request.sample_hz / lowest_hz / 2.0)
+        .ceil()
+        .clamp(1.0, f64::from(longest)) as u32;
+    let (mut low, mut high) = (0, first);
+    loop {
+        let step = if high == longest { 1 } else { step_of(high) };
+        match holds(request, high, step, points)? {
+            Refined::Within(_) => break,
+            Refined::Beyond(bound) if high == longest => {
+                return Err(OptimalError::TooLong {
+                    longest_samples: longest,
+                    sample_hz: request.sample_hz,
+                    ratio: bound.map_or(1.0, |bound| bound.ratio),
+                });
+            }
+            Refined::Beyond(_) => {
+                low = high;
+                high = (high.saturating_mul(3).div_ceil(2)).min(longest);
+            }
+        }
+    }
+    // Closer, still coarse: the step of the grid is what is known afterwards.
+    while high - low > step_of(high) {
+        let middle = low + (high - low) / 2;
+        match holds(request, middle, step_of(high), points)? {
+            Refined::Within(_) => high = middle,
+            Refined::Beyond(_) => low = middle,
+        }
+    }
+    on_full_grid(request, high, points)
+}
+
+/// The least duration on the full grid, from one that holds: downwards until one does not, then in between.
+fn on_full_grid(request: &Request, mut high: u32, points: &mut Points) -> Result<Least, OptimalError> {
+    let (mut reach, mut held) = (1, None);
+    let (mut low, mut shorter) = loop {
+        let below = high.saturating_sub(reach);
+        match holds(request, below, 1, points)? {
+            Refined::Within(taps) => (high, held) = (below, Some(taps)),
+            Refined::Beyond(bound) => break (below, bound),
+        }
+        reach *= 2;
+    };
+    while high - low > 1 {
+        let middle = low + (high - low) / 2;
+        match holds(request, middle, 1, points)? {
+            Refined::Within(taps) => (high, held) = (middle, Some(taps)),
+            Refined::Beyond(bound) => (low, shorter) = (middle, bound),
+        }
+    }
+    let held = match held {
+        Some(taps) => taps,
+        None => match holds(request, high, 1, points)? {
+            Refined::Within(taps) => taps,
+            Refined::Beyond(_) => {
+                return Err(OptimalError::Solver {
+                    samples: high,
+                    status: "a duration that held on a coarse grid does not hold on the full one".into(),
+                });
+            }
+        },
+    };
+    Ok(Least { held, shorter })
+}

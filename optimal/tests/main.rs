@@ -1,0 +1,8 @@
+//! The shortest shapers against figures that others computed, what a tap budget costs, and what is refused.
+#![cfg(test)]
+
+mod figures;
+mod integers;
+mod preferences;
+mod refusals;
+mod support;
