@@ -18,8 +18,8 @@ use posicast_model::rtl::shaper::{MOTION_WORD_BITS, ShaperConfig, ShaperMotion};
 use posicast_model::rtl::trace::TraceConfig;
 use posicast_testbench::blocks::{
     AxisBlock, Block, CascadeBlock, ComponentBlock, DividerBlock, DriveCommandBlock, EncoderGeneratorBlock,
-    ExcitationBlock, LinearScaleBlock, MachineShapers, PartBlock, PulseCounterBlock, PwmBlock, RegistersBlock,
-    SegmentsBlock, ShaperBlock, SlidingModeBlock, SmallPart, TraceBlock,
+    ErrorTableBlock, ExcitationBlock, LinearScaleBlock, MachineShapers, PartBlock, PulseCounterBlock, PwmBlock,
+    RegistersBlock, SegmentsBlock, ShaperBlock, SlidingModeBlock, SmallPart, TraceBlock,
 };
 use std::path::Path;
 
@@ -31,6 +31,9 @@ const CASCADE_WORD_BITS: u32 = 32;
 const PWM_FLOORS_CLOCKS: [u64; 2] = [2, 1];
 /// Words of the trace memory that is compared.
 const TRACE_SAMPLES: u64 = 1024;
+/// Entries of the error table that is compared, and their distance: 2^6 counts.
+const ERROR_ENTRIES: usize = 9;
+const ERROR_SPACING_BITS: u32 = 6;
 /// Clocks from the tick to the controllers of the schedule that is compared.
 const SCHEDULE_CLOCKS: u32 = 500;
 /// The shaper for motion that is compared where no axis has one: position, velocity and acceleration share a table.
@@ -76,6 +79,8 @@ pub(crate) fn others(
     let trace = TraceConfig::new(TRACE_SAMPLES).map_err(Failure::because)?;
     blocks.push(Box::new(TraceBlock::new(trace, name)));
     blocks.push(Box::new(LinearScaleBlock::new(name, "alone")));
+    let table = ErrorTableBlock::of_size(ERROR_ENTRIES, ERROR_SPACING_BITS).map_err(bench::failure)?;
+    blocks.push(Box::new(ErrorTableBlock::new(table, name, "alone")));
     blocks.push(Box::new(EncoderGeneratorBlock::new(name, "alone")));
     blocks.push(Box::new(ExcitationBlock::new(name, "alone")));
     for part in parts(machine, hardware, path)? {

@@ -2,8 +2,8 @@
 
 use posicast_hdl::emit::Module;
 use posicast_hdl::{
-    axis, cascade, component, divider, drive_command, encoder_generator, excitation, linear_scale, pulse_counter, pwm,
-    registers, segments, shaper, sliding_mode, trace,
+    axis, cascade, component, divider, drive_command, encoder_generator, error_table, excitation, linear_scale,
+    pulse_counter, pwm, registers, segments, shaper, sliding_mode, trace,
 };
 use posicast_model::design::design_machine;
 use posicast_model::hardware;
@@ -16,6 +16,7 @@ use posicast_model::rtl::shaper::{ShaperConfig, ShaperMotion};
 use posicast_model::rtl::sliding_mode::{Law, Settings};
 use posicast_model::rtl::trace::TraceConfig;
 use posicast_model::taps::{Tap, TapTable};
+use posicast_testbench::blocks::ErrorTableBlock;
 use std::error::Error;
 
 /// What a block may take, by section 12 of the hardware's specification.
@@ -110,6 +111,14 @@ pub(crate) fn rows() -> Result<Vec<Row>, Box<dyn Error>> {
             budget: None,
             note: "With the machine's constants tied, it takes 269 LE with the loop on the scale, and 194 as a monitor. \
                    It has six registers of 32 bits.",
+        },
+        Row {
+            block: "error_table",
+            size: "256 entries",
+            modules: error_table::emit(&ErrorTableBlock::of_size(256, 12)?, "")?,
+            budget: None,
+            note: "No multiplier: an adder of 18 bits averages, a bit per clock. A quarter is the sum and the place, 32 bits each; a fifth checks \
+                   what a host loads.",
         },
         Row {
             block: "trace",

@@ -1,6 +1,7 @@
 //! `design --json`: the document of the command line's contract.
 
 use super::delay::{DelayDocument, StageDocument};
+use super::error_table::ErrorTableDocument;
 use super::family::FamilyDocument;
 use crate::control::ControlDocument;
 use crate::output::UnitDocument;
@@ -42,6 +43,8 @@ pub(super) struct AxisDocument {
     pub(super) quantised: QuantisedDocument,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) family: Option<FamilyDocument>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) error_table: Option<ErrorTableDocument>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) delay: Option<DelayDocument>,
     #[serde(skip_serializing_if = "Option::is_none")]

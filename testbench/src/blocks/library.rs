@@ -16,14 +16,14 @@ use posicast_model::rtl::pwm::{ActiveLow, BridgeMode, PwmConfig};
 use posicast_model::rtl::schedule::ScheduleConfig;
 use posicast_model::rtl::shaper::{ShaperConfig, ShaperMotion};
 use posicast_model::rtl::sliding_mode::{Law, Settings};
-use posicast_model::rtl::stage::{StageAxis, StageConfig, StageScale};
+use posicast_model::rtl::stage::{StageAxis, StageConfig, StageErrorTable, StageScale};
 use posicast_model::rtl::trace::TraceConfig;
 use posicast_model::taps::{Tap, TapTable};
 
 use super::{
     AxisBlock, Block, CascadeBlock, ComponentBlock, DividerBlock, DriveCommandBlock, EncoderGeneratorBlock,
-    ExcitationBlock, LinearScaleBlock, MachineShapers, PartBlock, PulseCounterBlock, PwmBlock, RegistersBlock,
-    SegmentsBlock, ShaperBlock, SlidingModeBlock, SmallPart, StageBlock, TraceBlock,
+    ErrorTableBlock, ExcitationBlock, LinearScaleBlock, MachineShapers, PartBlock, PulseCounterBlock, PwmBlock,
+    RegistersBlock, SegmentsBlock, ShaperBlock, SlidingModeBlock, SmallPart, StageBlock, TraceBlock,
 };
 use crate::Error;
 
@@ -72,6 +72,7 @@ pub fn library() -> Result<Vec<Box<dyn Block>>, Error> {
         Box::new(DriveCommandBlock::new("", "alone")),
         Box::new(TraceBlock::new(trace, "")),
         Box::new(LinearScaleBlock::new("", "alone")),
+        Box::new(ErrorTableBlock::new(ErrorTableBlock::of_size(9, 6)?, "", "9 entries")),
         Box::new(EncoderGeneratorBlock::new("", "alone")),
         Box::new(ExcitationBlock::new("", "alone")),
     ];
@@ -119,7 +120,7 @@ fn shaper(delays: [u32; 4]) -> Result<ShaperConfig, Error> {
     ShaperConfig::new(32, table).map_err(refused)
 }
 
-/// Two axes: one with trace memory and test signals, one whose loop is on a linear scale.
+/// Two axes: one with trace memory, test signals and an error table, one whose loop is on a linear scale.
 pub(crate) fn stage() -> Result<StageConfig, Error> {
     let axis = |name: &str| -> Result<StageAxis, Error> {
         Ok(StageAxis {
@@ -135,10 +136,15 @@ pub(crate) fn stage() -> Result<StageConfig, Error> {
             encoder_invert: false,
             supervision: SUPERVISION,
             scale: None,
+            error_table: None,
             bring_up: None,
         })
     };
     let x = StageAxis {
+        error_table: Some(StageErrorTable {
+            table: ErrorTableBlock::of_size(9, 6)?,
+            on_measured: false,
+        }),
         bring_up: Some(TraceConfig::new(256).map_err(refused)?),
         ..axis("x")?
     };

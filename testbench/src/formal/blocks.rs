@@ -1,7 +1,7 @@
 //! Proofs of single blocks whose tasks are bound by what their configuration says.
 
 use posicast_hdl::{
-    cascade, component, divider, encoder_generator, excitation, linear_scale, registers, setting_banks,
+    cascade, component, divider, encoder_generator, error_table, excitation, linear_scale, registers, setting_banks,
 };
 use posicast_model::design::design_machine;
 use posicast_model::hardware;
@@ -10,6 +10,7 @@ use posicast_model::rtl::cascade::{self as cascade_model, CascadeConfig};
 use posicast_model::rtl::component::Component;
 use posicast_model::rtl::divider::{self as divider_model, DividerConfig};
 use posicast_model::rtl::encoder_generator as generator_model;
+use posicast_model::rtl::error_table::{self as table_model, ErrorTableConfig};
 use posicast_model::rtl::registers::{Access, Register, RegisterMap};
 use posicast_model::rtl::setting_banks as banks_model;
 use posicast_model::rtl::sliding_mode::{Law, Settings};
@@ -18,6 +19,7 @@ use posicast_model::rtl::{excitation as excitation_model, linear_scale as scale_
 use super::stage::empty;
 use super::task::{Engine, INDUCTION, Task, part, refused};
 use crate::Error;
+use crate::blocks::ErrorTableBlock;
 
 /// The example, of two axes.
 const STAGE: &str = include_str!("../../machines/xy-stage.toml");
@@ -39,6 +41,11 @@ pub(super) fn tasks() -> Result<Vec<Task>, Error> {
         excitation_task()?,
         linear_scale_task()?,
     ];
+    for (entries, spacing_bits) in [(9, 6), (256, 12)] {
+        let config = ErrorTableBlock::of_size(entries, spacing_bits)?;
+        tasks.push(error_table_task(&config)?);
+        tasks.push(error_lookup_task(&config)?);
+    }
     for shift in [1, 0, 16, 31] {
         tasks.push(serial_ratio_task(shift)?);
     }
@@ -203,4 +210,33 @@ fn serial_ratio_task(shift: u32) -> Result<Task, Error> {
         &[("SHIFT", format!("5'd{shift}"))],
         include_str!("../../formal/serial_ratio.sv"),
     ))
+}
+
+fn size_of(config: &ErrorTableConfig) -> String {
+    let (entries, spacing_bits) = (config.entries().len(), config.format().spacing_bits);
+    format!("{entries} entries, 2^{spacing_bits} counts apart, contents left out")
+}
+
+fn error_table_task(config: &ErrorTableConfig) -> Result<Task, Error> {
+    let format = config.format();
+    let sign = if format.first_counts < 0 { "-" } else { "" };
+    let macros = [
+        ("LAST", format!("8'd{}", config.last())),
+        ("MOST_STEP", format!("20'sd{}", format.most_step())),
+        ("FIRST", format!("{sign}32'sd{}", format.first_counts.unsigned_abs())),
+    ];
+    let block = (error_table::emit(config, "")?, table_model::ports());
+    Ok(Task::new("error_table", &size_of(config), INDUCTION, block)
+        .properties(&macros, include_str!("../../formal/error_table.sv")))
+}
+
+/// The arithmetic of the error table: its part on its own.
+fn error_lookup_task(config: &ErrorTableConfig) -> Result<Task, Error> {
+    let macros = [
+        ("FRACTION", format!("7'd{}", config.format().spacing_bits + 8)),
+        ("LAST", format!("8'd{}", config.last())),
+    ];
+    let block = part(error_table::emit(config, "")?, "error_lookup")?;
+    Ok(Task::new("error_lookup", &size_of(config), INDUCTION, block)
+        .properties(&macros, include_str!("../../formal/error_lookup.sv")))
 }

@@ -10,13 +10,14 @@ use crate::Error;
 use crate::blocks::library_stage;
 
 /// Blocks of an axis that only say where it should be and where it is: left out, so that they say anything.
-const LEFT_OUT: [&str; 8] = [
+const LEFT_OUT: [&str; 9] = [
     "segments",
     "motion_shaper",
     "sliding_mode",
     "pulse_counter",
     "linear_scale",
     "encoder_generator",
+    "error_table",
     "excitation",
     "trace",
 ];

@@ -12,9 +12,9 @@ use posicast_model::taps::{Tap, TapTable};
 
 use crate::Error;
 use crate::blocks::{
-    AxisBlock, Block, CascadeBlock, DividerBlock, DriveCommandBlock, EncoderGeneratorBlock, ExcitationBlock,
-    LinearScaleBlock, PartBlock, PulseCounterBlock, PwmBlock, RegistersBlock, SegmentsBlock, ShaperBlock,
-    SlidingModeBlock, SmallPart, TraceBlock,
+    AxisBlock, Block, CascadeBlock, DividerBlock, DriveCommandBlock, EncoderGeneratorBlock, ErrorTableBlock,
+    ExcitationBlock, LinearScaleBlock, PartBlock, PulseCounterBlock, PwmBlock, RegistersBlock, SegmentsBlock,
+    ShaperBlock, SlidingModeBlock, SmallPart, TraceBlock,
 };
 use crate::formal::{self, Task};
 
@@ -115,6 +115,10 @@ fn blocks() -> Result<Vec<OfSize>, Error> {
         (
             Box::new(TraceBlock::new(TraceConfig::new(256).map_err(refused)?, "")),
             "256 samples",
+        ),
+        (
+            Box::new(ErrorTableBlock::new(ErrorTableBlock::of_size(9, 6)?, "", alone)),
+            "9 entries",
         ),
         (Box::new(ExcitationBlock::new("", alone)), "32 bits"),
         (Box::new(EncoderGeneratorBlock::new("", alone)), "32 bits"),
