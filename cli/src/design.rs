@@ -3,6 +3,7 @@
 mod certificate;
 mod delay;
 mod document;
+mod error_table;
 mod family;
 mod front;
 mod sensitivity;
@@ -38,6 +39,7 @@ use document::{
     AxisDocument, ClassDocument, CrossGainDocument, FreeDocument, ImpulseDocument, MechanicsDocument, ModeDocument,
     QuantisedDocument, ResidualDocument, SolutionDocument, TapDocument,
 };
+use error_table::ErrorTableReport;
 use family::FamilyReport;
 use front::FrontReport;
 pub(crate) use sensitivity::sensitivity_panels;
@@ -148,6 +150,9 @@ impl<'a> DesignReport<'a> {
         for warning in self.families().filter_map(|family| family.warning()) {
             output::say(&format!("warning: {warning}"));
         }
+        if let Some(warning) = error_table::not_built(self.machine, &self.hardware) {
+            output::say(&format!("warning: {warning}"));
+        }
         self.controllers.iter().flatten().for_each(AxisControl::warn);
     }
 
@@ -158,7 +163,8 @@ impl<'a> DesignReport<'a> {
             .zip(&self.design.axes)
             .zip(&self.controllers)
             .zip(self.hardware.axes())
-            .map(|(((axis, tables), control), built)| AxisReport {
+            .enumerate()
+            .map(|(place, (((axis, tables), control), built))| AxisReport {
                 axis,
                 tables,
                 certificate: CertificateReport::new(axis, tables, self.design.sample_hz, self.certify),
@@ -168,6 +174,7 @@ impl<'a> DesignReport<'a> {
                 convolution: convolution_figures(axis, &tables.design),
                 misfit: built.shaper.as_ref().err(),
                 family: self.families().find(|family| std::ptr::eq(family.axis, axis)),
+                error_table: ErrorTableReport::new(&self.hardware, axis, place),
             })
     }
 
@@ -226,6 +233,8 @@ struct AxisReport<'a> {
     control: Option<&'a AxisControl>,
     /// Its tables, where its modes move.
     family: Option<FamilyReport<'a>>,
+    /// Its error table.
+    error_table: Option<ErrorTableReport<'a>>,
 }
 
 impl AxisReport<'_> {
@@ -311,6 +320,7 @@ impl AxisReport<'_> {
             },
             certificate: self.certificate.as_ref().map(CertificateReport::json),
             family: self.family.as_ref().map(FamilyReport::json),
+            error_table: self.error_table.as_ref().map(ErrorTableReport::json),
             delay: self.in_stage.then(|| DelayDocument::new(&self.tables.delay)),
             control: self.control.map(AxisControl::json),
         }
@@ -365,6 +375,9 @@ impl AxisReport<'_> {
         }
         if let Some(family) = &self.family {
             text += &family.text();
+        }
+        if let Some(table) = &self.error_table {
+            text += &table.text();
         }
         if let Some(reason) = self.misfit {
             let _ = writeln!(text, "  does not fit: {reason}");

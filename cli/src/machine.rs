@@ -5,6 +5,7 @@ use posicast_model::design::{DesignBlame, DesignError, blame};
 use posicast_model::hardware::HardwareError;
 use posicast_model::machine_file::{self, Machine};
 use posicast_synth::yosys::Family;
+use std::cell::RefCell;
 use std::fmt;
 use std::fs::File;
 use std::io::Read;
@@ -19,6 +20,8 @@ pub(crate) struct MachineFile {
     pub(crate) text: String,
     /// What it says.
     pub(crate) machine: Machine,
+    /// Names and texts of the files beside it that it names.
+    pub(crate) beside: Vec<(String, String)>,
 }
 
 /// Reads and validates the machine file at `path`.
@@ -30,31 +33,57 @@ pub(crate) fn read(path: &Path) -> Result<MachineFile, Failure> {
             "cannot read the machine file `{name}`: {found}"
         ))
     };
-    let metadata = std::fs::metadata(path).map_err(|e| unreadable(&e))?;
-    if metadata.is_dir() {
-        return Err(unreadable(&"it is a folder"));
-    }
-    if metadata.len() > LARGEST_FILE_BYTES {
-        return Err(unreadable(&format!(
-            "{} bytes found, at most {LARGEST_FILE_BYTES} allowed",
-            metadata.len()
-        )));
-    }
-    // The length above is 0 for a device or a pipe: these may go on for ever.
-    let file = File::open(path).map_err(|e| unreadable(&e))?;
-    let mut bytes = Vec::new();
-    let limit = file.take(LARGEST_FILE_BYTES + 1).read_to_end(&mut bytes);
-    if limit.map_err(|e| unreadable(&e))? as u64 > LARGEST_FILE_BYTES {
-        return Err(unreadable(&format!("it goes on after {LARGEST_FILE_BYTES} bytes")));
-    }
-    let text = String::from_utf8(bytes).map_err(|e| unreadable(&format!("it is not UTF-8 text: {e}")))?;
-    let machine = parse(path, &text)?;
-    Ok(MachineFile { text, machine })
+    let text = text_of(path).map_err(|found| unreadable(&found))?;
+    let beside = RefCell::default();
+    let machine = parse_beside(path, &text, &beside)?;
+    Ok(MachineFile {
+        text,
+        machine,
+        beside: beside.into_inner(),
+    })
 }
 
-/// Validates the text of the machine file at `path`.
+/// The text of a file, or why it cannot be read.
+fn text_of(path: &Path) -> Result<String, String> {
+    let said = |error: std::io::Error| error.to_string();
+    let metadata = std::fs::metadata(path).map_err(said)?;
+    if metadata.is_dir() {
+        return Err("it is a folder".to_owned());
+    }
+    if metadata.len() > LARGEST_FILE_BYTES {
+        let found = metadata.len();
+        return Err(format!("{found} bytes found, at most {LARGEST_FILE_BYTES} allowed"));
+    }
+    // The length above is 0 for a device or a pipe: these may go on for ever.
+    let file = File::open(path).map_err(said)?;
+    let mut bytes = Vec::new();
+    if file
+        .take(LARGEST_FILE_BYTES + 1)
+        .read_to_end(&mut bytes)
+        .map_err(said)? as u64
+        > LARGEST_FILE_BYTES
+    {
+        return Err(format!("it goes on after {LARGEST_FILE_BYTES} bytes"));
+    }
+    String::from_utf8(bytes).map_err(|error| format!("it is not UTF-8 text: {error}"))
+}
+
+/// Validates the text of the machine file at `path`; files that it names are read beside it.
 pub(crate) fn parse(path: &Path, text: &str) -> Result<Machine, Failure> {
-    machine_file::parse(&path.display().to_string(), text).map_err(Failure::input)
+    parse_beside(path, text, &RefCell::default())
+}
+
+/// The same; what is read beside it goes to `read`, as names and texts, each once.
+fn parse_beside(path: &Path, text: &str, read: &RefCell<Vec<(String, String)>>) -> Result<Machine, Failure> {
+    let beside = |name: &str| {
+        let text = text_of(&path.with_file_name(name)).map_err(|found| format!("cannot be read: {found}"))?;
+        let mut read = read.borrow_mut();
+        if read.iter().all(|(other, _)| other != name) {
+            read.push((name.to_owned(), text.clone()));
+        }
+        Ok(text)
+    };
+    machine_file::parse_beside(&path.display().to_string(), text, &beside).map_err(Failure::input)
 }
 
 /// The family of the machine file's target.

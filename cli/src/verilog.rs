@@ -21,6 +21,9 @@ pub(crate) fn add_sources(
     package
         .add("machine.toml", file.text.as_bytes())
         .map_err(Failure::because)?;
+    for (name, text) in &file.beside {
+        package.add(name, text.as_bytes()).map_err(Failure::because)?;
+    }
     let write = |module: &Module| {
         let path = package.stage(&path(module)).map_err(Failure::because)?;
         std::fs::write(&path, &module.text).map_err(Failure::because)?;

@@ -5,8 +5,9 @@
 
 use crate::emit::{EmitError, Header, Module, add, connect};
 use crate::{
-    axis, divider, divider_share, drive_command, encoder_generator, excitation, group, linear_scale, pulse_counter,
-    pwm, registers, sample_select, schedule, segments, setting_banks, shaper, sliding_mode, time_base, trace,
+    axis, divider, divider_share, drive_command, encoder_generator, error_table, excitation, group, linear_scale,
+    pulse_counter, pwm, registers, sample_select, schedule, segments, setting_banks, shaper, sliding_mode, time_base,
+    trace,
 };
 use posicast_model::rtl::component::{Component, ComponentPart, JoinedBlocks};
 
@@ -60,6 +61,7 @@ fn block(block: &ComponentPart, top: &str, prefix: &str) -> Result<Vec<Module>, 
         ComponentPart::Axis => axis::emit(prefix),
         ComponentPart::DriveCommand => drive_command::emit(prefix),
         ComponentPart::LinearScale => linear_scale::emit(prefix),
+        ComponentPart::ErrorTable(config) => error_table::emit(config, prefix),
         ComponentPart::EncoderGenerator => encoder_generator::emit(prefix),
         ComponentPart::Excitation => excitation::emit(prefix),
         ComponentPart::Trace(config) => trace::emit(config, prefix),

@@ -21,6 +21,7 @@
 //! | [`segments`] | the command FIFO: segments of constant jerk to position, velocity and acceleration |
 //! | [`pwm`] | duty to the gates of a bridge, with dead time and fault path |
 //! | [`encoder_generator`] | quadrature at a set rate in the place of the encoder's pins |
+//! | [`error_table`] | a measured error of screw or scale over position, taken from the position reference |
 //! | [`excitation`] | a test signal on the position reference |
 //! | [`axis`] | the supervisor of an axis: states, limits, brake, faults |
 //! | [`drive_command`] | what the PWM is told: the controller's duty, or a manual one in direct mode |
@@ -38,6 +39,7 @@ pub mod divider_share;
 pub mod drive_command;
 pub mod emit;
 pub mod encoder_generator;
+pub mod error_table;
 pub mod excitation;
 pub mod group;
 mod kernel;

@@ -7,6 +7,7 @@ mod component_parts;
 mod divider;
 mod drive_command;
 mod encoder_generator;
+mod error_table;
 mod excitation;
 mod kernel_rules;
 mod library;

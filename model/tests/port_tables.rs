@@ -1,19 +1,20 @@
 //! The table of ports in a block's datasheet is what its list of ports says. `scripts/regenerate` writes it anew.
 
 use posicast_model::rtl::{
-    Direction, PortList, SizedPortRow, axis, cascade, divider, drive_command, encoder_generator, excitation,
-    linear_scale, pulse_counter, pwm, segments, shaper, sliding_mode, trace,
+    Direction, PortList, SizedPortRow, axis, cascade, divider, drive_command, encoder_generator, error_table,
+    excitation, linear_scale, pulse_counter, pwm, segments, shaper, sliding_mode, trace,
 };
 use std::collections::BTreeMap;
 use std::error::Error;
 use std::path::Path;
 
 /// The datasheets with a derived table, and the lists that they show.
-const DATASHEETS: [(&str, PortList); 11] = [
+const DATASHEETS: [(&str, PortList); 12] = [
     ("axis", axis::PORTS),
     ("divider", divider::PORTS),
     ("drive_command", drive_command::PORTS),
     ("encoder_generator", encoder_generator::PORTS),
+    ("error_table", error_table::PORTS),
     ("excitation", excitation::PORTS),
     ("linear_scale", linear_scale::PORTS),
     ("pulse_counter", pulse_counter::PORTS),

@@ -11,6 +11,7 @@ use posicast_model::rtl::divider::{Divider, DividerConfig};
 use posicast_model::rtl::divider_share::DividerShare;
 use posicast_model::rtl::drive_command::DriveCommand;
 use posicast_model::rtl::encoder_generator::EncoderGenerator;
+use posicast_model::rtl::error_table::{EntryUnit, ErrorTable, ErrorTableConfig, ErrorTableFormat};
 use posicast_model::rtl::excitation::Excitation;
 use posicast_model::rtl::group::Group;
 use posicast_model::rtl::linear_scale::LinearScale;
@@ -79,6 +80,18 @@ const SHAPER: Hints = &[
     ("tap_coefficient", &[1 << 15]),
     ("tap_delay", &[0, 2, 7]),
     ("swap_how", &[0, 1, 2]),
+];
+
+const ERROR_TABLE: Hints = &[
+    ("valid", &[0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1]),
+    ("rst", &[0]),
+    ("drive_enable", &[1]),
+    ("homed", &[1]),
+    ("error_enable", &[1]),
+    ("error_write", RARE),
+    ("error_read", RARE),
+    ("error_index", &[0, 1, 2]),
+    ("error_entry", &[5, 10]),
 ];
 
 const SEGMENTS: Hints = &[
@@ -170,6 +183,14 @@ fn blocks() -> Vec<Tried> {
             &[("tick", RARE), ("velocity_valid", RARE), ("align", RARE), ("rst", RARE)],
             LinearScale::new,
         ),
+        tried("error_table", ERROR_TABLE, || {
+            let format = ErrorTableFormat {
+                first_counts: 0,
+                spacing_bits: 4,
+                unit: EntryUnit::Fine,
+            };
+            ErrorTable::new(&ErrorTableConfig::new(format, vec![0, 200, -50]).unwrap())
+        }),
         tried("excitation", &[("valid", RARE), ("rst", RARE)], Excitation::new),
         tried(
             "trace",

@@ -16,8 +16,8 @@ const SHAPER: [(&str, &str); 1] = pages!["shaper"];
 /// Of machines with components.
 const COMPONENTS: [(&str, &str); 5] = pages!["registers" "pulse_counter" "divider" "pwm" "sliding_mode"];
 /// Of machines with a stage.
-const STAGE: [(&str, &str); 8] = pages![
-    "stage" "axis" "segments" "drive_command" "linear_scale" "encoder_generator" "excitation" "trace"
+const STAGE: [(&str, &str); 9] = pages![
+    "stage" "axis" "segments" "drive_command" "linear_scale" "error_table" "encoder_generator" "excitation" "trace"
 ];
 
 /// What a machine has beside the shapers of its top module.
@@ -89,7 +89,7 @@ mod tests {
         for (built, pages) in [
             (BuiltBlocks::Shapers, 1),
             (BuiltBlocks::Components, 6),
-            (BuiltBlocks::Stage, 14),
+            (BuiltBlocks::Stage, 15),
         ] {
             let files = files(built);
             assert_eq!(files.len(), pages);

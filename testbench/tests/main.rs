@@ -9,6 +9,8 @@ mod crosssim;
 mod divider;
 mod drive_command;
 mod encoder_generator;
+mod error_table;
+mod error_table_loop;
 mod excitation;
 mod fault_campaign;
 mod formal;

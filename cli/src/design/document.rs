@@ -2,6 +2,7 @@
 
 use super::certificate::CertificateDocument;
 use super::delay::{DelayDocument, StageDocument};
+use super::error_table::ErrorTableDocument;
 use super::family::FamilyDocument;
 use super::front::FrontDocument;
 use crate::control::ControlDocument;
@@ -49,6 +50,8 @@ pub(super) struct AxisDocument {
     pub(super) certificate: Option<CertificateDocument>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) family: Option<FamilyDocument>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) error_table: Option<ErrorTableDocument>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) delay: Option<DelayDocument>,
     #[serde(skip_serializing_if = "Option::is_none")]

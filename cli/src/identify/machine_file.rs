@@ -4,7 +4,6 @@ use super::findings::Findings;
 use crate::failure::Failure;
 use crate::machine;
 use crate::new::{Draft, MachineKind};
-use posicast_model::machine_file;
 use posicast_model::unit::trimmed;
 use std::path::Path;
 use toml_edit::{ArrayOfTables, DocumentMut, Item, Table, value};
@@ -139,6 +138,6 @@ fn noted(number: f64, low: f64, high: f64) -> Item {
 
 /// The text, if posicast reads it as a machine file.
 fn checked(text: String, path: &Path) -> Result<String, Failure> {
-    machine_file::parse(&path.display().to_string(), &text).map_err(Failure::input)?;
+    machine::parse(path, &text)?;
     Ok(text)
 }

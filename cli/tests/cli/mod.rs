@@ -12,6 +12,7 @@ mod contour;
 mod design;
 mod diff;
 mod doctor;
+mod error_table;
 mod folder;
 mod fuzz;
 mod hardware;

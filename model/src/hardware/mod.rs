@@ -12,10 +12,12 @@
 
 mod axis;
 mod error;
+mod error_table;
 mod stage;
 
 pub use axis::{AxisComponent, AxisHardware, AxisLoop};
 pub use error::HardwareError;
+pub use error_table::departure_counts as error_table_departure_counts;
 pub use stage::{MachineStage, MachineStageError, pwm_config, pwm_mode, stage};
 
 use crate::design::MachineDesign;

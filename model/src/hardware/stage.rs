@@ -1,16 +1,18 @@
 //! The stage of a machine: what its file says of the axes, as the hardware is built from it.
 
 use super::axis::of_axis;
+use super::error_table;
 use crate::control::{
     ControlError, Derived, Supervision, SupervisionError, TableBounds, gains, loop_lag_s, schedule_delay_s, supervision,
 };
 use crate::design::{MachineDesign, TableFamily};
 use crate::machine_file::{AxisSection, ClockSection, Encoder, Machine, PwmMode, PwmSection, ScaleUse};
 use crate::rtl::divider::{DividerConfig, DividerConfigError};
+use crate::rtl::error_table::ErrorTableConfigError;
 use crate::rtl::linear_scale::{ScaleRatio, ScaleRatioError};
 use crate::rtl::pwm::{ActiveLow, BridgeMode, PwmConfig, PwmConfigError};
 use crate::rtl::shaper::{ShaperConfig, ShaperConfigError, ShaperMotion};
-use crate::rtl::stage::{StageAxis, StageConfig, StageScale, StageSchedule};
+use crate::rtl::stage::{StageAxis, StageConfig, StageErrorTable, StageScale, StageSchedule};
 use crate::rtl::trace::{TraceConfig, TraceConfigError};
 
 /// A stage, and what was derived for its axes.
@@ -68,6 +70,14 @@ pub enum MachineStageError {
         /// The reason.
         error: ScaleRatioError,
     },
+    /// An error table.
+    #[error("axis {axis}: {error}")]
+    ErrorTable {
+        /// Index of the axis, from 0.
+        axis: usize,
+        /// The reason.
+        error: ErrorTableConfigError,
+    },
     /// A trace memory.
     #[error("axis {axis}: {error}")]
     Trace {
@@ -102,6 +112,7 @@ impl MachineStageError {
             Self::Shaper { axis, .. } => (*axis, "axis.shaper".to_owned()),
             Self::Pwm { axis, .. } => (*axis, "axis.pwm".to_owned()),
             Self::Scale { axis, .. } => (*axis, "axis.scale.counts_per_unit".to_owned()),
+            Self::ErrorTable { axis, .. } => (*axis, "axis.error_table.file".to_owned()),
             Self::Trace { axis, .. } => (*axis, "axis.trace.samples".to_owned()),
             Self::Control { axis, error } => (*axis, error.key()),
             Self::Supervision { axis, error } => (*axis, error.key().to_owned()),
@@ -134,17 +145,24 @@ pub fn stage(machine: &Machine, design: &MachineDesign) -> Result<Option<Machine
             encoder: *encoder,
             shaper: shaper.map_err(|error| MachineStageError::Shaper { axis: index, error })?,
             scale: scale(axis).map_err(|error| MachineStageError::Scale { axis: index, error })?,
+            error_table: error_table::of_axis(axis)
+                .map_err(|error| MachineStageError::ErrorTable { axis: index, error })?,
             bring_up: trace(axis).map_err(|error| MachineStageError::Trace { axis: index, error })?,
             supervision: watched.map_err(|error| MachineStageError::Supervision { axis: index, error })?,
             config: pwm_config(pwm, &machine.clock).map_err(|error| MachineStageError::Pwm { axis: index, error })?,
         });
     }
     let tick = DividerConfig::new(u64::from(machine.clock.clocks_per_sample()))?;
-    let shapers: Vec<&ShaperConfig> = axes.iter().map(|parts| &parts.shaper).collect();
+    let passes: Vec<(&ShaperConfig, u32)> = (axes.iter())
+        .map(|parts| {
+            let table = parts.error_table.as_ref();
+            (&parts.shaper, table.map_or(0, |of| of.table.latency_clocks()))
+        })
+        .collect();
     let on_scale = axes
         .iter()
         .any(|parts| parts.scale.is_some_and(|scale| scale.closes_loop));
-    let used_clocks = StageSchedule::of(&shapers, on_scale).duty_clocks();
+    let used_clocks = StageSchedule::of(&passes, on_scale).duty_clocks();
     let (mut lags_s, mut derived, mut built) = (Vec::new(), Vec::new(), Vec::new());
     for (index, parts) in axes.into_iter().enumerate() {
         let delay_s = schedule_delay_s(&machine.clock, parts.pwm, used_clocks);
@@ -174,6 +192,7 @@ struct Parts<'a> {
     shaper: ShaperConfig,
     supervision: Supervision,
     scale: Option<StageScale>,
+    error_table: Option<StageErrorTable>,
     bring_up: Option<TraceConfig>,
     config: PwmConfig,
 }
@@ -217,6 +236,7 @@ impl Parts<'_> {
             encoder_invert: self.encoder.invert,
             supervision: self.supervision,
             scale: self.scale,
+            error_table: self.error_table,
             bring_up: self.bring_up,
         }
     }

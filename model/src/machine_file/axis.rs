@@ -4,8 +4,8 @@ use super::key::{Default, Key, Values};
 use super::range::COUNTS_PER_UNIT;
 use super::table::Table;
 use super::{
-    AxisSection, ClockSection, FixedPoint, ScaleUse, controller, drive, encoder, limits, mechanics, mode, moving, pwm,
-    scale, shaper, trace,
+    AxisSection, ClockSection, FixedPoint, ScaleUse, controller, drive, encoder, error_table, limits, mechanics, mode,
+    moving, pwm, scale, shaper, trace,
 };
 use crate::rtl::shaper::MOTION_WORD_BITS;
 use crate::unit::AxisUnit;
@@ -67,6 +67,11 @@ pub(super) const KEYS: &[Key] = &[
         Values::Table(limits::KEYS),
         "What moves may ask for, and what the supervisor of the axis watches.",
     ),
+    Key::new(
+        "error_table",
+        Values::Table(error_table::KEYS),
+        "Compensates a measured error of the screw or the scale.",
+    ),
     Key::new("trace", Values::Table(trace::KEYS), "Records signals of the loop."),
 ];
 
@@ -114,6 +119,16 @@ pub(super) fn read(
     // The position of a modulo axis wraps: any travel fits.
     let word = loop_counts_per_unit.zip(fixed_point).filter(|_| !modulo);
     let limits = table.table("limits").map(|t| limits::read(table, &t, word, unit));
+    let error_table = table.table("error_table").map(|t| {
+        let of_axis = error_table::OfAxis {
+            unit,
+            counts_per_unit: loop_counts_per_unit,
+            limits: limits.as_ref(),
+            modulo,
+            on_scale: scale.is_some_and(|scale| scale.is_some_and(|scale| scale.usage == ScaleUse::Position)),
+        };
+        error_table::read(&t, of_axis)
+    });
     check_needs(table);
     if let Some(family) = family.as_ref().and_then(Option::as_ref) {
         moving::check(table, family, kind, limits.as_ref(), modulo, unit);
@@ -137,6 +152,7 @@ pub(super) fn read(
         controller: not_refused(controller)?,
         limits,
         scale: not_refused(scale)?,
+        error_table: not_refused(error_table)?,
         trace: not_refused(trace)?,
     })
 }
@@ -178,7 +194,7 @@ pub(super) struct Need {
 }
 
 /// Which blocks of an axis cannot work without others.
-pub(super) const NEEDS: [Need; 4] = [
+pub(super) const NEEDS: [Need; 5] = [
     Need {
         block: "scale",
         others: &["encoder"],
@@ -193,6 +209,11 @@ pub(super) const NEEDS: [Need; 4] = [
         block: "controller",
         others: &["encoder", "pwm", "drive"],
         allowed: "a controller with [axis.encoder], [axis.pwm] and [axis.drive]: the position, the pins, and what they command",
+    },
+    Need {
+        block: "error_table",
+        others: &["controller"],
+        allowed: "an error table with [axis.controller], whose reference it corrects",
     },
     Need {
         block: "trace",

@@ -38,6 +38,8 @@ pub(super) enum Values {
     Boolean,
     /// A name that can stand in Verilog and in C.
     Name,
+    /// The name of a CSV file beside the machine file.
+    CsvName,
     /// A word of this list.
     Word(fn() -> Vec<&'static str>),
     /// A list of such words, which may be empty.

@@ -35,6 +35,7 @@ mod controller;
 mod drive;
 mod encoder;
 mod error;
+mod error_table;
 mod hint;
 mod key;
 mod limits;
@@ -59,6 +60,7 @@ pub use controller::Controller;
 pub use drive::{Drive, DriveMode};
 pub use encoder::Encoder;
 pub use error::{MAX_PROBLEMS, Problem, ProblemCause, SpecError};
+pub use error_table::{ErrorTableSection, ErrorUse, STEEPEST_IN_FILE};
 pub use limits::LimitsSection;
 pub use machine::{BOARDS, FAMILIES};
 pub(crate) use moving::MAX_TABLES;
@@ -86,7 +88,22 @@ use table::Table;
 /// [`SpecError`] lists every problem, up to [`MAX_PROBLEMS`], with file, line, key, what was found, what is allowed and
 /// what to do. What is not built in this version is an error only in a file that has no other.
 pub fn parse(file_name: &str, text: &str) -> Result<Machine, SpecError> {
-    let reader = Reader::new(file_name, text);
+    parse_beside(file_name, text, &|_| {
+        Err("files beside the machine file are not read here".to_owned())
+    })
+}
+
+/// The same for a machine file with others beside it, such as an error table: `beside` gives the text of the file of that name, or says why
+/// it cannot be read.
+///
+/// # Errors
+/// As [`parse`], and for what is wrong in those files.
+pub fn parse_beside(
+    file_name: &str,
+    text: &str,
+    beside: &dyn Fn(&str) -> Result<String, String>,
+) -> Result<Machine, SpecError> {
+    let reader = Reader::new(file_name, text, beside);
     let whole_file = |span: std::ops::Range<usize>, cause, remedy: &str| {
         let span = span.start.min(text.len())..span.end.min(text.len());
         reader.report(reader.problem(span, String::new(), "", cause, remedy.to_owned()));
@@ -226,6 +243,8 @@ pub struct AxisSection {
     pub limits: Option<LimitsSection>,
     /// `[axis.scale]`; only with an encoder.
     pub scale: Option<Scale>,
+    /// `[axis.error_table]`; only with a controller.
+    pub error_table: Option<ErrorTableSection>,
     /// `[axis.trace]`; only with a controller.
     pub trace: Option<TraceSection>,
 }

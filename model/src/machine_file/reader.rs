@@ -14,6 +14,7 @@ const MAX_QUOTE: usize = 48;
 pub(super) struct Reader<'t> {
     file_name: &'t str,
     text: &'t str,
+    beside: &'t dyn Fn(&str) -> Result<String, String>,
     line_ends: Vec<usize>,
     problems: Problems,
     not_built: Problems,
@@ -39,14 +40,20 @@ impl Problems {
 
 impl<'t> Reader<'t> {
     /// A reader that has found nothing wrong yet.
-    pub(super) fn new(file_name: &'t str, text: &'t str) -> Self {
+    pub(super) fn new(file_name: &'t str, text: &'t str, beside: &'t dyn Fn(&str) -> Result<String, String>) -> Self {
         Self {
             file_name,
             text,
+            beside,
             line_ends: text.match_indices('\n').map(|(offset, _)| offset).collect(),
             problems: Problems::default(),
             not_built: Problems::default(),
         }
+    }
+
+    /// The text of a file beside the machine file.
+    pub(super) fn beside(&self, name: &str) -> Result<String, String> {
+        (self.beside)(name)
     }
 
     /// Line of a byte of the file, from 1.

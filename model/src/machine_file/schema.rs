@@ -83,6 +83,7 @@ fn values(values: Values) -> Map<String, Value> {
         Values::Name => json!({
             "type": "string", "pattern": "^[a-z][a-z0-9_]*$", "maxLength": MAX_NAME_LENGTH, "$comment": NAME_RULE,
         }),
+        Values::CsvName => json!({ "type": "string", "pattern": "^[A-Za-z0-9_-][A-Za-z0-9._ -]*\\.csv$" }),
         Values::Word(words) => json!({ "type": "string", "enum": words() }),
         Values::Words(words) => json!({ "type": "array", "items": { "type": "string", "enum": words() } }),
         Values::WordOrPair(words, range) => json!({ "anyOf": [{ "type": "string", "enum": words() }, pair(range)] }),

@@ -64,6 +64,11 @@ impl<'r, 't> Table<'r, 't> {
         self.entries.get(key)
     }
 
+    /// The text of a file beside the machine file, or why it cannot be read.
+    pub(super) fn beside(&self, name: &str) -> Result<String, String> {
+        self.reader.beside(name)
+    }
+
     /// Whether the key is there, right or wrong.
     pub(super) fn has(&self, key: &str) -> bool {
         self.value(key).is_some()

@@ -28,6 +28,7 @@ pub(super) fn axis(shaper: ShaperChoice, modes: &[Mode]) -> AxisSection {
         controller: None,
         limits: None,
         scale: None,
+        error_table: None,
         trace: None,
     }
 }

@@ -11,6 +11,7 @@ pub mod divider;
 pub mod divider_share;
 pub mod drive_command;
 pub mod encoder_generator;
+pub mod error_table;
 pub mod excitation;
 pub mod group;
 pub mod linear_scale;

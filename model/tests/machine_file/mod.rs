@@ -1,6 +1,7 @@
 //! The machine file as its users meet it.
 
 mod blocks;
+mod error_table;
 mod errors;
 mod files;
 mod hints;

@@ -44,17 +44,39 @@ const BRING_UP: [Fixed; 2] = [
     ("src/posicast_bring_up.c", include_str!("c/src/posicast_bring_up.c")),
 ];
 
+/// Where an axis has an error table.
+const ERROR_TABLE: [Fixed; 2] = [
+    (
+        "inc/posicast_error_table.h",
+        include_str!("c/inc/posicast_error_table.h"),
+    ),
+    (
+        "src/posicast_error_table.c",
+        include_str!("c/src/posicast_error_table.c"),
+    ),
+];
+
 /// Where the modes of an axis move.
 const FAMILY: [Fixed; 2] = [
     ("inc/posicast_family.h", include_str!("c/inc/posicast_family.h")),
     ("src/posicast_family.c", include_str!("c/src/posicast_family.c")),
 ];
 
-pub(super) fn files(with_bring_up: bool, with_family: bool) -> Vec<DriverFile> {
-    let bring_up = BRING_UP.iter().filter(|_| with_bring_up);
-    let family = FAMILY.iter().filter(|_| with_family);
+/// What a stage has beside what every stage has.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct With {
+    pub(super) bring_up: bool,
+    pub(super) error_table: bool,
+    pub(super) family: bool,
+}
+
+pub(super) fn files(with: With) -> Vec<DriverFile> {
+    let bring_up = BRING_UP.iter().filter(|_| with.bring_up);
+    let error_table = ERROR_TABLE.iter().filter(|_| with.error_table);
+    let family = FAMILY.iter().filter(|_| with.family);
     CORE.iter()
         .chain(bring_up)
+        .chain(error_table)
         .chain(family)
         .map(|(path, text)| file(path, (*text).to_owned()))
         .collect()

@@ -75,8 +75,12 @@ pub struct AxisData {
 
 /// The driver of a stage.
 pub fn stage_files(driver: &StageDriver<'_>) -> Vec<DriverFile> {
-    let with_bring_up = driver.config.axes.iter().any(|axis| axis.bring_up.is_some());
-    let mut files = fixed::files(with_bring_up, !driver.families.is_empty());
+    let axes = &driver.config.axes;
+    let mut files = fixed::files(fixed::With {
+        bring_up: axes.iter().any(|axis| axis.bring_up.is_some()),
+        error_table: axes.iter().any(|axis| axis.error_table.is_some()),
+        family: !driver.families.is_empty(),
+    });
     files.push(file("inc/posicast_stage_regs.h", stage_registers::header(driver)));
     files.extend(machine::files(driver));
     files.extend(bare_metal::files(driver));

@@ -41,6 +41,7 @@ pub(super) fn header(driver: &StageDriver<'_>) -> String {
     numbers(&mut text, map);
     settings(&mut text);
     bring_up(&mut text, driver);
+    error_tables(&mut text, driver);
     text.push_str("\n/* ---- Window 0: the stage ---- */\n");
     for register in map.registers().iter().filter(|register| register.offset < WINDOW_WORDS) {
         macros::register(&mut text, STAGE, register, map.fields(register), &Place::Fixed);
@@ -118,6 +119,19 @@ fn bring_up(text: &mut String, driver: &StageDriver<'_>) {
         .sum();
     text.push_str("\n/* Mask of the axes with a trace memory and test signals. */\n");
     let _ = writeln!(text, "#define POSICAST_BRING_UP_AXES {mask:#x}u");
+}
+
+/// Which axes have an error table, if one has.
+fn error_tables(text: &mut String, driver: &StageDriver<'_>) {
+    let axes = driver.config.axes.iter().enumerate();
+    let mask: u32 = axes
+        .filter(|(_, axis)| axis.error_table.is_some())
+        .map(|(place, _)| 1 << place)
+        .sum();
+    if mask != 0 {
+        text.push_str("\n/* Mask of the axes with an error table. */\n");
+        let _ = writeln!(text, "#define POSICAST_ERROR_TABLE_AXES {mask:#x}u");
+    }
 }
 
 /// The registers of all windows of axes, by their place.

@@ -1,6 +1,7 @@
 //! The C driver: compiled by gcc and for a RISC-V, its integers against the model's, and run against the stage's Verilog.
 
 mod bridge;
+mod error_table;
 mod family;
 mod identify;
 mod integers;

@@ -7,8 +7,9 @@ use posicast_model::rtl::component::{Component, ComponentPart as Part};
 
 use super::part::SmallPart as Small;
 use super::{
-    AxisBlock, Block, DividerBlock, DriveCommandBlock, EncoderGeneratorBlock, ExcitationBlock, LinearScaleBlock,
-    PartBlock, PulseCounterBlock, PwmBlock, RegistersBlock, SegmentsBlock, ShaperBlock, SlidingModeBlock, TraceBlock,
+    AxisBlock, Block, DividerBlock, DriveCommandBlock, EncoderGeneratorBlock, ErrorTableBlock, ExcitationBlock,
+    LinearScaleBlock, PartBlock, PulseCounterBlock, PwmBlock, RegistersBlock, SegmentsBlock, ShaperBlock,
+    SlidingModeBlock, TraceBlock,
 };
 use crate::Error;
 
@@ -93,6 +94,7 @@ fn of_part(part: &Part, place: &Place<'_>) -> Result<Option<Box<dyn Block>>, Err
         Part::Axis => Box::new(AxisBlock::new(prefix, instance)),
         Part::DriveCommand => Box::new(DriveCommandBlock::new(prefix, instance)),
         Part::LinearScale => Box::new(LinearScaleBlock::new(prefix, instance)),
+        Part::ErrorTable(config) => Box::new(ErrorTableBlock::new(config.as_ref().clone(), prefix, instance)),
         Part::EncoderGenerator => Box::new(EncoderGeneratorBlock::new(prefix, instance)),
         Part::Excitation => Box::new(ExcitationBlock::new(prefix, instance)),
         Part::Trace(config) => Box::new(TraceBlock::new(*config, prefix).called(instance)),

@@ -14,7 +14,7 @@ use posicast_model::rtl::linear_scale::ScaleRatio;
 use posicast_model::rtl::pwm::{ActiveLow, BridgeMode, PwmConfig};
 use posicast_model::rtl::shaper::ShaperConfig;
 use posicast_model::rtl::sliding_mode::{Law, Settings};
-use posicast_model::rtl::stage::{StageAxis, StageConfig, StageScale};
+use posicast_model::rtl::stage::{StageAxis, StageConfig, StageErrorTable, StageScale};
 use posicast_model::rtl::trace::TraceConfig;
 
 use super::shaper::{MOTION, tap_table};
@@ -106,10 +106,15 @@ pub(super) fn stage() -> Result<StageConfig, Error> {
             encoder_invert: false,
             supervision: SUPERVISION,
             scale: None,
+            error_table: None,
             bring_up: None,
         })
     };
     let x = StageAxis {
+        error_table: Some(StageErrorTable {
+            table: ErrorTableBlock::of_size(9, 6)?,
+            on_measured: false,
+        }),
         bring_up: Some(TraceConfig::new(256).map_err(refused)?),
         ..axis("x")?
     };

@@ -17,14 +17,14 @@ use posicast_model::rtl::sliding_mode::Settings;
 use posicast_model::rtl::stage::StageConfig;
 
 use super::{
-    Block, ComponentBlock, axis, cascade, component, divider, drive_command, encoder_generator, excitation,
-    linear_scale, part, pulse_counter, pwm, registers, segments, shaper, sliding_mode, stage, trace,
+    Block, ComponentBlock, axis, cascade, component, divider, drive_command, encoder_generator, error_table,
+    excitation, linear_scale, part, pulse_counter, pwm, registers, segments, shaper, sliding_mode, stage, trace,
 };
 use crate::Error;
 use crate::formal::Task;
 
 /// Every kind of block, in the order of `posicast verify`.
-const REGISTRY: [RegistryRow; 22] = [
+const REGISTRY: [RegistryRow; 23] = [
     pulse_counter::ROW,
     divider::ROW,
     pwm::ROW,
@@ -36,6 +36,7 @@ const REGISTRY: [RegistryRow; 22] = [
     drive_command::ROW,
     trace::ROW,
     linear_scale::ROW,
+    error_table::ROW,
     encoder_generator::ROW,
     excitation::ROW,
     part::TIME_BASE,

@@ -58,6 +58,50 @@ fn formal_excitation() {
 }
 
 #[test]
+fn formal_error_table() {
+    for size in 0..2 {
+        proven("error_table", size);
+    }
+}
+
+#[test]
+fn formal_error_lookup() {
+    for size in 0..2 {
+        proven("error_lookup", size);
+    }
+}
+
+#[test]
+fn formal_a_bank_that_changes_while_it_counts_is_found() {
+    fails("error_table", "if (off) begin", "if (1'b1) begin", "taken_at_0");
+}
+
+#[test]
+fn formal_an_entry_that_is_too_steep_is_found() {
+    fails(
+        "error_table",
+        "step <= MOST_STEP",
+        "step <= MOST_STEP + 20'sd1",
+        "neighbours",
+    );
+}
+
+#[test]
+fn formal_an_entry_of_a_bank_in_use_is_found() {
+    fails("error_table", "(loaded & !off)", "(1'b0)", "");
+}
+
+#[test]
+fn formal_a_neighbour_behind_the_table_is_found() {
+    fails("error_lookup", "index < LAST", "index <= LAST", "");
+}
+
+#[test]
+fn formal_an_average_that_is_rounded_down_is_found() {
+    is_no_longer_proven("error_lookup", "rounded = average + half", "rounded = average");
+}
+
+#[test]
 fn formal_linear_scale() {
     proven("linear_scale", 0);
 }

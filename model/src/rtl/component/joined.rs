@@ -7,6 +7,7 @@ use crate::rtl::divider::{Divider, DividerConfig};
 use crate::rtl::divider_share::DividerShare;
 use crate::rtl::drive_command::DriveCommand;
 use crate::rtl::encoder_generator::EncoderGenerator;
+use crate::rtl::error_table::{ErrorTable, ErrorTableConfig};
 use crate::rtl::excitation::Excitation;
 use crate::rtl::group::Group;
 use crate::rtl::linear_scale::LinearScale;
@@ -56,6 +57,8 @@ pub enum ComponentPart {
     DriveCommand,
     /// Motor against scale.
     LinearScale,
+    /// A measured error over position, the machine's in bank 0.
+    ErrorTable(Box<ErrorTableConfig>),
     /// A source of encoder edges in front of the pulse counter.
     EncoderGenerator,
     /// Test signals behind the shaper.
@@ -89,6 +92,7 @@ impl ComponentPart {
             Self::Axis => "axis",
             Self::DriveCommand => "drive_command",
             Self::LinearScale => "linear_scale",
+            Self::ErrorTable(_) => "error_table",
             Self::EncoderGenerator => "encoder_generator",
             Self::Excitation => "excitation",
             Self::Trace(_) => "trace",
@@ -107,6 +111,7 @@ impl ComponentPart {
                 | Self::Shaper(_)
                 | Self::SettingBanks(_)
                 | Self::Pwm(_)
+                | Self::ErrorTable(_)
                 | Self::Trace(_)
                 | Self::Joined(_)
         )
@@ -128,6 +133,7 @@ impl ComponentPart {
             Self::Axis => Box::new(Axis::new()),
             Self::DriveCommand => Box::new(DriveCommand::new()),
             Self::LinearScale => Box::new(LinearScale::new()),
+            Self::ErrorTable(config) => Box::new(ErrorTable::new(config)),
             Self::EncoderGenerator => Box::new(EncoderGenerator::new()),
             Self::Excitation => Box::new(Excitation::new()),
             Self::Trace(config) => Box::new(Trace::new(config)),

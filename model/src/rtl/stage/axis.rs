@@ -6,6 +6,7 @@ use super::registers::{axis_window, hardware};
 use crate::rtl::Direction;
 use crate::rtl::component::{ComponentPart, JoinedBlocks, Wiring};
 use crate::rtl::composition::{CompositionError, Part};
+use crate::rtl::error_table::EntryUnit;
 use crate::rtl::trace::SIGNALS;
 
 /// Pins of every axis that are inputs.
@@ -189,6 +190,8 @@ const GENERATOR: Nets = &[
     ("z_n", "counter_z_n"),
 ];
 
+const ERROR_TABLE: Nets = &[("measured", "captured_position"), ("drive_enable", "axis_drive_enable")];
+
 const EXCITATION: Nets = &[
     ("valid", "shaper_valid"),
     ("y_0", "shaped_position"),
@@ -270,6 +273,9 @@ pub(super) fn join(axis: &StageAxis, tick_clocks: u32) -> Result<JoinedBlocks, C
             ComponentPart::Trace(trace),
         ]);
     }
+    if let Some(of) = &axis.error_table {
+        blocks.push(ComponentPart::ErrorTable(Box::new(of.table.clone())));
+    }
     let mut blocks: Vec<(String, ComponentPart)> = blocks
         .into_iter()
         .map(|block| (block.name().to_owned(), block))
@@ -312,9 +318,9 @@ fn wire(axis: &StageAxis, tick_clocks: u32, block: &ComponentPart, part: Part) -
             .on("velocity", if on_scale { "loop_velocity" } else { "velocity" })
             .on(
                 "position_reference",
-                match axis.bring_up {
-                    Some(_) => "position_reference",
-                    None => "shaped_position",
+                match axis.error_table {
+                    Some(_) => "compensated",
+                    None => uncompensated(axis),
                 },
             ),
         ComponentPart::PulseCounter if part.name() == SCALE_COUNTER => scale_counter(axis, part),
@@ -352,6 +358,20 @@ fn wire(axis: &StageAxis, tick_clocks: u32, block: &ComponentPart, part: Part) -
                 .tied("use_scale", on_scale.into()),
             None => part,
         },
+        ComponentPart::ErrorTable(table) => on(part, ERROR_TABLE)
+            .on("position_reference", uncompensated(axis))
+            .on(
+                "valid",
+                match axis.bring_up {
+                    Some(_) => "reference_valid",
+                    None => "shaper_valid",
+                },
+            )
+            .tied(
+                "on_measured",
+                axis.error_table.as_ref().is_some_and(|of| of.on_measured).into(),
+            )
+            .tied("coarse", (table.format().unit == EntryUnit::Coarse).into()),
         ComponentPart::EncoderGenerator => on(part, GENERATOR)
             .tied("pin_a_n", 0)
             .tied("pin_b_n", 0)
@@ -361,6 +381,14 @@ fn wire(axis: &StageAxis, tick_clocks: u32, block: &ComponentPart, part: Part) -
             .tied("modulo", axis.modulo.into()),
         ComponentPart::Trace(_) => trace(axis, on(part, TRACE)),
         _ => part,
+    }
+}
+
+/// Where the axis is to be, without its error table.
+fn uncompensated(axis: &StageAxis) -> &'static str {
+    match axis.bring_up {
+        Some(_) => "position_reference",
+        None => "shaped_position",
     }
 }
 

@@ -4,6 +4,7 @@ use crate::control::Supervision;
 use crate::rtl::component::ComponentError;
 use crate::rtl::composition::CompositionError;
 use crate::rtl::divider::DividerConfig;
+use crate::rtl::error_table::ErrorTableConfig;
 use crate::rtl::group::MOST_AXES;
 use crate::rtl::linear_scale::ScaleRatio;
 use crate::rtl::pwm::{BridgeMode, PwmConfig};
@@ -51,6 +52,8 @@ pub struct StageAxis {
     pub supervision: Supervision,
     /// Its linear scale.
     pub scale: Option<StageScale>,
+    /// Its error table.
+    pub error_table: Option<StageErrorTable>,
     /// What is there for bringing it up: trace memory, test signals, an encoder without a machine.
     pub bring_up: Option<TraceConfig>,
 }
@@ -64,6 +67,15 @@ pub struct StageScale {
     pub closes_loop: bool,
     /// Its direction is reversed, after reset.
     pub invert: bool,
+}
+
+/// The error table of an axis.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct StageErrorTable {
+    /// The machine's table.
+    pub table: ErrorTableConfig,
+    /// The error is looked up where the axis is; else where it is to be.
+    pub on_measured: bool,
 }
 
 /// Why there is no such stage.
@@ -122,12 +134,17 @@ pub enum StageError {
 impl StageConfig {
     /// What is done in a tick.
     pub fn timing(&self) -> StageSchedule {
-        let shapers: Vec<&ShaperConfig> = self.axes.iter().map(|axis| &axis.shaper).collect();
+        let passes: Vec<(&ShaperConfig, u32)> = (self.axes.iter())
+            .map(|axis| {
+                let table = axis.error_table.as_ref();
+                (&axis.shaper, table.map_or(0, |of| of.table.latency_clocks()))
+            })
+            .collect();
         let scaled = self
             .axes
             .iter()
             .any(|axis| axis.scale.is_some_and(|scale| scale.closes_loop));
-        StageSchedule::of(&shapers, scaled)
+        StageSchedule::of(&passes, scaled)
     }
 
     pub(super) fn schedule(&self) -> Result<ScheduleConfig, StageError> {

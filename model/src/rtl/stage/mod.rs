@@ -23,11 +23,12 @@ mod axis_settings;
 mod axis_words;
 mod bring_up;
 mod config;
+mod error_table;
 mod register;
 mod registers;
 mod schedule;
 
-pub use self::config::{StageAxis, StageConfig, StageError, StageScale};
+pub use self::config::{StageAxis, StageConfig, StageError, StageErrorTable, StageScale};
 pub use self::registers::{AXIS_INTERRUPTS, axis_interrupt_bit, axis_window};
 pub use self::schedule::StageSchedule;
 

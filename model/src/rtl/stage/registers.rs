@@ -2,7 +2,7 @@
 
 use super::config::{StageAxis, StageConfig};
 use super::register::command;
-use super::{axis_settings, axis_words, bring_up};
+use super::{axis_settings, axis_words, bring_up, error_table};
 use crate::rtl::group::MOST_AXES;
 use crate::rtl::registers::maps;
 use crate::rtl::registers::{Access, Description, Field, FlagSource, Register, WINDOW_WORDS};
@@ -181,6 +181,9 @@ pub fn axis_window(axis: &StageAxis) -> Vec<Register> {
     registers.extend(axis_words::registers(axis));
     if let Some(scale) = &axis.scale {
         registers.extend(axis_words::of_scale(scale));
+    }
+    if let Some(of) = &axis.error_table {
+        registers.extend(error_table::registers(&of.table));
     }
     if axis.bring_up.is_some() {
         registers.extend(bring_up::registers());

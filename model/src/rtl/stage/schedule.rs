@@ -27,15 +27,18 @@ pub struct StageSchedule {
     divide: u32,
     /// The last velocity in counts of the scale.
     scale: u32,
+    /// With the error table's pass behind the shaper's.
     shape: u32,
 }
 
 impl StageSchedule {
-    /// Of axes with these shapers; `on_scale`: the loop of one runs on its scale.
-    pub fn of(shapers: &[&ShaperConfig], on_scale: bool) -> Self {
-        let passes = shapers.iter().map(|shaper| shaper.pass_clocks(shaper.most_products()));
+    /// Of axes with these shapers, and these clocks of an error table behind them; `on_scale`: the loop of one runs on its scale.
+    pub fn of(axes: &[(&ShaperConfig, u32)], on_scale: bool) -> Self {
+        let passes = axes
+            .iter()
+            .map(|(shaper, table_clocks)| shaper.pass_clocks(shaper.most_products()) + table_clocks);
         Self {
-            divide: shapers.len() as u32 * SHARE_CLOCKS,
+            divide: axes.len() as u32 * SHARE_CLOCKS,
             scale: if on_scale { linear_scale::LATENCY_CLOCKS } else { 0 },
             shape: passes.max().unwrap_or(0),
         }

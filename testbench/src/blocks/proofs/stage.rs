@@ -11,13 +11,14 @@ use crate::blocks::library::stage;
 use crate::formal::{INDUCTION, Task, refused};
 
 /// Blocks of an axis that only say where it should be and where it is: left out, so that they say anything.
-const LEFT_OUT: [&str; 8] = [
+const LEFT_OUT: [&str; 9] = [
     "segments",
     "motion_shaper",
     "sliding_mode",
     "pulse_counter",
     "linear_scale",
     "encoder_generator",
+    "error_table",
     "excitation",
     "trace",
 ];

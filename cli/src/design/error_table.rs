@@ -1,0 +1,87 @@
+//! The error table of an axis, for people and for programs.
+
+use posicast_model::hardware::{self, Hardware};
+use posicast_model::machine_file::{AxisSection, Machine};
+use posicast_model::rtl::stage::StageErrorTable;
+use posicast_testbench::wording::counted;
+use serde::Serialize;
+
+/// The table that the hardware has of what was measured on an axis.
+pub(super) struct ErrorTableReport<'a> {
+    axis: &'a AxisSection,
+    built: StageErrorTable,
+}
+
+/// The same in JSON.
+#[derive(Serialize)]
+pub(super) struct ErrorTableDocument {
+    apply: &'static str,
+    points: usize,
+    entries: usize,
+    first_counts: i32,
+    spacing_counts: u32,
+    largest_error_counts: f64,
+    departure_counts: f64,
+}
+
+impl<'a> ErrorTableReport<'a> {
+    /// That of the axis of this place; none where there is no table, or no stage that could have one.
+    pub(super) fn new(hardware: &Hardware<'_>, axis: &'a AxisSection, place: usize) -> Option<Self> {
+        let stage = hardware.stage().ok().flatten()?;
+        let built = stage.of_machine.config.axes.get(place)?.error_table.clone()?;
+        Some(Self { axis, built })
+    }
+
+    pub(super) fn json(&self) -> ErrorTableDocument {
+        let (table, counts) = (&self.built.table, self.axis.loop_counts_per_unit());
+        let points = self
+            .axis
+            .error_table
+            .as_ref()
+            .map_or(&[][..], |section| &section.points);
+        let largest = points
+            .iter()
+            .fold(0.0, |largest: f64, (_, error)| largest.max(error.abs()));
+        ErrorTableDocument {
+            apply: if self.built.on_measured {
+                "feedback"
+            } else {
+                "reference"
+            },
+            points: points.len(),
+            entries: table.entries().len(),
+            first_counts: table.format().first_counts,
+            spacing_counts: 1 << table.format().spacing_bits,
+            largest_error_counts: largest * counts,
+            departure_counts: hardware::error_table_departure_counts(self.axis, table),
+        }
+    }
+
+    pub(super) fn text(&self) -> String {
+        let of = self.json();
+        let show = |counts: f64| self.axis.unit.show(counts / self.axis.loop_counts_per_unit(), 3);
+        format!(
+            "\n  error table, at the {}: {} of up to {} in {}, {} apart; at most {} off the file\n",
+            of.apply,
+            counted(of.points as u64, "point"),
+            show(of.largest_error_counts),
+            counted(of.entries as u64, "entry"),
+            show(f64::from(of.spacing_counts)),
+            show(of.departure_counts),
+        )
+    }
+}
+
+/// What is said of tables that nothing is built of.
+pub(super) fn not_built(machine: &Machine, hardware: &Hardware<'_>) -> Option<String> {
+    let has_stage = !matches!(hardware.stage(), Ok(None));
+    let axis = machine
+        .axes
+        .iter()
+        .find(|axis| axis.error_table.is_some() && !has_stage)?;
+    Some(format!(
+        "axis {}: its error table is not built, because it is a part of the stage, which needs encoder, PWM, drive and controller on \
+         every axis",
+        axis.name
+    ))
+}

@@ -1,0 +1,41 @@
+//! The one adder: the average of what it has and what comes, in every clock, and that rounded half up by the bit dropped last.
+
+use crate::prelude::*;
+
+kernel! {
+    pub(super) struct Average;
+
+    inputs { rst: Bit, addend: Signed<18>, load: Bit, clear: Bit }
+    outputs { rounded: Signed<18> }
+    registers { average: Signed<18>, dropped: Bit }
+    wires {
+        wide_average: Signed<19>, wide_addend: Signed<19>, sum: Signed<19>, sum_bits: Bits<19>, half: Signed<18>,
+    }
+    constants { none: Signed<18> = from_i64(0), one: Signed<18> = from_i64(1) }
+}
+
+impl Logic for Average {
+    #[hdl_gen]
+    fn update(&mut self) {
+        comment!("@module error_average");
+
+        self.wide_average.next = signed_bit_cast::<19, 18>(self.average.q.val());
+        self.wide_addend.next = signed_bit_cast::<19, 18>(self.addend.val());
+        self.sum.next = self.wide_average.val() + self.wide_addend.val();
+        self.sum_bits.next = unsigned_cast(self.sum.val());
+        self.average.d.next = signed_cast(self.sum_bits.val().get_bits::<18>(1));
+        self.dropped.d.next = self.sum_bits.val().get_bit(0);
+        if self.load.val() {
+            self.average.d.next = self.addend.val();
+        }
+        if self.clear.val() {
+            self.average.d.next = self.none.val();
+        }
+
+        self.half.next = self.none.val();
+        if self.dropped.q.val() {
+            self.half.next = self.one.val();
+        }
+        self.rounded.next = self.average.q.val() + self.half.val();
+    }
+}

@@ -1,0 +1,70 @@
+//! The error table in hardware: a measured error of screw or scale over position, taken from the position reference.
+//!
+//! The datasheet is `docs/error_table.md`, the reference `posicast_model::rtl::error_table`.
+
+mod average;
+mod entry_banks;
+mod kernel;
+mod lookup;
+
+use crate::emit::{self, EmitError, EmitOptions, Header, Module, Parameter};
+use crate::simulation::{Simulated, SimulationError};
+use kernel::ErrorTable;
+use posicast_model::rtl::ClockedBlock;
+use posicast_model::rtl::error_table::{ErrorTableConfig, ports};
+
+/// The error table in RustHDL's own simulator.
+///
+/// # Errors
+/// [`SimulationError`] where RustHDL finds a fault in the block.
+pub fn simulate(config: &ErrorTableConfig) -> Result<Box<dyn ClockedBlock>, SimulationError> {
+    let block = Box::new(ErrorTable::new(config));
+    Ok(Box::new(Simulated::new("error_table", block, ports())?))
+}
+
+/// The name of the module that [`emit()`] writes last: `PREFIX_error_table`, since it holds the machine's table.
+pub fn name(prefix: &str) -> String {
+    emit::own_name(prefix, "error_table")
+}
+
+/// The error table's Verilog, one module per file, the top last; it is called [`name`], and all names are bare where `prefix` is empty.
+///
+/// # Errors
+/// [`EmitError`] where `prefix` makes no Verilog name.
+pub fn emit(config: &ErrorTableConfig, prefix: &str) -> Result<Vec<Module>, EmitError> {
+    let parameter = |name: &str, value: String, meaning: &str| Parameter {
+        name: name.to_owned(),
+        value,
+        meaning: meaning.to_owned(),
+    };
+    let format = config.format();
+    let options = EmitOptions {
+        top: "error_table".to_owned(),
+        prefix: prefix.to_owned(),
+        header: Header {
+            about: "Error table: the measured error of screw or scale over position, interpolated linearly,\n\
+                    times a weight that goes up and down slowly, is taken from the position reference."
+                .to_owned(),
+            parameters: vec![
+                parameter("entries", config.entries().len().to_string(), "per bank"),
+                parameter(
+                    "first_counts",
+                    format.first_counts.to_string(),
+                    "user's position of the first",
+                ),
+                parameter(
+                    "spacing_counts",
+                    (1u32 << format.spacing_bits).to_string(),
+                    "from entry to entry",
+                ),
+                parameter("most_step", format.most_step().to_string(), "between neighbours"),
+                parameter(
+                    "latency_clocks",
+                    config.latency_clocks().to_string(),
+                    "from valid to compensated_valid",
+                ),
+            ],
+        },
+    };
+    emit::emit(&ErrorTable::new(config), &options)
+}

@@ -1,0 +1,43 @@
+//! The driver's error tables on the stage: in force once homed, another one loaded, read back, refused, and off.
+
+use crate::driver::bridge::Bridge;
+use crate::driver::support::Driver;
+use posicast_model::machine_file::{self, Machine};
+
+/// The example, with a screw of x that is 20 µm too long over 100 mm.
+fn machine() -> Machine {
+    let text = include_str!("../../../examples/xy-stage.toml");
+    let table = "[axis.error_table]\nfile = \"x.csv\"\n\n[axis.limits]";
+    let text = text.replacen("[axis.limits]", table, 1);
+    let csv = |_: &str| Ok("position,error\n-0.1,-0.00002\n0.1,0.00002\n".to_owned());
+    machine_file::parse_beside("xy-stage.toml", &text, &csv).unwrap()
+}
+
+#[test]
+fn lockstep_the_driver_loads_uses_and_reads_error_tables() {
+    let driver = Driver::of(machine());
+    let mut bridge = Bridge::new(&driver, "error_table.c", false);
+    let said = bridge.talk(&[]);
+    assert_eq!(
+        (said["entries"], said["spacing"], said["first"]),
+        (197, 1024, -100_000),
+        "{said:?}"
+    );
+    // Nothing before homing.
+    assert_eq!((said["not_homed"], said["counted_before"]), (0, 10_000), "{said:?}");
+    // 2 counts at 10,000: the axis goes back by them, to be true.
+    assert_eq!(
+        (said["weight"], said["error"], said["counted"]),
+        (1024, 512, 9998),
+        "{said:?}"
+    );
+    // 5 counts by the loaded one; between two entries, of which one is at a corner, a little more.
+    assert!((said["error_loaded"] - 5 * 256).abs() <= 40, "{said:?}");
+    assert_eq!(said["same"], 1, "{said:?}");
+    assert_eq!((said["machine_first"], said["machine_last"]), (-5120, 5120), "{said:?}");
+    assert_eq!(
+        (said["error_refused"], said["error_off"], said["causes"]),
+        (512, 0, 0),
+        "{said:?}"
+    );
+}
