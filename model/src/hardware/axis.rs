@@ -132,7 +132,7 @@ fn shaper(
     Ok(config)
 }
 
-/// A position shaper with room for all tables of an axis.
+/// A plain shaper with room for all tables of an axis.
 ///
 /// # Errors
 /// [`ShaperConfigError`] where the shaper exceeds the sizes of the hardware.
