@@ -6,7 +6,7 @@
 //!           └─ · (2π/P)² ──────────┘                       in series, N/m
 //! ```
 //!
-//! //! | quantity | formula | error in the thesis |
+//! | quantity | formula | error in the thesis |
 //! |---|---|---|
 //! | torsion of a shaft | `G J_p/L`, `J_p = π d⁴/32` | the thesis prints N/m for N·mm/rad, and radius for diameter |
 //! | the same at the table | `K (2π/P)²` | K1 was added as it was: 33.94 in the place of 34.21 N/µm for X |

@@ -1,16 +1,16 @@
 //! Computes the words of an axis's supervisor, and of the quick stop, from the machine file.
 //!
-//! //! | key of `[axis.limits]` | word | unit of its LSB | rounded | absent |
+//! | key of `[axis.limits]` | word | unit of its LSB | rounded | absent |
 //! |---|---|---|---|---|
-//! //! | `travel` | soft limits, i32 | 2^−8 counts | inwards | 0, 0: no soft limits |
-//! //! | `soft_limits_after_homing` | 1 bit | | | 0: they act at once |
-//! //! | `following_error` | u32 | 2^−16 counts | down, at least 1 | 0: not checked |
-//! //! | `deviation` | u32 | counts | down, at least 1 | 0: not checked |
-//! //! | `saturation_s`, `encoder_lost_s`, `watchdog_s` | u16 | ticks | down, at least 1 | 0: not checked |
+//! | `travel` | soft limits, i32 | 2^−8 counts | inwards | 0, 0: no soft limits |
+//! | `soft_limits_after_homing` | 1 bit | | | 0: they act at once |
+//! | `following_error` | u32 | 2^−16 counts | down, at least 1 | 0: not checked |
+//! | `deviation` | u32 | counts | down, at least 1 | 0: not checked |
+//! | `saturation_s`, `encoder_lost_s`, `watchdog_s` | u16 | ticks | down, at least 1 | 0: not checked |
 //! | `encoder_lost_command` | u32 | 2^−12 command units | down | 0.5 of full scale; 0 without `encoder_lost_s` |
 //! | `brake_release_s`, `brake_apply_s` | u16 | ticks | up | 0 |
 //! | `line_filter_s` | 6 bits | clocks | up | 0 |
-//! //! | `stop_deceleration` | 31 bits | 2^−24 counts per tick² | down, at least 1 | `acceleration`; without it 0: the axis stops at once |
+//! | `stop_deceleration` | 31 bits | 2^−24 counts per tick² | down, at least 1 | `acceleration`; without it 0: the axis stops at once |
 //! | `direct_duty` | u16 | clocks of the PWM | down | 0.1 of the period |
 //! | `direct_hold_s` | u16 | ticks | down, at least 1 | 0.2 s, or what fits |
 //! | `excitation` | u16 | 2^−8 counts | down, at least 1 | 4 counts |

@@ -17,7 +17,7 @@
 //! value a table is within tolerance. The thresholds lie a third of an overlap apart, so that noise of the variable
 //! does not switch tables to and fro, and a third from its ends, so that there is time for the change.
 //!
-//! //! # What a handover adds
+//! # What a handover adds
 //! The shaper hands over by increments: those of the command before the change go through the old table A, later ones
 //! through the new table B (`docs/shaper.md`). So the shaped command is the sum of two, each shaped by one table: the
 //! command up to the change, where it stops at once, and the rest, which starts at once. A command that stops or

@@ -10,8 +10,8 @@
 //! | | velocity drive | torque drive |
 //! |---|---|---|
 //! | `x`, the driven coordinate | the motor; the drive is stiff, so nothing acts back on it | the centre of all that is moved |
-//! //! | a mode | `y/x = ω²/(s² + 2ζωs + ω²)` | free vibration within the mass: `d″ + 2ζωd′ + ω²d = −x″`, `y = x + d` |
-//! //! | the encoder sees | `x`: the modes for which the shaper is designed are outside the loop | `y`: the modes are inside the loop |
+//! | a mode | `y/x = ω²/(s² + 2ζωs + ω²)` | free vibration within the mass: `d″ + 2ζωd′ + ω²d = −x″`, `y = x + d` |
+//! | the encoder sees | `x`: the modes for which the shaper is designed are outside the loop | `y`: the modes are inside the loop |
 //! | friction | none: the drive overcomes it | viscous and Coulomb, on `x` |
 //!
 //! Vibration is always measured at the load. `docs/plant.md` has the reasons, and the idealisations.

@@ -6,9 +6,9 @@
 //! | part | what it does |
 //! |---|---|
 //! | [`TRANSITIONS`], [`next`] | the states, as data |
-//! //! | [`Cause`], [`switching_off`] | the causes of a fault, and which of them switch off |
-//! //! | `monitors` | checks at ticks: limits, soft limits, following error and others |
-//! //! | `timer` | the times of brake and shaper |
+//! | [`Cause`], [`switching_off`] | the causes of a fault, and which of them switch off |
+//! | `monitors` | checks at ticks: limits, soft limits, following error and others |
+//! | `timer` | the times of brake and shaper |
 //! | `registers` | lines, sticky causes, the state and brake, clock by clock |
 //! | [`Axis`] | the ports |
 //!

@@ -7,7 +7,7 @@
 //! | `lines` | synchronises and filters A, B and Z; compares differential pairs |
 //! | `decode` | levels to steps: quadrature ×4 ×2 ×1, step and direction, up and down |
 //! | [`PulseCounter`] | the count, which never jumps; `origin`; the index latch |
-//! //! | `velocity` | M/T: selects steps and time for the divider; bounds and smooths its quotient |
+//! | `velocity` | M/T: selects steps and time for the divider; bounds and smooths its quotient |
 //!
 //! [`PulseCounter::step`] simulates one clock; [`PulseCounter::hold`] simulates many with the same inputs, and skips
 //! those that change nothing but the time.

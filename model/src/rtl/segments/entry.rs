@@ -17,12 +17,12 @@ pub const TICK_BITS: u32 = 24;
 pub const ACCELERATION_BITS: u32 = 40;
 /// Flag in word 3: the entry is a point.
 pub const POINT: u32 = 1 << 31;
-/// Flag in word 3: `notify` when the entry has ended.
+/// Flag in word 3: `notify` is high for a clock when the entry has ended.
 pub const NOTIFY: u32 = 1 << 30;
 /// Bits of word 3 that must be 0.
 pub const RESERVED: u32 = !(POINT | NOTIFY | ((1 << TICK_BITS) - 1));
 
-/// What an entry commands for its ticks.
+/// Motion that an entry commands during its ticks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum EntryMotion {
     /// A constant jerk, Q8.32 counts per tick³, 40 bits.
@@ -31,25 +31,25 @@ pub enum EntryMotion {
     Point(Point),
 }
 
-/// A state of the command, as its words.
+/// A state of the command, in its words.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Point {
-    /// Q24.8 counts.
+    /// Position in Q24.8 counts.
     pub position: i32,
-    /// Q16.16 counts per tick.
+    /// Velocity in Q16.16 counts per tick.
     pub velocity: i32,
-    /// Q8.24 counts per tick².
+    /// Acceleration in Q8.24 counts per tick².
     pub acceleration: i32,
 }
 
 /// An entry of the command FIFO.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Entry {
-    /// For so many ticks, 1 to 2^24 − 1.
+    /// Duration in ticks, 1 to 2^24 − 1.
     pub ticks: u32,
-    /// The motion of the segment.
+    /// Motion of the segment or point.
     pub motion: EntryMotion,
-    /// Tell the host when it has ended.
+    /// Whether the host is told when the entry has ended.
     pub notify: bool,
 }
 
@@ -68,7 +68,7 @@ impl Entry {
         }
     }
 
-    /// What the words mean to the hardware, which looks at the lower 40 bits of a jerk.
+    /// Decodes words as the hardware does, which uses only the lower 40 bits of a jerk.
     pub(super) fn from_words(words: &[u32; ENTRY_WORDS]) -> Self {
         let [first, second, third, last] = *words;
         let motion = if last & POINT != 0 {
@@ -89,7 +89,7 @@ impl Entry {
     }
 }
 
-/// Does word 1 of a segment hold more than the upper 8 bits of a 40-bit jerk?
+/// Whether word 1 of a segment holds more than the upper 8 bits of a 40-bit jerk.
 pub(super) fn too_wide(word: u32) -> bool {
     let upper = (word as i32) >> 7;
     upper != 0 && upper != -1

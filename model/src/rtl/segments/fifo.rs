@@ -1,27 +1,27 @@
-//! The memory of the command FIFO and what may be written into it.
+//! The memory of the command FIFO, and the rules for writing to it.
 
 use super::entry::{ENTRY_WORDS, Entry, POINT, RESERVED, TICK_BITS, too_wide};
 
-/// Entries that are held: those that wait, and the one that plays.
+/// Largest number of entries held: those that wait, and the one being played.
 pub const ENTRIES_MAX: u8 = 64;
 const SLOTS: usize = ENTRIES_MAX as usize;
 
-/// What became of a word.
+/// Result of writing a word.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(super) struct Written {
     pub(super) refused: bool,
     pub(super) malformed: bool,
 }
 
-/// Pointers and what is known of the entry that is being written.
+/// Pointers of the FIFO, and the state of the entry being written.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(super) struct Pointers {
     head: u8,
     tail: u8,
     level: u8,
-    /// Words 0 to 2 of the entry were written.
+    /// Whether words 0, 1 and 2 of the entry were written.
     written: [bool; ENTRY_WORDS - 1],
-    /// Word 1 is no sign extension of 8 bits.
+    /// Whether word 1 is not a sign extension of 8 bits.
     too_wide: bool,
 }
 
@@ -47,12 +47,12 @@ impl Fifo {
         self.pointers.level
     }
 
-    /// Forgets all entries; what the memory holds stays.
+    /// Drops all entries; the memory keeps its contents.
     pub(super) fn reset(&mut self) {
         self.pointers = Pointers::default();
     }
 
-    /// Drops all entries that wait, and the one that is being written.
+    /// Drops all waiting entries, and the one being written.
     pub(super) fn flush(&mut self) {
         self.pointers = Pointers {
             head: self.pointers.head,
@@ -61,7 +61,7 @@ impl Fifo {
         };
     }
 
-    /// Takes one word of the entry that is being written; word 3 commits it.
+    /// Writes one word of an entry; word 3 commits it.
     pub(super) fn write(&mut self, word: u8, data: u32, closed: bool, plays: bool) -> Written {
         let pointers = &mut self.pointers;
         let before = (pointers.written, pointers.too_wide);
@@ -102,7 +102,7 @@ impl Fifo {
         }
     }
 
-    /// Takes the oldest entry out. One must be there.
+    /// Takes out the oldest entry, which must exist.
     pub(super) fn pop(&mut self) -> Entry {
         let pointers = &mut self.pointers;
         let slot = usize::from(pointers.head);

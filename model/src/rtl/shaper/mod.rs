@@ -4,10 +4,10 @@
 //!
 //! | type | what it is |
 //! |---|---|
-//! //! | [`ShaperConfig`] | the build parameters of a shaper: word width, sizes of its memories, the table in its ROM |
+//! | [`ShaperConfig`] | the build parameters of a shaper: word width, sizes of its memories, the table in its ROM |
 //! | [`Shaper`] | cycle accurate at the ports, one [`Shaper::step`] per clock, from typed [`Inputs`] to typed [`Outputs`] |
-//! //! | [`SampleShaper`] | the same results without the clocks: one [`SampleShaper::push`] per sample |
-//! //! | [`ShaperMotion`] | the additional features of a motion shaper: channels that share a table, handover, modulo axes |
+//! | [`SampleShaper`] | the same results without the clocks: one [`SampleShaper::push`] per sample |
+//! | [`ShaperMotion`] | the additional features of a motion shaper: channels that share a table, handover, modulo axes |
 //! | [`MotionShaper`] | its samples without the clocks |
 //!
 //! ```text
