@@ -1,4 +1,4 @@
-//! The hardware blocks that stand for a machine: its own, at its settings, and the rest of the library at a default size.
+//! The hardware blocks of a machine: its own, with its settings, and the rest of the library at default sizes.
 
 use crate::bench;
 use crate::command::{self, Words};
@@ -23,17 +23,17 @@ use posicast_testbench::blocks::{
 };
 use std::path::Path;
 
-/// Delays of the cascade that is compared where no machine asks for one, in samples.
+/// Delays of the cascade that is compared by default, in samples.
 const CASCADE_DELAYS_SAMPLES: [u32; 4] = [26, 31, 38, 62];
-/// Its word.
+/// Word width of this cascade in bits.
 const CASCADE_WORD_BITS: u32 = 32;
-/// Dead time and minimum pulse of the PWM that is compared where no axis has one.
+/// Dead time and minimum pulse of the PWM that is compared where no axis has one, in clocks.
 const PWM_FLOORS_CLOCKS: [u64; 2] = [2, 1];
-/// Words of the trace memory that is compared.
+/// Size in words of the trace memory that is compared.
 const TRACE_SAMPLES: u64 = 1024;
-/// Clocks from the tick to the controllers of the schedule that is compared.
+/// Clocks from the tick to the controllers, of the schedule that is compared.
 const SCHEDULE_CLOCKS: u32 = 500;
-/// The shaper for motion that is compared where no axis has one: position, velocity and acceleration share a table.
+/// The motion shaper that is compared where no axis has one: position, velocity and acceleration share a table.
 const MOTION: ShaperMotion = ShaperMotion {
     channels: 3,
     modulo: false,
@@ -44,7 +44,8 @@ pub(crate) fn shapers(machine: &Machine, shapers: Vec<AxisShaper>, words: &Words
     MachineShapers::new(&machine.name, shapers, command::on_the_ports(machine, words)).map_err(bench::failure)
 }
 
-/// The other blocks: none for a machine of shapers alone, else every block of the library. `path` is the machine file.
+/// The other blocks: none for a machine that has only shapers, else every block of the library. `path` is the machine
+/// file.
 pub(crate) fn others(
     report: &DesignReport<'_>,
     shapers: &[AxisShaper],
@@ -96,7 +97,8 @@ pub(crate) fn others(
     Ok(blocks)
 }
 
-/// What a folder holds beside the machine's top: each component, through its bus and its pins, and the blocks in it, each alone.
+/// The blocks of a folder in addition to the machine's top: each component, through its bus and its pins, and the
+/// blocks in it, each alone.
 pub(crate) fn of_components(components: Vec<ComponentBlock>) -> Result<Vec<Box<dyn Block>>, Failure> {
     let mut blocks: Vec<Box<dyn Block>> = Vec::new();
     for component in components {
@@ -107,7 +109,7 @@ pub(crate) fn of_components(components: Vec<ComponentBlock>) -> Result<Vec<Box<d
     Ok(blocks)
 }
 
-/// The small blocks between others, at the machine's sizes where these do not depend on a stage.
+/// The small blocks that connect others, at the machine's sizes where these do not depend on a stage.
 fn parts(machine: &Machine, hardware: &Hardware<'_>, path: &Path) -> Result<[SmallPart; 6], Failure> {
     let first = hardware.axes().iter().find_map(|axis| axis.control.as_ref());
     let axes = machine.axes.len().clamp(1, MOST_AXES);
@@ -124,7 +126,7 @@ fn parts(machine: &Machine, hardware: &Hardware<'_>, path: &Path) -> Result<[Sma
     ])
 }
 
-/// The PWMs of the machine, each with the axes that have one like it; one of its own where no axis has any.
+/// The distinct PWMs of the machine, each with the names of its axes; a default one where no axis has any.
 fn pwms(machine: &Machine, path: &Path) -> Result<Vec<(PwmConfig, String)>, Failure> {
     let mut found: Vec<(PwmConfig, String)> = Vec::new();
     for axis in &machine.axes {
@@ -149,7 +151,7 @@ fn pwms(machine: &Machine, path: &Path) -> Result<Vec<(PwmConfig, String)>, Fail
     Ok(found)
 }
 
-/// The names of the axes that have something, or `alone` where none has it.
+/// Names of the axes for which `has` is true, or `alone` where there are none.
 fn axes(machine: &Machine, has: impl Fn(&AxisSection) -> bool) -> String {
     let names: Vec<&str> = machine
         .axes
@@ -168,7 +170,7 @@ fn divider(hardware: &Hardware<'_>, path: &Path) -> Result<DividerConfig, Failur
     hardware.divider().map_err(|error| of_hardware(&error, path))
 }
 
-/// A shaper for motion with the first axis's table, at the first size that holds it.
+/// A motion shaper with the first axis's table, at the smallest size that holds it.
 fn motion_shaper(shapers: &[AxisShaper]) -> Result<ShaperConfig, Failure> {
     let Some(first) = shapers.first() else {
         return Err(Failure::from(miette::miette!("the machine has no axis")));

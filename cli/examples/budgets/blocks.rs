@@ -1,4 +1,4 @@
-//! The list of what is measured: a new block is a new row here.
+//! The list of blocks that are measured: a new block is a new row here.
 
 use posicast_hdl::emit::Module;
 use posicast_hdl::{
@@ -18,23 +18,23 @@ use posicast_model::rtl::trace::TraceConfig;
 use posicast_model::taps::{Tap, TapTable};
 use std::error::Error;
 
-/// What a block may take, by section 12 of the hardware's specification.
+/// Budget of a block, by section 12 of the hardware's specification.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Budget {
     pub(crate) luts: u64,
     pub(crate) flip_flops: u64,
 }
 
-/// A block in one size.
+/// A block at one size.
 pub(crate) struct Row {
-    /// The block's name everywhere.
+    /// Name of the block.
     pub(crate) block: &'static str,
     /// Its size, where it has several.
     pub(crate) size: &'static str,
-    /// Its Verilog, the top last.
+    /// Its Verilog modules, the top last.
     pub(crate) modules: Vec<Module>,
     pub(crate) budget: Option<Budget>,
-    /// Why it takes more than its budget; for one that does not, what takes most.
+    /// Why it exceeds its budget; for a block that does not, what takes most of the area.
     pub(crate) note: &'static str,
 }
 
@@ -179,8 +179,8 @@ pub(crate) fn rows() -> Result<Vec<Row>, Box<dyn Error>> {
 /// The name of the stage's row.
 pub(crate) const STAGE: &str = "stage";
 
-/// The stage of the example machine, flattened: what is tied to the machine file is folded. `traces` is written before the
-/// controller of each axis.
+/// The stage of the example machine, flattened: inputs that are tied by the machine file are folded. `traces` is
+/// inserted before the controller of each axis.
 fn stage(size: &'static str, traces: &str) -> Result<Row, Box<dyn Error>> {
     let controller = "[axis.controller]";
     let file = include_str!("../../../examples/xy-stage.toml").replace(controller, &format!("{traces}{controller}"));
@@ -216,13 +216,13 @@ fn cascade(word_bits: u32, stages: usize, delay_samples: u32, size: &'static str
     })
 }
 
-/// Position, velocity and acceleration of an axis.
+/// Channels of an axis: position, velocity and acceleration.
 const MOTION: ShaperMotion = ShaperMotion {
     channels: 3,
     modulo: false,
 };
 
-/// Six taps: ZVD digitised with two taps per impulse, 79 samples long.
+/// A shaper with six taps: ZVD digitised with two taps per impulse, 79 samples long.
 fn shaper() -> Result<ShaperConfig, Box<dyn Error>> {
     let taps = [(0, 25431), (38, 12000), (39, 18787), (77, 4000), (78, 5317), (79, 1)];
     let tap = |(delay_samples, coefficient)| Tap {

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-/// What a tool is needed for.
+/// Purpose of a tool.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub(super) enum Need {
@@ -27,7 +27,7 @@ pub(super) struct Tool {
     pub(super) install: &'static str,
 }
 
-/// All of them.
+/// All tools.
 pub(super) const TOOLS: [Tool; 14] = [
     Tool {
         names: &["verilator"],

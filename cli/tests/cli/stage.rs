@@ -261,7 +261,7 @@ fn cli_run_closes_the_loop_in_verilog_and_model() {
     let checks = document["checks"].as_array().unwrap();
     let of_stage = checks.iter().filter(|check| {
         let name = check["name"].as_str().unwrap();
-        ["the stage", "the shapers take", "the axes follow"]
+        ["the stage", "the shapers suppress", "the axes follow"]
             .iter()
             .any(|begin| name.starts_with(begin))
     });
@@ -338,7 +338,7 @@ fn cli_run_of_ei_shapers_passes_and_says_what_was_expected() {
     let checks = document["checks"].as_array().unwrap();
     let shapers = checks
         .iter()
-        .find(|check| check["name"].as_str().unwrap().starts_with("the shapers take"));
+        .find(|check| check["name"].as_str().unwrap().starts_with("the shapers suppress"));
     let detail = shapers.unwrap()["detail"].as_str().unwrap();
     assert!(
         detail.contains("axis x: 47.") && detail.contains("expected of its design"),
