@@ -1,11 +1,11 @@
-//! The part of the driver that is the same for every machine: C that stands in `c/`, as it is compiled.
+//! The part of the driver that is the same for every machine: C sources in `c/`, copied as they are.
 
 use super::{DriverFile, file};
 
 /// Path below the driver's folder, and text.
 type Fixed = (&'static str, &'static str);
 
-/// Every stage's.
+/// Files for every stage.
 const CORE: [Fixed; 21] = [
     ("inc/posicast_io.h", include_str!("c/inc/posicast_io.h")),
     ("inc/posicast_machine.h", include_str!("c/inc/posicast_machine.h")),
@@ -36,13 +36,13 @@ const CORE: [Fixed; 21] = [
     ("linux/Makefile", include_str!("c/linux/Makefile")),
 ];
 
-/// Where an axis has the registers for it.
+/// Files for stages whose axes have the bring-up registers.
 const BRING_UP: [Fixed; 2] = [
     ("inc/posicast_bring_up.h", include_str!("c/inc/posicast_bring_up.h")),
     ("src/posicast_bring_up.c", include_str!("c/src/posicast_bring_up.c")),
 ];
 
-/// Where the modes of an axis move.
+/// Files for stages with axes whose modes move.
 const FAMILY: [Fixed; 2] = [
     ("inc/posicast_family.h", include_str!("c/inc/posicast_family.h")),
     ("src/posicast_family.c", include_str!("c/src/posicast_family.c")),

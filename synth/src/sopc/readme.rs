@@ -1,4 +1,4 @@
-//! `README.md` of the folder: what is in it, and what to do with it in Quartus.
+//! Writes `README.md` of the folder: its contents, and what to do with it in Quartus.
 
 use std::fmt::Write;
 
@@ -7,7 +7,7 @@ use super::pins::{Pin, Use};
 use super::unit::Unit;
 use super::{Design, system, top};
 
-/// The text. `projects` are the boards with a project and their pins.
+/// The text. `projects` are the boards with a project, and their pins.
 pub(super) fn text(design: &Design<'_>, projects: &[(Board, Vec<Pin>)]) -> String {
     let mut text = String::new();
     contents(&mut text, design);
@@ -170,7 +170,7 @@ With {quartus}, in its {shell}, from this folder:
     text.push_str(&generate_step(board, &system));
     let position = match facts.processor {
         Processor::Nios2 => "",
-        // The hard processor is the first device of the chain.
+        // The hard processor is the first device of the JTAG chain.
         Processor::NiosV => "@2",
     };
     let _ = write!(
@@ -206,7 +206,7 @@ fn generate_step(board: Board, system: &str) -> String {
     }
 }
 
-/// How software is made for the system.
+/// How to build software for the system.
 fn software(processor: Processor, system: &str) -> String {
     match processor {
         Processor::Nios2 => format!(
