@@ -1,15 +1,15 @@
-//! The columns of a log and their numbers.
+//! The columns of a log: meanings and numbers.
 
 use super::LogError;
 use csv::{ByteRecord, ReaderBuilder, Trim};
 
-/// What a column says.
+/// Meaning of a column.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Meaning {
     Time,
     Command,
     Response,
-    /// Of the motor against the scale.
+    /// Difference between motor and scale.
     Deviation,
     Acceleration,
 }
@@ -22,21 +22,21 @@ pub(super) struct Column {
     pub(super) values: Vec<f64>,
 }
 
-/// A log as it stands in its file, in SI units where its names say units.
+/// A log as it is in its file, in SI units where its names give units.
 pub(super) struct Table {
     pub(super) times_s: Vec<f64>,
-    /// Line of each row.
+    /// Line of each row in the file.
     pub(super) lines: Vec<u64>,
     pub(super) columns: Vec<Column>,
     pub(super) unknown: Vec<String>,
 }
 
-/// Columns of one meaning: how they are called, and the units that their names may end in.
+/// Names of columns with one meaning, and the units in which their names may end.
 struct Known {
     meaning: Meaning,
     names: &'static [&'static str],
     units: &'static [(&'static str, f64)],
-    /// Factor where the name says no unit.
+    /// Factor for a name without unit.
     plain: f64,
 }
 
@@ -78,12 +78,12 @@ const KNOWN: [Known; 5] = [
         meaning: Meaning::Acceleration,
         names: &["accel_x", "accel_y", "accel_z"],
         units: &[("mm_s2", 1e-3), ("m_s2", 1.0), ("g", 9.806_65)],
-        // Printer firmware writes mm/s² without saying so.
+        // Printer firmware writes mm/s² without naming the unit.
         plain: 1e-3,
     },
 ];
 
-/// What a name means, and what its numbers are multiplied by.
+/// Meaning of a name, and the factor for its numbers.
 fn meaning(name: &str) -> Option<(Meaning, f64)> {
     KNOWN.iter().find_map(|known| {
         let rest = known.names.iter().find_map(|stem| name.strip_prefix(stem))?;
@@ -108,7 +108,7 @@ pub(super) fn read(text: &[u8]) -> Result<Table, LogError> {
         .from_reader(text);
     let mut record = ByteRecord::new();
     let next = |reader: &mut csv::Reader<&[u8]>, record: &mut ByteRecord| {
-        // The reader is told to take any number of fields, and bytes: it cannot fail on a text in memory.
+        // The reader accepts any number of fields and any bytes, so it cannot fail on a text in memory.
         reader.read_byte_record(record).unwrap_or(false)
     };
     let header = loop {
@@ -120,7 +120,7 @@ pub(super) fn read(text: &[u8]) -> Result<Table, LogError> {
         if names.first().is_some_and(|name| name.parse::<f64>().is_ok()) {
             return Err(LogError::NoHeader { line });
         }
-        // Lines of remarks before the header are passed by.
+        // Comment lines before the header are skipped.
         let commented = record.get(0).is_some_and(|first| first.starts_with(b"#"));
         if !commented || names.iter().any(|name| meaning(name).is_some()) {
             break names;
@@ -174,7 +174,7 @@ fn names(record: &ByteRecord) -> Vec<String> {
         .collect()
 }
 
-/// A name without what writers put around it: `Command [mm]` is `command_mm`.
+/// A name in plain form: `Command [mm]` becomes `command_mm`.
 fn plain(name: &str) -> String {
     let name = name.trim_start_matches('#').trim().to_lowercase();
     let words = name
@@ -183,14 +183,14 @@ fn plain(name: &str) -> String {
     words.collect::<Vec<_>>().join("_")
 }
 
-/// A finite number, with a point or, between other separators, a comma.
+/// A finite number, with a decimal point, or with a decimal comma where commas do not separate fields.
 fn number(field: &[u8]) -> Option<f64> {
     let text = std::str::from_utf8(field).ok()?;
     let value: f64 = text.parse().or_else(|_| text.replace(',', ".").parse()).ok()?;
     value.is_finite().then_some(value)
 }
 
-/// Semicolon or tabulator, if the first lines have one; else comma, which may stand in numbers beside the others.
+/// Semicolon or tabulator, if the first lines have one; else comma, which may stand in numbers otherwise.
 fn separator(text: &[u8]) -> u8 {
     const LOOKED_AT: usize = 16;
     let has = |separator: &u8| {
@@ -200,7 +200,7 @@ fn separator(text: &[u8]) -> u8 {
     [b';', b'\t'].into_iter().find(has).unwrap_or(b',')
 }
 
-/// A field that is used, the column it goes to (none: the time), and its factor.
+/// A field that is used, its column (`None`: the time), and its factor.
 type Use = (usize, Option<usize>, f64);
 
 fn uses(header: &[String], table: &mut Table) -> Result<Vec<Use>, LogError> {
@@ -243,7 +243,7 @@ fn uses(header: &[String], table: &mut Table) -> Result<Vec<Use>, LogError> {
         return missing("response");
     }
     if has(Meaning::Acceleration) {
-        // One log is one or the other: beside accelerations, positions are not looked at.
+        // A log has one kind of data: with accelerations, positions are ignored.
         let kept = |column: &Column| column.meaning == Meaning::Acceleration;
         let dropped: Vec<usize> = (0..table.columns.len()).filter(|&n| !kept(&table.columns[n])).collect();
         for &n in dropped.iter().rev() {

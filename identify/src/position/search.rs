@@ -1,30 +1,32 @@
-//! How many modes a log has: one more as long as it explains more than noise would.
+//! Determines the number of modes in a log: one more is added as long as it explains more than noise would.
 
 use super::held::HeldModes;
 use crate::separable::{Effort, Gram, Separable, Solution, refine};
 use nalgebra::{DMatrix, DVector};
 use posicast_model::mode::Mode;
 
-/// Most modes that are looked for.
+/// Largest number of modes that are searched.
 const MOST: usize = 6;
-/// Damping ratios at which a further mode is looked for.
+/// Damping ratios at which a further mode is searched.
 const TRIED_DAMPING: [f64; 2] = [0.015, 0.08];
-/// Distance of the frequencies at which it is looked for.
+/// Ratio of neighbouring frequencies at which it is searched.
 const TRIED_STEP: f64 = 1.03;
-/// Modes closer than this may be one that has to be split.
+/// Relative distance below which modes may represent one mode that has to be split.
 const NEAR: f64 = 0.2;
-/// Square that a further mode must explain, in variances of the noise: far above what its six unknowns explain by chance.
+/// Sum of squares that a further mode must explain, in variances of the noise: far above what its six unknowns
+/// explain by chance.
 pub(super) const LEAST_GAIN: f64 = 60.0;
-/// Share of the response's power below which what is left is rounding.
+/// Fraction of the response's power below which a remainder is rounding error.
 pub(super) const ROUNDING: f64 = 1e-20;
 
-/// Modes and the fit that they are from.
+/// Modes with the fit that gave them.
 pub(super) struct Found {
     pub(super) modes: Vec<Mode>,
     pub(super) solution: Solution,
 }
 
-/// Modes that explain the rows, one after the other, beside those that are known. `None` where there are too few rows for any.
+/// Adds modes that explain the rows, one after the other, to those that are known. `None` where there are too few
+/// rows for a mode.
 pub(super) fn search(problem: &HeldModes<'_>, known: &[Mode]) -> Option<Found> {
     let mut kept = refine(problem, &HeldModes::unknowns(known), Effort::Rough)?;
     let mut now = kept.clone();
@@ -52,7 +54,7 @@ pub(super) fn search(problem: &HeldModes<'_>, known: &[Mode]) -> Option<Found> {
 
 fn with_one_more(problem: &HeldModes<'_>, fit: &Solution) -> Option<Solution> {
     let (gain, found) = strongest(problem, fit)?;
-    // The gain is that of the best of those that were tried: in its place the mode may explain some times as much.
+    // The gain is that of the best mode that was tried; at its optimum the mode may explain several times as much.
     if gain < 0.25 * LEAST_GAIN * fit.reduced_square() {
         return None;
     }
@@ -76,7 +78,7 @@ fn with_one_more(problem: &HeldModes<'_>, fit: &Solution) -> Option<Solution> {
     fits.min_by(|a, b| a.square.total_cmp(&b.square))
 }
 
-/// The mode that explains most of what a fit leaves, what the fit's columns take over left out.
+/// The mode that explains most of a fit's residual, without the part that the fit's columns absorb.
 fn strongest(problem: &HeldModes<'_>, fit: &Solution) -> Option<(f64, Mode)> {
     let basis = problem.basis(&fit.unknowns);
     let gram = Gram::of(&basis)?;
