@@ -1,4 +1,4 @@
-//! The time base of a component that stands alone: ticks at a fixed distance, a clock counter, a tick counter.
+//! The time base of a component that stands alone: ticks at a fixed interval, a clock counter and a tick counter.
 //!
 //! The reference is `posicast_model::rtl::time_base`.
 
@@ -28,7 +28,7 @@ impl Logic for TimeBase {
     fn update(&mut self) {
         comment!("@module time_base");
 
-        comment!("The bits that a tick has not go at synthesis");
+        comment!("Synthesis removes bits that a tick does not need");
         self.phase.d.next = (self.phase.q.val() + self.one_phase.val()) & self.used_phase.val();
         self.tick_q.d.next = false;
         if self.phase.q.val() == self.last_phase.val() {
@@ -50,13 +50,13 @@ impl Logic for TimeBase {
 /// The time base in RustHDL's own simulator.
 ///
 /// # Errors
-/// [`SimulationError`] where RustHDL finds a fault in the block.
+/// [`SimulationError`] where RustHDL finds an error in the block.
 pub fn simulate(divider: &DividerConfig) -> Result<Box<dyn ClockedBlock>, SimulationError> {
     let block = Box::new(TimeBase::new(divider));
     Ok(Box::new(Simulated::new("time_base", block, ports())?))
 }
 
-/// The name of the module that [`emit()`] writes last.
+/// Name of the last module that [`emit()`] writes.
 pub fn name(divider: &DividerConfig, prefix: &str) -> String {
     emit::shared_name(prefix, &base_name(divider))
 }
@@ -65,16 +65,16 @@ fn base_name(divider: &DividerConfig) -> String {
     format!("time_base_{}", divider.tick_clocks())
 }
 
-/// The time base's Verilog, with the ticks of `divider`, called as [`name`] says.
+/// Verilog of the time base with the clocks per tick of `divider`; [`name`] gives its name.
 ///
 /// # Errors
-/// [`EmitError`] where `prefix` makes no Verilog name.
+/// [`EmitError`] where `prefix` is not a valid Verilog name.
 pub fn emit(divider: &DividerConfig, prefix: &str) -> Result<Vec<Module>, EmitError> {
     let options = EmitOptions {
         top: base_name(divider),
         prefix: prefix.to_owned(),
         header: Header {
-            about: "Time base: a tick every so many clocks, a counter of clocks, a counter of ticks.\n\
+            about: "Time base: ticks at a fixed interval, a counter of clocks, a counter of ticks.\n\
                     divide is high in the clock after each tick."
                 .to_owned(),
             parameters: vec![Parameter {

@@ -1,7 +1,8 @@
-//! The entries that wait: 64 of 4 words in block RAM, and the pointers.
+//! The waiting entries: 64 of 4 words in block RAM, and the pointers.
 //!
-//! `pop` makes the oldest entry the one that plays: its slot, `head`, is read in every tick, and is free again at the next
-//! `pop` or once nothing plays. The slots after it wait, and a word goes into the first one after those; word 3 commits it.
+//! `pop` makes the oldest entry the one that is played: its slot, `head`, is read in every tick, and is free again at
+//! the next `pop` or once nothing is played. The slots after it wait; a word is written to the first slot after
+//! those, and word 3 commits it.
 
 use crate::prelude::*;
 
@@ -52,7 +53,7 @@ impl Logic for CommandFifo {
         comment!("@module command_fifo");
         self.memory.clk.next = self.clk.val();
 
-        comment!("A word, unless closed or full");
+        comment!("Write a word, unless closed or full");
         self.waiting.next = self.level_q.q.val().get_bits::<6>(0);
         self.full.next =
             self.level_q.q.val().get_bit(6) | (self.plays.val() & (self.waiting.val() == self.all_but_one.val()));
@@ -78,7 +79,7 @@ impl Logic for CommandFifo {
         self.refused.next = self.write.val() & self.refuses.val();
         self.malformed.next = self.commits.val() & !self.well_formed.val();
 
-        comment!("Which words are there, and a jerk too wide");
+        comment!("Words written so far, and a jerk too wide");
         self.upper.next = self.data.val().get_bits::<25>(7);
         self.narrow.next = (self.upper.val() == self.no_upper.val()) | (self.upper.val() == self.all_upper.val());
         if self.takes.val() {
@@ -98,7 +99,7 @@ impl Logic for CommandFifo {
             self.too_wide.d.next = false;
         }
 
-        comment!("One in, one out");
+        comment!("Entries in and out");
         self.level_step.next = self.one_level.val();
         if self.pop.val() {
             self.head.d.next = self.head.q.val() + self.one_slot.val();
@@ -113,7 +114,7 @@ impl Logic for CommandFifo {
             self.too_wide.d.next = false;
         }
 
-        comment!("The entry that plays, a word at a time");
+        comment!("The entry being played, a word at a time");
         self.memory.read_address.next =
             (bit_cast::<8, 6>(self.head.q.val()) << 2) | bit_cast::<8, 2>(self.read_word.val());
         self.read_data.next = self.memory.read_data.val();

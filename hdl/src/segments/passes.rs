@@ -1,4 +1,4 @@
-//! Which bytes are added in which clock of a tick: six passes of eight clocks, and one that reads.
+//! Controls which bytes are added in which clock of a tick: six passes of eight clocks, and one that reads.
 //!
 //! ```text
 //! phase    1…5       9…14     17…21            25…30       33…39       41…43    44      49…51
@@ -7,8 +7,9 @@
 //!          (point: w2)  at)   not fit, at rest (point: w1) (point: w0)                  entry
 //! ```
 //!
-//! The first clock of a pass clears what is to be loaded and sets the carry; a turn of a register leaves it as it was, but
-//! for what is written. Words of an entry come two clocks after their address, bytes of it one clock after theirs.
+//! The first clock of a pass clears registers that are loaded and sets the carry; a full rotation leaves a register
+//! unchanged except for what is written. Words of an entry come two clocks after their address, and their bytes one
+//! clock after theirs.
 
 use crate::prelude::*;
 
@@ -93,7 +94,7 @@ impl Logic for Passes {
         self.counts.next = self.later.val() & self.odd.val();
         self.reads.next = self.later.val() & self.middle.val();
 
-        comment!("What did not fit, and a stop's last tick");
+        comment!("Overflows, and the last tick of a stop");
         self.fails.next = self.moves.val() & !self.points.val() & (self.jerk_failed.val() | self.speed_failed.val());
         self.failed.next = self.fails.val();
         self.comes_to_rest.next = !self.moves.val() & self.speed_failed.val();
@@ -101,7 +102,7 @@ impl Logic for Passes {
         self.judges_jerk.next = self.phase.val() == self.jerk_phase.val();
         self.judges_speed.next = self.phase.val() == self.speed_phase.val();
 
-        comment!("Whole turns: 5, 6, 7 and 3 bytes");
+        comment!("Whole rotations: 5, 6, 7 and 3 bytes");
         self.turn_acceleration.next =
             !self.later.val() & self.any_slot.val() & !(self.slot_2.val() & self.slot_1.val());
         self.turn_velocity.next = (!self.later.val() | self.travels.val())
@@ -145,7 +146,7 @@ impl Logic for Passes {
         self.add_velocity.next = self.add_velocity_q.q.val();
         self.invert.next = self.invert_q.q.val();
 
-        comment!("Is there any motion left; the outputs");
+        comment!("Detect remaining motion; update the outputs");
         self.forgets_moving.next = self.corrects.val() & !self.any_slot.val();
         self.sees_moving.next =
             self.middle.val() & (self.turn_acceleration.val() | (self.odd.val() & self.turn_velocity.val()));
