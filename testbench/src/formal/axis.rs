@@ -1,5 +1,5 @@
-//! The proofs of the supervisor of an axis, one block with a property file for each of its subjects; of what stands between
-//! it and the drive; and of both and the PWM as a stage wires them.
+//! Proofs of the supervisor of an axis, with a property file for each of its aspects; of the blocks between it and
+//! the drive; and of both with the PWM as a stage wires them.
 
 use posicast_hdl::{axis, drive_command};
 use posicast_model::rtl::axis::{
@@ -11,7 +11,7 @@ use super::stage;
 use super::task::{Engine, INDUCTION, Task};
 use crate::Error;
 
-/// All of them.
+/// All tasks of this file.
 pub(super) fn tasks() -> Result<Vec<Task>, Error> {
     let block = (axis::emit("")?, model::ports());
     let macros = macros();
@@ -43,7 +43,7 @@ pub(super) fn tasks() -> Result<Vec<Task>, Error> {
     Ok(tasks)
 }
 
-/// States, causes and the transition table, all from the model.
+/// Macros for states, causes and the transition table, from the model.
 fn macros() -> Vec<(String, String)> {
     let mut macros: Vec<(String, String)> = SupervisorState::ALL
         .map(|state| (state.name().to_owned(), format!("3'd{}", state as u8)))
@@ -70,14 +70,15 @@ fn macros() -> Vec<(String, String)> {
     macros
 }
 
-/// Whether a state may follow another.
+/// An expression for whether one state may follow another.
 fn allowed() -> String {
     let row = |row: &Transition| format!("((from) == 3'd{} & (to) == 3'd{})", row.from as u8, row.to as u8);
     let rows: Vec<String> = TRANSITIONS.iter().map(row).collect();
     format!("({})", rows.join(" | "))
 }
 
-/// The state that follows: of the rows the first whose conditions hold. Conditions are wires, `if_tick` that of `Tick`.
+/// An expression for the next state: that of the first row whose conditions hold. Conditions are wires, such as
+/// `if_tick` for `Tick`.
 fn next() -> String {
     let rows = TRANSITIONS.iter().map(|row| {
         let named = |condition: Condition| format!("if_{}", condition.name());

@@ -1,4 +1,4 @@
-//! Proofs of single blocks whose tasks are bound by what their configuration says.
+//! Proofs of single blocks whose tasks depend on their configuration.
 
 use posicast_hdl::{
     cascade, component, divider, encoder_generator, excitation, linear_scale, registers, setting_banks,
@@ -19,7 +19,7 @@ use super::stage::empty;
 use super::task::{Engine, INDUCTION, Task, part, refused};
 use crate::Error;
 
-/// The example, of two axes.
+/// Machine file of the example, with two axes.
 const STAGE: &str = include_str!("../../machines/xy-stage.toml");
 
 /// All tasks of this file.
@@ -55,7 +55,7 @@ fn stage() -> Result<(Settings, Component), Error> {
     Ok((axis.settings, Component::stage(&config).map_err(refused)?))
 }
 
-/// Staged registers as the map has them, the first lowest.
+/// A task with the staged registers of the map, the first in the lowest bits.
 fn commit_task(size: &str, map: &RegisterMap) -> Result<Task, Error> {
     let staged: Vec<&Register> = map
         .registers()
@@ -92,7 +92,7 @@ fn commit_task(size: &str, map: &RegisterMap) -> Result<Task, Error> {
     Ok(Task::new("commit", size, Engine::Pdr, block).properties(&macros, include_str!("../../formal/commit.sv")))
 }
 
-/// A register's word from the ports of its fields, 0 between them.
+/// A register's word from the ports of its fields, with 0 between them.
 fn in_word(register: &Register) -> String {
     let mut fields: Vec<_> = register.fields.iter().collect();
     fields.sort_by_key(|field| field.low);
@@ -120,7 +120,7 @@ fn setting_banks_task(settings: &Settings) -> Result<Task, Error> {
     )
 }
 
-/// The controller's component without arithmetic: bank, settings and the sequence of a pass, as they are wired.
+/// The controller's component without its arithmetic: register bank, settings and sequencer, as they are wired.
 fn law_and_bank_task(controller: &Component) -> Result<Task, Error> {
     let mut modules = component::emit(controller, "alone", "")?;
     for part in [
@@ -195,7 +195,7 @@ fn linear_scale_task() -> Result<Task, Error> {
         .properties(&[], include_str!("../../formal/linear_scale.sv")))
 }
 
-/// The arithmetic of the linear scale: its part on its own.
+/// The arithmetic of the linear scale, which is a part of it, by itself.
 fn serial_ratio_task(shift: u32) -> Result<Task, Error> {
     let block = part(linear_scale::emit("")?, "serial_ratio")?;
     let size = format!("all mantissas, 2^-{shift}");

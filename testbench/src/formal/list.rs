@@ -93,7 +93,7 @@ pub fn all() -> Result<Vec<Task>, Error> {
 /// The tasks of a block.
 ///
 /// # Errors
-/// As [`all`], and [`Error::Option`] for a block that has none.
+/// Those of [`all`], and [`Error::Option`] for a block that has no tasks.
 pub fn named(name: &str) -> Result<Vec<Task>, Error> {
     let all = all()?;
     let names: Vec<&str> = all.iter().map(|task| task.name).collect();
@@ -129,7 +129,7 @@ fn pwm(config: PwmConfig, size: &str) -> Result<Task, Error> {
     Ok(Task::new("pwm", size, INDUCTION, block).properties(&macros, include_str!("../../formal/pwm.sv")))
 }
 
-/// The bank of the PWM's component: fields of every kind, an interrupt, byte enables.
+/// The register bank of the PWM's component, which has fields of every kind, an interrupt, and byte enables.
 fn registers_task() -> Result<Task, Error> {
     let config = PwmConfig::new(ActiveLow::default(), 25, 50).map_err(refused)?;
     let component = Component::pwm(config, BridgeMode::Unipolar, 2500).map_err(refused)?;
@@ -141,7 +141,7 @@ fn registers_task() -> Result<Task, Error> {
         .properties(&[], include_str!("../../formal/registers.sv")))
 }
 
-/// The ends of the position's word.
+/// The ends of the position word.
 fn segments_range_task() -> Result<Task, Error> {
     let counts = |counts: i32| format!("24'sd{counts}");
     let macros = [
@@ -192,7 +192,7 @@ fn schedule_task(clocks: u32) -> Result<Task, Error> {
     )
 }
 
-/// Both counters begin with the same value: as after a reset, or shortly before they come round.
+/// Both counters begin with the same value: as after a reset, or shortly before they wrap.
 fn time_base_task(tick_clocks: u64, begin: &'static str) -> Result<Task, Error> {
     let config = DividerConfig::new(tick_clocks).map_err(refused)?;
     let block = (time_base::emit(&config, "")?, time_model::ports());
@@ -209,7 +209,7 @@ fn time_base_task(tick_clocks: u64, begin: &'static str) -> Result<Task, Error> 
     })
 }
 
-/// The controller's Verilog with products that are anything, for nothing drives them; but one times a word is the word.
+/// The controller's Verilog with free products, which nothing drives, except that one times a word is the word.
 fn controller_of_any_products() -> Result<Vec<Module>, Error> {
     let mut modules = sliding_mode::emit("")?;
     for module in &mut modules {
@@ -229,7 +229,7 @@ fn controller_of_any_products() -> Result<Vec<Module>, Error> {
     Ok(modules)
 }
 
-/// The control of a pass.
+/// The sequence of the controller.
 fn sliding_mode_task() -> Result<Task, Error> {
     let block = (controller_of_any_products()?, controller_model::ports());
     let macros = [("PASS_CLOCKS", format!("10'd{}", controller_model::CONTROL_CLOCKS))];
@@ -237,7 +237,7 @@ fn sliding_mode_task() -> Result<Task, Error> {
         .properties(&macros, include_str!("../../formal/sliding_mode.sv")))
 }
 
-/// A part of the controller on its own: a lemma of its arithmetic.
+/// A part of the controller by itself, for a lemma about its arithmetic.
 fn part_of_controller(name: &'static str, size: &str, properties: &str) -> Result<Task, Error> {
     let part = part(controller_of_any_products()?, name)?;
     Ok(Task::new(name, size, INDUCTION, part).properties(&[], properties))

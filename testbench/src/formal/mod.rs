@@ -1,4 +1,4 @@
-//! Proofs about the emitted Verilog: property files against blocks, by Yosys and ABC.
+//! Proofs about the emitted Verilog: Yosys and ABC check blocks against property files.
 //!
 //! ```text
 //!  block's modules ──┐
@@ -8,14 +8,16 @@
 //!                          └────► covers.aig ──► abc bmc3 ───────► clocks until each cover is reached
 //! ```
 //!
-//! A property file holds one module, `NAME_properties`. Its inputs are any of the block's ports, by name, and registers inside
-//! of the block, which the attribute `peek` names: `(* peek = "u_leg.timer" *) input wire [9:0] leg_timer`. The top written
-//! here leaves all inputs of the block free in every clock, resets included, and joins both. Rows start at power-up, where
-//! every register has its reset value. Block RAM is left out but where a task keeps it: what is read from it is anything, in every
-//! clock; so are products and whole blocks where a task says so.
+//! A property file contains one module, `NAME_properties`. Its inputs are any of the block's ports, by name, and
+//! registers inside the block, which the attribute `peek` names:
+//! `(* peek = "u_leg.timer" *) input wire [9:0] leg_timer`. The top that is written here leaves all inputs of the
+//! block free in every clock, resets included, and joins both. Traces start at power-up, where every register has its
+//! reset value. Block RAM is left out unless a task keeps it: its output is free in every clock; so are products and
+//! whole blocks where a task says so.
 //!
-//! Two engines, both unbounded: [`Engine::Pdr`] finds its invariants itself; [`Engine::Induction`] needs them among the
-//! properties. What either does not prove is searched for a counterexample of at most [`SEARCHED_CLOCKS`].
+//! There are two engines, both unbounded: [`Engine::Pdr`] finds its invariants itself; [`Engine::Induction`] needs
+//! them among the properties. If an engine does not find a proof, a counterexample of at most [`SEARCHED_CLOCKS`] is
+//! searched.
 
 mod axis;
 mod blocks;

@@ -1,4 +1,4 @@
-//! The tasks of the shapers: plain, small, for motion.
+//! Proofs of the shapers: the plain one, a small one, and the motion shaper.
 
 use posicast_hdl::emit::Module;
 use posicast_hdl::shaper;
@@ -9,7 +9,7 @@ use posicast_model::taps::{COEFFICIENT_BITS, Tap, TapTable};
 use super::task::{INDUCTION, Task, part, refused};
 use crate::Error;
 
-/// All of them.
+/// All tasks of this file.
 pub(super) fn tasks() -> Result<Vec<Task>, Error> {
     Ok(vec![
         plain()?,
@@ -20,7 +20,7 @@ pub(super) fn tasks() -> Result<Vec<Task>, Error> {
     ])
 }
 
-/// Taps of delay and coefficient.
+/// A table of taps, each given by delay and coefficient.
 fn table(fraction: u32, taps: &[(u32, i32)]) -> Result<TapTable, Error> {
     let taps = taps.iter().map(|&(delay_samples, coefficient)| Tap {
         delay_samples,
@@ -29,7 +29,7 @@ fn table(fraction: u32, taps: &[(u32, i32)]) -> Result<TapTable, Error> {
     TapTable::new(fraction, taps.collect()).map_err(refused)
 }
 
-/// The plain shaper with the smallest memories; delays have 6 bits, the rest of a tap's word is its coefficient.
+/// The plain shaper with the smallest memories; delays have 6 bits, and the rest of a tap's word is its coefficient.
 fn plain() -> Result<Task, Error> {
     let config = ShaperConfig::new(32, table(16, &[(0, 20_000), (3, 30_000), (7, 15_536)])?).map_err(refused)?;
     let macros = [
@@ -45,7 +45,7 @@ fn plain() -> Result<Task, Error> {
     })
 }
 
-/// The plain shaper's kernel so small that memories and multiplier are in the proof.
+/// The plain shaper's kernel at sizes so small that the proof can include memories and multiplier.
 fn small() -> Result<Task, Error> {
     const DELAY_BITS: u32 = 2;
     let config = ShaperConfig::of_sizes(6, DELAY_BITS, 2, table(4, &[(0, 9), (1, -3), (2, 10)])?).map_err(refused)?;
@@ -68,7 +68,7 @@ fn small() -> Result<Task, Error> {
     })
 }
 
-/// The control of the shaper for motion. It is the same whether the position wraps.
+/// The control of the motion shaper, which is the same whether or not the position wraps.
 fn motion() -> Result<Task, Error> {
     let config = motion_config(true)?;
     let block = (shaper::emit(&config, "")?, ports(&config));
@@ -77,7 +77,7 @@ fn motion() -> Result<Task, Error> {
     Ok(of_motion("shaper_motion", size, &config, block, text))
 }
 
-/// Its arithmetic, a part of it on its own.
+/// The arithmetic of the motion shaper, which is a part of it, by itself.
 fn channel_sums(modulo: bool) -> Result<Task, Error> {
     let config = motion_config(modulo)?;
     let block = part(shaper::emit(&config, "")?, "channel_sums")?;
@@ -86,7 +86,7 @@ fn channel_sums(modulo: bool) -> Result<Task, Error> {
     Ok(of_motion("channel_sums", size, &config, block, text))
 }
 
-/// All channels, the smallest words and memories.
+/// A motion shaper with all channels, and the smallest words and memories.
 fn motion_config(modulo: bool) -> Result<ShaperConfig, Error> {
     let table = table(16, &[(0, 20_000), (3, 30_000), (7, 15_536)])?;
     let motion = ShaperMotion { channels: 3, modulo };

@@ -1,4 +1,4 @@
-//! The proof of supervisor, drive command and PWM as a stage wires them.
+//! Proofs of supervisor, drive command and PWM as a stage wires them.
 
 use posicast_hdl::component;
 use posicast_hdl::emit::Module;
@@ -9,7 +9,8 @@ use super::task::{INDUCTION, Task, refused};
 use crate::Error;
 use crate::blocks::library_stage;
 
-/// Blocks of an axis that only say where it should be and where it is: left out, so that they say anything.
+/// Blocks of an axis that only determine where it should be and where it is. They are left out, so that their outputs
+/// are free.
 const LEFT_OUT: [&str; 8] = [
     "segments",
     "motion_shaper",
@@ -21,7 +22,8 @@ const LEFT_OUT: [&str; 8] = [
     "trace",
 ];
 
-/// The axes of the stage that the other rungs of verification take: one with what bring-up needs, one with a linear scale.
+/// Tasks for the axes of the stage that the other rungs of verification use: one with the blocks for bring-up, one
+/// with a linear scale.
 pub(super) fn tasks(macros: &[(&str, String)]) -> Result<Vec<Task>, Error> {
     let stage = library_stage()?;
     let component = Component::stage(&stage).map_err(refused)?;
@@ -35,7 +37,7 @@ pub(super) fn tasks(macros: &[(&str, String)]) -> Result<Vec<Task>, Error> {
     stage.axes.iter().map(|axis| task(axis, &modules, macros)).collect()
 }
 
-/// `modules` are those of the stage, sub-modules first.
+/// A task for an axis; `modules` are those of the stage, sub-modules first.
 fn task(axis: &StageAxis, modules: &[Module], macros: &[(&str, String)]) -> Result<Task, Error> {
     let name = format!("stage_{}", axis.name);
     let at = modules.iter().position(|module| module.name == name);
@@ -51,8 +53,8 @@ fn task(axis: &StageAxis, modules: &[Module], macros: &[(&str, String)]) -> Resu
     )
 }
 
-/// Nothing is left in it but its ports: its outputs are anything, in every clock. Without a wire Yosys would take it for a
-/// module from elsewhere.
+/// Removes everything but the ports of a module: its outputs are free in every clock. Without a wire Yosys would take
+/// it for an external module.
 pub(super) fn empty(module: &mut Module) {
     if let Some((ports, _)) = module.text.split_once("\n);\n") {
         module.text = format!("{ports}\n);\n    wire left_out = clk;\nendmodule\n\n`default_nettype wire\n");

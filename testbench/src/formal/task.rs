@@ -1,4 +1,4 @@
-//! A proof: block, size, property file, engine.
+//! A proof task: block, size, property file, engine.
 
 use std::fmt::Write as _;
 
@@ -7,23 +7,23 @@ use posicast_model::rtl::Port;
 
 use crate::Error;
 
-/// How a task is proven. Both proofs are unbounded.
+/// Method of proof. Both are unbounded.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Engine {
-    /// Property directed reachability, by ABC: finds its invariants itself.
+    /// Property-directed reachability, by ABC, which finds its invariants itself.
     Pdr,
-    /// Induction over at most so many clocks, by Yosys: invariants are among the properties.
+    /// Induction over at most this many clocks, by Yosys; invariants are among the properties.
     Induction {
-        /// Clocks in a row in which all is assumed to hold.
+        /// Number of consecutive clocks in which everything is assumed to hold.
         clocks: u32,
     },
 }
 
-/// What proofs by induction take: invariants stated so that one clock leads to the next.
+/// Engine for proofs by induction whose invariants lead from one clock to the next.
 pub(super) const INDUCTION: Engine = Engine::Induction { clocks: 1 };
 
 impl Engine {
-    /// Its name in a table.
+    /// Name in a table.
     pub fn name(self) -> &'static str {
         match self {
             Self::Pdr => "PDR (ABC)",
@@ -35,23 +35,23 @@ impl Engine {
 /// Properties of a block at one size.
 #[derive(Debug, Clone)]
 pub struct Task {
-    /// The block's name, and that of its property file.
+    /// Name of the block and of its property file.
     pub name: &'static str,
-    /// Which of its sizes.
+    /// Description of the size.
     pub size: String,
-    /// How it is proven.
+    /// Method of proof.
     pub engine: Engine,
-    /// The block's Verilog, the top last. Tests change it.
+    /// The block's Verilog, the top last. Tests modify it.
     pub modules: Vec<Module>,
     pub(super) top: String,
     pub(super) ports: Vec<Port>,
     pub(super) properties: String,
-    /// Whether multipliers are left out: what they give is anything, in every clock.
+    /// Whether multipliers are left out: their outputs are then free in every clock.
     pub(super) leaves_products_open: bool,
-    /// Whether memories are in the proof, each word a register; else what is read from one is anything, in every clock.
+    /// Whether memories are included, with each word as a register; else their outputs are free in every clock.
     pub(super) keeps_memories: bool,
-    /// Registers that begin with another value than 0, with that value. For counters that nothing loads: what comes after
-    /// more clocks than can be searched.
+    /// Registers that begin with another value than 0, with that value: for counters that nothing loads, to check
+    /// what comes after more clocks than can be searched.
     pub(super) begins: Vec<(&'static str, &'static str)>,
 }
 
@@ -76,7 +76,7 @@ impl Task {
         }
     }
 
-    /// With a property file, after macros for this size.
+    /// Sets the property file, preceded by macros for this size.
     pub(super) fn properties(mut self, macros: &[(&str, String)], text: &str) -> Self {
         for (name, value) in macros {
             let _ = writeln!(self.properties, "`define {name} {value}");

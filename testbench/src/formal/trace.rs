@@ -1,4 +1,4 @@
-//! The proofs of the trace memory, and of the choice between two sources of samples.
+//! Proofs of the trace memory, and of the selection between two sources of samples.
 
 use posicast_hdl::{sample_select, trace};
 use posicast_model::rtl::sample_select as select_model;
@@ -7,7 +7,7 @@ use posicast_model::rtl::trace::{SIGNALS, TraceConfig, ports};
 use super::task::{INDUCTION, Task, refused};
 use crate::Error;
 
-/// The smallest memory and the largest; one channel and three.
+/// Tasks for the smallest and the largest memory, and for one and three channels.
 pub(super) fn tasks() -> Result<Vec<Task>, Error> {
     let traces = [256, 2048].map(trace_task);
     let selections = [1, 3].map(select_task);

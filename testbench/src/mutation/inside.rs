@@ -1,13 +1,13 @@
-//! Named mutants inside a stage: faults that stood in a stage's Verilog and that a check of its folder did not find.
+//! Named mutants inside a stage: faults in a stage's Verilog that a check of its folder once did not find.
 //!
 //! ```text
 //!  stage's modules ─► one text replaced by another ─► every row of the folder's check whose files have changed ─► found, or not
 //! ```
 //!
-//! The other mutants of this folder are chosen by chance, in blocks that stand alone. These are faults that someone thought
-//! of, in words, put into the modules as they stand in a stage, and looked for by exactly the rows that
-//! `posicast verify DIR` compares there, with its default clocks. A text that is no longer there, or is there twice, is an
-//! error: a mutant that is not put in proves nothing.
+//! The other mutants of this folder are chosen at random, in blocks that stand alone. These are faults that were
+//! thought of by name, put into the modules as they are in a stage, and searched by exactly the rows that
+//! `posicast verify DIR` compares there, with its default clocks. A text that no longer exists, or exists twice, is
+//! an error: a mutant that is not applied proves nothing.
 
 use std::fmt::Write as _;
 
@@ -19,26 +19,26 @@ use crate::asynchronous;
 use crate::blocks::{self, Block, ShortTicksBlock, Sources, StageBlock};
 use crate::page::Marks;
 
-/// Where the table of these mutants stands.
+/// Marks of the table of these mutants.
 pub const INSIDE_MARKS: Marks = Marks {
     begin: "<!-- mutants inside the stage: written by the example `mutate` -->",
     end: "<!-- end of mutants inside the stage -->",
 };
 
-/// One of them.
+/// A named mutant.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Inside {
-    /// What the fault does, in words.
+    /// Description of the fault.
     pub name: &'static str,
-    /// What the module is called, without a size; several of these all get the fault.
+    /// Name of the module without a size; all modules with this name get the fault.
     pub module: &'static str,
-    /// What is there once.
+    /// Text that the module contains exactly once.
     pub from: &'static str,
-    /// And what is put there.
+    /// Text that replaces it.
     pub to: &'static str,
 }
 
-/// All of them.
+/// All named mutants.
 pub const INSIDE: [Inside; 13] = [
     Inside {
         name: "the velocity's timeout a step late",
@@ -120,20 +120,20 @@ pub const INSIDE: [Inside; 13] = [
     },
 ];
 
-/// What found a mutant.
+/// Check that found a mutant.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Found {
-    /// The row: name and instance.
+    /// Name and instance of the row.
     pub row: String,
-    /// The first wrong clock; none where a directed test between clocks found it.
+    /// The first wrong clock; `None` if a directed test between clocks found it.
     pub clock: Option<u64>,
 }
 
 impl Inside {
-    /// These modules with the fault in them.
+    /// Returns these modules with the fault in them.
     ///
     /// # Errors
-    /// [`Error::Option`] where no module has that name, or its text is not there exactly once.
+    /// [`Error::Option`] where no module has that name, or its text does not occur exactly once.
     pub fn put_into(&self, modules: &[Module]) -> Result<Vec<Module>, Error> {
         let mut modules = modules.to_vec();
         let mut found = false;
@@ -156,11 +156,11 @@ impl Inside {
         Error::Option(format!("the mutant `{}` cannot be put in: {why}", self.name))
     }
 
-    /// Looks for it with the rows of the folder's check that reach the module, the blocks inside the stage first; `None`
-    /// where all of them match.
+    /// Searches the fault with the rows of the folder's check that contain the module, the blocks inside the stage
+    /// first; `None` if all of them match.
     ///
     /// # Errors
-    /// As [`Self::put_into`], and what a simulator says.
+    /// Those of [`Self::put_into`], and the errors of the simulator.
     pub fn hunt(&self, config: &StageConfig, top: &str, clocks: u64, seed: u64) -> Result<Option<Found>, Error> {
         let stage = StageBlock::new(config, top).map_err(|error| Error::Option(error.to_string()))?;
         let modules = stage.modules()?;
@@ -191,7 +191,7 @@ impl Inside {
     }
 }
 
-/// The row's lock step, and its test between clocks.
+/// Runs the row's lock step, and its test between clocks.
 fn look(row: &dyn Block, sources: &Sources, clocks: u64, seed: u64) -> Result<Option<Found>, Error> {
     let found = |clock| Found {
         row: format!("{} {}", row.name(), row.instance()),
@@ -209,7 +209,7 @@ fn look(row: &dyn Block, sources: &Sources, clocks: u64, seed: u64) -> Result<Op
     Ok(first.map(|first| found(Some(first.time))))
 }
 
-/// The mutants and what found them, as the table of `docs/verification.md`.
+/// The mutants with what found them, as the table of `docs/verification.md`.
 pub fn inside_table(fates: &[(Inside, Option<Found>)]) -> String {
     let mut text = "| mutant | module | found by | first wrong clock |\n|---|---|---|---|\n".to_owned();
     for (mutant, found) in fates {

@@ -18,7 +18,7 @@ use crate::blocks::{
 };
 use crate::formal::{self, Task};
 
-/// A block at one size, and what is proven of it.
+/// A block at one size, with its proofs.
 pub struct Subject {
     block: Box<dyn Block>,
     size: &'static str,
@@ -31,7 +31,7 @@ impl Subject {
         self.block.as_ref()
     }
 
-    /// Which of its sizes.
+    /// Description of its size.
     pub fn size(&self) -> &str {
         self.size
     }
@@ -42,10 +42,10 @@ impl Subject {
     }
 }
 
-/// A block, and which of its sizes it has.
+/// A block with a description of its size.
 type OfSize = (Box<dyn Block>, &'static str);
 
-/// All of them.
+/// All blocks that get mutants.
 ///
 /// # Errors
 /// [`Error::Block`] where a block cannot be written as Verilog.
@@ -62,10 +62,10 @@ pub fn all() -> Result<Vec<Subject>, Error> {
     blocks()?.into_iter().map(subject).collect()
 }
 
-/// Those of a block.
+/// The subjects of one block.
 ///
 /// # Errors
-/// As [`all`], and [`Error::Option`] where there is no such block.
+/// Those of [`all`], and [`Error::Option`] where there is no such block.
 pub fn named(name: &str) -> Result<Vec<Subject>, Error> {
     let all = all()?;
     let names: Vec<String> = all.iter().map(|subject| subject.block.name().to_owned()).collect();
@@ -82,7 +82,7 @@ fn refused(error: impl std::fmt::Display) -> Error {
     Error::Option(error.to_string())
 }
 
-/// A small size of each: enough for every path, and mutants of wide words that only repeat each other are few.
+/// A small size of each block: enough for every path, with few mutants of wide words that only repeat each other.
 fn blocks() -> Result<Vec<OfSize>, Error> {
     let alone = "alone";
     let pwm = PwmConfig::new(ActiveLow::default(), 2, 1).map_err(refused)?;
@@ -144,7 +144,7 @@ fn blocks() -> Result<Vec<OfSize>, Error> {
     Ok(blocks)
 }
 
-/// Three impulses, two of them on two taps each; with rates for so many channels.
+/// A shaper with three impulses, two of them on two taps each; with rates for this many channels.
 fn shaper(channels: Option<u32>) -> Result<ShaperConfig, Error> {
     let taps = [(0, 400), (5, 280), (6, 180), (11, 110), (12, 54)].map(|(delay_samples, coefficient)| Tap {
         delay_samples,
