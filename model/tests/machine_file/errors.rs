@@ -1,4 +1,5 @@
-//! Errors of one key: syntax, unknown, missing, wrong type, out of range, no such word, bad or double name.
+//! Errors of one key: syntax, unknown key, missing key, wrong type, out of range, unknown word, invalid or duplicate
+//! name.
 
 use crate::machine_file::files::{SMALL, breaks, built_kinds, wrong};
 use posicast_model::machine_file::ProblemCause;

@@ -1,4 +1,4 @@
-//! Kinds that this version knows and does not build.
+//! Kinds that this version knows but does not build.
 
 use crate::machine_file::files::{SMALL, breaks, built_kinds, right, wrong};
 use posicast_model::design::kind::ShaperKind;
