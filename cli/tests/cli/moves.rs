@@ -1,4 +1,4 @@
-//! How far, how fast and round which circle the axes move: `--move`, `--speed` and `--radius`.
+//! Distance and speed of the axes' moves, and the circle: `--move`, `--speed` and `--radius`.
 
 #![cfg(test)] // lets clippy see that this is test code
 
