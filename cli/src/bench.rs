@@ -61,7 +61,7 @@ impl Simulator {
         if IS_STATIC && asked == Some(Self::Verilator) {
             return Err(Failure::from(miette::miette!(
                 help = "use --simulator icarus, or a posicast that is linked dynamically: cargo install --path cli --locked",
-                "this posicast is linked statically and cannot load what Verilator builds"
+                "this posicast is linked statically and cannot load the library that Verilator builds"
             )));
         }
         if let Some(simulator) = asked {
@@ -69,7 +69,7 @@ impl Simulator {
         }
         if IS_STATIC {
             output::say(
-                "note: this posicast is linked statically and cannot load what Verilator builds: Icarus simulates the Verilog, on \
+                "note: this posicast is linked statically and cannot load the library that Verilator builds: Icarus simulates the Verilog, on \
                  fewer clocks.",
             );
             return Ok(Self::Icarus);

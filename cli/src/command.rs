@@ -82,7 +82,7 @@ fn read(machine: &Machine, path: &Path) -> Result<Vec<Vec<(f64, f64)>>, Failure>
         .from_reader(Allowance::new(file, LINE_BYTES));
     let headings = reader.headers().map_err(|e| refused(e.to_string()))?.clone();
     let column = |name: &str| headings.iter().position(|h| h == name);
-    let time = column("time_s").ok_or_else(|| refused("line 1: there is no column `time_s`".to_owned()))?;
+    let time = column("time_s").ok_or_else(|| refused("line 1: no column `time_s`".to_owned()))?;
     let columns: Vec<usize> = machine
         .axes
         .iter()

@@ -244,7 +244,7 @@ pub(crate) fn run(
     let rows = contour::compare(machine, &contour).map_err(of_path)?;
     if rows.iter().take(2).all(|row| row.errors.is_err()) {
         let reason = rows[0].errors.as_ref().err().cloned().unwrap_or_default();
-        return Err(refused("--contour", &reason, "`posicast design` says more of it"));
+        return Err(refused("--contour", &reason, "`posicast design` tells more about it"));
     }
     let report = Report {
         machine,

@@ -26,7 +26,7 @@ impl MotionArgs {
         let refused =
             |option: &str, found: &str| Failure::from(miette::miette!(help = "leave it out", "{option}: {found}"));
         match (&self.distance, &self.speed) {
-            (Some(_), _) => Err(refused("--move", "the contour says where the axes go")),
+            (Some(_), _) => Err(refused("--move", "the contour defines where the axes go")),
             (None, Some(PerAxis::Named(_))) => Err(refused(
                 "--speed",
                 "a contour has one speed, along its path: give a number",
@@ -45,7 +45,7 @@ impl MotionArgs {
             if self.command.is_some() && !closed_loop {
                 return Err(Failure::from(miette::miette!(
                     help = format!("leave out {option}, or --command"),
-                    "{option}: the command file says how the axes move"
+                    "{option}: the command file defines how the axes move"
                 )));
             }
             figures.only_for(machine, option)?;
@@ -103,7 +103,7 @@ impl PerAxis {
             None => Ok(()),
             Some((name, _)) => Err(Failure::from(miette::miette!(
                 help = format!("the axes are {}", names.join(", ")),
-                "{option}: there is no axis `{name}`"
+                "{option}: no axis `{name}`"
             ))),
         }
     }

@@ -133,7 +133,7 @@ pub(crate) fn run(
     if compared == 0 {
         return Err(Failure::from(miette::miette!(
             help = "--clock NAME names another clock, --reset none compares from the first edge",
-            "`{}` has {} and none behind the release of its reset: there is nothing to compare ({})",
+            "`{}` has {} and none after the release of its reset: there is nothing to compare ({})",
             file.display(),
             counted(clocks, "clock edge"),
             replay.notes().join(", ")
@@ -192,7 +192,7 @@ fn has_content(block: &dyn Block, replay: &Replay, file: &Path) -> Result<(), Fa
              block with --block; its top is `{}`",
             block.top()
         ),
-        "`{}` has {what} of {} {}: a replay of it would compare nothing. Not found: {some}, …",
+        "`{}` has {what} of {} {}: its replay would compare nothing. Not found: {some}, …",
         file.display(),
         block.name(),
         block.instance()

@@ -67,7 +67,7 @@ pub(crate) fn add(
     };
     if let Some(board) = board.filter(|board| design.stage.is_some() && !design.runs_on(*board)) {
         output::say(&format!(
-            "warning: no project for {board}: its oscillator and clock.frequency_hz differ; README.md says by how much"
+            "warning: no project for {board}: its oscillator and clock.frequency_hz differ; README.md gives the difference"
         ));
     }
     for file in design.files().map_err(Failure::because)? {

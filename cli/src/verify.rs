@@ -200,7 +200,7 @@ impl Job {
         }
         if !left_out.is_empty() {
             output::say(&format!(
-                "note: left out, because RustHDL's simulator cannot run what is written from register maps: {names}"
+                "note: left out, because RustHDL's simulator cannot run blocks that are generated from register maps: {names}"
             ));
         }
         self.blocks = kept;

@@ -30,7 +30,7 @@ const ICARUS: Tool = Tool {
 const VVP: Tool = Tool {
     name: "vvp",
     variable: "VVP",
-    purpose: "it runs what iverilog compiled",
+    purpose: "it runs the output of iverilog",
     remedy: "It comes with Icarus Verilog (Debian: apt-get install iverilog)",
 };
 /// Largest length in bytes of a line of outputs: 64 per port, and more than enough for any top module.
@@ -196,7 +196,7 @@ fn parse(line: &str, ports: &[Port], outputs: &mut [u64], unknown: &mut [u64]) -
         let digits = values.next().unwrap_or_default();
         if digits.len() != port.width as usize {
             return Err(StepError(format!(
-                "Icarus: `{digits}` is no value of output `{}`",
+                "Icarus: `{digits}` is not a value of output `{}`",
                 port.name
             )));
         }

@@ -257,7 +257,7 @@ impl StageBench {
         Ok(bench)
     }
 
-    /// Resets for this many clocks, at any time. Counters begin anew at 0, where the plants are.
+    /// Resets for this many clocks, at any time. Counters restart at 0, where the plants are.
     ///
     /// # Errors
     /// [`Error::Step`] where a simulator stops.

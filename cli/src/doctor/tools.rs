@@ -42,7 +42,7 @@ pub(super) const TOOLS: [Tool; 14] = [
         variable: Some("MAKE"),
         version: &["--version"],
         need: Need::Run,
-        purpose: "builds what Verilator writes",
+        purpose: "builds Verilator's output",
         install: "apt install make",
     },
     Tool {
@@ -50,7 +50,7 @@ pub(super) const TOOLS: [Tool; 14] = [
         variable: None,
         version: &["--version"],
         need: Need::Run,
-        purpose: "compiles what Verilator writes",
+        purpose: "compiles Verilator's output",
         install: "apt install g++",
     },
     Tool {
@@ -74,7 +74,7 @@ pub(super) const TOOLS: [Tool; 14] = [
         variable: Some("VVP"),
         version: &["-V"],
         need: Need::Option,
-        purpose: "runs what iverilog compiled",
+        purpose: "runs the output of iverilog",
         install: "apt install iverilog",
     },
     Tool {

@@ -145,7 +145,7 @@ fn of_output(log: &AccelerationLog) -> Result<Findings, Failure> {
             .into(),
     ];
     if found.modes.is_empty() {
-        remarks.push("nothing in the log decays as a mode would".into());
+        remarks.push("no vibration in the log decays as a mode would".into());
     }
     Ok(Findings {
         rows: 0,

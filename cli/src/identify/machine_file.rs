@@ -48,8 +48,8 @@ pub(super) fn into_existing(path: &Path, axis: Option<&str>, findings: &Findings
         None => None,
     };
     let Some(target) = index.and_then(|index| axes.get_mut(index)) else {
-        let what = wanted.map_or("the log does not say which axis it is of".into(), |wanted| {
-            format!("there is no axis \"{wanted}\"")
+        let what = wanted.map_or("the log does not name its axis".into(), |wanted| {
+            format!("no axis \"{wanted}\"")
         });
         return Err(Failure::from(miette::miette!(
             help = format!("--axis names the axis that the log is of: {}", names.join(", ")),

@@ -24,7 +24,7 @@ const ADVICE: [(&str, Advice); 13] = [
             cause: "a fault of posicast: description and model of a block differ",
             remedies: [
                 "run `posicast verify` with the same --seed, and report its first difference",
-                "run `posicast doctor`, and install what it misses",
+                "run `posicast doctor`, and install the missing tools",
             ],
         },
     ),
@@ -109,7 +109,7 @@ const ADVICE: [(&str, Advice); 13] = [
         },
     ),
     (
-        "the stage does what it is told",
+        "the stage carries out its commands",
         Advice {
             cause: "a limit that is tighter than the loop follows, or a loop that swings: see the cause that is named",
             remedies: [
@@ -132,7 +132,7 @@ const ADVICE: [(&str, Advice); 13] = [
     (
         "the shapers suppress",
         Advice {
-            cause: "the loop swings by itself, or the drive or a word is at its limit, so that the load does not get the shaped command",
+            cause: "the loop oscillates, or the drive or a word is at its limit, so that the load does not get the shaped command",
             remedies: [
                 "look at plots/stage-move.svg, and lower acceleration or the gains",
                 "check frequency_hz and damping, and the mode's participation",

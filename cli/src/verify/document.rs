@@ -51,7 +51,9 @@ impl Document<'_> {
         Some(match (self.report.mismatches(), self.of_files()) {
             (1.., _) if self.replayed.is_some() => "recording, RTL and model do not match".to_owned(),
             (1.., _) => "the RTL does not match the model".to_owned(),
-            (0, Files::Contradict) => "the folder is not what posicast generates from its machine file".to_owned(),
+            (0, Files::Contradict) => {
+                "the folder differs from what posicast generates from its machine file".to_owned()
+            }
             (0, Files::Edited) => "no verdict: Verilog of the folder was edited".to_owned(),
             (0, Files::Agree) => format!("no verdict: too little was exercised; {}", self.remedy()),
         })
@@ -112,15 +114,13 @@ impl Document<'_> {
             (LockstepVerdict::Match, ..) => "match: every output of every clock is equal to the model's".to_owned(),
             (_, 1.., _) => "MISMATCH".to_owned(),
             (_, 0, Files::Contradict) => {
-                "MISMATCH: the files are not those of the machine file, though what was simulated is equal".to_owned()
+                "MISMATCH: the files are not those of the machine file, although the simulation is equal".to_owned()
             }
-            (_, 0, Files::Edited) => {
-                "NO VERDICT: what was simulated is equal, but Verilog was edited, and no simulation \
+            (_, 0, Files::Edited) => "NO VERDICT: the simulation is equal, but Verilog was edited, and no simulation \
                                       sees every fault"
-                    .to_owned()
-            }
+                .to_owned(),
             (_, 0, Files::Agree) => format!(
-                "NO VERDICT: what was compared is equal, and {} things were not exercised; {}",
+                "NO VERDICT: the comparison is equal, but {} things were not exercised; {}",
                 self.not_exercised.len(),
                 self.remedy()
             ),

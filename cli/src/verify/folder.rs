@@ -92,7 +92,7 @@ impl Folder {
             let name = format!("{}.v", module.name);
             let file = format!("rtl/{name}");
             let Some(at) = rest.iter().position(|path| path.ends_with(&name)) else {
-                let what = "is not there, and the machine file asks for it".to_owned();
+                let what = "is missing, and the machine file requires it".to_owned();
                 folder.add(&file, None, Kind::Missing, what);
                 continue;
             };
@@ -186,7 +186,7 @@ impl Folder {
             );
             text += match self.contradicts() {
                 true => "To keep a table that was edited, put it into the machine file instead (kind = \"custom\").\n",
-                false => "To let the simulation alone judge what was edited: --edited.\n",
+                false => "Use --edited to let only the simulation judge the edited files.\n",
             };
         }
         text

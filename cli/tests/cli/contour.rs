@@ -96,7 +96,7 @@ fn cli_paths_that_cannot_be_driven_are_refused() {
         ),
         (
             vec!["--contour", "circle", "--move", "1"],
-            "the contour says where the axes go",
+            "the contour defines where the axes go",
         ),
         (
             vec!["--contour", "circle", "--plot", "x.png"],

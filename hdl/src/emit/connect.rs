@@ -124,7 +124,7 @@ fn body(composition: &Composition, clocked: bool, modules: &[&Module]) -> String
             .collect();
         if !unread.is_empty() {
             lines.line("");
-            lines.line("// Nets that nothing reads.");
+            lines.line("// Nets that are never read.");
             lines.line(&format!(
                 "wire {} = &{{1'b0, {}}};",
                 super::scope::UNUSED,

@@ -57,7 +57,9 @@ pub enum EmitCause {
     },
 
     /// Two different modules have the same name.
-    #[error("there are two modules `{0}` that differ; name what they differ in, as in `@module history_${{width x}}`")]
+    #[error(
+        "two modules are named `{0}` and differ; put the difference into the name, as in `@module history_${{width x}}`"
+    )]
     OtherContent(String),
 
     // Declarations.
@@ -171,10 +173,10 @@ pub enum EmitCause {
     #[error("it is not assigned on every path, which makes a latch; give it a default before the first `if`")]
     Latch,
     /// Nothing drives a signal.
-    #[error("nothing assigns it; assign it, or remove it")]
+    #[error("it is never assigned; assign it, or remove it")]
     NeverAssigned,
     /// Nothing reads a signal.
-    #[error("nothing reads it; remove it")]
+    #[error("it is never read; remove it")]
     NeverRead,
     /// A signal is read before it has a value.
     #[error("`{0}` is read before it is assigned; move the assignment up")]
@@ -193,7 +195,7 @@ pub enum EmitCause {
     // Sizes.
     /// A number is not a sum of sizes and a constant.
     #[error(
-        "the number that is {0} at the sizes that are compiled is no sum of sizes and a constant; \
+        "the number that is {0} at the sizes that are compiled is not a sum of sizes and a constant; \
          write it as one, or make it a size of its own"
     )]
     SizeNumber(String),

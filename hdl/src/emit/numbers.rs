@@ -25,7 +25,11 @@ pub(super) fn fill(text: &str, node: &Node) -> Result<String, EmitCause> {
             .split_once('}')
             .ok_or_else(|| EmitCause::Leaf("a `${` without `}`".to_owned()))?;
         filled.push_str(before);
-        let wrong = || EmitCause::Leaf(format!("`${{{number}}}` is no number of the block, or does not fit it"));
+        let wrong = || {
+            EmitCause::Leaf(format!(
+                "`${{{number}}}` is not a number of the block, or does not fit it"
+            ))
+        };
         filled.push_str(&self::number(number, node)?.ok_or_else(wrong)?);
         rest = after;
     }

@@ -239,7 +239,7 @@ pub(super) fn unused(lines: &mut Lines, ranges: &[(NetId, u32, u32)], scope: &Sc
     let bits = ranges
         .iter()
         .map(|(id, low, width)| scope.net(*id).select(*low, *width));
-    lines.line("// Bits that nothing reads.");
+    lines.line("// Bits that are never read.");
     lines.line(&format!(
         "wire {} = &{{1'b0, {}}};",
         super::scope::UNUSED,

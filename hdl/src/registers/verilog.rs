@@ -301,7 +301,7 @@ fn unused(lines: &mut Lines, map: &RegisterMap) {
         terms.push("avs_write".to_owned());
     }
     if !terms.is_empty() {
-        lines.line("// Bits that nothing reads.");
+        lines.line("// Bits that are never read.");
         joined(lines, "wire unused = &{1'b0, ", &terms, ", ", "};");
     }
 }

@@ -45,14 +45,14 @@ pub enum LogError {
     Empty,
     /// The first line contains numbers.
     #[error(
-        "line {line} is the first and has no names of columns: put `time,command,response` or `time,accel_x,accel_y,accel_z` before it"
+        "line {line} is the first and has no column names: put `time,command,response` or `time,accel_x,accel_y,accel_z` before it"
     )]
     NoHeader {
         /// Number of the line.
         line: u64,
     },
     /// A required column is missing.
-    #[error("there is no column `{missing}`: the columns are {}", .found.join(", "))]
+    #[error("no column `{missing}`: the columns are {}", .found.join(", "))]
     Missing {
         /// Name of the missing column.
         missing: &'static str,
@@ -74,7 +74,7 @@ pub enum LogError {
     },
     /// A field is not a finite number.
     #[error(
-        "line {line}, column `{column}`: `{text}` is no finite number; cut the rows that the sensor did not deliver"
+        "line {line}, column `{column}`: `{text}` is not a finite number; cut the rows that the sensor did not deliver"
     )]
     Number {
         /// Number of the line.
@@ -134,7 +134,7 @@ pub enum Remark {
         kept: usize,
     },
     /// The samples are not equally spaced; they were interpolated.
-    #[error("the times of the samples are off a uniform grid by up to {:.0} % of a sample (line {line}): they were interpolated linearly, which weakens what is near half the rate of {rate_hz:.0} samples per second", 100.0 * .worst)]
+    #[error("the times of the samples are off a uniform grid by up to {:.0} % of a sample (line {line}): they were interpolated linearly, which weakens frequencies near half the rate of {rate_hz:.0} samples per second", 100.0 * .worst)]
     Irregular {
         /// Line with the largest deviation.
         line: u64,
@@ -168,7 +168,7 @@ pub enum Remark {
         value: f64,
     },
     /// The meaning of a column is not known.
-    #[error("column `{0}` was not used: its name says nothing to posicast")]
+    #[error("column `{0}` was not used: posicast does not know its name")]
     Unknown(String),
 }
 

@@ -51,7 +51,7 @@ pub enum PositionError {
     Short(usize),
     /// Command and response have different lengths, or contain values that are not finite.
     #[error(
-        "the log has {commands} commands and {responses} responses: there must be as many, all finite, or no commands at all"
+        "the log has {commands} commands and {responses} responses: their numbers must be equal, and all values finite; or leave the commands out"
     )]
     Uneven {
         /// Number of commands.
@@ -79,7 +79,7 @@ pub enum PositionError {
 pub enum PositionRemark {
     /// The command does not move, and nothing decays.
     #[error(
-        "the command does not move and the response does not ring: nothing excited a mode; log a step, a pseudo-random command, or a stop"
+        "the command does not move and the response does not ring: no mode was excited; log a step, a pseudo-random command, or a stop"
     )]
     NoExcitation,
     /// The command moves, and the response follows without ringing.
@@ -92,7 +92,7 @@ pub enum PositionRemark {
     },
     /// The command moves, and the response follows rigidly, some samples late.
     #[error(
-        "the response is the command, {samples} samples late: the axis is rigid, or the response is not measured behind what rings"
+        "the response is the command, {samples} samples late: the axis is rigid, or the response is not measured at the part that rings"
     )]
     Late {
         /// Delay in samples.

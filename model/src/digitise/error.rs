@@ -120,5 +120,5 @@ pub enum DigitiseError {
 
 const _: () = assert!(
     COEFFICIENT_FRACTION_MAX == 16,
-    "the message of `Weight` says what one fraction bit reaches"
+    "the message of `Weight` gives the limit of one fraction bit"
 );

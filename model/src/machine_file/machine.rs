@@ -150,7 +150,7 @@ fn read_axes(
         let table = table.at(format!("axis {place}"));
         if let Some(name) = &name {
             match lines.iter().find(|(other, _)| other == name) {
-                Some((_, line)) => table.duplicate("name", *line, "every axis has a name of its own"),
+                Some((_, line)) => table.duplicate("name", *line, "every axis must have a different name"),
                 None if lines.iter().any(|(other, _)| clash(other, name)) => table.refuse(
                     "name",
                     "not `u` where another axis is `x` or `y`: their shapers are the instances `u_x` and `u_y` in the \

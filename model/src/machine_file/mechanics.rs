@@ -182,7 +182,7 @@ fn read_stiction(axis: &Table<'_, '_>, table: &Table<'_, '_>) -> Option<Option<S
             BREAKAWAY,
             found,
             allowed,
-            "raise `breakaway`: what sticks takes more than what slides",
+            "raise `breakaway`: static friction is larger than sliding friction",
         );
         return None;
     }
@@ -229,7 +229,12 @@ fn read_mode(axis: &Table<'_, '_>, table: &Table<'_, '_>, screw: &ScrewDrive, cl
     if mode.damping >= 1.0 {
         let found = format!("{}, with the motor {state} {:.3}", table.quote(DAMPING), mode.damping);
         let allowed = "a damping ratio below 1 with the motor free too";
-        table.contradiction(DAMPING, found, allowed, "lower it: what does not ring needs no shaper");
+        table.contradiction(
+            DAMPING,
+            found,
+            allowed,
+            "lower it: an axis that does not ring needs no shaper",
+        );
         return None;
     }
     let half = clock.sample_hz / 2.0;

@@ -25,7 +25,7 @@ const PARTICIPATION: NumberRange = NumberRange::closed(0.0, 1e9);
 /// Masses in kg, or inertias in kg·m².
 const MASS: NumberRange = NumberRange::positive(1e12);
 /// Tells where to find how a mode's figures are measured.
-pub(super) const MEASURE: &str = "docs/modes.md says how to measure frequency and damping";
+pub(super) const MEASURE: &str = "docs/modes.md explains how to measure frequency and damping";
 /// A sample rate below this was most likely given in kHz.
 const LIKELY_SAMPLE_HZ: f64 = 100.0;
 /// Word for a mode that was measured with the motor held.
@@ -131,7 +131,7 @@ fn read(table: &Table<'_, '_>, clock: Option<ClockSection>, axis_kind: Option<Sh
                 moving::POINTS,
                 moving::MOVES_WITH
             );
-            let allowed = "the points of a mode that moves beside the name of what it moves with";
+            let allowed = "the points of a mode that moves, together with its variable";
             table.contradiction(moving::MOVES_WITH, "a variable without `points`", allowed, remedy);
         }
         let (mode, free) = read_fixed(table, clock, axis_kind)?;
@@ -183,7 +183,7 @@ fn read_masses(table: &Table<'_, '_>, axis_kind: Option<ShaperKind>) -> Option<O
         let allowed =
             "masses with measured = \"free\", which they convert; without `measured` the mode is taken as it is";
         let present = MASSES.into_iter().find(|key| table.has(key)).unwrap_or(MASSES[0]);
-        let remedy = "add `measured = \"free\"`, or `measured = \"motor_held\"`; docs/modes.md says which";
+        let remedy = "add `measured = \"free\"`, or `measured = \"motor_held\"`; docs/modes.md explains which";
         table.contradiction(present, found, allowed, remedy);
         return None;
     }

@@ -149,7 +149,7 @@ pub(super) fn read_points(table: &Table<'_, '_>, clock: Option<ClockSection>) ->
     }
     table.require_with(
         MOVES_WITH,
-        "the name of what the mode moves with",
+        "the name of the variable on which the mode depends",
         format!("add `{MOVES_WITH} = \"{POSITION}\"` for the axis's own position, or a name such as \"load\""),
     );
     let rows = table.rows::<3>(POINTS, ANY, NUMBERS, MAX_POINTS)?;

@@ -302,6 +302,6 @@ fn check_key(table: &Table<'_, '_>, key: &str, takers: &[ShaperKind], used: &[Sh
         let takers: Vec<&str> = takers.iter().map(|kind| kind.name()).collect();
         let found = format!("{key} with kind {}", used.join(", "));
         let allowed = format!("{key} with kind {}", takers.join(", "));
-        table.contradiction(key, found, allowed, format!("remove `{key}`: nothing would use it"));
+        table.contradiction(key, found, allowed, format!("remove `{key}`: it would have no effect"));
     }
 }

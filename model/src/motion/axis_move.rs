@@ -35,7 +35,7 @@ pub struct AxisMove {
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum AxisMoveError {
     /// The distance is 0 or not finite.
-    #[error("a move of {distance} moves nothing: give a distance in {unit} that is not 0")]
+    #[error("a move of {distance} causes no motion: give a distance in {unit} that is not 0")]
     Nothing {
         /// The figure that was given.
         distance: f64,
@@ -93,7 +93,7 @@ pub enum AxisMoveError {
         unit: AxisUnit,
     },
     /// The speed is not a positive number.
-    #[error("a speed of {speed} moves nothing: give a positive number in {unit}/s")]
+    #[error("a speed of {speed} causes no motion: give a positive number in {unit}/s")]
     Still {
         /// The figure that was given.
         speed: f64,

@@ -10,10 +10,10 @@ const SETTLE_PERIODS: f64 = 3.0;
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum PointsError {
     /// The list is empty.
-    #[error("there is no point: give at least one line `time_s,position`")]
+    #[error("no points: give at least one line `time_s,position`")]
     Empty,
     /// A time or position is NaN or infinite.
-    #[error("point {point}: {value} is no finite number")]
+    #[error("point {point}: {value} is not a finite number")]
     NotFinite {
         /// Index of the point, from 0.
         point: usize,

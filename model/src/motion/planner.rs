@@ -32,7 +32,7 @@ pub enum PlanError {
     Profile(#[from] ProfileError),
     /// An interval has too many ticks for one entry.
     #[error(
-        "a stretch of {ticks:e} ticks: an entry holds {TICKS_MAX}; raise the limits, shorten the move, or lower sample_hz"
+        "a stretch of {ticks:e} ticks: an entry holds at most {TICKS_MAX}; raise the limits, shorten the move, or lower sample_hz"
     )]
     TooLong {
         /// Ticks of the longest interval.

@@ -17,7 +17,7 @@ pub enum CommandError {
     #[error(transparent)]
     Format(#[from] WordError),
     /// A position is NaN or infinite.
-    #[error("sample {sample}: position {position} is no finite number")]
+    #[error("sample {sample}: position {position} is not a finite number")]
     NotFinite {
         /// Index of the sample, from 0.
         sample: usize,

@@ -8,7 +8,7 @@
 //!     inputs Inputs {
 //!         /// Synchronous reset.
 //!         rst: Bit as bool;
-//!         /// Where the count begins anew.
+//!         /// Value at which the count restarts.
 //!         limit: Bits(8) as u8, "counts";             with a unit
 //!         /// What a trace can show.
 //!         signal[16]: Signed(32) as i32;              `signal_0` to `signal_15`, in Rust an array

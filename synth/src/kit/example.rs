@@ -56,7 +56,7 @@ pub(super) fn template(kit: &Kit<'_>) -> String {
     header(
         &mut text,
         kit,
-        "An instance to copy into a design: connect what is marked CONNECT, leave the rest as it stands.",
+        "An instance to copy into a design: connect the ports marked CONNECT and leave the rest unchanged.",
     );
     let _ = writeln!(text, "{} u_{} (", kit.machine, kit.machine);
     let mut lines = vec![

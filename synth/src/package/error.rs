@@ -13,7 +13,7 @@ pub enum PackageError {
     NotAFolder(PathBuf),
     /// The folder has contents, but no manifest.
     #[error(
-        "{}: holds files and no {MANIFEST}, so posicast did not write it and does not touch it: \
+        "{}: contains files but no {MANIFEST}, so posicast did not write it and does not change it: \
          name an empty or a new folder",
         .0.display()
     )]
@@ -24,7 +24,7 @@ pub enum PackageError {
     NotAPackage(PathBuf),
     /// The manifest is invalid.
     #[error(
-        "{}: {reason}, so what posicast wrote here is unknown: move the folder away or name another one",
+        "{}: {reason}, so the files that posicast wrote here are unknown: move the folder away or name another one",
         .folder.join(MANIFEST).display()
     )]
     Manifest {

@@ -154,13 +154,13 @@ impl Manifest {
             Ok(text) => text,
             Err(PackageError::Missing(_)) => return Ok(None),
             Err(PackageError::Io { source, .. }) if source.kind() == ErrorKind::InvalidData => {
-                return reject("is no text".to_owned());
+                return reject("is not text".to_owned());
             }
             Err(error) => return Err(error),
         };
         let manifest: Self = match serde_json::from_str(&text) {
             Ok(manifest) => manifest,
-            Err(error) => return reject(format!("is no manifest of posicast ({error})")),
+            Err(error) => return reject(format!("is not a manifest of posicast ({error})")),
         };
         // Its paths are removed and compared, so a path that leads out of the folder must not be followed.
         let outside = manifest.paths().find_map(|p| names::check(p).err());

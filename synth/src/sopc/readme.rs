@@ -13,7 +13,7 @@ pub(super) fn text(design: &Design<'_>, projects: &[(Board, Vec<Pin>)]) -> Strin
     contents(&mut text, design);
     if design.units().next().is_none() {
         text.push_str(
-            "\nThe machine has shapers alone: no component with registers, so nothing for Platform Designer. `kit/README.md` \
+            "\nThe machine has only shapers: without a component with registers, there is nothing for Platform Designer. `kit/README.md` \
              says how the top module goes into a design of your own.\n",
         );
         return text;
@@ -21,7 +21,7 @@ pub(super) fn text(design: &Design<'_>, projects: &[(Board, Vec<Pin>)]) -> Strin
     components(&mut text, design);
     if design.stage.is_none() {
         text.push_str(
-            "\nThe machine has no stage (that takes a complete loop on every axis), so there is no system and no project. Add the \
+            "\nThe machine has no stage (which requires a complete loop on every axis), so there is neither a system nor a project. Add the \
              components to a system of your own: in Platform Designer, add the folder `sopc/` to the search path.\n",
         );
         return text;

@@ -155,7 +155,7 @@ fn multipliers(a_width: u64, b_width: u64, family: Family) -> u64 {
 fn size(cell: &NetlistCell, parameter: &str) -> Result<u64, String> {
     let value = cell.parameters.get(parameter);
     let number = value.and_then(|v| v.as_u64().or_else(|| u64::from_str_radix(v.as_str()?, 2).ok()));
-    number.ok_or_else(|| format!("parameter {parameter} of a {} is no size: {value:?}", cell.kind))
+    number.ok_or_else(|| format!("parameter {parameter} of a {} is not a size: {value:?}", cell.kind))
 }
 
 #[cfg(test)]

@@ -51,7 +51,7 @@ pub enum OutputError {
         path: PathBuf,
     },
     /// The folder of the file does not exist.
-    #[error("{option} {}: there is no folder {}: make it, or name a file elsewhere", .path.display(), .folder.display())]
+    #[error("{option} {}: the folder {} does not exist: create it, or name a file elsewhere", .path.display(), .folder.display())]
     NoFolder {
         /// The option that gave the name.
         option: String,

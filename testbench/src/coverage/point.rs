@@ -49,7 +49,7 @@ impl PointKind {
 /// # Errors
 /// [`Error::File`] where a file cannot be read, [`Error::Option`] where a line is not as above.
 pub fn read(path: &Path, files: &[PathBuf]) -> Result<Vec<CoveragePoint>, Error> {
-    let text = std::fs::read_to_string(path).map_err(Error::file(path, "read what Verilator counted in"))?;
+    let text = std::fs::read_to_string(path).map_err(Error::file(path, "read Verilator's counts in"))?;
     let mut verilog = Verilog {
         files,
         path: PathBuf::new(),
@@ -64,7 +64,7 @@ pub fn read(path: &Path, files: &[PathBuf]) -> Result<Vec<CoveragePoint>, Error>
 }
 
 fn point(line: &str, verilog: &mut Verilog<'_>) -> Result<CoveragePoint, Error> {
-    let strange = || Error::Option(format!("`{line}` is no line of Verilator's coverage file"));
+    let strange = || Error::Option(format!("`{line}` is not a line of Verilator's coverage file"));
     let (keys, count) = line
         .strip_prefix("C '")
         .and_then(|rest| rest.rsplit_once("' "))

@@ -235,7 +235,7 @@ impl fmt::Display for Mismatch {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(
             f,
-            "first mismatch in clock {}: `{}` is {}, the model says {}",
+            "first mismatch in clock {}: `{}` is {}, the model has {}",
             self.time, self.signal, self.shown[1], self.shown[0]
         )?;
         let names = self.table.rows.iter().map(|(name, _)| name.chars().count());

@@ -39,7 +39,7 @@ const VERILATOR: Tool = Tool {
 const MAKE: Tool = Tool {
     name: "make",
     variable: "MAKE",
-    purpose: "it compiles what Verilator writes",
+    purpose: "it compiles Verilator's output",
     remedy: "Install it together with a C++ compiler (Debian: apt-get install make g++)",
 };
 /// `-O2` is 1.6 times as fast as Verilator's default `-Os`, for the same build time.
@@ -215,7 +215,7 @@ fn compile(folder: &Path, source: &VerilogSource<'_>, counts: bool) -> Result<Pa
     VERILATOR.run(&mut verilate, "translating the Verilog")?;
 
     let header = work.path().join(format!("{}.h", harness::CLASS));
-    let header = std::fs::read_to_string(&header).map_err(Error::file(&header, "read what Verilator wrote"))?;
+    let header = std::fs::read_to_string(&header).map_err(Error::file(&header, "read Verilator's output"))?;
     let members = harness::members(source, &harness::declared_ports(&header))?;
     let coverage = if counts { harness::COVERAGE } else { "" };
     write(

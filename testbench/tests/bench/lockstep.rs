@@ -64,7 +64,7 @@ fn lockstep_catches_one_wrong_bit_and_shows_the_clocks_around_it() {
     assert_eq!(first.actual, "00000000000000000000001000000010");
     let text = first.to_string();
     let expected = "\
-first mismatch in clock 10: `count` is 514 (0x00000202), the model says 2 (0x00000002)
+first mismatch in clock 10: `count` is 514 (0x00000202), the model has 2 (0x00000002)
 clock           4  5  6   7   8   9    10    11    12    13    14    15     16
 rst             0  0  0   0   0   0     0     0     0     0     0     0      0
 strobe          0  0  1   0   0   1     0     0     1     0     0     1      0

@@ -44,8 +44,7 @@ pub(crate) fn contour(
     };
     if !has_stage {
         return Err(Failure::from(miette::miette!(
-            help =
-                "`posicast simulate --contour` drives the shapers alone; docs/machine-file.md says what makes a stage",
+            help = "`posicast simulate --contour` drives the shapers alone; docs/machine-file.md explains the requirements of a stage",
             "--contour: the machine has no stage, whose closed loop would drive it"
         )));
     }

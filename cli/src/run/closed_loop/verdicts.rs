@@ -46,7 +46,7 @@ impl ClosedLoop<'_> {
         };
         let trouble = of_runs.find_map(|trouble| trouble);
         Check {
-            name: "the stage does what it is told, without a fault",
+            name: "the stage carries out its commands without a fault",
             passed: trouble.is_none(),
             detail: trouble.map_or_else(
                 || format!("{runs} runs, watched in every tick from reset to standstill{circles}"),

@@ -33,7 +33,7 @@ ports! {
         start: Bit as bool;
         /// One clock: quick stop, then HOLD.
         stop: Bit as bool;
-        /// One clock: forget the causes that are over, eight clocks later.
+        /// One clock: clear the causes that are over, eight clocks later.
         clear_faults: Bit as bool;
         /// One clock: `kick_word` is written to the watchdog.
         kick: Bit as bool;

@@ -50,7 +50,7 @@ impl SupervisorState {
     pub const fn meaning(self) -> &'static str {
         match self {
             Self::Off => "outputs off",
-            Self::Ready => "outputs off, nothing wrong",
+            Self::Ready => "outputs off, no fault",
             Self::Hold => "outputs on, the command stands",
             Self::Run => "segments play",
             Self::QuickStop => "slowing down",

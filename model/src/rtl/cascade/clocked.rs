@@ -15,7 +15,7 @@ ports! {
         rst: Bit as bool;
         /// For one clock: `x` is the next sample; ignored during a computation.
         strobe: Bit as bool;
-        /// For one clock: begin anew; all samples before now count as `x`.
+        /// For one clock: restart; all samples before now count as `x`.
         start: Bit as bool;
         /// Command word.
         x: Signed(W) as i64;

@@ -119,7 +119,7 @@ pub struct Net {
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum CompositionError {
     /// The wiring names a port that the part does not have, or names a port twice.
-    #[error("the part `{part}` has no port `{port}` left to connect: correct the name, or connect it once")]
+    #[error("the part `{part}` has no unconnected port `{port}`: correct the name, or connect it only once")]
     NoSuchPort {
         /// Name of the part.
         part: String,

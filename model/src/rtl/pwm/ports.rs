@@ -131,7 +131,7 @@ ports! {
         pll_locked: Bit as bool;
         /// Two faults with synchroniser and filter, asynchronous; low, as with a broken wire, is a fault.
         filtered_fault_n: Bits(2) as u8;
-        /// One clock: forget the causes that are over.
+        /// One clock: clear the causes that are over.
         clear_trip: Bit as bool;
         /// Clears `saturated`, `refused`, `below_floor`, `unaligned`.
         clear_flags: Bit as bool;

@@ -208,7 +208,7 @@ fn access(register: &Register, registers: &[Register]) -> Result<(), MapError> {
         {
             return wrong("flags of one bit, 0 after reset");
         }
-        Access::Live if register.reset() != 0 => return wrong("what is live has no reset value"),
+        Access::Live if register.reset() != 0 => return wrong("a live register has no reset value"),
         Access::Live | Access::Configuration | Access::Staged if register.fields.is_empty() => {
             return wrong("it needs a field");
         }

@@ -45,7 +45,7 @@ impl MotionShaper {
         }
     }
 
-    /// Starts anew: all samples before now count as `words` (wrapped to the word width). Returns the outputs after
+    /// Restarts: all samples before now count as `words` (wrapped to the word width). Returns the outputs after
     /// that.
     pub fn start(&mut self, words: [i64; CHANNELS_MAX]) -> [i64; CHANNELS_MAX] {
         let mut outputs = [0; CHANNELS_MAX];

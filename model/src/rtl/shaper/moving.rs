@@ -10,7 +10,7 @@ ports! {
         rst: Bit;
         /// For one clock: the next sample of the command.
         strobe: Bit;
-        /// For one clock: begin anew; all samples before now count as the present command.
+        /// For one clock: restart; all samples before now count as the present command.
         start: Bit;
         /// Command words: position, velocity, acceleration.
         x[C]: Signed(W);

@@ -24,7 +24,7 @@ pub struct Inputs {
     pub rst: bool,
     /// One clock: `x` is a new sample.
     pub strobe: bool,
-    /// One clock: begin anew; all samples before now count as `x`.
+    /// One clock: restart; all samples before now count as `x`.
     pub start: bool,
     /// Command word of channel 0, W bits: the position.
     pub x: i64,

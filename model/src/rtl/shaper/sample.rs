@@ -45,7 +45,7 @@ impl SampleShaper {
         }
     }
 
-    /// Starts anew: all samples before now count as `x` (wrapped to the word width), which is also the output after
+    /// Restarts: all samples before now count as `x` (wrapped to the word width), which is also the output after
     /// that.
     pub fn start(&mut self, x: i64) -> i64 {
         let x = wrap(x, self.config.word_bits());
