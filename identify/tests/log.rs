@@ -92,7 +92,7 @@ fn unit_what_is_wrong_is_said_with_its_line_and_column() {
     };
     for (text, expected) in [
         (String::new(), "the log is empty"),
-        ("0,1,2\n0.1,2,3\n".into(), "line 1 is the first and has no names"),
+        ("0,1,2\n0.1,2,3\n".into(), "line 1 is the first and has no column names"),
         (
             rows("clock,response", good),
             "no column `time`: the columns are clock, response",

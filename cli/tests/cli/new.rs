@@ -101,7 +101,7 @@ fn a_name_that_cannot_be_written_is_bad_input() {
     assert_eq!((code, said.contains("that is a folder")), (Some(2), true), "{said}");
     let (code, said) = status(folder.path(), &["no/where.toml"]);
     assert_eq!(
-        (code, said.contains("there is no folder no")),
+        (code, said.contains("the folder no does not exist")),
         (Some(2), true),
         "{said}"
     );

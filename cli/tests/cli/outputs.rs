@@ -196,7 +196,7 @@ fn cli_a_name_that_is_no_place_for_a_file_is_refused_before_the_work() {
     let bench = bench();
     std::fs::create_dir(bench.path("folder")).unwrap();
     for (words, _, option) in &WRITERS[..4] {
-        for (out, what) in [("folder", "is a folder"), ("no/file", "there is no folder")] {
+        for (out, what) in [("folder", "is a folder"), ("no/file", "does not exist")] {
             let said = bench.status(2, &with(words, out, true));
             assert!(said.contains(option) && said.contains(what), "{said}");
         }
