@@ -1,7 +1,7 @@
 // posicast_divider_share_2
 // One divider for all pulse counters: their divisions one after the other.
-// One divider for all pulse counters of a stage: their divisions one after the other, in a fixed
-// order.
+// Shares one divider among all pulse counters of a stage: their divisions run one after the other,
+// in a fixed order.
 //
 // The reference is `posicast_model::rtl::divider_share`.
 //

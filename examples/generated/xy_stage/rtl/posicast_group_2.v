@@ -1,6 +1,6 @@
 // posicast_group_2
 // Axes of a stage: they start in one clock, and one that stops for a fault stops all.
-// What the axes of a stage have to do with each other: common start, group stop, emergency stop.
+// The coupling of a stage's axes: common start, group stop, emergency stop.
 //
 // The reference is `posicast_model::rtl::group`.
 //

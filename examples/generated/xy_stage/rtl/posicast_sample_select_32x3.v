@@ -1,7 +1,7 @@
 // posicast_sample_select_32x3
 // Samples from the host's registers or from pins, a clock late.
-// Where the samples of a stand-alone shaper come from: the host's registers, or pins. One clock
-// late.
+// Selects the source of a stand-alone shaper's samples: the host's registers, or pins. The outputs
+// come a clock late.
 //
 // The reference is `posicast_model::rtl::sample_select`.
 //

@@ -1,7 +1,7 @@
 // posicast_segments
 // Motion commands: a FIFO of segments of constant jerk, integrated exactly at every tick.
 // Without an entry while moving: a quick stop.
-// Ticks, states and flags; the FIFO and the integrator do the rest.
+// Ticks, states and flags of the command FIFO; memory and integrator are parts of it.
 //
 // phase 0            1 ~ 43          44               45 ~ 51
 //       tick taken   sums (passes)   outputs, decide  read the next entry's ticks and flags, if one is next

@@ -2,7 +2,7 @@
 // Controller: reference and measurement to the drive's command, by sliding mode, PD or PID.
 // Each step reads its gain at setting_address: the word comes in the next clock, as from a block
 // RAM.
-// The controller: what a step multiplies, and what becomes of its sum.
+// The controller: selects the operand of each step, and the word that takes its sum.
 //
 // | step | operand | times | sum so far | taken by |
 // |---|---|---|---|---|

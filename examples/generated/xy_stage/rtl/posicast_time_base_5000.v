@@ -1,7 +1,7 @@
 // posicast_time_base_5000
 // Time base: a tick every so many clocks, a counter of clocks, a counter of ticks.
 // divide is high in the clock after each tick.
-// The time base of a component that stands alone: ticks at a fixed distance, a clock counter, a
+// The time base of a component that stands alone: ticks at a fixed interval, a clock counter and a
 // tick counter.
 //
 // The reference is `posicast_model::rtl::time_base`.
