@@ -171,7 +171,7 @@ fn unit_parts_that_make_no_whole_are_refused() {
         "two parts are called `first`",
         "driven by `second.quotient`",
         "nothing drives the net `nothing`",
-        "no port `strat`",
+        "no unconnected port `strat`",
         "other bits than the net `quotient`",
         "cannot be tied to 2",
         "`steps` is no net",
